@@ -10,7 +10,7 @@
 
 namespace scanloom::oracle {
 
-/// Gives what sighting_at() gives, without asking every beam: for scans too large for the loop over all of them.
+/// Returns the same as sighting_at() without examining every beam. For scans too large for a loop over all beams.
 class BeamIndex {
 public:
     explicit BeamIndex(const Scene& scene) : sight_(scene.sight) {
@@ -30,7 +30,7 @@ public:
         const double behind = turn_between(phi, at(next + count - 1).first);
         const double nearest = std::min(ahead, behind);
 
-        std::size_t beam = count; // the lowest index of those that are as near, up to rounding
+        std::size_t beam = count; // the lowest index of the equally near beams, up to rounding
         for (std::size_t n = next; n < next + count && turn_between(phi, at(n).first) < nearest + 1e-12; ++n) {
             beam = std::min(beam, at(n).second);
         }

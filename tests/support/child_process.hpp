@@ -10,8 +10,8 @@
 
 namespace scanloom::test {
 
-/// A program of the build under test, started with its standard output piped here and its standard
-/// error appended to a file. Killed, if it still runs, when this goes out of scope.
+/// Runs a program of the build under test with its standard output piped to this process and its standard error
+/// appended to a file. The destructor kills the program if it still runs.
 class ChildProcess {
 public:
     ChildProcess(const std::filesystem::path& program, const std::vector<std::string>& arguments,
@@ -20,17 +20,17 @@ public:
     ChildProcess(const ChildProcess&) = delete;
     ChildProcess& operator=(const ChildProcess&) = delete;
 
-    /// Waits for the next line of its standard output; nothing at its end.
+    /// Waits for the next line of the program's standard output. @return nullopt at the end of the output.
     [[nodiscard]] std::optional<std::string> read_line();
 
-    /// Whether something came on its standard output, or it ended, before so much time had passed.
+    /// @return whether the program wrote to its standard output or ended within `patience`
     [[nodiscard]] bool has_output_within(std::chrono::microseconds patience) const;
 
     [[nodiscard]] pid_t id() const noexcept { return pid_; }
 
     void signal(int number) const;
 
-    /// Waits for its end. @return the exit code, or minus the signal that ended it.
+    /// Waits until the program ends. @return the exit code, or minus the signal that ended it.
     int wait();
 
 private:

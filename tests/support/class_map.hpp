@@ -18,7 +18,7 @@ using classify::ClassView;
 using classify::OccType;
 using grid::Cell;
 
-/// A map of cells given one by one.
+/// A map whose cells are set one by one.
 class ClassMap {
 public:
     void set(Cell cell, CellClass value) { tree_.write(grid::chunk_of(cell), 1).at(cell) = value; }
@@ -34,8 +34,8 @@ private:
     grid::ChunkTree<classify::ClassChunk> tree_{blank()};
 };
 
-/// A map as drawn, the top row first, its lower left cell at `corner`: '#' occupied, '.' free, '!' danger,
-/// 'f' frontier, anything else unexplored.
+/// Returns the map drawn in `rows`, the top row first, with its lower left cell at `corner`: '#' is occupied, '.' free,
+/// '!' danger, 'f' frontier, any other character unexplored.
 [[nodiscard]] inline ClassView drawn(const std::vector<std::string_view>& rows, Cell corner = {0, 0}) {
     ClassMap map;
     for (std::size_t row = 0; row < rows.size(); ++row) {
@@ -54,7 +54,7 @@ private:
     return map.view();
 }
 
-/// The classes of OccTypes given for a box of cells.
+/// Returns the classes that follow from the OccTypes of the cells of a box.
 template <class TypeAt>
 [[nodiscard]] ClassView classified(const grid::CellBox& box, std::int32_t danger_cells, TypeAt&& type_at) {
     std::map<grid::ChunkKey, std::unique_ptr<classify::OccPlanes>> planes;
@@ -73,12 +73,12 @@ template <class TypeAt>
     return layer.snapshot();
 }
 
-/// A random number of 0 .. count - 1.
+/// Returns a random number of 0 .. count - 1.
 [[nodiscard]] inline std::int32_t random_below(std::mt19937& random, std::int32_t count) {
     return static_cast<std::int32_t>(random() % static_cast<std::uint32_t>(count));
 }
 
-/// Cells of every class at random in a box, mostly free.
+/// Returns a box of cells with random classes, most of them free.
 [[nodiscard]] inline ClassView scattered(std::mt19937& random, const grid::CellBox& box, int obstacles_in_100) {
     ClassMap map;
     for (std::int32_t j = box.j_begin; j < box.j_end; ++j) {

@@ -10,13 +10,13 @@
 #include <cmath>
 #include <cstdint>
 
-/// The classes of a map by their definition, from nothing but what its evidence layers held after each scan.
+/// Computes the classes of a map by their definition, only from the evidence layers after each scan.
 namespace scanloom::oracle {
 
 using classify::CellClass;
 using classify::OccType;
 
-/// Whether a cell's log-odds are at a probability or above it, as far as steps of 1/2048 can tell.
+/// Returns whether a cell's log-odds are at or above a probability, up to the rounding to steps of 1/2048.
 inline bool reaches(mapping::LogOdds l, double p) { return l + 0.5 >= 2048.0 * std::log(p / (1.0 - p)); }
 inline bool falls_to(mapping::LogOdds l, double p) { return l - 0.5 <= 2048.0 * std::log(p / (1.0 - p)); }
 
@@ -25,7 +25,7 @@ class OccTypes {
 public:
     explicit OccTypes(const mapping::MapConfig& config) : config_(config) {}
 
-    /// To be called after each scan.
+    /// Call after each scan.
     void fold(const mapping::Snapshot& snapshot) {
         testing_support::for_each_laser_cell(
             snapshot, [&](grid::Cell cell, const mapping::LaserChunk& chunk, std::size_t n) {
@@ -40,7 +40,7 @@ public:
 
     [[nodiscard]] const Plane<OccType>& plane() const { return types_; }
 
-    /// How many times any cell became another type.
+    /// Returns how often any cell changed its type.
     [[nodiscard]] std::size_t changes() const { return changes_; }
 
 private:
@@ -50,7 +50,8 @@ private:
         return falls_to(l, config_.class_p_free) ? OccType::kFree : before;
     }
 
-    /// A cell that was hit first counts 3: not evidence that it is free. So the first time takes a count of 0.
+    /// A cell whose first observation is a hit counts 3, which is not evidence that it is free. So the first change to
+    /// free needs a count of 0.
     [[nodiscard]] OccType by_count(OccType before, mapping::HimmCount count) const {
         if (count == mapping::kUnseenHimm) return before;
         if (count >= config_.class_himm_occupied) return OccType::kOccupied;
@@ -63,8 +64,8 @@ private:
     std::size_t changes_ = 0;
 };
 
-/// FRONTIER: UNEXPLORED with a FREE cell among the 8 around it. DANGER: FREE with an OCCUPIED cell at Chebyshev
-/// distance 1 .. danger_cells.
+/// Returns FRONTIER for an UNEXPLORED cell with a FREE cell among its 8 neighbours, and DANGER for a FREE cell with an
+/// OCCUPIED cell at Chebyshev distance 1 .. danger_cells.
 inline CellClass class_of(const Plane<OccType>& types, grid::Cell cell, std::int32_t danger_cells) {
     const auto is_near = [&](OccType type, std::int32_t reach) {
         for (std::int32_t j = cell.j - reach; j <= cell.j + reach; ++j) {

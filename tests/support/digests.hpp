@@ -6,7 +6,7 @@
 
 namespace scanloom::testing_support {
 
-/// Of every layer: equal only when all maps are.
+/// Returns a digest of every layer. Two results are equal only if all layers are equal.
 inline std::string digests_of(const mapping::Snapshot& snapshot) {
     std::string digests;
     for (const auto layer : mapping::kLayers) {

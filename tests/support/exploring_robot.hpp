@@ -12,7 +12,7 @@
 
 namespace scanloom::testing_support {
 
-/// A robot of the simulator's worlds that goes where it is told and scans at each step.
+/// A robot in a simulated world that drives to given targets and scans at each step.
 class ExploringRobot {
 public:
     static constexpr double kStep = 0.25; // metres
@@ -27,7 +27,7 @@ public:
         scan(maps);
     }
 
-    /// Along the path, then a turn to the target.
+    /// Follows the path, then turns towards the target.
     void go(std::vector<Point2> path, const Point2& target) {
         way_ = std::move(path);
         passed_ = 0;
@@ -39,7 +39,7 @@ public:
     [[nodiscard]] Point2 place() const { return {pose_.x, pose_.y}; }
     [[nodiscard]] double least_clearance() const { return least_clearance_; }
 
-    /// Pre  has not arrived.
+    /// Pre  the robot has not arrived.
     void step(mapping::Projection& maps) {
         if (!advance(kStep)) {
             if (norm(*target_ - place()) > 0.0) pose_.yaw = direction(*target_ - place());
@@ -52,7 +52,7 @@ public:
 private:
     static double direction(const Point2& along) { return std::atan2(along.y, along.x); }
 
-    /// @return whether it was anywhere but at the end of its way.
+    /// @return whether the robot was not yet at the end of its path
     bool advance(double metres) {
         bool moved = false;
         while (metres > 0.0 && passed_ + 1 < way_.size()) {
@@ -94,7 +94,7 @@ private:
     std::uint64_t seq_ = 0;
     std::vector<Point2> way_;
     std::size_t passed_ = 0;
-    std::optional<Point2> target_; // of the way it is on
+    std::optional<Point2> target_; // of the current path
     double least_clearance_ = HUGE_VAL;
 };
 

@@ -13,28 +13,29 @@
 
 namespace scanloom {
 
-/// RocksDB's file layer with a disk that fills up, fails to sync, loses power, or cannot read a sector.
+/// RocksDB's file layer on a simulated disk that fills up, fails to sync, loses power, or cannot read a sector.
 ///
-/// Thread  any. A picture is taken between two operations, never in the middle of one.
+/// Thread  any. A copy of the disk is made between two operations, never during one.
 class FaultyFileSystem final : public rocksdb::FileSystemWrapper {
 public:
     FaultyFileSystem();
 
-    /// The next sync of a write-ahead log fails, once; what was to be synced may or may not be on disk.
+    /// Lets the next sync of a write-ahead log fail once. The data of that sync may or may not be on the disk.
     void fail_next_log_sync();
 
-    /// Writing fails as on a full disk, from now on or no more.
+    /// Lets writes fail as on a full disk, until this is called with false.
     void set_disk_full(bool full);
 
-    /// What the disk is said to have free. Nothing: what it has.
+    /// Sets the free space that the disk reports. nullopt: the real value.
     void set_free_bytes(std::optional<std::uint64_t> bytes);
 
-    /// Reading byte `at` of files of this name fails from now on, and with it whatever else is read at once.
+    /// Lets reads of byte `at` fail from now on in files of this name. A read of a range that contains the byte fails
+    /// as a whole.
     void set_unreadable(const std::string& name, std::uint64_t at);
 
-    /// Copies a directory as it would be found after a power cut now: of each file what was synced,
-    /// then a part of what was written since, in which some pages may read as zeros.
-    /// Names of files count as durable at once.
+    /// Copies a directory in the state in which a power cut at this moment would leave it: of each file the synced
+    /// bytes, then a part of the bytes written since, in which some pages may read as zeros. File names count as
+    /// durable at once.
     void picture_of_power_cut(const std::filesystem::path& directory, const std::filesystem::path& destination,
                               std::mt19937& random);
 
@@ -56,14 +57,14 @@ private:
     friend class FaultyFile;
 
     std::mutex mutex_;                                  // one operation at a time
-    std::map<std::string, std::uint64_t> synced_bytes_; // by path, of files written since the start
+    std::map<std::string, std::uint64_t> synced_bytes_; // by path, for files written since the start
     bool sync_fails_ = false;
     bool disk_full_ = false;
     std::optional<std::uint64_t> free_bytes_;
     std::map<std::string, std::uint64_t> unreadable_; // by name, without the directory
 };
 
-/// The file layer as a store takes it.
+/// The file layer in the form that a store accepts.
 struct FaultyEnv {
     std::shared_ptr<FaultyFileSystem> files = std::make_shared<FaultyFileSystem>();
     std::unique_ptr<rocksdb::Env> env = rocksdb::NewCompositeEnv(files);

@@ -15,7 +15,7 @@
 
 namespace scanloom::testing_support {
 
-/// What a server answers to the robots of one session, without one.
+/// Computes a server's answers to the robots of one session, without a server.
 class GoalOracle {
 public:
     explicit GoalOracle(std::shared_ptr<const session::Session> session, const mapping::MapConfig& config = {})
@@ -32,7 +32,8 @@ public:
 
     [[nodiscard]] Result<robot::NextStop> next(RobotIndex robot) {
         const auto maps = maps_.snapshot();
-        for (const grid::Cell cell : around_target_[robot]) looked_at_.insert({cell.j, cell.i}); // as it asks again
+        for (const grid::Cell cell : around_target_[robot])
+            looked_at_.insert({cell.j, cell.i}); // the robot requests another goal
         around_target_[robot].clear();
         const Pose2 pose = *maps.robots.at(robot).pose;
         auto found = book_.next(session_, maps, robot, {pose.x, pose.y}, {}, options_);
@@ -52,7 +53,7 @@ public:
 
     [[nodiscard]] mapping::Snapshot maps() { return maps_.snapshot(); }
     [[nodiscard]] int asked() const noexcept { return asked_; }
-    /// (j, i) of the cells around the targets that robots were sent to, and of which they asked for more.
+    /// Returns (j, i) of the cells around the targets that robots drove to and after which they requested another goal.
     [[nodiscard]] const std::set<std::pair<std::int32_t, std::int32_t>>& looked_at() const noexcept {
         return looked_at_;
     }
@@ -63,7 +64,7 @@ private:
     guide::GoalBook book_;
     planning::ExplorationOptions options_;
     int asked_ = 0;
-    std::map<RobotIndex, std::vector<grid::Cell>> around_target_; // of the goals they pursue
+    std::map<RobotIndex, std::vector<grid::Cell>> around_target_; // of the goals that robots drive to
     std::set<std::pair<std::int32_t, std::int32_t>> looked_at_;
 };
 

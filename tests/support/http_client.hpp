@@ -16,15 +16,15 @@
 
 namespace scanloom::testing_support {
 
-/// An HTTP answer, taken apart without the code it tests.
+/// An HTTP response, parsed without the code under test.
 struct HttpAnswer {
-    int status = 0; ///< 0: the connection ended before a whole answer
+    int status = 0; ///< 0: the connection ended before the response was complete
     std::map<std::string, std::string> fields;
     std::string body;
 };
 
-/// A blocking connection that sends whatever bytes it is given. Nothing waits longer than 30 s, so
-/// that a server which hangs fails a test instead of stopping all.
+/// A blocking connection that sends arbitrary bytes. Each wait is limited to 30 s, so that a server that hangs fails
+/// one test and does not stop the test run.
 class HttpClient {
 public:
     explicit HttpClient(std::uint16_t port) : socket_(io_) {
@@ -37,7 +37,7 @@ public:
     HttpClient(const HttpClient&) = delete;
     HttpClient& operator=(const HttpClient&) = delete;
 
-    /// What does not get through is not sent: the server may hang up at any time.
+    /// Sends bytes and ignores failures, as the server may close the connection at any time.
     void send(std::string_view bytes) {
         while (!bytes.empty()) {
             const auto sent = put(bytes);
@@ -46,7 +46,7 @@ public:
         }
     }
 
-    /// Reads one answer. Pre: for HEAD, `with_body` is false.
+    /// Reads one response. Pre: for HEAD, `with_body` is false.
     [[nodiscard]] HttpAnswer read(bool with_body = true) {
         HttpAnswer answer;
         std::size_t end = 0;
@@ -67,24 +67,24 @@ public:
         return answer;
     }
 
-    /// Whether the server hangs up without saying anything more, rather than keeping silent.
+    /// Returns whether the server closed the connection without sending more bytes. False if it only sends nothing.
     [[nodiscard]] bool is_closed() { return buffer_.empty() && !receive() && !timed_out_; }
 
-    /// Whether the server ends the stream in order, not by a reset, which may take an answer with it.
+    /// Returns whether the server ended the stream in order. A reset could discard a response.
     [[nodiscard]] bool ends_in_order() {
         while (receive()) {
         }
         return last_size_ == 0;
     }
 
-    /// All that comes until the stream ends.
+    /// Reads until the stream ends and returns all bytes.
     [[nodiscard]] std::string read_all() {
         while (receive()) {
         }
         return buffer_;
     }
 
-    /// Reads a few bytes at a time until the stream ends; how many there were. Steady, but slow: some 10 MB a second.
+    /// Reads a few bytes at a time until the stream ends, at about 10 MB/s. @return the number of bytes
     [[nodiscard]] std::size_t read_slowly() {
         std::size_t count = 0;
         char bytes[16];
@@ -97,7 +97,7 @@ public:
     void shutdown_send() { ::shutdown(socket_.native_handle(), SHUT_WR); }
 
 protected:
-    /// As send(2) and recv(2) do.
+    /// Same results as send(2) and recv(2).
     virtual ssize_t put(std::string_view bytes) {
         return ::send(socket_.native_handle(), bytes.data(), bytes.size(), MSG_NOSIGNAL);
     }

@@ -8,20 +8,20 @@
 #include <optional>
 #include <vector>
 
-/// The inverse sensor model as a naive double loop over cells and beams, written from its definition
-/// (Thrun, Burgard, Fox, Probabilistic Robotics, Table 9.2) and from nothing of the production code.
+/// The inverse sensor model as a naive double loop over cells and beams, written from its definition (Thrun, Burgard,
+/// Fox, Probabilistic Robotics, Table 9.2) without the production code.
 namespace scanloom::oracle {
 
-/// How beams share the directions between them: uniform ones are an increment apart; a list may have wider gaps
-/// and still be gapless, up to four times the median of all gaps but the widest.
+/// How the beams divide the directions among them. Uniform beams are one increment apart. A list of angles may have
+/// wider gaps and still be without blind gaps, up to four times the median of all gaps except the widest.
 struct Sight {
     double beta = 0.0;    // full width of a beam
-    double gap_max = 0.0; // wider gaps between beams are blind
+    double gap_max = 0.0; // wider gaps between beams are not observed
 };
 
 struct Scene {
     std::vector<double> beam_angles; // radians, sensor frame, any order and turn
-    bool explicit_angles = false;    // a list, of which nothing says that it is even
+    bool explicit_angles = false;    // a list of angles, which may be uneven
     std::vector<double> readings;    // metres; NaN = invalid, infinity = no return
     double range_min = 0.0;
     double range_max = 0.0;
@@ -29,12 +29,12 @@ struct Scene {
     double aperture = 0.0174533;
     double cell_size = 0.05;
     Pose2 T_map_sensor;
-    Sight sight; // sight_of() the above
+    Sight sight; // sight_of() the members above
 };
 
 enum class Verdict { kNothing, kFree, kOccupied };
 
-/// Angle between two directions in [-pi, pi], the short way round.
+/// Returns the smaller angle between two directions in [-pi, pi].
 inline double turn_between(double a, double b) {
     const double d = std::abs(a - b);
     return d > std::numbers::pi ? 2.0 * std::numbers::pi - d : d;
@@ -91,7 +91,7 @@ inline Sight sight_of(const Scene& scene) {
     return {std::max(scene.aperture, median), 4.0 * median};
 }
 
-/// The gap between the two beams on either side of a direction.
+/// Returns the gap between the two beams on either side of a direction.
 inline double gap_around(const Scene& scene, double phi) {
     double ahead = 2.0 * std::numbers::pi;
     double behind = 2.0 * std::numbers::pi;
@@ -102,7 +102,7 @@ inline double gap_around(const Scene& scene, double phi) {
     return ahead + behind;
 }
 
-/// What looks towards a direction, and whether it sees anything there.
+/// The beam that faces a direction, and whether it observes that direction.
 struct Sighting {
     std::size_t beam = 0;
     bool is_seen = false;
@@ -125,18 +125,18 @@ inline Verdict verdict_at(const Scene& scene, double r, Sighting sighting) {
     return Verdict::kNothing;
 }
 
-/// Moves of r and phi that a firm verdict bears: metres, radians.
+/// Changes of r (metres) and phi (radians) that must not change a firm verdict.
 inline constexpr double kStep = 2e-5;
 
-/// Verdict for a cell; none where moving r or phi by 2e-5 would change it. `sighting_of` is sighting_at(), or what
-/// gives the same.
+/// Returns the verdict for a cell, or nullopt if moving r or phi by 2e-5 would change it. `sighting_of` is
+/// sighting_at() or a function with the same results.
 template <class SightingOf>
 std::optional<Verdict> verdict_of_cell(const Scene& scene, int i, int j, SightingOf&& sighting_of) {
     const double x = (i + 0.5) * scene.cell_size - scene.T_map_sensor.x;
     const double y = (j + 0.5) * scene.cell_size - scene.T_map_sensor.y;
     const double r = std::hypot(x, y);
     const double phi = std::atan2(y, x) - scene.T_map_sensor.yaw;
-    if (r < kStep) return std::nullopt; // a centre on the sensor itself has no direction
+    if (r < kStep) return std::nullopt; // a cell centre at the sensor has no direction
     if (r > scene.range_max + kStep) return Verdict::kNothing;
     const Verdict verdict = verdict_at(scene, r, sighting_of(phi));
     for (const double dphi : {-kStep, 0.0, kStep}) {

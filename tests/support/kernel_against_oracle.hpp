@@ -17,10 +17,10 @@
 #include <utility>
 #include <vector>
 
-/// The production sensor model held against the oracle, cell by cell.
+/// Compares the production sensor model with the oracle, cell by cell.
 namespace scanloom::mapping {
 
-/// One scan and all that the model takes with it.
+/// One scan and all inputs of the model.
 struct Case {
     std::string shape;
     BeamAngles angles;
@@ -48,7 +48,7 @@ inline void add_verdicts(const Case& c, grid::ChunkKey key, const grid::BitPlane
     }
 }
 
-/// What the production kernel says; fails the test when a cell comes twice.
+/// Returns the verdicts of the production kernel. Fails the test if the kernel visits a cell twice.
 inline Verdicts run_kernel(const Case& c) {
     Verdicts verdicts;
     const auto ring = make_fan_ring(make_beam_fan(c.angles, c.aperture));
@@ -81,7 +81,8 @@ inline oracle::Scene scene_of(const Case& c) {
     return scene;
 }
 
-/// How far a scan can change anything: its longest reading, or its range where a beam returned nothing.
+/// Returns the greatest distance at which a scan can change a cell: its longest reading, or its maximum range if a beam
+/// returned nothing.
 inline double reach_of(const Case& c) {
     double reach = 0.0;
     for (const RangeMm mm : c.ranges) {
@@ -90,7 +91,7 @@ inline double reach_of(const Case& c) {
     return reach + std::max(c.thickness, c.cell_size);
 }
 
-/// What the oracle asks for each cell: every beam, or, for large scans, an index of them.
+/// The beams that the oracle examines for each cell: every beam, or, for large scans, those that an index finds.
 enum class Beams { kEach, kIndexed };
 
 /// Compares every cell around the sensor; counts the cells compared in `firm`.

@@ -16,14 +16,15 @@
 #include <string>
 #include <vector>
 
-/// The layers that lasers make, by their definitions: what each scan says of every cell, added up in whole numbers.
+/// Computes the layers made from lasers by their definitions: the verdicts of each scan on every cell, added up in
+/// integers.
 namespace scanloom::oracle {
 
 inline double metres_of(RangeMm mm) {
     return mm == kInvalidRange ? NAN : mm == kNoReturn ? HUGE_VAL : static_cast<double>(mm) / 1000.0;
 }
 
-/// A scan, as the inverse sensor model takes it with a band `alpha` and beams `beta` wide.
+/// Returns a scan as input of the inverse sensor model, with a band of width `alpha` and beams of width `beta`.
 inline Scene scene_of(const mapping::MapConfig& config, const Sensor& sensor, const Scan& scan, double alpha,
                       double beta) {
     const BeamAngles angles = angles_of(scan, sensor);
@@ -43,7 +44,7 @@ inline Scene scene_of(const mapping::MapConfig& config, const Sensor& sensor, co
     return scene;
 }
 
-/// What the inverse sensor model says of every cell that a scan can concern.
+/// Returns the verdicts of the inverse sensor model on every cell that a scan can change.
 inline Opinions opinions_of(const Scene& scene) {
     double farthest = 0.0;
     for (const double z : scene.readings) {
@@ -70,7 +71,8 @@ inline Opinions opinions_of(const Scene& scene) {
     return opinions;
 }
 
-/// Folds laser scans cell by cell. Cells of which some verdict was not firm are left out from then on.
+/// Integrates laser scans cell by cell. After a verdict on a cell that was not firm, the cell is excluded from the
+/// comparison.
 class LaserOracle {
 public:
     explicit LaserOracle(const mapping::MapConfig& config)
@@ -91,7 +93,7 @@ public:
         }
     }
 
-    /// Compares every cell of both layers that is firm. `firm` grows by the cells compared that any scan changed.
+    /// Compares every firm cell of both layers. Adds to `firm` the number of compared cells that any scan changed.
     void expect_equal(const mapping::Snapshot& snapshot, const std::string& what, std::size_t& firm) const {
         std::size_t wrong = 0;
         const auto compare = [&](const Plane<Cell>& plane, int unknown, const char* layer, auto&& shown_at) {
@@ -125,7 +127,7 @@ private:
         [[nodiscard]] bool is_untouched() const { return !is_known && !is_doubtful; }
     };
 
-    /// Natural-log odds in steps of 1/2048.
+    /// Converts a probability to natural log-odds in steps of 1/2048.
     [[nodiscard]] static int fixed(double p) { return static_cast<int>(std::lround(2048.0 * std::log(p / (1.0 - p)))); }
 
     [[nodiscard]] RayScene ray_scene_of(const Sensor& sensor, const Scan& scan) const {
@@ -157,7 +159,7 @@ private:
         }
     }
 
-    /// +3 where a hit is, -1 before it, within 0..15.
+    /// Adds 3 for a hit and subtracts 1 for a cell before the hit, clamped to 0..15.
     void count(Cell& cell, MayBe may_be) const {
         if (!is_firm(may_be)) {
             cell.is_doubtful = true;

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-/// Bytes as an LD06 would send them.
+/// Bytes in the format that an LD06 sends.
 namespace scanloom::testing_support {
 
 using Bytes = std::vector<std::uint8_t>;
@@ -31,8 +31,8 @@ inline Bytes bytes_of(const robot::Ld06Packet& packet) {
 
 inline void append(Bytes& bytes, const Bytes& more) { bytes.insert(bytes.end(), more.begin(), more.end()); }
 
-/// A sensor that turns ten times a second and measures 4500 points: 12.5 packets a third of a turn. It sees every
-/// direction at a distance of its own, 1 m at 0 degrees, and 10 mm more each degree.
+/// A sensor that turns ten times a second and measures 4500 points a second: 12.5 packets for a third of a turn. Each
+/// direction has its own range: 1 m at 0 degrees, and 10 mm more for each degree.
 class Ld06Spinner {
 public:
     explicit Ld06Spinner(int angle = 0, int milliseconds = 0) : angle_(angle), microseconds_(milliseconds * 1000) {}
@@ -64,7 +64,7 @@ public:
 
 private:
     static constexpr int kGap = 80;            // 0.01 degree
-    static constexpr int kMicroseconds = 2667; // a packet
+    static constexpr int kMicroseconds = 2667; // per packet
 
     int angle_; // 0.01 degree
     std::int64_t microseconds_;

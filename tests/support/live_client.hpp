@@ -14,10 +14,10 @@
 
 namespace scanloom::testing_support {
 
-/// A viewer that blocks: reads when it is told to, and not otherwise.
+/// A blocking viewer that reads only when a test calls read().
 class LiveClient {
 public:
-    /// `receive_bytes` is the size of the socket's buffer, 0: the system's choice.
+    /// @param receive_bytes  size of the socket's receive buffer; 0: the system's default
     explicit LiveClient(std::uint16_t port, const std::string& session = "lab", int receive_bytes = 0) {
         auto& socket = stream_.next_layer();
         socket.open(boost::asio::ip::tcp::v4());
@@ -27,7 +27,7 @@ public:
         stream_.binary(true);
     }
 
-    /// The next message; nothing at the end, of which code() and reason() tell.
+    /// Returns the next message, or nullopt at the end of the connection. code() and reason() then give the cause.
     [[nodiscard]] std::optional<std::string> read() {
         boost::beast::flat_buffer buffer;
         boost::system::error_code failed;
@@ -37,7 +37,7 @@ public:
         return std::string(static_cast<const char*>(buffer.data().data()), buffer.size());
     }
 
-    /// Reads until the connection ends; returns how many messages there were.
+    /// Reads until the connection ends. @return the number of messages
     std::size_t read_to_the_end() {
         std::size_t count = 0;
         while (read()) ++count;
@@ -50,13 +50,13 @@ public:
         stream_.write(boost::asio::buffer(message.data(), message.size()), ignored);
     }
 
-    /// Bytes that are no frame of a client's.
+    /// Sends bytes that are not a valid client frame.
     void send_raw(std::string_view bytes) {
         boost::system::error_code ignored;
         boost::asio::write(stream_.next_layer(), boost::asio::buffer(bytes.data(), bytes.size()), ignored);
     }
 
-    /// With which the server ended the connection; 0: without.
+    /// Returns the close code that the server sent; 0: none.
     [[nodiscard]] unsigned code() const { return stream_.reason().code; }
     [[nodiscard]] std::string reason() const { return stream_.reason().reason.c_str(); }
     [[nodiscard]] bool is_binary() const { return is_binary_; }

@@ -18,8 +18,8 @@
 
 namespace scanloom::testing_support {
 
-/// What a viewer knows that has read every event it was sent, and nothing else. Reads the wire without the code it
-/// tests.
+/// The state of a viewer that read every event sent to it and has no other data. Parses the wire format without the
+/// code under test.
 class LiveReplay {
 public:
     struct Robot {
@@ -30,7 +30,7 @@ public:
         double stamp = 0.0;
         bool has_pose = false;
         Pose2 pose;
-        std::map<std::uint64_t, std::pair<std::int64_t, std::int64_t>> trail; // millimetres, by number of the point
+        std::map<std::uint64_t, std::pair<std::int64_t, std::int64_t>> trail; // millimetres, by the point's number
         v1::ScanPoints scan;
     };
     using Tiles = std::map<std::uint32_t, Revision>; // by 512 y + x
@@ -52,7 +52,7 @@ public:
         ++events;
     }
 
-    /// Fails where this is not what the snapshot shows.
+    /// Fails the test if this state differs from the snapshot.
     void expect_equal_to(const mapping::Snapshot& maps, const std::vector<bool>& connected) const {
         EXPECT_EQ(last.revision(), maps.revision);
         EXPECT_EQ(last.counters().chunks(), maps.chunk_count);
@@ -76,7 +76,7 @@ public:
     v1::LiveEvent last;
     int events = 0;
     std::map<int, Tiles> tiles; // by v1::Layer
-    std::set<int> everything;   // layers of which too much changed at once
+    std::set<int> everything;   // layers in which too many tiles changed at once
     std::map<std::uint32_t, Robot> robots;
     std::map<std::uint32_t, v1::LiveLandmark> landmarks; // by id
     v1::LandmarkChanges last_landmarks;

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-/// A scan log's calls as plain values, for tests that look at what is in it.
+/// A scan log's calls with plain values as results, for tests that examine its contents.
 namespace scanloom::store {
 
 inline Result<std::vector<std::string>> entries_after(ScanLog& log, SessionId session, Revision after) {
@@ -31,7 +31,7 @@ inline Result<std::map<std::string, std::string>> checkpoint_of(ScanLog& log, Se
     return parts;
 }
 
-/// An entry that only this session and revision has, up to 3 KB long.
+/// Returns an entry of up to 3 KB that is unique to this session and revision.
 inline std::string distinct_entry(SessionId session, Revision revision) {
     const std::string name = std::to_string(session) + "/" + std::to_string(revision) + ";";
     std::string entry;
