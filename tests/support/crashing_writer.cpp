@@ -1,7 +1,8 @@
-// Writes to a store until it is killed, and says on stdout what was acknowledged, one line each:
-//   "a SESSION REVISION"  the session's log is durable up to here
-//   "c SESSION REVISION"  a checkpoint that covers this was written
-//   "n SESSION"           a session was created     "r SESSION"  and removed
+// Writes to a store until it is killed, and prints each acknowledgement to standard output, one line each:
+//   "a SESSION REVISION"  the session's log is durable up to this revision
+//   "c SESSION REVISION"  a checkpoint that covers this revision was written
+//   "n SESSION"           a session was created
+//   "r SESSION"           a session was removed
 // Usage: crashing_writer DIRECTORY SEED
 #include "server/store/scan_log.hpp"
 #include "tests/support/log_reading.hpp"
@@ -21,16 +22,16 @@ using namespace scanloom::store;
 
 constexpr std::size_t kSessions = 3;
 
-/// One write(2): a line is in the pipe whole or not at all.
+/// Uses one write(2), so that a line is in the pipe as a whole or not at all.
 void say(const std::string& line) {
-    if (::write(STDOUT_FILENO, line.data(), line.size()) < 0) std::exit(0); // the reader is gone
+    if (::write(STDOUT_FILENO, line.data(), line.size()) < 0) std::exit(0); // the reader has ended
 }
 
 void say(char what, SessionId session, Revision revision) {
     say(std::string(1, what) + " " + std::to_string(session) + " " + std::to_string(revision) + "\n");
 }
 
-/// Its own appends are under way when a session is removed.
+/// Removes a session while its own appends are in progress.
 void come_and_go(ScanLog& log) {
     const auto session = log.create_session("short-lived").value();
     say("n " + std::to_string(session) + "\n");
@@ -40,7 +41,7 @@ void come_and_go(ScanLog& log) {
 }
 
 void write_forever(ScanLog& log, std::mt19937& random) {
-    std::counting_semaphore<> credit(64); // of appends not acknowledged
+    std::counting_semaphore<> credit(64); // for unacknowledged appends
     std::map<SessionId, Revision> ends;
     for (const auto& stored : log.sessions().value()) {
         if (stored.record != "lasting") continue;
@@ -77,7 +78,7 @@ int main(int argc, char** argv) {
     if (argc != 3) return 2;
     std::mt19937 random(static_cast<unsigned>(std::atoi(argv[2])));
     StoreOptions options;
-    options.memory_bytes = 1 << 20; // tables and compactions all the time
+    options.memory_bytes = 1 << 20; // causes frequent table writes and compactions
     const auto log = open_rocksdb(argv[1], options);
     if (!log) {
         std::fprintf(stderr, "%s\n", log.error().message.c_str());

@@ -14,7 +14,7 @@ using rocksdb::Slice;
 
 namespace {
 
-/// One byte of it cannot be read.
+/// A file with one byte that cannot be read.
 class FileWithBadSector final : public rocksdb::FSRandomAccessFileOwnerWrapper {
 public:
     FileWithBadSector(std::unique_ptr<rocksdb::FSRandomAccessFile> file, std::uint64_t at)
@@ -32,7 +32,7 @@ private:
 
 } // namespace
 
-/// A file being written through a FaultyFileSystem.
+/// A file open for writing through a FaultyFileSystem.
 class FaultyFile final : public rocksdb::FSWritableFileOwnerWrapper {
 public:
     FaultyFile(std::unique_ptr<rocksdb::FSWritableFile> file, FaultyFileSystem& files, std::string name)
@@ -71,7 +71,7 @@ namespace {
 
 constexpr std::size_t kPageBytes = 4096;
 
-/// What remains of a file of which only the beginning was synced.
+/// Returns the remainder of a file after a power cut when only its first `synced` bytes were synced.
 std::string torn(std::string bytes, std::size_t synced, std::mt19937& random) {
     if (bytes.size() <= synced) return bytes;
     bytes.resize(synced + random() % (bytes.size() - synced + 1));

@@ -61,7 +61,7 @@ inline double turn_to(double a, double b) {
     return d < 0.0 ? d + 2.0 * std::numbers::pi : d;
 }
 
-/// The turns from each beam to the next one that looks elsewhere.
+/// Returns the turn from each beam to the next beam with a different direction.
 inline std::vector<double> gaps_between_beams(const Scene& scene) {
     std::vector<double> gaps;
     for (std::size_t a = 0; a < scene.beam_angles.size(); ++a) {

@@ -129,7 +129,7 @@ Result<> MemoryScanLog::store(Append& append) {
     return {};
 }
 
-/// Visitors get a copy: they may call back, and another thread may append meanwhile.
+/// Gives visitors a copy, as they may call back and another thread may append at the same time.
 Result<MemoryScanLog::Session> MemoryScanLog::copy_of(SessionId session) const {
     const std::lock_guard lock(mutex_);
     const auto found = sessions_.find(session);

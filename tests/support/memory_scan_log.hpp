@@ -9,28 +9,28 @@
 
 namespace scanloom::store {
 
-/// A scan log in memory that fails and waits when told to.
+/// A scan log in memory that fails and waits on request.
 ///
-/// Keeps ScanLog's contract but for two things: nothing survives the object, and `done` is called
-/// within append() (or release_completions()), so that tests need no thread and no waiting.
-/// Thread  any, at the same time; `done` and visitors run without the lock and may call back.
+/// Keeps ScanLog's contract with two exceptions: no data outlives the object, and `done` is called within append() or
+/// release_completions(), so that tests need no thread and no waiting.
+/// Thread  any, at the same time. `done` and visitors run without the lock and may call back.
 class MemoryScanLog : public ScanLog {
 public:
     ~MemoryScanLog() override;
 
-    /// The next change and, as with a real disk, all that follow fail with this error.
+    /// Lets the next change and all later changes fail with this error, like a failed disk.
     void fail_from_next_change(Error error);
 
-    /// The next appends but `stored` of them are refused, as by a disk without room: `count` of them.
+    /// Accepts the next `stored` appends, then refuses `count` appends, like a full disk.
     void refuse_appends(std::size_t count, std::size_t stored = 0);
 
-    /// What is read fails with this error from now on; nothing: it does not any more.
+    /// Lets reads fail with this error from now on; nullopt: reads succeed again.
     void fail_reading(std::optional<Error> error);
 
-    /// As opening the store again does: changes succeed again.
+    /// Lets changes succeed again, as reopening the store does.
     void reopen();
 
-    /// From now on appends wait, neither durable nor failed, until release_completions().
+    /// Lets appends wait, neither durable nor failed, until release_completions().
     void hold_completions();
     void release_completions();
     [[nodiscard]] std::size_t held_completions() const;
@@ -50,7 +50,7 @@ public:
         return 0;
     }
 
-    /// How often the disk, had there been one, was asked for its bytes.
+    /// Returns how often the disk's free space would have been queried.
     [[nodiscard]] int looks_at_the_disk() const { return looks_at_the_disk_; }
 
 private:
@@ -70,13 +70,13 @@ private:
     [[nodiscard]] Result<Session> copy_of(SessionId session) const;
     void complete(std::vector<Append> appends);
 
-    mutable std::mutex mutex_; // guards all that follows
+    mutable std::mutex mutex_; // guards the members below
     std::map<SessionId, Session> sessions_;
     SessionId next_session_ = 1;
     std::optional<Error> failed_;
     std::optional<Error> unreadable_;
     std::size_t stored_before_refusing_ = 0;
-    std::size_t refused_ = 0; // appends that are still to be
+    std::size_t refused_ = 0; // appends still to be refused
     bool holding_ = false;
     std::vector<Append> held_;
     StoreStats stats_;

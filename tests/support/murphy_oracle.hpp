@@ -43,10 +43,10 @@ inline double occupied_probability(const Cone& cone, Region region, double r, do
     return region == Region::kObstacle ? std::min(at_most, 0.5 + 0.5 * w) : 0.5 * (1.0 - w);
 }
 
-/// p' = occ p / (occ p + (1 - occ) (1 - p)).
+/// Returns p' = occ p / (occ p + (1 - occ) (1 - p)).
 inline double product_rule(double occ, double p) { return occ * p / (occ * p + (1.0 - occ) * (1.0 - p)); }
 
-/// Fuses sonar scans. Cells in which a cone's region was not firm when r or the angle moves by 2e-5 are left out.
+/// Fuses sonar scans. Excludes cells whose region in a cone changes when r or the angle moves by 2e-5.
 class MurphyOracle {
 public:
     explicit MurphyOracle(const mapping::MapConfig& config) : config_(config) {}
@@ -69,8 +69,9 @@ public:
         }
     }
 
-    /// Production adds log-odds that are rounded to 1/2048 nat: half a step of error an update, and none by the clamp
-    /// but half a step of its own limits. So after n updates no cell may be off by more than n / 4096 nat.
+    /// The production code adds log-odds rounded to 1/2048 nat, which gives an error of at most half a step per update.
+    /// The clamp adds no error except half a step at its limits. So after n updates a cell may differ by at most n /
+    /// 4096 nat.
     void expect_near(const mapping::Snapshot& snapshot, const std::string& what, std::size_t& firm) const {
         std::size_t wrong = 0;
         cells_.for_each(2, [&](grid::Cell at, const Cell& cell) {
@@ -105,7 +106,7 @@ private:
 
     void add(const Cone& cone, const Pose2& T_map_sensor) {
         const double size = config_.cell_size;
-        const double reach = std::min(cone.range_max, cone.reading + cone.alpha); // NaN: no cell is in it
+        const double reach = std::min(cone.range_max, cone.reading + cone.alpha); // NaN: contains no cell
         const auto index = [&](double metres) { return static_cast<std::int32_t>(std::floor(metres / size)); };
         if (!(reach > 0.0)) return;
         for (std::int32_t j = index(T_map_sensor.y - reach) - 1; j <= index(T_map_sensor.y + reach) + 1; ++j) {
@@ -121,7 +122,7 @@ private:
     void add(const Cone& cone, grid::Cell at, double r, double a) {
         constexpr double kMoves = 2e-5; // metres, radians
         const Region region = region_at(cone, r, a);
-        bool is_firm = r >= kMoves; // a centre on the sensor itself has no direction
+        bool is_firm = r >= kMoves; // a cell centre at the sensor has no direction
         for (const double dr : {-kMoves, 0.0, kMoves}) {
             for (const double da : {-kMoves, 0.0, kMoves}) is_firm &= region_at(cone, r + dr, a + da) == region;
         }

@@ -10,7 +10,7 @@
 
 namespace scanloom::testing_support {
 
-/// The text as one of Boost.Iostreams' compressors writes it.
+/// Returns the text compressed by one of Boost.Iostreams' compressors.
 template <class Filter>
 std::string packed(std::string_view text, Filter filter) {
     std::ostringstream out;

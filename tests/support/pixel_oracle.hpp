@@ -11,7 +11,7 @@
 #include <tuple>
 #include <unordered_map>
 
-/// What tiles show, by the words of the contract: the code of each cell, and which of many cells a pixel shows.
+/// The contents of tiles as the contract defines them: the code of each cell, and which of several cells a pixel shows.
 namespace scanloom::oracle {
 
 using Code = std::uint8_t;
@@ -20,13 +20,13 @@ inline Code code_of(mapping::LogOdds l) {
     if (l == mapping::kUnknownLogOdds) return 255;
     return static_cast<Code>(std::lround(100.0 / (1.0 + std::exp(-l / 2048.0))));
 }
-inline Code code_of(mapping::HimmCount count) { return count; } // 255 is unseen there, too
+inline Code code_of(mapping::HimmCount count) { return count; } // in the layer, 255 also means unseen
 inline Code code_of(classify::CellClass value) { return static_cast<Code>(value); }
 
-/// The code of a cell that nobody saw.
+/// Returns the code of a cell that was never observed.
 inline Code unknown_code(mapping::Layer layer) { return layer == mapping::Layer::kClassification ? 0 : 255; }
 
-/// The rule for pixels that show many cells, word for word.
+/// The rule for pixels that cover several cells, as the contract states it.
 class PixelOracle {
 public:
     explicit PixelOracle(mapping::Layer layer) : layer_(layer) {}
@@ -69,7 +69,7 @@ inline Code code_at(const mapping::Snapshot& snapshot, mapping::Layer layer, gri
     return code_of(testing_support::occupancy_at(snapshot, cell));
 }
 
-/// Calls visit(i, j, code) for every cell of a layer's chunks.
+/// Calls visit(i, j, code) for each cell of a layer's chunks.
 template <class Visit>
 void for_each_code(const mapping::Snapshot& snapshot, mapping::Layer layer, Visit&& visit) {
     const auto walk = [&](grid::ChunkKey key, const auto& cells) {
@@ -97,7 +97,7 @@ using TilePlace = std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>; // zo
 using TilePixels = std::unordered_map<int, PixelOracle>;                   // by 256 py + px
 using Pyramid = std::map<TilePlace, TilePixels>;
 
-/// Puts every cell where the contract says that it is seen, zoom by zoom.
+/// Assigns each cell to its pixel at every zoom, as the contract defines.
 inline Pyramid pyramid_of(const mapping::Snapshot& snapshot, mapping::Layer layer) {
     Pyramid pyramid;
     for_each_code(snapshot, layer, [&](std::int32_t i, std::int32_t j, Code code) {

@@ -8,7 +8,7 @@
 
 namespace scanloom::testing_support {
 
-/// Free and occupied cells of a box from (0, 0), drawn at random; the classes are worked out from them.
+/// A box of free and occupied cells from (0, 0), set at random. The classes are computed from them.
 class PlanWorld {
 public:
     PlanWorld(std::int32_t width, std::int32_t height, OccType all)
@@ -19,7 +19,7 @@ public:
     [[nodiscard]] std::int32_t height() const { return height_; }
     [[nodiscard]] OccType at(Cell cell) const { return types_[index_of(cell)]; }
 
-    /// What of the rectangle is within the box.
+    /// Fills the part of the rectangle that is within the box.
     void fill(std::int32_t i, std::int32_t j, std::int32_t width, std::int32_t height, OccType type) {
         for (std::int32_t y = std::max(j, 0); y < std::min(j + height, height_); ++y) {
             for (std::int32_t x = std::max(i, 0); x < std::min(i + width, width_); ++x) types_[index_of({x, y})] = type;
@@ -75,7 +75,8 @@ private:
     return world;
 }
 
-/// A maze with one way between any two of its squares, `pitch` cells apart, walls one cell thick.
+/// Returns a maze with exactly one path between any two of its squares, which are `pitch` cells apart. Walls are one
+/// cell thick.
 [[nodiscard]] inline PlanWorld maze(std::int32_t width, std::int32_t height, std::int32_t pitch, unsigned seed) {
     std::mt19937 random(seed);
     PlanWorld world(width, height, OccType::kFree);
@@ -86,7 +87,7 @@ private:
     std::vector<bool> seen(static_cast<std::size_t>(columns * rows));
     std::vector<Cell> way = {{0, 0}};
     seen[0] = true;
-    while (!way.empty()) { // onwards to a square not yet seen, else back
+    while (!way.empty()) { // to a square not visited yet, or back
         const Cell at = way.back();
         std::vector<Cell> unseen;
         for (const Cell step : {Cell{1, 0}, Cell{-1, 0}, Cell{0, 1}, Cell{0, -1}}) {

@@ -10,7 +10,7 @@
 
 namespace scanloom::oracle {
 
-/// Cells anywhere, blank until written; kept in blocks so that only those in use take memory.
+/// An unbounded plane of cells, blank until written. Stored in blocks, so that only blocks in use take memory.
 template <class Value>
 class Plane {
 public:
@@ -36,8 +36,8 @@ public:
         return last_block_ == nullptr ? blank_ : (*last_block_)[place_of(cell)];
     }
 
-    /// Calls visit(Cell, const Value&) for the cells of the smallest box that holds all that were written, and for
-    /// `margin` cells around it.
+    /// Calls visit(Cell, const Value&) for the cells of the smallest box that holds all written cells, extended by
+    /// `margin` cells on each side.
     template <class Visit>
     void for_each(std::int32_t margin, Visit&& visit) const {
         if (box_.empty()) return;
@@ -65,7 +65,7 @@ private:
     Value blank_;
     std::unordered_map<std::uint64_t, std::unique_ptr<Block>> blocks_;
     grid::CellBox box_;
-    mutable bool has_last_ = false; // the block asked for last, as neighbours mostly are in the same one
+    mutable bool has_last_ = false; // the last block used; neighbouring cells are mostly in the same block
     mutable std::uint64_t last_ = 0;
     mutable const Block* last_block_ = nullptr;
 };

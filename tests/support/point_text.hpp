@@ -8,7 +8,7 @@
 
 namespace scanloom::testing_support {
 
-/// A point as failed tests print it.
+/// Returns a point in the form that failed tests print.
 [[nodiscard]] inline std::string text_of(const Point2& point) { return fmt::format("({:g}, {:g})", point.x, point.y); }
 
 } // namespace scanloom::testing_support

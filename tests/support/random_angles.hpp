@@ -7,12 +7,12 @@
 #include <random>
 #include <string>
 
-/// Beam angles of every kind of sensor there is, and of some that there are not.
+/// Beam angles of every kind of real sensor, and of some that do not exist.
 namespace scanloom::testing_support {
 
 inline constexpr unsigned kAngleShapes = 13;
 
-/// Pre: shape < kAngleShapes. `name` says which it is.
+/// Pre: shape < kAngleShapes. Sets `name` to the name of the shape.
 inline BeamAngles random_angles(std::mt19937& random, unsigned shape, std::string& name) {
     const auto uniform = [&](double low, double high) {
         return std::uniform_real_distribution<double>(low, high)(random);
@@ -39,7 +39,7 @@ inline BeamAngles random_angles(std::mt19937& random, unsigned shape, std::strin
         SteppedAngles stepped{2 * kPi / 396'000, {}};
         for (std::int32_t step = static_cast<std::int32_t>(below(900)); step < 396'000;) {
             stepped.steps.push_back(step);
-            const unsigned kind = below(40); // holes of less and of more than four usual gaps
+            const unsigned kind = below(40); // gaps of less and of more than four times the usual gap
             step += static_cast<std::int32_t>(kind == 0 ? 13'001 : kind == 1 ? 9'001 : 2600 + below(300));
         }
         return stepped;

@@ -10,7 +10,7 @@
 
 namespace scanloom::testing_support {
 
-/// Patches of free ground with a wall here and there; the rest unexplored.
+/// Returns patches of free cells with a few walls; all other cells are unexplored.
 inline classify::OccPlanes random_types(std::mt19937& random) {
     classify::OccPlanes types;
     const auto side = static_cast<std::int32_t>(1 + random() % 64);
@@ -24,10 +24,10 @@ inline classify::OccPlanes random_types(std::mt19937& random) {
     return types;
 }
 
-/// All layers, filled at random chunk by chunk, each apart from the others.
+/// All layers, filled at random chunk by chunk and independently of each other.
 class RandomLayers {
 public:
-    /// Fills these chunks anew.
+    /// Fills these chunks with new random values.
     void fill(const std::vector<grid::ChunkKey>& keys, std::mt19937& random, Revision revision) {
         for (const auto& key : keys) fill(key, random, revision);
         classes_.update(
@@ -50,7 +50,7 @@ private:
     void fill(grid::ChunkKey key, std::mt19937& random, Revision revision) {
         auto& laser = lasers_.restore(key, revision);
         auto& sonar = sonars_.restore(key, revision);
-        const unsigned keep_one_in = random() % 2 == 0 ? 1 : 1000; // so that whole chunks differ, too
+        const unsigned keep_one_in = random() % 2 == 0 ? 1 : 1000; // so that whole chunks also differ
         for (std::size_t n = 0; n < 4096; ++n) {
             const bool is_kept = random() % keep_one_in == 0;
             laser.occupancy[n] = is_kept ? random_cell(random) : mapping::kUnknownLogOdds;
@@ -68,7 +68,7 @@ private:
     std::map<grid::ChunkKey, classify::OccPlanes> types_;
 };
 
-/// A snapshot with all layers filled around the origin, at the edges of what tiles show, and beyond.
+/// Returns a snapshot in which all layers are filled around the origin, at the edges of the tiled area, and beyond.
 inline mapping::Snapshot random_layers(unsigned seed) {
     std::mt19937 random(seed);
     const auto keys = scattered_chunks(random);

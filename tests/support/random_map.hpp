@@ -11,7 +11,7 @@ namespace scanloom::testing_support {
 
 using Cells = std::array<mapping::LogOdds, std::size_t{grid::kChunkSide} * grid::kChunkSide>;
 
-/// A map put together by hand: set cells, then take a snapshot.
+/// A map built by hand: set cells, then take a snapshot.
 class HandMadeMap {
 public:
     void set(grid::Cell cell, mapping::LogOdds value) {
@@ -22,7 +22,7 @@ public:
         bounds_.include_row(cell.j, cell.i, cell.i + 1);
     }
 
-    /// Every chunk carries the revision.
+    /// All chunks have this revision.
     [[nodiscard]] mapping::Snapshot snapshot(Revision revision = 1, mapping::MapConfig config = {}) const {
         mapping::LaserLayers layers{config};
         for (const auto& [key, cells] : chunks_) layers.restore(key, revision).occupancy = cells;
@@ -39,7 +39,8 @@ private:
     grid::CellBox bounds_;
 };
 
-/// Unknown, free, occupied and nearly even cells mixed: sparse, so that coarse pixels differ.
+/// Returns an unknown, free, occupied or nearly undecided cell. Observed cells are sparse, so that coarse pixels
+/// differ.
 inline mapping::LogOdds random_cell(std::mt19937& random) {
     const auto kind = random() % 100;
     if (kind < 55) return mapping::kUnknownLogOdds;
@@ -48,7 +49,7 @@ inline mapping::LogOdds random_cell(std::mt19937& random) {
     return static_cast<mapping::LogOdds>(random() % 14146);
 }
 
-/// Around the origin, at the corners and edges of the tiled square, beyond it, and scattered.
+/// Returns chunks around the origin, at the corners and edges of the tiled square, beyond it, and scattered.
 inline std::vector<grid::ChunkKey> scattered_chunks(std::mt19937& random) {
     std::vector<grid::ChunkKey> keys;
     for (std::int32_t cj = -5; cj < 5; ++cj) {
@@ -68,7 +69,7 @@ inline HandMadeMap random_map(unsigned seed) {
     std::mt19937 random(seed);
     HandMadeMap map;
     for (const auto& key : scattered_chunks(random)) {
-        const unsigned keep_one_in = random() % 2 == 0 ? 1 : 1000; // so that whole chunks differ, too
+        const unsigned keep_one_in = random() % 2 == 0 ? 1 : 1000; // so that whole chunks also differ
         for (std::int32_t j = 0; j < grid::kChunkSide; ++j) {
             for (std::int32_t i = 0; i < grid::kChunkSide; ++i) {
                 const auto value = random_cell(random);

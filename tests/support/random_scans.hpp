@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-/// A robot's stream, the same for the same seed: what it sees makes no sense, but fills a map.
+/// A robot's stream of scans that is a function of the seed. Its readings show no consistent place, but fill a map.
 namespace scanloom::testing_support {
 
 inline Sensor small_laser() {
@@ -19,7 +19,7 @@ inline Sensor small_laser() {
     return sensor;
 }
 
-/// Scan `seq` of the robot with this seed, by small_laser().
+/// Returns scan `seq` of the robot with this seed, measured by small_laser().
 inline Scan random_scan(unsigned seed, std::uint64_t seq) {
     std::mt19937 random(seed * 1'000'003U + static_cast<unsigned>(seq));
     std::uniform_real_distribution<double> metres(-8.0, 8.0);

@@ -13,10 +13,10 @@
 #include <utility>
 #include <vector>
 
-/// The models that trace rays, by geometry: what each beam says of every cell around it, asked cell by cell.
+/// The models that trace rays, computed by geometry: the verdict of each beam on every cell around it, cell by cell.
 namespace scanloom::oracle {
 
-/// Everything that a beam or a scan may say of a cell when its points move by 2e-5 m; firm when it is but one thing.
+/// All verdicts that a beam or a scan may have on a cell when its points move by 2e-5 m. Firm if there is only one.
 using MayBe = unsigned;
 inline constexpr MayBe kMayBeNothing = 1;
 inline constexpr MayBe kMayBeFree = 2;
@@ -27,13 +27,13 @@ inline bool is_firm(MayBe may_be) {
     return may_be == kMayBeNothing || may_be == kMayBeFree || may_be == kMayBeOccupied;
 }
 
-/// Cells of which anything may be said, each once.
+/// The cells with any verdict, each once.
 using Opinions = std::vector<std::pair<grid::Cell, MayBe>>;
 
 struct RayBeam {
     double angle = 0.0;  // radians, sensor frame
-    double metres = 0.0; // the way it shows
-    bool is_hit = false; // something is at its end
+    double metres = 0.0; // the length of the observed ray
+    bool is_hit = false; // the ray ends at a hit
 };
 
 struct RayScene {
@@ -41,7 +41,7 @@ struct RayScene {
     double hit_radius = 0.0;
     double cell_size = 0.05;
     Pose2 T_map_sensor;
-    std::vector<RayBeam> beams; // those that show anything, in their order
+    std::vector<RayBeam> beams; // the beams with a valid reading, in their order
 };
 
 inline constexpr double kPointMoves = 2e-5; // metres
@@ -53,7 +53,7 @@ inline grid::Cell cell_of(double x, double y, double cell_size) {
             static_cast<std::int32_t>(std::floor(y * cells_per_metre))};
 }
 
-/// The cells that a point may lie in.
+/// Returns the cells that may contain a point.
 inline std::vector<grid::Cell> cells_near(double x, double y, double cell_size) {
     std::vector<grid::Cell> cells;
     for (const double dx : {-kPointMoves, kPointMoves}) {
@@ -65,8 +65,8 @@ inline std::vector<grid::Cell> cells_near(double x, double y, double cell_size) 
     return cells;
 }
 
-/// For each step along the longer axis the cell whose centre is nearest to the line between the two cells' centres; of
-/// two as near the one further along the shorter axis.
+/// Returns, for each step along the longer axis, the cell whose centre is nearest to the line between the centres of
+/// the two cells. Of two equally near cells, the one further along the shorter axis.
 inline std::vector<grid::Cell> line_of_cells(grid::Cell from, grid::Cell to) {
     const std::int64_t di = to.i - from.i;
     const std::int64_t dj = to.j - from.j;
@@ -87,7 +87,8 @@ inline std::vector<grid::Cell> line_of_cells(grid::Cell from, grid::Cell to) {
     return cells;
 }
 
-/// Whether any of a segment lies in a square grown by `grown` on every side: the segment clipped by its four edges.
+/// Returns whether any part of a segment lies in a square grown by `grown` on every side. Clips the segment by the four
+/// edges.
 inline bool meets(Point2 from, Point2 to, grid::Cell cell, double cell_size, double grown) {
     double enters = 0.0;
     double leaves = 1.0;
@@ -111,11 +112,12 @@ inline bool meets(Point2 from, Point2 to, grid::Cell cell, double cell_size, dou
 
 using OpinionMap = std::map<std::pair<std::int32_t, std::int32_t>, MayBe>; // by row and column
 
-/// Bresenham's line to each cell that the end may lie in.
+/// Traces Bresenham's line to each cell that may contain the end.
 inline OpinionMap bresenham_opinions(const RayScene& scene, const RayBeam& beam, Point2 end) {
     const grid::Cell start = cell_of(scene.T_map_sensor.x, scene.T_map_sensor.y, scene.cell_size);
     const auto ends = cells_near(end.x, end.y, scene.cell_size);
-    std::map<std::pair<std::int32_t, std::int32_t>, std::pair<MayBe, std::size_t>> said; // and by how many lines
+    std::map<std::pair<std::int32_t, std::int32_t>, std::pair<MayBe, std::size_t>>
+        said; // each verdict and its number of lines
     for (const auto& last : ends) {
         for (const auto& cell : line_of_cells(start, last)) {
             auto& [may_be, lines] = said[{cell.j, cell.i}];
@@ -128,7 +130,7 @@ inline OpinionMap bresenham_opinions(const RayScene& scene, const RayBeam& beam,
     return opinions;
 }
 
-/// Every square that the segment crosses.
+/// Returns every square that the segment crosses.
 inline OpinionMap traversal_opinions(const RayScene& scene, const RayBeam& beam, Point2 end) {
     const Point2 from{scene.T_map_sensor.x, scene.T_map_sensor.y};
     const grid::Cell start = cell_of(from.x, from.y, scene.cell_size);
@@ -151,7 +153,7 @@ inline OpinionMap traversal_opinions(const RayScene& scene, const RayBeam& beam,
     return opinions;
 }
 
-/// The cells whose centres are as near to the hit as hit_radius are hit, too.
+/// Marks the cells whose centres are within hit_radius of the hit as hit.
 inline void add_hit_radius(const RayScene& scene, Point2 hit, OpinionMap& opinions) {
     const auto reach = static_cast<std::int32_t>(std::ceil(scene.hit_radius / scene.cell_size)) + 1;
     const grid::Cell middle = cell_of(hit.x, hit.y, scene.cell_size);
@@ -166,7 +168,7 @@ inline void add_hit_radius(const RayScene& scene, Point2 hit, OpinionMap& opinio
     }
 }
 
-/// What each beam says, in their order.
+/// Returns the verdicts of each beam, in the beams' order.
 inline std::vector<Opinions> opinions_of_beams(const RayScene& scene) {
     std::vector<Opinions> all;
     for (const auto& beam : scene.beams) {
@@ -182,7 +184,7 @@ inline std::vector<Opinions> opinions_of_beams(const RayScene& scene) {
     return all;
 }
 
-/// Each cell once a scan, and a hit beats a miss.
+/// Combines the beams' verdicts: each cell once per scan, a hit overrides a miss.
 inline Opinions once_a_scan(const std::vector<Opinions>& beams) {
     struct Said {
         MayBe by_any = 0;

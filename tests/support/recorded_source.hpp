@@ -6,7 +6,7 @@
 
 namespace scanloom::robot {
 
-/// Observations in memory as a source.
+/// A source that returns observations from memory.
 class RecordedSource final : public Source {
 public:
     explicit RecordedSource(std::vector<Observation> observations) : observations_(std::move(observations)) {}

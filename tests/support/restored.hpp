@@ -4,7 +4,7 @@
 
 namespace scanloom::testing_support {
 
-/// A projection put together from what a checkpoint of another one would hold.
+/// Returns a projection restored from the data that a checkpoint of `original` would hold.
 inline mapping::Projection restored(mapping::Projection& original) {
     mapping::Projection copy{original.config()};
     copy.restore(original.state());

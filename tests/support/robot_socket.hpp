@@ -15,15 +15,15 @@
 
 namespace scanloom::testing_support {
 
-/// The frame a message travels in, length prefix included.
+/// Returns a message as a frame, with the length prefix.
 inline std::string frame_of(const wire::Message& message) {
     std::string frame;
     wire::encode(message, frame);
     return frame;
 }
 
-/// A robot that sends what it is told, good or bad, and waits for whole frames: it knows no protocol.
-/// Throws where the connection is reset: an answer that got lost must not pass for a hang-up.
+/// A robot that sends given bytes, valid or not, and waits for whole frames. It does not implement the protocol. Throws
+/// if the connection is reset, so that a lost answer is not mistaken for an orderly close.
 class RobotSocket {
 public:
     explicit RobotSocket(std::uint16_t port) {
@@ -34,7 +34,7 @@ public:
     void send_bytes(std::string_view bytes) { boost::asio::write(socket_, boost::asio::buffer(bytes)); }
     void send(const wire::Message& message) { send_bytes(frame_of(message)); }
 
-    /// Waits for the next message; none when the server has hung up in good order.
+    /// Waits for the next message. @return nullopt if the server closed the connection in order
     std::optional<wire::Message> receive() {
         for (;;) {
             if (const auto body = decoder_.next().value()) return wire::decode(*body).value();
@@ -47,7 +47,7 @@ public:
         }
     }
 
-    /// Waits for the next message of this kind, past any acks.
+    /// Waits for the next message of this kind and skips acknowledgements.
     template <class Kind>
     Kind receive_kind() {
         for (;;) {
@@ -71,7 +71,7 @@ public:
 
     void finish_sending() { socket_.shutdown(boost::asio::ip::tcp::socket::shutdown_send); }
 
-    /// Hangs up with a reset, as when the power fails behind a router.
+    /// Closes the connection with a reset, as when the power fails behind a router.
     void reset() {
         socket_.set_option(boost::asio::socket_base::linger(true, 0));
         socket_.close();

@@ -20,7 +20,7 @@ inline Sensor reference_laser() {
     return laser;
 }
 
-/// Distance from inside a 10 x 10 m room around the origin, with four pieces of furniture, to what a ray meets.
+/// Returns the range of a ray from inside a 10 x 10 m room around the origin with four pieces of furniture.
 inline double room_range(const Point2& from, double direction_rad) {
     struct Box {
         double left, bottom, right, top;
@@ -49,7 +49,8 @@ inline double room_range(const Point2& from, double direction_rad) {
     return nearest;
 }
 
-/// Scans of the reference laser on a round through the room, seq 1, 2, ..., to the millimetre.
+/// Returns scans of the reference laser on a round through the room, seq 1, 2, ..., with ranges rounded to the
+/// millimetre.
 inline std::vector<Scan> room_scans(std::size_t count) {
     const Sensor laser = reference_laser();
     std::vector<Scan> scans(count);

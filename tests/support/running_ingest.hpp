@@ -13,7 +13,7 @@
 
 namespace scanloom::ingest {
 
-/// The ingest half of the server in this process: real sockets on the loopback, real threads.
+/// Runs the ingest part of the server in this process, with real loopback sockets and real threads.
 class RunningIngest {
 public:
     explicit RunningIngest(store::ScanLog& log, const IngestConfig& config = {},
@@ -31,8 +31,8 @@ public:
     RunningIngest(const RunningIngest&) = delete;
     RunningIngest& operator=(const RunningIngest&) = delete;
 
-    /// Returns when every link has ended and every scan is durable. Links that were never told to end
-    /// hang here: that is a fault.
+    /// Returns when every connection has ended and every scan is durable. Hangs if a connection does not end after the
+    /// stop, which is a bug.
     ~RunningIngest() {
         server_->stop();
         sessions_.drain();

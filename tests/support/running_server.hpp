@@ -18,14 +18,14 @@ struct HttpAnswer {
     std::string body;
 };
 
-/// Asks a server on this machine; throws when nobody answers.
+/// Sends a request to a server on this machine. Throws if no server answers.
 [[nodiscard]] HttpAnswer http_request(std::uint16_t port, const std::string& method, const std::string& target,
                                       const std::string& body = {});
 
-/// A scanloom-server of the build under test, ready when constructed.
+/// A scanloom-server of the build under test, which is ready after construction.
 class RunningServer {
 public:
-    /// Ports 0 pick free ones.
+    /// Ports 0 select free ports.
     RunningServer(const std::filesystem::path& store, const std::filesystem::path& log, std::uint16_t robot_port = 0,
                   std::uint16_t http_port = 0, const std::vector<std::string>& more_options = {});
 
@@ -44,7 +44,7 @@ private:
     std::uint16_t http_port_ = 0;
 };
 
-/// A program of the build under test.
+/// Returns the path of a program of the build under test.
 [[nodiscard]] std::filesystem::path program(const std::string& name);
 
 } // namespace scanloom::test

@@ -2,7 +2,7 @@
 
 #include "server/mapping/snapshot.hpp"
 
-/// Cells of a snapshot, one by one.
+/// Access to the cells of a snapshot, one by one.
 namespace scanloom::testing_support {
 
 inline mapping::LogOdds occupancy_at(const mapping::Snapshot& snapshot, grid::Cell cell) {
@@ -25,7 +25,7 @@ inline classify::CellClass class_at(const mapping::Snapshot& snapshot, grid::Cel
     return chunk == nullptr ? classify::CellClass::kUnexplored : chunk->at(cell);
 }
 
-/// Calls visit(Cell, LaserChunk, index in its arrays) for every cell of the chunks that lasers made.
+/// Calls visit(Cell, LaserChunk, index in its arrays) for every cell of the laser chunks.
 template <class Visit>
 void for_each_laser_cell(const mapping::Snapshot& snapshot, Visit&& visit) {
     snapshot.laser.visit({}, 0, [&](grid::ChunkKey key, const mapping::LaserChunk& chunk) {

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-/// A store's files as a test damages them.
+/// Functions for tests that damage a store's files.
 namespace scanloom::store {
 
 inline std::string bytes_of(const std::filesystem::path& file) {
@@ -28,7 +28,7 @@ inline void flip_bit(const std::filesystem::path& file, std::size_t byte, unsign
     write_bytes(file, bytes);
 }
 
-/// Each file of a directory, by name.
+/// Returns the contents of each file of a directory, by name.
 inline std::map<std::string, std::string> files_in(const std::filesystem::path& directory) {
     std::map<std::string, std::string> files;
     for (const auto& file : std::filesystem::directory_iterator(directory)) {
@@ -37,7 +37,7 @@ inline std::map<std::string, std::string> files_in(const std::filesystem::path& 
     return files;
 }
 
-/// The files whose names begin or end like this, by name.
+/// Returns the files whose names begin or end with `pattern`, sorted by name.
 inline std::vector<std::filesystem::path> files_like(const std::filesystem::path& directory, std::string_view pattern) {
     std::vector<std::filesystem::path> found;
     for (const auto& file : std::filesystem::directory_iterator(directory)) {
@@ -54,7 +54,7 @@ inline std::filesystem::path only_file_like(const std::filesystem::path& directo
     return found.front();
 }
 
-/// What kill -9 would leave: the files of a store that is idle, but open.
+/// Copies the files of an open but idle store, which is the state that kill -9 would leave.
 inline void copy_store(const std::filesystem::path& from, const std::filesystem::path& to) {
     std::filesystem::remove_all(to);
     std::filesystem::copy(from, to);

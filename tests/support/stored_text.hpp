@@ -10,8 +10,8 @@
 #include <string>
 #include <string_view>
 
-/// Stores kept in the repository as text: keys and values in hexadecimal, a pair a line, as they were on the disk.
-/// Lines that begin with '#' are for people, but "# digest LAYER DIGEST", which says what has to be woven.
+/// Stores kept in the repository as text: keys and values in hexadecimal, one pair per line, as they were on the disk.
+/// Lines that begin with '#' are comments, except "# digest LAYER DIGEST", which gives the expected digest of a layer.
 namespace scanloom::store {
 
 inline std::string from_hex(std::string_view text) {
@@ -23,7 +23,7 @@ inline std::string from_hex(std::string_view text) {
     return bytes;
 }
 
-/// Writes the database that the text tells of. @return the digests, as testing_support::digests_of() has them.
+/// Writes the database described by the text. @return the digests in the form of testing_support::digests_of()
 inline std::string write_store(const std::filesystem::path& text, const std::filesystem::path& directory) {
     rocksdb::Options options;
     options.create_if_missing = true;

@@ -9,7 +9,7 @@
 
 namespace scanloom::store {
 
-/// Entries as they lie in a block of RocksDB's table files, without what stands behind them.
+/// Entries in the form of a block of RocksDB's table files, without the trailer of the block.
 class TableBlock {
 public:
     TableBlock& entry(SessionId session, Revision revision, std::string value) {
@@ -26,7 +26,7 @@ public:
 
     TableBlock& put(std::string_view key, std::string_view value) { return add(key, '\1', value); }
 
-    /// The next one has its whole key, as each sixteenth has.
+    /// Stores the next entry with its whole key, as in every sixteenth entry.
     TableBlock& restart() {
         last_.clear();
         return *this;

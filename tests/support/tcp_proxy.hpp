@@ -12,7 +12,7 @@
 
 namespace scanloom::test {
 
-/// A link that can be cut: connections to its port go on to another port of this machine. On a thread of its own.
+/// A connection that can be cut: forwards connections from its port to another port of this machine, on its own thread.
 class TcpProxy {
 public:
     explicit TcpProxy(std::uint16_t to);
@@ -20,7 +20,7 @@ public:
 
     [[nodiscard]] std::uint16_t port() const noexcept { return endpoint_.port(); }
 
-    /// Breaks every connection and refuses new ones, until restore().
+    /// Resets every connection and refuses new ones until restore().
     void cut();
     void restore();
 

@@ -7,7 +7,7 @@
 
 namespace scanloom {
 
-/// A fresh, empty directory that is gone with everything in it when this is.
+/// Creates an empty directory. The destructor removes it with its contents.
 class TemporaryDirectory {
 public:
     TemporaryDirectory() {

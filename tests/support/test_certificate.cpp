@@ -19,7 +19,7 @@ constexpr auto kOwnerOnly = std::filesystem::perms::owner_read | std::filesystem
 
 Certificate make_certificate(EVP_PKEY* key, const std::string& host, long valid_for_s) {
     Certificate made(X509_new(), X509_free);
-    X509_set_version(made.get(), 2); // that is, 3
+    X509_set_version(made.get(), 2); // the encoding of version 3
     ASN1_INTEGER_set(X509_get_serialNumber(made.get()), 1);
     X509_gmtime_adj(X509_getm_notBefore(made.get()), valid_for_s - 24L * 3600);
     X509_gmtime_adj(X509_getm_notAfter(made.get()), valid_for_s);

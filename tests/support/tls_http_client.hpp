@@ -15,15 +15,15 @@
 
 namespace scanloom::testing_support {
 
-/// What somebody does who speaks TLS: with OpenSSL itself, without the code that is tested.
+/// The settings of a TLS client that uses OpenSSL directly, without the code under test.
 struct TlsManner {
-    std::filesystem::path trusted;           ///< whose certificates are believed
-    std::optional<CertificateFiles> shown{}; ///< of one's own
+    std::filesystem::path trusted;           ///< file of the trusted certificates
+    std::optional<CertificateFiles> shown{}; ///< the client's own certificate
     int version_min = TLS1_2_VERSION;
     int version_max = TLS1_3_VERSION;
 };
 
-/// An HttpClient that encrypts.
+/// An HttpClient over TLS.
 class TlsHttpClient final : public HttpClient {
 public:
     TlsHttpClient(std::uint16_t port, const TlsManner& manner)
@@ -41,23 +41,23 @@ public:
         is_trusted_ = SSL_connect(tls_.get()) == 1;
     }
 
-    /// Whether the handshake came to its end, as far as this side can tell.
+    /// Returns whether the handshake succeeded, as far as this side knows.
     [[nodiscard]] bool is_trusted() const noexcept { return is_trusted_; }
 
     [[nodiscard]] std::string version() const { return SSL_get_version(tls_.get()); }
     [[nodiscard]] std::string cipher() const { return SSL_get_cipher_name(tls_.get()); }
     [[nodiscard]] bool has_ticket() const { return SSL_SESSION_has_ticket(SSL_get_session(tls_.get())) == 1; }
 
-    /// Asks for another handshake, of TLS 1.2. @return whether the server had it.
+    /// Requests another handshake of TLS 1.2. @return whether the server accepted it
     [[nodiscard]] bool renegotiate() { return SSL_renegotiate(tls_.get()) == 1 && SSL_do_handshake(tls_.get()) == 1; }
 
-    /// Whether the server has said in TLS that it says no more, rather than being cut off.
+    /// Returns whether the server closed the TLS session with a close_notify instead of cutting the connection.
     [[nodiscard]] bool is_taken_leave_of() {
         static_cast<void>(ends_in_order());
         return (SSL_get_shutdown(tls_.get()) & SSL_RECEIVED_SHUTDOWN) != 0;
     }
 
-    /// What OpenSSL has against the server, or it against us; empty: nothing.
+    /// Returns OpenSSL's error about the connection; empty: none.
     [[nodiscard]] std::string complaint() const { return complaint_; }
 
 protected:

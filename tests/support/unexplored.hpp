@@ -13,9 +13,10 @@
 #include <utility>
 #include <vector>
 
-/// What a robot that says it has explored all has left, found by looking everywhere. Written from the documentation of
-/// exploration goals, without their code. Where that leaves room (which of equally near cells, how a slanted line is
-/// cut into cells) the stricter reading is taken: what is found here could have been explored by any.
+/// Finds, by an exhaustive search, the frontiers that a robot left when it reported that exploration is complete.
+/// Written from the documentation of exploration goals, without their code. Where the documentation permits several
+/// results (which of equally near cells, how a slanted line is divided into cells), this uses the stricter one: every
+/// implementation could have explored the frontiers that this finds.
 namespace scanloom::testing_support {
 
 class Unexplored {
@@ -25,12 +26,12 @@ public:
     struct Claim {
         double cell_size = 0.05;   ///< metres
         double clearance = 0.0;    ///< metres around the robot's centre
-        double standoff = 1.0;     ///< metres, along free ground, from where a frontier is looked at
+        double standoff = 1.0;     ///< metres over free ground, from where a frontier is observed
         std::size_t size_min = 1;  ///< cells, of a frontier that counts
-        std::set<Place> looked_at; ///< cells that robots were sent to look at: they count no more
+        std::set<Place> looked_at; ///< cells that robots were sent to observe: excluded from now on
     };
 
-    /// @param area  cells that hold all that is known
+    /// @param area  cells that contain the whole known area
     Unexplored(const classify::ClassView& classes, const grid::CellBox& area, Claim claim)
         : claim_(std::move(claim)), area_(area), width_(area.i_end - area.i_begin), height_(area.j_end - area.j_begin) {
         for (std::int32_t j = area.j_begin; j < area.j_end; ++j) {
@@ -39,7 +40,7 @@ public:
         find_fitting();
     }
 
-    /// Frontiers that a robot at this place could get to and see, each by its first cell.
+    /// Returns the frontiers that a robot at this place could reach and observe, each by its first cell.
     [[nodiscard]] std::vector<grid::Cell> within_reach_of(const Point2& robot) const {
         const std::vector<bool> reached = flood_from(robot);
         std::vector<grid::Cell> left;
@@ -51,7 +52,7 @@ public:
         return left;
     }
 
-    /// Cells that the body's centre could get to.
+    /// Counts the cells that the body's centre could reach.
     [[nodiscard]] std::int64_t reach(const Point2& robot) const {
         const auto reached = flood_from(robot);
         return std::count(reached.begin(), reached.end(), true);
@@ -77,8 +78,8 @@ private:
         return found == classify::CellClass::kFree || found == classify::CellClass::kDanger;
     }
 
-    /// Where the body has known ground all around: nothing else within the clearance and a fifth of a cell, which is
-    /// what the diagonal steps of ways may ask for.
+    /// Finds the cells where the body has only known free ground within the clearance plus a fifth of a cell, the most
+    /// that the diagonal steps of paths may need.
     void find_fitting() {
         const double radius = claim_.clearance / claim_.cell_size + 0.2;
         const auto far = static_cast<std::int32_t>(std::ceil(radius + 0.5));
@@ -100,7 +101,8 @@ private:
         }
     }
 
-    /// By straight steps over what fits, from wherever that begins within the clearance and a cell of the robot.
+    /// Spreads by straight steps over cells where the body fits, from all of them within the clearance plus one cell of
+    /// the robot.
     [[nodiscard]] std::vector<bool> flood_from(const Point2& robot) const {
         std::vector<bool> reached(cells_.size(), false);
         std::deque<At> open;
@@ -125,7 +127,7 @@ private:
         return reached;
     }
 
-    /// Groups of 8-connected FRONTIER cells that count.
+    /// Returns groups of 8-connected FRONTIER cells that count.
     [[nodiscard]] std::vector<std::vector<At>> frontiers() const {
         std::vector<bool> seen(cells_.size(), false);
         std::vector<std::vector<At>> found;
@@ -152,7 +154,8 @@ private:
         return found;
     }
 
-    /// Whether a cell within the standoff, by straight steps over free ground, is reached and sees the group.
+    /// Returns whether a cell within the standoff, by straight steps over free ground, is reached and has a clear line
+    /// to the group.
     [[nodiscard]] bool can_be_seen(const std::vector<At>& group, const std::vector<bool>& reached) const {
         std::vector<bool> known(cells_.size(), false);
         std::vector<At> ring;
@@ -190,7 +193,7 @@ private:
             group, [&](const At& cell) { return distance(cell) > least + 1e-9 || has_clear_line(from, cell); });
     }
 
-    /// No occupied cell is on the straight line between the centres, nor touched by it.
+    /// Returns whether the straight line between the centres neither crosses nor touches an occupied cell.
     [[nodiscard]] bool has_clear_line(At from, At to) const {
         constexpr double kTouching = 1e-6;
         const double length = std::hypot(to.first - from.first, to.second - from.second);

@@ -11,14 +11,14 @@
 
 namespace scanloom::test {
 
-/// A named pipe that is open for reading and not read: whoever writes to it waits as soon as it is full.
+/// A named pipe that is open for reading but is not read. A writer blocks when it is full.
 class UnreadPipe {
 public:
     explicit UnreadPipe(std::filesystem::path path) : path_(std::move(path)) {
         if (mkfifo(path_.c_str(), 0600) != 0) throw std::system_error(errno, std::generic_category(), "mkfifo");
         both_ends_ = open(path_.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
         if (both_ends_ < 0) throw std::system_error(errno, std::generic_category(), "open");
-        fcntl(both_ends_, F_SETPIPE_SZ, 4096); // soon full
+        fcntl(both_ends_, F_SETPIPE_SZ, 4096); // fills up soon
     }
     UnreadPipe(const UnreadPipe&) = delete;
     UnreadPipe& operator=(const UnreadPipe&) = delete;
@@ -32,7 +32,7 @@ public:
         }
     }
 
-    /// What was written so far; the pipe is empty then.
+    /// Empties the pipe and returns its contents.
     [[nodiscard]] std::string empty() {
         std::string all;
         char bytes[4096];

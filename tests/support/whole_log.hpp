@@ -4,7 +4,7 @@
 
 namespace scanloom::robot {
 
-/// A CARMEN log, all at once.
+/// A whole CARMEN log in memory.
 struct WholeLog {
     std::vector<Observation> observations;
     std::size_t skipped_lines = 0;
