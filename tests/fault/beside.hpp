@@ -10,41 +10,42 @@
 
 namespace scanloom::fault {
 
-/// How often, and how long each time, robots stream in peace and then beside a crowd.
+/// How often, and how long each time, robots stream without a crowd and then with one.
 struct Rounds {
     unsigned count = 1;
     std::chrono::seconds duration{3};
-    bool must_keep_up = false; ///< acknowledgements may take twice as long at most
+    bool must_keep_up = false; ///< acknowledgements may take at most twice as long
 };
 
-/// What robots notice of a crowd: the same load twice on one server, first in peace, then beside it.
+/// The effect of a crowd on robots: the same load twice on one server, first without the crowd, then with it.
 struct Beside {
-    std::uint64_t size = 0;            ///< of the crowd
-    std::size_t bytes_of_each_max = 0; ///< of the server's memory, of each of the crowd
-    /// Of it, however many there are: robots beside nobody make it grow, too, by 3 MiB in the 3 s of the short form, by
-    /// up to 8 in the 20 s of the long one.
+    std::uint64_t size = 0;            ///< number of connections in the crowd
+    std::size_t bytes_of_each_max = 0; ///< of the server's memory, for each connection
+    /// Of the server's memory, independent of `size`. Without a crowd, robots also make it grow: by 3 MiB in the 3 s of
+    /// the short form, by up to 8 MiB in the 20 s of the long form.
     std::size_t bytes_besides = std::size_t{12} << 20;
     Rounds rounds{};
-    bool is_tried_alone = false;      ///< also while nobody else uses the machine, for comparison
-    std::chrono::seconds deadline{0}; ///< whose own is no later than this one has to be hung up on
-    unsigned greedy = 0;              ///< robots that send as fast as they can, all into one session of their own;
-                                      ///< in peace, to another server of this machine
-    /// Of connections; empty: there are none.
+    bool is_tried_alone = false;      ///< also while the machine is otherwise idle, for comparison
+    std::chrono::seconds deadline{0}; ///< the server must close all connections with this deadline or an earlier one
+    unsigned greedy = 0; ///< robots that send as fast as they can, all into one session of their own; in the run
+                         ///< without the crowd, to another server of this machine
+    /// Returns the connections of the crowd. Empty: there is no crowd.
     std::function<std::vector<Manner>(const ServerProcess&, const PacedLoad&)> crowd = {};
 };
 
-/// Each round is on a new server. The medians count, as another program of the machine may have held up one of them.
-/// Figures  those of check_paces(); the most that the server's memory grew by; "scans_of_greed", which it was sent by
-///          the greedy ones beside the others, and "scans_of_greed_elsewhere", sent to the other server in peace.
+/// Runs each round on a new server. Compares the medians, as another program may have delayed one of the rounds.
+/// Figures  those of check_paces(); the largest growth of the server's memory; "scans_of_greed", the number of scans
+/// that the greedy robots sent to the server under test, and "scans_of_greed_elsewhere", the number sent to the other
+/// server in the run without the crowd.
 [[nodiscard]] Outcome compare_with_peace(const Run& run, const Beside& beside);
 
-/// Row "viewers": viewers that do not read. Row "flood": whoever sends slowly, without end, or nonsense, to both ports.
-/// Row "greed": robots that send as fast as they are let.
+/// Row "viewers": viewers that do not read. Row "flood": clients that send slowly, without end, or invalid bytes, to
+/// both ports. Row "greed": robots that send as fast as the server permits.
 [[nodiscard]] Outcome run_viewers_row(const Run& run);
 [[nodiscard]] Outcome run_flood_row(const Run& run);
 [[nodiscard]] Outcome run_greed_row(const Run& run);
 
-/// What these compare. Their long form has three rounds of 20 s, in which robots must keep up.
+/// The settings of these rows. Their long form has three rounds of 20 s, in which robots must keep up.
 [[nodiscard]] Beside beside_viewers(const Run& run);
 [[nodiscard]] Beside beside_flood(const Run& run);
 [[nodiscard]] Beside beside_greed(const Run& run);

@@ -6,10 +6,10 @@
 
 namespace scanloom::fault {
 
-/// RocksDB's file layer with syncs that say they are done, and do nothing.
+/// RocksDB's file layer with syncs that report success and do nothing.
 [[nodiscard]] std::unique_ptr<rocksdb::Env> unsynced_files();
 
-/// RocksDB's file layer with syncs that are tried, and called done when they have failed.
+/// RocksDB's file layer with syncs that report success even if they fail.
 [[nodiscard]] std::unique_ptr<rocksdb::Env> trusting_files();
 
 } // namespace scanloom::fault

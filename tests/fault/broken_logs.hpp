@@ -5,28 +5,29 @@
 #include <memory>
 #include <string_view>
 
-/// Scan logs that break their promises, each in one way: what the rows of faults must not let pass.
+/// Scan logs that each break one guarantee. The rows of faults must detect them.
 namespace scanloom::fault {
 
-/// Says that entries are durable and writes them later, some at a time: a crash takes the others.
+/// Reports entries as durable and writes them later in groups, so that a crash loses some.
 [[nodiscard]] std::unique_ptr<store::ScanLog> hasty_log(std::unique_ptr<store::ScanLog> log);
 
-/// Appends some batches twice, as who forgets what it has done already.
+/// Appends some batches twice, as if it forgot that they were stored.
 [[nodiscard]] std::unique_ptr<store::ScanLog> forgetful_log(std::unique_ptr<store::ScanLog> log);
 
-/// Reads other scans than were written and does not notice, as a store without checksums may.
+/// Reads scans that differ from the written ones without an error, as a store without checksums may.
 [[nodiscard]] std::unique_ptr<store::ScanLog> blind_log(std::unique_ptr<store::ScanLog> log);
 
-/// Takes entries for old ones, and drops them, while the wall clock shows less than when it was opened.
+/// Treats entries as duplicates and drops them while the wall clock shows an earlier time than when it was opened.
 [[nodiscard]] std::unique_ptr<store::ScanLog> misled_log(std::unique_ptr<store::ScanLog> log);
 
-/// Never lets go of the memory of what it was given, 64 KiB an entry.
+/// Leaks 64 KiB of memory for each entry.
 [[nodiscard]] std::unique_ptr<store::ScanLog> leaky_log(std::unique_ptr<store::ScanLog> log);
 
-/// Says that entries are durable two seconds after it was given them, but for the first 800.
+/// Reports entries as durable two seconds after it received them, except for the first 800.
 [[nodiscard]] std::unique_ptr<store::ScanLog> tiring_log(std::unique_ptr<store::ScanLog> log);
 
-/// One of them by its name: "hasty", "forgetful", "blind", "misled", "leaky" or "tiring". Another name breaks nothing.
+/// Returns the log with this name: "hasty", "forgetful", "blind", "misled", "leaky" or "tiring". Another name returns
+/// `log` unchanged.
 [[nodiscard]] std::unique_ptr<store::ScanLog> broken_log(std::string_view kind, std::unique_ptr<store::ScanLog> log);
 
 } // namespace scanloom::fault

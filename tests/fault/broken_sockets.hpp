@@ -2,12 +2,12 @@
 
 #include <string_view>
 
-/// Sockets of a server that breaks its promises: the system's calls accept() and close() of whatever program this is
-/// linked to go through here.
+/// Sockets of a server that breaks its guarantees. Replaces the system calls accept() and close() in the program that
+/// links this file.
 namespace scanloom::fault {
 
-/// "hoarding": each connection that is accepted takes a MiB of memory for ever. "clinging": connections that were
-/// accepted are never closed. Another name breaks nothing.
+/// Selects the fault. "hoarding": each accepted connection leaks 1 MiB of memory. "clinging": accepted connections are
+/// never closed. Another name selects no fault.
 void break_sockets(std::string_view kind);
 
 } // namespace scanloom::fault

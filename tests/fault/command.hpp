@@ -6,9 +6,9 @@
 
 namespace scanloom::fault {
 
-/// How a server or a robot is started: a program, and words that come before its own options.
+/// The command that starts a server or a robot: a program, and arguments that precede its own options.
 struct Command {
-    std::filesystem::path program; ///< empty: the build's scanloom-server, or scanloom-robot
+    std::filesystem::path program; ///< empty: scanloom-server or scanloom-robot of the build
     std::vector<std::string> words{};
 };
 

@@ -4,13 +4,13 @@
 
 namespace scanloom::fault {
 
-/// A store of known contents is damaged and opened by a server. The damage is found and told (the server refuses to
-/// start, or logs it, or answers with an error in place of the session) or shows nowhere: what is served is what was
-/// stored. Counts damaged stores, each of a seed of its own.
+/// Row "corrupt": damages a store of known contents and opens it with a server. Either the server reports the damage
+/// (it refuses to start, logs it, or answers with an error in place of the session), or the served data equals the
+/// stored data. Counts damaged stores, each with its own seed.
 ///
-/// One kind of damage looks as if nothing had happened to anybody: a newest log file that ends early, at the end of a
-/// write or within one, is what a crash leaves of writes that were never acknowledged. Then a session may be served
-/// with fewer scans, those at its end missing; these are counted as "shortened".
+/// One kind of damage is indistinguishable from a crash: a newest log file that ends early, at the end of a write or
+/// within one, is what a crash leaves of writes that were never acknowledged. The session may then be served without
+/// its last scans; such sessions are counted as "shortened".
 [[nodiscard]] Outcome run_corrupt_row(const Run& run);
 
 } // namespace scanloom::fault

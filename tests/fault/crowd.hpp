@@ -16,18 +16,18 @@
 
 namespace scanloom::fault {
 
-/// What somebody does who means no good, or cannot help it.
+/// The behaviour of a hostile or broken client.
 struct Manner {
     std::uint16_t port = 0;             ///< of this machine
-    std::string opening;                ///< said at once
-    std::string then{};                 ///< said again and again after that; empty: nothing
-    std::chrono::milliseconds pause{0}; ///< before each of it
-    bool reads = true;                  ///< or leaves whatever comes where it is
-    std::chrono::seconds deadline{0};   ///< within which the server is to hang up; 0: it need not
+    std::string opening;                ///< sent first
+    std::string then{};                 ///< sent repeatedly after that; empty: nothing
+    std::chrono::milliseconds pause{0}; ///< before each repetition
+    bool reads = true;                  ///< false: received bytes are left unread
+    std::chrono::seconds deadline{0};   ///< by which the server must close the connection; 0: none
 };
 
-/// Connections that keep a server busy until this goes. Whoever is hung up on comes again.
-/// Thread  one of its own.
+/// Connections that keep a server busy while this object exists. A closed connection is opened again.
+/// Thread  its own.
 class Crowd {
 public:
     explicit Crowd(const std::vector<Manner>& members);
@@ -35,14 +35,14 @@ public:
     Crowd(const Crowd&) = delete;
     Crowd& operator=(const Crowd&) = delete;
 
-    /// Waits until as many connections as there are members have been made, those that were made again included.
+    /// Waits until the number of connections made, repeated ones included, equals the number of members.
     void wait_until_there() const;
 
-    /// How often, all members together.
+    /// Returns how many connections of all members the server closed.
     [[nodiscard]] std::uint64_t hung_up_on() const;
 
-    /// Waits until every member whose deadline is no later than this one was hung up on; but no longer than its
-    /// deadline twice over, as the machine may be busy. @return how many were not
+    /// Waits until the server has closed a connection of every member whose deadline is at most `deadline`, for at most
+    /// twice that time, as the machine may be busy. @return the number of members whose connection was not closed
     [[nodiscard]] std::size_t wait_until_hung_up_on(std::chrono::seconds deadline) const;
 
 private:
@@ -55,7 +55,7 @@ private:
     std::atomic<std::uint64_t> made_ = 0;
     const std::vector<Manner> members_;
     const Clock::time_point begun_ = Clock::now();
-    mutable std::mutex mutex_; // guards what follows
+    mutable std::mutex mutex_; // guards the members below
     mutable std::condition_variable left_;
     std::vector<std::uint64_t> times_hung_up_on_; // by member
     std::thread thread_;

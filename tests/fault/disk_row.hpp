@@ -4,8 +4,8 @@
 
 namespace scanloom::fault {
 
-/// Row "disk": Run::count fillings of a small disk under streaming robots: acknowledgements stop, /readyz says why,
-/// maps are served, and all goes on by itself when there is room again.
+/// Row "disk": fills a small disk Run::count times while robots stream. Acknowledgements stop, /readyz reports the
+/// reason, maps are still served, and the server resumes by itself when there is space again.
 [[nodiscard]] Outcome run_disk_row(const Run& run);
 
 } // namespace scanloom::fault

@@ -12,17 +12,18 @@
 
 namespace scanloom::fault {
 
-/// What becomes of one connection.
+/// The faults of one connection.
 struct LinkFate {
-    SpoiledStream there; ///< from who connects
+    SpoiledStream there; ///< from the connecting side
     SpoiledStream back;
 };
 
-/// A link that is spoiled: connections to its port go on to another port of this machine, each with a fate of its own.
-/// On a thread of its own.
+/// A proxy that spoils connections: forwards connections from its port to another port of this machine, each with its
+/// own faults. Runs on its own thread.
 class FaultProxy {
 public:
-    /// `fate_of` is asked, on the proxy's thread, for that of the first connection, 0, of the next, 1, and so on.
+    /// @param fate_of  called on the proxy's thread with the number of each connection: 0 for the first, then 1, and so
+    ///     on
     FaultProxy(std::uint16_t to, std::function<LinkFate(std::uint64_t connection)> fate_of);
     ~FaultProxy();
 

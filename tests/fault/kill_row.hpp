@@ -4,8 +4,8 @@
 
 namespace scanloom::fault {
 
-/// kill -9 at random points while robots stream: after so many scans, after so much time, while the server starts and
-/// recovers, and while it stops and writes its last checkpoints. Counts kills.
+/// Row "kill": kill -9 at random points while robots stream: after a number of scans, after a time, while the server
+/// starts and recovers, and while it stops and writes its last checkpoints. Counts kills.
 [[nodiscard]] Outcome run_kill_row(const Run& run);
 
 } // namespace scanloom::fault

@@ -15,17 +15,17 @@
 #include <string>
 #include <vector>
 
-/// scanloom-robot with a lidar whose every scan is known, and a spool.
+/// A scanloom-robot with a spool and a lidar whose scans are all known.
 namespace scanloom::fault {
 
-/// What a lidar sends from within the turn before `first` until it has begun the one after `last`. Each turn sees the
-/// room a millimetre larger, so that none can stand for another.
+/// Returns the bytes that a lidar sends from within the turn before `first` until the start of the turn after `last`.
+/// In each turn the room is one millimetre larger, so that each turn is distinguishable.
 [[nodiscard]] testing_support::Bytes turns(int first, int last);
 
-/// See turns().
+/// Returns the turn of a scan, see turns().
 [[nodiscard]] int turn_of(const Scan& scan);
 
-/// Where the robot reads its lidar from.
+/// The source from which the robot reads its lidar.
 class Lidar {
 public:
     Lidar();
@@ -40,25 +40,26 @@ private:
     std::optional<boost::asio::ip::tcp::socket> socket_;
 };
 
-/// Robot "r" of session "s", which reads its lidar, keeps its spool in `place`/spool, and has its server at `port`.
+/// Starts robot "r" of session "s", which reads its lidar, keeps its spool in `place`/spool, and connects to its server
+/// at `port`.
 [[nodiscard]] test::ChildProcess start_lidar_robot(const std::filesystem::path& place, std::uint16_t port,
                                                    const Lidar& lidar, const std::vector<std::string>& options = {},
                                                    const Command& robot = {});
 
-/// The scans that wait in that spool.
+/// Returns the scans in that spool.
 [[nodiscard]] std::vector<Scan> spooled(const std::filesystem::path& place);
 
-/// Scans that the server holds of session "s".
+/// Returns the number of scans of session "s" on the server.
 [[nodiscard]] std::uint64_t scans_of(std::uint16_t http_port);
 
-/// The turns that the server holds of session "s", in its log's order.
+/// Returns the turns of session "s" on the server, in the order of its log.
 [[nodiscard]] std::vector<int> turns_of(std::uint16_t http_port);
 
-/// Asks until it is so. What is lost never comes: that is told, long after any machine would have brought it.
+/// Polls until `has_come` returns true. Throws after a time that suffices on any machine, as lost data never arrives.
 void wait_until(const std::string& what, const std::function<bool()>& has_come);
 void wait_for_scans(std::uint16_t http_port, std::uint64_t scans);
 
-/// The digest of session "s" after a lidar's turns 1 to `turns_in_all` came in one go, and nothing went wrong.
+/// Returns the digest of session "s" after an undisturbed run over the lidar's turns 1 to `turns_in_all`.
 [[nodiscard]] std::string peaceful_digest(int turns_in_all);
 
 } // namespace scanloom::fault

@@ -11,38 +11,39 @@
 
 namespace scanloom::fault {
 
-/// What may happen to one direction of a link.
+/// The faults of one direction of a connection.
 enum class Harm {
     kNone,
-    kSplit,     ///< every byte travels alone
-    kDelay,     ///< every piece comes a little later
-    kStall,     ///< at some byte nothing comes for a while
-    kHalfOpen,  ///< from some byte on nothing comes, and nobody is told
-    kReset,     ///< at some byte the connection is reset
-    kTruncate,  ///< at some byte it is closed in good order
-    kFlip,      ///< a bit of some frame is flipped
-    kDuplicate, ///< some frame comes twice
-    kReorder,   ///< some frame comes after the one behind it
+    kSplit,     ///< every byte is sent on its own
+    kDelay,     ///< every piece arrives a little later
+    kStall,     ///< after some byte nothing arrives for a while
+    kHalfOpen,  ///< after some byte nothing arrives, and neither side is notified
+    kReset,     ///< the connection is reset at some byte
+    kTruncate,  ///< the connection is closed in order at some byte
+    kFlip,      ///< a bit of one frame is flipped
+    kDuplicate, ///< one frame arrives twice
+    kReorder,   ///< one frame arrives after its successor
 };
 inline constexpr int kHarms = 10;
 
 [[nodiscard]] std::string_view name_of(Harm harm);
 
-/// Bytes to be sent on, after a pause.
+/// Bytes to forward after a pause.
 struct Piece {
     std::string bytes;
     std::chrono::microseconds pause{0};
 };
 
-/// How a link ends.
+/// How a connection ends.
 enum class Ending { kNone, kReset, kClosed };
 
-/// One direction of a link, spoiled. All comes from the seed; no socket, no clock.
+/// One direction of a spoiled connection. Uses only the seed, without sockets or a clock.
 ///
-/// Usage   whatever came: take(); send the pieces on, one after the other; then look at ending().
+/// Usage   pass received bytes to take(); forward the returned pieces in order; then check ending().
 class SpoiledStream {
 public:
-    /// `forges`: a flipped bit gets a checksum that fits, so that nobody can see it. For trying what tries others.
+    /// @param forges  replaces the checksum after a bit flip so that it matches, which makes the fault undetectable.
+    ///     For tests of the rows themselves.
     SpoiledStream(Harm harm, std::uint64_t seed, bool forges = false);
 
     [[nodiscard]] std::vector<Piece> take(std::string_view bytes);
@@ -56,12 +57,12 @@ private:
     Harm harm_;
     std::mt19937_64 random_;
     bool forges_;
-    std::uint64_t at_byte_;  // where it happens, of those that harm bytes
-    std::uint64_t at_frame_; // likewise, of those that harm frames
+    std::uint64_t at_byte_;  // where the fault happens, for faults of bytes
+    std::uint64_t at_frame_; // likewise, for faults of frames
     std::uint64_t bytes_ = 0;
     std::uint64_t frames_ = 0;
-    std::string frame_;                 // what there is of the next one
-    std::optional<std::string> behind_; // a frame that the next one overtakes
+    std::string frame_;                 // the received part of the next frame
+    std::optional<std::string> behind_; // a frame held back until after the next one
     Ending ending_ = Ending::kNone;
 };
 

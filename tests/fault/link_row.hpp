@@ -8,15 +8,15 @@
 
 namespace scanloom::fault {
 
-/// What the links of a run go to.
+/// The server end of the links of a run.
 struct LinkTrial {
-    std::function<std::unique_ptr<store::ScanLog>()> make_log; ///< the server's
-    bool forges = false;                                       ///< SpoiledStream's
+    std::function<std::unique_ptr<store::ScanLog>()> make_log; ///< creates the server's log
+    bool forges = false;                                       ///< see SpoiledStream
 };
 
-/// A robot's first links are spoiled, each direction in one way, and the following ones are not: the stream completes,
-/// or ends with a sentence that says why; the server holds what it should either way. Counts robots, each of a seed of
-/// its own.
+/// Row "link": spoils a robot's first connections, each direction in one way, but not the later ones. The stream
+/// completes or ends with an error message that gives the reason; in both cases the server holds the expected scans.
+/// Counts robots, each with its own seed.
 [[nodiscard]] Outcome run_link_row(const Run& run);
 [[nodiscard]] Outcome run_link_row(const Run& run, const LinkTrial& trial);
 

@@ -11,10 +11,10 @@ namespace scanloom::fault {
 
 inline constexpr std::uint64_t kDiskBytes = std::uint64_t{128} << 20; ///< size of the rows' disks
 
-/// A file system of its own, ext4 in a file, on a loop device: one that can lose its power, and can be full.
+/// An ext4 file system in a file on a loop device, which can lose power and can be full.
 class LoopDisk {
 public:
-    /// Makes it, and mounts it at `mount_point`, which is created.
+    /// Creates the file system and mounts it at `mount_point`, which is created.
     /// Errors  kUnreachable: the user is not root, there are no loop devices, or a program is missing.
     [[nodiscard]] static Result<std::unique_ptr<LoopDisk>>
     make(const std::filesystem::path& image, const std::filesystem::path& mount_point, std::uint64_t bytes);
@@ -22,13 +22,13 @@ public:
     LoopDisk(const LoopDisk&) = delete;
     LoopDisk& operator=(const LoopDisk&) = delete;
 
-    /// What was not synced is lost, and every further access fails, until it is mounted again. Throws.
+    /// Discards all data that was not synced. Every further access fails until mount_again(). Throws.
     void cut_power() const;
 
-    /// As long as what is returned lives, whoever writes or syncs waits. Throws.
+    /// Blocks all writes and syncs while the returned object exists. Throws.
     [[nodiscard]] std::shared_ptr<const void> freeze() const;
 
-    /// Takes it out and puts it in again: its journal is replayed. Pre: nobody has a file of it open. Throws.
+    /// Unmounts and mounts the file system again, which replays its journal. Pre: none of its files is open. Throws.
     void mount_again();
 
 private:

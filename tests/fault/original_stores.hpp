@@ -11,18 +11,18 @@
 
 namespace scanloom::fault {
 
-/// A store and what is in it.
+/// A store and its contents.
 struct OriginalStore {
-    std::string what; ///< its files, for people
+    std::string what; ///< description of its files
     std::filesystem::path path;
     std::map<std::string, Held> sessions;
 };
 
-/// The same store at four moments: what lies in which file differs. Written one entry after the other, so that the same
-/// files come out each time, but for names that RocksDB draws.
+/// The same store at four moments, with its data in different files. Written one entry after the other, so that the
+/// same files result each time, except for names that RocksDB chooses.
 class OriginalStores {
 public:
-    static constexpr std::uint64_t kScans = 300; ///< of each session, in the end
+    static constexpr std::uint64_t kScans = 300; ///< of each session, at the last moment
     static constexpr std::uint64_t kSessions = 3;
 
     OriginalStores();
@@ -36,7 +36,7 @@ private:
     void keep(std::string what);
 
     TemporaryDirectory place_;
-    std::map<std::string, Held> sessions_; // as of now
+    std::map<std::string, Held> sessions_; // current state
     std::vector<OriginalStore> stores_;
 };
 

@@ -7,18 +7,19 @@
 
 namespace scanloom::fault {
 
-/// How soon robots were acknowledged: p99 in milliseconds, a figure of each round; nothing where a round does not tell.
+/// The acknowledgement latency of robots: p99 in milliseconds for each round; nullopt if a round does not report it.
 struct Paces {
     using Figures = std::vector<std::optional<double>>;
 
-    Figures alone{}; ///< while the machine has nothing else to do; empty: that was not tried
+    Figures alone{}; ///< while the machine is otherwise idle; empty: not measured
     Figures in_peace{};
-    Figures beside{}; ///< the crowd
+    Figures beside{}; ///< with the crowd
 };
 
-/// Tells the medians, in microseconds: "p99_alone_us", "p99_in_peace_us", "p99_beside_us". Of an even number of rounds,
-/// the upper one.
-/// Amiss   a figure is missing; or they must keep up, and waited more than twice as long beside the crowd as in peace.
+/// Reports the medians in microseconds: "p99_alone_us", "p99_in_peace_us", "p99_beside_us". For an even number of
+/// rounds, the upper one.
+/// Fails if a figure is missing, or if robots must keep up and the latency with the crowd was more than twice that
+/// without.
 void check_paces(const Paces& paces, bool must_keep_up, Outcome& outcome);
 
 } // namespace scanloom::fault

@@ -8,7 +8,7 @@
 
 namespace scanloom::fault {
 
-/// What a process takes of the machine's memory; 0: there is no such process.
+/// Returns a process's resident memory in bytes; 0: there is no such process.
 [[nodiscard]] inline std::uint64_t resident_bytes(pid_t process) {
     std::ifstream status("/proc/" + std::to_string(process) + "/status");
     for (std::string line; std::getline(status, line);) {

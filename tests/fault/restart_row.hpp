@@ -4,7 +4,7 @@
 
 namespace scanloom::fault {
 
-/// The server is stopped, or killed, and started again while a hundred robots stream. Counts restarts.
+/// Row "restart": stops or kills the server and starts it again while a hundred robots stream. Counts restarts.
 [[nodiscard]] Outcome run_restart_row(const Run& run);
 
 } // namespace scanloom::fault

@@ -18,7 +18,7 @@ namespace scanloom::fault {
     return row->run({.seed = 1, .count = row->count_short});
 }
 
-/// Fails the test if scans were lost, doubled or shown differently, or if nothing was tried.
+/// Fails the test if scans were lost, stored twice or changed, or if nothing was tested.
 inline void expect_passed(const Outcome& outcome) {
     for (const auto& sentence : outcome.amiss) ADD_FAILURE() << sentence;
     EXPECT_EQ(outcome.lost, 0U);

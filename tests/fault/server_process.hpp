@@ -15,8 +15,8 @@
 
 namespace scanloom::fault {
 
-/// A free port of this machine that stays ours while nobody listens on it: no outgoing connection is given it, so that
-/// no robot that looks for its server there meets itself.
+/// A free port of this machine that stays reserved while no server listens on it. The system does not assign it to
+/// outgoing connections, so that a robot that connects to its server there cannot connect to itself.
 class ReservedPort {
 public:
     ReservedPort();
@@ -28,38 +28,38 @@ private:
     boost::asio::ip::tcp::socket socket_{io_};
 };
 
-/// A server that is started, disturbed and started again, always on the same ports and the same store.
+/// A server that is started, disturbed and restarted, always with the same ports and the same store.
 class ServerProcess {
 public:
-    /// `place` is a directory: the store is `place`/store, what the server says on standard error `place`/log.
+    /// @param place  a directory: the store is `place`/store, the server's standard error goes to `place`/log
     ServerProcess(Command command, std::filesystem::path place, std::vector<std::string> options = {});
 
     [[nodiscard]] std::uint16_t robot_port() const { return robot_port_.number(); }
     [[nodiscard]] std::uint16_t http_port() const { return http_port_.number(); }
 
-    /// Does not wait for anything. Pre: it does not run.
+    /// Starts the server without waiting. Pre: it does not run.
     void start();
 
-    /// Waits until it is ready. @return false when it has ended instead
+    /// Waits until the server is ready. @return false if it has ended instead
     [[nodiscard]] bool becomes_ready() { return process_->read_line().has_value(); }
 
-    /// Throws, with what it said last, when it ends instead of becoming ready.
+    /// Throws with the server's last log line if it ends before it is ready.
     void start_and_wait();
 
-    /// Lets it be for a while, unless it becomes ready, or ends, before.
+    /// Waits for `time`, or until the server is ready or ends, if that is earlier.
     void let_be(std::chrono::microseconds time) const { (void)process_->has_output_within(time); }
 
     [[nodiscard]] pid_t id() const { return process_->id(); }
     void signal(int number) const { process_->signal(number); }
     void kill_nine();
 
-    /// Waits for its end. @return its exit code, or minus the signal that ended it
+    /// Waits until the server ends. @return its exit code, or minus the signal that ended it
     [[nodiscard]] int wait() { return process_->wait(); }
 
-    /// Asks it to stop, and waits for it as above.
+    /// Requests a stop and waits for the end. @return as wait()
     [[nodiscard]] int stop();
 
-    /// The last line that it wrote on standard error.
+    /// Returns the last line of the server's standard error.
     [[nodiscard]] std::string last_words() const;
 
 private:

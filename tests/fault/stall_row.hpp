@@ -4,7 +4,7 @@
 
 namespace scanloom::fault {
 
-/// Row "stall": the disk takes nothing for seconds, and then all that waited. Needs root and loop devices.
+/// Row "stall": the disk blocks all writes for seconds and then completes them. Needs root and loop devices.
 [[nodiscard]] Outcome run_stall_row(const Run& run);
 
 } // namespace scanloom::fault

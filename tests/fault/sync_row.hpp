@@ -4,8 +4,9 @@
 
 namespace scanloom::fault {
 
-/// Row "sync": a server of which each sync of a file fails with one chance in five, until Run::count scans of four
-/// robots are acknowledged: the store is opened again after a failure, by itself, and nothing that failed is trusted.
+/// Row "sync": each sync of a file on the server fails with a probability of one in five, until Run::count scans of
+/// four robots are acknowledged. After a failure the server must reopen the store itself and must not rely on data
+/// whose sync failed.
 [[nodiscard]] Outcome run_sync_row(const Run& run);
 
 } // namespace scanloom::fault
