@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-// Aligning and fusing what a standing lidar sees from two places of the simulator's room.
+// Aligning and fusing the scans of a stationary lidar from two places in the simulator's room.
 
 namespace scanloom::landmarks {
 namespace {
@@ -15,7 +15,7 @@ namespace {
 constexpr Pose2 kFirst{-3.3, 1.2, 1.0};
 constexpr Pose2 kSecond{-2.6, 0.2, -2.0};
 
-/// In the robot's frame.
+/// Returns points in the robot's frame.
 std::vector<Point2> capture(const Pose2& place, std::size_t count, std::uint64_t seed) {
     const auto room = robot::make_room();
     const Sensor laser = robot::find_laser("lidar360").value();

@@ -7,8 +7,8 @@
 
 #include <benchmark/benchmark.h>
 
-// What weaving a scan and showing a map cost, on the reference laser in a room of 10 x 10 m. Times are per scan;
-// the argument is the cell size in millimetres. projection_bench compares with other mappers.
+// The cost of integrating a scan and of showing a map, for the reference laser in a room of 10 x 10 m. Times are per
+// scan; the argument is the cell size in millimetres. projection_bench compares with other mappers.
 
 namespace scanloom::bench {
 namespace {
@@ -22,7 +22,7 @@ const std::vector<Scan>& scans() {
     return scans;
 }
 
-/// The layers and what they need to take scans of the reference laser.
+/// The layers, ready to integrate scans of the reference laser.
 class Weaver {
 public:
     explicit Weaver(double cell_size_m)
@@ -58,11 +58,11 @@ void IntegrateAndSnapshot(benchmark::State& state) {
     Weaver weaver(cell_size_of(state));
     for (auto _ : state) {
         weaver.integrate();
-        weaver.take_snapshot(); // so that the next scan copies each chunk it touches
+        weaver.take_snapshot(); // so that the next scan copies each chunk it changes
     }
 }
 
-/// Rooms side by side, 40 x 40 m, as 16 robots would map them at once.
+/// Returns adjacent rooms, 40 x 40 m in total, as 16 robots would map them at once.
 Snapshot sixteen_rooms(double cell_size_m) {
     mapping::MapConfig config;
     config.cell_size = cell_size_m;

@@ -8,14 +8,14 @@
 #include <cmath>
 #include <map>
 
-// Landmarks of captures: what a standing lidar sees in the simulator's room, turn upon turn.
+// Landmarks from the scans of a stationary lidar in the simulator's room, turn after turn.
 
 namespace scanloom::landmarks {
 namespace {
 
 enum Cloud : std::int64_t {
-    kMillimetres, ///< readings as they come, of 360 fixed directions: many are equal
-    kJittered,    ///< every point moved by up to half a millimetre: none are equal
+    kMillimetres, ///< unmodified readings of 360 fixed directions: many are equal
+    kJittered,    ///< every point moved by up to half a millimetre: no two are equal
 };
 
 std::vector<Point2> make_capture(Cloud cloud, std::size_t count) {
@@ -37,7 +37,7 @@ std::vector<Point2> make_capture(Cloud cloud, std::size_t count) {
     return points;
 }
 
-/// The capture of the benchmark's numbers: which cloud, how many points.
+/// Returns the capture for the benchmark's arguments: type of cloud, number of points.
 const std::vector<Point2>& capture(const benchmark::State& state) {
     static std::map<std::pair<std::int64_t, std::int64_t>, std::vector<Point2>> captures;
     auto& points = captures[{state.range(0), state.range(1)}];
@@ -74,7 +74,7 @@ void FindLandmarks(benchmark::State& state) {
 BENCHMARK(FindLandmarks)->Apply(sizes<kMillimetres>);
 BENCHMARK(FindLandmarks)->Apply(sizes<kJittered>);
 
-/// With an eps of 0.5 m thousands of points are within it of each.
+/// With an eps of 0.5 m each point has thousands of points within it.
 void ClusterCrowds(benchmark::State& state) {
     const auto& points = capture(state);
     for (auto _ : state) benchmark::DoNotOptimize(dbscan(points, 0.5, 5));
@@ -82,7 +82,7 @@ void ClusterCrowds(benchmark::State& state) {
 }
 BENCHMARK(ClusterCrowds)->Apply(sizes<kJittered>);
 
-/// The eps just above and below which walls fall apart: heaps of core points are compared in vain.
+/// The eps just above and below the value at which walls separate: many comparisons of core points find no neighbour.
 void ClusterByBeams(benchmark::State& state) {
     const auto& points = capture(state);
     for (auto _ : state) benchmark::DoNotOptimize(dbscan(points, 0.05, 5));
@@ -97,7 +97,7 @@ void MakePointTree(benchmark::State& state) {
 }
 BENCHMARK(MakePointTree)->Args({kJittered, 240'000})->Unit(benchmark::kMillisecond);
 
-/// Of every point of the cloud.
+/// For every point of the cloud.
 void FiveNearest(benchmark::State& state) {
     const auto& points = capture(state);
     const PointTree tree(points);

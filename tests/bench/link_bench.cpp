@@ -12,8 +12,8 @@
 #include <string>
 #include <thread>
 
-// What no server can do without: frames of one scan of 684 beams over TCP on this machine, read in pieces of 64 KiB by
-// one thread from another that sends as fast as it can. Items are frames; CPU is the reader's alone.
+// The lower bound for any server: frames of one scan of 684 beams over TCP on this machine, read in pieces of 64 KiB by
+// one thread from another that sends as fast as it can. Items are frames; CPU is that of the reader alone.
 
 namespace scanloom::wire {
 namespace {
@@ -28,7 +28,7 @@ std::string frames_of_scans() {
     return frames;
 }
 
-/// A connection of which the other end sends frames until it is closed.
+/// A connection whose other end sends frames until it is closed.
 class Stream {
 public:
     Stream() : socket_(context_) {
@@ -47,7 +47,7 @@ public:
     Stream(const Stream&) = delete;
     Stream& operator=(const Stream&) = delete;
 
-    /// The next frame's body.
+    /// Returns the body of the next frame.
     std::string_view next() {
         for (;;) {
             if (const auto body = decoder_.next().value()) return *body;

@@ -5,7 +5,7 @@
 
 #include <benchmark/benchmark.h>
 
-// Planning from end to end on 60 x 40 m at 0.05 m, body radius 0.15 m: from the classes to the finished polyline.
+// Planning on 60 x 40 m at 0.05 m with a body radius of 0.15 m: from the classes to the finished polyline.
 
 namespace scanloom::bench {
 namespace {
@@ -36,7 +36,7 @@ const ClassView& open_hall() {
     return view;
 }
 
-/// The maze with its last square walled in.
+/// Returns the maze with its last square walled in.
 const ClassView& closed_maze() {
     static const ClassView view = [] {
         auto world = testing_support::maze(kWidth, kHeight, 25, 6);
@@ -47,7 +47,7 @@ const ClassView& closed_maze() {
     return view;
 }
 
-/// From the lower left corner to the upper right one.
+/// Plans from the lower left corner to the upper right corner.
 void plan_across(benchmark::State& state, const ClassView& view, bool possible) {
     const Point2 start = centre({12, 12}, kCellSize);
     const Point2 goal = centre({1187, 787}, kCellSize);
@@ -93,7 +93,7 @@ void DistancesOfOffice(benchmark::State& state) {
     }
 }
 
-/// A scan's worth of changes: a fan of 5 m, 16 chunks, whose cells all change between free and unexplored.
+/// The changes of one scan: a fan of 5 m, 16 chunks, whose cells all change between free and unexplored.
 void ClassesOfAScan(benchmark::State& state) {
     classify::ClassLayer layer(3);
     std::array<classify::OccPlanes, 2> planes;

@@ -11,12 +11,13 @@
 #include <memory>
 #include <string>
 
-// What it costs to put one scan into a map, ours and others', on the same scans in one run: times are per scan, after
-// all scans have been inserted once. "occupancy" is our exact log-odds alone, which others do; "all_layers" adds HIMM
-// and the classes' hysteresis. Where the same ground is seen again and again its cells settle, and rows of them are
-// passed by: "unsettled" is "occupancy" that forgets this before each scan (and pays for the forgetting), so that every
-// cell is read and written, as on new ground. Others take as long for either.
-// All but MRPT, which is Debian's, are built for this machine's instruction set.
+// The cost of integrating one scan, for this projection and other mappers on the same scans in one run. Times are per
+// scan, after all scans have been integrated once. "occupancy" is only our exact log-odds, which the others also
+// compute; "all_layers" adds HIMM and the classes' hysteresis. When the same ground is observed repeatedly, its cells
+// saturate and whole rows of saturated cells are skipped. "unsettled" is "occupancy" that discards this information
+// before each scan (the discarding is included in its time), so that every cell is read and written, as on new ground.
+// The other mappers take the same time for both.
+// All mappers except MRPT, which is Debian's package, are built for this machine's instruction set.
 
 namespace scanloom::bench {
 namespace {
@@ -35,7 +36,7 @@ std::shared_ptr<const mapping::LaserChunk> unknown_chunk() {
     return chunk;
 }
 
-/// Whether a row of cells that are as free as cells can be is passed by.
+/// Whether rows of saturated free cells are skipped.
 enum class Settling { kKnown, kForgotten };
 
 template <Settling kSettling>

@@ -19,17 +19,18 @@
 #include <string>
 #include <vector>
 
-// What a scan costs, all layers and a snapshot each time as where viewers look on without a pause (and, by extent, also
-// where nobody looks), as the map's cells, the sensor's beams and the map itself grow; what a map needs of memory; and
-// how long its recovery takes, from memory and from a store on disk. Each argument doubles or more: what grows faster
-// than its work shows as a line that bends upwards.
+// The cost of a scan as the number of cells, the sensor's beams and the map grow: all layers, with a snapshot after
+// each scan as with a viewer that is always connected (and, by extent, also without a viewer); the memory of a map; and
+// the time of its recovery, from memory and from a store on disk. Each argument at least doubles, so superlinear cost
+// shows as a line that bends upwards.
 
 namespace scanloom::bench {
 namespace {
 
 constexpr int kRoomScans = 60;
 
-/// Scans of the room's round, taken in some room of many side by side: rooms go out from the origin in squares.
+/// Returns a scan of the round through the room, moved to one of many adjacent rooms. Rooms are numbered outwards from
+/// the origin in squares.
 Scan in_room(const Scan& scan, int room, std::uint64_t seq) {
     const int side = static_cast<int>(std::sqrt(static_cast<double>(room)));
     const int along = room - side * side;
@@ -65,7 +66,7 @@ private:
     std::uint64_t seq_ = 0;
 };
 
-/// The worst case: somebody holds the newest maps at every scan.
+/// The worst case: a reader holds the newest maps at every scan.
 void run(benchmark::State& state, Weaver& weaver, const std::vector<Scan>& scans) {
     for (const Scan& scan : scans) weaver.weave(scan);
     mapping::Snapshot shown = weaver.snapshot();
@@ -77,7 +78,7 @@ void run(benchmark::State& state, Weaver& weaver, const std::vector<Scan>& scans
     }
 }
 
-/// The argument: millimetres.
+/// The argument: cell size in millimetres.
 void ScanByCellSize(benchmark::State& state) {
     Weaver weaver(static_cast<double>(state.range(0)) * 0.001, testing_support::reference_laser());
     run(state, weaver, testing_support::room_scans(kRoomScans));
@@ -108,14 +109,14 @@ Weaver weaver_of_rooms(std::int64_t rooms, const std::vector<Scan>& scans) {
     return weaver;
 }
 
-/// The argument: rooms of 10 x 10 m that are in the map besides.
+/// The argument: number of other rooms of 10 x 10 m in the map.
 void ScanByExtent(benchmark::State& state) {
     const auto scans = testing_support::room_scans(kRoomScans);
     Weaver weaver = weaver_of_rooms(state.range(0), scans);
     run(state, weaver, scans);
 }
 
-/// The same while nobody holds the maps, as in a server at which nobody looks.
+/// ScanByExtent without a reader that holds the maps, as in a server without viewers.
 void UnseenScanByExtent(benchmark::State& state) {
     const auto scans = testing_support::room_scans(kRoomScans);
     Weaver weaver = weaver_of_rooms(state.range(0), scans);
@@ -127,7 +128,7 @@ void UnseenScanByExtent(benchmark::State& state) {
     }
 }
 
-/// What the allocator has given out, its own overhead included.
+/// Returns the bytes allocated by the allocator, its own overhead included.
 double allocated_bytes() {
     const auto info = ::mallinfo2();
     return static_cast<double>(info.uordblks + info.hblkhd);
@@ -142,11 +143,11 @@ std::size_t touched_cells(const mapping::Snapshot& map) {
     return touched;
 }
 
-/// The argument: rooms. Counters tell the bytes of all that a map keeps: layers, trees, trajectory, what the
-/// allocator adds; and the same by cell that any scan has touched.
+/// The argument: number of rooms. Counters report the bytes of all parts of a map (layers, trees, trajectory, the
+/// allocator's overhead), in total and per cell that any scan has changed.
 void MemoryByArea(benchmark::State& state) {
     const auto scans = testing_support::room_scans(kRoomScans);
-    weaver_of_rooms(1, scans); // so that what is made once for all maps is there
+    weaver_of_rooms(1, scans); // so that objects shared by all maps exist before the measurement
     for (auto _ : state) {
         const double before = allocated_bytes();
         Weaver weaver(0.05, testing_support::reference_laser());
@@ -161,7 +162,7 @@ void MemoryByArea(benchmark::State& state) {
     }
 }
 
-/// What a robot has sent that drove around in one room.
+/// Returns the entries of a robot that drove around in one room.
 std::vector<std::string> entries_of(std::int64_t count) {
     const auto scans = testing_support::room_scans(kRoomScans);
     std::vector<std::string> entries{wire::encode_entry(RobotJoined{0, "robot"}),
@@ -183,7 +184,7 @@ void recover_each_time(benchmark::State& state, store::ScanLog& log, store::Sess
     state.SetItemsProcessed(state.range(0) * state.iterations());
 }
 
-/// The argument: scans in the log, without a checkpoint. Items are scans.
+/// The argument: number of scans in the log, without a checkpoint. Items are scans.
 void RecoveryByLogLength(benchmark::State& state) {
     store::MemoryScanLog log;
     const auto session = log.create_session({}).value();
@@ -191,8 +192,8 @@ void RecoveryByLogLength(benchmark::State& state) {
     recover_each_time(state, log, session);
 }
 
-/// The same from a store in the system's temporary directory (TMPDIR names another), opened anew; the system may have
-/// its files in memory.
+/// Recovery from a store in the system's temporary directory (TMPDIR selects another), reopened each time. Its files
+/// may be in the system's page cache.
 void RecoveryFromDisk(benchmark::State& state) {
     constexpr std::size_t kBatch = 512;
     TemporaryDirectory directory;

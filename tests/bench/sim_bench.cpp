@@ -10,12 +10,12 @@
 #include <algorithm>
 #include <vector>
 
-// The simulator, world by world. "depot" is a map of ../shared/data and is left out where that is absent.
+// The simulator, one world after the other. "depot" is a map of ../shared/data and is left out if that is absent.
 
 namespace scanloom::robot {
 namespace {
 
-/// A map of 40 x 40 m in cells of 2 cm in which nothing is straight: noise all over, kept clear of a few places.
+/// Returns a map of 40 x 40 m in cells of 2 cm without straight lines: noise everywhere, except around a few places.
 World ragged_map() {
     constexpr std::size_t kSide = 2000;
     Random random(1);
@@ -27,7 +27,7 @@ World ragged_map() {
     return world_of_map("ragged", {.resolution = 0.02}, cells).value();
 }
 
-/// The truth of the hall, as a map.
+/// Returns the ground truth of the hall as a map.
 World hall_map() {
     const TruthGrid truth = truth_of(make_hall(), 0.05);
     const auto map = parse_ros_yaml(truth_yaml(truth, "")).value();
@@ -41,7 +41,7 @@ World depot() {
 
 World (*const kMakers[])() = {make_office, make_hall, hall_map, ragged_map, depot};
 
-/// Of the benchmark's number; without outlines where it is not there.
+/// Returns the world for the benchmark's argument; without outlines if its file is absent.
 const World& world_of(benchmark::State& state) {
     static std::vector<World> worlds(std::size(kMakers));
     World& world = worlds[static_cast<std::size_t>(state.range(0))];
@@ -50,7 +50,7 @@ const World& world_of(benchmark::State& state) {
     return world;
 }
 
-/// Places to scan from.
+/// Returns places to scan from.
 std::vector<Pose2> places_in(const World& world) {
     std::vector<Pose2> places;
     for (std::uint64_t seed = 0; seed < 50; ++seed) {
@@ -80,7 +80,7 @@ void BM_scan(benchmark::State& state) {
 }
 BENCHMARK(BM_scan)->DenseRange(0, 4)->Unit(benchmark::kMicrosecond);
 
-/// The same by looking at every outline for every beam.
+/// A scan of the reference laser, computed by examining every outline for every beam.
 void BM_scan_by_brute_force(benchmark::State& state) {
     const World& world = world_of(state);
     if (world.outlines.empty()) return;
@@ -113,7 +113,7 @@ void BM_sonars(benchmark::State& state) {
 }
 BENCHMARK(BM_sonars)->DenseRange(0, 4)->Unit(benchmark::kMicrosecond);
 
-/// As each control step asks.
+/// The query of each control step.
 void BM_clearance(benchmark::State& state) {
     const World& world = world_of(state);
     if (world.outlines.empty()) return;
@@ -127,7 +127,7 @@ void BM_clearance(benchmark::State& state) {
 }
 BENCHMARK(BM_clearance)->DenseRange(0, 4);
 
-/// A simulated tenth of a second, noise included: two control steps and a scan.
+/// A simulated tenth of a second with noise: two control steps and a scan.
 void BM_simulator(benchmark::State& state) {
     const World& world = world_of(state);
     if (world.outlines.empty()) return;
@@ -139,7 +139,7 @@ void BM_simulator(benchmark::State& state) {
 }
 BENCHMARK(BM_simulator)->DenseRange(0, 4)->Unit(benchmark::kMicrosecond);
 
-/// From cells to a world.
+/// Converts cells to a world.
 void BM_world_of_map(benchmark::State& state) {
     for (auto _ : state) benchmark::DoNotOptimize(ragged_map());
 }

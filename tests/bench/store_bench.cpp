@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kEntryBytes = 2048;
 
-/// Bytes that compress about as badly as ranges do.
+/// Returns bytes that compress about as poorly as ranges do.
 std::string noisy_entry() {
     std::mt19937 random(3);
     std::string entry(kEntryBytes, '\0');
@@ -22,8 +22,8 @@ std::string noisy_entry() {
     return entry;
 }
 
-/// Sessions with one append under way each: the next one follows the acknowledgement, as a robot with
-/// little credit sends. Arguments: sessions, entries an append.
+/// Sessions with one append in progress each. The next append follows the acknowledgement, as with a robot that has
+/// little credit. Arguments: number of sessions, entries per append.
 void append(benchmark::State& state) {
     const auto sessions = static_cast<std::size_t>(state.range(0));
     const auto entries = static_cast<std::size_t>(state.range(1));
@@ -46,7 +46,7 @@ void append(benchmark::State& state) {
 }
 BENCHMARK(append)->Args({1, 1})->Args({1, 100})->Args({64, 1})->Args({64, 10})->UseRealTime();
 
-/// Opening the store and reading a session from its first entry, as a start without checkpoint does.
+/// Opens the store and reads a session from its first entry, as a start without a checkpoint does.
 void recover(benchmark::State& state) {
     constexpr Revision kEntries = 50'000;
     TemporaryDirectory directory;

@@ -7,8 +7,8 @@
 
 #include <utility>
 
-// What a change of one chunk costs whoever looks at a map, against the map's extent: `chunks` of 64 x 64 cells along
-// each of its sides. It should be the same for all.
+// The cost of a change of one chunk to a viewer, against the map's extent: `chunks` of 64 x 64 cells along each side.
+// It should be the same for all extents.
 
 namespace scanloom::bench {
 namespace {
@@ -16,7 +16,7 @@ namespace {
 using mapping::Layer;
 using mapping::Snapshot;
 
-/// A map, and the same after a change in its middle.
+/// A map, and the same map after a change in its middle.
 struct Changed {
     Snapshot before;
     Snapshot after;

@@ -19,7 +19,7 @@ ScanBatch batch_of(std::size_t scans, std::size_t beams) {
     return batch;
 }
 
-/// From a received frame to checked scans; items are scans.
+/// From a received frame to validated scans; items are scans.
 void DecodeScanBatch(benchmark::State& state) {
     constexpr std::size_t kScans = 64;
     std::string frame;
@@ -31,7 +31,7 @@ void DecodeScanBatch(benchmark::State& state) {
 }
 BENCHMARK(DecodeScanBatch)->Arg(180)->Arg(1080)->Arg(4000);
 
-/// What the checksum adds to that, and to sending it.
+/// The additional cost of the checksum, for receiving and sending.
 void CheckScanBatch(benchmark::State& state) {
     constexpr std::size_t kScans = 64;
     std::string frame;

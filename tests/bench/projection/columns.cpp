@@ -20,7 +20,7 @@ double half_side_of(const std::vector<Scan>& scans, double range_max) {
     return farthest + range_max + 1.0;
 }
 
-/// From places all over the world, each with room around it, in directions all around.
+/// Returns scans from places all over the world, each with free space around it, in all directions.
 Column simulated(const std::string& world_name, const std::string& laser, double cell_size, bool is_noisy = false) {
     const auto world = robot::find_world(world_name).value();
     Column column{world_name + (is_noisy ? "+noise" : "") + "/" + std::to_string(cell_size).substr(0, 4),
@@ -46,7 +46,7 @@ Column simulated(const std::string& world_name, const std::string& laser, double
     return column;
 }
 
-/// Scans in a row from all over a real log; nothing where it is not on this machine.
+/// Adds consecutive scans from all parts of a real log, if it is on this machine.
 void add_recorded(std::vector<Column>& columns, const std::string& name, const std::string& file) {
     const auto path = std::filesystem::path(SCANLOOM_SOURCE_DIR) / "../shared/data/logs" / file;
     if (!std::filesystem::exists(path)) return;

@@ -8,16 +8,17 @@
 
 namespace scanloom::bench {
 
-/// What every mapper is measured on: scans of one sensor at known poses, and the size of the cells.
+/// The input of all mappers: scans of one sensor at known poses, and the cell size.
 struct Column {
     std::string name; ///< e.g. "room/0.05"
     double cell_size; ///< metres
     Sensor sensor;    ///< on the robot's centre
     std::vector<Scan> scans;
-    double half_side; ///< metres: a square of so much around the origin holds all that the scans see
+    double half_side; ///< metres: the square from -half_side to half_side around the origin contains all observed cells
 };
 
-/// Rooms, offices and halls of the simulator, and real logs where they are on this machine. The same scans each time.
+/// Returns rooms, offices and halls of the simulator, and real logs if they are on this machine. The scans are the same
+/// each time.
 [[nodiscard]] const std::vector<Column>& columns();
 
 } // namespace scanloom::bench

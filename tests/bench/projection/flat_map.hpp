@@ -10,14 +10,14 @@
 
 namespace scanloom::bench {
 
-/// What the usual mappers keep: one value a cell of a fixed square around the origin, row by row.
+/// The data of a conventional mapper: one value per cell of a fixed square around the origin, row by row.
 template <class Value>
 struct FlatMap {
     FlatMap(double half_side_m, double cell_size_m, Value initial)
         : cells_per_metre(1.0 / cell_size_m), half(static_cast<int>(std::ceil(half_side_m * cells_per_metre)) + 2),
           side(2 * half), cells(static_cast<std::size_t>(side) * static_cast<std::size_t>(side), initial) {}
 
-    /// Metres to a row or column.
+    /// Converts metres to a row or column.
     [[nodiscard]] int index_of(double metres) const noexcept {
         return static_cast<int>(std::floor(metres * cells_per_metre)) + half;
     }
@@ -32,15 +32,15 @@ struct FlatMap {
     std::vector<Value> cells;
 };
 
-/// Where a beam ends, metres in the map.
+/// The end of a beam, in metres in the map.
 struct BeamEnd {
     double x;
     double y;
     bool is_hit;
 };
 
-/// Where the beams of one sensor end, scan by scan. Their directions are known beforehand, as they are to every mapper
-/// that takes care: a scan turns them by its heading, and asks for no sine but that one's.
+/// Computes the ends of one sensor's beams, scan by scan. The beam directions are precomputed, as an efficient mapper
+/// does: a scan rotates them by its heading and computes only the sine and cosine of that.
 class BeamEnds {
 public:
     explicit BeamEnds(const Sensor& sensor) : range_max_(sensor.range_max) {
@@ -50,7 +50,8 @@ public:
         }
     }
 
-    /// Beams without a return end at range_max, those that are invalid at the sensor. Valid until the next call.
+    /// Returns the ends. Beams without a return end at range_max, invalid beams at the sensor. Valid until the next
+    /// call.
     [[nodiscard]] const std::vector<BeamEnd>& of(const Scan& scan) {
         ends_.clear();
         const double cos_yaw = std::cos(scan.pose.yaw);
@@ -72,7 +73,7 @@ private:
     std::vector<BeamEnd> ends_;
 };
 
-/// Calls visit(index) for the cells of a line, without the last one.
+/// Calls visit(index) for the cells of a line, except the last one.
 /// Source  Bresenham, Algorithm for computer control of a digital plotter (IBM Systems Journal 1965).
 template <class Visit>
 void for_each_on_line(int i, int j, int i_end, int j_end, int side, Visit&& visit) {

@@ -23,7 +23,7 @@ public:
     }
 
 private:
-    /// A scan as MRPT wants it, made beforehand: that costs it nothing here.
+    /// A scan in MRPT's format, prepared before the measurement so that it adds no cost.
     struct Observation {
         mrpt::obs::CObservation2DRangeScan scan;
         mrpt::poses::CPose3D pose;
@@ -32,7 +32,7 @@ private:
     static Observation observation_of(const Scan& scan, const Sensor& sensor) {
         const auto beams = beam_count(sensor.angles);
         const double spread = beam_angle(sensor.angles, beams - 1) - beam_angle(sensor.angles, 0);
-        // Its scans are centred on the robot's heading; ours need not be.
+        // MRPT's scans are centred on the robot's heading; ours may not be.
         const double turn = beam_angle(sensor.angles, 0) + spread / 2.0;
         Observation made{{}, {scan.pose.x, scan.pose.y, 0.0, scan.pose.yaw + turn, 0.0, 0.0}};
         made.scan.aperture = static_cast<float>(spread);

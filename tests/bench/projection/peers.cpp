@@ -76,7 +76,7 @@ public:
         const int j = map_.index_of(scan.pose.y);
         passed_ += 2;
         for (const BeamEnd& end : ends) {
-            if (!end.is_hit) continue; // tells nothing here, not even of what is free before it
+            if (!end.is_hit) continue; // ignored by this mapper, with the free cells before its end
             const int i_end = map_.index_of(end.x);
             const int j_end = map_.index_of(end.y);
             for_each_on_line(i, j, i_end, j_end, map_.side, [&](std::size_t at) { pass(map_.cells[at]); });
@@ -87,7 +87,7 @@ public:
 private:
     struct Cell {
         float log_odds = 0.0F;
-        std::int32_t changed = -1; ///< when it was changed last
+        std::int32_t changed = -1; ///< the last scan that changed it
     };
 
     void pass(Cell& cell) const {
@@ -135,7 +135,7 @@ private:
     std::vector<cv::Point> corners_;
 };
 
-/// The limit: the rows of cells are known, and each is added to once.
+/// The limit: the rows of cells are precomputed, and each is added once.
 class Spans final : public Mapper {
 public:
     explicit Spans(const Column& column) : map_(column.half_side, column.cell_size, std::int16_t{0}) {
@@ -164,7 +164,7 @@ private:
         }
     }
 
-    /// Runs of cells that have the same verdict, joined across chunks.
+    /// Returns runs of cells with the same verdict, joined across chunks.
     std::vector<Span> spans_of(const Column& column, const mapping::FanRing& ring, const Scan& scan) {
         std::vector<Span> spans;
         const mapping::Sweep::Band band{&ring, 0.1};

@@ -9,7 +9,7 @@
 
 namespace scanloom::bench {
 
-/// Puts one scan of a column into a map.
+/// Integrates one scan of a column into a map.
 class Mapper {
 public:
     virtual ~Mapper() = default;
@@ -21,31 +21,28 @@ protected:
     Mapper& operator=(const Mapper&) = default;
 };
 
-/// What the projection is measured beside, in the same run.
+/// A mapper with which the projection is compared in the same run.
 struct Peer {
     std::string name;
     std::function<std::unique_ptr<Mapper>(const Column&)> make;
 };
 
-/// Each stands for what a known mapper does, written anew from its idea; "mrpt" is that library itself.
-///   bresenham       float log-odds along each beam, as one writes it by hand
-///   once_a_scan     float log-odds, each cell once a scan, a hit beating a pass; beams without a return are left out:
-///   as
-///                   Hector SLAM does it
-///   mark_and_clear  bytes; each beam clears its cells, then hits are marked: as Nav2's obstacle layer does it
-///   mrpt            COccupancyGridMap2D, where this was built with it
-///   fill_poly       OpenCV fills the polygon of the beams' ends, its cells are taken off with saturation. No mapper:
-///   it knows
-///                   no occupied cells, and joins the ends where no beam has been
-///   spans           a limit: adds with saturation to the very rows of cells that the exact model frees or occupies,
-///   which
-///                   were found before
+/// Returns the mappers. Each reimplements the idea of a known mapper, except "mrpt", which is that library.
+///   - bresenham: float log-odds along each beam, as in a simple implementation
+///   - once_a_scan: float log-odds, each cell once per scan, a hit overrides a miss; beams without a return are
+///     ignored, as in Hector SLAM
+///   - mark_and_clear: bytes; each beam clears its cells, then hits are marked, as in Nav2's obstacle layer
+///   - mrpt: COccupancyGridMap2D, if this was built with MRPT
+///   - fill_poly: OpenCV fills the polygon of the beams' ends, whose cells are decremented with saturation. Not a
+///     mapper: it has no occupied cells, and joins the ends across directions without a beam
+///   - spans: a limit: adds with saturation to exactly the rows of cells that the exact model frees or occupies, which
+///     were computed before
 [[nodiscard]] const std::vector<Peer>& peers();
 
-/// Where MRPT is not installed: nothing.
+/// Returns MRPT as a mapper; empty if MRPT is not installed.
 [[nodiscard]] std::vector<Peer> mrpt_peer();
 
-/// Empty where MRPT is not installed.
+/// Returns MRPT's version; empty if MRPT is not installed.
 [[nodiscard]] std::string mrpt_version();
 
 } // namespace scanloom::bench
