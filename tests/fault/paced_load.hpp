@@ -13,7 +13,7 @@
 
 namespace scanloom::fault {
 
-/// Robots of scanloom-load, which say how soon they were acknowledged and whether all is there.
+/// Runs scanloom-load, which reports the acknowledgement latency of its robots and whether all scans arrived.
 class PacedLoad {
 public:
     static constexpr unsigned kSessions = 4;
@@ -21,31 +21,31 @@ public:
     struct Robots {
         unsigned count = 20;
         unsigned sessions = kSessions;
-        unsigned rate = 10; ///< scans a second of each; 0: as fast as the server lets them
+        unsigned rate = 10; ///< scans per second of each robot; 0: as fast as the server permits
     };
 
     struct Report {
         Outcome outcome;
-        /// Of acknowledgements, from when each scan was meant to be sent; nothing where scanloom-load does not tell it,
-        /// as of robots without a pace.
+        /// Latency of acknowledgements, from the time at which each scan was due. nullopt if scanloom-load does not
+        /// report it, as for robots without a pace.
         std::optional<double> p99_ms{};
     };
 
-    /// Begins. What it says on standard error is in `place`/load-SEED.log.
+    /// Starts the program. Its standard error goes to `place`/load-SEED.log.
     PacedLoad(const ServerProcess& server, const Robots& robots, std::uint64_t seed, std::chrono::seconds duration,
               const std::filesystem::path& place);
 
-    /// Waits until its sessions are there.
+    /// Waits until its sessions exist.
     void wait_until_it_streams() const;
 
     [[nodiscard]] std::string session(unsigned n) const {
         return "load-" + std::to_string(seed_) + "-" + std::to_string(n);
     }
 
-    /// Waits for its end, and for what it then verifies.
+    /// Waits until the program has ended, including its verification.
     [[nodiscard]] Report finish();
 
-    /// Of what scanloom-load printed, and how it ended.
+    /// Parses the output of scanloom-load. @param code  its exit code
     [[nodiscard]] static Report read_report(std::string_view text, int code);
 
 private:

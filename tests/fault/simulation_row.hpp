@@ -4,7 +4,7 @@
 
 namespace scanloom::fault {
 
-/// Row "simulation": a story a seed, see simulation/story.hpp.
+/// Row "simulation": one story per seed, see simulation/story.hpp.
 [[nodiscard]] Outcome run_simulation_row(const Run& run);
 
 } // namespace scanloom::fault

@@ -4,7 +4,7 @@
 
 namespace scanloom::fault {
 
-/// Row "soak": many scans of the same places, during which the server's memory must not grow once it is warm.
+/// Row "soak": many scans of the same places. The server's memory must not grow after a warm-up.
 [[nodiscard]] Outcome run_soak_row(const Run& run);
 
 constexpr std::uint64_t kSoakLong = 20'000'000;

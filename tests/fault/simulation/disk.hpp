@@ -11,41 +11,42 @@
 
 namespace scanloom::simulation {
 
-/// What a disk does wrong, until the world is calm.
+/// The faults of a disk, until calm().
 struct DiskTrouble {
-    double failing = 0.0;   ///< of the writes: fail, after which all do until the store is opened again
-    double full = 0.0;      ///< of the writes: find the disk full, as do all for a while
-    double slow = 0.0;      ///< of the writes: take seconds
-    bool hasty = false;     ///< a lie: says of everything that it is durable before it is
-    bool forgetful = false; ///< a lie: stores some of it twice
+    double failing = 0.0;   ///< share of the writes that fail, after which all fail until the store is reopened
+    double full = 0.0;      ///< share of the writes that find the disk full, as do all others for some time
+    double slow = 0.0;      ///< share of the writes that take seconds
+    bool hasty = false;     ///< a lie: reports all data as durable before it is
+    bool forgetful = false; ///< a lie: stores some data twice
 };
 
-/// A disk with a store on it, which outlives the programs that open it.
-/// What a crash leaves is all that was acknowledged, and of what was not some of the oldest.
+/// A disk with a store, which outlives the programs that open it. After a crash it holds all acknowledged data, and
+/// some of the oldest unacknowledged data.
 class Disk {
 public:
     Disk(World& world, const DiskTrouble& trouble) : world_(world), trouble_(trouble) {}
     Disk(const Disk&) = delete;
     Disk& operator=(const Disk&) = delete;
 
-    /// The store, for one program. Errors  kStoreFailed: now and then.
+    /// Opens the store for one program. Errors  kStoreFailed: at random.
     [[nodiscard]] Result<std::unique_ptr<store::ScanLog>> open();
 
-    /// The program that has it open is killed: whatever it still tries fails.
+    /// Kills the program that has the store open: all its later calls fail.
     void crash();
 
-    /// From now on everything works, and takes no time where `at_once`.
+    /// Ends all faults except the lies.
     void calm() noexcept { trouble_ = {.hasty = trouble_.hasty, .forgetful = trouble_.forgetful}; }
+    /// Sets whether writes take no time.
     void set_at_once(bool at_once);
 
     [[nodiscard]] store::MemoryScanLog& durable() noexcept { return durable_; }
 
-    /// What a hasty disk called durable and never stored.
+    /// Data that a hasty disk reported as durable and never stored.
     struct Dropped {
         store::SessionId session;
         std::vector<std::string> entries;
     };
-    /// All since the last call.
+    /// Returns the data dropped since the last call.
     [[nodiscard]] std::vector<Dropped> take_dropped() { return std::exchange(dropped_, {}); }
 
 private:
@@ -69,10 +70,10 @@ private:
     store::MemoryScanLog durable_;
     std::vector<Append> waiting_;
     std::vector<Dropped> dropped_;
-    std::uint64_t programs_ = 0; // that had it open; the last one has it now
+    std::uint64_t programs_ = 0; // number of programs that opened the store; the last one has it open now
     std::optional<Error> failed_;
     Time full_until_{};
-    std::uint64_t committing_ = 0; // number of the commit that is planned; 0: none is
+    std::uint64_t committing_ = 0; // number of the scheduled commit; 0: none
     std::uint64_t commits_ = 0;
     bool at_once_ = false;
 };

@@ -12,8 +12,8 @@
 
 namespace scanloom::simulation {
 
-/// The threads of one program, of which there are as many as tasks: each runs a moment after it was posted, in any
-/// order. A strand on it keeps its own order, as on real ones.
+/// The threads of one program, one for each task: each task runs a moment after it was posted, in any order. A strand
+/// on it keeps its own order, as on real threads.
 class Machine : public boost::asio::execution_context {
 public:
     explicit Machine(World& world) : world_(world) {}
@@ -23,11 +23,11 @@ public:
 
     void add(std::function<void()> task);
 
-    /// Runs all that waits, and from now on everything at once: for calls that wait for other threads.
+    /// Runs all waiting tasks, and later tasks immediately. For calls that wait for other threads.
     void hasten();
     void go_on_normally() noexcept { hastened_ = false; }
 
-    /// The program is killed: what waits never runs, here and on strands.
+    /// Kills the program: waiting tasks never run, here or on strands.
     void kill();
 
 private:
@@ -38,7 +38,7 @@ private:
     std::uint64_t last_ = 0;
     bool hastened_ = false;
     bool killed_ = false;
-    std::shared_ptr<Machine*> self_ = std::make_shared<Machine*>(this); // for events that may come too late
+    std::shared_ptr<Machine*> self_ = std::make_shared<Machine*>(this); // for events that may run after the destructor
 };
 
 } // namespace scanloom::simulation

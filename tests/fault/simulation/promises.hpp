@@ -11,20 +11,20 @@
 
 namespace scanloom::simulation {
 
-/// What servers said is durable, whether it has reached the robot yet or not.
+/// The scans that servers acknowledged as durable, whether the acknowledgement reached the robot or not.
 ///
-/// Kept apart from the robots: one whose program ends begins its recording again, and so fills the gap that a server
-/// left. Who looks at the end only then finds nothing missing.
+/// Kept apart from the robots, as a robot whose program ends sends its recording again from the start and so fills a
+/// gap that a server left. A check at the end alone would not find the gap.
 class Promises {
 public:
-    /// To this robot, of all its scans up to this one. Robots of a story have names of their own.
+    /// Records an acknowledgement to this robot of all its scans up to `seq`. Robots of a story have distinct names.
     void say(const std::string& robot, std::uint64_t seq);
 
-    /// Whether all of it is on the disk, bit for bit, once. Looked at when no server runs.
+    /// Checks that all acknowledged scans are on the disk once, bit for bit. Pre: no server runs.
     [[nodiscard]] fault::Outcome check(store::MemoryScanLog& durable,
                                        const std::vector<fault::RobotPlan>& robots) const;
 
-    /// How many scans were promised of those that the disk dropped after it had called them durable.
+    /// Counts the acknowledged scans among those that the disk dropped after it had reported them as durable.
     [[nodiscard]] std::uint64_t count_broken(store::MemoryScanLog& durable,
                                              const std::vector<Disk::Dropped>& dropped) const;
 

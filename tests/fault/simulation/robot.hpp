@@ -13,22 +13,22 @@
 
 namespace scanloom::simulation {
 
-/// A robot that streams a recording: the real conversation, on a simulated network. When its program ends before all is
-/// acknowledged, somebody starts it again.
+/// A robot that streams a recording with the real protocol code over a simulated network. If its program ends before
+/// all scans are acknowledged, it is started again.
 class Robot {
 public:
-    /// A connection to the server; null: nobody listens.
+    /// Returns a connection to the server, or null if no server listens.
     using Connect = std::function<std::shared_ptr<Connection>()>;
 
     Robot(World& world, fault::RobotPlan plan, Connect connect);
     Robot(const Robot&) = delete;
     Robot& operator=(const Robot&) = delete;
 
-    /// Its program is killed.
+    /// Kills the program.
     void crash();
 
     [[nodiscard]] bool is_done() const { return done_; }
-    /// The highest seq it was ever told is durable; of errors that ended its program, the newest.
+    /// Returns the highest seq acknowledged as durable, and the newest of the errors that ended the program.
     [[nodiscard]] const fault::RobotStanding& standing() const { return standing_; }
 
 private:
@@ -41,7 +41,7 @@ private:
     void lose(const wire::LinkError& why);
     void drop_connection();
     void watch();
-    /// Calls it unless the program has ended, or its link, before then.
+    /// Calls `what` after `delay`, unless the program or its connection has ended before then.
     void while_running(Duration delay, void (Robot::*what)());
     void while_linked(Time time, void (Robot::*what)());
 
@@ -53,12 +53,12 @@ private:
     std::uint64_t links_ = 0;
     bool done_ = false;
 
-    std::optional<robot::Conversation> conversation_; // of this run; none: it is not running
+    std::optional<robot::Conversation> conversation_; // of the current run; nullopt: the program is not running
     std::optional<robot::Backoff> backoff_;
     std::uint64_t handed_over_ = 0;
     std::shared_ptr<Connection> connection_;
     wire::FrameDecoder decoder_{wire::kFrameBytesMax};
-    Time watching_ = Time::max(); // what is planned already
+    Time watching_ = Time::max(); // the time of the next scheduled check
 };
 
 } // namespace scanloom::simulation

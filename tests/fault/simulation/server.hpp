@@ -25,16 +25,17 @@ struct ServerOptions {
     Duration idle_deadline = std::chrono::seconds(60); ///< of links
 };
 
-/// One run of a server: the real registry, sessions and dialogues, between a simulated network and a simulated disk.
+/// One run of a server: the real registry, sessions and protocol handlers between a simulated network and a simulated
+/// disk.
 class Server {
 public:
-    /// Hears which robot is told that its scans up to which one are durable, when it is sent.
+    /// Called when an acknowledgement is sent: the scans of `robot` up to `seq` are durable.
     using Promise = std::function<void(const std::string& robot, std::uint64_t seq)>;
 
-    /// Recovers what is on the disk.
+    /// Recovers the sessions on the disk.
     Server(World& world, Disk& disk, const ServerOptions& options, Promise promise);
 
-    /// Killed, unless it was stopped: what is still done changes nothing that others see.
+    /// Kills the server, unless it was stopped. Work still pending has no effect visible to others.
     ~Server();
 
     void accept(std::shared_ptr<Connection> connection);
@@ -58,7 +59,7 @@ private:
     std::unique_ptr<store::ReopeningLog> log_;
     std::optional<session::SessionRegistry> sessions_;
     std::vector<std::shared_ptr<Link>> links_;
-    std::shared_ptr<Server*> self_ = std::make_shared<Server*>(this); // for events that may come too late
+    std::shared_ptr<Server*> self_ = std::make_shared<Server*>(this); // for events that may run after the destructor
 };
 
 } // namespace scanloom::simulation

@@ -9,20 +9,20 @@ namespace scanloom::simulation {
 
 struct Story {
     std::uint64_t seed = 1;
-    bool hasty_disk = false;     ///< a lie of the disk's, which must be found out
-    bool forgetful_disk = false; ///< another
-    World::Listener listener{};  ///< hears what happens
+    bool hasty_disk = false;     ///< the disk lies, which the run must detect
+    bool forgetful_disk = false; ///< likewise
+    World::Listener listener{};  ///< receives the events
 };
 
 struct Ending {
     fault::Outcome outcome;
-    std::uint64_t fingerprint = 0; ///< of all that happened
-    std::uint64_t broken = 0;      ///< scans of which a robot was told that they are durable, and the disk dropped them
+    std::uint64_t fingerprint = 0; ///< of all events
+    std::uint64_t broken = 0;      ///< scans acknowledged as durable to a robot that the disk dropped
 };
 
-/// Robots stream to a server while both are killed and started again, the network and the disk do what they do at their
-/// worst; then the world is calm, and all has to be there. What was acknowledged has to be on the disk whenever a
-/// server has ended, too. The same seed is the same story to the nanosecond.
+/// Runs a story: robots stream to a server while both are killed and restarted, and the network and the disk fail in
+/// every simulated manner. Then all faults stop, and all scans must be on the server. Acknowledged scans must also be
+/// on the disk whenever a server has ended. The same seed gives the same story to the nanosecond.
 [[nodiscard]] Ending tell(const Story& story);
 
 } // namespace scanloom::simulation

@@ -8,16 +8,17 @@
 #include <string_view>
 #include <utility>
 
-/// The whole system on one thread: a clock, a network and a disk that are simulated, the programs' real parts on them.
+/// The whole system on one thread: a simulated clock, network and disk, and the real parts of the programs on them.
 namespace scanloom::simulation {
 
 using Time = std::chrono::steady_clock::time_point;
 using Duration = std::chrono::steady_clock::duration;
 
-/// A clock that only events move, and all chance there is. The same seed has the same events in the same order.
+/// A clock that only events advance, and the source of all randomness. The same seed gives the same events in the same
+/// order.
 class World {
 public:
-    /// Hears all that is noted, and when, in seconds since the beginning.
+    /// Receives each note() with its time in seconds since the start.
     using Listener = std::function<void(double seconds, std::string_view what, std::uint64_t number)>;
 
     explicit World(std::uint64_t seed, Listener listener = {}) : random_(seed), listener_(std::move(listener)) {}
@@ -26,23 +27,23 @@ public:
 
     [[nodiscard]] Time now() const noexcept { return now_; }
 
-    /// Events of the same moment happen in the order in which they were planned.
+    /// Schedules an event. Events of the same moment run in the order in which they were scheduled.
     void at(Time time, std::function<void()> event) {
         events_.emplace(Moment{std::max(time, now_), ++planned_}, std::move(event));
     }
     void after(Duration delay, std::function<void()> event) { at(now_ + delay, std::move(event)); }
 
-    /// Lets the next event happen. @return false: there is none until then.
+    /// Runs the next event. @return false if there is none until then
     bool step(Time until);
 
-    /// Evenly from 0 to `below` - 1. Pre: below > 0.
+    /// Returns a uniform random number from 0 to `below` - 1. Pre: below > 0.
     [[nodiscard]] std::uint64_t draw(std::uint64_t below) { return random_() % below; }
     [[nodiscard]] bool chance(double probability) {
         return static_cast<double>(random_() >> 11) * 0x1p-53 < probability;
     }
     [[nodiscard]] Duration between(Duration least, Duration most);
 
-    /// What happened, for comparing two runs of a seed.
+    /// Records an event, for the comparison of two runs of a seed.
     void note(std::string_view what, std::uint64_t number = 0);
     [[nodiscard]] std::uint64_t fingerprint() const noexcept { return fingerprint_; }
 
