@@ -20,9 +20,9 @@ using namespace std::chrono_literals;
 constexpr Rounds kLongForm{.count = 3, .duration = 20s, .must_keep_up = true};
 
 constexpr std::size_t kBytesOfGreed = std::size_t{4} << 20;  // twice a robot's credit
-constexpr std::size_t kBytesOfEach = std::size_t{128} << 10; // twice what those took who read nothing
+constexpr std::size_t kBytesOfEach = std::size_t{128} << 10; // twice what connections that read nothing took
 
-// Of the server, for those who never finish (RobotLink, http::Connection).
+// The server's deadlines for clients that never finish (RobotLink, http::Connection).
 constexpr std::chrono::seconds kHelloDeadline{5};
 constexpr std::chrono::seconds kHeaderDeadline{10};
 constexpr std::chrono::seconds kBodyDeadline{30};
@@ -52,7 +52,7 @@ std::string upgrade_to_live(const std::string& session, std::uint16_t port) {
                        session, port);
 }
 
-/// Robots that send as fast as they are let, for a while. Nothing where there are to be none.
+/// Robots that send as fast as the server permits, for some time. Does nothing if their number is 0.
 class Greed {
 public:
     Greed(const ServerProcess& server, const Beside& beside, std::uint64_t seed, std::chrono::seconds duration,
@@ -60,7 +60,7 @@ public:
         if (beside.greedy > 0) load_.emplace(server, PacedLoad::Robots{beside.greedy, 1, 0}, seed, duration, place);
     }
 
-    /// The figure of that name is how many scans they sent.
+    /// Adds the number of scans they sent as the figure of that name.
     void finish(const char* figure, Outcome& outcome) {
         if (!load_) return;
         const auto report = load_->finish();
@@ -72,7 +72,7 @@ private:
     std::optional<PacedLoad> load_;
 };
 
-/// The loads of a round, each with numbers of its own.
+/// The loads of a round, each with its own seeds.
 std::uint64_t seed_of(const Run& run, unsigned load) { return run.seed * 4 + load; }
 
 std::optional<double> pace_alone(const ServerProcess& server, const Run& run, const Beside& beside,
@@ -82,8 +82,8 @@ std::optional<double> pace_alone(const ServerProcess& server, const Run& run, co
     return report.p99_ms;
 }
 
-/// How long acknowledgements take in peace; the greed goes to another server meanwhile, so that the machine has as much
-/// to do.
+/// Measures the acknowledgement latency without the crowd. The greedy robots stream to another server meanwhile, so
+/// that the load of the machine is equal.
 std::optional<double> pace_in_peace(const ServerProcess& server, const Run& run, const Beside& beside,
                                     const std::filesystem::path& place, Outcome& outcome) {
     const TemporaryDirectory other_place;
@@ -149,7 +149,7 @@ Beside beside_greed(const Run& run) {
                   .rounds = run.is_long ? kLongForm : Rounds{},
                   .is_tried_alone = run.is_long,
                   .greedy = static_cast<unsigned>(run.count)};
-    beside.bytes_besides += store::StoreOptions{}.memory_bytes; // so much fills its buffers and its cache
+    beside.bytes_besides += store::StoreOptions{}.memory_bytes; // size of its write buffers and cache
     return beside;
 }
 
@@ -167,12 +167,12 @@ Beside beside_flood(const Run& run) {
         const std::string header = "GET / HTTP/1.1\r\nHost: localhost\r\n";
         const std::string body = "POST /api/v1/sessions HTTP/1.1\r\nHost: localhost\r\nContent-Length: 9999\r\n\r\n";
         const std::vector<Manner> manners{
-            {robots, "", "", 0ms, true, kHelloDeadline},                           // says nothing
-            {robots, std::string("\0\0\1", 3), "\1", 500ms, true, kHelloDeadline}, // a hello that takes for ever
-            {robots, noise, noise, 50ms, true, kHelloDeadline},       // nonsense, of a length that is too large
-            {http, header, "X: y\r\n", 500ms, true, kHeaderDeadline}, // a header that takes for ever
-            {http, body, "{", 500ms, true, kBodyDeadline},            // likewise
-            {http, map, map, 100ms, false},                           // asks for more and more, and reads none of it
+            {robots, "", "", 0ms, true, kHelloDeadline},                           // sends nothing
+            {robots, std::string("\0\0\1", 3), "\1", 500ms, true, kHelloDeadline}, // a hello that never ends
+            {robots, noise, noise, 50ms, true, kHelloDeadline},       // invalid bytes with too large a length
+            {http, header, "X: y\r\n", 500ms, true, kHeaderDeadline}, // a header that never ends
+            {http, body, "{", 500ms, true, kBodyDeadline},            // a body that never ends
+            {http, map, map, 100ms, false}, // sends more and more requests and reads no answer
         };
         std::vector<Manner> crowd;
         for (unsigned n = 0; n < count; ++n) crowd.push_back(manners[n % manners.size()]);

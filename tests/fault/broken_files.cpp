@@ -55,7 +55,7 @@ public:
     }
 };
 
-/// Whose new files are of such a kind.
+/// An environment whose new files are of the given kind.
 template <class File>
 class FileSystemOf : public rocksdb::FileSystemWrapper {
 public:

@@ -20,7 +20,7 @@ using store::CheckpointPart;
 using store::ScanLog;
 using store::SessionId;
 
-/// Hands everything on.
+/// Forwards all calls.
 class PassingLog : public ScanLog {
 public:
     explicit PassingLog(std::unique_ptr<ScanLog> log) : log_(std::move(log)) {}
@@ -65,7 +65,7 @@ public:
         done({});
     }
     Result<> read(SessionId session, Revision after, const VisitEntry& visit) override {
-        write_all(); // it deceives those outside only
+        write_all(); // reads inside this process stay correct
         return PassingLog::read(session, after, visit);
     }
     Result<> write_checkpoint(SessionId session, std::vector<CheckpointPart> parts) override {
@@ -100,7 +100,7 @@ public:
     using PassingLog::PassingLog;
 
     void append(SessionId session, Revision first, std::vector<std::string> entries, Done done) override {
-        const std::lock_guard lock(mutex_); // also over what follows: appends keep their order
+        const std::lock_guard lock(mutex_); // held until the append, so that appends keep their order
         std::uint64_t& ahead = ahead_[session];
         if (!are_scans(entries) || ++appends_ % kForgetsEvery != 0) {
             return under().append(session, first + ahead, std::move(entries), std::move(done));
@@ -121,9 +121,9 @@ private:
         });
     }
 
-    std::mutex mutex_;                         // guards what follows
-    std::uint64_t appends_ = 0;                // of scans
-    std::map<SessionId, std::uint64_t> ahead_; // entries that the session does not know of
+    std::mutex mutex_;                         // guards the members below
+    std::uint64_t appends_ = 0;                // appended scans
+    std::map<SessionId, std::uint64_t> ahead_; // entries that the session has no record of
 };
 
 class BlindLog final : public PassingLog {
@@ -139,7 +139,7 @@ public:
             return visit(revision, wire::encode_entry(*entry));
         });
     }
-    Result<> read_checkpoint(SessionId, const VisitPart&) override { return {}; } // all comes from the log
+    Result<> read_checkpoint(SessionId, const VisitPart&) override { return {}; } // forces a full read of the log
 
 private:
     static constexpr Revision kSpoilsEvery = 50;
@@ -186,7 +186,8 @@ public:
         if ((taken_ += entries.size()) <= kTakenFresh) {
             return PassingLog::append(session, first, std::move(entries), std::move(done));
         }
-        // It is late, but not slow: what is handed over while it waits is stored together, and then no later than this.
+        // Adds latency without reducing throughput: appends made while one waits are stored together and complete no
+        // later than their own delay.
         const auto when = Clock::now() + kLateness;
         PassingLog::append(session, first, std::move(entries), [when, done = std::move(done)](Result<> appended) {
             boost::asio::io_context io;

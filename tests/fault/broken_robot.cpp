@@ -1,4 +1,4 @@
-// scanloom-robot that forgets what waits in its spool whenever it is started: what the row "spool" is tried on.
+// A scanloom-robot that discards the contents of its spool at each start. Used to test the row "spool".
 // Usage: broken_robot, and the options of scanloom-robot
 #include "robot_client/app/options.hpp"
 #include "robot_client/app/run.hpp"

@@ -1,6 +1,14 @@
-// scanloom-server with a log, a disk or sockets that break their promises: what the rows of faults are tried on.
-// Usage: broken_server hasty|forgetful|blind|misled|leaky|tiring|unsynced|trusting|hoarding|clinging, and the
-// options of scanloom-server
+// A scanloom-server with a log, a disk or sockets that break their guarantees. Used to test the rows of faults.
+// Usage: broken_server hasty
+// forgetful
+// blind
+// misled
+// leaky
+// tiring
+// unsynced
+// trusting
+// hoarding
+// clinging, and the options of scanloom-server
 #include "server/app/options.hpp"
 #include "server/app/server.hpp"
 #include "server/app/standard_error_sink.hpp"

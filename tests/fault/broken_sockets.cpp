@@ -19,11 +19,11 @@ constexpr std::size_t kDescriptorsMax = 65'536;
 
 std::atomic<bool> hoards = false;
 std::atomic<bool> clings = false;
-std::array<std::atomic<bool>, kDescriptorsMax> was_accepted{}; // by descriptor
+std::array<std::atomic<bool>, kDescriptorsMax> was_accepted{}; // indexed by descriptor
 std::mutex hoard_mutex;
 std::vector<std::string> hoard; // guarded by hoard_mutex
 
-/// The system's own function of that name.
+/// Returns the system's function of that name.
 template <class Function>
 Function* own(const char* name) {
     return reinterpret_cast<Function*>(dlsym(RTLD_NEXT, name));
@@ -40,7 +40,7 @@ void note_accepted(int file) {
     }
     if (!hoards) return;
     const std::lock_guard lock(hoard_mutex);
-    hoard.emplace_back(kHoarded, 'x'); // written, so that it is taken indeed
+    hoard.emplace_back(kHoarded, 'x'); // written, so that the memory is resident
 }
 
 } // namespace

@@ -19,13 +19,13 @@
 #include <chrono>
 #include <string>
 
-/// The rows of faults on what is broken: a row that passes here shows nothing.
+/// Runs the rows of faults on broken programs. A row that passes here detects nothing.
 namespace scanloom::fault {
 namespace {
 
 Command broken_server(const std::string& kind) { return {SCANLOOM_BROKEN_SERVER, {kind}}; }
 
-/// For this reason, among others; empty: for any.
+/// Expects a failure whose messages include `because`; empty: any failure.
 void expect_found(const Outcome& outcome, const std::string& because = "") {
     if (outcome.skipped) GTEST_SKIP() << *outcome.skipped;
     EXPECT_FALSE(outcome.passed());
@@ -67,13 +67,13 @@ TEST(StallRow, FindsAServerThatAcknowledgesTooEarly) {
     EXPECT_TRUE(outcome.repeat);
 }
 
-/// As no kill shows it: what the system was given, it has.
+/// A kill does not reveal this fault, as data passed to the operating system survives it.
 TEST(KillRow, SaysNothingOfADiskThatDoesNotSync) {
     EXPECT_TRUE(run_kill_row({.seed = 1, .count = 5, .server = broken_server("unsynced")}).passed());
 }
 
 TEST(RestartRow, FindsAServerThatAcknowledgesWhatIsNotDurable) {
-    // In the row's own three, a kill may happen to find all that was acknowledged written.
+    // In the row's own three restarts, a kill may happen when all acknowledged data is already written.
     expect_found(run_restart_row({.seed = 1, .count = 12, .server = broken_server("hasty")}));
 }
 
@@ -81,7 +81,7 @@ TEST(DiskRow, FindsAServerThatAppliesTwice) {
     expect_found(run_disk_row({.seed = 1, .count = 5, .server = broken_server("forgetful")}));
 }
 
-/// It loses nothing here, as no power fails; but it never opens its store again.
+/// No data is lost, as no power fails; but the server never reopens its store.
 TEST(SyncRow, FindsAServerThatTrustsASyncThatFailed) {
     expect_found(run_sync_row({.seed = 1, .count = 200, .server = broken_server("trusting")}), "no sync that failed");
 }
@@ -120,13 +120,13 @@ TEST(GreedRow, FindsAServerWhoseMemoryGrowsWithWhatItIsSent) {
     expect_found(run_greed_row({.seed = 1, .count = 2, .server = broken_server("leaky")}), "MiB more for a crowd");
 }
 
-/// Robots have to keep up in the long form. This is one of its rounds, and a short one, on a server that is late with
-/// all that it is told after the peace.
+/// Robots must keep up in the long form. This runs one short round of it, on a server whose acknowledgements become
+/// late after the run without the crowd.
 Outcome keep_up_with_a_tiring_server(Beside (*row)(const Run&), std::uint64_t count) {
     const Run run{.seed = 1, .count = count, .server = broken_server("tiring")};
     Beside beside = row(run);
     beside.rounds = {.count = 1, .duration = std::chrono::seconds(3), .must_keep_up = true};
-    beside.deadline = {}; // another test's
+    beside.deadline = {}; // covered by another test
     return compare_with_peace(run, beside);
 }
 
@@ -148,7 +148,7 @@ TEST(LinkRow, FindsAServerThatAppliesTwice) {
     EXPECT_TRUE(outcome.repeat);
 }
 
-/// As flipped bits were, if frames had no checksums.
+/// Has the effect of flipped bits if frames had no checksums.
 TEST(LinkRow, FindsDamageThatTheServerCannotSee) {
     const Outcome outcome = run_link_row({.seed = 1, .count = 100}, {memory_log, true});
     EXPECT_FALSE(outcome.passed());

@@ -11,7 +11,7 @@
 namespace scanloom::fault {
 namespace {
 
-constexpr std::uint64_t kFailuresMax = 10; // who has seen these need not see the others
+constexpr std::uint64_t kFailuresMax = 10; // more failures give no further information
 
 Outcome run_one(const Cases& cases, std::uint64_t seed, std::uint64_t count) {
     Outcome outcome;
@@ -27,7 +27,7 @@ Outcome run_one(const Cases& cases, std::uint64_t seed, std::uint64_t count) {
     return outcome;
 }
 
-/// What the threads share.
+/// The state that the threads share.
 class Progress {
 public:
     Progress(const Run& run, const Cases& cases) : run_(run), cases_(cases) {}
@@ -58,7 +58,7 @@ private:
 
     const Run& run_;
     const Cases& cases_;
-    std::mutex mutex_; // guards what follows
+    std::mutex mutex_; // guards the members below
     std::uint64_t next_ = 0;
     std::uint64_t done_ = 0;
     std::uint64_t failures_ = 0;
@@ -72,7 +72,7 @@ Outcome run_cases(const Run& run, const Cases& cases) {
     std::vector<std::jthread> threads;
     for (std::size_t n = 1; n < cases.at_once; ++n) threads.emplace_back([&] { progress.work(); });
     progress.work();
-    threads.clear(); // joins
+    threads.clear(); // joins the threads
     return std::move(progress).outcome();
 }
 

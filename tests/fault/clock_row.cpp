@@ -29,7 +29,7 @@ constexpr std::uint64_t kScansPerJump = 400;
 constexpr std::uint64_t kJumpsPerStore = 10;
 constexpr std::uint64_t kMicrosUntilJump = 20'000;
 
-/// Debian's, for programs with several threads.
+/// Debian's library for programs with several threads.
 std::optional<fs::path> faketime_library() {
     for (const auto& folder : fs::directory_iterator("/usr/lib")) {
         const auto library = folder.path() / "faketime" / "libfaketimeMT.so.1";
@@ -39,7 +39,7 @@ std::optional<fs::path> faketime_library() {
     return std::nullopt;
 }
 
-/// A wall clock that a program is started with, which jumps when it is told to; no other clock of its does.
+/// The wall clock of a program under test, which jumps on request. The program's other clocks stay correct.
 class JumpingClock {
 public:
     JumpingClock(const fs::path& library, fs::path file) : file_(std::move(file)) {
@@ -48,14 +48,14 @@ public:
         jump_to("+0d");
     }
 
-    /// By so many days of the true time.
+    /// Sets the offset from the true time in days.
     void jump_to(const std::string& days) const {
         const fs::path beside = file_.string() + ".new";
         std::ofstream(beside) << days << '\n';
-        fs::rename(beside, file_); // nobody reads half of it
+        fs::rename(beside, file_); // so that a partly written file is never read
     }
 
-    /// `env` and what it needs, in front of a program.
+    /// Returns `env` and its arguments, to precede a program.
     [[nodiscard]] const std::vector<std::string>& words() const noexcept { return words_; }
 
 private:
@@ -63,7 +63,7 @@ private:
     std::vector<std::string> words_;
 };
 
-/// A robot's program, for the scans of a simulated way up to this number.
+/// A robot program that sends the scans of a simulated drive up to this number.
 std::vector<std::string> robot_words(std::uint16_t port, std::uint64_t seed, std::uint64_t scans) {
     return {test::program("scanloom-robot").string(),
             "--server",
@@ -87,14 +87,14 @@ std::vector<std::string> robot_words(std::uint16_t port, std::uint64_t seed, std
             std::to_string(scans)};
 }
 
-/// Starts a robot with some variables in front.
+/// Starts a robot with environment variables.
 test::ChildProcess start_robot(std::vector<std::string> variables, const std::vector<std::string>& robot,
                                const fs::path& log) {
     variables.insert(variables.end(), robot.begin(), robot.end());
     return {"/usr/bin/env", variables, log};
 }
 
-/// Waits for a robot that should have sent scans up to this number.
+/// Waits until a robot that should send scans up to this number has ended.
 void finish(test::ChildProcess& robot, std::uint64_t scans, Outcome& outcome) {
     const auto summary = robot.read_line();
     const int code = robot.wait();
@@ -105,7 +105,7 @@ void finish(test::ChildProcess& robot, std::uint64_t scans, Outcome& outcome) {
         fmt::format("the robot ended with {} and {} of {} scans acknowledged", code, acknowledged, scans));
 }
 
-/// Of all layers. The revision is left out: visitors are in the log, too.
+/// Returns a digest of all layers. Excludes the revision, as the log also contains visitors.
 std::string digest(const ServerProcess& server) {
     const auto answer = test::http_request(server.http_port(), "GET", "/api/v1/sessions/s/digest");
     return boost::json::serialize(boost::json::parse(answer.body).at("layers"));
@@ -122,7 +122,7 @@ std::string digest_without_jumps(std::uint64_t seed, std::uint64_t scans) {
     return digest(server);
 }
 
-/// One who has connected, and says nothing while the clock jumps, is not too late.
+/// A client that has connected and sends nothing while the clock jumps must not exceed its deadline.
 void say_hello_after(const JumpingClock& clock, const std::string& days, const ServerProcess& server,
                      Outcome& outcome) {
     testing_support::RobotSocket visitor(server.robot_port());
@@ -157,7 +157,7 @@ Outcome jump_clock(const Run& run, const fs::path& library, std::uint64_t seed, 
         server.let_be(std::chrono::microseconds(random() % kMicrosUntilJump));
         clock.jump_to(one_of_the_years());
         server.let_be(std::chrono::microseconds(random() % kMicrosUntilJump));
-        robot_clock.jump_to(one_of_the_years()); // which it is started with the next time
+        robot_clock.jump_to(one_of_the_years()); // takes effect at the robot's next start
         finish(robot, scans, outcome);
         say_hello_after(clock, "+0d", server, outcome);
         sent = scans;

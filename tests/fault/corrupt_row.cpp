@@ -33,7 +33,7 @@ Served compare(const Held& held, const Held& original) {
     return is_beginning && right && *right == held.digests ? Served::kShortened : Served::kWrong;
 }
 
-/// What the server makes of a session now. Whatever ends an answer early is a refusal, too.
+/// Returns how the server serves a session now. An answer that ends early counts as a refusal.
 Served look_at(const ServerProcess& server, const std::string& session, const Held& original) {
     if (test::http_request(server.http_port(), "GET", "/api/v1/sessions/" + session).status == 404)
         return Served::kShortened;
@@ -44,7 +44,8 @@ Served look_at(const ServerProcess& server, const std::string& session, const He
     }
 }
 
-/// Of the store; what else a server warns of (a viewer that is not built) is no complaint.
+/// Returns whether the server reported damage of the store. Other warnings (for example of a viewer that is not built)
+/// do not count.
 bool has_complained(const fs::path& log) {
     std::istringstream lines(store::bytes_of(log));
     for (std::string line; std::getline(lines, line);) {
@@ -55,9 +56,9 @@ bool has_complained(const fs::path& log) {
     return false;
 }
 
-/// Whether the damage is like that of a crash: the end of what was written last is missing, or a sector of it was never
-/// written, or the session itself is missing, when its making was a part of that. A sector of zeros before the last
-/// write is none: the server refuses to start.
+/// Returns whether the damage is like that of a crash: the end of the last write is missing, or one of its sectors was
+/// never written, or the session itself is missing because its creation was part of that write. A zeroed sector before
+/// the last write is not: the server refuses to start.
 bool is_like_a_crash(const std::string& damage) {
     return damage.find(".log ends after") != std::string::npos || damage.find(".log is zero from") != std::string::npos;
 }

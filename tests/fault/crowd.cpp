@@ -21,9 +21,9 @@ using namespace asio::experimental::awaitable_operators;
 namespace {
 
 constexpr std::chrono::milliseconds kComesAgainAfter{20};
-constexpr int kReceiveBytes = 4096; // so that who does not read is soon full
+constexpr int kReceiveBytes = 4096; // so that the receive buffer of a client that does not read is soon full
 
-/// Until the server hangs up.
+/// Reads until the server closes the connection.
 asio::awaitable<void> listen(tcp::socket& socket, bool reads) {
     if (!reads) co_await socket.async_wait(tcp::socket::wait_error, kAwaitTuple);
     std::array<char, 4096> heard{};
@@ -93,7 +93,7 @@ asio::awaitable<void> Crowd::belong(std::size_t member) {
     }
 }
 
-/// Until nobody takes it any more.
+/// Sends until the server no longer accepts data.
 asio::awaitable<void> Crowd::speak(tcp::socket& socket, const Manner& manner) {
     asio::steady_timer pause(socket.get_executor());
     const auto [unsaid, bytes] = co_await asio::async_write(socket, asio::buffer(manner.opening), kAwaitTuple);

@@ -23,14 +23,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint64_t kReserveMib = 32; // that the server keeps free
+constexpr std::uint64_t kReserveMib = 32; // space that the server keeps free
 constexpr std::uint64_t kFillingsPerDisk = 5;
-constexpr std::uint64_t kScansPerFilling = 100; // of each robot
+constexpr std::uint64_t kScansPerFilling = 100; // per robot
 constexpr std::uint64_t kFilledMib = 8;         // by scans
 constexpr unsigned kDiskRobots = 4;
-constexpr std::uint64_t kEndless = std::uint64_t{1} << 40; // scans: more than any disk holds
+constexpr std::uint64_t kEndless = std::uint64_t{1} << 40; // scans: more than any disk can hold
 
-/// Somebody else's file, that takes the disk's room for as long as this lives.
+/// A foreign file that uses disk space while this object exists.
 class Ballast {
 public:
     explicit Ballast(fs::path path) : path_(std::move(path)), file_(::open(path_.c_str(), O_WRONLY | O_CREAT, 0600)) {}
@@ -41,12 +41,12 @@ public:
     Ballast(const Ballast&) = delete;
     Ballast& operator=(const Ballast&) = delete;
 
-    /// Leaves so many bytes free, if there are more.
+    /// Leaves `left` bytes free, if more are free.
     void grow(std::uint64_t left) {
         const auto free = fs::space(path_.parent_path()).available;
         if (free <= left) return;
         const int failed = ::posix_fallocate(file_, static_cast<off_t>(bytes_), static_cast<off_t>(free - left));
-        if (failed == 0) bytes_ += free - left; // else the server was quicker
+        if (failed == 0) bytes_ += free - left; // otherwise the server took the space first
     }
 
 private:
@@ -55,13 +55,13 @@ private:
     std::uint64_t bytes_ = 0;
 };
 
-/// Which of the sentences it is depends on how little is left: enough for a reserve to be missed, or not for a write.
+/// Which of the messages appears depends on the free space: less than the reserve, or too little for a write.
 bool tells_of_a_full_disk(const std::string& answer) {
     return answer.find("MiB left") != answer.npos || answer.find("MiB are free") != answer.npos ||
            answer.find("No space left on device") != answer.npos;
 }
 
-/// The store frees some of its own, now and then: so the ballast grows until the server notices.
+/// The store frees some of its own space at times. So the ballast grows until the server reports a full disk.
 void fill_up(const ServerProcess& server, Ballast& ballast, std::uint64_t left, Outcome& outcome) {
     const auto found = wait_for_readiness(server, 503, [&] { ballast.grow(left); });
     if (found.status != 503) {
@@ -71,7 +71,7 @@ void fill_up(const ServerProcess& server, Ballast& ballast, std::uint64_t left, 
     }
 }
 
-/// Scans that never end fill what is left of the disk; then their session is deleted.
+/// Fills the rest of the disk with an endless stream of scans, then deletes their session.
 void fill_through_the_server(const ServerProcess& server, const fs::path& store, std::uint64_t seed, Outcome& outcome) {
     Ballast ballast(store / "ballast");
     ballast.grow((kReserveMib + kFilledMib) << 20);
@@ -102,14 +102,14 @@ Result<Outcome> fill_one_disk(const Run& run, std::uint64_t seed, std::uint64_t 
     Fleet fleet(half_sharing(kDiskRobots, seed, fillings * kScansPerFilling), server.robot_port());
     server.start_and_wait();
     fleet.release(1);
-    (void)fleet.wait_for_acknowledged(kDiskRobots); // on a full disk no session can be made
+    (void)fleet.wait_for_acknowledged(kDiskRobots); // sessions cannot be created on a full disk
     Outcome outcome;
     for (std::uint64_t filling = 1; filling <= fillings && !fleet.has_given_up(); ++filling) {
         fleet.release(filling * kScansPerFilling - kScansPerFilling / 2);
         (void)fleet.wait_for_acknowledged(fleet.acknowledged() + 1 + random() % (kDiskRobots * kScansPerFilling / 2));
         {
             Ballast ballast(store / "ballast");
-            const auto left = random() % (kReserveMib << 17); // the superuser has some more
+            const auto left = random() % (kReserveMib << 17); // the superuser has some more space
             ballast.grow(left);
             fleet.release(filling * kScansPerFilling);
             fill_up(server, ballast, left, outcome);

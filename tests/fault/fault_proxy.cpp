@@ -26,7 +26,7 @@ asio::awaitable<void> pause_for(tcp::socket& socket, std::chrono::microseconds t
     co_await timer.async_wait(kAwaitTuple);
 }
 
-/// Hands one direction on until it ends. @return how
+/// Forwards one direction until it ends. @return how it ended
 asio::awaitable<Ending> forward(tcp::socket& from, tcp::socket& to, SpoiledStream& stream) {
     std::array<char, 4096> bytes{};
     for (;;) {
@@ -73,7 +73,7 @@ asio::awaitable<void> FaultProxy::serve(tcp::socket near, LinkFate fate) {
     tcp::socket far(io_);
     const auto [refused] = co_await far.async_connect(to_, kAwaitTuple);
     if (refused) co_return;
-    boost::system::error_code ignored; // small pieces are meant to stay small
+    boost::system::error_code ignored; // small pieces must stay separate
     near.set_option(tcp::no_delay(true), ignored);
     far.set_option(tcp::no_delay(true), ignored);
     const auto ended = co_await (forward(near, far, fate.there) || forward(far, near, fate.back));

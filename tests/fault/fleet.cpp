@@ -24,10 +24,10 @@ namespace asio = boost::asio;
 
 namespace {
 
-/// Coarse, so that a scan costs little: what is tried here is not how well maps are drawn.
+/// Coarse, so that a scan costs little: map quality is not tested here.
 constexpr double kCellSize = 0.2;
 
-/// Hands over a robot's scans as far as they are released.
+/// A source that returns a robot's scans up to the released number.
 class ReleasedFeed final : public robot::Feed {
 public:
     ReleasedFeed(const RobotPlan& plan, std::function<void(std::uint64_t)> on_acknowledged)
@@ -72,7 +72,7 @@ robot::UplinkOptions options_of(const RobotPlan& plan, std::uint16_t port, const
     options.conversation.welcome_timeout = patience.welcome;
     options.conversation.ping_after = patience.ping_after;
     options.conversation.silence_max = patience.silence_max;
-    options.conversation.batch_bytes_max = 2048; // some ten scans: many frames, many acknowledgements
+    options.conversation.batch_bytes_max = 2048; // about ten scans: many frames, many acknowledgements
     options.conversation.hello.session = plan.session;
     options.conversation.hello.robot = plan.name;
     options.conversation.hello.source = "robot of seed " + std::to_string(plan.seed);
@@ -136,7 +136,7 @@ private:
     struct Member {
         explicit Member(RobotPlan plan) { standing.plan = std::move(plan); }
 
-        RobotStanding standing; // guarded by mutex_, but for the plan, which never changes
+        RobotStanding standing; // guarded by mutex_, except the plan, which never changes
         std::unique_ptr<ReleasedFeed> feed;
         std::unique_ptr<robot::Uplink> uplink;
     };
@@ -163,7 +163,7 @@ private:
         const std::lock_guard lock(mutex_);
         const bool is_first = !given_up_;
         given_up_ = given_up_ || !outcome;
-        if (outcome || is_first) member.standing.outcome = std::move(outcome); // the others were stopped for its sake
+        if (outcome || is_first) member.standing.outcome = std::move(outcome); // then the others are stopped
         member.standing.reconnects = member.uplink->status().reconnects;
         ++ended_;
         changed_.notify_all();
@@ -178,10 +178,10 @@ private:
     asio::io_context io_{1};
     asio::executor_work_guard<asio::io_context::executor_type> work_{io_.get_executor()};
     std::vector<std::unique_ptr<Member>> members_;
-    mutable std::mutex mutex_; // guards what follows
+    mutable std::mutex mutex_; // guards the members below
     std::condition_variable changed_;
     std::uint64_t acknowledged_ = 0;
-    std::uint64_t to_acknowledge_ = 0; // of all that is released
+    std::uint64_t to_acknowledge_ = 0; // of all released scans
     std::size_t ended_ = 0;
     bool given_up_ = false;
     std::thread thread_;

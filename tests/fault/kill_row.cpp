@@ -19,12 +19,12 @@ namespace {
 
 using std::chrono::microseconds;
 
-constexpr std::uint64_t kKillsPerStore = 50; // then another store, so that recovery stays short
-constexpr std::uint64_t kScansPerKill = 300; // of each robot: a session of three has a checkpoint every few kills
+constexpr std::uint64_t kKillsPerStore = 50; // then a new store, so that recovery stays short
+constexpr std::uint64_t kScansPerKill = 300; // per robot: a session of three robots has a checkpoint every few kills
 constexpr unsigned kKillRobots = 6;
 constexpr std::uint64_t kMicrosUntilKill = 20'000;
 
-/// One store, and the kills that its servers suffer.
+/// One store, and the kills of its servers.
 class Killing {
 public:
     Killing(const Run& run, std::uint64_t seed, std::uint64_t kills)
@@ -86,14 +86,14 @@ private:
         ++outcome_.figures["while_stopping"];
     }
 
-    /// What was kept by a server that stopped in good order is what it had.
+    /// A server that stopped in order must hold the same data after a restart.
     void stop_in_order(const std::vector<RobotStanding>& robots) {
         if (const int code = server_.stop(); code != 0) {
             outcome_.amiss.push_back(fmt::format("the server ends with {} when it is asked to stop", code));
         }
         server_.start_and_wait();
         auto again = verify_server(server_.http_port(), robots);
-        again.acknowledged = 0; // these have been counted
+        again.acknowledged = 0; // already counted
         outcome_.add(std::move(again));
     }
 

@@ -11,7 +11,7 @@
 namespace scanloom::test {
 namespace {
 
-/// Where the robot's scans come from: a real log where it is there, the simulator otherwise.
+/// The source of the robot's scans: a real log if there is one, otherwise the simulator.
 struct Stream {
     std::vector<std::string> source;
     std::uint64_t scans;
@@ -34,7 +34,7 @@ std::vector<std::string> robot_arguments(const RunningServer& server, const Stre
     return arguments;
 }
 
-/// The robot's summary line, after it has ended well.
+/// Returns the robot's summary line after a successful end.
 boost::json::value finish(ChildProcess& robot) {
     const auto line = robot.read_line();
     EXPECT_EQ(robot.wait(), 0);
@@ -55,7 +55,8 @@ std::string undisturbed_digest(const Stream& stream) {
     return server.get("/api/v1/sessions/s/digest").body;
 }
 
-/// Asks until the session's map holds more than `scans` scans; false when it never will.
+/// Polls until the map of the session holds more than `scans` scans. @return false if the server answers with an
+/// unexpected status
 bool wait_for_scans(const RunningServer& server, std::uint64_t scans) {
     for (;;) {
         const auto answer = server.get("/api/v1/sessions/s");

@@ -27,7 +27,7 @@ using testing_support::bytes_of;
 namespace {
 
 constexpr int kPointsPerTurn = 450; // of Ld06Spinner
-constexpr int kFirstPoint = 375;    // of that turn which is not seen from its beginning
+constexpr int kFirstPoint = 375;    // in the turn that is not observed from its start
 constexpr int kRangeOfTurn0 = 1000; // mm, straight ahead
 
 std::vector<Scan> scans_in(const std::filesystem::path& directory) {
@@ -97,7 +97,7 @@ std::uint64_t scans_of(std::uint16_t http_port) {
 
 std::vector<int> turns_of(std::uint16_t http_port) {
     std::vector<int> turns;
-    if (scans_of(http_port) == 0) return turns; // there may be no session yet
+    if (scans_of(http_port) == 0) return turns; // the session may not exist yet
     for (const auto& entry : ask_for(http_port, "s").log) {
         if (const auto* taken = std::get_if<ScanTaken>(&entry)) turns.push_back(turn_of(taken->scan));
     }

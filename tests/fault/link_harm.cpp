@@ -13,12 +13,13 @@ namespace {
 
 using std::chrono::microseconds;
 
-constexpr std::uint64_t kSplitBytes = 3'000; // after so many the others travel together: it is slow, and shows no more
+constexpr std::uint64_t kSplitBytes =
+    3'000; // after this number the others are sent together, as single bytes are slow and reveal nothing more
 constexpr std::uint64_t kDelayMax = 2'000;   // microseconds
-constexpr std::uint64_t kStallMax = 400'000; // microseconds: longer than some wait
+constexpr std::uint64_t kStallMax = 400'000; // microseconds: longer than some timeouts
 constexpr std::uint64_t kFramesReached = 12;
 
-/// Small numbers as often as large ones: the beginning of a link is where most happens.
+/// Returns small numbers as often as large ones, as most events happen at the start of a connection.
 std::uint64_t some_byte(std::mt19937_64& random) { return random() % (std::uint64_t{1} << (3 + random() % 11)); }
 
 bool harms_frames(Harm harm) { return harm == Harm::kFlip || harm == Harm::kDuplicate || harm == Harm::kReorder; }

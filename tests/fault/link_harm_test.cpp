@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::uint64_t kSeeds = 100;
 
-/// Frames 1, 2, ... of a stream that is longer than any harm needs.
+/// Returns frames 1, 2, ... of a stream long enough for every fault.
 std::vector<std::string> frames() {
     std::vector<std::string> made(40);
     for (std::size_t n = 0; n < made.size(); ++n) wire::encode(wire::Ping{n + 1}, made[n]);
@@ -23,7 +23,7 @@ std::string joined(const std::vector<std::string>& frames) {
     return std::accumulate(frames.begin(), frames.end(), std::string());
 }
 
-/// Handed over in pieces of 7 bytes, as a socket may.
+/// Passes the stream in pieces of 7 bytes, as a socket may.
 std::vector<Piece> spoiled(SpoiledStream& stream, std::string_view bytes) {
     std::vector<Piece> pieces;
     for (; !bytes.empty(); bytes.remove_prefix(std::min<std::size_t>(7, bytes.size()))) {

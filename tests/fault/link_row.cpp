@@ -24,7 +24,7 @@ constexpr std::uint64_t kScans = 120;
 constexpr std::uint64_t kSpoiledLinksMax = 4;
 constexpr std::size_t kAtOnce = 8; // most of them wait
 
-/// Stalls are longer than these, at times.
+/// Some stalls are longer than these timeouts.
 constexpr Patience kLinkPatience{.welcome = std::chrono::milliseconds(250),
                                  .ping_after = std::chrono::milliseconds(50),
                                  .silence_max = std::chrono::milliseconds(250),
@@ -32,7 +32,7 @@ constexpr Patience kLinkPatience{.welcome = std::chrono::milliseconds(250),
                                  .backoff_first = std::chrono::milliseconds(1),
                                  .backoff_longest = std::chrono::milliseconds(20)};
 
-/// What happens to a robot's links: all from the seed.
+/// The faults of a robot's connections, chosen by the seed.
 class Fates {
 public:
     Fates(std::uint64_t seed, bool forges)
@@ -44,7 +44,7 @@ public:
         return {SpoiledStream(there, random_(), forges_), SpoiledStream(back, random_(), forges_)};
     }
 
-    /// By name, how often. Thread: not while links are opened.
+    /// Returns how often each fault was chosen, by name. Thread: not while connections are opened.
     [[nodiscard]] const std::map<std::string, std::uint64_t>& harms() const { return harms_; }
 
 private:
@@ -60,14 +60,14 @@ private:
     std::map<std::string, std::uint64_t> harms_;
 };
 
-/// The server's part in this process, for many robots at once.
+/// The server part in this process, for many robots at once.
 class Server {
 public:
     explicit Server(std::unique_ptr<store::ScanLog> log) : log_(std::move(log)), ingest_(*log_) {}
 
     [[nodiscard]] std::uint16_t port() const { return ingest_.port(); }
 
-    /// Ends a session, and says what there was of it. Nothing where it was never made.
+    /// Closes a session and returns its data; nullopt if it was never created.
     std::optional<Held> close(const std::string& name) {
         const auto session = ingest_.sessions().find(name);
         if (!session) return std::nullopt;
@@ -84,7 +84,7 @@ private:
     ingest::RunningIngest ingest_;
 };
 
-/// One robot, from its first link to its last.
+/// Runs one robot from its first connection to its last.
 RobotStanding stream(const RobotPlan& plan, std::uint16_t port, Fates& fates) {
     FaultProxy proxy(port, [&](std::uint64_t connection) { return fates.fate_of(connection); });
     Fleet fleet({plan}, proxy.port(), kLinkPatience);
@@ -92,7 +92,7 @@ RobotStanding stream(const RobotPlan& plan, std::uint16_t port, Fates& fates) {
     return fleet.finish().front();
 }
 
-/// The links were whole in the end, so waiting in vain is no excuse.
+/// The last connections were not spoiled, so a timeout is not an acceptable end.
 std::optional<std::string> complaint(const RobotStanding& robot) {
     if (robot.outcome) {
         if (robot.acknowledged == robot.plan.scans) return std::nullopt;
@@ -130,7 +130,7 @@ Outcome run_link_row(const Run& run) {
 }
 
 Outcome run_link_row(const Run& run, const LinkTrial& trial) {
-    spdlog::set_level(spdlog::level::off); // what becomes of spoiled links is told below
+    spdlog::set_level(spdlog::level::off); // errors of spoiled connections are expected
     Server server(trial.make_log());
     return run_cases(run, {.row = "link", .at_once = kAtOnce, .run = [&](std::uint64_t seed, std::uint64_t) {
                                return spoil_links(server, seed, trial.forges);

@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Of the kernel's fs/ext4/ext4.h: FS_IOC_SHUTDOWN, and its way that does not even write the journal out.
+// From the kernel's fs/ext4/ext4.h: FS_IOC_SHUTDOWN, and its mode that does not even write the journal.
 constexpr unsigned long kShutdown = 0x8004587d;
 constexpr std::uint32_t kWithoutLogFlush = 2;
 
@@ -28,7 +28,7 @@ Error cannot(std::string_view what) {
     return {Errc::kUnreachable, fmt::format("a loop device cannot be had: {}", what)};
 }
 
-/// The first line that a program of the system prints.
+/// Returns the first line that a system program prints.
 Result<std::string> output_of(const std::string& program, const std::vector<std::string>& words, const fs::path& log) {
     test::ChildProcess process(program, words, log);
     const auto line = process.read_line();
@@ -55,7 +55,7 @@ Result<std::unique_ptr<LoopDisk>> LoopDisk::make(const fs::path& image, const fs
     std::unique_ptr<LoopDisk> disk(new LoopDisk(*device, mount_point));
     fs::create_directories(mount_point);
     if (auto mounted = disk->mount(); !mounted) return mounted.error();
-    fs::remove(mount_point / "lost+found"); // a store wants a directory of its own
+    fs::remove(mount_point / "lost+found"); // a store needs an empty directory
     return disk;
 }
 

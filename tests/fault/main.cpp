@@ -1,4 +1,4 @@
-// Does one kind of harm, many times, and says in one line of JSON what it came to.
+// Runs one row of faults many times and prints the result as one line of JSON.
 #include "tests/fault/row.hpp"
 
 #include <CLI/CLI.hpp>
@@ -18,9 +18,9 @@ namespace {
 using namespace scanloom::fault;
 
 struct Options {
-    std::string row; ///< empty: list them
+    std::string row; ///< empty: list the rows
     std::uint64_t seed = 1;
-    std::uint64_t count = 0; ///< 0: the row's own
+    std::uint64_t count = 0; ///< 0: the row's default
     bool is_long = false;
 };
 
@@ -33,7 +33,7 @@ void list_rows() {
     }
 }
 
-/// Now and then a line for whoever waits.
+/// Prints a progress line from time to time.
 std::function<void(std::uint64_t)> teller(const Row& row, std::uint64_t count) {
     return [&row, count, told = std::uint64_t{0}](std::uint64_t done) mutable {
         constexpr std::uint64_t kLines = 20;
@@ -69,7 +69,7 @@ int run(const Options& options) {
 } // namespace
 
 int main(int argc, char** argv) {
-    std::signal(SIGPIPE, SIG_IGN); // links are cut here all the time
+    std::signal(SIGPIPE, SIG_IGN); // connections are cut all the time
     Options options;
     CLI::App app{"Does one kind of harm to a server or its links, many times, and checks that nothing is lost.\n"
                  "Without a row it lists them.",

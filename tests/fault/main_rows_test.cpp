@@ -1,6 +1,6 @@
 #include "tests/fault/row_short_form.hpp"
 
-/// The rows of every `./scanloom test`: kills, spoiled links and restarts.
+/// The rows that every `./scanloom test` runs: kills, spoiled connections and restarts.
 namespace scanloom::fault {
 namespace {
 

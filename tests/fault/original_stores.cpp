@@ -36,7 +36,7 @@ OriginalStores::OriginalStores() {
         keep("a log alone");
     }
     {
-        const auto log = store::open_rocksdb(directory).value(); // what was in the log goes to a table
+        const auto log = store::open_rocksdb(directory).value(); // moves the log's data to a table
         append_scans(*log, kScans / 3);
         write_checkpoints(*log);
         keep("a table and a log with checkpoints");
@@ -63,7 +63,7 @@ void OriginalStores::append_scans(store::ScanLog& log, std::uint64_t count) {
         for (store::SessionId id = 1; id <= kSessions; ++id) {
             Held& held = sessions_[name_of_session(id)];
             std::vector<LogEntry> entries;
-            const std::uint64_t first = held.log.size() - 1; // two entries are no scans
+            const std::uint64_t first = held.log.size() - 1; // two entries are not scans
             for (std::uint64_t seq = first; seq < first + kScansPerAppend; ++seq) {
                 entries.emplace_back(ScanTaken{0, testing_support::random_scan(static_cast<unsigned>(id), seq)});
             }
@@ -72,7 +72,7 @@ void OriginalStores::append_scans(store::ScanLog& log, std::uint64_t count) {
     }
 }
 
-/// As a server does that stops.
+/// Does the same as a server that stops.
 void OriginalStores::write_checkpoints(store::ScanLog& log) const {
     boost::asio::thread_pool compute(1);
     session::SessionRegistry sessions(log, {compute.get_executor(), [] { return double{kCreated}; }});

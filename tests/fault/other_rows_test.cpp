@@ -1,6 +1,6 @@
 #include "tests/fault/row_short_form.hpp"
 
-/// The rows of `./scanloom test --all`.
+/// The rows that `./scanloom test --all` runs.
 namespace scanloom::fault {
 namespace {
 

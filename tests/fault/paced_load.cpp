@@ -20,7 +20,8 @@ PacedLoad::PacedLoad(const ServerProcess& server, const Robots& robots, std::uin
 void PacedLoad::wait_until_it_streams() const {
     const auto last = "/api/v1/sessions/" + session(robots_.sessions - 1);
     while (test::http_request(server_.http_port(), "GET", last).status != 200) {
-        if (program_.has_output_within(std::chrono::milliseconds(5))) return; // it has ended: finish() tells why
+        if (program_.has_output_within(std::chrono::milliseconds(5)))
+            return; // it has ended: finish() reports the cause
     }
 }
 
@@ -38,7 +39,7 @@ PacedLoad::Report PacedLoad::read_report(std::string_view text, int code) {
         report.outcome.amiss.push_back(fmt::format("scanloom-load ended with {} and no report", code));
         return report;
     }
-    const auto* from_intended = json.as_object().if_contains("ack_from_intended"); // where they keep a pace
+    const auto* from_intended = json.as_object().if_contains("ack_from_intended"); // present if robots keep a pace
     if (from_intended != nullptr && from_intended->at("count").to_number<std::uint64_t>() > 0)
         report.p99_ms = from_intended->at("p99_ms").to_number<double>();
     report.outcome.acknowledged = json.at("scans").at("acknowledged").to_number<std::uint64_t>();

@@ -8,7 +8,7 @@
 namespace scanloom::fault {
 namespace {
 
-/// Nothing where one is missing: the others' median would be that of another run.
+/// Returns nullopt if a value is missing, as the median of the others would be that of a different run.
 std::optional<double> median(Paces::Figures figures) {
     if (figures.empty() || !std::ranges::all_of(figures, [](const auto& figure) { return figure.has_value(); })) {
         return std::nullopt;

@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-/// What the rows viewers, flood and greed make of how soon robots were acknowledged.
+/// How the rows viewers, flood and greed evaluate the acknowledgement latency of robots.
 namespace scanloom::fault {
 namespace {
 

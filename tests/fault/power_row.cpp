@@ -17,11 +17,11 @@ namespace scanloom::fault {
 namespace {
 
 constexpr std::uint64_t kCutsPerDisk = 50;
-constexpr std::uint64_t kScansPerCut = 200; // of each robot
+constexpr std::uint64_t kScansPerCut = 200; // per robot
 constexpr unsigned kPowerRobots = 4;
 constexpr std::uint64_t kMicrosUntilCut = 5'000;
 
-/// Nothing where there is no such disk; then why not.
+/// Returns the error if the disk cannot be created.
 Result<Outcome> run_one(const Run& run, std::uint64_t seed, std::uint64_t cuts) {
     const TemporaryDirectory place;
     auto disk = LoopDisk::make(place.path() / "disk", place.path() / "store", kDiskBytes);
@@ -33,10 +33,10 @@ Result<Outcome> run_one(const Run& run, std::uint64_t seed, std::uint64_t cuts) 
     for (std::uint64_t cut = 1; cut <= cuts && !fleet.has_given_up(); ++cut) {
         fleet.release(cut * kScansPerCut);
         (void)fleet.wait_for_acknowledged(fleet.acknowledged() + random() % (kPowerRobots * kScansPerCut));
-        server.let_be(std::chrono::microseconds(random() % kMicrosUntilCut)); // within a write, at times
-        // Linux lets an fdatasync that is under way succeed, as if by mistake, when the file system is shut down
-        // meanwhile. Where the power fails nobody hears of that: so the server is stopped first, and never comes back
-        // to tell.
+        server.let_be(std::chrono::microseconds(random() % kMicrosUntilCut)); // sometimes during a write
+        // Linux lets an fdatasync in progress return success when the file system is shut down meanwhile. After a real
+        // power failure that result would reach no client. So the server is stopped first, and never continues to
+        // report it.
         server.signal(SIGSTOP);
         (*disk)->cut_power();
         server.kill_nine();

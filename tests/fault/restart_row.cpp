@@ -15,7 +15,7 @@ namespace {
 
 constexpr unsigned kRestartRobots = 100;
 constexpr unsigned kRobotsPerSession = 10;
-constexpr std::uint64_t kScansPerRestart = 50; // of each robot
+constexpr std::uint64_t kScansPerRestart = 50; // per robot
 constexpr std::uint64_t kRestartsPerStore = 10;
 
 std::vector<RobotPlan> plans(std::uint64_t seed, std::uint64_t scans) {

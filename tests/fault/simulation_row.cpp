@@ -11,7 +11,7 @@
 namespace scanloom::fault {
 namespace {
 
-/// Who repeats one story wants to read it.
+/// Prints the events, for a reader who repeats one story.
 void tell_aloud(double seconds, std::string_view what, std::uint64_t number) {
     std::cerr << fmt::format("{:12.6f} s  {}", seconds, what) << (number > 0 ? fmt::format(" {}\n", number) : "\n");
 }
@@ -19,8 +19,8 @@ void tell_aloud(double seconds, std::string_view what, std::uint64_t number) {
 } // namespace
 
 Outcome run_simulation_row(const Run& run) {
-    spdlog::set_level(spdlog::level::off); // what goes wrong is meant to
-    constexpr std::size_t kAtOnce = 2;     // they share nothing
+    spdlog::set_level(spdlog::level::off); // failures are expected
+    constexpr std::size_t kAtOnce = 2;     // they share no state
     const auto listener = run.count == 1 ? simulation::World::Listener(tell_aloud) : nullptr;
     const auto tell = [&](std::uint64_t seed, std::uint64_t) {
         return simulation::tell({.seed = seed, .listener = listener}).outcome;

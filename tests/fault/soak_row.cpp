@@ -16,13 +16,14 @@ namespace {
 
 constexpr unsigned kSoakRobots = 8;
 constexpr std::uint64_t kParts = 40;
-constexpr std::uint64_t kQuarter = kParts / 4; // of which the second shows what it takes warm, the last what came to it
+constexpr std::uint64_t kQuarter =
+    kParts / 4; // the second quarter gives the memory after warm-up, the last one its growth
 
-/// What a server takes that is not warm yet: entries stay in the store's write buffers until these are full.
+/// The memory that a server takes until it is warm: entries stay in the store's write buffers until these are full.
 constexpr std::uint64_t kBytesOfScan = 512;
 constexpr std::uint64_t kBytesBesides = std::uint64_t{8} << 20;
 
-/// What is usual: while the store merges its tables, it takes some MiB more for a moment.
+/// Uses the median, as the store takes some MiB more for a moment while it merges tables.
 std::uint64_t median(std::vector<std::uint64_t> bytes) {
     if (bytes.empty()) return 0;
     const auto middle = bytes.begin() + static_cast<std::ptrdiff_t>(bytes.size() / 2);
@@ -30,7 +31,7 @@ std::uint64_t median(std::vector<std::uint64_t> bytes) {
     return *middle;
 }
 
-/// A percent where it is warm after half of the scans, as it is in the long form.
+/// One percent if the server is warm after half of the scans, as in the long form.
 std::uint64_t growth_max(const Run& run, std::uint64_t warm) {
     return run.count >= kSoakLong ? warm / 100 : run.count / 2 * kBytesOfScan + kBytesBesides;
 }
@@ -40,7 +41,7 @@ std::uint64_t growth_max(const Run& run, std::uint64_t warm) {
 Outcome run_soak_row(const Run& run) {
     const TemporaryDirectory place;
     ServerProcess server(run.server, place.path());
-    const std::uint64_t scans_a_part = std::max<std::uint64_t>(1, run.count / kSoakRobots / kParts); // of each robot
+    const std::uint64_t scans_a_part = std::max<std::uint64_t>(1, run.count / kSoakRobots / kParts); // per robot
     Fleet fleet(half_sharing(kSoakRobots, run.seed, scans_a_part * kParts), server.robot_port());
     server.start_and_wait();
     std::vector<std::uint64_t> second;

@@ -19,7 +19,7 @@ namespace {
 constexpr int kTurnsPerRound = 30;
 constexpr std::uint64_t kKillsPerSpool = 8;
 
-/// A robot's spool through several lives of its program.
+/// A robot's spool over several runs of its program.
 class Outages {
 public:
     Outages(const Run& run, std::uint64_t seed)
@@ -74,9 +74,9 @@ private:
         (void)robot.wait();
     }
 
-    /// Sends the rest, and one more: the server may hold all others by now.
+    /// Sends the rest and one more scan, as the server may already hold all others.
     void last_life() {
-        link_->cut(); // it may be, or not
+        link_->cut(); // it may already be cut
         link_->restore();
         Lidar lidar;
         auto robot = start_lidar_robot(place_.path(), link_->port(), lidar, {"--spool-size", "1"}, program_);
@@ -88,7 +88,7 @@ private:
         (void)robot.wait();
     }
 
-    /// Scans come in the order in which they were taken: what is not there when the newest is never comes.
+    /// Scans arrive in the order in which they were taken: a scan missing when the newest has arrived never arrives.
     void wait_for_scans_or_the_newest(std::uint64_t scans) {
         wait_until(fmt::format("{} scans on the server, or turn {}", scans, taken_), [&] {
             if (scans_of(server_.http_port()) >= scans) return true;

@@ -18,14 +18,14 @@ namespace scanloom::fault {
 namespace {
 
 constexpr std::uint64_t kStallsPerDisk = 5;
-constexpr std::uint64_t kScansPerStall = 100; // of each robot
+constexpr std::uint64_t kScansPerStall = 100; // per robot
 constexpr unsigned kStallRobots = 4;
 
-/// They wait longer than a disk stalls.
+/// Longer than a stall of the disk.
 constexpr Patience kStallPatience{.welcome = std::chrono::milliseconds(10'000),
                                   .silence_max = std::chrono::milliseconds(15'000)};
 
-/// Robots may have as much under way as their credits allow; they have little here.
+/// Robots may have as much data in progress as their credits permit; here the credits are small.
 constexpr std::uint64_t kGrowthMax = std::uint64_t{4} << 20;
 
 void check_memory(std::uint64_t before, std::uint64_t after, Outcome& outcome) {
@@ -43,7 +43,7 @@ Result<Outcome> stall_one_disk(const Run& run, std::uint64_t seed, std::uint64_t
     Fleet fleet(half_sharing(kStallRobots, seed, stalls * kScansPerStall), server.robot_port(), kStallPatience);
     server.start_and_wait();
     fleet.release(1);
-    (void)fleet.wait_for_acknowledged(kStallRobots); // all sessions are there
+    (void)fleet.wait_for_acknowledged(kStallRobots); // all sessions exist then
     Outcome outcome;
     for (std::uint64_t stall = 1; stall <= stalls && !fleet.has_given_up(); ++stall) {
         const auto before = stall * kScansPerStall - kScansPerStall / 2;

@@ -11,7 +11,7 @@
 #include <csignal>
 #include <fstream>
 
-/// Programs whose standard streams are of no use.
+/// Programs whose standard streams are closed or unusable.
 namespace scanloom::test {
 namespace {
 
@@ -53,7 +53,7 @@ TEST(StandardStreams, ARobotWhoseProgressNobodyReadsSendsEverything) {
     EXPECT_EQ(boost::json::parse(*summary).at("skipped_lines"), 1);
 }
 
-/// Arguments of /bin/sh that run a program with some of its streams closed.
+/// Returns arguments of /bin/sh that run a program with some of its streams closed.
 std::vector<std::string> with_closed(const std::string& streams, const std::string& name,
                                      const std::vector<std::string>& arguments) {
     std::vector<std::string> all{"-c", "exec \"$0\" \"$@\" " + streams, program(name).string()};

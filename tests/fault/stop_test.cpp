@@ -8,13 +8,13 @@
 
 #include <csignal>
 
-/// A server that is told to stop while it has much to weave.
+/// A server that receives a stop signal while it has many scans to integrate.
 namespace scanloom::test {
 namespace {
 
 using testing_support::RobotSocket;
 
-/// Sees 40 m all around: at 1 cm a scan of it is 50 million cells.
+/// A sensor that observes 40 m all around: at 1 cm one scan covers 50 million cells.
 Sensor far_laser() {
     Sensor sensor = testing_support::small_laser();
     sensor.angles = UniformAngles{-std::numbers::pi, std::numbers::pi / 180, 360};
@@ -28,7 +28,7 @@ std::vector<Scan> far_scans(std::uint64_t first_seq, std::size_t count) {
     return scans;
 }
 
-/// Joins and describes the laser. @return what the server has already.
+/// Joins and describes the laser. @return the last seq that the server already has
 std::uint64_t join(RobotSocket& robot) {
     wire::Hello hello{.robot = "r", .session = "far"};
     hello.create = SessionOptions{.cell_size = 0.01};
@@ -38,7 +38,7 @@ std::uint64_t join(RobotSocket& robot) {
     return welcome.last_durable_seq;
 }
 
-/// Whatever the server acknowledges until it hangs up.
+/// Returns the last acknowledgement before the server closes the connection.
 std::uint64_t last_ack(RobotSocket& robot) {
     std::uint64_t acknowledged = 0;
     while (const auto message = robot.receive()) {
@@ -52,7 +52,7 @@ std::uint64_t scans_woven(const RunningServer& server) {
 }
 
 TEST(Stop, AskedTwiceTheServerWeavesNoMoreAndTheNextStartHasWhatWasAcknowledged) {
-    constexpr std::uint64_t kScans = 32; // more than is woven or under way at the first ack
+    constexpr std::uint64_t kScans = 32; // more than are integrated or in progress at the first ack
     std::uint64_t acknowledged = 0;
     TemporaryDirectory place;
     {
@@ -62,7 +62,7 @@ TEST(Stop, AskedTwiceTheServerWeavesNoMoreAndTheNextStartHasWhatWasAcknowledged)
         robot.send(wire::ScanBatch{far_scans(1, kScans)});
         robot.wait_for_ack(1);
         server.process().signal(SIGTERM);
-        while (server.get("/readyz").status == 200) { // two signals at once would be one
+        while (server.get("/readyz").status == 200) { // two signals at the same time would count as one
         }
         server.process().signal(SIGTERM);
         acknowledged = last_ack(robot);

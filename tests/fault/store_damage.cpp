@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kSectorBytes = 512;
 
-/// The store's files that hold something, by name; not the lock, and not what RocksDB writes for people (LOG).
+/// Returns the store's non-empty files by name, without the lock file and RocksDB's text log (LOG).
 std::vector<fs::path> files_of(const fs::path& store) {
     std::vector<fs::path> files;
     for (const auto& entry : fs::directory_iterator(store)) {
@@ -29,7 +29,7 @@ bool has_records(const fs::path& file) {
     return file.extension() == ".log" || file.filename().string().starts_with("MANIFEST");
 }
 
-/// A place in a file: half of the time at, or a little behind, the border of two records, where it has any.
+/// Returns a position in a file: in half of the cases at or just after the border of two records, if the file has any.
 std::size_t some_place(const fs::path& file, const std::string& bytes, std::mt19937_64& random) {
     constexpr std::size_t kHeaderBytes = 7;
     const auto borders = has_records(file) ? record_borders(bytes) : std::vector<std::size_t>{};
@@ -43,7 +43,7 @@ std::vector<std::size_t> record_borders(std::string_view bytes) {
     constexpr std::size_t kBlockBytes = 32768, kHeaderBytes = 7;
     std::vector<std::size_t> borders;
     for (std::size_t at = 0; at + kHeaderBytes <= bytes.size();) {
-        if (kBlockBytes - at % kBlockBytes < kHeaderBytes) { // too short for a record: the next block begins
+        if (kBlockBytes - at % kBlockBytes < kHeaderBytes) { // too short for a record, so the next block begins
             at += kBlockBytes - at % kBlockBytes;
             continue;
         }

@@ -25,10 +25,11 @@ namespace fs = std::filesystem;
 constexpr std::uint64_t kScansPerStore = 1'000;
 constexpr unsigned kSyncRobots = 4;
 
-/// A thousand scans take some twenty syncs: that none of so many rounds meets one that fails is out of the question.
+/// A thousand scans take about twenty syncs. The probability that none of so many rounds has a failed sync is
+/// negligible.
 constexpr std::uint64_t kRoundsMax = 20;
 
-/// `fiu-run` and what it needs, in front of the server.
+/// Returns `fiu-run` and its arguments, to precede the server.
 Command with_failing_syncs(const Command& server) {
     const auto program = server.program.empty() ? test::program("scanloom-server") : server.program;
     std::vector<std::string> words{"-x", "-c", "enable_random name=posix/io/sync/*,probability=0.2", program.string()};
@@ -43,7 +44,7 @@ std::uint64_t lines_ending_with(std::string_view text, const fs::path& log) {
     return count;
 }
 
-/// Robots of sessions that no other round has.
+/// Returns robots whose sessions are distinct from those of other rounds.
 std::vector<RobotPlan> plans(std::uint64_t seed, std::uint64_t round, std::uint64_t scans) {
     auto made = half_sharing(kSyncRobots, seed * kRoundsMax + round, scans / kSyncRobots);
     for (auto& plan : made) plan.session += fmt::format("-{}", round);
@@ -67,7 +68,7 @@ public:
     }
 
 private:
-    /// A new store syncs a dozen files, one of which may fail.
+    /// A new store syncs about a dozen files, and each sync may fail.
     void start() {
         constexpr std::uint64_t kStartsMax = 100;
         for (std::uint64_t starts = 1; starts <= kStartsMax; ++starts) {

@@ -18,7 +18,7 @@
 namespace scanloom::fault {
 namespace {
 
-/// What the log says of the robots, by their index in it.
+/// The log's data of the robots, by their index in it.
 struct Told {
     std::vector<std::string> names;
     std::map<std::string, std::map<std::uint64_t, std::uint64_t>> times_held; ///< of each seq, by robot
@@ -29,7 +29,7 @@ const RobotStanding* find(std::span<const RobotStanding> robots, const std::stri
     return found == robots.end() ? nullptr : &*found;
 }
 
-/// What is wrong with a scan by itself.
+/// Returns the error of a scan checked by itself, or nullopt.
 std::optional<std::string> complaint(const ScanTaken& taken, const Told& told, std::span<const RobotStanding> robots) {
     if (taken.robot >= told.names.size()) return fmt::format("a scan is of robot {}, who never joined", taken.robot);
     const std::string& name = told.names[taken.robot];
@@ -44,7 +44,7 @@ std::optional<std::string> complaint(const ScanTaken& taken, const Told& told, s
     return std::nullopt;
 }
 
-/// Adds the name of whoever joins with this entry.
+/// Adds the name of the robot that joins with this entry.
 void note_joining(const LogEntry& entry, Told& told) {
     const auto* joined = std::get_if<RobotJoined>(&entry);
     if (joined == nullptr) return;
@@ -108,7 +108,7 @@ test::HttpAnswer must_get(std::uint16_t port, const std::string& target) {
     throw std::runtime_error(fmt::format("{} is answered {}: {}", target, answer.status, answer.body));
 }
 
-/// Of what HTTP gives of a log: each entry with its length in front.
+/// Parses a log in the form that HTTP serves: each entry with its length prefix.
 std::vector<LogEntry> parse_log(std::string_view bytes) {
     constexpr std::size_t kLengthBytes = 4;
     std::vector<LogEntry> log;

@@ -96,7 +96,7 @@ void Disk::add(Append append) {
     });
 }
 
-/// Everything that waits, of all sessions, with one write.
+/// Writes all waiting appends of all sessions with one write.
 void Disk::commit() {
     committing_ = 0;
     if (!failed_ && world_.chance(trouble_.failing)) return fail({Errc::kStoreFailed, "a write failed"});
@@ -114,7 +114,7 @@ void Disk::commit() {
 
 void Disk::store(Append& append) {
     const auto end = durable_.end_of(append.session);
-    if (!end || *end + 1 != append.first) drop(append); // as its log does: what it continues was dropped
+    if (!end || *end + 1 != append.first) drop(append); // the real log also refuses it, as its predecessor was dropped
     world_.note("stored", append.first + append.entries.size());
     const auto again = append.entries;
     durable_.append(append.session, append.first, std::move(append.entries), std::move(append.done));
@@ -122,12 +122,12 @@ void Disk::store(Append& append) {
     durable_.append(append.session, append.first + again.size(), again, [](const Result<>&) {});
 }
 
-/// It is not stored, whatever was said of it.
+/// Marks an append as not stored, although a hasty disk may have acknowledged it.
 void Disk::drop(Append& append) {
     if (trouble_.hasty) dropped_.push_back({append.session, append.entries});
 }
 
-/// What is stored of that which waited is not known to whoever asked for it.
+/// Stores some of the waiting appends; the callers do not learn which.
 void Disk::fail(const Error& why) {
     world_.note("failed");
     const std::uint64_t reached = world_.draw(waiting_.size() + 1);
@@ -140,7 +140,7 @@ void Disk::fail(const Error& why) {
     failed_ = why;
 }
 
-/// What was handed over first is written first, and `adds` to what is there.
+/// Writes waiting appends first. `adds`: the change needs additional space.
 Result<> Disk::settle(bool adds) {
     if (!waiting_.empty()) commit();
     if (!failed_ && world_.chance(trouble_.failing)) failed_ = Error{Errc::kStoreFailed, "a write failed"};

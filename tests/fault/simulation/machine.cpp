@@ -12,7 +12,7 @@ namespace {
 
 constexpr Duration kTaskLatest = std::chrono::microseconds(300);
 
-/// What Asio takes for an executor.
+/// Implements Asio's executor requirements.
 class Executor {
 public:
     explicit Executor(Machine& machine) : machine_(&machine) {}
@@ -25,7 +25,7 @@ public:
 
     template <class Task>
     void execute(Task&& task) const {
-        auto shared = std::make_shared<std::decay_t<Task>>(std::forward<Task>(task)); // it may only be moved
+        auto shared = std::make_shared<std::decay_t<Task>>(std::forward<Task>(task)); // it may be movable only
         machine_->add([shared] { std::move (*shared)(); });
     }
 
@@ -60,7 +60,7 @@ void Machine::hasten() {
 
 void Machine::kill() {
     killed_ = true;
-    while (!tasks_.empty()) tasks_.erase(tasks_.begin()); // one may hold what holds others
+    while (!tasks_.empty()) tasks_.erase(tasks_.begin()); // one may own what owns others
     shutdown();
 }
 

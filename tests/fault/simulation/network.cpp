@@ -9,7 +9,7 @@ using namespace std::chrono_literals;
 
 namespace {
 
-constexpr Duration kTroubleWithin = 3s; // of its making
+constexpr Duration kTroubleWithin = 3s; // after the connection is established
 
 bool is_within(Time time, const Pause& pause) { return time >= pause.from && time < pause.until; }
 
@@ -67,7 +67,7 @@ void Connection::deliver(Side to, std::string bytes) {
     world_.at(arrival(other(to)), [self = shared_from_this(), to, bytes = std::move(bytes)] { self->hear(to, bytes); });
 }
 
-/// In other pieces than were sent.
+/// Divides the data into pieces other than those sent.
 void Connection::hear(Side to, const std::string& bytes) {
     for (std::size_t begin = 0; begin < bytes.size();) {
         const std::size_t rest = bytes.size() - begin;

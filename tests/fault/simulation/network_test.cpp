@@ -7,7 +7,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Both ends of a connection, and what each has heard.
+/// Both ends of a connection, and the data that each received.
 class Ends {
 public:
     Ends(World& world, const NetworkTrouble& trouble) : connection_(Connection::make(world, trouble)) {
@@ -29,7 +29,7 @@ private:
 };
 
 void run(World& world, Time until) {
-    world.at(until, [] {}); // so that it is that time then
+    world.at(until, [] {}); // so that the clock reaches that time
     while (world.step(until)) {
     }
 }
@@ -66,7 +66,7 @@ TEST(SimulatedNetwork, ADeafLinkStillCarriesTheOtherDirection) {
     int deaf_servers = 0;
     for (int n = 0; n < 50; ++n) {
         Ends ends(world, {.deaf = 1.0});
-        run(world, world.now() + 4s); // by then it is
+        run(world, world.now() + 4s); // it has happened by then
         ends.both_say("late");
         run(world, world.now() + 1s);
         const bool robot_is_deaf = ends.heard(Side::kRobot).empty();

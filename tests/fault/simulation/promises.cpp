@@ -16,7 +16,7 @@ std::vector<LogEntry> decoded(const std::vector<std::string>& entries) {
     return log;
 }
 
-/// Of all sessions that are on the disk, by name.
+/// Returns the logs of all sessions on the disk, by name.
 std::map<std::string, std::vector<LogEntry>> logs_of(store::MemoryScanLog& durable) {
     std::map<std::string, std::vector<LogEntry>> logs;
     for (const auto& stored : durable.sessions().value()) {
@@ -26,7 +26,7 @@ std::map<std::string, std::vector<LogEntry>> logs_of(store::MemoryScanLog& durab
     return logs;
 }
 
-/// Adds the names of those who join in it, by their index.
+/// Adds the names of the robots that join in the log, by their index.
 void read_names(const std::vector<LogEntry>& log, std::map<RobotIndex, std::string>& names) {
     for (const auto& entry : log) {
         if (const auto* joined = std::get_if<RobotJoined>(&entry)) names[joined->robot] = joined->name;
@@ -53,12 +53,12 @@ fault::Outcome Promises::check(store::MemoryScanLog& durable, const std::vector<
     auto logs = logs_of(durable);
     fault::Outcome outcome;
     for (const auto& [name, members] : sessions) outcome.add(fault::verify_log(logs[name], members));
-    outcome.acknowledged = 0; // these are counted when the story has ended
+    outcome.acknowledged = 0; // counted at the end of the story
     return outcome;
 }
 
 std::uint64_t Promises::count_broken(store::MemoryScanLog& durable, const std::vector<Disk::Dropped>& dropped) const {
-    std::set<std::pair<std::string, std::uint64_t>> scans; // each once, however often it was dropped
+    std::set<std::pair<std::string, std::uint64_t>> scans; // each once, even if it was dropped repeatedly
     for (const auto& [session, entries] : dropped) {
         std::map<RobotIndex, std::string> names;
         read_names(decoded(store::entries_after(durable, session, 0).value()), names);

@@ -92,7 +92,7 @@ void Robot::hear(std::string_view bytes) {
 void Robot::say() {
     if (!connection_) return;
     while (auto frame = conversation_->next_frame(world_.now())) connection_->send(Side::kRobot, std::move(*frame));
-    if (conversation_->said_goodbye()) { // all is acknowledged
+    if (conversation_->said_goodbye()) { // all scans are acknowledged
         done_ = true;
         drop_connection();
         conversation_.reset();
@@ -101,7 +101,7 @@ void Robot::say() {
     watch();
 }
 
-/// The recording's next scan, as soon as there is room for it.
+/// Sends the recording's next scan as soon as there is space for it.
 void Robot::feed() {
     if (conversation_->resumed_after()) {
         handed_over_ = std::max(handed_over_, *conversation_->resumed_after());
@@ -122,7 +122,7 @@ void Robot::watch() {
     if (!connection_) return;
     if (const auto failure = conversation_->check(world_.now())) return lose(*failure);
     const Time due = conversation_->deadline(world_.now());
-    if (due >= watching_ && watching_ > world_.now()) return; // looked at earlier than that anyway
+    if (due >= watching_ && watching_ > world_.now()) return; // an earlier check is already scheduled
     watching_ = due;
     while_linked(due, &Robot::say);
 }

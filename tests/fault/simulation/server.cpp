@@ -19,7 +19,7 @@ namespace scanloom::simulation {
 namespace asio = boost::asio;
 using namespace std::chrono_literals;
 
-/// What ingest::RobotLink is around a socket, around a simulated connection.
+/// Does for a simulated connection what ingest::RobotLink does for a socket.
 class Server::Link final : public session::RobotListener, public std::enable_shared_from_this<Link> {
 public:
     Link(Server& server, std::shared_ptr<Connection> connection)
@@ -51,7 +51,7 @@ public:
 
     [[nodiscard]] bool has_parted() const { return parted_; }
 
-    /// The program is gone.
+    /// The program has ended.
     void vanish() {
         if (!parted_) connection_->vanish(Side::kServer);
         parted_ = true;
@@ -174,11 +174,11 @@ private:
     wire::FrameDecoder decoder_{wire::kFrameBytesMaxBeforeHello};
     ingest::Outbox outbox_;
     ingest::Dialogue dialogue_;
-    std::string robot_; // once it is welcome
+    std::string robot_; // after the welcome
     Time heard_{};
     bool entering_ = false;
     bool writing_ = false;
-    bool ending_ = false; // nothing more is heard
+    bool ending_ = false; // received data is ignored
     bool parted_ = false;
 };
 
@@ -186,7 +186,7 @@ Server::Server(World& world, Disk& disk, const ServerOptions& options, Promise p
     : world_(world), disk_(disk), options_(options), promise_(std::move(promise)),
       machine_(std::make_unique<Machine>(world)) {
     world_.note("server starts");
-    while (!log_) { // as whoever supervises it starts it again
+    while (!log_) { // the supervisor restarts the server in this case
         if (auto log = store::ReopeningLog::open([this] { return disk_.open(); })) log_ = std::move(*log);
     }
     machine_->hasten();
@@ -207,7 +207,7 @@ Server::~Server() {
     for (const auto& link : links_) link->vanish();
     disk_.crash();
     machine_->hasten();
-    sessions_->drain(); // or sessions, links and those who wait for them would hold each other for ever
+    sessions_->drain(); // otherwise sessions, links and waiting callers would keep each other alive
     links_.clear();
     machine_->kill();
     sessions_.reset();
@@ -227,7 +227,7 @@ void Server::stop() {
     disk_.set_at_once(false);
 }
 
-/// Each second, as the program does.
+/// Runs each second, as in the program.
 void Server::tidy() {
     asio::post(machine_->executor(), [this] {
         static_cast<void>(log_->try_again());

@@ -13,7 +13,7 @@ protected:
     void SetUp() override { spdlog::set_level(spdlog::level::off); }
 };
 
-/// Whether one of the first seeds finds it out.
+/// Returns whether one of the first seeds detects the fault.
 bool is_found_out(Story story) {
     constexpr std::uint64_t kSeeds = 50;
     for (story.seed = 1; story.seed <= kSeeds; ++story.seed) {
@@ -31,7 +31,7 @@ TEST_F(SimulationTest, ASeedIsTheSameStoryAgain) {
     }
 }
 
-/// The row "simulation" has more of them.
+/// The row "simulation" runs more of them.
 TEST_F(SimulationTest, EveryStoryKeepsWhatWasAcknowledged) {
     for (std::uint64_t seed = 1; seed <= 400; ++seed) {
         const auto ending = tell({.seed = seed});
@@ -43,7 +43,7 @@ TEST_F(SimulationTest, OtherSeedsAreOtherStories) {
     EXPECT_NE(tell({.seed = 1}).fingerprint, tell({.seed = 2}).fingerprint);
 }
 
-/// Whatever becomes of them later: a robot that starts again may send them once more.
+/// Independent of later events: a robot that starts again may send the scans once more.
 TEST_F(SimulationTest, EveryStoryInWhichAcknowledgedScansWereDroppedIsFoundOut) {
     std::uint64_t with_broken_promises = 0;
     for (std::uint64_t seed = 1; seed <= 200; ++seed) {

@@ -19,7 +19,7 @@ using namespace std::chrono_literals;
 constexpr Duration kTroubled = 15s;
 constexpr Duration kTimeToMend = 10min;
 
-/// All that goes wrong, as drawn at the beginning.
+/// All faults of a story, drawn at its start.
 struct Plot {
     DiskTrouble disk;
     NetworkTrouble network;
@@ -30,12 +30,12 @@ struct Plot {
     std::uint64_t robot_crashes = 0;
 };
 
-/// Half of the stories do without it.
+/// Returns 0 in half of the stories.
 double some(World& world, double most) {
     return world.chance(0.5) ? 0.0 : most * static_cast<double>(world.draw(101)) / 100.0;
 }
 
-/// Partitions may be shorter than anybody's patience, and longer.
+/// Partitions may be shorter or longer than all timeouts.
 NetworkTrouble network_of(World& world) {
     NetworkTrouble network{.cut = some(world, 0.7),
                            .silent = some(world, 0.3),
@@ -123,7 +123,7 @@ private:
         world_.after(world_.between(10ms, 5s), [this] { start_server(); });
     }
 
-    /// While nothing but the disk is there.
+    /// Runs while only the disk exists.
     void check_promises() {
         ending_.outcome.add(promises_.check(disk_.durable(), plot_.robots));
         ending_.broken += promises_.count_broken(disk_.durable(), disk_.take_dropped());
@@ -161,7 +161,7 @@ private:
         return std::move(ending_);
     }
 
-    /// Also where the server has to be started first, or its store to be opened again.
+    /// Also works if the server must be started first or its store be reopened.
     Result<std::shared_ptr<session::Session>> wake(const std::string& name) {
         const Time end = world_.now() + kTimeToMend;
         for (;;) {
@@ -177,7 +177,7 @@ private:
         }
     }
 
-    /// What the server holds in the end.
+    /// Returns the server's data at the end.
     Result<fault::Held> hold(const std::string& name) {
         const auto woken = wake(name);
         if (!woken) return woken.error();
@@ -187,7 +187,8 @@ private:
 
     World world_;
     Plot plot_;
-    const bool is_forged_ = plot_.network.forge > 0.0; // a robot may end with an error then, but not of lost scans
+    const bool is_forged_ =
+        plot_.network.forge > 0.0; // a robot may end with an error then, but not because of lost scans
     Disk disk_;
     Promises promises_;
     Ending ending_;
