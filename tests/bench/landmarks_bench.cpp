@@ -82,7 +82,8 @@ void ClusterCrowds(benchmark::State& state) {
 }
 BENCHMARK(ClusterCrowds)->Apply(sizes<kJittered>);
 
-/// The eps just above and below the value at which walls separate: many comparisons of core points find no neighbour.
+/// The eps just above and below the value at which walls separate: many core points of adjacent cells are compared
+/// without a match.
 void ClusterByBeams(benchmark::State& state) {
     const auto& points = capture(state);
     for (auto _ : state) benchmark::DoNotOptimize(dbscan(points, 0.05, 5));

@@ -36,7 +36,7 @@ std::shared_ptr<const mapping::LaserChunk> unknown_chunk() {
     return chunk;
 }
 
-/// Whether rows of saturated free cells are skipped.
+/// Whether the projection knows which rows of cells are saturated, and skips them.
 enum class Settling { kKnown, kForgotten };
 
 template <Settling kSettling>

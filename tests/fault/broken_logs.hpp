@@ -17,7 +17,8 @@ namespace scanloom::fault {
 /// Reads scans that differ from the written ones without an error, as a store without checksums may.
 [[nodiscard]] std::unique_ptr<store::ScanLog> blind_log(std::unique_ptr<store::ScanLog> log);
 
-/// Treats entries as duplicates and drops them while the wall clock shows an earlier time than when it was opened.
+/// Acknowledges entries as duplicates without storing them while the wall clock shows an earlier time than when it was
+/// opened.
 [[nodiscard]] std::unique_ptr<store::ScanLog> misled_log(std::unique_ptr<store::ScanLog> log);
 
 /// Leaks 64 KiB of memory for each entry.

@@ -35,7 +35,7 @@ public:
     Crowd(const Crowd&) = delete;
     Crowd& operator=(const Crowd&) = delete;
 
-    /// Waits until the number of connections made, repeated ones included, equals the number of members.
+    /// Waits until the number of connections made, including reconnections, is at least the number of members.
     void wait_until_there() const;
 
     /// Returns how many connections of all members the server closed.

@@ -163,7 +163,7 @@ private:
         const std::lock_guard lock(mutex_);
         const bool is_first = !given_up_;
         given_up_ = given_up_ || !outcome;
-        if (outcome || is_first) member.standing.outcome = std::move(outcome); // then the others are stopped
+        if (outcome || is_first) member.standing.outcome = std::move(outcome); // later errors result from the stop
         member.standing.reconnects = member.uplink->status().reconnects;
         ++ended_;
         changed_.notify_all();

@@ -13,8 +13,7 @@ namespace {
 
 using std::chrono::microseconds;
 
-constexpr std::uint64_t kSplitBytes =
-    3'000; // after this number the others are sent together, as single bytes are slow and reveal nothing more
+constexpr std::uint64_t kSplitBytes = 3'000; // later bytes are sent together: single bytes are slow and reveal no more
 constexpr std::uint64_t kDelayMax = 2'000;   // microseconds
 constexpr std::uint64_t kStallMax = 400'000; // microseconds: longer than some timeouts
 constexpr std::uint64_t kFramesReached = 12;

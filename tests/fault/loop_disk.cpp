@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// From the kernel's fs/ext4/ext4.h: FS_IOC_SHUTDOWN, and its mode that does not even write the journal.
+// From the kernel's fs/ext4/ext4.h: FS_IOC_SHUTDOWN, and its mode that does not even write out the journal.
 constexpr unsigned long kShutdown = 0x8004587d;
 constexpr std::uint32_t kWithoutLogFlush = 2;
 

@@ -20,8 +20,7 @@ PacedLoad::PacedLoad(const ServerProcess& server, const Robots& robots, std::uin
 void PacedLoad::wait_until_it_streams() const {
     const auto last = "/api/v1/sessions/" + session(robots_.sessions - 1);
     while (test::http_request(server_.http_port(), "GET", last).status != 200) {
-        if (program_.has_output_within(std::chrono::milliseconds(5)))
-            return; // it has ended: finish() reports the cause
+        if (program_.has_output_within(std::chrono::milliseconds(5))) return; // ended: finish() reports the cause
     }
 }
 

@@ -12,8 +12,7 @@ namespace scanloom::fault {
 ReservedPort::ReservedPort() {
     using boost::asio::ip::tcp;
     socket_.open(tcp::v4());
-    socket_.set_option(
-        tcp::socket::reuse_address(true)); // as the server does: both may bind the port, and one may listen
+    socket_.set_option(tcp::socket::reuse_address(true)); // like the server, so that both may bind the port
     socket_.bind({boost::asio::ip::address_v4::loopback(), 0});
 }
 

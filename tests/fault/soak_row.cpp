@@ -16,8 +16,7 @@ namespace {
 
 constexpr unsigned kSoakRobots = 8;
 constexpr std::uint64_t kParts = 40;
-constexpr std::uint64_t kQuarter =
-    kParts / 4; // the second quarter gives the memory after warm-up, the last one its growth
+constexpr std::uint64_t kQuarter = kParts / 4; // second quarter: memory after warm-up, last: growth
 
 /// The memory that a server takes until it is warm: entries stay in the store's write buffers until these are full.
 constexpr std::uint64_t kBytesOfScan = 512;

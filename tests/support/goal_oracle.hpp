@@ -32,8 +32,7 @@ public:
 
     [[nodiscard]] Result<robot::NextStop> next(RobotIndex robot) {
         const auto maps = maps_.snapshot();
-        for (const grid::Cell cell : around_target_[robot])
-            looked_at_.insert({cell.j, cell.i}); // the robot requests another goal
+        for (const grid::Cell cell : around_target_[robot]) looked_at_.insert({cell.j, cell.i}); // a new request
         around_target_[robot].clear();
         const Pose2 pose = *maps.robots.at(robot).pose;
         auto found = book_.next(session_, maps, robot, {pose.x, pose.y}, {}, options_);

@@ -116,8 +116,7 @@ using OpinionMap = std::map<std::pair<std::int32_t, std::int32_t>, MayBe>; // by
 inline OpinionMap bresenham_opinions(const RayScene& scene, const RayBeam& beam, Point2 end) {
     const grid::Cell start = cell_of(scene.T_map_sensor.x, scene.T_map_sensor.y, scene.cell_size);
     const auto ends = cells_near(end.x, end.y, scene.cell_size);
-    std::map<std::pair<std::int32_t, std::int32_t>, std::pair<MayBe, std::size_t>>
-        said; // each verdict and its number of lines
+    std::map<std::pair<std::int32_t, std::int32_t>, std::pair<MayBe, std::size_t>> said; // number of lines
     for (const auto& last : ends) {
         for (const auto& cell : line_of_cells(start, last)) {
             auto& [may_be, lines] = said[{cell.j, cell.i}];

@@ -187,8 +187,7 @@ private:
 
     World world_;
     Plot plot_;
-    const bool is_forged_ =
-        plot_.network.forge > 0.0; // a robot may end with an error then, but not because of lost scans
+    const bool is_forged_ = plot_.network.forge > 0.0; // allows errors of robots, but no lost scans
     Disk disk_;
     Promises promises_;
     Ending ending_;
