@@ -42,7 +42,8 @@ public:
     [[nodiscard]] std::uint64_t hung_up_on() const;
 
     /// Waits until the server has closed a connection of every member whose deadline is at most `deadline`, for at most
-    /// twice that time, as the machine may be busy. @return the number of members whose connection was not closed
+    /// twice that time since construction, as the machine may be busy. @return the number of members whose connection
+    /// was not closed
     [[nodiscard]] std::size_t wait_until_hung_up_on(std::chrono::seconds deadline) const;
 
 private:
