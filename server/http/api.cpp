@@ -158,9 +158,9 @@ Outlook Api::look(const Request& request) {
     return std::move(*outlook);
 }
 
-void Api::wake(const Asleep& asleep, std::function<void()> told) {
-    sessions_.wake(asleep.session,
-                   [told = std::move(told)](const Result<std::shared_ptr<session::Session>>&) { told(); });
+void Api::wake(const Asleep& asleep, std::function<void()> on_loaded) {
+    sessions_.wake(asleep.session, [on_loaded = std::move(on_loaded)](
+                                       const Result<std::shared_ptr<session::Session>>&) { on_loaded(); });
 }
 
 /// A response that depends on permissions must not be kept by shared caches, so "public" becomes "private".

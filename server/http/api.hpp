@@ -66,9 +66,9 @@ public:
     /// Threads: I/O threads, before answer().
     [[nodiscard]] Outlook look(const Request& request);
 
-    /// Loads the session that look() returned. `told` is called once, when the session is in memory or failed to load.
-    /// Then call look() again. If its result is the same, answer() returns the reason.
-    void wake(const Asleep& asleep, std::function<void()> told);
+    /// Loads the session that look() returned. `on_loaded` is called once, when the session is in memory or failed to
+    /// load. Then call look() again. If its result is the same, answer() returns the reason.
+    void wake(const Asleep& asleep, std::function<void()> on_loaded);
 
     /// Returns the refusal of a request whose header is enough to refuse it, else nullopt.
     /// Threads: I/O threads, before the body is read.

@@ -2,24 +2,21 @@
 
 #include "common/scan/limits.hpp"
 #include "common/wire/log_codec.hpp"
+#include "server/session/exclusions_part.hpp"
 #include "server/session/part_bytes.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 #include <charconv>
 #include <optional>
-#include <type_traits>
 #include <utility>
-#include <variant>
 
 namespace scanloom::session {
 namespace {
 
 constexpr std::string_view kLaserChunk = "weave/laser/";
 constexpr std::string_view kSonarChunk = "weave/sonar/";
-constexpr std::string_view kExclusions = "head/exclusions";
 
 // Version 1 had no version number and stored chunks as in memory. Version 2 lacked the number of pages and the poses of
 // the robots, so a session had to be loaded to be listed. Versions 2 and 3 stored trajectories as
@@ -58,46 +55,6 @@ std::string head_part(const mapping::ProjectionState& state) {
     put(value, state.bounds.laser.himm);
     put(value, state.bounds.sonar);
     put(value, std::uint64_t{state.pages});
-    return value;
-}
-
-/// The stored form of an Exclusion.
-struct StoredExclusion {
-    std::uint64_t id;
-    std::uint32_t robot;
-    std::uint32_t is_of_seqs; // 0: a range of stamps
-    std::uint64_t from;       // sequence number, or the bits of a stamp
-    std::uint64_t to;
-    Revision since;
-    Revision lifted;
-};
-static_assert(std::has_unique_object_representations_v<StoredExclusion>, "no bytes of it are undefined");
-
-StoredExclusion stored(const Exclusion& exclusion) {
-    const auto& [id, robot, scans] = exclusion.excluded;
-    if (const auto* seqs = std::get_if<SeqRange>(&scans)) {
-        return {id, robot, 1, seqs->from, seqs->to, exclusion.since, exclusion.lifted};
-    }
-    const auto& stamps = std::get<StampRange>(scans);
-    return {id,
-            robot,
-            0,
-            std::bit_cast<std::uint64_t>(stamps.from),
-            std::bit_cast<std::uint64_t>(stamps.to),
-            exclusion.since,
-            exclusion.lifted};
-}
-
-ScansExcluded excluded_of(const StoredExclusion& stored) {
-    if (stored.is_of_seqs != 0) return {stored.id, stored.robot, SeqRange{stored.from, stored.to}};
-    return {stored.id, stored.robot, StampRange{std::bit_cast<double>(stored.from), std::bit_cast<double>(stored.to)}};
-}
-
-std::string exclusions_part(const mapping::ProjectionState& state) {
-    std::string value;
-    put(value, std::uint64_t{state.exclusions->all().size()});
-    for (const auto& exclusion : state.exclusions->all()) put(value, stored(exclusion));
-    for (const auto& robot : state.robots) put(value, robot.excluded);
     return value;
 }
 
@@ -198,7 +155,7 @@ void write_chunks(PieceWriter& out, std::string_view prefix, const View& view, R
 /// apply it to earlier scans.
 void write_state(PieceWriter& out, const mapping::ProjectionState& state, Revision since) {
     out.add("head", head_part(state));
-    if (state.exclusions->revision() != 0) out.add(std::string(kExclusions), exclusions_part(state));
+    if (state.exclusions->revision() != 0) out.add(std::string(kExclusionsPart), exclusions_part(state));
     for (RobotIndex index = 0; index < state.robots.size(); ++index) {
         out.add(fmt::format("robot/{:08x}", index), robot_part(state.robots[index]));
         for (const auto& [id, known] : state.robots[index].sensors) {
@@ -241,7 +198,7 @@ Result<> CheckpointReader::add(std::string_view key, std::string_view value) {
     if (key == "format") return add_format(value);
     if (!has_format_) return Error{Errc::kMalformed, "the checkpoint's part 'format' is missing"};
     if (key == "head") return add_head(value);
-    if (key == kExclusions) return add_exclusions(value);
+    if (key == kExclusionsPart) return add_exclusions(value);
     for (const auto& kind : kKinds) {
         if (!key.starts_with(kind.prefix)) continue;
         const auto numbers = numbers_in(key.substr(kind.prefix.size()));
@@ -282,20 +239,10 @@ Result<> CheckpointReader::add_head(std::string_view value) {
 }
 
 Result<> CheckpointReader::add_exclusions(std::string_view value) {
-    PartReader part(value);
-    Exclusions exclusions;
-    std::vector<std::pair<Revision, ExclusionLifted>> lifted;
-    for (auto count = part.take<std::uint64_t>(); count > 0 && !part.failed(); --count) {
-        const auto stored = part.take<StoredExclusion>();
-        if (!exclusions.add(stored.since, excluded_of(stored))) return damaged(kExclusions);
-        if (stored.lifted != 0) lifted.emplace_back(stored.lifted, ExclusionLifted{stored.id});
-    }
-    for (const auto& [revision, which] : lifted) {
-        if (!exclusions.add(revision, which)) return damaged(kExclusions);
-    }
-    while (!part.complete() && !part.failed()) excluded_.push_back(part.take<std::uint64_t>());
-    if (part.failed()) return damaged(kExclusions);
-    state_.exclusions = std::make_shared<const Exclusions>(std::move(exclusions));
+    auto part = read_exclusions_part(value);
+    if (!part) return damaged(kExclusionsPart);
+    state_.exclusions = std::make_shared<const Exclusions>(std::move(part->exclusions));
+    excluded_ = std::move(part->excluded);
     return {};
 }
 
@@ -396,7 +343,7 @@ std::optional<mapping::ProjectionState> CheckpointReader::state() && {
 Result<mapping::Projection> CheckpointReader::finish() && {
     begin_weaving();
     for (const auto& exclusion : state_.exclusions->all()) {
-        if (exclusion.excluded.robot >= state_.robots.size()) return damaged(kExclusions);
+        if (exclusion.excluded.robot >= state_.robots.size()) return damaged(kExclusionsPart);
     }
     for (const auto& robot : state_.robots) {
         if (robot.newest || robot.scan_count == 0) continue;
