@@ -8,7 +8,7 @@
 namespace scanloom::classify {
 namespace {
 
-TEST(BitPlane, ABitIsSetExactlyWhereTheCellHasTheValue) {
+TEST(BitPlane, SetsBitsExactlyForCellsWithTheValue) {
     std::mt19937 random(1);
     std::array<CellClass, 64 * 64> cells;
     for (auto& cell : cells) cell = static_cast<CellClass>(random() % 5);
@@ -21,7 +21,7 @@ TEST(BitPlane, ABitIsSetExactlyWhereTheCellHasTheValue) {
     }
 }
 
-TEST(BitPlane, UnpackingReversesPacking) {
+TEST(BitPlane, UnpackIsTheInverseOfPack) {
     for (std::uint64_t byte = 0; byte < 256; ++byte) {
         const std::uint64_t bytes = bits::unpack8(byte);
         EXPECT_EQ(bits::pack8(bytes), byte);

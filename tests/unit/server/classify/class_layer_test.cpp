@@ -15,7 +15,7 @@ namespace {
 using grid::Cell;
 using grid::ChunkKey;
 
-/// OccTypes of cells anywhere, and the chunks of them changed since the last update.
+/// OccTypes of any cells, and the keys of the chunks changed since the last update.
 class Types {
 public:
     void set(Cell cell, OccType type) {
@@ -36,8 +36,8 @@ public:
         return found == planes_.end() ? nullptr : found->second.get();
     }
 
-    /// Updates the layer with what was set since the last time.
-    void show(ClassLayer& layer, Revision revision) {
+    /// Updates the layer with all changes since the previous call.
+    void update(ClassLayer& layer, Revision revision) {
         layer.update(
             changed_, [this](ChunkKey key) { return find(key); }, revision);
         changed_.clear();
@@ -54,7 +54,7 @@ private:
     std::vector<ChunkKey> changed_;
 };
 
-/// The definition, word by word.
+/// Computes a cell's class directly from the definition.
 CellClass defined_class(const Types& types, Cell cell, int danger_cells) {
     const auto any_near = [&](OccType type, int reach) {
         for (int dj = -reach; dj <= reach; ++dj) {
@@ -72,7 +72,7 @@ CellClass defined_class(const Types& types, Cell cell, int danger_cells) {
     return CellClass::kUnexplored;
 }
 
-/// Compares the cells in [begin, end) x [begin, end), every `stride`th along each axis.
+/// Compares the cells of [begin, end) x [begin, end), every `stride`th along each axis.
 void expect_defined_classes(const Types& types, const ClassView& view, int danger_cells, int begin, int end,
                             int stride = 1) {
     for (int j = begin; j < end; j += stride) {
@@ -83,18 +83,18 @@ void expect_defined_classes(const Types& types, const ClassView& view, int dange
     }
 }
 
-/// Patches of free ground with obstacles in them, on both sides of the origin.
+/// Sets patches of free ground with obstacles on both sides of the origin.
 void scatter(Types& types, std::mt19937& random, int patches, int reach, int obstacles_in_1000) {
     for (int patch = 0; patch < patches; ++patch) {
         const auto coordinate = [&] { return static_cast<int>(random() % static_cast<unsigned>(2 * reach)) - reach; };
         const Cell corner{coordinate(), coordinate()};
         const int width = 1 + static_cast<int>(random() % 40);
         const int height = 1 + static_cast<int>(random() % 40);
-        const bool forgotten = random() % 8 == 0;
+        const bool cleared = random() % 8 == 0;
         for (int j = corner.j; j < std::min(corner.j + height, reach); ++j) {
             for (int i = corner.i; i < std::min(corner.i + width, reach); ++i) {
                 const bool obstacle = static_cast<int>(random() % 1000) < obstacles_in_1000;
-                types.set({i, j}, forgotten ? OccType::kUnexplored : obstacle ? OccType::kOccupied : OccType::kFree);
+                types.set({i, j}, cleared ? OccType::kUnexplored : obstacle ? OccType::kOccupied : OccType::kFree);
             }
         }
     }
@@ -102,17 +102,17 @@ void scatter(Types& types, std::mt19937& random, int patches, int reach, int obs
 
 class ClassLayerOf : public testing::TestWithParam<int> {};
 
-TEST_P(ClassLayerOf, EveryCellHasTheClassOfItsDefinition) {
+TEST_P(ClassLayerOf, EveryCellMatchesTheDefinition) {
     const int danger_cells = GetParam();
     std::mt19937 random(static_cast<unsigned>(danger_cells));
     ClassLayer layer(danger_cells);
     Types types;
     scatter(types, random, 60, 130, danger_cells > 8 ? 1 : 20);
-    types.show(layer, 1);
+    types.update(layer, 1);
     expect_defined_classes(types, layer.snapshot(), danger_cells, -195, 195, danger_cells > 8 ? 7 : 1);
 }
 
-TEST_P(ClassLayerOf, DangerEndsExactlyAtItsRadiusOnEverySide) {
+TEST_P(ClassLayerOf, DangerEndsExactlyAtItsRadiusInEveryDirection) {
     const int danger_cells = GetParam();
     for (const Cell obstacle : {Cell{0, 0}, Cell{-1, -1}, Cell{63, 63}, Cell{31, -40}, Cell{-64, 0}}) {
         ClassLayer layer(danger_cells);
@@ -121,7 +121,7 @@ TEST_P(ClassLayerOf, DangerEndsExactlyAtItsRadiusOnEverySide) {
             for (int i = -140; i < 140; ++i) types.set({i, j}, OccType::kFree);
         }
         types.set(obstacle, OccType::kOccupied);
-        types.show(layer, 1);
+        types.update(layer, 1);
         const auto view = layer.snapshot();
         for (int j = -140; j < 140; ++j) {
             for (int i = -140; i < 140; ++i) {
@@ -135,14 +135,14 @@ TEST_P(ClassLayerOf, DangerEndsExactlyAtItsRadiusOnEverySide) {
     }
 }
 
-TEST_P(ClassLayerOf, AnySequenceOfChangesEndsAsFromScratch) {
+TEST_P(ClassLayerOf, IncrementalUpdatesMatchAFreshLayer) {
     const int danger_cells = GetParam();
     std::mt19937 random(100 + static_cast<unsigned>(danger_cells));
     ClassLayer layer(danger_cells);
     Types types;
     for (Revision revision = 1; revision <= 60; ++revision) {
         scatter(types, random, static_cast<int>(random() % 4), 130, 3);
-        types.show(layer, revision);
+        types.update(layer, revision);
         if (revision % 3 == 0) (void)layer.snapshot(); // so that some writes copy their chunks
         if (revision % 10 != 0) continue;
         ClassLayer fresh(danger_cells);
@@ -163,12 +163,12 @@ TEST_P(ClassLayerOf, AnySequenceOfChangesEndsAsFromScratch) {
 
 INSTANTIATE_TEST_SUITE_P(DangerCells, ClassLayerOf, testing::Values(1, 2, 3, 4, 7, 8, 31, 32, 33, 62, 63, 64));
 
-TEST(ClassLayer, AFrontierBesideAChunkWithoutTypesMakesItsClassChunk) {
+TEST(ClassLayer, CreatesClassChunkForFrontierNextToAFreeChunk) {
     for (const Cell corner : {Cell{0, 0}, Cell{63, 63}, Cell{-1, 0}, Cell{-64, -64}}) {
         ClassLayer layer(3);
         Types types;
         types.set(corner, OccType::kFree);
-        types.show(layer, 1);
+        types.update(layer, 1);
         const auto view = layer.snapshot();
         for (int dj = -1; dj <= 1; ++dj) {
             for (int di = -1; di <= 1; ++di) {
@@ -176,31 +176,31 @@ TEST(ClassLayer, AFrontierBesideAChunkWithoutTypesMakesItsClassChunk) {
                           di == 0 && dj == 0 ? CellClass::kFree : CellClass::kFrontier);
             }
         }
-        EXPECT_EQ(layer.chunk_count(), 4U) << "its own and the three around its corner";
+        EXPECT_EQ(layer.chunk_count(), 4U) << "the cell's chunk and the three chunks around its corner";
     }
 }
 
-TEST(ClassLayer, ALoneObstacleMakesNoOtherChunk) {
+TEST(ClassLayer, SingleObstacleCreatesNoNeighbourChunk) {
     ClassLayer layer(64);
     Types types;
     types.set({0, 0}, OccType::kOccupied);
-    types.show(layer, 1);
+    types.update(layer, 1);
     EXPECT_EQ(layer.chunk_count(), 1U);
     EXPECT_EQ(class_at(layer.snapshot(), {0, 0}), CellClass::kOccupied);
 }
 
-TEST(ClassLayer, AChunkOfNothingButUnexploredCellsIsNotMade) {
+TEST(ClassLayer, UnexploredChunkIsNotCreated) {
     ClassLayer layer(3);
     Types types;
     types.set({5, 5}, OccType::kUnexplored);
-    types.show(layer, 1);
+    types.update(layer, 1);
     EXPECT_EQ(layer.chunk_count(), 0U);
     layer.update(
         std::vector<ChunkKey>{{7, 7}}, [](ChunkKey) { return nullptr; }, 2);
     EXPECT_EQ(layer.chunk_count(), 0U);
 }
 
-TEST(ClassLayer, AChunksRevisionIsThatOfItsLastChangeOfClass) {
+TEST(ClassLayer, ChunkRevisionIsThatOfItsLastClassChange) {
     std::mt19937 random(9);
     ClassLayer layer(5);
     Types types;
@@ -208,7 +208,7 @@ TEST(ClassLayer, AChunksRevisionIsThatOfItsLastChangeOfClass) {
     for (Revision revision = 1; revision <= 150; ++revision) {
         scatter(types, random, static_cast<int>(random() % 2), 130, 10);
         if (random() % 3 == 0) types.set({static_cast<int>(random() % 100), 3}, OccType::kOccupied);
-        types.show(layer, revision);
+        types.update(layer, revision);
         const auto after = layer.snapshot();
         for (int cj = -4; cj < 4; ++cj) {
             for (int ci = -4; ci < 4; ++ci) {
@@ -224,23 +224,23 @@ TEST(ClassLayer, AChunksRevisionIsThatOfItsLastChangeOfClass) {
     }
 }
 
-TEST(ClassLayer, OnlyTheNamedChunksAreAskedFor) {
+TEST(ClassLayer, UpdateReadsOnlyTheListedChunks) {
     ClassLayer layer(64);
     Types types;
     for (int i = -200; i < 200; ++i) types.set({i, i}, OccType::kFree);
-    types.show(layer, 1);
+    types.update(layer, 1);
     types.set({1, 0}, OccType::kOccupied);
-    std::vector<ChunkKey> asked;
+    std::vector<ChunkKey> requested;
     const auto find = [&](ChunkKey key) {
-        asked.push_back(key);
+        requested.push_back(key);
         return types.find(key);
     };
     layer.update(std::vector<ChunkKey>{{0, 0}}, find, 2);
-    EXPECT_EQ(asked, (std::vector<ChunkKey>{{0, 0}}));
+    EXPECT_EQ(requested, (std::vector<ChunkKey>{{0, 0}}));
     expect_defined_classes(types, layer.snapshot(), 64, -80, 80, 3);
 }
 
-TEST(ClassLayer, ChunksAtTheEndsOfTheNumbersAreChunksLikeOthers) {
+TEST(ClassLayer, AcceptsChunksAtIntegerLimits) {
     const auto low = std::numeric_limits<std::int32_t>::min();
     const auto high = std::numeric_limits<std::int32_t>::max();
     OccPlanes all_free;
@@ -258,16 +258,16 @@ TEST(ClassLayer, ChunksAtTheEndsOfTheNumbersAreChunksLikeOthers) {
             const auto expected = key == corner ? CellClass::kFree : CellClass::kFrontier;
             EXPECT_NE(std::ranges::find(chunk.cells, expected), chunk.cells.end());
         });
-        EXPECT_EQ(at_this_end, 4U) << "itself and three neighbours whose border is a frontier";
-        EXPECT_EQ(layer.chunk_count(), 4U) << "nothing at the other end";
+        EXPECT_EQ(at_this_end, 4U) << "the chunk and three neighbours with frontier cells at the border";
+        EXPECT_EQ(layer.chunk_count(), 4U) << "no chunk at the opposite end";
     }
 }
 
-TEST(ClassLayer, ForgettingTheTypesOfAChunkForgetsItsClasses) {
+TEST(ClassLayer, RemovingAChunksTypesRemovesItsClasses) {
     ClassLayer layer(3);
     Types types;
     types.set({0, 0}, OccType::kFree);
-    types.show(layer, 1);
+    types.update(layer, 1);
     layer.update(
         std::vector<ChunkKey>{{0, 0}}, [](ChunkKey) { return nullptr; }, 2);
     const auto view = layer.snapshot();

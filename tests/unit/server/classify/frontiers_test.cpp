@@ -26,7 +26,7 @@ ClassView view_of(const Cells& frontier_cells) {
     return tree.snapshot();
 }
 
-/// The same groups by walking from cell to cell.
+/// Finds the groups by a flood fill from cell to cell.
 std::vector<std::vector<Cell>> groups_of(Cells left) {
     std::vector<std::vector<Cell>> groups;
     while (!left.empty()) {
@@ -35,8 +35,8 @@ std::vector<std::vector<Cell>> groups_of(Cells left) {
         for (std::size_t next = 0; next < group.size(); ++next) {
             for (int dj = -1; dj <= 1; ++dj) {
                 for (int di = -1; di <= 1; ++di) {
-                    const Cell beside{group[next].i + di, group[next].j + dj};
-                    if (left.erase(beside) > 0) group.push_back(beside);
+                    const Cell neighbor{group[next].i + di, group[next].j + dj};
+                    if (left.erase(neighbor) > 0) group.push_back(neighbor);
                 }
             }
         }
@@ -47,7 +47,7 @@ std::vector<std::vector<Cell>> groups_of(Cells left) {
     return groups;
 }
 
-TEST(Frontiers, AreTheGroupsOfCellsThatHangTogether) {
+TEST(Frontiers, AreConnectedComponents) {
     std::mt19937 random(11);
     for (int round = 0; round < 60; ++round) {
         Cells cells;
@@ -66,7 +66,7 @@ TEST(Frontiers, AreTheGroupsOfCellsThatHangTogether) {
     }
 }
 
-TEST(Frontiers, AreTheGroupsOfWhatIsLeftWithoutSomeCells) {
+TEST(Frontiers, AreConnectedComponentsOfTheCellsThatAreNotExcluded) {
     std::mt19937 random(12);
     for (int round = 0; round < 60; ++round) {
         const int reach = 5 + static_cast<int>(random() % 70);
@@ -78,7 +78,7 @@ TEST(Frontiers, AreTheGroupsOfWhatIsLeftWithoutSomeCells) {
         std::vector<Cell> without;
         Cells left = cells;
         for (int n = 0; n < reach * reach / 3; ++n) {
-            without.push_back(anywhere()); // some more than once, some that are no frontier
+            without.push_back(anywhere()); // some cells occur more than once, some are not frontier cells
             left.erase(without.back());
         }
         const auto frontiers = find_frontiers(view_of(cells), 2, without);
@@ -89,7 +89,7 @@ TEST(Frontiers, AreTheGroupsOfWhatIsLeftWithoutSomeCells) {
     }
 }
 
-TEST(Frontiers, HaveTheMeanAndTheBoundsOfTheirCells) {
+TEST(Frontiers, HaveCentroidAndBoundsOfTheirCells) {
     const auto frontiers = find_frontiers(view_of({{-3, -1}, {-2, 0}, {-1, 0}, {0, 1}, {0, 2}}));
     ASSERT_EQ(frontiers.size(), 1U);
     EXPECT_EQ(frontiers[0].bounds, (grid::CellBox{-3, -1, 1, 3}));
@@ -97,7 +97,7 @@ TEST(Frontiers, HaveTheMeanAndTheBoundsOfTheirCells) {
     EXPECT_DOUBLE_EQ(frontiers[0].centroid_y, (-0.5 + 0.5 + 0.5 + 1.5 + 2.5) / 5.0);
 }
 
-TEST(Frontiers, SmallOnesAreLeftOut) {
+TEST(Frontiers, AreLeftOutIfSmall) {
     const Cells cells = {{0, 0}, {1, 0}, {2, 0}, {10, 0}, {11, 0}, {20, 0}};
     EXPECT_EQ(find_frontiers(view_of(cells), 2).size(), 2U);
     EXPECT_EQ(find_frontiers(view_of(cells), 3).size(), 1U);
@@ -105,7 +105,7 @@ TEST(Frontiers, SmallOnesAreLeftOut) {
     EXPECT_TRUE(find_frontiers(ClassView{}).empty());
 }
 
-TEST(Frontiers, ChunksWhoseCellsHaveNoNumbersAreLeftOut) {
+TEST(Frontiers, IgnoreChunksOutsideTheCellRange) {
     ClassChunk frontier;
     frontier.cells.fill(CellClass::kFrontier);
     grid::ChunkTree<ClassChunk> tree(std::make_shared<const ClassChunk>(frontier));

@@ -5,7 +5,7 @@
 namespace scanloom::grid {
 namespace {
 
-TEST(CellBox, GrowsToHoldWhatItIsGiven) {
+TEST(CellBox, GrowsToIncludeAddedRows) {
     CellBox box;
     EXPECT_TRUE(box.empty());
     box.include_row(-3, 5, 9);

@@ -37,7 +37,7 @@ ChunkKey random_key(std::mt19937& random) {
     return {coordinate(random), coordinate(random)};
 }
 
-TEST(ChunkTree, HoldsChunksAnywhereAroundTheOrigin) {
+TEST(ChunkTree, StoresChunksAnywhereAroundTheOrigin) {
     ChunkTree<TestChunk> tree(blank());
     std::map<ChunkKey, std::int16_t> written;
     std::mt19937 random(3);
@@ -58,7 +58,7 @@ TEST(ChunkTree, HoldsChunksAnywhereAroundTheOrigin) {
     EXPECT_EQ(view.find({1 << 26, 3}), nullptr);
 }
 
-TEST(ChunkTree, ExtremeKeysAreKeysLikeOthers) {
+TEST(ChunkTree, AcceptsExtremeKeys) {
     ChunkTree<TestChunk> tree(blank());
     const auto low = std::numeric_limits<std::int32_t>::min();
     const auto high = std::numeric_limits<std::int32_t>::max();
@@ -67,25 +67,25 @@ TEST(ChunkTree, ExtremeKeysAreKeysLikeOthers) {
     EXPECT_EQ(visited(tree.snapshot()), keys);
 }
 
-TEST(ChunkTree, CountsTheChunksOfASnapshotThatItHasCopied) {
+TEST(ChunkTree, CountsCopiesOfChunksSharedWithASnapshot) {
     ChunkTree<TestChunk> tree(blank());
     for (const std::int32_t ci : {0, 1, 2, 100}) (void)tree.write({0, ci}, 1);
-    EXPECT_EQ(tree.copied(), 0U) << "there is no snapshot";
+    EXPECT_EQ(tree.copied(), 0U) << "no snapshot exists";
     auto view = tree.snapshot();
     EXPECT_EQ(tree.copied(), 0U);
     (void)tree.write({0, 1}, 2);
     (void)tree.write({0, 1}, 3);
     (void)tree.write({0, 100}, 3);
     (void)tree.write({5, 5}, 3);
-    EXPECT_EQ(tree.copied(), 2U) << "each once, and none that is new";
+    EXPECT_EQ(tree.copied(), 2U) << "each chunk is copied once, new chunks are not copied";
     view = tree.snapshot();
     EXPECT_EQ(tree.copied(), 0U);
 }
 
-TEST(ChunkTree, WritesInPlaceOnceNobodyHoldsASnapshotAnyMore) {
+TEST(ChunkTree, WritesInPlaceAfterTheLastSnapshotIsReleased) {
     ChunkTree<TestChunk> tree(blank());
     const TestChunk* first = &tree.write({0, 0}, 1);
-    (void)tree.write({100, 100}, 1); // another root above both
+    (void)tree.write({100, 100}, 1); // a new root above both chunks
     {
         const auto view = tree.snapshot();
         EXPECT_EQ(view.find({0, 0}), first);
@@ -94,19 +94,19 @@ TEST(ChunkTree, WritesInPlaceOnceNobodyHoldsASnapshotAnyMore) {
     EXPECT_EQ(tree.copied(), 0U);
     const auto view = tree.snapshot();
     const auto of_a_reader = view;
-    EXPECT_NE(&tree.write({0, 0}, 3), first) << "it is held";
+    EXPECT_NE(&tree.write({0, 0}, 3), first) << "the snapshot still exists";
     EXPECT_EQ(tree.copied(), 1U);
     EXPECT_EQ(of_a_reader.find({0, 0}), first);
 }
 
-TEST(ChunkTree, WhatALostSnapshotSharedWithAnHeldOneIsStillCopied) {
+TEST(ChunkTree, CopiesChunksStillSharedWithAnOlderSnapshot) {
     ChunkTree<TestChunk> tree(blank());
     tree.write({0, 0}, 1).cells[0] = 1;
     tree.write({0, 1}, 1).cells[0] = 1;
     const auto old = tree.snapshot();
     tree.write({0, 0}, 2).cells[0] = 2;
     { const auto gone = tree.snapshot(); }
-    tree.write({0, 0}, 3).cells[0] = 3; // the old one does not hold this copy
+    tree.write({0, 0}, 3).cells[0] = 3; // the old snapshot does not share this copy
     EXPECT_EQ(tree.copied(), 0U);
     tree.write({0, 1}, 3).cells[0] = 3;
     EXPECT_EQ(tree.copied(), 1U);
@@ -114,7 +114,7 @@ TEST(ChunkTree, WhatALostSnapshotSharedWithAnHeldOneIsStillCopied) {
     EXPECT_EQ(old.find({0, 1})->cells[0], 1);
 }
 
-TEST(ChunkTree, BranchesDoNotShowInEachOther) {
+TEST(ChunkTree, BranchesAreIndependent) {
     ChunkTree<TestChunk> tree(blank());
     tree.write({0, 0}, 1).cells[0] = 1;
     tree.write({0, 1}, 1).cells[0] = 1;
@@ -128,7 +128,7 @@ TEST(ChunkTree, BranchesDoNotShowInEachOther) {
     EXPECT_EQ(branch.size(), 2U);
 }
 
-TEST(ChunkTree, ReadersThatComeAndGoSeeWholeSnapshotsWhileItIsWritten) {
+TEST(ChunkTree, ConcurrentReadersSeeConsistentSnapshots) {
     ChunkTree<TestChunk> tree(blank());
     std::mutex mutex;
     std::optional<ChunkView<TestChunk>> published;
@@ -141,9 +141,9 @@ TEST(ChunkTree, ReadersThatComeAndGoSeeWholeSnapshotsWhileItIsWritten) {
                 const std::lock_guard lock(mutex);
                 view = published;
             }
-            if (!view) continue; // taken back at the moment
+            if (!view) continue; // not published at the moment
             const std::int16_t version = view->find({0, 0})->cells[0];
-            EXPECT_GE(version, newest) << "they come in order";
+            EXPECT_GE(version, newest) << "versions increase";
             newest = version;
             view->visit({}, 0, [&](ChunkKey, const TestChunk& chunk) {
                 for (const std::int16_t cell : chunk.cells) ASSERT_EQ(cell, version);
@@ -168,7 +168,7 @@ TEST(ChunkTree, ReadersThatComeAndGoSeeWholeSnapshotsWhileItIsWritten) {
     other.join();
 }
 
-TEST(ChunkTree, ASnapshotNeverChanges) {
+TEST(ChunkTree, SnapshotsNeverChange) {
     ChunkTree<TestChunk> tree(blank());
     tree.write({0, 0}, 1).cells[0] = 10;
     tree.write({5, -3}, 1).cells[0] = 11;
@@ -179,10 +179,10 @@ TEST(ChunkTree, ASnapshotNeverChanges) {
     EXPECT_EQ(before.find({0, 0})->cells[0], 10);
     EXPECT_EQ(before.find({1000, 1000}), nullptr);
     EXPECT_EQ(after.find({0, 0})->cells[0], 20);
-    EXPECT_EQ(before.find({5, -3}), after.find({5, -3})) << "what did not change is shared";
+    EXPECT_EQ(before.find({5, -3}), after.find({5, -3})) << "unchanged chunks are shared";
 }
 
-TEST(ChunkTree, VisitsExactlyTheChunksOfABoxChangedSince) {
+TEST(ChunkTree, VisitsExactlyTheChunksInABoxChangedSinceARevision) {
     std::mt19937 random(4);
     for (int round = 0; round < 50; ++round) {
         ChunkTree<TestChunk> tree(blank());
@@ -212,7 +212,7 @@ TEST(ChunkTree, VisitsExactlyTheChunksOfABoxChangedSince) {
     }
 }
 
-TEST(ChunkTree, RestoringOlderChunksKeepsTheNewestRevisionAbove) {
+TEST(ChunkTree, NewestRevisionSurvivesRestoringOlderChunks) {
     ChunkTree<TestChunk> tree(blank());
     (void)tree.write({0, 0}, 9);
     (void)tree.write({0, 1}, 4);

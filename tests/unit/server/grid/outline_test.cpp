@@ -12,13 +12,13 @@ namespace {
 
 using testing::ElementsAre;
 
-TEST(Outline, ARectangleHasFourCorners) {
+TEST(Outline, RectangleHasFourCorners) {
     const auto outlines = outlines_of({{2, 1}, {3, 1}, {2, 2}, {3, 2}, {4, 1}, {4, 2}});
     ASSERT_EQ(outlines.size(), 1U);
     EXPECT_THAT(outlines[0], ElementsAre(Ring{{2, 1}, {5, 1}, {5, 3}, {2, 3}, {2, 1}}));
 }
 
-TEST(Outline, AHoleFollowsTheOuterRingAndTurnsTheOtherWay) {
+TEST(Outline, HoleFollowsTheOuterRingInOppositeDirection) {
     std::vector<Cell> cells;
     for (std::int32_t n = 0; n < 9; ++n) {
         if (n != 4) cells.push_back({n % 3, n / 3});
@@ -29,22 +29,22 @@ TEST(Outline, AHoleFollowsTheOuterRingAndTurnsTheOtherWay) {
                                          Ring{{2, 1}, {1, 1}, {1, 2}, {2, 2}, {2, 1}}));
 }
 
-TEST(Outline, CellsThatTouchInACornerAreTwoAreas) {
+TEST(Outline, CellsTouchingAtACornerAreTwoAreas) {
     const auto outlines = outlines_of({{1, 1}, {0, 0}});
     ASSERT_EQ(outlines.size(), 2U);
     EXPECT_THAT(outlines[0], ElementsAre(Ring{{0, 0}, {1, 0}, {1, 1}, {0, 1}, {0, 0}}));
     EXPECT_THAT(outlines[1], ElementsAre(Ring{{1, 1}, {2, 1}, {2, 2}, {1, 2}, {1, 1}}));
 }
 
-TEST(Outline, AHoleThatTouchesTheOutsideInACornerIsAHole) {
-    const auto outlines =
-        outlines_of({{0, 0}, {1, 0}, {2, 0}, {0, 1}, {0, 2}, {1, 2}, {2, 1}}); // all around but (2, 2)
+TEST(Outline, HoleTouchingTheOutsideAtACornerIsAHole) {
+    const auto outlines = outlines_of(
+        {{0, 0}, {1, 0}, {2, 0}, {0, 1}, {0, 2}, {1, 2}, {2, 1}}); // all neighbours of the centre except (2, 2)
     ASSERT_EQ(outlines.size(), 1U);
     EXPECT_THAT(outlines[0], ElementsAre(Ring{{0, 0}, {3, 0}, {3, 2}, {2, 2}, {2, 3}, {0, 3}, {0, 0}},
                                          Ring{{2, 2}, {2, 1}, {1, 1}, {1, 2}, {2, 2}}));
 }
 
-TEST(Outline, NoCellsHaveNone) { EXPECT_TRUE(outlines_of({}).empty()); }
+TEST(Outline, IsEmptyWithoutCells) { EXPECT_TRUE(outlines_of({}).empty()); }
 
 double area_of(const Ring& ring) {
     double twice = 0.0;
@@ -54,7 +54,7 @@ double area_of(const Ring& ring) {
     return 0.5 * twice;
 }
 
-/// Counts the ring's sides left of the cell's centre.
+/// Returns whether the ring encloses a cell, by the parity of ring sides left of its centre.
 bool holds(const Ring& ring, Cell cell) {
     bool inside = false;
     for (std::size_t n = 0; n + 1 < ring.size(); ++n) {
@@ -64,7 +64,7 @@ bool holds(const Ring& ring, Cell cell) {
     return inside;
 }
 
-TEST(Outline, OfCellsAtRandomHoldsThemAndNoOthers) {
+TEST(Outline, EnclosesExactlyTheGivenRandomCells) {
     std::mt19937 random(7);
     constexpr std::int32_t kSide = 24;
     for (int round = 0; round < 60; ++round) {
@@ -82,10 +82,11 @@ TEST(Outline, OfCellsAtRandomHoldsThemAndNoOthers) {
             for (std::size_t ring = 0; ring < outline.size(); ++ring) {
                 EXPECT_EQ(outline[ring].front(), outline[ring].back());
                 area += area_of(outline[ring]);
-                EXPECT_EQ(area_of(outline[ring]) < 0.0, ring > 0) << "those after the first are holes";
+                EXPECT_EQ(area_of(outline[ring]) < 0.0, ring > 0) << "rings after the first are holes";
                 std::set<std::pair<std::int32_t, std::int32_t>> corners;
                 for (std::size_t n = 1; n < outline[ring].size(); ++n) {
-                    EXPECT_TRUE(corners.insert({outline[ring][n].i, outline[ring][n].j}).second) << "touches itself";
+                    EXPECT_TRUE(corners.insert({outline[ring][n].i, outline[ring][n].j}).second)
+                        << "the ring touches itself";
                 }
             }
         }

@@ -9,24 +9,24 @@ using std::chrono::seconds;
 
 constexpr FirstPlaces::Clock::time_point kStart{};
 
-TEST(FirstPlaces, AreForOneRobotOfASessionAtATime) {
+TEST(FirstPlaces, AreGrantedToOneRobotPerSession) {
     FirstPlaces places;
     EXPECT_TRUE(places.take(1, 0, kStart));
     EXPECT_FALSE(places.take(1, 1, kStart + seconds(29)));
-    EXPECT_TRUE(places.take(1, 0, kStart + seconds(29))) << "asked again, it is told the same";
-    EXPECT_TRUE(places.take(2, 1, kStart + seconds(29))) << "another session is another map";
+    EXPECT_TRUE(places.take(1, 0, kStart + seconds(29))) << "a repeated request gets the same answer";
+    EXPECT_TRUE(places.take(2, 1, kStart + seconds(29))) << "each session has its own map";
 }
 
-TEST(FirstPlaces, AreForAnotherOnceARobotHasSentNothingForLong) {
+TEST(FirstPlaces, AreGrantedToAnotherRobotAfterTheTerm) {
     FirstPlaces places;
     EXPECT_TRUE(places.take(1, 0, kStart));
-    EXPECT_TRUE(places.take(1, 0, kStart + seconds(20))) << "which does not make it longer";
+    EXPECT_TRUE(places.take(1, 0, kStart + seconds(20))) << "a repeated request does not extend the term";
     EXPECT_TRUE(places.take(1, 1, kStart + seconds(30)));
     EXPECT_FALSE(places.take(1, 0, kStart + seconds(59)));
     EXPECT_TRUE(places.take(1, 0, kStart + seconds(60)));
 }
 
-TEST(FirstPlaces, OfASessionThatIsDeletedAreForgotten) {
+TEST(FirstPlaces, AreReleasedWhenTheSessionIsRemoved) {
     FirstPlaces places;
     EXPECT_TRUE(places.take(1, 0, kStart));
     places.remove(1);

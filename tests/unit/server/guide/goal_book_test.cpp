@@ -12,7 +12,7 @@ namespace {
 
 using planning::Exploration;
 
-/// A corridor whose two ends are not explored: a frontier on the left, one on the right.
+/// A corridor with two unexplored ends: one frontier on the left and one on the right.
 class GoalBookTest : public session::SessionTest {
 protected:
     void SetUp() override {
@@ -26,7 +26,7 @@ protected:
                                                 "##############################"});
     }
 
-    /// The next goal of a robot that stands somewhat left of the middle: which end it is of.
+    /// Returns the end ('l' or 'r') to which the robot's next goal leads. The robot stands left of the middle.
     char next(RobotIndex robot) { return next(robot, session_); }
     char next(RobotIndex robot, const std::shared_ptr<session::Session>& session) {
         const auto goal = book_.next(session, maps_, robot, {1.2, 0.25}, now_, kPoint).value();
@@ -39,7 +39,7 @@ protected:
         return book_.next(session_, maps_, robot, {1.2, 0.25}, now_, kPoint).value();
     }
 
-    /// The robot takes a scan where it was sent to, turned away from its target by an angle.
+    /// Records a scan at the robot's goal, taken with a heading of `turned_away` (rad) relative to the target.
     void scan_at(const planning::NextGoal& goal, RobotIndex robot, double turned_away = 0.0) {
         const Point2 place = goal.path.points.back();
         const Point2 target =
@@ -61,30 +61,30 @@ protected:
         .passability = {.body_radius_m = 0.0}, .frontier_size_min = 1, .standoff_m = 1.0};
 
     mapping::Snapshot maps_;
-    mapping::Trajectory trajectory_; // of the one robot that scans
+    mapping::Trajectory trajectory_; // trajectory of the robot that records scans
     GoalBook book_;
     GoalBook::Clock::time_point now_{};
 };
 
-TEST_F(GoalBookTest, WhoAsksAgainGivesBackWhatItHad) {
+TEST_F(GoalBookTest, NewRequestReleasesThePreviousGoal) {
     for (const char* robot : {"a", "b"}) join(robot);
     EXPECT_EQ(next(0), 'l');
     maps_.classes = testing_support::drawn({"f............................f"});
-    ASSERT_TRUE(book_.next(session_, maps_, 0, {2.8, 0.05}, now_, kPoint)); // now nearer to the right
+    ASSERT_TRUE(book_.next(session_, maps_, 0, {2.8, 0.05}, now_, kPoint)); // now nearer to the right end
     EXPECT_EQ(book_.next(session_, maps_, 1, {1.2, 0.05}, now_, kPoint).value().path.points.back().x < 1.5, true);
 }
 
-TEST_F(GoalBookTest, AGoalCountsNoLongerWhenItsRobotHasLeft) {
+TEST_F(GoalBookTest, GoalIsReleasedWhenItsRobotLeaves) {
     const auto link = join("a");
     join("b");
     EXPECT_EQ(next(0), 'l');
     leave(link);
     EXPECT_EQ(next(1), 'l');
     join("a");
-    EXPECT_EQ(next(0), 'r') << "it comes back and asks again";
+    EXPECT_EQ(next(0), 'r') << "the robot reconnects and requests a goal again";
 }
 
-TEST_F(GoalBookTest, AGoalOnBehalfOfAnAbsentRobotCountsForAWhile) {
+TEST_F(GoalBookTest, GoalOfAnAbsentRobotExpires) {
     for (const char* robot : {"a", "b", "c"}) leave(join(robot));
     EXPECT_EQ(next(0), 'l');
     now_ += WayBook::kKeptForAbsent;
@@ -93,7 +93,7 @@ TEST_F(GoalBookTest, AGoalOnBehalfOfAnAbsentRobotCountsForAWhile) {
     EXPECT_EQ(next(2), 'l');
 }
 
-TEST_F(GoalBookTest, GoalsAreTakenFromMapsOfOtherCellsToo) {
+TEST_F(GoalBookTest, GoalExcludesItsFrontierAtOtherResolutions) {
     for (const char* robot : {"a", "b"}) join(robot);
     EXPECT_EQ(next(0), 'l');
     maps_.config.cell_size = 0.05;
@@ -102,7 +102,7 @@ TEST_F(GoalBookTest, GoalsAreTakenFromMapsOfOtherCellsToo) {
     EXPECT_GT(book_.next(session_, maps_, 1, {1.2, 0.025}, now_, kPoint).value().path.points.back().x, 1.5);
 }
 
-TEST_F(GoalBookTest, ARefusedRequestLeavesNoGoal) {
+TEST_F(GoalBookTest, RefusedRequestReleasesTheGoal) {
     for (const char* robot : {"a", "b"}) join(robot);
     EXPECT_EQ(next(0), 'l');
     EXPECT_FALSE(book_.next(session_, maps_, 0, {100.0, 0.25}, now_, kPoint));
@@ -118,9 +118,9 @@ TEST_F(GoalBookTest, SessionsDoNotShareGoals) {
     EXPECT_EQ(next(1, first), 'r');
 }
 
-// What was looked at in vain
+// Frontiers that could not be observed
 
-TEST_F(GoalBookTest, AFrontierLookedAtInVainIsNobodysGoalAnyMore) {
+TEST_F(GoalBookTest, UnobservableFrontierIsExcludedForAllRobots) {
     for (const char* robot : {"a", "b"}) join(robot);
     const auto left = ask(0);
     EXPECT_EQ(left.given_up, 0U);
@@ -128,7 +128,7 @@ TEST_F(GoalBookTest, AFrontierLookedAtInVainIsNobodysGoalAnyMore) {
     const auto right = ask(0);
     EXPECT_GT(right.path.points.back().x, 1.5);
     EXPECT_EQ(right.given_up, 3U);
-    EXPECT_EQ(next(1), '-') << "the left one is none for the other robot either";
+    EXPECT_EQ(next(1), '-') << "the left frontier is excluded for the other robot too";
     scan_at(right, 0);
     const auto end = ask(0);
     EXPECT_EQ(end.outcome, Exploration::kComplete);
@@ -136,24 +136,24 @@ TEST_F(GoalBookTest, AFrontierLookedAtInVainIsNobodysGoalAnyMore) {
     EXPECT_EQ(next(1), 'c');
 }
 
-TEST_F(GoalBookTest, WhoHasNotLookedGetsTheSameGoalAgain) {
+TEST_F(GoalBookTest, RobotThatHasNotObservedKeepsItsGoal) {
     join("a");
     const auto goal = ask(0);
-    const auto expect_the_same = [&](const char* why) {
+    const auto expect_same_goal = [&](const char* condition) {
         const auto again = ask(0);
-        EXPECT_EQ(again.goal->cell, goal.goal->cell) << why;
-        EXPECT_EQ(again.goal->target, goal.goal->target) << why;
-        EXPECT_EQ(again.given_up, 0U) << why;
+        EXPECT_EQ(again.goal->cell, goal.goal->cell) << condition;
+        EXPECT_EQ(again.goal->target, goal.goal->target) << condition;
+        EXPECT_EQ(again.given_up, 0U) << condition;
     };
-    expect_the_same("it has sent no scan");
+    expect_same_goal("without a scan");
     scan_at(goal, 0, 3.0);
-    expect_the_same("it looks away");
+    expect_same_goal("with a heading away from the target");
     scan_at(goal, 0);
     maps_.robots[0].pose->x += 0.25;
-    expect_the_same("it is not there");
+    expect_same_goal("at a distance from the goal");
 }
 
-TEST_F(GoalBookTest, AScanFromBeforeTheGoalWasGivenIsNoLook) {
+TEST_F(GoalBookTest, IgnoresScansFromBeforeTheGoal) {
     join("a");
     scan_at(ask(0), 0);
     EXPECT_EQ(ask(0).given_up, 3U);
@@ -164,18 +164,18 @@ TEST_F(GoalBookTest, AScanFromBeforeTheGoalWasGivenIsNoLook) {
     EXPECT_EQ(ask(0).given_up, 3U);
 }
 
-TEST_F(GoalBookTest, WhoStandsThereForFiveSecondsHasLookedWhereverItHeads) {
+TEST_F(GoalBookTest, FiveSecondsAtTheGoalCountAsObservation) {
     join("a");
     const auto goal = ask(0);
     for (int second = 0; second < 10; ++second) scan_at(goal, 0, 3.0);
     for (int second = 0; second < 5; ++second) {
-        EXPECT_EQ(ask(0).given_up, 0U) << "since it first asked from there";
+        EXPECT_EQ(ask(0).given_up, 0U) << "the 5 s begin with the first request from the goal";
         scan_at(goal, 0, 3.0);
     }
     EXPECT_EQ(ask(0).given_up, 3U);
 }
 
-TEST_F(GoalBookTest, ACellThatIsFrontierNoLongerIsForgotten) {
+TEST_F(GoalBookTest, CellThatIsNoLongerFrontierIsNotGivenUp) {
     join("a");
     const auto before = maps_.classes;
     scan_at(ask(0), 0);
@@ -189,39 +189,39 @@ TEST_F(GoalBookTest, ACellThatIsFrontierNoLongerIsForgotten) {
     EXPECT_EQ(ask(0).given_up, 2U);
     maps_.classes = before;
     maps_.revision = 2;
-    const auto anew = ask(0);
-    EXPECT_EQ(anew.given_up, 2U);
-    EXPECT_EQ(anew.goal->target, (grid::Cell{0, 2})) << "the cell in the middle counts again";
+    const auto after = ask(0);
+    EXPECT_EQ(after.given_up, 2U);
+    EXPECT_EQ(after.goal->target, (grid::Cell{0, 2})) << "the middle cell is a frontier cell again";
 }
 
-TEST_F(GoalBookTest, AFrontierThatComesBackHoweverOftenItIsLookedAtCountsNoMoreAfterTwoLooks) {
+TEST_F(GoalBookTest, RecurringFrontierIsGivenUpAfterTwoObservations) {
     join("a");
     const auto open = maps_.classes;
-    const auto shut = testing_support::drawn({"##############################", //
-                                              "#............................f", //
-                                              "#............................f", //
-                                              "#............................f", //
-                                              "##############################"});
+    const auto closed = testing_support::drawn({"##############################", //
+                                                "#............................f", //
+                                                "#............................f", //
+                                                "#............................f", //
+                                                "##############################"});
     for (int look = 0; look < 2; ++look) {
         const auto goal = ask(0);
-        EXPECT_EQ(goal.goal->target.i, 0) << "the left one, which is nearer";
+        EXPECT_EQ(goal.goal->target.i, 0) << "the left frontier is nearer";
         EXPECT_EQ(goal.given_up, 0U);
         scan_at(goal, 0);
-        maps_.classes = shut;
+        maps_.classes = closed;
         maps_.revision += 1;
-        EXPECT_GT(ask(0).goal->target.i, 0) << "it is shut";
+        EXPECT_GT(ask(0).goal->target.i, 0) << "the left end is closed";
         maps_.classes = open;
         maps_.revision += 1;
     }
     const auto goal = ask(0);
     EXPECT_EQ(goal.given_up, 3U);
-    EXPECT_GT(goal.goal->target.i, 0) << "enough of the left one";
-    maps_.classes = shut;
+    EXPECT_GT(goal.goal->target.i, 0) << "the left frontier was observed twice";
+    maps_.classes = closed;
     maps_.revision += 1;
-    EXPECT_EQ(ask(0).given_up, 0U) << "only what is FRONTIER is given up";
+    EXPECT_EQ(ask(0).given_up, 0U) << "only FRONTIER cells are given up";
 }
 
-TEST_F(GoalBookTest, MapsOfAnEarlierTimeMakeNothingForgotten) {
+TEST_F(GoalBookTest, EarlierMapsDoNotRestoreGivenUpCells) {
     join("a");
     maps_.revision = 5;
     scan_at(ask(0), 0);
@@ -233,7 +233,7 @@ TEST_F(GoalBookTest, MapsOfAnEarlierTimeMakeNothingForgotten) {
     EXPECT_EQ(ask(0).given_up, 3U);
 }
 
-TEST_F(GoalBookTest, OfTooManyCellsTheOldestCountAgain) {
+TEST_F(GoalBookTest, RestoresTheOldestCellsBeyondTheLimit) {
     join("a");
     const std::string row = "." + std::string(299, 'f');
     maps_.classes = testing_support::drawn(std::vector<std::string_view>(300, row));
@@ -246,7 +246,7 @@ TEST_F(GoalBookTest, OfTooManyCellsTheOldestCountAgain) {
     EXPECT_EQ(next.outcome, Exploration::kGoal);
 }
 
-TEST_F(GoalBookTest, OfTooManySettingsTheLeastRecentlyAskedForAreForgotten) {
+TEST_F(GoalBookTest, RemovesTheLeastRecentlyUsedSettingsBeyondTheLimit) {
     join("a");
     for (std::size_t n = 0; n <= GoalBook::kSettingsMax; ++n) {
         maps_.config.danger_cells = static_cast<std::int32_t>(n) + 1;
@@ -260,7 +260,7 @@ TEST_F(GoalBookTest, OfTooManySettingsTheLeastRecentlyAskedForAreForgotten) {
     EXPECT_EQ(ask(0).given_up, 0U);
 }
 
-TEST_F(GoalBookTest, WhatTheGoalDoesNotSeeOrIsFarFromTheTargetIsNotGivenUp) {
+TEST_F(GoalBookTest, GivesUpOnlyVisibleCellsNearTheTarget) {
     join("a");
     const std::string far(14, '.');
     maps_.classes = testing_support::drawn({far + "f", far + "f", far + "f", far + "f", far + "f", far + "f", far + "f",
@@ -273,7 +273,7 @@ TEST_F(GoalBookTest, WhatTheGoalDoesNotSeeOrIsFarFromTheTargetIsNotGivenUp) {
     EXPECT_GT(again.goal->target.j, 12);
 }
 
-TEST_F(GoalBookTest, WhatWasGivenUpIsSharedByNeitherSessionsNorSettings) {
+TEST_F(GoalBookTest, GivenUpCellsArePerSessionAndSettings) {
     join("a");
     scan_at(ask(0), 0);
     const auto right = ask(0);
@@ -288,7 +288,7 @@ TEST_F(GoalBookTest, WhatWasGivenUpIsSharedByNeitherSessionsNorSettings) {
     EXPECT_EQ(ask(0).given_up, 0U);
 }
 
-TEST_F(GoalBookTest, RobotsThatAskAtTheSameMomentGetDifferentFrontiers) {
+TEST_F(GoalBookTest, ConcurrentRequestsGetDifferentFrontiers) {
     for (const char* robot : {"a", "b"}) join(robot);
     for (int round = 0; round < 50; ++round) {
         std::array<char, 2> got{};

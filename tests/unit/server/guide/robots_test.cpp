@@ -20,13 +20,13 @@ TEST(Robots, AreFoundByName) {
     EXPECT_EQ(find_robot(two_robots(), "R").error().code, Errc::kNotFound);
 }
 
-TEST(Robots, AreWhereTheirNewestScanWasTaken) {
+TEST(Robots, HaveThePoseOfTheirNewestScan) {
     EXPECT_EQ(pose_of(two_robots(), 1).value(), (Pose2{1.0, 2.0, 0.5}));
     const auto unknown = pose_of(two_robots(), 0);
     ASSERT_FALSE(unknown);
     EXPECT_EQ(unknown.error().code, Errc::kNoPath);
     EXPECT_THAT(unknown.error().message, testing::HasSubstr("'mute'"));
-    EXPECT_EQ(pose_of(two_robots(), 2).error().code, Errc::kNoPath) << "who has joined since";
+    EXPECT_EQ(pose_of(two_robots(), 2).error().code, Errc::kNoPath) << "the robot joined after the snapshot";
 }
 
 } // namespace

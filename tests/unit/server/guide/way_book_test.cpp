@@ -11,10 +11,10 @@ namespace {
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-/// Counts how often it is told to look again.
+/// Counts change notifications.
 struct CountingWatcher : session::Watcher {
-    void on_changed() noexcept override { ++told; }
-    int told = 0;
+    void on_changed() noexcept override { ++notified; }
+    int notified = 0;
 };
 
 Way way(WayKind kind, std::size_t points = 2) {
@@ -44,7 +44,7 @@ protected:
     WayBook::Clock::time_point now_{};
 };
 
-TEST_F(WayBookTest, IsEmptyUntilSomethingIsGiven) {
+TEST_F(WayBookTest, IsEmptyInitially) {
     join("a");
     EXPECT_EQ(revision(), 0U);
     EXPECT_THAT(page().robots, IsEmpty());
@@ -53,7 +53,7 @@ TEST_F(WayBookTest, IsEmptyUntilSomethingIsGiven) {
     EXPECT_EQ(revision(), 0U);
 }
 
-TEST_F(WayBookTest, WhoHasExploredAllIsToldUntilItAsksAnewAlsoWhenItHasLeft) {
+TEST_F(WayBookTest, ListsFinishedRobotsUntilTheirNextRequestEvenIfAbsent) {
     const auto link = join("a");
     join("b");
     give_goal(0);
@@ -62,9 +62,9 @@ TEST_F(WayBookTest, WhoHasExploredAllIsToldUntilItAsksAnewAlsoWhenItHasLeft) {
     EXPECT_GT(revision(), before);
     EXPECT_THAT(page().robots, IsEmpty());
     EXPECT_THAT(page().explored, ElementsAre(0U));
-    const auto told = revision();
+    const auto explored = revision();
     book_.take_back(session_, 0, true);
-    EXPECT_EQ(revision(), told) << "no news";
+    EXPECT_EQ(revision(), explored) << "an unchanged state keeps the revision";
     leave(link);
     EXPECT_THAT(page().explored, ElementsAre(0U));
     book_.take_back(session_, 1, true);
@@ -77,7 +77,7 @@ TEST_F(WayBookTest, WhoHasExploredAllIsToldUntilItAsksAnewAlsoWhenItHasLeft) {
     EXPECT_GT(revision(), last);
 }
 
-TEST_F(WayBookTest, ARobotHoldsItsGoalAndTheWayItAskedForLast) {
+TEST_F(WayBookTest, RobotHoldsItsGoalAndItsNewestPath) {
     for (const char* robot : {"a", "b"}) join(robot);
     give_way(1, way(WayKind::kCoverage));
     give_goal(0);
@@ -90,7 +90,7 @@ TEST_F(WayBookTest, ARobotHoldsItsGoalAndTheWayItAskedForLast) {
     EXPECT_EQ(now.robots[1].way->kind, WayKind::kCoverage);
 
     give_way(0, way(WayKind::kPlan));
-    EXPECT_TRUE(page().robots[0].goal) << "a plan may lead to it";
+    EXPECT_TRUE(page().robots[0].goal) << "a plan can lead to the goal";
     EXPECT_EQ(page().robots[0].way->kind, WayKind::kPlan);
     give_way(0, std::nullopt);
     EXPECT_TRUE(page().robots[0].goal);
@@ -98,49 +98,49 @@ TEST_F(WayBookTest, ARobotHoldsItsGoalAndTheWayItAskedForLast) {
     give_goal(0);
     EXPECT_EQ(page().robots[0].way->kind, WayKind::kGoal);
     give_goal(1);
-    EXPECT_EQ(page().robots[1].way->kind, WayKind::kGoal) << "of both kinds the newest";
+    EXPECT_EQ(page().robots[1].way->kind, WayKind::kGoal) << "the newest path is kept, whatever its kind";
     book_.take_back(session_, 0);
     EXPECT_EQ(page().robots.size(), 1U);
     give_way(0, way(WayKind::kPlan));
     give_way(0, std::nullopt);
-    EXPECT_EQ(page().robots.size(), 1U) << "who holds nothing is not on the page";
+    EXPECT_EQ(page().robots.size(), 1U) << "a robot without goal and path is not listed";
 }
 
-TEST_F(WayBookTest, EachChangeRaisesTheRevisionAndIsToldAndNothingElseIs) {
+TEST_F(WayBookTest, OnlyChangesRaiseTheRevisionAndNotify) {
     const auto link = join("a");
     const auto watcher = std::make_shared<CountingWatcher>();
     session_->watch(watcher);
     std::uint64_t before = 0;
-    const auto expect_told = [&](const char* what) {
+    const auto expect_change = [&](const char* what) {
         EXPECT_GT(revision(), before) << what;
-        EXPECT_EQ(watcher->told, 1) << what;
+        EXPECT_EQ(watcher->notified, 1) << what;
         before = revision();
-        watcher->told = 0;
+        watcher->notified = 0;
     };
     give_goal(0);
-    expect_told("a goal");
+    expect_change("a goal");
     give_way(0, way(WayKind::kPlan));
-    expect_told("a plan");
+    expect_change("a plan");
     give_way(0, way(WayKind::kPlan));
-    expect_told("another");
+    expect_change("another plan");
     give_way(0, std::nullopt);
-    expect_told("none");
+    expect_change("no path");
     give_way(0, std::nullopt);
     static_cast<void>(page());
-    EXPECT_EQ(revision(), before) << "nor of asking";
-    EXPECT_EQ(watcher->told, 0);
+    EXPECT_EQ(revision(), before) << "requests do not change the revision";
+    EXPECT_EQ(watcher->notified, 0);
     book_.take_back(session_, 0);
-    expect_told("taken back");
+    expect_change("taken back");
     give_goal(0);
-    expect_told("a goal again");
+    expect_change("a goal again");
     leave(link);
-    expect_told("left");
+    expect_change("left");
     book_.take_back(session_, 0);
     EXPECT_EQ(revision(), before);
-    EXPECT_EQ(watcher->told, 0);
+    EXPECT_EQ(watcher->notified, 0);
 }
 
-TEST_F(WayBookTest, WhoHasLeftHoldsNothingAndNothingAgainWhenItComesBack) {
+TEST_F(WayBookTest, LeavingReleasesGoalAndPathForGood) {
     const auto link = join("a");
     const auto goal = give_goal(0);
     now_ += std::chrono::hours(10);
@@ -153,13 +153,13 @@ TEST_F(WayBookTest, WhoHasLeftHoldsNothingAndNothingAgainWhenItComesBack) {
     EXPECT_THAT(page().robots, IsEmpty());
 }
 
-TEST_F(WayBookTest, AWayThatComesWhenItsRobotHasLeftIsForgotten) {
+TEST_F(WayBookTest, PathOfAnAbsentRobotIsDiscarded) {
     leave(join("a"));
     give_way(0, way(WayKind::kPlan));
     EXPECT_THAT(page().robots, IsEmpty());
 }
 
-TEST_F(WayBookTest, AGoalOnBehalfOfAnAbsentRobotHasATerm) {
+TEST_F(WayBookTest, GoalOfAnAbsentRobotExpires) {
     leave(join("a"));
     EXPECT_EQ(book_.state(session_, now_).until, WayBook::Clock::time_point::max());
     give_goal(0);
@@ -168,11 +168,11 @@ TEST_F(WayBookTest, AGoalOnBehalfOfAnAbsentRobotHasATerm) {
     now_ = state.until - WayBook::Clock::duration(1);
     EXPECT_EQ(revision(), state.revision);
     now_ = state.until;
-    EXPECT_GT(revision(), state.revision) << "at the moment that was named";
+    EXPECT_GT(revision(), state.revision) << "the goal expires at the announced time";
     EXPECT_THAT(page().robots, IsEmpty());
 }
 
-TEST_F(WayBookTest, ARobotThatConnectsHoldsItsGoalUntilItLeaves) {
+TEST_F(WayBookTest, ConnectingKeepsTheGoalUntilTheRobotLeaves) {
     leave(join("a"));
     give_goal(0);
     const auto link = join("a");
@@ -183,7 +183,7 @@ TEST_F(WayBookTest, ARobotThatConnectsHoldsItsGoalUntilItLeaves) {
     EXPECT_THAT(page().robots, IsEmpty());
 }
 
-TEST_F(WayBookTest, AGoalIsToldFromThoseBeforeAndAfter) {
+TEST_F(WayBookTest, EachGoalHasItsOwnNumber) {
     join("a");
     const auto first = give_goal(0);
     const auto second = give_goal(0);
@@ -195,18 +195,18 @@ TEST_F(WayBookTest, AGoalIsToldFromThoseBeforeAndAfter) {
     EXPECT_FALSE(book_.holds(session_, 0, second, now_));
 }
 
-TEST_F(WayBookTest, SessionsHaveTheirOwnAndTakeItWithThem) {
+TEST_F(WayBookTest, StateIsPerSessionAndEndsWithIt) {
     join("a");
     give_goal(0);
     const std::weak_ptr<session::Session> before = session_;
-    start_session(); // another one
+    start_session(); // another session
     join("a");
-    EXPECT_TRUE(before.expired()) << "nobody keeps it";
+    EXPECT_TRUE(before.expired()) << "the book does not keep the session";
     EXPECT_EQ(revision(), 0U);
     EXPECT_THAT(page().robots, IsEmpty());
 }
 
-TEST_F(WayBookTest, OfAWayThatIsTooLongTheBeginningIsKept) {
+TEST_F(WayBookTest, TruncatesLongPathAtItsEnd) {
     join("a");
     give_way(0, way(WayKind::kCoverage, WayBook::kWayPointsMax));
     EXPECT_EQ(page().robots[0].way->points_left_out, 0U);
@@ -215,19 +215,21 @@ TEST_F(WayBookTest, OfAWayThatIsTooLongTheBeginningIsKept) {
     EXPECT_EQ(kept->points.size(), WayBook::kWayPointsMax);
     EXPECT_EQ(kept->points.back().x, static_cast<double>(WayBook::kWayPointsMax - 1));
     EXPECT_EQ(kept->points_left_out, 5U);
-    EXPECT_EQ(kept->length_m, static_cast<double>(WayBook::kWayPointsMax + 4)) << "of all of it";
+    EXPECT_EQ(kept->length_m, static_cast<double>(WayBook::kWayPointsMax + 4))
+        << "the length includes the omitted points";
 }
 
-TEST_F(WayBookTest, ASessionsWaysAreBoundedTogether) {
+TEST_F(WayBookTest, TotalPathPointsPerSessionAreBounded) {
     constexpr std::size_t kFull = WayBook::kPointsMax / WayBook::kWayPointsMax;
     for (RobotIndex robot = 0; robot <= kFull; ++robot) give_goal(robot, WayBook::kWayPointsMax);
     auto now = page();
-    ASSERT_EQ(now.robots.size(), kFull + 1) << "who is absent keeps it for a while";
+    ASSERT_EQ(now.robots.size(), kFull + 1) << "absent robots keep their goals until they expire";
     EXPECT_EQ(now.robots[kFull - 1].way->points.size(), WayBook::kWayPointsMax);
     EXPECT_EQ(now.robots[kFull].way->points.size(), 2U);
     EXPECT_EQ(now.robots[kFull].way->points_left_out, WayBook::kWayPointsMax - 2);
     give_goal(0, WayBook::kWayPointsMax);
-    EXPECT_EQ(page().robots[0].way->points.size(), WayBook::kWayPointsMax - 2) << "its own make room";
+    EXPECT_EQ(page().robots[0].way->points.size(), WayBook::kWayPointsMax - 2)
+        << "its own previous points are released";
 }
 
 } // namespace

@@ -27,19 +27,19 @@ void for_each_spot(const BitGrid& grid, Visit visit) {
     }
 }
 
-TEST(BitGrid, TheCellsAroundACellAreThoseOfTheWindowAndClearOutsideIt) {
+TEST(BitGrid, NeighboursOutsideTheGridAreClear) {
     std::mt19937 random(1);
     const BitGrid grid = random_grid(random, 128, 9, 50);
     for_each_spot(grid, [&](Spot at) {
         for (int place = 0; place < 9; ++place) {
-            const Spot beside{at.x + place % 3 - 1, at.y + place / 3 - 1};
-            const bool inside = beside.x >= 0 && beside.x < 128 && beside.y >= 0 && beside.y < 9;
-            ASSERT_EQ((grid.around(at) >> place & 1) != 0, inside && grid.test(beside));
+            const Spot neighbor{at.x + place % 3 - 1, at.y + place / 3 - 1};
+            const bool inside = neighbor.x >= 0 && neighbor.x < 128 && neighbor.y >= 0 && neighbor.y < 9;
+            ASSERT_EQ((grid.around(at) >> place & 1) != 0, inside && grid.test(neighbor));
         }
     });
 }
 
-TEST(BitGrid, VisitsItsSetCellsByRows) {
+TEST(BitGrid, VisitsSetCellsInRowOrder) {
     std::mt19937 random(2);
     const BitGrid grid = random_grid(random, 192, 20, 30);
     std::vector<Spot> expected;
@@ -52,7 +52,7 @@ TEST(BitGrid, VisitsItsSetCellsByRows) {
     EXPECT_EQ(grid.count(), static_cast<std::int64_t>(expected.size()));
 }
 
-TEST(BitGrid, TheNextSetAndClearCellsAreFound) {
+TEST(BitGrid, FindsNextSetAndNextClearCell) {
     std::mt19937 random(3);
     for (const int density : {2, 50, 98}) {
         const BitGrid grid = random_grid(random, 192, 4, density);
@@ -69,7 +69,7 @@ TEST(BitGrid, TheNextSetAndClearCellsAreFound) {
     EXPECT_EQ(next_set(random_grid(random, 64, 1, 100).row(0), 64), 64);
 }
 
-TEST(BitGrid, ConnectedIsWhatAWalkFromCellToCellFinds) {
+TEST(BitGrid, ConnectedMatchesFloodFill) {
     std::mt19937 random(4);
     for (int round = 0; round < 200; ++round) {
         const BitGrid grid = random_grid(random, 64 + 64 * (round % 3), 1 + round % 30, 40 + round % 60);
@@ -84,16 +84,16 @@ TEST(BitGrid, ConnectedIsWhatAWalkFromCellToCellFinds) {
         };
         for (reach(seed); !open.empty(); open.pop_front()) {
             const Spot at = open.front();
-            for (const Spot beside :
+            for (const Spot neighbor :
                  {Spot{at.x + 1, at.y}, Spot{at.x - 1, at.y}, Spot{at.x, at.y + 1}, Spot{at.x, at.y - 1}}) {
-                reach(beside);
+                reach(neighbor);
             }
         }
         ASSERT_EQ(connected(grid, seed), expected) << "round " << round;
     }
 }
 
-TEST(BitGrid, DilatingSetsExactlyTheCellsWithinReach) {
+TEST(BitGrid, DilatedSetsExactlyCellsWithinHalfWidths) {
     std::mt19937 random(5);
     const std::vector<std::vector<std::int32_t>> shapes = {{0}, {1, 0}, {3, 3, 2, 1}, {70, 66, 2}, {5, 0, 0, 0, 0}};
     for (const auto& widths : shapes) {
@@ -115,7 +115,7 @@ TEST(BitGrid, DilatingSetsExactlyTheCellsWithinReach) {
     }
 }
 
-TEST(BitGrid, SetsAreAddedCutAndTakenAway) {
+TEST(BitGrid, SupportsIntersectionUnionAndDifference) {
     std::mt19937 random(6);
     const BitGrid a = random_grid(random, 64, 7, 50);
     const BitGrid b = random_grid(random, 64, 7, 50);

@@ -9,7 +9,7 @@ namespace {
 
 using namespace testing_support;
 
-TEST(Clearance, IsThatOfTheLineFromEverySquare) {
+TEST(Clearance, MatchesDistanceFromLineToEveryOccupiedSquare) {
     std::mt19937 random(41);
     const grid::CellBox box{0, 0, 60, 50};
     int clear = 0;
@@ -28,7 +28,7 @@ TEST(Clearance, IsThatOfTheLineFromEverySquare) {
             if (line % 4 == 0) to = from;
             if (line % 4 == 1) to.x = from.x;
             if (line % 4 == 2) to.y = from.y;
-            if (line % 8 >= 4) { // where squares are met at their corners
+            if (line % 8 >= 4) { // these lines touch squares at their corners
                 from = {std::round(from.x * 2.0) / 2.0, std::round(from.y * 2.0) / 2.0};
                 to = {std::round(to.x * 2.0) / 2.0, std::round(to.y * 2.0) / 2.0};
             }
@@ -42,7 +42,7 @@ TEST(Clearance, IsThatOfTheLineFromEverySquare) {
     EXPECT_GT(touching, 1000);
 }
 
-TEST(Clearance, APointTouchesNothing) {
+TEST(Clearance, ZeroRadiusAlwaysKeepsClear) {
     const auto passability = make_passability(drawn({"#.", ".."}), 1.0, {.body_radius_m = 0.0}).value();
     EXPECT_TRUE(keeps_clear(passability, {1.0, 1.5}, {1.0, 1.0}));
 }

@@ -13,7 +13,7 @@ using namespace testing_support;
 
 constexpr grid::CellBox kSearchBox{-50, -40, 40, 50};
 
-/// Ground mostly free, with a few obstacles and patches of danger.
+/// Returns mostly free ground with a few obstacles and patches of danger.
 ClassView patchy(std::mt19937& random) {
     ClassMap map;
     std::vector<Cell> patches;
@@ -32,7 +32,7 @@ ClassView patchy(std::mt19937& random) {
     return map.view();
 }
 
-TEST(CostSearch, EveryCellCostsTheLeastOfAllWays) {
+TEST(CostSearch, CostOfEachCellIsMinimalOverAllPaths) {
     std::mt19937 random(41);
     for (int round = 0; round < 16; ++round) {
         const PassabilityOptions options{round % 4 == 0 ? 0.1 : 0.0, 0.7 * (round % 3), false};
@@ -57,7 +57,7 @@ TEST(CostSearch, EveryCellCostsTheLeastOfAllWays) {
     }
 }
 
-TEST(CostSearch, TowardsAGoalCostsTheSame) {
+TEST(CostSearch, GoalDirectedSearchFindsTheSameCost) {
     std::mt19937 random(42);
     for (int round = 0; round < 20; ++round) {
         const auto passability =
@@ -76,7 +76,7 @@ TEST(CostSearch, TowardsAGoalCostsTheSame) {
     }
 }
 
-TEST(CostSearch, ItsPathIsMadeOfStepsThatCostWhatItSays) {
+TEST(CostSearch, SumOfStepCostsEqualsReportedCost) {
     std::mt19937 random(43);
     const auto passability = make_passability(patchy(random), 0.05, {0.0, 2.0, false}).value();
     CostSearch search(passability);
@@ -99,11 +99,11 @@ TEST(CostSearch, ItsPathIsMadeOfStepsThatCostWhatItSays) {
     }
 }
 
-TEST(CostSearch, TheNearestIsTheCheapestOfThoseWanted) {
+TEST(CostSearch, NearestReturnsTheCheapestWantedCell) {
     std::mt19937 random(44);
     const auto passability = make_passability(patchy(random), 0.05, {0.0, 1.0, false}).value();
     CostSearch everywhere(passability);
-    CostSearch search(passability); // used again and again
+    CostSearch search(passability); // reused for all rounds
     for (int round = 0; round < 100; ++round) {
         const Spot start{14 + random_below(random, 90), 24 + random_below(random, 90)};
         if (!passability.enterable.test(start)) continue;
@@ -122,7 +122,7 @@ TEST(CostSearch, TheNearestIsTheCheapestOfThoseWanted) {
     }
 }
 
-TEST(CostSearch, OfEquallyNearCellsTheFirstByRowsIsTaken) {
+TEST(CostSearch, NearestBreaksTiesByRowOrder) {
     PlanWorld world(64, 64, OccType::kFree);
     const auto passability = make_passability(world.view(), 0.05, {}).value();
     const Spot start = *passability.spot_of({30, 30});
@@ -138,7 +138,7 @@ TEST(CostSearch, OfEquallyNearCellsTheFirstByRowsIsTaken) {
     }
 }
 
-TEST(CostSearch, AVeryHighCostOfDangerIsACostLikeOthers) {
+TEST(CostSearch, MaximumDangerCostIsAddedExactly) {
     const auto view = drawn({".!.!.", "#####"});
     const auto passability = make_passability(view, 1.0, {0.0, kDangerCostMax, false}).value();
     CostSearch search(passability);

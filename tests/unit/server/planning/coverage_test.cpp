@@ -25,7 +25,7 @@ double distance_to_segment(const Point2& point, const Point2& a, const Point2& b
     return norm(a + along * ab - point);
 }
 
-/// The cells whose centres are within the body's radius of the path.
+/// Returns the cells whose centres lie within the body's radius of the path.
 CellSet within_reach(const Path& path, double cell_size_m, double radius_m) {
     CellSet cells;
     const Point2 margin{radius_m, radius_m};
@@ -48,8 +48,8 @@ bool is_free(const ClassView& view, int j, int i) {
     return value == CellClass::kFree || value == CellClass::kDanger;
 }
 
-/// What the header promises of a plan: each free cell of the region is within reach or listed; those listed cannot be
-/// covered from any cell that the body can get to; the way is safe.
+/// Checks the contract of plan_coverage(): each free cell of the region is covered or listed as unreachable, a listed
+/// cell cannot be covered from any cell that the body can reach, and the path keeps clear of obstacles.
 void expect_covers(const ClassView& view, const grid::CellBox& box, double cell_size_m, const Point2& start,
                    const PassabilityOptions& options, const CellSet& region, const Coverage& coverage) {
     CellSet listed;
@@ -83,7 +83,7 @@ void expect_covers(const ClassView& view, const grid::CellBox& box, double cell_
                 1e-12);
 }
 
-/// The free cells of a world drawn from (0, 0) on.
+/// Returns the free cells of a world whose lower left corner is (0, 0).
 CellSet free_cells(const ClassView& view, const PlanWorld& world) {
     CellSet cells;
     for (int j = 0; j < world.height(); ++j) {
@@ -104,7 +104,7 @@ PlanWorld random_room(std::mt19937& random, std::int32_t width, std::int32_t hei
     return world;
 }
 
-TEST(Coverage, EveryFreeCellOfARoomIsWithinReachOrListed) {
+TEST(Coverage, CoversOrListsEveryFreeCell) {
     std::mt19937 random(71);
     int planned = 0;
     for (int round = 0; round < 40; ++round) {
@@ -126,7 +126,7 @@ TEST(Coverage, EveryFreeCellOfARoomIsWithinReachOrListed) {
     EXPECT_GT(planned, 20);
 }
 
-TEST(Coverage, FromAGapTooNarrowForTheBodyCoversTheRoomWhereItReachesMost) {
+TEST(Coverage, StartInNarrowGapCoversTheRoomWithMostReachableCells) {
     const auto view = drawn({"##################", //
                              "#.....#..........#", //
                              "#.....#..........#", //
@@ -138,7 +138,7 @@ TEST(Coverage, FromAGapTooNarrowForTheBodyCoversTheRoomWhereItReachesMost) {
     options.passability.body_radius_m = 1.2;
     const auto coverage = plan_coverage(view, 1.0, {6.5, 3.5}, options).value();
     for (const Point2& point : coverage.path.points) EXPECT_GE(point.x, 6.5);
-    EXPECT_GE(coverage.unreachable.size(), 25U) << "the room on the left";
+    EXPECT_GE(coverage.unreachable.size(), 25U) << "these cells are the room on the left";
     options.region = {{1.0, 1.0}, {5.0, 1.0}, {5.0, 6.0}, {1.0, 6.0}};
     const auto left = plan_coverage(view, 1.0, {6.5, 3.5}, options).value();
     for (const Point2& point : left.path.points) EXPECT_LE(point.x, 6.5);
@@ -146,7 +146,7 @@ TEST(Coverage, FromAGapTooNarrowForTheBodyCoversTheRoomWhereItReachesMost) {
 }
 
 /// Plans from starts where the body does not fit, in `rounds` random rooms.
-/// @return in how many rooms the path left such a start
+/// @return number of rooms whose path left the narrow start
 int leave_narrow_starts(int rounds) {
     std::mt19937 random(74);
     int left = 0;
@@ -177,11 +177,11 @@ int leave_narrow_starts(int rounds) {
     return left;
 }
 
-TEST(Coverage, KeepsClearOnceItHasLeftANarrowStart) { EXPECT_GT(leave_narrow_starts(60), 3); }
+TEST(Coverage, KeepsClearAfterLeavingNarrowStart) { EXPECT_GT(leave_narrow_starts(60), 3); }
 
-TEST(CoverageTrials, KeepsClearOnceItHasLeftAnyOfManyNarrowStarts) { EXPECT_GT(leave_narrow_starts(300), 20); }
+TEST(CoverageTrials, KeepsClearAfterLeavingEachOfManyNarrowStarts) { EXPECT_GT(leave_narrow_starts(300), 20); }
 
-TEST(Coverage, OfARegionCountsTheFreeCellsInIt) {
+TEST(Coverage, CountsFreeCellsOfTheRegion) {
     std::mt19937 random(72);
     for (int round = 0; round < 10; ++round) {
         const auto world = random_room(random, 100, 80);
@@ -199,22 +199,22 @@ TEST(Coverage, OfARegionCountsTheFreeCellsInIt) {
             }
         }
         const auto coverage = plan_coverage(view, 0.05, centre(start, 0.05), {body, std::nullopt, corners});
-        if (!coverage) continue; // nothing of it can be reached
+        if (!coverage) continue; // no cell of the region is reachable
         expect_covers(view, {0, 0, 100, 80}, 0.05, centre(start, 0.05), body, region, *coverage);
     }
 }
 
-TEST(Coverage, AnEmptyRoomIsSweptWithLittleWaste) {
+TEST(Coverage, PathInEmptyRoomIsNearTheShortest) {
     PlanWorld world(202, 102, OccType::kFree);
     world.frame(1);
     const auto coverage = plan_coverage(world.view(), 0.05, centre({10, 10}, 0.05)).value();
     EXPECT_EQ(coverage.covered_cells + static_cast<std::int64_t>(coverage.unreachable.size()), 200 * 100);
-    EXPECT_LT(coverage.unreachable.size(), 30U) << "a round body leaves the corners";
-    EXPECT_LT(coverage.path.length_m, 1.35 * 10.0 * 5.0 / 0.3) << "against area by spacing";
+    EXPECT_LT(coverage.unreachable.size(), 30U) << "a round body cannot cover the corners";
+    EXPECT_LT(coverage.path.length_m, 1.35 * 10.0 * 5.0 / 0.3) << "the lower bound is area / spacing";
     EXPECT_GT(coverage.fraction, 0.998);
 }
 
-TEST(Coverage, IsTheSameEveryTime) {
+TEST(Coverage, IsDeterministic) {
     std::mt19937 random(73);
     const auto view = random_room(random, 100, 80).view();
     const auto once = plan_coverage(view, 0.05, centre({50, 40}, 0.05)).value();
@@ -223,7 +223,7 @@ TEST(Coverage, IsTheSameEveryTime) {
     EXPECT_EQ(once.unreachable, again.unreachable);
 }
 
-TEST(Coverage, ListsRoomsThatCannotBeEnteredWithARegionAndWithout) {
+TEST(Coverage, ListsClosedRoomsWithAndWithoutRegion) {
     const auto view = drawn({"#########", "#...#...#", "#...#...#", "#########"});
     CoverageOptions all;
     all.passability.body_radius_m = 0.0;
@@ -239,7 +239,7 @@ TEST(Coverage, ListsRoomsThatCannotBeEnteredWithARegionAndWithout) {
     EXPECT_EQ(lower.unreachable, (std::vector<Cell>{{5, 1}, {6, 1}, {7, 1}}));
 }
 
-TEST(Coverage, StartsFromBesideAWallWithoutCoveringWhatIsBehindIt) {
+TEST(Coverage, StartNextToWallDoesNotCoverBehindTheWall) {
     std::vector<std::string_view> rows = {".........", ".........", ".........", "#########",
                                           ".........", ".........", ".........", "........."};
     const auto view = drawn(rows);
@@ -249,10 +249,10 @@ TEST(Coverage, StartsFromBesideAWallWithoutCoveringWhatIsBehindIt) {
     const auto coverage = plan_coverage(view, 1.0, {4.5, 3.5}, options).value();
     EXPECT_EQ(coverage.path.points.front(), (Point2{4.5, 3.5}));
     for (const Cell cell : coverage.unreachable) EXPECT_GT(cell.j, 2);
-    EXPECT_GE(coverage.unreachable.size(), 27U) << "all that is behind the wall";
+    EXPECT_GE(coverage.unreachable.size(), 27U) << "all cells behind the wall are unreachable";
 }
 
-TEST(Coverage, OfOneCellGoesToItsCentre) {
+TEST(Coverage, SingleCellRegionEndsAtTheCellsCentre) {
     CoverageOptions options;
     options.passability.body_radius_m = 0.0;
     options.region = {{1.0, 1.0}, {1.9, 1.0}, {1.9, 1.9}, {1.0, 1.9}};
@@ -261,7 +261,7 @@ TEST(Coverage, OfOneCellGoesToItsCentre) {
     EXPECT_EQ(coverage.fraction, 1.0);
 }
 
-TEST(Coverage, IsGivenUpWhenItMayNotGoOn) {
+TEST(Coverage, StopsWhenTheCallbackReturnsAnError) {
     PlanWorld world(100, 100, OccType::kFree);
     int asked = 0;
     const auto three_times = [&]() -> Result<> {
@@ -274,7 +274,7 @@ TEST(Coverage, IsGivenUpWhenItMayNotGoOn) {
     EXPECT_EQ(asked, 4);
 }
 
-TEST(Coverage, LooksForNoPlaceWhoseCellsAreCovered) {
+TEST(Coverage, SkipsPositionsWhoseCellsAreAlreadyCovered) {
     PlanWorld world(400, 300, OccType::kFree);
     int legs = 0;
     const auto count = [&]() -> Result<> {
@@ -285,10 +285,10 @@ TEST(Coverage, LooksForNoPlaceWhoseCellsAreCovered) {
     options.passability.body_radius_m = 1.0;
     const auto coverage = plan_coverage(world.view(), 0.05, {1.0, 1.0}, options, count).value();
     EXPECT_GT(coverage.fraction, 0.99);
-    EXPECT_LT(legs, 100) << "about 15 m of rows 2 m apart, and what is left between their ends";
+    EXPECT_LT(legs, 100) << "rows of 15 m in total at a spacing of 2 m, plus the gaps between their ends";
 }
 
-TEST(Coverage, WhatCannotBeIsRefused) {
+TEST(Coverage, RefusesInvalidStartsAndRegions) {
     const auto view = drawn({"#....", "#....", "#...."});
     CoverageOptions options;
     options.passability.body_radius_m = 0.0;
@@ -309,7 +309,7 @@ TEST(Coverage, WhatCannotBeIsRefused) {
     EXPECT_TRUE(plan_coverage(view, 1.0, {1.5, 0.5}, options));
 }
 
-TEST(Region, HoldsTheCellsWhoseCentresAreInsideThePolygon) {
+TEST(Region, ContainsCellsWhoseCentresAreInsideThePolygon) {
     std::mt19937 random(74);
     std::uniform_real_distribution<double> coordinate(-1.0, 4.0);
     const auto passability = make_passability(drawn({std::string(130, '.')}), 0.05, {}).value();
@@ -320,7 +320,7 @@ TEST(Region, HoldsTheCellsWhoseCentresAreInsideThePolygon) {
         for (std::int32_t y = 0; y < inside.height(); ++y) {
             for (std::int32_t x = 0; x < inside.width(); ++x) {
                 const Point2 point = passability.centre_of({x, y});
-                bool expected = false; // a ray to the left crosses an odd number of edges
+                bool expected = false; // a ray to the left crosses an odd number of edges if the cell is inside
                 for (std::size_t n = 0; n < corners.size(); ++n) {
                     const Point2 a = corners[n];
                     const Point2 b = corners[(n + 1) % corners.size()];
@@ -334,7 +334,7 @@ TEST(Region, HoldsTheCellsWhoseCentresAreInsideThePolygon) {
     }
 }
 
-TEST(Sweep, RowsAroundAnObstacleAreSplitIntoBlocks) {
+TEST(Sweep, SplitsRowsAroundAnObstacleIntoBlocks) {
     BitGrid ground(64, 9);
     for (std::int32_t y = 0; y < 9; ++y) {
         for (std::int32_t x = 2; x < 20; ++x) {

@@ -12,7 +12,7 @@ namespace {
 
 using namespace testing_support;
 
-TEST(DistanceField, IsTheDistanceToTheNearestOccupiedCell) {
+TEST(DistanceField, MatchesBruteForceDistanceToNearestOccupiedCell) {
     std::mt19937 random(51);
     for (int round = 0; round < 40; ++round) {
         const grid::CellBox box{-70 + random_below(random, 60), -50 + random_below(random, 40),
@@ -42,18 +42,18 @@ TEST(DistanceField, IsTheDistanceToTheNearestOccupiedCell) {
     }
 }
 
-TEST(DistanceField, AWindowWithoutObstaclesIsInfinitelyFar) {
+TEST(DistanceField, IsInfiniteWithoutObstacles) {
     const auto field = distance_field(ClassView{}, 0.05, {-3, -3, 3, 3}).value();
     EXPECT_THAT(field.metres, testing::SizeIs(36));
     EXPECT_THAT(field.metres, testing::Each(std::numeric_limits<float>::infinity()));
     EXPECT_TRUE(distance_field(ClassView{}, 0.05, {})->metres.empty());
 }
 
-TEST(DistanceField, AWindowThatIsTooLargeIsRefused) {
+TEST(DistanceField, RefusesTooLargeWindow) {
     EXPECT_EQ(distance_field(ClassView{}, 0.05, {0, 0, 10'000, 10'000}).error().code, Errc::kTooLarge);
 }
 
-TEST(DistanceField, FarObstaclesDoNotDisturbNearOnes) {
+TEST(DistanceField, FarObstaclesDoNotChangeDistancesToNearOnes) {
     ClassMap map;
     map.set({0, 0}, CellClass::kOccupied);
     map.set({1, 1 << 17}, CellClass::kOccupied);
@@ -62,7 +62,7 @@ TEST(DistanceField, FarObstaclesDoNotDisturbNearOnes) {
     EXPECT_FLOAT_EQ(field.at({0, 1 << 17}), 1.0F);
 }
 
-TEST(DistanceField, ALongRowIsExactToItsEnd) {
+TEST(DistanceField, LongRowIsExactAtItsEnd) {
     const auto field = distance_field(drawn({"#"}), 1.0, {0, 0, 3'000'000, 1}).value();
     EXPECT_FLOAT_EQ(field.at({2'999'999, 0}), 2'999'999.0F);
 }

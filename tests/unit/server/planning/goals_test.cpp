@@ -22,7 +22,7 @@ ExplorationOptions for_a_point() {
     return options;
 }
 
-/// An office of which discs around some places were never seen.
+/// Returns an office in which discs around `unseen_places` random cells are unexplored.
 ClassView partly_seen(std::mt19937& random, int unseen_places) {
     const auto world = office(250, 250, static_cast<unsigned>(random()));
     std::vector<Cell> unseen;
@@ -40,7 +40,7 @@ std::optional<Point2> somewhere_free(std::mt19937& random, const ClassView& view
     return centre(cell, kGoalCellSize);
 }
 
-/// The nearest of some cells; of equally near ones the first.
+/// Returns the cell nearest to `to`, the first one if several are equally near.
 Cell nearest_of(const std::vector<Cell>& cells, Cell to) {
     Cell nearest = cells.front();
     const auto square = [&](Cell cell) {
@@ -52,7 +52,7 @@ Cell nearest_of(const std::vector<Cell>& cells, Cell to) {
     return nearest;
 }
 
-/// Whether a line between two cells, drawn in whole numbers, meets no occupied one.
+/// Returns whether an integer (Bresenham) line between two cells crosses no occupied cell.
 bool sees(const ClassView& view, Cell from, Cell to) {
     const int di = std::abs(to.i - from.i);
     const int dj = std::abs(to.j - from.j);
@@ -66,7 +66,7 @@ bool sees(const ClassView& view, Cell from, Cell to) {
     return true;
 }
 
-TEST(Goals, AreTheNearestFreeCellsThatSeeTheFrontierWithTheCheapestWay) {
+TEST(Goals, AreCheapestPathCellsAmongNearestFreeCellsThatSeeTheFrontier) {
     std::mt19937 random(61);
     int reached = 0;
     int in_danger = 0;
@@ -81,7 +81,8 @@ TEST(Goals, AreTheNearestFreeCellsThatSeeTheFrontierWithTheCheapestWay) {
         const auto goals = frontier_goals(view, kGoalCellSize, frontiers, *robot).value();
         ASSERT_EQ(goals.size(), frontiers.size());
         for (std::size_t place = 0; place < goals.size(); ++place) {
-            // Rings of free cells around the frontier: the first with a reachable free cell that sees it has the goal.
+            // Examines rings of free cells around the frontier: the first ring with a reachable free cell in view of
+            // the frontier contains the goal.
             std::set<std::pair<int, int>> seen;
             std::vector<Cell> ring;
             const auto is_free = [&](Cell cell) {
@@ -128,7 +129,7 @@ TEST(Goals, AreTheNearestFreeCellsThatSeeTheFrontierWithTheCheapestWay) {
     EXPECT_LT(in_danger, reached / 2);
 }
 
-TEST(Goals, TellTheLengthOfTheWayAndTheNearestCellOfTheFrontier) {
+TEST(Goals, ContainPathLengthAndNearestFrontierCell) {
     const auto view = drawn({".........f", ".........f", ".........f"});
     const auto frontiers = find_frontiers(view);
     const auto goals = frontier_goals(view, 0.5, frontiers, {0.25, 0.75}, for_a_point()).value();
@@ -139,7 +140,7 @@ TEST(Goals, TellTheLengthOfTheWayAndTheNearestCellOfTheFrontier) {
     EXPECT_NEAR(goals[0]->cost, 4.0, 1e-12);
 }
 
-TEST(Goals, AreNotAroundACornerFromTheirFrontier) {
+TEST(Goals, SeeTheirTargetAlsoNextToCorners) {
     const auto view = drawn({"#########", "f!!#....#", "##!#.##.#", "##!!!##.#", "#########"});
     for (const auto& goal : frontier_goals(view, 1.0, find_frontiers(view), {7.5, 1.5}, for_a_point()).value()) {
         ASSERT_TRUE(goal);
@@ -147,14 +148,14 @@ TEST(Goals, AreNotAroundACornerFromTheirFrontier) {
     }
 }
 
-TEST(Goals, OneCellMayServeSeveralFrontiers) {
+TEST(Goals, OneCellCanBeTheGoalOfSeveralFrontiers) {
     const auto view = drawn({"f.f", "..."});
     const auto goals = frontier_goals(view, 1.0, find_frontiers(view), {1.5, 0.5}, for_a_point()).value();
     ASSERT_EQ(goals.size(), 2U);
-    for (const auto& goal : goals) EXPECT_EQ(goal->cell, (Cell{1, 0})) << "where the robot is";
+    for (const auto& goal : goals) EXPECT_EQ(goal->cell, (Cell{1, 0})) << "the goal is the robot's cell";
 }
 
-TEST(Goals, DangerIsTakenOnlyWhereThereIsNothingElse) {
+TEST(Goals, AreInDangerOnlyWithoutAnAlternative) {
     const auto free_behind = drawn({"...!!!f"});
     const auto frontiers = find_frontiers(free_behind);
     const auto goal = frontier_goals(free_behind, 1.0, frontiers, {0.5, 0.5}, for_a_point()).value().front().value();
@@ -167,18 +168,18 @@ TEST(Goals, DangerIsTakenOnlyWhereThereIsNothingElse) {
     EXPECT_TRUE(only_danger.in_danger);
 }
 
-TEST(Goals, NoneIsBehindAWall) {
+TEST(Goals, AreNotBehindAWall) {
     const auto view = drawn({"....#.f", "....#..", "....#.#", "....##."});
     const auto frontiers = find_frontiers(view);
     EXPECT_FALSE(frontier_goals(view, 1.0, frontiers, {0.5, 0.5}, for_a_point()).value().front())
-        << "three metres away, on the other side";
+        << "the frontier is 3 m away on the other side of the wall";
     const auto slanted = drawn({"#....", ".#...", "..#..", "...#.", "f...#"});
     EXPECT_FALSE(frontier_goals(slanted, 1.0, find_frontiers(slanted), {4.5, 4.5}, for_a_point()).value().front());
     const auto other_slant = drawn({"....#", "...#.", "..#..", ".#...", "#...f"});
     EXPECT_FALSE(frontier_goals(other_slant, 1.0, find_frontiers(other_slant), {0.5, 4.5}, for_a_point())->front());
 }
 
-TEST(NextGoal, IsTheReachableFrontierWithTheCheapestWay) {
+TEST(NextGoal, IsTheReachableFrontierWithTheCheapestPath) {
     std::mt19937 random(62);
     int found = 0;
     for (int round = 0; round < 12; ++round) {
@@ -201,7 +202,7 @@ TEST(NextGoal, IsTheReachableFrontierWithTheCheapestWay) {
     EXPECT_GT(found, 4);
 }
 
-TEST(NextGoal, RobotsThatAskOneAfterTheOtherNeverGetTheSameFrontier) {
+TEST(NextGoal, SuccessiveRequestsGetDifferentFrontiers) {
     std::mt19937 random(63);
     int second_goals = 0;
     int all_taken = 0;
@@ -225,17 +226,17 @@ TEST(NextGoal, RobotsThatAskOneAfterTheOtherNeverGetTheSameFrontier) {
     EXPECT_GT(all_taken, 0);
 }
 
-TEST(NextGoal, ATargetTakesTheFrontierThatIsThereNow) {
+TEST(NextGoal, TakenTargetExcludesItsCurrentFrontier) {
     const auto view = drawn({"f........................f", "........................."});
     const auto left = next_goal(view, 1.0, {3.5, 0.5}, {}, for_a_point()).value();
     EXPECT_EQ(left.goal->target, (Cell{0, 1}));
     const auto moved_on = next_goal(view, 1.0, {3.5, 0.5}, std::vector<Cell>{{3, 1}}, for_a_point()).value();
-    EXPECT_EQ(moved_on.goal->target, (Cell{25, 1})) << "the other robot's frontier moved a little";
+    EXPECT_EQ(moved_on.goal->target, (Cell{25, 1})) << "the other robot's frontier moved by 3 cells";
     const auto gone = next_goal(view, 1.0, {3.5, 0.5}, std::vector<Cell>{{12, 1}}, for_a_point()).value();
-    EXPECT_EQ(gone.goal->target, (Cell{0, 1})) << "what the other robot looks for is explored already";
+    EXPECT_EQ(gone.goal->target, (Cell{0, 1})) << "the other robot's target is explored already";
 }
 
-TEST(NextGoal, ARobotTooNearToAWallIsNotSentNearer) {
+TEST(NextGoal, StartTooNearToAWallGetsAnEnterableGoal) {
     std::mt19937 random(77);
     int given = 0;
     for (int round = 0; round < 300; ++round) {
@@ -254,7 +255,7 @@ TEST(NextGoal, ARobotTooNearToAWallIsNotSentNearer) {
     EXPECT_GT(given, 20);
 }
 
-TEST(NextGoal, AnothersSmallFrontierTakesNoLargerOneNearby) {
+TEST(NextGoal, TakenSmallFrontierDoesNotExcludeALargerOneNearby) {
     const auto view = drawn({"f.ffff", "......", "......"});
     auto options = for_a_point();
     options.frontier_size_min = 2;
@@ -266,7 +267,7 @@ TEST(NextGoal, AnothersSmallFrontierTakesNoLargerOneNearby) {
               Exploration::kTakenByOthers);
 }
 
-TEST(NextGoal, AMapWithoutReachableFrontiersIsComplete) {
+TEST(NextGoal, IsCompleteWithoutReachableFrontiers) {
     const auto closed = drawn({"#####", "#...#", "#...#", "#####"});
     EXPECT_EQ(next_goal(closed, 1.0, {2.5, 1.5}, {}, for_a_point())->outcome, Exploration::kComplete);
     const auto beyond_a_wall = drawn({"#####.f", "#...#.f", "#...#.f", "#####.f"});
@@ -276,7 +277,7 @@ TEST(NextGoal, AMapWithoutReachableFrontiersIsComplete) {
               Exploration::kTakenByOthers);
 }
 
-TEST(NextGoal, FrontiersNarrowerThanTheBodyDoNotCountByDefault) {
+TEST(NextGoal, IgnoresFrontiersNarrowerThanTheBodyByDefault) {
     ExplorationOptions options;
     EXPECT_EQ(frontier_size_min(options, 0.05), 4U); // 0.3 m are 4.2 cells, corner to corner
     EXPECT_EQ(frontier_size_min(options, 0.01), 21U);
@@ -293,7 +294,7 @@ TEST(NextGoal, FrontiersNarrowerThanTheBodyDoNotCountByDefault) {
     EXPECT_EQ(next_goal(view, kGoalCellSize, {0.3, 0.2}, {}, options)->outcome, Exploration::kGoal);
 }
 
-TEST(NextGoal, CellsGivenUpCountForNothing) {
+TEST(NextGoal, IgnoresGivenUpCells) {
     const auto view = drawn({"...f", "...f", "...f", "...f"});
     const std::vector<Cell> lower = {{3, 1}, {3, 0}};
     const auto next = next_goal(view, 1.0, {0.5, 0.5}, {}, for_a_point(), lower).value();
@@ -303,10 +304,10 @@ TEST(NextGoal, CellsGivenUpCountForNothing) {
     auto options = for_a_point();
     options.frontier_size_min = 3;
     EXPECT_EQ(next_goal(view, 1.0, {0.5, 0.5}, {}, options, lower)->outcome, Exploration::kComplete)
-        << "what is left is too small";
+        << "the remaining frontier is too small";
 }
 
-TEST(NextGoal, TellsTheCellsOfItsFrontierAroundTheTarget) {
+TEST(NextGoal, ReturnsFrontierCellsAroundTheTarget) {
     const auto view = drawn({"f..", "f..", "f..", "...", "f.."});
     auto options = for_a_point();
     options.standoff_m = 0.0;
@@ -314,7 +315,7 @@ TEST(NextGoal, TellsTheCellsOfItsFrontierAroundTheTarget) {
     EXPECT_EQ(next.around_target, (std::vector<Cell>{{0, 2}, {0, 3}, {0, 4}}));
 }
 
-TEST(SeenInVain, IsWhatIsStillFrontierAndNotHidden) {
+TEST(UnobservedFrontier, ContainsVisibleCellsThatAreStillFrontier) {
     const auto view = drawn({"..#.f", // (4, 2) is behind the wall
                              "..#.f", //
                              ".....", // (4, 0) was frontier
@@ -325,12 +326,12 @@ TEST(SeenInVain, IsWhatIsStillFrontierAndNotHidden) {
     EXPECT_EQ(still_frontier(view, around), (std::vector<Cell>{{4, 0}, {4, 2}, {4, 3}}));
 }
 
-/// Free ground, 24 x 24 cells, that ends in frontiers on all sides.
+/// Returns 24 x 24 cells of free ground that ends in frontiers on all sides.
 ClassView clearing() {
     return classified({0, 0, 24, 24}, 3, [](Cell) { return OccType::kFree; });
 }
 
-/// The cells of all frontiers that are left of a column.
+/// Returns the cells of all frontiers whose column is less than `column`.
 std::vector<Cell> frontier_up_to(std::int32_t column, const ClassView& view) {
     std::vector<Cell> cells;
     for (const auto& frontier : find_frontiers(view)) {
@@ -339,7 +340,7 @@ std::vector<Cell> frontier_up_to(std::int32_t column, const ClassView& view) {
     return cells;
 }
 
-TEST(NextGoal, NobodyElseGoesWhereWallsMayBeHidden) {
+TEST(NextGoal, OtherStartsGetNoGoalNearUnknownSpaceThatMayHideWalls) {
     const auto view = classified({0, 0, 100, 24}, 3, [](Cell cell) {
         return cell.i < 24 || (cell.j >= 10 && cell.j < 13) ? OccType::kFree : OccType::kUnexplored; // a narrow lane
     });
@@ -348,7 +349,7 @@ TEST(NextGoal, NobodyElseGoesWhereWallsMayBeHidden) {
               Exploration::kComplete);
 }
 
-TEST(NextGoal, WhoIsHemmedInByTheUnknownMayLeaveOverIt) {
+TEST(NextGoal, StartSurroundedByUnknownCellsMayCrossThem) {
     const auto lane = classified({0, 0, 60, 3}, 3, [](Cell) { return OccType::kFree; }); // too narrow for the body
     const auto at_hand = next_goal(lane, kGoalCellSize, {0.1, 0.075}).value();
     ASSERT_EQ(at_hand.outcome, Exploration::kGoal);
@@ -358,12 +359,12 @@ TEST(NextGoal, WhoIsHemmedInByTheUnknownMayLeaveOverIt) {
     EXPECT_GT(further.path.length_m, 1.5);
 }
 
-TEST(NextGoal, IsKnownToARobotThatDoesNotSeeItsOwnCell) {
+TEST(NextGoal, AcceptsAnUnknownStartCellNextToKnownCells) {
     EXPECT_EQ(next_goal(clearing(), kGoalCellSize, {-0.02, 0.6})->outcome, Exploration::kGoal);
     EXPECT_THAT(next_goal(clearing(), kGoalCellSize, {-0.25, 0.6}).error().message, HasSubstr("unknown space"));
 }
 
-TEST(NextGoal, WhatCannotBeIsRefused) {
+TEST(NextGoal, RefusesInvalidStartsAndOptions) {
     const auto view = drawn({"#..f"});
     EXPECT_THAT(next_goal(view, 1.0, {0.5, 0.5}, {}, for_a_point()).error().message, HasSubstr("inside an obstacle"));
     auto options = for_a_point();
@@ -385,16 +386,16 @@ FrontierGoals costs(const std::vector<double>& costs_of_frontiers) {
 
 using Assigned = std::vector<std::optional<std::size_t>>;
 
-TEST(AssignFrontiers, TheCheapestPairComesFirst) {
+TEST(AssignFrontiers, AssignsTheCheapestPairFirst) {
     const std::vector<FrontierGoals> goals = {costs({4.0, 5.0, 9.0}), costs({1.0, 3.0, 7.0}), costs({2.0, 2.5, 3.0})};
     EXPECT_EQ(assign_frontiers(goals), (Assigned{2, 0, 1}));
 }
 
-TEST(AssignFrontiers, OfEqualPairsTheFirstRobotAndTheFirstFrontierWin) {
+TEST(AssignFrontiers, BreaksTiesByRobotThenByFrontier) {
     EXPECT_EQ(assign_frontiers(std::vector<FrontierGoals>{costs({2.0, 2.0}), costs({2.0, 2.0})}), (Assigned{0, 1}));
 }
 
-TEST(AssignFrontiers, WhoCanReachNothingThatIsLeftGetsNothing) {
+TEST(AssignFrontiers, RobotWithoutRemainingReachableFrontierGetsNone) {
     EXPECT_EQ(assign_frontiers(std::vector<FrontierGoals>{costs({1.0, -1.0}), costs({2.0, -1.0})}),
               (Assigned{0, std::nullopt}));
     EXPECT_EQ(assign_frontiers(std::vector<FrontierGoals>{costs({1.0, 3.0})}, {true, false}), (Assigned{1}));

@@ -25,7 +25,7 @@ PassabilityOptions random_options(std::mt19937& random) {
     return {radii[random() % 4], costs[random() % 4], random() % 4 == 0};
 }
 
-/// The cost of a path by the oracle, in metres; nothing when it touches what may not be entered.
+/// Returns the oracle's cost of a path (m), or nullopt if the path touches a cell that must not be entered.
 std::optional<double> cost_of(const Oracle& oracle, const Path& path) {
     double cost = 0.0;
     for (std::size_t at = 0; at + 1 < path.points.size(); ++at) {
@@ -36,7 +36,7 @@ std::optional<double> cost_of(const Oracle& oracle, const Path& path) {
     return cost;
 }
 
-TEST(GridPath, CostsTheLeastOfAllWays) {
+TEST(GridPath, CostIsMinimalOverAllPaths) {
     std::mt19937 random(31);
     int found = 0;
     int none = 0;
@@ -52,7 +52,8 @@ TEST(GridPath, CostsTheLeastOfAllWays) {
             const auto path =
                 plan_path(view, kCellSize, centre(start, kCellSize), centre(goal, kCellSize), options, Shape::kSteps);
             const auto expected = costs.find({goal.j, goal.i});
-            // Beyond the box everything is unknown: where that may be entered, there is more than the oracle sees.
+            // All cells outside the box are unknown. If unknown cells may be entered, there are paths that the oracle
+            // does not have.
             if (options.allow_unknown && expected == costs.end()) continue;
             ASSERT_EQ(path.has_value(), expected != costs.end()) << "from " << start.i << ", " << start.j;
             (path ? found : none) += 1;
@@ -68,7 +69,7 @@ TEST(GridPath, CostsTheLeastOfAllWays) {
     EXPECT_GT(none, 200);
 }
 
-TEST(GridPath, StraighteningStaysSafeAndNeverCostsMore) {
+TEST(GridPath, StraighteningKeepsClearAndNeverCostsMore) {
     std::mt19937 random(32);
     int shortened = 0;
     for (int round = 0; round < 120; ++round) {
@@ -86,7 +87,7 @@ TEST(GridPath, StraighteningStaysSafeAndNeverCostsMore) {
         shortened += path->cost < steps->cost * 0.99 ? 1 : 0;
         if (!oracle.enterable({static_cast<int>(std::floor(start.x / kCellSize)),
                                static_cast<int>(std::floor(start.y / kCellSize))})) {
-            continue; // it leaves an obstacle's surroundings, through cells that the oracle keeps closed
+            continue; // the path leaves the surroundings of an obstacle through cells that are closed for the oracle
         }
         ASSERT_NEAR(cost_of(oracle, *path).value_or(-1.0), path->cost, 1e-7);
     }
@@ -94,7 +95,7 @@ TEST(GridPath, StraighteningStaysSafeAndNeverCostsMore) {
 }
 
 /// Plans in `rounds` random maps and compares each path's clearance with all occupied squares.
-/// @return how many paths there were
+/// @return number of paths found
 int compare_clearance(int rounds) {
     std::mt19937 random(37);
     int found = 0;
@@ -125,11 +126,11 @@ int compare_clearance(int rounds) {
     return found;
 }
 
-TEST(GridPath, KeepsTheBodysRadiusFromEveryOccupiedSquare) { EXPECT_GT(compare_clearance(80), 20); }
+TEST(GridPath, KeepsBodyRadiusFromEveryOccupiedSquare) { EXPECT_GT(compare_clearance(80), 20); }
 
-TEST(GridPathTrials, KeepTheBodysRadiusFromEveryOccupiedSquareOfManyMaps) { EXPECT_GT(compare_clearance(400), 100); }
+TEST(GridPathTrials, KeepsBodyRadiusFromEveryOccupiedSquareOfManyMaps) { EXPECT_GT(compare_clearance(400), 100); }
 
-TEST(GridPath, AGoalNearerToAnObstacleThanItsCellsCentreIsRefused) {
+TEST(GridPath, RefusesGoalNearerToAnObstacleThanTheBodyRadius) {
     const auto view = drawn({"#####", ".....", "....."});
     const PassabilityOptions body{.body_radius_m = 0.4};
     EXPECT_TRUE(plan_path(view, 1.0, {0.5, 0.5}, {3.5, 1.55}, body));
@@ -139,7 +140,7 @@ TEST(GridPath, AGoalNearerToAnObstacleThanItsCellsCentreIsRefused) {
     EXPECT_THAT(refused.error().message, HasSubstr("nearer to an obstacle than the body radius of 0.4 m"));
 }
 
-TEST(GridPath, AStraightWayThatIsFreeIsTaken) {
+TEST(GridPath, TakesAFreeStraightLine) {
     std::mt19937 random(38);
     int free = 0;
     for (int round = 0; round < 400; ++round) {
@@ -159,7 +160,7 @@ TEST(GridPath, AStraightWayThatIsFreeIsTaken) {
     EXPECT_GT(free, 20);
 }
 
-TEST(GridPath, ARobotTooNearToAWallNeverComesNearer) {
+TEST(GridPath, StartTooNearToAWallNeverGetsNearer) {
     std::mt19937 random(39);
     int left = 0;
     for (int round = 0; round < 300; ++round) {
@@ -170,7 +171,7 @@ TEST(GridPath, ARobotTooNearToAWallNeverComesNearer) {
         const Cell to = random_cell(random);
         if (oracle.enterable(from)) continue;
         const Point2 start{from.i + 0.5, from.j + 0.5};
-        double slack = 0.0; // what the start itself lacks
+        double slack = 0.0; // clearance that the start itself lacks
         while (slack < 4.0 && !oracle.keeps_clear(start, start, slack)) slack += 0.125;
         const auto path = plan_path(view, kCellSize, centre(from, kCellSize), centre(to, kCellSize), options);
         if (!path) continue;
@@ -182,14 +183,14 @@ TEST(GridPath, ARobotTooNearToAWallNeverComesNearer) {
     EXPECT_GT(left, 20);
 }
 
-TEST(GridPath, BetweenRoundCoordinatesInTheOpenIsStraight) {
+TEST(GridPath, IsStraightBetweenCellCornersInOpenSpace) {
     const std::vector<std::string_view> open(12, "............");
     const auto path = plan_path(drawn(open), 1.0, {2.0, 9.0}, {2.0, 4.0}, {.body_radius_m = 0.4}).value();
     EXPECT_EQ(path.points, (std::vector<Point2>{{2.0, 9.0}, {2.0, 4.0}}));
     EXPECT_NEAR(path.cost, 5.0, 1e-12);
 }
 
-TEST(GridPath, BeginsAndEndsAtThePointsThemselves) {
+TEST(GridPath, BeginsAndEndsAtTheExactPoints) {
     std::mt19937 random(33);
     const auto view = scattered(random, kBox, 10);
     std::uniform_real_distribution<double> x(-1.4, 2.2);
@@ -215,7 +216,7 @@ TEST(GridPath, BeginsAndEndsAtThePointsThemselves) {
     EXPECT_GT(found, 50);
 }
 
-TEST(GridPath, PointsOnTheBordersOfCellsAreLikeOthers) {
+TEST(GridPath, AcceptsPointsOnCellBorders) {
     std::mt19937 random(34);
     const auto view = scattered(random, kBox, 10);
     const PassabilityOptions options{.body_radius_m = 0.0};
@@ -229,14 +230,14 @@ TEST(GridPath, PointsOnTheBordersOfCellsAreLikeOthers) {
     EXPECT_GT(found, 50);
 }
 
-TEST(GridPath, APointAHairBelowAnObstacleIsNotInIt) {
+TEST(GridPath, AcceptsPointJustBelowAnObstacle) {
     const auto view = drawn({"####", "...."}, {0, -1});
     const auto path = plan_path(view, 1.0, {0.5, -1e-17}, {3.5, -0.5}, {.body_radius_m = 0.0}).value();
     EXPECT_NEAR(path.cost, std::hypot(3.0, 0.5), 1e-9);
     EXPECT_NEAR(path.length_m, std::hypot(3.0, 0.5), 1e-9);
 }
 
-TEST(GridPath, IsTheSameEveryTime) {
+TEST(GridPath, IsDeterministic) {
     std::mt19937 random(35);
     const auto view = scattered(random, kBox, 15);
     const PassabilityOptions options{.body_radius_m = 0.0};
@@ -252,7 +253,7 @@ TEST(GridPath, IsTheSameEveryTime) {
     }
 }
 
-/// What a sensor of 60 degrees shows of open ground ahead, or of a lane.
+/// Returns the view of a sensor with a field of view of 60 degrees on open ground, or of a lane.
 ClassView ahead(int cells, double slope, int half_width) {
     ClassMap map;
     for (int i = 0; i < cells; ++i) {
@@ -263,7 +264,7 @@ ClassView ahead(int cells, double slope, int half_width) {
     return map.view();
 }
 
-TEST(GridPath, ARobotThatLooksAheadLeavesTheUnknownBesideIt) {
+TEST(GridPath, ForwardSensorStartLeavesSurroundingUnknownSpace) {
     const PassabilityOptions careful{.body_radius_m = 0.15, .on_known = true};
     const auto path = plan_path(ahead(60, 0.577, 0), kCellSize, {0.025, 0.025}, {2.0, 0.025}, careful);
     ASSERT_TRUE(path) << path.error().message;
@@ -271,7 +272,7 @@ TEST(GridPath, ARobotThatLooksAheadLeavesTheUnknownBesideIt) {
     EXPECT_NEAR(path->length_m, 1.975, 0.05);
 }
 
-TEST(GridPath, AlongALaneNarrowerThanTheBodyTheUnknownBesideItMayHideWalls) {
+TEST(GridPath, OnKnownRefusesALaneNarrowerThanTheBody) {
     const PassabilityOptions careful{.body_radius_m = 0.15, .on_known = true};
     EXPECT_EQ(plan_path(ahead(60, 0.0, 1), kCellSize, {0.025, 0.025}, {2.0, 0.025}, careful).error().code,
               Errc::kNoPath);
@@ -281,18 +282,18 @@ TEST(GridPath, AlongALaneNarrowerThanTheBodyTheUnknownBesideItMayHideWalls) {
     EXPECT_THAT(refused.error().message, HasSubstr("nearer to an obstacle or to unknown ground than the body radius"));
 }
 
-TEST(GridPath, EntersUnknownGroundOnlyWhenAsked) {
+TEST(GridPath, EntersUnknownCellsOnlyIfAllowed) {
     const auto view = drawn({".f?f.", "#####"});
     const PassabilityOptions asked{.body_radius_m = 0.0, .allow_unknown = true};
     const auto refused = plan_path(view, 1.0, {0.5, 1.5}, {4.5, 1.5}, {.body_radius_m = 0.0});
     EXPECT_EQ(refused.error().code, Errc::kNoPath);
     EXPECT_THAT(refused.error().message, HasSubstr("no way from (0.5, 1.5) to (4.5, 1.5)"));
     EXPECT_NEAR(plan_path(view, 1.0, {0.5, 1.5}, {4.5, 1.5}, asked)->length_m, 4.0, 1e-12);
-    EXPECT_TRUE(plan_path(view, 1.0, {0.5, 1.5}, {-90.0, 300.0}, asked)) << "beyond the map everything is unknown";
-    EXPECT_TRUE(plan_path(view, 1.0, {0.5, 1.5}, {2.5, -5.5}, asked)) << "around the end of the wall";
+    EXPECT_TRUE(plan_path(view, 1.0, {0.5, 1.5}, {-90.0, 300.0}, asked)) << "all cells outside the map are unknown";
+    EXPECT_TRUE(plan_path(view, 1.0, {0.5, 1.5}, {2.5, -5.5}, asked)) << "the path goes around the end of the wall";
 }
 
-TEST(GridPath, RefusesWhatItsEndsRefuse) {
+TEST(GridPath, RefusesInvalidStartGoalAndOptions) {
     const auto view = drawn({"#..#"});
     const PassabilityOptions point{.body_radius_m = 0.0};
     EXPECT_THAT(plan_path(view, 1.0, {0.5, 0.5}, {1.5, 0.5}, point).error().message, HasSubstr("the start"));
@@ -300,7 +301,7 @@ TEST(GridPath, RefusesWhatItsEndsRefuse) {
     EXPECT_EQ(plan_path(view, 1.0, {1.5, 0.5}, {1.5, 0.5}, {.body_radius_m = -1.0}).error().code, Errc::kInvalidField);
 }
 
-TEST(GridPath, WithinOneCellIsAStraightLine) {
+TEST(GridPath, IsAStraightLineWithinOneCell) {
     const auto view = drawn({"#!#"});
     const auto path = plan_path(view, 1.0, {1.0, 0.2}, {1.0, 0.9}, {.body_radius_m = 0.0, .danger_cost = 2.0}).value();
     EXPECT_EQ(path.points, (std::vector<Point2>{{1.0, 0.2}, {1.0, 0.9}}));
@@ -308,14 +309,14 @@ TEST(GridPath, WithinOneCellIsAStraightLine) {
     EXPECT_NEAR(path.cost, 2.1, 1e-12);
 }
 
-TEST(GridPath, ARobotTooNearToAWallFindsItsWayOut) {
+TEST(GridPath, StartTooNearToAWallFindsAPath) {
     const auto view = drawn({"##########", "..........", "..........", "..........", "..........", ".........."});
     const auto path = plan_path(view, 1.0, {2.5, 4.5}, {8.5, 0.5}, {.body_radius_m = 1.6}).value();
     EXPECT_EQ(path.points.front(), (Point2{2.5, 4.5}));
     EXPECT_EQ(plan_path(view, 1.0, {8.5, 0.5}, {2.5, 4.5}, {.body_radius_m = 1.6}).error().code, Errc::kNoPath);
 }
 
-TEST(LineOfSight, CostsWhatTheCellsItTouchesCost) {
+TEST(LineOfSight, CostMatchesTouchedCells) {
     std::mt19937 random(36);
     int clear = 0;
     int blocked = 0;
@@ -327,7 +328,7 @@ TEST(LineOfSight, CostsWhatTheCellsItTouchesCost) {
         std::uniform_real_distribution<double> coordinate(5.0, 45.0);
         Point2 from{coordinate(random), coordinate(random)};
         Point2 to = from + Point2{coordinate(random) - 25.0, coordinate(random) - 25.0} * 0.4;
-        if (round % 2 == 0) { // centres: these lines meet corners of cells
+        if (round % 2 == 0) { // centres: these lines touch corners of cells
             from = Point2{std::floor(from.x) + 0.5, std::floor(from.y) + 0.5};
             to = Point2{std::floor(to.x) + 0.5, std::floor(to.y) + 0.5};
         }
@@ -343,12 +344,13 @@ TEST(LineOfSight, CostsWhatTheCellsItTouchesCost) {
     EXPECT_GT(blocked, 300);
 }
 
-TEST(LineOfSight, AlongABorderTouchesBothSides) {
+TEST(LineOfSight, LineAlongABorderTouchesBothSides) {
     const auto view = drawn({"....#", ".!...", "....."});
     const auto passability = make_passability(view, 1.0, {.body_radius_m = 0.0, .danger_cost = 3.0}).value();
     EXPECT_NEAR(cost_of_line(passability, {0.25, 1.0}, {2.75, 1.0}).value_or(-1.0), 2.5 + 3.0, 1e-12);
     EXPECT_NEAR(cost_of_line(passability, {2.0, 0.25}, {2.0, 2.75}).value_or(-1.0), 2.5 + 3.0, 1e-12);
-    EXPECT_FALSE(cost_of_line(passability, {2.5, 2.0}, {4.5, 2.0})) << "the obstacle's lower border";
+    EXPECT_FALSE(cost_of_line(passability, {2.5, 2.0}, {4.5, 2.0}))
+        << "the line runs along the obstacle's lower border";
 }
 
 } // namespace

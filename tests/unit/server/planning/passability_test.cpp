@@ -13,7 +13,7 @@ using testing::HasSubstr;
 Errc code_of(const Result<Spot>& result) { return result ? Errc::kInternal : result.error().code; }
 std::string message_of(const Result<Spot>& result) { return result ? "no error" : result.error().message; }
 
-TEST(Passability, ABodyMayEnterTheCellsFarEnoughFromEveryOccupiedSquare) {
+TEST(Passability, EnterableCellsKeepBodyRadiusFromEveryOccupiedSquare) {
     std::mt19937 random(21);
     const grid::CellBox box{-40, -30, 50, 40};
     for (const double radius : {0.0, 0.02, 0.05, 0.1, 0.15, 0.26, 0.5}) {
@@ -38,14 +38,15 @@ TEST(Passability, ABodyMayEnterTheCellsFarEnoughFromEveryOccupiedSquare) {
     }
 }
 
-TEST(Passability, ARadiusOfWholeCellsReachesThem) {
+TEST(Passability, RadiusIncludesCellsAtExactlyThatDistance) {
     const auto view = drawn({"#........."});
     const auto passability = make_passability(view, 0.05, {.body_radius_m = 0.175}).value();
-    EXPECT_FALSE(passability.enterable.test({4, 0})) << "its centre is 3.5 cells from the square, which is the radius";
+    EXPECT_FALSE(passability.enterable.test({4, 0}))
+        << "its centre is 3.5 cells from the square, which equals the radius";
     EXPECT_TRUE(passability.enterable.test({5, 0}));
 }
 
-TEST(Passability, TheWindowIsTheChunksOfTheMap) {
+TEST(Passability, WindowCoversTheMapsChunks) {
     ClassMap map;
     map.set({-1, 5}, CellClass::kFree);
     map.set({200, -70}, CellClass::kFree);
@@ -57,7 +58,7 @@ TEST(Passability, TheWindowIsTheChunksOfTheMap) {
     EXPECT_EQ(passability.centre_of({64, 128}), (Point2{0.025, 0.025}));
 }
 
-TEST(Passability, OptionsOutOfRangeAreRefusedByName) {
+TEST(Passability, RefusesOptionsOutOfRangeByName) {
     const auto refusal = [](const PassabilityOptions& options) {
         return make_passability(drawn({"."}), 0.05, options).error();
     };
@@ -70,7 +71,7 @@ TEST(Passability, OptionsOutOfRangeAreRefusedByName) {
     }
 }
 
-TEST(Passability, AStartThatCannotBeIsRefusedWithTheReason) {
+TEST(Passability, RefusesInvalidStartWithTheReason) {
     const auto view = drawn({"#.?f!"});
     auto passability = make_passability(view, 1.0, {.body_radius_m = 0.0}).value();
     EXPECT_EQ(code_of(open_start(passability, {0.5, 0.5})), Errc::kNoPath);
@@ -84,7 +85,7 @@ TEST(Passability, AStartThatCannotBeIsRefusedWithTheReason) {
     EXPECT_EQ(open_start(passability, {4.5, 0.5}).value(), (Spot{4, 0}));
 }
 
-TEST(Passability, AGoalThatCannotBeIsRefusedWithTheReason) {
+TEST(Passability, RefusesInvalidGoalWithTheReason) {
     const auto view = drawn({"#..?."});
     const auto passability = make_passability(view, 1.0, {.body_radius_m = 1.0}).value();
     EXPECT_THAT(message_of(check_goal(passability, {0.5, 0.5})), HasSubstr("goal (0.5, 0.5) is inside an obstacle"));
@@ -95,7 +96,7 @@ TEST(Passability, AGoalThatCannotBeIsRefusedWithTheReason) {
     EXPECT_EQ(check_goal(passability, {2.5, 0.5}).value(), (Spot{2, 0}));
 }
 
-TEST(Passability, AStartBesideAnObstacleMayBeLeftButNotWalkedAlong) {
+TEST(Passability, StartNextToAnObstacleOpensOnlyNearbyCells) {
     const auto view = drawn({"..........", "..........", "..........", "..........", "##########"});
     auto passability = make_passability(view, 1.0, {.body_radius_m = 1.6}).value();
     ASSERT_FALSE(passability.enterable.test({2, 1}));
@@ -103,12 +104,12 @@ TEST(Passability, AStartBesideAnObstacleMayBeLeftButNotWalkedAlong) {
     ASSERT_TRUE(open_start(passability, {2.5, 1.5}));
     EXPECT_TRUE(passability.enterable.test({2, 1}));
     EXPECT_TRUE(passability.enterable.test({2, 2}));
-    EXPECT_TRUE(passability.enterable.test({4, 1})) << "2 cells away, within 1.6 + 1";
+    EXPECT_TRUE(passability.enterable.test({4, 1})) << "the cell is 2 cells away, which is within 1.6 + 1";
     EXPECT_FALSE(passability.enterable.test({5, 1}));
-    EXPECT_FALSE(passability.enterable.test({2, 0})) << "an obstacle stays one";
+    EXPECT_FALSE(passability.enterable.test({2, 0})) << "the cell of the obstacle stays closed";
 }
 
-TEST(Passability, AnEmptyMapHasNoInside) {
+TEST(Passability, EmptyMapRefusesEveryStart) {
     auto passability = make_passability(ClassView{}, 0.05, {}).value();
     EXPECT_THAT(message_of(open_start(passability, {0.0, 0.0})), HasSubstr("outside the map"));
 }

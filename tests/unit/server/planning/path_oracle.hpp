@@ -12,23 +12,24 @@
 #include <tuple>
 #include <vector>
 
-/// Slow, plain versions of what planning promises, straight from its headers.
+/// Slow and simple versions of the planning contracts, written directly from the headers.
 namespace scanloom::testing_support {
 
 using planning::PassabilityOptions;
 
 inline constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
-/// The cells of a box, and which of them a body may enter.
+/// The cells of a box and the subset that a body may enter.
 class Oracle {
 public:
     Oracle(const ClassView& view, const grid::CellBox& box, double cell_size_m, const PassabilityOptions& options)
         : view_(view), box_(box), options_(options), radius_(options.body_radius_m / cell_size_m + 1e-9),
           radius_of_centres_(radius_) {
-        // A diagonal step between two centres may be nearer to a square than both: then such centres do not count.
-        for (int beside = 1; beside < radius_; ++beside) {
-            const double of_centres = std::hypot(beside + 0.5, beside - 0.5);
-            if (beside * std::sqrt(2.0) <= radius_ && of_centres > radius_) radius_of_centres_ = of_centres + 1e-9;
+        // A diagonal step between two centres may be nearer to a square than both centres. In that case the radius for
+        // centres is increased.
+        for (int offset = 1; beside < radius_; ++beside) {
+            const double of_centres = std::hypot(offset + 0.5, offset - 0.5);
+            if (offset * std::sqrt(2.0) <= radius_ && of_centres > radius_) radius_of_centres_ = of_centres + 1e-9;
         }
         for (std::int32_t j = box.j_begin; j < box.j_end; ++j) {
             for (std::int32_t i = box.i_begin; i < box.i_end; ++i) {
@@ -47,14 +48,14 @@ public:
         return class_at(view_, cell) == CellClass::kDanger ? 1.0 + options_.danger_cost : 1.0;
     }
 
-    /// The cost from a cell to every other one, in cells, by (j, i).
+    /// Returns the cost from `start` to every reachable cell, in cells, by (j, i).
     [[nodiscard]] std::map<std::pair<int, int>, double> costs(Cell start) const {
-        std::map<std::pair<int, int>, double> settled;
+        std::map<std::pair<int, int>, double> visited;
         std::set<std::tuple<double, int, int>> open = {{0.0, start.j, start.i}};
         while (!open.empty()) {
             const auto [cost, j, i] = *open.begin();
             open.erase(open.begin());
-            if (!settled.try_emplace({j, i}, cost).second) continue;
+            if (!visited.try_emplace({j, i}, cost).second) continue;
             for (int dj = -1; dj <= 1; ++dj) {
                 for (int di = -1; di <= 1; ++di) {
                     const Cell next{i + di, j + dj};
@@ -64,18 +65,18 @@ public:
                 }
             }
         }
-        return settled;
+        return visited;
     }
 
-    /// Whether a body going straight from one point to another is more than its radius, less some slack, away from the
-    /// squares of all obstacles. In cells.
+    /// Returns whether a body on a straight line between two points keeps its radius minus `slack` from the squares of
+    /// all obstacles. Unit: cells.
     [[nodiscard]] bool keeps_clear(const Point2& from, const Point2& to, double slack = 0.0) const {
         return is_inside(from, to, slack) && std::ranges::all_of(obstacles_, [&](Cell cell) {
                    return distance(from, to, low_corner(cell)) > radius_ - slack;
                });
     }
 
-    /// The cost of a straight line in cells, or nothing when it touches the square of a cell that may not be entered.
+    /// Returns the cost of a straight line in cells, or nullopt if it touches the square of a closed cell.
     [[nodiscard]] std::optional<double> cost_of_line(const Point2& from, const Point2& to) const {
         double cost = 0.0;
         const Point2 low = min_corner(from, to);
@@ -102,7 +103,7 @@ private:
         return value == CellClass::kOccupied || (unknown && options_.on_known && !options_.allow_unknown);
     }
 
-    /// Whether a body is nowhere beyond the box, where everything is unknown; where that matters.
+    /// Returns whether the body stays inside the box, if that is required: all cells outside the box are unknown.
     [[nodiscard]] bool is_inside(const Point2& from, const Point2& to, double slack) const {
         if (!options_.on_known || options_.body_radius_m == 0.0) return true;
         const Point2 low = min_corner(from, to) - Point2{radius_, radius_} + Point2{slack, slack};
@@ -124,7 +125,8 @@ private:
                });
     }
 
-    /// From a line to a cell's square: the distance from the square falls and then rises along the line.
+    /// Returns the distance from a line to a cell's square. Along the line, the distance to the square falls and then
+    /// rises.
     [[nodiscard]] static double distance(const Point2& from, const Point2& to, const Point2& low) {
         const auto at = [&](double part) {
             const Point2 point = from + part * (to - from);
@@ -141,7 +143,8 @@ private:
         return at(begin);
     }
 
-    /// How much of the line is in a cell's square, 0 .. 1; negative when it does not touch it.
+    /// Returns the fraction of the line inside a cell's square, 0 .. 1, or a negative number if the line does not touch
+    /// it.
     /// Source  Liang, Barsky, A New Concept and Method for Line Clipping (1984).
     [[nodiscard]] static double part_inside(const Point2& from, const Point2& to, Cell cell) {
         constexpr double kTouch = 1e-10;

@@ -15,14 +15,14 @@ using namespace testing_support;
 using grid::CellBox;
 using testing::HasSubstr;
 
-/// A square of free cells whose lower-left corner is a cell.
+/// Marks a square of cells as free; `corner` is its lower left cell.
 void explore(ClassMap& map, Cell corner, std::int32_t side) {
     for (std::int32_t j = 0; j < side; ++j) {
         for (std::int32_t i = 0; i < side; ++i) map.set({corner.i + i, corner.j + j}, CellClass::kFree);
     }
 }
 
-TEST(SearchWindow, WithoutEndsIsAllThatIsExplored) {
+TEST(SearchWindow, WithoutEndsCoversAllExploredChunks) {
     ClassMap map;
     map.set({-1, 5}, CellClass::kFree);
     map.set({200, -70}, CellClass::kFree);
@@ -30,7 +30,7 @@ TEST(SearchWindow, WithoutEndsIsAllThatIsExplored) {
     EXPECT_EQ(search_window(map.view(), 0.05, {.allow_unknown = true})->box, (CellBox{-128, -192, 320, 128}));
 }
 
-TEST(SearchWindow, OverExploredGroundIsTheAreaAroundTheFirstEnd) {
+TEST(SearchWindow, InExploredSpaceCoversTheAreaAroundTheFirstEnd) {
     ClassMap map;
     for (const std::int32_t far : {-10'000'000, 640, 10'000'000}) map.set({far, far}, CellClass::kOccupied);
     explore(map, {60, 60}, 8); // touches four chunks, two of them at a corner
@@ -38,13 +38,13 @@ TEST(SearchWindow, OverExploredGroundIsTheAreaAroundTheFirstEnd) {
     EXPECT_EQ(search_window(map.view(), 0.05, {}, ends)->box, (CellBox{0, 0, 128, 128}));
 }
 
-TEST(SearchWindow, AroundAPointFarFromAllThatIsExploredIsEmpty) {
+TEST(SearchWindow, IsEmptyAroundAPointFarFromExploredCells) {
     const std::vector<Point2> ends = {{100.0, 100.0}};
     EXPECT_TRUE(search_window(drawn({"."}), 0.05, {}, ends)->box.empty());
     EXPECT_TRUE(search_window(ClassView{}, 0.05, {}, ends)->box.empty());
 }
 
-TEST(SearchWindow, ABodyThatTouchesBothSidesOfAGapMakesThemOneArea) {
+TEST(SearchWindow, MergesAreasIfTheBodySpansTheGap) {
     ClassMap map;
     map.set({63, 0}, CellClass::kFree);
     map.set({128, 0}, CellClass::kOccupied); // 64 unexplored cells between them
@@ -53,17 +53,17 @@ TEST(SearchWindow, ABodyThatTouchesBothSidesOfAGapMakesThemOneArea) {
     EXPECT_EQ(search_window(map.view(), 1.0, {.body_radius_m = 65.0}, ends)->box, (CellBox{0, 0, 192, 64}));
 }
 
-TEST(SearchWindow, OverUnexploredGroundHoldsBothEndsAndWhatTheBoxTouches) {
+TEST(SearchWindow, WithUnknownAllowedContainsBothEndsAndTouchedAreas) {
     ClassMap map;
     map.set({0, 0}, CellClass::kFree);
-    map.set({150, 0}, CellClass::kOccupied);  // next to the box around the first: makes it wider
-    map.set({310, 0}, CellClass::kOccupied);  // next to that one
-    map.set({1500, 0}, CellClass::kOccupied); // far
+    map.set({150, 0}, CellClass::kOccupied);  // next to the box around the first end: extends the box
+    map.set({310, 0}, CellClass::kOccupied);  // next to the extended box
+    map.set({1500, 0}, CellClass::kOccupied); // far away
     const std::vector<Point2> ends = {{0.5, 0.5}, {0.5, -300.0}};
     EXPECT_EQ(search_window(map.view(), 1.0, {.allow_unknown = true}, ends)->box, (CellBox{-64, -384, 384, 128}));
 }
 
-TEST(SearchWindow, OneThatIsTooLargeIsRefusedAndOneScanFarAwayMakesNoneTooLarge) {
+TEST(SearchWindow, RefusesTooLargeWindowButIgnoresDistantScans) {
     ClassMap map;
     map.set({0, 0}, CellClass::kFree);
     map.set({100'000, 100'000}, CellClass::kFree);
@@ -77,7 +77,7 @@ TEST(SearchWindow, OneThatIsTooLargeIsRefusedAndOneScanFarAwayMakesNoneTooLarge)
     }
 }
 
-TEST(SearchWindow, ChunksAtTheEndsOfTheNumbersDoNoHarm) {
+TEST(SearchWindow, IgnoresChunksAtIntegerLimits) {
     ClassMap map;
     map.set({0, 0}, CellClass::kFree);
     map.set({std::numeric_limits<std::int32_t>::max(), std::numeric_limits<std::int32_t>::min()}, CellClass::kFree);
@@ -92,7 +92,7 @@ TEST(SearchWindow, ChunksAtTheEndsOfTheNumbersDoNoHarm) {
     }
 }
 
-TEST(SearchWindow, ALongThinAreaIsPlannedInThoughMostOfItsBoxIsUnexplored) {
+TEST(SearchWindow, AcceptsLongThinAreaInMostlyUnexploredBox) {
     constexpr std::int32_t kLength = 10'000;
     ClassMap map;
     for (std::int32_t n = 0; n < kLength; ++n) {
@@ -103,7 +103,7 @@ TEST(SearchWindow, ALongThinAreaIsPlannedInThoughMostOfItsBoxIsUnexplored) {
     EXPECT_NEAR(path->length_m, 0.05 * std::sqrt(2.0) * (kLength - 1), 0.2);
 }
 
-/// Islands of free and occupied cells, many of them with unexplored chunks between.
+/// Returns islands of free and occupied cells, many of them separated by unexplored chunks.
 ClassView islands(std::mt19937& random) {
     std::uniform_int_distribution<std::int32_t> corner(-300, 300);
     std::uniform_int_distribution<std::int32_t> side(5, 90);
@@ -118,10 +118,10 @@ ClassView islands(std::mt19937& random) {
     return map.view();
 }
 
-TEST(SearchWindow, AWayInItCostsWhatTheCheapestOfTheWholeMapDoes) {
+TEST(SearchWindow, PathInWindowCostsAsMuchAsInTheWholeMap) {
     std::mt19937 random(31);
     std::uniform_real_distribution<double> metres(-300.0, 300.0);
-    int ways = 0;
+    int paths = 0;
     for (int round = 0; round < 400; ++round) {
         const auto view = islands(random);
         const PassabilityOptions options{
@@ -133,16 +133,16 @@ TEST(SearchWindow, AWayInItCostsWhatTheCheapestOfTheWholeMapDoes) {
         const auto last = check_goal(whole, goal);
         const bool leads = first && last && connected(whole.enterable, *first).test(*last);
         const auto path = plan_path(view, 1.0, start, goal, options, Shape::kSteps);
-        if (!leads && options.allow_unknown && path) continue; // beyond the whole map, which this one does not know
+        if (!leads && options.allow_unknown && path) continue; // the path runs outside the whole map
         ASSERT_EQ(path.has_value(), leads) << "round " << round;
         if (!path) continue;
-        ++ways;
+        ++paths;
         CostSearch search(whole);
         search.between(*first, *last);
         const auto expected = to_path(whole, search.path_to(*last), start, goal, Shape::kSteps);
         EXPECT_NEAR(path->cost, expected.cost, 1e-9) << "round " << round;
     }
-    EXPECT_GT(ways, 60);
+    EXPECT_GT(paths, 60);
 }
 
 } // namespace
