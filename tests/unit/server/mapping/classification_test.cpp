@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-/// The classes of maps woven from scans, against their definition; scan by scan, as they depend on the order.
+/// Compares the classes of maps with their definition after every scan, because classes depend on the order of scans.
 namespace scanloom::mapping {
 namespace {
 
@@ -21,8 +21,8 @@ using classify::CellClass;
 using classify::OccType;
 using testing_support::class_at;
 
-/// A walk through a room, and between its scans some that see what is not there, so that cells change sides.
-std::vector<LogEntry> confused_walk(std::size_t scans) {
+/// Returns scans along a walk through a room. Some scans in between contradict it, so that cells change their class.
+std::vector<LogEntry> contradictory_walk(std::size_t scans) {
     std::vector<LogEntry> log{RobotJoined{0, "r"}, SensorDescribed{0, testing_support::reference_laser()},
                               SensorDescribed{0, testing_support::small_laser()}};
     std::uint64_t seq = 0;
@@ -35,13 +35,13 @@ std::vector<LogEntry> confused_walk(std::size_t scans) {
     return log;
 }
 
-/// Compares the class of every cell, and of some around; `seen` counts the classes.
-void expect_defined_classes(const oracle::OccTypes& types, const Snapshot& snapshot, std::map<CellClass, int>& seen) {
+/// Compares the class of every cell and of its neighbours with the definition. `counts` counts cells per class.
+void expect_defined_classes(const oracle::OccTypes& types, const Snapshot& snapshot, std::map<CellClass, int>& counts) {
     const std::int32_t reach = danger_reach(snapshot.config);
     std::size_t wrong = 0;
     types.plane().for_each(3, [&](grid::Cell cell, OccType) {
         const CellClass expected = oracle::class_of(types.plane(), cell, reach);
-        ++seen[expected];
+        ++counts[expected];
         if (class_at(snapshot, cell) == expected || ++wrong > 5) return;
         ADD_FAILURE() << "cell " << cell.i << ", " << cell.j << " is " << static_cast<int>(class_at(snapshot, cell))
                       << ", not " << static_cast<int>(expected) << ", after entry " << snapshot.revision;
@@ -85,23 +85,23 @@ const std::map<std::string, SessionOptions> kClassSources = {
 INSTANTIATE_TEST_SUITE_P(Classification, ClassesFrom, testing::ValuesIn(kClassSources),
                          [](const auto& tried) { return tried.param.first; });
 
-TEST_P(ClassesFrom, FoldingScanByScanAreThoseOfTheDefinition) {
+TEST_P(ClassesFrom, MatchTheDefinitionAfterEveryScan) {
     Projection projection{config()};
     oracle::OccTypes types{config()};
-    std::map<CellClass, int> seen;
-    const auto log = confused_walk(45);
+    std::map<CellClass, int> counts;
+    const auto log = contradictory_walk(45);
     for (const auto& entry : log) {
         ASSERT_TRUE(projection.fold(entry));
         const auto snapshot = projection.snapshot();
         types.fold(snapshot);
         if (snapshot.revision % 9 != 0 && snapshot.revision != log.size()) continue;
-        ASSERT_NO_FATAL_FAILURE(expect_defined_classes(types, snapshot, seen));
+        ASSERT_NO_FATAL_FAILURE(expect_defined_classes(types, snapshot, counts));
     }
-    for (int value = 0; value <= 4; ++value) EXPECT_GT(seen[static_cast<CellClass>(value)], 5) << "class " << value;
-    EXPECT_GT(types.changes(), 1000U) << "hardly any cell changed sides";
+    for (int value = 0; value <= 4; ++value) EXPECT_GT(counts[static_cast<CellClass>(value)], 5) << "class " << value;
+    EXPECT_GT(types.changes(), 1000U) << "too few cells changed their class";
 }
 
-/// The class of every cell of the chunks.
+/// Returns the class of every cell of all chunks.
 std::map<std::pair<int, int>, CellClass> classes_of(const Snapshot& snapshot) {
     std::map<std::pair<int, int>, CellClass> classes;
     snapshot.classes.visit({}, 0, [&](grid::ChunkKey key, const classify::ClassChunk& chunk) {
@@ -113,8 +113,8 @@ std::map<std::pair<int, int>, CellClass> classes_of(const Snapshot& snapshot) {
     return classes;
 }
 
-TEST_P(ClassesFrom, OtherBatchesGiveTheSameClasses) {
-    const auto log = confused_walk(45);
+TEST_P(ClassesFrom, AreIndependentOfBatching) {
+    const auto log = contradictory_walk(45);
     Projection at_the_end_only{config()};
     for (const auto& entry : log) ASSERT_TRUE(at_the_end_only.fold(entry));
     const auto expected = classes_of(at_the_end_only.snapshot());
@@ -134,8 +134,8 @@ TEST_P(ClassesFrom, OtherBatchesGiveTheSameClasses) {
     }
 }
 
-TEST_P(ClassesFrom, ACheckpointBetweenScansChangesNothing) {
-    const auto log = confused_walk(45);
+TEST_P(ClassesFrom, AreUnchangedByACheckpointBetweenScans) {
+    const auto log = contradictory_walk(45);
     Projection whole{config()};
     for (const auto& entry : log) ASSERT_TRUE(whole.fold(entry));
     const auto expected = classes_of(whole.snapshot());
@@ -144,13 +144,14 @@ TEST_P(ClassesFrom, ACheckpointBetweenScansChangesNothing) {
         Projection first{config()};
         for (std::size_t n = 0; n < cut; ++n) ASSERT_TRUE(first.fold(log[n]));
         Projection second = testing_support::restored(first);
-        EXPECT_EQ(classes_of(second.snapshot()), classes_of(first.snapshot())) << "cut after " << cut;
+        EXPECT_EQ(classes_of(second.snapshot()), classes_of(first.snapshot())) << "checkpoint after entry " << cut;
         for (std::size_t n = cut; n < log.size(); ++n) ASSERT_TRUE(second.fold(log[n]));
-        EXPECT_EQ(classes_of(second.snapshot()), expected) << "cut after " << cut;
+        EXPECT_EQ(classes_of(second.snapshot()), expected) << "checkpoint after entry " << cut;
     }
 }
 
-/// Readings of one beam along +x, seen from the middle of cell (0, 0) at 0.1 m. `watched` is at 1 m.
+/// Readings of one beam along +x from the centre of cell (0, 0), with a cell size of 0.1 m. The watched cell is 1 m
+/// away.
 class OneBeam {
 public:
     explicit OneBeam(const SessionOptions& options) : projection_(resolve(options).value()) {
@@ -164,7 +165,7 @@ public:
     void hit() { read(1000); }
     void pass() { read(3000); }
 
-    /// Whatever is beside it.
+    /// Returns the watched cell's type, whether or not obstacles are near.
     [[nodiscard]] OccType watched() {
         switch (class_at(projection_.snapshot(), {10, 0})) {
         case CellClass::kFree:
@@ -187,8 +188,8 @@ private:
     std::uint64_t seq_ = 0;
 };
 
-TEST(Classification, SmallOscillationAroundOneThresholdNeverFlipsACell) {
-    // l: 0.663 a hit, -0.201 a pass; the thresholds are at +-0.619.
+TEST(Classification, OscillationAroundOneThresholdKeepsTheType) {
+    // The log-odds change by 0.663 per hit and by -0.201 per pass; the thresholds are +-0.619.
     OneBeam near_occupied({.cell_size = 0.1, .p_occupied = 0.66, .p_free = 0.45});
     near_occupied.hit();
     int beyond = 0;
@@ -199,7 +200,7 @@ TEST(Classification, SmallOscillationAroundOneThresholdNeverFlipsACell) {
         p < 0.65 ? near_occupied.hit() : near_occupied.pass();
         while (near_occupied.probability() > 0.7) near_occupied.pass();
     }
-    EXPECT_GT(beyond, 40) << "it has to go back and forth over the threshold";
+    EXPECT_GT(beyond, 40) << "the value must cross the threshold repeatedly";
 
     OneBeam near_free({.cell_size = 0.1, .p_occupied = 0.55, .p_free = 0.34});
     near_free.pass();
@@ -214,7 +215,7 @@ TEST(Classification, SmallOscillationAroundOneThresholdNeverFlipsACell) {
     EXPECT_GT(beyond, 40);
 }
 
-TEST(Classification, HimmFlipsAtItsFarThresholdOnly) {
+TEST(Classification, HimmTypeChangesOnlyAtTheOppositeThreshold) {
     OneBeam beam({.cell_size = 0.1, .class_source = ClassSource::kHimm});
     const auto expect_after = [&](bool is_hit, OccType expected, const char* count) {
         is_hit ? beam.hit() : beam.pass();
@@ -231,25 +232,25 @@ TEST(Classification, HimmFlipsAtItsFarThresholdOnly) {
     expect_after(false, OccType::kFree, "4");
 }
 
-TEST(Classification, ACellInTheDeadBandStaysUnexploredUntilItLeavesIt) {
+TEST(Classification, CellInTheDeadBandStaysUnexplored) {
     OneBeam beam({.cell_size = 0.1, .p_occupied = 0.6, .p_free = 0.4});
     beam.hit(); // 0.6
     EXPECT_EQ(beam.watched(), OccType::kUnexplored) << beam.probability();
     beam.pass(); // 0.5
-    EXPECT_EQ(beam.watched(), OccType::kUnexplored) << "known, but not which";
+    EXPECT_EQ(beam.watched(), OccType::kUnexplored) << "known, but inside the dead band";
     beam.hit();
     beam.hit(); // 0.69
     EXPECT_EQ(beam.watched(), OccType::kOccupied);
 }
 
-TEST(Classification, EvidenceOfExactlyTheThresholdReachesIt) {
+TEST(Classification, ValueEqualToTheThresholdReachesIt) {
     for (const double p : {0.55, 0.65, 0.7, 0.8, 0.85, 0.9, 0.97, 0.999}) {
         OneBeam beam(
             {.cell_size = 0.1, .p_occupied = p, .p_free = 1.0 - p, .class_p_occupied = p, .class_p_free = 1 - p});
         beam.hit();
         EXPECT_EQ(beam.watched(), OccType::kOccupied) << p;
         beam.pass();
-        EXPECT_EQ(beam.watched(), OccType::kOccupied) << p << ": back at even odds";
+        EXPECT_EQ(beam.watched(), OccType::kOccupied) << p << ": back at a probability of 0.5";
         beam.pass();
         EXPECT_EQ(beam.watched(), OccType::kFree) << 1.0 - p;
     }
@@ -263,7 +264,7 @@ TEST(Classification, ThresholdsAtTheClampAreReached) {
     EXPECT_EQ(beam.watched(), OccType::kFree);
 }
 
-TEST(Classification, ThresholdsCloserThanCellsCanTellStayApart) {
+TEST(Classification, ThresholdsCloserThanTheResolutionStayDistinct) {
     OneBeam beam({.cell_size = 0.1, .class_p_occupied = 0.5, .class_p_free = 0.49999});
     beam.hit();
     beam.pass(); // 0.5
@@ -272,7 +273,7 @@ TEST(Classification, ThresholdsCloserThanCellsCanTellStayApart) {
     EXPECT_EQ(beam.watched(), OccType::kFree);
 }
 
-TEST(Classification, EveryThresholdThatIsAcceptedIsKept) {
+TEST(Classification, AcceptedThresholdsBeyondTheClampAreNeverReached) {
     for (const double low : {1e-12, 1e-7, 0.2}) {
         for (const double high : {0.8, 1.0 - 1e-7, 1.0 - 1e-12}) {
             const SessionOptions options{.cell_size = 0.1, .class_p_occupied = high, .class_p_free = low};

@@ -26,25 +26,24 @@ std::string digest_of_occupancy(LaserLayers& layers) {
     return digest_of(Snapshot{.laser = layers.snapshot()}, Layer::kOccupancy);
 }
 
-TEST(Digest, OfTwoChunksIsTheHashOfTheirDocumentedBytes) {
+TEST(Digest, OfTwoChunksIsTheHashOfTheDocumentedBytes) {
     LaserLayers layers{MapConfig{}};
     auto cells = unknown_cells();
     cells[0] = 0x0102;
     cells[4095] = -2;
     layers.restore({.cj = -1, .ci = 3}, 1).occupancy = cells;
     layers.restore({.cj = -1, .ci = -258}, 2).occupancy = cells;
-    // Computed by Python's hashlib from struct.pack('<d', 0.05) and of each chunk struct.pack('<ii4096h', ci, cj,
-    // *cells),
-    // (-258, -1) first.
+    // Computed with Python's hashlib from struct.pack('<d', 0.05), followed by struct.pack('<ii4096h', ci, cj, *cells)
+    // of each chunk, beginning with chunk (-258, -1).
     EXPECT_EQ(digest_of_occupancy(layers), "9bde9bfd28e31e3326fa675f9644ee1f0123ab2e39576730471dab72ff175682");
 }
 
-TEST(Digest, OfNothingIsTheHashOfTheCellSize) {
+TEST(Digest, OfAnEmptyMapIsTheHashOfTheCellSize) {
     LaserLayers layers{MapConfig{}};
     EXPECT_EQ(digest_of_occupancy(layers), "7f925b2036e92fe2f1f0697c3aedfff74d719c1ee2cb6b739d7c30484e75972c");
 }
 
-TEST(Digest, OfTheSameCellsInAnotherSizeIsAnother) {
+TEST(Digest, DependsOnTheCellSize) {
     LaserLayers layers{MapConfig{}};
     layers.restore({.cj = 0, .ci = 0}, 1).occupancy.fill(100);
     MapConfig larger;
@@ -53,7 +52,7 @@ TEST(Digest, OfTheSameCellsInAnotherSizeIsAnother) {
               digest_of(Snapshot{.config = larger, .laser = layers.snapshot()}, Layer::kOccupancy));
 }
 
-TEST(Digest, DependsNeitherOnTheOrderNorOnTheRevisionsNorOnBlankChunks) {
+TEST(Digest, IgnoresOrderRevisionsAndBlankChunks) {
     std::mt19937 random(7);
     std::vector<std::pair<grid::ChunkKey, Cells>> chunks;
     for (std::int32_t n = 0; n < 40; ++n) chunks.push_back({{n % 9 - 4, n * 37 % 101 - 50}, random_cells(random)});

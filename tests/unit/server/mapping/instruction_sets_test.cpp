@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-/// Every instruction set that this machine has, against the definitions and against the others.
+/// Compares every instruction set of this machine with the definitions and with the other instruction sets.
 namespace scanloom::mapping {
 namespace {
 
@@ -28,9 +28,9 @@ protected:
 INSTANTIATE_TEST_SUITE_P(All, InstructionSet, testing::ValuesIn(simd::instruction_sets()),
                          [](const auto& tried) { return std::string(tried.param); });
 
-TEST_P(InstructionSet, IsTheOneThatWasChosen) { EXPECT_EQ(simd::instruction_set(), GetParam()); }
+TEST_P(InstructionSet, IsTheSelectedOne) { EXPECT_EQ(simd::instruction_set(), GetParam()); }
 
-/// Scans of sensors of every shape, on maps of every cell size: hits, no-returns and invalid readings.
+/// Returns digests of maps with scans of every sensor shape and cell size: hits, no-returns and invalid readings.
 std::string digests_of_random_scans(unsigned shape, const SessionOptions& options) {
     std::mt19937 random(shape);
     const auto uniform = [&](double low, double high) { return std::uniform_real_distribution(low, high)(random); };
@@ -54,23 +54,23 @@ std::string digests_of_random_scans(unsigned shape, const SessionOptions& option
     return testing_support::digests_of(projection.snapshot());
 }
 
-TEST_P(InstructionSet, GivesTheSameMapsAsTheOthersBitForBit) {
+TEST_P(InstructionSet, CreatesBitwiseEqualMaps) {
     for (unsigned shape = 0; shape < testing_support::kAngleShapes; ++shape) {
         for (const double cell_size : {0.01, 0.05, 0.5}) {
             for (const auto class_source : {ClassSource::kOccupancy, ClassSource::kHimm}) {
                 const SessionOptions options{.cell_size = cell_size, .class_source = class_source};
                 simd::use_instruction_set(GetParam());
-                const auto here = digests_of_random_scans(shape, options);
+                const auto result = digests_of_random_scans(shape, options);
                 simd::use_instruction_set({});
                 simd::use_instruction_set(simd::instruction_sets().back());
-                EXPECT_EQ(here, digests_of_random_scans(shape, options)) << "shape " << shape << ", " << cell_size;
+                EXPECT_EQ(result, digests_of_random_scans(shape, options)) << "shape " << shape << ", " << cell_size;
             }
         }
     }
 }
 
-/// A sensor on a cell's centre or corner, edges between sectors that go through those of other cells, and readings
-/// whose bands begin or end there: the rounding of each crossing decides.
+/// Returns digests of scans whose sensor is at a centre or corner of a cell, whose sector edges pass through centres of
+/// other cells, and whose bands begin or end there, so that the result depends on the rounding of each crossing.
 std::string digests_of_scans_through_centres(unsigned seed) {
     struct Direction {
         int x, y, length; // whole numbers all three
@@ -88,11 +88,11 @@ std::string digests_of_scans_through_centres(unsigned seed) {
     Scan scan;
     const auto half_cells = [&] { return 0.5 * cell * static_cast<double>(random() % 7); };
     for (const Direction& direction : kDirections) {
-        for (const double turned : {0.0, 0.5, 1.0, 1.5}) { // of pi
+        for (const double turned : {0.0, 0.5, 1.0, 1.5}) { // multiples of pi
             const double edge = std::atan2(direction.y, direction.x) + turned * std::numbers::pi;
             const double corner =
                 cell * direction.length * static_cast<double>(1 + random() % (140 / direction.length));
-            for (const double side : {-0.5, 0.5}) { // the edge is in the middle between two beams
+            for (const double side : {-0.5, 0.5}) { // the edge is halfway between two beams
                 angles.push_back(edge + side * kAperture);
                 const double ahead = 0.5 * (random() % 2 == 0 ? narrow : wide) * (random() % 2 == 0 ? 1.0 : -1.0);
                 scan.ranges.push_back(random() % 6 == 0 ? kInvalidRange : to_range_mm(corner + ahead + half_cells()));
@@ -114,29 +114,29 @@ std::string digests_of_scans_through_centres(unsigned seed) {
     return testing_support::digests_of(projection.snapshot());
 }
 
-/// Compares `seeds` maps of this instruction set with those of plain code.
+/// Compares `seeds` maps of this instruction set with those of the scalar code.
 void compare_maps_through_centres(std::string_view set, unsigned seeds) {
     for (unsigned seed = 0; seed < seeds; ++seed) {
         simd::use_instruction_set(set);
-        const auto here = digests_of_scans_through_centres(seed);
+        const auto result = digests_of_scans_through_centres(seed);
         simd::use_instruction_set({});
         simd::use_instruction_set(simd::instruction_sets().back());
-        ASSERT_EQ(here, digests_of_scans_through_centres(seed)) << "seed " << seed;
+        ASSERT_EQ(result, digests_of_scans_through_centres(seed)) << "seed " << seed;
     }
 }
 
-TEST_P(InstructionSet, GivesTheSameMapsWhereEdgesGoThroughCentres) { compare_maps_through_centres(GetParam(), 200); }
+TEST_P(InstructionSet, CreatesEqualMapsForEdgesThroughCentres) { compare_maps_through_centres(GetParam(), 200); }
 
 class InstructionSetTrials : public InstructionSet {};
 
 INSTANTIATE_TEST_SUITE_P(All, InstructionSetTrials, testing::ValuesIn(simd::instruction_sets()),
                          [](const auto& tried) { return std::string(tried.param); });
 
-TEST_P(InstructionSetTrials, GiveTheSameMapsWhereEdgesGoThroughCentres) {
+TEST_P(InstructionSetTrials, CreatesEqualMapsForManyEdgesThroughCentres) {
     compare_maps_through_centres(GetParam(), 1500);
 }
 
-/// A chunk with values of every kind, and verdicts on some of its cells; rows that are wholly free among them.
+/// A chunk with random values and with verdicts on some of its cells; some rows are entirely free.
 struct RandomChunk {
     explicit RandomChunk(unsigned seed) {
         std::mt19937_64 random(seed);
@@ -173,7 +173,7 @@ OccupancyRule rule_of(double prior, double low, double high, double free, double
     return OccupancyRule(config);
 }
 
-/// The same verdicts again and again settle cells; others unsettle them.
+/// Returns repeated verdicts, which saturate cells, followed by others that change them again.
 std::vector<ChunkVerdicts> random_verdicts(unsigned seed) {
     std::vector<ChunkVerdicts> all;
     for (unsigned n = 0; n < 4; ++n) all.insert(all.end(), 6, RandomChunk(100 * seed + n).verdicts);
@@ -226,7 +226,7 @@ TEST_P(InstructionSet, CountsHitsAsDefined) {
     }
 }
 
-TEST_P(InstructionSet, WhatIsSettledIsNotChangedByMoreOfTheSame) {
+TEST_P(InstructionSet, SaturatedCellsIgnoreFurtherEqualVerdicts) {
     RandomChunk random(9);
     random.verdicts.occupied.fill(0);
     random.verdicts.occupied_rows = 0;
@@ -237,7 +237,7 @@ TEST_P(InstructionSet, WhatIsSettledIsNotChangedByMoreOfTheSame) {
         simd::count_hits(chunk, random.verdicts, HimmRule({}));
     }
     EXPECT_TRUE(simd::is_settled(chunk, random.verdicts, random.verdicts));
-    const grid::Cell cell{3, 0}; // of a row that is free all over
+    const grid::Cell cell{3, 0}; // of a row whose cells are all free
     ChunkVerdicts hit;
     grid::set(hit.occupied, cell, true);
     hit.occupied_rows = 1;
@@ -245,7 +245,7 @@ TEST_P(InstructionSet, WhatIsSettledIsNotChangedByMoreOfTheSame) {
     EXPECT_FALSE(simd::is_settled(chunk, random.verdicts, random.verdicts));
 }
 
-/// Section 6 of the design models, for one cell.
+/// Section 6 of the design models, applied to one cell.
 template <class Value>
 classify::OccType type_after(classify::OccType before, Value value, const classify::Hysteresis<Value>& rule) {
     using classify::OccType;
@@ -254,7 +254,7 @@ classify::OccType type_after(classify::OccType before, Value value, const classi
     return value <= (before == OccType::kUnexplored ? rule.first_free : rule.free) ? OccType::kFree : before;
 }
 
-TEST_P(InstructionSet, FoldsTypesAsDefined) {
+TEST_P(InstructionSet, UpdatesTypesAsDefined) {
     const classify::Hysteresis<LogOdds> by_occupancy{1200, -900, -900, kUnknownLogOdds};
     const classify::Hysteresis<HimmCount> by_himm{8, 4, 0, kUnseenHimm};
     for (unsigned seed = 0; seed < 20; ++seed) {

@@ -14,11 +14,11 @@
 #include <string>
 #include <vector>
 
-/// Occupancy and HIMM of woven maps, after sequences of scans, against brute force over cells and beams.
+/// Compares occupancy and HIMM layers after sequences of scans with a brute-force loop over cells and beams.
 namespace scanloom::mapping {
 namespace {
 
-/// Some scans of one sensor from nearly the same place.
+/// Several scans of one sensor from almost the same pose.
 struct Run {
     std::string shape;
     Sensor sensor;
@@ -39,7 +39,7 @@ public:
         run.sensor.range_min = below(2) == 0 ? 0.0 : run.sensor.range_max * uniform(0.0, 0.3);
         if (below(3) == 0) run.sensor.aperture = uniform(0.001, 0.5);
         Pose2 pose{uniform(-4.0, 4.0), uniform(-4.0, 4.0), uniform(-kPi, kPi)};
-        const bool on_the_grid = below(4) == 0; // on centres and borders of cells, looking along the axes
+        const bool on_the_grid = below(4) == 0; // on centres and borders of cells, with axis-aligned headings
         if (on_the_grid) {
             pose = {(below(41) - 20.0) * cell_size / 2, (below(41) - 20.0) * cell_size / 2, below(8) * kPi / 4};
         } else if (below(2) == 0) {
@@ -60,7 +60,7 @@ public:
 private:
     std::vector<RangeMm> ranges_of(const Sensor& sensor) {
         std::vector<RangeMm> ranges(beam_count(sensor.angles));
-        const double common = uniform(0.2, 1.1) * sensor.range_max; // as a wall all around
+        const double common = uniform(0.2, 1.1) * sensor.range_max; // range of a wall on all sides
         const bool is_wall = below(2) == 0;
         for (auto& range : ranges) {
             const unsigned kind = below(12);
@@ -73,7 +73,7 @@ private:
     std::mt19937 random_;
 };
 
-const std::map<std::string, SessionOptions> kWays = {
+const std::map<std::string, SessionOptions> kModels = {
     {"InverseSensorModel", {}},
     {"InverseSensorModelOfOtherValues",
      {.p_occupied = 0.7,
@@ -99,11 +99,11 @@ const std::map<std::string, SessionOptions> kWays = {
 
 class LaserLayersBy : public testing::TestWithParam<std::pair<const std::string, SessionOptions>> {};
 
-INSTANTIATE_TEST_SUITE_P(All, LaserLayersBy, testing::ValuesIn(kWays),
+INSTANTIATE_TEST_SUITE_P(All, LaserLayersBy, testing::ValuesIn(kModels),
                          [](const auto& tried) { return tried.param.first; });
 
-/// Weaves a run and holds the map against the oracle after every scan.
-void expect_woven_as_defined(const MapConfig& config, const Run& run, std::size_t& firm) {
+/// Integrates a run and compares the map with the oracle after every scan.
+void expect_map_as_defined(const MapConfig& config, const Run& run, std::size_t& firm) {
     Projection projection(config);
     oracle::LaserOracle oracle(config);
     ASSERT_TRUE(projection.fold(RobotJoined{0, "r"}));
@@ -115,7 +115,7 @@ void expect_woven_as_defined(const MapConfig& config, const Run& run, std::size_
     oracle.expect_equal(projection.snapshot(), run.shape, firm);
 }
 
-TEST_P(LaserLayersBy, EqualBruteForceOverSequencesOfScansOfEveryShape) {
+TEST_P(LaserLayersBy, MatchBruteForceForEveryShape) {
     std::size_t firm = 0;
     for (const double cell_size : {0.01, 0.05, 0.1, 0.5}) {
         SessionOptions options = GetParam().second;
@@ -124,17 +124,17 @@ TEST_P(LaserLayersBy, EqualBruteForceOverSequencesOfScansOfEveryShape) {
         for (unsigned shape = 0; shape < testing_support::kAngleShapes; ++shape) {
             RandomRuns runs(1000 * shape + static_cast<unsigned>(100 * cell_size));
             for (const std::size_t scans : {1U, 5U}) {
-                ASSERT_NO_FATAL_FAILURE(expect_woven_as_defined(config, runs.next(shape, cell_size, scans), firm))
+                ASSERT_NO_FATAL_FAILURE(expect_map_as_defined(config, runs.next(shape, cell_size, scans), firm))
                     << "cell size " << cell_size << ", " << scans << " scans";
             }
         }
     }
     RecordProperty("firm_cells", static_cast<int>(firm));
     std::cout << firm << " firm cells\n";
-    EXPECT_GT(firm, 20'000U) << "too few cells had a firm verdict for the comparison to mean anything";
+    EXPECT_GT(firm, 20'000U) << "too few cells have a firm verdict to compare";
 }
 
-/// A beam along +x from the middle of cell (0, 0), cells of 0.1 m.
+/// Returns the map after readings of one beam along +x from the centre of cell (0, 0), with a cell size of 0.1 m.
 Snapshot after_one_beam(SessionOptions options, const std::vector<RangeMm>& readings, double range_max = 5.0) {
     options.cell_size = 0.1;
     Projection projection(resolve(options).value());
@@ -150,7 +150,7 @@ Snapshot after_one_beam(SessionOptions options, const std::vector<RangeMm>& read
     return projection.snapshot();
 }
 
-TEST(Himm, CountsUpByThreeAndDownByOneWithinZeroAndFifteen) {
+TEST(Himm, CountsUpByThreeAndDownByOneFromZeroToFifteen) {
     std::vector<RangeMm> readings;
     const auto count_after = [&](RangeMm reading) {
         readings.push_back(reading);
@@ -162,13 +162,13 @@ TEST(Himm, CountsUpByThreeAndDownByOneWithinZeroAndFifteen) {
     EXPECT_EQ(count_after(1000), 3);
 }
 
-TEST(Himm, CountedDownToZeroIsNotUnseen) {
+TEST(Himm, CountOfZeroIsNotUnseen) {
     const auto snapshot = after_one_beam({}, {3000});
     EXPECT_EQ(testing_support::himm_at(snapshot, {10, 0}), 0);
     EXPECT_EQ(testing_support::himm_at(snapshot, {10, 5}), 255);
 }
 
-TEST(Himm, ItsBandIsTwiceThatOfOccupancy) {
+TEST(Himm, BandIsTwiceAsWideAsThatOfOccupancy) {
     const auto snapshot = after_one_beam({}, {1030});
     for (const int i : {10, 11}) EXPECT_EQ(testing_support::himm_at(snapshot, {i, 0}), 3) << "|r - z| < 0.1 m";
     EXPECT_EQ(testing_support::himm_at(snapshot, {12, 0}), 255);
@@ -176,7 +176,7 @@ TEST(Himm, ItsBandIsTwiceThatOfOccupancy) {
     EXPECT_EQ(testing_support::occupancy_at(snapshot, {11, 0}), kUnknownLogOdds) << "|r - z| is 0.07 m";
 }
 
-TEST(RayModels, ABeamWithoutAReturnFreesTheCellAtItsEndAndMarksNothing) {
+TEST(RayModels, BeamWithoutReturnFreesItsEndCellAndMarksNone) {
     for (const auto model : {RayModel::kBresenham, RayModel::kTraversal}) {
         for (const RangeMm reading : {kNoReturn, RangeMm{2000}, RangeMm{9000}}) {
             const auto snapshot = after_one_beam({.ray_model = model}, {reading}, 2.0);
@@ -189,7 +189,7 @@ TEST(RayModels, ABeamWithoutAReturnFreesTheCellAtItsEndAndMarksNothing) {
     }
 }
 
-TEST(BeamIndex, FindsWhatTheLoopOverAllBeamsFinds) {
+TEST(BeamIndex, MatchesALoopOverAllBeams) {
     std::mt19937 random(3);
     for (unsigned shape = 0; shape < testing_support::kAngleShapes; ++shape) {
         for (int round = 0; round < 5; ++round) {

@@ -11,7 +11,7 @@ namespace {
 using testing_support::random_scan;
 using testing_support::small_laser;
 
-/// The maps of one robot that scanned in these places, in turn; each scan sees up to 4 m.
+/// Returns the map of one robot that took one scan at each place, in order; each scan reaches up to 4 m.
 Snapshot seen_from(const std::vector<Point2>& places) {
     Projection projection{MapConfig{}};
     EXPECT_TRUE(projection.fold(RobotJoined{0, "r"}));
@@ -24,32 +24,32 @@ Snapshot seen_from(const std::vector<Point2>& places) {
     return projection.snapshot();
 }
 
-TEST(MainBounds, WithoutAStrayScanAreAllBounds) {
+TEST(MainBounds, WithoutStrayScanEqualAllBounds) {
     const auto maps = seen_from({{0.0, 0.0}, {5.0, 0.0}, {9.0, 3.0}});
     EXPECT_EQ(main_bounds_of(maps), bounds_of(maps));
 }
 
-TEST(MainBounds, LeaveOutWhatOneScanLeftFarAway) {
+TEST(MainBounds, ExcludeAStrayScanFarAway) {
     const std::vector<Point2> walk = {{0.0, 0.0}, {5.0, 0.0}, {9.0, 3.0}};
     auto with_stray = walk;
     with_stray.insert(with_stray.begin() + 1, {1e5, -1e5});
     const auto main = main_bounds_of(seen_from(with_stray));
-    const auto wanted = bounds_of(seen_from(walk)); // main bounds are of whole chunks
+    const auto wanted = bounds_of(seen_from(walk)); // main bounds consist of whole chunks
     EXPECT_GT(main.i_begin, wanted.i_begin - 128);
     EXPECT_GT(main.j_begin, wanted.j_begin - 128);
     EXPECT_LT(main.i_end, wanted.i_end + 128);
     EXPECT_LT(main.j_end, wanted.j_end + 128);
 }
 
-TEST(MainBounds, HoldTheLargestAreaAndTheRobot) {
+TEST(MainBounds, IncludeTheLargestAreaAndTheRobot) {
     const auto maps = seen_from({{0.0, 0.0}, {5.0, 0.0}, {9.0, 3.0}, {1e5, -1e5}, {100.0, 0.0}});
     const auto main = main_bounds_of(maps);
-    EXPECT_EQ(main.i_begin, bounds_of(maps).i_begin) << "the area that it scanned most of";
-    EXPECT_GT(main.i_end, 2000) << "and where it is now, 100 m away";
+    EXPECT_EQ(main.i_begin, bounds_of(maps).i_begin) << "the largest scanned area is included";
+    EXPECT_GT(main.i_end, 2000) << "the robot's position 100 m away is included";
     EXPECT_LT(main.i_end, 2200);
 }
 
-TEST(MainBounds, OfNothingAreEmpty) { EXPECT_TRUE(main_bounds_of(seen_from({})).empty()); }
+TEST(MainBounds, AreEmptyWithoutScans) { EXPECT_TRUE(main_bounds_of(seen_from({})).empty()); }
 
 } // namespace
 } // namespace scanloom::mapping

@@ -30,11 +30,11 @@ TEST(MapConfig, AbsentOptionsTakeTheDefaults) {
     EXPECT_EQ(*config, MapConfig{});
 }
 
-/// Values of a field beside its bounds: those that are refused, and those that are just within.
+/// Values near a field's limits: refused values, and accepted values just inside the limits.
 struct Bounds {
     const char* field;
     std::vector<double> refused;
-    std::vector<double> taken;
+    std::vector<double> accepted;
 };
 
 const double kNan = NAN;
@@ -75,16 +75,16 @@ SessionOptions with(const char* name, double value) {
     return options;
 }
 
-TEST(MapConfig, EveryFieldsBoundsAreCheckedByName) {
+TEST(MapConfig, RefusesValuesOutOfRangeByFieldName) {
     for (const auto& bounds : kBounds) {
         for (const double value : bounds.refused) expect_refused(with(bounds.field, value), bounds.field);
-        for (const double value : bounds.taken) {
+        for (const double value : bounds.accepted) {
             EXPECT_TRUE(resolve(with(bounds.field, value))) << bounds.field << " " << value;
         }
     }
 }
 
-TEST(MapConfig, NoNumberIsWithoutBounds) {
+TEST(MapConfig, EveryNumberHasLimits) {
     std::set<std::string> checked;
     for (const auto& bounds : kBounds) checked.insert(bounds.field);
     for (const auto& field : config_fields()) {
@@ -94,18 +94,19 @@ TEST(MapConfig, NoNumberIsWithoutBounds) {
     }
 }
 
-TEST(MapConfig, EveryFieldOfTheOptionsIsInTheList) {
-    // Each takes 2, 3 or 24 bytes more than its optional's flag: were one missing, this would stay absent.
+TEST(MapConfig, FieldListContainsEveryOption) {
+    // Each option takes 2, 3 or 24 bytes more than its optional's flag. An option that is missing in the list would
+    // stay absent.
     SessionOptions all = options_of({});
     std::size_t set = 0;
     for (const auto& field : config_fields()) {
         std::visit([&](const auto& member) { set += (all.*member.option).has_value(); }, field.member);
     }
     EXPECT_EQ(set, config_fields().size());
-    EXPECT_EQ(set, 29U) << "SessionOptions has this many";
+    EXPECT_EQ(set, 29U) << "SessionOptions has 29 members";
 }
 
-TEST(MapConfig, CombinationsThatMeanNothingAreRefusedByName) {
+TEST(MapConfig, RefusesInvalidCombinationsByFieldName) {
     const auto none = RayModel::kInverseSensorModel;
     expect_refused({.accumulate = true}, "accumulate");
     expect_refused({.ray_model = none, .accumulate = true}, "accumulate");
@@ -127,16 +128,16 @@ TEST(MapConfig, CombinationsThatMeanNothingAreRefusedByName) {
     expect_refused({.p_free = 0.0005}, "p_min");
 }
 
-TEST(MapConfig, TheDangerRadiusCoversAtLeastItsMetres) {
+TEST(MapConfig, DangerReachIsAtLeastTheRadius) {
     const auto reach = [](double cell_size, double radius) {
         return danger_reach(resolve({.cell_size = cell_size, .danger_radius = radius}).value());
     };
     EXPECT_EQ(danger_reach({}), 3);
     EXPECT_EQ(danger_reach(resolve({.danger_cells = 7}).value()), 7);
-    EXPECT_EQ(reach(0.05, 0.15), 3) << "whatever rounding says";
+    EXPECT_EQ(reach(0.05, 0.15), 3) << "independent of rounding";
     EXPECT_EQ(reach(0.1, 0.3), 3);
     EXPECT_EQ(reach(0.05, 0.16), 4);
-    EXPECT_EQ(reach(0.5, 0.15), 1) << "never none";
+    EXPECT_EQ(reach(0.5, 0.15), 1) << "at least one cell";
     EXPECT_EQ(reach(0.01, 0.64), 64);
 }
 
@@ -151,7 +152,7 @@ std::vector<const char*> names_of_fields() {
 INSTANTIATE_TEST_SUITE_P(MapConfig, AnyField, testing::ValuesIn(names_of_fields()),
                          [](const auto& tried) { return std::string(tried.param); });
 
-TEST_P(AnyField, IsFoundByItsNameAlone) {
+TEST_P(AnyField, IsFoundOnlyByItsExactName) {
     const std::string name = GetParam();
     ASSERT_NE(find_config_field(name), nullptr);
     EXPECT_EQ(find_config_field(name)->name, name);
@@ -160,7 +161,7 @@ TEST_P(AnyField, IsFoundByItsNameAlone) {
     }
 }
 
-TEST_P(AnyField, NamesItselfWhenAValueIsOfAnotherKind) {
+TEST_P(AnyField, RefusesValuesOfAnotherTypeByName) {
     const ConfigField& field = *find_config_field(GetParam());
     const ConfigValue kept = value_of(field, {});
     for (const ConfigValue& value : {ConfigValue(true), ConfigValue(3), ConfigValue(0.5), ConfigValue("stone")}) {
@@ -173,11 +174,11 @@ TEST_P(AnyField, NamesItselfWhenAValueIsOfAnotherKind) {
         if (set) continue;
         EXPECT_EQ(set.error().code, Errc::kInvalidField);
         EXPECT_THAT(set.error().message, testing::StartsWith(field.name + std::string(" must be ")));
-        EXPECT_EQ(options, SessionOptions{}) << "nothing is set by a value that is refused";
+        EXPECT_EQ(options, SessionOptions{}) << "a refused value leaves the options unchanged";
     }
 }
 
-TEST_P(AnyField, IsReadBackFromItsOwnText) {
+TEST_P(AnyField, IsParsedFromItsOwnText) {
     const ConfigField& field = *find_config_field(GetParam());
     const auto text = std::visit(
         [](const auto& value) {
@@ -195,7 +196,7 @@ TEST_P(AnyField, IsReadBackFromItsOwnText) {
         const std::string_view given = wrong;
         SessionOptions untouched;
         const auto refused = set_option(untouched, field, given);
-        if (refused) { // a number of that size is one, for numbers; its bounds are for resolve() to say
+        if (refused) { // a number of that size is valid here for number fields; resolve() checks the limits
             EXPECT_EQ(given, "99999999999999999999") << GetParam();
             continue;
         }
@@ -204,7 +205,7 @@ TEST_P(AnyField, IsReadBackFromItsOwnText) {
     }
 }
 
-TEST(MapConfig, TextThatIsNotANumberIsNone) {
+TEST(MapConfig, RefusesTextThatIsNotAFiniteNumber) {
     for (const char* text : {"nan", "inf", "-inf", "NaN", "infinity"}) {
         SessionOptions options;
         if (!set_option(options, *find_config_field("cell_size"), std::string_view(text))) continue;
@@ -212,7 +213,7 @@ TEST(MapConfig, TextThatIsNotANumberIsNone) {
     }
 }
 
-TEST(MapConfig, ChoicesAreTheirNames) {
+TEST(MapConfig, ParsesChoicesByName) {
     for (const auto& [name, text, is_possible] : {std::tuple{"ray_model", "inverse_sensor_model", true},
                                                   {"ray_model", "bresenham", true},
                                                   {"ray_model", "traversal", true},
@@ -234,13 +235,13 @@ TEST(MapConfig, ChoicesAreTheirNames) {
     }
 }
 
-TEST(MapConfig, OptionsAndConfigurationDescribeEachOther) {
+TEST(MapConfig, OptionsOfAConfigResolveToTheSameConfig) {
     const auto config = resolve({.cell_size = 0.1, .p_free = 0.3, .obstacle_thickness = 0.4});
     ASSERT_TRUE(config);
     EXPECT_EQ(*resolve(options_of(*config)), *config);
 }
 
-TEST(MapConfig, AnAskingThatDiffersFromTheSessionIsAConflictThatNamesTheField) {
+TEST(MapConfig, DifferentRequestIsAConflictThatNamesTheField) {
     const MapConfig config;
     EXPECT_TRUE(check_agreement(config, {}));
     EXPECT_TRUE(check_agreement(config, {.cell_size = 0.05}));
@@ -250,7 +251,7 @@ TEST(MapConfig, AnAskingThatDiffersFromTheSessionIsAConflictThatNamesTheField) {
     EXPECT_THAT(conflict.error().message, testing::HasSubstr("cell_size 0.05, cell_size 0.1"));
 }
 
-TEST_P(AnyField, IsPartOfTheAgreement) {
+TEST_P(AnyField, IsComparedByCheckAgreement) {
     const ConfigField& field = *find_config_field(GetParam());
     SessionOptions other;
     SessionOptions same;

@@ -37,7 +37,7 @@ Sensor sonar_ring() {
     return sensor;
 }
 
-/// Mostly of a laser, now and then of a ring of sonars.
+/// Returns a log in which every fourth scan is of a ring of sonars and the others are of a laser.
 std::vector<LogEntry> random_log(unsigned seed, std::size_t scans) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> metres(-8.0, 8.0);
@@ -59,7 +59,7 @@ std::vector<LogEntry> random_log(unsigned seed, std::size_t scans) {
 
 constexpr std::size_t kBeforeScans = 3; // entries of random_log()
 
-/// The cells of the occupancy layer, as they were at some time.
+/// The cells of the occupancy layer at the time of a snapshot.
 class Occupancy {
 public:
     explicit Occupancy(const Snapshot& snapshot) : view_(snapshot.laser) {}
@@ -72,13 +72,13 @@ private:
     LaserView view_;
 };
 
-/// Every way of weaving that takes its own path.
-class WeavingBy : public testing::TestWithParam<std::pair<const std::string, SessionOptions>> {
+/// Settings that cover every code path of integration.
+class ProjectionWith : public testing::TestWithParam<std::pair<const std::string, SessionOptions>> {
 protected:
     [[nodiscard]] static MapConfig config() { return resolve(GetParam().second).value(); }
 };
 
-const std::map<std::string, SessionOptions> kWaysOfWeaving = {
+const std::map<std::string, SessionOptions> kMappingSettings = {
     {"Sectors", {}},
     {"Bresenham", {.ray_model = RayModel::kBresenham, .hit_radius = 0.2}},
     {"TraversalAndHimmClasses", {.ray_model = RayModel::kTraversal, .class_source = ClassSource::kHimm}},
@@ -86,10 +86,10 @@ const std::map<std::string, SessionOptions> kWaysOfWeaving = {
     {"OtherApertures", {.drop_no_return = true, .himm_beam_aperture = 0.2, .danger_radius = 0.4}},
 };
 
-INSTANTIATE_TEST_SUITE_P(Projection, WeavingBy, testing::ValuesIn(kWaysOfWeaving),
+INSTANTIATE_TEST_SUITE_P(Projection, ProjectionWith, testing::ValuesIn(kMappingSettings),
                          [](const auto& tried) { return tried.param.first; });
 
-TEST(Projection, FollowsTheUpdateRuleCellByCell) {
+TEST(Projection, UpdatesEachCellByTheUpdateRule) {
     Projection projection(*resolve({.cell_size = 0.1, .p_prior = 0.4}));
     Sensor beam;
     beam.angles = UniformAngles{0.0, 1.0, 1};
@@ -110,11 +110,11 @@ TEST(Projection, FollowsTheUpdateRuleCellByCell) {
         EXPECT_EQ(occupancy.at({5, 1}), kUnknownLogOdds);
     }
     const auto snapshot = projection.snapshot();
-    EXPECT_NEAR(probability_of(Occupancy(snapshot).at({5, 0})), 0.001, 1e-6) << "clamped";
-    EXPECT_NEAR(probability_of(Occupancy(snapshot).at({10, 0})), 0.999, 1e-6) << "clamped";
+    EXPECT_NEAR(probability_of(Occupancy(snapshot).at({5, 0})), 0.001, 1e-6) << "at the lower clamp";
+    EXPECT_NEAR(probability_of(Occupancy(snapshot).at({10, 0})), 0.999, 1e-6) << "at the upper clamp";
 }
 
-TEST(Projection, ACellBackAtEvenOddsIsKnownNotUnseen) {
+TEST(Projection, CellBackAtEvenOddsStaysKnown) {
     Projection projection(*resolve({.cell_size = 0.1}));
     Sensor beam;
     beam.angles = UniformAngles{0.0, 1.0, 1};
@@ -126,7 +126,7 @@ TEST(Projection, ACellBackAtEvenOddsIsKnownNotUnseen) {
     EXPECT_EQ(Occupancy(projection.snapshot()).at({10, 0}), 0);
 }
 
-TEST(Projection, EvidenceFromOneEndOfTheClampToTheOtherKeepsItsSign) {
+TEST(Projection, EvidenceBetweenTheClampLimitsKeepsItsSign) {
     Projection projection(*resolve(
         {.cell_size = 0.1, .p_occupied = 0.9999, .p_free = 1e-6, .p_prior = 0.999, .p_min = 1e-6, .p_max = 0.9999}));
     Sensor beam;
@@ -138,7 +138,7 @@ TEST(Projection, EvidenceFromOneEndOfTheClampToTheOtherKeepsItsSign) {
     EXPECT_LT(probability_of(Occupancy(projection.snapshot()).at({5, 0})), 0.01);
 }
 
-TEST_P(WeavingBy, SnapshotsTakenBetweenScansChangeNothing) {
+TEST_P(ProjectionWith, SnapshotsBetweenScansDoNotChangeTheMap) {
     const auto log = random_log(1, 60);
     Projection plain{config()};
     Projection watched{config()};
@@ -159,9 +159,9 @@ TEST_P(WeavingBy, SnapshotsTakenBetweenScansChangeNothing) {
     }
 }
 
-TEST_P(WeavingBy, ScansFoldedALittleAtATimeGiveTheSameMap) {
+TEST_P(ProjectionWith, ScansIntegratedInSlicesGiveTheSameMap) {
     auto log = random_log(3, 40);
-    for (auto& entry : log) { // angles of its own, in any order: a fan that is made for one scan
+    for (auto& entry : log) { // explicit angles in any order: the projection makes a beam fan for that scan only
         auto* taken = std::get_if<ScanTaken>(&entry);
         if (taken == nullptr || taken->scan.seq % 3 != 0) continue;
         ExplicitAngles angles(taken->scan.ranges.size());
@@ -179,7 +179,7 @@ TEST_P(WeavingBy, ScansFoldedALittleAtATimeGiveTheSameMap) {
             EXPECT_EQ(sliced.revision(), in ? whole.revision() : whole.revision() - 1);
         }
     }
-    EXPECT_GT(slices, log.size() + 40) << "nothing was folded in slices";
+    EXPECT_GT(slices, log.size() + 40) << "no scan was integrated in slices";
     const auto a = whole.snapshot();
     const auto b = sliced.snapshot();
     EXPECT_EQ(a.bounds, b.bounds);
@@ -187,7 +187,7 @@ TEST_P(WeavingBy, ScansFoldedALittleAtATimeGiveTheSameMap) {
     EXPECT_EQ(a.robots.front().trajectory.size(), b.robots.front().trajectory.size());
 }
 
-TEST_P(WeavingBy, ContinuesFromACheckpointToTheSameMap) {
+TEST_P(ProjectionWith, ContinuingFromACheckpointGivesTheSameMap) {
     const auto log = random_log(2, 300);
     Projection whole{config()};
     for (const auto& entry : log) ASSERT_TRUE(whole.fold(entry));
@@ -206,12 +206,12 @@ TEST_P(WeavingBy, ContinuesFromACheckpointToTheSameMap) {
     EXPECT_EQ(a.robots.front().pose, b.robots.front().pose);
     ASSERT_EQ(a.robots.front().trajectory.size(), b.robots.front().trajectory.size());
     EXPECT_EQ(a.robots.front().trajectory[299], b.robots.front().trajectory[299]);
-    EXPECT_EQ(b.robots.front().trajectory.begin(), 200U - kBeforeScans) << "what came before the newest is in the log";
+    EXPECT_EQ(b.robots.front().trajectory.begin(), 200U - kBeforeScans) << "older points are only in the log";
     EXPECT_EQ(a.robots.front().trajectory.first_after(150 + kBeforeScans), 150U);
     EXPECT_EQ(b.robots.front().trajectory.first_after(b.revision), 300U);
 }
 
-TEST(Projection, ARobotMayComeAgainWithAnotherBodyButItsScansComeFromOneSource) {
+TEST(Projection, RejoiningMayChangeTheBodyButNotTheSource) {
     Projection projection{MapConfig{}};
     const auto radius = [&] { return projection.snapshot().robots.at(0).body_radius; };
     ASSERT_TRUE(projection.fold(RobotJoined{0, "r", "a", 0.2}));
@@ -224,12 +224,12 @@ TEST(Projection, ARobotMayComeAgainWithAnotherBodyButItsScansComeFromOneSource) 
     EXPECT_EQ(radius(), 0.4);
     EXPECT_FALSE(projection.fold(RobotJoined{0, "r", "a", 0.4}));
     ASSERT_TRUE(projection.fold(RobotJoined{0, "r", "b"}));
-    EXPECT_EQ(radius(), std::nullopt) << "what it said last holds, also when it said nothing";
+    EXPECT_EQ(radius(), std::nullopt) << "the newest description applies, even without a radius";
     EXPECT_EQ(projection.snapshot().robots.at(0).scan_count, 1U);
     EXPECT_EQ(testing_support::digests_of(projection.snapshot()), cells);
 }
 
-TEST(Projection, RefusesEntriesThatCannotFollow) {
+TEST(Projection, RefusesEntriesOutOfSequence) {
     Projection projection{MapConfig{}};
     ASSERT_TRUE(projection.fold(RobotJoined{0, "r"}));
     ASSERT_TRUE(projection.fold(SensorDescribed{0, testing_support::small_laser()}));
@@ -239,7 +239,7 @@ TEST(Projection, RefusesEntriesThatCannotFollow) {
     EXPECT_TRUE(projection.fold(ScanTaken{0, testing_support::random_scan(1, 1)}));
 }
 
-TEST(Projection, TheBeamCountMayVaryFromScanToScan) {
+TEST(Projection, AcceptsScansOfDifferentBeamCounts) {
     Projection projection{MapConfig{}};
     ASSERT_TRUE(projection.fold(RobotJoined{0, "r"}));
     ASSERT_TRUE(projection.fold(SensorDescribed{0, laser()}));
@@ -256,7 +256,7 @@ TEST(Projection, TheBeamCountMayVaryFromScanToScan) {
     EXPECT_EQ(projection.snapshot().robots.front().scan_count, 10U);
 }
 
-TEST(Projection, ASensorDescribedAgainIsUsedAsItIsDescribedNow) {
+TEST(Projection, UsesTheNewestDescriptionOfASensor) {
     Sensor turned = laser();
     std::get<UniformAngles>(turned.angles).first += 1.0;
     const std::size_t beams = beam_count(turned.angles);
@@ -266,7 +266,7 @@ TEST(Projection, ASensorDescribedAgainIsUsedAsItIsDescribedNow) {
         std::uint64_t seq = 0;
         for (const Sensor& described : descriptions) {
             EXPECT_TRUE(projection.fold(SensorDescribed{0, described}));
-            // Without a valid reading: it changes no cell, but the projection keeps the beams' directions.
+            // The scan has no valid reading, so it changes no cell, but the projection caches the beams' directions.
             Scan scan{.seq = ++seq, .sensor = 2, .ranges = std::vector<RangeMm>(beams, kInvalidRange)};
             EXPECT_TRUE(projection.fold(ScanTaken{0, scan}));
         }
@@ -276,10 +276,10 @@ TEST(Projection, ASensorDescribedAgainIsUsedAsItIsDescribedNow) {
         return testing_support::digests_of(projection.snapshot());
     };
     EXPECT_EQ(digests({laser(), turned}), digests({turned}));
-    EXPECT_NE(digests({laser()}), digests({turned})) << "the test compares nothing";
+    EXPECT_NE(digests({laser()}), digests({turned})) << "the two descriptions must give different maps";
 }
 
-TEST(Projection, AReachOfTooManyCellsIsRefusedByName) {
+TEST(Projection, RefusesTooLongRangeByFieldName) {
     Sensor sensor = laser();
     sensor.range_max = 81.0;
     EXPECT_TRUE(check_reach(*resolve({.cell_size = 0.01}), sensor));

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-/// What is told of a scan beforehand, against what weaving it really does.
+/// Compares the predicted reach of a scan with the cells that its integration changes.
 namespace scanloom::mapping {
 namespace {
 
@@ -44,7 +44,7 @@ Scan scan_of(const Sensor& sensor, std::mt19937& random) {
     return scan;
 }
 
-std::int64_t cells_seen(const Snapshot& snapshot) {
+std::int64_t known_cells(const Snapshot& snapshot) {
     std::int64_t seen = 0;
     for (const Layer layer : {Layer::kOccupancy, Layer::kHimm, Layer::kSonar}) {
         with_layer(snapshot, layer, [&](const auto& view, auto&& cells_of) {
@@ -56,7 +56,7 @@ std::int64_t cells_seen(const Snapshot& snapshot) {
     return seen;
 }
 
-TEST(Reach, IsNeverLessThanWhatWeavingTheScanDoes) {
+TEST(Reach, CoversAllCellsThatIntegrationChanges) {
     std::mt19937 random(7);
     for (int round = 0; round < 600; ++round) {
         MapConfig config;
@@ -78,12 +78,12 @@ TEST(Reach, IsNeverLessThanWhatWeavingTheScanDoes) {
         both.include(bounds_of(snapshot));
         EXPECT_EQ(both, reach.cells) << "round " << round;
         EXPECT_GE(chunk_count_of(reach.cells), static_cast<std::int64_t>(projection.chunk_count()));
-        EXPECT_GE(reach.work, 0.95 * static_cast<double>(cells_seen(snapshot))) << "round " << round;
+        EXPECT_GE(reach.work, 0.95 * static_cast<double>(known_cells(snapshot))) << "round " << round;
     }
 }
 
-/// The limits of a sensor may lie between two millimetres: a float of 4.9 m is 4.900000095.
-TEST(Reach, OfReadingsAtTheLimitsIsThatOfWhatIsWoven) {
+/// The limits of a sensor may lie between two millimetres: 4.9 m as a float is 4.900000095 m.
+TEST(Reach, CoversReadingsAtTheSensorsLimits) {
     std::mt19937 random(8);
     for (int round = 0; round < 400; ++round) {
         Sensor sensor = testing_support::small_laser();
@@ -103,7 +103,7 @@ TEST(Reach, OfReadingsAtTheLimitsIsThatOfWhatIsWoven) {
         ASSERT_TRUE(projection.fold(SensorDescribed{0, sensor}));
         ASSERT_TRUE(projection.fold(ScanTaken{0, scan}));
         const Reach reach = reach_of(config, sensor, scan);
-        const auto seen = cells_seen(projection.snapshot());
+        const auto seen = known_cells(projection.snapshot());
         EXPECT_EQ(reach.work > 0.0, seen > 0)
             << sensor.range_min << " .. " << sensor.range_max << ", " << scan.ranges[0];
         EXPECT_GE(reach.work, 0.95 * static_cast<double>(seen));
@@ -111,7 +111,7 @@ TEST(Reach, OfReadingsAtTheLimitsIsThatOfWhatIsWoven) {
     }
 }
 
-TEST(Reach, OfAScanThatShowsNothingIsEmpty) {
+TEST(Reach, IsEmptyForAScanWithoutReadings) {
     Scan scan = testing_support::random_scan(1, 1);
     scan.ranges.assign(18, kInvalidRange);
     const Reach reach = reach_of({}, testing_support::small_laser(), scan);
@@ -119,17 +119,17 @@ TEST(Reach, OfAScanThatShowsNothingIsEmpty) {
     EXPECT_EQ(reach.work, 0.0);
 }
 
-TEST(Reach, FollowsTheLongestReadingNotTheSensor) {
+TEST(Reach, DependsOnTheLongestReadingOnly) {
     Sensor sensor = testing_support::small_laser();
     sensor.range_max = 80.0;
     Scan scan = testing_support::random_scan(1, 1);
     scan.ranges.assign(18, 2000);
     const Reach reach = reach_of({}, sensor, scan);
-    EXPECT_LE(reach.cells.width(), 2 * (40 + 2) + 4) << "2 m, and half the band of himm";
+    EXPECT_LE(reach.cells.width(), 2 * (40 + 2) + 4) << "2 m plus half the band of HIMM";
     EXPECT_LE(chunk_count_of(reach.cells), 9);
 }
 
-TEST(Reach, ChunksOfABoxAreCountedOnBothSidesOfTheOrigin) {
+TEST(Reach, CountsChunksOnBothSidesOfTheOrigin) {
     EXPECT_EQ(chunk_count_of({}), 0);
     EXPECT_EQ(chunk_count_of({0, 0, 64, 64}), 1);
     EXPECT_EQ(chunk_count_of({-1, -1, 65, 1}), 6);

@@ -14,23 +14,23 @@
 #include <string>
 #include <vector>
 
-/// Murphy's sonar model, against the same in probabilities by the product rule.
+/// Compares Murphy's sonar model in log-odds with the product rule in probabilities.
 namespace scanloom::mapping {
 namespace {
 
-TEST(SonarProbability, IsThatOfTheWorkedExample) {
-    // R 5, r 2.5, a 0, half 15 degrees: w = 0.75.
+TEST(SonarProbability, MatchesTheWorkedExample) {
+    // R = 5 m, r = 2.5 m, a = 0, half aperture 15 degrees: w = 0.75.
     const double in_band = sonar_probability(Verdict::kOccupied, 2.5, 5.0, 0.0, 15 * kDegree);
     const double before_it = sonar_probability(Verdict::kFree, 2.5, 5.0, 0.0, 15 * kDegree);
     EXPECT_DOUBLE_EQ(in_band, 0.875);
     EXPECT_DOUBLE_EQ(before_it, 0.125);
-    // From p = 0.5, then 0.875 again: 0.98.
+    // The update of p = 0.5 gives 0.875, and the next update with 0.875 gives 0.98.
     const double once = oracle::product_rule(in_band, 0.5);
     EXPECT_DOUBLE_EQ(once, 0.875);
     EXPECT_DOUBLE_EQ(oracle::product_rule(in_band, once), 0.98);
 }
 
-/// A map of cells of 0.1 m, seen by sonars of 5 m.
+/// A map with a cell size of 0.1 m, observed by sonars with a range of 5 m.
 class SonarMap {
 public:
     explicit SonarMap(BeamAngles angles, SessionOptions options = {})
@@ -57,25 +57,25 @@ private:
     std::uint64_t seq_ = 0;
 };
 
-constexpr double kOneStep = 1.0 / 4096; // of probability, more than an update's rounding of log-odds makes of it
+constexpr double kOneStep = 1.0 / 4096; // step in probability, larger than the rounding error of one log-odds update
 
-TEST(SonarLayer, WeavesTheWorkedExample) {
+TEST(SonarLayer, MatchesTheWorkedExample) {
     SonarMap map{UniformAngles{0.0, 1.0, 1}};
     map.fire({2500});
-    EXPECT_NEAR(map.p({25, 0}), 0.875, kOneStep) << "2.5 m away, on the axis, in region I";
+    EXPECT_NEAR(map.p({25, 0}), 0.875, kOneStep) << "2.5 m away on the axis: region I";
     map.fire({2500});
     EXPECT_NEAR(map.p({25, 0}), 0.98, kOneStep);
     SonarMap free{UniformAngles{0.0, 1.0, 1}};
     free.fire({4000});
-    EXPECT_NEAR(free.p({25, 0}), 0.125, kOneStep) << "in region II";
+    EXPECT_NEAR(free.p({25, 0}), 0.125, kOneStep) << "region II";
 }
 
-TEST(SonarLayer, OneEchoNeverMakesCertainty) {
+TEST(SonarLayer, OneEchoIsLimitedToTheMaximum) {
     SonarMap map{UniformAngles{0.0, 1.0, 1}, {.sonar_p_max = 0.999}};
     map.fire({100}); // w = 0.99 at 0.1 m: 0.995 without the limit
     EXPECT_NEAR(map.p({1, 0}), 0.98, kOneStep);
     for (int n = 0; n < 5; ++n) map.fire({100});
-    EXPECT_NEAR(map.p({1, 0}), 0.999, kOneStep) << "clamped";
+    EXPECT_NEAR(map.p({1, 0}), 0.999, kOneStep) << "at the clamp";
 }
 
 TEST(SonarLayer, IsClampedAfterEachEcho) {
@@ -84,12 +84,12 @@ TEST(SonarLayer, IsClampedAfterEachEcho) {
     EXPECT_NEAR(map.p({25, 0}), 0.01, kOneStep);
     map.fire({2500});
     EXPECT_NEAR(map.p({25, 0}), oracle::product_rule(0.875, 0.01), 2 * kOneStep)
-        << "from the clamp, not from beyond it";
+        << "the update starts at the clamp, not beyond it";
     for (int n = 0; n < 40; ++n) map.fire({2500});
     EXPECT_NEAR(map.p({25, 0}), 0.99, kOneStep);
 }
 
-TEST(SonarLayer, OverlappingConesAreEachAMeasurement) {
+TEST(SonarLayer, OverlappingConesAreSeparateMeasurements) {
     SonarMap once{ExplicitAngles{0.0}};
     SonarMap twice{ExplicitAngles{0.0, 0.0}};
     once.fire({2500});
@@ -98,15 +98,15 @@ TEST(SonarLayer, OverlappingConesAreEachAMeasurement) {
     EXPECT_EQ(once.at({25, 0}), twice.at({25, 0}));
     EXPECT_NEAR(twice.p({25, 0}), 0.98, kOneStep);
 
-    SonarMap beside{ExplicitAngles{-10 * kDegree, 10 * kDegree}};
-    beside.fire({2500, 4000});
+    SonarMap overlapping{ExplicitAngles{-10 * kDegree, 10 * kDegree}};
+    overlapping.fire({2500, 4000});
     const double w = (0.5 + 5.0 / 15.0) / 2.0; // a is 10 degrees for both
     const double expected = oracle::product_rule(0.5 * (1.0 - w), oracle::product_rule(0.5 + 0.5 * w, 0.5));
-    EXPECT_NEAR(beside.p({25, 0}), expected, 2 * kOneStep) << "an echo in one cone, free in the other";
+    EXPECT_NEAR(overlapping.p({25, 0}), expected, 2 * kOneStep) << "an echo in one cone and free in the other";
 }
 
-TEST(SonarLayer, TheCentreCellOfASensorIsFreeWhateverItsDirection) {
-    for (const double angle : {0.0, 1.0, kPi}) { // r = 0: w may be 1, and its probability 0
+TEST(SonarLayer, SensorsOwnCellIsFreeInEveryDirection) {
+    for (const double angle : {0.0, 1.0, kPi}) { // r = 0: w can be 1 and its probability 0
         SonarMap map{ExplicitAngles{angle}};
         map.fire({2500});
         map.fire({2500});
@@ -116,13 +116,14 @@ TEST(SonarLayer, TheCentreCellOfASensorIsFreeWhateverItsDirection) {
     }
 }
 
-TEST(SonarLayer, ChangesNoLayerOfLasers) {
+TEST(SonarLayer, DoesNotChangeLaserLayers) {
     SonarMap map{UniformAngles{0.0, 1.0, 1}};
     map.fire({2500});
     const auto snapshot = map.snapshot();
     EXPECT_EQ(testing_support::occupancy_at(snapshot, {25, 0}), kUnknownLogOdds);
     EXPECT_EQ(testing_support::himm_at(snapshot, {25, 0}), kUnseenHimm);
-    EXPECT_EQ(testing_support::class_at(snapshot, {20, 0}), classify::CellClass::kUnexplored) << "never from sonar";
+    EXPECT_EQ(testing_support::class_at(snapshot, {20, 0}), classify::CellClass::kUnexplored)
+        << "sonar does not change classes";
 }
 
 const std::map<std::string, SessionOptions> kSonarSettings = {
@@ -148,7 +149,7 @@ struct Rng {
     unsigned below(unsigned n) { return static_cast<unsigned>(random() % n); }
 };
 
-/// Rings even and uneven, of up to 20 cones, some of them wider than their spacing.
+/// Returns a ring with up to 20 even or uneven cones, some of them wider than their spacing.
 Sensor random_ring(Rng& rng, double range_max) {
     Sensor ring{.id = 1, .kind = SensorKind::kSonar, .range_max = range_max};
     const std::uint32_t cones = 1 + rng.below(20);
@@ -173,7 +174,7 @@ std::vector<RangeMm> random_echoes(Rng& rng, const Sensor& ring) {
     return ranges;
 }
 
-TEST_P(SonarLayerWith, EqualsProbabilitiesMultipliedOverScansOfEveryRing) {
+TEST_P(SonarLayerWith, MatchesTheProductRuleForEveryRing) {
     std::size_t firm = 0;
     Rng rng{std::mt19937(17)};
     for (const double cell_size : {0.01, 0.05, 0.1, 0.5}) {

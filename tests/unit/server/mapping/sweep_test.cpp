@@ -29,7 +29,7 @@ public:
         c.thickness = below(2) == 0 ? 0.1 : c.cell_size * uniform(0.2, 6.0);
         c.aperture = below(3) == 0 ? uniform(0.001, 1.5) : kDegree;
         c.T_map_sensor = {uniform(-20.0, 20.0), uniform(-20.0, 20.0), uniform(-kPi, kPi)};
-        if (below(4) == 0) { // on cell centres and borders, looking along the axes
+        if (below(4) == 0) { // on centres and borders of cells, with axis-aligned headings
             c.T_map_sensor = {(below(41) - 20.0) * c.cell_size / 2, (below(41) - 20.0) * c.cell_size / 2,
                               below(8) * kPi / 4};
         }
@@ -45,7 +45,7 @@ private:
     std::mt19937 random_;
 };
 
-/// Compares `rounds` random scans of every shape with the naive double loop over cells and beams.
+/// Compares `rounds` random scans of every shape with a naive double loop over cells and beams.
 void compare_with_oracle(int rounds) {
     std::size_t firm = 0;
     for (unsigned shape = 0; shape < testing_support::kAngleShapes; ++shape) {
@@ -55,14 +55,14 @@ void compare_with_oracle(int rounds) {
             ASSERT_NO_FATAL_FAILURE(expect_equal_to_oracle(c, firm)) << "round " << round;
         }
     }
-    EXPECT_GT(firm, 3'000U * static_cast<unsigned>(rounds)) << "too few cells had a firm verdict to compare them";
+    EXPECT_GT(firm, 3'000U * static_cast<unsigned>(rounds)) << "too few cells have a firm verdict to compare";
 }
 
-TEST(Sweep, EqualsTheNaiveDoubleLoopOnRandomScansOfEveryShape) { compare_with_oracle(40); }
+TEST(Sweep, MatchesTheNaiveDoubleLoop) { compare_with_oracle(40); }
 
-TEST(SweepTrials, EqualsTheNaiveDoubleLoopOnManyRandomScansOfEveryShape) { compare_with_oracle(300); }
+TEST(SweepTrials, MatchesTheNaiveDoubleLoopOnManyScans) { compare_with_oracle(300); }
 
-TEST(Sweep, OfManyStripsIsAsExactAsOneOfFew) {
+TEST(Sweep, IsExactWithManyStrips) {
     RandomCases cases(7);
     Case c = cases.next(0);
     c.shape = "a whole turn";
@@ -81,7 +81,7 @@ TEST(Sweep, OfManyStripsIsAsExactAsOneOfFew) {
     EXPECT_GT(firm, 1'000'000U);
 }
 
-TEST(Sweep, ThatWasBrokenOffLeavesNothingBehind) {
+TEST(Sweep, AbortedSweepDoesNotAffectTheNext) {
     RandomCases cases(8);
     const Case c = cases.next(0);
     const auto whole = run_kernel(c);
@@ -93,7 +93,7 @@ TEST(Sweep, ThatWasBrokenOffLeavesNothingBehind) {
     EXPECT_EQ(run_kernel(c), whole);
 }
 
-/// A sensor in the middle of cell (0, 0), one beam along +x.
+/// A sensor at the centre of cell (0, 0) with one beam along +x.
 Case one_beam(double reading_m) {
     Case c;
     c.shape = "one beam";
@@ -111,15 +111,15 @@ oracle::Verdict cell(const Verdicts& verdicts, int i, int j) {
     return found == verdicts.end() ? oracle::Verdict::kNothing : found->second;
 }
 
-TEST(Sweep, FreesUpToTheHitAndMarksTheBand) {
+TEST(Sweep, FreesCellsUpToTheHitAndMarksTheBand) {
     const auto verdicts = run_kernel(one_beam(1.0));
     EXPECT_EQ(cell(verdicts, 9, 0), oracle::Verdict::kFree);
     EXPECT_EQ(cell(verdicts, 10, 0), oracle::Verdict::kOccupied);
     EXPECT_EQ(cell(verdicts, 11, 0), oracle::Verdict::kNothing);
-    EXPECT_EQ(cell(verdicts, -1, 0), oracle::Verdict::kNothing) << "behind the sensor";
+    EXPECT_EQ(cell(verdicts, -1, 0), oracle::Verdict::kNothing) << "the cell is behind the sensor";
 }
 
-TEST(Sweep, AReadingBeyondTheRangeFreesTheWholeBeamAndMarksNothing) {
+TEST(Sweep, ReadingBeyondTheRangeFreesTheBeamAndMarksNone) {
     for (const double reading : {2.0, 2.5, HUGE_VAL}) {
         const auto verdicts = run_kernel(one_beam(reading));
         EXPECT_EQ(cell(verdicts, 19, 0), oracle::Verdict::kFree) << reading;

@@ -24,7 +24,7 @@ void expect_newest(const TrajectoryView& view, std::size_t size) {
     for (std::size_t n = view.begin(); n < size; ++n) ASSERT_EQ(view[n], point(n));
 }
 
-TEST(Trajectory, KeepsTheNewestPointsAndNoMore) {
+TEST(Trajectory, KeepsOnlyTheNewestPoints) {
     Trajectory trajectory;
     std::vector<TrajectoryView> views;
     for (std::size_t n = 0; n < 3 * kTrajectoryKept; ++n) {
@@ -36,10 +36,11 @@ TEST(Trajectory, KeepsTheNewestPointsAndNoMore) {
         ASSERT_LE(trajectory.block_count() * kTrajectoryBlock, kMostKept);
         if (n % 1000 == 0) views.push_back(view);
     }
-    for (std::size_t n = 0; n < views.size(); ++n) expect_newest(views[n], 1000 * n + 1); // as they were taken
+    for (std::size_t n = 0; n < views.size(); ++n)
+        expect_newest(views[n], 1000 * n + 1); // each view still shows its own points
 }
 
-TEST(Trajectory, FindsTheFirstPointAfterARevisionAmongThoseThatAreKept) {
+TEST(Trajectory, FindsTheFirstKeptPointAfterARevision) {
     Trajectory trajectory;
     append(trajectory, 0, 2 * kTrajectoryKept);
     const auto view = trajectory.snapshot();
@@ -51,7 +52,7 @@ TEST(Trajectory, FindsTheFirstPointAfterARevisionAmongThoseThatAreKept) {
     }
 }
 
-TEST(Trajectory, GoesOnBehindPointsThatItNeverHad) {
+TEST(Trajectory, ContinuesAfterPointsThatItNeverStored) {
     constexpr std::size_t kBefore = 1'234'567;
     Trajectory trajectory(kBefore);
     EXPECT_EQ(trajectory.snapshot().begin(), kBefore);
@@ -63,7 +64,7 @@ TEST(Trajectory, GoesOnBehindPointsThatItNeverHad) {
     expect_newest(trajectory.snapshot(), kBefore + 700);
 }
 
-TEST(Trajectory, BranchesGoOnByThemselves) {
+TEST(Trajectory, BranchesGrowIndependently) {
     for (const std::size_t before : {std::size_t{0}, std::size_t{100}, kTrajectoryBlock, kTrajectoryKept + 700}) {
         Trajectory first(before / 2);
         append(first, before / 2, before);
@@ -81,8 +82,8 @@ TEST(Trajectory, BranchesGoOnByThemselves) {
     }
 }
 
-// Under ThreadSanitizer this says whether what readers and branches share with the writer is safe.
-TEST(Trajectory, GrowsWhileItIsReadAndBranchesGoTheirOwnWay) {
+// ThreadSanitizer checks in this test that readers and branches share data with the writer safely.
+TEST(Trajectory, GrowsWhileReadersAndBranchesUseIt) {
     constexpr std::size_t kPoints = 2 * kTrajectoryKept;
     Trajectory trajectory;
     std::mutex mutex;
