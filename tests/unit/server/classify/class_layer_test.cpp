@@ -252,9 +252,9 @@ TEST(ClassLayer, AcceptsChunksAtIntegerLimits) {
         const auto view = layer.snapshot();
         std::size_t at_this_end = 0;
         view.visit({}, 0, [&](ChunkKey key, const ClassChunk& chunk) {
-            const bool beside =
+            const bool is_near =
                 std::abs(std::int64_t{key.ci} - corner.ci) <= 1 && std::abs(std::int64_t{key.cj} - corner.cj) <= 1;
-            at_this_end += beside ? 1 : 0;
+            at_this_end += is_near ? 1 : 0;
             const auto expected = key == corner ? CellClass::kFree : CellClass::kFrontier;
             EXPECT_NE(std::ranges::find(chunk.cells, expected), chunk.cells.end());
         });

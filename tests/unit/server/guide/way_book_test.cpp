@@ -98,7 +98,7 @@ TEST_F(WayBookTest, RobotHoldsItsGoalAndItsNewestPath) {
     give_goal(0);
     EXPECT_EQ(page().robots[0].way->kind, WayKind::kGoal);
     give_goal(1);
-    EXPECT_EQ(page().robots[1].way->kind, WayKind::kGoal) << "the newest path is kept, whatever its kind";
+    EXPECT_EQ(page().robots[1].way->kind, WayKind::kGoal) << "the newest path of any kind is kept";
     book_.take_back(session_, 0);
     EXPECT_EQ(page().robots.size(), 1U);
     give_way(0, way(WayKind::kPlan));

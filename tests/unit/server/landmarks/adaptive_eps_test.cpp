@@ -19,7 +19,7 @@ double eps_of(const std::vector<Point2>& cloud, std::size_t min_points = 5) {
     return adaptive_eps(distinct_points(cloud), min_points).value();
 }
 
-/// What three quarters of some points have at most to their k-th nearest of others.
+/// Returns the distance that three quarters of the points do not exceed to their k-th nearest other point.
 double typical_distance(const std::vector<Point2>& points, std::size_t k) {
     std::vector<double> distances;
     for (const Point2& point : points) {
@@ -47,12 +47,12 @@ double eps_oracle(const std::vector<Point2>& cloud, std::size_t min_points) {
     return std::clamp(eps, 0.1, 0.5);
 }
 
-TEST(AdaptiveEps, IsWhatALookAtAllPairsGives) {
+TEST(AdaptiveEps, MatchesBruteForceOverAllPairs) {
     std::mt19937 random(1);
     int between = 0;
     for (int round = 0; round < 2000; ++round) {
         auto cloud = random_points(random, random() % 150);
-        for (Point2& point : cloud) point *= 0.5; // so that few answers are the most
+        for (Point2& point : cloud) point *= 0.5; // keeps most results below the maximum
         const std::size_t min_points = 1 + random() % 12;
         const double expected = eps_oracle(cloud, min_points);
         ASSERT_NEAR(eps_of(cloud, min_points), expected, 1e-12) << "round " << round;
@@ -61,9 +61,9 @@ TEST(AdaptiveEps, IsWhatALookAtAllPairsGives) {
     EXPECT_GT(between, 500);
 }
 
-TEST(AdaptiveEps, DoesNotShrinkWithTheTurnsOfAStandingLidar) {
+TEST(AdaptiveEps, DoesNotShrinkWithMoreTurnsOfAStationaryLidar) {
     std::mt19937 random(2);
-    // A wall seen every 8 cm, with 2 cm of noise.
+    // A wall with one point per 8 cm and 2 cm of noise.
     std::vector<Point2> wall;
     const auto turn = [&] {
         for (int beam = 0; beam < 100; ++beam) {
@@ -79,7 +79,7 @@ TEST(AdaptiveEps, DoesNotShrinkWithTheTurnsOfAStandingLidar) {
     EXPECT_EQ(dbscan(wall, many, 5)->clusters, 1U);
 }
 
-TEST(AdaptiveEps, EqualPointsAreOneSurface) {
+TEST(AdaptiveEps, IgnoresRepeatedPoints) {
     std::vector<Point2> cloud;
     for (int n = 0; n < 50; ++n) cloud.push_back({0.15 * n, 0.0});
     const double once = eps_of(cloud);
@@ -87,23 +87,23 @@ TEST(AdaptiveEps, EqualPointsAreOneSurface) {
     EXPECT_EQ(eps_of(cloud), once);
 }
 
-TEST(AdaptiveEps, GrowsWithMinPointsAsTheCloudIsThin) {
+TEST(AdaptiveEps, GrowsWithMinPointsInASparseCloud) {
     std::vector<Point2> line;
     for (int n = 0; n < 400; ++n) line.push_back({0.025 * n, 0.0});
-    EXPECT_NEAR(eps_of(line, 5), 0.3, 0.01); // three squares on either side at most
+    EXPECT_NEAR(eps_of(line, 5), 0.3, 0.01); // at most three squares on either side
     EXPECT_NEAR(eps_of(line, 20), 0.3, 0.01);
     EXPECT_NEAR(eps_of(line, 30), 0.375, 1e-9);
     EXPECT_EQ(eps_of(line, 60), kAdaptiveEpsMax);
 }
 
-TEST(AdaptiveEps, HasALeastAndAMostAnswer) {
+TEST(AdaptiveEps, StaysWithinItsLimits) {
     EXPECT_EQ(eps_of({}), kThinningSide);
     EXPECT_EQ(eps_of({{3.0, 4.0}}), kThinningSide);
     EXPECT_EQ(eps_of(std::vector<Point2>(10'000, Point2{3.0, 4.0}), 7), kThinningSide);
     EXPECT_EQ(eps_of({{0.0, 0.0}, {1000.0, 0.0}}), kAdaptiveEpsMax);
 }
 
-TEST(AdaptiveEps, LargeCloudsAreSampled) {
+TEST(AdaptiveEps, MatchesTheDensityOfALargeCloud) {
     std::mt19937 random(3);
     std::vector<Point2> cloud;
     for (int n = 0; n < 25'000; ++n) cloud.push_back({uniform(random, 0.0, 30.0), uniform(random, 0.0, 30.0)});
@@ -111,7 +111,7 @@ TEST(AdaptiveEps, LargeCloudsAreSampled) {
     EXPECT_NEAR(eps_of(cloud, 12), 0.42, 0.03);
 }
 
-TEST(AdaptiveEps, MinPointsOutOfItsRangeIsRefused) {
+TEST(AdaptiveEps, RefusesMinPointsOutOfRange) {
     for (const std::size_t min_points : {std::size_t{0}, kMinPointsMax + 1}) {
         EXPECT_EQ(adaptive_eps(distinct_points({}), min_points).error().code, Errc::kInvalidField);
     }

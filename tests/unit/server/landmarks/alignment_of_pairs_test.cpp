@@ -19,7 +19,7 @@ Pose2 random_pose(std::mt19937& random) {
     return {uniform(random, -5.0, 5.0), uniform(random, -5.0, 5.0), uniform(random, -3.14, 3.14)};
 }
 
-/// Pairs that fit a pose but for some noise.
+/// Returns pairs that fit a pose except for some noise.
 std::vector<PointPair> random_pairs(std::mt19937& random, const Pose2& T_first_second, std::size_t count,
                                     double noise) {
     std::vector<PointPair> pairs;
@@ -39,7 +39,8 @@ double weighted_squares(const std::vector<PointPair>& pairs, const Pose2& pose) 
     return squares;
 }
 
-/// The best yaw by looking at all, ever finer; of each yaw the best translation is that of the weighted means.
+/// Returns the best pose by a grid search over yaw with increasing resolution. For each yaw, the best translation
+/// follows from the weighted means.
 Pose2 searched(const std::vector<PointPair>& pairs) {
     const auto best_with = [&](double yaw) {
         double weights = 0.0;
@@ -74,7 +75,7 @@ double distance(const Pose2& a, const Pose2& b) {
     return std::hypot(a.x - b.x, a.y - b.y) + std::abs(normalize_angle(a.yaw - b.yaw));
 }
 
-TEST(AlignmentOfPairs, IsThatOfAFineSearch) {
+TEST(AlignmentOfPairs, MatchesAFineGridSearch) {
     std::mt19937 random(1);
     for (int round = 0; round < 2000; ++round) {
         const auto pairs = random_pairs(random, random_pose(random), 2 + random() % 8, round % 2 == 0 ? 0.3 : 3.0);
@@ -90,7 +91,7 @@ TEST(AlignmentOfPairs, IsThatOfAFineSearch) {
     }
 }
 
-TEST(AlignmentOfPairs, FindsAnExactTransformAlsoOfTwoPairsAndOnALine) {
+TEST(AlignmentOfPairs, FindsAnExactTransformFromTwoPairsOrCollinearPoints) {
     std::mt19937 random(2);
     for (int round = 0; round < 500; ++round) {
         const Pose2 pose = random_pose(random);
@@ -103,18 +104,18 @@ TEST(AlignmentOfPairs, FindsAnExactTransformAlsoOfTwoPairsAndOnALine) {
     }
 }
 
-TEST(AlignmentOfPairs, NeverMirrors) {
+TEST(AlignmentOfPairs, NeverReturnsAReflection) {
     std::vector<PointPair> pairs;
     for (const Point2& second : {Point2{0.0, 0.0}, Point2{4.0, 0.0}, Point2{0.0, 1.0}}) {
         pairs.push_back({{second.x, -second.y}, second});
     }
     const auto fit = align_pairs(pairs).value();
-    EXPECT_GT(fit.rms, 0.3) << "a reflection would fit exactly";
+    EXPECT_GT(fit.rms, 0.3) << "only a reflection would fit exactly";
     EXPECT_NEAR(norm(transform(fit.T_first_second, {4.0, 0.0}) - transform(fit.T_first_second, {0.0, 0.0})), 4.0,
                 1e-12);
 }
 
-TEST(AlignmentOfPairs, PairsOfNoWeightTakeNoPart) {
+TEST(AlignmentOfPairs, IgnoresPairsWithoutWeight) {
     std::vector<PointPair> pairs = {{{0.0, 0.0}, {1.0, 0.0}}, {{9.0, 9.0}, {0.0, 0.0}, 0.0}, {{1.0, 0.0}, {2.0, 0.0}}};
     const auto fit = align_pairs(pairs).value();
     EXPECT_THAT(fit.used, ElementsAre(0U, 2U));
@@ -124,7 +125,7 @@ TEST(AlignmentOfPairs, PairsOfNoWeightTakeNoPart) {
     EXPECT_EQ(align_pairs(pairs)->T_first_second, fit.T_first_second) << "only ratios of weights matter";
 }
 
-/// Of 1000 sets of pairs with wrong ones among them, how many the robust one aligns to within `near`.
+/// Returns how many of 1000 sets with wrong pairs the robust alignment aligns to within `near`.
 int right_of_1000(unsigned seed, std::size_t pair_count, std::size_t wrong, double near) {
     std::mt19937 random(seed);
     int right = 0;
@@ -140,12 +141,12 @@ int right_of_1000(unsigned seed, std::size_t pair_count, std::size_t wrong, doub
     return right;
 }
 
-TEST(AlignmentOfPairs, WrongPairsDoNotMatterToTheRobustOne) {
-    EXPECT_GE(right_of_1000(3, 20, 8, 0.1), 990) << "two of five are wrong";
-    EXPECT_GE(right_of_1000(5, 10, 5, 0.2), 980) << "half of few";
+TEST(AlignmentOfPairs, RobustAlignmentIgnoresWrongPairs) {
+    EXPECT_GE(right_of_1000(3, 20, 8, 0.1), 990) << "two of five pairs are wrong";
+    EXPECT_GE(right_of_1000(5, 10, 5, 0.2), 980) << "half of 10 pairs are wrong";
 }
 
-TEST(AlignmentOfPairs, WrongPairsThatAgreeWithEachOtherAreOutvotedOrTold) {
+TEST(AlignmentOfPairs, RobustAlignmentFollowsTheMajorityOrFails) {
     std::mt19937 random(6);
     for (int round = 0; round < 500; ++round) {
         const Pose2 pose = random_pose(random);
@@ -156,16 +157,16 @@ TEST(AlignmentOfPairs, WrongPairsThatAgreeWithEachOtherAreOutvotedOrTold) {
             for (std::size_t n = 0; n < agreeing; ++n) pairs[2 * n].first = transform(wrong, pairs[2 * n].second);
             const auto fit = align_pairs_robustly(pairs, 0.15);
             if (agreeing == 5) {
-                ASSERT_FALSE(fit) << "as many agree on either";
+                ASSERT_FALSE(fit) << "five pairs support each pose";
                 EXPECT_EQ(fit.error().code, Errc::kAmbiguous);
             } else if (fit) {
-                ASSERT_LT(distance(fit->T_first_second, pose), 0.3) << "six against four";
+                ASSERT_LT(distance(fit->T_first_second, pose), 0.3) << "six correct pairs against four wrong ones";
             }
         }
     }
 }
 
-TEST(AlignmentOfPairs, TheRobustOneOfGoodPairsIsTheLeastSquares) {
+TEST(AlignmentOfPairs, RobustAlignmentOfGoodPairsEqualsLeastSquares) {
     std::mt19937 random(4);
     for (int round = 0; round < 500; ++round) {
         const auto pairs = random_pairs(random, random_pose(random), 3 + random() % 8, 0.05);
@@ -173,7 +174,7 @@ TEST(AlignmentOfPairs, TheRobustOneOfGoodPairsIsTheLeastSquares) {
     }
 }
 
-TEST(AlignmentOfPairs, WhatDeterminesNothingIsRefused) {
+TEST(AlignmentOfPairs, RefusesPairsThatDoNotDetermineAPose) {
     const PointPair pair{{1.0, 2.0}, {3.0, 4.0}};
     EXPECT_THAT(align_pairs({}).error().message, HasSubstr("pairs with weight: 0;"));
     EXPECT_THAT(align_pairs(std::vector{pair}).error().message, HasSubstr("pairs with weight: 1;"));
@@ -186,10 +187,10 @@ TEST(AlignmentOfPairs, WhatDeterminesNothingIsRefused) {
     EXPECT_THAT(align_pairs(mirrored).error().message, HasSubstr("no rotation"));
     const std::vector<PointPair> apart = {
         {{0.0, 0.0}, {0.0, 0.0}}, {{1.0, 0.0}, {9.0, 0.0}}, {{0.0, 1.0}, {0.0, 30.0}}};
-    EXPECT_FALSE(align_pairs_robustly(apart, 0.1)) << "no three agree";
+    EXPECT_FALSE(align_pairs_robustly(apart, 0.1)) << "no three pairs agree";
 }
 
-TEST(AlignmentOfPairs, WhatCannotBeIsRefused) {
+TEST(AlignmentOfPairs, RefusesInvalidPairs) {
     const std::vector<PointPair> good = {{{0.0, 0.0}, {0.0, 0.0}}, {{1.0, 0.0}, {1.0, 0.0}}, {{0.0, 1.0}, {0.0, 1.0}}};
     for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity()}) {
         auto pairs = good;

@@ -11,14 +11,14 @@
 #include <algorithm>
 #include <cmath>
 
-// What an alignment is made of: surface elements, hypotheses, refinement, evidence.
+// Parts of an alignment: surface elements, hypotheses, refinement, evidence.
 
 namespace scanloom::landmarks {
 namespace {
 
 using namespace testing_support;
 
-/// The border of a room that no turn maps to itself, around the origin, with noise.
+/// Returns noisy points on the border of a room around the origin that has no rotational symmetry.
 std::vector<Point2> odd_room(std::mt19937& random) {
     const std::vector<Point2> corners = {{-3.0, -2.0}, {3.0, -2.0}, {3.0, 1.0}, {1.0, 1.0}, {1.0, 3.0}, {-3.0, 3.0}};
     std::vector<Point2> points;
@@ -38,10 +38,10 @@ std::vector<Point2> seen_from(const Pose2& place, std::vector<Point2> points) {
     return points;
 }
 
-/// Seen from the origin.
+/// Returns the surface elements of points observed from the origin.
 std::vector<Surfel> surfels_around(const std::vector<Point2>& points) { return surfels_of(CloudView{points}); }
 
-TEST(Surfels, LieOnTheWallHoweverDenselyItWasSeen) {
+TEST(Surfels, LieOnTheWallAtAnyPointDensity) {
     std::mt19937 random(1);
     std::vector<Point2> points;
     for (int n = 0; n < 4000; ++n) {
@@ -59,11 +59,11 @@ TEST(Surfels, LieOnTheWallHoweverDenselyItWasSeen) {
     EXPECT_FALSE(surfels_around(std::vector<Point2>(9, Point2{1.0, 1.0})).front().is_straight());
 }
 
-TEST(Surfels, FarOffHaveTheDirectionOfTheWallNotOfTheBeamsNoise) {
+TEST(Surfels, FarElementsHaveTheWallsDirection) {
     std::mt19937 random(6);
     std::normal_distribution<double> range_noise(0.0, 0.02);
     std::normal_distribution<double> angle_noise(0.0, 0.005);
-    std::vector<Point2> points; // of a wall along x, 4 m away, that is seen up to 12 m to the side
+    std::vector<Point2> points; // a wall along x at a distance of 4 m, observed up to 12 m to the side
     for (int turn = 0; turn < 20; ++turn) {
         for (int degree = 20; degree < 45; ++degree) {
             const double range = 4.0 / std::sin(degree * kDegree) + range_noise(random);
@@ -76,7 +76,7 @@ TEST(Surfels, FarOffHaveTheDirectionOfTheWallNotOfTheBeamsNoise) {
     EXPECT_GT(along, 2 * std::ssize(surfels) / 3);
 }
 
-TEST(Surfels, OfMoreViewsAreThoseOfAllTheirPoints) {
+TEST(Surfels, SurfelsOfSeveralViewsUseAllPoints) {
     std::mt19937 random(7);
     const auto here = odd_room(random);
     const auto there = odd_room(random);
@@ -92,7 +92,7 @@ TEST(Surfels, OfMoreViewsAreThoseOfAllTheirPoints) {
     }
 }
 
-TEST(Hypotheses, HoldTheTruthAmongTheFirst) {
+TEST(Hypotheses, ContainTheGroundTruthAmongTheFirst) {
     std::mt19937 random(2);
     for (int round = 0; round < 20; ++round) {
         const Pose2 place{uniform(random, -2.0, 0.5), uniform(random, -1.5, 0.5), uniform(random, -3.0, 3.0)};
@@ -106,22 +106,22 @@ TEST(Hypotheses, HoldTheTruthAmongTheFirst) {
     }
 }
 
-TEST(Hypotheses, AreSoughtAsLongAsSomebodyWantsThem) {
+TEST(Hypotheses, SearchStopsWhenTheCallbackReturnsAnError) {
     std::mt19937 random(5);
     const auto room = surfels_around(odd_room(random));
     for (const int last : {1, 2, 60, 120}) { // of 120 rotations
-        int asked = 0;
-        const auto not_wanted = [&]() -> Result<> {
-            return ++asked < last ? Result<>() : Error{Errc::kShuttingDown, "the server is shutting down"};
+        int calls = 0;
+        const auto stop_at_last = [&]() -> Result<> {
+            return ++calls < last ? Result<>() : Error{Errc::kShuttingDown, "the server is shutting down"};
         };
-        const auto found = find_hypotheses(room, room, 5.0, 5, kSurfelsMax, not_wanted);
+        const auto found = find_hypotheses(room, room, 5.0, 5, kSurfelsMax, stop_at_last);
         ASSERT_FALSE(found) << last;
         EXPECT_EQ(found.error().code, Errc::kShuttingDown);
-        EXPECT_EQ(asked, last);
+        EXPECT_EQ(calls, last);
     }
 }
 
-TEST(Refinement, BringsANearPoseToTheTruth) {
+TEST(Refinement, ConvergesFromANearbyPose) {
     std::mt19937 random(3);
     const Surface first(surfels_around(odd_room(random)));
     for (int round = 0; round < 50; ++round) {
@@ -138,7 +138,7 @@ TEST(Refinement, BringsANearPoseToTheTruth) {
     }
 }
 
-TEST(Refinement, WhereNothingIsCloseThePoseStays) {
+TEST(Refinement, KeepsThePoseWithoutNearbySurfaces) {
     std::mt19937 random(4);
     const Surface room(surfels_around(odd_room(random)));
     const Pose2 far{50.0, 50.0, 1.0};
@@ -148,17 +148,17 @@ TEST(Refinement, WhereNothingIsCloseThePoseStays) {
     EXPECT_EQ(fit.used, 0U);
 }
 
-TEST(Evidence, WhatStandsWhereTheOtherLookedThroughContradicts) {
+TEST(Evidence, ElementInOpenSpaceOfTheOtherViewContradicts) {
     std::mt19937 random(5);
     const auto room = odd_room(random);
     const Surface surface(surfels_around(room));
     const Horizon horizon(room, {0.0, 0.0});
     const std::vector<Surfel> things = {
         {{-3.0, 1.0}, {1.0, 0.0}},  // on the wall
-        {{-3.0, 1.0}, {0.0, 1.0}},  // there too, but across it
-        {{-1.5, 0.0}, {0.0, 0.0}},  // in the open
+        {{-3.0, 1.0}, {0.0, 1.0}},  // at the same position, but perpendicular to the wall
+        {{-1.5, 0.0}, {0.0, 0.0}},  // in open space
         {{-9.0, 0.0}, {0.0, 0.0}},  // behind the wall
-        {{-2.88, 1.0}, {1.0, 0.0}}, // neither on the wall nor clearly before it
+        {{-2.88, 1.0}, {1.0, 0.0}}, // neither on the wall nor clearly in front of it
     };
     const auto findings = findings_of(surface, std::vector{&horizon}, things, {});
     EXPECT_EQ(findings, (std::vector{Finding::kMatched, Finding::kUnseen, Finding::kContradicted, Finding::kUnseen,
@@ -172,7 +172,7 @@ TEST(Evidence, WhatStandsWhereTheOtherLookedThroughContradicts) {
     EXPECT_EQ(Horizon({}, {0.0, 0.0}).at({1.0, 0.0}), Horizon::Verdict::kUnknown);
 }
 
-TEST(Candidates, DifferInWhatOnlyOneOfThemExplains) {
+TEST(Candidates, DifferByElementsThatOnlyOneMatches) {
     using enum Finding;
     const std::vector<Point2> places = {{0.0, 0.0}, {0.0, 1.0}, {0.0, 2.0}, {0.0, 3.0}, {0.0, 9.0}};
     const Candidate one{
@@ -182,7 +182,7 @@ TEST(Candidates, DifferInWhatOnlyOneOfThemExplains) {
     const Difference between = difference(one, other, 2.5);
     EXPECT_EQ(between.for_one, 1.0 + 1.0 + 2.0 + 3.0);
     EXPECT_EQ(between.for_other, 2.0);
-    EXPECT_EQ(between.of_one_thing, 1.0 + 1.0 + 2.0) << "around (0, 1)";
+    EXPECT_EQ(between.of_one_thing, 1.0 + 1.0 + 2.0) << "the largest group is around (0, 1)";
     EXPECT_EQ(difference(one, other, 0.5).of_one_thing, 3.0);
     EXPECT_EQ(difference(one, one, 1.0).for_one, 0.0);
 }

@@ -22,12 +22,12 @@ struct Off {
     [[nodiscard]] bool is_right() const { return metres < 0.02 && radians < 0.5 * kDegree; }
 };
 
-Off off(const Pose2& pose, const Pose2& truth) {
-    const Pose2 between = compose(inverse(truth), pose);
+Off off(const Pose2& pose, const Pose2& ground_truth) {
+    const Pose2 between = compose(inverse(ground_truth), pose);
     return {std::hypot(between.x, between.y), std::abs(between.yaw)};
 }
 
-/// An empty room around the origin, but for what stands in it.
+/// Returns a room around the origin that is empty except for `things`.
 robot::World room_of(double half_width, double half_height, const std::vector<Box>& things = {}) {
     std::vector<Box> solids = {{-half_width - 1.0, -half_height - 1.0, half_width + 1.0, -half_height},
                                {-half_width - 1.0, half_height, half_width + 1.0, half_height + 1.0},
@@ -48,7 +48,7 @@ Alignment aligned(const TwoCaptures& captures) {
     return align({.points = captures.first}, {.points = captures.second}).value();
 }
 
-/// What is clear is right; how many are.
+/// Returns the number of clear alignments and expects each of them to be correct.
 int clear_of(const robot::World& world, int seeds) {
     int clear = 0;
     int beyond_sigmas = 0;
@@ -68,24 +68,25 @@ int clear_of(const robot::World& world, int seeds) {
 }
 
 /// Three of the many scenes of AlignmentTrials.
-TEST(Alignment, FindsCapturesInARoomAnOfficeAndAHall) {
+TEST(Alignment, AlignsCapturesInRoomOfficeAndHall) {
     EXPECT_EQ(clear_of(robot::make_room(), 3), 3);
     EXPECT_GE(clear_of(robot::make_office(), 3), 2);
     EXPECT_GE(clear_of(robot::make_hall(), 3), 2);
 }
 
-TEST(AlignmentTrials, OfCapturesInARoomIsFoundWithoutAGuess) { EXPECT_GE(clear_of(robot::make_room(), 100), 99); }
+TEST(AlignmentTrials, AlignsCapturesInARoomWithoutPrior) { EXPECT_GE(clear_of(robot::make_room(), 100), 99); }
 
-TEST(AlignmentTrials, OfCapturesInAnOfficeIsFoundWithoutAGuess) {
+TEST(AlignmentTrials, AlignsCapturesInAnOfficeWithoutPrior) {
     auto office = robot::make_office();
     office.starts = {{-15.0, -10.0, 15.0, 10.0}};
     EXPECT_GE(clear_of(office, 100), 95);
 }
 
-TEST(AlignmentTrials, OfCapturesInAHallIsFoundOrSaidNotToBeKnown) { EXPECT_GE(clear_of(robot::make_hall(), 100), 95); }
+TEST(AlignmentTrials, AlignsCapturesInAHallOrReportsAmbiguity) { EXPECT_GE(clear_of(robot::make_hall(), 100), 95); }
 
-/// Scenes by chance on which an earlier align() was clear and wrong: half a turn off, racks further, along racks.
-TEST(Alignment, WhatExplainsSomewhatMoreIsNotTakenForTheTruth) {
+/// Random scenes on which an earlier align() was clear and wrong: rotated by half a turn, shifted to other racks, or
+/// shifted along racks.
+TEST(Alignment, IsNotClearForASlightlyBetterWrongPose) {
     auto office = robot::make_office();
     office.starts = {{-15.0, -10.0, 15.0, 10.0}};
     const auto hall = robot::make_hall();
@@ -105,7 +106,7 @@ TEST(Alignment, WhatExplainsSomewhatMoreIsNotTakenForTheTruth) {
     }
 }
 
-TEST(Alignment, InASquareRoomHasRivalsAQuarterTurnAway) {
+TEST(Alignment, IsAmbiguousByAQuarterTurnInASquareRoom) {
     const auto captures = captures_at(room_of(3.0, 3.0), {0.5, 0.2, 0.3}, {-0.4, 0.6, 2.0});
     const auto alignment = aligned(captures);
     EXPECT_EQ(alignment.certainty, Certainty::kAmbiguous);
@@ -116,7 +117,7 @@ TEST(Alignment, InASquareRoomHasRivalsAQuarterTurnAway) {
     EXPECT_GT(turn, 80.0);
 }
 
-TEST(Alignment, InARoomWithoutFeaturesIsClearOnlyWhereItIsRight) {
+TEST(Alignment, IsClearOnlyIfCorrectInAFeaturelessRoom) {
     const auto square = room_of(3.0, 3.0);
     const auto oblong = room_of(4.0, 2.5);
     int ambiguous = 0;
@@ -124,13 +125,13 @@ TEST(Alignment, InARoomWithoutFeaturesIsClearOnlyWhereItIsRight) {
         const auto captures = two_captures(seed % 2 == 0 ? square : oblong, {}, seed);
         const auto alignment = aligned(captures);
         ambiguous += alignment.certainty == Certainty::kAmbiguous ? 1 : 0;
-        if (alignment.certainty != Certainty::kClear) continue; // else the rivals are beyond distance_max
+        if (alignment.certainty != Certainty::kClear) continue; // otherwise the rivals are beyond distance_max
         EXPECT_TRUE(off(alignment.T_first_second, captures.T_first_second).is_right()) << "seed " << seed;
     }
     EXPECT_GE(ambiguous, 6);
 }
 
-TEST(Alignment, ATableTellsTheCornersOfASquareRoomApart) {
+TEST(Alignment, IsClearInASquareRoomWithATable) {
     const auto world = room_of(3.0, 3.0, {{-3.0, -3.0, -2.2, -2.2}});
     const auto captures = captures_at(world, {0.5, 0.2, 0.3}, {-0.4, 0.6, 2.0});
     const auto alignment = aligned(captures);
@@ -140,7 +141,7 @@ TEST(Alignment, ATableTellsTheCornersOfASquareRoomApart) {
     EXPECT_LT(alignment.contradicted, 0.01);
 }
 
-TEST(Alignment, ACupboardThatWasMovedToTheOppositeCornerTurnsNoRoomRound) {
+TEST(Alignment, IsAmbiguousIfACupboardMovedToTheOppositeCorner) {
     robot::Random random(3);
     const Pose2 here{0.5, 0.2, 0.3};
     const Pose2 there{-0.4, 0.6, 2.0};
@@ -149,7 +150,7 @@ TEST(Alignment, ACupboardThatWasMovedToTheOppositeCornerTurnsNoRoomRound) {
     EXPECT_EQ(align({.points = before}, {.points = after})->certainty, Certainty::kAmbiguous);
 }
 
-TEST(Alignment, ACrateThatWasMovedAlongACorridorIsNotTakenForItsPlace) {
+TEST(Alignment, IsNotClearIfACrateMovedAlongACorridor) {
     for (const double moved : {0.12, 0.2, 0.3, 0.45}) {
         robot::Random random(7);
         const Pose2 here{0.0, 0.2, 0.3};
@@ -161,8 +162,8 @@ TEST(Alignment, ACrateThatWasMovedAlongACorridorIsNotTakenForItsPlace) {
     }
 }
 
-/// The legs of an L are alike: from one of them the other may be taken for it.
-TEST(AlignmentTrials, InTheLegsOfAnLIsClearOnlyWhereItIsRight) {
+/// The legs of an L are similar: a robot in one leg may match the other leg.
+TEST(AlignmentTrials, IsClearOnlyIfCorrectInTheLegsOfAnL) {
     const auto world = robot::make_world("L",
                                          {{-2.0, -2.0, 16.0, -1.0},
                                           {15.0, -2.0, 16.0, 2.0},
@@ -189,7 +190,7 @@ TEST(AlignmentTrials, InTheLegsOfAnLIsClearOnlyWhereItIsRight) {
     EXPECT_GE(clear, 10);
 }
 
-TEST(Alignment, InALongCorridorIsAmbiguousAlongIt) {
+TEST(Alignment, IsAmbiguousAlongALongCorridor) {
     const auto captures = captures_at(room_of(40.0, 1.0), {0.0, 0.2, 0.3}, {1.0, -0.2, 2.0});
     const auto alignment = aligned(captures);
     EXPECT_EQ(alignment.certainty, Certainty::kAmbiguous);
@@ -197,11 +198,12 @@ TEST(Alignment, InALongCorridorIsAmbiguousAlongIt) {
     ASSERT_TRUE(alignment.rival);
     const Pose2 T_map_first{0.0, 0.2, 0.3};
     const Pose2 one = compose(T_map_first, alignment.T_first_second);
-    EXPECT_NEAR(std::abs(one.y), 0.2, 0.02) << "across the corridor it is known, but for which end is which";
+    EXPECT_NEAR(std::abs(one.y), 0.2, 0.02)
+        << "the position across the corridor is determined except for a rotation by half a turn";
     EXPECT_GT(off(alignment.T_first_second, *alignment.rival).metres, kDistinctDistance);
 }
 
-TEST(Alignment, BetweenTwoParallelLinesIsHeldByNothingAlongThem) {
+TEST(Alignment, IsNotClearBetweenParallelLines) {
     std::vector<Point2> lines;
     for (int n = -80; n <= 80; ++n) {
         lines.push_back({0.1 * n, 1.0});
@@ -215,21 +217,21 @@ TEST(Alignment, BetweenTwoParallelLinesIsHeldByNothingAlongThem) {
     EXPECT_GT(alignment.position_sigma, 0.0);
 }
 
-TEST(Alignment, AmongEvenlySpacedDoorFramesIsAmbiguous) {
+TEST(Alignment, IsAmbiguousAmongEvenlySpacedDoorFrames) {
     std::vector<Box> frames;
     for (double x = -39.0; x < 39.0; x += 1.5) frames.push_back({x, 0.9, x + 0.4, 1.0});
     const auto alignment = aligned(captures_at(room_of(40.0, 1.0, frames), {0.0, 0.2, 0.3}, {1.0, -0.2, 2.0}));
     EXPECT_EQ(alignment.certainty, Certainty::kAmbiguous);
 }
 
-TEST(Alignment, OfWhatIsFarAwayAloneIsSaidNotToBeKnownWell) {
+TEST(Alignment, IsUndeterminedIfOnlyDistantSurfacesOverlap) {
     const auto hall = robot::make_hall();
     const auto alignment = aligned(two_captures(hall, doors_of(hall), 10'987));
     EXPECT_EQ(alignment.certainty, Certainty::kUndetermined);
     EXPECT_THAT(alignment.why, HasSubstr("known to within"));
 }
 
-TEST(Alignment, OfDifferentPlacesIsUndetermined) {
+TEST(Alignment, IsUndeterminedForDifferentPlaces) {
     const auto room = robot::make_room();
     const auto hall = robot::make_hall();
     robot::Random random(1);
@@ -240,7 +242,7 @@ TEST(Alignment, OfDifferentPlacesIsUndetermined) {
     EXPECT_NE(alignment.why, "");
 }
 
-TEST(Alignment, IsTheSameEveryTimeAndInAnyFrame) {
+TEST(Alignment, IsDeterministicAndIndependentOfFrames) {
     const auto captures = two_captures(robot::make_room(), {}, 5);
     const auto once = aligned(captures);
     const auto again = aligned(captures);
@@ -257,11 +259,11 @@ TEST(Alignment, IsTheSameEveryTimeAndInAnyFrame) {
     EXPECT_EQ(elsewhere.certainty, Certainty::kClear);
     const Pose2 expected = compose(compose(T_map_first, once.T_first_second), inverse(T_odom_second));
     const Off difference = off(elsewhere.T_first_second, expected);
-    EXPECT_LT(difference.metres, 0.02) << "surface elements lie otherwise in another frame";
+    EXPECT_LT(difference.metres, 0.02) << "surface elements depend on the frame";
     EXPECT_LT(difference.radians, 0.2 * kDegree);
 }
 
-TEST(Alignment, PointsThatDetermineNothingHaveNoClearOne) {
+TEST(Alignment, IsNotClearForDegeneratePoints) {
     std::vector<Point2> wall;
     for (int n = 0; n < 400; ++n) wall.push_back({-2.0 + 0.01 * n, 1.5});
     const std::vector<Point2> heap(100, Point2{1.0, 1.0});
@@ -277,7 +279,7 @@ TEST(Alignment, PointsThatDetermineNothingHaveNoClearOne) {
     EXPECT_NE(align({.points = wall}, {.points = heap})->certainty, Certainty::kClear);
 }
 
-TEST(Alignment, ATurnAloneDoesAsWell) {
+TEST(Alignment, IsClearForOneTurnOfTheLidar) {
     const auto captures = two_captures(robot::make_room(), {}, 3, 1);
     const auto alignment = aligned(captures);
     const Off error = off(alignment.T_first_second, captures.T_first_second);
@@ -285,7 +287,7 @@ TEST(Alignment, ATurnAloneDoesAsWell) {
     EXPECT_TRUE(error.metres < 0.03 && error.radians < kDegree) << error.metres;
 }
 
-TEST(Alignment, WhatCannotBeIsRefused) {
+TEST(Alignment, RefusesInvalidPoints) {
     const std::vector<Point2> good(20, Point2{1.0, 1.0});
     EXPECT_THAT(align({.points = {}}, {.points = good}).error().message, HasSubstr("first has 0 points"));
     EXPECT_THAT(align({.points = good}, {.points = std::span(good).first(19)}).error().message,

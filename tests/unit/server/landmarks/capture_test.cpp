@@ -23,7 +23,7 @@ const Sensor kLaser{.id = 1,
                     .range_min = 0.1,
                     .range_max = 10.0};
 
-/// Scans of one robot as they come, tenths of a second apart, each an entry of the log.
+/// Adds scans of one robot at intervals of 0.1 s; each scan is one log entry.
 class Robot {
 public:
     explicit Robot(CaptureCutter& cutter) : cutter_(cutter) {}
@@ -48,7 +48,7 @@ protected:
     Robot robot_{cutter_};
 };
 
-TEST_F(CaptureTest, ARobotThatDrivesOnHasOneOfAScanEveryHalfMetre) {
+TEST_F(CaptureTest, DrivingRobotGetsOneCaptureOfOneScanPerHalfMetre) {
     std::vector<Revision> firsts;
     for (int step = 0; step < 100; ++step) {
         if (const auto ended = robot_.scan({step * 0.1, 0.0, 0.0})) {
@@ -60,13 +60,13 @@ TEST_F(CaptureTest, ARobotThatDrivesOnHasOneOfAScanEveryHalfMetre) {
     for (std::size_t n = 0; n < firsts.size(); ++n) EXPECT_EQ(firsts[n], 10 + 5 * n);
 }
 
-TEST_F(CaptureTest, ARobotThatTurnsHasOneForEachDirection) {
+TEST_F(CaptureTest, TurningRobotGetsOneCapturePerDirection) {
     int ended = 0;
     for (int step = 0; step < 60; ++step) ended += robot_.scan({0.0, 0.0, normalize_angle(step * 0.21)}) ? 1 : 0;
     EXPECT_EQ(ended, 20);
 }
 
-TEST_F(CaptureTest, OneThatStandsIsPutTogetherUntilItIsFull) {
+TEST_F(CaptureTest, StationaryRobotFillsOneCapture) {
     for (std::uint32_t n = 1; n < kCaptureScansMax; ++n) EXPECT_FALSE(robot_.scan({0.02 * (n % 2), 0.0, 0.01}));
     const auto full = robot_.scan({0.0, 0.0, 0.0});
     ASSERT_TRUE(full);
@@ -75,18 +75,19 @@ TEST_F(CaptureTest, OneThatStandsIsPutTogetherUntilItIsFull) {
     EXPECT_EQ(full->last, 10U + kCaptureScansMax - 1);
     EXPECT_THAT(full->points, SizeIs(4 * kCaptureScansMax));
     EXPECT_EQ(full->pose, (Pose2{0.02, 0.0, 0.01}));
-    for (int n = 0; n < 100; ++n) EXPECT_FALSE(robot_.scan({0.0, 0.0, 0.0})) << "it has looked";
+    for (int n = 0; n < 100; ++n)
+        EXPECT_FALSE(robot_.scan({0.0, 0.0, 0.0})) << "the robot has not moved since the last capture";
     EXPECT_EQ(cutter_.open(), nullptr);
 }
 
-TEST_F(CaptureTest, OneThatStandsLooksAgainAfterAWhile) {
+TEST_F(CaptureTest, StationaryRobotStartsAnotherCaptureAfterAWhile) {
     for (std::uint32_t n = 0; n < kCaptureScansMax; ++n) static_cast<void>(robot_.scan({}));
     robot_.wait(kCaptureAgainAfter);
     EXPECT_FALSE(robot_.scan({}));
     EXPECT_NE(cutter_.open(), nullptr);
 }
 
-TEST_F(CaptureTest, MovingOnEndsItAndAStepThatIsTooShortBeginsNone) {
+TEST_F(CaptureTest, MovementEndsACaptureAndAShortStepStartsNone) {
     EXPECT_FALSE(robot_.scan({}));
     EXPECT_FALSE(robot_.scan({}));
     const auto ended = robot_.scan({0.2, 0.0, 0.0});
@@ -101,11 +102,11 @@ TEST_F(CaptureTest, MovingOnEndsItAndAStepThatIsTooShortBeginsNone) {
     const auto jumped = robot_.scan({7.5, 0.0, 0.0});
     ASSERT_TRUE(jumped);
     EXPECT_EQ(jumped->pose.x, 0.5);
-    EXPECT_NE(cutter_.open(), nullptr) << "the next begins at once";
+    EXPECT_NE(cutter_.open(), nullptr) << "the next capture begins with the same scan";
 }
 
-/// Of a log that is long, few scans have to be looked at.
-TEST_F(CaptureTest, ItIsToldBeforeWhatCanChangeNothing) {
+/// Most scans of a long log can be skipped.
+TEST_F(CaptureTest, NeedsPredictsIrrelevantScans) {
     const auto scan_at = [&](const Pose2& pose) {
         const bool needed = cutter_.needs(robot_.next_stamp(), pose);
         const auto open_before = cutter_.open() != nullptr;
@@ -114,7 +115,7 @@ TEST_F(CaptureTest, ItIsToldBeforeWhatCanChangeNothing) {
         return needed;
     };
     EXPECT_TRUE(scan_at({}));
-    EXPECT_TRUE(scan_at({0.1, 0.0, 0.0})) << "ends the first";
+    EXPECT_TRUE(scan_at({0.1, 0.0, 0.0})) << "the scan ends the first capture";
     for (int step = 2; step < 5; ++step) EXPECT_FALSE(scan_at({step * 0.1, 0.0, 0.0}));
     EXPECT_TRUE(scan_at({0.5, 0.0, 0.0}));
     EXPECT_TRUE(scan_at({0.6, 0.0, 0.0}));
@@ -126,15 +127,15 @@ TEST_F(CaptureTest, ItIsToldBeforeWhatCanChangeNothing) {
     EXPECT_TRUE(scan_at({0.6, 0.0, 0.8}));
 }
 
-TEST_F(CaptureTest, PointsAreWhereTheBeamsMetSomethingInTheMap) {
+TEST_F(CaptureTest, PointsAreBeamEndsInTheMapFrame) {
     static_cast<void>(robot_.scan({1.0, 2.0, std::numbers::pi / 2}, {2000, kNoReturn, kInvalidRange, 50}));
     const auto ended = robot_.scan({9.0, 9.0, 0.0}, {10'000, 3000, 0, 0});
     ASSERT_TRUE(ended);
     EXPECT_THAT(ended->points, ElementsAre(PointMm{1000, 4100}))
-        << "no returns, bad readings, and too near ones are none";
+        << "no-returns, invalid readings and too near readings give no points";
     const auto next = robot_.scan({});
     ASSERT_TRUE(next);
-    EXPECT_THAT(next->points, ElementsAre(PointMm{9100, 12'000})) << "range_max is a reading of nothing";
+    EXPECT_THAT(next->points, ElementsAre(PointMm{9100, 12'000})) << "a reading of range_max means no return";
 }
 
 } // namespace

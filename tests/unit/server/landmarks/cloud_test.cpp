@@ -17,7 +17,7 @@ using namespace testing_support;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-TEST(Cloud, IsScaledThenRotatedThenMoved) {
+TEST(Cloud, IsScaledThenRotatedThenTranslated) {
     const std::vector<Point2> points = {{1.0, 0.0}, {0.0, 2.0}};
     const auto moved = transform_points(points, {10.0, 20.0}, std::numbers::pi / 2.0, 3.0).value();
     ASSERT_EQ(moved.size(), 2U);
@@ -25,14 +25,14 @@ TEST(Cloud, IsScaledThenRotatedThenMoved) {
     EXPECT_LT(norm(moved[1] - Point2{4.0, 20.0}), 1e-12);
 }
 
-TEST(Cloud, UnmovedIsTheSameBitForBit) {
+TEST(Cloud, IdentityTransformKeepsEveryBit) {
     std::mt19937 random(1);
     const auto points = random_points(random, 200);
     EXPECT_EQ(transform_points(points, {0.0, 0.0}, 0.0).value(), points);
     EXPECT_THAT(transform_points({}, {1.0, 2.0}, 3.0).value(), IsEmpty());
 }
 
-TEST(Cloud, KeepsDistancesAndOrientationButForTheScale) {
+TEST(Cloud, KeepsScaledDistancesAndOrientation) {
     std::mt19937 random(2);
     for (int round = 0; round < 1000; ++round) {
         const auto points = random_points(random, 3);
@@ -47,7 +47,7 @@ TEST(Cloud, KeepsDistancesAndOrientationButForTheScale) {
     }
 }
 
-TEST(Cloud, WhatCannotBeIsRefused) {
+TEST(Cloud, RefusesInvalidPointsAndTransforms) {
     const double nan = std::nan("");
     const double infinite = std::numeric_limits<double>::infinity();
     const std::vector<Point2> points = {{1.0, 1.0}};

@@ -5,7 +5,7 @@
 #include <deque>
 #include <limits>
 
-/// DBSCAN as its definitions say, every point compared with every other.
+/// DBSCAN implemented directly from its definitions by comparing all pairs of points.
 namespace scanloom::testing_support {
 
 struct ClusteringOracle {

@@ -16,7 +16,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-TEST(Clustering, IsWhatTheDefinitionsSay) {
+TEST(Clustering, MatchesTheDefinition) {
     std::mt19937 random(1);
     std::size_t clusters = 0;
     std::size_t noise = 0;
@@ -34,10 +34,10 @@ TEST(Clustering, IsWhatTheDefinitionsSay) {
     EXPECT_GT(noise, 10'000U);
 }
 
-TEST(Clustering, DenseCloudsAreWhatTheDefinitionsSay) {
+TEST(Clustering, MatchesTheDefinitionForDenseClouds) {
     std::mt19937 random(2);
     for (int round = 0; round < 30; ++round) {
-        // Heaps of hundreds of points, as far from each other as eps, about.
+        // Groups of hundreds of points, about eps apart from each other.
         std::vector<Point2> points;
         for (int heap = 0; heap < 6; ++heap) {
             const Point2 middle{0.14 * heap, uniform(random, -0.05, 0.05)};
@@ -52,7 +52,7 @@ TEST(Clustering, DenseCloudsAreWhatTheDefinitionsSay) {
     }
 }
 
-TEST(Clustering, FarFromTheOriginPointsAreGroupedAsNearIt) {
+TEST(Clustering, MatchesTheDefinitionFarFromTheOrigin) {
     std::mt19937 random(3);
     for (int round = 0; round < 300; ++round) {
         auto points = random_points(random, 80);
@@ -62,7 +62,7 @@ TEST(Clustering, FarFromTheOriginPointsAreGroupedAsNearIt) {
     }
 }
 
-TEST(Clustering, TheSmallestEpsWorksAtTheFurthestPlace) {
+TEST(Clustering, AcceptsTheSmallestEpsAtTheFarthestPoint) {
     std::vector<Point2> points;
     for (int n = 0; n < 60; ++n) points.push_back({1e7 - 4e-7 * n, -1e7 + 4e-7 * (n % 3)});
     for (const double eps : {kEpsMin, 1.3e-6, 4e-6}) {
@@ -71,8 +71,8 @@ TEST(Clustering, TheSmallestEpsWorksAtTheFurthestPlace) {
     EXPECT_EQ(dbscan(points, kEpsMax, 4)->clusters, 1U);
 }
 
-TEST(Clustering, ABorderPointFollowsTheNearestCorePointAndOfEquallyNearOnesTheFirst) {
-    // Two core points with what makes them so around them, and a point in the middle.
+TEST(Clustering, BorderPointJoinsTheNearestThenFirstCorePoint) {
+    // Two core points, the points that make them core points, and one point in the middle.
     std::vector<Point2> points{{0.0, 0.0}};
     for (const double side : {-1.0, 1.0}) {
         for (const Point2& point :
@@ -85,14 +85,14 @@ TEST(Clustering, ABorderPointFollowsTheNearestCorePointAndOfEquallyNearOnesTheFi
     EXPECT_THAT(dbscan(points, 1.25, 5)->cluster_of, ElementsAre(1, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1));
 }
 
-TEST(Clustering, StepsOfExactlyEpsJoin) {
+TEST(Clustering, PointsExactlyEpsApartAreConnected) {
     std::vector<Point2> points;
     for (int n = 0; n < 20; ++n) points.push_back({0.25 * n, 0.0});
     EXPECT_EQ(dbscan(points, 0.25, 3)->clusters, 1U);
     EXPECT_EQ(dbscan(points, std::nextafter(0.25, 0.0), 3)->clusters, 0U);
 }
 
-TEST(Clustering, SettingsOutOfTheirRangeAreRefused) {
+TEST(Clustering, RefusesSettingsOutOfRange) {
     const std::vector<Point2> points{{1.0, 1.0}};
     for (const double eps :
          {0.0, -0.1, 9e-7, 2e6, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
@@ -109,7 +109,7 @@ TEST(Clustering, SettingsOutOfTheirRangeAreRefused) {
     }
 }
 
-TEST(Clustering, PointsThatAreNoneAreRefused) {
+TEST(Clustering, RefusesPointsThatAreNotFinite) {
     const std::vector<Point2> points{{1.0, 1.0}, {std::numeric_limits<double>::quiet_NaN(), 0.0}};
     ASSERT_FALSE(dbscan(points, 0.1, 5));
     EXPECT_THAT(dbscan(points, 0.1, 5).error().message, HasSubstr("points[1]"));

@@ -13,7 +13,8 @@ namespace {
 
 using namespace testing_support;
 
-/// Continuity from models.md, section 7, the major axis found by trying directions. Pre  there is a major axis.
+/// Computes the continuity of models.md, section 7, with the major axis found by trying directions. Pre: a major axis
+/// exists.
 Continuity continuity_oracle(const std::vector<Point2>& points, double eps) {
     const auto variance_along = [&](double angle, std::vector<double>& places) {
         places.clear();
@@ -48,7 +49,7 @@ Continuity continuity_oracle(const std::vector<Point2>& points, double eps) {
     return {1.0 - minor / major, 1.0 / (1.0 + std::sqrt(squares / gaps) / (extent / gaps)), filled / extent};
 }
 
-TEST(Continuity, IsWhatTheDefinitionSays) {
+TEST(Continuity, MatchesTheDefinition) {
     std::mt19937 random(1);
     for (int round = 0; round < 300; ++round) {
         std::vector<Point2> points;
@@ -62,7 +63,7 @@ TEST(Continuity, IsWhatTheDefinitionSays) {
         }
         const double eps = uniform(random, 0.02, 0.4);
         const auto expected = continuity_oracle(points, eps);
-        if (expected.linearity < 0.01) continue; // no axis is the major one
+        if (expected.linearity < 0.01) continue; // the major axis is not defined
         const auto found = continuity_of(points, eps);
         EXPECT_NEAR(found.linearity, expected.linearity, 1e-6) << "round " << round;
         EXPECT_NEAR(found.evenness, expected.evenness, 1e-5) << "round " << round;
@@ -70,7 +71,7 @@ TEST(Continuity, IsWhatTheDefinitionSays) {
     }
 }
 
-TEST(Continuity, AStraightWallOfEvenStepsIsWhole) {
+TEST(Continuity, EvenlySampledStraightWallHasContinuityOne) {
     for (const Point2& step : {Point2{0.1, 0.0}, Point2{0.0, 0.1}, Point2{0.1, 0.1}, Point2{-0.1, 0.05}}) {
         std::vector<Point2> wall;
         for (int n = 0; n < 30; ++n) wall.push_back(Point2{100.0, -200.0} + n * step);
@@ -78,35 +79,35 @@ TEST(Continuity, AStraightWallOfEvenStepsIsWhole) {
     }
 }
 
-TEST(Continuity, GapsOfTwoEpsAndMoreAreNotFilled) {
+TEST(Continuity, GapsOfAtLeastTwoEpsAreNotFilled) {
     const std::vector<Point2> points = {{0.0, 0.0}, {0.25, 0.0}, {0.75, 0.0}, {1.0, 0.0}};
     EXPECT_DOUBLE_EQ(continuity_of(points, 0.25).fill, 0.5);
     EXPECT_DOUBLE_EQ(continuity_of(points, 0.26).fill, 1.0);
     EXPECT_DOUBLE_EQ(continuity_of(points, 0.1).fill, 0.0);
 }
 
-TEST(Continuity, ASquareHasNoLine) {
+TEST(Continuity, SquareHasNoLinearity) {
     const std::vector<Point2> square = {{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}};
     EXPECT_EQ(continuity_of(square, 0.5).linearity, 0.0);
-    // Along x: gaps of 0, 1 and 0.
+    // Along x, the gaps are 0, 1 and 0.
     EXPECT_NEAR(continuity_of(square, 0.6).evenness, 1.0 / (1.0 + std::sqrt(2.0)), 1e-12);
     EXPECT_EQ(continuity_of(square, 0.6).fill, 1.0);
 }
 
-TEST(Continuity, WithoutExtentThereIsNone) {
+TEST(Continuity, IsZeroWithoutExtent) {
     EXPECT_EQ(continuity_of({}, 0.1), Continuity{});
     EXPECT_EQ(continuity_of(std::vector<Point2>{{1.0, 2.0}}, 0.1), Continuity{});
     EXPECT_EQ(continuity_of(std::vector<Point2>(7, Point2{0.1, 0.7}), 0.1), Continuity{});
 }
 
-TEST(Continuity, TwoPointsAreALine) {
+TEST(Continuity, TwoPointsHaveContinuityOne) {
     const auto found = continuity_of(std::vector<Point2>{{1.0, 2.0}, {1.3, 2.4}}, 0.3);
     EXPECT_NEAR(found.linearity, 1.0, 1e-12);
     EXPECT_EQ(found.evenness, 1.0);
     EXPECT_EQ(found.fill, 1.0);
 }
 
-TEST(Continuity, IsBetweenNoneAndWholeWhateverThePoints) {
+TEST(Continuity, IsBetweenZeroAndOneForAnyPoints) {
     std::mt19937 random(2);
     for (int round = 0; round < 3000; ++round) {
         auto points = random_points(random, 2 + random() % 30);

@@ -13,7 +13,7 @@ using namespace testing_support;
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-TEST(DistinctPoints, AreThoseThatComeFirstInTheirOrder) {
+TEST(DistinctPoints, KeepTheFirstOccurrencesInOrder) {
     std::mt19937 random(1);
     for (int round = 0; round < 1000; ++round) {
         const auto cloud = random_points(random, random() % 60);
@@ -36,7 +36,7 @@ TEST(DistinctPoints, AreThoseThatComeFirstInTheirOrder) {
     }
 }
 
-TEST(DistinctPoints, ZeroHasNoSign) {
+TEST(DistinctPoints, TreatNegativeZeroAsZero) {
     const auto distinct = distinct_points(std::vector<Point2>{{0.0, 1.0}, {-0.0, 1.0}, {0.0, 2.0}, {-0.0, 1.0}});
     EXPECT_THAT(distinct.counts, ElementsAre(3, 1));
     EXPECT_THAT(distinct.of, ElementsAre(0, 0, 1, 0));

@@ -40,7 +40,7 @@ std::size_t nearest_of(const Point2& place, const Cloud& points) {
     return nearest;
 }
 
-/// The groups as the header defines them, by a look at all pairs.
+/// Computes the groups as defined in the header by comparing all pairs.
 std::vector<Cloud> groups_of(const std::vector<Cloud>& clouds, double threshold) {
     std::vector<Cloud> groups;
     for (const Cloud& cloud : clouds) {
@@ -60,7 +60,7 @@ std::vector<Cloud> groups_of(const std::vector<Cloud>& clouds, double threshold)
     return groups;
 }
 
-TEST(Fusion, IsWhatALookAtAllPairsMakes) {
+TEST(Fusion, MatchesBruteForceOverAllPairs) {
     std::mt19937 random(1);
     std::size_t joined = 0;
     for (int round = 0; round < 3000; ++round) {
@@ -79,7 +79,7 @@ TEST(Fusion, IsWhatALookAtAllPairsMakes) {
     EXPECT_GT(joined, 1000U);
 }
 
-TEST(Fusion, CorrespondingPointsBecomeTheirMedianPerAxis) {
+TEST(Fusion, FusesCorrespondingPointsToTheirMedianPerAxis) {
     const std::vector<Cloud> clouds = {{{0.0, 0.0}}, {{0.2, 0.1}}, {{0.1, 0.3}}};
     const auto fused = fuse(clouds, 0.5).value();
     ASSERT_EQ(fused.size(), 1U);
@@ -87,7 +87,7 @@ TEST(Fusion, CorrespondingPointsBecomeTheirMedianPerAxis) {
     EXPECT_EQ(fused[0].clouds, 3U);
 }
 
-TEST(Fusion, WhatCannotBeIsRefused) {
+TEST(Fusion, RefusesInvalidPointsAndThresholds) {
     const double nan = std::nan("");
     const double infinite = std::numeric_limits<double>::infinity();
     const std::vector<Cloud> clouds = {{{1.0, 1.0}}, {{2.0, 2.0}}};

@@ -25,7 +25,7 @@ const Sensor kPillarLaser{.id = 1,
                           .range_min = 0.05,
                           .range_max = 12.0};
 
-/// Round pillars, and nothing else.
+/// Round pillars in empty space.
 const std::vector<Point2> kPillars = {{3.0, 1.0}, {1.0, -3.0}, {-2.5, -1.5}, {-1.0, 3.2}};
 constexpr double kRadius = 0.25;
 
@@ -62,7 +62,7 @@ protected:
     Revision revision_ = 0;
 };
 
-TEST_F(LandmarkLayerTest, ThingsThatAreSeenFromSeveralPlacesAreTheSameLandmarks) {
+TEST_F(LandmarkLayerTest, ObjectObservedFromSeveralPlacesIsOneLandmark) {
     LandmarkLayer layer;
     for (const auto& place : {Pose2{}, Pose2{0.3, 0.6, 1.0}, Pose2{-0.4, 0.2, -2.0}}) {
         for (std::uint32_t n = 0; n < kCaptureScansMax; ++n) see(layer, 0, place);
@@ -82,8 +82,9 @@ TEST_F(LandmarkLayerTest, ThingsThatAreSeenFromSeveralPlacesAreTheSameLandmarks)
     EXPECT_EQ(state.sums.landmarks, 12U);
 }
 
-/// Whoever asked at some entry, and asks for what is newer, has to be told.
-TEST_F(LandmarkLayerTest, LandmarksAreAsNewAsTheEntryThatEndedTheirCapture) {
+/// Clients request landmarks newer than an entry, so a landmark must not be older than the entry that ended its
+/// capture.
+TEST_F(LandmarkLayerTest, LandmarkHasTheRevisionThatEndedItsCapture) {
     LandmarkLayer layer;
     see(layer, 0, {});
     see(layer, 0, {});
@@ -94,11 +95,11 @@ TEST_F(LandmarkLayerTest, LandmarksAreAsNewAsTheEntryThatEndedTheirCapture) {
     EXPECT_EQ(state.landmarks[0].last, 3U);
 }
 
-TEST_F(LandmarkLayerTest, PairsAreOfOneRobot) {
+TEST_F(LandmarkLayerTest, PairsCapturesOfTheSameRobotOnly) {
     LandmarkLayer layer;
     see(layer, 4, {});
     see(layer, 2, {});
-    see(layer, 4, {1.0, 0.0, 0.0}); // ends the first
+    see(layer, 4, {1.0, 0.0, 0.0}); // ends the robot's first capture
     see(layer, 2, {1.0, 0.0, 0.0});
     EXPECT_EQ(layer.snapshot().captures, 2U);
     EXPECT_EQ(layer.snapshot().sums.persistence_pairs, 0U);
@@ -107,12 +108,12 @@ TEST_F(LandmarkLayerTest, PairsAreOfOneRobot) {
     EXPECT_EQ(layer.snapshot().sums.persistence_pairs, 1U);
 }
 
-TEST_F(LandmarkLayerTest, ARobotThatSeesNothingHasCapturesWithoutLandmarks) {
+TEST_F(LandmarkLayerTest, CapturesWithoutReadingsHaveNoLandmarks) {
     LandmarkLayer layer;
     for (int n = 0; n < 20; ++n) see(layer, 0, {1000.0 + n, 0.0, 0.0});
     EXPECT_EQ(layer.snapshot().captures, 19U);
     EXPECT_EQ(layer.snapshot().landmarks.size(), 0U);
-    EXPECT_EQ(layer.snapshot().sums.persistence_pairs, 0U) << "nothing is divided by";
+    EXPECT_EQ(layer.snapshot().sums.persistence_pairs, 0U) << "captures without landmarks are not counted as pairs";
 }
 
 } // namespace

@@ -10,7 +10,7 @@ namespace {
 
 Landmark at(double x, double y) { return {.position = {x, y}, .points = 9, .size = {0.3, 0.1}, .spread = 0.05}; }
 
-TEST(LandmarkMap, WhatIsSeenAgainIsTheSameAndTheRestIsNew) {
+TEST(LandmarkMap, MatchesKnownLandmarksAndAddsNewOnes) {
     LandmarkMap map;
     EXPECT_EQ(map.add(std::vector{at(0, 0), at(5, 5)}, 10), 0U);
     EXPECT_EQ(map.add(std::vector{at(5.1, 5), at(0.3, 0), at(9, 9)}, 20), 1U);
@@ -20,11 +20,11 @@ TEST(LandmarkMap, WhatIsSeenAgainIsTheSameAndTheRestIsNew) {
     EXPECT_EQ(view[1].first, 10U);
     EXPECT_EQ(view[1].last, 20U);
     EXPECT_EQ(view[0].seen, 1U);
-    EXPECT_EQ(view[2].landmark.position, (Point2{0.3, 0})) << "0.3 m off is another";
+    EXPECT_EQ(view[2].landmark.position, (Point2{0.3, 0})) << "a landmark 0.3 m away is a new one";
     EXPECT_EQ(view[3].id, 3U);
 }
 
-TEST(LandmarkMap, ItsPlaceIsTheMedianOfTheLastSightings) {
+TEST(LandmarkMap, PositionIsTheMedianOfTheLastSightings) {
     LandmarkMap map;
     std::mt19937 random(1);
     std::vector<Point2> sightings;
@@ -49,7 +49,7 @@ TEST(LandmarkMap, ItsPlaceIsTheMedianOfTheLastSightings) {
     }
 }
 
-/// Known landmarks beside each other: all pairs compared.
+/// Known landmarks, matched by comparing all pairs.
 class NaiveMap {
 public:
     void add(const std::vector<Landmark>& seen) {
@@ -105,7 +105,7 @@ private:
     std::vector<std::vector<Point2>> sightings_;
 };
 
-TEST(LandmarkMap, EqualsAllPairsCompared) {
+TEST(LandmarkMap, MatchesBruteForceOverAllPairs) {
     std::mt19937 random(2);
     for (int round = 0; round < 200; ++round) {
         LandmarkMap map;
@@ -126,7 +126,7 @@ TEST(LandmarkMap, EqualsAllPairsCompared) {
     }
 }
 
-TEST(LandmarkMap, ViewsStayWhatTheyWere) {
+TEST(LandmarkMap, ViewsDoNotChange) {
     LandmarkMap map;
     for (int n = 0; n < 100; ++n) map.add(std::vector{at(n, 0)}, 1);
     const auto before = map.snapshot();
@@ -136,7 +136,7 @@ TEST(LandmarkMap, ViewsStayWhatTheyWere) {
     EXPECT_EQ(map.snapshot()[3].seen, 2U);
     EXPECT_EQ(map.snapshot()[7].seen, 1U);
     EXPECT_EQ(map.snapshot().size(), 101U);
-    EXPECT_EQ(map.snapshot().blocks()[1], before.blocks()[1]) << "what did not change is not copied";
+    EXPECT_EQ(map.snapshot().blocks()[1], before.blocks()[1]) << "unchanged blocks are not copied";
 }
 
 } // namespace

@@ -40,7 +40,7 @@ Landmark landmark_oracle(const std::vector<Point2>& points, double eps) {
             continuity_of(points, eps).mean()};
 }
 
-TEST(Landmark, TellsOfEachClusterWhatALookAtItsPointsDoes) {
+TEST(Landmark, MatchesBruteForceOverTheClustersPoints) {
     std::mt19937 random(1);
     std::size_t count = 0;
     for (int round = 0; round < 1500; ++round) {
@@ -61,7 +61,7 @@ TEST(Landmark, TellsOfEachClusterWhatALookAtItsPointsDoes) {
     EXPECT_GT(count, 5000U);
 }
 
-TEST(Landmark, TheEpsIsAdaptedWhereNoneIsGiven) {
+TEST(Landmark, AdaptsEpsByDefault) {
     std::mt19937 random(2);
     for (int round = 0; round < 200; ++round) {
         const auto points = random_points(random, 100);
@@ -72,7 +72,7 @@ TEST(Landmark, TheEpsIsAdaptedWhereNoneIsGiven) {
     }
 }
 
-TEST(Landmark, AFewStrayPointsDoNotMoveIt) {
+TEST(Landmark, PositionIsRobustToStrayPoints) {
     std::vector<Point2> points;
     for (int n = 0; n < 101; ++n) points.push_back({0.01 * n, 2.0});
     for (int n = 0; n < 9; ++n) points.push_back({1.0, 2.02 + 0.02 * n});
@@ -85,13 +85,13 @@ TEST(Landmark, AFewStrayPointsDoNotMoveIt) {
     EXPECT_NEAR(landmarks[0].size.y, 0.18, 1e-12);
 }
 
-TEST(Landmark, EqualPointsAreOneWithoutSize) {
+TEST(Landmark, EqualPointsAreOneLandmarkWithoutSize) {
     const auto landmarks = find_landmarks(std::vector<Point2>(500, Point2{0.1, 0.7})).value();
     ASSERT_THAT(landmarks, SizeIs(1));
     EXPECT_EQ(landmarks[0], (Landmark{{0.1, 0.7}, 500, {0.0, 0.0}, 0.0, 0.0}));
 }
 
-TEST(Landmark, TooFewPointsHaveNone) {
+TEST(Landmark, TooFewPointsGiveNoLandmark) {
     EXPECT_THAT(find_landmarks({}).value(), IsEmpty());
     EXPECT_THAT(find_landmarks(std::vector<Point2>{{1.0, 2.0}}).value(), IsEmpty());
     EXPECT_THAT(find_landmarks(std::vector<Point2>(4, Point2{1.0, 2.0})).value(), IsEmpty());
@@ -99,7 +99,7 @@ TEST(Landmark, TooFewPointsHaveNone) {
     EXPECT_EQ(survey_landmarks({})->eps, kThinningSide);
 }
 
-TEST(Landmark, WhatIsWrongIsNamed) {
+TEST(Landmark, NamesTheInvalidSetting) {
     const double nan = std::numeric_limits<double>::quiet_NaN();
     const std::vector<Point2> points(10, Point2{1.0, 2.0});
     EXPECT_THAT(find_landmarks(points, {0}).error().message, HasSubstr("min_points is 0"));

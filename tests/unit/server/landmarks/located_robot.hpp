@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 
-/// What robots have seen of simulated worlds, as the server keeps it.
+/// Views of simulated worlds in the server's format.
 namespace scanloom::testing_support {
 
 inline std::shared_ptr<const landmarks::ReferenceView> as_reference(const robot::StandingView& view) {

@@ -15,7 +15,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-/// The first of the nearest.
+/// Returns the index of the nearest point, the first one if several are equally near.
 std::size_t index_of_nearest(const Point2& place, const std::vector<Point2>& points) {
     std::size_t nearest = 0;
     for (std::size_t n = 1; n < points.size(); ++n) {
@@ -24,7 +24,7 @@ std::size_t index_of_nearest(const Point2& place, const std::vector<Point2>& poi
     return nearest;
 }
 
-/// Every point against every other.
+/// Finds matches by comparing all pairs.
 std::vector<Match> all_matches(const std::vector<Point2>& first, const std::vector<Point2>& second, double tolerance) {
     std::vector<Match> matches;
     if (second.empty()) return matches;
@@ -37,7 +37,7 @@ std::vector<Match> all_matches(const std::vector<Point2>& first, const std::vect
     return matches;
 }
 
-TEST(Matching, FindsThePairsThatALookAtAllOfThemFinds) {
+TEST(Matching, MatchesBruteForceOverAllPairs) {
     std::mt19937 random(1);
     std::size_t found = 0;
     for (int round = 0; round < 5000; ++round) {
@@ -51,7 +51,7 @@ TEST(Matching, FindsThePairsThatALookAtAllOfThemFinds) {
     EXPECT_GT(found, 10'000U);
 }
 
-TEST(Matching, ThoseExactlyTheToleranceApartAreMatched) {
+TEST(Matching, PointsExactlyTheToleranceApartMatch) {
     const std::vector<Point2> first = {{0.0, 0.0}};
     const std::vector<Point2> second = {{kTolerance, 0.0}};
     EXPECT_THAT(match(first, second).value(), ElementsAre(Match{0, 0, kTolerance}));
@@ -59,7 +59,7 @@ TEST(Matching, ThoseExactlyTheToleranceApartAreMatched) {
     EXPECT_THAT(match(first, first, 0.0).value(), ElementsAre(Match{0, 0, 0.0}));
 }
 
-TEST(Matching, WhatCannotBeIsRefused) {
+TEST(Matching, RefusesInvalidPointsAndTolerances) {
     const double nan = std::nan("");
     const double infinite = std::numeric_limits<double>::infinity();
     const std::vector<Point2> good = {{0.0, 0.0}};

@@ -11,12 +11,12 @@ namespace {
 
 using testing::HasSubstr;
 
-TEST(PointCheck, PointsThatCanBeWorkedWithPass) {
+TEST(PointCheck, AcceptsFinitePointsWithinTheLimit) {
     EXPECT_TRUE(check_points({}));
     EXPECT_TRUE(check_points(std::vector<Point2>{{0.0, -0.0}, {1e7, -1e7}, {1e-300, 5e-324}}));
 }
 
-TEST(PointCheck, NamesTheFirstPointThatIsNotFinite) {
+TEST(PointCheck, RefusesTheFirstPointThatIsNotFinite) {
     for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
                              -std::numeric_limits<double>::infinity()}) {
         for (const Point2& point : {Point2{bad, 0.0}, Point2{0.0, bad}}) {
@@ -28,7 +28,7 @@ TEST(PointCheck, NamesTheFirstPointThatIsNotFinite) {
     }
 }
 
-TEST(PointCheck, NamesTheFirstPointThatIsTooFar) {
+TEST(PointCheck, RefusesTheFirstPointThatIsTooFar) {
     const auto checked = check_points(std::vector<Point2>{{1.0, 2.0}, {0.0, -1.1e7}});
     ASSERT_FALSE(checked);
     EXPECT_EQ(checked.error().code, Errc::kInvalidField);

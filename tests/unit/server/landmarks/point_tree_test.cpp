@@ -14,7 +14,7 @@ namespace {
 
 using namespace testing_support;
 
-/// All points, the nearest first, of equally near ones the lowest index first.
+/// Returns all points ordered by distance, equally near ones by index.
 std::vector<Neighbor> all_by_distance(const std::vector<Point2>& points, const Point2& place) {
     std::vector<std::pair<double, std::size_t>> squares;
     for (std::size_t n = 0; n < points.size(); ++n) {
@@ -28,7 +28,7 @@ std::vector<Neighbor> all_by_distance(const std::vector<Point2>& points, const P
     return neighbors;
 }
 
-TEST(PointTree, FindsWhatALookAtEveryPointFinds) {
+TEST(PointTree, MatchesBruteForceOverAllPoints) {
     std::mt19937 random(1);
     for (int round = 0; round < 3000; ++round) {
         const auto points = random_points(random, 1 + random() % 120);
@@ -49,7 +49,7 @@ TEST(PointTree, FindsWhatALookAtEveryPointFinds) {
     }
 }
 
-TEST(PointTree, ThousandsOfEqualPointsComeInTheirOrder) {
+TEST(PointTree, ReturnsEqualPointsInIndexOrder) {
     std::vector<Point2> points(5000, Point2{1.0, 2.0});
     points[10] = {3.0, 2.0};
     const PointTree tree(points);
@@ -60,7 +60,7 @@ TEST(PointTree, ThousandsOfEqualPointsComeInTheirOrder) {
     EXPECT_THAT(tree.within({1.0, 2.0}, 0.0), testing::SizeIs(4999));
 }
 
-TEST(PointTree, HoldsNothingWhereThereAreNoPoints) {
+TEST(PointTree, IsEmptyWithoutPoints) {
     const PointTree tree({});
     EXPECT_EQ(tree.size(), 0U);
     EXPECT_EQ(tree.nearest({1.0, 2.0}), std::nullopt);
@@ -68,19 +68,19 @@ TEST(PointTree, HoldsNothingWhereThereAreNoPoints) {
     EXPECT_THAT(tree.within({1.0, 2.0}, std::numeric_limits<double>::infinity()), testing::IsEmpty());
 }
 
-TEST(PointTree, AnInfiniteRadiusHoldsAllPoints) {
+TEST(PointTree, InfiniteRadiusContainsAllPoints) {
     const std::vector<Point2> points = {{1e7, -1e7}, {0.0, 0.0}, {-1e7, 1e7}};
     EXPECT_THAT(PointTree(points).within({0.0, 0.0}, std::numeric_limits<double>::infinity()), testing::SizeIs(3));
 }
 
-TEST(PointTree, PointsOfEveryScaleAreToldApart) {
+TEST(PointTree, DistinguishesPointsOfEveryScale) {
     std::vector<Point2> points;
     for (int n = 0; n < 300; ++n) points.emplace_back(std::ldexp(1.0, 20 - n), 0.0);
     const PointTree tree(points);
     for (std::size_t n = 0; n < points.size(); ++n) ASSERT_EQ(tree.nearest(points[n])->index, n);
 }
 
-TEST(PointTree, IsMovedWithItsPoints) {
+TEST(PointTree, MoveTransfersThePoints) {
     PointTree tree(std::vector<Point2>{{1.0, 1.0}});
     tree = PointTree(std::vector<Point2>{{5.0, 5.0}, {6.0, 6.0}});
     const PointTree moved = std::move(tree);

@@ -7,9 +7,9 @@
 
 namespace scanloom::landmarks {
 
-/// Distance between two poses, metres.
+/// Returns the distance between two poses (m).
 inline double metres_off(const Pose2& a, const Pose2& b) { return std::hypot(a.x - b.x, a.y - b.y); }
-/// Angle between the headings of two poses, degrees.
+/// Returns the angle between the headings of two poses (degrees).
 inline double degrees_off(const Pose2& a, const Pose2& b) { return std::abs(normalize_angle(a.yaw - b.yaw)) / kDegree; }
 
 } // namespace scanloom::landmarks

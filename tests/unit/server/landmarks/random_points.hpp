@@ -6,15 +6,16 @@
 #include <random>
 #include <vector>
 
-/// Clouds that are the same for the same seed, on every machine.
+/// Random clouds that depend only on the seed, on every machine.
 namespace scanloom::testing_support {
 
-/// Evenly spread over [low, high), in steps of 2^-32 of that.
+/// Returns a number of the uniform distribution over [low, high), in steps of 2^-32 of its width.
 inline double uniform(std::mt19937& random, double low, double high) {
     return low + (high - low) * (static_cast<double>(random()) * 0x1p-32);
 }
 
-/// Points of a cloud of one of several kinds: anywhere, on a lattice (many equal and equally far), on a line, in heaps.
+/// Returns a cloud of one of several kinds: random points, a lattice (with many equal points and distances), a line, or
+/// groups.
 inline std::vector<Point2> random_points(std::mt19937& random, std::size_t count) {
     std::vector<Point2> points;
     const auto kind = random() % 5;

@@ -26,7 +26,7 @@ std::vector<Revision> kept_in(const ReferenceLayer& layer) {
     return ended;
 }
 
-TEST(ReferenceLayer, OfAPlaceTheNewestTwoAreKept) {
+TEST(ReferenceLayer, KeepsTheNewestTwoViewsOfAPlace) {
     ReferenceLayer layer;
     for (Revision n = 1; n <= 5; ++n) layer.add(capture_at({0.1, 0.2, 0.3}, n, 10 * n));
     EXPECT_THAT(kept_in(layer), ElementsAre(4, 5));
@@ -37,16 +37,16 @@ TEST(ReferenceLayer, OfAPlaceTheNewestTwoAreKept) {
     EXPECT_THAT(kept_in(layer), ElementsAre(4, 5, 6, 7, 8));
 }
 
-TEST(ReferenceLayer, OfALaserThatSeesForwardEveryDirectionIsKept) {
+TEST(ReferenceLayer, KeepsEveryDirectionOfAForwardLaser) {
     ReferenceLayer layer;
     for (int n = 0; n < 8; ++n) layer.add(capture_at({0.1, 0.1, -3.0 + 0.785 * n}, static_cast<Revision>(n) + 1));
     EXPECT_THAT(kept_in(layer), ElementsAre(1, 2, 3, 4, 5, 6, 7, 8));
-    layer.add(capture_at({0.1, 0.1, 3.14159265}, 9)); // a hair before the turn ends
+    layer.add(capture_at({0.1, 0.1, 3.14159265}, 9)); // just before the turn ends
     layer.add(capture_at({0.1, 0.1, -3.14159265}, 10));
     EXPECT_EQ(layer.snapshot().size(), 10U);
 }
 
-TEST(ReferenceLayer, OfAViewOfManyPointsSomeStandForAll) {
+TEST(ReferenceLayer, ThinsViewsWithManyPoints) {
     ReferenceLayer layer;
     layer.add(capture_at({0.1, 0.2, 0.3}, 1, 4096));
     EXPECT_EQ(layer.size(), kView + 4096U);
@@ -56,14 +56,14 @@ TEST(ReferenceLayer, OfAViewOfManyPointsSomeStandForAll) {
     EXPECT_EQ(layer.size(), 3 * kView + 4096U + 2049U + 4096U);
 }
 
-TEST(ReferenceLayer, WhatSawNothingTellsNothing) {
+TEST(ReferenceLayer, IgnoresViewsWithoutPoints) {
     ReferenceLayer layer;
     layer.add(capture_at({0.1, 0.2, 0.3}, 1, 0));
     EXPECT_THAT(layer.snapshot(), IsEmpty());
     EXPECT_EQ(layer.size(), 0U);
 }
 
-/// A room, and a box in its middle that was there once.
+/// A room with a box in its middle that is present in the first view only.
 class ReferenceMapTest : public testing::Test {
 protected:
     ReferenceMapTest() {
@@ -84,7 +84,7 @@ protected:
         return robot::make_world("room", std::move(solids), {{-3.0, -3.0, 3.0, 3.0}});
     }
 
-    /// With its origin where nothing is, as nothing depends on it.
+    /// Returns a map whose origin is at an arbitrary place, because the result must not depend on it.
     static ReferenceMap map_of(const ReferenceViews& views) { return ReferenceMap::of(views, {0.5, -0.25}).value(); }
 
     [[nodiscard]] static bool has_surface_at(const ReferenceMap& map, const Point2& place) {
@@ -97,7 +97,7 @@ protected:
     ReferenceViews views_;
 };
 
-TEST_F(ReferenceMapTest, WhatMoreLookedThroughThanSawHasGone) {
+TEST_F(ReferenceMapTest, RemovesSurfacesThatMostViewsContradict) {
     const auto then = map_of({views_.front()});
     EXPECT_TRUE(has_surface_at(then, {-0.2, 0.0}));
     const auto now = map_of(views_);
@@ -106,22 +106,22 @@ TEST_F(ReferenceMapTest, WhatMoreLookedThroughThanSawHasGone) {
     EXPECT_TRUE(has_surface_at(now, {3.0, 0.3}));
 }
 
-TEST_F(ReferenceMapTest, IsMadeAsLongAsSomebodyWantsIt) {
-    int often = 0;
-    const auto map = ReferenceMap::of(views_, {0.0, 0.0}, [&] { return ++often, Result<>(); });
+TEST_F(ReferenceMapTest, StopsWhenTheCallbackReturnsAnError) {
+    int total_calls = 0;
+    const auto map = ReferenceMap::of(views_, {0.0, 0.0}, [&] { return ++total_calls, Result<>(); });
     ASSERT_TRUE(map);
-    ASSERT_GE(often, static_cast<int>(views_.size() + map->surfels().size()));
-    for (const int last : {1, static_cast<int>(views_.size()) + 1, often}) {
-        int asked = 0;
-        const auto not_wanted = [&]() -> Result<> {
-            return ++asked < last ? Result<>() : Error{Errc::kShuttingDown, "the server is shutting down"};
+    ASSERT_GE(total_calls, static_cast<int>(views_.size() + map->surfels().size()));
+    for (const int last : {1, static_cast<int>(views_.size()) + 1, total_calls}) {
+        int calls = 0;
+        const auto stop_at_last = [&]() -> Result<> {
+            return ++calls < last ? Result<>() : Error{Errc::kShuttingDown, "the server is shutting down"};
         };
-        EXPECT_FALSE(ReferenceMap::of(views_, {0.0, 0.0}, not_wanted)) << last << " of " << often;
-        EXPECT_EQ(asked, last);
+        EXPECT_FALSE(ReferenceMap::of(views_, {0.0, 0.0}, stop_at_last)) << last << " of " << total_calls;
+        EXPECT_EQ(calls, last);
     }
 }
 
-TEST_F(ReferenceMapTest, ItsExtentIsASquareAroundAllThatWasSeen) {
+TEST_F(ReferenceMapTest, ExtentIsASquareAroundAllPoints) {
     const auto extent = extent_of(views_);
     ASSERT_TRUE(extent);
     EXPECT_NEAR(extent->half, 3.0, 0.1);
@@ -129,17 +129,17 @@ TEST_F(ReferenceMapTest, ItsExtentIsASquareAroundAllThatWasSeen) {
     EXPECT_FALSE(extent_of({}));
 }
 
-TEST_F(ReferenceMapTest, ASensorMayBeWhereSomebodyHasLookedAndNotBehindWalls) {
+TEST_F(ReferenceMapTest, SensorIsPossibleInObservedFreeSpaceOnly) {
     const auto map = map_of(views_);
     const auto possible = [&](double x, double y) { return map.is_possible(Point2{x, y} - map.middle()); };
     EXPECT_TRUE(possible(1.0, -1.0));
-    EXPECT_TRUE(possible(-2.0, 0.0)) << "where somebody has been";
+    EXPECT_TRUE(possible(-2.0, 0.0)) << "a robot has been there";
     EXPECT_FALSE(possible(-3.5, 0.0));
     EXPECT_FALSE(possible(0.0, 5.0));
     EXPECT_FALSE(map_of({}).is_possible({0.0, 0.0}));
 }
 
-TEST_F(ReferenceMapTest, AroundAPlaceIsWhatIsNearAndWhoMayHaveSeenIt) {
+TEST_F(ReferenceMapTest, AroundReturnsNearbySurfelsAndTheirHorizons) {
     const auto map = map_of(views_);
     const Point2 corner = Point2{-3.0, -3.0} - map.middle();
     const auto seen = map.around(corner, 1.0);

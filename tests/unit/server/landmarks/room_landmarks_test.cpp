@@ -7,12 +7,12 @@
 #include <algorithm>
 #include <cmath>
 
-// That landmarks are the things in a room: not all of it, and not each beam, from a lone turn of a lidar to hundreds.
+// Landmarks are objects in a room: not the whole room and not single beams, for one turn of a lidar up to hundreds.
 
 namespace scanloom::landmarks {
 namespace {
 
-/// What a standing lidar sees, in the map frame.
+/// Returns the points of a stationary lidar in the map frame.
 std::vector<Point2> capture(const robot::World& world, const Pose2& place, int turns) {
     robot::Random random(1);
     auto points = robot::standing_capture(world, place, turns, random);
@@ -22,7 +22,7 @@ std::vector<Point2> capture(const robot::World& world, const Pose2& place, int t
 
 const std::vector<Pose2> kStands = {{-3.3, 1.2, 1.0}, {1.5, -3.0, 0.3}, {3.5, 3.4, -2.0}, {-3.5, -3.7, 0.0}};
 
-/// The cluster of most points that lie on the border of a box.
+/// Returns the cluster with the most points on the border of a box.
 std::int32_t cluster_on(const robot::Box& box, const std::vector<Point2>& points, const Clustering& clustering) {
     std::vector<int> counts(clustering.clusters);
     const robot::Box around = robot::widened(box, 0.08);
@@ -33,7 +33,7 @@ std::int32_t cluster_on(const robot::Box& box, const std::vector<Point2>& points
     return static_cast<std::int32_t>(std::ranges::max_element(counts) - counts.begin());
 }
 
-TEST(RoomLandmarks, AreNeitherOneBlobNorDust) {
+TEST(RoomLandmarks, AreNeitherOneClusterNorNoise) {
     const auto room = robot::make_room();
     for (const Pose2& place : kStands) {
         for (const int turns : {1, 10, 50}) {
@@ -48,7 +48,7 @@ TEST(RoomLandmarks, AreNeitherOneBlobNorDust) {
     }
 }
 
-TEST(RoomLandmarks, FreeStandingFurnitureIsToldApart) {
+TEST(RoomLandmarks, FreestandingFurnitureIsSeparateLandmarks) {
     const auto room = robot::make_room();
     const auto points = capture(room, kStands[0], 50);
     const auto clustering = survey_landmarks(points)->clustering;
@@ -61,7 +61,7 @@ TEST(RoomLandmarks, FreeStandingFurnitureIsToldApart) {
     EXPECT_EQ(std::ranges::unique(clusters).begin(), clusters.end());
 }
 
-TEST(RoomLandmarks, MoreTurnsFindTheSame) {
+TEST(RoomLandmarks, MoreTurnsFindSimilarLandmarks) {
     const auto room = robot::make_room();
     for (const Pose2& place : kStands) {
         const auto ten = find_landmarks(capture(room, place, 10)).value();

@@ -17,7 +17,7 @@ RobotCapture capture(RobotIndex robot, Pose2 pose, Revision last, std::vector<Po
     return {robot, Capture{.pose = pose, .scans = 1, .points = std::move(points)}, last};
 }
 
-TEST(SessionCloud, PointsOfSeveralCapturesBecomeOneAndTellWhoSawThemFirst) {
+TEST(SessionCloud, FusesPointsAndKeepsTheirFirstObserver) {
     const std::vector<RobotCapture> captures{
         capture(1, {1.0, 0.0, std::numbers::pi / 2}, 11, {{1000, 2000}, {3000, 0}}),
         capture(0, {0.0, 0.0, 0.0}, 12, {{1020, 2010}, {-5000, 0}}),
@@ -30,15 +30,16 @@ TEST(SessionCloud, PointsOfSeveralCapturesBecomeOneAndTellWhoSawThemFirst) {
     EXPECT_EQ(cloud[0].robot, 1U);
     EXPECT_EQ(cloud[0].revision, 11U);
     EXPECT_THAT(cloud[0].distance, DoubleNear(std::hypot(0.01, 2.0), 1e-12));
-    EXPECT_THAT(cloud[0].angle, DoubleNear(-std::atan2(0.01, 2.0), 1e-12)) << "ahead of a robot that looks along y";
-    EXPECT_THAT(cloud[1].angle, DoubleNear(-std::numbers::pi / 2, 1e-12)) << "to its right";
+    EXPECT_THAT(cloud[0].angle, DoubleNear(-std::atan2(0.01, 2.0), 1e-12))
+        << "the point is ahead of a robot that heads along y";
+    EXPECT_THAT(cloud[1].angle, DoubleNear(-std::numbers::pi / 2, 1e-12)) << "the point is to its right";
     EXPECT_EQ(cloud[2].position, (Point2{-5.0, 0.0}));
     EXPECT_EQ(cloud[2].seen, 1U);
     EXPECT_EQ(cloud[2].robot, 0U);
     EXPECT_EQ(cloud[2].angle, std::numbers::pi);
 }
 
-TEST(SessionCloud, OfNothingIsNothingAndABadThresholdIsTold) {
+TEST(SessionCloud, IsEmptyWithoutPointsAndRefusesInvalidThresholds) {
     EXPECT_THAT(fuse_captures({}, 0.05).value(), IsEmpty());
     EXPECT_THAT(fuse_captures(std::vector{capture(0, {}, 1, {})}, 0.05).value(), IsEmpty());
     const std::vector two{capture(0, {}, 1, {{1000, 0}}), capture(0, {}, 2, {{1000, 0}})};

@@ -27,7 +27,7 @@ public:
           radius_of_centres_(radius_) {
         // A diagonal step between two centres may be nearer to a square than both centres. In that case the radius for
         // centres is increased.
-        for (int offset = 1; beside < radius_; ++beside) {
+        for (int offset = 1; offset < radius_; ++offset) {
             const double of_centres = std::hypot(offset + 0.5, offset - 0.5);
             if (offset * std::sqrt(2.0) <= radius_ && of_centres > radius_) radius_of_centres_ = of_centres + 1e-9;
         }
