@@ -17,10 +17,10 @@ using namespace testing_support;
 using robot::Box;
 using testing::HasSubstr;
 
-void expect_right(const Alignment& found, const Pose2& truth, const std::string& where = "") {
+void expect_right(const Alignment& found, const Pose2& ground_truth, const std::string& where = "") {
     EXPECT_EQ(found.certainty, Certainty::kClear) << where << ": " << found.why;
-    EXPECT_LT(metres_off(found.T_first_second, truth), 0.02) << where;
-    EXPECT_LT(degrees_off(found.T_first_second, truth), 0.5) << where;
+    EXPECT_LT(metres_off(found.T_first_second, ground_truth), 0.02) << where;
+    EXPECT_LT(degrees_off(found.T_first_second, ground_truth), 0.5) << where;
 }
 
 /// Returns the number of clear localizations and expects each of them to be correct.
@@ -56,7 +56,7 @@ TEST(LocalizationTrials, LocalizesInAnOfficeOrReportsAmbiguity) {
 TEST(LocalizationTrials, LocalizesInAHallOrReportsAmbiguity) { EXPECT_GE(clear_of(robot::make_hall(), 10, 6), 4); }
 
 /// Two equal rooms are 20 m apart; one is mapped from twenty places and the other from two. Walls that were observed
-/// more total_calls are drawn thicker, and an earlier locate() returned a pose in the wrong room.
+/// more often are drawn thicker, and an earlier locate() returned a pose in the wrong room.
 TEST(Localization, IsAmbiguousInEqualRoomsOfDifferentMappingDensity) {
     std::vector<Box> solids;
     for (const double x : {-10.0, 10.0}) {
@@ -274,7 +274,7 @@ TEST(Localization, RefusesInvalidViews) {
     std::vector<Point2> points(30, {1.0, 1.0});
     points[7].x = std::numeric_limits<double>::quiet_NaN();
     EXPECT_EQ(locate(map, {.points = points}).error().code, Errc::kInvalidField);
-    // equal points do not determine a pose, whatever their number
+    // equal points do not determine a pose, independent of their number
     const auto point = locate(map, {.points = std::vector<Point2>(50, {1.0, 1.0})}).value();
     EXPECT_EQ(point.certainty, Certainty::kUndetermined);
     std::vector<Point2> line;

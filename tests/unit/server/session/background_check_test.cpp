@@ -2,7 +2,7 @@
 
 #include "tests/unit/server/session/registry_fixture.hpp"
 
-/// Sessions that nobody has read since the start are found damaged.
+/// The background check finds damaged sessions that have not been read since the server started.
 namespace scanloom::session {
 namespace {
 
@@ -10,7 +10,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::SizeIs;
 
-/// Of one session, the third entry is read as something else.
+/// Returns an invalid third entry when the damaged session is read.
 class LogWithDamage final : public store::MemoryScanLog {
 public:
     Result<> read(store::SessionId session, Revision after, const VisitEntry& visit) override {
@@ -30,7 +30,7 @@ protected:
         registry_ = make(stored_);
         EXPECT_TRUE(registry_->recover());
         for (const auto* name : {"a", "b", "c"}) stream(*registry_->create(name, {}).value(), "r", 3);
-        registry_->drain(); // with checkpoints
+        registry_->drain(); // writes checkpoints
         registry_ = make(stored_);
         EXPECT_TRUE(registry_->recover());
         stored_.reads = 0;
@@ -42,7 +42,7 @@ protected:
     boost::asio::thread_pool checking_{1};
 };
 
-TEST_F(BackgroundCheckTest, FindsTheDamagedOneAndGoesOnToTheOthers) {
+TEST_F(BackgroundCheckTest, ReportsDamagedSessionAndChecksTheOthers) {
     BackgroundCheck check(stored_, *registry_, checking_.get_executor());
     check.start();
     check.wait();
@@ -50,12 +50,12 @@ TEST_F(BackgroundCheckTest, FindsTheDamagedOneAndGoesOnToTheOthers) {
     const auto damaged = check.damaged();
     ASSERT_THAT(damaged, SizeIs(1));
     EXPECT_THAT(damaged.at("b").message, HasSubstr("log entry 3: "));
-    EXPECT_THAT(registry_->damaged(), IsEmpty()) << "it is served as far as it can be";
+    EXPECT_THAT(registry_->damaged(), IsEmpty()) << "the check does not stop the session from being served";
     ASSERT_TRUE(registry_->remove("b"));
-    EXPECT_THAT(check.damaged(), IsEmpty()) << "it is gone";
+    EXPECT_THAT(check.damaged(), IsEmpty()) << "the removed session is no longer listed";
 }
 
-TEST_F(BackgroundCheckTest, SessionsInMemoryAreNotReadAgain) {
+TEST_F(BackgroundCheckTest, SkipsLoadedSessions) {
     ASSERT_TRUE(registry_->wake("b"));
     stored_.reads = 0;
     BackgroundCheck check(stored_, *registry_, checking_.get_executor());
@@ -65,8 +65,8 @@ TEST_F(BackgroundCheckTest, SessionsInMemoryAreNotReadAgain) {
     EXPECT_EQ(stored_.reads, 2);
 }
 
-TEST_F(BackgroundCheckTest, StopsInTheMiddleOfASession) {
-    BackgroundCheck check(stored_, *registry_, checking_.get_executor(), 1e-3); // an entry takes hours
+TEST_F(BackgroundCheckTest, StopsWithinASession) {
+    BackgroundCheck check(stored_, *registry_, checking_.get_executor(), 1e-3); // each entry takes hours at this rate
     check.start();
     check.stop();
     check.wait();
@@ -74,7 +74,7 @@ TEST_F(BackgroundCheckTest, StopsInTheMiddleOfASession) {
     EXPECT_THAT(check.damaged(), IsEmpty());
 }
 
-TEST_F(BackgroundCheckTest, WhatAFailedStoreCannotReadIsNotCalledDamaged) {
+TEST_F(BackgroundCheckTest, ReportsNoDamageWhileTheStoreHasFailed) {
     stored_.fail_from_next_change({Errc::kStoreFailed, "the disk is gone"});
     EXPECT_FALSE(registry_->create("d", {}));
     ASSERT_TRUE(stored_.stats().last_error);
@@ -84,28 +84,28 @@ TEST_F(BackgroundCheckTest, WhatAFailedStoreCannotReadIsNotCalledDamaged) {
     EXPECT_THAT(check.damaged(), IsEmpty());
 }
 
-TEST_F(BackgroundCheckTest, WhatOthersCouldNotReadIsDamageUnlessItMayPass) {
+TEST_F(BackgroundCheckTest, NotesDataLossButNoTransientErrors) {
     BackgroundCheck check(stored_, *registry_, checking_.get_executor());
     const auto id = [&](const char* name) { return registry_->info(name)->id; };
     check.note(id("a"), {Errc::kStoreFailed, "input/output error"});
-    check.note(4711, {Errc::kDataLoss, "of no session"});
+    check.note(4711, {Errc::kDataLoss, "unknown session"});
     EXPECT_THAT(check.damaged(), IsEmpty());
-    check.note(id("b"), {Errc::kDataLoss, "bits"});
-    check.note(id("b"), {Errc::kDataLoss, "bits once more"});
+    check.note(id("b"), {Errc::kDataLoss, "wrong bits"});
+    check.note(id("b"), {Errc::kDataLoss, "wrong bits again"});
     ASSERT_THAT(check.damaged(), SizeIs(1));
-    EXPECT_EQ(check.damaged().at("b").message, "bits");
+    EXPECT_EQ(check.damaged().at("b").message, "wrong bits");
     stored_.fail_from_next_change({Errc::kStoreFailed, "the disk is gone"});
     EXPECT_FALSE(registry_->create("d", {}));
     check.note(id("c"), {Errc::kDataLoss, "while the store has failed"});
     EXPECT_THAT(check.damaged(), SizeIs(1));
 }
 
-TEST(ReadRate, LeavesTheTimeThatBytesAreWorthAndMakesUpForNone) {
+TEST(ReadRate, SchedulesByBytesWithoutSavingIdleTime) {
     using std::chrono::milliseconds;
     const ReadRate::Time begin{std::chrono::hours(5)};
     ReadRate rate(1e6);
     EXPECT_EQ(rate.after(500'000, begin), begin + milliseconds(500));
-    EXPECT_EQ(rate.after(500'000, begin), begin + milliseconds(1000)) << "asked at once";
+    EXPECT_EQ(rate.after(500'000, begin), begin + milliseconds(1000)) << "called again immediately";
     EXPECT_EQ(rate.after(1000, begin + std::chrono::hours(1)), begin + std::chrono::hours(1) + milliseconds(1));
 }
 

@@ -4,20 +4,20 @@
 
 #include <gtest/gtest.h>
 
-/// How what waits is grouped.
+/// Grouping of submitted entries.
 namespace scanloom::session {
 namespace {
 
 constexpr std::int64_t kMuchRoom = 1'000'000;
 
-/// A scan that may change one chunk, of this column.
+/// Returns a scan that can change one chunk, in the given column.
 Submitted scan_in(std::int32_t column, RobotIndex robot = 0, double work = 1.0) {
     Submitted submitted{robot, ScanTaken{robot, testing_support::random_scan(1, 1)}, {}, 10};
     submitted.reach = {SensorKind::kLaser, {64 * column, 0, 64 * column + 1, 1}, work};
     return submitted;
 }
 
-TEST(Backlog, GroupsFollowTheOrderAndAreBoundedInEntries) {
+TEST(Backlog, GroupsKeepTheOrderAndLimitTheirEntries) {
     Backlog backlog;
     for (RobotIndex robot = 0; robot < 600; ++robot) backlog.add({robot, std::nullopt, {}, 0});
     RobotIndex next = 0;
@@ -29,7 +29,7 @@ TEST(Backlog, GroupsFollowTheOrderAndAreBoundedInEntries) {
     EXPECT_TRUE(backlog.empty());
 }
 
-TEST(Backlog, GroupsAreBoundedInWorkButNeverEmptyForIt) {
+TEST(Backlog, GroupsLimitTheirWorkButContainAtLeastOneEntry) {
     Backlog backlog;
     for (const double work : {0.4 * kGroupWorkMax, 0.4 * kGroupWorkMax, 0.4 * kGroupWorkMax, 30.0 * kGroupWorkMax, 1.0})
         backlog.add(scan_in(0, 0, work));
@@ -38,17 +38,17 @@ TEST(Backlog, GroupsAreBoundedInWorkButNeverEmptyForIt) {
     }
 }
 
-TEST(Backlog, AGroupFitsTheRoomThatIsLeft) {
+TEST(Backlog, GroupFitsTheRemainingChunks) {
     Backlog backlog;
     for (const std::int32_t column : {0, 0, 1, 5}) backlog.add(scan_in(column));
     const auto group = backlog.next_group(2);
     EXPECT_EQ(group.entries.size(), 3U);
     EXPECT_EQ(group.chunks, 2);
-    EXPECT_EQ(backlog.next_group(0).entries.size(), 0U) << "the next needs one";
+    EXPECT_EQ(backlog.next_group(0).entries.size(), 0U) << "the next entry needs one chunk";
     EXPECT_EQ(backlog.next_group(1).chunks, 1);
 }
 
-TEST(Backlog, EachRobotsScansAreCountedTogether) {
+TEST(Backlog, ScansOfOneRobotShareTheirChunks) {
     Backlog backlog;
     backlog.add(scan_in(0, 0));
     backlog.add(scan_in(100, 1));
@@ -57,7 +57,7 @@ TEST(Backlog, EachRobotsScansAreCountedTogether) {
     EXPECT_EQ(backlog.next_group(kMuchRoom).chunks, 3);
 }
 
-TEST(Backlog, WhatARobotHasWaitingCanBeDropped) {
+TEST(Backlog, DropRemovesTheEntriesOfOneRobot) {
     Backlog backlog;
     for (const RobotIndex robot : {0U, 1U, 0U, 2U}) backlog.add(scan_in(0, robot));
     backlog.drop(0);

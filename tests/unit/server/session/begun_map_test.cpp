@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-/// Robots that were told, while nothing was mapped, that the map begins where they stand.
+/// Robots that were allowed to begin the map of an empty session.
 namespace scanloom::session {
 namespace {
 
@@ -33,7 +33,7 @@ protected:
     }
 };
 
-TEST_F(BegunMapTest, WhatIsNotYetInTheMapsCountsToo) {
+TEST_F(BegunMapTest, RefusesASecondBeginningWhileTheFirstIsPending) {
     const auto first = join("first");
     const auto late = join("late");
     session_->submit(first, {beginning(1)}, 0);
@@ -43,7 +43,7 @@ TEST_F(BegunMapTest, WhatIsNotYetInTheMapsCountsToo) {
     expect_refused(*late);
 }
 
-TEST_F(BegunMapTest, ARobotThatKnowsItsPlaceBeginsItAsWell) {
+TEST_F(BegunMapTest, RefusesABeginningAfterAScanWithKnownPose) {
     const auto first = join("first");
     const auto late = join("late");
     session_->submit(first, {random_scan(1, 1)}, 0);
@@ -52,7 +52,7 @@ TEST_F(BegunMapTest, ARobotThatKnowsItsPlaceBeginsItAsWell) {
     expect_refused(*late);
 }
 
-TEST_F(BegunMapTest, ARestartForgetsNothing) {
+TEST_F(BegunMapTest, RefusesABeginningAfterARestart) {
     session_->submit(join("first"), {beginning(1)}, 0);
     run();
     start_session();
@@ -62,7 +62,7 @@ TEST_F(BegunMapTest, ARestartForgetsNothing) {
     expect_refused(*late);
 }
 
-TEST_F(BegunMapTest, TheOneThatBeganItGoesOnAndMaySendAgain) {
+TEST_F(BegunMapTest, FirstRobotMayResendItsBeginning) {
     session_->submit(join("first"), {beginning(1)}, 0);
     run();
     const auto again = join("first");
@@ -72,7 +72,7 @@ TEST_F(BegunMapTest, TheOneThatBeganItGoesOnAndMaySendAgain) {
     EXPECT_EQ(again->durable_seq(), 2U);
 }
 
-TEST_F(BegunMapTest, AScanThatShowsNothingBeginsNone) {
+TEST_F(BegunMapTest, AcceptsABeginningAfterAScanWithoutReadings) {
     const auto blind = join("blind");
     const auto late = join("late");
     Scan nothing = random_scan(1, 1);
@@ -84,7 +84,7 @@ TEST_F(BegunMapTest, AScanThatShowsNothingBeginsNone) {
     EXPECT_EQ(late->durable_seq(), 1U);
 }
 
-TEST_F(BegunMapTest, WhatWasLostWithTheDiskBeginsNone) {
+TEST_F(BegunMapTest, AcceptsABeginningAfterALostScan) {
     const auto first = join("first");
     log_.refuse_appends(1);
     session_->submit(first, {beginning(1)}, 0);

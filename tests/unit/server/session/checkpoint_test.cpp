@@ -7,7 +7,7 @@
 
 #include <map>
 
-/// Parts of a checkpoint: written, merged, damaged, read.
+/// Checkpoints: written, merged, damaged, cut and read.
 namespace scanloom::session {
 namespace {
 
@@ -40,7 +40,7 @@ std::vector<Sensor> sensors_of(const mapping::ProjectionState::Robot& robot) {
     return sensors;
 }
 
-/// What a checkpoint of it writes.
+/// Returns the parts of a checkpoint of `projection`.
 Parts parts_of(mapping::Projection& projection, Revision since) {
     store::MemoryScanLog log;
     const auto id = log.create_session("s").value();
@@ -77,7 +77,7 @@ void expect_same(mapping::Projection& a, mapping::Projection& b) {
     }
 }
 
-TEST(Checkpoint, ReadBackItIsTheSameProjection) {
+TEST(Checkpoint, ReadingReturnsAnEqualProjection) {
     const auto log = log_of_two_robots(700);
     mapping::Projection projection{mapping::MapConfig{}};
     fold(projection, log, 0, log.size());
@@ -90,20 +90,20 @@ TEST(Checkpoint, ReadBackItIsTheSameProjection) {
     EXPECT_EQ(parts, parts_again);
 }
 
-TEST(Checkpoint, OfRobotsThatStateNoBodyIsAsItAlwaysWas) {
+TEST(Checkpoint, RobotWithoutBodyRadiusKeepsTheOldFormat) {
     mapping::Projection projection{mapping::MapConfig{}};
     fold(projection, {RobotJoined{0, "b", "carmen:12"}}, 0, 1);
     const auto part = parts_of(projection, 0).at("robot/00000000");
     EXPECT_EQ(part.substr(16), std::string("b\0carmen:12", 11));
 }
 
-TEST(Checkpoint, OfNothingIsABlankProjection) {
+TEST(Checkpoint, EmptyCheckpointIsAnEmptyProjection) {
     auto projection = read({}).value();
     EXPECT_EQ(projection.revision(), 0U);
     EXPECT_TRUE(projection.snapshot().robots.empty());
 }
 
-TEST(Checkpoint, IncrementalOnesMergeToAFullOne) {
+TEST(Checkpoint, IncrementalCheckpointsMergeToAFullOne) {
     auto log = log_of_two_robots(700);
     Sensor changed = small_laser();
     changed.range_max = 3.0;
@@ -124,13 +124,13 @@ TEST(Checkpoint, IncrementalOnesMergeToAFullOne) {
     EXPECT_EQ(merged, full);
 }
 
-TEST(Checkpoint, IncrementalOnesHoldOnlyTheChunksThatChanged) {
+TEST(Checkpoint, IncrementalCheckpointContainsOnlyChangedChunks) {
     mapping::Projection projection{mapping::MapConfig{}};
     fold(projection, log_of_two_robots(20), 0, 45);
     const auto full = parts_of(projection, 0).size();
     const Revision since = projection.revision();
     Scan scan = random_scan(0, 21);
-    scan.ranges = {100}; // one short beam: at most the chunks around a corner
+    scan.ranges = {100}; // one short beam: changes at most the chunks around a corner
     ASSERT_TRUE(projection.fold(ScanTaken{0, scan}));
     const auto parts = parts_of(projection, since);
     const auto chunks = std::count_if(parts.begin(), parts.end(),
@@ -142,26 +142,28 @@ TEST(Checkpoint, IncrementalOnesHoldOnlyTheChunksThatChanged) {
     EXPECT_LT(parts.size(), full);
 }
 
-TEST(Checkpoint, EveryPartCutShortIsReported) {
+TEST(Checkpoint, TruncatedPartIsRefused) {
     mapping::Projection projection{mapping::MapConfig{}};
     fold(projection, log_of_two_robots(30), 0, 65);
     Parts parts;
     merge(parts, parts_of(projection, 0));
     for (const auto& [key, value] : parts) {
-        const bool is_robot = key.starts_with("robot/"); // its name is whatever follows the numbers
+        const bool is_robot =
+            key.starts_with("robot/"); // a robot's name ends with the part, so shorter names are valid
         const std::size_t shortest = is_robot ? 16 : value.size();
         for (const std::size_t kept : {std::size_t{0}, std::size_t{7}, shortest / 2, shortest - 1}) {
             Parts damaged = parts;
             damaged[key].resize(kept);
             const auto refused = read(damaged);
             ASSERT_FALSE(refused) << key << " cut to " << kept;
-            const bool is_of_version_1 = key == "format" && kept == 4; // which had no number after the weaving version
+            const bool is_of_version_1 =
+                key == "format" && kept == 4; // version 1 had no number after the mapping version
             EXPECT_EQ(refused.error().code, is_of_version_1 ? Errc::kUnsupportedVersion : Errc::kMalformed);
         }
     }
 }
 
-TEST(Checkpoint, WithoutItsFormatItIsReported) {
+TEST(Checkpoint, MissingFormatIsRefused) {
     mapping::Projection projection{mapping::MapConfig{}};
     fold(projection, log_of_two_robots(3), 0, 11);
     Parts parts;
@@ -170,8 +172,8 @@ TEST(Checkpoint, WithoutItsFormatItIsReported) {
     EXPECT_THAT(read(parts).error().message, HasSubstr("part 'format' is missing"));
 }
 
-/// Their tracks tell where the robots were at last, in version 2 they alone.
-TEST(Checkpoint, OfEarlierVersionsThePosesThatAreMissingAreReported) {
+/// The tracks contain the newest poses; in version 2 only the tracks do.
+TEST(Checkpoint, MissingPosesOfEarlierVersionsAreRefused) {
     mapping::Projection projection{mapping::MapConfig{}};
     fold(projection, log_of_two_robots(3), 0, 11);
     Parts parts;
@@ -193,7 +195,7 @@ TEST(Checkpoint, OfEarlierVersionsThePosesThatAreMissingAreReported) {
     EXPECT_EQ(restored->state().robots[0].newest, newest);
 }
 
-TEST(Checkpoint, PartsThatCannotBeAreReportedByTheirKey) {
+TEST(Checkpoint, InvalidPartIsRefusedByItsKey) {
     mapping::Projection projection{mapping::MapConfig{}};
     fold(projection, log_of_two_robots(3), 0, 11);
     Parts parts;
@@ -204,7 +206,7 @@ TEST(Checkpoint, PartsThatCannotBeAreReportedByTheirKey) {
     const std::pair<std::string, std::string> kImpossible[] = {
         {"robot/00000003", std::string(17, 'x')},
         {"robot/00000000", std::string(16, '\1') + std::string("a\0s\0short", 9)},
-        {"robot/00000000", std::string(16, '\1') + std::string("a\0s\0\0\0\0\0\0\0\0\0", 12)}, // a body of 0 m
+        {"robot/00000000", std::string(16, '\1') + std::string("a\0s\0\0\0\0\0\0\0\0\0", 12)}, // a body radius of 0 m
         {"robot/", ""},
         {"sensor/00000002/00000000", sensor},
         {"sensor/00000001/00000009", scan},
@@ -226,7 +228,7 @@ TEST(Checkpoint, PartsThatCannotBeAreReportedByTheirKey) {
     }
 }
 
-/// A store that loses power after so many pieces of a checkpoint.
+/// A store that fails after a given number of checkpoint pieces, as after a power cut.
 class PowerCutLog : public store::MemoryScanLog {
 public:
     [[nodiscard]] Result<> write_checkpoint(store::SessionId session,
@@ -239,7 +241,7 @@ public:
     std::size_t pieces_left = 1'000'000;
 };
 
-/// A map that takes several pieces, and a robot that joins only in its second half.
+/// A map that takes several pieces, and a robot that joins in its second half.
 struct CutCheckpointTest : testing::Test {
     CutCheckpointTest() {
         std::vector<std::string> entries;
@@ -248,13 +250,13 @@ struct CutCheckpointTest : testing::Test {
         entries.insert(entries.begin() + half_, wire::encode_entry(RobotJoined{2, "late"}));
         id_ = log_.create_session("s").value();
         EXPECT_TRUE(store::append_and_wait(log_, id_, 1, entries));
-        EXPECT_TRUE(whole_.fold_all(log_, id_));
+        EXPECT_TRUE(whole_.replay_all(log_, id_));
     }
 
-    struct Woven {
-        explicit Woven(const mapping::MapConfig& config) : projection(config) {}
-        Result<> fold_all(store::ScanLog& log, store::SessionId id) { return fold_to(log, id, ~Revision{0}); }
-        Result<> fold_to(store::ScanLog& log, store::SessionId id, Revision last) {
+    struct LogReplay {
+        explicit LogReplay(const mapping::MapConfig& config) : projection(config) {}
+        Result<> replay_all(store::ScanLog& log, store::SessionId id) { return replay_to(log, id, ~Revision{0}); }
+        Result<> replay_to(store::ScanLog& log, store::SessionId id, Revision last) {
             return log.read(id, projection.revision(), [&](Revision revision, std::string_view bytes) -> Result<> {
                 return revision <= last ? projection.fold(wire::decode_entry(bytes).value()) : Result<>();
             });
@@ -262,8 +264,8 @@ struct CutCheckpointTest : testing::Test {
         mapping::Projection projection;
     };
 
-    Result<> write(Woven& woven, Revision since) {
-        return write_checkpoint(log_, id_, woven.projection.snapshot(), woven.projection.state(), since, false);
+    Result<> write(LogReplay& replay, Revision since) {
+        return write_checkpoint(log_, id_, replay.projection.snapshot(), replay.projection.state(), since, false);
     }
 
     void expect_recovery_gives_the_whole(std::size_t pieces) {
@@ -278,47 +280,47 @@ struct CutCheckpointTest : testing::Test {
     PowerCutLog log_;
     store::SessionId id_ = 0;
     std::ptrdiff_t half_ = 0;
-    Woven whole_{config_};
+    LogReplay whole_{config_};
 };
 
-TEST_F(CutCheckpointTest, WhateverOfAFirstCheckpointWasWrittenIsUsed) {
+TEST_F(CutCheckpointTest, RecoveryUsesAPartlyWrittenFirstCheckpoint) {
     for (std::size_t pieces = 0;; ++pieces) {
         log_.pieces_left = pieces;
         const bool complete = write(whole_, 0).has_value();
         expect_recovery_gives_the_whole(pieces);
         if (complete) {
-            EXPECT_GE(pieces, 3U) << "or this test shows nothing";
+            EXPECT_GE(pieces, 3U) << "the test needs several pieces";
             return;
         }
     }
 }
 
-TEST_F(CutCheckpointTest, WhateverOfALaterCheckpointWasWrittenIsUsed) {
-    Woven first(config_);
-    ASSERT_TRUE(first.fold_to(log_, id_, static_cast<Revision>(half_)));
+TEST_F(CutCheckpointTest, RecoveryUsesAPartlyWrittenLaterCheckpoint) {
+    LogReplay first(config_);
+    ASSERT_TRUE(first.replay_to(log_, id_, static_cast<Revision>(half_)));
     for (std::size_t pieces = 0;; ++pieces) {
         log_.pieces_left = 1'000'000;
-        ASSERT_TRUE(write(first, 0)); // takes out what the last round has left
+        ASSERT_TRUE(write(first, 0)); // removes the parts of the previous round
         log_.pieces_left = pieces;
         const bool complete = write(whole_, static_cast<Revision>(half_)).has_value();
         EXPECT_EQ(recover(log_, id_, config_, false)->checkpointed,
                   complete ? whole_.projection.revision() : static_cast<Revision>(half_));
         expect_recovery_gives_the_whole(pieces);
         if (complete) {
-            EXPECT_GE(pieces, 2U) << "or this test shows nothing";
+            EXPECT_GE(pieces, 2U) << "the test needs several pieces";
             return;
         }
     }
 }
 
-TEST_F(CutCheckpointTest, StoppingItBetweenTwoPiecesIsNoHarmEither) {
+TEST_F(CutCheckpointTest, RecoverySucceedsAfterAStoppedCheckpoint) {
     const auto stopped = write_checkpoint(log_, id_, whole_.projection.snapshot(), whole_.projection.state(), 0, true);
     ASSERT_FALSE(stopped);
     EXPECT_EQ(stopped.error().code, Errc::kShuttingDown);
     expect_recovery_gives_the_whole(0);
 }
 
-TEST_F(CutCheckpointTest, ChunksNewerThanTheLogAreReported) {
+TEST_F(CutCheckpointTest, ChunksNewerThanTheLogAreRefused) {
     ASSERT_TRUE(write(whole_, 0));
     const auto parts = store::checkpoint_of(log_, id_).value();
     PowerCutLog shorter;
@@ -335,7 +337,7 @@ TEST_F(CutCheckpointTest, ChunksNewerThanTheLogAreReported) {
     EXPECT_THAT(recovered.error().message, HasSubstr("the log ends with entry 25, but its checkpoint holds entry"));
 }
 
-TEST(Checkpoint, OfAnotherWeavingVersionIsReported) {
+TEST(Checkpoint, OtherMappingVersionIsRefused) {
     mapping::Projection projection{mapping::MapConfig{}};
     Parts parts;
     merge(parts, parts_of(projection, 0));

@@ -1,6 +1,6 @@
 #include "tests/unit/server/session/session_fixture.hpp"
 
-/// Nothing is seen or acknowledged before it is durable; what cannot become durable never was.
+/// Maps and acknowledgements contain only durable entries; entries that cannot become durable have no effect.
 namespace scanloom::session {
 namespace {
 
@@ -8,7 +8,7 @@ using testing::Each;
 using testing::IsEmpty;
 using testing::SizeIs;
 
-TEST_F(SessionTest, NothingIsVisibleOrAcknowledgedBeforeItIsDurable) {
+TEST_F(SessionTest, EntriesAreVisibleAndAcknowledgedOnlyAfterTheyAreDurable) {
     const auto link = join("r");
     const auto before = session_->snapshot();
     const auto acks_before = link->durable_seqs.size();
@@ -24,10 +24,10 @@ TEST_F(SessionTest, NothingIsVisibleOrAcknowledgedBeforeItIsDurable) {
     EXPECT_EQ(session_->snapshot()->robots[0].last_seq, 5U);
     EXPECT_EQ(link->durable_seq(), 5U);
     EXPECT_EQ(link->bytes_released, 50U);
-    EXPECT_EQ(before->robots[0].last_seq, 0U) << "a snapshot never changes";
+    EXPECT_EQ(before->robots[0].last_seq, 0U) << "snapshots do not change";
 }
 
-/// A link that looks at the map whenever it hears that scans are in it.
+/// A link that reads the map when scans are acknowledged.
 struct WatchingLink : RecordedLink {
     explicit WatchingLink(const Session& session) : watched(session) {}
 
@@ -40,7 +40,7 @@ struct WatchingLink : RecordedLink {
     std::vector<std::uint64_t> seqs_in_map;
 };
 
-TEST_F(SessionTest, WhatIsAcknowledgedIsInTheMapAlready) {
+TEST_F(SessionTest, AcknowledgedScansAreInTheMap) {
     const auto link = std::make_shared<WatchingLink>(*session_);
     session_->join({"r"}, link, [](const Result<Joined>&) {});
     run();
@@ -51,7 +51,7 @@ TEST_F(SessionTest, WhatIsAcknowledgedIsInTheMapAlready) {
     EXPECT_EQ(link->seqs_in_map, link->durable_seqs);
 }
 
-TEST_F(SessionTest, WhatTheDiskHasNoRoomForIsTakenLaterAsIfItHadNotBeenSent) {
+TEST_F(SessionTest, ScansRefusedByAFullDiskAreAcceptedLater) {
     const auto link = join("r");
     session_->submit(link, random_scans(1, 1, 5), 10);
     run();
@@ -61,9 +61,9 @@ TEST_F(SessionTest, WhatTheDiskHasNoRoomForIsTakenLaterAsIfItHadNotBeenSent) {
     run();
     ASSERT_THAT(link->failures, SizeIs(1));
     EXPECT_EQ(link->failures[0].code, Errc::kOverloaded);
-    EXPECT_FALSE(session_->failure()) << "nothing is unknown";
+    EXPECT_FALSE(session_->failure()) << "the log's contents are known";
     EXPECT_EQ(link->durable_seq(), 5U);
-    EXPECT_TRUE(begin_join("new").answer->value()) << "of its joining nothing is stored either";
+    EXPECT_TRUE(begin_join("new").answer->value()) << "the join is not stored either";
     run();
 
     const auto again = begin_join("r");
@@ -76,10 +76,10 @@ TEST_F(SessionTest, WhatTheDiskHasNoRoomForIsTakenLaterAsIfItHadNotBeenSent) {
     EXPECT_EQ(session_->snapshot()->robots.size(), 2U);
 }
 
-TEST_F(SessionTest, WhatIsDurableWhenTheDiskHasNoMoreRoomIsWovenAndAcknowledgedAllTheSame) {
+TEST_F(SessionTest, DurableScansAreIntegratedWhenTheDiskIsFull) {
     const auto link = join("r");
     for (std::uint64_t seq = 1; seq <= 600; ++seq) session_->submit(link, {random_scan(1, seq)}, 10);
-    log_.refuse_appends(1, 1); // the second of three
+    log_.refuse_appends(1, 1); // the second of three appends
     run();
     ASSERT_THAT(link->failures, SizeIs(1));
     const auto again = begin_join("r");
@@ -93,24 +93,24 @@ TEST_F(SessionTest, WhatIsDurableWhenTheDiskHasNoMoreRoomIsWovenAndAcknowledgedA
     EXPECT_EQ(digest(), digest_of_log());
 }
 
-TEST_F(SessionTest, WhatIsSubmittedWhileTheDiskWorksIsAppendedTogether) {
+TEST_F(SessionTest, EntriesSubmittedDuringAnAppendAreAppendedTogether) {
     const auto link = join("r");
     const auto appends = log_.stats().appends;
     log_.hold_completions();
     for (std::uint64_t seq = 1; seq <= 200; ++seq) session_->submit(link, {random_scan(1, seq)}, 10);
     run();
-    EXPECT_EQ(log_.held_completions(), 1U) << "one append at a time";
-    EXPECT_EQ(session_->backlog_size(), 199U) << "the rest waits";
+    EXPECT_EQ(log_.held_completions(), 1U) << "one append is under way";
+    EXPECT_EQ(session_->backlog_size(), 199U) << "the other entries wait";
     log_.release_completions();
     run();
     EXPECT_EQ(log_.stats().appends, appends + 2);
     EXPECT_EQ(link->durable_seq(), 200U);
     EXPECT_EQ(session_->backlog_size(), 0U);
     EXPECT_EQ(link->bytes_released, 2000U);
-    EXPECT_THAT(link->durable_seqs, SizeIs(testing::Le(4U))) << "one ack a group";
+    EXPECT_THAT(link->durable_seqs, SizeIs(testing::Le(4U))) << "one acknowledgement per group";
 }
 
-TEST_F(SessionTest, GroupsAreBounded) {
+TEST_F(SessionTest, AppendedGroupsAreBounded) {
     const auto link = join("r");
     const auto appends = log_.stats().appends;
     log_.hold_completions();
@@ -119,12 +119,12 @@ TEST_F(SessionTest, GroupsAreBounded) {
     run();
     log_.release_completions();
     run();
-    EXPECT_EQ(log_.stats().appends, appends + 1 + 4) << "1000 entries in groups of 256";
+    EXPECT_EQ(log_.stats().appends, appends + 1 + 4) << "1000 entries need four groups of 256";
     EXPECT_EQ(link->durable_seq(), 1001U);
     EXPECT_EQ(digest(), digest_of_log());
 }
 
-TEST_F(SessionTest, ARobotIsLetInAgainWhenWhatItSubmittedBeforeIsDurable) {
+TEST_F(SessionTest, RejoiningWaitsForTheEarlierLinksScans) {
     const auto first = join("r");
     log_.hold_completions();
     session_->submit(first, random_scans(1, 1, 5), 50);
@@ -135,11 +135,11 @@ TEST_F(SessionTest, ARobotIsLetInAgainWhenWhatItSubmittedBeforeIsDurable) {
     run();
     ASSERT_TRUE(again.answer->has_value());
     EXPECT_EQ(again.answer->value().value().last_durable_seq, 5U);
-    EXPECT_EQ(again.link->bytes_released, 0U) << "the credit was the earlier link's";
+    EXPECT_EQ(again.link->bytes_released, 0U) << "the credit belonged to the earlier link";
     EXPECT_THAT(again.link->durable_seqs, IsEmpty());
 }
 
-TEST_F(SessionTest, OfTwoLinksThatWaitToBeLetInTheLaterOneIs) {
+TEST_F(SessionTest, LaterOfTwoWaitingLinksJoins) {
     const auto first = join("r");
     log_.hold_completions();
     session_->submit(first, random_scans(1, 1, 5), 50);
@@ -153,7 +153,7 @@ TEST_F(SessionTest, OfTwoLinksThatWaitToBeLetInTheLaterOneIs) {
     EXPECT_EQ(third.answer->value().value().last_durable_seq, 5U);
 }
 
-TEST_F(SessionTest, AFailedAppendFailsEveryLinkAndTheMapsStay) {
+TEST_F(SessionTest, FailedAppendFailsEveryLinkAndKeepsTheMaps) {
     const auto a = join("a");
     const auto b = join("b");
     session_->submit(a, random_scans(1, 1, 3), 10);
@@ -177,7 +177,7 @@ TEST_F(SessionTest, AFailedAppendFailsEveryLinkAndTheMapsStay) {
     EXPECT_EQ(refused.answer->value().error().code, Errc::kStoreFailed);
 }
 
-TEST_F(SessionTest, AfterAFailedDiskARestartContinuesExactly) {
+TEST_F(SessionTest, RestartAfterAFailedDiskContinuesExactly) {
     auto link = join("r");
     session_->submit(link, random_scans(1, 1, 3), 10);
     run();
@@ -201,7 +201,7 @@ TEST_F(SessionTest, AfterAFailedDiskARestartContinuesExactly) {
     EXPECT_EQ(digest(), digest_of_log());
 }
 
-TEST_F(SessionTest, ARobotWhoseJoiningDidNotBecomeDurableNeverJoined) {
+TEST_F(SessionTest, JoinThatIsNotDurableHasNoEffect) {
     log_.hold_completions();
     const auto lost = begin_join("lost");
     log_.fail_from_next_change({Errc::kStoreFailed, "no space left"});
@@ -213,7 +213,7 @@ TEST_F(SessionTest, ARobotWhoseJoiningDidNotBecomeDurableNeverJoined) {
     EXPECT_EQ(begin_join("other").answer->value().value().robot, 0U);
 }
 
-TEST_F(SessionTest, ClosingDrainsThenTellsEveryLink) {
+TEST_F(SessionTest, ClosingDrainsThenFailsEveryLink) {
     const auto link = join("r");
     log_.hold_completions();
     session_->submit(link, random_scans(1, 1, 300), 10);
@@ -223,8 +223,8 @@ TEST_F(SessionTest, ClosingDrainsThenTellsEveryLink) {
     session_->close({Errc::kShuttingDown, "bye"}, [&] { closed = true; });
     run();
     EXPECT_FALSE(closed);
-    EXPECT_THAT(link->failures, IsEmpty()) << "its acks come first";
-    session_->submit(link, random_scans(1, 306, 5), 10); // too late
+    EXPECT_THAT(link->failures, IsEmpty()) << "acknowledgements precede the failure";
+    session_->submit(link, random_scans(1, 306, 5), 10); // too late: the session is closing
     log_.release_completions();
     run();
     EXPECT_TRUE(closed);
@@ -236,7 +236,7 @@ TEST_F(SessionTest, ClosingDrainsThenTellsEveryLink) {
     EXPECT_FALSE(store::checkpoint_of(log_, id_).value().empty());
 }
 
-TEST_F(SessionTest, ClosingEndsAlsoWhenTheDiskHasFailed) {
+TEST_F(SessionTest, ClosingCompletesAfterADiskFailure) {
     const auto link = join("r");
     log_.fail_from_next_change({Errc::kStoreFailed, "no space left"});
     session_->submit(link, random_scans(1, 1, 3), 10);
@@ -250,7 +250,7 @@ TEST_F(SessionTest, ClosingEndsAlsoWhenTheDiskHasFailed) {
     EXPECT_THAT(store::checkpoint_of(log_, id_).value(), IsEmpty());
 }
 
-TEST_F(SessionTest, AnotherWriterOfItsLogStopsTheSession) {
+TEST_F(SessionTest, ForeignLogEntryStopsTheSession) {
     const auto link = join("r");
     ASSERT_TRUE(store::append_and_wait(log_, id_, 3, {"another writer's"}));
     session_->submit(link, random_scans(1, 1, 1), 10);

@@ -13,7 +13,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-/// Stores that earlier versions wrote: they open, and give the maps that they gave then.
+/// Stores written by earlier versions open and give the same maps as then.
 namespace scanloom::session {
 namespace {
 
@@ -24,11 +24,11 @@ using testing::Key;
 using testing::Not;
 using testing::StartsWith;
 
-constexpr store::SessionId kSession = 1; // the only one of each store
+constexpr store::SessionId kSession = 1; // each store has one session
 
 class EarlierFormatsTest : public testing::Test {
 protected:
-    /// Two scans before its checkpoint, one behind it; the digests are of all three.
+    /// Writes a store with two scans before its checkpoint and one after it; the digests are of all three.
     void write(const std::string& text) {
         digests_ = store::write_store(std::filesystem::path(SCANLOOM_TEST_DATA) / text, store());
         ASSERT_FALSE(digests_.empty());
@@ -43,7 +43,7 @@ protected:
         ASSERT_TRUE(database->Put({}, std::string(key), store::sealed(key, value)).ok());
     }
 
-    /// The store's one session, woven.
+    /// Recovers the store's session.
     [[nodiscard]] Recovered recover_session() const {
         const auto log = store::open_rocksdb(store()).value();
         const auto stored = log->sessions().value();
@@ -61,7 +61,7 @@ protected:
     std::string digests_;
 };
 
-TEST_F(EarlierFormatsTest, AStoreOfVersion1BecomesOneOfTheNewestAndItsLogIsFolded) {
+TEST_F(EarlierFormatsTest, StoreOfVersion1IsUpgradedAndItsLogApplied) {
     write("store_1_parts_1.txt");
     auto recovered = recover_session();
     EXPECT_EQ(recovered.checkpointed, std::nullopt);
@@ -70,7 +70,7 @@ TEST_F(EarlierFormatsTest, AStoreOfVersion1BecomesOneOfTheNewestAndItsLogIsFolde
 
     auto log = store::open_rocksdb(store()).value();
     const auto id = log->sessions().value().at(0).id;
-    EXPECT_FALSE(read_summary(*log, id, {}).value()) << "it has to be woven to be listed";
+    EXPECT_FALSE(read_summary(*log, id, {}).value()) << "the summary needs a recovery";
     ASSERT_TRUE(store::append_and_wait(*log, id, 6, {"goes on"}));
     log.reset();
     rocksdb::DB* opened = nullptr;
@@ -81,7 +81,7 @@ TEST_F(EarlierFormatsTest, AStoreOfVersion1BecomesOneOfTheNewestAndItsLogIsFolde
     EXPECT_EQ(store::number_of(store::unsealed("f", format).value()), store::kFormatVersion);
 }
 
-/// By the version of the checkpoint's parts.
+/// The parameter is the version of the checkpoint's parts.
 class EarlierCheckpointTest : public EarlierFormatsTest, public testing::WithParamInterface<int> {
 protected:
     void SetUp() override { write(fmt::format("store_2_parts_{}.txt", GetParam())); }
@@ -95,10 +95,10 @@ protected:
     }
 };
 
-TEST_P(EarlierCheckpointTest, IsReadAndTheRestOfTheLogFolded) {
+TEST_P(EarlierCheckpointTest, IsReadAndTheRemainingLogApplied) {
     auto recovered = recover_session();
     EXPECT_FALSE(recovered.checkpoint_rejected);
-    EXPECT_EQ(recovered.checkpointed, std::nullopt) << "the next one is to take its place";
+    EXPECT_EQ(recovered.checkpointed, std::nullopt) << "the next checkpoint replaces it";
     expect_its_maps(recovered);
     const auto robot = recovered.projection.state().robots.at(0);
     EXPECT_EQ(robot.name, "r");
@@ -106,7 +106,7 @@ TEST_P(EarlierCheckpointTest, IsReadAndTheRestOfTheLogFolded) {
     EXPECT_EQ(robot.last_seq, 3U);
 }
 
-TEST_P(EarlierCheckpointTest, TellsWhatItsRobotHadDone) {
+TEST_P(EarlierCheckpointTest, ContainsTheRobotsSummary) {
     const auto log = store::open_rocksdb(store()).value();
     auto reader = checkpoint_in(*log, mapping::MapConfig{});
     EXPECT_FALSE(reader.is_newest_format());
@@ -122,7 +122,7 @@ TEST_P(EarlierCheckpointTest, TellsWhatItsRobotHadDone) {
     EXPECT_EQ(robot.pose, (Pose2{1.2, 1.6, 0.6}));
 }
 
-TEST_P(EarlierCheckpointTest, GivesWayToOneOfTheNewestFormatWhichTheSessionIsListedFrom) {
+TEST_P(EarlierCheckpointTest, IsReplacedByTheNewestFormatWithASummary) {
     auto recovered = recover_session();
     const auto log = store::open_rocksdb(store()).value();
     const auto config = recovered.projection.config();
@@ -131,7 +131,7 @@ TEST_P(EarlierCheckpointTest, GivesWayToOneOfTheNewestFormatWhichTheSessionIsLis
         write_checkpoint(*log, kSession, recovered.projection.snapshot(), state, recovered.checkpointed, false));
 
     EXPECT_THAT(store::checkpoint_of(*log, kSession).value(), Each(Key(Not(StartsWith("track/")))))
-        << "nothing is left of the earlier one";
+        << "no part of the earlier checkpoint remains";
     EXPECT_TRUE(checkpoint_in(*log, config).is_newest_format());
     const auto summary = read_summary(*log, kSession, config).value();
     ASSERT_TRUE(summary);
@@ -143,7 +143,7 @@ TEST_P(EarlierCheckpointTest, GivesWayToOneOfTheNewestFormatWhichTheSessionIsLis
 INSTANTIATE_TEST_SUITE_P(OfParts, EarlierCheckpointTest, testing::Values(2, 3),
                          [](const auto& version) { return fmt::format("Version{}", version.param); });
 
-TEST_F(EarlierFormatsTest, ANewerStoreIsRefusedWithASentence) {
+TEST_F(EarlierFormatsTest, NewerStoreIsRefusedWithAMessage) {
     write("store_2_parts_2.txt");
     put(store::kFormatKey, store::number_bytes(store::kFormatVersion + 1));
     const auto log = store::open_rocksdb(store());
@@ -153,17 +153,17 @@ TEST_F(EarlierFormatsTest, ANewerStoreIsRefusedWithASentence) {
                                            HasSubstr("update the server")));
 }
 
-TEST_F(EarlierFormatsTest, ANewerCheckpointIsWovenFromTheLog) {
+TEST_F(EarlierFormatsTest, NewerCheckpointIsReplacedByTheLog) {
     write("store_2_parts_2.txt");
-    const std::string newer("\x04\0\0\0\x63\0\0\0", 8); // this weaving version, parts of version 99
+    const std::string newer("\x04\0\0\0\x63\0\0\0", 8); // this mapping version, parts of version 99
     put(store::part_key(kSession, "format"), newer);
     auto recovered = recover_session();
     EXPECT_THAT(recovered.checkpoint_rejected.value().message, HasSubstr("parts are of version 99"));
     expect_its_maps(recovered);
 }
 
-/// Of the newest format: a session with max_jump, a jump, and exclusions before and behind its checkpoint.
-TEST_F(EarlierFormatsTest, OfAStoreOfVersion3ExclusionsAndJumpsAreReadFromCheckpointAndLog) {
+/// Newest format: a session with max_jump, a jump, and exclusions before and after its checkpoint.
+TEST_F(EarlierFormatsTest, StoreOfVersion3KeepsExclusionsAndJumps) {
     write("store_3_parts_4.txt");
     auto recovered = recover_session();
     EXPECT_FALSE(recovered.checkpoint_rejected);

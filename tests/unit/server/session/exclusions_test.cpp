@@ -6,7 +6,7 @@
 
 #include <random>
 
-/// A session's maps are those of a session that never had the scans that are excluded.
+/// The maps of a session with excluded scans equal those of a session without these scans.
 namespace scanloom::session {
 namespace {
 
@@ -20,7 +20,7 @@ bool is_in(const ScanTaken& taken, const std::variant<StampRange, SeqRange>& ran
     return taken.scan.stamp >= stamps.from && taken.scan.stamp <= stamps.to;
 }
 
-/// As the definition says: whether an exclusion behind the entry, not lifted by the log's end, covers its scan.
+/// Returns whether an exclusion after the entry covers its scan and is not lifted at the end of the log.
 bool is_excluded(const std::vector<LogEntry>& log, std::size_t n) {
     const auto* taken = std::get_if<ScanTaken>(&log[n]);
     for (std::size_t later = n + 1; taken != nullptr && later < log.size(); ++later) {
@@ -32,7 +32,7 @@ bool is_excluded(const std::vector<LogEntry>& log, std::size_t n) {
     return false;
 }
 
-/// What is left without them.
+/// Returns the log without excluded scans and exclusions.
 std::vector<LogEntry> kept_of(const std::vector<LogEntry>& log) {
     std::vector<LogEntry> kept;
     for (std::size_t n = 0; n < log.size(); ++n) {
@@ -43,7 +43,7 @@ std::vector<LogEntry> kept_of(const std::vector<LogEntry>& log) {
     return kept;
 }
 
-/// The log of a session that never had them: each seq follows the one before.
+/// Returns the log of a session that never had the excluded scans: the sequence numbers are consecutive.
 std::vector<LogEntry> log_without_excluded(const std::vector<LogEntry>& log) {
     auto kept = kept_of(log);
     std::map<RobotIndex, std::uint64_t> seqs;
@@ -53,7 +53,7 @@ std::vector<LogEntry> log_without_excluded(const std::vector<LogEntry>& log) {
     return kept;
 }
 
-mapping::Projection folded(const std::vector<LogEntry>& log, const mapping::MapConfig& config) {
+mapping::Projection projection_of(const std::vector<LogEntry>& log, const mapping::MapConfig& config) {
     mapping::Projection projection(config);
     for (const auto& entry : log) projection.fold(entry).value();
     return projection;
@@ -73,7 +73,7 @@ protected:
 
     [[nodiscard]] std::shared_ptr<Session> session() { return registry_->wake("lab").value(); }
 
-    /// The robot's next scans.
+    /// Streams the robot's next scans.
     void stream(const std::string& robot, std::uint64_t count) {
         const auto link = std::make_shared<AwaitedLink>();
         const auto held = session();
@@ -84,7 +84,7 @@ protected:
         held->leave(link);
     }
 
-    /// By revision, from 1 on at place 0.
+    /// Returns the log's entries; revision n is at index n - 1.
     [[nodiscard]] std::vector<LogEntry> log() {
         std::vector<LogEntry> entries;
         for (const auto& bytes : store::entries_after(log_, id_, 0).value()) {
@@ -93,10 +93,10 @@ protected:
         return entries;
     }
 
-    /// Maps, paths and captures.
+    /// Compares maps, trajectories and captures.
     void expect_that_excluded_scans_leave_no_trace() {
         const auto entries = log();
-        auto expected = folded(log_without_excluded(entries), config_);
+        auto expected = projection_of(log_without_excluded(entries), config_);
         const auto wanted = expected.snapshot();
         const auto maps = session()->snapshot();
         ASSERT_EQ(maps->revision, entries.size());
@@ -106,23 +106,23 @@ protected:
         for (std::size_t n = 0; n < entries.size(); ++n) excluded += is_excluded(entries, n) ? 1 : 0;
         const auto old = read_old_paths(log_, id_, *maps, 0, [] { return true; }).value();
         for (RobotIndex robot = 0; robot < maps->robots.size(); ++robot) {
-            const auto& has = maps->robots[robot];
-            const auto& should = wanted.robots[robot];
-            EXPECT_EQ(has.scan_count, should.scan_count);
-            EXPECT_EQ(std::tie(has.stamp, has.pose), std::tie(should.stamp, should.pose));
-            EXPECT_EQ(has.last_seq, has.scan_count + has.jumps + has.excluded);
-            excluded -= has.excluded;
-            ASSERT_EQ(has.trajectory.size(), should.trajectory.size());
-            for (std::size_t n = 0; n < should.trajectory.size(); ++n) {
-                const auto& point = n < has.trajectory.begin() ? old.robots[robot][n] : has.trajectory[n];
-                ASSERT_EQ(point.pose, should.trajectory[n].pose) << robot << ", " << n;
+            const auto& actual = maps->robots[robot];
+            const auto& wanted_robot = wanted.robots[robot];
+            EXPECT_EQ(actual.scan_count, wanted_robot.scan_count);
+            EXPECT_EQ(std::tie(actual.stamp, actual.pose), std::tie(wanted_robot.stamp, wanted_robot.pose));
+            EXPECT_EQ(actual.last_seq, actual.scan_count + actual.jumps + actual.excluded);
+            excluded -= actual.excluded;
+            ASSERT_EQ(actual.trajectory.size(), wanted_robot.trajectory.size());
+            for (std::size_t n = 0; n < wanted_robot.trajectory.size(); ++n) {
+                const auto& point = n < actual.trajectory.begin() ? old.robots[robot][n] : actual.trajectory[n];
+                ASSERT_EQ(point.pose, wanted_robot.trajectory[n].pose) << robot << ", " << n;
             }
         }
-        EXPECT_EQ(excluded, 0U) << "the robots' counts are those of all";
+        EXPECT_EQ(excluded, 0U) << "the sum of the robots' counts is the number of excluded scans";
         EXPECT_EQ(captures(scan_filter_of(session()->info())), captures_of(kept_of(entries)));
     }
 
-    /// Without the revisions, which differ: when each was taken, and what was seen.
+    /// Stamp and points of each capture. Revisions are omitted because they differ.
     using SeenThings = std::vector<std::pair<double, std::vector<PointMm>>>;
 
     [[nodiscard]] SeenThings captures(ScanFilter filter) {
@@ -145,11 +145,11 @@ protected:
         return found;
     }
 
-    void come_back(std::mt19937& random) {
-        static_cast<void>(session()); // a registry may end when none of its sessions is being read
+    void restart_or_evict(std::mt19937& random) {
+        static_cast<void>(session()); // a registry must not be destroyed while it reads a session
         switch (random() % 4) {
-        case 0: registry_->drain(); [[fallthrough]]; // with a checkpoint
-        case 1: restart(); break;                    // or as after a crash
+        case 0: registry_->drain(); [[fallthrough]]; // writes a checkpoint
+        case 1: restart(); break;                    // without a checkpoint, as after a crash
         case 2:
             clock_ = clock_.load() + std::chrono::hours(1);
             registry_->tidy();
@@ -164,7 +164,7 @@ protected:
 
 class ExclusionTrialsTest : public ExclusionsTest, public testing::WithParamInterface<unsigned> {};
 
-TEST_P(ExclusionTrialsTest, LeaveNoTraceInMapsPathsAndCaptures) {
+TEST_P(ExclusionTrialsTest, ExcludedScansLeaveNoTraceInMapsTrajectoriesAndCaptures) {
     std::mt19937 random(GetParam());
     create(random() % 2 == 0 ? 0.0 : 1.5);
     const auto number = [&](std::uint64_t below) { return random() % below; };
@@ -175,17 +175,17 @@ TEST_P(ExclusionTrialsTest, LeaveNoTraceInMapsPathsAndCaptures) {
             const std::uint64_t from = 1 + number(40);
             ASSERT_TRUE(registry_->exclude("lab", robot, SeqRange{from, from + number(9)}));
         } else {
-            const double from = static_cast<double>(number(40)) * 0.1; // stamps are a tenth of the seq
+            const double from = static_cast<double>(number(40)) * 0.1; // stamps are 0.1 s per sequence number
             const double length = static_cast<double>(number(20)) * 0.1;
             ASSERT_TRUE(registry_->exclude("lab", robot, StampRange{from, from + length}));
         }
-        come_back(random);
+        restart_or_evict(random);
         const auto& all = session()->info().exclusions->all();
         const auto& one = all[number(all.size())];
         if (number(3) == 0) {
             EXPECT_EQ(registry_->lift_exclusion("lab", one.excluded.id).has_value(), one.lifted == 0);
         }
-        come_back(random);
+        restart_or_evict(random);
         expect_that_excluded_scans_leave_no_trace();
     }
     const auto stored = log_.sessions().value().at(0);
@@ -196,7 +196,7 @@ TEST_P(ExclusionTrialsTest, LeaveNoTraceInMapsPathsAndCaptures) {
 
 INSTANTIATE_TEST_SUITE_P(Seeds, ExclusionTrialsTest, testing::Range(1U, 13U));
 
-TEST_F(ExclusionsTest, ChangeNothingOfWhatRobotsContinueWith) {
+TEST_F(ExclusionsTest, KeepTheRobotsSequenceNumbers) {
     create();
     stream("a", 10);
     const auto link = std::make_shared<AwaitedLink>();
@@ -209,7 +209,7 @@ TEST_F(ExclusionsTest, ChangeNothingOfWhatRobotsContinueWith) {
     expect_that_excluded_scans_leave_no_trace();
 }
 
-TEST_F(ExclusionsTest, MapsUntilAnEarlierRevisionShowTheScans) {
+TEST_F(ExclusionsTest, DoNotAffectMapsOfEarlierRevisions) {
     create();
     stream("a", 12);
     const auto exclusion = registry_->exclude("lab", 0, SeqRange{3, 9}).value();
@@ -219,25 +219,25 @@ TEST_F(ExclusionsTest, MapsUntilAnEarlierRevisionShowTheScans) {
     const auto entries = log();
     PageBudget budget(1 << 20);
     const auto info = session()->info();
-    // As someone who knows of all exclusions, and as someone who started before there was any.
+    // Compares a replay job that has all exclusions and a job that was started before there were any.
     for (const bool is_known : {true, false}) {
         SessionInfo of = info;
         if (!is_known) of.exclusions = no_exclusions();
         for (Revision until = 1; until <= entries.size(); ++until) {
-            Weave weave(of, {config_, {.revision = until}}, until);
-            while (weave.run(log_, budget)) {
+            Weave job(of, {config_, {.revision = until}}, until);
+            while (job.run(log_, budget)) {
             }
-            auto expected = folded(log_without_excluded({entries.begin(), entries.begin() + until}), config_);
-            ASSERT_TRUE(weave.maps()) << weave.progress().error->message;
-            ASSERT_EQ(testing_support::digests_of(*weave.maps()), testing_support::digests_of(expected.snapshot()))
+            auto expected = projection_of(log_without_excluded({entries.begin(), entries.begin() + until}), config_);
+            ASSERT_TRUE(job.maps()) << job.progress().error->message;
+            ASSERT_EQ(testing_support::digests_of(*job.maps()), testing_support::digests_of(expected.snapshot()))
                 << until;
-            ASSERT_EQ(weave.maps()->revision, until);
+            ASSERT_EQ(job.maps()->revision, until);
         }
     }
     EXPECT_EQ(budget.free(), budget.pages_max());
 }
 
-TEST_F(ExclusionsTest, OfScansWithAWrongClockDoNotEndMapsUntilAStamp) {
+TEST_F(ExclusionsTest, ExcludedWrongStampDoesNotEndReplay) {
     create();
     stream("a", 4);
     const auto link = std::make_shared<AwaitedLink>();
@@ -250,24 +250,24 @@ TEST_F(ExclusionsTest, OfScansWithAWrongClockDoNotEndMapsUntilAStamp) {
     stream("a", 8);
     PageBudget budget(1 << 20);
     const auto end_of = [&] {
-        Weave weave(session()->info(), {config_, {.stamp = 1000.0}}, log().size());
-        while (weave.run(log_, budget)) {
+        Weave job(session()->info(), {config_, {.stamp = 1000.0}}, log().size());
+        while (job.run(log_, budget)) {
         }
-        return weave.maps()->robots.at(0).last_seq;
+        return job.maps()->robots.at(0).last_seq;
     };
     EXPECT_EQ(end_of(), 4U);
     ASSERT_TRUE(registry_->exclude("lab", 1, SeqRange{1, 1}));
     EXPECT_EQ(end_of(), 12U);
 }
 
-TEST_F(ExclusionsTest, NeedNoMemoryForMaps) {
+TEST_F(ExclusionsTest, DoNotLoadTheSession) {
     create();
     stream("a", 20);
     registry_->drain();
-    restart(1); // no room for its maps
+    restart(1); // the memory budget is too small for the session's maps
     clock_ = clock_.load() + std::chrono::hours(1);
     ASSERT_FALSE(registry_->find("lab"));
-    ASSERT_TRUE(registry_->exclude("lab", 0, SeqRange{1, 20})) << "at once: nothing is read";
+    ASSERT_TRUE(registry_->exclude("lab", 0, SeqRange{1, 20})) << "exclusion must not load the session";
     const auto facts = registry_->listed("lab")->summary.facts;
     EXPECT_EQ(facts->revision, log().size());
     EXPECT_EQ(facts->exclusions->count_in_effect(), 1U);
@@ -275,26 +275,26 @@ TEST_F(ExclusionsTest, NeedNoMemoryForMaps) {
     EXPECT_EQ(registry_->info("lab")->exclusions->count_in_effect(), 0U);
 }
 
-TEST_F(ExclusionsTest, ReachMapsThatFollowTheSession) {
+TEST_F(ExclusionsTest, ApplyToReplayJobsThatFollowTheSession) {
     create();
     stream("a", 12);
     PageBudget budget(1 << 20);
-    Weave weave(session()->info(), {config_, {}}, log().size());
-    while (weave.run(log_, budget)) {
+    Weave job(session()->info(), {config_, {}}, log().size());
+    while (job.run(log_, budget)) {
     }
     ASSERT_TRUE(registry_->exclude("lab", 0, SeqRange{3, 9}));
     stream("a", 3);
-    ASSERT_TRUE(weave.resume(log().size(), budget));
-    while (weave.run(log_, budget)) {
+    ASSERT_TRUE(job.resume(log().size(), budget));
+    while (job.run(log_, budget)) {
     }
-    auto expected = folded(log_without_excluded(log()), config_);
-    EXPECT_EQ(testing_support::digests_of(*weave.maps()), testing_support::digests_of(expected.snapshot()));
+    auto expected = projection_of(log_without_excluded(log()), config_);
+    EXPECT_EQ(testing_support::digests_of(*job.maps()), testing_support::digests_of(expected.snapshot()));
 
     Weave earlier(session()->info(), {config_, {.revision = 8}}, 8);
-    EXPECT_FALSE(weave.base_for(earlier, 8)) << "the scans are not excluded there";
+    EXPECT_FALSE(job.base_for(earlier, 8)) << "the earlier maps contain the excluded scans";
 }
 
-TEST_F(ExclusionsTest, AreRefusedWithASentence) {
+TEST_F(ExclusionsTest, InvalidRequestsAreRefusedWithAMessage) {
     create();
     stream("a", 3);
     const auto refusal = [&](const auto& done) { return std::pair(done.error().code, done.error().message); };
@@ -309,7 +309,7 @@ TEST_F(ExclusionsTest, AreRefusedWithASentence) {
     EXPECT_EQ(registry_->exclude("lab", 0, SeqRange{1, 1}).error().code, Errc::kShuttingDown);
 }
 
-TEST_F(ExclusionsTest, ThatAreNotStoredChangeNothing) {
+TEST_F(ExclusionsTest, HaveNoEffectIfNotStored) {
     create();
     stream("a", 8);
     const auto before = testing_support::digests_of(*session()->snapshot());

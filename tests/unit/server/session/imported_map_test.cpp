@@ -8,11 +8,11 @@
 #include <fstream>
 #include <future>
 
-/// Sessions that begin with a map made elsewhere.
+/// Sessions that begin with an imported map.
 namespace scanloom::session {
 namespace {
 
-/// The most that this process had in memory.
+/// Returns the peak resident memory of this process.
 std::size_t peak_bytes() {
     std::ifstream status("/proc/self/status");
     for (std::string word; status >> word;) {
@@ -22,7 +22,7 @@ std::size_t peak_bytes() {
     return 0;
 }
 
-TEST(ImportedMap, IsThereAgainAfterARestart) {
+TEST(ImportedMap, SurvivesARestart) {
     store::MemoryScanLog log;
     boost::asio::thread_pool pool(2);
     const MapPatch bottom{0.1, -1.0, 2.0, 3, {MapCell::kFree, MapCell::kFree, MapCell::kUnknown}};
@@ -42,7 +42,7 @@ TEST(ImportedMap, IsThereAgainAfterARestart) {
     registry.drain();
 }
 
-/// A square map of whole chunks at 0.1 m, in strips.
+/// Returns a square map of whole chunks with a resolution of 0.1 m, in strips.
 std::vector<MapPatch> square_map(std::uint32_t chunks_wide, MapCell of) {
     const std::uint32_t side = chunks_wide * 64;
     std::vector<MapPatch> patches;
@@ -52,14 +52,14 @@ std::vector<MapPatch> square_map(std::uint32_t chunks_wide, MapCell of) {
     return patches;
 }
 
-TEST(ImportedMap, ThatDoesNotFitIntoTheMemoryForMapsIsRefusedBeforeItTakesIt) {
+TEST(ImportedMap, TooLargeMapIsRefusedBeforeAllocation) {
     store::MemoryScanLog log;
     boost::asio::thread_pool pool(2);
     RegistryConfig config{pool.get_executor(), [] { return 1.0; }};
     config.pages_max = 100;
     SessionRegistry registry(log, config);
     const auto patches = square_map(64, MapCell::kFree); // 4096 chunks, 80 MiB
-    std::ofstream("/proc/self/clear_refs") << 5;         // the peak is counted from here
+    std::ofstream("/proc/self/clear_refs") << 5;         // resets the peak
     const std::size_t before = peak_bytes();
     const auto refused = registry.import_map("large", {.cell_size = 0.1}, patches);
     ASSERT_FALSE(refused);
@@ -72,7 +72,7 @@ TEST(ImportedMap, ThatDoesNotFitIntoTheMemoryForMapsIsRefusedBeforeItTakesIt) {
     EXPECT_EQ(registry.import_map("other", {.cell_size = 0.1}, square_map(9, MapCell::kFree)).error().code,
               Errc::kOverloaded);
     registry.drain();
-    pool.join(); // the registry makes room there
+    pool.join(); // the registry evicts sessions on this pool
 }
 
 std::size_t resident_bytes() {
@@ -82,21 +82,21 @@ std::size_t resident_bytes() {
     return resident * 4096;
 }
 
-TEST(ImportedMap, ThatIsRemovedGivesItsMemoryBack) {
+TEST(ImportedMap, RemovalReleasesItsMemory) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-    GTEST_SKIP() << "sanitizers have an allocator of their own";
+    GTEST_SKIP() << "sanitizers use their own allocator";
 #endif
     store::MemoryScanLog log;
     boost::asio::thread_pool pool(1);
     SessionRegistry registry(log, {pool.get_executor(), [] { return 1.0; }});
-    constexpr std::uint32_t kSide = 4096; // 64 chunks of 20 kB
+    constexpr std::uint32_t kSide = 4096; // 64 chunks of 20 kB per side
     const auto map = [&](double y) {
         return MapPatch{0.1, 0.0, y, kSide, std::vector<MapCell>(std::size_t{kSide} * 512, MapCell::kFree)};
     };
     std::vector<MapPatch> patches;
     for (int n = 0; n < 8; ++n) patches.push_back(map(51.2 * n));
     ASSERT_TRUE(registry.import_map("large", {.cell_size = 0.1}, patches));
-    // Behind the large map, so that it is not at the heap's end.
+    // This session follows the large map in the heap, so the large map is not at the heap's end.
     ASSERT_TRUE(registry.import_map("small", {.cell_size = 0.1}, {{0.1, 0.0, 0.0, 1, {MapCell::kFree}}}));
     const std::size_t with_it = resident_bytes();
     ASSERT_TRUE(registry.remove("large"));
@@ -105,7 +105,7 @@ TEST(ImportedMap, ThatIsRemovedGivesItsMemoryBack) {
     EXPECT_LT(resident_bytes() + 50'000'000, with_it);
 }
 
-TEST(ImportedMap, ThatACrashCutShortIsGoneAfterTheRestart) {
+TEST(ImportedMap, IncompleteImportIsRemovedAtTheNextStart) {
     store::MemoryScanLog log;
     boost::asio::thread_pool pool(2);
     const auto id = log.create_session(wire::encode_session({"depot", 1.0, {}, 2})).value();
@@ -122,7 +122,7 @@ TEST(ImportedMap, ThatACrashCutShortIsGoneAfterTheRestart) {
     registry.drain();
 }
 
-TEST(ImportedMap, ThatFitsIntoNoSessionIsRefusedAndMakesNone) {
+TEST(ImportedMap, InvalidMapIsRefusedWithoutCreatingASession) {
     store::MemoryScanLog log;
     boost::asio::thread_pool pool(2);
     SessionRegistry registry(log, {pool.get_executor(), [] { return 1.0; }});

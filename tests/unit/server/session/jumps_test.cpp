@@ -4,13 +4,13 @@
 
 #include <random>
 
-/// With max_jump, a session's maps are those of a session that never had the scans that are left out.
+/// With max_jump, the maps of a session equal those of a session without the omitted scans.
 namespace scanloom::session {
 namespace {
 
 constexpr double kMaxJump = 1.0;
 
-/// Robots that walk, whose poses are wrong now and then, or that are carried elsewhere.
+/// Returns the scans of a robot that walks, whose poses are sometimes wrong, and that is sometimes carried elsewhere.
 std::vector<Scan> walk(unsigned seed, std::size_t count) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> step(-0.6, 0.6);
@@ -18,7 +18,7 @@ std::vector<Scan> walk(unsigned seed, std::size_t count) {
     Point2 place{step(random), step(random)};
     for (auto& scan : scans) {
         place += {step(random), step(random)};
-        if (random() % 20 == 0) place += {30.0 * step(random), 3.0}; // carried
+        if (random() % 20 == 0) place += {30.0 * step(random), 3.0}; // the robot is carried
         const bool is_wrong = random() % 6 == 0;
         scan.pose.x = place.x + (is_wrong ? 50.0 * step(random) : 0.0);
         scan.pose.y = place.y + (is_wrong ? 20.0 : 0.0);
@@ -26,14 +26,14 @@ std::vector<Scan> walk(unsigned seed, std::size_t count) {
     return scans;
 }
 
-/// As the definition says, from the whole log each time.
+/// Decides by the definition, from the whole log each time.
 bool is_left_out(const std::vector<Scan>& scans, std::size_t n) {
     const auto distance = [&](std::size_t to) {
         return std::hypot(scans[n].pose.x - scans[to].pose.x, scans[n].pose.y - scans[to].pose.y);
     };
     if (n == 0 || distance(n - 1) <= kMaxJump) return false;
     std::size_t integrated = n - 1;
-    while (is_left_out(scans, integrated)) --integrated; // the first one never is
+    while (is_left_out(scans, integrated)) --integrated; // the first scan is never omitted
     return distance(integrated) > kMaxJump;
 }
 
@@ -54,7 +54,8 @@ protected:
         SessionTest::SetUp();
     }
 
-    /// Both robots' scans in turn, `each` at a time; between them the session ends and comes back, or crashes.
+    /// Streams both robots' scans in turn, `each` scans at a time. In between, the session is closed or crashes, and
+    /// starts again.
     void stream(const std::vector<std::vector<Scan>>& walks, std::size_t each) {
         for (std::size_t begin = 0; begin < walks[0].size(); begin += each) {
             for (std::size_t robot = 0; robot < walks.size(); ++robot) {
@@ -70,7 +71,7 @@ protected:
         }
     }
 
-    /// The log of a session that never had them.
+    /// Returns the log of a session without the jumps.
     [[nodiscard]] std::vector<LogEntry> log_without_jumps(const std::vector<std::vector<Scan>>& walks) const {
         std::vector<LogEntry> log;
         for (RobotIndex robot = 0; robot < walks.size(); ++robot) {
@@ -82,7 +83,7 @@ protected:
     }
 };
 
-TEST_F(JumpsTest, MapsAndPathsAreThoseOfASessionThatNeverHadThem) {
+TEST_F(JumpsTest, MapsAndTrajectoriesEqualThoseWithoutJumps) {
     const std::vector<std::vector<Scan>> walks = {walk(1, 240), walk(2, 240)};
     stream(walks, 20);
     mapping::Projection expected{mapping::MapConfig{}};
@@ -93,17 +94,17 @@ TEST_F(JumpsTest, MapsAndPathsAreThoseOfASessionThatNeverHadThem) {
     std::uint64_t jumps = 0;
     const auto old = read_old_paths(log_, id_, *maps, 0, [] { return true; }).value();
     for (RobotIndex robot = 0; robot < 2; ++robot) {
-        const auto& has = maps->robots[robot];
-        const auto& should = wanted.robots[robot];
-        EXPECT_EQ(has.last_seq, 240U);
-        EXPECT_EQ(has.scan_count, should.scan_count);
-        EXPECT_EQ(has.jumps, 240U - should.scan_count);
-        EXPECT_EQ(std::tie(has.stamp, has.pose), std::tie(should.stamp, should.pose));
-        jumps += has.jumps;
-        ASSERT_EQ(has.trajectory.size(), should.trajectory.size());
-        for (std::size_t n = 0; n < should.trajectory.size(); ++n) {
-            const auto& point = n < has.trajectory.begin() ? old.robots[robot][n] : has.trajectory[n];
-            ASSERT_EQ(point.pose, should.trajectory[n].pose) << robot << ", " << n;
+        const auto& actual = maps->robots[robot];
+        const auto& wanted_robot = wanted.robots[robot];
+        EXPECT_EQ(actual.last_seq, 240U);
+        EXPECT_EQ(actual.scan_count, wanted_robot.scan_count);
+        EXPECT_EQ(actual.jumps, 240U - wanted_robot.scan_count);
+        EXPECT_EQ(std::tie(actual.stamp, actual.pose), std::tie(wanted_robot.stamp, wanted_robot.pose));
+        jumps += actual.jumps;
+        ASSERT_EQ(actual.trajectory.size(), wanted_robot.trajectory.size());
+        for (std::size_t n = 0; n < wanted_robot.trajectory.size(); ++n) {
+            const auto& point = n < actual.trajectory.begin() ? old.robots[robot][n] : actual.trajectory[n];
+            ASSERT_EQ(point.pose, wanted_robot.trajectory[n].pose) << robot << ", " << n;
         }
     }
     EXPECT_GT(jumps, 40U);
@@ -111,7 +112,7 @@ TEST_F(JumpsTest, MapsAndPathsAreThoseOfASessionThatNeverHadThem) {
     EXPECT_EQ(counters_->scans_applied, 480U - jumps);
 }
 
-TEST_F(JumpsTest, OfOneRobotAtATimeTheCellsAreTheSameBitForBit) {
+TEST_F(JumpsTest, CellsOfOneRobotAreBitwiseEqual) {
     const std::vector<std::vector<Scan>> walks = {walk(3, 120)};
     stream(walks, 8);
     mapping::Projection expected{mapping::MapConfig{}};
@@ -120,7 +121,7 @@ TEST_F(JumpsTest, OfOneRobotAtATimeTheCellsAreTheSameBitForBit) {
     EXPECT_EQ(digest(), digest_of_log());
 }
 
-TEST_F(JumpsTest, PathsReadFromWhereverAreTheSame) {
+TEST_F(JumpsTest, TrajectoriesReadFromAnyRevisionAreEqual) {
     stream({walk(4, 120)}, 30);
     const auto maps = session_->snapshot();
     const auto whole = read_old_paths(log_, id_, *maps, 0, [] { return true; }).value().robots[0];
@@ -131,7 +132,7 @@ TEST_F(JumpsTest, PathsReadFromWhereverAreTheSame) {
     }
 }
 
-TEST_F(JumpsTest, CapturesHoldNoneOfThem) {
+TEST_F(JumpsTest, CapturesContainNoJumps) {
     const std::vector<std::vector<Scan>> walks = {walk(5, 200)};
     stream(walks, 50);
     landmarks::SessionCaptures expected;
@@ -142,7 +143,7 @@ TEST_F(JumpsTest, CapturesHoldNoneOfThem) {
     landmarks::SessionCaptures captures{ScanFilter(kMaxJump)};
     std::size_t n = 0;
     const auto visit = [&](const landmarks::RobotCapture& ended) -> Result<> {
-        if (n >= wanted.size()) return Error{Errc::kInternal, "a capture more than there should be"};
+        if (n >= wanted.size()) return Error{Errc::kInternal, "a capture more than expected"};
         EXPECT_EQ(ended.capture.points, wanted[n].points) << n;
         ++n;
         return {};
@@ -153,7 +154,7 @@ TEST_F(JumpsTest, CapturesHoldNoneOfThem) {
     EXPECT_GT(n, 5U);
 }
 
-TEST_F(JumpsTest, WithoutTheSettingAllScansAreIntegrated) {
+TEST_F(JumpsTest, AllScansAreIntegratedWithoutMaxJump) {
     config_.max_jump = 0.0;
     session_.reset();
     start_session();

@@ -20,7 +20,7 @@ using testing_support::reference_laser;
 using testing_support::room_scans;
 using namespace std::chrono_literals;
 
-const auto kGoOn = [] { return true; };
+const auto kContinue = [] { return true; };
 
 std::vector<landmarks::MapLandmark> all_of(const landmarks::LandmarkState& state) {
     std::vector<landmarks::MapLandmark> all;
@@ -28,7 +28,7 @@ std::vector<landmarks::MapLandmark> all_of(const landmarks::LandmarkState& state
     return all;
 }
 
-/// Two robots that drive and stand in a room, one of them with a sonar as well.
+/// Two robots that drive and stand in a room; one of them has a sonar as well.
 class LandmarkFoldsTest : public testing::Test {
 protected:
     LandmarkFoldsTest() {
@@ -48,7 +48,7 @@ protected:
         const auto round = room_scans(120);
         for (int n = 0; n < 900; ++n) {
             const RobotIndex robot = random() % 2;
-            if (random() % 3 == 0) ++at[robot]; // else it stands
+            if (random() % 3 == 0) ++at[robot]; // otherwise the robot stands
             Scan scan = round[at[robot] % round.size()];
             scan.seq = ++seq[robot];
             scan.stamp = 0.1 * n;
@@ -66,7 +66,7 @@ protected:
     }
     void append(const std::string& bytes) { store::append_and_wait(log_, info_.id, ++end_, {bytes}).value(); }
 
-    /// Every scan looked at, by the definition.
+    /// Computes the landmarks from every scan, by the definition.
     [[nodiscard]] landmarks::LandmarkState expected(Revision until) const {
         landmarks::LandmarkLayer layer;
         std::array<landmarks::CaptureCutter, 2> cutters;
@@ -99,68 +99,68 @@ protected:
     Revision end_ = 0;
 };
 
-TEST_F(LandmarkFoldsTest, AreThoseOfEveryScanInHoweverManyStepsTheyAreAskedFor) {
+TEST_F(LandmarkFoldsTest, AreIndependentOfTheNumberOfSteps) {
     std::mt19937 random(7);
     LandmarkFolds folds(log_);
     for (Revision until = 0; until < end_; until = std::min(end_, until + 1 + random() % 100)) {
-        expect_landmarks(folds.up_to(info_, until, kGoOn).value(), until);
+        expect_landmarks(folds.up_to(info_, until, kContinue).value(), until);
     }
-    expect_landmarks(folds.up_to(info_, end_, kGoOn).value(), end_);
-    expect_landmarks(LandmarkFolds(log_).up_to(info_, end_, kGoOn).value(), end_);
+    expect_landmarks(folds.up_to(info_, end_, kContinue).value(), end_);
+    expect_landmarks(LandmarkFolds(log_).up_to(info_, end_, kContinue).value(), end_);
     EXPECT_GT(all_of(expected(end_)).size(), 5U);
     EXPECT_GT(expected(end_).captures, 20U);
 }
 
-TEST_F(LandmarkFoldsTest, WhoeverAsksForAnEarlierMomentHasWhatIsThere) {
+TEST_F(LandmarkFoldsTest, RequestForAnEarlierRevisionReturnsTheNewestState) {
     LandmarkFolds folds(log_);
-    folds.up_to(info_, end_, kGoOn).value();
-    EXPECT_EQ(folds.up_to(info_, 10, kGoOn).value().revision, end_);
+    folds.up_to(info_, end_, kContinue).value();
+    EXPECT_EQ(folds.up_to(info_, 10, kContinue).value().revision, end_);
 }
 
-TEST_F(LandmarkFoldsTest, WhatTakesLongerThanACallerMayWaitGoesOnWhenItIsAskedForAgain) {
+TEST_F(LandmarkFoldsTest, LongComputationContinuesWithTheNextRequest) {
     LandmarkFolds folds(log_, {.patience = 0ms});
-    int asked = 0;
-    auto folded = folds.up_to(info_, end_, kGoOn);
-    for (; !folded; folded = folds.up_to(info_, end_, kGoOn)) {
+    int calls = 0;
+    auto folded = folds.up_to(info_, end_, kContinue);
+    for (; !folded; folded = folds.up_to(info_, end_, kContinue)) {
         EXPECT_EQ(folded.error().code, Errc::kOverloaded);
         EXPECT_THAT(folded.error().message, HasSubstr("of 905 log entries are found; ask again"));
-        ASSERT_LT(++asked, 100);
+        ASSERT_LT(++calls, 100);
     }
-    EXPECT_GT(asked, 1);
+    EXPECT_GT(calls, 1);
     expect_landmarks(*folded, end_);
 }
 
-TEST_F(LandmarkFoldsTest, ItEndsWhenItIsWantedNoMoreAndGoesOnLater) {
+TEST_F(LandmarkFoldsTest, CancelledComputationContinuesLater) {
     LandmarkFolds folds(log_);
     EXPECT_EQ(folds.up_to(info_, end_, [] { return false; }).error().code, Errc::kShuttingDown);
-    expect_landmarks(folds.up_to(info_, end_, kGoOn).value(), end_);
+    expect_landmarks(folds.up_to(info_, end_, kContinue).value(), end_);
 }
 
-TEST_F(LandmarkFoldsTest, ADamagedEntryIsToldAndWhatWasBeforeItIsNot) {
+TEST_F(LandmarkFoldsTest, DamagedEntryIsReportedAndEarlierEntriesStayAvailable) {
     append("nonsense");
     append(std::vector<LogEntry>{entries_.back()});
     LandmarkFolds folds(log_);
     for (int n = 0; n < 2; ++n) {
-        const auto folded = folds.up_to(info_, end_, kGoOn);
+        const auto folded = folds.up_to(info_, end_, kContinue);
         ASSERT_FALSE(folded);
         EXPECT_EQ(folded.error().code, Errc::kDataLoss);
         EXPECT_THAT(folded.error().message, HasSubstr("log entry 906"));
     }
-    expect_landmarks(folds.up_to(info_, end_ - 2, kGoOn).value(), end_ - 2);
+    expect_landmarks(folds.up_to(info_, end_ - 2, kContinue).value(), end_ - 2);
 }
 
-TEST_F(LandmarkFoldsTest, ASessionWithTooManyIsRefused) {
+TEST_F(LandmarkFoldsTest, TooManyLandmarksAreRefused) {
     const auto many = all_of(expected(end_)).size();
-    EXPECT_TRUE(LandmarkFolds(log_, {.size_max = many}).up_to(info_, end_, kGoOn));
+    EXPECT_TRUE(LandmarkFolds(log_, {.size_max = many}).up_to(info_, end_, kContinue));
     LandmarkFolds folds(log_, {.size_max = many - 1});
-    for (int n = 0; n < 2; ++n) EXPECT_EQ(folds.up_to(info_, end_, kGoOn).error().code, Errc::kFull);
+    for (int n = 0; n < 2; ++n) EXPECT_EQ(folds.up_to(info_, end_, kContinue).error().code, Errc::kFull);
 }
 
-/// What is kept is told by whether the log is still needed.
-TEST_F(LandmarkFoldsTest, TheLeastRecentlyUsedAreForgottenAndDeletedOnesToo) {
+/// The test detects a kept state by whether the log is read again.
+TEST_F(LandmarkFoldsTest, RemovesLeastRecentlyUsedAndDeletedSessions) {
     const auto is_kept = [&](LandmarkFolds& folds, const SessionInfo& session) {
         log_.fail_reading(Error{Errc::kStoreFailed, "the disk is gone"});
-        const bool kept = folds.up_to(session, end_, kGoOn).has_value();
+        const bool kept = folds.up_to(session, end_, kContinue).has_value();
         log_.fail_reading(std::nullopt);
         return kept;
     };
@@ -175,11 +175,11 @@ TEST_F(LandmarkFoldsTest, TheLeastRecentlyUsedAreForgottenAndDeletedOnesToo) {
                                CaptureFoldsLimits<landmarks::LandmarkLayer>{}}) {
         const bool has_room = limits.kept_max > 1 && limits.size_max >= 2 * many;
         LandmarkFolds folds(log_, limits);
-        folds.up_to(info_, end_, kGoOn).value();
-        folds.up_to(second, end_, kGoOn).value();
+        folds.up_to(info_, end_, kContinue).value();
+        folds.up_to(second, end_, kContinue).value();
         EXPECT_TRUE(is_kept(folds, second));
         EXPECT_EQ(is_kept(folds, info_), has_room);
-        folds.up_to(info_, end_, kGoOn).value();
+        folds.up_to(info_, end_, kContinue).value();
         folds.remove(info_.id);
         EXPECT_FALSE(is_kept(folds, info_));
     }

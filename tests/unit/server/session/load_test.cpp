@@ -1,6 +1,6 @@
 #include "tests/unit/server/session/session_fixture.hpp"
 
-/// Heavy scans, full maps and sudden ends.
+/// Expensive scans, full maps and sudden ends.
 namespace scanloom::session {
 namespace {
 
@@ -8,7 +8,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::SizeIs;
 
-/// A laser that sees 70 m all around: at 2 cm one of its scans is more work than a slice.
+/// A laser with a range of 70 m in all directions: at a resolution of 2 cm, one scan takes more work than a slice.
 Sensor far_laser() {
     Sensor sensor = small_laser();
     sensor.angles = UniformAngles{0.0, std::numbers::pi / 9, 18};
@@ -42,25 +42,25 @@ protected:
     std::shared_ptr<RecordedLink> link_;
 };
 
-TEST_F(HeavySessionTest, WeavingGivesWayToOthersBetweenItsScans) {
+TEST_F(HeavySessionTest, OtherSessionsRunBetweenScans) {
     session_->submit(link_, far_scans(1, 5), 10);
     run_until([&] { return session_->is_connected(0) && log_.stats().entries == 7; });
     bool answered = false;
-    boost::asio::post(compute_, [&] { answered = true; }); // another session's work
+    boost::asio::post(compute_, [&] { answered = true; }); // work of another session
     run_until([&] { return answered; });
-    EXPECT_LT(link_->durable_seq(), 5U) << "the other waited for all of the scans";
+    EXPECT_LT(link_->durable_seq(), 5U) << "the other session waited for all scans";
     run();
     EXPECT_EQ(link_->durable_seq(), 5U);
     EXPECT_EQ(digest(), digest_of_log());
 }
 
-TEST_F(HeavySessionTest, WeavingGivesWayToOthersWithinAScan) {
+TEST_F(HeavySessionTest, OtherSessionsRunWithinAScan) {
     session_->submit(link_, far_scans(1, 1), 10);
     run_until([&] { return log_.stats().entries == 3; });
     int turns = 0;
     while (link_->durable_seq() == 0) {
         bool answered = false;
-        boost::asio::post(compute_, [&] { answered = true; }); // another session's work
+        boost::asio::post(compute_, [&] { answered = true; }); // work of another session
         run_until([&] { return answered; });
         ++turns;
     }
@@ -68,7 +68,7 @@ TEST_F(HeavySessionTest, WeavingGivesWayToOthersWithinAScan) {
     EXPECT_EQ(digest(), digest_of_log());
 }
 
-TEST_F(HeavySessionTest, ItsOwnRobotsAreHeardBetweenItsScans) {
+TEST_F(HeavySessionTest, OwnRobotsAreServedBetweenScans) {
     session_->submit(link_, far_scans(1, 5), 10);
     run_until([&] { return log_.stats().entries == 7; });
     bool joined = false; // one group later
@@ -77,11 +77,11 @@ TEST_F(HeavySessionTest, ItsOwnRobotsAreHeardBetweenItsScans) {
     run_until([&] { return !session_->is_connected(0); });
     EXPECT_LT(session_->snapshot()->robots[0].last_seq, 5U);
     run();
-    EXPECT_EQ(session_->snapshot()->robots[0].last_seq, 5U) << "what it submitted stays";
+    EXPECT_EQ(session_->snapshot()->robots[0].last_seq, 5U) << "submitted scans are kept";
     EXPECT_TRUE(joined);
 }
 
-TEST_F(HeavySessionTest, InAHurryClosingEndsAtOnceAndARestartWeavesTheRest) {
+TEST_F(HeavySessionTest, HurryEndsClosingAndARestartIntegratesTheRest) {
     log_.hold_completions();
     session_->submit(link_, far_scans(1, 4), 10);
     session_->submit(link_, far_scans(5, 3), 10);
@@ -93,13 +93,13 @@ TEST_F(HeavySessionTest, InAHurryClosingEndsAtOnceAndARestartWeavesTheRest) {
     run();
     EXPECT_TRUE(closed);
     EXPECT_THAT(link_->failures, SizeIs(1));
-    EXPECT_EQ(link_->durable_seq(), 4U) << "what is durable is acknowledged, woven or not";
+    EXPECT_EQ(link_->durable_seq(), 4U) << "durable scans are acknowledged even if they are not integrated";
     start_session();
     EXPECT_EQ(last_durable_seq_on_joining("r"), 4U);
     EXPECT_EQ(digest(), digest_of_log());
 }
 
-TEST_F(HeavySessionTest, AHurryBeforeTheClosingIsNotForgotten) {
+TEST_F(HeavySessionTest, HurryBeforeClosingStaysInEffect) {
     session_->submit(link_, far_scans(1, 5), 10);
     run_until([&] { return log_.stats().entries == 7; });
     session_->hurry();
@@ -110,29 +110,29 @@ TEST_F(HeavySessionTest, AHurryBeforeTheClosingIsNotForgotten) {
     EXPECT_TRUE(closed);
     EXPECT_THAT(link_->failures, SizeIs(1));
     EXPECT_EQ(link_->durable_seq(), 5U);
-    EXPECT_LT(session_->snapshot()->robots[0].last_seq, 5U) << "in a hurry nothing more is woven";
+    EXPECT_LT(session_->snapshot()->robots[0].last_seq, 5U) << "no more scans are integrated after hurry()";
     start_session();
     EXPECT_EQ(last_durable_seq_on_joining("r"), 5U);
     EXPECT_EQ(digest(), digest_of_log());
 }
 
-TEST_F(HeavySessionTest, AHurryInTheMiddleOfAGroupLeavesTheRestToTheNextStart) {
+TEST_F(HeavySessionTest, HurryWithinAGroupLeavesTheRestToTheNextStart) {
     session_->submit(link_, far_scans(1, 5), 10);
     run_until([&] { return log_.stats().entries == 7; });
-    compute_.run_one(); // the group is durable and its first slice woven
+    compute_.run_one(); // the group is durable and its first slice is integrated
     bool closed = false;
     session_->close({Errc::kShuttingDown, "bye"}, [&] { closed = true; });
     session_->hurry();
     run();
     EXPECT_TRUE(closed);
-    EXPECT_EQ(session_->snapshot()->revision, 2U) << "nothing half-woven is shown";
-    EXPECT_THAT(store::checkpoint_of(log_, id_).value(), IsEmpty()) << "that would take its time";
+    EXPECT_EQ(session_->snapshot()->revision, 2U) << "no partly integrated scan is visible";
+    EXPECT_THAT(store::checkpoint_of(log_, id_).value(), IsEmpty()) << "writing a checkpoint takes too long";
     start_session();
     EXPECT_EQ(last_durable_seq_on_joining("r"), 5U);
     EXPECT_EQ(digest(), digest_of_log());
 }
 
-TEST_F(SessionTest, ADiscardedSessionWritesNothingMore) {
+TEST_F(SessionTest, DiscardedSessionStopsWriting) {
     const auto link = join("r");
     session_->submit(link, random_scans(1, 1, 300), 10);
     run();
@@ -147,21 +147,21 @@ TEST_F(SessionTest, ADiscardedSessionWritesNothingMore) {
     run();
     EXPECT_TRUE(closed);
     EXPECT_EQ(appends, 1U);
-    EXPECT_THAT(logged(), SizeIs(312)) << "what waited was not appended";
+    EXPECT_THAT(logged(), SizeIs(312)) << "waiting entries are not appended";
     EXPECT_THAT(store::checkpoint_of(log_, id_).value(), IsEmpty());
     EXPECT_THAT(link->failures, testing::ElementsAre(Error{Errc::kGone, "deleted"}));
 }
 
-/// A session whose map may have few chunks.
+/// A session whose map is limited to a few chunks.
 class SmallMapTest : public SessionTest {
 protected:
     void SetUp() override {
-        limits_.chunks_max = 40; // a scan of small_laser() may need 16
+        limits_.chunks_max = 40; // a scan of small_laser() may need 16 chunks
         SessionTest::SetUp();
         link_ = join("r");
     }
 
-    /// A scan around (x, 0).
+    /// Returns a scan around (x, 0).
     static Scan scan_at(std::uint64_t seq, double x) {
         Scan scan = random_scan(1, seq);
         scan.pose = {x, 0.0, 0.0};
@@ -171,7 +171,7 @@ protected:
     std::shared_ptr<RecordedLink> link_;
 };
 
-TEST_F(SmallMapTest, AScanThatCouldOverfillTheMapIsRefusedNotLeftOut) {
+TEST_F(SmallMapTest, ScanThatMayExceedTheMapIsRefused) {
     std::uint64_t seq = 0;
     while (link_->failures.empty()) {
         ++seq;
@@ -182,18 +182,18 @@ TEST_F(SmallMapTest, AScanThatCouldOverfillTheMapIsRefusedNotLeftOut) {
     EXPECT_THAT(link_->failures[0].message, HasSubstr("a scan could take it beyond 40"));
     EXPECT_GE(seq, 3U);
     EXPECT_EQ(link_->durable_seq(), seq - 1);
-    EXPECT_THAT(logged(), SizeIs(2 + seq - 1)) << "what is not woven is not in the log";
+    EXPECT_THAT(logged(), SizeIs(2 + seq - 1)) << "scans that are not integrated are not in the log";
     EXPECT_EQ(digest(), digest_of_log());
 
     const auto again = begin_join("r");
     EXPECT_EQ(again.answer->value().value().last_durable_seq, seq - 1);
-    session_->submit(again.link, {scan_at(seq, 10.0)}, 10); // where the map is already
+    session_->submit(again.link, {scan_at(seq, 10.0)}, 10); // in an explored part of the map
     run();
-    EXPECT_THAT(again.link->failures, SizeIs(1)) << "it might still need new chunks";
+    EXPECT_THAT(again.link->failures, SizeIs(1)) << "the scan might need new chunks";
     EXPECT_FALSE(session_->is_connected(0));
 }
 
-TEST_F(SmallMapTest, ManyScansOfOnePlaceFitOneAfterTheOther) {
+TEST_F(SmallMapTest, ManyScansOfOnePlaceAreAccepted) {
     std::vector<Scan> scans;
     for (std::uint64_t seq = 1; seq <= 700; ++seq) scans.push_back(scan_at(seq, 0.0));
     session_->submit(link_, scans, 10);
@@ -202,7 +202,7 @@ TEST_F(SmallMapTest, ManyScansOfOnePlaceFitOneAfterTheOther) {
     EXPECT_THAT(link_->failures, IsEmpty());
 }
 
-TEST_F(SmallMapTest, ARobotThatIsRefusedDisturbsNoOther) {
+TEST_F(SmallMapTest, RefusedRobotDoesNotAffectOthers) {
     const auto other = join("other");
     log_.hold_completions();
     session_->submit(other, {random_scan(1, 1)}, 10);
@@ -221,7 +221,7 @@ TEST_F(SmallMapTest, ARobotThatIsRefusedDisturbsNoOther) {
     EXPECT_EQ(digest(), digest_of_log());
 }
 
-TEST_F(SessionTest, AnotherRecordingUnderTheSameNameIsRefused) {
+TEST_F(SessionTest, OtherSourceUnderTheSameNameIsRefused) {
     const auto first = begin_join("r", "carmen:1");
     session_->submit(first.link, small_laser(), 0);
     session_->submit(first.link, random_scans(1, 1, 3), 10);
@@ -231,7 +231,7 @@ TEST_F(SessionTest, AnotherRecordingUnderTheSameNameIsRefused) {
     EXPECT_THAT(other.answer->value().error().message,
                 HasSubstr("the 3 scans of robot 'r' in session 'lab' come from 'carmen:1', not from 'carmen:2'"));
     EXPECT_THAT(begin_join("r").answer->value().error().message, HasSubstr("not from a live robot"));
-    EXPECT_THAT(first.link->failures, IsEmpty()) << "nor is the one that streams disturbed";
+    EXPECT_THAT(first.link->failures, IsEmpty()) << "the streaming robot is not affected";
     session_->close({Errc::kShuttingDown, "bye"}, [] {});
     run();
     start_session();
@@ -239,7 +239,7 @@ TEST_F(SessionTest, AnotherRecordingUnderTheSameNameIsRefused) {
     EXPECT_EQ(begin_join("r", "carmen:1").answer->value().value().last_durable_seq, 3U);
 }
 
-TEST_F(SessionTest, ARobotWithoutScansMayChangeItsSource) {
+TEST_F(SessionTest, RobotWithoutScansMayChangeItsSource) {
     begin_join("r", "carmen:1");
     const auto second = begin_join("r", "carmen:2");
     ASSERT_TRUE(second.answer->value());

@@ -5,7 +5,7 @@
 #include <optional>
 #include <random>
 
-/// What is read from the log and what is kept are together every robot's whole path.
+/// The points read from the log and the points kept in memory together form every robot's whole trajectory.
 namespace scanloom::session {
 namespace {
 
@@ -14,7 +14,7 @@ using Path = std::vector<mapping::TrajectoryPoint>;
 
 const auto kWanted = [] { return true; };
 
-/// Robot 0 scans most of the time, robot 1 seldom, robot 2 never.
+/// Robot 0 scans often, robot 1 rarely, robot 2 never.
 class OldPathsTest : public testing::Test {
 protected:
     void SetUp() override {
@@ -46,7 +46,7 @@ protected:
         }
     }
 
-    /// As after a restart: of what there was, no point is kept.
+    /// Simulates a restart: no points are kept in memory.
     void restart() {
         const auto state = projection_->state();
         projection_.emplace(mapping::MapConfig{}).restore(state);
@@ -75,9 +75,9 @@ protected:
             ASSERT_LE(points, count_old_points(maps, from));
             ASSERT_LE(all_points, points_max);
             if (old->until < maps.revision) {
-                ASSERT_EQ(all_points, points_max) << "more could be told at once";
+                ASSERT_EQ(all_points, points_max) << "the answer must contain as many points as allowed";
             }
-            ASSERT_TRUE(old->until > from || maps.revision <= from) << "it never ends";
+            ASSERT_TRUE(old->until > from || maps.revision <= from) << "each answer must make progress";
             from = old->until;
             ++answers;
         } while (from < maps.revision);
@@ -86,7 +86,7 @@ protected:
             for (const auto& point : paths_[robot]) {
                 if (point.revision > since) whole.push_back(point);
             }
-            ASSERT_EQ(read[robot], whole) << "of robot " << robot << " after " << since << " in " << answers;
+            ASSERT_EQ(read[robot], whole) << "robot " << robot << " after " << since << " in " << answers;
         }
     }
 
@@ -107,20 +107,21 @@ protected:
     std::mt19937 random_{7};
 };
 
-TEST_F(OldPathsTest, NothingIsReadWhereAllIsKept) {
+TEST_F(OldPathsTest, ReadsNothingIfAllPointsAreKept) {
     scan(2000);
     EXPECT_EQ(count_old_points(projection_->snapshot(), 0), 0U);
     expect_whole_paths_after_some();
 }
 
-TEST_F(OldPathsTest, OfALongPathTheFirstPartIsRead) {
+TEST_F(OldPathsTest, ReadsTheFirstPartOfALongTrajectory) {
     scan(2 * mapping::kTrajectoryKept);
-    ASSERT_GT(projection_->snapshot().robots[0].trajectory.begin(), 0U) << "or this test shows nothing";
+    ASSERT_GT(projection_->snapshot().robots[0].trajectory.begin(), 0U)
+        << "the test needs points that are only in the log";
     ASSERT_EQ(projection_->snapshot().robots[1].trajectory.begin(), 0U);
     expect_whole_paths_after_some();
 }
 
-TEST_F(OldPathsTest, AfterARestartAllOfItIs) {
+TEST_F(OldPathsTest, ReadsAllPointsAfterARestart) {
     scan(3000);
     restart();
     expect_whole_paths_after_some();
@@ -128,26 +129,26 @@ TEST_F(OldPathsTest, AfterARestartAllOfItIs) {
     expect_whole_paths_after_some();
 }
 
-TEST_F(OldPathsTest, ARobotThatIsGoneIsNotLookedForBehindItsLastScan) {
+TEST_F(OldPathsTest, DoesNotReadBeyondARobotsLastScan) {
     scan(3000);
     restart();
     const Revision gone = end_;
     add(RobotJoined{3, "d"});
     EXPECT_EQ(count_old_points(projection_->snapshot(), gone), 0U);
-    EXPECT_LE(count_old_points(projection_->snapshot(), gone - 100), 2 * 100U) << "of either robot";
+    EXPECT_LE(count_old_points(projection_->snapshot(), gone - 100), 2 * 100U) << "at most the points of both robots";
 }
 
-TEST_F(OldPathsTest, ReadingEndsSoonWhenItIsWantedNoMore) {
+TEST_F(OldPathsTest, StopsWhenTheCallbackReturnsFalse) {
     scan(5000);
     restart();
-    Revision asked = 0;
-    const auto old = read_old_paths(log_, id_, projection_->snapshot(), 0, [&] { return ++asked < 2; });
+    Revision calls = 0;
+    const auto old = read_old_paths(log_, id_, projection_->snapshot(), 0, [&] { return ++calls < 2; });
     ASSERT_FALSE(old);
     EXPECT_EQ(old.error().code, Errc::kShuttingDown);
-    EXPECT_EQ(asked, 2U);
+    EXPECT_EQ(calls, 2U);
 }
 
-TEST_F(OldPathsTest, ADamagedEntryIsReportedWithItsNumber) {
+TEST_F(OldPathsTest, ReportsADamagedEntryByItsNumber) {
     scan(10);
     ASSERT_TRUE(store::append_and_wait(log_, id_, ++end_, {"\xff"}));
     restart();

@@ -11,7 +11,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-TEST(PatientMutex, IsHadByOneOfAll) {
+TEST(PatientMutex, HasOneOwnerAtATime) {
     PatientMutex mutex;
     std::unique_lock first(mutex, 0ms);
     EXPECT_TRUE(first.owns_lock());
@@ -19,10 +19,10 @@ TEST(PatientMutex, IsHadByOneOfAll) {
     EXPECT_FALSE(std::unique_lock(mutex, 1ms).owns_lock());
     first.unlock();
     EXPECT_TRUE(std::unique_lock(mutex, 0ms).owns_lock());
-    EXPECT_TRUE(std::unique_lock(mutex, 0ms).owns_lock()) << "the one before gave it back";
+    EXPECT_TRUE(std::unique_lock(mutex, 0ms).owns_lock()) << "the previous owner released it";
 }
 
-TEST(PatientMutex, WhoWaitsHasItWhenItIsFree) {
+TEST(PatientMutex, WaitingThreadGetsItWhenReleased) {
     PatientMutex mutex;
     std::unique_lock first(mutex, 0ms);
     std::latch begun(2);
@@ -40,10 +40,10 @@ TEST(PatientMutex, WhoWaitsHasItWhenItIsFree) {
     EXPECT_TRUE(had[0] && had[1]);
 }
 
-TEST(PatientMutex, KeepsOthersOut) {
+TEST(PatientMutex, ExcludesOtherThreads) {
     constexpr int kTimes = 2'000;
     PatientMutex mutex;
-    int count = 0; // ThreadSanitizer would see who is not kept out
+    int count = 0; // ThreadSanitizer detects threads that are not excluded
     {
         std::array<std::jthread, 4> threads;
         for (auto& thread : threads) {

@@ -7,7 +7,7 @@
 #include <map>
 #include <thread>
 
-/// Maps that are written while others look.
+/// Maps that are written while others read them.
 namespace scanloom::session {
 namespace {
 
@@ -15,7 +15,7 @@ std::shared_ptr<const mapping::Snapshot> maps_at(Revision revision) {
     return std::make_shared<const mapping::Snapshot>(mapping::Snapshot{.revision = revision});
 }
 
-TEST(Published, MapsThatSomebodyHoldsAreNotTakenBack) {
+TEST(Published, HeldMapsAreNotTakenBack) {
     Published published;
     published.set(maps_at(1));
     {
@@ -26,7 +26,7 @@ TEST(Published, MapsThatSomebodyHoldsAreNotTakenBack) {
     EXPECT_TRUE(published.take_back());
 }
 
-TEST(Published, WhoeverAsksForMapsThatWereTakenBackWaitsForTheNext) {
+TEST(Published, ReaderWaitsForTheNextMapsAfterTakeBack) {
     Published published;
     for (Revision revision = 1; revision <= 500; ++revision) {
         published.set(maps_at(revision));
@@ -39,28 +39,28 @@ TEST(Published, WhoeverAsksForMapsThatWereTakenBackWaitsForTheNext) {
     }
 }
 
-TEST(Published, MapsThatSomebodyWaitsForAreNotTakenBackBeforeTheyAreThere) {
+TEST(Published, AwaitedMapsAreNotTakenBackBeforeDelivery) {
     Published published;
     published.set(maps_at(1));
     for (Revision revision = 2; revision <= 200; ++revision) {
         ASSERT_TRUE(published.take_back());
-        std::promise<void> let_go;
+        std::promise<void> release;
         Revision seen = 0;
         std::thread reader([&] {
             const auto maps = published.get();
             seen = maps->revision;
-            let_go.get_future().wait();
+            release.get_future().wait();
         });
         while (!published.is_waited_for()) std::this_thread::yield();
         published.set(maps_at(revision));
-        EXPECT_FALSE(published.take_back()) << "the reader is on its way, or has them";
-        let_go.set_value();
+        EXPECT_FALSE(published.take_back()) << "a reader waits for the maps or holds them";
+        release.set_value();
         reader.join();
         ASSERT_EQ(seen, revision);
     }
 }
 
-TEST(Published, WhoeverMayNotWaitHearsThatTheMapsWereTakenBack) {
+TEST(Published, TryGetReturnsNullAfterTakeBack) {
     Published published;
     published.set(maps_at(1));
     EXPECT_EQ(published.try_get()->revision, 1U);
@@ -70,7 +70,7 @@ TEST(Published, WhoeverMayNotWaitHearsThatTheMapsWereTakenBack) {
     EXPECT_EQ(published.try_get()->revision, 2U);
 }
 
-TEST(Published, OthersTakeThePlaceOfMapsThatWereTakenBackOnly) {
+TEST(Published, FallBackReplacesOnlyMapsTakenBack) {
     Published published;
     published.set(maps_at(1));
     published.fall_back_to(maps_at(7));
@@ -82,7 +82,7 @@ TEST(Published, OthersTakeThePlaceOfMapsThatWereTakenBackOnly) {
 
 const mapping::LaserChunk* chunk_at_origin(const mapping::Snapshot& maps) { return maps.laser.find({0, 0}); }
 
-TEST_F(SessionTest, WhatNobodyLooksAtIsWovenInPlace) {
+TEST_F(SessionTest, ScansAreIntegratedInPlaceWithoutASnapshot) {
     const auto link = join("r");
     auto scans = random_scans(1, 1, 3);
     for (auto& scan : scans) scan.pose = {};
@@ -98,15 +98,15 @@ TEST_F(SessionTest, WhatNobodyLooksAtIsWovenInPlace) {
     const auto before = testing_support::digests_of(*held);
     session_->submit(link, {scans[2]}, 10);
     run();
-    EXPECT_NE(chunk_at_origin(*session_->snapshot()), chunk) << "somebody looks at it";
+    EXPECT_NE(chunk_at_origin(*session_->snapshot()), chunk) << "a snapshot is held";
     EXPECT_EQ(testing_support::digests_of(*held), before);
     EXPECT_EQ(digest(), digest_of_log());
 }
 
-/// Takes the newest maps again and again, and what they hold, by revision.
-class Looker {
+/// Takes snapshots repeatedly and records their digests by revision.
+class SnapshotReader {
 public:
-    explicit Looker(std::shared_ptr<Session> session) : thread_([this, session] { look(*session); }) {}
+    explicit SnapshotReader(std::shared_ptr<Session> session) : thread_([this, session] { read(*session); }) {}
 
     [[nodiscard]] std::map<Revision, std::string> seen() {
         done_ = true;
@@ -115,10 +115,10 @@ public:
     }
 
 private:
-    void look(const Session& session) {
+    void read(const Session& session) {
         for (Revision newest = 0; !done_;) {
             const auto maps = session.snapshot();
-            EXPECT_GE(maps->revision, newest) << "maps come in order";
+            EXPECT_GE(maps->revision, newest) << "revisions increase";
             newest = maps->revision;
             if (seen_.size() < 40) seen_.try_emplace(newest, testing_support::digests_of(*maps));
         }
@@ -129,14 +129,14 @@ private:
     std::thread thread_;
 };
 
-TEST_F(SessionTest, WhoeverLooksWhileScansAreWovenSeesWholeMaps) {
+TEST_F(SessionTest, ConcurrentReadersSeeConsistentMaps) {
     const auto link = join("r");
-    Looker one(session_);
-    Looker other(session_);
+    SnapshotReader one(session_);
+    SnapshotReader other(session_);
     for (std::uint64_t seq = 1; seq <= 300; seq += 3) {
         session_->submit(link, random_scans(1, seq, 3), 10);
         run();
-        ASSERT_EQ(session_->snapshot()->robots.at(0).last_seq, seq + 2) << "what is acknowledged is there";
+        ASSERT_EQ(session_->snapshot()->robots.at(0).last_seq, seq + 2) << "acknowledged scans are in the map";
     }
     auto seen = one.seen();
     seen.merge(other.seen());

@@ -6,7 +6,7 @@
 
 #include <set>
 
-/// Sessions woven again, from their checkpoints where these can be used.
+/// Recovery of sessions from their log, and from their checkpoint where it is valid.
 namespace scanloom::session {
 namespace {
 
@@ -42,7 +42,7 @@ protected:
     std::shared_ptr<RecordedLink> link_;
 };
 
-TEST_F(RecoveryTest, CheckpointAndRestGiveTheMapOfTheWholeLog) {
+TEST_F(RecoveryTest, CheckpointAndRemainingLogGiveTheMapOfTheWholeLog) {
     auto recovered = recover(log_, id_, config_, false);
     ASSERT_TRUE(recovered);
     EXPECT_EQ(recovered->checkpointed, 602U);
@@ -53,13 +53,13 @@ TEST_F(RecoveryTest, CheckpointAndRestGiveTheMapOfTheWholeLog) {
     EXPECT_EQ(snapshot.robots[0].trajectory.size(), 650U);
 }
 
-TEST_F(RecoveryTest, ACheckpointThatCannotBeUsedIsReplacedByTheLog) {
+TEST_F(RecoveryTest, InvalidCheckpointIsReplacedByTheLog) {
     const auto parts = store::checkpoint_of(log_, id_).value();
     std::string other_version = parts.at("format");
     other_version[0] = 99;
     const std::pair<std::string, std::string> kDamages[] = {
         {"format", other_version},        {"format", "?"}, {"head", "?"}, {"robot/00000000", "short"},
-        {"sensor/00000000/00000002", ""}, {"zebra", ""}, // last: a part is never taken out of a store again
+        {"sensor/00000000/00000002", ""}, {"zebra", ""}, // last, because parts are never removed from a store
     };
     for (const auto& [key, value] : kDamages) {
         damage(key, value);
@@ -72,7 +72,7 @@ TEST_F(RecoveryTest, ACheckpointThatCannotBeUsedIsReplacedByTheLog) {
     }
 }
 
-TEST_F(RecoveryTest, ALogThatEndsBeforeItsCheckpointIsReported) {
+TEST_F(RecoveryTest, LogShorterThanItsCheckpointIsDataLoss) {
     std::string ahead_of_the_log = store::checkpoint_of(log_, id_).value().at("head");
     ahead_of_the_log[2] = 1; // revision + 65536
     damage("head", ahead_of_the_log);
@@ -82,15 +82,15 @@ TEST_F(RecoveryTest, ALogThatEndsBeforeItsCheckpointIsReported) {
     EXPECT_THAT(recovered.error().message, HasSubstr("ends before revision 66138"));
 }
 
-TEST_F(RecoveryTest, StoppedAtItsBeginningItReadsNothing) {
+TEST_F(RecoveryTest, StoppedRecoveryReadsNothing) {
     const auto recovered = recover(log_, id_, config_, true);
     ASSERT_TRUE(recovered);
     EXPECT_FALSE(recovered->complete);
     EXPECT_EQ(recovered->projection.revision(), 0U);
-    EXPECT_FALSE(recovered->checkpoint_rejected) << "it may be whole";
+    EXPECT_FALSE(recovered->checkpoint_rejected) << "the checkpoint was not examined";
 }
 
-TEST_F(RecoveryTest, AfterADamagedCheckpointTheNextOneIsWhole) {
+TEST_F(RecoveryTest, CheckpointAfterADamagedOneIsComplete) {
     damage("head", "?");
     start_session();
     close();
@@ -99,7 +99,7 @@ TEST_F(RecoveryTest, AfterADamagedCheckpointTheNextOneIsWhole) {
     EXPECT_EQ(recovered->checkpointed, 652U);
 }
 
-TEST_F(RecoveryTest, ADamagedLogIsReportedByItsEntry) {
+TEST_F(RecoveryTest, DamagedLogIsReportedByItsEntry) {
     ASSERT_TRUE(store::append_and_wait(log_, id_, 653, {"no entry"}));
     const auto recovered = recover(log_, id_, config_, false);
     ASSERT_FALSE(recovered);
@@ -107,14 +107,14 @@ TEST_F(RecoveryTest, ADamagedLogIsReportedByItsEntry) {
     EXPECT_THAT(recovered.error().message, HasSubstr("log entry 653: "));
 }
 
-TEST_F(RecoveryTest, AnEntryThatCannotFollowIsReported) {
+TEST_F(RecoveryTest, EntryOutOfSequenceIsReported) {
     ASSERT_TRUE(store::append_and_wait(log_, id_, 653, {wire::encode_entry(ScanTaken{0, random_scan(1, 700)})}));
     const auto recovered = recover(log_, id_, config_, false);
     ASSERT_FALSE(recovered);
     EXPECT_THAT(recovered.error().message, HasSubstr("log entry 653: scan 700 of robot 'r' follows scan 650"));
 }
 
-TEST_F(SessionTest, ACheckpointIsWrittenEvery4096EntriesAndNothingIsFoldedTwice) {
+TEST_F(SessionTest, CheckpointIsWrittenEvery4096Entries) {
     const auto link = join("r");
     Scan scan = random_scan(1, 1);
     scan.ranges = {1000};
@@ -128,7 +128,8 @@ TEST_F(SessionTest, ACheckpointIsWrittenEvery4096EntriesAndNothingIsFoldedTwice)
     for (int batch = 0; batch < 4; ++batch) submit(1000);
     EXPECT_THAT(store::checkpoint_of(log_, id_).value(), IsEmpty());
     submit(1000);
-    EXPECT_EQ(recover(log_, id_, config_, false)->checkpointed, 4258U) << "the first group's end after 4096 entries";
+    EXPECT_EQ(recover(log_, id_, config_, false)->checkpointed, 4258U)
+        << "the end of the first group after 4096 entries";
     for (int batch = 0; batch < 3; ++batch) submit(1000);
     EXPECT_EQ(recover(log_, id_, config_, false)->checkpointed, 4258U);
     submit(1000);
@@ -137,8 +138,8 @@ TEST_F(SessionTest, ACheckpointIsWrittenEvery4096EntriesAndNothingIsFoldedTwice)
     EXPECT_EQ(testing_support::digests_of(recovered.projection.snapshot()), digest());
 }
 
-TEST_F(SessionTest, ACheckpointThatIsBeingWrittenHoldsUpNoScan) {
-    boost::asio::io_context slow; // whoever writes checkpoints; begins when it is run
+TEST_F(SessionTest, PendingCheckpointDoesNotDelayScans) {
+    boost::asio::io_context slow; // executor for checkpoints; it runs when the test calls run()
     auto recovered = recover(log_, id_, config_, false).value();
     session_ = std::make_shared<Session>(SessionInfo{id_, "lab", 0.0, config_}, std::move(recovered.projection),
                                          recovered.checkpointed, log_, compute_.get_executor(), counters_, limits_,
@@ -161,7 +162,7 @@ TEST_F(SessionTest, ACheckpointThatIsBeingWrittenHoldsUpNoScan) {
     run();
 }
 
-TEST_F(SessionTest, SessionsThatBeganTogetherWriteTheirCheckpointsOneAfterAnother) {
+TEST_F(SessionTest, SessionsSpreadTheirCheckpoints) {
     std::set<Revision> written_at;
     for (int n = 0; n < 8; ++n) {
         SetUp();
@@ -182,7 +183,7 @@ TEST_F(SessionTest, SessionsThatBeganTogetherWriteTheirCheckpointsOneAfterAnothe
     EXPECT_GE(written_at.size(), 5U);
 }
 
-TEST_F(SessionTest, ClosingWithNothingNewWritesNoCheckpoint) {
+TEST_F(SessionTest, ClosingWithoutNewEntriesWritesNoCheckpoint) {
     const auto link = join("r");
     session_->close({Errc::kShuttingDown, "bye"}, [] {});
     run();

@@ -16,36 +16,37 @@
 
 namespace scanloom::session {
 
-/// A link that other threads talk to: tests wait for what it is told.
+/// A link that is called by other threads. Tests wait for its events.
 struct AwaitedLink : RobotListener {
     void on_durable(std::uint64_t seq, std::size_t) override {
         const std::lock_guard lock(mutex);
         durable_seq = seq;
-        told.notify_all();
+        changed.notify_all();
     }
     void on_failed(const Error& error) override {
         const std::lock_guard lock(mutex);
         failure = error;
-        told.notify_all();
+        changed.notify_all();
     }
     void wait_for_seq(std::uint64_t seq) {
         std::unique_lock lock(mutex);
-        told.wait(lock, [&] { return durable_seq >= seq; });
+        changed.wait(lock, [&] { return durable_seq >= seq; });
     }
-    /// @return whether the scan is durable; else the link has failed.
+    /// Waits until the scan is durable or the link fails.
+    /// @return whether the scan is durable
     bool wait_for_seq_or_failure(std::uint64_t seq) {
         std::unique_lock lock(mutex);
-        told.wait(lock, [&] { return durable_seq >= seq || failure; });
+        changed.wait(lock, [&] { return durable_seq >= seq || failure; });
         return durable_seq >= seq;
     }
     Error wait_for_failure() {
         std::unique_lock lock(mutex);
-        told.wait(lock, [&] { return failure.has_value(); });
+        changed.wait(lock, [&] { return failure.has_value(); });
         return *failure;
     }
 
     std::mutex mutex;
-    std::condition_variable told;
+    std::condition_variable changed;
     std::uint64_t durable_seq = 0;
     std::optional<Error> failure;
 };
@@ -57,7 +58,7 @@ inline Result<Joined> join_and_wait(Session& session, const std::string& robot, 
     return joined.get();
 }
 
-/// A registry with a pool of threads, as in the server; calls that wait come from the test's thread.
+/// A registry with a thread pool, as in the server. The test's thread makes the blocking calls.
 class SessionRegistryTest : public testing::Test {
 protected:
     ~SessionRegistryTest() override {
@@ -65,7 +66,7 @@ protected:
         compute_.join();
     }
 
-    /// What is in the log is all that is known.
+    /// Creates a registry that knows only what the log contains.
     void restart(std::size_t pages_max = RegistryConfig{}.pages_max) {
         registry_ = make(log_, pages_max);
         ASSERT_TRUE(registry_->recover());

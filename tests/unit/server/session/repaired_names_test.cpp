@@ -18,22 +18,22 @@ std::optional<std::string> named(std::string name) {
     return wire::encode_session(record);
 }
 
-TEST(RepairedNames, EachSessionKeepsItsOwn) {
+TEST(RepairedNames, UniqueNamesAreKept) {
     EXPECT_THAT(repaired_names({{1, named("kitchen")}, {5, named("hall")}}),
                 ElementsAre(Pair(1, "kitchen"), Pair(5, "hall")));
 }
 
-TEST(RepairedNames, OneWithoutARecordOrWithADamagedOneIsNamedByItsId) {
+TEST(RepairedNames, SessionWithoutValidRecordIsNamedByItsId) {
     EXPECT_THAT(repaired_names({{3, std::nullopt}, {4, "\xff\xff"}}),
                 ElementsAre(Pair(3, "session-3"), Pair(4, "session-4")));
 }
 
-TEST(RepairedNames, OfSeveralWithOneNameTheNewestKeepsIt) {
+TEST(RepairedNames, NewestOfEqualNamesKeepsItsName) {
     EXPECT_THAT(repaired_names({{2, named("kitchen")}, {5, named("kitchen")}, {9, named("kitchen")}}),
                 ElementsAre(Pair(2, "kitchen-2"), Pair(5, "kitchen-5"), Pair(9, "kitchen")));
 }
 
-TEST(RepairedNames, NobodyLosesItsOwnToOneThatIsGiven) {
+TEST(RepairedNames, AssignedNamesNeverReplaceExistingOnes) {
     EXPECT_THAT(repaired_names({{1, named("kitchen-2")}, {2, named("kitchen")}, {3, named("kitchen")}}),
                 ElementsAre(Pair(1, "kitchen-2"), Pair(2, "kitchen-2-2"), Pair(3, "kitchen")));
     EXPECT_THAT(repaired_names(
@@ -43,7 +43,7 @@ TEST(RepairedNames, NobodyLosesItsOwnToOneThatIsGiven) {
                 ElementsAre(Pair(7, "session-7-7"), Pair(8, "session-7")));
 }
 
-TEST(RepairedNames, TheyStayAsShortAsNamesAre) {
+TEST(RepairedNames, AssignedNamesRespectTheLengthLimit) {
     const std::string longest(kNameBytesMax, 'k');
     EXPECT_THAT(repaired_names({{12, named(longest)}, {13, named(longest)}}),
                 ElementsAre(Pair(12, std::string(kNameBytesMax - 3, 'k') + "-12"), Pair(13, longest)));

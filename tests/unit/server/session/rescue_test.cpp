@@ -28,9 +28,9 @@ std::vector<LogEntry> log_of_three_robots() {
     return log;
 }
 
-/// What can be woven of the entries that are left, by the definition: scans of robots and sensors that are known.
-struct Weavable {
-    explicit Weavable(const std::vector<LogEntry>& log, const std::set<std::size_t>& lost) {
+/// Computes the expected result by the definition: all remaining scans of known robots and sensors.
+struct ExpectedLog {
+    explicit ExpectedLog(const std::vector<LogEntry>& log, const std::set<std::size_t>& lost) {
         std::map<RobotIndex, RobotIndex> robots;
         std::set<RobotIndex> described;
         std::map<RobotIndex, std::uint64_t> seqs;
@@ -60,7 +60,7 @@ struct Weavable {
     std::string digests;
 };
 
-TEST(Rescue, KeepsEveryScanThatCanBeWovenUnderItsNumber) {
+TEST(Rescue, KeepsEveryUsableScanAndItsSequenceNumber) {
     const auto log = log_of_three_robots();
     std::mt19937 random(1);
     std::uint64_t stood_in = 0;
@@ -75,7 +75,8 @@ TEST(Rescue, KeepsEveryScanThatCanBeWovenUnderItsNumber) {
             if (lost.contains(n)) continue;
             const auto entries = rescue.add(n + 1, log[n]);
             for (const auto& entry : entries) {
-                ASSERT_EQ(wire::decode_entry(wire::encode_entry(entry)).value(), entry) << "it can be stored";
+                ASSERT_EQ(wire::decode_entry(wire::encode_entry(entry)).value(), entry)
+                    << "the entry must survive encoding";
                 const auto folded = projection.fold(entry);
                 ASSERT_TRUE(folded) << folded.error().message;
             }
@@ -85,7 +86,7 @@ TEST(Rescue, KeepsEveryScanThatCanBeWovenUnderItsNumber) {
             const auto& kept = std::get<ScanTaken>(entries.back()).scan;
             ASSERT_EQ(kept, taken->scan);
         }
-        const Weavable expected(log, lost);
+        const ExpectedLog expected(log, lost);
         EXPECT_EQ(scans, expected.scans);
         EXPECT_EQ(testing_support::digests_of(projection.snapshot()), expected.digests);
         EXPECT_LE(rescue.stood_in(), lost.size());
@@ -94,7 +95,7 @@ TEST(Rescue, KeepsEveryScanThatCanBeWovenUnderItsNumber) {
     EXPECT_GT(stood_in, 100U);
 }
 
-TEST(Rescue, WhatWasNotLostIsAsItWas) {
+TEST(Rescue, UndamagedLogIsUnchanged) {
     Rescue rescue;
     Revision revision = 0;
     for (const auto& entry : log_of_three_robots()) {
@@ -104,22 +105,22 @@ TEST(Rescue, WhatWasNotLostIsAsItWas) {
     EXPECT_EQ(rescue.stood_in(), 0U);
 }
 
-TEST(Rescue, MoreScansThanEntriesCannotBeMissing) {
+TEST(Rescue, DropsScansAcrossAnImpossibleGap) {
     Rescue rescue;
     static_cast<void>(rescue.add(1, RobotJoined{0, "a"}));
     static_cast<void>(rescue.add(2, SensorDescribed{0, small_laser()}));
-    EXPECT_TRUE(rescue.add(5, ScanTaken{0, random_scan(1, 4)}).empty()) << "2 are, 3 would have to be";
+    EXPECT_TRUE(rescue.add(5, ScanTaken{0, random_scan(1, 4)}).empty()) << "2 entries are missing, but 3 scans";
     EXPECT_EQ(rescue.add(6, ScanTaken{0, random_scan(1, 3)}).size(), 3U);
     EXPECT_EQ(rescue.missing(), 2U);
 }
 
-TEST(Rescue, AScanThatDoesNotFitItsSensorIsSetAside) {
+TEST(Rescue, DropsScanThatDoesNotMatchItsSensor) {
     Sensor other = small_laser();
     other.angles = ExplicitAngles{0.0, 0.1};
     Rescue rescue;
     static_cast<void>(rescue.add(1, RobotJoined{0, "a"}));
     static_cast<void>(rescue.add(2, SensorDescribed{0, other}));
-    EXPECT_TRUE(rescue.add(4, ScanTaken{0, random_scan(1, 1)}).empty()) << "its description is lost";
+    EXPECT_TRUE(rescue.add(4, ScanTaken{0, random_scan(1, 1)}).empty()) << "the sensor's description is lost";
 }
 
 } // namespace

@@ -16,7 +16,7 @@ using Time = Roster::Clock::time_point;
 
 Time at(int second) { return Time(std::chrono::seconds(second)); }
 
-/// A roster of sessions without a single scan, which nobody holds but it.
+/// A session cache with sessions that have no scans and are referenced only by the cache.
 class RosterTest : public SessionTest {
 protected:
     void add(const std::string& name, int second) {
@@ -25,75 +25,75 @@ protected:
                     at(second));
     }
 
-    void add_asleep(const std::string& name) {
+    void add_evicted(const std::string& name) {
         roster_.add(SessionInfo{++last_id_, name, 0.0, config_}, summary_of(mapping::Snapshot{}));
     }
 
-    std::vector<std::string> send_to_sleep(int second, std::size_t pages = 1) {
+    std::vector<std::string> evict(int second, std::size_t pages = 1) {
         std::vector<std::string> names;
         for (const auto& session : roster_.send_to_sleep(at(second), pages)) names.push_back(session->info().name);
         return names;
     }
 
-    /// What wakers are told: the name of the session, or why not.
-    Roster::Woken note(std::string who) {
-        return [this, who = std::move(who)](const Result<std::shared_ptr<Session>>& session) {
-            told_.push_back(who + ": " +
-                            (!session   ? session.error().message
-                             : *session ? (*session)->info().name
-                                        : "none"));
+    /// Returns a callback that records the session's name or the error message.
+    Roster::Woken note(std::string caller) {
+        return [this, caller = std::move(caller)](const Result<std::shared_ptr<Session>>& session) {
+            notified_.push_back(caller + ": " +
+                                (!session   ? session.error().message
+                                 : *session ? (*session)->info().name
+                                            : "none"));
         };
     }
 
-    void expect_awake(const std::string& name, bool awake) {
-        EXPECT_EQ(roster_.find(name, at(0)) != nullptr, awake) << name;
-        EXPECT_EQ(roster_.must_be_waited_for(name), !awake) << name;
+    void expect_loaded(const std::string& name, bool loaded) {
+        EXPECT_EQ(roster_.find(name, at(0)) != nullptr, loaded) << name;
+        EXPECT_EQ(roster_.must_be_waited_for(name), !loaded) << name;
     }
 
     store::SessionId last_id_ = 0;
     Roster roster_;
-    std::vector<std::string> told_;
+    std::vector<std::string> notified_;
 };
 
-TEST_F(RosterTest, OneOfThoseWhoWantASleepingSessionReadsItForAll) {
-    add_asleep("a");
+TEST_F(RosterTest, OneCallerLoadsAnEvictedSessionForAll) {
+    add_evicted("a");
     const auto resting = roster_.want("a", at(1), note("first"));
     ASSERT_TRUE(resting);
     EXPECT_EQ(resting->info.name, "a");
     EXPECT_FALSE(roster_.want("a", at(1), note("second")));
-    EXPECT_THAT(told_, IsEmpty());
-    expect_awake("a", false);
+    EXPECT_THAT(notified_, IsEmpty());
+    expect_loaded("a", false);
     roster_.arrived(
         std::make_shared<Session>(resting->info, mapping::Projection(config_), 0, log_, compute_.get_executor()),
         at(2));
-    EXPECT_THAT(told_, ElementsAre("first: a", "second: a"));
-    expect_awake("a", true);
+    EXPECT_THAT(notified_, ElementsAre("first: a", "second: a"));
+    expect_loaded("a", true);
 }
 
-TEST_F(RosterTest, ThoseThatWereNotUsedLongestGoFirstAndNoMoreThanAreNeeded) {
+TEST_F(RosterTest, EvictsLeastRecentlyUsedSessionsAndNoMoreThanNeeded) {
     add("older", 10);
     add("newer", 20);
     add("used", 5);
     ASSERT_TRUE(roster_.find("used", at(30)));
-    EXPECT_THAT(send_to_sleep(9), IsEmpty()) << "each was used later";
-    EXPECT_THAT(send_to_sleep(25, 0), IsEmpty()) << "none is needed";
-    EXPECT_THAT(send_to_sleep(25), ElementsAre("older", "newer")) << "neither has a page";
-    expect_awake("older", false);
-    expect_awake("used", true);
+    EXPECT_THAT(evict(9), IsEmpty()) << "each session was used later";
+    EXPECT_THAT(evict(25, 0), IsEmpty()) << "no pages are needed";
+    EXPECT_THAT(evict(25), ElementsAre("older", "newer")) << "both sessions have no pages";
+    expect_loaded("older", false);
+    expect_loaded("used", true);
 }
 
-TEST_F(RosterTest, WhoWantsASessionThatIsFallingAsleepGetsItWhenItHasBeenReadAgain) {
+TEST_F(RosterTest, CallerDuringEvictionGetsTheReloadedSession) {
     add("a", 0);
-    ASSERT_THAT(send_to_sleep(1), ElementsAre("a"));
-    EXPECT_FALSE(roster_.want("a", at(2), note("late"))) << "it is another's, until it sleeps";
+    ASSERT_THAT(evict(1), ElementsAre("a"));
+    EXPECT_FALSE(roster_.want("a", at(2), note("late"))) << "the session is being evicted by another caller";
     const auto resting = roster_.arrived("a", summary_of(mapping::Snapshot{}));
-    ASSERT_TRUE(resting) << "now it is to be read";
-    EXPECT_THAT(told_, IsEmpty());
+    ASSERT_TRUE(resting) << "the caller must load the session";
+    EXPECT_THAT(notified_, IsEmpty());
 }
 
-TEST_F(RosterTest, WhatIsShownOfASleepingSessionIsWhatItWas) {
+TEST_F(RosterTest, EvictedSessionIsListedWithItsLastSummary) {
     add("a", 0);
-    ASSERT_THAT(send_to_sleep(1), ElementsAre("a"));
+    ASSERT_THAT(evict(1), ElementsAre("a"));
     mapping::Snapshot last{.revision = 7};
     last.robots.resize(2);
     EXPECT_FALSE(roster_.arrived("a", summary_of(last)));
@@ -105,12 +105,12 @@ TEST_F(RosterTest, WhatIsShownOfASleepingSessionIsWhatItWas) {
     EXPECT_THAT(roster_.awake(), IsEmpty());
 }
 
-TEST_F(RosterTest, WhoWaitsForASessionThatIsRemovedIsTold) {
+TEST_F(RosterTest, WaitingCallerIsNotifiedOfRemoval) {
     add("a", 0);
     ASSERT_TRUE(roster_.leave("a"));
     EXPECT_FALSE(roster_.want("a", at(1), note("late")));
     roster_.remove("a", {Errc::kGone, "deleted"});
-    EXPECT_THAT(told_, ElementsAre("late: deleted"));
+    EXPECT_THAT(notified_, ElementsAre("late: deleted"));
     EXPECT_FALSE(roster_.contains("a"));
     EXPECT_FALSE(roster_.leave("a"));
 }

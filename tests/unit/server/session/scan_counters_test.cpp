@@ -6,7 +6,7 @@
 namespace scanloom::session {
 namespace {
 
-/// What is submitted adds up: woven, known already, or dropped.
+/// Each submitted scan is counted once: applied, duplicate or dropped.
 class ScanCounters : public SessionTest {
 protected:
     void submit(const std::shared_ptr<RecordedLink>& link, std::vector<Scan> scans) {
@@ -24,12 +24,12 @@ protected:
     std::uint64_t submitted_ = 0;
 };
 
-TEST_F(ScanCounters, WhatComesFromALinkThatWasReplacedIsDroppedAndWovenWhenItComesAgain) {
+TEST_F(ScanCounters, ScansOfAReplacedLinkAreDroppedAndAcceptedAgainLater) {
     const auto cut = join("r");
     submit(cut, random_scans(1, 1, 10));
     run();
     const auto link = join("r");
-    submit(cut, random_scans(1, 11, 5)); // was still to be read when the robot came anew
+    submit(cut, random_scans(1, 11, 5)); // these scans were not yet read when the robot reconnected
     run();
     expect(10, 0, 5);
     submit(link, random_scans(1, 11, 5));
@@ -37,7 +37,7 @@ TEST_F(ScanCounters, WhatComesFromALinkThatWasReplacedIsDroppedAndWovenWhenItCom
     expect(15, 0, 5);
 }
 
-TEST_F(ScanCounters, WhatASessionThatEndsDoesNotTakeIsDropped) {
+TEST_F(ScanCounters, ScansDuringClosingAreDropped) {
     const auto link = join("r");
     submit(link, random_scans(1, 1, 3));
     session_->close({Errc::kShuttingDown, "bye"}, [] {});
@@ -46,7 +46,7 @@ TEST_F(ScanCounters, WhatASessionThatEndsDoesNotTakeIsDropped) {
     expect(3, 0, 4);
 }
 
-TEST_F(ScanCounters, WhatTheDiskDidNotTakeIsDropped) {
+TEST_F(ScanCounters, ScansThatTheDiskRefusedAreDropped) {
     const auto link = join("r");
     log_.hold_completions();
     submit(link, random_scans(1, 1, 3));
@@ -62,8 +62,8 @@ TEST_F(ScanCounters, WhatTheDiskDidNotTakeIsDropped) {
     EXPECT_GE(counters_->scans_dropped, 4U);
 }
 
-TEST_F(ScanCounters, WhatAFullMapRefusesIsDropped) {
-    limits_.chunks_max = 40; // a scan of small_laser() may need 16
+TEST_F(ScanCounters, ScansThatAFullMapRefusedAreDropped) {
+    limits_.chunks_max = 40; // a scan of small_laser() may need 16 chunks
     start_session();
     const auto link = join("r");
     std::vector<Scan> far_apart = random_scans(1, 1, 20);
@@ -78,7 +78,7 @@ TEST_F(ScanCounters, WhatAFullMapRefusesIsDropped) {
     expect(applied, 0, 20 - applied);
 }
 
-TEST_F(ScanCounters, ARestartForgetsNothingThatIsCounted) {
+TEST_F(ScanCounters, CountsSurviveARestart) {
     submit(join("r"), random_scans(1, 1, 10));
     run();
     session_.reset();

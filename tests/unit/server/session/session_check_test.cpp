@@ -3,7 +3,7 @@
 #include "server/session/checkpoint.hpp"
 #include "tests/unit/server/session/session_fixture.hpp"
 
-/// What a check finds of a session with a log and a checkpoint.
+/// Checks of a session with a log and a checkpoint.
 namespace scanloom::session {
 namespace {
 
@@ -34,7 +34,7 @@ protected:
         return check_session(log_, sessions.at(0), depth, [](std::size_t) -> Result<> { return {}; }).value();
     }
 
-    /// At every depth.
+    /// Checks at every depth.
     void expect_whole(Revision entries) {
         for (const auto depth : {CheckDepth::kLog, CheckDepth::kCheckpoint, CheckDepth::kMaps}) {
             const auto found = check(depth);
@@ -50,34 +50,34 @@ protected:
     Revision end_ = 0;
 };
 
-TEST_F(SessionCheckTest, OneThatIsWholeIsFoundWhole) {
+TEST_F(SessionCheckTest, IntactSessionHasNoDamage) {
     expect_whole(kEntries);
     append(ScanTaken{0, random_scan(1, 41)}); // not in the checkpoint
     expect_whole(kEntries + 1);
 }
 
-TEST_F(SessionCheckTest, AnEntryThatCannotBeReadIsFound) {
+TEST_F(SessionCheckTest, ReportsAnInvalidEntry) {
     append_bytes("no entry");
     const auto found = check(CheckDepth::kLog);
     EXPECT_EQ(found.entries, kEntries);
     EXPECT_THAT(found.damage.value().message, HasSubstr("log entry 43: "));
 }
 
-TEST_F(SessionCheckTest, AnEntryThatCannotFollowIsFound) {
+TEST_F(SessionCheckTest, ReportsAnEntryOutOfSequence) {
     append(ScanTaken{0, random_scan(1, 77)});
     EXPECT_THAT(check(CheckDepth::kLog).damage.value().message,
                 HasSubstr("log entry 43: scan 77 of robot 'r' follows scan 40"));
 }
 
-TEST_F(SessionCheckTest, ADamagedCheckpointIsFoundAndTheLogCalledWhole) {
+TEST_F(SessionCheckTest, ReportsADamagedCheckpointWithAnIntactLog) {
     put("head", "?");
-    EXPECT_FALSE(check(CheckDepth::kLog).damage) << "its checksum holds";
+    EXPECT_FALSE(check(CheckDepth::kLog).damage) << "its checksum is valid";
     const auto found = check(CheckDepth::kCheckpoint);
     EXPECT_EQ(found.entries, kEntries);
     EXPECT_THAT(found.damage.value().message, AllOf(HasSubstr("its log is whole"), HasSubstr("'head' is damaged")));
 }
 
-TEST_F(SessionCheckTest, ACheckpointAheadOfItsLogIsFound) {
+TEST_F(SessionCheckTest, ReportsACheckpointAheadOfItsLog) {
     auto head = store::checkpoint_of(log_, id_).value().at("head");
     head[0] = static_cast<char>(head[0] + 1);
     put("head", head);
@@ -85,15 +85,15 @@ TEST_F(SessionCheckTest, ACheckpointAheadOfItsLogIsFound) {
                 HasSubstr("the log ends with entry 42, but its checkpoint holds entry 43"));
 }
 
-TEST_F(SessionCheckTest, ACheckpointOfAnotherVersionIsNoDamage) {
+TEST_F(SessionCheckTest, IgnoresACheckpointOfAnotherVersion) {
     auto format = store::checkpoint_of(log_, id_).value().at("format");
     format[0] = 99;
     put("format", format);
     expect_whole(kEntries);
 }
 
-TEST_F(SessionCheckTest, MapsThatTheLogDoesNotGiveAreFoundByWeavingItAnew) {
-    mapping::Projection other(config_); // of the same revision, from other scans
+TEST_F(SessionCheckTest, ReportsMapsThatDifferFromTheReplayedLog) {
+    mapping::Projection other(config_); // the same revision, but made of other scans
     static_cast<void>(other.fold(RobotJoined{0, "r"}));
     static_cast<void>(other.fold(SensorDescribed{0, small_laser()}));
     for (std::uint64_t seq = 1; seq <= 40; ++seq) static_cast<void>(other.fold(ScanTaken{0, random_scan(2, seq)}));
@@ -102,7 +102,7 @@ TEST_F(SessionCheckTest, MapsThatTheLogDoesNotGiveAreFoundByWeavingItAnew) {
     EXPECT_THAT(check(CheckDepth::kMaps).damage.value().message, HasSubstr("layer occupancy"));
 }
 
-TEST_F(SessionCheckTest, ThePaceEndsIt) {
+TEST_F(SessionCheckTest, StopsWhenThePaceReturnsAnError) {
     const auto sessions = log_.sessions().value();
     std::size_t read = 0;
     const auto ended = check_session(log_, sessions.at(0), CheckDepth::kLog, [&](std::size_t) -> Result<> {
@@ -113,7 +113,7 @@ TEST_F(SessionCheckTest, ThePaceEndsIt) {
     EXPECT_EQ(read, 10U);
 }
 
-TEST_F(SessionCheckTest, ARecordThatCannotBeReadIsFound) {
+TEST_F(SessionCheckTest, ReportsAnInvalidRecord) {
     static_cast<void>(log_.create_session("\xff"));
     const auto found =
         check_session(log_, log_.sessions().value().at(1), CheckDepth::kLog, [](std::size_t) -> Result<> {

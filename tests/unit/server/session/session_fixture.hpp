@@ -23,7 +23,7 @@ using testing_support::random_scan;
 using testing_support::random_scans;
 using testing_support::small_laser;
 
-/// A link that keeps what it was told.
+/// A link that records its events.
 struct RecordedLink : RobotListener {
     void on_durable(std::uint64_t seq, std::size_t bytes) override {
         durable_seqs.push_back(seq);
@@ -38,15 +38,15 @@ struct RecordedLink : RobotListener {
     std::vector<Error> failures;
 };
 
-/// A session over a log in memory. Nothing happens but in run(), on the test's own thread.
+/// A session with a log in memory. All work runs in run(), on the test's thread.
 class SessionTest : public testing::Test {
 protected:
     void SetUp() override {
-        id_ = log_.create_session("a record that nobody reads").value();
+        id_ = log_.create_session("an unused record").value();
         start_session();
     }
 
-    /// As after a restart: what is in the log is all that is known.
+    /// Starts the session from its log, as after a restart.
     void start_session() {
         auto recovered = recover(log_, id_, config_, false).value();
         session_ = std::make_shared<Session>(SessionInfo{id_, "lab", 0.0, config_}, std::move(recovered.projection),
@@ -58,7 +58,7 @@ protected:
         compute_.run();
     }
 
-    /// A join that has not been answered keeps std::nullopt in it.
+    /// `answer` contains nullopt until the join is answered.
     struct Join {
         std::shared_ptr<RecordedLink> link = std::make_shared<RecordedLink>();
         std::shared_ptr<std::optional<Result<Joined>>> answer = std::make_shared<std::optional<Result<Joined>>>();
@@ -72,7 +72,7 @@ protected:
         return join;
     }
 
-    /// The link of a robot that has joined and, by default, described its laser.
+    /// Joins a robot and, by default, describes its laser. Returns its link.
     std::shared_ptr<RecordedLink> join(const std::string& robot, bool describe = true) {
         const auto join = begin_join(robot);
         EXPECT_TRUE(join.answer->has_value() && join.answer->value()) << robot;
@@ -93,7 +93,7 @@ protected:
         return entries;
     }
 
-    /// The map that folding the whole log gives.
+    /// Returns the digests of the map that results from applying the whole log.
     [[nodiscard]] std::string digest_of_log() {
         mapping::Projection projection(config_);
         for (const auto& entry : logged()) EXPECT_TRUE(projection.fold(entry));

@@ -13,11 +13,11 @@ namespace {
 constexpr std::size_t kBytesOfAChunk = sizeof(mapping::LaserChunk) + classify::ClassLayer::kChunkBytes;
 static_assert(sizeof(mapping::SonarChunk) <= kBytesOfAChunk);
 
-TEST(SessionLimits, TakeTheMemoryThatIsStated) {
+TEST(SessionLimits, TakeTheDocumentedMemory) {
     for (const std::size_t chunks :
          {SessionLimits{}.chunks_max, WeavesLimits{}.chunks_max, WeavesLimits{}.chunks_kept_max}) {
         const double gibibytes = static_cast<double>(chunks * kBytesOfAChunk) / (1 << 30);
-        EXPECT_NEAR(gibibytes, 2.5, 0.05) << "as the headers of both and ARCHITECTURE.md say";
+        EXPECT_NEAR(gibibytes, 2.5, 0.05) << "see the headers of both and ARCHITECTURE.md";
     }
 }
 

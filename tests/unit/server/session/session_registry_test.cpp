@@ -19,7 +19,7 @@ std::vector<std::string> names_of(const std::vector<Listed>& sessions) {
     return names;
 }
 
-TEST_F(SessionRegistryTest, ACreatedSessionIsFoundAndListedByName) {
+TEST_F(SessionRegistryTest, CreatedSessionIsFoundAndListedByName) {
     const auto b = registry_->create("b", {.cell_size = 0.1});
     ASSERT_TRUE(b);
     ASSERT_TRUE(registry_->create("a", {}));
@@ -30,7 +30,7 @@ TEST_F(SessionRegistryTest, ACreatedSessionIsFoundAndListedByName) {
     EXPECT_EQ((*b)->info().created, 1000.5);
 }
 
-TEST_F(SessionRegistryTest, ANameIsTakenOnlyOnce) {
+TEST_F(SessionRegistryTest, NamesAreUnique) {
     ASSERT_TRUE(registry_->create("a", {}));
     const auto again = registry_->create("a", {});
     ASSERT_FALSE(again);
@@ -38,11 +38,11 @@ TEST_F(SessionRegistryTest, ANameIsTakenOnlyOnce) {
     EXPECT_THAT(log_.sessions().value(), SizeIs(1));
 }
 
-TEST_F(SessionRegistryTest, AMakersLimitsHoldAfterARestart) {
+TEST_F(SessionRegistryTest, MakersLimitsApplyAfterARestart) {
     const Maker maker{"depot", 2, 4};
     ASSERT_TRUE(registry_->create("a", {}, maker));
     ASSERT_TRUE(registry_->create("b", {}, maker));
-    ASSERT_TRUE(registry_->create("c", {})); // nobody's in particular
+    ASSERT_TRUE(registry_->create("c", {})); // without a maker
     ASSERT_TRUE(registry_->create("d", {}, {"other", 1}));
     registry_->drain();
     restart();
@@ -54,8 +54,8 @@ TEST_F(SessionRegistryTest, AMakersLimitsHoldAfterARestart) {
     EXPECT_THAT(refused.error().message, AllOf(HasSubstr("'depot'"), HasSubstr("`sessions`")));
 
     const auto link = std::make_shared<AwaitedLink>();
-    const auto woken = registry_->wake("a").value();
-    auto& small = *woken;
+    const auto loaded = registry_->wake("a").value();
+    auto& small = *loaded;
     ASSERT_TRUE(join_and_wait(small, "r", link));
     small.submit(link, small_laser(), 0);
     small.submit(link, {random_scan(7, 1)}, 0);
@@ -67,7 +67,7 @@ TEST_F(SessionRegistryTest, AMakersLimitsHoldAfterARestart) {
     EXPECT_TRUE(registry_->create("e", {}, maker));
 }
 
-TEST_F(SessionRegistryTest, BadNamesAndSettingsAreRefusedByFieldAndMakeNothing) {
+TEST_F(SessionRegistryTest, InvalidNamesAndSettingsAreRefusedByField) {
     for (const char* name : {"", "a/b", "../a", "caf\xc3\xa9"}) {
         const auto refused = registry_->create(name, {});
         ASSERT_FALSE(refused) << name;
@@ -84,7 +84,7 @@ TEST_F(SessionRegistryTest, BadNamesAndSettingsAreRefusedByFieldAndMakeNothing) 
     EXPECT_THAT(log_.sessions().value(), IsEmpty());
 }
 
-TEST_F(SessionRegistryTest, ASessionThatTheStoreRefusesIsNotThere) {
+TEST_F(SessionRegistryTest, SessionRefusedByTheStoreIsNotCreated) {
     log_.fail_from_next_change({Errc::kStoreFailed, "no space left"});
     const auto refused = registry_->create("a", {});
     ASSERT_FALSE(refused);
@@ -92,7 +92,7 @@ TEST_F(SessionRegistryTest, ASessionThatTheStoreRefusesIsNotThere) {
     EXPECT_EQ(registry_->find("a"), nullptr);
 }
 
-TEST_F(SessionRegistryTest, EverySessionComesBackAfterARestart) {
+TEST_F(SessionRegistryTest, EverySessionIsRecoveredAfterARestart) {
     std::map<std::string, std::string> digests;
     for (int n = 0; n < 12; ++n) {
         const auto name = "s" + std::to_string(n);
@@ -114,7 +114,7 @@ TEST_F(SessionRegistryTest, EverySessionComesBackAfterARestart) {
     registry_->drain();
 }
 
-TEST_F(SessionRegistryTest, ADamagedSessionIsReportedAndTheOthersAreServed) {
+TEST_F(SessionRegistryTest, DamagedSessionIsReportedAndOthersAreServed) {
     ASSERT_TRUE(registry_->create("before", {}));
     const auto bad = registry_->create("bad", {}).value();
     ASSERT_TRUE(registry_->create("after", {}));
@@ -136,7 +136,7 @@ TEST_F(SessionRegistryTest, ADamagedSessionIsReportedAndTheOthersAreServed) {
     EXPECT_THAT(registry_->damaged(), IsEmpty());
 }
 
-TEST_F(SessionRegistryTest, OfTwoStoredSessionsOfOneNameTheOlderIsServedAndTheOtherReported) {
+TEST_F(SessionRegistryTest, OlderOfTwoSessionsOfOneNameIsServed) {
     const auto first = registry_->create("twin", {}).value();
     stream(*first, "r", 3);
     registry_->drain();
@@ -152,36 +152,36 @@ TEST_F(SessionRegistryTest, OfTwoStoredSessionsOfOneNameTheOlderIsServedAndTheOt
     registry_->drain();
 }
 
-TEST_F(SessionRegistryTest, ARemovedSessionIsGoneFromTheStoreToo) {
+TEST_F(SessionRegistryTest, RemovedSessionIsDeletedFromTheStore) {
     const auto session = registry_->create("a", {}).value();
     stream(*session, "r", 10);
     ASSERT_TRUE(registry_->remove("a"));
     EXPECT_EQ(registry_->find("a"), nullptr);
     EXPECT_THAT(log_.sessions().value(), IsEmpty());
-    EXPECT_EQ(session->snapshot()->robots[0].last_seq, 10U) << "whoever still holds it may read";
+    EXPECT_EQ(session->snapshot()->robots[0].last_seq, 10U) << "the snapshot of a held session stays readable";
     const auto again = registry_->remove("a");
     ASSERT_FALSE(again);
     EXPECT_EQ(again.error().code, Errc::kNotFound);
     EXPECT_NE(registry_->create("a", {}).value()->info().id, session->info().id);
 }
 
-TEST_F(SessionRegistryTest, RemovingWhileARobotStreamsTellsItAndDisturbsNoOther) {
-    const auto doomed = registry_->create("doomed", {}).value();
+TEST_F(SessionRegistryTest, RemovalFailsStreamingRobotsAndAffectsNoOthers) {
+    const auto removed = registry_->create("removed", {}).value();
     const auto other = registry_->create("other", {}).value();
-    const auto link = stream(*doomed, "r", 1);
+    const auto link = stream(*removed, "r", 1);
     std::atomic<bool> stop = false;
     std::thread robot([&] {
-        for (std::uint64_t seq = 2; !stop; ++seq) doomed->submit(link, {random_scan(7, seq)}, 0);
+        for (std::uint64_t seq = 2; !stop; ++seq) removed->submit(link, {random_scan(7, seq)}, 0);
     });
-    ASSERT_TRUE(registry_->remove("doomed"));
+    ASSERT_TRUE(registry_->remove("removed"));
     EXPECT_EQ(link->wait_for_failure().code, Errc::kGone);
     stop = true;
     robot.join();
     stream(*other, "r", 20);
-    EXPECT_EQ(join_and_wait(*doomed, "r", std::make_shared<AwaitedLink>()).error().code, Errc::kGone);
+    EXPECT_EQ(join_and_wait(*removed, "r", std::make_shared<AwaitedLink>()).error().code, Errc::kGone);
 }
 
-TEST_F(SessionRegistryTest, OneThreadForTheMapsIsEnoughToRecoverRemoveAndDrain) {
+TEST_F(SessionRegistryTest, OneComputeThreadSufficesToRecoverRemoveAndDrain) {
     stream(*registry_->create("a", {}).value(), "r", 10);
     stream(*registry_->create("b", {}).value(), "r", 10);
     boost::asio::thread_pool one_thread(1);
@@ -196,7 +196,7 @@ TEST_F(SessionRegistryTest, OneThreadForTheMapsIsEnoughToRecoverRemoveAndDrain) 
     one_thread.join();
 }
 
-TEST_F(SessionRegistryTest, DrainingMakesEverythingDurableAndRefusesTheNew) {
+TEST_F(SessionRegistryTest, DrainingMakesEntriesDurableAndRefusesNewOnes) {
     std::vector<std::shared_ptr<AwaitedLink>> links;
     for (int n = 0; n < 5; ++n) {
         const auto session = registry_->create("s" + std::to_string(n), {}).value();
@@ -212,10 +212,10 @@ TEST_F(SessionRegistryTest, DrainingMakesEverythingDurableAndRefusesTheNew) {
     }
     EXPECT_EQ(registry_->create("late", {}).error().code, Errc::kShuttingDown);
     registry_->drain();
-    ASSERT_TRUE(registry_->remove("s0")) << "what has been drained can still be deleted";
+    ASSERT_TRUE(registry_->remove("s0")) << "drained sessions can still be deleted";
 }
 
-/// A log that lets a recovery read up to an entry, then keeps it waiting.
+/// A log whose read() waits before a given entry.
 class GatedLog : public store::MemoryScanLog {
 public:
     Result<> read(store::SessionId session, Revision after, const VisitEntry& visit) override {
@@ -228,12 +228,12 @@ public:
         });
     }
 
-    Revision gate = 0; // none
+    Revision gate = 0; // 0 means none
     std::promise<void> reached;
     std::promise<void> opened;
 };
 
-/// A registry that is told to stop while it recovers a session of 60 scans, after 30 of them.
+/// A registry that is stopped during the recovery of a session with 60 scans, after 30 of them.
 class StoppedRecoveryTest : public SessionRegistryTest {
 protected:
     void SetUp() override {
@@ -255,7 +255,7 @@ protected:
         gated_.reached.get_future().wait();
         std::thread draining([&] {
             registry.drain();
-            EXPECT_TRUE(recovered || registry.list().empty()) << "drain() has waited for recover()";
+            EXPECT_TRUE(recovered || registry.list().empty()) << "drain() must wait for recover()";
         });
         while (!registry.is_draining()) std::this_thread::yield();
         if (in_a_hurry) registry.hurry();
@@ -279,19 +279,19 @@ protected:
     std::string digest_;
 };
 
-TEST_F(StoppedRecoveryTest, KeepsWhatItHasWovenForTheNextStart) {
+TEST_F(StoppedRecoveryTest, WritesACheckpointOfTheRecoveredEntries) {
     stop_in_the_middle(false);
     EXPECT_EQ(recover(gated_, id_, {}, false)->checkpointed, 31U);
     expect_that_the_next_start_has_everything();
 }
 
-TEST_F(StoppedRecoveryTest, InAHurryWritesNothing) {
+TEST_F(StoppedRecoveryTest, HurryWritesNoCheckpoint) {
     stop_in_the_middle(true);
     EXPECT_THAT(store::checkpoint_of(gated_, id_).value(), IsEmpty());
     expect_that_the_next_start_has_everything();
 }
 
-TEST_F(SessionRegistryTest, ManyThreadsMayCreateAndRemoveTheSameNames) {
+TEST_F(SessionRegistryTest, ManyThreadsCanCreateAndRemoveTheSameNames) {
     std::vector<std::thread> threads;
     std::atomic<int> created = 0;
     std::atomic<int> removed = 0;

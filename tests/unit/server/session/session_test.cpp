@@ -1,6 +1,6 @@
 #include "tests/unit/server/session/session_fixture.hpp"
 
-/// What a session takes from its robots, and what it answers.
+/// What a session accepts from its robots, and its answers.
 namespace scanloom::session {
 namespace {
 
@@ -10,7 +10,7 @@ using testing::IsEmpty;
 using testing::SizeIs;
 using testing::StartsWith;
 
-TEST_F(SessionTest, EveryScanIsLoggedThenWovenThenAcknowledged) {
+TEST_F(SessionTest, ScansAreLoggedThenIntegratedThenAcknowledged) {
     const auto link = join("r");
     session_->submit(link, random_scans(1, 1, 3), 100);
     run();
@@ -24,7 +24,7 @@ TEST_F(SessionTest, EveryScanIsLoggedThenWovenThenAcknowledged) {
     EXPECT_EQ(link->bytes_released, 100U);
 }
 
-TEST_F(SessionTest, ScansSentAgainAreDroppedAndTheirCreditGivenBack) {
+TEST_F(SessionTest, ResentScansAreDroppedAndTheirCreditReleased) {
     const auto link = join("r");
     session_->submit(link, random_scans(1, 1, 4), 40);
     run();
@@ -32,7 +32,7 @@ TEST_F(SessionTest, ScansSentAgainAreDroppedAndTheirCreditGivenBack) {
     run();
     EXPECT_THAT(logged(), SizeIs(6));
     EXPECT_EQ(link->bytes_released, 70U);
-    session_->submit(link, random_scans(1, 3, 4), 50); // two known, two new
+    session_->submit(link, random_scans(1, 3, 4), 50); // two known scans and two new ones
     run();
     EXPECT_THAT(logged(), SizeIs(8));
     EXPECT_EQ(link->durable_seq(), 6U);
@@ -40,7 +40,7 @@ TEST_F(SessionTest, ScansSentAgainAreDroppedAndTheirCreditGivenBack) {
     EXPECT_THAT(link->failures, IsEmpty());
 }
 
-TEST_F(SessionTest, ScansBeforeAMissingOneAreKeptAndTheRobotContinuesAfterThem) {
+TEST_F(SessionTest, ScansBeforeAGapAreKept) {
     const auto link = join("r");
     auto scans = random_scans(1, 1, 5);
     scans.erase(scans.begin() + 2);
@@ -57,7 +57,7 @@ TEST_F(SessionTest, ScansBeforeAMissingOneAreKeptAndTheRobotContinuesAfterThem) 
     EXPECT_EQ(digest(), digest_of_log());
 }
 
-TEST_F(SessionTest, ASensorThatReachesTooFarForTheCellsFailsTheLink) {
+TEST_F(SessionTest, SensorWithTooManyCellsOfRangeFailsTheLink) {
     const auto link = join("r");
     Sensor sensor = small_laser();
     sensor.range_max = 1000.0;
@@ -67,7 +67,7 @@ TEST_F(SessionTest, ASensorThatReachesTooFarForTheCellsFailsTheLink) {
     EXPECT_THAT(link->failures[0].message, StartsWith("sensor_description.range_max is 1000 metres"));
 }
 
-TEST_F(SessionTest, ASensorDescribedAgainIsLoggedOnlyWhenItChanged) {
+TEST_F(SessionTest, RepeatedSensorDescriptionIsLoggedOnlyIfChanged) {
     const auto link = join("r");
     ASSERT_THAT(logged(), SizeIs(2));
     session_->submit(link, small_laser(), 70);
@@ -101,7 +101,7 @@ TEST_F(SessionTest, SeveralRobotsShareOneMap) {
     EXPECT_EQ(digest(), digest_of_log());
 }
 
-TEST_F(SessionTest, ANewLinkReplacesTheRobotsEarlierOne) {
+TEST_F(SessionTest, NewLinkReplacesTheRobotsPreviousLink) {
     const auto first = join("r");
     const auto second = join("r");
     ASSERT_THAT(first->failures, SizeIs(1));
@@ -117,7 +117,7 @@ TEST_F(SessionTest, ANewLinkReplacesTheRobotsEarlierOne) {
     EXPECT_THAT(second->failures, IsEmpty());
 }
 
-TEST_F(SessionTest, TheBodyThatARobotStatesIsLoggedWhenItIsNewsAndTheNewestHolds) {
+TEST_F(SessionTest, ChangedBodyRadiusIsLoggedAndTheNewestApplies) {
     const auto state = [&](std::optional<double> radius) {
         const auto join = begin_join("r", "", radius);
         EXPECT_TRUE(join.answer->has_value() && join.answer->value());
@@ -132,7 +132,7 @@ TEST_F(SessionTest, TheBodyThatARobotStatesIsLoggedWhenItIsNewsAndTheNewestHolds
     static_cast<void>(state(0.3));
     link = state(std::nullopt);
     static_cast<void>(state(0.4));
-    EXPECT_THAT(link->failures, SizeIs(1)) << "replaced";
+    EXPECT_THAT(link->failures, SizeIs(1)) << "the earlier link was replaced";
     const auto entries = logged();
     ASSERT_THAT(entries, SizeIs(8));
     EXPECT_EQ(entries[0], LogEntry(RobotJoined{0, "r", "", 0.2}));
@@ -142,10 +142,10 @@ TEST_F(SessionTest, TheBodyThatARobotStatesIsLoggedWhenItIsNewsAndTheNewestHolds
     start_session();
     EXPECT_EQ(session_->snapshot()->robots.at(0).body_radius, 0.4);
     static_cast<void>(state(0.4));
-    EXPECT_THAT(logged(), SizeIs(8)) << "known from before the restart";
+    EXPECT_THAT(logged(), SizeIs(8)) << "the radius is known from before the restart";
 }
 
-TEST_F(SessionTest, ALinkThatNeverJoinedIsIgnored) {
+TEST_F(SessionTest, LinkThatNeverJoinedIsIgnored) {
     const auto stranger = std::make_shared<RecordedLink>();
     session_->submit(stranger, small_laser(), 10);
     session_->submit(stranger, random_scans(1, 1, 1), 10);
@@ -155,43 +155,43 @@ TEST_F(SessionTest, ALinkThatNeverJoinedIsIgnored) {
     EXPECT_THAT(stranger->failures, IsEmpty());
 }
 
-/// Counts how often it is told.
+/// Counts change notifications.
 struct CountingWatcher : Watcher {
     void on_changed() noexcept override { ++count; }
     int count = 0;
 };
 
-TEST_F(SessionTest, WatchersAreToldOfMapsLinksAndTheEndAndOfNothingElse) {
+TEST_F(SessionTest, WatchersAreNotifiedOfMapsLinksAndCloseOnly) {
     const auto watcher = std::make_shared<CountingWatcher>();
     session_->watch(watcher);
-    const auto told = [&] { return std::exchange(watcher->count, 0); };
+    const auto notifications = [&] { return std::exchange(watcher->count, 0); };
     const auto link = join("r1");
-    EXPECT_GT(told(), 0) << "a link came";
+    EXPECT_GT(notifications(), 0) << "a link joined";
     session_->submit(link, random_scans(1, 1, 10), 1);
     run();
-    EXPECT_GT(told(), 0) << "there are new maps";
+    EXPECT_GT(notifications(), 0) << "the maps changed";
     session_->submit(link, random_scans(1, 1, 10), 1); // known already
     run();
-    EXPECT_EQ(told(), 0);
+    EXPECT_EQ(notifications(), 0);
     session_->leave(link);
     run();
-    EXPECT_EQ(told(), 1) << "a link went";
+    EXPECT_EQ(notifications(), 1) << "a link left";
     session_->close({Errc::kGone, "session 'lab' was deleted"}, [] {});
     run();
-    EXPECT_GT(told(), 0) << "it is closed";
+    EXPECT_GT(notifications(), 0) << "the session closed";
     EXPECT_EQ(session_->closing()->code, Errc::kGone);
 }
 
-TEST_F(SessionTest, WatchersAreNotKeptAlive) {
+TEST_F(SessionTest, WatchersAreHeldWeakly) {
     auto watcher = std::make_shared<CountingWatcher>();
     const std::weak_ptr<CountingWatcher> weak = watcher;
     session_->watch(watcher);
     watcher.reset();
     EXPECT_TRUE(weak.expired());
-    join("r1"); // tells whoever is left
+    join("r1"); // must not notify the destroyed watcher
 }
 
-TEST_F(SessionTest, SnapshotsHoldTheNewestScanOfEachRobotAsItWasTaken) {
+TEST_F(SessionTest, SnapshotsContainTheNewestScanOfEachRobot) {
     const auto first = join("r1");
     const auto second = join("r2");
     EXPECT_EQ(session_->snapshot()->robots.at(0).newest_scan, nullptr);
@@ -206,7 +206,8 @@ TEST_F(SessionTest, SnapshotsHoldTheNewestScanOfEachRobotAsItWasTaken) {
     EXPECT_EQ(digest(), digest_of_log());
 
     start_session();
-    EXPECT_EQ(session_->snapshot()->robots.at(0).newest_scan, nullptr) << "no part of the log's projection";
+    EXPECT_EQ(session_->snapshot()->robots.at(0).newest_scan, nullptr)
+        << "the newest scan is not part of the log's projection";
 }
 
 } // namespace

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <thread>
 
-/// Sessions that leave memory, and come back.
+/// Sessions that are evicted from memory and loaded again.
 namespace scanloom::session {
 namespace {
 
@@ -15,67 +15,68 @@ using testing::SizeIs;
 
 using namespace std::chrono_literals;
 
-class SleepingSessions : public SessionRegistryTest {
+class EvictedSessions : public SessionRegistryTest {
 protected:
-    ~SleepingSessions() override { registry_->drain(); }
+    ~EvictedSessions() override { registry_->drain(); }
 
-    /// A session of some scans, which nobody uses any more. @return the digest of its maps.
-    std::string leave_behind(const std::string& name, std::size_t scans = 20) {
+    /// Creates a session with some scans and leaves it unused.
+    /// @return digests of its maps
+    std::string create_unused(const std::string& name, std::size_t scans = 20) {
         const auto session = registry_->create(name, {}).value();
         const auto link = stream(*session, "r", scans);
         session->leave(link);
         return testing_support::digests_of(*session->snapshot());
     }
 
-    /// Time passes; waits until nobody is awake but those who are held. `names` are those who should not be.
-    void let_sleep(const std::vector<std::string>& names) {
+    /// Advances the clock and waits until the sessions `names` are evicted.
+    void evict(const std::vector<std::string>& names) {
         clock_ = clock_.load() + 1h;
         for (const auto& name : names) {
-            while (is_awake(name)) {
+            while (is_loaded(name)) {
                 registry_->tidy();
                 std::this_thread::yield();
             }
         }
     }
 
-    /// Or on its way to sleep; asking does not use it.
-    bool is_awake(const std::string& name) { return registry_->listed(name)->session != nullptr; }
+    /// Returns whether the session is loaded or being evicted. This call does not use the session.
+    bool is_loaded(const std::string& name) { return registry_->listed(name)->session != nullptr; }
 
-    /// With `passing` from one look after those who wait for room to the next.
-    Result<std::shared_ptr<Session>> wake(const std::string& name, std::chrono::seconds passing) {
+    /// Loads a session; the clock advances by `passing` between two checks of callers that wait for memory.
+    Result<std::shared_ptr<Session>> load(const std::string& name, std::chrono::seconds passing) {
         const auto promise = std::make_shared<std::promise<Result<std::shared_ptr<Session>>>>();
-        auto woken = promise->get_future();
+        auto loaded = promise->get_future();
         registry_->wake(name, [promise](auto session) { promise->set_value(std::move(session)); });
-        while (woken.wait_for(0s) != std::future_status::ready) {
+        while (loaded.wait_for(0s) != std::future_status::ready) {
             clock_ = clock_.load() + passing;
             registry_->tidy();
             std::this_thread::yield();
         }
-        return woken.get();
+        return loaded.get();
     }
 
-    std::string digest_when_woken(const std::string& name) {
-        const auto session = wake(name, 0s);
+    std::string digest_after_loading(const std::string& name) {
+        const auto session = load(name, 0s);
         EXPECT_TRUE(session) << session.error().message;
         return session ? testing_support::digests_of(*(*session)->snapshot()) : "";
     }
 };
 
-TEST_F(SleepingSessions, AreTheSameWhenTheyComeBack) {
-    const auto digest = leave_behind("a");
-    let_sleep({"a"});
+TEST_F(EvictedSessions, AreEqualAfterLoading) {
+    const auto digest = create_unused("a");
+    evict({"a"});
     EXPECT_THAT(registry_->list(), IsEmpty());
     EXPECT_EQ(registry_->pages().used(), 0);
-    EXPECT_EQ(digest_when_woken("a"), digest);
+    EXPECT_EQ(digest_after_loading("a"), digest);
     const auto session = registry_->find("a");
     ASSERT_TRUE(session);
     EXPECT_EQ(join_and_wait(*session, "r", std::make_shared<AwaitedLink>())->last_durable_seq, 20U);
 }
 
-TEST_F(SleepingSessions, AreListedAsTheyWere) {
-    leave_behind("a", 7);
+TEST_F(EvictedSessions, AreListedWithTheirLastSummary) {
+    create_unused("a", 7);
     const auto before = registry_->wake("a").value()->snapshot();
-    let_sleep({"a"});
+    evict({"a"});
     const auto listed = registry_->all();
     ASSERT_THAT(listed, SizeIs(1));
     const auto& facts = *listed[0].summary.facts;
@@ -89,8 +90,8 @@ TEST_F(SleepingSessions, AreListedAsTheyWere) {
     EXPECT_EQ(facts.robots[0].stamp, before->robots[0].stamp);
 }
 
-TEST_F(SleepingSessions, AreNotReadAtTheStartAndListedAllTheSame) {
-    const auto digest = leave_behind("a", 7);
+TEST_F(EvictedSessions, AreListedAfterARestartWithoutLoading) {
+    const auto digest = create_unused("a", 7);
     const auto before = registry_->wake("a").value()->snapshot();
     registry_->drain();
     restart();
@@ -105,41 +106,41 @@ TEST_F(SleepingSessions, AreNotReadAtTheStartAndListedAllTheSame) {
     EXPECT_EQ(facts.robots[0].pose, before->robots[0].pose);
     EXPECT_EQ(facts.robots[0].stamp, before->robots[0].stamp);
     EXPECT_GT(listed[0].summary.pages, 0U);
-    EXPECT_EQ(digest_when_woken("a"), digest);
+    EXPECT_EQ(digest_after_loading("a"), digest);
     EXPECT_EQ(registry_->pages().used(), static_cast<std::int64_t>(listed[0].summary.pages));
 }
 
-TEST_F(SleepingSessions, OfALogThatGoesOnBehindItsCheckpointAreWovenAtTheStart) {
-    const auto digest = leave_behind("a");
-    restart(); // without an end, as after a crash
+TEST_F(EvictedSessions, LogBeyondTheCheckpointIsAppliedAtTheStart) {
+    const auto digest = create_unused("a");
+    restart(); // without closing, as after a crash
     EXPECT_THAT(registry_->list(), SizeIs(1));
     EXPECT_EQ(testing_support::digests_of(*registry_->find("a")->snapshot()), digest);
 }
 
-TEST_F(SleepingSessions, AreNotThoseThatAreUsed) {
-    leave_behind("a");
+TEST_F(EvictedSessions, UsedSessionsAreNotEvicted) {
+    create_unused("a");
     const auto session = registry_->create("b", {}).value();
     const auto link = stream(*session, "r", 3);
-    let_sleep({"a"});
+    evict({"a"});
     EXPECT_EQ(registry_->find("b"), session);
     session->submit(link, {random_scan(7, 4)}, 0);
     link->wait_for_seq(4);
 }
 
-TEST_F(SleepingSessions, LeaveWhenOthersNeedTheirMemory) {
-    const auto digest = leave_behind("a");
+TEST_F(EvictedSessions, AreEvictedWhenOthersNeedMemory) {
+    const auto digest = create_unused("a");
     const auto pages = registry_->pages().used();
-    std::int64_t of_a_scan = 0; // at most
+    std::int64_t of_a_scan = 0; // upper bound per scan
     for (std::uint64_t seq = 1; seq <= 20; ++seq) {
         const auto reach = mapping::reach_of({}, small_laser(), random_scan(7, seq));
         of_a_scan = std::max(of_a_scan, mapping::chunk_count_of(reach.cells));
     }
     registry_->drain();
     restart(static_cast<std::size_t>(pages + of_a_scan + 1));
-    EXPECT_EQ(digest_when_woken("a"), digest);
+    EXPECT_EQ(digest_after_loading("a"), digest);
     const auto b = registry_->create("b", {}).value();
     auto link = std::make_shared<AwaitedLink>();
-    for (std::uint64_t sent = 0; sent < 20;) { // refused where the memory is short, robots come again
+    for (std::uint64_t sent = 0; sent < 20;) { // scans are refused while memory is short, and robots reconnect
         const auto joined = join_and_wait(*b, "r", link);
         ASSERT_TRUE(joined) << joined.error().message;
         sent = joined->last_durable_seq;
@@ -150,45 +151,45 @@ TEST_F(SleepingSessions, LeaveWhenOthersNeedTheirMemory) {
         else
             sent = 20;
     }
-    EXPECT_EQ(testing_support::digests_of(*b->snapshot()), digest) << "the same scans";
+    EXPECT_EQ(testing_support::digests_of(*b->snapshot()), digest) << "both sessions have equal scans";
     EXPECT_TRUE(registry_->is_asleep("a"));
     EXPECT_LE(registry_->pages().used(), registry_->pages().pages_max());
 }
 
-TEST_F(SleepingSessions, AreNotReadWhereThoseInUseTakeAllTheMemory) {
-    const auto digest_of_a = leave_behind("a");
-    const auto digest_of_b = leave_behind("b");
+TEST_F(EvictedSessions, AreNotLoadedWhileUsedSessionsNeedAllMemory) {
+    const auto digest_of_a = create_unused("a");
+    const auto digest_of_b = create_unused("b");
     const auto pages = static_cast<std::size_t>(registry_->pages().used()) / 2;
     registry_->drain();
     restart(pages + pages / 2);
     auto held = registry_->wake("a");
     ASSERT_TRUE(held);
-    const auto refused = wake("b", 1s);
+    const auto refused = load("b", 1s);
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().code, Errc::kOverloaded);
     EXPECT_THAT(refused.error().message, HasSubstr("--map-memory"));
     EXPECT_THAT(registry_->damaged(), IsEmpty());
-    held = Error{Errc::kGone, "nobody holds it any more"};
-    EXPECT_EQ(digest_when_woken("b"), digest_of_b);
-    EXPECT_EQ(digest_when_woken("a"), digest_of_a);
+    held = Error{Errc::kGone, "released"};
+    EXPECT_EQ(digest_after_loading("b"), digest_of_b);
+    EXPECT_EQ(digest_after_loading("a"), digest_of_a);
     EXPECT_LE(registry_->pages().used(), registry_->pages().pages_max());
 }
 
-TEST_F(SleepingSessions, MoreThanFitIntoMemoryAreWovenOneAfterTheOtherAfterACrash) {
+TEST_F(EvictedSessions, RecoveryAfterACrashStaysWithinTheMemoryBudget) {
     std::vector<std::string> digests;
     for (int n = 0; n < 6; ++n)
-        digests.push_back(leave_behind("s" + std::to_string(n), 20 + 5 * static_cast<std::size_t>(n)));
+        digests.push_back(create_unused("s" + std::to_string(n), 20 + 5 * static_cast<std::size_t>(n)));
     const auto pages = static_cast<std::size_t>(registry_->pages().used()) / 6;
     restart(2 * pages);
     EXPECT_LE(registry_->pages().used(), registry_->pages().pages_max());
     EXPECT_THAT(registry_->all(), SizeIs(6));
     for (int n = 0; n < 6; ++n)
-        EXPECT_EQ(digest_when_woken("s" + std::to_string(n)), digests[static_cast<std::size_t>(n)]);
+        EXPECT_EQ(digest_after_loading("s" + std::to_string(n)), digests[static_cast<std::size_t>(n)]);
 }
 
-TEST_F(SleepingSessions, ThatTurnOutToBeDamagedAreReported) {
-    leave_behind("a");
-    let_sleep({"a"});
+TEST_F(EvictedSessions, DamagedSessionIsReportedWhenLoaded) {
+    create_unused("a");
+    evict({"a"});
     const auto id = registry_->info("a")->id;
     ASSERT_TRUE(log_.write_checkpoint(id, {{"format", "damaged"}}));
     ASSERT_TRUE(store::append_and_wait(log_, id, 23, {"no entry"}));
@@ -203,41 +204,41 @@ TEST_F(SleepingSessions, ThatTurnOutToBeDamagedAreReported) {
     EXPECT_EQ(registry_->wake("a").error().code, Errc::kNotFound);
 }
 
-TEST_F(SleepingSessions, AreNotTakenForDamagedWhereTheDiskCannotBeRead) {
-    const auto digest = leave_behind("a");
-    let_sleep({"a"});
+TEST_F(EvictedSessions, ReadErrorIsNotReportedAsDamage) {
+    const auto digest = create_unused("a");
+    evict({"a"});
     log_.fail_reading(Error{Errc::kStoreFailed, "input/output error"});
     EXPECT_EQ(registry_->wake("a").error(), (Error{Errc::kStoreFailed, "input/output error"}));
     EXPECT_THAT(registry_->damaged(), IsEmpty());
     EXPECT_THAT(registry_->all(), SizeIs(1));
     log_.fail_reading({});
-    EXPECT_EQ(digest_when_woken("a"), digest);
+    EXPECT_EQ(digest_after_loading("a"), digest);
 }
 
-TEST_F(SleepingSessions, ThatTheStartCannotReadAreReportedUntilTheNextOne) {
-    const auto digest = leave_behind("a");
+TEST_F(EvictedSessions, ReadErrorAtTheStartIsReportedUntilARestart) {
+    const auto digest = create_unused("a");
     registry_->drain();
     log_.fail_reading(Error{Errc::kStoreFailed, "input/output error"});
     restart();
     const auto refused = registry_->wake("a").error();
-    EXPECT_EQ(refused.code, Errc::kDataLoss) << "asking again does not help";
+    EXPECT_EQ(refused.code, Errc::kDataLoss) << "the error is permanent";
     EXPECT_THAT(refused.message, HasSubstr("input/output error; if its disk is well again, start the server again"));
     EXPECT_THAT(registry_->damaged(), SizeIs(1));
     log_.fail_reading({});
     restart();
-    EXPECT_EQ(digest_when_woken("a"), digest);
+    EXPECT_EQ(digest_after_loading("a"), digest);
 }
 
-TEST_F(SleepingSessions, CanBeRemoved) {
-    leave_behind("a");
-    let_sleep({"a"});
+TEST_F(EvictedSessions, CanBeRemoved) {
+    create_unused("a");
+    evict({"a"});
     ASSERT_TRUE(registry_->remove("a"));
     EXPECT_THAT(registry_->all(), IsEmpty());
     EXPECT_THAT(log_.sessions().value(), IsEmpty());
 }
 
-TEST_F(SleepingSessions, ComeBackWhenTheStoreDoesAfterAFailure) {
-    leave_behind("a");
+TEST_F(EvictedSessions, AreReloadedWhenTheStoreRecovers) {
+    create_unused("a");
     const auto session = registry_->wake("a").value();
     const auto link = std::make_shared<AwaitedLink>();
     ASSERT_TRUE(join_and_wait(*session, "r", link));
@@ -245,22 +246,22 @@ TEST_F(SleepingSessions, ComeBackWhenTheStoreDoesAfterAFailure) {
     session->submit(link, {random_scan(7, 21)}, 0);
     EXPECT_THAT(link->wait_for_failure().message, HasSubstr("no space left"));
     registry_->tidy();
-    EXPECT_EQ(registry_->find("a"), session) << "its maps are served until the store takes changes";
+    EXPECT_EQ(registry_->find("a"), session) << "the maps are served until the store accepts changes";
     log_.reopen();
     registry_->tidy();
     const auto again = registry_->wake("a");
     ASSERT_TRUE(again);
     EXPECT_NE(*again, session);
     EXPECT_FALSE((*again)->failure());
-    EXPECT_EQ(session->closing()->code, Errc::kShuttingDown) << "who still watches it is to come back";
+    EXPECT_EQ(session->closing()->code, Errc::kShuttingDown) << "watchers must reconnect";
     const auto next = std::make_shared<AwaitedLink>();
     EXPECT_EQ(join_and_wait(**again, "r", next)->last_durable_seq, 20U);
     (*again)->submit(next, {random_scan(7, 21)}, 0);
     next->wait_for_seq(21);
 }
 
-TEST_F(SleepingSessions, MayBeWokenByManyWhileTheyFallAsleep) {
-    const auto digest = leave_behind("a");
+TEST_F(EvictedSessions, CanBeLoadedByManyThreadsDuringEviction) {
+    const auto digest = create_unused("a");
     std::atomic<bool> stop = false;
     std::thread tidying([&] {
         while (!stop) {
@@ -281,7 +282,7 @@ TEST_F(SleepingSessions, MayBeWokenByManyWhileTheyFallAsleep) {
     for (auto& thread : using_it) thread.join();
     stop = true;
     tidying.join();
-    EXPECT_EQ(digest_when_woken("a"), digest);
+    EXPECT_EQ(digest_after_loading("a"), digest);
 }
 
 } // namespace

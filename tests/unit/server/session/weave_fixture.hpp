@@ -23,9 +23,9 @@ namespace scanloom::session {
 using State = Weave::State;
 using testing_support::digests_of;
 
-constexpr std::chrono::minutes kLong{2}; // for what is sure to come
+constexpr std::chrono::minutes kTimeout{2}; // upper bound for events that must happen
 
-/// A log that stops to think before an entry, and knows how often each has been taken.
+/// A log that can pause before an entry and counts how often each entry is read.
 class WatchedLog final : public store::MemoryScanLog {
 public:
     Result<> read(store::SessionId session, Revision after, const VisitEntry& visit) override {
@@ -38,10 +38,10 @@ public:
         });
     }
 
-    /// Whoever reads stops there, once.
+    /// A reader pauses once at the entry.
     class Pause {
     public:
-        /// Returns when somebody stands there.
+        /// Waits until a reader has reached the entry.
         void wait() { reached.get_future().wait(); }
         void end() { ended.set_value(); }
 
@@ -55,7 +55,7 @@ public:
         return pauses_[revision] = std::make_shared<Pause>();
     }
 
-    /// How often each entry was taken, from the first.
+    /// Returns how often each entry was read, in log order.
     [[nodiscard]] std::vector<int> taken() const {
         const std::lock_guard lock(mutex_);
         std::vector<int> counts;
@@ -75,12 +75,12 @@ private:
         pause->ended.get_future().wait();
     }
 
-    mutable std::mutex mutex_; // guards what follows
+    mutable std::mutex mutex_; // guards the members below
     std::map<Revision, std::shared_ptr<Pause>> pauses_;
     std::map<Revision, int> taken_;
 };
 
-/// A log of 40 scans, taken a second apart, or as many of its entries as a test appends.
+/// A log of 40 scans at intervals of 1 s; a test appends all or a part of its entries.
 class WeaveFixture : public testing::Test {
 protected:
     static constexpr std::uint64_t kScans = 40;
@@ -100,7 +100,7 @@ protected:
         pool_.join();
     }
 
-    /// The log's next entries, so that it has so many.
+    /// Appends the log's next entries up to `revision`.
     void append_up_to(Revision revision) {
         while (appended_ < revision) append(entries_[appended_]);
     }
@@ -113,7 +113,7 @@ protected:
         ++appended_;
     }
 
-    /// One that cells of 0.01 m are too small for.
+    /// Returns a laser whose range has too many cells at a resolution of 0.01 m.
     static Sensor far_laser() {
         Sensor sensor = testing_support::small_laser();
         sensor.name = "far";
@@ -125,25 +125,25 @@ protected:
         return {mapping::resolve(options).value(), end};
     }
 
-    /// What a session shows that was created with these options and given so many entries of this log.
-    [[nodiscard]] std::string created_so(const SessionOptions& options, std::size_t entries) const {
+    /// Returns the digests of a session that was created with these options and got the first `entries` entries.
+    [[nodiscard]] std::string digests_of_session(const SessionOptions& options, std::size_t entries) const {
         mapping::Projection projection(mapping::resolve(options).value());
         for (std::size_t n = 0; n < entries; ++n) EXPECT_TRUE(projection.fold(entries_[n]));
         return digests_of(projection.snapshot());
     }
 
-    /// Asked for when the session shows all that is in its log.
-    [[nodiscard]] std::shared_ptr<Weave> ask(const WeaveRequest& wanted) {
+    /// Starts a replay job when the session shows all entries of its log.
+    [[nodiscard]] std::shared_ptr<Weave> start(const WeaveRequest& wanted) {
         return weaves_.start(session_, wanted, appended_).value();
     }
 
-    /// Returns when it has ended.
-    static void finish(const Weave& weave) { static_cast<void>(weave.wait(weave.progress().target, kLong)); }
+    /// Waits until the job has ended.
+    static void finish(const Weave& job) { static_cast<void>(job.wait(job.progress().target, kTimeout)); }
 
-    [[nodiscard]] std::shared_ptr<Weave> woven(const WeaveRequest& wanted) {
-        auto weave = ask(wanted);
-        finish(*weave);
-        return weave;
+    [[nodiscard]] std::shared_ptr<Weave> finished(const WeaveRequest& wanted) {
+        auto job = start(wanted);
+        finish(*job);
+        return job;
     }
 
     WatchedLog log_;

@@ -13,8 +13,8 @@ Sensor sonar_ring(std::uint32_t id, double range_max) {
     return sensor;
 }
 
-/// A session's past, looked at here and there: a log of two robots with lasers and sonars, that join, describe and
-/// describe anew what they have while others drive.
+/// Replay jobs of a session's past at several revisions: a log of two robots with lasers and sonars that join and
+/// describe their sensors repeatedly while the other robot drives.
 class WeaveHistoryTest : public WeaveFixture {
 protected:
     WeaveHistoryTest() {
@@ -41,14 +41,14 @@ protected:
 
     [[nodiscard]] Revision last() const { return entries_.size(); }
 
-    [[nodiscard]] int taken_in_all() const {
+    [[nodiscard]] int entries_read() const {
         int all = 0;
         for (const int count : log_.taken()) all += count;
         return all;
     }
 
 private:
-    /// Every third by the ring, once it is there.
+    /// Every third scan is of the ring, once the ring is described.
     void add_scans(RobotIndex robot, std::uint64_t first, std::uint64_t last) {
         for (std::uint64_t seq = first; seq <= last; ++seq) {
             Scan scan = testing_support::random_scan(robot + 1, seq);
@@ -62,7 +62,7 @@ private:
     }
 };
 
-TEST_F(WeaveHistoryTest, SteppingOnFoldsEveryEntryOnceAndShowsWhatWovenFromNothingWould) {
+TEST_F(WeaveHistoryTest, StepsReadEachEntryOnceAndMatchAFullReplay) {
     const SessionOptions kinds[] = {
         {},
         {.cell_size = 0.1, .class_source = ClassSource::kHimm},
@@ -70,23 +70,23 @@ TEST_F(WeaveHistoryTest, SteppingOnFoldsEveryEntryOnceAndShowsWhatWovenFromNothi
         {.ray_model = RayModel::kTraversal, .accumulate = true},
     };
     for (const auto& options : kinds) {
-        const int before = taken_in_all();
+        const int before = entries_read();
         for (Revision revision = 0; revision <= last(); ++revision) {
-            const auto weave = woven(until(revision, options));
-            ASSERT_EQ(weave->progress().state, State::kDone);
-            EXPECT_EQ(weave->progress().woven, revision);
-            const auto maps = weave->maps();
+            const auto job = finished(until(revision, options));
+            ASSERT_EQ(job->progress().state, State::kDone);
+            EXPECT_EQ(job->progress().woven, revision);
+            const auto maps = job->maps();
             EXPECT_EQ(maps->revision, revision);
-            EXPECT_EQ(digests_of(*maps), created_so(options, revision)) << "until " << revision;
+            EXPECT_EQ(digests_of(*maps), digests_of_session(options, revision)) << "until " << revision;
         }
-        EXPECT_EQ(taken_in_all() - before, static_cast<int>(last()));
+        EXPECT_EQ(entries_read() - before, static_cast<int>(last()));
     }
 }
 
-TEST_F(WeaveHistoryTest, RobotsAndBoundsAreThoseOfTheirTimeWhoeverGoesOn) {
-    const auto early = woven(until(15))->maps();
-    const auto later = woven(until(last()))->maps();
-    const auto between = woven(until(25))->maps(); // from the first once more: a second branch
+TEST_F(WeaveHistoryTest, RobotsAndBoundsKeepTheirRevisionWhenOthersContinue) {
+    const auto early = finished(until(15))->maps();
+    const auto later = finished(until(last()))->maps();
+    const auto between = finished(until(25))->maps(); // starts from the first job again: a second branch
     for (const auto& [maps, entries] : {std::pair(early, 15U), std::pair(between, 25U), std::pair(later, 40U)}) {
         mapping::Projection projection{mapping::MapConfig{}};
         for (std::size_t n = 0; n < std::min<std::size_t>(entries, last()); ++n) {
@@ -111,115 +111,116 @@ TEST_F(WeaveHistoryTest, RobotsAndBoundsAreThoseOfTheirTimeWhoeverGoesOn) {
     }
 }
 
-TEST_F(WeaveHistoryTest, GoingBackBeginsAtTheFurthestThatIsKeptBefore) {
-    for (const Revision revision : {10, 20, 30}) EXPECT_EQ(woven(until(revision))->progress().revision, revision);
-    const int before = taken_in_all();
-    EXPECT_EQ(digests_of(*woven(until(24))->maps()), created_so({}, 24));
-    EXPECT_EQ(taken_in_all() - before, 4);
-    EXPECT_EQ(digests_of(*woven(until(9))->maps()), created_so({}, 9));
-    EXPECT_EQ(taken_in_all() - before, 4 + 9) << "nothing is kept before";
+TEST_F(WeaveHistoryTest, GoingBackStartsFromTheNearestEarlierMaps) {
+    for (const Revision revision : {10, 20, 30}) EXPECT_EQ(finished(until(revision))->progress().revision, revision);
+    const int before = entries_read();
+    EXPECT_EQ(digests_of(*finished(until(24))->maps()), digests_of_session({}, 24));
+    EXPECT_EQ(entries_read() - before, 4);
+    EXPECT_EQ(digests_of(*finished(until(9))->maps()), digests_of_session({}, 9));
+    EXPECT_EQ(entries_read() - before, 4 + 9) << "no earlier maps are kept";
 }
 
-TEST_F(WeaveHistoryTest, OnlyTheSameSettingsOfTheSameSessionAreGoneOnFrom) {
-    static_cast<void>(woven(until(20)));
-    const int before = taken_in_all();
-    EXPECT_EQ(digests_of(*woven(until(21, {.danger_radius = 0.3}))->maps()), created_so({.danger_radius = 0.3}, 21));
-    EXPECT_EQ(taken_in_all() - before, 21);
+TEST_F(WeaveHistoryTest, ContinuesOnlyFromTheSameSettingsAndSession) {
+    static_cast<void>(finished(until(20)));
+    const int before = entries_read();
+    EXPECT_EQ(digests_of(*finished(until(21, {.danger_radius = 0.3}))->maps()),
+              digests_of_session({.danger_radius = 0.3}, 21));
+    EXPECT_EQ(entries_read() - before, 21);
     auto other = session_;
     other.id = log_.create_session("other").value();
-    const auto weave = weaves_.start(other, until(20), 0).value();
-    finish(*weave);
-    EXPECT_EQ(weave->maps()->revision, 0U) << "its log is empty";
+    const auto job = weaves_.start(other, until(20), 0).value();
+    finish(*job);
+    EXPECT_EQ(job->maps()->revision, 0U) << "the log of the other session is empty";
 }
 
-TEST_F(WeaveHistoryTest, WhateverBecomesOfTheBaseThoseThatBeganFromItStay) {
-    const auto base = woven(until(20));
+TEST_F(WeaveHistoryTest, RemovingTheBaseKeepsJobsStartedFromIt) {
+    const auto base = finished(until(20));
     const auto pause = log_.pause_at(25);
-    const auto later = ask(until(30));
+    const auto later = start(until(30));
     pause->wait();
     EXPECT_TRUE(weaves_.remove(session_.id, base->id()));
     pause->end();
     finish(*later);
     EXPECT_EQ(later->progress().state, State::kDone);
-    EXPECT_EQ(digests_of(*later->maps()), created_so({}, 30));
-    EXPECT_EQ(taken_in_all(), 30);
+    EXPECT_EQ(digests_of(*later->maps()), digests_of_session({}, 30));
+    EXPECT_EQ(entries_read(), 30);
 }
 
-TEST_F(WeaveHistoryTest, OneThatFollowsIsABaseAndGoesOnItself) {
-    const auto following = woven(request({}));
-    EXPECT_EQ(taken_in_all(), static_cast<int>(last()));
+TEST_F(WeaveHistoryTest, FollowingJobIsABaseAndContinues) {
+    const auto following = finished(request({}));
+    EXPECT_EQ(entries_read(), static_cast<int>(last()));
     const auto before = following->maps();
-    const auto fixed = woven(until(last()));
-    EXPECT_EQ(taken_in_all(), static_cast<int>(last())) << "nothing is left to fold";
+    const auto fixed = finished(until(last()));
+    EXPECT_EQ(entries_read(), static_cast<int>(last())) << "no entries remain to be read";
     const Revision grown = last() + 2;
     for (std::uint64_t seq = 19; seq <= 20; ++seq) {
         entries_.emplace_back(ScanTaken{0, testing_support::random_scan(1, seq)});
     }
     append_all();
-    EXPECT_EQ(woven(request({})), following);
-    EXPECT_EQ(digests_of(*following->maps()), created_so({}, grown));
-    EXPECT_EQ(digests_of(*before), created_so({}, grown - 2));
-    EXPECT_EQ(digests_of(*fixed->maps()), created_so({}, grown - 2));
+    EXPECT_EQ(finished(request({})), following);
+    EXPECT_EQ(digests_of(*following->maps()), digests_of_session({}, grown));
+    EXPECT_EQ(digests_of(*before), digests_of_session({}, grown - 2));
+    EXPECT_EQ(digests_of(*fixed->maps()), digests_of_session({}, grown - 2));
     EXPECT_EQ(following->maps()->robots[0].trajectory.size(), 20U);
     EXPECT_EQ(fixed->maps()->robots[0].trajectory.size(), 18U);
 }
 
-TEST_F(WeaveHistoryTest, AStampBeginsOnlyWhereNothingWasTakenLater) {
+TEST_F(WeaveHistoryTest, StampStartsOnlyFromMapsWithoutLaterScans) {
     const auto stamp = [](double seconds) { return request({}, {std::nullopt, seconds}); };
-    static_cast<void>(woven(until(10)));
-    static_cast<void>(woven(until(30)));
-    const int before = taken_in_all();
-    const auto weave = woven(stamp(1000.0 + 20)); // entry n + 1 is taken at 1000 + n
-    EXPECT_EQ(weave->maps()->revision, 21U);
-    EXPECT_EQ(digests_of(*weave->maps()), created_so({}, 21));
-    EXPECT_EQ(taken_in_all() - before, 11);
-    EXPECT_EQ(digests_of(*woven(stamp(1000.0 + 22))->maps()), created_so({}, 24));
-    EXPECT_EQ(taken_in_all() - before, 11 + 3) << "a description comes before the next scan";
+    static_cast<void>(finished(until(10)));
+    static_cast<void>(finished(until(30)));
+    const int before = entries_read();
+    const auto job = finished(stamp(1000.0 + 20)); // entry n + 1 has stamp 1000 + n
+    EXPECT_EQ(job->maps()->revision, 21U);
+    EXPECT_EQ(digests_of(*job->maps()), digests_of_session({}, 21));
+    EXPECT_EQ(entries_read() - before, 11);
+    EXPECT_EQ(digests_of(*finished(stamp(1000.0 + 22))->maps()), digests_of_session({}, 24));
+    EXPECT_EQ(entries_read() - before, 11 + 3) << "a description precedes the next scan";
 }
 
-TEST_F(WeaveHistoryTest, WhoComesWhileTheOneBeforeIsWovenWaitsForIt) {
+TEST_F(WeaveHistoryTest, JobWaitsForARunningBase) {
     const auto pause = log_.pause_at(10);
-    const auto first = ask(until(20));
+    const auto first = start(until(20));
     pause->wait();
-    const auto second = ask(until(30));
-    const auto third = ask(until(last()));
+    const auto second = start(until(30));
+    const auto third = start(until(last()));
     EXPECT_EQ(second->progress().state, State::kWaiting);
     pause->end();
-    for (const auto& weave : {first, second, third}) finish(*weave);
-    EXPECT_EQ(taken_in_all(), static_cast<int>(last()));
-    EXPECT_EQ(digests_of(*first->maps()), created_so({}, 20));
-    EXPECT_EQ(digests_of(*second->maps()), created_so({}, 30));
-    EXPECT_EQ(digests_of(*third->maps()), created_so({}, last()));
+    for (const auto& job : {first, second, third}) finish(*job);
+    EXPECT_EQ(entries_read(), static_cast<int>(last()));
+    EXPECT_EQ(digests_of(*first->maps()), digests_of_session({}, 20));
+    EXPECT_EQ(digests_of(*second->maps()), digests_of_session({}, 30));
+    EXPECT_EQ(digests_of(*third->maps()), digests_of_session({}, last()));
 }
 
-TEST_F(WeaveHistoryTest, WhoWaitsForOneThatIsCancelledBeginsByItself) {
+TEST_F(WeaveHistoryTest, JobStartsAloneIfItsBaseIsCancelled) {
     const auto pause = log_.pause_at(10);
-    const auto first = ask(until(20));
+    const auto first = start(until(20));
     pause->wait();
-    const auto second = ask(until(30));
+    const auto second = start(until(30));
     EXPECT_TRUE(weaves_.remove(session_.id, first->id()));
     pause->end();
     finish(*second);
     EXPECT_EQ(first->progress().state, State::kCancelled);
-    EXPECT_EQ(digests_of(*second->maps()), created_so({}, 30));
+    EXPECT_EQ(digests_of(*second->maps()), digests_of_session({}, 30));
 }
 
-TEST_F(WeaveHistoryTest, OneThatWaitsForAnotherIsCancelledAtOnce) {
+TEST_F(WeaveHistoryTest, WaitingJobIsCancelledImmediately) {
     const auto pause = log_.pause_at(10);
-    const auto first = ask(until(20));
+    const auto first = start(until(20));
     pause->wait();
-    const auto second = ask(until(30));
+    const auto second = start(until(30));
     EXPECT_TRUE(weaves_.remove(session_.id, second->id()));
     EXPECT_EQ(second->progress().state, State::kCancelled);
     pause->end();
     finish(*first);
-    EXPECT_EQ(woven(until(30))->maps()->revision, 30U);
+    EXPECT_EQ(finished(until(30))->maps()->revision, 30U);
 }
 
-TEST_F(WeaveHistoryTest, BetweenTwoTurnsOneIsABaseToo) {
+TEST_F(WeaveHistoryTest, JobBetweenTwoTurnsIsABase) {
     PageBudget budget(1000);
     Weave far(session_, until(last()), last());
-    ASSERT_TRUE(far.run(log_, budget, 1.0)); // an entry
+    ASSERT_TRUE(far.run(log_, budget, 1.0)); // one entry
     ASSERT_TRUE(far.run(log_, budget, 1.0));
     ASSERT_TRUE(far.run(log_, budget, 1.0));
     Weave near(session_, until(10), 10);
@@ -229,13 +230,13 @@ TEST_F(WeaveHistoryTest, BetweenTwoTurnsOneIsABaseToo) {
     }
     while (far.run(log_, budget)) {
     }
-    EXPECT_EQ(digests_of(*near.maps()), created_so({}, 10));
-    EXPECT_EQ(digests_of(*far.maps()), created_so({}, last()));
-    EXPECT_FALSE(far.base_for(near, 10)) << "it is beyond";
-    EXPECT_TRUE(budget.take(1000)) << "all is given back";
+    EXPECT_EQ(digests_of(*near.maps()), digests_of_session({}, 10));
+    EXPECT_EQ(digests_of(*far.maps()), digests_of_session({}, last()));
+    EXPECT_FALSE(far.base_for(near, 10)) << "the job is past the revision";
+    EXPECT_TRUE(budget.take(1000)) << "all chunks are returned";
 }
 
-TEST_F(WeaveHistoryTest, WhatItBeginsWithCountsAtOnce) {
+TEST_F(WeaveHistoryTest, ChunksOfTheBaseCountImmediately) {
     PageBudget plenty(1000);
     Weave base(session_, until(20), 20);
     ASSERT_FALSE(base.run(log_, plenty));
@@ -244,9 +245,9 @@ TEST_F(WeaveHistoryTest, WhatItBeginsWithCountsAtOnce) {
     PageBudget tight(base.maps()->chunk_count - 1);
     EXPECT_FALSE(again.run(log_, tight));
     EXPECT_EQ(again.progress().error->code, Errc::kFull);
-    EXPECT_EQ(again.progress().woven, 20U) << "not an entry was folded";
-    EXPECT_TRUE(tight.take(static_cast<std::int64_t>(base.maps()->chunk_count) - 1)) << "all is given back";
-    EXPECT_EQ(digests_of(*base.maps()), created_so({}, 20));
+    EXPECT_EQ(again.progress().woven, 20U) << "no entry was applied";
+    EXPECT_TRUE(tight.take(static_cast<std::int64_t>(base.maps()->chunk_count) - 1)) << "all chunks are returned";
+    EXPECT_EQ(digests_of(*base.maps()), digests_of_session({}, 20));
 }
 
 } // namespace

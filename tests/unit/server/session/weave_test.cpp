@@ -9,7 +9,7 @@ namespace {
 
 const Error kEnough{Errc::kNotFound, "enough"};
 
-/// Of a log that grows no more.
+/// Replay jobs of a log that does not grow.
 class WeaveTest : public WeaveFixture {
 protected:
     WeaveTest() { append_all(); }
@@ -17,66 +17,66 @@ protected:
     [[nodiscard]] Revision newest() const { return appended_; }
 };
 
-TEST_F(WeaveTest, IsWhatASessionCreatedWithTheseSettingsWouldShow) {
+TEST_F(WeaveTest, EqualsTheMapsOfASessionWithTheseSettings) {
     for (const SessionOptions& options :
          {SessionOptions{}, SessionOptions{.cell_size = 0.1}, SessionOptions{.ray_model = RayModel::kTraversal},
           SessionOptions{.cell_size = 0.02, .p_occupied = 0.7, .class_source = ClassSource::kHimm},
           SessionOptions{.ray_model = RayModel::kBresenham, .accumulate = true, .hit_radius = 0.1}}) {
-        const auto weave = woven(request(options));
-        ASSERT_EQ(weave->progress().state, State::kDone);
-        EXPECT_EQ(weave->progress().woven, newest());
-        EXPECT_EQ(digests_of(*weave->maps()), created_so(options, newest()));
+        const auto job = finished(request(options));
+        ASSERT_EQ(job->progress().state, State::kDone);
+        EXPECT_EQ(job->progress().woven, newest());
+        EXPECT_EQ(digests_of(*job->maps()), digests_of_session(options, newest()));
     }
 }
 
-TEST_F(WeaveTest, EndsWithARevisionOrBeforeTheFirstScanTakenLater) {
+TEST_F(WeaveTest, EndsAtARevisionOrBeforeTheFirstLaterScan) {
     for (const Revision revision : {Revision{0}, Revision{1}, Revision{2}, Revision{3}, Revision{17}, newest()}) {
-        const auto weave = woven(request({}, {revision, std::nullopt}));
-        EXPECT_EQ(weave->maps()->revision, revision);
-        EXPECT_EQ(digests_of(*weave->maps()), created_so({}, revision));
+        const auto job = finished(request({}, {revision, std::nullopt}));
+        EXPECT_EQ(job->maps()->revision, revision);
+        EXPECT_EQ(digests_of(*job->maps()), digests_of_session({}, revision));
     }
     for (const double seconds : {0.5, 1.0, 7.0, 7.5, 39.9, 40.0, 100.0}) {
         const auto entries = 2 + std::min<std::size_t>(kScans, static_cast<std::size_t>(seconds));
-        const auto weave = woven(request({}, {std::nullopt, 1000.0 + seconds}));
-        EXPECT_EQ(digests_of(*weave->maps()), created_so({}, entries)) << seconds;
+        const auto job = finished(request({}, {std::nullopt, 1000.0 + seconds}));
+        EXPECT_EQ(digests_of(*job->maps()), digests_of_session({}, entries)) << seconds;
     }
 }
 
-TEST_F(WeaveTest, IsFoundAgainAndToldFromOthers) {
-    const auto first = woven(request({}, {5, std::nullopt}));
-    EXPECT_EQ(ask(request({}, {5, std::nullopt})), first);
+TEST_F(WeaveTest, EqualRequestReturnsTheSameJob) {
+    const auto first = finished(request({}, {5, std::nullopt}));
+    EXPECT_EQ(start(request({}, {5, std::nullopt})), first);
     EXPECT_EQ(weaves_.find(session_.id, first->id()), first);
     EXPECT_EQ(weaves_.find(session_.id + 1, first->id()), nullptr);
     for (const auto& other : {request({}), request({}, {6, std::nullopt}), request({}, {std::nullopt, 5.0}),
                               request({.danger_radius = 0.1}, {5, std::nullopt})}) {
-        EXPECT_NE(ask(other)->id(), first->id());
+        EXPECT_NE(start(other)->id(), first->id());
     }
     EXPECT_THAT(weaves_.list(session_.id), testing::SizeIs(5));
     EXPECT_THAT(weaves_.list(session_.id + 1), testing::IsEmpty());
 }
 
-TEST_F(WeaveTest, OneThatIsRemovedIsGoneAndCanBeStartedAgain) {
-    const auto first = woven(request({}, {5, std::nullopt}));
+TEST_F(WeaveTest, RemovedJobCanBeStartedAgain) {
+    const auto first = finished(request({}, {5, std::nullopt}));
     EXPECT_TRUE(weaves_.remove(session_.id, first->id()));
     EXPECT_FALSE(weaves_.remove(session_.id, first->id()));
     EXPECT_EQ(weaves_.find(session_.id, first->id()), nullptr);
-    EXPECT_NE(woven(request({}, {5, std::nullopt})), first);
+    EXPECT_NE(finished(request({}, {5, std::nullopt})), first);
     weaves_.remove_all(session_.id);
     EXPECT_THAT(weaves_.list(session_.id), testing::IsEmpty());
 }
 
-TEST_F(WeaveTest, WhatTheSettingsCannotTakeFailsWithTheReasonAndWhatToDo) {
+TEST_F(WeaveTest, SensorTooLargeForTheSettingsFailsWithAMessage) {
     append(SensorDescribed{0, far_laser()});
-    const auto weave = woven(request({.cell_size = 0.01}));
-    EXPECT_EQ(weave->progress().state, State::kFailed);
-    EXPECT_EQ(weave->progress().error->message,
+    const auto job = finished(request({.cell_size = 0.01}));
+    EXPECT_EQ(job->progress().state, State::kFailed);
+    EXPECT_EQ(job->progress().error->message,
               "sensor 2 ('far') of robot 'r' reaches 500 metres, more than 8192 cells of 0.01 metres; give a cell_size "
               "of 0.062 or more");
-    EXPECT_EQ(weave->maps(), nullptr);
-    EXPECT_EQ(woven(request({.cell_size = 0.062}))->progress().state, State::kDone);
+    EXPECT_EQ(job->maps(), nullptr);
+    EXPECT_EQ(finished(request({.cell_size = 0.062}))->progress().state, State::kDone);
 }
 
-TEST_F(WeaveTest, AScanThatNoSessionOfTheseSettingsWouldTakeFails) {
+TEST_F(WeaveTest, ScanTooLargeForTheSettingsFails) {
     Sensor ring = testing_support::small_laser();
     ring.id = 9;
     ring.name = "";
@@ -89,15 +89,15 @@ TEST_F(WeaveTest, AScanThatNoSessionOfTheseSettingsWouldTakeFails) {
     scan.ranges.assign(4096, kNoReturn);
     append(SensorDescribed{0, ring});
     append(ScanTaken{0, scan});
-    const auto weave = woven(request({.cell_size = 0.01}));
-    EXPECT_EQ(weave->progress().state, State::kFailed);
+    const auto job = finished(request({.cell_size = 0.01}));
+    EXPECT_EQ(job->progress().state, State::kFailed);
     EXPECT_EQ(
-        weave->progress().error->message,
+        job->progress().error->message,
         "scan 41 by sensor 9 of robot 'r' covers too many cells of 0.01 metres to be woven at once; give a larger "
         "cell_size");
 }
 
-TEST_F(WeaveTest, AnImportedMapOfTooManyCellsFails) {
+TEST_F(WeaveTest, ImportedMapOfTooManyCellsFails) {
     MapPatch patch;
     patch.cell_size = 1.0;
     patch.width = 512;
@@ -107,80 +107,80 @@ TEST_F(WeaveTest, AnImportedMapOfTooManyCellsFails) {
     session.id = log.create_session("s").value();
     log.append(session.id, 1, {wire::encode_entry(patch)}, [](const Result<>&) {});
     PageBudget budget(1'000'000);
-    Weave weave(session, request({.cell_size = 0.01}), 1);
-    EXPECT_FALSE(weave.run(log, budget));
-    EXPECT_EQ(weave.progress().error->message,
+    Weave job(session, request({.cell_size = 0.01}), 1);
+    EXPECT_FALSE(job.run(log, budget));
+    EXPECT_EQ(job.progress().error->message,
               "a part of the imported map covers too many cells of 0.01 metres to be woven at once; give a larger "
               "cell_size");
 }
 
-TEST_F(WeaveTest, OneOfASessionThatIsGoneSaysSo) {
+TEST_F(WeaveTest, DeletedSessionFailsTheJobWithAMessage) {
     ASSERT_TRUE(log_.remove_session(session_.id));
-    const auto weave = woven(request({}));
-    EXPECT_EQ(weave->progress().state, State::kFailed);
-    EXPECT_EQ(*weave->progress().error, session_was_deleted(session_));
+    const auto job = finished(request({}));
+    EXPECT_EQ(job->progress().state, State::kFailed);
+    EXPECT_EQ(*job->progress().error, session_was_deleted(session_));
     EXPECT_EQ(session_was_deleted(session_).code, Errc::kNotFound);
     EXPECT_THAT(session_was_deleted(session_).message, testing::StartsWith("session 's' was deleted"));
 }
 
-TEST_F(WeaveTest, ALongOneIsWovenTurnByTurn) {
+TEST_F(WeaveTest, LongJobRunsInTurns) {
     PageBudget budget(1000);
-    Weave weave(session_, request({}), newest());
+    Weave job(session_, request({}), newest());
     int turns = 1;
-    while (weave.run(log_, budget, 5e4)) { // a few entries
-        EXPECT_EQ(weave.progress().state, State::kWaiting);
-        EXPECT_EQ(weave.maps(), nullptr);
-        EXPECT_LT(weave.progress().woven, newest());
+    while (job.run(log_, budget, 5e4)) { // a few entries per turn
+        EXPECT_EQ(job.progress().state, State::kWaiting);
+        EXPECT_EQ(job.maps(), nullptr);
+        EXPECT_LT(job.progress().woven, newest());
         ++turns;
     }
     EXPECT_GT(turns, 3);
-    EXPECT_EQ(weave.progress().state, State::kDone);
-    EXPECT_EQ(digests_of(*weave.maps()), created_so({}, newest()));
+    EXPECT_EQ(job.progress().state, State::kDone);
+    EXPECT_EQ(digests_of(*job.maps()), digests_of_session({}, newest()));
     EXPECT_EQ(log_.taken(), std::vector<int>(newest(), 1));
 }
 
-TEST_F(WeaveTest, OneCancelledBetweenTwoTurnsGivesBackItsChunks) {
+TEST_F(WeaveTest, CancelBetweenTwoTurnsReturnsTheChunks) {
     PageBudget budget(1000);
-    Weave weave(session_, request({}), newest());
-    ASSERT_TRUE(weave.run(log_, budget, 5e4));
-    weave.cancel(kEnough);
-    EXPECT_FALSE(weave.run(log_, budget, 5e4));
-    EXPECT_EQ(weave.progress().state, State::kCancelled);
+    Weave job(session_, request({}), newest());
+    ASSERT_TRUE(job.run(log_, budget, 5e4));
+    job.cancel(kEnough);
+    EXPECT_FALSE(job.run(log_, budget, 5e4));
+    EXPECT_EQ(job.progress().state, State::kCancelled);
     EXPECT_TRUE(budget.take(1000));
 }
 
-TEST_F(WeaveTest, OneCancelledBeforeItsTurnIsNeverWoven) {
+TEST_F(WeaveTest, JobCancelledBeforeItsTurnNeverRuns) {
     PageBudget budget(1000);
-    Weave weave(session_, request({}), newest());
-    weave.cancel(kEnough);
-    EXPECT_EQ(weave.wait(newest(), std::chrono::milliseconds(0)), nullptr);
-    EXPECT_FALSE(weave.run(log_, budget));
-    EXPECT_EQ(weave.progress().state, State::kCancelled);
-    EXPECT_EQ(weave.progress().error, kEnough);
-    EXPECT_EQ(weave.progress().woven, 0U);
-    EXPECT_EQ(weave.maps(), nullptr);
+    Weave job(session_, request({}), newest());
+    job.cancel(kEnough);
+    EXPECT_EQ(job.wait(newest(), std::chrono::milliseconds(0)), nullptr);
+    EXPECT_FALSE(job.run(log_, budget));
+    EXPECT_EQ(job.progress().state, State::kCancelled);
+    EXPECT_EQ(job.progress().error, kEnough);
+    EXPECT_EQ(job.progress().woven, 0U);
+    EXPECT_EQ(job.maps(), nullptr);
 }
 
-TEST_F(WeaveTest, OneCancelledOnTheWayEndsThereAndGivesBackItsChunks) {
+TEST_F(WeaveTest, CancelDuringATurnReturnsTheChunks) {
     const auto pause = log_.pause_at(10);
     PageBudget budget(1000);
-    Weave weave(session_, request({}), newest());
-    std::thread weaving([&] { EXPECT_FALSE(weave.run(log_, budget)); });
+    Weave job(session_, request({}), newest());
+    std::thread runner([&] { EXPECT_FALSE(job.run(log_, budget)); });
     pause->wait();
-    EXPECT_EQ(weave.progress().state, State::kWeaving);
-    EXPECT_EQ(weave.progress().woven, 9U);
-    EXPECT_EQ(weave.wait(newest(), std::chrono::milliseconds(0)), nullptr);
-    weave.cancel(kEnough);
-    weave.cancel({Errc::kInternal, "again"});
+    EXPECT_EQ(job.progress().state, State::kWeaving);
+    EXPECT_EQ(job.progress().woven, 9U);
+    EXPECT_EQ(job.wait(newest(), std::chrono::milliseconds(0)), nullptr);
+    job.cancel(kEnough);
+    job.cancel({Errc::kInternal, "again"});
     pause->end();
-    weaving.join();
-    EXPECT_EQ(weave.progress().state, State::kCancelled);
-    EXPECT_EQ(weave.progress().error, kEnough) << "the first reason";
-    EXPECT_EQ(weave.progress().woven, 9U);
-    EXPECT_TRUE(budget.take(1000)) << "all of it is there again";
+    runner.join();
+    EXPECT_EQ(job.progress().state, State::kCancelled);
+    EXPECT_EQ(job.progress().error, kEnough) << "the first reason is kept";
+    EXPECT_EQ(job.progress().woven, 9U);
+    EXPECT_TRUE(budget.take(1000)) << "all chunks are returned";
 }
 
-TEST_F(WeaveTest, WhoeverEndsItSaysWhy) {
+TEST_F(WeaveTest, EachEndReportsItsReason) {
     boost::asio::thread_pool idle(1);
     std::promise<void> go_on;
     boost::asio::post(idle, [&] { go_on.get_future().wait(); });
@@ -199,36 +199,36 @@ TEST_F(WeaveTest, WhoeverEndsItSaysWhy) {
     idle.join();
 }
 
-TEST_F(WeaveTest, MapsBeyondTheBudgetFailAndHoldNothing) {
+TEST_F(WeaveTest, FailsBeyondTheBudgetAndTakesNoChunks) {
     PageBudget budget(3);
-    Weave weave(session_, request({.cell_size = 0.01}), newest());
-    EXPECT_FALSE(weave.run(log_, budget));
-    EXPECT_EQ(weave.progress().state, State::kFailed);
-    EXPECT_EQ(weave.progress().error->code, Errc::kFull);
+    Weave job(session_, request({.cell_size = 0.01}), newest());
+    EXPECT_FALSE(job.run(log_, budget));
+    EXPECT_EQ(job.progress().state, State::kFailed);
+    EXPECT_EQ(job.progress().error->code, Errc::kFull);
     EXPECT_TRUE(budget.take(3));
 }
 
-TEST_F(WeaveTest, ItIsKnownHowMuchTheyTake) {
+TEST_F(WeaveTest, CountsTheChunksOfAllJobs) {
     EXPECT_EQ(weaves_.chunks(), 0);
-    const auto weave = woven(request({}));
-    const auto chunks = static_cast<std::int64_t>(weave->maps()->chunk_count);
+    const auto job = finished(request({}));
+    const auto chunks = static_cast<std::int64_t>(job->maps()->chunk_count);
     EXPECT_EQ(weaves_.chunks(), chunks);
-    static_cast<void>(woven(request({.danger_radius = 0.2})));
+    static_cast<void>(finished(request({.danger_radius = 0.2})));
     EXPECT_EQ(weaves_.chunks(), 2 * chunks);
-    EXPECT_TRUE(weaves_.remove(session_.id, weave->id()));
+    EXPECT_TRUE(weaves_.remove(session_.id, job->id()));
     EXPECT_EQ(weaves_.chunks(), chunks);
 }
 
-TEST_F(WeaveTest, TheLeastRecentlyUsedGoWhenTheirChunksAreTooMany) {
-    const auto chunks = woven(request({}))->maps()->chunk_count;
+TEST_F(WeaveTest, RemovesTheLeastRecentlyUsedBeyondTheChunkLimit) {
+    const auto chunks = finished(request({}))->maps()->chunk_count;
     Weaves few(log_, pool_.get_executor(), {.chunks_kept_max = 3 * chunks});
     std::vector<std::string> ids;
     for (const double radius : {0.1, 0.2, 0.3}) {
-        const auto weave = few.start(session_, request({.danger_radius = radius}), newest()).value();
-        finish(*weave);
-        ids.push_back(weave->id());
+        const auto job = few.start(session_, request({.danger_radius = radius}), newest()).value();
+        finish(*job);
+        ids.push_back(job->id());
     }
-    EXPECT_NE(few.find(session_.id, ids[0]), nullptr) << "used again";
+    EXPECT_NE(few.find(session_.id, ids[0]), nullptr) << "the lookup marks the job as used";
     const auto fourth = few.start(session_, request({.danger_radius = 0.4}), newest()).value();
     finish(*fourth);
     EXPECT_NE(few.find(session_.id, fourth->id()), nullptr);
@@ -237,7 +237,7 @@ TEST_F(WeaveTest, TheLeastRecentlyUsedGoWhenTheirChunksAreTooMany) {
     pool_.join();
 }
 
-TEST_F(WeaveTest, TooManyAtOnceAreRefusedAndNoneIsStartedAfterTheEnd) {
+TEST_F(WeaveTest, RefusesTooManyWaitingJobsAndJobsAfterStop) {
     boost::asio::thread_pool idle(1);
     std::promise<void> go_on;
     boost::asio::post(idle, [&] { go_on.get_future().wait(); });
@@ -245,10 +245,10 @@ TEST_F(WeaveTest, TooManyAtOnceAreRefusedAndNoneIsStartedAfterTheEnd) {
     EXPECT_TRUE(few.start(session_, request({}, {1, std::nullopt}), newest()));
     EXPECT_TRUE(few.start(session_, request({}, {2, std::nullopt}), newest()));
     EXPECT_EQ(few.start(session_, request({}, {3, std::nullopt}), newest()).error().code, Errc::kOverloaded);
-    EXPECT_TRUE(few.start(session_, request({}, {1, std::nullopt}), newest())) << "it is there already";
+    EXPECT_TRUE(few.start(session_, request({}, {1, std::nullopt}), newest())) << "the job exists already";
     few.stop();
     EXPECT_EQ(few.start(session_, request({}, {4, std::nullopt}), newest()).error().code, Errc::kShuttingDown);
-    for (const auto& weave : few.list(session_.id)) EXPECT_EQ(weave->progress().state, State::kCancelled);
+    for (const auto& job : few.list(session_.id)) EXPECT_EQ(job->progress().state, State::kCancelled);
     go_on.set_value();
     idle.join();
 }
