@@ -7,7 +7,7 @@
 
 namespace scanloom::robot {
 
-/// Rows from the top, all of one length: '.' is free, anything else is not. The lowest, leftmost cell is (0, 0).
+/// Rows from the top, all of equal length: '.' is free, any other character is not. The lower left cell is (0, 0).
 inline FloorPlan drawn_plan(const std::vector<std::string_view>& rows, double cell_size) {
     FloorPlan plan;
     plan.cell_size = cell_size;

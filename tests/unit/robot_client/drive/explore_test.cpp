@@ -10,14 +10,15 @@
 namespace scanloom::robot {
 namespace {
 
-/// An exploring robot in a world; the test tells it where to go.
+/// An exploring robot in a world; the test gives the goals.
 struct Exploring {
     explicit Exploring(World world, const Pose2& start = {-2.0, 0.0, 0.0})
         : Exploring(std::make_unique<Explore>(), std::move(world), start) {}
     Exploring(std::unique_ptr<Explore> made, World world, const Pose2& start)
         : explore(made.get()), driven(std::move(world), start, std::move(made)) {}
 
-    /// @return whether it asks within some seconds.
+    /// Runs until the robot requests a goal.
+    /// @return whether it does so within `seconds`
     bool asks_within(double seconds) {
         for (int n = 0; n < static_cast<int>(seconds / kScanPeriod) && !explore->is_asking(); ++n)
             driven.run(kScanPeriod * 1.5);
@@ -26,19 +27,19 @@ struct Exploring {
 
     [[nodiscard]] const Pose2& pose() const { return driven.simulator().pose(); }
 
-    Explore* explore; // the simulator has it
+    Explore* explore; // owned by the simulator
     Driven driven;
 };
 
-TEST(Explore, LooksAllAroundBeforeItAsks) {
+TEST(Explore, TurnsOnceBeforeTheFirstRequest) {
     Exploring robot(walled({}));
     EXPECT_FALSE(robot.explore->is_asking());
     EXPECT_FALSE(robot.asks_within(3.5));
     EXPECT_TRUE(robot.asks_within(2.0));
-    EXPECT_EQ(robot.driven.way().back(), (Point2{-2.0, 0.0}));
+    EXPECT_EQ(robot.driven.trajectory().back(), (Point2{-2.0, 0.0}));
 }
 
-TEST(Explore, GoesToTheEndOfItsWayAndLooksAtTheTargetBeforeItAsksAgain) {
+TEST(Explore, FollowsThePathAndFacesTheTargetBeforeTheNextRequest) {
     Exploring robot(walled({}));
     ASSERT_TRUE(robot.asks_within(6.0));
     robot.explore->go({{-2.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}}, {-1.0, 1.0});
@@ -50,7 +51,7 @@ TEST(Explore, GoesToTheEndOfItsWayAndLooksAtTheTargetBeforeItAsksAgain) {
     EXPECT_NEAR(robot.explore->driven_m(), 4.0, 0.2);
 }
 
-TEST(Explore, AsksAnotherWayWhereOneIsBlocked) {
+TEST(Explore, RequestsAnotherGoalIfThePathIsBlocked) {
     Exploring robot(walled({{0.0, -0.5, 0.4, 0.5}}));
     ASSERT_TRUE(robot.asks_within(6.0));
     robot.explore->go({{-2.0, 0.0}, {1.0, 0.0}}, {2.0, 0.0});
@@ -60,7 +61,7 @@ TEST(Explore, AsksAnotherWayWhereOneIsBlocked) {
     EXPECT_EQ(robot.driven.simulator().collisions(), 0U);
 }
 
-TEST(Explore, GetsAwayFromWhereItIsBlockedAgainAndAgain) {
+TEST(Explore, RecoversFromRepeatedBlocking) {
     Exploring robot(walled({{0.0, -0.5, 0.4, 0.5}}));
     ASSERT_TRUE(robot.asks_within(6.0));
     Pose2 blocked_at;
@@ -74,16 +75,16 @@ TEST(Explore, GetsAwayFromWhereItIsBlockedAgainAndAgain) {
     EXPECT_EQ(robot.driven.simulator().collisions(), 0U);
 }
 
-TEST(Explore, WaitsAsLongAsItIsTold) {
+TEST(Explore, WaitsForTheGivenTime) {
     Exploring robot(walled({}));
     ASSERT_TRUE(robot.asks_within(6.0));
-    const std::size_t scans = robot.driven.way().size();
+    const std::size_t scans = robot.driven.trajectory().size();
     robot.explore->wait(1.0);
     ASSERT_TRUE(robot.asks_within(6.0));
-    EXPECT_EQ(robot.driven.way().size() - scans, 10U);
+    EXPECT_EQ(robot.driven.trajectory().size() - scans, 10U);
 }
 
-TEST(Explore, SaysWhenItIsDone) {
+TEST(Explore, ReportsThatItIsDone) {
     Exploring robot(walled({}));
     ASSERT_TRUE(robot.asks_within(6.0));
     EXPECT_EQ(robot.explore->remarks(), "exploring: 0 m driven in 4 s");

@@ -11,10 +11,10 @@
 namespace scanloom::robot {
 namespace {
 
-/// Follows one way; tells how long it was blocked.
+/// Follows one path and records the longest time for which it was blocked.
 class Follow final : public Behaviour {
 public:
-    explicit Follow(std::vector<Point2> way) : follower_(std::move(way)) {}
+    explicit Follow(std::vector<Point2> path) : follower_(std::move(path)) {}
     Velocity step(const Senses& senses) override {
         const Velocity velocity = follower_.step(senses);
         blocked_max = std::max(blocked_max, follower_.blocked_steps());
@@ -28,65 +28,65 @@ private:
     PathFollower follower_;
 };
 
-double distance_to_way(const Point2& point, const std::vector<Point2>& way) {
+double distance_to_path(const Point2& point, const std::vector<Point2>& path) {
     double nearest = std::numeric_limits<double>::infinity();
-    for (std::size_t n = 0; n + 1 < way.size(); ++n) {
-        nearest = std::min(nearest, distance(Segment{way[n].x, way[n].y, way[n + 1].x, way[n + 1].y}, point));
+    for (std::size_t n = 0; n + 1 < path.size(); ++n) {
+        nearest = std::min(nearest, distance(Segment{path[n].x, path[n].y, path[n + 1].x, path[n + 1].y}, point));
     }
     return nearest;
 }
 
-TEST(PathFollower, KeepsToItsWayAtEveryCorner) {
-    const std::vector<Point2> way{{-2, -2}, {2, -2}, {2, 0}, {-1, 0}, {0.5, 2}, {0.4, -1.5}, {0.3, -1.4}};
-    Driven driven(walled({}), {-2, -2, 1.0}, std::make_unique<Follow>(way));
+TEST(PathFollower, StaysNearThePathAtEveryCorner) {
+    const std::vector<Point2> path{{-2, -2}, {2, -2}, {2, 0}, {-1, 0}, {0.5, 2}, {0.4, -1.5}, {0.3, -1.4}};
+    Driven driven(walled({}), {-2, -2, 1.0}, std::make_unique<Follow>(path));
     ASSERT_TRUE(driven.run(120.0));
-    for (const Point2& place : driven.way()) EXPECT_LT(distance_to_way(place, way), 0.05);
-    for (const Point2& corner : way) EXPECT_LT(driven.nearest_to(corner), 0.06);
-    EXPECT_LT(norm(driven.way().back() - way.back()), 0.05);
+    for (const Point2& place : driven.trajectory()) EXPECT_LT(distance_to_path(place, path), 0.05);
+    for (const Point2& corner : path) EXPECT_LT(driven.nearest_to(corner), 0.06);
+    EXPECT_LT(norm(driven.trajectory().back() - path.back()), 0.05);
 }
 
-TEST(PathFollower, GoesRoundACornerOfAWallAsNearAsItsWayDoes) {
+TEST(PathFollower, FollowsThePathCloselyAroundACorner) {
     const World world = walled({{-0.5, -3.0, 0.5, 1.0}});
-    const std::vector<Point2> way{{-1.5, -2}, {-0.7, 1.2}, {0.7, 1.2}, {1.5, -2}};
-    Driven driven(world, {-1.5, -2, 0.0}, std::make_unique<Follow>(way));
+    const std::vector<Point2> path{{-1.5, -2}, {-0.7, 1.2}, {0.7, 1.2}, {1.5, -2}};
+    Driven driven(world, {-1.5, -2, 0.0}, std::make_unique<Follow>(path));
     ASSERT_TRUE(driven.run(60.0));
     EXPECT_EQ(driven.simulator().collisions(), 0U);
     EXPECT_GT(driven.clearance_min(), kKeptClear);
 }
 
-TEST(PathFollower, ArrivesBesideAWallThatItsWayLeadsTo) {
+TEST(PathFollower, ArrivesNextToAWall) {
     Driven driven(walled({}), {0, 0, 0.0}, std::make_unique<Follow>(std::vector<Point2>{{0, 0}, {2.78, 0}}));
     EXPECT_TRUE(driven.run(30.0));
-    EXPECT_GT(driven.way().back().x, 2.65);
+    EXPECT_GT(driven.trajectory().back().x, 2.65);
 }
 
-TEST(PathFollower, ArrivesWhereTheEndOfItsWayIsALittleTooNearToAWall) {
+TEST(PathFollower, ArrivesIfThePathEndsTooNearToAWall) {
     Driven driven(walled({}), {0, 0, 0.0}, std::make_unique<Follow>(std::vector<Point2>{{0, 0}, {2.9, 0}}));
     EXPECT_TRUE(driven.run(30.0));
-    EXPECT_NEAR(driven.way().back().x, 3.0 - kKeptClear, 0.03);
+    EXPECT_NEAR(driven.trajectory().back().x, 3.0 - kKeptClear, 0.03);
     EXPECT_EQ(driven.simulator().collisions(), 0U);
 }
 
-TEST(PathFollower, SlowsDownBeforeItHasToStand) {
+TEST(PathFollower, SlowsDownBeforeASharpCorner) {
     PathFollower sharp({{0, 0}, {1, 0}, {1, 1}});
     PathFollower gentle({{0, 0}, {1, 0}, {2, 0.1}});
     Senses senses;
     senses.pose.x = 0.9;
     EXPECT_LT(sharp.step(senses).forward, 0.35);
-    EXPECT_GT(gentle.step(senses).forward, 0.6) << "nobody stops for that";
+    EXPECT_GT(gentle.step(senses).forward, 0.6) << "a gentle corner must not stop the robot";
 }
 
-TEST(PathFollower, StopsBeforeWhatStandsInItsWayAndSaysSo) {
+TEST(PathFollower, StopsBeforeAnObstacleAndReportsIt) {
     auto follow = std::make_unique<Follow>(std::vector<Point2>{{-2, 0}, {2, 0}});
     const Follow& followed = *follow;
     Driven driven(walled({{0.5, -0.3, 1.0, 0.3}}), {-2, 0, 0.0}, std::move(follow));
     EXPECT_FALSE(driven.run(30.0));
     EXPECT_EQ(driven.simulator().collisions(), 0U);
-    EXPECT_NEAR(driven.way().back().x, 0.5 - kKeptClear - 0.2, 0.03);
+    EXPECT_NEAR(driven.trajectory().back().x, 0.5 - kKeptClear - 0.2, 0.03);
     EXPECT_GT(followed.blocked_max, 300);
 }
 
-TEST(PathFollower, GoesOnOnceItsWayIsFreeAgain) {
+TEST(PathFollower, ContinuesWhenThePathIsFreeAgain) {
     PathFollower follower({{0, 0}, {2, 0}});
     Senses senses;
     senses.obstacles.assign(5, {0.3, 0.0});
@@ -99,14 +99,14 @@ TEST(PathFollower, GoesOnOnceItsWayIsFreeAgain) {
     EXPECT_EQ(follower.blocked_steps(), 0);
 }
 
-TEST(PathFollower, WithoutAWayItHasArrived) {
+TEST(PathFollower, HasArrivedWithoutAPath) {
     PathFollower follower;
     EXPECT_TRUE(follower.has_arrived());
     EXPECT_EQ(follower.step({}), Velocity{});
     EXPECT_TRUE(PathFollower({{1.0, 1.0}}).has_arrived());
 }
 
-TEST(PathFollower, TellsWhatIsLeftOfItsWay) {
+TEST(PathFollower, ReturnsTheRemainingPathLength) {
     EXPECT_NEAR(PathFollower({{0, 0}, {2, 0}, {2, 1}}).left({0.5, 0.0}), 2.5, 1e-12);
     EXPECT_EQ(PathFollower().left({0.5, 0.0}), 0.0);
 }

@@ -12,38 +12,38 @@
 namespace scanloom::robot {
 namespace {
 
-/// A robot at the origin that heads along x, and three beams that end at each place.
+/// Returns the senses of a robot at the origin with heading 0, with three beams that end at each place.
 Senses senses_of(const std::vector<Point2>& places) {
     Senses senses;
     for (const Point2& place : places) senses.obstacles.insert(senses.obstacles.end(), 3, place);
     return senses;
 }
 
-TEST(WayAhead, EndsWhereTheBodyWouldComeTooNear) {
+TEST(FreeAhead, EndsBeforeTheBodyGetsTooNear) {
     EXPECT_EQ(free_ahead(senses_of({}), 0.0), std::numeric_limits<double>::infinity());
     EXPECT_NEAR(free_ahead(senses_of({{1.0, 0.0}}), 0.0), 1.0 - kKeptClear, 1e-12);
     EXPECT_NEAR(free_ahead(senses_of({{2.0, 0.0}, {1.0, 0.1}}), 0.0), 1.0 - std::sqrt(kKeptClear * kKeptClear - 0.01),
                 1e-12);
 }
 
-TEST(WayAhead, IsToldForAnyDirection) {
+TEST(FreeAhead, IsComputedForAnyDirection) {
     const Senses senses = senses_of({{0.0, 1.0}});
     EXPECT_EQ(free_ahead(senses, 0.0), std::numeric_limits<double>::infinity());
     EXPECT_NEAR(free_ahead(senses, kPi / 2.0), 1.0 - kKeptClear, 1e-12);
 }
 
-TEST(WayAhead, WhatIsBesideOrBehindIsNotInIt) {
+TEST(FreeAhead, IgnoresObstaclesAtTheSideOrBehind) {
     EXPECT_EQ(free_ahead(senses_of({{1.0, kKeptClear + 0.001}, {-0.16, 0.0}, {0.0, 0.16}}), 0.0),
               std::numeric_limits<double>::infinity());
 }
 
-TEST(WayAhead, WhatIsVeryNearCountsAsFarAsTheBodyWouldTouchIt) {
+TEST(FreeAhead, VeryNearObstaclesLimitOnlyContact) {
     EXPECT_EQ(free_ahead(senses_of({{0.16, 0.0}}), 0.0), 0.16 - (kBodyRadius + 0.005));
     EXPECT_EQ(free_ahead(senses_of({{0.04, 0.158}}), 0.0), std::numeric_limits<double>::infinity())
-        << "it comes along beside that";
+        << "the robot passes next to the obstacle";
 }
 
-TEST(WayAhead, TwoBeamsAreNoise) {
+TEST(FreeAhead, IgnoresTwoBeams) {
     Senses senses;
     senses.obstacles = {{0.5, 0.0}, {0.5, 0.01}};
     EXPECT_EQ(free_ahead(senses, 0.0), std::numeric_limits<double>::infinity());
@@ -51,13 +51,13 @@ TEST(WayAhead, TwoBeamsAreNoise) {
     EXPECT_NEAR(free_ahead(senses, 0.0), 0.6 - kKeptClear, 1e-12);
 }
 
-TEST(Steering, SpeedFallsWithTheWayThatIsLeft) {
+TEST(Steering, SpeedDecreasesWithTheFreeDistance) {
     EXPECT_EQ(safe_speed(senses_of({}), 0.0), kForwardMax);
     EXPECT_NEAR(safe_speed(senses_of({{kKeptClear + 0.1, 0.0}}), 0.0), 0.25, 1e-9);
     EXPECT_EQ(drive_towards(senses_of({{0.16, 0.0}}), 0.0, 0.7).forward, safe_speed(senses_of({{0.16, 0.0}}), 0.0));
 }
 
-TEST(Steering, FarAsideItTurnsBeforeItDrives) {
+TEST(Steering, TurnsInPlaceForLargeHeadingErrors) {
     const Velocity turning = drive_towards({}, 1.5, 0.7);
     EXPECT_EQ(turning.forward, 0.0);
     EXPECT_GT(turning.turn, 0.0);
@@ -68,12 +68,12 @@ TEST(Steering, FarAsideItTurnsBeforeItDrives) {
     EXPECT_EQ(drive_towards({}, 0.0, 0.7), (Velocity{0.7, 0.0}));
 }
 
-TEST(Steering, TurnsTheShortWay) {
+TEST(Steering, TurnsAlongTheShorterArc) {
     EXPECT_LT(turn_to({0, 0, -3.0}, 3.0).turn, 0.0);
     EXPECT_TRUE(is_heading({0, 0, -kPi + 0.01}, kPi - 0.01));
 }
 
-TEST(FullTurn, EndsAfterOneTurnToTheHeadingWhereItBegan) {
+TEST(FullTurn, EndsAtTheInitialHeading) {
     FullTurn turn;
     Pose2 pose{1.0, 2.0, 2.5};
     int steps = 0;
@@ -81,7 +81,7 @@ TEST(FullTurn, EndsAfterOneTurnToTheHeadingWhereItBegan) {
         ASSERT_LT(++steps, 200);
         const Velocity velocity = turn.step(pose);
         EXPECT_EQ(velocity.forward, 0.0);
-        const double slip = steps < 10 ? 0.7 : 1.0; // what was turned counts, not what was asked for
+        const double slip = steps < 10 ? 0.7 : 1.0; // the measured rotation counts, not the commanded one
         pose.yaw = normalize_angle(pose.yaw + slip * velocity.turn * kControlPeriod);
     }
     EXPECT_NEAR(pose.yaw, 2.5, 1e-6);

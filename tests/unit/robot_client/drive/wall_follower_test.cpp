@@ -19,34 +19,36 @@ Velocity first_step(const SectorRanges& nearest) {
     return velocity_of(follower, nearest);
 }
 
-TEST(WallFollower, DrivesOnAndBearsRightInTheOpen) { EXPECT_EQ(first_step({5, 5, 5}), (Velocity{0.4, -0.05})); }
+TEST(WallFollower, DrivesForwardAndSlightlyRightInOpenSpace) {
+    EXPECT_EQ(first_step({5, 5, 5}), (Velocity{0.4, -0.05}));
+}
 
 TEST(WallFollower, SteersTowardsSixtyCentimetresFromTheWall) {
     EXPECT_EQ(first_step({0.6, 5, 5}), (Velocity{0.4, 0.0}));
-    EXPECT_LT(first_step({0.68, 5, 5}).turn, 0.0) << "too far: to the right";
-    EXPECT_GT(first_step({0.5, 5, 5}).turn, 0.0) << "too near: to the left";
+    EXPECT_LT(first_step({0.68, 5, 5}).turn, 0.0) << "too far from the wall: steer right";
+    EXPECT_GT(first_step({0.5, 5, 5}).turn, 0.0) << "too near to the wall: steer left";
     EXPECT_NEAR(first_step({0.5, 5, 5}).turn, 0.05, 1e-12);
 }
 
-TEST(WallFollower, TurnsLeftOnTheSpotBeforeAWallAhead) {
+TEST(WallFollower, TurnsLeftInPlaceBeforeAWall) {
     EXPECT_EQ(first_step({0.6, 0.39, 5}), (Velocity{0.0, kTurnMax}));
     EXPECT_EQ(first_step({0.6, 0.41, 5}).forward, 0.4);
 }
 
-TEST(WallFollower, BacksOffFromWhatIsNear) {
+TEST(WallFollower, BacksOffFromNearObstacles) {
     EXPECT_EQ(first_step({5, 5, 0.34}).forward, -0.2);
     EXPECT_EQ(first_step({0.34, 5, 5}).forward, -0.2);
 }
 
-TEST(WallFollower, StopsWhenVeryNearAndRecoversAfterThirtyStops) {
+TEST(WallFollower, StopsVeryNearAndRecoversAfterThirtyStops) {
     WallFollower follower;
     const SectorRanges blocked{0.2, 5, 5};
     for (int i = 0; i < 31; ++i) EXPECT_EQ(velocity_of(follower, blocked), (Velocity{0.0, 0.0})) << i;
     for (int i = 0; i < 40; ++i) EXPECT_EQ(velocity_of(follower, blocked), (Velocity{-0.08, -0.6 * kTurnMax})) << i;
-    EXPECT_EQ(velocity_of(follower, blocked), (Velocity{0.0, 0.0})) << "40 steps of recovery are enough";
+    EXPECT_EQ(velocity_of(follower, blocked), (Velocity{0.0, 0.0})) << "recovery ends after 40 steps";
 }
 
-TEST(WallFollower, RecoveryEndsEarlyOnceThereIsRoom) {
+TEST(WallFollower, RecoveryEndsEarlyInFreeSpace) {
     WallFollower follower;
     for (int i = 0; i < 31; ++i) static_cast<void>(velocity_of(follower, {0.2, 5, 5}));
     EXPECT_EQ(velocity_of(follower, {0.2, 5, 5}).forward, -0.08);
@@ -54,7 +56,7 @@ TEST(WallFollower, RecoveryEndsEarlyOnceThereIsRoom) {
     EXPECT_EQ(velocity_of(follower, {0.45, 5, 5}).forward, 0.4);
 }
 
-TEST(WallFollower, StopsAreCountedInARow) {
+TEST(WallFollower, OnlyConsecutiveStopsCount) {
     WallFollower follower;
     for (int round = 0; round < 3; ++round) {
         for (int i = 0; i < 30; ++i) EXPECT_EQ(velocity_of(follower, {0.2, 5, 5}), (Velocity{0.0, 0.0}));
@@ -62,41 +64,42 @@ TEST(WallFollower, StopsAreCountedInARow) {
     }
 }
 
-TEST(WallFollower, GoesAroundTheEndOfAWallUntilItIsNearAgain) {
+TEST(WallFollower, TurnsAroundTheEndOfAWall) {
     WallFollower follower;
     EXPECT_EQ(velocity_of(follower, {0.65, 5, 5}).forward, 0.4);
     for (const double right : {5.0, 0.71, 0.65}) {
         const Velocity around = velocity_of(follower, {right, 5, 5});
         EXPECT_EQ(around.forward, 0.3) << right;
-        EXPECT_NEAR(around.forward / around.turn, -0.55, 1e-12) << "a circle around what is on the right hand";
+        EXPECT_NEAR(around.forward / around.turn, -0.55, 1e-12)
+            << "the robot drives a circle around the object on its right";
     }
     EXPECT_EQ(velocity_of(follower, {0.59, 5, 5}).forward, 0.4);
-    EXPECT_EQ(velocity_of(follower, {0.69, 5, 5}).forward, 0.4) << "a wall that is there is one up to 0.7 m";
+    EXPECT_EQ(velocity_of(follower, {0.69, 5, 5}).forward, 0.4) << "a followed wall counts up to 0.7 m";
 }
 
-TEST(WallFollower, SearchesOnWhereNoWallComesAfterACorner) {
+TEST(WallFollower, SearchesIfNoWallFollowsACorner) {
     WallFollower follower;
     static_cast<void>(velocity_of(follower, {0.6, 5, 5}));
     for (int i = 0; i < 180; ++i) EXPECT_EQ(velocity_of(follower, {5, 5, 5}).forward, 0.3) << i;
     EXPECT_EQ(velocity_of(follower, {5, 5, 5}), (Velocity{0.4, -0.05}));
 }
 
-TEST(WallFollower, LeavesWhatItHasGoneAround) {
+TEST(WallFollower, LeavesAnObjectAfterSurroundingIt) {
     WallFollower follower;
     double turned = 0.0;
     for (int step = 0; turned > -2.5 * std::numbers::pi; ++step) {
         ASSERT_LT(step, 400);
-        const bool is_beside = step % 60 == 0; // a table: past each corner comes a side
-        turned += velocity_of(follower, {is_beside ? 0.59 : 5.0, 5, 5}).turn / 20.0;
+        const bool is_side = step % 60 == 0; // a table: each corner is followed by a side
+        turned += velocity_of(follower, {is_side ? 0.59 : 5.0, 5, 5}).turn / 20.0;
     }
     for (const double right : {0.6, 0.5, 5.0})
         EXPECT_EQ(velocity_of(follower, {right, 5, 5}), (Velocity{0.4, 0.0})) << right;
-    EXPECT_EQ(velocity_of(follower, {0.6, 0.39, 5}), (Velocity{0.0, kTurnMax})) << "here is another wall";
+    EXPECT_EQ(velocity_of(follower, {0.6, 0.39, 5}), (Velocity{0.0, kTurnMax})) << "another wall is ahead";
     EXPECT_LT(velocity_of(follower, {0.65, 5, 5}).turn, 0.0);
     EXPECT_GT(velocity_of(follower, {0.55, 5, 5}).turn, 0.0);
 }
 
-TEST(Sectors, EachBeamCountsInItsSectorAndInvalidOnesNowhere) {
+TEST(Sectors, UseEachValidBeamInItsSector) {
     Sensor laser;
     laser.angles = UniformAngles{-180.0 * kDegree, 30.0 * kDegree, 12};
     Scan scan; //     -180 -150 -120 -90  -60   -30   0   30        60  90   120  150
@@ -107,7 +110,7 @@ TEST(Sectors, EachBeamCountsInItsSectorAndInvalidOnesNowhere) {
     EXPECT_DOUBLE_EQ(nearest.left, 3.0);
 }
 
-TEST(Obstacles, AreWhereBeamsWithAReturnEnded) {
+TEST(Obstacles, AreTheEndsOfReturningBeams) {
     Sensor laser;
     laser.mount = {0.5, 0.0, 0.0};
     laser.angles = UniformAngles{0.0, std::numbers::pi / 2.0, 4};

@@ -23,7 +23,7 @@ std::vector<double> heights(const Block& block) {
     return heights;
 }
 
-TEST(Lanes, AreEvenlySpacedFromTheLowestRowToTheHighest) {
+TEST(Lanes, AreEvenlySpacedFromTheLowestToTheHighestRow) {
     const auto blocks = lanes_of({"....", "....", "....", "....", "....", "....", "...."}, 4.0);
     ASSERT_EQ(blocks.size(), 1U);
     EXPECT_EQ(heights(blocks[0]), (std::vector{0.5, 3.5, 6.5}));
@@ -33,7 +33,7 @@ TEST(Lanes, AreEvenlySpacedFromTheLowestRowToTheHighest) {
     }
 }
 
-TEST(Lanes, SomethingInTheMiddleMakesFourBlocks) {
+TEST(Lanes, ObjectInTheMiddleGivesFourBlocks) {
     const auto blocks = lanes_of({".......", //
                                   ".......", //
                                   "..###..", //
@@ -42,14 +42,14 @@ TEST(Lanes, SomethingInTheMiddleMakesFourBlocks) {
                                   "......."},
                                  1.0);
     ASSERT_EQ(blocks.size(), 4U);
-    EXPECT_EQ(heights(blocks[0]), (std::vector{0.5, 1.5})) << "below";
-    EXPECT_EQ(heights(blocks[1]), (std::vector{2.5, 3.5})) << "on the left";
+    EXPECT_EQ(heights(blocks[0]), (std::vector{0.5, 1.5})) << "the block below the object";
+    EXPECT_EQ(heights(blocks[1]), (std::vector{2.5, 3.5})) << "the block on the left";
     EXPECT_EQ(blocks[1][0].east.x, 1.5);
-    EXPECT_EQ(heights(blocks[2]), (std::vector{2.5, 3.5})) << "on the right";
-    EXPECT_EQ(heights(blocks[3]), (std::vector{4.5, 5.5})) << "above";
+    EXPECT_EQ(heights(blocks[2]), (std::vector{2.5, 3.5})) << "the block on the right";
+    EXPECT_EQ(heights(blocks[3]), (std::vector{4.5, 5.5})) << "the block above the object";
 }
 
-TEST(Lanes, OneBlockDoesNotSweepTheBorderAgainThatAnotherSweeps) {
+TEST(Lanes, BlocksDoNotRepeatTheBordersOfOthers) {
     const auto blocks = lanes_of({".......", //
                                   "..###..", //
                                   "..###..", //
@@ -58,26 +58,24 @@ TEST(Lanes, OneBlockDoesNotSweepTheBorderAgainThatAnotherSweeps) {
                                  2.0);
     ASSERT_EQ(blocks.size(), 4U);
     EXPECT_EQ(heights(blocks[0]), std::vector{0.5});
-    EXPECT_EQ(heights(blocks[1]), std::vector{2.5}) << "two rows from the lanes below and above";
+    EXPECT_EQ(heights(blocks[1]), std::vector{2.5}) << "the lane is two rows from those below and above";
     EXPECT_EQ(heights(blocks[3]), std::vector{4.5});
 }
 
-TEST(Lanes, AnOutlineThatOnlyBulgesMakesNoNewBlock) {
-    EXPECT_EQ(lanes_of({"....", "###.", "##..", "...."}, 1.0).size(), 1U);
-}
+TEST(Lanes, BulgingOutlineGivesNoNewBlock) { EXPECT_EQ(lanes_of({"....", "###.", "##..", "...."}, 1.0).size(), 1U); }
 
-/// A zigzag over the plan of `known`, in a world that may be another.
+/// A zigzag over the plan of `known`, driven in a world that may differ.
 struct Swept {
     Swept(const World& known, World world, const Pose2& start = {-2.0, -2.0, 0.0})
         : Swept(std::make_unique<Zigzag>(floor_plan_of(truth_of(known, 0.05))), std::move(world), start) {}
     Swept(std::unique_ptr<Zigzag> made, World world, const Pose2& start)
         : zigzag(made.get()), driven(std::move(world), start, std::move(made)) {}
 
-    const Zigzag* zigzag; // the simulator has it
+    const Zigzag* zigzag; // owned by the simulator
     Driven driven;
 };
 
-TEST(Zigzag, SweepsARoomWithFurniture) {
+TEST(Zigzag, CoversARoomWithFurniture) {
     const World room = walled({{-0.5, -0.5, 0.7, 0.6}, {2.4, -3.0, 3.0, -1.0}});
     Swept swept(room, room);
     ASSERT_TRUE(swept.driven.run(1200.0));
@@ -88,30 +86,30 @@ TEST(Zigzag, SweepsARoomWithFurniture) {
     EXPECT_NE(swept.zigzag->remarks().find(" m2 within reach, in "), std::string::npos) << swept.zigzag->remarks();
 }
 
-TEST(Zigzag, GoesAroundWhatThePlanDoesNotKnowAndBackToItsLane) {
+TEST(Zigzag, DetoursAroundAnUnknownObstacleAndReturnsToTheLane) {
     Swept swept(walled({}), walled({{0.5, -0.3, 1.1, 0.3}}));
     ASSERT_TRUE(swept.driven.run(1200.0));
     EXPECT_EQ(swept.driven.simulator().collisions(), 0U);
-    EXPECT_GE(swept.zigzag->detours(), 2) << "several lanes lead through it";
+    EXPECT_GE(swept.zigzag->detours(), 2) << "several lanes cross the obstacle";
     EXPECT_EQ(swept.zigzag->lanes_given_up(), 0);
     EXPECT_GT(swept.zigzag->coverage(), 0.9);
     for (const Point2& behind : {Point2{1.6, 0.0}, Point2{0.0, 0.0}}) EXPECT_LT(swept.driven.nearest_to(behind), 0.15);
 }
 
-TEST(Zigzag, ADetourIsAStepAsideAWayPastAndAWayBack) {
+TEST(Zigzag, DetourPassesTheObstacleAtAConstantDistance) {
     Swept swept(walled({}), walled({{0.5, -0.3, 1.1, 0.3}}));
     swept.driven.run(1200.0);
-    // past it, beside lanes that lead along x: at least its length, at one distance from it
-    const auto beside = std::ranges::count_if(swept.driven.way(), [](const Point2& place) {
+    // Next to the obstacle, along lanes parallel to x: the robot passes its length at a constant distance.
+    const auto passing = std::ranges::count_if(swept.driven.trajectory(), [](const Point2& place) {
         return place.x > 0.5 && place.x < 1.1 && std::abs(std::abs(place.y) - 0.3 - 0.27) < 0.04;
     });
-    EXPECT_GT(beside, 10);
+    EXPECT_GT(passing, 10);
 }
 
-TEST(Zigzag, GivesUpALaneThatIsShutAndGoesOn) {
-    // a wall from side to side that the plan does not know: all beyond cannot be reached
+TEST(Zigzag, GivesUpABlockedLaneAndContinues) {
+    // The plan does not contain a wall from side to side: the area beyond it is unreachable.
     Swept swept(walled({}), walled({{-3.0, 0.5, 3.0, 0.7}}));
-    ASSERT_TRUE(swept.driven.run(3600.0)) << "bounded";
+    ASSERT_TRUE(swept.driven.run(3600.0)) << "the run must end";
     EXPECT_EQ(swept.driven.simulator().collisions(), 0U);
     EXPECT_GT(swept.zigzag->lanes_given_up(), 3);
     EXPECT_GT(swept.zigzag->coverage(), 0.5);
@@ -119,7 +117,7 @@ TEST(Zigzag, GivesUpALaneThatIsShutAndGoesOn) {
     EXPECT_NE(swept.zigzag->remarks().find("lanes given up"), std::string::npos);
 }
 
-TEST(Zigzag, WaitsForAPersonWhoPasses) {
+TEST(Zigzag, WaitsForAPassingPerson) {
     World world = walled({});
     world.walkers = {{.loop = {{-2.0, 1.0}, {2.0, 1.0}, {2.0, -1.0}, {-2.0, -1.0}}}};
     Swept swept(walled({}), world);

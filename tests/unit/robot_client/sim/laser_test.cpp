@@ -12,7 +12,7 @@
 namespace scanloom::robot {
 namespace {
 
-TEST(Lasers, LookWhereTheirDescriptionSays) {
+TEST(Lasers, BeamAnglesMatchTheirDescription) {
     const auto ends = [](const char* name) {
         const Sensor laser = *find_laser(name);
         const std::size_t count = beam_count(laser.angles);
@@ -28,7 +28,7 @@ TEST(Lasers, LookWhereTheirDescriptionSays) {
     EXPECT_FALSE(find_laser("radar"));
 }
 
-TEST(Sweep, WithoutNoiseIsExactToTheMillimetre) {
+TEST(Sweep, IsExactToTheMillimetreWithoutNoise) {
     const World room = make_room();
     const Sensor laser = *find_laser("wide");
     Random random(1);
@@ -41,11 +41,11 @@ TEST(Sweep, WithoutNoiseIsExactToTheMillimetre) {
     }
 }
 
-TEST(Sweep, NoiseHasItsSizeAndMakesNoReturns) {
+TEST(Sweep, NoiseHasItsDeviationAndKeepsNoReturns) {
     const World room = make_room();
     const Sensor laser = *find_laser("reference");
     Random random(4);
-    const Pose2 pose{4.0, 0.0, 0.0}; // a wall a metre ahead
+    const Pose2 pose{4.0, 0.0, 0.0}; // a wall 1 m ahead
     double squares = 0.0;
     int count = 0;
     for (int i = 0; i < 200; ++i) {
@@ -53,7 +53,8 @@ TEST(Sweep, NoiseHasItsSizeAndMakesNoReturns) {
         const auto noisy = sweep(room, laser, pose, Noise{.beam_angle = 0.0}, random);
         for (std::size_t beam = 0; beam < exact.size(); ++beam) {
             ASSERT_EQ(exact[beam] == kNoReturn, noisy[beam] == kNoReturn);
-            if (exact[beam] == kNoReturn || exact[beam] > 4800) continue; // there the range cuts the noise
+            if (exact[beam] == kNoReturn || exact[beam] > 4800)
+                continue; // the range limit truncates the noise of these beams
             const double difference = (static_cast<double>(noisy[beam]) - static_cast<double>(exact[beam])) / 1000.0;
             squares += difference * difference;
             ++count;
@@ -62,7 +63,7 @@ TEST(Sweep, NoiseHasItsSizeAndMakesNoReturns) {
     EXPECT_NEAR(std::sqrt(squares / count), 0.02, 0.001);
 }
 
-TEST(Sweep, UniformNoiseMakesReadingsTooLongByUpToItsWidth) {
+TEST(Sweep, UniformNoiseIncreasesReadingsUpToItsWidth) {
     const World room = make_room();
     const Sensor laser = *find_laser("reference");
     Random random(6);
@@ -87,7 +88,7 @@ TEST(Sweep, UniformNoiseMakesReadingsTooLongByUpToItsWidth) {
     EXPECT_NEAR(largest, 0.3, 0.002);
 }
 
-TEST(Sweep, SeesAWalkerInFrontOfTheWall) {
+TEST(Sweep, DetectsAWalkerInFrontOfAWall) {
     World world = make_room();
     world.walkers = {{.loop = {{3.0, 3.0}, {4.0, 3.0}}, .radius = 0.25}};
     Sensor laser = *find_laser("reference");
@@ -96,7 +97,7 @@ TEST(Sweep, SeesAWalkerInFrontOfTheWall) {
     EXPECT_EQ(sweep(world, laser, {3.0, 4.5, -std::numbers::pi / 2.0}, std::nullopt, random).at(0), 1250U);
     EXPECT_EQ(sweep(world, laser, {1.5, 3.0, 0.0}, std::nullopt, random).at(0), 1250U);
     walk(world, {-4.0, -4.0}, 0.5);
-    EXPECT_EQ(sweep(world, laser, {1.5, 3.0, 0.0}, std::nullopt, random).at(0), 1750U) << "it has walked on";
+    EXPECT_EQ(sweep(world, laser, {1.5, 3.0, 0.0}, std::nullopt, random).at(0), 1750U) << "the walker has moved on";
     laser.range_max = 1.5;
     EXPECT_EQ(sweep(world, laser, {1.5, 3.0, 0.0}, std::nullopt, random).at(0), kNoReturn);
 }

@@ -19,7 +19,7 @@
 namespace scanloom::robot {
 namespace {
 
-/// Rows from the top: # occupied, . free, blank unknown.
+/// Parses rows from the top: '#' occupied, '.' free, ' ' unknown.
 MapCells drawn(const std::vector<std::string_view>& rows) {
     MapCells map{rows.front().size(), {}};
     for (auto row = rows.rbegin(); row != rows.rend(); ++row) {
@@ -35,12 +35,12 @@ MapCells random_map(Random& random, std::size_t width, std::size_t height) {
     const double share = random.uniform(0.0, 1.0);
     for (MapCell& cell : map.cells) {
         cell = random.uniform(0.0, 1.0) < share ? MapCell::kOccupied
-                                                : static_cast<MapCell>(random.index(3)); // some of each
+                                                : static_cast<MapCell>(random.index(3)); // some cells of each kind
     }
     return map;
 }
 
-TEST(CellShapes, BoxesCoverTheCellsOfTheirKindOnceAndNoOthers) {
+TEST(CellShapes, BoxesCoverExactlyTheCellsOfTheirKind) {
     Random random(5);
     const MapFrame frame{0.5, -3.0, 7.0};
     for (int i = 0; i < 200; ++i) {
@@ -56,7 +56,7 @@ TEST(CellShapes, BoxesCoverTheCellsOfTheirKindOnceAndNoOthers) {
     }
 }
 
-TEST(CellShapes, ARectangleIsOneBoxWithFourSides) {
+TEST(CellShapes, RectangleIsOneBoxWithFourSides) {
     const MapCells map = drawn({".....", ".###.", ".###."});
     const MapFrame frame{1.0, 0.0, 0.0};
     EXPECT_THAT(boxes_of(map, MapCell::kOccupied, frame), testing::ElementsAre(Box{1, 0, 4, 2}));
@@ -64,7 +64,7 @@ TEST(CellShapes, ARectangleIsOneBoxWithFourSides) {
                                                                        Segment{4, 2, 1, 2}, Segment{1, 2, 1, 0}));
 }
 
-TEST(CellShapes, OutlinesHaveASolidOnTheirLeftAndNoneOnTheirRight) {
+TEST(CellShapes, OutlinesHaveSolidsOnTheirLeft) {
     Random random(6);
     const MapFrame frame{0.5, -3.0, 7.0};
     for (int i = 0; i < 100; ++i) {
@@ -85,7 +85,7 @@ TEST(CellShapes, OutlinesHaveASolidOnTheirLeftAndNoneOnTheirRight) {
             }
             length += norm(along);
         }
-        double wanted = 0.0; // every cell's sides, but those between two occupied ones
+        double wanted = 0.0; // sides of all cells, except those between two occupied cells
         for (std::size_t n = 0; n < map.cells.size(); ++n) {
             const Point2 centre{frame.x(n % map.width) + 0.25, frame.y(n / map.width) + 0.25};
             if (!is_solid(centre)) continue;
@@ -97,10 +97,10 @@ TEST(CellShapes, OutlinesHaveASolidOnTheirLeftAndNoneOnTheirRight) {
     }
 }
 
-TEST(StartCells, AreFarFromSolidsInTheLargestPartThatCanBeDriven) {
+TEST(StartCells, AreInTheLargestDrivablePart) {
     const MapCells map = drawn({
         "###################",
-        "#...#.............#", // the left chamber has no way out, the right one is larger
+        "#...#.............#", // the left chamber has no exit, the right one is larger
         "#...#.............#",
         "#...#.............#",
         "#...#.............#",
@@ -117,7 +117,7 @@ TEST(StartCells, AreFarFromSolidsInTheLargestPartThatCanBeDriven) {
     EXPECT_TRUE(start_cells(map, 1.0, 5.0, 0.5).empty());
 }
 
-TEST(StartCells, EveryPointOfThemHasTheClearance) {
+TEST(StartCells, HaveTheClearanceEverywhere) {
     Random random(7);
     for (int i = 0; i < 30; ++i) {
         MapCells map = random_map(random, 40, 40);
@@ -139,7 +139,7 @@ TEST(StartCells, EveryPointOfThemHasTheClearance) {
 
 const RosMapDescription kHalfMetres{.image = "m.pgm", .resolution = 0.5, .origin_x = -2.0, .origin_y = 10.0};
 
-/// A room of 5 x 4 m, open to the right for a metre and beyond it to the end of the map; unknown around.
+/// Returns a room of 5 x 4 m that is open to the right over 1 m, up to the border of the map; unknown around.
 MapCells open_room() {
     return drawn({
         "  ############",
@@ -153,21 +153,21 @@ MapCells open_room() {
     });
 }
 
-TEST(MapWorld, RaysEndAtOccupiedCellsAndNowhereElse) {
+TEST(MapWorld, RaysEndOnlyAtOccupiedCells) {
     const World world = world_of_map("m", kHalfMetres, open_room()).value();
     EXPECT_EQ(world.name, "m");
     const Point2 inside{0.0, 12.0};
     EXPECT_NEAR(world.obstacles->cast_ray(inside, std::numbers::pi, 100.0), 0.5, 1e-12);
     EXPECT_NEAR(world.obstacles->cast_ray(inside, std::numbers::pi / 2.0, 100.0), 1.5, 1e-12);
-    EXPECT_EQ(world.obstacles->cast_ray(inside, 0.0, 100.0), HUGE_VAL) << "out of the map";
+    EXPECT_EQ(world.obstacles->cast_ray(inside, 0.0, 100.0), HUGE_VAL) << "the ray leaves the map";
     EXPECT_EQ(world.obstacles->cast_ray({-1.9, 13.0}, std::numbers::pi, 100.0), HUGE_VAL);
-    EXPECT_NEAR(world.obstacles->cast_ray({-1.9, 13.0}, 0.0, 100.0), 0.9, 1e-12) << "from what is not known";
+    EXPECT_NEAR(world.obstacles->cast_ray({-1.9, 13.0}, 0.0, 100.0), 0.9, 1e-12) << "the ray starts in an unknown cell";
     EXPECT_NEAR(clearance(world, inside), 0.5, 1e-12);
-    EXPECT_EQ(clearance(world, {-0.75, 12.0}), 0.0) << "in a wall";
-    EXPECT_NEAR(clearance(world, {105.0, 12.0}), std::hypot(100.0, 0.5), 1e-9) << "beyond the map";
+    EXPECT_EQ(clearance(world, {-0.75, 12.0}), 0.0) << "the point is in a wall";
+    EXPECT_NEAR(clearance(world, {105.0, 12.0}), std::hypot(100.0, 0.5), 1e-9) << "the point is outside the map";
 }
 
-TEST(MapWorld, RobotsStartOnFreeCellsWithRoomAroundThem) {
+TEST(MapWorld, RobotsStartOnFreeCellsWithClearance) {
     const World world = world_of_map("m", kHalfMetres, open_room()).value();
     for (std::uint64_t seed = 0; seed < 100; ++seed) {
         const Simulator simulator({world, find_laser("reference").value(), std::nullopt, seed},
@@ -178,7 +178,7 @@ TEST(MapWorld, RobotsStartOnFreeCellsWithRoomAroundThem) {
     }
 }
 
-TEST(MapWorld, ANarrowMapHasNarrowStartsAndOneWithoutRoomIsRefused) {
+TEST(MapWorld, NarrowMapHasNarrowStartsAndTooNarrowMapIsRefused) {
     RosMapDescription fine = kHalfMetres;
     fine.resolution = 0.2; // the room is 2 m by 1.2 m
     const World narrow = world_of_map("m", fine, open_room()).value();
@@ -192,31 +192,31 @@ TEST(MapWorld, ANarrowMapHasNarrowStartsAndOneWithoutRoomIsRefused) {
     EXPECT_THAT(refused.error().message, testing::HasSubstr("no free place"));
 }
 
-TEST(MapWorld, ItsTruthIsTheMap) {
+TEST(MapWorld, GroundTruthEqualsTheMap) {
     const MapCells map = open_room();
-    const TruthGrid truth = truth_of(world_of_map("m", kHalfMetres, map).value(), 0.5);
-    EXPECT_EQ(truth.i_begin, -2) << "the unknown columns on the left are outside";
-    EXPECT_EQ(truth.j_begin, 20);
-    EXPECT_EQ(truth.width, 12);
-    EXPECT_EQ(truth.height, 8);
+    const TruthGrid ground_truth = truth_of(world_of_map("m", kHalfMetres, map).value(), 0.5);
+    EXPECT_EQ(ground_truth.i_begin, -2) << "the unknown columns on the left are not included";
+    EXPECT_EQ(ground_truth.j_begin, 20);
+    EXPECT_EQ(ground_truth.width, 12);
+    EXPECT_EQ(ground_truth.height, 8);
     for (std::int32_t j = 0; j < 8; ++j) {
         for (std::int32_t i = 0; i < 14; ++i) {
             const MapCell cell = map.cells[static_cast<std::size_t>(j * 14 + i)];
             const Truth wanted = cell == MapCell::kOccupied ? Truth::kOccupied
                                  : cell == MapCell::kFree   ? Truth::kFree
                                                             : Truth::kOutside;
-            EXPECT_EQ(truth.at(i - 4, j + 20), wanted) << i << ' ' << j;
+            EXPECT_EQ(ground_truth.at(i - 4, j + 20), wanted) << i << ' ' << j;
         }
     }
 }
 
-TEST(MapWorld, WhatIsNotKnownStaysSoThoughFreeCellsLeadThere) {
+TEST(MapWorld, UnknownCellsStayUnknownNextToFreeCells) {
     const MapCells map = drawn({"......    ", "......    ", "......    ", "......    ", "......   #"});
     for (const double cell_size : {0.1, 0.5, 1.0}) {
-        const TruthGrid truth = truth_of(world_of_map("m", kHalfMetres, map).value(), cell_size);
+        const TruthGrid ground_truth = truth_of(world_of_map("m", kHalfMetres, map).value(), cell_size);
         const auto at = [&](double x, double y) {
-            return truth.at(static_cast<std::int32_t>(std::floor(x / cell_size)),
-                            static_cast<std::int32_t>(std::floor(y / cell_size)));
+            return ground_truth.at(static_cast<std::int32_t>(std::floor(x / cell_size)),
+                                   static_cast<std::int32_t>(std::floor(y / cell_size)));
         };
         EXPECT_EQ(at(-1.4, 10.6), Truth::kFree) << cell_size;
         EXPECT_EQ(at(1.6, 11.6), Truth::kOutside) << cell_size;
@@ -226,21 +226,21 @@ TEST(MapWorld, WhatIsNotKnownStaysSoThoughFreeCellsLeadThere) {
 
 class TruthMaps : public testing::TestWithParam<double> {};
 
-TEST_P(TruthMaps, TheTruthOfAWorldIsAWorldOfTheSameTruth) {
+TEST_P(TruthMaps, ConvertingToAMapAndBackKeepsTheGroundTruth) {
     for (const NamedWorld& named : kWorlds) {
-        const TruthGrid truth = truth_of(named.make(), GetParam());
-        const auto map = parse_ros_yaml(truth_yaml(truth, "x.pgm")).value();
-        const auto cells = read_ros_pgm(map, truth_pgm(truth)).value();
+        const TruthGrid ground_truth = truth_of(named.make(), GetParam());
+        const auto map = parse_ros_yaml(truth_yaml(ground_truth, "x.pgm")).value();
+        const auto cells = read_ros_pgm(map, truth_pgm(ground_truth)).value();
         const auto world = world_of_map("again", map, cells);
-        if (!world) { // cells so large that walls leave no room
+        if (!world) { // cells so large that walls leave no space
             EXPECT_GE(GetParam(), 0.5) << named.name;
             continue;
         }
         const TruthGrid again = truth_of(*world, GetParam());
-        EXPECT_EQ(again.i_begin, truth.i_begin);
-        EXPECT_EQ(again.j_begin, truth.j_begin);
-        EXPECT_EQ(again.width, truth.width);
-        EXPECT_EQ(again.cells, truth.cells) << named.name;
+        EXPECT_EQ(again.i_begin, ground_truth.i_begin);
+        EXPECT_EQ(again.j_begin, ground_truth.j_begin);
+        EXPECT_EQ(again.width, ground_truth.width);
+        EXPECT_EQ(again.cells, ground_truth.cells) << named.name;
     }
 }
 

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kFar = std::numeric_limits<double>::infinity();
 
-/// Segments of all lengths and directions, many of them along the axes or meeting one another.
+/// Returns segments of many lengths and directions, some of them axis-aligned or connected.
 std::vector<Segment> random_segments(Random& random, std::size_t count) {
     const double extent = random.uniform(1.0, 100.0);
     const double x = random.uniform(-1000.0, 1000.0);
@@ -38,7 +38,7 @@ std::vector<Segment> random_segments(Random& random, std::size_t count) {
     return segments;
 }
 
-/// Within the segments' surroundings, or on one of them, or at an end.
+/// Returns a place near the segments, on one of them, or at an end.
 Point2 random_place(Random& random, const std::vector<Segment>& segments) {
     const Segment& near = segments[random.index(segments.size())];
     const double reach = std::pow(10.0, random.uniform(-6.0, 2.5));
@@ -52,13 +52,13 @@ Point2 random_place(Random& random, const std::vector<Segment>& segments) {
 double random_yaw(Random& random, const Point2& origin, const std::vector<Segment>& segments) {
     const Segment& target = segments[random.index(segments.size())];
     switch (random.index(3)) {
-    case 0: return kPi / 2.0 * static_cast<double>(random.index(4)); // along the axes
+    case 0: return kPi / 2.0 * static_cast<double>(random.index(4)); // axis-aligned
     case 1: return std::atan2(target.ay - origin.y, target.ax - origin.x);
     default: return random.uniform(-kPi, kPi);
     }
 }
 
-TEST(Obstacles, RaysEndWhereTheyDoWhenEverySegmentIsLookedAt) {
+TEST(Obstacles, RaysMatchBruteForceOverAllSegments) {
     Random random(11);
     std::size_t hits = 0;
     for (const std::size_t count : {1U, 2U, 3U, 10U, 100U, 1000U}) {
@@ -84,7 +84,7 @@ TEST(Obstacles, RaysEndWhereTheyDoWhenEverySegmentIsLookedAt) {
     EXPECT_GT(hits, 15'000U);
 }
 
-TEST(Obstacles, DistancesAreThoseToTheNearestOfAllSegments) {
+TEST(Obstacles, DistancesMatchBruteForceOverAllSegments) {
     Random random(12);
     for (const std::size_t count : {1U, 2U, 10U, 300U}) {
         for (int world = 0; world < 20; ++world) {
@@ -100,7 +100,7 @@ TEST(Obstacles, DistancesAreThoseToTheNearestOfAllSegments) {
     }
 }
 
-TEST(Obstacles, TheyContainWhatOneOfTheirSolidsContains) {
+TEST(Obstacles, ContainMatchesBruteForceOverAllSolids) {
     Random random(13);
     for (int world = 0; world < 50; ++world) {
         std::vector<Box> solids;
@@ -120,7 +120,7 @@ TEST(Obstacles, TheyContainWhatOneOfTheirSolidsContains) {
     }
 }
 
-TEST(Obstacles, WhereThereAreNoneNothingIsMet) {
+TEST(Obstacles, EmptyObstaclesStopNoRay) {
     const Obstacles none;
     EXPECT_EQ(none.cast_ray({1.0, 2.0}, 0.3, kFar), kFar);
     EXPECT_EQ(none.distance({1.0, 2.0}), kFar);

@@ -7,14 +7,14 @@
 namespace scanloom::robot {
 namespace {
 
-TEST(Random, UniformValuesAreTheSameOnEveryMachine) {
-    // The C++ standard states the 10,000th value of this engine from its default seed.
+TEST(Random, UniformValuesAreEqualOnEveryMachine) {
+    // The C++ standard specifies the 10,000th value of this engine for its default seed.
     Random random(5489);
     for (int i = 0; i < 9999; ++i) static_cast<void>(random.uniform(0.0, 1.0));
     EXPECT_EQ(random.uniform(0.0, 1.0), static_cast<double>(9981545732273789042ULL >> 11) * 0x1p-53);
 }
 
-TEST(Random, GaussianValuesHaveTheirMeanAndDeviation) {
+TEST(Random, GaussianValuesHaveMeanAndDeviation) {
     Random random(5);
     double sum = 0.0;
     double squares = 0.0;
@@ -28,11 +28,11 @@ TEST(Random, GaussianValuesHaveTheirMeanAndDeviation) {
     EXPECT_NEAR(std::sqrt(squares / kCount), 0.5, 0.01);
 }
 
-TEST(Random, IndicesStayInTheirRangeAndMeetAllOfIt) {
+TEST(Random, IndicesCoverTheirRange) {
     Random random(6);
-    int met[3] = {};
-    for (int i = 0; i < 3000; ++i) ++met[random.index(3)];
-    for (const int count : met) EXPECT_GT(count, 900);
+    int counts[3] = {};
+    for (int i = 0; i < 3000; ++i) ++counts[random.index(3)];
+    for (const int count : counts) EXPECT_GT(count, 900);
 }
 
 } // namespace

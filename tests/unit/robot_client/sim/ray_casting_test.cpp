@@ -12,48 +12,49 @@
 namespace scanloom::robot {
 namespace {
 
-TEST(RayCasting, MeetsAWallWhereGeometrySays) {
+TEST(RayCasting, DistanceToAWallMatchesGeometry) {
     const std::vector<Segment> wall = {{2.0, -1.0, 2.0, 1.0}};
     EXPECT_NEAR(cast_ray(wall, {0, 0}, 0.0), 2.0, 1e-12);
     EXPECT_NEAR(cast_ray(wall, {0, 0}, std::atan2(0.5, 2.0)), std::hypot(2.0, 0.5), 1e-12);
     EXPECT_NEAR(cast_ray(wall, {0.5, 0}, 0.0), 1.5, 1e-12);
-    EXPECT_EQ(cast_ray(wall, {0, 0}, kPi), std::numeric_limits<double>::infinity()) << "behind";
-    EXPECT_EQ(cast_ray(wall, {0, 0}, std::atan2(1.1, 2.0)), std::numeric_limits<double>::infinity()) << "beside";
+    EXPECT_EQ(cast_ray(wall, {0, 0}, kPi), std::numeric_limits<double>::infinity()) << "the wall is behind the ray";
+    EXPECT_EQ(cast_ray(wall, {0, 0}, std::atan2(1.1, 2.0)), std::numeric_limits<double>::infinity())
+        << "the ray misses the wall";
 }
 
-TEST(RayCasting, MeetsADiscWhereGeometrySays) {
+TEST(RayCasting, DistanceToADiscMatchesGeometry) {
     constexpr double kNone = std::numeric_limits<double>::infinity();
     const Disc disc{{3.0, 4.0}, 0.5};
     const double ahead = std::atan2(4.0, 3.0);
     EXPECT_NEAR(cast_ray(disc, {0, 0}, ahead), 4.5, 1e-12);
     EXPECT_NEAR(cast_ray(disc, {0, 0}, ahead + std::asin(0.1) * 0.999999), std::sqrt(25.0 - 0.25), 2e-3) << "a tangent";
-    EXPECT_EQ(cast_ray(disc, {0, 0}, ahead - 0.1003), kNone) << "beside";
-    EXPECT_EQ(cast_ray(disc, {0, 0}, ahead + kPi), kNone) << "behind";
-    EXPECT_NEAR(cast_ray(disc, {3.0, 4.0}, 1.0), 0.5, 1e-12) << "from inside";
+    EXPECT_EQ(cast_ray(disc, {0, 0}, ahead - 0.1003), kNone) << "the ray misses the disc";
+    EXPECT_EQ(cast_ray(disc, {0, 0}, ahead + kPi), kNone) << "the disc is behind the ray";
+    EXPECT_NEAR(cast_ray(disc, {3.0, 4.0}, 1.0), 0.5, 1e-12) << "the ray starts inside the disc";
     Random random(5);
     for (int i = 0; i < 1000; ++i) {
         const double yaw = ahead + random.uniform(-0.1, 0.1);
         const Point2 hit = cast_ray(disc, {0, 0}, yaw) * Point2{std::cos(yaw), std::sin(yaw)};
         EXPECT_NEAR(norm(hit - disc.centre), disc.radius, 1e-9);
-        EXPECT_LT(norm(hit), 5.0) << "its near side";
+        EXPECT_LT(norm(hit), 5.0) << "the ray hits the near side";
     }
 }
 
-TEST(RayCasting, AClosedOutlineIsClosedAtItsCorners) {
+TEST(RayCasting, ClosedOutlineHasNoGapsAtCorners) {
     const std::vector<Segment> triangle = {{0.1, 0.1, 3.3, 0.7}, {3.3, 0.7, 1.9, 2.3}, {1.9, 2.3, 0.1, 0.1}};
     Random random(12);
     for (int i = 0; i < 100'000; ++i) {
-        // a point within it, from two of its sides
+        // a point inside the triangle, between two of its sides
         const double u = random.uniform(0.05, 0.9);
         const double v = random.uniform(0.05, 0.95 - u);
         const Point2 origin{0.1 + u * 3.2 + v * 1.8, 0.1 + u * 0.6 + v * 2.2};
         const Segment& corner = triangle[random.index(3)];
         const double yaw = std::atan2(corner.ay - origin.y, corner.ax - origin.x);
-        ASSERT_LT(cast_ray(triangle, origin, yaw), 4.0) << "through the corner at " << corner.ax;
+        ASSERT_LT(cast_ray(triangle, origin, yaw), 4.0) << "the ray passes through the corner at " << corner.ax;
     }
 }
 
-/// The nearest solid by marching along the ray in small steps: slow, but sharing no formula with the code.
+/// Finds the nearest solid by small steps along the ray. It is slow, but shares no formula with the implementation.
 double march(const World& world, const Point2& origin, double yaw, double step) {
     const double step_x = step * std::cos(yaw);
     const double step_y = step * std::sin(yaw);
@@ -79,21 +80,21 @@ protected:
     }
 };
 
-TEST_P(Worlds, RaysAgreeWithMarchingThroughTheSolids) {
+TEST_P(Worlds, RaysMatchMarchingThroughTheSolids) {
     constexpr double kStep = 0.002;
     for (int i = 0; i < 50; ++i) {
         const Point2 origin = free_place();
         const double yaw = random_.uniform(-kPi, kPi);
         const double exact = cast_ray(world_.outlines, origin, yaw);
         const double marched = march(world_, origin, yaw, kStep);
-        // a march may step over the tip of a corner, so it may only be the longer one
+        // the march may step over the tip of a corner, so only its result may be larger
         EXPECT_LE(exact, marched + 1e-9);
         const Point2 hit = origin + (exact + 1e-7) * Point2{std::cos(yaw), std::sin(yaw)};
-        EXPECT_LT(clearance(world_, hit), 1e-6) << "what stops a ray is a solid";
+        EXPECT_LT(clearance(world_, hit), 1e-6) << "a ray must end at a solid";
     }
 }
 
-TEST_P(Worlds, NoRayLeavesTheWorldNotEvenThroughItsCorners) {
+TEST_P(Worlds, NoRayLeavesTheWorld) {
     for (int i = 0; i < 20; ++i) {
         const Point2 origin = free_place();
         for (int beam = 0; beam < 3600; ++beam) {

@@ -19,14 +19,14 @@ Simulator make(const char* world, std::uint64_t seed, std::optional<Noise> noise
     return {{*find_world(world), *find_laser(laser), noise, seed}, std::make_unique<WallFollower>()};
 }
 
-TEST(Simulator, StartsWhereItIsTold) {
+TEST(Simulator, StartsAtTheGivenPose) {
     const Pose2 start{1.2, 3.4, 0.5};
     Simulator simulator({make_room(), *find_laser("reference"), std::nullopt, 1, start},
                         std::make_unique<WallFollower>());
     EXPECT_EQ(simulator.next_scan().pose, start);
 }
 
-TEST(Simulator, PeopleWalkOnBetweenScansAndAreSeen) {
+TEST(Simulator, WalkersMoveBetweenScansAndAreVisible) {
     auto walked = make("room_walker", 3);
     auto still = make("room", 3);
     const double before = walked.world().walkers.at(0).walked;
@@ -36,65 +36,65 @@ TEST(Simulator, PeopleWalkOnBetweenScansAndAreSeen) {
     EXPECT_NEAR(walked.world().walkers.at(0).walked - before, 4.9, 1e-9);
 }
 
-TEST(Simulator, OdometryWithoutNoiseIsTheTruePathFromItsStart) {
+TEST(Simulator, OdometryWithoutNoiseEqualsTheTrajectory) {
     auto simulator = make("room", 2);
     const Pose2 start = simulator.next_scan().pose;
     Scan scan;
     for (int i = 0; i < 600; ++i) scan = simulator.next_scan();
-    const Pose2 believed = compose(start, *scan.odometry);
-    EXPECT_NEAR(believed.x, scan.pose.x, 1e-9);
-    EXPECT_NEAR(believed.y, scan.pose.y, 1e-9);
+    const Pose2 estimated = compose(start, *scan.odometry);
+    EXPECT_NEAR(estimated.x, scan.pose.x, 1e-9);
+    EXPECT_NEAR(estimated.y, scan.pose.y, 1e-9);
 }
 
-TEST(Simulator, OdometryWithNoiseDriftsButNotAway) {
+TEST(Simulator, OdometryNoiseDriftIsBounded) {
     auto simulator = make("room", 2, Noise{});
     const Pose2 start = simulator.next_scan().pose;
     Scan scan;
     for (int i = 0; i < 600; ++i) scan = simulator.next_scan();
-    const Pose2 believed = compose(start, *scan.odometry);
-    const double drift = std::hypot(believed.x - scan.pose.x, believed.y - scan.pose.y);
+    const Pose2 estimated = compose(start, *scan.odometry);
+    const double drift = std::hypot(estimated.x - scan.pose.x, estimated.y - scan.pose.y);
     EXPECT_GT(drift, 1e-4);
     EXPECT_LT(drift, 2.0);
 }
 
-TEST(Simulator, TheSentPoseMayBeThatOfTheOdometry) {
+TEST(Simulator, SentPoseCanBeTheOdometry) {
     SimulatorOptions options{make_room(), *find_laser("reference"), Noise{}, 2};
     options.pose = PoseSent::kOdometry;
     Simulator simulator(std::move(options), std::make_unique<WallFollower>());
-    auto truthful = make("room", 2, Noise{});
+    auto exact_robot = make("room", 2, Noise{});
     const Pose2 start = simulator.pose();
     for (int i = 0; i < 300; ++i) {
         const Scan scan = simulator.next_scan();
-        const Scan exact = truthful.next_scan();
+        const Scan exact = exact_robot.next_scan();
         EXPECT_EQ(scan.pose, compose(start, *scan.odometry));
-        EXPECT_EQ(scan.ranges, exact.ranges) << "where the robot is does not depend on what it believes";
+        EXPECT_EQ(scan.ranges, exact.ranges) << "the real pose must not depend on the estimated pose";
         EXPECT_EQ(simulator.pose(), exact.pose);
         EXPECT_EQ(scan.pose == exact.pose, i == 0) << i;
     }
 }
 
-TEST(Simulator, OdometryNoiseGrowsInProportionToItsScale) {
+TEST(Simulator, OdometryNoiseIsProportionalToItsScale) {
     const auto drift_of = [](double scale) {
         auto simulator = make("room", 2, with_odometry(Noise{.range = 0.0, .beam_angle = 0.0}, scale));
         const Pose2 start = simulator.pose();
         Scan scan;
         for (int i = 0; i < 300; ++i) scan = simulator.next_scan();
-        const Pose2 believed = compose(start, *scan.odometry);
-        return std::hypot(believed.x - scan.pose.x, believed.y - scan.pose.y);
+        const Pose2 estimated = compose(start, *scan.odometry);
+        return std::hypot(estimated.x - scan.pose.x, estimated.y - scan.pose.y);
     };
     EXPECT_LT(drift_of(0.0), 1e-9);
     EXPECT_NEAR(drift_of(0.02) / drift_of(0.01), 2.0, 0.1);
     EXPECT_GT(drift_of(0.01), 1e-5);
 }
 
-TEST(Simulator, ALaserAndSonarsAreReadAtTheSameMomentsOneAfterTheOther) {
+TEST(Simulator, LaserAndSonarScansAlternateWithEqualStamps) {
     SimulatorOptions options{make_office(), *find_laser("reference"), std::nullopt, 4};
     options.sonar = *find_sonar("ring16");
     Simulator both(std::move(options), std::make_unique<WallFollower>());
     auto alone = make("office", 4);
     for (int i = 0; i < 100; ++i) {
         const Scan scan = both.next_scan();
-        EXPECT_EQ(scan, alone.next_scan()) << "it steers by its laser";
+        EXPECT_EQ(scan, alone.next_scan()) << "the robot steers by its laser";
         const Scan heard = both.next_scan();
         EXPECT_EQ(both.sensor_of(scan)->kind, SensorKind::kLaser);
         EXPECT_EQ(both.sensor_of(heard)->kind, SensorKind::kSonar);
@@ -104,12 +104,12 @@ TEST(Simulator, ALaserAndSonarsAreReadAtTheSameMomentsOneAfterTheOther) {
     }
 }
 
-/// How one simulated robot fared.
+/// Results of one simulated drive.
 struct Drive {
-    double clearance_min = 10.0; // from what stands still
+    double clearance_min = 10.0; // distance to static obstacles
     double walker_distance_min = 10.0;
     double path_length = 0.0;
-    double longest_stay = 0.0; // seconds within half a metre
+    double longest_stay = 0.0; // seconds within 0.5 m
     std::size_t square_metres = 0;
     std::uint64_t collisions = 0;
 };
@@ -155,7 +155,7 @@ void PrintTo(const Setting& setting, std::ostream* out) {
 
 class WallFollowerTrials : public testing::TestWithParam<Setting> {};
 
-TEST_P(WallFollowerTrials, ThreeMinutesFromTwentyPlacesWithoutCollisionOrStandstill) {
+TEST_P(WallFollowerTrials, DrivesThreeMinutesWithoutCollisionOrStandstill) {
     const auto [name, laser, noisy] = GetParam();
     const World world = *find_world(name);
     std::size_t square_metres = 0;
@@ -169,7 +169,7 @@ TEST_P(WallFollowerTrials, ThreeMinutesFromTwentyPlacesWithoutCollisionOrStandst
         EXPECT_GT(drive.square_metres, 10U);
         square_metres += drive.square_metres;
     }
-    EXPECT_GT(square_metres / 20, 35U) << "few of them circle in a corner";
+    EXPECT_GT(square_metres / 20, 35U) << "few robots circle in a corner";
 }
 
 INSTANTIATE_TEST_SUITE_P(All, WallFollowerTrials,
@@ -177,7 +177,7 @@ INSTANTIATE_TEST_SUITE_P(All, WallFollowerTrials,
                                          Setting{"office", "reference", false}, Setting{"office", "lidar360", true},
                                          Setting{"hall", "reference", false}, Setting{"hall", "lidar360", true}));
 
-TEST(WallFollowerDrives, ThreeMinutesBySonarAloneWithoutCollision) {
+TEST(WallFollowerDrives, DrivesThreeMinutesBySonarWithoutCollision) {
     for (const char* name : {"room", "office", "hall"}) {
         const World world = *find_world(name);
         for (std::uint64_t seed = 1; seed <= 20; ++seed) {
@@ -190,7 +190,7 @@ TEST(WallFollowerDrives, ThreeMinutesBySonarAloneWithoutCollision) {
     }
 }
 
-TEST(WallFollowerDrives, FiveMinutesWithAWalkerWithoutTouchingHim) {
+TEST(WallFollowerDrives, DrivesFiveMinutesWithoutTouchingAWalker) {
     for (std::uint64_t seed = 1; seed <= 10; ++seed) {
         const Drive drive = watch(make("room_walker", seed), make_room(), 300.0);
         EXPECT_GT(drive.walker_distance_min, kBodyRadius) << seed;
@@ -198,7 +198,7 @@ TEST(WallFollowerDrives, FiveMinutesWithAWalkerWithoutTouchingHim) {
     }
 }
 
-/// The rooms of the office in the order in which the robot came into them: 0 to 4 in the north, 5 to 9 in the south,
+/// Returns the office rooms in the order in which the robot entered them: 0 to 4 in the north, 5 to 9 in the south,
 /// each row from the west.
 std::vector<int> rooms_entered(Simulator simulator, int scans) {
     std::vector<int> entered;
@@ -212,18 +212,18 @@ std::vector<int> rooms_entered(Simulator simulator, int scans) {
     return entered;
 }
 
-TEST(WallFollowerDrives, GoesIntoTheOfficesRoomsThroughTheirDoorsAndOutAgain) {
+TEST(WallFollowerDrives, EntersAndLeavesOfficeRoomsThroughTheirDoors) {
     for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
         for (const bool noisy : {false, true}) {
             const auto rooms = rooms_entered(make("office", seed, noisy ? std::optional(Noise{}) : std::nullopt), 3000);
             EXPECT_GE(rooms.size(), 2U) << seed;
-            EXPECT_EQ(std::set(rooms.begin(), rooms.end()).size(), rooms.size()) << "one after the other";
+            EXPECT_EQ(std::set(rooms.begin(), rooms.end()).size(), rooms.size()) << "each room is entered once";
         }
     }
 }
 
-TEST(WallFollowerDrives, GoesAllAroundTheOfficeThroughEveryRoomOnTheWay) {
-    const auto rooms = rooms_entered(make("office", 3, Noise{}), 13'000); // it starts at a table, and leaves it
+TEST(WallFollowerDrives, VisitsEveryOfficeRoomInOrder) {
+    const auto rooms = rooms_entered(make("office", 3, Noise{}), 13'000); // the robot starts at a table and leaves it
     ASSERT_GE(rooms.size(), 10U);
     EXPECT_EQ(std::vector(rooms.begin(), rooms.begin() + 10), (std::vector{5, 6, 7, 8, 9, 4, 3, 2, 1, 0}));
 }

@@ -14,7 +14,7 @@ namespace {
 
 Sensor ring() { return find_sonar("ring16").value(); }
 
-Point2 place_with_room(const World& world, Random& random) {
+Point2 place_with_clearance(const World& world, Random& random) {
     for (;;) {
         const Box& floor = world.floors[random.index(world.floors.size())];
         const Point2 place{random.uniform(floor.x_min, floor.x_max), random.uniform(floor.y_min, floor.y_max)};
@@ -22,7 +22,7 @@ Point2 place_with_room(const World& world, Random& random) {
     }
 }
 
-TEST(Ring16, IsSixteenConesAllRound) {
+TEST(Ring16, HasSixteenConesInAFullCircle) {
     const Sensor sonar = ring();
     EXPECT_EQ(sonar.kind, SensorKind::kSonar);
     EXPECT_EQ(beam_count(sonar.angles), 16U);
@@ -34,8 +34,8 @@ TEST(Ring16, IsSixteenConesAllRound) {
     EXPECT_EQ(find_sonar("bat").error().message, "there are no sonars 'bat'; choose ring16");
 }
 
-/// The least reading of a fan of rays, and of rays to every end and foot of an outline within the cone: each is looked
-/// at alone, with nothing left out.
+/// Returns the smallest distance of a fan of rays, and of rays to every end and perpendicular foot of an outline inside
+/// the cone. Each ray is computed separately.
 double nearest_ray(const World& world, const Point2& origin, double yaw, double aperture) {
     std::vector<double> directions;
     for (int n = 0; n <= 200; ++n) directions.push_back(yaw + (n / 200.0 - 0.5) * aperture);
@@ -46,7 +46,7 @@ double nearest_ray(const World& world, const Point2& origin, double yaw, double 
     for (const Segment& side : world.outlines) {
         add(side.ax, side.ay);
         add(std::clamp(origin.x, std::min(side.ax, side.bx), std::max(side.ax, side.bx)),
-            std::clamp(origin.y, std::min(side.ay, side.by), std::max(side.ay, side.by))); // sides lie along the axes
+            std::clamp(origin.y, std::min(side.ay, side.by), std::max(side.ay, side.by))); // sides are axis-aligned
     }
     double nearest = HUGE_VAL;
     for (const double direction : directions) {
@@ -58,13 +58,13 @@ double nearest_ray(const World& world, const Point2& origin, double yaw, double 
     return nearest;
 }
 
-TEST(Listen, HearsTheNearestThingThatAnyRayWithinTheConeMeets) {
+TEST(Listen, MatchesTheNearestRayInsideTheCone) {
     const Sensor sonar = ring();
     Random random(8);
     for (const NamedWorld& named : kWorlds) {
         const World world = named.make();
         for (int i = 0; i < 15; ++i) {
-            const Point2 place = place_with_room(world, random);
+            const Point2 place = place_with_clearance(world, random);
             const Pose2 pose{place.x, place.y, random.uniform(-kPi, kPi)};
             const auto ranges = listen(world, sonar, pose, std::nullopt, random);
             ASSERT_EQ(ranges.size(), 16U);
@@ -74,7 +74,7 @@ TEST(Listen, HearsTheNearestThingThatAnyRayWithinTheConeMeets) {
                 if (wanted >= 5.0) {
                     ASSERT_EQ(ranges[beam], kNoReturn) << named.name;
                 } else {
-                    // a walker's nearest point may lie between two rays: they are 0.15 degrees apart
+                    // a walker's nearest point can lie between two rays, which are 0.15 degrees apart
                     ASSERT_NEAR(ranges[beam] / 1000.0, wanted, 0.0015) << named.name << ' ' << i << ' ' << beam;
                 }
             }
@@ -82,7 +82,7 @@ TEST(Listen, HearsTheNearestThingThatAnyRayWithinTheConeMeets) {
     }
 }
 
-TEST(Listen, NoiseHasItsSizeAndMakesNoReturns) {
+TEST(Listen, NoiseHasItsDeviationAndKeepsNoReturns) {
     const World room = make_room();
     const Sensor sonar = ring();
     Random random(4);

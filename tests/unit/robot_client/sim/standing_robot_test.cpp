@@ -10,7 +10,7 @@
 namespace scanloom::robot {
 namespace {
 
-/// The office, whose robots may stand in its north-western rooms only.
+/// Returns an office whose robots start in its north-western rooms only.
 World rooms() {
     World office = make_office();
     office.starts = {{-15.0, 4.5, -3.0, 10.0}};
@@ -19,7 +19,7 @@ World rooms() {
 
 double apart(const Point2& a, const Point2& b) { return norm(a - b); }
 
-TEST(StandingRobot, IsWhereRobotsMayBePutThoughADoorIsShut) {
+TEST(StandingRobot, StartsInAllowedPlacesWithAClosedDoor) {
     const World office = rooms();
     Random random(1);
     for (const Box& door : doors_of(office)) {
@@ -33,7 +33,7 @@ TEST(StandingRobot, IsWhereRobotsMayBePutThoughADoorIsShut) {
     }
 }
 
-TEST(StandingRobot, DoorsShutOffWhatIsBehindThem) {
+TEST(StandingRobot, ClosedDoorsBlockTheView) {
     const World office = make_office();
     const Pose2 corridor{-13.6, 3.0, 0.0};
     const Pose2 room{-13.6, 5.0, 0.0};
@@ -42,12 +42,12 @@ TEST(StandingRobot, DoorsShutOffWhatIsBehindThem) {
     for (const World& world : {make_room(), make_office(), make_hall()}) {
         for (const Box& door : doors_of(world)) {
             const Point2 middle{0.5 * (door.x_min + door.x_max), 0.5 * (door.y_min + door.y_max)};
-            EXPECT_GT(clearance(world, middle), 0.0) << world.name << ": nothing stands where the door is";
+            EXPECT_GT(clearance(world, middle), 0.0) << world.name << ": the door must be in free space";
         }
     }
 }
 
-TEST(StandingRobot, ItsTwoPlacesAreAStepOrTwoApart) {
+TEST(StandingRobot, PairsOfPlacesAreAStepOrTwoApart) {
     const World office = rooms();
     for (std::uint64_t seed = 0; seed < 10; ++seed) {
         const auto captures = two_captures(office, doors_of(office), seed, 1);
@@ -59,7 +59,7 @@ TEST(StandingRobot, ItsTwoPlacesAreAStepOrTwoApart) {
     }
 }
 
-TEST(MappedWorld, EachOfItsPlacesIsNearAnEarlierOne) {
+TEST(MappedWorld, EachPlaceIsNearAnEarlierOne) {
     for (std::uint64_t seed = 0; seed < 5; ++seed) {
         const auto mapped = mapped_world(make_hall(), 6, seed);
         ASSERT_EQ(mapped.map.size(), 6U);
@@ -74,7 +74,7 @@ TEST(MappedWorld, EachOfItsPlacesIsNearAnEarlierOne) {
     }
 }
 
-TEST(MappedWorld, ItsViewsAreInTheWorldsFrameAndTheRobotsInItsOwn) {
+TEST(MappedWorld, ViewsAreInTheWorldFrameAndTheRobotsInItsOwn) {
     const World room = make_room();
     const auto mapped = mapped_world(room, 2, 1);
     const Box bounds = widened(bounds_of(room), 0.1);

@@ -9,7 +9,7 @@
 namespace scanloom::robot {
 namespace {
 
-/// Rows from the top: # occupied, . free, blank outside.
+/// Draws the grid, rows from the top: '#' occupied, '.' free, ' ' outside.
 std::string drawn(const TruthGrid& grid) {
     std::string text;
     for (std::int32_t j = grid.j_begin + grid.height - 1; j >= grid.j_begin; --j) {
@@ -21,7 +21,7 @@ std::string drawn(const TruthGrid& grid) {
     return text;
 }
 
-/// 1 x 1 m with walls of 0.2 m, and a box whose upper side lies within a cell.
+/// Returns a closet of 1 x 1 m with walls of 0.2 m and a box whose upper side lies inside a cell.
 World closet() {
     return make_world("closet",
                       {{-0.2, -0.2, 1.2, 0.0},
@@ -32,7 +32,7 @@ World closet() {
                       {{0.0, 0.0, 1.0, 1.0}});
 }
 
-TEST(TruthGrid, RoundingPutsNoSolidIntoTheNextCell) {
+TEST(TruthGrid, RoundingMarksNoAdjacentCell) {
     const auto tenths = truth_of(make_world("", {{0.0, 0.0, 1.1, 0.3}}, {}), 0.1); // 1.1 * 10 > 11
     EXPECT_EQ(tenths.width, 11);
     EXPECT_EQ(tenths.height, 3);
@@ -42,7 +42,7 @@ TEST(TruthGrid, RoundingPutsNoSolidIntoTheNextCell) {
     EXPECT_EQ(hundredths.height, 7);
 }
 
-TEST(TruthGrid, WhatNoWayLeadsToIsOutside) {
+TEST(TruthGrid, UnreachableCellsAreOutside) {
     World world = closet();
     world.solids.push_back({0.0, 0.6, 1.0, 0.8});
     world.floors = {{0.0, 0.0, 1.0, 0.6}};
@@ -57,13 +57,13 @@ TEST(TruthGrid, WhatNoWayLeadsToIsOutside) {
     EXPECT_EQ(truth_of(world, 0.2).at(1000, 0), Truth::kOutside);
 }
 
-TEST(TruthGrid, WalkersAreNoPartOfIt) {
+TEST(TruthGrid, WalkersAreExcluded) {
     EXPECT_EQ(truth_of(make_room_walker(), 0.1).cells, truth_of(make_room(), 0.1).cells);
 }
 
 class TruthGrids : public testing::TestWithParam<double> {};
 
-TEST_P(TruthGrids, AgreeWithTheSolidsAtEveryCellOfTheOffice) {
+TEST_P(TruthGrids, MatchTheSolidsInEveryCellOfTheOffice) {
     const World office = make_office();
     const double size = GetParam();
     const auto grid = truth_of(office, size);

@@ -8,7 +8,7 @@
 namespace scanloom::robot {
 namespace {
 
-/// Once round in 8 s.
+/// Returns a walker with a loop of 8 s.
 Walker square() { return {.loop = {{0, 0}, {2, 0}, {2, 2}, {0, 2}}, .radius = 0.25, .pace = 1.0}; }
 
 Point2 place_after(double seconds) {
@@ -17,7 +17,7 @@ Point2 place_after(double seconds) {
     return body_of(walker).centre;
 }
 
-TEST(Walker, GoesRoundItsLoopAtItsPace) {
+TEST(Walker, FollowsItsLoopAtItsPace) {
     EXPECT_LT(norm(place_after(0.0) - Point2{0, 0}), 1e-9);
     EXPECT_LT(norm(place_after(1.5) - Point2{1.5, 0}), 1e-9);
     EXPECT_LT(norm(place_after(3.0) - Point2{2, 1}), 1e-9);
@@ -26,7 +26,7 @@ TEST(Walker, GoesRoundItsLoopAtItsPace) {
     EXPECT_EQ(body_of(square()).radius, 0.25);
 }
 
-TEST(Walker, WaitsForARobotInItsWayAndGoesOnWhenItHasGone) {
+TEST(Walker, WaitsForARobotAndContinuesWhenItLeaves) {
     Walker walker = square();
     for (int step = 0; step < 200; ++step) walk(walker, {1.5, 0.0}, 0.05);
     const double distance_waiting = norm(body_of(walker).centre - Point2{1.5, 0.0});
@@ -36,14 +36,14 @@ TEST(Walker, WaitsForARobotInItsWayAndGoesOnWhenItHasGone) {
     EXPECT_GT(body_of(walker).centre.x, 1.5);
 }
 
-TEST(Walker, GoesAwayFromARobotThatCameTooNear) {
+TEST(Walker, MovesAwayFromATooNearRobot) {
     Walker walker = square();
     walker.walked = 1.0;
     for (int step = 0; step < 20; ++step) walk(walker, {0.5, 0.0}, 0.05);
     EXPECT_NEAR(body_of(walker).centre.x, 2.0, 1e-9);
 }
 
-TEST(Walker, StandsInARobotsWay) {
+TEST(Walker, ReducesTheClearance) {
     World world = make_room();
     world.walkers = {square()};
     world.walkers[0].loop = {{3.5, -3.0}, {3.5, -2.0}};
@@ -53,7 +53,7 @@ TEST(Walker, StandsInARobotsWay) {
     EXPECT_GT(drive(world, {3.05, -3.0, 0.0}, {0.4, 0.1}).forward, 0.0);
 }
 
-TEST(Walker, ItsLoopInTheRoomKeepsClearOfTheFurniture) {
+TEST(Walker, RoomLoopKeepsClearOfTheFurniture) {
     const World room = make_room();
     Walker walker = make_room_walker().walkers.at(0);
     for (int step = 0; step < 400; ++step) {

@@ -10,11 +10,11 @@
 namespace scanloom::robot {
 namespace {
 
-TEST(FindWorld, AnUnknownNameListsTheWorldsThereAre) {
+TEST(FindWorld, UnknownNameListsTheWorlds) {
     EXPECT_EQ(find_world("moon").error().message, "there is no world 'moon'; choose room, room_walker, office or hall");
 }
 
-TEST(FindWorld, EachWorldHasItsName) {
+TEST(FindWorld, WorldsAreFoundByName) {
     for (const NamedWorld& world : kWorlds) EXPECT_EQ(find_world(world.name)->name, world.name);
 }
 
@@ -25,7 +25,7 @@ TEST(Hall, IsSixtyByFortyMetres) {
     EXPECT_EQ(make_hall().floors.at(0), (Box{-30.0, -20.0, 30.0, 20.0}));
 }
 
-TEST(Hall, WhatDoesNotTouchIsFarEnoughApartForARobot) {
+TEST(Hall, GapsBetweenBoxesAreWideEnoughForARobot) {
     const World hall = make_hall();
     for (const Box& a : hall.solids) {
         for (const Box& b : hall.solids) {

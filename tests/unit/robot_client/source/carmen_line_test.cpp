@@ -37,7 +37,7 @@ std::string flaser_with(std::size_t beams) {
     return line + " 1 2 0.3 4 5 0.6 13.5 host 13.6";
 }
 
-TEST(CarmenLine, FlaserCarriesLaserPoseThenOdometry) {
+TEST(CarmenLine, FlaserContainsLaserPoseThenOdometry) {
     const auto scan = scan_of("FLASER 3 1.0 2.5 81.83 1 2 0.3 4 5 0.6 13.5 host 0.25");
     EXPECT_EQ(scan.kind, CarmenKind::kFlaser);
     EXPECT_EQ(scan.ranges, (std::vector<RangeMm>{1000, 2500, 81'830}));
@@ -47,18 +47,19 @@ TEST(CarmenLine, FlaserCarriesLaserPoseThenOdometry) {
     EXPECT_FALSE(scan.range_max);
 }
 
-TEST(CarmenLine, FlaserTrailerMayLackTheFirstStampOrBeAbsent) {
+TEST(CarmenLine, FlaserTrailerMayOmitStamps) {
     EXPECT_EQ(scan_of("FLASER 1 1.0 1 2 0.3 4 5 0.6 host 7.5").stamp, 7.5);
     EXPECT_EQ(scan_of("FLASER 1 1.0 1 2 0.3 4 5 0.6").stamp, std::nullopt);
 }
 
-TEST(CarmenLine, FlaserAnglesFollowFromTheNumberOfBeams) {
+TEST(CarmenLine, FlaserAnglesFollowFromTheBeamCount) {
     const auto angles = [](std::size_t beams) { return scan_of(flaser_with(beams)).angles; };
     EXPECT_EQ(angles(180), (UniformAngles{-90.0 * kDegree, kDegree, 180}));
     EXPECT_EQ(angles(181), (UniformAngles{-90.0 * kDegree, kDegree, 181}));
     EXPECT_EQ(angles(360).increment, std::numbers::pi / 360.0);
     EXPECT_EQ(angles(361).increment, std::numbers::pi / 360.0);
-    EXPECT_NEAR(angles(180).first + 179 * angles(180).increment, 89.0 * kDegree, 1e-12) << "not stretched to +90";
+    EXPECT_NEAR(angles(180).first + 179 * angles(180).increment, 89.0 * kDegree, 1e-12)
+        << "the angles must not be stretched to +90 degrees";
     EXPECT_NEAR(angles(682).first + 681 * angles(682).increment, 90.0 * kDegree, 1e-12);
     EXPECT_EQ(angles(1).first, 0.0);
 }
@@ -66,7 +67,7 @@ TEST(CarmenLine, FlaserAnglesFollowFromTheNumberOfBeams) {
 constexpr std::string_view kRobotLaserHead = "ROBOTLASER1 0 -1.5708 3.1416 0.0175 50.0 0.01 0 3 1.0 60.0 2.0 ";
 constexpr std::string_view kPoses = "1.0 2.0 0.3 1.1 2.1 0.31 0 0 0 0 ";
 
-TEST(CarmenLine, RobotLaserIsReadInEachOfItsForms) {
+TEST(CarmenLine, RobotLaserIsReadInEachForm) {
     for (const std::string_view remissions : {"", "0 ", "3 7 8 9 "}) {
         for (const std::string_view trailer : {"13.0 host 13.1", ""}) {
             for (const std::string_view turn_axis : {"0.25 ", ""}) {
@@ -81,24 +82,24 @@ TEST(CarmenLine, RobotLaserIsReadInEachOfItsForms) {
     }
 }
 
-TEST(CarmenLine, RobotLaserWithOnlyTheLoggersStampIsRead) {
+TEST(CarmenLine, RobotLaserUsesTheLoggersStampIfItIsTheOnlyOne) {
     EXPECT_EQ(scan_of(fmt::format("{}0 {}0 host 13.1", kRobotLaserHead, kPoses)).stamp, 13.1);
 }
 
-TEST(CarmenLine, RobotLaserStatesItsAnglesAndItsRange) {
+TEST(CarmenLine, RobotLaserContainsAnglesAndRange) {
     const auto scan = scan_of(fmt::format("{}0 {}0 13.0 host 13.1", kRobotLaserHead, kPoses));
     EXPECT_EQ(scan.angles, (UniformAngles{-1.5708, 0.0175, 3}));
     EXPECT_EQ(scan.range_max, 50.0);
     EXPECT_EQ(scan.sensor, 0U);
 }
 
-TEST(CarmenLine, FullTurnOfAFloat32IncrementIsRead) {
+TEST(CarmenLine, FullTurnWithFloat32IncrementIsRead) {
     std::string line = "ROBOTLASER1 0 0.0 6.2831853 0.017501922 3.5 0.01 0 360 ";
     for (int beam = 0; beam < 360; ++beam) line += "1.0 ";
     EXPECT_EQ(scan_of(fmt::format("{}0 {}0 13.0 host 13.1", line, kPoses)).ranges.size(), 360U);
 }
 
-TEST(CarmenLine, RawLaserNeedsNoPoses) {
+TEST(CarmenLine, RawLaserIsReadWithoutPoses) {
     for (const std::string_view tail : {"0 13.0 host 13.1", "2 5 6 13.0 host 13.1", "13.0 host 13.1", "0"}) {
         const auto line = fmt::format("RAWLASER1 0 -1.5708 3.1416 0.0175 81.9 0.01 0 2 1.0 2.0 {}", tail);
         EXPECT_EQ(scan_of(line).kind, CarmenKind::kRawLaser) << line;
@@ -106,12 +107,12 @@ TEST(CarmenLine, RawLaserNeedsNoPoses) {
     }
 }
 
-TEST(CarmenLine, ReadingsAreMillimetresInfiniteOnesNoReturnsAndOthersInvalid) {
+TEST(CarmenLine, ReadingsAreMillimetresNoReturnOrInvalid) {
     const auto scan = scan_of("FLASER 6 nan inf -inf -1 1e999 5e6 1 2 0.3 4 5 0.6 13.5 host 0.25");
     EXPECT_EQ(scan.ranges, (std::vector<RangeMm>{0, kNoReturn, 0, 0, kNoReturn, kNoReturn}));
 }
 
-TEST(CarmenLine, OtherLinesAreReadOver) {
+TEST(CarmenLine, OtherLinesAreIgnored) {
     for (const std::string_view line : {"", "   ", "# FLASER 1", "NEFF 15", "SYNC x", "IMU 1 2",
                                         "PARAM robot_width 1 h 2", "ODOM broken", "\xff\xfe\x01"}) {
         auto parsed = parse_carmen_line(line);
@@ -128,7 +129,7 @@ TEST(CarmenLine, OdometryAndLaserOffsetAreRead) {
     EXPECT_EQ(std::get<CarmenLaserOffset>(*offset).forward, -0.04);
 }
 
-TEST(CarmenLine, EachBrokenLineSaysWhatIsWrong) {
+TEST(CarmenLine, InvalidLineIsRefusedWithTheReason) {
     EXPECT_THAT(error_of("FLASER"), HasSubstr("FLASER: the number of beams"));
     EXPECT_THAT(error_of("FLASER x 1 2"), HasSubstr("number of beams"));
     EXPECT_THAT(error_of("FLASER -3 1 2"), HasSubstr("number of beams"));
@@ -149,13 +150,13 @@ TEST(CarmenLine, EachBrokenLineSaysWhatIsWrong) {
     EXPECT_THAT(error_of(fmt::format("{}0 1 2 3", kRobotLaserHead)), HasSubstr("fit no form"));
 }
 
-TEST(CarmenLine, MessagesShowNoControlCharactersAndNoEndlessTokens) {
+TEST(CarmenLine, MessagesOmitControlCharactersAndLongTokens) {
     const auto message = error_of("FLASER 1 \x1b[2J" + std::string(5000, 'x') + " 1 2 0.3 4 5 0.6");
     EXPECT_LT(message.size(), 100U);
     EXPECT_EQ(message.find('\x1b'), std::string::npos);
 }
 
-TEST(CarmenLine, NoTruncationOfALineCrashes) {
+TEST(CarmenLine, TruncatedLinesDoNotCrash) {
     const std::string line = fmt::format("{}2 7 8 {}0 13.0 host 13.1", kRobotLaserHead, kPoses);
     for (std::size_t length = 0; length <= line.size(); ++length) {
         const auto parsed = parse_carmen_line(std::string_view(line).substr(0, length));

@@ -54,10 +54,10 @@ std::string robot_laser(std::string_view laser, std::string_view robot, double r
                        range_max, laser, robot);
 }
 
-/// The text of a log, from lines that end with their line break.
+/// Returns the text of a log, given lines that end with a line break.
 std::string text_of(std::initializer_list<std::string_view> lines) { return fmt::format("{}", fmt::join(lines, "")); }
 
-TEST_F(CarmenLogFile, ReadsTheSamePlainAndPacked) {
+TEST_F(CarmenLogFile, ReadsPlainAndCompressedFiles) {
     std::string text = "# comment\r\n";
     for (int i = 0; i < 3000; ++i) text += flaser(i);
     const auto plain = read(text);
@@ -73,20 +73,20 @@ TEST_F(CarmenLogFile, ReadsTheSamePlainAndPacked) {
     }
 }
 
-TEST_F(CarmenLogFile, ALastLineWithoutLineBreakCounts) {
+TEST_F(CarmenLogFile, ReadsALastLineWithoutLineBreak) {
     auto text = text_of({flaser(1), flaser(2)});
     text.pop_back();
     EXPECT_EQ(read(text)->observations.size(), 2U);
 }
 
-/// One beam of each scan, by which the scan is known.
+/// Returns one reading of each scan; it identifies the scan.
 std::vector<RangeMm> first_ranges(const WholeLog& log) {
     std::vector<RangeMm> ranges;
     for (const auto& observation : log.observations) ranges.push_back(observation.scan.ranges[0]);
     return ranges;
 }
 
-TEST_F(CarmenLogFile, PartsOutOfTheirPlaceComeInOrderOfTimeAndEqualTimesInOrderOfTheFile) {
+TEST_F(CarmenLogFile, MisplacedPartsAreSortedByStampThenByFileOrder) {
     const auto log =
         read(text_of({flaser(30, "1 0.3"), flaser(10, "1 0.1"), flaser(20, "1 0.21"), flaser(20, "1 0.22")}));
     ASSERT_TRUE(log);
@@ -96,7 +96,7 @@ TEST_F(CarmenLogFile, PartsOutOfTheirPlaceComeInOrderOfTimeAndEqualTimesInOrderO
     EXPECT_DOUBLE_EQ(log->stamps.back_max, 20.0);
 }
 
-TEST_F(CarmenLogFile, StampsThatJitterLeaveTheOrderOfTheFile) {
+TEST_F(CarmenLogFile, JitteringStampsKeepTheFileOrder) {
     const auto log = read(text_of({flaser(3, "1 0.1"), flaser(1, "1 0.2"), flaser(2, "1 0.3"), flaser(1.5, "1 0.4")}));
     ASSERT_TRUE(log);
     EXPECT_EQ(first_ranges(*log), (std::vector<RangeMm>{100, 200, 300, 400}));
@@ -105,22 +105,23 @@ TEST_F(CarmenLogFile, StampsThatJitterLeaveTheOrderOfTheFile) {
     EXPECT_DOUBLE_EQ(log->stamps.back_max, 2.0);
 }
 
-TEST_F(CarmenLogFile, TheFingerprintFollowsTheOrderOfTheScans) {
+TEST_F(CarmenLogFile, FingerprintDependsOnTheScanOrder) {
     const auto rising = text_of({flaser(1), flaser(2), flaser(3)});
     const auto jittering = text_of({flaser(2), flaser(1), flaser(3)});
     EXPECT_NE(read(rising)->fingerprint, read(jittering)->fingerprint);
     EXPECT_EQ(read(flaser(1))->fingerprint, "carmen:d4bfaa8d490f9a80ff3f167a63709ac5");
-    EXPECT_NE(read(jittering)->fingerprint, "carmen:b4e2f736ab9cae529515ea4b23307515") << "once sent strictly by stamp";
+    EXPECT_NE(read(jittering)->fingerprint, "carmen:b4e2f736ab9cae529515ea4b23307515")
+        << "the fingerprint of the order by stamp";
 }
 
-TEST_F(CarmenLogFile, ALineWithoutStampTakesThatOfTheLineBefore) {
+TEST_F(CarmenLogFile, LineWithoutStampUsesThePreviousStamp) {
     const auto log = read(text_of({flaser(5), "FLASER 1 0.7 0 0 0 0 0 0\n", flaser(1)}));
     EXPECT_EQ(log->observations[1].scan.stamp, 5.0);
     EXPECT_EQ(log->observations[2].scan.stamp, 5.0);
     EXPECT_EQ(log->observations[2].scan.ranges[0], 700U);
 }
 
-TEST_F(CarmenLogFile, BrokenLinesAreSkippedCountedAndNamed) {
+TEST_F(CarmenLogFile, BrokenLinesAreSkippedCountedAndReported) {
     const auto log = read(text_of({flaser(1), "FLASER 3 1 2\n", flaser(2), "FLASER 1 1.0 nan 0 0 0 0 0 3 host 3\n"}));
     ASSERT_TRUE(log);
     EXPECT_EQ(log->observations.size(), 2U);
@@ -131,7 +132,7 @@ TEST_F(CarmenLogFile, BrokenLinesAreSkippedCountedAndNamed) {
     EXPECT_EQ(skipped_[1].line_number, 4U);
 }
 
-TEST_F(CarmenLogFile, LaserLinesOfUnreadKindsAreCountedAndNamedOnceForEachKind) {
+TEST_F(CarmenLogFile, UnsupportedLaserLinesAreCountedAndReportedOncePerKind) {
     const auto log = read(
         text_of({"RLASER 1 1.0 0 0 0 0 0 0 1 host 1\n", flaser(1), "LASER3 1 1.0 1 host 1\n",
                  "RLASER 1 1.0 0 0 0 0 0 0 2 host 2\n", "RAWLASER2 0 0 3 0.1 30 0 0 1 1.0 0\n", "POSITION 1 2 3\n"}));
@@ -147,7 +148,7 @@ TEST_F(CarmenLogFile, LaserLinesOfUnreadKindsAreCountedAndNamedOnceForEachKind) 
     EXPECT_EQ(log->fingerprint, read(flaser(1))->fingerprint);
 }
 
-TEST_F(CarmenLogFile, AByteOrderMarkCostsNoLine) {
+TEST_F(CarmenLogFile, ByteOrderMarkIsIgnored) {
     const auto text = text_of({flaser(1), flaser(2)});
     for (const auto& bytes : {"\xEF\xBB\xBF" + text, gzip("\xEF\xBB\xBF" + text)}) {
         const auto log = read(bytes);
@@ -157,7 +158,7 @@ TEST_F(CarmenLogFile, AByteOrderMarkCostsNoLine) {
     }
 }
 
-TEST_F(CarmenLogFile, FlaserPoseIsTheFirstTripleAndOdometryTheSecond) {
+TEST_F(CarmenLogFile, FlaserPoseIsTheFirstTripleAndOdometryIsTheSecond) {
     const auto log = read("FLASER 1 1.0 1 2 0.5 3 4 0.7 9.5 host 1\n");
     const auto& [sensor, scan] = log->observations[0];
     EXPECT_EQ(scan.pose, (Pose2{1, 2, 0.5}));
@@ -166,21 +167,21 @@ TEST_F(CarmenLogFile, FlaserPoseIsTheFirstTripleAndOdometryTheSecond) {
     EXPECT_EQ(sensor->range_max, kCarmenRangeMax);
 }
 
-TEST_F(CarmenLogFile, RangesAreMillimetresAndFailedOnesInvalid) {
+TEST_F(CarmenLogFile, RangesAreMillimetresOrInvalid) {
     const auto log = read(flaser(1, "6 1.2345 0 -1 nan -inf 0.0004"));
     EXPECT_EQ(log->observations[0].scan.ranges, (std::vector<RangeMm>{1235, 0, 0, 0, 0, 0}));
 }
 
-TEST_F(CarmenLogFile, AnInfiniteReadingIsOneWithoutReturn) {
+TEST_F(CarmenLogFile, InfiniteReadingIsANoReturn) {
     const std::string text = flaser(1, "2 1.0 inf");
     EXPECT_EQ(read(text)->observations[0].scan.ranges, (std::vector<RangeMm>{1000, 0}))
-        << "dropped as in all such logs";
+        << "no-returns of such logs are dropped by default";
     CarmenOptions free;
     free.no_return = NoReturn::kFree;
     EXPECT_EQ(read(text, free)->observations[0].scan.ranges, (std::vector<RangeMm>{1000, kNoReturn}));
 }
 
-TEST_F(CarmenLogFile, FlaserDropsBeamsWithoutReturnUnlessAskedToFree) {
+TEST_F(CarmenLogFile, FlaserDropsNoReturnsByDefault) {
     const std::string text = flaser(1, "4 49.9994 49.9996 50 81.83");
     EXPECT_EQ(read(text)->observations[0].scan.ranges, (std::vector<RangeMm>{49999, 0, 0, 0}));
     CarmenOptions free;
@@ -189,7 +190,7 @@ TEST_F(CarmenLogFile, FlaserDropsBeamsWithoutReturnUnlessAskedToFree) {
               (std::vector<RangeMm>{49999, kNoReturn, kNoReturn, kNoReturn}));
 }
 
-TEST_F(CarmenLogFile, ALaserSeesNoFurtherThanItsLineStatesHoweverMuchIsBelieved) {
+TEST_F(CarmenLogFile, RangeMaxIsLimitedByTheLine) {
     CarmenOptions far;
     far.range_max = 1000.0;
     EXPECT_EQ(read(robot_laser("0 0 0", "0 0 0", 5.0), far)->observations[0].sensor->range_max, 5.0);
@@ -197,7 +198,7 @@ TEST_F(CarmenLogFile, ALaserSeesNoFurtherThanItsLineStatesHoweverMuchIsBelieved)
     EXPECT_EQ(read(robot_laser("0 0 0", "0 0 0", 80.0))->observations[0].sensor->range_max, kCarmenRangeMax);
 }
 
-TEST_F(CarmenLogFile, RobotLaserFreesBeamsWithoutReturnUnlessAskedToDrop) {
+TEST_F(CarmenLogFile, RobotLaserKeepsNoReturnsByDefault) {
     const std::string text = robot_laser("0 0 0", "0 0 0", 30.0);
     const auto log = read(text);
     EXPECT_EQ(log->observations[0].scan.ranges, (std::vector<RangeMm>{1000, kNoReturn}));
@@ -207,7 +208,7 @@ TEST_F(CarmenLogFile, RobotLaserFreesBeamsWithoutReturnUnlessAskedToDrop) {
     EXPECT_EQ(read(text, drop)->observations[0].scan.ranges[1], kInvalidRange);
 }
 
-TEST_F(CarmenLogFile, TheUsersMaximumRangeBeatsTheLogs) {
+TEST_F(CarmenLogFile, MaximumRangeOptionOverridesTheLog) {
     CarmenOptions options;
     options.range_max = 1.5;
     const auto log = read(text_of({flaser(1, "2 1.0 2.0"), robot_laser("0 0 0", "0 0 0", 30.0)}), options);
@@ -216,8 +217,8 @@ TEST_F(CarmenLogFile, TheUsersMaximumRangeBeatsTheLogs) {
     EXPECT_EQ(log->observations[1].scan.ranges, (std::vector<RangeMm>{1000, kNoReturn}));
 }
 
-TEST_F(CarmenLogFile, PoseTimesMountIsTheLaserPoseAsLogged) {
-    // the second line differs by the rounding of six decimals, the third by a real move of the laser
+TEST_F(CarmenLogFile, PoseTimesMountIsTheLoggedLaserPose) {
+    // The second line differs by the rounding of six decimals, the third by a movement of the laser.
     const auto log =
         read(text_of({robot_laser("1.25 2.5 0.3", "1.0 2.4 0.31"), robot_laser("1.250001 2.5 0.3", "1.0 2.4 0.31"),
                       robot_laser("1.35 2.5 0.3", "1.0 2.4 0.31")}));
@@ -236,7 +237,7 @@ TEST_F(CarmenLogFile, PoseTimesMountIsTheLaserPoseAsLogged) {
     EXPECT_NE(log->observations[0].sensor, log->observations[2].sensor);
 }
 
-TEST_F(CarmenLogFile, BeamCountsMayVaryUnderOneDescription) {
+TEST_F(CarmenLogFile, BeamCountMayVaryWithOneSensorDescription) {
     const auto log =
         read(text_of({robot_laser("0 0 0", "0 0 0"),
                       "ROBOTLASER1 0 -1.5 3 0.1 30 0.01 0 3 1 1 1 0 0 0 0 0 0 0 0 0 0 0 0 14.0 host 13.1\n"}));
@@ -246,39 +247,39 @@ TEST_F(CarmenLogFile, BeamCountsMayVaryUnderOneDescription) {
 
 constexpr std::string_view kRawLaser = "RAWLASER1 0 -1.5 3 0.1 30 0.01 0 1 1.0 0 10.5 host 1\n";
 
-TEST_F(CarmenLogFile, RawLaserTakesItsPoseFromTheOdometryAroundIt) {
+TEST_F(CarmenLogFile, RawLaserPoseIsInterpolatedFromOdometry) {
     const auto log = read(text_of({"PARAM robot_frontlaser_offset 0.1 1 h 1\nODOM 2 4 3.1 0 0 0 10.25 h 1\n", kRawLaser,
                                    "ODOM 4 8 -3.1 0 0 0 10.75 h 1\n"}));
     ASSERT_TRUE(log);
     const auto& [sensor, scan] = log->observations[0];
     EXPECT_NEAR(scan.pose.x, 3.0, 1e-12);
     EXPECT_NEAR(scan.pose.y, 6.0, 1e-12);
-    EXPECT_NEAR(std::abs(scan.pose.yaw), 3.14159, 1e-4) << "the short way round";
+    EXPECT_NEAR(std::abs(scan.pose.yaw), 3.14159, 1e-4) << "the yaw is interpolated along the shorter arc";
     EXPECT_EQ(sensor->mount, (Pose2{0.1, 0, 0}));
 }
 
-TEST_F(CarmenLogFile, RawLaserWithoutOdometryNearIsSkipped) {
+TEST_F(CarmenLogFile, RawLaserWithoutNearbyOdometryIsSkipped) {
     const auto log = read(text_of({"ODOM 2 4 0 0 0 0 8 h 1\n", kRawLaser}));
     ASSERT_FALSE(log);
     EXPECT_THAT(skipped_.at(0).reason, HasSubstr("no ODOM line within 1 s"));
 }
 
-TEST_F(CarmenLogFile, RawLaserIsNotASecondViewOfAnotherLine) {
+TEST_F(CarmenLogFile, RawLaserIsIgnoredNextToRobotLaser) {
     const auto log = read(text_of({robot_laser("0 0 0", "0 0 0"), "ODOM 2 4 0 0 0 0 10.5 h 1\n", kRawLaser}));
     EXPECT_EQ(log->observations.size(), 1U);
     EXPECT_EQ(log->skipped_lines, 0U);
 }
 
-TEST_F(CarmenLogFile, NothingUsableIsAnErrorThatNamesTheFile) {
+TEST_F(CarmenLogFile, FileWithoutScansIsRefusedByName) {
     for (const std::string_view text : {"", "# only\n", "FLASER 3 1 2\n", "\x01\x02\x03"}) {
         const auto log = read(text);
         ASSERT_FALSE(log);
         EXPECT_THAT(log.error().message, HasSubstr("no usable scan"));
-        EXPECT_THAT(log.error().message, HasSubstr("NothingUsable"));
+        EXPECT_THAT(log.error().message, HasSubstr("FileWithoutScans"));
     }
 }
 
-TEST_F(CarmenLogFile, CutOrDamagedPackedFilesAreErrorsThatNameTheFile) {
+TEST_F(CarmenLogFile, DamagedCompressedFileIsRefusedByName) {
     std::string text;
     for (int i = 0; i < 20000; ++i) text += flaser(0.37 * i);
     for (const std::string& whole : {gzip(text), bzip2(text)}) {
@@ -303,14 +304,14 @@ TEST_F(CarmenLogFile, TextBeyondTheLimitIsRefused) {
     EXPECT_EQ(log.error().code, Errc::kTooLarge);
 }
 
-TEST_F(CarmenLogFile, AnEndlessLineIsRefused) {
+TEST_F(CarmenLogFile, TooLongLineIsRefused) {
     const auto log = read(text_of({flaser(1), std::string(2'000'000, 'x')}));
     ASSERT_FALSE(log);
     EXPECT_EQ(log.error().code, Errc::kTooLarge);
     EXPECT_THAT(log.error().message, HasSubstr("after line 1"));
 }
 
-TEST_F(CarmenLogFile, ScansFarFromTheirPlaceInTimeFindIt) {
+TEST_F(CarmenLogFile, ShuffledScansAreSorted) {
     std::vector<int> stamps(500);
     std::iota(stamps.begin(), stamps.end(), 1);
     std::shuffle(stamps.begin(), stamps.end(), std::mt19937(5));
@@ -322,19 +323,19 @@ TEST_F(CarmenLogFile, ScansFarFromTheirPlaceInTimeFindIt) {
     for (std::size_t i = 0; i < 500; ++i) EXPECT_EQ(log->observations[i].scan.ranges[0], i + 1);
 }
 
-TEST_F(CarmenLogFile, TellsHowManyScansThereWillBeBeforeTheFirst) {
+TEST_F(CarmenLogFile, ScanCountIsKnownAfterOpening) {
     const auto path = write(text_of({flaser(1), "FLASER 3 1 2\n", robot_laser("0 0 0", "0 0 0", 0.0), flaser(2)}));
     auto log = CarmenLog::open(path, {}, [](const SkippedLine&) {});
     ASSERT_TRUE(log);
     EXPECT_EQ(log->scan_count(), 2U);
-    EXPECT_EQ(log->skipped_lines(), 2U) << "a broken line, and one whose laser's range is not known";
+    EXPECT_EQ(log->skipped_lines(), 2U) << "a broken line and a line whose laser range is unknown";
     EXPECT_TRUE(*log->next());
     EXPECT_TRUE(*log->next());
     EXPECT_FALSE(*log->next());
-    EXPECT_FALSE(*log->next()) << "the end is the end";
+    EXPECT_FALSE(*log->next()) << "further calls return the end again";
 }
 
-TEST_F(CarmenLogFile, OpeningItTellsHowFarTheFileHasBeenRead) {
+TEST_F(CarmenLogFile, OpeningReportsProgress) {
     const std::string text = text_of({flaser(1), flaser(2)});
     const auto path = write(text);
     ReadProgress last;
@@ -344,7 +345,7 @@ TEST_F(CarmenLogFile, OpeningItTellsHowFarTheFileHasBeenRead) {
     EXPECT_EQ(last.bytes_total, text.size());
 }
 
-TEST_F(CarmenLogFile, AFileThatIsChangedWhileItIsSentIsAnError) {
+TEST_F(CarmenLogFile, FileChangedWhileReadingIsAnError) {
     const auto path = write(text_of({flaser(1), flaser(2), flaser(3)}));
     for (const std::string& changed : {flaser(1), text_of({flaser(1), robot_laser("0 0 0", "0 0 0", 0.0), flaser(3)}),
                                        text_of({flaser(1), std::string_view("# a comment\n")})}) {
@@ -360,7 +361,7 @@ TEST_F(CarmenLogFile, AFileThatIsChangedWhileItIsSentIsAnError) {
     }
 }
 
-TEST_F(CarmenLogFile, TheFingerprintIsThatOfTheScansNotOfTheFile) {
+TEST_F(CarmenLogFile, FingerprintIsThatOfTheScans) {
     const auto text = text_of({"# made on Monday\n", flaser(1), robot_laser("0 0 0", "0 0 0")});
     const std::string fingerprint = read(text)->fingerprint;
     EXPECT_THAT(fingerprint, testing::MatchesRegex("carmen:[0-9a-f]+"));
@@ -370,18 +371,18 @@ TEST_F(CarmenLogFile, TheFingerprintIsThatOfTheScansNotOfTheFile) {
     EXPECT_EQ(read(text_of({flaser(1), "# made on Tuesday\n", robot_laser("0 0 0", "0 0 0")}))->fingerprint,
               fingerprint);
     EXPECT_EQ(read(text_of({flaser(1), "FLASER 3 1 2\n", robot_laser("0 0 0", "0 0 0")}))->fingerprint, fingerprint)
-        << "a line that cannot be used changes nothing";
+        << "an unusable line does not change the fingerprint";
     EXPECT_NE(read(text_of({flaser(1), flaser(2), robot_laser("0 0 0", "0 0 0")}))->fingerprint, fingerprint);
     EXPECT_NE(read(text_of({flaser(1), robot_laser("0 0 0", "0 0 0.1")}))->fingerprint, fingerprint);
     EXPECT_NE(read(text_of({robot_laser("0 0 0", "0 0 0"), flaser(1)}))->fingerprint, fingerprint);
 }
 
-TEST_F(CarmenLogFile, TheFingerprintKnowsTheOptionsThatChangeTheScans) {
+TEST_F(CarmenLogFile, FingerprintDependsOnOptionsThatChangeScans) {
     const std::string text = flaser(1);
     const auto with = [&](std::optional<NoReturn> no_return, std::optional<double> range_max) {
         return read(text, {no_return, range_max, {}})->fingerprint;
     };
-    EXPECT_EQ(with(NoReturn::kDrop, kCarmenRangeMax), with({}, {})) << "the defaults, stated";
+    EXPECT_EQ(with(NoReturn::kDrop, kCarmenRangeMax), with({}, {})) << "the explicit defaults";
     EXPECT_NE(with(NoReturn::kFree, {}), with({}, {}));
     EXPECT_NE(with({}, 20.0), with({}, {}));
     const auto stated = read(robot_laser("0 0 0", "0 0 0", 30.0));
@@ -405,7 +406,7 @@ void PrintTo(const RealLog& log, std::ostream* out) { *out << log.file; }
 
 class RealCarmenLog : public testing::TestWithParam<RealLog> {};
 
-TEST_P(RealCarmenLog, IsReadWhole) {
+TEST_P(RealCarmenLog, IsReadCompletely) {
     const auto path = std::filesystem::path(SCANLOOM_SOURCE_DIR) / "../shared/data/logs" / GetParam().file;
     if (!std::filesystem::exists(path)) GTEST_SKIP() << "the recorded log is not at " << path;
     const auto log = read_whole_log(path, {}, [](const SkippedLine&) {});
@@ -420,8 +421,9 @@ TEST_P(RealCarmenLog, IsReadWhole) {
     }
 }
 
-/// Its stamps go back 631 times. Sorted by them, the robot would jump to and fro: 661 m, in steps of up to 0.87 m.
-TEST(RealCarmenLogs, TheIntelLogsPathIsThatOfARobot) {
+/// The stamps of this log go back 631 times. Sorted by stamp, the trajectory would be 661 m long, with steps of up to
+/// 0.87 m.
+TEST(RealCarmenLogs, IntelLogHasAPlausibleTrajectory) {
     const auto path = std::filesystem::path(SCANLOOM_SOURCE_DIR) / "../shared/data/logs/intel.clf.bz2";
     if (!std::filesystem::exists(path)) GTEST_SKIP() << "the recorded log is not at " << path;
     const auto log = read_whole_log(path, {}, [](const SkippedLine&) {});

@@ -10,12 +10,12 @@
 
 namespace scanloom::robot {
 
-/// Two places in the room, three metres apart.
+/// Two poses in the room, 3 m apart.
 inline constexpr Pose2 kHere{-3.5, -3.0, 0.3};
 inline constexpr Pose2 kThere{-3.4, 0.0, 0.5};
 
-/// A simulated lidar that somebody carries through a world: 360 beams, a sigma of 0.02 m, ten turns a second. It has no
-/// odometry: the poses of its turns are its origin.
+/// A simulated lidar that a person carries through a world: 360 beams, a range sigma of 0.02 m, ten turns per second.
+/// It has no odometry: the pose of each turn is the origin.
 class CarriedLidar {
 public:
     explicit CarriedLidar(World world = make_room(), std::uint64_t seed = 1)
@@ -35,7 +35,7 @@ public:
         return turns;
     }
 
-    /// Straight from place to place, not counting the ends.
+    /// Returns turns at equal steps on the straight line between two poses, excluding both ends.
     [[nodiscard]] std::vector<Observation> turns_between(const Pose2& a, const Pose2& b, std::size_t count) {
         std::vector<Observation> turns;
         for (std::size_t n = 1; n <= count; ++n) {
@@ -46,7 +46,7 @@ public:
         return turns;
     }
 
-    /// Somewhere with 0.4 m of room around.
+    /// Returns a random pose with a clearance of 0.4 m.
     [[nodiscard]] Pose2 any_place() {
         const Box bounds = bounds_of(world_);
         for (;;) {

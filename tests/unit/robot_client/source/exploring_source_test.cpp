@@ -16,7 +16,7 @@ namespace {
 namespace asio = boost::asio;
 using Given = Result<std::optional<Observation>>;
 
-constexpr int kLookingAround = 42; // scans of the turn at the start, at most
+constexpr int kFirstTurnScansMax = 42; // upper bound for the scans of the first full turn
 
 class ExploringSourceTest : public testing::Test {
 protected:
@@ -27,10 +27,10 @@ protected:
                 speed};
     }
 
-    /// Answers with one thing after the other; keeps where the robot asked.
+    /// Returns a callback that gives the answers in order and counts the requests.
     NextGoal answers(std::vector<Result<NextStop>> all) {
         return [this, all = std::move(all)]() -> asio::awaitable<Result<NextStop>> {
-            const std::size_t n = asked_++;
+            const std::size_t n = requests_++;
             EXPECT_LT(n, all.size());
             co_return n < all.size() ? all[n] : Result<NextStop>(NextStop{});
         };
@@ -68,52 +68,52 @@ protected:
     }
 
     asio::io_context io_;
-    std::size_t asked_ = 0;
+    std::size_t requests_ = 0;
 };
 
-TEST_F(ExploringSourceTest, AsksWhenItHasLookedAndEndsWhenAllIsExplored) {
+TEST_F(ExploringSourceTest, RequestsGoalsAfterObservingAndEndsWhenExplored) {
     auto source = make();
     source.ask_with(answers({goal({{-3.5, -3.5}, {-3.5, -1.5}}, {-3.5, 0.0}), NextStop{}}));
     const auto scans = all_of(source);
-    EXPECT_EQ(asked_, 2U);
+    EXPECT_EQ(requests_, 2U);
     ASSERT_GT(scans.size(), 70U);
     EXPECT_LT(std::hypot(scans.back().pose.x + 3.5, scans.back().pose.y + 1.5), 0.05)
-        << "the scan where it looked was given before it asked";
+        << "the scan at the goal is given before the next request";
     EXPECT_LT(std::abs(scans.back().pose.yaw - 1.5708), 0.05);
     for (std::size_t n = 0; n < scans.size(); ++n) EXPECT_NEAR(scans[n].stamp, 0.1 * static_cast<double>(n), 1e-9);
     EXPECT_TRUE(source.remarks().starts_with(
         "explored: no frontier can be reached any more with 0.22 m around the robot, 2 m driven in "))
         << source.remarks();
-    EXPECT_FALSE(*next(source)) << "and gives nothing any more";
+    EXPECT_FALSE(*next(source)) << "the source stays ended";
 }
 
-TEST_F(ExploringSourceTest, WhatOthersHaveIsAskedForAgainAfterASecond) {
+TEST_F(ExploringSourceTest, TakenGoalsAreRequestedAgainAfterOneSecond) {
     auto source = make();
     source.ask_with(answers({taken(), taken(), NextStop{}}));
     const auto scans = all_of(source);
-    EXPECT_EQ(asked_, 3U);
-    EXPECT_LE(scans.size(), kLookingAround + 20U);
-    EXPECT_GE(scans.size(), kLookingAround + 18U);
+    EXPECT_EQ(requests_, 3U);
+    EXPECT_LE(scans.size(), kFirstTurnScansMax + 20U);
+    EXPECT_GE(scans.size(), kFirstTurnScansMax + 18U);
 }
 
-TEST_F(ExploringSourceTest, AnErrorIsAskedAgainAndTheTenthInARowEndsIt) {
+TEST_F(ExploringSourceTest, ErrorsAreRetriedUntilTheTenthInARow) {
     const Error refused{Errc::kOverloaded, "no time for this now"};
     auto source = make();
     std::vector<Result<NextStop>> all(9, refused);
-    all.emplace_back(taken()); // so they are not ten in a row
+    all.emplace_back(taken()); // therefore the errors are not ten in a row
     all.insert(all.end(), 10, refused);
     source.ask_with(answers(all));
     Given given = next(source);
     while (given && *given) given = next(source);
     ASSERT_FALSE(given);
     EXPECT_EQ(given.error(), refused);
-    EXPECT_EQ(asked_, 20U);
+    EXPECT_EQ(requests_, 20U);
 }
 
-TEST_F(ExploringSourceTest, OneThatIsBlockedWhereverItIsSentGivesUp) {
+TEST_F(ExploringSourceTest, EndsIfEveryGoalIsBlocked) {
     auto source = make();
     source.ask_with([this]() -> asio::awaitable<Result<NextStop>> {
-        ++asked_;
+        ++requests_;
         co_return goal({{-3.5, -3.5}, {-9.0, -9.0}}, {-9.0, -9.0}); // through the walls of a corner
     });
     Given given = next(source);
@@ -121,20 +121,20 @@ TEST_F(ExploringSourceTest, OneThatIsBlockedWhereverItIsSentGivesUp) {
     ASSERT_FALSE(given);
     EXPECT_EQ(given.error().code, Errc::kNoPath);
     EXPECT_EQ(source.simulator().collisions(), 0U);
-    EXPECT_LT(asked_, 100U);
+    EXPECT_LT(requests_, 100U);
 }
 
-TEST_F(ExploringSourceTest, EndsAtItsLimitsEarlierRunsIncluded) {
+TEST_F(ExploringSourceTest, LimitsIncludeEarlierRuns) {
     auto source = make({.scans = 30});
     source.resume_after(20);
     source.ask_with(answers({}));
     const auto scans = all_of(source);
     ASSERT_EQ(scans.size(), 10U);
-    EXPECT_NEAR(scans.front().stamp, 2.0, 1e-9) << "behind those of the earlier run";
+    EXPECT_NEAR(scans.front().stamp, 2.0, 1e-9) << "the scans follow those of the earlier run";
     EXPECT_NEAR(scans.back().stamp, 2.9, 1e-9);
 }
 
-TEST_F(ExploringSourceTest, StoppedItGivesNothingMoreEvenWhileItAsks) {
+TEST_F(ExploringSourceTest, StopDuringARequestEndsTheSource) {
     auto source = make();
     bool is_asking = false;
     source.ask_with([&]() -> asio::awaitable<Result<NextStop>> {
@@ -160,16 +160,16 @@ TEST_F(ExploringSourceTest, StoppedItGivesNothingMoreEvenWhileItAsks) {
     io_.run();
     ASSERT_TRUE(last && *last);
     EXPECT_FALSE(**last);
-    EXPECT_LE(scans, kLookingAround);
+    EXPECT_LE(scans, kFirstTurnScansMax);
     EXPECT_FALSE(*next(source));
 }
 
-TEST_F(ExploringSourceTest, TheSameAnswersGiveTheSameScansAtAnySpeed) {
+TEST_F(ExploringSourceTest, ScansAreIndependentOfTheSpeed) {
     const std::vector<Result<NextStop>> all{goal({{-3.5, -3.5}, {-3.5, -3.0}}, {-3.5, 0.0}), NextStop{}};
     auto first = make();
     first.ask_with(answers(all));
     const auto scans = all_of(first);
-    asked_ = 0;
+    requests_ = 0;
     auto second = make({}, 1e6);
     second.ask_with(answers(all));
     EXPECT_EQ(all_of(second), scans);

@@ -22,7 +22,7 @@ class HaltsTest : public testing::Test {
 protected:
     void add(std::vector<Observation> turns) {
         for (auto& turn : turns) {
-            EXPECT_FALSE(halts_.question()) << "it is answered before the next turn";
+            EXPECT_FALSE(halts_.question()) << "the question must be answered before the next turn";
             halts_.add(std::move(turn));
         }
     }
@@ -39,7 +39,7 @@ protected:
     Halts halts_{kFirstPlace};
 };
 
-TEST_F(HaltsTest, AreAskedAboutOnceTenTurnsInARowAreAlike) {
+TEST_F(HaltsTest, QuestionFollowsTenSimilarTurns) {
     stand(kHere, 9);
     EXPECT_FALSE(halts_.question());
     stand(kHere, 1);
@@ -50,14 +50,14 @@ TEST_F(HaltsTest, AreAskedAboutOnceTenTurnsInARowAreAlike) {
     EXPECT_THAT(given(), IsEmpty());
 }
 
-TEST_F(HaltsTest, GiveTheirTurnsWhereTheyWereLocated) {
+TEST_F(HaltsTest, LocatedTurnsHaveTheLocatedPose) {
     stand(kHere, 10);
     halts_.answer(kLocated);
     EXPECT_THAT(halts_.take_news(),
                 ElementsAre("located at (3.00, 4.00), yaw 1.00: 93 % of what the lidar sees is in the "
                             "map; known within 6.0 cm and 1.72 degrees"));
     auto scans = given();
-    ASSERT_EQ(scans.size(), 7U) << "the newest three may be of a movement's begin";
+    ASSERT_EQ(scans.size(), 7U) << "the newest three turns may belong to a beginning movement";
     for (std::size_t n = 0; n < scans.size(); ++n) {
         EXPECT_EQ(scans[n].pose, kLocated.T_map_odom);
         EXPECT_FALSE(scans[n].begins_map);
@@ -67,14 +67,14 @@ TEST_F(HaltsTest, GiveTheirTurnsWhereTheyWereLocated) {
     EXPECT_EQ(given().size(), 5U);
     halts_.end();
     scans = given();
-    ASSERT_EQ(scans.size(), 3U) << "it stood to the end";
+    ASSERT_EQ(scans.size(), 3U) << "the lidar was stationary until the end";
     EXPECT_NEAR(scans.back().stamp, 1001.4, 1e-9);
     EXPECT_EQ(halts_.given(), 15U);
     EXPECT_EQ(halts_.dropped(), 0U);
     EXPECT_EQ(halts_.carried(), 0U);
 }
 
-TEST_F(HaltsTest, GiveNothingOfAMovementAndOfTheTurnsBeforeIt) {
+TEST_F(HaltsTest, TurnsOfAMovementAndJustBeforeAreDropped) {
     stand(kHere, 10);
     halts_.answer(kLocated);
     stand(kHere, 10);
@@ -98,15 +98,15 @@ TEST_F(HaltsTest, GiveNothingOfAMovementAndOfTheTurnsBeforeIt) {
     EXPECT_EQ(halts_.dropped(), 3U + 30U);
 }
 
-TEST_F(HaltsTest, AreNotBegunByALidarOnItsWay) {
+TEST_F(HaltsTest, MovingLidarAsksNoQuestion) {
     walk(kHere, kThere, 40);
     walk(kThere, {2.0, 0.0, -1.0}, 40);
-    EXPECT_EQ(halts_.carried(), 0U) << "it never stood";
+    EXPECT_EQ(halts_.carried(), 0U) << "the lidar was never stationary";
     EXPECT_THAT(halts_.take_news(), IsEmpty());
     EXPECT_GE(halts_.dropped(), 75U);
 }
 
-TEST_F(HaltsTest, GoOnWhilePeopleWalkBy) {
+TEST_F(HaltsTest, PassingPeopleDoNotEndAHalt) {
     stand(kHere, 10);
     halts_.answer(kLocated);
     for (int n = 0; n < 30; ++n) {
@@ -119,7 +119,7 @@ TEST_F(HaltsTest, GoOnWhilePeopleWalkBy) {
     EXPECT_EQ(halts_.carried(), 0U);
 }
 
-TEST_F(HaltsTest, GoOnBehindTurnsOfWhichNothingWasSeen) {
+TEST_F(HaltsTest, TurnsWithoutReadingsDoNotEndAHalt) {
     stand(kHere, 5);
     const auto covered = [&] {
         auto turns = lidar_.turns_at(kHere, 3);
@@ -137,7 +137,7 @@ TEST_F(HaltsTest, GoOnBehindTurnsOfWhichNothingWasSeen) {
     EXPECT_EQ(halts_.dropped(), 6U);
 }
 
-TEST_F(HaltsTest, AreInTheFrameOfTheOdometry) {
+TEST_F(HaltsTest, QuestionsAndPosesUseTheOdometryFrame) {
     const Pose2 odometry{0.5, -0.25, 1.0};
     auto turns = lidar_.turns_at(kHere, 10);
     for (auto& turn : turns) turn.scan.pose = odometry;
@@ -147,7 +147,7 @@ TEST_F(HaltsTest, AreInTheFrameOfTheOdometry) {
     EXPECT_EQ(given().front().pose, compose(kLocated.T_map_odom, odometry));
 }
 
-TEST_F(HaltsTest, TheFirstOneIsWhereItWasSaidToBeIfNothingIsMapped) {
+TEST_F(HaltsTest, FirstHaltUsesTheGivenPoseInAnEmptyMap) {
     const Error nothing{Errc::kNothingMapped, "no laser has seen anything yet"};
     auto turns = lidar_.turns_at(kHere, 10);
     for (auto& turn : turns) turn.scan.pose = {5.0, 5.0, -2.0};
@@ -162,7 +162,7 @@ TEST_F(HaltsTest, TheFirstOneIsWhereItWasSaidToBeIfNothingIsMapped) {
     EXPECT_NEAR(scans[0].pose.x, kFirstPlace.x, 1e-12);
     EXPECT_NEAR(scans[0].pose.y, kFirstPlace.y, 1e-12);
     EXPECT_NEAR(scans[0].pose.yaw, kFirstPlace.yaw, 1e-12);
-    EXPECT_TRUE(std::ranges::all_of(scans, &Scan::begins_map)) << "the first may be dropped for want of room";
+    EXPECT_TRUE(std::ranges::all_of(scans, &Scan::begins_map)) << "the first scan may be dropped by a full spool";
     EXPECT_FALSE(halts_.refusal());
 
     walk(kHere, kThere, 30);
@@ -171,14 +171,14 @@ TEST_F(HaltsTest, TheFirstOneIsWhereItWasSaidToBeIfNothingIsMapped) {
     halts_.answer(nothing);
     EXPECT_THAT(halts_.take_news(), ElementsAre(HasSubstr("; the pose that was given was that of the first place;")));
     halts_.end();
-    EXPECT_THAT(given(), IsEmpty()) << "only one place is the first";
+    EXPECT_THAT(given(), IsEmpty()) << "only the first place begins the map";
 }
 
-TEST_F(HaltsTest, ThatWereRefusedAreAskedAboutAgainAfterTenSeconds) {
+TEST_F(HaltsTest, RefusedQuestionIsRepeatedAfterTenSeconds) {
     stand(kHere, 10);
     halts_.answer(kRefusal);
     EXPECT_EQ(halts_.refusal(), kRefusal);
-    stand(kHere, 99); // to 9.9 s after the turn that was asked about last
+    stand(kHere, 99); // until 9.9 s after the last turn of the question
     EXPECT_EQ(halts_.dropped(), 10U + 89U);
     stand(kHere, 1);
     ASSERT_TRUE(halts_.question());
@@ -186,11 +186,11 @@ TEST_F(HaltsTest, ThatWereRefusedAreAskedAboutAgainAfterTenSeconds) {
     halts_.end();
     const auto scans = given();
     EXPECT_EQ(scans.size(), 10U);
-    EXPECT_NEAR(scans.front().stamp, 1010.0, 1e-6) << "newer ones than those that were refused";
+    EXPECT_NEAR(scans.front().stamp, 1010.0, 1e-6) << "the scans are newer than those of the refused question";
     EXPECT_EQ(halts_.carried(), 0U);
 }
 
-TEST_F(HaltsTest, ThatWereRefusedAreAskedAboutAgainWhenTheClockWasSetBack) {
+TEST_F(HaltsTest, RefusedQuestionIsRepeatedAfterAClockStepBack) {
     stand(kHere, 10);
     halts_.answer(kRefusal);
     lidar_.let_time_pass(-500.0);
@@ -198,7 +198,7 @@ TEST_F(HaltsTest, ThatWereRefusedAreAskedAboutAgainWhenTheClockWasSetBack) {
     EXPECT_TRUE(halts_.question());
 }
 
-TEST_F(HaltsTest, ElsewhereAreAskedAboutAtOnce) {
+TEST_F(HaltsTest, QuestionAtAnotherPlaceIsImmediate) {
     stand(kHere, 10);
     halts_.answer(kRefusal);
     walk(kHere, kThere, 30);
@@ -207,8 +207,8 @@ TEST_F(HaltsTest, ElsewhereAreAskedAboutAtOnce) {
     EXPECT_EQ(halts_.carried(), 1U);
 }
 
-TEST_F(HaltsTest, EachTellASentenceOnce) {
-    const std::string told =
+TEST_F(HaltsTest, EachMessageIsReportedOnce) {
+    const std::string message =
         "it may be here or there; nothing is sent from here; asking again in 10 s, or at another place";
     const auto ask = [&](const Error& refusal) {
         stand(kHere, 10);
@@ -216,14 +216,14 @@ TEST_F(HaltsTest, EachTellASentenceOnce) {
         halts_.answer(refusal);
         return halts_.take_news();
     };
-    EXPECT_THAT(ask(kRefusal), ElementsAre(told));
+    EXPECT_THAT(ask(kRefusal), ElementsAre(message));
     EXPECT_THAT(ask(kRefusal), IsEmpty());
     EXPECT_THAT(ask({Errc::kOverloaded, "busy"}), ElementsAre(HasSubstr("busy; nothing is sent")));
     EXPECT_THAT(ask(kRefusal), IsEmpty());
     walk(kHere, kThere, 30);
     walk(kThere, kHere, 30);
     static_cast<void>(halts_.take_news());
-    EXPECT_THAT(ask(kRefusal), ElementsAre(told));
+    EXPECT_THAT(ask(kRefusal), ElementsAre(message));
 }
 
 } // namespace

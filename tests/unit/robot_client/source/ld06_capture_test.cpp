@@ -44,25 +44,25 @@ private:
     TemporaryDirectory directory_;
 };
 
-TEST_F(Ld06Captures, GiveAScanForEachTurnFromWhereTheRobotStands) {
+TEST_F(Ld06Captures, GiveOneScanPerTurnAtTheGivenPose) {
     Ld06Spinner sensor;
     auto capture = Ld06Capture::open(file(sensor.next_bytes(400)), {}, Pose2{1.0, 2.0, 3.0});
     ASSERT_TRUE(capture) << capture.error().message;
-    EXPECT_EQ(capture->scan_count(), 9U); // 4800 points, without the first turn and what is behind the last crossing
+    EXPECT_EQ(capture->scan_count(), 9U); // 4800 points, without the first turn and the points after the last crossing
     EXPECT_EQ(capture->remarks(), "0 damaged packets, 9 turns");
     const auto scans = scans_of(*capture);
     ASSERT_EQ(scans.size(), 9U);
     for (const auto& scan : scans) {
         EXPECT_EQ(scan.pose, (Pose2{1.0, 2.0, 3.0}));
         EXPECT_EQ(scan.ranges.size(), 450U);
-        EXPECT_EQ(scan.ranges.back(), 1000U) << "ahead";
+        EXPECT_EQ(scan.ranges.back(), 1000U) << "the last beam points ahead";
     }
     EXPECT_NEAR(scans[3].stamp - scans[2].stamp, 0.1, 0.003);
-    EXPECT_FALSE(capture->next().value()) << "the end stays the end";
+    EXPECT_FALSE(capture->next().value()) << "further calls return the end again";
 }
 
-TEST_F(Ld06Captures, PosesAreThoseOfTheMiddleOfTheTurn) {
-    Ld06Spinner sensor(0, 29'900); // its clock wraps
+TEST_F(Ld06Captures, UseThePoseAtTheMiddleOfTheTurn) {
+    Ld06Spinner sensor(0, 29'900); // the sensor's clock wraps
     auto capture = Ld06Capture::open(file(sensor.next_bytes(400)), {}, straight_line(0.25, 0.75));
     ASSERT_TRUE(capture) << capture.error().message;
     EXPECT_EQ(capture->scan_count(), 5U);
@@ -70,7 +70,7 @@ TEST_F(Ld06Captures, PosesAreThoseOfTheMiddleOfTheTurn) {
     for (const auto& scan : scans_of(*capture)) EXPECT_DOUBLE_EQ(scan.pose.x, scan.stamp);
 }
 
-TEST_F(Ld06Captures, GiveTheSameScansAgain) {
+TEST_F(Ld06Captures, AreDeterministic) {
     Ld06Spinner sensor;
     Bytes bytes = sensor.next_bytes(200);
     for (std::size_t at = 20; at < bytes.size(); at += 555) bytes[at] ^= 0x10;
@@ -83,7 +83,7 @@ TEST_F(Ld06Captures, GiveTheSameScansAgain) {
     EXPECT_EQ(scans_of(*first), scans_of(*second));
 }
 
-TEST_F(Ld06Captures, WhateverChangesTheScansChangesTheFingerprint) {
+TEST_F(Ld06Captures, FingerprintDependsOnEverythingThatChangesScans) {
     Ld06Spinner sensor;
     const Bytes bytes = sensor.next_bytes(200);
     std::set<std::string> seen;
@@ -109,7 +109,7 @@ TEST_F(Ld06Captures, WhateverChangesTheScansChangesTheFingerprint) {
     EXPECT_TRUE(seen.insert(Ld06Capture::open(file(other), {}, Pose2{}).value().fingerprint()).second);
 }
 
-TEST_F(Ld06Captures, WithoutAScanAreAnErrorThatSaysWhy) {
+TEST_F(Ld06Captures, WithoutScansAreRefusedWithTheReason) {
     Ld06Spinner sensor;
     EXPECT_THAT(Ld06Capture::open(file(sensor.next_bytes(60)), {}, Pose2{}).error().message,
                 HasSubstr("no full turn of an LD06 in it (60 packets)"));
@@ -120,7 +120,7 @@ TEST_F(Ld06Captures, WithoutAScanAreAnErrorThatSaysWhy) {
                 HasSubstr("cannot be opened: No such file"));
 }
 
-TEST_F(Ld06Captures, ThatChangeWhileTheyAreSentAreAnError) {
+TEST_F(Ld06Captures, FailIfTheFileChangesWhileReading) {
     for (const int packets : {100, 300}) {
         Ld06Spinner sensor;
         auto capture = Ld06Capture::open(file(sensor.next_bytes(200)), {}, Pose2{});
@@ -134,7 +134,7 @@ TEST_F(Ld06Captures, ThatChangeWhileTheyAreSentAreAnError) {
     }
 }
 
-TEST_F(Ld06Captures, OfARealRoomGivesItsTurns) {
+TEST_F(Ld06Captures, RealRecordingGivesCompleteTurns) {
     const std::filesystem::path path = SCANLOOM_SOURCE_DIR "/../shared/data/ld06/capture.bin";
     if (!std::filesystem::exists(path))
         GTEST_SKIP() << "recorded data, no part of the project, are not on this machine: " << path;
@@ -148,9 +148,9 @@ TEST_F(Ld06Captures, OfARealRoomGivesItsTurns) {
         EXPECT_LE(scan.ranges.size(), 470U);
         whole += scan.ranges.size() >= 440;
         const auto& steps = std::get<SteppedAngles>(*scan.angles).steps;
-        EXPECT_TRUE(std::ranges::is_sorted(steps, std::less_equal())) << "ascending, none twice";
+        EXPECT_TRUE(std::ranges::is_sorted(steps, std::less_equal())) << "steps ascend strictly";
     }
-    EXPECT_GE(whole, 220U) << "all but those at the seams of the recording";
+    EXPECT_GE(whole, 220U) << "all turns except those at the seams of the recording are complete";
 }
 
 } // namespace

@@ -8,35 +8,35 @@
 namespace scanloom::robot {
 namespace {
 
-TEST(Ld06RecordingClock, CountsFromTheFirstPacketAcrossItsWraps) {
+TEST(Ld06RecordingClock, CountsFromTheFirstPacketAcrossWraps) {
     Ld06RecordingClock clock;
     for (int ms = 0; ms < 100'000; ms += 7) {
         EXPECT_DOUBLE_EQ(clock.stamp(static_cast<std::uint16_t>((29'000 + ms) % 30'000)), ms * 1e-3);
     }
 }
 
-TEST(Ld06RecordingClock, PacketsMayBeMissingForLessThanHalfAWrap) {
+TEST(Ld06RecordingClock, AcceptsGapsShorterThanHalfAWrap) {
     Ld06RecordingClock clock;
     EXPECT_EQ(clock.stamp(20'000), 0.0);
     EXPECT_DOUBLE_EQ(clock.stamp(4'999), 14.999) << "across the wrap";
     EXPECT_DOUBLE_EQ(clock.stamp(6'000), 16.0);
 }
 
-TEST(Ld06RecordingClock, NeverGoesBack) {
+TEST(Ld06RecordingClock, IsMonotonic) {
     Ld06RecordingClock clock;
     EXPECT_EQ(clock.stamp(26'755), 0.0);
-    EXPECT_EQ(clock.stamp(21'038), 0.0) << "another recording begins";
+    EXPECT_EQ(clock.stamp(21'038), 0.0) << "another recording begins here";
     EXPECT_DOUBLE_EQ(clock.stamp(21'041), 0.003);
 }
 
-TEST(Ld06RecordingClock, TheLastMillisecondOfAWrapIsTheFirstOfTheNext) {
+TEST(Ld06RecordingClock, LastMillisecondOfAWrapPrecedesTheNextWrap) {
     Ld06RecordingClock clock;
     EXPECT_EQ(clock.stamp(29'999), 0.0);
     EXPECT_DOUBLE_EQ(clock.stamp(30'000), 0.001);
     EXPECT_DOUBLE_EQ(clock.stamp(1), 0.002);
 }
 
-/// A sensor whose clock began at `began` in Unix time and runs too fast by `drift`.
+/// A sensor whose clock started at Unix time `began` and is too fast by `drift`.
 struct Clocked {
     double began = 1.7e9;
     double drift = 0.0;
@@ -46,7 +46,7 @@ struct Clocked {
     }
 };
 
-TEST(Ld06LiveClock, StampsDoNotJitterAsArrivalsDo) {
+TEST(Ld06LiveClock, StampsAreIndependentOfArrivalJitter) {
     std::mt19937 random(1);
     const Clocked sensor{1.7e9, 1e-4};
     Ld06LiveClock clock;
@@ -59,10 +59,11 @@ TEST(Ld06LiveClock, StampsDoNotJitterAsArrivalsDo) {
         const double error = clock.stamp(sensor.at(taken), arrival) - taken;
         if (i > 500) worst = std::max(worst, std::abs(error - 0.001));
     }
-    EXPECT_LT(worst, 0.004) << "beyond the least delay of 1 ms: whole milliseconds, and 10 s of drift";
+    EXPECT_LT(worst, 0.004)
+        << "the error beyond the minimum delay of 1 ms consists of whole milliseconds and 10 s of drift";
 }
 
-TEST(Ld06LiveClock, TheTimeOfArrivalTellsWhichWrapItIs) {
+TEST(Ld06LiveClock, ArrivalTimeDeterminesTheWrap) {
     const Clocked sensor;
     Ld06LiveClock clock;
     double taken = sensor.began + 3.0;
@@ -72,25 +73,25 @@ TEST(Ld06LiveClock, TheTimeOfArrivalTellsWhichWrapItIs) {
     }
 }
 
-TEST(Ld06LiveClock, BytesThatWaitedAreStampedWithTheTimeTheyWereTaken) {
+TEST(Ld06LiveClock, DelayedBytesGetTheirMeasurementTime) {
     const Clocked sensor;
     Ld06LiveClock clock;
     const double begin = sensor.began + 5.0;
     EXPECT_NEAR(clock.stamp(sensor.at(begin), begin), begin, 0.002);
     for (double taken = begin; taken < begin + 0.8; taken += 0.01) {
-        EXPECT_NEAR(clock.stamp(sensor.at(taken), begin + 0.8), taken, 0.002) << "all arrive at once";
+        EXPECT_NEAR(clock.stamp(sensor.at(taken), begin + 0.8), taken, 0.002) << "all bytes arrive at the same time";
     }
 }
 
-TEST(Ld06LiveClock, FollowsEitherClockWhereItIsSet) {
+TEST(Ld06LiveClock, FollowsStepsOfEitherClock) {
     Clocked sensor;
     Ld06LiveClock clock;
     double now = sensor.began + 5.0;
     EXPECT_NEAR(clock.stamp(sensor.at(now), now), now, 0.002);
-    sensor.began += 7.0; // started again
+    sensor.began += 7.0; // the sensor was restarted
     now += 8.0;
     EXPECT_NEAR(clock.stamp(sensor.at(now), now), now, 0.002);
-    sensor.began += 3600.0; // Unix time was set forward, and back
+    sensor.began += 3600.0; // Unix time was set forward and back
     now += 3600.0;
     EXPECT_NEAR(clock.stamp(sensor.at(now), now), now, 0.002);
     sensor.began -= 3605.0;
@@ -98,7 +99,7 @@ TEST(Ld06LiveClock, FollowsEitherClockWhereItIsSet) {
     EXPECT_NEAR(clock.stamp(sensor.at(now), now), now, 0.002);
 }
 
-TEST(Ld06LiveClock, FollowsAClockThatWasSetBackByLittleAfterTenSeconds) {
+TEST(Ld06LiveClock, FollowsASmallStepBackAfterTenSeconds) {
     Clocked sensor;
     Ld06LiveClock clock;
     double now = sensor.began + 5.0;
@@ -108,7 +109,7 @@ TEST(Ld06LiveClock, FollowsAClockThatWasSetBackByLittleAfterTenSeconds) {
         return stamp - (now - 0.01);
     };
     EXPECT_NEAR(run(20.0), 0.0, 0.002);
-    sensor.began += 0.5; // it now stamps half a second early: as if everything came late
+    sensor.began += 0.5; // the sensor's stamps are now 0.5 s early, as if all bytes were late
     EXPECT_NEAR(run(0.1), -0.5, 0.002);
     EXPECT_NEAR(run(12.0), 0.0, 0.002);
 }

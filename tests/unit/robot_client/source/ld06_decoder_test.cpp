@@ -28,14 +28,14 @@ std::vector<Ld06Packet> decoded(Ld06Decoder& decoder, const Bytes& bytes) {
     return all_of(decoder);
 }
 
-TEST(Ld06Decoder, PacketsSideBySideAreAllFound) {
+TEST(Ld06Decoder, FindsAdjacentPackets) {
     Ld06Spinner sensor;
     Ld06Decoder decoder;
     EXPECT_EQ(decoded(decoder, sensor.next_bytes(50)).size(), 50U);
     EXPECT_EQ(decoder.counts(), (Ld06Counts{.packets = 50}));
 }
 
-TEST(Ld06Decoder, AHeaderThatBeginsTwiceHidesNoPacket) {
+TEST(Ld06Decoder, RepeatedHeaderByteHidesNoPacket) {
     Ld06Spinner sensor;
     const Ld06Packet packet = sensor.next();
     Bytes bytes{0x54};
@@ -45,11 +45,11 @@ TEST(Ld06Decoder, AHeaderThatBeginsTwiceHidesNoPacket) {
     EXPECT_EQ(decoder.counts(), (Ld06Counts{.packets = 1, .skipped_bytes = 1}));
 }
 
-TEST(Ld06Decoder, APacketWithinTheBytesOfADamagedOneIsFound) {
+TEST(Ld06Decoder, FindsAPacketAfterATruncatedOne) {
     Ld06Spinner sensor;
     const Ld06Packet packet = sensor.next();
     const Bytes whole = bytes_of(packet);
-    for (std::size_t cut = 2; cut < whole.size(); ++cut) { // the line was dead for a moment, and the next one follows
+    for (std::size_t cut = 2; cut < whole.size(); ++cut) { // the line failed for a moment, and the next packet follows
         Bytes bytes(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(cut));
         append(bytes, whole);
         Ld06Decoder decoder;
@@ -58,7 +58,7 @@ TEST(Ld06Decoder, APacketWithinTheBytesOfADamagedOneIsFound) {
     }
 }
 
-TEST(Ld06Decoder, WhateverComesBetweenPacketsIsSkipped) {
+TEST(Ld06Decoder, SkipsBytesBetweenPackets) {
     std::mt19937 random(4);
     Ld06Spinner sensor;
     std::vector<Ld06Packet> sent;
@@ -79,7 +79,7 @@ TEST(Ld06Decoder, WhateverComesBetweenPacketsIsSkipped) {
     EXPECT_GE(decoder.counts().crc_failures, 100U);
 }
 
-TEST(Ld06Decoder, AnySplitOfTheBytesGivesTheSamePackets) {
+TEST(Ld06Decoder, AnySplitOfTheBytesGivesEqualPackets) {
     std::mt19937 random(9);
     Ld06Spinner sensor;
     Bytes bytes;
@@ -106,7 +106,7 @@ TEST(Ld06Decoder, AnySplitOfTheBytesGivesTheSamePackets) {
     }
 }
 
-TEST(Ld06Decoder, ImplausiblePacketsAreCountedAndNotGiven) {
+TEST(Ld06Decoder, ImplausiblePacketsAreCountedAndDropped) {
     Ld06Spinner sensor;
     Ld06Packet wrong = sensor.next();
     wrong.start_angle = 40'000;
@@ -118,7 +118,7 @@ TEST(Ld06Decoder, ImplausiblePacketsAreCountedAndNotGiven) {
     EXPECT_EQ(decoder.counts(), (Ld06Counts{.packets = 1, .implausible = 1}));
 }
 
-TEST(Ld06Decoder, AStreamThatBeginsAnewIsNotMixedWithTheOneBefore) {
+TEST(Ld06Decoder, RestartDiscardsThePartialPacket) {
     Ld06Spinner sensor;
     const Bytes first = bytes_of(sensor.next());
     const Bytes second = bytes_of(sensor.next());
@@ -127,7 +127,7 @@ TEST(Ld06Decoder, AStreamThatBeginsAnewIsNotMixedWithTheOneBefore) {
     EXPECT_FALSE(decoder.next());
     decoder.restart();
     EXPECT_EQ(decoded(decoder, second).size(), 1U);
-    EXPECT_EQ(decoder.counts(), (Ld06Counts{.packets = 1})) << "what was cut off is no damage";
+    EXPECT_EQ(decoder.counts(), (Ld06Counts{.packets = 1})) << "a truncated packet is not counted as damaged";
 }
 
 TEST(Ld06Decoder, FindsThePacketsOfARealRecording) {

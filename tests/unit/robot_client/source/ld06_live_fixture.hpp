@@ -19,7 +19,7 @@
 #include <utility>
 #include <vector>
 
-/// Lidars that are read live, with what a test needs to be one.
+/// Fixtures for lidars that are read live.
 namespace scanloom::robot {
 
 namespace asio = boost::asio;
@@ -30,7 +30,7 @@ inline double unix_now() {
     return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
 
-/// The end of a pseudo-terminal where the sensor is.
+/// The sensor's end of a pseudo-terminal.
 class PseudoTerminal {
 public:
     PseudoTerminal() : descriptor_(::posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC)) {
@@ -46,7 +46,7 @@ public:
         if (other_end_ >= 0) ::close(other_end_);
     }
 
-    /// What is sent before somebody opens the device waits there unchanged.
+    /// Opens the other end in raw mode, so that bytes sent before the test opens the device stay unchanged.
     void keep_open() {
         other_end_ = ::open(device_.c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC);
         termios raw{};
@@ -84,7 +84,7 @@ protected:
         return live;
     }
 
-    /// Runs everything until next() is through; `meanwhile` runs once that has begun to wait.
+    /// Runs the io_context until next() completes; `meanwhile` runs once after next() has started to wait.
     Next next_of(
         LiveSource& source, const std::function<void()>& meanwhile = [] {}) {
         std::optional<Next> result;
@@ -97,10 +97,10 @@ protected:
         meanwhile();
         while (!result && io_.run_one() > 0) {
         }
-        return result ? *result : Next(Error{Errc::kInternal, "next() never came to its end"});
+        return result ? *result : Next(Error{Errc::kInternal, "next() did not complete"});
     }
 
-    /// A scan was given.
+    /// Expects that next() returns a scan.
     Scan scan_of(
         LiveSource& source, const std::function<void()>& meanwhile = [] {}) {
         const auto next = next_of(source, meanwhile);
@@ -109,7 +109,7 @@ protected:
         return {};
     }
 
-    /// Bytes of the turn under way and of one whole turn behind it.
+    /// Returns bytes of the end of one turn and of the complete next turn.
     static Bytes one_turn() { return Ld06Spinner(35'000).next_bytes(40); }
 
     asio::io_context io_{1};

@@ -18,8 +18,8 @@ protected:
     void SetUp() override { ASSERT_EQ(::pipe2(pipe_, O_CLOEXEC), 0); }
     void TearDown() override { end_poses(); }
 
-    /// How fast this machine is decides nothing: scans wait for ever, or not at all.
-    void start(std::chrono::milliseconds wait = kForEver, std::chrono::milliseconds age_max = kForEver) {
+    /// The limits are either unlimited or zero, so that the tests do not depend on the machine's speed.
+    void start(std::chrono::milliseconds wait = kUnlimited, std::chrono::milliseconds age_max = kUnlimited) {
         auto live = options(SerialDevice{sensor_.device()}, PoseTimeline());
         live.pose_descriptor = pipe_[0];
         live.pose_wait = wait;
@@ -41,16 +41,16 @@ protected:
         if (pipe_[1] >= 0) ::close(std::exchange(pipe_[1], -1));
     }
 
-    static constexpr std::chrono::hours kForEver{1};
-    static constexpr std::chrono::milliseconds kNotAtAll{0};
+    static constexpr std::chrono::hours kUnlimited{1};
+    static constexpr std::chrono::milliseconds kNone{0};
 
-    std::chrono::milliseconds ahead_max_ = kForEver;
+    std::chrono::milliseconds ahead_max_ = kUnlimited;
     PseudoTerminal sensor_;
     int pipe_[2]{-1, -1};
     std::unique_ptr<Ld06Live> source_;
 };
 
-TEST_F(Ld06LivePoses, AScanTakesThePoseBetweenThoseAroundIt) {
+TEST_F(Ld06LivePoses, ScanPoseIsInterpolated) {
     start();
     const double now = unix_now();
     const Scan scan = scan_of(*source_, [&] {
@@ -63,7 +63,7 @@ TEST_F(Ld06LivePoses, AScanTakesThePoseBetweenThoseAroundIt) {
     EXPECT_THAT(notes_, ElementsAre(HasSubstr("line 2 of the poses is skipped")));
 }
 
-TEST_F(Ld06LivePoses, AScanWaitsForThePoseBehindIt) {
+TEST_F(Ld06LivePoses, ScanWaitsForTheNextPose) {
     start();
     const double now = unix_now();
     const std::function<void()> write_once_it_waits = [&] {
@@ -78,9 +78,9 @@ TEST_F(Ld06LivePoses, AScanWaitsForThePoseBehindIt) {
     EXPECT_NEAR(scan.pose.x, 100.0 + scan.stamp - now, 1e-3);
 }
 
-TEST_F(Ld06LivePoses, WhereNoneComesAScanTakesTheNewest) {
-    start(std::chrono::milliseconds(1), kForEver);
-    on_note_ = [&] { sensor_.send(one_turn()); }; // the pose before it has been read
+TEST_F(Ld06LivePoses, ScanUsesTheNewestPoseAfterTheWait) {
+    start(std::chrono::milliseconds(1), kUnlimited);
+    on_note_ = [&] { sensor_.send(one_turn()); }; // the pose before the note has been read
     const Scan scan = scan_of(*source_, [&] {
         write_pose(unix_now() - 100.0, 7.0);
         write("what is this\n");
@@ -88,8 +88,8 @@ TEST_F(Ld06LivePoses, WhereNoneComesAScanTakesTheNewest) {
     EXPECT_EQ(scan.pose.x, 7.0);
 }
 
-TEST_F(Ld06LivePoses, AScanIsPassedOverWhereTheNewestIsTooOld) {
-    start(kNotAtAll, std::chrono::seconds(50));
+TEST_F(Ld06LivePoses, ScanIsDroppedIfTheNewestPoseIsTooOld) {
+    start(kNone, std::chrono::seconds(50));
     const auto next = next_of(*source_, [&] {
         write_pose(unix_now() - 100.0, 7.0);
         sensor_.send(one_turn());
@@ -100,8 +100,8 @@ TEST_F(Ld06LivePoses, AScanIsPassedOverWhereTheNewestIsTooOld) {
     EXPECT_EQ(source_->remarks(), "0 damaged packets, 1 turn, 1 scan without a pose passed over");
 }
 
-TEST_F(Ld06LivePoses, OfAnotherClockAreToldOnceAndNothingMappedIsAnError) {
-    start(kNotAtAll, kNotAtAll);
+TEST_F(Ld06LivePoses, PosesOfAnotherClockAreReportedOnceAndEndWithAnError) {
+    start(kNone, kNone);
     const auto next = next_of(*source_, [&] {
         write_pose(12.0, 0.0);
         write_pose(13.0, 0.0);
@@ -114,8 +114,8 @@ TEST_F(Ld06LivePoses, OfAnotherClockAreToldOnceAndNothingMappedIsAnError) {
     EXPECT_THAT(notes_, ElementsAre(HasSubstr("the poses are at t = 13, and the scans at t = 1")));
 }
 
-TEST_F(Ld06LivePoses, OfWhichSomeFitAreNoError) {
-    start(kForEver);
+TEST_F(Ld06LivePoses, SomeMatchingPosesAreNoError) {
+    start(kUnlimited);
     const double now = unix_now();
     static_cast<void>(scan_of(*source_, [&] {
         write_pose(now - 100.0, 0.0);
@@ -128,9 +128,9 @@ TEST_F(Ld06LivePoses, OfWhichSomeFitAreNoError) {
     EXPECT_TRUE(notes_.empty());
 }
 
-TEST_F(Ld06LivePoses, OneFarAheadOfTheClockIsPassedOverAndTold) {
+TEST_F(Ld06LivePoses, PoseFarAheadOfTheClockIsIgnoredAndReported) {
     ahead_max_ = std::chrono::seconds(50);
-    start(kNotAtAll);
+    start(kNone);
     on_note_ = [&] { sensor_.send(one_turn()); };
     const Scan scan = scan_of(*source_, [&] {
         write_pose(unix_now() - 100.0, 7.0);
@@ -141,7 +141,7 @@ TEST_F(Ld06LivePoses, OneFarAheadOfTheClockIsPassedOverAndTold) {
     EXPECT_THAT(notes_, ElementsAre(HasSubstr("the clocks must agree")));
 }
 
-TEST_F(Ld06LivePoses, AreNotWaitedForWhenTheyHaveEnded) {
+TEST_F(Ld06LivePoses, DoesNotWaitAfterTheEndOfThePoses) {
     start();
     on_note_ = [&] { sensor_.send(one_turn()); };
     const auto next = next_of(*source_, [&] {
@@ -152,7 +152,7 @@ TEST_F(Ld06LivePoses, AreNotWaitedForWhenTheyHaveEnded) {
     EXPECT_THAT(notes_, ElementsAre(HasSubstr("the poses have ended; scans behind the last of them have none")));
 }
 
-TEST_F(Ld06LivePoses, ALineWithoutAnEndIsNotReadOn) {
+TEST_F(Ld06LivePoses, TooLongPoseLineEndsReading) {
     start();
     on_note_ = [&] { source_->stop(); };
     EXPECT_FALSE(next_of(*source_, [&] { write(std::string(5000, '1')); }).value());

@@ -17,20 +17,20 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-TEST_F(Ld06Lives, ASerialDeviceGivesATurnAsItComes) {
+TEST_F(Ld06Lives, SerialDeviceGivesACompleteTurn) {
     const PseudoTerminal sensor;
     Ld06Live source(options(SerialDevice{sensor.device()}));
     const Scan scan = scan_of(source, [&] { sensor.send(one_turn()); });
     EXPECT_EQ(scan.ranges.size(), 450U);
     EXPECT_EQ(scan.ranges.back(), 1000U);
     EXPECT_EQ(scan.pose, (Pose2{1.0, 2.0, 0.5}));
-    EXPECT_NEAR(scan.stamp, unix_now(), 60.0) << "Unix time";
+    EXPECT_NEAR(scan.stamp, unix_now(), 60.0) << "stamps are Unix time";
     EXPECT_EQ(source.remarks(), "0 damaged packets, 1 turn");
     EXPECT_THAT(notes_, IsEmpty());
 }
 
-TEST_F(Ld06Lives, EveryByteComesThroughAsItWasSent) {
-    const PseudoTerminal sensor; // a line that is not raw would change or swallow some of these
+TEST_F(Ld06Lives, SerialDeviceTransfersEveryByteValue) {
+    const PseudoTerminal sensor; // a line that is not in raw mode would change or drop some of these bytes
     Ld06Live source(options(SerialDevice{sensor.device()}));
     Bytes every(256);
     for (std::size_t i = 0; i < every.size(); ++i) every[i] = static_cast<std::uint8_t>(i);
@@ -46,7 +46,7 @@ TEST_F(Ld06Lives, EveryByteComesThroughAsItWasSent) {
     EXPECT_EQ(source.remarks(), "0 damaged packets, 1 turn");
 }
 
-TEST_F(Ld06Lives, ADeviceThatIsNotThereIsAnErrorAtOnce) {
+TEST_F(Ld06Lives, MissingDeviceFailsImmediately) {
     Ld06Live source(options(SerialDevice{"/dev/nonexistent"}));
     const auto next = next_of(source);
     ASSERT_FALSE(next);
@@ -56,7 +56,7 @@ TEST_F(Ld06Lives, ADeviceThatIsNotThereIsAnErrorAtOnce) {
     EXPECT_THAT(next_of(other).error().message, HasSubstr("/dev/null: cannot be"));
 }
 
-TEST_F(Ld06Lives, ADeviceThatHangsUpIsAnErrorWhereItIsNotOpenedAgain) {
+TEST_F(Ld06Lives, HangUpFailsWithoutReopening) {
     PseudoTerminal sensor;
     auto once = options(SerialDevice{sensor.device()});
     once.device.reopen_for = std::chrono::milliseconds(0);
@@ -68,11 +68,12 @@ TEST_F(Ld06Lives, ADeviceThatHangsUpIsAnErrorWhereItIsNotOpenedAgain) {
     EXPECT_THAT(notes_, IsEmpty());
 }
 
-TEST_F(Ld06Lives, ADeviceThatStaysAwayIsAnErrorInTheEnd) {
+TEST_F(Ld06Lives, MissingDeviceFailsAfterTheReopenPeriod) {
     PseudoTerminal sensor;
     const auto path = std::filesystem::temp_directory_path() / fmt::format("scanloom-ld06-away-{}", ::getpid());
     std::filesystem::remove(path);
-    std::filesystem::create_symlink(sensor.device(), path); // terminals' own names are given to others again
+    std::filesystem::create_symlink(sensor.device(),
+                                    path); // a symlink, because the system reuses the names of terminals
     auto live = options(SerialDevice{path});
     live.device.reopen_for = std::chrono::milliseconds(150);
     Ld06Live source(std::move(live));
@@ -86,7 +87,7 @@ TEST_F(Ld06Lives, ADeviceThatStaysAwayIsAnErrorInTheEnd) {
     EXPECT_THAT(notes_, ElementsAre(HasSubstr("hung up; is it still plugged in? Trying again for 0.15 s")));
 }
 
-TEST_F(Ld06Lives, ADeviceThatIsPluggedInAgainGoesOn) {
+TEST_F(Ld06Lives, ReconnectedDeviceContinues) {
     PseudoTerminal first;
     PseudoTerminal second;
     second.keep_open();
@@ -95,8 +96,8 @@ TEST_F(Ld06Lives, ADeviceThatIsPluggedInAgainGoesOn) {
     std::filesystem::create_symlink(first.device(), path); // as udev would name it
     Ld06Live source(options(SerialDevice{path}));
     (void)scan_of(source, [&] { first.send(one_turn()); });
-    on_note_ = [&, told = 0]() mutable {
-        if (++told > 1) return;
+    on_note_ = [&, notes = 0]() mutable {
+        if (++notes > 1) return;
         std::filesystem::remove(path);
         std::filesystem::create_symlink(second.device(), path);
         second.send(one_turn());
@@ -107,10 +108,10 @@ TEST_F(Ld06Lives, ADeviceThatIsPluggedInAgainGoesOn) {
     std::filesystem::remove(path);
 }
 
-TEST_F(Ld06Lives, BytesThatAreNoPacketsAreTold) {
+TEST_F(Ld06Lives, BytesWithoutPacketsAreReported) {
     const PseudoTerminal sensor;
     auto live = options(SerialDevice{sensor.device()});
-    live.device.silent_max = std::chrono::milliseconds(1500); // a busy machine may stop babbling for a while
+    live.device.silent_max = std::chrono::milliseconds(1500); // a busy machine may not send for a while
     live.device.reopen_for = std::chrono::milliseconds(0);
     Ld06Live source(std::move(live));
     asio::steady_timer timer(io_);
@@ -128,19 +129,19 @@ TEST_F(Ld06Lives, BytesThatAreNoPacketsAreTold) {
     EXPECT_THAT(next.error().message, HasSubstr("not a byte for 1.5 s"));
 }
 
-TEST_F(Ld06Lives, StopEndsItWhereverItIs) {
+TEST_F(Ld06Lives, StopEndsTheSourceInAnyState) {
     const PseudoTerminal sensor;
     Ld06Live source(options(SerialDevice{sensor.device()}));
     EXPECT_FALSE(next_of(source, [&] { source.stop(); }).value());
-    EXPECT_FALSE(next_of(source).value()) << "and it stays ended";
+    EXPECT_FALSE(next_of(source).value()) << "the source stays ended";
     io_.restart();
-    io_.run(); // nothing is left that would run on
+    io_.run(); // must not leave pending work
     Ld06Live unasked(options(SerialDevice{sensor.device()}));
     unasked.stop();
     EXPECT_FALSE(next_of(unasked).value());
 }
 
-TEST_F(Ld06Lives, MayEndBeforeOrBehindWhatRunsIt) {
+TEST_F(Ld06Lives, CanBeDestroyedBeforeOrAfterItsExecutor) {
     const PseudoTerminal sensor;
     auto io = std::make_unique<asio::io_context>(1);
     auto outlives = std::make_unique<Ld06Live>(options(SerialDevice{sensor.device()}));
@@ -162,7 +163,7 @@ protected:
         return TcpPeer{"127.0.0.1", std::to_string(acceptor_.local_endpoint().port())};
     }
 
-    /// To each who connects, once: those bytes, and then the end.
+    /// Accepts one connection per answer, sends the bytes and closes the connection.
     void serve(std::vector<Bytes> answers) {
         asio::co_spawn(
             io_,
@@ -179,32 +180,33 @@ protected:
     tcp::acceptor acceptor_{io_, {asio::ip::make_address("127.0.0.1"), 0}};
 };
 
-TEST_F(Ld06OverTcp, IsTheSameAsOverASerialLine) {
+TEST_F(Ld06OverTcp, GivesACompleteTurn) {
     serve({one_turn()});
     Ld06Live source(options(endpoint()));
     EXPECT_EQ(scan_of(source).ranges.size(), 450U);
 }
 
-TEST_F(Ld06OverTcp, ALinkThatBreaksIsOpenedAgain) {
+TEST_F(Ld06OverTcp, ReopensABrokenConnection) {
     serve({one_turn(), {}, one_turn()});
     Ld06Live source(options(endpoint()));
     (void)scan_of(source);
     EXPECT_EQ(scan_of(source).ranges.size(), 450U);
     EXPECT_THAT(notes_, ElementsAre(HasSubstr("hung up"), HasSubstr("packets come again")));
-    EXPECT_EQ(source.remarks(), "0 damaged packets, 2 turns") << "what comes behind a break is not joined to it";
+    EXPECT_EQ(source.remarks(), "0 damaged packets, 2 turns")
+        << "bytes after a break must not be joined to those before";
 }
 
-TEST_F(Ld06OverTcp, NobodyThereIsAnErrorAtOnce) {
-    const auto nobody = endpoint();
+TEST_F(Ld06OverTcp, RefusedConnectionFailsImmediately) {
+    const auto unused = endpoint();
     acceptor_.close();
-    Ld06Live source(options(nobody));
+    Ld06Live source(options(unused));
     const auto next = next_of(source);
     ASSERT_FALSE(next);
     EXPECT_THAT(next.error().message, HasSubstr("cannot be reached (Connection refused)"));
 }
 
-TEST_F(Ld06OverTcp, OneThatIsSilentWentAway) {
-    auto live = options(endpoint()); // accepted by the system, never answered
+TEST_F(Ld06OverTcp, SilentPeerFails) {
+    auto live = options(endpoint()); // accepted by the operating system, but never answered
     live.device.silent_max = std::chrono::milliseconds(20);
     live.device.reopen_for = std::chrono::milliseconds(0);
     Ld06Live source(std::move(live));

@@ -17,7 +17,7 @@ struct Vector {
 };
 
 const Vector kVectors[] = {
-    // the sensor's manual
+    // from the sensor's manual
     {{0x54, 0x2C, 0x68, 0x08, 0xAB, 0x7E, 0xE0, 0x00, 0xE4, 0xDC, 0x00, 0xE2, 0xD9, 0x00, 0xE5, 0xD5,
       0x00, 0xE3, 0xD3, 0x00, 0xE4, 0xD0, 0x00, 0xE9, 0xCD, 0x00, 0xE4, 0xCA, 0x00, 0xE2, 0xC7, 0x00,
       0xE9, 0xC5, 0x00, 0xE5, 0xC2, 0x00, 0xE5, 0xC0, 0x00, 0xE5, 0xBE, 0x82, 0x3A, 0x1A, 0x50},
@@ -57,7 +57,7 @@ const Vector kVectors[] = {
         {1713, 184}}},
       34645,
       19165}},
-    // nothing near, and yet confidence
+    // no near object, but with confidence
     {{0x54, 0x2C, 0x74, 0x08, 0xB0, 0x86, 0x00, 0x00, 0xD4, 0x00, 0x00, 0xD4, 0x00, 0x00, 0xD4, 0x00,
       0x00, 0xD4, 0x00, 0x00, 0xD4, 0x00, 0x00, 0xD5, 0x00, 0x00, 0xD5, 0x00, 0x00, 0x49, 0x00, 0x00,
       0x5F, 0x00, 0x00, 0xB0, 0x00, 0x00, 0xD2, 0x00, 0x00, 0xD4, 0x02, 0x89, 0x1E, 0x09, 0x1F},
@@ -79,7 +79,7 @@ const Vector kVectors[] = {
       2334}},
 };
 
-TEST(Ld06Packet, OfTheKnownVectorsIsReadAsWritten) {
+TEST(Ld06Packet, ReadsTheKnownVectors) {
     for (const auto& [bytes, packet] : kVectors) {
         EXPECT_EQ(ld06_crc(bytes), 0);
         EXPECT_EQ(ld06_crc(std::span(bytes).first(46)), bytes[46]);
@@ -89,24 +89,24 @@ TEST(Ld06Packet, OfTheKnownVectorsIsReadAsWritten) {
     }
 }
 
-TEST(Ld06Packet, SpansTheWayFromItsStartToItsEndClockwise) {
+TEST(Ld06Packet, SpanIsClockwiseFromStartToEnd) {
     EXPECT_EQ(steps_spanned({.start_angle = 100, .end_angle = 980}), 880 * 11);
     EXPECT_EQ(steps_spanned({.start_angle = 35'900, .end_angle = 100}), 200 * 11);
     EXPECT_EQ(steps_spanned({.start_angle = 5, .end_angle = 5}), 0);
 }
 
-TEST(Ld06Packet, ThatNoSensorSendsIsImplausible) {
+TEST(Ld06Packet, RejectsImplausiblePackets) {
     const Ld06Packet good{.speed = 3600, .start_angle = 0, .end_angle = 2800, .timestamp = 29'999};
     EXPECT_TRUE(is_plausible(good));
-    for (const auto& spoil : std::initializer_list<void (*)(Ld06Packet&)>{
+    for (const auto& invalidate : std::initializer_list<void (*)(Ld06Packet&)>{
              [](Ld06Packet& p) { p.end_angle = 2900; }, [](Ld06Packet& p) { p.start_angle = 36'001; },
              [](Ld06Packet& p) { p.end_angle = 36'001; }, [](Ld06Packet& p) { p.timestamp = 30'001; },
              [](Ld06Packet& p) { p.speed = 100; }}) {
         Ld06Packet bad = good;
-        spoil(bad);
+        invalidate(bad);
         EXPECT_FALSE(is_plausible(bad));
     }
-    EXPECT_TRUE(is_plausible({.speed = 0, .start_angle = 50, .end_angle = 99})) << "a motor that stands";
+    EXPECT_TRUE(is_plausible({.speed = 0, .start_angle = 50, .end_angle = 99})) << "a stopped motor";
 }
 
 } // namespace

@@ -14,7 +14,7 @@ using testing::ElementsAre;
 
 Ld06Turn turn_of(std::vector<Ld06Beam> beams) { return {12.5, std::move(beams)}; }
 
-TEST(Ld06Scan, TurnsCounterClockwise) {
+TEST(Ld06Scan, AnglesAreCounterClockwise) {
     const auto scan = ld06_scan(turn_of({{0, {1000, 201}},
                                          {90 * kLd06StepsPerDegree, {2000, 202}}, // to the right
                                          {350 * kLd06StepsPerDegree + 1, {3000, 203}}}),
@@ -24,12 +24,12 @@ TEST(Ld06Scan, TurnsCounterClockwise) {
     EXPECT_THAT(scan.intensities, ElementsAre(203, 202, 201));
     const auto& angles = scan.angles.value();
     EXPECT_THAT(std::get<SteppedAngles>(angles).steps, ElementsAre(10 * kLd06StepsPerDegree - 1, 270 * 1100, 396'000));
-    EXPECT_NEAR(beam_angle(angles, 0), (10.0 - 0.01 / 11.0) * kDegree, 1e-15) << "a little to the left";
+    EXPECT_NEAR(beam_angle(angles, 0), (10.0 - 0.01 / 11.0) * kDegree, 1e-15) << "slightly to the left";
     EXPECT_NEAR(beam_angle(angles, 1), 270.0 * kDegree, 1e-15);
     EXPECT_NEAR(beam_angle(angles, 2), 360.0 * kDegree, 1e-15) << "ahead";
 }
 
-TEST(Ld06Scan, WhatWasNotMeasuredIsInvalidAndWhatIsBeyondTheRangeSawNothing) {
+TEST(Ld06Scan, UnmeasuredPointsAreInvalidAndDistantOnesAreNoReturns) {
     const auto turn = turn_of({{0, {0, 212}},
                                {1, {19, 200}},
                                {2, {20, 200}},
@@ -46,7 +46,7 @@ TEST(Ld06Scan, WhatWasNotMeasuredIsInvalidAndWhatIsBeyondTheRangeSawNothing) {
     EXPECT_EQ(ld06_scan(turn, {.confidence_min = 255}).ranges, std::vector<RangeMm>(8, kInvalidRange));
 }
 
-TEST(Ld06Scan, IsSmoothedOnlyWhereThatIsAskedFor) {
+TEST(Ld06Scan, IsFilteredOnlyOnRequest) {
     std::vector<Ld06Beam> beams;
     for (std::int32_t i = 0; i < 450; ++i) beams.push_back({i * 880, {1000, 200}});
     beams[0].point.distance = 9000;
@@ -58,7 +58,7 @@ TEST(Ld06Scan, IsSmoothedOnlyWhereThatIsAskedFor) {
     EXPECT_THAT(smooth, testing::Each(1000U));
 }
 
-TEST(Ld06Scan, AndItsSensorAreWhatAServerTakes) {
+TEST(Ld06Scan, ScanAndSensorPassServerValidation) {
     const Ld06ScanOptions options{.range_min = 0.1, .range_max = 8.0, .mount = {0.1, -0.2, 3.0}};
     const Sensor sensor = *ld06_sensor(options);
     EXPECT_EQ(sensor.mount, options.mount);

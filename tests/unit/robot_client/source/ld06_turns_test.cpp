@@ -10,10 +10,10 @@ namespace {
 
 using testing_support::Ld06Spinner;
 
-constexpr std::int32_t kGap = 880; // the spinner's, in steps
+constexpr std::int32_t kGap = 880; // step between the spinner's points
 constexpr double kPacketSeconds = 0.002667;
 
-/// Feeds packets and collects the turns; packet n is taken at n * kPacketSeconds.
+/// Feeds packets and collects turns; packet n has the stamp n * kPacketSeconds.
 struct Cutter {
     Ld06Turns turns;
     std::vector<Ld06Turn> complete;
@@ -37,31 +37,32 @@ void expect_rising(const Ld06Turn& turn) {
     }
 }
 
-TEST(Ld06Turns, AreCutWhereTheAngleCrossesZeroAndLoseNothing) {
+TEST(Ld06Turns, AreCutAtAngleZeroWithoutLosingPoints) {
     Ld06Spinner sensor(34'000);
     Cutter cutter;
     cutter.add(sensor, 200); // 2400 points, 25 of them before the first crossing
     ASSERT_EQ(cutter.complete.size(), 5U);
-    std::int64_t expected = 0; // of the first point behind the crossing: 34000 + 25 * 80 = 36000
+    std::int64_t expected = 0; // step of the first point after the crossing: 34000 + 25 * 80 = 36000
     for (const auto& turn : cutter.complete) {
         EXPECT_EQ(turn.beams.size(), 450U);
         expect_rising(turn);
         for (const auto& beam : turn.beams) {
-            ASSERT_EQ(beam.step, expected % kLd06StepsPerTurn) << "no point is lost, doubled or moved";
+            ASSERT_EQ(beam.step, expected % kLd06StepsPerTurn) << "each point must appear once and unchanged";
             ASSERT_EQ(beam.point.distance, 1000 + 10 * (beam.step / 1100));
             expected += kGap;
         }
     }
 }
 
-TEST(Ld06Turns, HaveAsManyPointsAsTheyHave) {
-    Ld06Spinner sensor(30); // 450 points of 0.8 degrees are a full turn: so every turn begins at 0.3
+TEST(Ld06Turns, KeepVaryingPointCounts) {
+    Ld06Spinner sensor(30); // 450 points of 0.8 degrees are a full turn, so every turn begins at 0.3 degrees
     Cutter cutter;
     cutter.add(sensor, 120);
     ASSERT_EQ(cutter.complete.size(), 2U);
     EXPECT_EQ(cutter.complete[0].beams.front().step, 330);
 
-    Ld06Packet packet{.speed = 3600, .start_angle = 0, .end_angle = 913}; // 83 hundredths: 433.7 points a turn
+    Ld06Packet packet{
+        .speed = 3600, .start_angle = 0, .end_angle = 913}; // 0.83 degrees per point: 433.7 points per turn
     Cutter uneven;
     for (int i = 0; i < 400; ++i) {
         packet.start_angle = static_cast<std::uint16_t>(i * 12 * 83 % 36'000);
@@ -76,10 +77,10 @@ TEST(Ld06Turns, HaveAsManyPointsAsTheyHave) {
         points += turn.beams.size();
     }
     ASSERT_EQ(uneven.complete.size(), 10U);
-    EXPECT_EQ(points, (11U * 36'000U) / 83U - 36'000U / 83U) << "of eleven turns all but the first";
+    EXPECT_EQ(points, (11U * 36'000U) / 83U - 36'000U / 83U) << "all points of eleven turns except the first";
 }
 
-TEST(Ld06Turns, TheFirstIsDroppedBecauseItsBeginWasNotSeen) {
+TEST(Ld06Turns, IncompleteFirstTurnIsDropped) {
     Ld06Spinner sensor(18'000);
     Cutter cutter;
     cutter.add(sensor, 38);
@@ -90,15 +91,15 @@ TEST(Ld06Turns, TheFirstIsDroppedBecauseItsBeginWasNotSeen) {
     EXPECT_EQ(cutter.turns.count(), 1U);
 }
 
-TEST(Ld06Turns, ATurnIsStampedInItsMiddle) {
+TEST(Ld06Turns, StampIsTheMiddleOfTheTurn) {
     Ld06Spinner sensor(0);
     Cutter cutter;
-    cutter.add(sensor, 76); // packets 0..37 are the first turn, 37..75 the second
+    cutter.add(sensor, 76); // packets 0 to 37 are the first turn, 37 to 75 the second
     ASSERT_EQ(cutter.complete.size(), 1U);
     EXPECT_DOUBLE_EQ(cutter.complete[0].stamp, (37 + 74) / 2.0 * kPacketSeconds);
 }
 
-TEST(Ld06Turns, LostPacketsLeaveAHole) {
+TEST(Ld06Turns, LostPacketsLeaveAGap) {
     Ld06Spinner sensor(0);
     Cutter cutter;
     cutter.add(sensor, 45);
@@ -107,10 +108,10 @@ TEST(Ld06Turns, LostPacketsLeaveAHole) {
     ASSERT_EQ(cutter.complete.size(), 1U);
     expect_rising(cutter.complete[0]);
     EXPECT_EQ(cutter.complete[0].beams.size(), 450U - 36U);
-    EXPECT_EQ(cutter.turns.parts() + cutter.turns.gaps(), 0U) << "it is whole otherwise";
+    EXPECT_EQ(cutter.turns.parts() + cutter.turns.gaps(), 0U) << "the turn is complete otherwise";
 }
 
-TEST(Ld06Turns, AHoleAcrossZeroEndsTheTurnAllTheSame) {
+TEST(Ld06Turns, GapAcrossAngleZeroEndsTheTurn) {
     Ld06Spinner sensor(0);
     Cutter cutter;
     cutter.add(sensor, 72);
@@ -121,7 +122,7 @@ TEST(Ld06Turns, AHoleAcrossZeroEndsTheTurnAllTheSame) {
     for (const auto& turn : cutter.complete) expect_rising(turn);
 }
 
-TEST(Ld06Turns, NeverJoinTwoHalvesOfDifferentTurns) {
+TEST(Ld06Turns, DoNotJoinPartsOfDifferentTurns) {
     for (const int lost : {30, 36, 37, 38, 39, 45, 75, 300, 3000}) {
         Ld06Spinner sensor(0);
         Cutter cutter;
@@ -133,12 +134,12 @@ TEST(Ld06Turns, NeverJoinTwoHalvesOfDifferentTurns) {
             expect_rising(turn);
             EXPECT_LE(turn.beams.size(), 450U);
         }
-        // of the turn under way when packets were lost, what was seen before that is given
+        // The part of the turn before the lost packets is given.
         EXPECT_EQ(cutter.complete[0].beams.size(), 600U - 450U) << lost;
     }
 }
 
-TEST(Ld06Turns, NeverJoinTwoHalvesThoughTheSpeedIsALittleOff) {
+TEST(Ld06Turns, DoNotJoinPartsIfTheSpeedIsInaccurate) {
     Cutter cutter;
     cutter.add({.speed = 3600, .start_angle = 35'900, .end_angle = 35'980, .timestamp = 0});
     cutter.add({.speed = 3600, .start_angle = 200, .end_angle = 1080, .timestamp = 3});
@@ -147,15 +148,16 @@ TEST(Ld06Turns, NeverJoinTwoHalvesThoughTheSpeedIsALittleOff) {
     EXPECT_EQ(cutter.complete[0].beams.size(), 12U);
 }
 
-TEST(Ld06Turns, ATimeThatGoesBackEndsATurnHoweverSlowTheSensorIs) {
+TEST(Ld06Turns, DecreasingTimestampEndsATurnOfASlowSensor) {
     Cutter cutter;
     cutter.add({.speed = 10, .start_angle = 35'999, .end_angle = 0, .timestamp = 9'998});
     cutter.add({.speed = 10, .start_angle = 1, .end_angle = 12, .timestamp = 10'000});
-    cutter.add({.speed = 10, .start_angle = 24'000, .end_angle = 24'011, .timestamp = 4'000}); // 24 s, or 6 back
+    cutter.add(
+        {.speed = 10, .start_angle = 24'000, .end_angle = 24'011, .timestamp = 4'000}); // 24 s forward or 6 s back
     EXPECT_EQ(cutter.complete.size(), 1U);
 }
 
-TEST(Ld06Turns, ATimeThatGoesBackEndsATurn) {
+TEST(Ld06Turns, DecreasingTimestampEndsATurn) {
     Ld06Spinner sensor(0, 10'000);
     Cutter cutter;
     cutter.add(sensor, 60);
@@ -167,16 +169,16 @@ TEST(Ld06Turns, ATimeThatGoesBackEndsATurn) {
     EXPECT_EQ(cutter.complete[1].beams.size(), 200U);
     EXPECT_EQ(cutter.complete[2].beams.front().step, 0);
     EXPECT_EQ(cutter.turns.count(), 3U);
-    EXPECT_EQ(cutter.turns.parts(), 2U) << "that before the gap and that behind it";
+    EXPECT_EQ(cutter.turns.parts(), 2U) << "the parts before and after the gap";
     EXPECT_EQ(cutter.turns.gaps(), 1U);
 }
 
-TEST(Ld06Turns, BeforeTheFirstAndBehindTheLastAreNotCountedAsParts) {
+TEST(Ld06Turns, IncompleteEndsAreNotCountedAsParts) {
     Cutter cutter;
     Ld06Spinner sensor(10'000, 10'000);
     cutter.add(sensor, 5); // of the turn that is dropped
     Ld06Spinner other(10'000, 4'000);
-    cutter.add(other, 5); // of one that does not end
+    cutter.add(other, 5); // of a turn that does not end
     EXPECT_EQ(cutter.turns.gaps(), 1U);
     EXPECT_EQ(cutter.turns.parts(), 0U);
     cutter.turns.restart();
@@ -186,7 +188,7 @@ TEST(Ld06Turns, BeforeTheFirstAndBehindTheLastAreNotCountedAsParts) {
     EXPECT_EQ(cutter.turns.parts(), 0U);
 }
 
-TEST(Ld06Turns, AnAngleThatJumpsEndsATurn) {
+TEST(Ld06Turns, AngleJumpEndsATurn) {
     Ld06Spinner sensor(0);
     Cutter cutter;
     cutter.add(sensor, 60); // at 216 degrees
@@ -196,7 +198,7 @@ TEST(Ld06Turns, AnAngleThatJumpsEndsATurn) {
     EXPECT_EQ(cutter.complete[0].beams.size(), 270U);
 }
 
-TEST(Ld06Turns, PointsThatStepBackAreDropped) {
+TEST(Ld06Turns, PointsWithDecreasingAnglesAreDropped) {
     Ld06Spinner sensor(0);
     Cutter cutter;
     cutter.add(sensor, 45);
@@ -207,17 +209,17 @@ TEST(Ld06Turns, PointsThatStepBackAreDropped) {
     cutter.add(sensor, 60);
     ASSERT_EQ(cutter.complete.size(), 1U);
     expect_rising(cutter.complete[0]);
-    EXPECT_EQ(cutter.complete[0].beams.size(), 448U) << "two of the twelve are behind the ones before";
+    EXPECT_EQ(cutter.complete[0].beams.size(), 448U) << "two of the twelve points step back";
 
-    Cutter standing; // the motor is held
+    Cutter standing; // the motor is blocked
     Ld06Packet held{.speed = 0, .start_angle = 500, .end_angle = 500};
     for (int i = 0; i < 100; ++i) standing.add(held);
     EXPECT_TRUE(standing.complete.empty());
 }
 
-TEST(Ld06Turns, ASensorThatStartsSlowlyIsFollowed) {
+TEST(Ld06Turns, AcceleratingSensorGivesCompleteTurns) {
     Cutter cutter;
-    double angle = 0.0; // hundredths
+    double angle = 0.0; // hundredths of a degree
     for (int i = 0; i < 1000; ++i) {
         const int speed = 600 + 3 * i; // degrees per second
         const double span = speed * 100.0 * kPacketSeconds;
@@ -232,7 +234,7 @@ TEST(Ld06Turns, ASensorThatStartsSlowlyIsFollowed) {
     EXPECT_GT(cutter.complete.front().beams.size(), 2 * cutter.complete.back().beams.size());
 }
 
-TEST(Ld06Turns, OfMorePointsThanAScanMayHaveAreDroppedAndCounted) {
+TEST(Ld06Turns, TurnsWithTooManyPointsAreDroppedAndCounted) {
     const auto turn_of = [](std::size_t points) {
         Cutter cutter;
         cutter.add({.speed = 300, .start_angle = 35'990, .end_angle = 35'990});
@@ -256,7 +258,7 @@ TEST(Ld06Turns, OfMorePointsThanAScanMayHaveAreDroppedAndCounted) {
     EXPECT_EQ(more.turns.count(), 0U);
 }
 
-TEST(Ld06Turns, AStreamThatBeginsAnewBeginsWithATurnThatIsDropped) {
+TEST(Ld06Turns, RestartDropsTheFirstTurn) {
     Ld06Spinner sensor(0);
     Cutter cutter;
     cutter.add(sensor, 60);

@@ -21,7 +21,7 @@ using testing_support::gzip;
 
 class LineReaderTest : public testing::Test {
 protected:
-    /// The lines that could be read, and the error behind them.
+    /// Returns the number of readable lines and the error after them.
     std::pair<std::size_t, std::string> read(std::string_view bytes) {
         std::ofstream(path_, std::ios::binary) << bytes;
         auto reader = LineReader::open(path_);
@@ -40,7 +40,7 @@ protected:
         fmt::format("scanloom_{}.log", testing::UnitTest::GetInstance()->current_test_info()->name());
 };
 
-/// Lines that do not pack well, so that half of the packed bytes is about half of the lines.
+/// Returns lines that compress badly, so that half of the compressed bytes contains about half of the lines.
 std::string noise(int lines) {
     std::mt19937 random(3);
     std::string text;
@@ -48,24 +48,24 @@ std::string noise(int lines) {
     return text;
 }
 
-TEST_F(LineReaderTest, ACutGzipFileTellsHowMuchOfItCanBeRead) {
+TEST_F(LineReaderTest, TruncatedGzipFileReportsReadableLines) {
     const std::string whole = gzip(noise(1000));
     const auto [lines, error] = read(std::string_view(whole).substr(0, whole.size() / 2));
-    EXPECT_GT(lines, 300U) << "what stands before the cut is read";
+    EXPECT_GT(lines, 300U) << "lines before the cut are read";
     EXPECT_THAT(error, HasSubstr(path_.string() + ": the gzip data is damaged or cut short"));
     EXPECT_THAT(error, HasSubstr(fmt::format("only its first {} lines (", lines)));
     EXPECT_THAT(error, HasSubstr("unpack those with zcat"));
 }
 
-TEST_F(LineReaderTest, ACutBzip2FileTellsSoToo) {
-    const std::string whole = bzip2(noise(60'000)); // more than one of bzip2's blocks
+TEST_F(LineReaderTest, TruncatedBzip2FileReportsReadableLines) {
+    const std::string whole = bzip2(noise(60'000)); // more than one bzip2 block
     const auto [lines, error] = read(std::string_view(whole).substr(0, whole.size() - 10));
     EXPECT_GT(lines, 10'000U);
     EXPECT_THAT(error, HasSubstr(fmt::format("only its first {} lines (", lines)));
     EXPECT_THAT(error, HasSubstr("unpack those with bzcat"));
 }
 
-TEST_F(LineReaderTest, WhereNothingCanBeReadItDoesNotSpeakOfLineZero) {
+TEST_F(LineReaderTest, UnreadableFileReportsNoLineCount) {
     const std::string whole = bzip2(noise(100));
     const auto [lines, error] = read(std::string_view(whole).substr(0, whole.size() / 2));
     EXPECT_EQ(lines, 0U);
@@ -73,7 +73,7 @@ TEST_F(LineReaderTest, WhereNothingCanBeReadItDoesNotSpeakOfLineZero) {
     EXPECT_THAT(error, Not(HasSubstr("line")));
 }
 
-TEST_F(LineReaderTest, AWholeFileIsReadWholeWhateverItsPacking) {
+TEST_F(LineReaderTest, CompleteFilesAreReadCompletely) {
     const std::string text = noise(20'000);
     for (const std::string& bytes : {text, gzip(text), bzip2(text)}) {
         const auto [lines, error] = read(bytes);
@@ -82,32 +82,32 @@ TEST_F(LineReaderTest, AWholeFileIsReadWholeWhateverItsPacking) {
     }
 }
 
-TEST_F(LineReaderTest, TellsHowMuchOfTheFileItHasRead) {
-    const std::string text = noise(60'000); // more than one of bzip2's blocks
+TEST_F(LineReaderTest, ReportsProgressInBytes) {
+    const std::string text = noise(60'000); // more than one bzip2 block
     for (const std::string& bytes : {text, gzip(text), bzip2(text)}) {
         std::ofstream(path_, std::ios::binary) << bytes;
-        std::vector<std::uint64_t> told;
+        std::vector<std::uint64_t> progress_bytes;
         auto reader = LineReader::open(path_, {}, [&](const ReadProgress& progress) {
-            told.push_back(progress.bytes);
+            progress_bytes.push_back(progress.bytes);
             EXPECT_EQ(progress.bytes_total, bytes.size());
         });
         ASSERT_TRUE(reader);
         while (reader->next().value()) {
         }
-        EXPECT_TRUE(std::ranges::is_sorted(told));
-        ASSERT_GT(told.size(), 5U);
-        EXPECT_LT(told.front(), bytes.size());
-        EXPECT_EQ(told.back(), bytes.size());
+        EXPECT_TRUE(std::ranges::is_sorted(progress_bytes));
+        ASSERT_GT(progress_bytes.size(), 5U);
+        EXPECT_LT(progress_bytes.front(), bytes.size());
+        EXPECT_EQ(progress_bytes.back(), bytes.size());
     }
 }
 
-TEST_F(LineReaderTest, SeveralPackedFilesInARowAreOneText) {
+TEST_F(LineReaderTest, ConcatenatedCompressedFilesAreOneText) {
     const std::string text = noise(100);
     EXPECT_EQ(read(gzip(text) + gzip(text)).first, 200U);
     EXPECT_EQ(read(bzip2(text) + bzip2(text)).first, 200U);
 }
 
-TEST_F(LineReaderTest, ZeroBytesBehindPackedDataArePadding) {
+TEST_F(LineReaderTest, ZeroBytesAfterCompressedDataArePadding) {
     const std::string text = noise(100);
     for (const std::string& whole : {gzip(text), bzip2(text)}) {
         for (const std::size_t zeros : {1U, 10U, 512U, 100'000U}) {
@@ -118,19 +118,19 @@ TEST_F(LineReaderTest, ZeroBytesBehindPackedDataArePadding) {
     }
 }
 
-TEST_F(LineReaderTest, AnythingElseBehindPackedDataIsDamage) {
+TEST_F(LineReaderTest, OtherBytesAfterCompressedDataAreDamage) {
     const std::string text = noise(100);
     for (const std::string& whole : {gzip(text), bzip2(text)}) {
         for (const std::string& rest : {std::string("x"), std::string(20'000, '\0') + "x", std::string(1, '\0') + whole,
                                         whole.substr(0, 2), whole.substr(0, 12)}) {
             const auto [lines, error] = read(whole + rest);
-            EXPECT_EQ(lines, 100U) << "what stands before it is read";
+            EXPECT_EQ(lines, 100U) << "lines before the damage are read";
             EXPECT_THAT(error, HasSubstr("data is damaged or cut short"));
         }
     }
 }
 
-TEST_F(LineReaderTest, ZerosInThePlaceOfPackedDataAreDamage) {
+TEST_F(LineReaderTest, ZerosInCompressedDataAreDamage) {
     const std::string text = noise(1000);
     for (const std::string& whole : {gzip(text), bzip2(text)}) {
         for (const std::size_t kept : {3U, 12U, 5000U, static_cast<unsigned>(whole.size() - 10)}) {

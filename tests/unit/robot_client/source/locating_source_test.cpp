@@ -27,35 +27,35 @@ using Given = Result<std::optional<Observation>>;
 const Located kFound{{3.0, 4.0, 1.0}, 0.93, 0.02, 0.01};
 const Error kUnknownPlace{Errc::kUndetermined, "too little of this is in the map"};
 
-/// Gives what was recorded, then waits to be stopped.
-class EndlessLidar final : public LiveSource {
+/// Gives recorded turns, then waits for stop().
+class WaitingLidar final : public LiveSource {
 public:
-    explicit EndlessLidar(std::vector<Observation> turns) : turns_(std::move(turns)) {}
+    explicit WaitingLidar(std::vector<Observation> turns) : turns_(std::move(turns)) {}
 
     asio::awaitable<Given> next() override {
-        const auto wake = std::make_shared<asio::steady_timer>(co_await asio::this_coro::executor,
-                                                               asio::steady_timer::time_point::max());
-        wake_ = wake;
-        if (given_ == turns_.size() && !is_stopped_) co_await wake->async_wait(asio::as_tuple(asio::use_awaitable));
+        const auto timer = std::make_shared<asio::steady_timer>(co_await asio::this_coro::executor,
+                                                                asio::steady_timer::time_point::max());
+        timer_ = timer;
+        if (given_ == turns_.size() && !is_stopped_) co_await timer->async_wait(asio::as_tuple(asio::use_awaitable));
         if (is_stopped_) co_return std::optional<Observation>{};
         co_return std::optional(turns_[given_++]);
     }
     void stop() override {
         is_stopped_ = true;
-        if (const auto wake = wake_.lock()) wake->cancel();
+        if (const auto timer = timer_.lock()) timer->cancel();
     }
 
 private:
     std::vector<Observation> turns_;
     std::size_t given_ = 0;
     bool is_stopped_ = false;
-    std::weak_ptr<asio::steady_timer> wake_;
+    std::weak_ptr<asio::steady_timer> timer_;
 };
 
 class LocatingSourceTest : public testing::Test {
 protected:
     LocatingSource::Tell tell() {
-        return [this](const std::string& text) { told_.push_back(text); };
+        return [this](const std::string& text) { messages_.push_back(text); };
     }
 
     LocatingSource replayed(std::vector<Observation> turns) {
@@ -64,10 +64,10 @@ protected:
                 std::chrono::milliseconds(0)};
     }
 
-    /// Answers with one thing after the other, the last for ever.
+    /// Returns a callback that gives the answers in order and repeats the last one.
     Locate answers(std::vector<Result<Located>> all) {
         return [this, all](std::vector<PointMm> points, Point2 from) -> asio::awaitable<Result<Located>> {
-            return answer(all[std::min(asked_++, all.size() - 1)], points.size(), from);
+            return answer(all[std::min(requests_++, all.size() - 1)], points.size(), from);
         };
     }
 
@@ -77,13 +77,13 @@ protected:
         co_return located;
     }
 
-    /// No answer ever comes.
-    Locate silence() {
-        return [this](std::vector<PointMm>, Point2) { return wait_for_ever(); };
+    /// Returns a callback that never answers.
+    Locate never_answers() {
+        return [this](std::vector<PointMm>, Point2) { return wait_forever(); };
     }
 
-    asio::awaitable<Result<Located>> wait_for_ever() {
-        ++asked_;
+    asio::awaitable<Result<Located>> wait_forever() {
+        ++requests_;
         asio::steady_timer never(co_await asio::this_coro::executor, asio::steady_timer::time_point::max());
         co_await never.async_wait(asio::use_awaitable);
         co_return kFound;
@@ -117,12 +117,12 @@ protected:
 
     asio::io_context io_{1};
     CarriedLidar lidar_;
-    std::size_t asked_ = 0;
-    std::vector<std::string> told_;
+    std::size_t requests_ = 0;
+    std::vector<std::string> messages_;
     Given outcome_ = std::optional<Observation>{};
 };
 
-TEST_F(LocatingSourceTest, GivesEachPlacesTurnsWhereItWasLocated) {
+TEST_F(LocatingSourceTest, LocatedTurnsHaveTheLocatedPose) {
     auto turns = lidar_.turns_at(kHere, 20);
     append(turns, lidar_.turns_between(kHere, kThere, 30));
     append(turns, lidar_.turns_at(kThere, 20));
@@ -135,64 +135,64 @@ TEST_F(LocatingSourceTest, GivesEachPlacesTurnsWhereItWasLocated) {
     for (std::size_t n = 0; n < poses.size(); ++n) {
         EXPECT_EQ(poses[n], n < 17 ? (Pose2{1.0, 2.0, 0.5}) : second.T_map_odom) << n;
     }
-    EXPECT_EQ(asked_, 2U);
+    EXPECT_EQ(requests_, 2U);
     EXPECT_EQ(source.remarks(), "carried 1 time, 33 turns while carried or not located");
-    EXPECT_THAT(told_, ElementsAre(HasSubstr("taken to stand at (1.00, 2.00)"), HasSubstr("the lidar is moved"),
-                                   HasSubstr("located at (7.00, 8.00)")));
+    EXPECT_THAT(messages_, ElementsAre(HasSubstr("taken to stand at (1.00, 2.00)"), HasSubstr("the lidar is moved"),
+                                       HasSubstr("located at (7.00, 8.00)")));
 }
 
-TEST_F(LocatingSourceTest, GivesNothingOfAPlaceThatWasRefused) {
+TEST_F(LocatingSourceTest, TurnsOfARefusedPlaceAreDropped) {
     auto source = replayed(lidar_.turns_at(kHere, 150));
     source.ask_with(answers({kUnknownPlace}));
     EXPECT_THAT(poses_of(source), IsEmpty());
     ASSERT_FALSE(outcome_);
     EXPECT_EQ(outcome_.error(), (Error{kUnknownPlace.code, "no scan was sent: " + kUnknownPlace.message}));
-    EXPECT_EQ(asked_, 2U);
-    EXPECT_EQ(told_.size(), 1U);
+    EXPECT_EQ(requests_, 2U);
+    EXPECT_EQ(messages_.size(), 1U);
     EXPECT_EQ(source.remarks(), "carried 0 times, 150 turns while carried or not located");
 }
 
-TEST_F(LocatingSourceTest, AsksAgainAboutTheSameTurnsWhereTheServerHasNoTime) {
+TEST_F(LocatingSourceTest, RepeatsTheRequestIfTheServerIsOverloaded) {
     auto source = replayed(lidar_.turns_at(kHere, 20));
     const Error busy{Errc::kOverloaded, "too many robots ask at this moment; ask again soon"};
     source.ask_with(answers({busy, Error{Errc::kShuttingDown, "the server is shutting down"}, busy, kFound}));
     EXPECT_EQ(poses_of(source).size(), 20U);
     EXPECT_TRUE(outcome_);
-    EXPECT_EQ(asked_, 4U);
-    EXPECT_THAT(told_, ElementsAre(HasSubstr("the lidar is to stay; asking again"), HasSubstr("located at")));
+    EXPECT_EQ(requests_, 4U);
+    EXPECT_THAT(messages_, ElementsAre(HasSubstr("the lidar is to stay; asking again"), HasSubstr("located at")));
     EXPECT_EQ(source.remarks(), "carried 0 times, 0 turns while carried or not located");
 }
 
-TEST_F(LocatingSourceTest, StopsBeforeItAsksAgain) {
-    LocatingSource source(std::make_unique<EndlessLidar>(lidar_.turns_at(kHere, 20)), {}, tell(),
+TEST_F(LocatingSourceTest, StopEndsTheWaitBeforeARetry) {
+    LocatingSource source(std::make_unique<WaitingLidar>(lidar_.turns_at(kHere, 20)), {}, tell(),
                           std::chrono::hours(1));
     source.ask_with(answers({Error{Errc::kOverloaded, "too many robots ask at this moment; ask again soon"}}));
     const Given given = next(source, [&] { source.stop(); });
-    EXPECT_EQ(asked_, 1U);
+    EXPECT_EQ(requests_, 1U);
     EXPECT_EQ(given.error().code, Errc::kNotFound);
 }
 
-TEST_F(LocatingSourceTest, ThatNeverStoodSaysSo) {
+TEST_F(LocatingSourceTest, ReportsThatTheLidarWasNeverStationary) {
     auto source = replayed(lidar_.turns_between(kHere, kThere, 40));
     source.ask_with(answers({kFound}));
     EXPECT_THAT(poses_of(source), IsEmpty());
     ASSERT_FALSE(outcome_);
     EXPECT_THAT(outcome_.error().message, HasSubstr("of 40 turns no 10 in a row were alike"));
-    EXPECT_EQ(asked_, 0U);
+    EXPECT_EQ(requests_, 0U);
 }
 
-TEST_F(LocatingSourceTest, StopsWhileAnAnswerIsAwaited) {
-    LocatingSource source(std::make_unique<EndlessLidar>(lidar_.turns_at(kHere, 20)), {}, tell());
-    source.ask_with(silence());
+TEST_F(LocatingSourceTest, StopEndsAPendingRequest) {
+    LocatingSource source(std::make_unique<WaitingLidar>(lidar_.turns_at(kHere, 20)), {}, tell());
+    source.ask_with(never_answers());
     const Given given = next(source, [&] { source.stop(); });
-    EXPECT_EQ(asked_, 1U);
+    EXPECT_EQ(requests_, 1U);
     ASSERT_FALSE(given);
     EXPECT_EQ(given.error().code, Errc::kNotFound);
     EXPECT_THAT(given.error().message, HasSubstr("stopped before the server had told where the lidar stands"));
 }
 
-TEST_F(LocatingSourceTest, StopsWhileItStandsAndGivesWhatItHeldBack) {
-    LocatingSource source(std::make_unique<EndlessLidar>(lidar_.turns_at(kHere, 12)), {}, tell());
+TEST_F(LocatingSourceTest, StopWhileStationaryGivesTheHeldTurns) {
+    LocatingSource source(std::make_unique<WaitingLidar>(lidar_.turns_at(kHere, 12)), {}, tell());
     source.ask_with(answers({kFound}));
     for (int n = 0; n < 9; ++n) EXPECT_TRUE(next(source).value());
     const Given tenth = next(source, [&] { source.stop(); });
@@ -201,16 +201,16 @@ TEST_F(LocatingSourceTest, StopsWhileItStandsAndGivesWhatItHeldBack) {
     EXPECT_TRUE(outcome_) << outcome_.error().message;
 }
 
-TEST_F(LocatingSourceTest, StoppedBeforeItBeganGivesNothing) {
-    LocatingSource source(std::make_unique<EndlessLidar>(lidar_.turns_at(kHere, 12)), {}, tell());
-    source.ask_with(silence());
+TEST_F(LocatingSourceTest, StopBeforeTheStartGivesNothing) {
+    LocatingSource source(std::make_unique<WaitingLidar>(lidar_.turns_at(kHere, 12)), {}, tell());
+    source.ask_with(never_answers());
     source.stop();
     const Given given = next(source);
     ASSERT_TRUE(given);
     EXPECT_FALSE(*given);
 }
 
-TEST_F(LocatingSourceTest, ALidarThatFailsEndsItAndWhatWasHeldBackIsNotGiven) {
+TEST_F(LocatingSourceTest, FailingLidarEndsTheSourceAndDropsHeldTurns) {
     auto recording = std::make_unique<RecordedSource>(lidar_.turns_at(kHere, 20));
     recording->fail_after(15);
     LocatingSource source(std::make_unique<ReplayedSource>(std::move(recording)), {}, tell());
@@ -220,10 +220,10 @@ TEST_F(LocatingSourceTest, ALidarThatFailsEndsItAndWhatWasHeldBackIsNotGiven) {
     EXPECT_THAT(outcome_.error().message, HasSubstr("cannot be read on"));
 }
 
-TEST_F(LocatingSourceTest, OfARecordingCanWait) {
+TEST_F(LocatingSourceTest, CanWaitOnlyForARecording) {
     auto source = replayed({});
     EXPECT_TRUE(source.can_wait());
-    LocatingSource live(std::make_unique<EndlessLidar>(std::vector<Observation>{}), {}, tell());
+    LocatingSource live(std::make_unique<WaitingLidar>(std::vector<Observation>{}), {}, tell());
     EXPECT_FALSE(live.can_wait());
 }
 

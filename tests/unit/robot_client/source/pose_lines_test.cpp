@@ -15,7 +15,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-TEST(PoseLine, IsATimeAndAPose) {
+TEST(PoseLine, ContainsStampAndPose) {
     const auto pose = read_pose_line("  1.5\t-2 3e1 7 and what stands behind\r").value().value();
     EXPECT_EQ(pose.stamp, 1.5);
     EXPECT_EQ(pose.robot.x, -2.0);
@@ -23,13 +23,13 @@ TEST(PoseLine, IsATimeAndAPose) {
     EXPECT_DOUBLE_EQ(pose.robot.yaw, 7.0 - 2.0 * std::numbers::pi);
 }
 
-TEST(PoseLine, MaySayNothing) {
+TEST(PoseLine, MayBeEmptyOrAComment) {
     for (const auto* line : {"", " \t", "# t x y yaw", "#", "  # 1 2 3 4"}) {
         EXPECT_FALSE(read_pose_line(line).value()) << line;
     }
 }
 
-TEST(PoseLine, ThatIsNoneSaysWhy) {
+TEST(PoseLine, InvalidLineIsRefusedWithTheReason) {
     EXPECT_THAT(read_pose_line("1 2 3").error().message, HasSubstr("3 values; 4 are needed"));
     EXPECT_THAT(read_pose_line("1 2 3 x").error().message, HasSubstr("'x' is not a number"));
     EXPECT_THAT(read_pose_line("1 2 nan 4").error().message, HasSubstr("'nan' is not finite"));
@@ -37,7 +37,7 @@ TEST(PoseLine, ThatIsNoneSaysWhy) {
     EXPECT_THAT(read_pose_line("1 2 1000001 4").error().message, HasSubstr("more than 1000000 m from the origin"));
 }
 
-TEST(PoseLines, ThatAreBrokenAreSkippedAndTold) {
+TEST(PoseLines, BrokenLinesAreSkippedAndReported) {
     std::istringstream text("# comment\n1 0 0 0\nbroken\n\n2 1 0 0\n1 2\n");
     std::vector<std::size_t> skipped;
     const auto lines =
@@ -48,7 +48,7 @@ TEST(PoseLines, ThatAreBrokenAreSkippedAndTold) {
     EXPECT_THAT(skipped, ElementsAre(3, 6));
 }
 
-TEST(PoseLines, OfAFileAreReadAlike) {
+TEST(PoseLines, FilesAndStreamsAreReadAlike) {
     const TemporaryDirectory directory;
     const auto path = directory.path() / "poses";
     std::ofstream(path) << "2 1 0 0\nx\n1 0 0 0";
@@ -63,7 +63,7 @@ TEST(PoseLines, OfAFileAreReadAlike) {
     EXPECT_THAT(read_pose_lines(path, ignore).error().message, HasSubstr("no pose to be read"));
 }
 
-TEST(PoseTimeline, TurnsTheShortWayBetweenItsPoses) {
+TEST(PoseTimeline, InterpolatesYawAlongTheShorterArc) {
     PoseTimeline poses;
     poses.insert({{2.0, -2.0, -3.0}, 20.0});
     poses.insert({{1.0, 0.0, 3.0}, 10.0}); // in any order
@@ -74,7 +74,7 @@ TEST(PoseTimeline, TurnsTheShortWayBetweenItsPoses) {
     EXPECT_NEAR(poses.at(12.5).value().yaw, 3.0 + (std::numbers::pi - 3.0) / 2.0, 1e-12);
 }
 
-TEST(PoseTimeline, KnowsNothingBeforeItsFirstPoseAndBehindItsLast) {
+TEST(PoseTimeline, IsEmptyOutsideItsPoses) {
     PoseTimeline poses;
     EXPECT_FALSE(poses.at(0.0));
     poses.insert({{1.0, 0.0, 0.0}, 10.0});
@@ -82,18 +82,18 @@ TEST(PoseTimeline, KnowsNothingBeforeItsFirstPoseAndBehindItsLast) {
     EXPECT_FALSE(poses.at(9.999));
     EXPECT_FALSE(poses.at(10.001));
     poses.insert({{2.0, 0.0, 0.0}, 1000.0});
-    EXPECT_DOUBLE_EQ(poses.at(505.0).value().x, 1.5) << "however far apart they are";
+    EXPECT_DOUBLE_EQ(poses.at(505.0).value().x, 1.5) << "poses are interpolated at any distance";
     EXPECT_EQ(poses.at(1000.0).value().x, 2.0);
     EXPECT_FALSE(poses.at(1000.001));
 }
 
-TEST(PoseTimeline, OfTwoPosesAtOneTimeEitherIsGiven) {
+TEST(PoseTimeline, AcceptsSeveralPosesWithOneStamp) {
     PoseTimeline poses;
     for (const double x : {1.0, 2.0, 3.0}) poses.insert({{x, 0.0, 0.0}, 10.0});
     EXPECT_TRUE(poses.at(10.0));
 }
 
-TEST(PoseTimeline, ForgetsTheOldest) {
+TEST(PoseTimeline, KeepsTheNewestPoses) {
     PoseTimeline poses;
     for (int i = 0; i < 10; ++i) poses.insert({{0.0, 0.0, 0.0}, static_cast<double>(i)});
     poses.keep_newest(3);

@@ -25,7 +25,7 @@ Scan scan_of(std::vector<RangeMm> ranges, const Pose2& pose = {}) {
     return scan;
 }
 
-TEST(PointsSeen, AreWhereBeamsMetSomething) {
+TEST(PointsSeen, AreTheEndsOfReturningBeams) {
     SeenPoints seen;
     seen.add(scan_of({1000, kInvalidRange, 2000, kNoReturn}), laser());
     seen.add(scan_of({99, 10'000, 9999, 100}), laser());
@@ -41,16 +41,16 @@ TEST(PointsSeen, AreInTheFrameOfThePoses) {
     EXPECT_THAT(seen.points(), ElementsAre(PointMm{0, 2500}));
     EXPECT_LT(norm(seen.from() - Point2{1.0, 2.5}), 1e-12);
     seen.add(scan_of({0, 0, 0, 0}, {2.0, 2.0, std::numbers::pi / 2}), mounted);
-    EXPECT_LT(norm(seen.from() - Point2{1.5, 2.5}), 1e-12) << "between the places";
+    EXPECT_LT(norm(seen.from() - Point2{1.5, 2.5}), 1e-12) << "between the sensor's positions";
 }
 
-TEST(PointsSeen, WhereNoCoordinateReachesAreNone) {
+TEST(PointsSeen, ExcludePointsBeyondTheCoordinateLimit) {
     SeenPoints seen;
     seen.add(scan_of({1000, 1000, 1000, 1000}, {1e6 - 0.5, 0.0, 0.0}), laser());
     EXPECT_EQ(seen.points().size(), 3U);
 }
 
-TEST(PointsSeen, OfTooManyAreTakenEvenly) {
+TEST(PointsSeen, AreThinnedEvenly) {
     SeenPoints seen;
     const std::size_t scans = 3 * kSeenPointsMax / 4;
     for (std::size_t n = 0; n < scans; ++n) {
@@ -59,7 +59,7 @@ TEST(PointsSeen, OfTooManyAreTakenEvenly) {
     const auto points = seen.points();
     ASSERT_EQ(points.size(), kSeenPointsMax);
     for (std::size_t n = 1; n < points.size(); ++n) {
-        EXPECT_LE(std::abs(points[n].x - points[n - 1].x), 3000) << "none but every third one is left out";
+        EXPECT_LE(std::abs(points[n].x - points[n - 1].x), 3000) << "at least every third point is kept";
     }
     EXPECT_GT(points.back().x, 1000 * (static_cast<std::int32_t>(scans) - 3));
 }

@@ -23,7 +23,7 @@ std::size_t count(SimulatedSource& source) {
     return scans;
 }
 
-TEST(SimulatedSource, EndsAtTheFirstOfItsLimits) {
+TEST(SimulatedSource, EndsAtItsFirstLimit) {
     for (const auto& [duration, scans, expected] :
          {std::tuple{3.0, 1000U, 30U}, {0.3, 1000U, 3U}, {100.0, 7U, 7U}, {0.31, 99U, 4U}}) {
         auto source = make({duration, scans});
@@ -32,16 +32,16 @@ TEST(SimulatedSource, EndsAtTheFirstOfItsLimits) {
     }
 }
 
-/// A laser and sonars.
-SimulatedSource make_hearing(SimulationLimits limits, std::uint64_t seed, const char* world = "room_walker") {
+/// Returns a source with a laser and sonars.
+SimulatedSource make_with_sonar(SimulationLimits limits, std::uint64_t seed, const char* world = "room_walker") {
     SimulatorOptions options{*find_world(world), *find_laser("lidar360"), Noise{.range_uniform = 0.05}, seed};
     options.sonar = *find_sonar("ring16");
     options.pose = PoseSent::kOdometry;
     return {Simulator(std::move(options), std::make_unique<WallFollower>()), limits, NoReturn::kFree};
 }
 
-TEST(SimulatedSource, EachSensorHasItsScansWithinTheDuration) {
-    auto source = make_hearing({.duration = 0.31}, 1);
+TEST(SimulatedSource, EachSensorScansWithinTheDuration) {
+    auto source = make_with_sonar({.duration = 0.31}, 1);
     EXPECT_EQ(source.scan_count(), 8U);
     std::size_t of_sonars = 0;
     while (const auto observation = *source.next()) {
@@ -52,7 +52,7 @@ TEST(SimulatedSource, EachSensorHasItsScansWithinTheDuration) {
     EXPECT_EQ(of_sonars, 4U);
 }
 
-/// The frames that an uplink would send.
+/// Returns the frames that an uplink would send.
 std::vector<std::string> frames_of(SimulatedSource source) {
     std::vector<std::string> frames;
     std::uint64_t seq = 0;
@@ -63,22 +63,22 @@ std::vector<std::string> frames_of(SimulatedSource source) {
     return frames;
 }
 
-TEST(SimulatedSource, TheSameSeedGivesTheSameBytes) {
-    const auto frames = frames_of(make_hearing({.scans = 400}, 5));
+TEST(SimulatedSource, EqualSeedsGiveEqualBytes) {
+    const auto frames = frames_of(make_with_sonar({.scans = 400}, 5));
     EXPECT_EQ(frames.size(), 400U);
-    EXPECT_EQ(frames_of(make_hearing({.scans = 400}, 5)), frames);
-    EXPECT_NE(frames_of(make_hearing({.scans = 400}, 6)), frames);
+    EXPECT_EQ(frames_of(make_with_sonar({.scans = 400}, 5)), frames);
+    EXPECT_NE(frames_of(make_with_sonar({.scans = 400}, 6)), frames);
 }
 
-TEST(SimulatedSource, WithoutLimitsItsLengthIsNotKnown) { EXPECT_EQ(make({}).scan_count(), std::nullopt); }
+TEST(SimulatedSource, ScanCountIsUnknownWithoutLimits) { EXPECT_EQ(make({}).scan_count(), std::nullopt); }
 
-TEST(SimulatedSource, MadeAnewItGivesTheSameScansAgain) {
+TEST(SimulatedSource, EqualSourcesGiveEqualScans) {
     auto first = make({.scans = 20});
     auto second = make({});
     for (int i = 0; i < 20; ++i) EXPECT_EQ((*second.next())->scan, (*first.next())->scan);
 }
 
-TEST(SimulatedSource, BeamsWithoutReturnAreFreeOrDropped) {
+TEST(SimulatedSource, NoReturnsAreFreeOrDropped) {
     const auto has = [](const Scan& scan, RangeMm mark) {
         return std::count(scan.ranges.begin(), scan.ranges.end(), mark) > 0;
     };

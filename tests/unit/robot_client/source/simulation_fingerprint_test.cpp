@@ -11,11 +11,11 @@ SimulatorOptions options() { return {make_office(), *find_laser("reference"), No
 
 std::string fingerprint(const SimulatorOptions& of) { return fingerprint_of(of, "wall_follower", NoReturn::kFree); }
 
-TEST(SimulationFingerprint, WhatGaveTheSameScansInOlderVersionsHasTheFingerprintItHadThere) {
+TEST(SimulationFingerprint, EqualsTheFingerprintOfOlderVersions) {
     EXPECT_EQ(fingerprint(options()), "simulation:2c4e8578c71e4392b4c3715a4333a356");
 }
 
-TEST(SimulationFingerprint, DiffersWithEverythingThatDeterminesTheScans) {
+TEST(SimulationFingerprint, DependsOnEverythingThatDeterminesScans) {
     std::set<std::string> seen{fingerprint(options()), fingerprint_of(options(), "another", NoReturn::kFree),
                                fingerprint_of(options(), "wall_follower", NoReturn::kDrop)};
     void (*const kChanges[])(SimulatorOptions&) = {

@@ -39,7 +39,7 @@ private:
     TemporaryDirectory directory_;
 };
 
-TEST_F(SonarLogs, ALineIsAScanOfOneRingOfEight) {
+TEST_F(SonarLogs, LineIsAScanOfEightSonars) {
     auto log = open("1000 1500 5110 5109 1 0 -3 2000.4 6000\n", "1000 2000 -1000 900\n");
     ASSERT_TRUE(log) << log.error().message;
     EXPECT_EQ(log->scan_count(), 1U);
@@ -60,7 +60,7 @@ TEST_F(SonarLogs, ALineIsAScanOfOneRingOfEight) {
     EXPECT_FALSE(*log->next());
 }
 
-TEST_F(SonarLogs, PosesAreInterpolatedInTimeAndAcrossTheTurnOfTheHeading) {
+TEST_F(SonarLogs, PosesAreInterpolatedAlsoAcrossTheAngleWrap) {
     auto log = open("1250 1 1 1 1 1 1 1 1\n\n2000 1 1 1 1 1 1 1 1\r\n", "1000 0 0 3590\n2000 1000 400 30\n");
     const Pose2 between = (*log->next())->scan.pose;
     EXPECT_NEAR(between.x, 0.25, 1e-12);
@@ -69,7 +69,7 @@ TEST_F(SonarLogs, PosesAreInterpolatedInTimeAndAcrossTheTurnOfTheHeading) {
     EXPECT_NEAR((*log->next())->scan.pose.yaw, 3.0 * kDegree, 1e-12);
 }
 
-TEST_F(SonarLogs, RangeApertureAndWhatNoReturnMeansAreTheUsers) {
+TEST_F(SonarLogs, OptionsSetRangeApertureAndNoReturns) {
     const SonarOptions options{.no_return = NoReturn::kDrop, .range_max = 3.0, .aperture = 0.2, .limits = {}};
     auto log = open("0 3000 2999 1 1 1 1 1 1\n", "0 0 0 0\n", options);
     const auto observation = **log->next();
@@ -79,7 +79,7 @@ TEST_F(SonarLogs, RangeApertureAndWhatNoReturnMeansAreTheUsers) {
     EXPECT_EQ(observation.sensor->aperture, 0.2);
 }
 
-TEST_F(SonarLogs, EachErrorNamesFileAndLine) {
+TEST_F(SonarLogs, ErrorsContainFileAndLine) {
     const char* good = "0 1 1 1 1 1 1 1 1\n";
     EXPECT_THAT(error_of("0 1 1 1 1 1 1 1 1\n\n100 1 2 3\n", "0 0 0 0\n"),
                 EndsWith("m.txt:3: 4 values; 9 are needed: time_ms and 8 ranges in mm"));
@@ -96,7 +96,7 @@ TEST_F(SonarLogs, EachErrorNamesFileAndLine) {
     EXPECT_THAT(missing.error().message, HasSubstr("/nonexistent/p.txt"));
 }
 
-TEST_F(SonarLogs, FingerprintsAreOfWhatDeterminesTheScans) {
+TEST_F(SonarLogs, FingerprintDependsOnEverythingThatDeterminesScans) {
     const auto fingerprint = [&](std::string_view m, std::string_view p, const SonarOptions& options = {}) {
         return open(m, p, options)->fingerprint();
     };
@@ -113,7 +113,8 @@ TEST_F(SonarLogs, FingerprintsAreOfWhatDeterminesTheScans) {
     EXPECT_LE(seen.begin()->size(), 64U);
 }
 
-/// How many cells of 0.2 m the echoes of the real ring fall into, with the two signs tried.
+/// Returns the number of 0.2 m cells that contain echoes of the real ring, for the given signs of heading and ring
+/// angle.
 std::size_t cells_hit(SonarLog log, double heading_sign, double ring_sign) {
     std::set<std::pair<int, int>> cells;
     for (;;) {
@@ -129,7 +130,7 @@ std::size_t cells_hit(SonarLog log, double heading_sign, double ring_sign) {
     }
 }
 
-TEST(RealSonar, ItsWallsStandStillWithTheAnglesAsTheyAreRead) {
+TEST(RealSonar, EchoesAreConsistentWithTheAnglesAsRead) {
     const auto folder = std::filesystem::path(SCANLOOM_SOURCE_DIR) / "../shared/data/sonar";
     if (!std::filesystem::exists(folder)) GTEST_SKIP() << "there is no " << folder;
     const auto open = [&] { return SonarLog::open(folder / "measurement.txt", folder / "poses.txt", {}); };

@@ -15,20 +15,20 @@ namespace {
 using Verdict = Stillness::Verdict;
 
 Stillness learnt(const std::vector<Observation>& turns) {
-    Stillness stillness;
-    for (const auto& turn : turns) stillness.learn(profile_of(turn.scan, *turn.sensor));
-    return stillness;
+    Stillness detection;
+    for (const auto& turn : turns) detection.learn(profile_of(turn.scan, *turn.sensor));
+    return detection;
 }
 
-double changed(const Stillness& stillness, const Observation& turn) {
-    return stillness.changed_part(profile_of(turn.scan, *turn.sensor)).value_or(-1.0);
+double changed(const Stillness& detection, const Observation& turn) {
+    return detection.changed_part(profile_of(turn.scan, *turn.sensor)).value_or(-1.0);
 }
 
-Verdict judged(const Stillness& stillness, const Observation& turn) {
-    return stillness.judge(profile_of(turn.scan, *turn.sensor));
+Verdict judged(const Stillness& detection, const Observation& turn) {
+    return detection.judge(profile_of(turn.scan, *turn.sensor));
 }
 
-/// The same places as if the sensor had been turned, or stood elsewhere.
+/// Returns the turn as observed from another pose, with the beams at the angles of the same points.
 Observation as_from(const Pose2& T_was_is, Observation turn) {
     const BeamAngles angles = angles_of(turn.scan, *turn.sensor);
     ExplicitAngles seen_at;
@@ -51,7 +51,7 @@ std::vector<Pose2> moves_of(double metres) {
     return moves;
 }
 
-TEST(ATurnsProfile, HasTheMedianOfEachDirectionThatMetSomething) {
+TEST(TurnProfile, IsTheMedianReadingPerDirection) {
     Sensor sensor;
     sensor.range_max = 10.0;
     Scan scan;
@@ -61,80 +61,80 @@ TEST(ATurnsProfile, HasTheMedianOfEachDirectionThatMetSomething) {
     const auto profile = profile_of(scan, sensor);
     EXPECT_DOUBLE_EQ(profile[0], 2.0);
     EXPECT_DOUBLE_EQ(profile[359], 3.0);
-    EXPECT_TRUE(std::isnan(profile[90])) << "an invalid reading";
-    EXPECT_TRUE(std::isnan(profile[1])) << "a beam without a return";
-    EXPECT_TRUE(std::isnan(profile[180])) << "no beam";
+    EXPECT_TRUE(std::isnan(profile[90])) << "an invalid reading has no value";
+    EXPECT_TRUE(std::isnan(profile[1])) << "a no-return has no value";
+    EXPECT_TRUE(std::isnan(profile[180])) << "a direction without a beam has no value";
 }
 
-TEST(ASensor, ThatStandsIsAlikeWhereverThatIs) {
+TEST(StationaryDetection, StationarySensorIsStillAtAnyPlace) {
     for (const auto make : {make_room, make_office}) {
         CarriedLidar lidar(make());
         for (int place = 0; place < 20; ++place) {
             const Pose2 here = lidar.any_place();
-            Stillness stillness;
+            Stillness detection;
             for (const auto& turn : lidar.turns_at(here, Stillness::kTurnsMax)) {
-                EXPECT_EQ(judged(stillness, turn), Verdict::kStill) << stillness.turns() << " turns learnt";
-                stillness.learn(profile_of(turn.scan, *turn.sensor));
+                EXPECT_EQ(judged(detection, turn), Verdict::kStill) << detection.turns() << " turns learnt";
+                detection.learn(profile_of(turn.scan, *turn.sensor));
             }
-            for (const auto& turn : lidar.turns_at(here, 10)) EXPECT_LT(changed(stillness, turn), 0.1);
+            for (const auto& turn : lidar.turns_at(here, 10)) EXPECT_LT(changed(detection, turn), 0.1);
         }
     }
 }
 
-TEST(ASensor, ThatIsMovedByTenCentimetresInARoomIsNot) {
+TEST(StationaryDetection, DetectsAMovementOfTenCentimetresInARoom) {
     CarriedLidar lidar;
     for (int place = 0; place < 20; ++place) {
         const Pose2 here = lidar.any_place();
-        const auto stillness = learnt(lidar.turns_at(here, Stillness::kTurnsMax));
+        const auto detection = learnt(lidar.turns_at(here, Stillness::kTurnsMax));
         for (const auto& move : moves_of(0.1)) {
-            EXPECT_EQ(judged(stillness, lidar.turn_at(compose(here, move))), Verdict::kMoved)
+            EXPECT_EQ(judged(detection, lidar.turn_at(compose(here, move))), Verdict::kMoved)
                 << here.x << " " << here.y << " by " << move.x << " " << move.y;
         }
     }
 }
 
-TEST(ASensor, ThatIsTurnedByFiveDegreesIsNot) {
+TEST(StationaryDetection, DetectsARotationOfFiveDegrees) {
     for (const auto make : {make_room, make_office, make_hall}) {
         CarriedLidar lidar(make());
         for (int place = 0; place < 20; ++place) {
             const Pose2 here = lidar.any_place();
-            const auto stillness = learnt(lidar.turns_at(here, Stillness::kTurnsMax));
+            const auto detection = learnt(lidar.turns_at(here, Stillness::kTurnsMax));
             for (const double turn : {5.0, -5.0}) {
-                EXPECT_GT(changed(stillness, lidar.turn_at(compose(here, {0, 0, turn * kDegree}))), 0.35)
+                EXPECT_GT(changed(detection, lidar.turn_at(compose(here, {0, 0, turn * kDegree}))), 0.35)
                     << here.x << " " << here.y;
             }
         }
     }
 }
 
-TEST(ASensor, ThatIsBeingPutDownDoesNotStandYet) {
+TEST(StationaryDetection, DetectsASensorThatIsBeingPutDown) {
     CarriedLidar lidar;
     int noticed = 0;
     for (int place = 0; place < 20; ++place) {
         const Pose2 here = lidar.any_place();
-        const auto stillness = learnt(lidar.turns_at(here, 5));
+        const auto detection = learnt(lidar.turns_at(here, 5));
         for (const auto& move : moves_of(0.06)) {
-            noticed += judged(stillness, lidar.turn_at(compose(here, move))) == Verdict::kMoved ? 1 : 0;
+            noticed += judged(detection, lidar.turn_at(compose(here, move))) == Verdict::kMoved ? 1 : 0;
         }
     }
     EXPECT_GT(noticed, 20 * 8 * 9 / 10);
 }
 
-TEST(ASensor, ThatPeopleWalkAroundStands) {
+TEST(StationaryDetection, IgnoresPeopleWalkingAround) {
     CarriedLidar lidar;
     for (int place = 0; place < 20; ++place) {
         const Pose2 here = lidar.any_place();
-        const auto stillness = learnt(lidar.turns_at(here, Stillness::kTurnsMax));
+        const auto detection = learnt(lidar.turns_at(here, Stillness::kTurnsMax));
         for (const auto& step : moves_of(0.5)) {
             const Point2 there{here.x + step.x, here.y + step.y};
             lidar.world().walkers = {{.loop = {there, {there.x + 1.0, there.y}}}};
-            EXPECT_EQ(judged(stillness, lidar.turn_at(here)), Verdict::kStill);
+            EXPECT_EQ(judged(detection, lidar.turn_at(here)), Verdict::kStill);
         }
         lidar.world().walkers.clear();
     }
 }
 
-TEST(ASensor, WithReadingsMissingIsJudgedByTheOthers) {
+TEST(StationaryDetection, IgnoresMissingReadings) {
     CarriedLidar lidar;
     const auto with_gaps = [&](const Pose2& place) {
         Observation turn = lidar.turn_at(place);
@@ -145,14 +145,14 @@ TEST(ASensor, WithReadingsMissingIsJudgedByTheOthers) {
     };
     std::vector<Observation> turns;
     for (std::size_t n = 0; n < Stillness::kTurnsMax; ++n) turns.push_back(with_gaps(kHere));
-    const auto stillness = learnt(turns);
+    const auto detection = learnt(turns);
     for (int n = 0; n < 10; ++n) {
-        EXPECT_EQ(judged(stillness, with_gaps(kHere)), Verdict::kStill);
-        EXPECT_EQ(judged(stillness, with_gaps({-3.5, -2.85, 0.3})), Verdict::kMoved);
+        EXPECT_EQ(judged(detection, with_gaps(kHere)), Verdict::kStill);
+        EXPECT_EQ(judged(detection, with_gaps({-3.5, -2.85, 0.3})), Verdict::kMoved);
     }
 }
 
-TEST(ASensor, OfWhichTooLittleIsSeenIsUnclear) {
+TEST(StationaryDetection, TooFewReadingsAreUnclear) {
     CarriedLidar lidar;
     const auto part_of_a_turn = [&](std::size_t beams) {
         Observation turn = lidar.turn_at(kHere);
@@ -161,14 +161,14 @@ TEST(ASensor, OfWhichTooLittleIsSeenIsUnclear) {
     };
     EXPECT_EQ(judged({}, part_of_a_turn(30)), Verdict::kUnclear);
     EXPECT_EQ(judged({}, part_of_a_turn(40)), Verdict::kStill);
-    const auto stillness = learnt(lidar.turns_at(kHere, Stillness::kTurnsMax));
-    EXPECT_EQ(judged(stillness, part_of_a_turn(0)), Verdict::kUnclear);
-    EXPECT_EQ(judged(stillness, part_of_a_turn(60)), Verdict::kUnclear);
-    EXPECT_EQ(judged(stillness, part_of_a_turn(80)), Verdict::kStill);
+    const auto detection = learnt(lidar.turns_at(kHere, Stillness::kTurnsMax));
+    EXPECT_EQ(judged(detection, part_of_a_turn(0)), Verdict::kUnclear);
+    EXPECT_EQ(judged(detection, part_of_a_turn(60)), Verdict::kUnclear);
+    EXPECT_EQ(judged(detection, part_of_a_turn(80)), Verdict::kStill);
 }
 
-/// The numbers in stillness.hpp.
-TEST(ASensor, ThatIsRealIsJudgedWithMarginOnBothSides) {
+/// Checks the numbers in stillness.hpp with a real recording.
+TEST(StationaryDetection, RealRecordingHasMarginOnBothSides) {
     const std::filesystem::path path = SCANLOOM_SOURCE_DIR "/../shared/data/ld06/capture.bin";
     if (!std::filesystem::exists(path))
         GTEST_SKIP() << "recorded data, no part of the project, are not on this machine: " << path;
@@ -177,14 +177,14 @@ TEST(ASensor, ThatIsRealIsJudgedWithMarginOnBothSides) {
     for (auto next = capture.next(); next && *next; next = capture.next()) turns.push_back(**next);
     for (std::size_t first = 0; first + Stillness::kTurnsMax < turns.size(); first += 70) {
         const auto begin = turns.begin() + static_cast<std::ptrdiff_t>(first);
-        const auto stillness = learnt({begin, begin + Stillness::kTurnsMax});
+        const auto detection = learnt({begin, begin + Stillness::kTurnsMax});
         for (std::size_t n = 0; n < turns.size(); ++n) {
-            EXPECT_LE(changed(stillness, turns[n]), 0.03);
+            EXPECT_LE(changed(detection, turns[n]), 0.03);
             const bool is_part = turns[n].scan.ranges.size() < 440;
             if (is_part || n % 20 != 0) continue;
-            for (const auto& move : moves_of(0.1)) EXPECT_GE(changed(stillness, as_from(move, turns[n])), 0.36);
+            for (const auto& move : moves_of(0.1)) EXPECT_GE(changed(detection, as_from(move, turns[n])), 0.36);
             for (const double turn : {5.0, -5.0}) {
-                EXPECT_GE(changed(stillness, as_from({0.0, 0.0, turn * kDegree}, turns[n])), 0.5);
+                EXPECT_GE(changed(detection, as_from({0.0, 0.0, turn * kDegree}, turns[n])), 0.5);
             }
         }
     }

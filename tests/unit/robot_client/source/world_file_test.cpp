@@ -28,7 +28,7 @@ protected:
         return (folder_ / name).string();
     }
 
-    /// A free square of 9 x 9 m, in cells of half a metre.
+    /// Returns a free square of 9 x 9 m with a resolution of 0.5 m.
     static std::string square(int side = 18) {
         std::string pgm = "P5 " + std::to_string(side) + " " + std::to_string(side) + " 255\n";
         return pgm + std::string(static_cast<std::size_t>(side * side), '\xFE');
@@ -39,7 +39,7 @@ protected:
         (std::string("scanloom_world_file_") + testing::UnitTest::GetInstance()->current_test_info()->name());
 };
 
-TEST_F(WorldFile, TheImageIsLookedForBesideItsDescription) {
+TEST_F(WorldFile, ImagePathIsRelativeToTheDescription) {
     write("images/a map.pgm", square());
     const auto yaml = write("m.yaml", "image: images/a map.pgm\nresolution: 0.5\norigin: [0, 0, 0]\n");
     const auto world = load_world(yaml);
@@ -51,14 +51,14 @@ TEST_F(WorldFile, TheImageIsLookedForBesideItsDescription) {
     EXPECT_TRUE(load_world(absolute));
 }
 
-TEST_F(WorldFile, OtherNamesAreThoseOfWorlds) {
+TEST_F(WorldFile, OtherNamesAreBuiltInWorlds) {
     EXPECT_EQ(load_world("office")->name, "office");
     EXPECT_THAT(load_world("moon").error().message, HasSubstr("there is no world 'moon'"));
     EXPECT_TRUE(is_world_file("a/b.yaml") && is_world_file("b.yml"));
     EXPECT_FALSE(is_world_file("office") || is_world_file("b.pgm"));
 }
 
-TEST_F(WorldFile, WhatCannotBeReadIsRefusedWithItsFile) {
+TEST_F(WorldFile, UnreadableFileIsRefusedByName) {
     const auto why = [&](const std::string& yaml) {
         const auto world = load_world(write("m.yaml", yaml));
         return world ? "" : world.error().message;
@@ -81,7 +81,7 @@ class RealMap : public testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Maps, RealMap, testing::Values("depot/depot", "turtlebot3_world/map"),
                          [](const auto& tried) { return std::string(tried.index == 0 ? "depot" : "turtlebot3"); });
 
-TEST_P(RealMap, IsAWorldThatARobotDrivesThrough) {
+TEST_P(RealMap, RobotDrivesThroughIt) {
     const auto yaml = fs::path(SCANLOOM_SOURCE_DIR) / "../shared/data/maps" / (std::string(GetParam()) + ".yaml");
     if (!fs::exists(yaml)) {
         GTEST_SKIP() << "recorded data, no part of the project, are not on this machine: " << yaml;

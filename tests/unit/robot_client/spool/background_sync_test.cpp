@@ -13,7 +13,7 @@ namespace {
 
 std::shared_ptr<const FileHandle> file(int descriptor) { return std::make_shared<const FileHandle>(descriptor); }
 
-TEST(BackgroundSync, WhatIsWrittenWhileItRestsIsSyncedThoughNothingIsWrittenAfterIt) {
+TEST(BackgroundSync, WritesDuringAPauseAreSyncedWithoutFurtherWrites) {
     std::promise<void> first;
     std::promise<void> second;
     BackgroundSync sync([&, times = 0](const FileHandle&) mutable { (++times == 1 ? first : second).set_value(); },
@@ -25,7 +25,7 @@ TEST(BackgroundSync, WhatIsWrittenWhileItRestsIsSyncedThoughNothingIsWrittenAfte
     second.get_future().wait();
 }
 
-TEST(BackgroundSync, FilesThatWereLeftAreSyncedOnceEachAlsoAtTheEnd) {
+TEST(BackgroundSync, ClosedFilesAreSyncedOnceAlsoAtTheEnd) {
     std::vector<int> synced;
     std::vector<int> expected;
     {
@@ -38,7 +38,7 @@ TEST(BackgroundSync, FilesThatWereLeftAreSyncedOnceEachAlsoAtTheEnd) {
                 begun.set_value();
                 go_on.get_future().wait();
             },
-            std::chrono::hours(1)); // its end does not wait for that
+            std::chrono::hours(1)); // the destructor does not wait for the pause
         for (int n = 0; n < 3; ++n) {
             const auto written = file(::open("/dev/null", O_WRONLY | O_CLOEXEC));
             expected.push_back(written->get());

@@ -6,7 +6,7 @@
 #include <random>
 #include <set>
 
-/// What others have done to a spool's files.
+/// Damage to a spool's files.
 namespace scanloom::robot {
 namespace {
 
@@ -16,7 +16,7 @@ using testing::HasSubstr;
 
 class SpoolTrials : public SpoolTest {};
 
-TEST_F(SpoolTest, WhatAPowerCutLeftOfTheLastScanIsLeftOut) {
+TEST_F(SpoolTest, PartOfALastScanAfterAPowerCutIsDropped) {
     open();
     take(1, 10);
     spool_.reset();
@@ -33,12 +33,12 @@ TEST_F(SpoolTest, WhatAPowerCutLeftOfTheLastScanIsLeftOut) {
     spool_.reset();
     fs::resize_file(file, 3);
     open();
-    EXPECT_EQ(spool_->waiting(), 3U) << "less than a file begins with";
+    EXPECT_EQ(spool_->waiting(), 3U) << "the file is shorter than its header";
 }
 
-TEST_F(SpoolTest, DamageIsToldAndWhatStandsBeforeItAndInOtherFilesIsKept) {
+TEST_F(SpoolTest, DamageIsReportedAndIntactScansAreKept) {
     open();
-    take(1, 400); // two files and more
+    take(1, 400); // more than two files
     const auto count = files().size();
     ASSERT_GE(count, 1U);
     take(401, 5000);
@@ -53,23 +53,23 @@ TEST_F(SpoolTest, DamageIsToldAndWhatStandsBeforeItAndInOtherFilesIsKept) {
         bytes.seekp(at);
         bytes.put(static_cast<char>(was ^ 0x20));
         bytes.close();
-        told_.clear();
+        messages_.clear();
         open();
         ASSERT_TRUE(spool_->begin("a1", 0));
         const auto kept = handed_out();
         EXPECT_LT(kept.size(), 5000U);
-        EXPECT_EQ(kept.back(), 5000U) << "other files are whole";
+        EXPECT_EQ(kept.back(), 5000U) << "other files are intact";
         for (std::size_t i = 1; i < kept.size(); ++i) EXPECT_GT(kept[i], kept[i - 1]);
-        EXPECT_THAT(told_, Contains(HasSubstr("is damaged after")));
+        EXPECT_THAT(messages_, Contains(HasSubstr("is damaged after")));
         spool_.reset();
         fs::remove(directory_.path() / "numbering");
-        std::fstream mended(file, std::ios::in | std::ios::out | std::ios::binary);
-        mended.seekp(at);
-        mended.put(static_cast<char>(was));
+        std::fstream repaired(file, std::ios::in | std::ios::out | std::ios::binary);
+        repaired.seekp(at);
+        repaired.put(static_cast<char>(was));
     }
 }
 
-TEST_F(SpoolTest, FilesThatAreNotWhereTheyBelongAreSetAsideAndKept) {
+TEST_F(SpoolTest, MisplacedFilesAreSetAside) {
     open();
     take(1, 3500);
     spool_.reset();
@@ -82,13 +82,13 @@ TEST_F(SpoolTest, FilesThatAreNotWhereTheyBelongAreSetAsideAndKept) {
     open();
     ASSERT_TRUE(spool_->begin("a1", 0));
     for (const auto& number : handed_out()) EXPECT_GT(number, 1000U);
-    EXPECT_THAT(told_, Contains(HasSubstr("is no file of a spool")));
-    EXPECT_THAT(told_, Contains(HasSubstr("holds the scans of another file")));
+    EXPECT_THAT(messages_, Contains(HasSubstr("is no file of a spool")));
+    EXPECT_THAT(messages_, Contains(HasSubstr("holds the scans of another file")));
     EXPECT_TRUE(fs::exists(all[0].string() + ".unreadable"));
     EXPECT_TRUE(fs::exists(directory_.path() / "00000000000000009999.spool.unreadable"));
 }
 
-TEST_F(SpoolTest, ASecondFileThatIsSetAsideDoesNotTakeThePlaceOfTheFirst) {
+TEST_F(SpoolTest, SetAsideFilesGetUniqueNames) {
     const auto file = directory_.path() / "00000000000000000001.spool";
     for (const char* text : {"the first thing that is no spool", "the second thing that is no spool"}) {
         std::ofstream(file) << text;
@@ -98,7 +98,7 @@ TEST_F(SpoolTest, ASecondFileThatIsSetAsideDoesNotTakeThePlaceOfTheFirst) {
     EXPECT_TRUE(fs::exists(file.string() + ".unreadable.2"));
 }
 
-TEST_F(SpoolTest, AHeadThatIsDamagedIsToldByTheFilesAround) {
+TEST_F(SpoolTest, DamagedFileHeaderIsReportedAndBounded) {
     for (const std::size_t damaged : {0U, 1U, 2U}) {
         fs::remove_all(directory_.path());
         fs::create_directories(directory_.path());
@@ -114,15 +114,15 @@ TEST_F(SpoolTest, AHeadThatIsDamagedIsToldByTheFilesAround) {
         spool_.reset();
         ASSERT_EQ(files().size(), 3U);
         std::fstream(files().at(damaged), std::ios::in | std::ios::out).write("no head", 7);
-        told_.clear();
+        messages_.clear();
         open();
         ASSERT_TRUE(spool_->begin("a1", 32));
         EXPECT_EQ(handed_out(), from_to(26, 60)) << damaged;
-        EXPECT_THAT(told_, Contains(HasSubstr("numbered as those of the files around it")));
+        EXPECT_THAT(messages_, Contains(HasSubstr("numbered as those of the files around it")));
     }
 }
 
-TEST_F(SpoolTest, ANumberingThatIsDamagedIsToldAndTakesNothingAway) {
+TEST_F(SpoolTest, DamagedNumberingIsReportedAndLosesNoScans) {
     open();
     ASSERT_TRUE(spool_->begin("a1", 0));
     take(1, 50);
@@ -136,12 +136,12 @@ TEST_F(SpoolTest, ANumberingThatIsDamagedIsToldAndTakesNothingAway) {
     numbering.close();
     open();
     EXPECT_EQ(spool_->waiting(), 50U);
-    EXPECT_THAT(told_, Contains(HasSubstr("numbering is damaged")));
+    EXPECT_THAT(messages_, Contains(HasSubstr("numbering is damaged")));
     ASSERT_TRUE(spool_->begin("a1", 30));
     EXPECT_EQ(handed_out(), from_to(31, 50));
 }
 
-TEST_F(SpoolTest, AfterAPowerCutTheServerMayHoldMoreThanIsLeft) {
+TEST_F(SpoolTest, ServerMayHaveMoreScansAfterAPowerCut) {
     open();
     ASSERT_TRUE(spool_->begin("a1", 0));
     take(1, 28);
@@ -150,18 +150,18 @@ TEST_F(SpoolTest, AfterAPowerCutTheServerMayHoldMoreThanIsLeft) {
     const auto file = files().at(0);
     fs::resize_file(file, fs::file_size(file) * 3 / 4);
     open();
-    take(29, 40); // before any server is reached
+    take(29, 40); // before a server is reached
     ASSERT_TRUE(spool_->begin("a1", 28));
     EXPECT_EQ(handed_out(), from_to(29, 40));
-    EXPECT_THAT(told_, Contains(HasSubstr("more than were sent from")));
+    EXPECT_THAT(messages_, Contains(HasSubstr("more than were sent from")));
 }
 
-TEST_F(SpoolTest, ThatAFileLostItsEndChangesNothingForTheNext) {
+TEST_F(SpoolTest, TruncatedFileDoesNotAffectTheNext) {
     open();
     ASSERT_TRUE(spool_->begin("a1", 0));
     take(1, 24);
     handed_out();
-    open(); // killed before any ack; what comes goes to a file of its own
+    open(); // killed before any acknowledgement; new scans go to another file
     take(25, 44);
     spool_.reset();
     ASSERT_EQ(files().size(), 2U);
@@ -171,7 +171,7 @@ TEST_F(SpoolTest, ThatAFileLostItsEndChangesNothingForTheNext) {
     EXPECT_EQ(handed_out(), from_to(25, 44));
 }
 
-TEST_F(SpoolTest, TheEndOfADamagedFileMayBeStored) {
+TEST_F(SpoolTest, EndOfADamagedFileMayBeStored) {
     open();
     ASSERT_TRUE(spool_->begin("a1", 0));
     take(1, 24);
@@ -187,7 +187,7 @@ TEST_F(SpoolTest, TheEndOfADamagedFileMayBeStored) {
     EXPECT_EQ(handed_out(), from_to(25, 26));
 }
 
-TEST_F(SpoolTest, AScanThatIsMissingEndsAFile) {
+TEST_F(SpoolTest, MissingScanEndsAFile) {
     open();
     take(1, 9);
     spool_.reset();
@@ -201,10 +201,10 @@ TEST_F(SpoolTest, AScanThatIsMissingEndsAFile) {
     std::ofstream(file, std::ios::binary) << bytes;
     open();
     EXPECT_EQ(spool_->waiting(), 4U);
-    EXPECT_THAT(told_, Contains(HasSubstr("lacks scan 5")));
+    EXPECT_THAT(messages_, Contains(HasSubstr("lacks scan 5")));
 }
 
-/// Numbers of the scans that can be read in a file.
+/// Returns the numbers of the readable scans in a file.
 std::vector<std::uint64_t> numbers_in(const fs::path& file) {
     std::vector<std::uint64_t> numbers;
     auto reader = SegmentReader::open(file);
@@ -218,19 +218,19 @@ std::vector<std::uint64_t> numbers_in(const fs::path& file) {
     return numbers;
 }
 
-/// Random use against a list in memory, with files that lose their ends, rot or vanish between two runs.
-TEST_F(SpoolTrials, WhatADamagedFileStillHoldsAndAllOtherFilesAreSentOnceEach) {
+/// Random use compared with a list in memory; files are truncated, damaged or removed between two runs.
+TEST_F(SpoolTrials, ReadableScansAreSentExactlyOnce) {
     for (std::uint32_t seed = 1; seed <= 10; ++seed) {
         spool_.reset();
         fs::remove_all(directory_.path());
         std::mt19937 random(seed);
         std::vector<std::uint64_t> server;
-        std::set<std::uint64_t> gone; // from the disk
+        std::set<std::uint64_t> gone; // removed from the disk
         std::uint64_t taken = 0;
         for (int run = 0; run < 6; ++run) {
-            open(kMebibyte * 1024); // nothing is dropped for want of room
+            open(kMebibyte * 1024); // no scan is dropped for lack of space
             const bool is_reached = random() % 4 != 0;
-            const int last_arrival = static_cast<int>(random() % 60); // what is sent later is lost on the way
+            const int last_arrival = static_cast<int>(random() % 60); // later scans are lost in transit
             if (is_reached) {
                 ASSERT_TRUE(spool_->begin("a1", server.size())) << "seed " << seed;
             }
@@ -260,7 +260,7 @@ TEST_F(SpoolTrials, WhatADamagedFileStillHoldsAndAllOtherFilesAreSentOnceEach) {
                 bytes.put(static_cast<char>(was ^ (1 << random() % 8)));
             }
             }
-            const auto left = numbers_in(file); // its beginning
+            const auto left = numbers_in(file); // the beginning of the file
             gone.insert(before.begin() + static_cast<std::ptrdiff_t>(left.size()), before.end());
         }
         open(kMebibyte * 1024);
@@ -273,7 +273,7 @@ TEST_F(SpoolTrials, WhatADamagedFileStillHoldsAndAllOtherFilesAreSentOnceEach) {
     }
 }
 
-TEST_F(SpoolTest, ADirectoryThatCannotBeMadeIsAClearError) {
+TEST_F(SpoolTest, DirectoryThatCannotBeCreatedIsAnError) {
     std::ofstream(directory_.path() / "file") << "x";
     const auto refused = Spool::open({directory_.path() / "file" / "spool"}, [](const std::string&) {});
     ASSERT_FALSE(refused);

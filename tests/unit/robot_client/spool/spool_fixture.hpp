@@ -15,7 +15,7 @@ namespace scanloom::robot {
 
 inline constexpr std::uint64_t kMebibyte = std::uint64_t{1} << 20;
 
-/// Its number is told by its pose, so that no scan can be taken for another.
+/// Returns an observation whose pose contains its number, so that scans cannot be confused.
 inline Observation numbered(std::uint64_t number, std::uint32_t sensor_id = 0, std::size_t beams = 500) {
     Sensor sensor;
     sensor.id = sensor_id;
@@ -34,18 +34,18 @@ protected:
     void open(std::uint64_t bytes_max = 64 * kMebibyte, WhenFull when_full = WhenFull::kDropOldest) {
         spool_.reset();
         spool_ = Spool::open({directory_.path(), bytes_max, when_full}, [&](const std::string& text) {
-                     told_.push_back(text);
+                     messages_.push_back(text);
                  }).value();
     }
 
-    /// Takes the scans first..last.
+    /// Appends the scans first..last.
     void take(std::uint64_t first, std::uint64_t last) {
         for (std::uint64_t number = first; number <= last; ++number) {
             ASSERT_TRUE(spool_->append(numbered(number)).value()) << number;
         }
     }
 
-    /// What next() gives, at most `count` of them.
+    /// Returns the numbers of the scans from next(), at most `count`.
     std::vector<std::uint64_t> handed_out(std::size_t count = SIZE_MAX) {
         std::vector<std::uint64_t> numbers;
         while (numbers.size() < count) {
@@ -77,7 +77,7 @@ protected:
     }
 
     TemporaryDirectory directory_;
-    std::vector<std::string> told_;
+    std::vector<std::string> messages_;
     std::unique_ptr<Spool> spool_;
 };
 

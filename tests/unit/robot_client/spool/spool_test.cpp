@@ -14,7 +14,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-TEST_F(SpoolTest, HandsOutWhatItWasGivenInOrder) {
+TEST_F(SpoolTest, ReturnsScansInOrder) {
     open();
     ASSERT_TRUE(spool_->begin("a1", 0));
     take(1, 5);
@@ -22,10 +22,10 @@ TEST_F(SpoolTest, HandsOutWhatItWasGivenInOrder) {
     EXPECT_EQ(handed_out(), from_to(1, 5));
     EXPECT_EQ(spool_->waiting(), 0U);
     take(6, 9);
-    EXPECT_EQ(handed_out(), from_to(6, 9)) << "what is written after it was read to its end is found, too";
+    EXPECT_EQ(handed_out(), from_to(6, 9)) << "scans appended after reading to the end must be returned";
 }
 
-TEST_F(SpoolTest, EachScanComesWithItsOwnSensor) {
+TEST_F(SpoolTest, ReturnsEachScanWithItsSensor) {
     open();
     ASSERT_TRUE(spool_->begin("a1", 0));
     for (std::uint64_t number = 1; number <= 40; ++number) {
@@ -34,7 +34,7 @@ TEST_F(SpoolTest, EachScanComesWithItsOwnSensor) {
     EXPECT_EQ(handed_out(), from_to(1, 40));
 }
 
-TEST_F(SpoolTest, ScansTakenBeforeAnyServerWasReachedSurviveTheProgram) {
+TEST_F(SpoolTest, ScansSurviveARestartBeforeTheFirstConnection) {
     open();
     take(1, 3000); // several files
     EXPECT_GT(files().size(), 1U);
@@ -45,24 +45,24 @@ TEST_F(SpoolTest, ScansTakenBeforeAnyServerWasReachedSurviveTheProgram) {
     EXPECT_EQ(handed_out(), from_to(1, 3100));
 }
 
-TEST_F(SpoolTest, AfterARestartOnlyWhatTheServerLacksIsHandedOutAgain) {
+TEST_F(SpoolTest, RestartReturnsOnlyScansThatTheServerLacks) {
     for (const std::uint64_t durable : {0U, 1U, 699U, 700U, 2500U, 2999U, 3000U}) {
         fs::remove_all(directory_.path());
         open();
         ASSERT_TRUE(spool_->begin("a1", 0));
         take(1, 3000);
-        EXPECT_EQ(handed_out(), from_to(1, 3000)) << "all may have been sent";
-        spool_->acknowledge(std::min<std::uint64_t>(durable, 700)); // of the rest no ack came back
+        EXPECT_EQ(handed_out(), from_to(1, 3000)) << "all scans may have been sent";
+        spool_->acknowledge(std::min<std::uint64_t>(durable, 700)); // the other scans are not acknowledged
         open();
         take(3001, 3010);
         ASSERT_TRUE(spool_->begin("a1", durable)) << durable;
         EXPECT_EQ(spool_->waiting(), 3010 - durable);
         EXPECT_EQ(handed_out(), from_to(durable + 1, 3010)) << durable;
-        EXPECT_THAT(told_, IsEmpty());
+        EXPECT_THAT(messages_, IsEmpty());
     }
 }
 
-TEST_F(SpoolTest, AcknowledgedFilesGo) {
+TEST_F(SpoolTest, AcknowledgedFilesAreRemoved) {
     open();
     ASSERT_TRUE(spool_->begin("a1", 0));
     take(1, 5000);
@@ -79,11 +79,11 @@ TEST_F(SpoolTest, AcknowledgedFilesGo) {
     EXPECT_EQ(spool_->bytes(), 0U);
     open();
     take(5001, 5002);
-    ASSERT_TRUE(spool_->begin("a1", 5000)) << "the numbering goes on";
+    ASSERT_TRUE(spool_->begin("a1", 5000)) << "the numbering continues";
     EXPECT_EQ(handed_out(), from_to(5001, 5002));
 }
 
-TEST_F(SpoolTest, ASteadyLinkNeedsLittleOfTheDisk) {
+TEST_F(SpoolTest, SteadyConnectionNeedsLittleDiskSpace) {
     open();
     ASSERT_TRUE(spool_->begin("a1", 0));
     std::uint64_t most = 0;
@@ -97,15 +97,15 @@ TEST_F(SpoolTest, ASteadyLinkNeedsLittleOfTheDisk) {
     EXPECT_LE(files().size(), 1U);
 }
 
-TEST_F(SpoolTest, WhenFullTheOldestGoThatWereNeverSent) {
+TEST_F(SpoolTest, FullSpoolDropsTheOldestUnsentScans) {
     open(2 * kMebibyte);
     ASSERT_TRUE(spool_->begin("a1", 0));
     take(1, 10);
-    EXPECT_EQ(handed_out(), from_to(1, 10)) << "sent, and not acknowledged";
+    EXPECT_EQ(handed_out(), from_to(1, 10)) << "these scans are sent but not acknowledged";
     take(11, 5000);
     EXPECT_LE(spool_->bytes(), 2 * kMebibyte);
     EXPECT_GT(spool_->dropped(), 3000U);
-    EXPECT_THAT(told_, ElementsAre(HasSubstr("the oldest unsent scans are dropped")));
+    EXPECT_THAT(messages_, ElementsAre(HasSubstr("the oldest unsent scans are dropped")));
     const auto rest = handed_out();
     ASSERT_FALSE(rest.empty());
     EXPECT_EQ(rest.back(), 5000U);
@@ -113,7 +113,7 @@ TEST_F(SpoolTest, WhenFullTheOldestGoThatWereNeverSent) {
     EXPECT_TRUE(std::ranges::is_sorted(rest));
 }
 
-TEST_F(SpoolTest, WhenFullTheNewestGoWhereThatIsWanted) {
+TEST_F(SpoolTest, FullSpoolDropsTheNewestScansOnRequest) {
     open(2 * kMebibyte, WhenFull::kDropNewest);
     ASSERT_TRUE(spool_->begin("a1", 0));
     std::uint64_t kept = 0;
@@ -121,23 +121,23 @@ TEST_F(SpoolTest, WhenFullTheNewestGoWhereThatIsWanted) {
     EXPECT_LE(spool_->bytes(), 2 * kMebibyte);
     EXPECT_EQ(spool_->dropped(), 3000 - kept);
     EXPECT_EQ(handed_out(), from_to(1, kept));
-    EXPECT_THAT(told_, ElementsAre(HasSubstr("the newest scans are dropped")));
+    EXPECT_THAT(messages_, ElementsAre(HasSubstr("the newest scans are dropped")));
     spool_->acknowledge(kept);
-    EXPECT_TRUE(spool_->append(numbered(9999)).value()) << "there is room again";
+    EXPECT_TRUE(spool_->append(numbered(9999)).value()) << "there is space again";
     EXPECT_EQ(handed_out(), from_to(9999, 9999));
 }
 
-TEST_F(SpoolTest, NumbersStayThoseOfTheServerWhereSomeWereDroppedAndTheProgramWasKilled) {
+TEST_F(SpoolTest, SequenceNumbersSurviveDropsAndKills) {
     open(2 * kMebibyte);
     ASSERT_TRUE(spool_->begin("a1", 0));
     take(1, 10);
     handed_out();
-    take(11, 3000); // the oldest of these went
+    take(11, 3000); // the oldest of these are dropped
     const std::uint64_t left = spool_->waiting();
     open(2 * kMebibyte);
-    take(3001, 4000); // and more of them, with the server still away
+    take(3001, 4000); // more are dropped, and the server is still unreachable
     EXPECT_LE(spool_->bytes(), 2 * kMebibyte);
-    ASSERT_TRUE(spool_->begin("a1", 7)) << "three of the ten had not arrived";
+    ASSERT_TRUE(spool_->begin("a1", 7)) << "three of the ten scans did not arrive";
     auto all = handed_out();
     EXPECT_GT(left, 100U);
     ASSERT_GT(all.size(), 100U);
@@ -145,7 +145,7 @@ TEST_F(SpoolTest, NumbersStayThoseOfTheServerWhereSomeWereDroppedAndTheProgramWa
     EXPECT_EQ(all.back(), 4000U);
 }
 
-TEST_F(SpoolTest, AServerThatLostScansIsAClearError) {
+TEST_F(SpoolTest, ServerThatLostScansIsAnError) {
     open();
     ASSERT_TRUE(spool_->begin("a1", 100));
     take(1, 50);
@@ -157,12 +157,12 @@ TEST_F(SpoolTest, AServerThatLostScansIsAClearError) {
     EXPECT_EQ(refused.error().code, Errc::kConflict);
     EXPECT_THAT(refused.error().message, HasSubstr("holds 119 scans of this robot but had acknowledged 120"));
     open();
-    ASSERT_TRUE(spool_->begin("a1", 150)) << "all of them arrived";
+    ASSERT_TRUE(spool_->begin("a1", 150)) << "all scans arrived";
     EXPECT_THAT(handed_out(), IsEmpty());
-    EXPECT_THAT(told_, IsEmpty());
+    EXPECT_THAT(messages_, IsEmpty());
 }
 
-TEST_F(SpoolTest, WhereTheServerHasMoreThanWasSentItGoesOnBehindThat) {
+TEST_F(SpoolTest, ContinuesAfterTheServersLastScan) {
     open();
     ASSERT_TRUE(spool_->begin("a1", 100));
     take(1, 50);
@@ -171,10 +171,10 @@ TEST_F(SpoolTest, WhereTheServerHasMoreThanWasSentItGoesOnBehindThat) {
     take(51, 52);
     ASSERT_TRUE(spool_->begin("a1", 157));
     EXPECT_EQ(handed_out(), from_to(51, 52));
-    EXPECT_THAT(told_, ElementsAre(HasSubstr("7 more than were sent from")));
+    EXPECT_THAT(messages_, ElementsAre(HasSubstr("7 more than were sent from")));
 }
 
-TEST_F(SpoolTest, ScansOfOthersInBetweenDoNotTakeThePlaceOfThoseThatWereNeverSent) {
+TEST_F(SpoolTest, ForeignScansDoNotReplaceUnsentScans) {
     open();
     ASSERT_TRUE(spool_->begin("a1", 0));
     take(1, 5);
@@ -187,7 +187,7 @@ TEST_F(SpoolTest, ScansOfOthersInBetweenDoNotTakeThePlaceOfThoseThatWereNeverSen
     EXPECT_EQ(handed_out(), from_to(6, 9));
 }
 
-TEST_F(SpoolTest, ASessionMadeAnewGetsWhatTheOneBeforeHasNotAcknowledged) {
+TEST_F(SpoolTest, RecreatedSessionGetsUnacknowledgedScans) {
     open();
     ASSERT_TRUE(spool_->begin("a1", 100));
     take(1, 50);
@@ -196,21 +196,21 @@ TEST_F(SpoolTest, ASessionMadeAnewGetsWhatTheOneBeforeHasNotAcknowledged) {
     open();
     EXPECT_EQ(spool_->waiting(), 38U);
     ASSERT_TRUE(spool_->begin("b2", 0));
-    EXPECT_THAT(told_, ElementsAre(HasSubstr("38 scans that were not acknowledged go to the new one")));
+    EXPECT_THAT(messages_, ElementsAre(HasSubstr("38 scans that were not acknowledged go to the new one")));
     open();
     ASSERT_TRUE(spool_->begin("b2", 0));
     EXPECT_EQ(handed_out(20), from_to(13, 32));
     open();
     take(51, 52);
     ASSERT_TRUE(spool_->begin("b2", 5));
-    EXPECT_EQ(handed_out(), from_to(18, 52)) << "under the numbers of the new one";
+    EXPECT_EQ(handed_out(), from_to(18, 52)) << "the scans have the numbers of the new session";
 }
 
-TEST_F(SpoolTest, PosesThatASessionToldBeginTheMapOfAnotherOrNone) {
-    const auto open_told = [&] {
+TEST_F(SpoolTest, LocatedPosesBeginTheMapOfAnotherSession) {
+    const auto open_with_located_poses = [&] {
         spool_.reset();
         spool_ = Spool::open({.directory = directory_.path(), .poses_are_told = true}, [&](const std::string& text) {
-                     told_.push_back(text);
+                     messages_.push_back(text);
                  }).value();
     };
     const auto handed_out_as_beginning = [&](bool begins) {
@@ -221,31 +221,31 @@ TEST_F(SpoolTest, PosesThatASessionToldBeginTheMapOfAnotherOrNone) {
         }
         return numbers;
     };
-    open_told();
+    open_with_located_poses();
     ASSERT_TRUE(spool_->begin("a1", 100));
     take(1, 20);
     EXPECT_EQ(handed_out_as_beginning(false), from_to(1, 20));
     spool_->acknowledge(112);
-    for (int refused = 0; refused < 3; ++refused) { // by one in which something is mapped
-        open_told();
+    for (int refused = 0; refused < 3; ++refused) { // by a session with a map
+        open_with_located_poses();
         ASSERT_TRUE(spool_->begin("b2", 0));
         EXPECT_EQ(handed_out_as_beginning(true), from_to(13, 20));
     }
-    open_told();
+    open_with_located_poses();
     ASSERT_TRUE(spool_->begin("a1", 112));
-    EXPECT_EQ(handed_out_as_beginning(true), from_to(13, 20)) << "to whom it has sent before, that means nothing";
-    open_told();
+    EXPECT_EQ(handed_out_as_beginning(true), from_to(13, 20)) << "a session with earlier scans must ignore the flag";
+    open_with_located_poses();
     ASSERT_TRUE(spool_->begin("c3", 0));
     EXPECT_EQ(handed_out_as_beginning(true), from_to(13, 20));
     spool_->acknowledge(3);
     take(21, 22);
-    EXPECT_EQ(handed_out_as_beginning(false), from_to(21, 22)) << "the map is begun";
-    open_told();
+    EXPECT_EQ(handed_out_as_beginning(false), from_to(21, 22)) << "the map has begun";
+    open_with_located_poses();
     ASSERT_TRUE(spool_->begin("c3", 3));
     EXPECT_EQ(handed_out_as_beginning(false), from_to(16, 22));
 }
 
-TEST_F(SpoolTest, WhereItsNumberingIsGoneNothingIsSentTwice) {
+TEST_F(SpoolTest, LostNumberingSendsNoScanTwice) {
     for (const bool empty : {false, true}) {
         fs::remove_all(directory_.path());
         fs::create_directories(directory_.path());
@@ -262,7 +262,7 @@ TEST_F(SpoolTest, WhereItsNumberingIsGoneNothingIsSentTwice) {
     }
 }
 
-TEST_F(SpoolTest, TwoProgramsCannotUseOneDirectory) {
+TEST_F(SpoolTest, DirectoryCannotBeSharedByTwoPrograms) {
     open();
     const auto second = Spool::open({directory_.path()}, [](const std::string&) {});
     ASSERT_FALSE(second);
@@ -270,13 +270,13 @@ TEST_F(SpoolTest, TwoProgramsCannotUseOneDirectory) {
     EXPECT_THAT(second.error().message, HasSubstr("another program uses the spool"));
 }
 
-/// Random use against a list in memory: takes, sends, acknowledgements that arrive or do not, kills.
-TEST_F(SpoolTest, NoScanIsLostOrDoubledInAnyOrderOfEvents) {
+/// Random use compared with a list in memory: appends, sends, acknowledgements that may be lost, and kills.
+TEST_F(SpoolTest, RandomEventsLoseOrDuplicateNoScan) {
     for (std::uint32_t seed = 1; seed <= 30; ++seed) {
         spool_.reset();
         fs::remove_all(directory_.path());
         std::mt19937 random(seed);
-        std::vector<std::uint64_t> server; // durable, in order
+        std::vector<std::uint64_t> server; // durable scans, in order
         std::uint64_t taken = 0;
         open();
         bool is_begun = false;
