@@ -70,8 +70,8 @@ std::string line_of(const std::string& name, const Entry& entry) {
     return fmt::format("{} = {} : {}", name, entry.number, entry.type);
 }
 
-/// Whether the message or enum that `name` belonged to reserves the number. True too when it is gone altogether:
-/// then nothing on the wire can have its type.
+/// Returns whether the message or enum that contained `name` reserves the number, or does not exist any longer. In that
+/// case no data can have its type.
 bool is_reserved(const Files& files, const std::string& name, int number) {
     const std::string owner = name.substr(0, name.rfind('.'));
     for (const auto* file : files) {

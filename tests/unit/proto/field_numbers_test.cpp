@@ -27,7 +27,7 @@ std::string field_numbers_file() {
     return {std::istreambuf_iterator<char>(file), {}};
 }
 
-TEST(FieldNumbers, NoneIsEverReusedOrChangesItsType) {
+TEST(FieldNumbers, AreNeitherReusedNorChanged) {
     const std::vector<const pb::FileDescriptor*> files = {
         v1::Frame::descriptor()->file(), v1::LogEntry::descriptor()->file(), v1::Scan::descriptor()->file(),
         v1::SessionConfig::descriptor()->file(), v1::LiveEvent::descriptor()->file()};
@@ -36,7 +36,7 @@ TEST(FieldNumbers, NoneIsEverReusedOrChangesItsType) {
     }
 }
 
-/// A small file of fields that a test changes, compared with what it was.
+/// A small file whose fields a test changes, compared with its earlier state.
 class FieldNumbersOf : public testing::Test {
 protected:
     void SetUp() override {
@@ -50,7 +50,7 @@ protected:
         type->set_name("E");
         type->add_value()->set_name("E_NONE");
         type->mutable_value(0)->set_number(0);
-        list_ = fmt::format("# what there was\n{}\n", fmt::join(lines_of({build()}), "\n"));
+        list_ = fmt::format("# earlier state\n{}\n", fmt::join(lines_of({build()}), "\n"));
     }
 
     void add_field(const std::string& name, int number, pb::FieldDescriptorProto::Type type) {
@@ -83,37 +83,37 @@ private:
     std::string list_;
 };
 
-TEST_F(FieldNumbersOf, AnUnchangedFileIsFine) { EXPECT_THAT(complaints(), IsEmpty()); }
+TEST_F(FieldNumbersOf, UnchangedFileHasNoComplaints) { EXPECT_THAT(complaints(), IsEmpty()); }
 
-TEST_F(FieldNumbersOf, ANumberMayNotChange) {
+TEST_F(FieldNumbersOf, ChangedNumberIsRefused) {
     field(1).set_number(3);
     EXPECT_THAT(complaints(), ElementsAre(HasSubstr("M.y = 3 : uint32 was M.y = 2 : uint32")));
 }
 
-TEST_F(FieldNumbersOf, ATypeMayNotChange) {
+TEST_F(FieldNumbersOf, ChangedTypeIsRefused) {
     field(1).set_type(pb::FieldDescriptorProto::TYPE_FIXED32);
     EXPECT_THAT(complaints(), ElementsAre(HasSubstr("M.y = 2 : fixed32 was M.y = 2 : uint32")));
 }
 
-TEST_F(FieldNumbersOf, AFieldMayNotBecomeRepeated) {
+TEST_F(FieldNumbersOf, FieldThatBecomesRepeatedIsRefused) {
     field(0).set_label(pb::FieldDescriptorProto::LABEL_REPEATED);
     EXPECT_THAT(complaints(), ElementsAre(HasSubstr("repeated")));
 }
 
-TEST_F(FieldNumbersOf, ARemovedFieldsNumberIsReserved) {
+TEST_F(FieldNumbersOf, RemovedFieldNeedsAReservedNumber) {
     message().mutable_field()->RemoveLast();
     EXPECT_THAT(complaints(), ElementsAre(HasSubstr("M.y is gone; write `reserved 2;`")));
     reserve(2);
     EXPECT_THAT(complaints(), IsEmpty());
 }
 
-TEST_F(FieldNumbersOf, ARemovedFieldsNumberIsNotReused) {
+TEST_F(FieldNumbersOf, ReusedNumberOfARemovedFieldIsRefused) {
     message().mutable_field()->RemoveLast();
     add_field("z", 2, pb::FieldDescriptorProto::TYPE_UINT32);
     EXPECT_THAT(complaints(), ElementsAre(HasSubstr("M.y is gone"), HasSubstr("M.z = 2 : uint32 is not listed")));
 }
 
-TEST_F(FieldNumbersOf, ANewFieldIsListed) {
+TEST_F(FieldNumbersOf, NewFieldMustBeListed) {
     add_field("z", 3, pb::FieldDescriptorProto::TYPE_BOOL);
     EXPECT_THAT(complaints(), ElementsAre(HasSubstr("M.z = 3 : bool is not listed; add this line")));
 }

@@ -10,14 +10,14 @@ namespace {
 
 using Names = std::vector<std::string_view>;
 
-/// A folder and the other folders it may include.
+/// A folder and the other folders that it may include.
 struct Folder {
     std::string_view path;
     Names may_include;
-    bool pure = false; ///< knows no socket, file, clock, thread, protobuf or log
+    bool pure = false; ///< does not use sockets, files, clocks, threads, protobuf or logs
 };
 
-// The arrows of ARCHITECTURE.md. A new folder needs a row here; what a row does not name is forbidden.
+// The dependencies of ARCHITECTURE.md. A new folder needs a row here; folders that a row does not list are forbidden.
 const std::vector<Folder> kFolders = {
     {.path = "common/error", .may_include = {}, .pure = true},
     {.path = "common/geometry", .may_include = {}, .pure = true},
@@ -89,14 +89,14 @@ const std::vector<Folder> kFolders = {
     {.path = "robot_client/client",
      .may_include = {"common", "robot_client/source", "robot_client/spool", "robot_client/uplink"}},
     {.path = "robot_client/app", .may_include = {"common", "robot_client"}},
-    {.path = "robot_client/examples", .may_include = {}}, // built on the installed client alone
+    {.path = "robot_client/examples", .may_include = {}}, // uses only the installed client
 
-    // Experiments bring the simulator and the maps together; nothing else does, and nothing includes them.
+    // Experiments combine the simulator and the maps. No other folder does, and no folder includes them.
     {.path = "lab",
      .may_include = {"common", "server/grid", "server/landmarks", "server/mapping", "server/tiles",
                      "robot_client/drive", "robot_client/sim", "robot_client/source"}},
 
-    // Load on a server from outside: nothing of the server, and nothing includes it.
+    // The load generator runs outside the server: it does not include the server, and no folder includes it.
     {.path = "load/core",
      .may_include = {"common/error", "common/geometry", "common/json", "common/scan", "common/wire",
                      "robot_client/uplink"},
@@ -107,9 +107,9 @@ const std::vector<Folder> kFolders = {
                      "robot_client/uplink"}},
 };
 
-/// Headers that only some folders may include.
+/// A package whose headers only some folders may include.
 struct Package {
-    std::string_view header; ///< what the header's name starts with
+    std::string_view header; ///< prefix of the header's name
     Names folders;
 };
 
@@ -138,7 +138,7 @@ const std::vector<Package> kPackages = {
     {"CLI/", {"common/app", "server/app", "robot_client/app", "lab", "load/app"}},
 };
 
-// How a file, socket, clock, thread or log shows among the standard headers.
+// Standard headers for files, sockets, clocks, threads and logs.
 const Names kOutsideWorld = {
     "barrier",    "chrono",       "condition_variable",
     "cstdio",     "ctime",        "filesystem",
@@ -149,7 +149,8 @@ const Names kOutsideWorld = {
     "time.h",     "unistd.h",
 };
 
-/// "server" and "server/mapping" both hold "server/grid/cell.hpp"; "server/map" does not.
+/// Returns whether `path` is inside `folder`: "server" and "server/mapping" contain "server/mapping/cell.hpp";
+/// "server/map" does not.
 bool holds(std::string_view folder, std::string_view path) {
     return path.starts_with(folder) && (path.size() == folder.size() || path[folder.size()] == '/');
 }
@@ -158,7 +159,7 @@ bool any_holds(const Names& folders, std::string_view path) {
     return std::ranges::any_of(folders, [&](std::string_view folder) { return holds(folder, path); });
 }
 
-/// The header of an #include line, without its quotes or brackets.
+/// Returns the header of an #include line without quotes or brackets.
 std::optional<std::string_view> included(std::string_view line) {
     constexpr std::string_view kDirective = "#include ";
     if (!line.starts_with(kDirective) || line.size() < kDirective.size() + 2) return std::nullopt;
@@ -210,36 +211,36 @@ void check_includes(std::string_view path, std::string_view text, std::vector<st
     });
 }
 
-struct Habit {
+struct ForbiddenWord {
     std::string_view word;
-    std::string_view where; ///< what the path starts with
+    std::string_view where; ///< prefix of the path
     std::string_view instead;
 };
 
-// Spelt in halves, so that this file keeps the rules itself.
-const std::vector<Habit> kForbiddenWords = {
+// The words are split so that this file obeys the rules itself.
+const std::vector<ForbiddenWord> kForbiddenWords = {
     {"sleep_"
      "for",
-     "tests/", "wait for what you expect; a test that sleeps is slow or flaky"},
+     "tests/", "wait for the expected event; a test that sleeps is slow or flaky"},
     {"sleep_"
      "until",
-     "tests/", "wait for what you expect; a test that sleeps is slow or flaky"},
+     "tests/", "wait for the expected event; a test that sleeps is slow or flaky"},
     {"DISABLED"
      "_",
-     "tests/", "mend the test or remove it"},
+     "tests/", "fix the test or remove it"},
     {"TO"
      "DO",
      "", "do it, or file it where the project keeps its plans"},
     {"FIX"
      "ME",
-     "", "mend it, or file it where the project keeps its plans"},
+     "", "fix it, or file it where the project keeps its plans"},
 };
 
 void check_words(std::string_view path, std::string_view text, std::vector<std::string>& complaints) {
     for_each_line(text, [&](std::size_t number, std::string_view line) {
-        for (const auto& habit : kForbiddenWords) {
-            if (!path.starts_with(habit.where) || line.find(habit.word) == std::string_view::npos) continue;
-            complaints.push_back(fmt::format("{}:{}: {}: {}", path, number, habit.word, habit.instead));
+        for (const auto& rule : kForbiddenWords) {
+            if (!path.starts_with(rule.where) || line.find(rule.word) == std::string_view::npos) continue;
+            complaints.push_back(fmt::format("{}:{}: {}: {}", path, number, rule.word, rule.instead));
         }
     });
 }

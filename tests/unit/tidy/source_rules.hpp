@@ -4,11 +4,11 @@
 #include <string_view>
 #include <vector>
 
-/// The rules of this tree that no compiler checks: which folder may include which, what the pure
-/// folders must not know, and a few habits. ARCHITECTURE.md gives the reasons.
+/// Rules of this source tree that the compiler does not check: which folder may include which, which headers pure
+/// folders must not include, and forbidden words. ARCHITECTURE.md gives the reasons.
 namespace scanloom::tidy {
 
-/// What is wrong with one file, a sentence each; empty: nothing.
+/// Returns one sentence per violation in a file; empty if there are none.
 /// @param path  relative to the root, with slashes: "server/grid/cell.hpp"
 [[nodiscard]] std::vector<std::string> complaints_about(std::string_view path, std::string_view text);
 

@@ -21,20 +21,20 @@ std::vector<std::string> including(std::string_view path, std::string_view heade
     return complaints_about(path, fmt::format("int first_line;\n#include {}\n", header));
 }
 
-TEST(SourceRules, ServerAndRobotMayNotIncludeOneAnother) {
+TEST(SourceRules, ServerAndRobotMustNotIncludeEachOther) {
     EXPECT_THAT(including("server/app/main.cpp", "\"robot_client/sim/world.hpp\""),
                 ElementsAre("server/app/main.cpp:2: server/app may not include robot_client/sim/world.hpp"));
     EXPECT_THAT(including("robot_client/app/main.cpp", "\"server/grid/cell.hpp\""),
                 ElementsAre(HasSubstr("may not include server/grid/cell.hpp")));
 }
 
-TEST(SourceRules, CommonMayIncludeNeitherServerNorRobot) {
+TEST(SourceRules, CommonMustNotIncludeServerOrRobot) {
     EXPECT_THAT(including("common/wire/messages.cpp", "\"server/grid/cell.hpp\""), testing::SizeIs(1));
     EXPECT_THAT(including("common/scan/scan.cpp", "\"robot_client/sim/world.hpp\""), testing::SizeIs(1));
     EXPECT_THAT(including("common/scan/scan.cpp", "\"common/wire/messages.hpp\""), testing::SizeIs(1));
 }
 
-TEST(SourceRules, TheLabMayIncludeBothSidesAndNobodyTheLab) {
+TEST(SourceRules, LabMayIncludeServerAndRobotButMustNotBeIncluded) {
     EXPECT_THAT(including("lab/weaving.cpp", "\"server/mapping/projection.hpp\""), IsEmpty());
     EXPECT_THAT(including("lab/recording.cpp", "\"robot_client/sim/world.hpp\""), IsEmpty());
     EXPECT_THAT(including("lab/weaving.cpp", "\"server/session/session.hpp\""), testing::SizeIs(1));
@@ -43,30 +43,30 @@ TEST(SourceRules, TheLabMayIncludeBothSidesAndNobodyTheLab) {
     EXPECT_THAT(including("robot_client/app/main.cpp", "\"lab/weaving.hpp\""), testing::SizeIs(1));
 }
 
-TEST(SourceRules, TheLoadToolKnowsNothingOfTheServerAndNobodyTheLoadTool) {
+TEST(SourceRules, LoadMustNotIncludeTheServerNorBeIncluded) {
     EXPECT_THAT(including("load/net/robot.cpp", "\"load/core/robot_talk.hpp\""), IsEmpty());
     EXPECT_THAT(including("load/core/robot_talk.cpp", "\"load/net/robot.hpp\""), testing::SizeIs(1));
     EXPECT_THAT(including("load/app/run.cpp", "\"server/session/session.hpp\""), testing::SizeIs(1));
     EXPECT_THAT(including("robot_client/app/main.cpp", "\"load/app/run.hpp\""), testing::SizeIs(1));
 }
 
-TEST(SourceRules, ProductionCodeMayNotIncludeTests) {
+TEST(SourceRules, ProductionCodeMustNotIncludeTests) {
     EXPECT_THAT(including("server/store/log_file.cpp", "\"tests/support/memory_scan_log.hpp\""), testing::SizeIs(1));
 }
 
-TEST(SourceRules, ProtobufStopsAtTheWire) {
+TEST(SourceRules, ProtobufIsLimitedToWire) {
     EXPECT_THAT(including("common/wire/messages.cpp", "\"scanloom/v1/frame.pb.h\""), IsEmpty());
     EXPECT_THAT(including("server/ingest/link.cpp", "\"scanloom/v1/frame.pb.h\""),
                 ElementsAre(HasSubstr("only common/wire may")));
     EXPECT_THAT(including("server/store/record.cpp", "<google/protobuf/arena.h>"), testing::SizeIs(1));
 }
 
-TEST(SourceRules, OpenCvStaysInTiles) {
+TEST(SourceRules, OpenCvIsLimitedToTiles) {
     EXPECT_THAT(including("server/tiles/png.cpp", "<opencv2/imgcodecs.hpp>"), IsEmpty());
     EXPECT_THAT(including("server/http/tile.cpp", "<opencv2/imgcodecs.hpp>"), testing::SizeIs(1));
 }
 
-TEST(SourceRules, PureFoldersKnowNothingOfTheOutsideWorld) {
+TEST(SourceRules, PureFoldersMustNotIncludeSystemHeaders) {
     for (const auto* header : {"<chrono>", "<thread>", "<mutex>", "<fstream>", "<iostream>", "<sys/socket.h>",
                                "<unistd.h>", "<spdlog/spdlog.h>", "<boost/asio/ip/tcp.hpp>", "<rocksdb/db.h>"}) {
         EXPECT_THAT(including("server/mapping/cell.cpp", header), testing::SizeIs(1)) << header;
@@ -78,17 +78,17 @@ TEST(SourceRules, PureFoldersKnowNothingOfTheOutsideWorld) {
     EXPECT_THAT(including("server/live/viewer.cpp", "<chrono>"), IsEmpty());
 }
 
-TEST(SourceRules, ANewFolderNeedsARow) {
+TEST(SourceRules, NewFolderNeedsARow) {
     EXPECT_THAT(including("server/gossip/peer.cpp", "<vector>"), ElementsAre(HasSubstr("has no row")));
 }
 
-TEST(SourceRules, HeadersStartWithPragmaOnce) {
+TEST(SourceRules, HeadersMustStartWithPragmaOnce) {
     EXPECT_THAT(complaints_about("tests/support/a.hpp", "#include <vector>\n"), ElementsAre(HasSubstr("#pragma once")));
     EXPECT_THAT(complaints_about("tests/support/a.hpp", "#pragma once\n"), IsEmpty());
     EXPECT_THAT(complaints_about("tests/support/a.cpp", "#include <vector>\n"), IsEmpty());
 }
 
-TEST(SourceRules, TestsDoNotSleepAndNothingIsPutOff) {
+TEST(SourceRules, SleepingTestsAndPostponedWorkAreRefused) {
     EXPECT_THAT(complaints_about("tests/unit/a_test.cpp", "std::this_thread::sleep_"
                                                           "for(1s);\n"),
                 testing::SizeIs(1));
@@ -115,13 +115,13 @@ std::string contents(const fs::path& path) {
     return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// Folders whose files are made or fetched.
+/// Returns whether a folder contains generated or downloaded files.
 bool is_foreign(const fs::path& folder) {
     const std::string name = folder.filename().string();
     return name == "build" || name == "dist" || name == "node_modules" || name.starts_with('.');
 }
 
-TEST(SourceRules, ThisTreeKeepsThem) {
+TEST(SourceRules, SourceTreeFollowsTheRules) {
     const fs::path root = SOURCE_TREE;
     std::size_t files = 0;
     for (auto entry = fs::recursive_directory_iterator(root); entry != fs::end(entry); ++entry) {
@@ -131,7 +131,7 @@ TEST(SourceRules, ThisTreeKeepsThem) {
         for (const auto& complaint : complaints_about(path, contents(entry->path()))) ADD_FAILURE() << complaint;
         ++files;
     }
-    EXPECT_GT(files, 50U) << "the tree was not found at " << root;
+    EXPECT_GT(files, 50U) << "too few source files in " << root;
 }
 
 } // namespace

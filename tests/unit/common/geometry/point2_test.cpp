@@ -29,7 +29,7 @@ TEST(Point2, OperatorsWorkOnBothCoordinates) {
     EXPECT_NE(kA, (Point2{2.0, -2.0}));
 }
 
-TEST(Point2, NormsAndDotProduct) {
+TEST(Point2, ComputesNormsAndDotProduct) {
     EXPECT_EQ(dot({1.0, 2.0}, {3.0, -4.0}), -5.0);
     EXPECT_EQ(squared_norm({3.0, -4.0}), 25.0);
     EXPECT_EQ(norm({3.0, -4.0}), 5.0);
@@ -37,7 +37,7 @@ TEST(Point2, NormsAndDotProduct) {
     EXPECT_EQ(max_abs({-5.0, 4.0}), 5.0);
 }
 
-TEST(Point2, NormalizedHasNormOneExceptForTheZeroVector) {
+TEST(Point2, NormalizedHasNormOneExceptForZero) {
     EXPECT_EQ(normalized({3.0, -4.0}), (Point2{0.6, -0.8}));
     EXPECT_EQ(normalized({0.0, 0.0}), (Point2{0.0, 0.0}));
     EXPECT_EQ(normalized({1e-200, 0.0}), (Point2{1e-200, 0.0})) << "its squared norm is rounded to 0";

@@ -9,14 +9,14 @@
 namespace scanloom {
 namespace {
 
-TEST(Pose2, NormalizedAnglesLieInTheHalfOpenTurn) {
+TEST(Pose2, NormalizedAnglesAreInTheHalfOpenInterval) {
     EXPECT_DOUBLE_EQ(normalize_angle(kPi), kPi);
     EXPECT_DOUBLE_EQ(normalize_angle(-kPi), kPi);
     EXPECT_DOUBLE_EQ(normalize_angle(3.0 * kPi / 2.0), -kPi / 2.0);
     EXPECT_NEAR(normalize_angle(200.0 * kPi + 0.25), 0.25, 1e-12);
 }
 
-TEST(Pose2, ComposeTurnsThenMoves) {
+TEST(Pose2, ComposeRotatesThenTranslates) {
     const Pose2 T_map_robot{1.0, 2.0, kPi / 2.0};
     const Pose2 T_robot_sensor{0.5, 0.0, kPi};
     const Pose2 T_map_sensor = compose(T_map_robot, T_robot_sensor);
@@ -25,7 +25,7 @@ TEST(Pose2, ComposeTurnsThenMoves) {
     EXPECT_NEAR(T_map_sensor.yaw, -kPi / 2.0, 1e-12);
 }
 
-TEST(Pose2, InverseUndoesAnyPose) {
+TEST(Pose2, InverseOfAnyPoseComposesToIdentity) {
     std::mt19937 random(7);
     std::uniform_real_distribution<double> metres(-100.0, 100.0);
     std::uniform_real_distribution<double> radians(-10.0, 10.0);

@@ -9,7 +9,8 @@
 namespace scanloom {
 namespace {
 
-/// Source  RFC 3720, B.4, bit by bit.
+/// Computes the CRC bit by bit.
+/// Source  RFC 3720, B.4.
 std::uint32_t crc32c_bit_by_bit(std::string_view bytes) {
     std::uint32_t crc = 0xFFFFFFFF;
     for (const char byte : bytes) {
@@ -19,7 +20,7 @@ std::uint32_t crc32c_bit_by_bit(std::string_view bytes) {
     return ~crc;
 }
 
-TEST(Crc32c, IsTheSameWhateverComputesItAndWhereverTheBytesAreDivided) {
+TEST(Crc32c, IsIndependentOfImplementationAlignmentAndSplits) {
     std::mt19937 random(5);
     std::string bytes(200, '\0');
     for (char& byte : bytes) byte = static_cast<char>(random());

@@ -12,7 +12,7 @@ namespace {
 
 using testing::HasSubstr;
 
-TEST(RosMapDescription, WhatIsNoneIsRefusedByKey) {
+TEST(RosMapDescription, RefusesInvalidDescriptionsByKey) {
     const std::string good = "image: map.pgm\nresolution: 0.05\norigin: [1, -2.5, 0]\n";
     EXPECT_EQ(parse_ros_yaml(good).value(),
               (RosMapDescription{.image = "map.pgm", .resolution = 0.05, .origin_x = 1.0, .origin_y = -2.5}));
@@ -48,7 +48,7 @@ TEST(RosMapDescription, WhatIsNoneIsRefusedByKey) {
     }
 }
 
-TEST(RosMapDescription, WhatIsWrittenIsReadAgain) {
+TEST(RosMapDescription, ParsingReturnsTheWrittenDescription) {
     for (const char* image : {"map.pgm", "a map.pgm", "it's \"mine\": #1 \\ -.pgm", "-", ""}) {
         const auto read = parse_ros_yaml(ros_yaml(image, 0.025, -12.35, 1e-3));
         ASSERT_TRUE(read) << read.error().message;
@@ -57,7 +57,7 @@ TEST(RosMapDescription, WhatIsWrittenIsReadAgain) {
     }
 }
 
-TEST(RosMapDescription, GreysStandForProbabilities) {
+TEST(RosMapDescription, GreysAreProbabilities) {
     using enum MapCell;
     const auto at = [](const RosMapDescription& map, std::uint16_t white, std::size_t grey) {
         return cells_of_greys(map, white).at(grey);
@@ -71,11 +71,11 @@ TEST(RosMapDescription, GreysStandForProbabilities) {
     EXPECT_EQ(at(plain, 1, 1), kFree);
     EXPECT_EQ(at(plain, 65535, 22937), kOccupied); // p = 42598 / 65535 = 0.65000
     EXPECT_EQ(at(plain, 65535, 22938), kUnknown);
-    EXPECT_EQ(at({.free_thresh = 0.25}, 65535, 205 * 257), kUnknown) << "the grey of map_saver, of any depth";
+    EXPECT_EQ(at({.free_thresh = 0.25}, 65535, 205 * 257), kUnknown) << "map_saver's grey for unknown, at any depth";
     EXPECT_EQ(at({.mode = RosMapMode::kScale, .free_thresh = 0.25}, 65535, 205 * 257), kFree);
 }
 
-TEST(RosMapDescription, RawGreysArePerCents) {
+TEST(RosMapDescription, RawGreysArePercentages) {
     using enum MapCell;
     const auto cells = cells_of_greys({.mode = RosMapMode::kRaw}, 255);
     EXPECT_EQ(cells[0], kFree);

@@ -15,7 +15,7 @@ using testing::HasSubstr;
 
 std::vector<std::uint8_t> bytes_of(std::string_view text) { return {text.begin(), text.end()}; }
 
-TEST(RosPgm, GreysAreReadByTheThresholds) {
+TEST(RosPgm, GreysAreClassifiedByThresholds) {
     const RosMapDescription plain{.free_thresh = 0.25};
     const auto image = bytes_of("P2\n# a comment\n6 1\n255\n0 100 150 205 206 254\n");
     using enum MapCell;
@@ -30,7 +30,7 @@ TEST(RosPgm, GreysAreReadByTheThresholds) {
                 testing::ElementsAre(kFree, kUnknown, kUnknown, kUnknown, kOccupied, kOccupied));
 }
 
-/// Cells as an image of the greys 0, 128 and 255 of `white`, in one of the two kinds of file.
+/// Returns the cells as a plain or binary image with the greys 0, white / 2 and white.
 std::string image_of(const MapCells& map, bool is_plain, int white) {
     const int greys[] = {white / 2, white, 0};
     std::string file = is_plain ? "P2" : "P5";
@@ -50,7 +50,7 @@ std::string image_of(const MapCells& map, bool is_plain, int white) {
     return file;
 }
 
-TEST(RosPgm, PlainAndBinaryFilesOfAnyDepthHoldTheSameCells) {
+TEST(RosPgm, PlainAndBinaryFilesOfAnyDepthGiveEqualCells) {
     std::mt19937 random(3);
     for (const int white : {2, 100, 255, 256, 1000, 65535}) {
         for (const bool is_plain : {false, true}) {
@@ -65,14 +65,14 @@ TEST(RosPgm, PlainAndBinaryFilesOfAnyDepthHoldTheSameCells) {
     }
 }
 
-TEST(RosPgm, APixelMayLookLikeASpaceOrAComment) {
+TEST(RosPgm, BinaryPixelsMayLookLikeSpacesOrComments) {
     const RosMapDescription scale{.mode = RosMapMode::kScale};
     const auto read = read_ros_pgm(scale, bytes_of("P5 3 1 255\n\n# "));
     ASSERT_TRUE(read) << read.error().message;
     EXPECT_EQ(read->cells.size(), 3U);
 }
 
-TEST(RosPgm, AnImageThatIsNoneIsRefused) {
+TEST(RosPgm, RefusesInvalidImages) {
     for (const std::string& image :
          {std::string("P5 2 2 255 abcd"), std::string("P2 2 2 9 1 2 3 4"), std::string("P5 1 2 65535 abcd")}) {
         EXPECT_TRUE(read_ros_pgm({}, bytes_of(image))) << image;
@@ -105,7 +105,7 @@ TEST(RosPgm, AnImageThatIsNoneIsRefused) {
     }
 }
 
-TEST(RosPgm, TheHeaderIsThatOfMapSaver) {
+TEST(RosPgm, WritesTheHeaderOfMapSaver) {
     EXPECT_EQ(ros_pgm_header(604, 307, 0.05), "P5\n# CREATOR: Scanloom 0.050 m/pix\n604 307\n255\n");
 }
 

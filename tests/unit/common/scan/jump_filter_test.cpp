@@ -7,7 +7,7 @@
 namespace scanloom {
 namespace {
 
-/// For the places of one robot's scans along a line: '+' integrated, '-' left out.
+/// Returns the decision for each scan of one robot on a line: '+' integrated, '-' omitted.
 std::string decisions(double max_jump_m, const std::vector<double>& places) {
     JumpFilter filter(max_jump_m);
     std::string text;
@@ -15,19 +15,17 @@ std::string decisions(double max_jump_m, const std::vector<double>& places) {
     return text;
 }
 
-TEST(JumpFilter, OneWrongPlaceCostsOneScan) { EXPECT_EQ(decisions(1.0, {0.0, 0.5, 450.0, 1.0, 1.5}), "++-++"); }
+TEST(JumpFilter, OneWrongPoseOmitsOneScan) { EXPECT_EQ(decisions(1.0, {0.0, 0.5, 450.0, 1.0, 1.5}), "++-++"); }
 
-TEST(JumpFilter, ARobotThatWasCarriedElsewhereCostsOneScan) {
-    EXPECT_EQ(decisions(1.0, {0.0, 0.5, 9.0, 9.5, 10.0}), "++-++");
-}
+TEST(JumpFilter, CarriedRobotOmitsOneScan) { EXPECT_EQ(decisions(1.0, {0.0, 0.5, 9.0, 9.5, 10.0}), "++-++"); }
 
-TEST(JumpFilter, AWrongFirstPlaceCostsTheNextScan) { EXPECT_EQ(decisions(1.0, {450.0, 0.0, 0.5}), "+-+"); }
+TEST(JumpFilter, WrongFirstPoseOmitsTheNextScan) { EXPECT_EQ(decisions(1.0, {450.0, 0.0, 0.5}), "+-+"); }
 
-TEST(JumpFilter, AJumpOfExactlyTheMostIsNone) { EXPECT_EQ(decisions(1.0, {0.0, 1.0, 2.0, 3.001}), "+++-"); }
+TEST(JumpFilter, JumpOfExactlyTheMaximumIsAccepted) { EXPECT_EQ(decisions(1.0, {0.0, 1.0, 2.0, 3.001}), "+++-"); }
 
-TEST(JumpFilter, ZeroLeavesNothingOut) { EXPECT_EQ(decisions(0.0, {0.0, 1e6, -1e6}), "+++"); }
+TEST(JumpFilter, ZeroDisablesTheFilter) { EXPECT_EQ(decisions(0.0, {0.0, 1e6, -1e6}), "+++"); }
 
-TEST(JumpFilter, RobotsDoNotCountForEachOther) {
+TEST(JumpFilter, RobotsAreIndependent) {
     JumpFilter filter(1.0);
     EXPECT_TRUE(filter.take(3, {0.0, 0.0}));
     EXPECT_TRUE(filter.take(1, {100.0, 0.0}));
@@ -37,7 +35,7 @@ TEST(JumpFilter, RobotsDoNotCountForEachOther) {
     EXPECT_EQ(filter.state(7), JumpFilter::Robot{});
 }
 
-TEST(JumpFilter, GoesOnFromItsState) {
+TEST(JumpFilter, ContinuesFromARestoredState) {
     JumpFilter filter(1.0);
     for (const double x : {0.0, 0.5, 9.0}) filter.take(0, {x, 0.0});
     JumpFilter other(1.0);

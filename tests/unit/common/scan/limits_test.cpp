@@ -8,7 +8,7 @@
 namespace scanloom {
 namespace {
 
-TEST(IsValidName, TakesOneToSixtyFourAllowedCharacters) {
+TEST(IsValidName, AcceptsOneToSixtyFourAllowedCharacters) {
     EXPECT_TRUE(is_valid_name("a"));
     EXPECT_TRUE(is_valid_name("Intel_Lab-2"));
     EXPECT_TRUE(is_valid_name(std::string(64, 'x')));
@@ -16,7 +16,7 @@ TEST(IsValidName, TakesOneToSixtyFourAllowedCharacters) {
     EXPECT_FALSE(is_valid_name(std::string(65, 'x')));
 }
 
-TEST(IsValidName, OfAllBytesOnlyLettersDigitsUnderscoreAndHyphenAreAllowed) {
+TEST(IsValidName, AcceptsOnlyLettersDigitsUnderscoreAndHyphen) {
     for (int byte = 0; byte < 256; ++byte) {
         const bool allowed = byte < 128 && (std::isalnum(byte) != 0 || byte == '_' || byte == '-');
         const char character = static_cast<char>(byte);

@@ -15,7 +15,7 @@ using testing::HasSubstr;
 using testing_support::random_scan;
 using testing_support::small_laser;
 
-/// Some of them cannot follow what came before.
+/// Returns a random entry; some entries are out of sequence.
 LogEntry random_entry(std::mt19937& engine) {
     const auto random = [&](unsigned below) { return static_cast<unsigned>(engine() % below); };
     const RobotIndex robot = random(4);
@@ -37,7 +37,7 @@ LogEntry random_entry(std::mt19937& engine) {
     }
 }
 
-/// The entries of one kind.
+/// Returns the entries of one kind.
 template <class Body>
 std::vector<Body> all_of(const std::vector<LogEntry>& log) {
     std::vector<Body> found;
@@ -47,7 +47,7 @@ std::vector<Body> all_of(const std::vector<LogEntry>& log) {
     return found;
 }
 
-/// As the definitions say, from all entries before it.
+/// Decides by the definitions, from all earlier entries.
 struct CanFollow {
     const std::vector<LogEntry>& log;
 
@@ -87,7 +87,7 @@ struct CanFollow {
     }
 };
 
-TEST(LogRules, TakeTheEntriesThatCanFollowAllBefore) {
+TEST(LogRules, AcceptExactlyTheEntriesInSequence) {
     std::mt19937 random(1);
     int taken = 0;
     int refused = 0;
@@ -112,7 +112,7 @@ TEST(LogRules, TakeTheEntriesThatCanFollowAllBefore) {
     EXPECT_GT(refused, 1000);
 }
 
-TEST(LogRules, SayWhichEntryCannotFollowAndWhy) {
+TEST(LogRules, ErrorsNameTheEntryAndTheReason) {
     LogRules rules;
     ASSERT_TRUE(rules.add(RobotJoined{0, "a", ""}));
     ASSERT_TRUE(rules.add(SensorDescribed{0, small_laser()}));

@@ -17,20 +17,20 @@ TEST(ToRangeMm, RoundsToTheNearestMillimetre) {
     EXPECT_EQ(to_range_mm(81.83), 81830U);
 }
 
-TEST(ToRangeMm, WhatIsNoLengthIsInvalid) {
+TEST(ToRangeMm, NonPositiveOrNanLengthIsInvalid) {
     for (const double no_length : {0.0, -0.0, -1.0, -kInfinity, std::numeric_limits<double>::quiet_NaN()}) {
         EXPECT_EQ(to_range_mm(no_length), kInvalidRange) << no_length;
     }
 }
 
-TEST(ToRangeMm, WhatIsTooLongForMillimetresIsNoReturn) {
+TEST(ToRangeMm, LengthBeyondTheMillimetreRangeIsNoReturn) {
     EXPECT_EQ(to_range_mm(4294967.294), 4294967294U);
     for (const double too_long : {4294967.295, 5e6, 1e300, kInfinity}) {
         EXPECT_EQ(to_range_mm(too_long), kNoReturn) << too_long;
     }
 }
 
-TEST(ToRangesMm, RoundsEachReadingAsAlone) {
+TEST(ToRangesMm, ConvertsEachReadingIndependently) {
     const std::vector<double> metres = {1.2346, 0.0, -1.0, std::numeric_limits<double>::quiet_NaN(), kInfinity};
     const std::vector<RangeMm> ranges = {1235, kInvalidRange, kInvalidRange, kInvalidRange, kNoReturn};
     EXPECT_EQ(to_ranges_mm(metres), ranges);
@@ -38,7 +38,7 @@ TEST(ToRangesMm, RoundsEachReadingAsAlone) {
     EXPECT_TRUE(to_ranges_mm(std::vector<float>{}).empty());
 }
 
-TEST(AnglesOf, TheScansOwnAnglesGoBeforeItsSensors) {
+TEST(AnglesOf, ScanAnglesOverrideSensorAngles) {
     Sensor sensor;
     sensor.angles = UniformAngles{-1.0, 0.1, 20};
     Scan scan;
@@ -47,7 +47,7 @@ TEST(AnglesOf, TheScansOwnAnglesGoBeforeItsSensors) {
     EXPECT_EQ(angles_of(scan, sensor), BeamAngles(ExplicitAngles{0.5, 0.25}));
 }
 
-TEST(AnglesOf, UniformAnglesOfASensorServeAnyNumberOfRanges) {
+TEST(AnglesOf, UniformSensorAnglesFitAnyNumberOfRanges) {
     Sensor sensor;
     sensor.angles = UniformAngles{-1.0, 0.1, 20};
     for (const std::size_t beams : {1U, 19U, 20U, 21U, 60U}) {
@@ -57,7 +57,7 @@ TEST(AnglesOf, UniformAnglesOfASensorServeAnyNumberOfRanges) {
     }
 }
 
-TEST(AnglesOf, ExplicitAnglesOfASensorAreUsedAsTheyAre) {
+TEST(AnglesOf, ExplicitSensorAnglesAreUsedUnchanged) {
     Sensor sensor;
     sensor.angles = ExplicitAngles{0.3, -0.2, 0.1};
     Scan scan;

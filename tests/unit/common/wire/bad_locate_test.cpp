@@ -5,29 +5,29 @@
 
 #include <string>
 
-/// What can be wrong with asking where a robot is, and with the answer.
+/// Invalid localization requests and invalid replies.
 namespace scanloom::wire {
 namespace {
 
-TEST(BadCorrection, IsRefusedByTheNameOfItsField) {
-    const Spoilt<Correction> kSpoilt[] = {
+TEST(BadCorrection, IsRefusedByFieldName) {
+    const InvalidCase<Correction> kCases[] = {
         {[](Correction& c) { c.T_map_odom.y = kNan; }, "T_map_odom.y is nan;"},
         {[](Correction& c) { c.explained = 1.01; }, "explained is 1.01;"},
         {[](Correction& c) { c.explained = kNan; }, "explained is nan;"},
         {[](Correction& c) { c.position_sigma = -0.1; }, "position_sigma is -0.1;"},
         {[](Correction& c) { c.yaw_sigma = kInfinity; }, "yaw_sigma is inf;"},
     };
-    for (const auto& spoilt : kSpoilt) {
+    for (const auto& invalid : kCases) {
         Correction correction = example_correction();
-        spoilt.spoil(correction);
-        expect_refused(body_of(correction), spoilt.code, std::string("correction.") + spoilt.beginning);
-        expect_refused(body_of(LocateReply{1, 2, correction}), spoilt.code,
-                       std::string("locate_reply.correction.") + spoilt.beginning);
+        invalid.make_invalid(correction);
+        expect_refused(body_of(correction), invalid.code, std::string("correction.") + invalid.beginning);
+        expect_refused(body_of(LocateReply{1, 2, correction}), invalid.code,
+                       std::string("locate_reply.correction.") + invalid.beginning);
     }
 }
 
-TEST(BadLocateRequest, IsRefusedByTheNameOfItsField) {
-    const Spoilt<LocateRequest> kSpoilt[] = {
+TEST(BadLocateRequest, IsRefusedByFieldName) {
+    const InvalidCase<LocateRequest> kCases[] = {
         {[](LocateRequest& r) { r.points.resize(19); }, "locate_request.points has 19 points; at least 20"},
         {[](LocateRequest& r) { r.points.resize(kLocatePointsMax + 1); },
          "locate_request.points has 32769 points, at most 32768", Errc::kTooLarge},
@@ -41,15 +41,15 @@ TEST(BadLocateRequest, IsRefusedByTheNameOfItsField) {
         {[](LocateRequest& r) { r.near->radius = 1000.5; }, "locate_request.radius is 1000.5 m;"},
         {[](LocateRequest& r) { r.near->radius = kNan; }, "locate_request.radius is nan m;"},
     };
-    for (const auto& spoilt : kSpoilt) {
+    for (const auto& invalid : kCases) {
         LocateRequest request = example_locate_request();
-        spoilt.spoil(request);
-        expect_refused(body_of(request), spoilt.code, spoilt.beginning);
+        invalid.make_invalid(request);
+        expect_refused(body_of(request), invalid.code, invalid.beginning);
     }
 }
 
-/// A sender of another make may send what none of ours can.
-TEST(BadLocateRequest, OfAnotherMakeIsRefusedAsWell) {
+/// Other implementations of the client can send messages that our client cannot create.
+TEST(BadLocateRequest, RefusesMessagesThatOurClientCannotCreate) {
     v1::Frame frame;
     ASSERT_TRUE(frame.ParseFromString(body_of(example_locate_request())));
     auto& request = *frame.mutable_locate_request();
@@ -57,7 +57,7 @@ TEST(BadLocateRequest, OfAnotherMakeIsRefusedAsWell) {
     expect_refused(frame.SerializeAsString(), Errc::kInvalidField, "locate_request.points has 39 numbers;");
 
     request.clear_points();
-    for (int n = 0; n < 40; ++n) request.add_points(2'147'483'647); // sums far beyond 32 bits
+    for (int n = 0; n < 40; ++n) request.add_points(2'147'483'647); // the sums are far beyond 32 bits
     expect_refused(frame.SerializeAsString(), Errc::kInvalidField, "locate_request.points[0] leads to 2147483647 mm;");
 
     request.clear_points();
@@ -69,7 +69,7 @@ TEST(BadLocateRequest, OfAnotherMakeIsRefusedAsWell) {
     expect_refused(frame.SerializeAsString(), Errc::kInvalidField, "locate_reply.outcome is absent;");
 }
 
-TEST(LocateRequest, TheLargestFitsAFrame) {
+TEST(LocateRequest, LargestRequestFitsInAFrame) {
     LocateRequest request = example_locate_request();
     request.points.clear();
     for (std::size_t n = 0; n < kLocatePointsMax; ++n) {

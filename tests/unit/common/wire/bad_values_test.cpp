@@ -11,12 +11,12 @@
 #include <cmath>
 #include <limits>
 
-/// Every value a frame can spoil, and the error that names it.
+/// Every field value that can be invalid in a frame, and the error that names the field.
 namespace scanloom::wire {
 namespace {
 
-TEST(BadHello, IsRefusedByTheNameOfItsField) {
-    const Spoilt<Hello> kSpoilt[] = {
+TEST(BadHello, IsRefusedByFieldName) {
+    const InvalidCase<Hello> kCases[] = {
         {[](Hello& h) { h.protocol_version = 0; }, "hello.protocol_version is 0;", Errc::kUnsupportedVersion},
         {[](Hello& h) { h.protocol_version = 2; }, "hello.protocol_version is 2;", Errc::kUnsupportedVersion},
         {[](Hello& h) { h.robot = ""; }, "hello.robot is not a valid name"},
@@ -37,14 +37,14 @@ TEST(BadHello, IsRefusedByTheNameOfItsField) {
         {[](Hello& h) { h.body_radius = std::nan(""); }, "hello.body_radius is nan m;"},
         {[](Hello& h) { h.body_radius = HUGE_VAL; }, "hello.body_radius is inf m;"},
     };
-    for (const auto& spoilt : kSpoilt) {
+    for (const auto& invalid : kCases) {
         Hello hello = example_hello();
-        spoilt.spoil(hello);
-        expect_refused(body_of(hello), spoilt.code, spoilt.beginning);
+        invalid.make_invalid(hello);
+        expect_refused(body_of(hello), invalid.code, invalid.beginning);
     }
 }
 
-TEST(BadHello, ANameThatIsNoTextIsMalformed) {
+TEST(BadHello, NameThatIsNotUtf8IsMalformed) {
     v1::Frame frame;
     ASSERT_TRUE(frame.ParseFromString(body_of(example_hello())));
     std::string body = frame.SerializeAsString();
@@ -52,8 +52,8 @@ TEST(BadHello, ANameThatIsNoTextIsMalformed) {
     expect_refused(body, Errc::kMalformed, "");
 }
 
-TEST(BadSensor, IsRefusedByTheNameOfItsField) {
-    const Spoilt<Sensor> kSpoilt[] = {
+TEST(BadSensor, IsRefusedByFieldName) {
+    const InvalidCase<Sensor> kCases[] = {
         {[](Sensor& s) { s.id = 64; }, "sensor_description.sensor is 64;"},
         {[](Sensor& s) { s.name = std::string(65, 'n'); }, "sensor_description.name has 65 bytes", Errc::kTooLarge},
         {[](Sensor& s) { s.mount.x = kNan; }, "sensor_description.mount.x is nan;"},
@@ -70,10 +70,10 @@ TEST(BadSensor, IsRefusedByTheNameOfItsField) {
         {[](Sensor& s) { s.range_max = s.range_min; }, "sensor_description.range_max is 0.0625;"},
         {[](Sensor& s) { s.range_max = 1001.0; }, "sensor_description.range_max is 1001;"},
     };
-    for (const auto& spoilt : kSpoilt) {
+    for (const auto& invalid : kCases) {
         Sensor sensor = example_sensor();
-        spoilt.spoil(sensor);
-        expect_refused(body_of(sensor), spoilt.code, spoilt.beginning);
+        invalid.make_invalid(sensor);
+        expect_refused(body_of(sensor), invalid.code, invalid.beginning);
     }
 }
 
@@ -87,7 +87,7 @@ TEST(BadSensor, KindMustBeKnown) {
     }
 }
 
-TEST(SensorDescription, WithoutAMountSitsAtTheRobotsOrigin) {
+TEST(SensorDescription, WithoutMountHasIdentityMount) {
     v1::Frame frame;
     ASSERT_TRUE(frame.ParseFromString(body_of(example_sensor())));
     frame.mutable_sensor_description()->clear_mount();
@@ -96,13 +96,13 @@ TEST(SensorDescription, WithoutAMountSitsAtTheRobotsOrigin) {
     EXPECT_EQ(std::get<Sensor>(*decoded).mount, Pose2{});
 }
 
-struct SpoiltAngles {
+struct InvalidAngles {
     BeamAngles angles;
     const char* message;
     Errc code = Errc::kInvalidField;
 };
 
-const SpoiltAngles kSpoiltAngles[] = {
+const InvalidAngles kInvalidAngles[] = {
     {UniformAngles{kNan, 0.1, 3}, "angles.uniform.first is nan;"},
     {UniformAngles{kInfinity, 0.1, 3}, "angles.uniform.first is inf;"},
     {UniformAngles{100.0, 0.1, 3}, "angles.uniform.first is 100;"},
@@ -130,23 +130,23 @@ const SpoiltAngles kSpoiltAngles[] = {
      "angles.stepped.deltas lead beam 1 to 2000000000 steps of 1e+300, which is inf;"},
 };
 
-TEST(BadAngles, OfASensorAreRefusedByName) {
-    for (const auto& spoilt : kSpoiltAngles) {
+TEST(BadAngles, SensorAnglesAreRefusedByFieldName) {
+    for (const auto& invalid : kInvalidAngles) {
         Sensor sensor = example_sensor();
-        sensor.angles = spoilt.angles;
-        expect_refused(body_of(sensor), spoilt.code, std::string("sensor_description.") + spoilt.message);
+        sensor.angles = invalid.angles;
+        expect_refused(body_of(sensor), invalid.code, std::string("sensor_description.") + invalid.message);
     }
 }
 
-TEST(BadAngles, OfAScanAreRefusedByNameAndPlace) {
-    for (const auto& spoilt : kSpoiltAngles) {
+TEST(BadAngles, ScanAnglesAreRefusedByFieldNameAndIndex) {
+    for (const auto& invalid : kInvalidAngles) {
         ScanBatch batch = example_batch();
-        batch.scans[2].angles = spoilt.angles;
-        expect_refused(body_of(batch), spoilt.code, std::string("scan_batch.scans[2].") + spoilt.message);
+        batch.scans[2].angles = invalid.angles;
+        expect_refused(body_of(batch), invalid.code, std::string("scan_batch.scans[2].") + invalid.message);
     }
 }
 
-TEST(BadAngles, StepsThatLeave32BitsAreRefused) {
+TEST(BadAngles, StepsBeyond32BitsAreRefused) {
     v1::Frame frame;
     ASSERT_TRUE(frame.ParseFromString(body_of(example_sensor())));
     auto& stepped = *frame.mutable_sensor_description()->mutable_angles()->mutable_stepped();
@@ -165,7 +165,7 @@ TEST(BadAngles, StepsThatLeave32BitsAreRefused) {
                    "sensor_description.angles.stepped.deltas lead beam 1 to -2147483649 steps; 32 bits must hold");
 }
 
-TEST(BadAngles, OfNeitherKindAreRefused) {
+TEST(BadAngles, MissingAnglesAreRefused) {
     v1::Frame frame;
     ASSERT_TRUE(frame.ParseFromString(body_of(example_sensor())));
     frame.mutable_sensor_description()->clear_angles();
@@ -177,8 +177,8 @@ TEST(BadAngles, OfNeitherKindAreRefused) {
                    "scan_batch.scans[1].angles are neither uniform, explicit nor stepped");
 }
 
-TEST(BadScan, IsRefusedByTheNameOfItsFieldAndItsPlace) {
-    const Spoilt<Scan> kSpoilt[] = {
+TEST(BadScan, IsRefusedByFieldNameAndIndex) {
+    const InvalidCase<Scan> kCases[] = {
         {[](Scan& s) { s.seq = 0; }, "seq is 0;"},
         {[](Scan& s) { s.stamp = kNan; }, "stamp is nan;"},
         {[](Scan& s) { s.stamp = kInfinity; }, "stamp is inf;"},
@@ -201,45 +201,45 @@ TEST(BadScan, IsRefusedByTheNameOfItsFieldAndItsPlace) {
          },
          "angles describe 4 beams, ranges has 3;"},
     };
-    for (const auto& spoilt : kSpoilt) {
+    for (const auto& invalid : kCases) {
         for (const std::size_t place : {0U, 3U}) {
             ScanBatch batch = example_batch();
-            spoilt.spoil(batch.scans[place]);
-            expect_refused(body_of(batch), spoilt.code,
-                           "scan_batch.scans[" + std::to_string(place) + "]." + spoilt.beginning);
+            invalid.make_invalid(batch.scans[place]);
+            expect_refused(body_of(batch), invalid.code,
+                           "scan_batch.scans[" + std::to_string(place) + "]." + invalid.beginning);
         }
     }
 }
 
-TEST(BadScan, WithoutAPoseIsRefusedAndNotTakenForOneAtTheOrigin) {
+TEST(BadScan, MissingPoseIsRefusedButEmptyPoseIsTheOrigin) {
     v1::Frame frame;
     ASSERT_TRUE(frame.ParseFromString(body_of(example_batch())));
     auto& scan = *frame.mutable_scan_batch()->mutable_scans(2);
     scan.mutable_pose()->Clear();
     const auto decoded = decode(frame.SerializeAsString());
     ASSERT_TRUE(decoded) << decoded.error().message;
-    EXPECT_EQ(std::get<ScanBatch>(*decoded).scans[2].pose, Pose2{}) << "an empty pose is one";
+    EXPECT_EQ(std::get<ScanBatch>(*decoded).scans[2].pose, Pose2{}) << "an empty pose is the origin";
     scan.clear_pose();
     expect_refused(frame.SerializeAsString(), Errc::kInvalidField, "scan_batch.scans[2].pose is absent;");
 }
 
-TEST(BadBatch, OfNoScansOrTooManyIsRefused) {
+TEST(BadBatch, EmptyOrTooLargeBatchIsRefused) {
     expect_refused(body_of(ScanBatch{}), Errc::kInvalidField, "scan_batch.scans is empty;");
     expect_refused(body_of(ScanBatch{std::vector<Scan>(kScansPerBatchMax + 1, example_scan())}), Errc::kTooLarge,
                    "scan_batch.scans has 1025 scans, at most 1024");
 }
 
-TEST(BadPlanRequest, IsRefusedByTheNameOfItsField) {
-    const Spoilt<PlanRequest> kSpoilt[] = {
+TEST(BadPlanRequest, IsRefusedByFieldName) {
+    const InvalidCase<PlanRequest> kCases[] = {
         {[](PlanRequest& r) { r.start->x = kNan; }, "plan_request.start.x is nan;"},
         {[](PlanRequest& r) { r.start->y = 1.1e6; }, "plan_request.start.y is 1100000;"},
         {[](PlanRequest& r) { r.goal.x = kInfinity; }, "plan_request.goal.x is inf;"},
         {[](PlanRequest& r) { r.goal.y = -1e300; }, "plan_request.goal.y is -1e+300;"},
     };
-    for (const auto& spoilt : kSpoilt) {
+    for (const auto& invalid : kCases) {
         PlanRequest request = example_plan_request();
-        spoilt.spoil(request);
-        expect_refused(body_of(request), spoilt.code, spoilt.beginning);
+        invalid.make_invalid(request);
+        expect_refused(body_of(request), invalid.code, invalid.beginning);
     }
     v1::Frame frame;
     ASSERT_TRUE(frame.ParseFromString(body_of(example_plan_request())));
@@ -247,14 +247,14 @@ TEST(BadPlanRequest, IsRefusedByTheNameOfItsField) {
     expect_refused(frame.SerializeAsString(), Errc::kInvalidField, "plan_request.goal is absent;");
 }
 
-TEST(BadGoalRequest, IsRefusedByTheNameOfItsField) {
+TEST(BadGoalRequest, IsRefusedByFieldName) {
     GoalRequest request = example_goal_request();
     request.start->y = kNan;
     expect_refused(body_of(request), Errc::kInvalidField, "goal_request.start.y is nan;");
 }
 
-TEST(BadCoverageRequest, IsRefusedByTheNameOfItsField) {
-    const Spoilt<CoverageRequest> kSpoilt[] = {
+TEST(BadCoverageRequest, IsRefusedByFieldName) {
+    const InvalidCase<CoverageRequest> kCases[] = {
         {[](CoverageRequest& r) { r.start->x = kNan; }, "coverage_request.start.x is nan;"},
         {[](CoverageRequest& r) { r.region[1].y = kNan; }, "coverage_request.region[3] is nan;"},
         {[](CoverageRequest& r) { r.region[2].x = -2e6; }, "coverage_request.region[4] is -2000000;"},
@@ -263,10 +263,10 @@ TEST(BadCoverageRequest, IsRefusedByTheNameOfItsField) {
          },
          "coverage_request.region has 4097 points, at most 4096", Errc::kTooLarge},
     };
-    for (const auto& spoilt : kSpoilt) {
+    for (const auto& invalid : kCases) {
         CoverageRequest request = example_coverage_request();
-        spoilt.spoil(request);
-        expect_refused(body_of(request), spoilt.code, spoilt.beginning);
+        invalid.make_invalid(request);
+        expect_refused(body_of(request), invalid.code, invalid.beginning);
     }
     v1::Frame frame;
     ASSERT_TRUE(frame.ParseFromString(body_of(example_coverage_request())));
@@ -274,8 +274,8 @@ TEST(BadCoverageRequest, IsRefusedByTheNameOfItsField) {
     expect_refused(frame.SerializeAsString(), Errc::kInvalidField, "coverage_request.region has 5 numbers;");
 }
 
-TEST(BadReply, WithAPathThatIsNoneIsRefusedByTheNameOfItsField) {
-    const Spoilt<Path> kSpoilt[] = {
+TEST(BadReply, InvalidPathIsRefusedByFieldName) {
+    const InvalidCase<Path> kCases[] = {
         {[](Path& p) { p.points.clear(); }, "points is empty;"},
         {[](Path& p) { p.points[1].x = kNan; }, "points[2] is nan;"},
         {[](Path& p) { p.points[2].y = 1.1e6; }, "points[5] is 1100000;"},
@@ -287,18 +287,19 @@ TEST(BadReply, WithAPathThatIsNoneIsRefusedByTheNameOfItsField) {
         {[](Path& p) { p.length = -1.0; }, "length is -1;"},
         {[](Path& p) { p.cost = kInfinity; }, "cost is inf;"},
     };
-    for (const auto& spoilt : kSpoilt) {
+    for (const auto& invalid : kCases) {
         Path path = example_path();
-        spoilt.spoil(path);
-        expect_refused(body_of(PlanReply{1, 2, path}), spoilt.code, std::string("plan_reply.path.") + spoilt.beginning);
-        expect_refused(body_of(GoalReply{1, 2, Goal{Exploration::kGoal, path, Point2{0.0, 0.0}}}), spoilt.code,
-                       std::string("goal_reply.goal.path.") + spoilt.beginning);
-        expect_refused(body_of(CoverageReply{1, 2, Coverage{path, 2.0, 1.0}}), spoilt.code,
-                       std::string("coverage_reply.coverage.path.") + spoilt.beginning);
+        invalid.make_invalid(path);
+        expect_refused(body_of(PlanReply{1, 2, path}), invalid.code,
+                       std::string("plan_reply.path.") + invalid.beginning);
+        expect_refused(body_of(GoalReply{1, 2, Goal{Exploration::kGoal, path, Point2{0.0, 0.0}}}), invalid.code,
+                       std::string("goal_reply.goal.path.") + invalid.beginning);
+        expect_refused(body_of(CoverageReply{1, 2, Coverage{path, 2.0, 1.0}}), invalid.code,
+                       std::string("coverage_reply.coverage.path.") + invalid.beginning);
     }
 }
 
-TEST(BadReply, IsRefusedByTheNameOfItsField) {
+TEST(BadReply, IsRefusedByFieldName) {
     expect_refused(body_of(CoverageReply{1, 2, Coverage{example_path(), kNan, 1.0}}), Errc::kInvalidField,
                    "coverage_reply.coverage.free_area is nan;");
     expect_refused(body_of(CoverageReply{1, 2, Coverage{example_path(), 1.0, 1.0, {{0, 0, 1}, {1, 0, 0}}, 0.05}}),
@@ -322,7 +323,7 @@ TEST(BadReply, IsRefusedByTheNameOfItsField) {
     }
 }
 
-TEST(BadReply, WithoutAnOutcomeIsRefused) {
+TEST(BadReply, MissingOutcomeIsRefused) {
     v1::Frame frame;
     frame.mutable_plan_reply()->set_id(1);
     expect_refused(frame.SerializeAsString(), Errc::kInvalidField, "plan_reply.outcome is absent;");
@@ -332,7 +333,7 @@ TEST(BadReply, WithoutAnOutcomeIsRefused) {
     expect_refused(frame.SerializeAsString(), Errc::kInvalidField, "coverage_reply.outcome is absent;");
 }
 
-TEST(CheckScan, UniformAnglesOfTheSensorMustNotPassAFullTurn) {
+TEST(CheckScan, UniformSensorAnglesMustNotExceedAFullTurn) {
     Sensor sensor = example_sensor();
     sensor.angles = UniformAngles{0.0, 2.0 * std::numbers::pi / 360.0, 180};
     Scan scan = example_scan();
@@ -348,7 +349,7 @@ TEST(CheckScan, UniformAnglesOfTheSensorMustNotPassAFullTurn) {
     EXPECT_THAT(refused.error().message, testing::StartsWith("ranges has 362 beams, which span 6.301 rad"));
 }
 
-TEST(CheckScan, Float32IncrementMayPassAFullTurnByAThousandthRadian) {
+TEST(CheckScan, Float32IncrementMayExceedAFullTurnByOneMilliradian) {
     constexpr double kTurtleBot3 = 0.017501922324299812; // radians; 359 of them are 4.8e-6 more than a turn
     Sensor sensor = example_sensor();
     sensor.angles = UniformAngles{0.0, kTurtleBot3, 360};
@@ -364,7 +365,7 @@ TEST(CheckScan, Float32IncrementMayPassAFullTurnByAThousandthRadian) {
     EXPECT_FALSE(decode(body_of(sensor)));
 }
 
-TEST(CheckScan, ExplicitAnglesOfTheSensorNeedARangeEach) {
+TEST(CheckScan, ExplicitSensorAnglesNeedOneRangeEach) {
     Sensor sensor = example_sensor();
     sensor.angles = ExplicitAngles{0.1, 0.2, 0.4};
     Scan scan = example_scan();
@@ -377,7 +378,7 @@ TEST(CheckScan, ExplicitAnglesOfTheSensorNeedARangeEach) {
     sensor.angles = SteppedAngles{0.1, {1, 2, 4}};
     EXPECT_FALSE(check_scan(scan, sensor));
     scan.angles = ExplicitAngles{0.1, 0.2};
-    EXPECT_TRUE(check_scan(scan, sensor)) << "its own angles are what counts";
+    EXPECT_TRUE(check_scan(scan, sensor)) << "the scan's own angles take precedence";
 }
 
 } // namespace

@@ -24,7 +24,7 @@ CompressedScanBatch holding(const std::string& body) {
     return {static_cast<std::uint32_t>(body.size()), zstd_of(body)};
 }
 
-/// Scans as a sensor gives them: alike, not the same.
+/// Returns similar but different scans, as a sensor gives them.
 ScanBatch many_scans() {
     ScanBatch batch{std::vector<Scan>(20, example_scan(1))};
     for (std::size_t i = 0; i < batch.scans.size(); ++i) {
@@ -34,46 +34,47 @@ ScanBatch many_scans() {
     return batch;
 }
 
-TEST(Compression, WhatComesOutIsWhatWentIn) {
+TEST(Compression, DecompressingReturnsTheOriginal) {
     Compressor compressor;
     for (int again = 0; again < 2; ++again) {
         const auto body = body_of(many_scans());
         const auto compressed = compressor.compress(body);
         ASSERT_TRUE(compressed);
         EXPECT_LT(2 * compressed->zstd.size(), body.size());
-        EXPECT_EQ(bytes_under_way(*compressed), body.size() + kLengthPrefixBytes) << "credit is of the frame in it";
+        EXPECT_EQ(bytes_under_way(*compressed), body.size() + kLengthPrefixBytes)
+            << "credit counts the uncompressed frame";
         EXPECT_EQ(decompress(*compressed).value(), many_scans());
     }
 }
 
-TEST(Compression, WhatWouldNotBecomeSmallerStaysAsItIs) {
+TEST(Compression, IncompressibleFrameIsNotCompressed) {
     EXPECT_FALSE(Compressor().compress(body_of(Ping{0x123456789abcdef0})));
 }
 
-TEST(Compression, AFewBytesThatStandForManyAreRefusedBeforeAnythingIsAllocated) {
+TEST(Compression, DecompressionBombIsRefusedBeforeAllocation) {
     const auto bomb = zstd_of(std::string(std::size_t{64} << 20, '\0'));
     EXPECT_LT(bomb.size(), std::size_t{10'000});
     const auto refused = decompress({std::uint32_t{64} << 20, bomb});
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().code, Errc::kTooLarge);
     EXPECT_THAT(refused.error().message, HasSubstr("compressed_scan_batch.size is 67108864, at most 1048576"));
-    EXPECT_EQ(decompress({1000, bomb}).error().code, Errc::kMalformed) << "it says that it is small";
+    EXPECT_EQ(decompress({1000, bomb}).error().code, Errc::kMalformed) << "the stated size is small";
 }
 
-TEST(Compression, DamageIsRefusedAndNamed) {
+TEST(Compression, DamagedDataIsRefusedByName) {
     const auto whole = holding(body_of(many_scans()));
     for (std::size_t i = 0; i < whole.zstd.size(); ++i) {
         auto damaged = whole;
         damaged.zstd[i] = static_cast<char>(damaged.zstd[i] ^ 0x10);
-        const auto read = decompress(damaged); // no checksum: some damage gives other scans, or fields that are wrong
+        const auto read = decompress(damaged); // There is no checksum: some damage gives other scans or invalid fields.
         EXPECT_TRUE(read || !read.error().message.empty());
         damaged.zstd.resize(i);
-        EXPECT_EQ(decompress(damaged).error().code, Errc::kMalformed) << i << " bytes of it";
+        EXPECT_EQ(decompress(damaged).error().code, Errc::kMalformed) << i << " of its bytes";
     }
     EXPECT_THAT(decompress({17, ""}).error().message, HasSubstr("no Zstandard frame"));
 }
 
-TEST(Compression, OnlyScanBatchesTravelThatWay) {
+TEST(Compression, OnlyScanBatchesMayBeCompressed) {
     for (const std::string& other : {body_of(Ping{1}), body_of(Hello{}), body_of(holding(body_of(many_scans())))}) {
         const auto refused = decompress(holding(other));
         ASSERT_FALSE(refused);
@@ -81,7 +82,7 @@ TEST(Compression, OnlyScanBatchesTravelThatWay) {
     EXPECT_THAT(decompress(holding(body_of(Ping{1}))).error().message, HasSubstr("holds a ping, no scan_batch"));
 }
 
-TEST(Compression, ValuesInItAreCheckedAsInAnyBatch) {
+TEST(Compression, CompressedValuesAreValidated) {
     auto batch = many_scans();
     batch.scans[3].pose.x = std::numeric_limits<double>::quiet_NaN();
     EXPECT_THAT(decompress(holding(body_of(batch))).error().message,

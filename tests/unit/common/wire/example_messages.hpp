@@ -5,7 +5,7 @@
 
 #include <string>
 
-/// Messages with every field set, to be spoilt by the tests.
+/// Messages with every field set. Tests make single fields invalid.
 namespace scanloom::wire {
 
 inline Sensor example_sensor() {
@@ -36,7 +36,7 @@ inline Scan example_scan(std::uint64_t seq = 1) {
 
 inline ScanBatch example_batch() { return {{example_scan(7), example_scan(8), example_scan(9), example_scan(10)}}; }
 
-/// Each option set, and to a value of its own.
+/// Returns options in which each field is set to a unique value.
 inline SessionOptions every_option() {
     return {.cell_size = 0.1,
             .ray_model = RayModel::kBresenham,
@@ -76,8 +76,8 @@ inline Hello example_hello() {
     hello.token = "secret";
     hello.create = every_option();
     hello.client = "a robot 1.0";
-    hello.source = "carmen:" + std::string(57, '9'); // as long as it may be
-    hello.body_radius = 5.0;                         // as large as it may be
+    hello.source = "carmen:" + std::string(57, '9'); // maximum length
+    hello.body_radius = 5.0;                         // maximum value
     return hello;
 }
 
@@ -119,7 +119,7 @@ inline Coverage example_coverage() {
     return {example_path(), 12.5, 11.25, {{-3, 7, 2}, {1'000'000, -1'000'000, 1}}, 0.05};
 }
 
-/// The body of the frame that holds the message, as the decoder would hand it out.
+/// Returns the body of the frame that contains the message, in the decoder's format.
 inline std::string body_of(const Message& message) {
     std::string frame;
     encode(message, frame);

@@ -18,7 +18,7 @@ std::string frame_of(const Message& message) {
     return frame;
 }
 
-/// As programs send it that know no checksums.
+/// Returns the frame of a program that does not send checksums.
 std::string without_checksum(const Message& message) {
     const auto frame = frame_of(message);
     std::string plain;
@@ -27,7 +27,8 @@ std::string without_checksum(const Message& message) {
     return plain;
 }
 
-/// What a decoder makes of a whole stream: the error that ends it, or how many frames it held.
+/// Decodes a complete stream.
+/// @return number of frames, or the error that ended decoding
 Result<std::size_t> frames_in(std::string_view stream) {
     FrameDecoder decoder(kFrameBytesMax);
     std::memcpy(decoder.prepare(stream.size()).data(), stream.data(), stream.size());
@@ -39,7 +40,7 @@ Result<std::size_t> frames_in(std::string_view stream) {
     }
 }
 
-TEST(FrameChecksum, IsAsTheDocumentShowsIt) {
+TEST(FrameChecksum, MatchesTheDocumentedExample) {
     EXPECT_EQ(frame_of(Ping{1}), std::string("\0\0\0\x11"
                                              "\x3a\x09"
                                              "\x09\x01\0\0\0\0\0\0\0"
@@ -48,7 +49,7 @@ TEST(FrameChecksum, IsAsTheDocumentShowsIt) {
                                              21));
 }
 
-TEST(FrameChecksum, EveryFlippedBitBehindTheLengthIsFound) {
+TEST(FrameChecksum, EveryFlippedBitAfterTheLengthIsDetected) {
     const std::string first = frame_of(Ping{7});
     const std::string good = frame_of(ScanBatch{{example_scan(1)}});
     ASSERT_EQ(frames_in(first + good).value(), 2U);
@@ -61,21 +62,21 @@ TEST(FrameChecksum, EveryFlippedBitBehindTheLengthIsFound) {
     }
 }
 
-TEST(FrameChecksum, FramesOfProgramsThatKnowNoneAreTaken) {
+TEST(FrameChecksum, FramesWithoutChecksumAreAccepted) {
     const std::string stream = without_checksum(Ping{1}) + without_checksum(ScanBatch{{example_scan(1)}});
     EXPECT_EQ(frames_in(stream).value(), 2U);
-    EXPECT_EQ(frames_in(stream + frame_of(Ping{2})).value(), 3U) << "it may begin to send them";
+    EXPECT_EQ(frames_in(stream + frame_of(Ping{2})).value(), 3U) << "a program may start to send checksums";
 }
 
-TEST(FrameChecksum, OnceSentItMayNotBeMissing) {
+TEST(FrameChecksum, MissingChecksumAfterAFirstOneIsDamage) {
     const auto read = frames_in(frame_of(Ping{1}) + without_checksum(Ping{2}));
     ASSERT_FALSE(read);
     EXPECT_EQ(read.error().code, Errc::kDamaged);
     EXPECT_THAT(read.error().message, testing::HasSubstr("missing"));
 }
 
-/// 16.381 m is written as the field's tag is.
-TEST(FrameChecksum, ScansThatLookLikeOneAreTaken) {
+/// A range of 16.381 m is encoded like the checksum field's tag.
+TEST(FrameChecksum, ScansThatResembleAChecksumAreAccepted) {
     std::string body("\x22\x08\xfd\x7f\xfd\x7f\x01\x02\x03\x04", 10);
     EXPECT_EQ(checksum_of(body), Checksum::kAbsent);
     const auto field = checksum_field(body);

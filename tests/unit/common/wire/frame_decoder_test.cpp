@@ -10,7 +10,7 @@ namespace scanloom::wire {
 namespace {
 
 void feed(FrameDecoder& decoder, std::string_view bytes) {
-    if (bytes.empty()) return; // memcpy must not be given a null pointer, even for nothing
+    if (bytes.empty()) return; // memcpy must not get a null pointer, even for zero bytes
     std::memcpy(decoder.prepare(bytes.size()).data(), bytes.data(), bytes.size());
     decoder.commit(bytes.size());
 }
@@ -29,7 +29,7 @@ std::string stream_of(const std::vector<std::string>& bodies) {
 
 const std::vector<std::string> kBodies = {"a", std::string(300, 'b'), "ccc", std::string("\0\0\0\1", 4), "e"};
 
-TEST(FrameDecoder, AnySplitInTwoYieldsTheSameBodies) {
+TEST(FrameDecoder, AnySplitInTwoYieldsEqualBodies) {
     const std::string stream = stream_of(kBodies);
     for (std::size_t split = 0; split <= stream.size(); ++split) {
         FrameDecoder decoder(1000);
@@ -41,7 +41,7 @@ TEST(FrameDecoder, AnySplitInTwoYieldsTheSameBodies) {
     }
 }
 
-TEST(FrameDecoder, AnyRandomSplitYieldsTheSameBodies) {
+TEST(FrameDecoder, AnyRandomSplitYieldsEqualBodies) {
     std::mt19937 random(11);
     for (int round = 0; round < 2000; ++round) {
         std::vector<std::string> sent(1 + random() % 8);
@@ -62,7 +62,7 @@ TEST(FrameDecoder, AnyRandomSplitYieldsTheSameBodies) {
     }
 }
 
-TEST(FrameDecoder, AnOversizedFrameIsRefusedFromItsLengthAlone) {
+TEST(FrameDecoder, OversizedFrameIsRefusedByItsLength) {
     FrameDecoder decoder(1000);
     feed(decoder, std::string_view("\x00\x00\x03\xe9", 4));
     const auto body = decoder.next();
@@ -70,16 +70,16 @@ TEST(FrameDecoder, AnOversizedFrameIsRefusedFromItsLengthAlone) {
     EXPECT_EQ(body.error().code, Errc::kTooLarge);
     EXPECT_THAT(body.error().message, testing::HasSubstr("1001 bytes, at most 1000"));
     feed(decoder, stream_of({"fine"}));
-    EXPECT_FALSE(decoder.next()) << "after an error the frame borders are lost";
+    EXPECT_FALSE(decoder.next()) << "after an error, frame boundaries are unknown";
 }
 
-TEST(FrameDecoder, AFrameOfTheLargestSizePasses) {
+TEST(FrameDecoder, FrameOfMaximumSizeIsAccepted) {
     FrameDecoder decoder(1000);
     feed(decoder, stream_of({std::string(1000, 'x')}));
     EXPECT_EQ(drain(decoder).size(), 1U);
 }
 
-TEST(FrameDecoder, HttpIsNamedAsWhatItIs) {
+TEST(FrameDecoder, HttpIsRecognised) {
     for (const auto* text : {"GET / HTTP/1.1\r\n", "HTTP/1.1 400 Bad Request\r\n"}) {
         FrameDecoder decoder(1000);
         feed(decoder, text);
@@ -91,7 +91,7 @@ TEST(FrameDecoder, HttpIsNamedAsWhatItIs) {
     }
 }
 
-TEST(FrameDecoder, TlsIsNamedAsWhatItIs) {
+TEST(FrameDecoder, TlsIsRecognised) {
     FrameDecoder decoder(1000);
     feed(decoder, std::string_view("\x16\x03\x01\x02\x00\x01", 6));
     const auto body = decoder.next();

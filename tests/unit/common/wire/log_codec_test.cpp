@@ -28,7 +28,7 @@ std::vector<LogEntry> one_of_each() {
             ExclusionLifted{2}};
 }
 
-TEST(LogCodec, EveryKindOfEntryComesBackAsItWas) {
+TEST(LogCodec, DecodingReturnsEveryKindOfEntry) {
     for (const auto& entry : one_of_each()) {
         const auto decoded = decode_entry(encode_entry(entry));
         ASSERT_TRUE(decoded) << decoded.error().message;
@@ -36,7 +36,7 @@ TEST(LogCodec, EveryKindOfEntryComesBackAsItWas) {
     }
 }
 
-TEST(LogCodec, WhereAScanWasTakenIsReadWithoutTheScan) {
+TEST(LogCodec, ScanPoseIsDecodedWithoutTheScan) {
     for (const auto& entry : one_of_each()) {
         for (const auto& bytes : {encode_entry(entry), plain_entry(encode_entry(entry)).value()}) {
             const auto where = decode_scan_pose(bytes).value();
@@ -52,8 +52,8 @@ TEST(LogCodec, WhereAScanWasTakenIsReadWithoutTheScan) {
     EXPECT_THAT(decode_scan_pose(encode_entry(ScanTaken{0, nowhere})).error().message, HasSubstr("scan_taken.pose"));
 }
 
-TEST(LogCodec, AnEntryOfTheFirstFormatIsStillRead) {
-    // seq 7, pose (1, 0, 0), ranges 1500 and 0 as fixed32, byte by byte as it lay on disk.
+TEST(LogCodec, EntryOfTheFirstFormatIsDecoded) {
+    // seq 7, pose (1, 0, 0), ranges 1500 and 0 as fixed32, byte by byte as stored on disk.
     const std::string pose("\x22\x09\x09\0\0\0\0\0\0\xf0\x3f", 11);
     const std::string ranges("\x32\x08\xdc\x05\0\0\0\0\0\0", 10);
     const std::string scan = std::string("\x08\x07", 2) + pose + ranges;
@@ -67,20 +67,20 @@ TEST(LogCodec, AnEntryOfTheFirstFormatIsStillRead) {
     EXPECT_EQ(plain_entry(bytes).value(), bytes);
 }
 
-TEST(LogCodec, APlainEntryIsTheSameWithTheRangesInTheScan) {
+TEST(LogCodec, PlainEntryDecodesEqually) {
     for (const auto& entry : one_of_each()) {
         const auto plain = plain_entry(encode_entry(entry)).value();
         EXPECT_EQ(decode_entry(plain).value(), entry);
         EXPECT_EQ(plain_entry(plain).value(), plain);
         if (!std::holds_alternative<ScanTaken>(entry)) continue;
-        EXPECT_NE(plain, encode_entry(entry)) << "else this tests nothing";
+        EXPECT_NE(plain, encode_entry(entry)) << "the two encodings must differ";
         const auto packed = encode_entry(entry);
-        EXPECT_FALSE(decode_entry(packed + plain)) << "ranges twice over"; // protobuf merges what follows
+        EXPECT_FALSE(decode_entry(packed + plain)) << "ranges twice over"; // protobuf merges repeated messages
     }
     EXPECT_FALSE(plain_entry("\xff"));
 }
 
-TEST(LogCodec, ABodyThatNoRobotCanStateIsDamage) {
+TEST(LogCodec, InvalidBodyRadiusIsDamage) {
     for (const double radius : {0.0, -1.0, 5.5, std::nan("")}) {
         const auto decoded = decode_entry(encode_entry(RobotJoined{0, "r", "", radius}));
         ASSERT_FALSE(decoded) << radius;
@@ -88,15 +88,15 @@ TEST(LogCodec, ABodyThatNoRobotCanStateIsDamage) {
     }
 }
 
-TEST(LogCodec, AnEntryOfTheWireIsTheSameAfterTheLogAsBefore) {
+TEST(LogCodec, DecodedWireScanSurvivesTheLog) {
     Scan scan = example_scan();
     scan.pose.yaw = -9.0;
     const auto batch = std::get<ScanBatch>(decode(body_of(ScanBatch{{scan}})).value());
     const LogEntry entry = ScanTaken{0, batch.scans[0]};
-    EXPECT_EQ(decode_entry(encode_entry(entry)).value(), entry) << "normalising a pose again changes nothing";
+    EXPECT_EQ(decode_entry(encode_entry(entry)).value(), entry) << "normalising a pose twice has no effect";
 }
 
-TEST(LogCodec, EveryTruncationOfAnEntryIsReported) {
+TEST(LogCodec, EveryTruncatedEntryIsRefused) {
     for (const auto& entry : one_of_each()) {
         const std::string bytes = encode_entry(entry);
         for (std::size_t kept = 0; kept < bytes.size(); ++kept) {
@@ -108,7 +108,7 @@ TEST(LogCodec, EveryTruncationOfAnEntryIsReported) {
     }
 }
 
-TEST(LogCodec, DamagedBytesAreReadOrReportedButNeverWorse) {
+TEST(LogCodec, DamagedBytesAreDecodedOrRefused) {
     std::mt19937 random(5);
     for (const auto& entry : one_of_each()) {
         const std::string bytes = encode_entry(entry);
@@ -127,7 +127,7 @@ TEST(LogCodec, DamagedBytesAreReadOrReportedButNeverWorse) {
     }
 }
 
-TEST(LogCodec, ValuesThatNoRobotCouldSendAreReportedByName) {
+TEST(LogCodec, InvalidValuesAreRefusedByName) {
     Scan scan = example_scan();
     scan.pose.x = std::numeric_limits<double>::quiet_NaN();
     EXPECT_THAT(decode_entry(encode_entry(ScanTaken{0, scan})).error().message, StartsWith("scan_taken.pose.x is nan"));
@@ -137,22 +137,22 @@ TEST(LogCodec, ValuesThatNoRobotCouldSendAreReportedByName) {
                 StartsWith("sensor_described.range_max is -1"));
 }
 
-TEST(LogCodec, ASessionComesBackAsItWas) {
+TEST(LogCodec, DecodingReturnsTheSession) {
     const SessionRecord record{"Intel_Lab", 1.75e9, {.cell_size = 0.1, .p_prior = 0.4}, 3, "depot", 17};
     const auto decoded = decode_session(encode_session(record));
     ASSERT_TRUE(decoded);
     EXPECT_EQ(*decoded, record);
 }
 
-TEST(LogCodec, ASessionFromBeforeThereWereTokensIsNobodysInParticular) {
-    const auto decoded = decode_session("\n\3lab"); // its name, field 1, alone
+TEST(LogCodec, SessionFromBeforeTokensHasNoCreator) {
+    const auto decoded = decode_session("\n\3lab"); // only its name, field 1
     ASSERT_TRUE(decoded);
     EXPECT_EQ(decoded->name, "lab");
     EXPECT_EQ(decoded->created_by, "");
     EXPECT_EQ(decoded->chunks_max, 0U);
 }
 
-TEST(LogCodec, WhatIsNoNameIsTakenForDamage) {
+TEST(LogCodec, InvalidNameIsDamage) {
     for (const auto* name : {"", "../../tmp/other", "a/b", "a b", "a\nfake line", "\xff"}) {
         SessionRecord record;
         record.name = name;
@@ -161,7 +161,7 @@ TEST(LogCodec, WhatIsNoNameIsTakenForDamage) {
     }
 }
 
-TEST(LogCodec, ADamagedSessionIsReported) {
+TEST(LogCodec, DamagedSessionIsRefused) {
     std::string bytes = encode_session({"Intel_Lab", 1.75e9, {.cell_size = 0.1}});
     bytes.pop_back();
     const auto decoded = decode_session(bytes);

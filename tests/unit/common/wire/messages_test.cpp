@@ -38,7 +38,7 @@ std::vector<Message> a_message_of_each_kind() {
             LocateReply{20, 99, example_correction()}};
 }
 
-TEST(Messages, EveryKindSurvivesTheWire) {
+TEST(Messages, EveryKindIsDecodedUnchanged) {
     const auto messages = a_message_of_each_kind();
     ASSERT_EQ(messages.size(), std::variant_size_v<Message>);
     for (std::size_t kind = 0; kind < messages.size(); ++kind) {
@@ -49,7 +49,7 @@ TEST(Messages, EveryKindSurvivesTheWire) {
     }
 }
 
-TEST(Messages, AreNamedAsTheirFrameFields) {
+TEST(Messages, NamesEqualTheFrameFields) {
     const auto* frame = v1::Frame::descriptor();
     for (const auto& message : a_message_of_each_kind()) {
         const auto* field = frame->FindFieldByName(std::string(name_of(message)));
@@ -60,7 +60,7 @@ TEST(Messages, AreNamedAsTheirFrameFields) {
     }
 }
 
-TEST(Messages, WhatIsOptionalMayBeAbsent) {
+TEST(Messages, OptionalFieldsMayBeAbsent) {
     Hello hello = example_hello();
     hello.create.reset();
     hello.token.clear();
@@ -69,7 +69,7 @@ TEST(Messages, WhatIsOptionalMayBeAbsent) {
     hello.body_radius.reset();
     EXPECT_EQ(decode(body_of(hello)).value(), Message(hello));
     hello.create = SessionOptions{.p_min = 0.0};
-    EXPECT_EQ(decode(body_of(hello)).value(), Message(hello)) << "an option of 0 is not an absent one";
+    EXPECT_EQ(decode(body_of(hello)).value(), Message(hello)) << "an option of 0 must not become absent";
 
     for (const Message& request : {Message(PlanRequest{.id = 1, .goal = {0.0, 0.0}}), Message(GoalRequest{}),
                                    Message(CoverageRequest{.id = 3})}) {
@@ -77,7 +77,7 @@ TEST(Messages, WhatIsOptionalMayBeAbsent) {
     }
     const Message point =
         PlanRequest{.start = Point2{0.0, 0.0}, .goal = {0.0, 0.0}, .body_radius = 0.0, .danger_cost = 0.0};
-    EXPECT_EQ(decode(body_of(point)).value(), point) << "what is 0 is not absent";
+    EXPECT_EQ(decode(body_of(point)).value(), point) << "a value of 0 must not become absent";
 
     Scan scan = example_scan();
     scan.odometry.reset();
@@ -93,7 +93,7 @@ TEST(Messages, WhatIsOptionalMayBeAbsent) {
     EXPECT_EQ(decode(body_of(sensor)).value(), Message(sensor));
 }
 
-TEST(Messages, AStepBetweenTheBeamsOfASpinningSensorTakesTwoBytes) {
+TEST(Messages, SteppedAnglesTakeTwoBytesPerBeam) {
     Scan scan = example_scan();
     scan.intensities.clear();
     scan.ranges.assign(450, 1000);
@@ -106,7 +106,7 @@ TEST(Messages, AStepBetweenTheBeamsOfASpinningSensorTakesTwoBytes) {
     EXPECT_LE(body_of(ScanBatch{{scan}}).size(), without + 2 * 450);
 }
 
-TEST(Messages, EveryErrorCodeOfTheWireComesBackAsItself) {
+TEST(Messages, ErrorCodesAreDecodedUnchanged) {
     for (const Errc code : {Errc::kMalformed, Errc::kTooLarge, Errc::kUnsupportedVersion, Errc::kInvalidField,
                             Errc::kNotFound, Errc::kConflict, Errc::kOutOfOrder, Errc::kCreditExceeded, Errc::kTimeout,
                             Errc::kReplaced, Errc::kGone, Errc::kStoreFailed, Errc::kShuttingDown, Errc::kUnauthorized,
@@ -119,23 +119,23 @@ TEST(Messages, EveryErrorCodeOfTheWireComesBackAsItself) {
     }
 }
 
-TEST(Messages, YawsAreNormalisedWhereTheyEnter) {
+TEST(Messages, DecodingNormalisesYaw) {
     Scan scan = example_scan();
     scan.pose.yaw = 7.0;
     const auto decoded = decode(body_of(ScanBatch{{scan}})).value();
     EXPECT_DOUBLE_EQ(std::get<ScanBatch>(decoded).scans[0].pose.yaw, 7.0 - 2.0 * std::numbers::pi);
 }
 
-TEST(Messages, TheLargestScanAndTheLargestBatchArePossible) {
+TEST(Messages, LargestScanAndLargestBatchAreAccepted) {
     Scan scan = example_scan();
     scan.ranges.assign(kBeamsMax, 1000);
     scan.intensities.assign(kBeamsMax, 7);
     scan.angles = UniformAngles{0.0, 2.0 * std::numbers::pi / 4095.0, kBeamsMax};
-    EXPECT_TRUE(decode(body_of(ScanBatch{{scan}}))) << "the first direction may be repeated at the end of the turn";
+    EXPECT_TRUE(decode(body_of(ScanBatch{{scan}}))) << "the last beam may repeat the first direction";
     EXPECT_TRUE(decode(body_of(ScanBatch{std::vector<Scan>(kScansPerBatchMax, example_scan())})));
 }
 
-TEST(Messages, TheLongestPathFitsAFrame) {
+TEST(Messages, LongestPathFitsInAFrame) {
     const Path path{std::vector<Point2>(kPathPointsMax, Point2{-1e5 / 3.0, 1e6 / 3.0}), 1e9 / 3.0, 1e10 / 3.0};
     const Path short_path{{Point2{1.0, 2.0}}, 0.0, 0.0};
     const std::vector<CellRun> runs(kPathPointsMax - 1, {INT32_MIN, INT32_MAX, INT32_MAX});
@@ -149,14 +149,14 @@ TEST(Messages, TheLongestPathFitsAFrame) {
     }
 }
 
-TEST(Messages, AGoalMayBeNone) {
+TEST(Messages, GoalMayBeAbsent) {
     for (const auto none : {Exploration::kTakenByOthers, Exploration::kComplete}) {
         const Message reply = GoalReply{1, 2, Goal{none, std::nullopt, std::nullopt}};
         EXPECT_EQ(decode(body_of(reply)).value(), reply);
     }
 }
 
-TEST(Messages, AFrameWithoutABodyIsMalformed) {
+TEST(Messages, FrameWithoutBodyIsMalformed) {
     const std::string unknown_field = "\xfa\x01\x02hi"; // field 31, as a newer version may have
     for (const std::string& body : {std::string(), unknown_field}) {
         const auto decoded = decode(body);
@@ -166,15 +166,15 @@ TEST(Messages, AFrameWithoutABodyIsMalformed) {
     }
 }
 
-TEST(Messages, FieldsOfANewerVersionAreSkipped) {
+TEST(Messages, UnknownFieldsAreSkipped) {
     v1::Frame frame;
     ASSERT_TRUE(frame.ParseFromString(body_of(Ping{5})));
     const std::string body = frame.SerializeAsString() + "\xfa\x01\x02hi";
     EXPECT_EQ(decode(body).value(), Message(Ping{5}));
 }
 
-/// What decode() gives for arbitrary bytes: a message whose values are checked, or an error with a sentence.
-void expect_decoded_or_explained(std::string_view body) {
+/// Expects that decode() returns a validated message or an error with a message, for arbitrary bytes.
+void expect_decoded_or_refused(std::string_view body) {
     const auto decoded = decode(body);
     if (!decoded) {
         EXPECT_FALSE(decoded.error().message.empty());
@@ -189,40 +189,40 @@ void expect_decoded_or_explained(std::string_view body) {
     }
 }
 
-TEST(Messages, EveryTruncationIsDecodedOrExplained) {
+TEST(Messages, TruncatedFramesAreDecodedOrRefused) {
     for (const auto& message : a_message_of_each_kind()) {
         const std::string body = body_of(message);
         for (std::size_t bytes = 0; bytes < body.size(); ++bytes) {
             SCOPED_TRACE(std::string(name_of(message)) + " cut to " + std::to_string(bytes));
             const auto decoded = decode(std::string_view(body).substr(0, bytes));
-            const bool is_whole = bytes == body.size() - kChecksumBytes; // and only the checksum is missing
-            EXPECT_EQ(decoded.has_value(), is_whole) << "the one field of a frame is cut short";
+            const bool is_complete = bytes == body.size() - kChecksumBytes; // only the checksum is missing
+            EXPECT_EQ(decoded.has_value(), is_complete) << "the frame's only field is truncated";
         }
     }
 }
 
-TEST(Messages, EveryFlippedBitIsDecodedOrExplained) {
+TEST(Messages, FlippedBitsAreDecodedOrRefused) {
     for (const auto& message : a_message_of_each_kind()) {
         const std::string body = body_of(message);
         for (std::size_t bit = 0; bit < body.size() * 8; ++bit) {
             std::string flipped = body;
             flipped[bit / 8] = static_cast<char>(flipped[bit / 8] ^ (1 << bit % 8));
-            expect_decoded_or_explained(flipped);
+            expect_decoded_or_refused(flipped);
         }
     }
 }
 
-TEST(Messages, RandomBytesAreDecodedOrExplained) {
+TEST(Messages, RandomBytesAreDecodedOrRefused) {
     std::mt19937 random(3);
     for (int round = 0; round < 20'000; ++round) {
         std::string body(random() % 200, '\0');
         for (char& byte : body) byte = static_cast<char>(random());
-        expect_decoded_or_explained(body);
+        expect_decoded_or_refused(body);
     }
 }
 
-TEST(Messages, DeeplyNestedGroupsAreRefusedNotFollowed) {
-    const auto decoded = decode(std::string(100'000, '\x0b')); // start of group 1, again and again
+TEST(Messages, DeeplyNestedGroupsAreRefused) {
+    const auto decoded = decode(std::string(100'000, '\x0b')); // start of group 1, repeated
     ASSERT_FALSE(decoded);
     EXPECT_EQ(decoded.error().code, Errc::kMalformed);
 }

@@ -16,7 +16,8 @@ std::string encoded(const ScanBatch& batch) {
     return frame;
 }
 
-/// The batch as frames of prepared scans are made: each scan prepared under another number and stamp than it is sent.
+/// Returns the batch for encoding from prepared scans; each scan is prepared under another number and stamp than it is
+/// sent.
 std::vector<NumberedScan> numbered(const ScanBatch& batch, std::vector<PreparedScan>& prepared) {
     prepared.clear();
     for (Scan scan : batch.scans) {
@@ -40,7 +41,7 @@ std::string encoded_as_prepared(const ScanBatch& batch) {
     return frame;
 }
 
-TEST(PreparedScan, FramesAreThoseOfTheOrdinaryEncoder) {
+TEST(PreparedScan, FramesEqualThoseOfTheRegularEncoder) {
     EXPECT_EQ(encoded_as_prepared(example_batch()), encoded(example_batch()));
     ScanBatch one{{example_scan(std::numeric_limits<std::uint64_t>::max())}};
     for (const double stamp : {0.0, -0.0, 1e-300, -976052857.28}) {
@@ -49,7 +50,7 @@ TEST(PreparedScan, FramesAreThoseOfTheOrdinaryEncoder) {
     }
 }
 
-TEST(PreparedScan, AnyScansNumbersAndStampsGiveTheSameBytesAsTheOrdinaryEncoder) {
+TEST(PreparedScan, RandomBatchesEqualThoseOfTheRegularEncoder) {
     std::mt19937_64 random(7);
     for (int round = 0; round < 200; ++round) {
         ScanBatch batch;
@@ -67,7 +68,7 @@ TEST(PreparedScan, AnyScansNumbersAndStampsGiveTheSameBytesAsTheOrdinaryEncoder)
     }
 }
 
-TEST(PreparedScan, AFrameIsAppendedToWhatIsThere) {
+TEST(PreparedScan, FrameIsAppendedToTheBuffer) {
     std::vector<PreparedScan> prepared;
     std::string out = "before";
     encode_batch(numbered(example_batch(), prepared), out);

@@ -22,10 +22,10 @@ inline void expect_refused(std::string_view body, Errc code, const std::string& 
     EXPECT_THAT(decoded.error().message, testing::StartsWith(beginning));
 }
 
-/// A value that is spoilt, and how what refuses it begins.
+/// A modification that makes a message invalid, and the beginning of the expected error message.
 template <class Value>
-struct Spoilt {
-    void (*spoil)(Value&);
+struct InvalidCase {
+    void (*make_invalid)(Value&);
     const char* beginning;
     Errc code = Errc::kInvalidField;
 };
