@@ -16,7 +16,7 @@ const Document kDocument{Heading{2, "Maps & walls"},
                          Table{{"cell", "IoU"}, {{"0.1 m", "0.9"}, {"0.5 m", "0.8"}}},
                          Picture{"pictures/a.png", "The \"room\""}};
 
-TEST(Document, InMarkdown) {
+TEST(Document, IsWrittenAsMarkdown) {
     EXPECT_EQ(to_markdown(kDocument), "## Maps & walls\n"
                                       "\n"
                                       "A < B.\n"
@@ -38,7 +38,7 @@ TEST(Document, InMarkdown) {
                                       "*The \"room\"*\n");
 }
 
-TEST(Document, InHtmlEscapesWhatHtmlWouldTakeForItsOwn) {
+TEST(Document, HtmlIsEscaped) {
     const auto html = to_html(kDocument, "<title>");
     EXPECT_THAT(html, testing::StartsWith("<!DOCTYPE html>"));
     EXPECT_THAT(html, HasSubstr("<title>&lt;title&gt;</title>"));
@@ -50,7 +50,7 @@ TEST(Document, InHtmlEscapesWhatHtmlWouldTakeForItsOwn) {
     EXPECT_THAT(html, HasSubstr("<tr><th>cell</th><th>IoU</th></tr>"));
     EXPECT_THAT(html, HasSubstr("<tr><td>0.5 m</td><td>0.8</td></tr>"));
     EXPECT_THAT(html, HasSubstr("<img src=\"pictures/a.png\" alt=\"The &quot;room&quot;\""));
-    EXPECT_THAT(html, Not(HasSubstr("<script"))) << "one page that needs nothing";
+    EXPECT_THAT(html, Not(HasSubstr("<script"))) << "the page must not need other files";
     EXPECT_THAT(html, Not(HasSubstr("http")));
 }
 

@@ -12,14 +12,14 @@ double look(const robot::World& world, double x, double y, double yaw) {
     return world.obstacles->cast_ray({x, y}, yaw, 20.0);
 }
 
-TEST(DoorRoom, AClosedDoorEndsTheViewAndAnOpenOneLetsItIntoTheLobby) {
-    EXPECT_NEAR(look(make_door_room(Door::kClosed), 3.0, 2.7, 0.0), 2.08, 1e-9) << "the leaf";
+TEST(DoorRoom, ClosedDoorBlocksTheViewAndOpenDoorShowsTheLobby) {
+    EXPECT_NEAR(look(make_door_room(Door::kClosed), 3.0, 2.7, 0.0), 2.08, 1e-9) << "the closed door leaf";
     EXPECT_NEAR(look(make_door_room(Door::kOpen), 3.0, 2.7, 0.0), 4.2, 1e-9) << "the lobby's wall";
-    EXPECT_NEAR(look(make_door_room(Door::kOpen), 4.5, 2.7, std::numbers::pi / 2.0), 0.5, 1e-9) << "the leaf, open";
-    EXPECT_NEAR(look(make_door_room(Door::kClosed), 4.5, 2.7, std::numbers::pi / 2.0), 2.3, 1e-9) << "the wall";
+    EXPECT_NEAR(look(make_door_room(Door::kOpen), 4.5, 2.7, std::numbers::pi / 2.0), 0.5, 1e-9) << "the open door leaf";
+    EXPECT_NEAR(look(make_door_room(Door::kClosed), 4.5, 2.7, std::numbers::pi / 2.0), 2.3, 1e-9) << "the room's wall";
 }
 
-TEST(DoorRoom, IsTheSimulatorsRoomButForTheDoor) {
+TEST(DoorRoom, EqualsTheSimulatorsRoomExceptForTheDoor) {
     const auto room = robot::make_room();
     const auto closed = make_door_room(Door::kClosed);
     for (int degree = 0; degree < 360; ++degree) {
@@ -31,11 +31,11 @@ TEST(DoorRoom, IsTheSimulatorsRoomButForTheDoor) {
     }
 }
 
-TEST(DoorRoom, ItsPlacesAreFreeAndSeeTheDoorAndTheSecondOne) {
+TEST(DoorRoom, PlacesAreFreeAndSeeTheDoorAndTheSecondPlace) {
     const auto world = make_door_room(Door::kOpen);
     const auto sees = [&](const Pose2& from, const Point2& to) {
-        const Point2 way = to - Point2{from.x, from.y};
-        return look(world, from.x, from.y, std::atan2(way.y, way.x)) >= norm(way) - 1e-6;
+        const Point2 ray = to - Point2{from.x, from.y};
+        return look(world, from.x, from.y, std::atan2(ray.y, ray.x)) >= norm(ray) - 1e-6;
     };
     const Pose2& second = kDoorRoomPlaces[1];
     for (const Pose2& place : kDoorRoomPlaces) {

@@ -6,7 +6,7 @@
 
 namespace scanloom::lab {
 
-/// Eleven points, 4 cm apart along x, the middle one at each of the places.
+/// Returns eleven points per place, 4 cm apart along x and centred at the place.
 inline std::vector<Point2> bars(const std::vector<Point2>& places) {
     std::vector<Point2> points;
     for (const Point2& place : places) {
@@ -15,7 +15,7 @@ inline std::vector<Point2> bars(const std::vector<Point2>& places) {
     return points;
 }
 
-/// A landmark at each of the places, which are more than 2 m apart.
+/// Returns one landmark per place; the places are more than 2 m apart.
 inline SeenLandmarks seen_bars(const std::vector<Point2>& places) { return see_landmarks(bars(places)).value(); }
 
 } // namespace scanloom::lab

@@ -5,12 +5,12 @@
 #include <string_view>
 #include <vector>
 
-/// Grids as people draw them: rows from the top, all equally long.
+/// Grids drawn as text: rows from the top, all of equal length.
 namespace scanloom::lab {
 
 using Rows = std::vector<std::string_view>;
 
-/// Calls set(Cell, char) for each character; the lower-left one is cell (0, 0).
+/// Calls set(value, char) for each character; the lower left character is cell (0, 0).
 template <class Value, class Set>
 CellGrid<Value> drawn(const Rows& rows, Value blank, Set&& set) {
     const auto height = static_cast<std::int32_t>(rows.size());
@@ -21,7 +21,7 @@ CellGrid<Value> drawn(const Rows& rows, Value blank, Set&& set) {
     return grid;
 }
 
-/// # occupied, . free, anything else unknown.
+/// '#' occupied, '.' free, any other character unknown.
 inline StateGrid map_of(const Rows& rows) {
     return drawn(rows, CellState::kUnknown, [](CellState& cell, char c) {
         if (c == '#') cell = CellState::kOccupied;
@@ -29,7 +29,7 @@ inline StateGrid map_of(const Rows& rows) {
     });
 }
 
-/// # solid, . free, anything else outside.
+/// '#' solid, '.' free, any other character outside.
 inline TruthCells truth_cells_of(const Rows& rows) {
     return drawn(rows, robot::Truth::kOutside, [](robot::Truth& cell, char c) {
         if (c == '#') cell = robot::Truth::kOccupied;
@@ -37,7 +37,7 @@ inline TruthCells truth_cells_of(const Rows& rows) {
     });
 }
 
-/// x yes, anything else no.
+/// 'x' set, any other character not set.
 inline CellMask mask_of(const Rows& rows) {
     return drawn(rows, std::uint8_t{0}, [](std::uint8_t& cell, char c) { cell = c == 'x'; });
 }

@@ -7,7 +7,7 @@
 
 namespace scanloom::lab {
 
-/// 4 of 8 landmarks matched, 3 of them within half the tolerance.
+/// Returns a comparison in which 4 of 8 landmarks match, 3 of them within half the tolerance.
 inline Comparison drawn_comparison() {
     Comparison comparison;
     comparison.metrics = {4, 0.5, 0.75, 0.02, 0.013};
@@ -17,7 +17,7 @@ inline Comparison drawn_comparison() {
     return comparison;
 }
 
-/// 4 of 5 pairs agree; the surfaces are clear.
+/// Returns alignments in which 4 of 5 pairs agree and the surfaces give a clear result.
 inline WaysToAlign drawn_ways() {
     WaysToAlign ways;
     ways.by_landmarks = {.pairs = 5, .fit = LandmarkFit{4, 0.006, {0.008, 0.02}}, .refusal = {}};
@@ -27,7 +27,7 @@ inline WaysToAlign drawn_ways() {
     return ways;
 }
 
-/// One place, one way, a row in each sweep, some trials, and a recording.
+/// Returns results with one place, one neighbour, one row in each sweep, some trials, and a recording.
 inline LandmarkResults drawn_landmark_results() {
     LandmarkResults results;
     results.seed = 7;

@@ -6,7 +6,8 @@ namespace scanloom::lab {
 
 inline Trials drawn_trials(std::vector<Trial> trials) { return {.each = std::move(trials), .seconds = 1.5}; }
 
-/// Two alignments in a room, views in maps of the office (two are wrong), three strangers (one clear), and a picture.
+/// Returns two alignments in a room, views in maps of the office (two are wrong), three views of another world (one
+/// clear), and a picture.
 inline TrialResults drawn_trial_results() {
     const Trial right{701, Verdict::kRight, {}, {0.0042, 0.002}};
     return {.scenes = 2,

@@ -14,19 +14,19 @@ using testing::HasSubstr;
 
 using Pictures = std::map<std::string, tiles::Bytes>;
 
-struct Made {
+struct Experiment {
     LandmarkResults results;
     std::string report;
     Pictures pictures;
 };
 
-/// As a run with fewer readings and with `scenes` of a kind makes it, on a machine that takes `tick` seconds for
-/// anything.
-Made made_with(LandmarkPlan plan, double tick = 0.001, std::size_t scenes = 0) {
+/// Runs the experiment with fewer readings and with `scenes` scenes of each kind, on a machine on which each operation
+/// takes `tick` (s).
+Experiment run_with(LandmarkPlan plan, double tick = 0.001, std::size_t scenes = 0) {
     plan.readings_max = 50;
     plan.scenes = scenes;
     plan.captures_max = 1;
-    Made made;
+    Experiment made;
     double time = 0.0;
     const auto keep = [&](const std::string& file, const tiles::Bytes& png) -> Result<> {
         made.pictures[file] = png;
@@ -38,25 +38,25 @@ Made made_with(LandmarkPlan plan, double tick = 0.001, std::size_t scenes = 0) {
     return made;
 }
 
-TEST(LandmarkExperiment, IsTheSameForASeedHoweverLongItTakes) {
-    const auto first = made_with({.seed = 3}, 0.001);
-    const auto again = made_with({.seed = 3}, 0.5);
+TEST(LandmarkExperiment, ReportIsDeterministicAndIndependentOfTime) {
+    const auto first = run_with({.seed = 3}, 0.001);
+    const auto again = run_with({.seed = 3}, 0.5);
     EXPECT_EQ(first.report, again.report);
     EXPECT_EQ(first.pictures, again.pictures);
-    const auto other = made_with({.seed = 4});
+    const auto other = run_with({.seed = 4});
     EXPECT_NE(first.report, other.report);
     EXPECT_NE(first.pictures, other.pictures);
 }
 
-TEST(LandmarkExperiment, FindsTheDoorAndTheWayToTheNextPlace) {
-    const auto [results, report, pictures] = made_with({.seed = 1});
+TEST(LandmarkExperiment, FindsTheDoorAndAlignsNeighbouringPlaces) {
+    const auto [results, report, pictures] = run_with({.seed = 1});
     ASSERT_EQ(results.places.size(), 3U);
     EXPECT_EQ(pictures.size(), 3U);
     for (const auto& place : results.places) {
         const auto& door = place.door.comparison;
-        EXPECT_GE(place.control.metrics.persistence, door.metrics.persistence) << "a door that moves takes landmarks";
-        EXPECT_GE(door.only_first, 1U) << "the wall with the door in it";
-        EXPECT_GE(door.only_second, 2U) << "the leaf, the lobby";
+        EXPECT_GE(place.control.metrics.persistence, door.metrics.persistence) << "a moved door removes landmarks";
+        EXPECT_GE(door.only_first, 1U) << "the wall with the door";
+        EXPECT_GE(door.only_second, 2U) << "the door leaf and the lobby";
         EXPECT_EQ(door.metrics.matched + door.only_first, place.door.first.survey.landmarks.size());
         EXPECT_TRUE(pictures.contains(place.door.picture));
     }
@@ -73,8 +73,8 @@ TEST(LandmarkExperiment, FindsTheDoorAndTheWayToTheNextPlace) {
     EXPECT_THAT(report, HasSubstr("--scenes 0"));
 }
 
-TEST(LandmarkExperiment, TriesScenesOfEveryWorldAndDrawsOneThatWasFound) {
-    const auto [results, report, pictures] = made_with({.seed = 1}, 0.001, 2);
+TEST(LandmarkExperiment, RunsScenesOfEveryWorldAndDrawsOneLocatedView) {
+    const auto [results, report, pictures] = run_with({.seed = 1}, 0.001, 2);
     ASSERT_TRUE(results.trials);
     const auto& [scenes, aligned, located, strangers, picture] = *results.trials;
     EXPECT_EQ(aligned.size(), 3U);
@@ -96,7 +96,7 @@ TEST(LandmarkExperiment, ComparesTheHalvesOfARecording) {
     const auto room = robot::make_room();
     LandmarkPlan plan;
     plan.recorded = RecordedCapture{take_capture(room, {}, 7, robot::Noise{}, random), "c.bin", "fine"};
-    const auto [results, report, pictures] = made_with(std::move(plan));
+    const auto [results, report, pictures] = run_with(std::move(plan));
     ASSERT_TRUE(results.recorded);
     EXPECT_EQ(results.recorded->turns, 7U);
     EXPECT_EQ(results.recorded->all.points.size(), 7U * 360U);
@@ -105,7 +105,7 @@ TEST(LandmarkExperiment, ComparesTheHalvesOfARecording) {
     EXPECT_TRUE(pictures.contains("recording.png"));
 }
 
-TEST(LandmarkExperiment, APictureThatCannotBeKeptIsAnError) {
+TEST(LandmarkExperiment, PictureThatCannotBeStoredIsAnError) {
     const auto keep = [](const std::string&, const tiles::Bytes&) -> Result<> {
         return Error{Errc::kStoreFailed, "the disk is full"};
     };

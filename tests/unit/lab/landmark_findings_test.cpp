@@ -12,17 +12,17 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
 
-std::string placed_of(const std::vector<double>& values) { return placed(values, {0.18, 0.49}); }
+std::string placement_of(const std::vector<double>& values) { return placed(values, {0.18, 0.49}); }
 
-TEST(LandmarkFindings, ValuesArePlacedAsTheyAreWritten) {
-    EXPECT_EQ(placed_of({0.18, 0.494}), "within");
-    EXPECT_EQ(placed_of({0.496}), "above");
-    EXPECT_EQ(placed_of({0.1, 0.17}), "below");
-    EXPECT_EQ(placed_of({0.1, 0.3}), "partly outside");
-    EXPECT_EQ(placed_of({0.3, 0.9}), "partly outside");
+TEST(LandmarkFindings, ValuesAreComparedAsPrinted) {
+    EXPECT_EQ(placement_of({0.18, 0.494}), "within");
+    EXPECT_EQ(placement_of({0.496}), "above");
+    EXPECT_EQ(placement_of({0.1, 0.17}), "below");
+    EXPECT_EQ(placement_of({0.1, 0.3}), "partly outside");
+    EXPECT_EQ(placement_of({0.3, 0.9}), "partly outside");
 }
 
-TEST(LandmarkFindings, TellWhyOnlyWhereSomethingLiesOutside) {
+TEST(LandmarkFindings, ExplainOnlyValuesOutsideThePublishedRange) {
     auto results = drawn_landmark_results();
     auto findings = door_findings(results);
     ASSERT_EQ(findings.size(), 3U);
@@ -35,7 +35,7 @@ TEST(LandmarkFindings, TellWhyOnlyWhereSomethingLiesOutside) {
     EXPECT_THAT(door_findings(results)[1], HasSubstr("told of nothing"));
 }
 
-TEST(LandmarkFindings, DistancesStandBesideThePublishedOnes) {
+TEST(LandmarkFindings, DistancesAreComparedWithPublishedOnes) {
     auto results = drawn_landmark_results();
     EXPECT_THAT(tolerance_finding(results), HasSubstr("the mean distance is 0.020 m, above the published 0.018 m"));
     EXPECT_THAT(tolerance_finding(results), HasSubstr("deviation 0.013 m, equal to the published 0.013 m"));
@@ -43,7 +43,7 @@ TEST(LandmarkFindings, DistancesStandBesideThePublishedOnes) {
     EXPECT_THAT(tolerance_finding(results), HasSubstr("nothing is matched"));
 }
 
-TEST(LandmarkFindings, CornersGoRoundWhereTheyAreFurtherOffThanUnfiltered) {
+TEST(LandmarkFindings, CornersAreRoundedIfTheirErrorExceedsTheUnfilteredOne) {
     const auto row = [](std::size_t window, double wall, double corner) { return FilterRow{window, {}, wall, corner}; };
     const std::vector<FilterRow> rows{row(1, 0.015, 0.018), row(3, 0.010, 0.018), row(5, 0.012, 0.020),
                                       row(7, 0.012, 0.036), row(9, 0.013, 0.5)};
@@ -54,7 +54,7 @@ TEST(LandmarkFindings, CornersGoRoundWhereTheyAreFurtherOffThanUnfiltered) {
     EXPECT_THAT(window_finding({row(1, 0.015, 0.018), row(3, 0.010, 0.018)}), HasSubstr("no window does harm"));
 }
 
-TEST(LandmarkFindings, AlignmentsThatAreNotClearSayWhyAndCountForNoError) {
+TEST(LandmarkFindings, UnclearAlignmentsAreExplainedAndExcludedFromErrors) {
     auto results = drawn_landmark_results();
     EXPECT_THAT(alignment_findings(results), ElementsAre("1 of 1 are clear, and these are off by 12.0 mm and 0.57 "
                                                          "degrees at most."));
@@ -64,7 +64,7 @@ TEST(LandmarkFindings, AlignmentsThatAreNotClearSayWhyAndCountForNoError) {
     EXPECT_THAT(alignment_findings(results), ElementsAre("None is clear.", "1 to 2: another pose does as well."));
 }
 
-TEST(LandmarkFindings, TransformsOfLandmarksAreToldOfOnePlaceAndOfTwoAndSoAreRefusals) {
+TEST(LandmarkFindings, LandmarkTransformsAndRefusalsAreReportedForOneAndTwoPlaces) {
     auto results = drawn_landmark_results();
     results.places[0].control_ways.by_landmarks.fit->error = {0.001, 0.0};
     const auto findings = ways_findings(results);
@@ -80,7 +80,7 @@ TEST(LandmarkFindings, TransformsOfLandmarksAreToldOfOnePlaceAndOfTwoAndSoAreRef
                 HasSubstr("landmarks tell none of 1 transforms; surfaces none of 1 transforms. "));
 }
 
-TEST(LandmarkFindings, HalvesOfARecordingStandBesideWhatIsPublished) {
+TEST(LandmarkFindings, RecordingHalvesAreComparedWithPublishedValues) {
     const auto results = drawn_landmark_results();
     EXPECT_THAT(recording_finding(*results.recorded),
                 HasSubstr("Persistence is 0.50, above the published 0.18 to 0.49; stability is 0.75, within"));

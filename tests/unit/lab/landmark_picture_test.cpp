@@ -16,8 +16,9 @@ const cv::Vec3b kPanelRed(40, 30, 210);
 const cv::Vec3b kBlack(0, 0, 0);
 const cv::Vec3b kPanelWhite(255, 255, 255);
 
-/// Two bars at x = 0 and 4 in the first capture; in the second the right one has gone 2 m up. The lidar is at (2, -2).
-/// 0.3 m around all, in halves of 600 pixels: x from -0.5 to 4.5 (120 pixels a metre), y from 2.3 down to -2.3.
+/// Two bars at x = 0 and x = 4 in the first capture. In the second capture the right bar is 2 m higher. The lidar is at
+/// (2, -2). The picture has a margin of 0.3 m and halves of 600 pixels: x from -0.5 to 4.5 (120 pixels per metre), y
+/// from 2.3 to -2.3.
 class LandmarkPicture : public testing::Test {
 protected:
     LandmarkPicture() {
@@ -35,19 +36,19 @@ protected:
     cv::Mat picture_;
 };
 
-TEST_F(LandmarkPicture, HasTheFirstCaptureOnTheLeftAndTheSecondOnTheRight) {
+TEST_F(LandmarkPicture, ShowsTheFirstCaptureLeftAndTheSecondRight) {
     ASSERT_EQ(picture_.cols, 600 + 12 + 600);
     ASSERT_EQ(picture_.rows, 552);
     EXPECT_EQ(at(-0.1195, -0.004, 0), kPanelBlue);
     EXPECT_EQ(at(-0.1195, -0.004, 1), kPanelOrange);
     EXPECT_EQ(at(3.8805, -0.004, 0), kPanelBlue);
-    EXPECT_EQ(at(3.8805, -0.004, 1), kPale) << "what only the other has";
+    EXPECT_EQ(at(3.8805, -0.004, 1), kPale) << "points of the other capture only";
     EXPECT_EQ(at(3.8805, 1.996, 0), kPale);
     EXPECT_EQ(at(3.8805, 1.996, 1), kPanelOrange);
     EXPECT_EQ(at(2.0, 1.0, 0), kPanelWhite);
 }
 
-TEST_F(LandmarkPicture, RingsLandmarksWithoutAMatchAndMarksTheLidar) {
+TEST_F(LandmarkPicture, MarksUnmatchedLandmarksAndTheLidar) {
     EXPECT_EQ(at(0.0, 0.0, 0), kPanelBlue);
     EXPECT_EQ(at(0.0, 0.0, 1), kPanelOrange);
     EXPECT_EQ(at(4.0, 7.0 / 120.0, 0), kPanelRed);
@@ -55,7 +56,7 @@ TEST_F(LandmarkPicture, RingsLandmarksWithoutAMatchAndMarksTheLidar) {
     for (const int panel : {0, 1}) EXPECT_EQ(at(2.0, -2.0, panel), kBlack);
 }
 
-TEST_F(LandmarkPicture, JoinsMatchesByDashedLines) {
+TEST_F(LandmarkPicture, ConnectsMatchesByDashedLines) {
     int dark = 0;
     int light = 0;
     int changes = 0;
@@ -70,11 +71,11 @@ TEST_F(LandmarkPicture, JoinsMatchesByDashedLines) {
     EXPECT_GT(light, 100);
     EXPECT_GT(changes, 20);
     for (int column = 100; column < 500; ++column) {
-        EXPECT_EQ(picture_.at<cv::Vec3b>(200, column), kPanelWhite) << "no other lines: " << column;
+        EXPECT_EQ(picture_.at<cv::Vec3b>(200, column), kPanelWhite) << "no other lines, column " << column;
     }
 }
 
-TEST(LandmarkPictures, OfNothingShowTheLidar) {
+TEST(LandmarkPictures, EmptyCapturesShowTheLidar) {
     const auto none = seen_bars({});
     const auto picture = cv::imdecode(comparison_png(none, none, {}, {1.0, 1.0}), cv::IMREAD_COLOR);
     EXPECT_EQ(picture.cols, 1212);

@@ -11,7 +11,7 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-TEST(LandmarkReport, ItsTablesHoldTheFigures) {
+TEST(LandmarkReport, TablesContainTheFigures) {
     const auto text = to_markdown(landmark_report_of(drawn_landmark_results()));
     EXPECT_THAT(text,
                 HasSubstr("| 1 | opened | 4 | 4 | 2 | 0.50 | 0.75 | 0.020 | 0.013 | 0.80 | 0.30 | 1.00 | 0.70 |"));
@@ -25,13 +25,13 @@ TEST(LandmarkReport, ItsTablesHoldTheFigures) {
     EXPECT_THAT(text, HasSubstr("| 0.1 | 4 | 0.50 | 0.75 | 0.020 | 0.013 |"));
     EXPECT_THAT(text, HasSubstr("| published, 0.1 |  |  |  | 0.018 | 0.013 |"));
     EXPECT_THAT(text, HasSubstr("| 50 | 18000 | 0.150 | 9 | 74941 | 1166716 |"));
-    EXPECT_THAT(text, HasSubstr("| 1 | 0.000 | 0.00 | - | 0.015 | 0.018 |")) << "what is nothing is a dash";
+    EXPECT_THAT(text, HasSubstr("| 1 | 0.000 | 0.00 | - | 0.015 | 0.018 |")) << "an absent value is a dash";
     EXPECT_THAT(text, HasSubstr("1 at (1.5, -2) m"));
     EXPECT_THAT(text, HasSubstr("Seed: 7."));
     EXPECT_THAT(text, HasSubstr("(pictures/p.png)"));
 }
 
-TEST(LandmarkReport, ItsTablesHaveRowsAsLongAsTheirHeads) {
+TEST(LandmarkReport, TableRowsAreAsLongAsTheirHeads) {
     for (const auto& block : landmark_report_of(drawn_landmark_results())) {
         if (const auto* table = std::get_if<Table>(&block)) {
             for (const auto& row : table->rows) EXPECT_EQ(row.size(), table->head.size()) << table->head.front();
@@ -39,7 +39,7 @@ TEST(LandmarkReport, ItsTablesHaveRowsAsLongAsTheirHeads) {
     }
 }
 
-TEST(LandmarkReport, HasAPartAboutARecordingWhereThereIsOne) {
+TEST(LandmarkReport, ContainsTheRecordingIfPresent) {
     auto results = drawn_landmark_results();
     const auto with = to_markdown(landmark_report_of(results));
     EXPECT_THAT(with, HasSubstr("--seed 7 --scenes 2 --capture c.bin"));
@@ -54,18 +54,18 @@ TEST(LandmarkReport, HasAPartAboutARecordingWhereThereIsOne) {
     EXPECT_THAT(without, Not(HasSubstr("A recording")));
 }
 
-TEST(LandmarkReport, HasAPartAboutManyScenesWhereTheyWereTried) {
+TEST(LandmarkReport, ContainsTheTrialsIfPresent) {
     auto results = drawn_landmark_results();
     EXPECT_THAT(to_markdown(landmark_report_of(results)), HasSubstr("| room | 2 | 1 | 0 | 1 | 0 |"));
     EXPECT_THAT(to_markdown(landmark_times_report_of(results, "")), HasSubstr("| alignment, room |"));
     results.trials->scenes = kScenes;
-    EXPECT_THAT(to_markdown(landmark_report_of(results)), Not(HasSubstr("--scenes"))) << "as by default";
+    EXPECT_THAT(to_markdown(landmark_report_of(results)), Not(HasSubstr("--scenes"))) << "the default is not printed";
     results.trials.reset();
     EXPECT_THAT(to_markdown(landmark_report_of(results)), Not(HasSubstr("How sure")));
     EXPECT_THAT(to_markdown(landmark_times_report_of(results, "")), Not(HasSubstr("| alignment, room |")));
 }
 
-TEST(LandmarkReport, DoesNotDependOnHowLongItTook) {
+TEST(LandmarkReport, IsIndependentOfTimes) {
     auto results = drawn_landmark_results();
     const auto text = to_html(landmark_report_of(results), "");
     const auto times = to_markdown(landmark_times_report_of(results, "a PDP-11"));

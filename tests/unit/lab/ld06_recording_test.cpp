@@ -26,7 +26,7 @@ protected:
     TemporaryDirectory directory_;
 };
 
-TEST_F(Ld06Recordings, AreTheTurnsOfALidarThatStoodStill) {
+TEST_F(Ld06Recordings, ContainTheTurnsOfAStationaryLidar) {
     testing_support::Ld06Spinner sensor;
     const auto recorded = read_ld06_recording(file(sensor.next_bytes(400))).value();
     EXPECT_EQ(recorded.name, "room.bin");
@@ -37,7 +37,7 @@ TEST_F(Ld06Recordings, AreTheTurnsOfALidarThatStoodStill) {
     EXPECT_EQ(points_of(recorded.capture.scans, recorded.capture.sensor).size(), 9U * 450U);
 }
 
-TEST_F(Ld06Recordings, WithoutTwoTurnsAreErrorsThatNameTheFile) {
+TEST_F(Ld06Recordings, WithoutTwoTurnsAreRefusedByName) {
     testing_support::Ld06Spinner sensor;
     EXPECT_THAT(read_ld06_recording(file(sensor.next_bytes(90))).error().message, HasSubstr("room.bin: one turn only"));
     EXPECT_THAT(read_ld06_recording(file({})).error().message, HasSubstr("room.bin: no full turn of an LD06"));
@@ -45,7 +45,7 @@ TEST_F(Ld06Recordings, WithoutTwoTurnsAreErrorsThatNameTheFile) {
                 HasSubstr("missing: cannot be opened"));
 }
 
-TEST_F(Ld06Recordings, OfNothingAreErrorsThatSayHowLittleWasSeen) {
+TEST_F(Ld06Recordings, WithoutReturnsAreRefusedWithTheirCount) {
     testing_support::Ld06Spinner sensor;
     Bytes bytes;
     for (int n = 0; n < 400; ++n) {

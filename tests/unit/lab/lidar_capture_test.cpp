@@ -25,7 +25,7 @@ void expect_near(const Point2& point, double x, double y) {
     EXPECT_NEAR(point.y, y, 1e-9);
 }
 
-TEST(LidarCaptures, PointsAreWhereBeamsMetSomethingSeenFromTheMount) {
+TEST(LidarCaptures, PointsAreBeamEndsRelativeToTheMount) {
     Scan scan;
     scan.ranges = {1000, kInvalidRange, 2000, kNoReturn};
     scan.pose = {10.0, 20.0, kRight};
@@ -40,13 +40,13 @@ TEST(LidarCaptures, PointsAreWhereBeamsMetSomethingSeenFromTheMount) {
     expect_near(in_map[1], 10.0, 18.5);
 }
 
-TEST(LidarCaptures, ReadingsBeyondTheSensorsLimitsAreNoPoints) {
+TEST(LidarCaptures, ReadingsOutsideTheSensorsLimitsGiveNoPoints) {
     Scan scan;
     scan.ranges = {99, 100, 4999, 5000};
     EXPECT_EQ(points_of(std::vector<Scan>{scan}, cross()).size(), 2U);
 }
 
-TEST(LidarCaptures, AreTurnsFromOnePlaceThatFollowFromTheRandomNumbers) {
+TEST(LidarCaptures, AreDeterministicTurnsFromOnePlace) {
     const auto world = make_door_room(Door::kClosed);
     const Pose2 place{3.0, 2.7, 0.0};
     robot::Random first(5);
@@ -57,9 +57,9 @@ TEST(LidarCaptures, AreTurnsFromOnePlaceThatFollowFromTheRandomNumbers) {
     EXPECT_EQ(capture.scans[2].seq, 3U);
     EXPECT_EQ(capture.scans[2].pose, place);
     EXPECT_NEAR(capture.scans[2].stamp, 0.2, 1e-9);
-    EXPECT_NE(capture.scans[0].ranges, capture.scans[1].ranges) << "noise";
+    EXPECT_NE(capture.scans[0].ranges, capture.scans[1].ranges) << "the turns differ by noise";
     const auto exact = take_capture(world, place, 1, std::nullopt, first);
-    EXPECT_EQ(exact.scans[0].ranges[180], 2080U) << "the beam ahead, to the door";
+    EXPECT_EQ(exact.scans[0].ranges[180], 2080U) << "the beam ahead reaches the door";
 }
 
 } // namespace

@@ -9,8 +9,8 @@
 namespace scanloom::lab {
 namespace {
 
-/// A map of two points at (0, 0) and (8.4, 4.4), seen from (2, 1) and (6, 1); a robot at (4, 3) that looks north has
-/// one thing before it, 1 m away, and one 2 m to its right. With 0.3 m around all, 100 pixels are a metre.
+/// A map of two points at (0, 0) and (8.4, 4.4), observed from (2, 1) and (6, 1). A robot at (4, 3) that heads north
+/// has one point 1 m ahead and one 2 m to its right. With a margin of 0.3 m, 100 pixels are 1 m.
 class LocatedPicture : public testing::Test {
 protected:
     LocatedPicture() {
@@ -31,18 +31,18 @@ protected:
 const cv::Vec3b kMapBlue(190, 95, 0);
 const cv::Vec3b kViewOrange(0, 120, 235);
 
-TEST_F(LocatedPicture, HasTheMapAndTheViewWhereItWasFound) {
+TEST_F(LocatedPicture, ShowsTheMapAndTheViewAtItsLocatedPose) {
     EXPECT_EQ(picture_.cols, 900);
     EXPECT_EQ(at(0.0, 0.0), kMapBlue);
     EXPECT_EQ(at(8.4, 4.4), kMapBlue);
-    EXPECT_EQ(at(4.0, 4.0), kViewOrange) << "before the robot";
-    EXPECT_EQ(at(6.0, 3.0), kViewOrange) << "to its right";
+    EXPECT_EQ(at(4.0, 4.0), kViewOrange) << "ahead of the robot";
+    EXPECT_EQ(at(6.0, 3.0), kViewOrange) << "to the right of the robot";
     EXPECT_EQ(at(3.0, 2.0), cv::Vec3b(255, 255, 255));
 }
 
-TEST_F(LocatedPicture, MarksWhereItWasSeenFromAndWhereTheSensorIs) {
+TEST_F(LocatedPicture, MarksTheMapsViewpointsAndTheSensor) {
     EXPECT_EQ(at(2.0, 1.0), kMapBlue);
-    EXPECT_EQ(at(6.03, 1.0), kMapBlue) << "a disc, and no point";
+    EXPECT_EQ(at(6.03, 1.0), kMapBlue) << "a disc, not a single point";
     EXPECT_EQ(at(4.0, 3.0), cv::Vec3b(0, 0, 0));
     EXPECT_EQ(at(4.1, 3.0), cv::Vec3b(0, 0, 0)) << "an arm of the cross";
 }

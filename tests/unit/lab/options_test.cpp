@@ -17,7 +17,7 @@ std::variant<ExperimentOptions, LandmarkOptions, Leave> parse(const std::vector<
     return parse_options(static_cast<int>(argv.size()), argv.data());
 }
 
-TEST(LabOptionsTest, ExperimentTakesItsDirectoryAndHasDefaults) {
+TEST(LabOptionsTest, ExperimentHasADirectoryAndDefaults) {
     const auto options = std::get<ExperimentOptions>(parse({"experiment", "--out", "d"}));
     EXPECT_EQ(options.out, "d");
     EXPECT_EQ(options.seed, 1U);
@@ -29,7 +29,7 @@ TEST(LabOptionsTest, ExperimentTakesItsDirectoryAndHasDefaults) {
     EXPECT_EQ(other.scans, 50U);
 }
 
-TEST(LabOptionsTest, LandmarksTakesItsDirectoryASeedAndARecording) {
+TEST(LabOptionsTest, LandmarksHasADirectoryASeedAndARecording) {
     const auto options = std::get<LandmarkOptions>(parse({"landmarks", "--out", "d"}));
     EXPECT_EQ(options.out, "d");
     EXPECT_EQ(options.seed, 1U);
@@ -42,7 +42,7 @@ TEST(LabOptionsTest, LandmarksTakesItsDirectoryASeedAndARecording) {
     EXPECT_EQ(other.capture, "c.bin");
 }
 
-TEST(LabOptionsTest, EachMistakeIsOneLineAndAUsageError) {
+TEST(LabOptionsTest, InvalidOptionIsAOneLineUsageError) {
     const std::vector<std::pair<std::vector<const char*>, const char*>> mistakes{
         {{}, "say what to do: experiment or landmarks"},
         {{"experiment"}, "experiment: name a directory with --out"},

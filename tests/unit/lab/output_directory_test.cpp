@@ -13,7 +13,7 @@ namespace {
 
 using testing::HasSubstr;
 
-TEST(OutputDirectory, IsMadeWithItsParentsAndItsFilesAreReplaced) {
+TEST(OutputDirectory, IsCreatedWithParentsAndReplacesFiles) {
     const TemporaryDirectory place;
     const auto directory = OutputDirectory::open(place.path() / "a" / "b");
     ASSERT_TRUE(directory);
@@ -23,7 +23,7 @@ TEST(OutputDirectory, IsMadeWithItsParentsAndItsFilesAreReplaced) {
     EXPECT_EQ(std::string(std::istreambuf_iterator<char>(file), {}), "text");
 }
 
-TEST(OutputDirectory, ErrorsNameThePath) {
+TEST(OutputDirectory, ErrorsContainThePath) {
     const TemporaryDirectory place;
     std::ofstream(place.path() / "file") << "no directory";
     EXPECT_THAT(OutputDirectory::open(place.path() / "file" / "below").error().message, HasSubstr("/file/below: "));

@@ -11,9 +11,9 @@
 namespace scanloom::lab {
 namespace {
 
-constexpr double kMiddle = 0.0125; // the middle of a pixel
+constexpr double kMiddle = 0.0125; // centre of a pixel
 
-/// A robot that drives a metre along x and sees something 1.5 m ahead; a walker stands aside.
+/// A robot drives 1 m along x and detects an object 1.5 m ahead; a walker stands next to the path.
 Recording short_drive() {
     Recording recording;
     recording.laser.angles = UniformAngles{-0.3, 0.02, 31};
@@ -48,7 +48,7 @@ const cv::Vec3b kBlue(200, 100, 0);
 const cv::Vec3b kRed(40, 30, 220);
 const cv::Vec3b kOrange(0, 140, 255);
 
-/// The pixel at a place of the map, of the first or second moment.
+/// Returns the pixel at a place of the map, in the first or second moment.
 cv::Vec3b at(const cv::Mat& strip, double x, double y, int moment) {
     return strip.at<cv::Vec3b>(static_cast<int>((1.0 - y) * 40.0),
                                static_cast<int>((x + 0.5) * 40.0) + moment * (140 + 8));
@@ -56,29 +56,29 @@ cv::Vec3b at(const cv::Mat& strip, double x, double y, int moment) {
 
 class StripsAt : public testing::TestWithParam<double> {};
 
-TEST_P(StripsAt, ShowEachMomentWithMapPathPointsRobotAndWalker) {
+TEST_P(StripsAt, ShowMapTrajectoryPointsRobotAndWalkerPerMoment) {
     const cv::Mat strip = strip_of(GetParam());
     ASSERT_EQ(strip.cols, 140 + 8 + 140);
     ASSERT_EQ(strip.rows, 88);
     const auto is_light = [&](double x, double y, int moment) { return at(strip, x, y, moment)[0] > 220; };
-    EXPECT_TRUE(is_light(1.0, 0.05, 0)) << "free, after one scan";
-    EXPECT_TRUE(is_light(2.0, 0.05, 1)) << "free, after all";
-    EXPECT_EQ(at(strip, 2.3, kMiddle, 0), kGrey) << "not yet seen";
+    EXPECT_TRUE(is_light(1.0, 0.05, 0)) << "free after one scan";
+    EXPECT_TRUE(is_light(2.0, 0.05, 1)) << "free after all scans";
+    EXPECT_EQ(at(strip, 2.3, kMiddle, 0), kGrey) << "not yet observed";
     EXPECT_EQ(at(strip, 1.51, kMiddle, 0), kRed) << "the newest scan";
     EXPECT_EQ(at(strip, 2.51, kMiddle, 1), kRed);
-    EXPECT_NE(at(strip, 1.51, kMiddle, 1), kRed) << "older scans show in the map only";
+    EXPECT_NE(at(strip, 1.51, kMiddle, 1), kRed) << "older scans are visible in the map only";
     EXPECT_EQ(at(strip, 0.0, kMiddle, 0), kBlue) << "the robot";
     EXPECT_EQ(at(strip, 1.0, kMiddle, 1), kBlue);
-    EXPECT_EQ(at(strip, 0.4, kMiddle, 1), kBlue) << "the path so far";
+    EXPECT_EQ(at(strip, 0.4, kMiddle, 1), kBlue) << "the trajectory so far";
     EXPECT_EQ(at(strip, 1.25, -0.8, 0), kOrange);
     EXPECT_EQ(at(strip, 2.8, 0.9, 1), kGrey);
-    EXPECT_EQ(strip.at<cv::Vec3b>(40, 143), kWhite) << "the gap";
+    EXPECT_EQ(strip.at<cv::Vec3b>(40, 143), kWhite) << "the gap between the moments";
 }
 
-TEST(Strips, AWallThinnerThanAPixelShowsInEveryRow) {
+TEST(Strips, WallThinnerThanAPixelIsVisibleInEveryRow) {
     Recording recording = short_drive();
     recording.scans.resize(2);
-    recording.scans[1].ranges.assign(31, kInvalidRange); // so that no points hide the wall
+    recording.scans[1].ranges.assign(31, kInvalidRange); // without valid readings, so that no points cover the wall
     std::vector<Moment> moments;
     SessionOptions options;
     options.cell_size = 0.01;

@@ -13,13 +13,13 @@ const NoiseChoice& noise(std::string_view name) {
     return *std::ranges::find_if(kMatrix.noises, [&](const NoiseChoice& choice) { return choice.name == name; });
 }
 
-TEST(Matrix, HoldsEverySceneCellSizeNoiseAndStartOfTheReferenceExperiments) {
+TEST(Matrix, ContainsAllCombinationsOfTheReferenceExperiments) {
     EXPECT_EQ(kMatrix.scenes.size() * kMatrix.cell_sizes.size() * kMatrix.noises.size() * kMatrix.starts.size(), 64U);
     EXPECT_EQ(kMatrix.run_count(), 64U * kMatrix.ray_models.size());
     EXPECT_LT(quick_matrix().run_count(), kMatrix.run_count() / 4);
 }
 
-TEST(Drive, GoesOnceAroundTheRoomWithoutTouchingTheWalker) {
+TEST(Drive, DrivesOnceAroundTheRoomWithoutTouchingTheWalker) {
     for (const Start& start : kMatrix.starts) {
         const auto path = drive_from(start, kScansDefault);
         EXPECT_EQ(path.front(), start.pose);
@@ -38,7 +38,7 @@ TEST(Drive, GoesOnceAroundTheRoomWithoutTouchingTheWalker) {
     }
 }
 
-TEST(Recordings, HoldExactPosesAndRisingNumbers) {
+TEST(Recordings, ContainExactPosesAndIncreasingNumbers) {
     const auto path = drive_from(kMatrix.starts[1], 20);
     const auto recording = record(kMatrix.scenes[0], path, noise("3_cells"), 0.1, 1);
     ASSERT_EQ(recording.scans.size(), 20U);
@@ -50,7 +50,7 @@ TEST(Recordings, HoldExactPosesAndRisingNumbers) {
     }
 }
 
-TEST(Recordings, DifferInTheirNoiseAndByTheirSeedAlone) {
+TEST(Recordings, DifferOnlyByNoiseAndSeed) {
     const auto path = drive_from(kMatrix.starts[0], 5);
     const auto ranges = [&](std::string_view name, double cell_size, std::uint64_t seed) {
         return record(kMatrix.scenes[0], path, noise(name), cell_size, seed).scans.back().ranges;
@@ -62,7 +62,7 @@ TEST(Recordings, DifferInTheirNoiseAndByTheirSeedAlone) {
     EXPECT_NE(ranges("1_cell", 0.1, 1), ranges("3_cells", 0.1, 1));
 }
 
-TEST(Recordings, OfTheDynamicSceneHoldAWalkerWhoGoesOnAndIsSeen) {
+TEST(Recordings, DynamicSceneContainsAMovingVisibleWalker) {
     const auto path = drive_from(kMatrix.starts[0], kScansDefault);
     const auto empty = record(kMatrix.scenes[0], path, noise("none"), 0.1, 1);
     const auto walked = record(kMatrix.scenes[1], path, noise("none"), 0.1, 1);
@@ -73,7 +73,7 @@ TEST(Recordings, OfTheDynamicSceneHoldAWalkerWhoGoesOnAndIsSeen) {
     EXPECT_LT(scans_with_walker, kScansDefault);
 }
 
-TEST(Recordings, GaussianNoiseLeavesBeamsWithoutReturnOut) {
+TEST(Recordings, GaussianNoiseDropsNoReturns) {
     const auto path = drive_from(kMatrix.starts[0], 1);
     const auto exact = record(kMatrix.scenes[0], path, noise("none"), 0.1, 1).scans[0].ranges;
     const auto noisy = record(kMatrix.scenes[0], path, noise("gaussian"), 0.1, 1).scans[0].ranges;

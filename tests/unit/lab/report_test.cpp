@@ -8,7 +8,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// A result for each run of the matrix, the k-th with scores of k thousandths.
+/// Returns one result per run of the matrix; the k-th result has scores of k thousandths.
 std::vector<RunResult> results_for(const Matrix& matrix, double milliseconds) {
     std::vector<RunResult> results;
     for (const Start& start : matrix.starts) {
@@ -36,7 +36,7 @@ std::size_t count_of(std::string_view text, std::string_view word) {
     return count;
 }
 
-TEST(Report, HoldsEveryRunOnceAndEveryPicture) {
+TEST(Report, ContainsEveryRunOnceAndEveryPicture) {
     const Matrix matrix = full_matrix();
     const auto results = results_for(matrix, 1.0);
     ASSERT_EQ(results.size(), matrix.run_count());
@@ -49,7 +49,7 @@ TEST(Report, HoldsEveryRunOnceAndEveryPicture) {
     EXPECT_THAT(text, HasSubstr("(pictures/dynamic_0.05_inverse_sensor_model_3_cells_south_west.png)"));
 }
 
-TEST(Report, ItsSummaryIsTheMeanOverTheStartsWithoutNoise) {
+TEST(Report, SummaryIsTheMeanOverStartsWithoutNoise) {
     Matrix matrix = quick_matrix();
     matrix.starts = full_matrix().starts;
     matrix.cell_sizes = {0.1};
@@ -64,7 +64,7 @@ TEST(Report, ItsSummaryIsTheMeanOverTheStartsWithoutNoise) {
                 HasSubstr("| static | 0.1 m | inverse_sensor_model | 0.001 | 0.500 |"));
 }
 
-TEST(Report, DoesNotDependOnHowLongItTook) {
+TEST(Report, IsIndependentOfTimes) {
     const Matrix matrix = full_matrix();
     EXPECT_EQ(to_html(report_of(matrix, results_for(matrix, 1.0)), ""),
               to_html(report_of(matrix, results_for(matrix, 2.0)), ""));

@@ -5,24 +5,24 @@
 namespace scanloom::lab {
 namespace {
 
-const Rows kTruth{"##########", //
-                  "#........#", //
-                  "#........#", //
-                  "#........#", //
-                  "#........#", //
-                  "##########"};
+const Rows kGroundTruth{"##########", //
+                        "#........#", //
+                        "#........#", //
+                        "#........#", //
+                        "#........#", //
+                        "##########"};
 const Rows kAll(6, "xxxxxxxxxx");
 const Rows kNone(6, "          ");
 
 Scores scores_of(const Rows& map, const Rows& seen = kAll, const Rows& walked = kNone) {
-    return score(map_of(map), truth_cells_of(kTruth), mask_of(seen), mask_of(walked));
+    return score(map_of(map), truth_cells_of(kGroundTruth), mask_of(seen), mask_of(walked));
 }
 
-TEST(Scoring, AMapThatIsTheTruthIsPerfect) { EXPECT_EQ(scores_of(kTruth), (Scores{1.0, 1.0, 1.0, 1.0, 1.0, 28, 0})); }
+TEST(Scoring, GroundTruthMapScoresOne) { EXPECT_EQ(scores_of(kGroundTruth), (Scores{1.0, 1.0, 1.0, 1.0, 1.0, 28, 0})); }
 
-TEST(Scoring, AnEmptyMapHasNothingRight) { EXPECT_EQ(scores_of(kNone), (Scores{0, 0, 0, 0, 0, 0, 0})); }
+TEST(Scoring, EmptyMapScoresZero) { EXPECT_EQ(scores_of(kNone), (Scores{0, 0, 0, 0, 0, 0, 0})); }
 
-TEST(Scoring, AnInvertedMapHasOnlyWhatTouchesRight) {
+TEST(Scoring, InvertedMapMatchesOnlyNearBorders) {
     const auto scores = scores_of({"..........", //
                                    ".########.", //
                                    ".########.", //
@@ -34,7 +34,7 @@ TEST(Scoring, AnInvertedMapHasOnlyWhatTouchesRight) {
     EXPECT_EQ(scores.free_recall, 0.0);
 }
 
-TEST(Scoring, ACellBesideIsRightWithinTheToleranceButNotExactly) {
+TEST(Scoring, AdjacentCellMatchesWithinToleranceButNotExactly) {
     const auto scores = scores_of({"          ", //
                                    " ######## ", //
                                    " #......# ", //
@@ -45,11 +45,11 @@ TEST(Scoring, ACellBesideIsRightWithinTheToleranceButNotExactly) {
     EXPECT_EQ(scores.recall, 1.0);
     EXPECT_EQ(scores.iou, 1.0);
     EXPECT_EQ(scores.iou_exact, 0.0);
-    EXPECT_EQ(scores.free_recall, 1.0) << "what touches a wall is not asked for";
+    EXPECT_EQ(scores.free_recall, 1.0) << "cells next to a wall are not required";
 }
 
-TEST(Scoring, WhatIsFarFromEverySolidCountsAgainstPrecision) {
-    Rows map = kTruth;
+TEST(Scoring, CellsFarFromSolidsReducePrecision) {
+    Rows map = kGroundTruth;
     map[2] = "#..##....#";
     const auto scores = scores_of(map);
     EXPECT_DOUBLE_EQ(scores.precision, 28.0 / 30.0);
@@ -58,10 +58,10 @@ TEST(Scoring, WhatIsFarFromEverySolidCountsAgainstPrecision) {
     EXPECT_DOUBLE_EQ(scores.iou_exact, 28.0 / 30.0);
     EXPECT_DOUBLE_EQ(scores.free_recall, 10.0 / 12.0);
     EXPECT_EQ(scores.occupied, 30U);
-    EXPECT_EQ(scores.residue, 0U) << "nobody walked there";
+    EXPECT_EQ(scores.residue, 0U) << "no walker was there";
 }
 
-TEST(Scoring, WhatIsClaimedInsideASolidWhereNobodyCouldLookIsNeitherRightNorWrongExactly) {
+TEST(Scoring, ExcludesUnobservableCellsInsideSolids) {
     const Rows truth{"       ", "       ", "#######", "#######", "#######"};
     const Rows seen{"xxxxxxx", "xxxxxxx", "xxxxxxx", "       ", "       "};
     const Rows walked(5, "       ");
@@ -73,8 +73,8 @@ TEST(Scoring, WhatIsClaimedInsideASolidWhereNobodyCouldLookIsNeitherRightNorWron
     EXPECT_DOUBLE_EQ(scores_with("###    ", "#######").iou_exact, 3.0 / 8.0);
 }
 
-TEST(Scoring, NoIouExceedsPrecisionOrRecall) {
-    Rows map = kTruth;
+TEST(Scoring, IouDoesNotExceedPrecisionOrRecall) {
+    Rows map = kGroundTruth;
     map[2] = "#..##....#";
     map[5] = "          ";
     const auto scores = scores_of(map);
@@ -84,15 +84,15 @@ TEST(Scoring, NoIouExceedsPrecisionOrRecall) {
     EXPECT_LT(scores.iou, std::min(scores.precision, scores.recall));
 }
 
-TEST(Scoring, ResidueIsWhatIsLeftWhereAWalkerWasAndNoSolidIs) {
-    Rows map = kTruth;
+TEST(Scoring, ResidueCountsOccupiedCellsOnAWalkersTrack) {
+    Rows map = kGroundTruth;
     map[2] = "#..##.#..#";
     Rows walked = kNone;
-    walked[2] = "xxxx      "; // past the wall, which is no residue
+    walked[2] = "xxxx      "; // beyond the wall, which is not residue
     EXPECT_EQ(scores_of(map, kAll, walked).residue, 1U);
 }
 
-TEST(Scoring, OnlyWhatCouldBeSeenIsAskedFor) {
+TEST(Scoring, RecallCountsOnlyVisibleCells) {
     Rows seen = kNone;
     seen[5] = "xxxxx     ";
     seen[3] = "xxxx      ";
@@ -104,13 +104,13 @@ TEST(Scoring, OnlyWhatCouldBeSeenIsAskedFor) {
                                    "##        "},
                                   seen);
     EXPECT_EQ(scores.precision, 1.0);
-    EXPECT_DOUBLE_EQ(scores.recall, 3.0 / 6.0) << "three of five below, none of one on the left";
+    EXPECT_DOUBLE_EQ(scores.recall, 3.0 / 6.0) << "three of five cells below and none on the left";
     EXPECT_DOUBLE_EQ(scores.iou, 0.5);
     EXPECT_DOUBLE_EQ(scores.iou_exact, 2.0 / 6.0);
     EXPECT_DOUBLE_EQ(scores.free_recall, 2.0 / 2.0);
 }
 
-TEST(Scoring, WallsBeyondTheRoomCountAgainstPrecision) {
+TEST(Scoring, WallsOutsideTheRoomReducePrecision) {
     const Rows truth{"      ", "      ", "      ", "###   "};
     const Rows map{"   ## ", "      ", "      ", "###   "};
     const Rows none(4, "      ");

@@ -5,7 +5,7 @@
 namespace scanloom::lab {
 namespace {
 
-TEST(Standard, IsTheRoomWithWhatAPathThroughItSees) {
+TEST(Standard, IsTheRoomWithCellsVisibleFromThePath) {
     const std::vector<Pose2> path{{-3.5, -3.8, 0.0}};
     const auto standard = make_standard(path, 0.1);
     const auto count = [&](robot::Truth truth, bool is_seen) {
@@ -19,17 +19,17 @@ TEST(Standard, IsTheRoomWithWhatAPathThroughItSees) {
     EXPECT_GT(count(robot::Truth::kFree, false), 5000U);
     EXPECT_GT(count(robot::Truth::kOccupied, true), 40U);
     EXPECT_EQ(count(robot::Truth::kOutside, true), 0U);
-    EXPECT_EQ(standard.truth.at({-69, 0}), robot::Truth::kOutside) << "two metres beyond the wall";
+    EXPECT_EQ(standard.truth.at({-69, 0}), robot::Truth::kOutside) << "2 m outside the wall";
 }
 
-TEST(WalkedCells, AreWhereAWalkerWasButNotWhereItStandsInTheEnd) {
+TEST(WalkedCells, AreOnTheWalkersTrackExceptAtItsEnd) {
     Recording recording;
     recording.walkers = {{{{1.05, 1.05}, 0.25}}, {{{2.05, 1.05}, 0.25}}, {{{3.05, 1.05}, 0.25}}};
     const mapping::MapConfig config{.cell_size = 0.1, .obstacle_thickness = 0.2};
     const auto walked = walked_cells(recording, config, {0, 0, 40, 20});
     EXPECT_TRUE(walked.at({10, 10}));
     EXPECT_TRUE(walked.at({20, 10}));
-    EXPECT_TRUE(walked.at({10, 14})) << "0.25 m of body, 0.1 m of marked band, 0.1 m of tolerance";
+    EXPECT_TRUE(walked.at({10, 14})) << "0.25 m body, 0.1 m marked band and 0.1 m tolerance";
     EXPECT_FALSE(walked.at({10, 15}));
     EXPECT_FALSE(walked.at({30, 10}));
     EXPECT_FALSE(walked.at({0, 0}));

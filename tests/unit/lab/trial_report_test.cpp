@@ -18,18 +18,18 @@ std::string text_of(const TrialResults& results) {
     return to_markdown(document);
 }
 
-TEST(TrialReport, ItsTablesCountVerdictsAndHaveTheWorstOfTheRightOnes) {
+TEST(TrialReport, TablesCountVerdictsAndShowTheLargestRightErrors) {
     const auto text = text_of(drawn_trial_results());
     EXPECT_THAT(text,
                 HasSubstr("| world | scenes | right | wrong | ambiguous | undetermined | worst mm | worst deg |"));
     EXPECT_THAT(text, HasSubstr("| room | 2 | 1 | 0 | 1 | 0 | 4.2 | 0.11 |"));
-    EXPECT_THAT(text, HasSubstr("| office | 1 | 1 | 0 | 0 | 0 | 1 | - | - |")) << "what is nothing is a dash";
+    EXPECT_THAT(text, HasSubstr("| office | 1 | 1 | 0 | 0 | 0 | 1 | - | - |")) << "an absent value is a dash";
     EXPECT_THAT(text, HasSubstr("| office | 4 | 3 | 1 | 2 | 0 | 0 | 4.2 | 0.11 |"));
     EXPECT_THAT(text, HasSubstr("| room | office | 4 | 3 | 1 | 1 | 1 |"));
     EXPECT_THAT(text, HasSubstr("within 2 cm and 0.5 degrees"));
 }
 
-TEST(TrialReport, EachWrongOneIsNamed) {
+TEST(TrialReport, EachWrongTrialIsListed) {
     const auto results = drawn_trial_results();
     EXPECT_THAT(alignment_trial_findings(results), ElementsAre("1 of 2 are right, and no clear one is wrong."));
     EXPECT_THAT(locating_trial_findings(results),
@@ -45,7 +45,7 @@ TEST(TrialReport, EachWrongOneIsNamed) {
                             "Clear, though it is none: room in a map of the office of 4 captures, scene 703."));
 }
 
-TEST(TrialReport, HasAPictureWhereOneWasDrawn) {
+TEST(TrialReport, ContainsThePictureIfDrawn) {
     auto results = drawn_trial_results();
     EXPECT_THAT(text_of(results), HasSubstr("![a view in a map of the office of 4 captures, scene 701: off by 4.2 mm "
                                             "and 0.11 degrees](pictures/l.png)"));
@@ -53,7 +53,7 @@ TEST(TrialReport, HasAPictureWhereOneWasDrawn) {
     EXPECT_THAT(text_of(results), Not(HasSubstr("![")));
 }
 
-TEST(TrialReport, TimesStandByThemselves) {
+TEST(TrialReport, TimesAreASeparateTable) {
     auto results = drawn_trial_results();
     Document times;
     add_trial_times(times, results);

@@ -13,7 +13,7 @@
 namespace scanloom::lab {
 namespace {
 
-/// 2 x 1.2 m inside walls of 0.2 m, with a pillar.
+/// Returns a corridor of 2 x 1.2 m with walls of 0.2 m and a pillar.
 robot::World corridor() {
     return robot::make_world("corridor",
                              {{-0.2, -0.2, 2.2, 0.0},
@@ -44,7 +44,7 @@ std::string seen_from(const Pose2& pose, const Sensor& sensor) {
     return text;
 }
 
-TEST(VisibleCells, AreThoseInTheLineOfSight) {
+TEST(VisibleCells, AreInTheLineOfSight) {
     EXPECT_EQ(seen_from({0.3, 0.61, 0.0}, laser(-kPi, kPi, 5.0)), "--xxxxxxxxxx--\n"
                                                                   "-xxxxxxxxx----\n"
                                                                   "-xxxxxx-------\n"
@@ -55,7 +55,7 @@ TEST(VisibleCells, AreThoseInTheLineOfSight) {
                                                                   "--xxxxxxxxx---\n");
 }
 
-TEST(VisibleCells, LieWithinTheLasersRangeAndFieldOfView) {
+TEST(VisibleCells, AreWithinRangeAndFieldOfView) {
     EXPECT_EQ(seen_from({0.39, 0.61, 0.0}, laser(-kPi / 2, kPi / 2, 0.6)), "----x---------\n"
                                                                            "----xx--------\n"
                                                                            "----xxx-------\n"
@@ -66,7 +66,7 @@ TEST(VisibleCells, LieWithinTheLasersRangeAndFieldOfView) {
                                                                            "--------------\n");
 }
 
-TEST(VisibleCells, AgreeWithCastingARayToEachFreeCell) {
+TEST(VisibleCells, MatchRayCastingToEachFreeCell) {
     const robot::World room = robot::make_room();
     const auto truth = robot::truth_of(room, 0.25);
     const std::vector<Pose2> path{{-3.9, -3.1, 0.4}, {3.3, 3.7, -2.0}};

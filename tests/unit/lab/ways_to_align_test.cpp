@@ -20,7 +20,7 @@ protected:
         return see_landmarks(points_in_map(capture.scans, capture.sensor)).value();
     }
 
-    /// As `second` would be were its lidar moved within the first's map.
+    /// Returns the landmarks as observed by a second lidar that is moved within the first lidar's map.
     static SeenLandmarks moved(SeenLandmarks seen, const Pose2& by) {
         for (auto& landmark : seen.survey.landmarks) landmark.position = transform(by, landmark.position);
         return seen;
@@ -35,7 +35,7 @@ WaysToAlign ways_of(const SeenLandmarks& first, const SeenLandmarks& second) {
     return align_both_ways({first, second, kPlace, kPlace}, matches).value();
 }
 
-TEST_F(WaysToAlignTest, OfOnePlaceWhoseDoorMovedLandmarksAndSurfacesTellTheSame) {
+TEST_F(WaysToAlignTest, LandmarksAndSurfacesAgreeIfADoorMoved) {
     const auto [by_landmarks, by_surfaces] = ways_of(seen(Door::kClosed), seen(Door::kOpen));
     ASSERT_TRUE(by_landmarks.fit) << by_landmarks.refusal;
     EXPECT_EQ(by_landmarks.refusal, "");
@@ -48,16 +48,16 @@ TEST_F(WaysToAlignTest, OfOnePlaceWhoseDoorMovedLandmarksAndSurfacesTellTheSame)
     EXPECT_LT(by_surfaces.error.degrees(), 0.5);
 }
 
-TEST_F(WaysToAlignTest, AreOffByWhereTheSecondLidarWouldBe) {
+TEST_F(WaysToAlignTest, ErrorIsTheOffsetOfTheSecondLidar) {
     const auto first = seen(Door::kClosed);
-    const Pose2 nudge{0.03, -0.04, 0.0}; // and the transform takes it back
+    const Pose2 nudge{0.03, -0.04, 0.0}; // the transform reverts this offset
     const auto straight = ways_of(first, moved(first, nudge)).by_landmarks;
     ASSERT_TRUE(straight.fit);
     EXPECT_NEAR(straight.fit->error.metres, 0.05, 1e-9);
     EXPECT_NEAR(straight.fit->error.radians, 0.0, 1e-9);
     EXPECT_NEAR(straight.fit->rms, 0.0, 1e-9);
 
-    // Around the lidar: it stays where it is, however far from the map's origin.
+    // Around the lidar: the lidar keeps its place, at any distance from the map's origin.
     const Pose2 turn = compose(kPlace, compose({0.0, 0.0, 0.01}, inverse(kPlace)));
     const auto turned = ways_of(first, moved(first, turn)).by_landmarks;
     ASSERT_TRUE(turned.fit);
@@ -65,7 +65,7 @@ TEST_F(WaysToAlignTest, AreOffByWhereTheSecondLidarWouldBe) {
     EXPECT_NEAR(turned.fit->error.radians, 0.01, 1e-9);
 }
 
-TEST_F(WaysToAlignTest, PairsThatDisagreeTakeNoPart) {
+TEST_F(WaysToAlignTest, DisagreeingPairsAreExcluded) {
     const auto first = seen(Door::kClosed);
     auto second = first;
     second.survey.landmarks[2].position.x += 0.2;
@@ -75,7 +75,7 @@ TEST_F(WaysToAlignTest, PairsThatDisagreeTakeNoPart) {
     EXPECT_LT(by_landmarks.fit->error.metres, 1e-6);
 }
 
-TEST_F(WaysToAlignTest, TooFewPairsAreARefusalAndTheSurfacesSpeakAllTheSame) {
+TEST_F(WaysToAlignTest, TooFewPairsAreRefusedWhileSurfacesAlign) {
     const auto first = seen(Door::kClosed);
     const auto second = seen(Door::kOpen, {2.6, 1.8, 0.3});
     const auto ways = align_both_ways({first, second, kPlace, {2.6, 1.8, 0.3}}, {}).value();

@@ -7,7 +7,7 @@
 namespace scanloom::lab {
 namespace {
 
-/// A robot at (0.05, 0.05) that looks one way and sees something at a metre, three times.
+/// A robot at (0.05, 0.05) with one beam detects an object at a distance of 1 m, three times.
 Recording one_beam(double range_max = 5.0) {
     Recording recording;
     recording.laser.angles = UniformAngles{0.0, 0.1, 1};
@@ -29,28 +29,28 @@ SessionOptions cells_of(double size) {
     return options;
 }
 
-TEST(Weaving, CountsNothingButTheScans) {
+TEST(Weaving, CountsTheTimeOfScansOnly) {
     double clock = 0.0;
-    std::vector<std::size_t> told;
+    std::vector<std::size_t> scan_counts;
     const auto seconds = weave(
         one_beam(), cells_of(0.1), [&] { return clock += 1.0; },
         [&](std::size_t scans, mapping::Projection&) {
             clock += 100.0;
-            told.push_back(scans);
+            scan_counts.push_back(scans);
         });
     ASSERT_TRUE(seconds);
     EXPECT_EQ(*seconds, (std::vector<double>{1.0, 1.0, 1.0}));
-    EXPECT_EQ(told, (std::vector<std::size_t>{1, 2, 3}));
+    EXPECT_EQ(scan_counts, (std::vector<std::size_t>{1, 2, 3}));
 }
 
-TEST(Weaving, SettingsThatNoSessionTakesAreRefused) {
-    const auto woven = weave(
+TEST(Weaving, InvalidSettingsAreRefused) {
+    const auto refused = weave(
         one_beam(), cells_of(0.0), [] { return 0.0; }, [](std::size_t, mapping::Projection&) {});
-    ASSERT_FALSE(woven);
-    EXPECT_EQ(woven.error().code, Errc::kInvalidField);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, Errc::kInvalidField);
 }
 
-TEST(MapCells, AreThoseOfTheMapInTheBox) {
+TEST(MapCells, AreTheMapsCellsInTheBox) {
     std::optional<mapping::Snapshot> end;
     const auto keep = [&](std::size_t, mapping::Projection& projection) { end = projection.snapshot(); };
     ASSERT_TRUE(weave(
@@ -65,7 +65,7 @@ TEST(MapCells, AreThoseOfTheMapInTheBox) {
     EXPECT_EQ(touched_cells(occupancy_of(*end, {0, 0, 5, 1})), 5U);
 }
 
-TEST(MapCells, AreOccupiedFreeOrNeitherByTheThresholdsOfTheClasses) {
+TEST(MapCells, AreClassifiedByTheClassThresholds) {
     const auto l = [](double p) { return mapping::to_fixed(mapping::log_odds_of(p)); };
     LogOddsGrid occupancy({0, 0, 5, 1}, mapping::kUnknownLogOdds);
     occupancy.values = {l(0.66), l(0.64), l(0.36), l(0.34), mapping::kUnknownLogOdds};

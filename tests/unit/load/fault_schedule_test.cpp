@@ -10,7 +10,7 @@ namespace {
 
 using testing::HasSubstr;
 
-TEST(Faults, AreReadFromKindsWithTheirMeans) {
+TEST(Faults, ParsesKindsWithTheirMeans) {
     const auto means = parse_faults("cut=20,stall=0.5");
     ASSERT_TRUE(means) << means.error().message;
     EXPECT_EQ(*means, (FaultMeans{20.0, 0.0, 0.5}));
@@ -18,7 +18,7 @@ TEST(Faults, AreReadFromKindsWithTheirMeans) {
     EXPECT_EQ(*parse_faults("half-open=60"), (FaultMeans{0.0, 60.0, 0.0}));
 }
 
-TEST(Faults, MistakesAreToldWithHowToWriteThem) {
+TEST(Faults, InvalidTextIsRefusedWithAnExample) {
     for (const auto* text : {"cut", "cut=", "cut=x", "cut=5s", "crash=5", ",", "cut=5;stall=3"}) {
         const auto means = parse_faults(text);
         ASSERT_FALSE(means) << text;
@@ -29,9 +29,9 @@ TEST(Faults, MistakesAreToldWithHowToWriteThem) {
     EXPECT_FALSE(parse_faults("cut=-1"));
 }
 
-TEST(FaultSchedule, KindsComeAsOftenAsTheirMeansSayOnAnyRobot) {
+TEST(FaultSchedule, KindsOccurAtTheirMeanRateOnAllRobots) {
     constexpr std::uint32_t kRobots = 10;
-    FaultSchedule faults({20.0, 40.0, 0.0}, kRobots, 5); // of all robots together 0.5 and 0.25 a second
+    FaultSchedule faults({20.0, 40.0, 0.0}, kRobots, 5); // together 0.5 and 0.25 faults per second for all robots
     std::map<Fault, int> kinds;
     std::map<std::uint32_t, int> robots;
     Micros time = 0;
@@ -49,7 +49,7 @@ TEST(FaultSchedule, KindsComeAsOftenAsTheirMeansSayOnAnyRobot) {
     for (const auto& [robot, times] : robots) EXPECT_NEAR(times, 3000, 300) << robot;
 }
 
-TEST(FaultSchedule, TheSameSeedGivesTheSameFaults) {
+TEST(FaultSchedule, EqualSeedsGiveEqualFaults) {
     FaultSchedule one({1.0, 2.0, 3.0}, 100, 9);
     FaultSchedule same({1.0, 2.0, 3.0}, 100, 9);
     FaultSchedule other({1.0, 2.0, 3.0}, 100, 10);

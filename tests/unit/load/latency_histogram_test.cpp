@@ -11,7 +11,7 @@
 namespace scanloom::load {
 namespace {
 
-/// The same by sorting: the least sample that at least `percent` of all do not exceed.
+/// Computes the percentile by sorting: the smallest sample that at least `percent` of all samples do not exceed.
 Micros sorted_percentile(std::vector<Micros> samples, double percent) {
     std::ranges::sort(samples);
     const auto rank = static_cast<std::size_t>(std::ceil(percent / 100.0 * static_cast<double>(samples.size())));
@@ -33,7 +33,7 @@ std::unique_ptr<LatencyHistogram> histogram_of(const std::vector<Micros>& sample
     return histogram;
 }
 
-TEST(LatencyHistogram, PercentilesAreThoseOfTheSortedSamplesToThreeDigits) {
+TEST(LatencyHistogram, PercentilesMatchSortedSamplesToThreeDigits) {
     for (unsigned seed = 1; seed <= 5; ++seed) {
         const auto samples = samples_over_all_scales(seed, 10'000);
         const auto histogram = histogram_of(samples);
@@ -48,13 +48,13 @@ TEST(LatencyHistogram, PercentilesAreThoseOfTheSortedSamplesToThreeDigits) {
     }
 }
 
-TEST(LatencyHistogram, EachMicrosecondBelowTwoMillisecondsCountsForItself) {
+TEST(LatencyHistogram, ResolutionIsOneMicrosecondBelowTwoMilliseconds) {
     auto histogram = std::make_unique<LatencyHistogram>();
     for (Micros sample = 1; sample <= 2000; ++sample) histogram->record(sample);
     for (int percent = 1; percent <= 100; ++percent) EXPECT_EQ(histogram->percentile(percent), 20 * percent);
 }
 
-TEST(LatencyHistogram, NoneOneAndWhatIsOutOfRange) {
+TEST(LatencyHistogram, HandlesNoSampleOneSampleAndOutOfRangeSamples) {
     auto histogram = std::make_unique<LatencyHistogram>();
     EXPECT_EQ(histogram->percentile(99), 0);
     histogram->record(123'456);
@@ -67,7 +67,7 @@ TEST(LatencyHistogram, NoneOneAndWhatIsOutOfRange) {
     EXPECT_EQ(histogram->percentile(100), LatencyHistogram::kMax);
 }
 
-TEST(LatencyHistogram, ThoseOfTwoThreadsAddUpAndCanBeTakenApart) {
+TEST(LatencyHistogram, HistogramsCanBeAddedAndSubtracted) {
     const auto first = samples_over_all_scales(6, 3000);
     const auto second = samples_over_all_scales(7, 2000);
     auto both = first;

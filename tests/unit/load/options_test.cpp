@@ -22,13 +22,13 @@ std::variant<LoadOptions, Leave> parse(const std::vector<const char*>& words) {
     return parse_options(static_cast<int>(argv.size()), argv.data());
 }
 
-TEST(LoadOptions, EveryRobotHasASessionUnlessToldOtherwise) {
+TEST(LoadOptions, EveryRobotHasItsOwnSessionByDefault) {
     EXPECT_EQ(std::get<LoadOptions>(parse({})).sessions, 100U);
     EXPECT_EQ(std::get<LoadOptions>(parse({"--robots", "7"})).sessions, 7U);
     EXPECT_EQ(std::get<LoadOptions>(parse({"--robots", "7", "--sessions", "2"})).sessions, 2U);
 }
 
-TEST(LoadOptions, AreReadAsTheyAreMeant) {
+TEST(LoadOptions, ParsesAllOptions) {
     const auto options = std::get<LoadOptions>(
         parse({"--server", "a:1", "--http", "b:2", "--rate", "0", "--batch", "5", "--faults", "cut=3,stall=4",
                "--verify", "counts", "--viewers", "2", "--tls-ca", "/dev/null", "--keep"}));
@@ -41,7 +41,7 @@ TEST(LoadOptions, AreReadAsTheyAreMeant) {
     EXPECT_TRUE(options.tls && options.keep && !options.replace);
 }
 
-TEST(LoadOptions, EachMistakeIsOneLineAndAUsageError) {
+TEST(LoadOptions, InvalidOptionIsAOneLineUsageError) {
     const std::vector<std::pair<std::vector<const char*>, const char*>> mistakes{
         {{"--robots", "0"}, "--robots"},
         {{"--robots", "1.5"}, "--robots"},
@@ -75,18 +75,18 @@ TEST(LoadOptions, HelpNamesEveryOption) {
     }
 }
 
-TEST(DriveCourse, TheSameSeedGivesTheSameScansAndAnotherOneOthers) {
+TEST(DriveCourse, EqualSeedsGiveEqualScansAndOthersDiffer) {
     auto options = std::get<LoadOptions>(parse({"--duration", "2", "--world", "room"}));
     const auto course = drive_course(options);
     ASSERT_TRUE(course);
-    EXPECT_EQ(course->scans.size(), 20U); // no more than are sent
+    EXPECT_EQ(course->scans.size(), 20U); // not more scans than are sent
     EXPECT_EQ(course->beams, 684U);
     EXPECT_EQ(drive_course(options)->scans.back().bytes(), course->scans.back().bytes());
     options.seed = 2;
     EXPECT_NE(drive_course(options)->scans.back().bytes(), course->scans.back().bytes());
 }
 
-TEST(DriveCourse, ABatchThatFitsNoFrameIsRefused) {
+TEST(DriveCourse, RefusesABatchThatExceedsAFrame) {
     const auto options = std::get<LoadOptions>(parse({"--batch", "1024", "--laser", "wide", "--world", "room"}));
     const auto course = drive_course(options);
     ASSERT_FALSE(course);
@@ -94,7 +94,7 @@ TEST(DriveCourse, ABatchThatFitsNoFrameIsRefused) {
     EXPECT_THAT(course.error().message, HasSubstr("--batch 1024"));
 }
 
-TEST(SpreadOver, SessionsGetRobotsThatBeginAtTheSamePlacesOfTheCourse) {
+TEST(SpreadOver, EverySessionGetsEqualStartPositions) {
     const auto plans = spread_over({"a", "b"}, 6, 600);
     std::vector<std::size_t> of_a;
     std::vector<std::size_t> of_b;

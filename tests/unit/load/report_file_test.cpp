@@ -31,7 +31,7 @@ protected:
     fs::path file_ = place_.path() / "report.json";
 };
 
-TEST_F(ReportFileTest, AnEarlierReportStaysUntilTheNewOneIsWhole) {
+TEST_F(ReportFileTest, EarlierReportStaysUntilTheNewOneIsComplete) {
     put("earlier");
     auto prepared = ReportFile::prepare(file_);
     ASSERT_TRUE(prepared);
@@ -41,14 +41,14 @@ TEST_F(ReportFileTest, AnEarlierReportStaysUntilTheNewOneIsWhole) {
     EXPECT_EQ(files(), 1);
 }
 
-TEST_F(ReportFileTest, OfARunWithoutAReportNothingIsLeft) {
+TEST_F(ReportFileTest, RunWithoutReportLeavesNoFile) {
     put("earlier");
     ASSERT_TRUE(ReportFile::prepare(file_));
     EXPECT_EQ(text(), "earlier");
     EXPECT_EQ(files(), 1);
 }
 
-TEST_F(ReportFileTest, WhatCannotBeWrittenIsToldBeforehand) {
+TEST_F(ReportFileTest, UnwritablePathIsRefusedInAdvance) {
     const auto nowhere = ReportFile::prepare(place_.path() / "missing" / "report.json");
     ASSERT_FALSE(nowhere);
     EXPECT_THAT(nowhere.error().message, testing::HasSubstr("report.json.part cannot be written: No such file"));
@@ -57,7 +57,7 @@ TEST_F(ReportFileTest, WhatCannotBeWrittenIsToldBeforehand) {
     EXPECT_THAT(directory.error().message, testing::HasSubstr("cannot be written: Is a directory"));
 }
 
-TEST_F(ReportFileTest, WhatIsNoRegularFileIsWrittenAsItIs) {
+TEST_F(ReportFileTest, SpecialFileIsWrittenDirectly) {
     auto full = ReportFile::prepare("/dev/full");
     ASSERT_TRUE(full);
     const auto written = full->write("newer");
@@ -65,7 +65,7 @@ TEST_F(ReportFileTest, WhatIsNoRegularFileIsWrittenAsItIs) {
     EXPECT_THAT(written.error().message, testing::HasSubstr("/dev/full cannot be written: No space left"));
 }
 
-TEST_F(ReportFileTest, ALinkStaysOne) {
+TEST_F(ReportFileTest, SymlinkIsKept) {
     put("earlier");
     const auto link = place_.path() / "newest";
     fs::create_symlink(file_, link);

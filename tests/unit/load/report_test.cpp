@@ -15,7 +15,7 @@ using testing::Each;
 using testing::HasSubstr;
 using testing::Not;
 
-TEST(Words, FiguresAsPeopleReadThem) {
+TEST(Words, FormatsNumbersForReaders) {
     EXPECT_EQ(grouped(0), "0");
     EXPECT_EQ(grouped(999), "999");
     EXPECT_EQ(grouped(1'000), "1,000");
@@ -59,7 +59,7 @@ std::unique_ptr<RunReport> report() {
     return made;
 }
 
-TEST(Report, TellsWhatEachPartyNeededAndEndsWithTheVerdict) {
+TEST(Report, ContainsTheUseOfEachPartyAndTheVerdict) {
     const auto text = to_text(*report());
     EXPECT_THAT(text, HasSubstr("20 robots at 10 scans/s for 30 s into 20 sessions"));
     EXPECT_THAT(text, HasSubstr("6,000 sent, 6,000 acknowledged: 200/s of 200/s intended"));
@@ -71,7 +71,7 @@ TEST(Report, TellsWhatEachPartyNeededAndEndsWithTheVerdict) {
     EXPECT_THAT(text, testing::EndsWith("\nnothing lost\n"));
 }
 
-TEST(Report, AGeneratorThatFellBehindIsToldApartFromASlowServer) {
+TEST(Report, DistinguishesASlowGeneratorFromASlowServer) {
     auto late = report();
     late->fleet.own_delay.record(kOwnDelayFine * 3, 1000);
     EXPECT_THAT(to_text(*late), HasSubstr("IT FELL BEHIND"));
@@ -80,7 +80,7 @@ TEST(Report, AGeneratorThatFellBehindIsToldApartFromASlowServer) {
     EXPECT_THAT(to_text(*slow_server), HasSubstr("it kept them"));
 }
 
-TEST(Report, FaultsViewersAndTilesAreToldWhereThereAreSome) {
+TEST(Report, ContainsFaultsViewersAndTilesIfUsed) {
     auto made = report();
     made->settings.viewers = 3;
     made->settings.tile_readers = 1;
@@ -97,7 +97,7 @@ TEST(Report, FaultsViewersAndTilesAreToldWhereThereAreSome) {
     EXPECT_THAT(text, HasSubstr("faults on demand: 5 cut, 2 stall; 6 reconnects, 17 scans sent again"));
 }
 
-TEST(Report, ViewersThatWereNotLetInAreNotAveragedIn) {
+TEST(Report, AveragesExcludeRefusedViewers) {
     auto made = report();
     made->settings.viewers = 600;
     made->audience.viewers_let_in = 512;
@@ -115,7 +115,7 @@ TEST(Report, ViewersThatWereNotLetInAreNotAveragedIn) {
     EXPECT_THAT(to_text(*made), HasSubstr("0 of 600 watched: 0 events, 0.0/s each"));
 }
 
-TEST(Report, OfAServerThatWasStartedAnewTheCpuIsLeftOut) {
+TEST(Report, OmitsTheCpuOfARestartedServer) {
     auto made = report();
     made->server->cpu_seconds.reset();
     EXPECT_THAT(to_text(*made),
@@ -125,7 +125,7 @@ TEST(Report, OfAServerThatWasStartedAnewTheCpuIsLeftOut) {
     EXPECT_TRUE(server.contains("resident_bytes"));
 }
 
-TEST(Report, WithoutIntendedTimesThereAreNoLatenciesFromThem) {
+TEST(Report, OmitsLatenciesWithoutIntendedTimes) {
     auto made = report();
     EXPECT_TRUE(boost::json::parse(to_json(*made)).as_object().contains("own_delay"));
     made->settings.rate = 0.0;
@@ -137,7 +137,7 @@ TEST(Report, WithoutIntendedTimesThereAreNoLatenciesFromThem) {
     EXPECT_THAT(to_text(*made), Not(HasSubstr("intended")));
 }
 
-TEST(Report, JsonHasNumbersAsPeopleWriteThem) {
+TEST(Report, JsonContainsShortDecimalNumbers) {
     auto made = report();
     made->own.cpu_seconds = 0.0015; // 0.00005 cores
     const auto json = to_json(*made);
@@ -147,7 +147,7 @@ TEST(Report, JsonHasNumbersAsPeopleWriteThem) {
     EXPECT_THAT(json, HasSubstr("\"p50_ms\":4.2,"));
 }
 
-TEST(Report, JsonHasTheSameFigures) {
+TEST(Report, JsonContainsTheSameFigures) {
     auto made = report();
     made->evidence.contradictions = {"a \"quoted\" one"};
     const auto json = boost::json::parse(to_json(*made));
@@ -166,9 +166,9 @@ TEST(Report, JsonHasTheSameFigures) {
     EXPECT_TRUE(boost::json::parse(to_json(*made)).at("server").as_object().empty());
 }
 
-TEST(Report, TellsProcessorsOverTheTimeForWhichTheyWereWatched) {
+TEST(Report, CoresAreAveragedOverTheObservedTime) {
     auto made = report();
-    made->seconds = 0.5; // the last ack came early, and then none for long
+    made->seconds = 0.5; // the last acknowledgement came early, and then none for a long time
     const auto json = boost::json::parse(to_json(*made));
     EXPECT_EQ(json.at("generator").at("cores").to_number<double>(), 0.1);
     EXPECT_EQ(json.at("server").at("cores").to_number<double>(), 0.2);
@@ -176,11 +176,11 @@ TEST(Report, TellsProcessorsOverTheTimeForWhichTheyWereWatched) {
     EXPECT_THAT(to_text(*made), HasSubstr("0.20 cores"));
 }
 
-TEST(Words, OfOthersDoNothingToATerminal) {
+TEST(Words, HarmlessRemovesControlCharacters) {
     EXPECT_EQ(harmless("a\x1b[31mred\r\nline\x7f, caf\u00e9"), "a?[31mred??line?, caf\u00e9");
 }
 
-TEST(LiveView, ShowsTheLastSecondNotTheWholeRun) {
+TEST(LiveView, ShowsTheLastSecond) {
     auto before = std::make_unique<Moment>();
     auto now = std::make_unique<Moment>();
     before->at = 10 * kSecond;

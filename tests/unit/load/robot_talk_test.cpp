@@ -21,7 +21,7 @@ constexpr double kRate = 10.0;
 constexpr Micros kPeriod = kSecond / 10;
 constexpr std::size_t kCourseScans = 5;
 
-/// One robot and the words of a server, at times that the test says.
+/// One robot and the messages of a server, at times given by the test.
 class RobotTalkTest : public testing::Test {
 protected:
     RobotTalkTest() { set_up(1); }
@@ -33,8 +33,8 @@ protected:
         talk_ = std::make_unique<RobotTalk>(RobotPlan{0, "load-1-0", "r0", first_scan}, course_, hello_);
     }
 
-    /// What the robot says now.
-    std::vector<wire::Message> said(Micros now) {
+    /// Returns the messages that the robot sends at `now`.
+    std::vector<wire::Message> messages_at(Micros now) {
         std::string bytes;
         talk_->write(bytes, now, *figures_);
         wire::FrameDecoder decoder(wire::kFrameBytesMax);
@@ -48,10 +48,10 @@ protected:
         return messages;
     }
 
-    /// The scans among what it says now.
+    /// Returns the scans that the robot sends at `now`.
     std::vector<Scan> sent(Micros now) {
         std::vector<Scan> scans;
-        for (const auto& message : said(now)) {
+        for (const auto& message : messages_at(now)) {
             const auto* batch = std::get_if<wire::ScanBatch>(&message);
             if (batch) scans.insert(scans.end(), batch->scans.begin(), batch->scans.end());
         }
@@ -66,15 +66,15 @@ protected:
 
     void link(std::uint64_t durable = 0, Micros now = 0, std::uint64_t credit = 1 << 20) {
         talk_->open(now);
-        static_cast<void>(said(now));
-        EXPECT_FALSE(heard(wire::Welcome{"5e55", durable, {}, credit, false}, now));
+        static_cast<void>(messages_at(now));
+        EXPECT_FALSE(receive(wire::Welcome{"5e55", durable, {}, credit, false}, now));
     }
 
-    std::optional<wire::LinkError> heard(const wire::Message& message, Micros now) {
+    std::optional<wire::LinkError> receive(const wire::Message& message, Micros now) {
         return talk_->receive(message, now, *figures_);
     }
     void acknowledge(std::uint64_t seq, Micros now, std::uint64_t credit = 1 << 20) {
-        EXPECT_FALSE(heard(wire::Ack{seq, seq, credit}, now));
+        EXPECT_FALSE(receive(wire::Ack{seq, seq, credit}, now));
     }
 
     std::vector<Scan> scans_;
@@ -84,17 +84,17 @@ protected:
     std::unique_ptr<RobotTalk> talk_;
 };
 
-TEST_F(RobotTalkTest, GreetsDescribesItsLaserAndSendsItsScansRoundAndRound) {
+TEST_F(RobotTalkTest, SendsHelloSensorAndRepeatedScans) {
     talk_->open(0);
     talk_->due(7);
-    auto messages = said(0);
+    auto messages = messages_at(0);
     ASSERT_EQ(messages.size(), 1U);
     EXPECT_EQ(std::get<wire::Hello>(messages[0]).session, "load-1-0");
     EXPECT_EQ(std::get<wire::Hello>(messages[0]).robot, "r0");
-    EXPECT_THAT(said(1), IsEmpty()); // nothing before the welcome
+    EXPECT_THAT(messages_at(1), IsEmpty()); // nothing before the welcome message
 
-    EXPECT_FALSE(heard(wire::Welcome{"5e55", 0, {}, 1 << 20, false}, 2));
-    messages = said(3);
+    EXPECT_FALSE(receive(wire::Welcome{"5e55", 0, {}, 1 << 20, false}, 2));
+    messages = messages_at(3);
     ASSERT_EQ(messages.size(), 8U);
     EXPECT_EQ(std::get<Sensor>(messages[0]), testing_support::small_laser());
     for (std::uint64_t seq = 1; seq <= 7; ++seq) {
@@ -106,7 +106,7 @@ TEST_F(RobotTalkTest, GreetsDescribesItsLaserAndSendsItsScansRoundAndRound) {
     EXPECT_EQ(figures_->scans_sent, 7U);
 }
 
-TEST_F(RobotTalkTest, BeginsWhereItsPlanSays) {
+TEST_F(RobotTalkTest, BeginsAtThePlannedScan) {
     set_up(1, 3);
     link();
     talk_->due(3);
@@ -116,7 +116,7 @@ TEST_F(RobotTalkTest, BeginsWhereItsPlanSays) {
     EXPECT_EQ(scans[2].ranges, scans_[0].ranges);
 }
 
-TEST_F(RobotTalkTest, ScansWaitForTheirBatchAndTheLastOnesGoAlone) {
+TEST_F(RobotTalkTest, ScansAreBatchedExceptTheLastOnes) {
     set_up(3);
     link();
     talk_->due(2);
@@ -128,18 +128,18 @@ TEST_F(RobotTalkTest, ScansWaitForTheirBatchAndTheLastOnesGoAlone) {
     EXPECT_THAT(sent_seqs(0), ElementsAre(7));
 }
 
-TEST_F(RobotTalkTest, NoMoreIsUnderWayThanTheCreditAllows) {
+TEST_F(RobotTalkTest, UnacknowledgedBytesStayWithinTheCredit) {
     link(0, 0, 350);
     talk_->due(10);
     const auto first = sent_seqs(0).size();
-    EXPECT_EQ(first, 2U); // a frame has some 140 bytes
+    EXPECT_EQ(first, 2U); // a frame has about 140 bytes
     acknowledge(1, 1, 350);
     EXPECT_THAT(sent_seqs(1), ElementsAre(3));
     acknowledge(3, 2);
     EXPECT_EQ(sent_seqs(2).size(), 7U);
 }
 
-TEST_F(RobotTalkTest, AfterACutItSendsAgainWhatIsNotDurable) {
+TEST_F(RobotTalkTest, ReconnectResendsScansThatAreNotDurable) {
     link();
     talk_->due(6);
     const auto before = sent(0);
@@ -147,7 +147,7 @@ TEST_F(RobotTalkTest, AfterACutItSendsAgainWhatIsNotDurable) {
     talk_->close(*figures_);
     EXPECT_EQ(figures_->linked, 0U);
 
-    link(4, 10); // two more had arrived
+    link(4, 10); // two more scans had arrived
     EXPECT_EQ(talk_->acknowledged(), 4U);
     const auto again = sent(10);
     ASSERT_EQ(again.size(), 2U);
@@ -162,21 +162,21 @@ TEST_F(RobotTalkTest, AfterACutItSendsAgainWhatIsNotDurable) {
     EXPECT_EQ(figures_->from_intended.count(), 6U);
 }
 
-TEST_F(RobotTalkTest, AServerThatStandsStillIsMeasuredFromWhenScansWereMeantToBeSent) {
+TEST_F(RobotTalkTest, LatencyOfAStalledServerCountsFromTheIntendedTime) {
     link(0, 0, 150); // one frame at a time
     talk_->begin(0);
     talk_->due(1);
     EXPECT_THAT(sent_seqs(0), ElementsAre(1));
     talk_->due(11);
     EXPECT_THAT(sent_seqs(kSecond), IsEmpty());
-    for (std::uint64_t seq = 1; seq <= 11; ++seq) { // after a second it takes them all, one in no time
+    for (std::uint64_t seq = 1; seq <= 11; ++seq) { // after one second, the server acknowledges all scans immediately
         acknowledge(seq, kSecond, 150);
         static_cast<void>(sent_seqs(kSecond));
     }
     EXPECT_EQ(figures_->from_intended.count(), 11U);
     EXPECT_NEAR(static_cast<double>(figures_->from_intended.percentile(50)), 5 * kPeriod, kPeriod * 0.01);
     EXPECT_EQ(figures_->from_intended.max(), kSecond);
-    EXPECT_EQ(figures_->from_sending.percentile(90), 0); // which is what a tool tells that waits with the server
+    EXPECT_EQ(figures_->from_sending.percentile(90), 0); // the result of a tool that waits for the server
     EXPECT_NEAR(static_cast<double>(figures_->waiting_to_send.percentile(99)), 9 * kPeriod, kPeriod * 0.01);
 }
 
@@ -191,15 +191,15 @@ TEST_F(RobotTalkTest, TimesCountFromTheStart) {
     EXPECT_EQ(figures_->last_ack, 7 * kSecond + kPeriod + 500);
 }
 
-TEST_F(RobotTalkTest, AServerThatForgetsWhatItAcknowledgedHasLostIt) {
+TEST_F(RobotTalkTest, ForgottenAcknowledgedScansAreLost) {
     link();
     talk_->due(6);
     static_cast<void>(sent(0));
     acknowledge(5, 1);
     talk_->close(*figures_);
     talk_->open(2);
-    static_cast<void>(said(2));
-    const auto failure = heard(wire::Welcome{"5e55", 3, {}, 1 << 20, false}, 2);
+    static_cast<void>(messages_at(2));
+    const auto failure = receive(wire::Welcome{"5e55", 3, {}, 1 << 20, false}, 2);
     ASSERT_TRUE(failure);
     EXPECT_FALSE(failure->retryable);
     EXPECT_THAT(failure->error.message,
@@ -207,22 +207,22 @@ TEST_F(RobotTalkTest, AServerThatForgetsWhatItAcknowledgedHasLostIt) {
     EXPECT_EQ(figures_->scans_lost, 2U);
 }
 
-TEST_F(RobotTalkTest, ASessionMadeAnewHasLostAllOfIt) {
+TEST_F(RobotTalkTest, RecreatedSessionHasLostAllScans) {
     link();
     talk_->due(6);
     static_cast<void>(sent(0));
     acknowledge(5, 1);
     talk_->close(*figures_);
     talk_->open(2);
-    static_cast<void>(said(2));
-    EXPECT_TRUE(heard(wire::Welcome{"07he4", 5, {}, 1 << 20, false}, 2));
+    static_cast<void>(messages_at(2));
+    EXPECT_TRUE(receive(wire::Welcome{"07he4", 5, {}, 1 << 20, false}, 2));
     EXPECT_EQ(figures_->scans_lost, 5U);
 }
 
-TEST_F(RobotTalkTest, WhatWasNeverSentIsNeitherHeldNorAcknowledged) {
+TEST_F(RobotTalkTest, UnsentScansMustNotBeStoredOrAcknowledged) {
     talk_->open(0);
-    static_cast<void>(said(0));
-    const auto held = heard(wire::Welcome{"5e55", 1, {}, 1 << 20, false}, 0);
+    static_cast<void>(messages_at(0));
+    const auto held = receive(wire::Welcome{"5e55", 1, {}, 1 << 20, false}, 0);
     ASSERT_TRUE(held);
     EXPECT_THAT(held->error.message, HasSubstr("somebody else streams into it"));
 
@@ -230,40 +230,40 @@ TEST_F(RobotTalkTest, WhatWasNeverSentIsNeitherHeldNorAcknowledged) {
     link();
     talk_->due(3);
     static_cast<void>(sent(0));
-    const auto acknowledged = heard(wire::Ack{4, 4, 1 << 20}, 1);
+    const auto acknowledged = receive(wire::Ack{4, 4, 1 << 20}, 1);
     ASSERT_TRUE(acknowledged);
     EXPECT_FALSE(acknowledged->retryable);
     EXPECT_EQ(figures_->scans_acknowledged, 0U);
 }
 
-TEST_F(RobotTalkTest, AnswersPingsSaysGoodbyeWhenAllIsAcknowledgedAndNotBefore) {
+TEST_F(RobotTalkTest, AnswersPingsAndSaysGoodbyeAfterTheLastAcknowledgement) {
     link();
     talk_->due(1);
     talk_->end();
-    static_cast<void>(said(0));
-    EXPECT_FALSE(heard(wire::Ping{42}, 1));
-    EXPECT_THAT(said(1), ElementsAre(wire::Message(wire::Pong{42})));
+    static_cast<void>(messages_at(0));
+    EXPECT_FALSE(receive(wire::Ping{42}, 1));
+    EXPECT_THAT(messages_at(1), ElementsAre(wire::Message(wire::Pong{42})));
     EXPECT_FALSE(talk_->is_done());
     acknowledge(1, 2);
     EXPECT_TRUE(talk_->is_done());
-    const auto last = said(2);
+    const auto last = messages_at(2);
     ASSERT_EQ(last.size(), 1U);
     EXPECT_TRUE(std::holds_alternative<wire::Goodbye>(last[0]));
-    EXPECT_THAT(said(3), IsEmpty());
+    EXPECT_THAT(messages_at(3), IsEmpty());
 }
 
-TEST_F(RobotTalkTest, AQuietLinkIsPingedAndADeadOneNoticed) {
+TEST_F(RobotTalkTest, QuietLinkIsPingedAndDeadLinkDetected) {
     link();
-    static_cast<void>(said(0)); // the sensor
-    EXPECT_THAT(said(RobotTalk::kPingAfter - 1), IsEmpty());
-    EXPECT_EQ(said(RobotTalk::kPingAfter).size(), 1U);
+    static_cast<void>(messages_at(0)); // the sensor
+    EXPECT_THAT(messages_at(RobotTalk::kPingAfter - 1), IsEmpty());
+    EXPECT_EQ(messages_at(RobotTalk::kPingAfter).size(), 1U);
     EXPECT_FALSE(talk_->check(RobotTalk::kPingAfter + RobotTalk::kSilenceMax - 1));
     EXPECT_TRUE(talk_->check(RobotTalk::kPingAfter + RobotTalk::kSilenceMax));
-    EXPECT_FALSE(heard(wire::Pong{0}, RobotTalk::kPingAfter + 1));
+    EXPECT_FALSE(receive(wire::Pong{0}, RobotTalk::kPingAfter + 1));
     EXPECT_FALSE(talk_->check(RobotTalk::kPingAfter + RobotTalk::kSilenceMax));
 }
 
-TEST_F(RobotTalkTest, AServerThatTakesScansAndAcknowledgesNoneIsNoticedWhileItIsBeingSentMore) {
+TEST_F(RobotTalkTest, MissingAcknowledgementsAreDetectedWhileSending) {
     link();
     for (Micros now = 0; now < RobotTalk::kSilenceMax; now += kPeriod) {
         talk_->due(static_cast<std::uint64_t>(now / kPeriod) + 1);
@@ -273,7 +273,7 @@ TEST_F(RobotTalkTest, AServerThatTakesScansAndAcknowledgesNoneIsNoticedWhileItIs
     EXPECT_TRUE(talk_->check(RobotTalk::kSilenceMax));
 }
 
-TEST_F(RobotTalkTest, WithoutAScheduleItSendsAsLongAsItMayAndEndsWithWhatItSent) {
+TEST_F(RobotTalkTest, UnscheduledRobotSendsWithinTheCreditUntilTheEnd) {
     course_.schedule.reset();
     link(0, 0, 1000);
     talk_->due(RobotTalk::kEndless);
@@ -286,7 +286,7 @@ TEST_F(RobotTalkTest, WithoutAScheduleItSendsAsLongAsItMayAndEndsWithWhatItSent)
     acknowledge(2 * first, 200, 1000);
     EXPECT_TRUE(talk_->is_done());
     EXPECT_EQ(figures_->from_sending.max(), 100);
-    EXPECT_EQ(figures_->from_intended.count(), 0U) << "no scan was meant to be sent at any time";
+    EXPECT_EQ(figures_->from_intended.count(), 0U) << "scans have no intended time";
 }
 
 } // namespace

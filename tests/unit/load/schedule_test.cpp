@@ -7,8 +7,8 @@
 namespace scanloom::load {
 namespace {
 
-TEST(Schedule, RobotsAreSpreadEvenlyOverThePeriodAndKeepTheirPace) {
-    const Schedule schedule(4, 10.0); // every 100 ms, each robot 25 ms after the one before
+TEST(Schedule, SpreadsRobotsEvenlyOverThePeriod) {
+    const Schedule schedule(4, 10.0); // every 100 ms; each robot 25 ms after the previous one
     EXPECT_EQ(schedule.due(0, 1), 0);
     EXPECT_EQ(schedule.due(1, 1), 25'000);
     EXPECT_EQ(schedule.due(3, 1), 75'000);
@@ -16,7 +16,7 @@ TEST(Schedule, RobotsAreSpreadEvenlyOverThePeriodAndKeepTheirPace) {
     EXPECT_EQ(schedule.due(3, 601), 60'075'000);
 }
 
-TEST(Schedule, ItsPlacesAreTheScansOfAllRobotsInTheOrderOfTime) {
+TEST(Schedule, PlacesAreScansOfAllRobotsInTimeOrder) {
     const Schedule schedule(7, 3.0);
     Micros before = -1;
     for (std::uint64_t place = 0; place < 100; ++place) {
@@ -29,12 +29,12 @@ TEST(Schedule, ItsPlacesAreTheScansOfAllRobotsInTheOrderOfTime) {
     }
 }
 
-TEST(Schedule, DoesNotDriftInADayOfFiveThousandRobots) {
+TEST(Schedule, DoesNotDriftWithinADayOfFiveThousandRobots) {
     const Schedule schedule(5000, 10.0);
     EXPECT_EQ(schedule.due(0, 864'001), 86'400 * kSecond);
 }
 
-TEST(Schedule, AsManyScansAsFitTheDuration) {
+TEST(Schedule, CountsTheScansWithinTheDuration) {
     EXPECT_EQ(Schedule::scans_within(0.3, 10.0), 3U);
     EXPECT_EQ(Schedule::scans_within(30.0, 10.0), 300U);
     EXPECT_EQ(Schedule::scans_within(0.31, 10.0), 4U);

@@ -10,14 +10,14 @@ namespace {
 constexpr Micros kTourPeriod = 50 * kMillisecond;
 constexpr Micros kFirst = 3 * kSecond;
 
-TEST(TileTour, TilesTakeTheTurnsAndListsNone) {
+TEST(TileTour, TilesUseTimeSlotsAndListsDoNot) {
     TileTour tour(20.0, kFirst);
     Micros turn = kFirst;
     for (int round = 0; round < 4; ++round) {
         const auto list = tour.next();
         EXPECT_TRUE(list.is_list);
         EXPECT_EQ(list.layer, round % 2 == 0 ? "occupancy" : "classification");
-        EXPECT_EQ(list.at, turn) << "as soon as the last tile is there";
+        EXPECT_EQ(list.at, turn) << "the list is requested right after the last tile";
         tour.listed({{1, 2}, {3, 4}, {5, 6}});
         for (const std::uint32_t x : {1U, 3U, 5U}) {
             const auto step = tour.next();
@@ -30,7 +30,7 @@ TEST(TileTour, TilesTakeTheTurnsAndListsNone) {
     }
 }
 
-TEST(TileTour, AMapWithoutTilesIsAskedForOnceATurn) {
+TEST(TileTour, EmptyMapIsRequestedOncePerTimeSlot) {
     TileTour tour(20.0, kFirst);
     for (int n = 0; n < 5; ++n) {
         const auto list = tour.next();

@@ -12,44 +12,42 @@ using testing::StartsWith;
 const ExpectedSession kExpected{"load-1-3", {{"r0", 300}, {"r1", 200}}};
 const FoundSession kFound{500, 504, {{"r0", 300, 300}, {"r1", 200, 200}}};
 
-std::string what_is_wrong_with(const FoundSession& found) {
-    return contradiction(kExpected, found).value_or("nothing");
-}
+std::string contradiction_in(const FoundSession& found) { return contradiction(kExpected, found).value_or("nothing"); }
 
-TEST(Contradiction, ThereIsNoneWhereEachScanIsThereOnce) { EXPECT_EQ(what_is_wrong_with(kFound), "nothing"); }
+TEST(Contradiction, IsAbsentIfEachScanIsStoredOnce) { EXPECT_EQ(contradiction_in(kFound), "nothing"); }
 
-TEST(Contradiction, EveryWayInWhichASessionMayDifferIsFound) {
+TEST(Contradiction, EveryDifferenceOfASessionIsFound) {
     auto found = kFound;
     found.robots[1].scans = 199;
-    EXPECT_EQ(what_is_wrong_with(found),
+    EXPECT_EQ(contradiction_in(found),
               "session load-1-3 holds 199 scans of robot r1, the newest with seq 200; 200 were "
               "acknowledged");
     found = kFound;
     found.robots[0].last_seq = 299;
-    EXPECT_THAT(what_is_wrong_with(found), HasSubstr("seq 299; 300 were acknowledged"));
+    EXPECT_THAT(contradiction_in(found), HasSubstr("seq 299; 300 were acknowledged"));
     found = kFound;
     found.robots[0].name = "r7";
-    EXPECT_THAT(what_is_wrong_with(found), HasSubstr("knows no robot r0"));
+    EXPECT_THAT(contradiction_in(found), HasSubstr("knows no robot r0"));
     found = kFound;
     found.robots.push_back({"r9", 0, 0});
-    EXPECT_THAT(what_is_wrong_with(found), HasSubstr("has 3 robots; 2 streamed into it"));
+    EXPECT_THAT(contradiction_in(found), HasSubstr("has 3 robots; 2 streamed into it"));
     found = kFound;
     found.scans = 501;
-    EXPECT_THAT(what_is_wrong_with(found), HasSubstr("holds 501 scans; 500 were acknowledged"));
+    EXPECT_THAT(contradiction_in(found), HasSubstr("holds 501 scans; 500 were acknowledged"));
     found = kFound;
     found.revision = 505;
-    EXPECT_THAT(what_is_wrong_with(found), HasSubstr("at revision 505; its scans and robots make 504 entries"));
+    EXPECT_THAT(contradiction_in(found), HasSubstr("at revision 505; its scans and robots make 504 entries"));
 }
 
-Evidence all_well() {
+Evidence good_evidence() {
     Evidence evidence;
     evidence.scans_sent = evidence.scans_acknowledged = evidence.scans_in_sessions = 12'000;
     evidence.sessions = evidence.digests_equal = 20;
     return evidence;
 }
 
-TEST(Verdict, NothingLostSaysWhatWasVerified) {
-    auto evidence = all_well();
+TEST(Verdict, GoodVerdictListsWhatWasVerified) {
+    auto evidence = good_evidence();
     EXPECT_TRUE(verdict_on(evidence).is_good);
     EXPECT_EQ(
         verdict_on(evidence).sentence,
@@ -64,12 +62,12 @@ TEST(Verdict, NothingLostSaysWhatWasVerified) {
     EXPECT_THAT(verdict_on(evidence).sentence, HasSubstr("nobody has asked the server for them"));
 }
 
-TEST(Verdict, WhateverSpeaksAgainstItMakesItBad) {
-    auto evidence = all_well();
+TEST(Verdict, AnyContradictionMakesTheVerdictBad) {
+    auto evidence = good_evidence();
     evidence.scans_acknowledged = 11'999;
     EXPECT_FALSE(verdict_on(evidence).is_good);
     EXPECT_THAT(verdict_on(evidence).sentence, StartsWith("NOT DONE: 11,999 of 12,000 scans acknowledged"));
-    evidence = all_well();
+    evidence = good_evidence();
     evidence.failures = {"robot r0 gave up"};
     EXPECT_FALSE(verdict_on(evidence).is_good);
     EXPECT_THAT(verdict_on(evidence).sentence, HasSubstr("robot r0 gave up"));

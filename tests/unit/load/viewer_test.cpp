@@ -21,8 +21,8 @@ namespace http = boost::beast::http;
 namespace websocket = boost::beast::websocket;
 using asio::ip::tcp;
 
-/// The figures of one viewer and a server that says no first, then lets it in, tells one event and hangs up, and then
-/// says no again. All on one thread.
+/// The figures of one viewer, and a server that refuses it, then accepts it, sends one event, disconnects, and then
+/// refuses it again. All run on one thread.
 class Viewer : public testing::Test {
 protected:
     asio::awaitable<tcp::socket> refuse() {
@@ -35,10 +35,10 @@ protected:
         answer.body() = "512 watch already";
         answer.prepare_payload();
         co_await http::async_write(socket, answer, asio::use_awaitable);
-        co_return socket; // open until the viewer asks again: it has read all
+        co_return socket; // open until the viewer's next request: by then it has read the answer
     }
 
-    asio::awaitable<void> tell_one_event() {
+    asio::awaitable<void> send_one_event() {
         websocket::stream<tcp::socket> viewer(co_await acceptor_.async_accept(asio::use_awaitable));
         co_await viewer.async_accept(asio::use_awaitable);
         viewer.binary(true);
@@ -48,10 +48,10 @@ protected:
 
     asio::awaitable<void> serve() {
         const auto first = co_await refuse();
-        auto next = co_await acceptor_.async_accept(asio::use_awaitable); // so it has heard
+        auto next = co_await acceptor_.async_accept(asio::use_awaitable); // the viewer has read the answer
         after_refusal_ = figures_;
         next.close();
-        co_await tell_one_event();
+        co_await send_one_event();
         const auto last = co_await refuse();
         co_await acceptor_.async_accept(asio::use_awaitable);
         io_.stop();
@@ -67,14 +67,14 @@ protected:
     std::string target_;
 };
 
-TEST_F(Viewer, CountsAsRefusedUntilItIsLetInAndThenAsLetIn) {
+TEST_F(Viewer, CountsAsRefusedUntilItIsAccepted) {
     asio::co_spawn(io_, serve(), asio::detached);
     asio::co_spawn(io_, watch(shared_, "lab"), asio::detached);
     io_.run();
     EXPECT_EQ(target_, "/api/v1/sessions/lab/live");
     EXPECT_EQ(after_refusal_.viewers_refused, 1U);
     EXPECT_EQ(after_refusal_.viewers_let_in, 0U);
-    EXPECT_EQ(after_refusal_.viewer_ends, 0U) << "it has not begun to watch";
+    EXPECT_EQ(after_refusal_.viewer_ends, 0U) << "the viewer has not started to watch";
     EXPECT_THAT(after_refusal_.trouble, testing::HasSubstr("a viewer of session lab: "));
     EXPECT_THAT(after_refusal_.trouble, testing::HasSubstr("503: 512 watch already"));
     EXPECT_EQ(figures_.viewers_refused, 0U);
