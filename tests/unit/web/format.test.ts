@@ -2,21 +2,21 @@ import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
 import * as format from '../../../web/src/format';
 
-describe('numbers', () => {
-  it('are grouped by thousands', () => {
+describe('number formats', () => {
+  it('group digits by thousands', () => {
     assert.equal(format.count(13631), '13\u202f631');
     assert.equal(format.count(999), '999');
     assert.equal(format.counted(1, 'scan'), '1 scan');
     assert.equal(format.counted(1234567, 'scan'), '1\u202f234\u202f567 scans');
   });
 
-  it('have a real minus sign, but no negative zero', () => {
+  it('use a typographic minus sign and no negative zero', () => {
     assert.equal(format.decimal(-1.5, 2), '\u22121.50');
     assert.equal(format.decimal(-0.001, 2), '0.00');
     assert.equal(format.integer(-64), '\u221264');
   });
 
-  it('carry their unit', () => {
+  it('contain their unit', () => {
     assert.equal(format.length(12.34), '12.3 m');
     assert.equal(format.length(1500), '1.50 km');
     assert.equal(format.roundLength(0.2), '0.2 m');
@@ -28,20 +28,20 @@ describe('numbers', () => {
     assert.equal(format.pose({ x: 1, y: -0.5, yaw: -Math.PI / 2 }), 'x 1.00, y \u22120.50 m, \u221290\u00b0');
   });
 
-  it('tell a cell that is unknown from one that is free', () => {
+  it('distinguish unknown from free cells', () => {
     assert.equal(format.cellValue({ kind: 'percent', percent: 0 }), '0 % occupied');
     assert.equal(format.cellValue({ kind: 'unknown' }), 'unknown');
   });
 });
 
-describe('texts', () => {
-  it('are cut between letters, not within one', () => {
+describe('text formats', () => {
+  it('shorten between characters', () => {
     assert.equal(format.shortened('robot', 5), 'robot');
     assert.equal(format.shortened('roboter', 5), 'robo\u2026');
     assert.equal(format.shortened('\u{1f600}\u{1f600}\u{1f600}', 2), '\u{1f600}\u2026');
   });
 
-  it('show a moment that cannot be read as it is', () => {
+  it('show an invalid date unchanged', () => {
     assert.equal(format.moment('yesterday'), 'yesterday');
   });
 });

@@ -22,20 +22,20 @@ function session(id: string, revision: number): Session {
 }
 
 describe('the newest sessions', () => {
-  it('do not go back to an answer that took longer', () => {
+  it('ignore an outdated answer', () => {
     const newest = new NewestSessions();
     newest.learn(session('1', 9));
     assert.equal(newest.learn(session('1', 7)).scans, 9);
     assert.equal(newest.learn(session('1', 10)).scans, 10);
   });
 
-  it('start again with a session that was made anew', () => {
+  it('accept a lower revision of a recreated session', () => {
     const newest = new NewestSessions();
     newest.learn(session('1', 9));
     assert.equal(newest.learn(session('2', 1)).scans, 1);
   });
 
-  it('take an equal revision, as robots come and go without a scan', () => {
+  it('accept an equal revision, because robots connect without scans', () => {
     const newest = new NewestSessions();
     newest.learn(session('1', 9));
     const later = session('1', 9);

@@ -3,18 +3,18 @@ import { describe, it } from 'node:test';
 import { backoff } from '../../../web/src/poll';
 
 describe('polling', () => {
-  it('keeps its pace while all is well', () => {
+  it('keeps its interval without failures', () => {
     assert.equal(backoff(300, 0), 300);
   });
 
-  it('slows down with every failure, but stays ready to come back', () => {
+  it('increases the interval with every failure up to a limit', () => {
     assert.deepEqual(
       [1, 2, 3, 10].map((failures) => backoff(300, failures)),
       [600, 1200, 2400, 5000],
     );
   });
 
-  it('is not hurried by failures when it is slow anyway', () => {
+  it('never shortens a long interval after failures', () => {
     assert.equal(backoff(15_000, 3), 15_000);
   });
 });

@@ -27,7 +27,7 @@ function session(): Record<string, unknown> {
 }
 
 describe('decoding', () => {
-  it('reads a session as the server writes it', () => {
+  it('decodes a session of the server', () => {
     assert.deepEqual(decodeSession(session()), {
       name: 'intel',
       id: '000000000000002a',
@@ -45,7 +45,7 @@ describe('decoding', () => {
     });
   });
 
-  it('shows a session that takes no scans, and why', () => {
+  it('contains the reason why a session accepts no scans', () => {
     const failed = { ...session(), state: 'failed', reason: 'no space left' };
     const page = decodeSessionPage({ sessions: [failed], next: null });
     assert.deepEqual(page.damaged, []);
@@ -53,7 +53,7 @@ describe('decoding', () => {
     assert.throws(() => decodeSession({ ...session(), state: 'failed' }), /reason is not a text/);
   });
 
-  it('tells damaged sessions from those that are served', () => {
+  it('separates damaged sessions from served ones', () => {
     const page = decodeSessionPage({
       sessions: [
         { name: '#000000000000002a', state: 'damaged', reason: 'no record' },
@@ -68,14 +68,14 @@ describe('decoding', () => {
     );
   });
 
-  it('reads where robots connect', () => {
+  it('decodes the robot port', () => {
     const robots = { host: '192.0.2.7', port: 7447 };
     assert.deepEqual(decodeRobotPort({ status: 'ready', robots, damaged: [] }), robots);
     assert.deepEqual(decodeRobotPort({ robots: { host: null, port: 1 } }), { host: null, port: 1 });
     assert.throws(() => decodeRobotPort({ status: 'ready' }), MalformedAnswer);
   });
 
-  it('takes a session in which nothing was seen', () => {
+  it('accepts a session without scans', () => {
     const empty = decodeSession({
       ...session(),
       bounds: null,
@@ -87,7 +87,7 @@ describe('decoding', () => {
     assert.deepEqual(empty.robots, [{ name: 'r', connected: false, scans: 0, pose: null, bodyRadius: null }]);
   });
 
-  it('names the field that is not as agreed', () => {
+  it('names the invalid field', () => {
     const broken: [unknown, RegExp][] = [
       [null, /session is not an object/],
       [{ ...session(), name: 7 }, /name is not a text/],
@@ -101,7 +101,7 @@ describe('decoding', () => {
     assert.throws(() => decodeChanges({ revision: 1, tiles: [{ z: 9, x: 1, y: 1 }] }), /tiles\[\].revision/);
   });
 
-  it('reads a path of one point as well as a line', () => {
+  it('decodes trajectories of one point and lines', () => {
     const feature = (type: string, coordinates: number[][]): unknown => ({
       type: 'Feature',
       id: 'r1',

@@ -18,8 +18,8 @@ function trajectory(properties: Record<string, unknown> = {}): unknown {
   return { type: 'FeatureCollection', revision: 7, features: [feature] };
 }
 
-describe('decoding the past', () => {
-  it('reads where robots were when', () => {
+describe('decoding the history', () => {
+  it('decodes positions with revisions, stamps and yaws', () => {
     assert.deepEqual(decodeHistory(trajectory()), {
       revision: 7,
       tracks: [
@@ -37,13 +37,13 @@ describe('decoding the past', () => {
     });
   });
 
-  it('refuses times that are not as many as places, or none', () => {
+  it('refuses missing times and times of another length than positions', () => {
     assert.throws(() => decodeHistory(trajectory({ stamps: [1] })), /stamps are not as many/);
     assert.throws(() => decodeHistory(trajectory({ yaws: undefined })), MalformedAnswer);
     assert.throws(() => decodeHistory(trajectory({ revisions: [1, 'x'] })), /revisions\[\] is not a number/);
   });
 
-  it('reads how far a weave is', () => {
+  it('decodes the progress of a replay job', () => {
     const weave = { id: '0a', state: 'weaving', revision: null, woven: 5, until: { revision: 9, stamp: null } };
     assert.deepEqual(decodeWeave(weave), { id: '0a', state: 'weaving', woven: 5, until: 9, exclusions: 0, reason: '' });
     assert.equal(decodeWeave({ ...weave, state: 'failed', reason: 'no room' }).reason, 'no room');
@@ -52,12 +52,12 @@ describe('decoding the past', () => {
   });
 });
 
-describe('fetching the past', () => {
-  it('has as long as where robots were, which is as long', async () => {
+describe('fetching the history', () => {
+  it('has the same deadline as fetching trajectories', async () => {
     Object.assign(globalThis, { document: { baseURI: 'http://localhost/' } });
-    const asked: string[] = [];
+    const requests: string[] = [];
     mock.method(globalThis, 'fetch', ({ pathname, search }: URL) => {
-      asked.push(pathname + search);
+      requests.push(pathname + search);
       return Promise.resolve(Response.json(trajectory()));
     });
     const { mock: deadlines } = mock.method(AbortSignal, 'timeout', () => new AbortController().signal);
@@ -66,7 +66,7 @@ describe('fetching the past', () => {
     await fetchHistory('s', 4, signal);
     mock.restoreAll();
     const path = '/api/v1/sessions/s/trajectory.geojson';
-    assert.deepEqual(asked, [`${path}?since=4`, `${path}?times=true&since=4`]);
+    assert.deepEqual(requests, [`${path}?since=4`, `${path}?times=true&since=4`]);
     assert.deepEqual(
       deadlines.calls.map((call) => call.arguments),
       [[120_000], [120_000]],

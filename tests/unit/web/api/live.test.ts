@@ -14,7 +14,7 @@ function bytesOf(fields: Partial<Fields>): ArrayBuffer {
 }
 
 describe('a live event', () => {
-  it('is read as the server means it', () => {
+  it('is decoded with all fields', () => {
     const event = decodeLiveEvent(
       bytesOf({
         session: 'id-1',
@@ -64,7 +64,7 @@ describe('a live event', () => {
     ]);
   });
 
-  it('may know a failure, a shutdown and a robot without a place', () => {
+  it('may contain a failure, a shutdown and a robot without a pose', () => {
     const failed = decodeLiveEvent(bytesOf({ state: 2, reason: 'no space left' }));
     assert.equal(failed.failure, 'no space left');
     assert.equal(decodeLiveEvent(bytesOf({ state: 3 })).draining, true);
@@ -72,10 +72,10 @@ describe('a live event', () => {
     assert.deepEqual([robot?.pose, robot?.scan, robot?.bodyRadius, robot?.trail], [null, null, null, []]);
   });
 
-  it('may tell landmarks, or why there are no more', () => {
+  it('may contain landmarks or the reason for their refusal', () => {
     const one = { id: 7, x: 1.5, y: -2.25, seen: 3, size_x: 0.5, size_y: 0.25 };
-    const told = decodeLiveEvent(bytesOf({ landmarks: { landmarks: [one] } }));
-    assert.deepEqual(told.landmarks, {
+    const event = decodeLiveEvent(bytesOf({ landmarks: { landmarks: [one] } }));
+    assert.deepEqual(event.landmarks, {
       landmarks: [{ id: 7, at: [1.5, -2.25], seen: 3, size: [0.5, 0.25] }],
       refused: null,
     });
@@ -84,11 +84,11 @@ describe('a live event', () => {
     assert.equal(decodeLiveEvent(bytesOf({ revision: 1 })).landmarks, null);
   });
 
-  it('may have layers that this page does not know', () => {
+  it('may contain unknown layers', () => {
     assert.deepEqual(decodeLiveEvent(bytesOf({ tiles: [{ layer: 99, tiles: [1], revisions: [1] }] })).tiles, []);
   });
 
-  it('is refused when it is none', () => {
+  it('is refused when it is invalid', () => {
     const cut = bytesOf({ robots: [{ name: 'r1', pose: { x: 1, y: 2, yaw: 3 } }] });
     assert.throws(() => decodeLiveEvent(cut.slice(0, cut.byteLength - 3)), MalformedAnswer);
     assert.throws(() => decodeLiveEvent(new Uint8Array([0xff, 0xff, 0xff]).buffer), MalformedAnswer);
@@ -101,7 +101,7 @@ describe('a live event', () => {
 });
 
 describe('a live request', () => {
-  it('asks for the tiles of all layers, and for scans and landmarks only when they are wanted', () => {
+  it('requests tiles of all layers, and scans and landmarks only on demand', () => {
     for (const points of [true, false]) {
       for (const landmarks of [true, false]) {
         const request = readLiveRequest(new PbfReader(encodeLiveRequest({ points, landmarks })));

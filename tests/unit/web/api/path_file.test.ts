@@ -4,7 +4,7 @@ import { MalformedAnswer } from '../../../../web/src/api/decode';
 import { Refused } from '../../../../web/src/api/http';
 import { decodePathPage, fetchPathFile, PathFile } from '../../../../web/src/api/path_file';
 
-/** Each robot's positions by revision. */
+/** Positions of each robot, by revision. */
 type Course = Record<string, [revision: number, x: number, y: number][]>;
 
 const kCourse: Course = {
@@ -18,13 +18,13 @@ const kCourse: Course = {
   still: [],
 };
 
-/** As the server writes it. */
+/** Returns a page in the format of the server. */
 function answer(course: Course, since: number, until: number): string {
   const features = Object.entries(course).map(([robot, positions]) => {
-    const told = positions.filter(([revision]) => revision > since && revision <= until);
-    const points = told.map(([, x, y]) => `[${x},${y}]`).join(',');
-    const type = told.length < 2 ? 'MultiPoint' : 'LineString';
-    const properties = `"properties":{"robot":"${robot}","points":${told.length}}`;
+    const page = positions.filter(([revision]) => revision > since && revision <= until);
+    const points = page.map(([, x, y]) => `[${x},${y}]`).join(',');
+    const type = page.length < 2 ? 'MultiPoint' : 'LineString';
+    const properties = `"properties":{"robot":"${robot}","points":${page.length}}`;
     return `{"type":"Feature","id":"${robot}",${properties},"geometry":{"type":"${type}","coordinates":[${points}]}}`;
   });
   const head = `"type":"FeatureCollection","frame_id":"map","units":"m","revision":${until}`;
@@ -32,7 +32,7 @@ function answer(course: Course, since: number, until: number): string {
 }
 
 describe('a file of paths', () => {
-  it('of several pages is what one answer would be', async () => {
+  it('equals one answer when it has several pages', async () => {
     for (const pages of [[9], [2, 9], [3, 4, 7, 9], [1, 2, 3, 4, 5, 6, 7, 8, 9]]) {
       const file = new PathFile();
       let since = 0;
@@ -45,15 +45,15 @@ describe('a file of paths', () => {
     }
   });
 
-  it('has robots that came with a later page, and none of nobody', async () => {
+  it('contains robots of later pages, and may contain no robot', async () => {
     const file = new PathFile();
     const { late, ...before } = kCourse;
     file.add(decodePathPage(answer(before, 0, 4)));
     file.add(decodePathPage(answer({ ...before, late: late ?? [] }, 4, 9)));
     const { features } = JSON.parse(await file.blob().text());
     type Feature = { id: string; properties: { points: number } };
-    const told = features.map(({ id, properties }: Feature) => [id, properties.points]);
-    assert.deepEqual(told, [
+    const counts = features.map(({ id, properties }: Feature) => [id, properties.points]);
+    assert.deepEqual(counts, [
       ['a', 4],
       ['still', 0],
       ['late', 1],
@@ -63,22 +63,22 @@ describe('a file of paths', () => {
     assert.equal(await empty.blob().text(), answer({}, 0, 0));
   });
 
-  it('is not made of what is no page', () => {
+  it('refuses invalid pages', () => {
     assert.throws(() => decodePathPage('{"type":'), MalformedAnswer);
     assert.throws(() => decodePathPage('{"frame_id":"map","units":"m","features":[]}'), /revision is not a number/);
   });
 });
 
 describe('fetching a file of paths', () => {
-  let asked: string[];
+  let requests: string[];
   let refuse: string | null;
   let refusal: number;
-  /** Of the session, each time that it is asked for; then it is 1. */
+  /** Session ids of the next answers; afterwards the id is 1. */
   let ids: string[];
 
-  /** A session of revision 9 that tells four revisions at once. */
+  /** Serves a session of revision 9, with four revisions per page. */
   function serve(url: URL): Response {
-    asked.push(url.pathname + url.search);
+    requests.push(url.pathname + url.search);
     if (url.search === refuse) return new Response('{"title":"busy"}', { status: refusal });
     if (url.pathname.endsWith('trajectory.geojson')) {
       const since = Number(url.searchParams.get('since'));
@@ -101,7 +101,7 @@ describe('fetching a file of paths', () => {
   }
 
   beforeEach(() => {
-    asked = [];
+    requests = [];
     refuse = null;
     refusal = 503;
     ids = [];
@@ -111,16 +111,16 @@ describe('fetching a file of paths', () => {
 
   afterEach(() => mock.restoreAll());
 
-  it('asks until the session is whole, and tells of the bytes of all pages', async () => {
-    const told: number[] = [];
-    const file = await fetchPathFile('s', new AbortController().signal, (bytes) => told.push(bytes));
+  it('requests pages until the end and reports the bytes of all pages', async () => {
+    const progress: number[] = [];
+    const file = await fetchPathFile('s', new AbortController().signal, (bytes) => progress.push(bytes));
     const path = '/api/v1/sessions/s/trajectory.geojson';
     const session = '/api/v1/sessions/s';
-    assert.deepEqual(asked, [session, path, `${path}?since=4`, `${path}?since=8`, session]);
+    assert.deepEqual(requests, [session, path, `${path}?since=4`, `${path}?since=8`, session]);
     assert.equal(await file.text(), answer(kCourse, 0, 9));
     assert.deepEqual(
-      told,
-      [...told].sort((a, b) => a - b),
+      progress,
+      [...progress].sort((a, b) => a - b),
     );
     const bytes = [
       [0, 4],
@@ -128,45 +128,45 @@ describe('fetching a file of paths', () => {
       [8, 9],
     ].map(([since = 0, until = 0]) => answer(kCourse, since, until).length);
     assert.equal(
-      told.at(-1),
+      progress.at(-1),
       bytes.reduce((sum, each) => sum + each, 0),
     );
   });
 
-  it('tries a page again that is refused for the moment', async () => {
+  it('retries a page that is temporarily refused', async () => {
     refuse = '?since=4';
-    const rests: number[] = [];
+    const pauses: number[] = [];
     const file = await fetchPathFile(
       's',
       new AbortController().signal,
       () => {},
       (failures) => {
-        if (rests.push(failures) === 3) refuse = null;
+        if (pauses.push(failures) === 3) refuse = null;
         return Promise.resolve();
       },
     );
     assert.equal(await file.text(), answer(kCourse, 0, 9));
-    assert.deepEqual(rests, [1, 2, 3]);
+    assert.deepEqual(pauses, [1, 2, 3]);
   });
 
-  it('is all or nothing', async () => {
+  it('fails as a whole when a page fails', async () => {
     refuse = '?since=4';
-    const rests: number[] = [];
-    const pause = (failures: number): Promise<void> => Promise.resolve(void rests.push(failures));
+    const pauses: number[] = [];
+    const pause = (failures: number): Promise<void> => Promise.resolve(void pauses.push(failures));
     await assert.rejects(
       fetchPathFile('s', new AbortController().signal, () => {}, pause),
       Refused,
     );
-    assert.deepEqual(rests, [1, 2, 3, 4, 5, 6, 7, 8]);
+    assert.deepEqual(pauses, [1, 2, 3, 4, 5, 6, 7, 8]);
     refusal = 500;
     await assert.rejects(
       fetchPathFile('s', new AbortController().signal, () => {}, pause),
       Refused,
     );
-    assert.equal(rests.length, 8, 'waiting mends nothing');
+    assert.equal(pauses.length, 8, 'retrying must not help');
   });
 
-  it('is of one session', async () => {
+  it('fails when the session is replaced', async () => {
     ids.push('1', '2');
     await assert.rejects(
       fetchPathFile('s', new AbortController().signal, () => {}),

@@ -13,8 +13,8 @@ const ack = (fast: number, all: number): Measures['ack'] => [
   { le: Infinity, count: all },
 ];
 
-describe('the history of measures', () => {
-  it('makes series of one length, with gaps where nothing is known', () => {
+describe('the measurement history', () => {
+  it('has series of equal length with gaps for unknown values', () => {
     const history = new History();
     history.add(at(10, { scans: 0, cpuSeconds: 1, memoryBytes: 5 }));
     history.add(at(12, { scans: 20, cpuSeconds: 2, memoryBytes: 6 }));
@@ -29,7 +29,7 @@ describe('the history of measures', () => {
     assert.deepEqual(memoryBytes, [5, 6, null, 7, 1, 2]);
   });
 
-  it('takes latencies over some seconds, but not over a restart', () => {
+  it('computes latencies over some seconds, but not across a restart', () => {
     const history = new History();
     history.add(at(0, { ack: ack(0, 0) }));
     history.add(at(2, { ack: ack(100, 100) }));
@@ -41,7 +41,7 @@ describe('the history of measures', () => {
     assert.ok(Math.abs((ackSlow[1] ?? 0) - 0.0099) < 1e-12);
   });
 
-  it('is five minutes long, and starts again when the clock is set back', () => {
+  it('covers five minutes and restarts when the clock is set back', () => {
     const history = new History();
     for (let time = 0; time <= 400; time += 2) history.add(at(time));
     assert.equal(history.series().times[0], 100);
@@ -49,7 +49,7 @@ describe('the history of measures', () => {
     assert.deepEqual(history.series().times, [50]);
   });
 
-  it('knows what the server does not tell', () => {
+  it('marks values that the server does not report', () => {
     const history = new History();
     history.add(at(0, { memoryBytes: 1 }));
     history.add(nothingMeasured(2));

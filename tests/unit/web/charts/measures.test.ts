@@ -21,8 +21,8 @@ const scans = (time: number, count: number, started = 100): measures.Measures =>
   return { ...at(time), scans: count, started };
 };
 
-describe('what is measured', () => {
-  it('is summed over labels, and null where the server does not tell', () => {
+describe('a measurement', () => {
+  it('is summed over labels and null if the server does not report it', () => {
     const { inFlight, queuedBytes, cpuSeconds, ack } = at(0);
     assert.deepEqual([inFlight, queuedBytes, cpuSeconds], [3, null, 1.5]);
     assert.deepEqual(ack, [
@@ -32,24 +32,24 @@ describe('what is measured', () => {
     assert.equal(measures.nothingMeasured(0).ack, null);
   });
 
-  it('is nothing where it is no number', () => {
+  it('is null if it is not a number', () => {
     assert.equal(at(0, 'scanloom_scans_in_flight NaN').inFlight, null);
     assert.equal(at(0, 'scanloom_ack_seconds_bucket 3').ack, null);
   });
 });
 
 describe('a rate', () => {
-  it('is the rise per second', () => {
+  it('is the increase per second', () => {
     assert.equal(measures.rate(scans(10, 50), scans(12, 80), 'scans'), 15);
   });
 
-  it('is never negative: a restarted server makes a gap', () => {
+  it('is unknown across a server restart', () => {
     assert.equal(measures.rate(scans(10, 50), scans(12, 0), 'scans'), null);
-    // It has caught up between two looks: only its start tells.
+    // The counter has caught up between two answers: only the start time differs.
     assert.equal(measures.rate(scans(10, 50), scans(12, 90, 111), 'scans'), null);
   });
 
-  it('is unknown over a pause, and before anything was told', () => {
+  it('is unknown across a pause and before the first answer', () => {
     assert.equal(measures.rate(scans(10, 50), scans(40, 80), 'scans'), null);
     assert.equal(measures.rate(scans(10, 50), scans(10, 80), 'scans'), null);
     assert.equal(measures.rate(measures.nothingMeasured(10), scans(12, 80), 'scans'), null);
@@ -62,7 +62,7 @@ describe('observations', () => {
     return { ...at(time), ack: counts.map((count, index) => ({ le: bounds[index] ?? 0, count })) };
   };
 
-  it('are those between two answers', () => {
+  it('are the difference between two answers', () => {
     const between = measures.observedBetween(ack(0, 4, 6, 6), ack(2, 5, 9, 10));
     assert.deepEqual(
       between?.map(({ count }) => count),
@@ -81,19 +81,19 @@ describe('a quantile', () => {
   const histogram = (...pairs: [le: number, count: number][]): measures.Bucket[] =>
     pairs.map(([le, count]) => ({ le, count }));
 
-  it('lies within its bucket as if evenly spread', () => {
+  it('is interpolated linearly within its bucket', () => {
     const even = histogram([0.1, 50], [0.2, 100], [Infinity, 100]);
     assert.equal(measures.quantile(0.25, even), 0.05);
     assert.ok(Math.abs((measures.quantile(0.75, even) ?? 0) - 0.15) < 1e-12);
     assert.equal(measures.quantile(1, even), 0.2);
   });
 
-  it('is nothing without observations', () => {
+  it('is null without observations', () => {
     assert.equal(measures.quantile(0.5, histogram([0.1, 0], [Infinity, 0])), null);
     assert.equal(measures.quantile(0.5, []), null);
   });
 
-  it('beyond the last bound is that bound, the least that is known', () => {
+  it('beyond the last bound is the last bound', () => {
     assert.equal(measures.quantile(0.99, histogram([0.1, 1], [Infinity, 100])), 0.1);
     assert.equal(measures.quantile(0.5, histogram([Infinity, 3])), null);
   });

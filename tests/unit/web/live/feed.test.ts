@@ -7,7 +7,7 @@ import { Feed } from '../../../../web/src/live/feed';
 import type { Trails } from '../../../../web/src/live/trails';
 import { hurry } from '../../../../web/src/poll';
 
-/** The newest connection of the page. */
+/** The page's newest connection. */
 let socket: FakeSocket;
 
 class FakeSocket extends EventTarget {
@@ -26,8 +26,8 @@ class FakeSocket extends EventTarget {
     this.readyState = 3;
   }
 
-  /** The robot has been at this many places, of which the newest is told. */
-  tell(session: string, places: number): void {
+  /** Sends an event of a robot with this many places; the event contains the newest one. */
+  sendEvent(session: string, places: number): void {
     const writer = new PbfWriter();
     const robots = [{ name: 'r1', trail: [1000 * places, 0], trail_from: places - 1 }];
     writeLiveEvent({ session, revision: places, robots }, writer);
@@ -35,11 +35,11 @@ class FakeSocket extends EventTarget {
   }
 }
 
-/** A server with a session, whose paths are told when the test says so. */
+/** A server with one session; the test decides when it answers path requests. */
 class World {
   id = 'first';
-  /** Revisions after which paths were asked for. */
-  readonly asked: string[] = [];
+  /** Revisions after which paths were requested. */
+  readonly requests: string[] = [];
   readonly trails: Trails[] = [];
   filled = 0;
   opened = 0;
@@ -57,8 +57,8 @@ class World {
     new Feed('map', events, this.leave.signal).run();
   }
 
-  /** Answers the question for paths that was asked as the n-th. */
-  tellPaths(n: number, places: number): void {
+  /** Answers the n-th request for paths. */
+  answerPaths(n: number, places: number): void {
     this.answers[n]?.(places);
   }
 
@@ -73,7 +73,7 @@ class World {
       const counters = { revision: 9, scans: 9, bounds: null, robots: [] };
       return Promise.resolve(Response.json({ name: 'map', id: this.id, created: '', number: 1, config, ...counters }));
     }
-    this.asked.push(searchParams.get('since') ?? '');
+    this.requests.push(searchParams.get('since') ?? '');
     return new Promise((resolve) => this.answers.push((places) => resolve(Response.json(pathOf(places)))));
   }
 }
@@ -87,10 +87,10 @@ function pathOf(places: number): unknown {
   return { revision: places, features: [{ type: 'Feature', properties: { robot: 'r1', points: places }, geometry }] };
 }
 
-/** Lets happen what is under way. */
+/** Runs pending tasks until the condition holds. */
 async function until(reached: () => boolean): Promise<void> {
   for (let turn = 0; !reached(); ++turn) {
-    assert.ok(turn < 10_000, `never: ${reached.toString()}`);
+    assert.ok(turn < 10_000, `condition never holds: ${reached.toString()}`);
     await new Promise((resolve) => setImmediate(resolve));
   }
 }
@@ -100,37 +100,37 @@ describe('a feed', () => {
 
   afterEach(() => world.end());
 
-  it('fetches the beginning of a trail that events leave out', async () => {
+  it('fetches the beginning of a trail that events omit', async () => {
     world = new World();
     await until(() => world.opened === 1);
-    socket.tell('first', 9);
-    await until(() => world.asked.length === 1);
-    world.tellPaths(0, 9);
+    socket.sendEvent('first', 9);
+    await until(() => world.requests.length === 1);
+    world.answerPaths(0, 9);
     await until(() => world.filled === 1);
     assert.deepEqual(world.trails[0]?.get('r1').points, pointsOf(9));
   });
 
-  it('keeps apart the paths of a session and of the one made anew under its name', async () => {
+  it('separates the paths of a session and of its recreation under the same name', async () => {
     world = new World();
     await until(() => world.opened === 1);
-    socket.tell('first', 9);
-    await until(() => world.asked.length === 1);
+    socket.sendEvent('first', 9);
+    await until(() => world.requests.length === 1);
     world.id = 'second';
-    socket.tell('second', 5);
+    socket.sendEvent('second', 5);
     await until(() => {
       hurry();
       return world.opened === 2;
     });
-    socket.tell('second', 5);
-    await until(() => world.asked.length === 2);
-    // The answer about the first comes when it is wanted no more; that about the second is still awaited.
-    world.tellPaths(0, 7);
+    socket.sendEvent('second', 5);
+    await until(() => world.requests.length === 2);
+    // The answer for the first session is outdated when it arrives; the answer for the second is still pending.
+    world.answerPaths(0, 7);
     for (let n = 0; n < 10; ++n) await new Promise((resolve) => setImmediate(resolve));
-    socket.tell('second', 6);
-    assert.deepEqual([world.asked, world.filled], [['0', '0'], 0]);
-    world.tellPaths(1, 6);
+    socket.sendEvent('second', 6);
+    assert.deepEqual([world.requests, world.filled], [['0', '0'], 0]);
+    world.answerPaths(1, 6);
     await until(() => world.filled === 1);
-    assert.deepEqual(world.asked, ['0', '0']);
+    assert.deepEqual(world.requests, ['0', '0']);
     assert.deepEqual(world.trails[1]?.get('r1').points, pointsOf(6));
     assert.deepEqual(world.trails[0]?.get('r1').points, []);
   });

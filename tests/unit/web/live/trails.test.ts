@@ -3,7 +3,7 @@ import { describe, it } from 'node:test';
 import { Trails } from '../../../../web/src/live/trails';
 
 describe('trails', () => {
-  it('grow by what joins on, and know their length', () => {
+  it('grow by adjacent pieces and know their length', () => {
     const trails = new Trails();
     assert.ok(
       trails.merge('r1', 0, [
@@ -22,7 +22,7 @@ describe('trails', () => {
     });
   });
 
-  it('take no point twice, whatever pieces overlap', () => {
+  it('contain each point once when pieces overlap', () => {
     const trails = new Trails();
     trails.merge('r1', 0, [
       [0, 0],
@@ -42,7 +42,7 @@ describe('trails', () => {
     ]);
   });
 
-  it('leave out what does not join on, and say so', () => {
+  it('refuse pieces that are not adjacent', () => {
     const trails = new Trails();
     trails.merge('r1', 0, [[0, 0]]);
     assert.equal(trails.merge('r1', 3, [[3, 0]]), false);
@@ -56,7 +56,7 @@ describe('trails', () => {
     assert.equal(trails.get('r1').length, 3);
   });
 
-  it('keep robots apart', () => {
+  it('are separate for each robot', () => {
     const trails = new Trails();
     trails.merge('r1', 0, [[0, 0]]);
     assert.deepEqual(trails.get('r2').points, []);

@@ -7,17 +7,17 @@ import { WholePaths, type Told } from '../../../../web/src/live/whole_paths';
 
 const kRobots = ['a', 'b'];
 
-/** A server of two robots that take turns, position n in revision n + 1. Answers and rests end as the test says. */
+/** A server with two robots that alternate: position n is revision n + 1. The test ends answers and pauses. */
 class World {
   readonly trails = new Trails();
   readonly leave = new AbortController();
-  readonly asked: number[] = [];
-  /** After how many failures in a row was rested. */
-  readonly rests: number[] = [];
+  readonly requests: number[] = [];
+  /** Number of consecutive failures before each pause. */
+  readonly pauses: number[] = [];
   filled = 0;
   revision = 10;
   atOnce = 100;
-  /** What the next questions are answered with. */
+  /** Errors with which the next requests fail. */
   readonly troubles: Error[] = [];
   private readonly held: (() => void)[] = [];
   private readonly paths: WholePaths;
@@ -25,28 +25,28 @@ class World {
   constructor() {
     const source = { fetchAfter: (since: number) => this.answer(since), filled: () => void ++this.filled };
     this.paths = new WholePaths(this.trails, source, this.leave.signal, (failures) => {
-      this.rests.push(failures);
+      this.pauses.push(failures);
       return new Promise((resolve) => this.held.push(resolve));
     });
   }
 
-  /** Of the newest positions so many a robot are told. */
-  hear(newest: number, robots = kRobots): void {
-    const told = robots.map((name) => {
+  /** Sends an event with the `newest` positions of each robot. */
+  sendNewest(newest: number, robots = kRobots): void {
+    const sent = robots.map((name) => {
       const all = pathOf(name, 0, this.revision);
       const trailFrom = Math.max(0, all.length - newest);
       return { name, trail: all.slice(trailFrom), trailFrom };
     });
-    this.tell({ revision: this.revision, robots: told });
+    this.send({ revision: this.revision, robots: sent });
   }
 
-  tell(event: Told): void {
+  send(event: Told): void {
     this.paths.hear(event);
   }
 
-  /** Answers what was asked, or ends the rest, and lets happen what follows from it. */
+  /** Answers the pending request or ends the pause, then runs pending tasks. */
   async next(): Promise<void> {
-    assert.equal(this.held.length, 1, 'one thing at a time is waited for');
+    assert.equal(this.held.length, 1, 'exactly one request or pause must be pending');
     this.held.shift()?.();
     await new Promise((resolve) => setImmediate(resolve));
   }
@@ -63,7 +63,7 @@ class World {
   }
 
   private async answer(since: number): Promise<Trajectory> {
-    this.asked.push(since);
+    this.requests.push(since);
     await new Promise<void>((resolve) => this.held.push(resolve));
     const trouble = this.troubles.shift();
     if (trouble) throw trouble;
@@ -78,172 +78,176 @@ function pathOf(robot: string, since: number, until: number): Point[] {
 }
 
 describe('whole paths', () => {
-  it('need no question where events tell all', () => {
+  it('need no request if events contain all points', () => {
     const world = new World();
-    world.hear(99);
+    world.sendNewest(99);
     world.revision = 14;
-    world.hear(2);
-    assert.deepEqual(world.asked, []);
+    world.sendNewest(2);
+    assert.deepEqual(world.requests, []);
     world.assertWhole();
   });
 
-  it('are asked for where an event leaves out their beginning', async () => {
+  it('are requested if an event omits their beginning', async () => {
     const world = new World();
-    world.hear(1);
+    world.sendNewest(1);
     await world.next();
-    assert.deepEqual([world.asked, world.filled], [[0], 1]);
+    assert.deepEqual([world.requests, world.filled], [[0], 1]);
     world.assertWhole();
   });
 
-  it('are put together from several pages, and seen with each', async () => {
+  it('are assembled from several pages and updated with each', async () => {
     const world = new World();
     world.atOnce = 3;
-    world.hear(1);
+    world.sendNewest(1);
     for (const filled of [1, 2, 3]) {
       await world.next();
       assert.equal(world.filled, filled);
       assert.deepEqual(world.trails.get('a').points, pathOf('a', 0, 3 * filled));
     }
     await world.next();
-    assert.deepEqual(world.asked, [0, 3, 6, 9]);
+    assert.deepEqual(world.requests, [0, 3, 6, 9]);
     world.assertWhole();
   });
 
-  it('are asked for once at a time, up to what was left out meanwhile', async () => {
+  it('are requested one page at a time up to the newest omitted point', async () => {
     const world = new World();
     world.atOnce = 10;
-    world.hear(1);
+    world.sendNewest(1);
     world.revision = 20;
-    world.hear(1);
+    world.sendNewest(1);
     await world.next();
     await world.next();
-    assert.deepEqual(world.asked, [0, 10]);
+    assert.deepEqual(world.requests, [0, 10]);
     world.assertWhole();
   });
 
-  it('go on behind the last page after a failure that passes', async () => {
+  it('continue after the last page when a temporary failure ends', async () => {
     const world = new World();
     world.atOnce = 4;
-    world.hear(1);
+    world.sendNewest(1);
     await world.next();
     world.troubles.push(new Refused(503, 'busy'), new Unreachable('x'));
     for (let n = 0; n < 4; ++n) await world.next();
     assert.deepEqual(
-      [world.asked, world.rests],
+      [world.requests, world.pauses],
       [
         [0, 4, 4, 4],
         [1, 2],
       ],
     );
     for (let n = 0; n < 2; ++n) await world.next();
-    assert.deepEqual(world.asked, [0, 4, 4, 4, 8]);
+    assert.deepEqual(world.requests, [0, 4, 4, 4, 8]);
     world.assertWhole();
   });
 
-  it('are left where waiting mends nothing, until an event finds the gap again; each time for longer', async () => {
+  it('wait for another event after a permanent failure, longer each time', async () => {
     const world = new World();
-    world.hear(1);
+    world.sendNewest(1);
     for (const failures of [1, 2, 3]) {
       world.troubles.push(new Refused(500, 'broken'));
       await world.next();
-      for (let n = 0; n < 10; ++n) world.hear(1);
-      assert.deepEqual([world.asked.length, world.rests.length], [failures, failures], 'events do not end the rest');
+      for (let n = 0; n < 10; ++n) world.sendNewest(1);
+      assert.deepEqual(
+        [world.requests.length, world.pauses.length],
+        [failures, failures],
+        'events must not end the pause',
+      );
       await world.next();
-      assert.ok(world.isIdle, 'nobody asks by himself');
-      world.hear(1);
+      assert.ok(world.isIdle, 'no request must follow without an event');
+      world.sendNewest(1);
     }
     await world.next();
-    assert.deepEqual(world.rests, [1, 2, 3]);
+    assert.deepEqual(world.pauses, [1, 2, 3]);
     world.assertWhole();
   });
 
-  it('are asked for from what is known after a gap', async () => {
+  it('are requested from the last known revision after a gap', async () => {
     const world = new World();
-    world.hear(1);
+    world.sendNewest(1);
     await world.next();
     world.revision = 14;
-    world.hear(3);
+    world.sendNewest(3);
     world.revision = 40;
-    world.hear(1);
+    world.sendNewest(1);
     await world.next();
-    assert.deepEqual(world.asked, [0, 14]);
+    assert.deepEqual(world.requests, [0, 14]);
     world.assertWhole();
   });
 
-  it('do not take for known what one robot told while another had a gap', async () => {
+  it('treat a revision as known only if no robot has a gap', async () => {
     const world = new World();
-    world.hear(99);
+    world.sendNewest(99);
     world.revision = 20;
-    world.hear(1, ['b']);
+    world.sendNewest(1, ['b']);
     world.troubles.push(new Refused(500, 'broken'));
     await world.next();
     await world.next();
-    world.hear(99, ['a']);
+    world.sendNewest(99, ['a']);
     world.revision = 22;
-    world.hear(1);
+    world.sendNewest(1);
     await world.next();
-    assert.deepEqual(world.asked, [10, 10]);
+    assert.deepEqual(world.requests, [10, 10]);
     world.assertWhole();
   });
 
-  it('are not counted back by an event that a page has overtaken', async () => {
+  it('ignore an event older than a received page', async () => {
     const world = new World();
-    world.hear(99);
+    world.sendNewest(99);
     world.revision = 20;
-    world.hear(1);
+    world.sendNewest(1);
     world.revision = 24;
     await world.next();
     const late = pathOf('a', 0, 21);
-    world.tell({ revision: 21, robots: [{ name: 'a', trail: late.slice(-1), trailFrom: late.length - 1 }] });
+    world.send({ revision: 21, robots: [{ name: 'a', trail: late.slice(-1), trailFrom: late.length - 1 }] });
     world.revision = 40;
-    world.hear(1);
+    world.sendNewest(1);
     await world.next();
-    assert.deepEqual(world.asked, [10, 24]);
+    assert.deepEqual(world.requests, [10, 24]);
     world.assertWhole();
   });
 
-  it('that never get so far are not asked for again and again, and then from the beginning', async () => {
+  it('are requested after a pause from the beginning if they never reach the event', async () => {
     const world = new World();
-    world.hear(99);
+    world.sendNewest(99);
     const far = { revision: 10, robots: [{ name: 'a', trail: [], trailFrom: 50 }] };
-    world.tell(far);
+    world.send(far);
     await world.next();
-    for (let n = 0; n < 10; ++n) world.tell(far);
-    assert.deepEqual([world.asked, world.rests], [[10], [1]]);
+    for (let n = 0; n < 10; ++n) world.send(far);
+    assert.deepEqual([world.requests, world.pauses], [[10], [1]]);
     await world.next();
-    world.tell(far);
-    assert.deepEqual(world.asked, [10, 0]);
+    world.send(far);
+    assert.deepEqual(world.requests, [10, 0]);
   });
 
-  it('of a session that lost its end are asked for from the beginning', async () => {
+  it('of a truncated session are requested from the beginning', async () => {
     const world = new World();
-    world.hear(99);
+    world.sendNewest(99);
     world.revision = 4;
-    world.tell({ revision: 12, robots: [{ name: 'a', trail: [], trailFrom: 50 }] });
+    world.send({ revision: 12, robots: [{ name: 'a', trail: [], trailFrom: 50 }] });
     await world.next();
     await world.next();
     world.revision = 20;
-    world.hear(1);
+    world.sendNewest(1);
     await world.next();
-    assert.deepEqual(world.asked, [10, 0]);
+    assert.deepEqual(world.requests, [10, 0]);
     world.assertWhole();
   });
 
-  it('that are wanted no more are not asked for further, nor after a failure', async () => {
+  it('are not requested after the page is left', async () => {
     const world = new World();
     world.atOnce = 3;
-    world.hear(1);
+    world.sendNewest(1);
     await world.next();
     world.leave.abort();
     await world.next();
-    assert.deepEqual([world.asked, world.filled], [[0, 3], 1]);
+    assert.deepEqual([world.requests, world.filled], [[0, 3], 1]);
     assert.ok(world.isIdle);
 
     const failing = new World();
-    failing.hear(1);
+    failing.sendNewest(1);
     failing.troubles.push(new Unreachable('x'));
     failing.leave.abort();
     await failing.next();
-    assert.deepEqual([failing.asked, failing.rests], [[0], []]);
+    assert.deepEqual([failing.requests, failing.pauses], [[0], []]);
   });
 });

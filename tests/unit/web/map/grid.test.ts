@@ -3,7 +3,7 @@ import { describe, it } from 'node:test';
 import { cellAt, placeOfCell, squareExtent, tileResolutions } from '../../../../web/src/map/grid';
 
 describe('the grid', () => {
-  it('centres a square of 256 * 2^9 cells on the origin', () => {
+  it('is a square of 256 * 2^9 cells centred on the origin', () => {
     assert.deepEqual(squareExtent(0.5), [-32768, -32768, 32768, 32768]);
   });
 
@@ -19,7 +19,7 @@ describe('the grid', () => {
     assert.deepEqual(cellAt(-12.3, 7.5, 0.25), { i: -50, j: 30 });
   });
 
-  it('puts the cell right above the origin at the bottom left of tile (256, 255)', () => {
+  it('maps the cell above and right of the origin to the bottom left of tile (256, 255)', () => {
     assert.deepEqual(placeOfCell({ i: 0, j: 0 }), { x: 256, y: 255, column: 0, row: 255 });
     assert.deepEqual(placeOfCell({ i: -1, j: -1 }), { x: 255, y: 256, column: 255, row: 0 });
   });
@@ -38,7 +38,7 @@ describe('the grid', () => {
     }
   });
 
-  it('knows no place outside the square', () => {
+  it('has no tiles outside the square', () => {
     for (const [i, j] of [
       [65536, 0],
       [-65537, 0],

@@ -10,12 +10,12 @@ const kThings = [
 ] satisfies { id: number; at: [number, number]; weight: number }[];
 
 describe('thinning', () => {
-  it('keeps what has most weight in each square, whatever the order', () => {
+  it('keeps the item of the highest weight per square, independent of order', () => {
     assert.deepEqual([...thin(kThings, 1)].sort(), [2, 4]);
     assert.deepEqual([...thin([...kThings].reverse(), 1)].sort(), [2, 4]);
   });
 
-  it('keeps everything when the squares are small', () => {
+  it('keeps all items when the squares are small', () => {
     assert.equal(thin(kThings, 0.01).size, 4);
   });
 });

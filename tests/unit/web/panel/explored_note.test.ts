@@ -2,8 +2,8 @@ import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
 import { exploredText } from '../../../../web/src/panel/explored_note';
 
-describe('who has explored', () => {
-  it('is said of one, of some, of many', () => {
+describe('the explored note', () => {
+  it('lists one, some or many robots', () => {
     assert.equal(exploredText([]), '');
     assert.equal(exploredText(['r1']), 'r1 has explored all it can reach.');
     assert.equal(exploredText(['a', 'b']), 'a and b have explored all they can reach.');

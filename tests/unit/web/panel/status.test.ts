@@ -3,13 +3,13 @@ import { describe, it } from 'node:test';
 import { Refused, Unreachable } from '../../../../web/src/api/http';
 import { troubleOf } from '../../../../web/src/panel/status';
 
-describe('trouble', () => {
-  it('reports a server that is offline apart from one that refuses', () => {
+describe('troubleOf', () => {
+  it('distinguishes an offline server from a refusal', () => {
     assert.equal(troubleOf(new Unreachable('x')).kind, 'offline');
     assert.equal(troubleOf(new Refused(503, 'x')).kind, 'error');
   });
 
-  it('repeats what the server said', () => {
+  it("contains the server's message", () => {
     assert.match(troubleOf(new Refused(503, 'Store not open: recovering')).text, /Store not open: recovering/);
   });
 });

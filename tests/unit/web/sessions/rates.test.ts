@@ -21,22 +21,22 @@ function session(scans: number, id = '1', name = 'a'): Session {
   };
 }
 
-describe('the rate of a session', () => {
-  it('is not known from one answer', () => {
+describe('session rate', () => {
+  it('is unknown after one answer', () => {
     const rates = new SessionRates();
     assert.equal(rates.of('a'), null);
     rates.learn([session(100)], 0);
     assert.equal(rates.of('a'), null);
   });
 
-  it('is scans by seconds', () => {
+  it('is scans per second', () => {
     const rates = new SessionRates();
     rates.learn([session(100)], 1000);
     rates.learn([session(130)], 3000);
     assert.equal(rates.of('a'), 15);
   });
 
-  it('forgets what is longer ago than some seconds', () => {
+  it('uses only the last seconds', () => {
     const rates = new SessionRates();
     for (let second = 0; second <= 10; second += 2) rates.learn([session(second * 50)], second * 1000);
     assert.equal(rates.of('a'), 50);
@@ -44,7 +44,7 @@ describe('the rate of a session', () => {
     assert.equal(rates.of('a'), 0);
   });
 
-  it('is never negative: an overtaken answer and a session made anew start again', () => {
+  it('is never negative: an outdated answer and a recreated session restart it', () => {
     const rates = new SessionRates();
     rates.learn([session(100)], 0);
     rates.learn([session(90)], 2000);
@@ -55,7 +55,7 @@ describe('the rate of a session', () => {
     assert.equal(rates.of('a'), null);
   });
 
-  it('goes with its session', () => {
+  it('is removed with its session', () => {
     const rates = new SessionRates();
     rates.learn([session(1), session(5, '2', 'b')], 0);
     rates.learn([session(5, '2', 'b')], 2000);

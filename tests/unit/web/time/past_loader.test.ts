@@ -5,21 +5,21 @@ import { Refused } from '../../../../web/src/api/http';
 import { PastLoader } from '../../../../web/src/time/past_loader';
 import { Timeline } from '../../../../web/src/time/timeline';
 
-/** A session whose every revision is a scan, and of which `atOnce` are told at once. */
+/** A session in which every revision is a scan, with `atOnce` revisions per page. */
 class World {
-  readonly told: string[] = [];
+  readonly log: string[] = [];
   readonly timeline = new Timeline();
   readonly leave = new AbortController();
   revision = 10;
   atOnce = 4;
-  /** The page after this revision is refused. */
+  /** The request for the page after this revision is refused. */
   refused = -1;
-  /** Called with every question. */
+  /** Called for every request. */
   meanwhile = (): void => {};
   private readonly loader = new PastLoader(this.timeline, () => this.revision, {
     fetchAfter: async (since) => this.page(since),
-    loading: (share) => this.told.push(`loading ${share}`),
-    loaded: () => this.told.push(`loaded ${this.timeline.count}`),
+    loading: (share) => this.log.push(`loading ${share}`),
+    loaded: () => this.log.push(`loaded ${this.timeline.count}`),
   });
 
   load(): Promise<void> {
@@ -27,7 +27,7 @@ class World {
   }
 
   private page(since: number): TimedTrajectory {
-    assert.ok(this.told.push(`after ${since}`) < 50, 'it comes to an end');
+    assert.ok(this.log.push(`after ${since}`) < 50, 'the requests must end');
     this.meanwhile();
     if (since === this.refused) throw new Refused(503, 'busy');
     const until = Math.min(this.revision, since + this.atOnce);
@@ -37,53 +37,53 @@ class World {
   }
 }
 
-describe('loading the past', () => {
-  it('asks for one page after the other, and is done with the last only', async () => {
+describe('loading the history', () => {
+  it('requests pages in order and finishes with the last one', async () => {
     const world = new World();
     await world.load();
-    assert.deepEqual(world.told, ['after 0', 'loading 0.4', 'after 4', 'loading 0.8', 'after 8', 'loaded 10']);
+    assert.deepEqual(world.log, ['after 0', 'loading 0.4', 'after 4', 'loading 0.8', 'after 8', 'loaded 10']);
     assert.deepEqual(world.timeline.revisionOf(9), 10);
   });
 
-  it('knows a session without scans', async () => {
+  it('accepts a session without scans', async () => {
     const world = new World();
     world.revision = 0;
     await world.load();
     await world.load();
-    assert.deepEqual(world.told, ['after 0', 'loaded 0']);
+    assert.deepEqual(world.log, ['after 0', 'loaded 0']);
   });
 
-  it('goes on behind what has come when a page fails', async () => {
+  it('continues after the received pages when a page fails', async () => {
     const world = new World();
     world.refused = 4;
     await assert.rejects(world.load(), Refused);
-    assert.deepEqual(world.told, ['after 0', 'loading 0.4', 'after 4']);
+    assert.deepEqual(world.log, ['after 0', 'loading 0.4', 'after 4']);
     world.refused = -1;
     await world.load();
-    assert.deepEqual(world.told.slice(3), ['after 4', 'loading 0.8', 'after 8', 'loaded 10']);
+    assert.deepEqual(world.log.slice(3), ['after 4', 'loading 0.8', 'after 8', 'loaded 10']);
   });
 
-  it('takes what comes later when it is looked for, and asks for nothing else', async () => {
+  it('requests only later pages on the next load', async () => {
     const world = new World();
     await world.load();
     await world.load();
     world.revision = 16;
     await world.load();
-    assert.deepEqual(world.told.slice(5), ['loaded 10', 'after 10', 'after 14', 'loaded 16']);
+    assert.deepEqual(world.log.slice(5), ['loaded 10', 'after 10', 'after 14', 'loaded 16']);
   });
 
-  it('comes to an end though the session grows with every answer', async () => {
+  it('ends although the session grows with every answer', async () => {
     const world = new World();
     world.meanwhile = () => (world.revision += 4);
     await world.load();
-    assert.deepEqual(world.told.slice(-2), ['after 8', 'loaded 12']);
+    assert.deepEqual(world.log.slice(-2), ['after 8', 'loaded 12']);
   });
 
-  it('ends with the visit', async () => {
+  it('ends when the page is left', async () => {
     const world = new World();
     world.meanwhile = () => world.leave.abort();
     await world.load();
-    assert.deepEqual(world.told, ['after 0']);
+    assert.deepEqual(world.log, ['after 0']);
     assert.equal(world.timeline.count, 0);
   });
 });

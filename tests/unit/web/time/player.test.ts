@@ -3,7 +3,7 @@ import { describe, it } from 'node:test';
 import { Player } from '../../../../web/src/time/player';
 import { lastUpTo } from '../../../../web/src/time/search';
 
-/** Scans every second, and a clock that the test sets. */
+/** A player of one scan per second, with a clock that the test sets. */
 function setUp(count = 100): { player: Player; clock: { now: number }; scans: { count: number } } {
   const clock = { now: 1_000 };
   const scans = { count };
@@ -19,13 +19,13 @@ function setUp(count = 100): { player: Player; clock: { now: number }; scans: { 
 }
 
 describe('a player', () => {
-  it('has nothing due before it plays', () => {
+  it('has no scan due before it plays', () => {
     const { player } = setUp();
     assert.equal(player.due(), null);
     assert.ok(!player.isPlaying);
   });
 
-  it('plays from where it is told, as fast as it is told', () => {
+  it('plays from the given scan at the given speed', () => {
     for (const speed of [1, 10, 50]) {
       const { player, clock } = setUp();
       player.setSpeed(speed);
@@ -36,7 +36,7 @@ describe('a player', () => {
     }
   });
 
-  it('skips what it was not asked about, and never is behind', () => {
+  it('skips scans between requests and never lags', () => {
     const { player, clock } = setUp();
     player.setSpeed(2);
     player.play(0);
@@ -44,7 +44,7 @@ describe('a player', () => {
     assert.equal(player.due(), 60);
   });
 
-  it('goes on from where it is at another speed', () => {
+  it('continues from its position when the speed changes', () => {
     const { player, clock } = setUp();
     player.setSpeed(1);
     player.play(0);
@@ -55,7 +55,7 @@ describe('a player', () => {
     assert.equal(player.due(), 20);
   });
 
-  it('pauses with the last scan', () => {
+  it('pauses at the last scan', () => {
     const { player, clock } = setUp();
     player.setSpeed(100);
     player.play(0);
@@ -65,7 +65,7 @@ describe('a player', () => {
     assert.equal(player.due(), null);
   });
 
-  it('goes on to scans that came while it played', () => {
+  it('continues to scans that arrive while it plays', () => {
     const { player, clock, scans } = setUp(10);
     player.setSpeed(1);
     player.play(0);

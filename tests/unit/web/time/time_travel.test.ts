@@ -7,16 +7,16 @@ import { TimeTravel } from '../../../../web/src/time/time_travel';
 
 const kKeepMs = 10_000;
 
-/** A server that weaves `perAsk` entries between two questions, and a clock that runs while somebody waits. */
+/** A server that replays `perRequest` entries between two requests, and a clock that advances during waits. */
 class World {
-  readonly asked: string[] = [];
-  readonly told: string[] = [];
+  readonly requests: string[] = [];
+  readonly events: string[] = [];
   readonly leave = new AbortController();
-  perAsk = Infinity;
+  perRequest = Infinity;
   now = 0;
   trouble: Error | null = null;
   failed: ((error: unknown) => void) | null = null;
-  private readonly woven = new Map<string, number>();
+  private readonly replayed = new Map<string, number>();
   private readonly keepers: (() => void)[] = [];
   readonly travel: TimeTravel;
 
@@ -25,36 +25,39 @@ class World {
     this.travel = new TimeTravel(
       {
         start: async (revision) => {
-          this.asked.push(`start ${revision}`);
+          this.requests.push(`start ${revision}`);
           if (this.trouble) throw this.trouble;
-          this.woven.set(String(revision), this.woven.get(String(revision)) ?? Math.min(revision, this.perAsk));
+          this.replayed.set(
+            String(revision),
+            this.replayed.get(String(revision)) ?? Math.min(revision, this.perRequest),
+          );
           return this.weave(String(revision));
         },
         progress: async (id) => {
-          this.asked.push(`progress ${id}`);
+          this.requests.push(`progress ${id}`);
           if (this.trouble) throw this.trouble;
-          if (!this.woven.has(id)) throw new Refused(404, 'no such weave');
-          this.woven.set(id, Math.min(Number(id), (this.woven.get(id) ?? 0) + this.perAsk));
+          if (!this.replayed.has(id)) throw new Refused(404, 'no such weave');
+          this.replayed.set(id, Math.min(Number(id), (this.replayed.get(id) ?? 0) + this.perRequest));
           return this.weave(id);
         },
-        cancel: async (id) => void this.asked.push(`cancel ${id}`),
+        cancel: async (id) => void this.requests.push(`cancel ${id}`),
         load: async (id, failed) => {
-          this.asked.push(`load ${id}`);
+          this.requests.push(`load ${id}`);
           this.failed = failed;
           return source;
         },
       },
       {
-        arrived: (revision) => this.told.push(`arrived ${revision}`),
-        weaving: (woven, until) => this.told.push(`weaving ${woven}/${until}`),
-        failed: (error, trying) => this.told.push(`failed ${(error as Error).message} ${trying}`),
-        rested: () => this.told.push('rested'),
+        arrived: (revision) => this.events.push(`arrived ${revision}`),
+        weaving: (woven, until) => this.events.push(`weaving ${woven}/${until}`),
+        failed: (error, trying) => this.events.push(`failed ${(error as Error).message} ${trying}`),
+        rested: () => this.events.push('rested'),
       },
       this.leave.signal,
       {
         now: () => this.now,
         rest: (durationMs) => {
-          // The watch over what is shown rests until the test says so.
+          // The check of the shown replay job waits until the test calls checkShown().
           if (durationMs === kKeepMs) return new Promise((resolve) => this.keepers.push(resolve));
           this.now += durationMs;
           return new Promise((resolve) => setImmediate(resolve));
@@ -63,149 +66,149 @@ class World {
     );
   }
 
-  lookAfter(): void {
+  checkShown(): void {
     for (const keeper of this.keepers.splice(0)) keeper();
   }
 
   forget(): void {
-    this.woven.clear();
+    this.replayed.clear();
   }
 
   async settle(): Promise<void> {
     for (let turn = 0; turn < 200; ++turn) await new Promise((resolve) => setImmediate(resolve));
   }
 
-  /** Waits until something is told, but not for ever. */
-  async hears(expected: (line: string) => boolean): Promise<void> {
-    for (let turn = 0; turn < 2_000 && !this.told.some(expected); ++turn) {
+  /** Waits for an expected event, with an upper bound. */
+  async waitFor(expected: (line: string) => boolean): Promise<void> {
+    for (let turn = 0; turn < 2_000 && !this.events.some(expected); ++turn) {
       await new Promise((resolve) => setImmediate(resolve));
     }
-    assert.ok(this.told.some(expected), this.told.join());
+    assert.ok(this.events.some(expected), this.events.join());
   }
 
   private weave(id: string): Weave {
-    const woven = this.woven.get(id) ?? 0;
+    const woven = this.replayed.get(id) ?? 0;
     return { id, state: woven < Number(id) ? 'weaving' : 'done', woven, until: Number(id), exclusions: 0, reason: '' };
   }
 }
 
 describe('travelling in time', () => {
-  it('asks for a weave, waits until it is done and loads it', async () => {
+  it('starts a replay job, waits until it is done and loads it', async () => {
     const world = new World();
-    world.perAsk = 10;
+    world.perRequest = 10;
     world.travel.go(25);
     await world.settle();
-    assert.deepEqual(world.asked, ['start 25', 'progress 25', 'progress 25', 'load 25']);
-    assert.deepEqual(world.told, ['arrived 25', 'rested']);
+    assert.deepEqual(world.requests, ['start 25', 'progress 25', 'progress 25', 'load 25']);
+    assert.deepEqual(world.events, ['arrived 25', 'rested']);
   });
 
-  it('has one weave under way, and goes on to the newest that was wanted meanwhile', async () => {
+  it('runs one replay job at a time and continues with the newest request', async () => {
     const world = new World();
     for (let revision = 1; revision <= 50; ++revision) world.travel.go(revision);
     await world.settle();
-    assert.deepEqual(world.asked, ['start 1', 'load 1', 'start 50', 'load 50']);
-    assert.deepEqual(world.told, ['arrived 1', 'arrived 50', 'rested']);
+    assert.deepEqual(world.requests, ['start 1', 'load 1', 'start 50', 'load 50']);
+    assert.deepEqual(world.events, ['arrived 1', 'arrived 50', 'rested']);
   });
 
-  it('asks for nothing where it is already', async () => {
+  it('makes no request for the current revision', async () => {
     const world = new World();
     world.travel.go(5);
     await world.settle();
     world.travel.go(5);
     await world.settle();
-    assert.deepEqual(world.asked, ['start 5', 'load 5']);
+    assert.deepEqual(world.requests, ['start 5', 'load 5']);
   });
 
-  it('tells how far a long weave is, and gives it up for something earlier', async () => {
+  it('reports the progress of a long replay job and cancels it for an earlier revision', async () => {
     const world = new World();
-    world.perAsk = 1;
+    world.perRequest = 1;
     world.travel.go(1_000);
-    await world.hears((line) => line.startsWith('weaving'));
+    await world.waitFor((line) => line.startsWith('weaving'));
     world.travel.go(3);
     await world.settle();
-    assert.ok(world.asked.includes('cancel 1000'), world.asked.join());
-    assert.deepEqual(world.told.slice(-2), ['arrived 3', 'rested']);
-    assert.ok(!world.told.includes('arrived 1000'));
+    assert.ok(world.requests.includes('cancel 1000'), world.requests.join());
+    assert.deepEqual(world.events.slice(-2), ['arrived 3', 'rested']);
+    assert.ok(!world.events.includes('arrived 1000'));
   });
 
-  it('goes nowhere any more when it is stopped', async () => {
+  it('does not arrive after stop()', async () => {
     const world = new World();
-    world.perAsk = 1;
+    world.perRequest = 1;
     world.travel.go(1_000);
     await new Promise((resolve) => setImmediate(resolve));
     world.travel.stop();
     await world.settle();
-    assert.ok(world.asked.includes('cancel 1000'));
-    assert.ok(!world.told.some((line) => line.startsWith('arrived')));
+    assert.ok(world.requests.includes('cancel 1000'));
+    assert.ok(!world.events.some((line) => line.startsWith('arrived')));
   });
 
-  it('tries again while the server is away or busy', async () => {
+  it('retries while the server is offline or busy', async () => {
     for (const trouble of [new Unreachable('away'), new Refused(503, 'busy')]) {
       const world = new World();
       world.trouble = trouble;
       world.travel.go(7);
-      await world.hears(() => world.told.length >= 3);
-      assert.equal(world.told[2], `failed ${trouble.message} true`);
-      assert.ok(world.now >= 3_000, 'ever more slowly');
+      await world.waitFor(() => world.events.length >= 3);
+      assert.equal(world.events[2], `failed ${trouble.message} true`);
+      assert.ok(world.now >= 3_000, 'the delays must increase');
       world.trouble = null;
       await world.settle();
-      assert.deepEqual(world.told.slice(-2), ['arrived 7', 'rested']);
+      assert.deepEqual(world.events.slice(-2), ['arrived 7', 'rested']);
     }
   });
 
-  it('stays where it is when the server refuses, until something else is wanted', async () => {
+  it('stays at its revision after a refusal until the next request', async () => {
     const world = new World();
     world.travel.go(4);
     await world.settle();
     world.trouble = new Refused(400, 'no');
     world.travel.go(7);
     await world.settle();
-    assert.deepEqual(world.told.slice(2), ['failed no false', 'rested']);
+    assert.deepEqual(world.events.slice(2), ['failed no false', 'rested']);
     world.trouble = null;
     world.travel.go(7);
     await world.settle();
-    assert.deepEqual(world.told.slice(-2), ['arrived 7', 'rested']);
+    assert.deepEqual(world.events.slice(-2), ['arrived 7', 'rested']);
   });
 
-  it('looks after what is shown, and has it woven again when it is gone', async () => {
+  it('checks the shown replay job and starts it again when it is gone', async () => {
     const world = new World();
     world.travel.go(4);
     await world.settle();
-    world.lookAfter();
+    world.checkShown();
     await world.settle();
-    assert.deepEqual(world.asked, ['start 4', 'load 4', 'progress 4']);
+    assert.deepEqual(world.requests, ['start 4', 'load 4', 'progress 4']);
     world.forget();
-    world.lookAfter();
+    world.checkShown();
     await world.settle();
-    assert.deepEqual(world.asked.slice(3), ['progress 4', 'start 4', 'load 4']);
-    assert.deepEqual(world.told.filter((line) => line === 'arrived 4').length, 2);
+    assert.deepEqual(world.requests.slice(3), ['progress 4', 'start 4', 'load 4']);
+    assert.deepEqual(world.events.filter((line) => line === 'arrived 4').length, 2);
   });
 
-  it('loads anew when another layer could not be had', async () => {
+  it('reloads when another layer fails', async () => {
     const world = new World();
     world.travel.go(4);
     await world.settle();
     world.failed?.(new Unreachable('away'));
     await world.settle();
-    assert.deepEqual(world.told.slice(2), ['failed away true', 'arrived 4', 'rested']);
+    assert.deepEqual(world.events.slice(2), ['failed away true', 'arrived 4', 'rested']);
     world.failed?.(new Refused(500, 'broken'));
     await world.settle();
-    assert.deepEqual(world.told.slice(5), ['failed broken false']);
+    assert.deepEqual(world.events.slice(5), ['failed broken false']);
   });
 
-  it('says nothing more when the session is left', async () => {
+  it('reports nothing after the session is left', async () => {
     const world = new World();
     world.travel.go(4);
     world.leave.abort();
     await world.settle();
-    assert.deepEqual(world.told, []);
+    assert.deepEqual(world.events, []);
   });
 
-  it('gives back to the server all but the newest dozen of moments, and these in the end', async () => {
+  it('cancels all but the newest twelve replay jobs, and these at the end', async () => {
     const world = new World();
     for (let revision = 1; revision <= 14; ++revision) {
       world.travel.go(revision);
-      await world.hears((line) => line === `arrived ${revision}`);
+      await world.waitFor((line) => line === `arrived ${revision}`);
     }
     assert.deepEqual(cancelled(world), ['cancel 1', 'cancel 2']);
     world.leave.abort();
@@ -214,6 +217,6 @@ describe('travelling in time', () => {
   });
 });
 
-function cancelled({ asked }: World): string[] {
-  return asked.filter((line) => line.startsWith('cancel'));
+function cancelled({ requests }: World): string[] {
+  return requests.filter((line) => line.startsWith('cancel'));
 }

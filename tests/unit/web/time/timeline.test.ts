@@ -4,7 +4,7 @@ import type { TimedTrack } from '../../../../web/src/api/history';
 import type { Point } from '../../../../web/src/api/types';
 import { Timeline } from '../../../../web/src/time/timeline';
 
-/** @param scans [revision, stamp] of each; the robot moves a metre along x every scan */
+/** @param scans [revision, stamp] of each; the robot moves 1 m along x per scan */
 function track(robot: string, scans: [revision: number, stamp: number][]): TimedTrack {
   return {
     robot,
@@ -26,7 +26,7 @@ function timesOf(line: Timeline): number[] {
 }
 
 describe('a timeline', () => {
-  it('has the scans of all robots in the order of the log', () => {
+  it('contains the scans of all robots in log order', () => {
     const line = timeline(
       track('a', [
         [3, 100],
@@ -46,7 +46,7 @@ describe('a timeline', () => {
     assert.equal(line.sinceStart(3), 3);
   });
 
-  it('puts a clock that is unlike the others where the line stands', () => {
+  it('places a different clock at the current end of the timeline', () => {
     const line = timeline(
       track('a', [
         [1, 1_700_000_000],
@@ -64,7 +64,7 @@ describe('a timeline', () => {
     assert.ok(line.isWallClock);
   });
 
-  it('has a third robot share the second one\u2019s clock', () => {
+  it('lets a third robot share the second robot\u2019s clock', () => {
     const tracks = [
       track('a', [[1, 1_700_000_000]]),
       track('b', [
@@ -76,7 +76,7 @@ describe('a timeline', () => {
     assert.deepEqual(timesOf(timeline(...tracks)).at(-1), 1_700_000_023);
   });
 
-  it('counts from the first scan where clocks tell no time of day', () => {
+  it('counts from the first scan if stamps are not Unix time', () => {
     const line = timeline(
       track('a', [
         [1, 33],
@@ -88,7 +88,7 @@ describe('a timeline', () => {
     assert.deepEqual(timesOf(line), [33, 34, 34]);
   });
 
-  it('never goes back, be it for a jitter or for a clock that is set anew', () => {
+  it('never goes back, neither for jitter nor for a clock step', () => {
     assert.deepEqual(
       timesOf(
         timeline(
@@ -116,7 +116,7 @@ describe('a timeline', () => {
     );
   });
 
-  it('finds scans by time, by revision and by how long it plays', () => {
+  it('finds scans by time, by revision and by playing time', () => {
     const line = timeline(
       track('a', [
         [3, 100],
@@ -138,7 +138,7 @@ describe('a timeline', () => {
     );
   });
 
-  it('cuts times without scans short when it is played, and tells them', () => {
+  it('shortens pauses without scans when it plays and reports them', () => {
     const line = timeline(
       track('a', [
         [1, 0],
@@ -157,7 +157,7 @@ describe('a timeline', () => {
     assert.equal(line.sinceStart(3), 3_606);
   });
 
-  it('knows where robots were, and how they had come there', () => {
+  it('returns robot poses and their trajectories', () => {
     const line = timeline(
       track('a', [
         [1, 0],
@@ -170,7 +170,7 @@ describe('a timeline', () => {
       ]),
     );
     const [a, ...others] = line.whereabouts(1);
-    assert.deepEqual(others, [], 'b had not begun');
+    assert.deepEqual(others, [], 'b has no scan before');
     assert.deepEqual(a, {
       robot: 'a',
       pose: { x: 1, y: 0, yaw: 0.1 },
@@ -191,7 +191,7 @@ describe('a timeline', () => {
     );
   });
 
-  it('grows by what came since, and leaves aside what it knows', () => {
+  it('adds new scans and ignores known ones', () => {
     const line = timeline(
       track('a', [
         [1, 0],

@@ -26,14 +26,14 @@ function timelineFrom(start: number): Timeline {
   return line;
 }
 
-describe('words for times', () => {
+describe('time texts', () => {
   it('count from the start', () => {
     assert.equal(words.elapsed(0), '+00:00');
     assert.equal(words.elapsed(95.9), '+01:35');
     assert.equal(words.elapsed(3_695), '+1:01:35');
   });
 
-  it('are short for long times', () => {
+  it('are short for long durations', () => {
     assert.deepEqual([45, 600, 3_600, 3_720, 90_000].map(words.duration), [
       '45 s',
       '10 min',
@@ -43,7 +43,7 @@ describe('words for times', () => {
     ]);
   });
 
-  it('tell the time of day only when a clock knows it', () => {
+  it('contain the time of day only for Unix time', () => {
     assert.equal(words.scanOf(timelineFrom(12), 1), 'scan 2 of 2, +01:35');
     assert.equal(words.dateOf(timelineFrom(12), 1), '');
     const noon = new Date(2026, 4, 3, 12, 1, 30).getTime() / 1000;
@@ -51,12 +51,12 @@ describe('words for times', () => {
     assert.match(words.dateOf(timelineFrom(noon), 1), /2026/);
   });
 
-  it('say how much of the past has come, once it is something', () => {
+  it('contain the loaded share of the history if it is not zero', () => {
     assert.equal(words.loading(0), 'Loading the history\u2026');
     assert.equal(words.loading(0.337), 'Loading the history\u2026 33 %');
   });
 
-  it('say what is wrong, and what happens next', () => {
+  it('describe the error and the next step', () => {
     assert.match(words.troubleOf(new Unreachable('x'), true), /^Offline: .* Trying again\.$/);
     assert.match(words.troubleOf(new Refused(503, 'too many maps'), true), /reports: too many maps\. Trying again\.$/);
     assert.match(words.troubleOf(new Refused(404, 'x'), true), /woven again/);
