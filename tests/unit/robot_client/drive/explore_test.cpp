@@ -19,7 +19,7 @@ struct Exploring {
 
     /// Runs until the robot requests a goal.
     /// @return whether it does so within `seconds`
-    bool asks_within(double seconds) {
+    bool requests_goal_within(double seconds) {
         for (int n = 0; n < static_cast<int>(seconds / kScanPeriod) && !explore->is_asking(); ++n)
             driven.run(kScanPeriod * 1.5);
         return explore->is_asking();
@@ -34,17 +34,17 @@ struct Exploring {
 TEST(Explore, TurnsOnceBeforeTheFirstRequest) {
     Exploring robot(walled({}));
     EXPECT_FALSE(robot.explore->is_asking());
-    EXPECT_FALSE(robot.asks_within(3.5));
-    EXPECT_TRUE(robot.asks_within(2.0));
+    EXPECT_FALSE(robot.requests_goal_within(3.5));
+    EXPECT_TRUE(robot.requests_goal_within(2.0));
     EXPECT_EQ(robot.driven.trajectory().back(), (Point2{-2.0, 0.0}));
 }
 
 TEST(Explore, FollowsThePathAndFacesTheTargetBeforeTheNextRequest) {
     Exploring robot(walled({}));
-    ASSERT_TRUE(robot.asks_within(6.0));
+    ASSERT_TRUE(robot.requests_goal_within(6.0));
     robot.explore->go({{-2.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}}, {-1.0, 1.0});
     EXPECT_FALSE(robot.explore->is_asking());
-    ASSERT_TRUE(robot.asks_within(30.0));
+    ASSERT_TRUE(robot.requests_goal_within(30.0));
     EXPECT_LT(std::hypot(robot.pose().x - 1.0, robot.pose().y - 1.0), 0.05);
     EXPECT_LT(std::abs(normalize_angle(robot.pose().yaw - std::numbers::pi)), 0.05);
     EXPECT_EQ(robot.explore->times_blocked(), 0);
@@ -53,9 +53,9 @@ TEST(Explore, FollowsThePathAndFacesTheTargetBeforeTheNextRequest) {
 
 TEST(Explore, RequestsAnotherGoalIfThePathIsBlocked) {
     Exploring robot(walled({{0.0, -0.5, 0.4, 0.5}}));
-    ASSERT_TRUE(robot.asks_within(6.0));
+    ASSERT_TRUE(robot.requests_goal_within(6.0));
     robot.explore->go({{-2.0, 0.0}, {1.0, 0.0}}, {2.0, 0.0});
-    ASSERT_TRUE(robot.asks_within(30.0));
+    ASSERT_TRUE(robot.requests_goal_within(30.0));
     EXPECT_LT(robot.pose().x, -0.3);
     EXPECT_EQ(robot.explore->times_blocked(), 1);
     EXPECT_EQ(robot.driven.simulator().collisions(), 0U);
@@ -63,12 +63,12 @@ TEST(Explore, RequestsAnotherGoalIfThePathIsBlocked) {
 
 TEST(Explore, RecoversFromRepeatedBlocking) {
     Exploring robot(walled({{0.0, -0.5, 0.4, 0.5}}));
-    ASSERT_TRUE(robot.asks_within(6.0));
+    ASSERT_TRUE(robot.requests_goal_within(6.0));
     Pose2 blocked_at;
     for (int n = 1; n <= 3; ++n) {
         blocked_at = robot.pose();
         robot.explore->go({{robot.pose().x, robot.pose().y}, {1.0, 0.0}}, {2.0, 0.0});
-        ASSERT_TRUE(robot.asks_within(30.0));
+        ASSERT_TRUE(robot.requests_goal_within(30.0));
         EXPECT_EQ(robot.explore->times_blocked(), n);
     }
     EXPECT_GT(std::hypot(robot.pose().x - blocked_at.x, robot.pose().y - blocked_at.y), 0.3);
@@ -77,16 +77,16 @@ TEST(Explore, RecoversFromRepeatedBlocking) {
 
 TEST(Explore, WaitsForTheGivenTime) {
     Exploring robot(walled({}));
-    ASSERT_TRUE(robot.asks_within(6.0));
+    ASSERT_TRUE(robot.requests_goal_within(6.0));
     const std::size_t scans = robot.driven.trajectory().size();
     robot.explore->wait(1.0);
-    ASSERT_TRUE(robot.asks_within(6.0));
+    ASSERT_TRUE(robot.requests_goal_within(6.0));
     EXPECT_EQ(robot.driven.trajectory().size() - scans, 10U);
 }
 
 TEST(Explore, ReportsThatItIsDone) {
     Exploring robot(walled({}));
-    ASSERT_TRUE(robot.asks_within(6.0));
+    ASSERT_TRUE(robot.requests_goal_within(6.0));
     EXPECT_EQ(robot.explore->remarks(), "exploring: 0 m driven in 4 s");
     robot.explore->finish();
     EXPECT_TRUE(robot.driven.is_done());

@@ -54,13 +54,13 @@ private:
 
 class LocatingSourceTest : public testing::Test {
 protected:
-    LocatingSource::Tell tell() {
+    LocatingSource::Tell record_messages() {
         return [this](const std::string& text) { messages_.push_back(text); };
     }
 
     LocatingSource replayed(std::vector<Observation> turns) {
         auto recording = std::make_unique<RecordedSource>(std::move(turns));
-        return {std::make_unique<ReplayedSource>(std::move(recording)), Pose2{1.0, 2.0, 0.5}, tell(),
+        return {std::make_unique<ReplayedSource>(std::move(recording)), Pose2{1.0, 2.0, 0.5}, record_messages(),
                 std::chrono::milliseconds(0)};
     }
 
@@ -164,7 +164,7 @@ TEST_F(LocatingSourceTest, RepeatsTheRequestIfTheServerIsOverloaded) {
 }
 
 TEST_F(LocatingSourceTest, StopEndsTheWaitBeforeARetry) {
-    LocatingSource source(std::make_unique<WaitingLidar>(lidar_.turns_at(kHere, 20)), {}, tell(),
+    LocatingSource source(std::make_unique<WaitingLidar>(lidar_.turns_at(kHere, 20)), {}, record_messages(),
                           std::chrono::hours(1));
     source.ask_with(answers({Error{Errc::kOverloaded, "too many robots ask at this moment; ask again soon"}}));
     const Given given = next(source, [&] { source.stop(); });
@@ -182,7 +182,7 @@ TEST_F(LocatingSourceTest, ReportsThatTheLidarWasNeverStationary) {
 }
 
 TEST_F(LocatingSourceTest, StopEndsAPendingRequest) {
-    LocatingSource source(std::make_unique<WaitingLidar>(lidar_.turns_at(kHere, 20)), {}, tell());
+    LocatingSource source(std::make_unique<WaitingLidar>(lidar_.turns_at(kHere, 20)), {}, record_messages());
     source.ask_with(never_answers());
     const Given given = next(source, [&] { source.stop(); });
     EXPECT_EQ(requests_, 1U);
@@ -192,7 +192,7 @@ TEST_F(LocatingSourceTest, StopEndsAPendingRequest) {
 }
 
 TEST_F(LocatingSourceTest, StopWhileStationaryGivesTheHeldTurns) {
-    LocatingSource source(std::make_unique<WaitingLidar>(lidar_.turns_at(kHere, 12)), {}, tell());
+    LocatingSource source(std::make_unique<WaitingLidar>(lidar_.turns_at(kHere, 12)), {}, record_messages());
     source.ask_with(answers({kFound}));
     for (int n = 0; n < 9; ++n) EXPECT_TRUE(next(source).value());
     const Given tenth = next(source, [&] { source.stop(); });
@@ -202,7 +202,7 @@ TEST_F(LocatingSourceTest, StopWhileStationaryGivesTheHeldTurns) {
 }
 
 TEST_F(LocatingSourceTest, StopBeforeTheStartGivesNothing) {
-    LocatingSource source(std::make_unique<WaitingLidar>(lidar_.turns_at(kHere, 12)), {}, tell());
+    LocatingSource source(std::make_unique<WaitingLidar>(lidar_.turns_at(kHere, 12)), {}, record_messages());
     source.ask_with(never_answers());
     source.stop();
     const Given given = next(source);
@@ -213,7 +213,7 @@ TEST_F(LocatingSourceTest, StopBeforeTheStartGivesNothing) {
 TEST_F(LocatingSourceTest, FailingLidarEndsTheSourceAndDropsHeldTurns) {
     auto recording = std::make_unique<RecordedSource>(lidar_.turns_at(kHere, 20));
     recording->fail_after(15);
-    LocatingSource source(std::make_unique<ReplayedSource>(std::move(recording)), {}, tell());
+    LocatingSource source(std::make_unique<ReplayedSource>(std::move(recording)), {}, record_messages());
     source.ask_with(answers({kFound}));
     EXPECT_EQ(poses_of(source).size(), 12U);
     ASSERT_FALSE(outcome_);
@@ -223,7 +223,7 @@ TEST_F(LocatingSourceTest, FailingLidarEndsTheSourceAndDropsHeldTurns) {
 TEST_F(LocatingSourceTest, CanWaitOnlyForARecording) {
     auto source = replayed({});
     EXPECT_TRUE(source.can_wait());
-    LocatingSource live(std::make_unique<WaitingLidar>(std::vector<Observation>{}), {}, tell());
+    LocatingSource live(std::make_unique<WaitingLidar>(std::vector<Observation>{}), {}, record_messages());
     EXPECT_FALSE(live.can_wait());
 }
 

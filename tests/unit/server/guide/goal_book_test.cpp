@@ -35,7 +35,7 @@ protected:
         return goal.path.points.back().x < 1.5 ? 'l' : 'r';
     }
 
-    planning::NextGoal ask(RobotIndex robot) {
+    planning::NextGoal request(RobotIndex robot) {
         return book_.next(session_, maps_, robot, {1.2, 0.25}, now_, kPoint).value();
     }
 
@@ -122,15 +122,15 @@ TEST_F(GoalBookTest, SessionsDoNotShareGoals) {
 
 TEST_F(GoalBookTest, UnobservableFrontierIsExcludedForAllRobots) {
     for (const char* robot : {"a", "b"}) join(robot);
-    const auto left = ask(0);
+    const auto left = request(0);
     EXPECT_EQ(left.given_up, 0U);
     scan_at(left, 0);
-    const auto right = ask(0);
+    const auto right = request(0);
     EXPECT_GT(right.path.points.back().x, 1.5);
     EXPECT_EQ(right.given_up, 3U);
     EXPECT_EQ(next(1), '-') << "the left frontier is excluded for the other robot too";
     scan_at(right, 0);
-    const auto end = ask(0);
+    const auto end = request(0);
     EXPECT_EQ(end.outcome, Exploration::kComplete);
     EXPECT_EQ(end.given_up, 6U);
     EXPECT_EQ(next(1), 'c');
@@ -138,9 +138,9 @@ TEST_F(GoalBookTest, UnobservableFrontierIsExcludedForAllRobots) {
 
 TEST_F(GoalBookTest, RobotThatHasNotObservedKeepsItsGoal) {
     join("a");
-    const auto goal = ask(0);
+    const auto goal = request(0);
     const auto expect_same_goal = [&](const char* condition) {
-        const auto again = ask(0);
+        const auto again = request(0);
         EXPECT_EQ(again.goal->cell, goal.goal->cell) << condition;
         EXPECT_EQ(again.goal->target, goal.goal->target) << condition;
         EXPECT_EQ(again.given_up, 0U) << condition;
@@ -155,41 +155,41 @@ TEST_F(GoalBookTest, RobotThatHasNotObservedKeepsItsGoal) {
 
 TEST_F(GoalBookTest, IgnoresScansFromBeforeTheGoal) {
     join("a");
-    scan_at(ask(0), 0);
-    EXPECT_EQ(ask(0).given_up, 3U);
+    scan_at(request(0), 0);
+    EXPECT_EQ(request(0).given_up, 3U);
     start_session();
-    const auto goal = ask(0);
-    EXPECT_EQ(ask(0).goal->target, goal.goal->target);
+    const auto goal = request(0);
+    EXPECT_EQ(request(0).goal->target, goal.goal->target);
     scan_at(goal, 0);
-    EXPECT_EQ(ask(0).given_up, 3U);
+    EXPECT_EQ(request(0).given_up, 3U);
 }
 
 TEST_F(GoalBookTest, FiveSecondsAtTheGoalCountAsObservation) {
     join("a");
-    const auto goal = ask(0);
+    const auto goal = request(0);
     for (int second = 0; second < 10; ++second) scan_at(goal, 0, 3.0);
     for (int second = 0; second < 5; ++second) {
-        EXPECT_EQ(ask(0).given_up, 0U) << "the 5 s begin with the first request from the goal";
+        EXPECT_EQ(request(0).given_up, 0U) << "the 5 s begin with the first request from the goal";
         scan_at(goal, 0, 3.0);
     }
-    EXPECT_EQ(ask(0).given_up, 3U);
+    EXPECT_EQ(request(0).given_up, 3U);
 }
 
 TEST_F(GoalBookTest, CellThatIsNoLongerFrontierIsNotGivenUp) {
     join("a");
     const auto before = maps_.classes;
-    scan_at(ask(0), 0);
-    EXPECT_EQ(ask(0).given_up, 3U);
+    scan_at(request(0), 0);
+    EXPECT_EQ(request(0).given_up, 3U);
     maps_.revision = 1;
     maps_.classes = testing_support::drawn({"##############################", //
                                             "f............................f", //
                                             ".............................f", //
                                             "f............................f", //
                                             "##############################"});
-    EXPECT_EQ(ask(0).given_up, 2U);
+    EXPECT_EQ(request(0).given_up, 2U);
     maps_.classes = before;
     maps_.revision = 2;
-    const auto after = ask(0);
+    const auto after = request(0);
     EXPECT_EQ(after.given_up, 2U);
     EXPECT_EQ(after.goal->target, (grid::Cell{0, 2})) << "the middle cell is a frontier cell again";
 }
@@ -202,35 +202,35 @@ TEST_F(GoalBookTest, RecurringFrontierIsGivenUpAfterTwoObservations) {
                                                 "#............................f", //
                                                 "#............................f", //
                                                 "##############################"});
-    for (int look = 0; look < 2; ++look) {
-        const auto goal = ask(0);
+    for (int observation = 0; observation < 2; ++observation) {
+        const auto goal = request(0);
         EXPECT_EQ(goal.goal->target.i, 0) << "the left frontier is nearer";
         EXPECT_EQ(goal.given_up, 0U);
         scan_at(goal, 0);
         maps_.classes = closed;
         maps_.revision += 1;
-        EXPECT_GT(ask(0).goal->target.i, 0) << "the left end is closed";
+        EXPECT_GT(request(0).goal->target.i, 0) << "the left end is closed";
         maps_.classes = open;
         maps_.revision += 1;
     }
-    const auto goal = ask(0);
+    const auto goal = request(0);
     EXPECT_EQ(goal.given_up, 3U);
     EXPECT_GT(goal.goal->target.i, 0) << "the left frontier was observed twice";
     maps_.classes = closed;
     maps_.revision += 1;
-    EXPECT_EQ(ask(0).given_up, 0U) << "only FRONTIER cells are given up";
+    EXPECT_EQ(request(0).given_up, 0U) << "only FRONTIER cells are given up";
 }
 
 TEST_F(GoalBookTest, EarlierMapsDoNotRestoreGivenUpCells) {
     join("a");
     maps_.revision = 5;
-    scan_at(ask(0), 0);
-    EXPECT_EQ(ask(0).given_up, 3U);
+    scan_at(request(0), 0);
+    EXPECT_EQ(request(0).given_up, 3U);
     auto earlier = maps_;
     earlier.revision = 4;
     earlier.classes = testing_support::drawn({"....................", "....................", "...................."});
     ASSERT_TRUE(book_.next(session_, earlier, 0, {1.2, 0.25}, now_, kPoint));
-    EXPECT_EQ(ask(0).given_up, 3U);
+    EXPECT_EQ(request(0).given_up, 3U);
 }
 
 TEST_F(GoalBookTest, RestoresTheOldestCellsBeyondTheLimit) {
@@ -239,9 +239,9 @@ TEST_F(GoalBookTest, RestoresTheOldestCellsBeyondTheLimit) {
     maps_.classes = testing_support::drawn(std::vector<std::string_view>(300, row));
     auto options = kPoint;
     options.standoff_m = 100.0;
-    const auto ask_here = [&] { return book_.next(session_, maps_, 0, {0.05, 0.05}, now_, options).value(); };
-    scan_at(ask_here(), 0);
-    const auto next = ask_here();
+    const auto request_here = [&] { return book_.next(session_, maps_, 0, {0.05, 0.05}, now_, options).value(); };
+    scan_at(request_here(), 0);
+    const auto next = request_here();
     EXPECT_EQ(next.given_up, GoalBook::kInVainCellsMax);
     EXPECT_EQ(next.outcome, Exploration::kGoal);
 }
@@ -250,14 +250,14 @@ TEST_F(GoalBookTest, RemovesTheLeastRecentlyUsedSettingsBeyondTheLimit) {
     join("a");
     for (std::size_t n = 0; n <= GoalBook::kSettingsMax; ++n) {
         maps_.config.danger_cells = static_cast<std::int32_t>(n) + 1;
-        scan_at(ask(0), 0);
-        EXPECT_EQ(ask(0).given_up, 3U);
+        scan_at(request(0), 0);
+        EXPECT_EQ(request(0).given_up, 3U);
     }
-    EXPECT_EQ(ask(0).given_up, 3U);
+    EXPECT_EQ(request(0).given_up, 3U);
     maps_.config.danger_cells = 2;
-    EXPECT_EQ(ask(0).given_up, 3U);
+    EXPECT_EQ(request(0).given_up, 3U);
     maps_.config.danger_cells = 1;
-    EXPECT_EQ(ask(0).given_up, 0U);
+    EXPECT_EQ(request(0).given_up, 0U);
 }
 
 TEST_F(GoalBookTest, GivesUpOnlyVisibleCellsNearTheTarget) {
@@ -266,26 +266,26 @@ TEST_F(GoalBookTest, GivesUpOnlyVisibleCellsNearTheTarget) {
     maps_.classes = testing_support::drawn({far + "f", far + "f", far + "f", far + "f", far + "f", far + "f", far + "f",
                                             far + "f", far + "f", far + "f", far + "f", far + "f", far + "f", far + "f",
                                             far + "f", far + "f"});
-    const auto goal = ask(0); // in row 2
+    const auto goal = request(0); // in row 2
     scan_at(goal, 0);
-    const auto again = ask(0);
+    const auto again = request(0);
     EXPECT_EQ(again.given_up, 13U) << "rows 0 to 12";
     EXPECT_GT(again.goal->target.j, 12);
 }
 
 TEST_F(GoalBookTest, GivenUpCellsArePerSessionAndSettings) {
     join("a");
-    scan_at(ask(0), 0);
-    const auto right = ask(0);
+    scan_at(request(0), 0);
+    const auto right = request(0);
     EXPECT_EQ(right.given_up, 3U);
     scan_at(right, 0);
     auto other = maps_;
     other.config.danger_cells += 1;
     EXPECT_EQ(book_.next(session_, other, 0, {1.2, 0.25}, now_, kPoint).value().given_up, 0U);
-    EXPECT_EQ(ask(0).given_up, 3U);
+    EXPECT_EQ(request(0).given_up, 3U);
     const auto first = session_;
     start_session();
-    EXPECT_EQ(ask(0).given_up, 0U);
+    EXPECT_EQ(request(0).given_up, 0U);
 }
 
 TEST_F(GoalBookTest, ConcurrentRequestsGetDifferentFrontiers) {

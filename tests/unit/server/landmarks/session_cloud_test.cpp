@@ -43,9 +43,9 @@ TEST(SessionCloud, IsEmptyWithoutPointsAndRefusesInvalidThresholds) {
     EXPECT_THAT(fuse_captures({}, 0.05).value(), IsEmpty());
     EXPECT_THAT(fuse_captures(std::vector{capture(0, {}, 1, {})}, 0.05).value(), IsEmpty());
     const std::vector two{capture(0, {}, 1, {{1000, 0}}), capture(0, {}, 2, {{1000, 0}})};
-    int asked = 0;
+    int calls = 0;
     const auto ended = fuse_captures(two, 0.05, [&]() -> Result<> {
-        if (++asked == 1) return {};
+        if (++calls == 1) return {};
         return Error{Errc::kShuttingDown, "enough"};
     });
     ASSERT_FALSE(ended);

@@ -263,15 +263,15 @@ TEST(Coverage, SingleCellRegionEndsAtTheCellsCentre) {
 
 TEST(Coverage, StopsWhenTheCallbackReturnsAnError) {
     PlanWorld world(100, 100, OccType::kFree);
-    int asked = 0;
+    int calls = 0;
     const auto three_times = [&]() -> Result<> {
-        if (++asked <= 3) return {};
+        if (++calls <= 3) return {};
         return Error{Errc::kTooLarge, "that is enough"};
     };
     const auto coverage = plan_coverage(world.view(), 0.05, {2.5, 2.5}, {}, three_times);
     ASSERT_FALSE(coverage);
     EXPECT_EQ(coverage.error().message, "that is enough");
-    EXPECT_EQ(asked, 4);
+    EXPECT_EQ(calls, 4);
 }
 
 TEST(Coverage, SkipsPositionsWhoseCellsAreAlreadyCovered) {

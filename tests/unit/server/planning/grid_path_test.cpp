@@ -284,13 +284,13 @@ TEST(GridPath, OnKnownRefusesALaneNarrowerThanTheBody) {
 
 TEST(GridPath, EntersUnknownCellsOnlyIfAllowed) {
     const auto view = drawn({".f?f.", "#####"});
-    const PassabilityOptions asked{.body_radius_m = 0.0, .allow_unknown = true};
+    const PassabilityOptions allowed{.body_radius_m = 0.0, .allow_unknown = true};
     const auto refused = plan_path(view, 1.0, {0.5, 1.5}, {4.5, 1.5}, {.body_radius_m = 0.0});
     EXPECT_EQ(refused.error().code, Errc::kNoPath);
     EXPECT_THAT(refused.error().message, HasSubstr("no way from (0.5, 1.5) to (4.5, 1.5)"));
-    EXPECT_NEAR(plan_path(view, 1.0, {0.5, 1.5}, {4.5, 1.5}, asked)->length_m, 4.0, 1e-12);
-    EXPECT_TRUE(plan_path(view, 1.0, {0.5, 1.5}, {-90.0, 300.0}, asked)) << "all cells outside the map are unknown";
-    EXPECT_TRUE(plan_path(view, 1.0, {0.5, 1.5}, {2.5, -5.5}, asked)) << "the path goes around the end of the wall";
+    EXPECT_NEAR(plan_path(view, 1.0, {0.5, 1.5}, {4.5, 1.5}, allowed)->length_m, 4.0, 1e-12);
+    EXPECT_TRUE(plan_path(view, 1.0, {0.5, 1.5}, {-90.0, 300.0}, allowed)) << "all cells outside the map are unknown";
+    EXPECT_TRUE(plan_path(view, 1.0, {0.5, 1.5}, {2.5, -5.5}, allowed)) << "the path goes around the end of the wall";
 }
 
 TEST(GridPath, RefusesInvalidStartGoalAndOptions) {

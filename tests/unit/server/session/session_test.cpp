@@ -146,13 +146,13 @@ TEST_F(SessionTest, ChangedBodyRadiusIsLoggedAndTheNewestApplies) {
 }
 
 TEST_F(SessionTest, LinkThatNeverJoinedIsIgnored) {
-    const auto stranger = std::make_shared<RecordedLink>();
-    session_->submit(stranger, small_laser(), 10);
-    session_->submit(stranger, random_scans(1, 1, 1), 10);
-    session_->leave(stranger);
+    const auto unjoined = std::make_shared<RecordedLink>();
+    session_->submit(unjoined, small_laser(), 10);
+    session_->submit(unjoined, random_scans(1, 1, 1), 10);
+    session_->leave(unjoined);
     run();
     EXPECT_THAT(logged(), IsEmpty());
-    EXPECT_THAT(stranger->failures, IsEmpty());
+    EXPECT_THAT(unjoined->failures, IsEmpty());
 }
 
 /// Counts change notifications.
