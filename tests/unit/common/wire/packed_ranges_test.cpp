@@ -15,8 +15,7 @@ TEST(PackedRanges, HaveTheDocumentedBytes) {
     EXPECT_EQ(pack_ranges({}), std::string("\0\0", 2));
     EXPECT_EQ(pack_ranges(Ranges{0, 0}), std::string("\2\0\0", 3));
     EXPECT_EQ(pack_ranges(Ranges{5, 3}), std::string("\2\0\1\x0a\3", 5));
-    EXPECT_EQ(pack_ranges(Ranges{1000, kNoReturn}),
-              std::string("\2\0\2\xd0\x07\xd1\x07", 7)); // a no-return is encoded as -1
+    EXPECT_EQ(pack_ranges(Ranges{1000, kNoReturn}), std::string("\2\0\2\xd0\x07\xd1\x07", 7)); // no return: -1
     EXPECT_EQ(pack_ranges(Ranges{0x12345678}), std::string("\1\0\4\xf0\xac\x68\x24", 7));
     Ranges seventeen(17, 7);
     seventeen[16] = 6;

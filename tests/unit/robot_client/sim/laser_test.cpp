@@ -53,8 +53,7 @@ TEST(Sweep, NoiseHasItsDeviationAndKeepsNoReturns) {
         const auto noisy = sweep(room, laser, pose, Noise{.beam_angle = 0.0}, random);
         for (std::size_t beam = 0; beam < exact.size(); ++beam) {
             ASSERT_EQ(exact[beam] == kNoReturn, noisy[beam] == kNoReturn);
-            if (exact[beam] == kNoReturn || exact[beam] > 4800)
-                continue; // the range limit truncates the noise of these beams
+            if (exact[beam] == kNoReturn || exact[beam] > 4800) continue; // the range truncates this noise
             const double difference = (static_cast<double>(noisy[beam]) - static_cast<double>(exact[beam])) / 1000.0;
             squares += difference * difference;
             ++count;

@@ -109,7 +109,7 @@ TEST(Ld06LiveClock, FollowsASmallStepBackAfterTenSeconds) {
         return stamp - (now - 0.01);
     };
     EXPECT_NEAR(run(20.0), 0.0, 0.002);
-    sensor.began += 0.5; // the sensor's stamps are now 0.5 s early, as if all bytes were late
+    sensor.began += 0.5; // the sensor's stamps are now 0.5 s early, which looks like late bytes
     EXPECT_NEAR(run(0.1), -0.5, 0.002);
     EXPECT_NEAR(run(12.0), 0.0, 0.002);
 }

@@ -72,8 +72,7 @@ TEST_F(Ld06Lives, MissingDeviceFailsAfterTheReopenPeriod) {
     PseudoTerminal sensor;
     const auto path = std::filesystem::temp_directory_path() / fmt::format("scanloom-ld06-away-{}", ::getpid());
     std::filesystem::remove(path);
-    std::filesystem::create_symlink(sensor.device(),
-                                    path); // a symlink, because the system reuses the names of terminals
+    std::filesystem::create_symlink(sensor.device(), path); // the system reuses names of terminals
     auto live = options(SerialDevice{path});
     live.device.reopen_for = std::chrono::milliseconds(150);
     Ld06Live source(std::move(live));

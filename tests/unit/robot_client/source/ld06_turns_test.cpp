@@ -61,8 +61,7 @@ TEST(Ld06Turns, KeepVaryingPointCounts) {
     ASSERT_EQ(cutter.complete.size(), 2U);
     EXPECT_EQ(cutter.complete[0].beams.front().step, 330);
 
-    Ld06Packet packet{
-        .speed = 3600, .start_angle = 0, .end_angle = 913}; // 0.83 degrees per point: 433.7 points per turn
+    Ld06Packet packet{.speed = 3600, .start_angle = 0, .end_angle = 913}; // 0.83 degrees: 433.7 points a turn
     Cutter uneven;
     for (int i = 0; i < 400; ++i) {
         packet.start_angle = static_cast<std::uint16_t>(i * 12 * 83 % 36'000);
@@ -152,8 +151,7 @@ TEST(Ld06Turns, DecreasingTimestampEndsATurnOfASlowSensor) {
     Cutter cutter;
     cutter.add({.speed = 10, .start_angle = 35'999, .end_angle = 0, .timestamp = 9'998});
     cutter.add({.speed = 10, .start_angle = 1, .end_angle = 12, .timestamp = 10'000});
-    cutter.add(
-        {.speed = 10, .start_angle = 24'000, .end_angle = 24'011, .timestamp = 4'000}); // 24 s forward or 6 s back
+    cutter.add({.speed = 10, .start_angle = 24'000, .end_angle = 24'011, .timestamp = 4'000}); // +24 s or -6 s
     EXPECT_EQ(cutter.complete.size(), 1U);
 }
 

@@ -36,8 +36,7 @@ TEST(Trajectory, KeepsOnlyTheNewestPoints) {
         ASSERT_LE(trajectory.block_count() * kTrajectoryBlock, kMostKept);
         if (n % 1000 == 0) views.push_back(view);
     }
-    for (std::size_t n = 0; n < views.size(); ++n)
-        expect_newest(views[n], 1000 * n + 1); // each view still shows its own points
+    for (std::size_t n = 0; n < views.size(); ++n) expect_newest(views[n], 1000 * n + 1); // unchanged views
 }
 
 TEST(Trajectory, FindsTheFirstKeptPointAfterARevision) {

@@ -148,16 +148,14 @@ TEST(Checkpoint, TruncatedPartIsRefused) {
     Parts parts;
     merge(parts, parts_of(projection, 0));
     for (const auto& [key, value] : parts) {
-        const bool is_robot =
-            key.starts_with("robot/"); // a robot's name ends with the part, so shorter names are valid
+        const bool is_robot = key.starts_with("robot/"); // ends with a name of any length
         const std::size_t shortest = is_robot ? 16 : value.size();
         for (const std::size_t kept : {std::size_t{0}, std::size_t{7}, shortest / 2, shortest - 1}) {
             Parts damaged = parts;
             damaged[key].resize(kept);
             const auto refused = read(damaged);
             ASSERT_FALSE(refused) << key << " cut to " << kept;
-            const bool is_of_version_1 =
-                key == "format" && kept == 4; // version 1 had no number after the mapping version
+            const bool is_of_version_1 = key == "format" && kept == 4; // which ended with the mapping version
             EXPECT_EQ(refused.error().code, is_of_version_1 ? Errc::kUnsupportedVersion : Errc::kMalformed);
         }
     }
