@@ -1,4 +1,4 @@
-/** The live messages' readers and writers, made from the .proto files that the server is built from. */
+/** Generates JavaScript readers and writers of the live messages from the .proto files of the server. */
 import { readFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
 import { fileURLToPath } from 'node:url';
@@ -9,12 +9,12 @@ const kProtoDirectory = join(dirname(fileURLToPath(import.meta.url)), '../proto'
 const kLive = 'scanloom/v1/live.proto';
 const kModule = 'virtual:live-protocol';
 
-/** A module's text: readLiveEvent(pbf), writeLiveRequest(message, pbf), ... */
+/** Returns the text of the module: readLiveEvent(pbf), writeLiveRequest(message, pbf), ... */
 export function liveProtocol() {
   return compileRaw(withImports(kLive), {});
 }
 
-/** For Vite: the module of that text. */
+/** A Vite plugin that provides this module. */
 export function liveProtocolPlugin() {
   return {
     name: 'live-protocol',
@@ -23,7 +23,7 @@ export function liveProtocolPlugin() {
   };
 }
 
-/** A file and all that it imports, each named from the root as protoc has it. */
+/** Reads a file and its imports; names are relative to the root, as for protoc. */
 function withImports(file, seen = new Set()) {
   seen.add(file);
   const parsed = schema.parse(readFileSync(join(kProtoDirectory, file), 'utf8'));
@@ -35,5 +35,5 @@ function withImports(file, seen = new Set()) {
   return parsed;
 }
 
-// As a program it writes the module, for tools other than Vite.
+// Run as a program, it prints the module, for tools other than Vite.
 if (process.argv[1] === fileURLToPath(import.meta.url)) process.stdout.write(liveProtocol());

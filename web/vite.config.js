@@ -8,13 +8,13 @@ export default defineConfig({
   build: {
     target: 'es2022',
     outDir: 'dist',
-    // One chunk needs no preload helper, and nothing is inlined: the page obeys a strict content security policy.
+    // One chunk needs no preload helper, and nothing is inlined because of the strict content security policy.
     modulePreload: false,
     assetsInlineLimit: 0,
-    // Of that one chunk, in kB as it is; sent, it is a quarter.
+    // Size limit of that chunk in kB, uncompressed; compressed it has a quarter of the size.
     chunkSizeWarningLimit: 800,
   },
-  // `npm run dev` shows a server that runs on its usual port.
+  // `npm run dev` uses a server on its default port.
   server: {
     proxy: {
       '/api': { target: 'http://127.0.0.1:8080', ws: true },

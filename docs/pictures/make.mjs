@@ -19,7 +19,7 @@ const kPictures = [
   { name: 'viewer-occupancy' },
   { name: 'viewer-classes', hash: '&layer=classification' },
   { name: 'viewer-himm', hash: '&layer=himm', act: counters },
-  { name: 'viewer-swipe', hash: '&layer=classification', act: (page) => page.selectOption('#beside', 'himm') },
+  { name: 'viewer-swipe', hash: '&layer=classification', act: (page) => page.selectOption('#second-layer', 'himm') },
   { name: 'viewer-frontiers', act: (page) => page.check('[data-switch=frontiers]') },
   { name: 'viewer-history', act: history },
   { name: 'viewer-path', act: way },

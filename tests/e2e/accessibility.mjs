@@ -1,9 +1,9 @@
-/** What axe-core finds wrong with the page as it is now. */
+/** Reports the accessibility violations that axe-core finds on the page. */
 import axe from 'axe-core';
 
 const kStandards = ['wcag2a', 'wcag2aa', 'wcag21a', 'wcag21aa', 'wcag22aa', 'best-practice'];
 
-/** @returns one line for each violation: rule, what it says, where */
+/** @returns one line for each violation: rule, description, elements */
 export async function violations(page) {
   await page.evaluate(axe.source);
   const found = await page.evaluate(

@@ -1,4 +1,4 @@
-/** Debian's Chromium on the viewer's page, and what a test asks of that page. */
+/** Opens the viewer's page in Debian's Chromium, and reads values from it. */
 import { mkdir } from 'node:fs/promises';
 import { join } from 'node:path';
 import { chromium } from 'playwright-core';
@@ -22,9 +22,9 @@ export function launchBrowser() {
 }
 
 /**
- * A fresh page, with nothing cached. One that trusts anybody takes a server's certificate whoever signed it.
+ * Opens a new page with an empty cache. With `trusts`, it accepts any server certificate.
  *
- * @returns the page and its complaints: script errors, violations of the security policy, requests to elsewhere
+ * @returns the page and its complaints: script errors, violations of the security policy, requests to other servers
  */
 export async function openPage(
   browser,
@@ -37,14 +37,14 @@ export async function openPage(
     deviceScaleFactor: scale,
     reducedMotion: motion,
     hasTouch: size[0] < 700 || size[1] < 500,
-    ignoreHTTPSErrors: trusts === 'anybody',
+    ignoreHTTPSErrors: trusts === 'any certificate',
   });
   const complaints = [];
   const page = await openTab(context, address, complaints, hash);
   return { page, complaints };
 }
 
-/** One more page in the same browser window: what its pages have cached, they share. */
+/** Opens one more page in the same browser context, which shares the cache. */
 export async function openTab(context, address, complaints, hash = '') {
   const page = await context.newPage();
   page.setDefaultTimeout(30_000);
@@ -55,15 +55,15 @@ export async function openTab(context, address, complaints, hash = '') {
   page.on('request', (request) => {
     const url = new URL(request.url());
     if (!['data:', 'blob:'].includes(url.protocol) && url.origin !== new URL(address).origin) {
-      complaints.push(`request to elsewhere: ${url}`);
+      complaints.push(`request to another server: ${url}`);
     }
   });
   await page.goto(address + hash);
   return page;
 }
 
-/** Waits until an element says something that matches. */
-export async function says(page, selector, pattern) {
+/** Waits until an element's text matches. */
+export async function hasText(page, selector, pattern) {
   await page.waitForFunction(
     ([where, source]) => new RegExp(source).test(document.querySelector(where)?.textContent ?? ''),
     [selector, pattern.source],
@@ -74,7 +74,7 @@ export async function textOf(page, selector) {
   return (await page.textContent(selector)) ?? '';
 }
 
-/** How many pixels of the map's canvases have this colour, alpha left aside. */
+/** Counts the pixels of the map's canvases that have this colour, ignoring alpha. */
 export function countPixels(page, [red, green, blue]) {
   return page.evaluate(
     (wanted) => {
@@ -91,7 +91,7 @@ export function countPixels(page, [red, green, blue]) {
   );
 }
 
-/** The topmost colour of the map there, in pixels of the page; null: nothing is drawn. */
+/** Returns the topmost colour of the map at a place in pixels of the page; null: nothing is drawn. */
 export function colourAt(page, x, y) {
   return page.evaluate(
     ([left, top]) => {
@@ -108,7 +108,7 @@ export function colourAt(page, x, y) {
   );
 }
 
-/** Waits until it is, or is not, this colour that is seen there. */
+/** Waits until the visible colour there is, or is not, this one. */
 export function showsColourAt(page, [x, y], colour, wanted = true) {
   return until(page, async () => {
     const seen = await colourAt(page, x, y);
@@ -116,32 +116,32 @@ export function showsColourAt(page, [x, y], colour, wanted = true) {
   });
 }
 
-/** But for what smoothing does. */
+/** Tolerance for smoothing. */
 export function isLike(seen, colour, tolerance = 12) {
   return colour.every((part, band) => Math.abs(seen[band] - part) < tolerance);
 }
 
-/** Waits until so many pixels of the map have this colour. */
+/** Waits until this many pixels of the map have this colour. */
 export function countsPixels(page, colour, holds) {
   return until(page, async () => holds(await countPixels(page, colour)));
 }
 
-/** Looks at every frame of the page until it holds. */
+/** Evaluates the condition in every frame of the page until it holds. */
 export async function until(page, holds) {
   const deadline = Date.now() + 30_000;
   while (!(await holds())) {
-    if (Date.now() > deadline) throw new Error('waited in vain for what the map should show');
+    if (Date.now() > deadline) throw new Error('the map did not show the expected pixels in time');
     await page.evaluate(() => new Promise((resolve) => requestAnimationFrame(resolve)));
   }
 }
 
-/** Changes the system's colour scheme, and waits until the page has taken it on: that is with a later frame. */
+/** Changes the system's colour scheme, and waits until the page has applied it, which happens in a later frame. */
 export async function colourScheme(page, scheme) {
   await page.emulateMedia({ colorScheme: scheme });
   await page.waitForSelector(`html[data-scheme="${scheme}"]`, { state: 'attached' });
 }
 
-/** Waits until the map shows one of these colours of the style sheet, at whatever opacity. */
+/** Waits until the map shows one of these colours of the style sheet, at any opacity. */
 export async function showsColour(page, ...names) {
   const colours = await Promise.all(names.map((name) => colourOf(page, name)));
   await page.waitForFunction((wanted) => {
@@ -156,7 +156,7 @@ export async function showsColour(page, ...names) {
   }, colours);
 }
 
-/** What the style sheet calls a colour, as [red, green, blue]. */
+/** Returns a colour of the style sheet as [red, green, blue]. */
 export function colourOf(page, name) {
   return page.evaluate((property) => {
     const hex = getComputedStyle(document.documentElement).getPropertyValue(property).trim();

@@ -1,7 +1,7 @@
-/** The charts of the server: rates, latencies, what is not told, and restarts. */
+/** The charts of the server: rates, latencies, metrics that are not reported, and restarts. */
 import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
-import { colourScheme, keepPicture, says } from './browser.mjs';
+import { colourScheme, keepPicture, hasText } from './browser.mjs';
 import { withFakeServer } from './fake_fixture.mjs';
 
 const kTitles = ['Scans per second', 'Ack latency', 'Queue', 'CPU', 'Memory'];
@@ -16,16 +16,16 @@ describe("the server's charts", { timeout: 180_000 }, () => {
     await page.waitForSelector('#server-toggle', { state: 'attached' });
   };
 
-  it('ask for nothing until someone opens them, and no longer when they are closed', async () => {
+  it('poll only while they are open', async () => {
     server.metrics = metrics({ scans: 0 });
     await open();
-    await says(page, '#sessions-state', /None yet/);
+    await hasText(page, '#sessions-state', /No sessions yet/);
     assert.equal(await page.isVisible('#server'), false);
     assert.equal(server.metricsRequests, 0);
     await page.focus('#server-toggle');
     await page.keyboard.press('Enter');
     assert.equal(await page.getAttribute('#server-toggle', 'aria-expanded'), 'true');
-    await says(page, valueOf('Memory'), /^95\.0 MB$/);
+    await hasText(page, valueOf('Memory'), /^95\.0 MB$/);
     await hide(true);
     await quiet();
     await hide(false);
@@ -35,63 +35,63 @@ describe("the server's charts", { timeout: 180_000 }, () => {
     await quiet();
   });
 
-  it('tell rates, latencies, queue, processor and memory', async () => {
+  it('show rates, latencies, queue, CPU and memory', async () => {
     server.metrics = metrics({ scans: 0 });
     await shown();
-    await asked();
+    await nextPoll();
     server.metrics = metrics({ scans: 4000, cpu: 3, fast: 90, all: 100, inFlight: 7, queued: 1500 });
-    await says(page, valueOf('Scans per second'), /^1\d{3}$|^2\d{3}$/);
-    await says(page, valueOf('CPU'), /^\d\d+ %$/);
-    await says(page, valueOf('Ack latency'), /^p50 5\.56, p99 91\.0$/);
-    await says(page, valueOf('Queue'), /^7 scans, 1\.5 kB$/);
-    await says(page, valueOf('Memory'), /^95\.0 MB$/);
+    await hasText(page, valueOf('Scans per second'), /^1\d{3}$|^2\d{3}$/);
+    await hasText(page, valueOf('CPU'), /^\d\d+ %$/);
+    await hasText(page, valueOf('Ack latency'), /^p50 5\.56, p99 91\.0$/);
+    await hasText(page, valueOf('Queue'), /^7 scans, 1\.5 kB$/);
+    await hasText(page, valueOf('Memory'), /^95\.0 MB$/);
     for (const title of kTitles) assert.ok(await drawn(title, '--robot-0'), `${title} is drawn`);
-    assert.ok(await drawn('Ack latency', '--robot-1'), 'the slowest are a line of their own');
+    assert.ok(await drawn('Ack latency', '--robot-1'), 'the 99th percentile has its own line');
     await keepPicture(page, 'charts-light');
     await colourScheme(page, 'dark');
-    assert.ok(await drawn('Memory', '--robot-0'), 'in the colours of the dark');
+    assert.ok(await drawn('Memory', '--robot-0'), 'with the dark scheme');
     await keepPicture(page, 'charts-dark');
   });
 
-  it('never fall below nothing when the server starts again', async () => {
+  it('show no negative rate after a restart of the server', async () => {
     server.metrics = metrics({ scans: 100_000, cpu: 500, fast: 9000, all: 9000 });
     await shown();
-    await says(page, valueOf('Memory'), /MB/);
+    await hasText(page, valueOf('Memory'), /MB/);
     await page.evaluate(() => {
       window.said = [];
       const look = () => window.said.push(document.querySelector('#server').textContent);
       new MutationObserver(look).observe(document.querySelector('#server'), { subtree: true, childList: true });
     });
-    await asked();
+    await nextPoll();
     server.metrics = metrics({ scans: 10, cpu: 1, fast: 5, all: 5, started: 2000 });
-    await asked();
-    await says(page, valueOf('Scans per second'), /^\u2013$/);
+    await nextPoll();
+    await hasText(page, valueOf('Scans per second'), /^\u2013$/);
     server.metrics = metrics({ scans: 50, cpu: 2, fast: 9, all: 9, started: 2000 });
-    await says(page, valueOf('Scans per second'), /^[1-9][\d.]*$/);
+    await hasText(page, valueOf('Scans per second'), /^[1-9][\d.]*$/);
     assert.ok((await page.evaluate(() => window.said)).every((text) => !/[-\u2212]\d/.test(text)));
   });
 
-  it('say what this server does not tell', async () => {
+  it('mark metrics that the server does not report', async () => {
     server.metrics = 'process_resident_memory_bytes 95e6\nscanloom_store_queued_bytes 0\n';
     await shown();
-    await says(page, valueOf('Memory'), /^95\.0 MB$/);
+    await hasText(page, valueOf('Memory'), /^95\.0 MB$/);
     for (const title of ['Scans per second', 'Ack latency', 'CPU']) {
-      await says(page, valueOf(title), /^not told by this server$/);
+      await hasText(page, valueOf(title), /^not reported by this server$/);
     }
-    await says(page, valueOf('Queue'), /^0 B$/);
+    await hasText(page, valueOf('Queue'), /^0 B$/);
     await keepPicture(page, 'charts-partial');
   });
 
-  it('keep what was known while the server is away, and say so', async () => {
+  it('keep the last values while the server is offline, and say so', async () => {
     server.metrics = metrics({ scans: 0 });
     await shown();
-    await says(page, valueOf('Memory'), /^95\.0 MB$/);
+    await hasText(page, valueOf('Memory'), /^95\.0 MB$/);
     await server.vanish();
-    await says(page, '#server > [role=status]', /^Offline\. The charts show what was last heard\.$/);
+    await hasText(page, '#server > [role=status]', /^Offline\. The charts show the last received values\.$/);
     assert.ok(await drawn('Memory', '--line'));
     server.metrics = '<html>not metrics</html>';
     await server.comeBack();
-    await says(page, '#server > [role=status]', /^$/);
+    await hasText(page, '#server > [role=status]', /^$/);
   });
 
   it('fit a phone', async () => {
@@ -99,7 +99,7 @@ describe("the server's charts", { timeout: 180_000 }, () => {
     await open({ size: [390, 844], scale: 2 });
     await page.click('#panel-toggle');
     await page.click('#server-toggle');
-    await says(page, valueOf('Memory'), /^95\.0 MB$/);
+    await hasText(page, valueOf('Memory'), /^95\.0 MB$/);
     await page.locator('.chart').last().scrollIntoViewIfNeeded();
     assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), 'nothing overflows');
     await keepPicture(page, 'charts-phone');
@@ -110,19 +110,19 @@ describe("the server's charts", { timeout: 180_000 }, () => {
     await page.click('#server-toggle');
   }
 
-  /** The page has asked once more, and what it heard is shown. */
-  async function asked() {
+  /** Waits until the page has polled once more and shows the answer. */
+  async function nextPoll() {
     await polled('/metrics');
     await page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));
   }
 
-  /** The page asks all that it has to ask, as it does when the network comes back: nothing about the charts. */
+  /** Makes the page run all its polls, as when the network comes back: none of them is for the charts. */
   async function quiet() {
     const before = server.metricsRequests;
     for (let round = 0; round < 2; ++round) {
-      const asked = polled('/api/v1/sessions');
+      const response = polled('/api/v1/sessions');
       await page.evaluate(() => window.dispatchEvent(new Event('online')));
-      await asked;
+      await response;
     }
     assert.equal(server.metricsRequests, before);
   }
@@ -142,7 +142,7 @@ describe("the server's charts", { timeout: 180_000 }, () => {
     return `.chart[data-title^="${title}"] .chart-value`;
   }
 
-  /** Whether the colour is in the chart's picture. */
+  /** Whether the chart's canvas contains the colour. */
   async function drawn(title, name) {
     return page
       .waitForFunction(
@@ -167,7 +167,7 @@ describe("the server's charts", { timeout: 180_000 }, () => {
   }
 });
 
-/** @returns a page of /metrics as the server writes it */
+/** @returns a page of /metrics in the format of the server */
 function metrics({ scans, cpu = 1, fast = 0, all = 0, inFlight = 0, queued = 0, started = 1000 }) {
   return `# HELP scanloom_scans_applied_total Scans folded into maps.
 # TYPE scanloom_scans_applied_total counter

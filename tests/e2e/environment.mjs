@@ -1,4 +1,4 @@
-/** Folders and programs, as CTest and ./scanloom pass them. */
+/** Paths of folders and programs, which CTest and ./scanloom pass in the environment. */
 
 export function required(name) {
   const value = process.env[name];

@@ -1,14 +1,14 @@
-/** A fresh fake server for each test of a file, in one browser; at the end of each the page must have had no complaints. */
+/** Starts a fake server for each test of a file, in one browser; after each test the page must have no complaints. */
 import assert from 'node:assert/strict';
 import { after, afterEach, before, beforeEach } from 'node:test';
 import { kWebDirectory, launchBrowser, openPage } from './browser.mjs';
 import { FakeServer } from './fake_server.mjs';
 
 /**
- * To be called once within describe().
+ * Call once within describe().
  *
- * @param begin told of each test's server before the test
- * @returns opens the page, as openPage() does, and gives it with its complaints
+ * @param begin called with each test's server before the test
+ * @returns a function that opens the page like openPage() and returns it with its complaints
  */
 export function withFakeServer(begin) {
   let browser;

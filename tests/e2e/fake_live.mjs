@@ -1,4 +1,4 @@
-/** The live connections of a fake server: WebSockets (RFC 6455) that tell what the test does to a session. */
+/** The live connections of a fake server: WebSockets (RFC 6455) that send the test's changes of a session. */
 import { createHash } from 'node:crypto';
 import { liveProtocol } from '../../web/protocol.js';
 import { PbfReader, PbfWriter } from '../../web/node_modules/pbf/index.js';
@@ -16,15 +16,15 @@ const kStateFailed = 2;
 export class FakeLive {
   constructor(socket, session) {
     Object.assign(this, { socket, session });
-    this.told = 0;
-    /** Up to which revision landmarks were told; null: nobody asks for them. */
-    this.toldLandmarks = null;
+    this.sent = 0;
+    /** Revision up to which landmarks were sent; null: not subscribed. */
+    this.sentLandmarks = null;
     this.unread = Buffer.alloc(0);
-    /** Nothing comes any more, and nobody says so: as behind a router that forgot the connection. */
+    /** Sends nothing more and does not close the connection, as a router does that dropped it. */
     this.isMute = false;
   }
 
-  /** Answers the upgrade, and tells all that there is. */
+  /** Answers the upgrade, and sends the whole state. */
   static accept(request, socket, session) {
     const key = createHash('sha1')
       .update(request.headers['sec-websocket-key'] + kGuid)
@@ -37,18 +37,18 @@ export class FakeLive {
     const live = new FakeLive(socket, session);
     session.viewers.add(live);
     socket.on('close', () => session.viewers.delete(live));
-    socket.on('data', (bytes) => live.hear(bytes));
-    live.tell();
+    socket.on('data', (bytes) => live.receive(bytes));
+    live.notify();
     return live;
   }
 
-  /** What the browser says: masked frames. Of requests only landmarks matter here. */
-  hear(bytes) {
+  /** Reads the browser's masked frames. Only the landmarks subscription matters here. */
+  receive(bytes) {
     this.unread = Buffer.concat([this.unread, bytes]);
     for (;;) {
       const length = this.unread[1] & 0x7f;
       const end = 6 + length;
-      // Requests have a few bytes; whatever is longer is none.
+      // Requests have a few bytes; a longer frame is not a request.
       if (this.unread.length < 6 || length > 125 || this.unread.length < end) return;
       const mask = this.unread.subarray(2, 6);
       const body = this.unread.subarray(6, end).map((byte, at) => byte ^ mask[at % 4]);
@@ -59,23 +59,23 @@ export class FakeLive {
   }
 
   obey({ landmarks }) {
-    this.session.wishes.push({ landmarks });
-    this.toldLandmarks = landmarks ? (this.toldLandmarks ?? 0) : null;
-    if (landmarks) this.tell();
+    this.session.subscriptions.push({ landmarks });
+    this.sentLandmarks = landmarks ? (this.sentLandmarks ?? 0) : null;
+    if (landmarks) this.notify();
   }
 
-  /** What is new since the last time. */
-  tell() {
+  /** Sends the changes since the last event. */
+  notify() {
     if (this.isMute) return;
     const writer = new PbfWriter();
-    writeLiveEvent(this.session.liveEvent(this.told, this.toldLandmarks), writer);
-    this.told = this.session.revision;
-    if (this.toldLandmarks !== null) this.toldLandmarks = this.session.revision;
+    writeLiveEvent(this.session.liveEvent(this.sent, this.sentLandmarks), writer);
+    this.sent = this.session.revision;
+    if (this.sentLandmarks !== null) this.sentLandmarks = this.session.revision;
     this.socket.write(frame(0x82, Buffer.from(writer.finish())));
   }
 
-  /** Bytes that are no event. */
-  tellNonsense(bytes) {
+  /** Sends bytes that are no event. */
+  sendNonsense(bytes) {
     this.socket.write(frame(0x82, Buffer.from(bytes)));
   }
 
@@ -87,7 +87,7 @@ export class FakeLive {
   }
 }
 
-/** A session's news as the message has them. */
+/** Returns a session's changes as a message. */
 export function eventOf(session, since, landmarksSince) {
   const tiles = [];
   const revisions = [];
@@ -137,7 +137,7 @@ function robotNews(session, robot, index, since) {
   };
 }
 
-/** In whole millimetres. */
+/** Converts to whole millimetres. */
 function differences(points, x, y) {
   let last = [0, 0];
   return points.flatMap(([px, py]) => {
@@ -148,7 +148,7 @@ function differences(points, x, y) {
   });
 }
 
-/** One unmasked frame. */
+/** Returns one unmasked frame. */
 function frame(first, body) {
   const length = body.length;
   const head = length < 126 ? Buffer.from([first, length]) : Buffer.alloc(length < 65536 ? 4 : 10);

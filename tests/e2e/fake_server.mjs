@@ -1,6 +1,6 @@
 /**
- * A server whose every answer the test decides: the states that a real one is only in by misfortune.
- * It speaks the part of the HTTP API that the viewer reads, and sends the headers that the real one sends.
+ * A server whose answers the test decides, for states that a real server rarely has.
+ * It implements the part of the HTTP API that the viewer reads, with the headers of the real server.
  */
 import { readFile } from 'node:fs/promises';
 import { createServer } from 'node:http';
@@ -22,17 +22,17 @@ const kSecurityHeaders = {
   'X-Content-Type-Options': 'nosniff',
 };
 
-/** What a layer's tiles have for a code: bytes of .bin are the codes themselves. */
+/** Converts a layer's code to the tile's pixel: the bytes of .bin are the codes themselves. */
 const kLevelOf = {
   occupancy: (percent) => Math.round(255 - 2.55 * percent),
   sonar: (percent) => Math.round(255 - 2.55 * percent),
   himm: (count) => 255 - 17 * count,
-  // The red of each class's colour, which is all that the viewer looks at.
+  // The red component of each class's colour, the only one that the viewer reads.
   classification: (code) => [128, 255, 67, 46, 217][code],
 };
 const kUntouched = { occupancy: 255, sonar: 255, himm: 255, classification: 0 };
 
-/** Sessions by name; whoever watches one hears of its end. */
+/** Sessions by name; live connections of a removed session are closed. */
 class Sessions extends Map {
   set(name, session) {
     if (this.get(name) !== session) this.get(name)?.end();
@@ -52,28 +52,28 @@ class Sessions extends Map {
 
 export class FakeServer {
   sessions = new Sessions();
-  /** Path of every request to the API, in order. */
+  /** Path of every API request, in order. */
   requests = [];
-  /** Connections that became live ones. */
+  /** Number of established live connections. */
   sockets = new Set();
-  /** Path and query of every tile asked for, in order. */
+  /** Path and query of every tile request, in order. */
   tileRequests = [];
-  /** When set, {status, title, detail}: what every request to the API is answered with. */
+  /** When set, {status, title, detail}: the answer to every API request. */
   failure = null;
   /** When set, the status of every tile. */
   tileFailure = null;
-  /** The same for requests that make or delete a session. */
+  /** When set, the answer to requests that create or delete a session. */
   refusal = null;
-  /** What was sent to make sessions, in order. */
+  /** The bodies of requests that created sessions, in order. */
   wanted = [];
-  /** When set, a promise that what makes or deletes a session waits for before it answers. */
+  /** When set, a promise; requests that create or delete a session wait for it. */
   hold = null;
   /** The text of /metrics. */
   metrics = '';
   metricsRequests = 0;
   /** Sessions that cannot be served, {name, reason}. */
   damaged = [];
-  /** Where robots would connect. */
+  /** Address for robots. */
   robots = { host: null, port: 17447 };
 
   static async start(webDirectory) {
@@ -102,7 +102,7 @@ export class FakeServer {
     this.port = this.server.address().port;
   }
 
-  /** Vanishes as a crashed process does: no more connections, and the open ones break. */
+  /** Stops like a crashed process: accepts no more connections and breaks the open ones. */
   async vanish() {
     const closed = new Promise((resolve) => this.server.close(resolve));
     this.server.closeAllConnections();

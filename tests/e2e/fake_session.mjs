@@ -4,7 +4,7 @@ import { eventOf } from './fake_live.mjs';
 const kNativeZoom = 9;
 const kTileSize = 256;
 
-/** A session as the test shapes it; cells are painted tile by tile at the native zoom. */
+/** A session that the test changes; cells are painted tile by tile at the native zoom. */
 export class FakeSession {
   constructor(name, id, { cellSize = 0.05, created = '2026-01-02T03:04:05Z', number = 1 } = {}) {
     Object.assign(this, { name, id, cellSize, created, number });
@@ -14,29 +14,29 @@ export class FakeSession {
     this.robots = [];
     this.tracks = new Map();
     this.tiles = new Map();
-    /** The layers that the tiles are of: all show the same. */
+    /** The layers with tiles: all have the same cells. */
     this.layers = ['occupancy'];
-    /** Where the beams of every robot's newest scan ended, metres; null: none is told. */
+    /** End points of the beams of every robot's newest scan, metres; null: not sent. */
     this.scan = null;
     /** Features of frontiers.geojson. */
     this.frontiers = [];
-    /** As events tell them, each with the revision of its newest sighting; and why no more are found. */
+    /** Landmarks as in events, each with the revision of its newest observation; and why there are no more. */
     this.landmarks = [];
     this.noLandmarks = null;
-    /** What pages asked to be told live, in order. */
-    this.wishes = [];
-    /** Features of goals.geojson, and how often they were told. */
+    /** The pages' subscriptions, in order. */
+    this.subscriptions = [];
+    /** Features of goals.geojson, and their revision. */
     this.goals = [];
     this.goalsRevision = 0;
-    /** Robots that have explored all they can reach. */
+    /** Robots that have explored everything that they can reach. */
     this.explored = [];
     /** Live connections. */
     this.viewers = new Set();
-    /** Why it takes no scans; null: it does. */
+    /** Why it accepts no scans; null: it does. */
     this.failure = null;
   }
 
-  /** Gives a whole native tile one code (of occupancy: percent), and touches what lies above it. */
+  /** Sets all cells of a native tile to one code (occupancy: percent), and updates the tiles above it. */
   paint(x, y, code) {
     this.revision += 1;
     for (let z = kNativeZoom; z >= 0; --z) {
@@ -44,18 +44,18 @@ export class FakeSession {
       this.tiles.set(`${z}/${x >> shift}/${y >> shift}`, { revision: this.revision, code });
     }
     this.cover(x, y);
-    this.tell();
+    this.notify();
   }
 
-  /** A landmark, or its next sighting. */
+  /** Adds a landmark, or another observation of it. */
   see(id, [x, y], seen) {
     this.revision += 1;
     this.landmarks = this.landmarks.filter((each) => each.id !== id);
     this.landmarks.push({ id, x, y, seen, size_x: 0.31, size_y: 0.125, last: this.revision });
-    this.tell();
+    this.notify();
   }
 
-  /** A scan taken here. */
+  /** Adds a scan at this pose. */
   move(robot, x, y, yaw) {
     this.revision += 1;
     let known = this.robots.find(({ name }) => name === robot);
@@ -69,18 +69,18 @@ export class FakeSession {
     const track = this.tracks.get(robot) ?? [];
     track.push({ revision: this.revision, point: [x, y] });
     this.tracks.set(robot, track);
-    this.tell();
+    this.notify();
   }
 
-  tell() {
-    for (const viewer of this.viewers) viewer.tell();
+  notify() {
+    for (const viewer of this.viewers) viewer.notify();
   }
 
-  tellGoals(features, explored = []) {
+  setGoals(features, explored = []) {
     this.goals = features;
     this.explored = explored;
     this.goalsRevision += 1;
-    this.tell();
+    this.notify();
   }
 
   get scans() {
@@ -91,7 +91,7 @@ export class FakeSession {
     return eventOf(this, since, landmarksSince);
   }
 
-  /** It is deleted. */
+  /** Deletes the session. */
   end() {
     for (const viewer of this.viewers) viewer.close(4404, 'the session was deleted');
   }

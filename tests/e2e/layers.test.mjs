@@ -1,4 +1,4 @@
-/** Layers, what lies on them, and how they are shown, against a server that does what each test wants. */
+/** Layers, overlays and their display, with a fake server. */
 import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
 import { violations } from './accessibility.mjs';
@@ -8,7 +8,7 @@ import {
   countPixels,
   countsPixels,
   keepPicture,
-  says,
+  hasText,
   showsColour,
   showsColourAt,
   textOf,
@@ -31,7 +31,7 @@ describe('layers', { timeout: 180_000 }, () => {
 
   const open = async (options) => ({ page, complaints } = await openPage(options));
 
-  it('are stepped through by keys, each in its colours, and kept in the address', async () => {
+  it('change by keys, each in its colours, and are kept in the address', async () => {
     session.paint(256, 255, 4); // danger, counter 4, 4 %
     await open();
     await showsColour(page, '--cell-free');
@@ -39,11 +39,11 @@ describe('layers', { timeout: 180_000 }, () => {
     await page.waitForSelector('[name=layer][value=sonar]:checked');
     await page.keyboard.press('v');
     await page.waitForSelector('[name=layer][value=himm]:checked');
-    await says(page, '#legend', /counter 0/);
+    await hasText(page, '#legend', /counter 0/);
     await page.keyboard.press('V'); // Caps Lock
     await showsColour(page, '--class-danger');
     assert.match(page.url(), /layer=classification/);
-    await says(page, '#legend', /danger/);
+    await hasText(page, '#legend', /danger/);
     await page.keyboard.press('v');
     await showsColour(page, '--cell-free');
     await page.keyboard.press('b');
@@ -54,14 +54,14 @@ describe('layers', { timeout: 180_000 }, () => {
     await page.waitForSelector('[name=layer][value=sonar]:checked');
   });
 
-  it('change by key also while a choice of layers has the focus, but not while text is written', async () => {
+  it('change by key while a layer selection has the focus, but not in a text field', async () => {
     session.paint(256, 255, 4);
     await open();
     await showsColour(page, '--cell-free');
     await page.focus('[name=layer][value=occupancy]');
     await page.keyboard.press('v');
     await page.waitForSelector('[name=layer][value=sonar]:checked');
-    await page.focus('#beside');
+    await page.focus('#second-layer');
     await page.keyboard.press('v');
     await page.waitForSelector('[name=layer][value=sonar]:checked');
     await page.focus('#map');
@@ -71,7 +71,7 @@ describe('layers', { timeout: 180_000 }, () => {
     await page.waitForSelector('[name=layer][value=sonar]:checked');
   });
 
-  it('never ask for tiles of a layer that is not shown', async () => {
+  it('request no tiles of hidden layers', async () => {
     session.paint(256, 255, 4);
     await open();
     await showsColour(page, '--cell-free');
@@ -91,7 +91,7 @@ describe('layers', { timeout: 180_000 }, () => {
     );
   });
 
-  it('show HIMM counters in their cells when zoomed in and asked', async () => {
+  it('show HIMM counters in their cells when enabled and zoomed in', async () => {
     session.paint(256, 255, 12);
     await open({ hash: '#session=map&layer=himm' });
     await page.waitForSelector('#notice', { state: 'hidden' });
@@ -100,7 +100,7 @@ describe('layers', { timeout: 180_000 }, () => {
     const label = [255, 255, 255]; // on a dark counter
     await page.mouse.move(...kMiddle);
     assert.equal(await countPixels(page, label), 0, 'cells are too small for numbers');
-    await page.emulateMedia({ reducedMotion: 'reduce' }); // each step at once
+    await page.emulateMedia({ reducedMotion: 'reduce' }); // each step without animation
     for (let step = 0; step < 7; ++step) await page.click('#zoom-in');
     await page.mouse.move(...kMiddle);
     await countsPixels(page, label, (count) => count > 200);
@@ -111,11 +111,11 @@ describe('layers', { timeout: 180_000 }, () => {
     await showsNoPixels(label);
   });
 
-  it('are seen side by side, with a line that pointer and keys move', async () => {
+  it('show two layers side by side, with a line that pointer and keys move', async () => {
     session.paint(256, 255, 4);
     await open();
     await showsColour(page, '--cell-free');
-    await page.selectOption('#beside', 'classification');
+    await page.selectOption('#second-layer', 'classification');
     await showsColour(page, '--class-danger');
     const danger = await colourOf(page, '--class-danger');
     assert.deepEqual(await colourAt(page, kMiddle[0] + 60, kMiddle[1]), danger);
@@ -132,23 +132,23 @@ describe('layers', { timeout: 180_000 }, () => {
     await showsNoPixels(danger);
     await page.keyboard.press('Home');
     await showsAt(kMiddle[0] - 150, kMiddle[1], danger);
-    // What is told is what is seen.
+    // The readout shows the visible layer.
     await page.hover('#map', { position: { x: 500, y: 300 } });
-    await says(page, '#cursor-value', /^danger$/);
-    await page.selectOption('#beside', '');
+    await hasText(page, '#cursor-value', /^danger$/);
+    await page.selectOption('#second-layer', '');
     await page.waitForSelector('#swipe', { state: 'hidden' });
     await showsNoPixels(danger);
   });
 
-  it('lie on each other, the second as faint as it is wished', async () => {
+  it('overlap, the second with the chosen opacity', async () => {
     session.paint(256, 255, 4);
     await open();
     await showsColour(page, '--cell-free');
-    await page.selectOption('#beside', 'classification');
+    await page.selectOption('#second-layer', 'classification');
     await page.check('#mode-over');
-    await setRange('#beside-opacity', 100);
+    await setRange('#second-opacity', 100);
     await showsAt(...kMiddle, await colourOf(page, '--class-danger'));
-    await setRange('#beside-opacity', 0);
+    await setRange('#second-opacity', 0);
     await showsNoPixels(await colourOf(page, '--class-danger'));
     const full = await colourAt(page, ...kMiddle);
     await setRange('#opacity', 20);
@@ -159,43 +159,43 @@ describe('layers', { timeout: 180_000 }, () => {
     assert.notEqual(full, null);
   });
 
-  it('tell all that is known of a cell', async () => {
+  it('show all values of a cell', async () => {
     session.paint(256, 255, 3);
     await open();
     await showsColour(page, '--cell-free');
     await page.mouse.move(...kMiddle);
-    await says(page, '#cursor-value', /^3 % occupied$/);
-    await says(page, '#cursor-others', /Sonar3 % occupied.*HIMMcounter 3.*Classificationfrontier/);
+    await hasText(page, '#cursor-value', /^3 % occupied$/);
+    await hasText(page, '#cursor-others', /Sonar3 % occupied.*HIMMcounter 3.*Classificationfrontier/);
   });
 
-  it('are measured by pointer and by keys', async () => {
+  it('can be measured by pointer and by keys', async () => {
     session.paint(256, 255, 0);
     await open();
     await showsColour(page, '--cell-free');
     await page.keyboard.press('m');
     await page.mouse.click(...pixelOf(2, 2));
     await page.mouse.click(...pixelOf(5, 6));
-    await says(page, '#measured', /^(4\.9\d|5\.0\d) m$/);
+    await hasText(page, '#measured', /^(4\.9\d|5\.0\d) m$/);
     await page.mouse.click(...pixelOf(5, 8));
-    await says(page, '#measured', /^(6\.9\d|7\.0\d) m$/);
+    await hasText(page, '#measured', /^(6\.9\d|7\.0\d) m$/);
     assert.deepEqual(await violations(page), []);
     await page.click('text=Start again');
-    await says(page, '#measured', /^$/);
+    await hasText(page, '#measured', /^$/);
     await page.focus('#map');
     await page.keyboard.press('Enter');
     await page.waitForSelector('#crosshair:not([hidden])');
-    await says(page, '#measured', /^$/);
+    await hasText(page, '#measured', /^$/);
     await page.keyboard.press('Enter');
     const before = await textOf(page, '#cursor-x');
     await page.keyboard.press('ArrowRight');
     await page.waitForFunction((old) => document.querySelector('#cursor-x').textContent !== old, before);
     await page.keyboard.press('Enter');
-    await says(page, '#measured', /^\d+\.\d\d m$/);
+    await hasText(page, '#measured', /^\d+\.\d\d m$/);
     await page.keyboard.press('Escape');
     await page.waitForSelector('#tool', { state: 'hidden' });
   });
 
-  it('keep the colours that a person chose, also those for any colour vision', async () => {
+  it('keep the chosen colours, also the colour-blind safe palette', async () => {
     session.paint(256, 255, 3);
     await open({ hash: '#session=map&layer=classification' });
     await showsColour(page, '--class-frontier');
@@ -218,13 +218,13 @@ describe('layers', { timeout: 180_000 }, () => {
     ['light', [390, 844]],
     ['dark', [390, 844]],
   ]) {
-    it(`leave nothing for axe-core to find: ${scheme}, ${size.join(' x ')}`, async () => {
+    it(`have no accessibility violations: ${scheme}, ${size.join(' x ')}`, async () => {
       session.paint(256, 255, 3);
       session.move('r1', 2, 2, 0);
       await open({ scheme, size });
       await page.waitForSelector('#notice', { state: 'hidden' });
       if (size[0] < 700) await page.click('#panel-toggle');
-      await page.selectOption('#beside', 'himm');
+      await page.selectOption('#second-layer', 'himm');
       assert.deepEqual(await violations(page), []);
       await page.click('#keys-open');
       assert.deepEqual(await violations(page), []);

@@ -1,13 +1,13 @@
-/** Where the parts of the page and of the map are, on wide screens and on phones, against a fake server. */
+/** Layout of the page and the map, on wide screens and on phones, with a fake server. */
 import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
 import { violations } from './accessibility.mjs';
-import { colourOf, keepPicture, says, showsColour, textOf, until } from './browser.mjs';
+import { colourOf, keepPicture, hasText, showsColour, textOf, until } from './browser.mjs';
 import { withFakeServer } from './fake_fixture.mjs';
 import { FakeSession } from './fake_session.mjs';
 import { kMiddle } from './one_tile.mjs';
 
-/** Upright and sideways: a recent one and a small one. */
+/** Portrait and landscape: a recent phone and a small one. */
 const kPhones = [
   [390, 844],
   [844, 390],
@@ -21,7 +21,7 @@ describe('the page', { timeout: 120_000 }, () => {
 
   const open = async (options) => ({ page } = await openPage(options));
 
-  it('fits a phone in both directions: tools in reach, robots beside the controls and at the top of the panel', async () => {
+  it('fits a phone in both orientations: all tools and robots are uncovered, the robots are at the top of the panel', async () => {
     const session = painted('map');
     for (const name of ['b', 'c', 'd', 'e', 'f']) painted(name);
     // In two corners of the map.
@@ -37,7 +37,7 @@ describe('the page', { timeout: 120_000 }, () => {
       assert.deepEqual(await outOfReach('.tools button'), []);
       await until(page, async () => (await markerIsFree('--robot-0')) && (await markerIsFree('--robot-1')));
       await page.tap('#tool-measure');
-      await says(page, '#tool-body', /^Tap the places/);
+      await hasText(page, '#tool-body', /^Tap the places/);
       await until(page, async () => !(await overlap('#tool', '#map')));
       await page.tap('#tool-close');
       await page.tap('#panel-toggle');
@@ -48,10 +48,10 @@ describe('the page', { timeout: 120_000 }, () => {
       await page.tap('#panel-toggle');
     }
     await page.tap('#map');
-    await says(page, '#cursor-value', /% occupied/);
+    await hasText(page, '#cursor-value', /% occupied/);
   });
 
-  it('shows the robots without scrolling, and a card that can be dragged off the place to pick', async () => {
+  it('shows the robots without scrolling, and a card that can be dragged off a covered place', async () => {
     for (const name of ['a', 'b', 'c', 'd', 'e', 'f', 'g']) painted(name).move('r1', 6, 6, 1);
     await open({ size: [1280, 720], hash: '#session=g' });
     await showsColour(page, '--cell-free');
@@ -59,12 +59,12 @@ describe('the page', { timeout: 120_000 }, () => {
     const [chosen, list] = await boxes('#sessions [aria-current]', '#sessions');
     assert.ok(chosen.y >= list.y && chosen.y < list.y + list.height, 'the open session is in view in the list');
     await page.click('#tool-path');
-    await says(page, '#tool-body', /^Click the start of the path, or /);
+    await hasText(page, '#tool-body', /^Click the start of the path, or /);
     const before = await page.locator('#tool').boundingBox();
     await drag('#tool-title', -400, 30);
     const after = await page.locator('#tool').boundingBox();
     assert.deepEqual([after.x, after.y], [before.x - 400, before.y + 30]);
-    // Not out of the map, where its buttons would be cut off.
+    // The card stays on the map, so that no button is cut off.
     await drag('#tool-title', -900, 700);
     const [card, map] = await boxes('#tool', '#map');
     assert.ok(card.x >= map.x && card.y + card.height <= map.y + map.height, JSON.stringify(card));
@@ -76,36 +76,36 @@ describe('the page', { timeout: 120_000 }, () => {
     });
   });
 
-  it('keeps the growing map in view until the person moves it, and again after Fit', async () => {
+  it('keeps the growing map in view until the user moves it, and again after Fit', async () => {
     const session = painted('map');
     await open({ motion: 'reduce' });
     await showsColour(page, '--cell-free');
     await page.mouse.move(...kMiddle);
-    await says(page, '#cursor-x', /^6\.[34]\d$/);
+    await hasText(page, '#cursor-x', /^6\.[34]\d$/);
     for (const column of [257, 258]) session.paint(column, 255, 0);
-    await says(page, '#cursor-x', /^19\.[12]\d$/);
+    await hasText(page, '#cursor-x', /^19\.[12]\d$/);
     await page.mouse.down();
     await page.mouse.move(kMiddle[0] + 60, kMiddle[1], { steps: 4 });
     await page.mouse.up();
     const moved = await textOf(page, '#cursor-x');
     for (const column of [259, 260, 261]) session.paint(column, 255, 0);
-    await says(page, '#sessions', /76\.8 × 12\.8 m/);
-    assert.equal(await textOf(page, '#cursor-x'), moved, 'the view stays');
+    await hasText(page, '#sessions', /76\.8 × 12\.8 m/);
+    assert.equal(await textOf(page, '#cursor-x'), moved, 'the view does not change');
     await page.click('#fit');
     await page.mouse.move(...kMiddle);
-    await says(page, '#cursor-x', /^38\.[34]\d$/);
+    await hasText(page, '#cursor-x', /^38\.[34]\d$/);
     session.paint(262, 255, 0);
-    await says(page, '#cursor-x', /^44\.[78]\d$/);
+    await hasText(page, '#cursor-x', /^44\.[78]\d$/);
   });
 
-  /** A session with one tile right above the origin. */
+  /** Returns a session with one tile, its lower left corner at the origin. */
   function painted(name) {
     const session = server.add(new FakeSession(name, `id-${name}`));
     session.paint(256, 255, 0);
     return session;
   }
 
-  /** Whether the robot of this colour is drawn where no control lies on it. */
+  /** Whether the robot of this colour is drawn where no control covers it. */
   async function markerIsFree(name) {
     return page.evaluate(
       (colour) => {
@@ -130,7 +130,7 @@ describe('the page', { timeout: 120_000 }, () => {
     );
   }
 
-  /** Names of those whose middle is not in the window, or is covered. */
+  /** Returns the names of buttons whose centre is outside the window or covered. */
   function outOfReach(selector) {
     return page.$$eval(selector, (elements) =>
       elements
@@ -151,7 +151,7 @@ describe('the page', { timeout: 120_000 }, () => {
     return a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height && b.y < a.y + a.height;
   }
 
-  /** Nothing of it is cut off by the panel or the window. */
+  /** Asserts that neither the panel nor the window cuts it off. */
   async function isInView(selector) {
     const [box, body] = await boxes(selector, '#panel-body');
     const { width, height } = page.viewportSize();

@@ -1,4 +1,4 @@
-/** The whole way: a robot streams to the real server, and a person watches the map grow. */
+/** The real robot client, the real server and the viewer: a robot streams while the map grows on the page. */
 import assert from 'node:assert/strict';
 import { after, before, describe, it } from 'node:test';
 import {
@@ -9,7 +9,7 @@ import {
   launchBrowser,
   openPage,
   openTab,
-  says,
+  hasText,
   showsColour,
   textOf,
 } from './browser.mjs';
@@ -36,15 +36,15 @@ describe('a robot that streams to the server', { timeout: 240_000 }, () => {
     await server?.stop();
   });
 
-  it('opens its session in the page that was waiting for it', async () => {
-    await says(page, '#notice', new RegExp(`No sessions yet.*--server 127\\.0\\.0\\.1:${server.robotPort} `, 's'));
+  it('opens its session in a waiting page', async () => {
+    await hasText(page, '#notice', new RegExp(`No sessions yet.*--server 127\\.0\\.0\\.1:${server.robotPort} `, 's'));
     robot = startRobot(server, 'demo', 'r1', kSource);
     await page.waitForSelector('#notice', { state: 'hidden' });
     await page.waitForSelector('[data-robot="r1"]');
     assert.match(page.url(), /#session=demo$/);
   });
 
-  it('makes tiles change, each fetched again under its new version', async () => {
+  it('changes tiles, and the page fetches each under its new version', async () => {
     const versions = new Map();
     for (let changed = 0; changed < 3; ) {
       const answer = await page.waitForResponse((response) => /\/tiles\/occupancy\/.*\.png\?/.test(response.url()));
@@ -60,11 +60,11 @@ describe('a robot that streams to the server', { timeout: 240_000 }, () => {
     }
   });
 
-  it('moves on the page, and draws its path', async () => {
+  it('moves on the page, and draws its trail', async () => {
     const pose = '[data-robot="r1"] [data-role="pose"]';
     const before = await textOf(page, pose);
     await page.waitForFunction(([at, old]) => document.querySelector(at)?.textContent !== old, [pose, before]);
-    await says(page, '[data-robot="r1"] .row-detail', /online .* [1-9]\d*\.\d m/);
+    await hasText(page, '[data-robot="r1"] .row-detail', /online .* [1-9]\d*\.\d m/);
     assert.ok((await countPixels(page, await colourOf(page, '--robot-0'))) > 100, 'marker and path are drawn');
   });
 
@@ -72,15 +72,15 @@ describe('a robot that streams to the server', { timeout: 240_000 }, () => {
     await page.click('[data-robot="r1"] .follow');
     await page.focus('#map');
     await page.hover('#map');
-    await says(page, '#cursor-value', /^\d+ % occupied$/);
+    await hasText(page, '#cursor-value', /^\d+ % occupied$/);
     assert.match(await textOf(page, '#cursor-x'), /^\u2212?\d+\.\d\d$/);
     await page.click('#fit');
   });
 
-  it('is there again after a reload, and in a second tab', async () => {
+  it('is shown after a reload, and in a second tab', async () => {
     const isShown = async (tab) => {
       await tab.waitForSelector('[data-robot="r1"]');
-      await says(tab, '#sessions', /demo/);
+      await hasText(tab, '#sessions', /demo/);
       await showsColour(tab, '--cell-free');
     };
     await page.reload();
@@ -91,8 +91,8 @@ describe('a robot that streams to the server', { timeout: 240_000 }, () => {
     assert.deepEqual(complaints, []);
   });
 
-  it('leaves a picture of what was seen', async () => {
-    await says(page, '[data-robot="r1"] .row-detail', /[1-9]\d\.\d m/);
+  it('leaves its map and trail after it has stopped', async () => {
+    await hasText(page, '[data-robot="r1"] .row-detail', /[1-9]\d\.\d m/);
     await keepPicture(page, 'live-light');
     await colourScheme(page, 'dark');
     await showsColour(page, '--cell-free');

@@ -1,10 +1,10 @@
-/** From metres on the map to pixels on the page, read off what the cursor tells. */
+/** Converts metres on the map to pixels on the page, from the readout under the pointer. */
 import { textOf } from './browser.mjs';
 
 const kTop = [420, 300];
 const kBottom = [760, 640];
 
-/** @returns a function from [x, y] in metres to [x, y] in pixels, good until the map is moved */
+/** @returns a function from [x, y] in metres to [x, y] in pixels, valid until the map is moved */
 export async function pixelsOf(page) {
   const [low, high] = [await placeAt(page, kTop), await placeAt(page, kBottom)];
   const along = (axis, metres) =>

@@ -1,6 +1,6 @@
 /**
- * Where things are on a page of 1280 x 800 that shows one tile of cells of 5 cm, right above the origin: its 12.8 m fill
- * the map's height but for 56 pixels on either side.
+ * Positions on a page of 1280 x 800 that shows one tile of cells of 5 cm, its lower left corner at the origin: its 12.8
+ * m fill the map's height except for 56 pixels on either side.
  */
 export const kMiddle = [784, 400];
 

@@ -1,4 +1,4 @@
-/** What lies on the map: robots, scans, frontiers, landmarks, goals; against a server that does what each test wants. */
+/** Overlays of the map: robots, scans, frontiers, landmarks, goals; with a fake server. */
 import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
 import { violations } from './accessibility.mjs';
@@ -8,7 +8,7 @@ import {
   countsPixels,
   isLike,
   keepPicture,
-  says,
+  hasText,
   showsColour,
   showsColourAt,
   textOf,
@@ -30,7 +30,7 @@ describe('on the map', { timeout: 180_000 }, () => {
 
   const open = async (options) => ({ page, complaints } = await openPage(options));
 
-  it('show the newest scan where its beams ended, unless it is not wanted', async () => {
+  it('show the end points of the newest scan, unless switched off', async () => {
     session.paint(256, 255, 0);
     session.scan = [
       [3, 3],
@@ -46,7 +46,7 @@ describe('on the map', { timeout: 180_000 }, () => {
     await showsNotAt(...pixelOf(3, 3), colour);
   });
 
-  it('show a robot with the ground that its body takes, and its trail, without a wrong pose', async () => {
+  it('show a robot with the area of its body and its trail, without a wrong pose', async () => {
     session.paint(256, 255, 0);
     for (let x = 2; x <= 10; x += 0.5) {
       session.move('r1', x, 6.4, 0);
@@ -68,7 +68,7 @@ describe('on the map', { timeout: 180_000 }, () => {
     await showsNoPixels(colour);
   });
 
-  it('show frontiers as areas with their goals, as soon as they change, and only when wanted', async () => {
+  it('show frontiers as areas with their goals, as soon as they change, and only when switched on', async () => {
     session.paint(256, 255, 0);
     session.frontiers = [frontier([3, 3], [5, 5])];
     await open();
@@ -85,7 +85,7 @@ describe('on the map', { timeout: 180_000 }, () => {
     await keepPicture(page, 'frontiers');
   });
 
-  it('survive frontiers that are none', async () => {
+  it('ignore malformed frontiers', async () => {
     session.paint(256, 255, 0);
     session.frontiers = [{ type: 'Feature', geometry: { type: '<b>x</b>', coordinates: 'nonsense' }, properties: {} }];
     await open();
@@ -97,13 +97,13 @@ describe('on the map', { timeout: 180_000 }, () => {
     assert.equal(await page.locator('#map b').count(), 0);
   });
 
-  it('show landmarks as they are told, when they are wanted', async () => {
+  it('show landmarks as events report them, when switched on', async () => {
     session.paint(256, 255, 0);
     session.see(0, [3, 3], 2);
     await open();
     await showsColour(page, '--cell-free');
     assert.deepEqual(
-      session.wishes.filter(({ landmarks }) => landmarks),
+      session.subscriptions.filter(({ landmarks }) => landmarks),
       [],
     );
     const colour = await colourOf(page, '--landmark');
@@ -116,30 +116,30 @@ describe('on the map', { timeout: 180_000 }, () => {
     await showsAt(...pixelOf(5, 3), colour);
     await showsNotAt(...pixelOf(3, 3), colour);
     await page.mouse.move(...pixelOf(5, 3));
-    await says(page, '#cursor-others', /^Landmark#0: 0\.31 × 0\.1[23] m, seen 3 times/);
+    await hasText(page, '#cursor-others', /^Landmark#0: 0\.31 × 0\.1[23] m, observed 3 times/);
     await page.mouse.move(...pixelOf(5, 5));
-    await says(page, '#cursor-others', /^(?!.*Landmark)/);
+    await hasText(page, '#cursor-others', /^(?!.*Landmark)/);
     await keepPicture(page, 'landmarks');
     session.noLandmarks = 'there are more than <b>can be kept</b>';
     session.move('r1', 1, 1, 0);
-    await says(page, '#status', /there are more than <b>can be kept<\/b>/);
+    await hasText(page, '#status', /there are more than <b>can be kept<\/b>/);
     await showsAt(...pixelOf(5, 3), colour);
     session.noLandmarks = null;
     session.see(2, [9, 3], 2);
     await showsAt(...pixelOf(9, 3), colour);
-    await says(page, '#status', /^$/);
+    await hasText(page, '#status', /^$/);
     await page.uncheck('[data-switch=landmarks]');
     await showsNotAt(...pixelOf(9, 9), colour);
-    await until(page, () => session.wishes.at(-1).landmarks === false);
+    await until(page, () => session.subscriptions.at(-1).landmarks === false);
     session.see(2, [3, 9], 3);
     await page.check('[data-switch=landmarks]');
     await showsAt(...pixelOf(3, 9), colour);
     await showsNotAt(...pixelOf(9, 3), colour);
   });
 
-  it('show fewer landmarks from far off, and say what the symbols mean', async () => {
+  it('show fewer landmarks at coarse zooms, and explain the symbols', async () => {
     session.paint(256, 255, 0);
-    // 21 along a line of 8 m, the middle one seen most often, and one that was seen once.
+    // 21 along a line of 8 m, the middle one with the most observations, and one with a single observation.
     for (let n = 0; n <= 20; ++n) session.see(n, [2.4 + 0.4 * n, 6.4], n === 10 ? 9 : 2);
     session.see(30, [6.4, 9.4], 1);
     session.frontiers = [frontier([3, 3], [5, 5])];
@@ -148,7 +148,7 @@ describe('on the map', { timeout: 180_000 }, () => {
     await open({ motion: 'reduce' });
     assert.deepEqual([await shown('frontiers'), await shown('landmarks')], [false, false]);
     for (const key of ['frontiers', 'landmarks']) await page.check(`[data-switch=${key}]`);
-    assert.match(await textOf(page, '[data-legend=landmarks]'), /seen again.*seen once/);
+    assert.match(await textOf(page, '[data-legend=landmarks]'), /observed repeatedly.*observed once/);
     assert.match(await textOf(page, '[data-legend=frontiers]'), /can be reached.*cannot be reached.*where to stand/);
     const colour = await colourOf(page, '--landmark');
     for (const x of [2.4, 6.4, 10.4]) await showsAt(...pixelOf(x, 6.4), colour);
@@ -161,11 +161,11 @@ describe('on the map', { timeout: 180_000 }, () => {
     // 8 m are 27 pixels wide now: one symbol or two, of 28 pixels each, and not a line of them.
     await countsPixels(page, colour, (count) => count > 0 && count < 80);
     await page.mouse.move(...kMiddle);
-    await says(page, '#cursor-others', /^Landmark#10: .*seen 9 times/);
+    await hasText(page, '#cursor-others', /^Landmark#10: .*observed 9 times/);
     await keepPicture(page, 'symbols-far');
   });
 
-  it('show the landmarks of another life of the server, and no others', async () => {
+  it('show only the new landmarks after a restart of the server', async () => {
     session.paint(256, 255, 0);
     session.see(0, [3, 3], 2);
     await open();
@@ -180,14 +180,14 @@ describe('on the map', { timeout: 180_000 }, () => {
     await showsAt(...pixelOf(9, 9), colour);
   });
 
-  it('show where a robot is going, as soon as it is told, and forget it likewise', async () => {
+  it('show goals and paths of robots as soon as they change, and remove them', async () => {
     session.paint(256, 255, 0);
     session.move('r1', 1, 1, 0);
     await open();
     await showsColour(page, '--cell-free');
     const path = '/api/v1/sessions/map/goals.geojson';
     const colour = await colourOf(page, '--robot-0');
-    session.tellGoals([
+    session.setGoals([
       feature(
         { role: 'way', robot: 'r1' },
         {
@@ -204,41 +204,37 @@ describe('on the map', { timeout: 180_000 }, () => {
     const ring = pixelOf(9, 9);
     await showsNear(ring[0], ring[1] - 7, colour);
     await keepPicture(page, 'goals');
-    const asked = server.requests.filter((each) => each === path).length;
+    const requested = server.requests.filter((each) => each === path).length;
     session.move('r1', 1, 2, 0);
     await until(page, async () => (await colourAt(page, ...pixelOf(1, 2))) !== null);
-    assert.equal(
-      server.requests.filter((each) => each === path).length,
-      asked,
-      'what has not changed is not asked for',
-    );
-    session.tellGoals([]);
+    assert.equal(server.requests.filter((each) => each === path).length, requested, 'unchanged goals are not fetched');
+    session.setGoals([]);
     await showsNotAt(ring[0], ring[1] - 7, colour);
-    session.tellGoals([feature({ role: '<b>', robot: 'r1' }, { type: 'Point', coordinates: 'x' })]);
+    session.setGoals([feature({ role: '<b>', robot: 'r1' }, { type: 'Point', coordinates: 'x' })]);
     await page.waitForResponse(/goals\.geojson/);
-    session.tellGoals([feature({ role: 'goal', robot: 'r1', target: [5, 3] }, { type: 'Point', coordinates: [3, 3] })]);
+    session.setGoals([feature({ role: 'goal', robot: 'r1', target: [5, 3] }, { type: 'Point', coordinates: [3, 3] })]);
     const other = pixelOf(3, 3);
     await showsNear(other[0], other[1] - 7, colour);
     await page.uncheck('[data-switch=goals]');
     await showsNotAt(other[0], other[1] - 7, colour);
   });
 
-  it('say when a robot has explored all, also where goals are not shown', async () => {
+  it('report that a robot has explored everything, also with goals switched off', async () => {
     session.paint(256, 255, 0);
     session.move('r1', 1, 1, 0);
     await open();
     const note = page.locator('#explored');
     await page.uncheck('[data-switch=goals]');
     assert.ok(await note.isHidden());
-    session.tellGoals([], ['<b>r1']);
+    session.setGoals([], ['<b>r1']);
     await note.waitFor({ state: 'visible' });
     assert.equal(await note.textContent(), '<b>r1 has explored all it can reach.');
     await keepPicture(page, 'explored');
-    session.tellGoals([]);
+    session.setGoals([]);
     await note.waitFor({ state: 'hidden' });
   });
 
-  it('show a grid, the origin and the axes, also after a reload, when they are wanted', async () => {
+  it('show a grid, the origin and the axes when switched on, also after a reload', async () => {
     session.paint(256, 255, 0);
     await open();
     await showsColour(page, '--cell-free');
@@ -247,7 +243,7 @@ describe('on the map', { timeout: 180_000 }, () => {
     await showsNotAt(...onX, alongX);
     await page.check('[data-switch=grid]');
     await showsNear(...onX, alongX);
-    // The y axis lies on the left edge of the tile.
+    // The y axis is on the left edge of the tile.
     const [left, middle] = pixelOf(0, 6.4);
     await until(page, async () => {
       const seen = await Promise.all([-1, 0, 1].map((dx) => colourAt(page, left + dx, middle)));
@@ -261,7 +257,7 @@ describe('on the map', { timeout: 180_000 }, () => {
     await showsNotAt(...onX, alongX);
   });
 
-  it('begin with a layer that holds something', async () => {
+  it('start with a layer that has data', async () => {
     session.layers = ['sonar'];
     session.paint(256, 255, 100);
     session.move('r1', 1, 1, 0);
@@ -270,7 +266,7 @@ describe('on the map', { timeout: 180_000 }, () => {
     await showsColour(page, '--cell-occupied');
   });
 
-  /** A square of 1 m around a place. */
+  /** Returns a square of 1 m around a place. */
   function frontier([x, y], goal) {
     const ring = [
       [-0.5, -0.5],
@@ -302,7 +298,7 @@ describe('on the map', { timeout: 180_000 }, () => {
     return showsColourAt(page, [x, y], colour, false);
   }
 
-  /** Lines are thin: they may share a pixel with what lies below. */
+  /** Lines are thin: they may share a pixel with the cell below. */
   async function showsNear(x, y, colour) {
     const steps = [-2, -1, 0, 1, 2];
     await until(page, async () => {
@@ -311,7 +307,7 @@ describe('on the map', { timeout: 180_000 }, () => {
     });
   }
 
-  /** Waits for the trail there: a mixture of its colour and what lies below, which is seen through it. */
+  /** Waits for the trail there: its colour, mixed with the colour below it. */
   function showsTrail([x, y], trail, below) {
     const steps = [-1, 0, 1];
     return until(page, async () => {

@@ -1,4 +1,4 @@
-/** Just enough PNG to make tiles: 8-bit grey, no filter. */
+/** A minimal PNG encoder for tiles: 8-bit grey, no filter. */
 import { deflateSync } from 'node:zlib';
 
 export function encodeGreyPng(width, height, pixels) {

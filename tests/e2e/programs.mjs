@@ -1,4 +1,4 @@
-/** The real server and robot, as processes of the test. */
+/** Runs the real server and robot as processes of the test. */
 import { spawn } from 'node:child_process';
 import { rmSync } from 'node:fs';
 import { mkdtemp, rm } from 'node:fs/promises';
@@ -8,13 +8,13 @@ import { createInterface } from 'node:readline';
 import { required } from './environment.mjs';
 
 const kBinDirectory = required('SCANLOOM_BIN_DIR');
-/** The viewer's files, where the test looks at them. */
+/** The viewer's files, as the test sees them. */
 const kWeb = process.env.SCANLOOM_WEB_DIR ? ['--web', process.env.SCANLOOM_WEB_DIR] : [];
 
 const running = new Set();
 const stores = new Set();
 
-/** What is running ends with this program when it is interrupted, and leaves nothing behind. */
+/** Ends all running processes when this program is interrupted. */
 export function endWithThisProgram() {
   for (const signal of ['SIGINT', 'SIGTERM']) {
     process.once(signal, () => {
@@ -25,7 +25,7 @@ export function endWithThisProgram() {
   }
 }
 
-/** A server on free ports with an empty store of its own. */
+/** Starts a server on free ports with its own empty store. */
 export class Server {
   static async start(options = []) {
     const store = await mkdtemp(join(tmpdir(), 'scanloom-e2e-'));
@@ -58,12 +58,12 @@ export function startRobot(server, session, robot, source) {
   ]);
 }
 
-/** @returns the exit code of a process that ends by itself */
+/** @returns the exit code, after the process has ended by itself */
 export function ended(child) {
   return new Promise((resolve) => child.once('exit', resolve));
 }
 
-/** Asks the process to end, and waits until it has. */
+/** Terminates the process, and waits until it has ended. */
 export async function stop(child) {
   if (child.exitCode !== null || child.signalCode !== null) return;
   const over = ended(child);

@@ -1,11 +1,11 @@
-/** The viewer over TLS: pages, tiles and WebSockets, and a cookie that goes nowhere else. */
+/** The viewer over TLS: pages, tiles, WebSockets, and a cookie for TLS only. */
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, describe, it } from 'node:test';
-import { launchBrowser, openPage, says } from './browser.mjs';
+import { launchBrowser, openPage, hasText } from './browser.mjs';
 import { required } from './environment.mjs';
 import { ended, Server, startRobot } from './programs.mjs';
 
@@ -25,9 +25,12 @@ describe('a server with TLS', { timeout: 240_000 }, () => {
     rmSync(place, { recursive: true, force: true });
   });
 
-  it('shows a map grow', async () => {
+  it('shows a growing map', async () => {
     const address = server.address.replace('http:', 'https:');
-    const { page, complaints } = await openPage(browser, address, { hash: '#session=office', trusts: 'anybody' });
+    const { page, complaints } = await openPage(browser, address, {
+      hash: '#session=office',
+      trusts: 'any certificate',
+    });
     const sockets = [];
     page.on('websocket', (socket) => sockets.push(socket.url()));
     const robot = startRobot(server, 'office', 'r1', [
@@ -40,27 +43,29 @@ describe('a server with TLS', { timeout: 240_000 }, () => {
       '100',
     ]);
     assert.equal(await ended(robot), 0);
-    await says(page, '#sessions', /100 scans/);
+    await hasText(page, '#sessions', /100 scans/);
     await page.reload();
-    await says(page, '#facts', /100/);
+    await hasText(page, '#facts', /100/);
     assert.ok(sockets.length > 0);
     for (const socket of sockets) assert.match(socket, /^wss:/);
     assert.deepEqual(complaints, []);
     await page.context().close();
   });
 
-  it('signs in with a cookie that only TLS carries', async () => {
+  it('signs in with a cookie that is sent over TLS only', async () => {
     const program = join(required('SCANLOOM_BIN_DIR'), 'scanloom-server');
     const made = execFileSync(program, ['token', '--name', 'kiosk', '--role', 'viewer'], { encoding: 'utf8' });
     const tokens = join(place, 'tokens.toml');
     writeFileSync(tokens, made.slice(made.indexOf('\n')), { mode: 0o600 });
     const guarded = await Server.start([...certificateOptions(), '--tokens', tokens]);
     try {
-      const { page } = await openPage(browser, guarded.address.replace('http:', 'https:'), { trusts: 'anybody' });
+      const { page } = await openPage(browser, guarded.address.replace('http:', 'https:'), {
+        trusts: 'any certificate',
+      });
       await page.waitForSelector('dialog[open] #token');
       await page.fill('#token', made.slice(0, made.indexOf('\n')));
       await page.keyboard.press('Enter');
-      await says(page, '#sign-in', /kiosk \(viewer\)/);
+      await hasText(page, '#sign-in', /kiosk \(viewer\)/);
       assert.deepEqual(
         (await page.context().cookies()).map((cookie) => cookie.secure),
         [true],

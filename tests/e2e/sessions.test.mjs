@@ -1,7 +1,7 @@
-/** The list of all sessions: found, sorted, pictured, made and deleted. */
+/** The list of sessions: search, order, thumbnails, creation and deletion. */
 import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
-import { colourOf, colourScheme, keepPicture, says } from './browser.mjs';
+import { colourOf, colourScheme, keepPicture, hasText } from './browser.mjs';
 import { withFakeServer } from './fake_fixture.mjs';
 import { FakeSession } from './fake_session.mjs';
 
@@ -15,37 +15,37 @@ describe('the list of sessions', { timeout: 240_000 }, () => {
 
   const open = async (options) => ({ page, complaints } = await openPage(options));
 
-  it('finds names by their parts, says how many of how many, and forgets the search on Escape', async () => {
+  it('finds names by their parts, shows the counts, and clears the search on Escape', async () => {
     for (const name of ['lab-east', 'lab-west', 'hall']) painted(name);
     server.damaged.push({ name: 'lab-broken', reason: 'its log is damaged' });
     await open();
-    await says(page, '#session-count', /^4 sessions$/);
+    await hasText(page, '#session-count', /^4 sessions$/);
     await page.focus('#map');
     await page.keyboard.press('/');
     await page.keyboard.type('LAB');
-    await says(page, '#session-count', /^3 of 4 sessions$/);
+    await hasText(page, '#session-count', /^3 of 4 sessions$/);
     assert.deepEqual(await rows(), ['lab-east', 'lab-west']);
-    await says(page, '#damaged', /lab-broken/);
+    await hasText(page, '#damaged', /lab-broken/);
     await page.keyboard.type(' we');
-    await says(page, '#session-count', /^1 of 4 sessions$/);
+    await hasText(page, '#session-count', /^1 of 4 sessions$/);
     await page.keyboard.type('.*');
-    await says(page, '#session-count', /^0 of 4 sessions$/);
+    await hasText(page, '#session-count', /^0 of 4 sessions$/);
     await page.keyboard.press('Escape');
-    await says(page, '#session-count', /^4 sessions$/);
+    await hasText(page, '#session-count', /^4 sessions$/);
     assert.equal(await page.inputValue('#session-search'), '');
   });
 
-  it('sorts by age, by name, and by how busy they are', async () => {
+  it('sorts by age, by name, and by scan rate', async () => {
     const created = { a10: '2026-01-03', a9: '2026-01-01', b: '2026-01-02' };
     for (const [name, day] of Object.entries(created)) painted(name).created = `${day}T00:00:00Z`;
     await open();
-    await says(page, '#session-count', /3/);
+    await hasText(page, '#session-count', /3/);
     assert.deepEqual(await rows(), ['a10', 'b', 'a9']);
     await page.selectOption('#session-order', 'name');
     assert.deepEqual(await rows(), ['a9', 'a10', 'b']);
     await page.selectOption('#session-order', 'busiest');
     for (let scan = 0; scan < 30; ++scan) server.sessions.get('b').move('r1', 1, 1, 0);
-    await says(page, '[data-session="b"]', /30 scans · [1-9][\d.]* scans\/s/);
+    await hasText(page, '[data-session="b"]', /30 scans · [1-9][\d.]* scans\/s/);
     await page.waitForFunction(() => document.querySelector('[data-session]').dataset.session === 'b');
   });
 
@@ -57,25 +57,25 @@ describe('the list of sessions', { timeout: 240_000 }, () => {
     await page.hover(`[data-session="${order[0]}"]`);
     const busy = server.sessions.get(order[2]);
     for (let scan = 0; scan < 50; ++scan) busy.move('r1', 1, 1, 0);
-    await says(page, `[data-session="${order[2]}"]`, /scans\/s/);
+    await hasText(page, `[data-session="${order[2]}"]`, /scans\/s/);
     assert.deepEqual(await rows(), order);
     await page.hover('#map');
     await page.waitForFunction((name) => document.querySelector('[data-session]').dataset.session === name, order[2]);
   });
 
-  it('tells size, scans, robots and state of each', async () => {
+  it('shows size, scans, robots and state of each session', async () => {
     const session = painted('map');
     session.move('r1', 1, 1, 0);
     session.move('r2', 1, 1, 0);
     session.robots[1].connected = false;
     server.add(new FakeSession('bare', 'id-bare')).failure = 'the disk is full';
     await open();
-    await says(page, '[data-session="map"]', /online.*2 scans.*12\.8 × 12\.8 m · 1 of 2 online/);
-    await says(page, '[data-session="bare"]', /takes no scans.*0 scans.*nothing seen yet · no robots.*disk is full/);
+    await hasText(page, '[data-session="map"]', /online.*2 scans.*12\.8 × 12\.8 m · 1 of 2 online/);
+    await hasText(page, '[data-session="bare"]', /accepts no scans.*0 scans.*no scans yet · no robots.*disk is full/);
     assert.equal(await page.isVisible('[data-session="bare"] .online'), false);
   });
 
-  it('pictures what is in view, and again only what has changed', async () => {
+  it('loads thumbnails in view, and again only after a change', async () => {
     painted('shown', 100);
     painted('other', 0);
     server.add(new FakeSession('empty', 'id-empty'));
@@ -85,16 +85,16 @@ describe('the list of sessions', { timeout: 240_000 }, () => {
     assert.equal(await page.getAttribute('[data-session="empty"] canvas', 'data-state'), 'empty');
     assert.equal(tilesOf('empty').length, 0);
     assert.deepEqual(tilesOf('other').length, 1, 'one tile at the zoom at which the map is small');
-    const heard = countOf('/api/v1/sessions');
-    // What the browser answers from its cache counts, too.
-    const asked = [];
-    page.on('request', (request) => asked.push(new URL(request.url()).pathname.split('/')));
+    const polls = countOf('/api/v1/sessions');
+    // Answers from the browser's cache count, too.
+    const requested = [];
+    page.on('request', (request) => requested.push(new URL(request.url()).pathname.split('/')));
     server.sessions.get('shown').paint(256, 255, 0);
     await pictured('shown', '--cell-free');
-    assert.ok(countOf('/api/v1/sessions') - heard >= 3, 'not more often than each ten seconds');
+    assert.ok(countOf('/api/v1/sessions') - polls >= 3, 'at most once in ten seconds');
     assert.deepEqual([tilesOf('shown').length, tilesOf('other').length], [2, 1]);
     assert.ok(
-      asked.every(([, , , , name, part]) => name !== 'other' || part !== 'tiles'),
+      requested.every(([, , , , name, part]) => name !== 'other' || part !== 'tiles'),
       'it has not changed',
     );
     assert.match(tilesOf('shown')[1], /\?v=2&id=id-shown$/);
@@ -102,10 +102,10 @@ describe('the list of sessions', { timeout: 240_000 }, () => {
     await pictured('shown', '--cell-free');
   });
 
-  it('stays fluent with hundreds of sessions', async () => {
+  it('stays responsive with hundreds of sessions', async () => {
     for (let index = 0; index < 500; ++index) painted(`session-${String(index).padStart(3, '0')}`);
     await open();
-    await says(page, '#session-count', /^500 sessions$/);
+    await hasText(page, '#session-count', /^500 sessions$/);
     await page.selectOption('#session-order', 'name');
     await page.evaluate(() => {
       window.longest = 0;
@@ -117,19 +117,19 @@ describe('the list of sessions', { timeout: 240_000 }, () => {
       for (const session of server.sessions.values()) session.move('r1', round, 1, 0);
       await page.waitForResponse((response) => new URL(response.url()).pathname === '/api/v1/sessions');
     }
-    await says(page, '[data-session="session-499"]', /3 scans/);
+    await hasText(page, '[data-session="session-499"]', /3 scans/);
     const longest = await page.evaluate(() => window.longest);
-    assert.ok(longest < 400, `the page stood still for ${longest} ms`);
+    assert.ok(longest < 400, `the page was blocked for ${longest} ms`);
     const pictures = new Set(server.tileRequests.map((path) => path.split('/')[4]));
-    assert.ok(pictures.size < 40, `${pictures.size} sessions were pictured, of a dozen in view`);
+    assert.ok(pictures.size < 40, `${pictures.size} thumbnails were loaded, of a dozen in view`);
     await page.click('#session-search');
     await page.keyboard.type('session-49');
-    await says(page, '#session-count', /^10 of 500 sessions$/);
+    await hasText(page, '#session-count', /^10 of 500 sessions$/);
     assert.equal((await rows()).length, 10);
     await keepPicture(page, 'sessions-many');
   });
 
-  it('makes a session and opens it; a refusal is told in the dialog', async () => {
+  it('creates a session and opens it; the dialog shows a refusal', async () => {
     painted('taken');
     await open();
     await page.click('#new-session');
@@ -140,40 +140,44 @@ describe('the list of sessions', { timeout: 240_000 }, () => {
     await page.fill('#new-cell', '2');
     await page.keyboard.press('Enter');
     assert.ok(await page.$eval('#new-cell', (field) => field.validity.rangeOverflow));
-    assert.deepEqual(server.wanted, [], 'nothing wrong is sent');
+    assert.deepEqual(server.wanted, [], 'invalid names are not sent');
     await page.fill('#new-cell', '0.1');
     await page.check('#new-traversal');
     await page.keyboard.press('Enter');
-    await says(page, '.dialog-failure', /Exists already: session 'taken' exists already/);
+    await hasText(page, '.dialog-failure', /Exists already: session 'taken' exists already/);
     await keepPicture(page, 'session-new-refused');
     await page.fill('#new-name', 'fresh_1');
     await page.keyboard.press('Enter');
     await page.waitForSelector('dialog', { state: 'hidden' });
     assert.deepEqual(server.wanted.at(-1), { name: 'fresh_1', cell_size: 0.1, ray_model: 'traversal' });
     await page.waitForSelector('#sessions a[aria-current]:has-text("fresh_1")');
-    await says(page, '#notice', /fresh_1.*waits for the first scan/);
+    await hasText(page, '#notice', /fresh_1.*waits for the first scan/);
   });
 
   it('says in the dialog that the server is offline', async () => {
     await open();
-    await says(page, '#notice', /No sessions yet/);
+    await hasText(page, '#notice', /No sessions yet/);
     await page.click('#new-session');
     await page.fill('#new-name', 'later');
     await server.vanish();
     await page.keyboard.press('Enter');
-    await says(page, '.dialog-failure', /Offline/);
+    await hasText(page, '.dialog-failure', /Offline/);
     await server.comeBack();
     await page.keyboard.press('Enter');
     await page.waitForSelector('#sessions a[aria-current]:has-text("later")');
   });
 
-  it('deletes only what was confirmed, and goes on with another without a notice', async () => {
+  it('deletes only after confirmation, and opens another session without a notice', async () => {
     painted('first').move('r1', 1, 1, 0);
     painted('second');
     await open({ hash: '#session=first' });
     await page.waitForSelector('#sessions a[aria-current]:has-text("first")');
     await page.click('[data-session="first"] .remove');
-    await says(page, 'dialog[open]', /first · 1 scan, 1 robot.*log of scans and all its maps are deleted for good/);
+    await hasText(
+      page,
+      'dialog[open]',
+      /first · 1 scan, 1 robot.*log of scans and all its maps are deleted permanently/,
+    );
     assert.equal(await page.evaluate(() => document.activeElement.textContent), 'Cancel');
     await keepPicture(page, 'session-delete');
     await page.keyboard.press('Escape');
@@ -181,37 +185,37 @@ describe('the list of sessions', { timeout: 240_000 }, () => {
     assert.ok(server.sessions.has('first'));
     await page.click('[data-session="first"] .remove');
     await page.evaluate(() => {
-      window.told = [];
+      window.notices = [];
       const notice = document.querySelector('#notice');
-      new MutationObserver(() => window.told.push(notice.textContent)).observe(notice, { childList: true });
+      new MutationObserver(() => window.notices.push(notice.textContent)).observe(notice, { childList: true });
     });
-    // The page hears that the session is gone before it hears that it was deleted.
+    // The live connection ends before the page receives the answer to the deletion.
     let release;
     server.hold = new Promise((resolve) => (release = resolve));
     await page.click('dialog[open] .destructive');
-    await says(page, '#notice', /Loading/);
+    await hasText(page, '#notice', /Loading/);
     release();
     await page.waitForSelector('#sessions a[aria-current]:has-text("second")');
     await page.waitForSelector('#notice', { state: 'hidden' });
     assert.deepEqual(await rows(), ['second']);
     assert.equal(new URL(page.url()).hash, '#session=second');
     assert.ok(
-      (await page.evaluate(() => window.told)).every((text) => !/deleted/.test(text)),
+      (await page.evaluate(() => window.notices)).every((text) => !/deleted/.test(text)),
       'no notice',
     );
   });
 
-  it('keeps a session that the server does not delete, and says why', async () => {
+  it('keeps a session that the server does not delete, and shows the reason', async () => {
     painted('kept');
     await open();
     await page.click('[data-session="kept"] .remove');
     server.refusal = { status: 503, title: 'The store failed', detail: 'no space left' };
     await page.click('dialog[open] .destructive');
-    await says(page, '.dialog[open] .dialog-failure', /The store failed: no space left/);
+    await hasText(page, '.dialog[open] .dialog-failure', /The store failed: no space left/);
     await page.keyboard.press('Escape');
     assert.deepEqual(await rows(), ['kept']);
     server.sessions.delete('kept');
-    await says(page, '#notice', /was deleted/);
+    await hasText(page, '#notice', /was deleted/);
   });
 
   it('deletes a damaged session, and the last one', async () => {
@@ -224,14 +228,14 @@ describe('the list of sessions', { timeout: 240_000 }, () => {
     assert.ok(server.requests.includes('DELETE /api/v1/sessions/broken%237'));
     await page.click('[data-session="last"] .remove');
     await page.click('dialog[open] .destructive');
-    await says(page, '#notice', /No sessions yet/);
-    await says(page, '#sessions-state', /None yet/);
+    await hasText(page, '#notice', /No sessions yet/);
+    await hasText(page, '#sessions-state', /No sessions yet/);
   });
 
-  it('is used by keyboard alone', async () => {
+  it('works with the keyboard alone', async () => {
     for (const name of ['a', 'b', 'c']) painted(name);
     await open({ hash: '#session=c' });
-    await says(page, '#session-count', /3/);
+    await hasText(page, '#session-count', /3/);
     await page.selectOption('#session-order', 'name');
     await page.keyboard.press('/');
     await page.keyboard.press('ArrowDown');
@@ -251,40 +255,40 @@ describe('the list of sessions', { timeout: 240_000 }, () => {
     await page.keyboard.press('Tab');
     await page.keyboard.press('Enter');
     await page.waitForSelector('[data-session="b"]', { state: 'detached' });
-    assert.equal(await focused(), 'c', 'the focus goes to the next row');
+    assert.equal(await focused(), 'c', 'the focus moves to the next row');
     await page.keyboard.press('Delete');
-    await says(page, 'dialog[open]', /c/);
+    await hasText(page, 'dialog[open]', /c/);
     await page.keyboard.press('/');
     await page.keyboard.press('Enter');
     await page.waitForSelector('dialog[open]', { state: 'detached' });
     assert.deepEqual(await rows(), ['a', 'c'], 'Enter in the dialog cancels');
   });
 
-  it('never turns a name into markup, nor cuts a request', async () => {
+  it('escapes names in markup and in requests', async () => {
     painted(kHostile);
     await open();
     await page.click('.remove');
-    await says(page, 'dialog[open]', /<img src=x/);
+    await hasText(page, 'dialog[open]', /<img src=x/);
     await keepPicture(page, 'session-hostile');
     await page.click('dialog[open] .destructive');
-    await says(page, '#sessions-state', /None yet/);
+    await hasText(page, '#sessions-state', /No sessions yet/);
     assert.ok(server.requests.includes(`DELETE /api/v1/sessions/${encodeURIComponent(kHostile)}`));
     assert.equal(await page.locator('img').count(), 0);
   });
 
-  it('says that it loads, is offline or cannot be had, and keeps what was known', async () => {
+  it('reports loading, errors and offline, and keeps the last list', async () => {
     painted('known');
     server.failure = { status: 503, title: 'Store not open', detail: 'recovering' };
     await open();
-    await says(page, '#sessions-state', /cannot be had: Store not open: recovering\.$/);
+    await hasText(page, '#sessions-state', /cannot be loaded: Store not open: recovering\.$/);
     server.failure = null;
-    await says(page, '#session-count', /^1 session$/);
-    await says(page, '#sessions-state', /^$/);
+    await hasText(page, '#session-count', /^1 session$/);
+    await hasText(page, '#sessions-state', /^$/);
     await server.vanish();
-    await says(page, '#sessions-state', /^Offline\. The list shows what was last heard\.$/);
+    await hasText(page, '#sessions-state', /^Offline\. The list shows the last received state\.$/);
     assert.deepEqual(await rows(), ['known']);
     await server.comeBack();
-    await says(page, '#sessions-state', /^$/);
+    await hasText(page, '#sessions-state', /^$/);
   });
 
   it('fits a phone', async () => {
@@ -308,7 +312,7 @@ describe('the list of sessions', { timeout: 240_000 }, () => {
     assert.ok(await page.isVisible('#session-search'), 'the search opens the panel');
   });
 
-  /** A session with one tile right above the origin. */
+  /** Returns a session with one tile, its lower left corner at the origin. */
   function painted(name, percent = 100) {
     const session = server.add(new FakeSession(name, `id-${name}`));
     session.paint(256, 255, percent);

@@ -1,11 +1,11 @@
-/** A server that asks for tokens: signing in, going on where one was, signing out. */
+/** A server that requires tokens: sign in, continue after expiry, sign out. */
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, describe, it } from 'node:test';
-import { keepPicture, launchBrowser, openPage, says } from './browser.mjs';
+import { keepPicture, launchBrowser, openPage, hasText } from './browser.mjs';
 import { required } from './environment.mjs';
 import { Server } from './programs.mjs';
 
@@ -32,23 +32,23 @@ describe('a server with tokens', { timeout: 240_000 }, () => {
     rmSync(place, { recursive: true, force: true });
   });
 
-  it('asks for a token, and shows what it is for', async () => {
+  it('requires a token, and shows the sessions of the token', async () => {
     const { page, complaints } = await openPage(browser, server.address, { hash: '#session=depot' });
     await page.waitForSelector('dialog[open] #token');
-    await says(page, 'dialog[open]', /This server requires a token\./);
+    await hasText(page, 'dialog[open]', /This server requires a token\./);
     assert.equal(await page.isVisible('#sign-in'), false);
-    await askedAgain(page);
+    await polledAgain(page);
     for (const other of ['#status', '#notice', '#sessions-state'])
       assert.equal(await page.isVisible(other), false, other);
     await keepPicture(page, 'sign-in');
     await signIn(page, 'scanloom_guess');
-    await says(page, 'dialog[open] .dialog-failure', /not in force/);
+    await hasText(page, 'dialog[open] .dialog-failure', /not in force/);
     await page.keyboard.press('Escape');
     assert.equal(await page.isVisible('dialog[open] #token'), true);
     await signIn(page, viewer.secret);
-    await says(page, '#session-count', /^1 session$/);
-    await says(page, '#sign-in', /kiosk \(viewer\)/);
-    await says(page, '#chosen', /^depot$/);
+    await hasText(page, '#session-count', /^1 session$/);
+    await hasText(page, '#sign-in', /kiosk \(viewer\)/);
+    await hasText(page, '#chosen', /^depot$/);
     assert.equal(await page.isVisible('dialog[open]'), false);
     const cookies = await page.context().cookies();
     assert.equal(cookies.length, 1);
@@ -60,23 +60,23 @@ describe('a server with tokens', { timeout: 240_000 }, () => {
     await page.context().close();
   });
 
-  it('lets an operator change what it shows, and goes on after signing in anew', async () => {
+  it('lets an operator change sessions, and continues after signing in again', async () => {
     const { page } = await openPage(browser, server.address);
     await page.waitForSelector('dialog[open] #token');
     await signIn(page, operator.secret);
-    await says(page, '#session-count', /^2 sessions$/);
+    await hasText(page, '#session-count', /^2 sessions$/);
     await page.click('#new-session');
     await page.fill('#new-name', 'attic');
     await page.keyboard.press('Enter');
-    await says(page, '#chosen', /^attic$/);
+    await hasText(page, '#chosen', /^attic$/);
     const address = page.url();
-    await page.context().clearCookies(); // as when the server was started again
+    await page.context().clearCookies(); // as after a restart of the server
     await page.waitForSelector('dialog[open] #token');
-    await says(page, 'dialog[open]', /Your session has expired\./);
+    await hasText(page, 'dialog[open]', /Your session has expired\./);
     await signIn(page, operator.secret);
-    await says(page, '#session-count', /^3 sessions$/);
+    await hasText(page, '#session-count', /^3 sessions$/);
     assert.equal(page.url(), address);
-    await says(page, '#chosen', /^attic$/);
+    await hasText(page, '#chosen', /^attic$/);
     await page.context().close();
   });
 
@@ -84,7 +84,7 @@ describe('a server with tokens', { timeout: 240_000 }, () => {
     const { page } = await openPage(browser, server.address);
     await page.waitForSelector('dialog[open] #token');
     await signIn(page, viewer.secret);
-    await says(page, '#sign-in', /kiosk/);
+    await hasText(page, '#sign-in', /kiosk/);
     const [cookie] = await page.context().cookies();
     await page.click('#sign-in button');
     await page.waitForSelector('dialog[open] #token');
@@ -96,8 +96,8 @@ describe('a server with tokens', { timeout: 240_000 }, () => {
     await page.context().close();
   });
 
-  /** Waits until the page has taken an answer 401 to each of its polls. */
-  async function askedAgain(page) {
+  /** Waits until the page has received 401 for each of its polls. */
+  async function polledAgain(page) {
     for (let answers = 0; answers < 2; ++answers) await page.waitForResponse((answer) => answer.status() === 401);
     await page.evaluate(() => new Promise((resolve) => requestAnimationFrame(resolve)));
   }
@@ -117,7 +117,7 @@ describe('a server with tokens', { timeout: 240_000 }, () => {
   }
 });
 
-/** As people make them. */
+/** Creates a token with the server's command. */
 function makeToken(name, role, session) {
   const program = join(required('SCANLOOM_BIN_DIR'), 'scanloom-server');
   const text = execFileSync(program, ['token', '--name', name, '--role', role, '--session', session], {

@@ -1,7 +1,7 @@
-/** The past of a session: what the real server weaves again of a simulated run, looked at and played back. */
+/** The history of a session: maps of earlier times that the real server computes, selected and played back. */
 import assert from 'node:assert/strict';
 import { after, afterEach, before, describe, it } from 'node:test';
-import { colourOf, countPixels, keepPicture, launchBrowser, openPage, openTab, says, textOf } from './browser.mjs';
+import { colourOf, countPixels, keepPicture, launchBrowser, openPage, openTab, hasText, textOf } from './browser.mjs';
 import { Server, startRobot } from './programs.mjs';
 
 const kSimulation = ['simulate', '--world', 'office', '--drive', 'wall_follower', '--seed', '1', '--speed', '0'];
@@ -14,7 +14,7 @@ describe('the history of a session', { timeout: 240_000 }, () => {
   let page;
   let complaints;
 
-  /** Drives on until the session is so many seconds long. */
+  /** Continues the drive until the session is this many seconds long. */
   async function drive(seconds) {
     const robot = startRobot(server, 'run', 'r1', [...kSimulation, '--duration', String(seconds)]);
     await new Promise((resolve) => robot.once('exit', resolve));
@@ -26,16 +26,16 @@ describe('the history of a session', { timeout: 240_000 }, () => {
     await tab.waitForFunction(() => Number(document.querySelector('#time-slider').max) > 1);
   }
 
-  /** Puts the slider there and waits until the map is of that scan. */
+  /** Moves the slider there and waits until the map shows that scan. */
   async function seek(tab, scan) {
     await tab.fill('#time-slider', String(scan));
     await showsScan(tab, scan);
   }
 
   async function showsScan(tab, scan) {
-    await says(tab, '#time-mode', /^Past$/);
-    await says(tab, '#time-place', new RegExp(`^scan ${scan} of `));
-    await says(tab, '[data-robot="r1"] .row-detail', new RegExp(`\\b${scan} scans? `));
+    await hasText(tab, '#time-mode', /^Past$/);
+    await hasText(tab, '#time-place', new RegExp(`^scan ${scan} of `));
+    await hasText(tab, '[data-robot="r1"] .row-detail', new RegExp(`\\b${scan} scans? `));
   }
 
   function valueOf(tab) {
@@ -46,7 +46,7 @@ describe('the history of a session', { timeout: 240_000 }, () => {
     return colourOf(tab, '--cell-free').then((colour) => countPixels(tab, colour));
   }
 
-  /** Waits until so much of the map is free. @param least, most pixels */
+  /** Waits until this many pixels of the map are free. @param least, most pixels */
   async function showsFree(tab, least, most) {
     const deadline = Date.now() + 20_000;
     for (let found = -1; found < least || found > most; found = await freePixels(tab)) {
@@ -55,11 +55,11 @@ describe('the history of a session', { timeout: 240_000 }, () => {
     }
   }
 
-  /** How much of the map is free once nothing changes any more. */
+  /** Returns the number of free pixels once the map no longer changes. */
   async function settledFree(tab) {
     let [found, same] = [-1, 0];
     for (let look = 0; same < 5; ++look) {
-      assert.ok(look < 500, 'the map never comes to rest');
+      assert.ok(look < 500, 'the map keeps changing');
       const next = await freePixels(tab);
       same = next === found ? same + 1 : 0;
       found = next;
@@ -91,7 +91,7 @@ describe('the history of a session', { timeout: 240_000 }, () => {
     assert.equal(await page.getAttribute('#history-open', 'aria-expanded'), 'true');
   });
 
-  it('shows an older map, where the robot stood then, and says so; and the present with one click', async () => {
+  it('shows an older map with the pose of the robot at that time; one click returns to the present', async () => {
     await showsFree(page, 5_000, Infinity);
     const [pose, present] = [await textOf(page, kPose), await settledFree(page)];
     await seek(page, 20);
@@ -103,13 +103,13 @@ describe('the history of a session', { timeout: 240_000 }, () => {
     );
     await keepPicture(page, 'time-past-light');
     await page.click('#time-live');
-    await says(page, '#time-mode', /^Live$/);
-    await says(page, kPose, new RegExp(`^${pose.replace(/[.*+?^${}()|[\]\\]/g, '\\$&')}$`));
+    await hasText(page, '#time-mode', /^Live$/);
+    await hasText(page, kPose, new RegExp(`^${pose.replace(/[.*+?^${}()|[\]\\]/g, '\\$&')}$`));
     await showsFree(page, 0.99 * present, 1.01 * present);
     assert.equal(await valueOf(page), 400);
   });
 
-  it('shows the newest scan\u2019s map exactly as the present', async () => {
+  it('shows the newest scan\u2019s map exactly like the present', async () => {
     const picture = () => page.locator('#map').screenshot();
     for (const overlay of ['points', 'robots']) await page.uncheck(`[data-switch="${overlay}"]`);
     await seek(page, 20);
@@ -118,18 +118,18 @@ describe('the history of a session', { timeout: 240_000 }, () => {
     const newest = await settledFree(page);
     const past = await picture();
     await page.click('#time-live');
-    await says(page, '#time-mode', /^Live$/);
+    await hasText(page, '#time-mode', /^Live$/);
     assert.equal(await settledFree(page), newest);
     assert.ok(past.equals(await picture()), 'pixel by pixel');
     for (const overlay of ['points', 'robots']) await page.check(`[data-switch="${overlay}"]`);
   });
 
-  it('plays by itself, as fast as is asked for, and ends with the last scan', async () => {
+  it('plays at the chosen speed, and ends with the last scan', async () => {
     await page.selectOption('#time-speed', '20');
     const start = Date.now();
     await page.click('#time-play');
     await page.waitForSelector('#time-play[aria-label="Pause"]');
-    await says(page, '#time-mode', /^Past$/);
+    await hasText(page, '#time-mode', /^Past$/);
     for (const least of [40, 150, 300]) {
       await page.waitForFunction((scan) => Number(document.querySelector('#time-slider').value) >= scan, least);
       if (least === 150) await keepPicture(page, 'time-playing');
@@ -139,7 +139,7 @@ describe('the history of a session', { timeout: 240_000 }, () => {
     await showsScan(page, 400);
   });
 
-  it('never blinks while it plays', async () => {
+  it('shows no blank frame during playback', async () => {
     await seek(page, 150);
     let most = await settledFree(page);
     await page.click('#time-play');
@@ -152,17 +152,17 @@ describe('the history of a session', { timeout: 240_000 }, () => {
     await page.waitForSelector('#time-play[aria-label="Play"]');
   });
 
-  it('asks for one weave at a time, and for the newest of those that are wanted', async () => {
+  it('requests one weave at a time, and of newer requests only the last', async () => {
     await seek(page, 10);
-    const asked = [];
+    const requested = [];
     let come;
     const first = new Promise((resolve) => (come = resolve));
     let release;
     const held = new Promise((resolve) => (release = resolve));
     await page.route('**/weave', async (route) => {
-      asked.push(route.request().postDataJSON().until);
+      requested.push(route.request().postDataJSON().until);
       come();
-      if (asked.length === 1) await held;
+      if (requested.length === 1) await held;
       await route.continue();
     });
     const box = await page.locator('#time-slider').boundingBox();
@@ -174,13 +174,13 @@ describe('the history of a session', { timeout: 240_000 }, () => {
     const scan = await valueOf(page);
     assert.ok(scan > 250 && scan < 380, `dragged to ${scan}`);
     await first;
-    assert.equal(asked.length, 1);
+    assert.equal(requested.length, 1);
     release();
     await showsScan(page, scan);
-    assert.equal(asked.length, 2);
+    assert.equal(requested.length, 2);
   });
 
-  it('can do without a pointer', async () => {
+  it('works with the keyboard alone', async () => {
     await page.click('#time-close');
     await page.waitForSelector('#time-bar', { state: 'hidden' });
     assert.ok(await page.evaluate(() => document.activeElement.id === 'history-open'));
@@ -201,14 +201,14 @@ describe('the history of a session', { timeout: 240_000 }, () => {
     await page.keyboard.press('Space');
     await page.waitForSelector('#time-play[aria-label="Play"]');
     await page.keyboard.press('l');
-    await says(page, '#time-mode', /^Live$/);
+    await hasText(page, '#time-mode', /^Live$/);
     await press(',', 399);
     await page.keyboard.press('t');
     await page.waitForSelector('#time-bar', { state: 'hidden' });
-    await says(page, '[data-robot="r1"] .row-detail', /\b400 scans /);
+    await hasText(page, '[data-robot="r1"] .row-detail', /\b400 scans /);
   });
 
-  it('tells in a sentence what the server refuses, and leaves the map as it is', async () => {
+  it('shows the server\u2019s refusal, and keeps the map', async () => {
     await openHistory(page);
     await seek(page, 100);
     const before = await settledFree(page);
@@ -219,28 +219,32 @@ describe('the history of a session', { timeout: 240_000 }, () => {
     });
     await page.route('**/weave', (route) => route.fulfill(problem(507, '<b>no room</b> for maps')));
     await page.fill('#time-slider', '30');
-    await says(page, '#time-message', /cannot be shown; the map stays as it is\. .*<b>no room<\/b> for maps\.$/);
+    await hasText(page, '#time-message', /cannot be shown; the map stays as it is\. .*<b>no room<\/b> for maps\.$/);
     assert.equal(await freePixels(page), before);
-    await says(page, '[data-robot="r1"] .row-detail', /\b100 scans /);
+    await hasText(page, '[data-robot="r1"] .row-detail', /\b100 scans /);
     await page.unroute('**/weave');
 
-    await page.route('**/weave', (route) => route.fulfill(problem(503, 'too many maps are being woven')));
+    await page.route('**/weave', (route) => route.fulfill(problem(503, 'too many weaves are running')));
     await page.fill('#time-slider', '31');
-    await says(page, '#time-message', /too many maps are being woven\. Trying again\.$/);
+    await hasText(page, '#time-message', /too many weaves are running\. Trying again\.$/);
     await page.unroute('**/weave');
     await showsScan(page, 31);
-    await says(page, '#time-message', /^$/);
+    await hasText(page, '#time-message', /^$/);
   });
 
-  it('goes on when the server is there again', async () => {
+  it('continues when the server is online again', async () => {
     await page.route('**/weave', (route) => route.abort());
     await page.fill('#time-slider', '60');
-    await says(page, '#time-message', /^Offline: the server does not answer; the map stays as it is\. Trying again\.$/);
+    await hasText(
+      page,
+      '#time-message',
+      /^Offline: the server does not answer; the map stays as it is\. Trying again\.$/,
+    );
     await page.unrouteAll();
     await showsScan(page, 60);
   });
 
-  it('tells that a weave takes long, and gives it up for the present', async () => {
+  it('shows the progress of a long weave, and cancels it for the present', async () => {
     const cancelled = page.waitForRequest((request) => request.method() === 'DELETE');
     const slow = { id: '00000000000000aa', state: 'weaving', woven: 12, until: { revision: 102, stamp: null } };
     const answer = (status) => ({ status, contentType: 'application/json', body: JSON.stringify(slow) });
@@ -249,33 +253,33 @@ describe('the history of a session', { timeout: 240_000 }, () => {
       return route.fulfill(route.request().method() === 'DELETE' ? { status: 204 } : answer(200));
     });
     await page.fill('#time-slider', '100');
-    await says(page, '#time-message', /^Weaving that moment/);
+    await hasText(page, '#time-message', /^Computing that map/);
     assert.equal(await page.locator('#time-bar progress').evaluate((bar) => bar.value / bar.max), 12 / 102);
     await page.keyboard.press('l');
-    await says(page, '#time-mode', /^Live$/);
-    await says(page, '#time-message', /^$/);
+    await hasText(page, '#time-mode', /^Live$/);
+    await hasText(page, '#time-message', /^$/);
     assert.match((await cancelled).url(), /weave\/00000000000000aa$/);
   });
 
-  it('grows with its session, and stays where it is', async () => {
+  it('grows with its session, and keeps the selected scan', async () => {
     await seek(page, 50);
     await drive(45);
     await page.waitForFunction(() => document.querySelector('#time-slider').max === '450');
     assert.equal(await valueOf(page), 50);
-    await says(page, '#time-place', /^scan 50 of 450/);
-    await says(page, '[data-robot="r1"] .row-detail', /\b50 scans /);
+    await hasText(page, '#time-place', /^scan 50 of 450/);
+    await hasText(page, '[data-robot="r1"] .row-detail', /\b50 scans /);
   });
 
-  it('that comes in pages is seen when it is whole, and until then how much has come', async () => {
+  it('that comes in pages appears when it is complete; until then the progress is shown', async () => {
     const tab = await openTab(page.context(), server.address, complaints, kHash);
-    const asked = [];
+    const requested = [];
     let release;
     const held = new Promise((resolve) => {
       release = resolve;
     });
     await tab.route('**/trajectory.geojson?times=true*', async (route) => {
       const since = Number(new URL(route.request().url()).searchParams.get('since'));
-      if (asked.push(since) === 2) await held;
+      if (requested.push(since) === 2) await held;
       const response = await route.fetch();
       const json = await response.json();
       json.revision = Math.min(json.revision, since + 200);
@@ -290,17 +294,17 @@ describe('the history of a session', { timeout: 240_000 }, () => {
     });
     await tab.waitForSelector('[data-robot="r1"]');
     await tab.click('#history-open');
-    await says(tab, '#time-message', /^Loading the history\u2026 4\d %$/);
+    await hasText(tab, '#time-message', /^Loading the history\u2026 4\d %$/);
     assert.ok(await tab.isDisabled('#time-play'));
     assert.equal(await textOf(tab, '#time-place'), '');
     release();
-    await says(tab, '#time-place', /^scan 450 of 450/);
-    await says(tab, '#time-message', /^$/);
-    assert.deepEqual(asked, [0, 200, 400]);
+    await hasText(tab, '#time-place', /^scan 450 of 450/);
+    await hasText(tab, '#time-message', /^$/);
+    assert.deepEqual(requested, [0, 200, 400]);
     await tab.close();
   });
 
-  it('tells the time of day, and marks when nobody was there', async () => {
+  it('shows the time of day, and marks gaps', async () => {
     const tab = await openTab(page.context(), server.address, complaints, kHash);
     await tab.route('**/trajectory.geojson?times=true*', async (route) => {
       const response = await route.fetch();
@@ -339,7 +343,7 @@ describe('the history of a session', { timeout: 240_000 }, () => {
   it('ends with its session', async () => {
     await fetch(`${server.address}api/v1/sessions/run`, { method: 'DELETE' });
     await page.waitForSelector('#time-bar', { state: 'hidden' });
-    await says(page, '#notice', /was deleted/);
+    await hasText(page, '#notice', /was deleted/);
     await page.keyboard.press('t');
     assert.ok(await page.isHidden('#time-bar'));
     await drive(10);

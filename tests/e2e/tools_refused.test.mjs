@@ -1,14 +1,14 @@
-/** The tools of the viewer when the server refuses, is slow, or answers with what it never should. */
+/** The tools of the viewer when the server refuses, is slow, or answers incorrectly. */
 import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
 import { violations } from './accessibility.mjs';
-import { colourOf, countsPixels, keepPicture, says, showsColour, showsColourAt } from './browser.mjs';
+import { colourOf, countsPixels, keepPicture, hasText, showsColour, showsColourAt } from './browser.mjs';
 import { withFakeServer } from './fake_fixture.mjs';
 import { FakeSession } from './fake_session.mjs';
 import { encodeGreyPng } from './png.mjs';
 
 const kHostile = '<img src=x onerror="document.title=1">';
-/** Left of the card, on the one tile that is painted. */
+/** Left of the card, on the only tile. */
 const kPlaces = [
   [600, 300],
   [700, 500],
@@ -44,18 +44,18 @@ describe('tools that are refused', { timeout: 180_000 }, () => {
       { status, type: 'application/problem+json' },
     );
 
-  const alerted = (pattern) => says(page, '#tool-body [role=alert]', pattern);
+  const alerted = (pattern) => hasText(page, '#tool-body [role=alert]', pattern);
 
   const clickBoth = async () => {
     for (const place of kPlaces) await page.mouse.click(...place);
   };
 
-  const way = (coordinates) => ({
+  const pathFeature = (coordinates) => ({
     ...{ type: 'Feature', revision: 1, properties: { length: 1, cost: 1 } },
     geometry: { type: 'LineString', coordinates },
   });
 
-  it('tell the sentence that came, as text', async () => {
+  it('show the server\u2019s message, as text', async () => {
     await refuse('**/plan', 409, `the goal is in ${kHostile}`);
     await page.keyboard.press('p');
     await clickBoth();
@@ -64,7 +64,7 @@ describe('tools that are refused', { timeout: 180_000 }, () => {
     assert.deepEqual(await violations(page), []);
   });
 
-  it('draw nothing of a way that is none', async () => {
+  it('draw nothing of an invalid path', async () => {
     for (const coordinates of [
       [
         [1, 'x'],
@@ -79,7 +79,7 @@ describe('tools that are refused', { timeout: 180_000 }, () => {
       ],
     ]) {
       await page.unrouteAll();
-      await answer('**/plan', way(coordinates));
+      await answer('**/plan', pathFeature(coordinates));
       await page.keyboard.press('p');
       await clickBoth();
       await alerted(/answer cannot be read/);
@@ -88,8 +88,8 @@ describe('tools that are refused', { timeout: 180_000 }, () => {
     }
   });
 
-  it('ask only for the newest, whatever order answers come in', async () => {
-    let asked = 0;
+  it('show only the newest plan, in whatever order answers arrive', async () => {
+    let requested = 0;
     let come;
     const first = new Promise((resolve) => (come = resolve));
     let release;
@@ -97,12 +97,12 @@ describe('tools that are refused', { timeout: 180_000 }, () => {
     let late;
     const answered = new Promise((resolve) => (late = resolve));
     await page.route('**/plan', async (route) => {
-      asked += 1;
-      const length = asked;
+      requested += 1;
+      const length = requested;
       come();
       if (length === 1) await held;
       const found = {
-        ...way([
+        ...pathFeature([
           [1, 1],
           [2, 2],
         ]),
@@ -113,23 +113,23 @@ describe('tools that are refused', { timeout: 180_000 }, () => {
     });
     await page.keyboard.press('p');
     await clickBoth();
-    await first; // given up before it was sent, it would never be asked
+    await first; // a request that is cancelled before it is sent never reaches the route
     await page.mouse.click(650, 450);
-    await says(page, '.tool-figures', /2\.00 m/);
+    await hasText(page, '.tool-figures', /2\.00 m/);
     release();
     await answered;
     await page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => setTimeout(resolve))));
     assert.match(await page.textContent('.tool-figures'), /2\.00 m/);
     await page.click('#tool-body :text-is("Plan path")');
-    await says(page, '.tool-figures', /3\.00 m/);
+    await hasText(page, '.tool-figures', /3\.00 m/);
   });
 
-  it('say that the map has grown, and ask again by themselves when that is wished', async () => {
-    let asked = 0;
+  it('report that the map has grown, and replan automatically when enabled', async () => {
+    let requested = 0;
     await page.route('**/plan', async (route) => {
-      asked += 1;
+      requested += 1;
       const body = JSON.stringify({
-        ...way([
+        ...pathFeature([
           [1, 1],
           [2, 2],
         ]),
@@ -139,17 +139,17 @@ describe('tools that are refused', { timeout: 180_000 }, () => {
     });
     await page.keyboard.press('p');
     await clickBoth();
-    await says(page, '#tool-body', /Path found/);
+    await hasText(page, '#tool-body', /Path found/);
     session.move('r1', 2, 2, 0);
-    await says(page, '#tool-body', /The map has grown since/);
-    assert.equal(asked, 1);
+    await hasText(page, '#tool-body', /The map has grown since/);
+    assert.equal(requested, 1);
     await page.check('[name=keep_up]');
-    await says(page, '#tool-body', /Path found/);
+    await hasText(page, '#tool-body', /Path found/);
     session.move('r1', 3, 2, 0);
     await page.waitForRequest('**/plan');
   });
 
-  it('tell why there is no coverage, no file and no weave', async () => {
+  it('show why there is no coverage, no file and no weave', async () => {
     await refuse('**/coverage', 409, 'the start is in a wall');
     await refuse('**/map.png*', 413, 'this map has 20000 x 20000 pixels');
     await refuse('**/log*', 409, 'the log is damaged');
@@ -182,10 +182,10 @@ describe('tools that are refused', { timeout: 180_000 }, () => {
     const bounds = { 'Scanloom-Bounds': '0,0,12.8,12.8' };
     await answer('**/difference.png?*', grey, { type: 'image/png', headers: bounds });
     await page.keyboard.press('w');
-    await says(page, '.tool-weaves', /<img src=x/);
+    await hasText(page, '.tool-weaves', /<img src=x/);
     await page.click('.tool-weaves :text-is("Show")');
     await page.waitForSelector('.tool-weaves [aria-pressed=true]');
-    await says(page, '.tool-difference', /Agreement.*92\.5 %.*obstacle only in the map.*0\.50 m/);
+    await hasText(page, '.tool-difference', /Agreement.*92\.5 %.*obstacle only in the map.*0\.50 m/);
     await page.check('[name=difference]');
     await showsColourAt(page, kPlaces[0], [90, 90, 90]);
     await keepPicture(page, 'tool-difference');
@@ -197,7 +197,7 @@ describe('tools that are refused', { timeout: 180_000 }, () => {
     assert.equal(await page.locator('img').count(), 0);
   });
 
-  it('follow a weave on its way, and cancel it', async () => {
+  it('show the progress of a weave, and cancel it', async () => {
     const config = { cell_size: 0.05 };
     const weave = {
       id: kWeaveId,
@@ -222,36 +222,36 @@ describe('tools that are refused', { timeout: 180_000 }, () => {
     });
     await page.keyboard.press('w');
     await page.click('#tool-body :text-is("Weave")');
-    await says(page, '.tool-weaves', /3 of 9 entries/);
+    await hasText(page, '.tool-weaves', /3 of 9 entries/);
     assert.equal(await page.locator('.tool-weaves progress').evaluate(({ position }) => position.toFixed(2)), '0.33');
     await page.click('.tool-weaves :text-is("Cancel")');
-    await says(page, '#tool-body [role=status]', /Cancelled/);
+    await hasText(page, '#tool-body [role=status]', /Cancelled/);
     await page.waitForSelector('.tool-weaves li', { state: 'detached' });
     assert.deepEqual(deleted, ['DELETE']);
   });
 
-  it('leave nothing on the map and nothing under way when they are closed', async () => {
+  it('remove their drawings and abort their requests when they are closed', async () => {
     await answer(
       '**/plan',
-      way([
+      pathFeature([
         [1, 1],
         [9, 9],
       ]),
     );
     await page.keyboard.press('p');
     await clickBoth();
-    await says(page, '#tool-body', /Path found/);
-    await showsColour(page, '--way');
+    await hasText(page, '#tool-body', /Path found/);
+    await showsColour(page, '--path');
     await page.keyboard.press('Escape');
     await page.waitForSelector('#tool', { state: 'hidden' });
     assert.equal(await page.locator('#tool-body > *').count(), 0);
-    await countsPixels(page, await colourOf(page, '--way'), (pixels) => pixels === 0);
+    await countsPixels(page, await colourOf(page, '--path'), (pixels) => pixels === 0);
     assert.equal(await page.locator('#map.picking').count(), 0);
   });
 
-  it('are not there without a map, but for the import', async () => {
+  it('are hidden without a map, except the import', async () => {
     server.sessions.clear();
-    await says(page, '#notice', /deleted/);
+    await hasText(page, '#notice', /deleted/);
     await page.keyboard.press('p');
     assert.ok(await page.locator('#tool').isHidden());
     await page.keyboard.press('i');

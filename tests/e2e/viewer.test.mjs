@@ -1,4 +1,4 @@
-/** The viewer against a server that does what each test wants. */
+/** The viewer with a fake server. */
 import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
 import {
@@ -7,7 +7,7 @@ import {
   countPixels,
   countsPixels,
   keepPicture,
-  says,
+  hasText,
   showsColour,
   textOf,
 } from './browser.mjs';
@@ -24,47 +24,47 @@ describe('the viewer', { timeout: 180_000 }, () => {
 
   const open = async (options) => ({ page, complaints } = await openPage(options));
 
-  it('says how to begin a session, and opens the first one by itself', async () => {
+  it('shows how to start a session, and opens the first one automatically', async () => {
     await open();
-    await says(page, '#notice', /No sessions yet.*scanloom-robot --server 127\.0\.0\.1:17447/s);
+    await hasText(page, '#notice', /No sessions yet.*scanloom-robot --server 127\.0\.0\.1:17447/s);
     await keepPicture(page, 'no-sessions');
     painted('first');
-    await says(page, '#sessions', /first/);
+    await hasText(page, '#sessions', /first/);
     await page.waitForSelector('#notice', { state: 'hidden' });
     assert.equal(new URL(page.url()).hash, '#session=first');
   });
 
-  it('says where robots connect when that is not where the page came from', async () => {
+  it('shows the robots\u2019 address when it differs from the page\u2019s', async () => {
     server.robots = { host: '192.0.2.7', port: 7448 };
     await open();
-    await says(page, '#notice', /scanloom-robot --server 192\.0\.2\.7:7448/);
+    await hasText(page, '#notice', /scanloom-robot --server 192\.0\.2\.7:7448/);
   });
 
-  it('shows a damaged session as one, and serves the others', async () => {
+  it('marks a damaged session, and shows the others', async () => {
     server.damaged.push({ name: 'broken', reason: 'entry 7 of its log is damaged' });
     painted('whole');
     await open();
-    await says(page, '#damaged', /broken.*not served.*entry 7 of its log/s);
-    await says(page, '#sessions', /whole/);
+    await hasText(page, '#damaged', /broken.*not served.*entry 7 of its log/s);
+    await hasText(page, '#sessions', /whole/);
     await page.waitForSelector('#notice', { state: 'hidden' });
     await page.goto(`${server.address}#session=broken`);
-    await says(page, '#notice', /Session not served.*entry 7 of its log/s);
-    complaints.splice(0); // the browser's own: a 500 is what was asked for
+    await hasText(page, '#notice', /Session not served.*entry 7 of its log/s);
+    complaints.splice(0); // reported by the browser: the 500 is expected
   });
 
-  it('shows the map of a session that takes no scans, and says so', async () => {
+  it('shows the map of a session that accepts no scans, and says so', async () => {
     const session = painted('full-disk');
     await open();
-    await says(page, '#sessions', /full-disk/);
+    await hasText(page, '#sessions', /full-disk/);
     await page.waitForSelector('#sessions .damaged', { state: 'hidden' });
     session.failure = 'no space left on the disk';
     await page.waitForSelector('#sessions .damaged', { state: 'visible' });
-    await says(page, '#sessions', /full-disk.*takes no scans.*no space left on the disk/);
+    await hasText(page, '#sessions', /full-disk.*accepts no scans.*no space left on the disk/);
     await keepPicture(page, 'takes-no-scans');
     await page.waitForSelector('#notice', { state: 'hidden' });
   });
 
-  it('tells the same of a session in the list and beside the map', async () => {
+  it('shows the same values of a session in the list and next to the map', async () => {
     const session = painted('map');
     await open();
     await tilesShown();
@@ -77,11 +77,11 @@ describe('the viewer', { timeout: 180_000 }, () => {
       assert.equal(listed?.split(' scan')[0], fact);
       await page.waitForTimeout(100);
     }
-    await says(page, '#facts', /20/);
-    await says(page, '#sessions', /20 scans/);
+    await hasText(page, '#facts', /20/);
+    await hasText(page, '#sessions', /20 scans/);
   });
 
-  it('keeps the choice in the address, over a reload', async () => {
+  it('keeps the chosen session in the address, over a reload', async () => {
     painted('one');
     painted('two');
     await open();
@@ -93,22 +93,22 @@ describe('the viewer', { timeout: 180_000 }, () => {
     await page.waitForSelector('#sessions a[aria-current]:has-text("one")');
   });
 
-  it('never turns a name into markup', async () => {
+  it('escapes names', async () => {
     const session = painted(kHostile);
     session.move(kHostile, 1, 1, 0);
     await open();
-    await says(page, '#robots .row-name', /<img/);
+    await hasText(page, '#robots .row-name', /<img/);
     server.failure = { status: 500, title: kHostile, detail: '<b>broken</b>' };
-    await says(page, '#status', /<b>broken<\/b>/);
+    await hasText(page, '#status', /<b>broken<\/b>/);
     server.failure = null;
-    await says(page, '#status', /^$/);
+    await hasText(page, '#status', /^$/);
     server.sessions.clear();
-    await says(page, '#notice', /deleted/);
+    await hasText(page, '#notice', /deleted/);
     assert.equal(await page.locator('img, b').count(), 0);
     assert.match(await page.title(), /^<img/);
   });
 
-  it('fetches only tiles that hold anything, and of those only what changed', async () => {
+  it('fetches only tiles with data, and again only changed ones', async () => {
     const session = painted('map');
     session.paint(257, 255, 10);
     await open();
@@ -117,7 +117,7 @@ describe('the viewer', { timeout: 180_000 }, () => {
     assert.equal(first.length, new Set(first).size, 'no tile is fetched twice');
     assert.ok(
       first.every((path) => session.tiles.has(path)),
-      'no request for empty space',
+      'no request for tiles without data',
     );
     server.tileRequests.length = 0;
     session.paint(257, 255, 90);
@@ -150,29 +150,29 @@ describe('the viewer', { timeout: 180_000 }, () => {
       const version = `.png?v=${session.revision}&`;
       await page.waitForResponse((response) => response.url().includes(version));
       const seen = await page.evaluate(() => window.frames);
-      await page.waitForFunction((least) => window.frames >= least, seen + 5); // it is painted meanwhile
+      await page.waitForFunction((least) => window.frames >= least, seen + 5); // changes continue meanwhile
     }
     const { emptiest, frames } = await page.evaluate(() => ({ emptiest: window.emptiest, frames: window.frames }));
-    assert.ok(frames > 30, `only ${frames} frames were looked at`);
+    assert.ok(frames > 30, `only ${frames} frames were checked`);
     assert.equal(emptiest, 1600);
   });
 
-  it('tells place, cell and value under the cursor', async () => {
+  it('shows position, cell and value under the pointer', async () => {
     painted('map', 83);
     await open();
     await tilesShown();
     await page.hover('#map');
-    await says(page, '#cursor-value', /^83 % occupied$/);
+    await hasText(page, '#cursor-value', /^83 % occupied$/);
     const [x, y] = await Promise.all(['#cursor-x', '#cursor-y'].map(async (id) => Number(await textOf(page, id))));
     const [i, j] = (await textOf(page, '#cursor-cell')).split(', ').map(Number);
-    // The one tile spans 12.8 m from the origin up and right, and is fitted in the middle of the map.
+    // The one tile extends 12.8 m from the origin up and right, and is fitted in the middle of the map.
     assert.ok(Math.abs(x - 6.4) < 0.2 && Math.abs(y - 6.4) < 0.2, `${x}, ${y}`);
     assert.ok(Math.abs(x / 0.05 - i) <= 1.2 && Math.abs(y / 0.05 - j) <= 1.2, `${i}, ${j}`);
     await page.mouse.move(310, 400);
-    await says(page, '#cursor-value', /^unknown$/);
+    await hasText(page, '#cursor-value', /^unknown$/);
   });
 
-  it('can be used by keyboard alone', async () => {
+  it('works with the keyboard alone', async () => {
     painted('one', 40);
     await open();
     await tilesShown();
@@ -181,13 +181,13 @@ describe('the viewer', { timeout: 180_000 }, () => {
       if (await page.evaluate(() => document.activeElement.id === 'map')) break;
     }
     await page.waitForSelector('#crosshair:not([hidden])');
-    await says(page, '#cursor-value', /^40 % occupied$/);
+    await hasText(page, '#cursor-value', /^40 % occupied$/);
     const before = await textOf(page, '#cursor-x');
     await page.keyboard.press('ArrowRight');
     await page.waitForFunction((old) => document.querySelector('#cursor-x').textContent !== old, before);
   });
 
-  it('says that it is offline, and comes back by itself', async () => {
+  it('reports that it is offline, and recovers automatically', async () => {
     const session = painted('map');
     for (const scan of [1, 2, 3]) session.move('r1', scan, 1, 0);
     session.move('r2', 1, 1, 0);
@@ -195,19 +195,19 @@ describe('the viewer', { timeout: 180_000 }, () => {
     await open();
     await tilesShown();
     session.move('r1', 4, 1, 0);
-    await says(page, '#sessions', /online.*scans\/s.*1 of 2 online/);
-    await says(page, '[data-robot="r1"]', /online/);
-    await says(page, '[data-robot="r2"]', /offline/);
+    await hasText(page, '#sessions', /online.*scans\/s.*1 of 2 online/);
+    await hasText(page, '[data-robot="r1"]', /online/);
+    await hasText(page, '[data-robot="r2"]', /offline/);
     await page.click('#history-open');
-    await says(page, '#time-mode', /^Live$/);
+    await hasText(page, '#time-mode', /^Live$/);
     const filled = await countPixels(page, await colourOf(page, '--robot-0'));
     await server.vanish();
-    await says(page, '#status', /Offline/);
-    await says(page, '#time-mode', /^Offline$/);
+    await hasText(page, '#status', /Offline/);
+    await hasText(page, '#time-mode', /^Offline$/);
     await page.waitForSelector('#time-live[aria-pressed=false]');
     await countsPixels(page, await colourOf(page, '--robot-0'), (count) => count > 0 && count < filled / 2);
-    await says(page, '#robots', /unknown.*unknown/);
-    // Nothing of the present is shown while it is not known.
+    await hasText(page, '#robots', /unknown.*unknown/);
+    // Online states and rates are hidden while they are unknown.
     assert.equal(await page.isVisible('#sessions .online'), false);
     for (const part of ['#sessions .row-detail', '#robots']) {
       for (const text of await page.locator(part).allTextContents())
@@ -217,58 +217,58 @@ describe('the viewer', { timeout: 180_000 }, () => {
     await keepPicture(page, 'offline');
     session.paint(256, 255, 100);
     await server.comeBack();
-    await says(page, '#status', /Online again/);
+    await hasText(page, '#status', /Online again/);
     await occupiedShown();
-    await says(page, '#status', /^$/);
-    await says(page, '[data-robot="r1"]', /online/);
-    await says(page, '#time-mode', /^Live$/);
+    await hasText(page, '#status', /^$/);
+    await hasText(page, '[data-robot="r1"]', /online/);
+    await hasText(page, '#time-mode', /^Live$/);
   });
 
-  it('shows the sentence of an error, and goes on when it is over', async () => {
+  it('shows an error\u2019s message, and continues when it is over', async () => {
     painted('map');
     server.failure = { status: 503, title: 'Store not open', detail: 'recovering' };
     await open();
-    await says(page, '#status', /Store not open: recovering/);
+    await hasText(page, '#status', /Store not open: recovering/);
     server.failure = null;
     await tilesShown();
-    await says(page, '#status', /^$/);
+    await hasText(page, '#status', /^$/);
   });
 
-  it('says that a session was deleted, and shows its successor of the same name afresh', async () => {
+  it('reports that a session was deleted, and shows a recreated one from the start', async () => {
     const session = painted('map', 0);
     session.move('r1', 1, 1, 0);
     await open();
     await tilesShown();
     server.sessions.delete('map');
-    await says(page, '#notice', /was deleted/);
+    await hasText(page, '#notice', /was deleted/);
     await keepPicture(page, 'deleted');
     painted('map', 100, 'another-id');
     await occupiedShown();
     await page.waitForSelector('#notice', { state: 'hidden' });
-    assert.equal(await page.locator('[data-robot]').count(), 0, 'the old robot is gone');
-    // Made anew between two looks, with as many revisions as before: only the id tells.
+    assert.equal(await page.locator('[data-robot]').count(), 0, 'the old robot has disappeared');
+    // Recreated between two polls, with as many revisions as before: only the id differs.
     painted('map', 0, 'a-third-id');
     await freeShown();
   });
 
-  it('waits for a session that is not there yet', async () => {
+  it('waits for a session that does not exist yet', async () => {
     painted('other');
     await open({ hash: '#session=later' });
-    await says(page, '#notice', /no session later/);
+    await hasText(page, '#notice', /no session later/);
     painted('later');
     await tilesShown();
   });
 
-  it('tells how far a robot has come as soon as its path is drawn', async () => {
+  it('shows the travelled distance as soon as the trail is drawn', async () => {
     const session = painted('map');
     session.move('r1', 2, 2, 0);
     session.move('r1', 5, 6, 0);
     await open();
-    await says(page, '[data-robot="r1"] .row-detail', /5\.0 m/);
-    assert.equal(countOf('/api/v1/sessions/map'), 1, 'without asking for the session again');
+    await hasText(page, '[data-robot="r1"] .row-detail', /5\.0 m/);
+    assert.equal(countOf('/api/v1/sessions/map'), 1, 'without another request for the session');
   });
 
-  it('follows a robot until the person moves the map', async () => {
+  it('follows a robot until the user moves the map', async () => {
     const session = painted('map');
     session.move('r1', 2, 2, 0);
     await open();
@@ -278,19 +278,19 @@ describe('the viewer', { timeout: 180_000 }, () => {
     await page.click('.follow[aria-pressed="true"]', { trial: true });
     await page.waitForFunction(() => /x 3\.00, y 4\.00/.test(document.querySelector('[data-role=pose]').textContent));
     await page.mouse.move(700, 400);
-    await says(page, '#cursor-x', /\d/);
+    await hasText(page, '#cursor-x', /\d/);
     await page.mouse.down();
     await page.mouse.move(740, 420, { steps: 4 });
     await page.mouse.up();
     await page.waitForSelector('.follow[aria-pressed="false"]');
   });
 
-  it('shows the whole map again when asked, even while it moves after a robot', async () => {
+  it('fits the whole map on a click, even while it follows a robot', async () => {
     const session = painted('map');
     session.move('r1', 2, 2, 0);
     await open();
     await page.click('.follow');
-    // The click comes the moment the robot moves, when the view has just begun to go after it.
+    // The click comes when the robot moves and the view's animation has just started.
     await page.evaluate(() => {
       const pose = document.querySelector('[data-role=pose]');
       const observer = new MutationObserver(() => {
@@ -301,24 +301,24 @@ describe('the viewer', { timeout: 180_000 }, () => {
     });
     session.move('r1', 3, 11, 0);
     await page.waitForSelector('.follow[aria-pressed="false"]');
-    // 12.8 m fill the height but for 56 pixels on either side: 1.86 m lie 100 pixels beside the middle.
+    // 12.8 m fill the height except for 56 pixels on either side: 1.86 m are 100 pixels from the middle.
     await page.mouse.move(884, 400);
-    await says(page, '#cursor-x', /^8\.2\d$/);
-    await says(page, '#cursor-y', /^6\.[34]\d$/);
+    await hasText(page, '#cursor-x', /^8\.2\d$/);
+    await hasText(page, '#cursor-y', /^6\.[34]\d$/);
   });
 
-  it('shows where most of the map is, not what one scan left far away', async () => {
+  it('fits the main part of the map, not a distant stray scan', async () => {
     const session = painted('map');
     session.mainBounds = session.bounds;
     session.bounds = { min_x: 0, min_y: 0, max_x: 1_000_000, max_y: 1_000_000 };
     await open();
     await page.click('#fit');
     await page.mouse.move(884, 400); // as above
-    await says(page, '#cursor-x', /^8\.2\d$/);
-    await says(page, '#cursor-y', /^6\.[34]\d$/);
+    await hasText(page, '#cursor-x', /^8\.2\d$/);
+    await hasText(page, '#cursor-y', /^6\.[34]\d$/);
   });
 
-  it('takes on the colours of the dark', async () => {
+  it('applies the dark scheme', async () => {
     painted('map', 0);
     await open({ scheme: 'dark' });
     await tilesShown();
@@ -328,7 +328,7 @@ describe('the viewer', { timeout: 180_000 }, () => {
     assert.notDeepEqual(await colourOf(page, '--cell-free'), dark);
   });
 
-  /** A session with one tile right above the origin. */
+  /** Returns a session with one tile, its lower left corner at the origin. */
   function painted(name, percent = 0, id = `id-${name}`) {
     const session = server.add(new FakeSession(name, id));
     session.paint(256, 255, percent);

@@ -1,4 +1,4 @@
-/** The chosen session and layer in the page's address, after '#': they survive a reload and can be sent to others. */
+/** The chosen session and layer in the page's address, after '#': they survive a reload and can be shared as a link. */
 import { isLayerName, type LayerName } from './layers/layers';
 
 const kSession = 'session';
@@ -8,7 +8,7 @@ export function sessionOfHash(hash: string): string | null {
   return parametersOf(hash).get(kSession) || null;
 }
 
-/** Null when the address leaves it open. */
+/** Null when the address names none. */
 export function layerOfHash(hash: string): LayerName | null {
   const layer = parametersOf(hash).get(kLayer);
   return isLayerName(layer) ? layer : null;
@@ -18,7 +18,7 @@ export function hashOfSession(name: string): string {
   return `#${new URLSearchParams({ [kSession]: name })}`;
 }
 
-/** The same address with this layer in it; occupancy needs no mention. */
+/** Returns the same address with this layer in it; occupancy is the default and is left out. */
 export function hashWithLayer(hash: string, layer: LayerName): string {
   const parameters = parametersOf(hash);
   if (layer === 'occupancy') parameters.delete(kLayer);

@@ -1,4 +1,4 @@
-/** Which session is open: the one that the page's address names, or else the one that is most worth looking at. */
+/** Selects the open session: the one that the page's address names, or else the most active one. */
 import { fetchRobotPort, fetchSessions } from './api/api';
 import type { RobotPort, Session } from './api/types';
 import { hashOfSession, sessionOfHash } from './address';
@@ -26,12 +26,12 @@ export class Chooser {
 
   constructor(private readonly parts: ChooserParts) {}
 
-  /** Asks about all sessions again and again. @param settled told how each round went */
+  /** Polls all sessions. @param settled called with the outcome of each poll */
   run(settled: (error: unknown) => void): void {
     void poll((signal) => this.refresh(signal), kPace, new AbortController().signal, settled);
   }
 
-  /** Asks between two rounds; what goes wrong, the next round tells. */
+  /** Polls once between two rounds; the next round reports errors. */
   async refreshSoon(): Promise<void> {
     if (this.refreshing || performance.now() - this.refreshedAt < kPace.visibleMs) return;
     this.refreshing = true;
@@ -49,7 +49,7 @@ export class Chooser {
     this.parts.viewer.watch(name);
   }
 
-  /** The person knows that it is gone: the page goes to another one, or waits until there is one. */
+  /** Called when the user has deleted a session: opens another one, or waits until there is one. */
   leave(name: string): void {
     if (sessionOfHash(location.hash) !== name) return;
     const { viewer, notice, panel } = this.parts;
@@ -71,7 +71,7 @@ export class Chooser {
     for (const { name, reason } of answer.damaged) if (name === chosen) notice.show({ kind: 'damaged', name, reason });
   }
 
-  /** Where something happens, or else the newest. */
+  /** The most active session, or else the newest. */
   private async chooseFrom(sessions: Session[], signal: AbortSignal): Promise<void> {
     const ordered = [...sessions].sort(newestFirst);
     const live = ordered.find(({ robots }) => robots.some(({ connected }) => connected));

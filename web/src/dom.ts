@@ -1,4 +1,4 @@
-/** Building elements. Texts only ever become text nodes, so no name that a robot chose can become markup. */
+/** Builds elements. Texts always become text nodes, so names that robots chose cannot become markup. */
 
 type Attributes = Record<string, string>;
 
@@ -13,14 +13,14 @@ export function el<Tag extends keyof HTMLElementTagNameMap>(
   return element;
 }
 
-/** An element of the page that index.html is known to hold. */
+/** Returns an element that index.html contains. */
 export function byId<Type extends HTMLElement>(id: string, type: new () => Type): Type {
   const element = document.getElementById(id);
   if (!(element instanceof type)) throw new Error(`the page has no #${id} of type ${type.name}`);
   return element;
 }
 
-/** Writes only what differs: assistive technology announces every write. */
+/** Writes only changes, because assistive technology announces every write. */
 export function setText(element: Element, text: string): void {
   if (element.textContent !== text) element.textContent = text;
 }

@@ -1,4 +1,4 @@
-/** Numbers and times as people read them. */
+/** Formats numbers and times for people. */
 import type { Bounds, Pose } from './api/types';
 import type { CellValue } from './layers/cell_value';
 
@@ -26,7 +26,7 @@ export function integer(value: number): string {
   return decimal(value, 0);
 }
 
-/** "12.34 m", or "1.23 km" from a kilometre on. */
+/** "12.34 m", or "1.23 km" from one kilometre. */
 export function length(metres: number): string {
   if (Math.abs(metres) >= 1000) return `${decimal(metres / 1000, 2)} km`;
   return `${decimal(metres, metres >= 100 ? 0 : 1)} m`;
@@ -37,12 +37,12 @@ export function distance(metres: number): string {
   return metres >= 1000 ? `${decimal(metres / 1000, 3)} km` : `${decimal(metres, metres >= 100 ? 1 : 2)} m`;
 }
 
-/** A length with no more digits than it needs: "0.5 m", "20 m", "2 km". */
+/** A length without needless digits: "0.5 m", "20 m", "2 km". */
 export function roundLength(metres: number): string {
   return metres >= 1000 ? `${metres / 1000} km` : `${Number(metres.toPrecision(3))} m`;
 }
 
-/** Cuts what would cover too much of the map. */
+/** Truncates texts that would cover too much of the map. */
 export function shortened(text: string, lengthMax: number): string {
   const letters = [...text];
   return letters.length <= lengthMax ? text : `${letters.slice(0, lengthMax - 1).join('')}\u2026`;
@@ -77,7 +77,7 @@ export function cellValue(value: CellValue): string {
   }
 }
 
-/** @param iso a time stamp of the server's; shown as it is when it is none. */
+/** @param iso a time stamp of the server; shown unchanged when it cannot be parsed */
 export function moment(iso: string): string {
   const time = new Date(iso);
   if (Number.isNaN(time.getTime())) return iso;

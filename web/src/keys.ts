@@ -1,17 +1,17 @@
-/** Keys that do something wherever the focus is, and the list of them for people. */
+/** Page-wide keyboard shortcuts, and the list of them for users. */
 import { el } from './dom';
 
 export interface Binding {
-  /** As KeyboardEvent.key has it. */
+  /** A value of KeyboardEvent.key. */
   key: string;
-  /** What it does, for the list. */
+  /** Description for the list. */
   does: string;
   run: () => void;
-  /** Whether it means anything now; without it, always. */
+  /** Whether it applies now; if absent, it always does. */
   when?: () => boolean;
 }
 
-/** Those of the map, which OpenLayers minds. */
+/** Keys of the map, which OpenLayers handles. */
 const kMapKeys: [keys: string, does: string][] = [
   ['Arrow keys', 'move the map, when it has the focus'],
   ['+ \u2212', 'zoom'],
@@ -30,12 +30,14 @@ export class Keys {
     this.bindings.set(binding.key, binding);
   }
 
-  /** @param enabled whether single keys do anything: people who dictate, or tremble, switch them off (WCAG 2.1.4) */
+  /**
+   * @param enabled whether single-key shortcuts are on: people who dictate or have a tremor turn them off (WCAG 2.1.4)
+   */
   enable(enabled: () => boolean): void {
     this.enabled = enabled;
   }
 
-  /** A table of all keys. */
+  /** Returns a table of all keys. */
   describe(): HTMLElement {
     const bound = [...this.bindings.values()].map(({ key, does }): [string, string] => [nameOf(key), does]);
     const rows = [...bound, ...kMapKeys].map(([keys, does]) =>
@@ -48,7 +50,7 @@ export class Keys {
     if (event.ctrlKey || event.metaKey || event.altKey || event.defaultPrevented) return;
     if (event.target instanceof Element && isTypedInto(event.target, event.key)) return;
     if (document.querySelector('dialog[open]')) return;
-    // Letters mean the same with Caps Lock.
+    // Letters work the same with Caps Lock.
     const binding = this.bindings.get(event.key) ?? this.bindings.get(event.key.toLowerCase());
     if (!binding || binding.when?.() === false) return;
     if (event.key !== 'Escape' && !this.enabled()) return;
@@ -57,7 +59,7 @@ export class Keys {
   }
 }
 
-/** Whether the key belongs to the element: text that is written, a choice that is stepped through, a button pressed. */
+/** Whether the element handles the key: a text field, a list of choices, a button. */
 function isTypedInto(element: Element, key: string): boolean {
   if (key === 'Escape') return false;
   if (element instanceof HTMLInputElement) {

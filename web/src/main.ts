@@ -1,4 +1,4 @@
-/** Builds the page's parts and connects them; what each does is its own file's matter. */
+/** Creates the page's parts and connects them. */
 import { hashOfSession, hashWithLayer, layerOfHash, sessionOfHash } from './address';
 import { ServerCharts } from './charts/server_charts';
 import { Chooser } from './chooser';
@@ -40,13 +40,13 @@ const mapView = new MapView(map, readTheme(), (error) => status.settle('tiles', 
 const picture = new Picture(mapView);
 const notice = new Notice(byId('notice', HTMLElement));
 const status = new Status(byId('status', HTMLElement));
-/** Sessions whose end this page has asked for. */
+/** Sessions that this page is deleting. */
 const ending = new Set<string>();
 const sessionPanel = new SessionPanel(readTheme(), {
   created: ({ name }) => void (location.hash = hashOfSession(name)),
   wanted: () => setPanel(true),
-  asked: (name) => void ending.add(name),
-  kept: (name) => void ending.delete(name),
+  deleting: (name) => void ending.add(name),
+  notDeleted: (name) => void ending.delete(name),
   deleted: (name) => {
     chooser.leave(name);
     ending.delete(name);
@@ -83,7 +83,7 @@ const viewer: Viewer = new Viewer({
 });
 const chooser = new Chooser({ viewer, panel: sessionPanel, notice, newest });
 const toolbox = new Toolbox(keys, () => viewer.session?.bounds != null, target);
-/** The colours that everything has. */
+/** Applies the current colours to all parts. */
 let coloured = JSON.stringify(readTheme());
 const comparison = new Comparison(picture);
 
@@ -93,7 +93,7 @@ function open(): void {
   chooser.open();
 }
 
-/** The boxes of the controls that lie on the map, in its pixels. */
+/** The boxes of the controls that cover the map, in map pixels. */
 function controlsOnMap(): Box[] {
   const origin = target.getBoundingClientRect();
   return [...document.querySelectorAll('.tools, .scale-bar')].map((element) => {
@@ -102,19 +102,19 @@ function controlsOnMap(): Box[] {
   });
 }
 
-/** Matters on a phone only, where the panel covers most of the map. */
+/** Relevant on phones only, where the panel covers most of the map. */
 function setPanel(open: boolean): void {
   panelToggle.setAttribute('aria-expanded', String(open));
   byId('panel', HTMLElement).classList.toggle('open', open);
 }
 
-/** The address tells what is seen, without another entry in the browser's history for each layer. */
+/** Updates the address without adding an entry to the browser's history for each layer. */
 function rememberLayer(): void {
   const hash = hashWithLayer(location.hash, picture.now.layer);
   if (sessionOfHash(hash) !== null && hash !== location.hash) history.replaceState(null, '', hash);
 }
 
-/** Of what is drawn on canvases. */
+/** Redraws everything that is drawn on canvases. */
 function takeColours(): void {
   const theme = readTheme();
   if (JSON.stringify(theme) === coloured) return;
@@ -135,7 +135,7 @@ function connectControls(): void {
 function bindKeys(): void {
   const toggleCounters = (): void => settings.change({ counters: !settings.get().counters });
   keys.bind({ key: 'v', does: 'shows the next layer', run: () => picture.step(1) });
-  keys.bind({ key: 'b', does: 'shows the layer before', run: () => picture.step(-1) });
+  keys.bind({ key: 'b', does: 'shows the previous layer', run: () => picture.step(-1) });
   keys.bind({ key: 'g', does: 'shows HIMM counters in the cells, when zoomed in', run: toggleCounters });
   keys.bind({ key: 'f', does: 'fits the map and follows its growth', run: () => camera.fit() });
   keys.bind({ key: '/', does: 'searches the sessions', run: () => sessionPanel.focusSearch() });

@@ -1,6 +1,6 @@
-/** Movements of the map, for whoever likes to see them. */
+/** Durations of the map's animations. */
 
-/** @returns the duration, or none for people who asked their system for less motion */
+/** @returns the duration, or 0 if the system is set to reduced motion */
 export function motionMs(durationMs: number): number {
   return matchMedia('(prefers-reduced-motion: reduce)').matches ? 0 : durationMs;
 }

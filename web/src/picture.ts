@@ -1,39 +1,39 @@
-/** What of a session's maps is on the screen: which layer, of which maps, beside which other. */
-import { layerBeside, type LayerName } from './layers/layers';
+/** The selection on the screen: the layer, its maps, and the second layer. */
+import { nextLayer, type LayerName } from './layers/layers';
 import type { MapView, Shown } from './map/map_view';
 import type { MapSource } from './map/map_source';
 
-/** How the second layer is shown: right of a line that is dragged, or lying on the first. */
-export type BesideMode = 'swipe' | 'over';
+/** Display of the second layer: right of the swipe line, or on top of the first layer. */
+export type SecondMode = 'swipe' | 'over';
 
 export interface PictureState {
   layer: LayerName;
   /** The second layer; null: none, unless there is a comparison. */
-  besideLayer: LayerName | null;
-  mode: BesideMode;
+  secondLayer: LayerName | null;
+  mode: SecondMode;
   /** From 0 to 1. */
   opacity: number;
-  besideOpacity: number;
-  /** Where the swipe's line is, from 0 on the left to 1. */
+  secondOpacity: number;
+  /** Position of the swipe line, from 0 on the left to 1. */
   divider: number;
 }
 
 const kAtFirst: PictureState = {
   layer: 'occupancy',
-  besideLayer: null,
+  secondLayer: null,
   mode: 'swipe',
   opacity: 1,
-  besideOpacity: 0.6,
+  secondOpacity: 0.6,
   divider: 0.5,
 };
 
 export class Picture {
   private state: PictureState = kAtFirst;
-  /** The session as it grows; null: no session is open. */
+  /** The live session; null: no session is open. */
   private present: MapSource | null = null;
-  /** Maps of an earlier time, in its place. */
+  /** Maps of an earlier time, shown instead of the live ones. */
   private moment: MapSource | null = null;
-  /** Maps that were made otherwise, on the second side. */
+  /** Maps with other settings, shown on the second side. */
   private comparison: MapSource | null = null;
   private listeners: (() => void)[] = [];
 
@@ -43,13 +43,13 @@ export class Picture {
     return this.state;
   }
 
-  /** Called whenever something else is shown, until the signal aborts. */
+  /** Calls the listener after every change until the signal aborts. */
   listen(listener: () => void, signal?: AbortSignal): void {
     this.listeners.push(listener);
     signal?.addEventListener('abort', () => (this.listeners = this.listeners.filter((each) => each !== listener)));
   }
 
-  /** Another session's maps, or none. */
+  /** Shows another session's maps, or none. */
   open(present: MapSource | null): void {
     for (const source of [this.moment, this.comparison]) if (source) source.changed = null;
     this.moment = this.comparison = null;
@@ -63,18 +63,18 @@ export class Picture {
     this.update();
   }
 
-  /** So many layers further on. */
+  /** Moves on by this many layers. */
   step(steps: number): void {
-    this.change({ layer: layerBeside(this.state.layer, steps) });
+    this.change({ layer: nextLayer(this.state.layer, steps) });
   }
 
-  /** Maps of an earlier time; null: back to the present. */
+  /** Shows maps of an earlier time; null: returns to the present. */
   showMoment(moment: MapSource | null): void {
     this.moment = this.follow(this.moment, moment);
     this.update();
   }
 
-  /** Maps to be seen on the second side; null: no more. */
+  /** Shows maps on the second side; null: removes them. */
   compareWith(comparison: MapSource | null): void {
     this.comparison = this.follow(this.comparison, comparison);
     this.update();
@@ -85,17 +85,17 @@ export class Picture {
     return source && { source, layer: this.state.layer };
   }
 
-  get beside(): Shown | null {
-    const { layer, besideLayer } = this.state;
-    if (this.comparison) return { source: this.comparison, layer: besideLayer ?? layer };
+  get second(): Shown | null {
+    const { layer, secondLayer } = this.state;
+    if (this.comparison) return { source: this.comparison, layer: secondLayer ?? layer };
     const source = this.moment ?? this.present;
-    return source && besideLayer ? { source, layer: besideLayer } : null;
+    return source && secondLayer ? { source, layer: secondLayer } : null;
   }
 
-  /** Those of the session's own maps that are shown. */
+  /** The session's own maps that are shown. */
   layersOfSession(): LayerName[] {
-    const { layer, besideLayer } = this.state;
-    return besideLayer && !this.comparison ? [layer, besideLayer] : [layer];
+    const { layer, secondLayer } = this.state;
+    return secondLayer && !this.comparison ? [layer, secondLayer] : [layer];
   }
 
   /** Whether maps of an earlier time are shown. */
@@ -103,14 +103,14 @@ export class Picture {
     return this.moment !== null;
   }
 
-  /** Whether there is a line between two sides now. */
+  /** Whether there is a swipe line now. */
   get isSwiping(): boolean {
-    return this.state.mode === 'swipe' && this.beside !== null;
+    return this.state.mode === 'swipe' && this.second !== null;
   }
 
-  /** What is seen at that part of the map's width. */
+  /** Returns the layer that is visible at this part of the map's width. */
   shownAt(share: number): Shown | null {
-    return this.isSwiping && share > this.state.divider ? this.beside : this.main;
+    return this.isSwiping && share > this.state.divider ? this.second : this.main;
   }
 
   private follow(before: MapSource | null, now: MapSource | null): MapSource | null {
@@ -120,10 +120,10 @@ export class Picture {
   }
 
   private update(): void {
-    const { mode, opacity, besideOpacity, divider } = this.state;
+    const { mode, opacity, secondOpacity, divider } = this.state;
     if (this.main) {
-      this.map.show(this.main, this.beside);
-      this.map.setOpacity(opacity, mode === 'over' ? besideOpacity : 1);
+      this.map.show(this.main, this.second);
+      this.map.setOpacity(opacity, mode === 'over' ? secondOpacity : 1);
       this.map.setDivider(this.isSwiping ? divider : null);
     }
     for (const listener of this.listeners) listener();

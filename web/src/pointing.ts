@@ -1,4 +1,4 @@
-/** Words for pointing at the map: a mouse clicks, a finger taps, and only a keyboard has keys. */
+/** Instructions for pointing at the map: a mouse clicks, a finger taps, and only a keyboard has keys. */
 
 /** Whether the main pointer is a finger. */
 export function isTouch(): boolean {
@@ -6,7 +6,7 @@ export function isTouch(): boolean {
 }
 
 /**
- * Returns the sentence that asks a person to pick something on the map: "Tap the start." or "Click the start, or ...".
+ * Returns the sentence that asks the user to pick something on the map: "Tap the start." or "Click the start, or ...".
  *
  * @param what what to pick, as "the start of the path"
  */

@@ -1,4 +1,4 @@
-/** Asking again and again, politely: slower while nobody looks, and ever slower while the server is away. */
+/** Periodic polling: slower while the page is hidden, and with exponential backoff while the server is offline. */
 
 export interface Pace {
   visibleMs: number;
@@ -10,16 +10,16 @@ const kRetryMs = 500;
 
 const impatience = new EventTarget();
 
-/** Ends all waits: what went wrong may go well now. */
+/** Ends all waits, because a retry may succeed now. */
 export function hurry(): void {
   impatience.dispatchEvent(new Event('hurry'));
 }
 
 /**
- * Runs the task, waits, and runs it again until the signal aborts; never two runs at once.
- * Coming back to the page, or the network coming back, ends a wait early.
+ * Runs the task, waits, and repeats until the signal aborts; never runs it concurrently. The wait ends early when the
+ * page is shown or the network connects.
  *
- * @param settled told after every run: null, or what went wrong
+ * @param settled called after every run: null, or the error
  */
 export async function poll(
   task: (signal: AbortSignal) => Promise<void>,
@@ -49,18 +49,18 @@ export async function untilDone(task: (signal: AbortSignal) => Promise<void>, si
     try {
       return await task(signal);
     } catch {
-      // Whether the server can be heard is told elsewhere.
+      // Other parts of the page report connection errors.
       await rest(failures, signal);
     }
   }
 }
 
-/** Waits before something that failed so often in a row is tried again; ends early as the waits of poll do. */
+/** Waits before a retry after `failures` consecutive failures; ends early as the waits of poll() do. */
 export function rest(failures: number, signal: AbortSignal): Promise<void> {
   return pause(backoff(kRetryMs, failures), signal);
 }
 
-/** Doubles with every failure in a row, up to a few seconds. */
+/** Doubles with every consecutive failure, up to a few seconds. */
 export function backoff(everyMs: number, failures: number): number {
   if (failures === 0) return everyMs;
   return Math.max(everyMs, Math.min(kBackoffMaxMs, everyMs * 2 ** failures));

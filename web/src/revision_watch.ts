@@ -1,14 +1,14 @@
-/** Keeps something of the server's as new as its revision, as long as somebody looks at it. */
+/** Keeps a resource of the server up to date by its revision while it is shown. */
 
-/** What is fetched is work for the server: no more often than this. */
+/** Minimum time between two fetches, which cost the server work. */
 const kPauseMs = 1_000;
 
 export class RevisionWatch<Thing> {
   private wanted = 0;
   private shown = -1;
-  private underWay = false;
+  private fetching = false;
   private enabled = false;
-  private doubts = 0;
+  private invalidations = 0;
 
   constructor(
     private readonly load: (signal: AbortSignal) => Promise<Thing>,
@@ -16,8 +16,8 @@ export class RevisionWatch<Thing> {
     private readonly signal: AbortSignal,
   ) {}
 
-  /** @param revision as the live connection tells it */
-  hear(revision: number): void {
+  /** @param revision from the live connection */
+  setRevision(revision: number): void {
     this.wanted = revision;
     this.update();
   }
@@ -27,30 +27,30 @@ export class RevisionWatch<Thing> {
     this.update();
   }
 
-  /** What is shown may be of another server's life, whose revisions are not to be compared with these. */
-  doubt(): void {
-    this.doubts += 1;
+  /** The server may have restarted; its revisions cannot be compared with those before: fetch again. */
+  invalidate(): void {
+    this.invalidations += 1;
     this.shown = -1;
   }
 
   private update(): void {
-    if (this.enabled && !this.underWay && this.wanted !== this.shown && !this.signal.aborted) void this.fetch();
+    if (this.enabled && !this.fetching && this.wanted !== this.shown && !this.signal.aborted) void this.fetch();
   }
 
   private async fetch(): Promise<void> {
-    this.underWay = true;
+    this.fetching = true;
     const revision = this.wanted;
-    const { doubts } = this;
+    const { invalidations } = this;
     try {
       const thing = await this.load(this.signal);
       if (this.signal.aborted) return;
-      if (doubts === this.doubts) this.shown = revision;
+      if (invalidations === this.invalidations) this.shown = revision;
       this.show(thing);
     } catch {
-      // The connection's state is told elsewhere; it is asked for again.
+      // Other parts of the page report connection errors; the fetch is repeated.
     }
     await new Promise((resolve) => setTimeout(resolve, kPauseMs));
-    this.underWay = false;
+    this.fetching = false;
     this.update();
   }
 }

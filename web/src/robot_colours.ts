@@ -1,4 +1,4 @@
-/** Gives each robot a colour that it keeps, in the order in which the robots appear. */
+/** Assigns each robot a permanent colour, in the order in which the robots appear. */
 export class RobotColours {
   private readonly order = new Map<string, number>();
 

@@ -1,25 +1,25 @@
-/** What a person has set, kept by the browser for the next visit. */
+/** The user's settings, stored by the browser for the next visit. */
 
 export const kSchemes = ['auto', 'light', 'dark'] as const;
 export const kPalettes = ['standard', 'safe'] as const;
 
 export interface Settings {
-  /** auto: as the system has it. */
+  /** auto: the system's scheme. */
   scheme: (typeof kSchemes)[number];
-  /** safe: colours that people of any colour vision tell apart. */
+  /** safe: colours that people with any colour vision can distinguish. */
   palette: (typeof kPalettes)[number];
   robots: boolean;
   trails: boolean;
   points: boolean;
   frontiers: boolean;
   landmarks: boolean;
-  /** Where robots are going. */
+  /** Goals and paths of the robots. */
   goals: boolean;
   /** A grid of round lengths, with the map's origin and axes. */
   grid: boolean;
   /** HIMM counters as numbers. */
   counters: boolean;
-  /** Whether single keys do anything. */
+  /** Whether single-key shortcuts are on. */
   keys: boolean;
 }
 
@@ -48,7 +48,7 @@ export class SettingsStore {
   private readonly listeners: ((settings: Settings) => void)[] = [];
 
   constructor() {
-    matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => this.tell());
+    matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => this.notify());
     this.apply();
   }
 
@@ -61,22 +61,22 @@ export class SettingsStore {
     try {
       localStorage.setItem(kKey, JSON.stringify(this.settings));
     } catch {
-      // No storage: it holds until the page is left.
+      // Without storage, the settings last until the page is closed.
     }
-    this.tell();
+    this.notify();
   }
 
-  /** Called at every change, also of the system's colour scheme. */
+  /** Calls the listener after every change, also of the system's colour scheme. */
   listen(listener: (settings: Settings) => void): void {
     this.listeners.push(listener);
   }
 
-  private tell(): void {
+  private notify(): void {
     this.apply();
     for (const listener of this.listeners) listener(this.settings);
   }
 
-  /** The style sheet's colours follow two attributes. */
+  /** The style sheet's colours depend on two attributes. */
   private apply(): void {
     const { scheme, palette } = this.settings;
     const dark = scheme === 'dark' || (scheme === 'auto' && matchMedia('(prefers-color-scheme: dark)').matches);
@@ -85,17 +85,17 @@ export class SettingsStore {
   }
 }
 
-/** What cannot be read is as it is at first. */
+/** Invalid values are replaced by the defaults. */
 function read(): Settings {
   try {
     const kept: unknown = JSON.parse(localStorage.getItem(kKey) ?? '{}');
-    return typeof kept === 'object' && kept !== null ? sound(kept as Record<string, unknown>) : kDefaults;
+    return typeof kept === 'object' && kept !== null ? valid(kept as Record<string, unknown>) : kDefaults;
   } catch {
     return kDefaults;
   }
 }
 
-function sound(kept: Record<string, unknown>): Settings {
+function valid(kept: Record<string, unknown>): Settings {
   const settings: Settings = { ...kDefaults };
   for (const key of kSwitches) {
     const value = kept[key];

@@ -1,4 +1,4 @@
-/** Signing in and out: asks for a token when the server requires one. The dialog is the only message about it. */
+/** Sign-in and sign-out: asks for a token when the server requires one. The dialog is the only message about it. */
 import { onUnauthorized } from './api/http';
 import { fetchLogin, signIn, signOut, type Login } from './api/login';
 import { el, setText } from './dom';
@@ -12,7 +12,7 @@ export class SignIn {
   private readonly reason = el('p');
   private wasSignedIn = false;
 
-  /** @param place shows who is signed in; hidden where nobody has to be */
+  /** @param place shows the name of the token; hidden where the server requires none */
   constructor(private readonly place: HTMLElement) {
     this.secret = el('input', {
       id: 'token',
@@ -34,7 +34,7 @@ export class SignIn {
       (signal) => this.attempt(signal),
     );
     this.dialog.element.classList.add('sign-in');
-    // Without a token there is nothing to go back to.
+    // Without a token there is nothing to return to.
     this.dialog.cancel.remove();
     this.dialog.element.addEventListener('cancel', (event) => event.preventDefault());
     const out = el('button', { type: 'button', class: 'wide-button' }, 'Sign out');
@@ -42,15 +42,15 @@ export class SignIn {
     place.replaceChildren(el('p', { class: 'quiet' }, 'Signed in with the token ', this.name, '.'), out);
   }
 
-  /** From now on the form is shown whenever the server asks for it. What was open stays open behind it. */
+  /** From now on the dialog opens whenever the server requires a token. The open session stays open behind it. */
   async run(): Promise<void> {
-    onUnauthorized(() => this.ask());
-    // What goes wrong here, the next request tells.
+    onUnauthorized(() => this.prompt());
+    // The next request reports errors.
     const login = await fetchLogin(new AbortController().signal).catch(() => null);
     if (login) this.show(login);
   }
 
-  private ask(): void {
+  private prompt(): void {
     if (this.dialog.element.open) return;
     this.secret.value = '';
     setText(
@@ -73,7 +73,7 @@ export class SignIn {
     setText(this.name, token === null ? '' : `${token.name} (${token.role})`);
   }
 
-  /** What was seen is forgotten with the page. */
+  /** A reload discards everything that was shown. */
   private async leave(): Promise<void> {
     await signOut(new AbortController().signal).catch(() => {});
     location.reload();

@@ -1,4 +1,4 @@
-/** The colours of the style sheet, for what is drawn on canvases. */
+/** The style sheet's colours, for drawing on canvases. */
 import type { Palette, Rgb } from './layers/palette';
 
 export const kRobotColours = 6;
@@ -14,8 +14,8 @@ export interface Theme {
   warn: string;
   axisX: string;
   axisY: string;
-  /** Of ways that nobody has driven yet. */
-  way: string;
+  /** Colour of planned paths. */
+  path: string;
 }
 
 export function readTheme(): Theme {
@@ -43,7 +43,7 @@ export function readTheme(): Theme {
     warn: colour('--warn'),
     axisX: colour('--axis-x'),
     axisY: colour('--axis-y'),
-    way: colour('--way'),
+    path: colour('--path'),
   };
 }
 

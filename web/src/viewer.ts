@@ -1,8 +1,8 @@
-/** One chosen session, from the server's events to everything that shows it. */
+/** Connects one open session, from the server's events to all parts that show it. */
 import { fetchFrontiers } from './api/frontiers';
 import { fetchGoals, type Goals } from './api/goals';
 import { Refused } from './api/http';
-import type { LandmarkNews, LiveEvent, LiveRobot } from './api/live';
+import type { LandmarkUpdate, LiveEvent, LiveRobot } from './api/live';
 import type { Frontier, Robot, Session, TileChange } from './api/types';
 import { kLayers, type LayerName } from './layers/layers';
 import { Feed } from './live/feed';
@@ -37,15 +37,15 @@ export interface ViewerParts {
   settings: SettingsStore;
   details: HTMLElement;
   noRobots: HTMLElement;
-  /** Tells the rest of the page what was heard of a session; returns the newest that anybody heard. */
+  /** Passes a session state to the rest of the page; returns the newest known state. */
   newest: (session: Session) => Session;
-  /** Asks about all sessions soon: something came that the live connection does not tell. */
+  /** Polls all sessions soon, because of a change that the live connection does not report. */
   refresh: () => void;
-  /** Whether the person has just asked for the end of this session, and needs not be told of it. */
+  /** Whether the user is deleting this session, so that its end needs no message. */
   endIsExpected: (name: string) => boolean;
 }
 
-/** A session as it was at some time. */
+/** A session at an earlier time. */
 export interface Moment {
   source: MapSource;
   robots: Robot[];
@@ -53,7 +53,7 @@ export interface Moment {
   trails: Map<string, Trail>;
 }
 
-/** What is known of the session that is open. */
+/** State of the open session. */
 interface Open {
   session: Session;
   source: LiveSource;
@@ -62,17 +62,17 @@ interface Open {
   robots: Map<number, Robot>;
   frontiers: RevisionWatch<Frontier[]>;
   goals: RevisionWatch<Goals>;
-  /** The landmarks on the map were told over an earlier connection, perhaps by the server's life before. */
+  /** The landmarks on the map are from an earlier connection, perhaps from before a restart of the server. */
   landmarksAreOld: boolean;
   readers: CellReaders;
-  /** No scan of it was told of yet. */
+  /** It has no scan yet. */
   isNew: boolean;
 }
 
 const kSource = 'session';
 const kLandmarks = 'landmarks';
 
-/** The status line's code for what the server has no room for. */
+/** The status line's code for a full server. */
 const kNoRoom = 507;
 const kNothingOfThePresent = { points: false, frontiers: false, goals: false, landmarks: false };
 
@@ -90,7 +90,7 @@ export class Viewer {
     parts.picture.listen(() => this.showCounters());
   }
 
-  /** The one that is open, as it was heard of last. */
+  /** The open session in its newest known state. */
   get session(): Session | null {
     return this.open?.session ?? null;
   }
@@ -99,12 +99,12 @@ export class Viewer {
     return [...(this.open?.robots.values() ?? [])];
   }
 
-  /** Called when a session is opened, and with null when it is left. */
+  /** Calls the listener when a session is opened, and with null when it is closed. */
   listen(listener: (session: Session | null) => void): void {
     this.listeners.push(listener);
   }
 
-  /** Leaves the session that is shown, and follows this one. */
+  /** Closes the shown session, and follows this one. */
   watch(name: string): void {
     this.leave.abort();
     this.leave = new AbortController();
@@ -121,11 +121,11 @@ export class Viewer {
           this.start(session, trails);
         },
         opened: () => {
-          this.open?.frontiers.doubt();
-          this.open?.goals.doubt();
+          this.open?.frontiers.invalidate();
+          this.open?.goals.invalidate();
           if (this.open) this.open.landmarksAreOld = true;
         },
-        event: (event) => this.hear(event),
+        event: (event) => this.apply(event),
         tiles: (layer, tiles) => this.showTiles(layer, tiles),
         trails: () => this.showTrails(),
         gone: () => {
@@ -137,18 +137,18 @@ export class Viewer {
       },
       this.leave.signal,
     );
-    this.feed.ask(this.parts.settings.get());
+    this.feed.subscribe(this.parts.settings.get());
     this.feed.run();
   }
 
-  /** Leaves the session that is shown, for none. */
+  /** Closes the shown session. */
   close(): void {
     this.leave.abort();
     this.parts.status.forget(kSource);
     this.clear();
   }
 
-  /** Something newer was heard of a session, which may be the one that is shown. */
+  /** Updates the shown session, if this is a newer state of it. */
   refresh(session: Session): void {
     if (!this.open || session.id !== this.open.session.id) return;
     this.feed?.expect(session.revision);
@@ -156,7 +156,7 @@ export class Viewer {
     this.showSession();
   }
 
-  /** Shows the session as it was; null: as it is. */
+  /** Shows the session at an earlier time; null: returns to the present. */
   showMoment(moment: Moment | null): void {
     if (!this.open) return;
     this.moment = moment;
@@ -208,7 +208,7 @@ export class Viewer {
     for (const listener of this.listeners) listener(session);
   }
 
-  private hear(event: LiveEvent): void {
+  private apply(event: LiveEvent): void {
     if (!this.open) return;
     const { robots, frontiers, goals, session } = this.open;
     for (const robot of event.robots) robots.set(robot.index, robotOf(robot));
@@ -216,9 +216,9 @@ export class Viewer {
       this.open.isNew = false;
       this.leaveEmptyLayer(event);
     }
-    frontiers.hear(event.frontiersRevision);
-    goals.hear(event.goalsRevision);
-    if (event.landmarks) this.hearLandmarks(event.landmarks);
+    frontiers.setRevision(event.frontiersRevision);
+    goals.setRevision(event.goalsRevision);
+    if (event.landmarks) this.applyLandmarks(event.landmarks);
     this.open.session = { ...session, revision: event.revision, scans: event.scans, robots: this.robots };
     this.parts.newest(this.open.session);
     if (!session.bounds && event.scans > 0) this.parts.refresh();
@@ -229,15 +229,15 @@ export class Viewer {
     this.showSession();
   }
 
-  private hearLandmarks(news: LandmarkNews): void {
+  private applyLandmarks(update: LandmarkUpdate): void {
     if (!this.open) return;
     if (this.open.landmarksAreOld) this.parts.map.clearLandmarks();
     this.open.landmarksAreOld = false;
-    this.parts.map.addLandmarks(news.landmarks);
-    this.parts.status.settle(kLandmarks, news.refused === null ? null : new Refused(kNoRoom, news.refused));
+    this.parts.map.addLandmarks(update.landmarks);
+    this.parts.status.settle(kLandmarks, update.refused === null ? null : new Refused(kNoRoom, update.refused));
   }
 
-  /** A session of sonars has nothing to show of lasers, and the other way round: begin with what there is. */
+  /** A session of sonars has no laser layers, and the reverse: selects a layer with data. */
   private leaveEmptyLayer({ tiles }: LiveEvent): void {
     const held = new Set(tiles.filter((each) => each.everything || each.tiles.length > 0).map(({ layer }) => layer));
     const other = kLayers.find((layer) => held.has(layer));
@@ -285,14 +285,14 @@ export class Viewer {
 
   private choose(): void {
     const settings = this.parts.settings.get();
-    this.feed?.ask(settings);
+    this.feed?.subscribe(settings);
     if (!settings.points) this.parts.map.clearScans();
     if (!settings.landmarks) this.parts.status.forget(kLandmarks);
     this.chooseOverlays();
     this.showCounters();
   }
 
-  /** Scans, frontiers, goals and landmarks are told of the present only. */
+  /** Newest scans, frontiers, goals and landmarks are available for the present only. */
   private chooseOverlays(): void {
     const chosen = this.parts.settings.get();
     const settings = this.moment ? { ...chosen, ...kNothingOfThePresent } : chosen;
@@ -306,8 +306,8 @@ export class Viewer {
     const { map, picture, settings } = this.parts;
     const readers = settings.get().counters ? this.open?.readers : undefined;
     const of = (shown: Shown | null): CellReader | null => (shown && readers ? readers.of(shown.source, 'himm') : null);
-    // On each other, two numbers in a cell would be no numbers.
-    map.showCounters(of(picture.main), picture.isSwiping ? of(picture.beside) : null);
+    // Where the layers overlap, two numbers in a cell would be unreadable.
+    map.showCounters(of(picture.main), picture.isSwiping ? of(picture.second) : null);
   }
 
   private clear(): void {

@@ -7,10 +7,10 @@ import type { Changes, RobotPort, Session, Sessions, TileChange, Trajectory } fr
 export const sessionsPath = 'api/v1/sessions';
 const kPageSize = 100;
 const kPagesMax = 20;
-/** For answers as long as the session. */
+/** Timeout of answers that are as long as the session. */
 export const kLongMs = 120_000;
 
-/** All sessions, at most kPageSize * kPagesMax of them. */
+/** Returns all sessions, at most kPageSize * kPagesMax of them. */
 export async function fetchSessions(signal: AbortSignal): Promise<Sessions> {
   const all: Sessions = { sessions: [], damaged: [] };
   let after: string | null = null;
@@ -30,7 +30,7 @@ export async function fetchRobotPort(signal: AbortSignal): Promise<RobotPort> {
   return decodeRobotPort(await getJson('readyz', signal));
 }
 
-/** In the text format of Prometheus. */
+/** Returns the metrics in the text format of Prometheus. */
 export async function fetchMetrics(signal: AbortSignal): Promise<string> {
   return readBody(await get('metrics', signal), signal, (answer) => answer.text());
 }
@@ -42,7 +42,7 @@ export async function fetchSession(name: string, signal: AbortSignal): Promise<S
 export interface ChangesQuery {
   layer: LayerName;
   since: number;
-  /** Of a weave's maps; null: of the session's own. */
+  /** Fetches the tiles that changed. `weave`: the weave whose maps are meant; null: the session's own maps. */
   weave: string | null;
 }
 
@@ -62,27 +62,27 @@ export async function fetchTrajectory(name: string, since: number, signal: Abort
 
 export type SessionKey = Pick<Session, 'name' | 'id'>;
 
-/** Maps that tiles are asked of: those of a layer of a session, or of a weave of it. */
+/** Maps that have tiles: a layer of a session, or of a weave of it. */
 export interface TileSource {
   session: SessionKey;
   layer: LayerName;
   weave: string | null;
 }
 
-/** The colours that server/tiles gives the layer's codes; layers/palette.ts tells what they mean. */
+/** The colours that server/tiles gives the layer's codes; layers/palette.ts has their meaning. */
 export async function fetchTileImage(source: TileSource, tile: TileChange, signal: AbortSignal): Promise<ImageBitmap> {
   const response = await get(tilePath(source, tile, 'png'), signal);
   const blob = await readBody(response, signal, (answer) => answer.blob());
   return createImageBitmap(blob, { colorSpaceConversion: 'none' });
 }
 
-/** 256 rows of 256 cells, top row first: the layer's codes; layers/cell_value.ts tells what they mean. */
+/** 256 rows of 256 cells, top row first: the layer's codes; layers/cell_value.ts has their meaning. */
 export async function fetchTileCells(source: TileSource, tile: TileChange, signal: AbortSignal): Promise<Uint8Array> {
   const response = await get(tilePath(source, tile, 'bin'), signal);
   return new Uint8Array(await readBody(response, signal, (answer) => answer.arrayBuffer()));
 }
 
-/** Where the session is told live. */
+/** Path of the session's WebSocket. */
 export function livePath(name: string): string {
   return `${sessionPath(name)}/live`;
 }
@@ -91,7 +91,7 @@ export function sessionPath(name: string): string {
   return `${sessionsPath}/${encodeURIComponent(name)}`;
 }
 
-/** The version makes the answer immutable; the id keeps apart sessions that had the same name one after the other. */
+/** The version makes the answer immutable; the id distinguishes sessions that had the same name at different times. */
 function tilePath({ session, layer, weave }: TileSource, tile: TileChange, kind: 'png' | 'bin'): string {
   const place = `${tile.z}/${tile.x}/${tile.y}.${kind}`;
   const version = new URLSearchParams({ v: String(tile.revision), id: session.id, ...(weave !== null && { weave }) });

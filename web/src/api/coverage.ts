@@ -1,4 +1,4 @@
-/** A way over all free ground of a region, as the server finds it on its maps. */
+/** A coverage path over all free ground of a region, which the server plans on its maps. */
 import { decodeAreas, fields, list, MalformedAnswer, number, type Fields } from './decode';
 import { decodeLine, postSearch, type Start } from './plan';
 import type { Point } from './types';
@@ -17,19 +17,19 @@ export interface Coverage {
   points: Point[];
   /** Metres. */
   length: number;
-  /** Of the region's free ground that is covered, from 0 to 1. */
+  /** Part of the region's free ground that is covered, from 0 to 1. */
   fraction: number;
   /** Square metres. */
   freeArea: number;
   coveredArea: number;
   unreachableArea: number;
-  /** Polygons of rings. */
+  /** Polygons made of rings. */
   unreachable: Point[][][];
-  /** Of the maps. */
+  /** Revision of the maps. */
   revision: number;
 }
 
-/** @throws Refused with the server's sentence when there is no way */
+/** @throws Refused with the server's message when there is no path */
 export async function requestCoverage(
   session: string,
   weave: string | null,
@@ -49,11 +49,11 @@ export async function requestCoverage(
 function decodeCoverage(json: unknown): Coverage {
   const collection = fields(json, 'coverage');
   const features = list(collection['features'], 'features').map((each) => fields(each, 'features[]'));
-  const way = featureOf(features, 'path');
+  const path = featureOf(features, 'path');
   const rest = featureOf(features, 'unreachable');
-  const properties = fields(way['properties'], 'properties');
+  const properties = fields(path['properties'], 'properties');
   return {
-    points: decodeLine(way['geometry']),
+    points: decodeLine(path['geometry']),
     length: number(properties['length'], 'length'),
     fraction: number(properties['fraction'], 'fraction'),
     freeArea: number(properties['free_area'], 'free_area'),

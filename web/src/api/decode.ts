@@ -1,4 +1,4 @@
-/** From parsed JSON to values: each throws a MalformedAnswer that names the first field that is not as agreed. */
+/** Converts parsed JSON to values: each function throws a MalformedAnswer that names the first invalid field. */
 import type {
   Bounds,
   Changes,
@@ -151,7 +151,7 @@ export function decodePoint(json: unknown): Point {
   return [number(x, 'coordinates[].x'), number(y, 'coordinates[].y')];
 }
 
-/** Of a MultiPolygon: polygons of rings. */
+/** Coordinates of a MultiPolygon: polygons made of rings. */
 export function decodeAreas(json: unknown): Point[][][] {
   const polygons = list(json, 'coordinates').map((each) => list(each, 'coordinates[]'));
   return polygons.map((rings) => rings.map((ring) => list(ring, 'coordinates[][]').map(decodePoint)));

@@ -1,11 +1,11 @@
-/** What two maps of one session disagree in: in numbers, and as a picture. */
+/** The differences between two maps of one session: in numbers, and as a picture. */
 import { sessionPath } from './api';
 import { fields, MalformedAnswer, number } from './decode';
 import { kFileDeadlineMs } from './export';
 import { get, parseJson, readBody } from './http';
 import type { LayerName } from '../layers/layers';
 
-/** What the two maps, A and B, say of a place. */
+/** What the two maps, A and B, contain at a place. */
 export const kDifferences = [
   'only_a',
   'only_b',
@@ -27,11 +27,11 @@ export interface DifferenceQuery {
 }
 
 export interface Difference {
-  /** Square metres of each. */
+  /** Square metres of each kind. */
   areas: Record<DifferenceName, number>;
-  /** Of what both know, the part in which they agree, from 0 to 1; null: they share nothing. */
+  /** Part of the area known to both in which they agree, from 0 to 1; null: no common area. */
   agreement: number | null;
-  /** Of probability, absolute; null for layers that have none. */
+  /** Mean absolute difference of the probability; null for layers that have none. */
   meanDifference: number | null;
 }
 

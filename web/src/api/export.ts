@@ -1,4 +1,4 @@
-/** Files that the server makes of a session: where they are, and how they are had. */
+/** Files that the server makes of a session: their addresses, and how to download them. */
 import { sessionPath } from './api';
 import { get, readBody, Unreachable } from './http';
 import type { LayerName } from '../layers/layers';
@@ -7,13 +7,13 @@ export type MapFormat = 'png' | 'pgm' | 'yaml' | 'csv' | 'npy';
 
 export interface MapQuery {
   layer: LayerName;
-  /** [min_x, min_y, max_x, max_y], metres; null: all that was seen. */
+  /** [min_x, min_y, max_x, max_y], metres; null: the whole map. */
   box: [number, number, number, number] | null;
   /** Null: the session's own maps. */
   weave: string | null;
 }
 
-/** Large maps are drawn first and sent then, over whatever link there is. */
+/** The server draws a large map before it sends it, and the link may be slow. */
 export const kFileDeadlineMs = 600_000;
 /** To the millimetre: smaller than any cell. */
 const kDigits = 3;
@@ -25,7 +25,7 @@ export function mapFilePath(session: string, format: MapFormat, { layer, box, we
   return `${sessionPath(session)}/map.${format}?${query}`;
 }
 
-/** @param since the positions after this revision; 0: from the first on */
+/** @param since only the positions after this revision; 0: all */
 export function trajectoryPath(session: string, since = 0): string {
   return `${sessionPath(session)}/trajectory.geojson${since === 0 ? '' : `?since=${since}`}`;
 }
@@ -39,7 +39,7 @@ export function landmarksPath(session: string): string {
   return `${sessionPath(session)}/landmarks.geojson`;
 }
 
-/** What robots saw from many places, as one cloud. */
+/** The points of all scans, fused to one cloud. */
 export function pointsPath(session: string, format: 'csv' | 'ply'): string {
   return `${sessionPath(session)}/points.${format}`;
 }
@@ -49,10 +49,10 @@ export function logPath(session: string, format: 'clf' | 'protobuf'): string {
 }
 
 /**
- * The whole file, for those that the server limits to some 100 MB.
+ * Downloads the whole file, for files that the server limits to some 100 MB.
  *
- * @param progress told how many bytes have come
- * @throws Refused with the server's sentence
+ * @param progress called with the number of bytes received
+ * @throws Refused with the server's message
  */
 export async function fetchFile(path: string, signal: AbortSignal, progress: (bytes: number) => void): Promise<Blob> {
   const response = await get(path, signal, kFileDeadlineMs);
@@ -72,7 +72,7 @@ export async function fetchFile(path: string, signal: AbortSignal, progress: (by
   });
 }
 
-/** Asks for a file whose length has no bound, and reads none of it. @throws Refused with the server's sentence */
+/** Requests a file of unlimited length without reading it, to find errors. @throws Refused with the server's message */
 export async function checkFile(path: string, signal: AbortSignal): Promise<void> {
   const giveUp = new AbortController();
   const response = await get(path, AbortSignal.any([signal, giveUp.signal]));

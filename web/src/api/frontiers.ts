@@ -1,10 +1,10 @@
-/** Where the explored ground ends. */
+/** The frontiers: borders between explored and unexplored ground. */
 import { sessionPath } from './api';
 import { decodeAreas, decodePoint, fields, list, number } from './decode';
 import { getJson, Refused } from './http';
 import type { Frontier } from './types';
 
-/** None while no robot has a place to go from. */
+/** Null while no robot has a position to start from. */
 export async function fetchFrontiers(name: string, signal: AbortSignal): Promise<Frontier[]> {
   try {
     return decodeFrontiers(await getJson(`${sessionPath(name)}/frontiers.geojson`, signal));

@@ -1,23 +1,23 @@
-/** What robots were told to do, or planned, last. */
+/** The current goals and paths of the robots. */
 import { sessionPath } from './api';
 import { decodePoint, fields, list, MalformedAnswer, text } from './decode';
 import { getJson } from './http';
 import type { Point } from './types';
 
-/** One robot's way, and where it leads. */
+/** One robot's path and its goal. */
 export interface RobotGoal {
   robot: string;
-  /** Its points, from where the robot was; empty: none is told. */
-  way: Point[];
-  /** Where to stand; null: the way is none to a goal. */
+  /** Its points, from the robot's position at planning time; empty: unknown. */
+  path: Point[];
+  /** Where the robot is to stand; null: the path leads to no goal. */
   goal: Point | null;
-  /** What to look at from there. */
+  /** The place to observe from there. */
   target: Point | null;
 }
 
 export interface Goals {
   ofRobots: RobotGoal[];
-  /** The robots that were told last that no frontier is left that they could reach. */
+  /** The robots for which no reachable frontier is left, by the server's last reply to them. */
   explored: string[];
 }
 
@@ -33,11 +33,11 @@ export function decodeGoals(json: unknown): Goals {
     const properties = fields(feature['properties'], 'features[].properties');
     const { coordinates } = fields(feature['geometry'], 'features[].geometry');
     const robot = text(properties['robot'], 'features[].properties.robot');
-    const known = byRobot.get(robot) ?? { robot, way: [], goal: null, target: null };
+    const known = byRobot.get(robot) ?? { robot, path: [], goal: null, target: null };
     byRobot.set(robot, known);
     switch (properties['role']) {
       case 'way':
-        known.way = list(coordinates, 'coordinates').map(decodePoint);
+        known.path = list(coordinates, 'coordinates').map(decodePoint);
         break;
       case 'goal':
         known.goal = decodePoint(coordinates);

@@ -1,12 +1,12 @@
-/** Which robot was where, when: the trajectories of a session with their times. */
+/** The trajectories of a session with their times. */
 import { kLongMs, sessionPath } from './api';
 import { decodePoint, fields, list, MalformedAnswer, number, text } from './decode';
 import { getJson } from './http';
 import type { Track } from './types';
 
-/** For each point of the track, oldest first, what else is known of its scan. */
+/** The other data of each scan, one for each point of the track, oldest first. */
 export interface TimedTrack extends Track {
-  /** The session's, with this scan. */
+  /** The session's revision with this scan. */
   revisions: number[];
   /** When it was taken, seconds of the robot's clock. */
   stamps: number[];
@@ -15,12 +15,12 @@ export interface TimedTrack extends Track {
 }
 
 export interface TimedTrajectory {
-  /** Up to this one all is told. */
+  /** The data are complete up to this revision. */
   revision: number;
   tracks: TimedTrack[];
 }
 
-/** The scans after a revision, or the first of them. */
+/** Fetches the first scans after a revision. */
 export async function fetchHistory(name: string, since: number, signal: AbortSignal): Promise<TimedTrajectory> {
   const query = new URLSearchParams({ times: 'true', since: String(since) });
   return decodeHistory(await getJson(`${sessionPath(name)}/trajectory.geojson?${query}`, signal, kLongMs));

@@ -1,16 +1,16 @@
-/** One request, with a deadline, and its failures as two kinds of error. */
+/** One request with a deadline; its failures are two kinds of error. */
 
 const kDeadlineMs = 10_000;
 const kUnauthorized = 401;
-/** Took too long, asked too often, too much to do. */
+/** Status codes for which a retry may help: timeout, rate limit, overload. */
 const kPassing = [408, 429, 503];
 
-/** The server could not be reached, or did not answer in time. */
+/** The server was not reachable, or did not answer in time. */
 export class Unreachable extends Error {
   override name = 'Unreachable';
 }
 
-/** The server answered, but not with what was asked for. */
+/** The server answered with an error. */
 export class Refused extends Error {
   override name = 'Refused';
 
@@ -22,39 +22,39 @@ export class Refused extends Error {
   }
 }
 
-/** Whether the server asks for a token: sign_in.ts shows this, no other part of the page. */
+/** Whether the server requires a token. Only sign_in.ts handles this error. */
 export function isUnauthorized(error: unknown): boolean {
   return error instanceof Refused && error.status === kUnauthorized;
 }
 
-/** Whether waiting may mend it: there was no answer, or one that says so. */
+/** Whether a retry may help: there was no answer, or a status of kTransient. */
 export function isPassing(error: unknown): boolean {
   return error instanceof Unreachable || (error instanceof Refused && kPassing.includes(error.status));
 }
 
 let unauthorized: () => void = () => {};
 
-/** @param told whenever the server answers that it does not know who asks */
-export function onUnauthorized(told: () => void): void {
-  unauthorized = told;
+/** @param listener called when the server answers that the request is not authenticated */
+export function onUnauthorized(listener: () => void): void {
+  unauthorized = listener;
 }
 
 /**
- * Asks for a resource of this server.
+ * Gets a resource of this server.
  *
  * @param path relative to the page, so that the viewer works below any prefix
- * @param deadlineMs until the whole answer is there; for large ones
+ * @param deadlineMs until the whole answer is received; for large answers
  * @throws Unreachable, Refused, or the signal's reason when the caller gave up
  */
 export function get(path: string, signal: AbortSignal, deadlineMs = kDeadlineMs): Promise<Response> {
-  return ask(path, {}, signal, deadlineMs);
+  return request(path, {}, signal, deadlineMs);
 }
 
 /**
- * Changes something on the server; like get in all else.
+ * Changes something on the server; in all else equal to get().
  *
- * @param type media type of the body; null lets the body speak for itself
- * @param deadlineMs for what takes the server, or the body on its way there, longer
+ * @param type media type of the body; null: the browser derives it from the body
+ * @param deadlineMs for requests that take the server longer, or that have a large body
  */
 export function send(
   method: 'POST' | 'DELETE',
@@ -65,7 +65,7 @@ export function send(
   deadlineMs = kDeadlineMs,
 ): Promise<Response> {
   const headers: HeadersInit = type === null ? {} : { 'Content-Type': type };
-  return ask(path, { method, body, headers }, signal, deadlineMs);
+  return request(path, { method, body, headers }, signal, deadlineMs);
 }
 
 export function sendJson(
@@ -77,7 +77,7 @@ export function sendJson(
   return send(method, path, JSON.stringify(value), 'application/json', signal);
 }
 
-/** Like get, for JSON; a body cut off half-way counts as unreachable. */
+/** Like get(), for JSON; a truncated body counts as unreachable. */
 export async function getJson(path: string, signal: AbortSignal, deadlineMs?: number): Promise<unknown> {
   return parseJson(await get(path, signal, deadlineMs), path, signal);
 }
@@ -104,7 +104,7 @@ export async function readBody<T>(
   }
 }
 
-async function ask(path: string, init: RequestInit, signal: AbortSignal, deadlineMs: number): Promise<Response> {
+async function request(path: string, init: RequestInit, signal: AbortSignal, deadlineMs: number): Promise<Response> {
   let response: Response;
   try {
     const deadline = AbortSignal.timeout(deadlineMs);
@@ -119,7 +119,7 @@ async function ask(path: string, init: RequestInit, signal: AbortSignal, deadlin
   return response;
 }
 
-/** The sentence of an application/problem+json body, or the bare status. */
+/** Returns the message of an application/problem+json body, or the bare status. */
 async function reason(response: Response): Promise<string> {
   const bare = `status ${response.status}`;
   try {

@@ -1,22 +1,22 @@
-/** A session made from a ROS map. */
+/** Creates a session from a ROS map. */
 import { sessionPath } from './api';
 import { decodeSession } from './decode';
 import { parseJson, send } from './http';
 import type { Session } from './types';
 
-/** A large map takes its time on the way and on the server. */
+/** A large map takes long to upload and to read. */
 const kImportDeadlineMs = 600_000;
 
 export interface RosMap {
-  /** What map_saver writes beside the image. */
+  /** The description that map_saver writes next to the image. */
   yaml: File;
   /** PGM or PNG. */
   image: File;
 }
 
 /**
- * @param settings of the session, as the server names them; what is left out takes the map's value or the default
- * @throws Refused with the server's sentence when it cannot be made
+ * @param settings of the session, by the server's names; settings that are left out get the map's value or the default
+ * @throws Refused with the server's message when the session cannot be created
  */
 export async function importMap(
   name: string,

@@ -1,4 +1,4 @@
-/** The messages of the live connection, from bytes to values of this program and back. */
+/** Encodes and decodes the messages of the live connection. */
 import { PbfReader, PbfWriter } from 'pbf';
 import {
   Layer,
@@ -27,68 +27,68 @@ const kLayerOfNumber = new Map<number, LayerName>([
 
 export interface LiveTiles {
   layer: LayerName;
-  /** Too many to be listed: ask for all that changed. */
+  /** Too many tiles to list: fetch all changes. */
   everything: boolean;
-  /** Of the native zoom. */
+  /** Tiles of the native zoom. */
   tiles: TileChange[];
 }
 
 export interface LiveScan {
   /** T_map_sensor. */
   origin: Pose;
-  /** Where beams ended, in the map frame. */
+  /** End points of the beams, in the map frame. */
   points: Point[];
 }
 
 export interface LiveRobot {
-  /** Its number in the session. */
+  /** The robot's number in the session. */
   index: number;
   name: string;
   connected: boolean;
   scans: number;
   /** Null before its first scan. */
   pose: Pose | null;
-  /** Metres; null: it has not said. */
+  /** Metres; null: not reported. */
   bodyRadius: number | null;
   trail: Point[];
-  /** How many points its trail has before these. */
+  /** Number of points of the trail before these. */
   trailFrom: number;
-  /** Null: as before. */
+  /** Null: unchanged. */
   scan: LiveScan | null;
 }
 
-export interface LandmarkNews {
-  /** New ones, and those that were seen again. */
+export interface LandmarkUpdate {
+  /** New landmarks, and those that were observed again. */
   landmarks: Landmark[];
-  /** Why the server finds no more; null: it does. */
+  /** Why the server stopped extracting landmarks; null: it did not. */
   refused: string | null;
 }
 
-/** What a page wants to be told besides tiles and robots. */
-export interface Wishes {
+/** The data that a page subscribes to, in addition to tiles and robots. */
+export interface Subscription {
   /** The newest scans. */
   points: boolean;
   landmarks: boolean;
 }
 
 export interface LiveEvent {
-  /** The session's. */
+  /** The session's revision. */
   id: string;
   revision: number;
   scans: number;
-  /** Why it takes no scans; null: it does. */
+  /** Why the session accepts no scans; null: it does. */
   failure: string | null;
-  /** The server shuts down. */
+  /** The server is shutting down. */
   draining: boolean;
-  /** Rises when frontiers may have changed. */
+  /** Increases when frontiers may have changed. */
   frontiersRevision: number;
-  /** Rises when what robots were told to do has changed. */
+  /** Increases when the robots' goals or paths have changed. */
   goalsRevision: number;
   tiles: LiveTiles[];
-  /** Those with news. */
+  /** Robots that changed. */
   robots: LiveRobot[];
-  /** Null: as before, or not wanted. */
-  landmarks: LandmarkNews | null;
+  /** Null: unchanged, or not subscribed to. */
+  landmarks: LandmarkUpdate | null;
 }
 
 export function decodeLiveEvent(bytes: ArrayBuffer): LiveEvent {
@@ -111,14 +111,14 @@ export function decodeLiveEvent(bytes: ArrayBuffer): LiveEvent {
   }
 }
 
-/** For the tiles of all layers, and what is wished for. */
-export function encodeLiveRequest(wishes: Wishes): Uint8Array<ArrayBuffer> {
+/** Subscribes to the tiles of all layers and to the chosen data. */
+export function encodeLiveRequest(subscription: Subscription): Uint8Array<ArrayBuffer> {
   const writer = new PbfWriter();
-  writeLiveRequest({ layers: [...kLayerOfNumber.keys()], ...wishes }, writer);
+  writeLiveRequest({ layers: [...kLayerOfNumber.keys()], ...subscription }, writer);
   return new Uint8Array(writer.finish());
 }
 
-/** Of a layer that this program does not know, nothing. */
+/** Returns nothing for a layer that this program does not know. */
 function decodeTiles({ layer, everything, tiles, revisions }: TileChanges): LiveTiles[] {
   const name = kLayerOfNumber.get(layer);
   if (!name) return [];
@@ -146,7 +146,7 @@ function decodeRobot(robot: RobotUpdate): LiveRobot {
   };
 }
 
-function decodeLandmarks({ landmarks, refused }: LandmarkChanges): LandmarkNews {
+function decodeLandmarks({ landmarks, refused }: LandmarkChanges): LandmarkUpdate {
   return {
     landmarks: landmarks.map(({ id, x, y, seen, size_x, size_y }) => ({
       id,

@@ -1,4 +1,4 @@
-/** What protocol.js makes of proto/scanloom/v1/live.proto: fields that were not sent have their defaults. */
+/** The API that protocol.js makes of proto/scanloom/v1/live.proto: fields that were not sent have their defaults. */
 declare module 'virtual:live-protocol' {
   import type { PbfReader, PbfWriter } from 'pbf';
 
@@ -69,7 +69,7 @@ declare module 'virtual:live-protocol' {
   export const SessionState: Record<string, number>;
   export function readLiveEvent(pbf: PbfReader): LiveEvent;
   export function writeLiveRequest(request: LiveRequest, pbf: PbfWriter): void;
-  /** What the server does; tests do it, too. Fields that are left out have their defaults. */
+  /** The server encodes events; tests do, too. Fields that are left out have their defaults. */
   export function writeLiveEvent(event: Sparse<LiveEvent>, pbf: PbfWriter): void;
   export function readLiveRequest(pbf: PbfReader): LiveRequest;
 

@@ -1,13 +1,13 @@
-/** Signing in, where the server asks for tokens. */
+/** Sign-in, for servers that require tokens. */
 import { fields, text } from './decode';
 import { getJson, parseJson, send, sendJson } from './http';
 
 const kPath = 'api/v1/login';
 
 export interface Login {
-  /** Whether the server asks for tokens at all. */
+  /** Whether the server requires tokens. */
   needed: boolean;
-  /** Whose this page is signed in with; null: it is not. */
+  /** The token with which this page is signed in; null: not signed in. */
   token: { name: string; role: string } | null;
 }
 
@@ -15,7 +15,7 @@ export async function fetchLogin(signal: AbortSignal): Promise<Login> {
   return decodeLogin(await getJson(kPath, signal));
 }
 
-/** The secret is sent once; from then on a cookie stands for it that no script can read. */
+/** Sends the secret once; afterwards a cookie that scripts cannot read represents it. */
 export async function signIn(secret: string, signal: AbortSignal): Promise<Login> {
   return decodeLogin(await parseJson(await sendJson('POST', kPath, { token: secret }, signal), kPath, signal));
 }

@@ -1,4 +1,4 @@
-/** What makes sessions and ends them. */
+/** Creates and deletes sessions. */
 import { sessionPath, sessionsPath } from './api';
 import { decodeSession } from './decode';
 import { parseJson, Refused, send, sendJson } from './http';
@@ -14,7 +14,7 @@ export interface SessionRequest {
   rayModel: RayModel;
 }
 
-/** The server closes the session's log first, and writes that it is gone. */
+/** The server first closes the session's log, then records the deletion. */
 const kDeleteDeadlineMs = 60_000;
 
 export async function createSession(request: SessionRequest, signal: AbortSignal): Promise<Session> {
@@ -24,7 +24,7 @@ export async function createSession(request: SessionRequest, signal: AbortSignal
   return decodeSession(await parseJson(response, sessionsPath, signal));
 }
 
-/** Also well when there is none any more. */
+/** Succeeds also when the session does not exist. */
 export async function deleteSession(name: string, signal: AbortSignal): Promise<void> {
   try {
     await send('DELETE', sessionPath(name), null, null, signal, kDeleteDeadlineMs);

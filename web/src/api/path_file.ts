@@ -1,4 +1,4 @@
-/** A session's paths as one file, put together from as many pages as it takes. */
+/** Collects a session's trajectories, page by page, in one file. */
 import { fetchSession } from './api';
 import { fields, list, MalformedAnswer, number, text } from './decode';
 import { rest } from '../poll';
@@ -13,7 +13,7 @@ const kRetries = 8;
 interface PathPart {
   robot: string;
   points: number;
-  /** Separated by commas, as they stand in the file: values would be many times as long. */
+  /** The coordinates as text, separated by commas: as values they would need many times the memory. */
   coordinates: string;
 }
 
@@ -24,7 +24,7 @@ export interface PathPage {
   parts: PathPart[];
 }
 
-/** Takes pages in their order, and has the members that one answer of the server would have. */
+/** Takes pages in order; the result has the same members as one answer of the server. */
 export class PathFile {
   private newest: PathPage | null = null;
   private readonly paths = new Map<string, PathPart[]>();
@@ -50,11 +50,11 @@ export class PathFile {
 }
 
 /**
- * The paths of all that the session has when it is asked for.
+ * Downloads all trajectories that the session has at the time of the call.
  *
- * @param progress told how many bytes have come
- * @param pause waits, longer with every failure in a row
- * @throws Refused with the server's sentence
+ * @param progress called with the number of bytes received
+ * @param pause waits, longer with every consecutive failure
+ * @throws Refused with the server's message
  */
 export async function fetchPathFile(
   session: string,
@@ -76,7 +76,7 @@ export async function fetchPathFile(
   return file.blob();
 }
 
-/** Others may be given large answers at the moment: what waiting may mend is tried again for half a minute or so. */
+/** The server may limit large answers while it serves others: transient errors are retried for about half a minute. */
 async function patiently<T>(task: () => Promise<T>, signal: AbortSignal, pause: typeof rest): Promise<T> {
   for (let failures = 1; ; ++failures) {
     try {
@@ -119,7 +119,7 @@ function parse(body: string): unknown {
   }
 }
 
-/** A path of one point is no line. */
+/** A line needs two points. */
 function featureOf(robot: string, parts: PathPart[]): string[] {
   const points = parts.reduce((sum, part) => sum + part.points, 0);
   const feature = { type: 'Feature', id: robot, properties: { robot, points } };
@@ -130,7 +130,7 @@ function featureOf(robot: string, parts: PathPart[]): string[] {
   return [opened(feature), ',"geometry":', opened(geometry), ',"coordinates":[', ...coordinates, ']}}'];
 }
 
-/** The text of an object that more members are to follow in. */
+/** Returns the text of an object without its closing brace, so that members can be appended. */
 function opened(value: object): string {
   return JSON.stringify(value).slice(0, -1);
 }

@@ -1,13 +1,13 @@
-/** Long paths come in pages, each of which says up to which revision of the session it goes. */
+/** Reads long trajectories in pages; each page contains the session's revision that it reaches. */
 import { MalformedAnswer } from './decode';
 
 /**
- * The pages one after the other, each asked for as soon as the one before has been taken.
+ * Yields the pages one after the other; requests each after the caller has consumed the previous one.
  *
- * @param since where they begin
- * @param wanted how far they are to go, asked after each; one that goes no further than it began is the last, too
- * @param fetchAfter the positions after a revision
- * @throws MalformedAnswer when the session does not go as far as it has gone; and what fetchAfter does
+ * @param since revision after which the pages begin
+ * @param wanted target revision, read after each page; a page that makes no progress also ends the sequence
+ * @param fetchAfter fetches the positions after a revision
+ * @throws MalformedAnswer when the session's revision decreased; and the errors of fetchAfter
  */
 export async function* pagesOf<Page extends { revision: number }>(
   since: number,

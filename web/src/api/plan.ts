@@ -1,13 +1,13 @@
-/** The way from one place to another, as the server finds it on its maps. */
+/** The path from one place to another, which the server plans on its maps. */
 import { sessionPath } from './api';
 import { decodePoint, fields, list, MalformedAnswer, number } from './decode';
 import { parseJson, send } from './http';
 import type { Point } from './types';
 
-/** Searches take turns on the server: one may wait for others. */
+/** The server queues searches: one may wait for others. */
 export const kSearchDeadlineMs = 120_000;
 
-/** A place, or where a robot took its newest scan. */
+/** A place, or the name of a robot, which stands for the place of its newest scan. */
 export type Start = Point | { robot: string };
 
 export interface PlanRequest {
@@ -16,33 +16,33 @@ export interface PlanRequest {
   allowUnknown: boolean;
   /** Metres. */
   bodyRadius: number;
-  /** What a metre in danger costs more than another. */
+  /** Extra cost of a metre in danger cells. */
   dangerCost: number;
 }
 
-export interface Way {
+export interface PlannedPath {
   points: Point[];
   /** Metres. */
   length: number;
-  /** Metres, those in danger counting more. */
+  /** Metres, those in danger cells weighted. */
   cost: number;
-  /** Of the maps. */
+  /** Revision of the maps. */
   revision: number;
 }
 
-/** @throws Refused with the server's sentence when there is no way */
+/** @throws Refused with the server's message when there is no path */
 export async function requestPlan(
   session: string,
   weave: string | null,
   request: PlanRequest,
   signal: AbortSignal,
-): Promise<Way> {
+): Promise<PlannedPath> {
   const { from, to, allowUnknown, bodyRadius, dangerCost } = request;
   const body = { from, to, allow_unknown: allowUnknown, body_radius: bodyRadius, danger_cost: dangerCost };
-  return decodeWay(await postSearch(session, 'plan', weave, body, signal));
+  return decodePath(await postSearch(session, 'plan', weave, body, signal));
 }
 
-/** Asks for a way of either kind. */
+/** Requests a path of either kind. */
 export async function postSearch(
   session: string,
   what: 'plan' | 'coverage',
@@ -56,8 +56,8 @@ export async function postSearch(
   return parseJson(await send('POST', path, json, 'application/json', signal, kSearchDeadlineMs), path, signal);
 }
 
-function decodeWay(json: unknown): Way {
-  const feature = fields(json, 'way');
+function decodePath(json: unknown): PlannedPath {
+  const feature = fields(json, 'path');
   const properties = fields(feature['properties'], 'properties');
   return {
     points: decodeLine(feature['geometry']),
@@ -69,6 +69,6 @@ function decodeWay(json: unknown): Way {
 
 export function decodeLine(json: unknown): Point[] {
   const points = list(fields(json, 'geometry')['coordinates'], 'geometry.coordinates').map(decodePoint);
-  if (points.length < 2) throw new MalformedAnswer('a way has fewer than two points');
+  if (points.length < 2) throw new MalformedAnswer('a path has fewer than two points');
   return points;
 }

@@ -1,4 +1,4 @@
-/** What the server says, as values of this program. Lengths are metres, angles radians, in the session's map frame. */
+/** The server's answers as values of this program. Lengths are metres, angles radians, in the session's map frame. */
 
 export interface Bounds {
   minX: number;
@@ -18,40 +18,43 @@ export interface Robot {
   connected: boolean;
   scans: number;
   pose: Pose | null;
-  /** Metres; null: it has not said. */
+  /** Metres; null: not reported. */
   bodyRadius: number | null;
 }
 
-/** How scans become maps, as the server names it: cell_size, ray_model, p_occupied, ... */
+/** The mapping settings by the server's names: cell_size, ray_model, p_occupied, ... */
 export type MapConfig = Readonly<Record<string, number | string | boolean>>;
 
 export interface Session {
   name: string;
-  /** Changes when a session is deleted and another is made under its name, or when the server draws maps otherwise. */
+  /** Changes when a session is deleted and recreated under its name, or when the server draws maps differently. */
   id: string;
   created: string;
   /** Greater for those that were created later. */
   number: number;
-  /** Rises with every scan. */
+  /** Increases with every scan. */
   revision: number;
-  /** Revision of the newest change of exclusions; 0: there is none. */
+  /** Revision of the newest change of exclusions; 0: none. */
   exclusions: number;
   scans: number;
   cellSize: number;
   config: MapConfig;
-  /** Null while nothing has been seen. */
+  /** Null while the map is empty. */
   bounds: Bounds | null;
-  /** Where most of it is; null: not known. One scan with a wrong pose can make `bounds` useless to look at. */
+  /**
+   * Bounds of the largest connected part; null: unknown. One scan with a wrong pose can make `bounds` useless for the
+   * view.
+   */
   mainBounds: Bounds | null;
   robots: Robot[];
-  /** Why it takes no scans until it is read from the store again; null while it does. */
+  /** Why the session accepts no scans until it is reloaded from the store; null while it does. */
   failure: string | null;
 }
 
-/** A session that the server cannot weave again from its log. */
+/** A session whose map the server cannot reconstruct from its log. */
 export interface DamagedSession {
   name: string;
-  /** A sentence. */
+  /** A sentence that says why. */
   reason: string;
 }
 
@@ -66,12 +69,12 @@ export interface SessionPage extends Sessions {
 
 /** Where robots connect. */
 export interface RobotPort {
-  /** Null: any address of the server will do, so also the one this page came from. */
+  /** Null: any address of the server, therefore also the address of this page. */
   host: string | null;
   port: number;
 }
 
-/** A tile of the XYZ scheme (y down) and the revision that touched it last. */
+/** A tile of the XYZ scheme (y down) and the revision of its last change. */
 export interface TileChange {
   z: number;
   x: number;
@@ -97,25 +100,25 @@ export interface Trajectory {
   tracks: Track[];
 }
 
-/** A thing in a room, as lidars see it. */
+/** A landmark: an object in a room, as lidars observe it. */
 export interface Landmark {
   id: number;
   at: Point;
-  /** By so many captures. */
+  /** Number of observations. */
   seen: number;
-  /** Metres along x and y, as it was seen last. */
+  /** Size along x and y at the last observation, metres. */
   size: Point;
 }
 
-/** Unexplored ground beside free ground, which hangs together. */
+/** A connected area of unexplored ground next to free ground. */
 export interface Frontier {
-  /** Polygons of rings. */
+  /** Polygons made of rings. */
   areas: Point[][][];
   centroid: Point;
   /** Square metres. */
   area: number;
-  /** Whether a robot can get there. */
+  /** Whether a robot can reach it. */
   reachable: boolean;
-  /** Where to stand to see it. */
+  /** Where a robot has to stand to observe it. */
   goal: Point | null;
 }

@@ -1,4 +1,4 @@
-/** All weaves that the server keeps of a session, with how each is made. */
+/** All weaves that the server keeps of a session, each with its settings. */
 import { sessionPath } from './api';
 import { cellSizeOf, decodeConfig, fields, list, number } from './decode';
 import { getJson } from './http';
@@ -9,13 +9,13 @@ export interface ListedWeave extends Weave {
   config: MapConfig;
   /** Metres. */
   cellSize: number;
-  /** Asked for again, it goes on to where the session is by then. */
+  /** Whether a repeated request extends it to the session's current revision. */
   follows: boolean;
-  /** Of its maps; null while there are none. */
+  /** Revision of its maps; null while there are none. */
   revision: number | null;
 }
 
-/** The last used first. */
+/** The most recently used first. */
 export async function fetchWeaves(session: string, signal: AbortSignal): Promise<ListedWeave[]> {
   const answer = fields(await getJson(`${sessionPath(session)}/weave`, signal), 'weaves');
   return list(answer['weaves'], 'weaves').map(decodeListed);

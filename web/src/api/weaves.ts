@@ -1,4 +1,4 @@
-/** Maps made once more from a session's log, on the server: asked for, waited for, given up. */
+/** Weaves: maps that the server computes again from a session's log. Requests, polls and cancels them. */
 import { sessionPath } from './api';
 import { fields, MalformedAnswer, number, text } from './decode';
 import { getJson, parseJson, Refused, send, sendJson } from './http';
@@ -8,19 +8,19 @@ const kStates = ['waiting', 'weaving', 'done', 'failed', 'cancelled'] as const;
 export interface Weave {
   id: string;
   state: (typeof kStates)[number];
-  /** Entries of the log that are in it so far, and that will be. */
-  woven: number;
+  /** Number of log entries that were applied so far, and that will be. */
+  applied: number;
   until: number;
-  /** Revision of the newest change of exclusions that its maps follow; 0: there is none. */
+  /** Revision of the newest change of exclusions that its maps include; 0: none. */
   exclusions: number;
   /** Why it failed or was cancelled; empty: it did not. */
   reason: string;
 }
 
-/** What is to be other than in the session; `until`: the last entry of the log that is woven. */
+/** The settings that differ from the session's; `until`: the last log entry to apply. */
 export type WeaveRequest = Readonly<Record<string, number | string | boolean>>;
 
-/** Asking for the same again finds the same weave, by the same id. */
+/** Creates a weave. A request with equal settings returns the existing weave with the same id. */
 export async function startWeave(session: string, request: WeaveRequest, signal: AbortSignal): Promise<Weave> {
   const path = weavesPath(session);
   return decodeWeave(await parseJson(await sendJson('POST', path, request, signal), path, signal));
@@ -30,7 +30,7 @@ export async function fetchWeave(session: string, id: string, signal: AbortSigna
   return decodeWeave(await getJson(weavePath(session, id), signal));
 }
 
-/** Stops it, too. Also well when there is none any more. */
+/** Deletes the weave, and stops it when it runs. Succeeds also when it does not exist. */
 export async function deleteWeave(session: string, id: string, signal: AbortSignal): Promise<void> {
   try {
     await send('DELETE', weavePath(session, id), null, null, signal);
@@ -46,7 +46,7 @@ export function decodeWeave(json: unknown): Weave {
   return {
     id: text(weave['id'], 'id'),
     state,
-    woven: number(weave['woven'], 'woven'),
+    applied: number(weave['woven'], 'woven'),
     until: number(fields(weave['until'], 'until')['revision'], 'until.revision'),
     exclusions: weave['exclusions'] == null ? 0 : number(weave['exclusions'], 'exclusions'),
     reason: weave['reason'] == null ? '' : text(weave['reason'], 'reason'),

@@ -1,4 +1,4 @@
-/** One small chart: a title, the newest value as text, and the lines, which are for the eye only. */
+/** One small chart: a title, the newest value as text, and the lines, which screen readers skip. */
 import uPlot from 'uplot';
 import 'uplot/dist/uPlot.min.css';
 import { el, setText } from '../dom';
@@ -8,19 +8,19 @@ import { kHistorySeconds } from './history';
 const kHeight = 64;
 
 export interface ChartLine {
-  /** Lines of one scale share their axis; the axis is that of the first. */
+  /** Lines of one scale share their axis; the chart shows the axis of the first line. */
   scale: string;
-  /** Which of the charts' two colours. */
+  /** Index into the charts' two colours. */
   colour: 0 | 1;
 }
 
 export interface ChartTexts {
   title: string;
-  /** The numbers of the axis, short. */
+  /** Formats the numbers of the axis, short. */
   axis: (value: number) => string;
 }
 
-/** As the style sheet has them now. */
+/** Values of the style sheet's properties. */
 export interface ChartColours {
   lines: readonly [string, string];
   ink: string;
@@ -45,8 +45,8 @@ export class Chart {
   }
 
   /**
-   * @param value the newest, in words
-   * @param series one for each line; null where the server does not tell of it
+   * @param value the newest value as text
+   * @param series one for each line; null where the server does not report the metric
    */
   show(value: string, times: number[], series: Series[] | null): void {
     setText(this.value, value);
@@ -56,7 +56,7 @@ export class Chart {
     this.plot?.setData(this.data);
   }
 
-  /** Colours are part of the plot: it is made anew. */
+  /** Recreates the plot, because its colours are part of it. */
   setColours(colours: ChartColours): void {
     this.plot?.destroy();
     this.plot = new uPlot(this.options(colours), this.data, this.frame);
@@ -107,7 +107,7 @@ export class Chart {
   }
 }
 
-/** Nothing measured here is negative; a flat line is drawn low, not in the middle. */
+/** No value here is negative. A constant value is drawn near the bottom, not in the middle. */
 function rangeFromZero(_: uPlot, __: number | null, max: number | null): uPlot.Range.MinMax {
   return [0, max === null || max <= 0 ? 1 : max * 1.1];
 }

@@ -1,15 +1,15 @@
-/** The last minutes of the server's measures, as the series of the charts. */
+/** The server's metrics of the last minutes, as series for the charts. */
 import { comparable, observedBetween, quantile, rate, type Measures } from './measures';
 
 export const kHistorySeconds = 300;
-/** Latencies are taken over a few answers: one alone may have seen hardly a scan. */
+/** Number of answers over which latencies are computed: between two answers there may be too few scans. */
 const kLatencySeconds = 10;
 
 export type Series = (number | null)[];
 
 /** One value for each time; null is a gap. */
 export interface SeriesOfTime {
-  /** Seconds since the epoch, rising. */
+  /** Seconds since the epoch, increasing. */
   times: number[];
   /** Per second. */
   scans: Series;
@@ -26,14 +26,14 @@ export interface SeriesOfTime {
 export class History {
   private measures: Measures[] = [];
 
-  /** Those that came before a clock was set back are forgotten. */
+  /** Adds a sample. Samples from before a clock was set back are dropped. */
   add(measures: Measures): void {
     const recent = ({ time }: Measures): boolean => time < measures.time && measures.time - time <= kHistorySeconds;
     this.measures = [...this.measures.filter(recent), measures];
   }
 
-  /** Whether any of the answers told of it. */
-  tells(what: keyof Measures): boolean {
+  /** Whether any of the answers contained the metric. */
+  has(what: keyof Measures): boolean {
     return this.measures.some((each) => each[what] !== null);
   }
 

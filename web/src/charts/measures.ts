@@ -1,21 +1,21 @@
-/** What the charts show of one answer, and what two answers tell together: rates and quantiles. */
+/** The values that the charts show: of one answer, and of two answers together, such as rates and quantiles. */
 import { parseNumber, type Samples } from './prometheus';
 
-/** Cumulative, as Prometheus has them. */
+/** Cumulative counts, as in Prometheus. */
 export interface Bucket {
   /** Upper bound, seconds; the last is infinite. */
   le: number;
   count: number;
 }
 
-/** Null: this server does not tell. */
+/** Null: the server does not report it. */
 export interface Measures {
   /** Since the epoch, seconds. */
   time: number;
   /** When the process started, seconds since the epoch. */
   started: number | null;
   scans: number | null;
-  /** Time between a scan's arrival and its acknowledgement; buckets by rising bound. */
+  /** Time between a scan's arrival and its acknowledgement; buckets by increasing bound. */
   ack: Bucket[] | null;
   inFlight: number | null;
   queuedBytes: number | null;
@@ -23,7 +23,7 @@ export interface Measures {
   memoryBytes: number | null;
 }
 
-/** Answers further apart than this say nothing of the time between them. */
+/** No rates are computed for answers that are further apart than this. */
 const kGapSeconds = 12;
 
 export function measure(samples: Samples, time: number): Measures {
@@ -39,12 +39,12 @@ export function measure(samples: Samples, time: number): Measures {
   };
 }
 
-/** Stands for an answer that did not come. */
+/** Represents a missing answer. */
 export function nothingMeasured(time: number): Measures {
   return measure(new Map(), time);
 }
 
-/** Over all labels; null where there is no such metric, or no number. */
+/** The sum over all labels; null where there is no such metric, or the sum is not finite. */
 export function total(samples: Samples, name: string): number | null {
   const all = samples.get(name);
   if (!all) return null;
@@ -52,7 +52,7 @@ export function total(samples: Samples, name: string): number | null {
   return Number.isFinite(sum) ? sum : null;
 }
 
-/** A histogram over all labels but the bound's. */
+/** A histogram, summed over all labels except the bound. */
 export function buckets(samples: Samples, name: string): Bucket[] | null {
   const byBound = new Map<number, number>();
   for (const { labels, value } of samples.get(`${name}_bucket`) ?? []) {
@@ -64,13 +64,13 @@ export function buckets(samples: Samples, name: string): Bucket[] | null {
   return [...byBound].map(([le, count]) => ({ le, count })).sort((a, b) => a.le - b.le);
 }
 
-/** Whether the two are of one run of the server, and near enough to be compared. */
+/** Whether both answers are from one run of the server and close enough in time to be compared. */
 export function comparable(before: Measures, after: Measures): boolean {
   const elapsed = after.time - before.time;
   return elapsed > 0 && elapsed <= kGapSeconds && before.started === after.started;
 }
 
-/** A counter's rise per second; null where it cannot be told, as after a restart: counters never fall. */
+/** A counter's increase per second; null where it is unknown, as after a restart: counters never decrease. */
 export function rate(before: Measures, after: Measures, counter: 'scans' | 'cpuSeconds'): number | null {
   const from = before[counter];
   const to = after[counter];
@@ -78,7 +78,7 @@ export function rate(before: Measures, after: Measures, counter: 'scans' | 'cpuS
   return (to - from) / (after.time - before.time);
 }
 
-/** What was observed between the two; null where that cannot be told. */
+/** The observations between the two answers; null where they are unknown. */
 export function observedBetween(before: Measures, after: Measures): Bucket[] | null {
   if (!before.ack || !after.ack || !comparable(before, after)) return null;
   if (before.ack.length !== after.ack.length) return null;
@@ -92,10 +92,10 @@ export function observedBetween(before: Measures, after: Measures): Bucket[] | n
 }
 
 /**
- * The value below which the given part of the observations lies, evenly spread within a bucket as Prometheus has it.
+ * Returns the value below which the given part of the observations lies, linear within a bucket, as in Prometheus.
  *
  * @param q 0..1
- * @return null when nothing was observed; the highest finite bound for what lies above it
+ * @return null without observations; the highest finite bound for larger values
  */
 export function quantile(q: number, histogram: Bucket[]): number | null {
   const all = histogram[histogram.length - 1]?.count ?? 0;

@@ -1,4 +1,4 @@
-/** The text that Prometheus reads, https://prometheus.io/docs/instrumenting/exposition_formats, version 0.0.4. */
+/** Parses the text format of Prometheus, https://prometheus.io/docs/instrumenting/exposition_formats, version 0.0.4. */
 
 export interface Sample {
   labels: ReadonlyMap<string, string>;
@@ -12,7 +12,7 @@ const kName = /^([A-Za-z_:][A-Za-z0-9_:]*)\s*(\{)?/;
 const kLabel = /^\s*([A-Za-z_][A-Za-z0-9_]*)\s*=\s*"((?:[^"\\]|\\.)*)"\s*,?/;
 const kValue = /^\s*(\S+)(?:\s+-?\d+)?\s*$/;
 
-/** Comments and lines that cannot be read are passed over: what else is told still counts. */
+/** Skips comments and lines that cannot be parsed; all other lines count. */
 export function parseMetrics(text: string): Samples {
   const samples = new Map<string, Sample[]>();
   for (const line of text.split('\n')) {
@@ -44,7 +44,7 @@ function parseLine(line: string): { name: string; sample: Sample } | null {
   return value === null ? null : { name, sample: { labels, value } };
 }
 
-/** Numbers as Go writes them. */
+/** Parses numbers in the notation of Go. */
 export function parseNumber(text: string | undefined): number | null {
   switch (text) {
     case undefined:

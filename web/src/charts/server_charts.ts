@@ -1,4 +1,4 @@
-/** How the server fares, over the last minutes: asked for only while someone looks. */
+/** Charts of the server's load in the last minutes; the page polls only while they are open. */
 import { fetchMetrics } from '../api/api';
 import { Unreachable } from '../api/http';
 import { el, setText } from '../dom';
@@ -9,17 +9,17 @@ import { measure, nothingMeasured, type Measures } from './measures';
 import { parseMetrics } from './prometheus';
 import * as values from './values';
 
-/** Nothing is asked while the page is hidden: the long pause ends when it is shown. */
+/** No polls while the page is hidden: showing the page ends the long pause. */
 const kPace: Pace = { visibleMs: 2_000, hiddenMs: 3_600_000 };
 
 interface Spec {
   texts: ChartTexts;
   lines: ChartLine[];
-  /** The chart has something to show when the server tells any of these. */
+  /** The chart has data when the server reports any of these. */
   needs: (keyof Measures)[];
   series: (all: SeriesOfTime) => Series[];
-  /** The newest of each line. */
-  say: (...newest: (number | null)[]) => string;
+  /** The newest value of each line. */
+  format: (...newest: (number | null)[]) => string;
 }
 
 const kOneLine: ChartLine[] = [{ scale: 'y', colour: 0 }];
@@ -30,14 +30,14 @@ const kSpecs: Spec[] = [
     lines: kOneLine,
     needs: ['scans'],
     series: ({ scans }) => [scans],
-    say: (scans = null) => values.perSecond(scans),
+    format: (scans = null) => values.perSecond(scans),
   },
   {
     texts: { title: 'Ack latency, ms', axis: (seconds) => values.short(seconds * 1000) },
     lines: [kOneLine[0] as ChartLine, { scale: 'y', colour: 1 }],
     needs: ['ack'],
     series: ({ ackMedian, ackSlow }) => [ackMedian, ackSlow],
-    say: (median = null, slow = null) => ackText(median, slow),
+    format: (median = null, slow = null) => ackText(median, slow),
   },
   {
     texts: { title: 'Queue (bytes dashed)', axis: values.short },
@@ -47,21 +47,21 @@ const kSpecs: Spec[] = [
     ],
     needs: ['inFlight', 'queuedBytes'],
     series: ({ inFlight, queuedBytes }) => [inFlight, queuedBytes],
-    say: (inFlight = null, queued = null) => values.both(values.scans(inFlight), values.bytes(queued)),
+    format: (inFlight = null, queued = null) => values.both(values.scans(inFlight), values.bytes(queued)),
   },
   {
     texts: { title: 'CPU, % of a core', axis: values.short },
     lines: kOneLine,
     needs: ['cpuSeconds'],
     series: ({ cpu }) => [cpu],
-    say: (cpu = null) => values.percent(cpu),
+    format: (cpu = null) => values.percent(cpu),
   },
   {
     texts: { title: 'Memory, MB', axis: (bytes) => values.short(bytes / 1e6) },
     lines: kOneLine,
     needs: ['memoryBytes'],
     series: ({ memoryBytes }) => [memoryBytes],
-    say: (memory = null) => values.bytes(memory),
+    format: (memory = null) => values.bytes(memory),
   },
 ];
 
@@ -79,7 +79,7 @@ export class ServerCharts {
     toggle.addEventListener('click', () => (this.leave ? this.close() : this.open()));
   }
 
-  /** The page's colours have changed. */
+  /** Called when the page's colours have changed. */
   takeColours(): void {
     if (!this.leave) return;
     const colours = readColours();
@@ -93,7 +93,7 @@ export class ServerCharts {
     setText(this.state, 'Loading\u2026');
     this.takeColours();
     void poll(
-      (signal) => this.ask(signal),
+      (signal) => this.update(signal),
       kPace,
       this.leave.signal,
       (error) => this.settle(error),
@@ -107,7 +107,7 @@ export class ServerCharts {
     this.body.hidden = true;
   }
 
-  private async ask(signal: AbortSignal): Promise<void> {
+  private async update(signal: AbortSignal): Promise<void> {
     if (document.hidden) return;
     const samples = parseMetrics(await fetchMetrics(signal));
     this.history.add(measure(samples, Date.now() / 1000));
@@ -115,8 +115,8 @@ export class ServerCharts {
   }
 
   private settle(error: unknown): void {
-    const was = error instanceof Unreachable ? 'Offline.' : 'The server\u2019s figures cannot be had.';
-    setText(this.state, error === null ? '' : `${was} The charts show what was last heard.`);
+    const was = error instanceof Unreachable ? 'Offline.' : 'The server\u2019s metrics cannot be read.';
+    setText(this.state, error === null ? '' : `${was} The charts show the last received values.`);
     this.state.hidden = error === null;
     if (error === null) return;
     this.history.add(nothingMeasured(Date.now() / 1000));
@@ -131,10 +131,10 @@ export class ServerCharts {
     });
   }
 
-  private fill(chart: Chart, { needs, series, say }: Spec, all: SeriesOfTime): void {
-    if (!needs.some((need) => this.history.tells(need))) return chart.show('not told by this server', [], null);
+  private fill(chart: Chart, { needs, series, format }: Spec, all: SeriesOfTime): void {
+    if (!needs.some((need) => this.history.has(need))) return chart.show('not reported by this server', [], null);
     const lines = series(all);
-    chart.show(say(...lines.map((line) => line[line.length - 1] ?? null)), all.times, lines);
+    chart.show(format(...lines.map((line) => line[line.length - 1] ?? null)), all.times, lines);
   }
 }
 

@@ -1,4 +1,4 @@
-/** The charts' values in words; a dash where there is none. */
+/** Formats the charts' values; a dash where there is none. */
 import { count, decimal } from '../format';
 
 const kNone = '\u2013';
@@ -31,7 +31,7 @@ export function percent(value: Value): string {
   return value === null ? kNone : `${decimal(value, value < 10 ? 1 : 0)} %`;
 }
 
-/** Leaves out what there is no value of. */
+/** Joins the values that exist. */
 export function both(...texts: string[]): string {
   return texts.filter((text) => !text.endsWith(kNone)).join(', ') || kNone;
 }

@@ -1,4 +1,4 @@
-/** What the code of a cell means, layer by layer. */
+/** The meaning of a cell's code, for each layer. */
 import type { LayerName } from './layers';
 
 export const kClasses = ['unexplored', 'free', 'occupied', 'frontier', 'danger'] as const;
@@ -14,7 +14,7 @@ export type CellValue =
 
 const kUnknownCode = 255;
 
-/** @param code as the server's .bin tiles have it */
+/** @param code from the server's .bin tiles */
 export function valueOf(layer: LayerName, code: number): CellValue {
   if (layer === 'classification') return { kind: 'class', name: kClasses[code] ?? 'unexplored' };
   if (code === kUnknownCode) return { kind: 'unknown' };

@@ -1,4 +1,4 @@
-/** The maps that a session has, in the order in which the keys step through them. */
+/** The layers of a session, in the order of the keyboard shortcuts. */
 
 export const kLayers = ['occupancy', 'sonar', 'himm', 'classification'] as const;
 
@@ -22,13 +22,13 @@ export function isLayerName(text: string | null | undefined): text is LayerName 
   return kLayers.some((name) => name === text);
 }
 
-/** The layer so many steps further on, from the end back to the beginning. */
-export function layerBeside(layer: LayerName, steps: number): LayerName {
+/** Returns the layer `steps` further on; the last is followed by the first. */
+export function nextLayer(layer: LayerName, steps: number): LayerName {
   const count = kLayers.length;
   return kLayers[(kLayers.indexOf(layer) + steps + count) % count] ?? layer;
 }
 
-/** A record with a value for each layer. */
+/** Returns a record with a value for each layer. */
 export function forEachLayer<Value>(make: (layer: LayerName) => Value): Record<LayerName, Value> {
   return Object.fromEntries(kLayers.map((layer) => [layer, make(layer)])) as Record<LayerName, Value>;
 }

@@ -1,29 +1,29 @@
-/** From the server's colours to the page's. */
+/** Maps the server's colours to the page's. */
 import type { CellClass } from './cell_value';
 import type { LayerName } from './layers';
 
 export type Rgb = readonly [number, number, number];
 
-/** The page's colours of cells. What nobody has seen is transparent, so that the page shows through. */
+/** The page's colours of cells. Unknown cells are transparent and show the page's background. */
 export interface Palette {
   free: Rgb;
   occupied: Rgb;
-  /** Of the HIMM counters 0, 5, 10, 15. */
+  /** Colours of the HIMM counters 0, 5, 10, 15. */
   counters: readonly [Rgb, Rgb, Rgb, Rgb];
   classes: Record<Exclude<CellClass, 'unexplored'>, Rgb>;
 }
 
-/** One RGBA word, as canvases lay it out in memory, for each red value that the server's tiles of a layer may have. */
+/** One RGBA word, in the memory layout of canvases, for each red value that the server's tiles of a layer can have. */
 export type ColourTable = Uint32Array;
 
 const kUnknownLevel = 128;
 export const kCounterMax = 15;
-/** A counter is this much darker than the one before it. */
+/** Difference in grey level between two successive counters. */
 const kCounterStep = 17;
-/** The red of each class's colour: no two have the same. */
+/** The red component of each class's colour; all are different. */
 const kRedOfClass: Record<keyof Palette['classes'], number> = { occupied: 67, danger: 217, frontier: 46, free: 255 };
 
-/** Recolours in place. @param pixels RGBA as the server drew them */
+/** Recolours in place. @param pixels RGBA from the server */
 export function colourise(pixels: Uint8ClampedArray, table: ColourTable): void {
   const words = new Uint32Array(pixels.buffer, pixels.byteOffset, pixels.length / 4);
   for (let pixel = 0; pixel < words.length; ++pixel) {
@@ -45,13 +45,13 @@ export function colourTable(layer: LayerName, palette: Palette): ColourTable {
   return new Uint32Array(bytes.buffer);
 }
 
-/** The surer a cell is free or occupied, the more of that colour it takes. @param level 0 occupied .. 255 free */
+/** The more certain a cell is free or occupied, the more of that colour. @param level 0 occupied .. 255 free */
 function probabilityColour({ free, occupied }: Palette, level: number): [Rgb, number] {
   const reach = level < kUnknownLevel ? kUnknownLevel : 255 - kUnknownLevel;
   return [level < kUnknownLevel ? occupied : free, Math.abs(level - kUnknownLevel) / reach];
 }
 
-/** Between the palette's colours, straight. */
+/** Linear interpolation between the palette's colours. */
 export function counterColour({ counters }: Palette, count: number): Rgb {
   const at = (count / kCounterMax) * (counters.length - 1);
   const low = Math.min(Math.floor(at), counters.length - 2);

@@ -1,8 +1,8 @@
-/** Everything the server has to tell about one session, as it happens. */
+/** Receives all live updates of one session. */
 import { fetchChanges, fetchSession, fetchTrajectory, livePath } from '../api/api';
 import { MalformedAnswer } from '../api/decode';
 import { Refused } from '../api/http';
-import type { LiveEvent, Wishes } from '../api/live';
+import type { LiveEvent, Subscription } from '../api/live';
 import type { Session, TileChange } from '../api/types';
 import type { LayerName } from '../layers/layers';
 import { poll, untilDone, type Pace } from '../poll';
@@ -10,44 +10,44 @@ import { errorOf, kCodeGone, LiveSocket } from './socket';
 import { Trails } from './trails';
 import { WholePaths, type PathSource } from './whole_paths';
 
-/** How soon a connection that ended is tried again; poll() waits longer with every failure in a row. */
+/** First delay before a reconnect; poll() waits longer with every consecutive failure. */
 const kPace: Pace = { visibleMs: 500, hiddenMs: 5_000 };
 
-/** A connection may be behind what is known of the session for so long: events are due every 50 ms. */
+/** How long a connection may lag behind the session's known revision: events are due every 50 ms. */
 const kSilenceMs = 5_000;
 
-/** What is told as long as nobody has asked for anything. */
-const kUnasked: Wishes = { points: true, landmarks: false };
+/** Subscriptions before the first call of subscribe(). */
+const kDefaultSubscription: Subscription = { points: true, landmarks: false };
 
-/** The session is another than the one that was asked about. */
+/** The session's id has changed. */
 class Replaced extends Error {}
 
 export interface FeedEvents {
-  /** The session is there, or was made anew under the same name: forget what was shown before. */
+  /** The session was found, or was recreated under the same name: discard the previous state. */
   started(session: Session, trails: Trails): void;
-  /** There is a live connection: the first, or another after one that ended. */
+  /** A live connection was established: the first, or a reconnect. */
   opened(): void;
   event(event: LiveEvent): void;
   tiles(layer: LayerName, tiles: TileChange[]): void;
-  /** The trails hold more than before. */
+  /** The trails have grown. */
   trails(): void;
-  /** No such session, or no longer. */
+  /** The session does not exist, or was deleted. */
   gone(): void;
   settled(error: unknown): void;
 }
 
-/** Follows a session until the signal aborts; afterwards no event comes any more. */
+/** Follows a session until the signal aborts; no event is delivered after that. */
 export class Feed {
   private socket: LiveSocket | null = null;
   private id: string | null = null;
   private paths: WholePaths | null = null;
-  /** Aborts when the session is another, or gone. */
+  /** Aborts when the session is replaced or deleted. */
   private leaving = new AbortController();
-  /** Since when the connection has not told what the server is known to have. */
+  /** Since when the connection lags behind the known revision; null: it does not. */
   private behindSince: number | null = null;
   private revision = 0;
-  private wishes = kUnasked;
-  /** How often in a row events were of another session. */
+  private subscription = kDefaultSubscription;
+  /** Number of consecutive connections with events of another session. */
   private replaced = 0;
 
   constructor(
@@ -65,15 +65,15 @@ export class Feed {
     );
   }
 
-  /** What is to be told from now on. */
-  ask({ points, landmarks }: Wishes): void {
-    this.wishes = { points, landmarks };
-    this.socket?.ask(this.wishes);
+  /** Changes the subscription. */
+  subscribe({ points, landmarks }: Subscription): void {
+    this.subscription = { points, landmarks };
+    this.socket?.subscribe(this.subscription);
   }
 
   /**
-   * The session is known to be so far. A connection that does not tell of it has died without a word, as behind a router
-   * that forgot it: another is made.
+   * Reports a revision that the session is known to have. If the connection does not deliver it in time, the connection
+   * is dead, for example because a router dropped it: it is replaced.
    */
   expect(revision: number): void {
     if (revision <= this.revision) this.behindSince = null;
@@ -83,7 +83,7 @@ export class Feed {
     this.socket?.drop();
   }
 
-  /** One connection, from start to end. */
+  /** Runs one connection, from start to end. */
   private async connect(signal: AbortSignal): Promise<void> {
     try {
       const session = await fetchSession(this.name, signal);
@@ -96,7 +96,7 @@ export class Feed {
     try {
       const end = await LiveSocket.follow(
         livePath(this.name),
-        { opened: (socket) => this.opened(socket), event: (event) => this.hear(event) },
+        { opened: (socket) => this.opened(socket), event: (event) => this.receive(event) },
         signal,
       );
       if (signal.aborted) return;
@@ -106,7 +106,7 @@ export class Feed {
     } catch (error) {
       if (!(error instanceof Replaced)) throw error;
       this.id = null;
-      // Once is a session made anew; again and again, the server contradicts itself.
+      // A session may be recreated once; repeated changes of the id mean that the server contradicts itself.
       if (this.replaced++ > 0) throw new MalformedAnswer('a live event of another session');
     } finally {
       this.socket = null;
@@ -115,8 +115,9 @@ export class Feed {
 
   private opened(socket: LiveSocket): void {
     this.socket = socket;
-    const { points, landmarks } = this.wishes;
-    if (points !== kUnasked.points || landmarks !== kUnasked.landmarks) socket.ask(this.wishes);
+    const { points, landmarks } = this.subscription;
+    if (points !== kDefaultSubscription.points || landmarks !== kDefaultSubscription.landmarks)
+      socket.subscribe(this.subscription);
     this.events.opened();
   }
 
@@ -127,7 +128,7 @@ export class Feed {
     this.events.started(session, this.paths.trails);
   }
 
-  /** Those of the session before are wanted no more. */
+  /** Cancels requests for the previous session. */
   private followPaths(): WholePaths {
     this.leaving.abort();
     this.leaving = new AbortController();
@@ -144,10 +145,10 @@ export class Feed {
     this.events.gone();
   }
 
-  private hear(event: LiveEvent): void {
+  private receive(event: LiveEvent): void {
     if (event.id !== this.id) throw new Replaced();
     this.replaced = 0;
-    this.paths?.hear(event);
+    this.paths?.apply(event);
     for (const { layer, everything, tiles } of event.tiles) {
       if (everything) void this.fetchTiles(layer, this.revision);
       else if (tiles.length > 0) this.events.tiles(layer, tiles);

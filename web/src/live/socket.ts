@@ -1,5 +1,5 @@
 /** One live connection, from its opening to its end. */
-import { decodeLiveEvent, encodeLiveRequest, type LiveEvent, type Wishes } from '../api/live';
+import { decodeLiveEvent, encodeLiveRequest, type LiveEvent, type Subscription } from '../api/live';
 import { Unreachable } from '../api/http';
 
 /** The session was deleted. */
@@ -10,7 +10,7 @@ export interface SocketEvents {
   event(event: LiveEvent): void;
 }
 
-/** How a connection ended: its code (RFC 6455) and the sentence that came with it. */
+/** How a connection ended: its code (RFC 6455) and the reason text. */
 export interface SocketEnd {
   opened: boolean;
   code: number;
@@ -24,10 +24,10 @@ export class LiveSocket {
   ) {}
 
   /**
-   * Connects and tells what comes, until it ends or the signal aborts.
+   * Connects and delivers events until the connection ends or the signal aborts.
    *
    * @param path relative to the page
-   * @throws what an event that cannot be read is, or an error of events.event()
+   * @throws the decoder's error for an invalid event, or an error of events.event()
    */
   static follow(path: string, events: SocketEvents, signal: AbortSignal): Promise<SocketEnd> {
     const address = new URL(path, document.baseURI);
@@ -61,19 +61,19 @@ export class LiveSocket {
     });
   }
 
-  /** Tells the server what this page shows. */
-  ask(wishes: Wishes): void {
-    if (this.socket.readyState === WebSocket.OPEN) this.socket.send(encodeLiveRequest(wishes));
+  /** Sends the page's subscription to the server. */
+  subscribe(subscription: Subscription): void {
+    if (this.socket.readyState === WebSocket.OPEN) this.socket.send(encodeLiveRequest(subscription));
   }
 
-  /** Gives up a connection that nothing comes over any more, without waiting for the other end. */
+  /** Closes a connection that has become silent, without waiting for the other end. */
   drop(): void {
     this.socket.close();
     this.ended({ opened: true, code: 1006, reason: '' });
   }
 }
 
-/** What to tell people about an end that nobody here wanted. */
+/** Returns the error to show for an unexpected end. */
 export function errorOf({ opened, code, reason }: SocketEnd): Error {
   if (code === 1001 && reason !== '') return new Unreachable(reason);
   if (opened) return new Unreachable('the live connection broke');

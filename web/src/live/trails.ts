@@ -1,4 +1,4 @@
-/** Where each robot has been, put together from pieces that may overlap or leave gaps. */
+/** The trajectory of each robot, assembled from pieces that may overlap or leave gaps. */
 import type { Point } from '../api/types';
 
 export interface Trail {
@@ -20,8 +20,8 @@ export class Trails {
   }
 
   /**
-   * @param from how many points the robot's trail has before these
-   * @returns whether they join on to what is known; otherwise nothing was added
+   * @param from number of points of the robot's trail before these
+   * @returns whether they connect to the known points; otherwise nothing was added
    */
   merge(robot: string, from: number, points: Point[]): boolean {
     const trail = this.get(robot);

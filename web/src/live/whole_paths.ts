@@ -1,4 +1,4 @@
-/** Keeps a session's trails whole: what events tell joins on, and what they leave out is fetched. */
+/** Keeps a session's trails complete: appends the points of events, and fetches missing ones. */
 import { MalformedAnswer } from '../api/decode';
 import { isPassing } from '../api/http';
 import type { LiveEvent } from '../api/live';
@@ -7,31 +7,31 @@ import type { Trajectory } from '../api/types';
 import { rest } from '../poll';
 import type { Trails } from './trails';
 
-/** What an event tells of paths: those of robots that are not in it end as they did. */
-export type Told = Pick<LiveEvent, 'revision'> & {
+/** The trails of an event; robots that are not in it did not move. */
+export type TrailEvent = Pick<LiveEvent, 'revision'> & {
   robots: Pick<LiveEvent['robots'][number], 'name' | 'trail' | 'trailFrom'>[];
 };
 
 export interface PathSource {
-  /** The positions after a revision, or the first of them. */
+  /** Fetches the first positions after a revision. */
   fetchAfter(revision: number, signal: AbortSignal): Promise<Trajectory>;
-  /** The trails hold more than before. */
+  /** The trails have grown. */
   filled(): void;
 }
 
 export class WholePaths {
-  /** Up to this revision every position is known, and of each robot there are so many. */
+  /** Every position up to this revision is known, with the number of positions for each robot. */
   private known = 0;
   private readonly counts = new Map<string, number>();
-  /** The newest event that did not join on; null: all did, or were fetched. */
-  private missing: Told | null = null;
+  /** The newest event that did not connect; null: none is missing. */
+  private missing: TrailEvent | null = null;
   private isFilling = false;
-  /** How often in a row fetching failed. */
+  /** Number of consecutive failed fetches. */
   private failures = 0;
 
   /**
-   * @param signal aborts when these trails are wanted no more
-   * @param pause waits, longer with every failure in a row
+   * @param signal aborts when these trails are no longer needed
+   * @param pause waits, longer with every consecutive failure
    */
   constructor(
     readonly trails: Trails,
@@ -40,28 +40,28 @@ export class WholePaths {
     private readonly pause = rest,
   ) {}
 
-  hear(event: Told): void {
+  apply(event: TrailEvent): void {
     if (this.join(event)) {
-      // While one is missing, others that join on say nothing of what came between; nor do those that a page overtook.
-      if (!this.missing && event.revision >= this.known) this.know(event);
+      // While points are missing, an event that connects does not close the gap; nor does one that a page overtook.
+      if (!this.missing && event.revision >= this.known) this.record(event);
       return;
     }
     this.missing = event;
     if (!this.isFilling) void this.fill();
   }
 
-  /** @returns whether all that the event tells is in the trails */
-  private join({ robots }: Told): boolean {
+  /** @returns whether the trails contain all points of the event */
+  private join({ robots }: TrailEvent): boolean {
     const gap = robots.filter(({ name, trailFrom, trail }) => !this.trails.merge(name, trailFrom, trail));
     return gap.length === 0;
   }
 
-  private know({ revision, robots }: Told): void {
+  private record({ revision, robots }: TrailEvent): void {
     this.known = revision;
     for (const { name, trailFrom, trail } of robots) this.counts.set(name, trailFrom + trail.length);
   }
 
-  /** What waiting does not mend is left until an event finds the gap again, but not at the pace of events. */
+  /** A permanent error is retried when an event finds the gap again, but not at the rate of events. */
   private async fill(): Promise<void> {
     this.isFilling = true;
     for (let again = true; again && this.missing && !this.signal.aborted; ) {
@@ -77,7 +77,7 @@ export class WholePaths {
     this.isFilling = false;
   }
 
-  /** Page by page, from what is known; what has come stays when a later page fails. */
+  /** Fetches page by page from the known revision; received pages stay when a later page fails. */
   private async fetch(): Promise<void> {
     const { source, signal } = this;
     const wanted = (): number => this.missing?.revision ?? 0;
@@ -104,10 +104,10 @@ export class WholePaths {
       this.failures = 0;
       return;
     }
-    throw new MalformedAnswer('the paths have fewer positions than a live event told of');
+    throw new MalformedAnswer('the paths have fewer positions than a live event reported');
   }
 
-  /** The server has less than it told of before: what is known of it is not to be relied on. */
+  /** The server has fewer points than before: the known state is invalid. */
   private forget(): void {
     this.known = 0;
     this.counts.clear();

@@ -1,4 +1,4 @@
-/** What part of the map is in view: all of it as it grows, what the person moved it to, or where a robot is. */
+/** The visible part of the map: everything as it grows, a view chosen by the user, or a robot's surroundings. */
 import { containsExtent, type Extent } from 'ol/extent';
 import type Map from 'ol/Map';
 import type { Bounds, Robot } from '../api/types';
@@ -7,17 +7,17 @@ import { freePadding, type Box, type Padding } from './free_area';
 
 type Aim = { kind: 'everything' } | { kind: 'free' } | { kind: 'robot'; name: string };
 
-/** Room around what is fitted, also where no control lies on the map. */
+/** Margin around fitted content. */
 const kPaddingPx = 56;
 const kPaddingShareMax = 0.08;
 const kMoveMs = 250;
-/** Nothing is shown larger than this by itself: metres per pixel for a room of a few metres. */
+/** Limit of automatic zoom: metres per pixel for a room of a few metres. */
 const kFitResolutionMin = 0.01;
-/** A map that becomes larger or smaller by less than this is not fitted again: a line of text next to it came or went. */
+/** A smaller change of the map element's size causes no new fit: it comes from a line of text next to it. */
 const kResizedPx = 48;
 /** Bounds may exceed the free part of the view by this much, which is rounding. */
 const kTolerancePx = 1;
-/** Bounds that outgrow the view are fitted with this much room to grow, so that the view does not creep. */
+/** Growing bounds are fitted with this margin, so that the view does not move with every scan. */
 const kRoomToGrow = 0.15;
 
 export class Camera {
@@ -25,15 +25,15 @@ export class Camera {
   private bounds: Bounds | null = null;
   private robots: Robot[] = [];
   private fitted = false;
-  /** Of the last fit. */
+  /** Bounds of the last fit. */
   private padding: Padding = [0, 0, 0, 0];
-  /** Of the map at the last fit. */
+  /** Size of the map at the last fit. */
   private size: [width: number, height: number] = [0, 0];
 
   constructor(
     private readonly map: Map,
     private readonly target: HTMLElement,
-    /** What lies on the map, to be left free when something is fitted. */
+    /** Controls that cover the map and are kept off fitted content. */
     private readonly controls: () => Box[],
     private readonly aimed: (robot: string | null) => void,
   ) {
@@ -52,7 +52,7 @@ export class Camera {
     return this.aim.kind === 'robot' ? this.aim.name : null;
   }
 
-  /** Another session: back to showing everything. */
+  /** Resets to showing everything, for another session. */
   reset(): void {
     this.bounds = null;
     this.robots = [];
@@ -66,7 +66,7 @@ export class Camera {
     this.update();
   }
 
-  /** Shows everything, and keeps doing so while the map grows. */
+  /** Shows everything, and continues to do so while the map grows. */
   fit(): void {
     this.setAim({ kind: 'everything' });
     if (this.bounds) this.fitTo(this.bounds, 0);
@@ -77,7 +77,7 @@ export class Camera {
     this.update();
   }
 
-  /** The person moves the view: leave it to them. */
+  /** The user moves the view: stop moving it automatically. */
   free(): void {
     if (this.aim.kind !== 'free') this.setAim({ kind: 'free' });
   }
@@ -89,12 +89,12 @@ export class Camera {
     if (zoom !== undefined) view.animate({ zoom: zoom + levels, duration: motionMs(kMoveMs) });
   }
 
-  /** OpenLayers has marked a feature that is dragged in place of the map. */
+  /** OpenLayers marks features that are dragged instead of the map. */
   private isMapMoved(): boolean {
     return !this.target.classList.contains('ol-grabbing');
   }
 
-  /** Zooming while a robot is followed goes on following it. */
+  /** Zooming while a robot is followed keeps following it. */
   private zoomed(): void {
     if (this.aim.kind === 'everything') this.free();
   }
@@ -104,7 +104,7 @@ export class Camera {
     this.aimed(this.followed);
   }
 
-  /** Shows everything in the map's new size, if the person has not moved the view. */
+  /** Fits everything to the map's new size, unless the user has moved the view. */
   private resized(): void {
     const [width = 0, height = 0] = this.map.getSize() ?? [];
     const change = Math.max(Math.abs(width - this.size[0]), Math.abs(height - this.size[1]));
@@ -133,7 +133,7 @@ export class Camera {
     const dx = (bounds.maxX - bounds.minX) * room;
     const dy = (bounds.maxY - bounds.minY) * room;
     const extent = [bounds.minX - dx, bounds.minY - dy, bounds.maxX + dx, bounds.maxY + dy];
-    // Following a robot is a movement under way, which would otherwise have the last word.
+    // Following a robot runs an animation, which would overwrite this view.
     this.map.getView().cancelAnimations();
     const [width = 0, height = 0] = this.map.getSize() ?? [];
     this.size = [width, height];
@@ -153,11 +153,11 @@ export class Camera {
 
   private inView(bounds: Bounds): boolean {
     const view = this.map.getView();
-    // An animation under way already goes there.
+    // A running animation has the same target.
     return view.getAnimating() || containsExtent(this.freeExtent(), extentOf(bounds));
   }
 
-  /** What is in view, without the padding of the last fit: there may be controls. */
+  /** The visible extent, without the padding of the last fit: controls may cover it. */
   private freeExtent(): Extent {
     const view = this.map.getView();
     const [minX = 0, minY = 0, maxX = 0, maxY = 0] = view.calculateExtent(this.size);

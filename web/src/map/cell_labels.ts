@@ -1,4 +1,4 @@
-/** The HIMM counters as numbers in their cells, where cells are large enough to hold them. */
+/** Draws the HIMM counters as numbers in their cells, where cells are large enough. */
 import type OlMap from 'ol/Map';
 import type RenderEvent from 'ol/render/Event';
 import VectorLayer from 'ol/layer/Vector';
@@ -13,7 +13,7 @@ import { clipTo, type Clip } from './clip';
 import { cellAt } from './grid';
 import { kOrder } from './order';
 
-/** A cell of this many pixels holds two digits. */
+/** Size of a cell in pixels that holds two digits. */
 export const kCellPxMin = 16;
 
 export class CellLabels {
@@ -37,7 +37,7 @@ export class CellLabels {
     this.layer.setStyle(new Style());
   }
 
-  /** @param reader of the counters; null: none are shown */
+  /** @param reader of the counters; null: draw none */
   show(reader: CellReader | null): void {
     this.reader = reader;
     this.layer.setVisible(reader !== null);
@@ -48,7 +48,7 @@ export class CellLabels {
     this.layer.changed();
   }
 
-  /** More is known of the cells. */
+  /** Redraws when more cells have been loaded. */
   update(): void {
     if (this.reader) this.layer.changed();
   }
@@ -95,7 +95,7 @@ export class CellLabels {
   }
 }
 
-/** Black or white, whichever stands out more: luminance as WCAG 2 has it. */
+/** Black or white, whichever has more contrast: luminance by WCAG 2. */
 function inkOn(ground: Rgb): string {
   const [red, green, blue] = ground.map((value) => ((value / 255 + 0.055) / 1.055) ** 2.4) as [number, number, number];
   return 0.2126 * red + 0.7152 * green + 0.0722 * blue > 0.18 ? '#000000' : '#ffffff';

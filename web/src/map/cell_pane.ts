@@ -1,4 +1,4 @@
-/** A place on the map for one layer of cells; another takes its place when it is there, not before. */
+/** Shows one layer of cells; a new layer replaces the shown one when it has loaded, not before. */
 import type OlMap from 'ol/Map';
 import type RenderEvent from 'ol/render/Event';
 import type { LayerName } from '../layers/layers';
@@ -23,7 +23,7 @@ export class CellPane {
     private readonly map: OlMap,
     private readonly zIndex: number,
     private palette: Palette,
-    /** Told how each tile's request went: null, or what went wrong. */
+    /** Called with the outcome of each tile request: null, or the error. */
     private readonly settledTile: (error: unknown) => void,
   ) {}
 
@@ -37,7 +37,7 @@ export class CellPane {
     this.before = this.now = null;
   }
 
-  /** More is known of the maps. */
+  /** Called when the maps have changed. */
   renew(): void {
     this.now?.layer.renew();
   }

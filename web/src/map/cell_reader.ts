@@ -1,4 +1,4 @@
-/** The value of single cells, read from the native tiles as the person points at them. */
+/** Reads the values of single cells from the native tiles under the pointer. */
 import { fetchTileCells } from '../api/api';
 import { valueOf, type CellValue } from '../layers/cell_value';
 import type { LayerName } from '../layers/layers';
@@ -7,10 +7,10 @@ import type { MapSource } from './map_source';
 import { tileKey } from './versions';
 
 const kTilesMax = 24;
-/** A tile that changes all the time is read anew no more often than this. */
+/** Minimum time between two reads of a tile that changes continually. */
 const kAgeMinMs = 500;
 
-/** The code of a cell that nothing ever touched. */
+/** The code of unknown cells. */
 const kNothing: Record<LayerName, number> = { occupancy: 255, himm: 255, sonar: 255, classification: 0 };
 
 interface TileCells {
@@ -28,7 +28,7 @@ export class CellReader {
     private readonly source: MapSource,
     readonly layer: LayerName,
     private readonly signal: AbortSignal,
-    /** Called when read() would answer better than before. */
+    /** Called when read() would return a newer value. */
     private readonly arrived: () => void,
   ) {
     source.need(layer);
@@ -39,7 +39,7 @@ export class CellReader {
     return this.source.cellSize;
   }
 
-  /** Answers from what is at hand, and asks for a newer version of the tile if there is one. */
+  /** Returns the cached value, and fetches a newer version of the tile if there is one. */
   read(cell: Cell): CellValue {
     const place = placeOfCell(cell);
     const revision = place ? this.source.versions(this.layer).get(kNativeZoom, place.x, place.y) : undefined;
@@ -81,7 +81,7 @@ export class CellReader {
       tile.codes = await fetchTileCells({ session, weave, layer: this.layer }, place, this.signal);
       tile.revision = revision;
     } catch {
-      // The connection's state is told elsewhere; the next look at this cell asks again.
+      // Other parts of the page report connection errors; the next read of this cell tries again.
       return;
     } finally {
       tile.loadedAt = performance.now();

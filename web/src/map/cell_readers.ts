@@ -1,9 +1,9 @@
-/** Readers of cells, one for each layer of the maps that are looked at. */
+/** Readers of cells, one for each layer of the maps that are shown. */
 import { kLayers, type LayerName } from '../layers/layers';
 import { CellReader } from './cell_reader';
 import type { MapSource } from './map_source';
 
-/** Of so many maps at a time: two sides, and one more to go back to. */
+/** Number of maps that are kept: two sides, and one to return to. */
 const kSourcesMax = 3;
 
 export class CellReaders {
@@ -12,7 +12,7 @@ export class CellReaders {
 
   constructor(
     private readonly signal: AbortSignal,
-    /** Called when a reader would answer better than before. */
+    /** Called when a reader would return a newer value. */
     private readonly arrived: () => void,
   ) {}
 
@@ -26,7 +26,7 @@ export class CellReaders {
     return reader;
   }
 
-  /** Of all layers that hold anything there, the shown one first. */
+  /** Values of all layers that are known there, the shown one first. */
   all(source: MapSource, shown: LayerName): CellReader[] {
     return [shown, ...kLayers.filter((layer) => layer !== shown)].map((layer) => this.of(source, layer));
   }

@@ -1,4 +1,4 @@
-/** The part of the map's width that something is seen in. */
+/** The part of the map's width in which a layer is visible. */
 
 /** From 0 on the left to 1. */
 export interface Clip {
@@ -6,7 +6,7 @@ export interface Clip {
   to: number;
 }
 
-/** What is drawn from now on is seen there only. */
+/** Clips the following drawing to this part. */
 export function clipTo(context: CanvasRenderingContext2D, { from, to }: Clip): void {
   const { width, height } = context.canvas;
   context.beginPath();

@@ -1,4 +1,4 @@
-/** The part of the map that no control lies on: what is fitted into the view is fitted into this part. */
+/** The part of the map that no control covers: content is fitted into this part. */
 
 /** Edges in pixels from the map's top left corner. */
 export interface Box {
@@ -8,20 +8,20 @@ export interface Box {
   bottom: number;
 }
 
-/** Pixels to leave free at each side, in the order of OpenLayers' padding. */
+/** Padding in pixels for each side, in the order of OpenLayers. */
 export type Padding = [top: number, right: number, bottom: number, left: number];
 
-/** Between a control and what is fitted: a robot at the edge of the map is drawn this far beyond it. */
+/** Distance between a control and fitted content: a robot at the edge of the map is drawn this far beyond it. */
 const kGapPx = 14;
 
 /**
- * Chooses for each control whether to leave free the side that it is at or the part above or below it, so that the
- * content becomes as large as possible.
+ * For each control, keeps free the side next to it or the part above or below it, so that the content becomes as large
+ * as possible.
  *
  * @param size     of the map, pixels
  * @param aspect   width of the content by its height
  * @param margin   pixels to leave free at each side in any case
- * @param controls what lies on the map
+ * @param controls boxes that cover the map
  */
 export function freePadding(size: [number, number], aspect: number, margin: number, controls: Box[]): Padding {
   let choices: Padding[] = [[margin, margin, margin, margin]];
@@ -30,7 +30,7 @@ export function freePadding(size: [number, number], aspect: number, margin: numb
   return choices.reduce((best, each) => (width(each) > width(best) ? each : best));
 }
 
-/** The paddings that keep the control off the content: the same one if it is off already. */
+/** The paddings that keep the control off the content: the unchanged one if it is off already. */
 function clear([width, height]: [number, number], padding: Padding, box: Box): Padding[] {
   const [top, right, bottom, left] = padding;
   const isClear = box.right <= left || box.left >= width - right || box.bottom <= top || box.top >= height - bottom;
@@ -43,7 +43,7 @@ function clear([width, height]: [number, number], padding: Padding, box: Box): P
   ];
 }
 
-/** Pixels that the content is wide when it is fitted. */
+/** Width of the fitted content, pixels. */
 function contentWidth([width, height]: [number, number], aspect: number, [top, right, bottom, left]: Padding): number {
   return Math.min(width - left - right, (height - top - bottom) * aspect);
 }

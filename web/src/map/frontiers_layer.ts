@@ -1,4 +1,4 @@
-/** Where the explored ground ends, as areas, and where a robot would stand to see more. */
+/** Draws frontiers as areas, and the goals from which robots would observe them. */
 import Feature from 'ol/Feature';
 import LineString from 'ol/geom/LineString';
 import MultiPolygon from 'ol/geom/MultiPolygon';

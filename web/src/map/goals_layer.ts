@@ -1,4 +1,4 @@
-/** Where robots are going: the way, where each will stand, and what it will look at. */
+/** Draws the robots' goals: the path, the place to stand, and the place to observe. */
 import Feature from 'ol/Feature';
 import LineString from 'ol/geom/LineString';
 import PointGeometry from 'ol/geom/Point';
@@ -14,11 +14,11 @@ import type { RobotColours } from '../robot_colours';
 import type { Theme } from '../theme';
 import { kOrder } from './order';
 
-type Role = 'way' | 'sight' | 'goal' | 'target';
+type Role = 'path' | 'sight' | 'goal' | 'target';
 
 export class GoalsLayer {
   private readonly source = new VectorSource();
-  readonly layer = new VectorLayer({ source: this.source, zIndex: kOrder.ways });
+  readonly layer = new VectorLayer({ source: this.source, zIndex: kOrder.paths });
 
   constructor(
     private readonly colours: RobotColours,
@@ -40,11 +40,11 @@ export class GoalsLayer {
   }
 }
 
-function featuresOf({ robot, way, goal, target }: RobotGoal): Feature[] {
+function featuresOf({ robot, path, goal, target }: RobotGoal): Feature[] {
   const features: Feature[] = [];
   const add = (role: Role, geometry: LineString | PointGeometry): void =>
     void features.push(new Feature({ geometry, role, robot }));
-  if (way.length > 1) add('way', new LineString(way));
+  if (path.length > 1) add('path', new LineString(path));
   if (goal && target) add('sight', new LineString([goal, target]));
   if (goal) add('goal', new PointGeometry(goal));
   if (target) add('target', new PointGeometry(target));
@@ -53,7 +53,7 @@ function featuresOf({ robot, way, goal, target }: RobotGoal): Feature[] {
 
 function stylesOf(role: Role, colour: string, halo: string): Style[] {
   switch (role) {
-    case 'way':
+    case 'path':
       return [
         new Style({ stroke: new Stroke({ color: halo, width: 5, lineJoin: 'round' }) }),
         new Style({ stroke: new Stroke({ color: colour, width: 2.5, lineDash: [8, 5], lineJoin: 'round' }) }),

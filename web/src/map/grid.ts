@@ -1,11 +1,12 @@
 /**
- * Where cells and tiles lie. A square of side S = 256 * cell_size * 2^9 is centred on the world's origin; zoom 0 shows
- * it as one tile, zoom 9 shows one cell per pixel. Cells (i, j) follow the world's axes; tile rows count downwards.
+ * Positions of cells and tiles. A square of side S = 256 * cell_size * 2^9 is centred on the world's origin; zoom 0
+ * shows it as one tile, zoom 9 shows one cell per pixel. Cells (i, j) follow the world's axes; tile rows count
+ * downwards.
  */
 
 export const kTileSize = 256;
 export const kNativeZoom = 9;
-/** Half the square's side in cells: the cell (0, 0) touches the origin from above right. */
+/** Half the square's side in cells: the lower left corner of cell (0, 0) is the origin. */
 const kHalfSideCells = (kTileSize * 2 ** kNativeZoom) / 2;
 
 export interface Cell {

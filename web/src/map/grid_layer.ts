@@ -1,4 +1,4 @@
-/** A grid of round lengths with the map's origin and axes, over the cells. */
+/** Draws a grid of round lengths with the map's origin and axes over the cells. */
 import VectorLayer from 'ol/layer/Vector';
 import type RenderEvent from 'ol/render/Event';
 import VectorSource from 'ol/source/Vector';
@@ -7,14 +7,14 @@ import type { Theme } from '../theme';
 import { kOrder } from './order';
 import { scaleStep } from './scale';
 
-/** Lines are at most this far apart. */
+/** Largest distance between lines, pixels. */
 const kSpacingPx = 120;
 const kArrowPx = 40;
 const kHeadPx = 5;
 const kLineOpacity = 0.14;
 const kFont = 'system-ui, sans-serif';
 
-/** Pixels of the canvas for metres along one axis. */
+/** Converts metres along one axis to canvas pixels. */
 type Along = (metres: number) => number;
 
 /** One drawing of the grid. */
@@ -23,9 +23,9 @@ interface Sheet {
   pixelRatio: number;
   x: Along;
   y: Along;
-  /** Between two lines, metres. */
+  /** Distance between two lines, metres. */
   step: number;
-  /** What is in view, metres. */
+  /** The visible extent, metres. */
   extent: [minX: number, minY: number, maxX: number, maxY: number];
 }
 
@@ -78,7 +78,7 @@ export class GridLayer {
     canvas.globalAlpha = 1;
   }
 
-  /** Each axis across the view, with an arrow in its direction at the origin. */
+  /** Draws each axis across the view, with an arrow in its direction at the origin. */
   private drawAxes({ canvas, pixelRatio, x, y, extent: [minX, minY, maxX, maxY] }: Sheet): void {
     const origin: Pixel = [x(0), y(0)];
     const arrow = kArrowPx * pixelRatio;
@@ -102,7 +102,7 @@ export class GridLayer {
     canvas.fill();
   }
 
-  /** Metres along the axes, where these are in view. */
+  /** Draws metres along the axes, where these are in view. */
   private drawNumbers({ canvas, pixelRatio, x, y, step, extent: [minX, minY, maxX, maxY] }: Sheet): void {
     const offset = 9 * pixelRatio;
     for (const metres of multiples(minX, maxX, step)) {

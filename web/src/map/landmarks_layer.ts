@@ -1,4 +1,4 @@
-/** Landmarks: a diamond for one that was seen again, a triangle for one that was seen once; fewer from far off. */
+/** Draws landmarks: a diamond for several observations, a triangle for one; fewer symbols at coarse zooms. */
 import Feature from 'ol/Feature';
 import PointGeometry from 'ol/geom/Point';
 import VectorLayer from 'ol/layer/Vector';
@@ -15,20 +15,20 @@ import { thin } from './thinning';
 
 type Role = 'once' | 'again';
 
-/** Metres a pixel: from further off, those that were seen once would only hide the map. */
+/** Metres per pixel: at coarser zooms, landmarks with one observation would only cover the map. */
 const kNear = 0.04;
 
-/** Of landmarks that are nearer to each other than about this, one is drawn. */
+/** Of landmarks closer together than about this, one is drawn. */
 const kSpacingPx = 28;
 
-/** As far from its middle one is still meant. */
+/** Largest distance from its centre at which a landmark is picked. */
 const kHitPx = 8;
 
 export class LandmarksLayer {
   private readonly source = new VectorSource();
   readonly layer = new VectorLayer({ source: this.source, zIndex: kOrder.landmarks });
 
-  /** Those that are drawn at the zoom of `drawnSide`; null: to be chosen again. */
+  /** Landmarks that are drawn at the zoom of `drawnSide`; null: to be selected again. */
   private drawn: Set<number> | null = null;
   private drawnSide = 0;
 
@@ -36,7 +36,7 @@ export class LandmarksLayer {
     this.setTheme(theme);
   }
 
-  /** Each takes the place of the one with its number. */
+  /** Adds landmarks; each replaces the one with the same number. */
   add(landmarks: Landmark[]): void {
     const known = landmarks.map(({ id }) => this.source.getFeatureById(id)).filter((feature) => feature !== null);
     this.source.removeFeatures(known);
@@ -49,7 +49,7 @@ export class LandmarksLayer {
     this.drawn = null;
   }
 
-  /** The one that is seen there, if any: the nearest. @param resolution metres a pixel */
+  /** Returns the nearest landmark at a place, if any. @param resolution metres per pixel */
   at([x = 0, y = 0]: number[], resolution: number): Landmark | null {
     if (!this.layer.isVisible()) return null;
     const reach = kHitPx * resolution;
@@ -70,15 +70,15 @@ export class LandmarksLayer {
     });
   }
 
-  /** @param resolution metres a pixel */
+  /** @param resolution metres per pixel */
   private isDrawn(id: number, resolution: number): boolean {
-    // Powers of two: zooming a little does not choose others.
+    // Powers of two: a small change of zoom does not change the selection.
     const side = kSpacingPx * 2 ** Math.floor(Math.log2(resolution));
     if (!this.drawn || side !== this.drawnSide) this.choose(side, resolution <= kNear ? 1 : 2);
     return this.drawn?.has(id) ?? false;
   }
 
-  /** @param seenMin fewer sightings are not drawn */
+  /** @param seenMin landmarks with fewer observations are not drawn */
   private choose(side: number, seenMin: number): void {
     const landmarks = this.source.getFeatures().map((feature) => feature.get('landmark') as Landmark);
     const wanted = landmarks.filter(({ seen }) => seen >= seenMin);

@@ -1,4 +1,4 @@
-/** Maps that can be shown: those of a session as it grows, or those of a weave of it. */
+/** Maps that can be shown: those of a live session, or those of a weave of it. */
 import { fetchChanges, type SessionKey } from '../api/api';
 import type { TileChange } from '../api/types';
 import { forEachLayer, type LayerName } from '../layers/layers';
@@ -7,25 +7,25 @@ import { TileVersions } from './versions';
 export interface MapSource {
   readonly session: SessionKey;
   readonly cellSize: number;
-  /** Null: the session's own. */
+  /** Null: the session's own maps. */
   readonly weave: string | null;
   /**
-   * Maps of one family are made in the same way from the same log: their tiles of the same revision are equal, whatever
-   * weave they are of.
+   * Maps of one family are computed with the same settings from the same log: tiles of the same revision are equal,
+   * even if they belong to different weaves.
    */
   readonly family: string;
-  /** What is known so far. */
+  /** The versions known so far. */
   versions(layer: LayerName): TileVersions;
-  /** Finds out what there is of the layer, unless it is known; changed() is called when more has become known. */
+  /** Loads the versions of the layer, unless they are known; changed() is called when more have been loaded. */
   need(layer: LayerName): void;
-  /** Somebody looks no longer. */
+  /** Called when the layer is no longer shown. */
   changed: ((layer: LayerName) => void) | null;
 }
 
-/** Those with a session's own settings: each change of exclusions changes tiles of the same revision. */
+/** The family of maps with the session's own settings: each change of exclusions changes tiles of the same revision. */
 export const ownFamily = (exclusions: number): string => `own, exclusions ${exclusions}`;
 
-/** What the live connection tells. */
+/** The session's maps, updated by the live connection. */
 export class LiveSource implements MapSource {
   readonly weave = null;
   changed: ((layer: LayerName) => void) | null = null;
@@ -49,11 +49,11 @@ export class LiveSource implements MapSource {
   }
 }
 
-/** Maps that do not change any more, asked about as they are needed. */
+/** Maps that do not change, loaded on demand. */
 export class WeaveSource implements MapSource {
   changed: ((layer: LayerName) => void) | null = null;
   private readonly byLayer = forEachLayer(() => new TileVersions());
-  private readonly asked = new Set<LayerName>();
+  private readonly requested = new Set<LayerName>();
 
   constructor(
     readonly session: SessionKey,
@@ -69,18 +69,18 @@ export class WeaveSource implements MapSource {
   }
 
   need(layer: LayerName): void {
-    if (!this.asked.has(layer)) void this.load(layer).catch(() => {});
+    if (!this.requested.has(layer)) void this.load(layer).catch(() => {});
   }
 
-  /** Resolves when the layer's tiles are known. @throws what fetchChanges does; failed() is told, too */
+  /** Resolves when the layer's tiles are known. @throws the errors of fetchChanges, which failed() also receives */
   async load(layer: LayerName): Promise<void> {
-    this.asked.add(layer);
+    this.requested.add(layer);
     try {
       const query = { layer, since: 0, weave: this.weave };
       const { tiles } = await fetchChanges(this.session.name, query, this.signal);
       this.byLayer[layer].apply(tiles);
     } catch (error) {
-      this.asked.delete(layer);
+      this.requested.delete(layer);
       if (!this.signal.aborted) this.failed(error);
       throw error;
     }

@@ -1,4 +1,4 @@
-/** The map: its view, its layers, and what of a session is drawn on it. */
+/** The map: its view, its layers, and the overlays of a session. */
 import DragPan from 'ol/interaction/DragPan';
 import { defaults as defaultInteractions } from 'ol/interaction/defaults';
 import KeyboardPan from 'ol/interaction/KeyboardPan';
@@ -30,7 +30,7 @@ import { PointsLayer } from './points_layer';
 import { kProjection } from './projection';
 import { RobotsLayer } from './robots_layer';
 
-/** A cell may be blown up to this many pixels. */
+/** Largest size of a cell in pixels. */
 const kCellPxMax = 48;
 
 /** A finger that moves less than this taps: it does not move the map. */
@@ -45,12 +45,12 @@ export interface Shown {
   layer: LayerName;
 }
 
-/** What is drawn of one session, until it is left. */
+/** Everything that is drawn for one session, until it is closed. */
 interface Scene {
   main: CellPane;
-  beside: CellPane;
+  second: CellPane;
   labels: CellLabels;
-  labelsBeside: CellLabels;
+  secondLabels: CellLabels;
   grid: GridLayer;
   frontiers: FrontiersLayer;
   landmarks: LandmarksLayer;
@@ -60,13 +60,13 @@ interface Scene {
   robots: RobotsLayer;
 }
 
-/** What is drawn over the cells. */
+/** Everything that is drawn over the cells. */
 interface MapOverlay {
   layer: BaseLayer;
   setTheme(theme: Theme): void;
 }
 
-function overlaysOf({ main: _main, beside: _beside, ...overlays }: Scene): MapOverlay[] {
+function overlaysOf({ main: _main, second: _second, ...overlays }: Scene): MapOverlay[] {
   return Object.values(overlays);
 }
 
@@ -93,7 +93,7 @@ export class MapView {
   constructor(
     private readonly map: OlMap,
     private theme: Theme,
-    /** Told how each tile's request went: null, or what went wrong. */
+    /** Called with the outcome of each tile request: null, or the error. */
     private readonly settled: (error: unknown) => void,
   ) {}
 
@@ -103,9 +103,9 @@ export class MapView {
     this.map.setView(viewOf(cellSize));
     this.scene = {
       main: new CellPane(this.map, kOrder.cells, this.theme.cells, this.settled),
-      beside: new CellPane(this.map, kOrder.cellsBeside, this.theme.cells, this.settled),
+      second: new CellPane(this.map, kOrder.secondCells, this.theme.cells, this.settled),
       labels: new CellLabels(this.map, this.theme),
-      labelsBeside: new CellLabels(this.map, this.theme),
+      secondLabels: new CellLabels(this.map, this.theme),
       grid: new GridLayer(this.theme),
       frontiers: new FrontiersLayer(this.theme),
       landmarks: new LandmarksLayer(this.theme),
@@ -121,12 +121,12 @@ export class MapView {
 
   close(): void {
     if (!this.scene) return;
-    for (const pane of [this.scene.main, this.scene.beside]) pane.clear();
+    for (const pane of [this.scene.main, this.scene.second]) pane.clear();
     for (const { layer } of overlaysOf(this.scene)) this.map.removeLayer(layer);
     this.scene = null;
   }
 
-  /** Which of the things on top of the map are to be seen. */
+  /** Selects the visible overlays. */
   choose({ robots, trails, points, goals, frontiers, landmarks, grid }: Settings): void {
     this.scene?.grid.layer.setVisible(grid);
     this.scene?.robots.layer.setVisible(robots);
@@ -137,28 +137,28 @@ export class MapView {
     this.scene?.landmarks.layer.setVisible(landmarks);
   }
 
-  show(main: Shown, beside: Shown | null): void {
+  show(main: Shown, second: Shown | null): void {
     this.scene?.main.show(main.source, main.layer);
-    if (beside) this.scene?.beside.show(beside.source, beside.layer);
-    else this.scene?.beside.clear();
+    if (second) this.scene?.second.show(second.source, second.layer);
+    else this.scene?.second.clear();
   }
 
-  /** @param main, beside from 0 to 1 */
-  setOpacity(main: number, beside: number): void {
+  /** @param main, second from 0 to 1 */
+  setOpacity(main: number, second: number): void {
     this.scene?.main.setOpacity(main);
-    this.scene?.beside.setOpacity(beside);
+    this.scene?.second.setOpacity(second);
   }
 
-  /** Where the one ends and the other begins, from 0 on the left to 1; null: they lie on each other. */
+  /** Position of the dividing line, from 0 on the left to 1; null: the layers overlap. */
   setDivider(at: number | null): void {
     for (const first of [this.scene?.main, this.scene?.labels]) first?.setClip({ from: 0, to: at ?? 1 });
-    for (const second of [this.scene?.beside, this.scene?.labelsBeside]) second?.setClip({ from: at ?? 0, to: 1 });
+    for (const part of [this.scene?.second, this.scene?.secondLabels]) part?.setClip({ from: at ?? 0, to: 1 });
   }
 
-  /** More is known of the maps that are shown. */
+  /** Called when the shown maps have changed. */
   renew(): void {
     this.scene?.main.renew();
-    this.scene?.beside.renew();
+    this.scene?.second.renew();
     this.updateCounters();
   }
 
@@ -192,7 +192,7 @@ export class MapView {
     this.scene?.frontiers.show(frontiers);
   }
 
-  /** New ones, and those that were seen again. */
+  /** Adds new landmarks, and those that were observed again. */
   addLandmarks(landmarks: Landmark[]): void {
     this.scene?.landmarks.add(landmarks);
   }
@@ -205,22 +205,22 @@ export class MapView {
     return this.scene?.landmarks.at(place, this.map.getView().getResolution() ?? 1) ?? null;
   }
 
-  /** @param main, beside readers of HIMM counters to be written into the cells of either side; null: none */
-  showCounters(main: CellReader | null, beside: CellReader | null): void {
+  /** @param main, second readers of HIMM counters to draw in the cells of either side; null: none */
+  showCounters(main: CellReader | null, second: CellReader | null): void {
     this.scene?.labels.show(main);
-    this.scene?.labelsBeside.show(beside);
+    this.scene?.secondLabels.show(second);
   }
 
-  /** Cells that were asked for have come. */
+  /** Called when requested cells have been loaded. */
   updateCounters(): void {
     this.scene?.labels.update();
-    this.scene?.labelsBeside.update();
+    this.scene?.secondLabels.update();
   }
 
   setTheme(theme: Theme): void {
     this.theme = theme;
     if (!this.scene) return;
-    for (const pane of [this.scene.main, this.scene.beside]) pane.setPalette(theme.cells);
+    for (const pane of [this.scene.main, this.scene.second]) pane.setPalette(theme.cells);
     for (const overlay of overlaysOf(this.scene)) overlay.setTheme(theme);
   }
 }

@@ -1,4 +1,4 @@
-/** A robot's sign on the map: an arrowhead that points where the robot looks. */
+/** A robot's symbol on the map: an arrowhead in the robot's heading. */
 
 export interface MarkerLook {
   /** Radians, counter-clockwise from the map's x. */
@@ -41,7 +41,7 @@ export function drawMarker(
   context.restore();
 }
 
-/** The ground that the robot's body takes. @param radius device pixels */
+/** The area of the robot's body. @param radius device pixels */
 export function drawFootprint(
   context: CanvasRenderingContext2D,
   [x = 0, y = 0]: number[],

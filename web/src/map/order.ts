@@ -1,13 +1,13 @@
-/** What lies above what on the map. */
+/** The stacking order of the overlays. */
 export const kOrder = {
   cells: 0,
-  cellsBeside: 1,
+  secondCells: 1,
   difference: 2,
   labels: 3,
   grid: 4,
   trails: 5,
   frontiers: 6,
-  ways: 7,
+  paths: 7,
   points: 8,
   landmarks: 9,
   robots: 10,

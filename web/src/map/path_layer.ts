@@ -1,4 +1,4 @@
-/** The trails: where each robot has been, fainter than the walls below them. */
+/** Draws the robots' trails, fainter than the walls below them. */
 import Feature from 'ol/Feature';
 import MultiLineString from 'ol/geom/MultiLineString';
 import VectorLayer from 'ol/layer/Vector';
@@ -11,9 +11,9 @@ import type { Theme } from '../theme';
 import { kOrder } from './order';
 import { TrailParts } from './trail_parts';
 
-/** Opacity, in hexadecimal: walls are seen through trails. */
+/** Opacity, in hexadecimal: walls stay visible through trails. */
 const kOpacity = 'a6';
-/** Metres a pixel: from further off, lines are as thin as walls. */
+/** Metres per pixel: at coarser zooms, lines are as thin as walls. */
 const kNear = 0.04;
 const kNearPx = 1.5;
 const kFarPx = 1;
@@ -33,7 +33,7 @@ export class PathLayer {
     private theme: Theme,
   ) {}
 
-  /** @param points oldest first; an array that was shown before may have grown at its end */
+  /** @param points oldest first; an array that was passed before may have grown at its end */
   show(robot: string, points: Point[]): void {
     this.pathOf(robot).show(points);
   }

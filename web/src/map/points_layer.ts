@@ -1,4 +1,4 @@
-/** What the robots saw last: where the beams of each newest scan ended. */
+/** Draws the end points of the beams of each robot's newest scan. */
 import Feature from 'ol/Feature';
 import MultiPoint from 'ol/geom/MultiPoint';
 import VectorLayer from 'ol/layer/Vector';
@@ -57,7 +57,7 @@ export class PointsLayer {
   }
 }
 
-/** One path for all of them: thousands of points are drawn many times a second. */
+/** One path for all points: thousands of points are drawn many times a second. */
 function drawSquares(context: CanvasRenderingContext2D, places: Point[], side: number, colour: string): void {
   context.beginPath();
   for (const [x, y] of places) context.rect(x - side / 2, y - side / 2, side, side);

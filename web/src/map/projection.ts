@@ -1,4 +1,4 @@
-/** Metres on a plane of the robots' own, tied to no place on Earth. */
+/** A plane in metres without a geographic position. */
 import Projection from 'ol/proj/Projection';
 
 export const kProjection = new Projection({ code: 'LOCAL', units: 'm' });

@@ -1,4 +1,4 @@
-/** The robots where they were last seen, each with its heading and name. */
+/** Draws the robots at their newest poses, each with its heading and name. */
 import type { Coordinate } from 'ol/coordinate';
 import Feature from 'ol/Feature';
 import PointGeometry from 'ol/geom/Point';

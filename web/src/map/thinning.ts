@@ -1,7 +1,7 @@
-/** Keeps symbols apart when many things lie in few pixels. */
+/** Thins out symbols where many objects share few pixels. */
 import type { Point } from '../api/types';
 
-/** What can be left out when something of more weight is next to it. */
+/** An object that may be left out when one of greater weight is close to it. */
 export interface Weighted {
   id: number;
   at: Point;
@@ -9,9 +9,9 @@ export interface Weighted {
 }
 
 /**
- * Chooses one thing in each square of the map: the one of most weight, of equal ones that of the lowest id.
+ * Selects one object in each square of the map: the one of greatest weight, among equal ones the lowest id.
  *
- * @param side of the squares, metres
+ * @param side side length of the squares, metres
  * @return ids
  */
 export function thin(things: Iterable<Weighted>, side: number): Set<number> {

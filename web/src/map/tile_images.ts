@@ -1,4 +1,4 @@
-/** Coloured tiles: each is a canvas of its own, painted anew in place when its tile has changed. */
+/** Coloured tiles: each has its own canvas, which is repainted in place when the tile changes. */
 import { fetchTileImage } from '../api/api';
 import type { LayerName } from '../layers/layers';
 import { colourise, colourTable, type ColourTable, type Palette } from '../layers/palette';
@@ -6,13 +6,13 @@ import { kTileSize } from './grid';
 import type { MapSource } from './map_source';
 import { tileKey } from './versions';
 
-/** About 100 MB of pixels: several screens full, so that a change of zoom and back asks for nothing. */
+/** About 100 MB of pixels: several screens, so that zooming in and out again requests nothing. */
 export const kImagesMax = 384;
 
-/** A tile that the server refuses is not asked for more often than this. */
+/** Minimum time before a refused tile is requested again. */
 export const kRetryMs = 3_000;
 
-/** The revision of what nothing ever touched. */
+/** The revision of tiles without data. */
 const kUntouched = -1;
 
 /** Tiles of one zoom: columns and rows, both ends included. */
@@ -28,28 +28,28 @@ interface TileImage {
   z: number;
   x: number;
   y: number;
-  /** One pixel as long as there is nothing to show. */
+  /** One pixel while there is nothing to show. */
   canvas: HTMLCanvasElement;
-  /** What it shows; null: nothing yet. */
+  /** The painted version; null: none yet. */
   painted: number | null;
   loading: Promise<void> | null;
-  /** When it could not be had, by performance.now(). */
+  /** Time of the last failure, by performance.now(). */
   failedAt: number;
 }
 
 export interface TileImagesEvents {
-  /** A canvas was painted: it is to be drawn. */
+  /** A canvas was painted and needs drawing. */
   painted(): void;
-  /** Nothing is under way any more. */
+  /** No requests are pending. */
   idle(): void;
-  /** A tile could not be had, and is asked for again after kRetryMs; null: one could. */
+  /** A tile request failed and is repeated after kRetryMs; null: one succeeded. */
   settled(error: unknown): void;
 }
 
 export class TileImages {
   private readonly images = new Map<string, TileImage>();
   private table: ColourTable;
-  private underWay = 0;
+  private loading = 0;
 
   constructor(
     private source: MapSource,
@@ -61,20 +61,20 @@ export class TileImages {
     this.table = colourTable(layer, palette);
   }
 
-  /** Other maps of the same family: what is painted of the same version stays good. */
+  /** Switches to other maps of the same family: tiles with the same version stay valid. */
   retarget(source: MapSource): void {
     this.source = source;
   }
 
   get busy(): boolean {
-    return this.underWay > 0;
+    return this.loading > 0;
   }
 
   get size(): number {
     return this.images.size;
   }
 
-  /** All are asked for anew. */
+  /** Invalidates all tiles. */
   clear(): void {
     this.images.clear();
   }
@@ -85,8 +85,7 @@ export class TileImages {
   }
 
   /**
-   * A tile that was never touched is blank and asks nothing of the server; so is, for the time being, one that cannot be
-   * had: it is painted when it can.
+   * A tile without data is blank and causes no request. A tile that cannot be loaded is blank until a request succeeds.
    */
   async load(z: number, x: number, y: number): Promise<HTMLCanvasElement> {
     const key = tileKey(z, x, y);
@@ -100,7 +99,7 @@ export class TileImages {
     return image.canvas;
   }
 
-  /** Those of these tiles that have changed are asked for, and painted when they are there. */
+  /** Requests the changed ones of these tiles, and paints them when they arrive. */
   refresh({ z, minX, maxX, minY, maxY }: TileRange): void {
     for (let x = minX; x <= maxX; ++x) {
       for (let y = minY; y <= maxY; ++y) {
@@ -113,7 +112,7 @@ export class TileImages {
   private update(image: TileImage): void {
     if (image.loading || image.painted === this.wanted(image)) return;
     if (performance.now() - image.failedAt < kRetryMs) return;
-    this.underWay += 1;
+    this.loading += 1;
     image.loading = this.fetch(image);
   }
 
@@ -126,8 +125,8 @@ export class TileImages {
       if (!this.signal.aborted) this.events.settled(error);
     } finally {
       image.loading = null;
-      this.underWay -= 1;
-      if (this.underWay === 0) this.events.idle();
+      this.loading -= 1;
+      if (this.loading === 0) this.events.idle();
     }
   }
 
@@ -151,7 +150,7 @@ export class TileImages {
   }
 }
 
-/** Pixels are recoloured here, in memory, before they go to where they are drawn from. */
+/** Pixels are recoloured here, in memory, before they are copied to the canvas. */
 const kWorkbench = newCanvas(kTileSize).getContext('2d', { willReadFrequently: true });
 
 function paint(bitmap: ImageBitmap, table: ColourTable, canvas: HTMLCanvasElement): void {

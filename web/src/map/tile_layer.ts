@@ -1,4 +1,4 @@
-/** A layer of cells: tiles that are painted anew one by one as the map grows, without a blank frame in between. */
+/** A layer of cells: its tiles are repainted one by one as the map grows, without a blank frame. */
 import TileLayer from 'ol/layer/Tile';
 import type Projection from 'ol/proj/Projection';
 import type RenderEvent from 'ol/render/Event';
@@ -12,13 +12,13 @@ import { kImagesMax, kRetryMs, TileImages } from './tile_images';
 
 export interface CellLayerOptions {
   projection: Projection;
-  /** Metres per pixel of the view, now. */
+  /** Metres per pixel of the current view. */
   viewResolution: () => number;
   palette: Palette;
   signal: AbortSignal;
-  /** Called when all that was asked for is there. */
+  /** Called when all requests have finished. */
   idle: () => void;
-  /** Told how each tile's request went: null, or what went wrong. */
+  /** Called with the outcome of each tile request: null, or the error. */
   settled: (error: unknown) => void;
 }
 
@@ -53,7 +53,7 @@ export class CellLayer {
     return this.images.busy;
   }
 
-  /** Whether these maps can be shown here without a blank frame in between. */
+  /** Whether these maps can be shown here without a blank frame. */
   suits(source: MapSource, layer: LayerName): boolean {
     const { session, cellSize, family } = this.source;
     const same = session.id === source.session.id && cellSize === source.cellSize && family === source.family;
@@ -68,12 +68,12 @@ export class CellLayer {
     this.renew();
   }
 
-  /** More is known of the maps: what is in view is looked through with the next frame. */
+  /** Called when the maps have changed: the next frame checks all visible tiles. */
   renew(): void {
     this.tiles.changed();
   }
 
-  /** Tiles that could not be had are asked for again. */
+  /** Requests failed tiles again. */
   private renewLater(): void {
     clearTimeout(this.retry);
     this.retry = window.setTimeout(() => this.renew(), kRetryMs);
@@ -94,7 +94,7 @@ export class CellLayer {
     if (this.images.size > kImagesMax) this.reload();
   }
 
-  /** A new key makes OpenLayers ask for every visible tile anew while it still draws the old ones. */
+  /** A new key makes OpenLayers request every visible tile again while it still draws the old ones. */
   private reload(): void {
     this.images.clear();
     this.generation += 1;
@@ -123,7 +123,10 @@ class CellTiles extends ImageTileSource {
     this.setKey(key);
   }
 
-  /** Cells larger than a pixel have sharp edges; smaller ones are averaged, lest thin walls vanish between pixels. */
+  /**
+   * Cells larger than a pixel have sharp edges; smaller ones are averaged, so that thin walls do not vanish between
+   * pixels.
+   */
   override getInterpolate(): boolean {
     return this.viewResolution() > this.cellSize * window.devicePixelRatio;
   }

@@ -1,22 +1,22 @@
-/** Splits a trail where its robot cannot have driven: one wrong pose must not draw two long lines across the map. */
+/** Splits a trail where its robot cannot have driven: a wrong pose must not draw two long lines across the map. */
 import type { Point } from '../api/types';
 
-/** Metres: no shorter step is a jump. */
+/** Metres: a shorter step is never a jump. */
 const kJumpMin = 2;
-/** A jump is so many times longer than the steps before it. */
+/** A jump is this many times longer than the previous steps. */
 const kTimesTypical = 10;
-/** So many steps say what is typical. */
+/** Number of steps that define the typical length. */
 const kRecent = 31;
-/** Metres: with less a robot stands. */
+/** Metres: with a shorter step the robot is stationary. */
 const kMoving = 0.01;
 
 export class TrailParts {
-  /** Each is a line without a jump, oldest position first. */
+  /** Each part is a line without a jump, oldest position first. */
   readonly parts: Point[][] = [];
-  /** Lengths of the newest steps of a robot that moves, metres. */
+  /** Lengths of the newest steps of the moving robot, metres. */
   private readonly recent: number[] = [];
 
-  /** Adds the next positions of the trail, oldest first. */
+  /** Appends positions, oldest first. */
   add(points: Point[]): void {
     for (const point of points) this.addPoint(point);
   }

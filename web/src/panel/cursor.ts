@@ -1,4 +1,4 @@
-/** Where the person points at, in metres and cells, and what is known there. */
+/** The readout under the pointer: position in metres and cells, and the values there. */
 import type OlMap from 'ol/Map';
 import type { Landmark } from '../api/types';
 import { byId, el, setText } from '../dom';
@@ -10,7 +10,7 @@ import type { CellValue } from '../layers/cell_value';
 import { kLayerTitles, type LayerName } from '../layers/layers';
 import type { Picture } from '../picture';
 
-/** What is under the cursor belongs to the maps of a session. */
+/** The maps of a session that the pointer is over. */
 export interface CursorScene {
   readers: CellReaders;
   picture: Picture;
@@ -23,9 +23,9 @@ export class Cursor {
     x: byId('cursor-x', HTMLElement),
     y: byId('cursor-y', HTMLElement),
     cell: byId('cursor-cell', HTMLElement),
-    /** Of the layer that is seen there. */
+    /** Value of the visible layer. */
     value: byId('cursor-value', HTMLElement),
-    /** Of the others. */
+    /** Values of the other layers. */
     others: byId('cursor-others', HTMLElement),
     crosshair: byId('crosshair', HTMLElement),
   };
@@ -40,10 +40,10 @@ export class Cursor {
     map.on('click', ({ pixel }) => this.pointAt(pixel));
     map.on('postrender', () => this.update());
     target.addEventListener('pointerleave', (event) => {
-      // A finger that is lifted still means the place that it touched.
+      // After a finger is lifted, the place that it touched stays selected.
       if (event.pointerType === 'mouse') this.pointAt(null);
     });
-    // Whoever steers by keys means the middle, wherever the pointer was left.
+    // With the keyboard, the middle of the map is selected, wherever the pointer is.
     target.addEventListener('keydown', () => this.pointAt(null));
     for (const event of ['focus', 'blur']) target.addEventListener(event, () => this.update());
   }
@@ -60,7 +60,7 @@ export class Cursor {
     const shown = this.scene?.picture.shownAt(byKeyboard ? 0.5 : (this.pixel?.[0] ?? 0) / width) ?? null;
     this.fields.box.hidden = !(shown && at);
     this.fields.crosshair.hidden = !(shown && at && byKeyboard);
-    if (this.scene && shown && at) this.tell(this.scene.readers, shown, at, this.scene.landmarkAt(at));
+    if (this.scene && shown && at) this.showValues(this.scene.readers, shown, at, this.scene.landmarkAt(at));
   }
 
   private pointAt(pixel: number[] | null): void {
@@ -68,7 +68,7 @@ export class Cursor {
     this.update();
   }
 
-  private tell(
+  private showValues(
     readers: CellReaders,
     { source, layer }: Shown,
     [x = 0, y = 0]: number[],
@@ -81,10 +81,10 @@ export class Cursor {
     const [shown, ...others] = readers.all(source, layer);
     setText(this.fields.value, shown ? format.cellValue(shown.read(cell)) : '');
     const values = others.flatMap((reader) => otherValue(reader.layer, reader.read(cell)));
-    this.tellOthers(landmark ? [landmarkValue(landmark), ...values] : values);
+    this.showOthers(landmark ? [landmarkValue(landmark), ...values] : values);
   }
 
-  private tellOthers(values: OtherValue[]): void {
+  private showOthers(values: OtherValue[]): void {
     const fingerprint = JSON.stringify(values);
     if (this.fields.others.dataset['values'] === fingerprint) return;
     this.fields.others.dataset['values'] = fingerprint;
@@ -101,10 +101,13 @@ interface OtherValue {
 
 function landmarkValue({ id, seen, size: [width, height] }: Landmark): OtherValue {
   const size = `${format.decimal(width, 2)} \u00d7 ${format.decimal(height, 2)} m`;
-  return { title: 'Landmark', text: `#${id}: ${size}, seen ${seen === 1 ? 'once' : `${format.count(seen)} times`}` };
+  return {
+    title: 'Landmark',
+    text: `#${id}: ${size}, observed ${seen === 1 ? 'once' : `${format.count(seen)} times`}`,
+  };
 }
 
-/** Of layers that know nothing there, nothing. */
+/** Returns nothing for layers without a value there. */
 function otherValue(layer: LayerName, value: CellValue): OtherValue[] {
   if (value.kind === 'unknown' || value.kind === 'loading') return [];
   if (value.kind === 'class' && value.name === 'unexplored') return [];

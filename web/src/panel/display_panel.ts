@@ -1,4 +1,4 @@
-/** Light or dark, the palette, and the list of keys. */
+/** Settings of the display: light or dark, the palette, and the list of keyboard shortcuts. */
 import { byId } from '../dom';
 import type { Keys } from '../keys';
 import { kPalettes, kSchemes, type Settings, type SettingsStore } from '../settings';
@@ -26,7 +26,7 @@ export class DisplayPanel {
     });
     singleKeys.addEventListener('change', () => settings.change({ keys: singleKeys.checked }));
     keysOpen.addEventListener('click', () => this.showKeys());
-    keys.bind({ key: '?', does: 'lists the keys', run: () => this.showKeys() });
+    keys.bind({ key: '?', does: 'lists the keyboard shortcuts', run: () => this.showKeys() });
     settings.listen((now) => this.show(now));
     this.show(settings.get());
   }

@@ -1,4 +1,4 @@
-/** Says when robots have explored all they can reach. */
+/** Reports when robots have explored everything that they can reach. */
 import { setText } from '../dom';
 
 export class ExploredNote {
@@ -6,13 +6,13 @@ export class ExploredNote {
 
   constructor(private readonly line: HTMLElement) {}
 
-  /** @param robots their names; none: nothing is said */
+  /** @param robots their names; none: hides the note */
   show(robots: string[]): void {
     setText(this.line, exploredText(robots));
     this.update();
   }
 
-  /** While the map is shown as it was. */
+  /** Hides the note while the map of an earlier time is shown. */
   setHidden(isHidden: boolean): void {
     this.isHidden = isHidden;
     this.update();

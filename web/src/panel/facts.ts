@@ -1,11 +1,11 @@
-/** The chosen session in numbers. */
+/** Numbers of the chosen session. */
 import type { Session } from '../api/types';
 import { el, setText } from '../dom';
 import * as format from '../format';
 
 const kFacts: [label: string, read: (session: Session) => string][] = [
   ['Scans', ({ scans }) => format.count(scans)],
-  ['Area', ({ bounds }) => (bounds ? format.area(bounds) : 'nothing seen yet')],
+  ['Area', ({ bounds }) => (bounds ? format.area(bounds) : 'no scans yet')],
   ['Cell', ({ cellSize }) => format.cellSize(cellSize)],
   ['Begun', ({ created }) => format.moment(created)],
 ];

@@ -1,11 +1,11 @@
-/** Buttons with a sign in place of a text. */
+/** Buttons with an icon instead of a text. */
 import { el } from '../dom';
 
 const kSvg = 'http://www.w3.org/2000/svg';
 
 /**
- * @param key that does the same
- * @param path of the sign on a square of 16
+ * @param key keyboard shortcut with the same effect
+ * @param path of the icon in a square of 16
  */
 export function iconButton(id: string, label: string, key: string, path: string): HTMLButtonElement {
   const sign = document.createElementNS(kSvg, 'svg');
@@ -17,7 +17,7 @@ export function iconButton(id: string, label: string, key: string, path: string)
   return button;
 }
 
-/** The same button means something else now. */
+/** Changes the button's icon and label. */
 export function setIcon(button: HTMLButtonElement, label: string, key: string, path: string): void {
   if (button.getAttribute('aria-label') === label) return;
   button.setAttribute('aria-label', label);

@@ -1,4 +1,4 @@
-/** Which layers are shown, how, and what their colours mean. */
+/** Selection of the layers and overlays, and their legends. */
 import { byId, el, setText } from '../dom';
 import { isLayerName, kLayerNotes, kLayers, kLayerTitles } from '../layers/layers';
 import type { Picture, PictureState } from '../picture';
@@ -19,7 +19,7 @@ const kSwitches: [key: Switch, label: string][] = [
   ['counters', 'HIMM counters in cells'],
 ];
 
-/** What is told of the present only. */
+/** Overlays that are available for the present only. */
 const kPresentOnly: Switch[] = ['points', 'goals', 'frontiers', 'landmarks'];
 
 export class LayersPanel {
@@ -28,10 +28,10 @@ export class LayersPanel {
     note: byId('layer-note', HTMLElement),
     legend: byId('legend', HTMLElement),
     opacity: byId('opacity', HTMLInputElement),
-    beside: byId('beside', HTMLSelectElement),
-    besideOptions: byId('beside-options', HTMLElement),
-    besideOpacity: byId('beside-opacity', HTMLInputElement),
-    besideLegend: byId('beside-legend', HTMLElement),
+    second: byId('second-layer', HTMLSelectElement),
+    secondOptions: byId('second-options', HTMLElement),
+    secondOpacity: byId('second-opacity', HTMLInputElement),
+    secondLegend: byId('second-legend', HTMLElement),
     swipe: byId('mode-swipe', HTMLInputElement),
     over: byId('mode-over', HTMLInputElement),
     overlays: byId('overlays', HTMLElement),
@@ -45,7 +45,7 @@ export class LayersPanel {
     private readonly settings: SettingsStore,
   ) {
     this.radios = kLayers.map((layer) => this.addRadio(layer, kLayerTitles[layer]));
-    this.fields.beside.append(
+    this.fields.second.append(
       el('option', { value: '' }, 'None'),
       ...kLayers.map((layer) => el('option', { value: layer }, kLayerTitles[layer])),
     );
@@ -77,33 +77,33 @@ export class LayersPanel {
   }
 
   private connect(): void {
-    const { opacity, beside, besideOpacity, swipe, over } = this.fields;
+    const { opacity, second, secondOpacity, swipe, over } = this.fields;
     opacity.addEventListener('input', () => this.picture.change({ opacity: opacity.valueAsNumber / 100 }));
-    besideOpacity.addEventListener('input', () => {
-      this.picture.change({ besideOpacity: besideOpacity.valueAsNumber / 100 });
+    secondOpacity.addEventListener('input', () => {
+      this.picture.change({ secondOpacity: secondOpacity.valueAsNumber / 100 });
     });
-    beside.addEventListener('change', () => {
-      this.picture.change({ besideLayer: isLayerName(beside.value) ? beside.value : null });
+    second.addEventListener('change', () => {
+      this.picture.change({ secondLayer: isLayerName(second.value) ? second.value : null });
     });
     swipe.addEventListener('change', () => this.picture.change({ mode: 'swipe' }));
     over.addEventListener('change', () => this.picture.change({ mode: 'over' }));
   }
 
-  private show({ layer, besideLayer, mode, opacity, besideOpacity }: PictureState): void {
+  private show({ layer, secondLayer, mode, opacity, secondOpacity }: PictureState): void {
     const { fields } = this;
     for (const radio of this.radios) radio.checked = radio.value === layer;
     setText(fields.note, kLayerNotes[layer]);
     showLegend(fields.legend, layer);
-    const beside = this.picture.beside;
-    fields.beside.value = besideLayer ?? '';
-    fields.besideOptions.hidden = beside === null;
-    fields.besideLegend.hidden = beside === null || beside.layer === layer;
-    if (beside) showLegend(fields.besideLegend, beside.layer);
+    const second = this.picture.second;
+    fields.second.value = secondLayer ?? '';
+    fields.secondOptions.hidden = second === null;
+    fields.secondLegend.hidden = second === null || second.layer === layer;
+    if (second) showLegend(fields.secondLegend, second.layer);
     fields.swipe.checked = mode === 'swipe';
     fields.over.checked = mode === 'over';
     fields.opacity.value = String(Math.round(100 * opacity));
-    fields.besideOpacity.value = String(Math.round(100 * besideOpacity));
-    fields.besideOpacity.disabled = mode === 'swipe';
+    fields.secondOpacity.value = String(Math.round(100 * secondOpacity));
+    fields.secondOpacity.disabled = mode === 'swipe';
     for (const key of kPresentOnly) {
       const box = this.switches.get(key);
       if (box) box.disabled = this.picture.isPast;

@@ -1,4 +1,4 @@
-/** What the colours of a layer mean. */
+/** The colours of a layer and their meaning. */
 import { el } from '../dom';
 import type { LayerName } from '../layers/layers';
 
@@ -20,7 +20,7 @@ const kEntries: Record<LayerName, Entry[]> = {
     { label: '5', sample: 'counter-5' },
     { label: '10', sample: 'counter-10' },
     { label: '15', sample: 'counter-15' },
-    { label: 'unseen', sample: 'unknown' },
+    { label: 'unknown', sample: 'unknown' },
   ],
   classification: [
     { label: 'free', sample: 'class-free' },

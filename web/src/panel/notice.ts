@@ -1,4 +1,4 @@
-/** What stands in the place of the map while there is none to show. */
+/** The message that replaces the map when there is none to show. */
 import type { RobotPort } from '../api/types';
 import { el } from '../dom';
 
@@ -35,18 +35,24 @@ function contentOf(state: NoticeState): Node[] {
     case 'no-sessions':
       return [
         el('h2', {}, 'No sessions yet'),
-        el('p', {}, 'A session begins when a robot connects. Start a simulated one:'),
+        el('p', {}, 'A session starts when a robot connects. Start a simulated robot:'),
         el(
           'pre',
           { tabindex: '0', 'aria-label': 'Command' },
           el('code', {}, robotCommand(state.robots, state.pageHost)),
         ),
-        el('p', {}, 'It appears here by itself.'),
+        el('p', {}, 'The session appears here automatically.'),
       ];
     case 'missing':
       return [
         el('h2', {}, 'No such session'),
-        el('p', {}, 'There is no session ', named(state.name), '. Choose another, or wait until a robot begins it.'),
+        el(
+          'p',
+          {},
+          'There is no session ',
+          named(state.name),
+          '. Choose another one, or wait until a robot creates it.',
+        ),
       ];
     case 'deleted':
       return [
@@ -61,7 +67,7 @@ function contentOf(state: NoticeState): Node[] {
       ];
     case 'empty':
       return [
-        el('h2', {}, 'Nothing seen yet'),
+        el('h2', {}, 'No scans yet'),
         el('p', {}, 'The session ', named(state.name), ' is open and waits for the first scan.'),
       ];
   }
@@ -71,7 +77,7 @@ function named(name: string): HTMLElement {
   return el('strong', { dir: 'auto' }, name);
 }
 
-/** @param pageHost where the page came from: where the server listens on every address, robots find it there, too */
+/** @param pageHost host of this page: a server that listens on every address accepts robots there, too */
 function robotCommand({ host, port }: RobotPort, pageHost: string): string {
   const address = host?.includes(':') ? `[${host}]` : (host ?? pageHost);
   return [

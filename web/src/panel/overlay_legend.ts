@@ -1,4 +1,4 @@
-/** What the symbols on the map mean: drawn as the map draws them, in the same colours. */
+/** The overlays' symbols and their meaning, drawn as on the map, in the same colours. */
 import { el } from '../dom';
 import type { Settings } from '../settings';
 
@@ -6,7 +6,7 @@ interface Entry {
   label: string;
   /** Class of the symbol, which the style sheet colours. */
   symbol: string;
-  /** Path of the symbol on a square of 16. */
+  /** Path of the symbol in a square of 16. */
   path: string;
 }
 
@@ -19,12 +19,12 @@ const kEntries: Partial<Record<keyof Settings, Entry[]>> = {
     { label: 'where to stand', symbol: 'frontier-goal', path: 'M8 4a4 4 0 1 1-.01 0z' },
   ],
   landmarks: [
-    { label: 'seen again', symbol: 'landmark', path: 'm8 2 6 6-6 6-6-6z' },
-    { label: 'seen once', symbol: 'landmark-once', path: 'M8 3.5 13 12.5H3z' },
+    { label: 'observed repeatedly', symbol: 'landmark', path: 'm8 2 6 6-6 6-6-6z' },
+    { label: 'observed once', symbol: 'landmark-once', path: 'M8 3.5 13 12.5H3z' },
   ],
 };
 
-/** @return the legend of what a switch shows; null if it needs none */
+/** @return the legend of an overlay; null if it needs none */
 export function overlayLegend(key: keyof Settings, title: string): HTMLElement | null {
   const entries = kEntries[key];
   if (!entries) return null;

@@ -1,4 +1,4 @@
-/** The robots of the chosen session; each can be followed. */
+/** The robots of the chosen session; the view can follow one. */
 import type { Robot } from '../api/types';
 import { el, KeyedList, setText, type Row } from '../dom';
 import * as format from '../format';
@@ -41,7 +41,7 @@ export class RobotList {
     this.rows.show(robots);
   }
 
-  /** The paths have grown. */
+  /** Called when the trails have grown. */
   refresh(): void {
     this.rows.show(this.robots);
   }

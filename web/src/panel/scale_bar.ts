@@ -1,4 +1,4 @@
-/** How long a metre is on the screen. */
+/** The scale bar. */
 import type OlMap from 'ol/Map';
 import { setText } from '../dom';
 import * as format from '../format';

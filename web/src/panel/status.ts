@@ -1,4 +1,4 @@
-/** The line that reports whether the server answers; empty while it does. */
+/** The line that reports connection errors; empty while there are none. */
 import { MalformedAnswer } from '../api/decode';
 import { isUnauthorized, Refused, Unreachable } from '../api/http';
 import { setText } from '../dom';
@@ -17,8 +17,8 @@ export class Status {
   constructor(private readonly line: HTMLElement) {}
 
   /**
-   * @param source which of the page's questions this is about; each has its own outcome
-   * @param error null when it was answered
+   * @param source which of the page's requests this is about; each has its own outcome
+   * @param error null after success
    */
   settle(source: string, error: unknown): void {
     if (error === null || isUnauthorized(error)) this.troubles.delete(source);
@@ -26,12 +26,12 @@ export class Status {
     this.show();
   }
 
-  /** Calls `listener` when the connection to the server is lost (true) and when it is there again (false). */
+  /** Calls `listener` when the connection to the server is lost (true) and when it is restored (false). */
   listen(listener: (isOffline: boolean) => void): void {
     this.listeners.push(listener);
   }
 
-  /** That question is asked no longer. */
+  /** Forgets the outcome of requests that are no longer made. */
   forget(source: string): void {
     this.troubles.delete(source);
     this.show();
@@ -44,13 +44,13 @@ export class Status {
     if (worst) {
       clearTimeout(this.timer);
       this.wasOffline ||= worst.kind === 'offline';
-      this.say(worst.kind, worst.text);
+      this.write(worst.kind, worst.text);
     } else if (this.wasOffline) {
       this.wasOffline = false;
-      this.say('well', 'Online again.');
-      this.timer = window.setTimeout(() => this.say('silent', ''), kReassureMs);
+      this.write('well', 'Online again.');
+      this.timer = window.setTimeout(() => this.write('silent', ''), kReassureMs);
     } else if (this.line.dataset['state'] !== 'well') {
-      this.say('silent', '');
+      this.write('silent', '');
     }
   }
 
@@ -60,7 +60,7 @@ export class Status {
     for (const listener of this.listeners) listener(isOffline);
   }
 
-  private say(state: string, text: string): void {
+  private write(state: string, text: string): void {
     this.line.dataset['state'] = state;
     setText(this.line, text);
   }

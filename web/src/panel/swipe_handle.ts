@@ -1,4 +1,4 @@
-/** The line between two sides of the map, dragged with the pointer or moved with the arrow keys. */
+/** The line between the two sides of the map, moved with the pointer or the arrow keys. */
 import type { Picture } from '../picture';
 
 const kStep = 0.02;

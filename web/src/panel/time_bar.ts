@@ -1,4 +1,4 @@
-/** The session's history along the bottom of the map: a slider over its scans, and buttons that play them. */
+/** The session's history below the map: a slider over its scans, and buttons for playback. */
 import { el, setText } from '../dom';
 import * as format from '../format';
 import type { Keys } from '../keys';
@@ -15,13 +15,13 @@ const kIcons = {
   forward: 'M4.5 4l5 4-5 4zM11.5 4v8',
   close: 'm4 4 8 8M12 4l-8 8',
 };
-/** More marks than these say no more. */
+/** Maximum number of marks. */
 const kMarksMax = 40;
 
 export class TimeBar {
   private readonly back = iconButton('time-back', 'One scan back', ',', kIcons.back);
   private readonly play = iconButton('time-play', 'Play', 'Space', kIcons.play);
-  private readonly forward = iconButton('time-forward', 'One scan on', '.', kIcons.forward);
+  private readonly forward = iconButton('time-forward', 'One scan forward', '.', kIcons.forward);
   private readonly slider = el('input', { id: 'time-slider', type: 'range', min: '1', max: '1', step: '1' });
   private readonly marks = el('div', { class: 'time-marks', 'aria-hidden': 'true' });
   private readonly speed = el('select', { id: 'time-speed', 'aria-label': 'Speed' });
@@ -36,14 +36,14 @@ export class TimeBar {
   private isOffline = false;
   private state: HistoryState | null = null;
 
-  /** @param opener the button that opens it */
+  /** @param opener the button that opens the bar */
   constructor(
     private readonly bar: HTMLElement,
     private readonly opener: HTMLButtonElement,
     private readonly history: SessionHistory,
     keys: Keys,
   ) {
-    this.slider.setAttribute('aria-label', 'Moment of the session');
+    this.slider.setAttribute('aria-label', 'Scan of the session');
     this.speed.append(...kSpeeds.map((speed) => el('option', { value: String(speed) }, `${speed}\u00d7`)));
     const track = el('div', { class: 'time-track' }, this.slider, this.marks);
     const steps = el('div', { class: 'time-steps' }, this.back, this.play, this.forward);
@@ -56,7 +56,7 @@ export class TimeBar {
     this.show(null);
   }
 
-  /** @param isOffline whether the server does not answer: then nothing is shown as live */
+  /** @param isOffline whether the server does not answer: then the mode is not "Live" */
   setOffline(isOffline: boolean): void {
     this.isOffline = isOffline;
     this.show(this.state);
@@ -78,10 +78,10 @@ export class TimeBar {
     const { history } = this;
     const when = (): boolean => history.isOpen;
     keys.bind({ key: 't', does: 'opens and closes the history', run: () => this.toggle() });
-    keys.bind({ key: ' ', does: 'plays the history, and pauses', run: () => history.togglePlaying(), when });
-    keys.bind({ key: ',', does: 'goes one scan back in the history', run: () => history.step(-1), when });
-    keys.bind({ key: '.', does: 'goes one scan on in the history', run: () => history.step(1), when });
-    keys.bind({ key: 'l', does: 'goes back to the present', run: () => history.goLive(), when });
+    keys.bind({ key: ' ', does: 'plays or pauses the history', run: () => history.togglePlaying(), when });
+    keys.bind({ key: ',', does: 'moves one scan back in the history', run: () => history.step(-1), when });
+    keys.bind({ key: '.', does: 'moves one scan forward in the history', run: () => history.step(1), when });
+    keys.bind({ key: 'l', does: 'returns to the present', run: () => history.goLive(), when });
   }
 
   private toggle(): void {
@@ -139,10 +139,10 @@ export class TimeBar {
           ? ''
           : this.noteOf(shown !== null, date),
     );
-    setText(this.message, trouble || (progress ? 'Weaving that moment\u2026' : isKnown ? '' : words.loading(share)));
+    setText(this.message, trouble || (progress ? 'Computing that map\u2026' : isKnown ? '' : words.loading(share)));
     this.message.classList.toggle('trouble', trouble !== '');
     this.progress.hidden = progress === null;
-    if (progress) Object.assign(this.progress, { max: Math.max(1, progress.until), value: progress.woven });
+    if (progress) Object.assign(this.progress, { max: Math.max(1, progress.until), value: progress.applied });
   }
 
   private noteOf(isPast: boolean, date: string): string {
@@ -156,7 +156,7 @@ export class TimeBar {
     return gap > 0 ? `, after ${words.duration(gap)} without scans` : '';
   }
 
-  /** The longest gaps, where they are on the slider. */
+  /** Marks the longest gaps on the slider. */
   private showMarks({ gaps, count }: Timeline): void {
     const fingerprint = `${gaps.length}/${count}`;
     if (this.marked === fingerprint) return;

@@ -1,19 +1,19 @@
-/** Asks for a new session's name and for what cannot be changed later. */
+/** The dialog that creates a session: its name, and the settings that cannot be changed later. */
 import { createSession, kRayModels, type RayModel } from '../api/manage';
 import type { Session } from '../api/types';
 import { el } from '../dom';
 import { FormDialog } from './form_dialog';
 
-/** The hyphen is escaped for the `v` flag, with which browsers read patterns. */
+/** The hyphen is escaped for the `v` flag, with which browsers parse patterns. */
 const kNamePattern = '[A-Za-z0-9_\\-]{1,64}';
 const kNameRule = '1 to 64 letters A\u2013Z, digits, _ or -';
 const kCellRange = { min: 0.01, max: 1, usual: 0.05 };
-const kCellRule = `${kCellRange.min} to ${kCellRange.max}; small cells cost memory.`;
+const kCellRule = `${kCellRange.min} to ${kCellRange.max}; small cells need more memory.`;
 
 const kRayModelTexts: Record<RayModel, [title: string, text: string]> = {
-  inverse_sensor_model: ['Inverse sensor model', 'Every cell in the cone of a beam. The usual choice.'],
-  bresenham: ['Bresenham', 'Only the cells of a thin line to the hit. The fastest.'],
-  traversal: ['Traversal', 'Every cell that the beam crosses, however little of it.'],
+  inverse_sensor_model: ['Inverse sensor model', 'Updates every cell in the cone of a beam. The default.'],
+  bresenham: ['Bresenham', 'Updates only the cells of a thin line to the hit. The fastest.'],
+  traversal: ['Traversal', 'Updates every cell that the beam crosses.'],
 };
 
 export class CreateDialog {

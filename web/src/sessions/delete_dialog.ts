@@ -1,19 +1,18 @@
-/** Asks once more before a session goes for good. */
+/** The dialog that confirms the deletion of a session. */
 import { deleteSession } from '../api/manage';
 import type { Session } from '../api/types';
 import { el } from '../dom';
 import { counted } from '../format';
 import { FormDialog } from './form_dialog';
 
-const kConsequence =
-  'Its log of scans and all its maps are deleted for good. Robots that are online in it are disconnected.';
+const kConsequence = 'Its log of scans and all its maps are deleted permanently. Its online robots are disconnected.';
 
 export interface DeleteEvents {
-  /** The request is on its way: whoever watches the session may hear of its end before the answer comes. */
-  asked(name: string): void;
+  /** The request is being sent: live connections of the session may end before the answer arrives. */
+  deleting(name: string): void;
   deleted(name: string, session: Session | null): void;
-  /** It was refused, or the person no longer waits for the answer. */
-  kept(name: string): void;
+  /** The request was refused, or the user no longer waits for the answer. */
+  notDeleted(name: string): void;
 }
 
 export class DeleteDialog {
@@ -33,7 +32,7 @@ export class DeleteDialog {
         done = true;
       },
     );
-    // Only once it is closed can the focus go elsewhere.
+    // The focus can move only after the dialog has closed.
     dialog.element.addEventListener('close', () => {
       dialog.element.remove();
       if (done) this.events.deleted(name, session);
@@ -42,11 +41,11 @@ export class DeleteDialog {
   }
 
   private async delete(name: string, signal: AbortSignal): Promise<void> {
-    this.events.asked(name);
+    this.events.deleting(name);
     try {
       await deleteSession(name, signal);
     } catch (error) {
-      this.events.kept(name);
+      this.events.notDeleted(name);
       throw error;
     }
   }

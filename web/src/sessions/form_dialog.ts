@@ -1,15 +1,15 @@
-/** A question to the person, and the request that follows: what goes wrong is told in the dialog, which stays open. */
+/** A dialog with a form and its request; it reports errors itself and stays open after them. */
 import { MalformedAnswer } from '../api/decode';
 import { Refused, Unreachable } from '../api/http';
 import { el, setText } from '../dom';
 
 export interface FormDialogTexts {
   title: string;
-  /** What the button says that does it. */
+  /** Label of the submit button. */
   submit: string;
-  /** The same while it is being done. */
+  /** Its label during the request. */
   busy: string;
-  /** It cannot be undone. */
+  /** The action cannot be undone. */
   destructive?: boolean;
 }
 
@@ -22,7 +22,7 @@ export class FormDialog {
   private readonly failure: HTMLElement;
   private leave = new AbortController();
 
-  /** @param run does what was asked for; the dialog closes when it is done, and the request ends when it closes */
+  /** @param run sends the request; the dialog closes when it succeeds, and closing the dialog aborts it */
   constructor(
     private readonly texts: FormDialogTexts,
     content: (Node | string)[],
@@ -44,7 +44,7 @@ export class FormDialog {
     document.body.append(this.element);
   }
 
-  /** @param focus what the person most likely wants first; never what cannot be undone */
+  /** @param focus the most likely first input; never a button whose action cannot be undone */
   open(focus: HTMLElement): void {
     this.settle('');
     this.element.showModal();
@@ -57,7 +57,7 @@ export class FormDialog {
     const { signal } = this.leave;
     setText(this.failure, '');
     setText(this.submit, this.texts.busy);
-    // Not disabled, which would take the focus away.
+    // A disabled button would lose the focus.
     this.submit.setAttribute('aria-disabled', 'true');
     try {
       await this.run(signal);

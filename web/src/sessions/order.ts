@@ -1,9 +1,9 @@
-/** Which sessions the list shows, and in which order. */
+/** Filter and order of the session list. */
 import type { Session } from '../api/types';
 
 export type Order = 'newest' | 'name' | 'busiest';
 
-/** Names that hold every word of the query, in whatever case. */
+/** Returns the names that contain every word of the query, ignoring case. */
 export function matches(name: string, query: string): boolean {
   const lower = name.toLocaleLowerCase();
   return query
@@ -26,12 +26,12 @@ export function arrange(sessions: Session[], order: Order, rate: (name: string) 
   }
 }
 
-/** Compares by creation; sessions of one second by their numbers. */
+/** Compares by creation time; sessions of the same second by their numbers. */
 export function newestFirst(a: Session, b: Session): number {
   return compare(b.created, a.created) || b.number - a.number;
 }
 
-/** The old order, with what is new at its end: nothing moves away under the finger that points at it. */
+/** Keeps the previous order and appends new sessions: no row moves away under the pointer. */
 export function keepOrder(sessions: Session[], before: string[]): Session[] {
   const places = new Map(before.map((name, index) => [name, index]));
   const place = ({ name }: Session): number => places.get(name) ?? before.length;

@@ -1,7 +1,7 @@
-/** How busy each session is: scans per second over the last few seconds, from the counts of successive answers. */
+/** Each session's scans per second over the last few seconds, from the counts of successive answers. */
 import type { Session } from '../api/types';
 
-/** Long enough to be steady at one look in two seconds, short enough to follow what happens. */
+/** Long enough to be stable at one poll in two seconds, short enough to be current. */
 const kWindowMs = 10_000;
 
 interface Count {
@@ -19,8 +19,8 @@ export class SessionRates {
   private readonly histories = new Map<string, History>();
 
   /**
-   * @param sessions all there are; the others are forgotten
-   * @param nowMs of a clock that never goes back
+   * @param sessions all sessions; others are forgotten
+   * @param nowMs of a monotonic clock
    */
   learn(sessions: Session[], nowMs: number): void {
     const names = new Set(sessions.map(({ name }) => name));
@@ -28,7 +28,7 @@ export class SessionRates {
     for (const session of sessions) this.add(session, nowMs);
   }
 
-  /** @return scans per second; null while it was heard of only once */
+  /** @return scans per second; null after a single answer */
   of(name: string): number | null {
     const counts = this.histories.get(name)?.counts ?? [];
     const first = counts[0];
@@ -41,7 +41,7 @@ export class SessionRates {
     const known = this.histories.get(name);
     const before = known?.id === id ? known.counts : [];
     const newest = before[before.length - 1];
-    // An answer that was overtaken on its way, or a history that was woven anew: what was counted before is no measure.
+    // An answer was overtaken, or the log was recomputed: the earlier counts cannot be compared.
     const comparable = newest && newest.scans > scans ? [] : before;
     const counts = [...comparable.filter((count) => atMs - count.atMs <= kWindowMs), { atMs, scans }];
     this.histories.set(name, { id, counts });

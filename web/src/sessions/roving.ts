@@ -1,7 +1,7 @@
-/** One place in the order of Tab for a whole list: within it, arrow keys go from row to row. */
+/** One tab stop for a whole list: arrow keys move between its rows. */
 export interface Stop {
   link: HTMLElement;
-  /** Reached by Tab from the link, and only from there. */
+  /** Selector of the row's button, reached by Tab from the row's link only. */
   others: HTMLElement[];
 }
 
@@ -9,7 +9,7 @@ export class Roving {
   private stops: Stop[] = [];
   private current: HTMLElement | null = null;
 
-  /** @param leave Up from the first row: where the search field is */
+  /** @param leave called for Up on the first row: moves to the search field */
   constructor(
     private readonly list: HTMLElement,
     private readonly leave: () => void,
@@ -21,7 +21,7 @@ export class Roving {
     });
   }
 
-  /** @param chosen where Tab leads to before anybody has been in the list */
+  /** @param chosen the tab stop before a row had the focus */
   show(stops: Stop[], chosen: HTMLElement | null): void {
     this.stops = stops;
     const isThere = (link: HTMLElement | null): boolean => stops.some((stop) => stop.link === link);

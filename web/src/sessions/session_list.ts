@@ -1,4 +1,4 @@
-/** The sessions to choose from, and those that cannot be shown. */
+/** The list of sessions, and of those that cannot be shown. */
 import type { DamagedSession, Session } from '../api/types';
 import { KeyedList, setText } from '../dom';
 import type { Palette } from '../layers/palette';
@@ -7,9 +7,9 @@ import { createDamagedRow, createSessionRow, updateSessionRow, type DamagedRow, 
 import { Thumbnails } from './thumbnails';
 
 export interface SessionListEvents {
-  /** The person wants to be rid of it. */
+  /** The user wants to delete the session. */
   remove(name: string): void;
-  /** The keyboard leaves the list upwards. */
+  /** The focus leaves the list upwards. */
   leave(): void;
 }
 
@@ -22,7 +22,7 @@ export class SessionList {
   private chosen: string | null = null;
   private names: string[] = [];
   private isOffline = false;
-  /** The one that was scrolled into view last. */
+  /** The session that was scrolled into view last. */
   private revealed: string | null = null;
 
   /** @param rate scans per second; null where unknown */
@@ -49,12 +49,12 @@ export class SessionList {
     );
   }
 
-  /** Their names, in the order of the rows. */
+  /** The names in the order of the rows. */
   get shown(): string[] {
     return this.names;
   }
 
-  /** Someone points at a row, or is on it with the keyboard. */
+  /** Whether the pointer or the focus is on a row. */
   get isInUse(): boolean {
     return this.list.matches(':hover, :focus-within');
   }
@@ -73,7 +73,7 @@ export class SessionList {
     this.thumbnails.tend();
   }
 
-  /** One of them has changed. */
+  /** Called when one of the sessions has changed. */
   refresh(session: Session): void {
     const row = this.byName.get(session.name);
     if (row) this.update(row, session);
@@ -90,7 +90,7 @@ export class SessionList {
     this.reveal();
   }
 
-  /** @return whether there is a row to go to */
+  /** @return whether there is a row to focus */
   focus(index: number): boolean {
     return this.roving.focus(index);
   }
@@ -99,7 +99,7 @@ export class SessionList {
     this.thumbnails.setPalette(palette);
   }
 
-  /** Scrolls to the session that was opened, once. */
+  /** Scrolls to the open session, once. */
   private reveal(): void {
     const row = this.chosen === null ? undefined : this.byName.get(this.chosen);
     if (!row || this.revealed === this.chosen) return;

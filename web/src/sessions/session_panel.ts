@@ -1,4 +1,4 @@
-/** The panel's part about all sessions: search, order, list, and what makes sessions and ends them. */
+/** The panel of all sessions: search, order, list, and the dialogs that create and delete sessions. */
 import type { DamagedSession, Session } from '../api/types';
 import { isUnauthorized, Refused, Unreachable } from '../api/http';
 import { byId, setText } from '../dom';
@@ -12,7 +12,7 @@ import { SessionList } from './session_list';
 
 export interface SessionPanelEvents extends DeleteEvents {
   created(session: Session): void;
-  /** The search field is to be used, wherever the panel is. */
+  /** The panel has to be open, because the search field gets the focus. */
   wanted(): void;
 }
 
@@ -21,16 +21,16 @@ const kOrders: readonly string[] = ['newest', 'name', 'busiest'] satisfies Order
 export class SessionPanel {
   private readonly search = byId('session-search', HTMLInputElement);
   private readonly order = byId('session-order', HTMLSelectElement);
-  private readonly told = byId('session-count', HTMLElement);
+  private readonly countLine = byId('session-count', HTMLElement);
   private readonly state = byId('sessions-state', HTMLElement);
   private readonly rates = new SessionRates();
   private readonly list: SessionList;
   private readonly deletion: DeleteDialog;
-  /** Identities of what was deleted here: an answer that was on its way may still tell of them. */
+  /** Ids of sessions that were deleted here: an answer that was sent before may still contain them. */
   private readonly deleted = new Set<string>();
   private sessions: Session[] = [];
   private damaged: DamagedSession[] = [];
-  private heard = false;
+  private received = false;
   private trouble: unknown = null;
 
   constructor(
@@ -49,14 +49,14 @@ export class SessionPanel {
     this.arrange();
   }
 
-  /** Whether found by the search or not. */
+  /** All sessions, whether they match the search or not. */
   get all(): Session[] {
     return this.sessions;
   }
 
-  /** @returns those that are there, without what was deleted here since the server was asked */
+  /** @returns the sessions of the answer, without those that were deleted here since the request was sent */
   show(sessions: Session[], damaged: DamagedSession[]): Session[] {
-    this.heard = true;
+    this.received = true;
     this.sessions = sessions.filter(({ id }) => !this.deleted.has(id));
     this.damaged = damaged;
     this.rates.learn(this.sessions, performance.now());
@@ -64,7 +64,7 @@ export class SessionPanel {
     return this.sessions;
   }
 
-  /** One of them has changed. */
+  /** Called when one of the sessions has changed. */
   refresh(session: Session): void {
     this.sessions = this.sessions.map((each) => (each.name === session.name ? session : each));
     this.list.refresh(session);
@@ -74,10 +74,10 @@ export class SessionPanel {
     this.list.choose(name);
   }
 
-  /** @param error null when the server has answered */
+  /** @param error null after success */
   settle(error: unknown): void {
     this.trouble = error;
-    this.tellState();
+    this.showState();
   }
 
   /** @param isOffline whether the server does not answer */
@@ -98,7 +98,7 @@ export class SessionPanel {
     this.order.addEventListener('change', () => this.arrange(true));
   }
 
-  /** Shows the list, ready to search it. */
+  /** Opens the list and focuses the search field. */
   focusSearch(): void {
     this.events.wanted();
     this.search.focus();
@@ -132,46 +132,46 @@ export class SessionPanel {
     this.sessions = this.sessions.filter((each) => each.name !== name);
     this.damaged = this.damaged.filter((each) => each.name !== name);
     this.arrange();
-    // The row that had the focus is gone.
+    // The focused row has been removed.
     if (!this.list.focus(index)) this.search.focus();
     this.events.deleted(name, session);
   }
 
-  /** @param anew whatever someone points at */
-  private arrange(anew = false): void {
+  /** @param reorder sorts the rows even if the pointer is on one */
+  private arrange(reorder = false): void {
     const query = this.search.value.trim();
     const found = this.sessions.filter(({ name }) => matches(name, query));
     const damaged = this.damaged.filter(({ name }) => matches(name, query));
     const order = kOrders.includes(this.order.value) ? (this.order.value as Order) : 'newest';
     const arranged = arrange(found, order, (name) => this.rates.of(name));
-    const held = order === 'busiest' && !anew && this.list.isInUse;
+    const held = order === 'busiest' && !reorder && this.list.isInUse;
     this.list.show(held ? keepOrder(arranged, this.list.shown) : arranged, damaged);
-    this.tellCount(found.length + damaged.length, query);
-    this.tellState();
+    this.showCount(found.length + damaged.length, query);
+    this.showState();
   }
 
-  private tellCount(found: number, query: string): void {
+  private showCount(found: number, query: string): void {
     const all = this.sessions.length + this.damaged.length;
     const some = query === '' ? '' : `${count(found)} of `;
-    setText(this.told, all > 0 ? `${some}${counted(all, 'session')}` : '');
+    setText(this.countLine, all > 0 ? `${some}${counted(all, 'session')}` : '');
   }
 
-  private tellState(): void {
+  private showState(): void {
     const all = this.sessions.length + this.damaged.length;
-    const text = stateOf(this.heard, all, this.trouble);
+    const text = stateOf(this.received, all, this.trouble);
     this.state.dataset['state'] = this.trouble === null ? 'well' : 'trouble';
     this.state.hidden = text === '';
     setText(this.state, text);
   }
 }
 
-/** @param heard whether the server has ever told of its sessions */
-function stateOf(heard: boolean, all: number, trouble: unknown): string {
-  const kept = heard ? ' The list shows what was last heard.' : '';
+/** @param received whether the server has ever answered with its sessions */
+function stateOf(received: boolean, all: number, trouble: unknown): string {
+  const kept = received ? ' The list shows the last received state.' : '';
   if (trouble instanceof Unreachable) return `Offline.${kept}`;
   if (isUnauthorized(trouble)) return '';
-  if (trouble instanceof Refused) return `The list cannot be had: ${trouble.message}.${kept}`;
-  if (trouble !== null) return `The list cannot be read.${kept}`;
-  if (!heard) return 'Loading\u2026';
-  return all === 0 ? 'None yet.' : '';
+  if (trouble instanceof Refused) return `The list cannot be loaded: ${trouble.message}.${kept}`;
+  if (trouble !== null) return `The server\u2019s list is invalid.${kept}`;
+  if (!received) return 'Loading\u2026';
+  return all === 0 ? 'No sessions yet.' : '';
 }

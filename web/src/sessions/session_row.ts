@@ -1,4 +1,4 @@
-/** One session in the list: what it looks like, how large it is, and what goes on in it. */
+/** One row of the session list: thumbnail, size and activity. */
 import type { DamagedSession, Session } from '../api/types';
 import { hashOfSession } from '../address';
 import { el, setText, type Row } from '../dom';
@@ -22,7 +22,7 @@ export interface DamagedRow extends Row {
 export function createSessionRow({ name }: Session): SessionRow {
   const picture = el('canvas', { class: 'thumbnail', 'aria-hidden': 'true', width: '1', height: '1' });
   const online = el('span', { class: 'online' }, 'online');
-  const failed = el('span', { class: 'damaged' }, 'takes no scans');
+  const failed = el('span', { class: 'damaged' }, 'accepts no scans');
   const [pace, place, failure] = [detail(), detail(), detail()];
   const title = el('span', { class: 'row-title' }, nameOf(name), online, failed);
   const words = el('span', { class: 'row-words' }, title, pace, place, failure);
@@ -36,20 +36,20 @@ export function createSessionRow({ name }: Session): SessionRow {
  * Shows the session's newest values.
  *
  * @param rate      scans per second; null where unknown
- * @param isOffline the server does not answer: the row says nothing of the present
+ * @param isOffline the server does not answer: hides rates and online states
  */
 export function updateSessionRow(row: SessionRow, session: Session, rate: number | null, isOffline: boolean): void {
   const isOnline = !isOffline && session.robots.some(({ connected }) => connected);
   const busy = !isOffline && rate !== null && (isOnline || rate > 0) ? [`${format.decimal(rate, 1)} scans/s`] : [];
   setText(row.pace, [format.counted(session.scans, 'scan'), ...busy].join(' \u00b7 '));
-  const area = session.bounds ? format.area(session.bounds) : 'nothing seen yet';
+  const area = session.bounds ? format.area(session.bounds) : 'no scans yet';
   setText(row.place, [area, robotsOf(session, isOffline)].join(' \u00b7 '));
   row.failed.hidden = row.failure.hidden = session.failure === null;
   setText(row.failure, session.failure ?? '');
   row.online.hidden = !isOnline;
 }
 
-/** Nothing to open: the server cannot weave its map. */
+/** A session that cannot be opened, because the server cannot reconstruct its map. */
 export function createDamagedRow({ name }: DamagedSession, remove: (name: string) => void): DamagedRow {
   const reason = detail();
   const title = el('span', { class: 'row-title' }, nameOf(name), el('span', { class: 'damaged' }, 'not served'));

@@ -1,34 +1,34 @@
-/** Which tiles make a session's thumbnail, and where in them its map lies. */
+/** Selects the tiles of a session's thumbnail, and the part of them to show. */
 import type { Bounds } from '../api/types';
 import { kNativeZoom, kTileSize, squareExtent, tileResolutions } from '../map/grid';
 
-/** More pixels than these would only be shrunk again. */
+/** Larger pictures would only be reduced again. */
 const kSpanMax = 128;
 
 export interface ThumbnailTile {
   z: number;
   x: number;
   y: number;
-  /** Of the tile's upper left corner, in the picture's pixels. */
+  /** Position of the tile's upper left corner, in pixels of the picture. */
   left: number;
   top: number;
 }
 
 export interface ThumbnailPlan {
-  /** Of the picture, pixels. */
+  /** Size of the picture, pixels. */
   width: number;
   height: number;
   tiles: ThumbnailTile[];
 }
 
-/** @return at most four tiles of the finest zoom at which the bounds span no more than a few pixels */
+/** @return at most four tiles, of the finest zoom at which the bounds fit the pixel limit */
 export function planThumbnail(bounds: Bounds, cellSize: number): ThumbnailPlan {
   const { zoom, resolution } = zoomOf(bounds, cellSize);
   const [left, , , top] = squareExtent(cellSize);
   const edge = kTileSize * 2 ** zoom - 1;
   const column = (x: number): number => Math.min(edge, Math.max(0, Math.floor((x - left) / resolution)));
   const row = (y: number): number => Math.min(edge, Math.max(0, Math.floor((top - y) / resolution)));
-  // A bound on a pixel's edge does not count the pixel behind it.
+  // A bound on a pixel's edge does not include the next pixel.
   const within = resolution * 1e-6;
   const first = { column: column(bounds.minX + within), row: row(bounds.maxY - within) };
   const last = {

@@ -1,4 +1,4 @@
-/** Pictures of the sessions' maps: only of those in view, only when they have changed, and only a few at a time. */
+/** Thumbnails of the sessions' maps: loads only visible and changed ones, and only a few at a time. */
 import { fetchChanges, fetchTileImage } from '../api/api';
 import type { Bounds, Session } from '../api/types';
 import type { LayerName } from '../layers/layers';
@@ -6,28 +6,28 @@ import { colourise, colourTable, type Palette } from '../layers/palette';
 import { TileVersions } from '../map/versions';
 import { planThumbnail, type ThumbnailPlan } from './thumbnail_plan';
 
-/** Of the place in the row, CSS pixels; the style sheet gives it the same size. */
+/** Size in the row, CSS pixels; equal to the size in the style sheet. */
 const kWidth = 56;
 const kHeight = 40;
-/** However fast a map grows, and for a picture that cannot be had. */
+/** Minimum time between two loads of a thumbnail, also after a failure. */
 const kPaceMs = 10_000;
 const kAtOnce = 2;
-/** What the server draws where nobody has seen anything. */
+/** The server's colour of unknown cells. */
 const kUnknownColour = '#808080';
 
 interface Thumbnail {
   session: Session;
   inView: boolean;
-  /** Identity and revision of what is shown; null while nothing is. */
+  /** Identity and revision of the shown picture; null: none. */
   shown: string | null;
   triedAt: number;
-  underWay: boolean;
+  loading: boolean;
   tiles: KnownTiles;
 }
 
-/** What is known of a session's tiles, so that only those are asked for that have changed: the others are kept by the browser. */
+/** The known tile versions of a session: only changed tiles are requested; the browser caches the others. */
 interface KnownTiles {
-  /** The session's. */
+  /** The session's revision. */
   id: string;
   byLayer: Map<LayerName, { revision: number; versions: TileVersions }>;
 }
@@ -36,27 +36,27 @@ export class Thumbnails {
   private readonly all = new Map<Element, Thumbnail>();
   private readonly observer = new IntersectionObserver((entries) => this.look(entries));
   private table: Uint32Array;
-  private underWay = 0;
+  private loading = 0;
 
   constructor(palette: Palette) {
     this.table = colourTable('occupancy', palette);
   }
 
-  /** The canvas shows this session from now on, as soon as it is in view. */
+  /** Shows this session on the canvas as soon as the canvas is visible. */
   show(canvas: HTMLCanvasElement, session: Session): void {
     const known = this.all.get(canvas);
     if (known) {
       known.session = session;
     } else {
       const tiles = { id: session.id, byLayer: new Map() };
-      this.all.set(canvas, { session, inView: false, shown: null, triedAt: -Infinity, underWay: false, tiles });
+      this.all.set(canvas, { session, inView: false, shown: null, triedAt: -Infinity, loading: false, tiles });
       this.observer.observe(canvas);
     }
     const state = session.bounds === null ? 'empty' : 'map';
     if (canvas.dataset['state'] !== state) canvas.dataset['state'] = state;
   }
 
-  /** Rows are kept, moved and removed by others: draws what is due, and forgets what is no longer on the page. */
+  /** Loads due thumbnails, and forgets canvases that the list has removed. */
   tend(): void {
     for (const canvas of this.all.keys()) {
       if (canvas.isConnected) continue;
@@ -86,7 +86,7 @@ export class Thumbnails {
   private drawDue(): void {
     if (document.hidden) return;
     for (const [canvas, thumbnail] of this.all) {
-      if (this.underWay >= kAtOnce) return;
+      if (this.loading >= kAtOnce) return;
       if (canvas instanceof HTMLCanvasElement && isDue(thumbnail)) void this.draw(canvas, thumbnail);
     }
   }
@@ -95,27 +95,27 @@ export class Thumbnails {
     const { session } = thumbnail;
     if (!session.bounds) return;
     const { table } = this;
-    thumbnail.underWay = true;
+    thumbnail.loading = true;
     thumbnail.triedAt = performance.now();
-    this.underWay += 1;
+    this.loading += 1;
     try {
       if (thumbnail.tiles.id !== session.id) thumbnail.tiles = { id: session.id, byLayer: new Map() };
       const picture = await compose(session, session.mainBounds ?? session.bounds, thumbnail.tiles, table);
-      // The old picture stays until the new one is there, and where that cannot be had.
+      // The old picture stays until the new one is loaded, also after a failure.
       paint(canvas, picture);
       if (table === this.table) thumbnail.shown = versionOf(session);
     } catch {
-      // Decoration: whether the server can be heard is told elsewhere; the next look tries again.
+      // A thumbnail is decoration: other parts of the page report connection errors; the next check tries again.
     } finally {
-      thumbnail.underWay = false;
-      this.underWay -= 1;
+      thumbnail.loading = false;
+      this.loading -= 1;
       this.drawDue();
     }
   }
 }
 
-function isDue({ session, inView, shown, triedAt, underWay }: Thumbnail): boolean {
-  if (!inView || underWay || session.bounds === null || shown === versionOf(session)) return false;
+function isDue({ session, inView, shown, triedAt, loading }: Thumbnail): boolean {
+  if (!inView || loading || session.bounds === null || shown === versionOf(session)) return false;
   return performance.now() - triedAt >= kPaceMs;
 }
 
@@ -123,7 +123,7 @@ function versionOf({ id, revision }: Session): string {
   return `${id} ${revision}`;
 }
 
-/** The map alone: what lasers saw, or where they saw nothing, sonars. */
+/** Returns the layer to show: occupancy, or sonar where lasers have observed nothing. */
 async function compose(
   session: Session,
   bounds: Bounds,
@@ -140,7 +140,7 @@ async function compose(
   return document.createElement('canvas');
 }
 
-/** Asks what has changed since the last time. */
+/** Fetches the changes since the last request. */
 async function versionsOf(session: Session, layer: LayerName, { byLayer }: KnownTiles): Promise<TileVersions> {
   const known = byLayer.get(layer) ?? { revision: 0, versions: new TileVersions() };
   byLayer.set(layer, known);
@@ -151,7 +151,7 @@ async function versionsOf(session: Session, layer: LayerName, { byLayer }: Known
   return known.versions;
 }
 
-/** In the page's colours, with as many pixels as the tiles have. */
+/** Uses the page's colours and the pixels of the tiles. */
 async function composeLayer(
   session: Session,
   layer: LayerName,
@@ -180,7 +180,7 @@ async function composeLayer(
   return canvas;
 }
 
-/** As large as it fits, in the middle; cells that are blown up keep their edges. */
+/** Fits the picture to the canvas, centred; enlarged cells keep sharp edges. */
 function paint(canvas: HTMLCanvasElement, picture: HTMLCanvasElement): void {
   const density = window.devicePixelRatio;
   canvas.width = Math.round(kWidth * density);

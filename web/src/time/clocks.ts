@@ -1,23 +1,23 @@
-/** Puts the stamps of robots with unlike clocks on one line of time, which never goes back. */
+/** Maps the time stamps of robots with different clocks to one increasing time line. */
 
-/** A clock that is as near as this to another when it is first heard of is the same clock. Seconds. */
+/** A clock whose first stamp differs from another clock by less than this counts as the same clock. Seconds. */
 const kSameClock = 3_600;
-/** Stamps of one robot that fall back further than this come from a clock that was set anew. Seconds. */
+/** A robot's stamps that decrease by more than this come from a clock that was set back. Seconds. */
 const kSetBack = 10;
 
 interface Clock {
-  /** To be added to its stamps. */
+  /** Offset to add to the robot's stamps. */
   offset: number;
   last: number;
 }
 
-/** The line is the clock of the robot that was heard of first. */
+/** The time line follows the clock of the first robot. */
 export class Clocks {
   private readonly byRobot = new Map<string, Clock>();
   private readonly offsets: number[] = [];
   private now = -Infinity;
 
-  /** @returns when the robot's next scan is on the line; scans have to come in their order */
+  /** @returns the time of the robot's next scan on the line; scans have to be passed in order */
   place(robot: string, stamp: number): number {
     const clock = this.clockOf(robot, stamp);
     clock.last = stamp;
@@ -28,7 +28,7 @@ export class Clocks {
   private clockOf(robot: string, stamp: number): Clock {
     const known = this.byRobot.get(robot);
     if (known && stamp >= known.last - kSetBack) return known;
-    // Set back, it shows less than before: what it shares with others by chance would stop the line.
+    // A clock that was set back is behind the line: an accidental match with another clock would stop the line.
     const offset = known ? this.now - stamp : (this.offsetLike(stamp) ?? this.now - stamp);
     const clock = { offset, last: stamp };
     this.byRobot.set(robot, clock);
@@ -36,7 +36,7 @@ export class Clocks {
     return clock;
   }
 
-  /** Undefined: no clock that is known shows anything like this by now. */
+  /** Undefined: no known clock shows a similar time now. */
   private offsetLike(stamp: number): number | undefined {
     if (this.offsets.length === 0) return 0;
     return this.offsets.find((offset) => Math.abs(stamp + offset - this.now) <= kSameClock);

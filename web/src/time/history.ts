@@ -1,4 +1,4 @@
-/** The past of the session that is open: its scans in order, which of them is looked at, and whether it is played. */
+/** The history of the open session: its scans in order, the selected scan, and playback. */
 import { fetchHistory } from '../api/history';
 import { isPassing } from '../api/http';
 import type { Robot, Session } from '../api/types';
@@ -14,35 +14,35 @@ import { TimeTravel, type TravelEvents } from './time_travel';
 import { ServerWeaver } from './weaver';
 import * as words from './words';
 
-/** How often is looked for scans that came since. */
+/** Time between two requests for new scans. */
 const kGrowthPace: Pace = { visibleMs: 1_000, hiddenMs: 10_000 };
 
 export interface HistoryState {
-  /** Empty until it is known up to the present. */
+  /** Empty until all scans up to the present are loaded. */
   timeline: Timeline;
   isKnown: boolean;
-  /** How much of it has come by then, 0 to 1. */
+  /** Loaded part of the scans, 0 to 1. */
   share: number;
-  /** The scan that is asked for; null: the present. */
+  /** The selected scan; null: the present. */
   index: number | null;
-  /** The scan that the map ends with; null: it is that of the present. */
+  /** The last scan of the shown map; null: the present. */
   shown: number | null;
   isPlaying: boolean;
   speed: number;
-  /** Entries of the log that are woven, of how many, when it takes long. */
-  progress: { woven: number; until: number } | null;
-  /** What goes wrong, in a sentence; empty: nothing. */
+  /** Log entries applied so far and in total, if the computation takes long. */
+  progress: { applied: number; until: number } | null;
+  /** The current error as a sentence; empty: none. */
   trouble: string;
 }
 
 const kAtFirst = { isKnown: false, share: 0, index: null, shown: null, isPlaying: false, progress: null, trouble: '' };
 
-/** While somebody looks at the history. */
+/** While the time bar is open. */
 interface Visit {
   session: Session;
   state: HistoryState;
   player: Player;
-  /** The scan from where playing begins, as soon as the map is there; null: it is under way. */
+  /** The scan at which playback starts when the map has loaded; null: it is playing or paused. */
   startAt: number | null;
   travel: TimeTravel;
   leave: AbortController;
@@ -57,11 +57,11 @@ export class SessionHistory {
     private readonly viewer: Viewer,
     private readonly picture: Picture,
   ) {
-    // Another session, or the same made anew, has another past.
+    // Another session, or a recreated one, has another history.
     viewer.listen(() => this.close());
   }
 
-  /** Called whenever something is otherwise; null: it is closed. */
+  /** Calls the listener after every change; with null when the history is closed. */
   listen(listener: (state: HistoryState | null) => void): void {
     this.listeners.push(listener);
   }
@@ -81,20 +81,20 @@ export class SessionHistory {
     const weaver = new ServerWeaver(session, session.cellSize, () => this.picture.layersOfSession(), leave.signal);
     const travel = new TimeTravel(weaver, this.travelEvents(), leave.signal, kTimer);
     this.visit = { session, state, player, startAt: null, travel, leave };
-    this.tell();
+    this.notify();
     this.follow(this.visit, timeline);
   }
 
-  /** Back to the present, and out of sight. */
+  /** Returns to the present and closes the history. */
   close(): void {
     if (!this.visit) return;
     this.goLive();
     this.visit.leave.abort();
     this.visit = null;
-    this.tell();
+    this.notify();
   }
 
-  /** To that scan, from where playing goes on if it plays. */
+  /** Selects that scan; playback continues from there. */
   seek(index: number): void {
     if (!this.visit || this.visit.state.timeline.count === 0) return;
     const { player, state } = this.visit;
@@ -103,7 +103,7 @@ export class SessionHistory {
     this.goTo(to);
   }
 
-  /** So many scans further on; playing ends. */
+  /** Moves on by this many scans; ends playback. */
   step(scans: number): void {
     if (!this.visit) return;
     const { player, state } = this.visit;
@@ -113,7 +113,7 @@ export class SessionHistory {
     this.seek(from + scans);
   }
 
-  /** From the end or from the present it begins at the beginning. */
+  /** Playback starts at the first scan when the last scan or the present is selected. */
   togglePlaying(): void {
     if (!this.visit || this.visit.state.timeline.count === 0) return;
     const { player, state } = this.visit;
@@ -139,7 +139,7 @@ export class SessionHistory {
     this.change({ speed });
   }
 
-  /** The map as it is now. */
+  /** Shows the live map. */
   goLive(): void {
     if (!this.visit) return;
     this.visit.player.pause();
@@ -148,7 +148,7 @@ export class SessionHistory {
     this.change({ index: null, shown: null, isPlaying: false, progress: null, trouble: '' });
   }
 
-  /** At most once a frame, and only while anybody can see it. */
+  /** At most once per frame, and only while the page is visible. */
   private tick(): void {
     if (!this.visit?.player.isPlaying) return;
     const { player, state, startAt } = this.visit;
@@ -178,7 +178,7 @@ export class SessionHistory {
   private travelEvents(): TravelEvents {
     return {
       arrived: (revision, source) => this.show(revision, source),
-      weaving: (woven, until) => this.change({ progress: { woven, until }, trouble: '' }),
+      weaving: (applied, until) => this.change({ progress: { applied, until }, trouble: '' }),
       failed: (error, trying) => {
         if (!trying) this.visit?.player.pause();
         const isPlaying = this.visit?.player.isPlaying ?? false;
@@ -205,13 +205,13 @@ export class SessionHistory {
     this.change({ shown, progress: null, trouble: '' });
   }
 
-  /** Fetches the scans, and those that come while somebody looks. */
+  /** Loads the scans, then new ones while the time bar is open. */
   private follow({ session, state, leave }: Visit, timeline: Timeline): void {
     const newest = (): number => this.viewer.session?.revision ?? 0;
     const source: PastSource = {
       fetchAfter: (revision, signal) => fetchHistory(session.name, revision, signal),
       loading: (share) => this.change({ share, trouble: '' }),
-      // Shown only now: its oldest part would be taken for the whole.
+      // The scans appear only when complete: their oldest part would look like the whole.
       loaded: () => this.change(state.isKnown ? {} : { timeline, isKnown: true, trouble: '' }),
     };
     const loader = new PastLoader(timeline, newest, source);
@@ -221,17 +221,17 @@ export class SessionHistory {
       if (error === null) return;
       const trying = isPassing(error);
       if (!state.isKnown) this.change({ trouble: words.troubleOf(error, trying) });
-      if (!trying) giveUp.abort(); // until somebody looks again
+      if (!trying) giveUp.abort(); // until the time bar opens again
     });
   }
 
   private change(change: Partial<HistoryState>): void {
     if (!this.visit) return;
     Object.assign(this.visit.state, change);
-    this.tell();
+    this.notify();
   }
 
-  private tell(): void {
+  private notify(): void {
     for (const listener of this.listeners) listener(this.visit?.state ?? null);
   }
 }

@@ -1,30 +1,32 @@
-/** Fetches the scans of a session page by page, and those that come while somebody looks. */
+/** Fetches the scans of a session page by page, then new ones. */
 import type { TimedTrajectory } from '../api/history';
 import { pagesOf } from '../api/path_pages';
 import type { Timeline } from './timeline';
 
 export interface PastSource {
-  /** The scans after a revision, or the first of them. */
+  /** Fetches the first scans after a revision. */
   fetchAfter(revision: number, signal: AbortSignal): Promise<TimedTrajectory>;
-  /** The present is not reached yet. @param share how much is there, 0 to 1 */
+  /** More pages follow. @param share loaded part, 0 to 1 */
   loading(share: number): void;
-  /** All scans up to the present are there, for the first time or with those that have come since. */
+  /** All scans up to the present are loaded, for the first time or after an update. */
   loaded(): void;
 }
 
 export class PastLoader {
-  /** Up to this revision all is there. */
+  /** The scans are complete up to this revision. */
   private known = 0;
   private isWhole = false;
 
-  /** @param newest the session's revision, as far as it has been heard of */
+  /** @param newest the session's newest known revision */
   constructor(
     private readonly timeline: Pick<Timeline, 'add'>,
     private readonly newest: () => number,
     private readonly source: PastSource,
   ) {}
 
-  /** Up to the present. What has come stays when a later page fails: the next call goes on behind it. */
+  /**
+   * Loads all pages up to the present. Loaded pages stay when a later page fails: the next call continues after them.
+   */
   async load(signal: AbortSignal): Promise<void> {
     const wanted = this.newest();
     if (this.isWhole && wanted <= this.known) return;

@@ -1,9 +1,9 @@
-/** Plays scans back: tells which is due, by a clock that is not its own. */
+/** Plays scans back: computes which scan is due, by a clock from the caller. */
 import type { Timeline } from './timeline';
 
 export const kSpeeds = [1, 2, 5, 10, 20, 50, 100] as const;
 
-/** Where and when it was started. */
+/** Scan and time at which playback started. */
 interface Start {
   played: number;
   clock: number;
@@ -13,7 +13,7 @@ export class Player {
   private start: Start | null = null;
   private times = 10;
 
-  /** @param clock seconds, from whenever it likes */
+  /** @param clock seconds, of any monotonic clock */
   constructor(
     private readonly timeline: Pick<Timeline, 'count' | 'playedOf' | 'indexAtPlayed'>,
     private readonly clock: () => number,
@@ -27,14 +27,14 @@ export class Player {
     return this.times;
   }
 
-  /** While it plays, it goes on from where it is. */
+  /** Changes the speed; playback continues at the current scan. */
   setSpeed(speed: number): void {
     const { start } = this;
     if (start) this.start = { played: this.playedBy(start), clock: this.clock() };
     this.times = speed;
   }
 
-  /** From this scan on; also jumps there while it plays. */
+  /** Starts at this scan; while playing, jumps there. */
   play(from: number): void {
     this.start = { played: this.timeline.playedOf(from), clock: this.clock() };
   }
@@ -44,10 +44,9 @@ export class Player {
   }
 
   /**
-   * The newest scan that is due: whoever asks late skips those between, and is never behind.
-   * With the last one it pauses.
+   * Returns the newest scan that is due. A late call skips scans, so playback does not lag. Pauses at the last scan.
    *
-   * @returns null: it does not play
+   * @returns null: not playing
    */
   due(): number | null {
     if (!this.start) return null;

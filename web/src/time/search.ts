@@ -1,6 +1,6 @@
-/** Places in lists that rise. */
+/** Binary search in increasing lists. */
 
-/** @returns the index of the last value up to this one; -1: all are beyond it */
+/** @returns the index of the last value up to this one; -1: all are greater */
 export function lastUpTo(values: readonly number[], limit: number): number {
   let [from, to] = [0, values.length];
   while (from < to) {

@@ -1,46 +1,46 @@
-/** The way to a moment of the past: one at a time, and of those that are wanted meanwhile only the newest. */
+/** Shows the map of an earlier time: one request at a time; of newer requests only the last is kept. */
 import { isPassing, Refused } from '../api/http';
 import type { Weave } from '../api/weaves';
 import type { MapSource } from '../map/map_source';
 import { backoff } from '../poll';
 import type { Weaver } from './weaver';
 
-/** Most weaves go on from the one before and are there by then. Each question waits longer than the one before. */
+/** Most weaves extend the previous one and are ready by then. Each poll waits longer than the one before. */
 const kAskFirstMs = 15;
 const kAskLastMs = 400;
-/** What takes longer than this is told, and is given up when something earlier is wanted. */
+/** A weave that takes longer reports progress, and is cancelled when an earlier moment is requested. */
 const kLongMs = 300;
-/** Whether the shown maps are still there is asked as often as this, which also keeps them. */
+/** Interval of checks whether the server still has the shown maps; a check also keeps them there. */
 const kKeepMs = 10_000;
 const kRetryMs = 500;
-/** Moments that are kept to go back to: the server keeps a few dozen weaves, which are not all for this. */
+/** Weaves that are kept to return to: the server keeps a few dozen for all users. */
 const kKeptMax = 12;
 
 export interface TravelEvents {
   arrived(revision: number, source: MapSource): void;
-  /** It takes long: entries of the log that are woven, of how many. */
-  weaving(woven: number, until: number): void;
-  /** @param trying whether it is tried again by itself */
+  /** The weave takes long: log entries applied so far and in total. */
+  weaving(applied: number, until: number): void;
+  /** @param trying whether the request is retried automatically */
   failed(error: unknown, trying: boolean): void;
-  /** Nothing is under way any more. */
+  /** No request is pending. */
   rested(): void;
 }
 
 export interface Timer {
-  /** Milliseconds, from whenever it likes. */
+  /** Milliseconds of any monotonic clock. */
   now(): number;
   rest(durationMs: number): Promise<void>;
 }
 
 /** The weave ended without maps. */
-export class Unwoven extends Error {
-  override name = 'Unwoven';
+export class WeaveFailed extends Error {
+  override name = 'WeaveFailed';
 }
 
 export class TimeTravel {
   private wanted: number | null = null;
   private shown: { revision: number; weave: string } | null = null;
-  private underWay = false;
+  private travelling = false;
   /** Weaves of moments that were shown, the newest last. */
   private readonly kept = new Set<string>();
 
@@ -56,19 +56,19 @@ export class TimeTravel {
 
   go(revision: number): void {
     this.wanted = revision;
-    if (!this.underWay) void this.travel();
+    if (!this.travelling) void this.travel();
   }
 
-  /** Nowhere any more: what is under way is given up. */
+  /** Returns to the present: cancels pending requests. */
   stop(): void {
     this.wanted = null;
     this.shown = null;
   }
 
   private async travel(): Promise<void> {
-    this.underWay = true;
+    this.travelling = true;
     let failures = 0;
-    while (this.isOnTheWay()) {
+    while (this.isPending()) {
       const revision = this.wanted ?? 0;
       try {
         await this.reach(revision);
@@ -79,14 +79,14 @@ export class TimeTravel {
         this.events.failed(error, trying);
         if (!trying && this.wanted === revision) this.wanted = this.shown?.revision ?? null;
         failures += 1;
-        if (this.isOnTheWay()) await this.timer.rest(backoff(kRetryMs, failures));
+        if (this.isPending()) await this.timer.rest(backoff(kRetryMs, failures));
       }
     }
-    this.underWay = false;
+    this.travelling = false;
     if (!this.signal.aborted) this.events.rested();
   }
 
-  private isOnTheWay(): boolean {
+  private isPending(): boolean {
     return !this.isOver() && this.wanted !== this.shown?.revision;
   }
 
@@ -106,7 +106,7 @@ export class TimeTravel {
     this.events.arrived(revision, source);
   }
 
-  /** Gives back to the server all but so many, the oldest first. */
+  /** Deletes the oldest weaves on the server, and keeps this many. */
   private forget(keptMax: number): void {
     for (const weave of this.kept) {
       if (this.kept.size <= keptMax) return;
@@ -115,26 +115,26 @@ export class TimeTravel {
     }
   }
 
-  /** @returns null: it was given up, as something else is wanted */
+  /** @returns null: cancelled, because another moment was requested */
   private async weave(revision: number): Promise<Weave | null> {
     const start = this.timer.now();
     let weave = await this.weaver.start(revision);
-    for (let wait = kAskFirstMs; isUnderWay(weave); wait = Math.min(2 * wait, kAskLastMs)) {
+    for (let wait = kAskFirstMs; isUnfinished(weave); wait = Math.min(2 * wait, kAskLastMs)) {
       const isLong = this.timer.now() - start > kLongMs;
       if (this.isOver() || (isLong && (this.wanted ?? revision) < revision)) {
         void this.weaver.cancel(weave.id).catch(() => {});
         return null;
       }
-      if (isLong) this.events.weaving(weave.woven, weave.until);
+      if (isLong) this.events.weaving(weave.applied, weave.until);
       await this.timer.rest(wait);
       weave = await this.weaver.progress(weave.id);
     }
-    if (weave.state === 'failed') throw new Unwoven(weave.reason);
+    if (weave.state === 'failed') throw new WeaveFailed(weave.reason);
     if (weave.state === 'cancelled') throw new Refused(404, weave.reason);
     return weave;
   }
 
-  /** Something of the shown maps cannot be had: they are asked for again, by the same way. */
+  /** Tiles of the shown maps failed: load the moment again. */
   private async lose(error: unknown): Promise<void> {
     if (this.isOver() || this.shown === null) return;
     const trying = mayGoBetter(error);
@@ -142,15 +142,15 @@ export class TimeTravel {
     if (!trying) return;
     this.shown = null;
     await this.timer.rest(kRetryMs);
-    if (!this.underWay) void this.travel();
+    if (!this.travelling) void this.travel();
   }
 
-  /** The server keeps those weaves that were used last. One that is gone nevertheless is woven again. */
+  /** The server keeps the most recently used weaves. A missing one is computed again. */
   private async keep(): Promise<void> {
     while (!this.signal.aborted) {
       await this.timer.rest(kKeepMs);
       const { shown } = this;
-      if (this.signal.aborted || this.underWay || shown === null) continue;
+      if (this.signal.aborted || this.travelling || shown === null) continue;
       try {
         await this.weaver.progress(shown.weave);
       } catch (error) {
@@ -161,11 +161,11 @@ export class TimeTravel {
   }
 }
 
-function isUnderWay({ state }: Weave): boolean {
+function isUnfinished({ state }: Weave): boolean {
   return state === 'waiting' || state === 'weaving';
 }
 
-/** Also when the weave went before it was shown. */
+/** Also called when the weave is gone before it was shown. */
 function mayGoBetter(error: unknown): boolean {
   return isPassing(error) || (error instanceof Refused && error.status === 404);
 }

@@ -1,31 +1,31 @@
-/** The scans of a session one after the other: when each was taken, and where the robots were by then. */
+/** The scans of a session in order: when each was taken, and the robots' poses at that time. */
 import type { TimedTrack } from '../api/history';
 import type { Point, Pose } from '../api/types';
 import { Clocks } from './clocks';
 import { lastUpTo } from './search';
 
-/** So long without a scan is a gap, seconds; it is played in the time below. */
+/** A longer time without a scan is a gap, seconds; playback shortens it to the time below. */
 export const kGapMin = 30;
 const kGapPlayed = 2;
-/** Stamps from here on count from 1970: those of a robot that has run for years are below. */
+/** Stamps from here count from 1970; the uptime of a robot that has run for years is less. */
 const kWallClockMin = 1e8;
 
 /** A time without scans. */
 export interface Gap {
-  /** The scan that ends it. */
+  /** The scan after the gap. */
   index: number;
   /** Seconds. */
   duration: number;
 }
 
-/** Where a robot was, and how it had come there. */
+/** A robot's pose, and its trajectory up to there. */
 export interface Whereabouts {
   robot: string;
   pose: Pose;
   trail: Point[];
   /** Metres travelled. */
   length: number;
-  /** Seconds between its newest scan and the moment that was asked about. */
+  /** Seconds between its newest scan and the requested moment. */
   age: number;
 }
 
@@ -34,31 +34,31 @@ interface Course {
   points: Point[];
   revisions: number[];
   yaws: number[];
-  /** Metres travelled up to each. */
+  /** Metres travelled up to each scan. */
   lengths: number[];
 }
 
 export class Timeline {
   readonly gaps: Gap[] = [];
   private readonly revisions: number[] = [];
-  /** Seconds on the line. */
+  /** Seconds on the time line. */
   private readonly times: number[] = [];
-  /** Seconds that playing takes up to each, at its own speed. */
+  /** Playback time of each scan in seconds, at normal speed. */
   private readonly played: number[] = [];
   private readonly courses = new Map<string, Course>();
   private readonly clocks = new Clocks();
 
-  /** How many scans there are; they are numbered from 0. */
+  /** The number of scans; they are numbered from 0. */
   get count(): number {
     return this.revisions.length;
   }
 
-  /** Whether times are seconds since 1970; otherwise those of a clock that began when it liked. */
+  /** Whether times are seconds since 1970; otherwise they are those of a clock with any origin. */
   get isWallClock(): boolean {
     return (this.times[0] ?? 0) >= kWallClockMin;
   }
 
-  /** What came since; scans that are known already are left aside. */
+  /** Appends scans; ignores those that are known. */
   add(tracks: TimedTrack[]): void {
     const newest = this.revisions.at(-1) ?? -1;
     const scans = tracks.flatMap((track) => track.revisions.map((revision, at) => ({ revision, track, at })));
@@ -79,12 +79,12 @@ export class Timeline {
     return this.timeOf(index) - this.timeOf(0);
   }
 
-  /** Seconds from the beginning when it is played as fast as it was taken, gaps cut short. */
+  /** Playback time in seconds at normal speed, with gaps shortened. */
   playedOf(index: number): number {
     return this.played[index] ?? 0;
   }
 
-  /** The last scan that is due by then. */
+  /** The last scan that is due at that playback time. */
   indexAtPlayed(seconds: number): number {
     return Math.max(0, lastUpTo(this.played, seconds));
   }
@@ -94,7 +94,7 @@ export class Timeline {
     return lastUpTo(this.times, time);
   }
 
-  /** The last scan that is in that revision; -1: none is. */
+  /** The last scan of that revision; -1: none. */
   indexAtRevision(revision: number): number {
     return lastUpTo(this.revisions, revision);
   }
@@ -104,7 +104,7 @@ export class Timeline {
     return this.gaps.find((gap) => gap.index === index)?.duration ?? 0;
   }
 
-  /** Of all robots that had been heard of by that scan. */
+  /** Poses of all robots that had taken a scan by then. */
   whereabouts(index: number): Whereabouts[] {
     const revision = this.revisionOf(index);
     const now = this.timeOf(index);

@@ -1,20 +1,20 @@
-/** Has the server weave maps of earlier times, and fetches what is needed to show them. */
+/** Requests weaves of earlier times, and loads the data that are needed to show them. */
 import type { SessionKey } from '../api/api';
 import { deleteWeave, fetchWeave, startWeave, type Weave } from '../api/weaves';
 import type { LayerName } from '../layers/layers';
 import { ownFamily, WeaveSource, type MapSource } from '../map/map_source';
 
-/** What a journey into the past needs of a server. */
+/** The server requests that showing an earlier time needs. */
 export interface Weaver {
-  /** The maps with the log's entries up to this revision. */
+  /** Requests the maps of the log's entries up to this revision. */
   start(revision: number): Promise<Weave>;
   progress(id: string): Promise<Weave>;
-  /** Gives up one that is not done, or is needed no more. */
+  /** Cancels an unfinished weave, or deletes one. */
   cancel(id: string): Promise<void>;
   /**
-   * Maps that are done: with all that is known of the layers that are looked at now.
+   * Loads a finished weave, with the versions of the layers that are shown now.
    *
-   * @param failed told when later another layer cannot be had
+   * @param failed called when another layer fails to load later
    */
   load(id: string, failed: (error: unknown) => void): Promise<MapSource>;
 }
@@ -35,7 +35,7 @@ export class ServerWeaver implements Weaver {
     return fetchWeave(this.session.name, id, this.signal);
   }
 
-  /** Also when the session is left. */
+  /** Also called when the session is closed. */
   cancel(id: string): Promise<void> {
     return deleteWeave(this.session.name, id, new AbortController().signal);
   }

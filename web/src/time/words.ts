@@ -1,8 +1,8 @@
-/** Moments and times of a session in words. */
+/** Formats moments and durations of a session. */
 import { MalformedAnswer } from '../api/decode';
 import { Refused, Unreachable } from '../api/http';
 import { count } from '../format';
-import { Unwoven } from './time_travel';
+import { WeaveFailed } from './time_travel';
 import type { Timeline } from './timeline';
 
 /** "+01:35", "+1:01:35". */
@@ -22,7 +22,7 @@ export function duration(seconds: number): string {
   return pair(Math.round(minutes / 60), 24, 'd', 'h');
 }
 
-/** "12:03:05 (+01:35)"; only the latter when the robots' clocks tell no time of day. */
+/** "12:03:05 (+01:35)"; only the offset when the robots' clocks have no time of day. */
 export function timeOf(timeline: Timeline, index: number): string {
   const since = elapsed(timeline.sinceStart(index));
   return timeline.isWallClock ? `${timeOfDay(timeline.timeOf(index))} (${since})` : since;
@@ -33,30 +33,31 @@ export function scanOf(timeline: Timeline, index: number): string {
   return `scan ${count(index + 1)} of ${count(timeline.count)}, ${timeOf(timeline, index)}`;
 }
 
-/** Of the scan; empty when the robots' clocks tell none. */
+/** The date of the scan; empty when the robots' clocks have none. */
 export function dateOf(timeline: Timeline, index: number): string {
   if (!timeline.isWallClock) return '';
   return new Date(1000 * timeline.timeOf(index)).toLocaleDateString(undefined, { dateStyle: 'medium' });
 }
 
-/** @param share how much has come, 0 to 1 */
+/** @param share loaded part, 0 to 1 */
 export function loading(share: number): string {
   const percent = Math.floor(100 * share);
   return percent > 0 ? `Loading the history\u2026 ${percent} %` : 'Loading the history\u2026';
 }
 
-/** Why a moment cannot be shown. @param trying whether it is tried again */
+/** Returns why a moment cannot be shown. @param trying whether the request is retried */
 export function troubleOf(error: unknown, trying: boolean): string {
   const again = trying ? ' Trying again.' : '';
   if (error instanceof Unreachable) return `Offline: the server does not answer; the map stays as it is.${again}`;
-  if (error instanceof Refused && error.status === 404) return 'The server has that map no longer: it is woven again.';
+  if (error instanceof Refused && error.status === 404)
+    return 'The server no longer has that map and computes it again.';
   const because = `${reasonOf(error)}.`.replace(/\.\.$/, '.');
   return `That moment cannot be shown; the map stays as it is. ${because}${again}`;
 }
 
 function reasonOf(error: unknown): string {
   if (error instanceof Refused) return `The server reports: ${error.message}`;
-  if (error instanceof Unwoven) return `It could not be woven: ${error.message}`;
+  if (error instanceof WeaveFailed) return `The map could not be computed: ${error.message}`;
   if (error instanceof MalformedAnswer) return `The server's answer cannot be read: ${error.message}`;
   return `Something in this page failed: ${String(error)}`;
 }

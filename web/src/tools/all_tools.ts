@@ -1,4 +1,4 @@
-/** All tools there are. */
+/** Adds all tools. */
 import { byId } from '../dom';
 import type { ToolContext } from './context';
 import { coverageTool } from './coverage';
@@ -10,7 +10,7 @@ import type { Toolbox } from './toolbox';
 import type { Comparison } from './weave/comparison';
 import { weaveTool } from './weave/weave';
 
-/** @param importing told when the import is wanted that needs no map, from beside the list of sessions */
+/** @param importing called to open the import, which needs no map, from the list of sessions */
 export function addTools(toolbox: Toolbox, context: ToolContext, comparison: Comparison, importing: () => void): void {
   const bringIn = importTool();
   toolbox.add(measureTool(context.map, context.target, context.theme));

@@ -1,7 +1,7 @@
-/** Dragging the card of the open tool by its header, so that it covers no place that a person wants to pick. */
+/** Drags the card of the open tool by its header, so that the user can uncover any place. */
 
 /**
- * The card moves within `stage` only: none of it is cut off. On phones the style sheet ignores where it was dragged.
+ * Keeps the card entirely within `stage`. On phones the style sheet ignores the dragged position.
  *
  * @param card   takes the custom properties --dragged-x and --dragged-y
  * @param handle the part of the card to drag it by
@@ -11,7 +11,7 @@ export function makeDraggable(card: HTMLElement, handle: HTMLElement, stage: HTM
   const moveTo = (x: number, y: number): void => {
     const [inner, outer] = [card.getBoundingClientRect(), stage.getBoundingClientRect()];
     if (inner.width === 0) return;
-    // Where the card would be if it had not been dragged.
+    // The position of the card without dragging.
     const [left, top] = [inner.left - at.x, inner.top - at.y];
     at = {
       x: within(x, outer.left - left, outer.right - left - inner.width),
@@ -38,7 +38,7 @@ export function makeDraggable(card: HTMLElement, handle: HTMLElement, stage: HTM
       { signal },
     );
   });
-  // A card or window that changes its size must not leave the card half outside.
+  // After a change of the card's or the window's size, the card must still be entirely visible.
   const resized = new ResizeObserver(() => {
     if (getComputedStyle(card).translate !== 'none') moveTo(at.x, at.y);
   });

@@ -1,4 +1,4 @@
-/** What tools work on. */
+/** The parts of the page that tools use. */
 import type OlMap from 'ol/Map';
 import type { Robot, Session } from '../api/types';
 import type { Picture } from '../picture';
@@ -9,13 +9,13 @@ export interface ToolContext {
   /** The map's element. */
   target: HTMLElement;
   theme: () => Theme;
-  /** The one that is open. */
+  /** The open session. */
   session: () => Session | null;
   robots: () => Robot[];
   picture: Picture;
 }
 
-/** The weave whose maps are seen in the session's place, as when it is shown as it was; null: its own. */
+/** The weave whose maps are shown instead of the session's own, for example for an earlier time; null: none. */
 export function shownWeave({ picture }: ToolContext): string | null {
   return picture.main?.source.weave ?? null;
 }

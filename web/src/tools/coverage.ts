@@ -1,4 +1,4 @@
-/** Plans a path over the free ground of a region, for a robot that sweeps or searches it. */
+/** Plans a coverage path over the free ground of a region. */
 import { requestCoverage, type Coverage } from '../api/coverage';
 import type { Start } from '../api/plan';
 import type { Point } from '../api/types';
@@ -18,7 +18,7 @@ import type { Tool } from './toolbox';
 
 const kBodyRadius = 0.15;
 const kShapes = [
-  ['everything', 'Everything free'],
+  ['everything', 'All free ground'],
   ['box', 'A box'],
   ['polygon', 'A polygon'],
 ] as const;
@@ -29,7 +29,7 @@ export function coverageTool(context: ToolContext): Tool {
     id: 'coverage',
     title: 'Coverage',
     key: 'c',
-    does: 'plans a path over the free ground of a region',
+    does: 'plans a coverage path over the free ground of a region',
     icon: 'M2.5 3h11v3.3h-11v3.4h11V13h-11',
     open: (card, signal) => void new CoverageCard(context, card, signal),
   };
@@ -41,7 +41,7 @@ class CoverageCard {
   private readonly region: Region;
   private readonly shape = selectOf('region', kShapes);
   private readonly start: StartSelect;
-  private readonly startTold = el('output');
+  private readonly startText = el('output');
   private readonly bodyRadius = numberInput('body_radius', kBodyRadius, { min: 0, max: 5 });
   private readonly spacing = numberInput('spacing', null, { min: 0, max: 10, empty: 'two body radii' });
   private readonly close = button('Close the outline', () => this.endOutline());
@@ -52,7 +52,7 @@ class CoverageCard {
   private readonly outcome = new Outcome();
   private readonly layer: CoverageLayer;
   private readonly marks: Marks;
-  private readonly asking: NewestOnly;
+  private readonly task: NewestOnly;
 
   constructor(
     private readonly context: ToolContext,
@@ -63,7 +63,7 @@ class CoverageCard {
     this.layer = new CoverageLayer(context, signal);
     this.region = new Region(context, signal);
     this.marks = new Marks(context, signal, (_letter, place) => this.putStart(place));
-    this.asking = new NewestOnly(
+    this.task = new NewestOnly(
       signal,
       (busy) => this.showBusy(busy),
       (error) => this.refuse(error),
@@ -87,7 +87,7 @@ class CoverageCard {
         'div',
         { class: 'tool-place' },
         el('span', { class: 'tool-letter' }, kStartLetter),
-        this.startTold,
+        this.startText,
         button('Choose', () => this.beginStart(), { 'aria-label': 'Choose the start' }),
       ),
       labelled('Body radius, m', this.bodyRadius),
@@ -96,7 +96,7 @@ class CoverageCard {
     );
     form.addEventListener('submit', (event) => {
       event.preventDefault();
-      this.ask();
+      this.submit();
     });
     this.shape.addEventListener('change', () => this.beginOutline());
     this.start.element.addEventListener('change', () => this.chooseStart());
@@ -143,15 +143,15 @@ class CoverageCard {
     this.guide();
   }
 
-  /** Tells what there is, and what is needed next. */
+  /** Shows the current input, and the next step. */
   private guide(): void {
     const place = this.startPlace;
     const chosen = place ? `x ${format.decimal(place[0], 2)}, y ${format.decimal(place[1], 2)} m` : 'not chosen yet';
-    setText(this.startTold, this.start.robot ?? chosen);
+    setText(this.startText, this.start.robot ?? chosen);
     this.close.hidden = !(this.region.drawing && this.shape.value === 'polygon');
     this.close.disabled = !this.region.closable;
     this.redraw.hidden = this.region.outline === null;
-    this.outcome.say(this.advice());
+    this.outcome.report(this.advice());
   }
 
   private advice(): string {
@@ -162,7 +162,7 @@ class CoverageCard {
     return `${pickSentence('the corners of the polygon')} ${close}`;
   }
 
-  private ask(): void {
+  private submit(): void {
     const session = this.context.session();
     const start: Start | null = this.start.robot === null ? this.startPlace : { robot: this.start.robot };
     if (this.region.closable) this.endOutline();
@@ -175,20 +175,20 @@ class CoverageCard {
       bodyRadius: this.bodyRadius.valueAsNumber,
       spacing: numberOf(this.spacing),
     };
-    this.asking.run(async (signal) => {
+    this.task.run(async (signal) => {
       this.show(await requestCoverage(session.name, shownWeave(this.context), request, signal));
     });
   }
 
   private giveUp(): void {
-    this.asking.stop();
-    this.outcome.say('Given up.');
+    this.task.stop();
+    this.outcome.report('Cancelled.');
     this.find.focus();
   }
 
   private showBusy(busy: boolean): void {
     this.cancel.hidden = !busy;
-    if (busy) this.outcome.say('Planning the path\u2026');
+    if (busy) this.outcome.report('Planning the path\u2026');
   }
 
   private show(coverage: Coverage): void {
@@ -201,7 +201,7 @@ class CoverageCard {
         ['Length', format.distance(coverage.length)],
       ]),
     );
-    this.outcome.say('Path found.');
+    this.outcome.report('Path found.');
   }
 
   private refuse(error: unknown): void {

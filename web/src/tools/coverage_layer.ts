@@ -1,4 +1,4 @@
-/** A way over all ground of a region, and the ground that it leaves out, hatched. */
+/** Draws a coverage path, and the ground that it does not reach, hatched. */
 import Feature from 'ol/Feature';
 import LineString from 'ol/geom/LineString';
 import MultiPolygon from 'ol/geom/MultiPolygon';
@@ -14,27 +14,27 @@ import type { ToolContext } from './context';
 const kHatchPx = 8;
 
 export class CoverageLayer {
-  private readonly way = new Feature<LineString>();
+  private readonly path = new Feature<LineString>();
   private readonly rest = new Feature<MultiPolygon>();
 
   constructor({ map, theme }: ToolContext, signal: AbortSignal) {
     const layer = new VectorLayer({
-      source: new VectorSource({ features: [this.rest, this.way] }),
-      style: (feature) => (feature === this.way ? wayStyles(theme().way, theme().halo) : restStyle(theme().warn)),
-      zIndex: kOrder.ways,
+      source: new VectorSource({ features: [this.rest, this.path] }),
+      style: (feature) => (feature === this.path ? pathStyles(theme().path, theme().halo) : restStyle(theme().warn)),
+      zIndex: kOrder.paths,
     });
     map.addLayer(layer);
     signal.addEventListener('abort', () => map.removeLayer(layer));
   }
 
-  /** Null: nothing. */
+  /** Null: draws nothing. */
   show(coverage: Coverage | null): void {
-    this.way.setGeometry(coverage ? new LineString(coverage.points) : undefined);
+    this.path.setGeometry(coverage ? new LineString(coverage.points) : undefined);
     this.rest.setGeometry(coverage ? new MultiPolygon(coverage.unreachable) : undefined);
   }
 }
 
-function wayStyles(colour: string, halo: string): Style[] {
+function pathStyles(colour: string, halo: string): Style[] {
   return [
     new Style({ stroke: new Stroke({ color: halo, width: 3.5, lineJoin: 'round' }) }),
     new Style({ stroke: new Stroke({ color: colour, width: 1.5, lineJoin: 'round' }) }),
@@ -48,7 +48,7 @@ function restStyle(colour: string): Style {
   });
 }
 
-/** Slanting lines. */
+/** Diagonal lines. */
 function hatched(colour: string): CanvasPattern | string {
   const tile = document.createElement('canvas');
   tile.width = tile.height = kHatchPx;

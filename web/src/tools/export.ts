@@ -1,4 +1,6 @@
-/** What is seen, as files: maps for programs and for people, paths, frontiers, logs, and a picture of the screen. */
+/**
+ * Exports the visible data as files: maps for programs and for people, trajectories, frontiers, logs, and a screenshot.
+ */
 import {
   checkFile,
   fetchFile,
@@ -25,20 +27,20 @@ import { saveBlob, saveFrom } from './save_file';
 import { screenPicture } from './screen_picture';
 import type { Tool } from './toolbox';
 
-/** So many cells the server puts into one file; of CSV and NPY it may be fewer. */
+/** Maximum number of cells in one file of the server; CSV and NPY may allow fewer. */
 const kCellsMax = 64_000_000;
 const kMegabyte = 1_000_000;
 
-/** A file on offer. */
+/** A file that can be downloaded. */
 interface Offer {
   label: string;
-  /** What it is good for. */
+  /** Description of its use. */
   note: string;
   file: string;
   path: string;
-  /** It has no bound: the browser fetches it by itself. */
+  /** Its length is unlimited: the browser downloads it. */
   endless?: true;
-  /** It comes in pages: the session whose paths it is. */
+  /** The session whose trajectories are read page by page. */
   pathsOf?: string;
 }
 
@@ -47,7 +49,7 @@ export function exportTool(context: ToolContext): Tool {
     id: 'export',
     title: 'Export',
     key: 'e',
-    does: 'saves what is seen as files',
+    does: 'saves the visible maps and logs as files',
     icon: 'M7.5 2.5h-5v11h5M6.5 8h8M11.5 5l3 3-3 3',
     open: (card, signal) => void new ExportCard(context, card, signal),
   };
@@ -56,15 +58,15 @@ export function exportTool(context: ToolContext): Tool {
 class ExportCard {
   private readonly side = selectOf('side', [
     ['main', 'The map'],
-    ['beside', 'The second side'],
+    ['second', 'The second side'],
   ]);
   private readonly layer = selectOf(
     'layer',
     kLayers.map((layer) => [layer, kLayerTitles[layer]] as const),
   );
   private readonly extent = selectOf('extent', [
-    ['all', 'All that was seen'],
-    ['view', 'What is in view'],
+    ['all', 'The whole map'],
+    ['view', 'The visible part'],
   ]);
   private readonly size = el('p', { class: 'quiet' });
   private readonly sideRow = labelled('Of', this.side);
@@ -86,7 +88,7 @@ class ExportCard {
     const rows = [this.sideRow, labelled('Layer', this.layer), labelled('Part', this.extent)];
     const form = el('form', { class: 'tool-form' }, ...rows);
     form.addEventListener('change', () => this.update());
-    const screen = button('Picture of the screen', () => this.saveScreen());
+    const screen = button('Screenshot', () => this.saveScreen());
     card.append(form, this.size, this.files, screen, this.outcome.element);
     const update = (): void => this.update();
     map.on('moveend', update);
@@ -96,9 +98,9 @@ class ExportCard {
     this.followLayer();
   }
 
-  /** The layer that is shown is the one that is meant, until another is chosen. */
+  /** The shown layer is selected until the user selects another one. */
   private followLayer(): void {
-    const shown = this.side.value === 'beside' ? this.context.picture.beside : this.context.picture.main;
+    const shown = this.side.value === 'second' ? this.context.picture.second : this.context.picture.main;
     if (shown) this.layer.value = shown.layer;
     this.update();
   }
@@ -106,9 +108,9 @@ class ExportCard {
   private update(): void {
     const { picture } = this.context;
     const session = this.context.session();
-    this.sideRow.hidden = picture.beside === null;
-    if (picture.beside === null) this.side.value = 'main';
-    const source = (this.side.value === 'beside' ? picture.beside : picture.main)?.source;
+    this.sideRow.hidden = picture.second === null;
+    if (picture.second === null) this.side.value = 'main';
+    const source = (this.side.value === 'second' ? picture.second : picture.main)?.source;
     if (!session || !source) return;
     const query = this.query(source);
     setText(this.size, this.describeSize(session, source, query));
@@ -137,14 +139,14 @@ class ExportCard {
     if (across === undefined || up === undefined) return '';
     const text = `About ${format.count(across)} \u00d7 ${format.count(up)} cells of ${format.cellSize(cellSize)}.`;
     if (across * up <= kCellsMax) return text;
-    return `${text} That is more than the server puts into one file: zoom in and choose what is in view.`;
+    return `${text} That exceeds the server\u2019s limit for one file: zoom in and choose the visible part.`;
   }
 
   private row(offer: Offer): HTMLElement {
     const { label, note, path, file } = offer;
     const link = el('a', { href: path, download: file }, label);
     link.addEventListener('click', (event) => {
-      // With a modifier the browser does with the link what the person wants of it.
+      // With a modifier key, the browser handles the click.
       if (event.ctrlKey || event.metaKey || event.shiftKey || event.altKey) return;
       event.preventDefault();
       this.save(offer);
@@ -154,19 +156,19 @@ class ExportCard {
 
   private save({ label, file, path, endless, pathsOf }: Offer): void {
     this.fetching.run(async (signal) => {
-      this.outcome.say(`The server makes ${label}\u2026`);
+      this.outcome.report(`The server creates ${label}\u2026`);
       if (endless) {
         await checkFile(path, signal);
         saveFrom(path, file);
-        this.outcome.say(`The browser fetches ${file}.`);
+        this.outcome.report(`The browser downloads ${file}.`);
         return;
       }
-      const progress = (bytes: number): void => this.outcome.say(`${file}: ${megabytes(bytes)}\u2026`);
+      const progress = (bytes: number): void => this.outcome.report(`${file}: ${megabytes(bytes)}\u2026`);
       const blob = await (pathsOf === undefined
         ? fetchFile(path, signal, progress)
         : fetchPathFile(pathsOf, signal, progress));
       saveBlob(blob, file);
-      this.outcome.say(`Saved ${file}, ${megabytes(blob.size)}.`);
+      this.outcome.report(`Saved ${file}, ${megabytes(blob.size)}.`);
     });
   }
 
@@ -175,7 +177,7 @@ class ExportCard {
     const file = `${session()?.name ?? 'map'}-screen.png`;
     this.fetching.run(async () => {
       saveBlob(await screenPicture(map, target, theme().halo), file);
-      if (!this.signal.aborted) this.outcome.say(`Saved ${file}.`);
+      if (!this.signal.aborted) this.outcome.report(`Saved ${file}.`);
     });
   }
 }
@@ -189,29 +191,29 @@ function offersOf(session: string, query: MapQuery): Offer[] {
   });
   return [
     map('png', 'PNG', 'grey levels or colours', `${base}.png`),
-    // The description names the image: these two keep their names.
+    // The YAML file names the image: these two keep their names.
     map('pgm', 'PGM', 'image for ROS, as map.pgm', 'map.pgm'),
     map('yaml', 'YAML', 'goes with the PGM, as map.yaml', 'map.yaml'),
-    map('csv', 'CSV', 'a number for each cell', `${base}.csv`),
+    map('csv', 'CSV', 'one number per cell', `${base}.csv`),
     map('npy', 'NPY', 'for NumPy', `${base}.npy`),
     {
-      ...{ label: 'Paths (GeoJSON)', note: 'where the robots were on the whole run, metres' },
+      ...{ label: 'Trajectories (GeoJSON)', note: 'all positions of the robots, metres' },
       ...{ file: `${session}-trajectory.geojson`, path: trajectoryPath(session), pathsOf: session },
     },
     {
-      ...{ label: 'Frontiers (GeoJSON)', note: 'ends of the explored ground' },
+      ...{ label: 'Frontiers (GeoJSON)', note: 'borders of the explored ground' },
       ...{ file: `${session}-frontiers.geojson`, path: frontiersPath(session, weave) },
     },
     {
-      ...{ label: 'Landmarks (GeoJSON)', note: 'things that robots saw, metres' },
+      ...{ label: 'Landmarks (GeoJSON)', note: 'landmarks that robots observed, metres' },
       ...{ file: `${session}-landmarks.geojson`, path: landmarksPath(session) },
     },
     {
-      ...{ label: 'Points (CSV)', note: 'what robots saw, as one cloud, metres' },
+      ...{ label: 'Points (CSV)', note: 'all scans as one point cloud, metres' },
       ...{ file: `${session}-points.csv`, path: pointsPath(session, 'csv') },
     },
     {
-      ...{ label: 'Points (PLY)', note: 'the same, for programs that show clouds' },
+      ...{ label: 'Points (PLY)', note: 'the same point cloud for 3D programs' },
       ...{ file: `${session}-points.ply`, path: pointsPath(session, 'ply') },
     },
     {
@@ -219,7 +221,7 @@ function offersOf(session: string, query: MapQuery): Offer[] {
       ...{ path: logPath(session, 'clf'), endless: true },
     },
     {
-      ...{ label: 'Protobuf log', note: 'all scans as they came', file: `${session}.scanlog` },
+      ...{ label: 'Protobuf log', note: 'all scans as received', file: `${session}.scanlog` },
       ...{ path: logPath(session, 'protobuf'), endless: true },
     },
   ];

@@ -1,15 +1,15 @@
-/** Fields of the tools' forms, each with its label. */
+/** Form fields of the tools, each with its label. */
 import { el } from '../dom';
 
 let made = 0;
 
-/** A name for a label to point at. */
+/** An element id for a label to refer to. */
 function freshId(): string {
   made += 1;
   return `field-${made}`;
 }
 
-/** A label beside what it is for. */
+/** A label next to its control. */
 export function labelled(label: string, control: HTMLElement): HTMLElement {
   if (control.id === '') control.id = freshId();
   return el('div', { class: 'tool-row' }, el('label', { for: control.id }, label), control);
@@ -22,7 +22,7 @@ export function choice(label: string, box: HTMLInputElement): HTMLElement {
 export interface NumberLimits {
   min: number;
   max: number;
-  /** Empty is an answer, too: what stands here then. */
+  /** Placeholder, for a field that may be empty. */
   empty?: string;
 }
 
@@ -34,7 +34,7 @@ export function numberInput(name: string, value: number | null, { min, max, empt
   return input;
 }
 
-/** Null when it is empty, which it may be only where it was given leave to. */
+/** Returns null when the field is empty, which only fields with a placeholder may be. */
 export function numberOf(input: HTMLInputElement): number | null {
   return input.value === '' ? null : input.valueAsNumber;
 }
@@ -57,7 +57,7 @@ export function button(label: string, run: () => void, attributes: Record<string
   return made;
 }
 
-/** Numbers with their names, as a list for the eyes and for screen readers. */
+/** Numbers with their names, as a list that screen readers can read. */
 export function figures(rows: [name: string, value: string][]): HTMLElement {
   return el(
     'dl',

@@ -1,4 +1,4 @@
-/** A new session from a ROS map: its description and its image, chosen or dropped on the page. */
+/** Creates a session from a ROS map: its description and its image, chosen or dropped on the page. */
 import { hashOfSession } from '../address';
 import { importMap, type RosMap } from '../api/import';
 import { el, setText } from '../dom';
@@ -9,7 +9,7 @@ import { Outcome } from './outcome';
 import { kRayModels } from './ray_models';
 import type { Tool } from './toolbox';
 
-/** As the server has it. */
+/** The server's limit. */
 const kNamePattern = '[A-Za-z0-9_\\-]{1,64}';
 const kNameLengthMax = 64;
 const kMegabyte = 1_000_000;
@@ -31,20 +31,20 @@ class ImportCard {
   private readonly image = el('input', { type: 'file', name: 'image', accept: '.pgm,.png', required: '' });
   private readonly name = el('input', { type: 'text', name: 'name', pattern: kNamePattern, required: '' });
   private readonly settings = [
-    numberInput('cell_size', null, { min: 0.01, max: 1, empty: 'as the map' }),
-    numberInput('p_occupied', null, { min: 0.5, max: 1, empty: 'as usual' }),
-    numberInput('p_free', null, { min: 0, max: 0.5, empty: 'as usual' }),
-    selectOf('ray_model', [['', 'As usual'], ...kRayModels]),
+    numberInput('cell_size', null, { min: 0.01, max: 1, empty: 'from the map' }),
+    numberInput('p_occupied', null, { min: 0.5, max: 1, empty: 'default' }),
+    numberInput('p_free', null, { min: 0, max: 0.5, empty: 'default' }),
+    selectOf('ray_model', [['', 'Default'], ...kRayModels]),
   ];
   private readonly send = el('button', { class: 'tool-button primary' }, 'Import');
   private readonly cancel = button('Cancel', () => this.giveUp());
   private readonly progress = el('progress', { 'aria-label': 'Import' });
   private readonly outcome = new Outcome();
-  private readonly asking: NewestOnly;
+  private readonly task: NewestOnly;
   private nameIsOwn = false;
 
   constructor(card: HTMLElement, signal: AbortSignal) {
-    this.asking = new NewestOnly(
+    this.task = new NewestOnly(
       signal,
       (busy) => this.showBusy(busy),
       (error) => this.outcome.complain(error),
@@ -80,7 +80,7 @@ class ImportCard {
     );
     form.addEventListener('submit', (event) => {
       event.preventDefault();
-      this.ask();
+      this.submit();
     });
     this.yaml.addEventListener('change', () => this.proposeName());
     this.image.addEventListener('change', () => this.proposeName());
@@ -90,7 +90,7 @@ class ImportCard {
     card.append(el('p', {}, help), form, this.outcome.element);
   }
 
-  /** Anywhere on the page: a file that misses the card must not take the page's place. */
+  /** Accepts drops anywhere on the page: a file that misses the card must not replace the page. */
   private takeDrops(card: HTMLElement, signal: AbortSignal): void {
     document.addEventListener(
       'dragover',
@@ -127,7 +127,7 @@ class ImportCard {
     if (file && !this.nameIsOwn) this.name.value = nameFrom(file.name);
   }
 
-  private ask(): void {
+  private submit(): void {
     const yaml = this.yaml.files?.[0];
     const image = this.image.files?.[0];
     if (!yaml || !image) return;
@@ -135,17 +135,17 @@ class ImportCard {
     const given = this.settings.filter(({ value }) => value !== '').map(({ name, value }) => [name, value]);
     const settings = Object.fromEntries(given) as Record<string, string>;
     const size = ((yaml.size + image.size) / kMegabyte).toFixed(1);
-    this.asking.run(async (signal) => {
-      this.outcome.say(`Sending ${size} MB, then the server reads the map\u2026`);
+    this.task.run(async (signal) => {
+      this.outcome.report(`Sending ${size} MB, then the server reads the map\u2026`);
       const session = await importMap(this.name.value, map, settings, signal);
-      this.outcome.say(`The session ${session.name} is there.`);
+      this.outcome.report(`The session ${session.name} was created.`);
       location.hash = hashOfSession(session.name);
     });
   }
 
   private giveUp(): void {
-    this.asking.stop();
-    this.outcome.say('Given up. The session may be there all the same, if the server was quicker.');
+    this.task.stop();
+    this.outcome.report('Cancelled. The server may already have created the session.');
     this.send.focus();
   }
 
@@ -162,7 +162,7 @@ function put(field: HTMLInputElement, file: File): void {
   field.files = files.files;
 }
 
-/** "Lab 3.yaml" -> "Lab-3": what the server takes as a name. */
+/** "Lab 3.yaml" -> "Lab-3": a valid session name. */
 export function nameFrom(file: string): string {
   const base = file.replace(/\.[^.]*$/, '').normalize('NFKD');
   return base

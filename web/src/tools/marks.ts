@@ -1,4 +1,4 @@
-/** Places that a tool works with, each with its letter; they can be dragged. */
+/** Lettered marks at the places of a tool; they can be dragged. */
 import Collection from 'ol/Collection';
 import Feature from 'ol/Feature';
 import PointGeometry from 'ol/geom/Point';
@@ -15,13 +15,13 @@ import { kOrder } from '../map/order';
 import type { Theme } from '../theme';
 import type { ToolContext } from './context';
 
-/** So many pixels beside it, a finger still means the mark. */
+/** Touch tolerance around a mark, pixels. */
 const kReachPx = 10;
 
 export class Marks {
   private readonly features = new Collection<Feature<PointGeometry>>();
 
-  /** @param moved told of a mark that was dragged to another place, metres */
+  /** @param moved called when a mark was dragged, with its new place in metres */
   constructor({ map, theme }: ToolContext, signal: AbortSignal, moved: (letter: string, place: Point) => void) {
     const source = new VectorSource({ features: this.features });
     const style = (feature: { get(key: string): unknown }): Style => styleOf(String(feature.get('letter')), theme());
@@ -41,7 +41,7 @@ export class Marks {
     });
   }
 
-  /** Null: nowhere. */
+  /** Null: removes the mark. */
   put(letter: string, place: Point | null): void {
     const known = this.features.getArray().find((each) => each.get('letter') === letter);
     if (known && place) known.getGeometry()?.setCoordinates(place);

@@ -1,4 +1,4 @@
-/** Distances on the map: the length of a line through the places that a person picks. */
+/** Measures distances on the map: the length of a line through the places that the user picks. */
 import Feature from 'ol/Feature';
 import LineString from 'ol/geom/LineString';
 import VectorLayer from 'ol/layer/Vector';

@@ -1,11 +1,11 @@
-/** One task at a time: a newer one, or the end of the tool, gives up the one before. */
+/** Runs one task at a time: a newer task, or the end of the tool, aborts the previous one. */
 
 export class NewestOnly {
   private now: AbortController | null = null;
 
   /**
-   * @param changed told whether a task is under way
-   * @param failed told what went wrong, unless the task was given up
+   * @param changed called with whether a task is running
+   * @param failed called with the error of a task that was not aborted
    */
   constructor(
     private readonly signal: AbortSignal,

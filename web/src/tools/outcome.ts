@@ -1,4 +1,4 @@
-/** How a tool tells what it does and what went wrong, to eyes and to screen readers. */
+/** Shows a tool's state and errors, also to screen readers. */
 import { MalformedAnswer } from '../api/decode';
 import { Refused, Unreachable } from '../api/http';
 import { el, setText } from '../dom';
@@ -8,7 +8,7 @@ export class Outcome {
   private readonly trouble = el('p', { role: 'alert', class: 'tool-trouble' });
   readonly element = el('div', { class: 'tool-outcome' }, this.state, this.trouble);
 
-  say(sentence: string): void {
+  report(sentence: string): void {
     setText(this.trouble, '');
     setText(this.state, sentence);
   }
@@ -19,7 +19,7 @@ export class Outcome {
   }
 }
 
-/** The server's own sentence where it has one. */
+/** Uses the server's message where there is one. */
 export function sentenceOf(error: unknown): string {
   if (error instanceof Refused) return ended(error.message);
   if (error instanceof Unreachable) return ended(`Offline: ${error.message}`);

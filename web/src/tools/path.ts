@@ -1,9 +1,9 @@
-/** Plans a path from one place to another for a robot of some size. */
+/** Plans a path from one place to another for a robot of a given size. */
 import Feature from 'ol/Feature';
 import LineString from 'ol/geom/LineString';
 import VectorLayer from 'ol/layer/Vector';
 import VectorSource from 'ol/source/Vector';
-import { requestPlan, type Start, type Way } from '../api/plan';
+import { requestPlan, type Start, type PlannedPath } from '../api/plan';
 import type { Point } from '../api/types';
 import { el, setText } from '../dom';
 import * as format from '../format';
@@ -20,7 +20,7 @@ import { pickPlaces } from './pick_places';
 import { StartSelect } from './start_select';
 import type { Tool } from './toolbox';
 
-/** How often it is looked whether the map has grown. */
+/** Interval of checks whether the map has grown. */
 const kWatchMs = 1_000;
 const kBodyRadius = 0.15;
 
@@ -41,9 +41,9 @@ const kLetters: Record<End, string> = { from: 'A', to: 'B' };
 
 class PathCard {
   private readonly places: Record<End, Point | null> = { from: null, to: null };
-  private readonly told: Record<End, HTMLElement> = { from: el('output'), to: el('output') };
+  private readonly placeTexts: Record<End, HTMLElement> = { from: el('output'), to: el('output') };
   private next: End = 'from';
-  private way: Way | null = null;
+  private path: PlannedPath | null = null;
   private readonly start: StartSelect;
   private readonly bodyRadius = numberInput('body_radius', kBodyRadius, { min: 0, max: 5 });
   private readonly dangerCost = numberInput('danger_cost', 1, { min: 0, max: 1000 });
@@ -53,7 +53,7 @@ class PathCard {
   private readonly outcome = new Outcome();
   private readonly line = new LineString([]);
   private readonly marks: Marks;
-  private readonly asking: NewestOnly;
+  private readonly task: NewestOnly;
 
   constructor(
     private readonly context: ToolContext,
@@ -61,12 +61,12 @@ class PathCard {
     private readonly signal: AbortSignal,
   ) {
     this.start = new StartSelect(context.robots);
-    this.asking = new NewestOnly(
+    this.task = new NewestOnly(
       signal,
-      (busy) => busy && this.outcome.say('Planning the path\u2026'),
+      (busy) => busy && this.outcome.report('Planning the path\u2026'),
       (error) => this.refuse(error),
     );
-    this.drawWay();
+    this.drawPath();
     this.marks = new Marks(context, signal, (letter, place) => this.put(letter === kLetters.to ? 'to' : 'from', place));
     this.fill(card);
     pickPlaces(context.map, context.target, signal, (place) => this.pick(place));
@@ -75,12 +75,12 @@ class PathCard {
     this.guide();
   }
 
-  private drawWay(): void {
+  private drawPath(): void {
     const { map, theme } = this.context;
     const layer = new VectorLayer({
       source: new VectorSource({ features: [new Feature(this.line)] }),
-      style: (feature) => pathStyle(feature, theme().way, theme().halo),
-      zIndex: kOrder.ways,
+      style: (feature) => pathStyle(feature, theme().path, theme().halo),
+      zIndex: kOrder.paths,
     });
     map.addLayer(layer);
     this.signal.addEventListener('abort', () => map.removeLayer(layer));
@@ -95,17 +95,17 @@ class PathCard {
       this.placeRow('to', 'Choose the end'),
       labelled('Body radius, m', this.bodyRadius),
       labelled('Cost of danger', this.dangerCost),
-      choice('Through unknown ground, too', this.allowUnknown),
-      choice('Again as the map grows', this.keepUp),
+      choice('Allow unknown ground', this.allowUnknown),
+      choice('Replan as the map grows', this.keepUp),
       el('button', { class: 'tool-button primary' }, 'Plan path'),
     );
     form.addEventListener('submit', (event) => {
       event.preventDefault();
-      this.ask();
+      this.submit();
     });
     form.addEventListener('change', ({ target }) => {
       if (target === this.start.element) this.chooseStart();
-      if (form.checkValidity()) this.ask();
+      if (form.checkValidity()) this.submit();
     });
     card.append(this.outcome.element, this.result, form);
   }
@@ -113,7 +113,7 @@ class PathCard {
   private placeRow(end: End, label: string): HTMLElement {
     const again = button('Choose', () => this.choose(end), { 'aria-label': label });
     const letter = el('span', { class: 'tool-letter' }, kLetters[end]);
-    return el('div', { class: 'tool-place' }, letter, this.told[end], again);
+    return el('div', { class: 'tool-place' }, letter, this.placeTexts[end], again);
   }
 
   private choose(end: End): void {
@@ -137,28 +137,28 @@ class PathCard {
     this.put(end, place);
   }
 
-  /** A place was picked, or dragged elsewhere. */
+  /** A place was picked, or dragged. */
   private put(end: End, place: Point): void {
     this.places[end] = place;
     this.marks.put(kLetters[end], place);
-    this.ask();
+    this.submit();
   }
 
-  /** Tells what there is, and what is needed next. */
+  /** Shows the current input, and the next step. */
   private guide(): void {
     const { from, to } = this.places;
-    setText(this.told.from, this.start.robot ?? (from ? placeText(from) : 'not chosen yet'));
-    setText(this.told.to, to ? placeText(to) : 'not chosen yet');
+    setText(this.placeTexts.from, this.start.robot ?? (from ? placeText(from) : 'not chosen yet'));
+    setText(this.placeTexts.to, to ? placeText(to) : 'not chosen yet');
     const wanted = this.next === 'from' ? 'start' : 'end';
     const known = this.startPlace !== null && to !== null && this.next === 'to';
-    if (!known) this.outcome.say(pickSentence(`the ${wanted} of the path`));
+    if (!known) this.outcome.report(pickSentence(`the ${wanted} of the path`));
   }
 
   private get startPlace(): Start | null {
     return this.start.robot === null ? this.places.from : { robot: this.start.robot };
   }
 
-  private ask(): void {
+  private submit(): void {
     this.guide();
     const session = this.context.session();
     const from = this.startPlace;
@@ -171,45 +171,45 @@ class PathCard {
       bodyRadius: this.bodyRadius.valueAsNumber,
       dangerCost: this.dangerCost.valueAsNumber,
     };
-    this.asking.run(async (signal) => {
+    this.task.run(async (signal) => {
       this.show(await requestPlan(session.name, shownWeave(this.context), request, signal));
     });
   }
 
-  private show(way: Way): void {
-    this.way = way;
-    this.line.setCoordinates(way.points);
+  private show(path: PlannedPath): void {
+    this.path = path;
+    this.line.setCoordinates(path.points);
     const rows: [string, string][] = [
-      ['Length', format.distance(way.length)],
-      [`Cost, danger counting ${1 + this.dangerCost.valueAsNumber}-fold`, format.decimal(way.cost, 2)],
+      ['Length', format.distance(path.length)],
+      [`Cost, danger weighted ${1 + this.dangerCost.valueAsNumber}-fold`, format.decimal(path.cost, 2)],
     ];
-    const save = button('Save the path (GeoJSON)', () => saveWay(this.context.session()?.name ?? 'map', way));
+    const save = button('Save the path (GeoJSON)', () => savePath(this.context.session()?.name ?? 'map', path));
     this.result.replaceChildren(figures(rows), save);
-    this.outcome.say(`Path found. Drag its ends, or ${isTouch() ? 'tap' : 'click'} another end.`);
+    this.outcome.report(`Path found. Drag its ends, or ${isTouch() ? 'tap' : 'click'} another end.`);
   }
 
   private refuse(error: unknown): void {
-    this.way = null;
+    this.path = null;
     this.line.setCoordinates([]);
     this.result.replaceChildren();
     this.outcome.complain(error);
   }
 
-  /** A way is right for the map that it was found on. */
+  /** A path is valid for the revision of the map on which it was planned. */
   private watch(): void {
     const session = this.context.session();
-    const grown = this.way !== null && session !== null && session.revision > this.way.revision;
-    if (!grown || this.asking.busy || shownWeave(this.context) !== null) return;
-    if (this.keepUp.checked) this.ask();
-    else this.outcome.say('The map has grown since this path was planned.');
+    const grown = this.path !== null && session !== null && session.revision > this.path.revision;
+    if (!grown || this.task.busy || shownWeave(this.context) !== null) return;
+    if (this.keepUp.checked) this.submit();
+    else this.outcome.report('The map has grown since this path was planned.');
   }
 }
 
-/** As the server's plan has it: metres of the map's frame. */
-function saveWay(session: string, { points, length, cost, revision }: Way): void {
+/** GeoJSON like the server's plan: metres in the map frame. */
+function savePath(session: string, { points, length, cost, revision }: PlannedPath): void {
   const geometry = { type: 'LineString', coordinates: points };
   const feature = { type: 'Feature', frame_id: 'map', units: 'm', revision, properties: { length, cost }, geometry };
-  saveBlob(new Blob([JSON.stringify(feature)], { type: 'application/geo+json' }), `${session}-way.geojson`);
+  saveBlob(new Blob([JSON.stringify(feature)], { type: 'application/geo+json' }), `${session}-path.geojson`);
 }
 
 function placeText([x, y]: Point): string {

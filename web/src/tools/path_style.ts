@@ -1,4 +1,4 @@
-/** How a line, or an outline, with its corners is drawn on the map. */
+/** Style of a line, or an outline, with its corners on the map. */
 import type { FeatureLike } from 'ol/Feature';
 import LineString from 'ol/geom/LineString';
 import MultiPoint from 'ol/geom/MultiPoint';

@@ -1,4 +1,4 @@
-/** How a laser scan becomes evidence, as the server names it and as the field does. */
+/** The ray models: the server's names and their titles. */
 export const kRayModels = [
   ['inverse_sensor_model', 'Inverse sensor model'],
   ['bresenham', 'Bresenham'],

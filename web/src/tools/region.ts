@@ -1,4 +1,4 @@
-/** A region of the map that a person outlines: everything, a box by two corners, or a polygon. */
+/** A region of the map that the user outlines: everything, a box by two corners, or a polygon. */
 import Feature from 'ol/Feature';
 import LineString from 'ol/geom/LineString';
 import Polygon from 'ol/geom/Polygon';
@@ -12,7 +12,7 @@ import { pathStyle } from './path_style';
 
 export type Shape = 'everything' | 'box' | 'polygon';
 
-/** A corner this near to the last one ends a polygon: the second click of a double click, Enter twice. */
+/** A corner this close to the last one ends a polygon: the second click of a double click, Enter twice. */
 const kSamePx = 6;
 
 export class Region {
@@ -40,17 +40,17 @@ export class Region {
     });
   }
 
-  /** Whether clicks are corners of it now. */
+  /** Whether clicks add corners now. */
   get drawing(): boolean {
     return this.shape !== 'everything' && !this.done;
   }
 
-  /** Whether there are corners enough to end it. */
+  /** Whether there are enough corners to close the outline. */
   get closable(): boolean {
     return this.drawing && this.shape === 'polygon' && this.corners.length > 2;
   }
 
-  /** Null: all there is. */
+  /** Null: everything. */
   get outline(): Point[] | null {
     return this.shape !== 'everything' && this.done ? this.corners : null;
   }
@@ -62,7 +62,7 @@ export class Region {
     this.draw(null);
   }
 
-  /** One more corner. @returns whether that was the last one */
+  /** Adds a corner. @returns whether it was the last one */
   add(corner: Point): boolean {
     const first = this.corners[0];
     const last = this.corners.at(-1);
@@ -85,7 +85,7 @@ export class Region {
     this.draw(null);
   }
 
-  /** @param pointer where the next corner would be */
+  /** @param pointer position of the next corner */
   private draw(pointer: Point | null): void {
     const first = this.corners[0];
     const open = pointer ? [...this.corners, pointer] : this.corners;

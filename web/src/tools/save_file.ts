@@ -1,7 +1,7 @@
-/** Hands a file to the browser, as a click on a link to it does. */
+/** Saves a file by a click on a download link. */
 import { el } from '../dom';
 
-/** Long enough for any browser to have begun. */
+/** Every browser has started the download by then. */
 const kKeepMs = 60_000;
 
 export function saveBlob(blob: Blob, name: string): void {
@@ -10,7 +10,7 @@ export function saveBlob(blob: Blob, name: string): void {
   setTimeout(() => URL.revokeObjectURL(address), kKeepMs);
 }
 
-/** The browser fetches it by itself, however large it is. */
+/** The browser downloads the file itself, whatever its size. */
 export function saveFrom(address: string, name: string): void {
   const link = el('a', { href: address, download: name });
   document.body.append(link);

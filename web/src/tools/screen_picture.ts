@@ -1,4 +1,4 @@
-/** The map as it is on the screen, with all that is drawn on it, as one picture. */
+/** Combines the map and its overlays to one picture. */
 import type OlMap from 'ol/Map';
 
 export async function screenPicture(map: OlMap, target: HTMLElement, background: string): Promise<Blob> {
@@ -20,7 +20,7 @@ export async function screenPicture(map: OlMap, target: HTMLElement, background:
   return blob;
 }
 
-/** OpenLayers keeps a layer's opacity and its place in styles. */
+/** OpenLayers keeps a layer's opacity and position in styles. */
 function draw(context: CanvasRenderingContext2D, layer: HTMLCanvasElement, scale: number): void {
   const { opacity } = (layer.parentElement ?? layer).style;
   context.globalAlpha = opacity === '' ? 1 : Number(opacity);

@@ -1,20 +1,20 @@
-/** Where a way begins: at a place of the map, or where a robot is. */
+/** Selection of a path's start: a place on the map, or a robot's position. */
 import type { Robot } from '../api/types';
 import { el } from '../dom';
 
-/** No robot can have this name. */
+/** A value that is no valid robot name. */
 const kPlace = '';
 
 export class StartSelect {
   readonly element = el('select', { name: 'start' });
 
-  /** @param robots those of now; asked again whenever the list is opened */
+  /** @param robots the current robots; called whenever the list opens */
   constructor(private readonly robots: () => Robot[]) {
     this.fill();
     for (const event of ['focus', 'pointerdown']) this.element.addEventListener(event, () => this.fill());
   }
 
-  /** The chosen robot; null: a place of the map. */
+  /** The chosen robot; null: a place on the map. */
   get robot(): string | null {
     return this.element.value === kPlace ? null : this.element.value;
   }
@@ -23,7 +23,7 @@ export class StartSelect {
     this.element.value = kPlace;
   }
 
-  /** What it is known to be, metres; null where nobody has said. */
+  /** The robot's body radius, metres; null where unknown. */
   get bodyRadius(): number | null {
     return this.robots().find(({ name }) => name === this.robot)?.bodyRadius ?? null;
   }

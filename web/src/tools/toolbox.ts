@@ -1,26 +1,26 @@
-/** Tools that work on the map, one at a time: a button for each, and a card beside the map while it is open. */
+/** Tools that work on the map, one at a time: a button for each, and a card next to the map while it is open. */
 import { byId, el, setText } from '../dom';
 import type { Keys } from '../keys';
 import { makeDraggable } from './card_drag';
 
 export interface Tool {
-  /** Of the button: #tool-ID. */
+  /** Id of the button: #tool-ID. */
   id: string;
   title: string;
   key: string;
-  /** For the list of keys: "measures a distance". */
+  /** For the list of shortcuts: "measures a distance". */
   does: string;
-  /** The path of its sign on a square of 16. */
+  /** The path of its icon in a square of 16. */
   icon: string;
-  /** It needs no map to work on. */
+  /** The tool works without a map. */
   withoutMap?: true;
-  /** Fills the card, and begins to listen to the map until the signal aborts. */
+  /** Fills the card, and listens to the map until the signal aborts. */
   open(card: HTMLElement, signal: AbortSignal): void;
 }
 
 export class Toolbox {
   private readonly fields = {
-    /** Where the buttons go. */
+    /** Container of the buttons. */
     bar: byId('toolbar', HTMLElement),
     card: byId('tool', HTMLElement),
     head: byId('tool-head', HTMLElement),
@@ -34,7 +34,7 @@ export class Toolbox {
 
   constructor(
     private readonly keys: Keys,
-    /** Whether there is a map to work on. */
+    /** Whether a map is shown. */
     private readonly hasMap: () => boolean,
     stage: HTMLElement,
   ) {
@@ -59,7 +59,7 @@ export class Toolbox {
     this.keys.bind({ key: tool.key, does: tool.does, run: () => this.toggle(tool) });
   }
 
-  /** Whatever is open belongs to a session that is left, or another tool takes its place. */
+  /** Closes the tool: its session is closed, or another tool opens. */
   close(): void {
     if (!this.open) return;
     const button = this.buttons.get(this.open);
@@ -71,7 +71,7 @@ export class Toolbox {
     this.fields.card.hidden = true;
   }
 
-  /** Opens it, in the place of another one, or closes it. */
+  /** Opens the tool, replacing another one, or closes it. */
   toggle(tool: Tool): void {
     const wasOpen = this.open === tool;
     this.close();

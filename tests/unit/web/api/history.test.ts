@@ -45,7 +45,14 @@ describe('decoding the history', () => {
 
   it('decodes the progress of a replay job', () => {
     const weave = { id: '0a', state: 'weaving', revision: null, woven: 5, until: { revision: 9, stamp: null } };
-    assert.deepEqual(decodeWeave(weave), { id: '0a', state: 'weaving', woven: 5, until: 9, exclusions: 0, reason: '' });
+    assert.deepEqual(decodeWeave(weave), {
+      id: '0a',
+      state: 'weaving',
+      applied: 5,
+      until: 9,
+      exclusions: 0,
+      reason: '',
+    });
     assert.equal(decodeWeave({ ...weave, state: 'failed', reason: 'no room' }).reason, 'no room');
     assert.throws(() => decodeWeave({ ...weave, state: 'dreaming' }), MalformedAnswer);
     assert.throws(() => decodeWeave({ ...weave, until: 9 }), MalformedAnswer);

@@ -53,7 +53,7 @@ describe('the measurement history', () => {
     const history = new History();
     history.add(at(0, { memoryBytes: 1 }));
     history.add(nothingMeasured(2));
-    assert.ok(history.tells('memoryBytes'));
-    assert.ok(!history.tells('ack'));
+    assert.ok(history.has('memoryBytes'));
+    assert.ok(!history.has('ack'));
   });
 });

@@ -3,7 +3,7 @@ import { describe, it } from 'node:test';
 import { Refused, Unreachable } from '../../../../web/src/api/http';
 import type { Point, Trajectory } from '../../../../web/src/api/types';
 import { Trails } from '../../../../web/src/live/trails';
-import { WholePaths, type Told } from '../../../../web/src/live/whole_paths';
+import { WholePaths, type TrailEvent } from '../../../../web/src/live/whole_paths';
 
 const kRobots = ['a', 'b'];
 
@@ -40,8 +40,8 @@ class World {
     this.send({ revision: this.revision, robots: sent });
   }
 
-  send(event: Told): void {
-    this.paths.hear(event);
+  send(event: TrailEvent): void {
+    this.paths.apply(event);
   }
 
   /** Answers the pending request or ends the pause, then runs pending tasks. */

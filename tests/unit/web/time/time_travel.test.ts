@@ -87,8 +87,15 @@ class World {
   }
 
   private weave(id: string): Weave {
-    const woven = this.replayed.get(id) ?? 0;
-    return { id, state: woven < Number(id) ? 'weaving' : 'done', woven, until: Number(id), exclusions: 0, reason: '' };
+    const applied = this.replayed.get(id) ?? 0;
+    return {
+      id,
+      state: applied < Number(id) ? 'weaving' : 'done',
+      applied,
+      until: Number(id),
+      exclusions: 0,
+      reason: '',
+    };
   }
 }
 

@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
 import { Refused, Unreachable } from '../../../../web/src/api/http';
 import { Timeline } from '../../../../web/src/time/timeline';
-import { Unwoven } from '../../../../web/src/time/time_travel';
+import { WeaveFailed } from '../../../../web/src/time/time_travel';
 import * as words from '../../../../web/src/time/words';
 
 function timelineFrom(start: number): Timeline {
@@ -59,7 +59,7 @@ describe('time texts', () => {
   it('describe the error and the next step', () => {
     assert.match(words.troubleOf(new Unreachable('x'), true), /^Offline: .* Trying again\.$/);
     assert.match(words.troubleOf(new Refused(503, 'too many maps'), true), /reports: too many maps\. Trying again\.$/);
-    assert.match(words.troubleOf(new Refused(404, 'x'), true), /woven again/);
-    assert.match(words.troubleOf(new Unwoven('no room.'), false), /could not be woven: no room\.$/);
+    assert.match(words.troubleOf(new Refused(404, 'x'), true), /computes it again/);
+    assert.match(words.troubleOf(new WeaveFailed('no room.'), false), /could not be computed: no room\.$/);
   });
 });

@@ -1,4 +1,4 @@
-/** Maps made otherwise on the second side of the map, from when they are shown until somebody ends it. */
+/** Shows a weave on the second side of the map until the comparison ends. */
 import type { Session } from '../../api/types';
 import type { ListedWeave } from '../../api/weave_list';
 import { WeaveSource } from '../../map/map_source';
@@ -14,7 +14,7 @@ export class Comparison {
     return this.shown;
   }
 
-  /** @param failed told when its maps cannot be had */
+  /** @param failed called when its maps cannot be loaded */
   show(session: Session, weave: ListedWeave, failed: (error: unknown) => void): void {
     this.end();
     this.shown = weave;

@@ -1,4 +1,4 @@
-/** What the two sides disagree in: numbers beside the map, a picture on it, and what its colours mean. */
+/** The differences between the two sides: numbers next to the map, a picture on it, and its legend. */
 import ImageLayer from 'ol/layer/Image';
 import ImageStatic from 'ol/source/ImageStatic';
 import {
@@ -23,11 +23,11 @@ import { saveBlob } from '../save_file';
 const kLegend: [name: DifferenceName, label: string][] = [
   ['occupied_free', 'obstacle only in the map'],
   ['free_occupied', 'obstacle only in the weave'],
-  ['only_a', 'seen only in the map'],
-  ['only_b', 'seen only in the weave'],
+  ['only_a', 'known only in the map'],
+  ['only_b', 'known only in the weave'],
   ['both_occupied', 'obstacle in both'],
   ['both_free', 'free in both'],
-  ['undecided', 'not sure in one or both'],
+  ['undecided', 'undecided in one or both'],
 ];
 
 export class DifferenceView {
@@ -49,7 +49,7 @@ export class DifferenceView {
     ),
   );
   private readonly layer = new ImageLayer<ImageStatic>({ zIndex: kOrder.difference });
-  private readonly asking: NewestOnly;
+  private readonly task: NewestOnly;
   private readonly saving: NewestOnly;
   private weave: string | null = null;
   private address: string | null = null;
@@ -59,7 +59,7 @@ export class DifferenceView {
     signal: AbortSignal,
     private readonly outcome: Outcome,
   ) {
-    this.asking = new NewestOnly(
+    this.task = new NewestOnly(
       signal,
       (busy) => this.element.setAttribute('aria-busy', String(busy)),
       (error) => {
@@ -81,21 +81,21 @@ export class DifferenceView {
     });
   }
 
-  /** @param weave that is to be compared with what is shown; null: none */
+  /** @param weave to compare with the shown map; null: none */
   compare(weave: string | null): void {
     const session = this.context.session();
     this.weave = weave;
     this.element.hidden = weave === null;
     const isPast = shownWeave(this.context) !== null;
-    const past = 'The map is of an earlier moment, the weave of all scans: what came later counts as a difference.';
+    const past = 'The map is of an earlier moment, the weave of all scans: later scans count as differences.';
     setText(this.warning, isPast ? past : '');
     this.warning.hidden = !isPast;
     const query = this.query();
     if (!session || !query) {
-      this.asking.stop();
+      this.task.stop();
       return this.forget();
     }
-    this.asking.run(async (signal) => {
+    this.task.run(async (signal) => {
       const [difference, picture] = await Promise.all([
         fetchDifference(session.name, query, signal),
         this.onMap.checked ? fetchDifferencePicture(session.name, query, signal) : null,
@@ -105,7 +105,7 @@ export class DifferenceView {
     });
   }
 
-  /** What is shown against the weave; null: there is none. */
+  /** The shown map that is compared with the weave; null: none. */
   private query(): DifferenceQuery | null {
     const shown = this.context.picture.main;
     if (this.weave === null || !shown) return null;
@@ -125,7 +125,7 @@ export class DifferenceView {
         el('td', { class: 'numeric' }, `${format.decimal(areas[name], 2)} m\u00b2`),
       ),
     );
-    const caption = el('caption', { class: 'unseen' }, 'Areas by what the two maps say');
+    const caption = el('caption', { class: 'unseen' }, 'Areas by the values of the two maps');
     this.numbers.replaceChildren(figures(totals), el('table', {}, caption, el('tbody', {}, ...rows)));
   }
 

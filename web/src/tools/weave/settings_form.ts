@@ -1,4 +1,4 @@
-/** How maps are made: the session's settings, to be changed. What differs from the session is marked. */
+/** The session's mapping settings, to be changed for a weave. Marks those that differ from the session's. */
 import type { MapConfig } from '../../api/types';
 import type { WeaveRequest } from '../../api/weaves';
 import { el, setText } from '../../dom';
@@ -11,7 +11,7 @@ interface Setting {
   kind: 'number' | 'switch' | 'rays';
   min?: number;
   max?: number;
-  /** Ray models that it matters for; all where it is left out. */
+  /** Ray models that the setting affects; all if absent. */
   rays?: string[];
 }
 
@@ -37,7 +37,7 @@ export class SettingsForm {
   private readonly fields: Field[];
   readonly element: HTMLElement;
 
-  /** @param config the session's */
+  /** @param config the session's settings */
   constructor(private readonly config: MapConfig) {
     this.fields = kSettings.map((setting) => this.fieldOf(setting));
     this.element = el('div', { class: 'tool-settings' }, ...this.fields.map(({ row }) => row));
@@ -45,13 +45,13 @@ export class SettingsForm {
     this.reset();
   }
 
-  /** As the session has it. */
+  /** Resets all fields to the session's settings. */
   reset(): void {
     for (const { setting, control } of this.fields) put(control, this.config[setting.name]);
     this.update();
   }
 
-  /** What is to be other than in the session. */
+  /** The settings that differ from the session's. */
   get changes(): WeaveRequest {
     const changed = this.fields.filter((field) => this.matters(field) && this.differs(field));
     return Object.fromEntries(changed.map(({ setting, control }) => [setting.name, valueOf(control)]));
@@ -72,7 +72,7 @@ export class SettingsForm {
 
   private update(): void {
     for (const field of this.fields) {
-      // What is disabled, the browser does not check.
+      // Browsers do not validate disabled fields.
       field.row.hidden = field.control.disabled = !this.matters(field);
       const now = this.config[field.setting.name];
       field.row.classList.toggle('changed', this.differs(field));
@@ -107,9 +107,9 @@ function wordOf(value: MapConfig[string] | undefined): string {
   return kRayModels.find(([name]) => name === value)?.[1] ?? String(value);
 }
 
-/** "cell_size 0.1, ray_model traversal": in what one way differs from another. */
+/** "cell_size 0.1, ray_model traversal": the differences between two sets of settings. */
 export function describeChanges(config: MapConfig, from: MapConfig): string {
   const changed = Object.entries(config).filter(([name, value]) => from[name] !== value);
-  if (changed.length === 0) return 'as the session';
+  if (changed.length === 0) return 'session settings';
   return changed.map(([name, value]) => `${name} ${String(value)}`).join(', ');
 }

@@ -1,4 +1,4 @@
-/** The session's maps made once more in another way, beside those that there are. */
+/** Computes the session's maps with other settings, and shows them next to the present ones. */
 import { deleteWeave, startWeave } from '../../api/weaves';
 import { fetchWeaves, type ListedWeave } from '../../api/weave_list';
 import { el } from '../../dom';
@@ -11,18 +11,18 @@ import type { Tool } from '../toolbox';
 import type { Comparison } from './comparison';
 import { DifferenceView } from './difference_view';
 import { SettingsForm } from './settings_form';
-import { isUnderWay, WeaveRows } from './weave_rows';
+import { isUnfinished, WeaveRows } from './weave_rows';
 
 const kBusyPace: Pace = { visibleMs: 300, hiddenMs: 2_000 };
 const kIdlePace: Pace = { visibleMs: 3_000, hiddenMs: 15_000 };
 
-/** @param comparison goes on when the tool is closed: the map is there to be looked at */
+/** @param comparison continues when the tool is closed, so that the user can look at the map */
 export function weaveTool(context: ToolContext, comparison: Comparison): Tool {
   return {
     id: 'weave',
     title: 'Re-weave and compare',
     key: 'w',
-    does: 'makes the maps once more in another way',
+    does: 'computes the maps again with other settings',
     icon: 'M2.5 4.5h4l3 7h4M2.5 11.5h4l3-7h4M11.5 2.5l2 2-2 2M11.5 9.5l2 2-2 2',
     open: (card, signal) => void new WeaveCard(context, comparison, card, signal),
   };
@@ -33,12 +33,12 @@ class WeaveCard {
   private readonly rows: WeaveRows;
   private readonly difference: DifferenceView;
   private readonly outcome = new Outcome();
-  private readonly asking: NewestOnly;
+  private readonly task: NewestOnly;
   private readonly end = button('End the comparison', () => this.endComparison());
   private polling = new AbortController();
-  /** The weave that was asked for here: shown as soon as it is done. */
+  /** The weave that was requested here: shown as soon as it is done. */
   private wanted: string | null = null;
-  /** The list could not be had the last time. */
+  /** The last request for the list failed. */
   private troubled = false;
 
   constructor(
@@ -53,7 +53,7 @@ class WeaveCard {
       remove: (weave) => this.remove(weave),
     });
     this.difference = new DifferenceView(context, signal, this.outcome);
-    this.asking = new NewestOnly(
+    this.task = new NewestOnly(
       signal,
       () => {},
       (error) => this.outcome.complain(error),
@@ -74,7 +74,7 @@ class WeaveCard {
         'div',
         { class: 'tool-buttons' },
         el('button', { class: 'tool-button primary' }, 'Weave'),
-        button('As the session', () => this.form.reset()),
+        button('Session settings', () => this.form.reset()),
       ),
     );
     form.addEventListener('submit', (event) => {
@@ -84,7 +84,7 @@ class WeaveCard {
     card.append(this.outcome.element, this.end, this.difference.element, form, this.rows.element);
   }
 
-  /** Another layer, or another moment, is another difference. */
+  /** Another layer, or another moment, has another difference. */
   private followSides(): void {
     const { picture } = this.context;
     const sides = (): string => `${picture.main?.layer ?? ''} ${picture.main?.source.weave ?? ''}`;
@@ -99,15 +99,15 @@ class WeaveCard {
   private start(): void {
     const session = this.context.session();
     if (!session) return;
-    this.asking.run(async (signal) => {
-      this.outcome.say('The server weaves\u2026');
+    this.task.run(async (signal) => {
+      this.outcome.report('The server computes the maps\u2026');
       const weave = await startWeave(session.name, this.form.changes, signal);
       this.wanted = weave.id;
       this.watch(kBusyPace);
     });
   }
 
-  /** Asks for the list again and again, more often while something is under way. */
+  /** Polls the list, more often while a weave is in progress. */
   private watch(pace: Pace): void {
     this.polling.abort();
     this.polling = new AbortController();
@@ -117,7 +117,7 @@ class WeaveCard {
     void poll(
       async () => {
         const weaves = await fetchWeaves(session.name, signal);
-        if (!signal.aborted) this.hear(weaves, pace);
+        if (!signal.aborted) this.update(weaves, pace);
       },
       pace,
       signal,
@@ -125,24 +125,24 @@ class WeaveCard {
     );
   }
 
-  /** The list could not be had, or again. */
+  /** Reports that the list cannot be loaded, or can again. */
   private settle(error: unknown): void {
     if (error !== null) this.outcome.complain(error);
-    else if (this.troubled) this.outcome.say(this.wanted === null ? '' : 'The server weaves\u2026');
+    else if (this.troubled) this.outcome.report(this.wanted === null ? '' : 'The server computes the maps\u2026');
     this.troubled = error !== null;
   }
 
-  private hear(weaves: ListedWeave[], pace: Pace): void {
+  private update(weaves: ListedWeave[], pace: Pace): void {
     this.rows.show(weaves.filter((weave) => !this.isMoment(weave) || weave.id === this.comparison.weave?.id));
     const wanted = weaves.find(({ id }) => id === this.wanted);
     if (wanted?.state === 'done') this.show(wanted);
-    else if (wanted && !isUnderWay(wanted)) this.fail(wanted);
+    else if (wanted && !isUnfinished(wanted)) this.fail(wanted);
     else if (!wanted && this.wanted !== null) this.lose();
-    const wantedPace = weaves.some(isUnderWay) ? kBusyPace : kIdlePace;
+    const wantedPace = weaves.some(isUnfinished) ? kBusyPace : kIdlePace;
     if (wantedPace !== pace) this.watch(wantedPace);
   }
 
-  /** The session as it was: made by the hundred when its history is played, and of no use here. */
+  /** Weaves of earlier times are excluded: playback makes hundreds of them, and they have the session's settings. */
   private isMoment({ follows, config }: ListedWeave): boolean {
     const own = this.context.session()?.config ?? {};
     return !follows && Object.entries(config).every(([name, value]) => own[name] === value);
@@ -153,14 +153,14 @@ class WeaveCard {
     if (!session) return;
     this.wanted = null;
     this.comparison.show(session, weave, (error) => this.outcome.complain(error));
-    this.outcome.say('Shown right of the line; drag it to compare.');
+    this.outcome.report('Shown right of the line; drag it to compare.');
     this.markShown();
   }
 
-  /** The server was started again, or forgot it for others. */
+  /** The server restarted, or dropped the weave for others. */
   private lose(): void {
     this.wanted = null;
-    this.outcome.complain(new Error('The server has this weave no longer; start it again'));
+    this.outcome.complain(new Error('The server no longer has this weave; start it again'));
   }
 
   private fail({ state, reason }: ListedWeave): void {
@@ -173,16 +173,16 @@ class WeaveCard {
     if (!session) return;
     if (weave.id === this.comparison.weave?.id) this.endComparison();
     if (weave.id === this.wanted) this.wanted = null;
-    this.asking.run(async (signal) => {
+    this.task.run(async (signal) => {
       await deleteWeave(session.name, weave.id, signal);
-      this.outcome.say(isUnderWay(weave) ? 'Cancelled.' : 'Deleted.');
+      this.outcome.report(isUnfinished(weave) ? 'Cancelled.' : 'Deleted.');
       this.watch(kBusyPace);
     });
   }
 
   private endComparison(): void {
     this.comparison.end();
-    this.outcome.say('');
+    this.outcome.report('');
     this.markShown();
   }
 

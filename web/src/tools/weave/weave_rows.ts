@@ -1,4 +1,4 @@
-/** The weaves of a session in a list: how far each is, to be shown or deleted. */
+/** The list of a session's weaves with their progress, to show or delete. */
 import type { ListedWeave } from '../../api/weave_list';
 import type { MapConfig } from '../../api/types';
 import { el, KeyedList, setText, type Row } from '../../dom';
@@ -43,7 +43,7 @@ export class WeaveRows {
     this.rows.show(weaves);
   }
 
-  /** @param weave that is on the second side; null: none */
+  /** @param weave the one on the second side; null: none */
   mark(weave: string | null): void {
     this.shown = weave;
     this.rows.show(this.weaves);
@@ -51,7 +51,7 @@ export class WeaveRows {
 
   private create(weave: ListedWeave): WeaveRow {
     const [name, detail] = [el('span', { class: 'row-name' }), el('span', { class: 'row-detail' })];
-    const progress = el('progress', { 'aria-label': 'Woven' });
+    const progress = el('progress', { 'aria-label': 'Progress' });
     const [show, remove] = [el('button', { type: 'button' }, 'Show'), el('button', { type: 'button' })];
     const element = el('li', { 'data-weave': weave.id }, name, detail, progress, show, remove);
     const row: WeaveRow = { element, name, detail, progress, show, remove, weave };
@@ -61,35 +61,35 @@ export class WeaveRows {
   }
 
   private update(row: WeaveRow, weave: ListedWeave): void {
-    const underWay = isUnderWay(weave);
+    const unfinished = isUnfinished(weave);
     row.weave = weave;
     setText(row.name, describeChanges(weave.config, this.config()));
     row.name.title = row.name.textContent ?? '';
     setText(row.detail, describeState(weave));
-    row.progress.hidden = !underWay;
+    row.progress.hidden = !unfinished;
     row.progress.max = Math.max(1, weave.until);
-    row.progress.value = weave.woven;
+    row.progress.value = weave.applied;
     row.show.hidden = weave.state !== 'done';
     row.show.setAttribute('aria-pressed', String(weave.id === this.shown));
     row.show.setAttribute('aria-label', `Show ${row.name.textContent ?? ''}`);
-    setText(row.remove, underWay ? 'Cancel' : 'Delete');
-    row.remove.setAttribute('aria-label', `${underWay ? 'Cancel' : 'Delete'} ${row.name.textContent ?? ''}`);
+    setText(row.remove, unfinished ? 'Cancel' : 'Delete');
+    row.remove.setAttribute('aria-label', `${unfinished ? 'Cancel' : 'Delete'} ${row.name.textContent ?? ''}`);
   }
 }
 
-export function isUnderWay({ state }: ListedWeave): boolean {
+export function isUnfinished({ state }: ListedWeave): boolean {
   return state === 'waiting' || state === 'weaving';
 }
 
-function describeState({ state, woven, until, follows, reason }: ListedWeave): string {
+function describeState({ state, applied, until, follows, reason }: ListedWeave): string {
   const end = follows ? '' : `, until entry ${format.count(until)}`;
   switch (state) {
     case 'waiting':
-      return 'waits for its turn';
+      return 'waiting';
     case 'weaving':
-      return `${format.count(woven)} of ${format.count(until)} entries`;
+      return `${format.count(applied)} of ${format.count(until)} entries`;
     case 'done':
-      return `${format.count(woven)} entries${end}`;
+      return `${format.count(applied)} entries${end}`;
     case 'failed':
     case 'cancelled':
       return reason === '' ? state : `${state}: ${reason}`;
