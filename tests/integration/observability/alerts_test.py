@@ -1,4 +1,4 @@
-"""The alerts ask for what the server gives, name labels that there are, and say what to do."""
+"""The alerts use metrics and labels that the server has, and say what to do."""
 import pathlib
 import re
 import unittest

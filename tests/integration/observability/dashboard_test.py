@@ -1,4 +1,4 @@
-"""The dashboard asks for what the server gives, shows all of it, and is one that Grafana takes."""
+"""The dashboard uses metrics that the server has, shows all of them, and is valid for Grafana."""
 import itertools
 import json
 import re
@@ -7,11 +7,11 @@ import unittest
 from promql import selectors
 from served import DOCS, ask_a_server
 
-# Families that the dashboard leaves out, and why.
+# Metrics that the dashboard does not show, with the reason.
 LEFT_OUT = {
-    "process_virtual_memory_bytes": "addresses, most of them never touched, say nothing of the memory that is used",
-    "scanloom_sessions_checked_total": "how far the reading behind a start has come; what it finds damaged is shown",
-    "scanloom_store_torn_bytes_dropped_total": "there from the start and never more: the log tells it",
+    "process_virtual_memory_bytes": "most of the address space is never used, so it is not the memory in use",
+    "scanloom_sessions_checked_total": "progress of the check at startup; the damage that it finds is shown",
+    "scanloom_store_torn_bytes_dropped_total": "constant after startup; the log reports it",
 }
 GRAFANA_VARIABLES = {"__all", "__rate_interval"}
 COLUMNS = 24
@@ -79,7 +79,7 @@ class Dashboard(unittest.TestCase):
             at = panel["gridPos"]
             self.assertTrue(0 <= at["x"] < at["x"] + at["w"] <= COLUMNS and at["h"] > 0, panel["title"])
         for one, other in itertools.combinations(self.panels, 2):
-            self.assertFalse(cells_of(one) & cells_of(other), f"{one['title']} lies on {other['title']}")
+            self.assertFalse(cells_of(one) & cells_of(other), f"{one['title']} overlaps {other['title']}")
 
     def test_variables_are_declared_and_the_source_of_data_is_one(self):
         declared = {variable["name"] for variable in self.dashboard["templating"]["list"]} | GRAFANA_VARIABLES

@@ -1,6 +1,6 @@
-"""Which series and labels an expression of PromQL asks for, in as much of the language as dashboard and alerts use.
+"""Finds the series and labels of a PromQL expression, in the subset of the language that dashboard and alerts use.
 
-What is not understood (without, on, ignoring) is taken for a metric that nobody has, so that it does not pass unseen.
+Unsupported keywords (without, on, ignoring) count as metrics that do not exist, so that the tests fail on them.
 """
 import dataclasses
 import re
@@ -13,15 +13,15 @@ OPERATORS = {"and", "or", "unless", "bool", "offset"}
 
 @dataclasses.dataclass
 class Selector:
-    """One place where series are chosen."""
+    """One series selector of an expression."""
     metric: str
     matchers: Dict[str, Tuple[str, str]]  # label -> (operator, value)
-    function: Optional[str]               # what is applied to it: "rate"; None: the value itself
-    kept: Optional[FrozenSet[str]] = None  # labels that the aggregation around it leaves; None: all
+    function: Optional[str]               # the function applied to it: "rate"; None: none
+    kept: Optional[FrozenSet[str]] = None  # labels that the surrounding aggregation keeps; None: all
 
 
 def selectors(expression: str) -> List[Selector]:
-    """In the order of the text."""
+    """Yields the selectors in the order of the text."""
     return _Reader(TOKEN.findall(expression)).read()
 
 
@@ -32,8 +32,8 @@ class _Reader:
         self._found = []
 
     def read(self):
-        calls = []                   # around the place: (function, labels it keeps)
-        function, kept = None, None  # of the parenthesis that comes next
+        calls = []                   # around the selector: (function, labels it keeps)
+        function, kept = None, None  # of the next parenthesis
         while (token := self._next()) is not None:
             if token == "(":
                 calls.append((function, kept if kept is not None or function not in AGGREGATIONS else frozenset()))

@@ -1,4 +1,4 @@
-"""What is found in expressions, by examples."""
+"""The selectors of expressions, by examples."""
 import unittest
 
 from promql import Selector, selectors

@@ -1,4 +1,4 @@
-"""What a running server says at /metrics, and whether an expression can be answered from it."""
+"""The metrics of a running server, and whether an expression can be evaluated with them."""
 import pathlib
 import re
 import sys
@@ -16,7 +16,7 @@ SAMPLE = re.compile(r'(\w+)(?:\{(.*)\})? \S+')
 LABEL = re.compile(r'(\w+)="((?:[^"\\]|\\.)*)"')
 OF_COUNTERS = {"rate", "increase", "resets"}
 OF_HISTOGRAMS = ("_bucket", "_sum", "_count")
-PROMETHEUS_LABELS = {"instance", "job"}  # added to all that is scraped
+PROMETHEUS_LABELS = {"instance", "job"}  # Prometheus adds them to all series
 
 
 class Served:
@@ -40,7 +40,7 @@ class Served:
         return sample
 
     def complaints_about(self, expression):
-        """A sentence for each thing in it that this server does not give, or that is no rate and should be."""
+        """Yields a sentence for each metric or label that the server lacks, and for each counter that is used without rate()."""
         return [complaint for selector in selectors(expression) for complaint in self._complaints(selector)]
 
     def _complaints(self, selector):
@@ -60,7 +60,7 @@ class Served:
             yield f"{selector.metric} is a {'counter' if counts else 'gauge'}, under {selector.function}"
 
     def labels_of(self, expression):
-        """What its result may be told apart by: the labels that every part of it keeps."""
+        """The labels that distinguish its results: those that every part keeps."""
         kept = []
         for selector in selectors(expression):
             labels = PROMETHEUS_LABELS | self.samples[selector.metric].keys()
