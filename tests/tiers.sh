@@ -1,6 +1,6 @@
 # The commands test, flakes and mutants of ./scanloom, which sources this file.
 
-readonly no_tests=2 failing_tests=3 # exit codes: nothing has that name; tests ran and failed
+readonly no_tests=2 failing_tests=3 # exit codes: no test has the name; tests ran and failed
 
 # run_test [[--all | --nightly] [FILTER] | --changed COMMIT | --sanitizers [--core]]
 run_test() {
@@ -46,7 +46,7 @@ build_tier() {
     esac
 }
 
-# labels_beyond first|all|nightly: which labels the tests of higher tiers have.
+# labels_beyond first|all|nightly: the labels of the tests in higher tiers.
 labels_beyond() {
     case $1 in
         first) echo '^(all|nightly)$' ;;
@@ -55,7 +55,7 @@ labels_beyond() {
     esac
 }
 
-# run_ctest PRESET OPTION...: runs tests, then names those that were skipped, with the reason.
+# run_ctest PRESET OPTION...: runs tests, then lists the skipped ones with the reason.
 run_ctest() {
     local status=0 skipped
     ctest --preset "$1" --parallel "$(($(nproc) + 1))" --no-tests=error "${@:2}" || status=$? # many wait for a browser or a process
@@ -106,8 +106,8 @@ run_filtered() {
     [[ -z $failed ]] || tests_failed
 }
 
-# The parts of --all, but for the suites named Trials: a pattern of their tests' names; their files. The tests of FOLDER in
-# tests/unit are files of FOLDER.
+# The parts of --all without the suites named Trials: a pattern of their tests' names; their files. The files of a
+# FOLDER include its tests in tests/unit/FOLDER.
 readonly parts_of_all=(
     '^tools[.];lab load tests/integration/lab tests/integration/load'
     '^faults[.];load robot_client server/ingest server/session server/store tests/fault tests/integration/robot_client'
@@ -121,8 +121,8 @@ readonly parts_of_all=(
 )
 readonly files_of_all_parts=(CMakeLists.txt tests/support)
 
-# run_changed COMMIT: tier 1, and the parts of --all whose files differ from those of that commit. All of --all is compiled;
-# the suites named Trials are left out, as tier 1 has their short forms.
+# run_changed COMMIT: tier 1, and the parts of --all whose files differ from those of that commit. All of --all is
+# compiled; the suites named Trials are left out, because tier 1 has their short forms.
 run_changed() {
     (($# == 1)) && git rev-parse --quiet --verify "$1^{commit}" >/dev/null || misused "test --changed takes a commit, not '$*'"
     local part tests files left_out=('^(core|maps|server|http|robot)[.].*Trials(/|$)')

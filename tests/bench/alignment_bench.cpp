@@ -44,7 +44,8 @@ void AlignTwoCaptures(benchmark::State& state) {
     const auto second = capture(kSecond, count, 2);
     for (auto _ : state) {
         const auto alignment = align({.points = first}, {.points = second});
-        if (!alignment || alignment->certainty != Certainty::kClear) return state.SkipWithError("it is not clear");
+        if (!alignment || alignment->certainty != Certainty::kClear)
+            return state.SkipWithError("the alignment is not clear");
         state.counters["explained"] = alignment->explained;
         state.counters["sigma_mm"] = 1e3 * alignment->position_sigma;
     }

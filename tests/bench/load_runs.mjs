@@ -1,16 +1,16 @@
-/** Runs of scanloom-load against a server of their own. */
+/** Runs scanloom-load, each run with its own server. */
 import { Server, endWithThisProgram, start } from '../e2e/programs.mjs';
 
 endWithThisProgram();
 
-/** A server that says nothing but what goes wrong, so that figures are not buried. */
+/** A server that logs only errors, so that figures stay readable. */
 export function startServer() {
   return Server.start(['--log-level', 'warn']);
 }
 
 /**
- * What the tool tells of each second is not shown, unless it fails.
- * @returns the report of one run; throws where something was lost or could not be verified
+ * The tool's output of each second is not shown, unless the tool fails.
+ * @returns the report of one run; throws if scans were lost or could not be verified
  */
 export async function load(server, options) {
   const flags = Object.entries(options).flatMap(([name, value]) =>
@@ -30,10 +30,10 @@ export async function load(server, options) {
     ],
     { stderr: 'pipe' },
   );
-  const [text, told] = await Promise.all([textOf(child.stdout), textOf(child.stderr)]);
-  if (!text.includes('{')) throw new Error(`scanloom-load gave no report:\n${told}`);
+  const [text, log] = await Promise.all([textOf(child.stdout), textOf(child.stderr)]);
+  if (!text.includes('{')) throw new Error(`scanloom-load gave no report:\n${log}`);
   const report = JSON.parse(text.slice(text.indexOf('{')));
-  if (!report.verdict.nothing_lost) throw new Error(`${report.verdict.sentence}\n${told}`);
+  if (!report.verdict.nothing_lost) throw new Error(`${report.verdict.sentence}\n${log}`);
   return report;
 }
 

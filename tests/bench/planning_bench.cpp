@@ -54,7 +54,7 @@ void plan_across(benchmark::State& state, const ClassView& view, bool possible) 
     double length = 0.0;
     for (auto _ : state) {
         const auto path = planning::plan_path(view, kCellSize, start, goal, {.on_known = true});
-        if (path.has_value() != possible) return state.SkipWithError("the path is not what it should be");
+        if (path.has_value() != possible) return state.SkipWithError("the path has not the expected result");
         if (path) length = path->length_m;
     }
     state.counters["length_m"] = length;

@@ -14,7 +14,7 @@
 // The cost of integrating one scan, for this projection and other mappers on the same scans in one run. Times are per
 // scan, after all scans have been integrated once. "occupancy" is only our exact log-odds, which the others also
 // compute; "all_layers" adds HIMM and the classes' hysteresis. When the same ground is observed repeatedly, its cells
-// saturate and whole rows of saturated cells are skipped. "unsettled" is "occupancy" that discards this information
+// saturate and whole rows of saturated cells are skipped. "unsaturated" is "occupancy" that discards this information
 // before each scan (the discarding is included in its time), so that every cell is read and written, as on new ground.
 // The other mappers take the same time for both.
 // All mappers except MRPT, which is Debian's package, are built for this machine's instruction set.
@@ -37,9 +37,9 @@ std::shared_ptr<const mapping::LaserChunk> unknown_chunk() {
 }
 
 /// Whether the projection knows which rows of cells are saturated, and skips them.
-enum class Settling { kKnown, kForgotten };
+enum class Saturation { kKnown, kForgotten };
 
-template <Settling kSettling>
+template <Saturation kSaturation>
 class Occupancy final : public Mapper {
 public:
     explicit Occupancy(const Column& column)
@@ -53,7 +53,7 @@ public:
         for (std::size_t strip = 0; strip < sweep.strips(); ++strip) {
             sweep.visit(strip, [&](grid::ChunkKey key, std::span<const mapping::ChunkVerdicts> verdicts) {
                 mapping::LaserChunk& chunk = *grid_.write(key);
-                if constexpr (kSettling == Settling::kForgotten) chunk.settled_occupancy = {};
+                if constexpr (kSaturation == Saturation::kForgotten) chunk.settled_occupancy = {};
                 mapping::simd::add_evidence(chunk, verdicts.front(), rule_);
             });
         }
@@ -103,8 +103,8 @@ Peer ours(std::string name) {
 }
 
 void register_all() {
-    std::vector<Peer> all{ours<Occupancy<Settling::kKnown>>("occupancy"),
-                          ours<Occupancy<Settling::kForgotten>>("unsettled"), ours<AllLayers>("all_layers")};
+    std::vector<Peer> all{ours<Occupancy<Saturation::kKnown>>("occupancy"),
+                          ours<Occupancy<Saturation::kForgotten>>("unsaturated"), ours<AllLayers>("all_layers")};
     all.insert(all.end(), peers().begin(), peers().end());
     for (const Column& column : columns()) {
         for (const Peer& peer : all) {

@@ -1,48 +1,49 @@
 /**
- * What it costs to put a scan into a map, ours and others', as ratios of one run, beside what we aim at.
+ * The cost of integrating a scan into a map, for this projection and other mappers, as ratios of one run, with our
+ * limits.
  *
  *   node tests/bench/projection_report.mjs build/bench/projection_bench build/bench/projection.json [--quick]
  *
- * Each benchmark runs kRounds times, all of them mixed, and its median counts: so that what else the machine does meanwhile
- * meets all alike. Times are of the processor, not of the clock.
+ * Each benchmark runs kRounds times, in random order with the others, and its median counts: other load on the machine
+ * then affects all alike. Times are CPU time, not wall time.
  */
 import { execFileSync } from 'node:child_process';
 import { writeFileSync } from 'node:fs';
-import { announce, fullOrQuick, named } from './report/arguments.mjs';
-import { inWords, machine } from './report/machine.mjs';
+import { announce, fullOrQuick, operands } from './report/arguments.mjs';
+import { describe, machine } from './report/machine.mjs';
 import { table, threeDigits } from './report/table.mjs';
 
 const kRounds = fullOrQuick(5, 3);
-const kSeconds = fullOrQuick(0.05, 0.005); // of each benchmark in each round, at least
+const kSeconds = fullOrQuick(0.05, 0.005); // minimum for each benchmark in each round
 
-/** Mappers, whose fastest is what ours is compared with, and how they are called for short. */
+/** The mappers that are compared with ours, and their short names. */
 const kRivals = { once_a_scan: 'Hector', mrpt: 'MRPT', mark_and_clear: 'Nav2' };
-/** In the order in which they are told. */
+/** In the order of the tables. */
 const kPlaces = ['room', 'office', 'hall', 'intel', 'fr079', 'room+noise'];
 
 const aims = {
   meanOverRivals: 6,
-  overSpans: 3, // at most, where cells are 0.05 m or finer
-  allOverOccupancy: 2, // at most
+  overSpans: 3, // maximum, where cells are 0.05 m or finer
+  allOverOccupancy: 2, // maximum
 };
 
-const [program, file] = named;
+const [program, file] = operands;
 announce('projection', '1 minute', 'half a minute');
 const on = machine();
 const columns = compared(measure());
-/** Those whose geometric mean counts; the others only show what noise costs. */
+/** Columns whose geometric mean counts; the others only show the cost of noise. */
 const counted = columns.filter((column) => !column.name.includes('+noise'));
 const result = {
   machine: on,
   aims,
   mean_over_rivals: geometricMean('over_rivals'),
-  mean_over_rivals_unsettled: geometricMean('over_rivals_unsettled'),
+  mean_over_rivals_unsaturated: geometricMean('over_rivals_unsaturated'),
   mean_over_fill_poly: geometricMean('over_fill_poly'),
   slower_than_a_rival_in: columns.filter((column) => column.over_rivals < 1).map((column) => column.name),
   columns,
 };
 writeFileSync(file, `${JSON.stringify(result, null, 2)}\n`);
-tell();
+printTables();
 
 /** @returns {column: {mapper: microseconds a scan}} */
 function measure() {
@@ -80,7 +81,7 @@ function compared(times) {
       microseconds: of,
       fastest_rival: fastest,
       over_rivals: of[fastest] / of.occupancy,
-      over_rivals_unsettled: of[fastest] / of.unsettled,
+      over_rivals_unsaturated: of[fastest] / of.unsaturated,
       over_fill_poly: of.fill_poly / of.occupancy,
       over_spans: of.occupancy / of.spans,
       all_over_occupancy: of.all_layers / of.occupancy,
@@ -92,11 +93,11 @@ function geometricMean(key) {
   return Math.exp(counted.reduce((sum, column) => sum + Math.log(column[key]), 0) / counted.length);
 }
 
-function tell() {
-  console.log(inWords(on), `\ninstructions: ${on.instruction_set}; microseconds a scan, medians of ${kRounds}\n`);
+function printTables() {
+  console.log(describe(on), `\ninstructions: ${on.instruction_set}; microseconds a scan, medians of ${kRounds}\n`);
   console.log(timesOf(counted));
   console.log(
-    '\nAll but MRPT are written anew from their idea. fillPoly is no mapper: it knows no occupied cells, and joins the ends of beams\nby straight lines, also where no beam has been; it shows what filling one polygon costs.\n',
+    '\nAll except MRPT are reimplementations. fillPoly is not a mapper: it has no occupied cells, and joins the ends of beams\nby straight lines, also across directions without a beam; it shows the cost of filling one polygon.\n',
   );
   const ratio = (what, key) => [what, ...counted.map((column) => threeDigits(column[key]))];
   console.log(
@@ -105,25 +106,25 @@ function tell() {
       [
         ['the fastest of these: as Hector, MRPT, as Nav2', ...counted.map((column) => kRivals[column.fastest_rival])],
         ratio('Scanloom, times as fast as that', 'over_rivals'),
-        ratio('the same on ground that is not settled yet', 'over_rivals_unsettled'),
+        ratio('the same, with unsaturated cells', 'over_rivals_unsaturated'),
         ratio('Scanloom, times as fast as fillPoly', 'over_fill_poly'),
         ratio('Scanloom, times as long as the limit', 'over_spans'),
         ratio('all layers, times as long as occupancy', 'all_over_occupancy'),
       ],
     ),
   );
-  tellNoise();
+  printNoise();
   console.log(
-    `\ngeometric mean over the fastest: ${threeDigits(result.mean_over_rivals)} (aim: at least ${aims.meanOverRivals}); on ground that is not settled yet ${threeDigits(result.mean_over_rivals_unsettled)}; over fillPoly ${threeDigits(result.mean_over_fill_poly)}`,
+    `\ngeometric mean over the fastest: ${threeDigits(result.mean_over_rivals)} (aim: at least ${aims.meanOverRivals}); with unsaturated cells ${threeDigits(result.mean_over_rivals_unsaturated)}; over fillPoly ${threeDigits(result.mean_over_fill_poly)}`,
   );
   const isFine = (column) => Number(column.name.split(' ')[1]) <= 0.05;
-  tellLimit('over the limit, cells of 0.05 m and finer', columns.filter(isFine), 'over_spans', aims.overSpans);
-  tellLimit('all layers over occupancy', columns, 'all_over_occupancy', aims.allOverOccupancy);
-  console.log(`slower than one of them in: ${result.slower_than_a_rival_in.join(', ') || 'no column'}`);
+  printLimit('over the limit, cells of 0.05 m and finer', columns.filter(isFine), 'over_spans', aims.overSpans);
+  printLimit('all layers over occupancy', columns, 'all_over_occupancy', aims.allOverOccupancy);
+  console.log(`slower than one of them for: ${result.slower_than_a_rival_in.join(', ') || 'no column'}`);
   console.log(`written to ${file}`);
 }
 
-function tellNoise() {
+function printNoise() {
   const noisy = columns.filter((column) => !counted.includes(column));
   console.log(
     '\nThe room again with noise, 0.02 m of each range and 0.005 rad of each direction (standard deviations): ranges jump from beam to beam\n',
@@ -148,7 +149,7 @@ function mappers() {
     mark_and_clear: "mark and clear, bytes, as Nav2's obstacle layer",
     fill_poly: 'OpenCV fillPoly and subtract',
     occupancy: 'Scanloom, occupancy, exact',
-    unsettled: 'Scanloom, on ground that is not settled yet',
+    unsaturated: 'Scanloom, with unsaturated cells',
     all_layers: 'Scanloom, with HIMM and classes',
     spans: 'limit: adding to the same rows of cells',
   };
@@ -158,7 +159,7 @@ function names(places) {
   return places.map((place) => place.name);
 }
 
-function tellLimit(what, among, key, aim) {
+function printLimit(what, among, key, aim) {
   const worst = among.reduce((a, b) => (a[key] >= b[key] ? a : b));
   console.log(`${what}: at most ${threeDigits(worst[key])}, in ${worst.name} (aim: at most ${aim})`);
 }

@@ -1,9 +1,9 @@
 /**
- * What a robot's program costs: processor time, memory and bytes on the wire, while it reads an LD06 in real time.
+ * The cost of a robot's program: CPU time, memory and bytes on the wire, while it reads an LD06 in real time.
  *
  *   SCANLOOM_WEB_DIR=build/web SCANLOOM_BIN_DIR=build/bin node tests/bench/robot_bench.mjs CAPTURE [--quick]
  *
- * CAPTURE holds bytes of a real LD06. They come over TCP, 375 packets of 47 bytes a second.
+ * CAPTURE contains bytes of a real LD06. They are sent over TCP, 375 packets of 47 bytes per second.
  */
 import { mkdtemp, readFile, rm } from 'node:fs/promises';
 import { createServer } from 'node:net';
@@ -11,34 +11,34 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { start, stop } from '../e2e/programs.mjs';
 import { startServer } from './load_runs.mjs';
-import { announce, fullOrQuick, named } from './report/arguments.mjs';
+import { announce, fullOrQuick, operands } from './report/arguments.mjs';
 import { memoryBytes, processorSeconds } from './report/process_use.mjs';
 
 const kBytesPerSecond = (4500 / 12) * 47;
 const kTickMs = 20;
-const kWarmUpMs = 4000; // not measured: start, connecting
+const kWarmUpMs = 4000; // not measured: startup, connecting
 const kMeasuredMs = fullOrQuick(15000, 3000);
 
-const capture = await readFile(named[0] ?? missing());
+const capture = await readFile(operands[0] ?? missing());
 announce('robot', '100 seconds', '40 seconds');
 const place = await mkdtemp(join(tmpdir(), 'scanloom-robot-bench-'));
 const server = await startServer();
 console.log(['', 'of one core', 'memory, most', 'bytes a scan'].map((title) => title.padStart(18)).join(''));
-await tell('plain', []);
-await tell('zstd', ['--compression', 'zstd']);
-await tell('zstd, 1 s batches', ['--compression', 'zstd', '--batch-delay', '1']);
-await tell('spool', ['--spool', join(place, 'spool')]);
-await tell('spool, no server', ['--spool', join(place, 'spool')], 1);
+await measure('plain', []);
+await measure('zstd', ['--compression', 'zstd']);
+await measure('zstd, 1 s batches', ['--compression', 'zstd', '--batch-delay', '1']);
+await measure('spool', ['--spool', join(place, 'spool')]);
+await measure('spool, no server', ['--spool', join(place, 'spool')], 1);
 await server.stop();
 await rm(place, { recursive: true });
 
 function missing() {
-  console.error('name a file with bytes of an LD06: robot_bench.mjs CAPTURE');
+  console.error('usage: robot_bench.mjs CAPTURE');
   process.exit(2);
 }
 
-/** One run with these options, and its line. */
-async function tell(name, options, port = server.robotPort) {
+/** Runs the robot with these options, and prints one line. */
+async function measure(name, options, port = server.robotPort) {
   const lidar = await startLidar();
   const session = name.replace(/[^a-z0-9]+/g, '-');
   const robot = start('scanloom-robot', [
@@ -59,7 +59,7 @@ async function tell(name, options, port = server.robotPort) {
   console.log(line.map((text) => text.padStart(18)).join(''));
 }
 
-/** Sends the capture to whoever connects, at the pace of the sensor. */
+/** Sends the capture to each client, at the rate of the sensor. */
 async function startLidar() {
   const lidar = createServer((socket) => {
     const begun = performance.now();

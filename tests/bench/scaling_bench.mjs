@@ -1,20 +1,20 @@
 /**
- * How cost grows with what there is: cells, beams, the map's extent, sessions, robots of one session, viewers, sessions
- * that are idle; memory with explored area, recovery with the log's length. Measured, told and drawn; a straight line beside the dashed one is as it
- * should be.
+ * How cost grows with cells, beams, the map's extent, sessions, robots of one session, viewers and idle sessions;
+ * memory with explored area; recovery with the log's length. Measures, prints and draws; a measured line parallel to
+ * the dashed one is as expected.
  *
  *   SCANLOOM_BIN_DIR=build/bin node tests/bench/scaling_bench.mjs build/bench/scaling_bench build/bench/scaling.json build/bench/scaling.svg [--quick]
  */
 import { execFileSync } from 'node:child_process';
 import { writeFileSync } from 'node:fs';
 import { load, startServer } from './load_runs.mjs';
-import { announce, fullOrQuick, named } from './report/arguments.mjs';
+import { announce, fullOrQuick, operands } from './report/arguments.mjs';
 import { drawCharts } from './report/chart.mjs';
-import { inWords, machineWithStore } from './report/machine.mjs';
+import { describe, machineWithStore } from './report/machine.mjs';
 import { memoryBytes, processorSeconds } from './report/process_use.mjs';
 import { table, threeDigits } from './report/table.mjs';
 
-/** Scans a second of all robots together, however many. */
+/** Total scans per second of all robots. */
 const kScansPerSecond = 2000;
 const kSeconds = fullOrQuick(6, 1);
 const kMany = fullOrQuick([4, 16, 64, 256, 1024], [4, 64]);
@@ -23,11 +23,11 @@ const kViewers = fullOrQuick([1, 16, 64, 256], [1, 64]);
 const kRoom = { world: 'room', 'cell-size': 0.05, verify: 'counts' };
 const kBusySessions = 8;
 const kIdleSessions = fullOrQuick(2000, 200);
-const kIdleRuns = fullOrQuick(3, 1); // of which the median counts
+const kIdleRuns = fullOrQuick(3, 1); // the median counts
 const kQuietCores = 0.02;
 const kQuietSecondsMax = 60;
 
-const [program, file, drawing] = named;
+const [program, file, drawing] = operands;
 announce('scaling', '4 minutes', 'half a minute');
 const on = machineWithStore();
 const kernels = measureKernels();
@@ -42,7 +42,7 @@ const charts = [
   },
   { title: 'A scan, by beams', x: 'beams', y: 'us', points: kernel('ScanByBeams'), expected: 1 },
   { title: 'A scan, by extent, maps held', x: extent, y: 'us', points: kernel('ScanByExtent'), expected: 0 },
-  { title: 'A scan, by extent, nobody looks', x: extent, y: 'us', points: kernel('UnseenScanByExtent'), expected: 0 },
+  { title: 'A scan, by extent, no viewer', x: extent, y: 'us', points: kernel('UnseenScanByExtent'), expected: 0 },
   {
     title: 'Memory, by explored area',
     x: 'square metres, cells of 0.05 m',
@@ -58,7 +58,7 @@ const charts = [
     expected: 1,
   },
   {
-    title: 'The same from a store on disk',
+    title: 'Recovery from a store on disk',
     x: 'scans in the log',
     y: 'ms',
     points: kernel('RecoveryFromDisk', 'real_time'),
@@ -94,7 +94,7 @@ writeFileSync(
   `${JSON.stringify({ machine: on, charts, bytes_per_touched_cell: bytesPerCell, recovered_scans_per_second: recovered, idle }, null, 2)}\n`,
 );
 writeFileSync(drawing, drawCharts(charts));
-tell();
+printTables();
 
 function measureKernels() {
   const run = JSON.parse(
@@ -119,7 +119,7 @@ function memory(figure) {
     .map((benchmark) => [Math.round(benchmark.square_metres), figure(benchmark)]);
 }
 
-/** Server CPU a scan, of runs that send as many scans a second whatever there is. */
+/** Server CPU per scan, for runs that send the same number of scans per second. */
 async function service(counts, optionsOf) {
   const points = [];
   for (const count of counts) {
@@ -141,10 +141,10 @@ async function costOfAScan(server, options) {
   return run.server.cpu_us_per_scan;
 }
 
-/** What a scan of a few sessions costs beside others whose robots are gone, and what each of those keeps of memory. */
+/** The cost of a scan of a few sessions while other sessions are idle, and the memory of each idle session. */
 async function besideIdle(sessions) {
   const server = await startServer();
-  await costOfAScan(server, { robots: kBusySessions }); // so that what the server needs for any session is there
+  await costOfAScan(server, { robots: kBusySessions }); // so that memory shared by all sessions is allocated before
   const before = memoryBytes(server.child.pid);
   if (sessions > 0) await load(server, { ...kRoom, robots: sessions, rate: 1, duration: 2, seed: 2, keep: true });
   await untilQuiet(server);
@@ -160,8 +160,8 @@ async function besideIdle(sessions) {
 }
 
 /**
- * Until the server has nothing to do any more, checkpoints of sessions that have just become idle among it: no event tells
- * that, the processor's time of a second does.
+ * Waits until the server is idle, checkpoints of sessions that have just become idle included. No event reports this;
+ * the CPU time of a second does.
  */
 async function untilQuiet(server) {
   for (let seconds = 0; seconds < kQuietSecondsMax; ++seconds) {
@@ -171,19 +171,19 @@ async function untilQuiet(server) {
   }
 }
 
-function tell() {
-  console.log(inWords(on), '\n');
-  for (const { title, x, y, points } of charts) tellPoints(title, x, y, points);
-  tellPoints(
-    'Memory of a map: all that it keeps, by what the allocator gave out',
+function printTables() {
+  console.log(describe(on), '\n');
+  for (const { title, x, y, points } of charts) printPoints(title, x, y, points);
+  printPoints(
+    'Memory of a map: all its data, as counted by the allocator',
     'square metres',
     'bytes a touched cell',
     bytesPerCell,
   );
-  tellPoints('Recovery without a checkpoint', 'scans in the log', 'scans/s, log in memory', recovered[0]);
-  tellPoints('The same from a store on disk, files cached by the system', 'scans in the log', 'scans/s', recovered[1]);
-  tellPoints(
-    `A scan of ${kBusySessions} sessions beside idle ones`,
+  printPoints('Recovery without a checkpoint', 'scans in the log', 'scans/s, log in memory', recovered[0]);
+  printPoints('Recovery from a store on disk, files cached by the system', 'scans in the log', 'scans/s', recovered[1]);
+  printPoints(
+    `A scan of ${kBusySessions} sessions next to idle ones`,
     'idle sessions',
     'us of the server',
     idle.map(({ sessions, us }) => [sessions, us]),
@@ -194,7 +194,7 @@ function tell() {
   console.log(`written to ${file} and ${drawing}`);
 }
 
-function tellPoints(title, x, y, points) {
+function printPoints(title, x, y, points) {
   console.log(
     `${title}\n${table([x, ...points.map(([px]) => px)], [[y, ...points.map(([, py]) => threeDigits(py))]])}\n`,
   );

@@ -1,24 +1,25 @@
 /**
- * What the whole service costs for a scan, from a robot's socket to its ack, beside what no service can do without.
+ * The cost of a scan for the whole service, from a robot's socket to its ack, compared with the lower bound of any
+ * service.
  *
  *   SCANLOOM_BIN_DIR=build/bin node tests/bench/service_bench.mjs build/bench/link_bench build/bench/service.json [--quick]
  *
- * Everything is on: durable log, occupancy, HIMM, classes; scans of 684 beams, cells of 0.05 m. The generator runs on the same
- * machine; what it takes is told beside.
+ * Everything is enabled: durable log, occupancy, HIMM, classes; scans of 684 beams, cells of 0.05 m. The generator runs
+ * on the same machine; its CPU use is printed, too.
  */
 import { execFileSync } from 'node:child_process';
 import { writeFileSync } from 'node:fs';
 import { load, startServer } from './load_runs.mjs';
-import { announce, fullOrQuick, named } from './report/arguments.mjs';
-import { inWords, machineWithStore } from './report/machine.mjs';
+import { announce, fullOrQuick, operands } from './report/arguments.mjs';
+import { describe, machineWithStore } from './report/machine.mjs';
 import { table, threeDigits } from './report/table.mjs';
 
 const aims = { cpuMicroseconds: 25, ackMilliseconds: 100, liveRobots: 5000 };
 const kSeconds = fullOrQuick(10, 2);
 const kBatch = 10;
-const kRobots = 128; // the tool gives none more than 1000 scans a second
+const kRobots = 128; // the tool sends at most 1000 scans a second for each robot
 
-const [linkBench, file] = named;
+const [linkBench, file] = operands;
 announce('service', '2 minutes', '1 minute');
 const on = machineWithStore();
 const link = measureLink();
@@ -34,7 +35,7 @@ const live = await measure({
 });
 const single = await measure({ robots: 100, rate: 10, batch: 1 });
 writeFileSync(file, `${JSON.stringify({ machine: on, aims, link, full, most, live, single }, null, 2)}\n`);
-tell();
+printTables();
 
 async function measure(options) {
   const server = await startServer();
@@ -45,7 +46,7 @@ async function measure(options) {
   }
 }
 
-/** @returns {read, parse}: microseconds of the reader's CPU for a frame of one scan */
+/** @returns {read, parse}: CPU microseconds of the reader for a frame of one scan */
 function measureLink() {
   const run = JSON.parse(
     execFileSync(linkBench, ['--benchmark_format=json'], { encoding: 'utf8', stdio: ['ignore', 'pipe', 'ignore'] }),
@@ -54,12 +55,12 @@ function measureLink() {
   return { read: of('ReadFrames'), parse: of('ReadAndParseFrames') };
 }
 
-/** From the intended times; without any (rate 0) from sending. */
+/** Latency from the intended times; without them (rate 0) from sending. */
 function ackOf(run) {
   return run.ack_from_intended ?? run.ack_from_sending;
 }
 
-function tell() {
+function printTables() {
   const row = (name, run) => [
     name,
     run.scans.acknowledged_per_second.toFixed(0),
@@ -71,7 +72,7 @@ function tell() {
     run.own_delay ? threeDigits(run.own_delay.p99_ms) : '',
     (run.server.resident_bytes / 2 ** 20).toFixed(0),
   ];
-  console.log(inWords(on), '\n');
+  console.log(describe(on), '\n');
   console.log(
     table(
       [

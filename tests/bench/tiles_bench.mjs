@@ -1,14 +1,14 @@
 /**
- * How fast tiles are served: those that are kept beside nginx with the very same bytes in a file, those that are known
- * already, and those that are drawn for the first time.
+ * Tile throughput: cached tiles compared with nginx serving the same bytes from a file, tiles answered with 304, and
+ * tiles that are drawn for the first time.
  *
  *   SCANLOOM_BIN_DIR=build/bin node tests/bench/tiles_bench.mjs RESULT.json [LOG] [--quick]
  *
- * wrk asks all of them in turn, round after round, over 64 connections that stay; figures are medians of the rounds.
- * wrk shares the processors with who answers, and is most of the work: rates are bound by it, so that the processor time that
- * a request takes of the server, or of nginx, is told beside.
- * LOG is a recorded CARMEN log; without it a robot drives through a simulated office. Where nginx is missing, the server
- * is measured alone.
+ * wrk requests them in turn, round after round, over 64 keep-alive connections; figures are medians of the rounds. wrk
+ * shares the CPUs with the server and does most of the work: it limits the rates, therefore the CPU time per request of
+ * the server, or of nginx, is printed, too.
+ * LOG is a recorded CARMEN log; without it a robot drives through a simulated office. If nginx is missing, only the
+ * server is measured.
  */
 import { execFile, spawn } from 'node:child_process';
 import { existsSync } from 'node:fs';
@@ -19,8 +19,8 @@ import { join } from 'node:path';
 import { promisify } from 'node:util';
 import { ended, startRobot, stop } from '../e2e/programs.mjs';
 import { startServer } from './load_runs.mjs';
-import { announce, fullOrQuick, named } from './report/arguments.mjs';
-import { inWords, machineWithStore } from './report/machine.mjs';
+import { announce, fullOrQuick, operands } from './report/arguments.mjs';
+import { describe, machineWithStore } from './report/machine.mjs';
 import { processorSeconds } from './report/process_use.mjs';
 import { table, threeDigits } from './report/table.mjs';
 
@@ -32,11 +32,11 @@ const kLayers = ['occupancy', 'himm', 'classification'];
 const kRatioAim = 0.7;
 const kFirstMsAim = 1;
 
-const [result, log] = named;
-if (!result) fail('name the file for the result: tiles_bench.mjs RESULT.json [LOG]');
+const [result, log] = operands;
+if (!result) fail('usage: tiles_bench.mjs RESULT.json [LOG]');
 const nginx = findProgram('nginx');
 const wrk = findProgram('wrk') ?? fail("wrk is missing; install Debian's wrk: ./scanloom install bench");
-if (!nginx) console.log('nginx is missing: the server is measured alone (./scanloom install bench)');
+if (!nginx) console.log('nginx is missing: only the server is measured (./scanloom install bench)');
 
 announce('tiles', '3 minutes', '20 seconds');
 const on = machineWithStore();
@@ -53,14 +53,14 @@ const rivalsKnown = rivals.map((rival) => ({
   name: `${rival.name}, 304`,
   headers: ['-H', `If-None-Match: ${rival.etag}`],
 }));
-const asked = [kept, ...rivals, known, ...rivalsKnown];
+const candidates = [kept, ...rivals, known, ...rivalsKnown];
 const rounds = await measure();
 for (const rival of rivals) await stop(rival.child);
 await server.stop();
 await rm(place, { recursive: true });
-await tell();
+await printTables();
 
-/** A map of the recorded log, or of a simulated office. */
+/** Creates a map from the recorded log, or from a simulated office. */
 async function makeMap() {
   const source = log
     ? ['replay', log]
@@ -79,7 +79,7 @@ async function scans() {
   return answer.ok ? (await answer.json()).scans : 0;
 }
 
-/** Asks for each tile once. @returns what that took the server on average, and the tile with the most bytes */
+/** Requests each tile once. @returns the server's mean time, and the tile with the most bytes */
 async function drawAllTiles() {
   const before = await timeOfRequests();
   let largest = { bytes: Buffer.alloc(0) };
@@ -97,24 +97,24 @@ async function drawAllTiles() {
     }
   }
   const after = await timeOfRequests();
-  const tiles = after.count - before.count - changes - 1; // the second look at the times itself is counted later
+  const tiles = after.count - before.count - changes - 1; // a later count includes the second query of the times itself
   return { tiles, ms: ((after.seconds - before.seconds) * 1000) / tiles, largest };
 }
 
-/** What the server counts of all requests so far, this one but for its end. */
+/** The server's request counts so far; they include this request, except for its end. */
 async function timeOfRequests() {
   const text = await (await fetch(`${server.address}metrics`)).text();
   const number = (what) => Number(text.match(new RegExp(`^scanloom_http_request_seconds_${what} (.*)$`, 'm'))[1]);
   return { seconds: number('sum'), count: number('count') };
 }
 
-/** nginx as one would run it for files that do not change. */
+/** nginx, configured as usual for files that do not change. */
 async function startNginx(workers) {
   const port = await freePort();
   const root = join(place, `root-${workers}`);
   await mkdir(root);
   await writeFile(join(root, 'tile.png'), tile.bytes);
-  for (const directory of [place, root]) await chmod(directory, 0o755); // its workers may be another user
+  for (const directory of [place, root]) await chmod(directory, 0o755); // its workers may run as another user
   const configuration = join(place, `nginx-${workers}.conf`);
   await writeFile(
     configuration,
@@ -166,11 +166,11 @@ function freePort() {
   });
 }
 
-/** @returns of each name {rate: requests a second, us: of a processor for each}, of every round */
+/** @returns for each name {rate: requests per second, us: CPU time per request}, for every round */
 async function measure() {
-  const found = new Map(asked.map(({ name }) => [name, []]));
+  const found = new Map(candidates.map(({ name }) => [name, []]));
   for (let round = 0; round < kRounds; ++round) {
-    for (const { name, pid, address, headers } of asked) {
+    for (const { name, pid, address, headers } of candidates) {
       const before = processorSeconds(pid);
       const args = ['-t1', `-c${kConnections}`, `-d${kSeconds}s`, ...headers, address];
       const { stdout } = await promisify(execFile)(wrk, args);
@@ -185,8 +185,8 @@ async function measure() {
   return found;
 }
 
-/** Prints tables, and writes the same for programs. */
-async function tell() {
+/** Prints tables, and writes the values as JSON. */
+async function printTables() {
   const figures = Object.fromEntries(
     [...rounds].map(([name, each]) => [
       name,
@@ -197,7 +197,7 @@ async function tell() {
       },
     ]),
   );
-  // Round by round: what else the machine does then slows both.
+  // Ratios per round: other load in a round slows both.
   const over = (one, other, figure) =>
     median(rounds.get(one.name).map((round, n) => round[figure] / rounds.get(other.name)[n][figure]));
   const ratios = rivals.map((rival, n) => ({
@@ -206,7 +206,7 @@ async function tell() {
     us: over(kept, rival, 'us'),
     us_304: over(known, rivalsKnown[n], 'us'),
   }));
-  console.log(inWords(on), '\n');
+  console.log(describe(on), '\n');
   console.log(
     table(
       [`a tile of ${tile.bytes.length} bytes, medians of ${kRounds} rounds`, 'requests/s', 'CPU, us a request'],
@@ -230,7 +230,7 @@ async function tell() {
         machine: on,
         tile_bytes: tile.bytes.length,
         connections: kConnections,
-        asked: figures,
+        requests: figures,
         ratios: Object.fromEntries(ratios.map(({ name, ...of }) => [name, of])),
         ratio_aim: kRatioAim,
         first_ms: first.ms,

@@ -1,5 +1,5 @@
 /**
- * How fast the viewer is, in a headless Chromium: its size, the first map, and frames while tiles change.
+ * The speed of the viewer in headless Chromium: its size, the first map, and frames while tiles change.
  *
  *   SCANLOOM_WEB_DIR=build/web SCANLOOM_BIN_DIR=build/bin SCANLOOM_PICTURE_DIR=build/e2e node tests/bench/viewer_bench.mjs [--quick]
  */
@@ -15,7 +15,7 @@ import { announce, fullOrQuick } from './report/arguments.mjs';
 
 const kRounds = fullOrQuick(9, 3);
 const kSeconds = fullOrQuick(10, 2);
-/** Native tiles, which a screen of this size shows a little smaller than they are. */
+/** Native tiles, which this screen shows slightly reduced. */
 const kAcross = 10;
 const kDown = 6;
 const kScreen = [2560, 1440];
@@ -23,22 +23,22 @@ const kChangesPerSecond = 20;
 
 announce('viewer', '1 minute', '30 seconds');
 const browser = await launchBrowser();
-await tellSize();
-await tellFirstMap();
-await tellFrames();
+await measureSize();
+await measureFirstMap();
+await measureFrames();
 await browser.close();
 
-/** What a browser has to fetch for the page, compressed. */
-async function tellSize() {
+/** Compressed bytes that a browser fetches for the page. */
+async function measureSize() {
   const assets = join(kWebDirectory, 'assets');
   const files = [join(kWebDirectory, 'index.html'), ...(await readdir(assets)).map((file) => join(assets, file))];
   const sizes = await Promise.all(files.map(async (file) => gzipSync(await readFile(file), { level: 9 }).length));
   const bytes = sizes.reduce((sum, size) => sum + size, 0);
-  tell('page, gzip', `${(bytes / 1000).toFixed(0)} kB`);
+  printRow('page, gzip', `${(bytes / 1000).toFixed(0)} kB`);
 }
 
-/** From the address being entered to cells being drawn, with the real server and nothing cached. */
-async function tellFirstMap() {
+/** Time from entering the address to drawn cells, with the real server and an empty cache. */
+async function measureFirstMap() {
   const server = await startServer();
   const robot = startRobot(server, 'office', 'r1', [
     'simulate',
@@ -62,7 +62,7 @@ async function tellFirstMap() {
   }
   await server.stop();
   times.sort((a, b) => a - b);
-  tell(
+  printRow(
     'first map, median',
     `${times[Math.floor(kRounds / 2)].toFixed(0)} ms`,
     `slowest of ${kRounds}: ${times.at(-1).toFixed(0)} ms`,
@@ -77,8 +77,8 @@ async function scansOf(server, count) {
   }
 }
 
-/** The same page at rest and with tiles that change: frames a second, and requests for each change. */
-async function tellFrames() {
+/** The same page at rest and with changing tiles: frames per second, and requests per change. */
+async function measureFrames() {
   const server = await FakeServer.start(kWebDirectory);
   const session = server.add(new FakeSession('wall', 'id-wall'));
   for (let tile = 0; tile < kAcross * kDown; ++tile) paint(session, tile, tile % 100);
@@ -87,7 +87,7 @@ async function tellFrames() {
   await page.waitForLoadState('networkidle');
   const shown = new Set(server.tileRequests.map((path) => path.split('?')[0])).size;
   const idle = await framesPerSecond(page);
-  const asked = server.tileRequests.length;
+  const requested = server.tileRequests.length;
   let changes = 0;
   const timer = setInterval(
     () => paint(session, (changes * 7) % (kAcross * kDown), changes++ % 100),
@@ -95,14 +95,14 @@ async function tellFrames() {
   );
   const busy = await framesPerSecond(page);
   clearInterval(timer);
-  const perChange = (server.tileRequests.length - asked) / changes;
-  tell(`frames/s, ${shown} tiles at rest`, idle.rate.toFixed(1), `slowest of 100: ${idle.slow.toFixed(0)} ms`);
-  tell(
+  const perChange = (server.tileRequests.length - requested) / changes;
+  printRow(`frames/s, ${shown} tiles at rest`, idle.rate.toFixed(1), `slowest of 100: ${idle.slow.toFixed(0)} ms`);
+  printRow(
     `frames/s, ${(changes / kSeconds).toFixed(0)} of them changing a second`,
     busy.rate.toFixed(1),
     `slowest of 100: ${busy.slow.toFixed(0)} ms; ratio ${(busy.rate / idle.rate).toFixed(2)}`,
   );
-  tell('requests for a changed tile', perChange.toFixed(2));
+  printRow('requests for a changed tile', perChange.toFixed(2));
   await page.context().close();
   await server.vanish();
 }
@@ -111,7 +111,7 @@ function paint(session, tile, percent) {
   session.paint(256 + (tile % kAcross), 255 - Math.floor(tile / kAcross), percent);
 }
 
-/** @returns rate, and the duration of the slowest of 100 frames, ms */
+/** @returns the rate, and the duration of the slowest of 100 frames, ms */
 function framesPerSecond(page) {
   return page.evaluate(
     (durationMs) =>
@@ -132,6 +132,6 @@ function framesPerSecond(page) {
   );
 }
 
-function tell(what, figure, note = '') {
+function printRow(what, figure, note = '') {
   console.log(`${what.padEnd(46)}${figure.padStart(10)}${note && `   (${note})`}`);
 }

@@ -7,7 +7,7 @@ SCANLOOM_FUZZER(carmen_line)(const std::uint8_t* data, std::size_t size) {
     using namespace scanloom;
     const auto line = robot::parse_carmen_line({reinterpret_cast<const char*>(data), size});
     if (!line) {
-        fuzz::check(!line.error().message.empty(), "every error says what is wrong");
+        fuzz::check(!line.error().message.empty(), "every error has a message");
         return 0;
     }
     if (const auto* scan = std::get_if<robot::CarmenScan>(&*line)) {

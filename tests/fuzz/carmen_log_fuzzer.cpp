@@ -28,7 +28,7 @@ private:
     int descriptor_;
 };
 
-/// The server lets the message through.
+/// Whether the server accepts the message.
 bool is_welcome(const wire::Message& message) {
     std::string frame;
     wire::encode(message, frame);
@@ -46,15 +46,15 @@ SCANLOOM_FUZZER(carmen_log)(const std::uint8_t* data, std::size_t size) {
         fuzz::check(!line.reason.empty(), "every skipped line has its reason");
     });
     if (!log) {
-        fuzz::check(!log.error().message.empty(), "every error says what is wrong");
+        fuzz::check(!log.error().message.empty(), "every error has a message");
         fuzz::check(log.error().code != Errc::kConflict, "both readings of the file agree");
         return 0;
     }
     std::uint64_t seq = 0;
     for (auto observation : log->observations) {
         observation.scan.seq = ++seq;
-        fuzz::check(is_welcome(*observation.sensor), "a sensor that is sent is not refused");
-        fuzz::check(is_welcome(wire::ScanBatch{{observation.scan}}), "a scan that is sent is not refused");
+        fuzz::check(is_welcome(*observation.sensor), "the server accepts every sensor that is sent");
+        fuzz::check(is_welcome(wire::ScanBatch{{observation.scan}}), "the server accepts every scan that is sent");
         fuzz::check(wire::check_scan(observation.scan, *observation.sensor).has_value(), "a scan fits its sensor");
     }
     return 0;

@@ -8,7 +8,7 @@
 
 namespace scanloom::fuzz {
 
-/// A claim that must hold for every input: libFuzzer keeps the input that breaks it.
+/// Aborts if a property does not hold: libFuzzer keeps the input.
 inline void check(bool holds, std::string_view claim) {
     if (holds) return;
     std::fprintf(stderr, "broken: %.*s\n", static_cast<int>(claim.size()), claim.data());
@@ -19,8 +19,8 @@ inline void check(bool holds, std::string_view claim) {
 
 /// Begins the function of the fuzzer NAME, which takes `const std::uint8_t* data, std::size_t size` and returns 0.
 ///
-/// With libFuzzer each fuzzer is a program. Otherwise all are functions of `http_test`, which feeds each its corpus
-/// (replay_test.cpp).
+/// With libFuzzer each fuzzer is a program. Otherwise all fuzzers are functions of `http_test`, which runs each on its
+/// corpus (replay_test.cpp).
 #ifdef SCANLOOM_LIBFUZZER
 #define SCANLOOM_FUZZER(NAME) extern "C" int LLVMFuzzerTestOneInput
 #else

@@ -9,7 +9,8 @@
 
 namespace {
 
-/// Takes the next string off the input: two bytes of length, little-endian, then so many bytes or what there is.
+/// Removes the next string from the input: two bytes of length, little-endian, then that many bytes, or fewer at the
+/// end.
 std::string_view take_text(std::string_view& input) {
     const auto byte = [&](std::size_t at) {
         return at < input.size() ? std::size_t{static_cast<unsigned char>(input[at])} : 0;
@@ -32,11 +33,11 @@ SCANLOOM_FUZZER(checkpoint)(const std::uint8_t* data, std::size_t size) {
         const auto key = take_text(input);
         const auto value = take_text(input);
         if (const auto added = reader.add(key, value); !added) {
-            fuzz::check(!added.error().message.empty(), "every error says what is wrong");
+            fuzz::check(!added.error().message.empty(), "every error has a message");
             return 0;
         }
     }
-    // Whatever was let through is a projection that can be looked at and kept again.
+    // A projection that was accepted can be read and written again.
     auto projection = std::move(reader).finish();
     if (!projection) return 0;
     store::MemoryScanLog log;

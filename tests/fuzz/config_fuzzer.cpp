@@ -10,7 +10,7 @@ SCANLOOM_FUZZER(config)(const std::uint8_t* data, std::size_t size) {
     const std::string text(reinterpret_cast<const char*>(data), size);
     const auto lines = scanloom::one_line_a_setting(text);
     fuzz::check(lines ? lines->size() <= text.size() : !lines.error().message.empty(),
-                "comments go and nothing comes, or an error says what is wrong");
+                "comments are removed and nothing is added, or the error has a message");
 
     CLI::App app("a program", "program");
     std::string word;
@@ -29,7 +29,7 @@ SCANLOOM_FUZZER(config)(const std::uint8_t* data, std::size_t size) {
     try {
         app.parse_from_stream(file);
     } catch (const CLI::ParseError& refused) {
-        fuzz::check(std::string_view(refused.what()).size() > 0, "every refusal says what is wrong");
+        fuzz::check(std::string_view(refused.what()).size() > 0, "every refusal has a message");
     }
     return 0;
 }

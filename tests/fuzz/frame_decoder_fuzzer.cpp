@@ -14,7 +14,7 @@ struct Outcome {
     bool failed = false;
 };
 
-/// Feeds the stream in pieces whose sizes are the bytes of `sizes` in turn, 0 standing for the rest.
+/// Passes the stream in pieces whose sizes are the bytes of `sizes` in turn; 0 means the rest.
 Outcome decode_stream(std::string_view stream, std::string_view sizes) {
     FrameDecoder decoder(kFrameBytesMaxHere);
     Outcome outcome;
@@ -35,7 +35,7 @@ Outcome decode_stream(std::string_view stream, std::string_view sizes) {
 } // namespace
 } // namespace scanloom::wire
 
-/// Input: a count, so many sizes of pieces, then the stream.
+/// Input: a count, that many sizes of pieces, then the stream.
 SCANLOOM_FUZZER(frame_decoder)(const std::uint8_t* data, std::size_t size) {
     using namespace scanloom;
     std::string_view input(reinterpret_cast<const char*>(data), size);
@@ -46,12 +46,12 @@ SCANLOOM_FUZZER(frame_decoder)(const std::uint8_t* data, std::size_t size) {
 
     const auto whole = wire::decode_stream(stream, {});
     const auto pieces = wire::decode_stream(stream, sizes);
-    fuzz::check(whole.failed == pieces.failed, "a stream fails however it is split, or never");
+    fuzz::check(whole.failed == pieces.failed, "whether a stream fails does not depend on how it is split");
     fuzz::check(whole.bodies == pieces.bodies, "any split of the bytes yields the same bodies");
     if (!whole.failed) {
         std::string again;
         for (const auto& body : whole.bodies) wire::append_frame(again, body);
-        fuzz::check(stream.substr(0, again.size()) == again, "framing the bodies gives the stream again");
+        fuzz::check(stream.substr(0, again.size()) == again, "framing the bodies reproduces the stream");
     }
     return 0;
 }

@@ -13,7 +13,7 @@ SCANLOOM_FUZZER(http_form)(const std::uint8_t* data, std::size_t size) {
     const auto body = input.substr(std::min(input.size(), type.size() + 1));
     const auto fields = http::parse_form(type, body);
     if (!fields) {
-        fuzz::check(!fields.error().message.empty(), "every error says what is wrong");
+        fuzz::check(!fields.error().message.empty(), "every error has a message");
         return 0;
     }
     fuzz::check(fields->size() <= http::kFormFieldsMax, "fields are bounded");
@@ -22,7 +22,7 @@ SCANLOOM_FUZZER(http_form)(const std::uint8_t* data, std::size_t size) {
         const bool lies_in_body =
             field.content.empty() || (field.content.data() >= body.data() &&
                                       field.content.data() + field.content.size() <= body.data() + body.size());
-        fuzz::check(lies_in_body, "contents lie in the body");
+        fuzz::check(lies_in_body, "contents are parts of the body");
     }
     return 0;
 }

@@ -9,18 +9,19 @@
 namespace scanloom::http {
 namespace {
 
-/// What parse_target() promises of every segment it lets through.
+/// Checks the properties of every segment that parse_target() accepts.
 void check_segments(const std::vector<std::string>& segments) {
     for (const auto& segment : segments) {
-        fuzz::check(segment != "." && segment != "..", "no segment leaves its place");
-        fuzz::check(segment.find_first_of(std::string_view("/\\\0", 3)) == std::string::npos, "no segment divides");
+        fuzz::check(segment != "." && segment != "..", "no segment is a relative path");
+        fuzz::check(segment.find_first_of(std::string_view("/\\\0", 3)) == std::string::npos,
+                    "no segment contains a separator");
     }
 }
 
 } // namespace
 } // namespace scanloom::http
 
-/// Input: a request target; also read as the fields If-None-Match and Host.
+/// Input: a request target; also parsed as the fields If-None-Match and Host.
 SCANLOOM_FUZZER(http_target)(const std::uint8_t* data, std::size_t size) {
     using namespace scanloom;
     const std::string_view text(reinterpret_cast<const char*>(data), size);
@@ -29,7 +30,7 @@ SCANLOOM_FUZZER(http_target)(const std::uint8_t* data, std::size_t size) {
 
     const auto target = http::parse_target(text);
     if (!target) {
-        fuzz::check(!target.error().message.empty(), "every error says what is wrong");
+        fuzz::check(!target.error().message.empty(), "every error has a message");
         return 0;
     }
     fuzz::check(!target->segments.empty(), "every path has a segment");

@@ -21,7 +21,7 @@ struct Outcome {
 
 using Bytes = std::span<const std::uint8_t>;
 
-/// Feeds the stream in pieces whose sizes are the bytes of `sizes` in turn, 0 standing for the rest.
+/// Passes the stream in pieces whose sizes are the bytes of `sizes` in turn; 0 means the rest.
 Outcome decode_stream(Bytes stream, Bytes sizes) {
     Ld06Decoder decoder;
     Ld06RecordingClock clock;
@@ -36,7 +36,7 @@ Outcome decode_stream(Bytes stream, Bytes sizes) {
         while (const auto packet = decoder.next()) {
             outcome.packets.push_back(*packet);
             const double stamp = clock.stamp(packet->timestamp);
-            fuzz::check(stamp >= last_stamp, "time never goes back");
+            fuzz::check(stamp >= last_stamp, "stamps never decrease");
             last_stamp = stamp;
             turns.add(*packet, stamp);
         }
@@ -55,20 +55,21 @@ bool is_welcome(const wire::Message& message) {
 
 void check_turn(const Ld06Turn& turn, const Ld06ScanOptions& options) {
     fuzz::check(!turn.beams.empty() && turn.beams.front().step >= 0 && turn.beams.back().step < kLd06StepsPerTurn,
-                "a turn lies within 0 to 360 degrees");
+                "a turn has angles from 0 to 360 degrees");
     for (std::size_t i = 1; i < turn.beams.size(); ++i) {
-        fuzz::check(turn.beams[i - 1].step < turn.beams[i].step, "no direction comes twice in a turn");
+        fuzz::check(turn.beams[i - 1].step < turn.beams[i].step, "angles increase within a turn");
     }
     Scan scan = ld06_scan(turn, options);
     scan.seq = 1;
-    fuzz::check(scan.ranges.size() == turn.beams.size(), "each point is a beam");
-    fuzz::check(is_welcome(wire::ScanBatch{{scan}}), "a scan that is sent is not refused");
+    fuzz::check(scan.ranges.size() == turn.beams.size(), "each point has a beam");
+    fuzz::check(is_welcome(wire::ScanBatch{{scan}}), "the server accepts every scan that is sent");
 }
 
 } // namespace
 } // namespace scanloom::robot
 
-/// Input: a count, so many sizes of pieces, then what a sensor sends; the first byte also chooses the median's window.
+/// Input: a count, that many sizes of pieces, then the bytes of a sensor; the first byte also selects the median's
+/// window.
 SCANLOOM_FUZZER(ld06)(const std::uint8_t* data, std::size_t size) {
     using namespace scanloom;
     using namespace scanloom::robot;
@@ -78,7 +79,7 @@ SCANLOOM_FUZZER(ld06)(const std::uint8_t* data, std::size_t size) {
     const auto stream = input.subspan(count);
 
     const auto whole = decode_stream(stream, {});
-    fuzz::check(whole == decode_stream(stream, input.first(count)), "any split of the bytes gives the same turns");
+    fuzz::check(whole == decode_stream(stream, input.first(count)), "any split of the bytes yields the same turns");
     const auto& counts = whole.counts;
     const std::size_t used = kLd06PacketBytes * (counts.packets + counts.implausible) + counts.skipped_bytes;
     fuzz::check(used <= stream.size() && stream.size() - used < kLd06PacketBytes, "every byte is used once");

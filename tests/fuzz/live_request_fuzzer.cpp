@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <string_view>
 
-/// Input: a message of a viewer's.
+/// Input: a message of a viewer.
 SCANLOOM_FUZZER(live_request)(const std::uint8_t* data, std::size_t size) {
     using namespace scanloom;
     const auto request = wire::decode_live_request({reinterpret_cast<const char*>(data), size});
@@ -14,13 +14,13 @@ SCANLOOM_FUZZER(live_request)(const std::uint8_t* data, std::size_t size) {
         fuzz::check(!message.empty() && message.size() <= 123, "every error is a sentence that fits a close frame");
         return 0;
     }
-    fuzz::check(request->layers.size() <= 16, "no more layers than are read");
+    fuzz::check(request->layers.size() <= 16, "the number of layers is bounded");
     const auto wishes = live::wishes_of(*request);
     for (const auto layer : request->layers) {
         fuzz::check(layer >= wire::LiveLayer::kOccupancy && layer <= wire::LiveLayer::kClassification,
-                    "each layer is one that there is");
+                    "each layer exists");
     }
     fuzz::check(std::ranges::find(wishes.layers, true) != wishes.layers.end() || request->layers.empty(),
-                "what is asked for is wished for");
+                "each requested part is subscribed to");
     return 0;
 }

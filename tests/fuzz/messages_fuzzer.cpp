@@ -7,7 +7,7 @@
 namespace scanloom::wire {
 namespace {
 
-/// What decode() promises of every message it lets through.
+/// Checks the properties of every message that decode() accepts.
 void check_scan_batch(const ScanBatch& batch) {
     fuzz::check(!batch.scans.empty() && batch.scans.size() <= kScansPerBatchMax, "a batch has 1 to 1024 scans");
     for (const Scan& scan : batch.scans) {
@@ -50,7 +50,7 @@ SCANLOOM_FUZZER(messages)(const std::uint8_t* data, std::size_t size) {
     const std::string_view body(reinterpret_cast<const char*>(data), size);
     const auto message = wire::decode(body);
     if (!message) {
-        fuzz::check(!message.error().message.empty(), "every error says what is wrong");
+        fuzz::check(!message.error().message.empty(), "every error has a message");
         return 0;
     }
     if (const auto* batch = std::get_if<wire::ScanBatch>(&*message)) wire::check_scan_batch(*batch);
@@ -59,11 +59,11 @@ SCANLOOM_FUZZER(messages)(const std::uint8_t* data, std::size_t size) {
     }
     wire::check_requests_and_replies(*message);
 
-    // Compared as bytes, not as values: a NaN in hello.create is for the server to refuse, and differs from itself.
+    // Compared as bytes, not as values: the server rejects a NaN in hello.create, and NaN differs from itself.
     std::string once;
     wire::encode(*message, once);
     const auto again = wire::decode(std::string_view(once).substr(wire::kLengthPrefixBytes));
-    fuzz::check(again.has_value(), "what was let through once is let through again");
+    fuzz::check(again.has_value(), "an encoded message can be decoded");
     std::string twice;
     wire::encode(*again, twice);
     fuzz::check(once == twice, "encoding and decoding change nothing");

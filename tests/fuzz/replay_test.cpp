@@ -57,7 +57,7 @@ const Named kFuzzers[] = {
 
 class FuzzCorpus : public testing::TestWithParam<Named> {};
 
-/// Feeds a fuzzer every file of its corpus once. A fuzzer aborts on an input that breaks one of its claims.
+/// Runs a fuzzer on every file of its corpus once. A fuzzer aborts on an input that violates a property.
 TEST_P(FuzzCorpus, EveryFilePasses) {
     std::size_t files = 0;
     for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(CORPUS) / GetParam().name)) {

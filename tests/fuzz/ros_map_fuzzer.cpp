@@ -13,13 +13,13 @@ SCANLOOM_FUZZER(ros_map)(const std::uint8_t* data, std::size_t size) {
     const auto image = std::span(data, size).subspan(std::min(size, yaml.size() + 1));
     const auto description = parse_ros_yaml(yaml);
     if (!description) {
-        fuzz::check(!description.error().message.empty(), "every error says what is wrong");
+        fuzz::check(!description.error().message.empty(), "every error has a message");
         return 0;
     }
     const auto patches = tiles::read_ros_image(*description, image);
     if (!patches) return 0;
     for (const auto& patch : *patches) {
-        fuzz::check(patch.width > 0 && patch.cells.size() % patch.width == 0, "patches are whole rows");
+        fuzz::check(patch.width > 0 && patch.cells.size() % patch.width == 0, "patches consist of complete rows");
         fuzz::check(patch.cells.size() <= kMapPatchCellsMax, "patches are bounded");
     }
     return 0;

@@ -21,15 +21,14 @@ SCANLOOM_FUZZER(tokens)(const std::uint8_t* data, std::size_t size) {
     }
     std::string again;
     for (const auto& token : tokens->tokens()) {
-        fuzz::check(access::is_hash(token->hash), "only hashes are taken");
+        fuzz::check(access::is_hash(token->hash), "only hashes are accepted");
         for (const auto& pattern : token->sessions) {
-            fuzz::check(access::is_valid_pattern(pattern), "only patterns are taken");
+            fuzz::check(access::is_valid_pattern(pattern), "only patterns are accepted");
             static_cast<void>(access::matches(pattern, token->name));
         }
         again += access::text_of(*token);
     }
     const auto reread = access::parse_tokens(again);
-    fuzz::check(reread.has_value() && reread->tokens().size() == tokens->tokens().size(),
-                "what is written can be read");
+    fuzz::check(reread.has_value() && reread->tokens().size() == tokens->tokens().size(), "a written file can be read");
     return 0;
 }

@@ -281,7 +281,7 @@ int main(int argc, char** argv) {
     }
     if (compares && is_as_written(argv[2])) return 0;
     if (compares) {
-        std::fprintf(stderr, "write them anew: %s %s\n", argv[0], argv[2]);
+        std::fprintf(stderr, "update them with: %s %s\n", argv[0], argv[2]);
         return 1;
     }
     write_corpus(argv[1]);

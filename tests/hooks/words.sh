@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Finds words of words.txt in the lines that a change adds to comments, texts and documents.
-# usage: words.sh [--cached | COMMIT]        (--cached: what is about to be committed, the default)
+# usage: words.sh [--cached | COMMIT]        (--cached: the changes of the next commit, the default)
 set -euo pipefail
 cd "$(git rev-parse --show-toplevel)"
 
@@ -17,5 +17,5 @@ found=$(git -c diff.noprefix=false -c diff.mnemonicPrefix=false diff --no-color 
         }' tests/hooks/words.txt -)
 [[ -z $found ]] && exit 0
 echo "$found" >&2
-echo "words.sh: these words are not plain technical English; git commit --no-verify commits them all the same" >&2
+echo "words.sh: these words are not plain technical English; git commit --no-verify skips this check" >&2
 exit 1

@@ -1,4 +1,4 @@
-// The description of the HTTP API has no error that a linter or a parser finds.
+// The description of the HTTP API passes a linter and a parser.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import SwaggerParser from '@apidevtools/swagger-parser';

@@ -1,13 +1,13 @@
-// The links of documents in Markdown, and which of them lead nowhere.
+// Finds the links of Markdown documents that are broken.
 import { existsSync, readdirSync, readFileSync } from 'node:fs';
 import { dirname, join, relative, resolve } from 'node:path';
 
 const withoutCode = (text) => text.replace(/^```[^]*?^```/gm, '').replace(/`[^`\n]*`/g, 'x');
 
-/** What is linked to or shown as a picture, as it is written. */
+/** Returns the targets of links and pictures, as written. */
 export const linksOf = (text) => [...withoutCode(text).matchAll(/\]\(([^)\s]+)\)/g)].map((match) => match[1]);
 
-/** What a link within a document may name: its headings, in GitHub's spelling. */
+/** Returns the anchors of a document: its headings, in GitHub's spelling. */
 export function anchorsOf(text) {
   const seen = new Map();
   return new Set(
@@ -23,7 +23,7 @@ export function anchorsOf(text) {
   );
 }
 
-/** 'DOCUMENT: LINK' of each link that leads nowhere, of all documents below a folder. What is elsewhere is not asked. */
+/** Returns 'DOCUMENT: LINK' for each broken link in the documents of a folder. External links are not checked. */
 export function deadLinks(folder) {
   const documents = readdirSync(folder, { recursive: true })
     .filter((name) => name.endsWith('.md'))

@@ -1,4 +1,4 @@
-// What ./scanloom package makes, of the build in SCANLOOM_BUILD_DIR: looked into, and run from.
+// The output of ./scanloom package, for the build in SCANLOOM_BUILD_DIR: inspected, and run.
 import assert from 'node:assert/strict';
 import { execFileSync, spawn, spawnSync } from 'node:child_process';
 import {
@@ -66,13 +66,13 @@ test('the package has the programs, the viewer, the service, its configuration a
   assert.match(run('dpkg-deb', '--contents', deb), /^-rwxr-xr-x root\/root .*usr\/bin\/scanloom-server$/m);
 });
 
-test('every link of its documents leads to something that is in the package', { skip }, () => {
+test('every link of its documents has a target in the package', { skip }, () => {
   const documents = join(root, 'usr/share/doc/scanloom');
   assert.ok(existsSync(join(documents, 'docs/observability/alerts.yml')));
   assert.deepEqual(deadLinks(documents), []);
 });
 
-test('a link that leads nowhere is found out', () => {
+test('broken links are detected', () => {
   const folder = join(place, 'documents');
   mkdirSync(join(folder, 'more'), { recursive: true });
   const write = (name, text) => writeFileSync(join(folder, name), text);
@@ -114,7 +114,7 @@ test('the same build and commit give the same bytes', { skip }, () => {
   assert.ok(readFileSync(again).equals(readFileSync(deb)));
 });
 
-test('the list of what it consists of is SPDX 2.3, and lacks no library that ldd names', { skip }, () => {
+test('its component list is SPDX 2.3, and contains every library that ldd lists', { skip }, () => {
   assert.deepEqual(faultsOf(listed), []);
   const linked = new Set(
     listed.relationships.filter((one) => one.relationshipType === 'DYNAMIC_LINK').map((one) => one.relatedSpdxElement),
@@ -126,14 +126,14 @@ test('the list of what it consists of is SPDX 2.3, and lacks no library that ldd
   for (const owner of needed) assert.ok(names.has(owner), owner);
 });
 
-test('it names the packages that the viewer bundles, and no tools that made it', { skip }, () => {
+test('the component list has the packages that the viewer bundles, and no build tools', { skip }, () => {
   const bundled = listed.packages.filter((one) => one.SPDXID.startsWith('SPDXRef-npm-')).map((one) => one.name);
   for (const name of Object.keys(JSON.parse(readFileSync(join(source, 'web/package.json'), 'utf8')).dependencies))
     assert.ok(bundled.includes(name), name);
   for (const tool of ['vite', 'typescript', 'esbuild']) assert.ok(!bundled.includes(tool), tool);
 });
 
-test('a document that lacks what SPDX demands is found out', () => {
+test('documents without required SPDX fields are detected', () => {
   const whole = {
     spdxVersion: 'SPDX-2.3',
     dataLicense: 'CC0-1.0',
@@ -171,7 +171,7 @@ test('a document that lacks what SPDX demands is found out', () => {
   assert.notDeepEqual(faultsOf({ ...whole, packages: [whole.packages[0], whole.packages[0]] }), [], 'twice');
 });
 
-test('licences are told where Debian tells them of all files, and guessed nowhere', () => {
+test('licences are set where Debian has one for all files, and are never guessed', () => {
   const of = (licence) =>
     licenceOf(`Format: x\n\nFiles: debian/*\nLicense: GPL-2+\n\nFiles: *\nCopyright: a\nLicense: ${licence}\n text\n`);
   assert.equal(of('Expat'), 'MIT');
@@ -180,7 +180,7 @@ test('licences are told where Debian tells them of all files, and guessed nowher
   assert.equal(licenceOf('You may use it.'), 'NOASSERTION');
 });
 
-test('what npm needs to make the page only is left out', () => {
+test('npm packages that only the build needs are left out', () => {
   const lock = {
     packages: {
       '': {},
@@ -198,25 +198,25 @@ test('what npm needs to make the page only is left out', () => {
   );
 });
 
-test('the configuration and the compose file with everything guarded know no option that the server does not', () => {
+test('the configuration and the secure compose file use only options of the server', () => {
   const known = new Set(
     [...run(join(build, 'bin/scanloom-server'), '--help').matchAll(/--[a-z-]+/g)].map((match) => match[0]),
   );
   const secure = readFileSync(join(source, 'docker/compose.secure.yaml'), 'utf8').match(
     / {4}entrypoint:[^]*?ports:/,
   )[0];
-  const told = [...secure.matchAll(/--[a-z-]+/g)].map((match) => match[0]);
+  const options = [...secure.matchAll(/--[a-z-]+/g)].map((match) => match[0]);
   const file = readFileSync(join(source, 'packaging/scanloom-server.toml'), 'utf8');
   const written = [...file.matchAll(/^(?:# )?([a-z-]+) = /gm)].map((match) => `--${match[1]}`);
-  assert.ok(told.length > 8 && written.length > 8);
-  for (const option of [...told, ...written]) assert.ok(known.has(option), option);
-  assert.ok(!told.includes('--insecure'));
+  assert.ok(options.length > 8 && written.length > 8);
+  for (const option of [...options, ...written]) assert.ok(known.has(option), option);
+  assert.ok(!options.includes('--insecure'));
 });
 
 const noSystemd = skip || (has('systemd-analyze') ? false : 'systemd-analyze is not installed');
 
-test('the service is one that systemd takes, and hardened', { skip: noSystemd }, () => {
-  // With the program where it is now, as systemd looks for it.
+test('the service is valid for systemd, and hardened', { skip: noSystemd }, () => {
+  // With the path of the extracted program, because systemd checks that it exists.
   const unit = join(place, 'scanloom-server.service');
   writeFileSync(
     unit,
@@ -233,14 +233,14 @@ test('the service is one that systemd takes, and hardened', { skip: noSystemd },
       .join('\n'),
     '',
   );
-  const told = spawnSync('systemd-analyze', ['security', '--offline=true', '--no-pager', unit], {
+  const analysis = spawnSync('systemd-analyze', ['security', '--offline=true', '--no-pager', unit], {
     encoding: 'utf8',
   }).stdout;
-  const exposure = Number(told.match(/Overall exposure level for scanloom-server\.service: ([\d.]+)/)?.[1]);
+  const exposure = Number(analysis.match(/Overall exposure level for scanloom-server\.service: ([\d.]+)/)?.[1]);
   assert.ok(exposure < 2.0, `its exposure is ${exposure}`);
 });
 
-test('the server runs from where it was put, with the configuration that comes with it', { skip }, async () => {
+test('the extracted server runs with the packaged configuration', { skip }, async () => {
   const server = spawn(
     join(root, 'usr/bin/scanloom-server'),
     [

@@ -1,4 +1,4 @@
-// What the server exports is read by programs of others: of Debian where they are installed, and of npm.
+// Other programs read the server's exports: programs of Debian, where they are installed, and of npm.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
@@ -23,7 +23,7 @@ const kSimulation = [
   '60',
 ];
 
-/** The one that has Debian's packages. */
+/** The Python that has Debian's packages. */
 const kDebiansPython = '/usr/bin/python3';
 
 let server;
@@ -56,15 +56,15 @@ async function file(path, name) {
   return place;
 }
 
-/** @returns what the program printed; nothing, and a skipped test, where it is not installed */
+/** @returns the program's output; undefined, and a skipped test, if it is not installed */
 function printed(t, debianPackage, program, ...args) {
-  const told = spawnSync(program, args, { encoding: 'utf8' });
-  if (told.error?.code === 'ENOENT') {
+  const run = spawnSync(program, args, { encoding: 'utf8' });
+  if (run.error?.code === 'ENOENT') {
     t.skip(`${program} was not found; it is in Debian's package ${debianPackage}`);
     return undefined;
   }
-  assert.equal(told.status, 0, `${program} ${args.join(' ')}\n${told.stdout}${told.stderr}`);
-  return told.stdout + told.stderr;
+  assert.equal(run.status, 0, `${program} ${args.join(' ')}\n${run.stdout}${run.stderr}`);
+  return run.stdout + run.stderr;
 }
 
 test('numpy reads maps as tables and as arrays, and both agree', async (t) => {
@@ -123,9 +123,9 @@ test('MRPT reads a scan and an odometry of each line', async (t) => {
 
 test('Prometheus reads metrics', async (t) => {
   const metrics = await text('metrics');
-  const told = spawnSync('promtool', ['check', 'metrics'], { encoding: 'utf8', input: metrics });
-  if (told.error?.code === 'ENOENT') return t.skip("promtool was not found; it is in Debian's package prometheus");
-  assert.equal(told.status, 0, told.stdout + told.stderr);
+  const run = spawnSync('promtool', ['check', 'metrics'], { encoding: 'utf8', input: metrics });
+  if (run.error?.code === 'ENOENT') return t.skip("promtool was not found; it is in Debian's package prometheus");
+  assert.equal(run.status, 0, run.stdout + run.stderr);
 });
 
 for (const name of ['trajectory', 'frontiers', 'landmarks', 'goals']) {

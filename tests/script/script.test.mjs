@@ -1,4 +1,4 @@
-// What ./scanloom says by itself: of a copy that has nothing to build beside it, so that building fails.
+// The output of ./scanloom itself: a copy without sources, so that every build fails.
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
 import { once } from 'node:events';
@@ -39,20 +39,20 @@ before(() => {
 });
 after(() => rmSync(place, { recursive: true, force: true }));
 
-const scanloom = (...words) => scanloomBeside({}, ...words);
+const scanloom = (...words) => scanloomWith({}, ...words);
 
-/** All packages are there. */
+/** All packages are installed. */
 const debian = { 'dpkg-query': 'for package; do echo "installed $package"; done' };
 
-/** The script where these programs, of one line each, are found before the system's. */
-const scanloomBeside = (programs, ...words) =>
+/** The script, with these one-line programs first in the PATH. */
+const scanloomWith = (programs, ...words) =>
   spawnSync(join(place, 'scanloom'), words, {
     encoding: 'utf8',
     stdio: ['ignore', 'pipe', 'pipe'],
     env: withPrograms(programs),
   });
 
-/** The environment where these programs are found first. */
+/** The environment with these programs first in the PATH. */
 const withPrograms = (programs) => {
   const bin = join(place, 'bin');
   rmSync(bin, { recursive: true, force: true });
@@ -65,16 +65,16 @@ const withPrograms = (programs) => {
 
 const commandsIn = (text) => [...text.matchAll(/^ {2}([a-z]+) /gm)].map((match) => match[1]);
 
-test('every command of the usage tells its part of it, and nothing of the others', () => {
+test('--help of every command prints its part of the usage only', () => {
   const usage = scanloom('help').stdout;
   const commands = commandsIn(usage).filter((command) => command !== 'help');
   assert.ok(commands.length > 10);
   for (const command of commands) {
     for (const words of [['--help'], ['-h'], ['--seed', '1', '--help']]) {
-      const told = scanloom(command, ...words);
-      assert.equal(told.status, 0, `${command}: ${told.stderr}`);
-      assert.deepEqual(commandsIn(told.stdout), [command]);
-      assert.ok(usage.includes(told.stdout.split('\n').slice(2).join('\n')));
+      const result = scanloom(command, ...words);
+      assert.equal(result.status, 0, `${command}: ${result.stderr}`);
+      assert.deepEqual(commandsIn(result.stdout), [command]);
+      assert.ok(usage.includes(result.stdout.split('\n').slice(2).join('\n')));
     }
   }
   assert.match(scanloom('fault', '--help').stdout, /--count N {8}how often/);
@@ -89,23 +89,23 @@ test('the usage has every command that the script knows', () => {
 
 test('an unknown command is refused, with and without --help', () => {
   for (const words of [['paint'], ['paint', '--help']]) {
-    const told = scanloom(...words);
-    assert.equal(told.status, 2);
-    assert.match(told.stderr, /there is no command 'paint'/);
+    const result = scanloom(...words);
+    assert.equal(result.status, 2);
+    assert.match(result.stderr, /there is no command 'paint'/);
   }
 });
 
-test('a build that fails for another reason than the sources tells the reason in a sentence', () => {
-  const disk = scanloomBeside({ ...debian, cmake: 'echo "write: No space left on device"; exit 1' }, 'demo');
+test('a build that fails for an external reason reports it', () => {
+  const disk = scanloomWith({ ...debian, cmake: 'echo "write: No space left on device"; exit 1' }, 'demo');
   assert.equal(disk.status, 1);
   assert.match(disk.stderr, /^scanloom: configure \(release\) failed: the disk of .* is full, \d+ MB are left/m);
-  const network = scanloomBeside({ ...debian, cmake: 'echo "npm error code EAI_AGAIN"; exit 1' }, 'demo');
+  const network = scanloomWith({ ...debian, cmake: 'echo "npm error code EAI_AGAIN"; exit 1' }, 'demo');
   assert.match(network.stderr, /failed: packages were not downloaded; the network must reach/);
-  const sources = scanloomBeside({ ...debian, cmake: 'echo "a.cpp:3: error"; exit 1' }, 'demo');
+  const sources = scanloomWith({ ...debian, cmake: 'echo "a.cpp:3: error"; exit 1' }, 'demo');
   assert.equal(sources.stderr, 'scanloom: configure (release) failed\n');
 });
 
-test('words that a command does not know are refused before anything is built', () => {
+test('unknown arguments are refused before anything is built', () => {
   for (const [words, sentence] of [
     [['test', 'two words'], /test takes one word .*, not 'two words'/],
     [['test', 'a', 'b'], /test takes one word .*, not 'a b'/],
@@ -135,26 +135,26 @@ test('words that a command does not know are refused before anything is built', 
     [['mutants', 'a', 'b'], /mutants takes one name, not also 'b'/],
     [['pictures', 'a', 'b', 'c', 'd'], /pictures needs a log: /],
   ]) {
-    const told = scanloomBeside(debian, ...words);
-    assert.equal(told.status, 2, words.join(' '));
-    assert.match(told.stderr, sentence);
+    const result = scanloomWith(debian, ...words);
+    assert.equal(result.status, 2, words.join(' '));
+    assert.match(result.stderr, sentence);
   }
 });
 
-test('words that a command knows are not refused', () => {
+test('known arguments are accepted', () => {
   const failing = { ...debian, cmake: 'exit 1' };
   for (const words of [
     ['bench', 'Insert'],
-    ['bench', 'Tile.*/1024$'], // perhaps a name
+    ['bench', 'Tile.*/1024$'], // may be a name
     ['fault', 'kill', '--seed', '7', '--count', '1', '--long'],
     ['fault', 'all'],
   ]) {
-    const told = scanloomBeside(failing, ...words);
-    assert.match(told.stderr, /^scanloom: configure \(.*\) failed\n$/, words.join(' '));
+    const result = scanloomWith(failing, ...words);
+    assert.match(result.stderr, /^scanloom: configure \(.*\) failed\n$/, words.join(' '));
   }
 });
 
-test('it runs from any folder, by sh, with a CDPATH, and files are those of that folder', () => {
+test('it runs from any folder, by sh, with a CDPATH, and files are relative to that folder', () => {
   const elsewhere = join(place, 'else where');
   mkdirSync(elsewhere);
   mkdirSync(join(elsewhere, 'copy'));
@@ -196,9 +196,9 @@ test('a demo whose ports are taken gets others, and keeps its logs if it fails',
     `echo '{"event":"ready","robot_port":5001,"http_port":5002}'`,
     'exec sleep 60',
   );
-  const told = demo();
-  assert.equal(told.status, 0, told.stderr);
-  assert.match(told.stdout, /http:\/\/127.0.0.1:5002\/\n.*127.0.0.1:5001\.[^]* 7 scans were stored/);
+  const result = demo();
+  assert.equal(result.status, 0, result.stderr);
+  assert.match(result.stdout, /http:\/\/127.0.0.1:5002\/\n.*127.0.0.1:5001\.[^]* 7 scans were stored/);
   program('scanloom-server', 'echo "no store" >&2', 'exit 1');
   const failed = demo();
   assert.equal(failed.status, 1);
@@ -206,14 +206,14 @@ test('a demo whose ports are taken gets others, and keeps its logs if it fails',
   assert.equal(readFileSync(log, 'utf8'), 'no store\n');
 });
 
-test('clang-tidy says which files it does not check', () => {
+test('tidy lists the files that clang-tidy does not check', () => {
   mkdirSync(join(place, 'tests/e2e/node_modules/.bin'), { recursive: true });
   writeFileSync(join(place, 'tests/e2e/package-lock.json'), '');
   writeFileSync(join(place, 'tests/e2e/node_modules/.package-lock.json'), '');
   writeFileSync(join(place, 'tests/x.cpp'), '');
-  const told = scanloomBeside({ ...debian, npm: '' }, 'tidy', join(place, 'tests/x.cpp'));
-  assert.equal(told.status, 0, told.stderr);
-  assert.match(told.stdout, /^not checked: tests\/x.cpp \(clang-tidy reads only common, /m);
+  const result = scanloomWith({ ...debian, npm: '' }, 'tidy', join(place, 'tests/x.cpp'));
+  assert.equal(result.status, 0, result.stderr);
+  assert.match(result.stdout, /^not checked: tests\/x.cpp \(clang-tidy reads only common, /m);
 });
 
 test('the files of each part of --all exist', () => {
@@ -225,7 +225,7 @@ test('the files of each part of --all exist', () => {
   for (const file of files) assert.ok(existsSync(join(source, file)), file);
 });
 
-test('each setting that a document changes gets its value back at the next configuration', () => {
+test('each setting that a document changes is reset by the next configuration', () => {
   const [base] = JSON.parse(readFileSync(join(source, 'CMakePresets.json'), 'utf8')).configurePresets;
   const texts = ['CONTRIBUTING.md', 'docs/internals/build.md', 'docs/internals/testing.md', 'web/CMakeLists.txt'];
   const text = texts.map((name) => readFileSync(join(source, name), 'utf8')).join();
@@ -234,25 +234,25 @@ test('each setting that a document changes gets its value back at the next confi
   for (const name of changed) assert.ok(name in base.cacheVariables, name);
 });
 
-test('where there is no Debian a sentence says so', () => {
+test('a message reports a system that is not Debian', () => {
   const bin = join(place, 'no_debian');
   mkdirSync(bin);
   for (const name of ['bash', 'env', 'dirname']) symlinkSync(`/usr/bin/${name}`, join(bin, name));
-  const told = spawnSync(join(place, 'scanloom'), ['demo'], { encoding: 'utf8', env: { ...process.env, PATH: bin } });
-  assert.equal(told.status, 1);
-  assert.equal(told.stderr, 'scanloom: this is not Debian; packages.txt lists what Scanloom needs of Debian 12\n');
+  const result = spawnSync(join(place, 'scanloom'), ['demo'], { encoding: 'utf8', env: { ...process.env, PATH: bin } });
+  assert.equal(result.status, 1);
+  assert.equal(result.stderr, 'scanloom: this is not Debian; packages.txt lists what Scanloom needs of Debian 12\n');
 });
 
-test('the list of faults is that of the program that is there', () => {
+test('fault lists the rows of an existing program', () => {
   mkdirSync(join(place, 'build/tests'), { recursive: true });
   const program = join(place, 'build/tests/scanloom-fault');
   writeFileSync(program, '#!/bin/sh\necho "  kill     one row, $# words"\n');
   chmodSync(program, 0o755);
-  const told = scanloom('fault');
-  assert.equal(told.status, 0, told.stderr);
-  assert.match(told.stdout, /^ {2}kill {5}one row, 0 words\n {2}fuzz /);
+  const result = scanloom('fault');
+  assert.equal(result.status, 0, result.stderr);
+  assert.match(result.stdout, /^ {2}kill {5}one row, 0 words\n {2}fuzz /);
   assert.notEqual(
-    scanloomBeside(debian, 'fault', 'kill').status,
+    scanloomWith(debian, 'fault', 'kill').status,
     0,
     'a row is that of the sources, which are built first',
   );

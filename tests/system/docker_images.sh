@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Builds the images of docker/Dockerfile without a Docker engine, on a base image made here, then starts
-# the server's, checks its health check, and lets the robot's stream a map to it.
+# Builds the images of docker/Dockerfile without a Docker engine, on a base image made here, then starts the server's
+# image, checks its health check, and streams a map to it from the robot's image.
 # usage: docker_images.sh        (as root; needs buildah, debootstrap, iproute2, procps, and the network for packages)
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
@@ -13,7 +13,7 @@ storage() { echo --storage-driver vfs --root "$work/storage" --runroot "$work/ru
 # shellcheck disable=SC2046 # no spaces in them
 buildah() { command buildah $(storage) "$@"; }
 
-# setting IMAGE NAME: what the image says of itself, a list's items one a line.
+# setting IMAGE NAME: a setting of the image; the items of a list one a line.
 setting() {
     buildah inspect --type image --format "{{range .Docker.Config.$2}}{{println .}}{{end}}" "localhost/scanloom-$1" |
         sed '/^$/d'
@@ -38,7 +38,7 @@ build_image() {
     [[ $user == scanloom ]] || { echo "the $1's image runs as '$user', not as scanloom" >&2; exit 1; }
 }
 
-# Until COMMAND... succeeds, for half a minute.
+# Retries COMMAND... for half a minute until it succeeds.
 eventually() {
     local attempt
     for attempt in {1..60}; do
@@ -49,7 +49,7 @@ eventually() {
     exit 1
 }
 
-# Starts the server's image as its entry point says, asks its health check, lets the robot's image map a room.
+# Starts the server's image by its entry point, runs its health check, and maps a room with the robot's image.
 run_images() {
     local server_container robot_container entrypoint health server session
     ip link set lo up
@@ -59,7 +59,7 @@ run_images() {
     mapfile -t health < <(setting server Healthcheck.Test)
 
     # shellcheck disable=SC2046
-    (exec buildah $(storage) run "$server_container" -- "${entrypoint[@]}") & # exec: $! is what to stop
+    (exec buildah $(storage) run "$server_container" -- "${entrypoint[@]}") & # exec: $! is the process to stop
     server=$!
     eventually buildah run "$server_container" -- "${health[@]:1}"
     echo "== the server is healthy"
@@ -68,13 +68,13 @@ run_images() {
     exec 3<>/dev/tcp/127.0.0.1/8080
     printf 'GET /api/v1/sessions/office HTTP/1.0\r\nHost: localhost\r\n\r\n' >&3
     session=$(cat <&3)
-    [[ $session == *'"scans":300'* ]] || { echo "the server's session has not the robot's 300 scans: $session" >&2; exit 1; }
+    [[ $session == *'"scans":300'* ]] || { echo "the server's session does not have the robot's 300 scans: $session" >&2; exit 1; }
     exec 3<>/dev/tcp/127.0.0.1/8080
     printf 'GET / HTTP/1.0\r\nHost: localhost\r\n\r\n' >&3
     [[ $(cat <&3) == *'<html'* ]] || { echo "the server's image has no viewer" >&2; exit 1; }
-    # The server itself is told to stop: told to buildah, the signal would end the container around it.
+    # Signals the server itself: buildah would end the container on a signal.
     kill "$(pgrep --ns $$ --nslist net --exact scanloom-server)"
-    wait "$server" || { echo "the server's container did not end well when it was stopped" >&2; exit 1; }
+    wait "$server" || { echo "the server's container failed when it was stopped" >&2; exit 1; }
 }
 
 if [[ ${1:-} == --run ]]; then

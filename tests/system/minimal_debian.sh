@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Makes a minimal Debian 12 in a folder: what a fresh machine or a base image holds, and nothing more.
-# It reaches the package mirrors the way this machine does (apt's and npm's settings, added certificates).
+# Creates a minimal Debian 12 in a folder, with the packages of a fresh machine or a base image only.
+# Uses the package mirrors of this machine (settings of apt and npm, added certificates).
 # usage: minimal_debian.sh FOLDER        (as root; needs debootstrap)
 set -euo pipefail
 
@@ -12,7 +12,7 @@ mirror=$(apt-get indextargets --format '$(REPO_URI)' | grep --max-count=1 '/debi
 mkdir -p "$folder"
 debootstrap --variant=minbase bookworm "$folder" "$mirror" >"$folder.log" 2>&1 || { tail "$folder.log" >&2; exit 1; }
 
-# carry SOURCE...: copies what there is of these to the same place.
+# carry SOURCE...: copies the existing ones to the same paths.
 carry() {
     local path
     for path in "$@"; do

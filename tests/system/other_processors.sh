@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# The kernels on a processor that this machine is not: built for 64-bit ARM (NEON), run by an emulator, and held to the
-# same bits. Needs Debian's g++-aarch64-linux-gnu and qemu-user-static; a minute.
+# Runs the kernels on another processor: built for 64-bit ARM (NEON), in an emulator; checks that the bits are equal.
+# Needs Debian's g++-aarch64-linux-gnu and qemu-user-static; takes a minute.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 
@@ -9,11 +9,12 @@ readonly sources=(tests/system/sweep_fingerprint.cpp common/scan/beam_angles.cpp
 readonly options=(-std=c++20 -O2 -ffp-contract=off -static -DHWY_COMPILE_ONLY_STATIC -I.)
 place=$(mktemp --directory --tmpdir scanloom-neon.XXXXXX)
 trap 'rm -rf "$place"' EXIT
-# Highway and Eigen are headers alone here, the same for all processors; the rest of this machine's are not.
+# Only the headers of Highway and Eigen are used here, which are equal for all processors; other headers of this machine
+# are not.
 mkdir "$place/include"
 ln -s /usr/include/hwy /usr/include/eigen3/Eigen /usr/include/boost "$place/include"
 
-# As the project compiles them, for every set that its processors may have.
+# Compiled with the project's options, for every instruction set of its processors.
 sets=$(grep -o 'HWY_[A-Z]*_TARGETS=[^"]*' server/mapping/CMakeLists.txt)
 for source in server/mapping/chunk_kernels.cpp server/mapping/sweep/{contours,crossings,fill}.cpp; do
     aarch64-linux-gnu-g++ -std=c++20 -O2 -ffp-contract=off "-D$sets" -I. -isystem "$place/include" -c "$source" \
@@ -25,4 +26,4 @@ aarch64-linux-gnu-g++ "${options[@]}" -isystem "$place/include" "${sources[@]}" 
 here=$("$place/here")
 arm=$(qemu-aarch64-static "$place/arm")
 echo "here $here, ARM with NEON $arm"
-[[ $here == "$arm" ]] || { echo "the kernels give other bits on ARM" >&2; exit 1; }
+[[ $here == "$arm" ]] || { echo "the kernels give different results on ARM" >&2; exit 1; }

@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# Proves what packages.txt says of robots: in a minimal Debian 12 with the packages of [build-robot] this commit's robot
-# program and client library are built; in another the program runs with those of [run-robot], and the example is built
-# on the installed library with those of [library].
+# Checks the robots' sections of packages.txt: in a minimal Debian 12 with the packages of [build-robot], this commit's
+# robot program and client library are built; in another one, the program runs with those of [run-robot], and the
+# example is built on the installed library with those of [library].
 # usage: robot_build.sh        (as root; needs debootstrap, git, and the network for packages)
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 
-# Mounts live in a namespace of this script's own: they end with it, whatever happens.
+# Mounts are in a namespace of this script, and therefore end with it.
 if [[ ${1:-} != --in-own-namespace ]]; then
     ((EUID == 0)) || { echo "robot_build.sh: a chroot needs root" >&2; exit 1; }
     exec unshare --mount --pid --fork --kill-child "$0" --in-own-namespace
@@ -15,7 +15,7 @@ fi
 work=$(mktemp --directory --tmpdir scanloom-robot.XXXXXX)
 remove() {
     umount --recursive --lazy "$work"/*/proc "$work"/*/dev 2>/dev/null || true
-    # Never across a mount: /dev is the machine's own.
+    # Does not remove other file systems: /dev is the machine's own.
     rm --recursive --force --one-file-system "$work"
 }
 trap remove EXIT
@@ -26,7 +26,7 @@ inside() {
         /bin/bash -c 'cd /root/scanloom && exec "$@"' bash "${@:2}"
 }
 
-# timed SYSTEM COMMAND...: says how long it took.
+# timed SYSTEM COMMAND...: prints how long it took.
 timed() {
     local since=$SECONDS
     echo "== $1: ${*:2}"
@@ -55,8 +55,8 @@ grep --quiet -- --session "$work/help" || { echo "scanloom-robot does not start"
 timed robot ./scanloom install library
 inside robot cmake -S robot_client/examples/send_scan -B /tmp/send_scan -DCMAKE_PREFIX_PATH=/opt/scanloom
 timed robot cmake --build /tmp/send_scan
-# Nobody listens on port 1: it starts, waits as long as it says, and tells why it failed.
-! inside robot /tmp/send_scan/send_scan 127.0.0.1:1 2>"$work/news" || { echo "send_scan reached nobody" >&2; exit 1; }
+# No server listens on port 1: it starts, waits for the given time, and reports the failure.
+! inside robot /tmp/send_scan/send_scan 127.0.0.1:1 2>"$work/news" || { echo "send_scan succeeded without a server" >&2; exit 1; }
 grep --quiet 'send_scan: not all scans were stored within 10 s' "$work/news" || { cat "$work/news" >&2; exit 1; }
 
 echo "== the packages suffice"

@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-// Prints one number for what the kernels make of random scans: the same on every machine. other_processors.sh compares.
+// Prints a checksum of the kernels' results for random scans, equal on every machine. other_processors.sh compares it.
 
 namespace scanloom::mapping {
 namespace {
@@ -30,7 +30,7 @@ LaserChunk blank() {
     return chunk;
 }
 
-/// Whole numbers only: no two libraries draw the same doubles.
+/// Whole numbers only: standard libraries generate different random doubles.
 class Draw {
 public:
     double milli(int low, int high) {

@@ -1,15 +1,15 @@
-/** How a bench was called. `--quick` asks for shorter and fewer runs, which show that it works and little more. */
+/** The arguments of a bench. `--quick` selects shorter and fewer runs, which only show that the bench works. */
 export const quick = process.argv.includes('--quick');
 
-/** All that was named besides. */
-export const named = process.argv.slice(2).filter((argument) => argument !== '--quick');
+/** All other arguments. */
+export const operands = process.argv.slice(2).filter((argument) => argument !== '--quick');
 
-/** What a full run takes, or a quick one. */
+/** Returns the value for a full run, or for a quick one. */
 export function fullOrQuick(full, short) {
   return quick ? short : full;
 }
 
-/** Says at the start how long it will take, on two cores. */
+/** Prints at the start how long the bench takes, on two cores. */
 export function announce(what, full, short) {
-  console.log(`${what}: takes about ${quick ? `${short}, as it is quick: do not trust its figures` : full}\n`);
+  console.log(`${what}: takes about ${quick ? `${short}, as a quick run: its figures are not reliable` : full}\n`);
 }

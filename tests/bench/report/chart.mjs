@@ -1,4 +1,4 @@
-/** Charts of measured points, as SVG: both axes logarithmic, so that what grows with its work is a straight line. */
+/** Charts of measured points as SVG: both axes are logarithmic, so that a power of x is a straight line. */
 
 const kWidth = 300;
 const kHeight = 210;
@@ -6,7 +6,7 @@ const kLeft = 52;
 const kRight = 12;
 const kTop = 30;
 const kBottom = 40;
-const kFoot = 18; // of the drawing: what holds for all charts
+const kFoot = 18; // height of the note below all charts
 
 /**
  * @param {{title: string, x: string, y: string, points: [number, number][], expected?: number}[]} charts  `expected`: the power
@@ -22,7 +22,7 @@ export function drawCharts(charts, columns = 3) {
 <clipPath id="frame"><rect x="${kLeft}" y="${kTop}" width="${kWidth - kLeft - kRight}" height="${kHeight - kTop - kBottom}"/></clipPath>
 <rect width="100%" height="100%" fill="#ffffff"/>
 ${parts.join('\n')}
-<text x="${(columns * kWidth) / 2}" y="${rows * kHeight + 10}" text-anchor="middle">Both axes of every chart are logarithmic. Dashed: from the first point on, growing as the work does.</text>
+<text x="${(columns * kWidth) / 2}" y="${rows * kHeight + 10}" text-anchor="middle">Both axes of every chart are logarithmic. Dashed: expected growth from the first point.</text>
 </svg>
 `;
 }
@@ -65,7 +65,7 @@ function draw({ title, x, y, points, expected }) {
   return lines.join('\n');
 }
 
-/** A logarithmic axis over the values, at least `least` times as far at its end as at its beginning. */
+/** A logarithmic axis over the values; its end is at least `least` times its start. */
 function axis(values, from, to, least = 1) {
   let min = Math.min(...values);
   let max = Math.max(...values);

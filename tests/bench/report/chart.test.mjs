@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { drawCharts } from './chart.mjs';
 
-/** The dashed line's first and last place, and the circles of the points. */
+/** Returns the first and last point of the dashed line, and the circles of the points. */
 function drawn(points, expected) {
   const svg = drawCharts([{ title: 't', x: 'x', y: 'y', points, expected }]);
   const guide = /<polyline points="([^"]*)" clip-path="url\(#frame\)"[^>]*stroke-dasharray/.exec(svg)[1];
@@ -12,7 +12,7 @@ function drawn(points, expected) {
 
 const slope = ([[x0, y0], [x1, y1]]) => (y1 - y0) / (x1 - x0);
 
-test('the dashed line begins at the first point', () => {
+test('the dashed line starts at the first point', () => {
   const { guide, circles } = drawn(
     [
       [1, 5],
@@ -24,7 +24,7 @@ test('the dashed line begins at the first point', () => {
   assert.deepEqual(guide[0], circles[0]);
 });
 
-test('it runs through points that grow as they may', () => {
+test('it passes through points that grow as expected', () => {
   const { guide, circles } = drawn(
     [
       [1, 3],
@@ -36,7 +36,7 @@ test('it runs through points that grow as they may', () => {
   assert.ok(Math.abs(slope(guide) - slope([circles[0], circles[2]])) < 0.02);
 });
 
-test('it stays straight where it leaves the frame, and is cut off there', () => {
+test('it stays straight where it leaves the frame, and is clipped there', () => {
   const { svg, guide } = drawn(
     [
       [1, 3],
@@ -50,7 +50,7 @@ test('it stays straight where it leaves the frame, and is cut off there', () => 
   assert.ok(guide[1][1] < Number(frame[1]));
 });
 
-test('the drawing says that its axes are logarithmic', () => {
+test('the drawing has a note that its axes are logarithmic', () => {
   assert.match(
     drawn(
       [

@@ -1,4 +1,4 @@
-/** What figures were measured on. */
+/** Describes the machine of a measurement. */
 import { execFileSync } from 'node:child_process';
 import { readFileSync } from 'node:fs';
 import { arch, cpus, loadavg, release, tmpdir, totalmem } from 'node:os';
@@ -18,12 +18,12 @@ export function machine() {
   };
 }
 
-/** The same, and where servers of a bench keep their stores. */
+/** Describes also the disk of the servers' stores. */
 export function machineWithStore() {
   return { ...machine(), store: fileSystemOf(tmpdir()) };
 }
 
-export function inWords(of) {
+export function describe(of) {
   const store = of.store
     ? `, stores in ${of.store.directory} on ${of.store.kind} of ${of.store.gib} GiB (${of.store.device})`
     : '';

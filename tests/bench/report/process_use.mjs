@@ -1,14 +1,14 @@
-/** What a process takes of the machine, as /proc tells it. */
+/** Resources of a process, from /proc. */
 import { readFileSync } from 'node:fs';
 
-const kTicksPerSecond = 100; // of /proc, on every Linux of today
+const kTicksPerSecond = 100; // of /proc, on every current Linux
 
-/** Seconds of a processor that a process has used, and all that it started and that still run. */
+/** CPU seconds of a process and of its running children. */
 export function processorSeconds(pid) {
   return [pid, ...startedBy(pid)].reduce((sum, each) => sum + ticks(each), 0) / kTicksPerSecond;
 }
 
-/** Bytes of a process in memory: `VmRSS` now, `VmHWM` at most so far. */
+/** Memory of a process in bytes: `VmRSS` now, `VmHWM` maximum. */
 export function memoryBytes(pid, field = 'VmRSS') {
   return Number(new RegExp(`^${field}:\\s+(\\d+) kB`, 'm').exec(readFileSync(`/proc/${pid}/status`, 'utf8'))[1]) * 1024;
 }

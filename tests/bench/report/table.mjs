@@ -1,4 +1,4 @@
-/** Rows of text under each other, the first column to the left and the others to the right. */
+/** Formats rows as a table, the first column left-aligned, the others right-aligned. */
 export function table(head, rows) {
   const cells = [head, ...rows].map((row) => row.map(String));
   const widths = head.map((_, column) => Math.max(...cells.map((row) => row[column].length)));
@@ -7,13 +7,13 @@ export function table(head, rows) {
   return cells.map(line).join('\n');
 }
 
-/** The same for documents. */
+/** Formats a Markdown table. */
 export function markdownTable(head, rows) {
   const line = (row) => `| ${row.join(' | ')} |`;
   return [line(head), line(head.map((_, column) => (column === 0 ? '---' : '---:'))), ...rows.map(line)].join('\n');
 }
 
-/** Three digits that tell something: 0.523, 5.23, 52.3, 523. */
+/** Formats three significant digits: 0.523, 5.23, 52.3, 523. */
 export function threeDigits(value) {
   const digits = value >= 100 ? 0 : value >= 10 ? 1 : value >= 1 ? 2 : 3;
   return value.toFixed(digits);

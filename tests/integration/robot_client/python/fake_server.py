@@ -1,4 +1,4 @@
-"""Enough of a server to try a client on: each link runs a script, the last of them all further links."""
+"""A minimal server for tests of the client: each link runs a script; the last script also runs for all further links."""
 import socket
 import threading
 
@@ -13,7 +13,7 @@ class Link:
     def __init__(self, sock, server, split=False):
         self.sock = sock
         self.server = server
-        self.split = split  # every byte in a segment of its own
+        self.split = split  # one TCP segment for each byte
         self.described = set()
         sock.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
 
@@ -46,7 +46,7 @@ class Link:
             self.sock.sendall(part)
 
     def greet(self, **welcome):
-        """Takes the hello and welcomes the robot, with the truth unless another is given."""
+        """Receives the hello and welcomes the robot, with the real state unless another is given."""
         frame, _ = self.receive()
         self.server.hellos.append(frame.hello)
         truth = {"session_id": "a", "last_durable_seq": len(self.server.stored), "credit_bytes": 20000}
@@ -54,7 +54,7 @@ class Link:
         return frame.hello
 
     def take(self, batch):
-        """Stores what is new."""
+        """Stores the new scans of a batch."""
         for scan in batch.scans:
             if scan.sensor not in self.described:
                 self.server.faults.append(f"scan {scan.seq} is of a sensor that was not described")
@@ -68,7 +68,7 @@ class Link:
         self.send(ack={"durable_seq": durable, "applied_seq": durable, "credit_bytes": credit_bytes})
 
     def serve(self, until=lambda frame: False):
-        """Stores and acknowledges. Returns the frame that `until` is true of, or None at the end of the link."""
+        """Stores and acknowledges. Returns the frame for which `until` is true, or None at the end of the link."""
         while True:
             frame, _ = self.receive()
             if frame is None or until(frame):
@@ -89,7 +89,7 @@ class Link:
 
 
 def well(link):
-    """What a server does that has no trouble."""
+    """A server without errors."""
     link.greet()
     link.serve()
 
@@ -122,8 +122,8 @@ class FakeServer:
                     sock = self._open = self.tls.wrap_socket(sock, server_side=True)
                 script(Link(sock, self, self.split))
             except OSError:
-                pass  # the robot has left
-            except Exception as error:  # told by the test's own thread
+                pass  # the robot has disconnected
+            except Exception as error:  # the test's own thread reports it
                 self.faults.append(repr(error))
             finally:
                 sock.close()
@@ -135,7 +135,7 @@ class FakeServer:
             try:
                 self._open.shutdown(socket.SHUT_RDWR)
             except OSError:
-                pass  # closed already
+                pass  # already closed
         self._thread.join()
 
 

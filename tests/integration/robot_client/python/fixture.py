@@ -1,11 +1,11 @@
-"""A client at a fake server."""
+"""A client with a fake server."""
 import logging
 import unittest
 
 from fake_server import FakeServer
 from programs import scanloom_client
 
-logging.getLogger("scanloom").addHandler(logging.NullHandler())  # lost links are what these tests are about
+logging.getLogger("scanloom").addHandler(logging.NullHandler())  # these tests are about lost links
 
 QUICK = dict(backoff_first=0.001, backoff_max=0.01)
 
@@ -17,7 +17,7 @@ class LinkTest(unittest.TestCase):
         return self.server
 
     def client(self, timing=None, **options):
-        """One that is not waited for when the test fails."""
+        """A robot that close() does not wait for when the test fails."""
         client = scanloom_client.Client(self.server.address, session="s", robot="r",
                                         timing=scanloom_client.Timing(**{**QUICK, **(timing or {})}), **options)
         self.addCleanup(self._abort, client)
@@ -28,13 +28,13 @@ class LinkTest(unittest.TestCase):
         try:
             client.close(timeout=0.0)
         except scanloom_client.ScanloomError:
-            pass  # the test has seen it, if it was to come
+            pass  # the test has already checked any expected error
 
     def laser(self, client, **options):
         return client.laser(**{"angle_min": 0.0, "angle_increment": 0.01, "count": 50, "range_max": 10.0, **options})
 
     def send(self, client, laser, count, first=0):
-        """Scans that can be told apart by their stamp."""
+        """Scans that can be distinguished by their stamp."""
         for i in range(first, first + count):
             client.send(laser, [1.0 + 0.001 * i] * 50, pose=(0.1 * i, 0.0, 0.0), stamp=float(i))
 

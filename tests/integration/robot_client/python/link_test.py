@@ -1,4 +1,4 @@
-"""How the client behaves on links that are slow, cut, or at odds with it."""
+"""The client on links that are slow, broken or inconsistent."""
 import socket
 import threading
 import unittest
@@ -13,7 +13,7 @@ def is_batch(frame):
 
 
 def hangs_up_after(batches):
-    """Serves so many batches, takes one more, and closes without a word."""
+    """Serves this many batches, receives one more, and closes without a message."""
 
     def script(link):
         link.greet()
@@ -232,7 +232,7 @@ class Sending(LinkTest):
                     under_way += size
                     if under_way > credit:
                         link.server.faults.append(f"{under_way} bytes under way")
-                    if not pinged:  # what comes before the pong was sent without waiting for an ack
+                    if not pinged:  # frames before the pong were sent without waiting for an ack
                         link.send(ping={"nonce": 1})
                     pinged = True
                 if kind == "pong":
@@ -315,7 +315,7 @@ class Sending(LinkTest):
             for thread in threads:
                 thread.join()
         self.assertEqual(sorted(scan.stamp for scan in self.server.stored), [float(i) for i in range(200)])
-        for n in range(4):  # in each thread's order
+        for n in range(4):  # in the order of each thread
             own = [scan.stamp for scan in self.server.stored if 50 * n <= scan.stamp < 50 * (n + 1)]
             self.assertEqual(own, sorted(own))
 

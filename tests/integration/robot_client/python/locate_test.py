@@ -1,4 +1,4 @@
-"""Where a robot is, asked with what its laser saw."""
+"""locate(): the position of a robot from its laser scans."""
 import math
 import unittest
 
@@ -20,7 +20,7 @@ def points_of(request):
 
 class Locate(LinkTest):
     def answers(self, **reply):
-        """Takes one question, which it keeps in self.asked, and answers it."""
+        """Receives one request, stores it in self.asked, and answers it."""
         def script(link):
             link.greet()
             frame = link.serve(until=lambda frame: frame.WhichOneof("body") == "locate_request")
@@ -104,7 +104,7 @@ class Locate(LinkTest):
             sonar = robot.sonar(range_max=5.0, aperture=0.5, **{k: ROUND[k] for k in ("angle_min", "angle_increment",
                                                                                      "count")})
             scans = [[1.0] * 4] * 10
-            for told, arguments in [("met something 0 times; 20 are needed", {"scans": []}),
+            for expected, arguments in [("met something 0 times; 20 are needed", {"scans": []}),
                                     ("met something 16 times", {"scans": scans[:4]}),
                                     ("sonar is no laser", {"sensor": sonar}),
                                     ("sensor is None", {"sensor": None}),
@@ -115,7 +115,7 @@ class Locate(LinkTest):
                                     ("radius is 0.0", {"near": (1.0, 2.0), "radius": 0.0}),
                                     ("radius is 1001", {"near": (1.0, 2.0), "radius": 1001}),
                                     ("near is 3", {"near": 3, "radius": 1.0})]:
-                with self.subTest(told), self.assertRaisesRegex(ValueError, told):
+                with self.subTest(expected), self.assertRaisesRegex(ValueError, expected):
                     robot.locate(**{"sensor": laser, "scans": scans, **arguments})
 
 

@@ -1,4 +1,4 @@
-"""The client as a program, copied to where nothing else of this project is."""
+"""The client as a program, copied to a folder without other files of this project."""
 import json
 import math
 import pathlib
@@ -67,16 +67,16 @@ class Program(unittest.TestCase):
         self.assertEqual((uniform.first, uniform.increment, uniform.count), (-math.pi, math.pi / 2, 4))
 
     def test_a_wrong_line_is_named_and_skipped(self):
-        for told, wrong in [("Expecting value", "hello"), ('"t", "pose" and "ranges" is needed', '{"t": 1}'),
+        for expected, wrong in [("Expecting value", "hello"), ('"t", "pose" and "ranges" is needed', '{"t": 1}'),
                             ("pose has 2 numbers", '{"t": 1, "pose": [1, 2], "ranges": [1]}'),
                             ("ranges is no list", '{"t": 1, "pose": [1, 2, 3], "ranges": 4}'),
                             ("t is None", '{"t": null, "pose": [1, 2, 3], "ranges": [1]}')]:
-            with self.subTest(told):
+            with self.subTest(expected):
                 server = self.fake()
                 code, out, errors = self.stream(server.address, [line_of(0), "", line_of(1), wrong, line_of(3)])
                 self.assertEqual(code, 1)
                 self.assertIn("line 4 of the input is skipped: ", errors)
-                self.assertIn(told, errors)
+                self.assertIn(expected, errors)
                 self.assertIn("1 lines of the input were skipped", errors)
                 summary = json.loads(out)
                 self.assertEqual((summary["acknowledged"], summary["skipped"]), (3, 1))
@@ -106,12 +106,12 @@ class Program(unittest.TestCase):
         self.assertEqual(json.loads(out)["error"], "no token was given")
 
     def test_wrong_options_are_told_in_one_line(self):
-        for told, options in [("--volume", ["--volume", "3"]), ("invalid float value: 'x'", ["--range-max", "x"]),
+        for expected, options in [("--volume", ["--volume", "3"]), ("invalid float value: 'x'", ["--range-max", "x"]),
                               ("session is 'a b'", ["--session", "a b"]), ("No such file", ["--token-file", "absent"])]:
-            with self.subTest(told):
+            with self.subTest(expected):
                 code, out, errors = self.stream("127.0.0.1:1", [], *options)
                 self.assertEqual((code, out), (2, ""))
-                self.assertIn(told, errors)
+                self.assertIn(expected, errors)
                 self.assertEqual(errors.count("\n"), 1)
 
     def test_a_token_is_read_from_its_file(self):

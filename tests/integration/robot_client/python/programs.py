@@ -13,14 +13,14 @@ CLIENT = SOURCE / "robot_client/python/scanloom_client.py"
 PROGRAMS = pathlib.Path(os.environ.get("SCANLOOM_BIN_DIR", SOURCE / "build/bin"))
 
 sys.path.insert(0, str(CLIENT.parent))
-import scanloom_client  # noqa: E402  the tests take it from here
+import scanloom_client  # imported by the tests from here
 
 
-faulthandler.dump_traceback_later(200, exit=True)  # a test that hangs says where
+faulthandler.dump_traceback_later(200, exit=True)  # prints the stack of a test that hangs
 
 
 class RunningServer:
-    """A scanloom-server, ready when constructed. Ports 0 pick free ones."""
+    """A scanloom-server, ready when constructed. Ports 0 select free ones."""
 
     def __init__(self, directory, robot_port=0, http_port=0):
         directory = pathlib.Path(directory)

@@ -1,4 +1,4 @@
-"""What the client has embedded is what this checkout has."""
+"""The client's embedded protocol is equal to that of this checkout."""
 import os
 import re
 import sys

@@ -1,4 +1,4 @@
-"""Questions on the link: each reply finds who asked."""
+"""Requests on the link: each reply reaches its caller."""
 import math
 import threading
 import unittest
@@ -8,7 +8,7 @@ from programs import scanloom_client
 
 
 def collect(link, count):
-    """So many requests, in the order in which they came."""
+    """Receives this many requests, in order."""
     requests = []
     link.serve(until=lambda frame: frame.WhichOneof("body").endswith("_request") and
                (requests.append(frame) or len(requests) == count))
@@ -116,7 +116,7 @@ class Requests(LinkTest):
         with self.client() as robot:
             self.assertEqual(robot.stored_before(), 0)
             paths = []
-            # The second is sent after the first was given up, and answered after the first's late reply.
+            # The second request is sent after the first was cancelled, and answered after the first's late reply.
             self.assert_fails("TIMEOUT", robot.plan, (2.0, 1.0), timeout=0.05)
             asking = threading.Thread(target=lambda: paths.append(robot.plan((3.0, 1.0))))
             asking.start()
@@ -172,11 +172,11 @@ class Requests(LinkTest):
     def test_wrong_arguments_are_refused_by_name(self):
         self.start()
         with self.client() as robot:
-            for told, call, arguments in [("goal is None", robot.plan, {"goal": None}),
+            for expected, call, arguments in [("goal is None", robot.plan, {"goal": None}),
                                           ("frontier_size_min is 1.5", robot.next_goal, {"frontier_size_min": 1.5}),
                                           ("frontier_size_min is -1", robot.next_goal, {"frontier_size_min": -1}),
                                           ("start is 3", robot.coverage, {"start": 3})]:
-                with self.subTest(told), self.assertRaisesRegex(ValueError, told):
+                with self.subTest(expected), self.assertRaisesRegex(ValueError, expected):
                     call(**arguments)
 
     def test_options_of_requests_are_sent_as_given(self):

@@ -1,4 +1,4 @@
-"""The client at the real server: what is mapped, and that nothing is lost when the server is killed."""
+"""The client with the real server: maps are correct, and nothing is lost when the server is killed."""
 import math
 import os
 import pathlib
@@ -7,10 +7,10 @@ import sys
 import tempfile
 import unittest
 
-import fixture  # noqa: F401  keeps lost links off the screen
+import fixture  # disables the log of lost links
 from programs import PROGRAMS, SOURCE, RunningServer, run, scanloom_client
 
-NO_READING = 81.83  # what a SICK says, 50 m and more
+NO_READING = 81.83  # a SICK scanner's value for 50 m and more
 
 
 class ServerTest(unittest.TestCase):
@@ -32,7 +32,7 @@ class ServerTest(unittest.TestCase):
 
 
 def square_room(yaw, beams=361):
-    """What a laser sees in the middle of a room of 4 m by 4 m."""
+    """The scan of a laser in the middle of a room of 4 m by 4 m."""
     angles = [yaw - math.pi / 2 + i * math.pi / 360 for i in range(beams)]
     return [2.0 / max(abs(math.cos(angle)), abs(math.sin(angle))) for angle in angles]
 
@@ -139,7 +139,7 @@ def carmen_lines(count):
 
 
 def send_carmen(robot, log):
-    """As `scanloom-robot replay` does: readings of 50 m and more say nothing."""
+    """Converts as `scanloom-robot replay` does: readings of 50 m and more carry no information."""
     laser = half_turn_laser_of_carmen(robot)
     with open(log, encoding="ascii") as lines:
         for line in lines:
@@ -175,7 +175,7 @@ class Killed(ServerTest):
         def kill_now_and_then(i):
             if i in (100, 200, 400):
                 robot.flush()
-            if i in (100, 103, 250, 420):  # with all, a few, and many scans under way
+            if i in (100, 103, 250, 420):  # with all, a few, and many scans in flight
                 self.restart()
 
         with self.client("killed", cell_size=0.05) as robot:

@@ -1,4 +1,4 @@
-"""What the client does when nothing comes."""
+"""The client's timeouts."""
 import math
 import socket
 import threading
@@ -10,7 +10,7 @@ from programs import scanloom_client
 
 
 def is_silent(link):
-    """Takes all and says nothing any more."""
+    """Accepts everything and sends nothing more."""
     link.greet()
     while link.receive()[0]:
         pass
@@ -35,7 +35,7 @@ class Backoff(unittest.TestCase):
 
 
 class Patience(unittest.TestCase):
-    """With times that the test makes up."""
+    """With times that the test chooses."""
 
     def setUp(self):
         hello = scanloom_client._hello("s", "r", "", "", None, None)
@@ -46,9 +46,9 @@ class Patience(unittest.TestCase):
     def welcome(self, now):
         self.conversation.open(now)
         self.conversation.next_frame(now)
-        self.hear(now, "welcome", session_id="a", credit_bytes=1000)
+        self.receive(now, "welcome", session_id="a", credit_bytes=1000)
 
-    def hear(self, now, kind, **fields):
+    def receive(self, now, kind, **fields):
         frame = scanloom_client._Frame()
         getattr(frame, kind).SetInParent()
         for name, value in fields.items():
@@ -74,18 +74,18 @@ class Patience(unittest.TestCase):
             self.conversation.add(self.sensor, scanloom_client._Scan().SerializeToString(), 1000.0)
         while self.conversation.next_frame(1000.0):
             pass
-        self.hear(1007.0, "ack", durable_seq=1, credit_bytes=1000)
+        self.receive(1007.0, "ack", durable_seq=1, credit_bytes=1000)
         self.assertEqual(self.conversation.patience_ends(), 1017.0)
-        self.hear(1008.0, "ack", durable_seq=1, credit_bytes=1000)
+        self.receive(1008.0, "ack", durable_seq=1, credit_bytes=1000)
         self.assertEqual(self.conversation.patience_ends(), 1017.0)
-        self.hear(1009.0, "ack", durable_seq=2, credit_bytes=1000)
+        self.receive(1009.0, "ack", durable_seq=2, credit_bytes=1000)
         self.assertEqual(self.conversation.patience_ends(), math.inf)
 
     def test_it_ends_when_links_are_replaced_again_and_again(self):
         for time, may_pass in [(5.0, True), (70.0, True), (71.0, True), (72.0, False)]:
             self.welcome(time)
             with self.assertRaises(scanloom_client.ScanloomError) as raised:
-                self.hear(time, "error", code=10, message="connected again")
+                self.receive(time, "error", code=10, message="connected again")
             self.assertEqual((raised.exception.code, raised.exception.retryable), ("REPLACED", may_pass))
             self.conversation.close()
 

@@ -19,7 +19,7 @@ class Tls(LinkTest):
 
     @classmethod
     def make_certificate(cls, name, address):
-        """The file of one that signs itself, and what a server needs to show it."""
+        """Creates a self-signed certificate, with the files that a server needs to use it."""
         certificate, key = (pathlib.Path(cls.directory.name) / f"{name}.{kind}" for kind in ("pem", "key"))
         code, _, errors = run("openssl", "req", "-x509", "-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:prime256v1",
                               "-nodes", "-days", "2", "-subj", f"/CN={name}", "-addext", f"subjectAltName={address}",
@@ -30,7 +30,7 @@ class Tls(LinkTest):
         return certificate, server_side
 
     def test_a_server_that_wants_tls_is_told_as_that(self):
-        self.start(lambda link: link.receive())  # and hangs up, as a server with a certificate does
+        self.start(lambda link: link.receive())  # and closes, as a server with a certificate does
         robot = self.client(timing={"give_up_after": 0.05})
         self.assertIn("where it wants TLS, give tls=", self.assert_fails("TIMEOUT", robot.close).message)
 

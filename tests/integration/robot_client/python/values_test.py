@@ -1,4 +1,4 @@
-"""From what callers give to what is sent."""
+"""Conversion of the callers' values to messages."""
 import array
 import math
 import unittest
@@ -27,7 +27,7 @@ class Millimetres(unittest.TestCase):
 
 class Fields(LinkTest):
     def sent(self, ranges, sensor=None, **options):
-        """The scan as it arrived."""
+        """The scan as received."""
         self.start()
         with self.client() as robot:
             laser = self.laser(robot, **(sensor or {}))
@@ -77,7 +77,7 @@ class Refused(LinkTest):
             laser = self.laser(robot)
             fixed = robot.laser(angles=[0.0, 0.1], range_max=5.0)
             good = {"sensor": laser, "ranges": [1.0, 2.0], "pose": (0.0, 0.0, 0.0), "stamp": 0.0}
-            for told, wrong in [
+            for expected, wrong in [
                     ("ranges has 0 beams", {"ranges": []}),
                     ("ranges has 4097 beams", {"ranges": [1.0] * 4097}),
                     ("more than a full turn", {"ranges": [1.0] * 700}),
@@ -101,7 +101,7 @@ class Refused(LinkTest):
                     ("timeout is 'x'", {"timeout": "x"}),
                     ("stamp is 1000", {"stamp": 10**400}),
                     ("stamp is 'now'", {"stamp": "now"})]:
-                with self.subTest(told), self.assertRaisesRegex(ValueError, told):
+                with self.subTest(expected), self.assertRaisesRegex(ValueError, expected):
                     robot.send(**{**good, **wrong})
             robot.send(**good)
         self.assertEqual(len(self.server.stored), 1)
@@ -116,7 +116,7 @@ class Refused(LinkTest):
     def test_sensors_that_make_no_sense_are_refused_by_name(self):
         self.start()
         robot = self.client()
-        for told, wrong in [
+        for expected, wrong in [
                 ("angle_increment is 0", {"angle_increment": 0.0}),
                 ("more than a full turn", {"angle_increment": 1.0}),
                 ("count has 0 beams", {"count": 0}),
@@ -129,7 +129,7 @@ class Refused(LinkTest):
                 ("aperture is 4", {"aperture": 4.0}),
                 ("longer than 64 bytes", {"name": "n" * 65}),
                 ("mount.x is nan", {"mount": (math.nan, 0.0, 0.0)})]:
-            with self.subTest(told), self.assertRaisesRegex(ValueError, told):
+            with self.subTest(expected), self.assertRaisesRegex(ValueError, expected):
                 self.laser(robot, **wrong)
         for _ in range(64):
             self.laser(robot)
@@ -146,7 +146,7 @@ class Refused(LinkTest):
                 self.send(other, stranger, 1)
 
     def test_names_and_addresses_that_cannot_be_are_refused(self):
-        for told, wrong in [("session is 'a b'", {"session": "a b"}), ("robot is ''", {"robot": ""}),
+        for expected, wrong in [("session is 'a b'", {"session": "a b"}), ("robot is ''", {"robot": ""}),
                             ("source", {"source": "s" * 65}), ("HOST:PORT", {"server": "localhost"}),
                             ("HOST:PORT", {"server": "localhost:0"}), ("cell_size is nan", {"cell_size": math.nan}),
                             ("cell_size is 2", {"cell_size": 2}), ("body_radius is 6", {"body_radius": 6}),
@@ -154,7 +154,7 @@ class Refused(LinkTest):
                             ("token is longer", {"token": "t" * 20000}), ("HOST:PORT", {"server": None}),
                             ("tls is True", {"tls": True}), ("buffer_bytes is 0", {"buffer_bytes": 0}),
                             ("buffer_bytes is -1", {"buffer_bytes": -1}), ("source is 'a.nb'", {"source": "a\nb"})]:
-            with self.subTest(told), self.assertRaisesRegex(ValueError, told):
+            with self.subTest(expected), self.assertRaisesRegex(ValueError, expected):
                 scanloom_client.Client(**{"server": "127.0.0.1:1", "session": "s", "robot": "r", **wrong})
 
     def test_addresses_may_be_of_version_6(self):
