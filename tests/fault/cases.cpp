@@ -18,12 +18,12 @@ Outcome run_one(const Cases& cases, std::uint64_t seed, std::uint64_t count) {
     try {
         outcome = cases.run(seed, count);
     } catch (const std::exception& failure) {
-        outcome.amiss.emplace_back(failure.what());
+        outcome.failures.emplace_back(failure.what());
     }
     if (outcome.passed()) return outcome;
     outcome.repeat = fmt::format("./scanloom fault {} --seed {} --count {}", cases.row, seed, count);
-    if (outcome.amiss.empty()) outcome.amiss.emplace_back("scans are lost, doubled, or show other maps");
-    for (auto& sentence : outcome.amiss) sentence = fmt::format("{} [{}]", sentence, *outcome.repeat);
+    if (outcome.failures.empty()) outcome.failures.emplace_back("scans are lost or duplicated, or the maps differ");
+    for (auto& sentence : outcome.failures) sentence = fmt::format("{} [{}]", sentence, *outcome.repeat);
     return outcome;
 }
 

@@ -50,9 +50,9 @@ public:
 
     /// Sets the offset from the true time in days.
     void jump_to(const std::string& days) const {
-        const fs::path beside = file_.string() + ".new";
-        std::ofstream(beside) << days << '\n';
-        fs::rename(beside, file_); // so that a partly written file is never read
+        const fs::path new_file = file_.string() + ".new";
+        std::ofstream(new_file) << days << '\n';
+        fs::rename(new_file, file_); // so that a partly written file is never read
     }
 
     /// Returns `env` and its arguments, to precede a program.
@@ -101,7 +101,7 @@ void finish(test::ChildProcess& robot, std::uint64_t scans, Outcome& outcome) {
     const auto acknowledged =
         summary ? boost::json::parse(*summary).at("acknowledged").to_number<std::uint64_t>() : std::uint64_t{0};
     if (code == 0 && acknowledged == scans) return;
-    outcome.amiss.push_back(
+    outcome.failures.push_back(
         fmt::format("the robot ended with {} and {} of {} scans acknowledged", code, acknowledged, scans));
 }
 
@@ -118,7 +118,7 @@ std::string digest_without_jumps(std::uint64_t seed, std::uint64_t scans) {
     Outcome outcome;
     auto robot = start_robot({}, robot_words(server.robot_port(), seed, scans), place.path() / "robot");
     finish(robot, scans, outcome);
-    if (!outcome.passed()) throw std::runtime_error("without any jump, " + outcome.amiss.front());
+    if (!outcome.passed()) throw std::runtime_error("without any jump, " + outcome.failures.front());
     return digest(server);
 }
 
@@ -131,8 +131,8 @@ void say_hello_after(const JumpingClock& clock, const std::string& days, const S
     try {
         (void)visitor.receive_kind<wire::Welcome>();
     } catch (const std::exception& failure) {
-        outcome.amiss.push_back(
-            fmt::format("who said hello after a jump by {} was not welcome: {}", days, failure.what()));
+        outcome.failures.push_back(
+            fmt::format("a hello after a jump by {} days was refused: {}", days, failure.what()));
     }
 }
 
@@ -165,7 +165,7 @@ Outcome jump_clock(const Run& run, const fs::path& library, std::uint64_t seed, 
     outcome.add(verify_numbers(ask_for(server.http_port(), "s").log, "r", sent));
     outcome.digest_equal = digest(server) == digest_without_jumps(seed, sent);
     if (const int code = server.stop(); code != 0)
-        outcome.amiss.push_back(fmt::format("the server ends with {}", code));
+        outcome.failures.push_back(fmt::format("the server exited with {}", code));
     return outcome;
 }
 
@@ -173,7 +173,7 @@ Outcome jump_clock(const Run& run, const fs::path& library, std::uint64_t seed, 
 
 Outcome run_clock_row(const Run& run) {
     const auto library = faketime_library();
-    if (!library) return {.skipped = "there is no faketime: apt-get install faketime"};
+    if (!library) return {.skipped = "faketime is not installed: apt-get install faketime"};
     return run_cases(run,
                      {.row = "clock", .of_count = kJumpsPerStore, .run = [&](std::uint64_t seed, std::uint64_t jumps) {
                           return jump_clock(run, *library, seed, jumps);

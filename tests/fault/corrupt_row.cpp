@@ -78,7 +78,7 @@ public:
             ++outcome_.figures["refused_to_start"];
             const int code = server_.wait();
             if (code != 1 || server_.last_words().empty()) {
-                complain(fmt::format("the server does not refuse to start, but ends with {}: {}", code,
+                complain(fmt::format("the server exited with {} instead of refusing to start: {}", code,
                                      server_.last_words()));
             }
             return std::move(outcome_);
@@ -100,19 +100,19 @@ private:
         case Served::kRefused: ++outcome_.figures["sessions_refused"]; return;
         case Served::kWrong:
             outcome_.digest_equal = false;
-            complain(fmt::format("session '{}' is served with other scans or maps than were stored", name));
+            complain(fmt::format("session '{}' is served with scans or maps that differ from the stored ones", name));
             return;
         case Served::kShortened:
             ++outcome_.figures["sessions_shortened"];
             if (!is_like_a_crash(damage_) && !has_complained(place_.path() / "log")) {
-                complain(fmt::format("scans at the end of session '{}' are missing, and nobody is told", name));
+                complain(fmt::format("scans at the end of session '{}' are missing, and this is not reported", name));
             }
             return;
         }
     }
 
     void complain(std::string sentence) {
-        outcome_.amiss.push_back(fmt::format("{} ({}; {})", sentence, original_.what, damage_));
+        outcome_.failures.push_back(fmt::format("{} ({}; {})", sentence, original_.what, damage_));
     }
 
     TemporaryDirectory place_;

@@ -65,9 +65,9 @@ bool tells_of_a_full_disk(const std::string& answer) {
 void fill_up(const ServerProcess& server, Ballast& ballast, std::uint64_t left, Outcome& outcome) {
     const auto found = wait_for_readiness(server, 503, [&] { ballast.grow(left); });
     if (found.status != 503) {
-        outcome.amiss.emplace_back("a full disk keeps nobody from being ready");
+        outcome.failures.emplace_back("/readyz stays 200 on a full disk");
     } else if (!tells_of_a_full_disk(found.answer)) {
-        outcome.amiss.push_back("on a full disk /readyz gives another reason: " + found.answer);
+        outcome.failures.push_back("on a full disk /readyz has the wrong reason: " + found.answer);
     }
 }
 
@@ -81,15 +81,15 @@ void fill_through_the_server(const ServerProcess& server, const fs::path& store,
         filler.release_all();
         const auto found = wait_for_readiness(server, 503);
         if (found.status != 503)
-            outcome.amiss.emplace_back("/readyz stays 200 though scans fill the disk");
+            outcome.failures.emplace_back("/readyz stays 200 though scans fill the disk");
         else if (!tells_of_a_full_disk(found.answer))
-            outcome.amiss.push_back("on a disk that scans filled /readyz gives another reason: " + found.answer);
-        check_that_maps_are_served(server, "on a disk that scans filled", outcome);
+            outcome.failures.push_back("on a disk filled by scans /readyz has the wrong reason: " + found.answer);
+        check_that_maps_are_served(server, "on a disk filled by scans", outcome);
     }
     const auto deleted = test::http_request(server.http_port(), "DELETE", "/api/v1/sessions/filler").status;
-    if (deleted != 204) outcome.amiss.push_back(fmt::format("on a full disk DELETE answers {}", deleted));
+    if (deleted != 204) outcome.failures.push_back(fmt::format("on a full disk DELETE answers {}", deleted));
     if (wait_for_readiness(server, 200).status != 200)
-        outcome.amiss.emplace_back("after the session that filled the disk was deleted, /readyz stays 503");
+        outcome.failures.emplace_back("after the session that filled the disk was deleted, /readyz stays 503");
 }
 
 Result<Outcome> fill_one_disk(const Run& run, std::uint64_t seed, std::uint64_t fillings) {
@@ -116,7 +116,7 @@ Result<Outcome> fill_one_disk(const Run& run, std::uint64_t seed, std::uint64_t 
             check_that_maps_are_served(server, "on a full disk", outcome);
         }
         if (wait_for_readiness(server, 200).status != 200)
-            outcome.amiss.emplace_back("room on the disk makes nobody ready again");
+            outcome.failures.emplace_back("/readyz stays 503 after space was freed on the disk");
     }
     fill_through_the_server(server, store, seed, outcome);
     fleet.release_all();

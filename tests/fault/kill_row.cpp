@@ -89,7 +89,7 @@ private:
     /// A server that stopped in order must hold the same data after a restart.
     void stop_in_order(const std::vector<RobotStanding>& robots) {
         if (const int code = server_.stop(); code != 0) {
-            outcome_.amiss.push_back(fmt::format("the server ends with {} when it is asked to stop", code));
+            outcome_.failures.push_back(fmt::format("the server exited with {} after a stop request", code));
         }
         server_.start_and_wait();
         auto again = verify_server(server_.http_port(), robots);

@@ -87,14 +87,14 @@ void kill_again_and_again(const Stream& stream, unsigned seed, int kills) {
     EXPECT_EQ(server->get("/api/v1/sessions/s/digest").body, undisturbed);
 
     server->process().signal(SIGTERM);
-    EXPECT_EQ(server->process().wait(), 0) << "SIGTERM ends the server in good order";
+    EXPECT_EQ(server->process().wait(), 0) << "the server stops cleanly on SIGTERM";
     const RunningServer again(place.path() / "store", place.path() / "log");
     EXPECT_EQ(again.get("/api/v1/sessions/s/digest").body, undisturbed) << "after a clean restart";
 }
 
-TEST(KillNine, NothingAcknowledgedIsLostNorAppliedTwice) { kill_again_and_again(simulated(), 1, 6); }
+TEST(KillNine, LosesAndDuplicatesNoAcknowledgedScan) { kill_again_and_again(simulated(), 1, 6); }
 
-TEST(KillNine, NothingOfARealRobotsRunIsLost) {
+TEST(KillNine, LosesNoScanOfARealLog) {
     if (!std::filesystem::exists(kIntel)) GTEST_SKIP() << "the Intel log is not at " << kIntel;
     kill_again_and_again(real_log(), 2, 5);
 }

@@ -107,7 +107,7 @@ std::vector<int> turns_of(std::uint16_t http_port) {
 void wait_until(const std::string& what, const std::function<bool()>& has_come) {
     const auto until = std::chrono::steady_clock::now() + std::chrono::minutes(2);
     while (!has_come()) {
-        if (std::chrono::steady_clock::now() > until) throw std::runtime_error("waited in vain for " + what);
+        if (std::chrono::steady_clock::now() > until) throw std::runtime_error("timeout while waiting for " + what);
     }
 }
 
@@ -124,7 +124,8 @@ std::string peaceful_digest(int turns_in_all) {
     lidar.send(turns(1, turns_in_all));
     wait_for_scans(server.http_port(), static_cast<std::uint64_t>(turns_in_all));
     robot.signal(SIGTERM);
-    if (const int code = robot.wait(); code != 0) throw std::runtime_error(fmt::format("the robot ends with {}", code));
+    if (const int code = robot.wait(); code != 0)
+        throw std::runtime_error(fmt::format("the robot exited with {}", code));
     return server.get("/api/v1/sessions/s/digest").body;
 }
 

@@ -38,7 +38,7 @@ std::string bytes_of(const std::vector<Piece>& pieces) {
     return bytes;
 }
 
-TEST(SpoiledStream, SplitsDelaysAndStallsLoseNothing) {
+TEST(SpoiledStream, SplitsDelaysAndStallsKeepAllBytes) {
     const auto sent = joined(frames());
     for (const Harm harm : {Harm::kNone, Harm::kSplit, Harm::kDelay, Harm::kStall}) {
         for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
@@ -51,7 +51,7 @@ TEST(SpoiledStream, SplitsDelaysAndStallsLoseNothing) {
     EXPECT_EQ(spoiled(stream, sent).size(), sent.size());
 }
 
-TEST(SpoiledStream, WhatEndsALinkLetsTheBeginningThrough) {
+TEST(SpoiledStream, FaultsThatEndTheLinkForwardAPrefix) {
     const std::string sent(20'000, 'x');
     for (const Harm harm : {Harm::kHalfOpen, Harm::kReset, Harm::kTruncate}) {
         for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
@@ -62,7 +62,7 @@ TEST(SpoiledStream, WhatEndsALinkLetsTheBeginningThrough) {
     }
 }
 
-TEST(SpoiledStream, OneBitIsFlipped) {
+TEST(SpoiledStream, FlipChangesExactlyOneBit) {
     const auto sent = joined(frames());
     for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
         SpoiledStream stream(Harm::kFlip, seed);
@@ -76,7 +76,7 @@ TEST(SpoiledStream, OneBitIsFlipped) {
     }
 }
 
-TEST(SpoiledStream, OneFrameComesTwiceOrLate) {
+TEST(SpoiledStream, DuplicatesOrReordersOneFrame) {
     for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
         auto twice = frames();
         auto late = frames();

@@ -72,7 +72,7 @@ public:
         const auto session = ingest_.sessions().find(name);
         if (!session) return std::nullopt;
         std::promise<void> closed;
-        session->close({Errc::kShuttingDown, "the trial is over"}, [&] { closed.set_value(); });
+        session->close({Errc::kShuttingDown, "the case has ended"}, [&] { closed.set_value(); });
         closed.get_future().wait();
         auto there = held(*session->snapshot(), store::entries_after(*log_, session->info().id, 0).value());
         ingest_.sessions().remove(name).value();
@@ -96,12 +96,12 @@ RobotStanding stream(const RobotPlan& plan, std::uint16_t port, Fates& fates) {
 std::optional<std::string> complaint(const RobotStanding& robot) {
     if (robot.outcome) {
         if (robot.acknowledged == robot.plan.scans) return std::nullopt;
-        return fmt::format("the robot ended well with {} of {} scans acknowledged", robot.acknowledged,
+        return fmt::format("the robot ended without error with {} of {} scans acknowledged", robot.acknowledged,
                            robot.plan.scans);
     }
     const Error& error = robot.outcome.error();
-    if (error.code == Errc::kTimeout) return "the robot hung: " + error.message;
-    if (error.message.empty()) return "the robot ended with an error that says nothing";
+    if (error.code == Errc::kTimeout) return "the robot did not end in time: " + error.message;
+    if (error.message.empty()) return "the robot ended with an error without a message";
     return std::nullopt;
 }
 
@@ -113,12 +113,12 @@ Outcome spoil_links(Server& server, std::uint64_t seed, bool forges) {
     outcome.figures = fates.harms();
     outcome.figures["reconnects"] = robot.reconnects;
     if (!robot.outcome) ++outcome.figures[fmt::format("ended_{}", name_of(robot.outcome.error().code))];
-    if (auto wrong = complaint(robot)) outcome.amiss.push_back(std::move(*wrong));
+    if (auto wrong = complaint(robot)) outcome.failures.push_back(std::move(*wrong));
     if (const auto held = server.close(plan.session)) {
         outcome.add(verify(*held, {&robot, 1}, fleet_options()));
     } else if (robot.acknowledged > 0) {
         outcome.lost = robot.acknowledged;
-        outcome.amiss.emplace_back("the session of acknowledged scans is not there");
+        outcome.failures.emplace_back("the session of acknowledged scans does not exist");
     }
     return outcome;
 }

@@ -24,9 +24,7 @@ namespace fs = std::filesystem;
 constexpr unsigned long kShutdown = 0x8004587d;
 constexpr std::uint32_t kWithoutLogFlush = 2;
 
-Error cannot(std::string_view what) {
-    return {Errc::kUnreachable, fmt::format("a loop device cannot be had: {}", what)};
-}
+Error cannot(std::string_view what) { return {Errc::kUnreachable, fmt::format("no loop device: {}", what)}; }
 
 /// Returns the first line that a system program prints.
 Result<std::string> output_of(const std::string& program, const std::vector<std::string>& words, const fs::path& log) {
@@ -35,7 +33,7 @@ Result<std::string> output_of(const std::string& program, const std::vector<std:
     if (const int code = process.wait(); code != 0) {
         std::string said;
         std::getline(std::ifstream(log), said);
-        return cannot(fmt::format("{} ends with {}: {}", program, code, said));
+        return cannot(fmt::format("{} exited with {}: {}", program, code, said));
     }
     return line.value_or("");
 }
@@ -44,7 +42,7 @@ Result<std::string> output_of(const std::string& program, const std::vector<std:
 
 Result<std::unique_ptr<LoopDisk>> LoopDisk::make(const fs::path& image, const fs::path& mount_point,
                                                  std::uint64_t bytes) {
-    if (::geteuid() != 0) return cannot("that needs root");
+    if (::geteuid() != 0) return cannot("root is required");
     const fs::path log = image.string() + ".log";
     std::ofstream(image).close();
     fs::resize_file(image, bytes);

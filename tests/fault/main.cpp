@@ -35,10 +35,10 @@ void list_rows() {
 
 /// Prints a progress line from time to time.
 std::function<void(std::uint64_t)> teller(const Row& row, std::uint64_t count) {
-    return [&row, count, told = std::uint64_t{0}](std::uint64_t done) mutable {
+    return [&row, count, printed = std::uint64_t{0}](std::uint64_t done) mutable {
         constexpr std::uint64_t kLines = 20;
-        if (count < kLines || done * kLines / count == told) return;
-        told = done * kLines / count;
+        if (count < kLines || done * kLines / count == printed) return;
+        printed = done * kLines / count;
         std::cerr << fmt::format("{}: {} of {} {}\n", row.name, done, count, row.counts);
     };
 }
@@ -49,7 +49,7 @@ bool run_row(const Row& row, const Options& options) {
     const Outcome outcome =
         row.run({.seed = options.seed, .count = count, .is_long = options.is_long, .on_progress = teller(row, count)});
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
-    for (const auto& sentence : outcome.amiss) std::cerr << row.name << ": " << sentence << '\n';
+    for (const auto& sentence : outcome.failures) std::cerr << row.name << ": " << sentence << '\n';
     std::cout << json_line(row.name, options.seed, count, took.count(), outcome) << std::endl;
     return outcome.passed();
 }
@@ -71,14 +71,15 @@ int run(const Options& options) {
 int main(int argc, char** argv) {
     std::signal(SIGPIPE, SIG_IGN); // connections are cut all the time
     Options options;
-    CLI::App app{"Does one kind of harm to a server or its links, many times, and checks that nothing is lost.\n"
-                 "Without a row it lists them.",
+    CLI::App app{"Causes one kind of fault of a server or its links, many times, and checks that nothing is lost.\n"
+                 "Without a row, lists the rows.",
                  "scanloom-fault"};
-    app.add_option("row", options.row, "What to do, or 'all'")->check([](const std::string& row) {
+    app.add_option("row", options.row, "The row to run, or 'all'")->check([](const std::string& row) {
         return row == "all" || find_row(row) != nullptr ? "" : "there is no row '" + row + "'";
     });
-    app.add_option("--seed", options.seed, "What all that is random comes from")->capture_default_str();
-    app.add_option("--count", options.count, "How often, in place of the row's own number")->check(CLI::PositiveNumber);
+    app.add_option("--seed", options.seed, "Random seed")->capture_default_str();
+    app.add_option("--count", options.count, "Number of repetitions, instead of the row's default")
+        ->check(CLI::PositiveNumber);
     app.add_flag("--long", options.is_long, "The long form");
     try {
         app.parse(argc, argv);

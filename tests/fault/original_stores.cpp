@@ -33,7 +33,7 @@ OriginalStores::OriginalStores() {
         const auto log = store::open_rocksdb(directory).value();
         create_sessions(*log);
         append_scans(*log, kScans / 3);
-        keep("a log alone");
+        keep("a log only");
     }
     {
         const auto log = store::open_rocksdb(directory).value(); // moves the log's data to a table
@@ -46,7 +46,7 @@ OriginalStores::OriginalStores() {
         append_scans(*log, kScans / 3);
         keep("tables, checkpoints and a log");
     }
-    keep("those of a closed store");
+    keep("the files of a closed store");
 }
 
 void OriginalStores::create_sessions(store::ScanLog& log) {

@@ -12,7 +12,7 @@ namespace {
 
 /// A live sensor's scans while the network is down and the robot's program is killed once. The row "spool" covers the
 /// other cases.
-TEST(Outage, NothingIsLostWhileTheNetworkIsAwayAndTheProgramIsKilledMeanwhile) {
+TEST(Outage, LosesNoScanWhenTheProgramIsKilledWithoutNetwork) {
     const TemporaryDirectory place;
     const test::RunningServer server(place.path() / "store", place.path() / "log");
     test::TcpProxy link(server.robot_port());
@@ -36,14 +36,14 @@ TEST(Outage, NothingIsLostWhileTheNetworkIsAwayAndTheProgramIsKilledMeanwhile) {
     lidar.wait_for_robot();
     lidar.send(turns(41, 60));
     wait_until("60 scans in the spool", [&] { return spooled(place.path()).size() >= 60; });
-    EXPECT_LE(scans_of(server.http_port()), 10U) << "the network is away"; // sent before the cut: at most a tenth
+    EXPECT_LE(scans_of(server.http_port()), 10U) << "the network is down"; // sent before the cut: at most a tenth
     link.restore();
     wait_for_scans(server.http_port(), 60);
     robot.signal(SIGTERM);
     EXPECT_EQ(robot.wait(), 0);
     EXPECT_EQ(scans_of(server.http_port()), 60U);
     EXPECT_EQ(server.get("/api/v1/sessions/s/digest").body, peaceful_digest(60));
-    EXPECT_EQ(spooled(place.path()).size(), 0U) << "what is stored needs no room";
+    EXPECT_EQ(spooled(place.path()).size(), 0U) << "acknowledged scans must leave the spool";
 }
 
 } // namespace

@@ -14,7 +14,7 @@ void Outcome::add(Outcome part) {
     lost += part.lost;
     twice += part.twice;
     digest_equal = digest_equal && part.digest_equal;
-    std::ranges::move(part.amiss, std::back_inserter(amiss));
+    std::ranges::move(part.failures, std::back_inserter(failures));
     for (const auto& [name, count] : part.figures) figures[name] += count;
     if (!repeat) repeat = std::move(part.repeat);
     if (!skipped) skipped = std::move(part.skipped);
@@ -32,8 +32,8 @@ std::string json_line(std::string_view row, std::uint64_t seed, std::uint64_t co
                              {"seconds", seconds}};
     for (const auto& [name, figure] : outcome.figures) line[name] = figure;
     if (outcome.skipped) line["skipped"] = *outcome.skipped;
-    if (!outcome.amiss.empty()) {
-        line["amiss"] = boost::json::array(outcome.amiss.begin(), outcome.amiss.end());
+    if (!outcome.failures.empty()) {
+        line["failures"] = boost::json::array(outcome.failures.begin(), outcome.failures.end());
         if (outcome.repeat) line["repeat"] = *outcome.repeat;
     }
     return boost::json::serialize(line);

@@ -16,12 +16,12 @@ struct Outcome {
     std::uint64_t lost = 0;         ///< acknowledged scans that the server does not hold
     std::uint64_t twice = 0;        ///< extra copies of scans that the server holds
     bool digest_equal = true;
-    std::vector<std::string> amiss{};               ///< one sentence for each failure
+    std::vector<std::string> failures{};            ///< one sentence for each failure
     std::map<std::string, std::uint64_t> figures{}; ///< further results of the row, by name
     std::optional<std::string> repeat{};            ///< the command that repeats the first failure
     std::optional<std::string> skipped{};           ///< the reason if the row was not run
 
-    [[nodiscard]] bool passed() const { return lost == 0 && twice == 0 && digest_equal && amiss.empty(); }
+    [[nodiscard]] bool passed() const { return lost == 0 && twice == 0 && digest_equal && failures.empty(); }
 
     /// Adds the result of another part of the run.
     void add(Outcome part);

@@ -35,7 +35,7 @@ PacedLoad::Report PacedLoad::read_report(std::string_view text, int code) {
     boost::system::error_code failed;
     const auto json = boost::json::parse(text, failed);
     if (failed) {
-        report.outcome.amiss.push_back(fmt::format("scanloom-load ended with {} and no report", code));
+        report.outcome.failures.push_back(fmt::format("scanloom-load ended with {} and no report", code));
         return report;
     }
     const auto* from_intended = json.as_object().if_contains("ack_from_intended"); // present if robots keep a pace
@@ -46,7 +46,7 @@ PacedLoad::Report PacedLoad::read_report(std::string_view text, int code) {
     const auto& verdict = json.at("verdict");
     report.outcome.digest_equal = verdict.at("nothing_lost").as_bool();
     if (code != 0 || !report.outcome.digest_equal)
-        report.outcome.amiss.emplace_back(verdict.at("sentence").as_string());
+        report.outcome.failures.emplace_back(verdict.at("sentence").as_string());
     return report;
 }
 

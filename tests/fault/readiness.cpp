@@ -26,7 +26,8 @@ Readiness wait_for_readiness(const ServerProcess& server, unsigned status, const
 
 void check_that_maps_are_served(const ServerProcess& server, std::string_view when, Outcome& outcome) {
     const auto status = test::http_request(server.http_port(), "GET", "/api/v1/sessions/shared/digest").status;
-    if (status != 200) outcome.amiss.push_back(fmt::format("a digest is answered with {} {}", status, when));
+    if (status != 200)
+        outcome.failures.push_back(fmt::format("the digest request is answered with {} {}", status, when));
 }
 
 } // namespace scanloom::fault

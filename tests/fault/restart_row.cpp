@@ -42,7 +42,7 @@ Outcome restart_servers(const Run& run, std::uint64_t seed, std::uint64_t restar
             ++outcome.figures["killed"];
         } else {
             if (const int code = server.stop(); code != 0) {
-                outcome.amiss.push_back(fmt::format("the server ends with {} when it is asked to stop", code));
+                outcome.failures.push_back(fmt::format("the server exited with {} after a stop request", code));
             }
             ++outcome.figures["stopped"];
         }

@@ -20,12 +20,12 @@ namespace scanloom::fault {
 
 /// Fails the test if scans were lost, stored twice or changed, or if nothing was tested.
 inline void expect_passed(const Outcome& outcome) {
-    for (const auto& sentence : outcome.amiss) ADD_FAILURE() << sentence;
+    for (const auto& sentence : outcome.failures) ADD_FAILURE() << sentence;
     EXPECT_EQ(outcome.lost, 0U);
     EXPECT_EQ(outcome.twice, 0U);
     EXPECT_TRUE(outcome.digest_equal);
     if (outcome.skipped) GTEST_SKIP() << *outcome.skipped;
-    EXPECT_GT(outcome.acknowledged, 0U) << "nothing was tried";
+    EXPECT_GT(outcome.acknowledged, 0U) << "no scan was acknowledged";
 }
 
 } // namespace scanloom::fault

@@ -20,7 +20,7 @@ constexpr std::uint64_t kQuarter = kParts / 4; // second quarter: memory after w
 
 /// The memory that a server takes until it is warm: entries stay in the store's write buffers until these are full.
 constexpr std::uint64_t kBytesOfScan = 512;
-constexpr std::uint64_t kBytesBesides = std::uint64_t{8} << 20;
+constexpr std::uint64_t kBytesBase = std::uint64_t{8} << 20;
 
 /// Uses the median, as the store takes some MiB more for a moment while it merges tables.
 std::uint64_t median(std::vector<std::uint64_t> bytes) {
@@ -32,7 +32,7 @@ std::uint64_t median(std::vector<std::uint64_t> bytes) {
 
 /// One percent if the server is warm after half of the scans, as in the long form.
 std::uint64_t growth_max(const Run& run, std::uint64_t warm) {
-    return run.count >= kSoakLong ? warm / 100 : run.count / 2 * kBytesOfScan + kBytesBesides;
+    return run.count >= kSoakLong ? warm / 100 : run.count / 2 * kBytesOfScan + kBytesBase;
 }
 
 } // namespace
@@ -60,8 +60,8 @@ Outcome run_soak_row(const Run& run) {
     outcome.figures["memory_warm_kib"] = warm >> 10;
     outcome.figures["memory_grown_kib"] = grown >> 10;
     if (grown > growth_max(run, warm)) {
-        outcome.amiss.push_back(
-            fmt::format("the server's memory grew from {} to {} KiB in the second half, by at most {} it may",
+        outcome.failures.push_back(
+            fmt::format("the server's memory grew from {} to {} KiB in the second half, more than the allowed {} KiB",
                         warm >> 10, now >> 10, growth_max(run, warm) >> 10));
     }
     return outcome;

@@ -35,7 +35,7 @@ public:
         const auto digest = test::http_request(server_.http_port(), "GET", "/api/v1/sessions/s/digest").body;
         outcome.digest_equal = digest == peaceful_digest(taken_);
         if (const auto left = spooled(place_.path()).size(); left > 0) {
-            outcome.amiss.push_back(fmt::format("{} scans that the server holds are in the spool still", left));
+            outcome.failures.push_back(fmt::format("{} scans that the server has stored are still in the spool", left));
         }
         return outcome;
     }

@@ -31,7 +31,7 @@ constexpr std::uint64_t kGrowthMax = std::uint64_t{4} << 20;
 void check_memory(std::uint64_t before, std::uint64_t after, Outcome& outcome) {
     const auto grown = after - std::min(before, after);
     if (grown <= kGrowthMax) return;
-    outcome.amiss.push_back(fmt::format("the server took {} KiB more while the disk took nothing", grown >> 10));
+    outcome.failures.push_back(fmt::format("the server used {} KiB more while the disk was blocked", grown >> 10));
 }
 
 Result<Outcome> stall_one_disk(const Run& run, std::uint64_t seed, std::uint64_t stalls) {
@@ -54,8 +54,8 @@ Result<Outcome> stall_one_disk(const Run& run, std::uint64_t seed, std::uint64_t
         fleet.release(stall * kScansPerStall);
         server.let_be(std::chrono::milliseconds(200 + random() % 2'000));
         if (fleet.acknowledged() > before * kStallRobots)
-            outcome.amiss.emplace_back("scans are acknowledged that were sent while the disk took nothing");
-        check_that_maps_are_served(server, "while the disk takes nothing", outcome);
+            outcome.failures.emplace_back("scans that were sent while the disk was blocked were acknowledged");
+        check_that_maps_are_served(server, "while the disk is blocked", outcome);
         check_memory(memory, resident_bytes(server.id()), outcome);
     }
     fleet.release_all();

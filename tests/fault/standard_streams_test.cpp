@@ -18,7 +18,7 @@ namespace {
 using testing::HasSubstr;
 using testing_support::RobotSocket;
 
-TEST(StandardStreams, AServerWhoseLogNobodyReadsServesOnAndStops) {
+TEST(StandardStreams, TheServerServesAndStopsWithoutAReaderOfItsLog) {
     const TemporaryDirectory place;
     UnreadPipe log(place.path() / "log");
     RunningServer server(place.path() / "store", log.path());
@@ -34,13 +34,13 @@ TEST(StandardStreams, AServerWhoseLogNobodyReadsServesOnAndStops) {
     EXPECT_EQ(server.process().wait(), 0);
 }
 
-TEST(StandardStreams, ARobotWhoseProgressNobodyReadsSendsEverything) {
+TEST(StandardStreams, TheRobotSendsEverythingWithoutAReaderOfItsOutput) {
     const TemporaryDirectory place;
     const RunningServer server(place.path() / "store", place.path() / "log");
     UnreadPipe progress(place.path() / "progress");
     progress.fill();
     const auto recording = place.path() / "recording.log";
-    std::ofstream(recording) << "FLASER is broken here and told on stderr\n"
+    std::ofstream(recording) << "FLASER is invalid here and reported on stderr\n"
                                 "FLASER 3 1.0 1.0 1.0 0 0 0 0 0 0 1 host 1\n";
     ChildProcess robot(
         program("scanloom-robot"),
@@ -65,7 +65,7 @@ std::filesystem::path stream_of(const ChildProcess& process, int number) {
     return std::filesystem::read_symlink(fmt::format("/proc/{}/fd/{}", process.id(), number));
 }
 
-TEST(StandardStreams, AServerWithoutThemPutsNoFileInTheirPlace) {
+TEST(StandardStreams, TheServerOpensNoFileAsAClosedStream) {
     const TemporaryDirectory place;
     ChildProcess server(
         "/bin/sh",
@@ -79,7 +79,7 @@ TEST(StandardStreams, AServerWithoutThemPutsNoFileInTheirPlace) {
     EXPECT_EQ(server.wait(), 0);
 }
 
-TEST(StandardStreams, ARobotWithoutThemPutsNoSocketInTheirPlace) {
+TEST(StandardStreams, TheRobotOpensNoSocketAsAClosedStream) {
     const TemporaryDirectory place;
     const RunningServer server(place.path() / "store", place.path() / "log");
     ChildProcess robot("/bin/sh",

@@ -47,11 +47,11 @@ std::uint64_t last_ack(RobotSocket& robot) {
     return acknowledged;
 }
 
-std::uint64_t scans_woven(const RunningServer& server) {
+std::uint64_t applied_scans(const RunningServer& server) {
     return server.get_json("/api/v1/sessions/far").at("scans").to_number<std::uint64_t>();
 }
 
-TEST(Stop, AskedTwiceTheServerWeavesNoMoreAndTheNextStartHasWhatWasAcknowledged) {
+TEST(Stop, SecondSignalStopsIntegrationAndTheNextStartHasEveryAcknowledgedScan) {
     constexpr std::uint64_t kScans = 32; // more than are integrated or in progress at the first ack
     std::uint64_t acknowledged = 0;
     TemporaryDirectory place;
@@ -72,8 +72,8 @@ TEST(Stop, AskedTwiceTheServerWeavesNoMoreAndTheNextStartHasWhatWasAcknowledged)
     RobotSocket robot(server.robot_port());
     const auto stored = join(robot);
     EXPECT_GE(stored, std::max<std::uint64_t>(acknowledged, 1));
-    EXPECT_LT(stored, kScans) << "in a hurry the server takes no more than is under way";
-    EXPECT_EQ(scans_woven(server), stored);
+    EXPECT_LT(stored, kScans) << "after the second signal the server accepts no more scans";
+    EXPECT_EQ(applied_scans(server), stored);
     robot.send(wire::ScanBatch{far_scans(stored + 1, 1)});
     robot.wait_for_ack(stored + 1);
 }

@@ -61,13 +61,13 @@ std::string damage(const fs::path& store, std::mt19937_64& random) {
     std::string bytes = store::bytes_of(file);
     const std::size_t at = some_place(file, bytes, random);
     switch (random() % 8) {
-    case 0: fs::remove(file); return fmt::format("{} is gone", name);
+    case 0: fs::remove(file); return fmt::format("{} was removed", name);
     case 1: {
         const fs::path& other = files[random() % files.size()];
         const std::string others = store::bytes_of(other);
         store::write_bytes(other, bytes);
         store::write_bytes(file, others);
-        return fmt::format("{} and {} have changed places", name, other.filename().string());
+        return fmt::format("{} and {} were exchanged", name, other.filename().string());
     }
     case 2:
     case 3: fs::resize_file(file, at); return fmt::format("{} ends after {} of {} bytes", name, at, bytes.size());

@@ -63,7 +63,7 @@ public:
             stream(round);
         }
         outcome_.figures["opened_again"] = opened_again();
-        if (opened_again() == 0) outcome_.amiss.emplace_back("no sync that failed had the store opened again");
+        if (opened_again() == 0) outcome_.failures.emplace_back("no failed sync made the server reopen the store");
         return std::move(outcome_);
     }
 
@@ -77,7 +77,7 @@ private:
             if (server_.becomes_ready()) return;
             (void)server_.wait();
         }
-        throw std::runtime_error("the server never starts: " + server_.last_words());
+        throw std::runtime_error("the server does not start: " + server_.last_words());
     }
 
     void stream(std::uint64_t round) {
@@ -103,7 +103,7 @@ private:
 } // namespace
 
 Outcome run_sync_row(const Run& run) {
-    if (!fs::exists("/usr/bin/fiu-run")) return {.skipped = "fiu-run is not installed; fiu-utils has it"};
+    if (!fs::exists("/usr/bin/fiu-run")) return {.skipped = "fiu-run is not installed: apt-get install fiu-utils"};
     return run_cases(run,
                      {.row = "sync", .of_count = kScansPerStore, .run = [&](std::uint64_t seed, std::uint64_t scans) {
                           return FailingSyncs(run, seed, scans).run();

@@ -1,4 +1,4 @@
-#include "tests/fault/beside.hpp"
+#include "tests/fault/crowd_rows.hpp"
 #include "tests/fault/row_short_form.hpp"
 
 /// Rows that compare latencies. They need a quiet machine, so only `./scanloom test --nightly` runs them.
@@ -14,11 +14,11 @@ TEST(TimedFaultRow, Greed) {
     expect_passed(outcome);
     const PacedLoad::Robots others;
     const auto of_others = std::uint64_t{2} * others.count * others.rate * Rounds{}.duration.count();
-    const auto beside_them = outcome.figures.at("scans_of_greed");
+    const auto to_this_server = outcome.figures.at("scans_of_greed");
     const auto elsewhere = outcome.figures.at("scans_of_greed_elsewhere");
-    EXPECT_GT(beside_them, 0U);
+    EXPECT_GT(to_this_server, 0U);
     EXPECT_GT(elsewhere, 0U);
-    EXPECT_EQ(outcome.acknowledged, of_others + beside_them + elsewhere);
+    EXPECT_EQ(outcome.acknowledged, of_others + to_this_server + elsewhere);
 }
 
 } // namespace

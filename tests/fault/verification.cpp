@@ -19,7 +19,7 @@ namespace scanloom::fault {
 namespace {
 
 /// The log's data of the robots, by their index in it.
-struct Told {
+struct LoggedRobots {
     std::vector<std::string> names;
     std::map<std::string, std::map<std::uint64_t, std::uint64_t>> times_held; ///< of each seq, by robot
 };
@@ -30,37 +30,40 @@ const RobotStanding* find(std::span<const RobotStanding> robots, const std::stri
 }
 
 /// Returns the error of a scan checked by itself, or nullopt.
-std::optional<std::string> complaint(const ScanTaken& taken, const Told& told, std::span<const RobotStanding> robots) {
-    if (taken.robot >= told.names.size()) return fmt::format("a scan is of robot {}, who never joined", taken.robot);
-    const std::string& name = told.names[taken.robot];
+std::optional<std::string> error_of(const ScanTaken& taken, const LoggedRobots& robots_in_log,
+                                    std::span<const RobotStanding> robots) {
+    if (taken.robot >= robots_in_log.names.size())
+        return fmt::format("a scan belongs to robot {}, which never joined", taken.robot);
+    const std::string& name = robots_in_log.names[taken.robot];
     const RobotStanding* robot = find(robots, name);
-    if (robot == nullptr) return fmt::format("a scan is of robot '{}', which there is not", name);
+    if (robot == nullptr) return fmt::format("a scan belongs to robot '{}', which does not exist", name);
     if (taken.scan.seq == 0 || taken.scan.seq > robot->plan.scans) {
         return fmt::format("robot '{}' has scan {}, which was never sent", name, taken.scan.seq);
     }
     if (taken.scan != testing_support::random_scan(robot->plan.seed, taken.scan.seq)) {
-        return fmt::format("scan {} of robot '{}' is not as it was sent", taken.scan.seq, name);
+        return fmt::format("scan {} of robot '{}' differs from the sent one", taken.scan.seq, name);
     }
     return std::nullopt;
 }
 
 /// Adds the name of the robot that joins with this entry.
-void note_joining(const LogEntry& entry, Told& told) {
+void note_joining(const LogEntry& entry, LoggedRobots& robots_in_log) {
     const auto* joined = std::get_if<RobotJoined>(&entry);
     if (joined == nullptr) return;
-    told.names.resize(std::max<std::size_t>(told.names.size(), joined->robot + 1));
-    told.names[joined->robot] = joined->name;
+    robots_in_log.names.resize(std::max<std::size_t>(robots_in_log.names.size(), joined->robot + 1));
+    robots_in_log.names[joined->robot] = joined->name;
 }
 
-void read_log(const std::vector<LogEntry>& log, std::span<const RobotStanding> robots, Told& told, Outcome& outcome) {
+void read_log(const std::vector<LogEntry>& log, std::span<const RobotStanding> robots, LoggedRobots& robots_in_log,
+              Outcome& outcome) {
     for (const LogEntry& entry : log) {
-        note_joining(entry, told);
+        note_joining(entry, robots_in_log);
         const auto* taken = std::get_if<ScanTaken>(&entry);
         if (taken == nullptr) continue;
-        if (auto wrong = complaint(*taken, told, robots)) {
-            outcome.amiss.push_back(std::move(*wrong));
+        if (auto wrong = error_of(*taken, robots_in_log, robots)) {
+            outcome.failures.push_back(std::move(*wrong));
         } else {
-            ++told.times_held[told.names[taken->robot]][taken->scan.seq];
+            ++robots_in_log.times_held[robots_in_log.names[taken->robot]][taken->scan.seq];
         }
     }
 }
@@ -74,24 +77,25 @@ Outcome count_scans(const std::string& robot, std::uint64_t acknowledged,
     }
     for (const auto& [seq, times] : times_held) outcome.twice += times - 1;
     if (outcome.lost > 0) {
-        outcome.amiss.push_back(
+        outcome.failures.push_back(
             fmt::format("{} of the {} acknowledged scans of robot '{}' are lost", outcome.lost, acknowledged, robot));
     }
     if (outcome.twice > 0) {
-        outcome.amiss.push_back(fmt::format("{} scans of robot '{}' are held twice", outcome.twice, robot));
+        outcome.failures.push_back(fmt::format("{} scans of robot '{}' are duplicates", outcome.twice, robot));
     }
     return outcome;
 }
 
 void compare_maps(const Held& held, const SessionOptions& options, Outcome& outcome) {
     if (held.revision != held.log.size()) {
-        outcome.amiss.push_back(
-            fmt::format("the maps are those of revision {}, the log has {} entries", held.revision, held.log.size()));
+        outcome.failures.push_back(
+            fmt::format("the maps have revision {}, but the log has {} entries", held.revision, held.log.size()));
     }
     const auto right = undisturbed_digests(held.log, options);
     outcome.digest_equal = right && *right == held.digests;
-    if (!right) outcome.amiss.push_back("no maps can be made of the log: " + right.error().message);
-    if (right && !outcome.digest_equal) outcome.amiss.emplace_back("the maps are not those of an undisturbed run");
+    if (!right) outcome.failures.push_back("the maps of the log cannot be computed: " + right.error().message);
+    if (right && !outcome.digest_equal)
+        outcome.failures.emplace_back("the maps differ from those of an undisturbed run");
 }
 
 std::map<std::string, std::string> digests_of(const mapping::Snapshot& maps) {
@@ -105,7 +109,7 @@ std::map<std::string, std::string> digests_of(const mapping::Snapshot& maps) {
 test::HttpAnswer must_get(std::uint16_t port, const std::string& target) {
     auto answer = test::http_request(port, "GET", target);
     if (answer.status == 200) return answer;
-    throw std::runtime_error(fmt::format("{} is answered {}: {}", target, answer.status, answer.body));
+    throw std::runtime_error(fmt::format("{} is answered with {}: {}", target, answer.status, answer.body));
 }
 
 /// Parses a log in the form that HTTP serves: each entry with its length prefix.
@@ -144,22 +148,22 @@ Result<std::map<std::string, std::string>> undisturbed_digests(const std::vector
 
 Outcome verify_log(const std::vector<LogEntry>& log, std::span<const RobotStanding> robots) {
     Outcome outcome;
-    Told told;
-    read_log(log, robots, told, outcome);
+    LoggedRobots robots_in_log;
+    read_log(log, robots, robots_in_log, outcome);
     for (const RobotStanding& robot : robots) {
-        outcome.add(count_scans(robot.plan.name, robot.acknowledged, told.times_held[robot.plan.name]));
+        outcome.add(count_scans(robot.plan.name, robot.acknowledged, robots_in_log.times_held[robot.plan.name]));
     }
     return outcome;
 }
 
 Outcome verify_numbers(const std::vector<LogEntry>& log, const std::string& robot, std::uint64_t acknowledged) {
-    Told told;
+    LoggedRobots robots_in_log;
     for (const LogEntry& entry : log) {
-        note_joining(entry, told);
+        note_joining(entry, robots_in_log);
         const auto* taken = std::get_if<ScanTaken>(&entry);
-        if (taken != nullptr) ++told.times_held[told.names.at(taken->robot)][taken->scan.seq];
+        if (taken != nullptr) ++robots_in_log.times_held[robots_in_log.names.at(taken->robot)][taken->scan.seq];
     }
-    return count_scans(robot, acknowledged, told.times_held[robot]);
+    return count_scans(robot, acknowledged, robots_in_log.times_held[robot]);
 }
 
 Outcome verify(const Held& held, std::span<const RobotStanding> robots, const SessionOptions& options) {
@@ -184,7 +188,8 @@ Outcome verify_server(std::uint16_t http_port, std::span<const RobotStanding> ro
     for (const RobotStanding& robot : robots) {
         sessions[robot.plan.session].push_back(robot);
         if (robot.outcome) continue;
-        outcome.amiss.push_back(fmt::format("robot '{}' gave up: {}", robot.plan.name, robot.outcome.error().message));
+        outcome.failures.push_back(
+            fmt::format("robot '{}' gave up: {}", robot.plan.name, robot.outcome.error().message));
     }
     for (const auto& [session, members] : sessions) {
         const bool has_any = std::ranges::any_of(members, [](const auto& robot) { return robot.acknowledged > 0; });

@@ -140,21 +140,21 @@ private:
             const auto& standing = robot->standing();
             sessions[standing.plan.session].push_back(standing);
             if (!robot->is_done()) {
-                outcome.amiss.push_back(fmt::format("robot '{}' has {} of {} scans acknowledged, and nothing moves",
-                                                    standing.plan.name, standing.acknowledged, standing.plan.scans));
+                outcome.failures.push_back(fmt::format("robot '{}' has {} of {} scans acknowledged, and nothing moves",
+                                                       standing.plan.name, standing.acknowledged, standing.plan.scans));
             }
             if (standing.outcome) continue;
             const Error& error = standing.outcome.error();
             ++outcome.figures[fmt::format("ended_{}", name_of(error.code))];
             if (!is_forged_ || error.code == Errc::kConflict) {
-                outcome.amiss.push_back(fmt::format("robot '{}' gave up: {}", standing.plan.name, error.message));
+                outcome.failures.push_back(fmt::format("robot '{}' gave up: {}", standing.plan.name, error.message));
             }
         }
         outcome.figures["server_ends"] = ends_;
         for (const auto& [name, members] : sessions) {
             const auto held = hold(name);
             if (held) outcome.add(fault::verify(*held, members, fault::fleet_options()));
-            if (!held) outcome.amiss.push_back(fmt::format("session '{}': {}", name, held.error().message));
+            if (!held) outcome.failures.push_back(fmt::format("session '{}': {}", name, held.error().message));
         }
         ending_.broken += promises_.count_broken(disk_.durable(), disk_.take_dropped());
         ending_.fingerprint = world_.fingerprint();

@@ -21,8 +21,8 @@ struct Ending {
 };
 
 /// Runs a story: robots stream to a server while both are killed and restarted, and the network and the disk fail in
-/// every simulated manner. Then all faults stop, and all scans must be on the server. Acknowledged scans must also be
-/// on the disk whenever a server has ended. The same seed gives the same story to the nanosecond.
+/// every simulated behaviour. Then all faults stop, and all scans must be on the server. Acknowledged scans must also
+/// be on the disk whenever a server has ended. The same seed gives the same story to the nanosecond.
 [[nodiscard]] Ending tell(const Story& story);
 
 } // namespace scanloom::simulation
