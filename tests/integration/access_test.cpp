@@ -21,7 +21,7 @@ class AccessTest : public IngestTest {
 protected:
     AccessTest() { start().gate().replace(TokenSet(all_)); }
 
-    /// The hello of a robot with the token of that name; empty: with none.
+    /// Returns the hello of a robot with the token of that name; empty: without a token.
     static wire::Hello hello_of(const std::string& who, const std::string& session, const std::string& robot = "r1") {
         auto said = hello(robot, session);
         said.token = who.empty() ? "" : "secret of " + who;
@@ -45,9 +45,9 @@ protected:
     };
 };
 
-TEST_F(AccessTest, EachTokenOpensItsOwnSessionsToRobots) {
+TEST_F(AccessTest, TokensPermitTheirOwnSessions) {
     for (const auto& [who, session] : {std::pair("robot", "depot-1"), std::pair("operator", "lab")}) {
-        const auto robot = welcomed(port(), hello_of(who, session)); // which makes it
+        const auto robot = welcomed(port(), hello_of(who, session)); // creates the session
         robot->send(wire::Goodbye{""});
         EXPECT_EQ(robot->receive(), std::nullopt);
     }
@@ -74,7 +74,7 @@ TEST_F(AccessTest, EachTokenOpensItsOwnSessionsToRobots) {
     }
 }
 
-TEST_F(AccessTest, NobodyIsToldWhichSessionsExist) {
+TEST_F(AccessTest, ErrorsDoNotRevealWhichSessionsExist) {
     const auto made = welcomed(port(), hello_of("robot", "depot-1"));
     for (const auto* who : {"", "stranger", "operator", "viewer"}) {
         auto there = hello_of(who, "depot-1");
@@ -90,7 +90,7 @@ TEST_F(AccessTest, NobodyIsToldWhichSessionsExist) {
     EXPECT_EQ(made->receive(), std::nullopt);
 }
 
-TEST_F(AccessTest, LinksEndWithTheirTokenAndTheOthersGoOn) {
+TEST_F(AccessTest, RevokingATokenEndsItsLinksOnly) {
     const auto gone = welcomed(port(), hello_of("robot", "depot-1"));
     const auto stays = welcomed(port(), hello_of("operator", "lab"));
     stays->send(small_laser());
@@ -106,7 +106,7 @@ TEST_F(AccessTest, LinksEndWithTheirTokenAndTheOthersGoOn) {
     }
 }
 
-TEST_F(AccessTest, WhatWasAcknowledgedBeforeStays) {
+TEST_F(AccessTest, ScansAcknowledgedBeforeTheRevocationStay) {
     const auto robot = welcomed(port(), hello_of("robot", "depot-1"));
     robot->send(small_laser());
     stream(*robot, 1, 1, 20);
@@ -117,7 +117,7 @@ TEST_F(AccessTest, WhatWasAcknowledgedBeforeStays) {
 
 class LimitsTest : public AccessTest {
 protected:
-    /// Robots with a token of that limit alone.
+    /// Robots with a token that has only this limit.
     std::unique_ptr<RobotSocket> robot_with(const access::Limits& limits, const std::string& robot = "r1") {
         running_->gate().replace(TokenSet({token("robot", Role::kRobot, {"*"}, limits)}));
         return welcomed(port(), hello_of("robot", "lab", robot));
@@ -130,20 +130,20 @@ protected:
     }
 };
 
-TEST_F(LimitsTest, ConnectionsAreCountedByToken) {
+TEST_F(LimitsTest, ConnectionsAreLimitedPerToken) {
     const auto one = robot_with({.connections = 1});
     const auto refused = refusal(hello_of("robot", "lab", "r2"));
     EXPECT_EQ(refused.error.code, Errc::kOverloaded);
-    EXPECT_TRUE(refused.retryable) << "the other may leave";
+    EXPECT_TRUE(refused.retryable) << "the other link may end";
     EXPECT_THAT(refused.error.message, HasSubstr("`connections`"));
-    const auto again = welcomed(port(), hello_of("robot", "lab", "r1")); // in the place of its own earlier link
+    const auto again = welcomed(port(), hello_of("robot", "lab", "r1")); // replaces its own earlier link
     EXPECT_EQ(farewell_to(*one).error.code, Errc::kReplaced);
     again->send(wire::Goodbye{""});
     EXPECT_EQ(again->receive(), std::nullopt);
     EXPECT_EQ(refusals(Reason::kLimit), 1.0);
 }
 
-TEST_F(LimitsTest, SensorsAreCountedOverAllLinksOfARobot) {
+TEST_F(LimitsTest, SensorsAreLimitedPerRobotOverAllLinks) {
     const auto first = robot_with({.sensors = 2});
     auto sensor = small_laser();
     for (const std::uint32_t id : {0U, 1U, 0U}) {
@@ -160,19 +160,19 @@ TEST_F(LimitsTest, SensorsAreCountedOverAllLinksOfARobot) {
     EXPECT_EQ(refusals(Reason::kLimit), 1.0);
 }
 
-TEST_F(LimitsTest, BeamsAreCountedInEachScan) {
+TEST_F(LimitsTest, BeamsAreLimitedPerScan) {
     const auto beams = random_scan(1, 1).ranges.size();
     const auto robot = robot_with({.beams = beams});
     robot->send(small_laser());
     stream(*robot, 1, 1, 10);
     running_->gate().replace(TokenSet({token("robot", Role::kRobot, {"*"}, {.beams = beams - 1})}));
-    // The new limit is in force once the link has heard of it: it was told before anything that comes from now on.
+    // The link applies the new limit before it reads anything that is sent after this line.
     robot->send(wire::ScanBatch{{random_scan(1, 11)}});
     expect_limit(*robot, "beams");
     EXPECT_EQ(running_->snapshot("lab")->robots.at(0).last_seq, 10U);
 }
 
-TEST_F(LimitsTest, SessionsAreCountedByWhoMadeThem) {
+TEST_F(LimitsTest, SessionsAreLimitedPerCreatingToken) {
     const auto robot = robot_with({.sessions = 1});
     EXPECT_EQ(running_->sessions().find("lab")->info().created_by, "robot");
     const auto refused = refusal(hello_of("robot", "second"));
@@ -183,7 +183,7 @@ TEST_F(LimitsTest, SessionsAreCountedByWhoMadeThem) {
     EXPECT_EQ(robot->receive(), std::nullopt);
 }
 
-TEST_F(LimitsTest, AMapHasAsManyCellsAsItsMakerMayHave) {
+TEST_F(LimitsTest, CellsAreLimitedByTheCreatingToken) {
     const auto robot = robot_with({.cells = 4096});
     robot->send(small_laser());
     robot->send(wire::ScanBatch{random_scans(1, 1, 10)});
@@ -192,8 +192,8 @@ TEST_F(LimitsTest, AMapHasAsManyCellsAsItsMakerMayHave) {
     EXPECT_THAT(end.error.message, AllOf(HasSubstr("`cells`"), HasSubstr("'robot'")));
 }
 
-TEST_F(LimitsTest, WhatComesTooFastIsReadLaterAndNothingIsLost) {
-    const auto robot = robot_with({.bytes_per_second = 32'000}); // 400 scans are some 50 kB
+TEST_F(LimitsTest, TooFastInputIsDelayedWithoutLoss) {
+    const auto robot = robot_with({.bytes_per_second = 32'000}); // 400 scans are about 50 kB
     robot->send(small_laser());
     stream(*robot, 1, 1, 400);
     EXPECT_GT(running_->counters().held_back_seconds.Value(), 0.0);
@@ -203,7 +203,7 @@ TEST_F(LimitsTest, WhatComesTooFastIsReadLaterAndNothingIsLost) {
     EXPECT_EQ(running_->snapshot("lab")->robots.at(0).last_seq, 400U);
 }
 
-TEST_F(LimitsTest, ALinkThatIsHeldBackEndsWithItsToken) {
+TEST_F(LimitsTest, ADelayedLinkEndsWhenItsTokenIsRevoked) {
     const auto robot = robot_with({.bytes_per_second = access::kBytesPerSecondMin});
     robot->send(small_laser());
     robot->send(wire::ScanBatch{random_scans(1, 1, 400)});

@@ -10,7 +10,7 @@
 #include <limits>
 #include <random>
 
-/// Robots that send what they should not: each is told why, and no other notices.
+/// Robots that send invalid data: each gets a specific error, and other robots are not disturbed.
 namespace scanloom::ingest {
 namespace {
 
@@ -28,7 +28,7 @@ std::string frame_around(std::string_view body) {
     return frame;
 }
 
-/// As after a bit was flipped on the way.
+/// As after a bit error on the link.
 std::string damaged(std::string frame) {
     frame[frame.size() / 2] = static_cast<char>(frame[frame.size() / 2] ^ 1);
     return frame;
@@ -46,7 +46,7 @@ wire::Hello hello_with(void (*change)(wire::Hello&)) {
     return changed;
 }
 
-/// What a robot sends, and the error it gets.
+/// The frames of a robot, and the error it gets.
 struct Fault {
     std::string bytes;
     Errc code;
@@ -104,7 +104,8 @@ std::vector<Fault> faults_after_the_hello() {
     };
 }
 
-/// Frames that a server ignores, more than a socket's buffers hold: closing with them unread would reset the link.
+/// Frames that a server ignores, more than a socket's buffers can hold: closing the socket with unread frames would
+/// reset the link.
 std::string many_pongs() {
     std::string frames;
     while (frames.size() < std::size_t{8} << 20) wire::encode(wire::Pong{1}, frames);
@@ -115,7 +116,7 @@ void expect_fault_refused(std::uint16_t port, bool after_hello, const Fault& fau
     SCOPED_TRACE(fault.message);
     RobotSocket robot(port);
     if (after_hello) {
-        // Scans before a fault are kept: a robot of its own for each, so that seq 1 is always the next.
+        // Scans before a fault are kept: each case has its own robot, so that seq 1 is always the next.
         static std::atomic<int> robots = 0;
         robot.send(hello("faulty" + std::to_string(++robots)));
         robot.receive_kind<wire::Welcome>();
@@ -131,19 +132,19 @@ void expect_all_refused(std::uint16_t port, bool talks_on) {
     for (const auto& fault : faults_after_the_hello()) expect_fault_refused(port, true, fault, talks_on);
 }
 
-TEST_F(IngestTest, EachFaultyRobotIsToldWhatIsWrong) {
+TEST_F(IngestTest, EachFaultyRobotGetsASpecificError) {
     start();
-    welcomed(port(), hello("first")); // makes the session
+    welcomed(port(), hello("first")); // creates the session
     expect_all_refused(port(), false);
 }
 
-TEST_F(IngestTest, EachFaultyRobotCanReadWhatIsWrongAlsoWhenItTalksOn) {
+TEST_F(IngestTest, AFaultyRobotThatKeepsSendingCanReadItsError) {
     start();
     welcomed(port(), hello("first"));
     expect_all_refused(port(), true);
 }
 
-TEST_F(IngestTest, AFaultyRobotNeverDisturbsOneThatStreams) {
+TEST_F(IngestTest, AFaultyRobotDoesNotDisturbOtherRobots) {
     auto& ingest = start();
     const auto healthy = welcomed(port(), hello("healthy"));
     healthy->send(small_laser());
@@ -155,7 +156,7 @@ TEST_F(IngestTest, AFaultyRobotNeverDisturbsOneThatStreams) {
     EXPECT_EQ(ingest.snapshot("lab")->robots.at(0).scan_count, 3000U);
 }
 
-TEST_F(IngestTest, AnAbsurdCellSizeIsNamedAndMakesNoSession) {
+TEST_F(IngestTest, AnInvalidCellSizeIsReportedAndCreatesNoSession) {
     auto& ingest = start();
     for (const double cell_size : {0.0, -0.05, 1e-9, 1e9, kNan}) {
         RobotSocket robot(port());
@@ -168,7 +169,7 @@ TEST_F(IngestTest, AnAbsurdCellSizeIsNamedAndMakesNoSession) {
     EXPECT_TRUE(log_.sessions()->empty());
 }
 
-TEST_F(IngestTest, ADamagedSessionIsNamedAndNotMadeAnew) {
+TEST_F(IngestTest, ADamagedSessionIsReportedAndNotRecreated) {
     const auto id = log_.create_session(wire::encode_session({"broken", 0.0, {}})).value();
     ASSERT_TRUE(store::append_and_wait(log_, id, 1, {"no entry"}));
     start();
@@ -182,7 +183,7 @@ TEST_F(IngestTest, ADamagedSessionIsNamedAndNotMadeAnew) {
     welcomed(port(), hello("r", "whole"));
 }
 
-TEST_F(IngestTest, ARobotThatBreaksOffInAFrameLosesOnlyThatFrame) {
+TEST_F(IngestTest, ALinkThatEndsInsideAFrameLosesOnlyThatFrame) {
     auto& ingest = start();
     const std::string batch = frame_of(wire::ScanBatch{random_scans(1, 11, 5)});
     {
@@ -206,7 +207,7 @@ TEST_F(IngestTest, ARobotThatBreaksOffInAFrameLosesOnlyThatFrame) {
     EXPECT_EQ(ingest.snapshot("lab")->robots.at(0).scan_count, 20U);
 }
 
-TEST_F(IngestTest, RandomBytesAreAnsweredWithAnErrorOrAHangUp) {
+TEST_F(IngestTest, RandomBytesEndTheLinkWithOrWithoutAnError) {
     start();
     std::mt19937 random(21);
     for (int round = 0; round < 200; ++round) {
@@ -221,7 +222,7 @@ TEST_F(IngestTest, RandomBytesAreAnsweredWithAnErrorOrAHangUp) {
     welcomed(port(), hello("r"));
 }
 
-TEST_F(IngestTest, ExactlyTheCreditMayBeUnderWay) {
+TEST_F(IngestTest, ExactlyTheCreditMayBeInFlight) {
     const wire::Message batch = wire::ScanBatch{{random_scan(1, 1)}};
     IngestConfig config;
     config.link.credit_bytes = 3 * frame_of(batch).size();
@@ -242,7 +243,7 @@ TEST_F(IngestTest, ExactlyTheCreditMayBeUnderWay) {
     EXPECT_EQ(again.receive_kind<wire::Welcome>().last_durable_seq, 4U);
 }
 
-TEST_F(IngestTest, CompressedScansAreTakenAndTheirCreditIsOfWhatTheyHold) {
+TEST_F(IngestTest, CompressedScansUseCreditOfTheirUncompressedSize) {
     const wire::Message batch = wire::ScanBatch{{random_scan(1, 1)}};
     const auto compressed = [](std::uint64_t seq) {
         const std::string frame = frame_of(wire::ScanBatch{{random_scan(1, seq)}});
@@ -257,7 +258,7 @@ TEST_F(IngestTest, CompressedScansAreTakenAndTheirCreditIsOfWhatTheyHold) {
     const auto robot = welcomed(port(), hello("r"));
     robot->send(small_laser());
     robot->send(compressed(1));
-    while (robot->receive_kind<wire::Ack>().durable_seq < 1) { // the first may be of the description
+    while (robot->receive_kind<wire::Ack>().durable_seq < 1) { // the first ack may be for the description
     }
     log_.hold_completions();
     for (std::uint64_t seq = 2; seq <= 4; ++seq) robot->send(compressed(seq));
@@ -265,7 +266,7 @@ TEST_F(IngestTest, CompressedScansAreTakenAndTheirCreditIsOfWhatTheyHold) {
     log_.release_completions();
 }
 
-TEST_F(IngestTest, ACompressedBatchThatIsNoneEndsTheLinkAndSaysWhy) {
+TEST_F(IngestTest, AnInvalidCompressedBatchEndsTheLinkWithAnError) {
     start();
     for (const auto& [bad, text] :
          {std::pair{wire::CompressedScanBatch{1U << 30, "x"}, "compressed_scan_batch.size is 1073741824"},
@@ -276,7 +277,7 @@ TEST_F(IngestTest, ACompressedBatchThatIsNoneEndsTheLinkAndSaysWhy) {
     }
 }
 
-TEST_F(IngestTest, SensorDescriptionsNeedNoCreditButAreBounded) {
+TEST_F(IngestTest, SensorDescriptionsNeedNoCreditButAreLimited) {
     const wire::Message batch = wire::ScanBatch{{random_scan(1, 1)}};
     IngestConfig config;
     config.link.credit_bytes = frame_of(batch).size();

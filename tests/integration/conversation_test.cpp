@@ -3,11 +3,11 @@
 #include "tests/support/digests.hpp"
 #include "tests/support/temporary_directory.hpp"
 
-/// Robots that speak as they should.
+/// Robots that follow the protocol.
 namespace scanloom::ingest {
 namespace {
 
-TEST_F(IngestTest, AWholeConversation) {
+TEST_F(IngestTest, CompletesAWholeConversation) {
     auto& ingest = start();
     RobotSocket robot(port());
     robot.send(hello("r"));
@@ -25,7 +25,7 @@ TEST_F(IngestTest, AWholeConversation) {
     EXPECT_EQ(ingest.snapshot("lab")->robots.at(0).scan_count, 55U);
 }
 
-/// The newest ack before the server closes in good order.
+/// Returns the last ack before the server closes the link regularly.
 std::uint64_t acknowledged_at_the_end(RobotSocket& robot) {
     std::uint64_t durable_seq = 0;
     while (const auto message = robot.receive()) {
@@ -35,7 +35,7 @@ std::uint64_t acknowledged_at_the_end(RobotSocket& robot) {
     return durable_seq;
 }
 
-TEST_F(IngestTest, WhatIsSentInOneGoWithTheGoodbyeIsAcknowledged) {
+TEST_F(IngestTest, ScansSentTogetherWithTheGoodbyeAreAcknowledged) {
     auto& ingest = start();
     RobotSocket robot(port());
     robot.send_bytes(frame_of(hello("r")) + frame_of(small_laser()) +
@@ -45,7 +45,7 @@ TEST_F(IngestTest, WhatIsSentInOneGoWithTheGoodbyeIsAcknowledged) {
     EXPECT_EQ(ingest.snapshot("lab")->robots.at(0).scan_count, 500U);
 }
 
-TEST_F(IngestTest, AGoodbyeWaitsForTheDiskAndNothingAfterItIsTaken) {
+TEST_F(IngestTest, AGoodbyeWaitsForTheDiskAndLaterScansAreIgnored) {
     auto& ingest = start();
     const auto robot = welcomed(port(), hello("r"));
     robot->send(small_laser());
@@ -62,7 +62,7 @@ TEST_F(IngestTest, AGoodbyeWaitsForTheDiskAndNothingAfterItIsTaken) {
     EXPECT_EQ(ingest.snapshot("lab")->robots.at(0).scan_count, 30U);
 }
 
-TEST_F(IngestTest, ScansAreInFlightUntilTheirAckIsOnItsWay) {
+TEST_F(IngestTest, ScansAreInFlightUntilTheirAckIsSent) {
     auto& counters = start().counters();
     const auto robot = welcomed(port(), hello("r"));
     robot->send(small_laser());
@@ -79,7 +79,7 @@ TEST_F(IngestTest, ScansAreInFlightUntilTheirAckIsOnItsWay) {
     EXPECT_EQ(counters.ack_seconds.family().metric.at(0).histogram.sample_count, 30U);
 }
 
-TEST_F(IngestTest, AGoodbyeBeforeTheDiskFailsIsAnsweredWithAnError) {
+TEST_F(IngestTest, AGoodbyeIsAnsweredWithAnErrorIfTheDiskFails) {
     start();
     const auto robot = welcomed(port(), hello("r"));
     robot->send(small_laser());
@@ -89,7 +89,7 @@ TEST_F(IngestTest, AGoodbyeBeforeTheDiskFailsIsAnsweredWithAnError) {
     expect_refused(*robot, Errc::kStoreFailed, true, "no space left");
 }
 
-TEST_F(IngestTest, AnyPlaceWhereTheBytesAreSplitGivesTheSameConversation) {
+TEST_F(IngestTest, SplittingTheBytesAnywhereChangesNothing) {
     auto& ingest = start();
     std::size_t robots = 0;
     for (std::size_t split = 1;; ++split, ++robots) {
@@ -114,7 +114,7 @@ TEST_F(IngestTest, AnyPlaceWhereTheBytesAreSplitGivesTheSameConversation) {
     EXPECT_EQ(ingest.snapshot("lab")->robots.size(), robots);
 }
 
-TEST_F(IngestTest, OneByteAtATimeIsAConversationToo) {
+TEST_F(IngestTest, AcceptsOneByteAtATime) {
     start();
     RobotSocket robot(port());
     const std::string bytes =
@@ -124,7 +124,7 @@ TEST_F(IngestTest, OneByteAtATimeIsAConversationToo) {
     robot.wait_for_ack(5);
 }
 
-TEST_F(IngestTest, ARobotThatComesBackContinuesWhereItsScansAreDurable) {
+TEST_F(IngestTest, AReconnectContinuesAfterTheLastDurableScan) {
     auto& ingest = start();
     {
         const auto robot = welcomed(port(), hello("r"));
@@ -137,12 +137,13 @@ TEST_F(IngestTest, ARobotThatComesBackContinuesWhereItsScansAreDurable) {
     }
     RobotSocket robot(port());
     robot.send(hello("r"));
-    EXPECT_EQ(robot.receive_kind<wire::Welcome>().last_durable_seq, 40U) << "what arrived before the end counts";
-    stream(robot, 1, 36, 60); // the first five again
+    EXPECT_EQ(robot.receive_kind<wire::Welcome>().last_durable_seq, 40U)
+        << "scans that arrived before the end are stored";
+    stream(robot, 1, 36, 60); // the first five are sent again
     EXPECT_EQ(ingest.snapshot("lab")->robots.at(0).scan_count, 60U);
 }
 
-TEST_F(IngestTest, ARobotWhoseLinkBrokeUnnoticedReplacesIt) {
+TEST_F(IngestTest, AReconnectReplacesADeadLink) {
     start();
     const auto first = welcomed(port(), hello("r"));
     first->send(small_laser());
@@ -152,18 +153,18 @@ TEST_F(IngestTest, ARobotWhoseLinkBrokeUnnoticedReplacesIt) {
     stream(*second, 1, 11, 20);
 }
 
-TEST_F(IngestTest, WhatWasReceivedAddsUpThoughLinksAreReplacedAndScansAreFaulty) {
+TEST_F(IngestTest, ReceivedScansAreCountedAcrossReplacedLinksAndFaultyScans) {
     auto& ingest = start();
     const auto first = welcomed(port(), hello("r"));
     first->send(small_laser());
     stream(*first, 1, 1, 10);
     const auto second = welcomed(port(), hello("r"));
-    stream(*second, 1, 6, 20); // the first five again
+    stream(*second, 1, 6, 20); // the first five are sent again
     auto faulty = random_scans(1, 21, 10);
     faulty[3].sensor = 77;
     second->send(wire::ScanBatch{std::move(faulty)});
     EXPECT_EQ(farewell_to(*second).error.code, Errc::kInvalidField);
-    const auto third = welcomed(port(), hello("r")); // once what came before is woven
+    const auto third = welcomed(port(), hello("r")); // after the earlier scans have been applied
     const auto& counted = ingest.sessions().counters();
     EXPECT_EQ(counted.scans_applied, 23U);
     EXPECT_EQ(counted.scans_duplicates, 5U);
@@ -171,7 +172,7 @@ TEST_F(IngestTest, WhatWasReceivedAddsUpThoughLinksAreReplacedAndScansAreFaulty)
     EXPECT_EQ(ingest.counters().scans_received.Value(), 35.0);
 }
 
-TEST_F(IngestTest, TwoRobotsWeaveOneMapAndEachHasItsOwnSeqs) {
+TEST_F(IngestTest, TwoRobotsShareAMapAndHaveSeparateSeqs) {
     auto& ingest = start();
     std::vector<std::thread> robots;
     for (unsigned n = 0; n < 2; ++n) {
@@ -188,7 +189,7 @@ TEST_F(IngestTest, TwoRobotsWeaveOneMapAndEachHasItsOwnSeqs) {
     for (const auto& robot : snapshot->robots) EXPECT_EQ(robot.last_seq, 200U);
 }
 
-TEST_F(IngestTest, TheSecondThatWasToBeginTheMapIsToldThatItIsBegunAndTriesNoMore) {
+TEST_F(IngestTest, ASecondRobotThatBeginsTheMapGetsAFinalConflict) {
     auto& ingest = start();
     const auto first = welcomed(port(), hello("first"));
     const auto late = welcomed(port(), hello("late"));
@@ -202,14 +203,14 @@ TEST_F(IngestTest, TheSecondThatWasToBeginTheMapIsToldThatItIsBegunAndTriesNoMor
     while (first->receive_kind<wire::Ack>().durable_seq < 3) {
     }
     begin(*late, 2);
-    const auto told = late->receive_kind<wire::LinkError>();
-    EXPECT_EQ(told.error.code, Errc::kConflict);
-    EXPECT_FALSE(told.retryable);
-    EXPECT_THAT(told.error.message, testing::HasSubstr("scan_batch.scans[0].begins_map: robot 'late' was to begin"));
+    const auto error = late->receive_kind<wire::LinkError>();
+    EXPECT_EQ(error.error.code, Errc::kConflict);
+    EXPECT_FALSE(error.retryable);
+    EXPECT_THAT(error.error.message, testing::HasSubstr("scan_batch.scans[0].begins_map: robot 'late' was to begin"));
     EXPECT_EQ(ingest.snapshot("lab")->robots.at(1).scan_count, 0U);
 }
 
-TEST_F(IngestTest, TenSessionsAtOnceHoldTheMapsTheyWouldHoldAlone) {
+TEST_F(IngestTest, TenConcurrentSessionsHaveTheMapsOfSeparateRuns) {
     auto& ingest = start();
     std::vector<std::thread> robots;
     for (unsigned n = 0; n < 10; ++n) {
@@ -229,7 +230,7 @@ TEST_F(IngestTest, TenSessionsAtOnceHoldTheMapsTheyWouldHoldAlone) {
     }
 }
 
-TEST(IngestWithRocksDb, ARestartForgetsNothingAndTheRobotContinues) {
+TEST(IngestWithRocksDb, ARestartKeepsEverythingAndTheRobotContinues) {
     const TemporaryDirectory directory;
     std::string digest;
     {

@@ -11,7 +11,7 @@
 #include <tuple>
 #include <vector>
 
-/// Robots that go where they are sent until nothing is left to explore.
+/// Robots that drive to the server's goals until nothing is left to explore.
 namespace scanloom::guide {
 namespace {
 
@@ -20,9 +20,9 @@ using testing_support::ExploringRobot;
 
 constexpr double kCellSize = 0.05;
 constexpr double kRange = 5.0;
-constexpr int kGoalsMax = 100; // the most that any of the runs below needs is 42
+constexpr int kGoalsMax = 100; // the largest number in the runs below is 42
 
-/// Walls on the borders between cells would be a case of its own.
+/// Avoids walls exactly on cell borders.
 const Point2 kMiddle{0.137, 0.163};
 
 robot::World moved(const robot::World& world) {
@@ -82,7 +82,7 @@ std::optional<robot::Noise> range_noise(bool noisy) {
     return robot::Noise{.range = 0.02, .beam_angle = 0.0};
 }
 
-/// Of the free cells that a perfect map would hold, how many are known.
+/// Returns the known part of the free cells of a perfect map.
 double known_share(const robot::World& world, const classify::ClassView& classes) {
     const auto truth = robot::truth_of(world, kCellSize);
     int free = 0;
@@ -100,7 +100,7 @@ double known_share(const robot::World& world, const classify::ClassView& classes
 
 class ExplorationTest : public session::SessionTest {
 protected:
-    /// Lets the robots explore until each of them was told that the map is complete.
+    /// Lets the robots explore until the server has reported a complete map to each of them.
     void explore(const robot::World& world, std::vector<ExploringRobot> robots) {
         mapping::Projection maps(mapping::resolve({}).value());
         GoalBook book;
@@ -124,7 +124,7 @@ protected:
 private:
     using Given = std::tuple<RobotIndex, int, int, int, int>; // a goal and a target
 
-    /// @return whether there is more for the robot to do.
+    /// @return whether the robot has another goal
     bool ask(GoalBook& book, mapping::Projection& projection, RobotIndex index, ExploringRobot& robot) {
         const auto maps = projection.snapshot();
         targets_[index].clear();
@@ -152,13 +152,13 @@ private:
         constexpr auto kEnd = std::int64_t{1} << 31;
         const auto newest = classes.newest({-kEnd, -kEnd, kEnd, kEnd});
         auto& given_at = given_[given];
-        EXPECT_LT(given_at, newest) << "the same goal again, and nothing has changed";
+        EXPECT_LT(given_at, newest) << "the same goal was returned twice for an unchanged map";
         given_at = newest;
     }
 
     int goals_ = 0;                                // of all robots
-    std::map<Given, Revision> given_;              // the map when it was given last
-    std::vector<std::vector<grid::Cell>> targets_; // of each robot, while it is on its way
+    std::map<Given, Revision> given_;              // revision of the map when the goal was returned last
+    std::vector<std::vector<grid::Cell>> targets_; // of each robot, while it drives there
 };
 
 struct Case {
@@ -195,7 +195,7 @@ INSTANTIATE_TEST_SUITE_P(Worlds, ExploringAlone,
                                          Case{"RoomsAheadNoisy", five_rooms, false, true, kInTheRooms}),
                          [](const auto& one) { return one.param.name; });
 
-TEST_F(ExplorationTest, TwoRobotsEndTogetherAndNeverShareAFrontier) {
+TEST_F(ExplorationTest, TwoRobotsFinishAndNeverShareAFrontier) {
     const auto world = five_rooms();
     for (const bool all_round : {true, false}) {
         explore(world, {{0, world, laser(all_round), {1.0, 3.9, 0.0}, range_noise(true)},

@@ -14,17 +14,17 @@
 #include <string>
 #include <vector>
 
-/// Simulated robots that explore as a server of the same process tells them, until nothing is left.
+/// Simulated robots that explore with the goals of a server in the same process, until nothing is left.
 namespace scanloom::robot {
 namespace {
 
 using testing_support::GoalOracle;
 using testing_support::Unexplored;
 
-constexpr std::uint64_t kSeedsPerCase = 5; // so that cases run side by side
+constexpr std::uint64_t kSeedsPerCase = 5; // so that cases can run in parallel
 constexpr SimulationLimits kLimits{.duration = 3600.0};
 
-/// Of the free cells that a perfect map would hold, how many are known.
+/// Returns the known part of the free cells of a perfect map.
 double known_share(const World& world, const mapping::Snapshot& maps) {
     const auto truth = truth_of(world, maps.config.cell_size);
     int free = 0;
@@ -40,14 +40,14 @@ double known_share(const World& world, const mapping::Snapshot& maps) {
     return static_cast<double>(known) / free;
 }
 
-/// What is left that the robot could explore.
+/// Returns the area that the robot could still explore.
 std::vector<grid::Cell> left_unexplored(const World& world, GoalOracle& oracle, const Pose2& robot) {
     const auto maps = oracle.maps();
     const auto truth = truth_of(world, maps.config.cell_size);
     constexpr std::int32_t kMargin = 40; // cells; noisy readings end behind walls
     const grid::CellBox area{truth.i_begin - kMargin, truth.j_begin - kMargin, truth.i_begin + truth.width + kMargin,
                              truth.j_begin + truth.height + kMargin};
-    // as wide as the way that is asked for: 2 * 0.22 m over cells of 0.05 m along their diagonals
+    // the width of the requested paths: 2 * 0.22 m over cells of 0.05 m along their diagonals
     const auto size_min =
         static_cast<std::size_t>(2.0 * Explore::kWayClearance / (std::numbers::sqrt2 * maps.config.cell_size));
     const Unexplored unexplored(maps.classes, area,
@@ -55,11 +55,11 @@ std::vector<grid::Cell> left_unexplored(const World& world, GoalOracle& oracle, 
                                  .clearance = Explore::kWayClearance,
                                  .size_min = size_min,
                                  .looked_at = oracle.looked_at()});
-    EXPECT_GT(unexplored.reach({robot.x, robot.y}), 1000) << "the check itself gets about";
+    EXPECT_GT(unexplored.reach({robot.x, robot.y}), 1000) << "the check itself reaches most of the office";
     return unexplored.within_reach_of({robot.x, robot.y});
 }
 
-/// One whose scans go to the oracle, which tells it where to go.
+/// A robot whose scans go to the oracle, which returns its goals.
 class Explorer {
 public:
     Explorer(GoalOracle& oracle, RobotIndex index, SimulatorOptions options)
@@ -68,7 +68,7 @@ public:
         source_.ask_with([this]() -> boost::asio::awaitable<Result<NextStop>> { co_return oracle_.next(index_); });
     }
 
-    /// @return whether there was a scan.
+    /// @return whether there was a scan
     bool step() {
         std::optional<Result<std::optional<Observation>>> next;
         boost::asio::co_spawn(io_, source_.next(), [&](std::exception_ptr failed, auto result) {
@@ -108,8 +108,8 @@ void expect_explored(const Explorer& robot, GoalOracle& oracle) {
         << robot.source().remarks();
 }
 
-/// A degree between beams: a third of the time of the reference laser, which explores as well. (Twenty offices with
-/// that one and noise take 140 s of a processor.)
+/// One degree between beams: a third of the time of the reference laser, with the same result. (Twenty offices with
+/// that laser and noise take 140 s of CPU time.)
 Sensor coarse_laser() {
     Sensor laser = *find_laser("reference");
     laser.angles = UniformAngles{-std::numbers::pi / 2.0, std::numbers::pi / 180.0, 181};
@@ -118,7 +118,7 @@ Sensor coarse_laser() {
 
 Sensor reference_laser() { return *find_laser("reference"); }
 
-/// It frees, along the walls behind the robot, what it has shown before them: maps that go to and fro.
+/// It frees cells along the walls behind the robot that it showed as free before: maps that alternate.
 Sensor all_round_laser() { return *find_laser("lidar360"); }
 
 struct Case {
@@ -151,7 +151,7 @@ std::vector<Case> cases() {
 class ExploringRobots : public session::SessionTest {};
 class ExploringRobot : public ExploringRobots, public testing::WithParamInterface<Case> {};
 
-TEST_P(ExploringRobot, EndsWithACompleteMapAndTouchesNothing) {
+TEST_P(ExploringRobot, EndsWithACompleteMapAndWithoutCollisions) {
     const Case& one = GetParam();
     const World world = one.world();
     for (std::uint64_t seed = one.first_seed; seed < one.first_seed + one.seeds; ++seed) {
@@ -168,7 +168,7 @@ TEST_P(ExploringRobot, EndsWithACompleteMapAndTouchesNothing) {
 INSTANTIATE_TEST_SUITE_P(Worlds, ExploringRobot, testing::ValuesIn(cases()),
                          [](const auto& one) { return testing::PrintToString(one.param); });
 
-TEST_F(ExploringRobots, TwoOfThemShareTheOffice) {
+TEST_F(ExploringRobots, TwoRobotsExploreTheOfficeTogether) {
     const World world = make_office();
     GoalOracle oracle(session_);
     Explorer first(oracle, 0, {world, coarse_laser(), std::nullopt, 1, Pose2{-13.0, -3.0, 0.0}});
@@ -180,10 +180,10 @@ TEST_F(ExploringRobots, TwoOfThemShareTheOffice) {
     expect_explored(first, oracle);
     expect_explored(second, oracle);
     EXPECT_GE(known_share(world, oracle.maps()), 0.95);
-    EXPECT_GT(together, 3000) << "both have something to do";
+    EXPECT_GT(together, 3000) << "both robots explore a part";
 }
 
-TEST_F(ExploringRobots, TheSameSeedExploresTheSameWay) {
+TEST_F(ExploringRobots, TheSameSeedGivesTheSameTrajectory) {
     const auto scans = [&] {
         GoalOracle oracle(session_);
         Explorer robot(oracle, 0, {make_room_walker(), reference_laser(), Noise{}, 7});

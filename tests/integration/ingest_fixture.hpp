@@ -28,7 +28,7 @@ inline wire::Hello hello(const std::string& robot, const std::string& session = 
     return hello;
 }
 
-/// A robot that has been welcomed.
+/// Connects a robot and waits for its welcome.
 inline std::unique_ptr<RobotSocket> welcomed(std::uint16_t port, const wire::Hello& hello) {
     auto robot = std::make_unique<RobotSocket>(port);
     robot->send(hello);
@@ -44,11 +44,11 @@ inline void stream(RobotSocket& robot, unsigned seed, std::uint64_t first, std::
     robot.wait_for_ack(last);
 }
 
-/// Waits for the error that ends the link, and for the server's hanging up after it.
+/// Waits for the error that ends the link, and for the end of the connection after it.
 inline wire::LinkError farewell_to(RobotSocket& robot) {
     for (;;) {
         const auto message = robot.receive();
-        if (!message) throw std::runtime_error("the server hung up without a word");
+        if (!message) throw std::runtime_error("the server closed the link without an error");
         if (const auto* error = std::get_if<wire::LinkError>(&*message)) {
             EXPECT_FALSE(robot.receive().has_value()) << "the error is the last frame";
             return *error;
@@ -65,7 +65,7 @@ inline void expect_refused(RobotSocket& robot, Errc code, bool retryable, const 
 
 class IngestTest : public testing::Test {
 protected:
-    /// The server would wait for completions that a failed test left held.
+    /// Otherwise the server would wait for completions that a failed test still holds.
     void TearDown() override { log_.release_completions(); }
 
     RunningIngest& start(const IngestConfig& config = {}) {

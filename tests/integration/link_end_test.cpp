@@ -13,13 +13,13 @@
 #include <latch>
 #include <sstream>
 
-/// Links that the server ends: deadlines, limits, a failing disk, deletion, shutting down.
+/// Links that the server ends: deadlines, limits, a failing disk, deletion, shutdown.
 namespace scanloom::ingest {
 namespace {
 
 using namespace std::chrono_literals;
 
-TEST_F(IngestTest, ARobotThatSaysNoHelloInTimeIsTold) {
+TEST_F(IngestTest, AMissingHelloIsReportedToTheRobot) {
     IngestConfig config;
     config.link.hello_deadline = 10ms;
     start(config);
@@ -30,8 +30,8 @@ TEST_F(IngestTest, ARobotThatSaysNoHelloInTimeIsTold) {
     expect_refused(slow, Errc::kTimeout, true, "no hello was received in time");
 }
 
-/// Nothing can be told there.
-TEST_F(IngestTest, WhoDoesNotFinishTheHandshakeOfTlsInTimeIsCutOffAndHoldsUpNobody) {
+/// No error can be sent before the handshake.
+TEST_F(IngestTest, AnUnfinishedTlsHandshakeIsClosedAndBlocksNoOtherLink) {
     const TemporaryDirectory directory;
     const auto files = testing_support::write_certificate(directory.path(), "127.0.0.1");
     IngestConfig config;
@@ -47,8 +47,8 @@ TEST_F(IngestTest, WhoDoesNotFinishTheHandshakeOfTlsInTimeIsCutOffAndHoldsUpNobo
     EXPECT_FALSE(slow.receive());
 }
 
-/// A handshake is no hello.
-TEST_F(IngestTest, WhoSaysNoHelloOverTlsIsTold) {
+/// A finished handshake does not replace the hello.
+TEST_F(IngestTest, AMissingHelloIsReportedOverTls) {
     const TemporaryDirectory directory;
     const auto files = testing_support::write_certificate(directory.path(), "127.0.0.1");
     IngestConfig config;
@@ -60,7 +60,7 @@ TEST_F(IngestTest, WhoSaysNoHelloOverTlsIsTold) {
     EXPECT_THAT(robot.read_all(), testing::HasSubstr("no hello was received in time"));
 }
 
-TEST_F(IngestTest, ARobotThatFallsSilentIsTold) {
+TEST_F(IngestTest, ASilentRobotGetsATimeoutError) {
     IngestConfig config;
     config.link.idle_deadline = 10ms;
     start(config);
@@ -68,7 +68,7 @@ TEST_F(IngestTest, ARobotThatFallsSilentIsTold) {
     expect_refused(*robot, Errc::kTimeout, true, "nothing was received for too long");
 }
 
-TEST_F(IngestTest, ARobotThatDoesNotHangUpIsHungUpOn) {
+TEST_F(IngestTest, ARobotThatDoesNotCloseIsDisconnected) {
     IngestConfig config;
     config.link.farewell_deadline = 10ms;
     start(config);
@@ -76,10 +76,10 @@ TEST_F(IngestTest, ARobotThatDoesNotHangUpIsHungUpOn) {
     robot.send(wire::Ping{});
     expect_refused(robot, Errc::kMalformed, false, "the first frame is a ping");
     EXPECT_THROW(for (;;) robot.send_bytes(std::string(65'536, 'x')), boost::system::system_error)
-        << "nobody reads any more";
+        << "the robot reads no more";
 }
 
-TEST_F(IngestTest, RobotsBeyondTheLimitAreToldToComeBack) {
+TEST_F(IngestTest, RobotsBeyondTheLimitGetARetryableError) {
     IngestConfig config;
     config.links_max = 1;
     start(config);
@@ -90,7 +90,7 @@ TEST_F(IngestTest, RobotsBeyondTheLimitAreToldToComeBack) {
         expect_refused(second, Errc::kOverloaded, true, "1 robots are connected, the most this server takes");
     }
     first.reset();
-    for (;;) { // the server notices that the first has gone
+    for (;;) { // until the server notices that the first link has ended
         RobotSocket second(port());
         second.send(hello("r2"));
         const auto answer = second.receive().value();
@@ -99,7 +99,7 @@ TEST_F(IngestTest, RobotsBeyondTheLimitAreToldToComeBack) {
     }
 }
 
-TEST_F(IngestTest, SilentConnectionsKeepNoRobotOut) {
+TEST_F(IngestTest, SilentConnectionsDoNotBlockRobots) {
     IngestConfig config;
     config.links_max = 2;
     config.greeting_max = 3;
@@ -108,14 +108,14 @@ TEST_F(IngestTest, SilentConnectionsKeepNoRobotOut) {
     std::vector<std::unique_ptr<RobotSocket>> silent;
     for (int n = 0; n < 10; ++n) silent.push_back(std::make_unique<RobotSocket>(port()));
     const auto first = welcomed(port(), hello("r1"));
-    for (int n = 0; n < 8; ++n) EXPECT_FALSE(silent[n]->receive()) << "the oldest made room";
+    for (int n = 0; n < 8; ++n) EXPECT_FALSE(silent[n]->receive()) << "the oldest were closed";
     const auto second = welcomed(port(), hello("r2"));
     RobotSocket third(port());
     expect_refused(third, Errc::kOverloaded, true, "2 robots are connected");
     silent.clear();
 }
 
-/// A log that makes no session before the gate is open.
+/// A log that creates no session before the gate is open.
 class GatedLog final : public store::MemoryScanLog {
 public:
     [[nodiscard]] Result<store::SessionId> create_session(std::string_view record) override {
@@ -132,7 +132,7 @@ private:
     std::shared_future<void> open_ = opener_.get_future().share();
 };
 
-TEST(Ingest, SessionsThatRobotsMakeLeaveRoomForOtherChanges) {
+TEST(Ingest, CreatingSessionsDoesNotBlockOtherChanges) {
     GatedLog log;
     RunningIngest ingest(log);
     std::vector<std::unique_ptr<RobotSocket>> robots;
@@ -144,14 +144,14 @@ TEST(Ingest, SessionsThatRobotsMakeLeaveRoomForOtherChanges) {
     for (int n = 0; n < 1000; ++n) { // meanwhile the other hellos arrive
         const auto changed = std::make_shared<std::promise<void>>();
         boost::asio::post(ingest.may_wait(), [changed] { changed->set_value(); });
-        changed->get_future().wait(); // never, if robots held every thread
+        changed->get_future().wait(); // would wait forever if robots held every thread
     }
     log.open();
     for (const auto& robot : robots) robot->receive_kind<wire::Welcome>();
     EXPECT_EQ(ingest.sessions().list().size(), 1U);
 }
 
-TEST_F(IngestTest, APersonWithABrowserIsSentToTheOtherPort) {
+TEST_F(IngestTest, AnHttpRequestIsReferredToTheHttpPort) {
     start();
     testing_support::HttpClient browser(port());
     browser.send("GET / HTTP/1.1\r\nHost: localhost\r\n\r\n");
@@ -161,7 +161,7 @@ TEST_F(IngestTest, APersonWithABrowserIsSentToTheOtherPort) {
     EXPECT_TRUE(browser.ends_in_order());
 }
 
-/// What the server logs while this lives.
+/// The server's log lines during the lifetime of this object.
 class CapturedLog {
 public:
     CapturedLog() {
@@ -172,7 +172,7 @@ public:
     CapturedLog& operator=(const CapturedLog&) = delete;
     ~CapturedLog() { spdlog::set_default_logger(earlier_); }
 
-    /// Pre: nobody logs any more.
+    /// Pre: all logging has ended.
     [[nodiscard]] std::string text() const { return text_.str(); }
 
 private:
@@ -180,7 +180,7 @@ private:
     std::ostringstream text_;
 };
 
-TEST_F(IngestTest, TheLogTellsRobotsFromThoseThatNeverSaidHello) {
+TEST_F(IngestTest, TheLogDistinguishesRobotsFromConnectionsWithoutAHello) {
     CapturedLog log;
     start();
     {
@@ -198,7 +198,7 @@ TEST_F(IngestTest, TheLogTellsRobotsFromThoseThatNeverSaidHello) {
     EXPECT_THAT(log.text(), testing::Not(testing::HasSubstr("robot ''")));
 }
 
-TEST_F(IngestTest, StrangersDoNotFillTheLog) {
+TEST_F(IngestTest, ConnectionsWithoutAHelloDoNotFillTheLog) {
     constexpr int kStrangers = 300;
     CapturedLog log;
     start();
@@ -216,7 +216,7 @@ TEST_F(IngestTest, StrangersDoNotFillTheLog) {
     EXPECT_LE(lines, static_cast<std::size_t>(took.count()) + 1);
 }
 
-TEST_F(IngestTest, PingsWithoutReadingThePongsAreBounded) {
+TEST_F(IngestTest, PingsWithUnreadPongsAreLimited) {
     start();
     const auto robot = welcomed(port(), hello("r"));
     std::string pings;
@@ -225,7 +225,7 @@ TEST_F(IngestTest, PingsWithoutReadingThePongsAreBounded) {
     std::thread sending([&] {
         while (!ended) robot->send_bytes(pings);
     });
-    std::optional<wire::LinkError> refused; // reading begins only when the server's patience is at its end
+    std::optional<wire::LinkError> refused; // reading starts when the server's limit is almost reached
     while (running_->sessions().find("lab")->is_connected(0)) std::this_thread::yield();
     while (const auto message = robot->receive()) {
         if (const auto* error = std::get_if<wire::LinkError>(&*message)) refused = *error;
@@ -239,7 +239,7 @@ TEST_F(IngestTest, PingsWithoutReadingThePongsAreBounded) {
                 testing::HasSubstr("bytes of pongs and refusals wait to be read, at most 65536 may"));
 }
 
-TEST_F(IngestTest, ARobotThatFindsTheSessionFullNeedNotTryAgain) {
+TEST_F(IngestTest, AFullSessionIsAFinalError) {
     start();
     struct Silent : session::RobotListener {
         void on_durable(std::uint64_t, std::size_t) override {}
@@ -256,7 +256,7 @@ TEST_F(IngestTest, ARobotThatFindsTheSessionFullNeedNotTryAgain) {
     welcomed(port(), hello("r"));
 }
 
-TEST_F(IngestTest, ARobotOfASessionWhoseDiskFailsMayTryAgain) {
+TEST_F(IngestTest, AFailedDiskIsARetryableError) {
     start();
     const auto robot = welcomed(port(), hello("r"));
     robot->send(small_laser());
@@ -272,7 +272,7 @@ TEST_F(IngestTest, ARobotOfASessionWhoseDiskFailsMayTryAgain) {
     expect_refused(elsewhere, Errc::kStoreFailed, true, "no space left");
 }
 
-TEST_F(IngestTest, ARobotOfADeletedSessionIsTold) {
+TEST_F(IngestTest, DeletingASessionEndsItsLinksWithAnError) {
     auto& ingest = start();
     const auto robot = welcomed(port(), hello("r"));
     const auto other = welcomed(port(), hello("r", "other"));
@@ -283,7 +283,7 @@ TEST_F(IngestTest, ARobotOfADeletedSessionIsTold) {
     stream(*other, 1, 1, 10);
 }
 
-TEST_F(IngestTest, WhenTheServerStopsEveryScanReceivedIsAcknowledgedBeforeTheFarewell) {
+TEST_F(IngestTest, StoppingAcknowledgesEveryReceivedScanFirst) {
     auto& ingest = start();
     std::vector<std::unique_ptr<RobotSocket>> robots;
     for (int n = 0; n < 4; ++n) {
@@ -306,10 +306,10 @@ TEST_F(IngestTest, WhenTheServerStopsEveryScanReceivedIsAcknowledgedBeforeTheFar
         expect_refused(*robot, Errc::kShuttingDown, true, "the server is shutting down");
     }
     draining.join();
-    EXPECT_THROW(for (;;) RobotSocket{port()}, boost::system::system_error) << "nobody listens any more";
+    EXPECT_THROW(for (;;) RobotSocket{port()}, boost::system::system_error) << "the port must be closed";
 }
 
-TEST_F(IngestTest, StoppingWhileRobotsStreamLosesNothingThatWasAcknowledged) {
+TEST_F(IngestTest, StoppingDuringStreamsLosesNoAcknowledgedScan) {
     std::vector<std::uint64_t> acknowledged(4, 0);
     {
         auto& ingest = start();

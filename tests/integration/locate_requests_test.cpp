@@ -14,7 +14,7 @@
 #include <thread>
 #include <vector>
 
-/// Robots that ask where they are.
+/// Robots that request their location.
 namespace scanloom::ingest {
 namespace {
 
@@ -33,7 +33,7 @@ Sensor round_laser() {
     return sensor;
 }
 
-/// What is seen of the room from there, beam by beam, in metres.
+/// Returns the observed points of the room from a pose, beam by beam, in metres.
 std::vector<double> room_from(const Pose2& T_room_laser) {
     std::vector<double> ranges;
     for (std::uint32_t n = 0; n < kBeams; ++n) {
@@ -51,7 +51,7 @@ Scan room_scan(std::uint64_t seq, const Pose2& T_map_robot) {
     return scan;
 }
 
-/// What a lidar that stands there asks, in its own frame.
+/// Returns the request of a lidar at a pose, in its own frame.
 wire::LocateRequest question_from(const Pose2& T_room_laser, std::uint64_t id = 1) {
     wire::LocateRequest request{.id = id};
     const auto ranges = room_from(T_room_laser);
@@ -67,7 +67,7 @@ constexpr Pose2 kTruth{2.0, 1.5, 0.7};
 
 class LocateRequestsTest : public IngestTest {
 protected:
-    /// A robot that has sent scans from two places, each fewer than make a capture full.
+    /// A robot that has sent scans from two places, fewer than a full capture from each.
     std::unique_ptr<RobotSocket> mapping(const std::string& name = "mapper") {
         auto robot = welcomed(port(), hello(name));
         robot->send(round_laser());
@@ -77,7 +77,7 @@ protected:
     }
 };
 
-TEST_F(LocateRequestsTest, ALidarWithoutOdometryIsToldWhereItStands) {
+TEST_F(LocateRequestsTest, ALidarWithoutOdometryIsLocalized) {
     auto& ingest = start();
     const auto mapper = mapping();
     const auto carried = welcomed(port(), hello("carried"));
@@ -94,7 +94,7 @@ TEST_F(LocateRequestsTest, ALidarWithoutOdometryIsToldWhereItStands) {
     EXPECT_LT(reply.correction->position_sigma, 0.01);
 }
 
-TEST_F(LocateRequestsTest, NothingIsStoredOfTheQuestion) {
+TEST_F(LocateRequestsTest, LocateRequestsAreNotStored) {
     auto& ingest = start();
     const auto mapper = mapping();
     const auto carried = welcomed(port(), hello("carried"));
@@ -104,7 +104,7 @@ TEST_F(LocateRequestsTest, NothingIsStoredOfTheQuestion) {
     EXPECT_EQ(ingest.snapshot("lab")->revision, before);
 }
 
-TEST_F(LocateRequestsTest, WhatTheMapCannotTellIsRefusedAndTheLinkGoesOn) {
+TEST_F(LocateRequestsTest, AnAmbiguousPoseIsRefusedAndTheLinkContinues) {
     start();
     const auto carried = welcomed(port(), hello("carried"));
     carried->send(question_from(kTruth, 1));
@@ -135,7 +135,7 @@ TEST_F(LocateRequestsTest, WhatTheMapCannotTellIsRefusedAndTheLinkGoesOn) {
     EXPECT_TRUE(carried->receive_kind<wire::LocateReply>().correction);
 }
 
-TEST_F(LocateRequestsTest, OfTwoThatAskWhileNothingIsMappedTheMapBeginsWithOne) {
+TEST_F(LocateRequestsTest, OnAnEmptyMapOnlyOneOfTwoRobotsMayBeginIt) {
     start();
     const auto first = welcomed(port(), hello("first"));
     const auto second = welcomed(port(), hello("second"));
@@ -143,7 +143,7 @@ TEST_F(LocateRequestsTest, OfTwoThatAskWhileNothingIsMappedTheMapBeginsWithOne) 
     EXPECT_EQ(first->receive_kind<wire::LocateReply>().correction.error().code, Errc::kNothingMapped);
     second->send(question_from(kTruth, 1));
     const auto refused = second->receive_kind<wire::LocateReply>().correction.error();
-    EXPECT_EQ(refused.code, Errc::kOverloaded) << "it asks again";
+    EXPECT_EQ(refused.code, Errc::kOverloaded) << "the robot may retry";
     EXPECT_THAT(refused.message, HasSubstr("the map begins where that one stands"));
 
     first->send(round_laser());
@@ -154,7 +154,7 @@ TEST_F(LocateRequestsTest, OfTwoThatAskWhileNothingIsMappedTheMapBeginsWithOne) 
     EXPECT_TRUE(reply.correction) << reply.correction.error().message;
 }
 
-TEST_F(LocateRequestsTest, ManyThatAskWhereTheyAreLeaveRoomForThoseThatAskForWays) {
+TEST_F(LocateRequestsTest, ManyLocateRequestsDoNotBlockPlanRequests) {
     auto& ingest = start();
     const auto mapper = mapping();
     std::promise<void> go_on;
@@ -174,7 +174,7 @@ TEST_F(LocateRequestsTest, ManyThatAskWhereTheyAreLeaveRoomForThoseThatAskForWay
     go_on.set_value();
 }
 
-TEST_F(LocateRequestsTest, ANewRobotIsFoundInWhatItMappedItself) {
+TEST_F(LocateRequestsTest, ANewRobotIsLocalizedInItsOwnMap) {
     start();
     const auto robot = welcomed(port(), hello("r"));
     robot->send(round_laser());
@@ -185,8 +185,8 @@ TEST_F(LocateRequestsTest, ANewRobotIsFoundInWhatItMappedItself) {
     EXPECT_TRUE(reply.correction) << reply.correction.error().message;
 }
 
-/// Robots are found in what lasers saw: an imported map is not empty, and none begins another one on it.
-TEST_F(LocateRequestsTest, InAnImportedMapNobodyIsToldToBeginOne) {
+/// Robots are localized in the laser map: an imported map is not empty, and no robot begins another one in it.
+TEST_F(LocateRequestsTest, ARobotMayNotBeginAnImportedMap) {
     auto& ingest = start();
     const MapPatch patch{0.1, 0.0, 0.0, 2, {MapCell::kOccupied, MapCell::kFree}};
     ASSERT_TRUE(ingest.sessions().import_map("lab", {}, {patch}));
@@ -197,8 +197,8 @@ TEST_F(LocateRequestsTest, InAnImportedMapNobodyIsToldToBeginOne) {
     EXPECT_THAT(refused.message, HasSubstr("send the first scans from a pose that is known"));
 }
 
-/// Where nothing is mapped the first that is told so begins the map: who hangs up before is told nothing.
-TEST_F(LocateRequestsTest, WhoHangsUpIsNotWaitedFor) {
+/// On an empty map, the first robot with that reply begins the map: a robot that has disconnected gets no reply.
+TEST_F(LocateRequestsTest, AClosedLinkDoesNotDelayOthers) {
     auto& ingest = start();
     std::promise<void> go_on;
     boost::asio::post(ingest.locating(), [wait = go_on.get_future().share()] { wait.wait(); });
@@ -206,7 +206,7 @@ TEST_F(LocateRequestsTest, WhoHangsUpIsNotWaitedFor) {
         const auto hasty = welcomed(port(), hello("hasty"));
         hasty->send(question_from(kTruth));
         hasty->send(wire::Ping{3});
-        EXPECT_EQ(hasty->receive_kind<wire::Pong>().nonce, 3U) << "the question has been read";
+        EXPECT_EQ(hasty->receive_kind<wire::Pong>().nonce, 3U) << "the request has been read";
     }
     while (ingest.sessions().find("lab")->is_connected(0)) std::this_thread::yield();
     const auto patient = welcomed(port(), hello("patient"));

@@ -16,7 +16,7 @@
 #include <tuple>
 #include <vector>
 
-/// Every layer of maps woven from real recordings, against brute force.
+/// Every layer of maps of real recordings, compared with brute force.
 namespace scanloom {
 namespace {
 
@@ -26,9 +26,9 @@ using mapping::Snapshot;
 
 std::filesystem::path shared_data() { return std::filesystem::path(SCANLOOM_SOURCE_DIR) / "../shared/data"; }
 
-/// Some scans in a row, here and there in a log.
+/// Consecutive scans from several parts of a log.
 std::vector<robot::Observation> sampled(const char* file) {
-    constexpr double kRangeMax = 9.0; // metres: what lies further is free space, which tries no-return beams, too
+    constexpr double kRangeMax = 9.0; // metres: longer ranges are free space, which covers no-return beams, too
     const auto log = robot::read_whole_log(shared_data() / "logs" / file,
                                            {.no_return = robot::NoReturn::kFree, .range_max = kRangeMax, .limits = {}},
                                            [](const robot::SkippedLine& line) { ADD_FAILURE() << line.reason; });
@@ -44,13 +44,13 @@ std::vector<robot::Observation> sampled(const char* file) {
     return some;
 }
 
-using Weaving = std::tuple<const char*, double, RayModel>; // file, cell size
+using LayerCase = std::tuple<const char*, double, RayModel>; // file, cell size
 
-class RealLayers : public testing::TestWithParam<Weaving> {
+class RealLayers : public testing::TestWithParam<LayerCase> {
 protected:
     void SetUp() override {
         const auto path = shared_data() / "logs" / std::get<0>(GetParam());
-        if (!std::filesystem::exists(path)) GTEST_SKIP() << "there is no " << path;
+        if (!std::filesystem::exists(path)) GTEST_SKIP() << "missing file: " << path;
     }
 
     [[nodiscard]] static MapConfig config() {
@@ -67,7 +67,7 @@ protected:
     }
 };
 
-std::string name_of(const Weaving& weaving) {
+std::string name_of(const LayerCase& weaving) {
     const auto [file, cell_size, model] = weaving;
     return std::string(file).substr(0, std::string(file).find('-')) + (cell_size == 0.05 ? "At5cmBy" : "At10cmBy") +
            (model == RayModel::kInverseSensorModel ? "Sectors"
@@ -93,7 +93,7 @@ std::size_t expect_defined_classes(const oracle::OccTypes& types, const Snapshot
     return compared;
 }
 
-TEST_P(RealLayers, OccupancyHimmAndClassesAreThoseOfTheirDefinitions) {
+TEST_P(RealLayers, LaserLayersEqualTheirDefinitions) {
     Projection projection(config());
     oracle::LaserOracle evidence(config());
     oracle::OccTypes types(config());
@@ -156,8 +156,9 @@ RingLog read_ring() {
     return log;
 }
 
-TEST(RealSonar, TheRingsMapIsThatOfProbabilitiesMultiplied) {
-    if (!std::filesystem::exists(shared_data() / "sonar")) GTEST_SKIP() << "there is no " << shared_data() / "sonar";
+TEST(RealSonar, SonarLayerEqualsMultipliedProbabilities) {
+    if (!std::filesystem::exists(shared_data() / "sonar"))
+        GTEST_SKIP() << "missing directory: " << shared_data() / "sonar";
     const RingLog log = read_ring();
     ASSERT_EQ(log.scans.size(), 413U);
     const MapConfig config = mapping::resolve({.cell_size = 0.1}).value();
@@ -186,7 +187,7 @@ TEST(RealSonar, TheRingsMapIsThatOfProbabilitiesMultiplied) {
     });
     EXPECT_GT(free, 5'000U);
     EXPECT_GT(occupied, 500U);
-    EXPECT_EQ(snapshot.laser.find({0, 0}), nullptr) << "apart from the layers of lasers";
+    EXPECT_EQ(snapshot.laser.find({0, 0}), nullptr) << "sonars do not change laser layers";
 }
 
 } // namespace

@@ -8,12 +8,12 @@
 #include <cmath>
 #include <filesystem>
 
-/// Robots are found in the maps that they made themselves of real buildings, of what they saw at other times.
+/// Localizes robots in their own maps of real buildings, with scans from other times.
 namespace scanloom::landmarks {
 namespace {
 
-constexpr std::size_t kAsked = 20;  // of each log
-constexpr std::size_t kLeftOut = 3; // captures before and behind the one that is asked for
+constexpr std::size_t kAsked = 20;  // for each log
+constexpr std::size_t kLeftOut = 3; // captures before and after the localized one
 
 std::filesystem::path path_of(const std::string& file) {
     return std::filesystem::path(SCANLOOM_SOURCE_DIR) / "../shared/data/logs" / file;
@@ -45,9 +45,9 @@ ReferenceViews all_but(const std::vector<Capture>& captures, std::size_t asked) 
 
 class RealLocalization : public testing::TestWithParam<const char*> {};
 
-TEST_P(RealLocalization, IsRightWhereItIsClearAndMostlyItIs) {
+TEST_P(RealLocalization, ClearAnswersAreCorrectAndFrequent) {
     if (!std::filesystem::exists(path_of(GetParam()))) {
-        GTEST_SKIP() << "recorded data, no part of the project, are not on this machine: " << path_of(GetParam());
+        GTEST_SKIP() << "the recorded data, which are no part of the project, are missing: " << path_of(GetParam());
     }
     const auto log = robot::read_whole_log(path_of(GetParam()), {}, [](const robot::SkippedLine&) {});
     ASSERT_TRUE(log) << log.error().message;
@@ -56,7 +56,7 @@ TEST_P(RealLocalization, IsRightWhereItIsClearAndMostlyItIs) {
     for (std::size_t n = 0; n < kAsked; ++n) {
         const std::size_t asked = (2 * n + 1) * captures.size() / (2 * kAsked);
         const Capture& capture = captures[asked];
-        std::vector<Point2> seen = in_metres(capture.points); // and where the robot was is not told
+        std::vector<Point2> seen = in_metres(capture.points); // without the robot's pose
         for (Point2& point : seen) point = transform(inverse(capture.pose), point);
         const Point2 from = transform(inverse(capture.pose), capture.from);
         const auto found = locate(all_but(captures, asked), {.points = seen, .from = from});
@@ -64,7 +64,7 @@ TEST_P(RealLocalization, IsRightWhereItIsClearAndMostlyItIs) {
         if (found->certainty != Certainty::kClear) continue;
         ++clear;
         const Pose2 off = compose(inverse(capture.pose), found->T_first_second);
-        EXPECT_LT(std::hypot(off.x, off.y), 0.2) << "capture " << asked << ": the logs' own poses are as good as that";
+        EXPECT_LT(std::hypot(off.x, off.y), 0.2) << "capture " << asked << ": the poses of the logs have this accuracy";
         EXPECT_LT(std::abs(off.yaw), 3.0 * kDegree) << "capture " << asked;
     }
     EXPECT_GE(clear, kAsked * 6 / 10);

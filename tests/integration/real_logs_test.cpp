@@ -22,7 +22,7 @@ std::filesystem::path path_of(const Recording& recording) {
 class RealLogs : public testing::TestWithParam<Recording> {
 protected:
     void SetUp() override {
-        if (!std::filesystem::exists(path_of(GetParam()))) GTEST_SKIP() << "there is no " << path_of(GetParam());
+        if (!std::filesystem::exists(path_of(GetParam()))) GTEST_SKIP() << "missing file: " << path_of(GetParam());
     }
 
     robot::WholeLog read(robot::NoReturn no_return) {
@@ -33,7 +33,7 @@ protected:
     }
 };
 
-TEST_P(RealLogs, HoldEveryScanAndNoneFarBehindTheOneBefore) {
+TEST_P(RealLogs, ContainEveryScanInAlmostIncreasingTime) {
     const auto log = read(robot::NoReturn::kDrop);
     ASSERT_EQ(log.observations.size(), GetParam().scans);
     for (std::size_t n = 1; n < log.observations.size(); ++n) {
@@ -41,7 +41,7 @@ TEST_P(RealLogs, HoldEveryScanAndNoneFarBehindTheOneBefore) {
     }
 }
 
-TEST_P(RealLogs, AreWovenAsTheNaiveDoubleLoopWould) {
+TEST_P(RealLogs, GiveTheMapsOfANaiveImplementation) {
     const auto log = read(robot::NoReturn::kDrop);
     std::size_t firm = 0;
     const std::size_t step = log.observations.size() / 25;

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-/// The history of a real recording, stepped through.
+/// Steps through the history of a real recording.
 namespace scanloom {
 namespace {
 
@@ -27,7 +27,7 @@ protected:
 
     void SetUp() override {
         if (!std::filesystem::exists(intel_log())) {
-            GTEST_SKIP() << "recorded data, no part of the project, are not on this machine: " << intel_log();
+            GTEST_SKIP() << "the recorded data, which are no part of the project, are missing: " << intel_log();
         }
         const auto log = robot::read_whole_log(intel_log(), {.no_return = robot::NoReturn::kFree, .limits = {}},
                                                [](const robot::SkippedLine& line) { ADD_FAILURE() << line.reason; });
@@ -56,7 +56,7 @@ protected:
         entries_.push_back(std::move(entry));
     }
 
-    std::shared_ptr<const mapping::Snapshot> woven(session::Weaves& weaves, Revision until) {
+    std::shared_ptr<const mapping::Snapshot> maps_until(session::Weaves& weaves, Revision until) {
         const session::WeaveRequest request{session_.config, {until, std::nullopt}};
         return weaves.start(session_, request, entries_.size()).value()->wait(until, std::chrono::minutes(5));
     }
@@ -70,9 +70,9 @@ protected:
     session::Weaves weaves_{log_, pool_.get_executor()};
 };
 
-TEST_F(RealWeaves, EveryStepThroughTheHistoryShowsWhatWovenFromNothingWould) {
+TEST_F(RealWeaves, EveryStepEqualsAMapComputedFromTheStart) {
     for (Revision until = kStep; until <= entries_.size(); until += kStep) {
-        const auto maps = woven(weaves_, until);
+        const auto maps = maps_until(weaves_, until);
         ASSERT_NE(maps, nullptr);
         ASSERT_EQ(maps->revision, until);
         if (until / kStep % 10 != 1) continue; // digests cost more than the steps

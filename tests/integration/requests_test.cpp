@@ -12,7 +12,7 @@
 #include <set>
 #include <thread>
 
-/// Robots that ask for ways.
+/// Robots that request paths.
 namespace scanloom::ingest {
 namespace {
 
@@ -25,7 +25,7 @@ Sensor half_round_laser() {
     return sensor;
 }
 
-/// A wall three metres away, and a sector in which nothing was read: frontiers are there and behind.
+/// A wall at a distance of three metres, and a sector without readings: frontiers are there and behind the robot.
 Scan scan_with_a_gap(std::uint64_t seq = 1) {
     Scan scan;
     scan.seq = seq;
@@ -39,7 +39,7 @@ Scan scan_with_a_gap(std::uint64_t seq = 1) {
 
 class RequestsTest : public IngestTest {
 protected:
-    /// A robot whose first scan is in the maps.
+    /// A robot whose first scan has been applied.
     std::unique_ptr<RobotSocket> looking_around(const std::string& name, const std::string& session = "lab") {
         auto robot = welcomed(port(), hello(name, session));
         robot->send(half_round_laser());
@@ -48,7 +48,7 @@ protected:
         return robot;
     }
 
-    /// Nothing is searched until the returned promise is kept.
+    /// Blocks all searches until the returned promise is fulfilled.
     std::promise<void> hold_searches() {
         std::promise<void> go_on;
         boost::asio::post(running_->planning(), [wait = go_on.get_future().share()] { wait.wait(); });
@@ -58,7 +58,7 @@ protected:
 
 wire::PlanRequest plan_to(const Point2& goal, std::uint64_t id = 1) { return {.id = id, .goal = goal}; }
 
-TEST_F(RequestsTest, APlanIsThePathThatPlanningFinds) {
+TEST_F(RequestsTest, APlanIsThePathOfThePlanner) {
     auto& ingest = start();
     const auto robot = looking_around("r");
     robot->send(wire::PlanRequest{.id = 7, .start = Point2{1.0, 1.0}, .goal = {2.5, 0.2}, .body_radius = 0.2});
@@ -72,7 +72,7 @@ TEST_F(RequestsTest, APlanIsThePathThatPlanningFinds) {
     EXPECT_EQ(reply.path.value(), (wire::Path{expected.points, expected.length_m, expected.cost}));
 }
 
-TEST_F(RequestsTest, WithoutAStartTheRobotsNewestScanIsMeant) {
+TEST_F(RequestsTest, WithoutAStartTheNewestPoseIsUsed) {
     start();
     const auto robot = looking_around("r");
     robot->send(plan_to({2.5, 0.2}));
@@ -86,7 +86,7 @@ TEST_F(RequestsTest, WithoutAStartTheRobotsNewestScanIsMeant) {
     EXPECT_EQ(mute->receive_kind<wire::CoverageReply>().coverage.error().code, Errc::kNoPath);
 }
 
-TEST_F(RequestsTest, WaysAreForTheBodyThatTheHelloStates) {
+TEST_F(RequestsTest, PathsFitTheBodyRadiusOfTheHello) {
     start();
     auto stated = hello("r");
     stated.body_radius = 0.5;
@@ -109,7 +109,7 @@ TEST_F(RequestsTest, WaysAreForTheBodyThatTheHelloStates) {
     EXPECT_EQ(coverage, robot->receive_kind<wire::CoverageReply>().coverage.value());
 }
 
-TEST_F(RequestsTest, WhatARobotPlannedLastIsKnownUntilItLeaves) {
+TEST_F(RequestsTest, TheLastPlanIsKeptUntilTheRobotLeaves) {
     auto& ingest = start();
     const auto robot = looking_around("r");
     const auto session = ingest.sessions().find("lab");
@@ -143,7 +143,7 @@ TEST_F(RequestsTest, WhatARobotPlannedLastIsKnownUntilItLeaves) {
     EXPECT_THAT(page().robots, testing::IsEmpty());
 }
 
-TEST_F(RequestsTest, WhatCannotBeMetIsRefusedAndTheLinkGoesOn) {
+TEST_F(RequestsTest, UnsatisfiableRequestsAreRefusedAndTheLinkContinues) {
     start();
     const auto robot = looking_around("r");
     robot->send(plan_to({3.53, 1.25}));
@@ -160,7 +160,7 @@ TEST_F(RequestsTest, WhatCannotBeMetIsRefusedAndTheLinkGoesOn) {
     robot->wait_for_ack(2);
 }
 
-TEST_F(RequestsTest, TwoRobotsNeverGetTheSameFrontierOverTheirLinksAndBesides) {
+TEST_F(RequestsTest, TwoRobotsNeverGetTheSameFrontierOverAnyPort) {
     auto& ingest = start();
     const auto frontier_of = [&](const Point2& target) {
         const auto frontiers = classify::find_frontiers(ingest.snapshot("lab")->classes, 10);
@@ -177,7 +177,7 @@ TEST_F(RequestsTest, TwoRobotsNeverGetTheSameFrontierOverTheirLinksAndBesides) {
     ASSERT_EQ(goal.exploration, wire::Exploration::kGoal);
     EXPECT_EQ(goal.path->points.front(), (Point2{0.5, 1.25}));
 
-    // As HTTP does it for b.
+    // Robot b uses HTTP.
     const auto session = ingest.sessions().find("lab");
     const auto maps = session->snapshot();
     planning::ExplorationOptions options;
@@ -204,7 +204,7 @@ TEST_F(RequestsTest, TwoRobotsNeverGetTheSameFrontierOverTheirLinksAndBesides) {
     }
 }
 
-TEST_F(RequestsTest, WhatARobotLooksAtInVainIsGivenUp) {
+TEST_F(RequestsTest, UnobservableFrontiersAreExcluded) {
     start();
     const auto robot = looking_around("r");
     robot->send(wire::GoalRequest{.id = 1});
@@ -224,7 +224,7 @@ TEST_F(RequestsTest, WhatARobotLooksAtInVainIsGivenUp) {
     EXPECT_NE(next.target, goal.target);
 }
 
-TEST_F(RequestsTest, ACoverageCoversTheGroundOfItsRegion) {
+TEST_F(RequestsTest, CoverageReachesTheGroundOfItsRegion) {
     start();
     const auto robot = looking_around("r");
     robot->send(wire::CoverageRequest{.id = 5, .region = {{1.0, 0.5}, {2.0, 0.5}, {2.0, 1.5}, {1.0, 1.5}}});
@@ -241,11 +241,11 @@ TEST_F(RequestsTest, ACoverageCoversTheGroundOfItsRegion) {
     EXPECT_EQ(everywhere.cell_size, 0.05);
     double cells = 0.0;
     for (const auto& run : everywhere.unreachable) cells += run.count;
-    EXPECT_GT(cells, 0.0) << "beside the walls, and beside what is unknown";
+    EXPECT_GT(cells, 0.0) << "the path leaves out cells next to walls and unknown cells";
     EXPECT_NEAR(everywhere.covered_area + cells * 0.05 * 0.05, everywhere.free_area, 1e-9);
 }
 
-TEST_F(RequestsTest, ARobotIsAnsweredOnTheMapsOfItsOwnSession) {
+TEST_F(RequestsTest, RequestsUseTheMapsOfTheRobotsSession) {
     start();
     const auto here = looking_around("r", "here");
     const auto elsewhere = welcomed(port(), hello("r", "elsewhere"));
@@ -253,7 +253,7 @@ TEST_F(RequestsTest, ARobotIsAnsweredOnTheMapsOfItsOwnSession) {
     EXPECT_THAT(elsewhere->receive_kind<wire::PlanReply>().path.error().message, testing::HasSubstr("outside the map"));
 }
 
-TEST_F(RequestsTest, ScansAreTakenAndAcknowledgedWhileASearchLasts) {
+TEST_F(RequestsTest, ScansAreAcknowledgedDuringASearch) {
     start();
     const auto robot = looking_around("r");
     auto go_on = hold_searches();
@@ -266,7 +266,7 @@ TEST_F(RequestsTest, ScansAreTakenAndAcknowledgedWhileASearchLasts) {
     EXPECT_TRUE(robot->receive_kind<wire::PlanReply>().path);
 }
 
-TEST_F(RequestsTest, OneRequestTooManyIsRefusedAndTheOthersAreMet) {
+TEST_F(RequestsTest, ARequestBeyondTheLimitIsRefusedAndTheOthersAreAnswered) {
     start();
     const auto robot = looking_around("r");
     auto go_on = hold_searches();
@@ -285,7 +285,7 @@ TEST_F(RequestsTest, OneRequestTooManyIsRefusedAndTheOthersAreMet) {
     EXPECT_TRUE(robot->receive_kind<wire::PlanReply>().path);
 }
 
-TEST_F(RequestsTest, OneRequestTooManyOfAllLinksIsRefused) {
+TEST_F(RequestsTest, ARequestBeyondTheLimitOfAllLinksIsRefused) {
     running_ = std::make_unique<RunningIngest>(log_, IngestConfig{}, 2);
     const auto first = looking_around("a");
     const auto second = looking_around("b");
@@ -303,7 +303,7 @@ TEST_F(RequestsTest, OneRequestTooManyOfAllLinksIsRefused) {
     EXPECT_TRUE(first->receive_kind<wire::PlanReply>().path);
 }
 
-TEST_F(RequestsTest, AGoodbyeWaitsForTheReplies) {
+TEST_F(RequestsTest, AGoodbyeWaitsForReplies) {
     start();
     const auto robot = looking_around("r");
     auto go_on = hold_searches();
@@ -313,7 +313,7 @@ TEST_F(RequestsTest, AGoodbyeWaitsForTheReplies) {
     EXPECT_FALSE(robot->receive().has_value());
 }
 
-TEST_F(RequestsTest, ARobotThatLeavesBeforeItsReplyDisturbsNobody) {
+TEST_F(RequestsTest, ARobotThatLeavesBeforeItsReplyDisturbsNoOtherRobot) {
     start();
     const auto other = looking_around("other");
     auto go_on = hold_searches();
@@ -329,7 +329,7 @@ TEST_F(RequestsTest, ARobotThatLeavesBeforeItsReplyDisturbsNobody) {
     EXPECT_TRUE(other->receive_kind<wire::PlanReply>().path);
 }
 
-TEST_F(RequestsTest, RefusalsThatNobodyReadsEndTheLink) {
+TEST_F(RequestsTest, UnreadRefusalsEndTheLink) {
     start();
     const auto robot = looking_around("r");
     auto go_on = hold_searches();
@@ -338,7 +338,7 @@ TEST_F(RequestsTest, RefusalsThatNobodyReadsEndTheLink) {
     std::thread sending([&] {
         try {
             robot->send_bytes(many);
-        } catch (const boost::system::system_error&) { // cut off meanwhile
+        } catch (const boost::system::system_error&) { // disconnected meanwhile
         }
     });
     sending.join();
@@ -357,20 +357,20 @@ TEST_F(RequestsTest, RefusalsThatNobodyReadsEndTheLink) {
     EXPECT_TRUE(ended);
 }
 
-TEST_F(RequestsTest, NoSearchIsBegunWhileTheServerShutsDown) {
+TEST_F(RequestsTest, NoSearchStartsDuringShutdown) {
     auto& ingest = start();
     const auto robot = looking_around("r");
     const auto session = ingest.sessions().find("lab");
     auto go_on = hold_searches();
-    std::promise<std::string> told;
+    std::promise<std::string> sent;
     guide::GoalBook goals;
     RequestDesk desk(ingest.planning(), ingest.planning(), {goals, ingest.locator(), ingest.sessions()});
     ASSERT_FALSE(desk.ask({session, 0}, plan_to({2.5, 0.2}),
-                          [&](std::string frame, const std::shared_ptr<const void>&) { told.set_value(frame); }));
+                          [&](std::string frame, const std::shared_ptr<const void>&) { sent.set_value(frame); }));
     std::thread draining([&] { ingest.sessions().drain(); });
     draining.join();
     go_on.set_value();
-    const auto frame = told.get_future().get();
+    const auto frame = sent.get_future().get();
     const auto reply = wire::decode(std::string_view(frame).substr(wire::kLengthPrefixBytes)).value();
     EXPECT_EQ(std::get<wire::PlanReply>(reply).path.error().code, Errc::kShuttingDown);
 }

@@ -141,8 +141,8 @@ private:
                 std::vector<At> group{{column, row}};
                 seen[index({column, row})] = true;
                 for (std::size_t n = 0; n < group.size(); ++n) {
-                    for (int beside = 0; beside < 9; ++beside) {
-                        const At at{group[n].first + beside % 3 - 1, group[n].second + beside / 3 - 1};
+                    for (int neighbour = 0; neighbour < 9; ++neighbour) {
+                        const At at{group[n].first + neighbour % 3 - 1, group[n].second + neighbour / 3 - 1};
                         if (!counts(at)) continue;
                         seen[index(at)] = true;
                         group.push_back(at);
@@ -165,8 +165,8 @@ private:
             to.push_back(at);
         };
         for (const At& cell : group) {
-            for (int beside = 0; beside < 9; ++beside) {
-                add({cell.first + beside % 3 - 1, cell.second + beside / 3 - 1}, ring);
+            for (int neighbour = 0; neighbour < 9; ++neighbour) {
+                add({cell.first + neighbour % 3 - 1, cell.second + neighbour / 3 - 1}, ring);
             }
         }
         const auto rings = std::max(8, static_cast<int>(claim_.standoff / claim_.cell_size));

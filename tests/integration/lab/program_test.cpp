@@ -9,7 +9,7 @@
 #include <iterator>
 #include <map>
 
-/// scanloom-lab as its user sees it.
+/// scanloom-lab as a program.
 namespace scanloom::test {
 namespace {
 
@@ -39,7 +39,7 @@ protected:
         return {code, line.value_or(""), contents(errors)};
     }
 
-    /// Files below a directory that are the same each time.
+    /// The files below a directory that are equal in each run.
     static std::map<std::string, std::string> lasting_files(const fs::path& directory) {
         std::map<std::string, std::string> files;
         for (const auto& entry : fs::recursive_directory_iterator(directory)) {
@@ -52,7 +52,7 @@ protected:
     const TemporaryDirectory place_;
 };
 
-TEST_F(Lab, WritesTheSameReportTwiceWithEveryPictureItShows) {
+TEST_F(Lab, WritesTheSameReportTwiceWithAllItsPictures) {
     const auto first = place_.path() / "first";
     const auto second = place_.path() / "deep" / "second";
     const auto outcome = run({"experiment", "--quick", "--scans", "20", "--out", first.string()});
@@ -73,7 +73,7 @@ TEST_F(Lab, WritesTheSameReportTwiceWithEveryPictureItShows) {
     EXPECT_GT(files.size(), 4U);
 }
 
-TEST_F(Lab, ItsLandmarksAreTheSameReportTwice) {
+TEST_F(Lab, WritesTheSameLandmarkReportTwice) {
     const auto first = place_.path() / "first";
     const auto second = place_.path() / "second";
     const auto outcome = run({"landmarks", "--seed", "5", "--scenes", "0", "--out", first.string()});
@@ -86,7 +86,7 @@ TEST_F(Lab, ItsLandmarksAreTheSameReportTwice) {
     EXPECT_TRUE(fs::exists(first / "times.md") && fs::exists(first / "times.html"));
 }
 
-TEST_F(Lab, ARecordingThatIsNoneMakesNoReportAndExits1) {
+TEST_F(Lab, AnInvalidRecordingExitsWith1AndWritesNoReport) {
     std::ofstream(place_.path() / "empty") << "";
     for (const char* file : {"empty", "missing"}) {
         const auto out = place_.path() / "out";
@@ -99,8 +99,8 @@ TEST_F(Lab, ARecordingThatIsNoneMakesNoReportAndExits1) {
     }
 }
 
-TEST_F(Lab, WhereItMayNotWriteItSaysSoAndExits1) {
-    std::ofstream(place_.path() / "file") << "no directory";
+TEST_F(Lab, AnUnwritableFolderIsReportedAndExitsWith1) {
+    std::ofstream(place_.path() / "file") << "not a directory";
     const auto outcome = run({"experiment", "--quick", "--out", (place_.path() / "file").string()});
     EXPECT_EQ(outcome.code, 1);
     EXPECT_EQ(outcome.line, "");
@@ -109,7 +109,7 @@ TEST_F(Lab, WhereItMayNotWriteItSaysSoAndExits1) {
     EXPECT_EQ(std::count(outcome.errors.begin(), outcome.errors.end(), '\n'), 1);
 }
 
-TEST_F(Lab, CalledWronglyItExits2) {
+TEST_F(Lab, WrongArgumentsExitWith2) {
     EXPECT_EQ(run({}).code, 2);
     EXPECT_EQ(run({"experiment"}).code, 2);
     EXPECT_EQ(run({"landmarks"}).code, 2);

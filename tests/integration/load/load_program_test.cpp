@@ -1,5 +1,5 @@
-#include "tests/integration/load/hanging_up.hpp"
-#include "tests/integration/load/lying_front.hpp"
+#include "tests/integration/load/closing_server.hpp"
+#include "tests/integration/load/falsifying_proxy.hpp"
 #include "tests/support/running_server.hpp"
 #include "tests/support/temporary_directory.hpp"
 #include "tests/support/test_certificate.hpp"
@@ -12,7 +12,7 @@
 #include <fstream>
 #include <iterator>
 
-/// scanloom-load as its user sees it, on a server that runs.
+/// scanloom-load as a program, with a running server.
 namespace scanloom::test {
 namespace {
 
@@ -21,13 +21,13 @@ using testing::StartsWith;
 
 using Words = std::vector<std::string>;
 
-/// Large cells: these tests are about links and counting, not about weaving.
+/// Large cells: these tests are about links and counts, not about maps.
 const Words kSmallLoad{"--robots", "20", "--rate", "40", "--duration", "3", "--cell-size", "0.2", "--world", "room"};
 constexpr std::uint64_t kSmallLoadScans = 20 * 40 * 3;
 
 struct Outcome {
     int code = 0;
-    boost::json::value report; ///< null where there is none
+    boost::json::value report; ///< null if there is none
     std::string errors;
 
     [[nodiscard]] std::string verdict() const { return std::string(report.at("verdict").at("sentence").as_string()); }
@@ -82,7 +82,7 @@ Words operator+(Words words, const Words& further) {
     return words;
 }
 
-TEST_F(LoadProgram, EveryScanIsThereOnceThoughLinksFailAllTheTime) {
+TEST_F(LoadProgram, StoresEveryScanOnceOverFailingLinks) {
     const auto outcome = run(kSmallLoad + Words{"--faults", "cut=1,half-open=2,stall=5"});
     EXPECT_EQ(outcome.code, 0) << outcome.errors;
     ASSERT_TRUE(outcome.report.is_object()) << outcome.errors;
@@ -96,10 +96,10 @@ TEST_F(LoadProgram, EveryScanIsThereOnceThoughLinksFailAllTheTime) {
     EXPECT_GT(outcome.report.at("links").at("faults").at("cut").to_number<int>(), 10);
     EXPECT_GT(outcome.report.at("links").at("faults").at("half-open").to_number<int>(), 5);
     EXPECT_GT(outcome.report.at("links").at("faults").at("stall").to_number<int>(), 1);
-    EXPECT_EQ(sessions(), 0U); // they are deleted again
+    EXPECT_EQ(sessions(), 0U); // the tool deletes them
 }
 
-TEST_F(LoadProgram, OneCertificateOpensBothPortsToIt) {
+TEST_F(LoadProgram, UsesOneCertificateForBothPorts) {
     const auto server = testing_support::write_certificate(place_.path(), "127.0.0.1");
     const auto own = testing_support::write_certificate(place_.path(), "load.example");
     const auto& chain = server.certificate.native();
@@ -130,7 +130,7 @@ TEST_F(LoadProgram, OneCertificateOpensBothPortsToIt) {
     EXPECT_THAT(stranger.errors, HasSubstr("--tls-cert and --tls-key"));
 }
 
-TEST_F(LoadProgram, OneTokenOpensBothPortsToIt) {
+TEST_F(LoadProgram, UsesOneTokenForBothPorts) {
     ChildProcess maker(program("scanloom-server"), {"token", "--name", "load", "--role", "operator"}, errors());
     const auto secret = maker.read_line().value();
     std::ofstream tokens(place_.path() / "tokens.toml");
@@ -152,7 +152,7 @@ TEST_F(LoadProgram, OneTokenOpensBothPortsToIt) {
     EXPECT_EQ(run(kSmallLoad + onlookers).code, 1);
 }
 
-TEST_F(LoadProgram, AServerThatIsKilledMeanwhileLosesNothing) {
+TEST_F(LoadProgram, AKilledServerLosesNoScan) {
     ChildProcess load(program("scanloom-load"), arguments(kSmallLoad, server_->http_port()), errors());
     while (server_->get("/api/v1/sessions/load-1-7").status != 200 ||
            server_->get_json("/api/v1/sessions/load-1-7").at("scans").to_number<int>() < 10) {
@@ -168,10 +168,10 @@ TEST_F(LoadProgram, AServerThatIsKilledMeanwhileLosesNothing) {
     EXPECT_EQ(outcome.count("verdict", "digests_equal"), 20U);
     const auto& server = outcome.report.at("server").as_object();
     EXPECT_TRUE(server.contains("resident_bytes"));
-    EXPECT_FALSE(server.contains("cpu_seconds")) << "of the second server alone";
+    EXPECT_FALSE(server.contains("cpu_seconds")) << "the CPU time of two servers is unknown";
 }
 
-TEST_F(LoadProgram, SeveralRobotsShareASessionWhileOthersLookOn) {
+TEST_F(LoadProgram, SeveralRobotsShareASessionWithViewers) {
     const Words load{"--robots", "6",           "--sessions", "2",           "--rate",
                      "20",       "--duration",  "2",          "--cell-size", "0.2",
                      "--world",  "room",        "--viewers",  "3",           "--tile-readers",
@@ -182,7 +182,7 @@ TEST_F(LoadProgram, SeveralRobotsShareASessionWhileOthersLookOn) {
     ASSERT_TRUE(outcome.report.is_object()) << outcome.errors;
     EXPECT_THAT(outcome.verdict(), HasSubstr("digests cannot be compared, as robots share a session"));
     EXPECT_EQ(outcome.count("scans", "acknowledged"), 240U);
-    EXPECT_EQ(outcome.count("scans", "frames"), 84U); // 13 of three scans and a last one of each robot
+    EXPECT_EQ(outcome.count("scans", "frames"), 84U); // 13 frames of three scans and a last one for each robot
     EXPECT_GT(outcome.count("audience", "events"), 3U);
     EXPECT_EQ(outcome.count("audience", "viewers_let_in"), 3U);
     EXPECT_EQ(outcome.count("audience", "viewers_refused"), 0U);
@@ -200,7 +200,7 @@ TEST_F(LoadProgram, SeveralRobotsShareASessionWhileOthersLookOn) {
     EXPECT_EQ(sessions(), 2U);
 }
 
-TEST_F(LoadProgram, AsFastAsTheServerTakesThemEachSessionIsComparedAtItsOwnLength) {
+TEST_F(LoadProgram, UnpacedSessionsAreComparedAtTheirOwnLengths) {
     const auto outcome = run({"--robots", "3", "--rate", "0", "--duration", "1", "--cell-size", "0.2", "--world",
                               "room", "--course", "50", "--threads", "2"});
     EXPECT_EQ(outcome.code, 0) << outcome.errors;
@@ -212,10 +212,10 @@ TEST_F(LoadProgram, AsFastAsTheServerTakesThemEachSessionIsComparedAtItsOwnLengt
 
 const Words kShort{"--robots", "4", "--rate", "20", "--duration", "1", "--cell-size", "0.2", "--world", "room"};
 
-/// What the tool says when one session is not what it should be.
-TEST_F(LoadProgram, ALieOfTheServerIsFoundOut) {
-    const auto through = [&](LyingFront::Lie lie) {
-        const LyingFront front(server_->http_port(), std::move(lie));
+/// The tool's output when one session differs from the expected one.
+TEST_F(LoadProgram, WrongServerReportsAreDetected) {
+    const auto through = [&](FalsifyingProxy::Lie lie) {
+        const FalsifyingProxy front(server_->http_port(), std::move(lie));
         return run(kShort, front.port());
     };
     const auto honest = through([](const std::string&, std::string body) { return body; });
@@ -249,7 +249,7 @@ TEST_F(LoadProgram, ALieOfTheServerIsFoundOut) {
     EXPECT_THAT(gone.verdict(), HasSubstr("/api/v1/sessions/load-1-0 was answered with what cannot be read"));
 }
 
-TEST_F(LoadProgram, WithoutAServerItSaysSoAndExits1) {
+TEST_F(LoadProgram, AMissingServerIsReportedAndExitsWith1) {
     const Words nowhere{"--server", "127.0.0.1:1", "--http", "127.0.0.1:1", "--give-up-after", "0.5"};
     std::filesystem::remove(errors());
     ChildProcess load(program("scanloom-load"), nowhere + kShort, errors());
@@ -265,8 +265,8 @@ TEST_F(LoadProgram, WithoutAServerItSaysSoAndExits1) {
     EXPECT_THAT(outcome.verdict(), HasSubstr("no connection: Connection refused"));
 }
 
-TEST_F(LoadProgram, AServerThatHangsUpWithoutAWordMayWantTls) {
-    const HangingUp server;
+TEST_F(LoadProgram, AServerThatClosesSilentlyGivesAHintOnTls) {
+    const ClosingServer server;
     ChildProcess load(program("scanloom-load"),
                       kShort + Words{"--server", "127.0.0.1:" + std::to_string(server.port()), "--give-up-after", "0.5",
                                      "--verify", "none", "--json", "-"},
@@ -277,7 +277,7 @@ TEST_F(LoadProgram, AServerThatHangsUpWithoutAWordMayWantTls) {
     EXPECT_THAT(outcome.verdict(), HasSubstr("before the server said a word; it may want TLS (--tls)"));
 }
 
-TEST_F(LoadProgram, AReportThatCannotBeWrittenIsToldBeforeAnythingIsDone) {
+TEST_F(LoadProgram, AnUnwritableReportIsRefusedBeforeTheRun) {
     ChildProcess load(program("scanloom-load"),
                       kShort + Words{"--server", "127.0.0.1:1", "--http", "127.0.0.1:1", "--json", "/proc/nowhere/x"},
                       errors());
@@ -286,7 +286,7 @@ TEST_F(LoadProgram, AReportThatCannotBeWrittenIsToldBeforeAnythingIsDone) {
     EXPECT_THAT(outcome.errors, StartsWith("scanloom-load: --json: /proc/nowhere/x.part cannot be written: "));
 }
 
-TEST_F(LoadProgram, InterruptedItVerifiesWhatItSent) {
+TEST_F(LoadProgram, AnInterruptedRunVerifiesItsSentScans) {
     ChildProcess load(program("scanloom-load"),
                       arguments({"--robots", "3", "--duration", "100000", "--cell-size", "0.2", "--course", "10"},
                                 server_->http_port()),
@@ -303,7 +303,7 @@ TEST_F(LoadProgram, InterruptedItVerifiesWhatItSent) {
     EXPECT_EQ(sessions(), 0U);
 }
 
-TEST_F(LoadProgram, InterruptedBeforeEachRobotHasSentAScanItAccusesNobody) {
+TEST_F(LoadProgram, AnEarlyInterruptReportsNoLoss) {
     const Words slow{"--robots", "8", "--rate", "0.01", "--duration", "100000", "--cell-size", "0.2", "--course", "10"};
     ChildProcess load(program("scanloom-load"), arguments(slow, server_->http_port()), errors());
     while (server_->get("/api/v1/sessions/load-1-0").status != 200 ||
@@ -315,7 +315,8 @@ TEST_F(LoadProgram, InterruptedBeforeEachRobotHasSentAScanItAccusesNobody) {
     ASSERT_TRUE(outcome.report.is_object()) << outcome.errors;
     EXPECT_THAT(outcome.verdict(), StartsWith("nothing lost: "));
     EXPECT_GE(outcome.count("verdict", "digests_equal"), 1U);
-    EXPECT_LT(outcome.count("verdict", "digests_equal"), 8U) << "or each had sent a scan, and this shows nothing";
+    EXPECT_LT(outcome.count("verdict", "digests_equal"), 8U)
+        << "the interrupt must come before each robot has sent a scan";
 }
 
 } // namespace

@@ -14,11 +14,11 @@
 #include <string>
 #include <vector>
 
-/// Every behaviour in every world, from twenty places.
+/// Every behaviour in every world, from twenty start places.
 namespace scanloom::robot {
 namespace {
 
-constexpr std::uint64_t kSeedsPerCase = 5; // so that cases run side by side
+constexpr std::uint64_t kSeedsPerCase = 5; // so that cases can run in parallel
 
 std::unique_ptr<Behaviour> wall_follower(const World&) { return std::make_unique<WallFollower>(); }
 
@@ -33,11 +33,11 @@ std::unique_ptr<Behaviour> zigzag(const World& world) {
 struct Drive {
     const char* name;
     std::unique_ptr<Behaviour> (*make)(const World&);
-    double seconds; // at most
-    double metres;  // driven at least
+    double seconds; // upper limit
+    double metres;  // lower limit of the driven distance
 };
 
-// Tours end before that, and so do sweeps of the rooms; the rest of a larger sweep is more of the same.
+// Tours end before that, and so do sweeps of the rooms; the rest of a larger sweep tests nothing new.
 const std::vector<Drive> kDrives{
     {"wall_follower", wall_follower, 180.0, 40.0},
     {"waypoints", waypoints, 1800.0, 20.0},
@@ -76,7 +76,7 @@ class Behaviours : public testing::TestWithParam<Case> {};
 
 bool is_room(const World& world) { return world.name.starts_with("room"); }
 
-/// What is more to be said of those that have an end.
+/// Further checks of behaviours that end.
 void expect_of(const Behaviour& behaviour, const World& world) {
     if (const auto* tour = dynamic_cast<const Waypoints*>(&behaviour)) {
         EXPECT_TRUE(tour->is_done());
@@ -93,7 +93,7 @@ void expect_of(const Behaviour& behaviour, const World& world) {
     }
 }
 
-TEST_P(Behaviours, TouchNothingAndGetSomewhere) {
+TEST_P(Behaviours, DriveWithoutCollisionsAndMakeProgress) {
     const auto [drive, named, laser, noisy, first_seed] = GetParam();
     const World world = named.make();
     for (std::uint64_t seed = first_seed; seed < first_seed + kSeedsPerCase; ++seed) {
@@ -121,7 +121,7 @@ TEST_P(Behaviours, TouchNothingAndGetSomewhere) {
 INSTANTIATE_TEST_SUITE_P(All, Behaviours, testing::ValuesIn(cases()),
                          [](const auto& one) { return testing::PrintToString(one.param); });
 
-TEST(Behaviours, ASweepOfTheOfficeEndsAndLeavesLittleOut) {
+TEST(Behaviours, ASweepOfTheOfficeEndsAndCoversMostOfIt) {
     const World office = make_office();
     Simulator simulator({office, *find_laser("reference"), std::nullopt, 1}, zigzag(office));
     for (double time = 0.0; time < 6000.0 && !simulator.behaviour().is_done(); time += kScanPeriod) {
@@ -134,7 +134,7 @@ TEST(Behaviours, ASweepOfTheOfficeEndsAndLeavesLittleOut) {
     EXPECT_EQ(simulator.collisions(), 0U);
 }
 
-TEST(Behaviours, TheSameSeedDrivesTheSameWay) {
+TEST(Behaviours, TheSameSeedGivesTheSameDrive) {
     const World world = make_room_walker();
     for (const Drive& drive : kDrives) {
         const auto scans = [&] {

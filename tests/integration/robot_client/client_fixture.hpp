@@ -31,7 +31,7 @@ inline Scan numbered(int number) {
     return scan;
 }
 
-/// A fake server that takes connections from the start, and answers them from run() on, on a thread of its own.
+/// A fake server that accepts connections from the start, and answers them after run(), on its own thread.
 class ServerInTheTest {
 public:
     ~ServerInTheTest() { io_.stop(); }
@@ -39,7 +39,7 @@ public:
         thread_ = std::jthread([this] { io_.run(); });
     }
     [[nodiscard]] std::string address() const { return fmt::format("127.0.0.1:{}", server_.port()); }
-    /// Pre: it does not run yet.
+    /// Pre: it is not running.
     void go_by(LinkScript script) { server_.continue_with(std::move(script)); }
     /// Pre: the client is closed.
     [[nodiscard]] const FakeServer& fake() const noexcept { return server_; }
@@ -48,7 +48,7 @@ private:
     boost::asio::io_context io_{1};
     boost::asio::executor_work_guard<boost::asio::io_context::executor_type> work_{io_.get_executor()};
     FakeServer server_{io_, {{}}};
-    std::jthread thread_; // its end waits for io_'s
+    std::jthread thread_; // its destructor waits for io_'s
 };
 
 class ClientFixture : public testing::Test {

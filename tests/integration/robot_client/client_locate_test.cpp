@@ -1,6 +1,6 @@
 #include "tests/integration/robot_client/client_fixture.hpp"
 
-/// A robot's own program asks where the robot is.
+/// A robot's own program requests the robot's location.
 namespace scanloom::robot {
 namespace {
 
@@ -29,7 +29,7 @@ protected:
     ServerInTheTest server_in_the_test_;
 };
 
-TEST_F(ClientLocate, TellsWhatTheServerFound) {
+TEST_F(ClientLocate, ReturnsTheServersPose) {
     const auto client = client_of({.location = wire::Correction{{1.0, 2.0, 3.0}, 7, 0.9, 0.01, 0.02}});
     const auto location = client->locate(laser(), scans(), 20s, {.near = {{{4.0, 5.0}, 6.0}}});
     ASSERT_TRUE(location) << location.error().message;
@@ -44,35 +44,35 @@ TEST_F(ClientLocate, TellsWhatTheServerFound) {
     EXPECT_EQ(asked.points.size(), 10U * 199U);
     EXPECT_EQ(asked.from, (Point2{1.0, 2.0}));
     EXPECT_EQ(asked.near, (wire::Near{{4.0, 5.0}, 6.0}));
-    EXPECT_TRUE(server_in_the_test_.fake().stored().empty()) << "what is asked with is not stored";
+    EXPECT_TRUE(server_in_the_test_.fake().stored().empty()) << "the scans of a request are not stored";
 }
 
-TEST_F(ClientLocate, TellsWhatTheMapCannot) {
-    const Error refusal{Errc::kUndetermined, "too little of this is in the map"};
+TEST_F(ClientLocate, ReturnsTheServersRefusal) {
+    const Error refusal{Errc::kUndetermined, "too little of the scan is in the map"};
     const auto client = client_of({.location = refusal});
     EXPECT_EQ(client->locate(laser(), scans(), 20s).error(), refusal);
     send(*client, 1, 1);
     EXPECT_TRUE(client->close(20s));
 }
 
-TEST_F(ClientLocate, OfAServerOfAnEarlierVersionSaysSo) {
+TEST_F(ClientLocate, ReportsAServerOfAnEarlierVersion) {
     const auto client = client_of({.knows_locating = false});
     EXPECT_THAT(client->locate(laser(), scans(), 20s).error().message, HasSubstr("a server of an earlier version"));
 }
 
-TEST_F(ClientLocate, WithoutAServerIsLate) {
+TEST_F(ClientLocate, TimesOutWithoutAServer) {
     const auto client = Client::start(options()).value();
     EXPECT_EQ(client->locate(laser(), scans(), 1ms).error().code, Errc::kTimeout);
 }
 
-TEST_F(ClientLocate, WhatNoServerTakesIsRefusedByNameAndDisturbsNothing) {
+TEST_F(ClientLocate, RefusesInvalidArgumentsByName) {
     const auto client = client_of({});
     const auto refused = [&](const std::shared_ptr<const Sensor>& sensor, const std::vector<Scan>& given,
-                             const char* told, const LocateOptions& within = {}) {
+                             const char* message, const LocateOptions& within = {}) {
         const auto location = client->locate(sensor, given, 20s, within);
-        ASSERT_FALSE(location) << told;
+        ASSERT_FALSE(location) << message;
         EXPECT_EQ(location.error().code, Errc::kInvalidField);
-        EXPECT_THAT(location.error().message, HasSubstr(told));
+        EXPECT_THAT(location.error().message, HasSubstr(message));
     };
     refused(nullptr, scans(), "scans need their sensor");
     refused(laser(), {}, "met something 0 times; 20 are needed");

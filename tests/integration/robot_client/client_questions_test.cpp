@@ -3,7 +3,7 @@
 #include <atomic>
 #include <future>
 
-/// What a robot's own program asks of a server.
+/// Requests of a robot's own program.
 namespace scanloom::robot {
 namespace {
 
@@ -14,7 +14,7 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 class ClientQuestions : public ClientFixture {};
 
-TEST_F(ClientQuestions, AreAnsweredAsTheServerFindsIt) {
+TEST_F(ClientQuestions, ReturnTheServersAnswers) {
     serve();
     const auto client = Client::start(options()).value();
     send(*client, 1, 5);
@@ -32,7 +32,7 @@ TEST_F(ClientQuestions, AreAnsweredAsTheServerFindsIt) {
     EXPECT_EQ(client->plan({50.0, 0.0}, 20s).error().code, Errc::kNoPath);
 }
 
-TEST_F(ClientQuestions, WaitForTheScansBefore) {
+TEST_F(ClientQuestions, WaitForEarlierScans) {
     serve();
     for (const auto* session : {"planned", "covered"}) {
         const auto client = Client::start(options(session)).value();
@@ -43,14 +43,14 @@ TEST_F(ClientQuestions, WaitForTheScansBefore) {
     }
 }
 
-TEST_F(ClientQuestions, KeepToTheOptionsGiven) {
+TEST_F(ClientQuestions, PassTheGivenOptions) {
     serve();
     const auto client = Client::start(options()).value();
     send(*client, 1, 5);
     const auto from = client->plan({1.0, 0.0}, 20s, {.start = Point2{0.5, 0.0}});
     ASSERT_TRUE(from) << from.error().message;
     EXPECT_LT(norm(from->points.front() - Point2{0.5, 0.0}), 0.2);
-    EXPECT_FALSE(client->plan({-2.0, 0.0}, 20s)) << "nothing is known there";
+    EXPECT_FALSE(client->plan({-2.0, 0.0}, 20s)) << "the goal is in unknown ground";
     EXPECT_TRUE(client->plan({-2.0, 0.0}, 20s, {.allow_unknown = true}));
     EXPECT_THAT(client->plan({1.0, 0.0}, 20s, {.danger_cost = -1.0}).error().message, HasSubstr("danger_cost"));
     const auto covered = client->coverage(20s, {.region = {{0.3, -0.3}, {1.0, -0.3}, {1.0, 0.3}, {0.3, 0.3}}});
@@ -61,14 +61,14 @@ TEST_F(ClientQuestions, KeepToTheOptionsGiven) {
     EXPECT_EQ(covered->cell_size, 0.1);
 }
 
-TEST_F(ClientQuestions, ThatNoServerTakesAreRefusedByNameAndDisturbNothing) {
+TEST_F(ClientQuestions, RefuseInvalidArgumentsByName) {
     serve();
     const auto client = Client::start(options()).value();
     send(*client, 1, 5);
-    const auto refused = [&](const auto& asked, Errc code, const char* told) {
-        ASSERT_FALSE(asked);
-        EXPECT_EQ(asked.error().code, code);
-        EXPECT_THAT(asked.error().message, HasSubstr(told));
+    const auto refused = [&](const auto& answer, Errc code, const char* message) {
+        ASSERT_FALSE(answer);
+        EXPECT_EQ(answer.error().code, code);
+        EXPECT_THAT(answer.error().message, HasSubstr(message));
     };
     refused(client->plan({kNan, 1.0}, 20s), Errc::kInvalidField, "goal.x is nan");
     refused(client->plan({0.0, 1e300}, 20s), Errc::kInvalidField, "goal.y is 1e+300");
@@ -83,7 +83,7 @@ TEST_F(ClientQuestions, ThatNoServerTakesAreRefusedByNameAndDisturbNothing) {
     EXPECT_TRUE(client->close(20s));
 }
 
-TEST_F(ClientQuestions, OfManyThreadsWaitForTheirTurn) {
+TEST_F(ClientQuestions, FromManyThreadsAreQueued) {
     serve();
     const auto client = Client::start(options()).value();
     send(*client, 1, 5);
@@ -100,7 +100,7 @@ TEST_F(ClientQuestions, OfManyThreadsWaitForTheirTurn) {
     EXPECT_EQ(answered, 16);
 }
 
-TEST_F(ClientQuestions, WhoseAskerHasLeftAreForgotten) {
+TEST_F(ClientQuestions, AreDroppedWhenTheirCallerTimesOut) {
     ServerInTheTest server;
     auto made = options();
     made.server = server.address();

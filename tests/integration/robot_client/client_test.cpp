@@ -2,7 +2,7 @@
 
 #include <csignal>
 
-/// The library that a robot's own program links, at a real server.
+/// The library that a robot's own program links, with a real server.
 namespace scanloom::robot {
 namespace {
 
@@ -11,7 +11,7 @@ using testing::HasSubstr;
 
 class ClientTest : public ClientFixture {};
 
-TEST_F(ClientTest, WhatIsSentIsStoredOnceFlushed) {
+TEST_F(ClientTest, FlushedScansAreStored) {
     serve();
     const auto client = Client::start(options()).value();
     send(*client, 1, 300);
@@ -29,7 +29,7 @@ TEST_F(ClientTest, WhatIsSentIsStoredOnceFlushed) {
     EXPECT_EQ(map.status, 200U);
 }
 
-TEST_F(ClientTest, ASecondProgramGoesOnBehindTheFirst) {
+TEST_F(ClientTest, ASecondProgramContinuesAfterTheFirst) {
     serve();
     for (int round = 0; round < 3; ++round) {
         const auto client = Client::start(options()).value();
@@ -43,7 +43,7 @@ TEST_F(ClientTest, ASecondProgramGoesOnBehindTheFirst) {
     EXPECT_EQ(digest_of("lab"), digest_of("undisturbed"));
 }
 
-TEST_F(ClientTest, AServerKilledMeanwhileLosesNothing) {
+TEST_F(ClientTest, AKilledServerLosesNoScanOfTheClient) {
     serve();
     const auto port = server_->robot_port();
     const auto client = Client::start(options()).value();
@@ -60,9 +60,9 @@ TEST_F(ClientTest, AServerKilledMeanwhileLosesNothing) {
     EXPECT_EQ(digest_of("lab"), digest_of("undisturbed"));
 }
 
-TEST_F(ClientTest, WhatASpoolHoldsIsSentByTheNextProgram) {
+TEST_F(ClientTest, TheNextProgramSendsTheSpool) {
     auto made = options();
-    made.server = "127.0.0.1:1"; // nobody
+    made.server = "127.0.0.1:1"; // no server listens there
     made.spool = directory_.path() / "spool";
     {
         const auto client = Client::start(made).value();
@@ -78,7 +78,7 @@ TEST_F(ClientTest, WhatASpoolHoldsIsSentByTheNextProgram) {
     EXPECT_EQ(client->status().acknowledged, 100U);
 }
 
-TEST_F(ClientTest, ScansThatNoServerTakesAreRefusedAtOnceAndNamed) {
+TEST_F(ClientTest, InvalidScansAreRefusedImmediately) {
     const auto client = Client::start(options()).value();
     const auto refusal = [&](auto&& change, const std::shared_ptr<const Sensor>& sensor) {
         Scan scan = numbered(1);
@@ -107,7 +107,7 @@ TEST_F(ClientTest, ScansThatNoServerTakesAreRefusedAtOnceAndNamed) {
     EXPECT_EQ(refusal([](Scan&) {}, laser()), "taken");
 }
 
-TEST_F(ClientTest, OptionsThatCannotBeAreRefusedAtTheStart) {
+TEST_F(ClientTest, InvalidOptionsAreRefusedAtTheStart) {
     const auto refusal = [&](auto&& change) {
         auto made = options();
         change(made);
@@ -119,7 +119,7 @@ TEST_F(ClientTest, OptionsThatCannotBeAreRefusedAtTheStart) {
     EXPECT_THAT(refusal([](auto& made) { made.robot = ""; }), HasSubstr("'' is no name"));
     EXPECT_THAT(refusal([](auto& made) { made.body_radius = -1.0; }), HasSubstr("body_radius"));
     EXPECT_THAT(refusal([](auto& made) { made.tls_ca_file = "/nowhere"; }), HasSubstr("/nowhere"));
-    EXPECT_THAT(refusal([](auto& made) { made.tls_cert_file = "/nobody"; }), HasSubstr("/nobody"));
+    EXPECT_THAT(refusal([](auto& made) { made.tls_cert_file = "/missing"; }), HasSubstr("/missing"));
     EXPECT_THAT(refusal([](auto& made) { made.spool = "/proc/spool"; }), HasSubstr("/proc/spool"));
     EXPECT_THAT(refusal([](auto& made) { made.cell_size = 0.0; }), HasSubstr("a cell_size of 0 m cannot be"));
     EXPECT_THAT(refusal([](auto& made) { made.memory_bytes_max = 0; }), HasSubstr("memory_bytes_max of 0 MiB"));
@@ -131,13 +131,13 @@ TEST_F(ClientTest, OptionsThatCannotBeAreRefusedAtTheStart) {
     EXPECT_EQ(refusal([](auto&) {}), "started");
 }
 
-TEST_F(ClientTest, WhatTheServerRefusesForGoodEndsTheClientWithItsSentence) {
+TEST_F(ClientTest, AFinalErrorEndsTheClientWithTheServersMessage) {
     serve();
     const auto first = Client::start(options()).value();
     send(*first, 1, 1);
     ASSERT_TRUE(first->flush(20s));
     auto made = options();
-    made.cell_size = 0.2; // the session has another
+    made.cell_size = 0.2; // the session has another cell size
     const auto second = Client::start(made).value();
     send(*second, 1, 1);
     const auto flushed = second->flush(20s);
@@ -146,8 +146,8 @@ TEST_F(ClientTest, WhatTheServerRefusesForGoodEndsTheClientWithItsSentence) {
     EXPECT_EQ(second->send(laser(), numbered(2)).error().code, Errc::kConflict);
 }
 
-TEST_F(ClientTest, AFlushWaitsForNoScansThatOthersSendMeanwhile) {
-    ServerInTheTest server; // whose credit is of few scans, so that it never catches up
+TEST_F(ClientTest, AFlushDoesNotWaitForLaterScans) {
+    ServerInTheTest server; // its credit is a few scans, so that the client never catches up
     server.run();
     auto made = options();
     made.server = server.address();
@@ -156,7 +156,7 @@ TEST_F(ClientTest, AFlushWaitsForNoScansThatOthersSendMeanwhile) {
     std::jthread other([&client](const std::stop_token& stop) {
         for (int number = 101; !stop.stop_requested(); ++number) {
             while (client->status().waiting > 200 && !stop.stop_requested()) std::this_thread::yield();
-            if (!client->send(laser(), numbered(number))) return; // it is closed
+            if (!client->send(laser(), numbered(number))) return; // the client is closed
         }
     });
     for (int round = 0; round < 5; ++round) {
@@ -167,7 +167,7 @@ TEST_F(ClientTest, AFlushWaitsForNoScansThatOthersSendMeanwhile) {
     EXPECT_TRUE(closed) << closed.error().message;
 }
 
-TEST_F(ClientTest, ScansThatWereDroppedAreToldByTheNextFlush) {
+TEST_F(ClientTest, TheNextFlushReportsDroppedScans) {
     ServerInTheTest server;
     auto made = options();
     made.server = server.address();

@@ -85,7 +85,7 @@ asio::awaitable<void> FakeServer::serve(Socket socket, LinkScript script) {
         decoder.commit(count);
         for (;;) {
             const auto body = decoder.next();
-            if (!body) co_return; // no frames: the robot speaks something else
+            if (!body) co_return; // no frames: the robot uses another protocol
             if (!*body) break;
             auto message = wire::decode(**body);
             std::size_t frame_bytes = (*body)->size() + wire::kLengthPrefixBytes;
@@ -133,7 +133,7 @@ asio::awaitable<bool> FakeServer::greet(Link& link, const wire::Hello& hello) {
         co_await asio::async_write(link.socket, asio::buffer(*link.script.answer_hello_with), kAwaitTuple);
         co_return false;
     }
-    durable_ = stored_.size(); // what was stored without being acknowledged survived
+    durable_ = stored_.size(); // scans that were stored without acknowledgement survive
     // Messages have names here: g++ 12 destroys temporaries of aggregate types twice when a co_await follows them.
     const wire::Message welcome = wire::Welcome{link.script.session_id,
                                                 link.script.durable_seq.value_or(durable_),

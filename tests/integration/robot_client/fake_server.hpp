@@ -16,38 +16,38 @@
 
 namespace scanloom::robot {
 
-/// What a server does on one link. The first that is set and reached ends it.
+/// The behaviour of a server on one link. The first condition that is set and met ends the link.
 struct LinkScript {
     std::optional<wire::LinkError> refuse_hello = {};      ///< instead of a welcome
     std::optional<std::string> answer_hello_with = {};     ///< raw bytes instead of a welcome
-    std::optional<std::uint64_t> durable_seq = {};         ///< told in the welcome instead of the truth
-    std::optional<std::uint64_t> hang_up_after_scans = {}; ///< of this link
-    std::optional<wire::LinkError> error_after_scans = {}; ///< sent where hang_up_after_scans stands
-    std::optional<std::uint64_t> silent_after_scans = {};  ///< nothing is said from then on; 0: no welcome
+    std::optional<std::uint64_t> durable_seq = {};         ///< sent in the welcome instead of the real value
+    std::optional<std::uint64_t> hang_up_after_scans = {}; ///< counted on this link
+    std::optional<wire::LinkError> error_after_scans = {}; ///< sent after hang_up_after_scans scans
+    std::optional<std::uint64_t> silent_after_scans = {};  ///< sends nothing after that; 0: no welcome
     std::optional<std::uint64_t> stop_reading_after_scans = {};
-    std::optional<std::uint64_t> hang_up_after_requests = {}; ///< instead of answering the last of them
-    bool knows_locating = true;                               ///< else the question is a frame without a body to it
-    Result<wire::Correction> location = wire::Correction{};   ///< what it answers to that,
-    std::vector<Result<wire::Correction>> locations = {};     ///< and to the first questions, one each
+    std::optional<std::uint64_t> hang_up_after_requests = {}; ///< instead of answering the last one
+    bool knows_locating = true;                               ///< false: treats the request as a frame without a body
+    Result<wire::Correction> location = wire::Correction{};   ///< the answer to that,
+    std::vector<Result<wire::Correction>> locations = {};     ///< and to the first requests, one each
     std::string session_id = "f1";
     std::uint64_t credit_bytes = 20'000;
     std::uint64_t ack_every = 1; ///< batches
     bool zstd = false;
 };
 
-/// Enough of a server to try a robot on: welcomes, stores, acknowledges, and fails as its scripts say, one a link;
-/// the last script holds for all further links. It checks what every server would: order of scans, sensors described
-/// before their scans, credit. Any plan leads straight to its goal. What it finds wrong is in faults().
+/// A minimal server for tests of a robot: welcomes, stores, acknowledges, and fails as its scripts say, one script for
+/// each link; the last script applies to all further links. It makes the checks of every server: order of scans,
+/// sensors described before their scans, credit. Any plan leads straight to its goal. faults() returns the violations.
 class FakeServer {
 public:
     FakeServer(boost::asio::io_context& io, std::vector<LinkScript> scripts);
 
     [[nodiscard]] std::uint16_t port() const { return endpoint_.port(); }
-    /// From now on links are encrypted.
+    /// Encrypts all following links.
     void encrypt_with(net::TlsContext tls) { tls_ = std::move(tls); }
-    /// The next links go by this.
+    /// Sets the scripts of the next links.
     void continue_with(LinkScript script) { scripts_ = {std::move(script)}; }
-    /// No new connection is taken until reopen().
+    /// Accepts no new connection until reopen().
     void close();
     void reopen();
 
@@ -56,18 +56,18 @@ public:
     [[nodiscard]] const std::vector<wire::Hello>& hellos() const noexcept { return hellos_; }
     [[nodiscard]] const std::vector<wire::PlanRequest>& plans() const noexcept { return plans_; }
     [[nodiscard]] const std::vector<wire::LocateRequest>& locates() const noexcept { return locates_; }
-    /// Batches that came compressed, of all.
+    /// The number of compressed batches.
     [[nodiscard]] std::uint64_t compressed_batches() const noexcept { return compressed_batches_; }
     [[nodiscard]] std::uint64_t batches() const noexcept { return batches_; }
     [[nodiscard]] int goodbyes() const noexcept { return goodbyes_; }
     [[nodiscard]] std::size_t largest_batch() const noexcept { return largest_batch_; }
-    /// Called after every scan stored, with their number.
+    /// Called after every stored scan, with the number of stored scans.
     std::function<void(std::size_t)> on_stored = [](std::size_t) {};
-    void forget() { // everything stored
+    void forget() { // all stored scans
         stored_.clear();
         durable_ = 0;
     }
-    void store_before(std::uint64_t scans); ///< pretend that so many came in earlier runs
+    void store_before(std::uint64_t scans); ///< acts as if this many came in earlier runs
 
 private:
     using Socket = boost::asio::ip::tcp::socket;

@@ -35,7 +35,7 @@ std::vector<Observation> recorded_scans(std::size_t scans) {
 
 class LinkKinds : public testing::Test {
 protected:
-    /// A server on 127.0.0.1 whose certificate is for `host`, or none.
+    /// A server on 127.0.0.1 whose certificate is for `host`, or without a certificate.
     void serve(const std::string& host, LinkScript script = {}) {
         server_.emplace(io_, std::vector{script});
         if (host.empty()) return;
@@ -88,7 +88,7 @@ protected:
     std::vector<std::string> troubles_;
 };
 
-TEST_F(LinkKinds, EncryptedItCarriesEverythingToTheServerItTrusts) {
+TEST_F(LinkKinds, ATrustedTlsLinkCarriesEveryScan) {
     serve("127.0.0.1");
     auto made = options();
     made.tls = net::client_tls(files_.certificate).value();
@@ -98,7 +98,7 @@ TEST_F(LinkKinds, EncryptedItCarriesEverythingToTheServerItTrusts) {
     EXPECT_EQ(server_->goodbyes(), 1);
 }
 
-TEST_F(LinkKinds, AnotherHostsCertificateIsRefusedBeforeAnythingIsSaid) {
+TEST_F(LinkKinds, ACertificateOfAnotherHostIsRefusedBeforeTheHello) {
     serve("another.example");
     auto made = options();
     made.tls = net::client_tls(files_.certificate).value();
@@ -108,7 +108,7 @@ TEST_F(LinkKinds, AnotherHostsCertificateIsRefusedBeforeAnythingIsSaid) {
     EXPECT_THAT(server_->hellos(), IsEmpty());
 }
 
-TEST_F(LinkKinds, ACertificateThatNobodyTrustsIsRefused) {
+TEST_F(LinkKinds, AnUntrustedCertificateIsRefused) {
     serve("127.0.0.1");
     const auto other = write_certificate(directory_.path(), "localhost");
     auto made = options();
@@ -118,7 +118,7 @@ TEST_F(LinkKinds, ACertificateThatNobodyTrustsIsRefused) {
     EXPECT_THAT(server_->hellos(), IsEmpty());
 }
 
-TEST_F(LinkKinds, ACertificateThatHasExpiredIsToldAsThat) {
+TEST_F(LinkKinds, AnExpiredCertificateIsReportedAsExpired) {
     serve("127.0.0.1");
     const auto expired = write_certificate(directory_.path(), "127.0.0.1", -3600);
     server_->encrypt_with(net::server_tls({expired.certificate, expired.key}).value());
@@ -128,7 +128,7 @@ TEST_F(LinkKinds, ACertificateThatHasExpiredIsToldAsThat) {
     EXPECT_THAT(troubles_.at(0), HasSubstr("its certificate has expired; have the server given a new one"));
 }
 
-TEST_F(LinkKinds, TheServerMayWantToKnowWhomItSpeaksTo) {
+TEST_F(LinkKinds, AServerMayRequireAClientCertificate) {
     serve("127.0.0.1");
     const auto robot = write_certificate(directory_.path(), "localhost");
     server_->encrypt_with(net::server_tls({files_.certificate, files_.key}, robot.certificate).value());
@@ -139,7 +139,7 @@ TEST_F(LinkKinds, TheServerMayWantToKnowWhomItSpeaksTo) {
     expect_all_stored();
 }
 
-TEST_F(LinkKinds, WhoShowsNoCertificateWhereOneIsWantedIsToldWhatToDo) {
+TEST_F(LinkKinds, AMissingClientCertificateIsReportedWithAHint) {
     serve("127.0.0.1");
     const auto robot = write_certificate(directory_.path(), "localhost");
     server_->encrypt_with(net::server_tls({files_.certificate, files_.key}, robot.certificate).value());
@@ -150,7 +150,7 @@ TEST_F(LinkKinds, WhoShowsNoCertificateWhereOneIsWantedIsToldWhatToDo) {
     EXPECT_THAT(server_->hellos(), IsEmpty());
 }
 
-TEST_F(LinkKinds, WhereOnlyOneSideEncryptsEachIsToldWhatToDo) {
+TEST_F(LinkKinds, TlsOnOneSideOnlyIsReportedWithAHint) {
     serve("127.0.0.1");
     EXPECT_FALSE(run(options()));
     EXPECT_THAT(troubles_.at(0), HasSubstr("give --tls"));
@@ -164,7 +164,7 @@ TEST_F(LinkKinds, WhereOnlyOneSideEncryptsEachIsToldWhatToDo) {
     EXPECT_THAT(troubles_.at(1), HasSubstr("leave --tls out"));
 }
 
-TEST_F(LinkKinds, FilesThatAreNoCertificatesAreNamed) {
+TEST_F(LinkKinds, InvalidCertificateFilesAreNamed) {
     serve("127.0.0.1");
     EXPECT_THAT(net::client_tls(files_.key).error().message, HasSubstr("127.0.0.1.key: no certificate"));
     EXPECT_THAT(net::client_tls("/nowhere").error().message, HasSubstr("/nowhere"));
@@ -182,7 +182,7 @@ TEST_F(LinkKinds, FilesThatAreNoCertificatesAreNamed) {
     EXPECT_EQ(net::server_tls({files_.certificate, other.key}).error().code, Errc::kConflict);
 }
 
-TEST_F(LinkKinds, AServersKeyIsRefusedWhereOthersMayReadOrChangeIt) {
+TEST_F(LinkKinds, AServerKeyWithLoosePermissionsIsRefused) {
     using std::filesystem::perms;
     serve("127.0.0.1");
     const auto read_with = [&](unsigned mode) {
@@ -208,7 +208,7 @@ TEST_F(LinkKinds, AServersKeyIsRefusedWhereOthersMayReadOrChangeIt) {
     EXPECT_TRUE(net::server_tls({both}));
 }
 
-TEST_F(LinkKinds, CompressedItSendsLessAndTheServerGetsTheSame) {
+TEST_F(LinkKinds, CompressionSendsFewerBytesAndTheSameScans) {
     serve("", {.zstd = true});
     auto made = options();
     EXPECT_TRUE(run(made));
@@ -226,7 +226,7 @@ TEST_F(LinkKinds, CompressedItSendsLessAndTheServerGetsTheSame) {
     EXPECT_LT(3 * status_.bytes, plain_bytes);
 }
 
-TEST_F(LinkKinds, AServerThatDoesNotUnderstandCompressionGetsNone) {
+TEST_F(LinkKinds, AServerWithoutCompressionGetsPlainScans) {
     serve("", {.zstd = false});
     auto made = options();
     made.conversation.compress = true;

@@ -10,7 +10,7 @@ namespace {
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-/// Files may not grow beyond some bytes while this is there, as if the disk were full.
+/// Limits the size of files while this object exists, as if the disk were full.
 class FullDisk {
 public:
     explicit FullDisk(rlim_t bytes) {
@@ -25,7 +25,7 @@ private:
     rlimit before_{};
 };
 
-TEST_F(LiveFeedTest, WhatWentPastAFullDiskDoesNotHoldUpTheNextProgram) {
+TEST_F(LiveFeedTest, ScansThatBypassedAFullDiskDoNotBlockTheNextProgram) {
     LinkScript silent;
     silent.ack_every = 1000;
     server_.continue_with(silent);
@@ -51,7 +51,7 @@ TEST_F(LiveFeedTest, WhatWentPastAFullDiskDoesNotHoldUpTheNextProgram) {
     expect_stored(35);
 }
 
-TEST_F(LiveFeedTest, ADiskThatIsFullFromTheBeginningHoldsUpNothing) {
+TEST_F(LiveFeedTest, ADiskThatIsFullFromTheStartBlocksNothing) {
     FullDisk full(0);
     ScriptedSource source;
     source.allow(100);
@@ -59,24 +59,24 @@ TEST_F(LiveFeedTest, ADiskThatIsFullFromTheBeginningHoldsUpNothing) {
     const auto outcome = run(source, spool());
     EXPECT_TRUE(outcome) << outcome.error().message;
     expect_stored(100);
-    EXPECT_THAT(told_, testing::ElementsAre(HasSubstr("File too large; scans are held in memory only")));
+    EXPECT_THAT(warnings_, testing::ElementsAre(HasSubstr("File too large; scans are held in memory only")));
 }
 
-TEST_F(LiveFeedTest, ADiskThatIsFullBeforeTheFirstScanHoldsUpNothing) {
+TEST_F(LiveFeedTest, ADiskThatIsFullBeforeTheFirstScanBlocksNothing) {
     FullDisk full(0);
     ScriptedSource source;
-    const std::function<void()> begin_once_told = [&] {
-        if (told_.empty()) return asio::post(uplink_->executor(), begin_once_told);
+    const std::function<void()> begin_once_warned = [&] {
+        if (warnings_.empty()) return asio::post(uplink_->executor(), begin_once_warned);
         source.allow(100);
         source.end();
     };
-    const auto outcome = run(source, spool(), begin_once_told);
+    const auto outcome = run(source, spool(), begin_once_warned);
     EXPECT_TRUE(outcome) << outcome.error().message;
     expect_stored(100);
-    EXPECT_THAT(told_, testing::ElementsAre(HasSubstr("File too large; scans are held in memory only")));
+    EXPECT_THAT(warnings_, testing::ElementsAre(HasSubstr("File too large; scans are held in memory only")));
 }
 
-TEST_F(LiveFeedTest, ScansThatTheSpoolCannotTakeDoNotOvertakeThoseThatWaitInIt) {
+TEST_F(LiveFeedTest, UnspooledScansDoNotOvertakeSpooledOnes) {
     server_.close();
     std::optional<FullDisk> full;
     ScriptedSource source;
@@ -97,7 +97,7 @@ TEST_F(LiveFeedTest, ScansThatTheSpoolCannotTakeDoNotOvertakeThoseThatWaitInIt) 
     EXPECT_THAT(server_.faults(), IsEmpty());
 }
 
-TEST_F(LiveFeedTest, WhatASpoolHoldsIsSentAlsoWhereTheDiskIsFullByNow) {
+TEST_F(LiveFeedTest, TheSpoolIsSentAlsoOnAFullDisk) {
     server_.close();
     {
         ScriptedSource source;
@@ -107,7 +107,7 @@ TEST_F(LiveFeedTest, WhatASpoolHoldsIsSentAlsoWhereTheDiskIsFullByNow) {
         source.allow(600);
         EXPECT_FALSE(run(source, spool()));
     }
-    FullDisk full(300); // no file may become larger; what stands in their first bytes may change
+    FullDisk full(300); // files cannot grow; existing bytes can be changed
     server_.reopen();
     ScriptedSource next;
     next.end();
@@ -116,7 +116,7 @@ TEST_F(LiveFeedTest, WhatASpoolHoldsIsSentAlsoWhereTheDiskIsFullByNow) {
     expect_stored(599);
 }
 
-TEST_F(LiveFeedTest, ASpoolThatCannotBeWrittenIsToldAndTheLinkGoesOnWithoutIt) {
+TEST_F(LiveFeedTest, AnUnwritableSpoolIsReportedAndTheLinkContinues) {
     std::optional<FullDisk> full;
     ScriptedSource source;
     server_.on_stored = [&](std::size_t stored) {
@@ -130,7 +130,7 @@ TEST_F(LiveFeedTest, ASpoolThatCannotBeWrittenIsToldAndTheLinkGoesOnWithoutIt) {
     full.reset();
     EXPECT_TRUE(outcome) << outcome.error().message;
     expect_stored(100);
-    EXPECT_THAT(told_, testing::ElementsAre(HasSubstr("File too large; scans are held in memory only")));
+    EXPECT_THAT(warnings_, testing::ElementsAre(HasSubstr("File too large; scans are held in memory only")));
 }
 
 } // namespace

@@ -27,7 +27,7 @@ namespace scanloom::robot {
 namespace asio = boost::asio;
 using namespace std::chrono_literals;
 
-/// Gives its scans as fast as they are taken, then rests until it is told to go on, to end or to fail.
+/// A source that returns its scans as fast as they are taken, then waits until the test continues, ends or fails it.
 class ScriptedSource final : public LiveSource {
 public:
     asio::awaitable<Result<std::optional<Observation>>> next() override {
@@ -38,10 +38,10 @@ public:
             if (given_ < allowed_) {
                 ++given_;
                 on_given(given_);
-                co_await asio::post(co_await asio::this_coro::executor, asio::use_awaitable); // others have their turn
+                co_await asio::post(co_await asio::this_coro::executor, asio::use_awaitable); // lets other tasks run
                 co_return std::optional(scan(given_));
             }
-            if (fails_) co_return Error{Errc::kStoreFailed, "the sensor is gone"};
+            if (fails_) co_return Error{Errc::kStoreFailed, "the sensor failed"};
             if (ended_) co_return std::optional<Observation>{};
             co_await wake->async_wait(asio::as_tuple(asio::use_awaitable));
         }
@@ -92,7 +92,7 @@ private:
 class LiveFeedTest : public testing::Test {
 protected:
     LiveFeedTest() {
-        options_.tell = [this](const std::string& text) { told_.push_back(text); };
+        options_.tell = [this](const std::string& text) { warnings_.push_back(text); };
     }
 
     UplinkOptions uplink_options() {
@@ -111,7 +111,7 @@ protected:
         return Spool::open({directory_.path() / "spool", bytes_max, WhenFull::kDropOldest}, options_.tell).value();
     }
 
-    /// A program from its start to its end, or until it is killed; `meanwhile` is called once all is set up.
+    /// Runs a program until it ends or is killed; `meanwhile` is called when everything is set up.
     Result<> run(
         LiveSource& source, std::unique_ptr<Spool> spool, const std::function<void()>& meanwhile = [] {}) {
         asio::io_context robot(1);
@@ -135,7 +135,7 @@ protected:
         return outcome;
     }
 
-    /// Nothing of the program runs any more.
+    /// Waits until nothing of the program runs.
     void kill() { is_killed_ = true; }
 
     [[nodiscard]] std::ptrdiff_t spool_files() const {
@@ -156,7 +156,7 @@ protected:
     Uplink* uplink_ = nullptr;
     bool is_killed_ = false;
     UplinkStatus status_;
-    std::vector<std::string> told_;
+    std::vector<std::string> warnings_;
 };
 
 } // namespace scanloom::robot

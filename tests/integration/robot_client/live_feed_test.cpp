@@ -7,7 +7,7 @@ namespace {
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-TEST_F(LiveFeedTest, CarriesWhatASensorGivesUntilItEnds) {
+TEST_F(LiveFeedTest, SendsAllScansOfASensor) {
     for (const bool spooled : {false, true}) {
         ScriptedSource source;
         source.allow(100);
@@ -17,11 +17,11 @@ TEST_F(LiveFeedTest, CarriesWhatASensorGivesUntilItEnds) {
         EXPECT_TRUE(outcome) << outcome.error().message;
         expect_stored(100);
     }
-    EXPECT_THAT(told_, IsEmpty());
-    EXPECT_EQ(spool_files(), 0) << "what is stored needs no room";
+    EXPECT_THAT(warnings_, IsEmpty());
+    EXPECT_EQ(spool_files(), 0) << "acknowledged scans must leave the spool";
 }
 
-TEST_F(LiveFeedTest, WithoutAServerASpoolTakesAllAndGivesThemWhenThereIsOne) {
+TEST_F(LiveFeedTest, SpoolsWithoutAServerAndSendsLater) {
     server_.close();
     ScriptedSource source;
     source.on_given = [&](std::uint64_t given) {
@@ -37,7 +37,7 @@ TEST_F(LiveFeedTest, WithoutAServerASpoolTakesAllAndGivesThemWhenThereIsOne) {
     expect_stored(5000);
 }
 
-TEST_F(LiveFeedTest, WithoutASpoolTheOldestUnsentGoWhenMemoryIsFullAndThatIsTold) {
+TEST_F(LiveFeedTest, WithoutASpoolDropsTheOldestScansAndReportsIt) {
     server_.close();
     ScriptedSource source;
     source.on_given = [&](std::uint64_t given) {
@@ -53,33 +53,33 @@ TEST_F(LiveFeedTest, WithoutASpoolTheOldestUnsentGoWhenMemoryIsFullAndThatIsTold
     EXPECT_EQ(status_.dropped, 1000 - kept);
     EXPECT_EQ(server_.stored().back().pose.x, 1000.0);
     EXPECT_THAT(server_.faults(), IsEmpty()) << "numbers have no gaps";
-    EXPECT_THAT(told_, testing::ElementsAre(HasSubstr("--spool keeps them on disk")));
+    EXPECT_THAT(warnings_, testing::ElementsAre(HasSubstr("--spool keeps them on disk")));
 }
 
-TEST_F(LiveFeedTest, ASessionMadeAnewBeforeAnyAckGetsAllScansOnceAlsoFromTheNextProgram) {
+TEST_F(LiveFeedTest, ASessionRecreatedBeforeAnyAckGetsAllScansOnce) {
     LinkScript first;
     first.ack_every = 1000;
     first.hang_up_after_scans = 18;
-    LinkScript anew;
-    anew.ack_every = 1000;
-    anew.session_id = "f2";
+    LinkScript recreated;
+    recreated.ack_every = 1000;
+    recreated.session_id = "f2";
     server_.continue_with(first);
-    bool is_anew = false;
+    bool is_recreated = false;
     server_.on_stored = [&](std::size_t stored) {
-        if (!is_anew && stored == 18) {
-            is_anew = true;
+        if (!is_recreated && stored == 18) {
+            is_recreated = true;
             server_.forget();
-            server_.continue_with(anew);
-        } else if (is_anew && stored == 10) {
+            server_.continue_with(recreated);
+        } else if (is_recreated && stored == 10) {
             kill();
         }
     };
     ScriptedSource source;
     source.allow(18);
     EXPECT_FALSE(run(source, spool()));
-    anew.durable_seq = server_.stored().size();
-    anew.ack_every = 1;
-    server_.continue_with(anew);
+    recreated.durable_seq = server_.stored().size();
+    recreated.ack_every = 1;
+    server_.continue_with(recreated);
     ScriptedSource next;
     next.given_ = 18;
     next.allow(25);
@@ -87,10 +87,10 @@ TEST_F(LiveFeedTest, ASessionMadeAnewBeforeAnyAckGetsAllScansOnceAlsoFromTheNext
     const auto outcome = run(next, spool());
     EXPECT_TRUE(outcome) << outcome.error().message;
     expect_stored(25);
-    EXPECT_THAT(told_, IsEmpty());
+    EXPECT_THAT(warnings_, IsEmpty());
 }
 
-TEST_F(LiveFeedTest, WhereMemoryIsFullEachScanIsKeptOrCountedAlsoOfDifferentSizes) {
+TEST_F(LiveFeedTest, WithFullMemoryEachScanIsKeptOrCounted) {
     server_.close();
     ScriptedSource source;
     source.large_from_ = 600;
@@ -104,12 +104,12 @@ TEST_F(LiveFeedTest, WhereMemoryIsFullEachScanIsKeptOrCountedAlsoOfDifferentSize
     EXPECT_EQ(status_.dropped + server_.stored().size(), 1000U);
     std::size_t bytes = 0;
     for (const Scan& scan : server_.stored()) bytes += wire_bytes_max(scan);
-    EXPECT_LE(bytes, 110'000U) << "what memory may hold, and one scan that comes when it is free again";
-    EXPECT_EQ(server_.stored().back().pose.x, 1000.0) << "the newest is never among those that go";
+    EXPECT_LE(bytes, 110'000U) << "the memory limit, plus one scan that arrives when memory is free again";
+    EXPECT_EQ(server_.stored().back().pose.x, 1000.0) << "the newest scan is never dropped";
 }
 
-TEST_F(LiveFeedTest, AKilledProgramsScansAreSentByTheNextOnce) {
-    // Each is killed at another moment: with nothing sent, with some under way, with some acknowledged.
+TEST_F(LiveFeedTest, TheNextProgramSendsTheScansOfAKilledOneOnce) {
+    // Each is killed at another moment: before anything is sent, with scans in flight, with acknowledged scans.
     std::uint64_t taken = 0;
     for (const std::uint64_t until : {50U, 137U, 300U, 301U, 900U}) {
         if (until == 50) server_.close();
@@ -117,7 +117,7 @@ TEST_F(LiveFeedTest, AKilledProgramsScansAreSentByTheNextOnce) {
         source.given_ = taken;
         source.on_given = [&](std::uint64_t given) {
             if (given == until) kill();
-            taken = given - 1; // this one was never given
+            taken = given - 1; // this scan was never returned
         };
         source.allow(until);
         EXPECT_EQ(run(source, spool()).error().message, "killed");
@@ -129,10 +129,10 @@ TEST_F(LiveFeedTest, AKilledProgramsScansAreSentByTheNextOnce) {
     last.end();
     EXPECT_TRUE(run(last, spool()));
     expect_stored(1000);
-    EXPECT_THAT(told_, IsEmpty());
+    EXPECT_THAT(warnings_, IsEmpty());
 }
 
-TEST_F(LiveFeedTest, ASpoolIsLeftEmptyByAnEndLongBehindTheLastAck) {
+TEST_F(LiveFeedTest, ASpoolIsEmptyAfterALateEnd) {
     ScriptedSource source;
     source.allow(40);
     const std::function<void()> end_once_all_is_acknowledged = [&] {
@@ -143,7 +143,7 @@ TEST_F(LiveFeedTest, ASpoolIsLeftEmptyByAnEndLongBehindTheLastAck) {
     EXPECT_EQ(spool_files(), 0);
 }
 
-TEST_F(LiveFeedTest, StoppedWithoutAServerItSaysWhatWaitsAndTheNextSendsIt) {
+TEST_F(LiveFeedTest, StoppingWithoutAServerReportsWaitingScansAndTheNextProgramSendsThem) {
     server_.close();
     {
         ScriptedSource source;
@@ -163,7 +163,7 @@ TEST_F(LiveFeedTest, StoppedWithoutAServerItSaysWhatWaitsAndTheNextSendsIt) {
     EXPECT_THAT(server_.faults(), IsEmpty());
 }
 
-TEST_F(LiveFeedTest, ASensorThatFailsIsAnErrorOnceWhatItGaveIsStored) {
+TEST_F(LiveFeedTest, AFailedSensorIsReportedAfterItsScansAreStored) {
     for (const bool spooled : {false, true}) {
         ScriptedSource source;
         source.allow(30);
@@ -171,19 +171,19 @@ TEST_F(LiveFeedTest, ASensorThatFailsIsAnErrorOnceWhatItGaveIsStored) {
         server_.forget();
         const auto outcome = run(source, spooled ? spool() : nullptr);
         ASSERT_FALSE(outcome);
-        EXPECT_EQ(outcome.error().message, "the sensor is gone");
+        EXPECT_EQ(outcome.error().message, "the sensor failed");
         expect_stored(30);
     }
 }
 
-TEST_F(LiveFeedTest, ASourceThatCanWaitIsAskedOnlyWhileThereIsRoomAndNothingIsLost) {
+TEST_F(LiveFeedTest, APullSourceIsReadOnlyWhenThereIsSpaceWithoutLoss) {
     server_.close();
     ScriptedSource source;
     source.can_wait_ = true;
     source.allow(1000);
     source.end();
     const auto outcome = run(source, nullptr, [&] {
-        EXPECT_EQ(source.given_, 0U) << "there is no server yet";
+        EXPECT_EQ(source.given_, 0U) << "the server has not started";
         server_.reopen();
     });
     EXPECT_TRUE(outcome) << outcome.error().message;
@@ -191,12 +191,12 @@ TEST_F(LiveFeedTest, ASourceThatCanWaitIsAskedOnlyWhileThereIsRoomAndNothingIsLo
     EXPECT_EQ(source.resumed_after_, 0U);
 }
 
-TEST_F(LiveFeedTest, ASourceThatCanWaitDoesSoWhileItsServerIsAway) {
+TEST_F(LiveFeedTest, APullSourceWaitsWhileTheServerIsUnreachable) {
     ScriptedSource source;
     source.can_wait_ = true;
     source.allow(1000);
     source.end();
-    int turns_left = 5000; // of the executor: enough for all scans to be taken, were they
+    int turns_left = 5000; // executor turns: enough to take all scans, if they were taken
     const std::function<void()> reopen_later = [&] {
         if (turns_left-- == 0) return server_.reopen();
         asio::post(uplink_->executor(), reopen_later);
@@ -215,7 +215,7 @@ TEST_F(LiveFeedTest, ASourceThatCanWaitDoesSoWhileItsServerIsAway) {
     expect_stored(1000);
 }
 
-TEST_F(LiveFeedTest, WhatIsAppliedCanBeWaitedFor) {
+TEST_F(LiveFeedTest, CanWaitUntilScansAreApplied) {
     ScriptedSource source;
     source.allow(40);
     std::uint64_t stored_when_applied = 0;
@@ -227,7 +227,7 @@ TEST_F(LiveFeedTest, WhatIsAppliedCanBeWaitedFor) {
         });
     };
     EXPECT_TRUE(run(source, spool()));
-    EXPECT_GE(stored_when_applied, 39U) << "the fortieth is on its way to the feed";
+    EXPECT_GE(stored_when_applied, 39U) << "the last scan may not have reached the feed";
 }
 
 } // namespace

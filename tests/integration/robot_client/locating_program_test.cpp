@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-/// A bare lidar, its program and a server: where it stood is told from what it saw.
+/// A lidar without odometry, its program and a server, which localizes it by its scans.
 namespace scanloom::test {
 namespace {
 
@@ -27,20 +27,20 @@ using testing_support::append;
 using testing_support::Bytes;
 using testing_support::bytes_of;
 
-constexpr std::size_t kBeams = 450; // of a turn of an LD06
+constexpr std::size_t kBeams = 450; // in one turn of an LD06
 constexpr std::size_t kBeamsOfAPacket = 12;
 
 struct Stand {
     Pose2 place;
-    int turns; // even, as packets do not end where turns do
+    int turns; // even, because packets do not end where turns do
 };
 
-/// What an LD06 sends that is put down in one place after another, with a sigma of 0.02 m.
+/// Bytes of an LD06 that is placed at one pose after another, with a sigma of 0.02 m.
 Bytes carried(const robot::World& world, const std::vector<Stand>& stands) {
     Sensor laser = robot::find_laser("lidar360").value();
     laser.angles = UniformAngles{0.0, 2.0 * std::numbers::pi / kBeams, kBeams};
     robot::Random random(1);
-    std::vector<std::uint16_t> distances; // clockwise, as it turns
+    std::vector<std::uint16_t> distances; // clockwise, like its rotation
     for (const auto& [place, turns] : stands) {
         for (int turn = 0; turn < turns; ++turn) {
             const auto ranges = sweep(world, laser, place, robot::Noise{}, random);
@@ -66,7 +66,7 @@ constexpr Pose2 kThird{-3.0, -1.5, -2.0};
 
 class LocatingProgramTest : public testing::Test {
 protected:
-    /// Runs it on what a lidar sent. @return its exit code
+    /// Runs the program on recorded bytes of a lidar. @return its exit code
     int send(const std::string& robot, const Bytes& bytes, const std::vector<std::string>& options) {
         const auto capture = place_.path() / (robot + ".bin");
         std::ofstream(capture, std::ios::binary)
@@ -78,11 +78,11 @@ protected:
         summary_ = program.read_line().value_or("");
         const int code = program.wait();
         std::ifstream file(place_.path() / robot);
-        said_ = {std::istreambuf_iterator<char>(file), {}};
+        output_ = {std::istreambuf_iterator<char>(file), {}};
         return code;
     }
 
-    /// Where the robot is in the map by now.
+    /// Returns the robot's current pose in the map.
     [[nodiscard]] Pose2 pose_of(std::size_t robot) const {
         const auto json = server_.get_json("/api/v1/sessions/lab");
         const auto& pose = json.at("robots").at(robot).at("pose");
@@ -99,28 +99,28 @@ protected:
     RunningServer server_{place_.path() / "store", place_.path() / "log"};
     const robot::World room_ = robot::make_room();
     std::string summary_;
-    std::string said_; ///< to its people
+    std::string output_; ///< messages for the user
 };
 
-TEST_F(LocatingProgramTest, FromItsFirstPlaceOnEachIsFound) {
-    ASSERT_EQ(send("carried", carried(room_, {{kFirst, 20}, {kSecond, 20}}), {"--pose", "-3.5,-3,0.3"}), 0) << said_;
-    EXPECT_THAT(said_, AllOf(HasSubstr("nothing is mapped yet: the lidar is taken to stand at (-3.50, -3.00)"),
-                             HasSubstr("the lidar is moved"), HasSubstr("located at (-3.")));
+TEST_F(LocatingProgramTest, LocalizesEachPlaceAfterTheFirst) {
+    ASSERT_EQ(send("carried", carried(room_, {{kFirst, 20}, {kSecond, 20}}), {"--pose", "-3.5,-3,0.3"}), 0) << output_;
+    EXPECT_THAT(output_, AllOf(HasSubstr("nothing is mapped yet: the lidar is taken to stand at (-3.50, -3.00)"),
+                               HasSubstr("the lidar is moved"), HasSubstr("located at (-3.")));
     EXPECT_THAT(summary_, HasSubstr("carried 1 time"));
     expect_near(pose_of(0), kSecond);
 
-    ASSERT_EQ(send("another", carried(room_, {{kThird, 20}}), {"--near", "-3,-1,2"}), 0) << said_;
-    EXPECT_THAT(said_, AllOf(HasSubstr("located at (-3."), Not(HasSubstr("nothing is mapped"))));
+    ASSERT_EQ(send("another", carried(room_, {{kThird, 20}}), {"--near", "-3,-1,2"}), 0) << output_;
+    EXPECT_THAT(output_, AllOf(HasSubstr("located at (-3."), Not(HasSubstr("nothing is mapped"))));
     expect_near(pose_of(1), kThird);
 }
 
-TEST_F(LocatingProgramTest, NothingIsSentFromElsewhere) {
-    ASSERT_EQ(send("carried", carried(room_, {{kFirst, 20}}), {}), 0) << said_;
+TEST_F(LocatingProgramTest, SendsNoScanFromAnUnknownPlace) {
+    ASSERT_EQ(send("carried", carried(room_, {{kFirst, 20}}), {}), 0) << output_;
     EXPECT_EQ(send("lost", carried(robot::make_office(), {{{-12.0, 7.0, 0.0}, 20}}), {}), 1);
-    EXPECT_THAT(said_, HasSubstr("nothing is sent from here"));
+    EXPECT_THAT(output_, HasSubstr("nothing is sent from here"));
     EXPECT_THAT(summary_, HasSubstr(R"("error":"no scan was sent: )"));
     EXPECT_EQ(server_.get_json("/api/v1/sessions/lab").at("scans").to_number<int>(), 18)
-        << "the first and the last turn are parts";
+        << "the first and the last turn are incomplete";
 }
 
 } // namespace

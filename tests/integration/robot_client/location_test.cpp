@@ -7,7 +7,7 @@
 
 #include <boost/asio/experimental/awaitable_operators.hpp>
 
-/// A robot asks its server where it is, over a real link.
+/// A robot requests its location over a real link.
 namespace scanloom::robot {
 namespace {
 
@@ -27,7 +27,7 @@ protected:
         return made;
     }
 
-    /// Asks within a run of the robot's program, and ends that.
+    /// Sends a request within a run of the robot's program, and ends the run.
     asio::awaitable<void> ask(Uplink& uplink, ScriptedSource& source) {
         const Locate locate = located_by(uplink, kNear, kFirstPlace);
         answer_ = co_await locate(points(), Point2{0.5, 0.25});
@@ -39,7 +39,7 @@ protected:
                    [&] { asio::co_spawn(uplink_->executor(), ask(*uplink_, source), [](std::exception_ptr) {}); });
     }
 
-    /// Where it is to be sought, of each of four questions.
+    /// The search areas of four requests.
     std::vector<std::optional<wire::Near>> asked_four_times() {
         ScriptedSource source;
         const auto ask_four_times = [&]() -> asio::awaitable<void> {
@@ -59,7 +59,7 @@ protected:
     std::optional<Result<Located>> answer_;
 };
 
-TEST_F(LocationTest, IsWhatTheServerAnswers) {
+TEST_F(LocationTest, IsTheServersAnswer) {
     serve({.location = wire::Correction{{1.0, 2.0, 3.0}, 7, 0.9, 0.01, 0.02}});
     ScriptedSource source;
     ASSERT_TRUE(run_and_ask(source));
@@ -74,7 +74,7 @@ TEST_F(LocationTest, IsWhatTheServerAnswers) {
     EXPECT_EQ(server_.locates()[0].near, kNear);
 }
 
-TEST_F(LocationTest, OfWhichWasSaidWhereItIsFirstIsAfterwardsSoughtAroundThat) {
+TEST_F(LocationTest, WithAFirstPoseIsSearchedAroundIt) {
     serve({.location = Error{Errc::kNothingMapped, "nothing"},
            .locations = {Error{Errc::kAmbiguous, "here or there"},
                          wire::Correction{{10.0, 20.0, 0.0}, 7, 0.9, 0.01, 0.02},
@@ -83,14 +83,14 @@ TEST_F(LocationTest, OfWhichWasSaidWhereItIsFirstIsAfterwardsSoughtAroundThat) {
                 testing::ElementsAre(kNear, kNear, wire::Near{{10.5, 20.25}, 100.0}, wire::Near{{10.5, 20.25}, 100.0}));
 }
 
-TEST_F(LocationTest, WhereNothingIsMappedIsAfterwardsSoughtAroundTheFirstPlace) {
+TEST_F(LocationTest, OnAnEmptyMapIsSearchedAroundTheFirstPlace) {
     serve(
         {.location = Error{Errc::kUndetermined, "too little"}, .locations = {Error{Errc::kNothingMapped, "nothing"}}});
     const wire::Near around{kFirstPlace, 100.0};
     EXPECT_THAT(asked_four_times(), testing::ElementsAre(kNear, around, around, around));
 }
 
-TEST_F(LocationTest, IsAskedForOnceTheScansBeforeAreInTheMaps) {
+TEST_F(LocationTest, IsRequestedAfterEarlierScansAreApplied) {
     serve({});
     ScriptedSource source;
     source.allow(40);
@@ -104,7 +104,7 @@ TEST_F(LocationTest, IsAskedForOnceTheScansBeforeAreInTheMaps) {
     expect_stored(40);
 }
 
-TEST_F(LocationTest, ARefusalIsTheServersOwn) {
+TEST_F(LocationTest, ReturnsTheServersRefusalUnchanged) {
     const Error refusal{Errc::kAmbiguous, "here or there"};
     serve({.location = refusal});
     ScriptedSource source;
@@ -113,7 +113,7 @@ TEST_F(LocationTest, ARefusalIsTheServersOwn) {
     EXPECT_EQ(answer_->error(), refusal);
 }
 
-TEST_F(LocationTest, OfAServerThatCannotTellEndsTheLinkWithWhatToDo) {
+TEST_F(LocationTest, OnAnOldServerEndsTheLinkWithAHint) {
     serve({.knows_locating = false});
     ScriptedSource source;
     const auto outcome = run_and_ask(source);
@@ -122,7 +122,7 @@ TEST_F(LocationTest, OfAServerThatCannotTellEndsTheLinkWithWhatToDo) {
     EXPECT_FALSE(answer_);
 }
 
-TEST_F(LocationTest, ThatNobodyWaitsForAnyMoreLeavesRoomForOthers) {
+TEST_F(LocationTest, CancelledRequestsFreeTheirSlots) {
     serve({.hang_up_after_requests = 1});
     ScriptedSource source;
     const auto leave = [&]() -> asio::awaitable<void> {
@@ -138,10 +138,10 @@ TEST_F(LocationTest, ThatNobodyWaitsForAnyMoreLeavesRoomForOthers) {
         asio::co_spawn(uplink_->executor(), leave(), [](std::exception_ptr failed) { EXPECT_FALSE(failed); });
     }));
     EXPECT_TRUE(answer_ && *answer_);
-    EXPECT_EQ(server_.locates().size(), 2U) << "what was abandoned is not asked again on the next link";
+    EXPECT_EQ(server_.locates().size(), 2U) << "a cancelled request is not sent again on the next link";
 }
 
-TEST_F(LocationTest, OfACarriedLidarIsAskedForAtEachPlaceAndAllThatIsSentHasIt) {
+TEST_F(LocationTest, OfACarriedLidarIsRequestedAtEachPlaceAndSetInEveryScan) {
     const Pose2 T_map_odom{1.0, 2.0, 0.5};
     serve({.location = wire::Correction{T_map_odom, 7, 0.9, 0.01, 0.02}});
     CarriedLidar lidar;

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <iterator>
 
-/// The client as robots' own programs get it: installed, found by find_package(scanloom), linked.
+/// The client as robots' own programs use it: installed, found by find_package(scanloom), linked.
 namespace scanloom::robot {
 namespace {
 
@@ -26,7 +26,7 @@ std::string contents(const fs::path& file) {
 
 class ClientPackage : public testing::Test {
 protected:
-    /// The lines that the program prints; a failure of this test, with all it said, unless it succeeds.
+    /// Returns the lines that the program prints; if it fails, fails the test with its whole output.
     std::vector<std::string> run(const fs::path& program, const std::vector<std::string>& arguments) {
         const fs::path errors = here_ / "errors";
         fs::remove(errors);
@@ -40,7 +40,7 @@ protected:
 
     void install() { run(CMAKE, {"--install", BUILD_DIR, "--component", "client", "--prefix", prefix_.string()}); }
 
-    /// Configures and builds a project out of this tree, as a robot's own.
+    /// Configures and builds a project outside this tree, like a robot's own.
     void build(const fs::path& project, const std::string& compiler) {
         run(CMAKE,
             {"-S", project.string(), "-B", built_.string(), "-G", GENERATOR, "-DCMAKE_PREFIX_PATH=" + prefix_.string(),
@@ -68,7 +68,7 @@ protected:
     fs::path built_ = here_ / "built";
 };
 
-TEST_F(ClientPackage, AProgramThatFindsItSendsAScan) { expect_a_scan_sent_by_the_example_built_with(COMPILER); }
+TEST_F(ClientPackage, AProgramLinkedToItSendsAScan) { expect_a_scan_sent_by_the_example_built_with(COMPILER); }
 
 TEST_F(ClientPackage, AProgramBuiltWithClangSendsAScan) {
     const std::string clang = CLANG;
@@ -78,7 +78,7 @@ TEST_F(ClientPackage, AProgramBuiltWithClangSendsAScan) {
     expect_a_scan_sent_by_the_example_built_with(clang);
 }
 
-TEST_F(ClientPackage, APluginMayLinkIt) {
+TEST_F(ClientPackage, APluginCanLinkIt) {
     install();
     const fs::path project = here_ / "project";
     fs::create_directories(project);
@@ -91,19 +91,19 @@ TEST_F(ClientPackage, APluginMayLinkIt) {
     EXPECT_TRUE(fs::exists(built_ / "libplugin.so"));
 }
 
-TEST_F(ClientPackage, ItDefinesNoNamesButItsOwn) {
+TEST_F(ClientPackage, ExportsOnlyItsOwnNames) {
     install();
     std::size_t names = 0;
     for (const auto& line : run(NM, {"--extern-only", "--defined-only", "--format=just-symbols",
                                      (prefix_ / LIBDIR / "libscanloom_client.a").string()})) {
-        if (line.empty() || line.ends_with(':')) continue; // the archive's and the object's names
+        if (line.empty() || line.ends_with(':')) continue; // names of the archive and the object
         EXPECT_THAT(line, testing::AnyOf(StartsWith("_ZN8scanloom"), StartsWith("_ZNK8scanloom")));
         ++names;
     }
     EXPECT_GT(names, 0U);
 }
 
-TEST_F(ClientPackage, NothingInItIsOfThisTreeOnly) {
+TEST_F(ClientPackage, ContainsNoPathOfTheBuildTree) {
     install();
     std::size_t files = 0;
     for (const auto& entry : fs::recursive_directory_iterator(prefix_)) {
@@ -118,7 +118,7 @@ TEST_F(ClientPackage, NothingInItIsOfThisTreeOnly) {
     EXPECT_GE(files, 10U) << "the package's files are missing";
 }
 
-TEST_F(ClientPackage, ARobotsBuildNeedsNothingOfTheServers) {
+TEST_F(ClientPackage, ARobotBuildNeedsNoServerSources) {
     run(CMAKE, {"-S", kTree.string(), "-B", built_.string(), "-G", GENERATOR, "-DSCANLOOM_SERVER=OFF",
                 std::string("-DCMAKE_CXX_COMPILER=") + COMPILER, "-DCMAKE_DISABLE_FIND_PACKAGE_OpenCV=ON",
                 "-DCMAKE_DISABLE_FIND_PACKAGE_RocksDB=ON", "-DCMAKE_DISABLE_FIND_PACKAGE_prometheus-cpp=ON",

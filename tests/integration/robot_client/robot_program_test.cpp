@@ -11,13 +11,13 @@
 #include <csignal>
 #include <fstream>
 
-/// scanloom-robot as its user sees it.
+/// scanloom-robot as a program.
 namespace scanloom::test {
 namespace {
 
 using testing::HasSubstr;
 
-/// A pipe with a name: what a program says there is waited for, not looked for.
+/// A named pipe: the test waits for a program's output instead of polling.
 class NamedPipe {
 public:
     explicit NamedPipe(std::filesystem::path path) : path_(std::move(path)) {
@@ -30,7 +30,7 @@ public:
 
     [[nodiscard]] const std::filesystem::path& path() const { return path_; }
 
-    /// All that was said until this was.
+    /// Returns the output up to and including this text.
     std::string read_until(const std::string& what) {
         std::string said;
         char byte = 0;
@@ -43,7 +43,7 @@ private:
     int descriptor_ = -1;
 };
 
-TEST(RobotProgram, ALidarOfWhichNoScanHasAPoseIsToldAndExits1) {
+TEST(RobotProgram, ALidarWithoutAnyPoseIsReportedAndExitsWith1) {
     const TemporaryDirectory place;
     const RunningServer server(place.path() / "store", place.path() / "log");
     std::ofstream(place.path() / "poses") << "0 0 0 0\n13 1 0 0\n";
@@ -63,7 +63,7 @@ TEST(RobotProgram, ALidarOfWhichNoScanHasAPoseIsToldAndExits1) {
 
     ChildProcess robot(program("scanloom-robot"), arguments("--poses", (place.path() / "poses").string()),
                        errors.path());
-    static_cast<void>(errors.read_until("continuing after scan 2")); // it is linked
+    static_cast<void>(errors.read_until("continuing after scan 2")); // the link is established
     lidar.send(robot::Ld06Spinner(35'000).next_bytes(80));
     EXPECT_THAT(errors.read_until("for a device t is Unix time"), HasSubstr("the poses are at t = 13, and the scans"));
     robot.signal(SIGINT);
@@ -73,7 +73,7 @@ TEST(RobotProgram, ALidarOfWhichNoScanHasAPoseIsToldAndExits1) {
     EXPECT_THAT(*summary, HasSubstr(R"("error":"no scan was sent: of )"));
 }
 
-TEST(RobotProgram, AFileThatMayGrowNoMoreIsAnError) {
+TEST(RobotProgram, AFileSizeLimitIsReportedAsAnError) {
     const TemporaryDirectory place;
     const auto errors = place.path() / "errors";
     ChildProcess robot("/bin/sh",

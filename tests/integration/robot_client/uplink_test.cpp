@@ -28,13 +28,13 @@ std::vector<Observation> recording(std::size_t scans = kScans) {
     std::vector<Observation> made(scans, Observation{sensor, {}});
     for (std::size_t i = 0; i < scans; ++i) {
         made[i].scan.stamp = static_cast<double>(i);
-        made[i].scan.pose.x = static_cast<double>(i + 1); // tells where it belongs
+        made[i].scan.pose.x = static_cast<double>(i + 1); // identifies the scan
         made[i].scan.ranges.assign(90, 1000);
     }
     return made;
 }
 
-/// A robot and a server in one thread.
+/// A robot and a server on one thread.
 class UplinkTest : public testing::Test {
 protected:
     void serve(std::vector<LinkScript> scripts) { server_.emplace(io_, std::move(scripts)); }
@@ -83,7 +83,7 @@ protected:
     std::vector<std::string> troubles_;
 };
 
-TEST_F(UplinkTest, StreamsEverythingAndSaysGoodbye) {
+TEST_F(UplinkTest, StreamsEverythingAndSendsGoodbye) {
     serve({{}});
     const auto outcome = run(options());
     EXPECT_TRUE(outcome) << outcome.error().message;
@@ -91,10 +91,10 @@ TEST_F(UplinkTest, StreamsEverythingAndSaysGoodbye) {
     EXPECT_EQ(server_->goodbyes(), 1);
     EXPECT_EQ(uplink_->status().acknowledged, kScans);
     EXPECT_EQ(uplink_->status().reconnects, 0U);
-    EXPECT_GT(server_->largest_batch(), 1U) << "as fast as it goes, scans share frames";
+    EXPECT_GT(server_->largest_batch(), 1U) << "without a pace, several scans share a frame";
 }
 
-TEST_F(UplinkTest, WhatIsAskedIsAnsweredAmongTheScans) {
+TEST_F(UplinkTest, RequestsAreAnsweredBetweenScans) {
     serve({{}});
     std::vector<Point2> ends;
     const auto answered = [&](const Reply& reply) {
@@ -110,7 +110,7 @@ TEST_F(UplinkTest, WhatIsAskedIsAnsweredAmongTheScans) {
     EXPECT_THAT(ends, ElementsAre(Point2{100.0, 4.0}, Point2{200.0, 4.0}));
 }
 
-TEST_F(UplinkTest, WhatWasAskedOnALinkThatBrokeIsAskedAgain) {
+TEST_F(UplinkTest, RequestsOfABrokenLinkAreSentAgain) {
     serve({{.hang_up_after_requests = 1}, {}});
     int answers = 0;
     server_->on_stored = [&](std::size_t stored) {
@@ -124,7 +124,7 @@ TEST_F(UplinkTest, WhatWasAskedOnALinkThatBrokeIsAskedAgain) {
     EXPECT_EQ(uplink_->status().reconnects, 1U);
 }
 
-TEST_F(UplinkTest, ATinyCreditSlowsItButStopsNothing) {
+TEST_F(UplinkTest, ASmallCreditOnlySlowsItDown) {
     serve({{.credit_bytes = 700}});
     EXPECT_TRUE(run(options(), 50));
     expect_all_stored_once(50);
@@ -143,8 +143,8 @@ TEST_F(UplinkTest, SurvivesAnyNumberOfBrokenLinks) {
     EXPECT_EQ(troubles_.size(), 5U);
 }
 
-TEST_F(UplinkTest, RetryableErrorsAreRetriedFinalOnesEndIt) {
-    serve({{.refuse_hello = wire::LinkError{{Errc::kShuttingDown, "draining; come back"}, true}},
+TEST_F(UplinkTest, RetriesRetryableErrorsAndEndsOnFinalOnes) {
+    serve({{.refuse_hello = wire::LinkError{{Errc::kShuttingDown, "draining; try again later"}, true}},
            {.hang_up_after_scans = 20, .error_after_scans = wire::LinkError{{Errc::kStoreFailed, "disk full"}, true}},
            {.hang_up_after_scans = 20,
             .error_after_scans = wire::LinkError{{Errc::kGone, "session s1 was deleted"}, false}}});
@@ -154,7 +154,7 @@ TEST_F(UplinkTest, RetryableErrorsAreRetriedFinalOnesEndIt) {
     EXPECT_THAT(troubles_, ElementsAre("draining; come back", "disk full"));
 }
 
-TEST_F(UplinkTest, ASilentServerIsLeftForANewLink) {
+TEST_F(UplinkTest, ASilentServerCausesAReconnect) {
     serve({{.silent_after_scans = 10}, {}});
     auto made = options();
     made.conversation.ping_after = 50ms;
@@ -166,17 +166,17 @@ TEST_F(UplinkTest, ASilentServerIsLeftForANewLink) {
     expect_all_stored_once();
 }
 
-TEST_F(UplinkTest, AServerThatStopsReadingIsLeftForANewLink) {
+TEST_F(UplinkTest, AServerThatStopsReadingCausesAReconnect) {
     serve({{.stop_reading_after_scans = 10, .credit_bytes = 100 << 20}, {.credit_bytes = 100 << 20}});
     auto made = options();
     made.conversation.ping_after = 50ms;
     made.conversation.silence_max = 200ms;
-    EXPECT_TRUE(run(made, 40'000)) << "more than the kernel's buffers take, so that a write is stuck";
+    EXPECT_TRUE(run(made, 40'000)) << "more than the kernel's buffers hold, so that a write blocks";
     EXPECT_EQ(uplink_->status().acknowledged, 40'000U);
     EXPECT_GE(uplink_->status().reconnects, 1U);
 }
 
-TEST_F(UplinkTest, AFreshProgramContinuesTheRecordingWhereTheServerStands) {
+TEST_F(UplinkTest, ANewProgramContinuesTheRecordingAfterTheLastStoredScan) {
     serve({{}});
     server_->store_before(200);
     auto made = options();
@@ -195,31 +195,31 @@ TEST_F(UplinkTest, ScansSentAgainCountOnceAsSent) {
     EXPECT_EQ(uplink_->status().sent, kScans);
 }
 
-TEST_F(UplinkTest, ARecordingTheServerHasWholeIsDoneAtOnce) {
+TEST_F(UplinkTest, AStoredRecordingIsDoneImmediately) {
     serve({{}});
     server_->store_before(kScans);
     EXPECT_TRUE(run(options()));
     EXPECT_EQ(server_->goodbyes(), 1);
 }
 
-TEST_F(UplinkTest, ARunThatEndsBeforeWhatIsStoredSaysSo) {
+TEST_F(UplinkTest, ARunShorterThanTheStoredScansIsReported) {
     serve({{}});
     server_->store_before(kScans + 1);
     const auto outcome = run(options());
     ASSERT_FALSE(outcome);
     EXPECT_THAT(outcome.error().message, HasSubstr("501 scans of this robot already, and this run ends with scan 500"));
     EXPECT_THAT(outcome.error().message, HasSubstr("--scans"));
-    EXPECT_THAT(troubles_, IsEmpty()) << "hanging up for this is no trouble";
+    EXPECT_THAT(troubles_, IsEmpty()) << "this end of the link is not reported as trouble";
 }
 
-TEST_F(UplinkTest, AProgramThatSpeaksSomethingElseIsAClearError) {
+TEST_F(UplinkTest, AnotherProtocolIsReported) {
     serve({{.answer_hello_with = "HTTP/1.1 400 Bad Request\r\n\r\n"}});
     const auto outcome = run(options());
     ASSERT_FALSE(outcome);
     EXPECT_THAT(outcome.error().message, HasSubstr("does not speak Scanloom's robot link"));
 }
 
-TEST_F(UplinkTest, AFrameThatNoServerSendsIsToldAsTheServersFault) {
+TEST_F(UplinkTest, AnUnexpectedFrameIsReportedAsAServerError) {
     std::string bytes;
     wire::encode(wire::Message(wire::Welcome{"f1", 0, {}, 20'000}), bytes);
     serve({{.answer_hello_with = bytes + "\xff\xff\xff\xff"}, {}});
@@ -228,7 +228,7 @@ TEST_F(UplinkTest, AFrameThatNoServerSendsIsToldAsTheServersFault) {
                                        "most 1048576 are allowed here"));
 }
 
-TEST_F(UplinkTest, WithoutAServerItGivesUpAndSaysWhy) {
+TEST_F(UplinkTest, GivesUpWithoutAServerAndReportsTheReason) {
     serve({{}});
     auto made = options();
     server_->close();
@@ -239,7 +239,7 @@ TEST_F(UplinkTest, WithoutAServerItGivesUpAndSaysWhy) {
     EXPECT_THAT(outcome.error().message, HasSubstr("is scanloom-server running there?"));
 }
 
-TEST_F(UplinkTest, GivingUpOnASilentServerNamesItNotACancelledRead) {
+TEST_F(UplinkTest, GivingUpOnASilentServerNamesTheServer) {
     serve({{.silent_after_scans = 10}});
     auto made = options();
     made.give_up_after = 300ms;
@@ -258,7 +258,7 @@ TEST_F(UplinkTest, GivingUpWithoutAnAnswerNamesTheServer) {
     EXPECT_THAT(outcome.error().message, HasSubstr("no answer from 127.0.0.1:"));
 }
 
-TEST_F(UplinkTest, AServerThatComesLateIsFound) {
+TEST_F(UplinkTest, ConnectsToAServerThatStartsLate) {
     serve({{}});
     const auto made = [&] {
         auto options_with_reopening = options();
@@ -274,17 +274,17 @@ TEST_F(UplinkTest, AServerThatComesLateIsFound) {
     EXPECT_EQ(troubles_.size(), 1U);
 }
 
-TEST_F(UplinkTest, NoScanGoesBeforeItIsDue) {
+TEST_F(UplinkTest, SendsNoScanBeforeItIsDue) {
     serve({{}});
     auto made = options();
-    pace_.speed = 200.0; // 5 ms a scan
+    pace_.speed = 200.0; // 5 ms per scan
     const auto begun = std::chrono::steady_clock::now();
     EXPECT_TRUE(run(made, 40));
     expect_all_stored_once(40);
     EXPECT_GE(std::chrono::steady_clock::now() - begun, 39 * 5ms);
 }
 
-TEST_F(UplinkTest, ALongPauseIsToldAndCutToTenMinutes) {
+TEST_F(UplinkTest, ALongPauseIsReportedAndLimitedToTenMinutes) {
     serve({{}});
     auto scans = recording(3);
     scans[2].scan.stamp = 1e9; // the clock was set
@@ -303,7 +303,7 @@ TEST_F(UplinkTest, ALongPauseIsToldAndCutToTenMinutes) {
     expect_all_stored_once(2);
 }
 
-TEST_F(UplinkTest, StopEndsTheSourceAndWaitsForWhatWasSent) {
+TEST_F(UplinkTest, StopEndsTheSourceAndWaitsForAcknowledgements) {
     serve({{}});
     source_.emplace(recording());
     source_->pretend_to_be_endless();
@@ -312,17 +312,17 @@ TEST_F(UplinkTest, StopEndsTheSourceAndWaitsForWhatWasSent) {
     server_->on_stored = [&](std::size_t scans) {
         if (scans >= 5) uplink_->stop();
     };
-    EXPECT_TRUE(run(made)) << "what has no end is whole whenever it is stopped";
+    EXPECT_TRUE(run(made)) << "a source without an end is complete whenever it is stopped";
     const auto status = uplink_->status();
     EXPECT_GE(status.last, 5U);
     EXPECT_LT(status.last, kScans);
     EXPECT_EQ(status.acknowledged, status.last);
-    EXPECT_TRUE(uplink_->outcome_when_interrupted()) << "leaving at once would have lost nothing either";
+    EXPECT_TRUE(uplink_->outcome_when_interrupted()) << "ending immediately would not have lost a scan either";
     expect_all_stored_once(status.last);
     EXPECT_EQ(server_->goodbyes(), 1);
 }
 
-TEST_F(UplinkTest, ARecordingThatWasStoppedIsNotWhole) {
+TEST_F(UplinkTest, AStoppedRecordingIsIncomplete) {
     serve({{}});
     auto made = options();
     pace_.speed = 50.0;
@@ -332,11 +332,11 @@ TEST_F(UplinkTest, ARecordingThatWasStoppedIsNotWhole) {
     const auto outcome = run(made);
     ASSERT_FALSE(outcome);
     const auto status = uplink_->status();
-    EXPECT_EQ(status.acknowledged, status.last) << "what was sent is waited for all the same";
+    EXPECT_EQ(status.acknowledged, status.last) << "it still waits for the sent scans";
     EXPECT_THAT(outcome.error().message, HasSubstr(fmt::format("interrupted after scan {} of 500", status.last)));
 }
 
-TEST_F(UplinkTest, StoppedAfterItsLastScanARecordingIsWhole) {
+TEST_F(UplinkTest, ARecordingStoppedAfterItsLastScanIsComplete) {
     serve({{.ack_every = 1}});
     server_->on_stored = [&](std::size_t scans) {
         if (scans == 20) uplink_->stop();
@@ -345,17 +345,17 @@ TEST_F(UplinkTest, StoppedAfterItsLastScanARecordingIsWhole) {
     EXPECT_EQ(uplink_->status().acknowledged, 20U);
 }
 
-TEST_F(UplinkTest, ARecordingThatCannotBeReadOnIsAnError) {
+TEST_F(UplinkTest, AnUnreadableRecordingIsReported) {
     serve({{}});
     source_.emplace(recording());
     source_->fail_after(100);
     const auto outcome = run(options());
     ASSERT_FALSE(outcome);
-    EXPECT_EQ(outcome.error().message, "the recording cannot be read on");
+    EXPECT_EQ(outcome.error().message, "the rest of the recording cannot be read");
     EXPECT_THAT(troubles_, IsEmpty());
 }
 
-TEST_F(UplinkTest, AnImpossibleNumberOfStoredScansIsNotBelieved) {
+TEST_F(UplinkTest, AnImpossibleNumberOfStoredScansIsRejected) {
     for (const bool endless : {false, true}) {
         serve({{.durable_seq = std::numeric_limits<std::uint64_t>::max()}});
         source_.emplace(recording());
@@ -372,7 +372,7 @@ TEST_F(UplinkTest, AnImpossibleNumberOfStoredScansIsNotBelieved) {
     }
 }
 
-TEST_F(UplinkTest, AnotherRecordingsSessionEndsItWithTheServersSentence) {
+TEST_F(UplinkTest, ASessionOfAnotherRecordingEndsItWithTheServersMessage) {
     const Error other{Errc::kConflict, "robot r1 has streamed carmen:9f3a; choose another session"};
     serve({{.refuse_hello = wire::LinkError{other, false}}});
     auto made = options();
@@ -380,11 +380,11 @@ TEST_F(UplinkTest, AnotherRecordingsSessionEndsItWithTheServersSentence) {
     const auto outcome = run(made);
     ASSERT_FALSE(outcome);
     EXPECT_EQ(outcome.error(), other);
-    EXPECT_THAT(troubles_, IsEmpty()) << "there is nothing to try again";
+    EXPECT_THAT(troubles_, IsEmpty()) << "a final error is not retried";
     EXPECT_EQ(server_->hellos().at(0).source, "carmen:0000");
 }
 
-TEST_F(UplinkTest, StopDoesNotWaitForeverForAcknowledgements) {
+TEST_F(UplinkTest, StopLimitsTheWaitForAcknowledgements) {
     serve({{.silent_after_scans = 1}});
     auto made = options();
     made.drain_max = 200ms;

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <csignal>
 
-/// A server that finds, while it runs, that a session it left in the store is damaged.
+/// A server that detects, while it runs, that an unused session in its store is damaged.
 namespace scanloom::test {
 namespace {
 
@@ -18,7 +18,7 @@ class BackgroundCheckTest : public testing::Test {
 protected:
     [[nodiscard]] std::filesystem::path store() const { return place_.path() / "store"; }
 
-    /// Starts it, lets `use` use it, stops it.
+    /// Starts the server, passes it to `use`, and stops it.
     template <class Use>
     void with_server(Use&& use) {
         RunningServer server(store(), place_.path() / "log");
@@ -27,7 +27,7 @@ protected:
         ASSERT_EQ(server.process().wait(), 0);
     }
 
-    /// In the middle of the largest table: of the log's entries.
+    /// The middle of the largest table, which contains entries of the log.
     void damage_a_table() {
         const auto tables = store::files_like(store(), ".sst");
         const auto table = *std::max_element(tables.begin(), tables.end(), [](const auto& a, const auto& b) {
@@ -39,7 +39,7 @@ protected:
     TemporaryDirectory place_;
 };
 
-TEST_F(BackgroundCheckTest, TellsItInReadinessAndMetricsAndStaysReady) {
+TEST_F(BackgroundCheckTest, ReportsDamageInReadinessAndMetricsAndStaysReady) {
     with_server([&](const RunningServer& server) {
         ChildProcess robot(program("scanloom-robot"),
                            {"--server", server.robot_address(), "--session", "one", "--robot", "r", "--cell-size",
@@ -52,7 +52,7 @@ TEST_F(BackgroundCheckTest, TellsItInReadinessAndMetricsAndStaysReady) {
     with_server([](const RunningServer&) {}); // moves the write-ahead log into a table
     damage_a_table();
     with_server([](const RunningServer& server) {
-        while (server.get_json("/readyz").at("damaged").as_array().empty()) { // answers 200 all the while
+        while (server.get_json("/readyz").at("damaged").as_array().empty()) { // answers 200 meanwhile
         }
         const auto damaged = server.get_json("/readyz").at("damaged");
         ASSERT_EQ(damaged.as_array().size(), 1U);
@@ -60,13 +60,13 @@ TEST_F(BackgroundCheckTest, TellsItInReadinessAndMetricsAndStaysReady) {
         const auto metrics = server.get("/metrics").body;
         EXPECT_THAT(metrics, HasSubstr("scanloom_sessions_damaged 1\n"));
         EXPECT_THAT(metrics, HasSubstr("scanloom_sessions_checked_total 1\n"));
-        const auto session = server.get_json("/api/v1/sessions/one"); // what its checkpoint tells is served
+        const auto session = server.get_json("/api/v1/sessions/one"); // its checkpoint is still served
         EXPECT_EQ(session.at("state"), "ok");
         EXPECT_EQ(session.at("damage"), damaged.at(0).at("reason"));
         EXPECT_EQ(server.get_json("/api/v1/sessions").at("sessions").at(0).at("damage"), session.at("damage"));
-        const auto woven = server.get("/api/v1/sessions/one/digest?until=599"); // reads the log
-        EXPECT_EQ(woven.status, 500U) << "waiting does not mend it: " << woven.body;
-        EXPECT_THAT(woven.body, HasSubstr("--repair"));
+        const auto answer = server.get("/api/v1/sessions/one/digest?until=599"); // reads the log
+        EXPECT_EQ(answer.status, 500U) << "a retry does not help: " << answer.body;
+        EXPECT_THAT(answer.body, HasSubstr("--repair"));
     });
     EXPECT_THAT(store::bytes_of(place_.path() / "log"), HasSubstr("session 'one' is damaged: "));
 }

@@ -13,7 +13,7 @@
 #include <thread>
 #include <vector>
 
-/// Backups of a server under a streaming robot, and stores restored from them, as people make them.
+/// Backups of a server while a robot streams, and stores restored from them, with the commands for users.
 namespace scanloom::test {
 namespace {
 
@@ -42,19 +42,19 @@ protected:
         return server.get_json(kSession).at("revision").to_number<std::int64_t>();
     }
 
-    /// Of all layers, as of an entry of the log.
+    /// The digests of all layers at an entry of the log.
     static std::string digests(const RunningServer& server, std::int64_t until) {
         const auto query = std::string(kSession) + "/digest?until=" + std::to_string(until);
         return boost::json::serialize(server.get_json(query).at("layers"));
     }
 
     TemporaryDirectory place_;
-    int newest_ = 0; // backup
+    int newest_ = 0; // number of the newest backup
     std::filesystem::path store_ = place_.path() / "store";
     std::filesystem::path backups_ = place_.path() / "backups";
 };
 
-TEST_F(BackupTest, HasAllThatWasAcknowledgedBeforeAndItsMapsAreThoseOfThatPartOfTheLog) {
+TEST_F(BackupTest, ContainsEveryScanAcknowledgedBeforeItAndTheMapsOfThatLog) {
     RunningServer server(store_, place_.path() / "log", 0, 0, {"--backups", backups_.native(), "--backups-kept", "2"});
     ChildProcess robot(program("scanloom-robot"),
                        {"--server", server.robot_address(), "--session", "one", "--robot", "r", "--cell-size", "0.1",
@@ -91,7 +91,7 @@ TEST_F(BackupTest, StoreAndBackupsAreReadableByTheirOwnerOnly) {
     }
 }
 
-TEST_F(BackupTest, TheyAreListedAndOldOnesGo) {
+TEST_F(BackupTest, AreListedAndOldOnesAreRemoved) {
     RunningServer server(store_, place_.path() / "log", 0, 0, {"--backups", backups_.native(), "--backups-kept", "2"});
     EXPECT_EQ(server.get_json("/api/v1/backups").at("backups").as_array().size(), 0U);
     for (int n = 0; n < 3; ++n) EXPECT_EQ(make(server).status, 201U);
@@ -99,13 +99,13 @@ TEST_F(BackupTest, TheyAreListedAndOldOnesGo) {
     ASSERT_EQ(listed.at("backups").as_array().size(), 2U);
     EXPECT_EQ(listed.at("backups").at(0).at("id").to_number<int>(), 2);
     EXPECT_EQ(listed.at("kept").to_number<int>(), 2);
-    EXPECT_EQ(restore("1", place_.path() / "restored"), 1) << "it is gone";
+    EXPECT_EQ(restore("1", place_.path() / "restored"), 1) << "the backup was removed";
     EXPECT_EQ(restore("2", place_.path() / "restored"), 0);
-    EXPECT_EQ(restore("3", place_.path() / "restored"), 1) << "there is a store now";
+    EXPECT_EQ(restore("3", place_.path() / "restored"), 1) << "the target has a store now";
     EXPECT_EQ(restore("x", place_.path() / "other"), 2);
 }
 
-TEST_F(BackupTest, ARestoredOneIsToldInTheWordsInWhichItWasListed) {
+TEST_F(BackupTest, RestoreReportsTheListedDescription) {
     const RunningServer server(store_, place_.path() / "log", 0, 0, {"--backups", backups_.native()});
     const auto made = make(server).body; // {"id":1,...
     std::string said;
@@ -113,7 +113,7 @@ TEST_F(BackupTest, ARestoredOneIsToldInTheWordsInWhichItWasListed) {
     EXPECT_EQ(said, R"({"event":"restored",)" + made.substr(1));
 }
 
-TEST_F(BackupTest, AServerThatIsKilledWhileItMakesOneGoesOnAndAllThatAreListedRestore) {
+TEST_F(BackupTest, AServerKilledDuringABackupContinuesAndAllListedBackupsRestore) {
     for (int round = 1; round <= 4; ++round) {
         RunningServer server(store_, place_.path() / "log", 0, 0, {"--backups", backups_.native()});
         ChildProcess robot(program("scanloom-robot"),
@@ -126,7 +126,7 @@ TEST_F(BackupTest, AServerThatIsKilledWhileItMakesOneGoesOnAndAllThatAreListedRe
         std::thread asking([&] {
             try {
                 static_cast<void>(make(server));
-            } catch (const std::exception&) { // it was killed
+            } catch (const std::exception&) { // the server was killed
             }
             answered = true;
         });
@@ -152,7 +152,7 @@ TEST_F(BackupTest, AServerThatIsKilledWhileItMakesOneGoesOnAndAllThatAreListedRe
     }
 }
 
-TEST_F(BackupTest, AServerThatKeepsNoneSaysSo) {
+TEST_F(BackupTest, AServerWithoutBackupsReportsIt) {
     const RunningServer server(store_, place_.path() / "log");
     for (const auto& answer : {make(server), server.get("/api/v1/backups")}) {
         EXPECT_EQ(answer.status, 404U);

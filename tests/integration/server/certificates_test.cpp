@@ -24,7 +24,7 @@ using testing_support::TlsHttpClient;
 using testing_support::TlsManner;
 using testing_support::write_certificate;
 
-/// A server whose HTTP port has a certificate, started as people start it.
+/// A server whose HTTP port has a certificate, started as users do.
 class CertificatesTest : public testing::Test {
 protected:
     void start(std::vector<std::string> more = {}) {
@@ -54,7 +54,7 @@ protected:
     std::unique_ptr<RunningServer> server_;
 };
 
-TEST_F(CertificatesTest, BrowsersAreKeptToTls) {
+TEST_F(CertificatesTest, BrowsersMustUseTls) {
     const auto tokens = place_.path() / "tokens.toml";
     ChildProcess maker(program("scanloom-server"), {"token", "--name", "v", "--role", "viewer"},
                        place_.path() / "maker");
@@ -76,7 +76,7 @@ TEST_F(CertificatesTest, BrowsersAreKeptToTls) {
     EXPECT_THAT(log(), HasSubstr("people: https://"));
 }
 
-TEST_F(CertificatesTest, AreReadAgainAtAHangupAndABadFileChangesNothing) {
+TEST_F(CertificatesTest, AreReloadedOnSighupUnlessAFileIsInvalid) {
     start();
     const auto old = place_.path() / "old.crt";
     std::filesystem::copy_file(files_.certificate, old);
@@ -93,14 +93,14 @@ TEST_F(CertificatesTest, AreReadAgainAtAHangupAndABadFileChangesNothing) {
     EXPECT_FALSE(TlsHttpClient(server_->http_port(), {.trusted = old}).is_trusted());
 }
 
-TEST_F(CertificatesTest, WhereThereAreNoneAHangupEndsNothing) {
+TEST_F(CertificatesTest, WithoutThemSighupIsIgnored) {
     RunningServer server(place_.path() / "store", log_);
     server.process().signal(SIGHUP);
     wait_for_log("neither tokens nor certificates");
     EXPECT_EQ(server.get("/livez").status, 200U);
 }
 
-TEST_F(CertificatesTest, OfClientsAreAskedForOnBothPortsWhereSomebodyIsNamedWhoSignsThem) {
+TEST_F(CertificatesTest, OfClientsAreRequiredOnBothPortsIfAClientCaIsSet) {
     const auto robot = write_certificate(place_.path(), "robot.example");
     const auto ca = robot.certificate.string();
     start({"--http-client-ca", ca, "--robot-tls-cert", files_.certificate.string(), "--robot-tls-key",
@@ -131,7 +131,7 @@ TEST_F(CertificatesTest, OfClientsAreAskedForOnBothPortsWhereSomebodyIsNamedWhoS
     EXPECT_THAT(metrics, HasSubstr("scanloom_refusals_total{port=\"http\",reason=\"foreign_certificate\"} 1"));
 }
 
-TEST_F(CertificatesTest, ThatCannotBeReadAreNamedBeforeAnythingIsServed) {
+TEST_F(CertificatesTest, ThatCannotBeReadPreventTheStart) {
     const auto missing = (place_.path() / "missing.pem").string();
     ChildProcess server(program("scanloom-server"),
                         {"--store", (place_.path() / "store").string(), "--listen", "127.0.0.1:0", "--http",
@@ -142,12 +142,12 @@ TEST_F(CertificatesTest, ThatCannotBeReadAreNamedBeforeAnythingIsServed) {
     EXPECT_THAT(log(), HasSubstr("--http-tls-cert: " + missing));
 }
 
-TEST_F(CertificatesTest, AKeyThatOthersMayReadIsRefusedAtTheStartAndAtAHangup) {
+TEST_F(CertificatesTest, AKeyReadableByOthersIsRefusedAtStartAndOnSighup) {
     using std::filesystem::perms;
     start();
     std::filesystem::permissions(files_.key, perms::others_read, std::filesystem::perm_options::add);
     server_->process().signal(SIGHUP);
-    wait_for_log("--http-tls-cert: "); // what came of it
+    wait_for_log("--http-tls-cert: "); // the result of the reload
     EXPECT_THAT(log(), HasSubstr("chmod g-w,o= " + files_.key.string()));
     EXPECT_TRUE(TlsHttpClient(server_->http_port(), {.trusted = files_.certificate}).is_trusted());
 

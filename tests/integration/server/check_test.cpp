@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <csignal>
 
-/// `scanloom-server --check`, as people run it.
+/// `scanloom-server --check`, as users run it.
 namespace scanloom::test {
 namespace {
 
@@ -20,7 +20,7 @@ class CheckTest : public ProgramsTest {
 protected:
     struct Answer {
         int code = 0;
-        std::string text; ///< all lines
+        std::string text; ///< the whole output
         boost::json::object summary;
     };
 
@@ -41,10 +41,10 @@ protected:
     }
 };
 
-TEST_F(CheckTest, AKilledStoreIsWholeAndADamagedTableIsToldBySessionAndReason) {
+TEST_F(CheckTest, AKilledStorePassesAndADamagedTableIsReportedWithSessionAndReason) {
     simulate("one", "0.1");
     simulate("two", "0.1");
-    EXPECT_EQ(check().code, 1) << "a server runs on it";
+    EXPECT_EQ(check().code, 1) << "a server uses the store";
     kill_server();
     for (const auto* flag : {"--check", "--check=deep"}) {
         const auto whole = check(flag);
@@ -57,7 +57,7 @@ TEST_F(CheckTest, AKilledStoreIsWholeAndADamagedTableIsToldBySessionAndReason) {
         EXPECT_THAT(whole.text, ContainsRegex("\"seconds\":[0-9.]+\\}\n$"));
     }
     {
-        RunningServer again(place_.path() / "store", place_.path() / "log"); // moves what it finds into tables
+        RunningServer again(place_.path() / "store", place_.path() / "log"); // moves its contents into tables
         again.process().signal(SIGTERM);
         again.process().wait();
     }
@@ -69,12 +69,12 @@ TEST_F(CheckTest, AKilledStoreIsWholeAndADamagedTableIsToldBySessionAndReason) {
     const auto damaged = check();
     EXPECT_EQ(damaged.code, 1);
     ASSERT_FALSE(damaged.summary.at("damaged").as_array().empty()) << damaged.text;
-    const auto& told = damaged.summary.at("damaged").as_array()[0];
-    EXPECT_THAT(std::string(told.at("reason").as_string()), HasSubstr(largest.filename().native()));
+    const auto& session = damaged.summary.at("damaged").as_array()[0];
+    EXPECT_THAT(std::string(session.at("reason").as_string()), HasSubstr(largest.filename().native()));
     EXPECT_THAT(damaged.text, HasSubstr("DAMAGED"));
 }
 
-TEST_F(CheckTest, ADamagedWriteAheadLogIsTold) {
+TEST_F(CheckTest, ADamagedWriteAheadLogIsReported) {
     simulate("one", "0.1");
     kill_server();
     store::flip_bit(store::only_file_like(place_.path() / "store", ".log"), 100, 1);

@@ -18,7 +18,7 @@ inline const std::filesystem::path kRealData = std::filesystem::path(SCANLOOM_SO
 /// A server and robots that stream to it.
 class ProgramsTest : public testing::Test {
 protected:
-    /// Streams all of a source into a session, with these settings if it is new.
+    /// Streams a whole source into a session, with these settings if it is new.
     void stream(const std::string& session, const std::string& cell_size, const std::vector<std::string>& source) {
         std::vector<std::string> arguments{"--server", server_.robot_address(), "--session", session, "--robot",
                                            "r",        "--cell-size",           cell_size};
@@ -34,7 +34,7 @@ protected:
             {"simulate", "--world", "office", "--seed", "5", "--speed", "0", "--scans", "300", "--noise", "gaussian"});
     }
 
-    /// The digest of each layer.
+    /// Returns the digest of each layer.
     [[nodiscard]] boost::json::value layers(const std::string& session, const std::string& query = "") const {
         return server_.get_json("/api/v1/sessions/" + session + "/digest" + query).at("layers");
     }

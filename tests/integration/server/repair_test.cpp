@@ -7,7 +7,7 @@
 
 #include <csignal>
 
-/// `scanloom-server --repair`, as people run it.
+/// `scanloom-server --repair`, as users run it.
 namespace scanloom::test {
 namespace {
 
@@ -43,7 +43,7 @@ protected:
     [[nodiscard]] Answer repair() const { return run({"--repair", repaired().native(), "--store", store().native()}); }
 };
 
-TEST_F(RepairTest, AWholeStoreIsRepairedIntoOneWithTheSameMaps) {
+TEST_F(RepairTest, AnIntactStoreKeepsItsMaps) {
     simulate("one", "0.1");
     const auto before = boost::json::serialize(layers("one"));
     kill_server();
@@ -56,10 +56,10 @@ TEST_F(RepairTest, AWholeStoreIsRepairedIntoOneWithTheSameMaps) {
     const RunningServer server(repaired(), place_.path() / "log");
     const auto after = server.get_json("/api/v1/sessions/one/digest").at("layers");
     EXPECT_EQ(boost::json::serialize(after), before);
-    EXPECT_EQ(repair().code, 1) << "it is not empty any more";
+    EXPECT_EQ(repair().code, 1) << "the target is not empty";
 }
 
-TEST_F(RepairTest, WhatIsLostOfADamagedOneIsToldAndTheRobotGoesOn) {
+TEST_F(RepairTest, LossesOfADamagedStoreAreReportedAndTheRobotContinues) {
     simulate("one", "0.1");
     kill_server();
     const auto log = store::only_file_like(store(), ".log");
@@ -69,7 +69,7 @@ TEST_F(RepairTest, WhatIsLostOfADamagedOneIsToldAndTheRobotGoesOn) {
     ASSERT_EQ(answer.code, 0) << answer.text;
     EXPECT_EQ(answer.summary.at("damaged_files").to_number<int>(), 1);
     EXPECT_GT(answer.summary.at("lost").to_number<int>(), 0);
-    EXPECT_EQ(answer.summary.at("lost"), answer.summary.at("stood_in")) << "all of them scans";
+    EXPECT_EQ(answer.summary.at("lost"), answer.summary.at("stood_in")) << "all lost entries are scans";
     EXPECT_EQ(answer.summary.at("kept").to_number<int>() + answer.summary.at("lost").to_number<int>(), 302);
     EXPECT_EQ(run({"--check=deep", "--store", repaired().native()}).code, 0);
     const RunningServer server(repaired(), place_.path() / "log");
@@ -77,7 +77,7 @@ TEST_F(RepairTest, WhatIsLostOfADamagedOneIsToldAndTheRobotGoesOn) {
     EXPECT_EQ(session.at("robots").at(0).at("last_seq").to_number<int>(), 300) << boost::json::serialize(session);
 }
 
-TEST_F(RepairTest, WithoutTheEntryOfItsRobotALogIsSetAside) {
+TEST_F(RepairTest, ALogWithoutItsRobotEntryIsSetAside) {
     simulate("one", "0.1");
     kill_server();
     const auto log = store::only_file_like(store(), ".log");
@@ -91,7 +91,7 @@ TEST_F(RepairTest, WithoutTheEntryOfItsRobotALogIsSetAside) {
     EXPECT_GT(std::filesystem::file_size(place_.path() / "repaired.lost" / "one.scanlog"), 300U * 100U);
 }
 
-TEST_F(RepairTest, OneThatIsKilledLeavesNoStoreAndTheNextNeedsNoHandWork) {
+TEST_F(RepairTest, AKilledRepairLeavesNoStoreAndCanBeRepeated) {
     for (const auto* name : {"one", "two", "three", "four"}) simulate(name, "0.1");
     kill_server();
     for (int lines = 0; lines < 5; ++lines) {
@@ -103,7 +103,7 @@ TEST_F(RepairTest, OneThatIsKilledLeavesNoStoreAndTheNextNeedsNoHandWork) {
             killed.wait();
         }
         const auto check = run({"--check", "--store", repaired().native()});
-        if (check.code == 0) { // it had come to its end
+        if (check.code == 0) { // the repair had finished
             EXPECT_EQ(check.summary.at("sessions").to_number<int>(), 4);
             std::filesystem::remove_all(repaired());
         } else {
@@ -116,7 +116,7 @@ TEST_F(RepairTest, OneThatIsKilledLeavesNoStoreAndTheNextNeedsNoHandWork) {
     EXPECT_EQ(run({"--check", "--store", repaired().native()}).code, 0);
 }
 
-TEST_F(RepairTest, IntoTheOldStoreOrAroundItIsRefused) {
+TEST_F(RepairTest, ATargetInsideOrAroundTheOldStoreIsRefused) {
     for (const auto& into : {store(), store() / "in", place_.path()}) {
         EXPECT_EQ(run({"--repair", into.native(), "--store", store().native()}).code, 2) << into;
     }

@@ -27,13 +27,13 @@ using testing::Not;
 using testing_support::HttpClient;
 using testing_support::RobotSocket;
 
-/// What `scanloom-server token` printed.
+/// The output of `scanloom-server token`.
 struct MadeToken {
     std::string secret;
-    std::string lines; ///< for the file
+    std::string lines; ///< lines for the token file
 };
 
-/// A server with tokens, made as people make them.
+/// A server with tokens that were created by its command.
 class TokensTest : public testing::Test {
 protected:
     TokensTest() {
@@ -109,7 +109,7 @@ protected:
     std::unique_ptr<RunningServer> server_;
 };
 
-TEST_F(TokensTest, BothPortsAskForTheTokensOfTheFile) {
+TEST_F(TokensTest, BothPortsRequireTheTokensOfTheFile) {
     EXPECT_EQ(refusal(hello(robot_.secret, "depot-1")), "welcome");
     EXPECT_THAT(refusal(hello("", "depot-1")), HasSubstr("a token is needed"));
     EXPECT_THAT(refusal(hello(robot_.secret, "lab")), HasSubstr("not for the session"));
@@ -117,15 +117,15 @@ TEST_F(TokensTest, BothPortsAskForTheTokensOfTheFile) {
     EXPECT_EQ(status("GET", "/api/v1/sessions/depot-1", bearer(viewer_)), 200);
 }
 
-/// It would cost memory and time to read what is refused anyway.
-TEST_F(TokensTest, AStrangerIsRefusedBeforeHisBodyIsRead) {
+/// Reading a refused body would cost memory and time.
+TEST_F(TokensTest, UnauthorizedRequestsAreRefusedBeforeTheirBody) {
     HttpClient client(server_->http_port());
     client.send("POST /api/v1/sessions/depot-1/import HTTP/1.1\r\nHost: localhost\r\n"
                 "Content-Type: multipart/form-data; boundary=x\r\nContent-Length: 50000000\r\n\r\n");
     EXPECT_EQ(client.read().status, 401);
 }
 
-TEST_F(TokensTest, TheFileIsReadAgainAtAHangupAndABadOneChangesNothing) {
+TEST_F(TokensTest, TheFileIsReloadedOnSighupUnlessItIsInvalid) {
     RobotSocket robot(server_->robot_port());
     robot.send(hello(robot_.secret, "depot-1"));
     static_cast<void>(robot.receive_kind<wire::Welcome>());
@@ -149,15 +149,15 @@ TEST_F(TokensTest, TheFileIsReadAgainAtAHangupAndABadOneChangesNothing) {
     EXPECT_EQ(status("GET", "/api/v1/sessions/depot-1", bearer(later)), 200);
 }
 
-/// Whoever rotates what a server reads does not know how far it is with its start.
-TEST_F(TokensTest, AHangupWhileItStartsDoesNotEndIt) {
+/// A program that rotates the token file does not know the server's progress at startup.
+TEST_F(TokensTest, SighupDuringStartupDoesNotEndTheServer) {
     const auto settings = place_.path() / "settings";
     ASSERT_EQ(::mkfifo(settings.c_str(), 0600), 0);
     ChildProcess server(program("scanloom-server"),
                         {"--store", place_.path() / "another", "--listen", "127.0.0.1:0", "--http", "127.0.0.1:0",
                          "--config", settings},
                         place_.path() / "another.log");
-    std::ofstream file(settings); // opens when the server has begun to read
+    std::ofstream file(settings); // blocks until the server has started to read
     server.signal(SIGHUP);
     file << "threads = 1\n";
     file.close();
@@ -166,7 +166,7 @@ TEST_F(TokensTest, AHangupWhileItStartsDoesNotEndIt) {
     EXPECT_EQ(server.wait(), 0);
 }
 
-TEST_F(TokensTest, ASecretIsNowhereInTheLogWhereverItIsSent) {
+TEST_F(TokensTest, SecretsNeverAppearInTheLog) {
     const auto& secret = viewer_.secret;
     EXPECT_EQ(status("GET", "/api/v1/sessions/" + secret, ""), 401);
     EXPECT_EQ(status("GET", "/api/v1/sessions/" + secret, bearer(viewer_)), 403);
@@ -183,7 +183,7 @@ TEST_F(TokensTest, ASecretIsNowhereInTheLogWhereverItIsSent) {
         auto said = hello(robot_.secret, "depot-1");
         said.*field = secret;
         static_cast<void>(refusal(said));
-        said.*field = secret.substr(0, 64); // the most a name may have
+        said.*field = secret.substr(0, 64); // the maximum length of a name
         static_cast<void>(refusal(said));
     }
     RobotSocket robot(server_->robot_port());
@@ -193,13 +193,13 @@ TEST_F(TokensTest, ASecretIsNowhereInTheLogWhereverItIsSent) {
     server_->process().signal(SIGTERM);
     EXPECT_EQ(server_->process().wait(), 0);
     for (const auto& token : {robot_, viewer_, operator_}) {
-        for (std::size_t at = 9; at + 12 <= token.secret.size(); ++at) // any part that tells something
+        for (std::size_t at = 9; at + 12 <= token.secret.size(); ++at) // any part that reveals the secret
             EXPECT_THAT(log(), Not(HasSubstr(token.secret.substr(at, 12))));
     }
     EXPECT_THAT(log(), HasSubstr("event=refused port=http who=127.0.0.1 token=viewer reason=wrong_session session=? "));
 }
 
-TEST_F(TokensTest, AFileThatOthersMayWriteIsNotStartedWith) {
+TEST_F(TokensTest, AFileWritableByOthersPreventsTheStart) {
     std::filesystem::permissions(file_, std::filesystem::perms::others_write, std::filesystem::perm_options::add);
     ChildProcess other(program("scanloom-server"),
                        {"--store", (place_.path() / "other").string(), "--listen", "127.0.0.1:0", "--http",

@@ -16,22 +16,22 @@
 
 namespace scanloom::test {
 
-/// HTTP in front of a server's own, that changes what it answers. One connection at a time, on a thread of its own.
-class LyingFront {
+/// An HTTP proxy that changes the server's answers. Handles one connection at a time, on its own thread.
+class FalsifyingProxy {
 public:
-    /// Turns the body that a GET is answered with into another.
+    /// Converts the body of an answer to a GET to another one.
     using Lie = std::function<std::string(const std::string& target, std::string body)>;
 
-    LyingFront(std::uint16_t to, Lie lie)
+    FalsifyingProxy(std::uint16_t to, Lie lie)
         : to_(to), lie_(std::move(lie)), acceptor_(io_, {boost::asio::ip::address_v4::loopback(), 0}),
           port_(acceptor_.local_endpoint().port()), thread_([this] { serve(); }) {}
 
-    ~LyingFront() {
-        ::shutdown(acceptor_.native_handle(), SHUT_RDWR); // whoever waits in accept() is told
+    ~FalsifyingProxy() {
+        ::shutdown(acceptor_.native_handle(), SHUT_RDWR); // wakes the thread in accept()
         thread_.join();
     }
-    LyingFront(const LyingFront&) = delete;
-    LyingFront& operator=(const LyingFront&) = delete;
+    FalsifyingProxy(const FalsifyingProxy&) = delete;
+    FalsifyingProxy& operator=(const FalsifyingProxy&) = delete;
 
     [[nodiscard]] std::uint16_t port() const noexcept { return port_; }
 

@@ -11,16 +11,16 @@
 
 namespace scanloom::test {
 
-/// Hangs up on whoever has said something, without a word. On a thread of its own.
-class HangingUp {
+/// Closes each connection after its first bytes, without an answer. Runs on its own thread.
+class ClosingServer {
 public:
-    HangingUp() : thread_([this] { serve(); }) {}
-    ~HangingUp() {
-        ::shutdown(acceptor_.native_handle(), SHUT_RDWR); // whoever waits in accept() is told
+    ClosingServer() : thread_([this] { serve(); }) {}
+    ~ClosingServer() {
+        ::shutdown(acceptor_.native_handle(), SHUT_RDWR); // wakes the thread in accept()
         thread_.join();
     }
-    HangingUp(const HangingUp&) = delete;
-    HangingUp& operator=(const HangingUp&) = delete;
+    ClosingServer(const ClosingServer&) = delete;
+    ClosingServer& operator=(const ClosingServer&) = delete;
 
     [[nodiscard]] std::uint16_t port() const { return acceptor_.local_endpoint().port(); }
 
