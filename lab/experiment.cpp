@@ -82,7 +82,7 @@ Result<> Runner::run(const RunSpec& spec, const Recording& recording, const Stan
         if (static_cast<double>(scans) < wanted[moments.size()] * static_cast<double>(recording.scans.size())) return;
         moments.push_back({projection.snapshot(), scans});
     };
-    auto seconds = weave(recording, options, surroundings_.now, after_scan);
+    auto seconds = integrate_recording(recording, options, surroundings_.now, after_scan);
     if (!seconds) return seconds.error();
 
     RunResult result{spec, {}, 0, 0, "", times_of(std::move(*seconds))};

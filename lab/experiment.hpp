@@ -1,8 +1,8 @@
 #pragma once
 
+#include "lab/integrate_recording.hpp"
 #include "lab/matrix.hpp"
 #include "lab/scoring.hpp"
-#include "lab/weaving.hpp"
 
 #include "server/tiles/bytes.hpp"
 
@@ -24,7 +24,7 @@ struct RunSpec {
 /// Returns for example "static_0.05_inverse_sensor_model_none_south_west".
 [[nodiscard]] std::string name_of(const RunSpec& spec);
 
-/// Times for one scan, see weave(); milliseconds.
+/// Times for one scan, see integrate_recording(); milliseconds.
 struct ScanTimes {
     double mean = 0.0;
     double median = 0.0;
@@ -52,7 +52,7 @@ struct Surroundings {
 
 /// Performs every run of the matrix. Some runs have a picture, see is_pictured().
 /// Pre: matrix.scans >= 10, so that the first moment has a scan.
-/// Errors: those of weave() and of keep_picture.
+/// Errors: those of integrate_recording() and of keep_picture.
 [[nodiscard]] Result<std::vector<RunResult>> run_experiment(const Matrix& matrix, const Surroundings& surroundings);
 
 /// Whether a run has a picture: among runs from the first start, all without noise, and those with noise at 5 cm cells.

@@ -113,13 +113,13 @@ Result<> Experiment::add_place(std::size_t index) {
     auto control = compare(door->first, *again);
     if (!control) return control.error();
     const Pose2& place = kDoorRoomPlaces[index];
-    auto door_ways = align_both_ways({door->first, door->second, place, place}, door->comparison.matches);
-    if (!door_ways) return door_ways.error();
-    auto control_ways = align_both_ways({door->first, *again, place, place}, control->matches);
-    if (!control_ways) return control_ways.error();
+    auto door_methods = align_by_both_methods({door->first, door->second, place, place}, door->comparison.matches);
+    if (!door_methods) return door_methods.error();
+    auto control_methods = align_by_both_methods({door->first, *again, place, place}, control->matches);
+    if (!control_methods) return control_methods.error();
     if (auto kept = keep_picture(*door, {place.x, place.y}, fmt::format("place_{}.png", index + 1)); !kept) return kept;
     results_.places.push_back(
-        {place, std::move(*door), std::move(*control), std::move(*door_ways), std::move(*control_ways)});
+        {place, std::move(*door), std::move(*control), std::move(*door_methods), std::move(*control_methods)});
     return {};
 }
 
@@ -138,14 +138,14 @@ Result<> Experiment::add_neighbour(std::size_t from, std::size_t to, bool door_m
     const LidarCapture& second = door_moved ? captures_[to].open : captures_[to].closed;
     auto pair = pair_of(see(first.scans, first.sensor), see(second.scans, second.sensor));
     if (!pair) return pair.error();
-    auto ways = align_both_ways({pair->first, pair->second, kDoorRoomPlaces[from], kDoorRoomPlaces[to]},
-                                pair->comparison.matches);
-    if (!ways) return ways.error();
+    auto methods = align_by_both_methods({pair->first, pair->second, kDoorRoomPlaces[from], kDoorRoomPlaces[to]},
+                                         pair->comparison.matches);
+    if (!methods) return methods.error();
     results_.neighbours.push_back({.from = from,
                                    .to = to,
                                    .door_moved = door_moved,
                                    .comparison = std::move(pair->comparison),
-                                   .ways = std::move(*ways)});
+                                   .methods = std::move(*methods)});
     return {};
 }
 
@@ -215,11 +215,11 @@ Result<> Experiment::compare_halves(const RecordedCapture& recorded) {
     auto halves = pair_of(see(std::span(scans).first(half), sensor), see(std::span(scans).subspan(half), sensor));
     if (!halves) return halves.error();
     const Pose2& place = scans.front().pose;
-    auto ways = align_both_ways({halves->first, halves->second, place, place}, halves->comparison.matches);
-    if (!ways) return ways.error();
+    auto methods = align_by_both_methods({halves->first, halves->second, place, place}, halves->comparison.matches);
+    if (!methods) return methods.error();
     if (auto kept = keep_picture(*halves, {place.x, place.y}, "recording.png"); !kept) return kept;
     results_.recorded = RecordedResult{recorded.name,   recorded.remarks,   scans.size(),
-                                       std::move(*all), std::move(*halves), std::move(*ways)};
+                                       std::move(*all), std::move(*halves), std::move(*methods)};
     return {};
 }
 

@@ -1,9 +1,9 @@
 #pragma once
 
+#include "lab/alignment_methods.hpp"
 #include "lab/alignment_trials.hpp"
 #include "lab/landmark_sweeps.hpp"
 #include "lab/ld06_recording.hpp"
-#include "lab/ways_to_align.hpp"
 
 #include "server/tiles/bytes.hpp"
 
@@ -29,8 +29,8 @@ struct PlaceResult {
     Pose2 place;        ///< T_map_lidar
     CapturePair door;   ///< first with the door closed, second with it open
     Comparison control; ///< the closed capture and another closed one: the effect of noise alone
-    WaysToAlign door_ways;
-    WaysToAlign control_ways;
+    AlignmentMethods door_methods;
+    AlignmentMethods control_methods;
 };
 
 /// Two neighbouring places.
@@ -39,7 +39,7 @@ struct NeighbourResult {
     std::size_t to = 0;
     bool door_moved = false; ///< closed in the first, open in the second; otherwise closed in both
     Comparison comparison;   ///< in the map frame, by the true poses
-    WaysToAlign ways;
+    AlignmentMethods methods;
 };
 
 /// Results for a recording.
@@ -48,8 +48,8 @@ struct RecordedResult {
     std::string remarks;
     std::size_t turns = 0;
     SeenLandmarks all;
-    CapturePair halves; ///< the first and the second half of the turns
-    WaysToAlign ways;   ///< of the halves; the true transform is the identity, because the lidar stood still
+    CapturePair halves;       ///< the first and the second half of the turns
+    AlignmentMethods methods; ///< of the halves; the true transform is the identity, because the lidar stood still
 };
 
 struct LandmarkResults {

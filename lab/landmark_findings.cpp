@@ -39,7 +39,7 @@ std::optional<double> continuity(const Comparison& c) { return c.continuity.mean
 /// within.
 std::string against(std::string_view what, std::span<const double> values, const ValueRange& published,
                     const std::string& why) {
-    if (values.empty()) return fmt::format("{} is told of nothing: no landmarks matched.", what);
+    if (values.empty()) return fmt::format("{} cannot be computed: no landmarks matched.", what);
     const std::string place = placed(values, published);
     auto text = fmt::format("{} is {}, {} the published {:.2f} to {:.2f}", what, range_text(values), place,
                             published.low, published.high);
@@ -48,14 +48,14 @@ std::string against(std::string_view what, std::span<const double> values, const
 
 /// "1 to 2, door opened"
 std::string named(const NeighbourResult& neighbour) {
-    return way_name(neighbour) + (neighbour.door_moved ? kDoorOpened : "");
+    return pair_name(neighbour) + (neighbour.door_moved ? kDoorOpened : "");
 }
 
 /// Errors of poses, and the number of poses requested.
 class Errors {
 public:
     void add(const PoseError* error) {
-        ++asked_;
+        ++requested_;
         if (!error) return;
         millimetres_.push_back(error->millimetres());
         degrees_.push_back(error->degrees());
@@ -63,25 +63,25 @@ public:
 
     /// "5 of 6 transforms, off by 0.4 to 2.1 mm and 0.01 to 0.30 degrees"
     [[nodiscard]] std::string text() const {
-        if (millimetres_.empty()) return fmt::format("none of {} transforms", asked_);
-        return fmt::format("{} of {} transforms, off by {} mm and {} degrees", millimetres_.size(), asked_,
+        if (millimetres_.empty()) return fmt::format("none of {} transforms", requested_);
+        return fmt::format("{} of {} transforms, off by {} mm and {} degrees", millimetres_.size(), requested_,
                            range_text(millimetres_, 1), range_text(degrees_));
     }
 
 private:
-    std::size_t asked_ = 0;
+    std::size_t requested_ = 0;
     std::vector<double> millimetres_;
     std::vector<double> degrees_;
 };
 
 /// Errors of both methods for some pairs of captures.
-struct WaysErrors {
+struct MethodErrors {
     Errors by_landmarks;
     Errors by_surfaces; ///< only clear alignments
 
-    void add(const WaysToAlign& ways) {
-        const auto& [alignment, error] = ways.by_surfaces;
-        by_landmarks.add(ways.by_landmarks.fit ? &ways.by_landmarks.fit->error : nullptr);
+    void add(const AlignmentMethods& methods) {
+        const auto& [alignment, error] = methods.by_surfaces;
+        by_landmarks.add(methods.by_landmarks.fit ? &methods.by_landmarks.fit->error : nullptr);
         by_surfaces.add(alignment.certainty == landmarks::Certainty::kClear ? &error : nullptr);
     }
 };
@@ -112,44 +112,42 @@ std::vector<std::string> door_findings(const LandmarkResults& results) {
     using landmarks::Continuity;
     return {
         against("Persistence", values_of(moved, persistence), kPublishedPersistence,
-                fmt::format("the lidar stands in the very same place, and nothing but the door moves. With nothing "
-                            "moved it is {}, which is what noise alone leaves; where the lidar has moved to the next "
-                            "place it is {}, as other parts of things are seen from there and their medians lie "
-                            "elsewhere.",
+                fmt::format("the lidar stands in the same place, and only the door moves. Without a moved door it is "
+                            "{}, the effect of noise alone; from one place to the next place it is {}, because other "
+                            "parts of objects are visible from there and their medians differ.",
                             range_text(values_of(still, persistence)), range_text(values_of(elsewhere, persistence)))),
         against("Stability", values_of(moved, stability), kPublishedStability,
-                fmt::format("medians over {} turns hardly move, by {} m on the mean where nothing is moved, while half "
+                fmt::format("medians over {} turns hardly move, by {} m on average without a moved door, while half "
                             "the tolerance is {} m; between neighbouring places it is {}.",
                             kTurns, range_text(values_of(still, distance), 3), landmarks::kTolerance / 2.0,
                             range_text(values_of(elsewhere, stability)))),
-        against(
-            "Continuity", values_of(moved, continuity), kPublishedContinuity,
-            fmt::format("fill is {}, as no step within a cluster is longer than eps and none counts as a break up "
-                        "to 2 eps; linearity is {}, walls and furniture being straight; evenness is {}. With such a "
-                        "fill the published figure leaves {:.2f} at most for linearity and evenness together: its "
-                        "clusters were less like lines, or fill was reckoned otherwise.",
-                        part(&Continuity::fill), part(&Continuity::linearity), part(&Continuity::evenness),
-                        3.0 * kPublishedContinuity.high - 1.0)),
+        against("Continuity", values_of(moved, continuity), kPublishedContinuity,
+                fmt::format("fill is {}, because no step within a cluster is longer than eps, and steps up to 2 eps "
+                            "are no gaps; linearity is {}, because walls and furniture are straight; evenness is {}. "
+                            "With this fill, the published value allows at most {:.2f} for the sum of linearity and "
+                            "evenness: its clusters were less linear, or fill was defined differently.",
+                            part(&Continuity::fill), part(&Continuity::linearity), part(&Continuity::evenness),
+                            3.0 * kPublishedContinuity.high - 1.0)),
     };
 }
 
 std::string tolerance_finding(const LandmarkResults& results) {
     const auto row = std::ranges::find(results.tolerances, kPublishedTolerance, &ToleranceRow::tolerance);
     if (row == results.tolerances.end() || !row->metrics.distance_mean) {
-        return fmt::format("At {} m nothing is matched.", kPublishedTolerance);
+        return fmt::format("At {} m no landmarks match.", kPublishedTolerance);
     }
     const auto compared = [](double ours, double published) {
         const auto millimetres = [](double value) { return std::lround(1e3 * value); };
         if (millimetres(ours) == millimetres(published)) return "equal to";
         return ours > published ? "above" : "below";
     };
-    return fmt::format(
-        "At {} m the mean distance is {:.3f} m, {} the published {} m, and its standard deviation {:.3f} m, {} the "
-        "published {} m. The poses are exact here and the same for both captures: what is left is the noise of medians "
-        "over {} turns, and clusters that came out otherwise.",
-        kPublishedTolerance, *row->metrics.distance_mean, compared(*row->metrics.distance_mean, kPublishedDistanceMean),
-        kPublishedDistanceMean, *row->metrics.distance_sigma,
-        compared(*row->metrics.distance_sigma, kPublishedDistanceSigma), kPublishedDistanceSigma, kTurns);
+    return fmt::format("At {} m the mean distance is {:.3f} m, {} the published {} m, and its standard deviation "
+                       "{:.3f} m, {} the published {} m. Here the poses are exact and equal for both captures: the "
+                       "remaining differences are the noise of medians over {} turns, and different clusters.",
+                       kPublishedTolerance, *row->metrics.distance_mean,
+                       compared(*row->metrics.distance_mean, kPublishedDistanceMean), kPublishedDistanceMean,
+                       *row->metrics.distance_sigma, compared(*row->metrics.distance_sigma, kPublishedDistanceSigma),
+                       kPublishedDistanceSigma, kTurns);
 }
 
 std::string window_finding(const std::vector<FilterRow>& rows) {
@@ -159,18 +157,17 @@ std::string window_finding(const std::vector<FilterRow>& rows) {
     const auto begin = std::ranges::find_if(rows, rounds);
     const auto walls = fmt::format("On walls a window of {} is best: {:.3f} m instead of {:.3f} m. ", best->window,
                                    best->wall_error, unfiltered.wall_error);
-    if (begin == rows.end()) return walls + "At corners no window does harm.";
+    if (begin == rows.end()) return walls + "No window increases the error at corners.";
     const auto twice = std::ranges::find_if(
         rows, [&](const FilterRow& row) { return row.corner_error >= 2.0 * unfiltered.corner_error; });
-    auto text =
-        walls + fmt::format("Corners go round from a window of {} on, where they are {:.3f} m from the truth, further "
-                            "than the {:.3f} m of unfiltered ones",
-                            begin->window, begin->corner_error, unfiltered.corner_error);
+    auto text = walls + fmt::format("Corners are rounded from a window of {}, where their error is {:.3f} m, larger "
+                                    "than the {:.3f} m of unfiltered corners",
+                                    begin->window, begin->corner_error, unfiltered.corner_error);
     if (twice != rows.end()) {
-        text += fmt::format("; from {} on they are more than twice as far off", twice->window);
+        text += fmt::format("; from {} it is more than twice as large", twice->window);
     }
     const FilterRow& widest = rows.back();
-    return text + fmt::format("; with {} they are {:.2f} m off.", widest.window, widest.corner_error);
+    return text + fmt::format("; with {} it is {:.2f} m.", widest.window, widest.corner_error);
 }
 
 std::vector<std::string> alignment_findings(const LandmarkResults& results) {
@@ -179,7 +176,7 @@ std::vector<std::string> alignment_findings(const LandmarkResults& results) {
     double position = 0.0;
     double yaw = 0.0;
     for (const NeighbourResult& neighbour : results.neighbours) {
-        const auto& [alignment, error] = neighbour.ways.by_surfaces;
+        const auto& [alignment, error] = neighbour.methods.by_surfaces;
         if (alignment.certainty != landmarks::Certainty::kClear) {
             findings.push_back(named(neighbour) + ": " + alignment.why);
             continue;
@@ -190,52 +187,51 @@ std::vector<std::string> alignment_findings(const LandmarkResults& results) {
     }
     findings.insert(findings.begin(),
                     clear == 0 ? std::string("None is clear.")
-                               : fmt::format("{} of {} are clear, and these are off by {:.1f} mm and {:.2f} degrees at "
-                                             "most.",
+                               : fmt::format("{} of {} are clear, with errors of at most {:.1f} mm and {:.2f} degrees.",
                                              clear, results.neighbours.size(), position, yaw));
     return findings;
 }
 
-std::vector<std::string> ways_findings(const LandmarkResults& results) {
-    WaysErrors same;
-    WaysErrors next;
+std::vector<std::string> method_findings(const LandmarkResults& results) {
+    MethodErrors same;
+    MethodErrors next;
     std::vector<std::string> refusals;
-    const auto note = [&](WaysErrors& errors, const WaysToAlign& ways, const std::string& name) {
-        errors.add(ways);
-        const std::string& refusal = ways.by_landmarks.refusal;
+    const auto note = [&](MethodErrors& errors, const AlignmentMethods& methods, const std::string& name) {
+        errors.add(methods);
+        const std::string& refusal = methods.by_landmarks.refusal;
         if (!refusal.empty()) refusals.push_back(fmt::format("{}: refused by landmarks: {}.", name, refusal));
     };
     for (std::size_t n = 0; n < results.places.size(); ++n) {
-        note(same, results.places[n].door_ways, place_name(n) + kDoorOpened);
-        note(same, results.places[n].control_ways, place_name(n));
+        note(same, results.places[n].door_methods, place_name(n) + kDoorOpened);
+        note(same, results.places[n].control_methods, place_name(n));
     }
-    for (const NeighbourResult& neighbour : results.neighbours) note(next, neighbour.ways, named(neighbour));
+    for (const NeighbourResult& neighbour : results.neighbours) note(next, neighbour.methods, named(neighbour));
     std::vector<std::string> findings{
-        fmt::format("Of one place landmarks tell {}; surfaces {}. The medians of the same clusters hardly move there. "
-                    "But matching needs both sets in one frame to within the tolerance, {} m, and had the true poses: "
-                    "landmarks refine a pose that is nearly known and do not find one.",
+        fmt::format("For one place, landmarks give {}; surfaces {}. The medians of the same clusters hardly move "
+                    "there. But matching requires both sets in one frame with an error below the tolerance, {} m, and "
+                    "used the true poses here: landmarks can refine an approximate pose, but cannot find one.",
                     same.by_landmarks.text(), same.by_surfaces.text(), landmarks::kTolerance),
-        fmt::format("Of one place and the next landmarks tell {}; surfaces {}. Other parts of a wall are seen from "
-                    "there, and the median of a cluster is the middle of what was seen, not of the wall: few landmarks "
-                    "match even by the true poses, and those that do need not be the same part of a thing.",
+        fmt::format("From one place to the next, landmarks give {}; surfaces {}. Other parts of a wall are visible "
+                    "from there, and the median of a cluster is the middle of the visible part, not of the wall: few "
+                    "landmarks match even with the true poses, and matching ones may be different parts of an object.",
                     next.by_landmarks.text(), next.by_surfaces.text()),
-        "So align() uses surface elements: a wall lies on the same line from wherever it is seen, and every piece of "
-        "it that both saw counts."};
+        "Therefore align() uses surface elements: a wall is on the same line from every viewpoint, and every part of "
+        "it that is visible in both captures counts."};
     findings.insert(findings.end(), refusals.begin(), refusals.end());
     return findings;
 }
 
 std::string recording_finding(const RecordedResult& recorded) {
     const Comparison& comparison = recorded.halves.comparison;
-    const auto beside = [](std::string_view what, const std::optional<double>& value, const ValueRange& published) {
-        if (!value) return fmt::format("{} is told of nothing", what);
+    const auto compared = [](std::string_view what, const std::optional<double>& value, const ValueRange& published) {
+        if (!value) return fmt::format("{} cannot be computed", what);
         return fmt::format("{} is {:.2f}, {} the published {:.2f} to {:.2f}", what, *value,
                            placed(std::span(&*value, 1), published), published.low, published.high);
     };
-    return fmt::format("{}; {}; {}. Nothing was moved between the halves on purpose, and the lidar stood still.",
-                       beside("Persistence", persistence(comparison), kPublishedPersistence),
-                       beside("stability", stability(comparison), kPublishedStability),
-                       beside("continuity", continuity(comparison), kPublishedContinuity));
+    return fmt::format("{}; {}; {}. Between the halves nothing was moved on purpose, and the lidar was stationary.",
+                       compared("Persistence", persistence(comparison), kPublishedPersistence),
+                       compared("stability", stability(comparison), kPublishedStability),
+                       compared("continuity", continuity(comparison), kPublishedContinuity));
 }
 
 } // namespace scanloom::lab

@@ -29,7 +29,7 @@ namespace scanloom::lab {
 [[nodiscard]] std::vector<std::string> alignment_findings(const LandmarkResults& results);
 
 /// Describes the poses computed from matched landmarks alone, why surfaces are used instead, and each refusal.
-[[nodiscard]] std::vector<std::string> ways_findings(const LandmarkResults& results);
+[[nodiscard]] std::vector<std::string> method_findings(const LandmarkResults& results);
 
 /// Compares the halves of a recording with the published values.
 [[nodiscard]] std::string recording_finding(const RecordedResult& recorded);

@@ -12,8 +12,8 @@ namespace scanloom::lab {
 namespace {
 
 constexpr const char* kPictureKey =
-    "Left in blue the first capture, right in orange the second, each over the other in grey. Discs are landmarks that "
-    "match, joined by dashed lines; red rings are landmarks that match none. The cross is the lidar.";
+    "Left, in blue: the first capture; right, in orange: the second; each over the other one in grey. Discs are "
+    "matched landmarks, joined by dashed lines; red rings are unmatched landmarks. The cross is the lidar.";
 
 Items conditions(const LandmarkResults& results) {
     std::string places;
@@ -24,14 +24,15 @@ Items conditions(const LandmarkResults& results) {
     const robot::Noise noise;
     return {{
         "The room is the simulator's, 10 x 10 m with furniture, and has a doorway of 1 m in its eastern wall with a "
-        "lobby behind it. The door closes the doorway, or stands into the room at a right angle to the wall.",
-        fmt::format("A lidar of 360 beams all round and 12 m stands still at one of three places: {} m.", places),
+        "lobby behind it. The door is closed, or opens into the room at a right angle to the wall.",
+        fmt::format(
+            "A stationary lidar with 360 beams over 360 degrees and a range of 12 m is at one of three places: {} m.",
+            places),
         fmt::format("A capture is {} turns. Ranges have a noise of {} m, beam angles of {} rad (standard deviations). "
                     "Seed: {}.",
                     kTurns, noise.range, noise.beam_angle, results.seed),
         "Landmarks, their eps and the tolerance of matching are the defaults of the server: eps by the cloud, 5 "
-        "points, "
-        "0.25 m. Clouds are compared in the map frame, by the true poses; only the alignments know nothing of these.",
+        "points, 0.25 m. Clouds are compared in the map frame, by the true poses; only the alignments do not use them.",
     }};
 }
 
@@ -39,8 +40,9 @@ Items landmark_definitions() {
     return {{
         "matched: landmarks of both captures that are each other's nearest and within the tolerance. only first, only "
         "second: the others of each capture.",
-        "persistence: matched of the first capture's landmarks. stability: of the matched, those within half the "
-        "tolerance. mean, sd: of the distances of matched landmarks, and their standard deviation.",
+        "persistence: the matched share of the first capture's landmarks. stability: the share of the matched ones "
+        "that are within half the tolerance. mean, sd: mean and standard deviation of the distances of matched "
+        "landmarks.",
         "continuity: the mean of a cluster's linearity, evenness of spacing and fill, here over the landmarks of both "
         "captures.",
     }};
@@ -54,8 +56,8 @@ std::string scenes_option(const LandmarkResults& results) {
 
 void add_doors(Document& document, const LandmarkResults& results) {
     document.push_back(Heading{2, "A door, closed and open"});
-    document.push_back(Paragraph{
-        "The first capture is with the door closed, the second with it opened; or, for comparison, still closed."});
+    document.push_back(
+        Paragraph{"The first capture has the door closed, the second has it open or, for comparison, still closed."});
     document.push_back(door_table(results));
     document.push_back(Items{door_findings(results)});
     document.push_back(Paragraph{kPictureKey});
@@ -76,19 +78,18 @@ void add_sweeps(Document& document, const LandmarkResults& results) {
             Heading{2, "Number of readings"},
             Paragraph{fmt::format(
                 "A reading is a turn of the lidar, a scan of 360 beams; place {}, door closed. The robot's bytes are "
-                "the frames that it sends, a batch of Protocol Buffers for each turn. The server's are reckoned from "
-                "the sizes of what it holds while it clusters: of each point 24 bytes (the point, which distinct one "
-                "it is, its cluster), of each distinct point 52, of each cell of the grid over these 56; spare room of "
-                "vectors and search trees of crowded cells are not in it.",
+                "the frames that it sends, a batch of Protocol Buffers for each turn. The server's bytes are computed "
+                "from its data during clustering: 24 bytes for each point (the point, the index of its distinct point, "
+                "its cluster), 52 for each distinct point, 56 for each cell of the grid over these; spare capacity of "
+                "vectors and search trees of crowded cells are not included.",
                 place_name(0))},
             readings_table(results),
             Heading{2, "Median filter"},
-            Paragraph{fmt::format(
-                "Over each turn of the capture of place {}, door closed. RMSE: from the unfiltered points. Noise "
-                "reduction: how much less neighbouring points bend, along each axis. Errors: medians of how far "
-                "readings are from those without noise, for beams within three beams of a corner or an edge, and for "
-                "the others.",
-                place_name(0))},
+            Paragraph{fmt::format("For each turn of the capture of place {}, door closed. RMSE: relative to the "
+                                  "unfiltered points. Noise reduction: the decrease of the bend between neighbouring "
+                                  "points, along each axis. Errors: median distances between readings with and without "
+                                  "noise, for beams within three beams of a corner or an edge, and for the others.",
+                                  place_name(0))},
             window_table(results),
             Paragraph{window_finding(results.windows)},
         });
@@ -101,21 +102,20 @@ void add_neighbours(Document& document, const LandmarkResults& results) {
                         Paragraph{"The same figures for captures of different places, the first with the door closed."},
                         neighbour_table(results),
                         Heading{2, "Alignment"},
-                        Paragraph{"Where the second capture was taken from, as seen from the first, without any guess; "
-                                  "off by: from the truth. Explained and contradicted are shares of the second "
-                                  "capture's surface."},
+                        Paragraph{"The pose of the second capture relative to the first, without an initial guess; off "
+                                  "by: difference from the ground truth. Inlier and outlier ratio: of the "
+                                  "second capture's surface."},
                         alignment_table(results),
                         Items{alignment_findings(results)},
                         Heading{2, "Alignment by landmarks alone"},
                         Paragraph{fmt::format(
                             "The transform of the landmarks that were matched above, in the map frame and by the true "
-                            "poses, beside that of the surfaces, which are told no pose; of a place with itself, and "
-                            "of one place with the next. Agreeing are the pairs that the transform brings within half "
-                            "the tolerance, {} m, of each other; rms: of these. Off by: where the second lidar would "
-                            "be.",
+                            "poses, next to that of the surfaces, which use no pose; for one place, and from one place "
+                            "to the next. Agreeing: pairs that the transform brings within half the tolerance, {} m; "
+                            "rms: their root mean square. Off by: where the second lidar would be.",
                             kAgreeingDistance)},
-                        ways_table(results),
-                        Items{ways_findings(results)},
+                        methods_table(results),
+                        Items{method_findings(results)},
                     });
 }
 
@@ -124,15 +124,15 @@ void add_recording(Document& document, const RecordedResult& recorded) {
         document.end(),
         {
             Heading{2, "A recording"},
-            Paragraph{fmt::format(
-                "{}, the bytes that a real LD06 sent in a room, which stood still: {}. The file is no part of the "
-                "project. The first half of the turns is compared with the second.",
-                recorded.name, recorded.remarks)},
+            Paragraph{fmt::format("{}, bytes of a real, stationary LD06 in a room: {}. The file is not part of the "
+                                  "project. The first half of the turns is compared with the second.",
+                                  recorded.name, recorded.remarks)},
             recording_table(recorded),
             halves_table(recorded),
             Paragraph{recording_finding(recorded)},
-            Paragraph{"The halves, aligned by their landmarks and by their surfaces; off by: from standing still."},
-            halves_ways_table(recorded),
+            Paragraph{
+                "The halves, aligned by their landmarks and by their surfaces; off by: difference from no motion."},
+            halves_methods_table(recorded),
             Paragraph{kPictureKey},
             Picture{fmt::format("{}/{}", kPicturesFolder, recorded.halves.picture),
                     fmt::format("first and second half of {}, recorded from a real LD06", recorded.name)},
@@ -143,15 +143,15 @@ void add_recording(Document& document, const RecordedResult& recorded) {
 
 Document landmark_report_of(const LandmarkResults& results) {
     Document document{
-        Heading{1, "Landmarks of a standing lidar"},
-        Paragraph{"What the server finds in the captures of a lidar that stands still: its landmarks, how they persist "
-                  "when a door is moved, how they depend on tolerance, number of readings and filter, how captures "
-                  "of different places are aligned, and how views are found in maps. Made by"},
+        Heading{1, "Landmarks of a stationary lidar"},
+        Paragraph{"The server's results for captures of a stationary lidar: landmarks, their persistence when a door "
+                  "is moved, their dependence on tolerance, number of readings and filter, alignment of captures of "
+                  "different places, and localization of views in maps. Made by"},
         Code{fmt::format("./scanloom build && build/bin/scanloom-lab landmarks --out docs/landmarks --seed {}{}{}",
                          results.seed, scenes_option(results),
                          results.recorded ? " --capture " + results.recorded->name : "")},
-        Paragraph{"The same seed gives the same bytes. How long it took is in a file of its own, because it differs "
-                  "each time:"},
+        Paragraph{
+            "The same seed gives the same bytes. The durations are in a separate file, because they differ each time:"},
         Link{"Times", kTimesFile},
         Heading{2, "Conditions"},
         conditions(results),

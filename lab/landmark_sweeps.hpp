@@ -1,8 +1,8 @@
 #pragma once
 
+#include "lab/integrate_recording.hpp"
 #include "lab/landmark_comparison.hpp"
 #include "lab/lidar_capture.hpp"
-#include "lab/weaving.hpp"
 
 #include "server/landmarks/filter_figures.hpp"
 

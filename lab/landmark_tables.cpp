@@ -57,12 +57,12 @@ std::vector<std::string> seen_cells(std::string name, std::size_t turns, const S
             whole(seen.survey.landmarks.size())};
 }
 
-const std::vector<std::string> kWaysHead{
+const std::vector<std::string> kMethodsHead{
     "pairs", "agreeing", "rms mm", "landmarks off by mm", "deg", "surfaces' verdict", "surfaces off by mm", "deg"};
 
-std::vector<std::string> ways_cells(const WaysToAlign& ways) {
-    const auto& [pairs, found, refusal] = ways.by_landmarks;
-    const auto& [alignment, error] = ways.by_surfaces;
+std::vector<std::string> method_cells(const AlignmentMethods& methods) {
+    const auto& [pairs, found, refusal] = methods.by_landmarks;
+    const auto& [alignment, error] = methods.by_surfaces;
     const auto& fit = found; // clang 14 cannot capture a structured binding
     const auto of_fit = [&](auto text) { return fit ? text(*fit) : std::string(kNone); };
     return {whole(pairs),
@@ -79,7 +79,7 @@ std::vector<std::string> ways_cells(const WaysToAlign& ways) {
 
 std::string place_name(std::size_t index) { return whole(index + 1); }
 
-std::string way_name(const NeighbourResult& neighbour) {
+std::string pair_name(const NeighbourResult& neighbour) {
     return fmt::format("{} to {}", place_name(neighbour.from), place_name(neighbour.to));
 }
 
@@ -99,7 +99,7 @@ Table neighbour_table(const LandmarkResults& results) {
     Table table{joined({"places", "door"}, kComparisonHead), {}};
     for (const NeighbourResult& neighbour : results.neighbours) {
         table.rows.push_back(
-            joined({way_name(neighbour), door_text(neighbour)}, comparison_cells(neighbour.comparison)));
+            joined({pair_name(neighbour), door_text(neighbour)}, comparison_cells(neighbour.comparison)));
     }
     return table;
 }
@@ -143,12 +143,12 @@ Table window_table(const LandmarkResults& results) {
 }
 
 Table alignment_table(const LandmarkResults& results) {
-    Table table{{"places", "door", "verdict", "x m", "y m", "yaw deg", "off by mm", "off by deg", "explained",
-                 "contradicted", "3 sigma mm"},
+    Table table{{"places", "door", "verdict", "x m", "y m", "yaw deg", "off by mm", "off by deg", "inlier ratio",
+                 "outlier ratio", "3 sigma mm"},
                 {}};
     for (const NeighbourResult& neighbour : results.neighbours) {
-        const auto& [found, error] = neighbour.ways.by_surfaces;
-        table.rows.push_back({way_name(neighbour), door_text(neighbour), certainty_text(found.certainty),
+        const auto& [found, error] = neighbour.methods.by_surfaces;
+        table.rows.push_back({pair_name(neighbour), door_text(neighbour), certainty_text(found.certainty),
                               metres(found.T_first_second.x), metres(found.T_first_second.y),
                               fmt::format("{:.2f}", kDegrees * found.T_first_second.yaw), millimetres(error.metres),
                               degrees(error), share(found.explained), share(found.contradicted),
@@ -157,14 +157,14 @@ Table alignment_table(const LandmarkResults& results) {
     return table;
 }
 
-Table ways_table(const LandmarkResults& results) {
-    Table table{joined({"places", "door"}, kWaysHead), {}};
+Table methods_table(const LandmarkResults& results) {
+    Table table{joined({"places", "door"}, kMethodsHead), {}};
     for (std::size_t n = 0; n < results.places.size(); ++n) {
-        table.rows.push_back(joined({place_name(n), kOpened}, ways_cells(results.places[n].door_ways)));
-        table.rows.push_back(joined({place_name(n), kClosed}, ways_cells(results.places[n].control_ways)));
+        table.rows.push_back(joined({place_name(n), kOpened}, method_cells(results.places[n].door_methods)));
+        table.rows.push_back(joined({place_name(n), kClosed}, method_cells(results.places[n].control_methods)));
     }
     for (const NeighbourResult& neighbour : results.neighbours) {
-        table.rows.push_back(joined({way_name(neighbour), door_text(neighbour)}, ways_cells(neighbour.ways)));
+        table.rows.push_back(joined({pair_name(neighbour), door_text(neighbour)}, method_cells(neighbour.methods)));
     }
     return table;
 }
@@ -180,6 +180,6 @@ Table halves_table(const RecordedResult& recorded) {
     return {kComparisonHead, {comparison_cells(recorded.halves.comparison)}};
 }
 
-Table halves_ways_table(const RecordedResult& recorded) { return {kWaysHead, {ways_cells(recorded.ways)}}; }
+Table halves_methods_table(const RecordedResult& recorded) { return {kMethodsHead, {method_cells(recorded.methods)}}; }
 
 } // namespace scanloom::lab

@@ -10,7 +10,7 @@ namespace scanloom::lab {
 [[nodiscard]] std::string place_name(std::size_t index);
 
 /// Returns the two places of a pair: "1 to 2".
-[[nodiscard]] std::string way_name(const NeighbourResult& neighbour);
+[[nodiscard]] std::string pair_name(const NeighbourResult& neighbour);
 
 /// Returns, for each place, the figures with the door moved and with nothing moved, and the published ones.
 [[nodiscard]] Table door_table(const LandmarkResults& results);
@@ -25,11 +25,11 @@ namespace scanloom::lab {
 [[nodiscard]] Table alignment_table(const LandmarkResults& results);
 
 /// Lists the transforms from matched landmarks next to those from surfaces, for all pairs of captures.
-[[nodiscard]] Table ways_table(const LandmarkResults& results);
+[[nodiscard]] Table methods_table(const LandmarkResults& results);
 
 /// Describes the whole recording, its halves and what they have in common.
 [[nodiscard]] Table recording_table(const RecordedResult& recorded);
 [[nodiscard]] Table halves_table(const RecordedResult& recorded);
-[[nodiscard]] Table halves_ways_table(const RecordedResult& recorded);
+[[nodiscard]] Table halves_methods_table(const RecordedResult& recorded);
 
 } // namespace scanloom::lab

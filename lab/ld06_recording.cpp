@@ -25,19 +25,20 @@ Result<RecordedCapture> read_ld06_recording(const std::filesystem::path& path) {
     }
     const auto& scans = recorded.capture.scans;
     if (scans.size() < 2) {
-        return Error{Errc::kInvalidField, fmt::format("{}: one turn only, and its halves are to be compared; record "
-                                                      "for longer",
-                                                      path.string())};
+        return Error{
+            Errc::kInvalidField,
+            fmt::format("{}: only one turn; the comparison of its halves needs two: record longer", path.string())};
     }
     const auto first = std::span(scans).first(scans.size() / 2);
     const auto last = std::span(scans).subspan(first.size());
     for (const auto& [which, half] : {std::pair{"first", first}, std::pair{"last", last}}) {
         const std::size_t points = points_of(half, recorded.capture.sensor).size();
         if (points >= landmarks::kViewPointsMin) continue;
-        return Error{Errc::kInvalidField,
-                     fmt::format("{}: in the {} {} of {} turns only {} points were seen; record where the lidar sees "
-                                 "walls",
-                                 path.string(), which, half.size(), scans.size(), points)};
+        return Error{
+            Errc::kInvalidField,
+            fmt::format(
+                "{}: in the {} {} of {} turns only {} points were observed; record where the lidar can see walls",
+                path.string(), which, half.size(), scans.size(), points)};
     }
     return recorded;
 }

@@ -11,15 +11,14 @@ namespace scanloom::lab {
 namespace {
 
 constexpr const char* kAbout =
-    "Measures how good and how fast maps and landmarks are, in simulated worlds that are known exactly.\n"
-    "Exits 0 when done, 1 when something failed, 2 when it was called wrongly.";
-constexpr const char* kOutHelp = "Directory for report.md, report.html, times.md, times.html and pictures/; made if it "
-                                 "does not exist, what is there "
-                                 "is overwritten";
-constexpr const char* kSeedHelp = "Of the noise; the same seed gives the same report, times excepted";
+    "Measures the quality and speed of maps and landmarks in simulated worlds with exact ground truth.\n"
+    "Exits 0 when done, 1 on failure, 2 on invalid arguments.";
+constexpr const char* kOutHelp = "Directory for report.md, report.html, times.md, times.html and pictures/; created if "
+                                 "it does not exist; existing files are overwritten";
+constexpr const char* kSeedHelp = "Seed of the noise; the same seed gives the same report, except for times";
 constexpr const char* kFooter =
     "Every option may also stand in the file of --config (TOML, in a section of its command) or in the environment\n"
-    "(--seed as SCANLOOM_SEED). A flag beats the environment, which beats the file.";
+    "(--seed as SCANLOOM_SEED). A flag overrides the environment, which overrides the file.";
 
 CLI::App* add_experiment(CLI::App& app, ExperimentOptions& options) {
     auto* experiment = app.add_subcommand(
@@ -37,22 +36,20 @@ CLI::App* add_experiment(CLI::App& app, ExperimentOptions& options) {
 
 CLI::App* add_landmarks(CLI::App& app, LandmarkOptions& options) {
     auto* landmarks = app.add_subcommand(
-        "landmarks", "What a standing lidar finds: landmarks while a door moves, sweeps of tolerance, readings and "
-                     "filter, alignment and locating, as a report, in some minutes");
+        "landmarks", "Results of a stationary lidar: landmarks while a door moves, sweeps of tolerance, readings and "
+                     "filter, alignment and localization, as a report; takes some minutes");
     landmarks->add_option("--out", options.out, kOutHelp);
     landmarks->add_option("--seed", options.seed, kSeedHelp)->check(check_whole_number_from(0))->capture_default_str();
     landmarks
-        ->add_option(
-            "--scenes", options.scenes,
-            "Scenes of each world and map on which alignment and locating are tried, 0 (the report has no part "
-            "about them) to 10000")
+        ->add_option("--scenes", options.scenes,
+                     "Number of scenes for each world and map to test alignment and localization, 0 (no such part in "
+                     "the report) to 10000")
         ->check(check_within(0, 10'000))
         ->check(check_whole_number_from(0))
         ->capture_default_str();
     landmarks
         ->add_option("--capture", options.capture,
-                     "File of the bytes that an LD06 sent while it stood still, two turns at least; the report has a "
-                     "part about it")
+                     "File with the bytes of a stationary LD06, at least two turns; adds a part to the report")
         ->check(&check_not_empty)
         ->type_name("FILE");
     return landmarks;
@@ -73,7 +70,7 @@ std::variant<ExperimentOptions, LandmarkOptions, Leave> parse_options(int argc, 
         read_settings_from_environment_and_file(app);
         app.parse(argc, argv);
     } catch (const CLI::ParseError& reason) {
-        return leave_for(app, reason, "say what to do: experiment or landmarks");
+        return leave_for(app, reason, "name a command: experiment or landmarks");
     }
     // --out is not required() by the parser, so that its error message can be ours
     if (landmarks->parsed()) {

@@ -10,7 +10,7 @@ Result<OutputDirectory> OutputDirectory::open(const std::filesystem::path& path)
     std::error_code failed;
     std::filesystem::create_directories(path, failed);
     if (!failed) return OutputDirectory(path);
-    return Error{Errc::kStoreFailed, fmt::format("{}: the directory cannot be made: {}; name another with --out",
+    return Error{Errc::kStoreFailed, fmt::format("{}: the directory cannot be created: {}; name another with --out",
                                                  path.string(), failed.message())};
 }
 
@@ -21,7 +21,7 @@ Result<> OutputDirectory::write(const std::filesystem::path& file, std::string_v
     out.close();
     if (out) return {};
     return Error{Errc::kStoreFailed,
-                 fmt::format("{}: cannot be written; is there room, and may you write there?", path.string())};
+                 fmt::format("{}: cannot be written; check the free space and the permissions", path.string())};
 }
 
 Result<> OutputDirectory::write(const std::filesystem::path& file, std::span<const std::uint8_t> content) const {

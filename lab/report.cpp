@@ -49,46 +49,42 @@ std::vector<std::string> score_cells(const Chosen& chosen) {
 Items conditions(const Matrix& matrix) {
     return {{
         ("Scenes: static, a furnished room of 10 x 10 m; dynamic, the same with a person (a disc of 0.5 m) who walks "
-         "around its furniture at 1 m/s. The truth is the room without the person."),
-        fmt::format(
-            "Each run: {} scans, ten a second, of the reference laser (684 beams over 180 degrees, 5 m), on the "
-            "way of the wall follower from one of {} starts. Poses are exact, and the way is the same in "
-            "every run from a start.",
-            matrix.scans, matrix.starts.size()),
-        fmt::format("The room's middle is at ({}, {}) m, so that no wall stands on the border between two cells.",
+         "around its furniture at 1 m/s. The ground truth is the room without the person."),
+        fmt::format("Each run: {} scans, ten a second, of the reference laser (684 beams over 180 degrees, 5 m), on "
+                    "the trajectory of the wall follower from one of {} starts. Poses are exact, and the trajectory is "
+                    "the same in every run from a start.",
+                    matrix.scans, matrix.starts.size()),
+        fmt::format("The room's centre is at ({}, {}) m, so that no wall is on the border between two cells.",
                     kRoomMiddle.x, kRoomMiddle.y),
         ("Noise: none; gaussian, ranges with sigma 0.02 m and beam angles with sigma 0.005 rad, beams without a return "
-         "left out (elsewhere they are free up to 5 m); 1_cell and 3_cells, each reading too long by 0 up to one or "
-         "three cells, evenly spread."),
+         "left out (otherwise they are free up to 5 m); 1_cell and 3_cells, each reading too long by 0 to one or three "
+         "cells, uniformly distributed."),
         fmt::format(
-            "All settings of the maps are the defaults but the cell size and the ray model. Seed of the noise: {}.",
+            "All settings of the maps are defaults, except the cell size and the ray model. Seed of the noise: {}.",
             matrix.seed),
     }};
 }
 
 Items definitions() {
     return {{
-        ("A cell of the map is occupied from p = 0.65 on and free up to 0.35. A cell of the truth is solid when a "
-         "solid stands in any part of it."),
-        ("Could be seen: a free cell whose centre, a solid cell with a point of whose surface, was in the line of "
-         "sight of one of the run's poses, in the laser's range and field of view. Other cells are not asked for."),
+        ("A cell of the map is occupied from p = 0.65 on and free up to 0.35. A cell of the ground truth is solid if "
+         "any part of it contains a solid."),
+        ("Visible: a free cell whose centre, or a solid cell with a point of its surface, was in the line of sight of "
+         "one of the run's poses, in the laser's range and field of view. Other cells are not required."),
         "Tolerance: one cell (the eight around a cell count as itself), but for exact IoU, which has none.",
-        ("precision: of the map's occupied cells, those at a solid. recall: of the solid cells that could be seen, "
-         "those with an occupied one in the map. IoU: the Jaccard index of precision P and recall R, "
-         "P R / (P + R - P R)."),
-        ("exact IoU: solid cells that could be seen and are occupied in the map, of all that could be seen and all "
-         "that "
-         "are occupied in the map and not solid. Cells inside solids that could not be seen count neither for nor "
-         "against it."),
-        "free recall: of the free cells that could be seen and do not touch a solid one, those free in the map.",
-        ("person: readings of the run that met the person. residue: occupied cells away from every solid where only "
-         "the "
-         "person was, and is not at the end of the run: what was not cleared again. Cells where the person stands at "
-         "the end count against precision, if the last scans saw it."),
-        "occupied: the map's occupied cells. touched: its cells that any scan changed.",
+        ("precision: the share of the map's occupied cells that are at a solid. recall: the share of visible solid "
+         "cells with an occupied cell in the map. IoU: the Jaccard index of precision P and recall R, P R / (P + R - P "
+         "R)."),
+        ("exact IoU: visible solid cells that are occupied in the map, as a share of all visible solid cells and all "
+         "occupied cells of the map that are not solid. Invisible cells inside solids do not count."),
+        "free recall: the share of visible free cells without a solid neighbour that are free in the map.",
+        ("person: readings of the run that hit the person. residue: occupied cells away from every solid where the "
+         "person was during the run but not at its end: cells that were not cleared. Cells of the person's final "
+         "position count against precision, if the last scans observed it."),
+        "occupied: the map's occupied cells. touched: cells that any scan changed.",
         ("The inverse sensor model marks a band of 0.1 m, half of it before the surface. At 1 cm that half is five "
-         "cells, more than the tolerance, and counts against precision and free recall; and all five against exact "
-         "IoU, in which a surface is one cell."),
+         "cells, more than the tolerance, and reduces precision and free recall; all five reduce exact IoU, in which a "
+         "surface is one cell."),
     }};
 }
 
@@ -157,13 +153,11 @@ std::string published(double cell_size) {
 Document report_of(const Matrix& matrix, const std::vector<RunResult>& results) {
     Document document{
         Heading{1, "The reference experiments"},
-        Paragraph{
-            "How good the maps are, measured against worlds that are known exactly: two scenes, several cell sizes, "
-            "ray models and kinds of noise, from two starts. Made by"},
+        Paragraph{"The quality of the maps, measured with exact ground truth: two scenes, several cell sizes, ray "
+                  "models and kinds of noise, from two starts. Made by"},
         Code{"./scanloom build && build/bin/scanloom-lab experiment --out docs/experiment"},
         Paragraph{
-            "The same seed gives the same bytes. How long the scans took is in a file of its own, because it differs "
-            "each time:"},
+            "The same seed gives the same bytes. The durations are in a separate file, because they differ each time:"},
         Link{"Times", kTimesFile},
         Heading{2, "Conditions"},
         conditions(matrix),
@@ -173,9 +167,8 @@ Document report_of(const Matrix& matrix, const std::vector<RunResult>& results) 
         Paragraph{"Means over the starts."},
         summary(matrix, results),
         Heading{2, "Every run"},
-        Paragraph{
-            "In the pictures white is free, black occupied, grey unknown; blue is the robot and its path, red are the "
-            "points of the newest scan, orange is the person."},
+        Paragraph{"In the pictures white is free, black occupied, grey unknown; blue is the robot and its trajectory, "
+                  "red are the points of the newest scan, orange is the person."},
     };
     add_runs(document, matrix, results);
     return document;
@@ -203,14 +196,12 @@ Document times_report_of(const Matrix& matrix, const std::vector<RunResult>& res
     return {
         Heading{1, "Times of the reference experiments"},
         Paragraph{fmt::format(
-            "Milliseconds for adding one scan of 684 beams to all maps of a session (log-odds, HIMM and classes), with "
-            "a snapshot after every {} scans, which brings frontiers and danger up to date and makes the next scan "
-            "copy what it changes. One thread. Where several runs are put together, their figures are averaged. "
-            "Measured on: {}.",
+            "Milliseconds for integrating one scan of 684 beams into all maps of a session (log-odds, HIMM and "
+            "classes), with a snapshot after every {} scans, which updates frontiers and danger and makes the next "
+            "scan copy the cells that it changes. One thread. Figures of several runs are averaged. Measured on: {}.",
             kScansPerSnapshot, machine)},
-        Paragraph{
-            "Published: what the report of the original experiments names for a scan in its interpreted language, "
-            "on its own machine; for a room of 10 x 10 m, too."},
+        Paragraph{"Published: the time for a scan in the report of the original experiments, in an interpreted "
+                  "language on another machine, also for a room of 10 x 10 m."},
         Link{"The report", kReportFile},
         Heading{2, "Means over scenes and starts, without noise"},
         std::move(means),

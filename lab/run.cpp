@@ -33,9 +33,9 @@ public:
         work_done_ += 1.0 / running.cell_size;
         const double now = steady_seconds();
         const double period = std::chrono::duration<double>(console_.progress_period()).count();
-        if (!begun_) begun_ = told_ = now; // excludes preparation before the first scan
-        if (now < told_ + period) return;
-        told_ = now;
+        if (!begun_) begun_ = reported_ = now; // excludes preparation before the first scan
+        if (now < reported_ + period) return;
+        reported_ = now;
         const double elapsed = now - *begun_;
         console_.progress(fmt::format("run {} of {}: {}, {:.0f} scans a second, {} left", runs_done + 1,
                                       matrix_.run_count(), name_of(running), static_cast<double>(scans_done) / elapsed,
@@ -48,7 +48,7 @@ private:
     double work_ = 0.0;
     double work_done_ = 0.0;
     std::optional<double> begun_; ///< time of the first scan
-    double told_ = 0.0;
+    double reported_ = 0.0;
 };
 
 Result<> write_document(const OutputDirectory& directory, const std::string& name, const Document& document) {
@@ -125,7 +125,7 @@ Result<std::string> run_landmarks_of(const LandmarkOptions& options, Console& co
 }
 
 template <class Options>
-ExitCode run_told(const Options& options, Result<std::string> (*work)(const Options&, Console&)) {
+ExitCode run_and_report(const Options& options, Result<std::string> (*work)(const Options&, Console&)) {
     Console console(standard_error());
     const auto result = work(options, console);
     if (!result) {
@@ -139,7 +139,7 @@ ExitCode run_told(const Options& options, Result<std::string> (*work)(const Opti
 
 } // namespace
 
-ExitCode run(const ExperimentOptions& options) { return run_told(options, run_experiment_of); }
-ExitCode run(const LandmarkOptions& options) { return run_told(options, run_landmarks_of); }
+ExitCode run(const ExperimentOptions& options) { return run_and_report(options, run_experiment_of); }
+ExitCode run(const LandmarkOptions& options) { return run_and_report(options, run_landmarks_of); }
 
 } // namespace scanloom::lab

@@ -64,8 +64,8 @@ Table stranger_table(const TrialResults& results) {
 }
 
 std::string wrong_text(std::size_t right, std::size_t wrong) {
-    if (wrong == 0) return "no clear one is wrong";
-    return fmt::format("{} of {} clear ones {} wrong", wrong, right + wrong, wrong == 1 ? "is" : "are");
+    if (wrong == 0) return "no clear result is wrong";
+    return fmt::format("{} of {} clear results {} wrong", wrong, right + wrong, wrong == 1 ? "is" : "are");
 }
 
 std::string range_text(std::span<const double> values, int digits) {
@@ -98,13 +98,13 @@ public:
     /// Adds a summary and each result.
     void append_to(std::vector<std::string>& findings) const {
         if (!explained_.empty()) {
-            findings.push_back(fmt::format(
-                "Wrong by more than {:g} m, where the world repeats itself: {} of {}; of these views {} is in the map "
-                "there, and {} where they were taken.",
-                kElsewhere, explained_.size(), named_.size(), range_text(explained_, 2), range_text(at_truth_, 2)));
+            findings.push_back(fmt::format("Wrong by more than {:g} m, where the world is repetitive: {} of {}; at the "
+                                           "wrong place the inlier ratio of these views is {}, at the true place {}.",
+                                           kElsewhere, explained_.size(), named_.size(), range_text(explained_, 2),
+                                           range_text(at_truth_, 2)));
         }
         if (!nearby_.empty()) {
-            findings.push_back(fmt::format("Wrong, but beside the truth: {} of {}, off by {} mm.", nearby_.size(),
+            findings.push_back(fmt::format("Wrong, but near the ground truth: {} of {}, off by {} mm.", nearby_.size(),
                                            named_.size(), range_text(nearby_, 1)));
         }
         findings.insert(findings.end(), named_.begin(), named_.end());
@@ -168,8 +168,9 @@ std::vector<std::string> stranger_findings(const TrialResults& results) {
         sum.add(trials);
         for (const Trial& trial : trials.each) {
             if (trial.verdict != Verdict::kWrong) continue;
-            clear.push_back(fmt::format("Clear, though it is none: {} in a map of the {} of {}, scene {}.", seen, map,
-                                        captures_text(captures), trial.seed));
+            clear.push_back(
+                fmt::format("Clear, but the view is of another world: {} in a map of the {} of {}, scene {}.", seen,
+                            map, captures_text(captures), trial.seed));
         }
     }
     std::vector<std::string> findings{fmt::format("{} of {} are refused.", sum.scenes - sum.wrong, sum.scenes)};
@@ -182,34 +183,33 @@ void add_trials(Document& document, const TrialResults& results) {
     document.insert(
         document.end(),
         {
-            Heading{2, "How sure alignments are"},
-            Paragraph{fmt::format(
-                "{} scenes of each kind, by chance: in the simulator's room, its office (corridors and rooms) and its "
-                "hall a lidar of 360 beams and 12 m, {} m and {} rad noise (standard deviations), stands somewhere and "
-                "0.5 to 2 m beside, each place in sight of the other; {} turns each; between the two a door is shut or "
-                "opened. Right: clear, and within {:g} cm and {:g} degrees of the truth; wrong: clear, and not. The "
-                "worst error is that of the right ones, for position and direction by itself.",
-                results.scenes, noise.range, noise.beam_angle, robot::kAlignedTurns, 100.0 * kRightDistance,
-                kRightDegrees)},
+            Heading{2, "Reliability of alignments"},
+            Paragraph{
+                fmt::format("{} random scenes of each kind: in the simulator's room, its office (corridors and rooms) "
+                            "and its hall, a lidar with 360 beams, a range of 12 m, {} m and {} rad noise (standard "
+                            "deviations) is at two places 0.5 to 2 m apart, each in sight of the other; {} turns each; "
+                            "between the captures, a door is closed or opened. Right: clear, and within {:g} cm and "
+                            "{:g} degrees of the ground truth; wrong: clear, but not right. The worst errors are those "
+                            "of right results, separately for position and direction.",
+                            results.scenes, noise.range, noise.beam_angle, robot::kAlignedTurns, 100.0 * kRightDistance,
+                            kRightDegrees)},
             alignment_trial_table(results),
             Items{alignment_trial_findings(results)},
-            Heading{2, "Locating in a map"},
-            Paragraph{fmt::format(
-                "A map is what was seen from some places, each in sight of an earlier one and at most 3 m from it, in "
-                "every second of them with a door shut; and somebody who stands in such a place, too, is looked for in "
-                "it without any guess. {} turns from each place.",
-                robot::kMappedTurns)},
+            Heading{2, "Localization in a map"},
+            Paragraph{fmt::format("A map consists of captures from several places, each in sight of an earlier one and "
+                                  "at most 3 m from it, every second one with a closed door; a view from another such "
+                                  "place is localized in it without an initial guess. {} turns from each place.",
+                                  robot::kMappedTurns)},
             locating_table(results),
             Items{locating_trial_findings(results)},
-            Paragraph{"Views of a world that is not in the map have to be refused: a clear one would be wrong wherever "
-                      "it is."},
+            Paragraph{"Views of a world that is not in the map must be refused: a clear result is always wrong."},
             stranger_table(results),
             Items{stranger_findings(results)},
         });
     if (!results.picture) return;
     const auto& [file, world, captures, trial] = *results.picture;
-    document.push_back(Paragraph{"In blue the map, the discs being the places that it was seen from; in orange the "
-                                 "view, where it was found. The cross is its lidar."});
+    document.push_back(Paragraph{"Blue: the map, with discs at the places of its captures; orange: the view at its "
+                                 "localized pose. The cross is its lidar."});
     document.push_back(
         Picture{fmt::format("{}/{}", kPicturesFolder, file),
                 fmt::format("a view in a map of the {} of {}, scene {}: off by {:.1f} mm and {:.2f} degrees", world,
@@ -225,12 +225,12 @@ void add_trial_times(Document& document, const TrialResults& results) {
                               fmt::format("{:.0f}", 1e3 * trials.seconds / scenes)});
     };
     for (const auto& [world, trials] : results.aligned) add("alignment, " + world, "2", trials);
-    for (const auto& row : results.located) add("locating, " + row.map, counted(row.captures), row.trials);
+    for (const auto& row : results.located) add("localization, " + row.map, counted(row.captures), row.trials);
     for (const auto& row : results.strangers) {
         add(fmt::format("{} in the {}", row.seen, row.map), counted(row.captures), row.trials);
     }
     document.push_back(Paragraph{
-        fmt::format("Seconds to try all scenes of a kind, their making included. {} threads.", worker_count())});
+        fmt::format("Seconds for all scenes of a kind, including their simulation. {} threads.", worker_count())});
     document.push_back(std::move(table));
 }
 

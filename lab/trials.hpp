@@ -1,7 +1,7 @@
 #pragma once
 
+#include "lab/integrate_recording.hpp"
 #include "lab/pose_error.hpp"
-#include "lab/weaving.hpp"
 
 #include "server/landmarks/alignment.hpp"
 

@@ -91,7 +91,7 @@ protected:
         const auto keep = [&](std::size_t scans, mapping::Projection& projection) {
             if (scans == recording.scans.size()) end = projection.snapshot();
         };
-        EXPECT_TRUE(weave(
+        EXPECT_TRUE(integrate_recording(
             recording, options, [] { return 0.0; }, keep));
         return states_of(occupancy_of(end, standard_.truth.box));
     }
@@ -142,7 +142,7 @@ TEST_F(BrokenModels, AMapThatIsNeverClearedIsDetectedByTheWalkersTraces) {
         };
         SessionOptions sized = options;
         sized.cell_size = cell_size_;
-        EXPECT_TRUE(weave(
+        EXPECT_TRUE(integrate_recording(
             walked, sized, [] { return 0.0; }, keep));
         return score(states_of(occupancy_of(end, standard_.truth.box)), standard_.truth, standard_.seen,
                      walked_cells(walked, end.config, standard_.truth.box));

@@ -18,13 +18,13 @@ inline Comparison drawn_comparison() {
 }
 
 /// Returns alignments in which 4 of 5 pairs agree and the surfaces give a clear result.
-inline WaysToAlign drawn_ways() {
-    WaysToAlign ways;
-    ways.by_landmarks = {.pairs = 5, .fit = LandmarkFit{4, 0.006, {0.008, 0.02}}, .refusal = {}};
-    ways.by_surfaces.alignment.certainty = landmarks::Certainty::kClear;
-    ways.by_surfaces.alignment.T_first_second = {1.0, -0.5, 0.1};
-    ways.by_surfaces.error = {0.012, 0.01};
-    return ways;
+inline AlignmentMethods drawn_methods() {
+    AlignmentMethods methods;
+    methods.by_landmarks = {.pairs = 5, .fit = LandmarkFit{4, 0.006, {0.008, 0.02}}, .refusal = {}};
+    methods.by_surfaces.alignment.certainty = landmarks::Certainty::kClear;
+    methods.by_surfaces.alignment.T_first_second = {1.0, -0.5, 0.1};
+    methods.by_surfaces.error = {0.012, 0.01};
+    return methods;
 }
 
 /// Returns results with one place, one neighbour, one row in each sweep, some trials, and a recording.
@@ -36,14 +36,14 @@ inline LandmarkResults drawn_landmark_results() {
     results.places.push_back({{1.5, -2.0, 0.0},
                               {seen_bars({}), seen_bars({}), drawn_comparison(), "p.png"},
                               control,
-                              drawn_ways(),
-                              drawn_ways()});
+                              drawn_methods(),
+                              drawn_methods()});
     NeighbourResult neighbour;
     neighbour.to = 1;
     neighbour.comparison = drawn_comparison();
     neighbour.comparison.metrics.persistence = 0.25;
-    neighbour.ways = drawn_ways();
-    neighbour.ways.by_landmarks = {.pairs = 1, .fit = {}, .refusal = "too few pairs"};
+    neighbour.methods = drawn_methods();
+    neighbour.methods.by_landmarks = {.pairs = 1, .fit = {}, .refusal = "too few pairs"};
     results.neighbours.push_back(neighbour);
     results.tolerances.push_back({0.1, drawn_comparison().metrics});
     results.readings.push_back({50, 18000, 9, 0.15, 74941, 1166716, 6.5});
@@ -54,7 +54,7 @@ inline LandmarkResults drawn_landmark_results() {
                                       9,
                                       seen_bars({{0.0, 0.0}}),
                                       {seen_bars({}), seen_bars({}), drawn_comparison(), "r.png"},
-                                      drawn_ways()};
+                                      drawn_methods()};
     return results;
 }
 

@@ -62,7 +62,7 @@ TEST(LandmarkExperiment, FindsTheDoorAndAlignsNeighbouringPlaces) {
     }
     ASSERT_EQ(results.neighbours.size(), 6U);
     for (const auto& neighbour : results.neighbours) {
-        const auto& [alignment, error] = neighbour.ways.by_surfaces;
+        const auto& [alignment, error] = neighbour.methods.by_surfaces;
         if (alignment.certainty != landmarks::Certainty::kClear) continue;
         EXPECT_LT(error.metres, 0.02);
         EXPECT_LT(error.degrees(), 0.5);
@@ -88,7 +88,7 @@ TEST(LandmarkExperiment, RunsScenesOfEveryWorldAndDrawsOneLocatedView) {
     EXPECT_EQ(picture.has_value(), located[1].trials.count(Verdict::kRight) > 0);
     EXPECT_EQ(pictures.contains("located.png"), picture.has_value());
     EXPECT_THAT(report, HasSubstr("--scenes 2"));
-    EXPECT_THAT(report, HasSubstr("## Locating in a map"));
+    EXPECT_THAT(report, HasSubstr("## Localization in a map"));
 }
 
 TEST(LandmarkExperiment, ComparesTheHalvesOfARecording) {

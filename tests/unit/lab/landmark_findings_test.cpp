@@ -27,12 +27,12 @@ TEST(LandmarkFindings, ExplainOnlyValuesOutsideThePublishedRange) {
     auto findings = door_findings(results);
     ASSERT_EQ(findings.size(), 3U);
     EXPECT_THAT(findings[0], HasSubstr("Persistence is 0.50, above the published 0.18 to 0.49: "));
-    EXPECT_THAT(findings[0], HasSubstr("With nothing moved it is 1.00"));
+    EXPECT_THAT(findings[0], HasSubstr("Without a moved door it is 1.00"));
     EXPECT_THAT(findings[0], HasSubstr("to the next place it is 0.25"));
     EXPECT_EQ(findings[1], "Stability is 0.75, within the published 0.67 to 0.89.");
     EXPECT_THAT(findings[2], HasSubstr("Continuity is 0.70, above the published 0.43 to 0.46: fill is 1.00"));
     results.places[0].door.comparison.metrics.stability.reset();
-    EXPECT_THAT(door_findings(results)[1], HasSubstr("told of nothing"));
+    EXPECT_THAT(door_findings(results)[1], HasSubstr("cannot be computed"));
 }
 
 TEST(LandmarkFindings, DistancesAreComparedWithPublishedOnes) {
@@ -40,7 +40,7 @@ TEST(LandmarkFindings, DistancesAreComparedWithPublishedOnes) {
     EXPECT_THAT(tolerance_finding(results), HasSubstr("the mean distance is 0.020 m, above the published 0.018 m"));
     EXPECT_THAT(tolerance_finding(results), HasSubstr("deviation 0.013 m, equal to the published 0.013 m"));
     results.tolerances[0].metrics = {};
-    EXPECT_THAT(tolerance_finding(results), HasSubstr("nothing is matched"));
+    EXPECT_THAT(tolerance_finding(results), HasSubstr("no landmarks match"));
 }
 
 TEST(LandmarkFindings, CornersAreRoundedIfTheirErrorExceedsTheUnfilteredOne) {
@@ -49,16 +49,17 @@ TEST(LandmarkFindings, CornersAreRoundedIfTheirErrorExceedsTheUnfilteredOne) {
                                       row(7, 0.012, 0.036), row(9, 0.013, 0.5)};
     const auto finding = window_finding(rows);
     EXPECT_THAT(finding, HasSubstr("a window of 3 is best: 0.010 m instead of 0.015 m"));
-    EXPECT_THAT(finding, HasSubstr("Corners go round from a window of 5 on, where they are 0.020 m"));
-    EXPECT_THAT(finding, HasSubstr("from 7 on they are more than twice as far off; with 9 they are 0.50 m off"));
-    EXPECT_THAT(window_finding({row(1, 0.015, 0.018), row(3, 0.010, 0.018)}), HasSubstr("no window does harm"));
+    EXPECT_THAT(finding, HasSubstr("Corners are rounded from a window of 5, where their error is 0.020 m"));
+    EXPECT_THAT(finding, HasSubstr("from 7 it is more than twice as large; with 9 it is 0.50 m"));
+    EXPECT_THAT(window_finding({row(1, 0.015, 0.018), row(3, 0.010, 0.018)}),
+                HasSubstr("No window increases the error"));
 }
 
 TEST(LandmarkFindings, UnclearAlignmentsAreExplainedAndExcludedFromErrors) {
     auto results = drawn_landmark_results();
-    EXPECT_THAT(alignment_findings(results), ElementsAre("1 of 1 are clear, and these are off by 12.0 mm and 0.57 "
-                                                         "degrees at most."));
-    auto& alignment = results.neighbours[0].ways.by_surfaces.alignment;
+    EXPECT_THAT(alignment_findings(results),
+                ElementsAre("1 of 1 are clear, with errors of at most 12.0 mm and 0.57 degrees."));
+    auto& alignment = results.neighbours[0].methods.by_surfaces.alignment;
     alignment.certainty = landmarks::Certainty::kAmbiguous;
     alignment.why = "another pose does as well.";
     EXPECT_THAT(alignment_findings(results), ElementsAre("None is clear.", "1 to 2: another pose does as well."));
@@ -66,18 +67,18 @@ TEST(LandmarkFindings, UnclearAlignmentsAreExplainedAndExcludedFromErrors) {
 
 TEST(LandmarkFindings, LandmarkTransformsAndRefusalsAreReportedForOneAndTwoPlaces) {
     auto results = drawn_landmark_results();
-    results.places[0].control_ways.by_landmarks.fit->error = {0.001, 0.0};
-    const auto findings = ways_findings(results);
+    results.places[0].control_methods.by_landmarks.fit->error = {0.001, 0.0};
+    const auto findings = method_findings(results);
     ASSERT_EQ(findings.size(), 4U);
     EXPECT_THAT(findings[0],
-                HasSubstr("Of one place landmarks tell 2 of 2 transforms, off by 1.0 to 8.0 mm and 0.00 to 1.15 "
+                HasSubstr("For one place, landmarks give 2 of 2 transforms, off by 1.0 to 8.0 mm and 0.00 to 1.15 "
                           "degrees; surfaces 2 of 2 transforms, off by 12.0 mm and 0.57 degrees. "));
     EXPECT_THAT(findings[1],
-                HasSubstr("landmarks tell none of 1 transforms; surfaces 1 of 1 transforms, off by 12.0 mm"));
+                HasSubstr("landmarks give none of 1 transforms; surfaces 1 of 1 transforms, off by 12.0 mm"));
     EXPECT_EQ(findings[3], "1 to 2: refused by landmarks: too few pairs.");
-    results.neighbours[0].ways.by_surfaces.alignment.certainty = landmarks::Certainty::kUndetermined;
-    EXPECT_THAT(ways_findings(results)[1],
-                HasSubstr("landmarks tell none of 1 transforms; surfaces none of 1 transforms. "));
+    results.neighbours[0].methods.by_surfaces.alignment.certainty = landmarks::Certainty::kUndetermined;
+    EXPECT_THAT(method_findings(results)[1],
+                HasSubstr("landmarks give none of 1 transforms; surfaces none of 1 transforms. "));
 }
 
 TEST(LandmarkFindings, RecordingHalvesAreComparedWithPublishedValues) {

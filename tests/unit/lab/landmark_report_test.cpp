@@ -61,7 +61,7 @@ TEST(LandmarkReport, ContainsTheTrialsIfPresent) {
     results.trials->scenes = kScenes;
     EXPECT_THAT(to_markdown(landmark_report_of(results)), Not(HasSubstr("--scenes"))) << "the default is not printed";
     results.trials.reset();
-    EXPECT_THAT(to_markdown(landmark_report_of(results)), Not(HasSubstr("How sure")));
+    EXPECT_THAT(to_markdown(landmark_report_of(results)), Not(HasSubstr("Reliability")));
     EXPECT_THAT(to_markdown(landmark_times_report_of(results, "")), Not(HasSubstr("| alignment, room |")));
 }
 

@@ -57,7 +57,8 @@ TEST_F(Ld06Recordings, WithoutReturnsAreRefusedWithTheirCount) {
     }
     EXPECT_THAT(
         read_ld06_recording(file(bytes)).error().message,
-        HasSubstr("room.bin: in the first 4 of 9 turns only 0 points were seen; record where the lidar sees walls"));
+        HasSubstr(
+            "room.bin: in the first 4 of 9 turns only 0 points were observed; record where the lidar can see walls"));
 }
 
 } // namespace

@@ -44,13 +44,13 @@ TEST(LabOptionsTest, LandmarksHasADirectoryASeedAndARecording) {
 
 TEST(LabOptionsTest, InvalidOptionIsAOneLineUsageError) {
     const std::vector<std::pair<std::vector<const char*>, const char*>> mistakes{
-        {{}, "say what to do: experiment or landmarks"},
+        {{}, "name a command: experiment or landmarks"},
         {{"experiment"}, "experiment: name a directory with --out"},
         {{"experiment", "--out", "d", "--scans", "9"}, "--scans"},
         {{"experiment", "--out", "d", "--scans", "10.5"}, "--scans"},
         {{"experiment", "--out", "d", "--seed", "-1"}, "--seed"},
         {{"experiment", "--out", "d", "--bogus"}, "--bogus"},
-        {{"landmark"}, "say what to do: experiment or landmarks"},
+        {{"landmark"}, "name a command: experiment or landmarks"},
         {{"landmarks"}, "landmarks: name a directory with --out"},
         {{"landmarks", "--out", "d", "--seed", "-1"}, "--seed"},
         {{"landmarks", "--out", "d", "--capture", ""}, "--capture"},

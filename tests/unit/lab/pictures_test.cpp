@@ -1,6 +1,6 @@
 #include "lab/pictures.hpp"
 
-#include "lab/weaving.hpp"
+#include "lab/integrate_recording.hpp"
 
 #include <opencv2/imgcodecs.hpp>
 
@@ -37,7 +37,7 @@ cv::Mat strip_of(double cell_size) {
     const auto keep = [&](std::size_t scans, mapping::Projection& projection) {
         if (scans == 1 || scans == 11) moments.push_back({projection.snapshot(), scans});
     };
-    EXPECT_TRUE(weave(
+    EXPECT_TRUE(integrate_recording(
         recording, options, [] { return 0.0; }, keep));
     return cv::imdecode(strip_png(moments, recording, {-0.5, -1.2, 3.0, 1.0}), cv::IMREAD_COLOR);
 }
@@ -86,7 +86,7 @@ TEST(Strips, WallThinnerThanAPixelIsVisibleInEveryRow) {
     const auto keep = [&](std::size_t scans, mapping::Projection& projection) {
         if (scans == 2) moments.push_back({projection.snapshot(), scans});
     };
-    ASSERT_TRUE(weave(
+    ASSERT_TRUE(integrate_recording(
         recording, options, [] { return 0.0; }, keep));
     const cv::Mat strip = cv::imdecode(strip_png(moments, recording, {-0.5, -1.2, 3.0, 1.0}), cv::IMREAD_COLOR);
     for (double y = -0.3; y < 0.3; y += 0.025) {

@@ -31,18 +31,19 @@ TEST(TrialReport, TablesCountVerdictsAndShowTheLargestRightErrors) {
 
 TEST(TrialReport, EachWrongTrialIsListed) {
     const auto results = drawn_trial_results();
-    EXPECT_THAT(alignment_trial_findings(results), ElementsAre("1 of 2 are right, and no clear one is wrong."));
+    EXPECT_THAT(alignment_trial_findings(results), ElementsAre("1 of 2 are right, and no clear result is wrong."));
     EXPECT_THAT(locating_trial_findings(results),
-                ElementsAre("In maps of 1 capture 0 of 1 views are found, and no clear one is wrong.",
+                ElementsAre("In maps of 1 capture 0 of 1 views are found, and no clear result is wrong.",
                             "In maps of 4 captures 1 of 3 views are found, and 2 of 3 clear ones are wrong.",
                             "Wrong by more than 1 m, where the world repeats itself: 1 of 2; of these views "
                             "0.80 is in the map there, and 0.30 where they were taken.",
                             "Wrong, but beside the truth: 1 of 2, off by 30.1 mm.",
                             "Wrong: office, map of 4 captures, scene 702, off by 30.1 mm and 5.73 degrees.",
                             "Wrong: office, map of 4 captures, scene 703, off by 2500.0 mm and 171.89 degrees."));
-    EXPECT_THAT(stranger_findings(results),
-                ElementsAre("2 of 3 are refused.",
-                            "Clear, though it is none: room in a map of the office of 4 captures, scene 703."));
+    EXPECT_THAT(
+        stranger_findings(results),
+        ElementsAre("2 of 3 are refused.",
+                    "Clear, but the view is of another world: room in a map of the office of 4 captures, scene 703."));
 }
 
 TEST(TrialReport, ContainsThePictureIfDrawn) {
@@ -58,7 +59,7 @@ TEST(TrialReport, TimesAreASeparateTable) {
     Document times;
     add_trial_times(times, results);
     EXPECT_THAT(to_markdown(times), HasSubstr("| alignment, room | 2 | 2 | 1.5 | 750 |"));
-    EXPECT_THAT(to_markdown(times), HasSubstr("| locating, office | 4 | 3 | 1.5 | 500 |"));
+    EXPECT_THAT(to_markdown(times), HasSubstr("| localization, office | 4 | 3 | 1.5 | 500 |"));
     EXPECT_THAT(to_markdown(times), HasSubstr("| room in the office | 4 | 3 | 1.5 | 500 |"));
     const auto text = text_of(results);
     for (auto& row : results.located) row.trials.seconds = 9.0;

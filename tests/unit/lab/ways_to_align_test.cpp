@@ -1,4 +1,4 @@
-#include "lab/ways_to_align.hpp"
+#include "lab/alignment_methods.hpp"
 
 #include "lab/door_room.hpp"
 #include "lab/lidar_capture.hpp"
@@ -30,9 +30,9 @@ private:
     robot::Random random_{1};
 };
 
-WaysToAlign ways_of(const SeenLandmarks& first, const SeenLandmarks& second) {
+AlignmentMethods ways_of(const SeenLandmarks& first, const SeenLandmarks& second) {
     const auto matches = compare(first, second)->matches;
-    return align_both_ways({first, second, kPlace, kPlace}, matches).value();
+    return align_by_both_methods({first, second, kPlace, kPlace}, matches).value();
 }
 
 TEST_F(WaysToAlignTest, LandmarksAndSurfacesAgreeIfADoorMoved) {
@@ -78,7 +78,7 @@ TEST_F(WaysToAlignTest, DisagreeingPairsAreExcluded) {
 TEST_F(WaysToAlignTest, TooFewPairsAreRefusedWhileSurfacesAlign) {
     const auto first = seen(Door::kClosed);
     const auto second = seen(Door::kOpen, {2.6, 1.8, 0.3});
-    const auto ways = align_both_ways({first, second, kPlace, {2.6, 1.8, 0.3}}, {}).value();
+    const auto ways = align_by_both_methods({first, second, kPlace, {2.6, 1.8, 0.3}}, {}).value();
     EXPECT_EQ(ways.by_landmarks.pairs, 0U);
     EXPECT_FALSE(ways.by_landmarks.fit);
     EXPECT_THAT(ways.by_landmarks.refusal, HasSubstr("pairs with weight: 0;"));

@@ -1,4 +1,4 @@
-#include "lab/weaving.hpp"
+#include "lab/integrate_recording.hpp"
 
 #include "lab/map_cells.hpp"
 
@@ -32,7 +32,7 @@ SessionOptions cells_of(double size) {
 TEST(Weaving, CountsTheTimeOfScansOnly) {
     double clock = 0.0;
     std::vector<std::size_t> scan_counts;
-    const auto seconds = weave(
+    const auto seconds = integrate_recording(
         one_beam(), cells_of(0.1), [&] { return clock += 1.0; },
         [&](std::size_t scans, mapping::Projection&) {
             clock += 100.0;
@@ -44,7 +44,7 @@ TEST(Weaving, CountsTheTimeOfScansOnly) {
 }
 
 TEST(Weaving, InvalidSettingsAreRefused) {
-    const auto refused = weave(
+    const auto refused = integrate_recording(
         one_beam(), cells_of(0.0), [] { return 0.0; }, [](std::size_t, mapping::Projection&) {});
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().code, Errc::kInvalidField);
@@ -53,7 +53,7 @@ TEST(Weaving, InvalidSettingsAreRefused) {
 TEST(MapCells, AreTheMapsCellsInTheBox) {
     std::optional<mapping::Snapshot> end;
     const auto keep = [&](std::size_t, mapping::Projection& projection) { end = projection.snapshot(); };
-    ASSERT_TRUE(weave(
+    ASSERT_TRUE(integrate_recording(
         one_beam(), cells_of(0.1), [] { return 0.0; }, keep));
     const auto occupancy = occupancy_of(*end, {0, -1, 12, 2});
     const auto map = states_of(occupancy);

@@ -32,7 +32,7 @@ struct BySurfaces {
     PoseError error;
 };
 
-struct WaysToAlign {
+struct AlignmentMethods {
     ByLandmarks by_landmarks;
     BySurfaces by_surfaces;
 };
@@ -48,7 +48,7 @@ struct PlacedCaptures {
 /// Computes the transform from the first lidar to the second by both methods. The pairs of landmarks were matched by
 /// the true poses, which the alignment of surfaces does not use.
 /// Errors: those of align(). A transform that landmarks do not support is a refusal, not an error.
-[[nodiscard]] Result<WaysToAlign> align_both_ways(const PlacedCaptures& captures,
-                                                  std::span<const landmarks::Match> matches);
+[[nodiscard]] Result<AlignmentMethods> align_by_both_methods(const PlacedCaptures& captures,
+                                                             std::span<const landmarks::Match> matches);
 
 } // namespace scanloom::lab

@@ -1,8 +1,8 @@
-#include "lab/weaving.hpp"
+#include "lab/integrate_recording.hpp"
 
 namespace scanloom::lab {
-Result<std::vector<double>> weave(const Recording& recording, const SessionOptions& options, const Now& now,
-                                  const AfterScan& after_scan) {
+Result<std::vector<double>> integrate_recording(const Recording& recording, const SessionOptions& options,
+                                                const Now& now, const AfterScan& after_scan) {
     const auto config = mapping::resolve(options);
     if (!config) return config.error();
     mapping::Projection projection(*config);

@@ -22,7 +22,7 @@ inline constexpr std::size_t kScansPerSnapshot = 10;
 /// Errors: kInvalidField: a session would not accept these options.
 /// @return seconds for each scan: to apply its entry and, after every kScansPerSnapshot scans, to make a snapshot,
 ///         which updates frontiers and danger; nothing else is included
-[[nodiscard]] Result<std::vector<double>> weave(const Recording& recording, const SessionOptions& options,
-                                                const Now& now, const AfterScan& after_scan);
+[[nodiscard]] Result<std::vector<double>> integrate_recording(const Recording& recording, const SessionOptions& options,
+                                                              const Now& now, const AfterScan& after_scan);
 
 } // namespace scanloom::lab

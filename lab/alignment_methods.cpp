@@ -1,4 +1,4 @@
-#include "lab/ways_to_align.hpp"
+#include "lab/alignment_methods.hpp"
 
 #include "server/landmarks/alignment_of_pairs.hpp"
 #include "server/landmarks/cloud.hpp"
@@ -42,10 +42,11 @@ Result<BySurfaces> align_by_surfaces(const PlacedCaptures& captures) {
 
 } // namespace
 
-Result<WaysToAlign> align_both_ways(const PlacedCaptures& captures, std::span<const landmarks::Match> matches) {
+Result<AlignmentMethods> align_by_both_methods(const PlacedCaptures& captures,
+                                               std::span<const landmarks::Match> matches) {
     auto by_surfaces = align_by_surfaces(captures);
     if (!by_surfaces) return by_surfaces.error();
-    return WaysToAlign{align_by_landmarks(captures, matches), std::move(*by_surfaces)};
+    return AlignmentMethods{align_by_landmarks(captures, matches), std::move(*by_surfaces)};
 }
 
 } // namespace scanloom::lab
