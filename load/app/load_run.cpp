@@ -20,7 +20,7 @@ namespace {
 constexpr Micros kPollPeriod = 100 * kMillisecond;
 constexpr Micros kShowPeriod = kSecond;
 constexpr Micros kHeadStart = 200 * kMillisecond; ///< from notifying the robots until they start
-constexpr std::chrono::seconds kPatience{60};     ///< with the server's HTTP when it is no longer under load
+constexpr std::chrono::seconds kTimeout{60};      ///< with the server's HTTP when it is no longer under load
 constexpr std::string_view kCalm = "calm";
 
 std::string prefix_of(const LoadOptions& options) { return fmt::format("load-{}-", options.seed); }
@@ -77,7 +77,7 @@ LoadRun::LoadRun(asio::io_context& io, const LoadOptions& options, const Course&
       fleet_(fleet_plan(options), robots_, clock_, course_, link_),
       audience_({options.viewers, options.tile_readers, options.tile_rate, http, sessions_}, clock_) {
     report_.settings = settings_of(options, course);
-    report_.evidence.asked = options.verify;
+    report_.evidence.verify = options.verify;
     report_.evidence.sessions = options.sessions;
     report_.evidence.shares_sessions = options.sessions < options.robots;
 }
@@ -124,7 +124,7 @@ asio::awaitable<Result<RunReport>> LoadRun::conduct() {
 std::string LoadRun::why_nothing_was_sent(const std::string& trouble) const {
     if (interrupted_) return "interrupted before the first scan";
     if (!trouble.empty()) return trouble;
-    return fmt::format("within {:g} s the server let no robot in, or gave none credit to send anything",
+    return fmt::format("within {:g} s the server admitted no robot, or granted none any credit",
                        options_.give_up_after);
 }
 
@@ -142,8 +142,8 @@ asio::awaitable<Result<>> LoadRun::make_room() {
     if (!options_.replace) {
         co_return Error{
             Errc::kAlreadyExists,
-            fmt::format("{} of an earlier run with --seed {} {} there, {} first; delete {} with --replace, "
-                        "or take another --seed",
+            fmt::format("{} of an earlier run with --seed {} {} on the server, {} first; delete {} with --replace, or "
+                        "use another --seed",
                         names->size() == 1 ? "a session" : fmt::format("{} sessions", grouped(names->size())),
                         options_.seed, names->size() == 1 ? "is" : "are", names->front(),
                         names->size() == 1 ? "it" : "them")};
@@ -159,17 +159,17 @@ asio::awaitable<Result<>> LoadRun::make_room() {
 /// @return false if a robot gave up, or no more robots connected
 asio::awaitable<bool> LoadRun::connect_robots() {
     fleet_.connect();
-    const auto patience = static_cast<Micros>(options_.give_up_after * static_cast<double>(kSecond));
+    const auto timeout = static_cast<Micros>(options_.give_up_after * static_cast<double>(kSecond));
     std::uint32_t greeted = 0;
     Micros advanced = clock_.now();
     for (;;) {
         const auto progress = fleet_.progress();
-        display_.passing(fmt::format("{} of {} robots linked{}", grouped(progress.linked), grouped(options_.robots),
+        display_.passing(fmt::format("{} of {} robots connected{}", grouped(progress.linked), grouped(options_.robots),
                                      progress.trouble.empty() ? "" : "; " + progress.trouble));
         if (progress.greeted == options_.robots) co_return true;
         if (progress.failed > 0 || interrupted_) co_return false;
         if (std::exchange(greeted, progress.greeted) != progress.greeted) advanced = clock_.now();
-        if (clock_.now() > advanced + patience) co_return false;
+        if (clock_.now() > advanced + timeout) co_return false;
         co_await pause(kPollPeriod);
     }
 }
@@ -190,7 +190,7 @@ asio::awaitable<void> LoadRun::stream() {
 }
 
 asio::awaitable<void> LoadRun::wait_for_the_last_ack() {
-    const auto patience = static_cast<Micros>(options_.give_up_after * static_cast<double>(kSecond));
+    const auto timeout = static_cast<Micros>(options_.give_up_after * static_cast<double>(kSecond));
     const Micros end = begun_ + static_cast<Micros>(options_.duration * static_cast<double>(kSecond));
     Moment shown = co_await moment();
     std::uint64_t acknowledged = 0;
@@ -202,7 +202,7 @@ asio::awaitable<void> LoadRun::wait_for_the_last_ack() {
         if (progress.finished + progress.failed == options_.robots) co_return;
         const std::uint64_t before = std::exchange(acknowledged, progress.acknowledged);
         if (acknowledged > before || (now < end && !interrupted_)) advanced = now;
-        if (now > advanced + patience) co_return;
+        if (now > advanced + timeout) co_return;
         if (now < shown.at + kShowPeriod) continue;
         Moment next = co_await moment();
         show(shown, next);
@@ -212,9 +212,9 @@ asio::awaitable<void> LoadRun::wait_for_the_last_ack() {
 
 asio::awaitable<Moment> LoadRun::moment() {
     Moment now;
-    http_.set_patience(std::chrono::seconds(2)); // a slow server must not stop the display
+    http_.set_timeout(std::chrono::seconds(2)); // a slow server must not stop the display
     const auto use = co_await server_use(http_);
-    http_.set_patience(kPatience);
+    http_.set_timeout(kTimeout);
     if (use) now.server = *use;
     now.fleet = fleet_.look()->figures;
     now.audience = *audience_.look();
@@ -253,13 +253,13 @@ asio::awaitable<void> LoadRun::verify() {
     Evidence& evidence = report_.evidence;
     const bool is_complete = evidence.failures.empty() && evidence.scans_acknowledged == evidence.scans_sent;
     if (options_.verify == Verify::kNone || !is_complete) co_return; // scans in flight may still arrive
-    const auto tell = [this](const std::string& text) { display_.passing(text); };
+    const auto report = [this](const std::string& text) { display_.passing(text); };
     const auto sessions = expected();
-    co_await verify_counts(http_, sessions, tell, evidence);
+    co_await verify_counts(http_, sessions, report, evidence);
     const bool compare = options_.verify == Verify::kDigests && !evidence.shares_sessions;
     if (!compare || !evidence.failures.empty()) co_return;
     calm_ = std::make_unique<CalmSession>(io_, calm_name(), clock_, course_, link_);
-    co_await verify_digests(http_, sessions, calm_name(), *calm_, tell, evidence);
+    co_await verify_digests(http_, sessions, calm_name(), *calm_, report, evidence);
 }
 
 asio::awaitable<void> LoadRun::clean_up() {
@@ -270,8 +270,7 @@ asio::awaitable<void> LoadRun::clean_up() {
         display_.passing(fmt::format("deleting {} of {} sessions", grouped(i), grouped(names.size())));
         const auto deleted = co_await delete_session(http_, names[i]);
         if (deleted) continue;
-        display_.note(
-            fmt::format("the sessions from {} on are left on the server: {}", names[i], deleted.error().message));
+        display_.note(fmt::format("the sessions from {} remain on the server: {}", names[i], deleted.error().message));
         co_return;
     }
 }

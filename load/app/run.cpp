@@ -77,17 +77,17 @@ Result<> check_descriptors(const LoadOptions& options) {
                                  options.tile_readers + kDescriptorsBesides;
     const std::uint64_t allowed = raise_descriptor_limit();
     if (allowed >= needed) return {};
-    return Error{Errc::kFull,
-                 fmt::format("{} descriptors are needed and {} allowed; raise that (ulimit -n), or use fewer "
-                             "robots",
-                             grouped(needed), grouped(allowed))};
+    return Error{
+        Errc::kFull,
+        fmt::format("{} descriptors are needed and {} allowed; raise the limit (ulimit -n), or use fewer robots",
+                    grouped(needed), grouped(allowed))};
 }
 
 /// The first signal ends the streaming, the second the program.
 asio::awaitable<void> obey_signals(asio::io_context& io, LoadRun& run, LiveDisplay& display) {
     asio::signal_set signals(io, SIGINT, SIGTERM);
     if (std::get<0>(co_await signals.async_wait(kAwaitTuple))) co_return;
-    display.note("interrupted: waiting for what was sent, then verifying it; interrupt again to leave at once, which "
+    display.note("interrupted: waiting for sent scans, then verifying them; interrupt again to end immediately, which "
                  "leaves the sessions on the server");
     run.interrupt();
     if (std::get<0>(co_await signals.async_wait(kAwaitTuple))) co_return;
@@ -133,7 +133,7 @@ ExitCode run(const LoadOptions& options) {
     const auto http = http_place(options, link->hello.token);
     if (!http) return fail(http.error());
     if (auto ok = check_descriptors(options); !ok) return fail(ok.error());
-    display.passing("driving through the world");
+    display.passing("simulating the trajectory");
     const auto course = drive_course(options);
     if (!course) return fail(course.error());
 
@@ -146,7 +146,7 @@ ExitCode run(const LoadOptions& options) {
         io.stop();
     });
     io.run();
-    if (!outcome) return fail({Errc::kShuttingDown, "interrupted; nothing was verified"});
+    if (!outcome) return fail({Errc::kShuttingDown, "interrupted; not verified"});
     if (!*outcome) return fail(outcome->error());
     if (auto written = write_report(**outcome, options.json_file, file); !written) return fail(written.error());
     return (*outcome)->verdict.is_good ? kExitDone : kExitFailed;

@@ -14,10 +14,9 @@ constexpr double kMeanMin = 0.1; // seconds
 constexpr double kMeanMax = 1e6;
 
 Error unknown_fault(std::string_view text) {
-    return {Errc::kInvalidField,
-            fmt::format("'{}' is no fault; give kinds with the mean seconds between two on a link, as in "
-                        "cut=20,half-open=60,stall=30",
-                        text)};
+    return {Errc::kInvalidField, fmt::format("'{}' is not a fault; name kinds with the mean seconds between two on a "
+                                             "link, as in cut=20,half-open=60,stall=30",
+                                             text)};
 }
 
 Result<> read_fault(std::string_view item, FaultMeans& means) {

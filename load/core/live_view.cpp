@@ -48,10 +48,9 @@ std::string ack_text(const LatencyHistogram& ack) {
 }
 
 std::string server_text(const Lately& shown) {
-    if (!shown.server) return "does not say";
+    if (!shown.server) return "does not report its use";
     const auto& cpu_seconds = shown.server->cpu_seconds;
-    return fmt::format("{}, {}",
-                       cpu_seconds ? fmt::format("{:.2f} cores", *cpu_seconds / shown.seconds) : "started anew",
+    return fmt::format("{}, {}", cpu_seconds ? fmt::format("{:.2f} cores", *cpu_seconds / shown.seconds) : "restarted",
                        as_bytes(shown.server->resident_bytes));
 }
 
@@ -79,7 +78,7 @@ std::uint64_t faults_of(const FleetFigures& fleet) {
 
 std::string live_line(const RunSettings& settings, Micros begun, const Moment& before, const Moment& now) {
     const Lately shown = lately(settings.rate > 0.0, before, now);
-    auto text = fmt::format("{}: {}/s sent, {}/s acknowledged, {} under way; ack {}; generator {:.2f} cores, server {}",
+    auto text = fmt::format("{}: {}/s sent, {}/s acknowledged, {} in flight; ack {}; generator {:.2f} cores, server {}",
                             time_text(settings, begun, now), whole(shown.sent), whole(shown.acknowledged),
                             grouped(under_way(now.fleet)), ack_text(shown.ack), shown.own_cores, server_text(shown));
     if (const auto alone = without_link(settings, now.fleet); alone > 0) {
@@ -100,18 +99,18 @@ std::vector<std::string> live_table(const RunSettings& settings, Micros begun, c
     std::vector<std::string> rows{
         row("time", time_text(settings, begun, now)),
         row("robots",
-            fmt::format("{}: {} linked, {} done, {} without a link", grouped(settings.robots), grouped(fleet.linked),
+            fmt::format("{}: {} connected, {} done, {} without a link", grouped(settings.robots), grouped(fleet.linked),
                         grouped(fleet.finished), grouped(without_link(settings, fleet)))),
-        row("sent", fmt::format("{:>10}/s {:>14} in all", whole(shown.sent), grouped(fleet.scans_sent))),
+        row("sent", fmt::format("{:>10}/s {:>14} in total", whole(shown.sent), grouped(fleet.scans_sent))),
         row("acknowledged",
-            fmt::format("{:>10}/s {:>14} in all", whole(shown.acknowledged), grouped(fleet.scans_acknowledged))),
-        row("under way", fmt::format("{:>10}", grouped(under_way(fleet)))),
+            fmt::format("{:>10}/s {:>14} in total", whole(shown.acknowledged), grouped(fleet.scans_acknowledged))),
+        row("in flight", fmt::format("{:>10}", grouped(under_way(fleet)))),
         row("ack", ack_text(shown.ack)),
         row("generator",
             fmt::format("{:.2f} cores{}", shown.own_cores,
                         shown.own_delay.count() == 0
                             ? ""
-                            : fmt::format(", behind by {} ms (p99)", as_milliseconds(shown.own_delay.percentile(99))))),
+                            : fmt::format(", delay {} ms (p99)", as_milliseconds(shown.own_delay.percentile(99))))),
         row("server", server_text(shown))};
     if (settings.viewers > 0) {
         rows.push_back(row("viewers", fmt::format("{} watch, {:.0f} events/s", now.audience.watching, shown.events)));

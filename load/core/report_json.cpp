@@ -28,23 +28,23 @@ json::object latency_json(const LatencyHistogram& latency) {
             {"max_ms", in_milliseconds(latency.max())}};
 }
 
-json::object settings_json(const RunSettings& asked) {
-    json::object object{{"robots", asked.robots},
-                        {"sessions", asked.sessions},
-                        {"rate", asked.rate},
-                        {"batch", asked.batch},
-                        {"duration", asked.duration},
-                        {"world", asked.world},
-                        {"laser", asked.laser},
-                        {"noise", asked.noise},
-                        {"beams", asked.beams},
-                        {"seed", asked.seed},
-                        {"threads", asked.threads},
-                        {"viewers", asked.viewers},
-                        {"tile_readers", asked.tile_readers},
-                        {"tile_rate", asked.tile_rate},
-                        {"faults", asked.faults}};
-    object["cell_size"] = asked.cell_size ? json::value(*asked.cell_size) : json::value();
+json::object settings_json(const RunSettings& settings) {
+    json::object object{{"robots", settings.robots},
+                        {"sessions", settings.sessions},
+                        {"rate", settings.rate},
+                        {"batch", settings.batch},
+                        {"duration", settings.duration},
+                        {"world", settings.world},
+                        {"laser", settings.laser},
+                        {"noise", settings.noise},
+                        {"beams", settings.beams},
+                        {"seed", settings.seed},
+                        {"threads", settings.threads},
+                        {"viewers", settings.viewers},
+                        {"tile_readers", settings.tile_readers},
+                        {"tile_rate", settings.tile_rate},
+                        {"faults", settings.faults}};
+    object["cell_size"] = settings.cell_size ? json::value(*settings.cell_size) : json::value();
     return object;
 }
 

@@ -18,13 +18,14 @@ std::string counted(std::uint64_t count, std::string_view one) {
     return fmt::format("{} {}{}", grouped(count), one, count == 1 ? "" : "s");
 }
 
-std::string title(const RunSettings& asked) {
-    const auto pace = asked.rate > 0.0 ? fmt::format("at {:g} scans/s", asked.rate) : "as fast as they may";
-    const auto cells = asked.cell_size ? fmt::format(", cells of {:g} m", *asked.cell_size) : "";
-    const auto batch = asked.batch > 1 ? fmt::format(", {} scans a frame", asked.batch) : "";
+std::string title(const RunSettings& settings) {
+    const auto pace = settings.rate > 0.0 ? fmt::format("at {:g} scans/s", settings.rate) : "as fast as permitted";
+    const auto cells = settings.cell_size ? fmt::format(", cells of {:g} m", *settings.cell_size) : "";
+    const auto batch = settings.batch > 1 ? fmt::format(", {} scans a frame", settings.batch) : "";
     return fmt::format("{} {} for {:g} s into {}: world {}, laser {} of {} beams, noise {}{}{}, seed {}\n\n",
-                       counted(asked.robots, "robot"), pace, asked.duration, counted(asked.sessions, "session"),
-                       asked.world, asked.laser, asked.beams, asked.noise, cells, batch, asked.seed);
+                       counted(settings.robots, "robot"), pace, settings.duration,
+                       counted(settings.sessions, "session"), settings.world, settings.laser, settings.beams,
+                       settings.noise, cells, batch, settings.seed);
 }
 
 std::string scans(const RunReport& report) {
@@ -58,7 +59,7 @@ std::string latencies(const RunReport& report) {
     if (is_paced) text += percentiles("ack, from intended time", report.fleet.from_intended);
     text += percentiles("ack, from sending", report.fleet.from_sending);
     if (is_paced) text += percentiles("sending, from intended", report.fleet.waiting_to_send);
-    if (report.audience.tile_requests > 0) text += percentiles("a tile is there", report.audience.tile_latency);
+    if (report.audience.tile_requests > 0) text += percentiles("tile received", report.audience.tile_latency);
     return text;
 }
 
@@ -67,24 +68,23 @@ std::string generator(const RunReport& report) {
                             as_bytes(report.own.resident_bytes));
     if (report.settings.rate > 0.0) {
         const LatencyHistogram& delay = report.fleet.own_delay;
-        text +=
-            fmt::format("; behind its own times by {} ms (p99), {} ms at most: ", as_milliseconds(delay.percentile(99)),
-                        as_milliseconds(delay.max()));
-        text +=
-            delay.percentile(99) <= kOwnDelayFine
-                ? "it kept them"
-                : "IT FELL BEHIND, and the latencies hold that;\n           give it more --threads, another machine, "
-                  "or less to do";
+        text += fmt::format("; delay behind its schedule {} ms (p99), at most {} ms: ",
+                            as_milliseconds(delay.percentile(99)), as_milliseconds(delay.max()));
+        text += delay.percentile(99) <= kOwnDelayFine
+                    ? "on schedule"
+                    : "IT FELL BEHIND, and the latencies include this delay;\n"
+                      "           give it more --threads, another machine, or less to do";
     }
     return line("generator", text);
 }
 
 std::string server(const RunReport& report) {
-    if (!report.server) return line("server", "did not say what it used");
+    if (!report.server) return line("server", "did not report its use");
     const auto memory = as_bytes(report.server->resident_bytes);
     const auto& cpu_seconds = report.server->cpu_seconds;
     if (!cpu_seconds) {
-        return line("server", fmt::format("was started anew meanwhile, its CPU is not known; memory {}", memory));
+        return line("server",
+                    fmt::format("was restarted during the run, so its CPU time is unknown; memory {}", memory));
     }
     const double each = *cpu_seconds / std::fmax(1.0, static_cast<double>(report.fleet.scans_acknowledged));
     return line("server", fmt::format("{:.2f} cores, {:.0f} us of CPU per acknowledged scan, memory {}",
@@ -94,14 +94,14 @@ std::string server(const RunReport& report) {
 std::string viewers(const RunReport& report) {
     if (report.settings.viewers == 0) return {};
     const AudienceFigures& seen = report.audience;
-    const std::uint32_t asked = report.settings.viewers;
+    const std::uint32_t wanted = report.settings.viewers;
     auto text = fmt::format("{}{} watched: {} events, {:.1f}/s each, {}", seen.viewers_let_in,
-                            seen.viewers_let_in < asked ? fmt::format(" of {}", asked) : "", grouped(seen.events),
+                            seen.viewers_let_in < wanted ? fmt::format(" of {}", wanted) : "", grouped(seen.events),
                             per_second(seen.events, report.seconds) / std::max(seen.viewers_let_in, 1U),
                             as_bytes(static_cast<double>(seen.event_bytes)));
     if (seen.viewers_refused > 0) text += fmt::format("; {} REFUSED", grouped(seen.viewers_refused));
     const std::uint32_t came = seen.viewers_let_in + seen.viewers_refused;
-    if (came < asked) text += fmt::format("; {} HAD NO CONNECTION", grouped(asked - came));
+    if (came < wanted) text += fmt::format("; {} HAD NO CONNECTION", grouped(wanted - came));
     if (seen.viewer_ends > 0) text += fmt::format("; {} ended early", counted(seen.viewer_ends, "connection"));
     return line("viewers", text);
 }
@@ -110,7 +110,7 @@ std::string tiles(const RunReport& report) {
     if (report.settings.tile_readers == 0) return {};
     const AudienceFigures& seen = report.audience;
     const auto all = static_cast<double>(std::max<std::uint64_t>(seen.tile_requests, 1));
-    auto text = fmt::format("{} asked: {} tiles, {}/s, {:.0f} % of them unchanged (304), {}",
+    auto text = fmt::format("{} requested: {} tiles, {}/s, {:.0f} % of them unchanged (304), {}",
                             counted(report.settings.tile_readers, "reader"), grouped(seen.tile_requests),
                             whole(per_second(seen.tile_requests, report.seconds)),
                             100.0 * static_cast<double>(seen.tiles_unchanged) / all,

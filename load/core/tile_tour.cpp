@@ -15,16 +15,16 @@ TileTour::TileTour(double rate, Micros first)
 
 TileTour::Step TileTour::next() {
     const std::string layer = kLayers[round_ % kLayers.size()];
-    if (asked_for_ == tiles_.size()) return {layer, true, {}, turn_};
+    if (requested_ == tiles_.size()) return {layer, true, {}, turn_};
     turn_ += period_;
-    Step step{layer, false, tiles_[asked_for_++], turn_};
-    if (asked_for_ == tiles_.size()) ++round_;
+    Step step{layer, false, tiles_[requested_++], turn_};
+    if (requested_ == tiles_.size()) ++round_;
     return step;
 }
 
 void TileTour::listed(std::vector<TilePlace> tiles) {
     tiles_ = std::move(tiles);
-    asked_for_ = 0;
+    requested_ = 0;
     if (!tiles_.empty()) return;
     turn_ += period_;
     ++round_;

@@ -41,7 +41,7 @@ private:
     Micros turn_;
     std::size_t round_ = 0;
     std::vector<TilePlace> tiles_;
-    std::size_t asked_for_ = 0; // number of tiles_ requested so far
+    std::size_t requested_ = 0; // number of tiles_ requested so far
 };
 
 } // namespace scanloom::load

@@ -14,9 +14,9 @@ constexpr std::uint64_t kEntriesBesideScans = 2; ///< for each robot
 std::optional<std::string> contradiction(const std::string& session, const ExpectedRobot& expected,
                                          const FoundSession& found) {
     const auto robot = std::ranges::find(found.robots, expected.name, &FoundRobot::name);
-    if (robot == found.robots.end()) return fmt::format("session {} knows no robot {}", session, expected.name);
+    if (robot == found.robots.end()) return fmt::format("session {} has no robot {}", session, expected.name);
     if (robot->scans == expected.scans && robot->last_seq == expected.scans) return std::nullopt;
-    return fmt::format("session {} holds {} scans of robot {}, the newest with seq {}; {} were acknowledged", session,
+    return fmt::format("session {} has {} scans of robot {}, the newest with seq {}; {} were acknowledged", session,
                        grouped(robot->scans), expected.name, grouped(robot->last_seq), grouped(expected.scans));
 }
 
@@ -35,16 +35,16 @@ std::string acknowledged(const Evidence& evidence) {
 }
 
 std::string what_was_verified(const Evidence& evidence) {
-    if (evidence.asked == Verify::kNone) return "; nobody has asked the server for them (--verify none)";
+    if (evidence.verify == Verify::kNone) return "; not verified (--verify none)";
     auto text = fmt::format(", {} in {}", grouped(evidence.scans_in_sessions),
                             evidence.sessions == 1 ? "the session"
                                                    : fmt::format("the {} sessions", grouped(evidence.sessions)));
-    if (evidence.asked == Verify::kCounts) return text + "; digests were not asked for (--verify counts)";
+    if (evidence.verify == Verify::kCounts) return text + "; digests were not compared (--verify counts)";
     if (evidence.shares_sessions) {
-        return text + "; digests cannot be compared, as robots share a session and their scans mix in another order "
-                      "each time";
+        return text +
+               "; digests cannot be compared, because robots share a session and the order of their scans varies";
     }
-    return text + fmt::format(", {} that of an undisturbed fold",
+    return text + fmt::format(", {} that of an undisturbed run",
                               evidence.sessions == 1
                                   ? "its digest equals"
                                   : fmt::format("the digests of all {} equal", grouped(evidence.digests_equal)));
@@ -63,18 +63,18 @@ std::optional<std::string> contradiction(const ExpectedSession& expected, const 
                            expected.robots.size());
     }
     if (found.scans != scans) {
-        return fmt::format("session {} holds {} scans; {} were acknowledged", expected.name, grouped(found.scans),
+        return fmt::format("session {} has {} scans; {} were acknowledged", expected.name, grouped(found.scans),
                            grouped(scans));
     }
     const std::uint64_t entries = scans + kEntriesBesideScans * expected.robots.size();
     if (found.revision == entries) return std::nullopt;
-    return fmt::format("session {} is at revision {}; its scans and robots make {} entries", expected.name,
+    return fmt::format("session {} is at revision {}; its scans and robots need {} entries", expected.name,
                        grouped(found.revision), grouped(entries));
 }
 
 Verdict verdict_on(const Evidence& evidence) {
     if (evidence.scans_lost > 0) {
-        return {false, fmt::format("LOST: {} scans that were acknowledged are gone: {}", grouped(evidence.scans_lost),
+        return {false, fmt::format("LOST: {} acknowledged scans are missing: {}", grouped(evidence.scans_lost),
                                    list_of(evidence.failures))};
     }
     if (!evidence.contradictions.empty()) {
@@ -84,7 +84,8 @@ Verdict verdict_on(const Evidence& evidence) {
         return {false, fmt::format("NOT DONE: {}: {}", acknowledged(evidence), list_of(evidence.failures))};
     }
     if (evidence.scans_acknowledged < evidence.scans_sent) {
-        return {false, fmt::format("NOT DONE: {}; the server did not take the others in time", acknowledged(evidence))};
+        return {false,
+                fmt::format("NOT DONE: {}; the server did not accept the others in time", acknowledged(evidence))};
     }
     return {true, fmt::format("nothing lost: {}{}", acknowledged(evidence), what_was_verified(evidence))};
 }

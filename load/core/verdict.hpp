@@ -39,7 +39,7 @@ enum class Verify { kNone, kCounts, kDigests };
 
 /// The results of a run that decide its verdict.
 struct Evidence {
-    Verify asked = Verify::kDigests;
+    Verify verify = Verify::kDigests;
     std::uint64_t scans_sent = 0;
     std::uint64_t scans_acknowledged = 0;
     std::uint64_t scans_lost = 0; ///< as found out when robots reconnected

@@ -12,7 +12,7 @@ namespace asio = boost::asio;
 
 namespace {
 
-constexpr Micros kPatience = 60 * kSecond;
+constexpr Micros kTimeout = 60 * kSecond;
 constexpr std::chrono::milliseconds kLookPeriod{2};
 
 /// Sends each scan in its own frame: maps do not depend on how scans are grouped.
@@ -45,9 +45,9 @@ asio::awaitable<Result<>> CalmSession::stream_to(std::uint64_t scans) {
         robot_.look_after(clock_.now());
         if (std::exchange(acknowledged, robot_.talk().acknowledged()) != robot_.talk().acknowledged()) {
             progress = clock_.now();
-        } else if (clock_.now() > progress + kPatience) {
+        } else if (clock_.now() > progress + kTimeout) {
             co_return Error{Errc::kTimeout,
-                            fmt::format("the calm session took no scan for {:g} s", in_seconds(kPatience))};
+                            fmt::format("the undisturbed session accepted no scan for {:g} s", in_seconds(kTimeout))};
         }
     }
     co_return Result<>();

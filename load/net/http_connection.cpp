@@ -49,10 +49,10 @@ asio::awaitable<boost::system::error_code> HttpConnection::exchange(const Reques
     co_return unread;
 }
 
-asio::awaitable<boost::system::error_code> HttpConnection::within_patience(const Request& request, Parser& parser) {
+asio::awaitable<boost::system::error_code> HttpConnection::within_timeout(const Request& request, Parser& parser) {
     using namespace asio::experimental::awaitable_operators;
     asio::steady_timer timer(executor_);
-    timer.expires_after(patience_);
+    timer.expires_after(timeout_);
     const auto first = co_await (exchange(request, parser) || timer.async_wait(kAwaitTuple));
     if (first.index() != 0) co_return boost::system::error_code(asio::error::timed_out);
     co_return std::get<0>(first);
@@ -68,7 +68,7 @@ asio::awaitable<Result<HttpAnswer>> HttpConnection::ask(http::verb method, std::
         const bool was_open = is_open_;
         Parser parser;
         parser.body_limit(kBodyMax);
-        const auto failed = co_await within_patience(request, parser);
+        const auto failed = co_await within_timeout(request, parser);
         if (!failed) {
             if (!parser.get().keep_alive()) close();
             co_return HttpAnswer{parser.get().result_int(), std::string(parser.get()[http::field::etag]),
@@ -78,7 +78,7 @@ asio::awaitable<Result<HttpAnswer>> HttpConnection::ask(http::verb method, std::
         if (was_open && failed != asio::error::timed_out) continue; // the server has closed the idle connection
         if (failed != asio::error::timed_out) co_return unreachable(failed);
         co_return Error{Errc::kTimeout, fmt::format("{}:{} did not answer {} within {} s", place_.server.host,
-                                                    place_.server.port, target, patience_.count())};
+                                                    place_.server.port, target, timeout_.count())};
     }
 }
 
@@ -97,7 +97,7 @@ void HttpConnection::close() {
 
 Error refusal(const HttpAnswer& answer, const std::string& target) {
     return {Errc::kInternal,
-            harmless(fmt::format("{} was answered {}: {}", target, answer.status, answer.body.substr(0, 300)))};
+            harmless(fmt::format("{} was answered with {}: {}", target, answer.status, answer.body.substr(0, 300)))};
 }
 
 } // namespace scanloom::load

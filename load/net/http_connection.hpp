@@ -44,7 +44,7 @@ public:
         return ask(boost::beast::http::verb::get, std::move(target));
     }
 
-    void set_patience(std::chrono::seconds patience) noexcept { patience_ = patience; }
+    void set_timeout(std::chrono::seconds timeout) noexcept { timeout_ = timeout; }
     /// Cancels the current request, if any.
     void close();
 
@@ -56,8 +56,8 @@ private:
 
     [[nodiscard]] boost::asio::awaitable<boost::system::error_code> connect();
     [[nodiscard]] boost::asio::awaitable<boost::system::error_code> exchange(const Request& request, Parser& parser);
-    [[nodiscard]] boost::asio::awaitable<boost::system::error_code> within_patience(const Request& request,
-                                                                                    Parser& parser);
+    [[nodiscard]] boost::asio::awaitable<boost::system::error_code> within_timeout(const Request& request,
+                                                                                   Parser& parser);
     [[nodiscard]] Error unreachable(const boost::system::error_code& failed) const;
 
     boost::asio::any_io_executor executor_;
@@ -65,7 +65,7 @@ private:
     std::string authorization_;             // value of the header field; empty: none
     std::optional<net::LinkStream> stream_; // the current or last one
     boost::beast::flat_buffer buffer_;
-    std::chrono::seconds patience_{30};
+    std::chrono::seconds timeout_{30};
     std::uint64_t bytes_in_ = 0;
     bool is_open_ = false;
 };

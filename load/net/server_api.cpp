@@ -30,10 +30,9 @@ auto read_json(const Result<HttpAnswer>& answer, const std::string& target, Read
         return read(json::parse(answer->body));
     } catch (const boost::system::system_error& unreadable) {
         return Error{Errc::kMalformed,
-                     fmt::format("{} was answered with what cannot be read: {}", target, unreadable.code().message())};
+                     fmt::format("{}: the answer cannot be parsed: {}", target, unreadable.code().message())};
     } catch (const std::exception& unreadable) {
-        return Error{Errc::kMalformed,
-                     fmt::format("{} was answered with what cannot be read: {}", target, unreadable.what())};
+        return Error{Errc::kMalformed, fmt::format("{}: the answer cannot be parsed: {}", target, unreadable.what())};
     }
 }
 
@@ -77,9 +76,10 @@ asio::awaitable<Result<std::vector<std::string>>> sessions_of(HttpConnection& ht
         }
         if (page->size() < kPageMax) co_return names;
         if (page->back() <= after) {
-            co_return Error{Errc::kMalformed, fmt::format("{} was answered with sessions that do not come after that "
-                                                          "one; is this a Scanloom server?",
-                                                          target)};
+            co_return Error{
+                Errc::kMalformed,
+                fmt::format("{}: the answer lists sessions before the requested one; is this a Scanloom server?",
+                            target)};
         }
         after = page->back();
     }

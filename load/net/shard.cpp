@@ -59,12 +59,12 @@ void Shard::stop() {
     thread_.join();
 }
 
-template <class Tell>
-auto Shard::on_thread(Tell tell) {
-    if (!thread_.joinable()) return tell();
-    std::promise<decltype(tell())> told;
-    asio::post(io_, [&] { told.set_value(tell()); });
-    return told.get_future().get();
+template <class Function>
+auto Shard::on_thread(Function function) {
+    if (!thread_.joinable()) return function();
+    std::promise<decltype(function())> result;
+    asio::post(io_, [&] { result.set_value(function()); });
+    return result.get_future().get();
 }
 
 std::unique_ptr<Shard::Look> Shard::look() {

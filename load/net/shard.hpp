@@ -82,8 +82,8 @@ private:
     [[nodiscard]] boost::asio::awaitable<void> strike_at_random();
     [[nodiscard]] boost::asio::awaitable<void> look_after_all();
     [[nodiscard]] bool hand_out_due(Micros start);
-    template <class Tell>
-    [[nodiscard]] auto on_thread(Tell tell);
+    template <class Function>
+    [[nodiscard]] auto on_thread(Function function);
     void end_all();
 
     const std::uint32_t number_;

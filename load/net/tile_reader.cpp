@@ -65,7 +65,7 @@ private:
 
     void note(const Error& error) {
         ++shared_.figures.tiles_failed;
-        shared_.figures.trouble = "a reader of tiles: " + error.message;
+        shared_.figures.trouble = "a tile reader: " + error.message;
     }
 
     OnlookerShared& shared_;

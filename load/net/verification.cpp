@@ -13,10 +13,10 @@ namespace asio = boost::asio;
 
 namespace {
 
-constexpr std::size_t kToldEvery = 50;
+constexpr std::size_t kReportEvery = 50;
 
-void tell_now_and_then(const TellProgress& tell, std::string_view what, std::size_t done, std::size_t of) {
-    if (done % kToldEvery == 0) tell(fmt::format("{} {} of {} sessions", what, grouped(done), grouped(of)));
+void report_progress(const ReportProgress& report, std::string_view what, std::size_t done, std::size_t of) {
+    if (done % kReportEvery == 0) report(fmt::format("{} {} of {} sessions", what, grouped(done), grouped(of)));
 }
 
 std::uint64_t scans_of(const ExpectedSession& session) { return session.robots.front().scans; }
@@ -24,9 +24,9 @@ std::uint64_t scans_of(const ExpectedSession& session) { return session.robots.f
 } // namespace
 
 asio::awaitable<void> verify_counts(HttpConnection& http, const std::vector<ExpectedSession>& sessions,
-                                    TellProgress tell, Evidence& evidence) {
+                                    ReportProgress report, Evidence& evidence) {
     for (std::size_t i = 0; i < sessions.size(); ++i) {
-        tell_now_and_then(tell, "counting the scans of", i, sessions.size());
+        report_progress(report, "counting the scans of", i, sessions.size());
         const auto found = co_await find_session(http, sessions[i].name);
         if (!found) {
             evidence.failures.push_back(found.error().message);
@@ -39,14 +39,14 @@ asio::awaitable<void> verify_counts(HttpConnection& http, const std::vector<Expe
 }
 
 asio::awaitable<void> verify_digests(HttpConnection& http, std::vector<ExpectedSession> sessions, std::string calm_name,
-                                     CalmSession& calm, TellProgress tell, Evidence& evidence) {
+                                     CalmSession& calm, ReportProgress report, Evidence& evidence) {
     std::erase_if(sessions,
                   [](const ExpectedSession& session) { return scans_of(session) == 0; }); // has no maps to compare
     std::ranges::sort(sessions, {}, scans_of);
     std::uint64_t streamed = 0;
     std::string right;
     for (std::size_t i = 0; i < sessions.size(); ++i) {
-        tell_now_and_then(tell, "comparing the maps of", i, sessions.size());
+        report_progress(report, "comparing the maps of", i, sessions.size());
         if (const std::uint64_t scans = scans_of(sessions[i]); scans > streamed) {
             const auto done = co_await calm.stream_to(scans);
             if (!done) co_return evidence.failures.push_back(done.error().message);
@@ -60,9 +60,9 @@ asio::awaitable<void> verify_digests(HttpConnection& http, std::vector<ExpectedS
         if (*digest == right) {
             ++evidence.digests_equal;
         } else {
-            evidence.contradictions.push_back(fmt::format(
-                "the maps of session {} differ from those that its {} scans make when nothing disturbs them",
-                sessions[i].name, grouped(streamed)));
+            evidence.contradictions.push_back(
+                fmt::format("the maps of session {} differ from those of an undisturbed session with its {} scans",
+                            sessions[i].name, grouped(streamed)));
         }
     }
 }

@@ -253,9 +253,9 @@ TEST_F(LoadProgram, AMissingServerIsReportedAndExitsWith1) {
     const Words nowhere{"--server", "127.0.0.1:1", "--http", "127.0.0.1:1", "--give-up-after", "0.5"};
     std::filesystem::remove(errors());
     ChildProcess load(program("scanloom-load"), nowhere + kShort, errors());
-    const auto asked = finish(load);
-    EXPECT_EQ(asked.code, 1);
-    EXPECT_THAT(asked.errors, HasSubstr("scanloom-load: 127.0.0.1:1 does not answer HTTP"));
+    const auto result = finish(load);
+    EXPECT_EQ(result.code, 1);
+    EXPECT_THAT(result.errors, HasSubstr("scanloom-load: 127.0.0.1:1 does not answer HTTP"));
 
     ChildProcess unasked(program("scanloom-load"), nowhere + kShort + Words{"--verify", "none", "--json", "-"},
                          errors());

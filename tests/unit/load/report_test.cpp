@@ -64,7 +64,7 @@ TEST(Report, ContainsTheUseOfEachPartyAndTheVerdict) {
     EXPECT_THAT(text, HasSubstr("20 robots at 10 scans/s for 30 s into 20 sessions"));
     EXPECT_THAT(text, HasSubstr("6,000 sent, 6,000 acknowledged: 200/s of 200/s intended"));
     EXPECT_THAT(text, HasSubstr("generator  0.10 cores"));
-    EXPECT_THAT(text, HasSubstr("it kept them"));
+    EXPECT_THAT(text, HasSubstr("on schedule"));
     EXPECT_THAT(text, HasSubstr("server     0.20 cores, 1000 us of CPU per acknowledged scan, memory 120 MiB"));
     EXPECT_THAT(text, Not(HasSubstr("viewers")));
     EXPECT_THAT(text, Not(HasSubstr("faults")));
@@ -77,7 +77,7 @@ TEST(Report, DistinguishesASlowGeneratorFromASlowServer) {
     EXPECT_THAT(to_text(*late), HasSubstr("IT FELL BEHIND"));
     auto slow_server = report();
     slow_server->fleet.from_intended.record(5 * kSecond, 6000);
-    EXPECT_THAT(to_text(*slow_server), HasSubstr("it kept them"));
+    EXPECT_THAT(to_text(*slow_server), HasSubstr("on schedule"));
 }
 
 TEST(Report, ContainsFaultsViewersAndTilesIfUsed) {
@@ -93,7 +93,7 @@ TEST(Report, ContainsFaultsViewersAndTilesIfUsed) {
     made->fleet.scans_resent = 17;
     const auto text = to_text(*made);
     EXPECT_THAT(text, HasSubstr("3 watched: 900 events, 10.0/s each"));
-    EXPECT_THAT(text, HasSubstr("1 reader asked: 600 tiles, 20/s, 25 % of them unchanged (304)"));
+    EXPECT_THAT(text, HasSubstr("1 reader requested: 600 tiles, 20/s, 25 % of them unchanged (304)"));
     EXPECT_THAT(text, HasSubstr("faults on demand: 5 cut, 2 stall; 6 reconnects, 17 scans sent again"));
 }
 
@@ -119,7 +119,7 @@ TEST(Report, OmitsTheCpuOfARestartedServer) {
     auto made = report();
     made->server->cpu_seconds.reset();
     EXPECT_THAT(to_text(*made),
-                HasSubstr("server     was started anew meanwhile, its CPU is not known; memory 120 MiB"));
+                HasSubstr("server     was restarted during the run, so its CPU time is unknown; memory 120 MiB"));
     const auto server = boost::json::parse(to_json(*made)).at("server").as_object();
     EXPECT_EQ(server.size(), 1U);
     EXPECT_TRUE(server.contains("resident_bytes"));
@@ -199,7 +199,7 @@ TEST(LiveView, ShowsTheLastSecond) {
     now->server = ServerUse{{1.5, 2.0 * (1 << 20)}, 1234.5};
     const auto asked = report()->settings;
     const auto line = live_line(asked, kSecond, *before, *now);
-    EXPECT_THAT(line, HasSubstr("10 of 30 s: 200/s sent, 160/s acknowledged, 50 under way; ack p50 2.00  p99 2.00"));
+    EXPECT_THAT(line, HasSubstr("10 of 30 s: 200/s sent, 160/s acknowledged, 50 in flight; ack p50 2.00  p99 2.00"));
     EXPECT_THAT(line, HasSubstr("generator 0.25 cores, server 0.50 cores, 2.0 MiB; 2 of 20 robots have no link"));
     now->at = 45 * kSecond;
     EXPECT_THAT(live_line(asked, kSecond, *before, *now), testing::StartsWith("14 s after the last scan: "));
@@ -208,9 +208,9 @@ TEST(LiveView, ShowsTheLastSecond) {
     EXPECT_THAT(rows, Each(testing::SizeIs(testing::Lt(80U))));
     EXPECT_THAT(rows, testing::Contains(HasSubstr("ack           p50 2.00")));
     now->server = ServerUse{{1.5, 2.0 * (1 << 20)}, 1244.5};
-    EXPECT_THAT(live_line(asked, kSecond, *before, *now), HasSubstr("server started anew, 2.0 MiB"));
+    EXPECT_THAT(live_line(asked, kSecond, *before, *now), HasSubstr("server restarted, 2.0 MiB"));
     before->server.reset();
-    EXPECT_THAT(live_line(asked, kSecond, *before, *now), HasSubstr("server does not say"));
+    EXPECT_THAT(live_line(asked, kSecond, *before, *now), HasSubstr("server does not report its use"));
 }
 
 } // namespace

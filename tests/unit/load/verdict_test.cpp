@@ -20,23 +20,22 @@ TEST(Contradiction, EveryDifferenceOfASessionIsFound) {
     auto found = kFound;
     found.robots[1].scans = 199;
     EXPECT_EQ(contradiction_in(found),
-              "session load-1-3 holds 199 scans of robot r1, the newest with seq 200; 200 were "
-              "acknowledged");
+              "session load-1-3 has 199 scans of robot r1, the newest with seq 200; 200 were acknowledged");
     found = kFound;
     found.robots[0].last_seq = 299;
     EXPECT_THAT(contradiction_in(found), HasSubstr("seq 299; 300 were acknowledged"));
     found = kFound;
     found.robots[0].name = "r7";
-    EXPECT_THAT(contradiction_in(found), HasSubstr("knows no robot r0"));
+    EXPECT_THAT(contradiction_in(found), HasSubstr("has no robot r0"));
     found = kFound;
     found.robots.push_back({"r9", 0, 0});
     EXPECT_THAT(contradiction_in(found), HasSubstr("has 3 robots; 2 streamed into it"));
     found = kFound;
     found.scans = 501;
-    EXPECT_THAT(contradiction_in(found), HasSubstr("holds 501 scans; 500 were acknowledged"));
+    EXPECT_THAT(contradiction_in(found), HasSubstr("has 501 scans; 500 were acknowledged"));
     found = kFound;
     found.revision = 505;
-    EXPECT_THAT(contradiction_in(found), HasSubstr("at revision 505; its scans and robots make 504 entries"));
+    EXPECT_THAT(contradiction_in(found), HasSubstr("at revision 505; its scans and robots need 504 entries"));
 }
 
 Evidence good_evidence() {
@@ -49,17 +48,15 @@ Evidence good_evidence() {
 TEST(Verdict, GoodVerdictListsWhatWasVerified) {
     auto evidence = good_evidence();
     EXPECT_TRUE(verdict_on(evidence).is_good);
-    EXPECT_EQ(
-        verdict_on(evidence).sentence,
-        "nothing lost: 12,000 of 12,000 scans acknowledged, 12,000 in the 20 sessions, the digests of all 20 equal "
-        "that of an undisturbed fold");
+    EXPECT_EQ(verdict_on(evidence).sentence, "nothing lost: 12,000 of 12,000 scans acknowledged, 12,000 in the 20 "
+                                             "sessions, the digests of all 20 equal that of an undisturbed run");
     evidence.shares_sessions = true;
     EXPECT_TRUE(verdict_on(evidence).is_good);
     EXPECT_THAT(verdict_on(evidence).sentence, HasSubstr("digests cannot be compared"));
-    evidence.asked = Verify::kCounts;
-    EXPECT_THAT(verdict_on(evidence).sentence, HasSubstr("digests were not asked for (--verify counts)"));
-    evidence.asked = Verify::kNone;
-    EXPECT_THAT(verdict_on(evidence).sentence, HasSubstr("nobody has asked the server for them"));
+    evidence.verify = Verify::kCounts;
+    EXPECT_THAT(verdict_on(evidence).sentence, HasSubstr("digests were not compared (--verify counts)"));
+    evidence.verify = Verify::kNone;
+    EXPECT_THAT(verdict_on(evidence).sentence, HasSubstr("not verified (--verify none)"));
 }
 
 TEST(Verdict, AnyContradictionMakesTheVerdictBad) {
@@ -76,7 +73,7 @@ TEST(Verdict, AnyContradictionMakesTheVerdictBad) {
     EXPECT_THAT(verdict_on(evidence).sentence, HasSubstr("but a; b; c; and 2 more"));
     evidence.scans_lost = 7;
     EXPECT_FALSE(verdict_on(evidence).is_good);
-    EXPECT_THAT(verdict_on(evidence).sentence, StartsWith("LOST: 7 scans that were acknowledged are gone"));
+    EXPECT_THAT(verdict_on(evidence).sentence, StartsWith("LOST: 7 acknowledged scans are missing"));
 }
 
 } // namespace
