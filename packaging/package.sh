@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Makes what a Debian 12 installs, from programs that are built: a package, an archive with the same files, and the list of
-# what they consist of (SPDX). The same build and commit give the same bytes.
+# Creates the packages for Debian 12 from built programs: a Debian package, an archive with the same files, and a list
+# of their components (SPDX). The same build and commit give the same bytes.
 # usage: package.sh BUILD_DIRECTORY OUTPUT_DIRECTORY
 set -euo pipefail
 unset CDPATH
@@ -15,13 +15,13 @@ fail() {
 }
 
 [[ -x $build/bin/scanloom-server ]] || fail "there is no scanloom-server in $build/bin; build it first"
-[[ -f $build/web/index.html ]] || fail "there is no viewer in $build/web; build it first, which takes node and npm"
+[[ -f $build/web/index.html ]] || fail "there is no viewer in $build/web; build it first, which needs node and npm"
 
 version=$("$build/bin/scanloom-server" --version)
 version=${version##* }
 architecture=$(dpkg --print-architecture)
 name=scanloom_${version}_$architecture
-# When it was made: the commit's time, or what whoever builds says (reproducible-builds.org).
+# The build time: the commit's time, or SOURCE_DATE_EPOCH (reproducible-builds.org).
 SOURCE_DATE_EPOCH=${SOURCE_DATE_EPOCH:-$(git -C "$source" log -1 --format=%ct 2>/dev/null || stat --format=%Y "$build/bin/scanloom-server")}
 export SOURCE_DATE_EPOCH
 
@@ -29,7 +29,7 @@ work=$(mktemp --directory --tmpdir scanloom-package.XXXXXX)
 trap 'rm -rf "$work"' EXIT
 umask 022
 
-# --- The files, where they go ---
+# --- Files and their paths ---
 root=$work/root
 docs=$root/usr/share/doc/scanloom
 cmake --install "$build" --component programs --prefix "$root/usr" --strip >"$work/install.log" || fail "$(cat "$work/install.log")"
@@ -38,7 +38,7 @@ install -D --mode 644 packaging/scanloom-server.service "$root/lib/systemd/syste
 install -D --mode 644 packaging/scanloom-server.toml "$root/etc/scanloom/scanloom-server.toml"
 install -D --mode 644 packaging/sysusers.conf "$root/usr/lib/sysusers.d/scanloom.conf"
 install -D --mode 644 -t "$docs" packaging/debian/copyright
-# The documents, and all that their links lead to, where it is in the source.
+# The documents, and the files that their links name, at the paths of the source tree.
 for file in README.md ARCHITECTURE.md CHANGELOG.md CONTRIBUTING.md SECURITY.md LICENSE packages.txt docs/*.md docs/internals/*.md docs/decisions/*.md docs/observability/* docs/performance/* docs/pictures/*.png \
     docs/landmarks/*.md docs/landmarks/pictures/*.png \
     docker/* proto/scanloom/v1/*.proto robot_client/examples/send_scan/send_scan.cpp robot_client/python/scanloom_client.py; do
@@ -47,9 +47,9 @@ done
 node packaging/sbom.mjs "$version" "$architecture" web/package-lock.json "$root"/usr/bin/* >"$output/$name.spdx.json"
 install -D --mode 644 "$output/$name.spdx.json" "$docs/scanloom.spdx.json"
 
-# --- What it needs: libraries of at least the versions whose symbols are used ---
+# --- Dependencies: libraries of at least the versions whose symbols are used ---
 mkdir -p "$work/debian"
-# shellcheck disable=SC2016 # dpkg-shlibdeps reads it so
+# dpkg-shlibdeps expands it
 printf 'Source: scanloom\n\nPackage: scanloom\nArchitecture: any\nDepends: ${shlibs:Depends}\n' >"$work/debian/control"
 depends=$(cd "$work" && dpkg-shlibdeps -O "$root"/usr/bin/* 2>"$work/shlibdeps.log") || fail "$(cat "$work/shlibdeps.log")"
 depends=${depends#shlibs:Depends=}

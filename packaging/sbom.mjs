@@ -1,22 +1,22 @@
-// Lists what programs consist of, as SPDX 2.3 in JSON, on standard output: the Debian packages of the libraries that they are
-// linked with, those of headers that are compiled into them, and the npm packages that the viewer bundles.
+// Lists the components of programs as SPDX 2.3 in JSON, on standard output: the Debian packages of the linked
+// libraries, those of headers that are compiled in, and the npm packages that the viewer bundles.
 // usage: node sbom.mjs VERSION ARCHITECTURE PACKAGE_LOCK PROGRAM...
 import { execFileSync, spawnSync } from 'node:child_process';
 import { readFileSync, realpathSync } from 'node:fs';
 import { debianPackage, document, npmPackages } from './spdx.mjs';
 
-// Libraries that are nothing but headers, so that no program names them.
+// Header-only libraries, which no program names.
 const HEADERS = ['libboost1.81-dev', 'libeigen3-dev', 'libcli11-dev', 'libnanoflann-dev', 'libtomlplusplus-dev'];
 
 const run = (command, ...args) =>
   execFileSync(command, args, { encoding: 'utf8', maxBuffer: 1 << 26, stdio: ['ignore', 'pipe', 'ignore'] });
 
-/** Files of the libraries that a program loads, and of those that these load. */
+/** Returns the files of the libraries that a program loads, directly or indirectly. */
 export function librariesOf(program) {
   return [...run('ldd', program).matchAll(/(?:=> )?(\/\S+) \(0x/g)].map((match) => match[1]);
 }
 
-/** The Debian packages that files came with. Packages know them by the names before /lib became /usr/lib, or after. */
+/** Returns the Debian packages of files. Packages list them by their names before or after /lib became /usr/lib. */
 export function ownersOf(files) {
   const names = new Map(
     files.map((file) => {
@@ -24,12 +24,12 @@ export function ownersOf(files) {
       return [file, [file, real, real.replace(/^\/usr/, ''), `/usr${file}`]];
     }),
   );
-  const told = spawnSync('dpkg-query', ['--search', ...[...names.values()].flat()], {
+  const search = spawnSync('dpkg-query', ['--search', ...[...names.values()].flat()], {
     encoding: 'utf8',
     maxBuffer: 1 << 26,
   });
   const owners = new Map(
-    told.stdout
+    search.stdout
       .split('\n')
       .map((line) => line.match(/^([^:,]+)[^/]*: (.+)$/) ?? [])
       .map(([, owner, name]) => [name, owner]),
@@ -37,7 +37,7 @@ export function ownersOf(files) {
   return new Set(
     [...names].map(([file, candidates]) => {
       const known = candidates.find((name) => owners.has(name));
-      if (!known) throw new Error(`${file} came with no Debian package; what it is made of cannot be told`);
+      if (!known) throw new Error(`${file} is in no Debian package; its components are unknown`);
       return owners.get(known);
     }),
   );
@@ -51,14 +51,14 @@ function installed(name) {
     `--showformat=${fields.map((field) => `\${${field}}\\n`).join('')}`,
     name,
   ).split('\n');
-  const told = Object.fromEntries(fields.map((field, i) => [field, values[i]]));
+  const packageFields = Object.fromEntries(fields.map((field, i) => [field, values[i]]));
   let copyright = '';
   try {
-    copyright = readFileSync(`/usr/share/doc/${told.Package}/copyright`, 'utf8');
+    copyright = readFileSync(`/usr/share/doc/${packageFields.Package}/copyright`, 'utf8');
   } catch {
-    // minimal systems have no documentation: the licence is not asserted
+    // minimal systems have no documentation: no licence is asserted
   }
-  return debianPackage(told, copyright);
+  return debianPackage(packageFields, copyright);
 }
 
 if (process.argv[1] === realpathSync(new URL(import.meta.url).pathname)) {

@@ -1,7 +1,7 @@
-// Documents of SPDX 2.3 (https://spdx.github.io/spdx-spec/v2.3/), made and checked. No file, no process.
+// Creates and checks SPDX 2.3 documents (https://spdx.github.io/spdx-spec/v2.3/). Accesses no file and no process.
 import { createHash } from 'node:crypto';
 
-// Short names of Debian's copyright files (DEP 5), as SPDX calls them.
+// Short names in Debian's copyright files (DEP 5), and their SPDX identifiers.
 const LICENCES = {
   'apache-2.0': 'Apache-2.0',
   'apache-2': 'Apache-2.0',
@@ -40,7 +40,7 @@ const LICENCES = {
 const NONE = 'NOASSERTION';
 const idOf = (...words) => `SPDXRef-${words.join('-').replace(/[^A-Za-z0-9.-]/g, '-')}`;
 
-/** The licence of a package's own files ("Files: *") as an expression of SPDX; NOASSERTION where that cannot be told. */
+/** Returns the licence of a package's own files ("Files: *") as an SPDX expression; NOASSERTION if it is unclear. */
 export function licenceOf(copyright) {
   const own = copyright.split(/\n\s*\n/).find((paragraph) => /^Files:\s*\*\s*$/m.test(paragraph));
   const words = own?.match(/^License:[ \t]*(\S.*)$/m)?.[1].trim();
@@ -51,25 +51,25 @@ export function licenceOf(copyright) {
   return new Set(known.filter((_, i) => i % 2)).size > 1 ? NONE : known.join(' '); // "a and b or c" may mean two things
 }
 
-/** @param told  fields of dpkg-query */
-export function debianPackage(told, copyright) {
+/** @param fields  fields of dpkg-query */
+export function debianPackage(fields, copyright) {
   const licence = licenceOf(copyright);
   return {
-    SPDXID: idOf('deb', told.Package),
-    name: told.Package,
-    versionInfo: told.Version,
-    supplier: `Organization: ${told.Maintainer}`,
-    downloadLocation: NONE, // whatever mirror serves it: the purl says what it is, sourceInfo from what
-    sourceInfo: `built from the Debian source package ${told['source:Package']} ${told['source:Version']}`,
+    SPDXID: idOf('deb', fields.Package),
+    name: fields.Package,
+    versionInfo: fields.Version,
+    supplier: `Organization: ${fields.Maintainer}`,
+    downloadLocation: NONE, // any mirror may serve it: the purl identifies it, sourceInfo its source
+    sourceInfo: `built from the Debian source package ${fields['source:Package']} ${fields['source:Version']}`,
     filesAnalyzed: false,
-    ...(/^https?:\/\/\S+$/.test(told.Homepage) ? { homepage: told.Homepage } : {}),
+    ...(/^https?:\/\/\S+$/.test(fields.Homepage) ? { homepage: fields.Homepage } : {}),
     licenseConcluded: NONE,
     licenseDeclared: licence,
-    ...(licence === NONE ? { licenseComments: `/usr/share/doc/${told.Package}/copyright tells it` } : {}),
+    ...(licence === NONE ? { licenseComments: `/usr/share/doc/${fields.Package}/copyright has the licence` } : {}),
     copyrightText: NONE,
     externalRefs: [
       purl(
-        `pkg:deb/debian/${encodeURIComponent(told.Package)}@${encodeURIComponent(told.Version)}?arch=${told.Architecture}&distro=debian-12`,
+        `pkg:deb/debian/${encodeURIComponent(fields.Package)}@${encodeURIComponent(fields.Version)}?arch=${fields.Architecture}&distro=debian-12`,
       ),
     ],
   };
@@ -77,13 +77,13 @@ export function debianPackage(told, copyright) {
 
 const purl = (locator) => ({ referenceCategory: 'PACKAGE-MANAGER', referenceType: 'purl', referenceLocator: locator });
 
-/** npm's are expressions of SPDX already, some in brackets. */
+/** npm's licences are SPDX expressions already, some in brackets. */
 function expressionOf(licence) {
   const plain = licence.replace(/^\((.*)\)$/, '$1');
   return EXPRESSION.test(plain) ? plain : NONE;
 }
 
-/** What a lock file of npm (version 3) lists for the page itself, not for making it. */
+/** Returns the packages in an npm lock file (version 3) that the page itself contains, without build tools. */
 export function npmPackages(lock) {
   return Object.entries(lock.packages)
     .filter(([path, entry]) => path !== '' && !entry.dev && !entry.devOptional && !entry.optional && !entry.peer)
@@ -94,7 +94,7 @@ export function npmPackages(lock) {
         name,
         versionInfo: entry.version,
         supplier: NONE,
-        downloadLocation: NONE, // whatever registry serves it: purl and checksum say what it is
+        downloadLocation: NONE, // any registry may serve it: purl and checksum identify it
         filesAnalyzed: false,
         ...(entry.integrity?.startsWith('sha512-')
           ? {
@@ -154,7 +154,7 @@ const ID = /^SPDXRef-[A-Za-z0-9.-]+$/;
 const EXPRESSION = /^[A-Za-z0-9.+-]+( (AND|OR) [A-Za-z0-9.+-]+)*$/;
 const LOCATION = /^(NOASSERTION|NONE|(https?|git|ssh):\/\/\S+)$/;
 
-/** What a document lacks of that which SPDX 2.3 demands, a sentence each (clauses 6, 7 and 11). */
+/** Returns a sentence for each field that SPDX 2.3 requires and the document lacks (clauses 6, 7 and 11). */
 export function faultsOf(made) {
   const faults = [];
   const demand = (holds, sentence) => holds || faults.push(sentence);
@@ -162,28 +162,31 @@ export function faultsOf(made) {
   demand(made.dataLicense === 'CC0-1.0', 'dataLicense is not CC0-1.0');
   demand(made.SPDXID === 'SPDXRef-DOCUMENT', 'SPDXID is not SPDXRef-DOCUMENT');
   demand(typeof made.name === 'string' && made.name !== '', 'the document has no name');
-  demand(/^[a-z]+:\/\/[^#\s]+$/.test(made.documentNamespace ?? ''), 'documentNamespace is no address, or has a #');
-  demand(/^\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ$/.test(made.creationInfo?.created ?? ''), 'creationInfo.created is no time');
+  demand(/^[a-z]+:\/\/[^#\s]+$/.test(made.documentNamespace ?? ''), 'documentNamespace is not an address, or has a #');
+  demand(
+    /^\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ$/.test(made.creationInfo?.created ?? ''),
+    'creationInfo.created is not a time',
+  );
   const creators = made.creationInfo?.creators ?? [];
   demand(
     creators.length > 0 && creators.every((one) => /^(Tool|Organization|Person): \S/.test(one)),
-    'creationInfo.creators names nobody',
+    'creationInfo.creators is empty or invalid',
   );
   const ids = new Set([made.SPDXID]);
   for (const one of made.packages ?? []) {
     const who = `package ${one.name ?? one.SPDXID}`;
-    demand(ID.test(one.SPDXID ?? ''), `${who}: SPDXID is none`);
-    demand(!ids.has(one.SPDXID), `${who}: another has its SPDXID`);
+    demand(ID.test(one.SPDXID ?? ''), `${who}: SPDXID is invalid`);
+    demand(!ids.has(one.SPDXID), `${who}: its SPDXID is not unique`);
     ids.add(one.SPDXID);
     demand(typeof one.name === 'string' && one.name !== '', `${who} has no name`);
     demand(typeof one.versionInfo === 'string' && one.versionInfo !== '', `${who} has no version`);
-    demand(LOCATION.test(one.downloadLocation ?? ''), `${who}: downloadLocation is none`);
+    demand(LOCATION.test(one.downloadLocation ?? ''), `${who}: downloadLocation is invalid`);
     demand(one.filesAnalyzed === false, `${who}: files that are analysed need a verification code`);
     for (const field of ['licenseConcluded', 'licenseDeclared'])
-      demand(EXPRESSION.test(one[field] ?? ''), `${who}: ${field} is no expression`);
+      demand(EXPRESSION.test(one[field] ?? ''), `${who}: ${field} is not an expression`);
     demand(
       !one.supplier || /^(NOASSERTION|(Organization|Person): \S.*)$/.test(one.supplier),
-      `${who}: supplier is nobody`,
+      `${who}: supplier is invalid`,
     );
     for (const sum of one.checksums ?? [])
       demand(sum.algorithm !== 'SHA512' || /^[0-9a-f]{128}$/.test(sum.checksumValue), `${who}: no SHA512`);
@@ -192,11 +195,11 @@ export function faultsOf(made) {
   const relationships = made.relationships ?? [];
   demand(
     relationships.some((one) => one.relationshipType === 'DESCRIBES' && one.spdxElementId === 'SPDXRef-DOCUMENT'),
-    'what it describes is not told',
+    'the described package is missing',
   );
   for (const { spdxElementId, relatedSpdxElement } of relationships) {
     for (const id of [spdxElementId, relatedSpdxElement])
-      demand(ids.has(id), `a relationship names ${id}, which is not there`);
+      demand(ids.has(id), `a relationship names ${id}, which does not exist`);
   }
   return faults;
 }

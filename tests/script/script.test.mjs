@@ -77,7 +77,7 @@ test('--help of every command prints its part of the usage only', () => {
       assert.ok(usage.includes(result.stdout.split('\n').slice(2).join('\n')));
     }
   }
-  assert.match(scanloom('fault', '--help').stdout, /--count N {8}how often/);
+  assert.match(scanloom('fault', '--help').stdout, /--count N {8}number of repetitions/);
 });
 
 test('the usage has every command that the script knows', () => {
@@ -125,7 +125,7 @@ test('unknown arguments are refused before anything is built', () => {
     [['demo', '--http-port', '99999'], /--http-port is 99999; ports go up to 65535/],
     [['demo', '--for', 'ever'], /--for is 'ever'; a whole number/],
     [['demo', '--log', 'no_such.log'], /the file 'no_such.log' cannot be read/],
-    [['bench', 'nonsense'], /no part of the benchmarks, and none of their names, is like 'nonsense'/],
+    [['bench', 'nonsense'], /no part of the benchmarks and no benchmark matches 'nonsense'/],
     [['bench', 'robot'], /the file '' cannot be read/],
     [['fault', '--foo'], /fault takes \[ROW\] .*, not '--foo'/],
     [['fault', 'nonsense'], /there is no row 'nonsense' /],
@@ -173,7 +173,7 @@ test('a second build waits until the first has ended', async () => {
   const ended = once(first, 'exit');
   const second = spawnSync(join(place, 'scanloom'), ['build'], { encoding: 'utf8', env: withPrograms(slow) });
   assert.equal(second.status, 0, second.stderr);
-  assert.match(second.stdout, /another .\/scanloom builds here; this one waits for it/);
+  assert.match(second.stdout, /another .\/scanloom is building here; waiting for it/);
   assert.deepEqual(await ended, [0, null]);
   const ids = readFileSync(join(place, 'order'), 'utf8').trim().split('\n');
   for (let i = 0; i < ids.length; i += 2) assert.equal(ids[i], ids[i + 1]);
@@ -240,7 +240,10 @@ test('a message reports a system that is not Debian', () => {
   for (const name of ['bash', 'env', 'dirname']) symlinkSync(`/usr/bin/${name}`, join(bin, name));
   const result = spawnSync(join(place, 'scanloom'), ['demo'], { encoding: 'utf8', env: { ...process.env, PATH: bin } });
   assert.equal(result.status, 1);
-  assert.equal(result.stderr, 'scanloom: this is not Debian; packages.txt lists what Scanloom needs of Debian 12\n');
+  assert.equal(
+    result.stderr,
+    'scanloom: this is not Debian; packages.txt lists the Debian 12 packages that Scanloom needs\n',
+  );
 });
 
 test('fault lists the rows of an existing program', () => {
