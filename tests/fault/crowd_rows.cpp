@@ -30,8 +30,8 @@ constexpr std::chrono::seconds kBodyDeadline{30};
 void check_memory(std::uint64_t before, std::uint64_t after, const CrowdTrial& trial, Outcome& outcome) {
     const std::uint64_t grown = after - std::min(before, after);
     const std::uint64_t most = trial.size * trial.bytes_of_each_max + trial.bytes_base;
-    auto& told = outcome.figures["memory_grown_kib"];
-    told = std::max(told, grown >> 10);
+    auto& grown_max = outcome.figures["memory_grown_kib"];
+    grown_max = std::max(grown_max, grown >> 10);
     if (grown <= most) return;
     outcome.failures.push_back(fmt::format("the server used {} MiB more with {} clients, at most {} MiB are allowed",
                                            grown >> 20, trial.size, most >> 20));

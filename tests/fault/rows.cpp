@@ -20,7 +20,7 @@ namespace {
 
 constexpr Row kRows[] = {
     {"simulation", "stories", 2'000, 1'000'000,
-     "robots and server on a simulated network, disk and clock, all of which fail", run_simulation_row},
+     "robots and server on a simulated network, disk and clock, all with faults", run_simulation_row},
     {"kill", "kills", 50, 1'000, "kill -9 of the server at random points while robots stream", run_kill_row},
     {"link", "robots", 200, 10'000, "links that split, delay, stall, end, flip, duplicate and reorder their bytes",
      run_link_row},

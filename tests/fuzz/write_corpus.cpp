@@ -1,5 +1,5 @@
-// Writes the seeds of the fuzzers of our own formats: one small valid input for each kind of message and record. Or
-// tells which seeds are no longer what would be written: behind a format of the past a parser looks at nothing.
+// Writes the fuzzers' seeds in our own formats: a small valid input for each kind of message and record. With
+// --compare, lists the outdated seeds: a parser rejects a seed of an earlier format at once, so it tests nothing.
 #include "common/hash/crc32c.hpp"
 #include "common/wire/compression.hpp"
 #include "common/wire/frame_decoder.hpp"
