@@ -31,7 +31,7 @@ std::optional<std::array<double, 3>> to_numbers(const std::string& text) {
 std::string complaint_about_place(double x, double y) {
     const double farthest = std::abs(x) > std::abs(y) ? x : y;
     if (std::abs(farthest) <= kCoordinateMax) return {};
-    return fmt::format("{} m is beyond the map, which reaches {} m either way", farthest, kCoordinateMax);
+    return fmt::format("{} m is outside the map, which extends {} m in each direction", farthest, kCoordinateMax);
 }
 
 /// Parses X,Y,YAW; keeps the yaw as written.
@@ -61,7 +61,7 @@ std::string check_near(const std::string& text) {
     const auto [x, y, radius] = *numbers;
     if (auto complaint = complaint_about_place(x, y); !complaint.empty()) return complaint;
     if (radius >= kNearRadiusMin && radius <= kNearRadiusMax) return {};
-    return fmt::format("a radius of {:g} m cannot be; give {:g} to {:g}", radius, kNearRadiusMin, kNearRadiusMax);
+    return fmt::format("the radius {:g} m is out of range: {:g} to {:g}", radius, kNearRadiusMin, kNearRadiusMax);
 }
 
 wire::Near checked_near(const std::string& text) {
@@ -87,13 +87,13 @@ std::string check_confidence(const std::string& text) {
 void add_poses(CLI::App& ld06, Ld06Options& options) {
     ld06.add_option_function<std::string>(
             "--pose", [&](const std::string& text) { options.pose = checked_pose(text); },
-            "X,Y,YAW of a robot that stands: metres, and radians counter-clockwise. With --locate: where it stands "
-            "first, in case nothing is mapped yet; default there: 0,0,0")
+            "X,Y,YAW of a stationary robot: metres, and radians counter-clockwise. With --locate: its first pose, used "
+            "if no map exists yet; default then: 0,0,0")
         ->check(check_pose);
-    ld06.add_option("--poses", options.poses,
-                    "File of lines: t x y yaw, '-' = stdin. t counts seconds from the first packet of a file, for a "
-                    "device it is Unix time. Between its lines a pose is interpolated; scans before the first and "
-                    "behind the last are passed over");
+    ld06.add_option(
+        "--poses", options.poses,
+        "File of lines: t x y yaw, '-' = stdin. t is seconds since the first packet for a file, and Unix time for a "
+        "device. Poses are interpolated; scans before the first and after the last line are skipped");
     ld06.add_option_function<std::string>(
             "--mount", [&](const std::string& text) { options.mount = checked_pose(text); },
             "X,Y,YAW of the sensor on the robot; its 0 degrees are its x axis. Default: 0,0,0")
@@ -101,29 +101,28 @@ void add_poses(CLI::App& ld06, Ld06Options& options) {
 }
 
 void add_locating(CLI::App& ld06, Ld06Options& options) {
-    ld06.add_flag(
-        "--locate", options.locate,
-        "For a lidar without odometry that is carried from place to place: the server tells from what it sees "
-        "where it stands. What it sees on its way is dropped. A capture file is sent once more by each run");
+    ld06.add_flag("--locate", options.locate,
+                  "For a lidar without odometry that is carried from place to place: the server localizes it by its "
+                  "scans. Scans taken while it moves are dropped. Each run sends a capture file again");
     ld06.add_option_function<std::string>(
             "--near", [&](const std::string& text) { options.near = checked_near(text); },
-            "X,Y,RADIUS in metres, with --locate: it stands no farther from there first, along either axis, and is "
-            "carried no more than 100 m from place to place. Default: anywhere in the map")
+            "X,Y,RADIUS in metres, with --locate: the maximum distance of the first place from X,Y along each axis; "
+            "later places are at most 100 m apart. Default: anywhere in the map")
         ->check(check_near);
 }
 
 /// Returns why the options for the robot's place are invalid, or an empty string.
 std::string complaint_about_places(const Ld06Options& options) {
-    if (options.near && !options.locate) return "ld06: --near is of --locate; give both, or neither";
+    if (options.near && !options.locate) return "ld06: --near needs --locate; give both, or neither";
     if (options.locate && !options.poses.empty()) {
-        return "ld06: --locate asks the server where the robot is and --poses says it; leave one of them out";
+        return "ld06: --locate requests the pose from the server, and --poses states it; leave one of them out";
     }
     if (options.locate && options.speed > 0.0) {
-        return "ld06: with --locate a capture file is read as fast as the server takes it; leave --speed out";
+        return "ld06: with --locate a capture file is read as fast as the server accepts scans; leave --speed out";
     }
     if (!options.locate && options.pose.has_value() != options.poses.empty()) {
-        return "ld06: say where the robot is, either with --pose X,Y,YAW or with --poses FILE, or have the server tell "
-               "with --locate";
+        return "ld06: state the robot's pose with --pose X,Y,YAW or --poses FILE, or let the server determine it with "
+               "--locate";
     }
     return {};
 }
@@ -131,24 +130,25 @@ std::string complaint_about_places(const Ld06Options& options) {
 } // namespace
 
 CLI::App* add_ld06(CLI::App& app, Ld06Options& options) {
-    auto* ld06 = app.add_subcommand("ld06", "Read an LD06 or LD19 lidar, or what one has sent");
+    auto* ld06 = app.add_subcommand("ld06", "Read an LD06 or LD19 lidar, or a file with its bytes");
     ld06->add_option("INPUT", options.input, "Serial device (/dev/ttyUSB0), tcp://HOST:PORT (ser2net), or capture file")
         ->configurable(false);
     add_poses(*ld06, options);
     add_locating(*ld06, options);
     ld06->add_option("--min-range", options.range_min, "Metres; shorter readings are invalid. Default: 0.02")
         ->check(check_within(0.0, kRangeMax));
-    ld06->add_option("--min-confidence", options.confidence_min, "0 to 255; readings of less are invalid. Default: 100")
+    ld06->add_option("--min-confidence", options.confidence_min, "0 to 255; readings below are invalid. Default: 100")
         ->check(check_confidence);
     ld06->add_option("--median", options.median_window,
-                     "Beams; each reading becomes the median of so many neighbours. Odd, 3 to 101; from about 15 on "
-                     "corners go round. Default: off")
+                     "Beams; each reading becomes the median of this many neighbours. Odd, 3 to 101; from about 15 "
+                     "corners are rounded. Default: off")
         ->check(check_window);
-    ld06->add_option("--speed", options.speed, "Of a capture file: 1 = as recorded, 0 = as fast as the server takes it")
+    ld06->add_option("--speed", options.speed,
+                     "For a capture file: 1 = as recorded, 0 = as fast as the server accepts scans")
         ->check(check_not_negative)
         ->capture_default_str();
     ld06->add_option("--reopen-for", options.reopen_for,
-                     "Seconds for which a device that went away is tried again; 0 = not at all")
+                     "Seconds during which a lost device is reopened; 0 = not at all")
         ->check(check_within(0.0, 1e6))
         ->capture_default_str();
     return ld06;

@@ -32,19 +32,19 @@ Result<Ld06ScanOptions> scan_options(const RobotOptions& options, const Ld06Opti
     scan.mount = ld06.mount;
     if (scan.range_min < scan.range_max) return scan;
     return Error{Errc::kInvalidField,
-                 fmt::format("--min-range is {} m, but --max-range only {} m; nothing lies between", scan.range_min,
-                             scan.range_max)};
+                 fmt::format("--min-range is {} m, but --max-range is only {} m; no reading would be valid",
+                             scan.range_min, scan.range_max)};
 }
 
 Result<PoseLines> read_poses(const Ld06Options& ld06, Console& console) {
     const std::string name = ld06.poses == kStandardInput ? "stdin" : ld06.poses;
     std::size_t skipped = 0;
-    const auto tell = [&](const SkippedLine& line) {
+    const auto report = [&](const SkippedLine& line) {
         if (++skipped <= kSkippedPosesShown) {
             console.note(fmt::format("{}:{}: skipped: {}", name, line.line_number, line.reason));
         }
     };
-    auto lines = ld06.poses == kStandardInput ? read_pose_lines(std::cin, name, tell) : read_pose_lines(name, tell);
+    auto lines = ld06.poses == kStandardInput ? read_pose_lines(std::cin, name, report) : read_pose_lines(name, report);
     if (skipped > kSkippedPosesShown) {
         console.note(fmt::format("{}: {} more lines skipped", name, skipped - kSkippedPosesShown));
     }
@@ -150,17 +150,16 @@ Result<PreparedSource> prepare_ld06(const RobotOptions& options, const Ld06Optio
         if (options.spool.empty()) {
             return ld06.locate ? prepare_located_capture(ld06, *scan, console) : prepare_capture(ld06, *scan, console);
         }
-        return Error{Errc::kInvalidField,
-                     fmt::format("{}: a capture file is a recording and needs no --spool: {}; leave "
-                                 "--spool out",
-                                 ld06.input,
-                                 ld06.locate ? "it can be read again"
-                                             : "the same command again continues behind what is "
-                                               "stored")};
+        return Error{
+            Errc::kInvalidField,
+            fmt::format("{}: a capture file is a recording and needs no --spool: {}; leave "
+                        "--spool out",
+                        ld06.input,
+                        ld06.locate ? "it can be read again" : "the same command continues after the stored scans")};
     }
     return Error{Errc::kNotFound,
                  std::filesystem::exists(status)
-                     ? fmt::format("{}: neither a serial device nor a file; name one", ld06.input)
+                     ? fmt::format("{}: not a serial device or a file; name one", ld06.input)
                      : fmt::format("{}: no such device or file; check the path, and the cable", ld06.input)};
 }
 

@@ -20,8 +20,8 @@ constexpr double kPlanCellSize = 0.05; // metres
 /// Returns why a robot cannot be at a place, whatever its path.
 std::string unreachable(const World& world, const Point2& place) {
     if (!bounds_of(world).contains(place)) return "outside the world";
-    if (world.obstacles->contain(place)) return "inside what stands there";
-    if (world.obstacles->distance(place) < kBodyRadius) return "too near to what stands there";
+    if (world.obstacles->contain(place)) return "inside an obstacle";
+    if (world.obstacles->distance(place) < kBodyRadius) return "too close to an obstacle";
     return {};
 }
 
@@ -30,8 +30,7 @@ Result<NamedBehaviour> make_waypoints(const SimulateOptions& simulate, const Wor
     auto waypoints = is_tour ? Result<std::vector<Point2>>(tour_of(world.name)) : read_waypoints(simulate.waypoints);
     if (!waypoints) return waypoints.error();
     if (waypoints->empty()) {
-        return Error{Errc::kInvalidField,
-                     fmt::format("no tour of the world {} is known; say where to drive: --waypoints", simulate.world)};
+        return Error{Errc::kInvalidField, fmt::format("the world {} has no tour; give --waypoints", simulate.world)};
     }
     std::string name = fmt::format("{} {}", is_tour ? "tour" : "waypoints", to_text(*waypoints));
     return NamedBehaviour{

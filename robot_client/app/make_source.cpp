@@ -18,14 +18,14 @@ using Clock = std::chrono::steady_clock;
 constexpr std::size_t kSkippedLinesShown = 5;
 
 std::string order_text(const StampReport& stamps) {
-    return fmt::format("stamps go back {} times, by up to {:.3f} s: {}", stamps.steps_back, stamps.back_max,
-                       stamps.file_order ? "they jitter, and the scans are sent in the order of the file"
-                                         : "parts are out of their place, and the scans are sent in the order of time");
+    return fmt::format("stamps decrease {} times, by up to {:.3f} s: {}", stamps.steps_back, stamps.back_max,
+                       stamps.file_order ? "they jitter, so the scans are sent in the order of the file"
+                                         : "parts are out of order, so the scans are sent in the order of time");
 }
 
 Result<PreparedSource> make(const RobotOptions& options, const ReplayOptions& replay, Console& console) {
     std::size_t skipped = 0;
-    const auto tell = [&](const SkippedLine& line) {
+    const auto report = [&](const SkippedLine& line) {
         if (++skipped > kSkippedLinesShown) return;
         console.note(fmt::format("{}:{}: skipped: {}", replay.file, line.line_number, line.reason));
     };
@@ -35,7 +35,7 @@ Result<PreparedSource> make(const RobotOptions& options, const ReplayOptions& re
         next_progress = Clock::now() + console.progress_period();
         console.progress(reading_text(replay.file, progress));
     };
-    auto log = CarmenLog::open(replay.file, {options.no_return, options.range_max, {}}, tell, show);
+    auto log = CarmenLog::open(replay.file, {options.no_return, options.range_max, {}}, report, show);
     if (skipped > kSkippedLinesShown) {
         console.note(fmt::format("{}: {} more lines skipped", replay.file, skipped - kSkippedLinesShown));
     }

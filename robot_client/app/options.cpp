@@ -18,14 +18,14 @@ namespace {
 constexpr const char* kAbout =
     "Streams a robot's scans to a Scanloom server: a recorded log, recorded sonars, a lidar,\n"
     "or a simulated robot.\n"
-    "The same command again continues behind the scans that are stored already.\n"
-    "Exits 0 when every scan is stored durably (a simulation without an end: every scan sent\n"
-    "until it was interrupted), 1 when not, 2 when it was called wrongly; prints a summary as one line\n"
-    "of JSON, with the reason (\"error\") where it exits 1.\n"
-    "Without a server, truth writes the map that a perfect robot would make of a simulated world.";
+    "The same command continues after the scans that are already stored.\n"
+    "Exits 0 if every scan is stored durably (an endless simulation: every scan sent until the\n"
+    "interrupt), 1 if not, 2 on invalid arguments; prints a summary as one line of JSON, with the\n"
+    "reason (\"error\") if it exits with 1.\n"
+    "The command truth needs no server and writes the ground truth map of a simulated world.";
 constexpr const char* kFooter =
     "Every option may also stand in the file of --config (TOML; those of a source in a section of its name) or in the\n"
-    "environment (--cell-size as SCANLOOM_CELL_SIZE). A flag beats the environment, which beats the file.";
+    "environment (--cell-size as SCANLOOM_CELL_SIZE). A flag overrides the environment, which overrides the file.";
 
 /// Options as the parser sets them, before they are moved into RobotOptions.
 struct Raw {
@@ -48,63 +48,63 @@ std::string check_name(const std::string& name) {
 void add_link_options(CLI::App& app, RobotOptions& options, Raw& raw) {
     app.add_option("--server", raw.server, "Robot port of the server, HOST:PORT")->capture_default_str();
     // not required() in the parser: truth needs neither
-    app.add_option("--session", options.session, "Session to add to; made if it does not exist. Needed to stream")
+    app.add_option("--session", options.session,
+                   "Session for the scans; created if it does not exist. Required for streaming")
         ->check(check_name);
-    app.add_option("--robot", options.robot, "Name of this robot within the session. Needed to stream")
+    app.add_option("--robot", options.robot, "Name of this robot within the session. Required for streaming")
         ->check(check_name);
-    app.add_option("--token-file", options.token_file, "File that holds the token of this robot")
-        ->check(CLI::ExistingFile);
-    app.add_flag("--tls", options.tls, "Encrypt the link, and check that the server is the one that --server names");
+    app.add_option("--token-file", options.token_file, "File with the token of this robot")->check(CLI::ExistingFile);
+    app.add_flag("--tls", options.tls, "Encrypt the link, and verify that the server is the one that --server names");
     app.add_option("--tls-ca", options.tls_ca_file,
                    "File with the certificates to trust, in PEM, instead of the system's; means --tls")
         ->check(CLI::ExistingFile);
     auto* certificate =
         app.add_option("--tls-cert", options.tls_cert_file,
-                       "File with the certificate to show to a server that asks for one, in PEM; means --tls")
+                       "File with the client certificate for a server that requires one, in PEM; means --tls")
             ->check(CLI::ExistingFile);
     auto* key = app.add_option("--tls-key", options.tls_key_file, "File with its private key, without a password")
                     ->check(CLI::ExistingFile);
     certificate->needs(key);
     key->needs(certificate);
-    app.add_option("--cell-size", options.cell_size, "Metres a cell, for a session made here")
+    app.add_option("--cell-size", options.cell_size, "Cell size in metres, for a session that this run creates")
         ->check(check_within(kCellSizeMin, kCellSizeMax));
     app.add_option("--body-radius", options.body_radius,
-                   "Metres, of the robot's body, for viewers and as the default of planned ways. Default: that of the "
-                   "simulated robot, for recordings none")
+                   "Body radius in metres, for viewers and as the default for planned paths. Default: that of the "
+                   "simulated robot, none for recordings")
         ->check(check_above_up_to(0.0, kBodyRadiusMax));
     app.add_option("--give-up-after", raw.give_up_after,
-                   "Seconds without progress until it fails; 0 = never. Default: 120, and 0 while a sensor gives scans")
+                   "Seconds without progress until the run fails; 0 = never. Default: 120, and 0 for a live sensor")
         ->check(check_not_negative);
 }
 
 void add_waiting_options(CLI::App& app, RobotOptions& options, Raw& raw) {
     app.add_option(
         "--spool", options.spool,
-        "Directory that keeps the scans of a sensor until they are stored, so that neither minutes without "
-        "a server nor the end of this program lose any. Not for what can be read again: logs, captures, most "
-        "simulations");
-    app.add_option("--spool-size", raw.spool_mib, "MiB, the most that the spool takes of the disk")
+        "Directory that keeps the scans of a sensor until they are stored, so that neither a long outage nor the end "
+        "of this program loses any. Not for repeatable sources: logs, captures, most simulations");
+    app.add_option("--spool-size", raw.spool_mib, "Maximum size of the spool on the disk, MiB")
         ->check(check_within(kSpoolMibMin, kSpoolMibMax))
         ->capture_default_str();
     app.add_option("--memory", raw.memory_mib,
-                   "MiB of scans held in memory until they are stored; recordings are read no further then")
+                   "Maximum memory for unacknowledged scans, MiB; reading of recordings pauses at this limit")
         ->check(check_within(kMemoryMibMin, kMemoryMibMax))
         ->capture_default_str();
     app.add_option("--when-full", raw.when_full,
-                   "What goes when a sensor's scans have no room left in the spool, or without one in memory. Those "
-                   "that may have been sent never go")
+                   "Scans to drop when the spool, or without one the memory, is full. Scans that may have been sent "
+                   "are never dropped")
         ->check(CLI::IsMember({"drop-oldest", "drop-newest"}))
         ->capture_default_str();
 }
 
 void add_wire_options(CLI::App& app, Raw& raw) {
-    app.add_option("--batch-delay", raw.batch_delay, "Seconds that a scan may wait for others to be sent with")
+    app.add_option("--batch-delay", raw.batch_delay,
+                   "Maximum time in seconds that a scan waits for others of its batch")
         ->check(check_within(0.0, kBatchDelayMax))
         ->capture_default_str();
-    app.add_option("--batch-size", raw.batch_kib, "KiB of scans that are sent together at most")
+    app.add_option("--batch-size", raw.batch_kib, "Maximum size of a batch of scans, KiB")
         ->check(check_within(1.0, 1000.0))
         ->capture_default_str();
-    app.add_option("--compression", raw.compression, "For links that are slower than the scans")
+    app.add_option("--compression", raw.compression, "Compression, for slow links")
         ->check(CLI::IsMember({"none", "zstd"}))
         ->capture_default_str();
 }
@@ -129,13 +129,12 @@ void sort_in(const Raw& raw, RobotOptions& options) {
 
 void add_scan_options(CLI::App& app, RobotOptions& options, Raw& raw) {
     app.add_option("--max-range", options.range_max,
-                   "Metres; readings of this length or more are no-return, and those of the length that a line of a "
-                   "log states. "
-                   "Default: what the source states, for logs 50 at most, and 5.11 for sonar")
+                   "Metres; readings of at least this length, or of the length that a line of a log states, have no "
+                   "return. Default: the value of the source, for logs at most 50, and 5.11 for sonar")
         ->check(check_within(0.001, kRangeMax));
     app.add_option("--no-return", raw.no_return,
-                   "What beams without a return mean: free up to the range, or nothing (drop). Default: free where the "
-                   "source states its sensor's range, drop where it does not (FLASER)")
+                   "Meaning of beams without a return: free up to the range, or ignored (drop). Default: free if the "
+                   "source states its sensor's range, else drop (FLASER)")
         ->check(CLI::IsMember({"free", "drop"}));
 }
 
@@ -145,8 +144,8 @@ CLI::App* add_replay(CLI::App& app, ReplayOptions& options) {
     replay->add_option("FILE", options.file, "CARMEN log, plain, gzip or bzip2")->configurable(false);
     replay
         ->add_option("--speed", options.speed,
-                     "1 = as recorded, 0 = as fast as the server takes it. A pause of more than 10 minutes in the log "
-                     "counts as 10")
+                     "1 = as recorded, 0 = as fast as the server accepts scans. A pause of more than 10 minutes in the "
+                     "log counts as 10")
         ->check(check_not_negative)
         ->capture_default_str();
     return replay;
@@ -163,7 +162,7 @@ CLI::App* add_sonar(CLI::App& app, SonarReplayOptions& options) {
     sonar->add_option("--aperture", options.aperture_deg, "Degrees, full width of a sonar's cone")
         ->check(check_within(1.0, 180.0))
         ->capture_default_str();
-    sonar->add_option("--speed", options.speed, "1 = as recorded, 0 = as fast as the server takes it")
+    sonar->add_option("--speed", options.speed, "1 = as recorded, 0 = as fast as the server accepts scans")
         ->check(check_not_negative)
         ->capture_default_str();
     return sonar;
@@ -200,7 +199,7 @@ std::variant<RobotOptions, TruthOptions, Leave> parse_options(int argc, const ch
     } catch (const CLI::ParseError& reason) {
         return leave_for(
             app, reason,
-            "say what to stream: replay FILE, sonar MEASUREMENTS POSES, ld06 INPUT, or simulate; or ask for the truth");
+            "name a source: replay FILE, sonar MEASUREMENTS POSES, ld06 INPUT, or simulate; or the command truth");
     }
     if (truth->parsed()) {
         if (auto mistake = mistake_in(truth_options)) return usage_error(app, *mistake);
@@ -213,16 +212,15 @@ std::variant<RobotOptions, TruthOptions, Leave> parse_options(int argc, const ch
     if (!server) return usage_error(app, fmt::format("--server: '{}' is not HOST:PORT", raw.server));
     options.server = *server;
     if (options.cell_size && options.range_max.value_or(0.0) > kReachCellsMax * *options.cell_size) {
-        return usage_error(app,
-                           fmt::format("--max-range {} spans more than {} cells of --cell-size {}, the most that a "
-                                       "server takes; use larger cells, or a shorter range",
-                                       *options.range_max, kReachCellsMax, *options.cell_size));
+        return usage_error(app, fmt::format("--max-range {} spans more than {} cells of --cell-size {}, the limit of "
+                                            "servers; use larger cells, or a shorter range",
+                                            *options.range_max, kReachCellsMax, *options.cell_size));
     }
     sort_in(raw, options);
     const bool is_recording = !ld06->parsed() && !(simulate->parsed() && simulate_options.drive == "explore");
     if (!options.spool.empty() && is_recording) {
-        return usage_error(app, "--spool is for what cannot be had again; this source can: the same command again "
-                                "continues behind what is stored; leave --spool out");
+        return usage_error(app, "--spool is for what cannot be had again; this source can: the same command continues "
+                                "after the stored scans; leave --spool out");
     }
     if (replay->parsed()) {
         if (replay_options.file.empty()) return usage_error(app, "replay: name the FILE to replay");

@@ -17,7 +17,7 @@ std::string progress_text(const UplinkStatus& status, std::optional<std::uint64_
     const std::uint64_t waiting = status.last - status.acknowledged + status.waiting;
     if (!status.is_linked) text += fmt::format(", not connected, {} waiting", waiting);
     if (status.is_linked && status.waiting > 0) text += fmt::format(", {} waiting", waiting);
-    if (status.dropped > 0) text += fmt::format(", {} DROPPED for want of room", status.dropped);
+    if (status.dropped > 0) text += fmt::format(", {} DROPPED for lack of space", status.dropped);
     if (!remarks.empty()) text += fmt::format(", {}", remarks);
     return text;
 }
@@ -29,7 +29,7 @@ std::string reading_text(std::string_view file, const ReadProgress& progress) {
 }
 
 std::string pause_text(std::chrono::duration<double> pause) {
-    return fmt::format("the next scan is due in {}; --speed 0 would not wait for it", as_clock(pause.count()));
+    return fmt::format("the next scan is due in {}; use --speed 0 to send without waiting", as_clock(pause.count()));
 }
 
 } // namespace scanloom::robot

@@ -30,7 +30,7 @@ namespace {
 /// Returns a message about the scans that the server has from earlier runs.
 std::string resume_text(std::uint64_t stored, std::optional<std::uint64_t> scan_count) {
     if (scan_count == stored) return fmt::format("all {} scans are stored from an earlier run", stored);
-    return fmt::format("continuing after scan {}: those up to it are stored from an earlier run", stored);
+    return fmt::format("continuing after scan {}: earlier scans are stored from an earlier run", stored);
 }
 
 UplinkOptions uplink_options(const RobotOptions& options, std::string token, const PreparedSource& prepared,
@@ -74,26 +74,26 @@ Result<std::unique_ptr<Feed>> make_feed(const RobotOptions& options, const Prepa
         return std::unique_ptr<Feed>(
             std::make_unique<RecordingFeed>(*prepared.source, recording_options(prepared, console)));
     }
-    const auto tell = [&console](const std::string& text) { console.note(text); };
+    const auto report = [&console](const std::string& text) { console.note(text); };
     const auto on_resume = [&console](std::uint64_t stored) { console.note(resume_text(stored, std::nullopt)); };
     auto spool = open_spool_of(options.session, options.robot,
                                {.directory = options.spool,
                                 .bytes_max = options.spool_bytes_max,
                                 .when_full = options.when_full,
-                                .poses_are_told = prepared.locating != nullptr},
-                               tell);
+                                .poses_from_server = prepared.locating != nullptr},
+                               report);
     if (!spool) return spool.error();
     if (*spool && (*spool)->waiting() > 0)
         console.note(fmt::format("{} scans wait in {}", (*spool)->waiting(), (*spool)->directory().string()));
     return std::unique_ptr<Feed>(std::make_unique<LiveFeed>(*prepared.live, std::move(*spool),
-                                                            LiveFeedOptions{options.when_full, on_resume, tell}));
+                                                            LiveFeedOptions{options.when_full, on_resume, report}));
 }
 
 /// The first signal stops the source, the second one stops everything.
 asio::awaitable<void> obey_signals(asio::io_context& io, Uplink& uplink, Console& console) {
     asio::signal_set signals(io, SIGINT, SIGTERM);
     if (std::get<0>(co_await signals.async_wait(kAwaitTuple))) co_return;
-    console.note("interrupted: waiting for what was sent to be stored; interrupt again to leave at once");
+    console.note("interrupted: waiting until sent scans are stored; interrupt again to end immediately");
     uplink.stop();
     if (std::get<0>(co_await signals.async_wait(kAwaitTuple))) co_return;
     io.stop();
@@ -141,7 +141,7 @@ ExitCode run(const RobotOptions& options) {
 
     asio::io_context io(1);
     Uplink uplink(io, std::move(carried), **feed);
-    if (prepared->exploring != nullptr) prepared->exploring->ask_with(guided_by(uplink, Explore::kWayClearance));
+    if (prepared->exploring != nullptr) prepared->exploring->ask_with(guided_by(uplink, Explore::kPathClearance));
     if (prepared->locating != nullptr)
         prepared->locating->ask_with(located_by(uplink, prepared->near, prepared->first_place));
     std::optional<Result<>> outcome; // none if a second signal ended the run
@@ -165,10 +165,9 @@ ExitCode run(const RobotOptions& options) {
     if (*outcome) return kExitDone;
     const bool is_refused = outcome->error().code == Errc::kConflict;
     if (is_refused && prepared->locating != nullptr && !options.spool.empty()) {
-        console.note(
-            fmt::format("to have the lidar's place told anew, move {0}/{1}.{2} away; or rename it to OTHER.{2}, "
-                        "and its scans go to --session OTHER",
-                        options.spool.string(), options.session, options.robot));
+        console.note(fmt::format("to localize the lidar again, move {0}/{1}.{2} away; or rename it to OTHER.{2} to "
+                                 "send its scans to --session OTHER",
+                                 options.spool.string(), options.session, options.robot));
     }
     return fail(outcome->error());
 }

@@ -22,28 +22,26 @@ std::string world_help(std::string text) {
 
 constexpr const char* kWorldsFooter =
     "Worlds, in metres, the origin in the middle of each, x to the right and y up:\n"
-    "  room, room_walker  x -5 to 5, y -5 to 5; room_walker with a person who walks about\n"
+    "  room, room_walker  x -5 to 5, y -5 to 5; room_walker with a walking person\n"
     "  office             x -15 to 15, y -10 to 10\n"
     "  hall               x -30 to 30, y -20 to 20\n"
-    "  FILE.yaml          where its origin says; rays pass through cells that it does not know as if they were free, "
-    "and\n"
-    "                     meet nothing beyond its edge";
+    "  FILE.yaml          by its origin; rays pass through unknown cells as if they were free, and\n"
+    "                     hit nothing outside it";
 
 void add_sensors(CLI::App& simulate, SimulateOptions& options) {
     simulate
-        .add_option("--laser", options.laser,
-                    "What it sees with: 684 beams over 180 degrees and 5 m; 360 all round and 12 m; 1081 over 270 "
-                    "degrees and 30 m")
+        .add_option(
+            "--laser", options.laser,
+            "Laser: 684 beams over 180 degrees and 5 m; 360 over 360 degrees and 12 m; 1081 over 270 degrees and 30 m")
         ->check(CLI::IsMember({"reference", "lidar360", "wide", "none"}))
         ->capture_default_str();
-    simulate
-        .add_option("--sonar", options.sonar, "What it hears with, beside a laser or alone: 16 sonars all round, 5 m")
+    simulate.add_option("--sonar", options.sonar, "Sonars, with or without a laser: 16 over 360 degrees, 5 m")
         ->check(CLI::IsMember({"none", "ring16"}))
         ->capture_default_str();
 }
 
 void add_noise(CLI::App& simulate, SimulateOptions& options) {
-    simulate.add_option("--noise", options.noise, "What its measurements suffer from")
+    simulate.add_option("--noise", options.noise, "Noise of its measurements")
         ->check(CLI::IsMember({"none", "gaussian", "uniform"}))
         ->capture_default_str();
     simulate
@@ -52,17 +50,13 @@ void add_noise(CLI::App& simulate, SimulateOptions& options) {
             fmt::format("Metres; uniform noise makes each reading too long by 0 up to this. Default: {}", kNoiseWidth))
         ->check(check_positive);
     simulate
-        .add_option(
-            "--odometry-noise", options.odometry_noise,
-            "How much its odometry errs, in proportion to its motion: 0 = not at all, 1 = 5 % of what it drives "
-            "and turns within a control step, and 0.02 rad a metre, 2 = twice that. Default: 1 with noise, 0 "
-            "without")
+        .add_option("--odometry-noise", options.odometry_noise,
+                    "Odometry error, proportional to its motion: 0 = none, 1 = 5 % of each control step's motion and "
+                    "0.02 rad per metre, 2 = twice that. Default: 1 with noise, 0 without")
         ->check(check_not_negative);
     // not checked in the parser: a SCANLOOM_POSE meant for another subcommand is not an error in this one
     simulate
-        .add_option(
-            "--pose", options.pose,
-            "Which pose it sends with its scans: the true one, or odometry: where that leads from the true start")
+        .add_option("--pose", options.pose, "Pose sent with its scans: ground truth, or odometry from the true start")
         ->type_name("TEXT:{true,odometry}")
         ->capture_default_str();
 }
@@ -70,15 +64,14 @@ void add_noise(CLI::App& simulate, SimulateOptions& options) {
 void add_drive(CLI::App& simulate, SimulateOptions& options) {
     simulate
         .add_option("--drive", options.drive,
-                    "How it drives: along the walls on its right hand, for ever; from waypoint to waypoint; to and fro "
-                    "over all free ground; or where the server tells it to, until nothing is left to explore")
+                    "Behaviour: along the walls on its right, endlessly; from waypoint to waypoint; back and forth "
+                    "over all free ground; or to the server's exploration goals, until nothing is left to explore")
         ->check(CLI::IsMember({"wall_follower", "waypoints", "zigzag", "explore"}))
         ->capture_default_str();
     simulate
-        .add_option(
-            "--waypoints", options.waypoints,
-            "Where to, in metres from the origin of the world (see below): \"x,y;x,y;...\", or a file with a line "
-            "\"x y\" for each. Default: a tour of the world, begun where the robot is")
+        .add_option("--waypoints", options.waypoints,
+                    "Waypoints, in metres in the world frame (see below): \"x,y;x,y;...\", or a file with a line \"x "
+                    "y\" for each. Default: a tour of the world, from the robot's position")
         ->type_name("LIST|FILE");
 }
 
@@ -87,9 +80,7 @@ void add_drive(CLI::App& simulate, SimulateOptions& options) {
 CLI::App* add_simulate(CLI::App& app, SimulateOptions& options) {
     auto* simulate = app.add_subcommand("simulate", "Simulate a robot that drives through a world");
     simulate->footer(kWorldsFooter);
-    simulate->add_option("--world", options.world, world_help("Where it drives"))
-        ->check(check_world)
-        ->capture_default_str();
+    simulate->add_option("--world", options.world, world_help("The world"))->check(check_world)->capture_default_str();
     add_drive(*simulate, options);
     add_sensors(*simulate, options);
     add_noise(*simulate, options);
@@ -98,54 +89,54 @@ CLI::App* add_simulate(CLI::App& app, SimulateOptions& options) {
         ->capture_default_str();
     simulate
         ->add_option("--duration", options.duration,
-                     "Seconds to simulate, earlier runs included; default: until it is done, or interrupted")
+                     "Seconds to simulate, earlier runs included; default: until the behaviour ends, or an interrupt")
         ->check(check_positive);
     simulate
         ->add_option("--scans", options.scans,
-                     "Scans to take, earlier runs included; default: until it is done, or interrupted")
+                     "Scans to take, earlier runs included; default: until the behaviour ends, or an interrupt")
         ->check(check_whole_number_from(1));
-    simulate->add_option("--speed", options.speed, "1 = real time, 0 = as fast as the server takes it")
+    simulate->add_option("--speed", options.speed, "1 = real time, 0 = as fast as the server accepts scans")
         ->check(check_not_negative)
         ->capture_default_str();
     return simulate;
 }
 
 CLI::App* add_truth(CLI::App& app, TruthOptions& options) {
-    auto* truth = app.add_subcommand("truth", "Write what a perfect map of a world holds, without a server");
+    auto* truth = app.add_subcommand("truth", "Write the ground truth map of a world, without a server");
     truth->footer(
-        "Cells that a map of ROS does not know are unknown in its truth, too, though rays of simulated robots pass\n"
-        "through them as if they were free: leave them out when a map is scored against the truth.");
+        "Unknown cells of a ROS map are unknown in its ground truth, too, although rays of simulated robots pass\n"
+        "through them as if they were free: exclude them when a map is scored against the ground truth.");
     // not required() in the parser: an environment for several subcommands would then require them everywhere
     truth->add_option("--world", options.world, world_help("Of what"))->check(check_world);
-    truth->add_option("--cell-size", options.cell_size, "Metres a cell")
+    truth->add_option("--cell-size", options.cell_size, "Cell size in metres")
         ->check(check_within(0.01, 1.0))
         ->capture_default_str();
     truth
         ->add_option("--output", options.output,
-                     "Writes PREFIX.pgm and PREFIX.yaml, as map_server and imports take them; makes their folder")
+                     "Writes PREFIX.pgm and PREFIX.yaml, for map_server and imports; creates their folder")
         ->type_name("PREFIX");
     return truth;
 }
 
 std::optional<std::string> mistake_in(const SimulateOptions& options) {
     if (options.laser == "none" && options.sonar == "none") {
-        return "simulate: with --laser none the robot is blind; give it --sonar ring16";
+        return "simulate: with --laser none the robot needs --sonar ring16";
     }
     if (options.pose != "true" && options.pose != "odometry") {
         return fmt::format("simulate: --pose: '{}' is neither true nor odometry", options.pose);
     }
     if (options.laser == "none" && options.drive != "wall_follower") {
-        return fmt::format("simulate: --drive {} needs a --laser: sonars do not tell where obstacles end",
+        return fmt::format("simulate: --drive {} needs a --laser: sonars do not measure where obstacles end",
                            options.drive);
     }
     if (options.pose == "odometry" && options.drive == "zigzag") {
-        return "simulate: --drive zigzag follows a plan, and --pose odometry drifts off it; use --pose true";
+        return "simulate: --drive zigzag follows a plan, but --pose odometry drifts from it; use --pose true";
     }
     if (options.noise_width && options.noise != "uniform") {
-        return fmt::format("simulate: --noise-width is not for --noise {}; use --noise uniform", options.noise);
+        return fmt::format("simulate: --noise-width does not apply to --noise {}; use --noise uniform", options.noise);
     }
     if (!options.waypoints.empty() && options.drive != "waypoints") {
-        return fmt::format("simulate: --waypoints are not for --drive {}; use --drive waypoints", options.drive);
+        return fmt::format("simulate: --waypoints do not apply to --drive {}; use --drive waypoints", options.drive);
     }
     return std::nullopt;
 }

@@ -18,7 +18,7 @@ namespace {
 Result<> check_range(const Sensor& sensor) {
     if (sensor.range_max > sensor.range_min) return {};
     return Error{Errc::kInvalidField,
-                 fmt::format("--max-range is {} m, but the {} {} begins to see at {} m", sensor.range_max,
+                 fmt::format("--max-range is {} m, but the {} {} has a minimum range of {} m", sensor.range_max,
                              sensor.kind == SensorKind::kLaser ? "laser" : "sonar", sensor.name, sensor.range_min)};
 }
 

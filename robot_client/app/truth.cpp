@@ -23,7 +23,7 @@ Result<> make_folder(const std::string& prefix) {
     std::error_code failed;
     if (!folder.empty()) std::filesystem::create_directories(folder, failed);
     if (!failed) return {};
-    return Error{Errc::kStoreFailed, fmt::format("{}: the folder cannot be made ({}); give another --output",
+    return Error{Errc::kStoreFailed, fmt::format("{}: the folder cannot be created ({}); give another --output",
                                                  folder.string(), failed.message())};
 }
 
@@ -33,9 +33,7 @@ Result<> write_file(const std::string& path, std::span<const char> content) {
     file.close();
     if (file) return {};
     return Error{Errc::kStoreFailed,
-                 fmt::format("{}: the file cannot be written; make room on the disk, or give another "
-                             "--output",
-                             path)};
+                 fmt::format("{}: the file cannot be written; free space on the disk, or give another --output", path)};
 }
 
 /// Called before memory is allocated for the cells.
@@ -43,9 +41,9 @@ Result<> check_size(const World& world, double cell_size) {
     const Box box = bounds_of(world);
     const double cells = (box.x_max - box.x_min) / cell_size * ((box.y_max - box.y_min) / cell_size);
     if (cells <= static_cast<double>(kRosImagePixelsMax)) return {};
-    return Error{Errc::kTooLarge, fmt::format("the world has {:.0f} cells of {} m, more than {}; take a larger "
-                                              "--cell-size",
-                                              cells, cell_size, kRosImagePixelsMax)};
+    return Error{Errc::kTooLarge,
+                 fmt::format("the world has {:.0f} cells of {} m, more than {}; use a larger --cell-size", cells,
+                             cell_size, kRosImagePixelsMax)};
 }
 
 } // namespace

@@ -45,9 +45,9 @@ std::optional<Point2> as_waypoint(std::string_view text) {
 }
 
 Error no_waypoint(std::string_view where, std::size_t number, std::string_view text) {
-    return {Errc::kInvalidField, fmt::format("--waypoints: {} {}: '{}' is no waypoint; write x,y in metres, at most {} "
-                                             "from the origin",
-                                             where, number, text, kCoordinateMax)};
+    return {Errc::kInvalidField,
+            fmt::format("--waypoints: {} {}: '{}' is not a waypoint; write x,y in metres, at most {} from the origin",
+                        where, number, text, kCoordinateMax)};
 }
 
 Result<std::vector<Point2>> read_list(std::string_view list) {
@@ -91,7 +91,7 @@ Result<std::vector<Point2>> read_waypoints(const std::string& list) {
     }
     auto waypoints = is_list ? read_list(list) : read_file(file);
     if (!waypoints) return waypoints;
-    if (waypoints->empty()) return Error{Errc::kInvalidField, "--waypoints: there are none; give one at least"};
+    if (waypoints->empty()) return Error{Errc::kInvalidField, "--waypoints: the list is empty; give at least one"};
     if (waypoints->size() > kWaypointsMax) {
         return Error{Errc::kInvalidField,
                      fmt::format("--waypoints: there are more than {}; drive fewer", kWaypointsMax)};

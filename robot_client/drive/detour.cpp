@@ -1,8 +1,8 @@
 #include "robot_client/drive/detour.hpp"
 
 #include "robot_client/drive/body.hpp"
+#include "robot_client/drive/free_ahead.hpp"
 #include "robot_client/drive/steering.hpp"
-#include "robot_client/drive/way_ahead.hpp"
 
 #include <algorithm>
 #include <array>
@@ -13,9 +13,9 @@ namespace scanloom::robot {
 namespace {
 
 // metres
-constexpr double kExpected = 0.12;              // from what the plan knows
-constexpr double kBeside = kBodyRadius + 0.12;  // from an obstacle that is passed
-constexpr double kNoWayBetween = 2.0 * kBeside; // obstacles nearer to each other than this count as one
+constexpr double kExpected = 0.12;               // from what the plan knows
+constexpr double kPassing = kBodyRadius + 0.12;  // from an obstacle that is passed
+constexpr double kNoGapBetween = 2.0 * kPassing; // obstacles nearer to each other than this count as one
 constexpr double kOffsetMax = 1.6;
 constexpr double kSeenAhead = 1.5; // obstacles within this distance ahead decide where to pass
 constexpr double kPastMin = 0.6;   // room ahead, parallel to the line
@@ -74,7 +74,7 @@ std::optional<double> Detour::side(const Ground& ground, const Line& line, const
     for (bool grows = true; grows;) {
         grows = false;
         for (const Point2& place : obstacles) {
-            const bool belongs = place.y > right - kNoWayBetween && place.y < left + kNoWayBetween;
+            const bool belongs = place.y > right - kNoGapBetween && place.y < left + kNoGapBetween;
             if (!belongs || (place.y >= right && place.y <= left)) continue;
             right = std::min(right, place.y);
             left = std::max(left, place.y);
@@ -89,7 +89,7 @@ std::optional<double> Detour::side(const Ground& ground, const Line& line, const
                !any_within(obstacles, 0.0, kKeptClear, low - kKeptClear, high + kKeptClear) &&
                !any_within(obstacles, 0.0, past, offset - kKeptClear, offset + kKeptClear);
     };
-    std::array<double, 2> offsets{left + kBeside, right - kBeside};
+    std::array<double, 2> offsets{left + kPassing, right - kPassing};
     if (std::abs(offsets[1]) < std::abs(offsets[0])) std::swap(offsets[0], offsets[1]);
     for (const double offset : offsets) {
         if (has_room(offset)) return offset;
@@ -102,13 +102,13 @@ Detour::Detour(const Line& line, double offset, double first_obstacle)
       follower_({line.begin, line.to_map({0.0, offset})}) {}
 
 Velocity Detour::step(const Ground& ground, const Senses& senses) {
-    if (state_ != State::kUnderWay) return {};
+    if (state_ != State::kActive) return {};
     step_ += 1;
     remember(ground, senses);
     const Point2 position = position_of(senses.pose);
     const bool turns_back = part_ == Part::kPast && may_return(ground, line_.to_line(position));
     if (turns_back || follower_.has_arrived()) begin_next_part(ground, position);
-    if (state_ != State::kUnderWay) return {};
+    if (state_ != State::kActive) return {};
     const Velocity velocity = follower_.step(senses);
     if (follower_.blocked_steps() > kDetourBlockedStepsMax) state_ = State::kFailed;
     return velocity;
@@ -118,7 +118,7 @@ void Detour::begin_next_part(const Ground& ground, const Point2& position) {
     const Point2 place = line_.to_line(position);
     if (part_ == Part::kAside) {
         part_ = Part::kPast;
-        room_ = room_beside(ground);
+        room_ = free_length(ground);
         follower_ = PathFollower({line_.to_map({0.0, offset_}), line_.to_map({room_, offset_})});
     } else if (part_ == Part::kBack) {
         state_ = State::kBackOnLine;
@@ -131,7 +131,7 @@ void Detour::begin_next_part(const Ground& ground, const Point2& position) {
 }
 
 /// Returns how far the ground is free parallel to the line, in metres, up to the line's end.
-double Detour::room_beside(const Ground& ground) const {
+double Detour::free_length(const Ground& ground) const {
     const double step = ground.plan().cell_size;
     double room = 0.0;
     while (room < line_.length) {
@@ -148,15 +148,15 @@ void Detour::remember(const Ground& ground, const Senses& senses) {
     const auto [low, high] = std::minmax({0.0, offset_});
     for (const Point2& obstacle : unexpected_obstacles(ground, senses)) {
         const Point2 place = line_.to_line(obstacle);
-        if (place.y > low - kBeside && place.y < high + kBeside) seen_.push_back({place, step_});
+        if (place.y > low - kPassing && place.y < high + kPassing) seen_.push_back({place, step_});
     }
 }
 
 /// Returns whether the robot can go straight back to the line.
 bool Detour::may_return(const Ground& ground, const Point2& on_line) const {
-    if (on_line.x < first_obstacle_ + kBeside) return false;
-    const auto is_in_the_way = [&](const Seen& seen) { return std::abs(seen.place.x - on_line.x) < kBeside; };
-    return std::ranges::none_of(seen_, is_in_the_way) &&
+    if (on_line.x < first_obstacle_ + kPassing) return false;
+    const auto blocks = [&](const Seen& seen) { return std::abs(seen.place.x - on_line.x) < kPassing; };
+    return std::ranges::none_of(seen_, blocks) &&
            ground.fits_along(line_.to_map(on_line), line_.to_map({on_line.x, 0.0}));
 }
 

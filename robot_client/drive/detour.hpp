@@ -17,7 +17,7 @@ namespace scanloom::robot {
 /// and back to the line as soon as it is free.
 class Detour {
 public:
-    enum class State { kUnderWay, kBackOnLine, kPastEnd, kFailed };
+    enum class State { kActive, kBackOnLine, kPastEnd, kFailed };
 
     /// Chooses the nearer side among those where the ground and the obstacles leave room.
     /// @param end  of the line that starts at the robot
@@ -52,7 +52,7 @@ private:
                                       double first);
     void remember(const Ground& ground, const Senses& senses);
     void begin_next_part(const Ground& ground, const Point2& position);
-    [[nodiscard]] double room_beside(const Ground& ground) const;
+    [[nodiscard]] double free_length(const Ground& ground) const;
     [[nodiscard]] bool may_return(const Ground& ground, const Point2& on_line) const;
 
     Line line_;
@@ -60,7 +60,7 @@ private:
     double first_obstacle_; // metres along the line
     double room_ = 0.0;     // metres free parallel to the line
     Part part_ = Part::kAside;
-    State state_ = State::kUnderWay;
+    State state_ = State::kActive;
     PathFollower follower_;
     std::vector<Seen> seen_;
     int step_ = 0;

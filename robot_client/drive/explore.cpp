@@ -1,7 +1,7 @@
 #include "robot_client/drive/explore.hpp"
 
 #include "robot_client/drive/body.hpp"
-#include "robot_client/drive/way_ahead.hpp"
+#include "robot_client/drive/free_ahead.hpp"
 
 #include <fmt/format.h>
 
@@ -46,7 +46,7 @@ Velocity Explore::step(const Senses& senses) {
     switch (task_) {
     case Task::kLookAround: {
         const Velocity velocity = turn_.step(senses.pose);
-        if (turn_.is_done()) task_ = Task::kAsk;
+        if (turn_.is_done()) task_ = Task::kNeedGoal;
         return velocity;
     }
     case Task::kGo:
@@ -54,13 +54,13 @@ Velocity Explore::step(const Senses& senses) {
     case Task::kLook: {
         const double yaw = direction(position, target_);
         if (!is_heading(senses.pose, yaw)) return turn_to(senses.pose, yaw);
-        task_ = Task::kAsk;
+        task_ = Task::kNeedGoal;
         break;
     }
     case Task::kWait:
-        if (--steps_left_ <= 0) task_ = Task::kAsk;
+        if (--steps_left_ <= 0) task_ = Task::kNeedGoal;
         break;
-    case Task::kAsk:
+    case Task::kNeedGoal:
     case Task::kDone: break;
     }
     return {};
@@ -68,13 +68,13 @@ Velocity Explore::step(const Senses& senses) {
 
 std::string Explore::remarks() const {
     const std::string drive = fmt::format("{:.0f} m driven in {}", driven_, as_text(driven_s()));
-    return is_done() ? fmt::format("explored: no frontier can be reached any more with {} m around the robot, {}",
-                                   kWayClearance, drive)
-                     : fmt::format("exploring: {}", drive);
+    return is_done()
+               ? fmt::format("explored: no frontier is reachable with a clearance of {} m, {}", kPathClearance, drive)
+               : fmt::format("exploring: {}", drive);
 }
 
-void Explore::go(std::vector<Point2> way, const Point2& target) {
-    follower_ = PathFollower(std::move(way));
+void Explore::go(std::vector<Point2> path, const Point2& target) {
+    follower_ = PathFollower(std::move(path));
     target_ = target;
     task_ = Task::kGo;
 }
@@ -89,24 +89,24 @@ double Explore::driven_s() const noexcept { return static_cast<double>(steps_) *
 Velocity Explore::go_on(const Senses& senses) {
     const Velocity velocity = follower_.step(senses);
     if (follower_.has_arrived()) {
-        task_ = task_ == Task::kGo ? Task::kLook : Task::kAsk;
+        task_ = task_ == Task::kGo ? Task::kLook : Task::kNeedGoal;
         return {};
     }
     if (follower_.blocked_steps() < kLookBlockedStepsMax) return velocity;
     if (task_ == Task::kGo) {
-        ask_another_way(senses);
+        request_another_path(senses);
     } else {
-        task_ = Task::kAsk;
+        task_ = Task::kNeedGoal;
     }
     return {};
 }
 
-void Explore::ask_another_way(const Senses& senses) {
+void Explore::request_another_path(const Senses& senses) {
     const Point2 position = position_of(senses.pose);
     if (times_blocked_ > 0 && norm(position - blocked_at_) > kElsewhere) times_blocked_ = 0;
     if (times_blocked_ == 0) blocked_at_ = position;
     times_blocked_ += 1;
-    task_ = Task::kAsk;
+    task_ = Task::kNeedGoal;
     if (times_blocked_ % kBlockedBeforeFree != 0) return;
     follower_ = PathFollower({position, free_place(senses)});
     task_ = Task::kGetFree;

@@ -10,7 +10,7 @@
 namespace scanloom::robot {
 
 /// Drives to the goals it is given and observes the target there, until exploration is finished: first a full turn at
-/// the start, then path after path. It does not know the source of the goals: while is_asking(), its caller calls one
+/// the start, then path after path. It does not know the source of the goals: while needs_goal(), its caller calls one
 /// of go(), wait() and finish().
 class Explore final : public Behaviour {
 public:
@@ -20,7 +20,7 @@ public:
     /// only more slowly: in exploring_robot_test the robot explores as much with 0.15 m and touches nothing either, but
     /// the office takes it 17 to 21 minutes instead of 15 to 17. The cost: passages narrower than 0.44 m are not
     /// explored, although the body would fit through those of 0.3 m.
-    static constexpr double kWayClearance = 0.22;
+    static constexpr double kPathClearance = 0.22;
 
     [[nodiscard]] Velocity step(const Senses& senses) override;
     [[nodiscard]] bool is_done() const override { return task_ == Task::kDone; }
@@ -28,10 +28,10 @@ public:
     [[nodiscard]] std::string remarks() const override;
 
     /// Returns whether the robot stands and waits for a goal: it has observed the last target or cannot reach it.
-    [[nodiscard]] bool is_asking() const noexcept { return task_ == Task::kAsk; }
+    [[nodiscard]] bool needs_goal() const noexcept { return task_ == Task::kNeedGoal; }
 
     /// Drives to the end of a path and turns to the target there. Metres in the map frame.
-    void go(std::vector<Point2> way, const Point2& target);
+    void go(std::vector<Point2> path, const Point2& target);
 
     /// Stands for some time, then asks again.
     void wait(double seconds);
@@ -45,10 +45,10 @@ public:
     [[nodiscard]] int times_blocked() const noexcept { return times_blocked_; }
 
 private:
-    enum class Task { kLookAround, kAsk, kGo, kLook, kGetFree, kWait, kDone };
+    enum class Task { kLookAround, kNeedGoal, kGo, kLook, kGetFree, kWait, kDone };
 
     [[nodiscard]] Velocity go_on(const Senses& senses);
-    void ask_another_way(const Senses& senses);
+    void request_another_path(const Senses& senses);
     void note(const Point2& position);
 
     Task task_ = Task::kLookAround;

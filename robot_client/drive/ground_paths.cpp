@@ -96,7 +96,7 @@ std::vector<Point2> straightened(const Ground& ground, const std::vector<Point2>
 
 } // namespace
 
-std::optional<std::vector<Point2>> find_way(const Ground& ground, const Point2& from, const Point2& to) {
+std::optional<std::vector<Point2>> find_path(const Ground& ground, const Point2& from, const Point2& to) {
     if (ground.fits_along(from, to)) return std::vector{from, to};
     const Spot goal = ground.spot_of(to);
     const auto start = nearest_fitting(ground, from);
@@ -118,7 +118,7 @@ std::optional<std::vector<Point2>> find_way(const Ground& ground, const Point2& 
     return straightened(ground, points);
 }
 
-std::optional<std::size_t> nearest_by_way(const Ground& ground, const Point2& from, std::span<const Point2> targets) {
+std::optional<std::size_t> nearest_by_path(const Ground& ground, const Point2& from, std::span<const Point2> targets) {
     const auto start = nearest_fitting(ground, from);
     if (!start) return std::nullopt;
     const auto target_in = [&](Spot spot) {

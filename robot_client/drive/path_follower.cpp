@@ -1,8 +1,8 @@
 #include "robot_client/drive/path_follower.hpp"
 
 #include "robot_client/drive/body.hpp"
+#include "robot_client/drive/free_ahead.hpp"
 #include "robot_client/drive/steering.hpp"
-#include "robot_client/drive/way_ahead.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -28,51 +28,51 @@ Point2 along(const Point2& from, const Point2& to) {
 
 } // namespace
 
-PathFollower::PathFollower(std::vector<Point2> way) : way_(std::move(way)) {}
+PathFollower::PathFollower(std::vector<Point2> path) : path_(std::move(path)) {}
 
 Velocity PathFollower::step(const Senses& senses) {
     const Point2 position = position_of(senses.pose);
     pass_corners(position);
     if (has_arrived()) return {};
-    const double to_corner = norm(way_[passed_ + 1] - position);
+    const double to_corner = norm(path_[passed_ + 1] - position);
     const double yaw = direction(position, aim(position));
     const double free = free_ahead(senses, senses.pose.yaw);
-    const bool is_in_the_way = free < to_corner - kSlack;
+    const bool blocks = free < to_corner - kSlack;
     double speed = kForwardMax;
     if (stops_at_next_corner()) speed = std::min(speed, braking_speed(to_corner));
-    if (is_in_the_way) speed = std::min(speed, braking_speed(free - kStopBefore));
+    if (blocks) speed = std::min(speed, braking_speed(free - kStopBefore));
     const Velocity velocity = drive_towards(senses, yaw, speed);
     const bool is_turning = std::abs(normalize_angle(yaw - senses.pose.yaw)) > kGentleCorner;
-    if (is_turning || free > (is_in_the_way ? kStopBefore : kShort)) {
+    if (is_turning || free > (blocks ? kStopBefore : kShort)) {
         blocked_steps_ = 0;
         return velocity;
     }
-    if (passed_ + 2 == way_.size() && to_corner < kNearEnd) passed_ += 1;
+    if (passed_ + 2 == path_.size() && to_corner < kNearEnd) passed_ += 1;
     blocked_steps_ += 1;
     return {0.0, velocity.turn};
 }
 
 double PathFollower::left(const Point2& position) const {
     if (has_arrived()) return 0.0;
-    double metres = norm(way_[passed_ + 1] - position);
-    for (std::size_t n = passed_ + 1; n + 1 < way_.size(); ++n) metres += norm(way_[n + 1] - way_[n]);
+    double metres = norm(path_[passed_ + 1] - position);
+    for (std::size_t n = passed_ + 1; n + 1 < path_.size(); ++n) metres += norm(path_[n + 1] - path_[n]);
     return metres;
 }
 
 /// A corner is passed when the robot is at it, or near it and beyond.
 void PathFollower::pass_corners(const Point2& position) {
     while (!has_arrived()) {
-        const Point2& end = way_[passed_ + 1];
+        const Point2& end = path_[passed_ + 1];
         const Point2 left = end - position;
-        const bool is_beyond = norm(left) < kNearEnd && dot(left, along(way_[passed_], end)) <= 0.0;
+        const bool is_beyond = norm(left) < kNearEnd && dot(left, along(path_[passed_], end)) <= 0.0;
         if (norm(left) > kAtCorner && !is_beyond) return;
         passed_ += 1;
     }
 }
 
 Point2 PathFollower::aim(const Point2& position) const {
-    const Point2& begin = way_[passed_];
-    const Point2& end = way_[passed_ + 1];
+    const Point2& begin = path_[passed_];
+    const Point2& end = path_[passed_ + 1];
     const Point2 ahead = along(begin, end);
     const double length = norm(end - begin);
     const double foot = dot(position - begin, ahead);
@@ -80,9 +80,9 @@ Point2 PathFollower::aim(const Point2& position) const {
 }
 
 bool PathFollower::stops_at_next_corner() const {
-    if (passed_ + 2 >= way_.size()) return true;
-    const Point2 before = along(way_[passed_], way_[passed_ + 1]);
-    const Point2 after = along(way_[passed_ + 1], way_[passed_ + 2]);
+    if (passed_ + 2 >= path_.size()) return true;
+    const Point2 before = along(path_[passed_], path_[passed_ + 1]);
+    const Point2 after = along(path_[passed_ + 1], path_[passed_ + 2]);
     return dot(before, after) < std::cos(kGentleCorner);
 }
 

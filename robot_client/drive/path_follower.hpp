@@ -16,14 +16,14 @@ class PathFollower {
 public:
     PathFollower() = default; ///< has arrived
 
-    /// @param way  the path, metres in the map frame; it may begin at some distance from the robot
-    explicit PathFollower(std::vector<Point2> way);
+    /// @param path  the path, metres in the map frame; it may begin at some distance from the robot
+    explicit PathFollower(std::vector<Point2> path);
 
     [[nodiscard]] Velocity step(const Senses& senses);
 
     /// Returns whether the robot is within three centimetres of the path's end, or within ten if something keeps it
     /// from coming nearer.
-    [[nodiscard]] bool has_arrived() const noexcept { return passed_ + 1 >= way_.size(); }
+    [[nodiscard]] bool has_arrived() const noexcept { return passed_ + 1 >= path_.size(); }
 
     /// Returns for how many control steps in a row something ahead has blocked the robot.
     [[nodiscard]] int blocked_steps() const noexcept { return blocked_steps_; }
@@ -36,7 +36,7 @@ private:
     [[nodiscard]] Point2 aim(const Point2& position) const;
     [[nodiscard]] bool stops_at_next_corner() const;
 
-    std::vector<Point2> way_;
+    std::vector<Point2> path_;
     std::size_t passed_ = 0; // points of the path passed
     int blocked_steps_ = 0;
 };

@@ -14,14 +14,14 @@ namespace {
 constexpr double kArrived = 0.10;  // metres
 constexpr double kProgress = 0.10; // metres nearer that count as progress
 constexpr int kStuckSteps = 300;   // 15 seconds
-constexpr std::size_t kGivenUpTold = 5;
+constexpr std::size_t kAbandonedShown = 5;
 constexpr double kForceMin = 1e-9; // a shorter force has no direction
 
 /// Returns the distance in metres of a point from the straight line between two others.
 double distance_to(const Point2& point, const Point2& from, const Point2& to) {
-    const Point2 way = to - from;
-    const double part = squared_norm(way) > 0.0 ? dot(point - from, way) / squared_norm(way) : 0.0;
-    return norm(from + std::clamp(part, 0.0, 1.0) * way - point);
+    const Point2 path = to - from;
+    const double part = squared_norm(path) > 0.0 ? dot(point - from, path) / squared_norm(path) : 0.0;
+    return norm(from + std::clamp(part, 0.0, 1.0) * path - point);
 }
 
 } // namespace
@@ -46,13 +46,13 @@ Velocity Waypoints::step(const Senses& senses) {
 std::string Waypoints::remarks() const {
     std::string text = fmt::format("waypoints: {} of {} reached", reached_, goals_.size());
     if (given_up_.empty()) return text;
-    text += fmt::format(", {} given up:", given_up_.size());
-    for (std::size_t n = 0; n < std::min(given_up_.size(), kGivenUpTold); ++n) {
+    text += fmt::format(", {} abandoned:", given_up_.size());
+    for (std::size_t n = 0; n < std::min(given_up_.size(), kAbandonedShown); ++n) {
         const std::string why = explain_ ? explain_(given_up_[n]) : std::string();
         text += fmt::format("{} ({}, {}) {}", n > 0 ? "," : "", given_up_[n].x, given_up_[n].y,
-                            why.empty() ? "no way found" : why);
+                            why.empty() ? "no path found" : why);
     }
-    if (given_up_.size() > kGivenUpTold) text += fmt::format(", and {} more", given_up_.size() - kGivenUpTold);
+    if (given_up_.size() > kAbandonedShown) text += fmt::format(", and {} more", given_up_.size() - kAbandonedShown);
     return text;
 }
 

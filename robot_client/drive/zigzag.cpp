@@ -15,7 +15,7 @@ namespace {
 constexpr int kBlockedStepsPerDetour = 40;
 constexpr int kLanePatienceSteps = 200;
 constexpr int kDetoursMax = 4;
-constexpr int kWaysAroundMax = 3;
+constexpr int kOtherPathsMax = 3;
 
 /// Lanes overlap by one cell, so small deviations from a lane do not matter.
 double spacing_of(const FloorPlan& plan) { return std::max(2.0 * kBodyRadius - plan.cell_size, plan.cell_size); }
@@ -44,10 +44,10 @@ Velocity Zigzag::step(const Senses& senses) {
 }
 
 std::string Zigzag::remarks() const {
-    std::string text = fmt::format("swept {:.1f} % of the {:.0f} m2 within reach, in {} lanes", 100.0 * coverage(),
+    std::string text = fmt::format("swept {:.1f} % of the {:.0f} reachable m2, in {} lanes", 100.0 * coverage(),
                                    meter_.reachable_m2(), lanes_swept_);
     if (detours_ > 0) text += fmt::format(", {} detours", detours_);
-    if (given_up_ > 0) text += fmt::format(", {} lanes given up", given_up_);
+    if (given_up_ > 0) text += fmt::format(", {} lanes abandoned", given_up_);
     return text;
 }
 
@@ -67,7 +67,7 @@ void Zigzag::choose_block(const Point2& position) {
             entries.push_back(lane.east);
         }
     }
-    const auto nearest = nearest_by_way(ground_, position, entries);
+    const auto nearest = nearest_by_path(ground_, position, entries);
     if (!nearest) return;
     const auto chosen = blocks_.begin() + static_cast<std::ptrdiff_t>(*nearest / 4);
     lanes_.assign(chosen->begin(), chosen->end());
@@ -85,10 +85,10 @@ void Zigzag::begin_next_lane(const Point2& position) {
         lane_begin_ = from_west ? lane.west : lane.east;
         lane_end_ = from_west ? lane.east : lane.west;
         lane_detours_ = 0;
-        ways_around_ = 0;
-        in_the_way_.clear();
-        if (auto way = find_way(ground_, position, lane_begin_)) {
-            follower_ = PathFollower(std::move(*way));
+        other_paths_ = 0;
+        obstacles_.clear();
+        if (auto path = find_path(ground_, position, lane_begin_)) {
+            follower_ = PathFollower(std::move(*path));
             task_ = Task::kGo;
             return;
         }
@@ -107,10 +107,10 @@ Velocity Zigzag::go(const Senses& senses) {
     }
     const Velocity velocity = follower_.step(senses);
     if (!is_out_of_patience(follower_)) return velocity;
-    ways_around_ += 1;
-    for (const Point2& obstacle : unexpected_obstacles(ground_, senses)) in_the_way_.push_back(obstacle);
-    const auto around = find_way(ground_.without(in_the_way_, kLaneClearance), position, lane_begin_);
-    if (ways_around_ > kWaysAroundMax) {
+    other_paths_ += 1;
+    for (const Point2& obstacle : unexpected_obstacles(ground_, senses)) obstacles_.push_back(obstacle);
+    const auto around = find_path(ground_.without(obstacles_, kLaneClearance), position, lane_begin_);
+    if (other_paths_ > kOtherPathsMax) {
         give_up_lane(position);
     } else if (around) {
         follower_ = PathFollower(*around);
@@ -141,7 +141,7 @@ Velocity Zigzag::go_around(const Senses& senses) {
     const Velocity velocity = detour_->step(ground_, senses);
     const Point2 position = position_of(senses.pose);
     switch (detour_->state()) {
-    case Detour::State::kUnderWay: return velocity;
+    case Detour::State::kActive: return velocity;
     case Detour::State::kBackOnLine:
         detours_ += 1;
         sweep_on();

@@ -55,9 +55,9 @@ private:
     Task task_ = Task::kBegin;
     PathFollower follower_;
     std::optional<Detour> detour_;
-    int lane_detours_ = 0;           // begun in this lane
-    int ways_around_ = 0;            // paths tried to reach this lane
-    std::vector<Point2> in_the_way_; // obstacles seen there that are not in the plan
+    int lane_detours_ = 0;          // begun in this lane
+    int other_paths_ = 0;           // paths tried to reach this lane
+    std::vector<Point2> obstacles_; // obstacles seen there that are not in the plan
     int lanes_swept_ = 0;
     int detours_ = 0; // that returned to their lane
     int given_up_ = 0;

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Embeds the robot link's messages, as proto/ has them now, into scanloom_client.py beside this file.
+"""Embeds the current messages of proto/ into scanloom_client.py in this folder.
 
     python3 robot_client/python/embed_protocol.py            writes them
     python3 robot_client/python/embed_protocol.py --check    exits 1 where the file holds others
@@ -20,7 +20,7 @@ BLOCK = re.compile(r'(?<=_PROTOCOL = """\n)[A-Za-z0-9+/=\n]*(?=""")')
 
 
 def described_today(protoc: str) -> bytes:
-    """The FileDescriptorSet of frame.proto and what it imports."""
+    """Returns the FileDescriptorSet of frame.proto and its imports."""
     with tempfile.TemporaryDirectory() as directory:
         out = pathlib.Path(directory) / "descriptors"
         subprocess.run([protoc, f"--proto_path={PROTO}", "--include_imports", f"--descriptor_set_out={out}",
@@ -39,7 +39,7 @@ def main() -> int:
     if embedded == today:
         return 0
     if options.check:
-        print("scanloom_client.py holds other messages than proto/; run: python3 robot_client/python/embed_protocol.py",
+        print("scanloom_client.py differs from proto/; run: python3 robot_client/python/embed_protocol.py",
               file=sys.stderr)
         return 1
     lines = textwrap.wrap(base64.b64encode(zlib.compress(today, 9)).decode("ascii"), 116)

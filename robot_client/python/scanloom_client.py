@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Scanloom's client for robots that speak Python. Copy this file to the robot; it needs Python 3.9 or newer and
+"""Scanloom's client for robots in Python. Copy this file to the robot; it needs Python 3.9 or newer and
 protobuf (Debian: python3-protobuf; elsewhere: pip install protobuf), nothing else.
 
     import math, scanloom_client
@@ -8,14 +8,14 @@ protobuf (Debian: python3-protobuf; elsewhere: pip install protobuf), nothing el
         laser = robot.laser(angle_min=-math.pi / 2, angle_increment=math.pi / 360, count=361, range_max=10.0)
         robot.send(laser, ranges, pose=(x, y, yaw), stamp=t)  # inf: nothing within range; nan: no valid reading
 
-Leaving the block waits until every scan is durable: the server keeps it through kill -9 and power loss. Meanwhile the
-client reconnects as often as it takes and sends again what was not acknowledged.
+Leaving the block waits until every scan is durable: the server keeps it through kill -9 and power loss. The client
+reconnects as often as needed and sends unacknowledged scans again.
 
 Units are metres, radians counter-clockwise and seconds. A pose is (x, y, yaw), a point (x, y). Every function may be
-called from any thread. What fails raises ScanloomError; an argument that cannot be sent raises ValueError.
+called from any thread. Failures raise ScanloomError; invalid arguments raise ValueError.
 
-As a program it reads scans from standard input, one JSON object a line, with "t" in seconds, "pose" and "ranges", and
-perhaps "odometry", "intensities" and "angles"; null in ranges is no valid reading. --help tells more.
+As a program it reads scans from standard input, one JSON object per line, with "t" in seconds, "pose" and "ranges", and
+optionally "odometry", "intensities" and "angles"; null in ranges is an invalid reading. See --help.
 
     {"t": 12.5, "pose": [1.0, 0.5, 0.785], "ranges": [1.25, Infinity, null]}
 """
@@ -56,16 +56,16 @@ Pose = Tuple[float, float, float]
 _log = logging.getLogger("scanloom")
 
 
-# What callers see -----------------------------------------------------------------------------------------------------
+# Public interface -----------------------------------------------------------------------------------------------------
 
 
 class ScanloomError(Exception):
-    """What the server or the link answered.
+    """An error of the server or the link.
 
     code       the server's ErrorCode without its prefix ("INVALID_FIELD"), or this client's own: UNREACHABLE, TIMEOUT,
                LOST_SCANS, BUFFER_FULL, CLOSED, INTERNAL
-    message    one sentence: what was wrong, where, what to do
-    retryable  whether the same may succeed later
+    message    one sentence: the error, its place, and a hint
+    retryable  whether a retry may succeed
     """
 
     def __init__(self, code: str, message: str, retryable: bool = False) -> None:
@@ -76,37 +76,37 @@ class ScanloomError(Exception):
 
 
 class BufferFull(ScanloomError):
-    """send() had no room for the scan within its time; the scan was not taken."""
+    """The buffer was full for the timeout of send(); the scan was not added."""
 
 
 @dataclasses.dataclass(frozen=True)
 class Sensor:
-    """A sensor of one Client, made by its laser() or sonar()."""
+    """A sensor of one Client, created by its laser() or sonar()."""
 
     id: int
     name: str
-    angles: Optional[Tuple[float, ...]]  # of its beams; None where they are evenly spaced
-    angle_increment: float  # 0 where they are not
+    angles: Optional[Tuple[float, ...]]  # of its beams; None if they are evenly spaced
+    angle_increment: float  # 0 if they are not
     _description: bytes = dataclasses.field(repr=False)
 
 
 @dataclasses.dataclass(frozen=True)
 class Path:
-    """Straight from point to point. cost is in metres, those in danger counting more."""
+    """Straight lines between the points. cost is in metres, with those in danger cells weighted."""
 
     points: List[Point]
     length: float
     cost: float
-    revision: int  # of the session's maps it was found on
+    revision: int  # of the session's maps that were used
 
 
 @dataclasses.dataclass(frozen=True)
 class Goal:
-    """What to explore next: stand at the end of the path, turn to the target, scan, ask again.
+    """The next exploration goal: drive to the end of the path, turn to the target, scan, request the next goal.
 
-    exploration  "GOAL", "TAKEN_BY_OTHERS" or "COMPLETE"; path and target are there with "GOAL" only
-    given_up     cells of frontiers that count no more, as robots looked at them in vain
-    in_danger    the place to stand is near an obstacle: there was no other
+    exploration  "GOAL", "TAKEN_BY_OTHERS" or "COMPLETE"; path and target are set with "GOAL" only
+    given_up     frontier cells that are excluded because robots could not observe them
+    in_danger    the end of the path is near an obstacle: no better place exists
     """
 
     exploration: str
@@ -119,8 +119,8 @@ class Goal:
 
 @dataclasses.dataclass(frozen=True)
 class Coverage:
-    """A way over all free ground. Areas are in square metres; unreachable holds runs (row, first column, count) of
-    cells that no path reaches, cell (i, j) being the square from (i, j) * cell_size on."""
+    """A coverage path over all free ground. Areas are in square metres; unreachable holds runs (row, first column,
+    count) of cells that no path reaches; cell (i, j) is the square whose lower left corner is (i, j) * cell_size."""
 
     path: Path
     free_area: float
@@ -131,13 +131,13 @@ class Coverage:
 
 @dataclasses.dataclass(frozen=True)
 class Location:
-    """Where a robot's odometry frame is in the map: at(odometry) is the pose to send a scan with."""
+    """The pose of a robot's odometry frame in the map: at(odometry) returns the pose for send()."""
 
     T_map_odom: Pose
-    explained: float  # part of what the robot saw that lies on what the map has, 0 to 1
-    position_sigma: float  # metres, of where the sensor was, in the direction least known
+    explained: float  # inlier ratio: part of the scan that matches the map, 0 to 1
+    position_sigma: float  # metres, of the sensor's position, in the least certain direction
     yaw_sigma: float  # radians
-    revision: int  # of the session's maps it was found on
+    revision: int  # of the session's maps that were used
 
     def at(self, odometry: Pose = (0.0, 0.0, 0.0)) -> Pose:
         return _compose(self.T_map_odom, odometry)
@@ -145,34 +145,34 @@ class Location:
 
 @dataclasses.dataclass(frozen=True)
 class Status:
-    """How far a Client is."""
+    """The progress of a Client."""
 
-    stored_before: int  # scans of this robot that the server held when it was first reached
-    scans: int  # number of the newest scan, those stored before included
-    sent: int  # scans that went out in this run, each counted once
-    acknowledged: int  # scans of this robot that are durable, those stored before included
-    bytes: int  # sent, those sent again included
+    stored_before: int  # scans of this robot on the server at the first connection
+    scans: int  # number of the newest scan, including stored_before
+    sent: int  # scans sent in this run, each counted once
+    acknowledged: int  # durable scans of this robot, including stored_before
+    bytes: int  # sent, including repetitions
     reconnects: int
     is_linked: bool
 
 
 @dataclasses.dataclass(frozen=True)
 class Timing:
-    """Seconds. The defaults suit a robot on Wi-Fi."""
+    """Timeouts in seconds. The defaults suit a robot on Wi-Fi."""
 
-    connect: float = 10.0  # until a connection stands
+    connect: float = 10.0  # until a connection is established
     welcome: float = 10.0  # from hello to welcome
-    ping_after: float = 5.0  # of silence
-    silence_max: float = 15.0  # then the link counts as dead
-    backoff_first: float = 0.2  # before the next attempt; doubles up to backoff_max; lot leaves out up to half
+    ping_after: float = 5.0  # of silence on the link
+    silence_max: float = 15.0  # of silence, after which the link counts as dead
+    backoff_first: float = 0.2  # before the next attempt; doubles up to backoff_max; randomly shortened by up to half
     backoff_max: float = 10.0
-    give_up_after: float = 120.0  # without the server getting anywhere while something waits; math.inf: never
-    goodbye: float = 1.0  # how long the server may take to close; all is durable then
+    give_up_after: float = 120.0  # without progress while scans or requests wait; math.inf: never
+    goodbye: float = 1.0  # for the server to close the link, when everything is durable
 
 
-# The protocol's messages ----------------------------------------------------------------------------------------------
+# Messages of the protocol ---------------------------------------------------------------------------------------------
 
-# What protoc makes of proto/scanloom/v1/frame.proto, compressed: robot_client/python/embed_protocol.py writes it.
+# The compressed output of protoc for proto/scanloom/v1/frame.proto; robot_client/python/embed_protocol.py updates it.
 _PROTOCOL = """
 eNq1Wc2TG1cRj3b12VppZ2e/5LUTHCUEZ1NxiB1IAZUCfa2lWF/1pHViDkzNzo53J9bOTEaS7U0uOXKm4JjizCFVcOHEieLKlb+FCwXd/d5IM7OyC5fh
 pOnuX7+Pft39+rXgHwXYm1qmO/G8iw+efPgBfd/2A2/m6cWQf/vJh9UfQWboTe07+gaknlVSN1O3UiL1jKjLypqkLnUN1i/Np5V1pumz+hBKx67zyAsu
@@ -216,8 +216,8 @@ a7HJxm3ad682HKJ47/BrKEauXR7q82F3IGpjWnDcY3dAiwrvDWrU7SQviXDHtfutvlF/aOBM6IfoqLTw
 
 
 def _load_protocol() -> Dict[str, Any]:
-    """The classes of the messages by name, and the enums' descriptors. In a pool of their own, they meet no other
-    program's."""
+    """Returns the classes of the messages by name, and the enums' descriptors. Their own pool avoids conflicts with
+    other programs."""
     pool = descriptor_pool.DescriptorPool()
     files = descriptor_pb2.FileDescriptorSet.FromString(zlib.decompress(base64.b64decode(_PROTOCOL)))
     for file in files.file:
@@ -246,23 +246,23 @@ _FRAME_BYTES_MAX = 1 << 20
 _BEAMS_MAX = 4096
 _SENSORS_MAX = 64
 _SCANS_PER_BATCH_MAX = 1024
-_BATCH_BYTES_MAX = 64 << 10  # of a batch of several scans
+_BATCH_BYTES_MAX = 64 << 10  # for a batch of several scans
 _BATCH_OVERHEAD = _LENGTH_BYTES + 16  # fields around the scans of a batch
 _SCAN_OVERHEAD = 16  # a scan's seq, tag and length
-_REQUESTS_MAX = 4  # that a server meets at a time
-_PINGS_MAX = 16  # unanswered; who sends more is not the server
-_REPLACED_MAX = 3  # links of this robot, within so many seconds:
+_REQUESTS_MAX = 4  # that a server handles at the same time
+_PINGS_MAX = 16  # unanswered; a server never has more
+_REPLACED_MAX = 3  # replaced links of this robot within this many seconds:
 _REPLACED_WITHIN = 60.0
-_SCANS_OF_A_ROBOT_MAX = 1_000_000_000  # three years of ten a second
+_SCANS_OF_A_ROBOT_MAX = 1_000_000_000  # three years at ten per second
 _NO_RETURN = 0xFFFFFFFF  # millimetres: nothing within range
 _COORDINATE_MAX = 1e6  # metres
 _REGION_CORNERS_MAX = 4096
 _LOCATE_POINTS_MIN = 20
 _LOCATE_POINTS_MAX = 32_768
 _NEAR_RADIUS_MAX = 1000.0  # metres
-_TOKEN_BYTES_MAX = 8192  # a hello has room for more
+_TOKEN_BYTES_MAX = 8192  # smaller than the limit of a hello
 _FULL_TURN = 2.0 * math.pi + 1e-3
-_SERVER_TEXT_MAX = 500  # characters that are shown
+_SERVER_TEXT_MAX = 500  # characters in messages
 
 
 def _enum_name(enum: str, number: int, prefix: str) -> str:
@@ -271,16 +271,16 @@ def _enum_name(enum: str, number: int, prefix: str) -> str:
 
 
 def _shown(text: str) -> str:
-    """A server's text without characters that change how others are shown."""
+    """Returns a server's text with control characters escaped."""
     plain = "".join(c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in text)
     return plain if len(plain) <= _SERVER_TEXT_MAX else plain[:_SERVER_TEXT_MAX] + "..."
 
 
-# From arguments to messages -------------------------------------------------------------------------------------------
+# Conversion of arguments to messages ----------------------------------------------------------------------------------
 
 
 def _millimetres(range_m: float) -> int:
-    """Rounds as common/scan/scan.cpp does, halves upwards: 0 is an invalid reading."""
+    """Rounds like common/scan/scan.cpp, halves upwards; 0 is an invalid reading."""
     if not range_m > 0.0:
         return 0
     mm = range_m * 1000.0
@@ -290,13 +290,13 @@ def _millimetres(range_m: float) -> int:
 
 
 def _numbers(field: str, values: Any, convert: Callable[[Any], Any]) -> List[Any]:
-    """Of a list, tuple, array or NumPy array."""
+    """Converts a list, tuple, array or NumPy array."""
     if values is None or isinstance(values, (str, bytes, bytearray, dict, set, frozenset)):
         raise ValueError(f"{field} is of type {type(values).__name__}; a list or an array of numbers is needed")
     try:
         return [convert(value) for value in (values.tolist() if hasattr(values, "tolist") else values)]
     except (TypeError, ValueError, OverflowError) as error:
-        raise ValueError(f"{field} holds something that is no number there: {error}") from None
+        raise ValueError(f"{field} contains an invalid number: {error}") from None
 
 
 def _finite(field: str, value: Any, magnitude_max: float = math.inf) -> float:
@@ -332,15 +332,15 @@ def _text(field: str, value: Any, bytes_max: int) -> str:
     return value
 
 
-def _patience(timeout: Any) -> Optional[float]:
-    """None, or seconds that a lock can wait."""
+def _lock_timeout(timeout: Any) -> Optional[float]:
+    """Returns None, or seconds within the range of a lock's timeout."""
     if timeout is None or timeout == math.inf:
         return None
     return min(max(_finite("timeout", timeout), 0.0), threading.TIMEOUT_MAX)
 
 
 def _set_coordinates(field: str, value: Any, names: Sequence[str], message: Any) -> None:
-    """Into a Point or Pose2, which counts as present afterwards also where all is 0."""
+    """Sets a Point or Pose2, which is present afterwards even if all values are 0."""
     try:
         coordinates = list(value)
     except TypeError:
@@ -361,7 +361,7 @@ def _set_point(field: str, value: Any, message: Any) -> None:
 
 
 def _region(region: Any) -> List[float]:
-    """Corners x, y, x, y, ... of a polygon [(x, y), ...] or of a box [x_min, y_min, x_max, y_max]."""
+    """Returns the corners x, y, x, y, ... of a polygon [(x, y), ...] or of a box [x_min, y_min, x_max, y_max]."""
     needed = "a polygon of 3 to 4096 corners [(x, y), ...] or a box [x_min, y_min, x_max, y_max] is needed"
     try:
         given = list(region.tolist() if hasattr(region, "tolist") else region)
@@ -372,10 +372,10 @@ def _region(region: Any) -> List[float]:
     if len(corners) == 1 and len(corners[0]) == 4:
         low_x, low_y, high_x, high_y = (_finite("region", edge, _COORDINATE_MAX) for edge in corners[0])
         if not (low_x < high_x and low_y < high_y):
-            raise ValueError(f"region is the box {corners[0]}, which holds nothing; {needed}")
+            raise ValueError(f"region is the box {corners[0]}, which is empty; {needed}")
         return [low_x, low_y, high_x, low_y, high_x, high_y, low_x, high_y]
     if not 3 <= len(corners) <= _REGION_CORNERS_MAX or any(len(corner) != 2 for corner in corners):
-        raise ValueError(f"region has {len(corners)} parts that are no corners of one; {needed}")
+        raise ValueError(f"region has {len(corners)} invalid corners; {needed}")
     return [_finite("region", coordinate, _COORDINATE_MAX) for corner in corners for coordinate in corner]
 
 
@@ -407,7 +407,7 @@ def _uniform_angles(first: Any, increment: Any, count: Any, message: Any) -> Non
     message.first = _finite("angle_min", first, 2.0 * _FULL_TURN)
     message.increment = _finite("angle_increment", increment)
     if message.increment == 0.0:
-        raise ValueError("angle_increment is 0; the beams would all point one way")
+        raise ValueError("angle_increment is 0; all beams would have the same direction")
     count = _whole("count", count, -_NO_RETURN, _NO_RETURN)
     _check_count("count", count)
     _check_span(message.increment, count)
@@ -439,7 +439,7 @@ def _describe(sensor: int, kind: str, name: str, mount: Pose, uniform: Tuple[Any
 
 def _encode_scan(sensor: Sensor, ranges: Any, pose: Any, stamp: float, odometry: Any, intensities: Any,
                  angles: Any, begins_map: Any = False) -> bytes:
-    """A Scan without its seq, which is known when it is sent."""
+    """Returns an encoded Scan without its seq, which is set when it is sent."""
     if not isinstance(begins_map, bool):
         raise ValueError(f"begins_map is {begins_map!r}; True or False is needed")
     scan = _Scan(sensor=sensor.id, stamp=_finite("stamp", stamp), begins_map=begins_map)
@@ -468,12 +468,12 @@ def _encode_scan(sensor: Sensor, ranges: Any, pose: Any, stamp: float, odometry:
 def _described_laser(sensor: Sensor) -> Any:
     description = _SensorDescription.FromString(sensor._description)
     if description.kind != _messages["SensorKind"].values_by_name["SENSOR_KIND_LASER"].number:
-        raise ValueError(f"{sensor.name} is no laser; only what lasers see tells where a robot is")
+        raise ValueError(f"{sensor.name} is not a laser; only scans of lasers can localize a robot")
     return description
 
 
 def _points_seen(sensor: Any, scan: Any) -> List[Tuple[int, int]]:
-    """Where a laser met something, in whole millimetres in the frame of the scan's pose."""
+    """Returns the points hit by a laser, in whole millimetres in the frame of the scan's pose."""
     pose, mount = ((part.x, part.y, part.yaw) for part in (scan.pose, sensor.mount))
     x, y, yaw = _compose(pose, mount)
     own = scan.angles.explicit.angles or sensor.angles.explicit.angles
@@ -491,10 +491,10 @@ def _points_seen(sensor: Any, scan: Any) -> List[Tuple[int, int]]:
 
 
 def _set_points(points: List[Tuple[int, int]], message: Any) -> None:
-    """All of them, or _LOCATE_POINTS_MAX taken evenly from all."""
+    """Sets all points, or _LOCATE_POINTS_MAX selected evenly."""
     if len(points) < _LOCATE_POINTS_MIN:
-        raise ValueError(f"the scans met something {len(points)} times; {_LOCATE_POINTS_MIN} are needed to tell where "
-                         "they were taken")
+        raise ValueError(f"the scans have {len(points)} points; at least {_LOCATE_POINTS_MIN} are needed to localize "
+                         "them")
     count = min(len(points), _LOCATE_POINTS_MAX)
     before = (0, 0)
     for point in (points[n * len(points) // count] for n in range(count)):
@@ -504,7 +504,7 @@ def _set_points(points: List[Tuple[int, int]], message: Any) -> None:
 
 def _set_near(near: Optional[Point], radius: Optional[float], message: Any) -> None:
     if (near is None) != (radius is None):
-        raise ValueError("near and radius go together; give both, or neither")
+        raise ValueError("near and radius need each other; give both, or neither")
     if near is None:
         return
     _set_point("near", near, message.near)
@@ -539,7 +539,7 @@ def _hello(session: str, robot: str, token: str, source: str, cell_size: Optiona
     return frame
 
 
-# The conversation: no socket, no clock, no thread ---------------------------------------------------------------------
+# Conversation: no socket, no clock, no thread ---------------------------------------------------------------------
 
 
 def _retry(code: str, message: str) -> ScanloomError:
@@ -555,30 +555,30 @@ class _Request:
 
 @dataclasses.dataclass
 class _LinkState:
-    """What is true of one connection only."""
+    """The state of one connection."""
 
     opened: float
-    heard: float  # when the newest frame came
+    last_received: float  # time of the newest frame
     pinged: float = -math.inf
-    said_hello: bool = False
+    sent_hello: bool = False
     is_welcome: bool = False
-    said_goodbye: Optional[float] = None
+    sent_goodbye: Optional[float] = None
     frame_bytes_max: int = _FRAME_BYTES_MAX
     beams_max: int = _BEAMS_MAX
     scans_per_batch_max: int = _SCANS_PER_BATCH_MAX
     credit: int = 0
-    under_way: int = 0  # bytes sent and not durable
+    in_flight: int = 0  # bytes sent and not durable
     batches: Deque[Tuple[int, int]] = dataclasses.field(default_factory=collections.deque)  # last scan, bytes
     described: Set[int] = dataclasses.field(default_factory=set)  # sensors
-    pings: Deque[int] = dataclasses.field(default_factory=collections.deque)  # to be answered
+    pings: Deque[int] = dataclasses.field(default_factory=collections.deque)  # unanswered
     request: int = 0  # requests up to this id were sent
 
 
 class _Conversation:
-    """The robot's side of the link: what to say next, what to say again after a reconnect, how much may be under way.
-    It outlives its links. A ScanloomError that it raises ends the link, and if it is not retryable, all.
+    """The robot's side of the link: decides what to send next, what to send again after a reconnect, and how much may
+    be in flight. It outlives its links. A ScanloomError that it raises ends the link, and the client if not retryable.
 
-    Scans are numbered from 1 in this run, the server's seq is stored_before more:
+    Scans are numbered from 1 in this run; the server's seq is greater by stored_before:
         acknowledged <= sent <= sent_ever and last
     """
 
@@ -591,20 +591,20 @@ class _Conversation:
         self.scans: Deque[Tuple[Sensor, bytes]] = collections.deque()  # acknowledged + 1 .. last
         self.bytes_free = buffer_bytes
         self.acknowledged = self.sent = self.sent_ever = self.last = 0
-        self.applied = 0  # up to this scan they are in the maps, as far as is known
-        self.requests: Dict[int, _Request] = {}  # by id, which grows
+        self.applied = 0  # scans up to this one are known to be in the maps
+        self.requests: Dict[int, _Request] = {}  # by id, which increases
         self.request_ids = 0
         self.nonce = 0
         self.bytes_sent = 0
         self.welcomes = 0
         self.progress = now
-        self.replaced: List[float] = []  # when links were, lately
+        self.replaced: List[float] = []  # times of recent replacements
         self.is_ending = False
 
-    # What is to be sent
+    # Input
 
     def waits(self) -> bool:
-        """Whether scans, or all, wait for the server."""
+        """Returns whether scans wait for the server, or the first connection is still missing."""
         return self.stored_before is None or bool(self.scans)
 
     def is_done(self) -> bool:
@@ -620,23 +620,23 @@ class _Conversation:
         self.bytes_free -= len(scan)
         self.last += 1
 
-    def ask(self, frame: Any) -> int:
+    def add_request(self, frame: Any) -> int:
         self.request_ids += 1
         getattr(frame, frame.WhichOneof("body")).id = self.request_ids
         self.requests[self.request_ids] = _Request(frame)
         return self.request_ids
 
     def abandon(self, id: int) -> None:
-        """Nobody waits for the reply any more. The server still counts it until it was read."""
+        """Marks a request whose caller no longer waits. The server still counts it until its reply is received."""
         if self.link and id <= self.link.request:
             self.requests[id].is_abandoned = True
         else:
             del self.requests[id]
 
-    # What comes
+    # Received frames
 
     def open(self, now: float) -> None:
-        self.link = _LinkState(opened=now, heard=now)
+        self.link = _LinkState(opened=now, last_received=now)
 
     def close(self) -> None:
         self.link = None
@@ -644,20 +644,20 @@ class _Conversation:
 
     def receive(self, frame: Any, now: float) -> None:
         assert self.link
-        self.link.heard = now
+        self.link.last_received = now
         kind = frame.WhichOneof("body")
         if kind == "error":
             self._on_error(frame.error, now)
         elif kind == "goodbye":
-            reason = _shown(frame.goodbye.reason) or "it gave no reason"
+            reason = _shown(frame.goodbye.reason) or "no reason given"
             raise _retry("SHUTTING_DOWN", f"the server said goodbye: {reason}")
         elif kind == "ping":
             if len(self.link.pings) == _PINGS_MAX:
                 raise _retry("MALFORMED_FRAME", "the server sends pings faster than they can be answered")
             self.link.pings.append(frame.ping.nonce)
         elif kind == "pong" or (kind == "correction" and self.link.is_welcome):
-            pass  # poses are sent as they were given
-        elif kind == "welcome" and self.link.said_hello and not self.link.is_welcome:
+            pass  # poses are sent unchanged
+        elif kind == "welcome" and self.link.sent_hello and not self.link.is_welcome:
             self._on_welcome(frame.welcome, now)
         elif kind == "ack" and self.link.is_welcome:
             self._on_ack(frame.ack, now)
@@ -667,20 +667,20 @@ class _Conversation:
 
     def _on_error(self, error: Any, now: float) -> None:
         code = _enum_name("ErrorCode", error.code, "ERROR_CODE_")
-        message = _shown(error.message) or f"the server ended the link with the error {code} and did not say why"
+        message = _shown(error.message) or f"the server ended the link with the error {code} without a message"
         if code == "MALFORMED_FRAME" and self._is_locating():
-            message += ("; a server of an earlier version cannot tell a robot where it is: update it, or say where the "
-                        "robot is")
+            message += ("; a server of an earlier version cannot localize robots: update it, or state the robot's "
+                        "pose")
         raise ScanloomError(code, message, self._may_pass(now) if code == "REPLACED" else error.retryable)
 
     def _is_locating(self) -> bool:
-        """Whether the server was asked on this link where the robot is, and has not answered yet."""
+        """Returns whether a locate request on this link is unanswered."""
         return any(self.link and id <= self.link.request and request.frame.WhichOneof("body") == "locate_request"
                    for id, request in self.requests.items())
 
     def _may_pass(self, now: float) -> bool:
-        """An earlier link whose hello arrived late replaces one, too; another program of the same name does it again
-        and again."""
+        """Returns whether a reconnect may help: an earlier link may have replaced this one because its hello arrived
+        late, but another program with the same name does so repeatedly."""
         self.replaced = [time for time in self.replaced if time + _REPLACED_WITHIN > now] + [now]
         return len(self.replaced) < _REPLACED_MAX
 
@@ -688,14 +688,14 @@ class _Conversation:
         assert self.link
         if self.stored_before is None:
             if welcome.last_durable_seq > _SCANS_OF_A_ROBOT_MAX:
-                raise ScanloomError("SESSION_CONFLICT", f"the server says that it has {welcome.last_durable_seq} scans "
+                raise ScanloomError("SESSION_CONFLICT", f"the server reports {welcome.last_durable_seq} scans "
                                     "of this robot, more than any robot sends; check the server's address")
             self.stored_before = welcome.last_durable_seq
             self.progress = now
         elif welcome.session_id != self.session_id and self.stored_before + self.acknowledged > 0:
-            raise ScanloomError("SESSION_DELETED", f"session {self.hello.hello.session} was deleted and made anew "
+            raise ScanloomError("SESSION_DELETED", f"session {self.hello.hello.session} was deleted and recreated "
                                 f"while {self.stored_before + self.acknowledged} of this robot's scans were "
-                                "acknowledged; start again to fill the new one")
+                                "acknowledged; restart the client to fill the new one")
         else:
             self._rewind(welcome.last_durable_seq - self.stored_before, now)
         self.session_id = welcome.session_id
@@ -707,14 +707,14 @@ class _Conversation:
         self.welcomes += 1
 
     def _rewind(self, durable: int, now: float) -> None:
-        """A new link on which the server holds the scans up to `durable`: what follows counts as unsent."""
+        """Continues on a new link: the server has the scans up to `durable`, later ones count as unsent."""
         before = self.stored_before or 0
         if durable < self.acknowledged:
-            raise ScanloomError("LOST_SCANS", f"the server holds {before + durable} scans of this robot but had "
-                                f"acknowledged {before + self.acknowledged}; the others are no longer held here: "
+            raise ScanloomError("LOST_SCANS", f"the server has {before + durable} scans of this robot but had "
+                                f"acknowledged {before + self.acknowledged}; the others are no longer in memory: "
                                 "restore the server's store or use a new session")
         if durable > self.sent_ever:
-            raise ScanloomError("SESSION_CONFLICT", f"the server holds {before + durable} scans of this robot, only "
+            raise ScanloomError("SESSION_CONFLICT", f"the server has {before + durable} scans of this robot, but only "
                                 f"{before + self.sent_ever} were sent from here: another program uses the same session "
                                 "and robot")
         self._acknowledge(durable, now)
@@ -725,12 +725,12 @@ class _Conversation:
         assert self.link and self.stored_before is not None
         durable = ack.durable_seq - self.stored_before
         if durable > self.sent:
-            raise _retry("MALFORMED_FRAME", f"the server acknowledged scan {ack.durable_seq}, only "
+            raise _retry("MALFORMED_FRAME", f"the server acknowledged scan {ack.durable_seq}, but only "
                          f"{self.stored_before + self.sent} were sent")
         self._acknowledge(durable, now)
         self.applied = max(self.applied, min(ack.applied_seq - self.stored_before, self.last))
         while self.link.batches and self.link.batches[0][0] <= durable:
-            self.link.under_way -= self.link.batches.popleft()[1]
+            self.link.in_flight -= self.link.batches.popleft()[1]
         self.link.credit = ack.credit_bytes
 
     def _acknowledge(self, durable: int, now: float) -> None:
@@ -752,10 +752,10 @@ class _Conversation:
         del self.requests[reply.id]
         return True
 
-    # What to say
+    # Frames to send
 
     def next_frame(self, now: float) -> Optional[bytes]:
-        """Its length included; nothing while there is nothing to say, or no credit to say it."""
+        """Returns the next frame with its length prefix, or None if nothing can be sent now."""
         frame = self._next_message(now)
         if frame is None:
             return None
@@ -764,16 +764,16 @@ class _Conversation:
         if frame.WhichOneof("body") == "scan_batch":
             assert self.link
             self.link.batches.append((self.sent, size))
-            self.link.under_way += size
+            self.link.in_flight += size
         self.bytes_sent += size
         return len(body).to_bytes(_LENGTH_BYTES, "big") + body
 
     def _next_message(self, now: float) -> Any:
         link = self.link
-        if not link or link.said_goodbye is not None:
+        if not link or link.sent_goodbye is not None:
             return None
-        if not link.said_hello:
-            link.said_hello = True
+        if not link.sent_hello:
+            link.sent_hello = True
             return self.hello
         if not link.is_welcome:
             return None
@@ -787,7 +787,7 @@ class _Conversation:
             frame.ping.nonce = self.nonce
             return frame
         if self.is_done():
-            link.said_goodbye = now
+            link.sent_goodbye = now
             frame.goodbye.reason = "every scan is acknowledged"
             return frame
         for id, request in self.requests.items():
@@ -810,14 +810,14 @@ class _Conversation:
             scan.MergeFromString(encoded)
             scan.seq = (self.stored_before or 0) + self.sent
             if len(scan.ranges) > link.beams_max:
-                raise ScanloomError("FRAME_TOO_LARGE", f"scan {scan.seq} has {len(scan.ranges)} beams, the server "
-                                    f"takes at most {link.beams_max}")
+                raise ScanloomError("FRAME_TOO_LARGE", f"scan {scan.seq} has {len(scan.ranges)} beams, but the server "
+                                    f"accepts at most {link.beams_max}")
         self.sent_ever = max(self.sent_ever, self.sent)
         return frame if frame.scan_batch.scans else None
 
     def _scans_that_fit(self, link: _LinkState) -> List[bytes]:
-        """The next scans whose sensor stands described, within the credit, the server's limits and the wanted size of
-        a batch. The first may exceed the latter."""
+        """Returns the next scans of described sensors, within the credit, the server's limits and the target size of a
+        batch. The first scan may exceed the target size."""
         chosen: List[bytes] = []
         size = _BATCH_OVERHEAD
         frame_bytes_max = link.frame_bytes_max + _LENGTH_BYTES
@@ -826,9 +826,9 @@ class _Conversation:
             sensor, encoded = self.scans[index]
             size += len(encoded) + _SCAN_OVERHEAD
             if not chosen and size > frame_bytes_max:
-                raise ScanloomError("FRAME_TOO_LARGE", f"a scan takes {size} bytes, the server takes frames of at most "
-                                    f"{link.frame_bytes_max}")
-            room = min(link.credit - link.under_way, frame_bytes_max)
+                raise ScanloomError("FRAME_TOO_LARGE", f"a scan needs {size} bytes, but the server accepts at most "
+                                    f"{link.frame_bytes_max} per frame")
+            room = min(link.credit - link.in_flight, frame_bytes_max)
             if chosen:
                 room = min(room, _BATCH_BYTES_MAX)
             if sensor.id not in link.described or size > room:
@@ -839,40 +839,40 @@ class _Conversation:
     # Time
 
     def _ping_due(self, link: _LinkState) -> float:
-        return max(link.heard, link.pinged) + self.timing.ping_after
+        return max(link.last_received, link.pinged) + self.timing.ping_after
 
     def check(self, now: float) -> None:
-        """Raises what is wrong with the link by now."""
+        """Raises the error of a link that has exceeded a timeout."""
         link = self.link
         if not link:
             return
-        if link.said_goodbye is not None and now >= link.said_goodbye + self.timing.goodbye:
-            raise _retry("TIMEOUT", "the server does not close the link")
+        if link.sent_goodbye is not None and now >= link.sent_goodbye + self.timing.goodbye:
+            raise _retry("TIMEOUT", "the server did not close the link in time")
         if not link.is_welcome and now >= link.opened + self.timing.welcome:
             raise _retry("TIMEOUT", f"the server did not answer the hello within {self.timing.welcome:g} s")
-        if link.is_welcome and now >= link.heard + self.timing.silence_max:
-            raise _retry("TIMEOUT", f"nothing came from the server for {self.timing.silence_max:g} s")
+        if link.is_welcome and now >= link.last_received + self.timing.silence_max:
+            raise _retry("TIMEOUT", f"no data from the server for {self.timing.silence_max:g} s")
 
     def deadline(self) -> float:
-        """Until then neither check() nor next_frame() changes its answer, unless something happens."""
+        """Returns the time until which the results of check() and next_frame() stay the same without new events."""
         link = self.link
         assert link
         if not link.is_welcome:
             return link.opened + self.timing.welcome
-        if link.said_goodbye is not None:
-            return link.said_goodbye + self.timing.goodbye
-        return min(self._ping_due(link), link.heard + self.timing.silence_max)
+        if link.sent_goodbye is not None:
+            return link.sent_goodbye + self.timing.goodbye
+        return min(self._ping_due(link), link.last_received + self.timing.silence_max)
 
-    def patience_ends(self) -> float:
+    def progress_deadline(self) -> float:
         return self.progress + self.timing.give_up_after if self.waits() else math.inf
 
 
-# One connection -------------------------------------------------------------------------------------------------------
+# Connection -------------------------------------------------------------------------------------------------------
 
 
 class _Backoff:
-    """How long to wait before the next attempt: doubling, each a random part from half to whole, so that many robots
-    do not come back at one moment."""
+    """Waits before reconnects: they double, each multiplied by a random factor from 0.5 to 1, so that many robots do
+    not reconnect at the same moment."""
 
     def __init__(self, timing: Timing, random_part: Callable[[], float] = random.random) -> None:
         self._timing = timing
@@ -885,16 +885,16 @@ class _Backoff:
         return chosen
 
     def reset(self) -> None:
-        """It went well: the next wait is a short one."""
+        """Resets after progress: the next wait is short."""
         self._wait = self._timing.backoff_first
 
 
 class _Connection:
-    """A connected socket that never blocks, and the frames in its bytes."""
+    """A connected non-blocking socket that is read as frames."""
 
-    _READ_BYTES = 64 << 10  # more than a TLS record, so that none is left where select() does not see it
-    _READS_MAX = 16  # in one turn
-    _SELECT_MAX = 60.0  # seconds; an endless time cannot be waited for
+    _READ_BYTES = 64 << 10  # more than a TLS record, so that select() misses no buffered bytes
+    _READS_MAX = 16  # per turn
+    _SELECT_MAX = 60.0  # seconds; select() accepts no infinite timeout
 
     def __init__(self, sock: socket.socket, bell: socket.socket) -> None:
         sock.setblocking(False)
@@ -919,7 +919,7 @@ class _Connection:
         self._send()
 
     def turn(self, timeout: float) -> Iterator[bytes]:
-        """Waits until bytes come or can go, or the bell rings, and yields the frames that are whole."""
+        """Waits until the socket is readable or writable, or the bell rings, and yields the complete frames."""
         self._send()
         self._selector.modify(self._sock, selectors.EVENT_READ | (selectors.EVENT_WRITE if self._out else 0))
         self._selector.select(min(max(timeout, 0.0), self._SELECT_MAX))
@@ -940,15 +940,15 @@ class _Connection:
             pass
         except OSError:
             self._out = b""
-            self._is_broken = True  # reading tells how the link ended, perhaps in the server's words
+            self._is_broken = True  # reading returns the reason, possibly an error of the server
 
     def _receive(self) -> str:
-        """Returns how the link ended, if it did."""
+        """Returns the reason if the link has ended, else an empty string."""
         try:
             for _ in range(self._READS_MAX):
                 received = self._sock.recv(self._READ_BYTES)
                 if not received:
-                    return "the server closed it"
+                    return "the server closed the link"
                 self._in += received
         except (BlockingIOError, ssl.SSLWantReadError, ssl.SSLWantWriteError):
             pass
@@ -971,17 +971,17 @@ class _Connection:
 
 
 _CERTIFICATE_ADVICE = {  # by OpenSSL's X509_V_ERR_...
-    9: "check the clocks of both: it is not valid yet",
-    10: "have the server given a new one",
-    62: "give the name that is in it as the server's address, or have the server given a certificate for this one",
-    64: "give the name that is in it as the server's address, or have the server given a certificate for this one",
+    9: "it is not valid yet: check the clocks of both computers",
+    10: "renew the server's certificate",
+    62: "use the name in the certificate as the server's address, or install a certificate for this address",
+    64: "use the name in the certificate as the server's address, or install a certificate for this address",
 }
 
 
-# What a server says that wants a certificate of the robot, and gets none that it trusts; of TLS 1.3 after the handshake.
+# Alerts of a server that requires a client certificate and got none that it trusts; in TLS 1.3 after the handshake.
 _REFUSED_CERTIFICATE = ("TLSV13_ALERT_CERTIFICATE_REQUIRED", "TLSV1_ALERT_UNKNOWN_CA", "SSLV3_ALERT_BAD_CERTIFICATE",
                         "SSLV3_ALERT_CERTIFICATE_EXPIRED", "SSLV3_ALERT_CERTIFICATE_UNKNOWN")
-_SHOW_A_CERTIFICATE = "the server takes only whoever shows a certificate that it trusts: tls.load_cert_chain()"
+_SHOW_A_CERTIFICATE = "the server requires a client certificate that it trusts: tls.load_cert_chain()"
 
 
 def _split_address(address: str) -> Tuple[str, int]:
@@ -1008,7 +1008,7 @@ def _connect(host: str, port: int, tls: Optional[ssl.SSLContext], timeout: float
     except ssl.SSLCertVerificationError as error:
         sock.close()
         raise ScanloomError("UNAUTHORIZED", f"the certificate of {where} is not trusted: {error.verify_message}; "
-                            + _CERTIFICATE_ADVICE.get(error.verify_code, "give tls= a context that knows who signed it")
+                            + _CERTIFICATE_ADVICE.get(error.verify_code, "give tls= a context with its authority")
                             ) from None
     except OSError as error:
         sock.close()
@@ -1019,20 +1019,19 @@ def _connect(host: str, port: int, tls: Optional[ssl.SSLContext], timeout: float
 
 
 class Client:
-    """Carries one robot's scans to a server, on a thread of its own.
+    """Sends one robot's scans to a server, on its own thread.
 
     server       "HOST:PORT" of the server's robot port
-    session      the map's name; the session is made if there is none
+    session      the map's name; the session is created if it does not exist
     robot        unique within the session
-    cell_size    metres, of a session that is made; another than the session's is refused. None: the server's default
-    token        where the server asks for one
-    tls          for a server that wants TLS: ssl.create_default_context(), or one with cafile=
-    source       identifies what is streamed where the same scans can be streamed again, as of a recording. A live robot
-                 leaves it empty
-    body_radius  metres, of a disc around the robot's origin that holds all of it
-    buffer_bytes of scans that are not acknowledged yet; then send() waits
+    cell_size    metres, for a new session; must match an existing session. None: the server's default
+    token        for a server that requires one
+    tls          for a server with TLS: ssl.create_default_context(), or one with cafile=
+    source       identifies a repeatable source of scans, for example a recording. Empty for a live robot
+    body_radius  metres, radius of a disc around the robot's origin that contains its body
+    buffer_bytes limit for unacknowledged scans; send() waits at this limit
 
-    Scans not yet acknowledged are held in memory: close() the client, or use it in a with block, before the program
+    Unacknowledged scans are in memory only: close() the client, or use it in a with block, before the program
     ends. Warnings about lost links go to the logger "scanloom".
     """
 
@@ -1042,17 +1041,17 @@ class Client:
         self._host, self._port = _split_address(server)
         buffer_bytes = _whole("buffer_bytes", buffer_bytes, 1, 1 << 50)
         if tls is not None and not isinstance(tls, ssl.SSLContext):
-            raise ValueError(f"tls is {tls!r}; what ssl.create_default_context() gives is needed")
+            raise ValueError(f"tls is {tls!r}; an ssl.SSLContext is needed, see ssl.create_default_context()")
         if not isinstance(timing, Timing):
             raise ValueError(f"timing is {timing!r}; a Timing is needed")
         self._tls = tls
         self._timing = timing
         self._conversation = _Conversation(_hello(session, robot, token, source, cell_size, body_radius), buffer_bytes,
                                            timing, time.monotonic())
-        self._changed = threading.Condition()  # guards all below and the conversation
+        self._changed = threading.Condition()  # guards the members below and the conversation
         self._sensors: List[Sensor] = []
         self._failure: Optional[ScanloomError] = None  # final
-        self._trouble = f"no answer from {server} yet"  # of the link before this one
+        self._trouble = f"no answer from {server} yet"  # of the previous link
         self._is_aborted = False
         self._has_ended = False  # the thread
         self._bell_ringer, self._bell = socket.socketpair()
@@ -1068,7 +1067,7 @@ class Client:
         if kind is None:
             self.close()
             return
-        try:  # what failed in the block is what is told; the scans before it are not given up for that
+        try:  # keeps the block's exception, but still sends the scans before it
             self.close(timeout=10.0)
         except ScanloomError as failure:
             if failure.message != str(error):
@@ -1079,8 +1078,8 @@ class Client:
     def laser(self, *, range_max: float, angle_min: Optional[float] = None, angle_increment: Optional[float] = None,
               count: Optional[int] = None, angles: Optional[Sequence[float]] = None, range_min: float = 0.0,
               mount: Pose = (0.0, 0.0, 0.0), aperture: float = 0.0, name: str = "laser") -> Sensor:
-        """Describes a laser: evenly spaced beams (angle_min, angle_increment, count), of which a scan may have more or
-        fewer, or angles one by one. Angles are in the sensor's frame; mount is the sensor in the robot's frame."""
+        """Describes a laser: evenly spaced beams (angle_min, angle_increment, count), where a scan may have more or
+        fewer beams, or a list of angles. Angles are in the sensor's frame; mount is the sensor in the robot's frame."""
         return self._add_sensor("LASER", name, mount, (angle_min, angle_increment, count), angles, aperture, range_min,
                                 range_max)
 
@@ -1088,7 +1087,7 @@ class Client:
               angle_increment: Optional[float] = None, count: Optional[int] = None,
               angles: Optional[Sequence[float]] = None, range_min: float = 0.0, mount: Pose = (0.0, 0.0, 0.0),
               name: str = "sonar") -> Sensor:
-        """Describes a ring of sonars that share an origin, or one; aperture is the full width of a cone."""
+        """Describes one sonar, or a ring of sonars with a common origin; aperture is the full angle of a cone."""
         return self._add_sensor("SONAR", name, mount, (angle_min, angle_increment, count), angles, aperture, range_min,
                                 range_max)
 
@@ -1105,17 +1104,17 @@ class Client:
              odometry: Optional[Pose] = None, intensities: Optional[Sequence[int]] = None,
              angles: Optional[Sequence[float]] = None, begins_map: bool = False, block: bool = True,
              timeout: Optional[float] = None) -> None:
-        """Takes a scan and returns; it is sent as soon as there is a link.
+        """Adds a scan to the buffer and returns; it is sent when there is a link.
 
-        ranges       one a beam; inf, or range_max and more: nothing within range; nan, 0, below range_min: no valid
-                     reading
+        ranges       one per beam; inf, or at least range_max: no return; nan, 0, or below range_min: invalid reading
         pose         of the robot in the map's frame
-        stamp        seconds since the epoch, or since any start the robot keeps to; None: now
+        stamp        seconds since the epoch, or since any fixed start; None: now
         odometry     of the robot in its odometry frame
-        intensities  the sensor's own scale, one a beam
-        angles       of this scan's beams, where they are not the sensor's
-        begins_map   people said the pose, as locate() had raised NOTHING_MAPPED; of all scans from there. If something
-                     is mapped by then, the robot's first scan is refused, and the client fails with SESSION_CONFLICT
+        intensities  in the sensor's own scale, one per beam
+        angles       of this scan's beams, if they differ from the sensor's
+        begins_map   the pose was given by the user, because locate() raised NOTHING_MAPPED; set it for all scans from
+                     there. If the map is no longer empty, the robot's first scan is refused, and the client fails with
+                     SESSION_CONFLICT
 
         Waits while the buffer is full. Raises BufferFull if block is False then, or when timeout seconds have passed;
         ScanloomError once the client has failed.
@@ -1131,7 +1130,7 @@ class Client:
 
     def _check_sensor(self, sensor: Any) -> None:
         if not isinstance(sensor, Sensor):
-            raise ValueError(f"sensor is {sensor!r}; what laser() or sonar() gave is needed")
+            raise ValueError(f"sensor is {sensor!r}; the result of laser() or sonar() is needed")
         if sensor.id >= len(self._sensors) or self._sensors[sensor.id] is not sensor:
             raise ValueError(f"{sensor.name} is not a sensor of this client")
 
@@ -1141,20 +1140,20 @@ class Client:
             waited = self._wait_for(self._conversation.has_room, timeout if block else 0.0)
             if not waited:
                 raise BufferFull("BUFFER_FULL", f"the buffer is full: {self._unacknowledged()}", retryable=True)
-            self._check_open()  # somebody may have closed it meanwhile
+            self._check_open()  # another thread may have closed it
             self._conversation.add(sensor, encoded, time.monotonic())
             self._ring()
 
     def flush(self, timeout: Optional[float] = None) -> None:
-        """Waits until every scan given to send() so far is durable. Raises ScanloomError if that fails."""
+        """Waits until every scan passed to send() so far is durable. Raises ScanloomError on failure."""
         with self._changed:
             last = self._conversation.last
             if not self._wait_for(lambda: self._conversation.acknowledged >= last, timeout):
                 raise ScanloomError("TIMEOUT", self._unacknowledged(), retryable=True)
 
     def close(self, timeout: Optional[float] = None) -> None:
-        """Waits until every scan is durable and every request is answered, and leaves. Raises ScanloomError if that
-        fails, or takes longer than timeout seconds; what is not acknowledged then is given up."""
+        """Waits until every scan is durable and every request is answered, and disconnects. Raises ScanloomError on
+        failure or after timeout seconds; unacknowledged scans are lost then."""
         with self._changed:
             self._conversation.is_ending = True
             self._ring()
@@ -1164,14 +1163,14 @@ class Client:
                 raise ScanloomError("TIMEOUT", self._unacknowledged(), retryable=True)
             self._check_failure()
 
-    # Requests. Each is asked once the scans given to send() before are in the server's maps, so that the robot is known
-    # to be where the newest of them was taken.
+    # Requests. Each is sent after the scans passed to send() before are in the server's maps, so that the server knows
+    # the robot's newest pose.
 
     def plan(self, goal: Point, *, start: Optional[Point] = None, allow_unknown: bool = False,
              body_radius: Optional[float] = None, danger_cost: Optional[float] = None,
              timeout: Optional[float] = None) -> Path:
-        """The cheapest way to a point, from where the newest scan given to send() was taken, or from start. Raises
-        ScanloomError with NO_PATH where there is none, and TIMEOUT without an answer within timeout seconds."""
+        """Returns the cheapest path to a point, from the pose of the newest scan or from start. Raises ScanloomError
+        with NO_PATH if there is no path, and TIMEOUT without an answer within timeout seconds."""
         frame = _Frame()
         request = frame.plan_request
         _set_point("goal", goal, request.goal)
@@ -1179,18 +1178,18 @@ class Client:
         request.allow_unknown = bool(allow_unknown)
         if danger_cost is not None:
             request.danger_cost = _finite("danger_cost", danger_cost)
-        reply = self._ask(frame, timeout)
+        reply = self._request(frame, timeout)
         return _path(reply.path, reply.revision)
 
     def next_goal(self, *, start: Optional[Point] = None, body_radius: Optional[float] = None,
                   frontier_size_min: int = 0, timeout: Optional[float] = None) -> Goal:
-        """What to explore next. Raises ScanloomError as plan() does."""
+        """Returns the next exploration goal. Raises ScanloomError like plan()."""
         frame = _Frame()
         request = frame.goal_request
         request.SetInParent()
         _set_options(request, start, body_radius)
         request.frontier_size_min = _whole("frontier_size_min", frontier_size_min, 0, _NO_RETURN)
-        reply = self._ask(frame, timeout)
+        reply = self._request(frame, timeout)
         goal = reply.goal
         return Goal(exploration=_enum_name("Exploration", goal.exploration, "EXPLORATION_"),
                     path=_path(goal.path, reply.revision) if goal.HasField("path") else None,
@@ -1200,8 +1199,8 @@ class Client:
     def coverage(self, *, start: Optional[Point] = None, body_radius: Optional[float] = None,
                  spacing: Optional[float] = None, region: Optional[Sequence[Any]] = None,
                  timeout: Optional[float] = None) -> Coverage:
-        """A way over all free ground, or that within region: the corners of a polygon [(x, y), ...], or a box
-        [x_min, y_min, x_max, y_max]. Raises ScanloomError as plan() does."""
+        """Returns a coverage path over all free ground, or that within region: the corners of a polygon [(x, y), ...],
+        or a box [x_min, y_min, x_max, y_max]. Raises ScanloomError like plan()."""
         frame = _Frame()
         request = frame.coverage_request
         request.SetInParent()
@@ -1210,7 +1209,7 @@ class Client:
             request.spacing = _finite("spacing", spacing)
         if region is not None:
             request.region.extend(_region(region))
-        reply = self._ask(frame, timeout)
+        reply = self._request(frame, timeout)
         runs = list(reply.coverage.unreachable)
         return Coverage(path=_path(reply.coverage.path, reply.revision), free_area=reply.coverage.free_area,
                         covered_area=reply.coverage.covered_area, cell_size=reply.coverage.cell_size,
@@ -1219,24 +1218,24 @@ class Client:
     def locate(self, sensor: Sensor, scans: Sequence[Sequence[float]], *, odometry: Pose = (0.0, 0.0, 0.0),
                angles: Optional[Sequence[Sequence[float]]] = None, near: Optional[Point] = None,
                radius: Optional[float] = None, timeout: Optional[float] = None) -> Location:
-        """Where the robot is, told from what a laser saw from one place. No scan needs to have been sent before.
+        """Returns the robot's location, determined from laser scans taken at one place. Earlier scans are not needed.
 
-        scans     the ranges of some turns, as send() takes them; ten are plenty
-        odometry  of the robot in its odometry frame, where they were taken; a robot without stands at its origin
-        angles    of each scan's beams, where they are not the sensor's
-        near      the robot is no more than radius metres from there, along each axis; None: anywhere in the map
+        scans     the ranges of several turns, as for send(); ten are enough
+        odometry  of the robot in its odometry frame, where they were taken; without odometry, the origin
+        angles    of each scan's beams, if they differ from the sensor's
+        near      the robot is at most radius metres from there, along each axis; None: anywhere in the map
 
-        Raises ScanloomError with AMBIGUOUS where several places look alike, UNDETERMINED where too little of what is
-        seen is in the map, NOTHING_MAPPED where no laser has seen anything yet (say where the robot stands, and send()
-        its scans from there with begins_map=True), and TIMEOUT as plan() does.
+        Raises ScanloomError with AMBIGUOUS if several places are similar, UNDETERMINED if too little of the scans is
+        in the map, NOTHING_MAPPED if the laser map is empty (then send() scans from a known pose with
+        begins_map=True), and TIMEOUT like plan().
         """
         frame = _Frame()
         request = frame.locate_request
         if angles is not None and len(angles) != len(scans):
-            raise ValueError(f"angles are those of {len(angles)} scans; {len(scans)} are given")
+            raise ValueError(f"angles has {len(angles)} scans; {len(scans)} are given")
         self._check_sensor(sensor)
         laser = _described_laser(sensor)
-        _set_pose("odometry", odometry, _Scan().odometry)  # so that it is refused by its own name
+        _set_pose("odometry", odometry, _Scan().odometry)  # so that an error names this argument
         points: List[Tuple[int, int]] = []
         for number, ranges in enumerate(scans):
             own = None if angles is None else angles[number]
@@ -1246,14 +1245,14 @@ class Client:
         mount = laser.mount
         _set_point("from", _compose(odometry, (mount.x, mount.y, mount.yaw))[:2], getattr(request, "from"))
         _set_near(near, radius, request)
-        found = self._ask(frame, timeout).correction
+        found = self._request(frame, timeout).correction
         pose = found.T_map_odom
         return Location((pose.x, pose.y, pose.yaw), found.explained, found.position_sigma, found.yaw_sigma,
                         found.revision)
 
-    def _ask(self, frame: Any, timeout: Optional[float]) -> Any:
-        patience = _patience(timeout)
-        until = math.inf if patience is None else time.monotonic() + patience
+    def _request(self, frame: Any, timeout: Optional[float]) -> Any:
+        seconds = _lock_timeout(timeout)
+        until = math.inf if seconds is None else time.monotonic() + seconds
         late = ScanloomError("TIMEOUT", "the server did not answer the request in time", retryable=True)
         with self._changed:
             self._check_open()
@@ -1264,7 +1263,7 @@ class Client:
             if not self._wait_for(lambda: len(conversation.requests) < _REQUESTS_MAX, until - time.monotonic()):
                 raise late
             self._check_open()
-            id = conversation.ask(frame)
+            id = conversation.add_request(frame)
             request = conversation.requests[id]
             self._ring()
             try:
@@ -1279,11 +1278,11 @@ class Client:
             raise ScanloomError(code, _shown(reply.refusal.message), code in ("OVERLOADED", "SHUTTING_DOWN"))
         return reply
 
-    # How far it is
+    # Status
 
     def stored_before(self, timeout: Optional[float] = None) -> int:
-        """How many scans of this robot the server held when it was first reached, which this waits for. Who streams a
-        recording leaves out so many."""
+        """Waits for the first connection, and returns the number of this robot's scans on the server then. A program
+        that streams a recording skips this many."""
         with self._changed:
             if not self._wait_for(lambda: self._conversation.stored_before is not None, timeout):
                 raise ScanloomError("TIMEOUT", self._trouble, retryable=True)
@@ -1291,12 +1290,12 @@ class Client:
 
     @property
     def sent(self) -> int:
-        """Scans that went out in this run, each counted once."""
+        """The number of scans sent in this run, each counted once."""
         return self.status().sent
 
     @property
     def acknowledged(self) -> int:
-        """Scans of this robot that are durable, those of earlier runs included."""
+        """The number of durable scans of this robot, including those of earlier runs."""
         return self.status().acknowledged
 
     def status(self) -> Status:
@@ -1308,11 +1307,11 @@ class Client:
                           bytes=self._conversation.bytes_sent, reconnects=max(0, self._conversation.welcomes - 1),
                           is_linked=is_linked)
 
-    # With the lock held
+    # Called with the lock held
 
     def _wait_for(self, condition: Callable[[], bool], timeout: Optional[float]) -> bool:
-        """Whether the condition came true in time. Raises what the client has failed with."""
-        timeout = _patience(timeout)
+        """Returns whether the condition became true in time. Raises the error of a failed client."""
+        timeout = _lock_timeout(timeout)
         self._changed.wait_for(lambda: condition() or self._failure is not None, timeout)
         if condition():
             return True
@@ -1338,16 +1337,16 @@ class Client:
         return self._trouble
 
     def _ring(self) -> None:
-        """Has the thread look again."""
+        """Wakes the thread."""
         self._changed.notify_all()
         if self._has_ended:
             return
         try:
             self._bell_ringer.send(b"!")
         except BlockingIOError:
-            pass  # it rings already
+            pass  # the thread is already notified
 
-    # The thread
+    # Called on the thread
 
     def _run(self) -> None:
         failure: Optional[ScanloomError] = None
@@ -1364,7 +1363,7 @@ class Client:
             self._changed.notify_all()
 
     def _keep_linked(self) -> Optional[ScanloomError]:
-        """Returns why there is no going on, unless all is done."""
+        """Returns the final error, or None when everything is done."""
         backoff = _Backoff(self._timing)
         while True:
             acknowledged = self._conversation.acknowledged
@@ -1376,20 +1375,20 @@ class Client:
                 if not failure.retryable:
                     return failure
                 self._trouble = failure.message
-                _log.warning("%s; trying again", failure.message)
+                _log.warning("%s; retrying", failure.message)
                 if self._conversation.acknowledged > acknowledged:
                     backoff.reset()
                 until = time.monotonic() + backoff.next()
                 self._changed.wait_for(lambda: self._conversation.is_done() or self._is_aborted,
-                                       min(until, self._conversation.patience_ends()) - time.monotonic())
+                                       min(until, self._conversation.progress_deadline()) - time.monotonic())
                 if self._conversation.is_done():
                     return None
                 if self._is_aborted:
                     return self._given_up()
-                if time.monotonic() >= self._conversation.patience_ends():
-                    return self._lost_patience()
+                if time.monotonic() >= self._conversation.progress_deadline():
+                    return self._no_progress()
 
-    def _lost_patience(self) -> ScanloomError:
+    def _no_progress(self) -> ScanloomError:
         return ScanloomError("TIMEOUT", f"gave up after {self._timing.give_up_after:g} s without progress: "
                              f"{self._what_is_wrong()}")
 
@@ -1397,7 +1396,7 @@ class Client:
         return ScanloomError("CLOSED", f"the client was closed while {self._unacknowledged()}")
 
     def _use_one_link(self) -> ScanloomError:
-        """Returns why it ended."""
+        """Returns the reason for the end of the link."""
         try:
             sock = _connect(self._host, self._port, self._tls, self._timing.connect)
         except ScanloomError as failure:
@@ -1407,7 +1406,7 @@ class Client:
             with self._changed:
                 self._conversation.open(time.monotonic())
             while True:
-                timeout = self._speak(connection)
+                timeout = self._send_frames(connection)
                 for body in connection.turn(timeout):
                     with self._changed:
                         self._conversation.receive(_Frame.FromString(body), time.monotonic())
@@ -1419,14 +1418,14 @@ class Client:
         finally:
             connection.close()
 
-    def _speak(self, connection: _Connection) -> float:
-        """Writes what is to be said now; returns for how long that is all."""
+    def _send_frames(self, connection: _Connection) -> float:
+        """Sends all frames that can be sent now; returns the seconds until the next check."""
         with self._changed:
             now = time.monotonic()
             self._conversation.check(now)
-            patience_ends = self._conversation.patience_ends()
-            if now >= patience_ends:
-                raise self._lost_patience()
+            progress_deadline = self._conversation.progress_deadline()
+            if now >= progress_deadline:
+                raise self._no_progress()
             if self._is_aborted:
                 raise self._given_up()
             while connection.is_writable():
@@ -1434,20 +1433,20 @@ class Client:
                 if frame is None:
                     break
                 connection.write(frame)
-            return min(self._conversation.deadline(), patience_ends) - now
+            return min(self._conversation.deadline(), progress_deadline) - now
 
     def _explained(self, failure: ScanloomError) -> ScanloomError:
         link = self._conversation.link
         if failure.code != "UNREACHABLE" or self._tls or (link and link.is_welcome):
             return failure
-        return _retry("UNREACHABLE", f"{self._host}:{self._port} hung up without an answer; where it wants TLS, give "
-                      "tls=")
+        return _retry("UNREACHABLE", f"{self._host}:{self._port} closed the link without an answer; if it uses TLS, "
+                      "give tls=")
 
     def _unreadable(self, error: DecodeError) -> ScanloomError:
         if self._conversation.link and self._conversation.link.is_welcome:
-            return _retry("MALFORMED_FRAME", f"what the server sent cannot be read: {error}")
-        return ScanloomError("MALFORMED_FRAME", f"what listens at {self._host}:{self._port} does not speak Scanloom's "
-                             "robot link; give the server's robot port, and tls= if it wants TLS")
+            return _retry("MALFORMED_FRAME", f"invalid data from the server: {error}")
+        return ScanloomError("MALFORMED_FRAME", f"{self._host}:{self._port} does not use Scanloom's robot protocol; "
+                             "give the server's robot port, and tls= if it uses TLS")
 
 
 def _set_options(request: Any, start: Optional[Point], body_radius: Optional[float]) -> None:
@@ -1461,27 +1460,26 @@ def _path(path: Any, revision: int) -> Path:
     return Path(list(zip(path.points[0::2], path.points[1::2])), path.length, path.cost, revision)
 
 
-# The program ----------------------------------------------------------------------------------------------------------
+# Program ----------------------------------------------------------------------------------------------------------
 
-_USAGE = """reads scans from standard input and streams them to a server, one JSON object a line:
+_USAGE = """reads scans from standard input and streams them to a server, one JSON object per line:
 
   {"t": 12.5, "pose": [1.0, 0.5, 0.785], "ranges": [1.25, Infinity, null]}
 
   t            seconds
   pose         [x, y, yaw] of the robot in the map, metres and radians
-  ranges       metres, one a beam: Infinity or range-max is nothing within range, null no valid reading
-  odometry     [x, y, yaw] of the robot in its odometry frame; may be absent, as may the others below
-  intensities  whole numbers, one a beam
-  angles       radians, one a beam, where they are not those of --angle-min and --angle-increment
+  ranges       metres, one per beam: Infinity or range-max is no return, null an invalid reading
+  odometry     [x, y, yaw] of the robot in its odometry frame; optional, like the following members
+  intensities  whole numbers, one per beam
+  angles       radians, one per beam, if they differ from --angle-min and --angle-increment
 
-Lines that are no such object are told and skipped. At the end it waits until every scan is durable and prints a
-summary. Exits 0 when every line is stored, 1 when not or when lines were skipped ("skipped" of the summary), 2 when it
-was called wrongly."""
+Invalid lines are reported and skipped. At the end it waits until every scan is durable and prints a summary. Exits 0 if
+every line is stored, 1 if not or if lines were skipped ("skipped" of the summary), 2 on invalid arguments."""
 
 
 class _OneLineParser(argparse.ArgumentParser):
     def error(self, message: str) -> NoReturn:
-        self.exit(2, f"scanloom_client.py: {message}; --help tells more\n")
+        self.exit(2, f"scanloom_client.py: {message}; see --help\n")
 
 
 def _parse_options(arguments: Optional[List[str]]) -> argparse.Namespace:
@@ -1491,18 +1489,19 @@ def _parse_options(arguments: Optional[List[str]]) -> argparse.Namespace:
     parser.add_argument("--server", required=True, metavar="HOST:PORT", help="the server's robot port")
     parser.add_argument("--session", required=True, help="the map's name")
     parser.add_argument("--robot", required=True, help="this robot's name, unique within the session")
-    parser.add_argument("--cell-size", type=float, metavar="M", help="metres, of a session that is made")
-    parser.add_argument("--angle-min", type=float, metavar="RAD", default=-math.pi, help="of the first beam [-pi]")
+    parser.add_argument("--cell-size", type=float, metavar="M", help="metres, for a new session")
+    parser.add_argument("--angle-min", type=float, metavar="RAD", default=-math.pi,
+                        help="direction of the first beam [-pi]")
     parser.add_argument("--angle-increment", type=float, metavar="RAD",
-                        help="from beam to beam [a full turn by the first line's beams]")
+                        help="between beams [a full turn divided by the first line's beams]")
     parser.add_argument("--range-min", type=float, metavar="M", default=0.0, help="shorter readings are invalid [0]")
-    parser.add_argument("--range-max", type=float, metavar="M", required=True, help="how far the laser sees")
-    parser.add_argument("--token-file", metavar="FILE", help="holds the token that the server asks for")
-    parser.add_argument("--tls-ca", metavar="FILE", help="use TLS; the certificate that signed the server's")
-    parser.add_argument("--tls-cert", metavar="FILE", help="use TLS, and show this certificate where one is asked for")
+    parser.add_argument("--range-max", type=float, metavar="M", required=True, help="range of the laser")
+    parser.add_argument("--token-file", metavar="FILE", help="file with the token for the server")
+    parser.add_argument("--tls-ca", metavar="FILE", help="use TLS; certificate of the server's authority")
+    parser.add_argument("--tls-cert", metavar="FILE", help="use TLS, with this client certificate")
     parser.add_argument("--tls-key", metavar="FILE", help="its private key [in the file of --tls-cert]")
     parser.add_argument("--source", default="", metavar="NAME",
-                        help="the same lines may be streamed again: those the server has are passed over")
+                        help="name of a repeatable source: lines that the server already has are skipped")
     return parser.parse_args(arguments)
 
 
@@ -1519,9 +1518,9 @@ def _open(options: argparse.Namespace) -> Client:
 
 
 class _Lines:
-    """From lines of the input to scans."""
+    """Converts lines of the input to scans."""
 
-    _TOLD_MAX = 10  # of skipped lines
+    _REPORTED_MAX = 10  # of skipped lines
 
     def __init__(self, robot: Client, options: argparse.Namespace) -> None:
         self._robot = robot
@@ -1530,7 +1529,7 @@ class _Lines:
         self.skipped = 0
 
     def stream(self, lines: Any) -> None:
-        """A first signal ends the input."""
+        """Sends the scans until the input ends or a first signal arrives."""
         known = self._robot.stored_before() if self._options.source else 0
         try:
             for number, line in enumerate(lines, start=1):
@@ -1546,24 +1545,24 @@ class _Lines:
                 else:
                     self._robot._take(*scan, True, None)
         except KeyboardInterrupt:
-            print("interrupted: waiting for what was sent to be stored; interrupt again to leave at once",
+            print("interrupted: waiting until sent scans are stored; interrupt again to end immediately",
                   file=sys.stderr)
 
     def _skip(self, number: int, error: Exception) -> None:
         self.skipped += 1
-        if self.skipped <= self._TOLD_MAX:
+        if self.skipped <= self._REPORTED_MAX:
             print(f"scanloom_client.py: line {number} of the input is skipped: {error}", file=sys.stderr)
-        if self.skipped == self._TOLD_MAX:
-            print("scanloom_client.py: further lines that are skipped are only counted", file=sys.stderr)
+        if self.skipped == self._REPORTED_MAX:
+            print("scanloom_client.py: further skipped lines are only counted", file=sys.stderr)
 
     def _read(self, line: bytes) -> Tuple[Sensor, bytes]:
         scan = json.loads(line)
         if not isinstance(scan, dict) or not {"t", "pose", "ranges"} <= scan.keys():
             raise ValueError('an object with "t", "pose" and "ranges" is needed')
         if not isinstance(scan["ranges"], list):
-            raise ValueError("ranges is no list of numbers")
+            raise ValueError("ranges is not a list of numbers")
         ranges = [math.nan if value is None else value for value in scan["ranges"]]
-        _set_pose("pose", scan["pose"], _Scan().pose)  # a wrong line describes no laser
+        _set_pose("pose", scan["pose"], _Scan().pose)  # so that an invalid line describes no laser
         return self._robot._encoded(self._laser or self._make_laser(len(ranges)), ranges, scan["pose"],
                                     _finite("t", scan["t"]), scan.get("odometry"), scan.get("intensities"),
                                     scan.get("angles"))

@@ -23,7 +23,7 @@ Result<Sensor> find_laser(std::string_view name) {
     if (name == "reference") return make_laser(name, {-90.0 * kDegree, 180.0 * kDegree / 683.0, 684}, 5.0);
     if (name == "lidar360") return make_laser(name, {-180.0 * kDegree, kDegree, 360}, 12.0);
     if (name == "wide") return make_laser(name, {-135.0 * kDegree, 0.25 * kDegree, 1081}, 30.0);
-    return Error{Errc::kNotFound, fmt::format("there is no laser '{}'; choose reference, lidar360 or wide", name)};
+    return Error{Errc::kNotFound, fmt::format("unknown laser '{}'; choose reference, lidar360 or wide", name)};
 }
 
 std::vector<RangeMm> sweep(const World& world, const Sensor& laser, const Pose2& T_map_laser,

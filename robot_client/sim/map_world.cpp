@@ -37,9 +37,9 @@ Result<World> world_of_map(std::string name, const RosMapDescription& map, const
     World world;
     world.name = std::move(name);
     if (!find_starts(world, cells, frame)) {
-        return Error{
-            Errc::kInvalidField,
-            fmt::format("the map has no free place with {} m around it; a robot needs one to start from", kTightStart)};
+        return Error{Errc::kInvalidField,
+                     fmt::format("the map has no free place with a clearance of {} m, which a robot needs as its start",
+                                 kTightStart)};
     }
     world.solids = boxes_of(cells, MapCell::kOccupied, frame);
     world.floors = boxes_of(cells, MapCell::kFree, frame);

@@ -27,8 +27,8 @@ double cast_ray(const Segment& segment, const Ray& ray, double nearest) noexcept
     // Most segments are behind the ray or clearly outside it, which can be decided without a division.
     constexpr double kClearly = 10.0 * kEndSlack;
     const double square = determinant * determinant;
-    const double beside = share_part * determinant;
-    if (length_part * determinant < 0.0 || beside < -kClearly * square || beside > (1.0 + kClearly) * square) {
+    const double offset = share_part * determinant;
+    if (length_part * determinant < 0.0 || offset < -kClearly * square || offset > (1.0 + kClearly) * square) {
         return nearest;
     }
     const double length = length_part / determinant;

@@ -23,7 +23,7 @@ struct Heard {
 
 Result<Sensor> find_sonar(std::string_view name) {
     if (name != "ring16") {
-        return Error{Errc::kNotFound, fmt::format("there are no sonars '{}'; choose ring16", name)};
+        return Error{Errc::kNotFound, fmt::format("unknown sonars '{}'; choose ring16", name)};
     }
     const UniformAngles all_round{-kPi, kPi / 8.0, 16};
     return Sensor{1, SensorKind::kSonar, std::string(name), Pose2{}, all_round, kPi / 6.0, kBodyRadius, 5.0};

@@ -55,7 +55,7 @@ Result<World> find_world(std::string_view name) {
         names += names.empty() ? "" : world.name == kWorlds.back().name ? " or " : ", ";
         names += world.name;
     }
-    return Error{Errc::kNotFound, fmt::format("there is no world '{}'; choose {}", name, names)};
+    return Error{Errc::kNotFound, fmt::format("unknown world '{}'; choose {}", name, names)};
 }
 
 } // namespace scanloom::robot

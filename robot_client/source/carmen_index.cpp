@@ -114,9 +114,10 @@ void Indexer::report_unread_kinds() {
     for (const auto& [kind, lines] : unread_) {
         skipped_ += lines.count;
         report_(
-            {lines.first_line, fmt::format("{}: {} lines of this kind are not read; FLASER, ROBOTLASER1, ROBOTLASER2 "
-                                           "and RAWLASER1 are",
-                                           kind, lines.count)});
+            {lines.first_line,
+             fmt::format(
+                 "{}: {} lines of an unsupported kind; supported are FLASER, ROBOTLASER1, ROBOTLASER2 and RAWLASER1",
+                 kind, lines.count)});
     }
 }
 
@@ -130,7 +131,7 @@ void Indexer::drop_lines_without_pose(const PosePath& path) {
     for (LaserLine& line : lines_) {
         if (!line.is_used || !line.is_raw || path.at(line.stamp)) continue;
         line.is_used = false;
-        skip(line.line_number, fmt::format("RAWLASER1: no ODOM line within {:g} s tells its pose", kPoseGapMax));
+        skip(line.line_number, fmt::format("RAWLASER1: no ODOM line within {:g} s for its pose", kPoseGapMax));
     }
 }
 

@@ -33,7 +33,7 @@ Result<double> finite(std::string_view field, std::string_view token, double mag
     const auto value = to_number(token);
     if (!value) return malformed(fmt::format("{} is '{}', not a number", field, shown_token(token)));
     if (!std::isfinite(*value) || std::abs(*value) > magnitude_max) {
-        return Error{Errc::kInvalidField, fmt::format("{} is {}; at most {} either way is allowed", field,
+        return Error{Errc::kInvalidField, fmt::format("{} is {}; the limit is {} in each direction", field,
                                                       shown_token(token), magnitude_max)};
     }
     return *value;
@@ -53,13 +53,13 @@ Result<Pose2> read_pose(std::string_view field, TokenSpan triple) {
 /// Reads `n r1..rn` from the front of `tokens` and removes them.
 Result<std::vector<RangeMm>> take_ranges(TokenSpan& tokens) {
     const auto count = tokens.empty() ? std::nullopt : to_count(tokens[0]);
-    if (!count) return malformed("the number of beams is missing or no number");
-    if (*count == 0) return Error{Errc::kInvalidField, "0 beams; a scan has at least 1"};
+    if (!count) return malformed("the number of beams is missing or not a number");
+    if (*count == 0) return Error{Errc::kInvalidField, "0 beams; a scan needs at least 1"};
     if (*count > kBeamsMax) {
         return Error{Errc::kTooLarge, fmt::format("{} beams, at most {} are allowed", *count, kBeamsMax)};
     }
     if (tokens.size() - 1 < *count) {
-        return malformed(fmt::format("{} beams are announced, {} values follow", *count, tokens.size() - 1));
+        return malformed(fmt::format("{} beams are announced, but {} values follow", *count, tokens.size() - 1));
     }
     std::vector<RangeMm> ranges(*count);
     for (std::size_t i = 0; i < *count; ++i) {
@@ -119,7 +119,7 @@ Result<> take_laser_head(TokenSpan& tokens, CarmenScan& scan) {
     auto increment = finite("angular_resolution", tokens[3], kFullTurn);
     if (!increment) return increment.error();
     if (*increment == 0.0)
-        return Error{Errc::kInvalidField, "angular_resolution is 0; the beams would all point one way"};
+        return Error{Errc::kInvalidField, "angular_resolution is 0; all beams would have the same direction"};
     const auto range_max = to_number(tokens[4]);
     if (!range_max) return malformed(fmt::format("maximum_range is '{}', not a number", shown_token(tokens[4])));
     if (*range_max > 0.0) scan.range_max = *range_max;

@@ -50,8 +50,8 @@ Result<StampedScan> CarmenLog::next_in_place() {
 }
 
 Error CarmenLog::changed() const {
-    return {Errc::kConflict, fmt::format("{}: the file was changed while it was being sent; what the server has of it "
-                                         "may be wrong: send the whole file to a new --session",
+    return {Errc::kConflict, fmt::format("{}: the file was changed during the transfer, so the stored scans may be "
+                                         "wrong: send the whole file to a new --session",
                                          path_)};
 }
 

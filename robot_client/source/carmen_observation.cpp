@@ -38,7 +38,7 @@ Result<double> range_max_of(const CarmenScan& line, const CarmenOptions& options
     if (line.kind == CarmenKind::kFlaser) return believed;
     if (line.range_max) return std::min(*line.range_max, believed);
     if (options.range_max) return believed;
-    return Error{Errc::kInvalidField, "maximum_range is not a length; give --max-range"};
+    return Error{Errc::kInvalidField, "maximum_range is not a valid length; give --max-range"};
 }
 
 std::string name_for(const CarmenScan& line) { return line.sensor == 0 ? "front laser" : "rear laser"; }

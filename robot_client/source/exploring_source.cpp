@@ -19,7 +19,7 @@ using namespace asio::experimental::awaitable_operators;
 namespace {
 
 constexpr int kFailuresMax = 10;
-constexpr double kAskAgainAfter = 1.0; // seconds of simulated time
+constexpr double kRetryAfter = 1.0; // seconds of simulated time
 constexpr int kTimesBlockedMax = 30;
 
 } // namespace
@@ -38,8 +38,8 @@ asio::awaitable<Result<std::optional<Observation>>> ExploringSource::next() {
     assert(next_goal_);
     wake_.emplace(co_await asio::this_coro::executor);
     if (is_stopped_ || resumed_after_ + scans_ >= limits_.scans) co_return std::optional<Observation>{};
-    if (explore_->is_asking()) {
-        if (auto asked = co_await ask(); !asked) co_return asked.error();
+    if (explore_->needs_goal()) {
+        if (auto result = co_await request_goal(); !result) co_return result.error();
     }
     if (is_stopped_ || explore_->is_done()) co_return std::optional<Observation>{};
     Observation observation = observed(simulator_, no_return_);
@@ -55,14 +55,12 @@ void ExploringSource::stop() {
     if (wake_) wake_->cancel();
 }
 
-asio::awaitable<Result<>> ExploringSource::ask() {
+asio::awaitable<Result<>> ExploringSource::request_goal() {
     if (explore_->times_blocked() > kTimesBlockedMax) {
         const Pose2& pose = simulator_.pose();
-        co_return Error{
-            Errc::kNoPath,
-            fmt::format("something is in the robot's way at ({:.2f}, {:.2f}), wherever it is sent; see what "
-                        "stands there, or give another --seed",
-                        pose.x, pose.y)};
+        co_return Error{Errc::kNoPath, fmt::format("something blocks the robot at ({:.2f}, {:.2f}) for every goal; "
+                                                   "check that place, or give another --seed",
+                                                   pose.x, pose.y)};
     }
     auto answer = co_await (next_goal_() || until_stopped());
     due_ = Clock::time_point::min(); // the simulation stood still meanwhile
@@ -74,13 +72,13 @@ Result<> ExploringSource::take(Result<NextStop> answer) {
     if (!answer) {
         failures_ += 1;
         if (failures_ >= kFailuresMax) return answer.error();
-        explore_->wait(kAskAgainAfter);
+        explore_->wait(kRetryAfter);
         return {};
     }
     failures_ = 0;
     switch (answer->outcome) {
     case NextStop::Outcome::kGoal: explore_->go(std::move(answer->path), answer->target); break;
-    case NextStop::Outcome::kTakenByOthers: explore_->wait(kAskAgainAfter); break;
+    case NextStop::Outcome::kTakenByOthers: explore_->wait(kRetryAfter); break;
     case NextStop::Outcome::kComplete: explore_->finish(); break;
     }
     return {};

@@ -49,7 +49,7 @@ private:
     ExploringSource(SimulatorOptions options, SimulationLimits limits, NoReturn no_return, double speed,
                     std::unique_ptr<Explore> explore);
 
-    [[nodiscard]] boost::asio::awaitable<Result<>> ask();
+    [[nodiscard]] boost::asio::awaitable<Result<>> request_goal();
     [[nodiscard]] Result<> take(Result<NextStop> answer);
     [[nodiscard]] boost::asio::awaitable<void> wait_until_due(double stamp);
     [[nodiscard]] boost::asio::awaitable<void> until_stopped();

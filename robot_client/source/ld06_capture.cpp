@@ -92,13 +92,14 @@ Result<> Ld06Capture::survey() {
     remarks_ = ld06_remarks(counts, reading_.turns, losses);
     if (scan_count_ > 0) return {};
     if (losses.without_pose > 0) {
-        return Error{Errc::kNotFound, fmt::format("{}: no scan was taken within the time of the poses; their times are "
-                                                  "to count seconds from the first packet",
-                                                  path_)};
+        return Error{
+            Errc::kNotFound,
+            fmt::format(
+                "{}: no scan is within the time range of the poses; their times must be seconds since the first packet",
+                path_)};
     }
     return Error{Errc::kNotFound,
-                 fmt::format("{}: no full turn of an LD06 in it ({} packets); name a file of the bytes "
-                             "that the sensor sent",
+                 fmt::format("{}: no full turn of an LD06 ({} packets); name a file with the bytes of the sensor",
                              path_, counts.packets)};
 }
 
@@ -110,10 +111,9 @@ Result<std::optional<Observation>> Ld06Capture::next() {
         return std::optional(Observation{sensor_, std::move(*scan)});
     }
     if (given_ == scan_count_) return std::optional<Observation>{};
-    return Error{Errc::kConflict,
-                 fmt::format("{}: the file was changed while it was being sent; what the server has of it may be "
-                             "wrong: send the whole file to a new --session",
-                             path_)};
+    return Error{Errc::kConflict, fmt::format("{}: the file was changed during the transfer, so the stored scans may "
+                                              "be wrong: send the whole file to a new --session",
+                                              path_)};
 }
 
 } // namespace scanloom::robot

@@ -43,7 +43,7 @@ private:
     std::optional<Clock::time_point> gone_since_;
     std::chrono::milliseconds wait_ = kFirstWait;
     Clock::time_point packet_at_{};
-    bool is_foreign_told_ = false; ///< bytes that are not packets were reported
+    bool foreign_reported_ = false; ///< bytes that are not packets were reported
 };
 
 asio::awaitable<Error> Reading::run() {
@@ -53,7 +53,7 @@ asio::awaitable<Error> Reading::run() {
         if (co_await is_cancelled()) co_return Error{Errc::kShuttingDown, "reading the sensor was stopped"};
         if (give_up(error)) {
             const bool was_tried = options_.reopen_for.count() > 0 && was_open_;
-            const auto tried = was_tried ? fmt::format(" (tried again for {:g} s)", seconds(options_.reopen_for)) : "";
+            const auto tried = was_tried ? fmt::format(" (retried for {:g} s)", seconds(options_.reopen_for)) : "";
             co_return Error{error.code, error.message + tried};
         }
         asio::steady_timer timer(co_await asio::this_coro::executor, wait_);
@@ -68,7 +68,7 @@ asio::awaitable<Error> Reading::read_once() {
     if (!link) co_return link.error();
     was_open_ = true;
     packet_at_ = Clock::now();
-    is_foreign_told_ = false;
+    foreign_reported_ = false;
     listener_.on_open();
     std::array<std::uint8_t, kReadBytes> buffer;
     for (;;) {
@@ -83,7 +83,7 @@ bool Reading::give_up(const Error& error) {
     if (!gone_since_) {
         gone_since_ = Clock::now();
         if (options_.reopen_for.count() > 0) {
-            options_.note(further(error.message, fmt::format("trying again for {:g} s", seconds(options_.reopen_for))));
+            options_.note(further(error.message, fmt::format("retrying for {:g} s", seconds(options_.reopen_for))));
         }
     }
     return Clock::now() - *gone_since_ >= options_.reopen_for;
@@ -92,15 +92,15 @@ bool Reading::give_up(const Error& error) {
 void Reading::take(std::span<const std::uint8_t> bytes) {
     const auto now = Clock::now();
     if (listener_.on_bytes(bytes)) {
-        if (gone_since_) options_.note(name_of(options_.endpoint) + ": packets come again");
+        if (gone_since_) options_.note(name_of(options_.endpoint) + ": packets are received again");
         gone_since_.reset();
         wait_ = kFirstWait;
         packet_at_ = now;
-        is_foreign_told_ = false;
-    } else if (!is_foreign_told_ && now - packet_at_ >= options_.silent_max) {
-        is_foreign_told_ = true;
-        options_.note(fmt::format("{}: there are bytes, but no packet of an LD06 for {:g} s; is it another device, or "
-                                  "a line of another speed than 230400 baud?",
+        foreign_reported_ = false;
+    } else if (!foreign_reported_ && now - packet_at_ >= options_.silent_max) {
+        foreign_reported_ = true;
+        options_.note(fmt::format("{}: bytes without any packet of an LD06 for {:g} s; is it another device, or a line "
+                                  "speed other than 230400 baud?",
                                   name_of(options_.endpoint), seconds(options_.silent_max)));
     }
 }

@@ -42,9 +42,11 @@ asio::awaitable<Result<Ld06Link>> open(SerialDevice device, std::chrono::millise
     error_code failed;
     (void)port.open(device.path, failed);
     if (failed) {
-        co_return Error{Errc::kUnreachable, fmt::format("cannot be opened ({}); check its cable and name, and that you "
-                                                        "may read it (group dialout)",
-                                                        failed.message())};
+        co_return Error{
+            Errc::kUnreachable,
+            fmt::format(
+                "cannot be opened ({}); check its cable, its name and your permission to read it (group dialout)",
+                failed.message())};
     }
     if (auto set = set_line(port); !set) co_return set.error();
     co_return Ld06Link(std::move(port));
@@ -67,7 +69,7 @@ asio::awaitable<Result<Ld06Link>> open(TcpPeer peer, std::chrono::milliseconds t
     const std::string why =
         connected != nullptr ? connected->message() : fmt::format("no answer for {:g} s", seconds(timeout));
     co_return Error{Errc::kUnreachable,
-                    fmt::format("cannot be reached ({}); check the address, and that ser2net runs there", why)};
+                    fmt::format("cannot be reached ({}); check the address and that ser2net runs there", why)};
 }
 
 } // namespace
@@ -94,16 +96,15 @@ asio::awaitable<Result<std::size_t>> read_some(Ld06Link& link, std::span<std::ui
         co_await (std::visit([&](auto& line) { return line.async_read_some(buffer, kAwaitTuple); }, link) ||
                   timer.async_wait(kAwaitTuple));
     if (first.index() == 1) {
-        co_return Error{
-            Errc::kTimeout,
-            fmt::format("not a byte for {:g} s; does the sensor have power, and does it turn?", seconds(timeout))};
+        co_return Error{Errc::kTimeout,
+                        fmt::format("no byte for {:g} s; check that the sensor has power and turns", seconds(timeout))};
     }
     const auto [failed, count] = std::get<0>(first);
     if (!failed) co_return count;
     // a terminal without its other end reports an I/O error
     const bool hung_up = failed == asio::error::eof || failed == error_code(EIO, boost::system::system_category());
-    co_return Error{Errc::kUnreachable, hung_up ? "hung up; is it still plugged in?"
-                                                : fmt::format("cannot be read ({})", failed.message())};
+    co_return Error{Errc::kUnreachable,
+                    hung_up ? "disconnected; check the cable" : fmt::format("cannot be read ({})", failed.message())};
 }
 
 } // namespace scanloom::robot

@@ -110,7 +110,7 @@ private:
     void add(const StampedPose& pose);
     [[nodiscard]] Answer pose_for(const Waiting& waiting) const;
     [[nodiscard]] std::optional<Observation> take_ready();
-    void tell_of_other_clock(double stamp);
+    void report_other_clock(double stamp);
     [[nodiscard]] Result<std::optional<Observation>> end_when_stopped() const;
     void wake();
 
@@ -123,8 +123,8 @@ private:
     bool are_poses_coming_;
     Ld06Losses losses_;
     std::uint64_t given_ = 0; ///< scans
-    bool told_of_other_clock_ = false;
-    bool told_of_poses_ahead_ = false;
+    bool other_clock_reported_ = false;
+    bool poses_ahead_reported_ = false;
     std::optional<Error> ended_; ///< why the sensor gives no more scans
     bool is_started_ = false;
     bool is_stopped_ = false;
@@ -160,7 +160,7 @@ void Ld06Live::State::start(const asio::any_io_executor& executor) {
         const auto& note = self->options_.device.note;
         const auto on_pose = [state = self.get()](const StampedPose& pose) { state->add(pose); };
         const auto end = co_await feed_poses(std::exchange(self->options_.pose_descriptor, -1), on_pose, note);
-        if (!end.empty()) note(end + "; scans behind the last of them have none and are passed over");
+        if (!end.empty()) note(end + "; scans after the last pose are skipped");
         self->are_poses_coming_ = false;
         self->wake();
     });
@@ -198,11 +198,10 @@ void Ld06Live::State::add(const StampedPose& pose) {
     const double latest = now + seconds(options_.pose_ahead_max);
     timeline->forget_after(latest); // the clock was set back
     if (pose.stamp > latest) {
-        if (std::exchange(told_of_poses_ahead_, true)) return;
-        options_.device.note(
-            fmt::format("poses are passed over: one of t = {:.0f} came at {:.0f}; for a device t is Unix "
-                        "time, in seconds, and the clocks must agree",
-                        pose.stamp, now));
+        if (std::exchange(poses_ahead_reported_, true)) return;
+        options_.device.note(fmt::format("poses are skipped: a pose with t = {:.0f} arrived at {:.0f}; for a device t "
+                                         "is Unix time in seconds, and the clocks must agree",
+                                         pose.stamp, now));
         return;
     }
     timeline->insert(pose);
@@ -240,30 +239,29 @@ std::optional<Observation> Ld06Live::State::take_ready() {
             return Observation{sensor_, std::move(scan)};
         }
         ++losses_.without_pose;
-        tell_of_other_clock(scan.stamp);
+        report_other_clock(scan.stamp);
     }
     return std::nullopt;
 }
 
 /// Reports poses whose clock has another origin. Without the message they would be skipped silently forever.
-void Ld06Live::State::tell_of_other_clock(double stamp) {
+void Ld06Live::State::report_other_clock(double stamp) {
     const auto& timeline = std::get<PoseTimeline>(options_.poses);
-    if (timeline.empty() || told_of_other_clock_) return;
+    if (timeline.empty() || other_clock_reported_) return;
     const double newest = timeline.newest().stamp;
     if (std::max(stamp - newest, timeline.oldest().stamp - stamp) <= kOtherClock) return;
-    told_of_other_clock_ = true;
-    options_.device.note(fmt::format("scans are passed over: the poses are at t = {:.0f}, and the scans at t = {:.0f}; "
-                                     "for a device t is Unix time, in seconds",
+    other_clock_reported_ = true;
+    options_.device.note(fmt::format("scans are skipped: the poses are at t = {:.0f}, and the scans at t = {:.0f}; for "
+                                     "a device t is Unix time in seconds",
                                      newest, stamp));
 }
 
 /// Returns an error if there were scans and none had a pose, although stop() was requested.
 Result<std::optional<Observation>> Ld06Live::State::end_when_stopped() const {
     if (given_ > 0 || losses_.without_pose == 0) return std::optional<Observation>{};
-    return Error{Errc::kNotFound,
-                 fmt::format("no scan was sent: of {} scans not one was taken within the time of the poses; for a "
-                             "device the t of --poses is Unix time, in seconds",
-                             losses_.without_pose)};
+    return Error{Errc::kNotFound, fmt::format("no scan was sent: none of {} scans is within the time range of the "
+                                              "poses; for a device the t of --poses is Unix time in seconds",
+                                              losses_.without_pose)};
 }
 
 Ld06Live::State::Answer Ld06Live::State::pose_for(const Waiting& waiting) const {

@@ -15,9 +15,9 @@ std::string ld06_remarks(const Ld06Counts& counts, const Ld06Turns& turns, const
     const auto add = [&](std::uint64_t count, std::string_view noun, std::string_view what) {
         if (count > 0) text += fmt::format(", {} {}", counted(count, noun), what);
     };
-    add(turns.too_long(), "turn", "too slow to be used");
-    add(losses.without_pose, "scan", "without a pose passed over");
-    add(losses.too_many_waiting, "scan", "that nobody took in time");
+    add(turns.too_long(), "turn", "too slow");
+    add(losses.without_pose, "scan", "skipped without a pose");
+    add(losses.too_many_waiting, "scan", "dropped by the buffer");
     return text;
 }
 

@@ -50,14 +50,13 @@ struct LineReader::State {
 
 Error LineReader::State::cannot_unpack() const {
     const bool is_gzip = file.packing() == Packing::kGzip;
-    const std::string readable =
-        text_bytes == 0
-            ? "nothing of it could be read; get the file again"
-            : fmt::format("only its first {} lines ({} bytes of text) could be read; get the file again, or "
-                          "unpack those with {} and replay them",
-                          line_number, text_bytes, is_gzip ? "zcat" : "bzcat");
+    const std::string readable = text_bytes == 0
+                                     ? "no line could be read; download the file again"
+                                     : fmt::format("only its first {} lines ({} bytes of text) could be read; download "
+                                                   "the file again, or unpack them with {} and replay them",
+                                                   line_number, text_bytes, is_gzip ? "zcat" : "bzcat");
     return {Errc::kMalformed,
-            fmt::format("{}: the {} data is damaged or cut short: {}", path, is_gzip ? "gzip" : "bzip2", readable)};
+            fmt::format("{}: the {} data is damaged or truncated: {}", path, is_gzip ? "gzip" : "bzip2", readable)};
 }
 
 Result<> LineReader::State::refill() {

@@ -21,7 +21,7 @@ namespace {
 
 using Time = std::chrono::steady_clock::time_point;
 
-/// Returns whether the server may locate the robot if it is asked again.
+/// Returns whether the server may locate the robot if it is request again.
 bool may_pass(Errc code) { return code == Errc::kOverloaded || code == Errc::kShuttingDown; }
 
 /// Makes a timer known while it exists. It may be destroyed before or after the source.
@@ -40,50 +40,50 @@ private:
 
 } // namespace
 
-LocatingSource::LocatingSource(std::unique_ptr<LiveSource> turns, const Pose2& first_place, Tell tell,
-                               std::chrono::milliseconds ask_again_after)
-    : turns_(std::move(turns)), halts_(first_place), tell_(std::move(tell)), ask_again_after_(ask_again_after) {}
+LocatingSource::LocatingSource(std::unique_ptr<LiveSource> turns, const Pose2& first_place, Report report,
+                               std::chrono::milliseconds retry_after)
+    : turns_(std::move(turns)), phases_(first_place), report_(std::move(report)), retry_after_(retry_after) {}
 
 asio::awaitable<Result<std::optional<Observation>>> LocatingSource::next() {
     assert(locate_);
     for (;;) {
-        if (auto turn = halts_.take()) co_return std::move(turn);
+        if (auto turn = phases_.take()) co_return std::move(turn);
         if (has_ended_) co_return outcome();
-        auto question = is_stopped_ ? std::nullopt : halts_.question();
+        auto question = is_stopped_ ? std::nullopt : phases_.question();
         if (question) {
-            co_await ask(std::move(*question));
-            tell_news();
+            co_await request_location(std::move(*question));
+            report_messages();
             continue;
         }
         auto turn = co_await turns_->next();
         if (!turn) co_return turn.error();
         if (*turn) {
-            halts_.add(std::move(**turn));
+            phases_.add(std::move(**turn));
         } else {
-            halts_.end();
+            phases_.end();
             has_ended_ = true;
         }
-        tell_news();
+        report_messages();
     }
 }
 
 /// Repeats the request until the server has searched the map. A busy server says nothing about the place.
-asio::awaitable<void> LocatingSource::ask(SeenPoints seen) {
+asio::awaitable<void> LocatingSource::request_location(SeenPoints seen) {
     const auto points = seen.points();
     const Point2 from = seen.from();
-    bool is_told = false;
+    bool is_reported = false;
     while (!is_stopped_) {
-        auto asked = points; // a named variable, because g++ 12 destroys such temporaries twice
-        const auto answer = co_await (locate_(std::move(asked), from) || wait(Time::max()));
+        auto request = points; // a named variable, because g++ 12 destroys such temporaries twice
+        const auto answer = co_await (locate_(std::move(request), from) || wait(Time::max()));
         if (answer.index() != 0) continue;
         const Result<Located>& located = std::get<0>(answer);
         if (located || !may_pass(located.error().code)) {
-            halts_.answer(located);
+            phases_.answer(located);
             co_return;
         }
-        if (!std::exchange(is_told, true))
-            tell_(further(located.error().message, "the lidar is to stay; asking again"));
-        co_await wait(std::chrono::steady_clock::now() + ask_again_after_);
+        if (!std::exchange(is_reported, true))
+            report_(further(located.error().message, "keep the lidar in place; retrying"));
+        co_await wait(std::chrono::steady_clock::now() + retry_after_);
     }
 }
 
@@ -101,28 +101,27 @@ void LocatingSource::stop() {
     turns_->stop();
 }
 
-void LocatingSource::tell_news() {
-    for (const auto& sentence : halts_.take_news()) tell_(sentence);
+void LocatingSource::report_messages() {
+    for (const auto& sentence : phases_.take_messages()) report_(sentence);
 }
 
 Result<std::optional<Observation>> LocatingSource::outcome() const {
-    if (halts_.given() > 0 || halts_.dropped() == 0) return std::optional<Observation>{};
-    if (halts_.refusal()) return prefixed("no scan was sent: ", *halts_.refusal());
+    if (phases_.given() > 0 || phases_.dropped() == 0) return std::optional<Observation>{};
+    if (phases_.refusal()) return prefixed("no scan was sent: ", *phases_.refusal());
     if (is_stopped_) {
         return Error{Errc::kNotFound,
-                     "no scan was sent: it was stopped before the server had told where the lidar stands"};
+                     "no scan was sent: the run was stopped before the server had localized the lidar"};
     }
-    return Error{
-        Errc::kNotFound,
-        fmt::format("no scan was sent: of {} no {} in a row were alike and saw enough to tell; let the lidar stand "
-                    "where it sees walls, and stay away from it",
-                    counted(halts_.dropped(), "turn"), Halts::kTurnsAlike)};
+    return Error{Errc::kNotFound,
+                 fmt::format("no scan was sent: among {} no {} in a row were similar and showed enough; place the "
+                             "lidar where it can see walls, and keep people away from it",
+                             counted(phases_.dropped(), "turn"), StationaryPhases::kTurnsAlike)};
 }
 
 std::string LocatingSource::remarks() const {
     const std::string of_turns = turns_->remarks();
-    return fmt::format("{}{}carried {}, {} while carried or not located", of_turns, of_turns.empty() ? "" : ", ",
-                       counted(halts_.carried(), "time"), counted(halts_.dropped(), "turn"));
+    return fmt::format("{}{}carried {}, {} while carried or not localized", of_turns, of_turns.empty() ? "" : ", ",
+                       counted(phases_.carried(), "time"), counted(phases_.dropped(), "turn"));
 }
 
 } // namespace scanloom::robot

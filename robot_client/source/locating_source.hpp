@@ -1,8 +1,8 @@
 #pragma once
 
-#include "robot_client/source/halts.hpp"
 #include "robot_client/source/live_source.hpp"
 #include "robot_client/source/locate.hpp"
+#include "robot_client/source/stationary_phases.hpp"
 
 #include <boost/asio/awaitable.hpp>
 #include <boost/asio/steady_timer.hpp>
@@ -17,7 +17,8 @@
 namespace scanloom::robot {
 
 /// A laser without odometry that is carried from place to place. While it is stationary the source requests its
-/// position from the server and gives the scans taken there (see Halts). Scans taken while it moves are dropped.
+/// position from the server and gives the scans taken there (see StationaryPhases). Scans taken while it moves are
+/// dropped.
 ///
 /// While a reply is awaited the laser is not read: a laser that cannot wait keeps the newest turns itself and drops
 /// older ones (Ld06Live). If the server is busy, the request is repeated. The turns of a request are kept here and are
@@ -27,14 +28,14 @@ namespace scanloom::robot {
 /// Threads: as for LiveSource.
 class LocatingSource final : public LiveSource {
 public:
-    using Tell = std::function<void(const std::string&)>;
+    using Report = std::function<void(const std::string&)>;
 
     /// @param turns            of one laser, with poses in its odometry frame; the origin for a bare lidar
     /// @param first_place      T_map_robot at the start, used if no map exists yet
-    /// @param tell             receives messages for people
-    /// @param ask_again_after  pause before the request is repeated when the server is busy
-    LocatingSource(std::unique_ptr<LiveSource> turns, const Pose2& first_place, Tell tell,
-                   std::chrono::milliseconds ask_again_after = std::chrono::seconds(1));
+    /// @param report             receives messages for people
+    /// @param retry_after  pause before the request is repeated when the server is busy
+    LocatingSource(std::unique_ptr<LiveSource> turns, const Pose2& first_place, Report report,
+                   std::chrono::milliseconds retry_after = std::chrono::seconds(1));
 
     /// Sets the function that locates the robot. Call it before the first next().
     void ask_with(Locate locate) { locate_ = std::move(locate); }
@@ -49,15 +50,15 @@ public:
     [[nodiscard]] std::string remarks() const override;
 
 private:
-    [[nodiscard]] boost::asio::awaitable<void> ask(SeenPoints seen);
+    [[nodiscard]] boost::asio::awaitable<void> request_location(SeenPoints seen);
     [[nodiscard]] boost::asio::awaitable<void> wait(std::chrono::steady_clock::time_point until);
-    void tell_news();
+    void report_messages();
     [[nodiscard]] Result<std::optional<Observation>> outcome() const;
 
     std::unique_ptr<LiveSource> turns_;
-    Halts halts_;
-    Tell tell_;
-    std::chrono::milliseconds ask_again_after_;
+    StationaryPhases phases_;
+    Report report_;
+    std::chrono::milliseconds retry_after_;
     Locate locate_;
     bool has_ended_ = false;
     bool is_stopped_ = false;

@@ -19,7 +19,7 @@ namespace asio = boost::asio;
 namespace {
 
 constexpr std::size_t kLineBytesMax = 4096;
-constexpr std::size_t kSkippedLinesTold = 5;
+constexpr std::size_t kSkippedLinesShown = 5;
 
 } // namespace
 
@@ -35,13 +35,13 @@ asio::awaitable<std::string> feed_poses(int descriptor, std::function<void(const
         if (failed == asio::error::operation_aborted) co_return "";
         if (failed == asio::error::eof) co_return "the poses have ended";
         if (failed == asio::error::not_found) {
-            co_return fmt::format("line {} of the poses is longer than {} bytes; they are not read on", line_number,
+            co_return fmt::format("line {} of the poses is longer than {} bytes; the rest is not read", line_number,
                                   kLineBytesMax);
         }
         if (failed) co_return fmt::format("the poses cannot be read: {}", failed.message());
         const auto pose = read_pose_line(std::string_view(text).substr(0, size - 1));
         text.erase(0, size);
-        if (!pose && ++skipped <= kSkippedLinesTold) {
+        if (!pose && ++skipped <= kSkippedLinesShown) {
             note(fmt::format("line {} of the poses is skipped: {}", line_number, pose.error().message));
         }
         if (pose && *pose) on_pose(**pose);

@@ -32,8 +32,7 @@ public:
 
     [[nodiscard]] Result<PoseLines> finish(std::string_view name) && {
         if (!lines_.poses.empty()) return std::move(lines_);
-        return Error{Errc::kNotFound,
-                     fmt::format("{}: no pose to be read; a line for each is needed: t x y yaw", name)};
+        return Error{Errc::kNotFound, fmt::format("{}: no valid pose; each line must be: t x y yaw", name)};
     }
 
 private:

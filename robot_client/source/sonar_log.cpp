@@ -89,8 +89,7 @@ Result<> read_lines(const std::filesystem::path& path, LineLimits limits, Sha256
         }
     }
     if (!is_empty) return {};
-    return Error{Errc::kNotFound,
-                 fmt::format("{}: the file is empty; it should hold a line for each moment", path.string())};
+    return Error{Errc::kNotFound, fmt::format("{}: the file is empty; each scan needs a line", path.string())};
 }
 
 Result<PosePath> read_poses(const std::filesystem::path& path, LineLimits limits, Sha256& hash) {
@@ -122,7 +121,7 @@ Result<SonarLog> SonarLog::open(const std::filesystem::path& measurements, const
         const auto pose = path->at(scan->stamp);
         if (!pose) {
             return Error{Errc::kInvalidField,
-                         fmt::format("{} holds no pose within {:g} s of its time", poses.string(), kPoseGapMax)};
+                         fmt::format("{} has no pose within {:g} s of its time", poses.string(), kPoseGapMax)};
         }
         scan->pose = *pose;
         scans.push_back(std::move(*scan));

@@ -25,7 +25,7 @@ Error about(const fs::path& path, const Error& error) { return prefixed(path.str
 Result<std::string> content_of(const fs::path& path) {
     std::error_code failed;
     if (!fs::is_regular_file(path, failed)) {
-        return Error{Errc::kNotFound, fmt::format("{}: there is no such file", path.string())};
+        return Error{Errc::kNotFound, fmt::format("{}: no such file", path.string())};
     }
     const auto size = fs::file_size(path, failed);
     if (!failed && size > kFileBytesMax) {

@@ -30,7 +30,7 @@ void append_record(const wire::Message& message, std::string& out) {
 Result<std::optional<Record>> read_record(std::string_view bytes) {
     if (bytes.size() < kRecordHeaderBytes) return std::optional<Record>{};
     const std::uint32_t length = load(bytes);
-    if (length == 0 || length > wire::kFrameBytesMax) return Error{Errc::kMalformed, "a record has no possible length"};
+    if (length == 0 || length > wire::kFrameBytesMax) return Error{Errc::kMalformed, "a record has an invalid length"};
     if (bytes.size() < kRecordHeaderBytes + length) return std::optional<Record>{};
     const std::string_view body = bytes.substr(kRecordHeaderBytes, length);
     if (load(bytes.substr(4)) != checksum(body)) return Error{Errc::kMalformed, "a record's checksum does not match"};

@@ -26,7 +26,7 @@ Result<SegmentWriter> SegmentWriter::create(std::filesystem::path file, std::uin
 }
 
 Result<> SegmentWriter::append(std::string_view bytes) {
-    if (!handle_) return Error{Errc::kStoreFailed, fmt::format("{} cannot be written any more", file_.string())};
+    if (!handle_) return Error{Errc::kStoreFailed, fmt::format("{} can no longer be written", file_.string())};
     std::size_t written = 0;
     while (written < bytes.size()) {
         const ssize_t count = ::write(handle_->get(), bytes.data() + written, bytes.size() - written);

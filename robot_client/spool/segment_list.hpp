@@ -37,10 +37,10 @@ struct SpoolFile {
 [[nodiscard]] std::string segment_file(std::uint64_t first);
 
 /// Returns the files of an earlier run in a directory, sorted by number. Empty files are removed. Files that cannot be
-/// read or do not belong there are renamed and left out. `tell` receives a message about both and about damage; the
+/// read or do not belong there are renamed and left out. `report` receives a message about both and about damage; the
 /// scans before damage count.
 /// Errors: kStoreFailed.
 [[nodiscard]] Result<std::vector<SpoolFile>> segments_left(const std::filesystem::path& directory,
-                                                           const std::function<void(const std::string&)>& tell);
+                                                           const std::function<void(const std::string&)>& report);
 
 } // namespace scanloom::robot

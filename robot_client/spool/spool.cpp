@@ -23,11 +23,11 @@ constexpr std::uint64_t kTidyBytes = std::uint64_t{1} << 20; ///< from this size
 
 } // namespace
 
-Spool::Spool(SpoolOptions options, std::function<void(const std::string&)> tell)
-    : options_(std::move(options)), tell_(std::move(tell)) {}
+Spool::Spool(SpoolOptions options, std::function<void(const std::string&)> report)
+    : options_(std::move(options)), report_(std::move(report)) {}
 
-Result<std::unique_ptr<Spool>> Spool::open(SpoolOptions options, std::function<void(const std::string&)> tell) {
-    std::unique_ptr<Spool> spool(new Spool(std::move(options), std::move(tell)));
+Result<std::unique_ptr<Spool>> Spool::open(SpoolOptions options, std::function<void(const std::string&)> report) {
+    std::unique_ptr<Spool> spool(new Spool(std::move(options), std::move(report)));
     if (auto ok = spool->lock(); !ok) return ok.error();
     if (auto ok = spool->load(); !ok) return ok.error();
     return spool;
@@ -53,14 +53,14 @@ Result<> Spool::load() {
     const fs::path file = options_.directory / kNumberingFile;
     const auto numbering = read_numbering(file);
     if (!numbering && numbering.error().code == Errc::kStoreFailed) return numbering.error();
-    if (!numbering) tell_(numbering.error().message + "; the scans here are taken for those of this session");
+    if (!numbering) report_(numbering.error().message + "; its scans are assumed to belong to this session");
     numbering_ = numbering && *numbering ? **numbering : Numbering{};
     if (!numbering || !*numbering) {
         // Later writes need no more room on the disk. If there is none even now, append() reports it.
         (void)write_numbering(file, numbering_, Sync::kYes);
     }
 
-    auto left = segments_left(options_.directory, tell_);
+    auto left = segments_left(options_.directory, report_);
     if (!left) return left.error();
     segments_.assign(left->begin(), left->end());
     mend_heads();
@@ -90,9 +90,8 @@ void Spool::mend_heads() {
                    behind->from == segment.end()) {
             segment.seq = behind->seq - segment.scans;
         }
-        tell_(fmt::format("the first bytes of {} are damaged; its scans are {}", file_of(segment).string(),
-                          segment.seq > 0 ? "numbered as those of the files around it"
-                                          : "sent, again if they were sent before"));
+        report_(fmt::format("the first bytes of {} are damaged; its scans are {}", file_of(segment).string(),
+                            segment.seq > 0 ? "numbered by the adjacent files" : "sent, possibly a second time"));
     }
 }
 
@@ -152,11 +151,11 @@ Result<> Spool::start_segment() {
 /// @return whether `bytes` may be written now
 bool Spool::make_room(std::size_t bytes) {
     while (bytes_ + bytes > options_.bytes_max) {
-        if (!told_of_dropping_) {
-            told_of_dropping_ = true;
-            tell_(fmt::format("the spool {} is full ({} MiB): the {} scans are dropped", options_.directory.string(),
-                              options_.bytes_max >> 20,
-                              options_.when_full == WhenFull::kDropOldest ? "oldest unsent" : "newest"));
+        if (!dropping_reported_) {
+            dropping_reported_ = true;
+            report_(fmt::format("the spool {} is full ({} MiB): the {} scans are dropped", options_.directory.string(),
+                                options_.bytes_max >> 20,
+                                options_.when_full == WhenFull::kDropOldest ? "oldest unsent" : "newest"));
         }
         if (options_.when_full == WhenFull::kDropNewest) return false;
         std::size_t index = reading_;
@@ -166,7 +165,7 @@ bool Spool::make_room(std::size_t bytes) {
         waiting_ -= segments_[index].left();
         remove(index);
     }
-    told_of_dropping_ = told_of_dropping_ && bytes_ + bytes > options_.bytes_max / 2;
+    dropping_reported_ = dropping_reported_ && bytes_ + bytes > options_.bytes_max / 2;
     return true;
 }
 
@@ -192,7 +191,7 @@ Result<> Spool::begin(std::string_view session_id, std::uint64_t durable_seq) {
     }
     const bool is_same = numbering_.session_id.empty() || numbering_.session_id == session_id;
     if (auto ok = is_same ? check(durable_seq) : leave_session(); !ok) return ok;
-    is_strange_ = !is_same && waiting_ > 0 && options_.poses_are_told;
+    is_strange_ = !is_same && waiting_ > 0 && options_.poses_from_server;
     // If the server refuses these scans, the next run must mark them in any session.
     const Numbering kept = is_strange_ ? Numbering{kNoSession, 0} : Numbering{std::string(session_id), durable_seq};
     if (auto ok = write_numbering(options_.directory / kNumberingFile, kept, Sync::kYes); !ok) return ok;
@@ -211,18 +210,17 @@ Result<> Spool::begin(std::string_view session_id, std::uint64_t durable_seq) {
 Result<> Spool::check(std::uint64_t durable_seq) const {
     if (durable_seq < numbering_.acknowledged) {
         return Error{Errc::kConflict,
-                     fmt::format("the server holds {} scans of this robot but had acknowledged {}: restore the "
-                                 "server's store, or rename {} to OTHER.ROBOT and go on with --session OTHER",
+                     fmt::format("the server has {} scans of this robot but had acknowledged {}: restore the server's "
+                                 "store, or rename {} to OTHER.ROBOT and continue with --session OTHER",
                                  durable_seq, numbering_.acknowledged, options_.directory.string())};
     }
     const auto sent = std::ranges::find_if(segments_.rbegin(), segments_.rend(),
                                            [](const SpoolFile& segment) { return segment.seq > 0; });
     if (sent == segments_.rend() || durable_seq <= sent->last_seq()) return {}; // of another program, or of this one
-    tell_(fmt::format(
-        "the server holds {} scans of this robot, {} more than were sent from {}: files there have lost their "
-        "ends, the disk was full, or another program sent scans under the same --robot and --session; "
-        "scans that may have been sent count as stored",
-        durable_seq, durable_seq - sent->last_seq(), options_.directory.string()));
+    report_(fmt::format("the server has {} scans of this robot, {} more than were sent from {}: files there are "
+                        "truncated, the disk was full, or another program sent scans with the same --robot and "
+                        "--session; scans that may have been sent count as stored",
+                        durable_seq, durable_seq - sent->last_seq(), options_.directory.string()));
     return {};
 }
 
@@ -236,8 +234,7 @@ Result<> Spool::follow(std::string_view session_id) {
 /// Marks the scans that the previous session did not acknowledge as never sent.
 Result<> Spool::leave_session() {
     if (waiting_ > 0) {
-        tell_(fmt::format("the session is another than before; {} scans that were not acknowledged go to the new one",
-                          waiting_));
+        report_(fmt::format("the session has changed; {} unacknowledged scans go to the new one", waiting_));
     }
     for (SpoolFile& segment : segments_) {
         if (segment.seq == 0) continue;
@@ -303,7 +300,7 @@ Result<> Spool::enter() {
 void Spool::leave_damaged(const std::string& why) {
     SpoolFile& segment = segments_[reading_];
     const std::uint64_t lost = segment.end() - std::max(segment.from, segment.first + read_);
-    tell_(fmt::format("{}; {} scans are lost", why, lost));
+    report_(fmt::format("{}; {} scans are lost", why, lost));
     dropped_ += lost;
     waiting_ -= lost;
     segment.scans = read_;

@@ -27,7 +27,7 @@ struct SpoolOptions {
     std::uint64_t bytes_max = std::uint64_t{256} << 20;
     WhenFull when_full = WhenFull::kDropOldest; ///< drops whole files, each at most a sixteenth of bytes_max
     /// Whether the server set the poses from the session's map. In another session such poses can only begin a map.
-    bool poses_are_told = false;
+    bool poses_from_server = false;
 };
 
 /// The scans that a robot took and the server has not acknowledged, on disk. They remain after the program ends.
@@ -44,19 +44,19 @@ public:
     static constexpr std::uint64_t kBytesMin = std::uint64_t{1} << 20;
 
     /// Opens the spool with the scans of earlier runs.
-    /// @param tell  receives messages for people about damaged files and lost scans
+    /// @param report  receives messages for people about damaged files and lost scans
     /// Errors: kStoreFailed; kConflict if another program uses the directory.
     [[nodiscard]] static Result<std::unique_ptr<Spool>> open(SpoolOptions options,
-                                                             std::function<void(const std::string&)> tell);
+                                                             std::function<void(const std::string&)> report);
 
     /// Starts handing out: the server has the robot's scans up to `durable_seq`, and next() skips these. Pre: called
     /// once.
     ///
     /// If the session is not the one before, the scans that were not acknowledged there are handed out. If
-    /// SpoolOptions::poses_are_told, each of them is marked as one that begins a map (Scan::begins_map) until the new
-    /// session has acknowledged one of them. If the server has more scans than were sent from here, a message reports
-    /// it: files may have lost their ends in a power failure, scans may have bypassed a full disk, or another program
-    /// sent some under the same name. The scans that may have been sent then count as stored.
+    /// SpoolOptions::poses_from_server, each of them is marked as one that begins a map (Scan::begins_map) until the
+    /// new session has acknowledged one of them. If the server has more scans than were sent from here, a message
+    /// reports it: files may have lost their ends in a power failure, scans may have bypassed a full disk, or another
+    /// program sent some under the same name. The scans that may have been sent then count as stored.
     /// Errors: kConflict if the server lost scans that it had acknowledged; kStoreFailed.
     [[nodiscard]] Result<> begin(std::string_view session_id, std::uint64_t durable_seq);
 
@@ -85,7 +85,7 @@ public:
     [[nodiscard]] const std::filesystem::path& directory() const noexcept { return options_.directory; }
 
 private:
-    Spool(SpoolOptions options, std::function<void(const std::string&)> tell);
+    Spool(SpoolOptions options, std::function<void(const std::string&)> report);
     [[nodiscard]] Result<> load();
     [[nodiscard]] Result<> lock();
     [[nodiscard]] std::filesystem::path file_of(const SpoolFile& segment) const;
@@ -104,14 +104,14 @@ private:
     void forget_acknowledged(bool also_the_newest);
 
     SpoolOptions options_;
-    std::function<void(const std::string&)> tell_;
+    std::function<void(const std::string&)> report_;
     FileHandle lock_;
     BackgroundSync sync_;
     std::deque<SpoolFile> segments_;
     std::uint64_t bytes_ = 0;
     std::uint64_t waiting_ = 0;
     std::uint64_t dropped_ = 0;
-    bool told_of_dropping_ = false;
+    bool dropping_reported_ = false;
 
     // appending, to the last segment
     std::optional<SegmentWriter> writer_;

@@ -49,10 +49,10 @@ std::vector<grid::Cell> left_unexplored(const World& world, GoalOracle& oracle, 
                              truth.j_begin + truth.height + kMargin};
     // the width of the requested paths: 2 * 0.22 m over cells of 0.05 m along their diagonals
     const auto size_min =
-        static_cast<std::size_t>(2.0 * Explore::kWayClearance / (std::numbers::sqrt2 * maps.config.cell_size));
+        static_cast<std::size_t>(2.0 * Explore::kPathClearance / (std::numbers::sqrt2 * maps.config.cell_size));
     const Unexplored unexplored(maps.classes, area,
                                 {.cell_size = maps.config.cell_size,
-                                 .clearance = Explore::kWayClearance,
+                                 .clearance = Explore::kPathClearance,
                                  .size_min = size_min,
                                  .looked_at = oracle.looked_at()});
     EXPECT_GT(unexplored.reach({robot.x, robot.y}), 1000) << "the check itself reaches most of the office";

@@ -20,7 +20,7 @@ class GoalOracle {
 public:
     explicit GoalOracle(std::shared_ptr<const session::Session> session, const mapping::MapConfig& config = {})
         : session_(std::move(session)), maps_(config) {
-        options_.passability.body_radius_m = robot::Explore::kWayClearance;
+        options_.passability.body_radius_m = robot::Explore::kPathClearance;
     }
 
     void join(RobotIndex robot, const Sensor& laser) {

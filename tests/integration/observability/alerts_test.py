@@ -25,7 +25,7 @@ class Alerts(unittest.TestCase):
     def setUpClass(cls):
         cls.served = ask_a_server()
 
-    def test_every_alert_asks_for_what_the_server_gives(self):
+    def test_every_alert_uses_metrics_of_the_server(self):
         for alert in alerts():
             with self.subTest(alert["alert"]):
                 self.assertTrue(selectors(alert["expr"]))
@@ -38,7 +38,7 @@ class Alerts(unittest.TestCase):
                 self.assertIn("instance", named)
                 self.assertLessEqual(named, self.served.labels_of(alert["expr"]))
 
-    def test_texts_name_metrics_that_there_are(self):
+    def test_texts_name_existing_metrics(self):
         for alert in alerts():
             for name in re.findall(r"\bscanloom_\w+", " ".join(alert["annotations"].values())):
                 self.assertIn(name, self.served.samples, alert["alert"])
@@ -52,12 +52,12 @@ class Alerts(unittest.TestCase):
                 self.assertEqual(alert["annotations"].keys(), {"summary", "description"})
                 self.assertTrue(alert["annotations"]["description"].endswith("."))
 
-    def test_for_every_alert_there_is_a_case_in_which_it_fires(self):
+    def test_every_alert_fires_in_a_case(self):
         fired = {name for case in cases() for asked in case["promql_expr_test"] for sample in asked["exp_samples"]
                  for name in re.findall(r'alertname="(\w+)"', sample["labels"])}
         self.assertEqual(fired, {alert["alert"] for alert in alerts()})
 
-    def test_cases_are_of_metrics_and_labels_that_there_are(self):
+    def test_cases_use_existing_metrics_and_labels(self):
         for series in (series["series"] for case in cases() for series in case["input_series"]):
             [selector] = selectors(series)
             self.assertIn(selector.metric, self.served.samples)

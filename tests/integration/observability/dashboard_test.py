@@ -37,7 +37,7 @@ class Dashboard(unittest.TestCase):
             for target in panel["targets"]:
                 yield panel, target
 
-    def test_every_panel_asks_for_what_the_server_gives(self):
+    def test_every_panel_uses_metrics_of_the_server(self):
         for panel, target in self.targets():
             with self.subTest(panel["title"], query=target["expr"]):
                 self.assertTrue(selectors(target["expr"]))
@@ -54,13 +54,13 @@ class Dashboard(unittest.TestCase):
                 named = set(re.findall(r"\{\{\s*(\w+)\s*\}\}", target["legendFormat"]))
                 self.assertLessEqual(named, self.served.labels_of(target["expr"]))
 
-    def test_only_the_chosen_servers_are_asked(self):
+    def test_only_the_chosen_servers_are_queried(self):
         for panel, target in self.targets():
             for selector in selectors(target["expr"]):
                 with self.subTest(panel["title"], metric=selector.metric):
                     self.assertEqual(selector.matchers.get("instance"), ("=~", "$instance"))
 
-    def test_every_panel_says_what_it_shows_and_in_which_unit(self):
+    def test_every_panel_has_a_description_and_a_unit(self):
         for panel in self.shown:
             with self.subTest(panel["title"]):
                 self.assertGreater(len(panel["description"]), 10)
@@ -74,20 +74,20 @@ class Dashboard(unittest.TestCase):
             refs = [target["refId"] for target in panel["targets"]]
             self.assertEqual(sorted(refs), sorted(set(refs)), panel["title"])
 
-    def test_panels_lie_beside_each_other(self):
+    def test_panels_do_not_overlap(self):
         for panel in self.panels:
             at = panel["gridPos"]
             self.assertTrue(0 <= at["x"] < at["x"] + at["w"] <= COLUMNS and at["h"] > 0, panel["title"])
         for one, other in itertools.combinations(self.panels, 2):
             self.assertFalse(cells_of(one) & cells_of(other), f"{one['title']} overlaps {other['title']}")
 
-    def test_variables_are_declared_and_the_source_of_data_is_one(self):
+    def test_variables_are_declared_and_there_is_one_data_source(self):
         declared = {variable["name"] for variable in self.dashboard["templating"]["list"]} | GRAFANA_VARIABLES
         self.assertLessEqual(set(re.findall(r"\$\{?(\w+)", self.text)), declared)
         for asked in [self.instance, *self.shown, *(target for _, target in self.targets())]:
             self.assertEqual(asked["datasource"], {"type": "prometheus", "uid": "${datasource}"}, asked)
 
-    def test_the_list_of_servers_comes_from_a_metric_there_is(self):
+    def test_the_list_of_servers_comes_from_an_existing_metric(self):
         query = self.instance["query"]["query"]
         self.assertEqual(self.instance["definition"], query)
         metric, label = re.fullmatch(r"label_values\((\w+), (\w+)\)", query).groups()

@@ -40,7 +40,7 @@ class Served:
         return sample
 
     def complaints_about(self, expression):
-        """Yields a sentence for each metric or label that the server lacks, and for each counter that is used without rate()."""
+        """Yields a sentence for each missing metric or label, and for each counter that is used without rate()."""
         return [complaint for selector in selectors(expression) for complaint in self._complaints(selector)]
 
     def _complaints(self, selector):

@@ -162,7 +162,7 @@ TEST_F(LocationTest, OfACarriedLidarIsRequestedAtEachPlaceAndSetInEveryScan) {
     EXPECT_EQ(stored_when_asked, (std::vector<std::size_t>{0, 17}));
     ASSERT_EQ(server_.stored().size(), 17U + 20U);
     for (const Scan& scan : server_.stored()) EXPECT_EQ(scan.pose, T_map_odom);
-    EXPECT_EQ(source.remarks(), "carried 1 time, 33 turns while carried or not located");
+    EXPECT_EQ(source.remarks(), "carried 1 time, 33 turns while carried or not localized");
 }
 
 } // namespace

@@ -1,4 +1,4 @@
-"""A minimal server for tests of the client: each link runs a script; the last script also runs for all further links."""
+"""A minimal server for tests of the client: each link runs a script, the last one all further links."""
 import socket
 import threading
 

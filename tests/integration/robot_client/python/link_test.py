@@ -26,7 +26,7 @@ def hangs_up_after(batches):
 
 
 class Resuming(LinkTest):
-    def test_all_scans_arrive_and_a_goodbye_is_said(self):
+    def test_all_scans_arrive_before_the_goodbye(self):
         self.start()
         with self.client() as robot:
             self.send(robot, self.laser(robot), 20)
@@ -35,7 +35,7 @@ class Resuming(LinkTest):
         self.assertEqual(robot.sent, 20)
         self.assertEqual(self.server.goodbyes, 1)
 
-    def test_links_that_break_without_a_word_lose_nothing_and_repeat_nothing(self):
+    def test_links_that_end_silently_lose_and_duplicate_no_scan(self):
         self.start(hangs_up_after(0), hangs_up_after(1), lambda link: None, hangs_up_after(2), well)
         with self.client() as robot:
             laser = self.laser(robot)
@@ -46,7 +46,7 @@ class Resuming(LinkTest):
         self.assert_stored(40)
         self.assertEqual(robot.status().reconnects, 3)
 
-    def test_a_retryable_error_is_tried_again(self):
+    def test_a_retryable_error_is_retried(self):
         def overloaded(link):
             link.receive()
             link.send(error={"code": 15, "message": "later", "retryable": True})
@@ -56,7 +56,7 @@ class Resuming(LinkTest):
             self.send(robot, self.laser(robot), 3)
         self.assert_stored(3)
 
-    def test_an_acknowledgement_of_what_was_never_sent_ends_the_link_only(self):
+    def test_an_acknowledgement_of_an_unsent_scan_ends_the_link_only(self):
         def boasts(link):
             link.greet()
             link.serve(until=is_batch)
@@ -68,7 +68,7 @@ class Resuming(LinkTest):
             self.send(robot, self.laser(robot), 3)
         self.assert_stored(3)
 
-    def test_a_session_made_anew_is_told(self):
+    def test_a_recreated_session_is_reported(self):
         def another(link):
             link.greet(session_id="b", last_durable_seq=0)
             link.serve()
@@ -80,10 +80,10 @@ class Resuming(LinkTest):
         robot.flush()
         self.send(robot, laser, 1)
         error = self.assert_fails("SESSION_DELETED", robot.flush)
-        self.assertIn("session s was deleted and made anew", error.message)
+        self.assertIn("session s was deleted and recreated", error.message)
         self.assert_fails("SESSION_DELETED", self.send, robot, laser, 1)
 
-    def test_a_server_that_lost_scans_is_told(self):
+    def test_lost_scans_of_a_server_are_reported(self):
         def forgot(link):
             link.greet(last_durable_seq=0)
             link.serve()
@@ -96,7 +96,7 @@ class Resuming(LinkTest):
         self.send(robot, laser, 1)
         self.assertIn("had acknowledged 1", self.assert_fails("LOST_SCANS", robot.flush).message)
 
-    def test_scans_that_another_program_sent_are_told(self):
+    def test_scans_of_another_program_are_reported(self):
         def more(link):
             link.greet(last_durable_seq=7)
             link.serve()
@@ -106,7 +106,7 @@ class Resuming(LinkTest):
         self.send(robot, self.laser(robot), 1)
         self.assertIn("another program", self.assert_fails("SESSION_CONFLICT", robot.close).message)
 
-    def test_numbers_continue_after_what_the_server_holds_already(self):
+    def test_numbers_continue_after_the_stored_scans(self):
         self.start(well)
         with self.client() as robot:
             self.send(robot, self.laser(robot), 5)
@@ -118,7 +118,7 @@ class Resuming(LinkTest):
 
 
 class Refusing(LinkTest):
-    def test_the_servers_error_is_raised_as_it_is(self):
+    def test_the_servers_error_is_raised_unchanged(self):
         def refuses(link):
             link.greet()
             link.serve(until=is_batch)
@@ -143,20 +143,20 @@ class Refusing(LinkTest):
             with self.client() as robot:
                 laser = self.laser(robot)
         self.assertEqual(caught.exception.code, "UNAUTHORIZED")
-        self.assertIn("UNAUTHORIZED and did not say why", caught.exception.message)
+        self.assertIn("UNAUTHORIZED without a message", caught.exception.message)
         self.assert_fails("UNAUTHORIZED", self.send, robot, laser, 1)
 
-    def test_a_program_that_is_no_scanloom_server_is_not_tried_again(self):
+    def test_another_protocol_is_not_retried(self):
         def web(link):
             link.receive()
             link.send_bytes(b"HTTP/1.1 400 Bad Request\r\n\r\n")
 
         self.start(web)
         error = self.assert_fails("MALFORMED_FRAME", self.client().close)
-        self.assertIn("does not speak Scanloom's robot link", error.message)
+        self.assertIn("does not use Scanloom's robot protocol", error.message)
         self.assertEqual(self.server.links, 1)
 
-    def test_what_cannot_be_read_later_ends_the_link_only(self):
+    def test_invalid_data_after_the_welcome_ends_the_link_only(self):
         def garbles(link):
             link.greet()
             link.serve(until=is_batch)
@@ -185,7 +185,7 @@ class Reading(LinkTest):
                 connection.close()
             self.assertEqual(read, frames)
 
-    def test_frames_may_come_byte_by_byte(self):
+    def test_frames_may_arrive_byte_by_byte(self):
         self.start(split=True)
         with self.client() as robot:
             laser = self.laser(robot)
@@ -214,12 +214,12 @@ class Reading(LinkTest):
 
 
 class Sending(LinkTest):
-    def test_no_more_is_under_way_than_the_credit_allows(self):
+    def test_bytes_in_flight_stay_within_the_credit(self):
         credit = 700  # two scans
 
         def counts(link):
             link.greet(credit_bytes=credit)
-            under_way, pinged = 0, False
+            in_flight, pinged = 0, False
             while True:
                 frame, size = link.receive()
                 kind = frame.WhichOneof("body")
@@ -229,14 +229,14 @@ class Sending(LinkTest):
                     link.described.add(0)
                 if kind == "scan_batch":
                     link.take(frame.scan_batch)
-                    under_way += size
-                    if under_way > credit:
-                        link.server.faults.append(f"{under_way} bytes under way")
+                    in_flight += size
+                    if in_flight > credit:
+                        link.server.faults.append(f"{in_flight} bytes in flight")
                     if not pinged:  # frames before the pong were sent without waiting for an ack
                         link.send(ping={"nonce": 1})
                     pinged = True
                 if kind == "pong":
-                    under_way, pinged = 0, False
+                    in_flight, pinged = 0, False
                     link.ack(credit)
 
         self.start(counts)
@@ -244,7 +244,7 @@ class Sending(LinkTest):
             self.send(robot, self.laser(robot), 30)
         self.assert_stored(30)
 
-    def test_what_waited_goes_in_one_batch(self):
+    def test_waiting_scans_share_a_batch(self):
         all_sent = threading.Event()
 
         def waits(link):
@@ -258,7 +258,7 @@ class Sending(LinkTest):
         self.assert_stored(40)
         self.assertEqual(self.server.batches, [40])
 
-    def test_batches_keep_to_the_servers_limits(self):
+    def test_batches_respect_the_servers_limits(self):
         all_sent = threading.Event()
 
         def limits(link):
@@ -273,13 +273,13 @@ class Sending(LinkTest):
         self.assert_stored(40)
         self.assertEqual(max(self.server.batches), 7)
 
-    def test_a_scan_that_the_server_cannot_take_is_told(self):
+    def test_a_scan_beyond_the_servers_limits_is_reported(self):
         self.start(lambda link: (link.greet(limits=scanloom_client._messages["Limits"](beams_max=49)), link.serve()))
         robot = self.client()
         self.send(robot, self.laser(robot), 1)
         self.assertIn("50 beams", self.assert_fails("FRAME_TOO_LARGE", robot.flush).message)
 
-    def test_a_full_buffer_refuses_or_waits_for_room(self):
+    def test_a_full_buffer_refuses_or_waits(self):
         acknowledge = threading.Event()
 
         def hesitates(link):

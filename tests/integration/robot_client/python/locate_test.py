@@ -34,7 +34,7 @@ class Locate(LinkTest):
         return self.answers(correction={"T_map_odom": {"x": 1.0, "y": 2.0, "yaw": math.pi / 2}, "revision": 9,
                                         "explained": 0.9, "position_sigma": 0.01, "yaw_sigma": 0.02})
 
-    def test_it_is_what_the_server_answers_also_before_any_scan(self):
+    def test_it_returns_the_servers_answer_also_before_any_scan(self):
         self.start(self.found())
         with self.client() as robot:
             location = robot.locate(self.laser(robot, **ROUND), [[1.0, 2.0, math.inf, math.nan]] * 10)
@@ -58,13 +58,13 @@ class Locate(LinkTest):
         self.assertAlmostEqual(origin.y, 2.5)
         self.assertEqual((self.asked.near.x, self.asked.near.y, self.asked.radius), (3.0, 4.0, 5.0))
 
-    def test_scans_may_have_angles_of_their_own(self):
+    def test_scans_may_have_their_own_angles(self):
         self.start(self.found())
         with self.client() as robot:
             robot.locate(self.laser(robot, **ROUND), [[1.0] * 10, [2.0] * 10], angles=[[0.0] * 10, [math.pi] * 10])
         self.assertEqual(points_of(self.asked), [(1000, 0)] * 10 + [(-2000, 0)] * 10)
 
-    def test_of_too_many_points_some_are_taken_evenly(self):
+    def test_too_many_points_are_thinned_evenly(self):
         self.start(self.found())
         with self.client() as robot:
             laser = self.laser(robot, **ROUND)
@@ -74,7 +74,7 @@ class Locate(LinkTest):
         self.assertEqual(points[0], (1000, 0))
         self.assertGreater(max(map(abs, points[-1])), 2220)
 
-    def test_what_the_map_cannot_tell_is_raised(self):
+    def test_refusals_are_raised(self):
         for code, name in ((20, "AMBIGUOUS"), (21, "UNDETERMINED"), (22, "NOTHING_MAPPED")):
             with self.subTest(name):
                 self.start(self.answers(refusal={"code": code, "message": "why"}))
@@ -82,7 +82,7 @@ class Locate(LinkTest):
                     error = self.assert_fails(name, robot.locate, self.laser(robot, **ROUND), [[1.0] * 4] * 10)
                     self.assertEqual((error.message, error.retryable), ("why", False))
 
-    def test_a_server_that_does_not_know_the_question_is_called_an_earlier_one(self):
+    def test_a_server_without_this_request_is_reported_as_an_earlier_version(self):
         def knows_nothing(link):
             link.greet()
             link.serve(until=lambda frame: frame.WhichOneof("body") == "locate_request")
@@ -90,28 +90,28 @@ class Locate(LinkTest):
 
         self.start(knows_nothing)
         error = self.assert_fails("MALFORMED_FRAME", self.locate_once)
-        self.assertIn("; a server of an earlier version cannot tell a robot where it is: update it, or say",
+        self.assertIn("; a server of an earlier version cannot localize robots: update it, or state",
                       error.message)
 
     def locate_once(self):
         with self.client() as robot:
             robot.locate(self.laser(robot, **ROUND), [[1.0] * 4] * 10)
 
-    def test_wrong_arguments_are_refused_by_name(self):
+    def test_invalid_arguments_are_refused_by_name(self):
         self.start()
         with self.client() as robot:
             laser = self.laser(robot, **ROUND)
             sonar = robot.sonar(range_max=5.0, aperture=0.5, **{k: ROUND[k] for k in ("angle_min", "angle_increment",
                                                                                      "count")})
             scans = [[1.0] * 4] * 10
-            for expected, arguments in [("met something 0 times; 20 are needed", {"scans": []}),
-                                    ("met something 16 times", {"scans": scans[:4]}),
-                                    ("sonar is no laser", {"sensor": sonar}),
+            for expected, arguments in [("the scans have 0 points; at least 20 are needed", {"scans": []}),
+                                    ("the scans have 16 points", {"scans": scans[:4]}),
+                                    ("sonar is not a laser", {"sensor": sonar}),
                                     ("sensor is None", {"sensor": None}),
                                     ("odometry.x is nan", {"odometry": (math.nan, 0.0, 0.0)}),
-                                    ("angles are those of 1 scans; 10 are given", {"angles": [[0.0] * 4]}),
-                                    ("near and radius go together", {"near": (1.0, 2.0)}),
-                                    ("near and radius go together", {"radius": 2.0}),
+                                    ("angles has 1 scans; 10 are given", {"angles": [[0.0] * 4]}),
+                                    ("near and radius need each other", {"near": (1.0, 2.0)}),
+                                    ("near and radius need each other", {"radius": 2.0}),
                                     ("radius is 0.0", {"near": (1.0, 2.0), "radius": 0.0}),
                                     ("radius is 1001", {"near": (1.0, 2.0), "radius": 1001}),
                                     ("near is 3", {"near": 3, "radius": 1.0})]:

@@ -34,7 +34,7 @@ class Program(unittest.TestCase):
         self.addCleanup(server.stop)
         return server
 
-    def test_piped_scans_make_the_same_maps_as_sent_ones(self):
+    def test_piped_scans_give_the_same_maps_as_sent_ones(self):
         server = RunningServer(self.directory)
         self.addCleanup(server.stop)
         code, out, errors = self.stream(server.address, [line_of(i) for i in range(50)], *ANGLES, "--cell-size", "0.05")
@@ -66,10 +66,10 @@ class Program(unittest.TestCase):
         uniform = server.sensors[0].angles.uniform
         self.assertEqual((uniform.first, uniform.increment, uniform.count), (-math.pi, math.pi / 2, 4))
 
-    def test_a_wrong_line_is_named_and_skipped(self):
+    def test_an_invalid_line_is_reported_and_skipped(self):
         for expected, wrong in [("Expecting value", "hello"), ('"t", "pose" and "ranges" is needed', '{"t": 1}'),
                             ("pose has 2 numbers", '{"t": 1, "pose": [1, 2], "ranges": [1]}'),
-                            ("ranges is no list", '{"t": 1, "pose": [1, 2, 3], "ranges": 4}'),
+                            ("ranges is not a list", '{"t": 1, "pose": [1, 2, 3], "ranges": 4}'),
                             ("t is None", '{"t": null, "pose": [1, 2, 3], "ranges": [1]}')]:
             with self.subTest(expected):
                 server = self.fake()
@@ -82,20 +82,20 @@ class Program(unittest.TestCase):
                 self.assertEqual((summary["acknowledged"], summary["skipped"]), (3, 1))
                 self.assertEqual([scan.stamp for scan in server.stored], [0.0, 0.1, 0.1 * 3])
 
-    def test_wrong_lines_do_not_count_where_lines_are_streamed_again(self):
+    def test_invalid_lines_do_not_count_when_lines_are_streamed_again(self):
         server = self.fake()
         lines = [line_of(0), "hello", line_of(1), line_of(2)]
         self.stream(server.address, lines[:3], "--source", "lines")
         self.stream(server.address, lines, "--source", "lines")
         self.assertEqual([scan.stamp for scan in server.stored], [0.1 * i for i in range(3)])
 
-    def test_many_wrong_lines_are_counted(self):
+    def test_many_invalid_lines_are_counted(self):
         server = self.fake()
         code, out, errors = self.stream(server.address, ["hello"] * 50 + [line_of(0)])
         self.assertEqual((code, json.loads(out)["skipped"], len(server.stored)), (1, 50, 1))
         self.assertEqual(errors.count("\n"), 12)
 
-    def test_what_the_server_refuses_is_told_in_one_line(self):
+    def test_a_refusal_is_reported_in_one_line(self):
         def refuses(link):
             link.receive()
             link.send(error={"code": 14, "message": "no token was given"})
@@ -105,7 +105,7 @@ class Program(unittest.TestCase):
         self.assertEqual((code, errors), (1, "scanloom_client.py: no token was given\n"))
         self.assertEqual(json.loads(out)["error"], "no token was given")
 
-    def test_wrong_options_are_told_in_one_line(self):
+    def test_invalid_options_are_reported_in_one_line(self):
         for expected, options in [("--volume", ["--volume", "3"]), ("invalid float value: 'x'", ["--range-max", "x"]),
                               ("session is 'a b'", ["--session", "a b"]), ("No such file", ["--token-file", "absent"])]:
             with self.subTest(expected):

@@ -8,7 +8,7 @@ from programs import CLIENT, SOURCE, run, scanloom_client
 
 
 class Embedded(unittest.TestCase):
-    def test_the_messages_are_those_of_proto(self):
+    def test_the_messages_equal_those_of_proto(self):
         code, _, errors = run(sys.executable, CLIENT.with_name("embed_protocol.py"), "--check", "--protoc",
                               os.environ.get("PROTOC", "protoc"))
         self.assertEqual(code, 0, errors)

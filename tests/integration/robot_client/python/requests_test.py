@@ -32,7 +32,7 @@ class Requests(LinkTest):
             thread.start()
         return paths, threads
 
-    def test_replies_in_another_order_reach_who_asked(self):
+    def test_replies_in_another_order_reach_their_callers(self):
         def backwards(link):
             link.greet()
             for frame in reversed(collect(link, 3)):
@@ -47,7 +47,7 @@ class Requests(LinkTest):
         self.assertEqual({x: path.points[-1] for x, path in paths.items()}, {x: (x, 1.0) for x in (1.0, 2.0, 3.0)})
         self.assertEqual(paths[1.0].revision, 5)
 
-    def test_no_more_than_four_are_under_way(self):
+    def test_at_most_four_are_in_flight(self):
         four_came, fifth_was_tried = threading.Event(), threading.Event()
 
         def counts(link):
@@ -76,7 +76,7 @@ class Requests(LinkTest):
         self.assertEqual(sorted(paths), [1.0, 2.0, 3.0, 4.0])
         self.assertEqual(self.server.faults, [])
 
-    def test_what_was_asked_on_a_broken_link_is_asked_again(self):
+    def test_requests_of_a_broken_link_are_sent_again(self):
         def answers(link):
             link.greet()
             reply_plan(link, collect(link, 1)[0].plan_request)
@@ -86,7 +86,7 @@ class Requests(LinkTest):
         with self.client() as robot:
             self.assertEqual(robot.plan((2.0, 1.0)).points, [(0.0, 0.0), (2.0, 1.0)])
 
-    def test_a_refusal_is_raised_and_the_link_goes_on(self):
+    def test_a_refusal_is_raised_and_the_link_continues(self):
         def refuses(link):
             link.greet()
             id = collect(link, 1)[0].plan_request.id
@@ -101,7 +101,7 @@ class Requests(LinkTest):
         self.assert_stored(2)
         self.assertEqual(self.server.links, 1)
 
-    def test_a_reply_that_comes_too_late_disturbs_nothing(self):
+    def test_a_late_reply_is_ignored(self):
         asked_twice = threading.Event()
 
         def is_late(link):
@@ -141,7 +141,7 @@ class Requests(LinkTest):
         with self.client() as robot:
             self.assertEqual(robot.plan((2.0, 1.0)).points[-1], (2.0, 1.0))
 
-    def test_what_was_sent_before_is_in_the_maps_first(self):
+    def test_requests_wait_until_earlier_scans_are_applied(self):
         order = []
 
         def notes(link):
@@ -169,7 +169,7 @@ class Requests(LinkTest):
             with self.subTest(wrong=str(wrong)[:40]), self.assertRaisesRegex(ValueError, "region"):
                 scanloom_client._region(wrong)
 
-    def test_wrong_arguments_are_refused_by_name(self):
+    def test_invalid_arguments_are_refused_by_name(self):
         self.start()
         with self.client() as robot:
             for expected, call, arguments in [("goal is None", robot.plan, {"goal": None}),
@@ -179,7 +179,7 @@ class Requests(LinkTest):
                 with self.subTest(expected), self.assertRaisesRegex(ValueError, expected):
                     call(**arguments)
 
-    def test_options_of_requests_are_sent_as_given(self):
+    def test_options_of_requests_are_sent_unchanged(self):
         asked = []
 
         def notes(link):

@@ -74,7 +74,7 @@ class Maps(ServerTest):
         self.assertGreater(len(sonar), 2)
         self.assertEqual(len(occupancy), 1)
 
-    def test_a_mounted_laser_with_angles_one_by_one_maps_what_it_would_in_the_middle(self):
+    def test_a_mounted_laser_with_listed_angles_gives_the_map_of_a_centred_one(self):
         with self.client("middle", cell_size=0.1) as robot:
             robot.send(half_turn_laser(robot), square_room(0.0), pose=(0.0, 0.0, 0.0), stamp=0.0)
         with self.client("mounted", cell_size=0.1) as robot:
@@ -84,7 +84,7 @@ class Maps(ServerTest):
         middle, mounted = (self.cells(session, "classification") for session in ("middle", "mounted"))
         self.assertEqual(middle, mounted)
 
-    def test_ways_goals_and_coverage_are_found(self):
+    def test_paths_goals_and_coverage_are_found(self):
         with self.client("room", cell_size=0.05, body_radius=0.15) as robot:
             laser = half_turn_laser(robot)
             robot.send(laser, square_room(0.0), pose=(0.0, 0.0, 0.0), stamp=0.0)
@@ -103,7 +103,7 @@ class Maps(ServerTest):
             self.assertAlmostEqual(coverage.free_area, 4.0, delta=0.2)
             self.assertAlmostEqual(coverage.covered_area, coverage.free_area, delta=0.1)
 
-    def test_settings_other_than_the_sessions_are_refused(self):
+    def test_settings_that_differ_from_the_sessions_are_refused(self):
         self.client("room", cell_size=0.05).close()
         self.assert_fails("SESSION_CONFLICT", self.client("room", cell_size=0.1).close)
 
@@ -114,7 +114,7 @@ class Maps(ServerTest):
 
 
 class SameAsTheRobotProgram(ServerTest):
-    def test_a_carmen_file_makes_the_same_maps_whoever_sends_it(self):
+    def test_a_carmen_file_gives_the_same_maps_from_every_client(self):
         log = self.directory / "log.clf"
         log.write_text("".join(carmen_lines(200)))
         code, _, errors = run(PROGRAMS / "scanloom-robot", "--server", self.server.address, "--session", "replayed",
@@ -168,7 +168,7 @@ class Killed(ServerTest):
         self.server.kill()
         self.server = RunningServer(self.directory, self.server.robot_port, self.server.http_port)
 
-    def test_nothing_is_lost_and_nothing_comes_twice(self):
+    def test_no_scan_is_lost_or_duplicated(self):
         with self.client("undisturbed", cell_size=0.05) as robot:
             self.stream(robot)
 

@@ -25,7 +25,7 @@ class Backoff(unittest.TestCase):
     def test_waits_double_up_to_the_longest(self):
         self.assertEqual(self.waits(1.0, 5)[0], [0.2, 0.4, 0.8, 1.0, 1.0])
 
-    def test_up_to_half_of_a_wait_is_left_out(self):
+    def test_waits_are_shortened_randomly_by_up_to_half(self):
         self.assertEqual(self.waits(0.0, 5)[0], [0.1, 0.2, 0.4, 0.5, 0.5])
 
     def test_after_progress_waits_are_short_again(self):
@@ -56,32 +56,32 @@ class Patience(unittest.TestCase):
         self.conversation.receive(frame, now)
 
     def test_it_is_limited_until_the_first_welcome(self):
-        self.assertEqual(self.conversation.patience_ends(), 10.0)
+        self.assertEqual(self.conversation.progress_deadline(), 10.0)
 
     def test_it_is_endless_while_nothing_waits(self):
         self.welcome(5.0)
-        self.assertEqual(self.conversation.patience_ends(), math.inf)
+        self.assertEqual(self.conversation.progress_deadline(), math.inf)
 
-    def test_it_begins_with_the_first_scan_that_waits(self):
+    def test_it_starts_with_the_first_waiting_scan(self):
         self.welcome(5.0)
         self.conversation.add(self.sensor, b"scan", 1000.0)
         self.conversation.add(self.sensor, b"scan", 1004.0)
-        self.assertEqual(self.conversation.patience_ends(), 1010.0)
+        self.assertEqual(self.conversation.progress_deadline(), 1010.0)
 
-    def test_it_begins_again_with_each_acknowledgement(self):
+    def test_it_restarts_with_each_acknowledgement(self):
         self.welcome(5.0)
         for _ in range(2):
             self.conversation.add(self.sensor, scanloom_client._Scan().SerializeToString(), 1000.0)
         while self.conversation.next_frame(1000.0):
             pass
         self.receive(1007.0, "ack", durable_seq=1, credit_bytes=1000)
-        self.assertEqual(self.conversation.patience_ends(), 1017.0)
+        self.assertEqual(self.conversation.progress_deadline(), 1017.0)
         self.receive(1008.0, "ack", durable_seq=1, credit_bytes=1000)
-        self.assertEqual(self.conversation.patience_ends(), 1017.0)
+        self.assertEqual(self.conversation.progress_deadline(), 1017.0)
         self.receive(1009.0, "ack", durable_seq=2, credit_bytes=1000)
-        self.assertEqual(self.conversation.patience_ends(), math.inf)
+        self.assertEqual(self.conversation.progress_deadline(), math.inf)
 
-    def test_it_ends_when_links_are_replaced_again_and_again(self):
+    def test_it_ends_after_repeated_replacements(self):
         for time, may_pass in [(5.0, True), (70.0, True), (71.0, True), (72.0, False)]:
             self.welcome(time)
             with self.assertRaises(scanloom_client.ScanloomError) as raised:
@@ -110,13 +110,13 @@ class Silence(LinkTest):
             self.send(robot, self.laser(robot), 3)
         self.assert_stored(3)
 
-    def test_a_hello_that_stays_unanswered_is_said_again(self):
+    def test_an_unanswered_hello_is_sent_again(self):
         self.start(lambda link: link.serve(), well)
         with self.client(timing={"welcome": 0.02}) as robot:
             self.send(robot, self.laser(robot), 3)
         self.assert_stored(3)
 
-    def test_a_server_that_does_not_close_after_the_goodbye_is_left(self):
+    def test_a_server_that_does_not_close_after_the_goodbye_is_disconnected(self):
         let_go = threading.Event()
 
         def stays(link):
@@ -131,7 +131,7 @@ class Silence(LinkTest):
 
 
 class GivingUp(LinkTest):
-    def test_a_server_that_is_not_there_is_given_up_on(self):
+    def test_an_unreachable_server_causes_a_timeout(self):
         with socket.create_server(("127.0.0.1", 0)) as free:
             address = "127.0.0.1:%d" % free.getsockname()[1]
         timing = scanloom_client.Timing(give_up_after=0.02, backoff_first=0.001)
@@ -140,13 +140,13 @@ class GivingUp(LinkTest):
         self.assertIn(f"cannot connect to {address}", error.message)
         self.assertIn("gave up after 0.02 s", error.message)
 
-    def test_a_server_that_acknowledges_nothing_is_given_up_on(self):
+    def test_a_server_without_acknowledgements_causes_a_timeout(self):
         self.start(is_silent)
         robot = self.client(timing={"give_up_after": 0.02, "silence_max": math.inf})
         self.send(robot, self.laser(robot), 1)
         self.assertIn("gave up after 0.02 s", self.assert_fails("TIMEOUT", robot.flush).message)
 
-    def test_flush_and_close_wait_no_longer_than_they_are_told(self):
+    def test_flush_and_close_respect_their_timeout(self):
         self.start(is_silent)
         robot = self.client()
         laser = self.laser(robot)
@@ -156,7 +156,7 @@ class GivingUp(LinkTest):
         self.assert_fails("CLOSED", robot.flush)
         self.assert_fails("CLOSED", self.send, robot, laser, 1)
 
-    def test_what_failed_in_the_block_is_told_and_its_scans_are_stored_all_the_same(self):
+    def test_an_exception_in_the_block_is_raised_after_its_scans_are_stored(self):
         self.start()
         with self.assertRaises(ZeroDivisionError):
             with self.client() as robot:
@@ -164,7 +164,7 @@ class GivingUp(LinkTest):
                 raise ZeroDivisionError
         self.assert_stored(3)
 
-    def test_a_closed_client_takes_no_more(self):
+    def test_a_closed_client_accepts_no_scans(self):
         self.start()
         with self.client() as robot:
             laser = self.laser(robot)
@@ -174,7 +174,7 @@ class GivingUp(LinkTest):
 
 
 class Failing(LinkTest):
-    def test_what_a_block_has_raised_is_not_told_once_more(self):
+    def test_an_error_raised_in_the_block_is_not_logged_again(self):
         def refuses(link):
             link.receive()
             link.send(error={"code": 14, "message": "no token was given"})

@@ -17,10 +17,10 @@ class Millimetres(unittest.TestCase):
         self.assert_rounds({1.0: 1000, 1.2344: 1234, 1.2346: 1235, 81.83: 81830, 2: 2000})
         self.assert_rounds({0.0004: 0, 0.0005: 1, 0.0025: 3})
 
-    def test_what_is_no_length_is_invalid(self):
+    def test_values_that_are_no_length_are_invalid(self):
         self.assert_rounds({0.0: 0, -1.0: 0, -math.inf: 0, math.nan: 0})
 
-    def test_what_is_too_long_for_millimetres_is_no_return(self):
+    def test_values_beyond_the_range_of_millimetres_have_no_return(self):
         self.assert_rounds({4294967.294: 4294967294})
         self.assert_rounds(dict.fromkeys((4294967.295, 5e6, 1e300, math.inf), NO_RETURN))
 
@@ -34,7 +34,7 @@ class Fields(LinkTest):
             robot.send(laser, ranges, **{"pose": (1.0, 2.0, 3.0), "stamp": 4.5, **options})
         return self.server.stored[0]
 
-    def test_all_that_is_given_arrives(self):
+    def test_all_given_values_arrive(self):
         scan = self.sent([1.0, math.inf, math.nan], odometry=(4.0, 5.0, 6.0), intensities=[1.0, 255, 0],
                          angles=[0.1, 0.3, 0.2], begins_map=True)
         self.assertEqual((scan.pose.x, scan.pose.y, scan.pose.yaw, scan.stamp), (1.0, 2.0, 3.0, 4.5))
@@ -44,15 +44,15 @@ class Fields(LinkTest):
         self.assertEqual(list(scan.angles.explicit.angles), [0.1, 0.3, 0.2])
         self.assertTrue(scan.begins_map)
 
-    def test_what_is_not_given_is_absent(self):
+    def test_missing_values_are_absent(self):
         scan = self.sent([1.0], pose=(0, 0, 0))
         self.assertTrue(scan.HasField("pose"))
         self.assertFalse(scan.HasField("odometry") or scan.HasField("angles") or scan.intensities or scan.begins_map)
 
-    def test_arrays_are_taken_as_lists_are(self):
+    def test_arrays_are_accepted_like_lists(self):
         self.assertEqual(list(self.sent(array.array("f", [1.5, 2.5])).ranges), [1500, 2500])
 
-    def test_a_hello_says_who_it_is(self):
+    def test_a_hello_names_the_program(self):
         self.start()
         with self.client(cell_size=0.1, token="secret", source="recording", body_radius=0.2):
             pass
@@ -62,7 +62,7 @@ class Fields(LinkTest):
         self.assertEqual(hello.create.cell_size, 0.1)
         self.assertTrue(hello.client.startswith("scanloom_client.py "))
 
-    def test_a_session_is_made_also_without_a_cell_size(self):
+    def test_a_session_is_created_also_without_a_cell_size(self):
         self.start()
         with self.client():
             pass
@@ -71,7 +71,7 @@ class Fields(LinkTest):
 
 
 class Refused(LinkTest):
-    def test_scans_that_no_server_takes_are_refused_by_name_and_disturb_nothing(self):
+    def test_invalid_scans_are_refused_by_name(self):
         self.start()
         with self.client() as robot:
             laser = self.laser(robot)
@@ -81,7 +81,7 @@ class Refused(LinkTest):
                     ("ranges has 0 beams", {"ranges": []}),
                     ("ranges has 4097 beams", {"ranges": [1.0] * 4097}),
                     ("more than a full turn", {"ranges": [1.0] * 700}),
-                    ("ranges holds something that is no number", {"ranges": ["1", 2.0]}),
+                    ("ranges contains an invalid number", {"ranges": ["1", 2.0]}),
                     ("for 2 angles", {"sensor": fixed, "ranges": [1.0]}),
                     ("for 3 angles", {"angles": [0.0, 0.1, 0.2]}),
                     ("an angle is nan", {"angles": [0.0, math.nan]}),
@@ -113,7 +113,7 @@ class Refused(LinkTest):
             robot.send(sensor=laser, ranges=[1.0] * 360, pose=(0.0, 0.0, 0.0), stamp=0.0)
         self.assertEqual(len(self.server.stored), 1)
 
-    def test_sensors_that_make_no_sense_are_refused_by_name(self):
+    def test_invalid_sensors_are_refused_by_name(self):
         self.start()
         robot = self.client()
         for expected, wrong in [
@@ -145,7 +145,7 @@ class Refused(LinkTest):
             with self.assertRaisesRegex(ValueError, "not a sensor of this client"):
                 self.send(other, stranger, 1)
 
-    def test_names_and_addresses_that_cannot_be_are_refused(self):
+    def test_invalid_names_and_addresses_are_refused(self):
         for expected, wrong in [("session is 'a b'", {"session": "a b"}), ("robot is ''", {"robot": ""}),
                             ("source", {"source": "s" * 65}), ("HOST:PORT", {"server": "localhost"}),
                             ("HOST:PORT", {"server": "localhost:0"}), ("cell_size is nan", {"cell_size": math.nan}),
@@ -157,7 +157,7 @@ class Refused(LinkTest):
             with self.subTest(expected), self.assertRaisesRegex(ValueError, expected):
                 scanloom_client.Client(**{"server": "127.0.0.1:1", "session": "s", "robot": "r", **wrong})
 
-    def test_addresses_may_be_of_version_6(self):
+    def test_addresses_may_be_ipv6(self):
         self.assertEqual(scanloom_client._split_address("[::1]:7447"), ("::1", 7447))
 
 

@@ -172,7 +172,7 @@ TEST_F(PreparedLd06, WhatAsksWhereItIsIsLiveWhateverItIs) {
         EXPECT_FALSE(prepared->source);
         EXPECT_EQ(prepared->fingerprint, "") << "its scans depend on what it is told";
         EXPECT_EQ(prepared->live->can_wait(), input == capture());
-        EXPECT_THAT(prepared->remarks(), HasSubstr("carried 0 times, 0 turns while carried or not located"));
+        EXPECT_THAT(prepared->remarks(), HasSubstr("carried 0 times, 0 turns while carried or not localized"));
     }
 }
 

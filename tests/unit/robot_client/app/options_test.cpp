@@ -208,7 +208,7 @@ TEST_F(Options, EachMistakeIsOneLineAndAUsageError) {
     const std::vector<std::pair<std::vector<std::string>, std::string>> mistakes{
         {{}, "say what to stream"},
         {{"--session", "s", "--robot", "r"},
-         "say what to stream: replay FILE, sonar MEASUREMENTS POSES, ld06 INPUT, or simulate; or ask for the truth;"},
+         "name a source: replay FILE, sonar MEASUREMENTS POSES, ld06 INPUT, or simulate; or the command truth;"},
         {{"simulate", "--robot", "r"}, "--session is required"},
         {{"simulate", "--session", "a/b", "--robot", "r"}, "'a/b' is not a name"},
         {{"replay", "--session", "s", "--robot", "r"}, "name the FILE"},

@@ -27,7 +27,7 @@ TEST(ProgressText, TellsWhatWaitsInTheSpoolWhatIsLostAndWhatTheSourceRemarks) {
     status.is_linked = true;
     status.dropped = 12;
     EXPECT_EQ(progress_text(status, std::nullopt, 60.0, "2 damaged packets"),
-              "600 scans stored, 60 a second, 4300 waiting, 12 DROPPED for want of room, 2 damaged packets");
+              "600 scans stored, 60 a second, 4300 waiting, 12 DROPPED for lack of space, 2 damaged packets");
 }
 
 TEST(RecentRate, IsThatOfTheLastTenSeconds) {

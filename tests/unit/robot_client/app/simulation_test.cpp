@@ -68,8 +68,8 @@ TEST(Simulation, WaypointsWhereNoRobotCanBeAreToldWithTheReason) {
     }
     EXPECT_THAT(source->remarks(),
                 testing::StartsWith("waypoints: 0 of 3 reached, 3 given up: (40, 0) outside the world"));
-    EXPECT_THAT(source->remarks(), testing::HasSubstr(") inside what stands there, ("));
-    EXPECT_THAT(source->remarks(), testing::EndsWith(") too near to what stands there"));
+    EXPECT_THAT(source->remarks(), testing::HasSubstr(") inside an obstacle, ("));
+    EXPECT_THAT(source->remarks(), testing::EndsWith(") too close to an obstacle"));
 }
 
 TEST(Simulation, ALimitEndsADriveThatWouldEndLater) {

@@ -20,9 +20,9 @@ struct Exploring {
     /// Runs until the robot requests a goal.
     /// @return whether it does so within `seconds`
     bool requests_goal_within(double seconds) {
-        for (int n = 0; n < static_cast<int>(seconds / kScanPeriod) && !explore->is_asking(); ++n)
+        for (int n = 0; n < static_cast<int>(seconds / kScanPeriod) && !explore->needs_goal(); ++n)
             driven.run(kScanPeriod * 1.5);
-        return explore->is_asking();
+        return explore->needs_goal();
     }
 
     [[nodiscard]] const Pose2& pose() const { return driven.simulator().pose(); }
@@ -33,7 +33,7 @@ struct Exploring {
 
 TEST(Explore, TurnsOnceBeforeTheFirstRequest) {
     Exploring robot(walled({}));
-    EXPECT_FALSE(robot.explore->is_asking());
+    EXPECT_FALSE(robot.explore->needs_goal());
     EXPECT_FALSE(robot.requests_goal_within(3.5));
     EXPECT_TRUE(robot.requests_goal_within(2.0));
     EXPECT_EQ(robot.driven.trajectory().back(), (Point2{-2.0, 0.0}));
@@ -43,7 +43,7 @@ TEST(Explore, FollowsThePathAndFacesTheTargetBeforeTheNextRequest) {
     Exploring robot(walled({}));
     ASSERT_TRUE(robot.requests_goal_within(6.0));
     robot.explore->go({{-2.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}}, {-1.0, 1.0});
-    EXPECT_FALSE(robot.explore->is_asking());
+    EXPECT_FALSE(robot.explore->needs_goal());
     ASSERT_TRUE(robot.requests_goal_within(30.0));
     EXPECT_LT(std::hypot(robot.pose().x - 1.0, robot.pose().y - 1.0), 0.05);
     EXPECT_LT(std::abs(normalize_angle(robot.pose().yaw - std::numbers::pi)), 0.05);

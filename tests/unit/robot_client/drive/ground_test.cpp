@@ -81,7 +81,7 @@ TEST(GroundPaths, PathLeadsThroughTheGapAndFitsEverywhere) {
     const Ground ground(drawn_plan(kTwoRooms, 0.1), 0.05);
     const Point2 from{0.15, 0.15};
     const Point2 to{0.75, 0.55};
-    const auto path = find_way(ground, from, to);
+    const auto path = find_path(ground, from, to);
     ASSERT_TRUE(path);
     EXPECT_EQ(path->front(), from);
     EXPECT_EQ(path->back(), to);
@@ -91,20 +91,20 @@ TEST(GroundPaths, PathLeadsThroughTheGapAndFitsEverywhere) {
 
 TEST(GroundPaths, PathInOpenSpaceIsStraight) {
     const Ground ground(drawn_plan(kTwoRooms, 0.1), 0.05);
-    EXPECT_EQ(find_way(ground, {0.15, 0.15}, {0.35, 0.55}), (std::vector<Point2>{{0.15, 0.15}, {0.35, 0.55}}));
+    EXPECT_EQ(find_path(ground, {0.15, 0.15}, {0.35, 0.55}), (std::vector<Point2>{{0.15, 0.15}, {0.35, 0.55}}));
 }
 
 TEST(GroundPaths, NoPathWithoutAGap) {
     const Ground ground(drawn_plan(kTwoRooms, 0.1), 0.06);
-    EXPECT_TRUE(find_way(ground, {0.25, 0.25}, {0.25, 0.45}));
-    EXPECT_FALSE(find_way(ground, {0.25, 0.25}, {0.65, 0.25}));
-    EXPECT_FALSE(find_way(ground, {0.25, 0.25}, {0.15, 0.15})) << "the body does not fit at the goal";
-    EXPECT_FALSE(find_way(ground, {5.0, 5.0}, {0.25, 0.25})) << "the start is far outside the plan";
+    EXPECT_TRUE(find_path(ground, {0.25, 0.25}, {0.25, 0.45}));
+    EXPECT_FALSE(find_path(ground, {0.25, 0.25}, {0.65, 0.25}));
+    EXPECT_FALSE(find_path(ground, {0.25, 0.25}, {0.15, 0.15})) << "the body does not fit at the goal";
+    EXPECT_FALSE(find_path(ground, {5.0, 5.0}, {0.25, 0.25})) << "the start is far outside the plan";
 }
 
 TEST(GroundPaths, StartTooNearToAWallHasAPath) {
     const Ground ground(drawn_plan(kTwoRooms, 0.1), 0.06);
-    const auto path = find_way(ground, {0.14, 0.14}, {0.25, 0.45});
+    const auto path = find_path(ground, {0.14, 0.14}, {0.25, 0.45});
     ASSERT_TRUE(path);
     EXPECT_EQ(path->front(), (Point2{0.14, 0.14}));
 }
@@ -112,8 +112,8 @@ TEST(GroundPaths, StartTooNearToAWallHasAPath) {
 TEST(GroundPaths, NearestTargetIsThatWithTheShortestPath) {
     const Ground ground(drawn_plan(kTwoRooms, 0.1), 0.05);
     const std::vector<Point2> targets{{0.55, 0.15}, {0.15, 0.55}}; // the first target is nearer, but behind the wall
-    EXPECT_EQ(nearest_by_way(ground, {0.35, 0.15}, targets), 1U);
-    EXPECT_EQ(nearest_by_way(ground, {0.35, 0.15}, std::vector<Point2>{}), std::nullopt);
+    EXPECT_EQ(nearest_by_path(ground, {0.35, 0.15}, targets), 1U);
+    EXPECT_EQ(nearest_by_path(ground, {0.35, 0.15}, std::vector<Point2>{}), std::nullopt);
 }
 
 TEST(CoverageMeter, CountsCoveredPartOfTheReachableArea) {

@@ -1,7 +1,7 @@
 #include "robot_client/drive/steering.hpp"
 
 #include "robot_client/drive/body.hpp"
-#include "robot_client/drive/way_ahead.hpp"
+#include "robot_client/drive/free_ahead.hpp"
 #include "tests/support/angles.hpp"
 
 #include <gtest/gtest.h>

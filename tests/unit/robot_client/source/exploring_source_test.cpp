@@ -136,9 +136,9 @@ TEST_F(ExploringSourceTest, LimitsIncludeEarlierRuns) {
 
 TEST_F(ExploringSourceTest, StopDuringARequestEndsTheSource) {
     auto source = make();
-    bool is_asking = false;
+    bool needs_goal = false;
     source.ask_with([&]() -> asio::awaitable<Result<NextStop>> {
-        is_asking = true;
+        needs_goal = true;
         asio::steady_timer never(co_await asio::this_coro::executor, asio::steady_timer::time_point::max());
         co_await never.async_wait(asio::use_awaitable);
         co_return NextStop{};
@@ -155,7 +155,7 @@ TEST_F(ExploringSourceTest, StopDuringARequestEndsTheSource) {
             }
         },
         asio::detached);
-    while (!is_asking) io_.run_one();
+    while (!needs_goal) io_.run_one();
     source.stop();
     io_.run();
     ASSERT_TRUE(last && *last);

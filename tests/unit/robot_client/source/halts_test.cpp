@@ -1,4 +1,4 @@
-#include "robot_client/source/halts.hpp"
+#include "robot_client/source/stationary_phases.hpp"
 
 #include "tests/unit/robot_client/source/carried_lidar.hpp"
 
@@ -22,8 +22,8 @@ class HaltsTest : public testing::Test {
 protected:
     void add(std::vector<Observation> turns) {
         for (auto& turn : turns) {
-            EXPECT_FALSE(halts_.question()) << "the question must be answered before the next turn";
-            halts_.add(std::move(turn));
+            EXPECT_FALSE(phases_.question()) << "the question must be answered before the next turn";
+            phases_.add(std::move(turn));
         }
     }
     void stand(const Pose2& place, std::size_t turns) { add(lidar_.turns_at(place, turns)); }
@@ -31,19 +31,19 @@ protected:
 
     std::vector<Scan> given() {
         std::vector<Scan> scans;
-        while (auto turn = halts_.take()) scans.push_back(std::move(turn->scan));
+        while (auto turn = phases_.take()) scans.push_back(std::move(turn->scan));
         return scans;
     }
 
     CarriedLidar lidar_;
-    Halts halts_{kFirstPlace};
+    StationaryPhases phases_{kFirstPlace};
 };
 
 TEST_F(HaltsTest, QuestionFollowsTenSimilarTurns) {
     stand(kHere, 9);
-    EXPECT_FALSE(halts_.question());
+    EXPECT_FALSE(phases_.question());
     stand(kHere, 1);
-    const auto question = halts_.question();
+    const auto question = phases_.question();
     ASSERT_TRUE(question);
     EXPECT_EQ(question->points().size(), 3600U);
     EXPECT_EQ(question->from(), (Point2{0.0, 0.0}));
@@ -52,8 +52,8 @@ TEST_F(HaltsTest, QuestionFollowsTenSimilarTurns) {
 
 TEST_F(HaltsTest, LocatedTurnsHaveTheLocatedPose) {
     stand(kHere, 10);
-    halts_.answer(kLocated);
-    EXPECT_THAT(halts_.take_news(),
+    phases_.answer(kLocated);
+    EXPECT_THAT(phases_.take_messages(),
                 ElementsAre("located at (3.00, 4.00), yaw 1.00: 93 % of what the lidar sees is in the "
                             "map; known within 6.0 cm and 1.72 degrees"));
     auto scans = given();
@@ -65,58 +65,58 @@ TEST_F(HaltsTest, LocatedTurnsHaveTheLocatedPose) {
     }
     stand(kHere, 5);
     EXPECT_EQ(given().size(), 5U);
-    halts_.end();
+    phases_.end();
     scans = given();
     ASSERT_EQ(scans.size(), 3U) << "the lidar was stationary until the end";
     EXPECT_NEAR(scans.back().stamp, 1001.4, 1e-9);
-    EXPECT_EQ(halts_.given(), 15U);
-    EXPECT_EQ(halts_.dropped(), 0U);
-    EXPECT_EQ(halts_.carried(), 0U);
+    EXPECT_EQ(phases_.given(), 15U);
+    EXPECT_EQ(phases_.dropped(), 0U);
+    EXPECT_EQ(phases_.carried(), 0U);
 }
 
 TEST_F(HaltsTest, TurnsOfAMovementAndJustBeforeAreDropped) {
     stand(kHere, 10);
-    halts_.answer(kLocated);
+    phases_.answer(kLocated);
     stand(kHere, 10);
-    static_cast<void>(halts_.take_news());
+    static_cast<void>(phases_.take_messages());
     const std::size_t before = given().size();
     walk(kHere, kThere, 30);
-    EXPECT_THAT(halts_.take_news(),
+    EXPECT_THAT(phases_.take_messages(),
                 ElementsAre(HasSubstr("the lidar is moved: nothing is sent until it stands again")));
     EXPECT_THAT(given(), IsEmpty());
-    EXPECT_EQ(halts_.carried(), 1U);
+    EXPECT_EQ(phases_.carried(), 1U);
     stand(kThere, 9);
-    EXPECT_FALSE(halts_.question());
+    EXPECT_FALSE(phases_.question());
     stand(kThere, 1);
-    EXPECT_TRUE(halts_.question());
-    halts_.answer(Located{{5.0, 6.0, 0.0}, 0.9, 0.01, 0.01});
-    halts_.end();
+    EXPECT_TRUE(phases_.question());
+    phases_.answer(Located{{5.0, 6.0, 0.0}, 0.9, 0.01, 0.01});
+    phases_.end();
     const auto scans = given();
     EXPECT_EQ(scans.size(), 10U);
     EXPECT_EQ(scans.front().pose, (Pose2{5.0, 6.0, 0.0}));
     EXPECT_EQ(before, 17U);
-    EXPECT_EQ(halts_.dropped(), 3U + 30U);
+    EXPECT_EQ(phases_.dropped(), 3U + 30U);
 }
 
 TEST_F(HaltsTest, MovingLidarAsksNoQuestion) {
     walk(kHere, kThere, 40);
     walk(kThere, {2.0, 0.0, -1.0}, 40);
-    EXPECT_EQ(halts_.carried(), 0U) << "the lidar was never stationary";
-    EXPECT_THAT(halts_.take_news(), IsEmpty());
-    EXPECT_GE(halts_.dropped(), 75U);
+    EXPECT_EQ(phases_.carried(), 0U) << "the lidar was never stationary";
+    EXPECT_THAT(phases_.take_messages(), IsEmpty());
+    EXPECT_GE(phases_.dropped(), 75U);
 }
 
 TEST_F(HaltsTest, PassingPeopleDoNotEndAHalt) {
     stand(kHere, 10);
-    halts_.answer(kLocated);
+    phases_.answer(kLocated);
     for (int n = 0; n < 30; ++n) {
         const Point2 at{kHere.x + 0.6, kHere.y - 1.5 + 0.1 * n};
         lidar_.world().walkers = {{.loop = {at, {at.x, at.y + 1.0}}}};
         stand(kHere, 1);
     }
-    halts_.end();
+    phases_.end();
     EXPECT_EQ(given().size(), 40U);
-    EXPECT_EQ(halts_.carried(), 0U);
+    EXPECT_EQ(phases_.carried(), 0U);
 }
 
 TEST_F(HaltsTest, TurnsWithoutReadingsDoNotEndAHalt) {
@@ -128,13 +128,13 @@ TEST_F(HaltsTest, TurnsWithoutReadingsDoNotEndAHalt) {
     };
     covered();
     stand(kHere, 5);
-    EXPECT_TRUE(halts_.question());
-    halts_.answer(kLocated);
+    EXPECT_TRUE(phases_.question());
+    phases_.answer(kLocated);
     covered();
     stand(kHere, 3);
-    halts_.end();
+    phases_.end();
     EXPECT_EQ(given().size(), 13U);
-    EXPECT_EQ(halts_.dropped(), 6U);
+    EXPECT_EQ(phases_.dropped(), 6U);
 }
 
 TEST_F(HaltsTest, QuestionsAndPosesUseTheOdometryFrame) {
@@ -142,8 +142,8 @@ TEST_F(HaltsTest, QuestionsAndPosesUseTheOdometryFrame) {
     auto turns = lidar_.turns_at(kHere, 10);
     for (auto& turn : turns) turn.scan.pose = odometry;
     add(std::move(turns));
-    EXPECT_LT(norm(halts_.question()->from() - Point2{0.5, -0.25}), 1e-12);
-    halts_.answer(kLocated);
+    EXPECT_LT(norm(phases_.question()->from() - Point2{0.5, -0.25}), 1e-12);
+    phases_.answer(kLocated);
     EXPECT_EQ(given().front().pose, compose(kLocated.T_map_odom, odometry));
 }
 
@@ -152,9 +152,9 @@ TEST_F(HaltsTest, FirstHaltUsesTheGivenPoseInAnEmptyMap) {
     auto turns = lidar_.turns_at(kHere, 10);
     for (auto& turn : turns) turn.scan.pose = {5.0, 5.0, -2.0};
     add(std::move(turns));
-    halts_.answer(nothing);
+    phases_.answer(nothing);
     EXPECT_THAT(
-        halts_.take_news(),
+        phases_.take_messages(),
         ElementsAre("nothing is mapped yet: the lidar is taken to stand at (1.00, 2.00), yaw 0.50, and its next "
                     "places are found from there"));
     const auto scans = given();
@@ -163,48 +163,48 @@ TEST_F(HaltsTest, FirstHaltUsesTheGivenPoseInAnEmptyMap) {
     EXPECT_NEAR(scans[0].pose.y, kFirstPlace.y, 1e-12);
     EXPECT_NEAR(scans[0].pose.yaw, kFirstPlace.yaw, 1e-12);
     EXPECT_TRUE(std::ranges::all_of(scans, &Scan::begins_map)) << "the first scan may be dropped by a full spool";
-    EXPECT_FALSE(halts_.refusal());
+    EXPECT_FALSE(phases_.refusal());
 
     walk(kHere, kThere, 30);
     stand(kThere, 10);
-    static_cast<void>(halts_.take_news());
-    halts_.answer(nothing);
-    EXPECT_THAT(halts_.take_news(), ElementsAre(HasSubstr("; the pose that was given was that of the first place;")));
-    halts_.end();
+    static_cast<void>(phases_.take_messages());
+    phases_.answer(nothing);
+    EXPECT_THAT(phases_.take_messages(), ElementsAre(HasSubstr("; the given pose was that of the first place;")));
+    phases_.end();
     EXPECT_THAT(given(), IsEmpty()) << "only the first place begins the map";
 }
 
 TEST_F(HaltsTest, RefusedQuestionIsRepeatedAfterTenSeconds) {
     stand(kHere, 10);
-    halts_.answer(kRefusal);
-    EXPECT_EQ(halts_.refusal(), kRefusal);
+    phases_.answer(kRefusal);
+    EXPECT_EQ(phases_.refusal(), kRefusal);
     stand(kHere, 99); // until 9.9 s after the last turn of the question
-    EXPECT_EQ(halts_.dropped(), 10U + 89U);
+    EXPECT_EQ(phases_.dropped(), 10U + 89U);
     stand(kHere, 1);
-    ASSERT_TRUE(halts_.question());
-    halts_.answer(kLocated);
-    halts_.end();
+    ASSERT_TRUE(phases_.question());
+    phases_.answer(kLocated);
+    phases_.end();
     const auto scans = given();
     EXPECT_EQ(scans.size(), 10U);
     EXPECT_NEAR(scans.front().stamp, 1010.0, 1e-6) << "the scans are newer than those of the refused question";
-    EXPECT_EQ(halts_.carried(), 0U);
+    EXPECT_EQ(phases_.carried(), 0U);
 }
 
 TEST_F(HaltsTest, RefusedQuestionIsRepeatedAfterAClockStepBack) {
     stand(kHere, 10);
-    halts_.answer(kRefusal);
+    phases_.answer(kRefusal);
     lidar_.let_time_pass(-500.0);
     stand(kHere, 10);
-    EXPECT_TRUE(halts_.question());
+    EXPECT_TRUE(phases_.question());
 }
 
 TEST_F(HaltsTest, QuestionAtAnotherPlaceIsImmediate) {
     stand(kHere, 10);
-    halts_.answer(kRefusal);
+    phases_.answer(kRefusal);
     walk(kHere, kThere, 30);
     stand(kThere, 10);
-    EXPECT_TRUE(halts_.question());
-    EXPECT_EQ(halts_.carried(), 1U);
+    EXPECT_TRUE(phases_.question());
+    EXPECT_EQ(phases_.carried(), 1U);
 }
 
 TEST_F(HaltsTest, EachMessageIsReportedOnce) {
@@ -213,8 +213,8 @@ TEST_F(HaltsTest, EachMessageIsReportedOnce) {
     const auto ask = [&](const Error& refusal) {
         stand(kHere, 10);
         lidar_.let_time_pass(10.0);
-        halts_.answer(refusal);
-        return halts_.take_news();
+        phases_.answer(refusal);
+        return phases_.take_messages();
     };
     EXPECT_THAT(ask(kRefusal), ElementsAre(message));
     EXPECT_THAT(ask(kRefusal), IsEmpty());
@@ -222,7 +222,7 @@ TEST_F(HaltsTest, EachMessageIsReportedOnce) {
     EXPECT_THAT(ask(kRefusal), IsEmpty());
     walk(kHere, kThere, 30);
     walk(kThere, kHere, 30);
-    static_cast<void>(halts_.take_news());
+    static_cast<void>(phases_.take_messages());
     EXPECT_THAT(ask(kRefusal), ElementsAre(message));
 }
 

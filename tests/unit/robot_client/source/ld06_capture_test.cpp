@@ -66,7 +66,7 @@ TEST_F(Ld06Captures, UseThePoseAtTheMiddleOfTheTurn) {
     auto capture = Ld06Capture::open(file(sensor.next_bytes(400)), {}, straight_line(0.25, 0.75));
     ASSERT_TRUE(capture) << capture.error().message;
     EXPECT_EQ(capture->scan_count(), 5U);
-    EXPECT_EQ(capture->remarks(), "0 damaged packets, 9 turns, 4 scans without a pose passed over");
+    EXPECT_EQ(capture->remarks(), "0 damaged packets, 9 turns, 4 scans skipped without a pose");
     for (const auto& scan : scans_of(*capture)) EXPECT_DOUBLE_EQ(scan.pose.x, scan.stamp);
 }
 

@@ -97,7 +97,7 @@ TEST_F(Ld06LivePoses, ScanIsDroppedIfTheNewestPoseIsTooOld) {
     });
     EXPECT_THAT(next.error().message, HasSubstr("of 1 scans not one"));
     EXPECT_THAT(notes_, ElementsAre(HasSubstr("for a device t is Unix time")));
-    EXPECT_EQ(source_->remarks(), "0 damaged packets, 1 turn, 1 scan without a pose passed over");
+    EXPECT_EQ(source_->remarks(), "0 damaged packets, 1 turn, 1 scan skipped without a pose");
 }
 
 TEST_F(Ld06LivePoses, PosesOfAnotherClockAreReportedOnceAndEndWithAnError) {

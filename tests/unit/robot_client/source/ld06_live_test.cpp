@@ -64,7 +64,7 @@ TEST_F(Ld06Lives, HangUpFailsWithoutReopening) {
     (void)scan_of(source, [&] { sensor.send(one_turn()); });
     const auto next = next_of(source, [&] { sensor.hang_up(); });
     ASSERT_FALSE(next);
-    EXPECT_THAT(next.error().message, HasSubstr(sensor.device() + ": hung up; is it still plugged in?"));
+    EXPECT_THAT(next.error().message, HasSubstr(sensor.device() + ": disconnected; check the cable"));
     EXPECT_THAT(notes_, IsEmpty());
 }
 
@@ -83,7 +83,7 @@ TEST_F(Ld06Lives, MissingDeviceFailsAfterTheReopenPeriod) {
     });
     ASSERT_FALSE(next);
     EXPECT_THAT(next.error().message, HasSubstr("(tried again for 0.15 s)"));
-    EXPECT_THAT(notes_, ElementsAre(HasSubstr("hung up; is it still plugged in? Trying again for 0.15 s")));
+    EXPECT_THAT(notes_, ElementsAre(HasSubstr("disconnected; check the cable Trying again for 0.15 s")));
 }
 
 TEST_F(Ld06Lives, ReconnectedDeviceContinues) {

@@ -52,7 +52,7 @@ TEST_F(LineReaderTest, TruncatedGzipFileReportsReadableLines) {
     const std::string whole = gzip(noise(1000));
     const auto [lines, error] = read(std::string_view(whole).substr(0, whole.size() / 2));
     EXPECT_GT(lines, 300U) << "lines before the cut are read";
-    EXPECT_THAT(error, HasSubstr(path_.string() + ": the gzip data is damaged or cut short"));
+    EXPECT_THAT(error, HasSubstr(path_.string() + ": the gzip data is damaged or truncated"));
     EXPECT_THAT(error, HasSubstr(fmt::format("only its first {} lines (", lines)));
     EXPECT_THAT(error, HasSubstr("unpack those with zcat"));
 }
@@ -69,7 +69,7 @@ TEST_F(LineReaderTest, UnreadableFileReportsNoLineCount) {
     const std::string whole = bzip2(noise(100));
     const auto [lines, error] = read(std::string_view(whole).substr(0, whole.size() / 2));
     EXPECT_EQ(lines, 0U);
-    EXPECT_THAT(error, HasSubstr("the bzip2 data is damaged or cut short: nothing of it could be read"));
+    EXPECT_THAT(error, HasSubstr("the bzip2 data is damaged or truncated: nothing of it could be read"));
     EXPECT_THAT(error, Not(HasSubstr("line")));
 }
 
@@ -125,7 +125,7 @@ TEST_F(LineReaderTest, OtherBytesAfterCompressedDataAreDamage) {
                                         whole.substr(0, 2), whole.substr(0, 12)}) {
             const auto [lines, error] = read(whole + rest);
             EXPECT_EQ(lines, 100U) << "lines before the damage are read";
-            EXPECT_THAT(error, HasSubstr("data is damaged or cut short"));
+            EXPECT_THAT(error, HasSubstr("data is damaged or truncated"));
         }
     }
 }
@@ -136,7 +136,7 @@ TEST_F(LineReaderTest, ZerosInCompressedDataAreDamage) {
         for (const std::size_t kept : {3U, 12U, 5000U, static_cast<unsigned>(whole.size() - 10)}) {
             std::string zeroed = whole.substr(0, kept);
             zeroed.resize(whole.size() + 512, '\0'); // as after a power failure
-            EXPECT_THAT(read(zeroed).second, HasSubstr("data is damaged or cut short")) << kept;
+            EXPECT_THAT(read(zeroed).second, HasSubstr("data is damaged or truncated")) << kept;
         }
     }
 }

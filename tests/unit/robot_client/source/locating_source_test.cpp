@@ -54,7 +54,7 @@ private:
 
 class LocatingSourceTest : public testing::Test {
 protected:
-    LocatingSource::Tell record_messages() {
+    LocatingSource::Report record_messages() {
         return [this](const std::string& text) { messages_.push_back(text); };
     }
 
@@ -136,7 +136,7 @@ TEST_F(LocatingSourceTest, LocatedTurnsHaveTheLocatedPose) {
         EXPECT_EQ(poses[n], n < 17 ? (Pose2{1.0, 2.0, 0.5}) : second.T_map_odom) << n;
     }
     EXPECT_EQ(requests_, 2U);
-    EXPECT_EQ(source.remarks(), "carried 1 time, 33 turns while carried or not located");
+    EXPECT_EQ(source.remarks(), "carried 1 time, 33 turns while carried or not localized");
     EXPECT_THAT(messages_, ElementsAre(HasSubstr("taken to stand at (1.00, 2.00)"), HasSubstr("the lidar is moved"),
                                        HasSubstr("located at (7.00, 8.00)")));
 }
@@ -149,7 +149,7 @@ TEST_F(LocatingSourceTest, TurnsOfARefusedPlaceAreDropped) {
     EXPECT_EQ(outcome_.error(), (Error{kUnknownPlace.code, "no scan was sent: " + kUnknownPlace.message}));
     EXPECT_EQ(requests_, 2U);
     EXPECT_EQ(messages_.size(), 1U);
-    EXPECT_EQ(source.remarks(), "carried 0 times, 150 turns while carried or not located");
+    EXPECT_EQ(source.remarks(), "carried 0 times, 150 turns while carried or not localized");
 }
 
 TEST_F(LocatingSourceTest, RepeatsTheRequestIfTheServerIsOverloaded) {
@@ -159,8 +159,8 @@ TEST_F(LocatingSourceTest, RepeatsTheRequestIfTheServerIsOverloaded) {
     EXPECT_EQ(poses_of(source).size(), 20U);
     EXPECT_TRUE(outcome_);
     EXPECT_EQ(requests_, 4U);
-    EXPECT_THAT(messages_, ElementsAre(HasSubstr("the lidar is to stay; asking again"), HasSubstr("located at")));
-    EXPECT_EQ(source.remarks(), "carried 0 times, 0 turns while carried or not located");
+    EXPECT_THAT(messages_, ElementsAre(HasSubstr("keep the lidar in place; retrying"), HasSubstr("located at")));
+    EXPECT_EQ(source.remarks(), "carried 0 times, 0 turns while carried or not localized");
 }
 
 TEST_F(LocatingSourceTest, StopEndsTheWaitBeforeARetry) {

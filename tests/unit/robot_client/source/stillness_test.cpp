@@ -1,4 +1,4 @@
-#include "robot_client/source/stillness.hpp"
+#include "robot_client/source/stationary_detector.hpp"
 
 #include "robot_client/source/ld06_capture.hpp"
 #include "tests/support/angles.hpp"
@@ -12,19 +12,19 @@
 namespace scanloom::robot {
 namespace {
 
-using Verdict = Stillness::Verdict;
+using Verdict = StationaryDetector::Verdict;
 
-Stillness learnt(const std::vector<Observation>& turns) {
-    Stillness detection;
+StationaryDetector learnt(const std::vector<Observation>& turns) {
+    StationaryDetector detection;
     for (const auto& turn : turns) detection.learn(profile_of(turn.scan, *turn.sensor));
     return detection;
 }
 
-double changed(const Stillness& detection, const Observation& turn) {
+double changed(const StationaryDetector& detection, const Observation& turn) {
     return detection.changed_part(profile_of(turn.scan, *turn.sensor)).value_or(-1.0);
 }
 
-Verdict judged(const Stillness& detection, const Observation& turn) {
+Verdict judged(const StationaryDetector& detection, const Observation& turn) {
     return detection.judge(profile_of(turn.scan, *turn.sensor));
 }
 
@@ -71,8 +71,8 @@ TEST(StationaryDetection, StationarySensorIsStillAtAnyPlace) {
         CarriedLidar lidar(make());
         for (int place = 0; place < 20; ++place) {
             const Pose2 here = lidar.any_place();
-            Stillness detection;
-            for (const auto& turn : lidar.turns_at(here, Stillness::kTurnsMax)) {
+            StationaryDetector detection;
+            for (const auto& turn : lidar.turns_at(here, StationaryDetector::kTurnsMax)) {
                 EXPECT_EQ(judged(detection, turn), Verdict::kStill) << detection.turns() << " turns learnt";
                 detection.learn(profile_of(turn.scan, *turn.sensor));
             }
@@ -85,7 +85,7 @@ TEST(StationaryDetection, DetectsAMovementOfTenCentimetresInARoom) {
     CarriedLidar lidar;
     for (int place = 0; place < 20; ++place) {
         const Pose2 here = lidar.any_place();
-        const auto detection = learnt(lidar.turns_at(here, Stillness::kTurnsMax));
+        const auto detection = learnt(lidar.turns_at(here, StationaryDetector::kTurnsMax));
         for (const auto& move : moves_of(0.1)) {
             EXPECT_EQ(judged(detection, lidar.turn_at(compose(here, move))), Verdict::kMoved)
                 << here.x << " " << here.y << " by " << move.x << " " << move.y;
@@ -98,7 +98,7 @@ TEST(StationaryDetection, DetectsARotationOfFiveDegrees) {
         CarriedLidar lidar(make());
         for (int place = 0; place < 20; ++place) {
             const Pose2 here = lidar.any_place();
-            const auto detection = learnt(lidar.turns_at(here, Stillness::kTurnsMax));
+            const auto detection = learnt(lidar.turns_at(here, StationaryDetector::kTurnsMax));
             for (const double turn : {5.0, -5.0}) {
                 EXPECT_GT(changed(detection, lidar.turn_at(compose(here, {0, 0, turn * kDegree}))), 0.35)
                     << here.x << " " << here.y;
@@ -124,7 +124,7 @@ TEST(StationaryDetection, IgnoresPeopleWalkingAround) {
     CarriedLidar lidar;
     for (int place = 0; place < 20; ++place) {
         const Pose2 here = lidar.any_place();
-        const auto detection = learnt(lidar.turns_at(here, Stillness::kTurnsMax));
+        const auto detection = learnt(lidar.turns_at(here, StationaryDetector::kTurnsMax));
         for (const auto& step : moves_of(0.5)) {
             const Point2 there{here.x + step.x, here.y + step.y};
             lidar.world().walkers = {{.loop = {there, {there.x + 1.0, there.y}}}};
@@ -144,7 +144,7 @@ TEST(StationaryDetection, IgnoresMissingReadings) {
         return turn;
     };
     std::vector<Observation> turns;
-    for (std::size_t n = 0; n < Stillness::kTurnsMax; ++n) turns.push_back(with_gaps(kHere));
+    for (std::size_t n = 0; n < StationaryDetector::kTurnsMax; ++n) turns.push_back(with_gaps(kHere));
     const auto detection = learnt(turns);
     for (int n = 0; n < 10; ++n) {
         EXPECT_EQ(judged(detection, with_gaps(kHere)), Verdict::kStill);
@@ -161,7 +161,7 @@ TEST(StationaryDetection, TooFewReadingsAreUnclear) {
     };
     EXPECT_EQ(judged({}, part_of_a_turn(30)), Verdict::kUnclear);
     EXPECT_EQ(judged({}, part_of_a_turn(40)), Verdict::kStill);
-    const auto detection = learnt(lidar.turns_at(kHere, Stillness::kTurnsMax));
+    const auto detection = learnt(lidar.turns_at(kHere, StationaryDetector::kTurnsMax));
     EXPECT_EQ(judged(detection, part_of_a_turn(0)), Verdict::kUnclear);
     EXPECT_EQ(judged(detection, part_of_a_turn(60)), Verdict::kUnclear);
     EXPECT_EQ(judged(detection, part_of_a_turn(80)), Verdict::kStill);
@@ -175,9 +175,9 @@ TEST(StationaryDetection, RealRecordingHasMarginOnBothSides) {
     auto capture = Ld06Capture::open(path, {}, Pose2{}).value();
     std::vector<Observation> turns;
     for (auto next = capture.next(); next && *next; next = capture.next()) turns.push_back(**next);
-    for (std::size_t first = 0; first + Stillness::kTurnsMax < turns.size(); first += 70) {
+    for (std::size_t first = 0; first + StationaryDetector::kTurnsMax < turns.size(); first += 70) {
         const auto begin = turns.begin() + static_cast<std::ptrdiff_t>(first);
-        const auto detection = learnt({begin, begin + Stillness::kTurnsMax});
+        const auto detection = learnt({begin, begin + StationaryDetector::kTurnsMax});
         for (std::size_t n = 0; n < turns.size(); ++n) {
             EXPECT_LE(changed(detection, turns[n]), 0.03);
             const bool is_part = turns[n].scan.ranges.size() < 440;

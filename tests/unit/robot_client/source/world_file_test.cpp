@@ -66,8 +66,8 @@ TEST_F(WorldFile, UnreadableFileIsRefusedByName) {
     const std::string rest = "resolution: 0.5\norigin: [0, 0, 0]\n";
     write("png.pgm", "\x89PNG\r\n\x1A\n");
     EXPECT_THAT(why(rest), HasSubstr("m.yaml: the map's yaml: image is missing"));
-    EXPECT_THAT(why("image: none.pgm\n" + rest), HasSubstr("none.pgm: there is no such file"));
-    EXPECT_THAT(why("image: images\n" + rest), HasSubstr("images: there is no such file"));
+    EXPECT_THAT(why("image: none.pgm\n" + rest), HasSubstr("none.pgm: no such file"));
+    EXPECT_THAT(why("image: images\n" + rest), HasSubstr("images: no such file"));
     EXPECT_THAT(why("image: png.pgm\n" + rest), HasSubstr("png.pgm: the map's image is not a PGM (P2 or P5)"));
     EXPECT_THAT(why("image: png.pgm\nresolution: 0.5\norigin: [0, 0, 1.5]\n"), HasSubstr("origin is turned"));
     EXPECT_THAT(why("[1, 2"), HasSubstr("m.yaml: the map's yaml cannot be read"));

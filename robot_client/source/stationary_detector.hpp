@@ -35,7 +35,7 @@ using TurnProfile = std::array<double, kDirections>;
 /// out of the sensor's range, a movement is detected later.
 ///
 /// Threads: one at a time.
-class Stillness {
+class StationaryDetector {
 public:
     static constexpr std::size_t kTurnsMax = 10;
     static constexpr double kChangedPartMax = 0.27;

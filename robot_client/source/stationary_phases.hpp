@@ -4,7 +4,7 @@
 #include "robot_client/source/located.hpp"
 #include "robot_client/source/seen_points.hpp"
 #include "robot_client/source/source.hpp"
-#include "robot_client/source/stillness.hpp"
+#include "robot_client/source/stationary_detector.hpp"
 
 #include <cstdint>
 #include <deque>
@@ -18,21 +18,21 @@ namespace scanloom::robot {
 /// Decides for each halt what to ask the server and which of its turns to send. Turns without a known pose are never
 /// sent.
 ///
-/// A halt begins with kTurnsAlike similar turns in a row (Stillness). It ends with the first turn that differs; the
-/// kTurnsHeldBack turns before that one are dropped too, because the movement may have begun in them. Turns that show
-/// too little to decide are dropped and change nothing. A halt also ends when a room changes gradually until more of it
-/// is new than a movement would change; the pose is then requested again.
+/// A halt begins with kTurnsAlike similar turns in a row (StationaryDetector). It ends with the first turn that
+/// differs; the kTurnsHeldBack turns before that one are dropped too, because the movement may have begun in them.
+/// Turns that show too little to decide are dropped and change nothing. A halt also ends when a room changes gradually
+/// until more of it is new than a movement would change; the pose is then requested again.
 ///
 /// Frames: the turns' poses are in an odometry frame of their own; a bare lidar is at its origin.
 /// Threads: one at a time. The class has no clock: time is that of the turns' stamps.
-class Halts {
+class StationaryPhases {
 public:
-    static constexpr std::size_t kTurnsAlike = Stillness::kTurnsMax;
+    static constexpr std::size_t kTurnsAlike = StationaryDetector::kTurnsMax;
     static constexpr std::size_t kTurnsHeldBack = 3;
-    static constexpr double kAskAgainAfter = 10.0; ///< seconds; other robots may have mapped the place meanwhile
+    static constexpr double kRetryAfter = 10.0; ///< seconds; other robots may have mapped the place meanwhile
 
     /// @param first_place  T_map_robot of the first halt, used if no map exists then
-    explicit Halts(const Pose2& first_place) : first_place_(first_place) {}
+    explicit StationaryPhases(const Pose2& first_place) : first_place_(first_place) {}
 
     /// Adds the next turn. Pre: a laser took it; question() is answered.
     void add(Observation turn);
@@ -41,7 +41,7 @@ public:
     [[nodiscard]] std::optional<SeenPoints> question() const;
 
     /// Takes the reply to question(). After a refusal the turns are dropped; the request is repeated for newer turns
-    /// kAskAgainAfter later, or at another place.
+    /// kRetryAfter later, or at another place.
     void answer(const Result<Located>& located);
 
     /// Ends the sequence: the turns of a halt that lasted to the end are given.
@@ -51,7 +51,7 @@ public:
     [[nodiscard]] std::optional<Observation> take();
 
     /// Returns new messages for people. Each is given once per halt, or again after many others.
-    [[nodiscard]] std::vector<std::string> take_news();
+    [[nodiscard]] std::vector<std::string> take_messages();
 
     [[nodiscard]] bool is_located() const noexcept { return T_map_odom_.has_value(); }
     [[nodiscard]] std::uint64_t given() const noexcept { return given_; }
@@ -63,24 +63,24 @@ public:
     [[nodiscard]] const std::optional<Error>& refusal() const noexcept { return refusal_; }
 
 private:
-    static constexpr std::size_t kToldMax = 32; // a halt with a refused place may last for days
+    static constexpr std::size_t kReportedMax = 32; // a halt with a refused place may last for days
 
     void leave();
     void drop_held();
     void release(std::size_t held_back);
     void place_first();
     void refuse(Error refusal);
-    void tell(std::string sentence);
+    void report(std::string sentence);
 
     std::optional<Pose2> first_place_; ///< until it is used
-    Stillness stillness_;
+    StationaryDetector detector_;
     std::deque<Observation> held_; ///< at most kTurnsAlike of the newest turns, all alike
     std::deque<Observation> ready_;
     std::optional<Pose2> T_map_odom_;  ///< of this halt
     bool begins_map_ = false;          ///< whether the place of this halt was given by the user, not by the server
     std::optional<double> refused_at_; ///< stamp, seconds; of this halt
     std::optional<Error> refusal_;
-    std::deque<std::string> told_; ///< messages of this halt, the newest kToldMax
+    std::deque<std::string> reported_; ///< messages of this halt, the newest kReportedMax
     std::vector<std::string> news_;
     std::uint64_t given_ = 0;
     std::uint64_t carried_ = 0;

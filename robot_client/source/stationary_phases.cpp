@@ -1,4 +1,4 @@
-#include "robot_client/source/halts.hpp"
+#include "robot_client/source/stationary_phases.hpp"
 
 #include "common/error/further.hpp"
 
@@ -24,20 +24,20 @@ std::string text_of(const Pose2& pose) {
 
 } // namespace
 
-void Halts::add(Observation turn) {
+void StationaryPhases::add(Observation turn) {
     const TurnProfile profile = profile_of(turn.scan, *turn.sensor);
-    switch (stillness_.judge(profile)) {
-    case Stillness::Verdict::kUnclear: ++dropped_; return;
-    case Stillness::Verdict::kMoved:
+    switch (detector_.judge(profile)) {
+    case StationaryDetector::Verdict::kUnclear: ++dropped_; return;
+    case StationaryDetector::Verdict::kMoved:
         leave();
-        if (stillness_.judge(profile) == Stillness::Verdict::kUnclear) {
+        if (detector_.judge(profile) == StationaryDetector::Verdict::kUnclear) {
             ++dropped_;
             return;
         }
         break;
-    case Stillness::Verdict::kStill: break;
+    case StationaryDetector::Verdict::kStill: break;
     }
-    if (stillness_.turns() < Stillness::kTurnsMax) stillness_.learn(profile);
+    if (detector_.turns() < StationaryDetector::kTurnsMax) detector_.learn(profile);
     held_.push_back(std::move(turn));
     if (T_map_odom_) {
         release(kTurnsHeldBack);
@@ -48,72 +48,71 @@ void Halts::add(Observation turn) {
 }
 
 /// Ends the halt: the sensor was moved.
-void Halts::leave() {
-    const bool was_a_halt = stillness_.turns() == kTurnsAlike;
-    told_.clear();
-    if (was_a_halt) {
+void StationaryPhases::leave() {
+    const bool was_stationary = detector_.turns() == kTurnsAlike;
+    reported_.clear();
+    if (was_stationary) {
         ++carried_;
-        tell("the lidar is moved: nothing is sent until it stands again and its place is known");
+        report("the lidar was moved: no scans are sent until it is stationary and localized");
     }
     drop_held();
     T_map_odom_.reset();
     begins_map_ = false;
     refused_at_.reset();
-    stillness_ = {};
+    detector_ = {};
 }
 
-void Halts::drop_held() {
+void StationaryPhases::drop_held() {
     dropped_ += held_.size();
     held_.clear();
 }
 
-std::optional<SeenPoints> Halts::question() const {
-    const bool may_ask = held_.size() == kTurnsAlike && !T_map_odom_;
-    if (!may_ask) return std::nullopt;
-    if (refused_at_ && std::abs(held_.back().scan.stamp - *refused_at_) < kAskAgainAfter) return std::nullopt;
+std::optional<SeenPoints> StationaryPhases::question() const {
+    const bool may_request = held_.size() == kTurnsAlike && !T_map_odom_;
+    if (!may_request) return std::nullopt;
+    if (refused_at_ && std::abs(held_.back().scan.stamp - *refused_at_) < kRetryAfter) return std::nullopt;
     SeenPoints seen;
     for (const Observation& turn : held_) seen.add(turn.scan, *turn.sensor);
     return seen;
 }
 
-void Halts::answer(const Result<Located>& located) {
+void StationaryPhases::answer(const Result<Located>& located) {
     assert(!held_.empty() && !T_map_odom_);
     if (!located) {
         const bool is_first = located.error().code == Errc::kNothingMapped && first_place_;
         return is_first ? place_first() : refuse(located.error());
     }
     T_map_odom_ = located->T_map_odom;
-    tell(fmt::format("located at {}: {:.0f} % of what the lidar sees is in the map; known within {:.1f} cm and {:.2f} "
-                     "degrees",
-                     text_of(compose(*T_map_odom_, held_.back().scan.pose)), 100.0 * located->explained,
-                     kAlmostSure * 100.0 * located->position_sigma,
-                     kAlmostSure * located->yaw_sigma * 180.0 / std::numbers::pi));
+    report(fmt::format("localized at {}: {:.0f} % of the scan matches the map; accuracy {:.1f} cm and {:.2f} degrees",
+                       text_of(compose(*T_map_odom_, held_.back().scan.pose)), 100.0 * located->explained,
+                       kAlmostSure * 100.0 * located->position_sigma,
+                       kAlmostSure * located->yaw_sigma * 180.0 / std::numbers::pi));
     release(kTurnsHeldBack);
 }
 
-void Halts::place_first() {
+void StationaryPhases::place_first() {
     const Pose2 place = *std::exchange(first_place_, std::nullopt);
     T_map_odom_ = compose(place, inverse(held_.back().scan.pose));
     begins_map_ = true;
-    tell(fmt::format(
-        "nothing is mapped yet: the lidar is taken to stand at {}, and its next places are found from there",
+    report(fmt::format(
+        "the map is empty: the lidar's pose is assumed to be {}; its next places are localized relative to it",
         text_of(place)));
     release(kTurnsHeldBack);
 }
 
-void Halts::refuse(Error refusal) {
+void StationaryPhases::refuse(Error refusal) {
     if (refusal.code == Errc::kNothingMapped) {
-        refusal.message = further(refusal.message, "the pose that was given was that of the first place");
+        refusal.message = further(refusal.message, "the given pose was that of the first place");
     }
-    tell(further(refusal.message, fmt::format("nothing is sent from here; asking again in {:g} s, or at another place",
-                                              kAskAgainAfter)));
+    report(further(refusal.message,
+                   fmt::format("no scans are sent from here; retrying in {:g} s, or at another place", kRetryAfter)));
     refusal_ = std::move(refusal);
     refused_at_ = held_.back().scan.stamp;
     drop_held();
 }
 
 /// Releases the turns of this halt except the newest `held_back`.
-void Halts::release(std::size_t held_back) {
+void StationaryPhases::release(std::size_t held_back) {
     for (; held_.size() > held_back; held_.pop_front()) {
         Observation turn = std::move(held_.front());
         turn.scan.pose = compose(*T_map_odom_, turn.scan.pose);
@@ -122,12 +121,12 @@ void Halts::release(std::size_t held_back) {
     }
 }
 
-void Halts::end() {
+void StationaryPhases::end() {
     if (T_map_odom_) release(0);
     drop_held();
 }
 
-std::optional<Observation> Halts::take() {
+std::optional<Observation> StationaryPhases::take() {
     std::optional<Observation> first;
     if (ready_.empty()) return first;
     ++given_;
@@ -136,13 +135,13 @@ std::optional<Observation> Halts::take() {
     return first;
 }
 
-void Halts::tell(std::string sentence) {
-    if (std::ranges::find(told_, sentence) != told_.end()) return;
-    told_.push_back(sentence);
-    if (told_.size() > kToldMax) told_.pop_front();
+void StationaryPhases::report(std::string sentence) {
+    if (std::ranges::find(reported_, sentence) != reported_.end()) return;
+    reported_.push_back(sentence);
+    if (reported_.size() > kReportedMax) reported_.pop_front();
     news_.push_back(std::move(sentence));
 }
 
-std::vector<std::string> Halts::take_news() { return std::exchange(news_, {}); }
+std::vector<std::string> StationaryPhases::take_messages() { return std::exchange(news_, {}); }
 
 } // namespace scanloom::robot

@@ -1,4 +1,4 @@
-#include "robot_client/source/stillness.hpp"
+#include "robot_client/source/stationary_detector.hpp"
 
 #include "common/scan/reading.hpp"
 
@@ -68,7 +68,7 @@ TurnProfile profile_of(const Scan& scan, const Sensor& sensor) {
     return profile;
 }
 
-void Stillness::learn(const TurnProfile& turn) {
+void StationaryDetector::learn(const TurnProfile& turn) {
     assert(learnt_.size() < kTurnsMax);
     learnt_.push_back(turn);
     const TurnProfile medians = medians_of(learnt_);
@@ -77,8 +77,8 @@ void Stillness::learn(const TurnProfile& turn) {
         low_[direction] = high_[direction] = medians[direction];
         if (std::isnan(medians[direction])) continue;
         ++comparable_;
-        for (const std::size_t beside : {direction + 1, direction + kDirections - 1}) {
-            const double range = medians[beside % kDirections];
+        for (const std::size_t neighbour : {direction + 1, direction + kDirections - 1}) {
+            const double range = medians[neighbour % kDirections];
             low_[direction] = std::fmin(low_[direction], range); // fmin and fmax ignore NaN
             high_[direction] = std::fmax(high_[direction], range);
         }
@@ -88,7 +88,7 @@ void Stillness::learn(const TurnProfile& turn) {
     }
 }
 
-std::optional<double> Stillness::changed_part(const TurnProfile& turn) const {
+std::optional<double> StationaryDetector::changed_part(const TurnProfile& turn) const {
     std::size_t compared = 0;
     std::size_t changed = 0;
     for (std::size_t direction = 0; direction < kDirections; ++direction) {
@@ -103,7 +103,7 @@ std::optional<double> Stillness::changed_part(const TurnProfile& turn) const {
     return static_cast<double>(changed) / static_cast<double>(compared);
 }
 
-Stillness::Verdict Stillness::judge(const TurnProfile& turn) const {
+StationaryDetector::Verdict StationaryDetector::judge(const TurnProfile& turn) const {
     if (learnt_.empty()) return shown_by(turn) < kDirectionsMin ? Verdict::kUnclear : Verdict::kStill;
     const auto changed = changed_part(turn);
     if (!changed) return Verdict::kUnclear;

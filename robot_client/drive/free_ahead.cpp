@@ -1,4 +1,4 @@
-#include "robot_client/drive/way_ahead.hpp"
+#include "robot_client/drive/free_ahead.hpp"
 
 #include <algorithm>
 #include <array>
