@@ -47,7 +47,7 @@ void StationaryPhases::add(Observation turn) {
     }
 }
 
-/// Ends the halt: the sensor was moved.
+/// Ends the phase: the sensor was moved.
 void StationaryPhases::leave() {
     const bool was_stationary = detector_.turns() == kTurnsAlike;
     reported_.clear();
@@ -111,7 +111,7 @@ void StationaryPhases::refuse(Error refusal) {
     drop_held();
 }
 
-/// Releases the turns of this halt except the newest `held_back`.
+/// Releases the turns of this phase except the newest `held_back`.
 void StationaryPhases::release(std::size_t held_back) {
     for (; held_.size() > held_back; held_.pop_front()) {
         Observation turn = std::move(held_.front());
@@ -139,9 +139,9 @@ void StationaryPhases::report(std::string sentence) {
     if (std::ranges::find(reported_, sentence) != reported_.end()) return;
     reported_.push_back(sentence);
     if (reported_.size() > kReportedMax) reported_.pop_front();
-    news_.push_back(std::move(sentence));
+    messages_.push_back(std::move(sentence));
 }
 
-std::vector<std::string> StationaryPhases::take_messages() { return std::exchange(news_, {}); }
+std::vector<std::string> StationaryPhases::take_messages() { return std::exchange(messages_, {}); }
 
 } // namespace scanloom::robot

@@ -11,6 +11,7 @@ found=$(git -c diff.noprefix=false -c diff.mnemonicPrefix=false diff --no-color 
         # Comments and strings of sources, every line of documents.
         /^\+/ && (file ~ /\.md$/ || /\/\/|"|^\+ *#|^\+ *\*/) {
             line = tolower(substr($0, 2))
+            gsub(/ground truth/, "", line)
             for (word in instead)
                 if (match(line, "(^|[^a-z_])" word "([^a-z_]|$)"))
                     print file ": \"" word "\": write " instead[word] ": " substr($0, 2, 100)

@@ -19,24 +19,24 @@ export function hurry(): void {
  * Runs the task, waits, and repeats until the signal aborts; never runs it concurrently. The wait ends early when the
  * page is shown or the network connects.
  *
- * @param settled called after every run: null, or the error
+ * @param report called after every run: null, or the error
  */
 export async function poll(
   task: (signal: AbortSignal) => Promise<void>,
   pace: Pace,
   signal: AbortSignal,
-  settled: (error: unknown) => void,
+  report: (error: unknown) => void,
 ): Promise<void> {
   let failures = 0;
   while (!signal.aborted) {
     try {
       await task(signal);
       failures = 0;
-      settled(null);
+      report(null);
     } catch (error) {
       if (signal.aborted) return;
       failures += 1;
-      settled(error);
+      report(error);
     }
     const everyMs = document.hidden ? pace.hiddenMs : pace.visibleMs;
     await pause(backoff(everyMs, failures), signal);
