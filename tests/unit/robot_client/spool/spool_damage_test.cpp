@@ -118,7 +118,7 @@ TEST_F(SpoolTest, DamagedFileHeaderIsReportedAndBounded) {
         open();
         ASSERT_TRUE(spool_->begin("a1", 32));
         EXPECT_EQ(handed_out(), from_to(26, 60)) << damaged;
-        EXPECT_THAT(messages_, Contains(HasSubstr("numbered as those of the files around it")));
+        EXPECT_THAT(messages_, Contains(HasSubstr("numbered by the adjacent files")));
     }
 }
 

@@ -209,7 +209,7 @@ TEST_F(SpoolTest, RecreatedSessionGetsUnacknowledgedScans) {
 TEST_F(SpoolTest, LocatedPosesBeginTheMapOfAnotherSession) {
     const auto open_with_located_poses = [&] {
         spool_.reset();
-        spool_ = Spool::open({.directory = directory_.path(), .poses_are_told = true}, [&](const std::string& text) {
+        spool_ = Spool::open({.directory = directory_.path(), .poses_from_server = true}, [&](const std::string& text) {
                      messages_.push_back(text);
                  }).value();
     };
