@@ -18,9 +18,10 @@ if(SCANLOOM_SERVER)
   find_package(prometheus-cpp REQUIRED)
   find_package(hwy 1.0 CONFIG REQUIRED)
   find_package(nanoflann 1.4 CONFIG REQUIRED)
+  find_library(SPNG_LIBRARY spng REQUIRED)
   # Its headers alone: one file uses them, and Debian's library would be one more to install.
   find_path(TOMLPLUSPLUS_INCLUDE_DIR toml++/toml.h REQUIRED)
-  mark_as_advanced(TOMLPLUSPLUS_INCLUDE_DIR)
+  mark_as_advanced(TOMLPLUSPLUS_INCLUDE_DIR SPNG_LIBRARY)
 endif()
 
 # Asio and Beast, compiled once instead of in every file that includes them.

@@ -1,5 +1,6 @@
 #include "server/tiles/png.hpp"
 
+#include <spng.h>
 #include <zlib.h>
 
 #include <algorithm>
@@ -7,61 +8,19 @@
 #include <cassert>
 #include <cstddef>
 #include <new>
-#include <string_view>
 
 namespace scanloom::tiles {
 namespace {
-
-constexpr int kWindowBits = 15; // a smaller window makes zlib slower because it moves more often
-constexpr int kMemoryLevel = 8;
-constexpr std::size_t kPieceBytes = std::size_t{64} << 10;
-
-constexpr std::uint8_t kGrey = 0; // colour types
-constexpr std::uint8_t kColourTypePalette = 3;
-constexpr std::uint8_t kUnfiltered = 0;
-
-void append_number(Bytes& to, std::uint32_t number) {
-    for (const int shift : {24, 16, 8, 0}) to.push_back(static_cast<std::uint8_t>(number >> shift));
-}
-
-void append_chunk(Bytes& png, std::string_view type, std::span<const std::uint8_t> data) {
-    append_number(png, static_cast<std::uint32_t>(data.size()));
-    const std::size_t checked = png.size();
-    png.insert(png.end(), type.begin(), type.end());
-    png.insert(png.end(), data.begin(), data.end());
-    const auto check = crc32_z(0, png.data() + checked, png.size() - checked);
-    append_number(png, static_cast<std::uint32_t>(check));
-}
-
-/// Starts the file: signature and IHDR.
-Bytes beginning_of(std::int32_t width, std::int32_t height, int bits, std::uint8_t colour_type) {
-    Bytes header;
-    append_number(header, static_cast<std::uint32_t>(width));
-    append_number(header, static_cast<std::uint32_t>(height));
-    const std::array<std::uint8_t, 5> rest{static_cast<std::uint8_t>(bits), colour_type, 0, 0, 0}; // not interlaced
-    header.insert(header.end(), rest.begin(), rest.end());
-    Bytes png{0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'};
-    append_chunk(png, "IHDR", header);
-    return png;
-}
-
-void append_palette(Bytes& png, std::span<const PaletteEntry> palette) {
-    Bytes colours;
-    Bytes opacities;
-    for (const auto& [colour, opacity] : palette) {
-        colours.insert(colours.end(), {colour.red, colour.green, colour.blue});
-        opacities.push_back(opacity);
-    }
-    append_chunk(png, "PLTE", colours);
-    const bool is_opaque = std::ranges::all_of(opacities, [](std::uint8_t opacity) { return opacity == 255; });
-    if (!is_opaque) append_chunk(png, "tRNS", opacities);
-}
 
 int bits_for(std::size_t colours) noexcept {
     for (const int bits : {1, 2, 4}) {
         if (colours <= std::size_t{1} << bits) return bits;
     }
     return 8;
+}
+
+std::size_t packed_size(std::int32_t width, int bits) noexcept {
+    return (static_cast<std::size_t>(width) * static_cast<std::size_t>(bits) + 7) / 8;
 }
 
 /// Packs pixels into bytes, the leftmost pixel in the highest bits; unused bits of the last byte are 0.
@@ -80,75 +39,66 @@ void pack(std::span<const std::uint8_t> pixels, std::uint8_t* to) noexcept {
     *to = static_cast<std::uint8_t>(byte);
 }
 
-std::size_t packed_size(std::int32_t width, int bits) noexcept {
-    return (static_cast<std::size_t>(width) * static_cast<std::size_t>(bits) + 7) / 8;
+/// Appends what libspng writes to the file in memory.
+int append(spng_ctx*, void* file, void* bytes, std::size_t count) noexcept {
+    try {
+        auto& png = *static_cast<Bytes*>(file);
+        const auto* first = static_cast<const std::uint8_t*>(bytes);
+        png.insert(png.end(), first, first + count);
+        return SPNG_OK;
+    } catch (const std::bad_alloc&) {
+        return SPNG_IO_ERROR;
+    }
+}
+
+/// Checks a result of libspng. All arguments are valid, so that it fails only if memory runs out.
+void check(int result) {
+    if (result != SPNG_OK && result != SPNG_EOI) throw std::bad_alloc();
+}
+
+void set_palette(spng_ctx* context, std::span<const PaletteEntry> palette) {
+    assert(palette.size() <= 256);
+    spng_plte colours{};
+    spng_trns opacities{};
+    for (const auto& [colour, opacity] : palette) {
+        colours.entries[colours.n_entries++] = {colour.red, colour.green, colour.blue, 0};
+        opacities.type3_alpha[opacities.n_type3_entries++] = opacity;
+    }
+    check(spng_set_plte(context, &colours));
+    const bool is_opaque = std::ranges::all_of(palette, [](const PaletteEntry& entry) { return entry.opacity == 255; });
+    if (!is_opaque) check(spng_set_trns(context, &opacities));
 }
 
 } // namespace
 
-/// The compressed pixels, in IDAT chunks.
-struct PngWriter::Deflate {
-    explicit Deflate(Bytes& to) : png(to) {
-        const int result = deflateInit2(&stream, Z_DEFAULT_COMPRESSION, Z_DEFLATED, kWindowBits, kMemoryLevel, Z_RLE);
-        if (result != Z_OK) throw std::bad_alloc();
-    }
-    ~Deflate() { deflateEnd(&stream); }
-    Deflate(const Deflate&) = delete;
-    Deflate& operator=(const Deflate&) = delete;
-
-    void add(std::span<const std::uint8_t> bytes, int flush) {
-        stream.next_in = const_cast<Bytef*>(bytes.data()); // zlib does not write to it
-        stream.avail_in = static_cast<uInt>(bytes.size());
-        int result = Z_OK;
-        do {
-            if (filled == piece.size()) write();
-            stream.next_out = piece.data() + filled;
-            stream.avail_out = static_cast<uInt>(piece.size() - filled);
-            result = deflate(&stream, flush);
-            filled = piece.size() - stream.avail_out;
-        } while (flush == Z_FINISH ? result != Z_STREAM_END : stream.avail_in > 0);
-    }
-
-    void write() {
-        if (filled > 0) append_chunk(png, "IDAT", std::span(piece).first(filled));
-        filled = 0;
-    }
-
-    Bytes& png;
-    z_stream stream{};
-    std::array<std::uint8_t, kPieceBytes> piece;
-    std::size_t filled = 0;
-};
-
-PngWriter::PngWriter(std::int32_t width, std::int32_t height)
-    : png_(beginning_of(width, height, 8, kGrey)), bits_(8), packed_(1 + packed_size(width, bits_), kUnfiltered),
-      deflate_(std::make_unique<Deflate>(png_)) {}
+void PngWriter::FreeContext::operator()(spng_ctx* context) const noexcept { spng_ctx_free(context); }
 
 PngWriter::PngWriter(std::int32_t width, std::int32_t height, std::span<const PaletteEntry> palette)
-    : png_(beginning_of(width, height, bits_for(palette.size()), kColourTypePalette)), bits_(bits_for(palette.size())),
-      packed_(1 + packed_size(width, bits_), kUnfiltered), deflate_(std::make_unique<Deflate>(png_)) {
-    assert(!palette.empty() && palette.size() <= 256);
-    append_palette(png_, palette);
+    : bits_(palette.empty() ? 8 : bits_for(palette.size())), packed_(packed_size(width, bits_)),
+      context_(spng_ctx_new(SPNG_CTX_ENCODER)) {
+    if (!context_) throw std::bad_alloc();
+    spng_ihdr header{};
+    header.width = static_cast<std::uint32_t>(width);
+    header.height = static_cast<std::uint32_t>(height);
+    header.bit_depth = static_cast<std::uint8_t>(bits_);
+    header.color_type = palette.empty() ? SPNG_COLOR_TYPE_GRAYSCALE : SPNG_COLOR_TYPE_INDEXED;
+    check(spng_set_png_stream(context_.get(), append, &png_));
+    check(spng_set_option(context_.get(), SPNG_FILTER_CHOICE, SPNG_DISABLE_FILTERING));
+    check(spng_set_option(context_.get(), SPNG_IMG_COMPRESSION_STRATEGY, Z_RLE));
+    check(spng_set_ihdr(context_.get(), &header));
+    if (!palette.empty()) set_palette(context_.get(), palette);
+    constexpr int kRowByRow = SPNG_ENCODE_PROGRESSIVE | SPNG_ENCODE_FINALIZE;
+    check(spng_encode_image(context_.get(), nullptr, 0, SPNG_FMT_PNG, kRowByRow));
 }
-
-PngWriter::~PngWriter() = default;
 
 void PngWriter::add_row(std::span<const std::uint8_t> pixels) {
-    std::uint8_t* to = packed_.data() + 1;
     switch (bits_) {
-    case 1: pack<1>(pixels, to); break;
-    case 2: pack<2>(pixels, to); break;
-    case 4: pack<4>(pixels, to); break;
-    default: std::ranges::copy(pixels, to);
+    case 1: pack<1>(pixels, packed_.data()); break;
+    case 2: pack<2>(pixels, packed_.data()); break;
+    case 4: pack<4>(pixels, packed_.data()); break;
+    default: std::ranges::copy(pixels, packed_.begin());
     }
-    deflate_->add(packed_, Z_NO_FLUSH);
-}
-
-Bytes PngWriter::finish() {
-    deflate_->add({}, Z_FINISH);
-    deflate_->write();
-    append_chunk(png_, "IEND", {});
-    return std::move(png_);
+    check(spng_encode_row(context_.get(), packed_.data(), packed_.size()));
 }
 
 namespace {

@@ -6,7 +6,9 @@
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <vector>
+#include <utility>
+
+struct spng_ctx;
 
 namespace scanloom::tiles {
 
@@ -20,22 +22,17 @@ struct PaletteEntry {
 ///
 /// Compression finds runs only: maps consist of runs of equal cells with noise in between, in which longer matches are
 /// rare. For maps, this is both faster and smaller than the general search of zlib's lower levels.
-/// Source: ISO/IEC 15948:2004 (PNG), colour types 0 and 3; zlib's Z_RLE.
+/// Source: ISO/IEC 15948:2004 (PNG), colour types 0 and 3; libspng with zlib's Z_RLE.
 class PngWriter {
 public:
-    /// Starts an 8-bit grey image; a pixel is a grey level.
+    /// Starts an image. With a palette, a pixel is an index into it, stored in 1, 2, 4 or 8 bits, as few as the
+    /// palette's size needs; without, a pixel is a grey level of 8 bits.
     /// @param width  pixels, 1..1,000,000; readers may reject more
     /// @param height  pixels, 1..1,000,000
-    PngWriter(std::int32_t width, std::int32_t height);
+    /// @param palette  at most 256 entries
+    /// Errors: throws std::bad_alloc, as do the functions below.
+    PngWriter(std::int32_t width, std::int32_t height, std::span<const PaletteEntry> palette = {});
 
-    /// Starts an image with a palette; a pixel is an index into it, stored in 1, 2, 4 or 8 bits, as few as the
-    /// palette's size needs.
-    /// @param width  pixels, 1..1,000,000; readers may reject more
-    /// @param height  pixels, 1..1,000,000
-    /// @param palette  1..256 entries
-    PngWriter(std::int32_t width, std::int32_t height, std::span<const PaletteEntry> palette);
-
-    ~PngWriter();
     PngWriter(const PngWriter&) = delete;
     PngWriter& operator=(const PngWriter&) = delete;
 
@@ -45,15 +42,17 @@ public:
 
     /// Completes the file and returns it. Call once.
     /// Precondition: all rows have been added.
-    [[nodiscard]] Bytes finish();
+    [[nodiscard]] Bytes finish() { return std::move(png_); }
 
 private:
-    struct Deflate;
+    struct FreeContext {
+        void operator()(spng_ctx* context) const noexcept;
+    };
 
     Bytes png_;
     int bits_;     // of a pixel
-    Bytes packed_; // the current row, filter type first
-    std::unique_ptr<Deflate> deflate_;
+    Bytes packed_; // the current row
+    std::unique_ptr<spng_ctx, FreeContext> context_;
 };
 
 /// Encodes codes as a PNG. The palette contains only the codes that occur, so that a pixel takes few bits.

@@ -11,7 +11,7 @@ namespace scanloom::tiles {
 
 /// Version of the rendering of tiles and map files. Increase it when the same snapshot gives other bytes, so that
 /// caches discard what an older program drew.
-inline constexpr std::uint32_t kRenderingVersion = 4;
+inline constexpr std::uint32_t kRenderingVersion = 5;
 
 /// Returns the revision of the newest change of any of the tile's cells in the layer; 0 if none ever changed. Changes
 /// elsewhere do not affect it.

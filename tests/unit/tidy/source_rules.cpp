@@ -120,6 +120,7 @@ const std::vector<Package> kPackages = {
     {"toml++/", {"server/access"}},
     {"Eigen/", {"server/landmarks"}},
     {"nanoflann.hpp", {"server/landmarks"}},
+    {"spng.h", {"server/tiles"}},
     {"yaml-cpp/", {"common/ros_map"}},
     {"opencv2/", {"server/tiles", "lab"}},
     {"rocksdb/", {"server/store"}},
