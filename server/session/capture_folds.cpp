@@ -24,7 +24,10 @@ template <class Layer>
 Result<Folded<Layer>> CaptureFolds<Layer>::up_to(const SessionInfo& session, Revision revision,
                                                  const std::function<bool()>& is_wanted) {
     const auto kept = find_or_begin(session);
-    const std::unique_lock folding(kept->mutex, limits_.patience);
+    // By the system clock, because ThreadSanitizer of GCC 12 does not support timed waits by the steady clock. If the
+    // system clock jumps, this call waits until others finish, which `patience` bounds too, or asks for a retry at
+    // once.
+    const std::unique_lock folding(kept->mutex, std::chrono::system_clock::now() + limits_.patience);
     if (!folding) {
         return Error{Errc::kOverloaded,
                      fmt::format("others have the {} of this session found at this moment; ask again",

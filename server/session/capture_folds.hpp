@@ -4,7 +4,6 @@
 #include "server/landmarks/landmark_layer.hpp"
 #include "server/landmarks/reference_layer.hpp"
 #include "server/session/log_captures.hpp"
-#include "server/session/patient_mutex.hpp"
 #include "server/session/session_info.hpp"
 #include "server/store/scan_log.hpp"
 
@@ -89,7 +88,7 @@ private:
 
         const store::SessionId session;
         const Revision exclusions; // Exclusions::revision() of the applied exclusions
-        PatientMutex mutex;
+        std::timed_mutex mutex;
         landmarks::SessionCaptures captures; // guarded by mutex
         Layer layer;                         // guarded by mutex
         bool is_full = false;                // guarded by mutex; the layer exceeded size_max
