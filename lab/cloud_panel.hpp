@@ -2,7 +2,7 @@
 
 #include "common/geometry/pose2.hpp"
 #include "server/tiles/bytes.hpp"
-#include "server/tiles/extent.hpp"
+#include "server/tiles/map_image.hpp"
 
 #include <opencv2/core.hpp>
 

@@ -4,7 +4,7 @@
 
 #include "server/mapping/snapshot.hpp"
 #include "server/tiles/bytes.hpp"
-#include "server/tiles/extent.hpp"
+#include "server/tiles/map_image.hpp"
 
 #include <span>
 

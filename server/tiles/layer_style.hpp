@@ -1,12 +1,53 @@
 #pragma once
 
 #include "server/mapping/layer.hpp"
-#include "server/tiles/occupancy_percent.hpp"
+#include "server/mapping/log_odds.hpp"
 
 #include <array>
 #include <cstdint>
 
 namespace scanloom::tiles {
+
+/// The value of a cell in tiles and map images: the probability of occupation in whole percent, 0..100.
+using Percent = std::uint8_t;
+
+inline constexpr Percent kUnknownPercent = 255;
+inline constexpr std::uint8_t kUnknownGrey = 128;
+
+/// The weight of a percentage among the cells that share a pixel: the furthest above 50 has the greatest salience, then
+/// the lowest known one; unknown has the least.
+///
+/// A coarse pixel shows the greatest salience of its cells, so that walls remain visible at every zoom, and tiles made
+/// from finer tiles or from the cells have the same bytes.
+using Salience = std::uint8_t;
+
+inline constexpr Salience kUnknownSalience = 0;
+
+/// Returns the salience of a percentage.
+[[nodiscard]] constexpr Salience salience_of(Percent percent) noexcept {
+    if (percent > 100) return kUnknownSalience;
+    return static_cast<Salience>(percent > 50 ? percent + 1 : 51 - percent);
+}
+
+/// Returns the percentage of a salience; the inverse of salience_of().
+[[nodiscard]] constexpr Percent percent_of_salience(Salience salience) noexcept {
+    if (salience == kUnknownSalience) return kUnknownPercent;
+    return static_cast<Percent>(salience > 51 ? salience - 1 : 51 - salience);
+}
+
+/// Returns the grey of a percentage: 255 (1 - p), rounded. White is free, black is occupied. A half rounds down, which
+/// keeps a known cell at even odds (127) distinct from an unknown one (128).
+[[nodiscard]] constexpr std::uint8_t grey_of(Percent percent) noexcept {
+    return percent > 100 ? kUnknownGrey : static_cast<std::uint8_t>((255 * (100 - percent) + 49) / 100);
+}
+
+/// The percentage of every fixed-point log-odds, indexed by its bits as uint16.
+using PercentTable = std::array<Percent, 65536>;
+[[nodiscard]] const PercentTable& percent_table();
+
+/// The salience of every fixed-point log-odds, indexed by its bits as uint16.
+using SalienceTable = std::array<Salience, 65536>;
+[[nodiscard]] const SalienceTable& salience_table();
 
 /// The value of a cell in a tile or a map image, one byte:
 ///   occupancy, sonar  the probability of occupation in percent, 0..100; 255 unknown

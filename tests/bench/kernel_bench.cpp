@@ -1,6 +1,5 @@
 #include "server/mapping/digest.hpp"
 #include "server/mapping/projection.hpp"
-#include "server/tiles/changes.hpp"
 #include "server/tiles/map_image.hpp"
 #include "server/tiles/tile.hpp"
 #include "tests/support/room_scans.hpp"

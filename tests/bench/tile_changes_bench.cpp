@@ -1,7 +1,5 @@
 #include "server/mapping/laser_layers.hpp"
-#include "server/tiles/changes.hpp"
 #include "server/tiles/tile.hpp"
-#include "server/tiles/tile_version.hpp"
 
 #include <benchmark/benchmark.h>
 

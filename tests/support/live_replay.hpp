@@ -1,7 +1,7 @@
 #pragma once
 
 #include "server/mapping/snapshot.hpp"
-#include "server/tiles/changes.hpp"
+#include "server/tiles/tile.hpp"
 
 #include "scanloom/v1/live.pb.h"
 

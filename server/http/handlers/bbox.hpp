@@ -2,7 +2,7 @@
 
 #include "common/error/error.hpp"
 #include "server/http/target.hpp"
-#include "server/tiles/extent.hpp"
+#include "server/tiles/map_image.hpp"
 
 #include <optional>
 

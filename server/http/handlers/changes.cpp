@@ -1,7 +1,7 @@
 #include "server/http/handlers/changes.hpp"
 
 #include "server/http/handlers/session_lookup.hpp"
-#include "server/tiles/changes.hpp"
+#include "server/tiles/tile.hpp"
 
 #include <boost/json/array.hpp>
 #include <boost/json/object.hpp>

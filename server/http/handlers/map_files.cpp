@@ -4,9 +4,8 @@
 #include "server/http/handlers/bbox.hpp"
 #include "server/http/handlers/session_lookup.hpp"
 #include "server/http/problem.hpp"
+#include "server/tiles/map_files.hpp"
 #include "server/tiles/map_image.hpp"
-#include "server/tiles/map_table.hpp"
-#include "server/tiles/ros_map.hpp"
 
 #include <fmt/format.h>
 

@@ -5,7 +5,7 @@
 #include "server/http/json_read.hpp"
 #include "server/http/number.hpp"
 #include "server/mapping/map_config.hpp"
-#include "server/tiles/extent.hpp"
+#include "server/tiles/map_image.hpp"
 
 #include <boost/json/array.hpp>
 #include <fmt/chrono.h>

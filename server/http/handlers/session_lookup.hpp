@@ -4,7 +4,7 @@
 #include "server/http/handlers/call.hpp"
 #include "server/mapping/projection.hpp"
 #include "server/session/session_registry.hpp"
-#include "server/tiles/tile_version.hpp"
+#include "server/tiles/tile.hpp"
 
 #include <cstdint>
 #include <memory>

@@ -4,7 +4,7 @@
 #include "server/http/handlers/session_lookup.hpp"
 #include "server/http/in_quotes.hpp"
 #include "server/http/number.hpp"
-#include "server/tiles/tile_version.hpp"
+#include "server/tiles/tile.hpp"
 
 #include <fmt/format.h>
 

@@ -2,7 +2,7 @@
 
 #include "server/http/handlers/session_lookup.hpp"
 #include "server/http/number.hpp"
-#include "server/tiles/extent.hpp"
+#include "server/tiles/map_image.hpp"
 #include "server/tiles/tile_key.hpp"
 
 #include <boost/json/array.hpp>

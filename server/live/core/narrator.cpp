@@ -1,7 +1,7 @@
 #include "server/live/core/narrator.hpp"
 
 #include "server/live/core/scan_points.hpp"
-#include "server/tiles/changes.hpp"
+#include "server/tiles/tile.hpp"
 
 #include <algorithm>
 #include <cmath>

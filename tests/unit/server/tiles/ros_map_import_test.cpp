@@ -2,8 +2,8 @@
 
 #include "common/ros_map/description.hpp"
 #include "server/mapping/projection.hpp"
+#include "server/tiles/map_files.hpp"
 #include "server/tiles/map_image.hpp"
-#include "server/tiles/ros_map.hpp"
 #include "tests/support/random_map.hpp"
 
 #include <gmock/gmock.h>

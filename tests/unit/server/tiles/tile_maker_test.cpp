@@ -1,7 +1,6 @@
 #include "server/tiles/tile_maker.hpp"
 
 #include "server/tiles/tile.hpp"
-#include "server/tiles/tile_version.hpp"
 #include "tests/support/random_layers.hpp"
 
 #include <gtest/gtest.h>
