@@ -1,4 +1,3 @@
-#include "common/app/standard_error.hpp"
 #include "common/app/standard_streams.hpp"
 #include "lab/options.hpp"
 #include "lab/run.hpp"

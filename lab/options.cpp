@@ -1,8 +1,7 @@
 #include "lab/options.hpp"
 
-#include "common/app/environment_first.hpp"
-#include "common/app/option_checks.hpp"
-#include "common/app/parse_failure.hpp"
+#include "common/app/command_line.hpp"
+#include "common/app/settings.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>

@@ -4,8 +4,8 @@
 #include "lab/output_directory.hpp"
 #include "lab/report.hpp"
 
-#include "common/app/console.hpp"
 #include "common/app/machine.hpp"
+#include "common/app/standard_streams.hpp"
 
 #include <boost/json/serialize.hpp>
 #include <fmt/format.h>

@@ -1,10 +1,19 @@
 #include "common/app/standard_streams.hpp"
 
-#include <fcntl.h>
-#include <unistd.h>
+#include <fmt/format.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <climits>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
 #include <system_error>
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 namespace scanloom {
 
@@ -16,6 +25,97 @@ void open_missing_standard_streams() {
             throw std::system_error(errno, std::generic_category(), "/dev/null cannot be opened");
         }
     }
+}
+
+namespace {
+
+/// Opens a pipe or a terminal a second time, non-blocking. O_NONBLOCK belongs to the open file, which is shared with
+/// the programs that passed the descriptor on, so it must not be set on theirs. If the file cannot be opened (a socket,
+/// a terminal of another user), returns `descriptor`; has_room() is then checked before each write.
+int reopened(int descriptor) {
+    struct stat status {};
+    const bool may_wait = fstat(descriptor, &status) == 0 && (S_ISFIFO(status.st_mode) || isatty(descriptor) == 1);
+    if (!may_wait) return descriptor;
+    const auto path = fmt::format("/proc/self/fd/{}", descriptor);
+    const int own = open(path.c_str(), O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
+    return own >= 0 ? own : descriptor;
+}
+
+/// Returns whether PIPE_BUF bytes can be written without waiting, unless another program writes first.
+bool has_room(int descriptor) {
+    pollfd room{descriptor, POLLOUT, 0};
+    return poll(&room, 1, 0) == 1 && (room.revents & POLLOUT) != 0;
+}
+
+bool is_capable_terminal(int descriptor) {
+    const char* terminal = std::getenv("TERM");
+    return isatty(descriptor) == 1 && terminal != nullptr && std::string_view(terminal) != "dumb";
+}
+
+} // namespace
+
+StandardError::StandardError(int descriptor)
+    : given_(descriptor), descriptor_(reopened(descriptor)), is_terminal_(is_capable_terminal(descriptor)) {}
+
+StandardError::~StandardError() {
+    if (descriptor_ != given_) close(descriptor_);
+}
+
+void StandardError::write(std::string_view line) {
+    const std::lock_guard lock(mutex_);
+    if (dropped_ > 0) {
+        const auto what = dropped_ == 1 ? std::string("1 line was dropped because it was")
+                                        : fmt::format("{} lines were dropped because they were", dropped_);
+        const auto notice = fmt::format("{}{} not read\n", is_at_line_start_ ? "" : "\n", what);
+        if (!put(notice)) {
+            ++dropped_;
+            return;
+        }
+        dropped_ = 0;
+    }
+    if (!put(line)) ++dropped_;
+}
+
+/// Returns false if not all of the text could be written at once.
+bool StandardError::put(std::string_view text) {
+    while (!text.empty()) {
+        if (descriptor_ == given_ && !has_room(given_)) return false;
+        const auto count = ::write(descriptor_, text.data(), std::min<std::size_t>(text.size(), PIPE_BUF));
+        if (count <= 0) return false;
+        is_at_line_start_ = text[static_cast<std::size_t>(count) - 1] == '\n';
+        text.remove_prefix(static_cast<std::size_t>(count));
+    }
+    return true;
+}
+
+StandardError& standard_error() {
+    static StandardError only(STDERR_FILENO);
+    return only;
+}
+
+std::string as_clock(double seconds) {
+    const auto whole = static_cast<std::int64_t>(std::clamp(std::ceil(seconds), 0.0, 1e9));
+    if (whole < 3600) return fmt::format("{}:{:02}", whole / 60, whole % 60);
+    return fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
+}
+
+std::chrono::milliseconds Console::progress_period() const {
+    return out_.is_terminal() ? std::chrono::milliseconds(200) : std::chrono::milliseconds(5000);
+}
+
+void Console::progress(std::string_view text) {
+    line_is_open_ = out_.is_terminal();
+    out_.write(line_is_open_ ? fmt::format("\r\x1b[K{}", text) : fmt::format("{}\n", text));
+}
+
+void Console::note(std::string_view text) {
+    out_.write(fmt::format("{}{}\n", line_is_open_ ? "\r\x1b[K" : "", text));
+    line_is_open_ = false;
+}
+
+void Console::finish() {
+    if (line_is_open_) out_.write("\n");
+    line_is_open_ = false;
 }
 
 } // namespace scanloom

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "common/app/standard_error.hpp"
+#include "common/app/standard_streams.hpp"
 
 #include <string>
 #include <string_view>

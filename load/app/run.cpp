@@ -1,6 +1,6 @@
 #include "load/app/run.hpp"
 
-#include "common/app/token_file.hpp"
+#include "common/app/settings.hpp"
 #include "common/net/await_tuple.hpp"
 #include "load/app/drive_course.hpp"
 #include "load/app/load_run.hpp"

@@ -1,6 +1,6 @@
 #include "robot_client/app/ld06_options.hpp"
 
-#include "common/app/option_checks.hpp"
+#include "common/app/command_line.hpp"
 #include "common/scan/limits.hpp"
 #include "robot_client/source/range_median.hpp"
 #include "robot_client/uplink/limits.hpp"

@@ -1,4 +1,3 @@
-#include "common/app/standard_error.hpp"
 #include "common/app/standard_streams.hpp"
 #include "robot_client/app/options.hpp"
 #include "robot_client/app/run.hpp"

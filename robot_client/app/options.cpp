@@ -1,8 +1,7 @@
 #include "robot_client/app/options.hpp"
 
-#include "common/app/environment_first.hpp"
-#include "common/app/option_checks.hpp"
-#include "common/app/parse_failure.hpp"
+#include "common/app/command_line.hpp"
+#include "common/app/settings.hpp"
 #include "common/scan/limits.hpp"
 #include "robot_client/app/simulate_options.hpp"
 #include "robot_client/uplink/limits.hpp"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "common/app/console.hpp"
+#include "common/app/standard_streams.hpp"
 #include "robot_client/source/line_reader.hpp"
 #include "robot_client/uplink/uplink.hpp"
 

@@ -1,6 +1,6 @@
 #include "robot_client/app/run.hpp"
 
-#include "common/app/token_file.hpp"
+#include "common/app/settings.hpp"
 #include "common/net/await_tuple.hpp"
 #include "robot_client/app/make_source.hpp"
 #include "robot_client/app/progress.hpp"

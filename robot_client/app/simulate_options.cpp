@@ -1,6 +1,6 @@
 #include "robot_client/app/simulate_options.hpp"
 
-#include "common/app/option_checks.hpp"
+#include "common/app/command_line.hpp"
 #include "robot_client/source/world_file.hpp"
 
 #include <fmt/format.h>

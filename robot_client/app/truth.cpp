@@ -1,7 +1,6 @@
 #include "robot_client/app/truth.hpp"
 
-#include "common/app/console.hpp"
-#include "common/app/standard_error.hpp"
+#include "common/app/standard_streams.hpp"
 #include "common/ros_map/pgm.hpp"
 #include "robot_client/sim/truth_map.hpp"
 #include "robot_client/source/world_file.hpp"

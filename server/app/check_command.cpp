@@ -1,6 +1,6 @@
 #include "server/app/check_command.hpp"
 
-#include "common/app/standard_error.hpp"
+#include "common/app/standard_streams.hpp"
 #include "common/json/json_text.hpp"
 #include "server/session/session_check.hpp"
 #include "server/store/at_rest.hpp"

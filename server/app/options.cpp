@@ -1,11 +1,10 @@
 #include "server/app/options.hpp"
 
-#include "common/app/environment_first.hpp"
-#include "common/app/memory_limit.hpp"
-#include "common/app/option_checks.hpp"
-#include "common/app/parse_failure.hpp"
-#include "server/app/memory.hpp"
+#include "common/app/command_line.hpp"
+#include "common/app/machine.hpp"
+#include "common/app/settings.hpp"
 #include "server/app/places.hpp"
+#include "server/app/resource_limits.hpp"
 #include "server/app/token_command.hpp"
 
 #include <CLI/CLI.hpp>

@@ -1,6 +1,6 @@
 #include "server/app/repair_command.hpp"
 
-#include "common/app/standard_error.hpp"
+#include "common/app/standard_streams.hpp"
 #include "common/json/json_text.hpp"
 #include "server/session/repair.hpp"
 #include "server/session/repaired_names.hpp"

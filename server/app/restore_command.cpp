@@ -1,6 +1,6 @@
 #include "server/app/restore_command.hpp"
 
-#include "common/app/standard_error.hpp"
+#include "common/app/standard_streams.hpp"
 #include "common/json/json_text.hpp"
 #include "server/store/backups.hpp"
 

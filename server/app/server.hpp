@@ -1,8 +1,8 @@
 #pragma once
 
 #include "common/error/error.hpp"
-#include "server/app/descriptors.hpp"
 #include "server/app/options.hpp"
+#include "server/app/resource_limits.hpp"
 #include "server/guard/audit.hpp"
 #include "server/guard/gate.hpp"
 #include "server/guard/logins.hpp"

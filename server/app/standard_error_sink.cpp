@@ -1,6 +1,6 @@
 #include "server/app/standard_error_sink.hpp"
 
-#include "common/app/standard_error.hpp"
+#include "common/app/standard_streams.hpp"
 #include "server/access/secret.hpp"
 
 #include <spdlog/sinks/base_sink.h>

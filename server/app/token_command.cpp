@@ -1,6 +1,6 @@
 #include "server/app/token_command.hpp"
 
-#include "common/app/parse_failure.hpp"
+#include "common/app/command_line.hpp"
 #include "common/scan/limits.hpp"
 #include "server/access/pattern.hpp"
 #include "server/access/secret.hpp"

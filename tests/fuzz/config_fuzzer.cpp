@@ -1,5 +1,7 @@
-#include "common/app/environment_first.hpp"
+#include "common/app/settings.hpp"
 #include "tests/fuzz/check.hpp"
+
+#include <CLI/CLI.hpp>
 
 #include <cstdint>
 #include <sstream>

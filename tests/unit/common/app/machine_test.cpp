@@ -1,4 +1,4 @@
-#include "common/app/memory_limit.hpp"
+#include "common/app/machine.hpp"
 
 #include "tests/support/temporary_directory.hpp"
 

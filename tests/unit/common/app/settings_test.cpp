@@ -1,4 +1,4 @@
-#include "common/app/config_text.hpp"
+#include "common/app/settings.hpp"
 
 #include <gtest/gtest.h>
 

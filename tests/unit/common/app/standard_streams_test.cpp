@@ -1,4 +1,4 @@
-#include "common/app/standard_error.hpp"
+#include "common/app/standard_streams.hpp"
 
 #include "tests/support/temporary_directory.hpp"
 #include "tests/support/unread_pipe.hpp"
@@ -75,19 +75,19 @@ TEST_F(StandardErrorTest, AFullPipeHoldsUpNobodyAndWhatWasLostIsToldOnce) {
     EXPECT_THAT(pipe_.empty(), Not(HasSubstr("lost")));
     error_.write("two\n");
     error_.write("three\n");
-    EXPECT_EQ(pipe_.empty(), "1000 lines were dropped: nobody read them\ntwo\nthree\n");
+    EXPECT_EQ(pipe_.empty(), "1000 lines were dropped because they were not read\ntwo\nthree\n");
     pipe_.fill();
     error_.write("lost\n");
     (void)pipe_.empty();
     error_.write("four\n");
-    EXPECT_EQ(pipe_.empty(), "1 line was dropped: nobody read them\nfour\n");
+    EXPECT_EQ(pipe_.empty(), "1 line was dropped because it was not read\nfour\n");
 }
 
 TEST_F(StandardErrorTest, ALineCutByAFullPipeIsEndedBeforeTheNext) {
     error_.write(std::string(20'000, 'a') + '\n');
     EXPECT_THAT(pipe_.empty(), AllOf(StartsWith("aaa"), Not(HasSubstr("\n"))));
     error_.write("next\n");
-    EXPECT_EQ(pipe_.empty(), "\n1 line was dropped: nobody read them\nnext\n");
+    EXPECT_EQ(pipe_.empty(), "\n1 line was dropped because it was not read\nnext\n");
 }
 
 TEST_F(StandardErrorTest, TheDescriptorOfOthersStaysAsItWas) {
@@ -127,7 +127,7 @@ TEST(StandardError, ATerminalThatStandsStillHoldsUpNobodyEither) {
     (void)terminal.read_all();
     error.write("next\n");
     EXPECT_THAT(terminal.read_all(),
-                AllOf(HasSubstr(" lines were dropped: nobody read them\r\n"), EndsWith("next\r\n")));
+                AllOf(HasSubstr(" lines were dropped because they were not read\r\n"), EndsWith("next\r\n")));
 }
 
 } // namespace

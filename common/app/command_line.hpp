@@ -1,0 +1,98 @@
+#pragma once
+
+#include "common/app/program.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <string_view>
+
+/// What the option parsers share: how a program ends after a usage error, and checks of numbers for
+/// CLI::Option::check(), each of which returns an empty string if the text is valid, else what is wrong. Only option
+/// parsers include this header.
+namespace scanloom {
+
+/// Explains in one line, without CLI11's own terms, why CLI11 rejected the flags, the environment or the file.
+[[nodiscard]] inline std::string sentence_of(const CLI::ParseError& reason) {
+    std::string what = reason.what();
+    std::replace(what.begin(), what.end(), '\n', ' ');
+    constexpr std::string_view kUnknown = "INI was not able to parse ";
+    constexpr std::string_view kMissing = " was not readable (missing?)";
+    if (what.starts_with(kUnknown)) {
+        return "the file of --config has a setting that is not known: " + what.substr(kUnknown.size());
+    }
+    if (what.ends_with(kMissing)) {
+        return "the file of --config cannot be read: " + what.substr(0, what.size() - kMissing.size());
+    }
+    return what;
+}
+
+/// Returns how a program ends after a usage error; the text refers to --help.
+[[nodiscard]] inline Leave usage_error(const CLI::App& app, std::string_view what) {
+    return {kExitUsage, fmt::format("{0}: {1}; see {0} --help\n", app.get_name(), what)};
+}
+
+/// Returns how a program ends after CLI11 has thrown, which it also does when help or the version is requested.
+/// @param app       the parser that has thrown
+/// @param reason    what it has thrown
+/// @param commands  error text for a command line that names no subcommand
+/// @return exit code and output
+[[nodiscard]] inline Leave leave_for(const CLI::App& app, const CLI::ParseError& reason,
+                                     std::string_view commands = "") {
+    if (reason.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) {
+        const bool is_help = reason.get_name() == "CallForHelp" || reason.get_name() == "CallForAllHelp";
+        return {kExitDone, is_help ? app.help() : std::string(reason.what()) + "\n"};
+    }
+    const std::string what = sentence_of(reason);
+    return usage_error(app, what == "A subcommand is required" ? commands : what);
+}
+
+/// Accepts numbers from `low` to `high`. Rejects NaN, which CLI::Range accepts.
+[[nodiscard]] inline auto check_within(double low, double high) {
+    return [=](const std::string& text) {
+        double value = 0.0;
+        if (CLI::detail::lexical_cast(text, value) && value >= low && value <= high) return std::string();
+        return fmt::format("'{}' is not within {:g} to {:g}", text, low, high);
+    };
+}
+
+/// Accepts numbers above `low` and up to `high`.
+[[nodiscard]] inline auto check_above_up_to(double low, double high) {
+    return [=](const std::string& text) {
+        double value = 0.0;
+        if (CLI::detail::lexical_cast(text, value) && value > low && value <= high) return std::string();
+        return fmt::format("'{}' is not more than {:g} and at most {:g}", text, low, high);
+    };
+}
+
+[[nodiscard]] inline std::string check_positive(const std::string& text) {
+    double value = 0.0;
+    if (CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value > 0.0) return {};
+    return fmt::format("'{}' is not more than 0", text);
+}
+
+[[nodiscard]] inline std::string check_not_negative(const std::string& text) {
+    double value = 0.0;
+    if (CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value >= 0.0) return {};
+    return fmt::format("'{}' is not 0 or more", text);
+}
+
+/// Accepts whole numbers from `low` on. Rejects -1, which CLI11 alone converts to the largest number.
+[[nodiscard]] inline auto check_whole_number_from(std::uint64_t low) {
+    return [=](const std::string& text) {
+        std::uint64_t value = 0;
+        const char* end = text.data() + text.size();
+        const auto [stopped, error] = std::from_chars(text.data(), end, value);
+        if (error == std::errc{} && stopped == end && value >= low) return std::string();
+        return fmt::format("'{}' is not a whole number from {} to {}", text, low,
+                           std::numeric_limits<std::uint64_t>::max());
+    };
+}
+
+} // namespace scanloom
