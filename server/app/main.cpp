@@ -6,7 +6,7 @@
 #include "server/app/restore_command.hpp"
 #include "server/app/server.hpp"
 #include "server/app/standard_error_sink.hpp"
-#include "server/log/json_formatter.hpp"
+#include "server/log/context.hpp"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>

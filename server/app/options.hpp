@@ -2,7 +2,7 @@
 
 #include "common/app/program.hpp"
 #include "common/error/error.hpp"
-#include "server/sockets/port_tls.hpp"
+#include "server/sockets/listening_port.hpp"
 
 #include <boost/asio/ip/tcp.hpp>
 

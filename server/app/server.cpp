@@ -3,7 +3,7 @@
 #include "common/app/program.hpp"
 #include "server/app/service_manager.hpp"
 #include "server/guard/token_file.hpp"
-#include "server/sockets/run_to_the_end.hpp"
+#include "server/sockets/worker_pool.hpp"
 
 #include <boost/asio/post.hpp>
 #include <boost/asio/strand.hpp>
@@ -207,7 +207,7 @@ Result<> Server::run() {
     http_->start();
     std::vector<std::jthread> threads;
     for (std::size_t n = 0; n < io_threads_for(options_.threads); ++n)
-        threads.emplace_back([this] { sockets::run_to_the_end(io_); });
+        threads.emplace_back([this] { sockets::run_to_completion(io_); });
     if (auto recovered = sessions_.recover(); !recovered) {
         io_.stop();
         return recovered.error();

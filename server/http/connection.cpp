@@ -6,7 +6,7 @@
 #include "server/http/incoming.hpp"
 #include "server/http/problem.hpp"
 #include "server/live/invitation.hpp"
-#include "server/sockets/compute_on.hpp"
+#include "server/sockets/worker_pool.hpp"
 
 #include <boost/asio/dispatch.hpp>
 #include <boost/asio/use_awaitable.hpp>

@@ -1,7 +1,7 @@
 #include "common/net/await_tuple.hpp"
 #include "server/http/connection.hpp"
 #include "server/http/date.hpp"
-#include "server/sockets/compute_on.hpp"
+#include "server/sockets/worker_pool.hpp"
 
 #include <boost/beast/core/buffers_suffix.hpp>
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 #include "server/http/server.hpp"
 
 #include "server/http/problem.hpp"
-#include "server/sockets/accept_each.hpp"
+#include "server/sockets/listening_port.hpp"
 
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>

@@ -1,7 +1,7 @@
 #include "server/ingest/entrance.hpp"
 
 #include "server/mapping/map_config.hpp"
-#include "server/sockets/compute_on.hpp"
+#include "server/sockets/worker_pool.hpp"
 
 #include <boost/asio/async_result.hpp>
 #include <boost/asio/post.hpp>

@@ -1,6 +1,6 @@
 #include "server/ingest/ingest_server.hpp"
 
-#include "server/sockets/accept_each.hpp"
+#include "server/sockets/listening_port.hpp"
 
 #include <boost/asio/bind_executor.hpp>
 #include <boost/asio/co_spawn.hpp>

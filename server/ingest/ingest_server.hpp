@@ -1,7 +1,7 @@
 #pragma once
 
 #include "server/ingest/robot_link.hpp"
-#include "server/sockets/port_tls.hpp"
+#include "server/sockets/listening_port.hpp"
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "server/live/core/moment.hpp"
+#include "server/live/core/event_encoder.hpp"
 #include "server/session/capture_folds.hpp"
 #include "server/session/session.hpp"
 

@@ -2,7 +2,7 @@
 
 #include "common/net/await_tuple.hpp"
 #include "common/wire/live.hpp"
-#include "server/sockets/compute_on.hpp"
+#include "server/sockets/worker_pool.hpp"
 
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/dispatch.hpp>
@@ -33,15 +33,15 @@ websocket::close_reason close_with(websocket::close_code code, std::string_view 
 }
 
 /// Returns the current state of a session, which must not be deleted.
-Moment moment_of(const session::Session& session, std::uint64_t goals_revision) {
-    Moment moment{session.snapshot(), session.connected(), wire::LiveState::kOk, {}, goals_revision};
+SessionSnapshot snapshot_of(const session::Session& session, std::uint64_t goals_revision) {
+    SessionSnapshot snapshot{session.snapshot(), session.connected(), wire::LiveState::kOk, {}, goals_revision};
     const auto closing = session.closing();
     const auto failure = session.failure();
     if (closing || failure) {
-        moment.state = closing ? wire::LiveState::kDraining : wire::LiveState::kFailed;
-        moment.reason = closing ? closing->message : failure->message;
+        snapshot.state = closing ? wire::LiveState::kDraining : wire::LiveState::kFailed;
+        snapshot.reason = closing ? closing->message : failure->message;
     }
-    return moment;
+    return snapshot;
 }
 
 /// Increments a gauge while it exists.
@@ -60,7 +60,7 @@ private:
 
 Viewer::Viewer(net::LinkStream stream, Invitation invitation, std::shared_ptr<const void> seat, Services services)
     : stream_(std::move(stream)), invitation_(std::move(invitation)), seat_(std::move(seat)),
-      services_(std::move(services)), narrator_(invitation_.tag), turn_(stream_.get_executor()),
+      services_(std::move(services)), encoder_(invitation_.tag), turn_(stream_.get_executor()),
       deadline_(stream_.get_executor()) {
     const auto& config = services_.config;
     boost::system::error_code ignored;
@@ -76,7 +76,7 @@ Viewer::Viewer(net::LinkStream stream, Invitation invitation, std::shared_ptr<co
 // On any thread
 
 void Viewer::on_changed() noexcept {
-    if (told_.exchange(true)) return;
+    if (notified_.exchange(true)) return;
     try {
         asio::post(stream_.get_executor(), [weak = weak_from_this()] {
             if (const auto self = weak.lock()) {
@@ -85,7 +85,7 @@ void Viewer::on_changed() noexcept {
             }
         });
     } catch (...) { // std::bad_alloc: the next change tries again
-        told_ = false;
+        notified_ = false;
     }
 }
 
@@ -118,7 +118,7 @@ asio::awaitable<void> Viewer::run(const Upgrade& upgrade) {
         self->wake();
     });
     try {
-        co_await tell_events();
+        co_await send_events();
     } catch (const std::exception& failure) {
         spdlog::error("a viewer's connection failed and was closed: {}", failure.what());
         end(close_with(websocket::close_code::internal_error, "the server failed; its log says why"));
@@ -159,23 +159,23 @@ std::optional<Viewer::Close> Viewer::fault_of_message() {
     const auto bytes = buffer_.data();
     const auto request = wire::decode_live_request({static_cast<const char*>(bytes.data()), bytes.size()});
     if (!request) return close_with(websocket::close_code::bad_payload, request.error().message);
-    wishes_ = wishes_of(*request);
+    subscription_ = subscription_of(*request);
     return std::nullopt;
 }
 
-asio::awaitable<void> Viewer::tell_events() {
+asio::awaitable<void> Viewer::send_events() {
     for (;;) {
         co_await wait_for_turn();
         if (ending_ || !reading_) co_return;
         changed_ = false;
-        if (wishes_) narrator_.set_wishes(*std::exchange(wishes_, std::nullopt));
-        auto work = [self = shared_from_this()] { return self->narrate(); };
-        const Narration narration = co_await sockets::compute_on(services_.showing, std::move(work));
-        look_again_ = narration.look_again;
-        if (narration.end) end(*narration.end);
-        if (!narration.event) continue;
+        if (subscription_) encoder_.set_subscription(*std::exchange(subscription_, std::nullopt));
+        auto work = [self = shared_from_this()] { return self->next_step(); };
+        const NextStep step = co_await sockets::compute_on(services_.showing, std::move(work));
+        look_again_ = step.look_again;
+        if (step.end) end(*step.end);
+        if (!step.event) continue;
         due_ = Clock::now() + services_.config.interval;
-        const bool sent = co_await send(*narration.event);
+        const bool sent = co_await send(*step.event);
         if (!sent) co_return;
     }
 }
@@ -191,8 +191,8 @@ asio::awaitable<void> Viewer::wait_for_turn() {
 }
 
 /// Creates the next event. Runs on `showing`.
-Viewer::Narration Viewer::narrate() {
-    told_ = false; // before reading the state, so that later changes notify again
+Viewer::NextStep Viewer::next_step() {
+    notified_ = false; // before reading the state, so that later changes notify again
     if (invitation_.pass && !invitation_.pass->token()) {
         invitation_.taken_back();
         return {{}, close_with(kTokenGone, "your token does not allow this any more; sign in with another"), {}};
@@ -206,22 +206,22 @@ Viewer::Narration Viewer::narrate() {
     if (!session)
         return {{}, close_with(websocket::close_code::going_away, "the session left memory; connect again"), {}};
     const auto ways = invitation_.ways.state(session, Clock::now());
-    Moment moment = moment_of(*session, ways.revision);
-    const auto until = std::min(ways.until, add_landmarks(session, moment));
-    const auto event = narrator_.next(moment);
+    SessionSnapshot snapshot = snapshot_of(*session, ways.revision);
+    const auto until = std::min(ways.until, add_landmarks(session, snapshot));
+    const auto event = encoder_.next(snapshot);
     std::optional<Close> end;
     if (closing) end = close_with(websocket::close_code::going_away, closing->message);
     if (!event) return {{}, end, until};
-    return {wire::encode(*event), end, narrator_.has_more() ? Clock::now() : until};
+    return {wire::encode(*event), end, encoder_.has_more() ? Clock::now() : until};
 }
 
 /// @return when to look for landmarks again
 Viewer::Clock::time_point Viewer::add_landmarks(const std::shared_ptr<const session::Session>& session,
-                                                Moment& moment) {
-    if (!narrator_.wishes_for_landmarks()) return Clock::time_point::max();
+                                                SessionSnapshot& snapshot) {
+    if (!encoder_.subscribes_to_landmarks()) return Clock::time_point::max();
     const LandmarkSearch search{services_.finding, services_.config.landmarks_pause, services_.config.landmarks_turn};
-    auto look = invitation_.landmarks->look(session, moment.maps->revision, search);
-    moment.landmarks = std::move(look.found);
+    auto look = invitation_.landmarks->look(session, snapshot.maps->revision, search);
+    snapshot.landmarks = std::move(look.found);
     return look.until;
 }
 

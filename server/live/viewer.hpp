@@ -3,7 +3,7 @@
 #include "common/error/error.hpp"
 #include "common/net/link_stream.hpp"
 #include "common/net/websocket_teardown.hpp"
-#include "server/live/core/narrator.hpp"
+#include "server/live/core/event_encoder.hpp"
 #include "server/live/invitation.hpp"
 #include "server/live/live_config.hpp"
 #include "server/metrics/metrics.hpp"
@@ -35,7 +35,7 @@ namespace scanloom::live {
 /// evicted, 1003 text message, 1007 invalid LiveRequest, 1009 message longer than request_bytes_max, 1011 internal
 /// error, 4401 the token is no longer valid, 4404 the session was deleted. It is closed without a code if the client
 /// disconnects or violates the WebSocket protocol, or if a timeout expires.
-/// Threads: the socket's executor, a strand. narrate() runs on `showing` while the coroutine on the strand waits for
+/// Threads: the socket's executor, a strand. next_step() runs on `showing` while the coroutine on the strand waits for
 /// it. on_changed(), stop() and abort() may be called from any thread.
 class Viewer final : public session::Watcher, public std::enable_shared_from_this<Viewer> {
 public:
@@ -68,7 +68,7 @@ private:
     using Close = boost::beast::websocket::close_reason;
 
     /// The next step of the viewer.
-    struct Narration {
+    struct NextStep {
         std::optional<std::string> event; // encoded; nullopt: nothing new
         std::optional<Close> end;
         Clock::time_point look_again = Clock::time_point::max(); // time of the next step, even without a notification
@@ -76,13 +76,13 @@ private:
 
     [[nodiscard]] boost::asio::awaitable<bool> accept(const Upgrade& upgrade);
     [[nodiscard]] boost::asio::awaitable<void> read_requests();
-    [[nodiscard]] boost::asio::awaitable<void> tell_events();
+    [[nodiscard]] boost::asio::awaitable<void> send_events();
     [[nodiscard]] boost::asio::awaitable<void> wait_for_turn();
     [[nodiscard]] boost::asio::awaitable<bool> send(const std::string& event);
     [[nodiscard]] boost::asio::awaitable<void> close();
-    [[nodiscard]] Narration narrate();
+    [[nodiscard]] NextStep next_step();
     [[nodiscard]] Clock::time_point add_landmarks(const std::shared_ptr<const session::Session>& session,
-                                                  Moment& moment);
+                                                  SessionSnapshot& snapshot);
     [[nodiscard]] std::optional<Close> fault_of_message();
     void end(Close why);
     void wake();
@@ -93,16 +93,16 @@ private:
     Invitation invitation_;
     std::shared_ptr<const void> seat_;
     Services services_;
-    Narrator narrator_; // not used by the strand while narrate() runs
+    EventEncoder encoder_; // not used by the strand while next_step() runs
     boost::asio::steady_timer turn_;
     boost::asio::steady_timer deadline_;
     Clock::time_point due_; // the next event is not sent before
     Clock::time_point look_again_ = Clock::time_point::max();
-    std::optional<Wishes> wishes_; // not yet passed to the narrator
-    bool changed_ = true;          // the state may have changed since the last event
+    std::optional<Subscription> subscription_; // not yet passed to the encoder
+    bool changed_ = true;                      // the state may have changed since the last event
     bool reading_ = false;
     std::optional<Close> ending_;
-    std::atomic<bool> told_ = false; // on_changed() was called since narrate() last read the state
+    std::atomic<bool> notified_ = false; // on_changed() was called since next_step() last read the state
 };
 
 } // namespace scanloom::live

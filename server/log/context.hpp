@@ -1,12 +1,15 @@
 #pragma once
 
 #include <fmt/format.h>
+#include <spdlog/formatter.h>
 #include <spdlog/spdlog.h>
 
+#include <memory>
 #include <string_view>
 #include <utility>
 
 /// Writes log lines that have a sentence for people and, for programs, fields with the session, robot and peer.
+
 namespace scanloom::log {
 
 /// The session, robot and peer of a log line. A field is empty if it does not apply or is unknown.
@@ -57,5 +60,14 @@ template <class... Args>
 void error(const Context& context, fmt::format_string<Args...> format, Args&&... args) {
     detail::write(spdlog::level::err, context, format, std::forward<Args>(args)...);
 }
+
+/// Formats a log line as a JSON object: "time" (RFC 3339, UTC, milliseconds), "level" and "message", and those of
+/// "session", "robot" and "peer" that are not empty.
+/// Threads: one at a time; uses current() of the thread that logs.
+class JsonFormatter final : public spdlog::formatter {
+public:
+    void format(const spdlog::details::log_msg& line, spdlog::memory_buf_t& into) override;
+    [[nodiscard]] std::unique_ptr<spdlog::formatter> clone() const override;
+};
 
 } // namespace scanloom::log

@@ -1,6 +1,6 @@
 #include "server/metrics/process.hpp"
 
-#include "server/metrics/families.hpp"
+#include "server/metrics/metrics.hpp"
 
 #include <sys/resource.h>
 #include <unistd.h>

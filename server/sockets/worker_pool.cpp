@@ -1,13 +1,28 @@
 #include "server/sockets/worker_pool.hpp"
 
-#include "server/sockets/run_to_the_end.hpp"
+#include <spdlog/spdlog.h>
+
+#include <exception>
 
 namespace scanloom::sockets {
+
+void run_to_completion(boost::asio::io_context& io) noexcept {
+    for (;;) {
+        try {
+            io.run();
+            return;
+        } catch (const std::exception& failure) {
+            spdlog::error("a task failed: {}", failure.what());
+        } catch (...) {
+            spdlog::error("a task failed");
+        }
+    }
+}
 
 WorkerPool::WorkerPool(std::size_t threads) : io_(static_cast<int>(threads)), work_(io_.get_executor()) {
     threads_.reserve(threads);
     try {
-        while (threads_.size() < threads) threads_.emplace_back([this] { run_to_the_end(io_); });
+        while (threads_.size() < threads) threads_.emplace_back([this] { run_to_completion(io_); });
     } catch (...) {
         io_.stop();
         join();

@@ -1,5 +1,5 @@
 #include "common/wire/live.hpp"
-#include "server/live/core/moment.hpp"
+#include "server/live/core/event_encoder.hpp"
 #include "tests/fuzz/check.hpp"
 
 #include <algorithm>
@@ -15,12 +15,12 @@ SCANLOOM_FUZZER(live_request)(const std::uint8_t* data, std::size_t size) {
         return 0;
     }
     fuzz::check(request->layers.size() <= 16, "the number of layers is bounded");
-    const auto wishes = live::wishes_of(*request);
+    const auto subscription = live::subscription_of(*request);
     for (const auto layer : request->layers) {
         fuzz::check(layer >= wire::LiveLayer::kOccupancy && layer <= wire::LiveLayer::kClassification,
                     "each layer exists");
     }
-    fuzz::check(std::ranges::find(wishes.layers, true) != wishes.layers.end() || request->layers.empty(),
+    fuzz::check(std::ranges::find(subscription.layers, true) != subscription.layers.end() || request->layers.empty(),
                 "each requested part is subscribed to");
     return 0;
 }

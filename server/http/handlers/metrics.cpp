@@ -1,6 +1,6 @@
 #include "server/http/handlers/metrics.hpp"
 
-#include "server/metrics/families.hpp"
+#include "server/metrics/metrics.hpp"
 #include "server/metrics/process.hpp"
 
 #include <algorithm>

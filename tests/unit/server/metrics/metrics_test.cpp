@@ -1,5 +1,3 @@
-#include "server/metrics/duration_histogram.hpp"
-#include "server/metrics/families.hpp"
 #include "server/metrics/metrics.hpp"
 #include "server/metrics/process.hpp"
 #include "tests/support/temporary_directory.hpp"

@@ -1,4 +1,4 @@
-#include "server/sockets/accept_each.hpp"
+#include "server/sockets/listening_port.hpp"
 
 #include <boost/asio/co_spawn.hpp>
 #include <gtest/gtest.h>

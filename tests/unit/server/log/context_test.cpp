@@ -1,5 +1,3 @@
-#include "server/log/json_formatter.hpp"
-
 #include "server/log/context.hpp"
 
 #include <boost/json/parse.hpp>

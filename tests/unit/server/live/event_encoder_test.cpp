@@ -1,0 +1,443 @@
+#include "server/live/core/event_encoder.hpp"
+
+#include "server/mapping/projection.hpp"
+#include "tests/support/live_replay.hpp"
+#include "tests/support/random_scans.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <map>
+#include <numbers>
+#include <random>
+
+namespace scanloom::live {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+using testing_support::LiveReplay;
+
+/// A session's maps while robots stream, one entry at a time.
+class Growing {
+public:
+    explicit Growing(std::uint32_t robots) {
+        Sensor sonar{.id = 9, .kind = SensorKind::kSonar, .angles = UniformAngles{0.0, 1.0, 6}, .range_max = 4.0};
+        for (std::uint32_t robot = 0; robot < robots; ++robot) {
+            fold(RobotJoined{robot, "r" + std::to_string(robot)});
+            fold(SensorDescribed{robot, testing_support::small_laser()});
+            fold(SensorDescribed{robot, sonar});
+        }
+        newest_.resize(robots);
+        connected.resize(robots, true);
+    }
+
+    void scan(RobotIndex robot) {
+        const std::uint64_t seq = maps().robots[robot].last_seq + 1;
+        Scan scan = testing_support::random_scan(robot + 1, seq);
+        if (seq % 3 == 0) {
+            scan.sensor = 9;
+            scan.ranges.resize(6);
+        }
+        take(robot, std::move(scan));
+    }
+
+    void take(RobotIndex robot, Scan scan) {
+        fold(ScanTaken{robot, scan});
+        newest_[robot] = std::make_shared<const mapping::FoldedScan>(
+            mapping::FoldedScan{projection_.revision(), projection_.sensor_of(robot, scan.sensor), std::move(scan)});
+    }
+
+    void fold(const LogEntry& entry) { projection_.fold(entry).value(); }
+
+    [[nodiscard]] mapping::Snapshot maps() {
+        auto maps = projection_.snapshot();
+        for (std::size_t n = 0; n < newest_.size(); ++n) maps.robots[n].newest_scan = newest_[n];
+        return maps;
+    }
+
+    [[nodiscard]] SessionSnapshot snapshot() {
+        return {std::make_shared<const mapping::Snapshot>(maps()), connected, wire::LiveState::kOk, {}};
+    }
+
+    std::vector<bool> connected;
+
+private:
+    mapping::Projection projection_{mapping::resolve({.cell_size = 0.05}).value()};
+    std::vector<std::shared_ptr<const mapping::FoldedScan>> newest_;
+};
+
+TEST(EventEncoder, GivesNewestSnapshotToClientThatReadsEveryEvent) {
+    for (const unsigned seed : {1U, 2U, 3U}) {
+        std::mt19937 random(seed);
+        Growing session(3);
+        EventEncoder encoder("tag");
+        LiveReplay viewer;
+        for (int step = 0; step < 120; ++step) {
+            if (random() % 8 == 0) {
+                session.connected[random() % 3] = random() % 2 == 0;
+            } else {
+                session.scan(static_cast<RobotIndex>(random() % 3));
+            }
+            if (random() % 4 != 0) continue; // the viewer is busy
+            const SessionSnapshot snapshot = session.snapshot();
+            if (const auto event = encoder.next(snapshot)) viewer.take(wire::encode(*event));
+            ASSERT_NO_FATAL_FAILURE(viewer.expect_equal_to(*snapshot.maps, snapshot.connected)) << "seed " << seed;
+            EXPECT_EQ(encoder.next(snapshot), std::nullopt) << "nothing is sent twice";
+        }
+        EXPECT_THAT(viewer.everything, IsEmpty());
+    }
+}
+
+TEST(EventEncoder, SendsEveryTrailPoint) {
+    Growing session(1);
+    EventEncoder encoder("tag");
+    LiveReplay viewer;
+    for (int n = 0; n < 600; ++n) {
+        session.scan(0);
+        if (n % 200 == 199) viewer.take(wire::encode(*encoder.next(session.snapshot())));
+    }
+    EXPECT_EQ(viewer.robots.at(0).trail.size(), 600U);
+}
+
+TEST(EventEncoder, SendsNewestPointsOfLongTrailWithOffset) {
+    Growing session(1);
+    for (int n = 0; n < 300; ++n) session.scan(0);
+    EventEncoder encoder("tag");
+    const auto event = encoder.next(session.snapshot());
+    EXPECT_EQ(event->robots.at(0).trail.size(), kTrailMax);
+    EXPECT_EQ(event->robots.at(0).trail_from, 300 - kTrailMax);
+}
+
+TEST(EventEncoder, ReportsEverythingIfTooManyTilesChanged) {
+    mapping::LaserLayers layers{mapping::MapConfig{}};
+    const auto maps_with_rows = [&](std::int32_t rows, Revision revision) {
+        for (std::int32_t cj = 0; cj < 4 * rows; cj += 4) {
+            for (std::int32_t ci = 0; ci < 4 * 64; ci += 4) layers.restore({cj, ci}, revision).occupancy.fill(0);
+        }
+        return std::make_shared<const mapping::Snapshot>(
+            mapping::Snapshot{.revision = revision, .laser = layers.snapshot()});
+    };
+    EventEncoder encoder("tag");
+    const auto most = encoder.next({maps_with_rows(32, 1), {}, wire::LiveState::kOk, {}});
+    ASSERT_EQ(most->tiles.size(), 2U); // occupancy and himm share their chunks
+    EXPECT_FALSE(most->tiles[0].everything);
+    EXPECT_EQ(most->tiles[0].tiles.size(), kTilesMax);
+    const auto more = encoder.next({maps_with_rows(33, 2), {}, wire::LiveState::kOk, {}});
+    ASSERT_EQ(more->tiles.size(), 2U);
+    EXPECT_TRUE(more->tiles[0].everything);
+    EXPECT_THAT(more->tiles[0].tiles, IsEmpty());
+}
+
+TEST(EventEncoder, ContinuesLayersAfterResubscription) {
+    Growing session(1);
+    session.scan(0);
+    EventEncoder encoder("tag");
+    encoder.set_subscription(subscription_of({{wire::LiveLayer::kHimm}, false}));
+    LiveReplay viewer;
+    viewer.take(wire::encode(*encoder.next(session.snapshot())));
+    EXPECT_THAT(viewer.tiles, ElementsAre(testing::Key(v1::LAYER_HIMM)));
+    EXPECT_FALSE(viewer.robots.at(0).scan.has_origin());
+
+    session.scan(0);
+    encoder.set_subscription(Subscription{});
+    const SessionSnapshot snapshot = session.snapshot();
+    viewer.take(wire::encode(*encoder.next(snapshot)));
+    viewer.expect_equal_to(*snapshot.maps, snapshot.connected);
+    EXPECT_TRUE(viewer.robots.at(0).scan.has_origin());
+}
+
+TEST(EventEncoder, SendsScanAgainAfterSubscriptionToPoints) {
+    Growing session(1);
+    session.scan(0);
+    EventEncoder encoder("tag");
+    encoder.set_subscription({{}, false});
+    EXPECT_FALSE(encoder.next(session.snapshot())->robots.at(0).scan);
+    for (int n = 0; n < 2; ++n) {
+        encoder.set_subscription({{}, false});
+        EXPECT_FALSE(encoder.next(session.snapshot()));
+        encoder.set_subscription({{}, true});
+        const auto event = encoder.next(session.snapshot());
+        ASSERT_TRUE(event);
+        EXPECT_TRUE(event->robots.at(0).scan);
+    }
+}
+
+TEST(EventEncoder, SendsStateChangeWithReason) {
+    Growing session(1);
+    EventEncoder encoder("tag");
+    SessionSnapshot snapshot = session.snapshot();
+    EXPECT_EQ(encoder.next(snapshot)->state, wire::LiveState::kOk);
+    snapshot.state = wire::LiveState::kDraining;
+    snapshot.reason = "the server is shutting down";
+    const auto event = encoder.next(snapshot);
+    EXPECT_EQ(event->state, wire::LiveState::kDraining);
+    EXPECT_EQ(event->reason, snapshot.reason);
+    EXPECT_EQ(encoder.next(snapshot), std::nullopt);
+}
+
+TEST(EventEncoder, SendsChangedBodyRadius) {
+    Growing session(2);
+    EventEncoder encoder("tag");
+    const auto sent = [&] {
+        v1::LiveEvent event;
+        EXPECT_TRUE(event.ParseFromString(wire::encode(encoder.next(session.snapshot()).value())));
+        return event;
+    };
+    EXPECT_EQ(sent().robots(0).body_radius(), 0.0) << "not stated";
+    for (const double radius : {0.25, 0.5}) {
+        session.fold(RobotJoined{1, "r1", "", radius});
+        const auto event = sent();
+        ASSERT_EQ(event.robots_size(), 1);
+        EXPECT_EQ(event.robots(0).robot(), 1U);
+        EXPECT_EQ(event.robots(0).body_radius(), radius);
+    }
+    EXPECT_EQ(encoder.next(session.snapshot()), std::nullopt);
+}
+
+TEST(EventEncoder, SendsEventIfOnlyGoalsChanged) {
+    Growing session(1);
+    session.scan(0);
+    EventEncoder encoder("tag");
+    SessionSnapshot snapshot = session.snapshot();
+    EXPECT_EQ(encoder.next(snapshot)->goals_revision, 0U);
+    snapshot.goals_revision = 3;
+    EXPECT_EQ(encoder.next(snapshot)->goals_revision, 3U);
+    EXPECT_EQ(encoder.next(snapshot), std::nullopt);
+    session.scan(0);
+    SessionSnapshot later = session.snapshot();
+    later.goals_revision = 3;
+    v1::LiveEvent event;
+    ASSERT_TRUE(event.ParseFromString(wire::encode(*encoder.next(later))));
+    EXPECT_EQ(event.goals_revision(), 3U) << "in every event";
+}
+
+TEST(EventEncoder, BoundsEventForAnyNumberOfRobots) {
+    constexpr std::uint32_t kRobots = 1024;
+    mapping::Snapshot maps{.revision = 9};
+    const auto sensor =
+        std::make_shared<const Sensor>(Sensor{.angles = UniformAngles{0.0, 0.001, 4096}, .range_max = 1000.0});
+    Scan scan;
+    scan.ranges.assign(4096, 999'999);
+    const auto newest = std::make_shared<const mapping::FoldedScan>(mapping::FoldedScan{9, sensor, scan});
+    mapping::Trajectory trail;
+    for (int n = 0; n < 1000; ++n) trail.append({1, 0.0, {n % 2 == 0 ? 1e6 : -1e6, n % 2 == 0 ? -1e6 : 1e6, 0.0}});
+    for (std::uint32_t n = 0; n < kRobots; ++n) {
+        maps.robots.push_back({.name = std::string(64, 'r'),
+                               .scan_count = 1000,
+                               .pose = Pose2{},
+                               .trajectory = trail.snapshot(),
+                               .newest_scan = newest});
+    }
+    EventEncoder encoder("tag");
+    const auto event = encoder.next({std::make_shared<const mapping::Snapshot>(maps), {}, wire::LiveState::kOk, {}});
+    std::size_t points = 0;
+    std::size_t trails = 0;
+    for (const auto& robot : event->robots) {
+        points += robot.scan->points.size();
+        trails += robot.trail.size();
+    }
+    EXPECT_EQ(event->robots.size(), kRobots);
+    EXPECT_LE(points, kScanPointsMax + kRobots);
+    EXPECT_GE(points, kScanPointsMax / 2);
+    EXPECT_LE(trails, kTrailsMax);
+    const auto bytes = wire::encode(*event);
+    EXPECT_LE(bytes.size(), 512U * 1024U);
+    LiveReplay viewer;
+    viewer.take(bytes);
+    viewer.expect_equal_to(maps, {}); // even the longest leaps of a trail
+}
+
+TEST(ScanPoints, AreEndPointsOfBeamsThatHit) {
+    Sensor sensor{.id = 3,
+                  .mount = {1.0, 0.0, 0.0},
+                  .angles = UniformAngles{0.0, std::numbers::pi / 2, 4},
+                  .range_min = 0.5,
+                  .range_max = 10.0};
+    Scan scan;
+    scan.stamp = 7.5;
+    scan.pose = {5.0, 5.0, std::numbers::pi / 2};
+    scan.ranges = {2'000, 3'000, kNoReturn, kInvalidRange};
+    const mapping::FoldedScan folded{1, std::make_shared<const Sensor>(sensor), scan};
+    const auto points = points_of(folded, 1);
+    EXPECT_NEAR(points.origin.x, 5.0, 1e-9);
+    EXPECT_NEAR(points.origin.y, 6.0, 1e-9);
+    EXPECT_THAT(points.points, ElementsAre(PointMm{0, 2'000}, PointMm{-3'000, 0}));
+    EXPECT_EQ(points.stamp, 7.5);
+
+    scan.ranges = {400, 10'000, 1'000, 9'999}; // nearer than range_min, farther than range_max
+    const mapping::FoldedScan bounds{1, std::make_shared<const Sensor>(sensor), scan};
+    EXPECT_THAT(points_of(bounds, 1).points, ElementsAre(PointMm{0, -1'000}, PointMm{9'999, 0}));
+    EXPECT_THAT(points_of(bounds, 2).points, ElementsAre(PointMm{0, -1'000}));
+}
+
+using landmarks::Landmark;
+using testing::IsEmpty;
+using testing::SizeIs;
+using testing_support::LiveReplay;
+
+/// A session's landmarks while captures come, each of which sees some known ones again and some new ones.
+class Seeing {
+public:
+    explicit Seeing(unsigned seed) : random_(seed) {}
+
+    void capture(std::size_t fresh, std::size_t again) {
+        std::map<int, Landmark> seen; // each place once
+        for (std::size_t n = 0; n < again && places_ > 0; ++n) see(static_cast<int>(random_() % places_), seen);
+        for (std::size_t n = 0; n < fresh; ++n) see(places_++, seen);
+        std::vector<Landmark> all;
+        for (const auto& [place, landmark] : seen) all.push_back(landmark);
+        map_.add(all, ++revision_);
+        ++captures_;
+    }
+
+    [[nodiscard]] std::shared_ptr<const FoundLandmarks> found(std::string refused = {}) {
+        return std::make_shared<const FoundLandmarks>(
+            FoundLandmarks{{map_.snapshot(), captures_, {}}, revision_, std::move(refused)});
+    }
+
+    [[nodiscard]] landmarks::LandmarkView view() { return map_.snapshot(); }
+
+private:
+    void see(int place, std::map<int, Landmark>& seen) const {
+        const double x = place % 40; // metres apart, so that none is taken for another
+        seen[place] = {.position = {x, place / 40.0}, .points = 12, .size = {0.5, 0.25}, .spread = 0.125};
+    }
+
+    std::mt19937 random_;
+    int places_ = 0;
+    landmarks::LandmarkMap map_;
+    Revision revision_ = 0;
+    std::uint64_t captures_ = 0;
+};
+
+void expect_equal(const LiveReplay& viewer, const landmarks::LandmarkView& landmarks) {
+    ASSERT_EQ(viewer.landmarks.size(), landmarks.size());
+    for (const auto& [id, sent] : viewer.landmarks) {
+        const auto& truth = landmarks[id];
+        EXPECT_EQ(sent.id(), truth.id);
+        EXPECT_EQ(sent.x(), truth.landmark.position.x);
+        EXPECT_EQ(sent.y(), truth.landmark.position.y);
+        EXPECT_EQ(sent.seen(), truth.seen);
+        EXPECT_EQ(sent.size_x(), 0.5F);
+        EXPECT_EQ(sent.size_y(), 0.25F);
+        EXPECT_EQ(sent.spread(), 0.125F);
+        EXPECT_EQ(sent.points(), 12U);
+        EXPECT_EQ(sent.first(), truth.first);
+        EXPECT_EQ(sent.last(), truth.last);
+    }
+}
+
+SessionSnapshot snapshot_with(std::shared_ptr<const FoundLandmarks> found) {
+    SessionSnapshot snapshot;
+    snapshot.maps = std::make_shared<const mapping::Snapshot>();
+    snapshot.landmarks = std::move(found);
+    return snapshot;
+}
+
+EventEncoder landmark_encoder() {
+    EventEncoder encoder("tag");
+    encoder.set_subscription({{}, false, true});
+    return encoder;
+}
+
+TEST(LandmarkChanges, ReturnsEachChangeOnceInOrder) {
+    for (const unsigned seed : {1U, 2U, 3U}) {
+        Seeing session(seed);
+        std::mt19937 random(seed);
+        std::map<std::uint32_t, landmarks::MapLandmark> known;
+        LandmarkKey sent;
+        for (int step = 0; step < 200; ++step) {
+            if (random() % 3 == 0) session.capture(random() % 7, random() % 9);
+            const std::size_t most = 1 + random() % 5;
+            const auto view = session.view();
+            const auto changed = changed_landmarks(view, sent, most);
+            EXPECT_LE(changed.first.size(), most);
+            if (changed.following > 0) {
+                EXPECT_THAT(changed.first, SizeIs(most));
+            }
+            for (const auto* one : changed.first) {
+                EXPECT_LT(sent, key_of(*one)) << "each is sent once, in order";
+                sent = key_of(*one);
+                known[one->id] = *one;
+            }
+        }
+        const auto view = session.view();
+        for (const auto* one : changed_landmarks(view, sent, view.size()).first) known[one->id] = *one;
+        ASSERT_EQ(known.size(), view.size());
+        for (const auto& [id, one] : known) EXPECT_EQ(one, view[id]) << "seed " << seed;
+    }
+}
+
+TEST(LandmarkEvents, GiveAllLandmarksToClientThatReadsEveryEvent) {
+    Seeing session(1);
+    EventEncoder encoder = landmark_encoder();
+    LiveReplay viewer;
+    std::mt19937 random(1);
+    for (int step = 0; step < 60; ++step) {
+        session.capture(random() % 60, random() % 40);
+        if (random() % 2 == 0) continue; // the viewer is busy
+        const SessionSnapshot snapshot = snapshot_with(session.found());
+        if (const auto event = encoder.next(snapshot)) viewer.take(wire::encode(*event));
+        ASSERT_NO_FATAL_FAILURE(expect_equal(viewer, session.view()));
+        EXPECT_EQ(viewer.last_landmarks.captures(), snapshot.landmarks->state.captures);
+        EXPECT_EQ(viewer.last_landmarks.revision(), snapshot.landmarks->revision);
+        EXPECT_FALSE(encoder.has_more());
+        EXPECT_EQ(encoder.next(snapshot), std::nullopt) << "nothing is sent twice";
+    }
+}
+
+TEST(LandmarkEvents, ContinueInNextEventBeyondMaximum) {
+    Seeing session(1);
+    session.capture(2 * kLandmarksMax + 7, 0);
+    EventEncoder encoder = landmark_encoder();
+    const SessionSnapshot snapshot = snapshot_with(session.found());
+    LiveReplay viewer;
+    for (const std::size_t left : {kLandmarksMax + 7, std::size_t{7}, std::size_t{0}}) {
+        viewer.take(wire::encode(encoder.next(snapshot).value()));
+        EXPECT_EQ(viewer.last_landmarks.following(), left);
+        EXPECT_EQ(encoder.has_more(), left > 0);
+    }
+    expect_equal(viewer, session.view());
+    EXPECT_EQ(encoder.next(snapshot), std::nullopt);
+}
+
+TEST(LandmarkEvents, AreSentOnlyWhileSubscribed) {
+    Seeing session(1);
+    session.capture(5, 0);
+    EventEncoder encoder("tag");
+    EXPECT_FALSE(encoder.subscribes_to_landmarks());
+    EXPECT_FALSE(encoder.next(snapshot_with(session.found()))->landmarks);
+    encoder.set_subscription({{}, false, true});
+    EXPECT_THAT(encoder.next(snapshot_with(session.found()))->landmarks->landmarks, SizeIs(5));
+    encoder.set_subscription({{}, false, false});
+    session.capture(2, 0);
+    EXPECT_EQ(encoder.next(snapshot_with(session.found())), std::nullopt);
+    encoder.set_subscription({{}, false, true});
+    EXPECT_THAT(encoder.next(snapshot_with(session.found()))->landmarks->landmarks, SizeIs(2));
+}
+
+TEST(LandmarkEvents, ReportNoLandmarksAndRefusalOnce) {
+    Seeing session(1);
+    EventEncoder encoder = landmark_encoder();
+    EXPECT_FALSE(encoder.next(snapshot_with(nullptr))->landmarks) << "no search has ended yet";
+    const auto none = encoder.next(snapshot_with(session.found()));
+    ASSERT_TRUE(none && none->landmarks);
+    EXPECT_THAT(none->landmarks->landmarks, IsEmpty());
+    const auto refused = encoder.next(snapshot_with(session.found("there are too many")));
+    ASSERT_TRUE(refused && refused->landmarks);
+    EXPECT_EQ(refused->landmarks->refused, "there are too many");
+    EXPECT_EQ(encoder.next(snapshot_with(session.found("there are too many"))), std::nullopt);
+    EXPECT_EQ(encoder.next(snapshot_with(session.found()))->landmarks->refused, "");
+}
+
+TEST(LandmarkEvents, FullEventIsAtMost64KiB) {
+    Seeing session(1);
+    session.capture(kLandmarksMax, 0);
+    EventEncoder encoder = landmark_encoder();
+    EXPECT_LE(wire::encode(encoder.next(snapshot_with(session.found())).value()).size(), 64U * 1024U);
+}
+
+} // namespace
+
+} // namespace scanloom::live
