@@ -94,8 +94,8 @@ void check_sessions(store::AtRest& store, session::CheckDepth depth, Findings& f
         }
     }
     for (const auto id : store.without_record) {
-        findings.damaged({fmt::format("#{}", id), 0,
-                          Error{Errc::kDataLoss, "its record is missing: what it was called, and its settings"}});
+        findings.damaged(
+            {fmt::format("#{}", id), 0, Error{Errc::kDataLoss, "its record, with name and settings, is missing"}});
     }
 }
 
@@ -121,8 +121,8 @@ ExitCode check_store(const ServerOptions& options) {
         findings.store_damaged(store.error());
     } else {
         if (store->unfinished_bytes > 0) {
-            std::cout << fmt::format("{} bytes of an unfinished write are at the end of the write-ahead log: never "
-                                     "acknowledged, no damage; the next start drops them\n",
+            std::cout << fmt::format("the write-ahead log ends with {} bytes of an unfinished write, which was never "
+                                     "acknowledged; this is no damage, and the next start drops them\n",
                                      store->unfinished_bytes);
         }
         const auto depth =

@@ -20,12 +20,12 @@
 namespace scanloom::app {
 namespace {
 
-constexpr const char* kAbout = "Keeps the scans of robots in a durable log and serves the maps woven from it.\n"
+constexpr const char* kAbout = "Stores the scans of robots in a durable log and serves the maps computed from it.\n"
                                "Prints one line of JSON with its ports when it is ready.";
 constexpr const char* kFooter =
-    "Every option may also stand in the file of --config (TOML) or in the environment "
-    "(--log-level as SCANLOOM_LOG_LEVEL).\nA flag beats the environment, which beats the file.\n"
-    "`scanloom-server token --help` says how tokens are made.";
+    "Every option can also be set in the file of --config (TOML) or in the environment "
+    "(--log-level as SCANLOOM_LOG_LEVEL).\nA flag overrides the environment, which overrides the file.\n"
+    "`scanloom-server token --help` describes how to create tokens.";
 
 // When scans filled a disk of 200 MiB, RocksDB had no room for a table with a reserve of 16 MiB, and had it with 32.
 constexpr double kDiskReserveMibMin = 32.0;
@@ -65,15 +65,19 @@ std::filesystem::path default_web() {
 void add_tls_options(CLI::App& app, sockets::TlsFiles& files, const std::string& port, const std::string& who) {
     auto* certificate = app.add_option(
         port + "-tls-cert", files.certificate,
-        fmt::format("Certificate chain in PEM: {} must speak TLS, and may check whom they speak to. SIGHUP has it read "
-                    "again",
-                    who));
+        fmt::format(
+            "Certificate chain in PEM: {} must use TLS, and can verify the server. SIGHUP makes the server read it "
+            "again",
+            who));
     auto* key = app.add_option(port + "-tls-key", files.key, "Its private key in PEM, without a password");
     certificate->needs(key);
     key->needs(certificate);
     app.add_option(
            port + "-client-ca", files.client_ca,
-           fmt::format("Certificates in PEM: {} must show one that these signed. SIGHUP has it read again", who))
+           fmt::format(
+               "CA certificates in PEM: {} must present a certificate signed by one of them. SIGHUP makes the server "
+               "read it again",
+               who))
         ->needs(certificate);
 }
 
@@ -81,78 +85,82 @@ void add_options(CLI::App& app, ServerOptions& options, Raw& raw) {
     app.add_option("--listen", raw.listen, "Address and port for robots; port 0 picks a free one")
         ->capture_default_str();
     app.add_flag("--check{log}", raw.check,
-                 "Read all of the store, say what is damaged, and end; changes nothing. No server may have it open. "
-                 "--check=deep also weaves every log anew and compares the maps")
+                 "Read the whole store, report damage, and exit; changes nothing. No server may have the store open. "
+                 "--check=deep also computes the maps of every log again and compares them")
         ->check(CLI::IsMember({"log", "deep"}));
     auto* backups = app.add_option("--backups", options.backups,
                                    "Directory for backups of the store, best on another disk; POST /api/v1/backups "
-                                   "makes one while the server runs");
-    app.add_option("--backups-kept", options.backups_kept, "How many are kept, the newest")
+                                   "creates one while the server runs");
+    app.add_option("--backups-kept", options.backups_kept, "Number of backups kept, the newest ones")
         ->check(CLI::Range(1, 10'000))
         ->capture_default_str();
     auto* repair = app.add_option("--repair", options.repaired,
-                                  "Write whatever is intact of a damaged store into a new one, and end; --store is the "
-                                  "damaged one, of which nothing is changed")
+                                  "Write the intact parts of a damaged store to a new store, and exit; --store is the "
+                                  "damaged store, which is not changed")
                        ->excludes("--check");
     app.add_option("--restore", raw.restore,
-                   "Write the store as a backup has it, by its number or 'newest', and end; --store must be empty")
+                   "Write the store of a backup, given by its number or 'newest', and exit; --store must be empty")
         ->needs(backups)
         ->excludes("--check")
         ->excludes(repair);
-    app.add_option("--http", raw.http, "Address and port for people and programs")->capture_default_str();
-    app.add_option("--store", raw.store, "Directory of the log; made if it does not exist")->required();
+    app.add_option("--http", raw.http, "Address and port for browsers and API clients")->capture_default_str();
+    app.add_option("--store", raw.store, "Directory of the log; created if it does not exist")->required();
     app.add_option(
            "--http-host", options.http_hosts,
-           "Name by which the HTTP port is asked, besides localhost and addresses; several with commas or several "
-           "times. Other names are refused on a loopback address, and everywhere as soon as one is given")
+           "Host name of the HTTP port, in addition to localhost and addresses; separate several names by commas, or "
+           "repeat the option. Other names are refused on a loopback address, and on all addresses if one is given")
         ->delimiter(',')
         ->allow_extra_args(false);
-    app.add_option("--http-proxy", raw.proxies,
-                   "Address of a reverse proxy; several with commas or several times. It may open any number of "
-                   "connections to the HTTP port, other addresses of other machines 256")
+    app.add_option(
+           "--http-proxy", raw.proxies,
+           "Address of a reverse proxy; separate several addresses by commas, or repeat the option. It may open any "
+           "number of connections to the HTTP port; other remote addresses may open 256")
         ->delimiter(',')
         ->allow_extra_args(false);
     add_tls_options(app, options.robot_tls, "--robot", "robots");
     add_tls_options(app, options.http_tls, "--http", "browsers and programs");
-    app.add_option("--tokens", raw.tokens,
-                   "File that says who may do what (TOML); without it, whoever reaches a port may do everything. "
-                   "SIGHUP has it read again");
-    app.add_option("--web", raw.web, "Directory of the viewer's files; it holds index.html");
-    app.add_option("--threads", options.threads, "Threads that weave maps, and as many that answer requests")
+    app.add_option(
+        "--tokens", raw.tokens,
+        "File of the tokens and their permissions (TOML); without it, every client may do everything. SIGHUP makes "
+        "the server read it again");
+    app.add_option("--web", raw.web, "Directory of the viewer's files; it contains index.html");
+    app.add_option("--threads", options.threads,
+                   "Number of threads that compute maps; the same number answers requests")
         ->check(CLI::Range(1, 256))
         ->capture_default_str();
-    app.add_option("--tile-cache", raw.tile_cache_mib,
-                   "MiB of tiles that are kept, drawn and encoded, for whoever asks next; 0 keeps none")
-        ->check(check_within(0.0, kTileCacheMibMax))
-        ->capture_default_str();
-    app.add_option("--disk-reserve", raw.disk_reserve_mib,
-                   "MiB that are left free on the store's disk: with less, nothing more is stored until there is more")
+    app.add_option("--tile-cache", raw.tile_cache_mib, "MiB of tiles that are cached; 0 disables the cache")
         ->check(check_within(0.0, kTileCacheMibMax))
         ->capture_default_str();
     app.add_option(
-           "--map-memory", raw.map_memory_mib,
-           "MiB that the maps of all sessions may take together: sessions that nobody uses leave memory when it "
-           "is used up. Default: half of the memory there is")
+           "--disk-reserve", raw.disk_reserve_mib,
+           "MiB to keep free on the store's disk; with less, the server stores nothing until space is free again")
+        ->check(check_within(0.0, kTileCacheMibMax))
+        ->capture_default_str();
+    app.add_option("--map-memory", raw.map_memory_mib,
+                   "MiB for the maps of all sessions together; when they are used up, unused sessions are evicted from "
+                   "memory. Default: half of the available memory")
         ->check(check_within(kMapMemoryMibMin, kMapMemoryMibMax))
         ->capture_default_str();
-    app.add_option("--weave-memory", raw.weave_memory_mib,
-                   "MiB that maps woven anew, of other settings or earlier moments, may take together: half for those "
-                   "under way, half for those that are kept. Default: a quarter of the memory there is")
+    app.add_option(
+           "--weave-memory", raw.weave_memory_mib,
+           "MiB for the maps of all replay jobs (other settings, earlier revisions) together: half for running jobs, "
+           "half for cached maps. Default: a quarter of the available memory")
         ->check(check_within(kMapMemoryMibMin, kMapMemoryMibMax))
         ->capture_default_str();
     app.add_option("--idle-after", raw.idle_after,
-                   "Seconds after which a session that nobody uses leaves memory; it comes back when it is asked for")
+                   "Seconds after which an unused session is evicted from memory; the next request loads it again")
         ->check(check_within(1.0, kIdleAfterMax))
         ->capture_default_str();
-    app.add_option("--log-level", options.log_level, "How much is told on standard error")
+    app.add_option("--log-level", options.log_level, "Minimum level of the lines on standard error")
         ->check(CLI::IsMember({"trace", "debug", "info", "warn", "error", "off"}))
         ->capture_default_str();
     app.add_option("--log-format", options.log_format,
                    "Lines for people, or objects of JSON with fields for session, robot and peer")
         ->check(CLI::IsMember({"text", "json"}))
         ->capture_default_str();
-    app.add_flag("--insecure", options.insecure,
-                 "Listen beyond this machine, although nothing guards a port: anybody there may send and read");
+    app.add_flag(
+        "--insecure", options.insecure,
+        "Allow other machines to connect although a port has neither tokens nor TLS: all of them may send and read");
 }
 
 /// Sets the directory of the viewer. A directory that was named must have an index.html; the default one may be
@@ -161,8 +169,8 @@ Result<> settle_web(const std::string& named, ServerOptions& options) {
     options.web = named.empty() ? default_web() : std::filesystem::path(named);
     std::error_code ignored;
     if (named.empty() || std::filesystem::is_regular_file(options.web / "index.html", ignored)) return {};
-    return Error{Errc::kNotFound, fmt::format("--web {}: there is no index.html in it; name the directory that the "
-                                              "viewer was built into, or leave --web out",
+    return Error{Errc::kNotFound, fmt::format("--web {}: the directory has no index.html; give the directory that the "
+                                              "viewer was built into, or omit --web",
                                               named)};
 }
 
@@ -173,7 +181,7 @@ Result<> check_host_names(const std::vector<std::string>& names) {
         });
         if (valid) continue;
         return Error{Errc::kInvalidField,
-                     fmt::format("--http-host '{}' is not the name of a host; give it without scheme and port", name)};
+                     fmt::format("--http-host '{}' is not a host name; write it without scheme and port", name)};
     }
     return {};
 }
@@ -202,7 +210,7 @@ Result<> settle_task(const Raw& raw, ServerOptions& options) {
         return {};
     }
     return Error{Errc::kInvalidField,
-                 fmt::format("--restore '{}' is no backup; give its number, or 'newest'", raw.restore)};
+                 fmt::format("--restore '{}' is not a backup; give its number, or 'newest'", raw.restore)};
 }
 
 Result<> settle(const Raw& raw, ServerOptions& options) {
@@ -293,8 +301,8 @@ struct Guard {
 
 std::array<Guard, 2> guards_of(const ServerOptions& options) {
     const bool has_tokens = !options.tokens.empty();
-    return {{{"--listen", options.listen, has_tokens, options.robot_tls, "--tokens or --robot-tls-cert guard it"},
-             {"--http", options.http, has_tokens, options.http_tls, "--tokens or --http-tls-cert guard it"}}};
+    return {{{"--listen", options.listen, has_tokens, options.robot_tls, "add --tokens or --robot-tls-cert"},
+             {"--http", options.http, has_tokens, options.http_tls, "add --tokens or --http-tls-cert"}}};
 }
 
 } // namespace
@@ -306,8 +314,8 @@ Result<> check_guarded(const ServerOptions& options) {
         return Error{
             Errc::kInvalidField,
             fmt::format(
-                "{} {} can be reached from other machines and nothing guards it; {}; or listen on 127.0.0.1, or "
-                "say --insecure if everybody there may send and read",
+                "{} {} can be reached from other machines without tokens or TLS; {}; or listen on 127.0.0.1, or "
+                "add --insecure if all of them may send and read",
                 guard.flag, guard.endpoint.address().to_string(), guard.remedy)};
     }
     return {};
@@ -319,15 +327,15 @@ std::vector<std::string> guard_warnings(const ServerOptions& options) {
         if (!guard.is_reached()) continue;
         if (!guard.tls.is_given() && guard.has_tokens) {
             warnings.push_back(
-                fmt::format("{}: tokens come in without TLS, and whoever is on the way there can read them "
-                            "and all else, and use them",
+                fmt::format("{}: clients send tokens without TLS; everyone on the network path can read and "
+                            "use them, and read all other data",
                             guard.flag));
         } else if (!guard.has_tokens) {
             const bool is_mutual = !guard.tls.client_ca.empty();
             warnings.push_back(fmt::format(
-                "{}: no token is asked for, and whoever {} can send and read everything{}", guard.flag,
-                is_mutual ? "shows a certificate that " + guard.tls.client_ca.string() + " signed" : "reaches it",
-                guard.tls.is_given() ? ", though nobody on the way can" : ""));
+                "{}: no token is required; every client that {} can send and read everything{}", guard.flag,
+                is_mutual ? "presents a certificate signed by " + guard.tls.client_ca.string() : "reaches it",
+                guard.tls.is_given() ? "; others on the network path cannot" : ""));
         }
     }
     return warnings;

@@ -43,8 +43,8 @@ Result<> check_apart(const Place& one, const Place& other) {
     if (!is_inside && !is_at_or_in(second, first)) return {};
     const auto& [inner, outer] = is_inside ? std::pair(one, other) : std::pair(other, one);
     return Error{Errc::kInvalidField,
-                 fmt::format("{} {} is {} {} {}: name a directory apart from it", inner.flag, inner.directory.native(),
-                             is_same(first, second) ? "the same directory as" : "inside of", outer.flag,
+                 fmt::format("{} {} is {} {} {}; give a separate directory", inner.flag, inner.directory.native(),
+                             is_same(first, second) ? "the same directory as" : "inside", outer.flag,
                              outer.directory.native())};
 }
 

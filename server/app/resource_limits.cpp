@@ -53,8 +53,8 @@ Result<> check_address_space(const ServerOptions& options, const MemoryLimit& li
     if (!is_limited(limit) || needed_with(options, {}) <= limit.address_space) return {};
     const auto enough = enough_for(options, limit);
     return Error{Errc::kInvalidField,
-                 fmt::format("the address space of this process is limited to {} MiB, and the server needs {}: allow "
-                             "that much with ulimit -v {}, or lower --map-memory, --weave-memory and --tile-cache",
+                 fmt::format("the address space of this process is limited to {} MiB, and the server needs {}; raise "
+                             "the limit with ulimit -v {}, or lower --map-memory, --weave-memory and --tile-cache",
                              limit.address_space / kMib, enough / kMib, enough / 1024)};
 }
 

@@ -115,14 +115,14 @@ Result<std::unique_ptr<Server>> Server::open(const ServerOptions& options, const
     if (!log) return log.error();
     if (const auto torn = (*log)->stats().torn_bytes_dropped; torn > 0)
         spdlog::warn(
-            "the write-ahead log ended with {} bytes of a write that is not whole, and they are dropped: a crash "
-            "cut it short before it was acknowledged; where none did, the disk lost it",
+            "the write-ahead log ended with {} bytes of an incomplete write, which were dropped: a crash interrupted "
+            "it before it was acknowledged; without a crash, the disk lost data",
             torn);
     auto web = http::load_web_files(options.web);
     if (!web) return web.error();
     if (!web->contains("index.html")) {
-        spdlog::warn("there is no viewer in {}: build it with ./scanloom build, or name its directory with --web; all "
-                     "else is served",
+        spdlog::warn("there is no viewer in {}: build it with ./scanloom build, or give its directory with --web; "
+                     "everything else is served",
                      options.web.string());
     }
     access::TokenSet tokens;
@@ -230,7 +230,7 @@ void Server::announce() const {
     boost::json::object ready{{"event", "ready"}, {"robot_port", ingest_->port()}, {"http_port", http_->port()}};
     std::cout << boost::json::serialize(ready) << std::endl;
     tell_service_manager("READY=1");
-    spdlog::info("robots: {}:{}, people: {}://{}:{}/, store: {}", options_.listen.address().to_string(),
+    spdlog::info("robots: {}:{}, browsers: {}://{}:{}/, store: {}", options_.listen.address().to_string(),
                  ingest_->port(), http_tls_ ? "https" : "http", options_.http.address().to_string(), http_->port(),
                  options_.store.string());
 }
@@ -275,7 +275,7 @@ void Server::wait_for_hangup() {
         if (has_tokens) read_tokens_again();
         read_certificates_again();
         if (!has_tokens && !robot_tls_ && !http_tls_) {
-            spdlog::info("a hangup: there are neither tokens nor certificates to be read again");
+            spdlog::info("SIGHUP: there are neither tokens nor certificates to read again");
         }
         wait_for_hangup();
     });
@@ -286,7 +286,7 @@ void Server::wait_for_hangup() {
 void Server::read_tokens_again() {
     auto tokens = guard::read_tokens(options_.tokens);
     if (!tokens) {
-        spdlog::error("--tokens {}; the tokens read before stay in force", tokens.error().message);
+        spdlog::error("--tokens {}; the previous tokens stay in force", tokens.error().message);
         return;
     }
     spdlog::info("{} tokens are in force, read again from {}", tokens->tokens().size(), options_.tokens.string());
@@ -298,7 +298,7 @@ void Server::read_certificates_again() {
     for (const auto& [flag, tls] : {std::pair("--robot-tls-cert", robot_tls_), {"--http-tls-cert", http_tls_}}) {
         if (!tls) continue;
         if (auto read = tls->read_again(); !read) {
-            spdlog::error("{}: {}; the certificate read before stays in force", flag, read.error().message);
+            spdlog::error("{}: {}; the previous certificate stays in force", flag, read.error().message);
         } else {
             spdlog::info("{}: read again from {}", flag, tls->files().certificate.string());
         }
@@ -308,7 +308,7 @@ void Server::read_certificates_again() {
 /// Stops accepting robots, gives every session limited time to make its submitted scans durable and acknowledge them,
 /// then stops serving. When no work is left, the io_context ends and run() returns.
 void Server::drain() {
-    spdlog::info("draining: acknowledging what is durable");
+    spdlog::info("draining: acknowledging durable scans");
     tell_service_manager("STOPPING=1");
     ingest_->stop();
     check_.stop();

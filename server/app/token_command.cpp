@@ -17,26 +17,27 @@ namespace scanloom::app {
 namespace {
 
 constexpr const char* kAboutToken =
-    "Makes a token: prints its secret, once, and the lines to add to the file of --tokens.\n"
-    "Whoever sends the secret is let in; the file holds its hash alone.";
+    "Creates a token: prints its secret, once, and the lines to add to the file of --tokens.\n"
+    "A client that sends the secret gets the permissions of the token; the file contains only its hash.";
 
 std::string check_name(const std::string& name) {
     if (is_valid_name(name)) return {};
-    return fmt::format("'{}' is no name; use 1 to {} characters of A-Z a-z 0-9 _ -", name, kNameBytesMax);
+    return fmt::format("'{}' is not a name; use 1 to {} characters of A-Z a-z 0-9 _ -", name, kNameBytesMax);
 }
 
 std::string check_pattern(const std::string& pattern) {
     if (access::is_valid_pattern(pattern)) return {};
-    return fmt::format("'{}' is no pattern of sessions; use 1 to {} characters of A-Z a-z 0-9 _ - * ?", pattern,
+    return fmt::format("'{}' is not a pattern of sessions; use 1 to {} characters of A-Z a-z 0-9 _ - * ?", pattern,
                        kNameBytesMax);
 }
 
 std::string report(const access::Token& token, std::string_view secret) {
-    return fmt::format("{}\n\n"
-                       "# That is the secret: give it to whoever is to be let in, it is not shown again. A robot reads "
-                       "it from the file of --token-file.\n"
-                       "# These lines go into the file of --tokens; SIGHUP has the server read it again.\n{}",
-                       secret, text_of(token));
+    return fmt::format(
+        "{}\n\n"
+        "# This is the secret: give it to the client, it is not shown again. A robot reads it from the file "
+        "of --token-file.\n"
+        "# Add these lines to the file of --tokens; SIGHUP makes the server read it again.\n{}",
+        secret, text_of(token));
 }
 
 } // namespace
@@ -46,12 +47,12 @@ std::optional<Leave> token_command(int argc, const char* const* argv) {
     access::Token token;
     std::string role;
     CLI::App app(kAboutToken, "scanloom-server token");
-    app.add_option("--name", token.name, "What it is called in the file and in logs")->required()->check(check_name);
-    app.add_option("--role", role, "robot: sends scans; viewer: looks; operator: all, also creates and deletes")
+    app.add_option("--name", token.name, "Name of the token in the file and in logs")->required()->check(check_name);
+    app.add_option("--role", role, "robot: sends scans; viewer: reads; operator: everything, also creates and deletes")
         ->required()
         ->check(CLI::IsMember({"robot", "viewer", "operator"}));
     app.add_option("--session", token.sessions,
-                   "Sessions it is for, by patterns: * stands for any text, ? for a character [*]")
+                   "Patterns of the sessions it is valid for: * matches any text, ? one character [*]")
         ->check(check_pattern);
     try {
         app.parse(argc - 1, argv + 1);

@@ -20,17 +20,17 @@ constexpr double kBelievedRange = 50.0; // metres
 constexpr double kStampJitter = 2.0; // seconds
 
 Error beyond_carmen(const std::string& robot, const Sensor& sensor, std::string_view what) {
-    return {Errc::kConflict, fmt::format("sensor {} of robot '{}' {}, which a CARMEN log cannot say; ask for the log "
-                                         "without format=clf",
+    return {Errc::kConflict, fmt::format("sensor {} of robot '{}' {}, which a CARMEN log cannot represent; request the "
+                                         "log without format=clf",
                                          sensor.id, robot, what)};
 }
 
-Result<> check_sayable(const std::string& robot, const Sensor& sensor, const BeamAngles& angles) {
+Result<> check_representable(const std::string& robot, const Sensor& sensor, const BeamAngles& angles) {
     if (sensor.kind != SensorKind::kLaser) return beyond_carmen(robot, sensor, "is a ring of sonars");
     if (!std::holds_alternative<UniformAngles>(angles)) {
         return beyond_carmen(robot, sensor, "has beams that are not evenly spaced");
     }
-    if (sensor.aperture > 0.0) return beyond_carmen(robot, sensor, "states an aperture of its own");
+    if (sensor.aperture > 0.0) return beyond_carmen(robot, sensor, "has its own aperture");
     return {};
 }
 
@@ -72,8 +72,8 @@ Result<std::string> CarmenText::text_of(const SensorDescribed& described) {
 }
 
 Result<std::string> CarmenText::text_of(const MapPatch&) {
-    return Error{Errc::kConflict, "the session begins with an imported map, which a CARMEN log cannot say; ask for the "
-                                  "log without format=clf"};
+    return Error{Errc::kConflict, "the session begins with an imported map, which a CARMEN log cannot represent; "
+                                  "request the log without format=clf"};
 }
 
 Result<std::string> CarmenText::text_of(const ScansExcluded&) { return std::string(); }
@@ -91,7 +91,7 @@ Result<std::string> CarmenText::text_of(const ScanTaken& taken) {
     const Sensor& sensor = known->second;
     const auto& robot = robots_[taken.robot];
     const BeamAngles angles = angles_of(scan, sensor);
-    if (auto sayable = check_sayable(robot, sensor, angles); !sayable) return sayable.error();
+    if (auto valid = check_representable(robot, sensor, angles); !valid) return valid.error();
 
     const auto& uniform = std::get<UniformAngles>(angles);
     const Pose2 laser = compose(scan.pose, sensor.mount);

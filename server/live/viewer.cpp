@@ -121,7 +121,7 @@ asio::awaitable<void> Viewer::run(const Upgrade& upgrade) {
         co_await send_events();
     } catch (const std::exception& failure) {
         spdlog::error("a viewer's connection failed and was closed: {}", failure.what());
-        end(close_with(websocket::close_code::internal_error, "the server failed; its log says why"));
+        end(close_with(websocket::close_code::internal_error, "internal error; see the server's log"));
     }
     co_await close();
     while (reading_) {
@@ -154,7 +154,8 @@ asio::awaitable<void> Viewer::read_requests() {
 /// Handles the message in buffer_. @return the reason to close the connection, if the message is invalid
 std::optional<Viewer::Close> Viewer::fault_of_message() {
     if (!stream_.got_binary()) {
-        return close_with(websocket::close_code::unknown_data, "messages are binary: a LiveRequest; see live.proto");
+        return close_with(websocket::close_code::unknown_data,
+                          "a text message was received; send a binary LiveRequest (live.proto)");
     }
     const auto bytes = buffer_.data();
     const auto request = wire::decode_live_request({static_cast<const char*>(bytes.data()), bytes.size()});
@@ -195,7 +196,7 @@ Viewer::NextStep Viewer::next_step() {
     notified_ = false; // before reading the state, so that later changes notify again
     if (invitation_.pass && !invitation_.pass->token()) {
         invitation_.taken_back();
-        return {{}, close_with(kTokenGone, "your token does not allow this any more; sign in with another"), {}};
+        return {{}, close_with(kTokenGone, "your token is no longer valid for this session; sign in with another"), {}};
     }
     const auto session = invitation_.session.lock();
     const auto closing = session ? session->closing() : std::nullopt;
@@ -204,7 +205,9 @@ Viewer::NextStep Viewer::next_step() {
         return {{}, close_with(kSessionDeleted, fmt::format("session '{}' was deleted", invitation_.name)), {}};
     }
     if (!session)
-        return {{}, close_with(websocket::close_code::going_away, "the session left memory; connect again"), {}};
+        return {{},
+                close_with(websocket::close_code::going_away, "the session was evicted from memory; connect again"),
+                {}};
     const auto ways = invitation_.ways.state(session, Clock::now());
     SessionSnapshot snapshot = snapshot_of(*session, ways.revision);
     const auto until = std::min(ways.until, add_landmarks(session, snapshot));

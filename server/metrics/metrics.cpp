@@ -59,18 +59,18 @@ prometheus::Gauge& gauge(prometheus::Registry& registry, const char* name, const
 } // namespace
 
 IngestCounters::IngestCounters(prometheus::Registry& registry)
-    : links_open(gauge(registry, "scanloom_links_open", "Links of robots that are open.")),
+    : links_open(gauge(registry, "scanloom_links_open", "Open connections of robots.")),
       scans_received(counter(registry, "scanloom_scans_received_total",
                              "Well-formed scans that robots sent, within their credit.")),
-      held_back_seconds(counter(registry, "scanloom_links_held_back_seconds_total",
-                                "Seconds in which links were not read, as their tokens' limits have it.")),
+      held_back_seconds(
+          counter(registry, "scanloom_links_held_back_seconds_total",
+                  "Seconds in which robot connections were not read because of their tokens' rate limits.")),
       scans_in_flight(
           gauge(registry, "scanloom_scans_in_flight", "Scans that were read and are not acknowledged yet.")),
-      ack_seconds("scanloom_ack_seconds",
-                  "Time from a scan's bytes being read to its ack being handed to the socket.") {
+      ack_seconds("scanloom_ack_seconds", "Time from reading a scan to passing its acknowledgement to the socket.") {
     auto& family = prometheus::BuildCounter()
                        .Name("scanloom_links_failed_total")
-                       .Help("Links that ended without a goodbye, by reason.")
+                       .Help("Robot connections that ended without a goodbye, by reason.")
                        .Register(registry);
     for (int code = 0; name_of(static_cast<Errc>(code)) != "unknown"; ++code) {
         failed_.push_back(&family.Add({{"reason", std::string(name_of(static_cast<Errc>(code)))}}));
@@ -79,7 +79,8 @@ IngestCounters::IngestCounters(prometheus::Registry& registry)
 
 LiveCounters::LiveCounters(prometheus::Registry& registry)
     : viewers(gauge(registry, "scanloom_live_viewers", "Viewers that watch a session over a WebSocket.")),
-      refused(counter(registry, "scanloom_live_viewers_refused_total", "Viewers refused because too many watched.")),
+      refused(
+          counter(registry, "scanloom_live_viewers_refused_total", "Viewers refused because too many were connected.")),
       events(counter(registry, "scanloom_live_events_total", "Events sent to viewers.")),
       bytes(counter(registry, "scanloom_live_bytes_total", "Bytes of the events sent to viewers.")) {}
 
@@ -87,7 +88,7 @@ HttpCounters::HttpCounters(prometheus::Registry& registry)
     : connections_open(gauge(registry, "scanloom_http_connections_open", "HTTP connections that are open.")),
       connections_refused(counter(registry, "scanloom_http_connections_refused_total",
                                   "HTTP connections refused because too many were open.")),
-      request_seconds("scanloom_http_request_seconds", "Time from a whole request to the start of its answer."),
+      request_seconds("scanloom_http_request_seconds", "Time from the end of a request to the start of its response."),
       live(registry) {
     auto& family = prometheus::BuildCounter()
                        .Name("scanloom_http_requests_total")
@@ -100,7 +101,7 @@ HttpCounters::HttpCounters(prometheus::Registry& registry)
 RefusalCounters::RefusalCounters(prometheus::Registry& registry) {
     auto& family = prometheus::BuildCounter()
                        .Name("scanloom_refusals_total")
-                       .Help("Who was not let in or asked for what his token does not allow, by port and reason.")
+                       .Help("Refused connections and requests, by port and reason.")
                        .Register(registry);
     for (const auto port : access::kPorts) {
         for (const auto reason : access::kReasons) {

@@ -27,9 +27,10 @@ Result<grid::CellBox> cells_in(const Extent& extent, double cell_size_m) {
     const double cells_per_metre = 1.0 / cell_size_m;
     for (const double edge : {extent.min_x, extent.min_y, extent.max_x, extent.max_y}) {
         if (!(std::abs(edge * cells_per_metre) <= kCellIndexMax)) { // true for NaN too
-            return Error{Errc::kInvalidField,
-                         fmt::format("bbox holds {}; at this cell size its edges must be finite metres within +-{:.0f}",
-                                     edge, kCellIndexMax * cell_size_m)};
+            return Error{
+                Errc::kInvalidField,
+                fmt::format("bbox contains {}; at this cell size its edges must be finite metres within +-{:.0f}", edge,
+                            kCellIndexMax * cell_size_m)};
         }
     }
     if (extent.min_x >= extent.max_x || extent.min_y >= extent.max_y) {
@@ -72,15 +73,15 @@ Result<MapFrame> map_frame(const mapping::Snapshot& snapshot, mapping::Layer lay
 
 Result<MapFrame> checked_frame(const MapFrame& frame, std::int64_t bytes_per_pixel) {
     if (frame.cells.empty()) {
-        return Error{Errc::kNotFound, "there is no map yet in this layer: no scan that it is made of has seen anything "
-                                      "by then; layer= names others"};
+        return Error{Errc::kNotFound,
+                     "this layer has no map yet: no scan has contributed to it; select another layer with layer="};
     }
     const auto width = frame.cells.width();
     const auto height = frame.cells.height();
     if (width > kMapSideMax || height > kMapSideMax || width * height > kMapPixelsMax / bytes_per_pixel) {
         return Error{Errc::kTooLarge,
-                     fmt::format("this map has {} x {} pixels, more than {} or a side of more than {}; ask for a part "
-                                 "of it with bbox=min_x,min_y,max_x,max_y in metres, such as the session's main_bounds",
+                     fmt::format("this map has {} x {} pixels, more than {} or a side of more than {}; request a part "
+                                 "with bbox=min_x,min_y,max_x,max_y in metres, such as the session's main_bounds",
                                  width, height, kMapPixelsMax / bytes_per_pixel, kMapSideMax)};
     }
     return frame;

@@ -68,11 +68,11 @@ Result<std::vector<MapPatch>> read_ros_image(const RosMapDescription& map, std::
     if (!read) return read.error();
     const std::size_t width = read->width;
     if (width > kMapPatchCellsMax) {
-        return Error{Errc::kTooLarge, fmt::format("the map's image is {} pixels wide, at most {} are possible", width,
-                                                  kMapPatchCellsMax)};
+        return Error{Errc::kTooLarge,
+                     fmt::format("the map's image is {} pixels wide, more than {}", width, kMapPatchCellsMax)};
     }
     const double reach = static_cast<double>(std::max(width, read->height())) * map.resolution;
-    if (reach > kCoordinateMax) return Error{Errc::kTooLarge, "the map is larger than the world can be"};
+    if (reach > kCoordinateMax) return Error{Errc::kTooLarge, "the map is larger than the range of coordinates"};
     const std::size_t rows_max = kMapPatchCellsMax / width;
     std::vector<MapPatch> patches;
     for (std::size_t row = 0; row < read->height(); row += rows_max) {

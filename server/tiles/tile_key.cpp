@@ -20,9 +20,10 @@ bool is_whole_number(std::string_view text) noexcept {
 
 Result<> check_written(std::string_view name, std::string_view text) {
     if (is_whole_number(text)) return {};
-    return Error{Errc::kInvalidField, fmt::format("tile {} is not a whole number written in plain digits; tiles are "
-                                                  "addressed as z/x/y, for example 9/256/255",
-                                                  name)};
+    return Error{Errc::kInvalidField,
+                 fmt::format("tile {} is not a whole number in plain digits; tiles are addressed as "
+                             "z/x/y, for example 9/256/255",
+                             name)};
 }
 
 /// Precondition: is_whole_number(text).
@@ -30,7 +31,7 @@ Result<std::uint32_t> parse_up_to(std::uint32_t last, std::string_view name, std
     std::uint32_t value = 0;
     const auto parsed = std::from_chars(text.data(), text.data() + text.size(), value); // rejects a sign too
     if (parsed.ec == std::errc{} && value <= last) return value;
-    return Error{Errc::kNotFound, fmt::format("there is no such tile: {} reaches from 0 to {} here", name, last)};
+    return Error{Errc::kNotFound, fmt::format("there is no such tile: {} must be from 0 to {}", name, last)};
 }
 
 } // namespace

@@ -73,7 +73,7 @@ TEST_F(CertificatesTest, BrowsersMustUseTls) {
                                        body.size(), body));
     EXPECT_EQ(login.status, 200) << login.body;
     EXPECT_THAT(login.fields.at("set-cookie"), HasSubstr("; Secure"));
-    EXPECT_THAT(log(), HasSubstr("people: https://"));
+    EXPECT_THAT(log(), HasSubstr("browsers: https://"));
 }
 
 TEST_F(CertificatesTest, AreReloadedOnSighupUnlessAFileIsInvalid) {
@@ -82,7 +82,7 @@ TEST_F(CertificatesTest, AreReloadedOnSighupUnlessAFileIsInvalid) {
     std::filesystem::copy_file(files_.certificate, old);
     std::filesystem::resize_file(files_.certificate, 100);
     server_->process().signal(SIGHUP);
-    wait_for_log("the certificate read before stays in force");
+    wait_for_log("the previous certificate stays in force");
     EXPECT_THAT(log(), HasSubstr("--http-tls-cert: " + files_.certificate.string()));
     EXPECT_TRUE(TlsHttpClient(server_->http_port(), {.trusted = old}).is_trusted());
 

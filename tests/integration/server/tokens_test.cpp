@@ -132,7 +132,7 @@ TEST_F(TokensTest, TheFileIsReloadedOnSighupUnlessItIsInvalid) {
 
     write("[[token]]\nname = 3\n");
     server_->process().signal(SIGHUP);
-    wait_for_log("the tokens read before stay in force");
+    wait_for_log("the previous tokens stay in force");
     EXPECT_THAT(log(), HasSubstr(file_.string() + ":2: name is not a text"));
     EXPECT_EQ(status("GET", "/api/v1/sessions/depot-1", bearer(viewer_)), 200);
     robot.send(wire::Ping{7});

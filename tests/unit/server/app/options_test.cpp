@@ -191,14 +191,14 @@ TEST_F(ServerOptionsTest, WhatAGuardDoesNotKeepOutIsSaid) {
     EXPECT_THAT(warnings({"--listen", "0.0.0.0:1", "--tokens", "t"}),
                 ElementsAre(AllOf(HasSubstr("--listen"), HasSubstr("without TLS"))));
     EXPECT_THAT(warnings({"--listen", "0.0.0.0:1", "--robot-tls-cert", "c", "--robot-tls-key", "k"}),
-                ElementsAre(AllOf(HasSubstr("--listen"), HasSubstr("no token is asked for"))));
+                ElementsAre(AllOf(HasSubstr("--listen"), HasSubstr("no token is required"))));
     EXPECT_THAT(warnings({"--listen", "0.0.0.0:1", "--tokens", "t", "--robot-tls-cert", "c", "--robot-tls-key", "k"}),
                 testing::IsEmpty());
     EXPECT_THAT(warnings({"--http", "0.0.0.0:1", "--tokens", "t", "--http-tls-cert", "c", "--http-tls-key", "k"}),
                 testing::IsEmpty());
     EXPECT_THAT(
         warnings({"--http", "0.0.0.0:1", "--http-tls-cert", "c", "--http-tls-key", "k", "--http-client-ca", "a.pem"}),
-        ElementsAre(HasSubstr("whoever shows a certificate that a.pem signed can")));
+        ElementsAre(HasSubstr("every client that presents a certificate signed by a.pem can")));
     EXPECT_THAT(refusal({"--robot-client-ca", "a.pem"}), HasSubstr("--robot-tls-cert"));
     EXPECT_THAT(warnings({"--http", "0.0.0.0:1", "--insecure"}), ElementsAre(HasSubstr("--http: no token")));
 }
@@ -231,8 +231,8 @@ TEST(TokenCommand, SaysWhatIsWrong) {
     };
     EXPECT_THAT(said({"--role", "robot"}), HasSubstr("--name"));
     EXPECT_THAT(said({"--name", "a", "--role", "admin"}), HasSubstr("--role"));
-    EXPECT_THAT(said({"--name", "a b", "--role", "robot"}), HasSubstr("is no name"));
-    EXPECT_THAT(said({"--name", "a", "--role", "robot", "--session", "a/b"}), HasSubstr("is no pattern"));
+    EXPECT_THAT(said({"--name", "a b", "--role", "robot"}), HasSubstr("is not a name"));
+    EXPECT_THAT(said({"--name", "a", "--role", "robot", "--session", "a/b"}), HasSubstr("is not a pattern"));
 }
 
 } // namespace

@@ -41,11 +41,11 @@ TEST_F(PlacesTest, NoneIsWithinAnother) {
     for (const auto task : {Task::kServe, Task::kRestore, Task::kRepair}) {
         for (const auto* inside :
              {"store/in", "store/a/b", "store/./in", "x/../store/in", "link/in", "link/a/b/", "deep", "deep/in"}) {
-            EXPECT_THAT(refusal(task, at(inside), at("store")), HasSubstr("is inside of --store")) << inside;
+            EXPECT_THAT(refusal(task, at(inside), at("store")), HasSubstr("is inside --store")) << inside;
             EXPECT_THAT(refusal(task, at("store"), at(inside)),
-                        HasSubstr("--store " + at(inside).native() + " is inside of --"))
+                        HasSubstr("--store " + at(inside).native() + " is inside --"))
                 << inside;
-            EXPECT_THAT(refusal(task, at(inside), at("link")), HasSubstr("is inside of --store")) << inside;
+            EXPECT_THAT(refusal(task, at(inside), at("link")), HasSubstr("is inside --store")) << inside;
         }
         for (const auto* same : {"store", "store/", "link", "store/../store/."}) {
             EXPECT_THAT(refusal(task, at(same), at("store")), HasSubstr("is the same directory as --store")) << same;
@@ -53,14 +53,14 @@ TEST_F(PlacesTest, NoneIsWithinAnother) {
         for (const auto* apart : {"other", "store2", "stor", "store.lost", "link2/in", "store/../in"}) {
             EXPECT_EQ(refusal(task, at(apart), at("store")), "taken") << apart;
         }
-        EXPECT_THAT(refusal(task, "/", at("store")), HasSubstr("is inside of"));
+        EXPECT_THAT(refusal(task, "/", at("store")), HasSubstr("is inside"));
     }
 }
 
 TEST_F(PlacesTest, RelativeNamesAreOfTheWorkingDirectory) {
     const auto before = fs::current_path();
     fs::current_path(at("store"));
-    EXPECT_THAT(refusal(Task::kServe, "backups", at("store")), HasSubstr("--backups backups is inside of --store"));
+    EXPECT_THAT(refusal(Task::kServe, "backups", at("store")), HasSubstr("--backups backups is inside --store"));
     EXPECT_EQ(refusal(Task::kServe, "../backups", "."), "taken");
     fs::current_path(before);
 }

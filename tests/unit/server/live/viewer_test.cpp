@@ -248,7 +248,7 @@ TEST(LiveViewer, HostileMessagesEndTheConnectionWithAReason) {
         client.read_to_the_end();
         return fmt::format("{} {}", client.code(), client.reason());
     };
-    EXPECT_THAT(ends_with("{}", false), HasSubstr("1003 messages are binary"));
+    EXPECT_THAT(ends_with("{}", false), HasSubstr("1003 a text message was received"));
     EXPECT_THAT(ends_with("\xff\xff\xff", true), HasSubstr("1007 this is no LiveRequest"));
     EXPECT_THAT(ends_with(request({static_cast<v1::Layer>(77)}, true), true),
                 HasSubstr("1007 live_request.layers[0] is 77"));

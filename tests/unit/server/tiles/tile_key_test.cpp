@@ -90,7 +90,7 @@ TEST(TileKey, NumbersWithoutATileAreNotFound) {
         EXPECT_EQ(parsed.error().code, Errc::kNotFound) << zoom << "/" << x << "/" << y;
         EXPECT_LT(parsed.error().message.size(), 200U);
     }
-    EXPECT_THAT(parse_tile_key("3", "8", "7").error().message, testing::HasSubstr("x reaches from 0 to 7"));
+    EXPECT_THAT(parse_tile_key("3", "8", "7").error().message, testing::HasSubstr("x must be from 0 to 7"));
 }
 
 } // namespace
