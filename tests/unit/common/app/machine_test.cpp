@@ -22,7 +22,7 @@ protected:
     TemporaryDirectory root_;
 };
 
-TEST_F(ControlGroupLimit, IsTheLeastOfAllGroupsAroundTheProcess) {
+TEST_F(ControlGroupLimit, IsTheLeastOfAllEnclosingGroups) {
     write("proc/self/cgroup", "0::/system.slice/scanloom.service");
     EXPECT_EQ(control_group_limit(root_.path()), std::nullopt);
     write("sys/fs/cgroup/system.slice/scanloom.service/memory.max", "max");
@@ -37,7 +37,7 @@ TEST_F(ControlGroupLimit, IsTheLeastOfAllGroupsAroundTheProcess) {
     EXPECT_EQ(control_group_limit(root_.path()), 1'000'000U);
 }
 
-TEST_F(ControlGroupLimit, IsFoundInHierarchiesOfVersionOne) {
+TEST_F(ControlGroupLimit, IsReadFromVersion1Hierarchies) {
     write("proc/self/cgroup", "9:name=systemd:/\n4:cpu,memory:/docker/1\n0::/");
     write("sys/fs/cgroup/memory/memory.limit_in_bytes", "9223372036854771712"); // no limit
     write("sys/fs/cgroup/memory/docker/1/memory.limit_in_bytes", "500000000");

@@ -21,7 +21,7 @@ using testing::HasSubstr;
 using testing::Not;
 using testing::StartsWith;
 
-/// Both ends of a terminal that nobody looks at; TERM is one that can write over lines.
+/// Both ends of a terminal whose output is not shown; TERM supports overwriting lines.
 class Terminal {
 public:
     Terminal() {
@@ -62,14 +62,14 @@ protected:
     StandardError error_{descriptor_};
 };
 
-TEST_F(StandardErrorTest, LinesArriveAsTheyAre) {
+TEST_F(StandardErrorTest, WritesLinesUnchanged) {
     error_.write("one\n");
     error_.write("two\n");
     EXPECT_EQ(pipe_.empty(), "one\ntwo\n");
     EXPECT_FALSE(error_.is_terminal());
 }
 
-TEST_F(StandardErrorTest, AFullPipeHoldsUpNobodyAndWhatWasLostIsToldOnce) {
+TEST_F(StandardErrorTest, DoesNotWaitForAFullPipeAndReportsLostLinesOnce) {
     pipe_.fill();
     for (int i = 0; i < 1000; ++i) error_.write("lost\n");
     EXPECT_THAT(pipe_.empty(), Not(HasSubstr("lost")));
@@ -83,19 +83,19 @@ TEST_F(StandardErrorTest, AFullPipeHoldsUpNobodyAndWhatWasLostIsToldOnce) {
     EXPECT_EQ(pipe_.empty(), "1 line was dropped because it was not read\nfour\n");
 }
 
-TEST_F(StandardErrorTest, ALineCutByAFullPipeIsEndedBeforeTheNext) {
+TEST_F(StandardErrorTest, EndsACutLineBeforeTheNext) {
     error_.write(std::string(20'000, 'a') + '\n');
     EXPECT_THAT(pipe_.empty(), AllOf(StartsWith("aaa"), Not(HasSubstr("\n"))));
     error_.write("next\n");
     EXPECT_EQ(pipe_.empty(), "\n1 line was dropped because it was not read\nnext\n");
 }
 
-TEST_F(StandardErrorTest, TheDescriptorOfOthersStaysAsItWas) {
+TEST_F(StandardErrorTest, DoesNotChangeTheSharedDescriptor) {
     error_.write("one\n");
     EXPECT_EQ(fcntl(descriptor_, F_GETFL) & O_NONBLOCK, 0);
 }
 
-TEST(StandardError, AFileTakesEverythingWhereTheOthersStand) {
+TEST(StandardError, AppendsToASharedFile) {
     const TemporaryDirectory place;
     const int file = open((place.path() / "log").c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600);
     {
@@ -108,7 +108,7 @@ TEST(StandardError, AFileTakesEverythingWhereTheOthersStand) {
     EXPECT_EQ(std::string(std::istreambuf_iterator<char>(in), {}), "another's\n" + std::string(20'000, 'a') + "\n");
 }
 
-TEST(StandardError, ASocketNobodyReadsHoldsUpNobody) {
+TEST(StandardError, DoesNotWaitForASocketThatIsNotRead) {
     std::array<int, 2> ends{}; // as a service manager gives them
     ASSERT_EQ(socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()), 0);
     StandardError error(ends[0]);
@@ -119,7 +119,7 @@ TEST(StandardError, ASocketNobodyReadsHoldsUpNobody) {
     close(ends[1]);
 }
 
-TEST(StandardError, ATerminalThatStandsStillHoldsUpNobodyEither) {
+TEST(StandardError, DoesNotWaitForAStoppedTerminal) {
     const Terminal terminal;
     StandardError error(terminal.program());
     EXPECT_TRUE(error.is_terminal());

@@ -42,7 +42,7 @@ protected:
     TemporaryDirectory directory_;
 };
 
-TEST_F(ServerOptionsTest, FaultsOfTheFileAreToldInItsOwnTerms) {
+TEST_F(ServerOptionsTest, ReportsErrorsOfTheFileWithoutTermsOfCli11) {
     const auto unknown = refusal({"--config", file("a.toml", "lissen = \"127.0.0.1:1\"\n")});
     EXPECT_THAT(unknown, AllOf(HasSubstr("the file of --config"), HasSubstr("lissen"), Not(HasSubstr("INI"))));
     const auto missing = refusal({"--config", "no-such-file.toml"});
@@ -50,7 +50,7 @@ TEST_F(ServerOptionsTest, FaultsOfTheFileAreToldInItsOwnTerms) {
     EXPECT_THAT(refusal({"--config", file("b.toml", "threads = 0\n")}), HasSubstr("--threads"));
 }
 
-TEST_F(ServerOptionsTest, AFileThatIsNotClosedIsNamedWithItsLine) {
+TEST_F(ServerOptionsTest, ReportsTheLineOfAnUnclosedStringOrArray) {
     const auto string = file("string.toml", "threads = 2\nlog-level = \"info\nlisten = \"127.0.0.1:0\"\n");
     EXPECT_THAT(refusal({"--config", string}), HasSubstr(string + ":2: a string is not closed; end it with \""));
     const auto array = file("array.toml", "http-host = [\"maps.lab\"\n");
@@ -60,7 +60,7 @@ TEST_F(ServerOptionsTest, AFileThatIsNotClosedIsNamedWithItsLine) {
     unsetenv("SCANLOOM_CONFIG");
 }
 
-TEST_F(ServerOptionsTest, WhatLooksLikeACommentInAStringIsNone) {
+TEST_F(ServerOptionsTest, ReadsHashInAStringAsText) {
     const auto config =
         file("a.toml", "store = \"/maps#1, old\" # not here\nhttp-host = [ # two\n \"a\",\n \"b\", # b\n]\n");
     std::vector<const char*> argv = {"scanloom-server", "--config", config.c_str()};
@@ -69,7 +69,7 @@ TEST_F(ServerOptionsTest, WhatLooksLikeACommentInAStringIsNone) {
     EXPECT_THAT(options.http_hosts, ElementsAre("a", "b"));
 }
 
-TEST_F(ServerOptionsTest, ANamedDirectoryWithoutAViewerIsRefused) {
+TEST_F(ServerOptionsTest, RejectsAGivenDirectoryWithoutViewer) {
     const auto path = directory_.path().string();
     EXPECT_THAT(refusal({"--web", path}), AllOf(HasSubstr("--web " + path), HasSubstr("index.html")));
     EXPECT_THAT(refusal({"--config", file("a.toml", "web = \"" + path + "\"\n")}), HasSubstr("index.html"));
@@ -78,7 +78,7 @@ TEST_F(ServerOptionsTest, ANamedDirectoryWithoutAViewerIsRefused) {
 }
 
 /// A script's variable that was never set would switch off what it was to name, or serve in place of a task.
-TEST_F(ServerOptionsTest, WhatIsGivenIsNotEmpty) {
+TEST_F(ServerOptionsTest, RejectsEmptyValues) {
     for (const auto* option : {"--tokens", "--robot-client-ca", "--http-client-ca", "--robot-tls-cert", "--restore",
                                "--repair", "--backups", "--store", "--web", "--listen", "--http-host"}) {
         EXPECT_THAT(refusal({option, ""}), AllOf(HasSubstr(option), HasSubstr("empty"))) << option;
@@ -89,7 +89,7 @@ TEST_F(ServerOptionsTest, WhatIsGivenIsNotEmpty) {
     unsetenv("SCANLOOM_TOKENS");
 }
 
-TEST_F(ServerOptionsTest, TheRoomForTilesIsInMebibytes) {
+TEST_F(ServerOptionsTest, TileCacheIsInMebibytes) {
     const auto bytes = [](std::vector<std::string> arguments) {
         return std::get<ServerOptions>(read(std::move(arguments))).tile_cache_bytes;
     };
@@ -101,21 +101,21 @@ TEST_F(ServerOptionsTest, TheRoomForTilesIsInMebibytes) {
     }
 }
 
-TEST_F(ServerOptionsTest, ProxiesAreAddresses) {
+TEST_F(ServerOptionsTest, ProxiesMustBeAddresses) {
     const auto options = std::get<ServerOptions>(read({"--http-proxy", "192.0.2.7,::1"}));
     EXPECT_THAT(options.http_proxies,
                 ElementsAre(boost::asio::ip::make_address("192.0.2.7"), boost::asio::ip::make_address("::1")));
     EXPECT_THAT(refusal({"--http-proxy", "proxy.lab"}), HasSubstr("'proxy.lab' is not an address"));
 }
 
-TEST_F(ServerOptionsTest, RefusesAReserveThatIsTooSmallForTheStore) {
+TEST_F(ServerOptionsTest, RejectsADiskReserveBelowTheMinimum) {
     EXPECT_EQ(std::get<ServerOptions>(read({"--disk-reserve", "32"})).disk_reserve_bytes, std::uint64_t{32} << 20);
     for (const auto* wrong : {"0", "5", "31.9"}) {
         EXPECT_THAT(refusal({"--disk-reserve", wrong}), HasSubstr("the store needs 32 MiB")) << wrong;
     }
 }
 
-TEST_F(ServerOptionsTest, TheMemoryOfMapsIsInMebibytes) {
+TEST_F(ServerOptionsTest, MapMemoryIsInMebibytes) {
     const auto options = std::get<ServerOptions>(read({"--map-memory", "100", "--weave-memory", "64.5"}));
     EXPECT_EQ(options.map_memory_bytes, std::size_t{100} << 20);
     EXPECT_EQ(options.weave_memory_bytes, std::size_t{129} << 19);
@@ -124,7 +124,7 @@ TEST_F(ServerOptionsTest, TheMemoryOfMapsIsInMebibytes) {
     }
 }
 
-TEST_F(ServerOptionsTest, TheServerMayHaveSeveralNames) {
+TEST_F(ServerOptionsTest, AcceptsSeveralHostNames) {
     EXPECT_THAT(std::get<ServerOptions>(read({"--http-host", "maps.lab", "--http-host", "maps"})).http_hosts,
                 ElementsAre("maps.lab", "maps"));
     EXPECT_THAT(std::get<ServerOptions>(read({"--http-host", "maps.lab,maps"})).http_hosts,
@@ -136,7 +136,7 @@ TEST_F(ServerOptionsTest, TheServerMayHaveSeveralNames) {
     }
 }
 
-TEST_F(ServerOptionsTest, AStoreCanBeCheckedRepairedAndRestoredInPlaceOfServed) {
+TEST_F(ServerOptionsTest, SelectsCheckRepairAndRestore) {
     const auto options = [](std::vector<std::string> arguments) {
         return std::get<ServerOptions>(read(std::move(arguments)));
     };
@@ -165,7 +165,7 @@ std::vector<std::string> warnings(std::vector<std::string> arguments) {
     return guard_warnings(std::get<ServerOptions>(read(std::move(arguments))));
 }
 
-TEST_F(ServerOptionsTest, BeyondLoopbackEachPortNeedsAGuard) {
+TEST_F(ServerOptionsTest, RejectsUnprotectedPortsBeyondLoopback) {
     const std::vector<std::string> tls = {"--robot-tls-cert", "c", "--robot-tls-key", "k"};
     const auto with = [](std::vector<std::string> a, const std::vector<std::string>& b) {
         a.insert(a.end(), b.begin(), b.end());
@@ -185,9 +185,9 @@ TEST_F(ServerOptionsTest, BeyondLoopbackEachPortNeedsAGuard) {
     EXPECT_EQ(refusal(with(robots, tls)), "taken");
 }
 
-TEST_F(ServerOptionsTest, WhatAGuardDoesNotKeepOutIsSaid) {
+TEST_F(ServerOptionsTest, WarnsOfRemainingAccess) {
     EXPECT_THAT(warnings({}), testing::IsEmpty());
-    EXPECT_THAT(warnings({"--tokens", "t"}), testing::IsEmpty()) << "nobody is on the way";
+    EXPECT_THAT(warnings({"--tokens", "t"}), testing::IsEmpty()) << "loopback needs no TLS";
     EXPECT_THAT(warnings({"--listen", "0.0.0.0:1", "--tokens", "t"}),
                 ElementsAre(AllOf(HasSubstr("--listen"), HasSubstr("without TLS"))));
     EXPECT_THAT(warnings({"--listen", "0.0.0.0:1", "--robot-tls-cert", "c", "--robot-tls-key", "k"}),
@@ -210,7 +210,7 @@ std::variant<ServerOptions, Leave> token(std::vector<std::string> arguments) {
     return read_options(static_cast<int>(argv.size()), argv.data());
 }
 
-TEST(TokenCommand, PrintsASecretAndTheLinesThatLetItIn) {
+TEST(TokenCommand, PrintsASecretAndItsLines) {
     const auto leave = std::get<Leave>(token({"--name", "depot", "--role", "robot", "--session", "depot-*", "lab"}));
     ASSERT_EQ(leave.code, kExitDone);
     const auto secret = leave.text.substr(0, leave.text.find('\n'));
@@ -223,7 +223,7 @@ TEST(TokenCommand, PrintsASecretAndTheLinesThatLetItIn) {
     EXPECT_NE(leave.text, std::get<Leave>(token({"--name", "depot", "--role", "robot"})).text);
 }
 
-TEST(TokenCommand, SaysWhatIsWrong) {
+TEST(TokenCommand, ReportsInvalidArguments) {
     const auto said = [](std::vector<std::string> arguments) {
         const auto leave = std::get<Leave>(token(std::move(arguments)));
         EXPECT_EQ(leave.code, kExitUsage);

@@ -37,7 +37,7 @@ protected:
     TemporaryDirectory directory_;
 };
 
-TEST_F(PlacesTest, NoneIsWithinAnother) {
+TEST_F(PlacesTest, RejectsDirectoriesInsideEachOther) {
     for (const auto task : {Task::kServe, Task::kRestore, Task::kRepair}) {
         for (const auto* inside :
              {"store/in", "store/a/b", "store/./in", "x/../store/in", "link/in", "link/a/b/", "deep", "deep/in"}) {
@@ -57,7 +57,7 @@ TEST_F(PlacesTest, NoneIsWithinAnother) {
     }
 }
 
-TEST_F(PlacesTest, RelativeNamesAreOfTheWorkingDirectory) {
+TEST_F(PlacesTest, ResolvesRelativePaths) {
     const auto before = fs::current_path();
     fs::current_path(at("store"));
     EXPECT_THAT(refusal(Task::kServe, "backups", at("store")), HasSubstr("--backups backups is inside --store"));
@@ -65,7 +65,7 @@ TEST_F(PlacesTest, RelativeNamesAreOfTheWorkingDirectory) {
     fs::current_path(before);
 }
 
-TEST_F(PlacesTest, WhatIsNotUsedIsNotLookedAt) {
+TEST_F(PlacesTest, IgnoresUnusedDirectories) {
     EXPECT_EQ(refusal(Task::kServe, "", at("store")), "taken");
     EXPECT_EQ(refusal(Task::kCheck, at("store"), at("store")), "taken") << "nothing is written";
 }

@@ -11,14 +11,14 @@ namespace {
 
 using testing::HasSubstr;
 
-TEST(Descriptors, AllAreServedWhereThereAreEnough) {
+TEST(Descriptors, AllowAllConnectionsIfSufficient) {
     for (const std::uint64_t many : {std::uint64_t{20'000}, std::numeric_limits<std::uint64_t>::max()}) {
         EXPECT_EQ(limits_within(many), ConnectionLimits{});
         EXPECT_EQ(shortage(many), "");
     }
 }
 
-TEST(Descriptors, TheStoreKeepsItsShareOfFew) {
+TEST(Descriptors, ReserveAShareForTheStore) {
     for (std::uint64_t few = 500; few < 12'000; few += 7) {
         const auto limits = limits_within(few);
         EXPECT_LE(limits.robots + 2 * limits.greeting + limits.http + 350, few) << few;
@@ -26,7 +26,7 @@ TEST(Descriptors, TheStoreKeepsItsShareOfFew) {
     }
 }
 
-TEST(Descriptors, SomeAreServedInAnyCase) {
+TEST(Descriptors, AlwaysAllowSomeConnections) {
     for (const std::uint64_t none : {0, 64, 350, 420}) {
         const auto limits = limits_within(none);
         EXPECT_GT(limits.robots, 0U);
@@ -35,7 +35,7 @@ TEST(Descriptors, SomeAreServedInAnyCase) {
     }
 }
 
-TEST(Descriptors, AShortageIsSaidWithItsRemedy) {
+TEST(Descriptors, ShortageNamesTheRemedy) {
     EXPECT_THAT(shortage(1024), AllOf(HasSubstr("1024 file descriptors"), HasSubstr("ulimit -n")));
 }
 
@@ -63,7 +63,7 @@ TEST(DefaultMapMemory, FitsIntoALimitedAddressSpace) {
     }
 }
 
-TEST(CheckAddressSpace, ReportsLimitAndAnAddressSpaceThatIsEnough) {
+TEST(CheckAddressSpace, ReportsLimitAndRequiredSize) {
     for (const std::uint64_t mib : {100, 390, 500, 600, 640}) {
         const MemoryLimit limit{8192 * kMib, mib * kMib};
         const auto fits = check_address_space(options_with(default_map_memory(limit)), limit);

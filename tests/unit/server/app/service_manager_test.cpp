@@ -36,7 +36,7 @@ public:
     ServiceManager(const ServiceManager&) = delete;
     ServiceManager& operator=(const ServiceManager&) = delete;
 
-    /// What was told and not yet heard; empty: nothing.
+    /// Returns the next datagram that was sent; empty if there is none.
     [[nodiscard]] std::string heard() const {
         std::array<char, 256> bytes{};
         const auto size = ::recv(descriptor_, bytes.data(), bytes.size(), 0);
@@ -47,7 +47,7 @@ private:
     int descriptor_;
 };
 
-TEST(ServiceManagerTest, HearsEachStateAsOneDatagramWhereverItListens) {
+TEST(ServiceManagerTest, ReceivesEachStateAsOneDatagram) {
     const TemporaryDirectory place;
     for (const auto& name : {(place.path() / "notify").string(), "@scanloom-test-" + std::to_string(::getpid())}) {
         const ServiceManager manager(name);
@@ -59,7 +59,7 @@ TEST(ServiceManagerTest, HearsEachStateAsOneDatagramWhereverItListens) {
     }
 }
 
-TEST(ServiceManagerTest, WhereNobodyListensNothingHappens) {
+TEST(ServiceManagerTest, DoesNothingWithoutListener) {
     tell_service_manager("READY=1");
     for (const std::string& name : {std::string(), std::string("/nowhere/notify"), std::string(200, 'x')}) {
         ::setenv("NOTIFY_SOCKET", name.c_str(), 1);

@@ -35,14 +35,14 @@ CarmenText after(const Sensor& sensor) {
     return carmen;
 }
 
-TEST(CarmenText, AScanIsOneLineOfTheLoggersFormat) {
+TEST(CarmenText, WritesAScanAsOneLine) {
     auto carmen = after(laser());
     EXPECT_EQ(carmen.lines(ScanTaken{0, scan()}).value(),
               "ROBOTLASER1 0 -0.5 0.75 0.25 12 0 0 4 2.005 0 12 0 0 1.25 2 0 1.25 2 0 0 0 0 0 0 976052857.125 crawler "
               "976052857.125\n");
 }
 
-TEST(CarmenText, AScanThatIsNotIntegratedIsNoLine) {
+TEST(CarmenText, OmitsScansThatAreNotIntegrated) {
     CarmenText carmen{ScanFilter(2.0)};
     EXPECT_EQ(carmen.lines(RobotJoined{0, "crawler"}).value(), "");
     EXPECT_TRUE(carmen.lines(SensorDescribed{0, laser()}));
@@ -53,7 +53,7 @@ TEST(CarmenText, AScanThatIsNotIntegratedIsNoLine) {
     EXPECT_THAT(carmen.lines(ScanTaken{0, scan()}).value(), StartsWith("ROBOTLASER1"));
 }
 
-TEST(CarmenText, NumbersAreReadAgainAsTheyWere) {
+TEST(CarmenText, NumbersSurviveReading) {
     auto carmen = after(laser());
     Scan taken = scan();
     taken.pose = {1.0 / 3.0, -1e-17, 2.0 / 7.0};
@@ -64,7 +64,7 @@ TEST(CarmenText, NumbersAreReadAgainAsTheyWere) {
     EXPECT_THAT(line, HasSubstr(" 0.2857142857142857 "));
 }
 
-TEST(CarmenText, ScansOfAnotherClockKeepTheirPlace) {
+TEST(CarmenText, KeepsTheOrderOfScansOfAnotherClock) {
     auto carmen = after(laser());
     const auto stamp_of = [&](double stamp) {
         Scan taken = scan();
@@ -79,7 +79,7 @@ TEST(CarmenText, ScansOfAnotherClockKeepTheirPlace) {
     EXPECT_THAT(stamp_of(1000.1), testing::StartsWith("ROBOTLASER1"));
 }
 
-TEST(CarmenText, ASensorBeyondWhatReadersBelieveIsRemarked) {
+TEST(CarmenText, AddsACommentForALongRangeSensor) {
     CarmenText carmen;
     Sensor far = laser();
     far.range_max = 80.0;
@@ -88,7 +88,7 @@ TEST(CarmenText, ASensorBeyondWhatReadersBelieveIsRemarked) {
     EXPECT_EQ(carmen.lines(SensorDescribed{0, laser()}).value(), "");
 }
 
-TEST(CarmenText, WhatTheFormatCannotSayIsRefusedBySensor) {
+TEST(CarmenText, RejectsSensorsThatTheFormatCannotRepresent) {
     Sensor uneven = laser();
     uneven.angles = ExplicitAngles{-0.5, 0.0, 0.1, 0.9};
     Sensor wide = laser();

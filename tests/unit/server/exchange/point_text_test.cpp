@@ -12,7 +12,7 @@ const std::array<landmarks::CloudPoint, 2> kPoints{
     landmarks::CloudPoint{3.1415927, 5.0, {-5.0, 0.00005}, 1, 0, 12},
 };
 
-TEST(PointText, CsvHasALineForEachPoint) {
+TEST(PointText, CsvHasOneLinePerPoint) {
     EXPECT_EQ(points_csv(kPoints, std::array<std::string, 2>{"left", "right"}),
               "angle,distance,x,y,seen,robot,revision\n"
               "-1.57080,2.0000,1.0100,-2.0000,3,right,11\n"
@@ -20,7 +20,7 @@ TEST(PointText, CsvHasALineForEachPoint) {
     EXPECT_EQ(points_csv({}, {}), "angle,distance,x,y,seen,robot,revision\n");
 }
 
-TEST(PointText, PlyHasAVertexForEachPoint) {
+TEST(PointText, PlyHasOneVertexPerPoint) {
     EXPECT_EQ(points_ply(kPoints), "ply\nformat ascii 1.0\ncomment metres, map frame\nelement vertex 2\n"
                                    "property double x\nproperty double y\nproperty double z\nproperty uint seen\n"
                                    "end_header\n"

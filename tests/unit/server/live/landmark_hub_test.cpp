@@ -43,12 +43,12 @@ public:
         }
     }
 
-    /// Until it was told all landmarks of all that is in the log.
+    /// Reads until all landmarks of the whole log were received.
     void catch_up() {
         const auto revision = server_.session().snapshot()->revision;
         read_until([&] {
-            const auto& told = replay.last_landmarks;
-            return told.revision() >= revision && told.following() == 0;
+            const auto& received = replay.last_landmarks;
+            return received.revision() >= revision && received.following() == 0;
         });
     }
 
@@ -60,12 +60,12 @@ public:
         EXPECT_GT(features.size(), 0U);
         ASSERT_EQ(replay.landmarks.size(), features.size());
         for (const auto& feature : features) {
-            const auto& told = replay.landmarks.at(feature.at("id").to_number<std::uint32_t>());
+            const auto& received = replay.landmarks.at(feature.at("id").to_number<std::uint32_t>());
             const auto& at = feature.at("geometry").at("coordinates").as_array();
-            EXPECT_NEAR(told.x(), at[0].to_number<double>(), 0.0006);
-            EXPECT_NEAR(told.y(), at[1].to_number<double>(), 0.0006);
-            EXPECT_EQ(told.seen(), feature.at("properties").at("seen").to_number<std::uint32_t>());
-            EXPECT_EQ(told.last(), feature.at("properties").at("last").to_number<std::uint64_t>());
+            EXPECT_NEAR(received.x(), at[0].to_number<double>(), 0.0006);
+            EXPECT_NEAR(received.y(), at[1].to_number<double>(), 0.0006);
+            EXPECT_EQ(received.seen(), feature.at("properties").at("seen").to_number<std::uint32_t>());
+            EXPECT_EQ(received.last(), feature.at("properties").at("last").to_number<std::uint64_t>());
         }
         EXPECT_EQ(replay.last_landmarks.captures(), answer.at("captures").to_number<std::uint64_t>());
     }
@@ -77,7 +77,7 @@ private:
     LiveClient client_;
 };
 
-TEST(LiveLandmarks, AreThoseOfLandmarksGeoJsonWhileRobotsDrive) {
+TEST(LiveLandmarks, EqualLandmarksGeoJsonWhileRobotsDrive) {
     LiveServer server(kQuick);
     server.stream("r1", 1, 40);
     LandmarkViewer viewer(server);
@@ -91,7 +91,7 @@ TEST(LiveLandmarks, AreThoseOfLandmarksGeoJsonWhileRobotsDrive) {
     viewer.expect_what_everybody_is_told();
 }
 
-TEST(LiveLandmarks, WaitForNobodyElseAndAreToldToWhoComesLater) {
+TEST(LiveLandmarks, DoNotBlockAndReachLaterViewers) {
     LiveServer server(kQuick);
     server.stream("r1", 1, 40);
     LandmarkViewer first(server);
@@ -102,7 +102,7 @@ TEST(LiveLandmarks, WaitForNobodyElseAndAreToldToWhoComesLater) {
     second.expect_what_everybody_is_told();
 }
 
-TEST(LiveLandmarks, AreNotLookedForMoreOftenThanTheirPause) {
+TEST(LiveLandmarks, AreSearchedAtMostOncePerPause) {
     LiveServer server({.interval = 0ms, .landmarks_pause = 1h, .landmarks_turn = 1h});
     server.stream("r1", 1, 40);
     LandmarkViewer viewer(server);
@@ -113,7 +113,7 @@ TEST(LiveLandmarks, AreNotLookedForMoreOftenThanTheirPause) {
     EXPECT_EQ(viewer.replay.last_landmarks.revision(), found);
 }
 
-TEST(LiveLandmarks, AreNoNewsToWhoDoesNotAsk) {
+TEST(LiveLandmarks, AreNotSentWithoutSubscription) {
     LiveServer server(kQuick);
     server.stream("r1", 1, 40);
     LandmarkViewer viewer(server);
@@ -121,7 +121,7 @@ TEST(LiveLandmarks, AreNoNewsToWhoDoesNotAsk) {
     viewer.wish(false);
     viewer.wish(false);
     const auto events = viewer.replay.events;
-    viewer.read_until([&] { return viewer.replay.events > events; }); // scans are told anew: the wish was heard
+    viewer.read_until([&] { return viewer.replay.events > events; }); // scans are sent again: the request was applied
     const auto found = viewer.replay.last_landmarks.revision();
     server.stream("r1", 41, 80);
     viewer.read_until([&] { return viewer.replay.last.revision() >= server.session().snapshot()->revision; });
@@ -149,13 +149,13 @@ protected:
     boost::asio::io_context searching_;
 };
 
-TEST_F(WatchedLandmarksTest, AreOneForAllWhoHoldThem) {
+TEST_F(WatchedLandmarksTest, AreSharedByAllHolders) {
     const auto watched = hub_.of(7);
     EXPECT_EQ(hub_.of(7), watched);
     EXPECT_NE(hub_.of(8), watched);
 }
 
-TEST_F(WatchedLandmarksTest, AreSearchedForOnceHoweverManyLook) {
+TEST_F(WatchedLandmarksTest, AreSearchedOnceForAllViewers) {
     const auto watched = hub_.of(server_.session().info().id);
     for (int n = 0; n < 5; ++n) EXPECT_EQ(look(*watched, kPatient).found, nullptr);
     EXPECT_EQ(search(), 1U);
@@ -166,7 +166,7 @@ TEST_F(WatchedLandmarksTest, AreSearchedForOnceHoweverManyLook) {
     EXPECT_EQ(search(), 0U) << "nothing is new";
 }
 
-TEST_F(WatchedLandmarksTest, ASearchThatTakesLongGoesOnAtAnotherTurn) {
+TEST_F(WatchedLandmarksTest, ContinueALongSearchInTheNextTurn) {
     server_.stream("r1", 41, 600);
     const auto watched = hub_.of(server_.session().info().id);
     const LandmarkSearch hurried{{}, 0ms, -1ms}; // over when it is first asked, after some hundred entries
@@ -176,10 +176,10 @@ TEST_F(WatchedLandmarksTest, ASearchThatTakesLongGoesOnAtAnotherTurn) {
     EXPECT_EQ(look(*watched, hurried).found->revision, server_.session().snapshot()->revision);
 }
 
-TEST_F(WatchedLandmarksTest, WhoLooksTooSoonIsToldWhenToLookAgain) {
+TEST_F(WatchedLandmarksTest, ReportWhenToLookAgain) {
     const auto watched = hub_.of(server_.session().info().id);
     const LandmarkSearch seldom{{}, 1h, 1h};
-    EXPECT_EQ(look(*watched, seldom).until, WatchedLandmarks::Clock::time_point::max()) << "it is told";
+    EXPECT_EQ(look(*watched, seldom).until, WatchedLandmarks::Clock::time_point::max()) << "a notification follows";
     EXPECT_EQ(search(), 1U);
     server_.stream("r1", 41, 41);
     const auto again = look(*watched, seldom);
@@ -189,7 +189,7 @@ TEST_F(WatchedLandmarksTest, WhoLooksTooSoonIsToldWhenToLookAgain) {
     EXPECT_EQ(search(), 0U);
 }
 
-TEST_F(WatchedLandmarksTest, ARefusalIsToldAndWhatWasFoundStays) {
+TEST_F(WatchedLandmarksTest, KeepFoundLandmarksAfterARefusal) {
     const auto find = [&](WatchedLandmarks& watched) {
         static_cast<void>(look(watched, kPatient));
         EXPECT_EQ(search(), 1U);

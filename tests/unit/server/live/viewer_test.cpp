@@ -60,7 +60,7 @@ TEST(LiveViewer, EndsWhenTokensNoLongerAllowIt) {
     LiveServer server;
     LiveClient client(server.port());
     ASSERT_TRUE(client.read());
-    server.gate().replace(access::TokenSet()); // whoever came without a token goes
+    server.gate().replace(access::TokenSet()); // viewers without a token are disconnected
     EXPECT_EQ(client.read_to_the_end(), 0U);
     EXPECT_EQ(client.code(), 4401U);
     EXPECT_THAT(client.reason(), HasSubstr("sign in"));
@@ -94,7 +94,7 @@ protected:
     boost::system::error_code failed_;
 };
 
-TEST_F(LiveViewerOverTls, IsToldTheSameAndMayLeave) {
+TEST_F(LiveViewerOverTls, GetsTheSameEventsAndMayLeave) {
     LiveReplay viewer;
     while (viewer.events == 0 || viewer.last.revision() < server_.session().snapshot()->revision) {
         viewer.take(read(failed_));
@@ -105,14 +105,14 @@ TEST_F(LiveViewerOverTls, IsToldTheSameAndMayLeave) {
     EXPECT_FALSE(failed_) << failed_.message();
 }
 
-TEST_F(LiveViewerOverTls, HearsWhyTheServerEnds) {
+TEST_F(LiveViewerOverTls, ReceivesTheReasonOfAShutdown) {
     server_.sessions().drain();
     std::jthread stopping([this] { server_.stop(); }); // returns when the connection is closed
     while (!failed_) read(failed_);
     EXPECT_EQ(stream_.reason().code, 1001) << failed_.message();
 }
 
-TEST(LiveViewer, TheFirstEventTellsAllAndTheNextWhatChanged) {
+TEST(LiveViewer, FirstEventHasEverythingAndTheNextChanges) {
     LiveServer server;
     server.stream("r1", 1, 20);
     LiveClient client(server.port());
@@ -130,7 +130,7 @@ TEST(LiveViewer, TheFirstEventTellsAllAndTheNextWhatChanged) {
     EXPECT_GT(server.counters().bytes.Value(), 1'000.0);
 }
 
-TEST(LiveViewer, RobotsThatComeAndGoAreTold) {
+TEST(LiveViewer, ReceivesConnectedRobots) {
     LiveServer server;
     server.stream("r1", 1, 1);
     LiveClient client(server.port());
@@ -140,7 +140,7 @@ TEST(LiveViewer, RobotsThatComeAndGoAreTold) {
     read_until(client, viewer, [&] { return !viewer.robots.at(0).connected; });
 }
 
-TEST(LiveViewer, AGoalThatIsGivenIsToldAlthoughNoScanCame) {
+TEST(LiveViewer, ReceivesAGoalWithoutANewScan) {
     LiveServer server;
     server.stream("r1", 1, 20);
     LiveClient client(server.port());
@@ -162,7 +162,7 @@ TEST(LiveViewer, AGoalThatIsGivenIsToldAlthoughNoScanCame) {
     read_until(client, viewer, [&] { return viewer.last.goals_revision() == 2; });
 }
 
-TEST(LiveViewer, AGoalWhoseTermIsOverIsToldByItself) {
+TEST(LiveViewer, ReceivesTheExpiryOfAGoal) {
     LiveServer server;
     LiveClient client(server.port());
     LiveReplay viewer;
@@ -172,7 +172,7 @@ TEST(LiveViewer, AGoalWhoseTermIsOverIsToldByItself) {
     read_until(client, viewer, [&] { return viewer.last.goals_revision() == 2; });
 }
 
-TEST(LiveViewer, GetsWhatItAsksFor) {
+TEST(LiveViewer, GetsWhatItSubscribesTo) {
     LiveServer server;
     server.stream("r1", 1, 5);
     LiveClient client(server.port());
@@ -181,7 +181,7 @@ TEST(LiveViewer, GetsWhatItAsksFor) {
     const auto stamp = viewer.robots.at(0).scan.stamp();
     const auto known = viewer.tiles;
     client.send(request({}, false));
-    client.send(request({}, true)); // answered by the scan told anew, so that the one before it has been read
+    client.send(request({}, true)); // answered by the scan, sent again; the earlier message was read before
     read_until(client, viewer, [&] { return viewer.events == 2; });
     EXPECT_EQ(viewer.last.tiles_size(), 0);
     server.stream("r1", 6, 10);
@@ -193,7 +193,7 @@ TEST(LiveViewer, GetsWhatItAsksFor) {
     viewer.expect_equal_to(*server.session().snapshot(), server.session().connected());
 }
 
-TEST(LiveViewer, WhoIsNotLetInIsToldWhy) {
+TEST(LiveViewer, RefusalHasAReason) {
     LiveServer server;
     const std::vector<std::pair<std::string, int>> refused = {
         {"GET /api/v1/sessions/lab/live HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n", 426},
@@ -220,7 +220,7 @@ TEST(LiveViewer, WhoIsNotLetInIsToldWhy) {
     EXPECT_EQ(answer.fields.at("server"), "Scanloom");
 }
 
-TEST(LiveViewer, OneTooManyIsToldToComeBack) {
+TEST(LiveViewer, OneViewerTooManyGets503WithRetryAfter) {
     LiveServer server({.viewers_max = 3, .viewers_per_session_max = 2, .interval = 0ms});
     server.create("hall");
     const auto status_of = [&](const char* session) {
@@ -240,7 +240,7 @@ TEST(LiveViewer, OneTooManyIsToldToComeBack) {
     }
 }
 
-TEST(LiveViewer, HostileMessagesEndTheConnectionWithAReason) {
+TEST(LiveViewer, InvalidMessagesCloseTheConnectionWithAReason) {
     LiveServer server;
     const auto ends_with = [&](const std::string& message, bool binary) {
         LiveClient client(server.port());
@@ -265,18 +265,18 @@ TEST(LiveViewer, HostileMessagesEndTheConnectionWithAReason) {
     EXPECT_TRUE(client.read());
 }
 
-TEST(LiveViewer, WhoeverReadsSlowlyGetsTheNewestStateAndHoldsUpNobody) {
+TEST(LiveViewer, SlowViewerGetsTheNewestStateAndDelaysNoOther) {
     LiveServer server;
     LiveClient client(server.port(), "lab", 4096);
     constexpr std::uint64_t kSkipped = 200;
     std::uint64_t seq = 0;
     const auto is_behind = [&] { return static_cast<double>(seq) > server.counters().events.Value() + kSkipped; };
-    do { // until the buffers between are full: each ack comes while nobody reads
+    do { // until the buffers between are full: each ack comes while the viewer does not read
         server.stream("r1", seq + 1, seq + 50);
         seq += 50;
     } while (!is_behind() && seq < 100'000);
     ASSERT_TRUE(is_behind());
-    EXPECT_LT(server.counters().bytes.Value(), 1 << 20) << "what nobody reads is no backlog of the system's either";
+    EXPECT_LT(server.counters().bytes.Value(), 1 << 20) << "unread events do not queue in the system either";
 
     LiveReplay viewer;
     catch_up(server, client, viewer);
@@ -285,7 +285,7 @@ TEST(LiveViewer, WhoeverReadsSlowlyGetsTheNewestStateAndHoldsUpNobody) {
     EXPECT_EQ(viewer.robots.at(0).last_seq, seq);
 }
 
-TEST(LiveViewer, NoMoreEventsThanItsPaceAllows) {
+TEST(LiveViewer, SendsAtMostOneEventPerInterval) {
     LiveServer server({.interval = 1h});
     LiveClient client(server.port());
     ASSERT_TRUE(client.read());
@@ -296,7 +296,7 @@ TEST(LiveViewer, NoMoreEventsThanItsPaceAllows) {
     EXPECT_EQ(client.code(), 1001U);
 }
 
-TEST(LiveViewer, DeletingASessionWaitsForNobodyAndEndsItsConnections) {
+TEST(LiveViewer, DeletingASessionClosesItsConnections) {
     LiveServer server;
     LiveClient silent(server.port(), "lab", 4096);
     LiveClient client(server.port());
@@ -312,7 +312,7 @@ TEST(LiveViewer, DeletingASessionWaitsForNobodyAndEndsItsConnections) {
     EXPECT_EQ(again.read().status, 404);
 }
 
-TEST(LiveViewer, ExcludingScansAsksViewersToConnectAgain) {
+TEST(LiveViewer, ExcludingScansMakesViewersReconnect) {
     LiveServer server({.interval = 0ms});
     server.stream("r1", 1, 3);
     LiveClient client(server.port());
@@ -328,7 +328,7 @@ TEST(LiveViewer, ExcludingScansAsksViewersToConnectAgain) {
     EXPECT_EQ(viewer.robots.at(0).scan_count, 1U);
 }
 
-TEST(LiveViewer, DrainingIsToldAndShuttingDownEndsTheConnections) {
+TEST(LiveViewer, ReportsDrainingAndClosesAtShutdown) {
     LiveServer server({.interval = 0ms, .farewell = 50ms});
     server.stream("r1", 1, 3);
     LiveClient silent(server.port(), "lab", 4096); // does not answer the farewell
@@ -345,7 +345,7 @@ TEST(LiveViewer, DrainingIsToldAndShuttingDownEndsTheConnections) {
     EXPECT_THAT(client.reason(), HasSubstr("shutting down"));
 }
 
-TEST(LiveViewer, WhoeverGivesNoSignOfLifeIsCutOff) {
+TEST(LiveViewer, ClosesSilentConnections) {
     LiveServer server({.interval = 0ms, .idle = 50ms});
     HttpClient client(server.port());
     client.send(upgrade("lab"));
@@ -353,7 +353,7 @@ TEST(LiveViewer, WhoeverGivesNoSignOfLifeIsCutOff) {
     EXPECT_TRUE(client.ends_in_order() || client.is_closed()); // after an event and a ping without a pong
 }
 
-TEST(LiveViewer, WhoeverTakesNoEventInTimeIsCutOff) {
+TEST(LiveViewer, ClosesConnectionsThatDoNotTakeAnEventInTime) {
     LiveServer server({.interval = 0ms, .write = 50ms});
     LiveClient client(server.port(), "lab", 4096);
     ASSERT_TRUE(client.read()); // it is a viewer by now

@@ -33,7 +33,7 @@ protected:
     std::shared_ptr<spdlog::logger> earlier_ = spdlog::default_logger();
 };
 
-TEST_F(JsonFormatterTest, SaysWhomALineIsAbout) {
+TEST_F(JsonFormatterTest, WritesTheContext) {
     info({.session = "lab", .robot = "r1", .peer = "10.0.0.7:5000"}, "robot '{}' came", "r1");
     const auto line = lines().at(0);
     EXPECT_EQ(line.at("level"), "info");
@@ -43,7 +43,7 @@ TEST_F(JsonFormatterTest, SaysWhomALineIsAbout) {
     EXPECT_EQ(line.at("peer"), "10.0.0.7:5000");
 }
 
-TEST_F(JsonFormatterTest, LeavesOutWhatItIsNotAbout) {
+TEST_F(JsonFormatterTest, OmitsEmptyFields) {
     warn({.session = "lab"}, "no checkpoint");
     spdlog::error("the store failed");
     EXPECT_EQ(lines().at(0).size(), 4U);
@@ -51,7 +51,7 @@ TEST_F(JsonFormatterTest, LeavesOutWhatItIsNotAbout) {
     EXPECT_EQ(lines().at(1).at("level"), "error");
 }
 
-TEST_F(JsonFormatterTest, TellsTheTimeInUtc) {
+TEST_F(JsonFormatterTest, WritesTheTimeInUtc) {
     JsonFormatter formatter;
     const spdlog::log_clock::time_point time{std::chrono::milliseconds(1'700'000'000'042)};
     spdlog::memory_buf_t text;
@@ -60,7 +60,7 @@ TEST_F(JsonFormatterTest, TellsTheTimeInUtc) {
     EXPECT_EQ(line.at("time"), "2023-11-14T22:13:20.042Z");
 }
 
-TEST_F(JsonFormatterTest, IsOneLineWhateverTheMessageHolds) {
+TEST_F(JsonFormatterTest, IsOneLineForAnyMessage) {
     info({.session = "\"},{\"a\":\"b"}, "two\nlines, \"quotes\" and \\");
     ASSERT_EQ(lines().size(), 1U);
     EXPECT_EQ(lines()[0].at("message"), "two\nlines, \"quotes\" and \\");

@@ -22,7 +22,7 @@ using testing::HasSubstr;
 
 std::string text_of(const DurationHistogram& histogram) { return to_text({histogram.family()}); }
 
-TEST(DurationHistogram, CountsWhatIsNoLongerThanEachBound) {
+TEST(DurationHistogram, CountsDurationsUpToEachBound) {
     DurationHistogram histogram("wait_seconds", "Waits.");
     histogram.observe(microseconds(500)); // a bound belongs to its bucket
     histogram.observe(microseconds(501));
@@ -49,14 +49,14 @@ TEST(DurationHistogram, CountsWhatIsNoLongerThanEachBound) {
                                   "wait_seconds_bucket{le=\"+Inf\"} 6\n");
 }
 
-TEST(DurationHistogram, AClockThatStoodStillIsTheShortestWait) {
+TEST(DurationHistogram, CountsZeroInTheFirstBucket) {
     DurationHistogram histogram("wait_seconds", "Waits.");
     histogram.observe(milliseconds(-5));
     EXPECT_THAT(text_of(histogram), HasSubstr("wait_seconds_bucket{le=\"0.0005\"} 1\n"));
     EXPECT_THAT(text_of(histogram), HasSubstr("wait_seconds_sum 0\n"));
 }
 
-TEST(DurationHistogram, LosesNothingWhenSeveralThreadsObserve) {
+TEST(DurationHistogram, CountsAllObservationsOfSeveralThreads) {
     DurationHistogram histogram("wait_seconds", "Waits.");
     std::vector<std::thread> threads;
     for (int n = 0; n < 4; ++n) {
@@ -73,7 +73,7 @@ TEST(Metrics, BuildInfoNamesTheVersion) {
     EXPECT_THAT(to_text(metrics.collect()), HasSubstr("scanloom_build_info{version=\"1.2.3\"} 1"));
 }
 
-TEST(Metrics, CountersStartAtZeroSoThatRatesCanBeTaken) {
+TEST(Metrics, CountersStartAtZero) {
     const Metrics metrics("1");
     const auto text = to_text(metrics.collect());
     for (const auto* line :
@@ -84,7 +84,7 @@ TEST(Metrics, CountersStartAtZeroSoThatRatesCanBeTaken) {
     }
 }
 
-TEST(Metrics, WhatIsCountedIsShown) {
+TEST(Metrics, ShowsCountedValues) {
     Metrics metrics("1");
     metrics.ingest().scans_received.Increment(3);
     metrics.ingest().failed(Errc::kMalformed).Increment();
@@ -107,7 +107,7 @@ std::map<std::string, double> values_of(const std::vector<prometheus::MetricFami
     return values;
 }
 
-TEST(Process, SaysWhatTheSystemKnowsOfIt) {
+TEST(Process, ReportsItsOwnUse) {
     const auto values = values_of(process_families());
     EXPECT_GT(values.at("process_resident_memory_bytes"), 100'000.0);
     EXPECT_GT(values.at("process_virtual_memory_bytes"), values.at("process_resident_memory_bytes"));
@@ -117,7 +117,7 @@ TEST(Process, SaysWhatTheSystemKnowsOfIt) {
     EXPECT_TRUE(values.contains("process_cpu_seconds_total"));
 }
 
-TEST(Process, IsSilentOnWhatCannotBeRead) {
+TEST(Process, OmitsValuesThatCannotBeRead) {
     const TemporaryDirectory proc;
     const auto names = [&] {
         std::vector<std::string> found;
@@ -130,7 +130,7 @@ TEST(Process, IsSilentOnWhatCannotBeRead) {
     EXPECT_THAT(names(), testing::ElementsAre("process_max_fds"));
 }
 
-TEST(Process, ReadsTheFieldsOfAProgramWhoseNameLooksLikeFields) {
+TEST(Process, ReadsFieldsAfterAnyProgramName) {
     const TemporaryDirectory proc;
     std::filesystem::create_directory(proc.path() / "self");
     std::ofstream(proc.path() / "self/stat")

@@ -12,7 +12,7 @@ namespace {
 namespace asio = boost::asio;
 using asio::ip::tcp;
 
-TEST(AcceptEach, WhatFailsCostsOneConnection) {
+TEST(AcceptEach, LosesOneConnectionPerFailure) {
     asio::io_context io;
     tcp::acceptor acceptor(io, {asio::ip::address_v4::loopback(), 0});
     tcp::socket first(io);
@@ -35,7 +35,7 @@ TEST(AcceptEach, WhatFailsCostsOneConnection) {
     EXPECT_TRUE(ended);
 }
 
-TEST(AcceptEach, ClosingTheAcceptorEndsIt) {
+TEST(AcceptEach, EndsWhenTheAcceptorIsClosed) {
     asio::io_context io;
     tcp::acceptor acceptor(io, {asio::ip::address_v4::loopback(), 0});
     bool ended = false;

@@ -14,7 +14,7 @@
 namespace scanloom::sockets {
 namespace {
 
-TEST(RunToTheEnd, WhatThrowsEndsAlone) {
+TEST(RunToCompletion, ContinuesAfterAnException) {
     boost::asio::io_context io;
     int done = 0;
     boost::asio::post(io, [] { throw std::bad_alloc(); });
@@ -25,7 +25,7 @@ TEST(RunToTheEnd, WhatThrowsEndsAlone) {
     EXPECT_EQ(done, 2);
 }
 
-TEST(WorkerPool, ATaskThatThrowsEndsAlone) {
+TEST(WorkerPool, ContinuesAfterAnException) {
     WorkerPool pool(2);
     const auto strand = boost::asio::make_strand(pool.get_executor());
     std::atomic<int> done = 0;
@@ -39,7 +39,7 @@ TEST(WorkerPool, ATaskThatThrowsEndsAlone) {
     EXPECT_EQ(done, 50) << "also those behind it on the same strand";
 }
 
-TEST(WorkerPool, JoinWaitsForWhatTasksPost) {
+TEST(WorkerPool, JoinWaitsForTasksPostedByTasks) {
     WorkerPool pool(1);
     int done = 0;
     boost::asio::post(pool.get_executor(), [&] { boost::asio::post(pool.get_executor(), [&] { ++done; }); });
@@ -70,7 +70,7 @@ protected:
     std::exception_ptr failed_;
 };
 
-TEST_F(ComputeOnTest, GoesOnAtOnceWhenItIsDoneThoughOtherWorkWaitsThere) {
+TEST_F(ComputeOnTest, ResumesAheadOfQueuedWork) {
     begin([] { return 7; });
     asio::post(elsewhere_, [] {});
     elsewhere_.run_one();
@@ -79,7 +79,7 @@ TEST_F(ComputeOnTest, GoesOnAtOnceWhenItIsDoneThoughOtherWorkWaitsThere) {
     EXPECT_EQ(elsewhere_.poll(), 1U) << "the other work alone is left";
 }
 
-TEST_F(ComputeOnTest, IsDoneThereAndTheContextHereWaitsForIt) {
+TEST_F(ComputeOnTest, RunsOnTheExecutorWhileTheContextWaits) {
     std::optional<bool> done_there;
     begin([&] {
         done_there = elsewhere_.get_executor().running_in_this_thread();
@@ -94,7 +94,7 @@ TEST_F(ComputeOnTest, IsDoneThereAndTheContextHereWaitsForIt) {
     EXPECT_EQ(made_, 0);
 }
 
-TEST_F(ComputeOnTest, WhatIsThrownIsThrownHere) {
+TEST_F(ComputeOnTest, RethrowsTheExceptionOfTheWork) {
     begin([]() -> int { throw std::runtime_error("no"); });
     elsewhere_.run();
     here_.run();

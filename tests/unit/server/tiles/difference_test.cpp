@@ -105,7 +105,7 @@ INSTANTIATE_TEST_SUITE_P(All, DifferenceOf,
                                           testing::Values(0.05, 0.1, 0.15)),
                          name_of_pair);
 
-TEST_P(DifferenceOf, EveryPlaceIsWhatItsCellsSay) {
+TEST_P(DifferenceOf, ClassifiesEachPlaceByTheCellsOfBothMaps) {
     const auto [layer, size_a, size_b] = GetParam();
     const auto a = woven({.cell_size = size_a, .danger_radius = 0.3}, 40);
     const auto b =
@@ -139,7 +139,7 @@ TEST_P(DifferenceOf, EveryPlaceIsWhatItsCellsSay) {
     EXPECT_GT(sums.cells[static_cast<std::size_t>(Difference::kBothFree)], 1000U);
 }
 
-TEST(Difference, IsOfAllThatEitherMapShows) {
+TEST(Difference, CoversBothMaps) {
     const auto few = woven({.cell_size = 0.1}, 3);
     const auto many = woven({.cell_size = 0.05}, 30);
     const auto blank = woven({.cell_size = 0.02}, 0);
@@ -154,7 +154,7 @@ TEST(Difference, IsOfAllThatEitherMapShows) {
     EXPECT_EQ(difference_frame({few, many}, Extent{0, 0, 0, 1}).error().code, Errc::kInvalidField);
 }
 
-TEST(Difference, ItsImageIsIndexedAndClearWhereNeitherKnows) {
+TEST(Difference, PngHasPaletteIndicesAndIsTransparentWhereUnknown) {
     const auto a = woven({.cell_size = 0.1}, 20);
     const auto b = woven({.cell_size = 0.05}, 30);
     const ComparedMaps maps{a, b};
@@ -182,7 +182,7 @@ TEST(Difference, ItsImageIsIndexedAndClearWhereNeitherKnows) {
     EXPECT_EQ(y, image.rows);
 }
 
-TEST(Difference, AnImageOfManyPiecesIsWhole) {
+TEST(Difference, PngOfManyChunksIsComplete) {
     const auto a = woven({.cell_size = 0.01}, 60); // noise enough for more than a piece of 64 KiB
     const auto b = woven({.cell_size = 0.013}, 80);
     const ComparedMaps maps{a, b};

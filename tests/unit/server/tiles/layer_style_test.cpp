@@ -19,7 +19,7 @@ TEST(OccupancyPercent, IsTheRoundedProbabilityOfEveryFixedPointValue) {
     EXPECT_EQ(percent_table()[0], 50);
 }
 
-TEST(OccupancyPercent, SalienceRanksFirstTheFurthestAboveHalfThenTheLowest) {
+TEST(OccupancyPercent, SalienceOrdersHighestAboveHalfThenLowest) {
     int before = kUnknownSalience;
     const auto expect_next = [&](int percent) {
         const auto salience = salience_of(static_cast<Percent>(percent));
@@ -33,7 +33,7 @@ TEST(OccupancyPercent, SalienceRanksFirstTheFurthestAboveHalfThenTheLowest) {
     EXPECT_EQ(percent_of_salience(kUnknownSalience), kUnknownPercent);
 }
 
-TEST(OccupancyPercent, GreysTellEveryPercentageApartAndNoneFromUnknown) {
+TEST(OccupancyPercent, GreysOfPercentagesAndUnknownAreDistinct) {
     std::set<int> greys{grey_of(kUnknownPercent)};
     for (int percent = 0; percent <= 100; ++percent) {
         const int grey = grey_of(static_cast<Percent>(percent));
@@ -53,7 +53,7 @@ std::tuple<int, int, int> rgb(Layer layer, Code code) {
     return {colour.red, colour.green, colour.blue};
 }
 
-TEST(LayerStyle, ProbabilitiesAndCountersGoFromWhiteToBlackAndUnknownIsMidGrey) {
+TEST(LayerStyle, ValuesAreWhiteToBlackAndUnknownIsMidGrey) {
     for (const Layer layer : {Layer::kOccupancy, Layer::kSonar, Layer::kHimm}) {
         const Code last = layer == Layer::kHimm ? 15 : 100;
         EXPECT_EQ(rgb(layer, 0), (std::tuple{255, 255, 255}));
@@ -71,7 +71,7 @@ TEST(LayerStyle, ProbabilitiesAndCountersGoFromWhiteToBlackAndUnknownIsMidGrey) 
     }
 }
 
-TEST(LayerStyle, ClassesHaveTheColoursOfTheContract) {
+TEST(LayerStyle, ClassesHaveTheDocumentedColours) {
     const auto [grey_r, grey_g, grey_b] = rgb(Layer::kClassification, 0);
     EXPECT_TRUE(grey_r == grey_g && grey_g == grey_b && grey_r > 90 && grey_r < 220) << "unexplored: grey";
     const auto [pale_r, pale_g, pale_b] = rgb(Layer::kClassification, 1);
@@ -85,7 +85,7 @@ TEST(LayerStyle, ClassesHaveTheColoursOfTheContract) {
     EXPECT_FALSE(style_of(Layer::kClassification).is_grey);
 }
 
-TEST(LayerStyle, SaliencesAndCodesAreEachOthersReverse) {
+TEST(LayerStyle, SalienceAndCodeTablesAreInverse) {
     for (const Layer layer : mapping::kLayers) {
         const auto& style = style_of(layer);
         std::set<Code> codes{style.unknown};

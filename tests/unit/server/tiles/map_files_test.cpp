@@ -72,7 +72,7 @@ class MapTableOf : public testing::TestWithParam<Layer> {};
 INSTANTIATE_TEST_SUITE_P(AnyLayer, MapTableOf, testing::ValuesIn(mapping::kLayers),
                          [](const auto& tried) { return std::string(mapping::name_of(tried.param)); });
 
-TEST_P(MapTableOf, TheCsvReadsBackAsTheCellsTopRowFirst) {
+TEST_P(MapTableOf, CsvContainsTheCellsTopRowFirst) {
     const Layer layer = GetParam();
     const auto snapshot = testing_support::random_layers(51);
     for (const auto& box : kBoxes) {
@@ -95,7 +95,7 @@ TEST_P(MapTableOf, TheCsvReadsBackAsTheCellsTopRowFirst) {
     }
 }
 
-TEST_P(MapTableOf, TheNpyReadsBackAsTheCellsTopRowFirst) {
+TEST_P(MapTableOf, NpyContainsTheCellsTopRowFirst) {
     const Layer layer = GetParam();
     const bool is_probability = layer == Layer::kOccupancy || layer == Layer::kSonar;
     const auto snapshot = testing_support::random_layers(52);
@@ -121,7 +121,7 @@ TEST_P(MapTableOf, TheNpyReadsBackAsTheCellsTopRowFirst) {
     }
 }
 
-TEST(MapNpy, HoldsProbabilitiesNotPercent) {
+TEST(MapNpy, ContainsProbabilitiesNotPercentages) {
     testing_support::HandMadeMap map;
     map.set({0, 0}, 1268);
     map.set({1, 0}, -14145);
@@ -131,7 +131,7 @@ TEST(MapNpy, HoldsProbabilitiesNotPercent) {
     EXPECT_TRUE(std::isnan(array.float_at(2)));
 }
 
-TEST(MapCsv, IsExactlyThis) {
+TEST(MapCsv, HasTheDocumentedText) {
     EXPECT_EQ(map_csv({{{0, 0, 3, 2}, 0.05}, Layer::kOccupancy, {0, 7, 255, 100, 50, 1}}), "0,7,-1\n100,50,1\n");
     EXPECT_EQ(map_csv({{{0, 0, 3, 1}, 0.05}, Layer::kHimm, {15, 0, 255}}), "15,0,-1\n");
     EXPECT_EQ(map_csv({{{0, 0, 5, 1}, 0.05}, Layer::kClassification, {0, 1, 2, 3, 4}}), "0,1,2,3,4\n");
@@ -210,7 +210,7 @@ private:
     std::map<std::string, std::string> keys_;
 };
 
-TEST(RosMap, LoadsAsTheSameCellsInBothGenerationsOfMapServers) {
+TEST(RosMap, LoadsAsTheSameCellsInRos1AndNav2) {
     testing_support::HandMadeMap map;
     std::mt19937 random(31);
     for (std::int32_t j = -33; j < 80; ++j) {
@@ -241,7 +241,7 @@ TEST(RosMap, LoadsAsTheSameCellsInBothGenerationsOfMapServers) {
     }
 }
 
-TEST(RosMap, TheGreysAreThoseOfMapSaver) {
+TEST(RosMap, GreysAreThoseOfMapSaver) {
     const MapImage image{{{0, 0, 6, 1}, 0.05}, Layer::kOccupancy, {0, 35, 36, 64, 65, 255}};
     const auto pgm = map_pgm(image, {});
     const std::string header = "P5\n# CREATOR: Scanloom 0.050 m/pix\n6 1\n255\n";
@@ -254,7 +254,7 @@ Bytes greys_of(Layer layer, const Bytes& codes, const mapping::MapConfig& config
     return {pgm.end() - static_cast<std::ptrdiff_t>(codes.size()), pgm.end()};
 }
 
-TEST(RosMap, EveryLayerIsShownInTheSameThreeGreys) {
+TEST(RosMap, EveryLayerHasTheSameThreeGreys) {
     EXPECT_EQ(greys_of(Layer::kSonar, {0, 35, 36, 64, 65, 100, 255}), (Bytes{254, 254, 205, 205, 0, 0, 205}));
     EXPECT_EQ(greys_of(Layer::kClassification, {0, 1, 2, 3, 4}), (Bytes{205, 254, 0, 205, 254}));
     EXPECT_EQ(greys_of(Layer::kHimm, {0, 4, 5, 7, 8, 15, 255}), (Bytes{254, 254, 205, 205, 0, 0, 205}));
@@ -267,7 +267,7 @@ TEST(RosMap, EveryLayerIsShownInTheSameThreeGreys) {
     EXPECT_EQ(greys_of(Layer::kHimm, {0, 1, 2, 11, 12, 255}, config), (Bytes{254, 254, 205, 205, 0, 205}));
 }
 
-TEST(RosMap, TheYamlIsExactlyThis) {
+TEST(RosMap, YamlHasTheDocumentedText) {
     EXPECT_EQ(map_yaml({{-101, 0, 10, 10}, 0.05}), "image: map.pgm\n"
                                                    "mode: trinary\n"
                                                    "resolution: 0.05\n"

@@ -19,11 +19,11 @@ namespace {
 
 using grid::CellBox;
 
-TEST(Extent, OfTheTilesIsTheSquareOf131072Cells) {
+TEST(Extent, OfTilesIsSquareOf131072Cells) {
     EXPECT_EQ(tiled_extent(0.05), (Extent{-3276.8, -3276.8, 3276.8, 3276.8}));
 }
 
-TEST(Extent, CellsToMetresAndBackIsTheIdentityAtEveryCellSize) {
+TEST(Extent, CellsSurviveConversionToMetresAndBack) {
     for (const double cell_size : {0.01, 0.03, 0.05, 0.07, 0.1, 0.5, 1.0}) {
         for (std::int32_t i = -100'000; i < 100'000; i += 317) {
             const CellBox box{i, i / 2, i + 1 + std::abs(i) % 7, i / 2 + 3};
@@ -32,7 +32,7 @@ TEST(Extent, CellsToMetresAndBackIsTheIdentityAtEveryCellSize) {
     }
 }
 
-TEST(Extent, HoldsEveryCellThatItOverlaps) {
+TEST(Extent, ContainsEveryOverlappedCell) {
     EXPECT_EQ(cells_in({-0.05, 0.31, 0.05, 0.49}, 0.1).value(), (CellBox{-1, 3, 1, 5}));
     EXPECT_EQ(cells_in({0.3, 0.3, 0.7, 0.7}, 0.1).value(), (CellBox{3, 3, 7, 7})) << "decimal metres";
     EXPECT_EQ(cells_in({0.31, 0.31, 0.32, 0.32}, 0.1).value(), (CellBox{3, 3, 4, 4})) << "within one cell";
@@ -40,7 +40,7 @@ TEST(Extent, HoldsEveryCellThatItOverlaps) {
     EXPECT_EQ(cells_in({border, border, std::nextafter(border, 1.0), 0.4}, 0.1)->width(), 1);
 }
 
-TEST(Extent, RectanglesThatNameNoCellsAreRefused) {
+TEST(Extent, RejectsRectanglesWithoutCells) {
     const double nan = std::nan("");
     for (const Extent& bad : {Extent{0, 0, 0, 1}, Extent{0, 0, 1, 0}, Extent{1, 0, 0, 1}, Extent{0, 1, 1, 0},
                               Extent{nan, 0, 1, 1}, Extent{0, 0, 1, nan}, Extent{-HUGE_VAL, 0, 1, 1},
@@ -83,7 +83,7 @@ void expect_equals_brute_force(const mapping::Snapshot& snapshot, const MapImage
     }
 }
 
-TEST(MapImage, OfAnyLayerHoldsEveryCellThatTheLayerShows) {
+TEST(MapImage, OfAnyLayerContainsEveryCell) {
     for (const auto source : {ClassSource::kOccupancy, ClassSource::kHimm}) {
         mapping::Projection projection(mapping::resolve({.cell_size = 0.1, .class_source = source}).value());
         Sensor sonar{.id = 9, .kind = SensorKind::kSonar, .angles = UniformAngles{0.0, 1.0, 6}, .range_max = 4.0};
@@ -116,7 +116,7 @@ TEST(MapImage, OfAnyLayerHoldsEveryCellThatTheLayerShows) {
     }
 }
 
-TEST(MapImage, OfAnyBoxIsThatBoxWithTheUnseenUnknown) {
+TEST(MapImage, OfABoxHasItsSizeAndUnknownCells) {
     const auto snapshot = small_random_map().snapshot(1, {.cell_size = 0.1});
     for (const Extent& bbox : {Extent{-1, -2, 3, 4}, Extent{-0.1, -0.1, 0, 0}, Extent{-9, -20, 25, 15},
                                Extent{6.4, 0, 12.8, 6.4}, Extent{500, 500, 501, 502}}) {
@@ -126,7 +126,7 @@ TEST(MapImage, OfAnyBoxIsThatBoxWithTheUnseenUnknown) {
     }
 }
 
-TEST(MapImage, FarFromTheOriginIsDrawnBeyondWhereTilesReach) {
+TEST(MapImage, IsDrawnOutsideTheTiledArea) {
     HandMadeMap map;
     map.set({-99'999'999, 99'999'990}, -14000);
     map.set({-99'999'990, 99'999'999}, 14000);
@@ -138,7 +138,7 @@ TEST(MapImage, FarFromTheOriginIsDrawnBeyondWhereTilesReach) {
     expect_equals_brute_force(snapshot, image);
 }
 
-TEST(MapImage, OfASessionThatSawNothingIsNotFoundUnlessAPlaceIsNamed) {
+TEST(MapImage, OfAnEmptyLayerIsNotFoundWithoutBbox) {
     const auto none = map_frame(mapping::Snapshot{}, Layer::kOccupancy, {});
     ASSERT_FALSE(none);
     EXPECT_EQ(none.error().code, Errc::kNotFound);
@@ -148,7 +148,7 @@ TEST(MapImage, OfASessionThatSawNothingIsNotFoundUnlessAPlaceIsNamed) {
                 testing::AllOf(testing::SizeIs(400), testing::Each(kUnknownPercent)));
 }
 
-TEST(MapImage, TooManyPixelsAreRefusedWithAWayOut) {
+TEST(MapImage, RejectsTooManyPixelsAndSuggestsBbox) {
     HandMadeMap map;
     map.set({0, 0}, 1);
     map.set({7'999, 7'999}, 1);
@@ -164,7 +164,7 @@ TEST(MapImage, TooManyPixelsAreRefusedWithAWayOut) {
     EXPECT_EQ(map_frame(map.snapshot(), Layer::kOccupancy, Extent{0, 0, -1, 5}).error().code, Errc::kInvalidField);
 }
 
-TEST(MapImage, TheLongestAllowedSideStillMakesAPng) {
+TEST(MapImage, EncodesTheLongestAllowedSide) {
     const auto longest = map_frame(mapping::Snapshot{}, Layer::kOccupancy, Extent{0, 0, 50'000, 0.05});
     ASSERT_TRUE(longest);
     EXPECT_EQ(longest->width(), kMapSideMax);
@@ -172,7 +172,7 @@ TEST(MapImage, TheLongestAllowedSideStillMakesAPng) {
     EXPECT_FALSE(map_frame(mapping::Snapshot{}, Layer::kOccupancy, Extent{0, 0, 0.05, 50'000.05}));
 }
 
-TEST(MapImage, ThePngHasTheGreysOfTheTiles) {
+TEST(MapImage, PngHasTheGreysOfTheTiles) {
     const auto snapshot = small_random_map().snapshot();
     const auto image = render_map(snapshot, Layer::kOccupancy, map_frame(snapshot, Layer::kOccupancy, {}).value());
     const cv::Mat png = cv::imdecode(map_png(image), cv::IMREAD_UNCHANGED);

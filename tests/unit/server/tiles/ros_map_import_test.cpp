@@ -28,7 +28,7 @@ mapping::Snapshot imported(const std::vector<MapPatch>& patches, double cell_siz
     return projection.snapshot();
 }
 
-TEST(RosMapImport, GivesBackWhatWasExported) {
+TEST(RosMapImport, RestoresAnExportedMap) {
     std::mt19937 random(41);
     testing_support::HandMadeMap map;
     for (std::int32_t j = -33; j < 80; ++j) {
@@ -45,7 +45,7 @@ TEST(RosMapImport, GivesBackWhatWasExported) {
     EXPECT_EQ(again.robots.size(), 0U);
 }
 
-TEST(RosMapImport, RowsComeFromTheBottomInPatchesOfWholeRows) {
+TEST(RosMapImport, ReadsRowsFromTheBottomInPatchesOfWholeRows) {
     cv::Mat image(1500, 1000, CV_8UC1, cv::Scalar(205));
     image.at<std::uint8_t>(0, 0) = 0;        // the top left pixel
     image.at<std::uint8_t>(1499, 999) = 254; // the bottom right one
@@ -68,7 +68,7 @@ TEST(RosMapImport, RowsComeFromTheBottomInPatchesOfWholeRows) {
     EXPECT_EQ(mapping::bounds_of(map, Layer::kOccupancy), (grid::CellBox{-500, 200, 500, 1700}));
 }
 
-TEST(RosMapImport, WallsSurviveLargerCellsAndFillSmallerOnes) {
+TEST(RosMapImport, KeepsWallsAtOtherCellSizes) {
     const Bytes image = bytes_of("P2\n8 4\n255\n254 254 254 0 254 254 254 254\n254 254 254 254 254 254 254 254\n"
                                  "254 254 254 254 254 254 254 254\n254 254 254 254 254 254 254 254\n");
     const auto patches = read_ros_image({.resolution = 0.05}, image).value();
@@ -83,7 +83,7 @@ TEST(RosMapImport, WallsSurviveLargerCellsAndFillSmallerOnes) {
     EXPECT_EQ(occupied(0.025), (std::pair{4L, 128UL}));
 }
 
-TEST(RosMapImport, AnImageThatIsNoneIsRefused) {
+TEST(RosMapImport, RejectsInvalidImages) {
     const std::string pgm = "P5 2 2 255 abcd";
     for (std::size_t size = 0; size < pgm.size(); ++size) {
         EXPECT_FALSE(read_ros_image({}, bytes_of(pgm.substr(0, size)))) << size;
@@ -105,7 +105,7 @@ class RealMap : public testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Maps, RealMap, testing::Values("depot/depot", "turtlebot3_world/map"),
                          [](const auto& tried) { return std::string(tried.index == 0 ? "depot" : "turtlebot3"); });
 
-TEST_P(RealMap, IsImportedWithFreeOccupiedAndUnknownCells) {
+TEST_P(RealMap, ImportsFreeOccupiedAndUnknownCells) {
     const auto base = std::filesystem::path(SCANLOOM_SOURCE_DIR) / "../shared/data/maps" / GetParam();
     const auto file = [&](const char* extension) {
         std::ifstream in(base.string() + extension, std::ios::binary);

@@ -45,7 +45,7 @@ bool get_with(TileCache& cache, Revision revision, int allocations) {
     return sufficed;
 }
 
-TEST(TileCacheMemory, ATileThatCannotBeKeptIsHandedOverAndMadeAnew) {
+TEST(TileCacheMemory, ReturnsTileThatCannotBeCachedAndMakesItAgain) {
     int allocations = 0;
     for (bool is_kept = false; !is_kept; ++allocations) {
         TileCache cache(1'000'000);
@@ -54,9 +54,9 @@ TEST(TileCacheMemory, ATileThatCannotBeKeptIsHandedOverAndMadeAnew) {
         ASSERT_EQ(cache.find(kPlace, 2) != nullptr, is_kept) << allocations;
         ASSERT_EQ(cache.stats().tiles, is_kept ? 1U : 0U) << allocations;
         ASSERT_EQ(cache.stats().bytes > 0, is_kept) << allocations;
-        bool is_made_anew = false;
-        ASSERT_NE(cache.get(kPlace, 2, [&] { return is_made_anew = true, tile(2); }), nullptr);
-        ASSERT_EQ(is_made_anew, !is_kept) << allocations;
+        bool is_made_again = false;
+        ASSERT_NE(cache.get(kPlace, 2, [&] { return is_made_again = true, tile(2); }), nullptr);
+        ASSERT_EQ(is_made_again, !is_kept) << allocations;
         cache.forget(kPlace.maps);
         ASSERT_EQ(cache.stats().bytes, 0U) << allocations;
     }

@@ -24,7 +24,7 @@ KeptTile tile(std::size_t size, Revision revision = 1) {
     return {std::make_shared<const Bytes>(size, std::uint8_t{7}), revision};
 }
 
-TEST(TileCache, TellsPlacesFormatsLayersMapsAndRevisionsApart) {
+TEST(TileCache, DistinguishesPlacesFormatsLayersMapsAndRevisions) {
     TileCache cache(1'000'000);
     cache.keep(place(1), tile(10));
     ASSERT_NE(cache.find(place(1), 1), nullptr);
@@ -40,7 +40,7 @@ TEST(TileCache, TellsPlacesFormatsLayersMapsAndRevisionsApart) {
     EXPECT_EQ(cache.stats().hits, 1U);
 }
 
-TEST(TileCache, TheLeastRecentlyUsedGoWhenThereIsNoRoom) {
+TEST(TileCache, EvictsTheLeastRecentlyUsed) {
     TileCache cache(10'000);
     for (std::uint32_t x = 0; x < 3; ++x) cache.keep(place(x), tile(2'500));
     ASSERT_NE(cache.find(place(0), 1), nullptr); // so that 1 was used longest ago
@@ -51,7 +51,7 @@ TEST(TileCache, TheLeastRecentlyUsedGoWhenThereIsNoRoom) {
     EXPECT_NE(cache.find(place(3), 1), nullptr);
 }
 
-TEST(TileCache, NeverHoldsMoreThanItMay) {
+TEST(TileCache, NeverExceedsItsMemory) {
     constexpr std::size_t kMax = 100'000;
     TileCache cache(kMax);
     std::mt19937 random(3);
@@ -69,7 +69,7 @@ TEST(TileCache, NeverHoldsMoreThanItMay) {
     EXPECT_EQ(cache.stats().tiles, 0U);
 }
 
-TEST(TileCache, ANewerRevisionTakesThePlaceOfAnOlderAndNotTheOtherWayRound) {
+TEST(TileCache, KeepsTheNewestRevision) {
     TileCache cache(1'000'000);
     cache.keep(place(1), tile(10, 5));
     cache.keep(place(1), tile(11, 8));
@@ -80,7 +80,7 @@ TEST(TileCache, ANewerRevisionTakesThePlaceOfAnOlderAndNotTheOtherWayRound) {
     EXPECT_EQ(cache.stats().tiles, 1U);
 }
 
-TEST(TileCache, WhatManyAskForAtOnceIsMadeOnce) {
+TEST(TileCache, MakesATileOnceForConcurrentRequests) {
     constexpr int kAsking = 20;
     TileCache cache(1'000'000);
     std::atomic<int> made = 0;
@@ -103,7 +103,7 @@ TEST(TileCache, WhatManyAskForAtOnceIsMadeOnce) {
     EXPECT_EQ(cache.stats().hits, 19U);
 }
 
-TEST(TileCache, WhoWaitsForATileThatCannotBeMadeIsToldSo) {
+TEST(TileCache, PassesTheExceptionToAllWaitingRequests) {
     TileCache cache(1'000'000);
     std::promise<void> is_waited_for;
     std::promise<void> may_fail;
@@ -122,7 +122,7 @@ TEST(TileCache, WhoWaitsForATileThatCannotBeMadeIsToldSo) {
     EXPECT_NE(cache.get(place(1), 1, [] { return tile(10); }), nullptr) << "the next tries again";
 }
 
-TEST(TileCache, ForgetsTheTilesOfMapsAndOfTheirWeaves) {
+TEST(TileCache, ForgetsTilesOfMapsAndOfTheirReplayJobs) {
     TileCache cache(1'000'000);
     for (const auto* maps : {"a-1", "a-1-0123", "a-12", "b"}) cache.keep(place(1, maps), tile(10));
     cache.forget("a-1");
@@ -132,7 +132,7 @@ TEST(TileCache, ForgetsTheTilesOfMapsAndOfTheirWeaves) {
     EXPECT_NE(cache.find(place(1, "b"), 1), nullptr);
 }
 
-TEST(TileCache, WhatIsForgottenWhileItIsMadeIsNotKept) {
+TEST(TileCache, DoesNotCacheATileForgottenWhileMade) {
     TileCache cache(1'000'000);
     const auto bytes = cache.get(place(1), 1, [&] {
         cache.forget("maps");

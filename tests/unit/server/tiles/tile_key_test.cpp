@@ -11,7 +11,7 @@ namespace {
 using grid::Cell;
 using grid::CellBox;
 
-TEST(TileKey, ANativePixelIsTheCellThatTheContractNames) {
+TEST(TileKey, NativePixelIsTheDocumentedCell) {
     for (const TileKey key : {TileKey{9, 0, 0}, TileKey{9, 256, 255}, TileKey{9, 255, 256}, TileKey{9, 511, 511}}) {
         const auto box = cells_of(key);
         EXPECT_EQ(box.width(), 256);
@@ -22,7 +22,7 @@ TEST(TileKey, ANativePixelIsTheCellThatTheContractNames) {
     EXPECT_EQ(cells_of({9, 256, 255}), (CellBox{0, 0, 256, 256})) << "right of and above the origin";
 }
 
-TEST(TileKey, ATileIsItsFourChildren) {
+TEST(TileKey, TileCoversItsFourChildren) {
     for (std::uint32_t zoom = 0; zoom < kZoomNative; ++zoom) {
         const std::uint32_t last = (1U << zoom) - 1;
         for (const TileKey key : {TileKey{zoom, 0, 0}, TileKey{zoom, last, last / 2}, TileKey{zoom, last / 3, last}}) {
@@ -39,7 +39,7 @@ TEST(TileKey, ATileIsItsFourChildren) {
     }
 }
 
-TEST(TileKey, EachCellIsInTheTileFoundForIt) {
+TEST(TileKey, TileOfACellContainsIt) {
     std::mt19937 random(3);
     std::vector<Cell> cells{{0, 0}, {-1, -1}, {-65536, -65536}, {65535, 65535}, {-65536, 65535}, {255, 256}};
     for (int n = 0; n < 2000; ++n) {
@@ -57,13 +57,13 @@ TEST(TileKey, EachCellIsInTheTileFoundForIt) {
     }
 }
 
-TEST(TileKey, AddressesOfTilesParse) {
+TEST(TileKey, ParsesAddressesOfTiles) {
     EXPECT_EQ(parse_tile_key("0", "0", "0").value(), (TileKey{0, 0, 0}));
     EXPECT_EQ(parse_tile_key("9", "511", "0").value(), (TileKey{9, 511, 0}));
     EXPECT_EQ(parse_tile_key("4", "10", "15").value(), (TileKey{4, 10, 15}));
 }
 
-TEST(TileKey, TextThatIsNoWholeNumberIsABadRequestWhereverItStands) {
+TEST(TileKey, RejectsTextThatIsNotAWholeNumber) {
     using namespace std::string_view_literals;
     for (const auto text : {""sv, "-"sv, "-0"sv, "+5"sv, " 5"sv, "5 "sv, "05"sv, "-05"sv, "5.0"sv, "1e1"sv, "0x1"sv,
                             "five"sv, "5\0"sv, "\xC3\xA9"sv, "\xD9\xA1"sv, "--5"sv, "5-"sv, "nan"sv}) {
@@ -77,7 +77,7 @@ TEST(TileKey, TextThatIsNoWholeNumberIsABadRequestWhereverItStands) {
     EXPECT_THAT(parse_tile_key("1", "1", "q").error().message, testing::StartsWith("tile y"));
 }
 
-TEST(TileKey, NumbersWithoutATileAreNotFound) {
+TEST(TileKey, NumbersWithoutTileAreNotFound) {
     const std::string long_number(4000, '7');
     const std::array<const char*, 3> missing[] = {
         {"10", "0", "0"},         {"-1", "0", "0"}, {"4294967296", "0", "0"},

@@ -29,7 +29,7 @@ SharedBytes made(TileMaker& maker, const mapping::Snapshot& snapshot, const Tile
     return maker.make({snapshot, origin}, place, tile_revision(snapshot, place.layer, place.key));
 }
 
-TEST_P(TileMakerOf, TilesOfAMapThatChangesAreThoseDrawnFromNothing) {
+TEST_P(TileMakerOf, IncrementalTilesEqualNewlyDrawnTiles) {
     std::mt19937 random(7);
     auto keys = testing_support::scattered_chunks(random);
     RandomLayers layers;
@@ -65,7 +65,7 @@ mapping::Snapshot uniform(mapping::LogOdds value, Revision revision) {
 
 const TilePlace kWhole{"maps", Layer::kOccupancy, {0, 0, 0}, TileFormat::kPng};
 
-TEST(TileMaker, MakesATileOnceForEachOfItsRevisions) {
+TEST(TileMaker, MakesEachRevisionOfATileOnce) {
     TileMaker maker;
     const auto first = uniform(-3000, 1);
     EXPECT_EQ(maker.find(kWhole, 1), nullptr);
@@ -78,14 +78,14 @@ TEST(TileMaker, MakesATileOnceForEachOfItsRevisions) {
     EXPECT_EQ(maker.stats().hits, 2U);
 }
 
-TEST(TileMaker, AnOlderMapIsDrawnFromItself) {
+TEST(TileMaker, DrawsAnOlderMapWithoutNewerDrawings) {
     TileMaker maker;
     const auto newer = made(maker, uniform(3000, 9), kWhole);
     EXPECT_EQ(*made(maker, uniform(-3000, 4), kWhole), *tile_png(uniform(-3000, 4), Layer::kOccupancy, {0, 0, 0}));
     EXPECT_EQ(maker.find(kWhole, 9), newer) << "which stays";
 }
 
-TEST(TileMaker, MapsMadeOnceMoreAreDrawnFromThemselves) {
+TEST(TileMaker, DrawsRecomputedMapsWithoutEarlierDrawings) {
     TileMaker maker;
     mapping::LaserLayers layers{mapping::MapConfig{}};
     layers.restore({0, 0}, 1).occupancy.fill(-3000);
@@ -96,7 +96,7 @@ TEST(TileMaker, MapsMadeOnceMoreAreDrawnFromThemselves) {
     EXPECT_EQ(*tile, *tile_png(again, Layer::kOccupancy, {0, 0, 0}));
 }
 
-TEST(TileMaker, WhatNothingHasTouchedNeedsNoMaking) {
+TEST(TileMaker, ReturnsUntouchedTilesWithoutMakingThem) {
     TileMaker maker;
     EXPECT_EQ(maker.find(kWhole, 0), tile_png(mapping::Snapshot{}, Layer::kOccupancy, {0, 0, 0}));
     EXPECT_EQ(maker.stats().tiles, 0U);
@@ -107,7 +107,7 @@ bool is_quick(TileMaker& maker, const mapping::Snapshot& snapshot, const TilePla
     return maker.is_quick(origin, place, tile_revision(snapshot, place.layer, place.key));
 }
 
-TEST(TileMaker, AWholeMapIsLookedAtOnce) {
+TEST(TileMaker, ReadsAWholeMapOnce) {
     TileMaker maker;
     const auto map = uniform(3000, 1);
     EXPECT_FALSE(is_quick(maker, map, kWhole));
@@ -118,7 +118,7 @@ TEST(TileMaker, AWholeMapIsLookedAtOnce) {
     EXPECT_FALSE(is_quick(maker, uniform(-3000, 2), kWhole));
 }
 
-TEST(TileMaker, AWholeMapIsLookedAtAgainWhereTheEarlierDrawingCannotBeGoneOnFrom) {
+TEST(TileMaker, ReadsAWholeMapAgainWithoutUsableDrawing) {
     TileMaker maker;
     static_cast<void>(made(maker, uniform(3000, 5), kWhole));
     EXPECT_TRUE(is_quick(maker, uniform(-3000, 6), kWhole));

@@ -142,7 +142,7 @@ std::vector<LogEntry> walk_with_laser_and_sonar(std::size_t scans) {
     return log;
 }
 
-TEST(Changes, ARevisionOfATileAlwaysMeansTheSameBytesAndNoChangeIsMissed) {
+TEST(Changes, EqualRevisionsOfATileHaveEqualBytes) {
     const auto log = walk_with_laser_and_sonar(45);
     const auto config = mapping::resolve({.cell_size = 0.08, .danger_cells = 20}).value();
     Cache cache;
@@ -219,7 +219,7 @@ mapping::Snapshot ground_with_a_wall(std::int32_t wall) {
     return {.revision = 1, .laser = lasers.snapshot(), .sonar = sonars.snapshot(), .classes = classes.snapshot()};
 }
 
-TEST_P(TileOf, AOneCellWallSurvivesEveryZoom) {
+TEST_P(TileOf, ShowsAWallOfOneCellAtEveryZoom) {
     const Layer layer = GetParam();
     const auto snapshot = ground_with_a_wall(37);
     const Code wall = layer == Layer::kHimm ? 9 : layer == Layer::kClassification ? 2 : percent_table()[3000];
@@ -237,7 +237,7 @@ TEST_P(TileOf, AOneCellWallSurvivesEveryZoom) {
     }
 }
 
-TEST_P(TileOf, ThePngHasTheColoursOfItsCodes) {
+TEST_P(TileOf, PngHasTheColoursOfItsCodes) {
     const Layer layer = GetParam();
     const auto snapshot = random_layers(13);
     const auto& style = style_of(layer);
@@ -256,7 +256,7 @@ TEST_P(TileOf, ThePngHasTheColoursOfItsCodes) {
     }
 }
 
-TEST(Tile, NeverTouchedTilesAreOneSharedUniformTile) {
+TEST(Tile, UntouchedTilesShareOneUniformTile) {
     HandMadeMap map;
     map.set({65536, 0}, 14000); // just outside
     map.set({0, -65537}, 14000);
@@ -268,7 +268,7 @@ TEST(Tile, NeverTouchedTilesAreOneSharedUniformTile) {
               tile_png(mapping::Snapshot{}, Layer::kOccupancy, {9, 1, 2}));
 }
 
-TEST(Tile, ThePngHasAsFewBitsAPixelAsItsCodesNeed) {
+TEST(Tile, PngHasTheFewestBitsPerPixel) {
     HandMadeMap map;
     const auto bits = [&] { return tile_png(map.snapshot(), Layer::kOccupancy, {9, 256, 255})->at(24); };
     EXPECT_EQ(bits(), 1);
@@ -279,7 +279,7 @@ TEST(Tile, ThePngHasAsFewBitsAPixelAsItsCodesNeed) {
     }
 }
 
-TEST(TileVersion, ChangesWithTheTileAndNotWithOtherPlaces) {
+TEST(TileVersion, ChangesOnlyWithTheTile) {
     mapping::LaserLayers layers{mapping::MapConfig{}};
     const auto snapshot_at = [&](Revision revision) {
         return mapping::Snapshot{.revision = revision, .laser = layers.snapshot()};
@@ -309,13 +309,13 @@ TEST(TileVersion, ChangesWithTheTileAndNotWithOtherPlaces) {
     EXPECT_EQ(tile_revision(third, Layer::kOccupancy, {0, 0, 0}), 3U);
 }
 
-TEST(TileVersion, EntityTagsAreStrongAndTellEverythingApart) {
+TEST(TileVersion, EntityTagsAreStrongAndDistinct) {
     const TileKey key{9, 256, 255};
     const auto etag = etag_of("000000000000002a", "occupancy", key, 7);
     EXPECT_THAT(etag, testing::AllOf(testing::StartsWith("\""), testing::EndsWith("\"")));
     EXPECT_EQ(etag.find('"', 1), etag.size() - 1);
     EXPECT_EQ(etag, etag_of("000000000000002a", "occupancy", key, 7));
-    EXPECT_NE(etag, etag_of("000000000000002b", "occupancy", key, 7)) << "a session made anew";
+    EXPECT_NE(etag, etag_of("000000000000002b", "occupancy", key, 7)) << "a recreated session";
     EXPECT_NE(etag, etag_of("000000000000002a", "himm", key, 7));
     EXPECT_NE(etag, etag_of("000000000000002a", "occupancy", {9, 255, 256}, 7));
     EXPECT_NE(etag, etag_of("000000000000002a", "occupancy", key, 8));
