@@ -286,9 +286,9 @@ asio::awaitable<bool> Connection::read_body(Parser& parser) {
 /// Hands the socket over to a viewer and returns when the viewer ends.
 asio::awaitable<void> Connection::show(const live::Invitation& invitation, const Incoming& upgrade) {
     const auto path = instance_of(head_of(upgrade).target);
-    auto seat = service_->seats.try_take(invitation.session_id);
+    auto slot = service_->viewers.try_take(invitation.session_id);
     std::optional<Response> refusal;
-    if (!seat) {
+    if (!slot) {
         service_->counters.live.refused.Increment();
         refusal = problem(Error{Errc::kOverloaded, "too many viewers watch at this moment; try again later"}, path);
     } else if (buffer_.size() > 0) {
@@ -300,7 +300,7 @@ asio::awaitable<void> Connection::show(const live::Invitation& invitation, const
     }
     service_->counters.answered(static_cast<unsigned>(Status::switching_protocols)).Increment();
     viewer_ =
-        std::make_shared<live::Viewer>(std::move(stream_), invitation, std::move(seat),
+        std::make_shared<live::Viewer>(std::move(stream_), invitation, std::move(slot),
                                        live::Viewer::Services{service_->config.live, service_->executors.showing,
                                                               service_->executors.paths, service_->counters.live});
     if (stopping_) viewer_->stop();

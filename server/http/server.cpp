@@ -41,7 +41,7 @@ Result<std::shared_ptr<Server>> Server::listen(net::io_context& io, Executors ex
     auto service = std::make_shared<const Service>(Service{
         config, check_host, std::move(executors), std::move(answering), counters, sockets::Slots(config.changes_max),
         sockets::Slots(config.imports_max), sockets::Slots(config.weaves_max), sockets::Slots(config.paths_max),
-        sockets::Slots(config.plans_max), live::Seats(config.live)});
+        sockets::Slots(config.plans_max), live::ViewerSemaphore(config.live)});
     std::shared_ptr<Server> server(new Server(io, std::move(service)));
     if (const auto failed = server->bind()) {
         return Error{Errc::kUnreachable,

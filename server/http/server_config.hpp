@@ -1,6 +1,6 @@
 #pragma once
 
-#include "server/live/live_config.hpp"
+#include "server/live/viewer_limits.hpp"
 #include "server/sockets/listening_port.hpp"
 
 #include <boost/asio/ip/tcp.hpp>

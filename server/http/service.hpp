@@ -6,7 +6,7 @@
 #include "server/http/request.hpp"
 #include "server/http/response.hpp"
 #include "server/http/server_config.hpp"
-#include "server/live/seats.hpp"
+#include "server/live/viewer_limits.hpp"
 #include "server/metrics/metrics.hpp"
 #include "server/sockets/slots.hpp"
 
@@ -59,12 +59,12 @@ struct Service {
     Executors executors;
     Answering answering;
     metrics::HttpCounters& counters;
-    sockets::Slots changes; ///< requests in Lane::kChanging
-    sockets::Slots imports; ///< requests in Lane::kImporting
-    sockets::Slots weaves;  ///< requests in Lane::kWeaving
-    sockets::Slots paths;   ///< requests in Lane::kPaths
-    sockets::Slots plans;   ///< requests in Lane::kPlanning
-    live::Seats seats;      ///< connections of live viewers
+    sockets::Slots changes;        ///< requests in Lane::kChanging
+    sockets::Slots imports;        ///< requests in Lane::kImporting
+    sockets::Slots weaves;         ///< requests in Lane::kWeaving
+    sockets::Slots paths;          ///< requests in Lane::kPaths
+    sockets::Slots plans;          ///< requests in Lane::kPlanning
+    live::ViewerSemaphore viewers; ///< connections of live viewers
 };
 
 /// Takes a slot of a lane whose number of concurrent requests is limited. Keep it until the request is answered.

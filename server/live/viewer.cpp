@@ -58,8 +58,8 @@ private:
 
 } // namespace
 
-Viewer::Viewer(net::LinkStream stream, Invitation invitation, std::shared_ptr<const void> seat, Services services)
-    : stream_(std::move(stream)), invitation_(std::move(invitation)), seat_(std::move(seat)),
+Viewer::Viewer(net::LinkStream stream, Invitation invitation, std::shared_ptr<const void> slot, Services services)
+    : stream_(std::move(stream)), invitation_(std::move(invitation)), slot_(std::move(slot)),
       services_(std::move(services)), encoder_(invitation_.tag), turn_(stream_.get_executor()),
       deadline_(stream_.get_executor()) {
     const auto& config = services_.config;

@@ -5,7 +5,7 @@
 #include "common/net/websocket_teardown.hpp"
 #include "server/live/core/event_encoder.hpp"
 #include "server/live/invitation.hpp"
-#include "server/live/live_config.hpp"
+#include "server/live/viewer_limits.hpp"
 #include "server/metrics/metrics.hpp"
 #include "server/session/watchers.hpp"
 
@@ -49,8 +49,8 @@ public:
         metrics::LiveCounters& counters;
     };
 
-    /// @param seat  slot of Seats, kept until the viewer is destroyed
-    Viewer(net::LinkStream stream, Invitation invitation, std::shared_ptr<const void> seat, Services services);
+    /// @param slot  slot of the ViewerSemaphore, kept until the viewer is destroyed
+    Viewer(net::LinkStream stream, Invitation invitation, std::shared_ptr<const void> slot, Services services);
 
     /// Answers the upgrade request and sends events until the connection is closed. Call once.
     [[nodiscard]] boost::asio::awaitable<void> run(const Upgrade& upgrade);
@@ -91,7 +91,7 @@ private:
     boost::beast::websocket::stream<net::LinkStream, false> stream_; // false: no compression
     boost::beast::flat_buffer buffer_;                               // at most request_bytes_max
     Invitation invitation_;
-    std::shared_ptr<const void> seat_;
+    std::shared_ptr<const void> slot_;
     Services services_;
     EventEncoder encoder_; // not used by the strand while next_step() runs
     boost::asio::steady_timer turn_;

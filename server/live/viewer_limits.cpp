@@ -1,8 +1,8 @@
-#include "server/live/seats.hpp"
+#include "server/live/viewer_limits.hpp"
 
 namespace scanloom::live {
 
-std::shared_ptr<const void> Seats::try_take(store::SessionId session) const {
+std::shared_ptr<const void> ViewerSemaphore::try_take(store::SessionId session) const {
     {
         const std::lock_guard lock(taken_->mutex);
         const auto known = taken_->by_session.find(session);
@@ -14,7 +14,7 @@ std::shared_ptr<const void> Seats::try_take(store::SessionId session) const {
     return {taken_.get(), [taken = taken_, session](const void*) { taken->give_back(session); }};
 }
 
-void Seats::Taken::give_back(store::SessionId session) {
+void ViewerSemaphore::Taken::give_back(store::SessionId session) {
     const std::lock_guard lock(mutex);
     const auto known = by_session.find(session);
     if (--known->second == 0) by_session.erase(known);
