@@ -19,7 +19,7 @@ namespace scanloom::app {
 namespace {
 
 /// Progress is printed each time this many entries and parts have been read.
-constexpr std::uint64_t kTellEvery = 100'000;
+constexpr std::uint64_t kProgressEvery = 100'000;
 
 /// Prints the findings, and counts them for the summary.
 class Findings {
@@ -69,7 +69,7 @@ class Progress {
 public:
     Result<> operator()(std::size_t bytes) {
         bytes_ += bytes;
-        if (++read_ % kTellEvery == 0) {
+        if (++read_ % kProgressEvery == 0) {
             standard_error().write(
                 fmt::format("scanloom-server: {} entries and parts read, {} MiB\n", read_, bytes_ >> 20));
         }

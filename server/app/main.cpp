@@ -65,9 +65,9 @@ int main(int argc, char** argv) {
             (leave->code == kExitDone ? std::cout : std::cerr) << leave->text;
             return leave->code;
         }
-        const auto& told = std::get<app::ServerOptions>(options);
-        if (told.task != app::Task::kServe) std::signal(SIGHUP, hangup);
-        return run(told);
+        const auto& settings = std::get<app::ServerOptions>(options);
+        if (settings.task != app::Task::kServe) std::signal(SIGHUP, hangup);
+        return run(settings);
     } catch (const std::exception& failure) {
         standard_error().write(fmt::format("scanloom-server: {}\n", failure.what()));
         return kExitFailed;

@@ -229,7 +229,7 @@ Result<> Server::run() {
 void Server::announce() const {
     boost::json::object ready{{"event", "ready"}, {"robot_port", ingest_->port()}, {"http_port", http_->port()}};
     std::cout << boost::json::serialize(ready) << std::endl;
-    tell_service_manager("READY=1");
+    notify_service_manager("READY=1");
     spdlog::info("robots: {}:{}, browsers: {}://{}:{}/, store: {}", options_.listen.address().to_string(),
                  ingest_->port(), http_tls_ ? "https" : "http", options_.http.address().to_string(), http_->port(),
                  options_.store.string());
@@ -309,7 +309,7 @@ void Server::read_certificates_again() {
 /// then stops serving. When no work is left, the io_context ends and run() returns.
 void Server::drain() {
     spdlog::info("draining: acknowledging durable scans");
-    tell_service_manager("STOPPING=1");
+    notify_service_manager("STOPPING=1");
     ingest_->stop();
     check_.stop();
     weaves_.stop();

@@ -10,7 +10,7 @@
 
 namespace scanloom::app {
 
-void tell_service_manager(std::string_view state) noexcept {
+void notify_service_manager(std::string_view state) noexcept {
     const char* named = std::getenv("NOTIFY_SOCKET");
     const std::string_view name = named == nullptr ? "" : named;
     sockaddr_un address{};

@@ -51,8 +51,8 @@ TEST(ServiceManagerTest, ReceivesEachStateAsOneDatagram) {
     const TemporaryDirectory place;
     for (const auto& name : {(place.path() / "notify").string(), "@scanloom-test-" + std::to_string(::getpid())}) {
         const ServiceManager manager(name);
-        tell_service_manager("READY=1");
-        tell_service_manager("STOPPING=1");
+        notify_service_manager("READY=1");
+        notify_service_manager("STOPPING=1");
         EXPECT_EQ(manager.heard(), "READY=1") << name;
         EXPECT_EQ(manager.heard(), "STOPPING=1") << name;
         EXPECT_EQ(manager.heard(), "");
@@ -60,10 +60,10 @@ TEST(ServiceManagerTest, ReceivesEachStateAsOneDatagram) {
 }
 
 TEST(ServiceManagerTest, DoesNothingWithoutListener) {
-    tell_service_manager("READY=1");
+    notify_service_manager("READY=1");
     for (const std::string& name : {std::string(), std::string("/nowhere/notify"), std::string(200, 'x')}) {
         ::setenv("NOTIFY_SOCKET", name.c_str(), 1);
-        tell_service_manager("READY=1");
+        notify_service_manager("READY=1");
     }
     ::unsetenv("NOTIFY_SOCKET");
 }
