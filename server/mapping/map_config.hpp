@@ -4,6 +4,7 @@
 #include "common/scan/session_options.hpp"
 
 #include <cstdint>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <span>
@@ -12,45 +13,11 @@
 
 namespace scanloom::mapping {
 
-/// The settings that determine how a session turns scans into maps. Made by resolve(), which checks that all values are
-/// in range.
-/// Source: Thrun, Burgard, Fox, Probabilistic Robotics (2005), section 9.2; Borenstein, Koren, HIMM (1991); Murphy,
-///         Introduction to AI Robotics (2000), chapter 11; defaults of the design models.
+/// The settings that determine how a session turns scans into maps; common/scan/settings.def documents each. Made by
+/// resolve(), which checks that all values are in range.
 struct MapConfig {
-    double cell_size = 0.05; ///< metres, 0.01..1.0
-
-    RayModel ray_model = RayModel::kInverseSensorModel;
-    bool accumulate = false;         ///< bresenham, traversal: update a cell once per beam, not once per scan
-    double hit_radius = 0.0;         ///< metres, 0..1; bresenham: cells within this distance of a hit are occupied
-    bool drop_no_return = false;     ///< beams without a return show nothing; if false, they free their whole length
-    double p_occupied = 0.9;         ///< probability in the band around a hit, 0.5..1 exclusive
-    double p_free = 0.1;             ///< probability before a hit, 0..0.5 exclusive
-    double p_prior = 0.5;            ///< probability of an unseen cell
-    double p_min = 0.001;            ///< clamp; below p_free and p_prior
-    double p_max = 0.999;            ///< clamp; above p_occupied and p_prior
-    double obstacle_thickness = 0.1; ///< metres, alpha; at least one cell is used
-    double beam_aperture = std::numbers::pi / 180.0; ///< radians, beta; at least the beam spacing is used
-
-    std::int32_t himm_increment = 3;                      ///< added in the band around a hit
-    std::int32_t himm_decrement = 1;                      ///< subtracted before a hit
-    double himm_obstacle_thickness = 0.2;                 ///< metres; at least one cell is used
-    double himm_beam_aperture = std::numbers::pi / 180.0; ///< radians; at least the beam spacing is used
-
-    double sonar_obstacle_thickness = 0.5;               ///< metres; at least one cell is used
-    double sonar_beam_aperture = std::numbers::pi / 6.0; ///< radians, for sensors that state no aperture
-    double sonar_p_occupied_max = 0.98;                  ///< highest probability that one echo can give
-    double sonar_p_min = 0.01;                           ///< clamp
-    double sonar_p_max = 0.99;                           ///< clamp
-
-    ClassSource class_source = ClassSource::kOccupancy;
-    double class_p_occupied = 0.65;       ///< a cell is occupied at this probability or above
-    double class_p_free = 0.35;           ///< a cell is free at this probability or below
-    std::int32_t class_himm_occupied = 8; ///< a cell is occupied at this counter or above
-    std::int32_t class_himm_free = 4;     ///< an occupied cell is free again at this counter or below
-    std::int32_t danger_cells = 3;        ///< free cells within this distance of an occupied cell are in danger, 1..64
-    double danger_radius = 0.0;           ///< metres, rounded up to cells; if greater than 0, replaces danger_cells
-
-    double max_jump = 0.0; ///< metres; 0: off. See JumpFilter
+#define SCANLOOM_SETTING(type, name, initial, ...) type name = initial;
+#include "common/scan/settings.def"
 
     friend bool operator==(const MapConfig&, const MapConfig&) = default;
 };
@@ -61,7 +28,17 @@ struct MapConfig {
 /// The value of a setting in configuration files and APIs; an enumeration value is given by its name.
 using ConfigValue = std::variant<bool, std::int32_t, double, std::string_view>;
 
-/// One setting.
+/// The range of a setting's values. A setting whose values have no order has no bounds.
+struct Bounds {
+    double low = -std::numeric_limits<double>::infinity();
+    double high = std::numeric_limits<double>::infinity();
+    bool low_is_excluded = false;
+    bool high_is_excluded = false;
+
+    [[nodiscard]] bool contain(double value) const noexcept;
+};
+
+/// The description of one setting.
 struct ConfigField {
     template <class Value>
     struct Member {
@@ -71,7 +48,13 @@ struct ConfigField {
 
     const char* name; ///< name in configuration files and APIs
     std::variant<Member<bool>, Member<std::int32_t>, Member<double>, Member<RayModel>, Member<ClassSource>> member;
+    const char* unit; ///< empty if it has none
+    Bounds bounds;
+    const char* help; ///< what it does, in sentences
 };
+
+/// Returns the names of the values of an enumeration, or an empty list for a setting of another type.
+[[nodiscard]] std::span<const std::string_view> choices_of(const ConfigField& field) noexcept;
 
 /// Returns all settings.
 [[nodiscard]] std::span<const ConfigField> config_fields() noexcept;

@@ -31,7 +31,7 @@ TEST(MapConfig, AbsentOptionsTakeTheDefaults) {
 }
 
 /// Values near a field's limits: refused values, and accepted values just inside the limits.
-struct Bounds {
+struct FieldValues {
     const char* field;
     std::vector<double> refused;
     std::vector<double> accepted;
@@ -39,7 +39,7 @@ struct Bounds {
 
 const double kNan = NAN;
 
-const std::vector<Bounds> kBounds = {
+const std::vector<FieldValues> kFieldValues = {
     {"cell_size", {0.0, -0.05, 0.00999, 1.00001, 1e300, HUGE_VAL, kNan}, {0.01, 0.05, 0.1, 0.5, 1.0}},
     {"hit_radius", {-0.001, 1.001, HUGE_VAL, kNan}, {0.0}},
     {"p_occupied", {0.50001, 0.5, 1.0, 0.2, -1.0, 2.0, kNan}, {0.501, 0.999}},
@@ -76,17 +76,17 @@ SessionOptions with(const char* name, double value) {
 }
 
 TEST(MapConfig, RefusesValuesOutOfRangeByFieldName) {
-    for (const auto& bounds : kBounds) {
-        for (const double value : bounds.refused) expect_refused(with(bounds.field, value), bounds.field);
-        for (const double value : bounds.accepted) {
-            EXPECT_TRUE(resolve(with(bounds.field, value))) << bounds.field << " " << value;
+    for (const auto& values : kFieldValues) {
+        for (const double value : values.refused) expect_refused(with(values.field, value), values.field);
+        for (const double value : values.accepted) {
+            EXPECT_TRUE(resolve(with(values.field, value))) << values.field << " " << value;
         }
     }
 }
 
 TEST(MapConfig, EveryNumberHasLimits) {
     std::set<std::string> checked;
-    for (const auto& bounds : kBounds) checked.insert(bounds.field);
+    for (const auto& values : kFieldValues) checked.insert(values.field);
     for (const auto& field : config_fields()) {
         const auto value = value_of(field, {});
         const bool is_number = std::holds_alternative<double>(value) || std::holds_alternative<std::int32_t>(value);
