@@ -35,8 +35,8 @@ void check_latency(const AckLatency& latency, bool must_keep_up, Outcome& outcom
         return;
     }
     if (!must_keep_up || *with_crowd <= 2.0 * *baseline) return;
-    outcome.failures.push_back(fmt::format(
-        "acknowledgements took {:.1f} ms (p99) with_crowd the crowd, {:.1f} ms in peace", *with_crowd, *baseline));
+    outcome.failures.push_back(fmt::format("acknowledgements took {:.1f} ms (p99) with the crowd, {:.1f} ms without it",
+                                           *with_crowd, *baseline));
 }
 
 } // namespace scanloom::fault

@@ -96,8 +96,8 @@ asio::awaitable<void> Crowd::run_member(std::size_t member) {
 /// Sends until the server no longer accepts data.
 asio::awaitable<void> Crowd::send(tcp::socket& socket, const Behaviour& behaviour) {
     asio::steady_timer pause(socket.get_executor());
-    const auto [failed, bytes] = co_await asio::async_write(socket, asio::buffer(behaviour.opening), kAwaitTuple);
-    if (failed || behaviour.then.empty()) co_return;
+    const auto [unsent, bytes] = co_await asio::async_write(socket, asio::buffer(behaviour.opening), kAwaitTuple);
+    if (unsent || behaviour.then.empty()) co_return;
     for (;;) {
         pause.expires_after(behaviour.pause);
         co_await pause.async_wait(kAwaitTuple);

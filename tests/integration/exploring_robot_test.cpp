@@ -103,8 +103,7 @@ void expect_explored(const Explorer& robot, GoalOracle& oracle) {
     EXPECT_TRUE(left_unexplored(simulator.world(), oracle, simulator.pose()).empty());
     EXPECT_EQ(robot.source().simulator().collisions(), 0U);
     EXPECT_GE(robot.clearance_min(), kBodyRadius);
-    EXPECT_TRUE(robot.source().remarks().starts_with(
-        "explored: no frontier can be reached any more with 0.22 m around the robot, "))
+    EXPECT_TRUE(robot.source().remarks().starts_with("explored: no frontier is reachable with a clearance of 0.22 m, "))
         << robot.source().remarks();
 }
 

@@ -12,7 +12,8 @@ public:
     explicit RecordedSource(std::vector<Observation> observations) : observations_(std::move(observations)) {}
 
     [[nodiscard]] Result<std::optional<Observation>> next() override {
-        if (fails_after_ && next_ == *fails_after_) return Error{Errc::kMalformed, "the recording cannot be read on"};
+        if (fails_after_ && next_ == *fails_after_)
+            return Error{Errc::kMalformed, "the rest of the recording cannot be read"};
         if (next_ == observations_.size()) return std::optional<Observation>{};
         return std::optional(std::move(observations_[next_++]));
     }

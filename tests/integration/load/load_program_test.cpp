@@ -180,7 +180,7 @@ TEST_F(LoadProgram, SeveralRobotsShareASessionWithViewers) {
     const auto outcome = run(load);
     EXPECT_EQ(outcome.code, 0) << outcome.errors;
     ASSERT_TRUE(outcome.report.is_object()) << outcome.errors;
-    EXPECT_THAT(outcome.verdict(), HasSubstr("digests cannot be compared, as robots share a session"));
+    EXPECT_THAT(outcome.verdict(), HasSubstr("digests cannot be compared, because robots share a session"));
     EXPECT_EQ(outcome.count("scans", "acknowledged"), 240U);
     EXPECT_EQ(outcome.count("scans", "frames"), 84U); // 13 frames of three scans and a last one for each robot
     EXPECT_GT(outcome.count("audience", "events"), 3U);
@@ -193,9 +193,8 @@ TEST_F(LoadProgram, SeveralRobotsShareASessionWithViewers) {
 
     const auto again = run(load);
     EXPECT_EQ(again.code, 1);
-    EXPECT_THAT(again.errors,
-                HasSubstr("2 sessions of an earlier run with --seed 1 are there, load-1-0 first; delete them "
-                          "with --replace, or take another --seed"));
+    EXPECT_THAT(again.errors, HasSubstr("2 sessions of an earlier run with --seed 1 are on the server, load-1-0 first; "
+                                        "delete them with --replace, or use another --seed"));
     EXPECT_EQ(run(load + Words{"--replace"}).code, 0);
     EXPECT_EQ(sessions(), 2U);
 }
@@ -230,8 +229,8 @@ TEST_F(LoadProgram, WrongServerReportsAreDetected) {
     });
     EXPECT_EQ(another_map.code, 1);
     EXPECT_THAT(another_map.verdict(),
-                StartsWith("WRONG: 80 of 80 scans acknowledged, but the maps of session load-1-2 "
-                           "differ from those that its 20 scans make"));
+                StartsWith("WRONG: 80 of 80 scans acknowledged, but the maps of session load-1-2 differ from those of "
+                           "an undisturbed session with its 20 scans"));
     EXPECT_EQ(another_map.count("verdict", "digests_equal"), 3U);
 
     const auto one_less = through([](const std::string& target, std::string body) {
@@ -239,14 +238,14 @@ TEST_F(LoadProgram, WrongServerReportsAreDetected) {
         return body.replace(body.find("\"scans\":20"), 10, "\"scans\":19");
     });
     EXPECT_EQ(one_less.code, 1);
-    EXPECT_THAT(one_less.verdict(), HasSubstr("session load-1-3 holds"));
+    EXPECT_THAT(one_less.verdict(), HasSubstr("session load-1-3 has"));
     EXPECT_THAT(one_less.verdict(), HasSubstr("19 scans"));
 
     const auto gone = through([](const std::string& target, std::string body) {
         return target == "/api/v1/sessions/load-1-0" ? "{}" : body;
     });
     EXPECT_EQ(gone.code, 1);
-    EXPECT_THAT(gone.verdict(), HasSubstr("/api/v1/sessions/load-1-0 was answered with what cannot be read"));
+    EXPECT_THAT(gone.verdict(), HasSubstr("/api/v1/sessions/load-1-0: the answer cannot be parsed"));
 }
 
 TEST_F(LoadProgram, AMissingServerIsReportedAndExitsWith1) {

@@ -174,7 +174,7 @@ asio::awaitable<bool> FakeServer::take(Link& link, const wire::ScanBatch& batch,
     link.unacknowledged_bytes += frame_bytes;
     if (link.unacknowledged_bytes > script.credit_bytes) {
         faults_.push_back(
-            fmt::format("{} bytes under way, {} granted", link.unacknowledged_bytes, script.credit_bytes));
+            fmt::format("{} bytes in flight, {} granted", link.unacknowledged_bytes, script.credit_bytes));
     }
     for (const Scan& scan : batch.scans) {
         if (!link.sensors.contains(scan.sensor)) faults_.push_back("a scan of a sensor that was not described");

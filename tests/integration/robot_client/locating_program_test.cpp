@@ -104,20 +104,20 @@ protected:
 
 TEST_F(LocatingProgramTest, LocalizesEachPlaceAfterTheFirst) {
     ASSERT_EQ(send("carried", carried(room_, {{kFirst, 20}, {kSecond, 20}}), {"--pose", "-3.5,-3,0.3"}), 0) << output_;
-    EXPECT_THAT(output_, AllOf(HasSubstr("nothing is mapped yet: the lidar is taken to stand at (-3.50, -3.00)"),
-                               HasSubstr("the lidar is moved"), HasSubstr("located at (-3.")));
+    EXPECT_THAT(output_, AllOf(HasSubstr("the map is empty: the lidar's pose is assumed to be (-3.50, -3.00)"),
+                               HasSubstr("the lidar was moved"), HasSubstr("localized at (-3.")));
     EXPECT_THAT(summary_, HasSubstr("carried 1 time"));
     expect_near(pose_of(0), kSecond);
 
     ASSERT_EQ(send("another", carried(room_, {{kThird, 20}}), {"--near", "-3,-1,2"}), 0) << output_;
-    EXPECT_THAT(output_, AllOf(HasSubstr("located at (-3."), Not(HasSubstr("nothing is mapped"))));
+    EXPECT_THAT(output_, AllOf(HasSubstr("localized at (-3."), Not(HasSubstr("the map is empty"))));
     expect_near(pose_of(1), kThird);
 }
 
 TEST_F(LocatingProgramTest, SendsNoScanFromAnUnknownPlace) {
     ASSERT_EQ(send("carried", carried(room_, {{kFirst, 20}}), {}), 0) << output_;
     EXPECT_EQ(send("lost", carried(robot::make_office(), {{{-12.0, 7.0, 0.0}, 20}}), {}), 1);
-    EXPECT_THAT(output_, HasSubstr("nothing is sent from here"));
+    EXPECT_THAT(output_, HasSubstr("no scans are sent from here"));
     EXPECT_THAT(summary_, HasSubstr(R"("error":"no scan was sent: )"));
     EXPECT_EQ(server_.get_json("/api/v1/sessions/lab").at("scans").to_number<int>(), 18)
         << "the first and the last turn are incomplete";

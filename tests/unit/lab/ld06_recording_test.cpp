@@ -39,7 +39,7 @@ TEST_F(Ld06Recordings, ContainTheTurnsOfAStationaryLidar) {
 
 TEST_F(Ld06Recordings, WithoutTwoTurnsAreRefusedByName) {
     testing_support::Ld06Spinner sensor;
-    EXPECT_THAT(read_ld06_recording(file(sensor.next_bytes(90))).error().message, HasSubstr("room.bin: one turn only"));
+    EXPECT_THAT(read_ld06_recording(file(sensor.next_bytes(90))).error().message, HasSubstr("room.bin: only one turn"));
     EXPECT_THAT(read_ld06_recording(file({})).error().message, HasSubstr("room.bin: no full turn of an LD06"));
     EXPECT_THAT(read_ld06_recording(directory_.path() / "missing").error().message,
                 HasSubstr("missing: cannot be opened"));

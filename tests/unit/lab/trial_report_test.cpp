@@ -34,10 +34,10 @@ TEST(TrialReport, EachWrongTrialIsListed) {
     EXPECT_THAT(alignment_trial_findings(results), ElementsAre("1 of 2 are right, and no clear result is wrong."));
     EXPECT_THAT(locating_trial_findings(results),
                 ElementsAre("In maps of 1 capture 0 of 1 views are found, and no clear result is wrong.",
-                            "In maps of 4 captures 1 of 3 views are found, and 2 of 3 clear ones are wrong.",
-                            "Wrong by more than 1 m, where the world repeats itself: 1 of 2; of these views "
-                            "0.80 is in the map there, and 0.30 where they were taken.",
-                            "Wrong, but beside the truth: 1 of 2, off by 30.1 mm.",
+                            "In maps of 4 captures 1 of 3 views are found, and 2 of 3 clear results are wrong.",
+                            "Wrong by more than 1 m, where the world is repetitive: 1 of 2; at the wrong place the "
+                            "inlier ratio of these views is 0.80, at the true place 0.30.",
+                            "Wrong, but near the ground truth: 1 of 2, off by 30.1 mm.",
                             "Wrong: office, map of 4 captures, scene 702, off by 30.1 mm and 5.73 degrees.",
                             "Wrong: office, map of 4 captures, scene 703, off by 2500.0 mm and 171.89 degrees."));
     EXPECT_THAT(

@@ -72,16 +72,16 @@ TEST(Ld06OptionsOf, ALidarThatAsksWhereItIsAreTaken) {
 
 TEST(Ld06OptionsOf, ALidarThatAsksAndIsToldAreRefused) {
     EXPECT_THAT(refused({"f", "--locate", "--poses", "p"}), HasSubstr("leave one of them out"));
-    EXPECT_THAT(refused({"f", "--pose", "0,0,0", "--near", "0,0,1"}), HasSubstr("--near is of --locate"));
+    EXPECT_THAT(refused({"f", "--pose", "0,0,0", "--near", "0,0,1"}), HasSubstr("--near needs --locate"));
     EXPECT_THAT(refused({"f", "--locate", "--speed", "1"}), HasSubstr("leave --speed out"));
-    EXPECT_THAT(refused({"f"}), HasSubstr("or have the server tell with --locate"));
+    EXPECT_THAT(refused({"f"}), HasSubstr("or let the server determine it with --locate"));
     for (const auto* near : {"", "1,2", "1,2,3,4", "1,2,x", "nan,0,1", "0,0,inf"}) {
         EXPECT_THAT(refused({"f", "--locate", "--near", near}), HasSubstr("is not X,Y,RADIUS in metres")) << near;
     }
     for (const auto* near : {"0,0,0", "0,0,-1", "0,0,1001", "0,0,1e9", "0,0,1e-300"}) {
         EXPECT_THAT(refused({"f", "--locate", "--near", near}), HasSubstr("give 0.1 to 1000")) << near;
     }
-    EXPECT_THAT(refused({"f", "--locate", "--near", "0,-2e6,1"}), HasSubstr("-2000000 m is beyond the map"));
+    EXPECT_THAT(refused({"f", "--locate", "--near", "0,-2e6,1"}), HasSubstr("-2000000 m is outside the map"));
 }
 
 TEST(Ld06OptionsOf, AYawInDegreesAreRefused) {
@@ -108,7 +108,7 @@ TEST(Ld06OptionsOf, AWrongCommandLineAreRefused) {
         EXPECT_THAT(refused({"f", "--pose", "0,0,0", "--min-confidence", confidence}), HasSubstr("from 0 to 255"));
     }
     EXPECT_THAT(refused({"f", "--pose", "1e7,0,0"}),
-                HasSubstr("10000000 m is beyond the map, which reaches 1000000 m"));
+                HasSubstr("10000000 m is outside the map, which extends 1000000 m"));
     EXPECT_THAT(refused({"tcp://lidar", "--pose", "0,0,0"}), HasSubstr("'tcp://lidar' is not tcp://HOST:PORT"));
     EXPECT_THAT(refused({"f", "--pose", "0,0,0", "--reopen-for", "-1"}), HasSubstr("--reopen-for"));
 }
@@ -178,14 +178,14 @@ TEST_F(PreparedLd06, WhatAsksWhereItIsIsLiveWhateverItIs) {
 
 TEST_F(PreparedLd06, WhatIsNeitherIsAnError) {
     EXPECT_THAT(prepare({"/dev/nonexistent", "--pose", "0,0,0"}).error().message, HasSubstr("no such device or file"));
-    EXPECT_THAT(prepare({"/tmp", "--pose", "0,0,0"}).error().message, HasSubstr("neither a serial device nor a file"));
+    EXPECT_THAT(prepare({"/tmp", "--pose", "0,0,0"}).error().message, HasSubstr("not a serial device or a file"));
     EXPECT_THAT(prepare({capture(), "--poses", "/nonexistent"}).error().message, HasSubstr("no such file"));
     EXPECT_THAT(prepare({capture(), "--pose", "0,0,0", "--spool", "/tmp/none"}).error().message,
                 HasSubstr("a capture file is a recording and needs no --spool"));
     EXPECT_THAT(prepare({capture(), "--locate", "--spool", "/tmp/none"}).error().message,
                 HasSubstr("needs no --spool: it can be read again; leave --spool out"));
     EXPECT_THAT(prepare({capture(), "--pose", "0,0,0", "--min-range", "13"}).error().message,
-                HasSubstr("--min-range is 13 m, but --max-range only 12 m"));
+                HasSubstr("--min-range is 13 m, but --max-range is only 12 m"));
 }
 
 } // namespace

@@ -206,7 +206,7 @@ TEST_F(Options, EachMistakeIsOneLineAndAUsageError) {
         return more;
     };
     const std::vector<std::pair<std::vector<std::string>, std::string>> mistakes{
-        {{}, "say what to stream"},
+        {{}, "name a source"},
         {{"--session", "s", "--robot", "r"},
          "name a source: replay FILE, sonar MEASUREMENTS POSES, ld06 INPUT, or simulate; or the command truth;"},
         {{"simulate", "--robot", "r"}, "--session is required"},
@@ -231,7 +231,7 @@ TEST_F(Options, EachMistakeIsOneLineAndAUsageError) {
         {{"truth", "--world", "room", "--output", "x", "--cell-size", "0"}, "--cell-size"},
         {with({"--noise", "loud"}), "loud"},
         {with({"--noise-width", "0"}), "--noise-width"},
-        {with({"--noise-width", "0.1"}), "--noise-width is not for --noise none; use --noise uniform"},
+        {with({"--noise-width", "0.1"}), "--noise-width does not apply to --noise none; use --noise uniform"},
         {with({"--noise-width", "0.1", "--noise", "gaussian"}), "use --noise uniform"},
         {with({"--spool", "d"}), "leave --spool out"},
         {{"replay", "f", "--session", "s", "--robot", "r", "--spool", "d"}, "leave --spool out"},

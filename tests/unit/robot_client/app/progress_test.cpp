@@ -52,7 +52,7 @@ TEST(ProgressText, TellsHowFarALogHasBeenRead) {
 TEST(ProgressText, InALongPauseItTellsWhenTheNextScanIsDueInsteadOfAWrongEnd) {
     const UplinkStatus status{.last = 3, .acknowledged = 3, .is_linked = true, .next_scan_in = 598.2s};
     EXPECT_EQ(progress_text(status, 5, 3.0), "3 of 5 scans stored, 3 a second, next scan in 9:59");
-    EXPECT_EQ(pause_text(600s), "the next scan is due in 10:00; --speed 0 would not wait for it");
+    EXPECT_EQ(pause_text(600s), "the next scan is due in 10:00; use --speed 0 to send without waiting");
 }
 
 } // namespace

@@ -67,7 +67,7 @@ TEST(Simulation, WaypointsWhereNoRobotCanBeAreToldWithTheReason) {
     while (*source->next()) {
     }
     EXPECT_THAT(source->remarks(),
-                testing::StartsWith("waypoints: 0 of 3 reached, 3 given up: (40, 0) outside the world"));
+                testing::StartsWith("waypoints: 0 of 3 reached, 3 abandoned: (40, 0) outside the world"));
     EXPECT_THAT(source->remarks(), testing::HasSubstr(") inside an obstacle, ("));
     EXPECT_THAT(source->remarks(), testing::EndsWith(") too close to an obstacle"));
 }

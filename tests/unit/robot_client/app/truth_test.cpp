@@ -37,7 +37,7 @@ TEST(Truth, IsThatOfEveryWorldAndOfTheWalkersOneWithoutThem) {
 
 TEST(Truth, WhatCannotBeWrittenIsSaid) {
     EXPECT_THAT(write_truth({"room", 0.1, "/proc/none/room"}).error().message,
-                testing::HasSubstr("/proc/none: the folder cannot be made"));
+                testing::HasSubstr("/proc/none: the folder cannot be created"));
     EXPECT_THAT(write_truth({"room", 0.1, "/proc/room"}).error().message,
                 testing::HasSubstr("/proc/room.pgm: the file cannot be written"));
     EXPECT_THAT(write_truth({"moon", 0.1, "/nonexistent/moon"}).error().message, testing::HasSubstr("moon"));

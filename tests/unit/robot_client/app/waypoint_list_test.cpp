@@ -46,8 +46,8 @@ TEST_F(WaypointList, WhatIsNoneIsNamedWithItsPlace) {
 }
 
 TEST_F(WaypointList, HoldsOneAtLeastAndTenThousandAtMost) {
-    EXPECT_THAT(read_waypoints(";").error().message, HasSubstr("there are none"));
-    EXPECT_THAT(read_waypoints(file("# none\n")).error().message, HasSubstr("there are none"));
+    EXPECT_THAT(read_waypoints(";").error().message, HasSubstr("the list is empty"));
+    EXPECT_THAT(read_waypoints(file("# none\n")).error().message, HasSubstr("the list is empty"));
     std::string many;
     for (int n = 0; n < 10'001; ++n) many += "1 1\n";
     EXPECT_THAT(read_waypoints(file(many)).error().message, HasSubstr("more than 10000"));

@@ -91,7 +91,7 @@ TEST(Explore, ReportsThatItIsDone) {
     robot.explore->finish();
     EXPECT_TRUE(robot.driven.is_done());
     EXPECT_EQ(robot.explore->remarks(),
-              "explored: no frontier can be reached any more with 0.22 m around the robot, 0 m driven in 4 s");
+              "explored: no frontier is reachable with a clearance of 0.22 m, 0 m driven in 4 s");
 }
 
 } // namespace

@@ -96,7 +96,7 @@ TEST(Waypoints, UnreachableWaypointIsGivenUpAndTheNextReached) {
     EXPECT_TRUE(driven.run(90.0));
     EXPECT_EQ(going.given_up(), 1U);
     EXPECT_EQ(going.reached(), 1U);
-    EXPECT_EQ(going.remarks(), "waypoints: 1 of 2 reached, 1 given up: (1.5, 0) no path found");
+    EXPECT_EQ(going.remarks(), "waypoints: 1 of 2 reached, 1 abandoned: (1.5, 0) no path found");
     EXPECT_EQ(driven.simulator().collisions(), 0U);
 }
 
@@ -108,7 +108,7 @@ TEST(Waypoints, GivenUpWaypointsAreReportedWithAFewReasons) {
     const Waypoints& going = *waypoints;
     Driven driven(walled({}), {0, 0, 0}, std::move(waypoints));
     EXPECT_TRUE(driven.run(300.0));
-    EXPECT_EQ(going.remarks(), "waypoints: 0 of 7 reached, 7 given up: (9, 0) no path found, (9.5, 0) far out, (9, 1) "
+    EXPECT_EQ(going.remarks(), "waypoints: 0 of 7 reached, 7 abandoned: (9, 0) no path found, (9.5, 0) far out, (9, 1) "
                                "no path found, (9, 2) no path found, (9, 3) no path found, and 2 more");
 }
 

@@ -31,7 +31,7 @@ TEST(Ring16, HasSixteenConesInAFullCircle) {
     EXPECT_NEAR(sonar.aperture, kPi / 6.0, 1e-12);
     EXPECT_EQ(sonar.range_max, 5.0);
     EXPECT_EQ(sonar.range_min, 0.15);
-    EXPECT_EQ(find_sonar("bat").error().message, "there are no sonars 'bat'; choose ring16");
+    EXPECT_EQ(find_sonar("bat").error().message, "unknown sonars 'bat'; choose ring16");
 }
 
 /// Returns the smallest distance of a fan of rays, and of rays to every end and perpendicular foot of an outline inside

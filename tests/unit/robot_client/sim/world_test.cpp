@@ -11,7 +11,7 @@ namespace scanloom::robot {
 namespace {
 
 TEST(FindWorld, UnknownNameListsTheWorlds) {
-    EXPECT_EQ(find_world("moon").error().message, "there is no world 'moon'; choose room, room_walker, office or hall");
+    EXPECT_EQ(find_world("moon").error().message, "unknown world 'moon'; choose room, room_walker, office or hall");
 }
 
 TEST(FindWorld, WorldsAreFoundByName) {

@@ -135,12 +135,12 @@ TEST(CarmenLine, InvalidLineIsRefusedWithTheReason) {
     EXPECT_THAT(error_of("FLASER -3 1 2"), HasSubstr("number of beams"));
     EXPECT_THAT(error_of("FLASER 0 1 2 0.3 4 5 0.6"), HasSubstr("0 beams"));
     EXPECT_THAT(error_of("FLASER 100000 1 2"), HasSubstr("100000 beams, at most 4096"));
-    EXPECT_THAT(error_of("FLASER 5 1 2 3"), HasSubstr("5 beams are announced, 3 values follow"));
+    EXPECT_THAT(error_of("FLASER 5 1 2 3"), HasSubstr("5 beams are announced, but 3 values follow"));
     EXPECT_THAT(error_of("FLASER 2 1 abc 1 2 0.3 4 5 0.6"), HasSubstr("range 2 is 'abc'"));
     EXPECT_THAT(error_of("FLASER 2 1 2 3 1 2 0.3 4 5 0.6"), HasSubstr("7 values follow the 2 ranges"));
     EXPECT_THAT(error_of("FLASER 1 1 nan 2 0.3 4 5 0.6"), HasSubstr("laser_x is nan"));
     EXPECT_THAT(error_of("FLASER 1 1 1 2 0.3 4 inf 0.6"), HasSubstr("odom_y is inf"));
-    EXPECT_THAT(error_of("FLASER 1 1 1e7 2 0.3 4 5 0.6"), HasSubstr("at most 1000000"));
+    EXPECT_THAT(error_of("FLASER 1 1 1e7 2 0.3 4 5 0.6"), HasSubstr("the limit is 1000000"));
     EXPECT_THAT(error_of("FLASER 1 1 1 2 0.3 4 5 0.6 x host 1"), HasSubstr("timestamp is 'x'"));
     EXPECT_THAT(error_of("ROBOTLASER1 0 1"), HasSubstr("ends within the laser's parameters"));
     EXPECT_THAT(error_of("ROBOTLASER1 0 -1.5 3 0 50 0.01 0 1 1.0 0 1 2 3 1 2 3 0 0 0 0 0"),

@@ -140,7 +140,7 @@ TEST_F(CarmenLogFile, UnsupportedLaserLinesAreCountedAndReportedOncePerKind) {
     EXPECT_EQ(log->observations.size(), 1U);
     EXPECT_EQ(log->skipped_lines, 4U);
     ASSERT_EQ(skipped_.size(), 3U);
-    EXPECT_THAT(skipped_[0].reason, testing::StartsWith("LASER3: 1 lines of this kind are not read"));
+    EXPECT_THAT(skipped_[0].reason, testing::StartsWith("LASER3: 1 lines of an unsupported kind"));
     EXPECT_EQ(skipped_[0].line_number, 3U);
     EXPECT_THAT(skipped_[1].reason, testing::StartsWith("RAWLASER2: 1 lines"));
     EXPECT_THAT(skipped_[2].reason, testing::StartsWith("RLASER: 2 lines"));
@@ -286,7 +286,7 @@ TEST_F(CarmenLogFile, DamagedCompressedFileIsRefusedByName) {
         for (const std::size_t cut : {whole.size() - 1, whole.size() / 2, std::size_t{30}, std::size_t{5}}) {
             const auto log = read(std::string_view(whole).substr(0, cut));
             ASSERT_FALSE(log) << "cut after " << cut << " of " << whole.size();
-            EXPECT_THAT(log.error().message, HasSubstr("damaged or cut short: "));
+            EXPECT_THAT(log.error().message, HasSubstr("damaged or truncated: "));
         }
         std::string flipped = whole;
         flipped[whole.size() / 2] = static_cast<char>(flipped[whole.size() / 2] ^ 0x10);
@@ -357,7 +357,7 @@ TEST_F(CarmenLogFile, FileChangedWhileReadingIsAnError) {
         while (scan && *scan) scan = log->next();
         ASSERT_FALSE(scan) << changed;
         EXPECT_EQ(scan.error().code, Errc::kConflict);
-        EXPECT_THAT(scan.error().message, HasSubstr("was changed while it was being sent"));
+        EXPECT_THAT(scan.error().message, HasSubstr("was changed during the transfer"));
     }
 }
 

@@ -81,8 +81,8 @@ TEST_F(ExploringSourceTest, RequestsGoalsAfterObservingAndEndsWhenExplored) {
         << "the scan at the goal is given before the next request";
     EXPECT_LT(std::abs(scans.back().pose.yaw - 1.5708), 0.05);
     for (std::size_t n = 0; n < scans.size(); ++n) EXPECT_NEAR(scans[n].stamp, 0.1 * static_cast<double>(n), 1e-9);
-    EXPECT_TRUE(source.remarks().starts_with(
-        "explored: no frontier can be reached any more with 0.22 m around the robot, 2 m driven in "))
+    EXPECT_TRUE(
+        source.remarks().starts_with("explored: no frontier is reachable with a clearance of 0.22 m, 2 m driven in "))
         << source.remarks();
     EXPECT_FALSE(*next(source)) << "the source stays ended";
 }

@@ -53,9 +53,10 @@ TEST_F(HaltsTest, QuestionFollowsTenSimilarTurns) {
 TEST_F(HaltsTest, LocatedTurnsHaveTheLocatedPose) {
     stand(kHere, 10);
     phases_.answer(kLocated);
-    EXPECT_THAT(phases_.take_messages(),
-                ElementsAre("located at (3.00, 4.00), yaw 1.00: 93 % of what the lidar sees is in the "
-                            "map; known within 6.0 cm and 1.72 degrees"));
+    EXPECT_THAT(
+        phases_.take_messages(),
+        ElementsAre(
+            "localized at (3.00, 4.00), yaw 1.00: 93 % of the scan matches the map; accuracy 6.0 cm and 1.72 degrees"));
     auto scans = given();
     ASSERT_EQ(scans.size(), 7U) << "the newest three turns may belong to a beginning movement";
     for (std::size_t n = 0; n < scans.size(); ++n) {
@@ -82,7 +83,7 @@ TEST_F(HaltsTest, TurnsOfAMovementAndJustBeforeAreDropped) {
     const std::size_t before = given().size();
     walk(kHere, kThere, 30);
     EXPECT_THAT(phases_.take_messages(),
-                ElementsAre(HasSubstr("the lidar is moved: nothing is sent until it stands again")));
+                ElementsAre(HasSubstr("the lidar was moved: no scans are sent until it is stationary")));
     EXPECT_THAT(given(), IsEmpty());
     EXPECT_EQ(phases_.carried(), 1U);
     stand(kThere, 9);
@@ -153,10 +154,8 @@ TEST_F(HaltsTest, FirstHaltUsesTheGivenPoseInAnEmptyMap) {
     for (auto& turn : turns) turn.scan.pose = {5.0, 5.0, -2.0};
     add(std::move(turns));
     phases_.answer(nothing);
-    EXPECT_THAT(
-        phases_.take_messages(),
-        ElementsAre("nothing is mapped yet: the lidar is taken to stand at (1.00, 2.00), yaw 0.50, and its next "
-                    "places are found from there"));
+    EXPECT_THAT(phases_.take_messages(), ElementsAre("the map is empty: the lidar's pose is assumed to be (1.00, "
+                                                     "2.00), yaw 0.50; its next places are localized relative to it"));
     const auto scans = given();
     ASSERT_EQ(scans.size(), 7U);
     EXPECT_NEAR(scans[0].pose.x, kFirstPlace.x, 1e-12);
@@ -209,7 +208,7 @@ TEST_F(HaltsTest, QuestionAtAnotherPlaceIsImmediate) {
 
 TEST_F(HaltsTest, EachMessageIsReportedOnce) {
     const std::string message =
-        "it may be here or there; nothing is sent from here; asking again in 10 s, or at another place";
+        "it may be here or there; no scans are sent from here; retrying in 10 s, or at another place";
     const auto ask = [&](const Error& refusal) {
         stand(kHere, 10);
         lidar_.let_time_pass(10.0);
@@ -218,7 +217,7 @@ TEST_F(HaltsTest, EachMessageIsReportedOnce) {
     };
     EXPECT_THAT(ask(kRefusal), ElementsAre(message));
     EXPECT_THAT(ask(kRefusal), IsEmpty());
-    EXPECT_THAT(ask({Errc::kOverloaded, "busy"}), ElementsAre(HasSubstr("busy; nothing is sent")));
+    EXPECT_THAT(ask({Errc::kOverloaded, "busy"}), ElementsAre(HasSubstr("busy; no scans are sent")));
     EXPECT_THAT(ask(kRefusal), IsEmpty());
     walk(kHere, kThere, 30);
     walk(kThere, kHere, 30);

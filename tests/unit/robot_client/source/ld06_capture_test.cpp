@@ -112,10 +112,10 @@ TEST_F(Ld06Captures, FingerprintDependsOnEverythingThatChangesScans) {
 TEST_F(Ld06Captures, WithoutScansAreRefusedWithTheReason) {
     Ld06Spinner sensor;
     EXPECT_THAT(Ld06Capture::open(file(sensor.next_bytes(60)), {}, Pose2{}).error().message,
-                HasSubstr("no full turn of an LD06 in it (60 packets)"));
+                HasSubstr("no full turn of an LD06 (60 packets)"));
     EXPECT_THAT(Ld06Capture::open(file({}), {}, Pose2{}).error().message, HasSubstr("(0 packets)"));
     EXPECT_THAT(Ld06Capture::open(file(sensor.next_bytes(200)), {}, straight_line(1.7e9, 1.8e9)).error().message,
-                HasSubstr("no scan was taken within the time of the poses"));
+                HasSubstr("no scan is within the time range of the poses"));
     EXPECT_THAT(Ld06Capture::open("/nonexistent/capture.bin", {}, Pose2{}).error().message,
                 HasSubstr("cannot be opened: No such file"));
 }

@@ -28,7 +28,7 @@ protected:
         source_ = std::make_unique<Ld06Live>(std::move(live));
     }
     void stop_when_passed_over(int scans) {
-        const auto passed_over = fmt::format("{} scan{} without a pose", scans, scans == 1 ? "" : "s");
+        const auto passed_over = fmt::format("{} scan{} skipped without a pose", scans, scans == 1 ? "" : "s");
         if (source_->remarks().find(passed_over) != std::string::npos) return source_->stop();
         asio::post(io_, [this, scans] { stop_when_passed_over(scans); });
     }
@@ -95,7 +95,7 @@ TEST_F(Ld06LivePoses, ScanIsDroppedIfTheNewestPoseIsTooOld) {
         sensor_.send(one_turn());
         stop_when_passed_over(1);
     });
-    EXPECT_THAT(next.error().message, HasSubstr("of 1 scans not one"));
+    EXPECT_THAT(next.error().message, HasSubstr("none of 1 scans"));
     EXPECT_THAT(notes_, ElementsAre(HasSubstr("for a device t is Unix time")));
     EXPECT_EQ(source_->remarks(), "0 damaged packets, 1 turn, 1 scan skipped without a pose");
 }
@@ -110,7 +110,7 @@ TEST_F(Ld06LivePoses, PosesOfAnotherClockAreReportedOnceAndEndWithAnError) {
     });
     ASSERT_FALSE(next);
     EXPECT_THAT(next.error().message,
-                HasSubstr("of 2 scans not one was taken within the time of the poses; for a device the t"));
+                HasSubstr("none of 2 scans is within the time range of the poses; for a device the t"));
     EXPECT_THAT(notes_, ElementsAre(HasSubstr("the poses are at t = 13, and the scans at t = 1")));
 }
 
@@ -149,7 +149,7 @@ TEST_F(Ld06LivePoses, DoesNotWaitAfterTheEndOfThePoses) {
         stop_when_passed_over(1);
     });
     EXPECT_FALSE(next);
-    EXPECT_THAT(notes_, ElementsAre(HasSubstr("the poses have ended; scans behind the last of them have none")));
+    EXPECT_THAT(notes_, ElementsAre(HasSubstr("the poses have ended; scans after the last pose are skipped")));
 }
 
 TEST_F(Ld06LivePoses, TooLongPoseLineEndsReading) {

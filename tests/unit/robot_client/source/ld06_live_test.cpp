@@ -82,8 +82,8 @@ TEST_F(Ld06Lives, MissingDeviceFailsAfterTheReopenPeriod) {
         sensor.hang_up();
     });
     ASSERT_FALSE(next);
-    EXPECT_THAT(next.error().message, HasSubstr("(tried again for 0.15 s)"));
-    EXPECT_THAT(notes_, ElementsAre(HasSubstr("disconnected; check the cable Trying again for 0.15 s")));
+    EXPECT_THAT(next.error().message, HasSubstr("(retried for 0.15 s)"));
+    EXPECT_THAT(notes_, ElementsAre(HasSubstr("disconnected; check the cable; retrying for 0.15 s")));
 }
 
 TEST_F(Ld06Lives, ReconnectedDeviceContinues) {
@@ -103,7 +103,7 @@ TEST_F(Ld06Lives, ReconnectedDeviceContinues) {
     };
     const Scan scan = scan_of(source, [&] { first.hang_up(); });
     EXPECT_EQ(scan.ranges.size(), 450U);
-    EXPECT_THAT(notes_, ElementsAre(HasSubstr("hung up"), HasSubstr("packets come again")));
+    EXPECT_THAT(notes_, ElementsAre(HasSubstr("hung up"), HasSubstr("packets are received again")));
     std::filesystem::remove(path);
 }
 
@@ -123,9 +123,9 @@ TEST_F(Ld06Lives, BytesWithoutPacketsAreReported) {
     };
     const auto next = next_of(source, babble);
     ASSERT_FALSE(next);
-    EXPECT_THAT(notes_, ElementsAre(HasSubstr("no packet of an LD06 for 1.5 s; is it another device, or a line of "
-                                              "another speed than 230400 baud?")));
-    EXPECT_THAT(next.error().message, HasSubstr("not a byte for 1.5 s"));
+    EXPECT_THAT(notes_, ElementsAre(HasSubstr("bytes without any packet of an LD06 for 1.5 s; is it another device, or "
+                                              "a line speed other than 230400 baud?")));
+    EXPECT_THAT(next.error().message, HasSubstr("no byte for 1.5 s"));
 }
 
 TEST_F(Ld06Lives, StopEndsTheSourceInAnyState) {
@@ -190,7 +190,7 @@ TEST_F(Ld06OverTcp, ReopensABrokenConnection) {
     Ld06Live source(options(endpoint()));
     (void)scan_of(source);
     EXPECT_EQ(scan_of(source).ranges.size(), 450U);
-    EXPECT_THAT(notes_, ElementsAre(HasSubstr("hung up"), HasSubstr("packets come again")));
+    EXPECT_THAT(notes_, ElementsAre(HasSubstr("hung up"), HasSubstr("packets are received again")));
     EXPECT_EQ(source.remarks(), "0 damaged packets, 2 turns")
         << "bytes after a break must not be joined to those before";
 }
@@ -209,7 +209,7 @@ TEST_F(Ld06OverTcp, SilentPeerFails) {
     live.device.silent_max = std::chrono::milliseconds(20);
     live.device.reopen_for = std::chrono::milliseconds(0);
     Ld06Live source(std::move(live));
-    EXPECT_THAT(next_of(source).error().message, HasSubstr("not a byte for 0.02 s; does the sensor have power"));
+    EXPECT_THAT(next_of(source).error().message, HasSubstr("no byte for 0.02 s; check that the sensor has power"));
 }
 
 } // namespace

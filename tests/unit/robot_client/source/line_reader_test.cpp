@@ -54,7 +54,7 @@ TEST_F(LineReaderTest, TruncatedGzipFileReportsReadableLines) {
     EXPECT_GT(lines, 300U) << "lines before the cut are read";
     EXPECT_THAT(error, HasSubstr(path_.string() + ": the gzip data is damaged or truncated"));
     EXPECT_THAT(error, HasSubstr(fmt::format("only its first {} lines (", lines)));
-    EXPECT_THAT(error, HasSubstr("unpack those with zcat"));
+    EXPECT_THAT(error, HasSubstr("unpack them with zcat"));
 }
 
 TEST_F(LineReaderTest, TruncatedBzip2FileReportsReadableLines) {
@@ -62,14 +62,14 @@ TEST_F(LineReaderTest, TruncatedBzip2FileReportsReadableLines) {
     const auto [lines, error] = read(std::string_view(whole).substr(0, whole.size() - 10));
     EXPECT_GT(lines, 10'000U);
     EXPECT_THAT(error, HasSubstr(fmt::format("only its first {} lines (", lines)));
-    EXPECT_THAT(error, HasSubstr("unpack those with bzcat"));
+    EXPECT_THAT(error, HasSubstr("unpack them with bzcat"));
 }
 
 TEST_F(LineReaderTest, UnreadableFileReportsNoLineCount) {
     const std::string whole = bzip2(noise(100));
     const auto [lines, error] = read(std::string_view(whole).substr(0, whole.size() / 2));
     EXPECT_EQ(lines, 0U);
-    EXPECT_THAT(error, HasSubstr("the bzip2 data is damaged or truncated: nothing of it could be read"));
+    EXPECT_THAT(error, HasSubstr("the bzip2 data is damaged or truncated: no line could be read"));
     EXPECT_THAT(error, Not(HasSubstr("line")));
 }
 

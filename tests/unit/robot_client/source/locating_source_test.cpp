@@ -137,8 +137,8 @@ TEST_F(LocatingSourceTest, LocatedTurnsHaveTheLocatedPose) {
     }
     EXPECT_EQ(requests_, 2U);
     EXPECT_EQ(source.remarks(), "carried 1 time, 33 turns while carried or not localized");
-    EXPECT_THAT(messages_, ElementsAre(HasSubstr("taken to stand at (1.00, 2.00)"), HasSubstr("the lidar is moved"),
-                                       HasSubstr("located at (7.00, 8.00)")));
+    EXPECT_THAT(messages_, ElementsAre(HasSubstr("assumed to be (1.00, 2.00)"), HasSubstr("the lidar was moved"),
+                                       HasSubstr("localized at (7.00, 8.00)")));
 }
 
 TEST_F(LocatingSourceTest, TurnsOfARefusedPlaceAreDropped) {
@@ -159,7 +159,7 @@ TEST_F(LocatingSourceTest, RepeatsTheRequestIfTheServerIsOverloaded) {
     EXPECT_EQ(poses_of(source).size(), 20U);
     EXPECT_TRUE(outcome_);
     EXPECT_EQ(requests_, 4U);
-    EXPECT_THAT(messages_, ElementsAre(HasSubstr("keep the lidar in place; retrying"), HasSubstr("located at")));
+    EXPECT_THAT(messages_, ElementsAre(HasSubstr("keep the lidar in place; retrying"), HasSubstr("localized at")));
     EXPECT_EQ(source.remarks(), "carried 0 times, 0 turns while carried or not localized");
 }
 
@@ -177,7 +177,7 @@ TEST_F(LocatingSourceTest, ReportsThatTheLidarWasNeverStationary) {
     source.ask_with(answers({kFound}));
     EXPECT_THAT(poses_of(source), IsEmpty());
     ASSERT_FALSE(outcome_);
-    EXPECT_THAT(outcome_.error().message, HasSubstr("of 40 turns no 10 in a row were alike"));
+    EXPECT_THAT(outcome_.error().message, HasSubstr("among 40 turns no 10 in a row were similar"));
     EXPECT_EQ(requests_, 0U);
 }
 
@@ -188,7 +188,7 @@ TEST_F(LocatingSourceTest, StopEndsAPendingRequest) {
     EXPECT_EQ(requests_, 1U);
     ASSERT_FALSE(given);
     EXPECT_EQ(given.error().code, Errc::kNotFound);
-    EXPECT_THAT(given.error().message, HasSubstr("stopped before the server had told where the lidar stands"));
+    EXPECT_THAT(given.error().message, HasSubstr("stopped before the server had localized the lidar"));
 }
 
 TEST_F(LocatingSourceTest, StopWhileStationaryGivesTheHeldTurns) {
@@ -217,7 +217,7 @@ TEST_F(LocatingSourceTest, FailingLidarEndsTheSourceAndDropsHeldTurns) {
     source.ask_with(answers({kFound}));
     EXPECT_EQ(poses_of(source).size(), 12U);
     ASSERT_FALSE(outcome_);
-    EXPECT_THAT(outcome_.error().message, HasSubstr("cannot be read on"));
+    EXPECT_THAT(outcome_.error().message, HasSubstr("the rest of the recording cannot be read"));
 }
 
 TEST_F(LocatingSourceTest, CanWaitOnlyForARecording) {

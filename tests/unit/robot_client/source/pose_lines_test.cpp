@@ -60,7 +60,7 @@ TEST(PoseLines, FilesAndStreamsAreReadAlike) {
     EXPECT_EQ(lines->skipped, 1U);
     EXPECT_FALSE(read_pose_lines(directory.path() / "absent", ignore));
     std::ofstream(path) << "# nothing\n";
-    EXPECT_THAT(read_pose_lines(path, ignore).error().message, HasSubstr("no pose to be read"));
+    EXPECT_THAT(read_pose_lines(path, ignore).error().message, HasSubstr("no valid pose"));
 }
 
 TEST(PoseTimeline, InterpolatesYawAlongTheShorterArc) {

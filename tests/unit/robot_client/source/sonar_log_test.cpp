@@ -89,7 +89,7 @@ TEST_F(SonarLogs, ErrorsContainFileAndLine) {
     EXPECT_THAT(error_of(good, "0 0 0\n"), HasSubstr("p.txt:1: 3 values; 4 are needed"));
     EXPECT_THAT(error_of(good, "0 0 0 0\n1 2e9 0 0\n"), HasSubstr("p.txt:2: the pose is more than"));
     EXPECT_THAT(error_of("0 1 1 1 1 1 1 1 1\n1001 1 1 1 1 1 1 1 1\n", "0 0 0 0\n"),
-                testing::AllOf(HasSubstr("m.txt:2: "), EndsWith("p.txt holds no pose within 1 s of its time")));
+                testing::AllOf(HasSubstr("m.txt:2: "), EndsWith("p.txt has no pose within 1 s of its time")));
     EXPECT_THAT(error_of("\n", "0 0 0 0\n"), HasSubstr("m.txt: the file is empty"));
     EXPECT_THAT(error_of(good, ""), HasSubstr("p.txt: the file is empty"));
     const auto missing = SonarLog::open("/nonexistent/m.txt", "/nonexistent/p.txt", {});

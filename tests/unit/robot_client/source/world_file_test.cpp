@@ -53,7 +53,7 @@ TEST_F(WorldFile, ImagePathIsRelativeToTheDescription) {
 
 TEST_F(WorldFile, OtherNamesAreBuiltInWorlds) {
     EXPECT_EQ(load_world("office")->name, "office");
-    EXPECT_THAT(load_world("moon").error().message, HasSubstr("there is no world 'moon'"));
+    EXPECT_THAT(load_world("moon").error().message, HasSubstr("unknown world 'moon'"));
     EXPECT_TRUE(is_world_file("a/b.yaml") && is_world_file("b.yml"));
     EXPECT_FALSE(is_world_file("office") || is_world_file("b.pgm"));
 }
@@ -73,7 +73,7 @@ TEST_F(WorldFile, UnreadableFileIsRefusedByName) {
     EXPECT_THAT(why("[1, 2"), HasSubstr("m.yaml: the map's yaml cannot be read"));
     write("wall.pgm", "P2 1 1 255 0");
     EXPECT_THAT(why("image: wall.pgm\n" + rest), HasSubstr("wall.pgm: the map has no free place"));
-    EXPECT_THAT(load_world((folder_ / "none.yaml").string()).error().message, HasSubstr("none.yaml: there is no"));
+    EXPECT_THAT(load_world((folder_ / "none.yaml").string()).error().message, HasSubstr("none.yaml: no such file"));
 }
 
 class RealMap : public testing::TestWithParam<const char*> {};

@@ -82,8 +82,8 @@ TEST_F(SpoolTest, MisplacedFilesAreSetAside) {
     open();
     ASSERT_TRUE(spool_->begin("a1", 0));
     for (const auto& number : handed_out()) EXPECT_GT(number, 1000U);
-    EXPECT_THAT(messages_, Contains(HasSubstr("is no file of a spool")));
-    EXPECT_THAT(messages_, Contains(HasSubstr("holds the scans of another file")));
+    EXPECT_THAT(messages_, Contains(HasSubstr("is not a spool file")));
+    EXPECT_THAT(messages_, Contains(HasSubstr("contains the scans of another file")));
     EXPECT_TRUE(fs::exists(all[0].string() + ".unreadable"));
     EXPECT_TRUE(fs::exists(directory_.path() / "00000000000000009999.spool.unreadable"));
 }

@@ -155,7 +155,7 @@ TEST_F(SpoolTest, ServerThatLostScansIsAnError) {
     const auto refused = spool_->begin("a1", 119);
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().code, Errc::kConflict);
-    EXPECT_THAT(refused.error().message, HasSubstr("holds 119 scans of this robot but had acknowledged 120"));
+    EXPECT_THAT(refused.error().message, HasSubstr("has 119 scans of this robot but had acknowledged 120"));
     open();
     ASSERT_TRUE(spool_->begin("a1", 150)) << "all scans arrived";
     EXPECT_THAT(handed_out(), IsEmpty());
@@ -196,7 +196,7 @@ TEST_F(SpoolTest, RecreatedSessionGetsUnacknowledgedScans) {
     open();
     EXPECT_EQ(spool_->waiting(), 38U);
     ASSERT_TRUE(spool_->begin("b2", 0));
-    EXPECT_THAT(messages_, ElementsAre(HasSubstr("38 scans that were not acknowledged go to the new one")));
+    EXPECT_THAT(messages_, ElementsAre(HasSubstr("38 unacknowledged scans go to the new one")));
     open();
     ASSERT_TRUE(spool_->begin("b2", 0));
     EXPECT_EQ(handed_out(20), from_to(13, 32));
