@@ -4,7 +4,7 @@
 #include "common/json/json_text.hpp"
 #include "server/session/session_check.hpp"
 #include "server/store/at_rest.hpp"
-#include "server/store/listing.hpp"
+#include "server/store/files.hpp"
 #include "server/store/table_check.hpp"
 
 #include <boost/json/array.hpp>

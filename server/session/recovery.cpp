@@ -4,7 +4,7 @@
 #include "server/session/checkpoint.hpp"
 #include "server/session/damage.hpp"
 #include "server/session/log_exclusions.hpp"
-#include "server/store/advice.hpp"
+#include "server/store/store_error.hpp"
 
 #include <fmt/format.h>
 

@@ -1,11 +1,12 @@
 #include "server/store/at_rest.hpp"
 
-#include "server/store/compaction_watch.hpp"
+#include "server/store/compaction.hpp"
 #include "server/store/crash_recovery.hpp"
 #include "server/store/directory.hpp"
 #include "server/store/record.hpp"
 #include "server/store/rocksdb_options.hpp"
 #include "server/store/rocksdb_scan_log.hpp"
+#include "server/store/store_error.hpp"
 #include "server/store/store_facts.hpp"
 
 #include <fmt/format.h>

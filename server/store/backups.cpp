@@ -1,7 +1,7 @@
 #include "server/store/backups.hpp"
 
 #include "server/store/backup_engine.hpp"
-#include "server/store/failure.hpp"
+#include "server/store/store_error.hpp"
 
 #include <fmt/format.h>
 #include <rocksdb/db.h>
@@ -96,7 +96,7 @@ Result<> Backups::take_directory() {
         return failure("cannot create the directory of backups {}: {}", directory_.native(), problem.message());
     const auto file = directory_ / "scanloom.lock";
     if (lock_ && id_of(file) == locked_) return {};
-    auto lock = FileLock::alone(file);
+    auto lock = FileLock::exclusive(file);
     if (!lock && lock.error().code == Errc::kConflict) {
         return Error{Errc::kConflict, fmt::format("the directory of backups {} is in use by another scanloom-server; "
                                                   "name another directory",

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "server/store/file_lock.hpp"
+#include "server/store/files.hpp"
 #include "server/store/scan_log.hpp"
 
 #include <cstddef>

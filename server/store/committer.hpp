@@ -1,6 +1,6 @@
 #pragma once
 
-#include "server/store/compaction_switch.hpp"
+#include "server/store/compaction.hpp"
 #include "server/store/files_watch.hpp"
 #include "server/store/scan_log.hpp"
 

@@ -1,9 +1,8 @@
 #include "server/store/crash_recovery.hpp"
 
-#include "server/store/advice.hpp"
-#include "server/store/failure.hpp"
-#include "server/store/listing.hpp"
+#include "server/store/directory.hpp"
 #include "server/store/log_file.hpp"
+#include "server/store/store_error.hpp"
 
 #include <fmt/format.h>
 

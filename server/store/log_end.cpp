@@ -1,8 +1,7 @@
 #include "server/store/log_end.hpp"
 
-#include "server/store/advice.hpp"
 #include "server/store/record.hpp"
-#include "server/store/status_code.hpp"
+#include "server/store/store_error.hpp"
 
 #include <fmt/format.h>
 

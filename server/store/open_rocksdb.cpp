@@ -1,8 +1,9 @@
-#include "server/store/compaction_watch.hpp"
+#include "server/store/compaction.hpp"
 #include "server/store/crash_recovery.hpp"
 #include "server/store/record.hpp"
 #include "server/store/rocksdb_options.hpp"
 #include "server/store/rocksdb_scan_log.hpp"
+#include "server/store/store_error.hpp"
 #include "server/store/store_facts.hpp"
 #include "server/store/unfinished_store.hpp"
 
@@ -41,7 +42,7 @@ Result<std::unique_ptr<ScanLog>> open_locked(Result<LockedDirectory> locked, con
     if (*must_write) {
         if (auto written = write_format(*database, directory); !written) return written.error();
     }
-    if (auto told = locked->holds_store(); !told) return told.error();
+    if (auto finished = locked->finish_creation(); !finished) return finished.error();
     auto ends = read_ends(*database, directory);
     if (!ends) return ends.error();
     auto files = std::make_unique<FilesWatch>(*database, directory);
@@ -58,7 +59,7 @@ Result<std::unique_ptr<ScanLog>> open_rocksdb(const fs::path& directory, const S
 Result<std::unique_ptr<ScanLog>> UnfinishedStore::open_log() const {
     StoreOptions options;
     options.disk_reserve_bytes = 0; // no other writer: the store either fits or does not
-    return open_locked(LockedDirectory::open(directory_, LockedDirectory::Files::kBeingMade), options);
+    return open_locked(LockedDirectory::open(directory_, LockedDirectory::Files::kUnfinished), options);
 }
 
 } // namespace scanloom::store

@@ -1,8 +1,8 @@
 #include "server/store/reopening_log.hpp"
 
-#include "server/store/failure.hpp"
-#include "server/store/held_file.hpp"
-#include "server/store/listing.hpp"
+#include "server/store/directory.hpp"
+#include "server/store/files_watch.hpp"
+#include "server/store/store_error.hpp"
 
 #include <fmt/format.h>
 

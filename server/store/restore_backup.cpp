@@ -1,8 +1,8 @@
 #include "server/store/backup_engine.hpp"
-#include "server/store/compaction_watch.hpp"
+#include "server/store/compaction.hpp"
 #include "server/store/rocksdb_options.hpp"
 
-#include "server/store/failure.hpp"
+#include "server/store/store_error.hpp"
 
 #include <fmt/format.h>
 #include <rocksdb/db.h>

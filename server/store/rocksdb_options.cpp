@@ -1,17 +1,51 @@
 #include "server/store/rocksdb_options.hpp"
 
-#include "server/store/rocksdb_log.hpp"
-
 #include <rocksdb/cache.h>
-#include <rocksdb/filter_policy.h>
+#include <rocksdb/env.h>
 #include <rocksdb/table.h>
 
 #include <algorithm>
+#include <array>
+#include <cstdarg>
+#include <cstdio>
+#include <functional>
 #include <limits>
+#include <string_view>
 #include <utility>
 
 namespace scanloom::store {
 namespace {
+
+/// Passes RocksDB's log lines of level WARN and above to a function.
+///
+/// RocksDB's own logger writes a file next to the tables, and aborts the process at the first line after one for which
+/// the disk had no room.
+///
+/// Threads: any.
+/// Source: RocksDB 7.8, logging/env_logger.h; WritableFileWriter::AssertFalseAndGetStatusForPrevError().
+class RocksdbLog final : public rocksdb::Logger {
+public:
+    using Write = std::function<void(std::string_view line)>;
+
+    /// @param write  called with each line, from threads of RocksDB; null: lines are dropped
+    explicit RocksdbLog(Write write) : Logger(rocksdb::InfoLogLevel::WARN_LEVEL), write_(std::move(write)) {}
+
+    using Logger::Logv;
+    void Logv(rocksdb::InfoLogLevel level, const char* format, std::va_list arguments) override {
+        if (level < GetInfoLogLevel() || !write_) return;
+        std::array<char, kLineBytesMax> line{};
+        std::vsnprintf(line.data(), line.size(), format, arguments);
+        write_(line.data());
+    }
+
+    /// Drops the options that RocksDB lists when a store is opened.
+    void LogHeader(const char*, std::va_list) override {}
+
+private:
+    static constexpr std::size_t kLineBytesMax = 1024; // longer lines are cut off
+
+    const Write write_;
+};
 
 /// Sets the order in which changes become durable, and what recovery accepts.
 void set_durability(rocksdb::Options& rocksdb) {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "server/store/compaction_watch.hpp"
+#include "server/store/compaction.hpp"
 #include "server/store/scan_log.hpp"
 
 #include <rocksdb/options.h>

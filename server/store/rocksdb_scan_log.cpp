@@ -1,9 +1,8 @@
 #include "server/store/rocksdb_scan_log.hpp"
 
-#include "server/store/advice.hpp"
 #include "server/store/log_end.hpp"
 #include "server/store/record.hpp"
-#include "server/store/status_code.hpp"
+#include "server/store/store_error.hpp"
 
 #include <fmt/format.h>
 #include <rocksdb/convenience.h>
@@ -86,10 +85,10 @@ RocksdbScanLog::RocksdbScanLog(LockedDirectory directory, std::unique_ptr<rocksd
       torn_bytes_dropped_(torn_bytes_dropped), watch_(std::move(watch)),
       compactions_(*database_, options.disk_reserve_bytes), files_(std::move(files)), on_damage_(options.on_damage),
       committer_(*database_, name(), options.disk_reserve_bytes, compactions_, files_.get()) {
-    watch_->set_tell([this](const rocksdb::Status& reason) { go_on_without_compaction(reason); });
+    watch_->set_report([this](const rocksdb::Status& reason) { go_on_without_compaction(reason); });
 }
 
-RocksdbScanLog::~RocksdbScanLog() { watch_->set_tell(nullptr); }
+RocksdbScanLog::~RocksdbScanLog() { watch_->set_report(nullptr); }
 
 /// Stops compactions, which RocksDB would otherwise retry every second without end.
 void RocksdbScanLog::go_on_without_compaction(const rocksdb::Status& reason) {

@@ -1,8 +1,7 @@
 #pragma once
 
 #include "server/store/committer.hpp"
-#include "server/store/compaction_switch.hpp"
-#include "server/store/compaction_watch.hpp"
+#include "server/store/compaction.hpp"
 #include "server/store/directory.hpp"
 #include "server/store/scan_log.hpp"
 

@@ -1,7 +1,6 @@
 #include "server/store/salvage.hpp"
 
 #include "server/store/directory.hpp"
-#include "server/store/listing.hpp"
 #include "server/store/record.hpp"
 #include "server/store/rocksdb_options.hpp"
 #include "server/store/table_walk.hpp"
@@ -27,7 +26,7 @@ std::unique_ptr<rocksdb::Iterator> iterator_of(rocksdb::SstFileReader& table) {
 
 Result<std::unique_ptr<Salvage>> Salvage::open(const fs::path& store, const fs::path& copy,
                                                const StoreOptions& options) {
-    const auto locked = LockedDirectory::open_to_read(store, LockedDirectory::Files::kAny);
+    const auto locked = LockedDirectory::open_to_read(store, LockedDirectory::Files::kDamaged);
     if (!locked) return locked.error();
     if (regular_files(store, ".sst").empty() && regular_files(store, ".log").empty()) {
         return Error{Errc::kNotFound,

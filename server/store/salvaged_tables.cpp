@@ -1,13 +1,13 @@
 #include "server/store/salvaged_tables.hpp"
 
-#include "server/store/compaction_watch.hpp"
+#include "server/store/compaction.hpp"
 #include "server/store/crash_recovery.hpp"
-#include "server/store/failure.hpp"
-#include "server/store/listing.hpp"
+#include "server/store/directory.hpp"
 #include "server/store/log_file.hpp"
 #include "server/store/readable_file.hpp"
 #include "server/store/record.hpp"
 #include "server/store/rocksdb_options.hpp"
+#include "server/store/store_error.hpp"
 #include "server/store/table_carving.hpp"
 #include "server/store/table_check.hpp"
 

@@ -10,9 +10,6 @@
 /// Checks of a database before it becomes a scan log. `directory` is for messages.
 namespace scanloom::store {
 
-/// Returns the error for a database that RocksDB does not open.
-[[nodiscard]] Error cannot_open(const std::filesystem::path& directory, const rocksdb::Status& status);
-
 /// Whether the format record has to be written: the database is empty or of an earlier format.
 /// Errors: kUnsupportedVersion: it is of a newer format; kStoreFailed: it belongs to another program or is damaged.
 [[nodiscard]] Result<bool> must_write_format(rocksdb::DB& database, const std::filesystem::path& directory);

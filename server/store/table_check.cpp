@@ -1,7 +1,7 @@
 #include "server/store/table_check.hpp"
 
-#include "server/store/advice.hpp"
 #include "server/store/rocksdb_options.hpp"
+#include "server/store/store_error.hpp"
 
 #include <fmt/format.h>
 #include <rocksdb/sst_file_reader.h>

@@ -1,7 +1,7 @@
 #include "server/store/unfinished_store.hpp"
 
-#include "server/store/listing.hpp"
-#include "server/store/synced_files.hpp"
+#include "server/store/directory.hpp"
+#include "server/store/files.hpp"
 
 #include <fmt/format.h>
 
@@ -109,7 +109,7 @@ Result<UnfinishedStore> UnfinishedStore::begin(const fs::path& directory, const 
         if (auto empty = check_empty(directory, lost); !empty) return empty.error();
     }
     if (auto created = create_store_directory(directory); !created) return created.error();
-    auto lock = FileLock::alone(mark);
+    auto lock = FileLock::exclusive(mark);
     if (!lock && lock.error().code == Errc::kConflict) {
         return Error{Errc::kConflict,
                      fmt::format("--repair {}: another --repair writes it at this moment; wait for its "

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "common/error/error.hpp"
-#include "server/store/file_lock.hpp"
+#include "server/store/files.hpp"
 #include "server/store/scan_log.hpp"
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-#include "server/store/listing.hpp"
+#include "server/store/directory.hpp"
 #include "server/store/reopening_log.hpp"
 
 #include "tests/support/faulty_file_system.hpp"

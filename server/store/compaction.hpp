@@ -1,10 +1,16 @@
 #pragma once
 
 #include <rocksdb/db.h>
+#include <rocksdb/listener.h>
 
 #include <algorithm>
 #include <cstdint>
+#include <functional>
+#include <mutex>
+#include <optional>
 
+/// Compactions, with which RocksDB merges its tables in the background: paused while the disk is full, and not fatal
+/// if they fail.
 namespace scanloom::store {
 
 /// Pauses RocksDB's compactions while the disk has little room. Merged tables exist next to the old ones for a while
@@ -35,6 +41,31 @@ private:
     const std::uint64_t pause_below_;
     bool is_paused_ = false;
     bool is_stopped_ = false;
+};
+
+/// Keeps one damaged table from stopping the whole store.
+///
+/// RocksDB compacts its tables in the background and accepts no more writes after a compaction failed. New entries go
+/// to new files, which old damage does not affect. This listener therefore reports an unreadable table to the store and
+/// lets RocksDB continue writing. A full disk is not damage: writes continue while there is room, and CompactionSwitch
+/// pauses compactions.
+///
+/// Threads: any.
+/// Source: RocksDB 7.8, listener.h, EventListener::OnBackgroundError.
+class CompactionWatch final : public rocksdb::EventListener {
+public:
+    using Report = std::function<void(const rocksdb::Status&)>;
+
+    /// Sets the function that is called once, from a RocksDB thread, when tables can no longer be compacted; calls it
+    /// immediately if that is already known. Null removes the function and waits for a call in progress.
+    void set_report(Report report);
+
+    void OnBackgroundError(rocksdb::BackgroundErrorReason reason, rocksdb::Status* error) override;
+
+private:
+    std::mutex mutex_;
+    std::optional<rocksdb::Status> failed_;
+    Report report_;
 };
 
 } // namespace scanloom::store
