@@ -3,8 +3,8 @@
 #include "common/app/standard_streams.hpp"
 #include "common/json/json_text.hpp"
 #include "server/session/session_check.hpp"
-#include "server/store/at_rest.hpp"
 #include "server/store/files.hpp"
+#include "server/store/rocksdb_store.hpp"
 #include "server/store/table_check.hpp"
 
 #include <boost/json/array.hpp>
@@ -81,7 +81,7 @@ private:
     std::uint64_t bytes_ = 0;
 };
 
-void check_sessions(store::AtRest& store, session::CheckDepth depth, Findings& findings) {
+void check_sessions(store::ReadOnlyStore& store, session::CheckDepth depth, Findings& findings) {
     const auto sessions = store.log->sessions();
     if (!sessions) return findings.store_damaged(sessions.error());
     Progress progress;
@@ -110,7 +110,7 @@ void check_tables(const std::filesystem::path& store, Findings& findings) {
 
 ExitCode check_store(const ServerOptions& options) {
     const auto begin = std::chrono::steady_clock::now();
-    auto store = store::open_at_rest(options.store);
+    auto store = store::open_read_only(options.store);
     Findings findings;
     if (!store) {
         if (store.error().code != Errc::kStoreFailed &&

@@ -62,7 +62,7 @@ session::WeavesLimits weaves_within(std::size_t bytes) {
 
 } // namespace
 
-Server::Server(const ServerOptions& options, const ConnectionLimits& limits, std::unique_ptr<store::ReopeningLog> log,
+Server::Server(const ServerOptions& options, const ConnectionLimits& limits, std::unique_ptr<store::ScanLog> log,
                http::WebFiles web)
     : options_(options), limits_(limits), log_(std::move(log)), metrics_(kVersion), audit_(metrics_.refusals()),
       weaving_(options.threads), serving_(std::max<std::size_t>(2, options.threads)),
@@ -111,7 +111,11 @@ Result<std::unique_ptr<Server>> Server::open(const ServerOptions& options, const
     store.on_damage = [](const Error& damage) { spdlog::error("{}", damage.message); };
     store.on_rocksdb_log = [](std::string_view line) { spdlog::debug("RocksDB: {}", line); };
     store.disk_reserve_bytes = options.disk_reserve_bytes;
-    auto log = store::open_reopening(options.store, store, open_log);
+    const auto check = std::make_shared<session::BackgroundCheck*>(nullptr); // created after the log
+    store.on_unreadable = [check](store::SessionId session, const Error& why) {
+        if (*check != nullptr) (*check)->note(session, why);
+    };
+    auto log = open_log(options.store, store);
     if (!log) return log.error();
     if (const auto torn = (*log)->stats().torn_bytes_dropped; torn > 0)
         spdlog::warn(
@@ -135,8 +139,7 @@ Result<std::unique_ptr<Server>> Server::open(const ServerOptions& options, const
     if (!options.tokens.empty()) server->gate_.replace(std::move(tokens));
     server->api_.set_background_check(server->check_);
     server->api_.set_locator(server->locator_);
-    server->log_->on_unreadable(
-        [check = &server->check_](store::SessionId session, const Error& why) { check->note(session, why); });
+    *check = &server->check_;
     if (!options.backups.empty()) {
         auto backups = store::Backups::open(options.backups, options.backups_kept, *server->log_,
                                             [](const std::string& what) { spdlog::warn("{}", what); });
@@ -251,7 +254,7 @@ void Server::tidy_up() {
     if (sessions_.is_draining()) return;
     asio::post(reading_.get_executor(), [this] { // not on changing_: its tasks may wait for work started here
         tell_of_failed_store();
-        if (log_->try_again()) spdlog::info("the store {} has been opened again", options_.store.string());
+        if (log_->reopen()) spdlog::info("the store {} has been opened again", options_.store.string());
         sessions_.tidy();
         audit_.tell_what_is_due();
     });

@@ -15,7 +15,7 @@
 #include "server/session/weaves.hpp"
 #include "server/sockets/worker_pool.hpp"
 #include "server/store/backups.hpp"
-#include "server/store/reopening_log.hpp"
+#include "server/store/rocksdb_store.hpp"
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/signal_set.hpp>
@@ -63,7 +63,7 @@ public:
     [[nodiscard]] Result<> run();
 
 private:
-    Server(const ServerOptions& options, const ConnectionLimits& limits, std::unique_ptr<store::ReopeningLog> log,
+    Server(const ServerOptions& options, const ConnectionLimits& limits, std::unique_ptr<store::ScanLog> log,
            http::WebFiles web);
 
     [[nodiscard]] Result<> listen();
@@ -79,7 +79,7 @@ private:
 
     ServerOptions options_;
     ConnectionLimits limits_;
-    std::unique_ptr<store::ReopeningLog> log_;
+    std::unique_ptr<store::ScanLog> log_;
     std::unique_ptr<store::Backups> backups_; // null: backups are disabled
     metrics::Metrics metrics_;
     guard::Gate gate_;

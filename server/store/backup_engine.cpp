@@ -1,18 +1,45 @@
 #include "server/store/backup_engine.hpp"
 
+#include "server/store/store_error.hpp"
+
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <charconv>
 #include <system_error>
 
 namespace scanloom::store {
+namespace {
 
-rocksdb::BackupEngineOptions engine_options(const std::filesystem::path& directory) {
+namespace fs = std::filesystem;
+
+rocksdb::BackupEngineOptions engine_options(const fs::path& directory) {
     rocksdb::BackupEngineOptions options(directory.native());
     options.sync = true;
     options.share_table_files = true;
     options.share_files_with_checksum = true; // tables of two stores may have the same name
     options.backup_rate_limit = Backups::kBytesPerSecond;
     return options;
+}
+
+} // namespace
+
+Result<std::unique_ptr<rocksdb::BackupEngine>> open_engine(const fs::path& directory) {
+    rocksdb::BackupEngine* opened = nullptr;
+    const auto status = rocksdb::BackupEngine::Open(rocksdb::Env::Default(), engine_options(directory), &opened);
+    std::unique_ptr<rocksdb::BackupEngine> engine(opened);
+    if (status.ok()) return engine;
+    return failure("the backups in {} cannot be used: {}; name another directory", directory.native(),
+                   status.ToString());
+}
+
+Result<std::unique_ptr<rocksdb::BackupEngineReadOnly>> open_engine_to_read(const fs::path& directory) {
+    rocksdb::BackupEngineReadOnly* opened = nullptr;
+    const auto status =
+        rocksdb::BackupEngineReadOnly::Open(rocksdb::Env::Default(), engine_options(directory), &opened);
+    std::unique_ptr<rocksdb::BackupEngineReadOnly> engine(opened);
+    if (status.ok()) return engine;
+    return failure("the backups in {} cannot be read: {}", directory.native(), status.ToString());
 }
 
 BackupMetadata metadata_of(const rocksdb::BackupInfo& info) {
@@ -38,6 +65,45 @@ std::vector<Backup> backups_of(const rocksdb::BackupEngineReadOnlyBase& engine) 
     std::vector<Backup> found;
     for (const auto& info : infos_of(engine)) found.push_back(backup_of(info));
     return found;
+}
+
+Result<std::string> identity_of(rocksdb::DB& database) {
+    std::string identity;
+    if (const auto status = database.GetDbIdentity(identity); !status.ok()) {
+        return failure("the identity of the store cannot be read: {}", status.ToString());
+    }
+    return identity;
+}
+
+Result<> check_owner(const rocksdb::BackupEngine& engine, const fs::path& directory, const std::string& identity) {
+    for (const auto& info : infos_of(engine)) {
+        const auto owner = metadata_of(info).store;
+        if (owner.empty() || owner == identity) continue;
+        return Error{Errc::kConflict,
+                     fmt::format("the directory of backups {} has backups of another store (backup {}); "
+                                 "name another directory, one for each store",
+                                 directory.native(), info.backup_id)};
+    }
+    return {};
+}
+
+Result<> back_up(rocksdb::DB& database, const fs::path& directory, std::size_t sessions, const std::stop_token& stop) {
+    const auto identity = identity_of(database);
+    if (!identity) return identity.error();
+    const auto engine = open_engine(directory);
+    if (!engine) return engine.error();
+    if (auto owned = check_owner(**engine, directory, *identity); !owned) return owned;
+    const std::stop_callback stopping(stop, [&engine] { (*engine)->StopBackup(); });
+    rocksdb::BackupID id = 0;
+    rocksdb::CreateBackupOptions options;
+    options.flush_before_backup = true; // otherwise each backup would copy entries of the write-ahead log again
+    const auto metadata = fmt::format("{} {}", sessions, *identity);
+    auto status = (*engine)->CreateNewBackupWithMetadata(options, &database, metadata, &id);
+    if (status.ok()) status = (*engine)->VerifyBackup(id, true);
+    if (status.ok()) return {};
+    if (id != 0) (*engine)->DeleteBackup(id).PermitUncheckedError();
+    if (status.IsIncomplete()) return Error{Errc::kShuttingDown, "the server is shutting down: no backup was made"};
+    return failure("no backup could be made in {}: {}", directory.native(), status.ToString());
 }
 
 } // namespace scanloom::store

@@ -1,6 +1,8 @@
 #include "server/store/backups.hpp"
 
 #include "server/store/backup_engine.hpp"
+#include "server/store/compaction.hpp"
+#include "server/store/rocksdb_options.hpp"
 #include "server/store/store_error.hpp"
 
 #include <fmt/format.h>
@@ -18,48 +20,56 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Result<std::string> identity_of(rocksdb::DB& database) {
-    std::string identity;
-    if (const auto status = database.GetDbIdentity(identity); !status.ok()) {
-        return failure("the identity of the store cannot be read: {}", status.ToString());
-    }
-    return identity;
+/// Lists the backups that restore_backup() would find.
+Result<std::vector<Backup>> read_backups(const fs::path& directory) {
+    std::error_code none;
+    if (!fs::exists(directory / "meta", none)) return std::vector<Backup>{};
+    const auto engine = open_engine_to_read(directory);
+    if (!engine) return engine.error();
+    return backups_of(**engine);
 }
 
-Result<std::string> identity_of(ScanLog& log) {
-    std::string identity;
-    const auto read = log.copy_with([&](rocksdb::DB& database) -> Result<> {
-        auto found = identity_of(database);
-        if (!found) return found.error();
-        identity = std::move(*found);
-        return {};
-    });
-    if (!read) return read.error();
-    return identity;
+Result<Backup> find(rocksdb::BackupEngineReadOnly& engine, const fs::path& directory, std::optional<std::uint32_t> id) {
+    const auto infos = infos_of(engine);
+    if (infos.empty()) return Error{Errc::kNotFound, fmt::format("there is no backup in {}", directory.native())};
+    if (!id) return backup_of(infos.back());
+    const auto found = std::ranges::find(infos, *id, &rocksdb::BackupInfo::backup_id);
+    if (found != infos.end()) return backup_of(*found);
+    return Error{Errc::kNotFound, fmt::format("there is no backup {} in {}; there are {} to {}", *id,
+                                              directory.native(), infos.front().backup_id, infos.back().backup_id)};
 }
 
-/// Otherwise `--restore newest` would restore another store.
-Result<> check_owner(const rocksdb::BackupEngine& engine, const fs::path& directory, const std::string& identity) {
-    for (const auto& info : infos_of(engine)) {
-        const auto owner = metadata_of(info).store;
-        if (owner.empty() || owner == identity) continue;
-        return Error{Errc::kConflict,
-                     fmt::format("the directory of backups {} has backups of another store (backup {}); "
-                                 "name another directory, one for each store",
-                                 directory.native(), info.backup_id)};
+Result<> check_empty(const fs::path& store) {
+    std::error_code problem;
+    if (!fs::exists(store, problem) || (fs::is_directory(store, problem) && fs::is_empty(store, problem))) return {};
+    return Error{Errc::kConflict,
+                 fmt::format("{} is not empty; name a directory that does not exist yet", store.native())};
+}
+
+/// A store that has written nothing since its last table has no write-ahead log to copy, but a store without a log
+/// counts as damaged. Opening it creates one.
+Result<> complete(const fs::path& store, const StoreOptions& options) {
+    for (const auto& file : fs::directory_iterator(store)) {
+        if (file.path().extension() == ".log") return {};
     }
+    rocksdb::DB* opened = nullptr;
+    const auto status =
+        rocksdb::DB::Open(rocksdb_options(options, std::make_shared<CompactionWatch>()), store.native(), &opened);
+    const std::unique_ptr<rocksdb::DB> database(opened);
+    if (!status.ok()) return failure("the restored store {} cannot be opened: {}", store.native(), status.ToString());
     return {};
 }
 
 } // namespace
 
-Result<std::unique_ptr<Backups>> Backups::open(const fs::path& directory, std::size_t kept, ScanLog& log, Tell tell) {
-    const auto identity = identity_of(log);
+Result<std::unique_ptr<Backups>> Backups::open(const fs::path& directory, std::size_t kept, ScanLog& log,
+                                               Report report) {
+    const auto identity = log.identity();
     if (!identity) return identity.error();
-    std::unique_ptr<Backups> backups(new Backups(directory, kept, std::move(tell)));
+    std::unique_ptr<Backups> backups(new Backups(directory, kept, std::move(report)));
     if (auto taken = backups->take_directory(); !taken) return taken.error();
     backups->disk_ = disk_of(directory);
-    const auto engine = backups->open_engine();
+    const auto engine = open_engine(directory);
     if (!engine) return engine.error();
     if (auto owned = check_owner(**engine, directory, *identity); !owned) return owned.error();
     // Removes what a crash left of a backup. If it stays, it only uses disk space.
@@ -68,10 +78,8 @@ Result<std::unique_ptr<Backups>> Backups::open(const fs::path& directory, std::s
     return backups;
 }
 
-Backups::Backups(fs::path directory, std::size_t kept, Tell tell)
-    : directory_(std::move(directory)), kept_(std::max<std::size_t>(kept, 1)), tell_(std::move(tell)) {}
-
-Backups::~Backups() = default;
+Backups::Backups(fs::path directory, std::size_t kept, Report report)
+    : directory_(std::move(directory)), kept_(std::max<std::size_t>(kept, 1)), report_(std::move(report)) {}
 
 std::optional<Backups::FileId> Backups::id_of(const fs::path& file) {
     struct stat found = {};
@@ -118,115 +126,86 @@ Result<> Backups::check_disk() const {
                    directory_.native());
 }
 
-Result<std::shared_ptr<rocksdb::BackupEngine>> Backups::open_engine() {
-    rocksdb::BackupEngine* opened = nullptr;
-    const auto status = rocksdb::BackupEngine::Open(rocksdb::Env::Default(), engine_options(directory_), &opened);
-    std::shared_ptr<rocksdb::BackupEngine> engine(opened);
-    if (status.ok()) return engine;
-    return failure("the backups in {} cannot be used: {}; name another directory", directory_.native(),
-                   status.ToString());
-}
-
 Result<Backup> Backups::make(ScanLog& log) {
     const std::unique_lock making(making_, std::try_to_lock);
     if (!making) return Error{Errc::kConflict, "a backup is being made at this moment; wait for its end"};
-    const auto sessions = log.sessions();
-    if (!sessions) return sessions.error();
     if (auto there = check_disk(); !there) return there.error();
     if (auto taken = take_directory(); !taken) return taken.error();
-    const auto engine = open_engine();
-    if (!engine) return engine.error();
-    begin_with(*engine);
-    auto made = make_with(**engine, log, sessions->size());
-    end_with(backups_of(**engine));
-    return made;
-}
-
-void Backups::begin_with(std::shared_ptr<rocksdb::BackupEngine> engine) {
-    const std::lock_guard lock(state_mutex_);
-    tell_lost(backups_of(*engine)); // before make() deletes any
-    engine_ = std::move(engine);
-    ++changes_;
-    if (stopped_) engine_->StopBackup();
-}
-
-void Backups::end_with(std::vector<Backup> found) {
-    const std::lock_guard lock(state_mutex_);
-    last_ = std::move(found);
-    engine_.reset();
-    ++changes_;
-}
-
-Result<Backup> Backups::make_with(rocksdb::BackupEngine& engine, ScanLog& log, std::size_t sessions) {
-    rocksdb::BackupID id = 0;
-    auto made = log.copy_with([&](rocksdb::DB& database) -> Result<> {
-        const auto identity = identity_of(database);
-        if (!identity) return identity.error();
-        if (auto owned = check_owner(engine, directory_, *identity); !owned) return owned;
-        rocksdb::CreateBackupOptions options;
-        options.flush_before_backup = true; // otherwise each backup would copy entries of the write-ahead log again
-        auto status =
-            engine.CreateNewBackupWithMetadata(options, &database, fmt::format("{} {}", sessions, *identity), &id);
-        if (status.ok()) status = engine.VerifyBackup(id, true);
-        if (status.ok()) return {};
-        if (id != 0) engine.DeleteBackup(id).PermitUncheckedError();
-        if (status.IsIncomplete()) return Error{Errc::kShuttingDown, "the server is shutting down: no backup was made"};
-        return failure("no backup could be made in {}: {}", directory_.native(), status.ToString());
-    });
+    set_making(true, read_backups(directory_));
+    const auto made = log.backup_to(directory_, stopping_.get_token());
+    const auto after = made ? delete_old() : read_backups(directory_);
+    set_making(false, after);
     if (!made) return made.error();
-    // If it fails, the next backup retries.
-    engine.PurgeOldBackups(static_cast<std::uint32_t>(kept_)).PermitUncheckedError();
-    return backups_of(engine).back();
+    if (!after) return after.error();
+    return after->back();
 }
 
-void Backups::tell_lost(const std::vector<Backup>& found) const {
+/// Deletes the oldest backups. If that fails, the next backup retries.
+/// @return the remaining ones
+Result<std::vector<Backup>> Backups::delete_old() const {
+    const auto engine = open_engine(directory_);
+    if (!engine) return engine.error();
+    (*engine)->PurgeOldBackups(static_cast<std::uint32_t>(kept_)).PermitUncheckedError();
+    return backups_of(**engine);
+}
+
+/// @param found  the backups at the start or at the end of make()
+void Backups::set_making(bool making, const Result<std::vector<Backup>>& found) {
+    const std::lock_guard lock(state_mutex_);
+    if (making && found) report_lost(*found); // before make() deletes any
+    is_making_ = making;
+    if (found) last_ = *found;
+    ++changes_;
+}
+
+void Backups::report_lost(const std::vector<Backup>& found) const {
     std::string lost;
     for (const auto& backup : last_) {
         if (std::ranges::find(found, backup.id, &Backup::id) != found.end()) continue;
         lost += fmt::format("{}{}", lost.empty() ? "" : ", ", backup.id);
     }
-    if (lost.empty() || !tell_) return;
-    tell_(fmt::format("the directory of backups {} has lost the backups {}: they were removed, or are damaged",
-                      directory_.native(), lost));
+    if (lost.empty() || !report_) return;
+    report_(fmt::format("the directory of backups {} has lost the backups {}: they were removed, or are damaged",
+                        directory_.native(), lost));
 }
-
-namespace {
-
-/// Lists the backups that restore_backup() would find.
-Result<std::vector<Backup>> read_backups(const fs::path& directory) {
-    std::error_code none;
-    if (!fs::exists(directory / "meta", none)) return std::vector<Backup>{};
-    rocksdb::BackupEngineReadOnly* opened = nullptr;
-    const auto status =
-        rocksdb::BackupEngineReadOnly::Open(rocksdb::Env::Default(), engine_options(directory), &opened);
-    const std::unique_ptr<rocksdb::BackupEngineReadOnly> engine(opened);
-    if (!status.ok()) return failure("the backups in {} cannot be read: {}", directory.native(), status.ToString());
-    return backups_of(*engine);
-}
-
-} // namespace
 
 Result<std::vector<Backup>> Backups::list() {
     if (auto there = check_disk(); !there) return there.error();
     std::uint64_t changes = 0;
     {
         const std::lock_guard lock(state_mutex_);
-        if (engine_ != nullptr) return last_;
+        if (is_making_) return last_;
         changes = changes_;
     }
     auto found = read_backups(directory_);
     if (!found) return found;
     const std::lock_guard lock(state_mutex_);
     if (changes != changes_) return last_; // a backup was made meanwhile, or is being made
-    tell_lost(*found);
+    report_lost(*found);
     last_ = *found;
     return found;
 }
 
-void Backups::stop() {
-    const std::lock_guard lock(state_mutex_);
-    stopped_ = true;
-    if (engine_ != nullptr) engine_->StopBackup();
+void Backups::stop() { stopping_.request_stop(); }
+
+Result<Backup> restore_backup(const fs::path& directory, std::optional<std::uint32_t> id, const fs::path& store,
+                              const StoreOptions& options) {
+    if (auto empty = check_empty(store); !empty) return empty.error();
+    const auto engine = open_engine_to_read(directory);
+    if (!engine) return Error{Errc::kNotFound, engine.error().message};
+    const auto backup = find(**engine, directory, id);
+    if (!backup) return backup.error();
+    std::error_code problem;
+    fs::create_directories(store, problem);
+    if (problem) return failure("cannot create the store {}: {}", store.native(), problem.message());
+    if (const auto restored = (*engine)->RestoreDBFromBackup(backup->id, store.native(), store.native());
+        !restored.ok()) {
+        return failure("backup {} cannot be restored into {}: {}; delete what there is of it, and try another one",
+                       backup->id, store.native(), restored.ToString());
+    }
+    if (auto completed = complete(store, options); !completed) return completed.error();
+    if (auto log = open_rocksdb(store, options); !log) return log.error();
+    return *backup;
 }
 
 } // namespace scanloom::store

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "server/store/files.hpp"
+#include "server/store/rocksdb_store.hpp"
 #include "server/store/scan_log.hpp"
 
 #include <cstddef>
@@ -10,12 +11,9 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <vector>
-
-namespace rocksdb {
-class BackupEngine;
-}
 
 namespace scanloom::store {
 
@@ -36,31 +34,27 @@ struct Backup {
 /// read back and compared with its checksum. Every call reads the directory again, because its disk may be unmounted
 /// and mounted while the server runs.
 /// Threads: any; stop() does not block.
-/// Source: RocksDB 7.8, utilities/backup_engine.h.
 class Backups {
 public:
     /// Limit of the copy rate, so that robots need not wait for the disk.
     static constexpr std::uint64_t kBytesPerSecond = std::uint64_t{100} << 20;
 
     /// Receives a message for the operator.
-    using Tell = std::function<void(const std::string&)>;
+    using Report = std::function<void(const std::string&)>;
 
     /// Opens the directory, creates it if needed, and locks it against other servers during the object's lifetime. The
     /// lock does not keep restore_backup() out.
     /// @param kept  number of newest backups to keep; less than 1 counts as 1
-    /// @param tell  called by list() and make() with the backups that no longer exist; may be null
+    /// @param report  called by list() and make() with the backups that no longer exist; may be null
     /// Errors: kConflict: another server uses the directory, or it has backups of another store than `log`;
-    ///         kStoreFailed: the directory cannot be used; kInvalidField: the log is not kept on a disk.
+    ///         kStoreFailed: the directory cannot be used; kInvalidField: this kind of log has no backups.
     [[nodiscard]] static Result<std::unique_ptr<Backups>> open(const std::filesystem::path& directory, std::size_t kept,
-                                                               ScanLog& log, Tell tell = {});
-    ~Backups();
-    Backups(const Backups&) = delete;
-    Backups& operator=(const Backups&) = delete;
+                                                               ScanLog& log, Report report = {});
 
     /// Makes a backup of `log` and deletes the oldest backups until kept() remain. Copies only new files and waits for
     /// both disks. Creates the directory again if it was removed or emptied.
     /// Errors: kConflict: another make() is running, another server has taken the directory, or it has backups of
-    ///         another store; kShuttingDown: stop() was called; kInvalidField: the log is not kept on a disk;
+    ///         another store; kShuttingDown: stop() was called; kInvalidField: this kind of log has no backups;
     ///         kStoreFailed: the directory is on another disk than at open(), or a disk fails. A failed backup leaves
     ///         no files.
     [[nodiscard]] Result<Backup> make(ScanLog& log);
@@ -83,29 +77,27 @@ private:
         friend bool operator==(const FileId&, const FileId&) = default;
     };
 
-    Backups(std::filesystem::path directory, std::size_t kept, Tell tell);
+    Backups(std::filesystem::path directory, std::size_t kept, Report report);
     [[nodiscard]] static std::optional<FileId> id_of(const std::filesystem::path& file);
     [[nodiscard]] static std::uint64_t disk_of(const std::filesystem::path& directory);
     [[nodiscard]] Result<> take_directory();
     [[nodiscard]] Result<> check_disk() const;
-    [[nodiscard]] Result<std::shared_ptr<rocksdb::BackupEngine>> open_engine();
-    [[nodiscard]] Result<Backup> make_with(rocksdb::BackupEngine& engine, ScanLog& log, std::size_t sessions);
-    void begin_with(std::shared_ptr<rocksdb::BackupEngine> engine);
-    void end_with(std::vector<Backup> found);
-    void tell_lost(const std::vector<Backup>& found) const;
+    [[nodiscard]] Result<std::vector<Backup>> delete_old() const;
+    void set_making(bool making, const Result<std::vector<Backup>>& found);
+    void report_lost(const std::vector<Backup>& found) const;
 
     const std::filesystem::path directory_;
     const std::size_t kept_;
-    const Tell tell_;
-    std::uint64_t disk_ = 0;                        // of the directory when it was opened
-    std::optional<FileLock> lock_;                  // guarded by making_, like locked_
-    std::optional<FileId> locked_;                  // the lock file
-    std::mutex making_;                             // held during make()
-    std::mutex state_mutex_;                        // guards the members below
-    std::vector<Backup> last_;                      // as last listed
-    std::shared_ptr<rocksdb::BackupEngine> engine_; // null: make() is not running
-    std::uint64_t changes_ = 0;                     // counts starts and ends of make()
-    bool stopped_ = false;
+    const Report report_;
+    std::uint64_t disk_ = 0;       // of the directory when it was opened
+    std::optional<FileLock> lock_; // guarded by making_, like locked_
+    std::optional<FileId> locked_; // the lock file
+    std::mutex making_;            // held during make()
+    std::mutex state_mutex_;       // guards the members below
+    std::vector<Backup> last_;     // as last listed
+    bool is_making_ = false;       // whether make() is running
+    std::uint64_t changes_ = 0;    // counts starts and ends of make()
+    std::stop_source stopping_;    // not guarded
 };
 
 /// Restores a backup into a new store, verifies each file's checksum, and opens the store once.

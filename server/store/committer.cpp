@@ -71,8 +71,8 @@ std::optional<std::uint64_t> Committer::free_bytes() const {
 std::optional<Error> Committer::want_of_room(std::optional<std::uint64_t> free) const {
     if (!free || *free >= disk_reserve_bytes_) return std::nullopt;
     return Error{Errc::kOverloaded,
-                 fmt::format("the disk of the store {} has {} MiB left, and {} are kept free: nothing more is stored "
-                             "until there is more; free some, or delete sessions",
+                 fmt::format("the disk of the store {} has {} MiB left, of which {} are kept free: nothing more is "
+                             "stored; free some space, or delete sessions",
                              name_, *free >> 20, disk_reserve_bytes_ >> 20)};
 }
 
@@ -136,9 +136,10 @@ Result<> Committer::write(rocksdb::WriteBatch& batch) {
     const auto status = database_.Write(options, &batch);
     if (!status.ok()) {
         fail({Errc::kStoreFailed,
-              fmt::format("the store {} could not write ({}); it takes no changes until it has been opened again, "
-                          "which the server does as soon as its disk can be written",
-                          name_, status.ToString())});
+              fmt::format(
+                  "the store {} could not write ({}); it accepts no changes until it is reopened, which the server "
+                  "does as soon as its disk can be written",
+                  name_, status.ToString())});
     }
     check_files(); // acknowledges nothing that went to deleted files
     if (failed_) return *failed_;

@@ -35,8 +35,9 @@ struct Change {
 /// The only writer of the database: one thread with one queue issues one synced write after another.
 ///
 /// Each write is synced before the next one begins, so a crash can tear only the last write in RocksDB's log;
-/// mend_after_crash() relies on this. RocksDB fills its memtable only after the sync, so nothing reaches a table file
-/// before it is durable in the log. A failed write leaves the disk in an unknown state: every later change fails.
+/// cut_off_unfinished_write() relies on this. RocksDB fills its memtable only after the sync, so nothing reaches a
+/// table file before it is durable in the log. A failed write leaves the disk in an unknown state: every later change
+/// fails.
 /// Threads: any.
 class Committer {
 public:

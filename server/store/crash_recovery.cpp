@@ -133,7 +133,7 @@ Result<std::optional<UnfinishedWrite>> find_unfinished_write(const LockedDirecto
     return unfinished;
 }
 
-Result<std::uint64_t> mend_after_crash(const LockedDirectory& directory) {
+Result<std::uint64_t> cut_off_unfinished_write(const LockedDirectory& directory) {
     const auto unfinished = find_unfinished_write(directory);
     if (!unfinished) return unfinished.error();
     if (!*unfinished) return std::uint64_t{0};

@@ -22,7 +22,7 @@ struct UnfinishedWrite {
 [[nodiscard]] Result<> check_manifest(const std::filesystem::path& directory);
 
 /// Checks that the newest write-ahead log exists, as far as file names and sizes show it. Succeeds if there is no log
-/// at all, which check_listing() reports. A start creates a log and then the manifest with the next number; an empty
+/// at all, which LockedDirectory reports. A start creates a log and then the manifest with the next number; an empty
 /// log that is older than that one is not the newest.
 /// Errors: kStoreFailed: the newest log is missing.
 [[nodiscard]] Result<> check_newest_log(const std::filesystem::path& directory);
@@ -40,6 +40,6 @@ struct UnfinishedWrite {
 /// Pre: every write was synced before the next one (Committer); RocksDB is not open.
 /// Errors: kStoreFailed, naming file and offset: damage in the write-ahead log or in the manifest; nothing is changed.
 /// @return number of bytes cut off; they were never acknowledged
-[[nodiscard]] Result<std::uint64_t> mend_after_crash(const LockedDirectory& directory);
+[[nodiscard]] Result<std::uint64_t> cut_off_unfinished_write(const LockedDirectory& directory);
 
 } // namespace scanloom::store

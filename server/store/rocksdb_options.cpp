@@ -51,7 +51,7 @@ private:
 void set_durability(rocksdb::Options& rocksdb) {
     rocksdb.create_if_missing = true; // LockedDirectory has already refused a store that lost its CURRENT
     rocksdb.paranoid_checks = true;
-    // mend_after_crash() has cut off what a crash left unfinished; any other inconsistency is damage.
+    // cut_off_unfinished_write() has cut off what a crash left unfinished; any other inconsistency is damage.
     rocksdb.wal_recovery_mode = rocksdb::WALRecoveryMode::kAbsoluteConsistency;
     rocksdb.track_and_verify_wals_in_manifest = true;  // detects a lost or shortened older write-ahead log
     rocksdb.recycle_log_file_num = 0;                  // stale records behind the end would look like later writes

@@ -1,19 +1,18 @@
 #include "server/store/rocksdb_scan_log.hpp"
 
-#include "server/store/log_end.hpp"
+#include "server/store/backup_engine.hpp"
+#include "server/store/files.hpp"
 #include "server/store/record.hpp"
 #include "server/store/store_error.hpp"
 
 #include <fmt/format.h>
-#include <rocksdb/convenience.h>
-#include <rocksdb/experimental.h>
 
-#include <algorithm>
-#include <iterator>
 #include <utility>
 
 namespace scanloom::store {
 namespace {
+
+namespace fs = std::filesystem;
 
 // Cost of a change in addition to its own bytes; keeps a flood of empty changes within the bound of a group.
 constexpr std::uint64_t kChangeBytes = 64;
@@ -76,91 +75,111 @@ struct Scan {
     std::unique_ptr<rocksdb::Iterator> iterator;
 };
 
-} // namespace
-
-RocksdbScanLog::RocksdbScanLog(LockedDirectory directory, std::unique_ptr<rocksdb::DB> database, LogEnds ends,
-                               std::uint64_t torn_bytes_dropped, std::shared_ptr<CompactionWatch> watch,
-                               std::unique_ptr<FilesWatch> files, const StoreOptions& options)
-    : directory_(std::move(directory)), database_(std::move(database)), ends_(std::move(ends)),
-      torn_bytes_dropped_(torn_bytes_dropped), watch_(std::move(watch)),
-      compactions_(*database_, options.disk_reserve_bytes), files_(std::move(files)), on_damage_(options.on_damage),
-      committer_(*database_, name(), options.disk_reserve_bytes, compactions_, files_.get()) {
-    watch_->set_report([this](const rocksdb::Status& reason) { go_on_without_compaction(reason); });
+/// Errors: kNotFound: there is no such session; kDataLoss, kStoreFailed: its record cannot be read.
+Result<> check_session(Database& database, SessionId session) {
+    if (auto in_place = database.check_files(); !in_place) return in_place;
+    std::string record;
+    const auto status = database.rocksdb().Get({}, session_key(session), &record);
+    if (status.ok()) return {};
+    if (status.IsNotFound()) return no_such_session(session);
+    return unreadable(database.name(), session, status);
 }
 
-RocksdbScanLog::~RocksdbScanLog() { watch_->set_report(nullptr); }
+void add(StoreStats& to, const StoreStats& from) {
+    to.appends += from.appends;
+    to.entries += from.entries;
+    to.synced_writes += from.synced_writes;
+    to.torn_bytes_dropped += from.torn_bytes_dropped;
+}
 
-/// Stops compactions, which RocksDB would otherwise retry every second without end.
-void RocksdbScanLog::go_on_without_compaction(const rocksdb::Status& reason) {
-    Error damage{Errc::kDataLoss,
-                 fmt::format("the store {} is damaged: {}; what is stored from now on is whole, but its files are no "
-                             "longer merged and use more disk; when you can, {}",
-                             name(), reason.ToString(), kBringBack)};
-    if (on_damage_) on_damage_(damage);
-    {
-        const std::lock_guard lock(damage_mutex_);
-        damage_ = std::move(damage);
-    }
-    Change change;            // queued, because SetOptions() must not meet a write that is held back
-    change.frees_disk = true; // needs no disk space at least
-    change.add_to = [this](rocksdb::WriteBatch&) -> Result<> {
-        compactions_.stop();
-        return {};
-    };
-    change.done = [](const Result<>&) {};
-    committer_.submit(std::move(change));
+} // namespace
+
+Result<std::unique_ptr<ScanLog>> RocksdbScanLog::open(const fs::path& directory, LockedDirectory::Files files,
+                                                      const StoreOptions& options) {
+    auto database = Database::open(directory, files, options);
+    if (!database) return database.error();
+    auto log = std::make_unique<RocksdbScanLog>(std::move(*database), options);
+    auto lock_file = HeldFile::open(directory / kLockFile);
+    if (!lock_file) return lock_file.error();
+    log->files_ = files;
+    log->lock_file_ = std::move(*lock_file);
+    if (const auto lost = log->stats().last_error) return failure("{}", *lost);
+    return log;
+}
+
+RocksdbScanLog::RocksdbScanLog(std::unique_ptr<Database> database, const StoreOptions& options)
+    : directory_(database->name()), options_(options), database_(std::move(database)) {}
+
+Result<RocksdbScanLog::Use> RocksdbScanLog::use() const {
+    std::shared_lock lock(mutex_);
+    if (database_) return Use{std::move(lock), *database_};
+    return failure("the store failed and is being reopened: {}", before_.last_error.value_or("try again later"));
 }
 
 Result<SessionId> RocksdbScanLog::create_session(std::string_view record) {
+    const auto use = this->use();
+    if (!use) return use.error();
+    Database& database = use->database;
     SessionId created = 0;
     Change change;
     change.bytes = kChangeBytes + record.size();
-    change.add_to = [this, &created, record](rocksdb::WriteBatch& batch) -> Result<> {
-        created = ends_.next_session;
+    change.add_to = [&ends = database.ends(), &created, record](rocksdb::WriteBatch& batch) -> Result<> {
+        created = ends.next_session;
         std::vector<SealedPair> pairs;
         pairs.push_back(sealed_pair(session_key(created), std::string(record)));
         pairs.push_back(sealed_pair(std::string(kNextSessionKey), number_bytes(created + 1)));
         if (auto added = put(batch, pairs); !added) return added;
-        ends_.next_session = created + 1;
-        ends_.revisions.emplace(created, 0);
+        ends.next_session = created + 1;
+        ends.revisions.emplace(created, 0);
         return {};
     };
-    if (auto committed = committer_.submit_and_wait(std::move(change)); !committed) return committed.error();
+    if (auto committed = database.committer().submit_and_wait(std::move(change)); !committed) return committed.error();
     return created;
 }
 
 Result<std::vector<StoredSession>> RocksdbScanLog::sessions() {
-    if (auto in_place = check_files(); !in_place) return in_place.error();
+    const auto use = this->use();
+    if (!use) return use.error();
+    Database& database = use->database;
+    if (auto in_place = database.check_files(); !in_place) return in_place.error();
     std::vector<StoredSession> found;
+    const auto& damaged_ends = database.ends().damaged;
     const KeyRange range{std::string(kSessionsBegin), std::string(kSessionsEnd)};
-    const Scan scan(*database_, range);
+    const Scan scan(database.rocksdb(), range);
     for (scan.iterator->Seek(range.begin); scan.iterator->Valid(); scan.iterator->Next()) {
         const auto session = session_of(view(scan.iterator->key()));
-        if (!session) return damaged(name(), 0, "the name");
+        if (!session) return damaged(database.name(), 0, "the name");
         const auto record = unsealed(view(scan.iterator->key()), view(scan.iterator->value()));
-        const auto damage = ends_.damaged.find(*session); // constant after opening
-        found.push_back({*session,
-                         record ? Result<std::string>(std::string(*record)) : damaged(name(), *session, "the record"),
-                         damage == ends_.damaged.end() ? std::nullopt : std::optional(damage->second)});
+        const auto damage = damaged_ends.find(*session);
+        found.push_back(
+            {*session,
+             record ? Result<std::string>(std::string(*record)) : damaged(database.name(), *session, "the record"),
+             damage == damaged_ends.end() ? std::nullopt : std::optional(damage->second)});
     }
     if (const auto status = scan.iterator->status(); !status.ok()) {
         return Error{code_of(status),
-                     fmt::format("the store {} cannot list its sessions: {}", name(), status.ToString())};
+                     fmt::format("the store {} cannot list its sessions: {}", database.name(), status.ToString())};
     }
     return found;
 }
 
 Result<Revision> RocksdbScanLog::end_of(SessionId session) {
-    if (auto exists = check_session(session); !exists) return exists.error();
-    return end_of_log(*database_, name(), session);
+    const auto use = this->use();
+    if (!use) return use.error();
+    Database& database = use->database;
+    if (auto exists = check_session(database, session); !exists) return exists.error();
+    return end_of_log(database.rocksdb(), database.name(), session);
 }
 
 Result<> RocksdbScanLog::remove_session(SessionId session) {
+    const auto use = this->use();
+    if (!use) return use.error();
+    Database& database = use->database;
     Change change;
     change.bytes = kChangeBytes;
     change.frees_disk = true;
-    change.add_to = [this, session](rocksdb::WriteBatch& batch) -> Result<> {
-        if (ends_.revisions.erase(session) == 0) return no_such_session(session);
+    change.add_to = [&ends = database.ends(), session](rocksdb::WriteBatch& batch) -> Result<> {
+        if (ends.revisions.erase(session) == 0) return no_such_session(session);
         auto status = batch.Delete(session_key(session));
         for (const KeyRange& range : {entries_of(session), parts_of(session)}) {
             if (status.ok()) status = batch.DeleteRange(range.begin, range.end);
@@ -170,23 +189,9 @@ Result<> RocksdbScanLog::remove_session(SessionId session) {
         }
         return {};
     };
-    if (auto committed = committer_.submit_and_wait(std::move(change)); !committed) return committed;
-    free_disk(session);
+    if (auto committed = database.committer().submit_and_wait(std::move(change)); !committed) return committed;
+    database.free_disk(session);
     return {};
-}
-
-/// Deletes tables that contain nothing else immediately. Compactions remove the rest, but only once the removal is in a
-/// table: so the memtable is flushed first if there is room. A failure only costs disk space, because the remaining
-/// entries belong to no session.
-void RocksdbScanLog::free_disk(SessionId session) {
-    if (!committer_.stats().no_room) database_->Flush({}).PermitUncheckedError();
-    for (const KeyRange& range : {entries_of(session), parts_of(session)}) {
-        const rocksdb::Slice begin(range.begin);
-        const rocksdb::Slice end(range.end);
-        rocksdb::DeleteFilesInRange(database_.get(), database_->DefaultColumnFamily(), &begin, &end, false)
-            .PermitUncheckedError();
-        rocksdb::experimental::SuggestCompactRange(database_.get(), &begin, &end).PermitUncheckedError();
-    }
 }
 
 void RocksdbScanLog::append(SessionId session, Revision first, std::vector<std::string> entries, Done done) {
@@ -196,14 +201,19 @@ void RocksdbScanLog::append(SessionId session, Revision first, std::vector<std::
     for (auto& entry : entries)
         pairs.push_back(sealed_pair(entry_key(session, first + pairs.size()), std::move(entry)));
 
+    const std::shared_lock lock(mutex_, std::try_to_lock);
+    if (!lock || !database_) {
+        return done(Error{Errc::kStoreFailed, "the store failed and is being reopened; try again later"});
+    }
+    LogEnds& ends = database_->ends();
     Change change;
     change.bytes = bytes_of(pairs);
     change.appends = 1;
     change.entries = pairs.size();
-    change.add_to = [this, session, first, pairs = std::move(pairs)](rocksdb::WriteBatch& batch) -> Result<> {
-        const auto end = ends_.revisions.find(session);
-        if (end == ends_.revisions.end()) return no_such_session(session);
-        if (const auto damage = ends_.damaged.find(session); damage != ends_.damaged.end()) return damage->second;
+    change.add_to = [&ends, session, first, pairs = std::move(pairs)](rocksdb::WriteBatch& batch) -> Result<> {
+        const auto end = ends.revisions.find(session);
+        if (end == ends.revisions.end()) return no_such_session(session);
+        if (const auto damage = ends.damaged.find(session); damage != ends.damaged.end()) return damage->second;
         if (first != end->second + 1) {
             return Error{Errc::kConflict, fmt::format("an append to session {} begins with revision {}, but its log "
                                                       "ends with {}",
@@ -214,48 +224,63 @@ void RocksdbScanLog::append(SessionId session, Revision first, std::vector<std::
         return {};
     };
     change.done = std::move(done);
-    committer_.submit(std::move(change));
+    database_->committer().submit(std::move(change));
 }
 
 Result<> RocksdbScanLog::read(SessionId session, Revision after, const VisitEntry& visit) {
-    if (auto exists = check_session(session); !exists) return exists;
+    auto read = read_entries(session, after, visit);
+    if (!read && options_.on_unreadable &&
+        (read.error().code == Errc::kDataLoss || read.error().code == Errc::kStoreFailed)) {
+        options_.on_unreadable(session, read.error());
+    }
+    return read;
+}
+
+Result<> RocksdbScanLog::read_entries(SessionId session, Revision after, const VisitEntry& visit) {
+    const auto use = this->use();
+    if (!use) return use.error();
+    Database& database = use->database;
+    if (auto exists = check_session(database, session); !exists) return exists;
     const KeyRange range = entries_of(session);
-    const Scan scan(*database_, range);
+    const Scan scan(database.rocksdb(), range);
     // Starts with the entry before, to check that the log reaches that far.
     Revision expected = after == 0 ? 1 : after;
     for (scan.iterator->Seek(entry_key(session, expected)); scan.iterator->Valid(); scan.iterator->Next()) {
         const auto key = view(scan.iterator->key());
         if (revision_of(key) != expected) {
-            return damaged(name(), session, fmt::format("the entry of revision {} is missing", expected));
+            return damaged(database.name(), session, fmt::format("the entry of revision {} is missing", expected));
         }
         const auto entry = unsealed(key, view(scan.iterator->value()));
-        if (!entry) return damaged(name(), session, fmt::format("the entry of revision {}", expected));
+        if (!entry) return damaged(database.name(), session, fmt::format("the entry of revision {}", expected));
         if (expected > after) {
             if (auto visited = visit(expected, *entry); !visited) return visited;
         }
         ++expected;
     }
     if (const auto status = scan.iterator->status(); !status.ok()) {
-        return prefixed(fmt::format("at revision {}: ", expected), unreadable(name(), session, status));
+        return prefixed(fmt::format("at revision {}: ", expected), unreadable(database.name(), session, status));
     }
     if (expected == after) {
-        return damaged(name(), session, fmt::format("the log ends before revision {}", after));
+        return damaged(database.name(), session, fmt::format("the log ends before revision {}", after));
     }
     return {};
 }
 
 Result<> RocksdbScanLog::clear_checkpoint(SessionId session) {
+    const auto use = this->use();
+    if (!use) return use.error();
+    Database& database = use->database;
     Change change;
     change.bytes = kChangeBytes;
-    change.add_to = [this, session](rocksdb::WriteBatch& batch) -> Result<> {
-        if (!ends_.revisions.contains(session)) return no_such_session(session);
+    change.add_to = [&ends = database.ends(), session](rocksdb::WriteBatch& batch) -> Result<> {
+        if (!ends.revisions.contains(session)) return no_such_session(session);
         const KeyRange range = parts_of(session);
         if (const auto status = batch.DeleteRange(range.begin, range.end); !status.ok()) {
             return Error{Errc::kStoreFailed, fmt::format("the store cannot take a change: {}", status.ToString())};
         }
         return {};
     };
-    return committer_.submit_and_wait(std::move(change));
+    return database.committer().submit_and_wait(std::move(change));
 }
 
 Result<> RocksdbScanLog::write_checkpoint(SessionId session, std::vector<CheckpointPart> parts) {
@@ -263,54 +288,79 @@ Result<> RocksdbScanLog::write_checkpoint(SessionId session, std::vector<Checkpo
     pairs.reserve(parts.size());
     for (auto& part : parts) pairs.push_back(sealed_pair(part_key(session, part.key), std::move(part.value)));
 
+    const auto use = this->use();
+    if (!use) return use.error();
+    Database& database = use->database;
     Change change;
     change.bytes = bytes_of(pairs);
-    change.add_to = [this, session, pairs = std::move(pairs)](rocksdb::WriteBatch& batch) -> Result<> {
-        if (!ends_.revisions.contains(session)) return no_such_session(session);
+    change.add_to = [&ends = database.ends(), session,
+                     pairs = std::move(pairs)](rocksdb::WriteBatch& batch) -> Result<> {
+        if (!ends.revisions.contains(session)) return no_such_session(session);
         return put(batch, pairs);
     };
-    return committer_.submit_and_wait(std::move(change));
+    return database.committer().submit_and_wait(std::move(change));
 }
 
 Result<> RocksdbScanLog::read_checkpoint(SessionId session, const VisitPart& visit) {
-    if (auto exists = check_session(session); !exists) return exists;
+    const auto use = this->use();
+    if (!use) return use.error();
+    Database& database = use->database;
+    if (auto exists = check_session(database, session); !exists) return exists;
     const KeyRange range = parts_of(session);
-    const Scan scan(*database_, range);
+    const Scan scan(database.rocksdb(), range);
     for (scan.iterator->Seek(range.begin); scan.iterator->Valid(); scan.iterator->Next()) {
         const auto part = part_of(view(scan.iterator->key()));
         const auto value = unsealed(view(scan.iterator->key()), view(scan.iterator->value()));
-        if (!part || !value) return damaged(name(), session, "a part of the checkpoint");
+        if (!part || !value) return damaged(database.name(), session, "a part of the checkpoint");
         if (auto visited = visit(*part, *value); !visited) return visited;
     }
-    if (const auto status = scan.iterator->status(); !status.ok()) return unreadable(name(), session, status);
+    if (const auto status = scan.iterator->status(); !status.ok()) return unreadable(database.name(), session, status);
     return {};
 }
 
-Result<> RocksdbScanLog::copy_with(const CopyDatabase& copy) {
-    if (const auto failed = stats().last_error) return Error{Errc::kStoreFailed, *failed};
-    return copy(*database_);
+bool RocksdbScanLog::reopen() {
+    if (!lock_file_ || !stats().last_error) return false;
+    if (!lock_file_->is_in_place() || !Database::can_be_opened(directory_, options_)) return false;
+    const std::unique_lock lock(mutex_);
+    if (database_) {
+        const auto last = database_->stats();
+        add(before_, last);
+        before_.last_error = last.last_error;
+        database_.reset(); // first, because opening needs the directory's lock
+    }
+    auto opened = Database::open(directory_, files_, options_);
+    if (!opened) {
+        before_.last_error = opened.error().message;
+        return false;
+    }
+    database_ = std::move(*opened);
+    before_.last_error.reset();
+    return true;
 }
 
 StoreStats RocksdbScanLog::stats() const {
-    StoreStats stats = committer_.stats();
-    stats.torn_bytes_dropped = torn_bytes_dropped_;
-    const std::lock_guard lock(damage_mutex_);
-    if (damage_) stats.damage = damage_->message;
+    const std::shared_lock lock(mutex_);
+    StoreStats stats = database_ ? database_->stats() : StoreStats{};
+    add(stats, before_);
+    if (before_.last_error) stats.last_error = before_.last_error;
     return stats;
 }
 
-std::uint64_t RocksdbScanLog::bytes_on_disk() const { return bytes_in(directory_.path()); }
-
-/// RocksDB opens tables by path, so it would read a store that took the place of this one.
-Result<> RocksdbScanLog::check_files() { return files_ ? files_->check() : Result<>(); }
-
-Result<> RocksdbScanLog::check_session(SessionId session) {
-    if (auto in_place = check_files(); !in_place) return in_place;
-    std::string record;
-    const auto status = database_->Get({}, session_key(session), &record);
-    if (status.ok()) return {};
-    if (status.IsNotFound()) return no_such_session(session);
-    return unreadable(name(), session, status);
+Result<std::string> RocksdbScanLog::identity() {
+    const auto use = this->use();
+    if (!use) return use.error();
+    return identity_of(use->database.rocksdb());
 }
+
+Result<> RocksdbScanLog::backup_to(const fs::path& directory, const std::stop_token& stop) {
+    const auto found = sessions();
+    if (!found) return found.error();
+    const auto use = this->use();
+    if (!use) return use.error();
+    if (const auto failed = use->database.stats().last_error) return failure("{}", *failed);
+    return back_up(use->database.rocksdb(), directory, found->size(), stop);
+}
+
+std::uint64_t RocksdbScanLog::bytes_on_disk() const { return bytes_in(directory_); }
 
 } // namespace scanloom::store

@@ -1,35 +1,29 @@
 #pragma once
 
-#include "server/store/committer.hpp"
-#include "server/store/compaction.hpp"
-#include "server/store/directory.hpp"
+#include "server/store/database.hpp"
+#include "server/store/rocksdb_store.hpp"
 #include "server/store/scan_log.hpp"
 
-#include <rocksdb/db.h>
-
-#include <functional>
-#include <map>
+#include <filesystem>
 #include <memory>
-#include <mutex>
 #include <optional>
+#include <shared_mutex>
 
 namespace scanloom::store {
 
-/// The end of each session's log and the id of the next session. Changes are checked against them.
-struct LogEnds {
-    SessionId next_session = 1;
-    std::map<SessionId, Revision> revisions; ///< of each session's last entry, 0 for an empty log
-    std::map<SessionId, Error> damaged;      ///< sessions whose last entry cannot be found; never changes
-};
-
-/// A scan log in RocksDB. Readers use the database directly; changes go through the committer.
+/// A scan log in RocksDB. Readers use the database directly; changes go through its committer.
+///
+/// After a failed write or sync nothing is retried on the same files: reopen() closes the database, reads what is
+/// there, as after a crash, and writes it to new files.
 class RocksdbScanLog final : public ScanLog {
 public:
-    /// @param files  null for a read-only database
-    RocksdbScanLog(LockedDirectory directory, std::unique_ptr<rocksdb::DB> database, LogEnds ends,
-                   std::uint64_t torn_bytes_dropped, std::shared_ptr<CompactionWatch> watch,
-                   std::unique_ptr<FilesWatch> files, const StoreOptions& options);
-    ~RocksdbScanLog() override;
+    /// Opens a log for reading and writing.
+    /// Errors: those of open_rocksdb().
+    [[nodiscard]] static Result<std::unique_ptr<ScanLog>>
+    open(const std::filesystem::path& directory, LockedDirectory::Files files, const StoreOptions& options);
+
+    /// A log that cannot be reopened, for reading.
+    RocksdbScanLog(std::unique_ptr<Database> database, const StoreOptions& options);
 
     [[nodiscard]] Result<SessionId> create_session(std::string_view record) override;
     [[nodiscard]] Result<std::vector<StoredSession>> sessions() override;
@@ -40,28 +34,31 @@ public:
     [[nodiscard]] Result<> clear_checkpoint(SessionId session) override;
     [[nodiscard]] Result<> write_checkpoint(SessionId session, std::vector<CheckpointPart> parts) override;
     [[nodiscard]] Result<> read_checkpoint(SessionId session, const VisitPart& visit) override;
-    [[nodiscard]] Result<> copy_with(const CopyDatabase& copy) override;
+
+    /// Reopens the store as soon as its disk can be written and has room to open it, and only if its lock file is still
+    /// the original one. A store that was deleted or replaced is not reopened; that requires a restart.
+    [[nodiscard]] bool reopen() override;
     [[nodiscard]] StoreStats stats() const override;
+    [[nodiscard]] Result<std::string> identity() override;
+    [[nodiscard]] Result<> backup_to(const std::filesystem::path& directory, const std::stop_token& stop) override;
     [[nodiscard]] std::uint64_t bytes_on_disk() const override;
 
 private:
-    [[nodiscard]] Result<> check_files();
-    [[nodiscard]] Result<> check_session(SessionId session);
-    [[nodiscard]] std::string name() const { return directory_.path().native(); }
-    void free_disk(SessionId session);
-    void go_on_without_compaction(const rocksdb::Status& reason);
+    /// The database, which stays open while this exists.
+    struct Use {
+        std::shared_lock<std::shared_mutex> lock;
+        Database& database;
+    };
+    [[nodiscard]] Result<Use> use() const;
+    [[nodiscard]] Result<> read_entries(SessionId session, Revision after, const VisitEntry& visit);
 
-    LockedDirectory directory_;
-    std::unique_ptr<rocksdb::DB> database_;
-    LogEnds ends_; // used on the committer's thread only
-    std::uint64_t torn_bytes_dropped_;
-    std::shared_ptr<CompactionWatch> watch_;
-    CompactionSwitch compactions_;
-    std::unique_ptr<FilesWatch> files_; // may be null
-    std::function<void(const Error&)> on_damage_;
-    mutable std::mutex damage_mutex_;
-    std::optional<Error> damage_; // guarded by damage_mutex_
-    Committer committer_;         // last: stops before the members that it uses are destroyed
+    const std::filesystem::path directory_;
+    const StoreOptions options_;
+    LockedDirectory::Files files_ = LockedDirectory::Files::kComplete; // accepted by reopen()
+    std::optional<HeldFile> lock_file_;                                // of the store; nullopt: read-only
+    mutable std::shared_mutex mutex_;                                  // held shared during use of the database
+    std::unique_ptr<Database> database_;                               // null: it could not be reopened yet
+    StoreStats before_; // of the databases that were closed; last_error says why database_ is null
 };
 
 } // namespace scanloom::store

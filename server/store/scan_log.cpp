@@ -6,7 +6,11 @@
 
 namespace scanloom::store {
 
-Result<> ScanLog::copy_with(const CopyDatabase&) {
+Result<std::string> ScanLog::identity() {
+    return Error{Errc::kInvalidField, "this log is not kept on a disk: there is nothing to copy"};
+}
+
+Result<> ScanLog::backup_to(const std::filesystem::path&, const std::stop_token&) {
     return Error{Errc::kInvalidField, "this log is not kept on a disk: there is nothing to copy"};
 }
 

@@ -7,16 +7,11 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <memory>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <string_view>
 #include <vector>
-
-namespace rocksdb {
-class DB;
-class Env;
-} // namespace rocksdb
 
 namespace scanloom::store {
 
@@ -37,7 +32,7 @@ struct CheckpointPart {
     friend bool operator==(const CheckpointPart&, const CheckpointPart&) = default;
 };
 
-/// Statistics since the store was opened.
+/// Statistics since the program opened the store, over all reopenings.
 struct StoreStats {
     std::uint64_t appends = 0;             ///< calls of append() that became durable
     std::uint64_t entries = 0;             ///< log entries that became durable
@@ -57,16 +52,13 @@ struct StoreStats {
 ///        submitted after the entries that it covers; they need not be acknowledged yet.
 /// Errors: kNotFound: there is no such session, or it was removed. kConflict: an append does not continue its session's
 ///         log. kDataLoss: the data read is damaged. kStoreFailed: reading or writing failed. After one failed write or
-///         sync the state of the disk is unknown, so every change fails until the store is opened again; reading
-///         continues.
+///         sync it is unknown what is stored, so every change fails until reopen() succeeds; reading continues.
 /// Threads: any, concurrently. All functions except append() and stats() may wait for the disk: do not call them on
 ///          threads that serve sockets. Within a `done`, only append() may be called.
-///         it off the threads that serve sockets. From within `done` only append() may be called.
 class ScanLog {
 public:
     using Done = std::function<void(Result<>)>;
     using VisitEntry = std::function<Result<>(Revision, std::string_view)>;
-    using CopyDatabase = std::function<Result<>(rocksdb::DB&)>;
     using VisitPart = std::function<Result<>(std::string_view key, std::string_view value)>;
 
     ScanLog() = default;
@@ -96,7 +88,7 @@ public:
     ///       and power loss. It should be quick and must not throw. One synced write makes all queued changes of all
     ///       sessions durable.
     /// Errors: kOverloaded: the disk has no room; nothing was stored, and a later attempt may succeed. kStoreFailed: it
-    ///         is unknown what is stored until the log is opened again.
+    ///         is unknown what is stored until reopen() succeeds.
     /// Queue: "commit queue". append() never waits and never refuses: the capacity is the sum of the robots' credits,
     ///        because credit is returned only after `done` was called. Its size is stats().queued_bytes.
     virtual void append(SessionId session, Revision first, std::vector<std::string> entries, Done done) = 0;
@@ -118,11 +110,28 @@ public:
     /// Visits all parts by ascending key; none if no checkpoint was written. Stops at the visitor's error.
     [[nodiscard]] virtual Result<> read_checkpoint(SessionId session, const VisitPart& visit) = 0;
 
+    /// Makes a log that failed usable again, if its storage can be written now.
+    ///
+    /// Waits for readers in progress. While the log is being reopened, append() fails and the other functions wait.
+    /// @return whether the log had failed and accepts changes again. If so, each caller of append() has to check with
+    ///         end_of() which of its entries were stored.
+    [[nodiscard]] virtual bool reopen() = 0;
+
     [[nodiscard]] virtual StoreStats stats() const = 0;
 
-    /// Calls `copy` with the database behind the log, as Backups does. Other operations continue meanwhile.
-    /// Errors: those of `copy`; kStoreFailed: the store has failed; kInvalidField: there is no database.
-    [[nodiscard]] virtual Result<> copy_with(const CopyDatabase& copy);
+    /// Returns the identity of the store, which is the same after a restart and in a store that was restored from a
+    /// backup.
+    /// Errors: kInvalidField: this kind of log has no backups; kStoreFailed.
+    [[nodiscard]] virtual Result<std::string> identity();
+
+    /// Makes a backup of everything that is durable at the time of the call, in a directory of backups of this store.
+    /// Other operations continue meanwhile.
+    ///
+    /// @param stop  when requested, ends the backup soon with kShuttingDown
+    /// Errors: kConflict: the directory has backups of another store; kInvalidField: this kind of log has no backups;
+    ///         kShuttingDown; kStoreFailed: the log has failed, or a disk cannot be read or written. A failed backup
+    ///         leaves no files.
+    [[nodiscard]] virtual Result<> backup_to(const std::filesystem::path& directory, const std::stop_token& stop);
 
     /// Returns the total size of the store's files, in bytes.
     [[nodiscard]] virtual std::uint64_t bytes_on_disk() const = 0;
@@ -133,34 +142,5 @@ public:
 /// Threads: not the committer's.
 [[nodiscard]] Result<> append_and_wait(ScanLog& log, SessionId session, Revision first,
                                        std::vector<std::string> entries);
-
-struct StoreOptions {
-    /// Bound of write buffers and block cache together. The default suits both 1 GB and 24 GB of memory: the log is
-    /// read in order, so a larger cache would hardly be used, and the system caches files.
-    std::size_t memory_bytes = std::size_t{128} << 20;
-
-    /// Disk space that is left free. With less, changes that add data are refused with kOverloaded and nothing of them
-    /// is stored, so that sessions can still be removed and tables merged.
-    std::uint64_t disk_reserve_bytes = std::uint64_t{256} << 20;
-
-    /// Called once, from a thread of the store, when a file is found to be damaged at run time. New entries are stored
-    /// as before; reading the damaged data returns an error.
-    std::function<void(const Error&)> on_damage;
-
-    /// Called with each RocksDB log line of level WARN and above, from a RocksDB thread. Null: the lines are dropped.
-    std::function<void(std::string_view)> on_rocksdb_log;
-
-    /// The file layer; tests replace it to inject failures. Null: the system's.
-    rocksdb::Env* env = nullptr;
-};
-
-/// Opens the store in a directory; creates both if they do not exist.
-///
-/// Errors: kConflict: another process uses it; kNotFound: the directory holds other files and no store; kStoreFailed,
-///         kDataLoss: the directory cannot be used, or the store in it is damaged; the message names the file;
-///         kUnsupportedVersion: a newer program wrote it. A write that a crash cut short is not damage: it was never
-///         acknowledged and is dropped.
-[[nodiscard]] Result<std::unique_ptr<ScanLog>> open_rocksdb(const std::filesystem::path& directory,
-                                                            const StoreOptions& options = {});
 
 } // namespace scanloom::store

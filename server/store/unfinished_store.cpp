@@ -2,6 +2,7 @@
 
 #include "server/store/directory.hpp"
 #include "server/store/files.hpp"
+#include "server/store/rocksdb_scan_log.hpp"
 
 #include <fmt/format.h>
 
@@ -127,6 +128,12 @@ Result<UnfinishedStore> UnfinishedStore::begin(const fs::path& directory, const 
     }
     if (auto marked = write_mark(mark, kSentence); !marked) return marked.error();
     return UnfinishedStore(directory, lost, *std::move(lock));
+}
+
+Result<std::unique_ptr<ScanLog>> UnfinishedStore::open_log() const {
+    StoreOptions options;
+    options.disk_reserve_bytes = 0; // no other writer: the store either fits or does not
+    return RocksdbScanLog::open(directory_, LockedDirectory::Files::kUnfinished, options);
 }
 
 fs::path UnfinishedStore::salvage() const { return directory_ / kSalvage; }

@@ -1,6 +1,7 @@
 #include "common/wire/log_codec.hpp"
 #include "server/mapping/projection.hpp"
 #include "server/session/recovery.hpp"
+#include "server/store/rocksdb_store.hpp"
 #include "tests/support/log_reading.hpp"
 #include "tests/support/memory_scan_log.hpp"
 #include "tests/support/room_scans.hpp"

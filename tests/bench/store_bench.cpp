@@ -1,3 +1,4 @@
+#include "server/store/rocksdb_store.hpp"
 #include "server/store/scan_log.hpp"
 #include "tests/support/log_reading.hpp"
 #include "tests/support/temporary_directory.hpp"

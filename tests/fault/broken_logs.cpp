@@ -42,6 +42,7 @@ public:
     Result<> read_checkpoint(SessionId session, const VisitPart& visit) override {
         return log_->read_checkpoint(session, visit);
     }
+    [[nodiscard]] bool reopen() override { return log_->reopen(); }
     [[nodiscard]] store::StoreStats stats() const override { return log_->stats(); }
     [[nodiscard]] std::uint64_t bytes_on_disk() const override { return log_->bytes_on_disk(); }
 
@@ -71,6 +72,12 @@ public:
     Result<> write_checkpoint(SessionId session, std::vector<CheckpointPart> parts) override {
         write_all();
         return PassingLog::write_checkpoint(session, std::move(parts));
+    }
+    [[nodiscard]] bool reopen() override {
+        if (!PassingLog::reopen()) return false;
+        const std::lock_guard lock(mutex_);
+        kept_back_.clear();
+        return true;
     }
 
 private:
@@ -109,6 +116,12 @@ public:
         under().append(session, first + ahead, entries, [](const Result<>&) {});
         ahead += entries.size();
         under().append(session, again, std::move(entries), std::move(done));
+    }
+    [[nodiscard]] bool reopen() override {
+        if (!PassingLog::reopen()) return false;
+        const std::lock_guard lock(mutex_);
+        ahead_.clear();
+        return true;
     }
 
 private:

@@ -1,5 +1,6 @@
 #include "tests/fault/crowd_rows.hpp"
 
+#include "server/store/rocksdb_store.hpp"
 #include "server/store/scan_log.hpp"
 #include "tests/fault/ack_latency.hpp"
 #include "tests/fault/process_memory.hpp"

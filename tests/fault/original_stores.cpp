@@ -1,4 +1,5 @@
 #include "tests/fault/original_stores.hpp"
+#include "server/store/rocksdb_store.hpp"
 
 #include "common/wire/log_codec.hpp"
 #include "server/mapping/map_config.hpp"

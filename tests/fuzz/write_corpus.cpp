@@ -7,6 +7,7 @@
 #include "common/wire/messages.hpp"
 #include "server/mapping/projection.hpp"
 #include "server/session/checkpoint.hpp"
+#include "server/store/rocksdb_store.hpp"
 #include "tests/support/ld06_bytes.hpp"
 #include "tests/support/log_reading.hpp"
 #include "tests/support/memory_scan_log.hpp"

@@ -1,3 +1,4 @@
+#include "server/store/rocksdb_store.hpp"
 #include "server/store/scan_log.hpp"
 #include "tests/integration/ingest_fixture.hpp"
 #include "tests/support/digests.hpp"

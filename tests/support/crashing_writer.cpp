@@ -4,6 +4,7 @@
 //   "n SESSION"           a session was created
 //   "r SESSION"           a session was removed
 // Usage: crashing_writer DIRECTORY SEED
+#include "server/store/rocksdb_store.hpp"
 #include "server/store/scan_log.hpp"
 #include "tests/support/log_reading.hpp"
 

@@ -32,10 +32,10 @@ void MemoryScanLog::refuse_appends(std::size_t count, std::size_t stored) {
     stored_before_refusing_ = stored;
 }
 
-void MemoryScanLog::reopen() {
+bool MemoryScanLog::reopen() {
     const std::lock_guard lock(mutex_);
-    failed_.reset();
     stats_.last_error.reset();
+    return std::exchange(failed_, std::nullopt).has_value();
 }
 
 void MemoryScanLog::hold_completions() {

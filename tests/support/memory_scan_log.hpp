@@ -27,9 +27,6 @@ public:
     /// Lets reads fail with this error from now on; nullopt: reads succeed again.
     void fail_reading(std::optional<Error> error);
 
-    /// Lets changes succeed again, as reopening the store does.
-    void reopen();
-
     /// Lets appends wait, neither durable nor failed, until release_completions().
     void hold_completions();
     void release_completions();
@@ -44,6 +41,9 @@ public:
     [[nodiscard]] Result<> clear_checkpoint(SessionId session) override;
     [[nodiscard]] Result<> write_checkpoint(SessionId session, std::vector<CheckpointPart> parts) override;
     [[nodiscard]] Result<> read_checkpoint(SessionId session, const VisitPart& visit) override;
+
+    /// Lets changes succeed again.
+    bool reopen() override;
     [[nodiscard]] StoreStats stats() const override;
     [[nodiscard]] std::uint64_t bytes_on_disk() const override {
         ++looks_at_the_disk_;

@@ -8,6 +8,7 @@ namespace {
 using namespace std::chrono_literals;
 
 Error gone() { return {Errc::kStoreFailed, "the program that had the store open is gone"}; }
+Error closed() { return {Errc::kStoreFailed, "the store is closed, because it could not be reopened yet"}; }
 Error full() { return {Errc::kOverloaded, "the disk has no room"}; }
 
 } // namespace
@@ -24,8 +25,14 @@ public:
         if (auto settled = settle(true); !settled) return settled.error();
         return disk_.durable_.create_session(record);
     }
-    Result<std::vector<store::StoredSession>> sessions() override { return disk_.durable_.sessions(); }
-    Result<Revision> end_of(store::SessionId session) override { return disk_.durable_.end_of(session); }
+    Result<std::vector<store::StoredSession>> sessions() override {
+        if (disk_.is_closed_) return closed();
+        return disk_.durable_.sessions();
+    }
+    Result<Revision> end_of(store::SessionId session) override {
+        if (disk_.is_closed_) return closed();
+        return disk_.durable_.end_of(session);
+    }
     Result<> remove_session(store::SessionId session) override {
         if (auto settled = settle(false); !settled) return settled;
         return disk_.durable_.remove_session(session);
@@ -35,6 +42,7 @@ public:
         disk_.add({session, first, std::move(entries), std::move(done)});
     }
     Result<> read(store::SessionId session, Revision after, const VisitEntry& visit) override {
+        if (disk_.is_closed_) return closed();
         return disk_.durable_.read(session, after, visit);
     }
     Result<> clear_checkpoint(store::SessionId session) override {
@@ -46,7 +54,13 @@ public:
         return disk_.durable_.write_checkpoint(session, std::move(parts));
     }
     Result<> read_checkpoint(store::SessionId session, const VisitPart& visit) override {
+        if (disk_.is_closed_) return closed();
         return disk_.durable_.read_checkpoint(session, visit);
+    }
+    bool reopen() override {
+        if (!is_alive() || !disk_.failed_) return false;
+        if (!disk_.waiting_.empty()) disk_.commit();
+        return disk_.try_to_open();
     }
     store::StoreStats stats() const override {
         store::StoreStats stats;
@@ -64,10 +78,16 @@ private:
 };
 
 Result<std::unique_ptr<store::ScanLog>> Disk::open() {
-    if (world_.chance(trouble_.failing)) return Error{Errc::kStoreFailed, "the disk cannot be read"};
-    failed_.reset();
+    if (!try_to_open()) return Error{Errc::kStoreFailed, "the disk cannot be read"};
     ++programs_;
     return std::make_unique<OpenLog>(*this);
+}
+
+/// Returns false at random, and then the store is closed.
+bool Disk::try_to_open() {
+    is_closed_ = world_.chance(trouble_.failing);
+    if (!is_closed_) failed_.reset();
+    return !is_closed_;
 }
 
 void Disk::crash() {

@@ -58,6 +58,7 @@ private:
         store::ScanLog::Done done;
     };
 
+    [[nodiscard]] bool try_to_open();
     void add(Append append);
     void commit();
     void store(Append& append);
@@ -72,6 +73,7 @@ private:
     std::vector<Dropped> dropped_;
     std::uint64_t programs_ = 0; // number of programs that opened the store; the last one has it open now
     std::optional<Error> failed_;
+    bool is_closed_ = false; // because it could not be reopened after it had failed
     Time full_until_{};
     std::uint64_t committing_ = 0; // number of the scheduled commit; 0: none
     std::uint64_t commits_ = 0;

@@ -187,7 +187,7 @@ Server::Server(World& world, Disk& disk, const ServerOptions& options, Promise p
       machine_(std::make_unique<Machine>(world)) {
     world_.note("server starts");
     while (!log_) { // the supervisor restarts the server in this case
-        if (auto log = store::ReopeningLog::open([this] { return disk_.open(); })) log_ = std::move(*log);
+        if (auto log = disk_.open()) log_ = std::move(*log);
     }
     machine_->hasten();
     disk_.set_at_once(true);
@@ -230,7 +230,7 @@ void Server::stop() {
 /// Runs each second, as in the program.
 void Server::tidy() {
     asio::post(machine_->executor(), [this] {
-        static_cast<void>(log_->try_again());
+        static_cast<void>(log_->reopen());
         sessions_->tidy();
     });
     world_.after(1s, [self = std::weak_ptr(self_)] {

@@ -3,7 +3,7 @@
 #include "server/ingest/dialogue.hpp"
 #include "server/metrics/metrics.hpp"
 #include "server/session/session_registry.hpp"
-#include "server/store/reopening_log.hpp"
+#include "server/store/scan_log.hpp"
 #include "tests/fault/simulation/disk.hpp"
 #include "tests/fault/simulation/machine.hpp"
 #include "tests/fault/simulation/network.hpp"
@@ -56,7 +56,7 @@ private:
     const Promise promise_;
     metrics::Metrics metrics_{"simulation"};
     std::unique_ptr<Machine> machine_;
-    std::unique_ptr<store::ReopeningLog> log_;
+    std::unique_ptr<store::ScanLog> log_;
     std::optional<session::SessionRegistry> sessions_;
     std::vector<std::shared_ptr<Link>> links_;
     std::shared_ptr<Server*> self_ = std::make_shared<Server*>(this); // for events that may run after the destructor

@@ -2,6 +2,7 @@
 #include "server/session/recovery.hpp"
 #include "server/session/summary.hpp"
 #include "server/store/record.hpp"
+#include "server/store/rocksdb_store.hpp"
 #include "tests/support/digests.hpp"
 #include "tests/support/log_reading.hpp"
 #include "tests/support/stored_text.hpp"

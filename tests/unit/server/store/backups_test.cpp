@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <rocksdb/db.h>
 #include <rocksdb/utilities/backup_engine.h>
 
 #include <atomic>
@@ -185,15 +186,18 @@ TEST_F(BackupsTest, ARestoredStoreGoesOnWithItsDirectory) {
 
 TEST_F(BackupsTest, ThoseThatDoNotSayOfWhichStoreTheyAreStayUsable) {
     backups_.reset();
-    const auto made = log_->copy_with([&](rocksdb::DB& database) -> Result<> {
-        rocksdb::BackupEngine* opened = nullptr;
+    log_.reset();
+    {
+        rocksdb::DB* opened = nullptr;
+        ASSERT_TRUE(rocksdb::DB::Open({}, at("store").native(), &opened).ok());
+        const std::unique_ptr<rocksdb::DB> database(opened);
+        rocksdb::BackupEngine* opened_engine = nullptr;
         const rocksdb::BackupEngineOptions options(at("backups").native());
-        EXPECT_TRUE(rocksdb::BackupEngine::Open(rocksdb::Env::Default(), options, &opened).ok());
-        const std::unique_ptr<rocksdb::BackupEngine> engine(opened);
-        EXPECT_TRUE(engine->CreateNewBackupWithMetadata(&database, "1", true).ok()); // as earlier versions did
-        return {};
-    });
-    ASSERT_TRUE(made);
+        ASSERT_TRUE(rocksdb::BackupEngine::Open(rocksdb::Env::Default(), options, &opened_engine).ok());
+        const std::unique_ptr<rocksdb::BackupEngine> engine(opened_engine);
+        ASSERT_TRUE(engine->CreateNewBackupWithMetadata(database.get(), "1", true).ok()); // as earlier versions did
+    }
+    log_ = open_rocksdb(at("store")).value();
     const auto backups = Backups::open(at("backups"), 3, *log_).value();
     ASSERT_THAT(backups->list().value(), SizeIs(1));
     EXPECT_EQ(backups->list().value().front().sessions, 1U);
@@ -260,7 +264,7 @@ TEST_F(BackupsTest, OnAnotherDiskNoneIsMade) {
 class AskingAgain final : public MemoryScanLog {
 public:
     explicit AskingAgain(Backups& backups) : backups_(backups) {}
-    Result<> copy_with(const CopyDatabase&) override {
+    Result<> backup_to(const fs::path&, const std::stop_token&) override {
         std::thread([this] { answer_ = backups_.make(*this).error(); }).join();
         return answer_;
     }

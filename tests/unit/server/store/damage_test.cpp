@@ -1,4 +1,5 @@
 #include "server/store/log_file.hpp"
+#include "server/store/rocksdb_store.hpp"
 #include "server/store/scan_log.hpp"
 #include "server/store/table_check.hpp"
 

@@ -1,7 +1,8 @@
-#include "server/store/reopening_log.hpp"
+#include "server/store/rocksdb_store.hpp"
 
 #include "tests/support/faulty_file_system.hpp"
 #include "tests/support/log_reading.hpp"
+#include "tests/support/store_files.hpp"
 #include "tests/support/temporary_directory.hpp"
 
 #include <gmock/gmock.h>
@@ -10,6 +11,8 @@
 #include <atomic>
 #include <charconv>
 #include <thread>
+#include <utility>
+#include <vector>
 
 /// Disks that fill up, fail to sync, and lose power.
 namespace scanloom::store {
@@ -18,6 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::IsEmpty;
 
 class FaultyDisk : public testing::Test {
 protected:
@@ -38,7 +42,7 @@ TEST_F(FaultyDisk, AfterAFailedSyncNothingIsAcknowledgedUntilReopened) {
         const auto appended = append_and_wait(*log, session, 2, {"lost"});
         ASSERT_FALSE(appended) << "only the first sync fails, but no later one can be trusted";
         EXPECT_EQ(appended.error().code, Errc::kStoreFailed);
-        EXPECT_THAT(appended.error().message, HasSubstr("until it has been opened again"));
+        EXPECT_THAT(appended.error().message, HasSubstr("until it is reopened"));
     }
     EXPECT_FALSE(log->create_session("b"));
     EXPECT_FALSE(log->write_checkpoint(session, {{"k", "v"}}));
@@ -97,45 +101,69 @@ TEST_F(FaultyDisk, WithoutRoomNothingIsStoredButSessionsCanBeRemovedAndItGoesOnB
     EXPECT_TRUE(append_and_wait(*log, session, 2, {"later"}));
 }
 
-TEST_F(FaultyDisk, ALogThatFailedIsOpenedAgainOnceTheDiskIsWell) {
-    bool is_well = false;
-    const auto log = ReopeningLog::open([this] { return open_rocksdb(directory_, options_); },
-                                        [&]() -> Result<> {
-                                            if (is_well) return {};
-                                            return Error{Errc::kStoreFailed, "not well"};
-                                        })
-                         .value();
+TEST_F(FaultyDisk, AFailedLogIsReopenedOnceItsDiskCanBeWritten) {
+    const auto log = open_rocksdb(directory_, options_).value();
     const auto session = log->create_session("a").value();
     ASSERT_TRUE(append_and_wait(*log, session, 1, {"durable"}));
-    EXPECT_FALSE(log->try_again()) << "it has not failed";
+    EXPECT_FALSE(log->reopen()) << "it has not failed";
     const auto before = log->stats();
     disk_.files->fail_next_log_sync();
     ASSERT_FALSE(append_and_wait(*log, session, 2, {"perhaps"}));
-    EXPECT_FALSE(log->try_again()) << "the disk is not well";
+    disk_.files->set_disk_full(true);
+    EXPECT_FALSE(log->reopen()) << "the disk cannot be written";
+    disk_.files->set_disk_full(false);
+    disk_.files->set_free_bytes(1000);
+    EXPECT_FALSE(log->reopen()) << "the disk has no room";
+    disk_.files->set_free_bytes(std::nullopt);
     EXPECT_TRUE(log->stats().last_error);
-    is_well = true;
-    ASSERT_TRUE(log->try_again());
+    EXPECT_THAT(entries_after(*log, session, 0).value(), ElementsAre("durable")) << "reading continues";
+    ASSERT_TRUE(log->reopen());
     EXPECT_FALSE(log->stats().last_error);
-    EXPECT_EQ(log->stats().entries, before.entries) << "of all times";
+    EXPECT_EQ(log->stats().entries, before.entries) << "counts include those from before";
     const Revision end = log->end_of(session).value();
     EXPECT_EQ(entries_after(*log, session, 0).value()[0], "durable");
     EXPECT_TRUE(append_and_wait(*log, session, end + 1, {"goes on"}));
     EXPECT_EQ(log->stats().entries, before.entries + 1);
 }
 
-TEST_F(FaultyDisk, ALogThatCannotBeOpenedAgainYetFailsAndIsTriedAgain) {
-    const auto log = ReopeningLog::open([this] { return open_rocksdb(directory_, options_); }).value();
+TEST_F(FaultyDisk, ALogThatCannotBeReopenedFailsUntilItCan) {
+    const auto log = open_rocksdb(directory_, options_).value();
     const auto session = log->create_session("a").value();
     ASSERT_TRUE(append_and_wait(*log, session, 1, {"durable"}));
-    disk_.files->set_disk_full(true);
-    ASSERT_FALSE(append_and_wait(*log, session, 2, {"lost"}));
-    EXPECT_FALSE(log->try_again());
-    EXPECT_THAT(log->stats().last_error.value_or(""), HasSubstr("the disk is full"));
+    disk_.files->fail_next_log_sync();
+    ASSERT_FALSE(append_and_wait(*log, session, 2, {"perhaps"}));
+    const auto manifest = only_file_like(directory_, "MANIFEST-");
+    flip_bit(manifest, 40, 1);
+    EXPECT_FALSE(log->reopen());
+    EXPECT_THAT(log->stats().last_error.value_or(""), HasSubstr(manifest.native()));
     EXPECT_EQ(append_and_wait(*log, session, 2, {"lost"}).error().code, Errc::kStoreFailed);
-    EXPECT_THAT(log->end_of(session).error().message, HasSubstr("being opened again"));
-    disk_.files->set_disk_full(false);
-    ASSERT_TRUE(log->try_again());
-    EXPECT_TRUE(append_and_wait(*log, session, 2, {"goes on"}));
+    EXPECT_THAT(log->end_of(session).error().message, HasSubstr("is being reopened: " + manifest.native()));
+    flip_bit(manifest, 40, 1);
+    ASSERT_TRUE(log->reopen());
+    EXPECT_TRUE(append_and_wait(*log, session, log->end_of(session).value() + 1, {"goes on"}));
+}
+
+TEST_F(FaultyDisk, LogsThatCannotBeReadAreReported) {
+    std::vector<std::pair<SessionId, Errc>> reported;
+    options_.on_unreadable = [&](SessionId session, const Error& why) { reported.emplace_back(session, why.code); };
+    SessionId session = 0;
+    {
+        const auto log = open_rocksdb(directory_, options_).value();
+        session = log->create_session("a").value();
+        ASSERT_TRUE(append_and_wait(*log, session, 1, distinct_entries(session, 1, 100)));
+    }
+    { ASSERT_TRUE(open_rocksdb(directory_, options_)); } // moves the entries to a table
+    const auto log = open_rocksdb(directory_, options_).value();
+    EXPECT_TRUE(entries_after(*log, session, 0));
+    const Error of_the_reader{Errc::kMalformed, "enough"};
+    EXPECT_EQ(log->read(session, 0, [&](Revision, std::string_view) -> Result<> { return of_the_reader; }).error(),
+              of_the_reader);
+    EXPECT_FALSE(entries_after(*log, 99, 0));
+    EXPECT_THAT(reported, IsEmpty());
+    const auto table = files_like(directory_, ".sst").front();
+    flip_bit(table, fs::file_size(table) / 2, 1);
+    EXPECT_FALSE(entries_after(*log, session, 0));
+    EXPECT_THAT(reported, ElementsAre(std::pair(session, Errc::kDataLoss)));
 }
 
 /// One session written as fast as it goes, with checkpoints that run ahead of the acknowledgements.

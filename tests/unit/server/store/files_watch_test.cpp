@@ -1,5 +1,5 @@
 #include "server/store/directory.hpp"
-#include "server/store/reopening_log.hpp"
+#include "server/store/rocksdb_store.hpp"
 
 #include "tests/support/faulty_file_system.hpp"
 #include "tests/support/log_reading.hpp"
@@ -46,7 +46,7 @@ protected:
 };
 
 TEST_P(FilesWatchOf, StopsAcknowledgingAndReportsTheLoss) {
-    const auto log = open_reopening(directory_, {}).value();
+    const auto log = open_rocksdb(directory_).value();
     const auto session = log->create_session("a").value();
     ASSERT_TRUE(append_and_wait(*log, session, 1, {"durable"}));
     ASSERT_FALSE(log->stats().last_error);
@@ -58,7 +58,7 @@ TEST_P(FilesWatchOf, StopsAcknowledgingAndReportsTheLoss) {
     EXPECT_EQ(appended.error().code, Errc::kStoreFailed);
     EXPECT_THAT(appended.error().message, HasSubstr("put the store back, or restart the server"));
     EXPECT_FALSE(log->create_session("b"));
-    EXPECT_FALSE(log->try_again());
+    EXPECT_FALSE(log->reopen());
     EXPECT_TRUE(log->stats().last_error);
     EXPECT_EQ(fs::exists(directory_) ? names_in(directory_) : std::set<std::string>(), left) << "nothing is created";
 }
@@ -81,15 +81,15 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(FilesWatch, AStoreThatIsPutBackIsOpenedAgainWithItsEntries) {
     const TemporaryDirectory temporary;
     const auto directory = temporary.path() / "store";
-    const auto log = open_reopening(directory, {}).value();
+    const auto log = open_rocksdb(directory).value();
     const auto session = log->create_session("a").value();
     ASSERT_TRUE(append_and_wait(*log, session, 1, {"durable"}));
     fs::rename(directory, temporary.path() / "away");
     ASSERT_FALSE(append_and_wait(*log, session, 2, {"lost"}));
-    EXPECT_FALSE(log->try_again());
+    EXPECT_FALSE(log->reopen());
 
     fs::rename(temporary.path() / "away", directory);
-    ASSERT_TRUE(log->try_again());
+    ASSERT_TRUE(log->reopen());
     EXPECT_THAT(entries_after(*log, session, 0).value(), ElementsAre("durable"));
     EXPECT_TRUE(append_and_wait(*log, session, 2, {"goes on"}));
 }
@@ -121,14 +121,14 @@ TEST(FilesWatch, AFailedStoreDeletesNoFilesOfAStoreThatTookItsPlaceEither) {
     FaultyEnv disk;
     StoreOptions options;
     options.env = disk.env.get();
-    auto log = open_reopening(directory, options).value();
+    auto log = open_rocksdb(directory, options).value();
     disk.files->fail_next_log_sync();
     ASSERT_FALSE(log->create_session("b"));
     fs::rename(directory, temporary.path() / "away");
     fs::rename(other, directory);
     const auto before = names_in(directory);
     EXPECT_THAT(log->stats().last_error.value_or(""), HasSubstr("was deleted, moved or replaced"));
-    EXPECT_FALSE(log->try_again());
+    EXPECT_FALSE(log->reopen());
     log.reset();
     EXPECT_EQ(names_in(directory), before);
 }

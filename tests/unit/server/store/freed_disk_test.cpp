@@ -1,3 +1,5 @@
+#include "server/store/rocksdb_store.hpp"
+
 #include "tests/support/log_reading.hpp"
 #include "tests/support/temporary_directory.hpp"
 

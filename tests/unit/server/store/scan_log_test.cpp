@@ -1,5 +1,7 @@
+#include "server/store/rocksdb_store.hpp"
 #include "server/store/scan_log.hpp"
 
+#include "tests/support/faulty_file_system.hpp"
 #include "tests/support/log_reading.hpp"
 #include "tests/support/memory_scan_log.hpp"
 #include "tests/support/temporary_directory.hpp"
@@ -10,7 +12,7 @@
 #include <atomic>
 #include <thread>
 
-/// What every scan log keeps, whatever is behind it.
+/// The contract of ScanLog. A new implementation needs a backend here.
 namespace scanloom::store {
 namespace {
 
@@ -20,15 +22,19 @@ using testing::IsEmpty;
 using testing::Pair;
 using testing::SizeIs;
 
+/// One implementation: a log, and a way to let its next write fail.
 struct Memory {
     MemoryScanLog log;
     ScanLog& get() { return log; }
+    void fail_next_write() { log.fail_from_next_change({Errc::kStoreFailed, "the disk failed"}); }
 };
 
 struct Rocksdb {
     TemporaryDirectory directory;
-    std::unique_ptr<ScanLog> log = open_rocksdb(directory.path()).value();
+    FaultyEnv disk;
+    std::unique_ptr<ScanLog> log = open_rocksdb(directory.path(), {.env = disk.env.get()}).value();
     ScanLog& get() { return *log; }
+    void fail_next_write() { disk.files->fail_next_log_sync(); }
 };
 
 template <class Backend>
@@ -219,6 +225,46 @@ TYPED_TEST(ScanLogContract, AVisitorMayAppend) {
         return append_and_wait(this->log_, session, 2, {"b"});
     }));
     EXPECT_THAT(entries_after(this->log_, session, 0).value(), ElementsAre("a", "b"));
+}
+
+TYPED_TEST(ScanLogContract, TheEndOfALogIsItsLastRevision) {
+    const auto session = this->log_.create_session("s").value();
+    EXPECT_EQ(this->log_.end_of(session).value(), 0U);
+    ASSERT_TRUE(append_and_wait(this->log_, session, 1, {"a", "b"}));
+    ASSERT_TRUE(append_and_wait(this->log_, session, 3, {"c"}));
+    EXPECT_EQ(this->log_.end_of(session).value(), 3U);
+    EXPECT_EQ(this->log_.end_of(99).error().code, Errc::kNotFound);
+}
+
+TYPED_TEST(ScanLogContract, AFailedLogAcceptsNoChangeUntilItIsReopened) {
+    const auto session = this->log_.create_session("s").value();
+    ASSERT_TRUE(append_and_wait(this->log_, session, 1, {"a"}));
+    EXPECT_FALSE(this->log_.reopen()) << "it has not failed";
+    this->backend_.fail_next_write();
+    for (int attempt = 0; attempt < 2; ++attempt) {
+        EXPECT_EQ(append_and_wait(this->log_, session, 2, {"b"}).error().code, Errc::kStoreFailed);
+    }
+    EXPECT_EQ(this->log_.create_session("t").error().code, Errc::kStoreFailed);
+    EXPECT_EQ(this->log_.write_checkpoint(session, {{"k", "v"}}).error().code, Errc::kStoreFailed);
+    EXPECT_EQ(this->log_.clear_checkpoint(session).error().code, Errc::kStoreFailed);
+    EXPECT_EQ(this->log_.remove_session(session).error().code, Errc::kStoreFailed);
+    EXPECT_TRUE(this->log_.stats().last_error);
+    EXPECT_THAT(entries_after(this->log_, session, 0).value(), ElementsAre("a")) << "reading continues";
+
+    ASSERT_TRUE(this->log_.reopen());
+    EXPECT_FALSE(this->log_.stats().last_error);
+    const auto end = this->log_.end_of(session).value();
+    EXPECT_GE(end, 1U) << "the failed append may have been stored";
+    EXPECT_TRUE(append_and_wait(this->log_, session, end + 1, {"c"}));
+}
+
+TYPED_TEST(ScanLogContract, ALogHasAnIdentityIfItHasBackups) {
+    const TemporaryDirectory place;
+    const auto backup = this->log_.backup_to(place.path() / "backups", {});
+    EXPECT_EQ(this->log_.identity().has_value(), backup.has_value());
+    if (!backup) {
+        EXPECT_EQ(backup.error().code, Errc::kInvalidField);
+    }
 }
 
 } // namespace

@@ -1,6 +1,6 @@
 #include "server/store/unfinished_store.hpp"
 
-#include "server/store/at_rest.hpp"
+#include "server/store/rocksdb_store.hpp"
 #include "server/store/salvage.hpp"
 #include "tests/support/log_reading.hpp"
 #include "tests/support/store_files.hpp"
@@ -42,7 +42,7 @@ TEST_F(UnfinishedStoreTest, IsNoneBeforeItIsFinished) {
     write_most_of(unfinished);
     for (int turn = 0; turn < 2; ++turn) {
         EXPECT_THAT(open_rocksdb(at("new")).error().message, HasSubstr("is unfinished"));
-        EXPECT_THAT(open_at_rest(at("new")).error().message, HasSubstr("is unfinished"));
+        EXPECT_THAT(open_read_only(at("new")).error().message, HasSubstr("is unfinished"));
         EXPECT_THAT(Salvage::open(at("new"), at("copy")).error().message, HasSubstr("is unfinished"));
     }
     ASSERT_TRUE(unfinished.finish());

@@ -1,4 +1,4 @@
-#include "server/store/at_rest.hpp"
+#include "server/store/rocksdb_store.hpp"
 
 #include "server/store/record.hpp"
 #include "tests/support/log_reading.hpp"
@@ -12,7 +12,7 @@
 #include <map>
 #include <memory>
 
-/// Stores that are looked at and not touched.
+/// Stores that are opened for reading only.
 namespace scanloom::store {
 namespace {
 
@@ -22,9 +22,9 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 
 /// A copy of a store that was killed with entries in a table and in its write-ahead log.
-class AtRestTest : public testing::Test {
+class ReadOnlyStoreTest : public testing::Test {
 protected:
-    AtRestTest() {
+    ReadOnlyStoreTest() {
         const auto original = directory_.path() / "original";
         {
             auto log = open_rocksdb(original).value();
@@ -43,10 +43,10 @@ protected:
     SessionId session_ = 0;
 };
 
-TEST_F(AtRestTest, HasEverythingAndChangesNotAByte) {
+TEST_F(ReadOnlyStoreTest, HasEverythingAndChangesNoByte) {
     const auto before = files_in(copy());
     {
-        const auto store = open_at_rest(copy()).value();
+        const auto store = open_read_only(copy()).value();
         EXPECT_EQ(entries_after(*store.log, session_, 0).value(), distinct_entries(session_, 1, 60));
         EXPECT_EQ(checkpoint_of(*store.log, session_).value().at("part"), "value");
         EXPECT_EQ(store.unfinished_bytes, 0U);
@@ -56,12 +56,12 @@ TEST_F(AtRestTest, HasEverythingAndChangesNotAByte) {
     EXPECT_EQ(files_in(copy()), before);
 }
 
-TEST_F(AtRestTest, AnUnfinishedWriteIsToldAndStays) {
+TEST_F(ReadOnlyStoreTest, AnUnfinishedWriteIsReportedAndStays) {
     const auto log = only_file_like(copy(), ".log");
     fs::resize_file(log, fs::file_size(log) - 3);
     const auto before = files_in(copy());
     {
-        const auto store = open_at_rest(copy()).value();
+        const auto store = open_read_only(copy()).value();
         EXPECT_GT(store.unfinished_bytes, 0U);
         EXPECT_EQ(entries_after(*store.log, session_, 0).value(), distinct_entries(session_, 1, 60));
         EXPECT_THAT(checkpoint_of(*store.log, session_).value(), IsEmpty()) << "written last";
@@ -69,45 +69,45 @@ TEST_F(AtRestTest, AnUnfinishedWriteIsToldAndStays) {
     EXPECT_EQ(files_in(copy()), before);
 }
 
-TEST_F(AtRestTest, DamageThatAStartWouldRefuseIsTold) {
+TEST_F(ReadOnlyStoreTest, DamageThatAStartWouldRefuseIsReported) {
     flip_bit(only_file_like(copy(), ".log"), 40, 1);
-    EXPECT_THAT(open_at_rest(copy()).error().message, HasSubstr(".log of the store is damaged"));
+    EXPECT_THAT(open_read_only(copy()).error().message, HasSubstr(".log of the store is damaged"));
     copy_store(directory_.path() / "original", copy());
     flip_bit(only_file_like(copy(), "MANIFEST-"), 40, 1);
-    EXPECT_THAT(open_at_rest(copy()).error().message, HasSubstr("MANIFEST-"));
+    EXPECT_THAT(open_read_only(copy()).error().message, HasSubstr("MANIFEST-"));
     copy_store(directory_.path() / "original", copy());
     fs::remove(only_file_like(copy(), ".sst"));
-    EXPECT_EQ(open_at_rest(copy()).error().code, Errc::kDataLoss);
+    EXPECT_EQ(open_read_only(copy()).error().code, Errc::kDataLoss);
 }
 
-TEST_F(AtRestTest, AStoreInUseIsRefusedAndOthersMayLookToo) {
+TEST_F(ReadOnlyStoreTest, AStoreInUseIsRefusedAndOtherReadersAreAdmitted) {
     {
         const auto server = open_rocksdb(copy()).value();
-        EXPECT_EQ(open_at_rest(copy()).error().code, Errc::kConflict);
+        EXPECT_EQ(open_read_only(copy()).error().code, Errc::kConflict);
     }
-    const auto one = open_at_rest(copy()).value();
-    EXPECT_TRUE(open_at_rest(copy()));
-    EXPECT_EQ(open_rocksdb(copy()).error().code, Errc::kConflict) << "nobody may write meanwhile";
+    const auto one = open_read_only(copy()).value();
+    EXPECT_TRUE(open_read_only(copy()));
+    EXPECT_EQ(open_rocksdb(copy()).error().code, Errc::kConflict) << "no server may write meanwhile";
 }
 
-TEST_F(AtRestTest, WhereThereIsNoStoreNoneIsMade) {
+TEST_F(ReadOnlyStoreTest, WithoutAStoreNoneIsCreated) {
     const auto nowhere = directory_.path() / "nowhere";
-    EXPECT_EQ(open_at_rest(nowhere).error().code, Errc::kNotFound);
+    EXPECT_EQ(open_read_only(nowhere).error().code, Errc::kNotFound);
     EXPECT_FALSE(fs::exists(nowhere));
     fs::create_directory(nowhere);
-    EXPECT_EQ(open_at_rest(nowhere).error().code, Errc::kNotFound);
+    EXPECT_EQ(open_read_only(nowhere).error().code, Errc::kNotFound);
     EXPECT_TRUE(fs::is_empty(nowhere));
 }
 
-TEST_F(AtRestTest, SessionsWithoutARecordAreTold) {
+TEST_F(ReadOnlyStoreTest, SessionsWithoutARecordAreReported) {
     {
         rocksdb::DB* opened = nullptr;
         ASSERT_TRUE(rocksdb::DB::Open({}, copy().native(), &opened).ok());
         const std::unique_ptr<rocksdb::DB> database(opened);
-        ASSERT_TRUE(database->Put({}, entry_key(7, 1), "of nobody").ok());
-        ASSERT_TRUE(database->Put({}, part_key(9, "part"), "of nobody").ok());
+        ASSERT_TRUE(database->Put({}, entry_key(7, 1), "without a record").ok());
+        ASSERT_TRUE(database->Put({}, part_key(9, "part"), "without a record").ok());
     }
-    EXPECT_THAT(open_at_rest(copy()).value().without_record, ElementsAre(7, 9));
+    EXPECT_THAT(open_read_only(copy()).value().without_record, ElementsAre(7, 9));
 }
 
 } // namespace

@@ -1,6 +1,6 @@
-#include "server/store/at_rest.hpp"
 #include "server/store/directory.hpp"
 #include "server/store/record.hpp"
+#include "server/store/rocksdb_store.hpp"
 #include "server/store/scan_log.hpp"
 
 #include "tests/support/log_reading.hpp"
@@ -235,7 +235,7 @@ TEST_F(OpenRocksdb, AStoreOfWhichOnlyTracesAreLeftIsNotBegunAnew) {
         ASSERT_FALSE(fs::is_empty(directory_));
         EXPECT_THAT(problem_of(directory_), AllOf(HasSubstr("has lost all its entries"), HasSubstr(trace)));
         EXPECT_THAT(problem_of(directory_), HasSubstr("has lost all its entries")) << "also the second time";
-        EXPECT_EQ(open_at_rest(directory_).error().code, Errc::kStoreFailed);
+        EXPECT_EQ(open_read_only(directory_).error().code, Errc::kStoreFailed);
         fs::remove_all(directory_);
     }
 }
