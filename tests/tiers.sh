@@ -168,7 +168,7 @@ for_core() {
 core_tests() {
     local left_out='^$' IFS='|'
     # One thread reads or writes files, or is killed; the largest session takes a minute. --nightly runs all of them.
-    [[ $1 != tsan ]] || left_out='Salvage|Table|LogFile|Rescue|HeavySession|Kill|CutCheckpoint'
+    [[ $1 != tsan ]] || left_out='DamagedStore|Table|LogFile|LogReconstruction|HeavySession|Kill|CutCheckpoint'
     shift
     printf '%s\n' --label-regex "^($*)\$" --label-exclude '^(all|nightly)$' --exclude-regex "$left_out"
 }

@@ -3,9 +3,9 @@
 #include "common/app/standard_streams.hpp"
 #include "common/json/json_text.hpp"
 #include "server/session/session_check.hpp"
+#include "server/store/block_scan.hpp"
 #include "server/store/files.hpp"
 #include "server/store/rocksdb_store.hpp"
-#include "server/store/table_check.hpp"
 
 #include <boost/json/array.hpp>
 #include <boost/json/object.hpp>

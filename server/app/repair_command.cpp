@@ -4,6 +4,7 @@
 #include "common/json/json_text.hpp"
 #include "server/session/repair.hpp"
 #include "server/session/repaired_names.hpp"
+#include "server/store/damaged_store.hpp"
 #include "server/store/unfinished_store.hpp"
 
 #include <boost/json/object.hpp>
@@ -53,13 +54,13 @@ struct Sum {
 };
 
 /// Writes the intact entries of all sessions to the new store, and closes it.
-Result<Sum> save(const store::Salvage& salvage, const store::UnfinishedStore& to, const fs::path& lost) {
+Result<Sum> save(const store::DamagedStore& from, const store::UnfinishedStore& to, const fs::path& lost) {
     const auto repaired = to.open_log();
     if (!repaired) return repaired.error();
     Sum sum;
-    const auto names = session::repaired_names(salvage.sessions());
-    for (const auto& [id, record] : salvage.sessions()) {
-        const auto session = session::repair_session(salvage, id, record, names.at(id), **repaired, lost);
+    const auto names = session::repaired_names(from.sessions());
+    for (const auto& [id, record] : from.sessions()) {
+        const auto session = session::repair_session(from, id, record, names.at(id), **repaired, lost);
         if (!session) return session.error();
         std::cout << line_of(*session) << std::flush;
         sum.add(*session);
@@ -71,14 +72,12 @@ Result<Sum> repair(const ServerOptions& options) {
     const auto lost = beside(options.repaired, ".lost");
     auto unfinished = store::UnfinishedStore::begin(options.repaired, lost);
     if (!unfinished) return unfinished.error();
-    auto salvage = store::Salvage::open(options.store, unfinished->salvage());
-    if (!salvage) return salvage.error();
-    for (const auto& note : (*salvage)->tables().notes())
-        standard_error().write(fmt::format("scanloom-server: {}\n", note));
-    auto sum = save(**salvage, *unfinished, lost);
+    const auto damaged = store::DamagedStore::open(options.store);
+    if (!damaged) return damaged.error();
+    for (const auto& note : (*damaged)->notes()) standard_error().write(fmt::format("scanloom-server: {}\n", note));
+    auto sum = save(**damaged, *unfinished, lost);
     if (!sum) return sum;
-    sum->damaged_files = (*salvage)->tables().damaged_files();
-    salvage->reset();
+    sum->damaged_files = (*damaged)->damaged_files();
     if (auto finished = unfinished->finish(); !finished) return finished.error();
     return sum;
 }

@@ -1,7 +1,7 @@
 #include "server/session/repair.hpp"
 
 #include "common/wire/log_codec.hpp"
-#include "server/session/rescue.hpp"
+#include "server/session/log_reconstruction.hpp"
 
 #include <boost/endian/conversion.hpp>
 #include <fmt/format.h>
@@ -107,19 +107,19 @@ Result<std::optional<store::SessionId>> target_of(const std::optional<std::strin
 
 } // namespace
 
-Result<RepairedSession> repair_session(const store::Salvage& from, store::SessionId id,
+Result<RepairedSession> repair_session(const store::DamagedStore& from, store::SessionId id,
                                        const std::optional<std::string>& record, const std::string& name,
                                        store::ScanLog& to, const std::filesystem::path& aside) {
     const auto target = target_of(record, name, to);
     if (!target) return target.error();
     RepairedSession repaired{.name = name, .aside = aside / (name + ".scanlog")};
-    Rescue rescue;
+    LogReconstruction reconstruction;
     LogWriter kept(to, target->value_or(0));
     AsideFile set_aside(repaired.aside);
     const auto read = from.read(id, [&](Revision revision, std::string_view bytes) -> Result<> {
         auto entry = wire::decode_entry(bytes);
         if (!entry || !*target) return set_aside.add(bytes);
-        const auto entries = rescue.add(revision, std::move(*entry));
+        const auto entries = reconstruction.add(revision, std::move(*entry));
         if (entries.empty()) return set_aside.add(bytes);
         for (const auto& one : entries) {
             if (auto added = kept.add(one); !added) return added;
@@ -129,9 +129,9 @@ Result<RepairedSession> repair_session(const store::Salvage& from, store::Sessio
     if (!read) return read.error();
     if (auto written = kept.write(); !written) return written.error();
     if (auto closed = set_aside.close(); !closed) return closed.error();
-    repaired.kept = kept.end() - rescue.stood_in();
-    repaired.stood_in = rescue.stood_in();
-    repaired.missing = rescue.missing();
+    repaired.kept = kept.end() - reconstruction.stood_in();
+    repaired.stood_in = reconstruction.stood_in();
+    repaired.missing = reconstruction.missing();
     repaired.set_aside = set_aside.count();
     if (repaired.set_aside == 0) repaired.aside.clear();
     return repaired;

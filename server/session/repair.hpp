@@ -1,7 +1,7 @@
 #pragma once
 
 #include "common/error/error.hpp"
-#include "server/store/salvage.hpp"
+#include "server/store/damaged_store.hpp"
 
 #include <cstdint>
 #include <filesystem>
@@ -14,7 +14,7 @@ namespace scanloom::session {
 struct RepairedSession {
     std::string name;            ///< see repaired_names()
     std::uint64_t kept = 0;      ///< entries copied to the new store
-    std::uint64_t stood_in = 0;  ///< lost scans that were replaced by empty ones; see Rescue
+    std::uint64_t stood_in = 0;  ///< lost scans that were replaced by empty ones; see LogReconstruction
     std::uint64_t missing = 0;   ///< lost entries between other entries; those lost at the end are unknown
     std::uint64_t set_aside = 0; ///< entries in the file `aside`
     std::filesystem::path aside; ///< empty: no such file
@@ -25,8 +25,8 @@ struct RepairedSession {
 ///
 /// @param record  nullopt: the record is lost; all entries are written to the file
 /// @param name  of the session in the other store, and of the file
-/// Errors: kStoreFailed if the new store or the file cannot be written; those of Salvage::read().
-[[nodiscard]] Result<RepairedSession> repair_session(const store::Salvage& from, store::SessionId id,
+/// Errors: kStoreFailed if the new store or the file cannot be written; those of DamagedStore::read().
+[[nodiscard]] Result<RepairedSession> repair_session(const store::DamagedStore& from, store::SessionId id,
                                                      const std::optional<std::string>& record, const std::string& name,
                                                      store::ScanLog& to, const std::filesystem::path& aside);
 

@@ -30,6 +30,8 @@ inline constexpr std::string_view kFormatKey = "f";
 inline constexpr std::string_view kNextSessionKey = "n";
 inline constexpr std::string_view kSessionsBegin = "s";
 inline constexpr std::string_view kSessionsEnd = "t";
+inline constexpr std::string_view kEntriesBegin = "l";
+inline constexpr std::string_view kEntriesEnd = "m";
 
 [[nodiscard]] std::string number_bytes(std::uint64_t number);
 [[nodiscard]] std::optional<std::uint64_t> number_of(std::string_view bytes);

@@ -16,9 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kSentence = "A store is being repaired into this directory. It is none before this file is "
-                                       "gone.";
-constexpr std::string_view kSalvage = "salvage";
+constexpr std::string_view kSentence = "A store is being repaired into this directory. It is incomplete until this "
+                                       "file is removed.";
 constexpr std::string_view kLogEnding = ".scanlog";
 
 Error not_empty(const fs::path& directory, std::string_view file) {
@@ -30,7 +29,6 @@ Error not_empty(const fs::path& directory, std::string_view file) {
 bool is_ours(const fs::path& file) {
     const auto name = file.filename().native();
     std::error_code none;
-    if (name == kSalvage) return fs::is_directory(fs::symlink_status(file, none));
     return name != kUnfinishedFile && is_store_file(name) && fs::is_regular_file(fs::symlink_status(file, none));
 }
 
@@ -84,7 +82,7 @@ Result<> remove_leftovers(const fs::path& directory, const fs::path& lost) {
         std::error_code problem;
         fs::remove_all(file, problem);
         if (problem) {
-            return Error{Errc::kStoreFailed, fmt::format("cannot remove {}, which a repair that was cut off left: {}",
+            return Error{Errc::kStoreFailed, fmt::format("cannot remove {}, which an interrupted repair left: {}",
                                                          file.native(), problem.message())};
         }
     }
@@ -113,8 +111,8 @@ Result<UnfinishedStore> UnfinishedStore::begin(const fs::path& directory, const 
     auto lock = FileLock::exclusive(mark);
     if (!lock && lock.error().code == Errc::kConflict) {
         return Error{Errc::kConflict,
-                     fmt::format("--repair {}: another --repair writes it at this moment; wait for its "
-                                 "end, or name another directory",
+                     fmt::format("--repair {}: another --repair is writing it; wait until it ends, or name "
+                                 "another directory",
                                  directory.native())};
     }
     if (!lock) return lock.error();
@@ -136,14 +134,7 @@ Result<std::unique_ptr<ScanLog>> UnfinishedStore::open_log() const {
     return RocksdbScanLog::open(directory_, LockedDirectory::Files::kUnfinished, options);
 }
 
-fs::path UnfinishedStore::salvage() const { return directory_ / kSalvage; }
-
 Result<> UnfinishedStore::finish() {
-    std::error_code problem;
-    fs::remove_all(salvage(), problem);
-    if (problem) {
-        return Error{Errc::kStoreFailed, fmt::format("cannot remove {}: {}", salvage().native(), problem.message())};
-    }
     if (auto synced = sync_logs(lost_); !synced) return synced;
     if (auto synced = sync_directory(directory_); !synced) return synced;
     return remove_mark(directory_ / kUnfinishedFile);

@@ -22,9 +22,6 @@ public:
     [[nodiscard]] static Result<UnfinishedStore> begin(const std::filesystem::path& directory,
                                                        const std::filesystem::path& lost);
 
-    /// Returns a path on the same disk for a copy of the old store. finish() or the next repair deletes it.
-    [[nodiscard]] std::filesystem::path salvage() const;
-
     /// Opens the store for writing.
     /// Errors: those of open_rocksdb().
     [[nodiscard]] Result<std::unique_ptr<ScanLog>> open_log() const;

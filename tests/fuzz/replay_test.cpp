@@ -24,7 +24,6 @@ Fuzzer log_file_fuzzer;
 Fuzzer messages_fuzzer;
 Fuzzer ros_map_fuzzer;
 Fuzzer store_key_fuzzer;
-Fuzzer table_carving_fuzzer;
 Fuzzer tokens_fuzzer;
 
 namespace scanloom::fuzz {
@@ -51,7 +50,6 @@ const Named kFuzzers[] = {
     {"messages", messages_fuzzer},
     {"ros_map", ros_map_fuzzer},
     {"store_key", store_key_fuzzer},
-    {"table_carving", table_carving_fuzzer},
     {"tokens", tokens_fuzzer},
 };
 

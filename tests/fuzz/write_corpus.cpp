@@ -12,7 +12,6 @@
 #include "tests/support/log_reading.hpp"
 #include "tests/support/memory_scan_log.hpp"
 #include "tests/support/stored_text.hpp"
-#include "tests/support/table_block.hpp"
 #include "tests/support/temporary_directory.hpp"
 
 #include <boost/endian/conversion.hpp>
@@ -169,14 +168,6 @@ void write_log_files(const std::filesystem::path& folder) {
     write_file(folder / "damaged", "!" + file.substr(1));
 }
 
-void write_tables(const std::filesystem::path& folder) {
-    store::TableBlock block;
-    block.entry(1, 1, "an entry").entry(1, 2, "the next").entry(2, 1, "another's");
-    block.remove(store::session_key(1)).record(2, "a record");
-    write_file(folder / "a_block", block.bytes());
-    write_file(folder / "an_end_alone", std::string_view(block.bytes()).substr(20));
-}
-
 /// What an LD06 sends: turns, whole, split, and with what a bad line does to them.
 void write_ld06_streams(const std::filesystem::path& folder) {
     using namespace testing_support;
@@ -246,7 +237,6 @@ void write_corpus(const std::filesystem::path& folder) {
     write_streams(folder / "frame_decoder");
     write_log_entries(folder / "log_codec");
     write_log_files(folder / "log_file");
-    write_tables(folder / "table_carving");
     write_ld06_streams(folder / "ld06");
     write_checkpoint(folder / "checkpoint");
     write_earlier_checkpoints(folder / "checkpoint");

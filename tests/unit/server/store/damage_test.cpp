@@ -1,7 +1,7 @@
+#include "server/store/block_scan.hpp"
 #include "server/store/log_file.hpp"
 #include "server/store/rocksdb_store.hpp"
 #include "server/store/scan_log.hpp"
-#include "server/store/table_check.hpp"
 
 #include "tests/support/log_reading.hpp"
 #include "tests/support/store_files.hpp"

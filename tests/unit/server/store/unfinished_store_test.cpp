@@ -1,7 +1,7 @@
 #include "server/store/unfinished_store.hpp"
 
+#include "server/store/damaged_store.hpp"
 #include "server/store/rocksdb_store.hpp"
-#include "server/store/salvage.hpp"
 #include "tests/support/log_reading.hpp"
 #include "tests/support/store_files.hpp"
 #include "tests/support/temporary_directory.hpp"
@@ -28,8 +28,6 @@ protected:
         const auto log = unfinished.open_log().value();
         const auto session = log->create_session("one").value();
         append_and_wait(*log, session, 1, distinct_entries(session, 1, 10)).value();
-        fs::create_directories(at("new") / "salvage" / "lost");
-        write_bytes(at("new") / "salvage" / "000001.sst", "a copy");
         fs::create_directories(at("new.lost"));
         write_bytes(at("new.lost") / "one.scanlog", "set aside");
     }
@@ -43,10 +41,9 @@ TEST_F(UnfinishedStoreTest, IsNoneBeforeItIsFinished) {
     for (int turn = 0; turn < 2; ++turn) {
         EXPECT_THAT(open_rocksdb(at("new")).error().message, HasSubstr("is unfinished"));
         EXPECT_THAT(open_read_only(at("new")).error().message, HasSubstr("is unfinished"));
-        EXPECT_THAT(Salvage::open(at("new"), at("copy")).error().message, HasSubstr("is unfinished"));
+        EXPECT_THAT(DamagedStore::open(at("new")).error().message, HasSubstr("is unfinished"));
     }
     ASSERT_TRUE(unfinished.finish());
-    EXPECT_FALSE(fs::exists(at("new") / "salvage"));
     EXPECT_EQ(bytes_of(at("new.lost") / "one.scanlog"), "set aside");
     const auto log = open_rocksdb(at("new")).value();
     EXPECT_THAT(entries_after(*log, 1, 0).value(), SizeIs(10));
@@ -65,12 +62,12 @@ TEST_F(UnfinishedStoreTest, WhatAKilledRepairLeftGoesWithTheNext) {
 TEST_F(UnfinishedStoreTest, OneThatIsUnderWayIsLeftAlone) {
     const auto unfinished = begin().value();
     write_most_of(unfinished);
-    EXPECT_THAT(begin().error().message, HasSubstr("another --repair writes it at this moment"));
+    EXPECT_THAT(begin().error().message, HasSubstr("another --repair is writing it"));
     EXPECT_EQ(bytes_of(at("new.lost") / "one.scanlog"), "set aside");
 }
 
 TEST_F(UnfinishedStoreTest, OtherFilesStay) {
-    for (const auto* mine : {"new/mine", "new/salvage", "new.lost/mine", "new/000001.sst", "new.lost/one.scanlog"}) {
+    for (const auto* mine : {"new/mine", "new.lost/mine", "new/000001.sst", "new.lost/one.scanlog"}) {
         fs::create_directories(at(mine).parent_path());
         write_bytes(at(mine), "mine");
         EXPECT_EQ(begin().error().code, Errc::kConflict) << mine;

@@ -9,7 +9,7 @@
 
 namespace scanloom::session {
 
-/// Log reconstruction: makes a valid log from the intact entries of a damaged one.
+/// Makes a valid log from the intact entries of a damaged one.
 ///
 /// The sequence numbers of a robot's scans must have no gaps, so each lost scan is replaced by an empty scan with its
 /// number, at the pose of the next scan. The maps are then those of the remaining scans, and a robot that reconnects
@@ -19,7 +19,7 @@ namespace scanloom::session {
 /// Some entries cannot be applied without a lost one: scans and sensors of a robot whose RobotJoined entry is lost, and
 /// scans of a sensor whose description is lost. The caller stores them elsewhere. If a later description of the same
 /// sensor is lost, this is detected only if the scan does not fit the earlier description.
-class Rescue {
+class LogReconstruction {
 public:
     /// Adds an intact entry of the old log, in ascending order of revisions.
     /// @return the entries to append to the new log; empty if the entry cannot be applied

@@ -1,4 +1,4 @@
-#include "server/session/rescue.hpp"
+#include "server/session/log_reconstruction.hpp"
 
 #include "common/wire/messages.hpp"
 
@@ -22,7 +22,7 @@ Scan blank(const Scan& next, std::uint64_t seq) {
 
 } // namespace
 
-std::vector<LogEntry> Rescue::add(Revision revision, LogEntry entry) {
+std::vector<LogEntry> LogReconstruction::add(Revision revision, LogEntry entry) {
     missing_ += revision - last_ - 1;
     last_ = revision;
     if (!renumber(entry)) return {};
@@ -44,7 +44,7 @@ std::vector<LogEntry> Rescue::add(Revision revision, LogEntry entry) {
 }
 
 /// Replaces the robot's index by its new one. @return false if the RobotJoined entry of the robot is lost
-bool Rescue::renumber(LogEntry& entry) {
+bool LogReconstruction::renumber(LogEntry& entry) {
     if (auto* joined = std::get_if<RobotJoined>(&entry)) {
         joined->robot = robots_.emplace(joined->robot, static_cast<RobotIndex>(robots_.size())).first->second;
         return true;
@@ -61,14 +61,14 @@ bool Rescue::renumber(LogEntry& entry) {
 }
 
 /// Returns whether the scan can be applied and the lost entries are enough to account for the scans missing before it.
-bool Rescue::fits(const ScanTaken& taken) const {
+bool LogReconstruction::fits(const ScanTaken& taken) const {
     const auto sensor = sensors_.find({taken.robot, taken.scan.sensor});
     if (sensor == sensors_.end() || !wire::check_scan(taken.scan, sensor->second)) return false;
     const auto last_seq = rules_.robots()[taken.robot].last_seq;
     return taken.scan.seq > last_seq && taken.scan.seq - last_seq - 1 <= missing_ - stood_in_;
 }
 
-std::vector<LogEntry> Rescue::stand_ins_before(const ScanTaken& taken) {
+std::vector<LogEntry> LogReconstruction::stand_ins_before(const ScanTaken& taken) {
     std::vector<LogEntry> entries;
     for (auto seq = rules_.robots()[taken.robot].last_seq + 1; seq < taken.scan.seq; ++seq) {
         entries.emplace_back(std::in_place_type<ScanTaken>, ScanTaken{taken.robot, blank(taken.scan, seq)});

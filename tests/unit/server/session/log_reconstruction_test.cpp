@@ -1,4 +1,4 @@
-#include "server/session/rescue.hpp"
+#include "server/session/log_reconstruction.hpp"
 
 #include "common/wire/log_codec.hpp"
 #include "server/mapping/projection.hpp"
@@ -60,7 +60,7 @@ struct ExpectedLog {
     std::string digests;
 };
 
-TEST(Rescue, KeepsEveryUsableScanAndItsSequenceNumber) {
+TEST(LogReconstruction, KeepsEveryUsableScanAndItsSequenceNumber) {
     const auto log = log_of_three_robots();
     std::mt19937 random(1);
     std::uint64_t stood_in = 0;
@@ -68,12 +68,12 @@ TEST(Rescue, KeepsEveryUsableScanAndItsSequenceNumber) {
         std::set<std::size_t> lost;
         for (std::size_t n = random() % 12; n > 0; --n) lost.insert(random() % log.size());
         if (round % 3 == 0) lost.insert(random() % 6); // a robot or a sensor
-        Rescue rescue;
+        LogReconstruction reconstruction;
         mapping::Projection projection{mapping::MapConfig{}};
         std::size_t scans = 0;
         for (std::size_t n = 0; n < log.size(); ++n) {
             if (lost.contains(n)) continue;
-            const auto entries = rescue.add(n + 1, log[n]);
+            const auto entries = reconstruction.add(n + 1, log[n]);
             for (const auto& entry : entries) {
                 ASSERT_EQ(wire::decode_entry(wire::encode_entry(entry)).value(), entry)
                     << "the entry must survive encoding";
@@ -89,38 +89,38 @@ TEST(Rescue, KeepsEveryUsableScanAndItsSequenceNumber) {
         const ExpectedLog expected(log, lost);
         EXPECT_EQ(scans, expected.scans);
         EXPECT_EQ(testing_support::digests_of(projection.snapshot()), expected.digests);
-        EXPECT_LE(rescue.stood_in(), lost.size());
-        stood_in += rescue.stood_in();
+        EXPECT_LE(reconstruction.stood_in(), lost.size());
+        stood_in += reconstruction.stood_in();
     }
     EXPECT_GT(stood_in, 100U);
 }
 
-TEST(Rescue, UndamagedLogIsUnchanged) {
-    Rescue rescue;
+TEST(LogReconstruction, UndamagedLogIsUnchanged) {
+    LogReconstruction reconstruction;
     Revision revision = 0;
     for (const auto& entry : log_of_three_robots()) {
-        ASSERT_EQ(rescue.add(++revision, entry), std::vector<LogEntry>{entry});
+        ASSERT_EQ(reconstruction.add(++revision, entry), std::vector<LogEntry>{entry});
     }
-    EXPECT_EQ(rescue.missing(), 0U);
-    EXPECT_EQ(rescue.stood_in(), 0U);
+    EXPECT_EQ(reconstruction.missing(), 0U);
+    EXPECT_EQ(reconstruction.stood_in(), 0U);
 }
 
-TEST(Rescue, DropsScansAcrossAnImpossibleGap) {
-    Rescue rescue;
-    static_cast<void>(rescue.add(1, RobotJoined{0, "a"}));
-    static_cast<void>(rescue.add(2, SensorDescribed{0, small_laser()}));
-    EXPECT_TRUE(rescue.add(5, ScanTaken{0, random_scan(1, 4)}).empty()) << "2 entries are missing, but 3 scans";
-    EXPECT_EQ(rescue.add(6, ScanTaken{0, random_scan(1, 3)}).size(), 3U);
-    EXPECT_EQ(rescue.missing(), 2U);
+TEST(LogReconstruction, DropsScansAcrossAnImpossibleGap) {
+    LogReconstruction reconstruction;
+    static_cast<void>(reconstruction.add(1, RobotJoined{0, "a"}));
+    static_cast<void>(reconstruction.add(2, SensorDescribed{0, small_laser()}));
+    EXPECT_TRUE(reconstruction.add(5, ScanTaken{0, random_scan(1, 4)}).empty()) << "2 entries are missing, but 3 scans";
+    EXPECT_EQ(reconstruction.add(6, ScanTaken{0, random_scan(1, 3)}).size(), 3U);
+    EXPECT_EQ(reconstruction.missing(), 2U);
 }
 
-TEST(Rescue, DropsScanThatDoesNotMatchItsSensor) {
+TEST(LogReconstruction, DropsScanThatDoesNotMatchItsSensor) {
     Sensor other = small_laser();
     other.angles = ExplicitAngles{0.0, 0.1};
-    Rescue rescue;
-    static_cast<void>(rescue.add(1, RobotJoined{0, "a"}));
-    static_cast<void>(rescue.add(2, SensorDescribed{0, other}));
-    EXPECT_TRUE(rescue.add(4, ScanTaken{0, random_scan(1, 1)}).empty()) << "the sensor's description is lost";
+    LogReconstruction reconstruction;
+    static_cast<void>(reconstruction.add(1, RobotJoined{0, "a"}));
+    static_cast<void>(reconstruction.add(2, SensorDescribed{0, other}));
+    EXPECT_TRUE(reconstruction.add(4, ScanTaken{0, random_scan(1, 1)}).empty()) << "the sensor's description is lost";
 }
 
 } // namespace
