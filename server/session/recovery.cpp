@@ -85,7 +85,7 @@ Result<Recovered> recover_from_checkpoint(store::ScanLog& log, store::SessionId 
                      fmt::format("the log ends with entry {}, but its checkpoint holds entry {} already; the store is "
                                  "damaged; {}",
                                  recovered.projection.revision(), recovered.projection.newest_restored(),
-                                 store::kBringBackOrRemove)};
+                                 store::kRecoverOrRemove)};
     }
     return recovered;
 }

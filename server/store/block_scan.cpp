@@ -74,7 +74,7 @@ Result<> check_table(const std::filesystem::path& table, const StoreOptions& opt
     auto status = reader.Open(table.native());
     if (status.ok()) status = reader.VerifyChecksum();
     if (status.ok()) return {};
-    return Error{Errc::kDataLoss, fmt::format("{} is damaged ({}); {}", table.native(), status.ToString(), kBringBack)};
+    return Error{Errc::kDataLoss, fmt::format("{} is damaged ({}); {}", table.native(), status.ToString(), kRecover)};
 }
 
 } // namespace scanloom::store

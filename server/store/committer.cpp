@@ -56,7 +56,7 @@ StoreStats Committer::stats() const {
         if (const auto in_place = files_->check(); !in_place) stats.last_error = in_place.error().message;
     }
     if (!stats.no_room) return stats;
-    const auto no_room = want_of_room(free_bytes()); // as of now
+    const auto no_room = shortage(free_bytes()); // as of now
     stats.no_room = no_room ? std::optional(no_room->message) : std::nullopt;
     return stats;
 }
@@ -68,7 +68,7 @@ std::optional<std::uint64_t> Committer::free_bytes() const {
     return free;
 }
 
-std::optional<Error> Committer::want_of_room(std::optional<std::uint64_t> free) const {
+std::optional<Error> Committer::shortage(std::optional<std::uint64_t> free) const {
     if (!free || *free >= disk_reserve_bytes_) return std::nullopt;
     return Error{Errc::kOverloaded,
                  fmt::format("the disk of the store {} has {} MiB left, of which {} are kept free: nothing more is "
@@ -104,7 +104,7 @@ void Committer::commit(Group group) {
     check_files();
     const auto free = free_bytes();
     if (free && !failed_) compactions_.update(*free);
-    const auto no_room = want_of_room(free);
+    const auto no_room = shortage(free);
     {
         const std::lock_guard lock(mutex_);
         stats_.no_room = no_room ? std::optional(no_room->message) : std::nullopt;

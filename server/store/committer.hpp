@@ -73,7 +73,7 @@ private:
     [[nodiscard]] Result<> write(rocksdb::WriteBatch& batch);
     void fail(Error why);
     [[nodiscard]] std::optional<std::uint64_t> free_bytes() const;
-    [[nodiscard]] std::optional<Error> want_of_room(std::optional<std::uint64_t> free) const;
+    [[nodiscard]] std::optional<Error> shortage(std::optional<std::uint64_t> free) const;
     void count(const Change& change);
 
     rocksdb::DB& database_;

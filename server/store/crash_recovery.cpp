@@ -41,7 +41,7 @@ Result<LogFileCheck> checked(const fs::path& file) {
     if (!bytes) return bytes.error();
     auto check = check_log_file(*bytes);
     if (check.damage) {
-        return failure("{} of the store is damaged at byte {}; {}", file.native(), *check.damage, kBringBack);
+        return failure("{} of the store is damaged at byte {}; {}", file.native(), *check.damage, kRecover);
     }
     return check;
 }
@@ -88,7 +88,7 @@ Result<> check_newest_log(const fs::path& directory) {
     const auto number = number_in(std::string_view(manifest).substr(kManifest.size()));
     if (!number || logs.rbegin()->first + 1 >= *number) return {};
     return failure("the newest write-ahead log of the store {} is missing: {} is older than {}; {}", directory.native(),
-                   logs.rbegin()->second.filename().native(), manifest, kBringBack);
+                   logs.rbegin()->second.filename().native(), manifest, kRecover);
 }
 
 Result<> check_manifest(const fs::path& directory) {
@@ -99,16 +99,16 @@ Result<> check_manifest(const fs::path& directory) {
     if (!name) return name.error();
     if (!name->starts_with("MANIFEST-") || name->find_first_not_of("0123456789", 9) != name->size() - 1 ||
         !name->ends_with('\n')) {
-        return failure("{} of the store is damaged: it does not name a manifest; {}", current.native(), kBringBack);
+        return failure("{} of the store is damaged: it does not name a manifest; {}", current.native(), kRecover);
     }
     const fs::path manifest = directory / name->substr(0, name->size() - 1);
     if (!fs::exists(manifest, problem)) {
-        return failure("{} of the store is missing; {}", manifest.native(), kBringBack);
+        return failure("{} of the store is missing; {}", manifest.native(), kRecover);
     }
     const auto check = checked(manifest);
     if (!check) return check.error();
     if (check->whole_bytes == 0) {
-        return failure("{} of the store has lost its contents; {}", manifest.native(), kBringBack);
+        return failure("{} of the store has lost its contents; {}", manifest.native(), kRecover);
     }
     return {};
 }
@@ -121,7 +121,7 @@ Result<std::optional<UnfinishedWrite>> find_unfinished_write(const LockedDirecto
     for (const auto& [number, log] : logs) {
         if (unfinished) {
             return failure("{} of the store is damaged at byte {}; {}", unfinished->file.native(),
-                           unfinished->whole_bytes, kBringBack);
+                           unfinished->whole_bytes, kRecover);
         }
         const auto check = checked(log);
         if (!check) return check.error();

@@ -32,7 +32,7 @@ Result<std::optional<std::uint64_t>> read_number(rocksdb::DB& database, const fs
     const auto number = value ? number_of(*value) : std::nullopt;
     if (!number) {
         return failure("the store {} cannot be opened: its record '{}' is damaged; {}", directory.native(), key,
-                       kBringBack);
+                       kRecover);
     }
     return number;
 }
@@ -52,7 +52,7 @@ Result<bool> must_write_format(rocksdb::DB& database, const fs::path& directory)
         if (is_empty(database)) return true;
         return failure("the store {} cannot be opened: it holds a RocksDB database without the format record of "
                        "scanloom-server; name another directory if it is another program's; if it is not, {}",
-                       directory.native(), kBringBack);
+                       directory.native(), kRecover);
     }
     if (**version <= kFormatVersion) return **version < kFormatVersion;
     return Error{Errc::kUnsupportedVersion,
@@ -87,7 +87,7 @@ Result<LogEnds> read_ends(rocksdb::DB& database, const fs::path& directory) {
         if (!session) break;
         if (*session >= ends.next_session) {
             return failure("the store {} cannot be opened: its count of sessions is damaged; {}", directory.native(),
-                           kBringBack);
+                           kRecover);
         }
         const auto end = end_of_log(database, directory.native(), *session); // damage of one does not affect the others
         ends.revisions.emplace(*session, end ? *end : 0);
@@ -109,7 +109,7 @@ rocksdb::Options options_to_read(const StoreOptions& options, bool has_unfinishe
 } // namespace
 
 Result<Revision> end_of_log(rocksdb::DB& database, const std::string& store, SessionId session) {
-    const auto unknown = [&](std::string_view what, std::string_view advice = kBringBackOrRemove) {
+    const auto unknown = [&](std::string_view what, std::string_view advice = kRecoverOrRemove) {
         return Error{Errc::kDataLoss, fmt::format("the store {} cannot find where the log of session {} ends ({}); {}",
                                                   store, session, what, advice)};
     };
@@ -211,7 +211,7 @@ void Database::continue_without_compaction(const rocksdb::Status& reason) {
     Error damage{Errc::kDataLoss,
                  fmt::format("the store {} is damaged: {}; new entries are stored completely, but its files are no "
                              "longer merged and use more disk; when you can, {}",
-                             name(), reason.ToString(), kBringBack)};
+                             name(), reason.ToString(), kRecover)};
     if (on_damage_) on_damage_(damage);
     {
         const std::lock_guard lock(damage_mutex_);

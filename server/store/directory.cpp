@@ -97,7 +97,7 @@ Result<> check_listing(const fs::path& directory, const Listing& listing) {
                        directory.native());
     }
     if (!listing.has_current && (listing.has_tables || listing.has_write_ahead_logs)) {
-        return failure("the store {} is damaged: its file CURRENT is missing; {}", directory.native(), kBringBack);
+        return failure("the store {} is damaged: its file CURRENT is missing; {}", directory.native(), kRecover);
     }
     if (!listing.has_current && !listing.foreign.empty()) {
         return Error{Errc::kNotFound, fmt::format("the directory {} holds other files ({}) and no store; name a "
@@ -106,14 +106,13 @@ Result<> check_listing(const fs::path& directory, const Listing& listing) {
     }
     if (!listing.has_current && !listing.trace.empty() && !listing.is_new) {
         return failure("the store {} has lost all its entries: only files such as {} are left; restore it from a "
-                       "backup (--restore) "
-                       "into another directory, or delete these files to start with an empty store",
+                       "backup (--restore) into another directory, or delete these files to start with an empty store",
                        directory.native(), listing.trace);
     }
     const bool has_been_open = listing.has_tables || (listing.has_current && !listing.is_new);
     if (has_been_open && !listing.has_write_ahead_logs) {
         return failure("the store {} is damaged: its write-ahead log (*.log) is missing; {}", directory.native(),
-                       kBringBack);
+                       kRecover);
     }
     return {};
 }

@@ -33,11 +33,15 @@ std::uint64_t bytes_of(const std::vector<SealedPair>& pairs) {
     return bytes;
 }
 
+/// Returns whether a batch accepted an operation.
+Result<> accepted(const rocksdb::Status& status) {
+    if (status.ok()) return {};
+    return failure("the store cannot accept a change: {}", status.ToString());
+}
+
 Result<> put(rocksdb::WriteBatch& batch, const std::vector<SealedPair>& pairs) {
     for (const auto& pair : pairs) {
-        if (const auto status = batch.Put(pair.key, pair.value); !status.ok()) {
-            return Error{Errc::kStoreFailed, fmt::format("the store cannot take a change: {}", status.ToString())};
-        }
+        if (auto put = accepted(batch.Put(pair.key, pair.value)); !put) return put;
     }
     return {};
 }
@@ -49,15 +53,13 @@ Error no_such_session(SessionId session) {
 Error unreadable(const std::string& store, SessionId session, const rocksdb::Status& status) {
     const auto code = code_of(status);
     return {code, fmt::format("the store {} cannot read session {}: {}; {}", store, session, status.ToString(),
-                              code == Errc::kDataLoss ? kBringBackOrRemove : "look at its disk, and try again")};
+                              code == Errc::kDataLoss ? kRecoverOrRemove : "check its disk, and try again")};
 }
 
 Error damaged(const std::string& store, SessionId session, std::string_view what) {
     return {Errc::kDataLoss,
-            fmt::format("the store {} is damaged: {} of session {}; {}", store, what, session, kBringBackOrRemove)};
+            fmt::format("the store {} is damaged: {} of session {}; {}", store, what, session, kRecoverOrRemove)};
 }
-
-std::string_view view(const rocksdb::Slice& slice) { return {slice.data(), slice.size()}; }
 
 /// A log is read once, front to end, so the cache need not keep any of it.
 struct Scan {
@@ -147,9 +149,9 @@ Result<std::vector<StoredSession>> RocksdbScanLog::sessions() {
     const KeyRange range{std::string(kSessionsBegin), std::string(kSessionsEnd)};
     const Scan scan(database.rocksdb(), range);
     for (scan.iterator->Seek(range.begin); scan.iterator->Valid(); scan.iterator->Next()) {
-        const auto session = session_of(view(scan.iterator->key()));
+        const auto session = session_of(scan.iterator->key().ToStringView());
         if (!session) return damaged(database.name(), 0, "the name");
-        const auto record = unsealed(view(scan.iterator->key()), view(scan.iterator->value()));
+        const auto record = unsealed(scan.iterator->key().ToStringView(), scan.iterator->value().ToStringView());
         const auto damage = damaged_ends.find(*session);
         found.push_back(
             {*session,
@@ -184,10 +186,7 @@ Result<> RocksdbScanLog::remove_session(SessionId session) {
         for (const KeyRange& range : {entries_of(session), parts_of(session)}) {
             if (status.ok()) status = batch.DeleteRange(range.begin, range.end);
         }
-        if (!status.ok()) {
-            return Error{Errc::kStoreFailed, fmt::format("the store cannot take a change: {}", status.ToString())};
-        }
-        return {};
+        return accepted(status);
     };
     if (auto committed = database.committer().submit_and_wait(std::move(change)); !committed) return committed;
     database.free_disk(session);
@@ -246,11 +245,11 @@ Result<> RocksdbScanLog::read_entries(SessionId session, Revision after, const V
     // Starts with the entry before, to check that the log reaches that far.
     Revision expected = after == 0 ? 1 : after;
     for (scan.iterator->Seek(entry_key(session, expected)); scan.iterator->Valid(); scan.iterator->Next()) {
-        const auto key = view(scan.iterator->key());
+        const auto key = scan.iterator->key().ToStringView();
         if (revision_of(key) != expected) {
             return damaged(database.name(), session, fmt::format("the entry of revision {} is missing", expected));
         }
-        const auto entry = unsealed(key, view(scan.iterator->value()));
+        const auto entry = unsealed(key, scan.iterator->value().ToStringView());
         if (!entry) return damaged(database.name(), session, fmt::format("the entry of revision {}", expected));
         if (expected > after) {
             if (auto visited = visit(expected, *entry); !visited) return visited;
@@ -275,10 +274,7 @@ Result<> RocksdbScanLog::clear_checkpoint(SessionId session) {
     change.add_to = [&ends = database.ends(), session](rocksdb::WriteBatch& batch) -> Result<> {
         if (!ends.revisions.contains(session)) return no_such_session(session);
         const KeyRange range = parts_of(session);
-        if (const auto status = batch.DeleteRange(range.begin, range.end); !status.ok()) {
-            return Error{Errc::kStoreFailed, fmt::format("the store cannot take a change: {}", status.ToString())};
-        }
-        return {};
+        return accepted(batch.DeleteRange(range.begin, range.end));
     };
     return database.committer().submit_and_wait(std::move(change));
 }
@@ -309,8 +305,8 @@ Result<> RocksdbScanLog::read_checkpoint(SessionId session, const VisitPart& vis
     const KeyRange range = parts_of(session);
     const Scan scan(database.rocksdb(), range);
     for (scan.iterator->Seek(range.begin); scan.iterator->Valid(); scan.iterator->Next()) {
-        const auto part = part_of(view(scan.iterator->key()));
-        const auto value = unsealed(view(scan.iterator->key()), view(scan.iterator->value()));
+        const auto part = part_of(scan.iterator->key().ToStringView());
+        const auto value = unsealed(scan.iterator->key().ToStringView(), scan.iterator->value().ToStringView());
         if (!part || !value) return damaged(database.name(), session, "a part of the checkpoint");
         if (auto visited = visit(*part, *value); !visited) return visited;
     }

@@ -84,8 +84,8 @@ public:
     /// Appends entries first, first + 1, ..., all or none of them.
     ///
     /// Pre: `first` is one past the session's last entry, 1 for an empty log.
-    /// Post: `done` is called exactly once, on the committer's thread, when the entries have failed or survive kill -9
-    ///       and power loss. It should be quick and must not throw. One synced write makes all queued changes of all
+    /// Post: `done` is called exactly once, on a thread of the log, when the entries have failed or survive kill -9 and
+    ///       power loss. It should be quick and must not throw. One synced write makes all queued changes of all
     ///       sessions durable.
     /// Errors: kOverloaded: the disk has no room; nothing was stored, and a later attempt may succeed. kStoreFailed: it
     ///         is unknown what is stored until reopen() succeeds.
@@ -139,7 +139,7 @@ public:
 
 /// Appends entries and waits until they are durable or have failed.
 /// Errors: those of ScanLog::append().
-/// Threads: not the committer's.
+/// Threads: not from within a `done`.
 [[nodiscard]] Result<> append_and_wait(ScanLog& log, SessionId session, Revision first,
                                        std::vector<std::string> entries);
 

@@ -11,7 +11,7 @@ Errc code_of(const rocksdb::Status& status) {
 Error cannot_open(const std::filesystem::path& directory, const rocksdb::Status& status) {
     if (status.IsCorruption()) {
         return {Errc::kDataLoss, fmt::format("the store {} cannot be opened: it is damaged ({}); {}",
-                                             directory.native(), status.ToString(), kBringBack)};
+                                             directory.native(), status.ToString(), kRecover)};
     }
     return failure("the store {} cannot be opened: {}{}", directory.native(),
                    status.IsNoSpace() ? "the disk is full: " : "", status.ToString());

@@ -16,12 +16,12 @@ class Status;
 namespace scanloom::store {
 
 /// Advice for a damaged store; see docs/operations.md.
-inline constexpr std::string_view kBringBack =
-    "restore it from a backup (--restore), or save what is intact of it into a new store (--repair)";
+inline constexpr std::string_view kRecover =
+    "restore it from a backup (--restore), or copy its intact entries to a new store (--repair)";
 
 /// Advice for a store in which one session is damaged and the others are served.
-inline constexpr std::string_view kBringBackOrRemove =
-    "remove the session, or restore the store from a backup (--restore), or save what is intact of it into a new store "
+inline constexpr std::string_view kRecoverOrRemove =
+    "remove the session, or restore the store from a backup (--restore), or copy its intact entries to a new store "
     "(--repair)";
 
 /// Returns a kStoreFailed error with the formatted message.

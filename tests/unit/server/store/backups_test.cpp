@@ -41,7 +41,7 @@ protected:
 
     [[nodiscard]] fs::path at(const char* name) const { return directory_.path() / name; }
 
-    /// What a restored store holds.
+    /// Returns the entries of a restored store.
     [[nodiscard]] std::vector<std::string> entries_of(const fs::path& store) const {
         const auto log = open_rocksdb(store).value();
         return entries_after(*log, session_, 0).value();
@@ -50,12 +50,12 @@ protected:
     TemporaryDirectory directory_;
     std::unique_ptr<ScanLog> log_ = open_rocksdb(at("store")).value();
     SessionId session_ = log_->create_session("a session").value();
-    std::vector<std::string> told_;
+    std::vector<std::string> reported_;
     std::unique_ptr<Backups> backups_ =
-        Backups::open(at("backups"), 3, *log_, [this](const std::string& what) { told_.push_back(what); }).value();
+        Backups::open(at("backups"), 3, *log_, [this](const std::string& what) { reported_.push_back(what); }).value();
 };
 
-TEST_F(BackupsTest, EachRestoresItsMoment) {
+TEST_F(BackupsTest, EachRestoresTheStoreAtItsTime) {
     append(1, 100);
     const auto first = backups_->make(*log_).value();
     append(101, 50);
@@ -79,7 +79,7 @@ TEST_F(BackupsTest, TablesAreCopiedOnce) {
     append(1001, 1);
     const auto second = backups_->make(*log_).value();
     EXPECT_LT(bytes_below(at("backups")) - before, before / 10);
-    EXPECT_GT(second.bytes, before * 9 / 10) << "of the whole store";
+    EXPECT_GT(second.bytes, before * 9 / 10) << "the size of the whole store";
 }
 
 TEST_F(BackupsTest, OnlyTheNewestAreKept) {
@@ -94,7 +94,7 @@ TEST_F(BackupsTest, OnlyTheNewestAreKept) {
     EXPECT_THAT(Backups::open(at("backups"), 3, *log_).value()->list().value(), SizeIs(3)) << "also after a restart";
 }
 
-TEST_F(BackupsTest, OneOfAStoreThatWritesNothingRestores) {
+TEST_F(BackupsTest, ABackupOfAnIdleStoreRestores) {
     append(1, 3);
     static_cast<void>(backups_->make(*log_).value());
     static_cast<void>(backups_->make(*log_).value());
@@ -102,7 +102,7 @@ TEST_F(BackupsTest, OneOfAStoreThatWritesNothingRestores) {
     EXPECT_EQ(entries_of(at("one")), distinct_entries(session_, 1, 3));
 }
 
-TEST_F(BackupsTest, OneMadeWhileEntriesComeHasAllBeforeItAndNoneTwice) {
+TEST_F(BackupsTest, ABackupDuringAppendsHasAllEarlierEntriesOnce) {
     append(1, 100);
     std::atomic<bool> stop = false;
     Revision end = 100;
@@ -122,7 +122,7 @@ TEST_F(BackupsTest, OneMadeWhileEntriesComeHasAllBeforeItAndNoneTwice) {
     EXPECT_EQ(restored, distinct_entries(session_, 1, restored.size()));
 }
 
-TEST_F(BackupsTest, AFileOfABackupThatWasDamagedIsNotRestored) {
+TEST_F(BackupsTest, ADamagedBackupIsNotRestored) {
     append(1, 100);
     static_cast<void>(backups_->make(*log_).value());
     const auto table = only_file_like(at("backups") / "shared_checksum", ".sst");
@@ -130,19 +130,19 @@ TEST_F(BackupsTest, AFileOfABackupThatWasDamagedIsNotRestored) {
     EXPECT_EQ(restore_backup(at("backups"), {}, at("one")).error().code, Errc::kStoreFailed);
 }
 
-TEST_F(BackupsTest, OneServerAtATimeHasTheDirectory) {
+TEST_F(BackupsTest, TwoServersCannotUseOneDirectory) {
     append(1, 3);
     const auto made = backups_->make(*log_).value();
     EXPECT_EQ(Backups::open(at("backups"), 3, *log_).error(),
               (Error{Errc::kConflict, fmt::format("the directory of backups {} is in use by another scanloom-server; "
                                                   "name another directory",
                                                   at("backups").native())}));
-    EXPECT_EQ(restore_backup(at("backups"), {}, at("one")).value(), made) << "who restores keeps nobody out";
+    EXPECT_EQ(restore_backup(at("backups"), {}, at("one")).value(), made) << "restoring needs no lock";
     backups_.reset();
     EXPECT_TRUE(Backups::open(at("backups"), 3, *log_));
 }
 
-TEST_F(BackupsTest, NothingIsWrittenOver) {
+TEST_F(BackupsTest, NothingIsOverwritten) {
     static_cast<void>(backups_->make(*log_).value());
     fs::create_directory(at("mine"));
     write_bytes(at("mine") / "file", "mine");
@@ -151,14 +151,14 @@ TEST_F(BackupsTest, NothingIsWrittenOver) {
     EXPECT_EQ(restore_backup(at("backups"), {}, at("store")).error().code, Errc::kConflict);
 }
 
-TEST_F(BackupsTest, WhereThereIsNoneThatIsSaid) {
+TEST_F(BackupsTest, ReportsThatThereIsNoBackup) {
     EXPECT_THAT(restore_backup(at("backups"), {}, at("one")).error().message, HasSubstr("there is no backup"));
     EXPECT_EQ(restore_backup(at("nowhere"), {}, at("one")).error().code, Errc::kNotFound);
     EXPECT_FALSE(fs::exists(at("nowhere")));
     EXPECT_FALSE(fs::exists(at("one")));
 }
 
-TEST_F(BackupsTest, ThoseOfAnotherStoreAreToldApart) {
+TEST_F(BackupsTest, RefusesADirectoryWithBackupsOfAnotherStore) {
     static_cast<void>(backups_->make(*log_).value());
     const auto other = open_rocksdb(at("other")).value();
     EXPECT_EQ(backups_->make(*other).error().code, Errc::kConflict);
@@ -167,16 +167,17 @@ TEST_F(BackupsTest, ThoseOfAnotherStoreAreToldApart) {
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().code, Errc::kConflict);
     EXPECT_THAT(refused.error().message, HasSubstr("has backups of another store (backup 1)"));
-    EXPECT_THAT(Backups::open(at("backups"), 3, *log_).value()->list().value(), SizeIs(1)) << "its own stay";
+    EXPECT_THAT(Backups::open(at("backups"), 3, *log_).value()->list().value(), SizeIs(1))
+        << "backups of its own store stay";
 }
 
-TEST_F(BackupsTest, ARestoredStoreGoesOnWithItsDirectory) {
+TEST_F(BackupsTest, ARestoredStoreMayUseTheSameDirectory) {
     append(1, 10);
     static_cast<void>(backups_->make(*log_).value());
     backups_.reset();
     log_.reset();
     ASSERT_TRUE(restore_backup(at("backups"), {}, at("one")));
-    for (int turn = 0; turn < 2; ++turn) { // also once it has been opened anew
+    for (int turn = 0; turn < 2; ++turn) { // also after a restart
         const auto restored = open_rocksdb(at("one")).value();
         const auto opened = Backups::open(at("backups"), 9, *restored);
         ASSERT_TRUE(opened) << opened.error().message;
@@ -184,7 +185,7 @@ TEST_F(BackupsTest, ARestoredStoreGoesOnWithItsDirectory) {
     }
 }
 
-TEST_F(BackupsTest, ThoseThatDoNotSayOfWhichStoreTheyAreStayUsable) {
+TEST_F(BackupsTest, BackupsWithoutTheStoresIdentityStayUsable) {
     backups_.reset();
     log_.reset();
     {
@@ -205,7 +206,7 @@ TEST_F(BackupsTest, ThoseThatDoNotSayOfWhichStoreTheyAreStayUsable) {
     EXPECT_TRUE(restore_backup(at("backups"), 1, at("one")));
 }
 
-TEST_F(BackupsTest, ADirectoryThatIsEmptiedOrRemovedIsMadeAgain) {
+TEST_F(BackupsTest, ARemovedOrEmptiedDirectoryIsCreatedAgain) {
     append(1, 10);
     for (const bool whole : {false, true}) {
         static_cast<void>(backups_->make(*log_).value());
@@ -213,12 +214,12 @@ TEST_F(BackupsTest, ADirectoryThatIsEmptiedOrRemovedIsMadeAgain) {
         ASSERT_THAT(before, SizeIs(1));
         for (const auto& file : fs::directory_iterator(at("backups"))) fs::remove_all(file.path());
         if (whole) fs::remove(at("backups"));
-        told_.clear();
+        reported_.clear();
         EXPECT_THAT(backups_->list().value(), IsEmpty());
         EXPECT_THAT(backups_->list().value(), IsEmpty());
-        EXPECT_THAT(told_, testing::ElementsAre(HasSubstr("has lost the backups 1: ")));
+        EXPECT_THAT(reported_, testing::ElementsAre(HasSubstr("has lost the backups 1: ")));
         ASSERT_TRUE(backups_->make(*log_));
-        EXPECT_THAT(told_, SizeIs(1)) << "it is told once";
+        EXPECT_THAT(reported_, SizeIs(1)) << "each loss is reported once";
         EXPECT_EQ(Backups::open(at("backups"), 3, *log_).error().code, Errc::kConflict) << "the lock is taken again";
         fs::remove_all(at("one"));
         ASSERT_TRUE(restore_backup(at("backups"), {}, at("one")));
@@ -228,17 +229,17 @@ TEST_F(BackupsTest, ADirectoryThatIsEmptiedOrRemovedIsMadeAgain) {
     }
 }
 
-TEST_F(BackupsTest, OnAnotherDiskNoneIsMade) {
+TEST_F(BackupsTest, MakesNoneOnAnotherDisk) {
     std::string elsewhere = "/dev/shm/scanloom-test-XXXXXX";
     if (::mkdtemp(elsewhere.data()) == nullptr)
-        GTEST_SKIP() << "/dev/shm is no file system beside that of temporary files: a second one is needed";
+        GTEST_SKIP() << "/dev/shm is not a second file system next to that of temporary files";
     struct stat here = {};
     struct stat there = {};
     ASSERT_EQ(::stat(directory_.path().c_str(), &here), 0);
     ASSERT_EQ(::stat(elsewhere.c_str(), &there), 0);
     if (here.st_dev == there.st_dev) {
         fs::remove_all(elsewhere);
-        GTEST_SKIP() << "/dev/shm is no file system beside that of temporary files: a second one is needed";
+        GTEST_SKIP() << "/dev/shm is not a second file system next to that of temporary files";
     }
     fs::create_directory_symlink(at("backups"), at("mounted"));
     backups_.reset();
@@ -260,7 +261,7 @@ TEST_F(BackupsTest, OnAnotherDiskNoneIsMade) {
     EXPECT_TRUE(backups_->make(*log_));
 }
 
-/// Asks for a backup while one is being made of it.
+/// Requests a backup while one is being made of it.
 class AskingAgain final : public MemoryScanLog {
 public:
     explicit AskingAgain(Backups& backups) : backups_(backups) {}
@@ -274,18 +275,18 @@ private:
     Error answer_{};
 };
 
-TEST_F(BackupsTest, OneIsMadeAtATime) {
+TEST_F(BackupsTest, RefusesASecondBackupAtTheSameTime) {
     AskingAgain log(*backups_);
     EXPECT_EQ(backups_->make(log).error().code, Errc::kConflict);
 }
 
-TEST_F(BackupsTest, ALogWithoutADiskHasNone) {
+TEST_F(BackupsTest, RefusesALogWithoutBackups) {
     MemoryScanLog log;
     EXPECT_EQ(backups_->make(log).error().code, Errc::kInvalidField);
     EXPECT_THAT(backups_->list().value(), IsEmpty());
 }
 
-TEST_F(BackupsTest, OnceStoppedNoneIsMade) {
+TEST_F(BackupsTest, MakesNoneOnceStopped) {
     append(1, 3);
     backups_->stop();
     EXPECT_EQ(backups_->make(*log_).error().code, Errc::kShuttingDown);

@@ -15,7 +15,7 @@
 #include <random>
 #include <thread>
 
-/// Opening a store: again, for the first time, and where there is none to be had.
+/// Opening new and existing stores, and directories that cannot be stores.
 namespace scanloom::store {
 namespace {
 
@@ -32,7 +32,7 @@ std::string problem_of(const fs::path& directory) {
     return log ? "" : log.error().message;
 }
 
-/// Changes a store's keys behind its back.
+/// Changes keys of a store without ScanLog.
 void write_raw(const fs::path& directory, const std::function<rocksdb::Status(rocksdb::DB&)>& change) {
     rocksdb::Options options;
     options.create_if_missing = true;
@@ -48,7 +48,7 @@ protected:
     fs::path directory_ = temporary_.path() / "new" / "store";
 };
 
-TEST_F(OpenRocksdb, EverythingIsThereAfterReopening) {
+TEST_F(OpenRocksdb, KeepsEverythingWhenReopened) {
     SessionId session = 0;
     {
         auto log = open_rocksdb(directory_).value();
@@ -63,7 +63,7 @@ TEST_F(OpenRocksdb, EverythingIsThereAfterReopening) {
     EXPECT_EQ(sessions[0].record.value(), "record");
     EXPECT_EQ(entries_after(*log, session, 0).value(), distinct_entries(session, 1, 50));
     EXPECT_THAT(checkpoint_of(*log, session).value(), ElementsAre(Pair("k", "v")));
-    EXPECT_EQ(append_and_wait(*log, session, 1, {"x"}).error().code, Errc::kConflict) << "it knows where the log ends";
+    EXPECT_EQ(append_and_wait(*log, session, 1, {"x"}).error().code, Errc::kConflict) << "the end of the log is known";
     EXPECT_TRUE(append_and_wait(*log, session, 51, {"x"}));
     EXPECT_EQ(log->stats().torn_bytes_dropped, 0U);
 }
@@ -76,7 +76,7 @@ TEST_F(OpenRocksdb, IdsAreNotReusedAfterRemovalAndReopening) {
     EXPECT_GT(log->create_session("b").value(), first);
 }
 
-TEST_F(OpenRocksdb, WhatWaitsIsWrittenBeforeClosing) {
+TEST_F(OpenRocksdb, ClosingWritesQueuedAppends) {
     constexpr Revision kAppends = 500;
     auto log = open_rocksdb(directory_).value();
     const auto session = log->create_session("a").value();
@@ -111,14 +111,15 @@ TEST_F(OpenRocksdb, ARemovedSessionsDiskIsFreed) {
     ASSERT_TRUE(append_and_wait(*log, kept, 1, {"entry"}));
     std::mt19937_64 random(8);
     for (Revision revision = 1; revision <= 100; ++revision) {
-        std::string entry(100'000, '\0'); // nothing a compressor could shrink
+        std::string entry(100'000, '\0'); // not compressible
         for (char& byte : entry) byte = static_cast<char>(random());
         ASSERT_TRUE(append_and_wait(*log, removed, revision, {std::move(entry)}));
     }
     const auto before = log->bytes_on_disk();
     EXPECT_GT(before, 10'000'000U);
     ASSERT_TRUE(log->remove_session(removed));
-    while (log->bytes_on_disk() >= before / 4) std::this_thread::yield(); // tables that were being merged go afterwards
+    while (log->bytes_on_disk() >= before / 4)
+        std::this_thread::yield(); // tables that are being merged are deleted afterwards
     EXPECT_THAT(entries_after(*log, kept, 0).value(), ElementsAre("entry"));
 }
 
@@ -140,14 +141,14 @@ TEST_F(OpenRocksdb, ADirectoryOfOtherFilesIsRefused) {
     EXPECT_THAT(problem_of(directory_), AllOf(HasSubstr("holiday.jpg"), HasSubstr("name a directory of its own")));
 }
 
-TEST_F(OpenRocksdb, AFileIsNoDirectory) {
+TEST_F(OpenRocksdb, AFileIsRefused) {
     write_bytes(temporary_.path() / "file", "");
     EXPECT_THAT(problem_of(temporary_.path() / "file"), HasSubstr("is not a directory"));
     EXPECT_THAT(problem_of(temporary_.path() / "file" / "below"), HasSubstr("cannot create the store"));
 }
 
-TEST_F(OpenRocksdb, ADirectoryThatCannotBeMadeOrWrittenIsNamed) {
-    // /proc takes no files from anybody, not even from root.
+TEST_F(OpenRocksdb, ADirectoryThatCannotBeCreatedOrWrittenIsNamed) {
+    // No user can create files in /proc, not even root.
     EXPECT_THAT(problem_of("/proc/scanloom"), HasSubstr("cannot create the store /proc/scanloom"));
     EXPECT_THAT(problem_of("/proc/self/fd"),
                 HasSubstr("the store /proc/self/fd cannot be used: cannot write /proc/self/fd/scanloom.lock"));
@@ -167,7 +168,7 @@ TEST_F(OpenRocksdb, AMissingEntryIsReportedWithItsRevision) {
     EXPECT_THAT(entries.error().message, HasSubstr("the entry of revision 3 is missing of session 1"));
 }
 
-TEST_F(OpenRocksdb, AMixedUpEntryIsReportedWithItsRevision) {
+TEST_F(OpenRocksdb, AnExchangedEntryIsReportedWithItsRevision) {
     SessionId session = 0;
     {
         auto log = open_rocksdb(directory_).value();
@@ -187,7 +188,7 @@ TEST_F(OpenRocksdb, AMixedUpEntryIsReportedWithItsRevision) {
     EXPECT_THAT(checkpoint_of(*log, session).error().message, HasSubstr("a part of the checkpoint of session 1"));
 }
 
-TEST_F(OpenRocksdb, ADamagedSessionHoldsUpNoOther) {
+TEST_F(OpenRocksdb, ADamagedSessionAffectsNoOther) {
     const auto with_damaged_record = SessionId{1};
     const auto with_damaged_end = SessionId{2};
     {
@@ -225,7 +226,7 @@ TEST_F(OpenRocksdb, ADamagedRecordIsReported) {
     EXPECT_THAT(problem_of(directory_), HasSubstr("its record 'n' is damaged"));
 }
 
-TEST_F(OpenRocksdb, AStoreOfWhichOnlyTracesAreLeftIsNotBegunAnew) {
+TEST_F(OpenRocksdb, AStoreThatLostItsFilesIsNotReplacedByAnEmptyOne) {
     for (const auto* trace : {"IDENTITY", "MANIFEST-", "OPTIONS-"}) {
         static_cast<void>(open_rocksdb(directory_).value()->create_session("a").value());
         for (const auto& file : fs::directory_iterator(directory_)) {
@@ -234,20 +235,20 @@ TEST_F(OpenRocksdb, AStoreOfWhichOnlyTracesAreLeftIsNotBegunAnew) {
         }
         ASSERT_FALSE(fs::is_empty(directory_));
         EXPECT_THAT(problem_of(directory_), AllOf(HasSubstr("has lost all its entries"), HasSubstr(trace)));
-        EXPECT_THAT(problem_of(directory_), HasSubstr("has lost all its entries")) << "also the second time";
+        EXPECT_THAT(problem_of(directory_), HasSubstr("has lost all its entries")) << "at the second attempt, too";
         EXPECT_EQ(open_read_only(directory_).error().code, Errc::kStoreFailed);
         fs::remove_all(directory_);
     }
 }
 
-TEST_F(OpenRocksdb, WhatAKillLeavesOfAFirstStartIsNoLostStore) {
-    static_cast<void>(LockedDirectory::open(directory_).value()); // and no store in it
+TEST_F(OpenRocksdb, AKilledFirstStartIsNotALostStore) {
+    static_cast<void>(LockedDirectory::open(directory_).value()); // creates no store
     write_bytes(directory_ / "LOG", "");
     write_bytes(directory_ / "IDENTITY", "a-new-one");
     write_bytes(directory_ / "MANIFEST-000001", "");
     EXPECT_EQ(problem_of(directory_), "");
     fs::remove(directory_ / "CURRENT");
-    EXPECT_NE(problem_of(directory_), "") << "it was one since";
+    EXPECT_NE(problem_of(directory_), "") << "it has been a store since";
 }
 
 } // namespace

@@ -78,7 +78,7 @@ INSTANTIATE_TEST_SUITE_P(
                     StoreDamage{"write_ahead_log_deleted", remove_write_ahead_log}),
     testing::PrintToStringParamName());
 
-TEST(FilesWatch, AStoreThatIsPutBackIsOpenedAgainWithItsEntries) {
+TEST(FilesWatch, AStoreThatIsPutBackIsReopenedWithItsEntries) {
     const TemporaryDirectory temporary;
     const auto directory = temporary.path() / "store";
     const auto log = open_rocksdb(directory).value();
@@ -99,7 +99,7 @@ TEST(FilesWatch, ClosingDeletesNoFilesOfAStoreThatTookItsPlace) {
     const auto directory = temporary.path() / "store";
     const auto other = temporary.path() / "other";
     static_cast<void>(open_rocksdb(other).value()->create_session("of the other").value());
-    for (int start = 0; start < 3; ++start) { // each numbers its files on from those before
+    for (int start = 0; start < 3; ++start) { // file numbers continue at each start
         auto log = open_rocksdb(directory).value();
         static_cast<void>(log->create_session("a").value());
         if (start < 2) continue;
@@ -112,7 +112,7 @@ TEST(FilesWatch, ClosingDeletesNoFilesOfAStoreThatTookItsPlace) {
     EXPECT_THAT(open_rocksdb(directory).value()->sessions().value().at(0).record.value(), "of the other");
 }
 
-TEST(FilesWatch, AFailedStoreDeletesNoFilesOfAStoreThatTookItsPlaceEither) {
+TEST(FilesWatch, AFailedStoreDeletesNoFilesOfAStoreThatTookItsPlace) {
     const TemporaryDirectory temporary;
     const auto directory = temporary.path() / "store";
     const auto other = temporary.path() / "other";
@@ -148,17 +148,17 @@ TEST(FilesWatch, ALostStoreCreatesNothingWhenTheDiskHasRoomAgain) {
     disk.files->set_free_bytes(100'000);
     EXPECT_TRUE(log->stats().last_error);
     EXPECT_FALSE(append_and_wait(*log, session, 1, {"lost"}));
-    EXPECT_FALSE(log->end_of(session)) << "nor is anything read there";
+    EXPECT_FALSE(log->end_of(session)) << "reading fails, too";
     EXPECT_TRUE(fs::is_empty(directory));
 }
 
-TEST(FilesWatch, SessionsThatAreRemovedWhileOthersAreWrittenAreNoLoss) {
+TEST(FilesWatch, RemovingSessionsDuringWritesIsNotReportedAsALoss) {
     const TemporaryDirectory temporary;
     const auto log = open_rocksdb(temporary.path() / "store").value();
     const auto session = log->create_session("a").value();
     for (Revision revision = 1; revision <= 50; ++revision) {
         const auto other = log->create_session("b").value();
-        ASSERT_TRUE(log->remove_session(other)); // begins another write-ahead log
+        ASSERT_TRUE(log->remove_session(other)); // starts another write-ahead log
         ASSERT_TRUE(append_and_wait(*log, session, revision, {"entry"}));
     }
     EXPECT_FALSE(log->stats().last_error);

@@ -19,7 +19,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-/// kill -9 at random points of writing, again and again on the same store.
+/// Kills (-9) writers of the same store at random points.
 namespace scanloom::store {
 namespace {
 
@@ -40,13 +40,14 @@ struct Reported {
         if (what == 'c') checkpointed[session] = revision;
         if (what == 'r') removed.insert(session);
         if (what == 'n') {
-            EXPECT_TRUE(created.empty() || session > *created.rbegin()) << "session " << session << " came twice";
+            EXPECT_TRUE(created.empty() || session > *created.rbegin())
+                << "session " << session << " was created twice";
             created.insert(session);
         }
     }
 };
 
-/// Starts a writer, kills it when it has said `lines` lines, and notes all it said.
+/// Starts a writer, kills it after `lines` lines of output, and adds all its output to `reported`.
 void write_and_kill(const std::filesystem::path& directory, unsigned seed, std::size_t lines, Reported& reported) {
     int pipe[2];
     ASSERT_EQ(::pipe2(pipe, O_CLOEXEC), 0);
@@ -59,15 +60,15 @@ void write_and_kill(const std::filesystem::path& directory, unsigned seed, std::
     const int spawned = ::posix_spawn(&child, argv[0], &actions, nullptr, argv, environ);
     posix_spawn_file_actions_destroy(&actions);
     ::close(pipe[1]);
-    std::FILE* said = ::fdopen(pipe[0], "r");
+    std::FILE* output = ::fdopen(pipe[0], "r");
     ASSERT_EQ(spawned, 0);
 
     char line[100];
-    for (std::size_t count = 0; std::fgets(line, sizeof line, said) != nullptr; ++count) {
+    for (std::size_t count = 0; std::fgets(line, sizeof line, output) != nullptr; ++count) {
         reported.add(line);
         if (count == lines) ::kill(child, SIGKILL);
     }
-    std::fclose(said);
+    std::fclose(output);
     int status = 0;
     ASSERT_EQ(::waitpid(child, &status, 0), child);
     EXPECT_TRUE(WIFSIGNALED(status)) << "the writer ended by itself";

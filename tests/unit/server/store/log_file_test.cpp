@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kBlockBytes = 32768;
 
-/// A plain writer of the format; that RocksDB writes the same is shown in damage_test.cpp.
+/// A simple writer of the format. crash_recovery_test.cpp reads files that RocksDB wrote.
 void append_write(std::string& file, std::string_view payload) {
     bool first = true;
     do {
@@ -36,7 +36,7 @@ void append_write(std::string& file, std::string_view payload) {
     } while (!payload.empty());
 }
 
-/// A file of writes of these sizes, and where each ends.
+/// A file with writes of these sizes, and the end of each.
 struct Written {
     std::string file;
     std::vector<std::size_t> ends = {0};
@@ -56,7 +56,7 @@ struct Written {
     }
 };
 
-// Within a block, across blocks, and with a block's last bytes too few for a header.
+// Writes within a block, across blocks, and before a block's end that is too short for a header.
 const Written kSmall({40, 200, 13, 90});
 const Written kLarge({1000, 31000, 70000, 5, kBlockBytes - 7 - 3, 300, 40000});
 
@@ -66,13 +66,13 @@ void expect_torn(const std::string& file, std::size_t whole_bytes, const std::st
     EXPECT_EQ(check.whole_bytes, whole_bytes) << what;
 }
 
-TEST(LogFile, AWholeFileIsWhole) {
+TEST(LogFile, AnIntactFileHasNoDamage) {
     expect_torn("", 0, "empty");
     expect_torn(kSmall.file, kSmall.file.size(), "small");
     expect_torn(kLarge.file, kLarge.file.size(), "large");
 }
 
-TEST(LogFile, AFileCutOffAnywhereKeepsItsWholeWrites) {
+TEST(LogFile, AFileCutOffAnywhereKeepsItsCompleteWrites) {
     for (std::size_t bytes = 0; bytes < kSmall.file.size(); ++bytes) {
         expect_torn(kSmall.file.substr(0, bytes), kSmall.whole_bytes_of(bytes), "cut at " + std::to_string(bytes));
     }
@@ -94,7 +94,7 @@ TEST(LogFile, ALastWriteWithUnwrittenPagesIsTorn) {
     }
 }
 
-TEST(LogFile, AFileThatEndsInZerosKeepsItsWholeWrites) {
+TEST(LogFile, AFileThatEndsInZerosKeepsItsCompleteWrites) {
     for (const std::size_t zeros : {1U, 6U, 7U, 5000U, 100000U}) {
         expect_torn(kSmall.file + std::string(zeros, '\0'), kSmall.file.size(), std::to_string(zeros) + " zeros");
     }
@@ -132,7 +132,7 @@ TEST(LogFile, AMissingPieceIsDamage) {
     EXPECT_TRUE(check_log_file(file).damage);
 }
 
-/// Not a write that a crash cut short, which would leave an empty store that looks sound.
+/// If it were taken for an unfinished write, the store would open empty.
 TEST(LogFile, AnotherFilesContentsAreDamage) {
     const std::string identity = "1b4c2f6e-8d7a-4f0e-9c53-6a2f1d0b7e84\n";
     EXPECT_EQ(check_log_file(identity).damage, 0U);

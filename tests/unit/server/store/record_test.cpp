@@ -17,7 +17,7 @@ TEST(StoreRecord, KeysSortAsSessionsAndRevisionsDo) {
     EXPECT_TRUE(std::is_sorted(keys.begin(), keys.end()));
 }
 
-TEST(StoreRecord, ASessionsRangeHoldsItsKeysAndNoOthers) {
+TEST(StoreRecord, ASessionsRangeHasExactlyItsKeys) {
     const KeyRange entries = entries_of(7);
     const KeyRange parts = parts_of(7);
     for (const Revision revision : {Revision{0}, Revision{1}, std::numeric_limits<Revision>::max()}) {
@@ -32,7 +32,7 @@ TEST(StoreRecord, ASessionsRangeHoldsItsKeysAndNoOthers) {
     }
 }
 
-TEST(StoreRecord, KeysTellWhatTheyNameAndOthersNothing) {
+TEST(StoreRecord, KeysAreParsedAndOtherBytesAreRefused) {
     EXPECT_EQ(session_of(session_key(42)), 42U);
     EXPECT_EQ(revision_of(entry_key(1, 300)), 300U);
     EXPECT_EQ(part_of(part_key(1, "chunk")), "chunk");

@@ -49,7 +49,7 @@ TYPED_TEST_SUITE(ScanLogContract, Backends);
 
 TYPED_TEST(ScanLogContract, AFreshLogHasNoSessions) { EXPECT_THAT(this->log_.sessions().value(), IsEmpty()); }
 
-TYPED_TEST(ScanLogContract, SessionsAreListedByRisingIdWithTheirRecords) {
+TYPED_TEST(ScanLogContract, ListsSessionsByAscendingIdWithTheirRecords) {
     const std::string binary("\0\xff\n", 3);
     const auto first = this->log_.create_session("one").value();
     const auto second = this->log_.create_session(binary).value();
@@ -68,10 +68,10 @@ TYPED_TEST(ScanLogContract, IdsAreNotReusedAfterRemoval) {
     EXPECT_GT(this->log_.create_session("two").value(), first);
 }
 
-TYPED_TEST(ScanLogContract, EntriesComeBackInOrderFromAnyRevision) {
+TYPED_TEST(ScanLogContract, ReadsEntriesInOrderFromAnyRevision) {
     const auto session = this->log_.create_session("s").value();
     const auto other = this->log_.create_session("o").value();
-    const auto written = distinct_entries(session, 1, 700); // more than a byte counts
+    const auto written = distinct_entries(session, 1, 700); // more revisions than fit into one byte
     ASSERT_TRUE(append_and_wait(this->log_, session, 1, {written.begin(), written.begin() + 300}));
     ASSERT_TRUE(append_and_wait(this->log_, other, 1, {"other"}));
     ASSERT_TRUE(append_and_wait(this->log_, session, 301, {written.begin() + 300, written.end()}));
@@ -94,7 +94,7 @@ TYPED_TEST(ScanLogContract, RevisionsAreCountedFromOne) {
     EXPECT_THAT(revisions, ElementsAre(2, 3));
 }
 
-TYPED_TEST(ScanLogContract, EmptyAndBinaryEntriesAreKeptAsTheyAre) {
+TYPED_TEST(ScanLogContract, KeepsEmptyAndBinaryEntries) {
     const auto session = this->log_.create_session("").value();
     const std::string binary("\0\0\xff\x80", 4);
     ASSERT_TRUE(append_and_wait(this->log_, session, 1, {"", binary}));
@@ -111,7 +111,7 @@ TYPED_TEST(ScanLogContract, AnAppendThatDoesNotContinueTheLogIsRefusedAndChanges
         EXPECT_THAT(appended.error().message, HasSubstr("ends with 2"));
     }
     EXPECT_THAT(entries_after(this->log_, session, 0).value(), ElementsAre("a", "b"));
-    EXPECT_TRUE(append_and_wait(this->log_, session, 3, {"c"})) << "a refusal is no failure of the store";
+    EXPECT_TRUE(append_and_wait(this->log_, session, 3, {"c"})) << "a refused append is not a failure of the store";
 }
 
 TYPED_TEST(ScanLogContract, ReadingStopsAtTheVisitorsError) {
@@ -137,7 +137,7 @@ TYPED_TEST(ScanLogContract, ReadingBeyondTheEndOfTheLogIsAnError) {
     EXPECT_THAT(entries.error().message, HasSubstr("ends before revision 3"));
 }
 
-TYPED_TEST(ScanLogContract, PartsOfACheckpointThatAreNotNamedStay) {
+TYPED_TEST(ScanLogContract, UnnamedPartsOfACheckpointStay) {
     const auto session = this->log_.create_session("s").value();
     const auto other = this->log_.create_session("o").value();
     EXPECT_THAT(checkpoint_of(this->log_, session).value(), IsEmpty());
@@ -148,7 +148,7 @@ TYPED_TEST(ScanLogContract, PartsOfACheckpointThatAreNotNamedStay) {
                 ElementsAre(Pair("", "empty"), Pair(std::string("\0", 1), ""), Pair("a", "1"), Pair("b", "2")));
 }
 
-TYPED_TEST(ScanLogContract, ARemovedSessionIsGoneAndItsNeighboursAreNot) {
+TYPED_TEST(ScanLogContract, RemovingASessionKeepsItsNeighbours) {
     std::vector<SessionId> sessions;
     for (const auto* record : {"a", "b", "c"}) {
         sessions.push_back(this->log_.create_session(record).value());
@@ -171,7 +171,7 @@ TYPED_TEST(ScanLogContract, ARemovedSessionIsGoneAndItsNeighboursAreNot) {
     }
 }
 
-TYPED_TEST(ScanLogContract, AClearedCheckpointIsGoneAndAnotherMayFollow) {
+TYPED_TEST(ScanLogContract, AClearedCheckpointCanBeWrittenAgain) {
     const auto session = this->log_.create_session("s").value();
     const auto other = this->log_.create_session("t").value();
     ASSERT_TRUE(append_and_wait(this->log_, session, 1, {"entry"}));
@@ -185,7 +185,7 @@ TYPED_TEST(ScanLogContract, AClearedCheckpointIsGoneAndAnotherMayFollow) {
     EXPECT_EQ(this->log_.clear_checkpoint(99).error().code, Errc::kNotFound);
 }
 
-TYPED_TEST(ScanLogContract, ManyThreadsAppendToTheirSessionsAtOnce) {
+TYPED_TEST(ScanLogContract, ThreadsAppendToTheirSessionsConcurrently) {
     constexpr std::size_t kThreads = 8;
     constexpr Revision kAppends = 200;
     std::vector<SessionId> sessions;
@@ -204,7 +204,7 @@ TYPED_TEST(ScanLogContract, ManyThreadsAppendToTheirSessionsAtOnce) {
             });
         }
     }
-    EXPECT_EQ(done, kThreads * kAppends) << "each done exactly once, all earlier ones before the last";
+    EXPECT_EQ(done, kThreads * kAppends) << "each callback is called once, the earlier ones before the last";
     for (const SessionId session : sessions) {
         EXPECT_EQ(entries_after(this->log_, session, 0).value(), distinct_entries(session, 1, kAppends));
     }
@@ -212,7 +212,7 @@ TYPED_TEST(ScanLogContract, ManyThreadsAppendToTheirSessionsAtOnce) {
     EXPECT_EQ(this->log_.stats().entries - before.entries, kThreads * kAppends);
 }
 
-TYPED_TEST(ScanLogContract, AnAppendOfNothingIsDone) {
+TYPED_TEST(ScanLogContract, AnEmptyAppendSucceeds) {
     const auto session = this->log_.create_session("s").value();
     EXPECT_TRUE(append_and_wait(this->log_, session, 1, {}));
     EXPECT_TRUE(append_and_wait(this->log_, session, 1, {"a"}));
@@ -265,6 +265,47 @@ TYPED_TEST(ScanLogContract, ALogHasAnIdentityIfItHasBackups) {
     if (!backup) {
         EXPECT_EQ(backup.error().code, Errc::kInvalidField);
     }
+}
+
+TEST(MemoryScanLog, AFailureLastsUntilReopenAndReadingContinues) {
+    MemoryScanLog log;
+    const auto session = log.create_session("s").value();
+    ASSERT_TRUE(append_and_wait(log, session, 1, {"a"}));
+    log.fail_from_next_change({Errc::kStoreFailed, "disk gone"});
+    EXPECT_EQ(append_and_wait(log, session, 2, {"b"}).error().message, "disk gone");
+    EXPECT_EQ(append_and_wait(log, session, 2, {"b"}).error().message, "disk gone");
+    EXPECT_FALSE(log.write_checkpoint(session, {}));
+    EXPECT_EQ(log.stats().last_error, "disk gone");
+    EXPECT_THAT(entries_after(log, session, 0).value(), ElementsAre("a"));
+    log.reopen();
+    EXPECT_TRUE(append_and_wait(log, session, 2, {"b"}));
+}
+
+TEST(MemoryScanLog, HeldCompletionsComeInOrderWhenReleased) {
+    MemoryScanLog log;
+    const auto session = log.create_session("s").value();
+    std::vector<int> done;
+    log.hold_completions();
+    log.append(session, 1, {"a"}, [&](Result<> result) { done.push_back(result ? 1 : -1); });
+    log.append(session, 2, {"b"}, [&](Result<> result) { done.push_back(result ? 2 : -2); });
+    EXPECT_THAT(done, IsEmpty());
+    EXPECT_EQ(log.held_completions(), 2U);
+    EXPECT_EQ(log.stats().queued_bytes, 2U);
+    EXPECT_THAT(entries_after(log, session, 0).value(), IsEmpty());
+    log.release_completions();
+    EXPECT_THAT(done, ElementsAre(1, 2));
+    EXPECT_THAT(entries_after(log, session, 0).value(), ElementsAre("a", "b"));
+}
+
+TEST(MemoryScanLog, HeldCompletionsAreCalledByTheDestructor) {
+    int done = 0;
+    {
+        MemoryScanLog log;
+        const auto session = log.create_session("s").value();
+        log.hold_completions();
+        log.append(session, 1, {"a"}, [&](Result<>) { ++done; });
+    }
+    EXPECT_EQ(done, 1);
 }
 
 } // namespace

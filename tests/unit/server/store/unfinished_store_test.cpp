@@ -9,7 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-/// Stores that are repaired, also by repairs that are killed.
+/// Stores that a repair writes, and leftovers of killed repairs.
 namespace scanloom::store {
 namespace {
 
@@ -23,7 +23,7 @@ protected:
 
     [[nodiscard]] fs::path at(const char* name) const { return directory_.path() / name; }
 
-    /// As far as a repair may come before it is killed.
+    /// Writes what a repair may have written before it is killed.
     void write_most_of(const UnfinishedStore& unfinished) const {
         const auto log = unfinished.open_log().value();
         const auto session = log->create_session("one").value();
@@ -35,7 +35,7 @@ protected:
     TemporaryDirectory directory_;
 };
 
-TEST_F(UnfinishedStoreTest, IsNoneBeforeItIsFinished) {
+TEST_F(UnfinishedStoreTest, IsRefusedUntilItIsFinished) {
     auto unfinished = begin().value();
     write_most_of(unfinished);
     for (int turn = 0; turn < 2; ++turn) {
@@ -49,17 +49,17 @@ TEST_F(UnfinishedStoreTest, IsNoneBeforeItIsFinished) {
     EXPECT_THAT(entries_after(*log, 1, 0).value(), SizeIs(10));
 }
 
-TEST_F(UnfinishedStoreTest, WhatAKilledRepairLeftGoesWithTheNext) {
+TEST_F(UnfinishedStoreTest, TheNextRepairRemovesTheFilesOfAKilledOne) {
     write_most_of(begin().value());
     auto unfinished = begin();
     ASSERT_TRUE(unfinished) << unfinished.error().message;
     EXPECT_FALSE(fs::exists(at("new.lost") / "one.scanlog"));
-    EXPECT_THAT(files_like(at("new"), ""), SizeIs(1)) << "the mark alone";
+    EXPECT_THAT(files_like(at("new"), ""), SizeIs(1)) << "only the mark";
     ASSERT_TRUE(unfinished->finish());
     EXPECT_TRUE(fs::is_empty(at("new")));
 }
 
-TEST_F(UnfinishedStoreTest, OneThatIsUnderWayIsLeftAlone) {
+TEST_F(UnfinishedStoreTest, ASecondRepairAtTheSameTimeIsRefused) {
     const auto unfinished = begin().value();
     write_most_of(unfinished);
     EXPECT_THAT(begin().error().message, HasSubstr("another --repair is writing it"));
@@ -78,22 +78,22 @@ TEST_F(UnfinishedStoreTest, OtherFilesStay) {
     }
 }
 
-TEST_F(UnfinishedStoreTest, OtherFilesStayAlsoAmongWhatAKilledOneLeft) {
+TEST_F(UnfinishedStoreTest, OtherFilesStayNextToThoseOfAKilledRepair) {
     for (const auto* mine : {"new/mine", "new.lost/mine"}) {
         write_most_of(begin().value());
         write_bytes(at(mine), "mine");
         EXPECT_THAT(begin().error().message, HasSubstr("(mine)"));
         EXPECT_EQ(bytes_of(at(mine)), "mine");
-        EXPECT_EQ(bytes_of(at("new.lost") / "one.scanlog"), "set aside") << "nor is anything else removed";
+        EXPECT_EQ(bytes_of(at("new.lost") / "one.scanlog"), "set aside") << "no other file is removed";
         fs::remove(at(mine));
     }
 }
 
-TEST_F(UnfinishedStoreTest, AFinishedOneIsNotTakenForALeftover) {
+TEST_F(UnfinishedStoreTest, AFinishedStoreIsNotRemovedAsALeftover) {
     auto unfinished = begin().value();
     write_most_of(unfinished);
     ASSERT_TRUE(unfinished.finish());
-    write_bytes(at("new") / "scanloom.unfinished", ""); // as one that came at that very moment would make it
+    write_bytes(at("new") / "scanloom.unfinished", ""); // as a concurrent repair would create it
     EXPECT_EQ(begin().error().code, Errc::kConflict);
     EXPECT_TRUE(open_rocksdb(at("new")));
 }

@@ -11,11 +11,11 @@
 #include <condition_variable>
 #include <mutex>
 
-/// Deleting a session gives its disk back.
+/// Deleting a session frees its disk space.
 namespace scanloom::store {
 namespace {
 
-/// Tells when the store has deleted a file.
+/// Notifies a waiting test when the store deletes a file.
 class WatchedFileSystem final : public rocksdb::FileSystemWrapper {
 public:
     WatchedFileSystem() : FileSystemWrapper(rocksdb::FileSystem::Default()) {}
@@ -29,7 +29,8 @@ public:
         return status;
     }
 
-    /// Looks after each file that is deleted. @return false when none was for long.
+    /// Waits until the condition holds, and checks it after each deleted file.
+    /// @return false if no file was deleted for 20 s
     template <class Condition>
     bool wait_for(const Condition& holds) {
         std::unique_lock lock(mutex_);
@@ -66,7 +67,7 @@ protected:
     std::unique_ptr<ScanLog> log_;
 };
 
-TEST_F(FreedDisk, OfTwoSessionsThatGrewTogetherHalfOfTheDeletedOneAtLeastIsGivenBack) {
+TEST_F(FreedDisk, RemovingOneOfTwoInterleavedSessionsFreesHalfOfItsBytes) {
     const auto one = log_->create_session("one").value();
     const auto other = log_->create_session("other").value();
     for (Revision first = 1; first <= kEntries; first += kPiece) {

@@ -14,7 +14,7 @@
 #include <future>
 #include <random>
 
-/// Files cut short by a crash, which must open, and damaged ones, which must not pass for whole.
+/// Files that a crash cut short open; damaged files are reported.
 namespace scanloom::store {
 namespace {
 
@@ -48,7 +48,7 @@ protected:
     [[nodiscard]] fs::path killed() const { return directory_.path() / "killed"; }
     [[nodiscard]] fs::path copy() const { return directory_.path() / "copy"; }
 
-    /// Expects just the appends whose writes are wholly within the first `bytes`.
+    /// Expects exactly the appends whose writes end within the first `bytes`.
     void expect_prefix(std::size_t bytes) {
         const auto log = open_rocksdb(copy());
         ASSERT_TRUE(log) << log.error().message;
@@ -68,15 +68,14 @@ protected:
     std::vector<std::size_t> ends_; // of the write-ahead log, after the session and each append
 };
 
-/// All that it held was in there.
 TEST_F(KilledStore, AMissingWriteAheadLogIsReported) {
     copy_store(killed(), copy());
     fs::remove(only_file_like(copy(), ".log"));
     EXPECT_THAT(open_rocksdb(copy()).error().message, HasSubstr("write-ahead log (*.log) is missing"));
 }
 
-/// Removing a session begins a log, which is empty when the server is killed then, and stays at the next start.
-TEST_F(KilledStore, AMissingWriteAheadLogIsReportedAlsoBesideAnOlderOneThatIsEmpty) {
+/// Removing a session starts a new log. If the server is killed then, that log is empty and stays at the next start.
+TEST_F(KilledStore, AMissingWriteAheadLogIsReportedIfAnOlderEmptyOneExists) {
     const auto twice = directory_.path() / "killed twice";
     {
         auto log = open_rocksdb(original()).value();
@@ -100,7 +99,7 @@ TEST_F(KilledStore, AMissingWriteAheadLogIsReportedAlsoBesideAnOlderOneThatIsEmp
     EXPECT_THAT(without.error().message, HasSubstr("the newest write-ahead log"));
 }
 
-TEST_F(KilledStore, AWriteAheadLogCutOffAnywhereOpensWithItsWholeAppends) {
+TEST_F(KilledStore, AWriteAheadLogCutOffAnywhereOpensWithItsCompleteAppends) {
     std::vector<std::size_t> cuts = {0, 1, ends_.front() - 1};
     for (const std::size_t end : ends_) {
         cuts.insert(cuts.end(), {end, end - 1});
@@ -124,9 +123,9 @@ TEST_F(KilledStore, ALastWriteOfZerosOpensWithoutIt) {
     expect_prefix(last + 20);
 }
 
-TEST_F(KilledStore, AFlippedBitInTheWriteAheadLogIsReportedAndNothingChanged) {
+TEST_F(KilledStore, AFlippedBitInTheWriteAheadLogIsReportedAndChangesNothing) {
     std::vector<std::size_t> bytes;
-    for (const std::size_t end : ends_) { // each of a record's header
+    for (const std::size_t end : ends_) { // every field of a record's header
         if (end != ends_.back()) bytes.insert(bytes.end(), {end, end + 4, end + 5, end + 6, end + 7});
     }
     std::mt19937 random(2);
@@ -217,7 +216,7 @@ protected:
     SessionId session_ = 0;
 };
 
-TEST_F(TableStore, ReadsBackWhole) { EXPECT_EQ(read_all().value(), distinct_entries(session_, 1, kEntries)); }
+TEST_F(TableStore, ReadsBackEverything) { EXPECT_EQ(read_all().value(), distinct_entries(session_, 1, kEntries)); }
 
 TEST_F(TableStore, AFlippedBitInATableIsReportedOrHarmless) {
     std::mt19937 random(4);
@@ -235,10 +234,10 @@ TEST_F(TableStore, AFlippedBitInATableIsReportedOrHarmless) {
         EXPECT_EQ(entries.error().code, Errc::kDataLoss);
         EXPECT_THAT(entries.error().message, HasSubstr(file.filename().native()));
     }
-    EXPECT_GE(reported, 50) << "nearly all of a table is entries";
+    EXPECT_GE(reported, 50) << "nearly all bytes of a table are entries";
 }
 
-// RocksDB alone takes no write any more once it has failed to merge its tables.
+/// RocksDB by itself accepts no write after a failed merge of tables.
 TEST_F(TableStore, ATableThatCannotBeMergedIsReportedAndStopsNoWrite) {
     const auto table = only_file_like(copy(), ".sst");
     flip_bit(table, fs::file_size(table) / 2, 3);
@@ -271,7 +270,7 @@ TEST_F(TableStore, ATableThatCannotBeMergedIsReportedAndStopsNoWrite) {
     EXPECT_TRUE(log->remove_session(session_));
 }
 
-TEST_F(TableStore, ATableThatIsMissingOrCutOffIsReported) {
+TEST_F(TableStore, AMissingOrCutOffTableIsReported) {
     auto file = only_file_like(copy(), ".sst");
     fs::resize_file(file, fs::file_size(file) / 2);
     EXPECT_THAT(read_all().error().message, HasSubstr(file.filename().native()));
@@ -280,7 +279,7 @@ TEST_F(TableStore, ATableThatIsMissingOrCutOffIsReported) {
     EXPECT_THAT(read_all().error().message, HasSubstr(file.stem().native()));
 }
 
-TEST_F(TableStore, ATableIsReadWholeToCheckIt) {
+TEST_F(TableStore, CheckTableReadsEveryBlock) {
     const auto table = only_file_like(copy(), ".sst");
     EXPECT_TRUE(check_table(table));
     const auto size = fs::file_size(table);
@@ -293,8 +292,9 @@ TEST_F(TableStore, ATableIsReadWholeToCheckIt) {
     }
 }
 
-// RocksDB alone takes a length that reaches beyond the end for the end, and forgets the last tables.
-TEST_F(TableStore, ARecordOfTheManifestThatClaimsToBeLongerIsReported) {
+/// RocksDB by itself takes a length beyond the end of the file for the end of the manifest, and ignores the last
+/// tables.
+TEST_F(TableStore, AManifestRecordWithAGreaterLengthIsReported) {
     const auto size = fs::file_size(only_file_like(copy(), "MANIFEST-"));
     for (std::size_t byte = 0; byte < size; ++byte) {
         restore();
@@ -306,7 +306,7 @@ TEST_F(TableStore, ARecordOfTheManifestThatClaimsToBeLongerIsReported) {
     }
 }
 
-TEST_F(TableStore, AnEmptyManifestIsReportedAndNoTableRemoved) {
+TEST_F(TableStore, AnEmptyManifestIsReportedAndRemovesNoTable) {
     for (const std::string& contents : {std::string(), std::string(100, '\0')}) {
         restore();
         const auto file = only_file_like(copy(), "MANIFEST-");

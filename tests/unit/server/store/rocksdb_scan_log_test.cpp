@@ -48,7 +48,7 @@ TEST_F(FaultyDisk, AfterAFailedSyncNothingIsAcknowledgedUntilReopened) {
     EXPECT_FALSE(log->write_checkpoint(session, {{"k", "v"}}));
     EXPECT_FALSE(log->remove_session(session));
     EXPECT_THAT(log->stats().last_error.value_or(""), HasSubstr("Input/output error"));
-    EXPECT_THAT(entries_after(*log, session, 0).value(), ElementsAre("durable")) << "reading goes on";
+    EXPECT_THAT(entries_after(*log, session, 0).value(), ElementsAre("durable")) << "reading continues";
     log.reset();
 
     log = open_rocksdb(directory_, options_).value();
@@ -75,7 +75,7 @@ TEST_F(FaultyDisk, AFullDiskFailsAppendsAndLosesNothing) {
     EXPECT_TRUE(append_and_wait(*log, session, 2, {"goes on"}));
 }
 
-TEST_F(FaultyDisk, WithoutRoomNothingIsStoredButSessionsCanBeRemovedAndItGoesOnByItself) {
+TEST_F(FaultyDisk, WithoutRoomOnlyRemovalsAreAcceptedUntilThereIsRoom) {
     options_.disk_reserve_bytes = 1000;
     disk_.files->set_free_bytes(1000);
     auto log = open_rocksdb(directory_, options_).value();
@@ -97,7 +97,7 @@ TEST_F(FaultyDisk, WithoutRoomNothingIsStoredButSessionsCanBeRemovedAndItGoesOnB
     EXPECT_THAT(entries_after(*log, session, 0).value(), ElementsAre("durable"));
 
     disk_.files->set_free_bytes(1000);
-    EXPECT_FALSE(log->stats().no_room) << "also before anything is stored again";
+    EXPECT_FALSE(log->stats().no_room) << "even before the next append";
     EXPECT_TRUE(append_and_wait(*log, session, 2, {"later"}));
 }
 
@@ -119,7 +119,7 @@ TEST_F(FaultyDisk, AFailedLogIsReopenedOnceItsDiskCanBeWritten) {
     EXPECT_THAT(entries_after(*log, session, 0).value(), ElementsAre("durable")) << "reading continues";
     ASSERT_TRUE(log->reopen());
     EXPECT_FALSE(log->stats().last_error);
-    EXPECT_EQ(log->stats().entries, before.entries) << "counts include those from before";
+    EXPECT_EQ(log->stats().entries, before.entries) << "statistics cover all openings";
     const Revision end = log->end_of(session).value();
     EXPECT_EQ(entries_after(*log, session, 0).value()[0], "durable");
     EXPECT_TRUE(append_and_wait(*log, session, end + 1, {"goes on"}));
@@ -166,7 +166,7 @@ TEST_F(FaultyDisk, LogsThatCannotBeReadAreReported) {
     EXPECT_THAT(reported, ElementsAre(std::pair(session, Errc::kDataLoss)));
 }
 
-/// One session written as fast as it goes, with checkpoints that run ahead of the acknowledgements.
+/// Writes one session as fast as possible, with checkpoints ahead of the acknowledgements.
 class Writer {
 public:
     explicit Writer(ScanLog& log) : log_(log), session(log.create_session("s").value()) {}
@@ -206,7 +206,7 @@ Revision revision_in(const std::string& part) {
     return revision;
 }
 
-/// What must be found after one power cut.
+/// The state that must be found after one power cut.
 struct PowerCut {
     struct Session {
         SessionId id;
