@@ -113,7 +113,7 @@ readonly parts_of_all=(
     '^faults[.];load robot_client server/ingest server/session server/store tests/fault tests/integration/robot_client'
     '^e2e_([^l]|layers);server/http server/live tests/e2e web'
     '^python_client_;proto robot_client/python server/ingest tests/integration/robot_client/python'
-    '^observability_;docs/observability server/http/handlers/metrics.cpp server/metrics tests/integration/observability'
+    '^observability_;docs/observability server/http/handlers/system.cpp server/metrics tests/integration/observability'
     '^openapi_;server/http/openapi.json tests/openapi'
     '^readers$;server/exchange server/http server/tiles tests/readers'
     '^package$;cmake docker packaging robot_client/client robot_client/package scanloom tests/package'

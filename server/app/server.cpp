@@ -62,8 +62,7 @@ session::WeavesLimits weaves_within(std::size_t bytes) {
 
 } // namespace
 
-Server::Server(const ServerOptions& options, const ConnectionLimits& limits, std::unique_ptr<store::ScanLog> log,
-               http::WebFiles web)
+Server::Server(const ServerOptions& options, const ConnectionLimits& limits, std::unique_ptr<store::ScanLog> log)
     : options_(options), limits_(limits), log_(std::move(log)), metrics_(kVersion), audit_(metrics_.refusals()),
       weaving_(options.threads), serving_(std::max<std::size_t>(2, options.threads)),
       sessions_(*log_, {.compute = weaving_.get_executor(),
@@ -74,10 +73,8 @@ Server::Server(const ServerOptions& options, const ConnectionLimits& limits, std
                         .idle_after = options.idle_after}),
       check_(*log_, sessions_, checking_.get_executor()),
       weaves_(*log_, reweaving_.get_executor(), weaves_within(options.weave_memory_bytes)), locator_(*log_),
-      desk_(planning_.get_executor(), locating_.get_executor(), {goals_, locator_, sessions_}),
-      api_(sessions_, weaves_, goals_, *log_, metrics_, {gate_, audit_, logins_}, std::move(web),
-           options.tile_cache_bytes),
-      hangup_(io_, SIGHUP), patience_(io_), weaving_patience_(io_), tidying_(asio::make_strand(io_)) {}
+      desk_(planning_.get_executor(), locating_.get_executor(), {goals_, locator_, sessions_}), hangup_(io_, SIGHUP),
+      patience_(io_), weaving_patience_(io_), tidying_(asio::make_strand(io_)) {}
 
 Server::~Server() {
     // No task may run while the members are destroyed, in reverse order.
@@ -135,23 +132,20 @@ Result<std::unique_ptr<Server>> Server::open(const ServerOptions& options, const
         if (!read) return prefixed("--tokens ", read.error());
         tokens = std::move(*read);
     }
-    std::unique_ptr<Server> server(new Server(options, limits, std::move(*log), std::move(*web)));
+    std::unique_ptr<Server> server(new Server(options, limits, std::move(*log)));
     if (!options.tokens.empty()) server->gate_.replace(std::move(tokens));
-    server->api_.set_background_check(server->check_);
-    server->api_.set_locator(server->locator_);
     *check = &server->check_;
     if (!options.backups.empty()) {
         auto backups = store::Backups::open(options.backups, options.backups_kept, *server->log_,
                                             [](const std::string& what) { spdlog::warn("{}", what); });
         if (!backups) return prefixed("--backups: ", backups.error());
         server->backups_ = std::move(*backups);
-        server->api_.set_backups(*server->backups_);
     }
-    if (auto listening = server->listen(); !listening) return listening.error();
+    if (auto listening = server->listen(std::move(*web)); !listening) return listening.error();
     return server;
 }
 
-Result<> Server::listen() {
+Result<> Server::listen(http::WebFiles web) {
     auto robot_tls = tls_of(options_.robot_tls);
     if (!robot_tls) return prefixed("--robot-tls-cert: ", robot_tls.error());
     auto http_tls = tls_of(options_.http_tls);
@@ -171,7 +165,19 @@ Result<> Server::listen() {
                                                      text_of(options_.listen), failure.code().message())};
     }
     const auto address = options_.listen.address();
-    api_.set_robot_port({address.is_unspecified() ? "" : address.to_string(), ingest_->port()});
+    services_.reset(new http::Services{.sessions = sessions_,
+                                       .weaves = weaves_,
+                                       .goals = goals_,
+                                       .locator = locator_,
+                                       .log = *log_,
+                                       .check = check_,
+                                       .metrics = metrics_,
+                                       .doorman = {gate_, audit_, logins_},
+                                       .web = std::move(web),
+                                       .robots = {address.is_unspecified() ? "" : address.to_string(), ingest_->port()},
+                                       .backups = backups_.get(),
+                                       .tile_bytes_max = options_.tile_cache_bytes});
+    api_.emplace(*services_);
     http::ServerConfig config;
     config.endpoint = options_.http;
     config.host_names = options_.http_hosts;
@@ -190,10 +196,10 @@ Result<> Server::listen() {
          .changing = changing_.get_executor(),
          .showing = showing_.get_executor()},
         config,
-        {[this](const http::Request& request) { return api_.answer(request); },
-         [this](const http::Request& request) { return api_.look(request); },
-         [this](const http::Request& request) { return api_.refuse(request); },
-         [this](const http::Asleep& asleep, std::function<void()> told) { api_.wake(asleep, std::move(told)); },
+        {[this](const http::Request& request) { return api_->answer(request); },
+         [this](const http::Request& request) { return api_->look(request); },
+         [this](const http::Request& request) { return api_->refuse(request); },
+         [this](const http::Asleep& asleep, std::function<void()> told) { api_->wake(asleep, std::move(told)); },
          [this](const std::string& who, net::ClientFault fault) { audit_.note(access::Port::kHttp, who, fault); },
          [this](const std::string& who) {
              audit_.note({access::Port::kHttp, access::Reason::kForeignHost, who, "", ""});
@@ -216,7 +222,7 @@ Result<> Server::run() {
         return recovered.error();
     }
     if (!sessions_.is_draining()) {
-        api_.set_recovered();
+        services_->recovered = true;
         ingest_->start();
         asio::post(tidying_.get_executor(), [this] { tidy_up(); });
         check_.start();

@@ -63,10 +63,9 @@ public:
     [[nodiscard]] Result<> run();
 
 private:
-    Server(const ServerOptions& options, const ConnectionLimits& limits, std::unique_ptr<store::ScanLog> log,
-           http::WebFiles web);
+    Server(const ServerOptions& options, const ConnectionLimits& limits, std::unique_ptr<store::ScanLog> log);
 
-    [[nodiscard]] Result<> listen();
+    [[nodiscard]] Result<> listen(http::WebFiles web);
     void announce() const;
     void wait_for_signal();
     void tidy_up();
@@ -108,7 +107,8 @@ private:
     guide::GoalBook goals_;
     guide::Locator locator_;
     ingest::RequestDesk desk_;
-    http::Api api_;
+    std::unique_ptr<http::Services> services_; // of api_
+    std::optional<http::Api> api_;
     std::shared_ptr<sockets::PortTls> robot_tls_; // null: the port does not use TLS; so for http_tls_
     std::shared_ptr<sockets::PortTls> http_tls_;
     std::unique_ptr<ingest::IngestServer> ingest_;

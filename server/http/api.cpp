@@ -1,33 +1,7 @@
 #include "server/http/api.hpp"
 
 #include "server/http/content_coding.hpp"
-#include "server/http/handlers/backups.hpp"
-#include "server/http/handlers/changes.hpp"
-#include "server/http/handlers/coverage.hpp"
-#include "server/http/handlers/difference.hpp"
-#include "server/http/handlers/digest.hpp"
-#include "server/http/handlers/exclusions.hpp"
-#include "server/http/handlers/frontiers.hpp"
-#include "server/http/handlers/goal.hpp"
-#include "server/http/handlers/goals.hpp"
-#include "server/http/handlers/health.hpp"
-#include "server/http/handlers/import.hpp"
-#include "server/http/handlers/landmarks.hpp"
-#include "server/http/handlers/live.hpp"
-#include "server/http/handlers/log.hpp"
-#include "server/http/handlers/login.hpp"
-#include "server/http/handlers/map_files.hpp"
-#include "server/http/handlers/metrics.hpp"
-#include "server/http/handlers/openapi.hpp"
-#include "server/http/handlers/plan.hpp"
-#include "server/http/handlers/points.hpp"
-#include "server/http/handlers/session_lookup.hpp"
-#include "server/http/handlers/sessions.hpp"
-#include "server/http/handlers/tile.hpp"
-#include "server/http/handlers/tilejson.hpp"
-#include "server/http/handlers/trajectory.hpp"
-#include "server/http/handlers/viewer.hpp"
-#include "server/http/handlers/weaves.hpp"
+#include "server/http/handlers/handlers.hpp"
 #include "server/http/in_quotes.hpp"
 #include "server/http/json_read.hpp"
 #include "server/http/multipart.hpp"
@@ -111,7 +85,7 @@ std::variant<Api::Admitted, Response> Api::admit(const Request& request) const {
             .set("Allow", refused->allow);
     }
     auto& match = std::get<Match>(routing);
-    auto who = doorman_.admit(request, match);
+    auto who = services_.doorman.admit(request, match);
     if (auto* refusal = std::get_if<Response>(&who)) return std::move(*refusal);
     if (auto accepted = check_content_type(match.operation, request); !accepted) {
         return problem(Status::unsupported_media_type, accepted.error().message, path);
@@ -123,7 +97,8 @@ Response Api::answer(const Request& request) {
     auto admitted = admit(request);
     if (auto* refusal = std::get_if<Response>(&admitted)) return std::move(*refusal);
     auto& [match, query, who] = std::get<Admitted>(admitted);
-    auto response = call(match, {request, match.arguments, query, std::move(who)});
+    Context context{services_, request, match.arguments, query, std::move(who)};
+    auto response = call(match.operation, context);
     if (!response) return problem(response.error(), instance_of(request.target));
     auto plain = for_who_asked(match.operation, std::move(*response));
     const bool is_on_io_thread = lane_of(match, query) == Lane::kAtOnce;
@@ -143,29 +118,30 @@ Outlook Api::look(const Request& request) {
     const auto routing = find_route(request.method, target->segments);
     const auto* match = std::get_if<Match>(&routing);
     if (match == nullptr) return Lane::kAtOnce;
-    auto who = doorman_.admit(request, *match);
+    auto who = services_.doorman.admit(request, *match);
     if (auto* refusal = std::get_if<Response>(&who)) return std::move(*refusal);
-    if (recovered_ && needs_maps(match->operation)) {
+    if (services_.recovered && needs_maps(match->operation)) {
         const auto& session = match->arguments["session"];
-        if (sessions_.is_asleep(session)) return Asleep{session};
+        if (services_.sessions.is_asleep(session)) return Asleep{session};
     }
     const auto format = tile_format_of(match->operation);
-    if (!format || !recovered_) return lane_of(*match, target->query);
-    const Call call{request, match->arguments, target->query, std::get<access::TokenRef>(std::move(who))};
-    auto outlook = look_at_tile(maps_, tiles_, call, *format);
+    if (!format || !services_.recovered) return lane_of(*match, target->query);
+    const Context context{services_, request, match->arguments, target->query,
+                          std::get<access::TokenRef>(std::move(who))};
+    auto outlook = look_at_tile(context, *format);
     if (!outlook) return problem(outlook.error(), instance_of(request.target));
     if (auto* response = std::get_if<Response>(&*outlook)) return for_who_asked(match->operation, std::move(*response));
     return std::move(*outlook);
 }
 
 void Api::wake(const Asleep& asleep, std::function<void()> on_loaded) {
-    sessions_.wake(asleep.session, [on_loaded = std::move(on_loaded)](
-                                       const Result<std::shared_ptr<session::Session>>&) { on_loaded(); });
+    services_.sessions.wake(asleep.session, [on_loaded = std::move(on_loaded)](
+                                                const Result<std::shared_ptr<session::Session>>&) { on_loaded(); });
 }
 
 /// A response that depends on permissions must not be kept by shared caches, so "public" becomes "private".
 Response Api::for_who_asked(Operation operation, Response response) const {
-    if (need_of(operation) == Need::kNothing || doorman_.gate().is_open()) return response;
+    if (need_of(operation) == Need::kNothing || services_.doorman.gate().is_open()) return response;
     for (auto& [field, value] : response.fields) {
         constexpr std::string_view kPublic = "public";
         if (field == "Cache-Control" && value.starts_with(kPublic)) value.replace(0, kPublic.size(), "private");
@@ -173,58 +149,58 @@ Response Api::for_who_asked(Operation operation, Response response) const {
     return response;
 }
 
-Result<Response> Api::call(const Match& match, const Call& call) {
-    if (needs_sessions(match.operation) && !recovered_) {
+Result<Response> Api::call(Operation operation, Context& context) {
+    if (needs_sessions(operation) && !services_.recovered) {
         return Error{Errc::kOverloaded, "the sessions are still being recovered from the store; try again soon"};
     }
-    switch (match.operation) {
-    case Operation::kViewer: return get_viewer(web_, call);
-    case Operation::kViewerAsset: return get_viewer_asset(web_, call);
-    case Operation::kLivez: return get_livez(call);
-    case Operation::kReadyz: return get_readyz(sessions_, check_, log_, recovered_, robots_, call);
-    case Operation::kMetrics: return get_metrics(metrics_, sessions_, check_, weaves_, log_, tiles_.stats(), call);
-    case Operation::kOpenapi: return get_openapi(call);
-    case Operation::kGetLogin: return get_login(doorman_, call);
-    case Operation::kLogin: return post_login(doorman_, call);
-    case Operation::kLogout: return delete_login(doorman_, call);
-    case Operation::kListBackups: return list_backups(backups_, call);
-    case Operation::kMakeBackup: return make_backup(backups_, log_, call);
-    case Operation::kListSessions: return list_sessions(sessions_, check_, call);
-    case Operation::kCreateSession: return create_session(sessions_, doorman_, call);
-    case Operation::kGetSession: return get_session(sessions_, check_, call);
-    case Operation::kDeleteSession: return delete_session(sessions_, {weaves_, landmarks_, locator_, tiles_}, call);
-    case Operation::kImportMap: return import_map(sessions_, doorman_, call);
-    case Operation::kTilePng: return get_tile(maps_, tiles_, call, tiles::TileFormat::kPng);
-    case Operation::kTileBin: return get_tile(maps_, tiles_, call, tiles::TileFormat::kCodes);
-    case Operation::kTileJson: return get_tilejson(maps_, call);
-    case Operation::kChanges: return get_changes(maps_, call);
-    case Operation::kMapPng: return get_map_png(maps_, slots_, call);
-    case Operation::kMapPgm: return get_map_pgm(maps_, slots_, call);
-    case Operation::kMapYaml: return get_map_yaml(maps_, call);
-    case Operation::kMapCsv: return get_map_csv(maps_, slots_, call);
-    case Operation::kMapNpy: return get_map_npy(maps_, slots_, call);
-    case Operation::kDigest: return get_digest(maps_, call);
-    case Operation::kDifference: return get_difference(maps_, call);
-    case Operation::kDifferencePng: return get_difference_png(maps_, slots_, call);
-    case Operation::kTrajectory: return get_trajectory(sessions_, log_, slots_, call);
-    case Operation::kFrontiers: return get_frontiers(maps_, slots_, call);
-    case Operation::kLandmarks: return get_landmarks(sessions_, landmarks_, slots_, call);
-    case Operation::kPointsCsv: return get_points(sessions_, log_, slots_, PointFile::kCsv, call);
-    case Operation::kPointsPly: return get_points(sessions_, log_, slots_, PointFile::kPly, call);
-    case Operation::kPlan: return post_plan(maps_, slots_, call);
-    case Operation::kCoverage: return post_coverage(maps_, slots_, call);
-    case Operation::kGoal: return get_goal(sessions_, goals_.ways(), slots_, call);
-    case Operation::kAssignGoal: return assign_goal(maps_, goals_, slots_, call);
-    case Operation::kGoals: return get_goals(sessions_, goals_.ways(), slots_, call);
-    case Operation::kLog: return get_log(sessions_, log_, call);
-    case Operation::kLive: return get_live(sessions_, goals_.ways(), watched_landmarks_, doorman_, call);
-    case Operation::kStartWeave: return start_weave(maps_, call);
-    case Operation::kListWeaves: return list_weaves(maps_, call);
-    case Operation::kGetWeave: return get_weave(maps_, call);
-    case Operation::kDeleteWeave: return delete_weave(maps_, call);
-    case Operation::kExclude: return exclude_scans(sessions_, call);
-    case Operation::kListExclusions: return list_exclusions(sessions_, call);
-    case Operation::kLiftExclusion: return lift_exclusion(sessions_, call);
+    switch (operation) {
+    case Operation::kViewer: return get_viewer(context);
+    case Operation::kViewerAsset: return get_viewer_asset(context);
+    case Operation::kLivez: return get_livez(context);
+    case Operation::kReadyz: return get_readyz(context);
+    case Operation::kMetrics: return get_metrics(context);
+    case Operation::kOpenapi: return get_openapi(context);
+    case Operation::kGetLogin: return get_login(context);
+    case Operation::kLogin: return post_login(context);
+    case Operation::kLogout: return delete_login(context);
+    case Operation::kListBackups: return list_backups(context);
+    case Operation::kMakeBackup: return make_backup(context);
+    case Operation::kListSessions: return list_sessions(context);
+    case Operation::kCreateSession: return create_session(context);
+    case Operation::kGetSession: return get_session(context);
+    case Operation::kDeleteSession: return delete_session(context);
+    case Operation::kImportMap: return import_map(context);
+    case Operation::kTilePng: return get_tile_png(context);
+    case Operation::kTileBin: return get_tile_bin(context);
+    case Operation::kTileJson: return get_tilejson(context);
+    case Operation::kChanges: return get_changes(context);
+    case Operation::kMapPng: return get_map_png(context);
+    case Operation::kMapPgm: return get_map_pgm(context);
+    case Operation::kMapYaml: return get_map_yaml(context);
+    case Operation::kMapCsv: return get_map_csv(context);
+    case Operation::kMapNpy: return get_map_npy(context);
+    case Operation::kDigest: return get_digest(context);
+    case Operation::kDifference: return get_difference(context);
+    case Operation::kDifferencePng: return get_difference_png(context);
+    case Operation::kTrajectory: return get_trajectory(context);
+    case Operation::kFrontiers: return get_frontiers(context);
+    case Operation::kLandmarks: return get_landmarks(context);
+    case Operation::kPointsCsv: return get_points_csv(context);
+    case Operation::kPointsPly: return get_points_ply(context);
+    case Operation::kPlan: return post_plan(context);
+    case Operation::kCoverage: return post_coverage(context);
+    case Operation::kGoal: return get_goal(context);
+    case Operation::kAssignGoal: return assign_goal(context);
+    case Operation::kGoals: return get_goals(context);
+    case Operation::kLog: return get_log(context);
+    case Operation::kLive: return get_live(context);
+    case Operation::kStartWeave: return start_weave(context);
+    case Operation::kListWeaves: return list_weaves(context);
+    case Operation::kGetWeave: return get_weave(context);
+    case Operation::kDeleteWeave: return delete_weave(context);
+    case Operation::kExclude: return exclude_scans(context);
+    case Operation::kListExclusions: return list_exclusions(context);
+    case Operation::kLiftExclusion: return lift_exclusion(context);
     }
     return Error{Errc::kNotFound, "this operation has no handler"};
 }

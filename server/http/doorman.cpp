@@ -1,5 +1,6 @@
 #include "server/http/doorman.hpp"
 
+#include "server/http/context.hpp"
 #include "server/http/credentials.hpp"
 #include "server/http/host.hpp"
 #include "server/http/in_quotes.hpp"
@@ -120,8 +121,8 @@ Response Doorman::refuse(const Request& request, const Denied& why, std::string_
     return problem(Status::forbidden, why.error.message, path);
 }
 
-Error Doorman::noted(const Call& call, Error error, std::string_view session) const {
-    if (error.code == Errc::kFull) note(call.request, {Reason::kLimit, call.token->name, error}, session);
+Error Doorman::noted(const Context& context, Error error, std::string_view session) const {
+    if (error.code == Errc::kFull) note(context.request, {Reason::kLimit, context.token->name, error}, session);
     return error;
 }
 

@@ -5,7 +5,6 @@
 #include "server/guard/audit.hpp"
 #include "server/guard/gate.hpp"
 #include "server/guard/logins.hpp"
-#include "server/http/handlers/call.hpp"
 #include "server/http/request.hpp"
 #include "server/http/response.hpp"
 #include "server/http/router.hpp"
@@ -16,6 +15,8 @@
 #include <variant>
 
 namespace scanloom::http {
+
+struct Context;
 
 /// Identifies the sender of a request and checks that its token permits the operation.
 ///
@@ -42,7 +43,7 @@ public:
     void note(access::Refusal refusal) const { audit_.note(std::move(refusal)); }
 
     /// Returns `error` unchanged. Writes it to the audit log if a limit is reached (kFull).
-    [[nodiscard]] Error noted(const Call& call, Error error, std::string_view session) const;
+    [[nodiscard]] Error noted(const Context& context, Error error, std::string_view session) const;
 
     [[nodiscard]] guard::Gate& gate() const noexcept { return gate_; }
     [[nodiscard]] guard::Logins& logins() const noexcept { return logins_; }

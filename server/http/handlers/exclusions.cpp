@@ -1,7 +1,7 @@
-#include "server/http/handlers/exclusions.hpp"
+#include "server/http/handlers/handlers.hpp"
 
 #include "server/guide/robots.hpp"
-#include "server/http/handlers/session_lookup.hpp"
+#include "server/http/handlers/lookup.hpp"
 #include "server/http/in_quotes.hpp"
 #include "server/http/json_read.hpp"
 #include "server/http/number.hpp"
@@ -52,7 +52,7 @@ Result<std::variant<StampRange, SeqRange>> read_range(const boost::json::object&
     return {SeqRange{std::get<std::uint64_t>(*from), std::get<std::uint64_t>(*to)}};
 }
 
-boost::json::object to_json(const Exclusion& exclusion, std::string_view robot) {
+boost::json::object exclusion_json(const Exclusion& exclusion, std::string_view robot) {
     const auto& [id, index, scans] = exclusion.excluded;
     boost::json::object json{{"id", id}, {"robot", robot}};
     if (const auto* stamps = std::get_if<StampRange>(&scans)) {
@@ -68,9 +68,9 @@ boost::json::object to_json(const Exclusion& exclusion, std::string_view robot) 
 }
 
 /// Returns the session's data without its maps.
-Result<std::shared_ptr<const mapping::Snapshot>> find_facts(const session::SessionRegistry& sessions,
-                                                            const Call& call) {
-    const auto& name = call.arguments["session"];
+Result<std::shared_ptr<const mapping::Snapshot>> find_facts(const Context& context) {
+    const auto& sessions = context.services.sessions;
+    const auto& name = context.arguments["session"];
     const auto listed = sessions.listed(name);
     if (!listed) return damage_of(sessions, name).value_or(session::no_such_session(name));
     return listed->session ? listed->session->snapshot() : listed->summary.facts;
@@ -78,44 +78,45 @@ Result<std::shared_ptr<const mapping::Snapshot>> find_facts(const session::Sessi
 
 } // namespace
 
-Result<Response> exclude_scans(session::SessionRegistry& sessions, const Call& call) {
-    if (auto known = call.query.check_only({}); !known) return known.error();
-    const auto body = parse_json_object(call.request.body);
+Result<Response> exclude_scans(Context& context) {
+    if (auto known = context.query.check_only({}); !known) return known.error();
+    const auto body = parse_json_object(context.request.body);
     if (!body) return body.error();
     if (auto known = check_members(*body, kExclusionMembers); !known) return known.error();
     const auto robot = read_text(*body, "robot");
     if (!robot) return robot.error();
     const auto range = read_range(*body);
     if (!range) return range.error();
-    const auto facts = find_facts(sessions, call);
+    const auto facts = find_facts(context);
     if (!facts) return facts.error();
     const auto index = guide::find_robot(**facts, *robot);
     if (!index) return prefixed(fmt::format("robot is {}: ", in_quotes(*robot)), index.error());
-    const auto exclusion = sessions.exclude(call.arguments["session"], *index, *range);
+    const auto exclusion = context.services.sessions.exclude(context.arguments["session"], *index, *range);
     if (!exclusion) return exclusion.error();
-    auto response = ok(to_json(*exclusion, *robot));
+    auto response = ok(exclusion_json(*exclusion, *robot));
     response.status = Status::created;
     return response;
 }
 
-Result<Response> list_exclusions(const session::SessionRegistry& sessions, const Call& call) {
-    if (auto known = call.query.check_only({}); !known) return known.error();
-    const auto facts = find_facts(sessions, call);
+Result<Response> list_exclusions(Context& context) {
+    if (auto known = context.query.check_only({}); !known) return known.error();
+    const auto facts = find_facts(context);
     if (!facts) return facts.error();
     boost::json::array exclusions;
     for (const auto& one : (*facts)->exclusions->all()) {
-        if (one.lifted == 0) exclusions.push_back(to_json(one, (*facts)->robots[one.excluded.robot].name));
+        if (one.lifted == 0) exclusions.push_back(exclusion_json(one, (*facts)->robots[one.excluded.robot].name));
     }
     return ok(boost::json::object{{"exclusions", std::move(exclusions)}});
 }
 
-Result<Response> lift_exclusion(session::SessionRegistry& sessions, const Call& call) {
-    if (auto known = call.query.check_only({}); !known) return known.error();
-    const auto& text = call.arguments["exclusion"];
+Result<Response> lift_exclusion(Context& context) {
+    if (auto known = context.query.check_only({}); !known) return known.error();
+    const auto& text = context.arguments["exclusion"];
     const auto id = parse_integer<std::uint64_t>(text);
     if (!id)
         return Error{Errc::kNotFound, fmt::format("there is no exclusion {}; ids are whole numbers", in_quotes(text))};
-    if (auto lifted = sessions.lift_exclusion(call.arguments["session"], *id); !lifted) return lifted.error();
+    if (auto lifted = context.services.sessions.lift_exclusion(context.arguments["session"], *id); !lifted)
+        return lifted.error();
     return Response{.status = Status::no_content, .fields = {}, .body = {}};
 }
 

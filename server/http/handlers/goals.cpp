@@ -1,19 +1,126 @@
-#include "server/http/handlers/goals.hpp"
+#include "server/http/handlers/handlers.hpp"
 
 #include "common/scan/limits.hpp"
+#include "server/guide/robots.hpp"
 #include "server/http/geojson.hpp"
-#include "server/http/handlers/session_lookup.hpp"
+#include "server/http/handlers/lookup.hpp"
+#include "server/http/handlers/planning_request.hpp"
+#include "server/http/in_quotes.hpp"
+#include "server/http/json_read.hpp"
 #include "server/http/number.hpp"
 
 #include <boost/json/array.hpp>
 #include <boost/json/object.hpp>
+#include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 namespace scanloom::http {
+namespace {
+
+std::string_view name_of(planning::Exploration outcome) {
+    switch (outcome) {
+    case planning::Exploration::kGoal: return "goal";
+    case planning::Exploration::kTakenByOthers: return "taken_by_others";
+    case planning::Exploration::kComplete: return "complete";
+    }
+    return "";
+}
+
+std::string point_text(const Point2& point) {
+    return fmt::format(R"({{"x":{},"y":{}}})", rounded_metres(point.x), rounded_metres(point.y));
+}
+
+std::string head_text(std::string_view robot, Revision revision, std::string_view outcome) {
+    return fmt::format(R"({{"robot":"{}","revision":{},"outcome":"{}",)", robot, revision,
+                       outcome); // names are [A-Za-z0-9_-]
+}
+
+constexpr std::string_view kNoGoal = R"("goal":null,"target":null,"in_danger":null,"path":null,"length":null)";
+
+/// Describes a goal that has just been assigned.
+std::string goal_text(std::string_view robot, const mapping::Snapshot& maps, const planning::NextGoal& next) {
+    const auto head =
+        head_text(robot, maps.revision, name_of(next.outcome)) + fmt::format(R"("given_up":{},)", next.given_up);
+    if (!next.goal) return fmt::format(R"({}{},"cost":null}})", head, kNoGoal);
+    const grid::Cell target = next.goal->target;
+    return head + fmt::format(R"("goal":{},"target":{},"in_danger":{},"path":{},"length":{},"cost":{}}})",
+                              point_text(next.path.points.back()),
+                              point_text(Point2{target.i + 0.5, target.j + 0.5} * maps.config.cell_size),
+                              next.goal->in_danger, line_string(next.path.points), rounded_metres(next.path.length_m),
+                              rounded_metres(next.path.cost));
+}
+
+/// Describes a goal that was assigned earlier. If the robot has planned another path since, the goal has no path.
+std::string goal_text(std::string_view robot, const guide::Goal& goal, const guide::Way* way) {
+    const bool leads_there = way != nullptr && way->kind == guide::WayKind::kGoal;
+    return head_text(robot, goal.revision, "goal") +
+           fmt::format(R"("goal":{},"target":{},"in_danger":{},"path":{},"length":{}}})", point_text(goal.place),
+                       point_text(goal.target), goal.in_danger, leads_there ? line_string(way->points) : "null",
+                       leads_there ? fmt::to_string(rounded_metres(way->length_m)) : "null");
+}
+
+Result<RobotIndex> find_robot(const mapping::Snapshot& maps, std::string_view name) {
+    const auto robot = guide::find_robot(maps, name);
+    if (!robot) return prefixed(fmt::format("robot is {}: ", in_quotes(name)), robot.error());
+    return *robot;
+}
+
+constexpr std::array<std::string_view, 3> kGoalMembers = {"robot", "size_min", "body_radius"};
+
+} // namespace
+
+Result<Response> get_goal(Context& context) {
+    if (auto known = context.query.check_only({"robot"}); !known) return known.error();
+    const auto session = find_session(context);
+    if (!session) return session.error();
+    const auto name = context.query.find("robot");
+    if (!name) return Error{Errc::kInvalidField, "robot is missing; name the robot whose goal is asked for"};
+    const auto maps = (*session)->snapshot();
+    const auto robot = find_robot(*maps, *name);
+    if (!robot) return robot.error();
+
+    const auto page = context.services.goals.ways().page(*session, guide::WayBook::Clock::now());
+    const auto held = std::ranges::find(page.robots, *robot, &guide::WayBook::Held::robot);
+    if (held == page.robots.end() || !held->goal) {
+        const bool explored = std::ranges::binary_search(page.explored, *robot);
+        const auto head = head_text(*name, maps->revision, explored ? "complete" : "none");
+        return ok_text(kJson, nullptr, fmt::format("{}{}}}", head, kNoGoal));
+    }
+    auto slot = context.services.responses.take((held->way ? held->way->points.size() : 0) * kPointTextBytes);
+    if (!slot) return slot.error();
+    return ok_text(kJson, std::move(*slot), goal_text(*name, *held->goal, held->way.get()));
+}
+
+Result<Response> assign_goal(Context& context) {
+    const auto found = find_for_search(context, {});
+    if (!found) return found.error();
+    const auto& snapshot = *found->snapshot;
+    const auto body = parse_json_object(context.request.body);
+    if (!body) return body.error();
+    if (auto known = check_members(*body, kGoalMembers); !known) return known.error();
+    const auto name = read_text(*body, "robot");
+    if (!name) return name.error();
+    const auto robot = find_robot(snapshot, *name);
+    if (!robot) return robot.error();
+    const auto options = exploration_options(*body, snapshot.robots[*robot].body_radius);
+    if (!options) return options.error();
+    const auto pose = guide::pose_of(snapshot, *robot);
+    if (!pose) return pose.error();
+
+    const auto next = context.services.goals.next(found->session, snapshot, *robot, Point2{pose->x, pose->y},
+                                                  guide::GoalBook::Clock::now(), *options);
+    if (!next) return next.error();
+    auto slot = context.services.responses.take(next->path.points.size() * kPointTextBytes);
+    if (!slot) return slot.error();
+    return ok_text(kJson, std::move(*slot), goal_text(*name, snapshot, *next));
+}
+
 namespace {
 
 std::string_view name_of(guide::WayKind kind) {
@@ -46,16 +153,15 @@ std::string feature_of(const std::string& robot, const guide::Goal& goal) {
 
 } // namespace
 
-Result<Response> get_goals(session::SessionRegistry& sessions, guide::WayBook& ways, const AnswerSlots& slots,
-                           const Call& call) {
-    if (auto known = call.query.check_only({}); !known) return known.error();
-    const auto session = find_session(sessions, call);
+Result<Response> get_goals(Context& context) {
+    if (auto known = context.query.check_only({}); !known) return known.error();
+    const auto session = find_session(context);
     if (!session) return session.error();
 
-    const auto page = ways.page(*session, guide::WayBook::Clock::now());
+    const auto page = context.services.goals.ways().page(*session, guide::WayBook::Clock::now());
     std::size_t bytes = page.explored.size() * kNameBytesMax;
     for (const auto& held : page.robots) bytes += ((held.way ? held.way->points.size() : 0) + 16) * kPointTextBytes;
-    auto slot = slots.take(bytes);
+    auto slot = context.services.responses.take(bytes);
     if (!slot) return slot.error();
 
     const auto maps = (*session)->snapshot();

@@ -1,9 +1,9 @@
-#include "server/http/handlers/log.hpp"
+#include "server/http/handlers/handlers.hpp"
 
 #include "common/wire/log_codec.hpp"
 #include "server/exchange/carmen_text.hpp"
 #include "server/http/body_stream.hpp"
-#include "server/http/handlers/session_lookup.hpp"
+#include "server/http/handlers/lookup.hpp"
 #include "server/http/in_quotes.hpp"
 
 #include <boost/endian/conversion.hpp>
@@ -108,21 +108,21 @@ private:
 
 } // namespace
 
-Result<Response> get_log(session::SessionRegistry& sessions, store::ScanLog& log, const Call& call) {
-    if (auto known = call.query.check_only({"format"}); !known) return known.error();
-    const auto format = call.query.find("format").value_or("protobuf");
+Result<Response> get_log(Context& context) {
+    if (auto known = context.query.check_only({"format"}); !known) return known.error();
+    const auto format = context.query.find("format").value_or("protobuf");
     const bool is_carmen = format == "clf";
     if (!is_carmen && format != "protobuf") {
         return Error{Errc::kInvalidField,
                      fmt::format("format is {}; possible are clf and protobuf", in_quotes(format))};
     }
-    const auto session = find_session(sessions, call);
+    const auto session = find_session(context);
     if (!session) return session.error();
     const auto& info = (*session)->info();
 
     std::unique_ptr<Format> written_as = std::make_unique<ProtobufFormat>();
     if (is_carmen) written_as = std::make_unique<CarmenFormat>(info);
-    auto stream = std::make_shared<LogStream>(*session, log, std::move(written_as));
+    auto stream = std::make_shared<LogStream>(*session, context.services.log, std::move(written_as));
     if (auto begun = stream->begin(); !begun) return begun.error();
 
     Response response;

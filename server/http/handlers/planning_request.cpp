@@ -59,12 +59,12 @@ Result<std::vector<Point2>> read_box(const boost::json::array& edges, std::strin
 
 } // namespace
 
-Result<Maps> find_for_search(const MapsLookup& maps, const Call& call, std::initializer_list<std::string_view> known) {
-    if (maps.sessions().is_draining()) return Error{Errc::kShuttingDown, "the server is shutting down"};
-    if (asks_for_weaving(call.query)) {
+Result<Maps> find_for_search(const Context& context, std::initializer_list<std::string_view> known) {
+    if (context.services.sessions.is_draining()) return Error{Errc::kShuttingDown, "the server is shutting down"};
+    if (asks_for_weaving(context.query)) {
         return invalid("settings and until are not taken here: POST them to .../weave, and give its id as weave=");
     }
-    return maps.find(call, known);
+    return find_maps(context, known);
 }
 
 Result<planning::ExplorationOptions> exploration_options(const Query& query, const std::optional<double>& own) {

@@ -2,8 +2,8 @@
 
 #include "common/error/error.hpp"
 #include "common/geometry/pose2.hpp"
-#include "server/http/handlers/call.hpp"
-#include "server/http/handlers/maps_lookup.hpp"
+#include "server/http/context.hpp"
+#include "server/http/handlers/lookup.hpp"
 #include "server/planning/goals.hpp"
 #include "server/planning/passability.hpp"
 
@@ -26,8 +26,7 @@ struct Place {
 
 /// Returns MapsLookup::find() for a search. No search starts while the server shuts down.
 /// Errors: those of MapsLookup::find(); kShuttingDown.
-[[nodiscard]] Result<Maps> find_for_search(const MapsLookup& maps, const Call& call,
-                                           std::initializer_list<std::string_view> known);
+[[nodiscard]] Result<Maps> find_for_search(const Context& context, std::initializer_list<std::string_view> known);
 
 /// Reads size_min and body_radius from the parameters or members.
 /// @param own  the robot's body radius (m), if known; used if body_radius is not given

@@ -2,6 +2,7 @@
 
 #include "common/error/error.hpp"
 #include "common/scan/session_options.hpp"
+#include "server/mapping/map_config.hpp"
 #include "server/session/roster.hpp"
 #include "server/session/session.hpp"
 
@@ -31,5 +32,12 @@ struct SessionRequest {
 
 /// Errors: kMalformed or kInvalidField, naming the field. The session checks the ranges.
 [[nodiscard]] Result<SessionRequest> parse_session_request(std::string_view body);
+
+/// Returns every setting by its name.
+[[nodiscard]] boost::json::object to_json(const mapping::MapConfig& config);
+
+/// Sets the options that `object` has members for and keeps the others. resolve() checks the ranges.
+/// Errors: kInvalidField, naming the member, if a value has another type.
+[[nodiscard]] Result<> read_options(const boost::json::object& object, SessionOptions& options);
 
 } // namespace scanloom::http

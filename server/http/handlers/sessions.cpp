@@ -1,21 +1,30 @@
-#include "server/http/handlers/sessions.hpp"
+#include "server/http/handlers/handlers.hpp"
 
 #include "common/json/json_text.hpp"
+#include "common/ros_map/description.hpp"
 #include "common/scan/limits.hpp"
+#include "server/http/handlers/lookup.hpp"
 #include "server/http/handlers/session_json.hpp"
-#include "server/http/handlers/session_lookup.hpp"
 #include "server/http/in_quotes.hpp"
+#include "server/http/multipart.hpp"
 #include "server/http/number.hpp"
+#include "server/mapping/map_config.hpp"
+#include "server/tiles/ros_map_import.hpp"
 
 #include <boost/json/array.hpp>
 #include <fmt/format.h>
 
+#include <cstdint>
 #include <functional>
 #include <iterator>
 #include <map>
 #include <memory>
+#include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 namespace scanloom::http {
 namespace {
@@ -63,11 +72,6 @@ std::map<std::string, Listed, std::less<>> sessions_by_name(const session::Sessi
     return listed;
 }
 
-/// Returns the damage found since the start in sessions that are still served as far as possible.
-std::map<std::string, Error> found_by(const session::BackgroundCheck* check) {
-    return check == nullptr ? std::map<std::string, Error>() : check->damaged();
-}
-
 boost::json::object listed_json(const session::Listed& listed, const std::map<std::string, Error>& found) {
     auto json = to_json(listed);
     const auto damage = found.find(listed.info.name);
@@ -82,12 +86,11 @@ boost::json::object listed_json(const Listed& listed, std::string_view name,
 
 } // namespace
 
-Result<Response> list_sessions(const session::SessionRegistry& sessions, const session::BackgroundCheck* check,
-                               const Call& call) {
-    const auto page = parse_page(call.query);
+Result<Response> list_sessions(Context& context) {
+    const auto page = parse_page(context.query);
     if (!page) return page.error();
-    const auto found = found_by(check);
-    const auto listed = sessions_by_name(sessions, *call.token);
+    const auto found = context.services.check.damaged(); // since the start, in sessions that are still served
+    const auto listed = sessions_by_name(context.services.sessions, *context.token);
     boost::json::array shown;
     boost::json::value next = nullptr;
     auto entry = listed.upper_bound(page->after);
@@ -98,40 +101,106 @@ Result<Response> list_sessions(const session::SessionRegistry& sessions, const s
     return ok(boost::json::object{{"sessions", std::move(shown)}, {"next", std::move(next)}});
 }
 
-Result<Response> create_session(session::SessionRegistry& sessions, const Doorman& doorman, const Call& call) {
-    if (auto known = call.query.check_only({}); !known) return known.error();
-    const auto wanted = parse_session_request(call.request.body);
+Result<Response> create_session(Context& context) {
+    if (auto known = context.query.check_only({}); !known) return known.error();
+    const auto wanted = parse_session_request(context.request.body);
     if (!wanted) return wanted.error();
-    if (const auto why = Doorman::objection(*call.token, wanted->name))
-        return doorman.refuse(call.request, *why, wanted->name);
-    const auto session = sessions.create(wanted->name, wanted->options, session::maker_of(*call.token));
-    if (!session) return doorman.noted(call, session.error(), wanted->name);
+    if (const auto why = Doorman::objection(*context.token, wanted->name))
+        return context.services.doorman.refuse(context.request, *why, wanted->name);
+    const auto session =
+        context.services.sessions.create(wanted->name, wanted->options, session::maker_of(*context.token));
+    if (!session) return context.services.doorman.noted(context, session.error(), wanted->name);
     auto response = ok(to_json(**session)).set("Location", fmt::format("/api/v1/sessions/{}", wanted->name));
     response.status = Status::created;
     return response;
 }
 
-Result<Response> get_session(const session::SessionRegistry& sessions, const session::BackgroundCheck* check,
-                             const Call& call) {
-    if (auto known = call.query.check_only({}); !known) return known.error();
-    const auto& name = call.arguments["session"];
-    if (const auto listed = sessions.listed(name)) return ok(listed_json(*listed, found_by(check)));
-    const auto damage = damage_of(sessions, name);
+Result<Response> get_session(Context& context) {
+    if (auto known = context.query.check_only({}); !known) return known.error();
+    const auto& name = context.arguments["session"];
+    if (const auto listed = context.services.sessions.listed(name))
+        return ok(listed_json(*listed, context.services.check.damaged()));
+    const auto damage = damage_of(context.services.sessions, name);
     return damage ? *damage : session::no_such_session(name);
 }
 
-Result<Response> delete_session(session::SessionRegistry& sessions, const Forgetful& forgetful, const Call& call) {
-    if (auto known = call.query.check_only({}); !known) return known.error();
-    const auto& name = call.arguments["session"];
-    const auto info = sessions.info(name);
-    if (auto removed = sessions.remove(name); !removed) return removed.error();
+Result<Response> delete_session(Context& context) {
+    if (auto known = context.query.check_only({}); !known) return known.error();
+    const auto& name = context.arguments["session"];
+    const auto info = context.services.sessions.info(name);
+    if (auto removed = context.services.sessions.remove(name); !removed) return removed.error();
     if (info) {
-        forgetful.weaves.remove_all(info->id);
-        forgetful.landmarks.remove(info->id);
-        if (forgetful.locator != nullptr) forgetful.locator->remove(info->id);
-        forgetful.tiles.forget(session::tag_of(*info));
+        context.services.weaves.remove_all(info->id);
+        context.services.landmarks.remove(info->id);
+        context.services.locator.remove(info->id);
+        context.services.tiles.forget(session::tag_of(*info));
     }
     return Response{.status = Status::no_content, .fields = {}, .body = {}};
+}
+
+namespace {
+
+/// The contents of the form.
+struct Form {
+    std::optional<std::string_view> yaml;
+    std::optional<std::string_view> image;
+    SessionOptions options;
+};
+
+Result<Form> read_form(const Request& request) {
+    const auto fields = parse_form(request.content_type, request.body);
+    if (!fields) return fields.error();
+    Form form;
+    for (const auto& [name, content] : *fields) {
+        const auto* setting = mapping::find_config_field(name);
+        if (name == "yaml") {
+            form.yaml = content;
+        } else if (name == "image") {
+            form.image = content;
+        } else if (setting == nullptr) {
+            return Error{Errc::kInvalidField,
+                         fmt::format("the field {} is unknown here; possible are yaml, image and the "
+                                     "settings of a session",
+                                     in_quotes(name))};
+        } else if (auto set = mapping::set_option(form.options, *setting, content); !set) {
+            return set.error();
+        }
+    }
+    if (!form.yaml) return Error{Errc::kInvalidField, "yaml is missing; the map's description is needed"};
+    if (!form.image) return Error{Errc::kInvalidField, "image is missing; the map's PGM or PNG is needed"};
+    return form;
+}
+
+} // namespace
+
+Result<Response> import_map(Context& context) {
+    if (auto known = context.query.check_only({}); !known) return known.error();
+    auto form = read_form(context.request);
+    if (!form) return form.error();
+    const auto description = parse_ros_yaml(*form->yaml);
+    if (!description) return description.error();
+    const auto* pixels = reinterpret_cast<const std::uint8_t*>(form->image->data());
+    const auto patches = tiles::read_ros_image(*description, std::span(pixels, form->image->size()));
+    if (!patches) return patches.error();
+
+    if (!form->options.cell_size) {
+        SessionOptions as_fine_as_the_image;
+        as_fine_as_the_image.cell_size = description->resolution;
+        if (!mapping::resolve(as_fine_as_the_image)) {
+            return Error{Errc::kInvalidField,
+                         fmt::format("the map has {:g} metres a pixel, of which no session can have "
+                                     "cells; add the field cell_size, 0.01 to 1.0 metres",
+                                     description->resolution)};
+        }
+        form->options.cell_size = description->resolution;
+    }
+    const auto& name = context.arguments["session"];
+    const auto session =
+        context.services.sessions.import_map(name, form->options, *patches, session::maker_of(*context.token));
+    if (!session) return context.services.doorman.noted(context, session.error(), name);
+    auto response = ok(to_json(**session)).set("Location", fmt::format("/api/v1/sessions/{}", (*session)->info().name));
+    response.status = Status::created;
+    return response;
 }
 
 } // namespace scanloom::http

@@ -1,6 +1,6 @@
-#include "server/http/handlers/trajectory.hpp"
+#include "server/http/handlers/handlers.hpp"
 
-#include "server/http/handlers/session_lookup.hpp"
+#include "server/http/handlers/lookup.hpp"
 #include "server/http/in_quotes.hpp"
 #include "server/http/number.hpp"
 #include "server/session/old_paths.hpp"
@@ -107,22 +107,21 @@ std::size_t bytes_about(const mapping::Snapshot& snapshot, const TrajectoryParam
 
 } // namespace
 
-Result<Response> get_trajectory(session::SessionRegistry& sessions, store::ScanLog& log, const AnswerSlots& slots,
-                                const Call& call) {
-    if (auto known = call.query.check_only({"since", "times"}); !known) return known.error();
-    const auto since = since_parameter(call.query);
+Result<Response> get_trajectory(Context& context) {
+    if (auto known = context.query.check_only({"since", "times"}); !known) return known.error();
+    const auto since = since_parameter(context.query);
     if (!since) return since.error();
-    const auto with_times = times_parameter(call.query);
+    const auto with_times = times_parameter(context.query);
     if (!with_times) return with_times.error();
-    const auto session = find_session(sessions, call);
+    const auto session = find_session(context);
     if (!session) return session.error();
 
     const auto snapshot = (*session)->snapshot();
     const TrajectoryParameters asked{since_in(*snapshot, *since), *with_times};
-    auto slot = slots.take(bytes_about(*snapshot, asked));
+    auto slot = context.services.responses.take(bytes_about(*snapshot, asked));
     if (!slot) return slot.error();
-    const auto old = session::read_old_paths(log, (*session)->info().id, *snapshot, asked.since,
-                                             [&] { return !sessions.is_draining(); });
+    const auto old = session::read_old_paths(context.services.log, (*session)->info().id, *snapshot, asked.since,
+                                             [&] { return !context.services.sessions.is_draining(); });
     if (!old) return old.error();
     std::string text = fmt::format(
         R"({{"type":"FeatureCollection","frame_id":"map","units":"m","revision":{},"features":[)", old->until);

@@ -1,7 +1,7 @@
 #include "server/http/handlers/weave_request.hpp"
 
 #include "common/json/json_text.hpp"
-#include "server/http/handlers/config_json.hpp"
+#include "server/http/handlers/session_json.hpp"
 #include "server/http/in_quotes.hpp"
 #include "server/http/number.hpp"
 #include "server/mapping/map_config.hpp"

@@ -1,7 +1,7 @@
-#include "server/http/handlers/weaves.hpp"
+#include "server/http/handlers/handlers.hpp"
 
-#include "server/http/handlers/config_json.hpp"
-#include "server/http/handlers/session_lookup.hpp"
+#include "server/http/handlers/lookup.hpp"
+#include "server/http/handlers/session_json.hpp"
 #include "server/http/handlers/weave_request.hpp"
 #include "server/http/json_read.hpp"
 
@@ -47,16 +47,16 @@ boost::json::object shown(const session::Weave& weave) {
 
 } // namespace
 
-Result<Response> start_weave(const MapsLookup& maps, const Call& call) {
-    if (auto known = call.query.check_only({}); !known) return known.error();
-    const auto session = find_session(maps.sessions(), call);
+Result<Response> start_weave(Context& context) {
+    if (auto known = context.query.check_only({}); !known) return known.error();
+    const auto session = find_session(context);
     if (!session) return session.error();
-    const auto body = parse_json_object(call.request.body);
+    const auto body = parse_json_object(context.request.body);
     if (!body) return body.error();
     if (auto known = check_members(*body, weave_parameters()); !known) return known.error();
     const auto request = weave_request(**session, *body);
     if (!request) return request.error();
-    const auto weave = maps.weaves().start((*session)->info(), *request, (*session)->snapshot()->revision);
+    const auto weave = context.services.weaves.start((*session)->info(), *request, (*session)->snapshot()->revision);
     if (!weave) return weave.error();
     auto response =
         ok(shown(**weave))
@@ -65,31 +65,31 @@ Result<Response> start_weave(const MapsLookup& maps, const Call& call) {
     return response;
 }
 
-Result<Response> list_weaves(const MapsLookup& maps, const Call& call) {
-    if (auto known = call.query.check_only({}); !known) return known.error();
-    const auto session = find_session(maps.sessions(), call);
+Result<Response> list_weaves(Context& context) {
+    if (auto known = context.query.check_only({}); !known) return known.error();
+    const auto session = find_session(context);
     if (!session) return session.error();
     boost::json::array weaves;
-    for (const auto& weave : maps.weaves().list((*session)->info().id)) weaves.push_back(shown(*weave));
+    for (const auto& weave : context.services.weaves.list((*session)->info().id)) weaves.push_back(shown(*weave));
     return ok(boost::json::object{{"weaves", std::move(weaves)}});
 }
 
-Result<Response> get_weave(const MapsLookup& maps, const Call& call) {
-    if (auto known = call.query.check_only({}); !known) return known.error();
-    const auto session = find_session(maps.sessions(), call);
+Result<Response> get_weave(Context& context) {
+    if (auto known = context.query.check_only({}); !known) return known.error();
+    const auto session = find_session(context);
     if (!session) return session.error();
-    const auto weave = find_weave(maps.weaves(), **session, call.arguments["weave"]);
+    const auto weave = find_weave(context.services.weaves, **session, context.arguments["weave"]);
     if (!weave) return weave.error();
     return ok(shown(**weave));
 }
 
-Result<Response> delete_weave(const MapsLookup& maps, const Call& call) {
-    if (auto known = call.query.check_only({}); !known) return known.error();
-    const auto session = find_session(maps.sessions(), call);
+Result<Response> delete_weave(Context& context) {
+    if (auto known = context.query.check_only({}); !known) return known.error();
+    const auto session = find_session(context);
     if (!session) return session.error();
-    const auto weave = find_weave(maps.weaves(), **session, call.arguments["weave"]);
+    const auto weave = find_weave(context.services.weaves, **session, context.arguments["weave"]);
     if (!weave) return weave.error();
-    maps.weaves().remove((*session)->info().id, (*weave)->id());
+    context.services.weaves.remove((*session)->info().id, (*weave)->id());
     return Response{.status = Status::no_content, .fields = {}, .body = {}};
 }
 

@@ -231,7 +231,7 @@ TEST_F(ApiAccessTest, ReadinessNamesSessionsToThoseWhoMaySeeThem) {
     session::SessionRegistry registry(damaged, {pool_.get_executor(), [] { return 0.0; }});
     ASSERT_TRUE(registry.recover());
     ASSERT_EQ(registry.damaged().size(), 1U);
-    Api api(registry, weaves_, goals_, damaged, metrics_, {gate_, audit_, logins_}, {});
+    TestApi api(registry, weaves_, goals_, damaged, metrics_, {gate_, audit_, logins_}, {});
     api.set_recovered();
     const auto count = [&](const std::string& who) {
         const auto response = api.answer(request("GET", "/readyz", who));

@@ -10,7 +10,7 @@ protected:
     TemporaryDirectory directory_;
     std::unique_ptr<store::ScanLog> disk_ = store::open_rocksdb(directory_.path() / "store").value();
     std::unique_ptr<store::Backups> backups_ = store::Backups::open(directory_.path() / "backups", 2, *disk_).value();
-    Api over_disk_{registry_, weaves_, goals_, *disk_, metrics_, {gate_, audit_, logins_}, {}};
+    TestApi over_disk_{registry_, weaves_, goals_, *disk_, metrics_, {gate_, audit_, logins_}, {}};
 
     Response ask_disk(std::string method, std::string target = "/api/v1/backups") {
         return answer(over_disk_,
@@ -19,7 +19,7 @@ protected:
 };
 
 TEST_F(ApiBackupsTest, TheyAreMadeAndListedAlsoBeforeTheSessionsAreRecovered) {
-    over_disk_.set_backups(*backups_);
+    over_disk_.services().backups = backups_.get();
     const auto made = ask_disk("POST");
     EXPECT_EQ(made.status, Status::created);
     const auto listed = boost::json::parse(ask_disk("GET").body.bytes());

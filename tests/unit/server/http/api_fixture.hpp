@@ -1,11 +1,10 @@
 #pragma once
 
-#include "server/http/api.hpp"
-
 #include "server/http/router.hpp"
 #include "server/session/session_registry.hpp"
 #include "tests/support/memory_scan_log.hpp"
 #include "tests/unit/server/http/described_answer.hpp"
+#include "tests/unit/server/http/test_api.hpp"
 
 #include <boost/asio/thread_pool.hpp>
 #include <boost/json/object.hpp>
@@ -101,7 +100,7 @@ protected:
     }
 
     /// Whatever is answered, openapi.json has to say so.
-    static Response answer(Api& api, const Request& request) {
+    static Response answer(TestApi& api, const Request& request) {
         auto response = api.answer(request);
         EXPECT_THAT(undescribed(request, response), testing::IsEmpty());
         return response;
@@ -175,7 +174,7 @@ protected:
     guard::Gate gate_;
     guard::Audit audit_{metrics_.refusals()};
     guard::Logins logins_;
-    Api api_{registry_, weaves_, goals_, log_, metrics_, {gate_, audit_, logins_}, {}};
+    TestApi api_{registry_, weaves_, goals_, log_, metrics_, {gate_, audit_, logins_}, {}};
     std::vector<std::shared_ptr<Link>> links_;
 };
 

@@ -100,7 +100,7 @@ TEST_F(KeptTilesTest, OfADeletedSessionNothingIsKept) {
 }
 
 TEST_F(KeptTilesTest, BeforeTheSessionsAreRecoveredNothingIsLookedFor) {
-    Api fresh(registry_, weaves_, goals_, log_, metrics_, {gate_, audit_, logins_}, {});
+    TestApi fresh(registry_, weaves_, goals_, log_, metrics_, {gate_, audit_, logins_}, {});
     EXPECT_TRUE(std::holds_alternative<Lane>(fresh.look({.target = kNative})));
 }
 

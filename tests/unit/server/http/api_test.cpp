@@ -5,8 +5,8 @@ namespace scanloom::http {
 namespace {
 
 TEST_F(ApiTest, ReadinessFollowsTheServersLife) {
-    Api starting(registry_, weaves_, goals_, log_, metrics_, {gate_, audit_, logins_}, {});
-    const auto ready = [&](Api& api) { return answer(api, {.target = "/readyz"}); };
+    TestApi starting(registry_, weaves_, goals_, log_, metrics_, {gate_, audit_, logins_}, {});
+    const auto ready = [&](TestApi& api) { return answer(api, {.target = "/readyz"}); };
     EXPECT_EQ(ready(starting).status, Status::service_unavailable);
     EXPECT_THAT(std::string(ready(starting).body.bytes()), HasSubstr("recovered"));
     EXPECT_EQ(answer(starting, {.target = "/api/v1/sessions"}).status, Status::service_unavailable);
@@ -33,7 +33,7 @@ TEST_F(ApiTest, ReadinessNamesAFailedStore) {
 
 TEST_F(ApiTest, ReadinessTellsWhereRobotsConnect) {
     EXPECT_TRUE(get_json("/readyz").at("robots").at("host").is_null());
-    api_.set_robot_port({"192.0.2.7", 7448});
+    api_.services().robots = {"192.0.2.7", 7448};
     EXPECT_EQ(get_json("/readyz").at("robots"), (boost::json::object{{"host", "192.0.2.7"}, {"port", 7448}}));
 }
 
@@ -52,7 +52,7 @@ TEST_F(ApiTest, MetricsNameNoSession) {
 TEST_F(ApiTest, EveryOperationAnswersAsItIsDescribed) {
     create("a");
     stream("a", 2);
-    Api starting(registry_, weaves_, goals_, log_, metrics_, {gate_, audit_, logins_}, {});
+    TestApi starting(registry_, weaves_, goals_, log_, metrics_, {gate_, audit_, logins_}, {});
     for (const auto& route : routes()) {
         if (route.operation == Operation::kDeleteSession) continue; // at the end
         for (const std::string session : {"a", "nobody"}) {

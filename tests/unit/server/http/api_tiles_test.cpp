@@ -1,6 +1,6 @@
 #include "tests/unit/server/http/api_fixture.hpp"
 
-#include "server/http/handlers/session_lookup.hpp"
+#include "server/http/handlers/lookup.hpp"
 #include "server/tiles/tile.hpp"
 
 #include <boost/json/array.hpp>

@@ -1,6 +1,6 @@
 #include "tests/unit/server/http/api_fixture.hpp"
 
-#include "server/http/handlers/session_lookup.hpp"
+#include "server/http/handlers/lookup.hpp"
 #include "server/mapping/digest.hpp"
 
 #include <boost/asio/post.hpp>
@@ -237,7 +237,7 @@ protected:
     std::promise<void> go_on_;
     bool gone_on_ = false;
     session::Weaves held_{log_, one_.get_executor()};
-    Api held_api_{registry_, held_, goals_, log_, metrics_, {gate_, audit_, logins_}, {}};
+    TestApi held_api_{registry_, held_, goals_, log_, metrics_, {gate_, audit_, logins_}, {}};
 };
 
 TEST_F(ApiHeldWeavesTest, WhoWaitsWhileTheSessionIsDeletedIsToldSo) {
@@ -257,18 +257,12 @@ TEST_F(ApiHeldWeavesTest, WhoWaitsGetsTheMapsOfWhenHeAskedOrLaterOnes) {
 }
 
 TEST_F(ApiHeldWeavesTest, WhoLosesPatienceIsToldHowFarItIsAndJoinsItTheNextTime) {
-    const MapsLookup impatient(registry_, held_, std::chrono::milliseconds(0));
-    const Request request;
-    Arguments arguments;
-    arguments.add("session", "a");
-    const Query query(std::vector<std::pair<std::string, std::string>>{{"cell_size", "0.1"}});
-    const Call call{request, arguments, query};
-    const auto first = impatient.find_or_weave(call, {});
-    EXPECT_EQ(first.error().code, Errc::kOverloaded);
-    EXPECT_THAT(first.error().message, HasSubstr("0 of 7 entries are in; ask again soon"));
+    held_api_.services().replay_patience = std::chrono::milliseconds(0);
+    const Request request{.target = "/api/v1/sessions/a/map.png?cell_size=0.1"};
+    EXPECT_THAT(detail(answer(held_api_, request), Status::service_unavailable),
+                HasSubstr("0 of 7 entries are in; ask again soon"));
     stream("a", 6, 6);
-    const auto second = impatient.find_or_weave(call, {});
-    EXPECT_THAT(second.error().message, HasSubstr("0 of 8 entries are in"));
+    EXPECT_THAT(detail(answer(held_api_, request), Status::service_unavailable), HasSubstr("0 of 8 entries are in"));
     EXPECT_EQ(held_.under_way(), 1U);
 }
 

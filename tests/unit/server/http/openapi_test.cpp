@@ -1,5 +1,6 @@
-#include "server/http/handlers/openapi.hpp"
 #include "server/http/router.hpp"
+#include "tests/unit/server/http/api_description.hpp"
+#include "tests/unit/server/http/api_fixture.hpp"
 
 #include <boost/json/array.hpp>
 #include <boost/json/parse.hpp>
@@ -13,10 +14,6 @@
 namespace scanloom::http {
 namespace {
 
-boost::json::object described_api() {
-    return boost::json::parse(get_openapi(Call{{}, {}, {}}).value().body.bytes()).as_object();
-}
-
 /// Calls visit with each value below and at `value`.
 template <class Visit>
 void walk(const boost::json::value& value, Visit&& visit) {
@@ -28,17 +25,17 @@ void walk(const boost::json::value& value, Visit&& visit) {
     }
 }
 
-TEST(OpenApi, IsTheFileInTheTree) {
+TEST_F(ApiTest, ServesTheDescriptionInTheTree) {
     std::ifstream file(OPENAPI_FILE);
     const std::string text(std::istreambuf_iterator<char>(file), {});
-    EXPECT_EQ(get_openapi(Call{{}, {}, {}}).value().body.bytes(), text);
+    EXPECT_EQ(get("/openapi.json").body.bytes(), text);
 }
 
 TEST(OpenApi, DescribesEveryRouteAndNoOther) {
     std::set<std::string> routed;
     for (const auto& route : routes()) routed.insert(std::string(route.method) + " " + std::string(route.pattern));
     std::set<std::string> described;
-    const auto whole = described_api();
+    const auto& whole = described_api();
     for (const auto& path : whole.at("paths").as_object()) {
         for (const auto& method : path.value().as_object()) {
             const bool is_get = boost::urls::grammar::ci_is_equal(method.key(), "get");
@@ -50,8 +47,7 @@ TEST(OpenApi, DescribesEveryRouteAndNoOther) {
 }
 
 TEST(OpenApi, EveryReferenceLeadsSomewhere) {
-    const auto whole = described_api();
-    const boost::json::value root = whole;
+    const auto& root = described_api();
     std::size_t count = 0;
     walk(root, [&](const boost::json::value& value) {
         const auto* reference = value.is_object() ? value.get_object().if_contains("$ref") : nullptr;
@@ -65,7 +61,7 @@ TEST(OpenApi, EveryReferenceLeadsSomewhere) {
 }
 
 TEST(OpenApi, EveryVariableOfAPathIsAParameterOfItsOperations) {
-    const boost::json::value root = described_api();
+    const auto& root = described_api();
     for (const auto& path : root.at("paths").as_object()) {
         for (const auto& operation : path.value().as_object()) {
             std::set<std::string> described;

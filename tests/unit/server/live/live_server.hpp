@@ -1,9 +1,9 @@
 #pragma once
 
-#include "server/http/api.hpp"
 #include "server/http/server.hpp"
 #include "tests/support/memory_scan_log.hpp"
 #include "tests/support/random_scans.hpp"
+#include "tests/unit/server/http/test_api.hpp"
 
 #include <boost/asio/thread_pool.hpp>
 
@@ -147,7 +147,7 @@ private:
     guard::Gate gate_;
     guard::Audit audit_{metrics_.refusals()};
     guard::Logins logins_;
-    http::Api api_{sessions_, weaves_, goals_, log_, metrics_, {gate_, audit_, logins_}, {}};
+    http::TestApi api_{sessions_, weaves_, goals_, log_, metrics_, {gate_, audit_, logins_}, {}};
     std::shared_ptr<http::Server> server_;
     std::array<std::thread, 2> threads_;
     std::map<std::string, std::shared_ptr<StreamingRobot>> robots_;

@@ -1,22 +1,141 @@
-#include "server/http/handlers/frontiers.hpp"
+#include "server/http/handlers/handlers.hpp"
 
+#include "server/guide/patience.hpp"
 #include "server/guide/robots.hpp"
 #include "server/http/geojson.hpp"
 #include "server/http/handlers/planning_request.hpp"
 #include "server/http/in_quotes.hpp"
+#include "server/http/json_read.hpp"
 #include "server/http/number.hpp"
+#include "server/planning/coverage.hpp"
 #include "server/planning/goals.hpp"
+#include "server/planning/grid_path.hpp"
 
 #include <boost/json/array.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace scanloom::http {
+namespace {
+
+constexpr std::array<std::string_view, 5> kPlanMembers = {"from", "to", "allow_unknown", "body_radius", "danger_cost"};
+
+Result<boost::json::object> parse_plan(std::string_view text) {
+    auto body = parse_json_object(text);
+    if (!body) return body;
+    if (auto known = check_members(*body, kPlanMembers); !known) return known.error();
+    for (const char* name : {"from", "to"}) {
+        if (!body->contains(name)) {
+            return Error{Errc::kInvalidField, fmt::format("{} is missing; give [x, y] in metres", name)};
+        }
+    }
+    return body;
+}
+
+} // namespace
+
+Result<Response> post_plan(Context& context) {
+    const auto found = find_for_search(context, {});
+    if (!found) return found.error();
+    const auto& snapshot = *found->snapshot;
+    const auto body = parse_plan(context.request.body);
+    if (!body) return body.error();
+    const auto to = read_point(body->at("to"), "to");
+    if (!to) return to.error();
+    const auto from = read_place(body->at("from"), "from", snapshot);
+    if (!from) return from.error();
+    const auto options = passability_options(*body, from->body_radius);
+    if (!options) return options.error();
+
+    const auto path = planning::plan_path(snapshot.classes, snapshot.config.cell_size, from->point, *to, *options);
+    if (!path) return path.error();
+    auto slot = context.services.responses.take(path->points.size() * kPointTextBytes);
+    if (!slot) return slot.error();
+    const boost::json::object properties{{"length", rounded_metres(path->length_m)},
+                                         {"cost", rounded_metres(path->cost)}};
+    return ok_text(kGeoJson, std::move(*slot),
+                   feature_document(snapshot.revision, properties, line_string(path->points)));
+}
+
+namespace {
+
+constexpr std::array<std::string_view, 4> kCoverageMembers = {"start", "spacing", "region", "body_radius"};
+
+Result<Place> start_of(const boost::json::object& body, const mapping::Snapshot& maps) {
+    if (const auto* start = body.if_contains("start")) return read_place(*start, "start", maps);
+    if (maps.robots.size() == 1) {
+        const auto pose = guide::pose_of(maps, 0);
+        if (!pose) return prefixed("start is missing: ", pose.error());
+        return Place{{pose->x, pose->y}, maps.robots[0].body_radius};
+    }
+    return Error{Errc::kInvalidField, fmt::format(R"(start is missing, and the session has {} robots; give [x, y] or )"
+                                                  R"({{"robot": "name"}})",
+                                                  maps.robots.size())};
+}
+
+Result<planning::CoverageOptions> options_of(const boost::json::object& body, const std::optional<double>& own) {
+    planning::CoverageOptions options;
+    const auto passability = passability_options(body, own);
+    if (!passability) return passability.error();
+    options.passability = *passability;
+    const auto spacing = read_number(body, "spacing");
+    if (!spacing) return spacing.error();
+    options.spacing_m = *spacing;
+    if (const auto* given = body.if_contains("region")) {
+        auto region = read_region(*given, "region");
+        if (!region) return region.error();
+        options.region = std::move(*region);
+    }
+    return options;
+}
+
+std::string document_of(const mapping::Snapshot& maps, planning::Coverage&& coverage) {
+    const double cell_size = maps.config.cell_size;
+    const auto square_metres = [&](std::int64_t cells) {
+        return rounded_metres(static_cast<double>(cells) * cell_size * cell_size);
+    };
+    const boost::json::object path{{"role", "path"},
+                                   {"length", rounded_metres(coverage.path.length_m)},
+                                   {"cost", rounded_metres(coverage.path.cost)},
+                                   {"fraction", coverage.fraction},
+                                   {"free_area", square_metres(coverage.free_cells)},
+                                   {"covered_area", square_metres(coverage.covered_cells)},
+                                   {"unreachable_area", rounded_metres(coverage.unreachable_m2)}};
+    const boost::json::object unreachable{{"role", "unreachable"}, {"area", rounded_metres(coverage.unreachable_m2)}};
+    const std::array features = {feature(path, line_string(coverage.path.points)),
+                                 feature(unreachable, multi_polygon(std::move(coverage.unreachable), cell_size))};
+    return collection_document(maps.revision, {}, features);
+}
+
+} // namespace
+
+Result<Response> post_coverage(Context& context) {
+    const auto found = find_for_search(context, {});
+    if (!found) return found.error();
+    const auto& snapshot = *found->snapshot;
+    const auto body = parse_json_object(context.request.body);
+    if (!body) return body.error();
+    if (auto known = check_members(*body, kCoverageMembers); !known) return known.error();
+    const auto start = start_of(*body, snapshot);
+    if (!start) return start.error();
+    const auto options = options_of(*body, start->body_radius);
+    if (!options) return options.error();
+
+    auto coverage = planning::plan_coverage(snapshot.classes, snapshot.config.cell_size, start->point, *options,
+                                            guide::Patience(context.services.sessions));
+    if (!coverage) return coverage.error();
+    auto slot = context.services.responses.take(coverage->path.points.size() * kPointTextBytes +
+                                                coverage->unreachable.size() * kCellTextBytes);
+    if (!slot) return slot.error();
+    return ok_text(kGeoJson, std::move(*slot), document_of(snapshot, std::move(*coverage)));
+}
+
 namespace {
 
 /// Limits the sequential searches, one from each robot. In a map of maximum size, this many cells take a few seconds.
@@ -117,13 +236,13 @@ std::string feature_of(const mapping::Snapshot& maps, const classify::Frontier& 
 
 } // namespace
 
-Result<Response> get_frontiers(const MapsLookup& maps, const AnswerSlots& slots, const Call& call) {
-    const auto found = find_for_search(maps, call, {"robot", "size_min", "body_radius"});
+Result<Response> get_frontiers(Context& context) {
+    const auto found = find_for_search(context, {"robot", "size_min", "body_radius"});
     if (!found) return found.error();
     const auto& snapshot = *found->snapshot;
-    const auto options = exploration_options(call.query);
+    const auto options = exploration_options(context.query);
     if (!options) return options.error();
-    const auto robots = robots_asked_for(snapshot, call.query);
+    const auto robots = robots_asked_for(snapshot, context.query);
     if (!robots) return robots.error();
     if (auto few = check_cells_searched(snapshot, *robots, *options); !few) return few.error();
 
@@ -137,7 +256,7 @@ Result<Response> get_frontiers(const MapsLookup& maps, const AnswerSlots& slots,
                                                   "size_min, or look at the tiles of classification",
                                                   frontiers.size())};
     }
-    auto slot = slots.take(bytes);
+    auto slot = context.services.responses.take(bytes);
     if (!slot) return slot.error();
 
     std::vector<std::string> features;

@@ -1,0 +1,70 @@
+#pragma once
+
+#include "common/error/error.hpp"
+#include "server/access/token.hpp"
+#include "server/guide/goal_book.hpp"
+#include "server/guide/locator.hpp"
+#include "server/http/answer_slots.hpp"
+#include "server/http/doorman.hpp"
+#include "server/http/request.hpp"
+#include "server/http/router.hpp"
+#include "server/http/target.hpp"
+#include "server/http/web_files.hpp"
+#include "server/live/landmark_hub.hpp"
+#include "server/metrics/metrics.hpp"
+#include "server/session/background_check.hpp"
+#include "server/session/capture_folds.hpp"
+#include "server/session/session_registry.hpp"
+#include "server/session/weaves.hpp"
+#include "server/store/backups.hpp"
+#include "server/store/scan_log.hpp"
+#include "server/tiles/tile_maker.hpp"
+
+#include <atomic>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+namespace scanloom::http {
+
+/// Where robots connect.
+struct RobotPort {
+    std::string host; ///< an address; empty: any address of this machine
+    std::uint16_t port = 0;
+};
+
+/// What handlers use, and what is kept from one request to the next.
+/// Threads: any thread may use each part.
+struct Services {
+    session::SessionRegistry& sessions;
+    session::Weaves& weaves; ///< replay jobs
+    guide::GoalBook& goals;
+    guide::Locator& locator;
+    store::ScanLog& log;
+    const session::BackgroundCheck& check;
+    const metrics::Metrics& metrics;
+    Doorman doorman;
+    WebFiles web = {};                                        ///< of the viewer
+    RobotPort robots = {};                                    ///< for /readyz
+    store::Backups* backups = nullptr;                        ///< null: this server keeps no backups
+    std::size_t tile_bytes_max = tiles::TileMaker::kBytesMax; ///< of cached tiles
+    std::chrono::milliseconds replay_patience{20'000};        ///< longest time that a request waits for a replay job
+
+    std::atomic<bool> recovered = false; ///< before, requests for sessions receive kOverloaded
+    tiles::TileMaker tiles{tile_bytes_max};
+    session::LandmarkFolds landmarks{log};
+    live::LandmarkHub watched_landmarks{landmarks};
+    AnswerSlots responses; ///< large ones
+};
+
+/// A routed request whose client has the permission for it.
+struct Context {
+    Services& services;
+    const Request& request;
+    const Arguments& arguments; ///< of the path
+    const Query& query;
+    access::TokenRef token = nullptr; ///< of the client; null only if the operation needs no token
+};
+
+} // namespace scanloom::http

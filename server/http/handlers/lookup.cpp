@@ -1,0 +1,215 @@
+#include "server/http/handlers/lookup.hpp"
+
+#include "server/http/handlers/weave_request.hpp"
+#include "server/http/in_quotes.hpp"
+#include "server/http/number.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <string_view>
+#include <vector>
+
+namespace scanloom::http {
+Result<std::shared_ptr<session::Session>> find_session(const Context& context) {
+    auto& sessions = context.services.sessions;
+    const auto& name = context.arguments["session"];
+    auto session = sessions.wake(name);
+    if (session) return session;
+    if (auto damage = damage_of(sessions, name)) return *damage;
+    return session.error();
+}
+
+std::optional<Error> damage_of(const session::SessionRegistry& sessions, const std::string& name) {
+    const auto damaged = sessions.damaged();
+    if (const auto found = damaged.find(name); found != damaged.end()) {
+        if (found->second.code == Errc::kOverloaded) { // the session itself is intact
+            return Error{Errc::kOverloaded,
+                         fmt::format("the session {} is not loaded: {}", name, found->second.message)};
+        }
+        return Error{Errc::kDataLoss,
+                     fmt::format("the session {} could not be recovered: {}; waiting will not mend it, DELETE forgets "
+                                 "it",
+                                 name, found->second.message)};
+    }
+    return std::nullopt;
+}
+
+std::string session_tag(const session::SessionInfo& info, const MakingVersions& versions) {
+    const auto tag = fmt::format("{}-{}.{}", session::tag_of(info), versions.weaving, versions.rendering);
+    return tag_with(tag, *info.exclusions);
+}
+
+std::string tag_with(std::string_view tag, const Exclusions& exclusions) {
+    return exclusions.revision() == 0 ? std::string(tag) : fmt::format("{}-x{}", tag, exclusions.revision());
+}
+
+Result<mapping::Layer> find_layer(std::string_view name) {
+    if (const auto layer = mapping::layer_of(name)) return *layer;
+    std::array<std::string_view, mapping::kLayers.size()> names;
+    std::ranges::transform(mapping::kLayers, names.begin(), mapping::name_of);
+    return Error{Errc::kNotFound,
+                 fmt::format("there is no layer {}; possible are {}", in_quotes(name), fmt::join(names, ", "))};
+}
+
+Result<mapping::Layer> layer_parameter(const Query& query) {
+    return find_layer(query.find("layer").value_or(mapping::name_of(mapping::Layer::kOccupancy)));
+}
+
+Result<Revision> since_parameter(const Query& query) {
+    const auto text = query.find("since").value_or("0");
+    if (const auto since = parse_integer<Revision>(text)) return *since;
+    return Error{Errc::kInvalidField, fmt::format("since is {}; a revision is needed, a whole number from 0 to {}",
+                                                  in_quotes(text), std::numeric_limits<Revision>::max())};
+}
+
+Revision since_in(const mapping::Snapshot& snapshot, Revision since) noexcept {
+    return since >= snapshot.exclusions->revision() && since <= snapshot.revision ? since : 0;
+}
+
+namespace {
+
+constexpr std::string_view kWeave = "weave";
+constexpr std::string_view kWith = "with";
+
+/// Returns the maps of a replay job, or the reason why it has none.
+Result<Maps> maps_of(std::shared_ptr<session::Session> session, const std::shared_ptr<session::Weave>& weave,
+                     std::shared_ptr<const mapping::Snapshot> maps) {
+    if (maps) {
+        auto tag = fmt::format("{}-{}", session_tag(session->info()), weave->id());
+        tag = tag_with(tag, *maps->exclusions);
+        return Maps{std::move(session), std::move(maps), weave, std::move(tag)};
+    }
+    const auto progress = weave->progress();
+    if (progress.error) return *progress.error;
+    const auto earlier =
+        progress.revision ? fmt::format(", or take those with {} of them as weave={}", *progress.revision, weave->id())
+                          : std::string();
+    return Error{
+        Errc::kOverloaded,
+        fmt::format("these maps are being woven, {} of {} entries are in; ask again soon, see weave/{} for how "
+                    "far it is{}",
+                    progress.woven, progress.target, weave->id(), earlier)};
+}
+
+} // namespace
+
+Result<std::shared_ptr<session::Weave>> find_weave(session::Weaves& weaves, const session::Session& session,
+                                                   std::string_view id) {
+    if (auto weave = weaves.find(session.info().id, id)) return weave;
+    return Error{
+        Errc::kNotFound,
+        fmt::format("there is no weave {} of this session, or no longer; start it with POST .../weave", in_quotes(id))};
+}
+
+namespace {
+
+enum class Waiting { kAllowed, kNotAllowed };
+
+/// Returns the maps of the replay job that `parameter` names, or the session's own maps.
+Result<Maps> chosen(const Context& context, std::string_view parameter, Waiting waiting = Waiting::kAllowed) {
+    if (waiting == Waiting::kNotAllowed) {
+        const auto& sessions = context.services.sessions;
+        const auto info = sessions.info(context.arguments["session"]);
+        if (info && !sessions.find(info->name)) return Maps{nullptr, nullptr, nullptr, session_tag(*info)};
+    }
+    auto session = find_session(context);
+    if (!session) return session.error();
+    const auto id = context.query.find(parameter);
+    if (!id) {
+        auto snapshot = waiting == Waiting::kAllowed ? (*session)->snapshot() : (*session)->try_snapshot();
+        auto tag = session_tag((*session)->info());
+        return Maps{*session, std::move(snapshot), *session, std::move(tag)};
+    }
+    const auto weave = find_weave(context.services.weaves, **session, *id);
+    if (!weave) return weave.error();
+    return maps_of(std::move(*session), *weave, (*weave)->maps());
+}
+
+Result<Maps> woven(const Context& context) {
+    auto session = find_session(context);
+    if (!session) return session.error();
+    const auto request = weave_request(**session, context.query);
+    if (!request) return request.error();
+    const Revision newest = (*session)->snapshot()->revision;
+    auto& weaves = context.services.weaves;
+    const auto weave = weaves.start((*session)->info(), *request, newest, session::Weaves::Listing::kUnlisted);
+    if (!weave) return weave.error();
+    auto maps = (*weave)->wait(session::target_of(*request, newest), context.services.replay_patience);
+    return maps_of(std::move(*session), *weave, std::move(maps));
+}
+
+Result<> check_parameters(const Context& context, std::initializer_list<std::string_view> known) {
+    std::vector<std::string_view> all(known);
+    all.push_back(kWeave);
+    return context.query.check_only(all);
+}
+
+} // namespace
+
+Result<Maps> find_maps(const Context& context, std::initializer_list<std::string_view> known) {
+    if (auto ok = check_parameters(context, known); !ok) return ok.error();
+    return chosen(context, kWeave);
+}
+
+Result<Maps> find_maps_at_once(const Context& context, std::initializer_list<std::string_view> known) {
+    if (auto ok = check_parameters(context, known); !ok) return ok.error();
+    return chosen(context, kWeave, Waiting::kNotAllowed);
+}
+
+Result<TwoMaps> find_two_maps(const Context& context, std::initializer_list<std::string_view> known) {
+    std::vector<std::string_view> all(known);
+    all.insert(all.end(), {kWeave, kWith});
+    if (auto ok = context.query.check_only(all); !ok) return ok.error();
+    if (!context.query.find(kWeave) && !context.query.find(kWith)) {
+        return Error{Errc::kInvalidField,
+                     "a weave to compare with is needed: weave=, with=, or both; where one is left out, the session's "
+                     "own map takes its place"};
+    }
+    auto a = chosen(context, kWeave);
+    if (!a) return a.error();
+    auto b = chosen(context, kWith);
+    if (!b) return b.error();
+    return TwoMaps{std::move(*a), std::move(*b)};
+}
+
+Result<Maps> find_maps_or_weave(const Context& context, std::initializer_list<std::string_view> known) {
+    std::vector<std::string_view> all(known);
+    all.push_back(kWeave);
+    const auto settings = weave_parameters();
+    all.insert(all.end(), settings.begin(), settings.end());
+    if (auto ok = context.query.check_only(all); !ok) return ok.error();
+    if (!asks_for_weaving(context.query)) return chosen(context, kWeave);
+    if (!context.query.find(kWeave)) return woven(context);
+    return Error{Errc::kInvalidField, "weave names maps that have their settings; leave the other settings out"};
+}
+
+namespace {
+
+std::optional<tiles::Extent> parse_extent(std::string_view text) {
+    std::array<double, 4> edges{};
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+        const auto comma = text.find(',');
+        if ((comma == std::string_view::npos) != (i + 1 == edges.size())) return std::nullopt;
+        const auto edge = parse_real(text.substr(0, comma));
+        if (!edge) return std::nullopt;
+        edges[i] = *edge;
+        text.remove_prefix(comma == std::string_view::npos ? text.size() : comma + 1);
+    }
+    return tiles::Extent{edges[0], edges[1], edges[2], edges[3]};
+}
+
+} // namespace
+
+Result<std::optional<tiles::Extent>> bbox_parameter(const Query& query) {
+    const auto text = query.find("bbox");
+    if (!text) return std::optional<tiles::Extent>();
+    const auto extent = parse_extent(*text);
+    if (extent) return extent;
+    return Error{Errc::kInvalidField,
+                 fmt::format("bbox is {}; min_x,min_y,max_x,max_y in metres is needed", in_quotes(*text))};
+}
+
+} // namespace scanloom::http

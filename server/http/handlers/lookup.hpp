@@ -1,0 +1,104 @@
+#pragma once
+
+#include "common/error/error.hpp"
+#include "server/http/context.hpp"
+#include "server/http/target.hpp"
+#include "server/mapping/projection.hpp"
+#include "server/mapping/snapshot.hpp"
+#include "server/session/session_registry.hpp"
+#include "server/session/weaves.hpp"
+#include "server/tiles/map_image.hpp"
+#include "server/tiles/tile.hpp"
+
+#include <chrono>
+#include <cstdint>
+#include <initializer_list>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace scanloom::http {
+
+/// Returns the session in the call's path. Loads it from the store if necessary.
+/// Errors: those of damage_of() and SessionRegistry::wake().
+[[nodiscard]] Result<std::shared_ptr<session::Session>> find_session(const Context& context);
+
+/// Returns why a stored session cannot be served, or nullopt: kDataLoss if its log is damaged, kOverloaded if memory
+/// ran out while loading it.
+[[nodiscard]] std::optional<Error> damage_of(const session::SessionRegistry& sessions, const std::string& name);
+
+/// Versions of the algorithms that compute maps from logs, and bytes from maps.
+struct MakingVersions {
+    std::uint32_t weaving = mapping::kWeavingVersion;
+    std::uint32_t rendering = tiles::kRenderingVersion;
+};
+
+/// Returns a tag that differs from that of every other session, of an earlier session of the same name, of the sessions
+/// of an earlier store, and of the same session as another version of the program shows it, because viewers cache
+/// immutable responses. It is part of every entity tag of data of the session. It begins with the session_id that
+/// robots receive.
+[[nodiscard]] std::string session_tag(const session::SessionInfo& info, const MakingVersions& versions = {});
+
+/// Returns the tag of maps with these exclusions. Each change of the exclusions changes the maps at the same revisions.
+[[nodiscard]] std::string tag_with(std::string_view tag, const Exclusions& exclusions);
+
+/// Errors: kNotFound if there is no such layer.
+[[nodiscard]] Result<mapping::Layer> find_layer(std::string_view name);
+
+/// Returns the layer parameter, or occupancy if it is not given.
+/// Errors: kNotFound if there is no such layer.
+[[nodiscard]] Result<mapping::Layer> layer_parameter(const Query& query);
+
+/// Returns the since parameter, or 0 if it is not given.
+/// Errors: kInvalidField if it is not a revision.
+[[nodiscard]] Result<Revision> since_parameter(const Query& query);
+
+/// Returns the revision from which to report changes: usually `since`. Returns 0 if the session has not reached
+/// `since`, because then the client knows only a deleted session of this name; and if `since` is before the newest
+/// change of exclusions, which may have changed the maps anywhere.
+[[nodiscard]] Revision since_in(const mapping::Snapshot& snapshot, Revision since) noexcept;
+
+/// The maps that a request refers to.
+struct Maps {
+    std::shared_ptr<session::Session> session;
+    std::shared_ptr<const mapping::Snapshot> snapshot;
+    std::shared_ptr<const void> origin; ///< their producer: the session or the replay job
+    std::string tag;                    ///< unique among all sessions and replay jobs; for entity tags
+};
+
+/// The maps that a request compares.
+struct TwoMaps {
+    Maps a;
+    Maps b;
+};
+
+/// Returns existing maps: the session's own, or the newest that the replay job `weave` has finished.
+/// @param known  the other parameters that the caller reads
+/// Errors: those of find_session(); kInvalidField for an unknown parameter; kNotFound if there is no such job;
+///         kOverloaded if it has no maps yet; the job's own error if it failed.
+[[nodiscard]] Result<Maps> find_maps(const Context& context, std::initializer_list<std::string_view> known);
+
+/// Returns what find_maps() returns, but without waiting: without a snapshot while the session's own maps are being
+/// written, and without a session if that is not in memory.
+[[nodiscard]] Result<Maps> find_maps_at_once(const Context& context, std::initializer_list<std::string_view> known);
+
+/// Returns what find_maps() returns if no settings are given. Otherwise starts a replay job with the settings and
+/// waits until it has reached the session's current revision.
+/// Errors: those of find_maps() and weave_request().
+[[nodiscard]] Result<Maps> find_maps_or_weave(const Context& context, std::initializer_list<std::string_view> known);
+
+/// Returns two maps to compare, those of the parameters `weave` and `with`. At least one of them must name a replay
+/// job; an absent one means the session's own map. Both may name the same job.
+/// Errors: those of find_maps(); kInvalidField if neither is given.
+[[nodiscard]] Result<TwoMaps> find_two_maps(const Context& context, std::initializer_list<std::string_view> known);
+
+/// Errors: kNotFound if there is no such replay job.
+[[nodiscard]] Result<std::shared_ptr<session::Weave>> find_weave(session::Weaves& weaves,
+                                                                 const session::Session& session, std::string_view id);
+
+/// Returns the bbox parameter, `min_x,min_y,max_x,max_y` in metres, or nullopt if it is not given.
+/// Errors: kInvalidField if it is not four numbers.
+[[nodiscard]] Result<std::optional<tiles::Extent>> bbox_parameter(const Query& query);
+
+} // namespace scanloom::http

@@ -1,0 +1,225 @@
+#include "server/http/handlers/handlers.hpp"
+
+#include "server/http/conditional.hpp"
+#include "server/http/handlers/lookup.hpp"
+#include "server/http/number.hpp"
+#include "server/http/problem.hpp"
+#include "server/mapping/digest.hpp"
+#include "server/tiles/difference.hpp"
+#include "server/tiles/map_files.hpp"
+#include "server/tiles/map_image.hpp"
+
+#include <boost/json/object.hpp>
+#include <fmt/format.h>
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+namespace scanloom::http {
+namespace {
+
+/// A parsed request for a map.
+struct WantedMapFile {
+    std::shared_ptr<const mapping::Snapshot> snapshot;
+    mapping::Layer layer;
+    tiles::MapFrame frame;
+    std::string etag;
+};
+
+/// Returns the maximum bytes of a file for each cell of a layer, before compression.
+using BytesPerCell = std::int64_t (*)(mapping::Layer);
+
+std::int64_t one_byte(mapping::Layer) { return 1; }
+
+Result<WantedMapFile> wanted_map(const Context& context, BytesPerCell bytes_per_cell) {
+    const auto bbox = bbox_parameter(context.query);
+    if (!bbox) return bbox.error();
+    auto found = find_maps_or_weave(context, {"layer", "bbox"});
+    if (!found) return found.error();
+    const auto layer = layer_parameter(context.query);
+    if (!layer) return layer.error();
+
+    const auto frame = tiles::map_frame(*found->snapshot, *layer, *bbox, bytes_per_cell(*layer));
+    if (!frame) return frame.error();
+    auto etag = fmt::format("\"{}-map-{}\"", found->tag, found->snapshot->revision);
+    return WantedMapFile{std::move(found->snapshot), *layer, *frame, std::move(etag)};
+}
+
+Response map_answer(std::string_view content_type, Body body, std::string_view etag) {
+    return ok(content_type, std::move(body)).set("ETag", etag).set("Cache-Control", kRevalidate);
+}
+
+/// Writes the requested file as bytes or text.
+template <class Write>
+Result<Response> get_file(const Context& context, std::string_view content_type, BytesPerCell bytes_per_cell,
+                          Write&& write) {
+    const auto wanted = wanted_map(context, bytes_per_cell);
+    if (!wanted) return wanted.error();
+    if (if_none_match_has(context.request.if_none_match, wanted->etag)) return not_modified(wanted->etag, kRevalidate);
+    using Bytes = decltype(write(*wanted));
+    struct File {
+        std::shared_ptr<const void> slot;
+        Bytes bytes;
+    };
+    auto slot = context.services.responses.take(wanted->frame.pixels() *
+                                                static_cast<std::size_t>(bytes_per_cell(wanted->layer)));
+    if (!slot) return slot.error();
+    auto file = std::make_shared<File>(File{std::move(*slot), {}});
+    file->bytes = write(*wanted);
+    return map_answer(content_type, Body(std::shared_ptr<const Bytes>(file, &file->bytes)), wanted->etag);
+}
+
+tiles::MapImage rendered(const WantedMapFile& wanted) {
+    return tiles::render_map(*wanted.snapshot, wanted.layer, wanted.frame);
+}
+
+} // namespace
+
+Result<Response> get_map_png(Context& context) {
+    return get_file(context, "image/png", one_byte,
+                    [](const WantedMapFile& wanted) { return tiles::map_png(rendered(wanted)); });
+}
+
+Result<Response> get_map_pgm(Context& context) {
+    return get_file(context, "image/x-portable-graymap", one_byte, [](const WantedMapFile& wanted) {
+        return tiles::map_pgm(rendered(wanted), wanted.snapshot->config);
+    });
+}
+
+Result<Response> get_map_csv(Context& context) {
+    const auto text_per_cell = [](mapping::Layer) -> std::int64_t { return 4; }; // "100,"
+    return get_file(context, "text/csv", text_per_cell,
+                    [](const WantedMapFile& wanted) { return tiles::map_csv(rendered(wanted)); });
+}
+
+Result<Response> get_map_npy(Context& context) {
+    return get_file(context, "application/octet-stream", tiles::npy_bytes_per_cell, [](const WantedMapFile& wanted) {
+        return tiles::map_npy(*wanted.snapshot, wanted.layer, wanted.frame);
+    });
+}
+
+Result<Response> get_map_yaml(Context& context) {
+    const auto wanted = wanted_map(context, one_byte);
+    if (!wanted) return wanted.error();
+    if (if_none_match_has(context.request.if_none_match, wanted->etag)) return not_modified(wanted->etag, kRevalidate);
+    return map_answer("application/yaml", Body(tiles::map_yaml(wanted->frame)), wanted->etag);
+}
+
+Result<Response> get_digest(Context& context) {
+    const auto found = find_maps_or_weave(context, {"layer"});
+    if (!found) return found.error();
+    const auto layer = layer_parameter(context.query);
+    if (!layer) return layer.error();
+
+    const auto& snapshot = found->snapshot;
+    boost::json::object layers;
+    for (const mapping::Layer each : mapping::kLayers) {
+        const bool is_asked = !context.query.find("layer") || each == *layer;
+        if (is_asked) layers[mapping::name_of(each)] = mapping::digest_of(*snapshot, each);
+    }
+    return ok(boost::json::object{{"revision", snapshot->revision}, {"layers", std::move(layers)}});
+}
+
+namespace {
+
+/// A parsed request for a comparison.
+struct WantedDifference {
+    TwoMaps maps;
+    mapping::Layer layer;
+    tiles::MapFrame frame;
+
+    [[nodiscard]] tiles::ComparedMaps compared() const { return {*maps.a.snapshot, *maps.b.snapshot, layer}; }
+};
+
+Result<WantedDifference> wanted_difference(const Context& context) {
+    const auto bbox = bbox_parameter(context.query);
+    if (!bbox) return bbox.error();
+    auto maps = find_two_maps(context, {"layer", "bbox"});
+    if (!maps) return maps.error();
+    const auto layer = layer_parameter(context.query);
+    if (!layer) return layer.error();
+    const auto frame = tiles::difference_frame({*maps->a.snapshot, *maps->b.snapshot, *layer}, *bbox);
+    if (!frame) return frame.error();
+    return WantedDifference{std::move(*maps), *layer, *frame};
+}
+
+boost::json::object shown(const Maps& maps, std::optional<std::string_view> weave) {
+    boost::json::object json{
+        {"weave", nullptr}, {"revision", maps.snapshot->revision}, {"cell_size", maps.snapshot->config.cell_size}};
+    if (weave) json["weave"] = *weave;
+    return json;
+}
+
+boost::json::object shown(const tiles::Extent& extent) {
+    return {{"min_x", rounded_metres(extent.min_x)},
+            {"min_y", rounded_metres(extent.min_y)},
+            {"max_x", rounded_metres(extent.max_x)},
+            {"max_y", rounded_metres(extent.max_y)}};
+}
+
+/// Returns part / whole, or null if the whole is 0.
+boost::json::value part_of(double part, std::uint64_t whole) {
+    if (whole == 0) return nullptr;
+    return part / static_cast<double>(whole);
+}
+
+bool is_probability(mapping::Layer layer) {
+    return layer == mapping::Layer::kOccupancy || layer == mapping::Layer::kSonar;
+}
+
+} // namespace
+
+Result<Response> get_difference(Context& context) {
+    const auto wanted = wanted_difference(context);
+    if (!wanted) return wanted.error();
+    const auto& frame = wanted->frame;
+    const auto sums = tiles::compare(wanted->compared(), frame);
+    boost::json::object cells;
+    boost::json::object areas;
+    for (std::size_t n = 0; n < sums.cells.size(); ++n) {
+        cells[tiles::kDifferenceNames[n]] = sums.cells[n];
+        areas[tiles::kDifferenceNames[n]] =
+            rounded_metres(static_cast<double>(sums.cells[n]) * frame.cell_size * frame.cell_size);
+    }
+    boost::json::object json{{"layer", mapping::name_of(wanted->layer)},
+                             {"a", shown(wanted->maps.a, context.query.find("weave"))},
+                             {"b", shown(wanted->maps.b, context.query.find("with"))},
+                             {"cell_size", frame.cell_size},
+                             {"width", frame.width()},
+                             {"height", frame.height()},
+                             {"bounds", shown(tiles::extent_of(frame.cells, frame.cell_size))},
+                             {"cells", std::move(cells)},
+                             {"areas", std::move(areas)},
+                             {"agreement", part_of(static_cast<double>(sums.agreeing), sums.known)},
+                             {"mean_difference", nullptr}};
+    if (is_probability(wanted->layer)) json["mean_difference"] = part_of(sums.difference, sums.known);
+    return ok(json);
+}
+
+Result<Response> get_difference_png(Context& context) {
+    const auto wanted = wanted_difference(context);
+    if (!wanted) return wanted.error();
+    const auto& [a, b] = wanted->maps;
+    const auto etag =
+        fmt::format("\"{}-{}-{}-{}-difference\"", a.tag, a.snapshot->revision, b.tag, b.snapshot->revision);
+    if (if_none_match_has(context.request.if_none_match, etag)) return not_modified(etag, kRevalidate);
+    struct File {
+        std::shared_ptr<const void> slot;
+        tiles::Bytes bytes;
+    };
+    auto slot = context.services.responses.take(wanted->frame.pixels());
+    if (!slot) return slot.error();
+    const auto file =
+        std::make_shared<const File>(File{std::move(*slot), tiles::difference_png(wanted->compared(), wanted->frame)});
+    const auto extent = tiles::extent_of(wanted->frame.cells, wanted->frame.cell_size);
+    return ok("image/png", Body(std::shared_ptr<const tiles::Bytes>(file, &file->bytes)))
+        .set("ETag", etag)
+        .set("Cache-Control", kRevalidate)
+        .set("Scanloom-Bounds", fmt::format("{},{},{},{}", rounded_metres(extent.min_x), rounded_metres(extent.min_y),
+                                            rounded_metres(extent.max_x), rounded_metres(extent.max_y)));
+}
+
+} // namespace scanloom::http

@@ -1,0 +1,203 @@
+#include "server/http/handlers/handlers.hpp"
+
+#include "server/http/handlers/session_json.hpp"
+#include "server/http/openapi_text.hpp"
+#include "server/http/problem.hpp"
+#include "server/metrics/metrics.hpp"
+#include "server/metrics/process.hpp"
+
+#include <boost/json/array.hpp>
+#include <boost/json/object.hpp>
+
+#include <algorithm>
+#include <iterator>
+#include <vector>
+
+namespace scanloom::http {
+namespace {
+
+/// Damaged and failed sessions do not affect readiness, because the other sessions are available.
+boost::json::object readiness(const Services& services, const access::TokenRef& seen_by) {
+    const auto is_seen = [&](std::string_view session) { return seen_by && is_for(*seen_by, session); };
+    boost::json::array damaged;
+    auto found = services.sessions.damaged();
+    found.merge(services.check.damaged());
+    for (const auto& [name, reason] : found) {
+        if (is_seen(name)) damaged.push_back(damaged_json(name, reason));
+    }
+    boost::json::array failed;
+    for (const auto& session : services.sessions.list()) {
+        if (!is_seen(session->info().name)) continue;
+        if (const auto reason = session->failure()) failed.push_back(failed_json(session->info().name, *reason));
+    }
+    boost::json::value host;
+    if (!services.robots.host.empty()) host = boost::json::string(services.robots.host);
+    return {{"status", "ready"},
+            {"robots", boost::json::object{{"host", std::move(host)}, {"port", services.robots.port}}},
+            {"damaged", std::move(damaged)},
+            {"failed", std::move(failed)}};
+}
+
+} // namespace
+
+Result<Response> get_livez(Context& context) {
+    if (auto known = context.query.check_only({}); !known) return known.error();
+    return ok("text/plain; charset=utf-8", Body("ok\n")).set("Cache-Control", kNotKept);
+}
+
+Result<Response> get_readyz(Context& context) {
+    if (auto known = context.query.check_only({}); !known) return known.error();
+    boost::json::array reasons;
+    const Services& services = context.services;
+    if (!services.recovered) reasons.emplace_back("the sessions are still being recovered from the store");
+    if (services.sessions.is_draining()) reasons.emplace_back("the server is shutting down");
+    const auto store = services.log.stats();
+    if (store.last_error) reasons.emplace_back("the store failed: " + *store.last_error);
+    if (store.no_room) reasons.emplace_back(*store.no_room);
+    if (reasons.empty()) return ok(readiness(services, context.token));
+    return problem(Status::service_unavailable, "the server is not ready", "/readyz", {{"reasons", reasons}});
+}
+
+namespace {
+
+using Families = std::vector<prometheus::MetricFamily>;
+using metrics::counter_now;
+using metrics::gauge_now;
+
+Families store_families(const store::ScanLog& log) {
+    const auto stats = log.stats();
+    const auto number = [](std::uint64_t count) { return static_cast<double>(count); };
+    return {
+        gauge_now("scanloom_store_bytes", "Bytes of the store on disk.", number(log.bytes_on_disk())),
+        gauge_now("scanloom_store_queued_bytes", "Bytes that wait to be written.", number(stats.queued_bytes)),
+        gauge_now("scanloom_store_failed", "1 when the store takes no changes any more.", stats.last_error ? 1.0 : 0.0),
+        gauge_now("scanloom_store_full", "1 when the disk has no room for more scans.", stats.no_room ? 1.0 : 0.0),
+        gauge_now("scanloom_store_damaged",
+                  "1 when the store's tables are merged no more, as one of them is damaged. Damage that is met where "
+                  "sessions are read is in scanloom_sessions_damaged.",
+                  stats.damage ? 1.0 : 0.0),
+        counter_now("scanloom_store_appends_total", "Appends that became durable.", number(stats.appends)),
+        counter_now("scanloom_store_entries_total", "Log entries that became durable.", number(stats.entries)),
+        counter_now("scanloom_store_synced_writes_total", "Group commits, one fsync each.",
+                    number(stats.synced_writes)),
+        counter_now("scanloom_store_torn_bytes_dropped_total", "Bytes of a write that the last crash cut short.",
+                    number(stats.torn_bytes_dropped)),
+    };
+}
+
+double bytes_of(std::int64_t pages) { return static_cast<double>(pages) * static_cast<double>(mapping::kPageBytes); }
+
+Families session_families(const session::SessionRegistry& sessions, const session::BackgroundCheck& check) {
+    const auto served = sessions.list();
+    std::size_t backlog = 0;
+    for (const auto& session : served) backlog += session->backlog_size();
+    const auto failed =
+        std::ranges::count_if(served, [](const auto& session) { return session->failure().has_value(); });
+    return {
+        gauge_now("scanloom_sessions", "Sessions that are served.", static_cast<double>(sessions.all().size())),
+        gauge_now("scanloom_sessions_loaded", "Sessions whose maps are in memory.", static_cast<double>(served.size())),
+        gauge_now("scanloom_map_memory_bytes", "Memory of these maps, about.", bytes_of(sessions.pages().used())),
+        gauge_now("scanloom_map_memory_limit_bytes", "What they may take together.",
+                  bytes_of(sessions.pages().pages_max())),
+        gauge_now("scanloom_sessions_failed", "Sessions that take no scans until they are read from the store again.",
+                  static_cast<double>(failed)),
+        gauge_now("scanloom_sessions_damaged", "Sessions that could not be recovered, or were found damaged since.",
+                  static_cast<double>(sessions.damaged().size() + check.damaged().size())),
+        counter_now("scanloom_sessions_checked_total", "Sessions left in the store at the start that were read since.",
+                    static_cast<double>(check.checked())),
+        gauge_now("scanloom_backlog_entries", "Log entries of all sessions that wait to be appended.",
+                  static_cast<double>(backlog)),
+        counter_now("scanloom_scans_applied_total", "Scans that are durable and in their map.",
+                    static_cast<double>(sessions.counters().scans_applied)),
+        counter_now("scanloom_scans_jumped_total", "Scans that are durable and that max_jump left out of their map.",
+                    static_cast<double>(sessions.counters().scans_jumped)),
+        counter_now("scanloom_scans_duplicates_total", "Scans sent again after a reconnect and dropped.",
+                    static_cast<double>(sessions.counters().scans_duplicates)),
+        counter_now("scanloom_scans_dropped_total",
+                    "Scans that were refused, or that came when their link had been replaced; never acknowledged.",
+                    static_cast<double>(sessions.counters().scans_dropped)),
+    };
+}
+
+Families tile_families(const tiles::TileCache::Stats& stats) {
+    return {
+        counter_now("scanloom_tile_cache_hits_total", "Tiles asked for that were there.",
+                    static_cast<double>(stats.hits)),
+        counter_now("scanloom_tile_cache_misses_total", "Tiles asked for that had to be made.",
+                    static_cast<double>(stats.misses)),
+        gauge_now("scanloom_tile_cache_bytes", "Bytes of the tiles that are kept.", static_cast<double>(stats.bytes)),
+        gauge_now("scanloom_tile_cache_tiles", "Tiles that are kept.", static_cast<double>(stats.tiles)),
+    };
+}
+
+void append(Families& to, Families from) {
+    to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
+}
+
+} // namespace
+
+Result<Response> get_metrics(Context& context) {
+    if (auto known = context.query.check_only({}); !known) return known.error();
+    const Services& services = context.services;
+    Families families = services.metrics.collect();
+    append(families, session_families(services.sessions, services.check));
+    append(families, {gauge_now("scanloom_weave_memory_bytes", "Memory of the maps woven anew, at most.",
+                                bytes_of(services.weaves.chunks()))});
+    append(families, store_families(services.log));
+    append(families, tile_families(services.tiles.stats()));
+    append(families, metrics::process_families());
+    return ok("text/plain; version=0.0.4; charset=utf-8", Body(metrics::to_text(families)))
+        .set("Cache-Control", kNotKept);
+}
+
+Result<Response> get_openapi(Context& context) {
+    if (auto known = context.query.check_only({}); !known) return known.error();
+    return ok(kJson, Body(std::string(kOpenapiText))).set("Cache-Control", kNotKept);
+}
+
+Result<Response> get_viewer(Context& context) {
+    return serve_web_file(context.services.web, "index.html", context.request.if_none_match, context.request.host,
+                          context.request.is_secure);
+}
+
+Result<Response> get_viewer_asset(Context& context) {
+    if (auto known = context.query.check_only({}); !known) return known.error();
+    return serve_web_file(context.services.web, "assets/" + context.arguments["file"], context.request.if_none_match,
+                          context.request.host, context.request.is_secure);
+}
+
+namespace {
+
+Error none_kept() {
+    return {Errc::kNotFound, "this server keeps no backups; start it with --backups DIR, a directory on another disk"};
+}
+
+boost::json::object backup_json(const store::Backup& backup) {
+    return {{"id", backup.id}, {"time", backup.time}, {"bytes", backup.bytes}, {"sessions", backup.sessions}};
+}
+
+} // namespace
+
+Result<Response> list_backups(Context& context) {
+    if (auto known = context.query.check_only({}); !known) return known.error();
+    auto* const backups = context.services.backups;
+    if (backups == nullptr) return none_kept();
+    const auto there = backups->list();
+    if (!there) return there.error();
+    boost::json::array listed;
+    for (const auto& backup : *there) listed.push_back(backup_json(backup));
+    return ok(boost::json::object{{"backups", std::move(listed)}, {"kept", backups->kept()}});
+}
+
+Result<Response> make_backup(Context& context) {
+    if (auto known = context.query.check_only({}); !known) return known.error();
+    auto* const backups = context.services.backups;
+    if (backups == nullptr) return none_kept();
+    const auto made = backups->make(context.services.log);
+    if (!made) return made.error();
+    auto response = ok(backup_json(*made));
+    response.status = Status::created;
+    return response;
+}
+
+} // namespace scanloom::http
