@@ -88,7 +88,6 @@ void Server::join_pools() {
     weaves_.stop(); // their results are no longer needed
     telling_.join();
     showing_.join();
-    awaiting_.join();
     planning_.join();
     locating_.join();
     reweaving_.join();
@@ -165,6 +164,21 @@ Result<> Server::listen(http::WebFiles web) {
                                                      text_of(options_.listen), failure.code().message())};
     }
     const auto address = options_.listen.address();
+    http::ServerConfig config;
+    config.endpoint = options_.http;
+    config.host_names = options_.http_hosts;
+    config.proxies = options_.http_proxies;
+    config.tls = http_tls_;
+    config.connections_max = limits_.http;
+    http_pools_.emplace(http::Executors{.metrics = telling_.get_executor(),
+                                        .queries = serving_.get_executor(),
+                                        .whole_maps = survey_.get_executor(),
+                                        .log_reading = paths_.get_executor(),
+                                        .log_export = logs_.get_executor(),
+                                        .planning = planning_.get_executor(),
+                                        .store = changing_.get_executor(),
+                                        .live = showing_.get_executor()},
+                        config);
     services_.reset(new http::Services{.sessions = sessions_,
                                        .weaves = weaves_,
                                        .goals = goals_,
@@ -173,38 +187,13 @@ Result<> Server::listen(http::WebFiles web) {
                                        .check = check_,
                                        .metrics = metrics_,
                                        .doorman = {gate_, audit_, logins_},
+                                       .pools = *http_pools_,
                                        .web = std::move(web),
                                        .robots = {address.is_unspecified() ? "" : address.to_string(), ingest_->port()},
                                        .backups = backups_.get(),
                                        .tile_bytes_max = options_.tile_cache_bytes});
     api_.emplace(*services_);
-    http::ServerConfig config;
-    config.endpoint = options_.http;
-    config.host_names = options_.http_hosts;
-    config.proxies = options_.http_proxies;
-    config.tls = http_tls_;
-    config.connections_max = limits_.http;
-    auto http = http::Server::listen(
-        io_,
-        {.telling = telling_.get_executor(),
-         .serving = serving_.get_executor(),
-         .survey = survey_.get_executor(),
-         .paths = paths_.get_executor(),
-         .logs = logs_.get_executor(),
-         .weaving = awaiting_.get_executor(),
-         .planning = planning_.get_executor(),
-         .changing = changing_.get_executor(),
-         .showing = showing_.get_executor()},
-        config,
-        {[this](const http::Request& request) { return api_->answer(request); },
-         [this](const http::Request& request) { return api_->look(request); },
-         [this](const http::Request& request) { return api_->refuse(request); },
-         [this](const http::Asleep& asleep, std::function<void()> told) { api_->wake(asleep, std::move(told)); },
-         [this](const std::string& who, net::ClientFault fault) { audit_.note(access::Port::kHttp, who, fault); },
-         [this](const std::string& who) {
-             audit_.note({access::Port::kHttp, access::Reason::kForeignHost, who, "", ""});
-         }},
-        metrics_.http());
+    auto http = http::Server::listen(io_, *api_, config, metrics_.http());
     if (!http) return http.error();
     http_ = std::move(*http);
     return {};

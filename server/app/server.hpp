@@ -36,7 +36,6 @@ namespace scanloom::app {
 ///   paths          trajectories and landmarks, one at a time: long ones are read from the log
 ///   logs           logs, piece by piece
 ///   reweaving      replay jobs, with a lower priority than all other work
-///   awaiting       answers that wait for replay jobs
 ///   planning       path planning for robots and API clients: one search at a time
 ///   locating       relocalization of robots: one at a time
 ///   changing       creates and deletes sessions, excludes scans, makes backups: waits for the disk and for strands
@@ -91,7 +90,6 @@ private:
     sockets::WorkerPool paths_{1};
     sockets::WorkerPool logs_{1};
     sockets::WorkerPool reweaving_{2};
-    sockets::WorkerPool awaiting_{http::ServerConfig{}.weaves_max}; // each thread only waits
     sockets::WorkerPool planning_{1};
     sockets::WorkerPool locating_{1};
     sockets::WorkerPool changing_{2};
@@ -107,6 +105,7 @@ private:
     guide::GoalBook goals_;
     guide::Locator locator_;
     ingest::RequestDesk desk_;
+    std::optional<http::Pools> http_pools_;
     std::unique_ptr<http::Services> services_; // of api_
     std::optional<http::Api> api_;
     std::shared_ptr<sockets::PortTls> robot_tls_; // null: the port does not use TLS; so for http_tls_

@@ -1,57 +1,66 @@
 #pragma once
 
+#include "server/access/token.hpp"
 #include "server/http/context.hpp"
-#include "server/http/lane.hpp"
+#include "server/http/pools.hpp"
 #include "server/http/request.hpp"
 #include "server/http/response.hpp"
-#include "server/http/router.hpp"
+#include "server/http/routes.hpp"
 #include "server/http/target.hpp"
 
-#include <functional>
-#include <optional>
+#include <boost/asio/awaitable.hpp>
+
+#include <span>
 #include <variant>
 
 namespace scanloom::http {
 
-/// Answers requests: parses the target, finds the route, checks the permission and calls the handler.
-/// Bounds: large responses take a slot, such as map images of up to 64 MB; cached tiles take at most
-///     Services::tile_bytes_max.
-/// Threads: answer() may be called on any number of threads.
+/// Finds the route of a request, checks its permission and has its handler compute the response.
+///
+/// A failure becomes a response, too, with application/problem+json.
+/// Bounds: the limits of Pools; large responses take a slot, such as map images of up to 64 MB; cached tiles take at
+///     most Services::tile_bytes_max.
+/// Threads: any thread.
 class Api {
 public:
-    /// @param services  must outlive this object
-    explicit Api(Services& services) : services_(services) {}
+    /// @param services  must outlive this object, as must `routes`
+    explicit Api(Services& services, std::span<const Route> routes = http::routes())
+        : services_(services), routes_(routes) {}
 
-    /// Computes the response. A failure becomes a response too, with application/problem+json.
-    [[nodiscard]] Response answer(const Request& request);
-
-    /// Returns the response if it is immediately available, else the lane on which to call answer(), or the session to
-    /// load first.
-    /// Threads: I/O threads, before answer().
-    [[nodiscard]] Outlook look(const Request& request);
-
-    /// Loads the session that look() returned. `on_loaded` is called once, when the session is in memory or failed to
-    /// load. Then call look() again. If its result is the same, answer() returns the reason.
-    void wake(const Asleep& asleep, std::function<void()> on_loaded);
-
-    /// Returns the refusal of a request whose header is enough to refuse it, else nullopt.
-    /// Threads: I/O threads, before the body is read.
-    [[nodiscard]] std::optional<Response> refuse(const Request& request) const;
-
-private:
-    /// A request whose header passed all checks.
-    struct Admitted {
+    /// A request up to its permission.
+    struct Routed {
         Match match;
         Query query;
-        access::TokenRef who;
     };
 
-    /// Checks everything but the body: path, method, permission, Content-Type.
-    [[nodiscard]] std::variant<Admitted, Response> admit(const Request& request) const;
-    [[nodiscard]] Response for_who_asked(Operation operation, Response response) const;
-    [[nodiscard]] Result<Response> call(Operation operation, Context& context);
+    /// A request whose header passed all checks.
+    struct Admitted {
+        Routed routed;
+        access::TokenRef token;
+        Pools::Slot slot; ///< of its pool; null: not taken yet, or the pool has no limit
+    };
+
+    /// Finds the route.
+    /// @param head  need not have a body; so for admit()
+    /// @return the route, or the refusal
+    [[nodiscard]] std::variant<Routed, Response> route(const Request& head) const;
+
+    /// Checks the permission and the Content-Type. For a large body, also takes a slot of the pool.
+    [[nodiscard]] std::variant<Admitted, Response> admit(const Request& head, Routed routed) const;
+
+    /// Computes the response. The session that the route needs is loaded first; no thread waits for that.
+    /// Threads: starts and ends on the executor of the coroutine.
+    [[nodiscard]] boost::asio::awaitable<Response> answer(Admitted admitted, const Request& request) const;
+
+    [[nodiscard]] const Services& services() const noexcept { return services_; }
+
+private:
+    [[nodiscard]] boost::asio::awaitable<Result<Response>> call(const Route& route, Context& context,
+                                                                Pools::Slot& slot) const;
+    [[nodiscard]] Response for_client(Access access, Response response) const;
 
     Services& services_;
+    std::span<const Route> routes_;
 };
 
 } // namespace scanloom::http

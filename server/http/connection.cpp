@@ -2,14 +2,11 @@
 
 #include "common/net/await_tuple.hpp"
 #include "server/http/date.hpp"
-#include "server/http/in_quotes.hpp"
 #include "server/http/incoming.hpp"
 #include "server/http/problem.hpp"
 #include "server/live/invitation.hpp"
-#include "server/sockets/worker_pool.hpp"
 
 #include <boost/asio/dispatch.hpp>
-#include <boost/asio/use_awaitable.hpp>
 #include <boost/beast/http/read.hpp>
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -28,18 +25,6 @@ namespace asio = boost::asio;
 namespace beast = boost::beast;
 
 constexpr std::size_t kReadBytes = 4096;
-
-/// Confines a fault of the server to one response. `use` is a member of Answering.
-template <class Use>
-auto guarded(const Use& use, const Request& request) -> decltype(use(request)) {
-    try {
-        return use(request);
-    } catch (const std::exception& failure) {
-        spdlog::error("{} {} failed: {}", in_quotes(request.method), in_quotes(request.target), failure.what());
-        return problem(Error{Errc::kInternal, "the server failed to answer; its log says why"},
-                       instance_of(request.target));
-    }
-}
 
 std::ptrdiff_t field_count(const Incoming& message) { return std::distance(message.begin(), message.end()); }
 
@@ -136,7 +121,7 @@ asio::awaitable<bool> Connection::shake_hands() {
     if (net::is_plain_http(failed)) {
         co_await tell_plainly("this port speaks HTTPS alone; ask for the same address with https:// before it");
     } else if (const auto fault = net::client_fault_of(failed)) {
-        service_->answering.turned_away(peer_, *fault);
+        service_->api.services().doorman.note(peer_, *fault);
         must_linger_ = true; // until the peer has read the TLS alert
     }
     co_return false;
@@ -172,7 +157,7 @@ asio::awaitable<bool> Connection::wait_for_request() {
 asio::awaitable<bool> Connection::serve_request() {
     Parser parser;
     parser.header_limit(service_->config.header_bytes_max);
-    // refusal_of() applies the limit of the operation once it is known.
+    // refusal_of() applies the limit of the route once it is known.
     parser.body_limit(service_->config.import_bytes_max);
     const auto error = co_await read_header(parser);
     end_waiting();
@@ -180,65 +165,52 @@ asio::awaitable<bool> Connection::serve_request() {
         co_await refuse(error);
         co_return false;
     }
-    if (const auto refusal = refusal_of(parser, *service_, peer_)) {
+    Request request = head_of(parser.get());
+    request.peer = peer_;
+    request.is_secure = stream_.is_encrypted();
+    auto routed = service_->api.route(request);
+    const auto bytes_max = body_bytes_max(std::get_if<Api::Routed>(&routed), service_->config);
+    if (const auto refusal = refusal_of(parser, request, bytes_max, *service_)) {
         co_await write(*refusal, {});
         co_return false;
     }
-    if (parser.chunked()) parser.body_limit(body_bytes_max(head_of(parser.get()), service_->config));
-    std::shared_ptr<const void> slot;
+    auto admitted = admit(request, std::move(routed));
     if (!parser.is_done()) {
-        const bool is_taken = co_await take_body(parser, slot);
-        if (!is_taken) co_return false;
+        if (const auto* refusal = std::get_if<Response>(&admitted)) { // before the body is sent
+            co_await write(*refusal, {});
+            co_return false;
+        }
+        if (parser.chunked()) parser.body_limit(bytes_max);
+        const bool is_read = co_await read_body(parser);
+        if (!is_read) co_return false;
     }
 
     Manner manner{.with_body = parser.get().method() != beast::http::verb::head,
                   .keep_alive = parser.get().keep_alive(),
                   .takes_chunks = parser.get().version() >= 11};
     Incoming message = parser.release();
+    read_rest(message, request);
     const auto begin = std::chrono::steady_clock::now();
-    Request request = request_of(message);
-    request.peer = peer_;
-    request.is_secure = stream_.is_encrypted();
-    Outlook outlook = guarded(service_->answering.look, request);
-    if (const auto* asleep = std::get_if<Asleep>(&outlook)) {
-        co_await wake(*asleep);
-        outlook = guarded(service_->answering.look, request);
+    std::optional<Response> response;
+    if (auto* refusal = std::get_if<Response>(&admitted)) {
+        response = std::move(*refusal);
+    } else {
+        response = co_await service_->api.answer(std::get<Api::Admitted>(std::move(admitted)), request);
     }
-    if (std::holds_alternative<Asleep>(outlook)) outlook = lane_of(request); // not loaded; the response has the reason
-    if (const auto* lane = std::get_if<Lane>(&outlook)) {
-        outlook = co_await compute(*lane, std::move(request), std::move(slot));
-    }
-    const Response& response = std::get<Response>(outlook);
     service_->counters.request_seconds.observe(std::chrono::steady_clock::now() - begin);
-    if (response.invitation) {
-        co_await show(*response.invitation, message);
+    if (response->invitation) {
+        co_await show(*response->invitation, message);
         co_return false;
     }
     if (stopping_) manner.keep_alive = false;
-    co_return co_await write(response, manner);
+    co_return co_await write(*response, manner);
 }
 
-/// Refuses a request before its body is sent if the header is enough for that.
-/// @param slot  receives what must be kept until the request is answered
-/// @return false if the connection cannot be used any more
-asio::awaitable<bool> Connection::take_body(Parser& parser, std::shared_ptr<const void>& slot) {
-    Request head = head_of(parser.get());
-    head.peer = peer_;
-    head.is_secure = stream_.is_encrypted();
-    if (const auto refusal = service_->answering.refuse(head)) {
-        co_await write(*refusal, {});
-        co_return false;
-    }
-    const Lane lane = lane_of(head);
-    if (lane == Lane::kImporting) { // it has a large body
-        auto taken = take_slot(*service_, lane);
-        if (!taken) {
-            co_await write(problem(taken.error(), instance_of(head.target)), {});
-            co_return false;
-        }
-        slot = std::move(*taken);
-    }
-    co_return co_await read_body(parser);
+/// Returns the request if its header permits it, or the refusal.
+std::variant<Api::Admitted, Response> Connection::admit(const Request& head,
+                                                        std::variant<Api::Routed, Response> routed) const {
+    if (auto* refusal = std::get_if<Response>(&routed)) return std::move(*refusal);
+    return service_->api.admit(head, std::get<Api::Routed>(std::move(routed)));
 }
 
 /// Usually the whole header arrives with the first bytes, and no wait is needed.
@@ -299,40 +271,12 @@ asio::awaitable<void> Connection::show(const live::Invitation& invitation, const
         co_return;
     }
     service_->counters.answered(static_cast<unsigned>(Status::switching_protocols)).Increment();
-    viewer_ =
-        std::make_shared<live::Viewer>(std::move(stream_), invitation, std::move(slot),
-                                       live::Viewer::Services{service_->config.live, service_->executors.showing,
-                                                              service_->executors.paths, service_->counters.live});
+    const auto& executors = service_->api.services().pools.executors();
+    viewer_ = std::make_shared<live::Viewer>(
+        std::move(stream_), invitation, std::move(slot),
+        live::Viewer::Services{service_->config.live, executors.live, executors.log_reading, service_->counters.live});
     if (stopping_) viewer_->stop();
     co_await viewer_->run(upgrade);
-}
-
-/// Returns when the session has been loaded or loading has failed.
-asio::awaitable<void> Connection::wake(Asleep asleep) {
-    const auto executor = stream_.get_executor();
-    co_await asio::async_initiate<const asio::use_awaitable_t<>&, void()>(
-        [&](auto handler) {
-            auto shared = std::make_shared<decltype(handler)>(std::move(handler));
-            service_->answering.wake(asleep,
-                                     [shared, executor] { asio::post(executor, [shared] { std::move (*shared)(); }); });
-        },
-        asio::use_awaitable);
-}
-
-/// Computes the response on the lane's executor, because this thread serves other sockets too. Work that does not wait
-/// stays on this thread.
-/// @param slot  that of an import, taken before its body was read
-asio::awaitable<Response> Connection::compute(Lane lane, Request request, std::shared_ptr<const void> slot) {
-    if (lane == Lane::kAtOnce) co_return guarded(service_->answering.answer, request);
-    if (!slot) {
-        auto taken = take_slot(*service_, lane);
-        if (!taken) co_return problem(taken.error(), instance_of(request.target));
-        slot = std::move(*taken);
-    }
-    auto work = [service = service_, request = std::move(request)] {
-        return guarded(service->answering.answer, request);
-    };
-    co_return co_await sockets::compute_on(executor_of(service_->executors, lane), std::move(work));
 }
 
 asio::awaitable<void> Connection::refuse(beast::error_code reason) {

@@ -3,7 +3,6 @@
 #include "common/net/link_stream.hpp"
 #include "server/http/deadline.hpp"
 #include "server/http/incoming.hpp"
-#include "server/http/lane.hpp"
 #include "server/http/peer_wait.hpp"
 #include "server/http/refusals.hpp"
 #include "server/http/request.hpp"
@@ -18,7 +17,9 @@
 #include <chrono>
 #include <memory>
 #include <optional>
+#include <string>
 #include <string_view>
+#include <variant>
 
 namespace scanloom::http {
 
@@ -58,11 +59,9 @@ private:
     [[nodiscard]] boost::asio::awaitable<bool> serve_request();
     [[nodiscard]] boost::asio::awaitable<boost::beast::error_code> read_header(Parser& parser);
     [[nodiscard]] boost::asio::awaitable<bool> read_body(Parser& parser);
-    [[nodiscard]] boost::asio::awaitable<bool> take_body(Parser& parser, std::shared_ptr<const void>& slot);
+    [[nodiscard]] std::variant<Api::Admitted, Response> admit(const Request& head,
+                                                              std::variant<Api::Routed, Response> routed) const;
     [[nodiscard]] boost::asio::awaitable<void> show(const live::Invitation& invitation, const Incoming& upgrade);
-    [[nodiscard]] boost::asio::awaitable<void> wake(Asleep asleep);
-    [[nodiscard]] boost::asio::awaitable<Response> compute(Lane lane, Request request,
-                                                           std::shared_ptr<const void> slot);
     [[nodiscard]] boost::asio::awaitable<void> refuse(boost::beast::error_code reason);
     /// How to write a response.
     struct Manner {

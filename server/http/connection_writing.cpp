@@ -56,8 +56,8 @@ asio::awaitable<bool> Connection::write(const Response& response, Manner manner)
 /// Produces each piece after the previous one is sent, so a slow client occupies one piece of memory.
 asio::awaitable<bool> Connection::write_stream(BodyStream& stream, Framing framing) {
     for (;;) {
-        const Result<std::string> piece =
-            co_await sockets::compute_on(service_->executors.logs, [&stream] { return next_guarded(stream); });
+        const Result<std::string> piece = co_await sockets::compute_on(
+            service_->api.services().pools.executors().log_export, [&stream] { return next_guarded(stream); });
         if (!piece) {
             spdlog::error("an answer broke off: {}", piece.error().message);
             co_return false;

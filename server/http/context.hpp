@@ -6,8 +6,9 @@
 #include "server/guide/locator.hpp"
 #include "server/http/answer_slots.hpp"
 #include "server/http/doorman.hpp"
+#include "server/http/path_pattern.hpp"
+#include "server/http/pools.hpp"
 #include "server/http/request.hpp"
-#include "server/http/router.hpp"
 #include "server/http/target.hpp"
 #include "server/http/web_files.hpp"
 #include "server/live/landmark_hub.hpp"
@@ -20,10 +21,13 @@
 #include "server/store/scan_log.hpp"
 #include "server/tiles/tile_maker.hpp"
 
+#include <boost/asio/awaitable.hpp>
+
 #include <atomic>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <string>
 
 namespace scanloom::http {
@@ -45,6 +49,7 @@ struct Services {
     const session::BackgroundCheck& check;
     const metrics::Metrics& metrics;
     Doorman doorman;
+    const Pools& pools;
     WebFiles web = {};                                        ///< of the viewer
     RobotPort robots = {};                                    ///< for /readyz
     store::Backups* backups = nullptr;                        ///< null: this server keeps no backups
@@ -64,7 +69,15 @@ struct Context {
     const Request& request;
     const Arguments& arguments; ///< of the path
     const Query& query;
-    access::TokenRef token = nullptr; ///< of the client; null only if the operation needs no token
+    access::TokenRef token; ///< of the client; null only if the operation needs no token
+
+    /// The session in the path, or why it cannot be served. Only if the route has Sessions::kLoaded.
+    Result<std::shared_ptr<session::Session>> session = Error{Errc::kInternal, "this route loads no session"};
+
+    Pool pool = Pool::kIo; ///< where the handler runs
+
+    /// Continues on a thread of `next`. Pool::kIo is the executor of the connection.
+    [[nodiscard]] boost::asio::awaitable<void> run_on(Pool next);
 };
 
 } // namespace scanloom::http

@@ -4,7 +4,6 @@
 #include "server/http/credentials.hpp"
 #include "server/http/host.hpp"
 #include "server/http/in_quotes.hpp"
-#include "server/http/permission.hpp"
 #include "server/http/problem.hpp"
 
 #include <fmt/format.h>
@@ -39,50 +38,50 @@ Denied foreign_page(const Request& request, std::string token) {
                          in_quotes(request.origin))}};
 }
 
-bool has_role(const Token& token, Need need) {
-    if (need == Need::kCreate || need == Need::kChange || need == Need::kKeep) return may_change(token.role);
-    if (need == Need::kGuide) return may_guide(token.role);
-    return need == Need::kAll || may_look(token.role);
+bool has_role(const Token& token, Access access) {
+    switch (access) {
+    case Access::kCreate:
+    case Access::kChange:
+    case Access::kBackup: return may_change(token.role);
+    case Access::kGuide: return may_guide(token.role);
+    case Access::kOpen:
+    case Access::kServer: return true;
+    case Access::kList:
+    case Access::kRead: return may_look(token.role);
+    }
+    return false;
 }
 
-bool is_about_one_session(Need need) { return need == Need::kLook || need == Need::kGuide || need == Need::kChange; }
-
-std::optional<Denied> objection_to(const Token& token, const Match& match) {
-    const Need need = need_of(match.operation);
-    if (!has_role(token, need)) {
+std::optional<Denied> objection_to(const Token& token, Access access, std::string_view session) {
+    if (!has_role(token, access)) {
         return denied(Reason::kWrongRole, token,
                       fmt::format("the token '{}' has the role {}, which may not do this; use one of another role",
                                   token.name, name_of(token.role)));
     }
-    if ((need == Need::kAll || need == Need::kKeep) && !is_for_all(token)) {
+    if ((access == Access::kServer || access == Access::kBackup) && !is_for_all(token)) {
         return denied(
             Reason::kWrongSession, token,
             fmt::format("this is about all sessions, and the token '{}' is not for all; use one whose sessions "
                         "are *",
                         token.name));
     }
-    return is_about_one_session(need) ? Doorman::objection(token, match.arguments["session"]) : std::nullopt;
-}
-
-std::string_view session_in(const Match& match) {
-    return is_about_one_session(need_of(match.operation)) ? std::string_view(match.arguments["session"])
-                                                          : std::string_view();
+    return is_about_one_session(access) ? Doorman::objection(token, session) : std::nullopt;
 }
 
 } // namespace
 
-std::variant<TokenRef, Response> Doorman::admit(const Request& request, const Match& match) const {
+std::variant<TokenRef, Response> Doorman::admit(const Request& request, Access access, std::string_view session) const {
     // Only a program that knows a token sends it in the Authorization field. A browser adds other credentials, for
     // example those for a proxy, by itself.
     const bool has_token = !gate_.is_open() && bearer_of(request.authorization);
-    const bool is_told_to = !has_token && !request.origin.empty() && is_of_foreign_page(request);
-    const bool asks_no_token = gate_.is_open() || need_of(match.operation) == Need::kNothing;
-    if (is_told_to && asks_no_token) return refuse(request, foreign_page(request, ""), session_in(match));
+    const bool is_foreign = !has_token && !request.origin.empty() && is_of_foreign_page(request);
+    const bool needs_token = !gate_.is_open() && access != Access::kOpen;
+    if (is_foreign && !needs_token) return refuse(request, foreign_page(request, ""), session);
     if (gate_.is_open()) return access::anybody();
     auto who = identify(request);
-    if (need_of(match.operation) == Need::kNothing) return who ? *who : nullptr;
-    if (!who) return refuse(request, who.error(), session_in(match));
-    if (const auto why = objection_to(**who, match)) return refuse(request, *why, session_in(match));
+    if (access == Access::kOpen) return who ? *who : nullptr;
+    if (!who) return refuse(request, who.error(), session);
+    if (const auto why = objection_to(**who, access, session)) return refuse(request, *why, session);
     return *who;
 }
 

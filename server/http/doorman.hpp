@@ -7,9 +7,10 @@
 #include "server/guard/logins.hpp"
 #include "server/http/request.hpp"
 #include "server/http/response.hpp"
-#include "server/http/router.hpp"
+#include "server/http/routes.hpp"
 
 #include <optional>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <variant>
@@ -28,8 +29,10 @@ public:
         : gate_(gate), audit_(audit), logins_(logins) {}
 
     /// Checks the credentials of a request and the permission for its operation.
+    /// @param session  in the path, if the permission is about one session
     /// @return the token, null for an unknown client if the operation needs no token; or the response that refuses
-    [[nodiscard]] std::variant<access::TokenRef, Response> admit(const Request& request, const Match& match) const;
+    [[nodiscard]] std::variant<access::TokenRef, Response> admit(const Request& request, Access access,
+                                                                 std::string_view session) const;
 
     /// Returns why `token` does not permit access to `session`, or nullopt if it does.
     [[nodiscard]] static std::optional<guard::Denied> objection(const access::Token& token, std::string_view session);
@@ -38,6 +41,10 @@ public:
     /// @return 401 with WWW-Authenticate if the request had no known token, else 403
     [[nodiscard]] Response refuse(const Request& request, const guard::Denied& why,
                                   std::string_view session = {}) const;
+
+    /// Writes a client without a valid certificate to the audit log.
+    /// @param peer  its address
+    void note(const std::string& peer, net::ClientFault fault) const { audit_.note(access::Port::kHttp, peer, fault); }
 
     /// Writes a refusal to the audit log.
     void note(access::Refusal refusal) const { audit_.note(std::move(refusal)); }

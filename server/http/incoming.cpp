@@ -61,12 +61,10 @@ Request head_of(const Incoming& message) {
     return request;
 }
 
-Request request_of(Incoming& message) {
-    Request request = head_of(message);
+void read_rest(Incoming& message, Request& request) {
     request.if_none_match = joined(message, beast::http::field::if_none_match);
     request.accept_encoding = joined(message, beast::http::field::accept_encoding);
     request.body = std::move(message.body());
-    return request;
 }
 
 } // namespace scanloom::http

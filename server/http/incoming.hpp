@@ -14,10 +14,10 @@ using Incoming = boost::beast::http::request<boost::beast::http::string_body>;
 
 [[nodiscard]] inline std::string_view view(boost::beast::string_view text) { return {text.data(), text.size()}; }
 
-/// Returns the request without its body, If-None-Match and Accept-Encoding: enough for the lane and the credentials.
+/// Returns the request without its body, If-None-Match and Accept-Encoding: enough for the route and the permission.
 [[nodiscard]] Request head_of(const Incoming& message);
 
-/// Returns the whole request. Moves the body out of the message.
-[[nodiscard]] Request request_of(Incoming& message);
+/// Adds the rest to head_of(message): the body, which is moved, If-None-Match and Accept-Encoding.
+void read_rest(Incoming& message, Request& request);
 
 } // namespace scanloom::http

@@ -77,17 +77,16 @@ std::optional<Response> refusal_of_fields(const Incoming& message, const std::st
 
 } // namespace
 
-std::optional<Response> refusal_of(const Parser& parser, const Service& service, const std::string& peer) {
-    const Request head = head_of(parser.get());
+std::optional<Response> refusal_of(const Parser& parser, const Request& head, std::uint64_t bytes_max,
+                                   const Service& service) {
     const auto path = instance_of(head.target);
     if (auto refusal = refusal_of_fields(parser.get(), path)) return refusal;
-    const auto bytes_max = body_bytes_max(head, service.config);
     if (parser.content_length().value_or(0) > bytes_max) {
         return problem(Status::payload_too_large,
                        fmt::format("the body is too large; at most {} bytes are taken here", bytes_max), path);
     }
     if (service.check_host && !head.host.empty() && !is_known_host(head.host, service.config.host_names)) {
-        service.answering.foreign_host(peer);
+        service.api.services().doorman.note({access::Port::kHttp, access::Reason::kForeignHost, head.peer, "", ""});
         return problem(
             Status::misdirected_request,
             fmt::format("this server does not know itself as {}; ask it by its address", in_quotes(head.host)), path);
@@ -95,8 +94,9 @@ std::optional<Response> refusal_of(const Parser& parser, const Service& service,
     return std::nullopt;
 }
 
-std::uint64_t body_bytes_max(const Request& head, const ServerConfig& config) {
-    return lane_of(head) == Lane::kImporting ? config.import_bytes_max : config.body_bytes_max;
+std::uint64_t body_bytes_max(const Api::Routed* routed, const ServerConfig& config) {
+    const bool is_form = routed != nullptr && routed->match.route.method == Method::kPostForm;
+    return is_form ? config.import_bytes_max : config.body_bytes_max;
 }
 
 } // namespace scanloom::http

@@ -10,7 +10,6 @@
 
 #include <cstdint>
 #include <optional>
-#include <string>
 
 /// Responses that a connection sends without a handler: to bytes that are not a request, and to requests whose body is
 /// not worth reading.
@@ -26,12 +25,15 @@ using Parser = boost::beast::http::request_parser<boost::beast::http::string_bod
 [[nodiscard]] std::optional<Response> refusal_of(const boost::beast::flat_buffer& unread,
                                                  boost::beast::error_code reason);
 
-/// Returns the maximum size of the request's body, in bytes.
-[[nodiscard]] std::uint64_t body_bytes_max(const Request& head, const ServerConfig& config);
+/// Returns the maximum size of a request's body, in bytes.
+/// @param routed  null if the request has no route
+[[nodiscard]] std::uint64_t body_bytes_max(const Api::Routed* routed, const ServerConfig& config);
 
-/// Returns the refusal of a request after reading only its header, or nullopt. Reports requests for a foreign
-/// host to Answering::foreign_host.
-/// @param peer  the client's address
-[[nodiscard]] std::optional<Response> refusal_of(const Parser& parser, const Service& service, const std::string& peer);
+/// Returns the refusal of a request after reading only its header, or nullopt. Writes requests for a foreign host to
+/// the audit log.
+/// @param head       the request in `parser`
+/// @param bytes_max  maximum size of its body
+[[nodiscard]] std::optional<Response> refusal_of(const Parser& parser, const Request& head, std::uint64_t bytes_max,
+                                                 const Service& service);
 
 } // namespace scanloom::http

@@ -34,14 +34,12 @@ bool may_connect(const net::ip::address& peer, std::size_t open, const ServerCon
            std::ranges::find(config.proxies, peer) != config.proxies.end();
 }
 
-Result<std::shared_ptr<Server>> Server::listen(net::io_context& io, Executors executors, const ServerConfig& config,
-                                               Answering answering, metrics::HttpCounters& counters) {
+Result<std::shared_ptr<Server>> Server::listen(net::io_context& io, const Api& api, const ServerConfig& config,
+                                               metrics::HttpCounters& counters) {
     const auto endpoint = config.endpoint;
     const bool check_host = endpoint.address().is_loopback() || !config.host_names.empty();
-    auto service = std::make_shared<const Service>(Service{
-        config, check_host, std::move(executors), std::move(answering), counters, sockets::Slots(config.changes_max),
-        sockets::Slots(config.imports_max), sockets::Slots(config.weaves_max), sockets::Slots(config.paths_max),
-        sockets::Slots(config.plans_max), live::ViewerSemaphore(config.live)});
+    auto service =
+        std::make_shared<const Service>(Service{config, check_host, api, counters, live::ViewerSemaphore(config.live)});
     std::shared_ptr<Server> server(new Server(io, std::move(service)));
     if (const auto failed = server->bind()) {
         return Error{Errc::kUnreachable,

@@ -5,7 +5,6 @@
 #include "server/http/server_config.hpp"
 #include "server/metrics/metrics.hpp"
 
-#include <boost/asio/any_io_executor.hpp>
 #include <boost/asio/awaitable.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
@@ -30,22 +29,17 @@ namespace scanloom::http {
 ///         that waits for the executors. To accept one more, the server closes the connection whose peer is furthest
 ///         behind (Connection::behind()); if every peer waits for the server, the new one receives 503. At most
 ///         config.connections_per_peer_max of one address, except loopback and config.proxies.
-///         The following limits answer one more request with 503:
-///         "changes": at most config.changes_max requests that create or delete sessions.
-///         "imports": at most config.imports_max maps that are read and imported.
-///         "weaves": at most config.weaves_max requests that wait for replay jobs.
-///         "paths": at most config.paths_max requests that read trajectories, landmarks or point clouds.
-///         "plans": at most config.plans_max requests that plan paths, or wait for their turn to.
+///         The limits of Pools answer one more request with 503.
 ///         Live viewers: at most config.live.viewers_max of the connections.
-/// Threads: any. The counters must outlive the server's work on all executors.
+/// Threads: any.
 class Server : public std::enable_shared_from_this<Server> {
 public:
     /// Binds the port. Connections wait until start().
     ///
+    /// @param api  must outlive the server's work on all executors, as must `counters`
     /// Errors: kUnreachable, naming the endpoint, if it is in use or not an address of this machine.
-    [[nodiscard]] static Result<std::shared_ptr<Server>> listen(boost::asio::io_context& io, Executors executors,
-                                                                const ServerConfig& config, Answering answering,
-                                                                metrics::HttpCounters& counters);
+    [[nodiscard]] static Result<std::shared_ptr<Server>>
+    listen(boost::asio::io_context& io, const Api& api, const ServerConfig& config, metrics::HttpCounters& counters);
 
     /// Returns the bound port.
     [[nodiscard]] std::uint16_t port() const noexcept { return port_; }

@@ -56,11 +56,29 @@ std::shared_ptr<const mapping::Snapshot> Weave::maps() const {
     return maps_;
 }
 
-std::shared_ptr<const mapping::Snapshot> Weave::wait(Revision revision, std::chrono::milliseconds patience) const {
-    std::unique_lock lock(mutex_);
-    const auto is_there = [&] { return maps_ && (maps_->revision >= revision || state_ == State::kDone); };
-    changed_.wait_for(lock, patience, [&] { return is_there() || has_ended(state_); });
-    return is_there() ? maps_ : nullptr;
+/// Pre: mutex_ is held.
+bool Weave::is_ready(Revision revision) const noexcept {
+    return maps_ && (maps_->revision >= revision || state_ == State::kDone);
+}
+
+std::shared_ptr<const mapping::Snapshot> Weave::maps_with(Revision revision) const {
+    const std::lock_guard lock(mutex_);
+    return is_ready(revision) ? maps_ : nullptr;
+}
+
+void Weave::notify(Revision revision, std::function<void()> on_ready) {
+    const std::lock_guard lock(mutex_);
+    waiting_.push_back({revision, std::move(on_ready)});
+    call_waiting();
+}
+
+/// Pre: mutex_ is held.
+void Weave::call_waiting() {
+    std::erase_if(waiting_, [&](const Waiting& one) {
+        const bool is_over = has_ended(state_) || is_ready(one.revision);
+        if (is_over) one.on_ready();
+        return is_over;
+    });
 }
 
 bool Weave::join(Revision target) {
@@ -136,7 +154,7 @@ void Weave::cancel(Error reason) {
     cancelled_ = true; // checked by the thread in run()
     error_ = std::move(reason);
     if (state_ == State::kWaiting) state_ = State::kCancelled;
-    changed_.notify_all();
+    call_waiting();
 }
 
 // Replay
@@ -278,7 +296,7 @@ bool Weave::publish(Revision target, bool is_complete, PageBudget& budget) {
         return false;
     }
     state_ = State::kWaiting;
-    changed_.notify_all();
+    call_waiting();
     return true;
 }
 
@@ -293,7 +311,7 @@ void Weave::give_up(const Error& error, PageBudget& budget) {
 void Weave::end(State state, PageBudget& budget) {
     budget.give_back(std::exchange(claimed_, 0));
     state_ = cancelled_ ? State::kCancelled : state;
-    changed_.notify_all();
+    call_waiting();
 }
 
 } // namespace scanloom::session

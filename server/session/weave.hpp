@@ -8,13 +8,13 @@
 #include "server/store/scan_log.hpp"
 
 #include <atomic>
-#include <chrono>
-#include <condition_variable>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace scanloom::session {
 
@@ -67,11 +67,15 @@ public:
     /// Returns the newest finished maps; null if there are none.
     [[nodiscard]] std::shared_ptr<const mapping::Snapshot> maps() const;
 
-    /// Waits up to `patience` for maps that contain the entry `revision`, or for the maps of a job that ends before it.
+    /// Returns the finished maps if they contain the entry `revision`, or if the job has ended before it.
     /// @param revision  at most a target that was requested before
     /// @return null if there are no such maps; progress() has the reason
-    [[nodiscard]] std::shared_ptr<const mapping::Snapshot> wait(Revision revision,
-                                                                std::chrono::milliseconds patience) const;
+    [[nodiscard]] std::shared_ptr<const mapping::Snapshot> maps_with(Revision revision) const;
+
+    /// Calls `on_ready` once: when maps_with(`revision`) returns maps or the job has ended. Before it returns, if that
+    /// is so already.
+    /// @param on_ready  called on any thread; does not block and does not use this object
+    void notify(Revision revision, std::function<void()> on_ready);
 
     /// Requests maps up to `target`.
     /// @return whether they exist or a job that is not finished will compute them; if false, call resume() for a done
@@ -114,6 +118,8 @@ public:
     [[nodiscard]] bool has_begun() const noexcept { return projection_.has_value(); }
 
 private:
+    [[nodiscard]] bool is_ready(Revision revision) const noexcept;
+    void call_waiting();
     [[nodiscard]] bool is_same_map(const Weave& other) const noexcept;
     [[nodiscard]] std::optional<Revision> revision_before(const Weave& other, Revision target) const;
     [[nodiscard]] std::optional<Revision> begin();
@@ -144,13 +150,18 @@ private:
     double turn_left_ = 0.0;                        // in the unit of Reach::work
 
     mutable std::mutex mutex_; // guards the members below
-    mutable std::condition_variable changed_;
     State state_ = State::kWaiting;
     Revision target_;
     std::optional<Revision> round_; // target of a round that is not finished
     bool is_complete_ = false;      // the job has reached its end; no entry can follow
     std::shared_ptr<const mapping::Snapshot> maps_;
     std::optional<Error> error_;
+
+    struct Waiting {
+        Revision revision;
+        std::function<void()> on_ready;
+    };
+    std::vector<Waiting> waiting_;
 };
 
 /// Returns whether the job does nothing more until it is requested again.

@@ -1,6 +1,6 @@
 #include "server/http/conditional.hpp"
 #include "server/http/host.hpp"
-#include "server/http/router.hpp"
+#include "server/http/path_pattern.hpp"
 #include "server/http/target.hpp"
 #include "tests/fuzz/check.hpp"
 
@@ -36,10 +36,10 @@ SCANLOOM_FUZZER(http_target)(const std::uint8_t* data, std::size_t size) {
     fuzz::check(!target->segments.empty(), "every path has a segment");
     http::check_segments(target->segments);
     static_cast<void>(target->query.check_only({"since", "layer"}));
-    const auto routing = http::find_route("GET", target->segments);
-    if (const auto* match = std::get_if<http::Match>(&routing);
-        match && match->operation == http::Operation::kTilePng) {
-        fuzz::check(!match->arguments["session"].empty() && !match->arguments["y"].empty(), "arguments are not empty");
+    const auto arguments =
+        http::match_path("/api/v1/sessions/{session}/tiles/{layer}/{z}/{x}/{y}.png", target->segments);
+    if (arguments) {
+        fuzz::check(!(*arguments)["session"].empty() && !(*arguments)["y"].empty(), "arguments are not empty");
     }
     return 0;
 }

@@ -2,6 +2,7 @@
 #include "server/session/weaves.hpp"
 #include "tests/support/digests.hpp"
 #include "tests/support/memory_scan_log.hpp"
+#include "tests/support/weave_waiting.hpp"
 #include "tests/support/whole_log.hpp"
 
 #include <boost/asio/thread_pool.hpp>
@@ -58,7 +59,8 @@ protected:
 
     std::shared_ptr<const mapping::Snapshot> maps_until(session::Weaves& weaves, Revision until) {
         const session::WeaveRequest request{session_.config, {until, std::nullopt}};
-        return weaves.start(session_, request, entries_.size()).value()->wait(until, std::chrono::minutes(5));
+        const auto weave = weaves.start(session_, request, entries_.size()).value();
+        return testing_support::wait_for_maps(*weave, until, std::chrono::minutes(5));
     }
 
     store::MemoryScanLog log_;

@@ -77,7 +77,7 @@ constexpr std::array<std::string_view, 3> kGoalMembers = {"robot", "size_min", "
 
 Result<Response> get_goal(Context& context) {
     if (auto known = context.query.check_only({"robot"}); !known) return known.error();
-    const auto session = find_session(context);
+    const auto& session = context.session;
     if (!session) return session.error();
     const auto name = context.query.find("robot");
     if (!name) return Error{Errc::kInvalidField, "robot is missing; name the robot whose goal is asked for"};
@@ -155,7 +155,7 @@ std::string feature_of(const std::string& robot, const guide::Goal& goal) {
 
 Result<Response> get_goals(Context& context) {
     if (auto known = context.query.check_only({}); !known) return known.error();
-    const auto session = find_session(context);
+    const auto& session = context.session;
     if (!session) return session.error();
 
     const auto page = context.services.goals.ways().page(*session, guide::WayBook::Clock::now());

@@ -2,8 +2,9 @@
 
 #include "common/error/error.hpp"
 #include "server/http/context.hpp"
-#include "server/http/lane.hpp"
 #include "server/http/response.hpp"
+
+#include <boost/asio/awaitable.hpp>
 
 /// The handlers of the routes, by the file that has them.
 namespace scanloom::http {
@@ -89,12 +90,8 @@ namespace scanloom::http {
 ///
 /// The parameters are `v`, a revision, and `id`, that of the session. A response that cannot change for these
 /// parameters may be cached without limit. Without them the client must revalidate it with its entity tag.
-[[nodiscard]] Result<Response> get_tile_png(Context& context);
-[[nodiscard]] Result<Response> get_tile_bin(Context& context);
-
-/// Does as much of get_tile_png() or get_tile_bin() as takes microseconds, for I/O threads.
-/// @return a refusal, "not modified", or a tile that exists; else the lane on which to call the handler
-[[nodiscard]] Result<Outlook> look_at_tile(const Context& context, tiles::TileFormat format);
+[[nodiscard]] boost::asio::awaitable<Result<Response>> get_tile_png(Context& context);
+[[nodiscard]] boost::asio::awaitable<Result<Response>> get_tile_bin(Context& context);
 
 /// GET .../tiles/{layer}.json: returns TileJSON 3.0.0. Its bounds and center are longitudes and latitudes, so metres
 /// are in additional members: cell_size, extent (covered by the tiles), bounds_m (the observed area), frame_id.
@@ -110,14 +107,14 @@ namespace scanloom::http {
 /// `bbox=min_x,min_y,max_x,max_y` (metres) the cells that overlap this rectangle. ROS loads the PGM and the YAML.
 ///
 /// A large file takes a slot until its last byte is sent. If no slot is free, the response is 503.
-[[nodiscard]] Result<Response> get_map_png(Context& context);
-[[nodiscard]] Result<Response> get_map_pgm(Context& context);
-[[nodiscard]] Result<Response> get_map_csv(Context& context);
-[[nodiscard]] Result<Response> get_map_npy(Context& context);
-[[nodiscard]] Result<Response> get_map_yaml(Context& context);
+[[nodiscard]] boost::asio::awaitable<Result<Response>> get_map_png(Context& context);
+[[nodiscard]] boost::asio::awaitable<Result<Response>> get_map_pgm(Context& context);
+[[nodiscard]] boost::asio::awaitable<Result<Response>> get_map_csv(Context& context);
+[[nodiscard]] boost::asio::awaitable<Result<Response>> get_map_npy(Context& context);
+[[nodiscard]] boost::asio::awaitable<Result<Response>> get_map_yaml(Context& context);
 
 /// GET .../digest?layer: returns a hash of the canonical cells of each layer. Equal digests mean equal maps.
-[[nodiscard]] Result<Response> get_digest(Context& context);
+[[nodiscard]] boost::asio::awaitable<Result<Response>> get_digest(Context& context);
 
 /// GET .../difference, .../difference.png `?weave=A&with=B&layer&bbox`: returns the differences between two maps of a
 /// session, as numbers or as an image. Each map is that of a replay job, or the session's own map if it is not named.
@@ -181,7 +178,7 @@ namespace scanloom::http {
 /// null without data. "revision" is the `since` for the next request. "reset" means that the session has not reached
 /// `since` because it was recreated; then all landmarks are returned. Waits until the log has been read, which takes
 /// seconds for a long log at the first request.
-/// Errors: those of find_session() and LandmarkFolds::up_to(); kInvalidField for a parameter.
+/// Errors: those of Context::session and LandmarkFolds::up_to(); kInvalidField for a parameter.
 [[nodiscard]] Result<Response> get_landmarks(Context& context);
 
 /// GET .../points.csv and .../points.ply?since&until&robot&threshold: returns what robots observed from many positions
@@ -189,7 +186,7 @@ namespace scanloom::http {
 /// `until`, of all robots or of one. Unfinished captures count as ended now. Therefore consecutive parts contain each
 /// capture once. Points of different captures are fused if they are at most `threshold` metres apart (default 0.05).
 /// Reads the log from its beginning, which takes seconds for a long log.
-/// Errors: those of find_session() and read_captures(); kInvalidField for a parameter; kNotFound for the robot;
+/// Errors: those of Context::session and read_captures(); kInvalidField for a parameter; kNotFound for the robot;
 ///         kTooLarge if the captures have more than a million points (the message names a part that has fewer), or if
 ///         it takes more than 5 s.
 [[nodiscard]] Result<Response> get_points_csv(Context& context);
@@ -216,7 +213,7 @@ namespace scanloom::http {
 /// Accepts a WebSocket that watches the session: 101 with an invitation. Responds 426 if the request is not for a
 /// WebSocket of version 13, and 403 to a page of another host, because browsers let any page open a WebSocket and read
 /// it. The viewer watches as long as its token permits it.
-/// Errors: kInvalidField for an unknown parameter; those of find_session().
+/// Errors: kInvalidField for an unknown parameter; those of Context::session.
 [[nodiscard]] Result<Response> get_live(Context& context);
 
 } // namespace scanloom::http

@@ -82,7 +82,7 @@ Result<Response> get_landmarks(Context& context) {
     }
     const auto seen_min = seen_min_parameter(context.query);
     if (!seen_min) return seen_min.error();
-    const auto session = find_session(context);
+    const auto& session = context.session;
     if (!session) return session.error();
 
     const auto snapshot = (*session)->snapshot();
@@ -237,7 +237,7 @@ Result<> choose(store::ScanLog& log, const session::SessionInfo& session, const 
 
 Result<Response> get_points(const Context& context, PointFile file) {
     if (auto known = context.query.check_only({"since", "until", "robot", "threshold"}); !known) return known.error();
-    const auto session = find_session(context);
+    const auto& session = context.session;
     if (!session) return session.error();
     const auto snapshot = (*session)->snapshot();
     const auto query = cloud_query(*snapshot, context.query);

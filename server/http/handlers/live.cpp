@@ -27,7 +27,7 @@ Response upgrade_required(const Context& context) {
 
 Result<Response> get_live(Context& context) {
     if (auto known = context.query.check_only({}); !known) return known.error();
-    const auto session = find_session(context);
+    const auto& session = context.session;
     if (!session) return session.error();
     const auto& upgrade = context.request.upgrade;
     if (!upgrade || upgrade->version != kVersion) return upgrade_required(context);

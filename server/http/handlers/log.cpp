@@ -116,7 +116,7 @@ Result<Response> get_log(Context& context) {
         return Error{Errc::kInvalidField,
                      fmt::format("format is {}; possible are clf and protobuf", in_quotes(format))};
     }
-    const auto session = find_session(context);
+    const auto& session = context.session;
     if (!session) return session.error();
     const auto& info = (*session)->info();
 

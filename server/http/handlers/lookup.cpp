@@ -1,9 +1,13 @@
 #include "server/http/handlers/lookup.hpp"
 
+#include "common/net/await_tuple.hpp"
 #include "server/http/handlers/weave_request.hpp"
 #include "server/http/in_quotes.hpp"
 #include "server/http/number.hpp"
 
+#include <boost/asio/post.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/asio/this_coro.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,15 +17,6 @@
 #include <vector>
 
 namespace scanloom::http {
-Result<std::shared_ptr<session::Session>> find_session(const Context& context) {
-    auto& sessions = context.services.sessions;
-    const auto& name = context.arguments["session"];
-    auto session = sessions.wake(name);
-    if (session) return session;
-    if (auto damage = damage_of(sessions, name)) return *damage;
-    return session.error();
-}
-
 std::optional<Error> damage_of(const session::SessionRegistry& sessions, const std::string& name) {
     const auto damaged = sessions.damaged();
     if (const auto found = damaged.find(name); found != damaged.end()) {
@@ -106,57 +101,67 @@ Result<std::shared_ptr<session::Weave>> find_weave(session::Weaves& weaves, cons
 
 namespace {
 
-enum class Waiting { kAllowed, kNotAllowed };
-
 /// Returns the maps of the replay job that `parameter` names, or the session's own maps.
 Result<Maps> chosen(const Context& context, std::string_view parameter, Waiting waiting = Waiting::kAllowed) {
-    if (waiting == Waiting::kNotAllowed) {
-        const auto& sessions = context.services.sessions;
-        const auto info = sessions.info(context.arguments["session"]);
-        if (info && !sessions.find(info->name)) return Maps{nullptr, nullptr, nullptr, session_tag(*info)};
-    }
-    auto session = find_session(context);
+    const auto& session = context.session;
     if (!session) return session.error();
     const auto id = context.query.find(parameter);
     if (!id) {
         auto snapshot = waiting == Waiting::kAllowed ? (*session)->snapshot() : (*session)->try_snapshot();
-        auto tag = session_tag((*session)->info());
-        return Maps{*session, std::move(snapshot), *session, std::move(tag)};
+        return Maps{*session, std::move(snapshot), *session, session_tag((*session)->info())};
     }
     const auto weave = find_weave(context.services.weaves, **session, *id);
     if (!weave) return weave.error();
-    return maps_of(std::move(*session), *weave, (*weave)->maps());
+    return maps_of(*session, *weave, (*weave)->maps());
 }
 
-Result<Maps> woven(const Context& context) {
-    auto session = find_session(context);
-    if (!session) return session.error();
+/// Suspends the coroutine until the job has maps of `target` or has ended, at most for Services::replay_patience.
+boost::asio::awaitable<void> wait_for(Context& context, session::Weave& weave, Revision target) {
+    const Pool pool = context.pool;
+    co_await context.run_on(Pool::kIo); // one thread at a time uses the timer
+    const auto executor = co_await boost::asio::this_coro::executor;
+    const auto timer = std::make_shared<boost::asio::steady_timer>(executor, context.services.replay_patience);
+    weave.notify(target, [timer, executor] { boost::asio::post(executor, [timer] { timer->cancel(); }); });
+    co_await timer->async_wait(kAwaitTuple);
+    co_await context.run_on(pool);
+}
+
+boost::asio::awaitable<Result<Maps>> replayed(Context& context) {
+    const auto& session = context.session;
+    if (!session) co_return session.error();
     const auto request = weave_request(**session, context.query);
-    if (!request) return request.error();
+    if (!request) co_return request.error();
+    const auto slot = context.services.pools.wait_for_replay();
+    if (!slot) co_return slot.error();
     const Revision newest = (*session)->snapshot()->revision;
     auto& weaves = context.services.weaves;
     const auto weave = weaves.start((*session)->info(), *request, newest, session::Weaves::Listing::kUnlisted);
-    if (!weave) return weave.error();
-    auto maps = (*weave)->wait(session::target_of(*request, newest), context.services.replay_patience);
-    return maps_of(std::move(*session), *weave, std::move(maps));
-}
-
-Result<> check_parameters(const Context& context, std::initializer_list<std::string_view> known) {
-    std::vector<std::string_view> all(known);
-    all.push_back(kWeave);
-    return context.query.check_only(all);
+    if (!weave) co_return weave.error();
+    const Revision target = session::target_of(*request, newest);
+    co_await wait_for(context, **weave, target);
+    co_return maps_of(*session, *weave, (*weave)->maps_with(target));
 }
 
 } // namespace
 
-Result<Maps> find_maps(const Context& context, std::initializer_list<std::string_view> known) {
-    if (auto ok = check_parameters(context, known); !ok) return ok.error();
-    return chosen(context, kWeave);
+Result<Maps> find_maps(const Context& context, std::initializer_list<std::string_view> known, Waiting waiting) {
+    std::vector<std::string_view> all(known);
+    all.push_back(kWeave);
+    if (auto ok = context.query.check_only(all); !ok) return ok.error();
+    return chosen(context, kWeave, waiting);
 }
 
-Result<Maps> find_maps_at_once(const Context& context, std::initializer_list<std::string_view> known) {
-    if (auto ok = check_parameters(context, known); !ok) return ok.error();
-    return chosen(context, kWeave, Waiting::kNotAllowed);
+boost::asio::awaitable<Result<Maps>> find_maps_or_replay(Context& context, std::span<const std::string_view> known) {
+    std::vector<std::string_view> all(known.begin(), known.end());
+    all.push_back(kWeave);
+    const auto settings = weave_parameters();
+    all.insert(all.end(), settings.begin(), settings.end());
+    if (auto ok = context.query.check_only(all); !ok) co_return ok.error();
+    if (!asks_for_weaving(context.query)) co_return chosen(context, kWeave);
+    if (context.query.find(kWeave)) {
+        co_return Error{Errc::kInvalidField, "weave names maps that have their settings; leave the other settings out"};
+    }
+    co_return co_await replayed(context);
 }
 
 Result<TwoMaps> find_two_maps(const Context& context, std::initializer_list<std::string_view> known) {
@@ -173,17 +178,6 @@ Result<TwoMaps> find_two_maps(const Context& context, std::initializer_list<std:
     auto b = chosen(context, kWith);
     if (!b) return b.error();
     return TwoMaps{std::move(*a), std::move(*b)};
-}
-
-Result<Maps> find_maps_or_weave(const Context& context, std::initializer_list<std::string_view> known) {
-    std::vector<std::string_view> all(known);
-    all.push_back(kWeave);
-    const auto settings = weave_parameters();
-    all.insert(all.end(), settings.begin(), settings.end());
-    if (auto ok = context.query.check_only(all); !ok) return ok.error();
-    if (!asks_for_weaving(context.query)) return chosen(context, kWeave);
-    if (!context.query.find(kWeave)) return woven(context);
-    return Error{Errc::kInvalidField, "weave names maps that have their settings; leave the other settings out"};
 }
 
 namespace {

@@ -10,19 +10,17 @@
 #include "server/tiles/map_image.hpp"
 #include "server/tiles/tile.hpp"
 
-#include <chrono>
+#include <boost/asio/awaitable.hpp>
+
 #include <cstdint>
 #include <initializer_list>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
 namespace scanloom::http {
-
-/// Returns the session in the call's path. Loads it from the store if necessary.
-/// Errors: those of damage_of() and SessionRegistry::wake().
-[[nodiscard]] Result<std::shared_ptr<session::Session>> find_session(const Context& context);
 
 /// Returns why a stored session cannot be served, or nullopt: kDataLoss if its log is damaged, kOverloaded if memory
 /// ran out while loading it.
@@ -73,20 +71,23 @@ struct TwoMaps {
     Maps b;
 };
 
+/// Whether a lookup may wait until the session's own maps have been written, for a few milliseconds.
+enum class Waiting { kAllowed, kNotAllowed };
+
 /// Returns existing maps: the session's own, or the newest that the replay job `weave` has finished.
-/// @param known  the other parameters that the caller reads
-/// Errors: those of find_session(); kInvalidField for an unknown parameter; kNotFound if there is no such job;
+/// @param known    the other parameters that the caller reads
+/// @param waiting  kNotAllowed: without a snapshot while the session's own maps are being written
+/// Errors: those of Context::session; kInvalidField for an unknown parameter; kNotFound if there is no such job;
 ///         kOverloaded if it has no maps yet; the job's own error if it failed.
-[[nodiscard]] Result<Maps> find_maps(const Context& context, std::initializer_list<std::string_view> known);
+[[nodiscard]] Result<Maps> find_maps(const Context& context, std::initializer_list<std::string_view> known,
+                                     Waiting waiting = Waiting::kAllowed);
 
-/// Returns what find_maps() returns, but without waiting: without a snapshot while the session's own maps are being
-/// written, and without a session if that is not in memory.
-[[nodiscard]] Result<Maps> find_maps_at_once(const Context& context, std::initializer_list<std::string_view> known);
-
-/// Returns what find_maps() returns if no settings are given. Otherwise starts a replay job with the settings and
-/// waits until it has reached the session's current revision.
-/// Errors: those of find_maps() and weave_request().
-[[nodiscard]] Result<Maps> find_maps_or_weave(const Context& context, std::initializer_list<std::string_view> known);
+/// Returns what find_maps() returns if no settings are given. Otherwise starts a replay job with the settings, waits
+/// until it has reached the session's current revision, and continues on the same pool.
+/// @param known  the other parameters that the caller reads; outlives the coroutine
+/// Errors: those of find_maps(), weave_request() and Pools::wait_for_replay().
+[[nodiscard]] boost::asio::awaitable<Result<Maps>> find_maps_or_replay(Context& context,
+                                                                       std::span<const std::string_view> known);
 
 /// Returns two maps to compare, those of the parameters `weave` and `with`. At least one of them must name a replay
 /// job; an absent one means the session's own map. Both may name the same job.

@@ -12,6 +12,7 @@
 #include <boost/json/object.hpp>
 #include <fmt/format.h>
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <string>
@@ -19,6 +20,9 @@
 #include <utility>
 
 namespace scanloom::http {
+
+namespace asio = boost::asio;
+
 namespace {
 
 /// A parsed request for a map.
@@ -34,18 +38,22 @@ using BytesPerCell = std::int64_t (*)(mapping::Layer);
 
 std::int64_t one_byte(mapping::Layer) { return 1; }
 
-Result<WantedMapFile> wanted_map(const Context& context, BytesPerCell bytes_per_cell) {
+std::int64_t csv_bytes(mapping::Layer) { return 4; } // "100,"
+
+constexpr std::array<std::string_view, 2> kFileParameters = {"layer", "bbox"};
+
+asio::awaitable<Result<WantedMapFile>> wanted_map(Context& context, BytesPerCell bytes_per_cell) {
     const auto bbox = bbox_parameter(context.query);
-    if (!bbox) return bbox.error();
-    auto found = find_maps_or_weave(context, {"layer", "bbox"});
-    if (!found) return found.error();
+    if (!bbox) co_return bbox.error();
+    auto found = co_await find_maps_or_replay(context, kFileParameters);
+    if (!found) co_return found.error();
     const auto layer = layer_parameter(context.query);
-    if (!layer) return layer.error();
+    if (!layer) co_return layer.error();
 
     const auto frame = tiles::map_frame(*found->snapshot, *layer, *bbox, bytes_per_cell(*layer));
-    if (!frame) return frame.error();
+    if (!frame) co_return frame.error();
     auto etag = fmt::format("\"{}-map-{}\"", found->tag, found->snapshot->revision);
-    return WantedMapFile{std::move(found->snapshot), *layer, *frame, std::move(etag)};
+    co_return WantedMapFile{std::move(found->snapshot), *layer, *frame, std::move(etag)};
 }
 
 Response map_answer(std::string_view content_type, Body body, std::string_view etag) {
@@ -54,11 +62,12 @@ Response map_answer(std::string_view content_type, Body body, std::string_view e
 
 /// Writes the requested file as bytes or text.
 template <class Write>
-Result<Response> get_file(const Context& context, std::string_view content_type, BytesPerCell bytes_per_cell,
-                          Write&& write) {
-    const auto wanted = wanted_map(context, bytes_per_cell);
-    if (!wanted) return wanted.error();
-    if (if_none_match_has(context.request.if_none_match, wanted->etag)) return not_modified(wanted->etag, kRevalidate);
+asio::awaitable<Result<Response>> get_file(Context& context, std::string_view content_type, BytesPerCell bytes_per_cell,
+                                           Write write) {
+    const auto wanted = co_await wanted_map(context, bytes_per_cell);
+    if (!wanted) co_return wanted.error();
+    const auto& etag = wanted->etag;
+    if (if_none_match_has(context.request.if_none_match, etag)) co_return not_modified(etag, kRevalidate);
     using Bytes = decltype(write(*wanted));
     struct File {
         std::shared_ptr<const void> slot;
@@ -66,10 +75,10 @@ Result<Response> get_file(const Context& context, std::string_view content_type,
     };
     auto slot = context.services.responses.take(wanted->frame.pixels() *
                                                 static_cast<std::size_t>(bytes_per_cell(wanted->layer)));
-    if (!slot) return slot.error();
+    if (!slot) co_return slot.error();
     auto file = std::make_shared<File>(File{std::move(*slot), {}});
     file->bytes = write(*wanted);
-    return map_answer(content_type, Body(std::shared_ptr<const Bytes>(file, &file->bytes)), wanted->etag);
+    co_return map_answer(content_type, Body(std::shared_ptr<const Bytes>(file, &file->bytes)), etag);
 }
 
 tiles::MapImage rendered(const WantedMapFile& wanted) {
@@ -78,41 +87,42 @@ tiles::MapImage rendered(const WantedMapFile& wanted) {
 
 } // namespace
 
-Result<Response> get_map_png(Context& context) {
+asio::awaitable<Result<Response>> get_map_png(Context& context) {
     return get_file(context, "image/png", one_byte,
                     [](const WantedMapFile& wanted) { return tiles::map_png(rendered(wanted)); });
 }
 
-Result<Response> get_map_pgm(Context& context) {
+asio::awaitable<Result<Response>> get_map_pgm(Context& context) {
     return get_file(context, "image/x-portable-graymap", one_byte, [](const WantedMapFile& wanted) {
         return tiles::map_pgm(rendered(wanted), wanted.snapshot->config);
     });
 }
 
-Result<Response> get_map_csv(Context& context) {
-    const auto text_per_cell = [](mapping::Layer) -> std::int64_t { return 4; }; // "100,"
-    return get_file(context, "text/csv", text_per_cell,
+asio::awaitable<Result<Response>> get_map_csv(Context& context) {
+    return get_file(context, "text/csv", csv_bytes,
                     [](const WantedMapFile& wanted) { return tiles::map_csv(rendered(wanted)); });
 }
 
-Result<Response> get_map_npy(Context& context) {
+asio::awaitable<Result<Response>> get_map_npy(Context& context) {
     return get_file(context, "application/octet-stream", tiles::npy_bytes_per_cell, [](const WantedMapFile& wanted) {
         return tiles::map_npy(*wanted.snapshot, wanted.layer, wanted.frame);
     });
 }
 
-Result<Response> get_map_yaml(Context& context) {
-    const auto wanted = wanted_map(context, one_byte);
-    if (!wanted) return wanted.error();
-    if (if_none_match_has(context.request.if_none_match, wanted->etag)) return not_modified(wanted->etag, kRevalidate);
-    return map_answer("application/yaml", Body(tiles::map_yaml(wanted->frame)), wanted->etag);
+asio::awaitable<Result<Response>> get_map_yaml(Context& context) {
+    const auto wanted = co_await wanted_map(context, one_byte);
+    if (!wanted) co_return wanted.error();
+    const auto& etag = wanted->etag;
+    if (if_none_match_has(context.request.if_none_match, etag)) co_return not_modified(etag, kRevalidate);
+    co_return map_answer("application/yaml", Body(tiles::map_yaml(wanted->frame)), etag);
 }
 
-Result<Response> get_digest(Context& context) {
-    const auto found = find_maps_or_weave(context, {"layer"});
-    if (!found) return found.error();
+asio::awaitable<Result<Response>> get_digest(Context& context) {
+    static constexpr std::array<std::string_view, 1> kParameters = {"layer"};
+    const auto found = co_await find_maps_or_replay(context, kParameters);
+    if (!found) co_return found.error();
     const auto layer = layer_parameter(context.query);
-    if (!layer) return layer.error();
+    if (!layer) co_return layer.error();
 
     const auto& snapshot = found->snapshot;
     boost::json::object layers;
@@ -120,7 +130,8 @@ Result<Response> get_digest(Context& context) {
         const bool is_asked = !context.query.find("layer") || each == *layer;
         if (is_asked) layers[mapping::name_of(each)] = mapping::digest_of(*snapshot, each);
     }
-    return ok(boost::json::object{{"revision", snapshot->revision}, {"layers", std::move(layers)}});
+    const boost::json::object json{{"revision", snapshot->revision}, {"layers", std::move(layers)}};
+    co_return ok(json);
 }
 
 namespace {

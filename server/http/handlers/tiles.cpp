@@ -17,6 +17,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <variant>
 
 namespace scanloom::http {
 namespace {
@@ -97,36 +98,50 @@ Response answer_of(const WantedTile& wanted, tiles::SharedBytes bytes) {
         .set("Cache-Control", wanted.kept);
 }
 
-Result<Response> get_tile(const Context& context, tiles::TileFormat format) {
-    const auto asked = parse(context);
-    if (!asked) return asked.error();
+/// Does what takes microseconds and does not wait.
+/// @return a refusal, "not modified", or a tile that exists; else the pool that makes the tile
+Result<std::variant<Response, Pool>> find_tile(const Context& context, const TileParameters& asked,
+                                               tiles::TileFormat format) {
+    auto found = find_maps(context, {"v", "id"}, Waiting::kNotAllowed);
+    if (!found) return found.error();
+    auto& tiles = context.services.tiles;
+    const auto pool_for = [&](const Maps& maps, const tiles::TilePlace& place, Revision revision) {
+        return tiles.is_quick(maps.origin, place, revision) ? Pool::kQueries : Pool::kWholeMaps;
+    };
+    if (!found->snapshot) return {pool_for(*found, place_of(asked, *found, format), kNewest)};
+    const WantedTile wanted = wanted_tile(asked, std::move(*found), format);
+    if (is_known(wanted, context)) return {not_modified(wanted.etag, wanted.kept)};
+    if (auto bytes = tiles.find(wanted.place, wanted.revision)) return {answer_of(wanted, std::move(bytes))};
+    return {pool_for(wanted.maps, wanted.place, wanted.revision)};
+}
+
+/// Makes the tile from the newest maps, as others may have made it since find_tile().
+Result<Response> make_tile(const Context& context, const TileParameters& asked, tiles::TileFormat format) {
     auto found = find_maps(context, {"v", "id"});
     if (!found) return found.error();
-    const WantedTile wanted = wanted_tile(*asked, std::move(*found), format);
+    const WantedTile wanted = wanted_tile(asked, std::move(*found), format);
     if (is_known(wanted, context)) return not_modified(wanted.etag, wanted.kept);
     return answer_of(wanted, context.services.tiles.make(source_of(wanted.maps), wanted.place, wanted.revision));
 }
 
+boost::asio::awaitable<Result<Response>> get_tile(Context& context, tiles::TileFormat format) {
+    const auto asked = parse(context);
+    if (!asked) co_return asked.error();
+    auto found = find_tile(context, *asked, format);
+    if (!found) co_return found.error();
+    if (auto* response = std::get_if<Response>(&*found)) co_return std::move(*response);
+    co_await context.run_on(std::get<Pool>(*found));
+    co_return make_tile(context, *asked, format);
+}
+
 } // namespace
 
-Result<Response> get_tile_png(Context& context) { return get_tile(context, tiles::TileFormat::kPng); }
+boost::asio::awaitable<Result<Response>> get_tile_png(Context& context) {
+    return get_tile(context, tiles::TileFormat::kPng);
+}
 
-Result<Response> get_tile_bin(Context& context) { return get_tile(context, tiles::TileFormat::kCodes); }
-
-Result<Outlook> look_at_tile(const Context& context, tiles::TileFormat format) {
-    const auto asked = parse(context);
-    if (!asked) return asked.error();
-    auto found = find_maps_at_once(context, {"v", "id"});
-    if (!found) return found.error();
-    const auto lane_of = [&](const Maps& tile_of, const tiles::TilePlace& place, Revision revision) {
-        return context.services.tiles.is_quick(tile_of.origin, place, revision) ? Lane::kServing : Lane::kSurvey;
-    };
-    if (!found->snapshot) return lane_of(*found, place_of(*asked, *found, format), kNewest);
-    const WantedTile wanted = wanted_tile(*asked, std::move(*found), format);
-    if (is_known(wanted, context)) return not_modified(wanted.etag, wanted.kept);
-    if (auto bytes = context.services.tiles.find(wanted.place, wanted.revision))
-        return answer_of(wanted, std::move(bytes));
-    return lane_of(wanted.maps, wanted.place, wanted.revision);
+boost::asio::awaitable<Result<Response>> get_tile_bin(Context& context) {
+    return get_tile(context, tiles::TileFormat::kCodes);
 }
 
 namespace {

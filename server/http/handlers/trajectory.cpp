@@ -113,7 +113,7 @@ Result<Response> get_trajectory(Context& context) {
     if (!since) return since.error();
     const auto with_times = times_parameter(context.query);
     if (!with_times) return with_times.error();
-    const auto session = find_session(context);
+    const auto& session = context.session;
     if (!session) return session.error();
 
     const auto snapshot = (*session)->snapshot();

@@ -49,7 +49,7 @@ boost::json::object shown(const session::Weave& weave) {
 
 Result<Response> start_weave(Context& context) {
     if (auto known = context.query.check_only({}); !known) return known.error();
-    const auto session = find_session(context);
+    const auto& session = context.session;
     if (!session) return session.error();
     const auto body = parse_json_object(context.request.body);
     if (!body) return body.error();
@@ -67,7 +67,7 @@ Result<Response> start_weave(Context& context) {
 
 Result<Response> list_weaves(Context& context) {
     if (auto known = context.query.check_only({}); !known) return known.error();
-    const auto session = find_session(context);
+    const auto& session = context.session;
     if (!session) return session.error();
     boost::json::array weaves;
     for (const auto& weave : context.services.weaves.list((*session)->info().id)) weaves.push_back(shown(*weave));
@@ -76,7 +76,7 @@ Result<Response> list_weaves(Context& context) {
 
 Result<Response> get_weave(Context& context) {
     if (auto known = context.query.check_only({}); !known) return known.error();
-    const auto session = find_session(context);
+    const auto& session = context.session;
     if (!session) return session.error();
     const auto weave = find_weave(context.services.weaves, **session, context.arguments["weave"]);
     if (!weave) return weave.error();
@@ -85,7 +85,7 @@ Result<Response> get_weave(Context& context) {
 
 Result<Response> delete_weave(Context& context) {
     if (auto known = context.query.check_only({}); !known) return known.error();
-    const auto session = find_session(context);
+    const auto& session = context.session;
     if (!session) return session.error();
     const auto weave = find_weave(context.services.weaves, **session, context.arguments["weave"]);
     if (!weave) return weave.error();

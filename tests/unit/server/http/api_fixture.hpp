@@ -1,8 +1,9 @@
 #pragma once
 
-#include "server/http/router.hpp"
+#include "server/http/routes.hpp"
 #include "server/session/session_registry.hpp"
 #include "tests/support/memory_scan_log.hpp"
+#include "tests/support/weave_waiting.hpp"
 #include "tests/unit/server/http/described_answer.hpp"
 #include "tests/unit/server/http/test_api.hpp"
 
@@ -64,7 +65,7 @@ inline Scan scan(std::uint64_t seq) {
 
 /// The address of a route in which every variable has a value.
 inline std::string target_of(const Route& route, std::string_view session) {
-    std::string target(route.pattern);
+    std::string target(route.path);
     const std::map<std::string, std::string> values = {{"{session}", std::string(session)},
                                                        {"{layer}", "occupancy"},
                                                        {"{z}", "9"},
@@ -158,7 +159,7 @@ protected:
     void finish_weave(std::string_view name, std::string_view id) {
         const auto weave = weaves_.find(registry_.find(name)->info().id, id);
         ASSERT_NE(weave, nullptr);
-        static_cast<void>(weave->wait(weave->progress().target, std::chrono::minutes(2)));
+        static_cast<void>(testing_support::wait_for_maps(*weave, weave->progress().target, std::chrono::minutes(2)));
     }
 
     boost::asio::thread_pool pool_{2};

@@ -8,7 +8,6 @@
 #include <optional>
 #include <string>
 #include <thread>
-#include <variant>
 #include <vector>
 
 namespace scanloom::http {
@@ -17,21 +16,17 @@ namespace {
 const std::string kNative = "/api/v1/sessions/a/tiles/occupancy/9/256/255.png";
 const std::string kWhole = "/api/v1/sessions/a/tiles/occupancy/0/0/0.png";
 
-/// What is known of requests before a thread is looked for that answers them.
+/// Tiles that need no thread other than an I/O thread.
 class KeptTilesTest : public ApiTest {
 protected:
-    Outlook look(std::string target, std::string if_none_match = "") {
-        return api_.look({.target = std::move(target), .if_none_match = std::move(if_none_match)});
-    }
-
-    /// The answer, if it is there.
+    /// The answer, if an I/O thread gave it.
     std::optional<Response> at_once(std::string target, std::string if_none_match = "") {
-        auto outlook = look(std::move(target), std::move(if_none_match));
-        auto* response = std::get_if<Response>(&outlook);
-        return response == nullptr ? std::nullopt : std::optional(std::move(*response));
+        auto asked = api_.ask({.target = std::move(target), .if_none_match = std::move(if_none_match)});
+        return asked.pools.empty() ? std::move(asked.response) : std::nullopt;
     }
 
-    Lane lane(std::string target) { return std::get<Lane>(look(std::move(target))); }
+    /// The pools that a tile needs.
+    std::vector<Pool> pools(std::string target) { return api_.ask({.target = std::move(target)}).pools; }
 
     double counted(const std::string& name) {
         const std::string text(get("/metrics").body.bytes());
@@ -65,11 +60,10 @@ TEST_F(KeptTilesTest, WhatIsKnownOrWasNeverTouchedOrCannotBeIsAnsweredAtOnce) {
 TEST_F(KeptTilesTest, OnlyTheFirstDrawingOfAWholeMapIsASurvey) {
     create("a");
     stream("a", 1);
-    EXPECT_EQ(lane(kNative), Lane::kServing);
-    EXPECT_EQ(lane(kWhole), Lane::kSurvey);
-    EXPECT_EQ(get(kWhole).status, Status::ok);
+    EXPECT_THAT(pools(kNative), testing::ElementsAre(Pool::kQueries));
+    EXPECT_THAT(pools(kWhole), testing::ElementsAre(Pool::kWholeMaps));
     stream("a", 2, 2);
-    EXPECT_EQ(lane(kWhole), Lane::kServing);
+    EXPECT_THAT(pools(kWhole), testing::ElementsAre(Pool::kQueries));
 }
 
 TEST_F(KeptTilesTest, HitsMissesAndBytesAreCounted) {
@@ -101,7 +95,9 @@ TEST_F(KeptTilesTest, OfADeletedSessionNothingIsKept) {
 
 TEST_F(KeptTilesTest, BeforeTheSessionsAreRecoveredNothingIsLookedFor) {
     TestApi fresh(registry_, weaves_, goals_, log_, metrics_, {gate_, audit_, logins_}, {});
-    EXPECT_TRUE(std::holds_alternative<Lane>(fresh.look({.target = kNative})));
+    const auto asked = fresh.ask({.target = kNative});
+    EXPECT_EQ(asked.response->status, Status::service_unavailable);
+    EXPECT_TRUE(asked.pools.empty());
 }
 
 /// What the threads do with each other is for the sanitizers; here every answer is one of those there may be.
@@ -123,9 +119,7 @@ TEST_F(KeptTilesTest, TilesAreAskedForByManyWhileARobotDrivesAndASessionIsDelete
                                           fmt::format("/api/v1/sessions/{}/tiles/{}/{}/{}/{}.{}", names[round % 2],
                                                       round % 3 == 0 ? "classification" : "occupancy", zoom, key.x,
                                                       key.y, round % 5 == 0 ? "bin" : "png")};
-                auto outlook = api_.look(request);
-                const auto* found = std::get_if<Response>(&outlook);
-                const auto status = found != nullptr ? found->status : api_.answer(request).status;
+                const auto status = api_.answer(request).status;
                 const bool may_be_gone = round % 2 == 1;
                 if (status != Status::ok && !(may_be_gone && status == Status::not_found)) ++wrong;
             }

@@ -1,7 +1,11 @@
 #include "tests/unit/server/http/api_fixture.hpp"
 
+#include <boost/asio/post.hpp>
+
 #include <future>
+#include <memory>
 #include <thread>
+#include <vector>
 
 /// Sessions that are not in memory, over HTTP.
 namespace scanloom::http {
@@ -43,7 +47,6 @@ TEST_F(ApiSleepingTest, AreShownAndListedAsTheyWereWithoutBeingRead) {
     EXPECT_EQ(get_json("/api/v1/sessions/a"), expected);
     EXPECT_EQ(get_json("/api/v1/sessions").at("sessions").at(0), expected);
     EXPECT_TRUE(registry_.is_asleep("a"));
-    EXPECT_TRUE(std::holds_alternative<Lane>(api_.look(request_for("/api/v1/sessions/a"))));
     const auto metrics = std::string(get("/metrics").body.bytes());
     EXPECT_THAT(metrics, HasSubstr("scanloom_sessions 1\n"));
     EXPECT_THAT(metrics, HasSubstr("scanloom_sessions_loaded 0\n"));
@@ -51,26 +54,29 @@ TEST_F(ApiSleepingTest, AreShownAndListedAsTheyWereWithoutBeingRead) {
 }
 
 TEST_F(ApiSleepingTest, HoldUpNoIoThreadAndAnswerAsBeforeOnceTheyAreThere) {
+    std::promise<void> go_on;
+    const auto gone_on = go_on.get_future().share();
+    std::vector<std::shared_ptr<TestApi::Running>> waiting;
+    for (int thread = 0; thread < 2; ++thread) boost::asio::post(pool_, [gone_on] { gone_on.wait(); });
     for (const char* target : {kTile, "/api/v1/sessions/a/digest", "/api/v1/sessions/a/live"}) {
-        const auto outlook = api_.look(request_for(target));
-        ASSERT_TRUE(std::holds_alternative<Asleep>(outlook)) << target;
-        EXPECT_EQ(std::get<Asleep>(outlook).session, "a");
+        waiting.push_back(api_.start(request_for(target)));
+        api_.poll(*waiting.back()); // returns, although no thread is free to read the session
+        EXPECT_FALSE(waiting.back()->done) << target;
     }
-    std::promise<void> woken;
-    api_.wake({"a"}, [&] { woken.set_value(); });
-    woken.get_future().wait();
-    EXPECT_FALSE(std::holds_alternative<Asleep>(api_.look(request_for(kTile))));
+    EXPECT_TRUE(registry_.is_asleep("a"));
+    go_on.set_value();
+    for (const auto& asked : waiting) {
+        while (!asked->done) api_.poll(*asked);
+    }
+    EXPECT_EQ(waiting.front()->asked.response->body.bytes(), tile_.body.bytes());
+    EXPECT_EQ(waiting.at(1)->asked.response->status, Status::ok);
+    EXPECT_TRUE(api_.ask(request_for(kTile)).pools.empty());
     const auto again = get(kTile);
     EXPECT_EQ(again.get("ETag"), tile_.get("ETag"));
     EXPECT_EQ(again.body.bytes(), tile_.body.bytes());
     auto expected = shown_;
     expected["robots"].at(0).as_object()["connected"] = false;
     EXPECT_EQ(get_json("/api/v1/sessions/a"), expected);
-}
-
-TEST_F(ApiSleepingTest, AreReadAlsoByWhoeverDoesNotLookFirst) {
-    EXPECT_EQ(get(kTile).body.bytes(), tile_.body.bytes());
-    EXPECT_FALSE(registry_.is_asleep("a"));
 }
 
 TEST_F(ApiSleepingTest, CanBeDeletedAsTheyAre) {

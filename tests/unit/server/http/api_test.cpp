@@ -54,14 +54,15 @@ TEST_F(ApiTest, EveryOperationAnswersAsItIsDescribed) {
     stream("a", 2);
     TestApi starting(registry_, weaves_, goals_, log_, metrics_, {gate_, audit_, logins_}, {});
     for (const auto& route : routes()) {
-        if (route.operation == Operation::kDeleteSession) continue; // at the end
+        if (route.method == Method::kDelete && route.path == "/api/v1/sessions/{session}") continue; // at the end
         for (const std::string session : {"a", "nobody"}) {
             const auto address = target_of(route, session);
             for (const auto* query : {"", "?odd=1", "?since=x", "?v=x", "?bbox=x", "?layer=height"}) {
-                ask(std::string(route.method), address + query, R"({"name":"b"})"); // asks openapi.json, too
+                ask(std::string(name_of(route.method)), address + query, R"({"name":"b"})"); // asks openapi.json, too
             }
-            answer(starting,
-                   {.method = std::string(route.method), .target = address, .content_type = "application/json"});
+            answer(
+                starting,
+                {.method = std::string(name_of(route.method)), .target = address, .content_type = "application/json"});
         }
     }
     for (const auto* session : {"a", "a", "a?odd=1"}) ask("DELETE", fmt::format("/api/v1/sessions/{}", session));

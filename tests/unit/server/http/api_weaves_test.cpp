@@ -266,6 +266,22 @@ TEST_F(ApiHeldWeavesTest, WhoLosesPatienceIsToldHowFarItIsAndJoinsItTheNextTime)
     EXPECT_EQ(held_.under_way(), 1U);
 }
 
+TEST_F(ApiHeldWeavesTest, OnlySoManyRequestsWaitAndNoThreadDoes) {
+    TestApi api(registry_, held_, goals_, log_, metrics_, {gate_, audit_, logins_}, {}, {.weaves_max = 1});
+    api.set_recovered();
+    const auto first = api.start({.target = "/api/v1/sessions/a/digest?cell_size=0.1"});
+    while (held_.under_way() == 0) api.poll(*first);
+    EXPECT_THAT(first->asked.pools, testing::ElementsAre(Pool::kWholeMaps));
+    const auto refused = api.answer({.target = "/api/v1/sessions/a/map.png?cell_size=0.2"});
+    EXPECT_THAT(detail(refused, Status::service_unavailable), HasSubstr("too many maps are being waited for"));
+    EXPECT_EQ(api.answer({.target = "/api/v1/sessions/a/digest"}).status, Status::ok) << "on the same pool";
+    EXPECT_FALSE(first->done);
+    let_go();
+    while (!first->done) api.poll(*first);
+    EXPECT_EQ(first->asked.response->status, Status::ok);
+    EXPECT_EQ(api.answer({.target = "/api/v1/sessions/a/map.png?cell_size=0.2"}).status, Status::ok);
+}
+
 TEST_F(ApiWeavesTest, AWeaveThatIsGoneIsNotFound) {
     const auto id = woven("{}");
     EXPECT_EQ(ask("DELETE", "/api/v1/sessions/a/weave/" + id).status, Status::no_content);

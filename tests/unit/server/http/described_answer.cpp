@@ -1,6 +1,6 @@
 #include "tests/unit/server/http/described_answer.hpp"
 
-#include "server/http/router.hpp"
+#include "server/http/routes.hpp"
 #include "server/http/target.hpp"
 #include "tests/unit/server/http/api_description.hpp"
 
@@ -111,12 +111,12 @@ Faults faults_of(const json::value& schema_or_reference, const json::value& valu
 const json::object* operation_of(const Request& request) {
     const auto target = parse_target(request.target);
     if (!target) return nullptr;
-    const auto routing = find_route(request.method, target->segments);
-    const auto* match = std::get_if<Match>(&routing);
+    const auto found = find_route(routes(), request.method, target->segments);
+    const auto* match = std::get_if<Match>(&found);
     if (match == nullptr) return nullptr;
-    const auto route = std::ranges::find(routes(), match->operation, &Route::operation);
-    const auto method = route->method == "GET" ? "get" : route->method == "POST" ? "post" : "delete";
-    return &described_api().at("paths").at(route->pattern).at(method).as_object();
+    const auto name = name_of(match->route.method);
+    const auto* const method = name == "GET" ? "get" : name == "POST" ? "post" : "delete";
+    return &described_api().at("paths").at(match->route.path).at(method).as_object();
 }
 
 Faults faults_of_body(const json::object& described, const Response& response) {

@@ -1,8 +1,9 @@
 #pragma once
 
 #include "server/http/server.hpp"
-
 #include "tests/support/http_client.hpp"
+#include "tests/support/memory_scan_log.hpp"
+#include "tests/unit/server/http/test_api.hpp"
 
 #include <boost/asio/thread_pool.hpp>
 #include <fmt/format.h>
@@ -15,6 +16,7 @@
 #include <string_view>
 #include <thread>
 #include <utility>
+#include <vector>
 
 namespace scanloom::http {
 
@@ -24,14 +26,32 @@ inline Response echo(const Request& request) {
     return ok("text/plain", Body(request.method + " " + request.target + " " + request.body));
 }
 
-/// An http::Server on two threads, with threads of its own for each lane.
+inline Result<Response> ask_test(Context& context) {
+    return static_cast<TestServices&>(context.services).answer(context.request);
+}
+
+/// The server's routes and some more, all of which ask the test.
+inline std::vector<Route> echoing_routes() {
+    std::vector<Route> echoing;
+    for (const auto& route : routes()) {
+        echoing.push_back({route.method, route.path, route.access, route.pool, Sessions::kUnused, ask_test});
+    }
+    for (const auto method : {Method::kGet, Method::kPost}) {
+        for (const auto* path : {"/", "/{a}", "/{a}/{b}"}) {
+            echoing.push_back({method, path, Access::kOpen, Pool::kIo, Sessions::kUnused, ask_test});
+        }
+    }
+    return echoing;
+}
+
+/// An http::Server on two threads, with a thread for each pool.
 class RunningHttp {
 public:
     explicit RunningHttp(ServerConfig config = {}, Answer answer = echo)
-        : RunningHttp(std::move(config), Answering{std::move(answer)}) {}
-    RunningHttp(ServerConfig config, Answering answering) {
+        : api_(sessions_, weaves_, goals_, log_, metrics_, {gate_, audit_, logins_}, {}, config, executors(), routes_) {
+        api_.services().answer = std::move(answer);
         config.endpoint = {boost::asio::ip::address_v4::loopback(), 0};
-        server_ = Server::listen(io_, executors(), config, std::move(answering), counters_).value();
+        server_ = Server::listen(io_, api_.api(), config, counters()).value();
         server_->start();
         for (auto& thread : threads_) thread = std::thread([this] { io_.run(); });
     }
@@ -55,32 +75,39 @@ public:
     [[nodiscard]] std::uint16_t port() const { return server_->port(); }
     [[nodiscard]] Server& server() { return *server_; }
     [[nodiscard]] boost::asio::io_context& io() { return io_; }
-    [[nodiscard]] Executors executors() {
-        return {.telling = telling_.get_executor(),
-                .serving = serving_.get_executor(),
-                .survey = survey_.get_executor(),
-                .paths = paths_.get_executor(),
-                .logs = logs_.get_executor(),
-                .weaving = weaving_.get_executor(),
-                .planning = planning_.get_executor(),
-                .changing = changing_.get_executor(),
-                .showing = showing_.get_executor()};
+    [[nodiscard]] const Api& api() const { return api_.api(); }
+    [[nodiscard]] metrics::HttpCounters& counters() { return metrics_.http(); }
+    [[nodiscard]] double refusals(access::Reason reason) {
+        return metrics_.refusals().of(access::Port::kHttp, reason).Value();
     }
-    [[nodiscard]] metrics::HttpCounters& counters() { return counters_; }
 
 private:
-    prometheus::Registry registry_;
-    metrics::HttpCounters counters_{registry_};
-    boost::asio::thread_pool telling_{1};
-    boost::asio::thread_pool serving_{1};
-    boost::asio::thread_pool survey_{1};
-    boost::asio::thread_pool paths_{1};
-    boost::asio::thread_pool logs_{1};
-    boost::asio::thread_pool weaving_{1};
-    boost::asio::thread_pool planning_{1};
-    boost::asio::thread_pool changing_{1};
-    boost::asio::thread_pool showing_{1};
+    [[nodiscard]] Executors executors() {
+        return {.metrics = pools_[0].get_executor(),
+                .queries = pools_[1].get_executor(),
+                .whole_maps = pools_[2].get_executor(),
+                .log_reading = pools_[3].get_executor(),
+                .log_export = pools_[4].get_executor(),
+                .planning = pools_[5].get_executor(),
+                .store = pools_[6].get_executor(),
+                .live = pools_[7].get_executor()};
+    }
+
+    std::array<boost::asio::thread_pool, 8> pools_{boost::asio::thread_pool(1), boost::asio::thread_pool(1),
+                                                   boost::asio::thread_pool(1), boost::asio::thread_pool(1),
+                                                   boost::asio::thread_pool(1), boost::asio::thread_pool(1),
+                                                   boost::asio::thread_pool(1), boost::asio::thread_pool(1)};
     boost::asio::io_context io_;
+    store::MemoryScanLog log_;
+    metrics::Metrics metrics_{"test"};
+    session::SessionRegistry sessions_{log_, {pools_[0].get_executor(), [] { return 0.0; }}};
+    session::Weaves weaves_{log_, pools_[0].get_executor()};
+    guide::GoalBook goals_;
+    guard::Gate gate_;
+    guard::Audit audit_{metrics_.refusals()};
+    guard::Logins logins_;
+    std::vector<Route> routes_ = echoing_routes();
+    TestApi api_;
     std::shared_ptr<Server> server_;
     std::array<std::thread, 2> threads_;
     bool stopped_ = false;

@@ -5,7 +5,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <atomic>
 #include <string>
 
 /// What the server reads as requests, and what it refuses.
@@ -39,7 +38,8 @@ TEST(HttpServer, PipelinedRequestsAreAllAnsweredInOrder) {
 TEST(HttpServer, RequestsSplitAtEveryByteAreUnderstood) {
     RunningHttp server;
     HttpClient client(server.port());
-    const std::string request = "POST /a HTTP/1.1\r\nHost: localhost\r\nContent-Length: 5\r\n\r\nhello";
+    const std::string request =
+        "POST /a HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\nContent-Length: 5\r\n\r\nhello";
     for (const char c : request + get("/b")) client.send(std::string_view(&c, 1));
     EXPECT_EQ(client.read().body, "POST /a hello");
     EXPECT_EQ(client.read().body, "GET /b ");
@@ -72,8 +72,10 @@ TEST(HttpServer, WhatIsNotHttpIsABadRequest) {
     RunningHttp server;
     for (const auto* bytes :
          {"\x16\x02garbage\r\n\r\n", "GET\r\n\r\n", "GET / HTTP/9.9\r\n\r\n", "GET / HTTP/1.1\r\nno colon\r\n\r\n",
-          "GET / HTTP/1.1\r\nHost : x\r\n\r\n", "POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: x\r\n\r\n",
-          "POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 1\r\nContent-Length: 2\r\n\r\n"}) {
+          "GET / HTTP/1.1\r\nHost : x\r\n\r\n",
+          "POST / HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\nContent-Length: x\r\n\r\n",
+          "POST / HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\nContent-Length: "
+          "1\r\nContent-Length: 2\r\n\r\n"}) {
         HttpClient client(server.port());
         client.send(bytes);
         const auto answer = client.read();
@@ -108,13 +110,10 @@ TEST(HttpServer, OneHostFieldIsNeeded) {
 }
 
 TEST(HttpServer, HostsOfStrangersAreMisdirectedAndTold) {
-    std::atomic<int> told = 0;
-    Answering answering{echo};
-    answering.foreign_host = [&](const std::string& who) { told += who == "127.0.0.1" ? 1 : 100; };
-    RunningHttp server({}, answering);
+    RunningHttp server;
     EXPECT_EQ(answer_to(server, "GET / HTTP/1.1\r\nHost: evil.example\r\n\r\n").status, 421);
     EXPECT_EQ(answer_to(server, "GET / HTTP/1.1\r\nHost: 127.0.0.1:80\r\n\r\n").status, 200);
-    EXPECT_EQ(told, 1);
+    EXPECT_EQ(server.refusals(access::Reason::kForeignHost), 1.0);
 }
 
 TEST(HttpServer, OversizedHeadersAreRefused) {
@@ -136,12 +135,15 @@ TEST(HttpServer, HeadersUpToTheLimitAreRead) {
 TEST(HttpServer, OversizedBodiesAreRefusedBeforeTheyAreRead) {
     RunningHttp server;
     HttpClient client(server.port());
-    client.send("POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 262145\r\n\r\n");
+    client.send(
+        "POST / HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\nContent-Length: 262145\r\n\r\n");
     const auto refused = client.read();
     EXPECT_EQ(refused.status, 413);
     EXPECT_THAT(refused.body, testing::HasSubstr("at most 262144 bytes"));
     HttpClient eager(server.port());
-    eager.send("POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 300000\r\n\r\n" + std::string(300'000, 'a'));
+    eager.send(
+        "POST / HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\nContent-Length: 300000\r\n\r\n" +
+        std::string(300'000, 'a'));
     EXPECT_EQ(eager.read().status, 413);
     EXPECT_TRUE(eager.ends_in_order()); // a reset might overtake the answer, as its sender went on sending
 }
@@ -149,13 +151,17 @@ TEST(HttpServer, OversizedBodiesAreRefusedBeforeTheyAreRead) {
 TEST(HttpServer, BodiesUpToTheLimitAreRead) {
     RunningHttp server;
     const std::string body(262'144, 'a');
-    const auto answer =
-        answer_to(server, "POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 262144\r\n\r\n" + body);
+    const auto answer = answer_to(
+        server,
+        "POST / HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\nContent-Length: 262144\r\n\r\n" +
+            body);
     EXPECT_EQ(answer.body, "POST / " + body);
 }
 
 std::string chunked(std::string_view chunks, std::string_view fields = "") {
-    return fmt::format("POST / HTTP/1.1\r\nHost: localhost\r\nTransfer-Encoding: chunked\r\n{}\r\n{}", fields, chunks);
+    return fmt::format("POST / HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\nTransfer-Encoding: "
+                       "chunked\r\n{}\r\n{}",
+                       fields, chunks);
 }
 
 TEST(HttpServer, ChunkedBodiesAreReadUpToTheLimit) {
@@ -180,7 +186,12 @@ TEST(HttpServer, OtherTransferEncodingsAndTrailersAreRefused) {
     EXPECT_EQ(answer_to(server, chunked("0\r\nX: a\r\n\r\n")).status, 400);
     EXPECT_EQ(answer_to(server, chunked("0\r\nX: " + std::string(70'000, 'a') + "\r\n\r\n")).status, 431);
     EXPECT_EQ(answer_to(server, chunked("5\r\nhello\r\n0\r\n\r\n", "Content-Length: 5\r\n")).status, 400);
-    EXPECT_EQ(answer_to(server, "POST / HTTP/1.1\r\nHost: localhost\r\nTransfer-Encoding: gzip\r\n\r\n").status, 501);
+    EXPECT_EQ(
+        answer_to(
+            server,
+            "POST / HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\nTransfer-Encoding: gzip\r\n\r\n")
+            .status,
+        501);
     EXPECT_EQ(answer_to(server, "POST / HTTP/1.0\r\nTransfer-Encoding: chunked\r\n\r\n0\r\n\r\n").status, 400);
     EXPECT_EQ(answer_to(server, chunked("nonsense\r\n")).status, 400);
     EXPECT_EQ(answer_to(server, get("/")).status, 200);
@@ -189,15 +200,18 @@ TEST(HttpServer, OtherTransferEncodingsAndTrailersAreRefused) {
 TEST(HttpServer, BodiesInAnotherCodingAndContentTypesGivenTwiceAreRefused) {
     RunningHttp server;
     const auto with = [&](std::string_view fields) {
-        return answer_to(server,
-                         fmt::format("POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 2\r\n{}\r\nok", fields));
+        return answer_to(
+            server,
+            fmt::format(
+                "POST / HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\nContent-Length: 2\r\n{}\r\nok",
+                fields));
     };
     const auto refused = with("Content-Encoding: gzip\r\n");
     EXPECT_EQ(refused.status, 415);
     EXPECT_EQ(refused.fields.at("accept-encoding"), "identity");
     EXPECT_EQ(with("Content-Encoding: identity\r\n").status, 200);
     EXPECT_EQ(with("Content-Encoding: identity\r\nContent-Encoding: gzip\r\n").status, 415);
-    EXPECT_EQ(with("Content-Type: text/plain\r\nContent-Type: application/json\r\n").status, 400);
+    EXPECT_EQ(with("Content-Type: text/plain\r\n").status, 400);
 }
 
 TEST(HttpServer, AbsoluteTargetsAreReadWithTheirOwnHost) {
@@ -210,7 +224,7 @@ TEST(HttpServer, AbsoluteTargetsAreReadWithTheirOwnHost) {
     EXPECT_EQ(ask("http://localhost?c=d", "localhost").body, "GET /?c=d ");
     EXPECT_EQ(ask("http://localhost/", "evil.example").status, 200) << "the Host field does not count";
     EXPECT_EQ(ask("http://evil.example/", "localhost").status, 421);
-    EXPECT_EQ(ask("http:///", "localhost").status, 200) << "no host: it stays as it is, for parse_target() to refuse";
+    EXPECT_EQ(ask("http:///", "localhost").status, 400) << "no host: parse_target() refuses it";
     EXPECT_EQ(ask("http:///", "evil.example").status, 421);
 }
 
@@ -239,7 +253,8 @@ TEST(HttpServer, ClientsOfHttp10KeepTheConnectionWhenTheyAskForIt) {
 TEST(HttpServer, AWaitingBodyIsAskedFor) {
     RunningHttp server;
     HttpClient client(server.port());
-    client.send("POST / HTTP/1.1\r\nHost: localhost\r\nExpect: 100-continue\r\nContent-Length: 2\r\n\r\n");
+    client.send("POST / HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\nExpect: "
+                "100-continue\r\nContent-Length: 2\r\n\r\n");
     EXPECT_EQ(client.read().status, 100);
     client.send("ok");
     EXPECT_EQ(client.read().body, "POST / ok");

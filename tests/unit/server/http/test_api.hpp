@@ -2,42 +2,156 @@
 
 #include "server/http/api.hpp"
 
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/executor_work_guard.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/strand.hpp>
 #include <boost/asio/system_executor.hpp>
 
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <exception>
 #include <functional>
+#include <memory>
 #include <optional>
+#include <span>
+#include <thread>
 #include <utility>
+#include <variant>
+#include <vector>
 
 namespace scanloom::http {
+
+/// Queues of work that run when they are polled.
+class PolledPools {
+public:
+    [[nodiscard]] Executors executors() {
+        return {.metrics = of(Pool::kMetrics).get_executor(),
+                .queries = of(Pool::kQueries).get_executor(),
+                .whole_maps = of(Pool::kWholeMaps).get_executor(),
+                .log_reading = of(Pool::kLogReading).get_executor(),
+                .log_export = of(Pool::kLogExport).get_executor(),
+                .planning = of(Pool::kPlanning).get_executor(),
+                .store = of(Pool::kStore).get_executor(),
+                .live = of(Pool::kIo).get_executor()};
+    }
+
+    /// Runs what is queued and adds the pools that had work to `ran`.
+    void poll(std::vector<Pool>& ran) {
+        for (std::size_t n = 0; n < queues_.size(); ++n) {
+            const bool had_work = queues_[n].io.poll() > 0;
+            if (had_work && n != 0) ran.push_back(static_cast<Pool>(n));
+        }
+    }
+
+    [[nodiscard]] boost::asio::io_context& of(Pool pool) { return queues_[static_cast<std::size_t>(pool)].io; }
+
+private:
+    struct Queue {
+        boost::asio::io_context io;
+        boost::asio::executor_work_guard<boost::asio::io_context::executor_type> guard{io.get_executor()};
+    };
+    std::array<Queue, static_cast<std::size_t>(Pool::kStore) + 1> queues_;
+};
+
+/// Computes the response to a request, instead of the handlers.
+using Answer = std::function<Response(const Request&)>;
+
+struct TestServices : Services {
+    Answer answer = nullptr;
+};
 
 /// An Api over given parts; what tests seldom look at is its own.
 class TestApi {
 public:
     TestApi(session::SessionRegistry& sessions, session::Weaves& weaves, guide::GoalBook& goals, store::ScanLog& log,
-            const metrics::Metrics& metrics, Doorman doorman, WebFiles web = {})
-        : check_(log, sessions, boost::asio::system_executor()), locator_(log), services_{.sessions = sessions,
-                                                                                          .weaves = weaves,
-                                                                                          .goals = goals,
-                                                                                          .locator = locator_,
-                                                                                          .log = log,
-                                                                                          .check = check_,
-                                                                                          .metrics = metrics,
-                                                                                          .doorman = doorman,
-                                                                                          .web = std::move(web)} {}
+            const metrics::Metrics& metrics, Doorman doorman, WebFiles web = {}, const ServerConfig& limits = {},
+            std::optional<Executors> executors = std::nullopt, std::span<const Route> of_routes = routes())
+        : check_(log, sessions, boost::asio::system_executor()), locator_(log),
+          pools_(executors ? *executors : polled_.executors(), limits), services_{{.sessions = sessions,
+                                                                                   .weaves = weaves,
+                                                                                   .goals = goals,
+                                                                                   .locator = locator_,
+                                                                                   .log = log,
+                                                                                   .check = check_,
+                                                                                   .metrics = metrics,
+                                                                                   .doorman = doorman,
+                                                                                   .pools = pools_,
+                                                                                   .web = std::move(web)}},
+          api_(services_, of_routes) {}
 
-    [[nodiscard]] Services& services() { return services_; }
+    [[nodiscard]] TestServices& services() { return services_; }
+    [[nodiscard]] const Api& api() const { return api_; }
     void set_recovered() { services_.recovered = true; }
 
-    [[nodiscard]] Response answer(const Request& request) { return api_.answer(request); }
-    [[nodiscard]] Outlook look(const Request& request) { return api_.look(request); }
-    void wake(const Asleep& asleep, std::function<void()> on_loaded) { api_.wake(asleep, std::move(on_loaded)); }
-    [[nodiscard]] std::optional<Response> refuse(const Request& request) const { return api_.refuse(request); }
+    struct Asked {
+        std::optional<Response> response;
+        std::vector<Pool> pools; ///< on which it ran, except the I/O threads
+    };
+
+    /// A request under way.
+    struct Running {
+        Request request;
+        Asked asked = {};
+        std::atomic<bool> done = false; ///< then there is a response
+    };
+
+    /// Starts a request, which goes on in poll().
+    [[nodiscard]] std::shared_ptr<Running> start(Request request) {
+        std::shared_ptr<Running> running(new Running{std::move(request)});
+        boost::asio::co_spawn(boost::asio::make_strand(polled_.of(Pool::kIo)), serve(running),
+                              [](const std::exception_ptr& failed) {
+                                  if (failed) std::rethrow_exception(failed);
+                              });
+        return running;
+    }
+
+    void poll(Running& running) { polled_.poll(running.asked.pools); }
+
+    /// Asks and returns when the response is there.
+    [[nodiscard]] Asked ask(Request request) {
+        const auto running = start(std::move(request));
+        while (!running->done) {
+            poll(*running);
+            std::this_thread::yield();
+        }
+        return std::move(running->asked);
+    }
+
+    [[nodiscard]] Response answer(const Request& request) { return *ask(request).response; }
+
+    /// The refusal of a request whose header is enough for it.
+    [[nodiscard]] std::optional<Response> refuse(const Request& request) const {
+        auto admitted = admit(request);
+        auto* refusal = std::get_if<Response>(&admitted);
+        return refusal == nullptr ? std::nullopt : std::optional(std::move(*refusal));
+    }
 
 private:
+    [[nodiscard]] std::variant<Api::Admitted, Response> admit(const Request& request) const {
+        auto routed = api_.route(request);
+        if (auto* refusal = std::get_if<Response>(&routed)) return std::move(*refusal);
+        return api_.admit(request, std::get<Api::Routed>(std::move(routed)));
+    }
+
+    boost::asio::awaitable<void> serve(std::shared_ptr<Running> running) const {
+        auto admitted = admit(running->request);
+        if (auto* refusal = std::get_if<Response>(&admitted)) {
+            running->asked.response = std::move(*refusal);
+        } else {
+            running->asked.response =
+                co_await api_.answer(std::get<Api::Admitted>(std::move(admitted)), running->request);
+        }
+        running->done = true;
+    }
+
     session::BackgroundCheck check_; // never started
     guide::Locator locator_;
-    Services services_;
-    Api api_{services_};
+    PolledPools polled_;
+    Pools pools_;
+    TestServices services_;
+    Api api_;
 };
 
 } // namespace scanloom::http

@@ -72,20 +72,7 @@ public:
         config.live = live;
         config.tls = std::move(tls);
         config.drain = std::chrono::hours(1); // so that viewers end by themselves
-        const auto pool = pool_.get_executor();
-        server_ = http::Server::listen(io_,
-                                       {.telling = pool,
-                                        .serving = pool,
-                                        .survey = pool,
-                                        .paths = pool,
-                                        .logs = pool,
-                                        .weaving = pool,
-                                        .planning = pool,
-                                        .changing = pool,
-                                        .showing = showing_.get_executor()},
-                                       config, {[this](const http::Request& request) { return api_.answer(request); }},
-                                       metrics_.http())
-                      .value();
+        server_ = http::Server::listen(io_, api_.api(), config, metrics_.http()).value();
         server_->start();
         for (auto& thread : threads_) thread = std::thread([this] { io_.run(); });
     }
@@ -135,6 +122,18 @@ public:
     [[nodiscard]] std::uint16_t port() const { return server_->port(); }
 
 private:
+    [[nodiscard]] http::Executors executors() {
+        const auto pool = pool_.get_executor();
+        return {.metrics = pool,
+                .queries = pool,
+                .whole_maps = pool,
+                .log_reading = pool,
+                .log_export = pool,
+                .planning = pool,
+                .store = pool,
+                .live = showing_.get_executor()};
+    }
+
     boost::asio::thread_pool compute_{2};
     boost::asio::thread_pool pool_{2};
     boost::asio::thread_pool showing_{1};
@@ -147,7 +146,7 @@ private:
     guard::Gate gate_;
     guard::Audit audit_{metrics_.refusals()};
     guard::Logins logins_;
-    http::TestApi api_{sessions_, weaves_, goals_, log_, metrics_, {gate_, audit_, logins_}, {}};
+    http::TestApi api_{sessions_, weaves_, goals_, log_, metrics_, {gate_, audit_, logins_}, {}, {}, executors()};
     std::shared_ptr<http::Server> server_;
     std::array<std::thread, 2> threads_;
     std::map<std::string, std::shared_ptr<StreamingRobot>> robots_;

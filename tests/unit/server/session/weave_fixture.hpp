@@ -5,6 +5,7 @@
 #include "tests/support/digests.hpp"
 #include "tests/support/memory_scan_log.hpp"
 #include "tests/support/random_scans.hpp"
+#include "tests/support/weave_waiting.hpp"
 
 #include <boost/asio/thread_pool.hpp>
 
@@ -138,7 +139,9 @@ protected:
     }
 
     /// Waits until the job has ended.
-    static void finish(const Weave& job) { static_cast<void>(job.wait(job.progress().target, kTimeout)); }
+    static void finish(const Weave& job) {
+        static_cast<void>(testing_support::wait_for_maps(job, job.progress().target, kTimeout));
+    }
 
     [[nodiscard]] std::shared_ptr<Weave> finished(const WeaveRequest& wanted) {
         auto job = start(wanted);

@@ -1,3 +1,4 @@
+#include "tests/support/weave_waiting.hpp"
 #include "tests/unit/server/session/weave_fixture.hpp"
 
 #include <thread>
@@ -40,16 +41,16 @@ TEST_F(FollowingWeaveTest, RequestsJoinARunningJobAndAreServedInOrder) {
     EXPECT_EQ(start(request({})), job);
     EXPECT_EQ(job->progress().target, 42U);
     first_round->end();
-    const auto for_the_first = job->wait(20, kTimeout);
+    const auto for_the_first = testing_support::wait_for_maps(*job, 20, kTimeout);
     ASSERT_NE(for_the_first, nullptr);
     EXPECT_EQ(digests_of(*for_the_first), digests_of_session({}, 20));
     second_round->wait();
     EXPECT_EQ(job->progress().state, State::kWeaving);
     EXPECT_EQ(job->progress().revision, 20U) << "the earlier maps stay available";
     EXPECT_EQ(job->progress().woven, 29U);
-    EXPECT_EQ(job->wait(42, std::chrono::milliseconds(0)), nullptr);
+    EXPECT_EQ(testing_support::wait_for_maps(*job, 42, std::chrono::milliseconds(0)), nullptr);
     second_round->end();
-    const auto for_the_second = job->wait(42, kTimeout);
+    const auto for_the_second = testing_support::wait_for_maps(*job, 42, kTimeout);
     ASSERT_NE(for_the_second, nullptr);
     EXPECT_EQ(digests_of(*for_the_second), digests_of_session({}, 42));
     EXPECT_EQ(log_.taken(), once(42));
@@ -86,7 +87,7 @@ TEST_F(FollowingWeaveTest, ConcurrentRequestsReadEachEntryOnce) {
             for (Revision seen = 0; seen < 42;) {
                 const Revision now = newest;
                 const auto job = weaves_.start(session_, request({}), now).value();
-                const auto maps = job->wait(now, kTimeout);
+                const auto maps = testing_support::wait_for_maps(*job, now, kTimeout);
                 ASSERT_NE(maps, nullptr);
                 ASSERT_GE(maps->revision, std::max(now, seen));
                 seen = maps->revision;
@@ -113,7 +114,7 @@ TEST_F(FollowingWeaveTest, PastStampIsReplayedOnce) {
     append(entries_[1]);
     EXPECT_EQ(start(past), job);
     EXPECT_EQ(job->progress().state, State::kDone);
-    EXPECT_EQ(digests_of(*job->wait(43, kTimeout)), digests_of_session({}, 19));
+    EXPECT_EQ(digests_of(*testing_support::wait_for_maps(*job, 43, kTimeout)), digests_of_session({}, 19));
     EXPECT_EQ(log_.taken(), once(19));
 }
 
@@ -143,7 +144,7 @@ TEST_F(FollowingWeaveTest, FailedContinuationKeepsItsMapsAndRestarts) {
     EXPECT_THAT(job->progress().error->message, testing::HasSubstr("500 metres"));
     ASSERT_NE(job->maps(), nullptr);
     EXPECT_EQ(job->maps()->revision, 20U);
-    EXPECT_EQ(job->wait(21, kTimeout), nullptr);
+    EXPECT_EQ(testing_support::wait_for_maps(*job, 21, kTimeout), nullptr);
     const auto again = finished(fine);
     EXPECT_NE(again, job);
     EXPECT_EQ(again->id(), job->id());
@@ -160,7 +161,7 @@ TEST_F(FollowingWeaveTest, CancelledContinuationEnds) {
     pause->wait();
     EXPECT_TRUE(weaves_.remove(session_.id, job->id()));
     pause->end();
-    EXPECT_EQ(job->wait(42, kTimeout), nullptr);
+    EXPECT_EQ(testing_support::wait_for_maps(*job, 42, kTimeout), nullptr);
     EXPECT_EQ(job->progress().state, State::kCancelled);
     EXPECT_NE(finished(request({})), job);
 }

@@ -1,3 +1,4 @@
+#include "tests/support/weave_waiting.hpp"
 #include "tests/unit/server/session/weave_fixture.hpp"
 
 #include <boost/asio/post.hpp>

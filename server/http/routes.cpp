@@ -1,0 +1,111 @@
+#include "server/http/routes.hpp"
+
+#include "server/http/handlers/handlers.hpp"
+
+#include <array>
+#include <utility>
+
+namespace scanloom::http {
+
+std::span<const Route> routes() noexcept {
+    using enum Method;
+    using enum Access;
+    using enum Pool;
+    using enum Sessions;
+    // clang-format off
+    static constexpr auto kRoutes = std::to_array<Route>({
+        // method  path                                       access   pool         sessions handler
+        {kGet,     "/",                                       kOpen,   kIo,         kUnused, get_viewer},
+        {kGet,     "/assets/{file}",                          kOpen,   kIo,         kUnused, get_viewer_asset},
+        {kGet,     "/livez",                                  kOpen,   kIo,         kUnused, get_livez},
+        {kGet,     "/readyz",                                 kOpen,   kIo,         kUnused, get_readyz},
+        {kGet,     "/metrics",                                kServer, kMetrics,    kUnused, get_metrics},
+        {kGet,     "/openapi.json",                           kOpen,   kIo,         kUnused, get_openapi},
+        {kGet,     "/api/v1/login",                           kOpen,   kIo,         kUnused, get_login},
+        {kPost,    "/api/v1/login",                           kOpen,   kIo,         kUnused, post_login},
+        {kDelete,  "/api/v1/login",                           kOpen,   kIo,         kUnused, delete_login},
+        {kGet,     "/api/v1/backups",                         kBackup, kQueries,    kUnused, list_backups},
+        {kPost,    "/api/v1/backups",                         kBackup, kStore,      kUnused, make_backup},
+        {kGet,     "/api/v1/sessions",                        kList,   kQueries,    kListed, list_sessions},
+        {kPost,    "/api/v1/sessions",                        kCreate, kStore,      kListed, create_session},
+        {kGet,     "/api/v1/sessions/{session}",              kRead,   kQueries,    kListed, get_session},
+        {kDelete,  "/api/v1/sessions/{session}",              kChange, kStore,      kListed, delete_session},
+        {kPostForm,"/api/v1/sessions/{session}/import",       kChange, kImport,     kListed, import_map},
+        {kPost,    "/api/v1/sessions/{session}/exclude",      kChange, kStore,      kListed, exclude_scans},
+        {kGet,     "/api/v1/sessions/{session}/exclusions",   kRead,   kQueries,    kListed, list_exclusions},
+        {kDelete,  "/api/v1/sessions/{session}/exclusions/{exclusion}",
+                                                              kChange, kStore,      kListed, lift_exclusion},
+        {kGet,     "/api/v1/sessions/{session}/tiles/{layer}/{z}/{x}/{y}.png",
+                                                              kRead,   kIo,         kLoaded, get_tile_png},
+        {kGet,     "/api/v1/sessions/{session}/tiles/{layer}/{z}/{x}/{y}.bin",
+                                                              kRead,   kIo,         kLoaded, get_tile_bin},
+        {kGet,     "/api/v1/sessions/{session}/tiles/{layer}.json",
+                                                              kRead,   kQueries,    kLoaded, get_tilejson},
+        {kGet,     "/api/v1/sessions/{session}/changes",      kRead,   kQueries,    kLoaded, get_changes},
+        {kGet,     "/api/v1/sessions/{session}/map.png",      kRead,   kWholeMaps,  kLoaded, get_map_png},
+        {kGet,     "/api/v1/sessions/{session}/map.pgm",      kRead,   kWholeMaps,  kLoaded, get_map_pgm},
+        {kGet,     "/api/v1/sessions/{session}/map.yaml",     kRead,   kQueries,    kLoaded, get_map_yaml},
+        {kGet,     "/api/v1/sessions/{session}/map.csv",      kRead,   kWholeMaps,  kLoaded, get_map_csv},
+        {kGet,     "/api/v1/sessions/{session}/map.npy",      kRead,   kWholeMaps,  kLoaded, get_map_npy},
+        {kGet,     "/api/v1/sessions/{session}/digest",       kRead,   kWholeMaps,  kLoaded, get_digest},
+        {kGet,     "/api/v1/sessions/{session}/difference",   kRead,   kWholeMaps,  kLoaded, get_difference},
+        {kGet,     "/api/v1/sessions/{session}/difference.png",
+                                                              kRead,   kWholeMaps,  kLoaded, get_difference_png},
+        {kGet,     "/api/v1/sessions/{session}/trajectory.geojson",
+                                                              kRead,   kLogReading, kLoaded, get_trajectory},
+        {kGet,     "/api/v1/sessions/{session}/landmarks.geojson",
+                                                              kRead,   kLogReading, kLoaded, get_landmarks},
+        {kGet,     "/api/v1/sessions/{session}/points.csv",   kRead,   kLogReading, kLoaded, get_points_csv},
+        {kGet,     "/api/v1/sessions/{session}/points.ply",   kRead,   kLogReading, kLoaded, get_points_ply},
+        {kGet,     "/api/v1/sessions/{session}/frontiers.geojson",
+                                                              kRead,   kPlanning,   kLoaded, get_frontiers},
+        {kPost,    "/api/v1/sessions/{session}/plan",         kRead,   kPlanning,   kLoaded, post_plan},
+        {kPost,    "/api/v1/sessions/{session}/coverage",     kRead,   kPlanning,   kLoaded, post_coverage},
+        {kGet,     "/api/v1/sessions/{session}/goal",         kRead,   kQueries,    kLoaded, get_goal},
+        {kPost,    "/api/v1/sessions/{session}/goal",         kGuide,  kPlanning,   kLoaded, assign_goal},
+        {kGet,     "/api/v1/sessions/{session}/goals.geojson",
+                                                              kRead,   kQueries,    kLoaded, get_goals},
+        {kGet,     "/api/v1/sessions/{session}/weave",        kRead,   kQueries,    kLoaded, list_weaves},
+        {kPost,    "/api/v1/sessions/{session}/weave",        kRead,   kQueries,    kLoaded, start_weave},
+        {kGet,     "/api/v1/sessions/{session}/weave/{weave}",
+                                                              kRead,   kQueries,    kLoaded, get_weave},
+        {kDelete,  "/api/v1/sessions/{session}/weave/{weave}",
+                                                              kChange, kQueries,    kLoaded, delete_weave},
+        {kGet,     "/api/v1/sessions/{session}/log",          kRead,   kLogExport,  kLoaded, get_log},
+        {kGet,     "/api/v1/sessions/{session}/live",         kRead,   kQueries,    kLoaded, get_live},
+    });
+    // clang-format on
+    return kRoutes;
+}
+
+std::string_view name_of(Method method) noexcept {
+    switch (method) {
+    case Method::kGet: return "GET";
+    case Method::kPost:
+    case Method::kPostForm: return "POST";
+    case Method::kDelete: return "DELETE";
+    }
+    return "";
+}
+
+boost::asio::awaitable<Result<Response>> Handler::operator()(Context& context) const {
+    if (function_ != nullptr) co_return function_(context);
+    co_return co_await coroutine_(context);
+}
+
+std::variant<Match, NoSuchPath, MethodNotAllowed> find_route(std::span<const Route> routes, std::string_view method,
+                                                             const std::vector<std::string>& segments) {
+    std::string allow;
+    for (const auto& route : routes) {
+        auto arguments = match_path(route.path, segments);
+        if (!arguments) continue;
+        const auto name = name_of(route.method);
+        if (name == method || (name == "GET" && method == "HEAD")) return Match{route, std::move(*arguments)};
+        if (!allow.empty()) allow += ", ";
+        allow += name == "GET" ? "GET, HEAD" : name;
+    }
+    if (allow.empty()) return NoSuchPath{};
+    return MethodNotAllowed{std::move(allow)};
+}
+
+} // namespace scanloom::http

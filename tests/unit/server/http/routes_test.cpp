@@ -1,0 +1,119 @@
+#include "server/http/routes.hpp"
+
+#include "server/http/target.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <tuple>
+#include <type_traits>
+#include <vector>
+
+namespace scanloom::http {
+namespace {
+
+template <class... Columns>
+concept IsRow = requires(Columns... columns) {
+    Route{columns...};
+};
+
+static_assert(IsRow<Method, std::string_view, Access, Pool, Sessions, Handler>);
+static_assert(!IsRow<Method, std::string_view, Access, Pool, Sessions>, "a row without a handler does not compile");
+static_assert(!std::is_default_constructible_v<Handler>);
+
+std::variant<Match, NoSuchPath, MethodNotAllowed> route(std::string_view method, std::string_view path) {
+    return find_route(routes(), method, parse_target(path).value().segments);
+}
+
+/// A path that the pattern matches: the name of each variable stands for its value.
+std::string example_of(std::string_view pattern) {
+    std::string path(pattern);
+    std::erase_if(path, [](char c) { return c == '{' || c == '}'; });
+    return path;
+}
+
+TEST(Routes, EachIsFoundByItsOwnPath) {
+    for (const auto& entry : routes()) {
+        const auto found = route(name_of(entry.method), example_of(entry.path));
+        const auto* match = std::get_if<Match>(&found);
+        ASSERT_NE(match, nullptr) << entry.path;
+        EXPECT_EQ(&match->route, &entry) << entry.path;
+    }
+}
+
+TEST(Routes, AreAboutASessionOnlyIfTheirPathNamesIt) {
+    for (const auto& entry : routes()) {
+        const bool names_it = entry.path.find("{session}") != std::string_view::npos;
+        EXPECT_EQ(is_about_one_session(entry.access), names_it) << entry.path;
+        EXPECT_TRUE(names_it || entry.sessions != Sessions::kLoaded) << entry.path;
+        EXPECT_TRUE(!names_it || entry.sessions != Sessions::kUnused) << entry.path;
+    }
+}
+
+TEST(Routes, HaveThePoolOfTheirWork) {
+    const std::string session = "/api/v1/sessions/s";
+    const std::vector<std::tuple<std::string, std::string, Pool>> rows = {
+        {"GET", "/", Pool::kIo},
+        {"GET", "/livez", Pool::kIo},
+        {"GET", "/readyz", Pool::kIo},
+        {"GET", "/openapi.json", Pool::kIo},
+        {"POST", "/api/v1/login", Pool::kIo},
+        {"GET", "/metrics", Pool::kMetrics},
+        // Whole maps do not hold up their parts.
+        {"GET", session + "/digest", Pool::kWholeMaps},
+        {"GET", session + "/map.png", Pool::kWholeMaps},
+        {"GET", session + "/map.csv", Pool::kWholeMaps},
+        {"GET", session + "/map.npy", Pool::kWholeMaps},
+        {"GET", session + "/map.pgm?bbox=0,0,1,1", Pool::kWholeMaps},
+        {"GET", session + "/map.png?weave=0123456789abcdef", Pool::kWholeMaps},
+        {"GET", session + "/difference?weave=0", Pool::kWholeMaps},
+        {"GET", session + "/difference.png?with=0", Pool::kWholeMaps},
+        {"GET", session + "/trajectory.geojson", Pool::kLogReading},
+        {"GET", session + "/trajectory.geojson?since=3&times=true", Pool::kLogReading},
+        {"GET", session + "/landmarks.geojson", Pool::kLogReading},
+        {"GET", session + "/points.csv", Pool::kLogReading},
+        {"GET", session + "/log?format=clf", Pool::kLogExport},
+        {"GET", session, Pool::kQueries},
+        {"GET", session + "/map.yaml", Pool::kQueries},
+        {"GET", session + "/changes?since=3", Pool::kQueries},
+        {"GET", session + "/goals.geojson", Pool::kQueries},
+        {"GET", session + "/tiles/occupancy.json", Pool::kQueries},
+        {"GET", session + "/tiles/occupancy/5/0/0.png", Pool::kIo},
+        {"GET", session + "/tiles/occupancy/9/256/255.bin", Pool::kIo},
+        {"GET", session + "/tiles/occupancy/x/0/0.png", Pool::kIo},
+        {"GET", "/api/v1/sessions", Pool::kQueries},
+        {"GET", "/api/v1/backups", Pool::kQueries},
+        {"POST", session + "/weave", Pool::kQueries}, // which only begins
+        {"GET", session + "/frontiers.geojson?robot=r", Pool::kPlanning},
+        {"GET", session + "/goal?robot=r", Pool::kQueries},
+        {"POST", session + "/goal", Pool::kPlanning},
+        {"POST", session + "/plan", Pool::kPlanning},
+        {"POST", session + "/coverage?weave=0123456789abcdef", Pool::kPlanning},
+        // What waits for the disk.
+        {"POST", session + "/import", Pool::kImport},
+        {"POST", "/api/v1/sessions", Pool::kStore},
+        {"DELETE", session, Pool::kStore},
+        {"POST", "/api/v1/backups", Pool::kStore},
+    };
+    for (const auto& [method, target, pool] : rows) {
+        EXPECT_EQ(std::get<Match>(route(method, target)).route.pool, pool) << method << " " << target;
+    }
+}
+
+TEST(Routes, UnknownPathsAreNotFoundWhateverTheMethod) {
+    for (const auto* path : {"/api", "/api/v1/sessions/", "/api/v1/sessions/a/b", "/livez/", "//livez", "/LIVEZ", "/a",
+                             "/assets/", "/assets/a/b"}) {
+        EXPECT_TRUE(std::holds_alternative<NoSuchPath>(route("GET", path))) << path;
+        EXPECT_TRUE(std::holds_alternative<NoSuchPath>(route("PUT", path))) << path;
+    }
+}
+
+TEST(Routes, OtherMethodsOfAKnownPathLearnWhichArePossible) {
+    EXPECT_EQ(std::get<MethodNotAllowed>(route("PUT", "/api/v1/sessions")).allow, "GET, HEAD, POST");
+    EXPECT_EQ(std::get<MethodNotAllowed>(route("POST", "/api/v1/sessions/a")).allow, "GET, HEAD, DELETE");
+    EXPECT_EQ(std::get<MethodNotAllowed>(route("OPTIONS", "/livez")).allow, "GET, HEAD");
+    EXPECT_EQ(std::get<MethodNotAllowed>(route("get", "/livez")).allow, "GET, HEAD");
+}
+
+} // namespace
+} // namespace scanloom::http
