@@ -2,10 +2,10 @@
 
 #include "server/http/content_coding.hpp"
 #include "server/http/handlers/lookup.hpp"
-#include "server/http/in_quotes.hpp"
 #include "server/http/json_read.hpp"
 #include "server/http/multipart.hpp"
 #include "server/http/problem.hpp"
+#include "server/http/text.hpp"
 
 #include <boost/asio/async_result.hpp>
 #include <boost/asio/post.hpp>

@@ -1,9 +1,9 @@
 #include "server/http/connection.hpp"
 
 #include "common/net/await_tuple.hpp"
-#include "server/http/date.hpp"
 #include "server/http/incoming.hpp"
 #include "server/http/problem.hpp"
+#include "server/http/response.hpp"
 #include "server/live/invitation.hpp"
 
 #include <boost/asio/dispatch.hpp>

@@ -1,6 +1,6 @@
 #include "common/net/await_tuple.hpp"
 #include "server/http/connection.hpp"
-#include "server/http/date.hpp"
+#include "server/http/response.hpp"
 #include "server/sockets/worker_pool.hpp"
 
 #include <boost/beast/core/buffers_suffix.hpp>

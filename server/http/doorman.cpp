@@ -3,8 +3,8 @@
 #include "server/http/context.hpp"
 #include "server/http/credentials.hpp"
 #include "server/http/host.hpp"
-#include "server/http/in_quotes.hpp"
 #include "server/http/problem.hpp"
+#include "server/http/text.hpp"
 
 #include <fmt/format.h>
 

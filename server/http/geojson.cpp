@@ -2,7 +2,7 @@
 
 #include "common/json/json_text.hpp"
 #include "server/grid/outline.hpp"
-#include "server/http/number.hpp"
+#include "server/http/text.hpp"
 
 #include <fmt/format.h>
 

@@ -18,6 +18,11 @@ namespace scanloom::http {
 /// Errors: kMalformed if it is not JSON, deeper, or not an object; kInvalidField if a key is given twice.
 [[nodiscard]] Result<boost::json::object> parse_json_object(std::string_view body);
 
+/// Returns the first key that occurs twice in one object of `json`, at any depth, or nullopt. A parser that keeps the
+/// last of two values would silently ignore the first one.
+/// @param json  well-formed; of malformed text, only the part before the error is checked
+[[nodiscard]] std::optional<std::string> duplicate_key(std::string_view json);
+
 /// Errors: kInvalidField, naming the first member that is not in `known`.
 [[nodiscard]] Result<> check_members(const boost::json::object& object, std::span<const std::string_view> known);
 

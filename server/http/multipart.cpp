@@ -1,6 +1,6 @@
 #include "server/http/multipart.hpp"
 
-#include "server/http/in_quotes.hpp"
+#include "server/http/text.hpp"
 
 #include <boost/beast/core/string.hpp>
 #include <boost/beast/http/rfc7230.hpp>

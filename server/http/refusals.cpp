@@ -1,8 +1,8 @@
 #include "server/http/refusals.hpp"
 
 #include "server/http/host.hpp"
-#include "server/http/in_quotes.hpp"
 #include "server/http/problem.hpp"
+#include "server/http/text.hpp"
 
 #include <boost/beast/http/error.hpp>
 #include <fmt/format.h>

@@ -2,6 +2,7 @@
 
 #include "common/json/json_text.hpp"
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -42,6 +43,16 @@ Response not_modified(std::string_view etag, std::string_view cache_control) {
     Response response{.status = Status::not_modified, .fields = {}, .body = {}};
     response.set("ETag", etag).set("Cache-Control", cache_control);
     return response;
+}
+
+std::string date_of(std::time_t time) { return fmt::format("{:%a, %d %b %Y %H:%M:%S} GMT", fmt::gmtime(time)); }
+
+std::string_view date_now() {
+    thread_local std::time_t written = 0;
+    thread_local std::string text;
+    const std::time_t now = std::time(nullptr);
+    if (now != written || text.empty()) text = date_of(written = now);
+    return text;
 }
 
 std::string head_text(const Response& response, Persistence persistence, std::string_view date, Framing framing,

@@ -1,10 +1,11 @@
 #pragma once
 
-#include "server/http/body_stream.hpp"
+#include "common/error/error.hpp"
 
 #include <boost/beast/http/status.hpp>
 #include <boost/json/value.hpp>
 
+#include <ctime>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -47,6 +48,20 @@ private:
     std::shared_ptr<const void> owner_;
 };
 
+/// A response body that is produced in pieces while it is sent, for content that may exceed the memory.
+/// Threads: one caller of next() at a time, not on an I/O thread because it may wait for the disk.
+class BodyStream {
+public:
+    BodyStream() = default;
+    BodyStream(const BodyStream&) = delete;
+    BodyStream& operator=(const BodyStream&) = delete;
+    virtual ~BodyStream() = default;
+
+    /// Returns the next piece, empty at the end. After an error the connection closes, so that the client detects that
+    /// the body is incomplete.
+    [[nodiscard]] virtual Result<std::string> next() = 0;
+};
+
 struct Response {
     Status status = Status::ok;
     std::vector<std::pair<std::string_view, std::string>> fields; ///< names are literals, "ETag"
@@ -70,6 +85,13 @@ struct Response {
 
 /// 304: the client already has the current content.
 [[nodiscard]] Response not_modified(std::string_view etag, std::string_view cache_control);
+
+/// Formats a time as an IMF-fixdate: "Sun, 06 Nov 1994 08:49:37 GMT".
+/// Source: RFC 9110, section 5.6.7.
+[[nodiscard]] std::string date_of(std::time_t time);
+
+/// Returns date_of() the current time, formatted once a second. The view is valid until the next call on this thread.
+[[nodiscard]] std::string_view date_now();
 
 /// How the client detects the end of a response.
 enum class Framing {

@@ -1,6 +1,6 @@
 #include "server/http/target.hpp"
 
-#include "server/http/in_quotes.hpp"
+#include "server/http/text.hpp"
 
 #include <boost/url/parse.hpp>
 #include <boost/url/url_view.hpp>

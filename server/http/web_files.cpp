@@ -3,7 +3,7 @@
 #include "server/http/conditional.hpp"
 #include "server/http/content_coding.hpp"
 #include "server/http/host.hpp"
-#include "server/http/in_quotes.hpp"
+#include "server/http/text.hpp"
 
 #include <fmt/format.h>
 #include <openssl/evp.h>

@@ -2,9 +2,8 @@
 
 #include "server/guide/robots.hpp"
 #include "server/http/handlers/lookup.hpp"
-#include "server/http/in_quotes.hpp"
 #include "server/http/json_read.hpp"
-#include "server/http/number.hpp"
+#include "server/http/text.hpp"
 
 #include <boost/json/array.hpp>
 #include <fmt/format.h>

@@ -5,9 +5,8 @@
 #include "server/http/geojson.hpp"
 #include "server/http/handlers/lookup.hpp"
 #include "server/http/handlers/planning_request.hpp"
-#include "server/http/in_quotes.hpp"
 #include "server/http/json_read.hpp"
-#include "server/http/number.hpp"
+#include "server/http/text.hpp"
 
 #include <boost/json/array.hpp>
 #include <boost/json/object.hpp>

@@ -4,8 +4,7 @@
 #include "server/guide/robots.hpp"
 #include "server/http/geojson.hpp"
 #include "server/http/handlers/lookup.hpp"
-#include "server/http/in_quotes.hpp"
-#include "server/http/number.hpp"
+#include "server/http/text.hpp"
 #include "server/landmarks/matching.hpp"
 #include "server/session/log_captures.hpp"
 

@@ -2,8 +2,8 @@
 
 #include "server/http/handlers/lookup.hpp"
 #include "server/http/host.hpp"
-#include "server/http/in_quotes.hpp"
 #include "server/http/problem.hpp"
+#include "server/http/text.hpp"
 #include "server/live/invitation.hpp"
 
 #include <fmt/format.h>

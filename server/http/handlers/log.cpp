@@ -2,9 +2,9 @@
 
 #include "common/wire/log_codec.hpp"
 #include "server/exchange/carmen_text.hpp"
-#include "server/http/body_stream.hpp"
 #include "server/http/handlers/lookup.hpp"
-#include "server/http/in_quotes.hpp"
+#include "server/http/response.hpp"
+#include "server/http/text.hpp"
 
 #include <boost/endian/conversion.hpp>
 #include <fmt/format.h>

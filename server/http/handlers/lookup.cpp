@@ -2,8 +2,7 @@
 
 #include "common/net/await_tuple.hpp"
 #include "server/http/handlers/weave_request.hpp"
-#include "server/http/in_quotes.hpp"
-#include "server/http/number.hpp"
+#include "server/http/text.hpp"
 
 #include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>

@@ -2,8 +2,8 @@
 
 #include "server/http/conditional.hpp"
 #include "server/http/handlers/lookup.hpp"
-#include "server/http/number.hpp"
 #include "server/http/problem.hpp"
+#include "server/http/text.hpp"
 #include "server/mapping/digest.hpp"
 #include "server/tiles/difference.hpp"
 #include "server/tiles/map_files.hpp"

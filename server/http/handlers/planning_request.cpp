@@ -3,9 +3,8 @@
 #include "common/scan/limits.hpp"
 #include "server/guide/robots.hpp"
 #include "server/http/handlers/weave_request.hpp"
-#include "server/http/in_quotes.hpp"
 #include "server/http/json_read.hpp"
-#include "server/http/number.hpp"
+#include "server/http/text.hpp"
 #include "server/planning/region.hpp"
 
 #include <boost/json/array.hpp>

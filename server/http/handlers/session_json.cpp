@@ -2,7 +2,7 @@
 
 #include "server/http/handlers/lookup.hpp"
 #include "server/http/json_read.hpp"
-#include "server/http/number.hpp"
+#include "server/http/text.hpp"
 #include "server/mapping/map_config.hpp"
 #include "server/tiles/map_image.hpp"
 

@@ -5,9 +5,8 @@
 #include "common/scan/limits.hpp"
 #include "server/http/handlers/lookup.hpp"
 #include "server/http/handlers/session_json.hpp"
-#include "server/http/in_quotes.hpp"
 #include "server/http/multipart.hpp"
-#include "server/http/number.hpp"
+#include "server/http/text.hpp"
 #include "server/mapping/map_config.hpp"
 #include "server/tiles/ros_map_import.hpp"
 

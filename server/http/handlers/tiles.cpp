@@ -2,8 +2,7 @@
 
 #include "server/http/conditional.hpp"
 #include "server/http/handlers/lookup.hpp"
-#include "server/http/in_quotes.hpp"
-#include "server/http/number.hpp"
+#include "server/http/text.hpp"
 #include "server/tiles/map_image.hpp"
 #include "server/tiles/tile.hpp"
 #include "server/tiles/tile_key.hpp"

@@ -1,8 +1,7 @@
 #include "server/http/handlers/handlers.hpp"
 
 #include "server/http/handlers/lookup.hpp"
-#include "server/http/in_quotes.hpp"
-#include "server/http/number.hpp"
+#include "server/http/text.hpp"
 #include "server/session/old_paths.hpp"
 
 #include <fmt/format.h>

@@ -2,8 +2,7 @@
 
 #include "common/json/json_text.hpp"
 #include "server/http/handlers/session_json.hpp"
-#include "server/http/in_quotes.hpp"
-#include "server/http/number.hpp"
+#include "server/http/text.hpp"
 #include "server/mapping/map_config.hpp"
 
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 #include "common/json/json_text.hpp"
 #include "server/http/json_read.hpp"
-#include "server/http/number.hpp"
+#include "server/http/text.hpp"
 
 #include <boost/json/array.hpp>
 #include <boost/json/parse.hpp>

@@ -154,7 +154,7 @@ TEST_F(WeaveTest, JobCancelledBeforeItsTurnNeverRuns) {
     PageBudget budget(1000);
     Weave job(session_, request({}), newest());
     job.cancel(kEnough);
-    EXPECT_EQ(job.wait(newest(), std::chrono::milliseconds(0)), nullptr);
+    EXPECT_EQ(testing_support::wait_for_maps(job, newest(), std::chrono::milliseconds(0)), nullptr);
     EXPECT_FALSE(job.run(log_, budget));
     EXPECT_EQ(job.progress().state, State::kCancelled);
     EXPECT_EQ(job.progress().error, kEnough);
@@ -170,7 +170,7 @@ TEST_F(WeaveTest, CancelDuringATurnReturnsTheChunks) {
     pause->wait();
     EXPECT_EQ(job.progress().state, State::kWeaving);
     EXPECT_EQ(job.progress().woven, 9U);
-    EXPECT_EQ(job.wait(newest(), std::chrono::milliseconds(0)), nullptr);
+    EXPECT_EQ(testing_support::wait_for_maps(job, newest(), std::chrono::milliseconds(0)), nullptr);
     job.cancel(kEnough);
     job.cancel({Errc::kInternal, "again"});
     pause->end();

@@ -1,4 +1,4 @@
-#include "server/http/in_quotes.hpp"
+#include "server/http/text.hpp"
 
 namespace scanloom::http {
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <concepts>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <system_error>
 
@@ -33,5 +34,9 @@ template <std::integral T>
     const double rounded = std::round(metres * kPerMetre) / kPerMetre;
     return std::isfinite(rounded) ? rounded : metres;
 }
+
+/// Quotes untrusted text for a message or a log line: at most 64 characters, with '?' for everything but printable
+/// ASCII.
+[[nodiscard]] std::string in_quotes(std::string_view text);
 
 } // namespace scanloom::http
