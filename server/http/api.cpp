@@ -88,13 +88,13 @@ std::variant<Api::Admitted, Response> Api::admit(const Request& head, Routed rou
     if (auto accepted = check_content_type(route.method, head); !accepted) {
         return problem(Status::unsupported_media_type, accepted.error().message, path);
     }
-    Pools::Slot slot;
+    Pools::Permit permit;
     if (route.method == Method::kPostForm) {
         auto taken = services_.pools.enter(route.pool);
         if (!taken) return problem(taken.error(), path);
-        slot = std::move(*taken);
+        permit = std::move(*taken);
     }
-    return Admitted{std::move(routed), std::get<access::TokenRef>(std::move(token)), std::move(slot)};
+    return Admitted{std::move(routed), std::get<access::TokenRef>(std::move(token)), std::move(permit)};
 }
 
 asio::awaitable<Response> Api::answer(Admitted admitted, const Request& request) const {
@@ -102,7 +102,7 @@ asio::awaitable<Response> Api::answer(Admitted admitted, const Request& request)
     Context context{services_, request, match.arguments, query, admitted.token};
     std::optional<Response> response;
     try {
-        Result<Response> made = co_await call(match.route, context, admitted.slot);
+        Result<Response> made = co_await call(match.route, context, admitted.permit);
         if (!made) {
             response = problem(made.error(), instance_of(request.target));
         } else {
@@ -119,17 +119,17 @@ asio::awaitable<Response> Api::answer(Admitted admitted, const Request& request)
     co_return std::move(*response);
 }
 
-asio::awaitable<Result<Response>> Api::call(const Route& route, Context& context, Pools::Slot& slot) const {
+asio::awaitable<Result<Response>> Api::call(const Route& route, Context& context, Pools::Permit& permit) const {
     if (route.sessions != Sessions::kUnused && !services_.recovered) {
         co_return Error{Errc::kOverloaded, "the sessions are still being recovered from the store; try again soon"};
     }
     if (route.sessions == Sessions::kLoaded) {
         context.session = co_await load_session(services_.sessions, context.arguments["session"]);
     }
-    if (!slot) {
+    if (!permit) {
         auto taken = services_.pools.enter(route.pool);
         if (!taken) co_return taken.error();
-        slot = std::move(*taken);
+        permit = std::move(*taken);
     }
     co_await context.run_on(route.pool);
     co_return co_await route.handler(context);

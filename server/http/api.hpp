@@ -37,7 +37,7 @@ public:
     struct Admitted {
         Routed routed;
         access::TokenRef token;
-        Pools::Slot slot; ///< of its pool; null: not taken yet, or the pool has no limit
+        Pools::Permit permit; ///< of its pool; null: not taken yet, or the pool has no limit
     };
 
     /// Finds the route.
@@ -45,7 +45,7 @@ public:
     /// @return the route, or the refusal
     [[nodiscard]] std::variant<Routed, Response> route(const Request& head) const;
 
-    /// Checks the permission and the Content-Type. For a large body, also takes a slot of the pool.
+    /// Checks the permission and the Content-Type. For a large body, also takes a permit of the pool.
     [[nodiscard]] std::variant<Admitted, Response> admit(const Request& head, Routed routed) const;
 
     /// Computes the response. The session that the route needs is loaded first; no thread waits for that.
@@ -56,7 +56,7 @@ public:
 
 private:
     [[nodiscard]] boost::asio::awaitable<Result<Response>> call(const Route& route, Context& context,
-                                                                Pools::Slot& slot) const;
+                                                                Pools::Permit& permit) const;
     [[nodiscard]] Response for_client(Access access, Response response) const;
 
     Services& services_;

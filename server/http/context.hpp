@@ -4,11 +4,11 @@
 #include "server/access/token.hpp"
 #include "server/guide/goal_book.hpp"
 #include "server/guide/locator.hpp"
-#include "server/http/answer_slots.hpp"
 #include "server/http/doorman.hpp"
 #include "server/http/path_pattern.hpp"
 #include "server/http/pools.hpp"
 #include "server/http/request.hpp"
+#include "server/http/response_limit.hpp"
 #include "server/http/target.hpp"
 #include "server/http/web_files.hpp"
 #include "server/live/landmark_hub.hpp"
@@ -60,7 +60,7 @@ struct Services {
     tiles::TileMaker tiles{tile_bytes_max};
     session::LandmarkFolds landmarks{log};
     live::LandmarkHub watched_landmarks{landmarks};
-    AnswerSlots responses; ///< large ones
+    ResponseLimit responses;
 };
 
 /// A routed request whose client has the permission for it.

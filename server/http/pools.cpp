@@ -1,13 +1,14 @@
 #include "server/http/pools.hpp"
 
+#include <string>
 #include <string_view>
 #include <utility>
 
 namespace scanloom::http {
 namespace {
 
-Result<Pools::Slot> take(const sockets::Slots& slots, std::string_view refusal) {
-    if (auto slot = slots.try_take()) return slot;
+Result<Pools::Permit> take(const limits::Semaphore& semaphore, std::string_view refusal) {
+    if (auto permit = semaphore.try_acquire()) return permit;
     return Error{Errc::kOverloaded, std::string(refusal)};
 }
 
@@ -32,7 +33,7 @@ const boost::asio::any_io_executor& Pools::executor_of(Pool pool) const noexcept
     return executors_.queries;
 }
 
-Result<Pools::Slot> Pools::enter(Pool pool) const {
+Result<Pools::Permit> Pools::enter(Pool pool) const {
     switch (pool) {
     case Pool::kLogReading:
         return take(log_readings_, "too many trajectories, landmarks or clouds of points are being read at this "
@@ -47,10 +48,10 @@ Result<Pools::Slot> Pools::enter(Pool pool) const {
     case Pool::kWholeMaps:
     case Pool::kLogExport: break;
     }
-    return Slot();
+    return Permit();
 }
 
-Result<Pools::Slot> Pools::wait_for_replay() const {
+Result<Pools::Permit> Pools::wait_for_replay() const {
     return take(replays_, "too many maps are being waited for at this moment; try again soon");
 }
 

@@ -1,12 +1,10 @@
 #pragma once
 
 #include "common/error/error.hpp"
+#include "common/limits/semaphore.hpp"
 #include "server/http/server_config.hpp"
-#include "server/sockets/slots.hpp"
 
 #include <boost/asio/any_io_executor.hpp>
-
-#include <memory>
 
 namespace scanloom::http {
 
@@ -42,7 +40,7 @@ struct Executors {
 class Pools {
 public:
     /// Held by a request while it counts.
-    using Slot = std::shared_ptr<const void>;
+    using Permit = limits::Semaphore::Permit;
 
     Pools(Executors executors, const ServerConfig& config);
 
@@ -51,22 +49,22 @@ public:
     /// @param pool  not Pool::kIo
     [[nodiscard]] const boost::asio::any_io_executor& executor_of(Pool pool) const noexcept;
 
-    /// Takes a slot of a pool. Keep it until the request is answered.
-    /// @return the slot; null for a pool without a limit
-    /// Errors: kOverloaded if all slots are taken.
-    [[nodiscard]] Result<Slot> enter(Pool pool) const;
+    /// Takes a permit of a pool. Keep it until the request is answered.
+    /// @return the permit; null for a pool without a limit
+    /// Errors: kOverloaded if all permits are taken.
+    [[nodiscard]] Result<Permit> enter(Pool pool) const;
 
-    /// Takes a slot of the requests that wait for replay jobs.
-    /// Errors: kOverloaded if all slots are taken.
-    [[nodiscard]] Result<Slot> wait_for_replay() const;
+    /// Takes a permit of the requests that wait for replay jobs.
+    /// Errors: kOverloaded if all permits are taken.
+    [[nodiscard]] Result<Permit> wait_for_replay() const;
 
 private:
     Executors executors_;
-    sockets::Slots store_;
-    sockets::Slots imports_;
-    sockets::Slots log_readings_;
-    sockets::Slots plans_;
-    sockets::Slots replays_;
+    limits::Semaphore store_;
+    limits::Semaphore imports_;
+    limits::Semaphore log_readings_;
+    limits::Semaphore plans_;
+    limits::Semaphore replays_;
 };
 
 } // namespace scanloom::http

@@ -11,7 +11,7 @@ namespace scanloom::ingest {
 
 std::optional<Error> RequestDesk::ask(Asker asker, Request request, Done done) {
     const bool asks_where = std::holds_alternative<wire::LocateRequest>(request);
-    auto slot = (asks_where ? locating_slots_ : slots_).try_take();
+    auto slot = (asks_where ? locating_slots_ : slots_).try_acquire();
     if (!slot) return Error{Errc::kOverloaded, "too many robots ask at this moment; ask again soon"};
     boost::asio::post(asks_where ? locating_ : planning_, [this, asker = std::move(asker), request = std::move(request),
                                                            done = std::move(done), slot = std::move(slot)]() mutable {

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "common/error/error.hpp"
+#include "common/limits/semaphore.hpp"
 #include "server/ingest/requests.hpp"
-#include "server/sockets/slots.hpp"
 
 #include <boost/asio/any_io_executor.hpp>
 
@@ -46,8 +46,8 @@ private:
     boost::asio::any_io_executor planning_;
     boost::asio::any_io_executor locating_;
     Services services_;
-    sockets::Slots slots_;
-    sockets::Slots locating_slots_{kLocatingMax};
+    limits::Semaphore slots_;
+    limits::Semaphore locating_slots_{kLocatingMax};
 };
 
 } // namespace scanloom::ingest

@@ -59,7 +59,7 @@ std::size_t pages_of_imported(const mapping::MapConfig& config, const std::vecto
 }
 
 Result<mapping::Projection> integrate_imported(const mapping::MapConfig& config, const std::vector<MapPatch>& patches,
-                                               const Maker& maker, PageShare& share) {
+                                               const Maker& maker, limits::MemoryShare& share) {
     if (auto ok = check_patches(config, patches, maker); !ok) return ok.error();
     const std::int64_t free = share.free();
     try {

@@ -1,10 +1,10 @@
 #pragma once
 
 #include "common/error/error.hpp"
+#include "common/limits/memory_budget.hpp"
 #include "common/scan/map_patch.hpp"
 #include "server/mapping/projection.hpp"
 #include "server/session/maker.hpp"
-#include "server/session/page_share.hpp"
 
 #include <cstddef>
 #include <vector>
@@ -22,6 +22,6 @@ namespace scanloom::session {
 /// session, of the creator, or of the memory for maps; kOverloaded if it exceeds the memory for maps that is free now.
 [[nodiscard]] Result<mapping::Projection> integrate_imported(const mapping::MapConfig& config,
                                                              const std::vector<MapPatch>& patches, const Maker& maker,
-                                                             PageShare& share);
+                                                             limits::MemoryShare& share);
 
 } // namespace scanloom::session

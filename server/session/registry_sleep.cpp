@@ -105,7 +105,7 @@ void SessionRegistry::tidy() {
 }
 
 /// Returns the number of pages to keep free for growing maps, as long as there are sessions to evict.
-std::size_t SessionRegistry::spare_pages() const noexcept { return static_cast<std::size_t>(pages_->pages_max()) / 16; }
+std::size_t SessionRegistry::spare_pages() const noexcept { return static_cast<std::size_t>(pages_->total()) / 16; }
 
 /// Evicts sessions without users until `pages` pages are free.
 void SessionRegistry::make_room(std::size_t pages) {

@@ -1,11 +1,11 @@
 #pragma once
 
 #include "common/error/error.hpp"
+#include "common/limits/memory_budget.hpp"
 #include "common/scan/log_entry.hpp"
 #include "server/mapping/projection.hpp"
 #include "server/session/backlog.hpp"
 #include "server/session/members.hpp"
-#include "server/session/page_share.hpp"
 #include "server/session/published.hpp"
 #include "server/session/robot_listener.hpp"
 #include "server/session/session_info.hpp"
@@ -169,7 +169,7 @@ private:
     Revision appended_ = 0;                                                // newest entry passed to the log
     bool appending_ = false;
     std::int64_t chunks_under_way_ = 0; // that the groups being appended or applied may create
-    PageShare share_;                   // of the limits' budgets: pages_ and chunks_under_way_
+    limits::MemoryShare share_;         // of the limits' budgets: pages_ and chunks_under_way_
     std::size_t pages_ = 0;             // of the maps
     std::optional<Revision> checkpointed_;
     double work_since_checkpoint_ = 0.0;

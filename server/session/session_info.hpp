@@ -1,8 +1,8 @@
 #pragma once
 
+#include "common/limits/memory_budget.hpp"
 #include "common/scan/scan_filter.hpp"
 #include "server/mapping/map_config.hpp"
-#include "server/session/page_budget.hpp"
 #include "server/store/scan_log.hpp"
 
 #include <atomic>
@@ -22,7 +22,7 @@ struct SessionLimits {
 
     static constexpr std::size_t kMost = 131'072; ///< chunks of 64 x 64 cells: 2.5 GiB, 1.3 square km at 5 cm
 
-    std::vector<std::shared_ptr<PageBudget>> shared = {}; ///< budgets shared with other sessions
+    std::vector<std::shared_ptr<limits::MemoryBudget>> shared = {}; ///< budgets shared with other sessions
 
     /// Called when a scan is refused because a shared budget has no room, with the number of pages that the scan may
     /// need. Called on the session's strand: must not block. May be empty.

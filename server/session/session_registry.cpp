@@ -38,7 +38,7 @@ wire::SessionRecord record_of(std::string_view name, double created, const mappi
 SessionRegistry::SessionRegistry(store::ScanLog& log, RegistryConfig config)
     : log_(log), config_(std::move(config)), may_wait_(config_.may_wait.value_or(config_.compute)),
       reading_(config_.reading.value_or(config_.compute)),
-      pages_(std::make_shared<PageBudget>(config_.pages_max)), factory_{log_, config_.compute, may_wait_} {
+      pages_(std::make_shared<limits::MemoryBudget>(config_.pages_max)), factory_{log_, config_.compute, may_wait_} {
     factory_.limits.shared = {pages_};
     factory_.limits.on_short = [this](std::size_t pages) {
         boost::asio::post(may_wait_, [this, pages] { make_room(pages + spare_pages()); });
@@ -124,7 +124,7 @@ Result<std::shared_ptr<Session>> SessionRegistry::import_map(std::string_view na
     const auto config = mapping::resolve(options);
     if (!config) return config.error();
     // Done before the lock and before anything is stored, because it takes seconds and may run out of memory.
-    PageShare share({pages_});
+    limits::MemoryShare share({pages_});
     auto projection = integrate_imported(*config, patches, maker, share);
     if (!projection) {
         share.give_back_all();

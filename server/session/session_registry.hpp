@@ -152,7 +152,7 @@ public:
     [[nodiscard]] bool is_draining() const noexcept { return draining_; }
 
     /// Returns the budget of the maps in memory.
-    [[nodiscard]] const PageBudget& pages() const noexcept { return *pages_; }
+    [[nodiscard]] const limits::MemoryBudget& pages() const noexcept { return *pages_; }
 
 private:
     struct Damaged {
@@ -193,7 +193,7 @@ private:
     const RegistryConfig config_;
     const boost::asio::any_io_executor may_wait_;
     const boost::asio::any_io_executor reading_;
-    const std::shared_ptr<PageBudget> pages_;
+    const std::shared_ptr<limits::MemoryBudget> pages_;
     SessionFactory factory_;
     std::atomic<bool> draining_ = false;
     std::atomic<bool> hurried_ = false;

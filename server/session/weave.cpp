@@ -89,7 +89,7 @@ bool Weave::join(Revision target) {
     return true;
 }
 
-bool Weave::resume(Revision target, PageBudget& budget) {
+bool Weave::resume(Revision target, limits::MemoryBudget& budget) {
     const std::lock_guard lock(mutex_);
     const auto chunks = static_cast<std::int64_t>(maps_->chunk_count);
     if (!budget.take(chunks)) return false;
@@ -159,7 +159,7 @@ void Weave::cancel(Error reason) {
 
 // Replay
 
-bool Weave::run(store::ScanLog& log, PageBudget& budget, double turn_work) {
+bool Weave::run(store::ScanLog& log, limits::MemoryBudget& budget, double turn_work) {
     const auto target = begin();
     if (!target) {
         give_up(kCancelled, budget);
@@ -200,7 +200,7 @@ bool Weave::wait_for_another_turn(Revision target) {
 }
 
 /// Applies entries up to `target`. @return whether the job has reached its end
-Result<bool> Weave::weave_up_to(Revision target, store::ScanLog& log, PageBudget& budget) {
+Result<bool> Weave::weave_up_to(Revision target, store::ScanLog& log, limits::MemoryBudget& budget) {
     bool is_complete = request_.end.revision.has_value();
     if (auto claimed = claim(budget); !claimed) return claimed.error(); // of its initial state
     const auto read =
@@ -230,7 +230,7 @@ bool Weave::is_beyond_end(Revision revision, const LogEntry& entry) const {
 }
 
 /// Restarts with all exclusions up to `target`. Releases the earlier maps first, because both may not fit into memory.
-Result<> Weave::begin_again(Revision target, store::ScanLog& log, PageBudget& budget) {
+Result<> Weave::begin_again(Revision target, store::ScanLog& log, limits::MemoryBudget& budget) {
     const auto exclusions = read_exclusions(log, session_.id, [&](Revision revision, const std::optional<ScanPose>&) {
         return revision <= target && !cancelled_;
     });
@@ -243,7 +243,7 @@ Result<> Weave::begin_again(Revision target, store::ScanLog& log, PageBudget& bu
     return claim(budget);
 }
 
-Result<> Weave::fold(const LogEntry& entry, PageBudget& budget) {
+Result<> Weave::fold(const LogEntry& entry, limits::MemoryBudget& budget) {
     for (bool in = false; !in;) {
         if (cancelled_) return kCancelled;
         double work = kSliceWork;
@@ -262,7 +262,7 @@ Result<> Weave::fold(const LogEntry& entry, PageBudget& budget) {
 }
 
 /// Takes the chunks of the current state from the budget.
-Result<> Weave::claim(PageBudget& budget) {
+Result<> Weave::claim(limits::MemoryBudget& budget) {
     const std::size_t chunks = projection_->chunk_count();
     const std::size_t copied = maps_ ? projection_->copied_count() : 0; // maps_ is set by this thread alone
     if (claim(chunks + copied, budget)) return {};
@@ -270,7 +270,7 @@ Result<> Weave::claim(PageBudget& budget) {
     return claim(chunks, budget) ? Result<>{} : no_room();
 }
 
-bool Weave::claim(std::size_t chunks, PageBudget& budget) {
+bool Weave::claim(std::size_t chunks, limits::MemoryBudget& budget) {
     const std::int64_t more = static_cast<std::int64_t>(chunks) - claimed_;
     if (more > 0 && !budget.take(more)) return false;
     if (more < 0) budget.give_back(-more);
@@ -285,7 +285,7 @@ void Weave::forget_maps() {
 }
 
 /// Publishes the maps of a round. @return whether the target was raised during the round
-bool Weave::publish(Revision target, bool is_complete, PageBudget& budget) {
+bool Weave::publish(Revision target, bool is_complete, limits::MemoryBudget& budget) {
     auto maps = std::make_shared<const mapping::Snapshot>(projection_->snapshot());
     const std::lock_guard lock(mutex_);
     maps_.swap(maps);
@@ -300,7 +300,7 @@ bool Weave::publish(Revision target, bool is_complete, PageBudget& budget) {
     return true;
 }
 
-void Weave::give_up(const Error& error, PageBudget& budget) {
+void Weave::give_up(const Error& error, limits::MemoryBudget& budget) {
     projection_.reset();
     const std::lock_guard lock(mutex_);
     if (!cancelled_) error_ = error;
@@ -308,7 +308,7 @@ void Weave::give_up(const Error& error, PageBudget& budget) {
 }
 
 /// Ends the job; it may be resumed after this. Pre: mutex_ is held.
-void Weave::end(State state, PageBudget& budget) {
+void Weave::end(State state, limits::MemoryBudget& budget) {
     budget.give_back(std::exchange(claimed_, 0));
     state_ = cancelled_ ? State::kCancelled : state;
     call_waiting();

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "common/error/error.hpp"
+#include "common/limits/memory_budget.hpp"
 #include "server/mapping/projection.hpp"
-#include "server/session/page_budget.hpp"
 #include "server/session/session_info.hpp"
 #include "server/session/weave_request.hpp"
 #include "server/store/scan_log.hpp"
@@ -85,7 +85,7 @@ public:
     /// Prepares a done job for another run() up to `target`. Call only in state kDone, after join() returned false, and
     /// from one thread at a time.
     /// @return false if the budget has no room now
-    [[nodiscard]] bool resume(Revision target, PageBudget& budget);
+    [[nodiscard]] bool resume(Revision target, limits::MemoryBudget& budget);
 
     /// Returns the revision at which `other`, with the target `target`, could start from this job.
     /// @return nullopt if the session or the settings differ, or if this job is past the end of the other, has failed,
@@ -111,7 +111,7 @@ public:
     /// @param turn_work  in the unit of Reach::work
     /// @return whether the job must be run again
     /// Threads: one at a time.
-    [[nodiscard]] bool run(store::ScanLog& log, PageBudget& budget, double turn_work = kTurnWork);
+    [[nodiscard]] bool run(store::ScanLog& log, limits::MemoryBudget& budget, double turn_work = kTurnWork);
 
     /// Returns whether the job has a state to continue from.
     /// Threads: only the thread that may call run().
@@ -123,17 +123,17 @@ private:
     [[nodiscard]] bool is_same_map(const Weave& other) const noexcept;
     [[nodiscard]] std::optional<Revision> revision_before(const Weave& other, Revision target) const;
     [[nodiscard]] std::optional<Revision> begin();
-    [[nodiscard]] Result<bool> weave_up_to(Revision target, store::ScanLog& log, PageBudget& budget);
+    [[nodiscard]] Result<bool> weave_up_to(Revision target, store::ScanLog& log, limits::MemoryBudget& budget);
     [[nodiscard]] bool is_beyond_end(Revision revision, const LogEntry& entry) const;
-    [[nodiscard]] Result<> begin_again(Revision target, store::ScanLog& log, PageBudget& budget);
+    [[nodiscard]] Result<> begin_again(Revision target, store::ScanLog& log, limits::MemoryBudget& budget);
     [[nodiscard]] bool wait_for_another_turn(Revision target);
-    [[nodiscard]] Result<> fold(const LogEntry& entry, PageBudget& budget);
-    [[nodiscard]] Result<> claim(PageBudget& budget);
-    [[nodiscard]] bool claim(std::size_t chunks, PageBudget& budget);
+    [[nodiscard]] Result<> fold(const LogEntry& entry, limits::MemoryBudget& budget);
+    [[nodiscard]] Result<> claim(limits::MemoryBudget& budget);
+    [[nodiscard]] bool claim(std::size_t chunks, limits::MemoryBudget& budget);
     void forget_maps();
-    [[nodiscard]] bool publish(Revision target, bool is_complete, PageBudget& budget);
-    void give_up(const Error& error, PageBudget& budget);
-    void end(State state, PageBudget& budget);
+    [[nodiscard]] bool publish(Revision target, bool is_complete, limits::MemoryBudget& budget);
+    void give_up(const Error& error, limits::MemoryBudget& budget);
+    void end(State state, limits::MemoryBudget& budget);
 
     const std::string id_;
     const SessionInfo session_;

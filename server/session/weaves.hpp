@@ -97,7 +97,7 @@ private:
     store::ScanLog& log_;
     boost::asio::any_io_executor executor_;
     const WeavesLimits limits_;
-    PageBudget budget_;
+    limits::MemoryBudget budget_;
 
     mutable std::mutex mutex_;
     bool stopped_ = false;

@@ -98,7 +98,7 @@ Families session_families(const session::SessionRegistry& sessions, const sessio
         gauge_now("scanloom_sessions_loaded", "Sessions whose maps are in memory.", static_cast<double>(served.size())),
         gauge_now("scanloom_map_memory_bytes", "Memory of these maps, about.", bytes_of(sessions.pages().used())),
         gauge_now("scanloom_map_memory_limit_bytes", "What they may take together.",
-                  bytes_of(sessions.pages().pages_max())),
+                  bytes_of(sessions.pages().total())),
         gauge_now("scanloom_sessions_failed", "Sessions that take no scans until they are read from the store again.",
                   static_cast<double>(failed)),
         gauge_now("scanloom_sessions_damaged", "Sessions that could not be recovered, or were found damaged since.",

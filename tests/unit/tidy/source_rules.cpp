@@ -23,6 +23,7 @@ const std::vector<Folder> kFolders = {
     {.path = "common/geometry", .may_include = {}, .pure = true},
     {.path = "common/hash", .may_include = {}, .pure = true},
     {.path = "common/json", .may_include = {}, .pure = true},
+    {.path = "common/limits", .may_include = {"common/error"}, .pure = true},
     {.path = "common/scan", .may_include = {"common/error", "common/geometry"}, .pure = true},
     {.path = "common/ros_map", .may_include = {"common/error", "common/scan"}, .pure = true},
     {.path = "common/app", .may_include = {"common/error"}},

@@ -217,7 +217,7 @@ TEST_F(ExclusionsTest, DoNotAffectMapsOfEarlierRevisions) {
     ASSERT_TRUE(registry_->lift_exclusion("lab", exclusion.excluded.id));
     ASSERT_TRUE(registry_->exclude("lab", 0, SeqRange{11, 14}));
     const auto entries = log();
-    PageBudget budget(1 << 20);
+    limits::MemoryBudget budget(1 << 20);
     const auto info = session()->info();
     // Compares a replay job that has all exclusions and a job that was started before there were any.
     for (const bool is_known : {true, false}) {
@@ -234,7 +234,7 @@ TEST_F(ExclusionsTest, DoNotAffectMapsOfEarlierRevisions) {
             ASSERT_EQ(job.maps()->revision, until);
         }
     }
-    EXPECT_EQ(budget.free(), budget.pages_max());
+    EXPECT_EQ(budget.free(), budget.total());
 }
 
 TEST_F(ExclusionsTest, ExcludedWrongStampDoesNotEndReplay) {
@@ -248,7 +248,7 @@ TEST_F(ExclusionsTest, ExcludedWrongStampDoesNotEndReplay) {
     session()->submit(link, {late}, 0);
     link->wait_for_seq(1);
     stream("a", 8);
-    PageBudget budget(1 << 20);
+    limits::MemoryBudget budget(1 << 20);
     const auto end_of = [&] {
         Weave job(session()->info(), {config_, {.stamp = 1000.0}}, log().size());
         while (job.run(log_, budget)) {
@@ -278,7 +278,7 @@ TEST_F(ExclusionsTest, DoNotLoadTheSession) {
 TEST_F(ExclusionsTest, ApplyToReplayJobsThatFollowTheSession) {
     create();
     stream("a", 12);
-    PageBudget budget(1 << 20);
+    limits::MemoryBudget budget(1 << 20);
     Weave job(session()->info(), {config_, {}}, log().size());
     while (job.run(log_, budget)) {
     }

@@ -153,7 +153,7 @@ TEST_F(EvictedSessions, AreEvictedWhenOthersNeedMemory) {
     }
     EXPECT_EQ(testing_support::digests_of(*b->snapshot()), digest) << "both sessions have equal scans";
     EXPECT_TRUE(registry_->is_asleep("a"));
-    EXPECT_LE(registry_->pages().used(), registry_->pages().pages_max());
+    EXPECT_LE(registry_->pages().used(), registry_->pages().total());
 }
 
 TEST_F(EvictedSessions, AreNotLoadedWhileUsedSessionsNeedAllMemory) {
@@ -172,7 +172,7 @@ TEST_F(EvictedSessions, AreNotLoadedWhileUsedSessionsNeedAllMemory) {
     held = Error{Errc::kGone, "released"};
     EXPECT_EQ(digest_after_loading("b"), digest_of_b);
     EXPECT_EQ(digest_after_loading("a"), digest_of_a);
-    EXPECT_LE(registry_->pages().used(), registry_->pages().pages_max());
+    EXPECT_LE(registry_->pages().used(), registry_->pages().total());
 }
 
 TEST_F(EvictedSessions, RecoveryAfterACrashStaysWithinTheMemoryBudget) {
@@ -181,7 +181,7 @@ TEST_F(EvictedSessions, RecoveryAfterACrashStaysWithinTheMemoryBudget) {
         digests.push_back(create_unused("s" + std::to_string(n), 20 + 5 * static_cast<std::size_t>(n)));
     const auto pages = static_cast<std::size_t>(registry_->pages().used()) / 6;
     restart(2 * pages);
-    EXPECT_LE(registry_->pages().used(), registry_->pages().pages_max());
+    EXPECT_LE(registry_->pages().used(), registry_->pages().total());
     EXPECT_THAT(registry_->all(), SizeIs(6));
     for (int n = 0; n < 6; ++n)
         EXPECT_EQ(digest_after_loading("s" + std::to_string(n)), digests[static_cast<std::size_t>(n)]);

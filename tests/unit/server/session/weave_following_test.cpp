@@ -170,7 +170,7 @@ TEST_F(FollowingWeaveTest, CancelledContinuationEnds) {
 class FollowingBudgetTest : public FollowingWeaveTest {
 protected:
     /// Runs a job of 20 entries and appends 22 more.
-    Weave& first_round(PageBudget& budget) {
+    Weave& first_round(limits::MemoryBudget& budget) {
         append_up_to(20);
         EXPECT_FALSE(job_.run(log_, budget));
         append_all();
@@ -188,7 +188,7 @@ protected:
 
 TEST_F(FollowingBudgetTest, TakesItsChunksAndCopiesAndReturnsThem) {
     constexpr std::int64_t kAll = 1000;
-    PageBudget budget(kAll);
+    limits::MemoryBudget budget(kAll);
     Weave& job = first_round(budget);
     EXPECT_TRUE(budget.take(kAll)) << "no chunks are taken between rounds";
     budget.give_back(kAll);
@@ -211,7 +211,7 @@ TEST_F(FollowingBudgetTest, TakesItsChunksAndCopiesAndReturnsThem) {
 
 TEST_F(FollowingBudgetTest, DropsTheEarlierMapsWithoutRoomForCopies) {
     const auto all = chunks_of(42);
-    PageBudget budget(static_cast<std::size_t>(all));
+    limits::MemoryBudget budget(static_cast<std::size_t>(all));
     Weave& job = first_round(budget);
     ASSERT_TRUE(job.resume(42, budget));
     const auto pause = log_.pause_at(42);
@@ -227,7 +227,7 @@ TEST_F(FollowingBudgetTest, DropsTheEarlierMapsWithoutRoomForCopies) {
 
 TEST_F(FollowingBudgetTest, FailsAndReturnsAllChunksWithoutRoom) {
     const auto all = chunks_of(42) - 1;
-    PageBudget budget(static_cast<std::size_t>(all));
+    limits::MemoryBudget budget(static_cast<std::size_t>(all));
     Weave& job = first_round(budget);
     ASSERT_TRUE(job.resume(42, budget));
     EXPECT_FALSE(job.run(log_, budget));
@@ -236,7 +236,7 @@ TEST_F(FollowingBudgetTest, FailsAndReturnsAllChunksWithoutRoom) {
 }
 
 TEST_F(FollowingBudgetTest, WaitsAndKeepsItsMapsWhileOthersHaveAllRoom) {
-    PageBudget budget(1000);
+    limits::MemoryBudget budget(1000);
     Weave& job = first_round(budget);
     ASSERT_TRUE(budget.take(1000));
     EXPECT_FALSE(job.resume(42, budget));

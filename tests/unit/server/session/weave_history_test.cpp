@@ -218,7 +218,7 @@ TEST_F(WeaveHistoryTest, WaitingJobIsCancelledImmediately) {
 }
 
 TEST_F(WeaveHistoryTest, JobBetweenTwoTurnsIsABase) {
-    PageBudget budget(1000);
+    limits::MemoryBudget budget(1000);
     Weave far(session_, until(last()), last());
     ASSERT_TRUE(far.run(log_, budget, 1.0)); // one entry
     ASSERT_TRUE(far.run(log_, budget, 1.0));
@@ -237,12 +237,12 @@ TEST_F(WeaveHistoryTest, JobBetweenTwoTurnsIsABase) {
 }
 
 TEST_F(WeaveHistoryTest, ChunksOfTheBaseCountImmediately) {
-    PageBudget plenty(1000);
+    limits::MemoryBudget plenty(1000);
     Weave base(session_, until(20), 20);
     ASSERT_FALSE(base.run(log_, plenty));
     Weave again(session_, until(21), 21);
     ASSERT_TRUE(again.begin_from(base));
-    PageBudget tight(base.maps()->chunk_count - 1);
+    limits::MemoryBudget tight(base.maps()->chunk_count - 1);
     EXPECT_FALSE(again.run(log_, tight));
     EXPECT_EQ(again.progress().error->code, Errc::kFull);
     EXPECT_EQ(again.progress().woven, 20U) << "no entry was applied";

@@ -107,7 +107,7 @@ TEST_F(WeaveTest, ImportedMapOfTooManyCellsFails) {
     SessionInfo session;
     session.id = log.create_session("s").value();
     log.append(session.id, 1, {wire::encode_entry(patch)}, [](const Result<>&) {});
-    PageBudget budget(1'000'000);
+    limits::MemoryBudget budget(1'000'000);
     Weave job(session, request({.cell_size = 0.01}), 1);
     EXPECT_FALSE(job.run(log, budget));
     EXPECT_EQ(job.progress().error->message,
@@ -125,7 +125,7 @@ TEST_F(WeaveTest, DeletedSessionFailsTheJobWithAMessage) {
 }
 
 TEST_F(WeaveTest, LongJobRunsInTurns) {
-    PageBudget budget(1000);
+    limits::MemoryBudget budget(1000);
     Weave job(session_, request({}), newest());
     int turns = 1;
     while (job.run(log_, budget, 5e4)) { // a few entries per turn
@@ -141,7 +141,7 @@ TEST_F(WeaveTest, LongJobRunsInTurns) {
 }
 
 TEST_F(WeaveTest, CancelBetweenTwoTurnsReturnsTheChunks) {
-    PageBudget budget(1000);
+    limits::MemoryBudget budget(1000);
     Weave job(session_, request({}), newest());
     ASSERT_TRUE(job.run(log_, budget, 5e4));
     job.cancel(kEnough);
@@ -151,7 +151,7 @@ TEST_F(WeaveTest, CancelBetweenTwoTurnsReturnsTheChunks) {
 }
 
 TEST_F(WeaveTest, JobCancelledBeforeItsTurnNeverRuns) {
-    PageBudget budget(1000);
+    limits::MemoryBudget budget(1000);
     Weave job(session_, request({}), newest());
     job.cancel(kEnough);
     EXPECT_EQ(testing_support::wait_for_maps(job, newest(), std::chrono::milliseconds(0)), nullptr);
@@ -164,7 +164,7 @@ TEST_F(WeaveTest, JobCancelledBeforeItsTurnNeverRuns) {
 
 TEST_F(WeaveTest, CancelDuringATurnReturnsTheChunks) {
     const auto pause = log_.pause_at(10);
-    PageBudget budget(1000);
+    limits::MemoryBudget budget(1000);
     Weave job(session_, request({}), newest());
     std::thread runner([&] { EXPECT_FALSE(job.run(log_, budget)); });
     pause->wait();
@@ -201,7 +201,7 @@ TEST_F(WeaveTest, EachEndReportsItsReason) {
 }
 
 TEST_F(WeaveTest, FailsBeyondTheBudgetAndTakesNoChunks) {
-    PageBudget budget(3);
+    limits::MemoryBudget budget(3);
     Weave job(session_, request({.cell_size = 0.01}), newest());
     EXPECT_FALSE(job.run(log_, budget));
     EXPECT_EQ(job.progress().state, State::kFailed);
