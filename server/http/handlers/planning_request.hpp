@@ -24,8 +24,8 @@ struct Place {
     std::optional<double> body_radius = {}; ///< metres; of the named robot, if it stated one
 };
 
-/// Returns MapsLookup::find() for a search. No search starts while the server shuts down.
-/// Errors: those of MapsLookup::find(); kShuttingDown.
+/// Returns find_maps() for a search. No search starts while the server shuts down.
+/// Errors: those of find_maps(); kShuttingDown.
 [[nodiscard]] Result<Maps> find_for_search(const Context& context, std::initializer_list<std::string_view> known);
 
 /// Reads size_min and body_radius from the parameters or members.
