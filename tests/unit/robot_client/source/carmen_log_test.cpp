@@ -292,7 +292,7 @@ TEST_F(CarmenLogFile, DamagedCompressedFileIsRefusedByName) {
         flipped[whole.size() / 2] = static_cast<char>(flipped[whole.size() / 2] ^ 0x10);
         const auto log = read(flipped);
         ASSERT_FALSE(log);
-        EXPECT_THAT(log.error().message, HasSubstr("CutOrDamaged"));
+        EXPECT_THAT(log.error().message, HasSubstr("DamagedCompressedFile"));
     }
 }
 
