@@ -38,7 +38,8 @@ double seconds_since_epoch() {
     return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
 
-/// Returns the number of I/O threads. They answer cached tiles, so one thread would be too few on two cores.
+/// Returns the number of I/O threads, with the main thread. They answer cached tiles, so one thread would be too few on
+/// two cores.
 std::size_t io_threads_for(std::size_t threads) { return std::min(threads, std::max<std::size_t>(2, 1 + threads / 4)); }
 
 std::string text_of(const asio::ip::tcp::endpoint& endpoint) {
@@ -64,41 +65,26 @@ session::WeavesLimits weaves_within(std::size_t bytes) {
 
 Server::Server(const ServerOptions& options, const ConnectionLimits& limits, std::unique_ptr<store::ScanLog> log)
     : options_(options), limits_(limits), log_(std::move(log)), metrics_(kVersion), audit_(metrics_.refusals()),
-      weaving_(options.threads), serving_(std::max<std::size_t>(2, options.threads)),
-      sessions_(*log_, {.compute = weaving_.get_executor(),
-                        .now = seconds_since_epoch,
-                        .may_wait = checkpointing_.get_executor(),
-                        .reading = reading_.get_executor(),
-                        .pages_max = options.map_memory_bytes / mapping::kPageBytes,
-                        .idle_after = options.idle_after}),
-      check_(*log_, sessions_, checking_.get_executor()),
-      weaves_(*log_, reweaving_.get_executor(), weaves_within(options.weave_memory_bytes)), locator_(*log_),
-      desk_(planning_.get_executor(), locating_.get_executor(), {goals_, locator_, sessions_}), hangup_(io_, SIGHUP),
+      pools_(options.threads), sessions_(*log_, {.compute = pools_.sessions,
+                                                 .now = seconds_since_epoch,
+                                                 .may_wait = pools_.checkpoints,
+                                                 .reading = pools_.loading,
+                                                 .pages_max = options.map_memory_bytes / mapping::kPageBytes,
+                                                 .idle_after = options.idle_after}),
+      check_(*log_, sessions_), weaves_(*log_, pools_.replay, weaves_within(options.weave_memory_bytes)),
+      locator_(*log_), desk_(pools_.planning, pools_.locating, {goals_, locator_, sessions_}), hangup_(io_, SIGHUP),
       patience_(io_), weaving_patience_(io_), tidying_(asio::make_strand(io_)) {}
 
 Server::~Server() {
     // No task may run while the members are destroyed, in reverse order.
     io_.stop();
-    join_pools();
+    end_pools();
 }
 
-void Server::join_pools() {
+void Server::end_pools() {
     check_.stop();
-    checking_.join();
     weaves_.stop(); // their results are no longer needed
-    telling_.join();
-    showing_.join();
-    planning_.join();
-    locating_.join();
-    reweaving_.join();
-    changing_.join();
-    reading_.join();
-    checkpointing_.join();
-    logs_.join();
-    paths_.join();
-    survey_.join();
-    serving_.join();
-    weaving_.join();
+    pools_.join();
 }
 
 Result<std::unique_ptr<Server>> Server::open(const ServerOptions& options, const ConnectionLimits& limits,
@@ -158,7 +144,7 @@ Result<> Server::listen(http::WebFiles web) {
     try {
         ingest_ = std::make_unique<ingest::IngestServer>(
             io_, options_.listen,
-            ingest::LinkServices{sessions_, changing_.get_executor(), metrics_.ingest(), desk_, gate_, audit_}, robots);
+            ingest::LinkServices{sessions_, pools_.changes, metrics_.ingest(), desk_, gate_, audit_}, robots);
     } catch (const boost::system::system_error& failure) {
         return Error{Errc::kUnreachable, fmt::format("cannot listen for robots on {}: {}; choose another --listen",
                                                      text_of(options_.listen), failure.code().message())};
@@ -170,14 +156,14 @@ Result<> Server::listen(http::WebFiles web) {
     config.proxies = options_.http_proxies;
     config.tls = http_tls_;
     config.connections_max = limits_.http;
-    http_pools_.emplace(http::Executors{.metrics = telling_.get_executor(),
-                                        .queries = serving_.get_executor(),
-                                        .whole_maps = survey_.get_executor(),
-                                        .log_reading = paths_.get_executor(),
-                                        .log_export = logs_.get_executor(),
-                                        .planning = planning_.get_executor(),
-                                        .store = changing_.get_executor(),
-                                        .live = showing_.get_executor()},
+    http_pools_.emplace(http::Executors{.metrics = pools_.metrics,
+                                        .queries = pools_.queries,
+                                        .whole_maps = pools_.whole_maps,
+                                        .log_reading = pools_.log_reading,
+                                        .log_export = pools_.log_export,
+                                        .planning = pools_.planning,
+                                        .store = pools_.changes,
+                                        .live = pools_.live},
                         config);
     services_.reset(new http::Services{.sessions = sessions_,
                                        .weaves = weaves_,
@@ -204,8 +190,9 @@ Result<> Server::run() {
     wait_for_hangup();
     http_->start();
     std::vector<std::jthread> threads;
-    for (std::size_t n = 0; n < io_threads_for(options_.threads); ++n)
+    do { // one at least, for health checks during recovery
         threads.emplace_back([this] { sockets::run_to_completion(io_); });
+    } while (threads.size() + 1 < io_threads_for(options_.threads));
     if (auto recovered = sessions_.recover(); !recovered) {
         io_.stop();
         return recovered.error();
@@ -217,8 +204,9 @@ Result<> Server::run() {
         check_.start();
         announce();
     }
-    threads.clear(); // joins the I/O threads, which end when drain() has finished
-    join_pools();
+    sockets::run_to_completion(io_); // until drain() has finished
+    threads.clear();
+    end_pools();
     spdlog::info("stopped");
     if (const auto failure = log_->stats().last_error) return Error{Errc::kStoreFailed, *failure};
     return {};
@@ -247,7 +235,7 @@ void Server::wait_for_signal() {
 /// Does periodic maintenance until the server drains.
 void Server::tidy_up() {
     if (sessions_.is_draining()) return;
-    asio::post(reading_.get_executor(), [this] { // not on changing_: its tasks may wait for work started here
+    asio::post(pools_.loading, [this] { // not on pools_.changes: its tasks may wait for work started here
         tell_of_failed_store();
         if (log_->reopen()) spdlog::info("the store {} has been opened again", options_.store.string());
         sessions_.tidy();
@@ -321,7 +309,7 @@ void Server::drain() {
     weaving_patience_.async_wait([this](const boost::system::error_code& error) {
         if (!error) sessions_.hurry();
     });
-    asio::post(changing_.get_executor(), [this, busy = asio::make_work_guard(io_)] {
+    asio::post(pools_.changes, [this, busy = asio::make_work_guard(io_)] {
         sessions_.drain();
         asio::post(io_, [this] { weaving_patience_.cancel(); });
         http_->stop([this] {

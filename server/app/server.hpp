@@ -3,6 +3,7 @@
 #include "common/error/error.hpp"
 #include "server/app/options.hpp"
 #include "server/app/resource_limits.hpp"
+#include "server/app/thread_pools.hpp"
 #include "server/guard/audit.hpp"
 #include "server/guard/gate.hpp"
 #include "server/guard/logins.hpp"
@@ -13,7 +14,6 @@
 #include "server/session/background_check.hpp"
 #include "server/session/session_registry.hpp"
 #include "server/session/weaves.hpp"
-#include "server/sockets/worker_pool.hpp"
 #include "server/store/backups.hpp"
 #include "server/store/rocksdb_store.hpp"
 
@@ -29,22 +29,8 @@ namespace scanloom::app {
 
 /// Creates and connects the parts of scanloom-server, and owns its threads.
 ///
-///   io             sockets: receives frames and requests, sends answers; health and the viewer's files
-///   weaving        the sessions' strands: everything that changes a map
-///   serving        answers from a part of a snapshot
-///   survey         answers from a whole snapshot: one at a time, because each may take a second
-///   paths          trajectories and landmarks, one at a time: long ones are read from the log
-///   logs           logs, piece by piece
-///   reweaving      replay jobs, with a lower priority than all other work
-///   planning       path planning for robots and API clients: one search at a time
-///   locating       relocalization of robots: one at a time
-///   changing       creates and deletes sessions, excludes scans, makes backups: waits for the disk and for strands
-///   checkpointing  writes checkpoints: waits for the disk
-///   reading        loads sessions from the store; periodically evicts idle ones
-///   checking       checks the sessions that startup did not read, after all other work and at a bounded rate
-///   telling        metrics
-///   showing        encodes live events for viewers: one at a time, because each reads a snapshot
-///
+/// The io_context serves the sockets: it receives frames and requests, sends answers, and answers what is at hand
+/// (health, the viewer's files, cached tiles). ThreadPools does the rest.
 /// Threads: open() and run() from the main thread.
 class Server {
 public:
@@ -73,7 +59,7 @@ private:
     void read_tokens_again();
     void read_certificates_again();
     void drain();
-    void join_pools();
+    void end_pools();
 
     ServerOptions options_;
     ConnectionLimits limits_;
@@ -83,21 +69,8 @@ private:
     guard::Gate gate_;
     guard::Audit audit_;
     guard::Logins logins_;
-    // Links left open in `io_` hold sessions whose strands run on `weaving_`, so io_ must be destroyed first.
-    sockets::WorkerPool weaving_;
-    sockets::WorkerPool serving_;
-    sockets::WorkerPool survey_{1};
-    sockets::WorkerPool paths_{1};
-    sockets::WorkerPool logs_{1};
-    sockets::WorkerPool reweaving_{2};
-    sockets::WorkerPool planning_{1};
-    sockets::WorkerPool locating_{1};
-    sockets::WorkerPool changing_{2};
-    sockets::WorkerPool checkpointing_{1};
-    sockets::WorkerPool reading_{2};
-    sockets::WorkerPool checking_{1};
-    sockets::WorkerPool telling_{1};
-    sockets::WorkerPool showing_{1};
+    // Links left open in `io_` hold sessions whose strands run on `pools_`, so io_ must be destroyed first.
+    ThreadPools pools_;
     boost::asio::io_context io_;
     session::SessionRegistry sessions_;
     session::BackgroundCheck check_;

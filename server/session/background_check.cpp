@@ -3,11 +3,12 @@
 #include "server/log/context.hpp"
 #include "server/session/session_check.hpp"
 
-#include <boost/asio/post.hpp>
+#include <spdlog/spdlog.h>
 
 #include <sys/resource.h>
 
 #include <chrono>
+#include <exception>
 #include <utility>
 
 namespace scanloom::session {
@@ -21,14 +22,19 @@ void step_back() { static_cast<void>(setpriority(PRIO_PROCESS, 0, kNiceness)); }
 
 } // namespace
 
-BackgroundCheck::BackgroundCheck(store::ScanLog& log, const SessionRegistry& sessions,
-                                 boost::asio::any_io_executor checking, double bytes_per_second)
-    : log_(log), sessions_(sessions), checking_(std::move(checking)), rate_(bytes_per_second) {}
+BackgroundCheck::~BackgroundCheck() {
+    stop();
+    if (thread_.joinable()) thread_.join();
+}
 
 void BackgroundCheck::start() {
-    boost::asio::post(checking_, [this] {
+    thread_ = std::thread([this] {
         step_back();
-        run();
+        try {
+            run();
+        } catch (const std::exception& failure) { // memory ran out, for instance
+            spdlog::error("the check of the stored sessions ended early: {}", failure.what());
+        }
         const std::lock_guard lock(mutex_);
         done_ = true;
         changed_.notify_all();

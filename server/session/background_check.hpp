@@ -5,14 +5,13 @@
 #include "server/session/session_registry.hpp"
 #include "server/store/scan_log.hpp"
 
-#include <boost/asio/any_io_executor.hpp>
-
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
 #include <map>
 #include <mutex>
 #include <string>
+#include <thread>
 
 namespace scanloom::session {
 
@@ -25,14 +24,18 @@ class BackgroundCheck {
 public:
     static constexpr double kBytesPerSecond = 50e6; ///< leaves disk time for the writes of robots' scans
 
-    /// The log, the registry and the executor must outlive this object.
+    /// The log and the registry must outlive this object.
     ///
-    /// @param checking  runs the check, which blocks; must not be used for anything else
     /// @param bytes_per_second  bound of the read rate
-    BackgroundCheck(store::ScanLog& log, const SessionRegistry& sessions, boost::asio::any_io_executor checking,
-                    double bytes_per_second = kBytesPerSecond);
+    BackgroundCheck(store::ScanLog& log, const SessionRegistry& sessions, double bytes_per_second = kBytesPerSecond)
+        : log_(log), sessions_(sessions), rate_(bytes_per_second) {}
 
-    /// Starts checking the sessions that are not in memory at this time. Call once, after SessionRegistry::recover().
+    /// Stops the check and waits for its thread.
+    ~BackgroundCheck();
+
+    /// Starts checking the sessions that are not in memory at this time, on a thread of its own with the lowest
+    /// priority that ends with the check. Call once, after SessionRegistry::recover(). Throws std::system_error if the
+    /// system cannot create the thread.
     void start();
 
     /// Ends the check at its next entry. It cannot be started again.
@@ -67,7 +70,6 @@ private:
 
     store::ScanLog& log_;
     const SessionRegistry& sessions_;
-    const boost::asio::any_io_executor checking_;
     ReadRate rate_;            // used by the checking thread only
     mutable std::mutex mutex_; // guards the members below
     mutable std::condition_variable changed_;
@@ -76,6 +78,7 @@ private:
     std::uint64_t checked_ = 0;
     std::map<std::string, Damaged> damaged_;
     std::chrono::steady_clock::time_point next_warning_{};
+    std::thread thread_;
 };
 
 } // namespace scanloom::session

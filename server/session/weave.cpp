@@ -6,7 +6,6 @@
 #include "server/session/weavable.hpp"
 
 #include <fmt/format.h>
-#include <sys/resource.h>
 
 #include <algorithm>
 #include <utility>
@@ -16,7 +15,6 @@ namespace {
 
 constexpr double kSliceWork = 5e6; // between two checks whether to continue
 constexpr double kEntryWork = 1e4; // of reading an entry
-constexpr int kNiceness = 10;      // robots and viewers are more urgent than replay jobs
 
 /// Reasons to end reading that are not failures.
 const Error kEnd{Errc::kShuttingDown, "the end of what is to be woven"};
@@ -29,9 +27,6 @@ Error no_room() {
             "this map and others that are woven at the moment need more memory than there is for them; use "
             "larger cells, or try again when the others are done"};
 }
-
-/// Lowers the priority; on Linux only of this thread.
-void step_back() { static_cast<void>(setpriority(PRIO_PROCESS, 0, kNiceness)); }
 
 SharedExclusions shared(Exclusions exclusions) { return std::make_shared<const Exclusions>(std::move(exclusions)); }
 
@@ -165,7 +160,6 @@ bool Weave::run(store::ScanLog& log, limits::MemoryBudget& budget, double turn_w
         give_up(kCancelled, budget);
         return false;
     }
-    step_back();
     turn_left_ = turn_work;
     try {
         if (!projection_) projection_.emplace(request_.config, shared(session_.exclusions->as_of(*target)));

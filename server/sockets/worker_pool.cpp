@@ -2,6 +2,8 @@
 
 #include <spdlog/spdlog.h>
 
+#include <sys/resource.h>
+
 #include <exception>
 
 namespace scanloom::sockets {
@@ -19,10 +21,15 @@ void run_to_completion(boost::asio::io_context& io) noexcept {
     }
 }
 
-WorkerPool::WorkerPool(std::size_t threads) : io_(static_cast<int>(threads)), work_(io_.get_executor()) {
+WorkerPool::WorkerPool(std::size_t threads, int niceness) : io_(static_cast<int>(threads)), work_(io_.get_executor()) {
     threads_.reserve(threads);
     try {
-        while (threads_.size() < threads) threads_.emplace_back([this] { run_to_completion(io_); });
+        while (threads_.size() < threads) {
+            threads_.emplace_back([this, niceness] {
+                if (niceness != 0) static_cast<void>(setpriority(PRIO_PROCESS, 0, niceness)); // of this thread alone
+                run_to_completion(io_);
+            });
+        }
     } catch (...) {
         io_.stop();
         join();

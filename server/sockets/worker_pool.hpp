@@ -31,7 +31,8 @@ public:
     using executor_type = boost::asio::io_context::executor_type;
 
     /// Starts `threads` threads. Throws std::system_error if the system cannot create them.
-    explicit WorkerPool(std::size_t threads);
+    /// @param niceness  added to the process's; a higher one means less processor time, see setpriority(2)
+    explicit WorkerPool(std::size_t threads, int niceness = 0);
 
     /// Drops tasks that have not started, and waits for running tasks.
     ~WorkerPool();

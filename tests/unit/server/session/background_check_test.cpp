@@ -36,14 +36,12 @@ protected:
         stored_.reads = 0;
         stored_.damaged = registry_->info("b")->id;
     }
-    ~BackgroundCheckTest() override { checking_.join(); }
 
     LogWithDamage stored_;
-    boost::asio::thread_pool checking_{1};
 };
 
 TEST_F(BackgroundCheckTest, ReportsDamagedSessionAndChecksTheOthers) {
-    BackgroundCheck check(stored_, *registry_, checking_.get_executor());
+    BackgroundCheck check(stored_, *registry_);
     check.start();
     check.wait();
     EXPECT_EQ(check.checked(), 3U);
@@ -58,7 +56,7 @@ TEST_F(BackgroundCheckTest, ReportsDamagedSessionAndChecksTheOthers) {
 TEST_F(BackgroundCheckTest, SkipsLoadedSessions) {
     ASSERT_TRUE(registry_->wake("b"));
     stored_.reads = 0;
-    BackgroundCheck check(stored_, *registry_, checking_.get_executor());
+    BackgroundCheck check(stored_, *registry_);
     check.start();
     check.wait();
     EXPECT_EQ(check.checked(), 2U);
@@ -66,7 +64,7 @@ TEST_F(BackgroundCheckTest, SkipsLoadedSessions) {
 }
 
 TEST_F(BackgroundCheckTest, StopsWithinASession) {
-    BackgroundCheck check(stored_, *registry_, checking_.get_executor(), 1e-3); // each entry takes hours at this rate
+    BackgroundCheck check(stored_, *registry_, 1e-3); // each entry takes hours at this rate
     check.start();
     check.stop();
     check.wait();
@@ -78,14 +76,14 @@ TEST_F(BackgroundCheckTest, ReportsNoDamageWhileTheStoreHasFailed) {
     stored_.fail_from_next_change({Errc::kStoreFailed, "the disk is gone"});
     EXPECT_FALSE(registry_->create("d", {}));
     ASSERT_TRUE(stored_.stats().last_error);
-    BackgroundCheck check(stored_, *registry_, checking_.get_executor());
+    BackgroundCheck check(stored_, *registry_);
     check.start();
     check.wait();
     EXPECT_THAT(check.damaged(), IsEmpty());
 }
 
 TEST_F(BackgroundCheckTest, NotesDataLossButNoTransientErrors) {
-    BackgroundCheck check(stored_, *registry_, checking_.get_executor());
+    BackgroundCheck check(stored_, *registry_);
     const auto id = [&](const char* name) { return registry_->info(name)->id; };
     check.note(id("a"), {Errc::kStoreFailed, "input/output error"});
     check.note(4711, {Errc::kDataLoss, "unknown session"});

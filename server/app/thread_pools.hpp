@@ -1,0 +1,67 @@
+#pragma once
+
+#include "server/sockets/worker_pool.hpp"
+
+#include <boost/asio/any_io_executor.hpp>
+#include <boost/asio/strand.hpp>
+
+#include <algorithm>
+#include <cstddef>
+
+namespace scanloom::app {
+
+/// The threads of the server, but for those that serve sockets (io_context) and those of the store.
+///
+/// A pool has one kind of work: short computation, long computation, work at low priority, or work that waits. Work of
+/// one class that must not run twice at a time has a strand of its pool: it occupies at most one of the pool's threads,
+/// so that the other classes continue. Short work never waits for long work, and acknowledgements for neither.
+/// Threads: any thread. join() from the thread that owns the pools.
+class ThreadPools {
+public:
+    /// @param threads  that integrate scans; the same number, but at least two, answers requests and searches maps
+    explicit ThreadPools(std::size_t threads)
+        : sessions_(threads), short_(std::max<std::size_t>(2, threads)), long_(std::max<std::size_t>(2, threads)) {}
+
+    /// Runs all tasks that were posted, also by tasks, then ends the threads.
+    void join() {
+        background_.join();
+        long_.join();
+        short_.join();
+        changes_.join(); // its tasks wait for the disk and for sessions
+        disk_.join();
+        sessions_.join();
+    }
+
+private:
+    template <class Executor>
+    static boost::asio::any_io_executor strand(const Executor& executor) {
+        return boost::asio::make_strand(executor);
+    }
+
+    sockets::WorkerPool sessions_;
+    sockets::WorkerPool short_;
+    sockets::WorkerPool long_;
+    sockets::WorkerPool background_{1, 10}; // robots and viewers are more urgent
+    sockets::WorkerPool changes_{2};
+    sockets::WorkerPool disk_{2};
+
+public:
+    using Executor = boost::asio::any_io_executor;
+
+    const Executor sessions = sessions_.get_executor(); ///< the sessions' strands: everything that changes a map
+    const Executor queries = short_.get_executor();     ///< answers from a part of a snapshot
+    const Executor metrics = strand(queries);           ///< answers about the process and the store
+    const Executor live = strand(queries); ///< encodes the events of viewers, each of which reads a snapshot
+    const Executor whole_maps = strand(long_.get_executor());  ///< answers from a whole snapshot, up to a second each
+    const Executor log_reading = strand(long_.get_executor()); ///< trajectories and landmarks from the log
+    const Executor log_export = strand(long_.get_executor());  ///< logs, piece by piece
+    const Executor planning = strand(long_.get_executor());    ///< one search at a time: it may take half a gigabyte
+    const Executor locating = strand(long_.get_executor());    ///< relocalization of robots
+    const Executor replay = background_.get_executor();        ///< replay jobs, in turns
+    const Executor changes = changes_.get_executor(); ///< creates and deletes sessions, makes backups: waits for the
+                                                      ///< disk, for sessions and for `loading`
+    const Executor loading = disk_.get_executor();    ///< loads sessions from the store
+    const Executor checkpoints = strand(loading);     ///< writes checkpoints
+};
+
+} // namespace scanloom::app
