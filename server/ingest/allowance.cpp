@@ -6,7 +6,7 @@
 
 namespace scanloom::ingest {
 
-Allowance::Allowance(double now) : token_(access::anybody()), inflow_(token_->limits.bytes_per_second, now) {}
+Allowance::Allowance(double now) : token_(access::anybody()), inflow_(token_->limits.bytes_per_second, 1.0, now) {}
 
 void Allowance::set_token(access::TokenRef token, double now) {
     token_ = std::move(token);

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "common/error/error.hpp"
+#include "common/limits/token_bucket.hpp"
 #include "common/wire/messages.hpp"
-#include "server/access/bucket.hpp"
 #include "server/access/token.hpp"
 
 #include <cstddef>
@@ -42,7 +42,7 @@ private:
     [[nodiscard]] Result<> check_beams(const wire::ScanBatch& batch) const;
 
     access::TokenRef token_;
-    access::Bucket inflow_;
+    TokenBucket inflow_;
     std::set<std::uint32_t> sensors_;
 };
 

@@ -20,7 +20,14 @@ constexpr std::chrono::seconds kWarnEvery{10};
 /// Lowers the priority of this thread, so that ingestion and requests run first.
 void step_back() { static_cast<void>(setpriority(PRIO_PROCESS, 0, kNiceness)); }
 
+double now_in_seconds() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
 } // namespace
+
+BackgroundCheck::BackgroundCheck(store::ScanLog& log, const SessionRegistry& sessions, double bytes_per_second)
+    : log_(log), sessions_(sessions), read_rate_(bytes_per_second, 0.0, now_in_seconds()) {}
 
 BackgroundCheck::~BackgroundCheck() {
     stop();
@@ -93,12 +100,10 @@ void BackgroundCheck::keep(const std::string& name, store::SessionId id, const E
 }
 
 Result<> BackgroundCheck::go_on_after(std::size_t bytes) {
-    const auto due = rate_.after(bytes, std::chrono::steady_clock::now());
+    const std::chrono::duration<double> pause(read_rate_.take(static_cast<double>(bytes), now_in_seconds()));
     std::unique_lock lock(mutex_);
     constexpr auto kWorthAWait = std::chrono::milliseconds(10); // waking up costs more than a few entries
-    if (!stopped_ && due > std::chrono::steady_clock::now() + kWorthAWait) {
-        changed_.wait_until(lock, due, [this] { return stopped_; });
-    }
+    if (!stopped_ && pause > kWorthAWait) changed_.wait_for(lock, pause, [this] { return stopped_; });
     if (!stopped_) return {};
     return Error{Errc::kShuttingDown, "stopped before the log's end"};
 }

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "common/error/error.hpp"
-#include "server/session/read_rate.hpp"
+#include "common/limits/token_bucket.hpp"
 #include "server/session/session_registry.hpp"
 #include "server/store/scan_log.hpp"
 
@@ -27,8 +27,7 @@ public:
     /// The log and the registry must outlive this object.
     ///
     /// @param bytes_per_second  bound of the read rate
-    BackgroundCheck(store::ScanLog& log, const SessionRegistry& sessions, double bytes_per_second = kBytesPerSecond)
-        : log_(log), sessions_(sessions), rate_(bytes_per_second) {}
+    BackgroundCheck(store::ScanLog& log, const SessionRegistry& sessions, double bytes_per_second = kBytesPerSecond);
 
     /// Stops the check and waits for its thread.
     ~BackgroundCheck();
@@ -70,7 +69,7 @@ private:
 
     store::ScanLog& log_;
     const SessionRegistry& sessions_;
-    ReadRate rate_;            // used by the checking thread only
+    TokenBucket read_rate_;    // used by the checking thread only
     mutable std::mutex mutex_; // guards the members below
     mutable std::condition_variable changed_;
     bool stopped_ = false;

@@ -98,14 +98,5 @@ TEST_F(BackgroundCheckTest, NotesDataLossButNoTransientErrors) {
     EXPECT_THAT(check.damaged(), SizeIs(1));
 }
 
-TEST(ReadRate, SchedulesByBytesWithoutSavingIdleTime) {
-    using std::chrono::milliseconds;
-    const ReadRate::Time begin{std::chrono::hours(5)};
-    ReadRate rate(1e6);
-    EXPECT_EQ(rate.after(500'000, begin), begin + milliseconds(500));
-    EXPECT_EQ(rate.after(500'000, begin), begin + milliseconds(1000)) << "called again immediately";
-    EXPECT_EQ(rate.after(1000, begin + std::chrono::hours(1)), begin + std::chrono::hours(1) + milliseconds(1));
-}
-
 } // namespace
 } // namespace scanloom::session
