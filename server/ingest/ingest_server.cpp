@@ -2,7 +2,6 @@
 
 #include "server/sockets/listening_port.hpp"
 
-#include <boost/asio/bind_executor.hpp>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
 #include <boost/asio/post.hpp>
@@ -51,34 +50,34 @@ void IngestServer::take(asio::ip::tcp::socket socket) {
         spdlog::warn("a robot was turned away: {} links are open, the most allowed", config_.links_max);
     if (full && count(Standing::kLeaving) >= kTurnedAwayMax) return;
     if (!full) make_room_for_greeting();
-    auto link =
-        std::make_shared<RobotLink>(sockets::stream_over(std::move(socket), config_.tls), services_, config_.link);
-    const auto guest = std::make_shared<Guest>(Guest{link, full ? Standing::kLeaving : Standing::kGreeting});
+    auto connection = std::make_shared<RobotConnection>(sockets::stream_over(std::move(socket), config_.tls), services_,
+                                                        config_.link);
+    const auto guest = std::make_shared<Guest>(Guest{connection, full ? Standing::kLeaving : Standing::kGreeting});
     if (!full) greeting_.push_back(guest);
     ++count(guest->standing);
     services_.counters.links_open.Increment();
     try {
-        begin(guest);
+        begin(guest, *connection);
     } catch (...) {
         leave(guest);
         throw;
     }
 }
 
-void IngestServer::begin(const std::shared_ptr<Guest>& guest) {
+void IngestServer::begin(const std::shared_ptr<Guest>& guest, RobotConnection& connection) {
     const auto strand = acceptor_.get_executor();
-    guest->link->when_greeted([this, strand, weak = std::weak_ptr(guest)] {
+    auto on_hello = [this, strand, weak = std::weak_ptr(guest)] {
         asio::post(strand, [this, weak] {
             const auto greeted = weak.lock();
             if (greeted && greeted->standing == Standing::kGreeting) change(*greeted, Standing::kServed);
         });
-    });
-    asio::co_spawn(
-        guest->link->executor(),
-        [link = guest->link, full = guest->standing == Standing::kLeaving, links_max = config_.links_max] {
-            return full ? link->turn_away(too_many(links_max)) : link->run();
-        },
-        asio::bind_executor(strand, [this, guest](std::exception_ptr) { leave(guest); }));
+    };
+    auto on_closed = [this, strand, guest] { asio::post(strand, [this, guest] { leave(guest); }); };
+    if (guest->standing == Standing::kLeaving) {
+        connection.turn_away(too_many(config_.links_max), std::move(on_closed));
+    } else {
+        connection.serve(std::move(on_hello), std::move(on_closed));
+    }
 }
 
 /// Closes the oldest connection without a hello, as the one that is least likely to be a robot.
@@ -89,7 +88,7 @@ void IngestServer::make_room_for_greeting() {
         spdlog::warn("a connection was cut off: it said no hello, and {} do not, the most allowed",
                      config_.greeting_max);
     change(*oldest, Standing::kLeaving);
-    oldest->link->cut_off();
+    if (const auto connection = oldest->connection.lock()) connection->cut_off();
 }
 
 void IngestServer::change(Guest& guest, Standing standing) {

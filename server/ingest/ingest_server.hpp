@@ -1,6 +1,6 @@
 #pragma once
 
-#include "server/ingest/robot_link.hpp"
+#include "server/ingest/robot_connection.hpp"
 #include "server/sockets/listening_port.hpp"
 
 #include <boost/asio/io_context.hpp>
@@ -16,13 +16,13 @@ namespace scanloom::ingest {
 
 /// Settings of an IngestServer.
 struct IngestConfig {
-    LinkConfig link;
+    link::ServerProtocolConfig link;
     std::size_t links_max = 10'000;                        ///< that sent a hello; more are refused with an Error
     std::size_t greeting_max = 256;                        ///< without a hello; beyond it, the oldest is closed
     std::shared_ptr<const sockets::PortTls> tls = nullptr; ///< null: robots connect without TLS
 };
 
-/// Listens for robots and serves each connection with a RobotLink.
+/// Listens for robots and serves each connection with a RobotConnection.
 ///
 /// Connections that have not sent a hello have their own limit, so that silent connections cannot keep robots out: a
 /// robot sends its hello at once. Connections that send it at the same moment may exceed links_max, by at most
@@ -51,12 +51,12 @@ private:
 
     /// An open connection.
     struct Guest {
-        std::shared_ptr<RobotLink> link;
+        std::weak_ptr<RobotConnection> connection; // its pending operations own it
         Standing standing;
     };
 
     void take(boost::asio::ip::tcp::socket socket);
-    void begin(const std::shared_ptr<Guest>& guest);
+    void begin(const std::shared_ptr<Guest>& guest, RobotConnection& connection);
     void make_room_for_greeting();
     void change(Guest& guest, Standing standing);
     void leave(const std::shared_ptr<Guest>& guest);

@@ -9,7 +9,7 @@
 
 namespace scanloom::ingest {
 
-std::optional<Error> RequestDesk::ask(Asker asker, Request request, Done done) {
+std::optional<Error> RequestDesk::ask(Asker asker, link::Request request, Done done) {
     const bool asks_where = std::holds_alternative<wire::LocateRequest>(request);
     auto slot = (asks_where ? locating_slots_ : slots_).try_acquire();
     if (!slot) return Error{Errc::kOverloaded, "too many robots ask at this moment; ask again soon"};
@@ -23,16 +23,17 @@ std::optional<Error> RequestDesk::ask(Asker asker, Request request, Done done) {
 }
 
 /// Starts no search while the server shuts down, because shutdown would have to wait for it.
-wire::Message RequestDesk::meet(const Request& request, const Asker& asker) const {
+wire::Message RequestDesk::meet(const link::Request& request, const Asker& asker) const {
     if (services_.sessions.is_draining())
-        return refusal_of(request, {Errc::kShuttingDown, "the server is shutting down"});
-    if (*asker.is_gone) return refusal_of(request, {Errc::kUnreachable, "the link is closed"});
+        return link::refusal_of(request, {Errc::kShuttingDown, "the server is shutting down"});
+    if (*asker.is_gone) return link::refusal_of(request, {Errc::kUnreachable, "the link is closed"});
     try {
         return reply_to(request, asker, services_);
     } catch (const std::bad_alloc&) {
-        return refusal_of(request, {Errc::kOverloaded, "there is no memory for this search now; ask again later"});
+        return link::refusal_of(request,
+                                {Errc::kOverloaded, "there is no memory for this search now; ask again later"});
     } catch (const std::exception& failure) {
-        return refusal_of(request, {Errc::kInternal, fmt::format("the search failed: {}", failure.what())});
+        return link::refusal_of(request, {Errc::kInternal, fmt::format("the search failed: {}", failure.what())});
     }
 }
 

@@ -38,10 +38,10 @@ public:
 
     /// Queues a request.
     /// @return kOverloaded if too many requests wait; `done` is not called then
-    [[nodiscard]] std::optional<Error> ask(Asker asker, Request request, Done done);
+    [[nodiscard]] std::optional<Error> ask(Asker asker, link::Request request, Done done);
 
 private:
-    [[nodiscard]] wire::Message meet(const Request& request, const Asker& asker) const;
+    [[nodiscard]] wire::Message meet(const link::Request& request, const Asker& asker) const;
 
     boost::asio::any_io_executor planning_;
     boost::asio::any_io_executor locating_;

@@ -15,19 +15,7 @@
 namespace scanloom::ingest {
 namespace {
 
-/// Build the reply to each kind of request.
-wire::PlanReply reply(const wire::PlanRequest& to, Revision revision, Result<wire::Path> path) {
-    return {to.id, revision, std::move(path)};
-}
-wire::GoalReply reply(const wire::GoalRequest& to, Revision revision, Result<wire::Goal> goal) {
-    return {to.id, revision, std::move(goal)};
-}
-wire::CoverageReply reply(const wire::CoverageRequest& to, Revision revision, Result<wire::Coverage> coverage) {
-    return {to.id, revision, std::move(coverage)};
-}
-wire::LocateReply reply(const wire::LocateRequest& to, Revision revision, Result<wire::Correction> correction) {
-    return {to.id, revision, std::move(correction)};
-}
+using link::reply;
 
 /// Joins adjacent cells of a row into runs. The cells are sorted by rows.
 std::vector<wire::CellRun> runs_of(std::span<const grid::Cell> cells) {
@@ -159,20 +147,8 @@ wire::Message reply_from(const wire::LocateRequest& request, const Asker& asker,
 
 } // namespace
 
-std::optional<Request> as_request(wire::Message&& message) {
-    if (auto* plan = std::get_if<wire::PlanRequest>(&message)) return std::move(*plan);
-    if (auto* goal = std::get_if<wire::GoalRequest>(&message)) return std::move(*goal);
-    if (auto* coverage = std::get_if<wire::CoverageRequest>(&message)) return std::move(*coverage);
-    if (auto* locate = std::get_if<wire::LocateRequest>(&message)) return std::move(*locate);
-    return std::nullopt;
-}
-
-wire::Message reply_to(const Request& request, const Asker& asker, const Services& services) {
+wire::Message reply_to(const link::Request& request, const Asker& asker, const Services& services) {
     return std::visit([&](const auto& kind) { return reply_from(kind, asker, services); }, request);
-}
-
-wire::Message refusal_of(const Request& request, const Error& why) {
-    return std::visit([&](const auto& kind) -> wire::Message { return reply(kind, 0, why); }, request);
 }
 
 } // namespace scanloom::ingest

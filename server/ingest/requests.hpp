@@ -1,6 +1,6 @@
 #pragma once
 
-#include "common/error/error.hpp"
+#include "common/link/requests.hpp"
 #include "common/wire/messages.hpp"
 #include "server/guide/goal_book.hpp"
 #include "server/guide/locator.hpp"
@@ -9,16 +9,9 @@
 
 #include <atomic>
 #include <memory>
-#include <optional>
-#include <variant>
 
-/// Requests that robots send on their links, and the replies.
+/// Replies to the requests that robots send on their links.
 namespace scanloom::ingest {
-
-using Request = std::variant<wire::PlanRequest, wire::GoalRequest, wire::CoverageRequest, wire::LocateRequest>;
-
-/// Moves the request out of the message. Returns nullopt, and leaves the message unchanged, if it is not a request.
-[[nodiscard]] std::optional<Request> as_request(wire::Message&& message);
 
 /// The robot that sent a request.
 struct Asker {
@@ -39,9 +32,6 @@ struct Services {
 /// to be relocalized.
 /// Post: the reply fits into one frame.
 /// Threads: any thread that may wait for the disk.
-[[nodiscard]] wire::Message reply_to(const Request& request, const Asker& asker, const Services& services);
-
-/// Returns the reply that refuses the request with `why`.
-[[nodiscard]] wire::Message refusal_of(const Request& request, const Error& why);
+[[nodiscard]] wire::Message reply_to(const link::Request& request, const Asker& asker, const Services& services);
 
 } // namespace scanloom::ingest

@@ -23,7 +23,7 @@ constexpr Rounds kLongForm{.count = 3, .duration = 20s, .must_keep_up = true};
 constexpr std::size_t kBytesOfGreed = std::size_t{4} << 20;  // twice a robot's credit
 constexpr std::size_t kBytesOfEach = std::size_t{128} << 10; // twice what connections that read nothing took
 
-// The server's deadlines for clients that never finish (RobotLink, http::Connection).
+// The server's deadlines for clients that never finish (link::ServerProtocol, http::Connection).
 constexpr std::chrono::seconds kHelloDeadline{5};
 constexpr std::chrono::seconds kHeaderDeadline{10};
 constexpr std::chrono::seconds kBodyDeadline{30};

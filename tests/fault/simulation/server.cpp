@@ -1,9 +1,7 @@
 #include "tests/fault/simulation/server.hpp"
 
-#include "common/wire/compression.hpp"
-#include "common/wire/frame_decoder.hpp"
-#include "server/ingest/entrance.hpp"
-#include "server/ingest/robot_link.hpp"
+#include "common/link/server_protocol.hpp"
+#include "server/ingest/join_session.hpp"
 
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
@@ -19,13 +17,14 @@ namespace scanloom::simulation {
 namespace asio = boost::asio;
 using namespace std::chrono_literals;
 
-/// Does for a simulated connection what ingest::RobotLink does for a socket.
+/// Connects a link::ServerProtocol to the simulated network and the sessions, as ingest::RobotConnection does for a
+/// socket.
 class Server::Link final : public session::RobotListener, public std::enable_shared_from_this<Link> {
 public:
     Link(Server& server, std::shared_ptr<Connection> connection)
         : server_(server), connection_(std::move(connection)), strand_(server.machine_->executor()),
-          outbox_([this] { write_soon(); }),
-          dialogue_(server.metrics_.ingest(), outbox_, server.options_.credit_bytes) {}
+          protocol_({.idle_deadline = server.options_.idle_deadline, .credit_bytes = server.options_.credit_bytes},
+                    server.world_.now()) {}
 
     void start() {
         const std::weak_ptr<Link> weak = weak_from_this();
@@ -33,153 +32,145 @@ public:
                                                 if (const auto self = weak.lock()) self->on_bytes(bytes);
                                             },
                                             [weak] {
-                                                if (const auto self = weak.lock()) self->part();
+                                                if (const auto self = weak.lock()) self->on_end();
                                             }});
-        heard_ = server_.world_.now();
-        watch();
+        handle([this] { protocol_.on_open(); });
     }
 
     void on_durable(std::uint64_t durable_seq, std::size_t bytes) override {
-        later([durable_seq, bytes](Link& self) {
-            if (!self.parted_) self.dialogue_.on_durable(durable_seq, bytes);
-            self.part_when_settled();
-        });
+        later([durable_seq, bytes](Link& self) { self.protocol_.on_durable(durable_seq, bytes); });
     }
     void on_failed(const Error& error) override {
-        later([error](Link& self) { self.end(error); });
+        later([error](Link& self) { self.protocol_.fail(error); });
     }
 
-    [[nodiscard]] bool has_parted() const { return parted_; }
+    [[nodiscard]] bool is_closed() const { return closed_; }
 
     /// The program has ended.
     void vanish() {
-        if (!parted_) connection_->vanish(Side::kServer);
-        parted_ = true;
+        if (!closed_) connection_->vanish(Side::kServer);
+        closed_ = true;
     }
 
 private:
-    template <class Work>
-    void later(Work work) {
-        asio::post(strand_, [self = shared_from_this(), work] { work(*self); });
+    using Protocol = link::ServerProtocol;
+
+    template <class Event>
+    void handle(Event event) {
+        if (closed_) return;
+        event();
+        do {
+            while (auto action = protocol_.next_action(server_.world_.now()))
+                std::visit([this](auto& one) { perform(std::move(one)); }, *action);
+        } while (read());
+        watch_deadline();
+    }
+
+    template <class Event>
+    void later(Event event) {
+        asio::post(strand_, [self = shared_from_this(), event] { self->handle([&] { event(*self); }); });
     }
 
     void on_bytes(std::string_view bytes) {
-        heard_ = server_.world_.now();
-        std::ranges::copy(std::as_bytes(std::span(bytes)), decoder_.prepare(bytes.size()).begin());
-        decoder_.commit(bytes.size());
-        take_frames();
+        handle([&] { received_ += bytes; });
+    }
+    void on_end() {
+        handle([&] { has_ended_ = true; });
     }
 
-    void take_frames() {
-        while (!parted_ && !ending_ && !entering_ && !dialogue_.said_goodbye()) {
-            const auto body = decoder_.next();
-            if (!body) return end(body.error());
-            if (!*body) return;
-            auto message = wire::decode(**body);
-            if (!message) return end(message.error());
-            if (auto taken = take(std::move(*message), wire::kLengthPrefixBytes + (*body)->size()); !taken) {
-                return end(taken.error());
-            }
+    /// Does the read that the protocol asks for, if something has arrived.
+    bool read() {
+        if (protocol_.reading() == Protocol::Reading::kNothing || (received_.empty() && !has_ended_)) return false;
+        if (received_.empty()) {
+            protocol_.on_read_failed();
+            return true;
         }
+        const auto room = protocol_.prepare();
+        const std::size_t count = std::min(room.size(), received_.size());
+        std::ranges::copy(std::as_bytes(std::span(received_).first(count)), room.begin());
+        received_.erase(0, count);
+        protocol_.on_bytes(count, server_.world_.now());
+        return true;
     }
 
-    Result<> take(wire::Message message, std::size_t bytes) {
-        if (auto* hello = std::get_if<wire::Hello>(&message); hello != nullptr && !dialogue_.is_welcome()) {
-            entering_ = true;
-            asio::co_spawn(strand_, enter(shared_from_this(), std::move(*hello)), asio::detached);
-            return {};
-        }
-        if (!dialogue_.is_welcome()) return Error{Errc::kMalformed, "a hello is expected"};
-        if (const auto* compressed = std::get_if<wire::CompressedScanBatch>(&message)) {
-            auto batch = wire::decompress(*compressed);
-            if (!batch) return batch.error();
-            bytes = wire::bytes_under_way(*compressed);
-            message = std::move(*batch);
-        }
-        auto handled = dialogue_.handle(std::move(message), bytes, server_.world_.now(), shared_from_this());
-        if (dialogue_.said_goodbye()) part_when_settled();
-        return handled;
+    void watch_deadline() {
+        const Time due = protocol_.deadline();
+        if (closed_ || due >= timer_expiry_) return;
+        timer_expiry_ = due;
+        server_.world_.at(due, [weak = weak_from_this(), due] {
+            const auto self = weak.lock();
+            if (!self || self->closed_ || self->timer_expiry_ != due) return;
+            self->timer_expiry_ = Time::max();
+            self->handle([&] { self->protocol_.on_timer(due); });
+        });
     }
 
-    static asio::awaitable<void> enter(std::shared_ptr<Link> self, wire::Hello hello) {
+    void perform(Protocol::Join&& action) {
+        asio::co_spawn(strand_, join(shared_from_this(), std::move(action.hello)), asio::detached);
+    }
+    void perform(Protocol::SubmitSensor&& action) {
+        session_->submit(shared_from_this(), std::move(action.sensor), action.bytes);
+    }
+    void perform(Protocol::SubmitScans&& action) {
+        session_->submit(shared_from_this(), std::move(action.scans), action.bytes);
+    }
+    void perform(Protocol::AnswerRequest&& action) {
+        protocol_.on_request_refused(action.request, {Errc::kOverloaded, "requests are not simulated"});
+    }
+    void perform(Protocol::RecordLimit&&) {}
+    void perform(Protocol::Leave&&) {
+        if (protocol_.ended_by()) server_.world_.note(protocol_.ended_by()->message);
+        if (session_) session_->leave(shared_from_this());
+    }
+    void perform(Protocol::Send&& action) {
+        if (action.durable_seq) server_.promise_(robot_, *action.durable_seq);
+        connection_->send(Side::kServer, std::move(action.bytes));
+        later([](Link& self) { self.protocol_.on_written(); });
+    }
+    /// A side of the simulated connection that has closed it receives no more data.
+    void perform(Protocol::ShutDownSending&&) {
+        connection_->close(Side::kServer);
+        received_.clear();
+        has_ended_ = true;
+    }
+    void perform(Protocol::Close&&) {
+        connection_->close(Side::kServer);
+        closed_ = true;
+    }
+
+    static asio::awaitable<void> join(std::shared_ptr<Link> self, wire::Hello hello) {
         const session::Maker anybody;
-        auto entered =
+        auto session =
             co_await ingest::session_for(hello, self->server_.sessions(), anybody, self->server_.machine_->executor());
-        if (!entered) {
-            self->end(entered.error());
+        if (!session) {
+            self->handle([&] { self->protocol_.on_not_joined(session.error()); });
             co_return;
         }
-        const auto joined = co_await ingest::join(**entered, hello, self);
-        self->entering_ = false;
+        auto joined = co_await ingest::join_session(**session, hello, self);
         if (!joined) {
-            self->end(joined.error());
-        } else if (self->parted_) {
-            (*entered)->leave(self);
-        } else {
-            self->decoder_.set_frame_bytes_max(wire::kFrameBytesMax);
+            self->handle([&] { self->protocol_.on_not_joined(joined.error()); });
+            co_return;
+        }
+        if (self->closed_) (*session)->leave(self);
+        self->handle([&] {
             self->robot_ = hello.robot;
+            self->session_ = *session;
             self->server_.promise_(hello.robot, joined->last_durable_seq);
-            self->dialogue_.welcome(std::move(*entered), *joined);
-            self->take_frames();
-        }
-    }
-
-    void write_soon() {
-        if (std::exchange(writing_, true)) return;
-        later([](Link& self) { self.write(); });
-    }
-
-    void write() {
-        writing_ = false;
-        if (parted_) return;
-        while (auto piece = outbox_.next()) {
-            if (piece->durable_seq) {
-                dialogue_.acknowledged(*piece->durable_seq, server_.world_.now());
-                server_.promise_(robot_, *piece->durable_seq);
-            }
-            connection_->send(Side::kServer, std::move(piece->bytes));
-        }
-        if (ending_) part();
-    }
-
-    void end(const Error& error) {
-        if (parted_ || std::exchange(ending_, true)) return;
-        server_.world_.note(error.message);
-        outbox_.send(wire::LinkError{error, ingest::is_retryable(error.code)});
-        outbox_.close();
-    }
-
-    void part_when_settled() {
-        if (!parted_ && dialogue_.said_goodbye() && !dialogue_.has_under_way()) later([](Link& self) { self.part(); });
-    }
-
-    void part() {
-        if (std::exchange(parted_, true)) return;
-        if (dialogue_.is_welcome()) dialogue_.session()->leave(shared_from_this());
-        connection_->close(Side::kServer);
-    }
-
-    void watch() {
-        const Time due = heard_ + server_.options_.idle_deadline;
-        if (server_.world_.now() >= due) return end({Errc::kTimeout, "nothing was received for too long"});
-        server_.world_.at(due, [weak = weak_from_this()] {
-            const auto self = weak.lock();
-            if (self && !self->parted_) self->watch();
+            self->protocol_.on_joined({session::tag_of((*session)->info()), joined->last_durable_seq, joined->sensors},
+                                      self->server_.world_.now());
         });
     }
 
     Server& server_;
     std::shared_ptr<Connection> connection_;
     asio::strand<asio::any_io_executor> strand_;
-    wire::FrameDecoder decoder_{wire::kFrameBytesMaxBeforeHello};
-    ingest::Outbox outbox_;
-    ingest::Dialogue dialogue_;
-    std::string robot_; // after the welcome
-    Time heard_{};
-    bool entering_ = false;
-    bool writing_ = false;
-    bool ending_ = false; // received data is ignored
-    bool parted_ = false;
+    Protocol protocol_;
+    std::shared_ptr<session::Session> session_; // joined
+    std::string robot_;
+    std::string received_;   // not read yet
+    bool has_ended_ = false; // no more data arrives
+    Time timer_expiry_ = Time::max();
+    bool closed_ = false;
 };
 
 Server::Server(World& world, Disk& disk, const ServerOptions& options, Promise promise)
@@ -215,7 +206,7 @@ Server::~Server() {
 }
 
 void Server::accept(std::shared_ptr<Connection> connection) {
-    std::erase_if(links_, [](const auto& link) { return link->has_parted() && link.use_count() == 1; });
+    std::erase_if(links_, [](const auto& link) { return link->is_closed() && link.use_count() == 1; });
     links_.push_back(std::make_shared<Link>(*this, std::move(connection)));
     links_.back()->start();
 }

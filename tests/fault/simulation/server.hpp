@@ -1,7 +1,5 @@
 #pragma once
 
-#include "server/ingest/dialogue.hpp"
-#include "server/metrics/metrics.hpp"
 #include "server/session/session_registry.hpp"
 #include "server/store/scan_log.hpp"
 #include "tests/fault/simulation/disk.hpp"
@@ -25,8 +23,7 @@ struct ServerOptions {
     Duration idle_deadline = std::chrono::seconds(60); ///< of links
 };
 
-/// One run of a server: the real registry, sessions and protocol handlers between a simulated network and a simulated
-/// disk.
+/// One run of a server: the real registry, sessions and link protocol between a simulated network and a simulated disk.
 class Server {
 public:
     /// Called when an acknowledgement is sent: the scans of `robot` up to `seq` are durable.
@@ -54,7 +51,6 @@ private:
     Disk& disk_;
     const ServerOptions options_;
     const Promise promise_;
-    metrics::Metrics metrics_{"simulation"};
     std::unique_ptr<Machine> machine_;
     std::unique_ptr<store::ScanLog> log_;
     std::optional<session::SessionRegistry> sessions_;

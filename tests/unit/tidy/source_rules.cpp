@@ -30,6 +30,8 @@ const std::vector<Folder> kFolders = {
     {.path = "common/net", .may_include = {"common/error"}},
     {.path = "common/wire", .may_include = {"common/error", "common/geometry", "common/hash", "common/scan"}},
 
+    {.path = "common/link", .may_include = {"common/error", "common/limits", "common/scan", "common/wire"}},
+
     {.path = "server/access", .may_include = {"common/error", "common/hash", "common/scan"}, .pure = true},
     {.path = "server/log", .may_include = {}},
     {.path = "server/guard",

@@ -1,4 +1,4 @@
-#include "server/ingest/entrance.hpp"
+#include "server/ingest/join_session.hpp"
 
 #include "server/mapping/map_config.hpp"
 #include "server/sockets/worker_pool.hpp"
@@ -73,8 +73,8 @@ asio::awaitable<Found> session_for(const wire::Hello& hello, session::SessionReg
     co_return session;
 }
 
-asio::awaitable<Result<session::Joined>> join(session::Session& session, const wire::Hello& hello,
-                                              std::shared_ptr<session::RobotListener> listener) {
+asio::awaitable<Result<session::Joined>> join_session(session::Session& session, const wire::Hello& hello,
+                                                      std::shared_ptr<session::RobotListener> listener) {
     const auto executor = co_await asio::this_coro::executor;
     co_return co_await asio::async_initiate<const asio::use_awaitable_t<>&, void(Result<session::Joined>)>(
         [&](auto handler) {

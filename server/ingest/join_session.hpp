@@ -24,7 +24,7 @@ session_for(const wire::Hello& hello, session::SessionRegistry& sessions, const 
             boost::asio::any_io_executor may_wait);
 
 /// Calls Session::join(), and resumes with its result on the coroutine's own executor.
-[[nodiscard]] boost::asio::awaitable<Result<session::Joined>> join(session::Session& session, const wire::Hello& hello,
-                                                                   std::shared_ptr<session::RobotListener> listener);
+[[nodiscard]] boost::asio::awaitable<Result<session::Joined>>
+join_session(session::Session& session, const wire::Hello& hello, std::shared_ptr<session::RobotListener> listener);
 
 } // namespace scanloom::ingest

@@ -2,31 +2,40 @@
 
 #include "common/error/error.hpp"
 #include "common/limits/token_bucket.hpp"
+#include "common/scan/limits.hpp"
 #include "common/wire/messages.hpp"
-#include "server/access/token.hpp"
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <set>
+#include <string>
+#include <utility>
 
-namespace scanloom::ingest {
+namespace scanloom::link {
 
-/// Applies the limits of a token to what its link sends.
+/// The limits that a server applies to one robot's link.
+struct LinkLimits {
+    std::string token; ///< name of the token that has these limits, for messages
+    double bytes_per_second = std::numeric_limits<double>::infinity(); ///< read from the link
+    std::size_t sensors = kSensorsMax;                                 ///< of the robot
+    std::size_t beams = kBeamsMax;                                     ///< of one scan
+};
+
+/// Checks what a robot sends against the limits of its link.
 /// All times are in seconds of a monotonic clock.
-class Allowance {
+class LimitCheck {
 public:
-    /// Starts with the limits of access::anybody(), until set_token() is called.
-    explicit Allowance(double now);
+    explicit LimitCheck(double now) : inflow_(limits_.bytes_per_second, 1.0, now) {}
 
-    /// Applies the limits of `token` from now on.
-    void set_token(access::TokenRef token, double now);
-    [[nodiscard]] const access::Token& token() const noexcept { return *token_; }
+    /// Applies `limits` from now on.
+    void set_limits(LinkLimits limits, double now);
 
     /// Sets the ids of the sensors that the robot has already described.
     void set_sensors(std::set<std::uint32_t> sensors) { sensors_ = std::move(sensors); }
 
-    /// Checks a message against the limits. The sensor of a description counts as one of the robot's sensors.
-    /// Errors: kTooLarge if the robot has more sensors, or a scan more beams, than the token allows.
+    /// Checks a message. The sensor of a description counts as one of the robot's sensors.
+    /// Errors: kTooLarge if the robot has more sensors, or a scan more beams, than the limits allow.
     [[nodiscard]] Result<> check(const wire::Message& message);
 
     /// Returns how many bytes to read at once: at most `bytes`, and few enough that the pause after them is at most one
@@ -41,9 +50,9 @@ private:
     [[nodiscard]] Result<> check_sensor(const Sensor& sensor);
     [[nodiscard]] Result<> check_beams(const wire::ScanBatch& batch) const;
 
-    access::TokenRef token_;
+    LinkLimits limits_;
     TokenBucket inflow_;
     std::set<std::uint32_t> sensors_;
 };
 
-} // namespace scanloom::ingest
+} // namespace scanloom::link
