@@ -29,7 +29,7 @@ struct ServerProtocolConfig {
 };
 
 /// The server's side of one robot link as a state machine without sockets, threads and clocks, from the connection to
-/// its end. robot::Conversation is the other side.
+/// its end. link::ClientProtocol is the other side.
 ///
 /// After the hello, the owner authenticates the robot and lets it join its session, and the robot receives a welcome.
 /// Then sensor descriptions and scans go to the session, which returns acks, and requests to the owner, which returns

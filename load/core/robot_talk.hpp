@@ -1,10 +1,10 @@
 #pragma once
 
+#include "common/link/credit_window.hpp"
 #include "common/wire/messages.hpp"
 #include "load/core/course.hpp"
 #include "load/core/fleet_figures.hpp"
 #include "load/core/micros.hpp"
-#include "robot_client/uplink/credit_window.hpp"
 
 #include <cstdint>
 #include <deque>
@@ -29,7 +29,7 @@ struct RobotPlan {
 /// Usage: link up: open(); for every received frame: receive(); after each event write(), and send its output; link
 /// down: close(). As time passes: due(). After the last scan: end().
 /// Threads: one at a time.
-/// Source: proto/scanloom/v1/frame.proto. Unlike robot::Conversation, which serves a single robot, it has no sources,
+/// Source: proto/scanloom/v1/frame.proto. Unlike link::ClientProtocol, which serves a single robot, it has no sources,
 ///         requests, compression or buffers.
 class RobotTalk {
 public:
@@ -102,7 +102,7 @@ private:
     const Course* course_;
     const wire::Hello* hello_;
     Link link_;
-    robot::CreditWindow credit_;
+    link::CreditWindow credit_;
     std::deque<Sending> sendings_; // on this link, not acknowledged yet
     std::vector<wire::NumberedScan> batch_;
     std::string session_id_;

@@ -42,11 +42,11 @@ UplinkOptions uplink_options(const RobotOptions& options, std::string token, con
     uplink.give_up_after_end = options.give_up_after.value_or(uplink.give_up_after_end);
     uplink.backoff_seed = std::random_device{}();
     uplink.on_trouble = told_once([&console](const std::string& text) { console.note(text); });
-    uplink.conversation.batch_delay = options.batch_delay;
-    uplink.conversation.batch_bytes_max = options.batch_bytes_max;
-    uplink.conversation.compress = options.compress;
-    uplink.conversation.buffer_bytes_max = options.memory_bytes_max;
-    wire::Hello& hello = uplink.conversation.hello;
+    uplink.protocol.batch_delay = options.batch_delay;
+    uplink.protocol.batch_bytes_max = options.batch_bytes_max;
+    uplink.protocol.compress = options.compress;
+    uplink.buffer_bytes_max = options.memory_bytes_max;
+    wire::Hello& hello = uplink.protocol.hello;
     hello.robot = options.robot;
     hello.session = options.session;
     hello.token = std::move(token);

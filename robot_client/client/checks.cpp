@@ -1,11 +1,10 @@
 #include "robot_client/client/checks.hpp"
 
+#include "common/link/printable_text.hpp"
 #include "common/scan/limits.hpp"
 #include "common/wire/frame_decoder.hpp"
 #include "common/wire/messages.hpp"
 #include "robot_client/uplink/limits.hpp"
-#include "robot_client/uplink/server_text.hpp"
-#include "robot_client/uplink/utf8.hpp"
 
 #include <fmt/format.h>
 
@@ -36,9 +35,9 @@ Result<> check_sizes(const Sensor& sensor, const Scan& scan) {
     if (sensor.name.size() > kNameBytesMax) {
         return too_many("the sensor's name has", sensor.name.size(), "bytes", kNameBytesMax);
     }
-    if (!is_utf8(sensor.name)) {
-        return Error{Errc::kInvalidField,
-                     fmt::format("the sensor's name '{}' is not UTF-8; give it a name in that", shown(sensor.name))};
+    if (!link::is_utf8(sensor.name)) {
+        return Error{Errc::kInvalidField, fmt::format("the sensor's name '{}' is not UTF-8; give it a name in that",
+                                                      link::printable(sensor.name))};
     }
     const std::size_t described = beam_count(sensor.angles);
     if (described > kBeamsMax) return too_many("the sensor's angles describe", described, "beams", kBeamsMax);
@@ -62,9 +61,9 @@ Result<> check_names(const ClientOptions& options) {
         if (is_valid_name(*name)) continue;
         return Error{Errc::kInvalidField,
                      fmt::format("'{}' is no name of a session or robot; use 1 to {} characters of A-Z a-z 0-9 _ -",
-                                 shown(*name), kNameBytesMax)};
+                                 link::printable(*name), kNameBytesMax)};
     }
-    if (options.token.size() > kTokenBytesMax || !is_utf8(options.token)) {
+    if (options.token.size() > kTokenBytesMax || !link::is_utf8(options.token)) {
         return Error{Errc::kInvalidField,
                      fmt::format("the token has {} bytes, or is not UTF-8; give the one that the server knows",
                                  options.token.size())};
@@ -105,7 +104,7 @@ Result<> check(const Sensor& sensor, const Scan& scan) {
     return wire::check_scan(scan, sensor);
 }
 
-Result<> check(const Request& request) {
+Result<> check(const link::Request& request) {
     if (const auto* coverage = std::get_if<wire::CoverageRequest>(&request)) {
         const std::size_t corners = coverage->region.size();
         if (corners > wire::kRegionPointsMax) {

@@ -1,10 +1,10 @@
 #pragma once
 
 #include "common/error/error.hpp"
+#include "common/link/requests.hpp"
 #include "common/scan/scan.hpp"
 #include "common/scan/sensor.hpp"
 #include "robot_client/client/client.hpp"
-#include "robot_client/uplink/open_requests.hpp"
 
 /// Checks values that no server accepts before they are sent, because sending them would end the link.
 /// Errors: kInvalidField, kTooLarge; the message names the field.
@@ -17,6 +17,6 @@ namespace scanloom::robot {
 [[nodiscard]] Result<> check(const Sensor& sensor, const Scan& scan);
 
 /// Checks the values for which a server would end the link instead of refusing the request in its reply.
-[[nodiscard]] Result<> check(const Request& request);
+[[nodiscard]] Result<> check(const link::Request& request);
 
 } // namespace scanloom::robot

@@ -30,16 +30,16 @@ Result<UplinkOptions> uplink_options(const ClientOptions& options) {
     }
     uplink.give_up_after = uplink.give_up_after_end = milliseconds(0); // flush() has its own patience
     uplink.backoff_seed = std::random_device{}();
-    uplink.conversation.buffer_bytes_max = options.memory_bytes_max;
-    uplink.conversation.batch_delay = options.batch_delay;
-    uplink.conversation.compress = options.compress;
-    uplink.conversation.hello.session = options.session;
-    uplink.conversation.hello.robot = options.robot;
-    uplink.conversation.hello.token = options.token;
-    uplink.conversation.hello.create = SessionOptions{};
-    uplink.conversation.hello.create->cell_size = options.cell_size;
-    uplink.conversation.hello.client = "scanloom client library";
-    uplink.conversation.hello.body_radius = options.body_radius;
+    uplink.buffer_bytes_max = options.memory_bytes_max;
+    uplink.protocol.batch_delay = options.batch_delay;
+    uplink.protocol.compress = options.compress;
+    uplink.protocol.hello.session = options.session;
+    uplink.protocol.hello.robot = options.robot;
+    uplink.protocol.hello.token = options.token;
+    uplink.protocol.hello.create = SessionOptions{};
+    uplink.protocol.hello.create->cell_size = options.cell_size;
+    uplink.protocol.hello.client = "scanloom client library";
+    uplink.protocol.hello.body_radius = options.body_radius;
     uplink.on_trouble = told_once(options.tell);
     return uplink;
 }

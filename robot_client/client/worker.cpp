@@ -134,17 +134,17 @@ asio::awaitable<Result<>> Client::Worker::until_stored(Patience patience) {
 
 // Questions -----------------------------------------------------------------------------------------------------------
 
-Result<Reply> Client::Worker::ask(Request request, milliseconds length) {
+Result<link::Reply> Client::Worker::ask(link::Request request, milliseconds length) {
     if (auto ok = check(request); !ok) return ok.error();
     const Patience patience(length);
     return wait_for(until_answered(std::move(request), patience), patience);
 }
 
-asio::awaitable<Result<Reply>> Client::Worker::until_answered(Request request, Patience patience) {
+asio::awaitable<Result<link::Reply>> Client::Worker::until_answered(link::Request request, Patience patience) {
     const Result<> applied = co_await until_all_are(Fate::kInMaps, patience);
     if (!applied) co_return applied.error();
-    const auto reply = std::make_shared<std::optional<Reply>>();
-    const Answered answered = [reply](const Reply& got) { reply->emplace(got); };
+    const auto reply = std::make_shared<std::optional<link::Reply>>();
+    const link::Answered answered = [reply](const link::Reply& got) { reply->emplace(got); };
     auto id = uplink_.ask(request, answered);
     while (!id) {
         if (const auto why = reason_to_leave("too many questions were open", patience)) co_return *why;

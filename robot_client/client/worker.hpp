@@ -37,7 +37,7 @@ public:
     [[nodiscard]] Result<> close(std::chrono::milliseconds patience);
     /// Sends a request and waits for the reply, which may be a refusal by the server.
     /// Errors: kInvalidField or kTooLarge if a value would end the link; kTimeout; the error that ended the client.
-    [[nodiscard]] Result<Reply> ask(Request request, std::chrono::milliseconds patience);
+    [[nodiscard]] Result<link::Reply> ask(link::Request request, std::chrono::milliseconds patience);
     [[nodiscard]] ClientStatus status();
 
 private:
@@ -58,7 +58,7 @@ private:
     /// Waits for the scans that were handed over before. Dropped scans count as done.
     [[nodiscard]] boost::asio::awaitable<Result<>> until_all_are(Fate fate, Patience patience);
     [[nodiscard]] boost::asio::awaitable<Result<>> until_stored(Patience patience);
-    [[nodiscard]] boost::asio::awaitable<Result<Reply>> until_answered(Request request, Patience patience);
+    [[nodiscard]] boost::asio::awaitable<Result<link::Reply>> until_answered(link::Request request, Patience patience);
     [[nodiscard]] std::uint64_t count_of_those_not(Fate fate) const;
     /// Returns the error to stop waiting with if the client has ended or the patience is over, else nullopt.
     [[nodiscard]] std::optional<Error> reason_to_leave(std::string_view what, const Patience& patience);

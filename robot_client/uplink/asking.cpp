@@ -18,16 +18,16 @@ namespace {
 /// The state of a request. The uplink may receive the reply after the coroutine was cancelled.
 struct Pending {
     asio::steady_timer answered;
-    std::optional<Reply> reply;
+    std::optional<link::Reply> reply;
 };
 
 } // namespace
 
-asio::awaitable<Result<Reply>> ask_once_applied(Uplink& uplink, Request request) {
+asio::awaitable<Result<link::Reply>> ask_once_applied(Uplink& uplink, link::Request request) {
     co_await uplink.until_applied();
     const auto pending = std::make_shared<Pending>(
         Pending{asio::steady_timer(co_await asio::this_coro::executor, asio::steady_timer::time_point::max()), {}});
-    const auto asked = uplink.ask(std::move(request), [pending](const Reply& reply) {
+    const auto asked = uplink.ask(std::move(request), [pending](const link::Reply& reply) {
         pending->reply = reply;
         pending->answered.cancel();
     });

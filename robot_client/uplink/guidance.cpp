@@ -21,8 +21,8 @@ NextStop as_stop(wire::Goal goal) {
 }
 
 asio::awaitable<Result<NextStop>> ask(Uplink& uplink, double body_radius_m) {
-    Request request = wire::GoalRequest{.body_radius = body_radius_m};
-    Result<Reply> reply = co_await ask_once_applied(uplink, std::move(request));
+    link::Request request = wire::GoalRequest{.body_radius = body_radius_m};
+    Result<link::Reply> reply = co_await ask_once_applied(uplink, std::move(request));
     if (!reply) co_return reply.error();
     auto& goal = std::get<wire::GoalReply>(*reply).goal;
     if (!goal) co_return goal.error();

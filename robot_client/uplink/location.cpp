@@ -15,8 +15,8 @@ namespace {
 static_assert(kSeenPointsMin == wire::kLocatePointsMin && kSeenPointsMax == wire::kLocatePointsMax);
 
 asio::awaitable<Result<Located>> ask(Uplink& uplink, wire::LocateRequest request) {
-    Request question = std::move(request); // a named variable, because g++ 12 destroys such temporaries twice
-    const Result<Reply> reply = co_await ask_once_applied(uplink, std::move(question));
+    link::Request question = std::move(request); // a named variable, because g++ 12 destroys such temporaries twice
+    const Result<link::Reply> reply = co_await ask_once_applied(uplink, std::move(question));
     if (!reply) co_return reply.error();
     const auto& correction = std::get<wire::LocateReply>(*reply).correction;
     if (!correction) co_return correction.error();

@@ -15,7 +15,7 @@ inline constexpr double kCarriedMax = 100.0;
 ///                     None: anywhere in the map
 /// @param first_place  metres in the map frame; the assumed place if no map exists at the first request
 /// Errors: of the returned function: the server's refusal, e.g. kAmbiguous, kUndetermined or kNothingMapped;
-///         kOverloaded if OpenRequests::kMax requests are open.
+///         kOverloaded if link::OpenRequests::kMax requests are open.
 [[nodiscard]] Locate located_by(Uplink& uplink, const std::optional<wire::Near>& near, const Point2& first_place);
 
 } // namespace scanloom::robot

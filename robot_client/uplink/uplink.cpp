@@ -1,7 +1,6 @@
 #include "robot_client/uplink/uplink.hpp"
 
 #include "common/net/await_tuple.hpp"
-#include "common/wire/frame_decoder.hpp"
 #include "robot_client/source/seconds.hpp"
 
 #include <boost/asio/buffer.hpp>
@@ -26,11 +25,18 @@ constexpr std::chrono::milliseconds kGoodbyeMax{1000};
 
 wire::LinkError lost(std::string message) { return {{Errc::kUnreachable, std::move(message)}, true}; }
 
+link::ClientProtocolOptions protocol_options(const UplinkOptions& options) {
+    auto made = options.protocol;
+    made.server = fmt::format("{}:{}", options.server.host, options.server.port);
+    return made;
+}
+
 } // namespace
 
 Uplink::Uplink(asio::io_context& io, UplinkOptions options, Feed& feed)
-    : io_(io), options_(std::move(options)), feed_(feed), conversation_(options_.conversation, Clock::now()),
-      backoff_(options_.backoff_seed, options_.backoff), feed_wake_(io), write_wake_(io), progress_wake_(io) {}
+    : io_(io), options_(std::move(options)), feed_(feed), buffer_(options_.buffer_bytes_max),
+      protocol_(protocol_options(options_), buffer_, Clock::now()), backoff_(options_.backoff_seed, options_.backoff),
+      feed_wake_(io), write_wake_(io), progress_wake_(io) {}
 
 asio::awaitable<Result<>> Uplink::run() {
     co_await (keep_linked() || take_from_feed() || watch_progress());
@@ -40,15 +46,15 @@ asio::awaitable<Result<>> Uplink::run() {
 
 Result<> Uplink::outcome_when_interrupted() const {
     const auto interrupted = [](const std::string& what) { return Error{Errc::kShuttingDown, "interrupted " + what}; };
-    if (!conversation_.resumed_after()) {
+    if (!protocol_.resumed_after()) {
         const std::string spooled =
             feed_.waiting() > 0 ? fmt::format(" with {} scans in the spool", feed_.waiting()) : std::string();
         return interrupted(fmt::format("before the server answered{}: {}", spooled, what_is_wrong()));
     }
-    if (const std::uint64_t missing = conversation_.last() - conversation_.acknowledged(); missing > 0) {
+    if (const std::uint64_t missing = buffer_.last() - buffer_.acknowledged(); missing > 0) {
         return interrupted(fmt::format("before {} scans were acknowledged", missing));
     }
-    if (const auto why = feed_.unfinished(conversation_.last())) return interrupted(*why);
+    if (const auto why = feed_.unfinished(buffer_.last())) return interrupted(*why);
     return {};
 }
 
@@ -57,23 +63,23 @@ void Uplink::stop() {
     wake_all();
 }
 
-std::optional<std::uint64_t> Uplink::ask(Request request, Answered answered) {
-    const auto id = conversation_.ask(std::move(request), std::move(answered));
+std::optional<std::uint64_t> Uplink::ask(link::Request request, link::Answered answered) {
+    const auto id = protocol_.ask(std::move(request), std::move(answered));
     if (id) write_wake_.cancel();
     return id;
 }
 
 UplinkStatus Uplink::status() const {
-    const std::uint64_t welcomes = conversation_.welcomes();
-    return {conversation_.resumed_after().value_or(0),
-            conversation_.last(),
-            conversation_.acknowledged(),
-            conversation_.sent_ever() - conversation_.resumed_after().value_or(0),
-            conversation_.bytes_sent(),
+    const std::uint64_t welcomes = protocol_.welcomes();
+    return {protocol_.resumed_after().value_or(0),
+            buffer_.last(),
+            buffer_.acknowledged(),
+            buffer_.sent_ever() - protocol_.resumed_after().value_or(0),
+            protocol_.bytes_sent(),
             welcomes > 0 ? welcomes - 1 : 0,
             feed_.waiting(),
             feed_.dropped(),
-            conversation_.is_welcome(),
+            protocol_.is_welcome(),
             feed_.next_scan_in()};
 }
 
@@ -84,22 +90,23 @@ asio::awaitable<void> Uplink::take_from_feed() {
     const auto cancellation = co_await asio::this_coro::cancellation_state;
     if (cancellation.cancelled() != asio::cancellation_type::none) co_return; // the outcome is already set
     if (!fed) outcome_ = fed.error();
-    if (!fed && conversation_.acknowledged() == conversation_.last()) co_return;
-    conversation_.end();
+    if (!fed && buffer_.acknowledged() == buffer_.last()) co_return;
+    protocol_.end();
     wake_all();
     for (;;) co_await wait(feed_wake_, Clock::time_point::max()); // the other coroutines end the run
 }
 
 void Uplink::add(Observation observation) {
-    conversation_.add(std::move(observation), Clock::now());
+    buffer_.push(std::move(observation));
+    protocol_.on_scans_added(1, Clock::now());
     write_wake_.cancel();
 }
 
 asio::awaitable<void> Uplink::until_applied() {
-    const auto all_handed_over = [&] { return conversation_.resumed_after() && feed_.waiting() == 0; };
+    const auto all_handed_over = [&] { return protocol_.resumed_after() && feed_.waiting() == 0; };
     while (!all_handed_over()) co_await heard_.wait(Clock::now() + kProgressPeriod);
-    const std::uint64_t last = conversation_.last();
-    while (conversation_.applied() < last) co_await heard_.wait();
+    const std::uint64_t last = buffer_.last();
+    while (protocol_.applied() < last) co_await heard_.wait();
 }
 
 // Progress ------------------------------------------------------------------------------------------------------------
@@ -108,9 +115,9 @@ asio::awaitable<void> Uplink::watch_progress() {
     std::optional<Clock::time_point> done_since;
     for (;;) {
         const auto now = Clock::now();
-        if (conversation_.is_done()) {
+        if (protocol_.is_done()) {
             if (!done_since) done_since = now;
-            if (!conversation_.is_welcome() || now > *done_since + kGoodbyeMax) co_return;
+            if (!protocol_.is_welcome() || now > *done_since + kGoodbyeMax) co_return;
         } else if (auto reason = reason_to_give_up()) {
             outcome_ = *reason;
             co_return;
@@ -121,13 +128,13 @@ asio::awaitable<void> Uplink::watch_progress() {
 
 std::optional<Error> Uplink::reason_to_give_up() const {
     const auto now = Clock::now();
-    if (stopped_ && !conversation_.resumed_after()) return outcome_when_interrupted().error();
+    if (stopped_ && !protocol_.resumed_after()) return outcome_when_interrupted().error();
     if (stopped_ && now > *stopped_ + options_.drain_max) {
         return Error{Errc::kTimeout, fmt::format("interrupted; {} scans were not acknowledged within {:g} s: {}",
-                                                 conversation_.last() - conversation_.acknowledged(),
-                                                 seconds(options_.drain_max), what_is_wrong())};
+                                                 buffer_.last() - buffer_.acknowledged(), seconds(options_.drain_max),
+                                                 what_is_wrong())};
     }
-    const auto since = conversation_.stalled_since();
+    const auto since = protocol_.stalled_since();
     const auto patience = feed_.has_ended() ? options_.give_up_after_end : options_.give_up_after;
     if (since && patience.count() > 0 && now > *since + patience) {
         return Error{Errc::kTimeout,
@@ -137,7 +144,7 @@ std::optional<Error> Uplink::reason_to_give_up() const {
 }
 
 std::string Uplink::what_is_wrong() const {
-    if (conversation_.is_welcome()) {
+    if (protocol_.is_welcome()) {
         return "the server is connected but acknowledges nothing" +
                (last_trouble_ ? fmt::format(" (before this link: {})", last_trouble_->message) : std::string());
     }
@@ -153,9 +160,9 @@ asio::awaitable<void> Uplink::keep_linked() {
         const wire::LinkError failure = co_await use_one_link();
         const auto cancellation = co_await asio::this_coro::cancellation_state;
         if (cancellation.cancelled() != asio::cancellation_type::none) co_return; // the outcome is already set
-        conversation_.close();
+        protocol_.close();
         heard_.ring();
-        if (conversation_.is_done()) co_return;
+        if (protocol_.is_done()) co_return;
         if (!failure.retryable) {
             outcome_ = failure.error;
             co_return;
@@ -172,7 +179,7 @@ asio::awaitable<wire::LinkError> Uplink::use_one_link() {
     net::LinkStream stream =
         options_.tls ? net::LinkStream(std::move(socket), *options_.tls) : net::LinkStream(std::move(socket));
     if (auto failure = co_await shake_hands(stream)) co_return *failure;
-    conversation_.open(Clock::now());
+    protocol_.open(Clock::now());
     const auto ended = co_await (read_frames(stream) || write_frames(stream) || watch_link());
     co_return std::visit([](const wire::LinkError& failure) { return failure; }, ended);
 }
@@ -220,19 +227,12 @@ asio::awaitable<std::optional<wire::LinkError>> Uplink::connect(net::LinkStream:
 }
 
 asio::awaitable<wire::LinkError> Uplink::read_frames(net::LinkStream& stream) {
-    wire::FrameDecoder decoder(wire::kFrameBytesMax);
     for (;;) {
-        const auto room = decoder.prepare(kReadBytes);
+        const auto room = protocol_.prepare(kReadBytes);
         const auto [failed, count] =
             co_await stream.async_read_some(asio::buffer(room.data(), room.size()), kAwaitTuple);
         if (failed) co_return closed(failed);
-        decoder.commit(count);
-        for (;;) {
-            auto body = decoder.next();
-            if (!body) co_return unreadable(body.error());
-            if (!*body) break;
-            if (auto failure = take(**body)) co_return *failure;
-        }
+        if (auto failure = take(count)) co_return *failure;
     }
 }
 
@@ -241,47 +241,36 @@ wire::LinkError Uplink::closed(const boost::system::error_code& failed) const {
         return lost(fmt::format("no encrypted link to {}:{}: {}", options_.server.host, options_.server.port,
                                 net::handshake_text(failed, 0)));
     }
-    if (conversation_.is_welcome() || options_.tls || failed != asio::error::eof) {
+    if (protocol_.is_welcome() || options_.tls || failed != asio::error::eof) {
         return lost(fmt::format("the connection was lost: {}", failed.message()));
     }
     return lost(fmt::format("{}:{} hung up without an answer; where it wants encrypted links, give --tls",
                             options_.server.host, options_.server.port));
 }
 
-/// Makes the error for bytes that are not valid frames. Before the welcome they mean that another program listens
-/// there.
-wire::LinkError Uplink::unreadable(const Error& error) const {
-    if (conversation_.is_welcome()) return {prefixed("what the server sent cannot be read: ", error), true};
-    return {
-        {Errc::kMalformed, fmt::format("what listens at {}:{} does not speak Scanloom's robot link; give the server's "
-                                       "robot port to --server",
-                                       options_.server.host, options_.server.port)},
-        false};
-}
-
-std::optional<wire::LinkError> Uplink::take(std::string_view body) {
-    auto message = wire::decode(body);
-    if (!message) return unreadable(message.error());
-    const std::uint64_t acknowledged_before = conversation_.acknowledged();
-    auto failure = conversation_.receive(*message, Clock::now());
-    if (conversation_.acknowledged() > acknowledged_before) {
+std::optional<wire::LinkError> Uplink::take(std::size_t bytes) {
+    const std::uint64_t acknowledged_before = buffer_.acknowledged();
+    auto failure = protocol_.on_bytes(bytes, Clock::now());
+    if (buffer_.acknowledged() > acknowledged_before) {
         backoff_.reset();
         last_trouble_.reset();
-        feed_.acknowledged(conversation_.acknowledged());
+        feed_.acknowledged(buffer_.acknowledged());
     }
     wake_all();
     return failure;
 }
 
 asio::awaitable<wire::LinkError> Uplink::write_frames(net::LinkStream& stream) {
+    std::string frame;
     for (;;) {
-        while (const auto frame = conversation_.next_frame(Clock::now())) {
-            const auto [failed, count] = co_await asio::async_write(stream, asio::buffer(*frame), kAwaitTuple);
+        while (protocol_.append_next_frame(frame, Clock::now())) {
+            const auto [failed, count] = co_await asio::async_write(stream, asio::buffer(frame), kAwaitTuple);
             if (failed) co_return lost(fmt::format("the connection was lost: {}", failed.message()));
+            frame.clear();
         }
-        if (conversation_.said_goodbye()) stream.shutdown_send(); // then the reader reports how the link ends
-        if (auto failure = conversation_.check(Clock::now())) co_return *failure;
-        co_await wait(write_wake_, conversation_.deadline(Clock::now()));
+        if (protocol_.said_goodbye()) stream.shutdown_send(); // then the reader reports how the link ends
+        if (auto failure = protocol_.check(Clock::now())) co_return *failure;
+        co_await wait(write_wake_, protocol_.deadline(Clock::now()));
     }
 }
 
@@ -289,7 +278,7 @@ asio::awaitable<wire::LinkError> Uplink::write_frames(net::LinkStream& stream) {
 asio::awaitable<wire::LinkError> Uplink::watch_link() {
     asio::steady_timer timer(io_);
     for (;;) {
-        if (auto failure = conversation_.check(Clock::now())) co_return *failure;
+        if (auto failure = protocol_.check(Clock::now())) co_return *failure;
         co_await wait(timer, Clock::now() + kProgressPeriod);
     }
 }

@@ -1,11 +1,12 @@
 #pragma once
 
+#include "common/link/client_protocol.hpp"
 #include "common/net/link_stream.hpp"
 #include "common/net/tls.hpp"
 #include "robot_client/uplink/backoff.hpp"
 #include "robot_client/uplink/bell.hpp"
-#include "robot_client/uplink/conversation.hpp"
 #include "robot_client/uplink/feed.hpp"
+#include "robot_client/uplink/send_buffer.hpp"
 #include "robot_client/uplink/server_address.hpp"
 
 #include <boost/asio/awaitable.hpp>
@@ -21,8 +22,9 @@ namespace scanloom::robot {
 
 struct UplinkOptions {
     ServerAddress server;
-    net::TlsContext tls; ///< none: the link is not encrypted
-    ConversationOptions conversation;
+    net::TlsContext tls;                                  ///< none: the link is not encrypted
+    link::ClientProtocolOptions protocol;                 ///< `server` is set by the Uplink
+    std::size_t buffer_bytes_max = std::size_t{32} << 20; ///< of unacknowledged scans; when full, the source waits
     std::chrono::milliseconds connect_timeout{10'000};
     std::chrono::milliseconds give_up_after{120'000};     ///< without progress; 0 = never
     std::chrono::milliseconds give_up_after_end{120'000}; ///< as give_up_after, once the feed has ended
@@ -47,8 +49,8 @@ struct UplinkStatus {
     std::optional<std::chrono::duration<double>> next_scan_in = {}; ///< only during a long pause
 };
 
-/// Carries a feed's scans to the server; connects and reconnects. It owns the sockets and timers; Conversation
-/// implements the protocol.
+/// Carries a feed's scans to the server; connects and reconnects. It owns the sockets and timers;
+/// link::ClientProtocol implements the protocol.
 ///
 /// Threads: everything runs on the one thread of `io`. All functions must be called on it.
 class Uplink final : private Intake {
@@ -68,11 +70,11 @@ public:
     /// Errors: kShuttingDown if scans taken are not acknowledged, or if the feed has an end and has not reached it.
     [[nodiscard]] Result<> outcome_when_interrupted() const;
 
-    /// Adds a request as Conversation::ask() does; it is sent as soon as there is a link. `answered` runs on the thread
-    /// of `io`.
-    [[nodiscard]] std::optional<std::uint64_t> ask(Request request, Answered answered);
+    /// Adds a request as ClientProtocol::ask() does; it is sent as soon as there is a link. `answered` runs on the
+    /// thread of `io`.
+    [[nodiscard]] std::optional<std::uint64_t> ask(link::Request request, link::Answered answered);
     /// Drops the callback of a request: its reply is no longer needed.
-    void abandon(std::uint64_t id) { conversation_.abandon(id); }
+    void abandon(std::uint64_t id) { protocol_.abandon(id); }
 
     /// Completes when all scans taken so far are in the server's maps.
     [[nodiscard]] boost::asio::awaitable<void> until_applied();
@@ -82,7 +84,7 @@ public:
 
     [[nodiscard]] UplinkStatus status() const;
     /// Returns the highest seq known to be in the server's maps.
-    [[nodiscard]] std::uint64_t applied() const noexcept { return conversation_.applied(); }
+    [[nodiscard]] std::uint64_t applied() const noexcept { return protocol_.applied(); }
     /// Returns a message for people that explains why there is no progress.
     [[nodiscard]] std::string what_is_wrong() const;
     [[nodiscard]] boost::asio::io_context::executor_type executor() const { return io_.get_executor(); }
@@ -91,11 +93,11 @@ private:
     using Clock = std::chrono::steady_clock;
 
     // Intake
-    [[nodiscard]] std::optional<std::uint64_t> resumed_after() const override { return conversation_.resumed_after(); }
-    [[nodiscard]] const std::string& session_id() const override { return conversation_.session_id(); }
-    [[nodiscard]] bool has_room() const override { return conversation_.has_room(); }
+    [[nodiscard]] std::optional<std::uint64_t> resumed_after() const override { return protocol_.resumed_after(); }
+    [[nodiscard]] const std::string& session_id() const override { return protocol_.session_id(); }
+    [[nodiscard]] bool has_room() const override { return buffer_.has_room(); }
     void add(Observation observation) override;
-    bool drop_oldest_unsent() override { return conversation_.drop_oldest_unsent(); }
+    bool drop_oldest_unsent() override { return buffer_.drop_oldest_unsent(); }
     [[nodiscard]] bool is_stopped() const override { return stopped_.has_value(); }
     [[nodiscard]] boost::asio::awaitable<void> news(Time until) override { return wait(feed_wake_, until); }
     void wake() override { feed_wake_.cancel(); }
@@ -110,8 +112,7 @@ private:
     [[nodiscard]] boost::asio::awaitable<wire::LinkError> write_frames(net::LinkStream& stream);
     [[nodiscard]] boost::asio::awaitable<wire::LinkError> watch_link();
     [[nodiscard]] wire::LinkError closed(const boost::system::error_code& failed) const;
-    [[nodiscard]] wire::LinkError unreadable(const Error& error) const;
-    [[nodiscard]] std::optional<wire::LinkError> take(std::string_view body);
+    [[nodiscard]] std::optional<wire::LinkError> take(std::size_t bytes);
     [[nodiscard]] std::optional<Error> reason_to_give_up() const;
 
     /// Waits until `time` or until the timer is cancelled. The coroutines wake one another by cancelling timers.
@@ -121,7 +122,8 @@ private:
     boost::asio::io_context& io_;
     UplinkOptions options_;
     Feed& feed_;
-    Conversation conversation_;
+    SendBuffer buffer_;
+    link::ClientProtocol protocol_;
     Backoff backoff_;
     boost::asio::steady_timer feed_wake_;
     boost::asio::steady_timer write_wake_;

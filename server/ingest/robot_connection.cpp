@@ -258,7 +258,7 @@ void RobotConnection::apply_permission() {
     record_refusal(access::Reason::kRevoked, name, pass_->session());
     protocol_.fail(
         {Errc::kUnauthorized,
-         fmt::format("the token '{}' does not allow this any more; ask whoever runs this server for another", name)});
+         fmt::format("the token '{}' does not allow this any more; ask the server's operator for another", name)});
 }
 
 // Logs ----------------------------------------------------------------------------------------------------------------

@@ -69,14 +69,14 @@ robot::UplinkOptions options_of(const RobotPlan& plan, std::uint16_t port, const
     options.give_up_after = options.give_up_after_end = patience.give_up_after;
     options.backoff_seed = plan.seed;
     options.backoff = {patience.backoff_first, patience.backoff_longest};
-    options.conversation.welcome_timeout = patience.welcome;
-    options.conversation.ping_after = patience.ping_after;
-    options.conversation.silence_max = patience.silence_max;
-    options.conversation.batch_bytes_max = 2048; // about ten scans: many frames, many acknowledgements
-    options.conversation.hello.session = plan.session;
-    options.conversation.hello.robot = plan.name;
-    options.conversation.hello.source = "robot of seed " + std::to_string(plan.seed);
-    options.conversation.hello.create = fleet_options();
+    options.protocol.welcome_timeout = patience.welcome;
+    options.protocol.ping_after = patience.ping_after;
+    options.protocol.silence_max = patience.silence_max;
+    options.protocol.batch_bytes_max = 2048; // about ten scans: many frames, many acknowledgements
+    options.protocol.hello.session = plan.session;
+    options.protocol.hello.robot = plan.name;
+    options.protocol.hello.source = "robot of seed " + std::to_string(plan.seed);
+    options.protocol.hello.create = fleet_options();
     return options;
 }
 

@@ -18,18 +18,18 @@ Robot::Robot(World& world, fault::RobotPlan plan, Connect connect)
 
 void Robot::start() {
     ++runs_;
-    robot::ConversationOptions options;
+    link::ClientProtocolOptions options;
     options.hello.robot = standing_.plan.name;
     options.hello.session = standing_.plan.session;
     options.hello.create = fault::fleet_options();
     options.hello.client = "simulation";
-    options.buffer_bytes_max = 2'000 + world_.draw(20'000);
+    buffer_.emplace(2'000 + world_.draw(20'000));
     options.batch_bytes_max = 200 + world_.draw(4'000);
     options.compress = world_.chance(0.3);
     options.welcome_timeout = 2s;
     options.ping_after = 1s;
     options.silence_max = 4s;
-    conversation_.emplace(std::move(options), world_.now());
+    protocol_.emplace(std::move(options), *buffer_, world_.now());
     backoff_.emplace(static_cast<std::uint32_t>(world_.draw(1'000)), robot::BackoffWaits{20ms, 1'000ms});
     handed_over_ = 0;
     connect();
@@ -40,7 +40,7 @@ void Robot::start_again() {
     ++runs_;
     ++links_;
     drop_connection();
-    conversation_.reset();
+    protocol_.reset();
     const auto run = runs_;
     world_.after(world_.between(10ms, 3s), [this, run] {
         if (run == runs_) start();
@@ -48,7 +48,7 @@ void Robot::start_again() {
 }
 
 void Robot::crash() {
-    if (done_ || !conversation_) return;
+    if (done_ || !protocol_) return;
     world_.note("robot crashes");
     if (connection_) connection_->vanish(Side::kRobot);
     connection_.reset();
@@ -59,43 +59,35 @@ void Robot::connect() {
     connection_ = connect_();
     ++links_;
     if (!connection_) return lose({{Errc::kUnreachable, "nobody listens"}, true});
-    decoder_ = wire::FrameDecoder(wire::kFrameBytesMax);
     connection_->listen(Side::kRobot, {[this](std::string_view bytes) { hear(bytes); },
                                        [this] {
                                            lose({{Errc::kUnreachable, "the connection was lost"}, true});
                                        }});
-    conversation_->open(world_.now());
+    protocol_->open(world_.now());
     say();
 }
 
 void Robot::hear(std::string_view bytes) {
     const auto link = links_;
-    std::ranges::copy(std::as_bytes(std::span(bytes)), decoder_.prepare(bytes.size()).begin());
-    decoder_.commit(bytes.size());
-    for (;;) {
-        const auto body = decoder_.next();
-        if (!body) return lose({body.error(), true});
-        if (!*body) break;
-        const auto message = wire::decode(**body);
-        if (!message) return lose({message.error(), true});
-        world_.note(wire::name_of(*message));
-        if (const auto failure = conversation_->receive(*message, world_.now())) return lose(*failure);
-        if (conversation_->acknowledged() > standing_.acknowledged) {
-            standing_.acknowledged = conversation_->acknowledged();
-            backoff_->reset();
-            world_.note(standing_.plan.name, standing_.acknowledged);
-        }
+    std::ranges::copy(std::as_bytes(std::span(bytes)), protocol_->prepare(bytes.size()).begin());
+    const auto failure = protocol_->on_bytes(bytes.size(), world_.now());
+    if (buffer_->acknowledged() > standing_.acknowledged) {
+        standing_.acknowledged = buffer_->acknowledged();
+        backoff_->reset();
+        world_.note(standing_.plan.name, standing_.acknowledged);
     }
+    if (failure) return lose(*failure);
     if (link == links_) say();
 }
 
 void Robot::say() {
     if (!connection_) return;
-    while (auto frame = conversation_->next_frame(world_.now())) connection_->send(Side::kRobot, std::move(*frame));
-    if (conversation_->said_goodbye()) { // all scans are acknowledged
+    for (std::string frame; protocol_->append_next_frame(frame, world_.now()); frame.clear())
+        connection_->send(Side::kRobot, frame);
+    if (protocol_->said_goodbye()) { // all scans are acknowledged
         done_ = true;
         drop_connection();
-        conversation_.reset();
+        protocol_.reset();
         return;
     }
     watch();
@@ -103,15 +95,15 @@ void Robot::say() {
 
 /// Sends the recording's next scan as soon as there is space for it.
 void Robot::feed() {
-    if (conversation_->resumed_after()) {
-        handed_over_ = std::max(handed_over_, *conversation_->resumed_after());
-        if (handed_over_ < standing_.plan.scans && conversation_->has_room()) {
-            conversation_->add({laser_, testing_support::random_scan(standing_.plan.seed, ++handed_over_)},
-                               world_.now());
-            if (handed_over_ == standing_.plan.scans) conversation_->end();
+    if (protocol_->resumed_after()) {
+        handed_over_ = std::max(handed_over_, *protocol_->resumed_after());
+        if (handed_over_ < standing_.plan.scans && buffer_->has_room()) {
+            buffer_->push({laser_, testing_support::random_scan(standing_.plan.seed, ++handed_over_)});
+            protocol_->on_scans_added(1, world_.now());
+            if (handed_over_ == standing_.plan.scans) protocol_->end();
             say();
         } else if (handed_over_ >= standing_.plan.scans) {
-            conversation_->end();
+            protocol_->end();
             return say();
         }
     }
@@ -120,8 +112,8 @@ void Robot::feed() {
 
 void Robot::watch() {
     if (!connection_) return;
-    if (const auto failure = conversation_->check(world_.now())) return lose(*failure);
-    const Time due = conversation_->deadline(world_.now());
+    if (const auto failure = protocol_->check(world_.now())) return lose(*failure);
+    const Time due = protocol_->deadline(world_.now());
     if (due >= watching_ && watching_ > world_.now()) return; // an earlier check is already scheduled
     watching_ = due;
     while_linked(due, &Robot::say);
@@ -130,7 +122,7 @@ void Robot::watch() {
 void Robot::lose(const wire::LinkError& why) {
     world_.note(why.error.message);
     drop_connection();
-    conversation_->close();
+    protocol_->close();
     if (why.retryable) return while_running(backoff_->next(), &Robot::connect);
     standing_.outcome = why.error;
     start_again();
@@ -145,7 +137,7 @@ void Robot::drop_connection() {
 
 void Robot::while_running(Duration delay, void (Robot::*what)()) {
     world_.after(delay, [this, what, run = runs_] {
-        if (run == runs_ && conversation_) (this->*what)();
+        if (run == runs_ && protocol_) (this->*what)();
     });
 }
 

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "common/wire/frame_decoder.hpp"
+#include "common/link/client_protocol.hpp"
 #include "robot_client/uplink/backoff.hpp"
-#include "robot_client/uplink/conversation.hpp"
+#include "robot_client/uplink/send_buffer.hpp"
 #include "tests/fault/fleet.hpp"
 #include "tests/fault/simulation/network.hpp"
 
@@ -53,11 +53,11 @@ private:
     std::uint64_t links_ = 0;
     bool done_ = false;
 
-    std::optional<robot::Conversation> conversation_; // of the current run; nullopt: the program is not running
+    std::optional<robot::SendBuffer> buffer_;      // of the current run
+    std::optional<link::ClientProtocol> protocol_; // of the current run; nullopt: the program is not running
     std::optional<robot::Backoff> backoff_;
     std::uint64_t handed_over_ = 0;
     std::shared_ptr<Connection> connection_;
-    wire::FrameDecoder decoder_{wire::kFrameBytesMax};
     Time watching_ = Time::max(); // the time of the next scheduled check
 };
 

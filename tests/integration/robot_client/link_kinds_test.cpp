@@ -47,8 +47,8 @@ protected:
         UplinkOptions made;
         made.server.host = "127.0.0.1";
         made.server.port = std::to_string(server_->port());
-        made.conversation.hello.robot = "r1";
-        made.conversation.hello.session = "s1";
+        made.protocol.hello.robot = "r1";
+        made.protocol.hello.session = "s1";
         made.give_up_after = 20s;
         made.on_trouble = [this](const Error& error) {
             troubles_.push_back(error.message);
@@ -219,7 +219,7 @@ TEST_F(LinkKinds, CompressionSendsFewerBytesAndTheSameScans) {
     io_.restart();
     serve("", {.zstd = true});
     made = options();
-    made.conversation.compress = true;
+    made.protocol.compress = true;
     EXPECT_TRUE(run(made));
     expect_all_stored();
     EXPECT_EQ(server_->compressed_batches(), server_->batches());
@@ -229,7 +229,7 @@ TEST_F(LinkKinds, CompressionSendsFewerBytesAndTheSameScans) {
 TEST_F(LinkKinds, AServerWithoutCompressionGetsPlainScans) {
     serve("", {.zstd = false});
     auto made = options();
-    made.conversation.compress = true;
+    made.protocol.compress = true;
     EXPECT_TRUE(run(made));
     expect_all_stored();
     EXPECT_EQ(server_->compressed_batches(), 0U);

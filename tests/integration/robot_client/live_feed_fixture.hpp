@@ -99,9 +99,9 @@ protected:
         UplinkOptions made;
         made.server.host = "127.0.0.1";
         made.server.port = std::to_string(server_.port());
-        made.conversation.hello.robot = "r1";
-        made.conversation.hello.session = "s1";
-        made.conversation.buffer_bytes_max = 100'000;
+        made.protocol.hello.robot = "r1";
+        made.protocol.hello.session = "s1";
+        made.buffer_bytes_max = 100'000;
         made.give_up_after = 0ms;
         made.give_up_after_end = 20s;
         return made;

@@ -43,8 +43,8 @@ protected:
         UplinkOptions made;
         made.server.host = "127.0.0.1";
         made.server.port = std::to_string(server_->port());
-        made.conversation.hello.robot = "r1";
-        made.conversation.hello.session = "s1";
+        made.protocol.hello.robot = "r1";
+        made.protocol.hello.session = "s1";
         made.give_up_after = 20s;
         made.on_trouble = [this](const Error& error) { troubles_.push_back(error.message); };
         return made;
@@ -97,7 +97,7 @@ TEST_F(UplinkTest, StreamsEverythingAndSendsGoodbye) {
 TEST_F(UplinkTest, RequestsAreAnsweredBetweenScans) {
     serve({{}});
     std::vector<Point2> ends;
-    const auto answered = [&](const Reply& reply) {
+    const auto answered = [&](const link::Reply& reply) {
         ends.push_back(std::get<wire::PlanReply>(reply).path.value().points.back());
     };
     server_->on_stored = [&](std::size_t stored) {
@@ -115,7 +115,7 @@ TEST_F(UplinkTest, RequestsOfABrokenLinkAreSentAgain) {
     int answers = 0;
     server_->on_stored = [&](std::size_t stored) {
         if (stored != 100 || !server_->plans().empty()) return;
-        EXPECT_TRUE(uplink_->ask(wire::PlanRequest{.goal = {3.0, 4.0}}, [&](const Reply&) { ++answers; }));
+        EXPECT_TRUE(uplink_->ask(wire::PlanRequest{.goal = {3.0, 4.0}}, [&](const link::Reply&) { ++answers; }));
     };
     EXPECT_TRUE(run(options()));
     expect_all_stored_once();
@@ -157,8 +157,8 @@ TEST_F(UplinkTest, RetriesRetryableErrorsAndEndsOnFinalOnes) {
 TEST_F(UplinkTest, ASilentServerCausesAReconnect) {
     serve({{.silent_after_scans = 10}, {}});
     auto made = options();
-    made.conversation.ping_after = 50ms;
-    made.conversation.silence_max = 200ms;
+    made.protocol.ping_after = 50ms;
+    made.protocol.silence_max = 200ms;
     EXPECT_TRUE(run(made));
     ASSERT_FALSE(troubles_.empty());
     EXPECT_THAT(troubles_[0], HasSubstr("nothing came from the server"));
@@ -169,8 +169,8 @@ TEST_F(UplinkTest, ASilentServerCausesAReconnect) {
 TEST_F(UplinkTest, AServerThatStopsReadingCausesAReconnect) {
     serve({{.stop_reading_after_scans = 10, .credit_bytes = 100 << 20}, {.credit_bytes = 100 << 20}});
     auto made = options();
-    made.conversation.ping_after = 50ms;
-    made.conversation.silence_max = 200ms;
+    made.protocol.ping_after = 50ms;
+    made.protocol.silence_max = 200ms;
     EXPECT_TRUE(run(made, 40'000)) << "more than the kernel's buffers hold, so that a write blocks";
     EXPECT_EQ(uplink_->status().acknowledged, 40'000U);
     EXPECT_GE(uplink_->status().reconnects, 1U);
@@ -376,7 +376,7 @@ TEST_F(UplinkTest, ASessionOfAnotherRecordingEndsItWithTheServersMessage) {
     const Error other{Errc::kConflict, "robot r1 has streamed carmen:9f3a; choose another session"};
     serve({{.refuse_hello = wire::LinkError{other, false}}});
     auto made = options();
-    made.conversation.hello.source = "carmen:0000";
+    made.protocol.hello.source = "carmen:0000";
     const auto outcome = run(made);
     ASSERT_FALSE(outcome);
     EXPECT_EQ(outcome.error(), other);
@@ -398,13 +398,13 @@ TEST_F(UplinkTest, StopLimitsTheWaitForAcknowledgements) {
 TEST_F(UplinkTest, TheHelloIsTheSameOnEveryLink) {
     serve({{.hang_up_after_scans = 10}, {}});
     auto made = options();
-    made.conversation.hello.create = SessionOptions{};
-    made.conversation.hello.create->cell_size = 0.1;
-    made.conversation.hello.client = "test";
+    made.protocol.hello.create = SessionOptions{};
+    made.protocol.hello.create->cell_size = 0.1;
+    made.protocol.hello.client = "test";
     EXPECT_TRUE(run(made));
     ASSERT_EQ(server_->hellos().size(), 2U);
-    EXPECT_EQ(server_->hellos()[0], made.conversation.hello);
-    EXPECT_EQ(server_->hellos()[1], made.conversation.hello);
+    EXPECT_EQ(server_->hellos()[0], made.protocol.hello);
+    EXPECT_EQ(server_->hellos()[1], made.protocol.hello);
 }
 
 } // namespace

@@ -101,8 +101,7 @@ const std::vector<Folder> kFolders = {
 
     // The load generator runs outside the server: it does not include the server, and no folder includes it.
     {.path = "load/core",
-     .may_include = {"common/error", "common/geometry", "common/json", "common/scan", "common/wire",
-                     "robot_client/uplink"},
+     .may_include = {"common/error", "common/geometry", "common/json", "common/link", "common/scan", "common/wire"},
      .pure = true},
     {.path = "load/net", .may_include = {"common", "load/core", "robot_client/uplink"}},
     {.path = "load/app",

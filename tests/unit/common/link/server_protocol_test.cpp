@@ -32,7 +32,7 @@ std::string frame_of(const wire::Message& message) {
 
 std::string hello() { return frame_of(wire::Hello{.robot = "r", .session = "lab"}); }
 
-/// Runs a protocol, records its actions as words, and completes each write at once unless told otherwise.
+/// Runs a protocol, records its actions as words, and completes each write at once if `completes_writes`.
 class Owner {
 public:
     explicit Owner(const ServerProtocolConfig& config = {}) : protocol(config, now) {}

@@ -1,5 +1,4 @@
-#include "common/wire/frame_decoder.hpp"
-#include "robot_client/uplink/conversation.hpp"
+#include "tests/unit/robot_client/uplink/client_link.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -15,35 +14,35 @@ using testing::IsEmpty;
 class Batching : public testing::Test {
 protected:
     void begin(std::chrono::milliseconds delay, bool compress = false, bool server_understands = true) {
-        ConversationOptions options;
+        link::ClientProtocolOptions options;
         options.hello.robot = "r1";
         options.hello.session = "s1";
         options.batch_delay = delay;
         options.batch_bytes_max = 4000;
         options.compress = compress;
-        conversation_.emplace(options, now_);
+        client_.emplace(options, now_);
         server_understands_ = server_understands;
         connect();
     }
 
     void connect(std::uint64_t durable = 0) {
-        conversation_->open(now_);
+        client_->protocol.open(now_);
         said();
-        ASSERT_FALSE(conversation_->receive(wire::Welcome{"a1", durable, {}, 1 << 20, server_understands_}, now_));
+        ASSERT_FALSE(client_->receive(wire::Welcome{"a1", durable, {}, 1 << 20, server_understands_}, now_));
     }
 
     void add(int count) {
         for (int i = 0; i < count; ++i) {
             Observation made{laser_, {}};
             made.scan.ranges.assign(180, 1000);
-            conversation_->add(std::move(made), now_);
+            client_->add(std::move(made), now_);
         }
     }
 
     /// Scans of each batch that it has to say now.
     std::vector<std::size_t> said() {
         std::vector<std::size_t> batches;
-        while (const auto frame = conversation_->next_frame(now_)) {
+        while (const auto frame = client_->next_frame(now_)) {
             auto message = *wire::decode(std::string_view(*frame).substr(wire::kLengthPrefixBytes));
             if (const auto* compressed = std::get_if<wire::CompressedScanBatch>(&message)) {
                 ++compressed_;
@@ -54,10 +53,10 @@ protected:
         return batches;
     }
 
-    Conversation::Time now_{1000s};
+    ClientLink::Time now_{1000s};
     std::shared_ptr<const Sensor> laser_ = std::make_shared<const Sensor>(
         Sensor{0, SensorKind::kLaser, "laser", {}, UniformAngles{-1.5, 0.01, 180}, 0.0, 0.0, 10.0});
-    std::optional<Conversation> conversation_;
+    std::optional<ClientLink> client_;
     bool server_understands_ = true;
     int compressed_ = 0;
 };
@@ -74,11 +73,11 @@ TEST_F(Batching, ScansWaitForOthersUntilTheOldestHasWaitedLongEnough) {
     begin(1s);
     add(1);
     EXPECT_THAT(said(), IsEmpty());
-    EXPECT_EQ(conversation_->deadline(now_), now_ + 1s);
+    EXPECT_EQ(client_->protocol.deadline(now_), now_ + 1s);
     now_ += 600ms;
     add(1);
     EXPECT_THAT(said(), IsEmpty());
-    EXPECT_EQ(conversation_->deadline(now_), now_ + 400ms);
+    EXPECT_EQ(client_->protocol.deadline(now_), now_ + 400ms);
     now_ += 399ms;
     EXPECT_THAT(said(), IsEmpty());
     now_ += 1ms;
@@ -96,7 +95,7 @@ TEST_F(Batching, AFullBatchDoesNotWait) {
 TEST_F(Batching, TheLastScansDoNotWait) {
     begin(1h);
     add(2);
-    conversation_->end();
+    client_->protocol.end();
     EXPECT_THAT(said(), ElementsAre(2));
 }
 
@@ -105,34 +104,50 @@ TEST_F(Batching, WhatIsSentAgainDoesNotWaitAgain) {
     add(2);
     now_ += 1s;
     EXPECT_THAT(said(), ElementsAre(2));
-    conversation_->close();
+    client_->protocol.close();
     connect(1);
     EXPECT_THAT(said(), ElementsAre(1));
 }
 
 TEST_F(Batching, WhereThereIsNoCreditADelayThatIsOverWakesNobody) {
     begin(10ms);
-    ASSERT_FALSE(conversation_->receive(wire::Ack{0, 0, 1}, now_));
+    ASSERT_FALSE(client_->receive(wire::Ack{0, 0, 1}, now_));
     add(1);
     now_ += 10ms;
     EXPECT_THAT(said(), IsEmpty());
-    EXPECT_GT(conversation_->deadline(now_), now_) << "only an ack can help";
+    EXPECT_GT(client_->protocol.deadline(now_), now_) << "only an ack can help";
+}
+
+TEST_F(Batching, OnlyFullBatchesAreSentIfTheClientWantsThatAndTheLastScansGoAlone) {
+    link::ClientProtocolOptions options;
+    options.hello.robot = "r1";
+    options.hello.session = "s1";
+    options.batch_scans_max = 3;
+    options.only_full_batches = true;
+    client_.emplace(options, now_);
+    connect();
+    add(2);
+    EXPECT_THAT(said(), IsEmpty());
+    add(5);
+    EXPECT_THAT(said(), ElementsAre(3, 3));
+    client_->protocol.end();
+    EXPECT_THAT(said(), ElementsAre(1));
 }
 
 TEST_F(Batching, ScansThatCameBeforeTheServerGoBehindThoseItHolds) {
-    ConversationOptions options;
+    link::ClientProtocolOptions options;
     options.hello.robot = "r1";
     options.hello.session = "s1";
-    conversation_.emplace(options, now_);
+    client_.emplace(options, now_);
     add(3);
-    EXPECT_TRUE(conversation_->drop_oldest_unsent());
+    EXPECT_TRUE(client_->buffer.drop_oldest_unsent());
     connect(40);
     EXPECT_THAT(said(), ElementsAre(2));
-    EXPECT_EQ(conversation_->last(), 42U);
-    ASSERT_FALSE(conversation_->receive(wire::Ack{42, 41, 1 << 20}, now_));
-    EXPECT_EQ(conversation_->acknowledged(), 42U);
-    EXPECT_EQ(conversation_->applied(), 41U);
-    EXPECT_FALSE(conversation_->drop_oldest_unsent()) << "all were sent";
+    EXPECT_EQ(client_->buffer.last(), 42U);
+    ASSERT_FALSE(client_->receive(wire::Ack{42, 41, 1 << 20}, now_));
+    EXPECT_EQ(client_->buffer.acknowledged(), 42U);
+    EXPECT_EQ(client_->protocol.applied(), 41U);
+    EXPECT_FALSE(client_->buffer.drop_oldest_unsent()) << "all were sent";
 }
 
 } // namespace

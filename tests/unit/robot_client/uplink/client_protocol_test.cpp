@@ -1,6 +1,4 @@
-#include "robot_client/uplink/conversation.hpp"
-
-#include "common/wire/frame_decoder.hpp"
+#include "tests/unit/robot_client/uplink/client_link.hpp"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -14,7 +12,7 @@ namespace {
 
 using namespace std::chrono_literals;
 using testing::HasSubstr;
-using Time = Conversation::Time;
+using Time = ClientLink::Time;
 
 constexpr Time kStart{1000s};
 constexpr std::uint64_t kPlenty = 1 << 20;
@@ -30,34 +28,35 @@ Observation observation(std::shared_ptr<const Sensor> sensor, std::size_t beams 
     return made;
 }
 
-ConversationOptions options() {
-    ConversationOptions made;
+link::ClientProtocolOptions options() {
+    link::ClientProtocolOptions made;
     made.hello.robot = "r1";
     made.hello.session = "s1";
+    made.server = "host:1";
     return made;
 }
 
-/// A conversation and what it says.
-class ConversationTest : public testing::Test {
+/// A client and what it sends.
+class ClientProtocolTest : public testing::Test {
 protected:
     void welcome(std::uint64_t last_durable = 0, std::uint64_t credit = kPlenty, wire::Limits limits = {}) {
-        conversation_.open(now_);
+        client_.protocol.open(now_);
         ASSERT_TRUE(std::holds_alternative<wire::Hello>(said().at(0)));
-        ASSERT_FALSE(conversation_.receive(wire::Welcome{"a1", last_durable, limits, credit}, now_));
+        ASSERT_FALSE(client_.receive(wire::Welcome{"a1", last_durable, limits, credit}, now_));
     }
 
     void add(int count) {
-        for (int i = 0; i < count; ++i) conversation_.add(observation(laser_), now_);
+        for (int i = 0; i < count; ++i) client_.add(observation(laser_), now_);
     }
 
     std::optional<wire::LinkError> ack(std::uint64_t durable, std::uint64_t credit = kPlenty) {
-        return conversation_.receive(wire::Ack{durable, durable, credit}, now_);
+        return client_.receive(wire::Ack{durable, durable, credit}, now_);
     }
 
     /// Everything it has to say now.
     std::vector<wire::Message> said() {
         std::vector<wire::Message> messages;
-        while (auto frame = conversation_.next_frame(now_)) {
+        while (auto frame = client_.next_frame(now_)) {
             frame_bytes_.push_back(frame->size());
             messages.push_back(*wire::decode(std::string_view(*frame).substr(wire::kLengthPrefixBytes)));
         }
@@ -77,7 +76,7 @@ protected:
 
     Time now_ = kStart;
     std::shared_ptr<const Sensor> laser_ = laser();
-    Conversation conversation_{options(), kStart};
+    ClientLink client_{options(), kStart};
     std::vector<std::size_t> frame_bytes_;
 };
 
@@ -87,27 +86,27 @@ std::vector<std::uint64_t> from_to(std::uint64_t first, std::uint64_t last) {
     return seqs;
 }
 
-TEST_F(ConversationTest, SaysHelloFirstAndNothingElseBeforeTheWelcome) {
+TEST_F(ClientProtocolTest, SaysHelloFirstAndNothingElseBeforeTheWelcome) {
     EXPECT_TRUE(said().empty()) << "there is no link yet";
-    conversation_.open(now_);
+    client_.protocol.open(now_);
     const auto messages = said();
     ASSERT_EQ(messages.size(), 1U);
     EXPECT_EQ(std::get<wire::Hello>(messages[0]).robot, "r1");
-    EXPECT_FALSE(conversation_.resumed_after());
+    EXPECT_FALSE(client_.protocol.resumed_after());
 }
 
 /// An earlier link's hello may arrive late; another program comes back again and again.
-TEST_F(ConversationTest, GivesUpOnlyWhenItIsReplacedAgainAndAgain) {
+TEST_F(ClientProtocolTest, GivesUpOnlyWhenItIsReplacedAgainAndAgain) {
     const wire::LinkError replaced{{Errc::kReplaced, "robot 'r1' connected again"}, false};
     const auto end_of_link = [&] {
         welcome();
-        const auto failure = conversation_.receive(replaced, now_);
-        conversation_.close();
+        const auto failure = client_.receive(replaced, now_);
+        client_.protocol.close();
         return failure.value();
     };
     for (int n = 0; n < 4; ++n) { // seldom
         EXPECT_TRUE(end_of_link().retryable);
-        now_ += Replacements::kWithin;
+        now_ += 60s;
     }
     EXPECT_TRUE(end_of_link().retryable);
     now_ += 1s;
@@ -118,7 +117,7 @@ TEST_F(ConversationTest, GivesUpOnlyWhenItIsReplacedAgainAndAgain) {
     EXPECT_THAT(last.error.message, HasSubstr("another program uses the same --robot and --session"));
 }
 
-TEST_F(ConversationTest, DescribesASensorBeforeItsFirstScanAndOnceALink) {
+TEST_F(ClientProtocolTest, DescribesASensorBeforeItsFirstScanAndOnceALink) {
     welcome();
     add(2);
     auto messages = said();
@@ -129,16 +128,16 @@ TEST_F(ConversationTest, DescribesASensorBeforeItsFirstScanAndOnceALink) {
     messages = said();
     ASSERT_EQ(messages.size(), 1U);
     EXPECT_TRUE(std::holds_alternative<wire::ScanBatch>(messages[0]));
-    conversation_.close();
+    client_.protocol.close();
     welcome(3);
     add(1);
     EXPECT_TRUE(std::holds_alternative<Sensor>(said().at(0))) << "a new link knows no sensors";
 }
 
-TEST_F(ConversationTest, ADescriptionThatChangesIsSaidBetweenTheScansItDivides) {
+TEST_F(ClientProtocolTest, ADescriptionThatChangesIsSaidBetweenTheScansItDivides) {
     welcome();
     add(2);
-    conversation_.add(observation(laser(20.0)), now_);
+    client_.add(observation(laser(20.0)), now_);
     add(1);
     const auto messages = said();
     std::vector<std::string> names;
@@ -147,7 +146,7 @@ TEST_F(ConversationTest, ADescriptionThatChangesIsSaidBetweenTheScansItDivides) 
                                                "sensor_description", "scan_batch"}));
 }
 
-TEST_F(ConversationTest, ScansWaitingTogetherShareFramesOfAboutTheWantedSize) {
+TEST_F(ClientProtocolTest, ScansWaitingTogetherShareFramesOfAboutTheWantedSize) {
     welcome(0, 100 << 20);
     add(500);
     frame_bytes_.clear();
@@ -156,7 +155,7 @@ TEST_F(ConversationTest, ScansWaitingTogetherShareFramesOfAboutTheWantedSize) {
     for (const std::size_t bytes : frame_bytes_) EXPECT_LE(bytes, options().batch_bytes_max);
 }
 
-TEST_F(ConversationTest, NeverHasMoreThanItsCreditUnderWay) {
+TEST_F(ClientProtocolTest, NeverHasMoreThanItsCreditUnderWay) {
     std::mt19937 random(5);
     welcome(0, 5000);
     add(300);
@@ -164,7 +163,7 @@ TEST_F(ConversationTest, NeverHasMoreThanItsCreditUnderWay) {
     std::uint64_t durable = 0;
     std::deque<std::pair<std::uint64_t, std::size_t>> under_way; // last seq and bytes of each batch
     for (int round = 0; round < 10000 && durable < 300; ++round) {
-        while (auto frame = conversation_.next_frame(now_)) {
+        while (auto frame = client_.next_frame(now_)) {
             const auto message = *wire::decode(std::string_view(*frame).substr(wire::kLengthPrefixBytes));
             if (const auto* batch = std::get_if<wire::ScanBatch>(&message)) {
                 under_way.emplace_back(batch->scans.back().seq, frame->size());
@@ -185,19 +184,19 @@ TEST_F(ConversationTest, NeverHasMoreThanItsCreditUnderWay) {
     EXPECT_EQ(durable, 300U);
 }
 
-TEST_F(ConversationTest, CreditIsOfWhatTheBatchesHoldNotOfWhatTravels) {
-    ConversationOptions compressing = options();
+TEST_F(ClientProtocolTest, CreditIsOfWhatTheBatchesHoldNotOfWhatTravels) {
+    link::ClientProtocolOptions compressing = options();
     compressing.compress = true;
-    Conversation conversation{compressing, kStart};
-    conversation.open(now_);
-    ASSERT_TRUE(conversation.next_frame(now_));
+    ClientLink client{compressing, kStart};
+    client.protocol.open(now_);
+    ASSERT_TRUE(client.next_frame(now_));
     wire::Welcome welcome{"a1", 0, {}, 2000};
     welcome.zstd = true;
-    ASSERT_FALSE(conversation.receive(welcome, now_));
-    for (int i = 0; i < 10; ++i) conversation.add(observation(laser_), now_);
+    ASSERT_FALSE(client.receive(welcome, now_));
+    for (int i = 0; i < 10; ++i) client.add(observation(laser_), now_);
     std::size_t held = 0;
     std::size_t travelled = 0;
-    while (const auto frame = conversation.next_frame(now_)) {
+    while (const auto frame = client.next_frame(now_)) {
         const auto message = *wire::decode(std::string_view(*frame).substr(wire::kLengthPrefixBytes));
         if (std::holds_alternative<Sensor>(message)) continue;
         held += std::get<wire::CompressedScanBatch>(message).size + wire::kLengthPrefixBytes;
@@ -208,7 +207,7 @@ TEST_F(ConversationTest, CreditIsOfWhatTheBatchesHoldNotOfWhatTravels) {
     EXPECT_LE(held, 2000U);
 }
 
-TEST_F(ConversationTest, WithoutCreditItWaits) {
+TEST_F(ClientProtocolTest, WithoutCreditItWaits) {
     welcome(0, 0);
     add(1);
     EXPECT_TRUE(said_seqs().empty());
@@ -216,7 +215,7 @@ TEST_F(ConversationTest, WithoutCreditItWaits) {
     EXPECT_EQ(said_seqs(), from_to(1, 1));
 }
 
-TEST_F(ConversationTest, KeepsToTheServersBatchLimits) {
+TEST_F(ClientProtocolTest, KeepsToTheServersBatchLimits) {
     welcome(0, kPlenty, {2000, 4096, 3});
     add(7);
     for (const auto& message : said()) {
@@ -226,187 +225,232 @@ TEST_F(ConversationTest, KeepsToTheServersBatchLimits) {
     for (const std::size_t bytes : frame_bytes_) EXPECT_LE(bytes, 2000 + wire::kLengthPrefixBytes);
 }
 
-TEST_F(ConversationTest, AScanTheServerWillNotTakeIsAFinalError) {
+TEST_F(ClientProtocolTest, AScanTheServerWillNotTakeIsAFinalError) {
     welcome(0, kPlenty, {kPlenty, 100, 3});
     add(1);
     EXPECT_TRUE(said_seqs().empty());
-    const auto failure = conversation_.check(now_);
+    const auto failure = client_.protocol.check(now_);
     ASSERT_TRUE(failure);
     EXPECT_FALSE(failure->retryable);
     EXPECT_THAT(failure->error.message, HasSubstr("scan 1 has 180 beams, the server takes at most 100"));
 }
 
-TEST_F(ConversationTest, AFreshProgramContinuesBehindTheServersScans) {
+TEST_F(ClientProtocolTest, AFreshProgramContinuesBehindTheServersScans) {
     welcome(41);
-    EXPECT_EQ(conversation_.resumed_after(), 41U);
+    EXPECT_EQ(client_.protocol.resumed_after(), 41U);
     add(2);
     EXPECT_EQ(said_seqs(), from_to(42, 43));
 }
 
-TEST_F(ConversationTest, AfterAReconnectItResendsWhatWasNotDurable) {
+TEST_F(ClientProtocolTest, AfterAReconnectItResendsWhatWasNotDurable) {
     welcome();
     add(10);
     EXPECT_EQ(said_seqs(), from_to(1, 10));
     ASSERT_FALSE(ack(4));
-    conversation_.close();
+    client_.protocol.close();
     EXPECT_TRUE(said().empty());
     add(2);
     welcome(6); // the server had stored two more than it could acknowledge
     EXPECT_EQ(said_seqs(), from_to(7, 12));
-    EXPECT_EQ(conversation_.acknowledged(), 6U);
-    EXPECT_EQ(conversation_.welcomes(), 2U);
+    EXPECT_EQ(client_.buffer.acknowledged(), 6U);
+    EXPECT_EQ(client_.protocol.welcomes(), 2U);
 }
 
-TEST_F(ConversationTest, AServerThatLostAcknowledgedScansIsAFinalError) {
+TEST_F(ClientProtocolTest, AServerThatLostAcknowledgedScansIsAFinalError) {
     welcome();
     add(10);
     said();
     ASSERT_FALSE(ack(8));
-    conversation_.close();
-    conversation_.open(now_);
+    client_.protocol.close();
+    client_.protocol.open(now_);
     said();
-    const auto failure = conversation_.receive(wire::Welcome{"a1", 5, {}, kPlenty}, now_);
+    const auto failure = client_.receive(wire::Welcome{"a1", 5, {}, kPlenty}, now_);
     ASSERT_TRUE(failure);
     EXPECT_FALSE(failure->retryable);
     EXPECT_THAT(failure->error.message, HasSubstr("scans 6 to 8 are no longer in memory"));
+    EXPECT_EQ(client_.protocol.lost_scans(), 3U);
 }
 
-TEST_F(ConversationTest, ASessionMadeAnewMeanwhileIsAFinalError) {
+TEST_F(ClientProtocolTest, ASessionMadeAnewMeanwhileIsAFinalError) {
     welcome();
     add(10);
     said();
     ASSERT_FALSE(ack(8));
-    conversation_.close();
-    conversation_.open(now_);
+    client_.protocol.close();
+    client_.protocol.open(now_);
     said();
-    const auto failure = conversation_.receive(wire::Welcome{"b2", 0, {}, kPlenty}, now_);
+    const auto failure = client_.receive(wire::Welcome{"b2", 0, {}, kPlenty}, now_);
     ASSERT_TRUE(failure);
     EXPECT_FALSE(failure->retryable);
-    EXPECT_THAT(failure->error.message, HasSubstr("made anew"));
+    EXPECT_THAT(failure->error.message, HasSubstr("created again"));
+    EXPECT_EQ(client_.protocol.lost_scans(), 8U);
 }
 
-TEST_F(ConversationTest, TheServersErrorsEndTheLinkAsTheySay) {
+TEST_F(ClientProtocolTest, TheServersErrorsEndTheLinkAsTheySay) {
     welcome();
     for (const bool retryable : {true, false}) {
         const wire::LinkError said_by_server{{Errc::kConflict, "cell_size is 0.05 there"}, retryable};
-        EXPECT_EQ(conversation_.receive(said_by_server, now_), said_by_server);
+        EXPECT_EQ(client_.receive(said_by_server, now_), said_by_server);
     }
-    EXPECT_TRUE(conversation_.receive(wire::Goodbye{"restarting"}, now_)->retryable);
+    EXPECT_TRUE(client_.receive(wire::Goodbye{"restarting"}, now_)->retryable);
 }
 
-TEST_F(ConversationTest, FramesOutOfPlaceEndTheLink) {
-    conversation_.open(now_);
-    EXPECT_THAT(conversation_.receive(wire::Ack{}, now_)->error.message, HasSubstr("unexpected ack"));
-    EXPECT_TRUE(conversation_.receive(wire::Welcome{}, now_)) << "before the hello";
+TEST_F(ClientProtocolTest, FramesOutOfPlaceEndTheLink) {
+    client_.protocol.open(now_);
+    EXPECT_THAT(client_.receive(wire::Ack{}, now_)->error.message, HasSubstr("unexpected ack"));
+    EXPECT_TRUE(client_.receive(wire::Welcome{}, now_)) << "before the hello";
     welcome();
-    EXPECT_TRUE(conversation_.receive(wire::Welcome{}, now_)) << "a second welcome";
-    EXPECT_TRUE(conversation_.receive(wire::Hello{}, now_));
-    EXPECT_TRUE(conversation_.receive(wire::ScanBatch{}, now_));
+    EXPECT_TRUE(client_.receive(wire::Welcome{}, now_)) << "a second welcome";
+    EXPECT_TRUE(client_.receive(wire::Hello{}, now_));
+    EXPECT_TRUE(client_.receive(wire::ScanBatch{}, now_));
     EXPECT_THAT(ack(1)->error.message, HasSubstr("acknowledged scan 1, only 0 were sent"));
-    EXPECT_FALSE(conversation_.receive(wire::Correction{}, now_));
+    EXPECT_FALSE(client_.receive(wire::Correction{}, now_));
 }
 
-TEST_F(ConversationTest, AnAckThatFallsBackIsReadForItsCreditOnly) {
+TEST_F(ClientProtocolTest, AnAckThatFallsBackIsReadForItsCreditOnly) {
     welcome();
     add(3);
     said();
     ASSERT_FALSE(ack(2));
     ASSERT_FALSE(ack(1));
-    EXPECT_EQ(conversation_.acknowledged(), 2U);
+    EXPECT_EQ(client_.buffer.acknowledged(), 2U);
 }
 
-TEST_F(ConversationTest, AnswersPingsAndPingsInSilence) {
+TEST_F(ClientProtocolTest, AnswersPingsAndPingsInSilence) {
     welcome();
-    ASSERT_FALSE(conversation_.receive(wire::Ping{77}, now_));
+    ASSERT_FALSE(client_.receive(wire::Ping{77}, now_));
     EXPECT_EQ(said(), (std::vector<wire::Message>{wire::Pong{77}}));
     now_ += 4999ms;
     EXPECT_TRUE(said().empty());
-    EXPECT_EQ(conversation_.deadline(now_), now_ + 1ms);
+    EXPECT_EQ(client_.protocol.deadline(now_), now_ + 1ms);
     now_ += 1ms;
     EXPECT_TRUE(std::holds_alternative<wire::Ping>(said().at(0)));
     EXPECT_TRUE(said().empty()) << "one ping at a time";
 }
 
-TEST_F(ConversationTest, ASilentLinkIsDeadAndAnyFrameKeepsItAlive) {
+TEST_F(ClientProtocolTest, ASilentLinkIsDeadAndAnyFrameKeepsItAlive) {
     welcome();
     now_ += 14s;
-    EXPECT_FALSE(conversation_.check(now_));
-    ASSERT_FALSE(conversation_.receive(wire::Pong{1}, now_));
+    EXPECT_FALSE(client_.protocol.check(now_));
+    ASSERT_FALSE(client_.receive(wire::Pong{1}, now_));
     now_ += 14s;
-    EXPECT_FALSE(conversation_.check(now_));
+    EXPECT_FALSE(client_.protocol.check(now_));
     now_ += 1s;
-    ASSERT_TRUE(conversation_.check(now_));
-    EXPECT_TRUE(conversation_.check(now_)->retryable);
-    EXPECT_THAT(conversation_.check(now_)->error.message, HasSubstr("nothing came from the server for 15 s"));
+    ASSERT_TRUE(client_.protocol.check(now_));
+    EXPECT_TRUE(client_.protocol.check(now_)->retryable);
+    EXPECT_THAT(client_.protocol.check(now_)->error.message, HasSubstr("nothing came from the server for 15 s"));
 }
 
-TEST_F(ConversationTest, AHelloWithoutAnswerIsADeadLink) {
-    conversation_.open(now_);
+TEST_F(ClientProtocolTest, AHelloWithoutAnswerIsADeadLink) {
+    client_.protocol.open(now_);
     said();
-    EXPECT_EQ(conversation_.deadline(now_), kStart + 10s);
-    EXPECT_FALSE(conversation_.check(now_ + 9999ms));
-    EXPECT_THAT(conversation_.check(now_ + 10s)->error.message, HasSubstr("did not answer the hello within 10 s"));
+    EXPECT_EQ(client_.protocol.deadline(now_), kStart + 10s);
+    EXPECT_FALSE(client_.protocol.check(now_ + 9999ms));
+    EXPECT_THAT(client_.protocol.check(now_ + 10s)->error.message, HasSubstr("did not answer the hello within 10 s"));
 }
 
-TEST_F(ConversationTest, SaysGoodbyeOnceEverythingIsDurable) {
+TEST_F(ClientProtocolTest, SaysGoodbyeOnceEverythingIsDurable) {
     welcome();
     add(2);
     said();
-    conversation_.end();
+    client_.protocol.end();
     EXPECT_TRUE(said().empty());
     ASSERT_FALSE(ack(1));
-    EXPECT_FALSE(conversation_.is_done());
+    EXPECT_FALSE(client_.protocol.is_done());
     ASSERT_FALSE(ack(2));
-    EXPECT_TRUE(conversation_.is_done());
+    EXPECT_TRUE(client_.protocol.is_done());
     EXPECT_TRUE(std::holds_alternative<wire::Goodbye>(said().at(0)));
-    EXPECT_TRUE(conversation_.said_goodbye());
+    EXPECT_TRUE(client_.protocol.said_goodbye());
     now_ += 60s;
     EXPECT_TRUE(said().empty()) << "goodbye is the last word";
 }
 
-TEST_F(ConversationTest, StallsOnlyWhileSomethingWaitsAndProgressEndsIt) {
-    EXPECT_EQ(conversation_.stalled_since(), kStart) << "the server was never reached";
+TEST_F(ClientProtocolTest, StallsOnlyWhileSomethingWaitsAndProgressEndsIt) {
+    EXPECT_EQ(client_.protocol.stalled_since(), kStart) << "the server was never reached";
     now_ += 5s;
     welcome();
-    EXPECT_EQ(conversation_.stalled_since(), std::nullopt);
+    EXPECT_EQ(client_.protocol.stalled_since(), std::nullopt);
     now_ += 5s;
     add(2);
-    EXPECT_EQ(conversation_.stalled_since(), now_);
+    EXPECT_EQ(client_.protocol.stalled_since(), now_);
     said();
     now_ += 5s;
     ASSERT_FALSE(ack(1));
-    EXPECT_EQ(conversation_.stalled_since(), now_);
+    EXPECT_EQ(client_.protocol.stalled_since(), now_);
     const Time progress = now_;
     now_ += 5s;
     ASSERT_FALSE(ack(1));
-    EXPECT_EQ(conversation_.stalled_since(), progress) << "an ack that says nothing new is no progress";
+    EXPECT_EQ(client_.protocol.stalled_since(), progress) << "an ack that says nothing new is no progress";
     ASSERT_FALSE(ack(2));
-    EXPECT_EQ(conversation_.stalled_since(), std::nullopt);
+    EXPECT_EQ(client_.protocol.stalled_since(), std::nullopt);
+}
+
+TEST(ClientProtocol, AnyCutOfTheServersBytesGivesTheSameResult) {
+    std::string bytes;
+    wire::encode(wire::Welcome{"a1", 5, {}, kPlenty}, bytes);
+    wire::encode(wire::Ping{3}, bytes);
+    wire::encode(wire::Ack{6, 6, kPlenty}, bytes);
+    for (std::size_t piece = 1; piece <= bytes.size(); ++piece) {
+        ClientLink client(options(), kStart);
+        client.piece_bytes = piece;
+        client.protocol.open(kStart);
+        EXPECT_EQ(client.sent(kStart).size(), 1U);
+        EXPECT_THAT(client.receive_bytes(bytes, kStart)->error.message, HasSubstr("acknowledged scan 6, only 5"))
+            << piece;
+        EXPECT_EQ(client.protocol.resumed_after(), 5U);
+        EXPECT_EQ(client.sent(kStart), (std::vector<wire::Message>{wire::Pong{3}}));
+    }
+}
+
+TEST_F(ClientProtocolTest, BytesThatAreNoFramesAreAnotherProgramBeforeTheWelcomeAndDamageAfterIt) {
+    client_.protocol.open(now_);
+    const auto other = client_.receive_bytes("HTTP/1.1 400 Bad Request\r\n", now_);
+    ASSERT_TRUE(other);
+    EXPECT_FALSE(other->retryable);
+    EXPECT_THAT(other->error.message, HasSubstr("what listens at host:1 does not speak Scanloom's robot link"));
+    client_.protocol.close();
+    welcome();
+    const auto damaged = client_.receive_bytes(std::string(4, '\xff'), now_);
+    ASSERT_TRUE(damaged);
+    EXPECT_TRUE(damaged->retryable);
+    EXPECT_THAT(damaged->error.message, testing::StartsWith("what the server sent cannot be read: "));
+}
+
+TEST_F(ClientProtocolTest, WithoutAnEarlierRunScansOfTheServerAreAnothers) {
+    auto fresh = options();
+    fresh.continues_earlier_run = false;
+    ClientLink client(fresh, kStart);
+    client.protocol.open(now_);
+    EXPECT_EQ(client.sent(now_).size(), 1U);
+    const auto failure = client.receive(wire::Welcome{"a1", 3, {}, kPlenty}, now_);
+    ASSERT_TRUE(failure);
+    EXPECT_FALSE(failure->retryable);
+    EXPECT_THAT(failure->error.message, HasSubstr("holds 3 scans of this robot, only 0 were sent from here"));
+    EXPECT_EQ(client.protocol.lost_scans(), 0U);
 }
 
 /// A server that loses its link at random and keeps a random part of what reached it: in the end it has every scan
 /// once.
-TEST(Conversation, EveryScanArrivesOnceAndInOrderHoweverLinksBreak) {
+TEST(ClientProtocol, EveryScanArrivesOnceAndInOrderHoweverLinksBreak) {
     for (unsigned seed = 0; seed < 200; ++seed) {
         std::mt19937 random(seed);
         Time now = kStart;
         auto made = options();
-        made.buffer_bytes_max = 20'000;
         made.batch_bytes_max = 3'000;
-        Conversation robot(made, now);
+        ClientLink robot(made, now, 20'000);
         const auto sensor = laser();
         constexpr std::uint64_t kScans = 200;
         std::uint64_t stored = 0;
         std::uint64_t taken = 0;
-        for (int link = 0; !robot.is_done(); ++link) {
+        for (int link = 0; !robot.protocol.is_done(); ++link) {
             ASSERT_LT(link, 1000);
-            robot.open(now);
+            robot.protocol.open(now);
             ASSERT_TRUE(robot.next_frame(now));
             ASSERT_FALSE(robot.receive(wire::Welcome{"a1", stored, {}, 8000}, now));
             for (std::uint64_t steps = random() % 30; steps > 0; --steps) {
-                while (taken < kScans && robot.has_room()) {
+                while (taken < kScans && robot.buffer.has_room()) {
                     robot.add(observation(sensor), now);
-                    if (++taken == kScans) robot.end();
+                    if (++taken == kScans) robot.protocol.end();
                 }
                 if (auto frame = robot.next_frame(now)) {
                     const auto message = *wire::decode(std::string_view(*frame).substr(wire::kLengthPrefixBytes));
@@ -421,35 +465,35 @@ TEST(Conversation, EveryScanArrivesOnceAndInOrderHoweverLinksBreak) {
                     ASSERT_FALSE(robot.receive(wire::Ack{stored, stored, 8000}, now));
                 }
             }
-            robot.close();
+            robot.protocol.close();
         }
         EXPECT_EQ(stored, kScans);
-        EXPECT_EQ(robot.acknowledged(), kScans);
+        EXPECT_EQ(robot.buffer.acknowledged(), kScans);
     }
 }
 
-TEST_F(ConversationTest, AServersTextIsShownWithoutItsControlCharacters) {
+TEST_F(ClientProtocolTest, AServersTextIsShownWithoutItsControlCharacters) {
     welcome();
-    const auto refused = conversation_.receive(wire::LinkError{{Errc::kConflict, "no\x1b[2J\xc2\x9b!"}, false}, now_);
+    const auto refused = client_.receive(wire::LinkError{{Errc::kConflict, "no\x1b[2J\xc2\x9b!"}, false}, now_);
     ASSERT_TRUE(refused);
     EXPECT_EQ(*refused, (wire::LinkError{{Errc::kConflict, R"(no\x1b[2J\xc2\x9b!)"}, false}));
-    const auto left = conversation_.receive(wire::Goodbye{std::string(5'000, '\a')}, now_);
+    const auto left = client_.receive(wire::Goodbye{std::string(5'000, '\a')}, now_);
     ASSERT_TRUE(left);
     EXPECT_THAT(left->error.message, testing::StartsWith(R"(the server said goodbye: \x07\x07)"));
     EXPECT_LT(left->error.message.size(), 600U);
 }
 
-TEST_F(ConversationTest, AServerThatDoesNotSayWhyIsSpokenFor) {
+TEST_F(ClientProtocolTest, AServerThatDoesNotSayWhyIsSpokenFor) {
     welcome();
-    EXPECT_EQ(conversation_.receive(wire::LinkError{{Errc::kConflict, ""}, false}, now_)->error.message,
+    EXPECT_EQ(client_.receive(wire::LinkError{{Errc::kConflict, ""}, false}, now_)->error.message,
               "the server ended the link with the error conflict and did not say why");
-    EXPECT_EQ(conversation_.receive(wire::Goodbye{}, now_)->error.message, "the server said goodbye without a reason");
+    EXPECT_EQ(client_.receive(wire::Goodbye{}, now_)->error.message, "the server said goodbye without a reason");
 }
 
-TEST_F(ConversationTest, AsksBeforeItSendsScansAndHandsOverTheReply) {
-    std::vector<Reply> replies;
-    EXPECT_TRUE(
-        conversation_.ask(wire::PlanRequest{.goal = {1.0, 2.0}}, [&](const Reply& one) { replies.push_back(one); }));
+TEST_F(ClientProtocolTest, AsksBeforeItSendsScansAndHandsOverTheReply) {
+    std::vector<link::Reply> replies;
+    EXPECT_TRUE(client_.protocol.ask(wire::PlanRequest{.goal = {1.0, 2.0}},
+                                     [&](const link::Reply& one) { replies.push_back(one); }));
     welcome();
     add(1);
     const auto messages = said();
@@ -458,15 +502,15 @@ TEST_F(ConversationTest, AsksBeforeItSendsScansAndHandsOverTheReply) {
     EXPECT_EQ(request.goal, (Point2{1.0, 2.0}));
     EXPECT_TRUE(replies.empty());
     const wire::PlanReply reply{request.id, 5, Error{Errc::kNoPath, "a wall"}};
-    EXPECT_FALSE(conversation_.receive(reply, now_));
+    EXPECT_FALSE(client_.receive(reply, now_));
     ASSERT_EQ(replies.size(), 1U);
     EXPECT_EQ(std::get<wire::PlanReply>(replies[0]), reply);
     EXPECT_EQ(said_seqs(), from_to(1, 0)) << "all is said";
 }
 
-TEST_F(ConversationTest, AReplyThatNobodyAskedForIsAFaultOfTheServer) {
+TEST_F(ClientProtocolTest, AReplyThatNobodyAskedForIsAFaultOfTheServer) {
     welcome();
-    const auto failure = conversation_.receive(wire::PlanReply{1, 5, Error{Errc::kNoPath, "a wall"}}, now_);
+    const auto failure = client_.receive(wire::PlanReply{1, 5, Error{Errc::kNoPath, "a wall"}}, now_);
     ASSERT_TRUE(failure);
     EXPECT_THAT(failure->error.message, HasSubstr("unexpected plan_reply"));
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "common/link/requests.hpp"
 #include "common/wire/messages.hpp"
 
 #include <cstddef>
@@ -7,19 +8,16 @@
 #include <functional>
 #include <map>
 #include <optional>
-#include <variant>
 
-namespace scanloom::robot {
+namespace scanloom::link {
 
-/// A request that a robot can send to the server, see proto/scanloom/v1/frame.proto. OpenRequests sets the id. Pre:
-/// points are finite and within common/scan/limits.hpp.
-using Request = std::variant<wire::PlanRequest, wire::GoalRequest, wire::CoverageRequest, wire::LocateRequest>;
-
-/// The reply to a request, of the same kind.
-using Reply = std::variant<wire::PlanReply, wire::GoalReply, wire::CoverageReply, wire::LocateReply>;
+/// Receives the reply to a request.
 using Answered = std::function<void(const Reply&)>;
 
-/// Requests that have no reply yet. They outlive links: a request sent on a link that broke is sent again.
+/// Requests that have no reply yet, with ids that this class sets. Pre of each request: points are finite and within
+/// common/scan/limits.hpp.
+///
+///  They outlive links: a request sent on a link that broke is sent again.
 /// Threads: one at a time.
 class OpenRequests {
 public:
@@ -56,4 +54,4 @@ private:
     std::uint64_t sent_ = 0;             // up to this id, on the current link
 };
 
-} // namespace scanloom::robot
+} // namespace scanloom::link

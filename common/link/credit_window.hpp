@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <deque>
 
-namespace scanloom::robot {
+namespace scanloom::link {
 
 /// Counts the bytes of ScanBatch frames (including length prefix) that are outstanding on one link: sent and not yet
 /// durable. A batch counts in full until its last scan is durable.
@@ -47,4 +47,4 @@ private:
     std::uint64_t credit_ = 0;
 };
 
-} // namespace scanloom::robot
+} // namespace scanloom::link

@@ -1,21 +1,9 @@
-#include "robot_client/uplink/open_requests.hpp"
+#include "common/link/open_requests.hpp"
 
 #include <algorithm>
 #include <utility>
 
-namespace scanloom::robot {
-namespace {
-
-std::optional<Reply> as_reply(const wire::Message& message) {
-    if (const auto* plan = std::get_if<wire::PlanReply>(&message)) return *plan;
-    if (const auto* goal = std::get_if<wire::GoalReply>(&message)) return *goal;
-    if (const auto* coverage = std::get_if<wire::CoverageReply>(&message)) return *coverage;
-    if (const auto* location = std::get_if<wire::LocateReply>(&message)) return *location;
-    return std::nullopt;
-}
-
-} // namespace
-
+namespace scanloom::link {
 std::optional<std::uint64_t> OpenRequests::add(Request request, Answered answered) {
     if (open_.size() >= kMax) return std::nullopt;
     const std::uint64_t id = ++newest_;
@@ -64,4 +52,4 @@ bool OpenRequests::is_locating() const {
                        [](const auto& one) { return std::holds_alternative<wire::LocateRequest>(one.second.request); });
 }
 
-} // namespace scanloom::robot
+} // namespace scanloom::link

@@ -1,8 +1,8 @@
-#include "robot_client/uplink/open_requests.hpp"
+#include "common/link/open_requests.hpp"
 
 #include <gtest/gtest.h>
 
-namespace scanloom::robot {
+namespace scanloom::link {
 namespace {
 
 std::uint64_t id_of(const std::optional<wire::Message>& message) { return std::get<wire::PlanRequest>(*message).id; }
@@ -105,4 +105,4 @@ TEST(OpenRequests, WhoIsAnsweredMayAskAgainAtOnce) {
 }
 
 } // namespace
-} // namespace scanloom::robot
+} // namespace scanloom::link

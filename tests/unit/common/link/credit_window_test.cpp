@@ -1,8 +1,8 @@
-#include "robot_client/uplink/credit_window.hpp"
+#include "common/link/credit_window.hpp"
 
 #include <gtest/gtest.h>
 
-namespace scanloom::robot {
+namespace scanloom::link {
 namespace {
 
 TEST(CreditWindow, ABatchCountsWholeUntilItsLastScanIsDurable) {
@@ -38,4 +38,4 @@ TEST(CreditWindow, ANewLinkHasNothingUnderWay) {
 }
 
 } // namespace
-} // namespace scanloom::robot
+} // namespace scanloom::link
