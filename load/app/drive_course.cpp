@@ -1,7 +1,7 @@
 #include "load/app/drive_course.hpp"
 
 #include "common/wire/frame_decoder.hpp"
-#include "load/core/robot_talk.hpp"
+#include "load/core/measured_client.hpp"
 #include "robot_client/drive/wall_follower.hpp"
 #include "robot_client/sim/simulator.hpp"
 #include "robot_client/source/world_file.hpp"
@@ -30,7 +30,7 @@ Result<robot::Simulator> make_simulator(const LoadOptions& options) {
 Result<> check_batch(const Course& course) {
     std::vector<wire::NumberedScan> batch;
     for (std::uint64_t i = 0; i < course.batch; ++i) {
-        batch.push_back({&course.scans.front(), RobotTalk::kEndless, 1.0}); // the longest encoding of a number
+        batch.push_back({&course.scans.front(), MeasuredClient::kEndless, 1.0}); // the longest encoding of a number
     }
     const std::size_t size = wire::batch_frame_size(batch);
     if (size <= wire::kFrameBytesMax) return {};

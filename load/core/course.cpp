@@ -1,7 +1,5 @@
 #include "load/core/course.hpp"
 
-#include "common/wire/messages.hpp"
-
 #include <cassert>
 
 namespace scanloom::load {
@@ -12,7 +10,7 @@ Course make_course(const Sensor& sensor, const std::vector<Scan>& scans, double 
     course.scans.reserve(scans.size());
     for (const Scan& scan : scans) course.scans.emplace_back(scan);
     course.beams = scans.front().ranges.size();
-    wire::encode(sensor, course.sensor_frame);
+    course.sensor = std::make_shared<const Sensor>(sensor);
     course.stamp_rate = stamp_rate;
     course.batch = batch;
     return course;

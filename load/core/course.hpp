@@ -6,8 +6,8 @@
 #include "load/core/schedule.hpp"
 
 #include <cstdint>
+#include <memory>
 #include <optional>
-#include <string>
 #include <vector>
 
 namespace scanloom::load {
@@ -16,10 +16,10 @@ namespace scanloom::load {
 struct Course {
     std::vector<wire::PreparedScan> scans; ///< one tour through the world, in driving order
     std::size_t beams = 0;                 ///< per scan
-    std::string sensor_frame;              ///< the sensor description, encoded for the wire
-    std::optional<Schedule> schedule;      ///< absent: each scan as soon as the server's credit allows
-    double stamp_rate = 10.0;              ///< scans per second by the robots' own clocks
-    std::uint32_t batch = 1;               ///< scans per frame; a scan waits until its frame is full
+    std::shared_ptr<const Sensor> sensor;
+    std::optional<Schedule> schedule; ///< absent: each scan as soon as the server's credit allows
+    double stamp_rate = 10.0;         ///< scans per second by the robots' own clocks
+    std::uint32_t batch = 1;          ///< scans per frame; a scan waits until its frame is full
 };
 
 /// Prepares the scans of a sensor.

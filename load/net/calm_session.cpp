@@ -35,15 +35,15 @@ CalmSession::~CalmSession() { robot_.stop(); }
 
 asio::awaitable<Result<>> CalmSession::stream_to(std::uint64_t scans) {
     asio::steady_timer timer(io_);
-    std::uint64_t acknowledged = robot_.talk().acknowledged();
+    std::uint64_t acknowledged = robot_.client().acknowledged();
     Micros progress = clock_.now();
     robot_.due(scans);
-    while (robot_.talk().acknowledged() < scans) {
+    while (robot_.client().acknowledged() < scans) {
         timer.expires_after(kLookPeriod);
         co_await timer.async_wait(kAwaitTuple);
         if (robot_.has_failed()) co_return Error{Errc::kInternal, troubles_.failures.front()};
         robot_.look_after(clock_.now());
-        if (std::exchange(acknowledged, robot_.talk().acknowledged()) != robot_.talk().acknowledged()) {
+        if (std::exchange(acknowledged, robot_.client().acknowledged()) != robot_.client().acknowledged()) {
             progress = clock_.now();
         } else if (clock_.now() > progress + kTimeout) {
             co_return Error{Errc::kTimeout,

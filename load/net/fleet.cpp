@@ -62,7 +62,7 @@ std::vector<std::uint64_t> Fleet::acknowledged() const {
     for (const auto& shard : shards_) count += shard->robots().size();
     std::vector<std::uint64_t> scans(count);
     for (const auto& shard : shards_) {
-        for (const auto& robot : shard->robots()) scans[robot->talk().plan().index] = robot->talk().acknowledged();
+        for (const auto& robot : shard->robots()) scans[robot->client().plan().index] = robot->client().acknowledged();
     }
     return scans;
 }

@@ -41,12 +41,11 @@ struct Robot::Link {
     bool is_writing = false;
     bool has_heard = false; // received anything
     std::string out;
-    wire::FrameDecoder in{wire::kFrameBytesMax};
 };
 
 Robot::Robot(RobotPlan plan, Shared shared)
-    : shared_(shared), talk_(std::move(plan), shared.course, shared.link.hello), backoff_(talk_.plan().index + 1),
-      timer_(shared.io) {}
+    : shared_(shared), client_(std::move(plan), shared.course, shared.link.hello, shared.link.host),
+      backoff_(client_.plan().index + 1), timer_(shared.io) {}
 
 void Robot::start() { asio::co_spawn(shared_.io, run(), asio::detached); }
 
@@ -55,20 +54,20 @@ asio::awaitable<void> Robot::run() {
         const wire::LinkError failure = co_await use_one_link();
         const bool was_struck = std::exchange(struck_, false);
         close_link();
-        talk_.close(shared_.figures);
-        if (stopped_ || talk_.is_done()) break;
+        client_.close(shared_.figures);
+        if (stopped_ || client_.is_done()) break;
         if (was_struck) continue; // a radio link is back immediately
         note(failure);
         if (failed_) break;
         timer_.expires_after(backoff_.next());
         co_await timer_.async_wait(kAwaitTuple);
     }
-    if (talk_.is_done()) ++shared_.figures.finished;
+    if (client_.is_done()) ++shared_.figures.finished;
 }
 
 void Robot::note(const wire::LinkError& failure) {
     const auto text = harmless(
-        fmt::format("robot {} of session {}: {}", talk_.plan().name, talk_.plan().session, failure.error.message));
+        fmt::format("robot {} of session {}: {}", client_.plan().name, client_.plan().session, failure.error.message));
     Troubles& troubles = shared_.troubles;
     if (failure.retryable) {
         troubles.newest = text;
@@ -94,7 +93,7 @@ asio::awaitable<wire::LinkError> Robot::use_one_link() {
                                    tls ? net::handshake_text(failed, link->stream.verify_result()) : failed.message()));
     }
     link->is_up = true;
-    talk_.open(shared_.clock.now());
+    client_.open(shared_.clock.now());
     flush();
     co_return co_await read_frames(link);
 }
@@ -113,7 +112,7 @@ asio::awaitable<boost::system::error_code> Robot::connect(std::shared_ptr<Link> 
 
 asio::awaitable<wire::LinkError> Robot::read_frames(std::shared_ptr<Link> link) {
     for (;;) {
-        const auto room = link->in.prepare(kReadBytes);
+        const auto room = client_.prepare(kReadBytes);
         const auto [failed, count] =
             co_await link->stream.async_read_some(asio::buffer(room.data(), room.size()), kAwaitTuple);
         if (failed) co_return lost(ended(*link, failed));
@@ -137,23 +136,16 @@ std::string Robot::ended(const Link& link, const boost::system::error_code& why)
 std::optional<wire::LinkError> Robot::take(Link& link, std::size_t bytes) {
     shared_.figures.bytes_in += bytes;
     link.has_heard = true;
-    link.in.commit(bytes);
-    for (;;) {
-        auto body = link.in.next();
-        if (!body) return wire::LinkError{body.error(), true};
-        if (!*body) return std::nullopt;
-        const auto message = wire::decode(**body);
-        if (!message) return wire::LinkError{message.error(), true};
-        const std::uint64_t before = talk_.acknowledged();
-        if (auto failure = talk_.receive(*message, shared_.clock.now(), shared_.figures)) return failure;
-        if (talk_.acknowledged() > before) backoff_.reset();
-    }
+    const std::uint64_t before = client_.acknowledged();
+    auto failure = client_.on_bytes(bytes, shared_.clock.now(), shared_.figures);
+    if (client_.acknowledged() > before) backoff_.reset();
+    return failure;
 }
 
 void Robot::flush() {
     const auto link = link_;
     if (!link || !link->is_up || link->is_writing || shared_.clock.now() < stalled_until_) return;
-    talk_.write(link->out, shared_.clock.now(), shared_.figures);
+    client_.write(link->out, shared_.clock.now(), shared_.figures);
     if (link->out.empty()) return;
     link->is_writing = true;
     asio::async_write(link->stream, asio::buffer(link->out),
@@ -174,19 +166,19 @@ void Robot::close_link() {
 // Events --------------------------------------------------------------------------------------------------------------
 
 void Robot::due(std::uint64_t scans) {
-    talk_.due(scans);
+    client_.due(scans, shared_.clock.now());
     flush();
 }
 
 void Robot::end() {
-    talk_.end();
+    client_.end();
     flush();
 }
 
 void Robot::look_after(Micros now) {
     if (!link_ || now < stalled_until_) return;
     const bool is_late = !link_->is_up && now - link_->begun > kConnectMax;
-    const auto failure = talk_.check(now);
+    const auto failure = client_.check(now);
     if (failure) note(*failure);
     if (is_late || failure) {
         link_->stream.close();
@@ -196,7 +188,7 @@ void Robot::look_after(Micros now) {
 }
 
 bool Robot::strike(Fault fault) {
-    if (!talk_.is_welcome() || !link_ || shared_.clock.now() < stalled_until_ || stopped_) return false;
+    if (!client_.is_welcome() || !link_ || shared_.clock.now() < stalled_until_ || stopped_) return false;
     boost::system::error_code ignored;
     auto& socket = link_->stream.socket();
     switch (fault) {

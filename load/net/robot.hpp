@@ -2,9 +2,8 @@
 
 #include "common/net/link_stream.hpp"
 #include "common/net/tls.hpp"
-#include "common/wire/frame_decoder.hpp"
 #include "load/core/fault_schedule.hpp"
-#include "load/core/robot_talk.hpp"
+#include "load/core/measured_client.hpp"
 #include "load/net/run_clock.hpp"
 #include "robot_client/uplink/backoff.hpp"
 
@@ -60,7 +59,7 @@ public:
     /// Connects, and reconnects whenever the link is lost, until everything is acknowledged.
     void start();
 
-    void begin(Micros start) noexcept { talk_.begin(start); }
+    void begin(Micros start) noexcept { client_.begin(start); }
     /// Sets the number of scans to send, and sends what the credit allows.
     void due(std::uint64_t scans);
     /// No more scans follow.
@@ -73,7 +72,7 @@ public:
     /// Closes all connections. Nothing happens afterwards.
     void stop();
 
-    [[nodiscard]] const RobotTalk& talk() const noexcept { return talk_; }
+    [[nodiscard]] const MeasuredClient& client() const noexcept { return client_; }
     [[nodiscard]] bool has_failed() const noexcept { return failed_; }
 
 private:
@@ -90,7 +89,7 @@ private:
     void note(const wire::LinkError& failure);
 
     Shared shared_;
-    RobotTalk talk_;
+    MeasuredClient client_;
     robot::Backoff backoff_;
     std::shared_ptr<Link> link_;
     std::shared_ptr<Link> abandoned_; // half-open

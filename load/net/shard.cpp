@@ -137,7 +137,7 @@ asio::awaitable<void> Shard::send_without_pause(Micros start) {
     asio::steady_timer timer(io_);
     timer.expires_at(clock_.at(start));
     co_await timer.async_wait(kAwaitTuple);
-    for (auto& robot : robots_) robot->due(RobotTalk::kEndless);
+    for (auto& robot : robots_) robot->due(MeasuredClient::kEndless);
     timer.expires_at(clock_.at(start + plan_.duration));
     co_await timer.async_wait(kAwaitTuple);
     end_all();

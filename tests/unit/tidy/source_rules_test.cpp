@@ -44,8 +44,8 @@ TEST(SourceRules, LabMayIncludeServerAndRobotButMustNotBeIncluded) {
 }
 
 TEST(SourceRules, LoadMustNotIncludeTheServerNorBeIncluded) {
-    EXPECT_THAT(including("load/net/robot.cpp", "\"load/core/robot_talk.hpp\""), IsEmpty());
-    EXPECT_THAT(including("load/core/robot_talk.cpp", "\"load/net/robot.hpp\""), testing::SizeIs(1));
+    EXPECT_THAT(including("load/net/robot.cpp", "\"load/core/measured_client.hpp\""), IsEmpty());
+    EXPECT_THAT(including("load/core/measured_client.cpp", "\"load/net/robot.hpp\""), testing::SizeIs(1));
     EXPECT_THAT(including("load/app/run.cpp", "\"server/session/session.hpp\""), testing::SizeIs(1));
     EXPECT_THAT(including("robot_client/app/main.cpp", "\"load/app/run.hpp\""), testing::SizeIs(1));
 }
