@@ -72,7 +72,7 @@ Server::Server(const ServerOptions& options, const ConnectionLimits& limits, std
                                                  .pages_max = options.map_memory_bytes / mapping::kPageBytes,
                                                  .idle_after = options.idle_after}),
       check_(*log_, sessions_), weaves_(*log_, pools_.replay, weaves_within(options.weave_memory_bytes)),
-      locator_(*log_), desk_(pools_.planning, pools_.locating, {goals_, locator_, sessions_}), hangup_(io_, SIGHUP),
+      locator_(*log_), requests_(pools_.planning, pools_.locating, {goals_, locator_, sessions_}), hangup_(io_, SIGHUP),
       patience_(io_), weaving_patience_(io_), tidying_(asio::make_strand(io_)) {}
 
 Server::~Server() {
@@ -144,7 +144,7 @@ Result<> Server::listen(http::WebFiles web) {
     try {
         ingest_ = std::make_unique<ingest::IngestServer>(
             io_, options_.listen,
-            ingest::LinkServices{sessions_, pools_.changes, metrics_.ingest(), desk_, gate_, audit_}, robots);
+            ingest::LinkServices{sessions_, pools_.changes, metrics_.ingest(), requests_, gate_, audit_}, robots);
     } catch (const boost::system::system_error& failure) {
         return Error{Errc::kUnreachable, fmt::format("cannot listen for robots on {}: {}; choose another --listen",
                                                      text_of(options_.listen), failure.code().message())};

@@ -77,7 +77,7 @@ private:
     session::Weaves weaves_;
     guide::GoalBook goals_;
     guide::Locator locator_;
-    ingest::RequestDesk desk_;
+    ingest::RequestExecutor requests_;
     std::optional<http::Pools> http_pools_;
     std::unique_ptr<http::Services> services_; // of api_
     std::optional<http::Api> api_;

@@ -33,7 +33,7 @@ IngestServer::IngestServer(asio::io_context& io, const asio::ip::tcp::endpoint& 
 void IngestServer::start() {
     asio::co_spawn(acceptor_.get_executor(),
                    sockets::accept_each(acceptor_, io_, "a robot",
-                                        [this](asio::ip::tcp::socket socket) { take(std::move(socket)); }),
+                                        [this](asio::ip::tcp::socket socket) { on_accepted(std::move(socket)); }),
                    asio::detached);
 }
 
@@ -44,36 +44,36 @@ void IngestServer::stop() {
     });
 }
 
-void IngestServer::take(asio::ip::tcp::socket socket) {
-    const bool full = count(Standing::kServed) >= config_.links_max;
+void IngestServer::on_accepted(asio::ip::tcp::socket socket) {
+    const bool full = count(State::kServed) >= config_.links_max;
     if (full && services_.audit.take_line_of_stranger())
         spdlog::warn("a robot was turned away: {} links are open, the most allowed", config_.links_max);
-    if (full && count(Standing::kLeaving) >= kTurnedAwayMax) return;
-    if (!full) make_room_for_greeting();
+    if (full && count(State::kLeaving) >= kTurnedAwayMax) return;
+    if (!full) make_room();
     auto connection = std::make_shared<RobotConnection>(sockets::stream_over(std::move(socket), config_.tls), services_,
                                                         config_.link);
-    const auto guest = std::make_shared<Guest>(Guest{connection, full ? Standing::kLeaving : Standing::kGreeting});
-    if (!full) greeting_.push_back(guest);
-    ++count(guest->standing);
+    const auto entry = std::make_shared<Entry>(Entry{connection, full ? State::kLeaving : State::kWithoutHello});
+    if (!full) without_hello_.push_back(entry);
+    ++count(entry->state);
     services_.counters.links_open.Increment();
     try {
-        begin(guest, *connection);
+        begin(entry, *connection);
     } catch (...) {
-        leave(guest);
+        leave(entry);
         throw;
     }
 }
 
-void IngestServer::begin(const std::shared_ptr<Guest>& guest, RobotConnection& connection) {
+void IngestServer::begin(const std::shared_ptr<Entry>& entry, RobotConnection& connection) {
     const auto strand = acceptor_.get_executor();
-    auto on_hello = [this, strand, weak = std::weak_ptr(guest)] {
+    auto on_hello = [this, strand, weak = std::weak_ptr(entry)] {
         asio::post(strand, [this, weak] {
-            const auto greeted = weak.lock();
-            if (greeted && greeted->standing == Standing::kGreeting) change(*greeted, Standing::kServed);
+            const auto known = weak.lock();
+            if (known && known->state == State::kWithoutHello) change(*known, State::kServed);
         });
     };
-    auto on_closed = [this, strand, guest] { asio::post(strand, [this, guest] { leave(guest); }); };
-    if (guest->standing == Standing::kLeaving) {
+    auto on_closed = [this, strand, entry] { asio::post(strand, [this, entry] { leave(entry); }); };
+    if (entry->state == State::kLeaving) {
         connection.turn_away(too_many(config_.links_max), std::move(on_closed));
     } else {
         connection.serve(std::move(on_hello), std::move(on_closed));
@@ -81,27 +81,27 @@ void IngestServer::begin(const std::shared_ptr<Guest>& guest, RobotConnection& c
 }
 
 /// Closes the oldest connection without a hello, as the one that is least likely to be a robot.
-void IngestServer::make_room_for_greeting() {
-    if (count(Standing::kGreeting) < config_.greeting_max) return;
-    const auto oldest = greeting_.front();
+void IngestServer::make_room() {
+    if (count(State::kWithoutHello) < config_.greeting_max) return;
+    const auto oldest = without_hello_.front();
     if (services_.audit.take_line_of_stranger())
         spdlog::warn("a connection was cut off: it said no hello, and {} do not, the most allowed",
                      config_.greeting_max);
-    change(*oldest, Standing::kLeaving);
+    change(*oldest, State::kLeaving);
     if (const auto connection = oldest->connection.lock()) connection->cut_off();
 }
 
-void IngestServer::change(Guest& guest, Standing standing) {
-    if (guest.standing == Standing::kGreeting)
-        std::erase_if(greeting_, [&](const auto& one) { return one.get() == &guest; });
-    --count(guest.standing);
-    guest.standing = standing;
-    ++count(standing);
+void IngestServer::change(Entry& entry, State state) {
+    if (entry.state == State::kWithoutHello)
+        std::erase_if(without_hello_, [&](const auto& one) { return one.get() == &entry; });
+    --count(entry.state);
+    entry.state = state;
+    ++count(state);
 }
 
-void IngestServer::leave(const std::shared_ptr<Guest>& guest) {
-    change(*guest, Standing::kLeaving);
-    --count(Standing::kLeaving);
+void IngestServer::leave(const std::shared_ptr<Entry>& entry) {
+    change(*entry, State::kLeaving);
+    --count(State::kLeaving);
     services_.counters.links_open.Decrement();
 }
 

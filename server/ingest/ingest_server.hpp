@@ -47,20 +47,21 @@ public:
     void stop();
 
 private:
-    enum class Standing { kGreeting, kServed, kLeaving };
+    /// Whether a connection has sent its hello.
+    enum class State { kWithoutHello, kServed, kLeaving };
 
     /// An open connection.
-    struct Guest {
+    struct Entry {
         std::weak_ptr<RobotConnection> connection; // its pending operations own it
-        Standing standing;
+        State state;
     };
 
-    void take(boost::asio::ip::tcp::socket socket);
-    void begin(const std::shared_ptr<Guest>& guest, RobotConnection& connection);
-    void make_room_for_greeting();
-    void change(Guest& guest, Standing standing);
-    void leave(const std::shared_ptr<Guest>& guest);
-    [[nodiscard]] std::size_t& count(Standing standing) { return counts_[static_cast<std::size_t>(standing)]; }
+    void on_accepted(boost::asio::ip::tcp::socket socket);
+    void begin(const std::shared_ptr<Entry>& entry, RobotConnection& connection);
+    void make_room();
+    void change(Entry& entry, State state);
+    void leave(const std::shared_ptr<Entry>& entry);
+    [[nodiscard]] std::size_t& count(State of) { return counts_[static_cast<std::size_t>(of)]; }
 
     boost::asio::io_context& io_;
     boost::asio::ip::tcp::acceptor acceptor_;
@@ -69,8 +70,8 @@ private:
     IngestConfig config_;
 
     // On the acceptor's strand.
-    std::list<std::shared_ptr<Guest>> greeting_; // oldest first
-    std::array<std::size_t, 3> counts_{};        // guests by standing
+    std::list<std::shared_ptr<Entry>> without_hello_; // oldest first
+    std::array<std::size_t, 3> counts_{};             // entries by state
 };
 
 } // namespace scanloom::ingest

@@ -159,7 +159,7 @@ void RobotConnection::perform(Protocol::AnswerRequest&& action) {
             to.protocol_.on_reply(std::move(frame), std::move(slot));
         });
     };
-    const auto refused = services_.desk.ask({session_, robot_index_, is_gone_}, action.request, std::move(done));
+    const auto refused = services_.requests.submit({session_, robot_index_, is_gone_}, action.request, std::move(done));
     if (refused) protocol_.on_request_refused(action.request, *refused);
 }
 
@@ -239,6 +239,7 @@ Result<> RobotConnection::authenticate(const wire::Hello& hello) {
     }
     pass_ = std::move(*pass);
     apply_permission();
+    if (protocol_.ended_by()) return *protocol_.ended_by();
     pass_->when_changed([weak = weak_from_this()] {
         if (const auto self = weak.lock()) self->post([](RobotConnection& to) { to.apply_permission(); });
     });

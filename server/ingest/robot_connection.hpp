@@ -4,7 +4,7 @@
 #include "common/net/link_stream.hpp"
 #include "server/guard/audit.hpp"
 #include "server/guard/gate.hpp"
-#include "server/ingest/request_desk.hpp"
+#include "server/ingest/request_executor.hpp"
 #include "server/ingest/unacknowledged.hpp"
 #include "server/log/context.hpp"
 #include "server/metrics/metrics.hpp"
@@ -28,7 +28,7 @@ struct LinkServices {
     session::SessionRegistry& sessions;
     boost::asio::any_io_executor may_wait; ///< for work that waits for the disk
     metrics::IngestCounters& counters;
-    RequestDesk& desk;
+    RequestExecutor& requests;
     guard::Gate& gate;
     guard::Audit& audit;
 };
@@ -106,7 +106,7 @@ private:
     RobotIndex robot_index_ = 0;                // in the session
     Unacknowledged unacknowledged_;
     std::shared_ptr<std::atomic<bool>> is_gone_ =
-        std::make_shared<std::atomic<bool>>(false); // no reply is needed any more; read by the desk
+        std::make_shared<std::atomic<bool>>(false); // no reply is needed any more; read by the RequestExecutor
 };
 
 } // namespace scanloom::ingest

@@ -160,7 +160,7 @@ TEST_F(LocateRequestsTest, ManyLocateRequestsDoNotBlockPlanRequests) {
     std::promise<void> go_on;
     boost::asio::post(ingest.locating(), [wait = go_on.get_future().share()] { wait.wait(); });
     std::vector<std::unique_ptr<RobotSocket>> carried;
-    for (std::size_t n = 0; n < RequestDesk::kLocatingMax / 4; ++n) { // four of each at a time
+    for (std::size_t n = 0; n < RequestExecutor::kLocatingMax / 4; ++n) { // four of each at a time
         carried.push_back(welcomed(port(), hello("carried" + std::to_string(n))));
         for (std::uint64_t id = 1; id <= 4; ++id) carried.back()->send(question_from(kTruth, id));
         carried.back()->send(wire::Ping{n});

@@ -364,9 +364,10 @@ TEST_F(RequestsTest, NoSearchStartsDuringShutdown) {
     auto go_on = hold_searches();
     std::promise<std::string> sent;
     guide::GoalBook goals;
-    RequestDesk desk(ingest.planning(), ingest.planning(), {goals, ingest.locator(), ingest.sessions()});
-    ASSERT_FALSE(desk.ask({session, 0}, plan_to({2.5, 0.2}),
-                          [&](std::string frame, const std::shared_ptr<const void>&) { sent.set_value(frame); }));
+    RequestExecutor requests(ingest.planning(), ingest.planning(), {goals, ingest.locator(), ingest.sessions()});
+    ASSERT_FALSE(
+        requests.submit({session, 0}, plan_to({2.5, 0.2}),
+                        [&](std::string frame, const std::shared_ptr<const void>&) { sent.set_value(frame); }));
     std::thread draining([&] { ingest.sessions().drain(); });
     draining.join();
     go_on.set_value();

@@ -17,13 +17,13 @@ namespace scanloom::ingest {
 class RunningIngest {
 public:
     explicit RunningIngest(store::ScanLog& log, const IngestConfig& config = {},
-                           std::size_t requests_max = RequestDesk::kRequestsMax)
+                           std::size_t requests_max = RequestExecutor::kRequestsMax)
         : sessions_(log, {pool(), now}), locator_(log),
-          desk_(planning_.get_executor(), locating_.get_executor(), {goals_, locator_, sessions_}, requests_max) {
+          requests_(planning_.get_executor(), locating_.get_executor(), {goals_, locator_, sessions_}, requests_max) {
         if (auto recovered = sessions_.recover(); !recovered) throw ErrorException(recovered.error());
         server_ = std::make_unique<IngestServer>(
             io_, boost::asio::ip::tcp::endpoint(boost::asio::ip::address_v4::loopback(), 0),
-            LinkServices{sessions_, may_wait_.get_executor(), metrics_.ingest(), desk_, gate_, audit_}, config);
+            LinkServices{sessions_, may_wait_.get_executor(), metrics_.ingest(), requests_, gate_, audit_}, config);
         server_->start();
         for (int n = 0; n < 2; ++n) io_threads_.emplace_back([this] { io_.run(); });
     }
@@ -77,7 +77,7 @@ private:
     session::SessionRegistry sessions_;
     guide::GoalBook goals_;
     guide::Locator locator_;
-    RequestDesk desk_;
+    RequestExecutor requests_;
     std::unique_ptr<IngestServer> server_;
     std::vector<std::thread> io_threads_;
 };

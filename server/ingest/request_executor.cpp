@@ -1,12 +1,15 @@
-#include "server/ingest/requests.hpp"
+#include "server/ingest/request_executor.hpp"
 
 #include "server/guide/patience.hpp"
 #include "server/guide/robots.hpp"
 #include "server/planning/coverage.hpp"
 #include "server/planning/grid_path.hpp"
 
+#include <boost/asio/post.hpp>
 #include <fmt/format.h>
 
+#include <exception>
+#include <new>
 #include <span>
 #include <type_traits>
 #include <utility>
@@ -29,21 +32,21 @@ std::vector<wire::CellRun> runs_of(std::span<const grid::Cell> cells) {
 }
 
 /// Converts a path for the wire.
-/// @param beside  number of cell runs in the same reply
+/// @param runs  number of cell runs in the same reply
 /// Errors: kTooLarge if the path and the runs do not fit into one frame.
-Result<wire::Path> to_wire(planning::Path path, std::size_t beside = 0) {
-    if (path.points.size() + beside > wire::kPathPointsMax) {
+Result<wire::Path> to_wire(planning::Path path, std::size_t runs = 0) {
+    if (path.points.size() + runs > wire::kPathPointsMax) {
         return Error{Errc::kTooLarge,
                      fmt::format("the path has {} points, and what it leaves out {} runs of cells, at most {} together "
                                  "fit a reply; ask for a smaller region, or rows further apart",
-                                 path.points.size(), beside, wire::kPathPointsMax)};
+                                 path.points.size(), runs, wire::kPathPointsMax)};
     }
     return wire::Path{std::move(path.points), path.length_m, path.cost};
 }
 
 /// Answers requests from one snapshot and one start point.
 struct Search {
-    const Asker& asker;
+    const Requester& requester;
     const mapping::Snapshot& maps;
     guide::GoalBook& goals;
     const guide::Patience may_go_on;
@@ -52,7 +55,7 @@ struct Search {
     /// Uses the requested body radius (m), or else the robot's own.
     [[nodiscard]] planning::PassabilityOptions passability_of(const std::optional<double>& body_radius) const {
         planning::PassabilityOptions options;
-        const auto& own = maps.robots.at(asker.robot).body_radius;
+        const auto& own = maps.robots.at(requester.robot).body_radius;
         options.body_radius_m = body_radius.value_or(own.value_or(options.body_radius_m));
         return options;
     }
@@ -71,7 +74,7 @@ struct Search {
         planning::ExplorationOptions options;
         options.passability = passability_of(request.body_radius);
         if (request.frontier_size_min > 0) options.frontier_size_min = request.frontier_size_min;
-        auto next = goals.next(asker.session, maps, asker.robot, start, guide::GoalBook::Clock::now(), options);
+        auto next = goals.next(requester.session, maps, requester.robot, start, guide::GoalBook::Clock::now(), options);
         if (!next) return next.error();
         const auto given_up = static_cast<std::uint32_t>(next->given_up); // fits: GoalBook keeps fewer
         if (next->outcome == planning::Exploration::kTakenByOthers) {
@@ -111,34 +114,36 @@ std::optional<guide::Way> way_of(const Result<wire::Coverage>& coverage, Revisio
 }
 
 template <class Kind>
-wire::Message reply_from(const Kind& request, const Asker& asker, const Services& services) {
+wire::Message reply_from(const Kind& request, const Requester& requester, const RequestServices& services) {
     guide::GoalBook& goals = services.goals;
-    const auto maps = asker.session->snapshot();
+    const auto maps = requester.session->snapshot();
     auto start = request.start;
     if (!start) {
-        const auto pose = guide::pose_of(*maps, asker.robot);
+        const auto pose = guide::pose_of(*maps, requester.robot);
         if (!pose) return reply(request, maps->revision, pose.error());
         start = Point2{pose->x, pose->y};
     }
-    auto found = Search{asker, *maps, goals, guide::Patience(services.sessions), *start}(request);
+    auto found = Search{requester, *maps, goals, guide::Patience(services.sessions), *start}(request);
     if constexpr (!std::is_same_v<Kind, wire::GoalRequest>) { // the goal book already knows the paths to goals
-        goals.ways().give_way(asker.session, asker.robot, way_of(found, maps->revision), guide::WayBook::Clock::now());
+        goals.ways().give_way(requester.session, requester.robot, way_of(found, maps->revision),
+                              guide::WayBook::Clock::now());
     }
     return reply(request, maps->revision, std::move(found));
 }
 
-const Error kNobodyWaits{Errc::kUnreachable, "the link is closed"};
+const Error kLinkClosed{Errc::kUnreachable, "the link is closed"};
 
-wire::Message reply_from(const wire::LocateRequest& request, const Asker& asker, const Services& services) {
+wire::Message reply_from(const wire::LocateRequest& request, const Requester& requester,
+                         const RequestServices& services) {
     const auto points = landmarks::in_metres(request.points);
     std::optional<landmarks::Neighbourhood> near;
     if (request.near) near = landmarks::Neighbourhood{request.near->point, request.near->radius};
     const guide::Patience patience(services.sessions, guide::Patience::Clock::now() + guide::Patience::kTime,
                                    "say near which place it is");
-    const auto ask = [&]() -> Result<> { return *asker.is_gone ? Result<>(kNobodyWaits) : patience(); };
-    const auto located =
-        services.locator.locate(*asker.session, asker.robot, {.points = points, .from = request.from}, near, ask);
-    if (!located) return reply(request, asker.session->snapshot()->revision, located.error());
+    const auto ask = [&]() -> Result<> { return *requester.is_gone ? Result<>(kLinkClosed) : patience(); };
+    const auto located = services.locator.locate(*requester.session, requester.robot,
+                                                 {.points = points, .from = request.from}, near, ask);
+    if (!located) return reply(request, requester.session->snapshot()->revision, located.error());
     const auto& found = located->alignment;
     return reply(request, located->revision,
                  wire::Correction{found.T_first_second, located->revision, found.explained, found.position_sigma,
@@ -147,8 +152,33 @@ wire::Message reply_from(const wire::LocateRequest& request, const Asker& asker,
 
 } // namespace
 
-wire::Message reply_to(const link::Request& request, const Asker& asker, const Services& services) {
-    return std::visit([&](const auto& kind) { return reply_from(kind, asker, services); }, request);
+std::optional<Error> RequestExecutor::submit(Requester requester, link::Request request, Done done) {
+    const bool locates = std::holds_alternative<wire::LocateRequest>(request);
+    auto slot = (locates ? locating_slots_ : slots_).try_acquire();
+    if (!slot) return Error{Errc::kOverloaded, "too many robots ask at this moment; ask again soon"};
+    boost::asio::post(locates ? locating_ : planning_,
+                      [this, requester = std::move(requester), request = std::move(request), done = std::move(done),
+                       slot = std::move(slot)]() mutable {
+                          std::string frame;
+                          wire::encode(answer(request, requester), frame);
+                          done(std::move(frame), std::move(slot));
+                      });
+    return std::nullopt;
+}
+
+/// Starts no search while the server shuts down, because shutdown would have to wait for it.
+wire::Message RequestExecutor::answer(const link::Request& request, const Requester& requester) const {
+    if (services_.sessions.is_draining())
+        return link::refusal_of(request, {Errc::kShuttingDown, "the server is shutting down"});
+    if (*requester.is_gone) return link::refusal_of(request, kLinkClosed);
+    try {
+        return std::visit([&](const auto& kind) { return reply_from(kind, requester, services_); }, request);
+    } catch (const std::bad_alloc&) {
+        return link::refusal_of(request,
+                                {Errc::kOverloaded, "there is no memory for this search now; ask again later"});
+    } catch (const std::exception& failure) {
+        return link::refusal_of(request, {Errc::kInternal, fmt::format("the search failed: {}", failure.what())});
+    }
 }
 
 } // namespace scanloom::ingest
