@@ -6,12 +6,10 @@
 #include "robot_client/app/progress.hpp"
 #include "robot_client/app/recent_rate.hpp"
 #include "robot_client/app/summary.hpp"
-#include "robot_client/uplink/guidance.hpp"
 #include "robot_client/uplink/live_feed.hpp"
-#include "robot_client/uplink/location.hpp"
 #include "robot_client/uplink/recording_feed.hpp"
+#include "robot_client/uplink/server_requests.hpp"
 #include "robot_client/uplink/uplink.hpp"
-#include "robot_client/uplink/waiting_robot.hpp"
 
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
@@ -41,7 +39,7 @@ UplinkOptions uplink_options(const RobotOptions& options, std::string token, con
     uplink.give_up_after = options.give_up_after.value_or(default_patience);
     uplink.give_up_after_end = options.give_up_after.value_or(uplink.give_up_after_end);
     uplink.backoff_seed = std::random_device{}();
-    uplink.on_trouble = told_once([&console](const std::string& text) { console.note(text); });
+    uplink.on_trouble = report_once([&console](const std::string& text) { console.note(text); });
     uplink.protocol.batch_delay = options.batch_delay;
     uplink.protocol.batch_bytes_max = options.batch_bytes_max;
     uplink.protocol.compress = options.compress;

@@ -4,7 +4,7 @@
 #include "robot_client/client/checks.hpp"
 #include "robot_client/client/worker.hpp"
 #include "robot_client/source/seen_points.hpp"
-#include "robot_client/uplink/waiting_robot.hpp"
+#include "robot_client/uplink/live_feed.hpp"
 
 #include <fmt/format.h>
 
@@ -40,7 +40,7 @@ Result<UplinkOptions> uplink_options(const ClientOptions& options) {
     uplink.protocol.hello.create->cell_size = options.cell_size;
     uplink.protocol.hello.client = "scanloom client library";
     uplink.protocol.hello.body_radius = options.body_radius;
-    uplink.on_trouble = told_once(options.tell);
+    uplink.on_trouble = report_once(options.tell);
     return uplink;
 }
 

@@ -6,11 +6,11 @@ namespace scanloom::robot {
 
 void PushedSource::push(Observation observation) {
     scans_.push_back(std::move(observation));
-    bell_.ring();
+    added_.notify();
 }
 
 boost::asio::awaitable<Result<std::optional<Observation>>> PushedSource::next() {
-    while (scans_.empty() && !stopped_) co_await bell_.wait();
+    while (scans_.empty() && !stopped_) co_await added_.wait();
     if (scans_.empty()) co_return std::optional<Observation>{};
     std::optional<Observation> first(std::move(scans_.front()));
     scans_.pop_front();
@@ -19,7 +19,7 @@ boost::asio::awaitable<Result<std::optional<Observation>>> PushedSource::next() 
 
 void PushedSource::stop() {
     stopped_ = true;
-    bell_.ring();
+    added_.notify();
 }
 
 } // namespace scanloom::robot

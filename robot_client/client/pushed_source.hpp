@@ -1,7 +1,7 @@
 #pragma once
 
 #include "robot_client/source/live_source.hpp"
-#include "robot_client/uplink/bell.hpp"
+#include "robot_client/uplink/wake_signal.hpp"
 
 #include <deque>
 
@@ -22,7 +22,7 @@ public:
 private:
     std::deque<Observation> scans_;
     bool stopped_ = false;
-    Bell bell_;
+    WakeSignal added_;
 };
 
 } // namespace scanloom::robot

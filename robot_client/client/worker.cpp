@@ -26,7 +26,7 @@ constexpr milliseconds kPatienceMax = std::chrono::hours(24 * 365);
 /// How late the client's thread may be, because its disk may not respond.
 constexpr milliseconds kGrace{1000};
 
-/// How often to check for what no bell reports: dropped scans, and spooled scans that are already stored.
+/// How often to check for changes that are not signalled: dropped scans, and spooled scans that are already stored.
 constexpr milliseconds kLookPeriod{100};
 
 } // namespace
@@ -49,7 +49,7 @@ asio::awaitable<void> Client::Worker::run() {
         const std::lock_guard lock(mutex_);
         outcome_ = outcome ? Error{Errc::kGone, "the client was closed"} : outcome.error();
     }
-    uplink_.news_bell().ring();
+    uplink_.news_signal().notify();
 }
 
 std::optional<Error> Client::Worker::failure() {
@@ -116,7 +116,7 @@ asio::awaitable<Result<>> Client::Worker::until_all_are(Fate fate, Patience pati
         if (left == 0 || left + (uplink_.status().dropped - dropped) <= newer) co_return Result<>{};
         const auto what = fmt::format("{} scans were not {}", left, fate == Fate::kStored ? "stored" : "in the maps");
         if (const auto why = reason_to_leave(what, patience)) co_return *why;
-        co_await uplink_.news_bell().wait(std::min(patience.until, Clock::now() + kLookPeriod));
+        co_await uplink_.news_signal().wait(std::min(patience.until, Clock::now() + kLookPeriod));
     }
 }
 
@@ -148,7 +148,7 @@ asio::awaitable<Result<link::Reply>> Client::Worker::until_answered(link::Reques
     auto id = uplink_.ask(request, answered);
     while (!id) {
         if (const auto why = reason_to_leave("too many questions were open", patience)) co_return *why;
-        co_await uplink_.news_bell().wait(patience.until);
+        co_await uplink_.news_signal().wait(patience.until);
         id = uplink_.ask(request, answered);
     }
     while (!*reply) {
@@ -156,7 +156,7 @@ asio::awaitable<Result<link::Reply>> Client::Worker::until_answered(link::Reques
             uplink_.abandon(*id);
             co_return *why;
         }
-        co_await uplink_.news_bell().wait(patience.until);
+        co_await uplink_.news_signal().wait(patience.until);
     }
     co_return **reply;
 }

@@ -88,7 +88,7 @@ asio::awaitable<void> LiveFeed::hand_over(Intake& intake) {
             if (spool_ && begun_) spool_->tidy_up(); // files acknowledged before; acknowledged() removes the rest
             co_return;
         }
-        room_.ring();
+        room_.notify();
         co_await intake.news();
     }
 }
@@ -124,6 +124,13 @@ std::optional<std::string> LiveFeed::unfinished(std::uint64_t) const {
     if (waiting() == 0) return std::nullopt;
     return fmt::format("with {} scans in the spool {}; the same command sends them", waiting(),
                        spool_->directory().string());
+}
+
+Result<std::unique_ptr<Spool>> open_spool_of(const std::string& session, const std::string& robot, SpoolOptions options,
+                                             const std::function<void(const std::string&)>& tell) {
+    if (options.directory.empty()) return std::unique_ptr<Spool>{};
+    options.directory /= fmt::format("{}.{}", session, robot);
+    return Spool::open(std::move(options), tell);
 }
 
 } // namespace scanloom::robot

@@ -2,8 +2,8 @@
 
 #include "robot_client/source/live_source.hpp"
 #include "robot_client/spool/spool.hpp"
-#include "robot_client/uplink/bell.hpp"
 #include "robot_client/uplink/feed.hpp"
+#include "robot_client/uplink/wake_signal.hpp"
 
 #include <functional>
 #include <memory>
@@ -48,7 +48,7 @@ private:
     LiveSource& source_;
     std::unique_ptr<Spool> spool_;
     LiveFeedOptions options_;
-    Bell room_; ///< rings when there may be room
+    WakeSignal room_; ///< when there may be room
     Result<> outcome_;
     std::uint64_t dropped_ = 0; ///< not counting those of the spool
     bool told_of_dropping_ = false;
@@ -57,5 +57,12 @@ private:
     bool begun_ = false; ///< Spool::begin() was called
     bool ended_ = false; ///< the source has ended
 };
+
+/// Opens the robot's spool, the directory SESSION.ROBOT in SpoolOptions::directory. Returns null if that is empty.
+/// @param tell  receives messages for people
+/// Errors: those of Spool::open().
+[[nodiscard]] Result<std::unique_ptr<Spool>> open_spool_of(const std::string& session, const std::string& robot,
+                                                           SpoolOptions options,
+                                                           const std::function<void(const std::string&)>& tell);
 
 } // namespace scanloom::robot

@@ -1,5 +1,6 @@
 #include "robot_client/uplink/uplink.hpp"
 
+#include "common/error/further.hpp"
 #include "common/net/await_tuple.hpp"
 #include "robot_client/source/seconds.hpp"
 
@@ -10,6 +11,8 @@
 #include <boost/asio/this_coro.hpp>
 #include <boost/asio/write.hpp>
 #include <fmt/format.h>
+
+#include <utility>
 
 namespace scanloom::robot {
 
@@ -104,9 +107,9 @@ void Uplink::add(Observation observation) {
 
 asio::awaitable<void> Uplink::until_applied() {
     const auto all_handed_over = [&] { return protocol_.resumed_after() && feed_.waiting() == 0; };
-    while (!all_handed_over()) co_await heard_.wait(Clock::now() + kProgressPeriod);
+    while (!all_handed_over()) co_await news_.wait(Clock::now() + kProgressPeriod);
     const std::uint64_t last = buffer_.last();
-    while (protocol_.applied() < last) co_await heard_.wait();
+    while (protocol_.applied() < last) co_await news_.wait();
 }
 
 // Progress ------------------------------------------------------------------------------------------------------------
@@ -161,7 +164,7 @@ asio::awaitable<void> Uplink::keep_linked() {
         const auto cancellation = co_await asio::this_coro::cancellation_state;
         if (cancellation.cancelled() != asio::cancellation_type::none) co_return; // the outcome is already set
         protocol_.close();
-        heard_.ring();
+        news_.notify();
         if (protocol_.is_done()) co_return;
         if (!failure.retryable) {
             outcome_ = failure.error;
@@ -288,11 +291,18 @@ asio::awaitable<void> Uplink::wait(asio::steady_timer& timer, Clock::time_point 
     co_await timer.async_wait(kAwaitTuple);
 }
 
+std::function<void(const Error&)> report_once(std::function<void(const std::string&)> tell) {
+    return [tell = std::move(tell), reported = std::string()](const Error& error) mutable {
+        if (error.message == std::exchange(reported, error.message)) return;
+        tell(further(error.message, "trying again"));
+    };
+}
+
 void Uplink::wake_all() {
     feed_wake_.cancel();
     write_wake_.cancel();
     progress_wake_.cancel();
-    heard_.ring();
+    news_.notify();
 }
 
 } // namespace scanloom::robot

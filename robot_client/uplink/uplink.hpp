@@ -4,10 +4,10 @@
 #include "common/net/link_stream.hpp"
 #include "common/net/tls.hpp"
 #include "robot_client/uplink/backoff.hpp"
-#include "robot_client/uplink/bell.hpp"
 #include "robot_client/uplink/feed.hpp"
 #include "robot_client/uplink/send_buffer.hpp"
 #include "robot_client/uplink/server_address.hpp"
+#include "robot_client/uplink/wake_signal.hpp"
 
 #include <boost/asio/awaitable.hpp>
 #include <boost/asio/io_context.hpp>
@@ -79,8 +79,8 @@ public:
     /// Completes when all scans taken so far are in the server's maps.
     [[nodiscard]] boost::asio::awaitable<void> until_applied();
 
-    /// Returns a bell that rings when a message arrives from the server and when a link has ended.
-    [[nodiscard]] Bell& news_bell() noexcept { return heard_; }
+    /// Returns the signal for when a message arrives from the server and when a link has ended.
+    [[nodiscard]] WakeSignal& news_signal() noexcept { return news_; }
 
     [[nodiscard]] UplinkStatus status() const;
     /// Returns the highest seq known to be in the server's maps.
@@ -128,10 +128,14 @@ private:
     boost::asio::steady_timer feed_wake_;
     boost::asio::steady_timer write_wake_;
     boost::asio::steady_timer progress_wake_;
-    Bell heard_;
+    WakeSignal news_;
     Result<> outcome_;
     std::optional<Error> last_trouble_;
     std::optional<Clock::time_point> stopped_;
 };
+
+/// Makes a UplinkOptions::on_trouble that reports repeated identical errors only once.
+/// @param tell  receives messages for people
+[[nodiscard]] std::function<void(const Error&)> report_once(std::function<void(const std::string&)> tell);
 
 } // namespace scanloom::robot

@@ -1,4 +1,4 @@
-#include "robot_client/uplink/pacer.hpp"
+#include "robot_client/uplink/recording_feed.hpp"
 
 #include <gtest/gtest.h>
 

@@ -11,14 +11,14 @@
 
 namespace scanloom::robot {
 
-/// Wakes all coroutines that wait for it. A woken coroutine checks itself whether anything has changed. A Bell may be
-/// destroyed before or after the executor of the waiting coroutines.
+/// Wakes all coroutines that wait for it. A woken coroutine checks itself whether anything has changed. A WakeSignal
+/// may be destroyed before or after the executor of the waiting coroutines.
 /// Threads: one at a time.
-class Bell {
+class WakeSignal {
 public:
     using Time = boost::asio::steady_timer::time_point;
 
-    /// Waits until the bell rings or until the given time.
+    /// Waits for notify() or until the given time.
     [[nodiscard]] boost::asio::awaitable<void> wait(Time until = Time::max()) {
         const auto waiting = waiting_;
         boost::asio::steady_timer timer(co_await boost::asio::this_coro::executor, until);
@@ -26,7 +26,7 @@ public:
         co_await timer.async_wait(kAwaitTuple);
     }
 
-    void ring() {
+    void notify() {
         for (auto* timer : *waiting_) timer->cancel();
     }
 
