@@ -139,7 +139,7 @@ protected:
     }
 
     /// Waits until the job has ended.
-    static void finish(const Weave& job) {
+    static void finish(Weave& job) {
         static_cast<void>(testing_support::wait_for_maps(job, job.progress().target, kTimeout));
     }
 
