@@ -51,7 +51,7 @@ struct LineReader::State {
 Error LineReader::State::cannot_unpack() const {
     const bool is_gzip = file.packing() == Packing::kGzip;
     const std::string readable = text_bytes == 0
-                                     ? "no line could be read; download the file again"
+                                     ? "no text could be read; download the file again"
                                      : fmt::format("only its first {} lines ({} bytes of text) could be read; download "
                                                    "the file again, or unpack them with {} and replay them",
                                                    line_number, text_bytes, is_gzip ? "zcat" : "bzcat");

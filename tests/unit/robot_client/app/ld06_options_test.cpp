@@ -79,7 +79,7 @@ TEST(Ld06OptionsOf, ALidarThatAsksAndIsToldAreRefused) {
         EXPECT_THAT(refused({"f", "--locate", "--near", near}), HasSubstr("is not X,Y,RADIUS in metres")) << near;
     }
     for (const auto* near : {"0,0,0", "0,0,-1", "0,0,1001", "0,0,1e9", "0,0,1e-300"}) {
-        EXPECT_THAT(refused({"f", "--locate", "--near", near}), HasSubstr("give 0.1 to 1000")) << near;
+        EXPECT_THAT(refused({"f", "--locate", "--near", near}), HasSubstr("out of range: 0.1 to 1000")) << near;
     }
     EXPECT_THAT(refused({"f", "--locate", "--near", "0,-2e6,1"}), HasSubstr("-2000000 m is outside the map"));
 }
@@ -95,8 +95,8 @@ TEST(Ld06OptionsOf, AYawInDegreesAreRefused) {
 
 TEST(Ld06OptionsOf, AWrongCommandLineAreRefused) {
     EXPECT_THAT(refused({"--pose", "0,0,0"}), HasSubstr("name the INPUT"));
-    EXPECT_THAT(refused({"f"}), HasSubstr("say where the robot is"));
-    EXPECT_THAT(refused({"f", "--pose", "0,0,0", "--poses", "p"}), HasSubstr("say where the robot is"));
+    EXPECT_THAT(refused({"f"}), HasSubstr("state the robot's pose"));
+    EXPECT_THAT(refused({"f", "--pose", "0,0,0", "--poses", "p"}), HasSubstr("state the robot's pose"));
     for (const auto* pose : {"", "1,2", "1,2,3,4", "1,2,x", "1,2,nan", "1,inf,0", "1 2 3"}) {
         EXPECT_THAT(refused({"f", "--pose", pose}), HasSubstr("is not X,Y,YAW")) << pose;
         EXPECT_THAT(refused({"f", "--pose", "0,0,0", "--mount", pose}), HasSubstr("is not X,Y,YAW")) << pose;

@@ -216,7 +216,7 @@ TEST_F(Options, EachMistakeIsOneLineAndAUsageError) {
         {{"sonar", "m", "p", "--aperture", "181", "--session", "s", "--robot", "r"}, "--aperture"},
         {{"simulate", "--session", "s"}, "--robot is required"},
         {with({"--world", "moon"}), "moon"},
-        {with({"--laser", "none"}), "blind"},
+        {with({"--laser", "none"}), "needs --sonar ring16"},
         {with({"--drive", "home"}), "home"},
         {with({"--drive", "explore", "--laser", "none", "--sonar", "ring16"}), "--drive explore needs a --laser"},
         {with({"--drive", "zigzag", "--pose", "odometry"}), "use --pose true"},
@@ -301,7 +301,7 @@ TEST_F(Options, HelpTellsWhereWorldsAre) {
     }
 }
 
-TEST_F(Options, HelpTellsWhereLogsEnd) { EXPECT_THAT(left({"--help"}).text, HasSubstr("for logs 50")); }
+TEST_F(Options, HelpTellsWhereLogsEnd) { EXPECT_THAT(left({"--help"}).text, HasSubstr("for logs at most 50")); }
 
 TEST_F(Options, HelpAndVersionAreNotErrors) {
     EXPECT_EQ(left({"--help"}).code, kExitDone);

@@ -69,7 +69,7 @@ TEST_F(LineReaderTest, UnreadableFileReportsNoLineCount) {
     const std::string whole = bzip2(noise(100));
     const auto [lines, error] = read(std::string_view(whole).substr(0, whole.size() / 2));
     EXPECT_EQ(lines, 0U);
-    EXPECT_THAT(error, HasSubstr("the bzip2 data is damaged or truncated: no line could be read"));
+    EXPECT_THAT(error, HasSubstr("the bzip2 data is damaged or truncated: no text could be read"));
     EXPECT_THAT(error, Not(HasSubstr("line")));
 }
 
