@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace scanloom {
+namespace scanloom::limits {
 
 /// Limits a rate. A caller takes any amount, and waits for the returned time before it takes more.
 ///
@@ -48,4 +48,4 @@ private:
     double refilled_;
 };
 
-} // namespace scanloom
+} // namespace scanloom::limits

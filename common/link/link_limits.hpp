@@ -51,7 +51,7 @@ private:
     [[nodiscard]] Result<> check_beams(const wire::ScanBatch& batch) const;
 
     LinkLimits limits_;
-    TokenBucket inflow_;
+    limits::TokenBucket inflow_;
     std::set<std::uint32_t> sensors_;
 };
 

@@ -69,7 +69,7 @@ private:
 
     store::ScanLog& log_;
     const SessionRegistry& sessions_;
-    TokenBucket read_rate_;    // used by the checking thread only
+    limits::TokenBucket read_rate_; // used by the checking thread only
     mutable std::mutex mutex_; // guards the members below
     mutable std::condition_variable changed_;
     bool stopped_ = false;

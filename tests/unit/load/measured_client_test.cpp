@@ -51,7 +51,7 @@ protected:
         return messages;
     }
 
-    /// The scans among what it says now.
+    /// Returns the scans that the robot sends at `now`.
     std::vector<Scan> sent(Micros now) {
         std::vector<Scan> scans;
         for (const auto& message : messages_at(now)) {
@@ -97,7 +97,7 @@ TEST_F(MeasuredClientTest, SendsHelloSensorAndRepeatedScans) {
     ASSERT_EQ(messages.size(), 1U);
     EXPECT_EQ(std::get<wire::Hello>(messages[0]).session, "load-1-0");
     EXPECT_EQ(std::get<wire::Hello>(messages[0]).robot, "r0");
-    EXPECT_THAT(messages_at(1), IsEmpty()); // nothing before the welcome
+    EXPECT_THAT(messages_at(1), IsEmpty()); // nothing before the welcome message
 
     EXPECT_FALSE(receive(wire::Welcome{"5e55", 0, {}, 1 << 20, false}, 2));
     messages = messages_at(3);
@@ -138,7 +138,7 @@ TEST_F(MeasuredClientTest, UnacknowledgedBytesStayWithinTheCredit) {
     link(0, 0, 350);
     client_->due(10, 0);
     const auto first = sent_seqs(0).size();
-    EXPECT_EQ(first, 2U); // a frame has some 140 bytes
+    EXPECT_EQ(first, 2U); // a frame has about 140 bytes
     acknowledge(1, 1, 350);
     EXPECT_THAT(sent_seqs(1), ElementsAre(3));
     acknowledge(3, 2);
@@ -153,7 +153,7 @@ TEST_F(MeasuredClientTest, ReconnectResendsScansThatAreNotDurable) {
     client_->close(*figures_);
     EXPECT_EQ(figures_->linked, 0U);
 
-    link(4, 10); // two more had arrived
+    link(4, 10); // two more scans had arrived
     EXPECT_EQ(client_->acknowledged(), 4U);
     const auto again = sent(10);
     ASSERT_EQ(again.size(), 2U);
@@ -175,14 +175,14 @@ TEST_F(MeasuredClientTest, LatencyOfAStalledServerCountsFromTheIntendedTime) {
     EXPECT_THAT(sent_seqs(0), ElementsAre(1));
     client_->due(11, 0);
     EXPECT_THAT(sent_seqs(kSecond), IsEmpty());
-    for (std::uint64_t seq = 1; seq <= 11; ++seq) { // after a second it takes them all, one in no time
+    for (std::uint64_t seq = 1; seq <= 11; ++seq) { // after one second, the server acknowledges all scans immediately
         acknowledge(seq, kSecond, 180);
         static_cast<void>(sent_seqs(kSecond));
     }
     EXPECT_EQ(figures_->from_intended.count(), 11U);
     EXPECT_NEAR(static_cast<double>(figures_->from_intended.percentile(50)), 5 * kPeriod, kPeriod * 0.01);
     EXPECT_EQ(figures_->from_intended.max(), kSecond);
-    EXPECT_EQ(figures_->from_sending.percentile(90), 0); // which is what a tool tells that waits with the server
+    EXPECT_EQ(figures_->from_sending.percentile(90), 0); // the result of a tool that waits for the server
     EXPECT_NEAR(static_cast<double>(figures_->waiting_to_send.percentile(99)), 9 * kPeriod, kPeriod * 0.01);
 }
 
@@ -291,7 +291,7 @@ TEST_F(MeasuredClientTest, UnscheduledRobotSendsWithinTheCreditUntilTheEnd) {
     acknowledge(2 * first, 200, 1000);
     EXPECT_TRUE(client_->is_done());
     EXPECT_EQ(figures_->from_sending.max(), 100);
-    EXPECT_EQ(figures_->from_intended.count(), 0U) << "no scan was meant to be sent at any time";
+    EXPECT_EQ(figures_->from_intended.count(), 0U) << "scans have no intended time";
 }
 
 } // namespace

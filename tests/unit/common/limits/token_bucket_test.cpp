@@ -4,7 +4,7 @@
 
 #include <limits>
 
-namespace scanloom {
+namespace scanloom::limits {
 namespace {
 
 TEST(TokenBucket, ReturnsTheTimeUntilTheMissingAmountHasFlowedIn) {
@@ -54,4 +54,4 @@ TEST(TokenBucket, AClockThatStandsStillOrGoesBackGivesNothing) {
 }
 
 } // namespace
-} // namespace scanloom
+} // namespace scanloom::limits
