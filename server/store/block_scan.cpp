@@ -49,10 +49,10 @@ void BlockScan::skip_unreadable(std::uint64_t first) {
     }
     std::uint64_t unreadable = first + kOneByOne - 1;
     std::uint64_t readable = unreadable + kOneByOne;
-    while (!try_to_seek(readable)) {
+    for (std::uint64_t step = kOneByOne; !try_to_seek(readable); readable += step) {
         if (readable > kGreatest) return; // the rest of the table is unreadable
         unreadable = readable;
-        readable *= 2;
+        step *= 2;
     }
     while (unreadable + 1 < readable) { // binary search for the start of the readable part
         const auto middle = unreadable + (readable - unreadable) / 2;
@@ -61,7 +61,7 @@ void BlockScan::skip_unreadable(std::uint64_t first) {
     static_cast<void>(try_to_seek(readable));
 }
 
-/// Passes over keys that are too short for a number: no key of a store is.
+/// Passes over keys that are too short for a number; a store has none.
 void BlockScan::update_number() {
     for (number_.reset(); iterator_->Valid() && !number_;) {
         number_ = number_of(key().substr(range_.begin.size(), sizeof(std::uint64_t)));

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "server/store/compaction.hpp"
-#include "server/store/scan_log.hpp"
+#include "server/store/rocksdb_store.hpp"
 
 #include <rocksdb/options.h>
 
