@@ -68,7 +68,7 @@ public:
     TestApi(session::SessionRegistry& sessions, session::Weaves& weaves, guide::GoalBook& goals, store::ScanLog& log,
             const metrics::Metrics& metrics, Doorman doorman, WebFiles web = {}, const ServerConfig& limits = {},
             std::optional<Executors> executors = std::nullopt, std::span<const Route> of_routes = routes())
-        : check_(log, sessions, boost::asio::system_executor()), locator_(log),
+        : check_(log, sessions), locator_(log),
           pools_(executors ? *executors : polled_.executors(), limits), services_{{.sessions = sessions,
                                                                                    .weaves = weaves,
                                                                                    .goals = goals,
