@@ -107,8 +107,8 @@ asio::awaitable<Response> Api::answer(Admitted admitted, const Request& request)
             response = problem(made.error(), instance_of(request.target));
         } else {
             response = for_client(match.route.access, std::move(*made));
-            const bool takes_long = context.pool != Pool::kIo || response->gzip; // compressing takes milliseconds
-            if (takes_long) response = encoded_for(request.accept_encoding, std::move(*response));
+            const bool can_encode = context.pool != Pool::kIo || response->gzip; // compressing takes milliseconds
+            if (can_encode) response = encoded_for(request.accept_encoding, std::move(*response));
         }
     } catch (const std::exception& failure) { // costs one response
         spdlog::error("{} {} failed: {}", in_quotes(request.method), in_quotes(request.target), failure.what());

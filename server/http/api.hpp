@@ -18,7 +18,7 @@ namespace scanloom::http {
 /// Finds the route of a request, checks its permission and has its handler compute the response.
 ///
 /// A failure becomes a response, too, with application/problem+json.
-/// Bounds: the limits of Pools; large responses take a slot, such as map images of up to 64 MB; cached tiles take at
+/// Bounds: the limits of Pools; large responses take a permit, such as map images of up to 64 MB; cached tiles take at
 ///     most Services::tile_bytes_max.
 /// Threads: any thread.
 class Api {

@@ -82,14 +82,8 @@ std::string collection_document(Revision revision, const boost::json::object& me
     return text += '}';
 }
 
-Response ok_text(std::string_view content_type, std::shared_ptr<const void> slot, std::string text) {
-    struct Slotted {
-        std::shared_ptr<const void> slot;
-        std::string text;
-    };
-    const auto slotted = std::make_shared<const Slotted>(Slotted{std::move(slot), std::move(text)});
-    return ok(content_type, Body(std::shared_ptr<const std::string>(slotted, &slotted->text)))
-        .set("Cache-Control", kNotKept);
+Response ok_text(std::string_view content_type, limits::Semaphore::Permit permit, std::string text) {
+    return ok(content_type, with_permit(std::move(permit), std::move(text))).set("Cache-Control", kNotKept);
 }
 
 } // namespace scanloom::http

@@ -3,7 +3,7 @@
 #include "common/geometry/pose2.hpp"
 #include "common/scan/log_entry.hpp"
 #include "server/grid/cell.hpp"
-#include "server/http/response.hpp"
+#include "server/http/response_limit.hpp"
 
 #include <boost/json/array.hpp>
 #include <boost/json/object.hpp>
@@ -48,7 +48,7 @@ inline constexpr std::size_t kCellTextBytes = 120;
 [[nodiscard]] std::string collection_document(Revision revision, const boost::json::object& members,
                                               std::span<const std::string> features);
 
-/// Returns 200 with a text that may be large. The response keeps `slot` until it has been sent.
-[[nodiscard]] Response ok_text(std::string_view content_type, std::shared_ptr<const void> slot, std::string text);
+/// Returns 200 with a text that may be large. The response keeps `permit` until it has been sent.
+[[nodiscard]] Response ok_text(std::string_view content_type, limits::Semaphore::Permit permit, std::string text);
 
 } // namespace scanloom::http

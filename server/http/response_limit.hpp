@@ -2,8 +2,11 @@
 
 #include "common/error/error.hpp"
 #include "common/limits/semaphore.hpp"
+#include "server/http/response.hpp"
 
 #include <cstddef>
+#include <memory>
+#include <utility>
 
 namespace scanloom::http {
 
@@ -31,5 +34,16 @@ private:
     const limits::Semaphore large_{kLargeResponses};
     const limits::Semaphore huge_{kHugeResponses};
 };
+
+/// Returns a body that keeps `permit` until it has been sent.
+template <class Bytes>
+[[nodiscard]] Body with_permit(limits::Semaphore::Permit permit, Bytes bytes) {
+    struct Held {
+        limits::Semaphore::Permit permit;
+        Bytes bytes;
+    };
+    const auto held = std::make_shared<const Held>(Held{std::move(permit), std::move(bytes)});
+    return Body(std::shared_ptr<const Bytes>(held, &held->bytes));
+}
 
 } // namespace scanloom::http

@@ -91,9 +91,9 @@ Result<Response> get_goal(Context& context) {
         const auto head = head_text(*name, maps->revision, explored ? "complete" : "none");
         return ok_text(kJson, nullptr, fmt::format("{}{}}}", head, kNoGoal));
     }
-    auto slot = context.services.responses.take((held->way ? held->way->points.size() : 0) * kPointTextBytes);
-    if (!slot) return slot.error();
-    return ok_text(kJson, std::move(*slot), goal_text(*name, *held->goal, held->way.get()));
+    auto permit = context.services.responses.take((held->way ? held->way->points.size() : 0) * kPointTextBytes);
+    if (!permit) return permit.error();
+    return ok_text(kJson, std::move(*permit), goal_text(*name, *held->goal, held->way.get()));
 }
 
 Result<Response> assign_goal(Context& context) {
@@ -115,9 +115,9 @@ Result<Response> assign_goal(Context& context) {
     const auto next = context.services.goals.next(found->session, snapshot, *robot, Point2{pose->x, pose->y},
                                                   guide::GoalBook::Clock::now(), *options);
     if (!next) return next.error();
-    auto slot = context.services.responses.take(next->path.points.size() * kPointTextBytes);
-    if (!slot) return slot.error();
-    return ok_text(kJson, std::move(*slot), goal_text(*name, snapshot, *next));
+    auto permit = context.services.responses.take(next->path.points.size() * kPointTextBytes);
+    if (!permit) return permit.error();
+    return ok_text(kJson, std::move(*permit), goal_text(*name, snapshot, *next));
 }
 
 namespace {
@@ -160,8 +160,8 @@ Result<Response> get_goals(Context& context) {
     const auto page = context.services.goals.ways().page(*session, guide::WayBook::Clock::now());
     std::size_t bytes = page.explored.size() * kNameBytesMax;
     for (const auto& held : page.robots) bytes += ((held.way ? held.way->points.size() : 0) + 16) * kPointTextBytes;
-    auto slot = context.services.responses.take(bytes);
-    if (!slot) return slot.error();
+    auto permit = context.services.responses.take(bytes);
+    if (!permit) return permit.error();
 
     const auto maps = (*session)->snapshot();
     std::vector<std::string> features;
@@ -175,7 +175,7 @@ Result<Response> get_goals(Context& context) {
     for (const RobotIndex robot : page.explored) {
         if (robot < maps->robots.size()) explored.emplace_back(maps->robots[robot].name);
     }
-    return ok_text(kGeoJson, std::move(*slot),
+    return ok_text(kGeoJson, std::move(*permit),
                    collection_document(page.revision, {{"explored", std::move(explored)}}, features));
 }
 

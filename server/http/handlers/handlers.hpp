@@ -106,7 +106,7 @@ namespace scanloom::http {
 /// GET .../map.png, .../map.pgm, .../map.yaml, .../map.csv, .../map.npy: returns the whole map of a layer, or with
 /// `bbox=min_x,min_y,max_x,max_y` (metres) the cells that overlap this rectangle. ROS loads the PGM and the YAML.
 ///
-/// A large file takes a slot until its last byte is sent. If no slot is free, the response is 503.
+/// A large file takes a permit until its last byte is sent. If none is free, the response is 503.
 [[nodiscard]] boost::asio::awaitable<Result<Response>> get_map_png(Context& context);
 [[nodiscard]] boost::asio::awaitable<Result<Response>> get_map_pgm(Context& context);
 [[nodiscard]] boost::asio::awaitable<Result<Response>> get_map_csv(Context& context);
@@ -120,8 +120,8 @@ namespace scanloom::http {
 /// session, as numbers or as an image. Each map is that of a replay job, or the session's own map if it is not named.
 /// See tiles/difference.hpp.
 ///
-/// The image has `Scanloom-Bounds: min_x,min_y,max_x,max_y`, its bounds in the map frame in metres. It takes a slot, as
-/// map.png does.
+/// The image has `Scanloom-Bounds: min_x,min_y,max_x,max_y`, its bounds in the map frame in metres. It takes a permit,
+/// as map.png does.
 [[nodiscard]] Result<Response> get_difference(Context& context);
 [[nodiscard]] Result<Response> get_difference_png(Context& context);
 
@@ -198,7 +198,7 @@ namespace scanloom::http {
 /// frame (RFC 7946 knows only degrees; the foreign members state the difference). With times=true the properties also
 /// have the revision, the stamp (seconds, the robot's clock) and the yaw (radians) of each position. `revision` is the
 /// end of the trajectories: that of the maps, unless they exceed session::kPathPointsMax. A long trajectory takes a
-/// slot, as a large map image does. Points that are not in memory any more are read from the log.
+/// permit, as a large map image does. Points that are not in memory any more are read from the log.
 [[nodiscard]] Result<Response> get_trajectory(Context& context);
 
 // log.cpp

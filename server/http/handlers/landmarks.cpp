@@ -96,13 +96,13 @@ Result<Response> get_landmarks(Context& context) {
             if (asked.wants(one)) wanted.push_back(&one);
         }
     }
-    auto slot = context.services.responses.take(wanted.size() * kLandmarkTextBytes);
-    if (!slot) return slot.error();
+    auto permit = context.services.responses.take(wanted.size() * kLandmarkTextBytes);
+    if (!permit) return permit.error();
     std::vector<std::string> features;
     features.reserve(wanted.size());
     for (const auto* one : wanted) features.push_back(feature_of(*one));
     const auto& sums = folded->state.sums;
-    return ok_text(kGeoJson, std::move(*slot),
+    return ok_text(kGeoJson, std::move(*permit),
                    collection_document(folded->revision,
                                        {{"reset", asked.since != *since},
                                         {"captures", folded->state.captures},
@@ -245,14 +245,14 @@ Result<Response> get_points(const Context& context, PointFile file) {
     Chosen chosen(*query);
     const auto read = choose(context.services.log, (*session)->info(), *query, snapshot->revision, patience, chosen);
     if (!read) return read.error();
-    auto slot = context.services.responses.take(chosen.points() * exchange::kPointTextBytes);
-    if (!slot) return slot.error();
+    auto permit = context.services.responses.take(chosen.points() * exchange::kPointTextBytes);
+    if (!permit) return permit.error();
     const auto cloud = landmarks::fuse_captures(chosen.captures(), query->threshold, patience);
     if (!cloud) return cloud.error();
-    if (file == PointFile::kPly) return ok_text("model/ply", std::move(*slot), exchange::points_ply(*cloud));
+    if (file == PointFile::kPly) return ok_text("model/ply", std::move(*permit), exchange::points_ply(*cloud));
     std::vector<std::string> names;
     for (const auto& robot : snapshot->robots) names.push_back(robot.name);
-    return ok_text("text/csv", std::move(*slot), exchange::points_csv(*cloud, names));
+    return ok_text("text/csv", std::move(*permit), exchange::points_csv(*cloud, names));
 }
 
 } // namespace

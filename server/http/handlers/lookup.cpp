@@ -130,8 +130,8 @@ boost::asio::awaitable<Result<Maps>> replayed(Context& context) {
     if (!session) co_return session.error();
     const auto request = weave_request(**session, context.query);
     if (!request) co_return request.error();
-    const auto slot = context.services.pools.wait_for_replay();
-    if (!slot) co_return slot.error();
+    const auto permit = context.services.pools.wait_for_replay();
+    if (!permit) co_return permit.error();
     const Revision newest = (*session)->snapshot()->revision;
     auto& weaves = context.services.weaves;
     const auto weave = weaves.start((*session)->info(), *request, newest, session::Weaves::Listing::kUnlisted);

@@ -68,17 +68,10 @@ asio::awaitable<Result<Response>> get_file(Context& context, std::string_view co
     if (!wanted) co_return wanted.error();
     const auto& etag = wanted->etag;
     if (if_none_match_has(context.request.if_none_match, etag)) co_return not_modified(etag, kRevalidate);
-    using Bytes = decltype(write(*wanted));
-    struct File {
-        std::shared_ptr<const void> slot;
-        Bytes bytes;
-    };
-    auto slot = context.services.responses.take(wanted->frame.pixels() *
-                                                static_cast<std::size_t>(bytes_per_cell(wanted->layer)));
-    if (!slot) co_return slot.error();
-    auto file = std::make_shared<File>(File{std::move(*slot), {}});
-    file->bytes = write(*wanted);
-    co_return map_answer(content_type, Body(std::shared_ptr<const Bytes>(file, &file->bytes)), etag);
+    auto permit = context.services.responses.take(wanted->frame.pixels() *
+                                                  static_cast<std::size_t>(bytes_per_cell(wanted->layer)));
+    if (!permit) co_return permit.error();
+    co_return map_answer(content_type, with_permit(std::move(*permit), write(*wanted)), etag);
 }
 
 tiles::MapImage rendered(const WantedMapFile& wanted) {
@@ -217,16 +210,11 @@ Result<Response> get_difference_png(Context& context) {
     const auto etag =
         fmt::format("\"{}-{}-{}-{}-difference\"", a.tag, a.snapshot->revision, b.tag, b.snapshot->revision);
     if (if_none_match_has(context.request.if_none_match, etag)) return not_modified(etag, kRevalidate);
-    struct File {
-        std::shared_ptr<const void> slot;
-        tiles::Bytes bytes;
-    };
-    auto slot = context.services.responses.take(wanted->frame.pixels());
-    if (!slot) return slot.error();
-    const auto file =
-        std::make_shared<const File>(File{std::move(*slot), tiles::difference_png(wanted->compared(), wanted->frame)});
+    auto permit = context.services.responses.take(wanted->frame.pixels());
+    if (!permit) return permit.error();
     const auto extent = tiles::extent_of(wanted->frame.cells, wanted->frame.cell_size);
-    return ok("image/png", Body(std::shared_ptr<const tiles::Bytes>(file, &file->bytes)))
+    auto image = tiles::difference_png(wanted->compared(), wanted->frame);
+    return ok("image/png", with_permit(std::move(*permit), std::move(image)))
         .set("ETag", etag)
         .set("Cache-Control", kRevalidate)
         .set("Scanloom-Bounds", fmt::format("{},{},{},{}", rounded_metres(extent.min_x), rounded_metres(extent.min_y),

@@ -54,11 +54,11 @@ Result<Response> post_plan(Context& context) {
 
     const auto path = planning::plan_path(snapshot.classes, snapshot.config.cell_size, from->point, *to, *options);
     if (!path) return path.error();
-    auto slot = context.services.responses.take(path->points.size() * kPointTextBytes);
-    if (!slot) return slot.error();
+    auto permit = context.services.responses.take(path->points.size() * kPointTextBytes);
+    if (!permit) return permit.error();
     const boost::json::object properties{{"length", rounded_metres(path->length_m)},
                                          {"cost", rounded_metres(path->cost)}};
-    return ok_text(kGeoJson, std::move(*slot),
+    return ok_text(kGeoJson, std::move(*permit),
                    feature_document(snapshot.revision, properties, line_string(path->points)));
 }
 
@@ -129,10 +129,10 @@ Result<Response> post_coverage(Context& context) {
     auto coverage = planning::plan_coverage(snapshot.classes, snapshot.config.cell_size, start->point, *options,
                                             guide::Patience(context.services.sessions));
     if (!coverage) return coverage.error();
-    auto slot = context.services.responses.take(coverage->path.points.size() * kPointTextBytes +
-                                                coverage->unreachable.size() * kCellTextBytes);
-    if (!slot) return slot.error();
-    return ok_text(kGeoJson, std::move(*slot), document_of(snapshot, std::move(*coverage)));
+    auto permit = context.services.responses.take(coverage->path.points.size() * kPointTextBytes +
+                                                  coverage->unreachable.size() * kCellTextBytes);
+    if (!permit) return permit.error();
+    return ok_text(kGeoJson, std::move(*permit), document_of(snapshot, std::move(*coverage)));
 }
 
 namespace {
@@ -255,8 +255,8 @@ Result<Response> get_frontiers(Context& context) {
                                                   "size_min, or look at the tiles of classification",
                                                   frontiers.size())};
     }
-    auto slot = context.services.responses.take(bytes);
-    if (!slot) return slot.error();
+    auto permit = context.services.responses.take(bytes);
+    if (!permit) return permit.error();
 
     std::vector<std::string> features;
     for (std::size_t n = 0; n < frontiers.size(); ++n) {
@@ -266,7 +266,7 @@ Result<Response> get_frontiers(Context& context) {
     for (const RobotIndex robot : offers->robots) names.emplace_back(snapshot.robots[robot].name);
     const bool any = std::ranges::any_of(offers->of_frontiers, [](const auto& one) { return one.has_value(); });
     return ok_text(
-        kGeoJson, std::move(*slot),
+        kGeoJson, std::move(*permit),
         collection_document(snapshot.revision, {{"any_reachable", any}, {"robots", std::move(names)}}, features));
 }
 

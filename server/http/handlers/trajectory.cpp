@@ -1,5 +1,6 @@
 #include "server/http/handlers/handlers.hpp"
 
+#include "server/http/geojson.hpp"
 #include "server/http/handlers/lookup.hpp"
 #include "server/http/text.hpp"
 #include "server/session/old_paths.hpp"
@@ -117,8 +118,8 @@ Result<Response> get_trajectory(Context& context) {
 
     const auto snapshot = (*session)->snapshot();
     const TrajectoryParameters asked{since_in(*snapshot, *since), *with_times};
-    auto slot = context.services.responses.take(bytes_about(*snapshot, asked));
-    if (!slot) return slot.error();
+    auto permit = context.services.responses.take(bytes_about(*snapshot, asked));
+    if (!permit) return permit.error();
     const auto old = session::read_old_paths(context.services.log, (*session)->info().id, *snapshot, asked.since,
                                              [&] { return !context.services.sessions.is_draining(); });
     if (!old) return old.error();
@@ -131,12 +132,7 @@ Result<Response> get_trajectory(Context& context) {
         append_feature(text, robot.name, {old->robots[n], robot.trajectory, asked.since, old->until}, asked.with_times);
     }
     text += "]}";
-    struct Path {
-        std::shared_ptr<const void> slot;
-        std::string text;
-    };
-    const auto path = std::make_shared<const Path>(Path{std::move(*slot), std::move(text)});
-    return ok(kGeoJson, Body(std::shared_ptr<const std::string>(path, &path->text))).set("Cache-Control", kNotKept);
+    return ok_text(kGeoJson, std::move(*permit), std::move(text));
 }
 
 } // namespace scanloom::http
