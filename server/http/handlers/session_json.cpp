@@ -52,7 +52,7 @@ boost::json::value radius_json(const std::optional<double>& radius) {
 
 /// @param session  null if it is not in memory
 boost::json::object session_json(const session::SessionInfo& info, const mapping::Snapshot& snapshot,
-                                 const session::Session* session) {
+                                 const session::Session* session, std::optional<std::string> failure) {
     boost::json::array robots;
     std::uint64_t scans = 0;
     for (RobotIndex index = 0; index < snapshot.robots.size(); ++index) {
@@ -69,7 +69,7 @@ boost::json::object session_json(const session::SessionInfo& info, const mapping
                                              {"body_radius", radius_json(robot.body_radius)}});
     }
     const auto main_bounds = session == nullptr ? grid::CellBox() : session->main_bounds();
-    const auto failure = session == nullptr ? std::nullopt : session->failure();
+    if (const auto own = session == nullptr ? std::nullopt : session->failure()) failure = own->message;
     boost::json::object json{{"name", info.name},
                              {"state", failure ? "failed" : "ok"},
                              {"loaded", session != nullptr},
@@ -84,19 +84,20 @@ boost::json::object session_json(const session::SessionInfo& info, const mapping
                              {"bounds", bounds_json(mapping::bounds_of(snapshot), info.config.cell_size)},
                              {"main_bounds", bounds_json(main_bounds, info.config.cell_size)},
                              {"robots", std::move(robots)}};
-    if (failure) json["reason"] = failure->message;
+    if (failure) json["reason"] = *failure;
     return json;
 }
 
 } // namespace
 
 boost::json::object to_json(const session::Session& session) {
-    return session_json(session.info(), *session.snapshot(), &session);
+    return session_json(session.info(), *session.snapshot(), &session, std::nullopt);
 }
 
-boost::json::object to_json(const session::Listed& listed) {
-    if (listed.session) return to_json(*listed.session);
-    return session_json(listed.info, *listed.summary.facts, nullptr);
+boost::json::object to_json(const session::Listed& listed, std::optional<std::string> store_failure) {
+    const auto* session = listed.session.get();
+    const auto maps = session == nullptr ? listed.summary.facts : session->snapshot();
+    return session_json(listed.info, *maps, session, std::move(store_failure));
 }
 
 boost::json::object failed_json(std::string_view name, const Error& reason) {

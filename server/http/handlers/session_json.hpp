@@ -15,7 +15,8 @@ namespace scanloom::http {
 
 /// Returns all properties of a session, as the API shows them.
 [[nodiscard]] boost::json::object to_json(const session::Session& session);
-[[nodiscard]] boost::json::object to_json(const session::Listed& listed);
+/// @param store_failure  why the store accepts no changes; nullopt if it does. Sessions notice it only when a robot sends
+[[nodiscard]] boost::json::object to_json(const session::Listed& listed, std::optional<std::string> store_failure);
 
 /// Returns a short description of a session that accepts no scans until it is loaded again from the store: its name,
 /// its state and the reason.

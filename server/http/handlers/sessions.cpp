@@ -71,16 +71,24 @@ std::map<std::string, Listed, std::less<>> sessions_by_name(const session::Sessi
     return listed;
 }
 
-boost::json::object listed_json(const session::Listed& listed, const std::map<std::string, Error>& found) {
-    auto json = to_json(listed);
-    const auto damage = found.find(listed.info.name);
-    if (damage != found.end()) json["damage"] = damage->second.message;
+/// What is known of the store of all sessions.
+struct StoreState {
+    std::map<std::string, Error> damaged; ///< found since the start, in sessions that are still served
+    std::optional<std::string> failure;   ///< why it accepts no changes
+
+    explicit StoreState(const Services& services)
+        : damaged(services.check.damaged()), failure(services.log.stats().last_error) {}
+};
+
+boost::json::object listed_json(const session::Listed& listed, const StoreState& store) {
+    auto json = to_json(listed, store.failure);
+    const auto damage = store.damaged.find(listed.info.name);
+    if (damage != store.damaged.end()) json["damage"] = damage->second.message;
     return json;
 }
 
-boost::json::object listed_json(const Listed& listed, std::string_view name,
-                                const std::map<std::string, Error>& found) {
-    return listed ? listed_json(*listed, found) : damaged_json(name, listed.error());
+boost::json::object listed_json(const Listed& listed, std::string_view name, const StoreState& store) {
+    return listed ? listed_json(*listed, store) : damaged_json(name, listed.error());
 }
 
 } // namespace
@@ -88,13 +96,13 @@ boost::json::object listed_json(const Listed& listed, std::string_view name,
 Result<Response> list_sessions(Context& context) {
     const auto page = parse_page(context.query);
     if (!page) return page.error();
-    const auto found = context.services.check.damaged(); // since the start, in sessions that are still served
+    const StoreState store(context.services);
     const auto listed = sessions_by_name(context.services.sessions, *context.token);
     boost::json::array shown;
     boost::json::value next = nullptr;
     auto entry = listed.upper_bound(page->after);
     for (; entry != listed.end() && shown.size() < page->limit; ++entry) {
-        shown.push_back(listed_json(entry->second, entry->first, found));
+        shown.push_back(listed_json(entry->second, entry->first, store));
         if (shown.size() == page->limit && std::next(entry) != listed.end()) next = boost::json::string(entry->first);
     }
     return ok(boost::json::object{{"sessions", std::move(shown)}, {"next", std::move(next)}});
@@ -118,7 +126,7 @@ Result<Response> get_session(Context& context) {
     if (auto known = context.query.check_only({}); !known) return known.error();
     const auto& name = context.arguments["session"];
     if (const auto listed = context.services.sessions.listed(name))
-        return ok(listed_json(*listed, context.services.check.damaged()));
+        return ok(listed_json(*listed, StoreState(context.services)));
     const auto damage = damage_of(context.services.sessions, name);
     return damage ? *damage : session::no_such_session(name);
 }

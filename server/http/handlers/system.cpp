@@ -1,5 +1,6 @@
 #include "server/http/handlers/handlers.hpp"
 
+#include "server/http/content_coding.hpp"
 #include "server/http/handlers/session_json.hpp"
 #include "server/http/openapi_text.hpp"
 #include "server/http/problem.hpp"
@@ -152,7 +153,10 @@ Result<Response> get_metrics(Context& context) {
 
 Result<Response> get_openapi(Context& context) {
     if (auto known = context.query.check_only({}); !known) return known.error();
-    return ok(kJson, Body(std::string(kOpenapiText))).set("Cache-Control", kNotKept);
+    static const auto kCompressed = gzip_of(kJson, kOpenapiText);
+    auto response = ok(kJson, Body(std::string(kOpenapiText)));
+    response.gzip = kCompressed;
+    return std::move(response).set("Cache-Control", kNotKept);
 }
 
 Result<Response> get_viewer(Context& context) {

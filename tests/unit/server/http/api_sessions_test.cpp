@@ -90,10 +90,15 @@ TEST_F(ApiTest, OnlyJsonIsTaken) {
     EXPECT_EQ(answer(api_, request).status, Status::created);
 }
 
-TEST_F(ApiTest, AFailedStoreIsUnavailable) {
+TEST_F(ApiTest, AFailedStoreIsUnavailableAndAllSessionsShowIt) {
+    create("lab");
     log_.fail_from_next_change({Errc::kStoreFailed, "the disk is full"});
     EXPECT_THAT(detail(ask("POST", "/api/v1/sessions", R"({"name":"a"})"), Status::service_unavailable),
                 HasSubstr("disk is full"));
+    for (const auto& shown : {get_json("/api/v1/sessions/lab"), get_json("/api/v1/sessions").at("sessions").at(0)}) {
+        EXPECT_EQ(shown.at("state"), "failed") << "although no robot has sent a scan since";
+        EXPECT_THAT(std::string(shown.at("reason").as_string()), HasSubstr("disk is full"));
+    }
 }
 
 TEST_F(ApiTest, SessionsAreListedInPages) {
