@@ -70,7 +70,7 @@ TEST(RobotProgram, ALidarWithoutAnyPoseIsReportedAndExitsWith1) {
     const auto summary = robot.read_line();
     EXPECT_EQ(robot.wait(), 1);
     ASSERT_TRUE(summary);
-    EXPECT_THAT(*summary, HasSubstr(R"("error":"no scan was sent: of )"));
+    EXPECT_THAT(*summary, HasSubstr(R"("error":"no scan was sent: none of )"));
 }
 
 TEST(RobotProgram, AFileSizeLimitIsReportedAsAnError) {

@@ -151,7 +151,7 @@ TEST_F(UplinkTest, RetriesRetryableErrorsAndEndsOnFinalOnes) {
     const auto outcome = run(options());
     ASSERT_FALSE(outcome);
     EXPECT_EQ(outcome.error(), (Error{Errc::kGone, "session s1 was deleted"}));
-    EXPECT_THAT(troubles_, ElementsAre("draining; come back", "disk full"));
+    EXPECT_THAT(troubles_, ElementsAre("draining; try again later", "disk full"));
 }
 
 TEST_F(UplinkTest, ASilentServerCausesAReconnect) {

@@ -10,7 +10,7 @@
 namespace scanloom::robot {
 namespace {
 
-constexpr double kTurnMax = std::numbers::pi / 4.0;
+constexpr double kWallTurnMax = std::numbers::pi / 4.0;
 
 Velocity velocity_of(WallFollower& follower, const SectorRanges& nearest) { return follower.step({{}, nearest, {}}); }
 
@@ -31,7 +31,7 @@ TEST(WallFollower, SteersTowardsSixtyCentimetresFromTheWall) {
 }
 
 TEST(WallFollower, TurnsLeftInPlaceBeforeAWall) {
-    EXPECT_EQ(first_step({0.6, 0.39, 5}), (Velocity{0.0, kTurnMax}));
+    EXPECT_EQ(first_step({0.6, 0.39, 5}), (Velocity{0.0, kWallTurnMax}));
     EXPECT_EQ(first_step({0.6, 0.41, 5}).forward, 0.4);
 }
 
@@ -44,7 +44,7 @@ TEST(WallFollower, StopsVeryNearAndRecoversAfterThirtyStops) {
     WallFollower follower;
     const SectorRanges blocked{0.2, 5, 5};
     for (int i = 0; i < 31; ++i) EXPECT_EQ(velocity_of(follower, blocked), (Velocity{0.0, 0.0})) << i;
-    for (int i = 0; i < 40; ++i) EXPECT_EQ(velocity_of(follower, blocked), (Velocity{-0.08, -0.6 * kTurnMax})) << i;
+    for (int i = 0; i < 40; ++i) EXPECT_EQ(velocity_of(follower, blocked), (Velocity{-0.08, -0.6 * kWallTurnMax})) << i;
     EXPECT_EQ(velocity_of(follower, blocked), (Velocity{0.0, 0.0})) << "recovery ends after 40 steps";
 }
 
@@ -94,7 +94,7 @@ TEST(WallFollower, LeavesAnObjectAfterSurroundingIt) {
     }
     for (const double right : {0.6, 0.5, 5.0})
         EXPECT_EQ(velocity_of(follower, {right, 5, 5}), (Velocity{0.4, 0.0})) << right;
-    EXPECT_EQ(velocity_of(follower, {0.6, 0.39, 5}), (Velocity{0.0, kTurnMax})) << "another wall is ahead";
+    EXPECT_EQ(velocity_of(follower, {0.6, 0.39, 5}), (Velocity{0.0, kWallTurnMax})) << "another wall is ahead";
     EXPECT_LT(velocity_of(follower, {0.65, 5, 5}).turn, 0.0);
     EXPECT_GT(velocity_of(follower, {0.55, 5, 5}).turn, 0.0);
 }

@@ -103,7 +103,7 @@ TEST_F(Ld06Lives, ReconnectedDeviceContinues) {
     };
     const Scan scan = scan_of(source, [&] { first.hang_up(); });
     EXPECT_EQ(scan.ranges.size(), 450U);
-    EXPECT_THAT(notes_, ElementsAre(HasSubstr("hung up"), HasSubstr("packets are received again")));
+    EXPECT_THAT(notes_, ElementsAre(HasSubstr("disconnected"), HasSubstr("packets are received again")));
     std::filesystem::remove(path);
 }
 
@@ -190,7 +190,7 @@ TEST_F(Ld06OverTcp, ReopensABrokenConnection) {
     Ld06Live source(options(endpoint()));
     (void)scan_of(source);
     EXPECT_EQ(scan_of(source).ranges.size(), 450U);
-    EXPECT_THAT(notes_, ElementsAre(HasSubstr("hung up"), HasSubstr("packets are received again")));
+    EXPECT_THAT(notes_, ElementsAre(HasSubstr("disconnected"), HasSubstr("packets are received again")));
     EXPECT_EQ(source.remarks(), "0 damaged packets, 2 turns")
         << "bytes after a break must not be joined to those before";
 }
