@@ -1,7 +1,7 @@
 #include "lab/alignment_methods.hpp"
 
-#include "server/landmarks/alignment_of_pairs.hpp"
-#include "server/landmarks/cloud.hpp"
+#include "core/landmarks/alignment.hpp"
+#include "core/landmarks/points.hpp"
 
 namespace scanloom::lab {
 namespace {

@@ -3,7 +3,7 @@
 #include "lab/landmark_comparison.hpp"
 #include "lab/pose_error.hpp"
 
-#include "server/landmarks/alignment.hpp"
+#include "core/landmarks/alignment.hpp"
 
 #include <optional>
 #include <string>

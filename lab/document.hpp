@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -41,6 +42,9 @@ struct Picture {
     front.insert(front.end(), back.begin(), back.end());
     return front;
 }
+
+/// Formats the range of some values: "1.20 to 3.40", "1.20" if they are equal, "nothing" if there are none.
+[[nodiscard]] std::string range_text(std::span<const double> values, int digits = 2);
 
 using Block = std::variant<Heading, Paragraph, Items, Code, Link, Table, Picture>;
 using Document = std::vector<Block>;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "robot_client/sim/world.hpp"
+#include "sim/world.hpp"
 
 #include <array>
 

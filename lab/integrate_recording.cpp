@@ -7,16 +7,16 @@ Result<std::vector<double>> integrate_recording(const Recording& recording, cons
     if (!config) return config.error();
     mapping::Projection projection(*config);
     for (const LogEntry& entry : {LogEntry(RobotJoined{0, "lab"}), LogEntry(SensorDescribed{0, recording.laser})}) {
-        if (auto folded = projection.fold(entry); !folded) return folded.error();
+        if (auto applied = projection.apply(entry); !applied) return applied.error();
     }
     std::vector<double> seconds;
     for (const Scan& scan : recording.scans) {
         const LogEntry entry = ScanTaken{0, scan};
         const double begun = now();
-        const auto folded = projection.fold(entry);
+        const auto applied = projection.apply(entry);
         if ((seconds.size() + 1) % kScansPerSnapshot == 0) static_cast<void>(projection.snapshot());
         seconds.push_back(now() - begun);
-        if (!folded) return folded.error();
+        if (!applied) return applied.error();
         after_scan(seconds.size(), projection);
     }
     return seconds;

@@ -2,7 +2,7 @@
 
 #include "lab/recording.hpp"
 
-#include "server/mapping/projection.hpp"
+#include "core/mapping/projection.hpp"
 
 #include <functional>
 

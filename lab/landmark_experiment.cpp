@@ -1,10 +1,9 @@
 #include "lab/landmark_experiment.hpp"
 
+#include "lab/cloud_pictures.hpp"
 #include "lab/door_room.hpp"
-#include "lab/landmark_picture.hpp"
-#include "lab/located_picture.hpp"
 
-#include "robot_client/sim/random.hpp"
+#include "sim/noise.hpp"
 
 #include <fmt/format.h>
 

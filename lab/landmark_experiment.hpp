@@ -2,8 +2,8 @@
 
 #include "lab/alignment_methods.hpp"
 #include "lab/alignment_trials.hpp"
-#include "lab/landmark_sweeps.hpp"
-#include "lab/ld06_recording.hpp"
+#include "lab/landmark_comparison.hpp"
+#include "lab/recording.hpp"
 
 #include "server/tiles/bytes.hpp"
 

@@ -12,14 +12,6 @@ namespace {
 
 constexpr const char* kDoorOpened = ", door opened";
 
-std::string range_text(std::span<const double> values, int digits = 2) {
-    if (values.empty()) return "nothing";
-    const auto [low, high] = std::ranges::minmax(values);
-    const auto low_text = fmt::format("{:.{}f}", low, digits);
-    const auto high_text = fmt::format("{:.{}f}", high, digits);
-    return low_text == high_text ? low_text : fmt::format("{} to {}", low_text, high_text);
-}
-
 /// Returns the values of those comparisons that have one.
 template <class Choose>
 std::vector<double> values_of(std::span<const Comparison* const> comparisons, Choose&& choose) {

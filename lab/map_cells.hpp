@@ -2,7 +2,7 @@
 
 #include "lab/scoring.hpp"
 
-#include "server/mapping/snapshot.hpp"
+#include "core/mapping/snapshot.hpp"
 
 namespace scanloom::lab {
 

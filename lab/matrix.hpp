@@ -2,7 +2,7 @@
 
 #include "common/geometry/pose2.hpp"
 #include "common/scan/session_options.hpp"
-#include "robot_client/sim/laser.hpp"
+#include "sim/range_sensors.hpp"
 
 #include <cstdint>
 #include <optional>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "lab/trials.hpp"
+#include "lab/alignment_trials.hpp"
 
 #include "common/app/program.hpp"
 

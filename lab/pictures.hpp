@@ -2,7 +2,7 @@
 
 #include "lab/recording.hpp"
 
-#include "server/mapping/snapshot.hpp"
+#include "core/mapping/snapshot.hpp"
 #include "server/tiles/bytes.hpp"
 #include "server/tiles/map_image.hpp"
 

@@ -1,12 +1,51 @@
 #include "lab/recording.hpp"
 
-#include "robot_client/drive/wall_follower.hpp"
+#include "common/scan/reading.hpp"
+#include "common/wire/messages.hpp"
+#include "core/landmarks/alignment.hpp"
+#include "core/landmarks/point_index.hpp"
+#include "core/landmarks/points.hpp"
+#include "robot_client/sources/ld06_capture.hpp"
+#include "sim/drive/wall_follower.hpp"
+#include "sim/range_sensors.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <numeric>
+#include <optional>
+#include <span>
+#include <utility>
 
 namespace scanloom::lab {
+
+std::size_t robot_bytes(std::span<const Scan> scans) {
+    std::size_t bytes = 0;
+    std::string frame;
+    for (const Scan& scan : scans) {
+        frame.clear();
+        wire::encode(wire::ScanBatch{{scan}}, frame);
+        bytes += frame.size();
+    }
+    return bytes;
+}
+
+std::size_t clustering_bytes(std::span<const Point2> points, double eps) {
+    using landmarks::CellIndex;
+    constexpr std::size_t kNumber = sizeof(std::uint32_t);
+    // the point; index of its distinct point; its cluster
+    constexpr std::size_t kEach = sizeof(Point2) + 2 * kNumber;
+    // the point and its count; position in the grid and cell; point and index among the core points; cluster
+    constexpr std::size_t kDistinct = 2 * sizeof(Point2) + 5 * kNumber;
+    // the cell; start of its core points and their tree; its set and cluster
+    constexpr std::size_t kCell =
+        sizeof(CellIndex::Cell) + sizeof(std::size_t) + sizeof(std::optional<landmarks::PointTree>) + 2 * kNumber;
+    const auto distinct = landmarks::distinct_points(points);
+    const auto cells = CellIndex::of_radius(distinct.points, eps).cells().size();
+    return kEach * points.size() + kDistinct * distinct.points.size() + kCell * cells;
+}
 
 robot::World world_of(std::string_view name) {
     robot::World world = robot::find_world(name).value();
@@ -71,6 +110,86 @@ Recording record(const Scene& scene, const std::vector<Pose2>& path, const Noise
         for (const robot::Walker& walker : world.walkers) bodies.push_back(robot::body_of(walker));
     }
     return recording;
+}
+
+namespace {
+
+constexpr double kTurnPeriod = 0.1; // seconds
+
+/// Calls visit(scan, point in the robot's frame) for each beam with a return.
+template <class Visit>
+void for_each_point(std::span<const Scan> scans, const Sensor& sensor, Visit&& visit) {
+    const ReadingRules rules{sensor.range_min, sensor.range_max, true};
+    for (const Scan& scan : scans) {
+        const BeamAngles angles = angles_of(scan, sensor);
+        for (std::size_t n = 0; n < scan.ranges.size(); ++n) {
+            const auto reading = reading_of(scan.ranges[n], rules);
+            if (!reading || !reading->is_hit) continue;
+            const double angle = beam_angle(angles, n);
+            visit(scan, transform(sensor.mount, reading->metres * Point2{std::cos(angle), std::sin(angle)}));
+        }
+    }
+}
+
+} // namespace
+
+LidarCapture take_capture(const robot::World& world, const Pose2& T_map_lidar, std::size_t turns,
+                          const std::optional<robot::Noise>& noise, robot::Random& random) {
+    LidarCapture capture{robot::find_laser("lidar360").value(), {}};
+    for (std::size_t turn = 0; turn < turns; ++turn) {
+        Scan scan;
+        scan.seq = turn + 1;
+        scan.stamp = static_cast<double>(turn) * kTurnPeriod;
+        scan.pose = T_map_lidar;
+        scan.ranges = robot::sweep(world, capture.sensor, T_map_lidar, noise, random);
+        capture.scans.push_back(std::move(scan));
+    }
+    return capture;
+}
+
+std::vector<Point2> points_of(std::span<const Scan> scans, const Sensor& sensor) {
+    std::vector<Point2> points;
+    for_each_point(scans, sensor, [&](const Scan&, const Point2& point) { points.push_back(point); });
+    return points;
+}
+
+std::vector<Point2> points_in_map(std::span<const Scan> scans, const Sensor& sensor) {
+    std::vector<Point2> points;
+    for_each_point(scans, sensor,
+                   [&](const Scan& scan, const Point2& point) { points.push_back(transform(scan.pose, point)); });
+    return points;
+}
+
+Result<RecordedCapture> read_ld06_recording(const std::filesystem::path& path) {
+    const robot::Ld06ScanOptions options;
+    auto source = robot::Ld06Capture::open(path, options, Pose2{});
+    if (!source) return source.error();
+    RecordedCapture recorded{{*robot::ld06_sensor(options), {}}, path.filename().string(), source->remarks()};
+    for (;;) {
+        auto next = source->next();
+        if (!next) return next.error();
+        if (!*next) break;
+        recorded.capture.scans.push_back(std::move((*next)->scan));
+        recorded.capture.scans.back().seq = recorded.capture.scans.size();
+    }
+    const auto& scans = recorded.capture.scans;
+    if (scans.size() < 2) {
+        return Error{
+            Errc::kInvalidField,
+            fmt::format("{}: only one turn; the comparison of its halves needs two: record longer", path.string())};
+    }
+    const auto first = std::span(scans).first(scans.size() / 2);
+    const auto last = std::span(scans).subspan(first.size());
+    for (const auto& [which, half] : {std::pair{"first", first}, std::pair{"last", last}}) {
+        const std::size_t points = points_of(half, recorded.capture.sensor).size();
+        if (points >= landmarks::kViewPointsMin) continue;
+        return Error{
+            Errc::kInvalidField,
+            fmt::format(
+                "{}: in the {} {} of {} turns only {} points were observed; record where the lidar can see walls",
+                path.string(), which, half.size(), scans.size(), points)};
+    }
+    return recorded;
 }
 
 } // namespace scanloom::lab

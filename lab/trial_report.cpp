@@ -3,8 +3,8 @@
 #include "lab/each_index.hpp"
 #include "lab/report.hpp"
 
-#include "robot_client/sim/noise.hpp"
-#include "robot_client/sim/standing_robot.hpp"
+#include "sim/noise.hpp"
+#include "sim/standing_robot.hpp"
 
 #include <fmt/format.h>
 
@@ -66,12 +66,6 @@ Table stranger_table(const TrialResults& results) {
 std::string wrong_text(std::size_t right, std::size_t wrong) {
     if (wrong == 0) return "no clear result is wrong";
     return fmt::format("{} of {} clear results {} wrong", wrong, right + wrong, wrong == 1 ? "is" : "are");
-}
-
-std::string range_text(std::span<const double> values, int digits) {
-    const auto [low, high] = std::ranges::minmax(values);
-    if (low == high) return fmt::format("{:.{}f}", low, digits);
-    return fmt::format("{:.{}f} to {:.{}f}", low, digits, high, digits);
 }
 
 std::string captures_text(std::size_t captures) {

@@ -110,7 +110,7 @@ run_filtered() {
 # FOLDER include its tests in tests/unit/FOLDER.
 readonly parts_of_all=(
     '^tools[.];lab load tests/integration/lab tests/integration/load'
-    '^faults[.];load robot_client server/ingest server/session server/store tests/fault tests/integration/robot_client'
+    '^faults[.];load robot_client server/ingest server/sessions server/store tests/fault tests/integration/robot_client'
     '^e2e_([^l]|layers);server/http server/live tests/e2e web'
     '^python_client_;proto robot_client/python server/ingest tests/integration/robot_client/python'
     '^observability_;docs/observability server/http/handlers/system.cpp server/metrics tests/integration/observability'

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "common/error/error.hpp"
-#include "common/scan/map_patch.hpp"
+#include "common/scan/log_entry.hpp"
 
 #include <cstdint>
 #include <string>

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "common/error/error.hpp"
-#include "common/scan/exclusions.hpp"
 #include "common/scan/log_entry.hpp"
+#include "common/scan/scan_filter.hpp"
 
 #include <cstdint>
 #include <map>

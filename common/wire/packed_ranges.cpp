@@ -27,7 +27,7 @@ using ConstBlock = std::span<const std::uint32_t, kBlock>;
 constexpr std::uint32_t zigzag(std::uint32_t difference) noexcept {
     return difference << 1 ^ (0U - (difference >> 31));
 }
-constexpr std::uint32_t unzigzag(std::uint32_t folded) noexcept { return folded >> 1 ^ (0U - (folded & 1)); }
+constexpr std::uint32_t unzigzag(std::uint32_t applied) noexcept { return applied >> 1 ^ (0U - (applied & 1)); }
 
 std::uint8_t width_of(ConstBlock block) noexcept {
     std::uint32_t bits = 0;

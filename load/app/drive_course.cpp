@@ -2,9 +2,9 @@
 
 #include "common/wire/frame_decoder.hpp"
 #include "load/core/measured_client.hpp"
-#include "robot_client/drive/wall_follower.hpp"
-#include "robot_client/sim/simulator.hpp"
-#include "robot_client/source/world_file.hpp"
+#include "robot_client/sources/world_file.hpp"
+#include "sim/drive/wall_follower.hpp"
+#include "sim/simulator.hpp"
 
 #include <fmt/format.h>
 

@@ -3,7 +3,7 @@
 #include "common/app/command_line.hpp"
 #include "common/app/settings.hpp"
 #include "common/scan/limits.hpp"
-#include "robot_client/source/world_file.hpp"
+#include "robot_client/sources/world_file.hpp"
 #include "robot_client/uplink/limits.hpp"
 
 #include <CLI/CLI.hpp>

@@ -2,7 +2,7 @@
 
 #include "common/app/command_line.hpp"
 #include "common/scan/limits.hpp"
-#include "robot_client/source/range_median.hpp"
+#include "robot_client/sources/stationary_detector.hpp"
 #include "robot_client/uplink/limits.hpp"
 #include "robot_client/uplink/server_address.hpp"
 

@@ -1,11 +1,11 @@
 #include "robot_client/app/ld06_source.hpp"
 
-#include "robot_client/source/ld06_capture.hpp"
-#include "robot_client/source/ld06_live.hpp"
-#include "robot_client/source/locating_source.hpp"
-#include "robot_client/source/pose_feed.hpp"
-#include "robot_client/source/pose_lines.hpp"
-#include "robot_client/source/replayed_source.hpp"
+#include "robot_client/sources/ld06_capture.hpp"
+#include "robot_client/sources/ld06_live.hpp"
+#include "robot_client/sources/locating_source.hpp"
+#include "robot_client/sources/pose_feed.hpp"
+#include "robot_client/sources/pose_lines.hpp"
+#include "robot_client/sources/replayed_source.hpp"
 #include "robot_client/uplink/server_address.hpp"
 
 #include <fmt/format.h>

@@ -2,8 +2,8 @@
 
 #include "robot_client/app/ld06_source.hpp"
 #include "robot_client/app/simulation.hpp"
-#include "robot_client/source/carmen_log.hpp"
-#include "robot_client/source/sonar_log.hpp"
+#include "robot_client/sources/carmen_log.hpp"
+#include "robot_client/sources/sonar_log.hpp"
 
 #include <fmt/format.h>
 

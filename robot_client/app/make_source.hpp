@@ -2,10 +2,10 @@
 
 #include "robot_client/app/options.hpp"
 #include "robot_client/app/progress.hpp"
-#include "robot_client/source/exploring_source.hpp"
-#include "robot_client/source/live_source.hpp"
-#include "robot_client/source/locating_source.hpp"
-#include "robot_client/source/source.hpp"
+#include "robot_client/sources/exploring_source.hpp"
+#include "robot_client/sources/live_source.hpp"
+#include "robot_client/sources/locating_source.hpp"
+#include "robot_client/sources/source.hpp"
 
 #include <memory>
 #include <optional>

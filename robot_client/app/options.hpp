@@ -2,7 +2,7 @@
 
 #include "common/app/program.hpp"
 #include "robot_client/app/ld06_options.hpp"
-#include "robot_client/source/source.hpp"
+#include "robot_client/sources/source.hpp"
 #include "robot_client/spool/spool.hpp"
 #include "robot_client/uplink/server_address.hpp"
 

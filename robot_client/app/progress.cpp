@@ -1,8 +1,17 @@
 #include "robot_client/app/progress.hpp"
 
+#include <boost/json/serialize.hpp>
 #include <fmt/format.h>
 
 namespace scanloom::robot {
+
+double RecentRate::update(std::chrono::duration<double> now, std::uint64_t count) {
+    samples_.push_back({now, count});
+    while (samples_.size() > 1 && now - samples_[1].at >= kWindow) samples_.pop_front();
+    const Sample& first = samples_.front();
+    const double passed = (now - first.at).count();
+    return passed > 0.0 && count > first.count ? static_cast<double>(count - first.count) / passed : 0.0;
+}
 
 std::string progress_text(const UplinkStatus& status, std::optional<std::uint64_t> total, double rate,
                           std::string_view remarks) {
@@ -30,6 +39,23 @@ std::string reading_text(std::string_view file, const ReadProgress& progress) {
 
 std::string pause_text(std::chrono::duration<double> pause) {
     return fmt::format("the next scan is due in {}; use --speed 0 to send without waiting", as_clock(pause.count()));
+}
+
+std::string summary_json(const Summary& summary) {
+    const UplinkStatus& status = summary.status;
+    const auto field = [](std::string_view name, const std::string& text) {
+        return text.empty() ? "" : fmt::format(R"(,"{}":{})", name, boost::json::serialize(text));
+    };
+    const std::string skipped =
+        summary.skipped_lines ? fmt::format(R"("skipped_lines":{},)", *summary.skipped_lines) : std::string();
+    const std::uint64_t taken = status.last + status.waiting + status.dropped;
+    return fmt::format(
+        R"({{"scans":{},"acknowledged":{},"stored_before":{},"sent":{},"bytes":{},"seconds":{:.3f},{}"reconnects":{},)"
+        R"("waiting":{},"dropped":{},"session":"{}","robot":"{}","source":"{}"{}}})",
+        summary.scan_count.value_or(taken), status.acknowledged, status.resumed_after, status.sent, status.bytes,
+        summary.elapsed.count(), skipped, status.reconnects, status.waiting, status.dropped, summary.session,
+        summary.robot, summary.source,
+        field("order", std::string(summary.order)) + field("remarks", summary.remarks) + field("error", summary.error));
 }
 
 } // namespace scanloom::robot

@@ -4,8 +4,6 @@
 #include "common/net/await_tuple.hpp"
 #include "robot_client/app/make_source.hpp"
 #include "robot_client/app/progress.hpp"
-#include "robot_client/app/recent_rate.hpp"
-#include "robot_client/app/summary.hpp"
 #include "robot_client/uplink/live_feed.hpp"
 #include "robot_client/uplink/recording_feed.hpp"
 #include "robot_client/uplink/server_requests.hpp"

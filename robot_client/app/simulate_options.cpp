@@ -1,7 +1,7 @@
 #include "robot_client/app/simulate_options.hpp"
 
 #include "common/app/command_line.hpp"
-#include "robot_client/source/world_file.hpp"
+#include "robot_client/sources/world_file.hpp"
 
 #include <fmt/format.h>
 

@@ -1,10 +1,15 @@
 #include "robot_client/app/simulation.hpp"
 
-#include "robot_client/app/make_behaviour.hpp"
-#include "robot_client/source/exploring_source.hpp"
-#include "robot_client/source/simulated_source.hpp"
-#include "robot_client/source/simulation_fingerprint.hpp"
-#include "robot_client/source/world_file.hpp"
+#include "robot_client/app/waypoint_list.hpp"
+#include "robot_client/sources/exploring_source.hpp"
+#include "robot_client/sources/simulated_source.hpp"
+#include "robot_client/sources/world_file.hpp"
+#include "sim/drive/behaviour.hpp"
+#include "sim/drive/wall_follower.hpp"
+#include "sim/drive/waypoints.hpp"
+#include "sim/drive/zigzag.hpp"
+#include "sim/ground_truth.hpp"
+#include "sim/tour.hpp"
 
 #include <fmt/format.h>
 
@@ -13,6 +18,42 @@
 #include <utility>
 
 namespace scanloom::robot {
+namespace {
+
+constexpr double kPlanCellSize = 0.05; // metres
+
+/// Returns why a robot cannot be at a place, whatever its path.
+std::string unreachable(const World& world, const Point2& place) {
+    if (!bounds_of(world).contains(place)) return "outside the world";
+    if (world.obstacles->contain(place)) return "inside an obstacle";
+    if (world.obstacles->distance(place) < kBodyRadius) return "too close to an obstacle";
+    return {};
+}
+
+Result<NamedBehaviour> make_waypoints(const SimulateOptions& simulate, const World& world) {
+    const bool is_tour = simulate.waypoints.empty();
+    auto waypoints = is_tour ? Result<std::vector<Point2>>(tour_of(world.name)) : read_waypoints(simulate.waypoints);
+    if (!waypoints) return waypoints.error();
+    if (waypoints->empty()) {
+        return Error{Errc::kInvalidField, fmt::format("the world {} has no tour; give --waypoints", simulate.world)};
+    }
+    std::string name = fmt::format("{} {}", is_tour ? "tour" : "waypoints", to_text(*waypoints));
+    return NamedBehaviour{
+        std::make_unique<Waypoints>(std::move(*waypoints), is_tour ? TourStart::kNearest : TourStart::kFirst,
+                                    [world](const Point2& place) { return unreachable(world, place); }),
+        std::move(name)};
+}
+
+} // namespace
+
+Result<NamedBehaviour> make_behaviour(const SimulateOptions& simulate, const World& world) {
+    if (simulate.drive == "waypoints") return make_waypoints(simulate, world);
+    if (simulate.drive == "zigzag") {
+        return NamedBehaviour{std::make_unique<Zigzag>(floor_plan_of(truth_of(world, kPlanCellSize))), simulate.drive};
+    }
+    return NamedBehaviour{std::make_unique<WallFollower>(), simulate.drive};
+}
+
 namespace {
 
 Result<> check_range(const Sensor& sensor) {

@@ -2,8 +2,8 @@
 
 #include "common/app/standard_streams.hpp"
 #include "common/ros_map/pgm.hpp"
-#include "robot_client/sim/truth_map.hpp"
-#include "robot_client/source/world_file.hpp"
+#include "robot_client/sources/world_file.hpp"
+#include "sim/ground_truth.hpp"
 
 #include <boost/json/serialize.hpp>
 #include <fmt/format.h>

@@ -3,7 +3,7 @@
 #include "common/scan/limits.hpp"
 #include "robot_client/client/checks.hpp"
 #include "robot_client/client/worker.hpp"
-#include "robot_client/source/seen_points.hpp"
+#include "robot_client/sources/seen_points.hpp"
 #include "robot_client/uplink/live_feed.hpp"
 
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "robot_client/source/live_source.hpp"
+#include "robot_client/sources/live_source.hpp"
 #include "robot_client/uplink/wake_signal.hpp"
 
 #include <deque>

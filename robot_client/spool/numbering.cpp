@@ -1,7 +1,7 @@
 #include "robot_client/spool/numbering.hpp"
 
-#include "robot_client/spool/checksum.hpp"
-#include "robot_client/spool/file_handle.hpp"
+#include "robot_client/spool/record.hpp"
+#include "robot_client/spool/synced_file.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>

@@ -1,7 +1,6 @@
 #include "robot_client/spool/record.hpp"
 
 #include "common/wire/frame_decoder.hpp"
-#include "robot_client/spool/checksum.hpp"
 
 #include <boost/endian/conversion.hpp>
 

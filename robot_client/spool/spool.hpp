@@ -1,11 +1,10 @@
 #pragma once
 
-#include "robot_client/source/source.hpp"
-#include "robot_client/spool/background_sync.hpp"
-#include "robot_client/spool/file_handle.hpp"
+#include "robot_client/sources/source.hpp"
 #include "robot_client/spool/numbering.hpp"
 #include "robot_client/spool/segment.hpp"
 #include "robot_client/spool/segment_list.hpp"
+#include "robot_client/spool/synced_file.hpp"
 
 #include <cstdint>
 #include <deque>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "common/link/scan_queue.hpp"
-#include "robot_client/source/source.hpp"
+#include "robot_client/sources/source.hpp"
 
 #include <cstddef>
 #include <cstdint>

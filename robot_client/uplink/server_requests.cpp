@@ -1,7 +1,7 @@
 #include "robot_client/uplink/server_requests.hpp"
 
 #include "common/net/await_tuple.hpp"
-#include "robot_client/source/seen_points.hpp"
+#include "robot_client/sources/seen_points.hpp"
 
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/this_coro.hpp>

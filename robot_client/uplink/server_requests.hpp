@@ -1,8 +1,7 @@
 #pragma once
 
 #include "common/link/requests.hpp"
-#include "robot_client/source/locate.hpp"
-#include "robot_client/source/next_goal.hpp"
+#include "robot_client/sources/live_source.hpp"
 #include "robot_client/uplink/uplink.hpp"
 
 #include <boost/asio/awaitable.hpp>

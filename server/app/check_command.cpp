@@ -2,7 +2,7 @@
 
 #include "common/app/standard_streams.hpp"
 #include "common/json/json_text.hpp"
-#include "server/session/session_check.hpp"
+#include "server/sessions/session_check.hpp"
 #include "server/store/block_scan.hpp"
 #include "server/store/files.hpp"
 #include "server/store/rocksdb_store.hpp"

@@ -2,8 +2,8 @@
 
 #include "common/app/standard_streams.hpp"
 #include "common/json/json_text.hpp"
-#include "server/session/repair.hpp"
-#include "server/session/repaired_names.hpp"
+#include "server/sessions/repair.hpp"
+#include "server/sessions/repaired_names.hpp"
 #include "server/store/damaged_store.hpp"
 #include "server/store/unfinished_store.hpp"
 

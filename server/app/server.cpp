@@ -2,7 +2,7 @@
 
 #include "common/app/program.hpp"
 #include "server/app/service_manager.hpp"
-#include "server/guard/token_file.hpp"
+#include "server/auth/token_file.hpp"
 #include "server/sockets/worker_pool.hpp"
 
 #include <boost/asio/post.hpp>
@@ -56,7 +56,7 @@ Result<std::shared_ptr<sockets::PortTls>> tls_of(const sockets::TlsFiles& files)
 
 namespace {
 
-session::WeavesLimits weaves_within(std::size_t bytes) {
+session::ReplayLimits weaves_within(std::size_t bytes) {
     const std::size_t chunks = bytes / 2 / mapping::kPageBytes; // a chunk is a page
     return {.chunks_max = chunks, .chunks_kept_max = chunks};
 }
@@ -111,14 +111,14 @@ Result<std::unique_ptr<Server>> Server::open(const ServerOptions& options, const
                      "everything else is served",
                      options.web.string());
     }
-    access::TokenSet tokens;
+    auth::TokenSet tokens;
     if (!options.tokens.empty()) { // before anything is created
-        auto read = guard::read_tokens(options.tokens);
+        auto read = auth::read_tokens(options.tokens);
         if (!read) return prefixed("--tokens ", read.error());
         tokens = std::move(*read);
     }
     std::unique_ptr<Server> server(new Server(options, limits, std::move(*log)));
-    if (!options.tokens.empty()) server->gate_.replace(std::move(tokens));
+    if (!options.tokens.empty()) server->authenticator_.replace(std::move(tokens));
     *check = &server->check_;
     if (!options.backups.empty()) {
         auto backups = store::Backups::open(options.backups, options.backups_kept, *server->log_,
@@ -144,7 +144,8 @@ Result<> Server::listen(http::WebFiles web) {
     try {
         ingest_ = std::make_unique<ingest::IngestServer>(
             io_, options_.listen,
-            ingest::LinkServices{sessions_, pools_.changes, metrics_.ingest(), requests_, gate_, audit_}, robots);
+            ingest::LinkServices{sessions_, pools_.changes, metrics_.ingest(), requests_, authenticator_, audit_},
+            robots);
     } catch (const boost::system::system_error& failure) {
         return Error{Errc::kUnreachable, fmt::format("cannot listen for robots on {}: {}; choose another --listen",
                                                      text_of(options_.listen), failure.code().message())};
@@ -172,7 +173,7 @@ Result<> Server::listen(http::WebFiles web) {
                                        .log = *log_,
                                        .check = check_,
                                        .metrics = metrics_,
-                                       .doorman = {gate_, audit_, logins_},
+                                       .authorizer = {authenticator_, audit_, logins_},
                                        .pools = *http_pools_,
                                        .web = std::move(web),
                                        .robots = {address.is_unspecified() ? "" : address.to_string(), ingest_->port()},
@@ -270,13 +271,13 @@ void Server::wait_for_hangup() {
 /// Reads the tokens again. If the file is invalid, the previous tokens stay in force, so that admitted clients stay
 /// connected.
 void Server::read_tokens_again() {
-    auto tokens = guard::read_tokens(options_.tokens);
+    auto tokens = auth::read_tokens(options_.tokens);
     if (!tokens) {
         spdlog::error("--tokens {}; the previous tokens stay in force", tokens.error().message);
         return;
     }
     spdlog::info("{} tokens are in force, read again from {}", tokens->tokens().size(), options_.tokens.string());
-    gate_.replace(std::move(*tokens));
+    authenticator_.replace(std::move(*tokens));
 }
 
 /// Reads the certificates again, for new connections. Open connections keep the settings they started with.

@@ -4,16 +4,16 @@
 #include "server/app/options.hpp"
 #include "server/app/resource_limits.hpp"
 #include "server/app/thread_pools.hpp"
-#include "server/guard/audit.hpp"
-#include "server/guard/gate.hpp"
-#include "server/guard/logins.hpp"
+#include "server/auth/audit_log.hpp"
+#include "server/auth/authenticator.hpp"
+#include "server/auth/login_sessions.hpp"
 #include "server/http/api.hpp"
 #include "server/http/server.hpp"
 #include "server/ingest/ingest_server.hpp"
 #include "server/metrics/metrics.hpp"
-#include "server/session/background_check.hpp"
-#include "server/session/session_registry.hpp"
-#include "server/session/weaves.hpp"
+#include "server/sessions/background_check.hpp"
+#include "server/sessions/replay_jobs.hpp"
+#include "server/sessions/session_registry.hpp"
 #include "server/store/backups.hpp"
 #include "server/store/rocksdb_store.hpp"
 
@@ -66,16 +66,16 @@ private:
     std::unique_ptr<store::ScanLog> log_;
     std::unique_ptr<store::Backups> backups_; // null: backups are disabled
     metrics::Metrics metrics_;
-    guard::Gate gate_;
-    guard::Audit audit_;
-    guard::Logins logins_;
+    auth::Authenticator authenticator_;
+    auth::AuditLog audit_;
+    auth::LoginSessions logins_;
     // Links left open in `io_` hold sessions whose strands run on `pools_`, so io_ must be destroyed first.
     ThreadPools pools_;
     boost::asio::io_context io_;
     session::SessionRegistry sessions_;
     session::BackgroundCheck check_;
-    session::Weaves weaves_;
-    guide::GoalBook goals_;
+    session::ReplayJobs weaves_;
+    guide::GoalAssignments goals_;
     guide::Locator locator_;
     ingest::RequestExecutor requests_;
     std::optional<http::Pools> http_pools_;

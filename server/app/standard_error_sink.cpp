@@ -1,7 +1,7 @@
 #include "server/app/standard_error_sink.hpp"
 
 #include "common/app/standard_streams.hpp"
-#include "server/access/secret.hpp"
+#include "server/auth/secret.hpp"
 
 #include <spdlog/sinks/base_sink.h>
 
@@ -22,7 +22,7 @@ class StandardErrorSink final : public spdlog::sinks::base_sink<std::mutex> {
         spdlog::memory_buf_t text;
         formatter_->format(message, text);
         const auto plain =
-            access::without_secrets({text.data(), text.size()}); // a client may have sent one in a logged field
+            auth::without_secrets({text.data(), text.size()}); // a client may have sent one in a logged field
         if (!standard_error().is_terminal()) {
             standard_error().write(plain);
             return;

@@ -2,10 +2,9 @@
 
 #include "common/app/command_line.hpp"
 #include "common/scan/limits.hpp"
-#include "server/access/pattern.hpp"
-#include "server/access/secret.hpp"
-#include "server/access/token_text.hpp"
-#include "server/guard/random_secret.hpp"
+#include "server/auth/secret.hpp"
+#include "server/auth/token.hpp"
+#include "server/auth/token_set.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -26,12 +25,12 @@ std::string check_name(const std::string& name) {
 }
 
 std::string check_pattern(const std::string& pattern) {
-    if (access::is_valid_pattern(pattern)) return {};
+    if (auth::is_valid_pattern(pattern)) return {};
     return fmt::format("'{}' is not a pattern of sessions; use 1 to {} characters of A-Z a-z 0-9 _ - * ?", pattern,
                        kNameBytesMax);
 }
 
-std::string report(const access::Token& token, std::string_view secret) {
+std::string report(const auth::Token& token, std::string_view secret) {
     return fmt::format(
         "{}\n\n"
         "# This is the secret: give it to the client, it is not shown again. A robot reads it from the file "
@@ -44,7 +43,7 @@ std::string report(const access::Token& token, std::string_view secret) {
 
 std::optional<Leave> token_command(int argc, const char* const* argv) {
     if (argc < 2 || std::string_view(argv[1]) != "token") return std::nullopt;
-    access::Token token;
+    auth::Token token;
     std::string role;
     CLI::App app(kAboutToken, "scanloom-server token");
     app.add_option("--name", token.name, "Name of the token in the file and in logs")->required()->check(check_name);
@@ -59,10 +58,10 @@ std::optional<Leave> token_command(int argc, const char* const* argv) {
     } catch (const CLI::ParseError& reason) {
         return leave_for(app, reason);
     }
-    token.role = *access::role_of(role);
+    token.role = *auth::role_of(role);
     if (token.sessions.empty()) token.sessions = {"*"};
-    const auto secret = guard::random_secret();
-    token.hash = access::hash_of(secret);
+    const auto secret = auth::random_secret();
+    token.hash = auth::hash_of(secret);
     return Leave{kExitDone, report(token, secret)};
 }
 

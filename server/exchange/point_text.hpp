@@ -1,6 +1,6 @@
 #pragma once
 
-#include "server/landmarks/session_cloud.hpp"
+#include "core/landmarks/cloud_fusion.hpp"
 
 #include <span>
 #include <string>

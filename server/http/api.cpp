@@ -50,7 +50,7 @@ asio::awaitable<Result<SessionRef>> load_session(session::SessionRegistry& sessi
         co_await asio::async_initiate<const asio::use_awaitable_t<>&, void(Result<SessionRef>)>(
             [&](auto handler) {
                 auto shared = std::make_shared<decltype(handler)>(std::move(handler));
-                sessions.wake(name, [shared, executor](const Result<SessionRef>& result) {
+                sessions.load(name, [shared, executor](const Result<SessionRef>& result) {
                     asio::post(executor, [shared, result] { std::move (*shared)(result); });
                 });
             },
@@ -83,7 +83,7 @@ std::variant<Api::Admitted, Response> Api::admit(const Request& head, Routed rou
     const auto& [route, arguments] = routed.match;
     const auto path = instance_of(head.target);
     const auto session = is_about_one_session(route.access) ? std::string_view(arguments["session"]) : "";
-    auto token = services_.doorman.admit(head, route.access, session);
+    auto token = services_.authorizer.admit(head, route.access, session);
     if (auto* refusal = std::get_if<Response>(&token)) return std::move(*refusal);
     if (auto accepted = check_content_type(route.method, head); !accepted) {
         return problem(Status::unsupported_media_type, accepted.error().message, path);
@@ -94,7 +94,7 @@ std::variant<Api::Admitted, Response> Api::admit(const Request& head, Routed rou
         if (!taken) return problem(taken.error(), path);
         permit = std::move(*taken);
     }
-    return Admitted{std::move(routed), std::get<access::TokenRef>(std::move(token)), std::move(permit)};
+    return Admitted{std::move(routed), std::get<auth::TokenRef>(std::move(token)), std::move(permit)};
 }
 
 asio::awaitable<Response> Api::answer(Admitted admitted, const Request& request) const {
@@ -137,7 +137,7 @@ asio::awaitable<Result<Response>> Api::call(const Route& route, Context& context
 
 /// A response that depends on permissions must not be kept by shared caches, so "public" becomes "private".
 Response Api::for_client(Access access, Response response) const {
-    if (access == Access::kOpen || services_.doorman.gate().is_open()) return response;
+    if (access == Access::kOpen || services_.authorizer.authenticator().is_open()) return response;
     for (auto& [field, value] : response.fields) {
         constexpr std::string_view kPublic = "public";
         if (field == "Cache-Control" && value.starts_with(kPublic)) value.replace(0, kPublic.size(), "private");

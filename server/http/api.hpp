@@ -1,6 +1,6 @@
 #pragma once
 
-#include "server/access/token.hpp"
+#include "server/auth/token.hpp"
 #include "server/http/context.hpp"
 #include "server/http/pools.hpp"
 #include "server/http/request.hpp"
@@ -36,7 +36,7 @@ public:
     /// A request whose header passed all checks.
     struct Admitted {
         Routed routed;
-        access::TokenRef token;
+        auth::TokenRef token;
         Pools::Permit permit; ///< of its pool; null: not taken yet, or the pool has no limit
     };
 

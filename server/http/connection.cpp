@@ -121,7 +121,7 @@ asio::awaitable<bool> Connection::shake_hands() {
     if (net::is_plain_http(failed)) {
         co_await tell_plainly("this port speaks HTTPS alone; ask for the same address with https:// before it");
     } else if (const auto fault = net::client_fault_of(failed)) {
-        service_->api.services().doorman.note(peer_, *fault);
+        service_->api.services().authorizer.note(peer_, *fault);
         must_linger_ = true; // until the peer has read the TLS alert
     }
     co_return false;

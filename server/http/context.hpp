@@ -1,10 +1,10 @@
 #pragma once
 
 #include "common/error/error.hpp"
-#include "server/access/token.hpp"
-#include "server/guide/goal_book.hpp"
-#include "server/guide/locator.hpp"
-#include "server/http/doorman.hpp"
+#include "server/auth/token.hpp"
+#include "server/guidance/goal_assignments.hpp"
+#include "server/guidance/locator.hpp"
+#include "server/http/authorizer.hpp"
 #include "server/http/path_pattern.hpp"
 #include "server/http/pools.hpp"
 #include "server/http/request.hpp"
@@ -13,10 +13,10 @@
 #include "server/http/web_files.hpp"
 #include "server/live/landmark_hub.hpp"
 #include "server/metrics/metrics.hpp"
-#include "server/session/background_check.hpp"
-#include "server/session/capture_folds.hpp"
-#include "server/session/session_registry.hpp"
-#include "server/session/weaves.hpp"
+#include "server/sessions/background_check.hpp"
+#include "server/sessions/capture_layers.hpp"
+#include "server/sessions/replay_jobs.hpp"
+#include "server/sessions/session_registry.hpp"
 #include "server/store/backups.hpp"
 #include "server/store/scan_log.hpp"
 #include "server/tiles/tile_maker.hpp"
@@ -42,13 +42,13 @@ struct RobotPort {
 /// Threads: any thread may use each part.
 struct Services {
     session::SessionRegistry& sessions;
-    session::Weaves& weaves; ///< replay jobs
-    guide::GoalBook& goals;
+    session::ReplayJobs& weaves; ///< replay jobs
+    guide::GoalAssignments& goals;
     guide::Locator& locator;
     store::ScanLog& log;
     const session::BackgroundCheck& check;
     const metrics::Metrics& metrics;
-    Doorman doorman;
+    Authorizer authorizer;
     const Pools& pools;
     WebFiles web = {};                                        ///< of the viewer
     RobotPort robots = {};                                    ///< for /readyz
@@ -58,7 +58,7 @@ struct Services {
 
     std::atomic<bool> recovered = false; ///< before, requests for sessions receive kOverloaded
     tiles::TileMaker tiles{tile_bytes_max};
-    session::LandmarkFolds landmarks{log};
+    session::LandmarkLayers landmarks{log};
     live::LandmarkHub watched_landmarks{landmarks};
     ResponseLimit responses;
 };
@@ -69,7 +69,7 @@ struct Context {
     const Request& request;
     const Arguments& arguments; ///< of the path
     const Query& query;
-    access::TokenRef token; ///< of the client; null only if the operation needs no token
+    auth::TokenRef token; ///< of the client; null only if the operation needs no token
 
     /// The session in the path, or why it cannot be served. Only if the route has Sessions::kLoaded.
     Result<std::shared_ptr<session::Session>> session = Error{Errc::kInternal, "this route loads no session"};

@@ -1,7 +1,7 @@
 #include "server/http/geojson.hpp"
 
 #include "common/json/json_text.hpp"
-#include "server/grid/outline.hpp"
+#include "core/grid/outline.hpp"
 #include "server/http/text.hpp"
 
 #include <fmt/format.h>

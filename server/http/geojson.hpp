@@ -2,7 +2,7 @@
 
 #include "common/geometry/pose2.hpp"
 #include "common/scan/log_entry.hpp"
-#include "server/grid/cell.hpp"
+#include "core/grid/cell.hpp"
 #include "server/http/response_limit.hpp"
 
 #include <boost/json/array.hpp>

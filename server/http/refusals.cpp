@@ -86,7 +86,7 @@ std::optional<Response> refusal_of(const Parser& parser, const Request& head, st
                        fmt::format("the body is too large; at most {} bytes are taken here", bytes_max), path);
     }
     if (service.check_host && !head.host.empty() && !is_known_host(head.host, service.config.host_names)) {
-        service.api.services().doorman.note({access::Port::kHttp, access::Reason::kForeignHost, head.peer, "", ""});
+        service.api.services().authorizer.note({auth::Port::kHttp, auth::Reason::kForeignHost, head.peer, "", ""});
         return problem(
             Status::misdirected_request,
             fmt::format("this server does not know itself as {}; ask it by its address", in_quotes(head.host)), path);

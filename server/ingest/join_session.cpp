@@ -1,6 +1,6 @@
 #include "server/ingest/join_session.hpp"
 
-#include "server/mapping/map_config.hpp"
+#include "core/mapping/map_config.hpp"
 #include "server/sockets/worker_pool.hpp"
 
 #include <boost/asio/async_result.hpp>
@@ -17,8 +17,8 @@ namespace {
 
 using Found = Result<std::shared_ptr<session::Session>>;
 
-asio::awaitable<Found> create(const wire::Hello& hello, session::SessionRegistry& sessions, const session::Maker& maker,
-                              asio::any_io_executor may_wait) {
+asio::awaitable<Found> create(const wire::Hello& hello, session::SessionRegistry& sessions,
+                              const session::Creator& maker, asio::any_io_executor may_wait) {
     auto created = co_await sockets::compute_on(std::move(may_wait),
                                                 [&] { return sessions.create(hello.session, *hello.create, maker); });
     if (!created && created.error().code == Errc::kInvalidField) co_return prefixed("hello.create.", created.error());
@@ -31,7 +31,7 @@ asio::awaitable<Found> woken(const std::string& name, session::SessionRegistry& 
     co_return co_await asio::async_initiate<const asio::use_awaitable_t<>&, void(Found)>(
         [&](auto handler) {
             auto shared = std::make_shared<decltype(handler)>(std::move(handler));
-            sessions.wake(name, [shared, executor](Found session) {
+            sessions.load(name, [shared, executor](Found session) {
                 asio::post(executor, [shared, session] { std::move (*shared)(session); });
             });
         },
@@ -57,7 +57,7 @@ Error absence_of(const std::string& name, const session::SessionRegistry& sessio
 } // namespace
 
 asio::awaitable<Found> session_for(const wire::Hello& hello, session::SessionRegistry& sessions,
-                                   const session::Maker& maker, asio::any_io_executor may_wait) {
+                                   const session::Creator& maker, asio::any_io_executor may_wait) {
     auto session = co_await woken(hello.session, sessions);
     if (!session && session.error().code == Errc::kNotFound && hello.create) {
         auto created = co_await create(hello, sessions, maker, std::move(may_wait));

@@ -2,8 +2,8 @@
 
 #include "common/error/error.hpp"
 #include "common/wire/messages.hpp"
-#include "server/session/session.hpp"
-#include "server/session/session_registry.hpp"
+#include "server/sessions/session.hpp"
+#include "server/sessions/session_registry.hpp"
 
 #include <boost/asio/any_io_executor.hpp>
 #include <boost/asio/awaitable.hpp>
@@ -20,7 +20,7 @@ namespace scanloom::ingest {
 ///         hello.create, or its log is damaged; kOverloaded if there is not enough memory to load it; those of
 ///         SessionRegistry::create() except kAlreadyExists.
 [[nodiscard]] boost::asio::awaitable<Result<std::shared_ptr<session::Session>>>
-session_for(const wire::Hello& hello, session::SessionRegistry& sessions, const session::Maker& maker,
+session_for(const wire::Hello& hello, session::SessionRegistry& sessions, const session::Creator& maker,
             boost::asio::any_io_executor may_wait);
 
 /// Calls Session::join(), and resumes with its result on the coroutine's own executor.

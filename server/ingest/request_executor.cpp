@@ -1,9 +1,9 @@
 #include "server/ingest/request_executor.hpp"
 
-#include "server/guide/patience.hpp"
-#include "server/guide/robots.hpp"
-#include "server/planning/coverage.hpp"
-#include "server/planning/grid_path.hpp"
+#include "core/planning/coverage.hpp"
+#include "core/planning/grid_path.hpp"
+#include "server/guidance/robots.hpp"
+#include "server/guidance/search_limit.hpp"
 
 #include <boost/asio/post.hpp>
 #include <fmt/format.h>
@@ -48,8 +48,8 @@ Result<wire::Path> to_wire(planning::Path path, std::size_t runs = 0) {
 struct Search {
     const Requester& requester;
     const mapping::Snapshot& maps;
-    guide::GoalBook& goals;
-    const guide::Patience may_go_on;
+    guide::GoalAssignments& goals;
+    const guide::SearchLimit may_go_on;
     const Point2& start;
 
     /// Uses the requested body radius (m), or else the robot's own.
@@ -74,9 +74,10 @@ struct Search {
         planning::ExplorationOptions options;
         options.passability = passability_of(request.body_radius);
         if (request.frontier_size_min > 0) options.frontier_size_min = request.frontier_size_min;
-        auto next = goals.next(requester.session, maps, requester.robot, start, guide::GoalBook::Clock::now(), options);
+        auto next =
+            goals.next(requester.session, maps, requester.robot, start, guide::GoalAssignments::Clock::now(), options);
         if (!next) return next.error();
-        const auto given_up = static_cast<std::uint32_t>(next->given_up); // fits: GoalBook keeps fewer
+        const auto given_up = static_cast<std::uint32_t>(next->given_up); // fits: GoalAssignments keeps fewer
         if (next->outcome == planning::Exploration::kTakenByOthers) {
             return wire::Goal{wire::Exploration::kTakenByOthers, std::nullopt, std::nullopt, given_up};
         }
@@ -104,18 +105,18 @@ struct Search {
 };
 
 /// Returns the path that live viewers show for the robot.
-std::optional<guide::Way> way_of(const Result<wire::Path>& path, Revision revision) {
+std::optional<guide::HeldPath> way_of(const Result<wire::Path>& path, Revision revision) {
     if (!path) return std::nullopt;
-    return guide::Way{guide::WayKind::kPlan, path->points, path->length, revision};
+    return guide::HeldPath{guide::PathKind::kPlan, path->points, path->length, revision};
 }
-std::optional<guide::Way> way_of(const Result<wire::Coverage>& coverage, Revision revision) {
+std::optional<guide::HeldPath> way_of(const Result<wire::Coverage>& coverage, Revision revision) {
     if (!coverage) return std::nullopt;
-    return guide::Way{guide::WayKind::kCoverage, coverage->path.points, coverage->path.length, revision};
+    return guide::HeldPath{guide::PathKind::kCoverage, coverage->path.points, coverage->path.length, revision};
 }
 
 template <class Kind>
 wire::Message reply_from(const Kind& request, const Requester& requester, const RequestServices& services) {
-    guide::GoalBook& goals = services.goals;
+    guide::GoalAssignments& goals = services.goals;
     const auto maps = requester.session->snapshot();
     auto start = request.start;
     if (!start) {
@@ -123,10 +124,10 @@ wire::Message reply_from(const Kind& request, const Requester& requester, const 
         if (!pose) return reply(request, maps->revision, pose.error());
         start = Point2{pose->x, pose->y};
     }
-    auto found = Search{requester, *maps, goals, guide::Patience(services.sessions), *start}(request);
+    auto found = Search{requester, *maps, goals, guide::SearchLimit(services.sessions), *start}(request);
     if constexpr (!std::is_same_v<Kind, wire::GoalRequest>) { // the goal book already knows the paths to goals
         goals.ways().give_way(requester.session, requester.robot, way_of(found, maps->revision),
-                              guide::WayBook::Clock::now());
+                              guide::RobotPaths::Clock::now());
     }
     return reply(request, maps->revision, std::move(found));
 }
@@ -138,8 +139,8 @@ wire::Message reply_from(const wire::LocateRequest& request, const Requester& re
     const auto points = landmarks::in_metres(request.points);
     std::optional<landmarks::Neighbourhood> near;
     if (request.near) near = landmarks::Neighbourhood{request.near->point, request.near->radius};
-    const guide::Patience patience(services.sessions, guide::Patience::Clock::now() + guide::Patience::kTime,
-                                   "say near which place it is");
+    const guide::SearchLimit patience(services.sessions, guide::SearchLimit::Clock::now() + guide::SearchLimit::kTime,
+                                      "say near which place it is");
     const auto ask = [&]() -> Result<> { return *requester.is_gone ? Result<>(kLinkClosed) : patience(); };
     const auto located = services.locator.locate(*requester.session, requester.robot,
                                                  {.points = points, .from = request.from}, near, ask);

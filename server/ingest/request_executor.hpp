@@ -4,10 +4,10 @@
 #include "common/limits/semaphore.hpp"
 #include "common/link/requests.hpp"
 #include "common/wire/messages.hpp"
-#include "server/guide/goal_book.hpp"
-#include "server/guide/locator.hpp"
-#include "server/session/session.hpp"
-#include "server/session/session_registry.hpp"
+#include "server/guidance/goal_assignments.hpp"
+#include "server/guidance/locator.hpp"
+#include "server/sessions/session.hpp"
+#include "server/sessions/session_registry.hpp"
 
 #include <boost/asio/any_io_executor.hpp>
 
@@ -30,7 +30,7 @@ struct Requester {
 
 /// The objects that answer requests. All outlive this struct and its copies.
 struct RequestServices {
-    guide::GoalBook& goals;
+    guide::GoalAssignments& goals;
     guide::Locator& locator;
     const session::SessionRegistry& sessions;
 };

@@ -98,7 +98,7 @@ void RobotConnection::open() {
                                 if (!failed) return self.protocol_.on_open();
                                 spdlog::debug("{}: TLS handshake: {}", self.peer_, failed.message());
                                 const auto fault = net::client_fault_of(failed);
-                                if (fault) self.services_.audit.note(access::Port::kRobot, self.address_, *fault);
+                                if (fault) self.services_.audit.note(auth::Port::kRobot, self.address_, *fault);
                                 self.protocol_.on_handshake_failed();
                             }));
 }
@@ -164,7 +164,7 @@ void RobotConnection::perform(Protocol::AnswerRequest&& action) {
 }
 
 void RobotConnection::perform(Protocol::RecordLimit&&) {
-    record_refusal(access::Reason::kLimit, token_->name, pass_->session());
+    record_refusal(auth::Reason::kLimit, token_->name, pass_->session());
 }
 
 void RobotConnection::perform(Protocol::Leave&&) {
@@ -217,9 +217,9 @@ asio::awaitable<void> RobotConnection::join(std::shared_ptr<RobotConnection> sel
 /// exist.
 asio::awaitable<Result<Protocol::Joined>> RobotConnection::enter(const wire::Hello& hello) {
     if (auto ok = authenticate(hello); !ok) co_return ok.error();
-    auto session = co_await session_for(hello, services_.sessions, session::maker_of(*token_), services_.may_wait);
+    auto session = co_await session_for(hello, services_.sessions, session::creator_of(*token_), services_.may_wait);
     if (!session && session.error().code == Errc::kFull)
-        record_refusal(access::Reason::kLimit, token_->name, hello.session);
+        record_refusal(auth::Reason::kLimit, token_->name, hello.session);
     if (!session) co_return session.error();
     const auto joined = co_await join_session(**session, hello, shared_from_this());
     if (!joined) co_return joined.error();
@@ -231,7 +231,7 @@ asio::awaitable<Result<Protocol::Joined>> RobotConnection::enter(const wire::Hel
 }
 
 Result<> RobotConnection::authenticate(const wire::Hello& hello) {
-    auto pass = services_.gate.let_drive(hello.token, hello.session, hello.robot);
+    auto pass = services_.authenticator.let_drive(hello.token, hello.session, hello.robot);
     if (!pass) {
         const auto& why = pass.error();
         record_refusal(why.reason, why.token, hello.session);
@@ -256,7 +256,7 @@ void RobotConnection::apply_permission() {
         return;
     }
     const std::string name = token_ ? token_->name : std::string();
-    record_refusal(access::Reason::kRevoked, name, pass_->session());
+    record_refusal(auth::Reason::kRevoked, name, pass_->session());
     protocol_.fail(
         {Errc::kUnauthorized,
          fmt::format("the token '{}' does not allow this any more; ask the server's operator for another", name)});
@@ -264,9 +264,8 @@ void RobotConnection::apply_permission() {
 
 // Logs ----------------------------------------------------------------------------------------------------------------
 
-void RobotConnection::record_refusal(access::Reason reason, const std::string& token,
-                                     const std::string& session) const {
-    services_.audit.note({access::Port::kRobot, reason, address_, token, session});
+void RobotConnection::record_refusal(auth::Reason reason, const std::string& token, const std::string& session) const {
+    services_.audit.note({auth::Port::kRobot, reason, address_, token, session});
 }
 
 void RobotConnection::log_end() const {

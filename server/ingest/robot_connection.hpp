@@ -2,14 +2,14 @@
 
 #include "common/link/server_protocol.hpp"
 #include "common/net/link_stream.hpp"
-#include "server/guard/audit.hpp"
-#include "server/guard/gate.hpp"
+#include "server/auth/audit_log.hpp"
+#include "server/auth/authenticator.hpp"
 #include "server/ingest/request_executor.hpp"
 #include "server/ingest/unacknowledged.hpp"
 #include "server/log/context.hpp"
 #include "server/metrics/metrics.hpp"
-#include "server/session/session.hpp"
-#include "server/session/session_registry.hpp"
+#include "server/sessions/session.hpp"
+#include "server/sessions/session_registry.hpp"
 
 #include <boost/asio/any_io_executor.hpp>
 #include <boost/asio/awaitable.hpp>
@@ -29,8 +29,8 @@ struct LinkServices {
     boost::asio::any_io_executor may_wait; ///< for work that waits for the disk
     metrics::IngestCounters& counters;
     RequestExecutor& requests;
-    guard::Gate& gate;
-    guard::Audit& audit;
+    auth::Authenticator& authenticator;
+    auth::AuditLog& audit;
 };
 
 /// One robot's connection: the sockets, timers and services around a link::ServerProtocol, which decides what happens.
@@ -82,7 +82,7 @@ private:
     boost::asio::awaitable<Result<link::ServerProtocol::Joined>> enter(const wire::Hello& hello);
     [[nodiscard]] Result<> authenticate(const wire::Hello& hello);
     void apply_permission();
-    void record_refusal(access::Reason reason, const std::string& token, const std::string& session) const;
+    void record_refusal(auth::Reason reason, const std::string& token, const std::string& session) const;
     void log_end() const;
 
     net::LinkStream stream_;
@@ -99,8 +99,8 @@ private:
     boost::asio::steady_timer timer_;
     Clock::time_point timer_expiry_ = Clock::time_point::max(); // max: the timer is not running
 
-    std::shared_ptr<guard::Pass> pass_; // from the hello to the end
-    access::TokenRef token_;            // that last permitted the link; null before the hello
+    std::shared_ptr<auth::Credential> pass_; // from the hello to the end
+    auth::TokenRef token_;                   // that last permitted the link; null before the hello
     std::string robot_;
     std::shared_ptr<session::Session> session_; // joined
     RobotIndex robot_index_ = 0;                // in the session

@@ -1,9 +1,9 @@
 #pragma once
 
-#include "server/guard/pass.hpp"
-#include "server/guide/way_book.hpp"
+#include "server/auth/authenticator.hpp"
+#include "server/guidance/robot_paths.hpp"
 #include "server/live/landmark_hub.hpp"
-#include "server/session/session.hpp"
+#include "server/sessions/session.hpp"
 
 #include <functional>
 #include <memory>
@@ -18,10 +18,10 @@ struct Invitation {
     store::SessionId session_id = 0;
     std::string name; ///< of the session, for messages after it was deleted
     std::string tag;  ///< LiveEvent::session
-    guide::WayBook& ways;
+    guide::RobotPaths& ways;
     std::shared_ptr<WatchedLandmarks> landmarks;
     std::function<bool()> is_stored = [] { return false; }; ///< returns whether the session exists, in memory or not
-    std::shared_ptr<guard::Pass> pass = nullptr;            ///< permission to watch; null: it cannot be revoked
+    std::shared_ptr<auth::Credential> pass = nullptr;       ///< permission to watch; null: it cannot be revoked
     std::function<void()> taken_back = [] {};               ///< called when `pass` was revoked, before the viewer ends
 };
 

@@ -38,10 +38,10 @@ void WatchedLandmarks::find(const session::Session& session, Revision revision, 
 Result<FoundLandmarks> WatchedLandmarks::find_for_a_turn(const session::Session& session, Revision revision,
                                                          std::chrono::milliseconds turn) {
     const auto end = Clock::now() + turn;
-    auto folded =
+    auto applied =
         folds_.up_to(session.info(), revision, [&] { return Clock::now() < end && !session.closing().has_value(); });
-    if (!folded) return folded.error();
-    return FoundLandmarks{std::move(folded->state), folded->revision, {}};
+    if (!applied) return applied.error();
+    return FoundLandmarks{std::move(applied->state), applied->revision, {}};
 }
 
 void WatchedLandmarks::keep(Result<FoundLandmarks> found, Revision revision, std::chrono::milliseconds pause) {

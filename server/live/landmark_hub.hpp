@@ -1,8 +1,8 @@
 #pragma once
 
 #include "server/live/core/event_encoder.hpp"
-#include "server/session/capture_folds.hpp"
-#include "server/session/session.hpp"
+#include "server/sessions/capture_layers.hpp"
+#include "server/sessions/session.hpp"
 
 #include <boost/asio/any_io_executor.hpp>
 
@@ -26,7 +26,7 @@ class WatchedLandmarks : public std::enable_shared_from_this<WatchedLandmarks> {
 public:
     using Clock = std::chrono::steady_clock;
 
-    explicit WatchedLandmarks(session::LandmarkFolds& folds) : folds_(folds) {}
+    explicit WatchedLandmarks(session::LandmarkLayers& folds) : folds_(folds) {}
 
     struct Look {
         std::shared_ptr<const FoundLandmarks> found;        ///< null: nothing yet
@@ -45,7 +45,7 @@ private:
                                                          std::chrono::milliseconds turn);
     void keep(Result<FoundLandmarks> found, Revision revision, std::chrono::milliseconds pause);
 
-    session::LandmarkFolds& folds_;
+    session::LandmarkLayers& folds_;
     std::mutex mutex_;
     std::shared_ptr<const FoundLandmarks> found_;
     Revision searched_ = 0; // log entries that were searched completely
@@ -57,13 +57,13 @@ private:
 /// Threads: any thread.
 class LandmarkHub {
 public:
-    explicit LandmarkHub(session::LandmarkFolds& folds) : folds_(folds) {}
+    explicit LandmarkHub(session::LandmarkLayers& folds) : folds_(folds) {}
 
     /// Returns the landmarks of a session. Callers that hold the result at the same time share one object.
     [[nodiscard]] std::shared_ptr<WatchedLandmarks> of(store::SessionId session);
 
 private:
-    session::LandmarkFolds& folds_;
+    session::LandmarkLayers& folds_;
     std::mutex mutex_;
     std::map<store::SessionId, std::weak_ptr<WatchedLandmarks>> watched_;
 };

@@ -7,7 +7,7 @@
 #include "server/live/invitation.hpp"
 #include "server/live/viewer_limits.hpp"
 #include "server/metrics/metrics.hpp"
-#include "server/session/watchers.hpp"
+#include "server/sessions/listeners.hpp"
 
 #include <boost/asio/any_io_executor.hpp>
 #include <boost/asio/awaitable.hpp>

@@ -103,8 +103,8 @@ RefusalCounters::RefusalCounters(prometheus::Registry& registry) {
                        .Name("scanloom_refusals_total")
                        .Help("Refused connections and requests, by port and reason.")
                        .Register(registry);
-    for (const auto port : access::kPorts) {
-        for (const auto reason : access::kReasons) {
+    for (const auto port : auth::kPorts) {
+        for (const auto reason : auth::kReasons) {
             counters_[static_cast<std::size_t>(port)][static_cast<std::size_t>(reason)] =
                 &family.Add({{"port", std::string(name_of(port))}, {"reason", std::string(name_of(reason))}});
         }

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "common/error/error.hpp"
-#include "server/access/refusal.hpp"
+#include "server/auth/refusals.hpp"
 
 #include <prometheus/counter.h>
 #include <prometheus/gauge.h>
@@ -109,12 +109,12 @@ class RefusalCounters {
 public:
     explicit RefusalCounters(prometheus::Registry& registry);
 
-    [[nodiscard]] prometheus::Counter& of(access::Port port, access::Reason reason) const {
+    [[nodiscard]] prometheus::Counter& of(auth::Port port, auth::Reason reason) const {
         return *counters_[static_cast<std::size_t>(port)][static_cast<std::size_t>(reason)];
     }
 
 private:
-    std::array<std::array<prometheus::Counter*, access::kReasons.size()>, access::kPorts.size()> counters_{};
+    std::array<std::array<prometheus::Counter*, auth::kReasons.size()>, auth::kPorts.size()> counters_{};
 };
 
 /// Owns every counter of the process. Label values come from fixed lists; names chosen by users are never labels.

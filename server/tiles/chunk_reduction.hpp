@@ -1,6 +1,6 @@
 #pragma once
 
-#include "server/mapping/layer_cells.hpp"
+#include "core/mapping/snapshot.hpp"
 #include "server/tiles/layer_style.hpp"
 
 #include <array>

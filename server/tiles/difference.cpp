@@ -1,7 +1,7 @@
 #include "server/tiles/difference.hpp"
 
-#include "server/mapping/himm.hpp"
-#include "server/mapping/layer_cells.hpp"
+#include "core/mapping/laser_chunk.hpp"
+#include "core/mapping/snapshot.hpp"
 #include "server/tiles/png.hpp"
 
 #include <algorithm>

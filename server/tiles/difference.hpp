@@ -1,7 +1,7 @@
 #pragma once
 
 #include "common/error/error.hpp"
-#include "server/mapping/snapshot.hpp"
+#include "core/mapping/snapshot.hpp"
 #include "server/tiles/bytes.hpp"
 #include "server/tiles/map_image.hpp"
 

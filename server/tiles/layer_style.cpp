@@ -1,7 +1,7 @@
 #include "server/tiles/layer_style.hpp"
 
-#include "server/classify/cell_class.hpp"
-#include "server/mapping/himm.hpp"
+#include "core/classify/cell_class.hpp"
+#include "core/mapping/laser_chunk.hpp"
 
 #include <algorithm>
 #include <cmath>

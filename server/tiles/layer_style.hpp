@@ -1,7 +1,7 @@
 #pragma once
 
-#include "server/mapping/layer.hpp"
-#include "server/mapping/log_odds.hpp"
+#include "core/mapping/laser_chunk.hpp"
+#include "core/mapping/layer.hpp"
 
 #include <array>
 #include <cstdint>

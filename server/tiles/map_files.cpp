@@ -2,7 +2,7 @@
 
 #include "common/ros_map/description.hpp"
 #include "common/ros_map/pgm.hpp"
-#include "server/classify/cell_class.hpp"
+#include "core/classify/cell_class.hpp"
 #include "server/tiles/layer_style.hpp"
 #include "server/tiles/map_image.hpp"
 

@@ -1,9 +1,8 @@
 #pragma once
 
 #include "common/error/error.hpp"
-#include "server/grid/cell.hpp"
-#include "server/mapping/layer_cells.hpp"
-#include "server/mapping/snapshot.hpp"
+#include "core/grid/cell.hpp"
+#include "core/mapping/snapshot.hpp"
 #include "server/tiles/bytes.hpp"
 
 #include <algorithm>

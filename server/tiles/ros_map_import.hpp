@@ -2,7 +2,7 @@
 
 #include "common/error/error.hpp"
 #include "common/ros_map/description.hpp"
-#include "common/scan/map_patch.hpp"
+#include "common/scan/log_entry.hpp"
 
 #include <cstdint>
 #include <span>

@@ -1,6 +1,6 @@
 #include "server/tiles/tile.hpp"
 
-#include "server/mapping/layer_cells.hpp"
+#include "core/mapping/snapshot.hpp"
 #include "server/tiles/chunk_reduction.hpp"
 #include "server/tiles/png.hpp"
 

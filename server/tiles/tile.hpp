@@ -1,6 +1,6 @@
 #pragma once
 
-#include "server/mapping/snapshot.hpp"
+#include "core/mapping/snapshot.hpp"
 #include "server/tiles/bytes.hpp"
 #include "server/tiles/tile_key.hpp"
 

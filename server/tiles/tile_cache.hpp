@@ -1,7 +1,7 @@
 #pragma once
 
 #include "common/scan/log_entry.hpp"
-#include "server/mapping/layer.hpp"
+#include "core/mapping/layer.hpp"
 #include "server/tiles/bytes.hpp"
 #include "server/tiles/tile_key.hpp"
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "common/error/error.hpp"
-#include "server/grid/cell.hpp"
+#include "core/grid/cell.hpp"
 
 #include <cstdint>
 #include <string_view>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "server/mapping/snapshot.hpp"
+#include "core/mapping/snapshot.hpp"
 #include "server/tiles/tile_cache.hpp"
 
 #include <cstddef>

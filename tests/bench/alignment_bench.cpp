@@ -1,7 +1,7 @@
-#include "robot_client/sim/laser.hpp"
-#include "server/landmarks/alignment.hpp"
-#include "server/landmarks/fusion.hpp"
-#include "server/landmarks/matching.hpp"
+#include "core/landmarks/alignment.hpp"
+#include "core/landmarks/cloud_fusion.hpp"
+#include "core/landmarks/landmark.hpp"
+#include "sim/range_sensors.hpp"
 
 #include <benchmark/benchmark.h>
 

@@ -1,5 +1,5 @@
-#include "server/mapping/digest.hpp"
-#include "server/mapping/projection.hpp"
+#include "core/mapping/projection.hpp"
+#include "core/mapping/snapshot.hpp"
 #include "server/tiles/map_image.hpp"
 #include "server/tiles/tile.hpp"
 #include "tests/support/room_scans.hpp"
@@ -67,12 +67,12 @@ Snapshot sixteen_rooms(double cell_size_m) {
     config.cell_size = cell_size_m;
     mapping::Projection projection(config);
     for (std::uint32_t room = 0; room < 16; ++room) {
-        benchmark::DoNotOptimize(projection.fold(RobotJoined{room, "robot"}));
-        benchmark::DoNotOptimize(projection.fold(SensorDescribed{room, testing_support::reference_laser()}));
+        benchmark::DoNotOptimize(projection.apply(RobotJoined{room, "robot"}));
+        benchmark::DoNotOptimize(projection.apply(SensorDescribed{room, testing_support::reference_laser()}));
         for (Scan scan : scans()) {
             scan.pose.x += 10.0 * (room % 4) - 15.0;
             scan.pose.y += 10.0 * (room / 4) - 15.0;
-            benchmark::DoNotOptimize(projection.fold(ScanTaken{room, std::move(scan)}));
+            benchmark::DoNotOptimize(projection.apply(ScanTaken{room, std::move(scan)}));
         }
     }
     return projection.snapshot();

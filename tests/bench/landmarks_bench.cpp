@@ -1,7 +1,7 @@
-#include "robot_client/sim/laser.hpp"
-#include "server/landmarks/adaptive_eps.hpp"
-#include "server/landmarks/landmark.hpp"
-#include "server/landmarks/point_tree.hpp"
+#include "core/landmarks/clustering.hpp"
+#include "core/landmarks/landmark.hpp"
+#include "core/landmarks/point_index.hpp"
+#include "sim/range_sensors.hpp"
 
 #include <benchmark/benchmark.h>
 

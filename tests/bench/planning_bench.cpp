@@ -1,6 +1,6 @@
-#include "server/planning/coverage.hpp"
-#include "server/planning/distance_field.hpp"
-#include "server/planning/goals.hpp"
+#include "core/planning/coverage.hpp"
+#include "core/planning/distance_field.hpp"
+#include "core/planning/goals.hpp"
 #include "tests/support/plan_worlds.hpp"
 
 #include <benchmark/benchmark.h>

@@ -1,7 +1,7 @@
-#include "server/mapping/chunk_kernels.hpp"
-#include "server/mapping/instruction_set.hpp"
-#include "server/mapping/laser_layers.hpp"
-#include "server/mapping/sweep/sweep.hpp"
+#include "core/mapping/chunk_kernels.hpp"
+#include "core/mapping/instruction_set.hpp"
+#include "core/mapping/laser_layers.hpp"
+#include "core/mapping/sweep/sweep.hpp"
 #include "tests/bench/projection/columns.hpp"
 #include "tests/bench/projection/peers.hpp"
 

@@ -1,6 +1,6 @@
 #include "common/wire/log_codec.hpp"
-#include "server/mapping/projection.hpp"
-#include "server/session/recovery.hpp"
+#include "core/mapping/projection.hpp"
+#include "server/sessions/recovery.hpp"
 #include "server/store/rocksdb_store.hpp"
 #include "tests/support/log_reading.hpp"
 #include "tests/support/memory_scan_log.hpp"
@@ -60,7 +60,7 @@ private:
     }
 
     void keep(const LogEntry& entry) {
-        if (!projection_.fold(entry)) std::abort();
+        if (!projection_.apply(entry)) std::abort();
     }
 
     mapping::Projection projection_;

@@ -1,9 +1,9 @@
-#include "robot_client/drive/wall_follower.hpp"
-#include "robot_client/sim/map_world.hpp"
-#include "robot_client/sim/ray_casting.hpp"
-#include "robot_client/sim/simulator.hpp"
-#include "robot_client/sim/truth_map.hpp"
-#include "robot_client/source/world_file.hpp"
+#include "robot_client/sources/world_file.hpp"
+#include "sim/drive/wall_follower.hpp"
+#include "sim/ground_truth.hpp"
+#include "sim/map_world.hpp"
+#include "sim/ray_casting.hpp"
+#include "sim/simulator.hpp"
 
 #include <benchmark/benchmark.h>
 

@@ -1,4 +1,4 @@
-#include "server/mapping/laser_layers.hpp"
+#include "core/mapping/laser_layers.hpp"
 #include "server/tiles/tile.hpp"
 
 #include <benchmark/benchmark.h>

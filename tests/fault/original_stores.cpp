@@ -2,8 +2,8 @@
 #include "server/store/rocksdb_store.hpp"
 
 #include "common/wire/log_codec.hpp"
-#include "server/mapping/map_config.hpp"
-#include "server/session/session_registry.hpp"
+#include "core/mapping/map_config.hpp"
+#include "server/sessions/session_registry.hpp"
 #include "tests/support/log_reading.hpp"
 #include "tests/support/random_scans.hpp"
 #include "tests/support/store_files.hpp"

@@ -1,9 +1,9 @@
 #include "tests/fault/verification.hpp"
 
 #include "common/wire/log_codec.hpp"
-#include "server/mapping/digest.hpp"
-#include "server/mapping/map_config.hpp"
-#include "server/mapping/projection.hpp"
+#include "core/mapping/map_config.hpp"
+#include "core/mapping/projection.hpp"
+#include "core/mapping/snapshot.hpp"
 #include "tests/support/random_scans.hpp"
 #include "tests/support/running_server.hpp"
 
@@ -141,7 +141,7 @@ Result<std::map<std::string, std::string>> undisturbed_digests(const std::vector
     if (!config) return config.error();
     mapping::Projection projection(*config);
     for (const LogEntry& entry : log) {
-        if (auto folded = projection.fold(entry); !folded) return folded.error();
+        if (auto applied = projection.apply(entry); !applied) return applied.error();
     }
     return digests_of(projection.snapshot());
 }

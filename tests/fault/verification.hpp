@@ -3,7 +3,7 @@
 #include "common/error/error.hpp"
 #include "common/scan/log_entry.hpp"
 #include "common/scan/session_options.hpp"
-#include "server/mapping/snapshot.hpp"
+#include "core/mapping/snapshot.hpp"
 #include "tests/fault/fleet.hpp"
 #include "tests/fault/outcome.hpp"
 

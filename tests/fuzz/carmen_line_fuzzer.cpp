@@ -1,5 +1,5 @@
 #include "common/scan/limits.hpp"
-#include "robot_client/source/carmen_line.hpp"
+#include "robot_client/sources/carmen_line.hpp"
 #include "tests/fuzz/check.hpp"
 
 /// Input: one line of a CARMEN log.

@@ -1,5 +1,5 @@
-#include "server/mapping/map_config.hpp"
-#include "server/session/checkpoint.hpp"
+#include "core/mapping/map_config.hpp"
+#include "server/sessions/checkpoint.hpp"
 #include "tests/fuzz/check.hpp"
 #include "tests/support/memory_scan_log.hpp"
 

@@ -1,9 +1,7 @@
 #include "common/wire/frame_decoder.hpp"
 #include "common/wire/messages.hpp"
-#include "robot_client/source/ld06_clock.hpp"
-#include "robot_client/source/ld06_decoder.hpp"
-#include "robot_client/source/ld06_scan.hpp"
-#include "robot_client/source/ld06_turns.hpp"
+#include "robot_client/sources/ld06_packet.hpp"
+#include "robot_client/sources/ld06_turns.hpp"
 #include "tests/fuzz/check.hpp"
 
 #include <algorithm>

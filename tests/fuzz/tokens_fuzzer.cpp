@@ -1,6 +1,6 @@
-#include "server/access/pattern.hpp"
-#include "server/access/secret.hpp"
-#include "server/access/token_text.hpp"
+#include "server/auth/secret.hpp"
+#include "server/auth/token.hpp"
+#include "server/auth/token_set.hpp"
 #include "tests/fuzz/check.hpp"
 
 #include <cctype>
@@ -11,8 +11,8 @@
 SCANLOOM_FUZZER(tokens)(const std::uint8_t* data, std::size_t size) {
     using namespace scanloom;
     const std::string_view text(reinterpret_cast<const char*>(data), size);
-    static_cast<void>(access::without_secrets(text));
-    const auto tokens = access::parse_tokens(text);
+    static_cast<void>(auth::without_secrets(text));
+    const auto tokens = auth::parse_tokens(text);
     if (!tokens) {
         const auto& message = tokens.error().message;
         fuzz::check(!message.empty() && std::isdigit(static_cast<unsigned char>(message[0])) != 0,
@@ -21,14 +21,14 @@ SCANLOOM_FUZZER(tokens)(const std::uint8_t* data, std::size_t size) {
     }
     std::string again;
     for (const auto& token : tokens->tokens()) {
-        fuzz::check(access::is_hash(token->hash), "only hashes are accepted");
+        fuzz::check(auth::is_hash(token->hash), "only hashes are accepted");
         for (const auto& pattern : token->sessions) {
-            fuzz::check(access::is_valid_pattern(pattern), "only patterns are accepted");
-            static_cast<void>(access::matches(pattern, token->name));
+            fuzz::check(auth::is_valid_pattern(pattern), "only patterns are accepted");
+            static_cast<void>(auth::matches(pattern, token->name));
         }
-        again += access::text_of(*token);
+        again += auth::text_of(*token);
     }
-    const auto reread = access::parse_tokens(again);
+    const auto reread = auth::parse_tokens(again);
     fuzz::check(reread.has_value() && reread->tokens().size() == tokens->tokens().size(), "a written file can be read");
     return 0;
 }

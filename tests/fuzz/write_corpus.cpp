@@ -5,8 +5,8 @@
 #include "common/wire/frame_decoder.hpp"
 #include "common/wire/log_codec.hpp"
 #include "common/wire/messages.hpp"
-#include "server/mapping/projection.hpp"
-#include "server/session/checkpoint.hpp"
+#include "core/mapping/projection.hpp"
+#include "server/sessions/checkpoint.hpp"
 #include "server/store/rocksdb_store.hpp"
 #include "tests/support/ld06_bytes.hpp"
 #include "tests/support/log_reading.hpp"
@@ -214,7 +214,7 @@ void write_checkpoint(const std::filesystem::path& folder) {
     scan.ranges = {700};
     for (const LogEntry& entry :
          {LogEntry{RobotJoined{0, "r1"}}, LogEntry{SensorDescribed{0, laser()}}, LogEntry{ScanTaken{0, scan}}}) {
-        if (const auto folded = projection.fold(entry); !folded) throw std::runtime_error(folded.error().message);
+        if (const auto applied = projection.apply(entry); !applied) throw std::runtime_error(applied.error().message);
     }
     store::MemoryScanLog log;
     const auto id = log.create_session("s").value();

@@ -1,25 +1,25 @@
 #include "tests/integration/ingest_fixture.hpp"
 
-#include "server/access/secret.hpp"
+#include "server/auth/secret.hpp"
 
 namespace scanloom::ingest {
 namespace {
 
-using access::Reason;
-using access::Role;
-using access::Token;
-using access::TokenSet;
+using auth::Reason;
+using auth::Role;
+using auth::Token;
+using auth::TokenSet;
 using testing::HasSubstr;
 
-access::TokenRef token(std::string name, Role role, std::vector<std::string> sessions, access::Limits limits = {}) {
-    const auto hash = access::hash_of("secret of " + name);
+auth::TokenRef token(std::string name, Role role, std::vector<std::string> sessions, auth::Limits limits = {}) {
+    const auto hash = auth::hash_of("secret of " + name);
     return std::make_shared<const Token>(Token{std::move(name), hash, role, std::move(sessions), limits});
 }
 
 /// Robots that need a token for their link.
 class AccessTest : public IngestTest {
 protected:
-    AccessTest() { start().gate().replace(TokenSet(all_)); }
+    AccessTest() { start().authenticator().replace(TokenSet(all_)); }
 
     /// Returns the hello of a robot with the token of that name; empty: without a token.
     static wire::Hello hello_of(const std::string& who, const std::string& session, const std::string& robot = "r1") {
@@ -34,11 +34,9 @@ protected:
         return farewell_to(robot);
     }
 
-    [[nodiscard]] double refusals(Reason reason) {
-        return running_->refusals().of(access::Port::kRobot, reason).Value();
-    }
+    [[nodiscard]] double refusals(Reason reason) { return running_->refusals().of(auth::Port::kRobot, reason).Value(); }
 
-    std::vector<access::TokenRef> all_ = {
+    std::vector<auth::TokenRef> all_ = {
         token("robot", Role::kRobot, {"depot-*"}),
         token("viewer", Role::kViewer, {"*"}),
         token("operator", Role::kOperator, {"lab"}),
@@ -94,7 +92,7 @@ TEST_F(AccessTest, RevokingATokenEndsItsLinksOnly) {
     const auto gone = welcomed(port(), hello_of("robot", "depot-1"));
     const auto stays = welcomed(port(), hello_of("operator", "lab"));
     stays->send(small_laser());
-    running_->gate().replace(TokenSet({all_[2]}));
+    running_->authenticator().replace(TokenSet({all_[2]}));
     const auto end = farewell_to(*gone);
     EXPECT_EQ(end.error.code, Errc::kUnauthorized);
     EXPECT_FALSE(end.retryable);
@@ -110,7 +108,7 @@ TEST_F(AccessTest, ScansAcknowledgedBeforeTheRevocationStay) {
     const auto robot = welcomed(port(), hello_of("robot", "depot-1"));
     robot->send(small_laser());
     stream(*robot, 1, 1, 20);
-    running_->gate().replace(TokenSet({all_[2]}));
+    running_->authenticator().replace(TokenSet({all_[2]}));
     static_cast<void>(farewell_to(*robot));
     EXPECT_EQ(running_->snapshot("depot-1")->robots.at(0).last_seq, 20U);
 }
@@ -118,8 +116,8 @@ TEST_F(AccessTest, ScansAcknowledgedBeforeTheRevocationStay) {
 class LimitsTest : public AccessTest {
 protected:
     /// Robots with a token that has only this limit.
-    std::unique_ptr<RobotSocket> robot_with(const access::Limits& limits, const std::string& robot = "r1") {
-        running_->gate().replace(TokenSet({token("robot", Role::kRobot, {"*"}, limits)}));
+    std::unique_ptr<RobotSocket> robot_with(const auth::Limits& limits, const std::string& robot = "r1") {
+        running_->authenticator().replace(TokenSet({token("robot", Role::kRobot, {"*"}, limits)}));
         return welcomed(port(), hello_of("robot", "lab", robot));
     }
 
@@ -165,7 +163,7 @@ TEST_F(LimitsTest, BeamsAreLimitedPerScan) {
     const auto robot = robot_with({.beams = beams});
     robot->send(small_laser());
     stream(*robot, 1, 1, 10);
-    running_->gate().replace(TokenSet({token("robot", Role::kRobot, {"*"}, {.beams = beams - 1})}));
+    running_->authenticator().replace(TokenSet({token("robot", Role::kRobot, {"*"}, {.beams = beams - 1})}));
     // The link applies the new limit before it reads anything that is sent after this line.
     robot->send(wire::ScanBatch{{random_scan(1, 11)}});
     expect_limit(*robot, "beams");
@@ -204,11 +202,11 @@ TEST_F(LimitsTest, TooFastInputIsDelayedWithoutLoss) {
 }
 
 TEST_F(LimitsTest, ADelayedLinkEndsWhenItsTokenIsRevoked) {
-    const auto robot = robot_with({.bytes_per_second = access::kBytesPerSecondMin});
+    const auto robot = robot_with({.bytes_per_second = auth::kBytesPerSecondMin});
     robot->send(small_laser());
     robot->send(wire::ScanBatch{random_scans(1, 1, 400)});
     while (running_->counters().held_back_seconds.Value() == 0.0) std::this_thread::yield();
-    running_->gate().replace(TokenSet({all_[2]}));
+    running_->authenticator().replace(TokenSet({all_[2]}));
     EXPECT_EQ(farewell_to(*robot).error.code, Errc::kUnauthorized);
 }
 

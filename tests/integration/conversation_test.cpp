@@ -224,9 +224,9 @@ TEST_F(IngestTest, TenConcurrentSessionsHaveTheMapsOfSeparateRuns) {
     for (auto& robot : robots) robot.join();
     for (unsigned n = 0; n < 10; ++n) {
         mapping::Projection alone{mapping::MapConfig{}};
-        ASSERT_TRUE(alone.fold(RobotJoined{0, "r"}));
-        ASSERT_TRUE(alone.fold(SensorDescribed{0, small_laser()}));
-        for (const auto& scan : random_scans(n, 1, 60)) ASSERT_TRUE(alone.fold(ScanTaken{0, scan}));
+        ASSERT_TRUE(alone.apply(RobotJoined{0, "r"}));
+        ASSERT_TRUE(alone.apply(SensorDescribed{0, small_laser()}));
+        for (const auto& scan : random_scans(n, 1, 60)) ASSERT_TRUE(alone.apply(ScanTaken{0, scan}));
         EXPECT_EQ(ingest.digest("s" + std::to_string(n)), testing_support::digests_of(alone.snapshot()));
     }
 }

@@ -1,8 +1,8 @@
-#include "robot_client/sim/truth_grid.hpp"
-#include "robot_client/sim/unicycle.hpp"
-#include "server/guide/goal_book.hpp"
+#include "server/guidance/goal_assignments.hpp"
+#include "sim/ground_truth.hpp"
+#include "sim/unicycle.hpp"
 #include "tests/support/exploring_robot.hpp"
-#include "tests/unit/server/session/session_fixture.hpp"
+#include "tests/unit/server/sessions/session_fixture.hpp"
 
 #include <map>
 #include <numbers>
@@ -103,7 +103,7 @@ protected:
     /// Lets the robots explore until the server has reported a complete map to each of them.
     void explore(const robot::World& world, std::vector<ExploringRobot> robots) {
         mapping::Projection maps(mapping::resolve({}).value());
-        GoalBook book;
+        GoalAssignments book;
         std::vector<bool> ended(robots.size());
         goals_ = 0;
         given_.clear();
@@ -125,7 +125,7 @@ private:
     using Given = std::tuple<RobotIndex, int, int, int, int>; // a goal and a target
 
     /// @return whether the robot has another goal
-    bool ask(GoalBook& book, mapping::Projection& projection, RobotIndex index, ExploringRobot& robot) {
+    bool ask(GoalAssignments& book, mapping::Projection& projection, RobotIndex index, ExploringRobot& robot) {
         const auto maps = projection.snapshot();
         targets_[index].clear();
         const auto next = book.next(session_, maps, index, robot.place(), {});

@@ -1,8 +1,8 @@
-#include "robot_client/sim/truth_grid.hpp"
-#include "robot_client/sim/unicycle.hpp"
+#include "sim/ground_truth.hpp"
+#include "sim/unicycle.hpp"
 #include "tests/support/goal_oracle.hpp"
 #include "tests/support/unexplored.hpp"
-#include "tests/unit/server/session/session_fixture.hpp"
+#include "tests/unit/server/sessions/session_fixture.hpp"
 
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/io_context.hpp>

@@ -115,7 +115,7 @@ TEST_F(IngestTest, SilentConnectionsDoNotBlockRobots) {
     silent.clear();
 }
 
-/// A log that creates no session before the gate is open.
+/// A log that creates no session before the authenticator is open.
 class GatedLog final : public store::MemoryScanLog {
 public:
     [[nodiscard]] Result<store::SessionId> create_session(std::string_view record) override {

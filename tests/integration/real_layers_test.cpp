@@ -1,4 +1,4 @@
-#include "server/mapping/projection.hpp"
+#include "core/mapping/projection.hpp"
 #include "tests/support/angles.hpp"
 #include "tests/support/class_oracle.hpp"
 #include "tests/support/laser_oracle.hpp"
@@ -97,18 +97,18 @@ TEST_P(RealLayers, LaserLayersEqualTheirDefinitions) {
     Projection projection(config());
     oracle::LaserOracle evidence(config());
     oracle::OccTypes types(config());
-    ASSERT_TRUE(projection.fold(RobotJoined{0, "r"}));
+    ASSERT_TRUE(projection.apply(RobotJoined{0, "r"}));
     const Sensor* described = nullptr;
     std::uint64_t seq = 0;
     for (auto& [sensor, scan] : sampled(std::get<0>(GetParam()))) {
         if (described == nullptr || *described != *sensor) {
-            ASSERT_TRUE(projection.fold(SensorDescribed{0, *sensor}));
+            ASSERT_TRUE(projection.apply(SensorDescribed{0, *sensor}));
         }
         described = sensor.get();
         scan.seq = ++seq;
-        ASSERT_TRUE(projection.fold(ScanTaken{0, scan}));
+        ASSERT_TRUE(projection.apply(ScanTaken{0, scan}));
         evidence.add(*sensor, scan);
-        types.fold(projection.snapshot());
+        types.apply(projection.snapshot());
     }
     ASSERT_GE(seq, 25U);
     std::size_t firm = 0;
@@ -164,10 +164,10 @@ TEST(RealSonar, SonarLayerEqualsMultipliedProbabilities) {
     const MapConfig config = mapping::resolve({.cell_size = 0.1}).value();
     Projection projection(config);
     oracle::MurphyOracle oracle(config);
-    ASSERT_TRUE(projection.fold(RobotJoined{0, "r"}));
-    ASSERT_TRUE(projection.fold(SensorDescribed{0, log.ring}));
+    ASSERT_TRUE(projection.apply(RobotJoined{0, "r"}));
+    ASSERT_TRUE(projection.apply(SensorDescribed{0, log.ring}));
     for (const Scan& scan : log.scans) {
-        ASSERT_TRUE(projection.fold(ScanTaken{0, scan}));
+        ASSERT_TRUE(projection.apply(ScanTaken{0, scan}));
         oracle.add(log.ring, scan);
     }
     const auto snapshot = projection.snapshot();

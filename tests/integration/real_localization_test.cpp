@@ -1,5 +1,5 @@
-#include "server/landmarks/localization.hpp"
-#include "server/landmarks/session_captures.hpp"
+#include "core/landmarks/captures.hpp"
+#include "core/landmarks/localization.hpp"
 #include "tests/support/angles.hpp"
 #include "tests/support/whole_log.hpp"
 

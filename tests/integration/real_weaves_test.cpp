@@ -1,5 +1,5 @@
 #include "common/wire/log_codec.hpp"
-#include "server/session/weaves.hpp"
+#include "server/sessions/replay_jobs.hpp"
 #include "tests/support/digests.hpp"
 #include "tests/support/memory_scan_log.hpp"
 #include "tests/support/weave_waiting.hpp"
@@ -57,8 +57,8 @@ protected:
         entries_.push_back(std::move(entry));
     }
 
-    std::shared_ptr<const mapping::Snapshot> maps_until(session::Weaves& weaves, Revision until) {
-        const session::WeaveRequest request{session_.config, {until, std::nullopt}};
+    std::shared_ptr<const mapping::Snapshot> maps_until(session::ReplayJobs& weaves, Revision until) {
+        const session::ReplayRequest request{session_.config, {until, std::nullopt}};
         const auto weave = weaves.start(session_, request, entries_.size()).value();
         return testing_support::wait_for_maps(*weave, until, std::chrono::minutes(5));
     }
@@ -69,7 +69,7 @@ protected:
     std::vector<LogEntry> entries_;
     std::uint64_t scans_ = 0;
     boost::asio::thread_pool pool_{2};
-    session::Weaves weaves_{log_, pool_.get_executor()};
+    session::ReplayJobs weaves_{log_, pool_.get_executor()};
 };
 
 TEST_F(RealWeaves, EveryStepEqualsAMapComputedFromTheStart) {
@@ -79,7 +79,7 @@ TEST_F(RealWeaves, EveryStepEqualsAMapComputedFromTheStart) {
         ASSERT_EQ(maps->revision, until);
         if (until / kStep % 10 != 1) continue; // digests cost more than the steps
         mapping::Projection from_nothing(session_.config);
-        for (Revision n = 0; n < until; ++n) ASSERT_TRUE(from_nothing.fold(entries_[n]));
+        for (Revision n = 0; n < until; ++n) ASSERT_TRUE(from_nothing.apply(entries_[n]));
         ASSERT_EQ(testing_support::digests_of(*maps), testing_support::digests_of(from_nothing.snapshot())) << until;
     }
 }

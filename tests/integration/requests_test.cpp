@@ -1,8 +1,8 @@
 #include "tests/integration/ingest_fixture.hpp"
 
-#include "server/classify/frontiers.hpp"
-#include "server/guide/robots.hpp"
-#include "server/planning/grid_path.hpp"
+#include "core/classify/frontiers.hpp"
+#include "core/planning/grid_path.hpp"
+#include "server/guidance/robots.hpp"
 
 #include <boost/asio/post.hpp>
 
@@ -113,18 +113,18 @@ TEST_F(RequestsTest, TheLastPlanIsKeptUntilTheRobotLeaves) {
     auto& ingest = start();
     const auto robot = looking_around("r");
     const auto session = ingest.sessions().find("lab");
-    const auto page = [&] { return ingest.goals().ways().page(session, guide::WayBook::Clock::now()); };
+    const auto page = [&] { return ingest.goals().ways().page(session, guide::RobotPaths::Clock::now()); };
     robot->send(plan_to({2.5, 0.2}));
     const auto plan = robot->receive_kind<wire::PlanReply>();
     ASSERT_EQ(page().robots.size(), 1U);
-    EXPECT_EQ(page().robots[0].way->kind, guide::WayKind::kPlan);
+    EXPECT_EQ(page().robots[0].way->kind, guide::PathKind::kPlan);
     EXPECT_EQ(page().robots[0].way->points, plan.path.value().points);
     EXPECT_EQ(page().robots[0].way->length_m, plan.path.value().length);
     EXPECT_EQ(page().robots[0].way->revision, plan.revision);
 
     robot->send(wire::CoverageRequest{.id = 2});
     const auto coverage = robot->receive_kind<wire::CoverageReply>();
-    EXPECT_EQ(page().robots[0].way->kind, guide::WayKind::kCoverage);
+    EXPECT_EQ(page().robots[0].way->kind, guide::PathKind::kCoverage);
     EXPECT_EQ(page().robots[0].way->points, coverage.coverage.value().path.points);
 
     robot->send(wire::GoalRequest{.id = 3, .frontier_size_min = 10});
@@ -184,7 +184,7 @@ TEST_F(RequestsTest, TwoRobotsNeverGetTheSameFrontierOverAnyPort) {
     options.frontier_size_min = 10;
     const auto other = ingest.goals()
                            .next(session, *maps, guide::find_robot(*maps, "b").value(), {0.5, 1.25},
-                                 guide::GoalBook::Clock::now(), options)
+                                 guide::GoalAssignments::Clock::now(), options)
                            .value();
     ASSERT_TRUE(other.goal);
     const Point2 target = Point2{other.goal->target.i + 0.5, other.goal->target.j + 0.5} * 0.05;
@@ -363,7 +363,7 @@ TEST_F(RequestsTest, NoSearchStartsDuringShutdown) {
     const auto session = ingest.sessions().find("lab");
     auto go_on = hold_searches();
     std::promise<std::string> sent;
-    guide::GoalBook goals;
+    guide::GoalAssignments goals;
     RequestExecutor requests(ingest.planning(), ingest.planning(), {goals, ingest.locator(), ingest.sessions()});
     ASSERT_FALSE(
         requests.submit({session, 0}, plan_to({2.5, 0.2}),

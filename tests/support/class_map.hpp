@@ -1,7 +1,7 @@
 #pragma once
 
 #include "common/geometry/pose2.hpp"
-#include "server/classify/class_layer.hpp"
+#include "core/classify/class_layer.hpp"
 
 #include <cstdint>
 #include <map>

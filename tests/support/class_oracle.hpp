@@ -1,9 +1,8 @@
 #pragma once
 
-#include "server/classify/cell_class.hpp"
-#include "server/mapping/himm.hpp"
-#include "server/mapping/log_odds.hpp"
-#include "server/mapping/map_config.hpp"
+#include "core/classify/cell_class.hpp"
+#include "core/mapping/laser_chunk.hpp"
+#include "core/mapping/map_config.hpp"
 #include "tests/support/plane.hpp"
 #include "tests/support/snapshot_cells.hpp"
 
@@ -26,7 +25,7 @@ public:
     explicit OccTypes(const mapping::MapConfig& config) : config_(config) {}
 
     /// Call after each scan.
-    void fold(const mapping::Snapshot& snapshot) {
+    void apply(const mapping::Snapshot& snapshot) {
         testing_support::for_each_laser_cell(
             snapshot, [&](grid::Cell cell, const mapping::LaserChunk& chunk, std::size_t n) {
                 const OccType before = types_.at(cell);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "server/mapping/digest.hpp"
+#include "core/mapping/snapshot.hpp"
 
 #include <string>
 

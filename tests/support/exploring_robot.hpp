@@ -1,8 +1,8 @@
 #pragma once
 
-#include "robot_client/sim/laser.hpp"
-#include "robot_client/sim/world.hpp"
-#include "server/mapping/projection.hpp"
+#include "core/mapping/projection.hpp"
+#include "sim/range_sensors.hpp"
+#include "sim/world.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -22,8 +22,8 @@ public:
         : index_(index), world_(&world), laser_(std::move(laser)), noise_(noise), random_(index + 1), pose_(start) {}
 
     void join(mapping::Projection& maps) {
-        maps.fold(RobotJoined{index_, "r" + std::to_string(index_)}).value();
-        maps.fold(SensorDescribed{index_, laser_}).value();
+        maps.apply(RobotJoined{index_, "r" + std::to_string(index_)}).value();
+        maps.apply(SensorDescribed{index_, laser_}).value();
         scan(maps);
     }
 
@@ -82,7 +82,7 @@ private:
         scan.sensor = laser_.id;
         scan.pose = pose_;
         scan.ranges = robot::sweep(*world_, laser_, pose_, noise_, random_);
-        maps.fold(ScanTaken{index_, std::move(scan)}).value();
+        maps.apply(ScanTaken{index_, std::move(scan)}).value();
     }
 
     RobotIndex index_;

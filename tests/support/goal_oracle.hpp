@@ -1,9 +1,9 @@
 #pragma once
 
-#include "robot_client/drive/explore.hpp"
-#include "robot_client/source/exploring_source.hpp"
-#include "server/guide/goal_book.hpp"
-#include "server/mapping/projection.hpp"
+#include "core/mapping/projection.hpp"
+#include "robot_client/sources/exploring_source.hpp"
+#include "server/guidance/goal_assignments.hpp"
+#include "sim/drive/explore.hpp"
 
 #include <cstdint>
 #include <map>
@@ -24,11 +24,11 @@ public:
     }
 
     void join(RobotIndex robot, const Sensor& laser) {
-        maps_.fold(RobotJoined{robot, "r" + std::to_string(robot)}).value();
-        maps_.fold(SensorDescribed{robot, laser}).value();
+        maps_.apply(RobotJoined{robot, "r" + std::to_string(robot)}).value();
+        maps_.apply(SensorDescribed{robot, laser}).value();
     }
 
-    void take(RobotIndex robot, Scan scan) { maps_.fold(ScanTaken{robot, std::move(scan)}).value(); }
+    void take(RobotIndex robot, Scan scan) { maps_.apply(ScanTaken{robot, std::move(scan)}).value(); }
 
     [[nodiscard]] Result<robot::NextStop> next(RobotIndex robot) {
         const auto maps = maps_.snapshot();
@@ -60,7 +60,7 @@ public:
 private:
     std::shared_ptr<const session::Session> session_;
     mapping::Projection maps_;
-    guide::GoalBook book_;
+    guide::GoalAssignments book_;
     planning::ExplorationOptions options_;
     int asked_ = 0;
     std::map<RobotIndex, std::vector<grid::Cell>> around_target_; // of the goals that robots drive to

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "common/scan/scan.hpp"
-#include "server/grid/cell.hpp"
-#include "server/mapping/sweep/sweep.hpp"
+#include "core/grid/cell.hpp"
+#include "core/mapping/sweep/sweep.hpp"
 #include "tests/support/beam_index.hpp"
 #include "tests/support/inverse_sensor_oracle.hpp"
 

@@ -3,7 +3,7 @@
 #include "common/geometry/pose2.hpp"
 #include "common/scan/scan.hpp"
 #include "common/scan/sensor.hpp"
-#include "server/mapping/snapshot.hpp"
+#include "core/mapping/snapshot.hpp"
 #include "tests/support/beam_index.hpp"
 #include "tests/support/plane.hpp"
 #include "tests/support/ray_oracle.hpp"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "server/mapping/snapshot.hpp"
+#include "core/mapping/snapshot.hpp"
 #include "server/tiles/tile.hpp"
 
 #include "scanloom/v1/live.pb.h"

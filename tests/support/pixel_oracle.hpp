@@ -1,7 +1,7 @@
 #pragma once
 
-#include "server/mapping/layer.hpp"
-#include "server/mapping/snapshot.hpp"
+#include "core/mapping/layer.hpp"
+#include "core/mapping/snapshot.hpp"
 #include "tests/support/snapshot_cells.hpp"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "server/grid/cell.hpp"
+#include "core/grid/cell.hpp"
 
 #include <array>
 #include <cstddef>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "server/classify/class_layer.hpp"
-#include "server/mapping/snapshot.hpp"
+#include "core/classify/class_layer.hpp"
+#include "core/mapping/snapshot.hpp"
 #include "tests/support/random_map.hpp"
 
 #include <map>

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "common/geometry/pose2.hpp"
-#include "common/scan/ray_model.hpp"
-#include "server/grid/cell.hpp"
+#include "common/scan/session_options.hpp"
+#include "core/grid/cell.hpp"
 
 #include <algorithm>
 #include <array>

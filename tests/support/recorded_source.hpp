@@ -1,6 +1,6 @@
 #pragma once
 
-#include "robot_client/source/source.hpp"
+#include "robot_client/sources/source.hpp"
 
 #include <vector>
 

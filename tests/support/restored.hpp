@@ -1,6 +1,6 @@
 #pragma once
 
-#include "server/mapping/projection.hpp"
+#include "core/mapping/projection.hpp"
 
 namespace scanloom::testing_support {
 

@@ -23,7 +23,8 @@ public:
         if (auto recovered = sessions_.recover(); !recovered) throw ErrorException(recovered.error());
         server_ = std::make_unique<IngestServer>(
             io_, boost::asio::ip::tcp::endpoint(boost::asio::ip::address_v4::loopback(), 0),
-            LinkServices{sessions_, may_wait_.get_executor(), metrics_.ingest(), requests_, gate_, audit_}, config);
+            LinkServices{sessions_, may_wait_.get_executor(), metrics_.ingest(), requests_, authenticator_, audit_},
+            config);
         server_->start();
         for (int n = 0; n < 2; ++n) io_threads_.emplace_back([this] { io_.run(); });
     }
@@ -47,8 +48,8 @@ public:
     [[nodiscard]] session::SessionRegistry& sessions() { return sessions_; }
     [[nodiscard]] metrics::IngestCounters& counters() { return metrics_.ingest(); }
     [[nodiscard]] metrics::RefusalCounters& refusals() { return metrics_.refusals(); }
-    [[nodiscard]] guard::Gate& gate() { return gate_; }
-    [[nodiscard]] guide::GoalBook& goals() { return goals_; }
+    [[nodiscard]] auth::Authenticator& authenticator() { return authenticator_; }
+    [[nodiscard]] guide::GoalAssignments& goals() { return goals_; }
     [[nodiscard]] guide::Locator& locator() { return locator_; }
     [[nodiscard]] boost::asio::any_io_executor planning() { return planning_.get_executor(); }
     [[nodiscard]] boost::asio::any_io_executor locating() { return locating_.get_executor(); }
@@ -56,7 +57,7 @@ public:
     [[nodiscard]] std::uint16_t port() const { return server_->port(); }
 
     [[nodiscard]] std::shared_ptr<const mapping::Snapshot> snapshot(const std::string& session) {
-        return sessions_.wake(session).value()->snapshot();
+        return sessions_.load(session).value()->snapshot();
     }
     [[nodiscard]] std::string digest(const std::string& session) {
         return testing_support::digests_of(*snapshot(session));
@@ -68,14 +69,14 @@ private:
 
     boost::asio::thread_pool compute_{2};
     metrics::Metrics metrics_{"test"};
-    guard::Gate gate_;
-    guard::Audit audit_{metrics_.refusals()};
+    auth::Authenticator authenticator_;
+    auth::AuditLog audit_{metrics_.refusals()};
     boost::asio::thread_pool may_wait_{2};
     boost::asio::thread_pool planning_{1};
     boost::asio::thread_pool locating_{1};
     boost::asio::io_context io_;
     session::SessionRegistry sessions_;
-    guide::GoalBook goals_;
+    guide::GoalAssignments goals_;
     guide::Locator locator_;
     RequestExecutor requests_;
     std::unique_ptr<IngestServer> server_;

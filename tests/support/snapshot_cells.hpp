@@ -1,6 +1,6 @@
 #pragma once
 
-#include "server/mapping/snapshot.hpp"
+#include "core/mapping/snapshot.hpp"
 
 /// Access to the cells of a snapshot, one by one.
 namespace scanloom::testing_support {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "common/geometry/pose2.hpp"
-#include "server/classify/cell_class.hpp"
+#include "core/classify/cell_class.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "robot_client/source/carmen_log.hpp"
+#include "robot_client/sources/carmen_log.hpp"
 
 namespace scanloom::robot {
 

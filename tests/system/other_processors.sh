@@ -5,7 +5,7 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 
 readonly sources=(tests/system/sweep_fingerprint.cpp common/scan/beam_angles.cpp common/scan/scan.cpp
-    server/mapping/beam_fan.cpp server/mapping/chunk_kernels.cpp server/mapping/sweep/*.cpp)
+    core/mapping/beam_fan.cpp core/mapping/chunk_kernels.cpp core/mapping/sweep/*.cpp)
 readonly options=(-std=c++20 -O2 -ffp-contract=off -static -DHWY_COMPILE_ONLY_STATIC -I.)
 place=$(mktemp --directory --tmpdir scanloom-neon.XXXXXX)
 trap 'rm -rf "$place"' EXIT
@@ -15,8 +15,8 @@ mkdir "$place/include"
 ln -s /usr/include/hwy /usr/include/eigen3/Eigen /usr/include/boost "$place/include"
 
 # Compiled with the project's options, for every instruction set of its processors.
-sets=$(grep -o 'HWY_[A-Z]*_TARGETS=[^"]*' server/mapping/CMakeLists.txt)
-for source in server/mapping/chunk_kernels.cpp server/mapping/sweep/{contours,crossings,fill}.cpp; do
+sets=$(grep -o 'HWY_[A-Z]*_TARGETS=[^"]*' core/mapping/CMakeLists.txt)
+for source in core/mapping/chunk_kernels.cpp core/mapping/sweep/{contours,crossings,fill}.cpp; do
     aarch64-linux-gnu-g++ -std=c++20 -O2 -ffp-contract=off "-D$sets" -I. -isystem "$place/include" -c "$source" \
         -o "$place/$(basename "$source").o"
 done

@@ -1,5 +1,5 @@
-#include "server/mapping/chunk_kernels.hpp"
-#include "server/mapping/sweep/sweep.hpp"
+#include "core/mapping/chunk_kernels.hpp"
+#include "core/mapping/sweep/sweep.hpp"
 
 #include <cstdint>
 #include <cstdio>

@@ -1,6 +1,6 @@
 #include "server/http/handlers/handlers.hpp"
 
-#include "server/guide/robots.hpp"
+#include "server/guidance/robots.hpp"
 #include "server/http/handlers/lookup.hpp"
 #include "server/http/json_read.hpp"
 #include "server/http/text.hpp"

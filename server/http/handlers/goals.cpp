@@ -1,7 +1,7 @@
 #include "server/http/handlers/handlers.hpp"
 
 #include "common/scan/limits.hpp"
-#include "server/guide/robots.hpp"
+#include "server/guidance/robots.hpp"
 #include "server/http/geojson.hpp"
 #include "server/http/handlers/lookup.hpp"
 #include "server/http/handlers/planning_request.hpp"
@@ -56,8 +56,8 @@ std::string goal_text(std::string_view robot, const mapping::Snapshot& maps, con
 }
 
 /// Describes a goal that was assigned earlier. If the robot has planned another path since, the goal has no path.
-std::string goal_text(std::string_view robot, const guide::Goal& goal, const guide::Way* way) {
-    const bool leads_there = way != nullptr && way->kind == guide::WayKind::kGoal;
+std::string goal_text(std::string_view robot, const guide::Goal& goal, const guide::HeldPath* way) {
+    const bool leads_there = way != nullptr && way->kind == guide::PathKind::kGoal;
     return head_text(robot, goal.revision, "goal") +
            fmt::format(R"("goal":{},"target":{},"in_danger":{},"path":{},"length":{}}})", point_text(goal.place),
                        point_text(goal.target), goal.in_danger, leads_there ? line_string(way->points) : "null",
@@ -84,8 +84,8 @@ Result<Response> get_goal(Context& context) {
     const auto robot = find_robot(*maps, *name);
     if (!robot) return robot.error();
 
-    const auto page = context.services.goals.ways().page(*session, guide::WayBook::Clock::now());
-    const auto held = std::ranges::find(page.robots, *robot, &guide::WayBook::Held::robot);
+    const auto page = context.services.goals.ways().page(*session, guide::RobotPaths::Clock::now());
+    const auto held = std::ranges::find(page.robots, *robot, &guide::RobotPaths::Held::robot);
     if (held == page.robots.end() || !held->goal) {
         const bool explored = std::ranges::binary_search(page.explored, *robot);
         const auto head = head_text(*name, maps->revision, explored ? "complete" : "none");
@@ -113,7 +113,7 @@ Result<Response> assign_goal(Context& context) {
     if (!pose) return pose.error();
 
     const auto next = context.services.goals.next(found->session, snapshot, *robot, Point2{pose->x, pose->y},
-                                                  guide::GoalBook::Clock::now(), *options);
+                                                  guide::GoalAssignments::Clock::now(), *options);
     if (!next) return next.error();
     auto permit = context.services.responses.take(next->path.points.size() * kPointTextBytes);
     if (!permit) return permit.error();
@@ -122,16 +122,16 @@ Result<Response> assign_goal(Context& context) {
 
 namespace {
 
-std::string_view name_of(guide::WayKind kind) {
+std::string_view name_of(guide::PathKind kind) {
     switch (kind) {
-    case guide::WayKind::kGoal: return "goal";
-    case guide::WayKind::kPlan: return "plan";
-    case guide::WayKind::kCoverage: return "coverage";
+    case guide::PathKind::kGoal: return "goal";
+    case guide::PathKind::kPlan: return "plan";
+    case guide::PathKind::kCoverage: return "coverage";
     }
     return "";
 }
 
-std::string feature_of(const std::string& robot, const guide::Way& way) {
+std::string feature_of(const std::string& robot, const guide::HeldPath& way) {
     const boost::json::object properties{{"role", "way"},
                                          {"robot", robot},
                                          {"kind", name_of(way.kind)},
@@ -157,7 +157,7 @@ Result<Response> get_goals(Context& context) {
     const auto& session = context.session;
     if (!session) return session.error();
 
-    const auto page = context.services.goals.ways().page(*session, guide::WayBook::Clock::now());
+    const auto page = context.services.goals.ways().page(*session, guide::RobotPaths::Clock::now());
     std::size_t bytes = page.explored.size() * kNameBytesMax;
     for (const auto& held : page.robots) bytes += ((held.way ? held.way->points.size() : 0) + 16) * kPointTextBytes;
     auto permit = context.services.responses.take(bytes);

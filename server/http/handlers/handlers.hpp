@@ -163,11 +163,11 @@ namespace scanloom::http {
 [[nodiscard]] Result<Response> get_goal(Context& context);
 
 /// POST .../goal {robot, size_min?, body_radius?}: assigns to the robot the next frontier to explore. No other robot is
-/// assigned the same frontier from then on; see GoalBook.
+/// assigned the same frontier from then on; see GoalAssignments.
 [[nodiscard]] Result<Response> assign_goal(Context& context);
 
 /// GET .../goals.geojson: returns for each robot its last planned path and its assigned goal, if any. The revision is
-/// that of the WayBook, as LiveEvent::goals_revision. Assigns nothing.
+/// that of the RobotPaths, as LiveEvent::goals_revision. Assigns nothing.
 [[nodiscard]] Result<Response> get_goals(Context& context);
 
 // landmarks.cpp
@@ -178,7 +178,7 @@ namespace scanloom::http {
 /// null without data. "revision" is the `since` for the next request. "reset" means that the session has not reached
 /// `since` because it was recreated; then all landmarks are returned. Waits until the log has been read, which takes
 /// seconds for a long log at the first request.
-/// Errors: those of Context::session and LandmarkFolds::up_to(); kInvalidField for a parameter.
+/// Errors: those of Context::session and LandmarkLayers::up_to(); kInvalidField for a parameter.
 [[nodiscard]] Result<Response> get_landmarks(Context& context);
 
 /// GET .../points.csv and .../points.ply?since&until&robot&threshold: returns what robots observed from many positions

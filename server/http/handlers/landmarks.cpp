@@ -1,12 +1,12 @@
 #include "server/http/handlers/handlers.hpp"
 
+#include "core/landmarks/landmark.hpp"
 #include "server/exchange/point_text.hpp"
-#include "server/guide/robots.hpp"
+#include "server/guidance/robots.hpp"
 #include "server/http/geojson.hpp"
 #include "server/http/handlers/lookup.hpp"
 #include "server/http/text.hpp"
-#include "server/landmarks/matching.hpp"
-#include "server/session/log_captures.hpp"
+#include "server/sessions/log_readers.hpp"
 
 #include <boost/json/object.hpp>
 #include <fmt/format.h>
@@ -85,12 +85,12 @@ Result<Response> get_landmarks(Context& context) {
     if (!session) return session.error();
 
     const auto snapshot = (*session)->snapshot();
-    const auto folded = context.services.landmarks.up_to((*session)->info(), snapshot->revision,
-                                                         [&] { return !context.services.sessions.is_draining(); });
-    if (!folded) return folded.error();
+    const auto applied = context.services.landmarks.up_to((*session)->info(), snapshot->revision,
+                                                          [&] { return !context.services.sessions.is_draining(); });
+    if (!applied) return applied.error();
     const LandmarkQuery asked{since_in(*snapshot, *since), *bbox, *seen_min};
     std::vector<const landmarks::MapLandmark*> wanted;
-    for (const auto& block : folded->state.landmarks.blocks()) {
+    for (const auto& block : applied->state.landmarks.blocks()) {
         if (block->revision <= asked.since) continue;
         for (const auto& one : block->landmarks) {
             if (asked.wants(one)) wanted.push_back(&one);
@@ -101,12 +101,12 @@ Result<Response> get_landmarks(Context& context) {
     std::vector<std::string> features;
     features.reserve(wanted.size());
     for (const auto* one : wanted) features.push_back(feature_of(*one));
-    const auto& sums = folded->state.sums;
+    const auto& sums = applied->state.sums;
     return ok_text(kGeoJson, std::move(*permit),
-                   collection_document(folded->revision,
+                   collection_document(applied->revision,
                                        {{"reset", asked.since != *since},
-                                        {"captures", folded->state.captures},
-                                        {"landmarks", folded->state.landmarks.size()},
+                                        {"captures", applied->state.captures},
+                                        {"landmarks", applied->state.landmarks.size()},
                                         {"tolerance", landmarks::kTolerance},
                                         {"persistence", mean(sums.persistence, sums.persistence_pairs)},
                                         {"stability", mean(sums.stability, sums.stability_pairs)},
@@ -197,9 +197,9 @@ private:
 };
 
 /// Stops a request that takes too long, because others wait for the same thread.
-class Patience {
+class SearchLimit {
 public:
-    explicit Patience(const session::SessionRegistry& sessions) : sessions_(sessions) {}
+    explicit SearchLimit(const session::SessionRegistry& sessions) : sessions_(sessions) {}
 
     Result<> operator()() const {
         if (sessions_.is_draining()) {
@@ -219,7 +219,7 @@ private:
 };
 
 Result<> choose(store::ScanLog& log, const session::SessionInfo& session, const CloudQuery& query, Revision newest,
-                const Patience& patience, Chosen& chosen) {
+                const SearchLimit& patience, Chosen& chosen) {
     const Revision until = std::min(newest, query.until.value_or(newest));
     // The filter is the same for every `until`, so that parts make up the whole.
     landmarks::SessionCaptures cut(session::scan_filter_of(session));
@@ -241,7 +241,7 @@ Result<Response> get_points(const Context& context, PointFile file) {
     const auto snapshot = (*session)->snapshot();
     const auto query = cloud_query(*snapshot, context.query);
     if (!query) return query.error();
-    const Patience patience(context.services.sessions);
+    const SearchLimit patience(context.services.sessions);
     Chosen chosen(*query);
     const auto read = choose(context.services.log, (*session)->info(), *query, snapshot->revision, patience, chosen);
     if (!read) return read.error();

@@ -35,16 +35,16 @@ Result<Response> get_live(Context& context) {
         return Error{Errc::kInvalidField, "Sec-WebSocket-Key is not 16 bytes in base64; send a new one each time"};
     }
     if (!upgrade->origin.empty() && !is_own_page(upgrade->origin, context.request.host, context.request.is_secure)) {
-        context.services.doorman.note({access::Port::kHttp, access::Reason::kForeignPage, context.request.peer,
-                                       context.token->name, (*session)->info().name});
+        context.services.authorizer.note({auth::Port::kHttp, auth::Reason::kForeignPage, context.request.peer,
+                                          context.token->name, (*session)->info().name});
         return problem(Status::forbidden,
                        fmt::format("pages of {} may not watch this server; open the viewer that it serves",
                                    in_quotes(upgrade->origin)),
                        instance_of(context.request.target));
     }
     const auto& info = (*session)->info();
-    auto pass = context.services.doorman.gate().let_watch(context.token, info.name);
-    if (!pass) return context.services.doorman.refuse(context.request, pass.error(), info.name);
+    auto pass = context.services.authorizer.authenticator().let_watch(context.token, info.name);
+    if (!pass) return context.services.authorizer.refuse(context.request, pass.error(), info.name);
     Response response;
     response.status = Status::switching_protocols;
     response.invitation = std::make_shared<const live::Invitation>(
@@ -55,9 +55,9 @@ Result<Response> get_live(Context& context) {
                              return stored && stored->id == id;
                          },
                          std::move(*pass),
-                         [doorman = context.services.doorman, peer = context.request.peer, token = context.token->name,
-                          name = info.name] {
-                             doorman.note({access::Port::kHttp, access::Reason::kRevoked, peer, token, name});
+                         [authorizer = context.services.authorizer, peer = context.request.peer,
+                          token = context.token->name, name = info.name] {
+                             authorizer.note({auth::Port::kHttp, auth::Reason::kRevoked, peer, token, name});
                          }});
     return response;
 }

@@ -12,14 +12,14 @@
 namespace scanloom::http {
 namespace {
 
-boost::json::object token_json(const access::Token& token) {
+boost::json::object token_json(const auth::Token& token) {
     boost::json::array sessions;
     for (const auto& pattern : token.sessions) sessions.emplace_back(pattern);
     return {{"name", token.name}, {"role", name_of(token.role)}, {"sessions", std::move(sessions)}};
 }
 
-boost::json::object login_json(const Doorman& doorman, const access::TokenRef& token) {
-    const bool needed = !doorman.gate().is_open();
+boost::json::object login_json(const Authorizer& authorizer, const auth::TokenRef& token) {
+    const bool needed = !authorizer.authenticator().is_open();
     boost::json::value shown;
     if (needed && token) shown = token_json(*token);
     return {{"needed", needed}, {"token", std::move(shown)}};
@@ -28,13 +28,13 @@ boost::json::object login_json(const Doorman& doorman, const access::TokenRef& t
 } // namespace
 
 Result<Response> get_login(Context& context) {
-    const Doorman& doorman = context.services.doorman;
+    const Authorizer& authorizer = context.services.authorizer;
     if (auto known = context.query.check_only({}); !known) return known.error();
-    return ok(login_json(doorman, context.token));
+    return ok(login_json(authorizer, context.token));
 }
 
 Result<Response> post_login(Context& context) {
-    const Doorman& doorman = context.services.doorman;
+    const Authorizer& authorizer = context.services.authorizer;
     if (auto known = context.query.check_only({}); !known) return known.error();
     const auto body = parse_json_object(context.request.body);
     if (!body) return body.error();
@@ -42,24 +42,24 @@ Result<Response> post_login(Context& context) {
     if (auto known = check_members(*body, kMembers); !known) return known.error();
     const auto secret = read_text(*body, "token");
     if (!secret) return secret.error();
-    const auto token = doorman.gate().admit(*secret);
-    if (!token) return doorman.refuse(context.request, token.error());
-    auto response = ok(login_json(doorman, *token));
-    if (!doorman.gate().is_open())
-        response.set("Set-Cookie", set_login_cookie(doorman.logins().open(**token), context.request.is_secure));
+    const auto token = authorizer.authenticator().admit(*secret);
+    if (!token) return authorizer.refuse(context.request, token.error());
+    auto response = ok(login_json(authorizer, *token));
+    if (!authorizer.authenticator().is_open())
+        response.set("Set-Cookie", set_login_cookie(authorizer.logins().open(**token), context.request.is_secure));
     return response;
 }
 
 Result<Response> delete_login(Context& context) {
-    const Doorman& doorman = context.services.doorman;
+    const Authorizer& authorizer = context.services.authorizer;
     if (auto known = context.query.check_only({}); !known) return known.error();
     if (const auto cookie = cookie_of(context.request.cookie, kLoginCookie)) {
         if (!is_own_page(context.request.origin, context.request.host, context.request.is_secure)) {
-            return doorman.refuse(
+            return authorizer.refuse(
                 context.request,
-                {access::Reason::kForeignPage, "", {Errc::kUnauthorized, "only a page of this server signs out"}});
+                {auth::Reason::kForeignPage, "", {Errc::kUnauthorized, "only a page of this server signs out"}});
         }
-        doorman.logins().close(*cookie);
+        authorizer.logins().close(*cookie);
     }
     Response response{.status = Status::no_content, .fields = {}, .body = {}};
     response.set("Set-Cookie", set_login_cookie("", context.request.is_secure));

@@ -69,7 +69,7 @@ constexpr std::string_view kWeave = "weave";
 constexpr std::string_view kWith = "with";
 
 /// Returns the maps of a replay job, or the reason why it has none.
-Result<Maps> maps_of(std::shared_ptr<session::Session> session, const std::shared_ptr<session::Weave>& weave,
+Result<Maps> maps_of(std::shared_ptr<session::Session> session, const std::shared_ptr<session::ReplayJob>& weave,
                      std::shared_ptr<const mapping::Snapshot> maps) {
     if (maps) {
         auto tag = fmt::format("{}-{}", session_tag(session->info()), weave->id());
@@ -90,8 +90,8 @@ Result<Maps> maps_of(std::shared_ptr<session::Session> session, const std::share
 
 } // namespace
 
-Result<std::shared_ptr<session::Weave>> find_weave(session::Weaves& weaves, const session::Session& session,
-                                                   std::string_view id) {
+Result<std::shared_ptr<session::ReplayJob>> find_weave(session::ReplayJobs& weaves, const session::Session& session,
+                                                       std::string_view id) {
     if (auto weave = weaves.find(session.info().id, id)) return weave;
     return Error{
         Errc::kNotFound,
@@ -115,7 +115,7 @@ Result<Maps> chosen(const Context& context, std::string_view parameter, Waiting 
 }
 
 /// Suspends the coroutine until the job has maps of `target` or has ended, at most for Services::replay_patience.
-boost::asio::awaitable<void> wait_for(Context& context, session::Weave& weave, Revision target) {
+boost::asio::awaitable<void> wait_for(Context& context, session::ReplayJob& weave, Revision target) {
     const Pool pool = context.pool;
     co_await context.run_on(Pool::kIo); // one thread at a time uses the timer
     const auto executor = co_await boost::asio::this_coro::executor;
@@ -134,7 +134,7 @@ boost::asio::awaitable<Result<Maps>> replayed(Context& context) {
     if (!permit) co_return permit.error();
     const Revision newest = (*session)->snapshot()->revision;
     auto& weaves = context.services.weaves;
-    const auto weave = weaves.start((*session)->info(), *request, newest, session::Weaves::Listing::kUnlisted);
+    const auto weave = weaves.start((*session)->info(), *request, newest, session::ReplayJobs::Listing::kUnlisted);
     if (!weave) co_return weave.error();
     const Revision target = session::target_of(*request, newest);
     co_await wait_for(context, **weave, target);

@@ -1,12 +1,12 @@
 #pragma once
 
 #include "common/error/error.hpp"
+#include "core/mapping/projection.hpp"
+#include "core/mapping/snapshot.hpp"
 #include "server/http/context.hpp"
 #include "server/http/target.hpp"
-#include "server/mapping/projection.hpp"
-#include "server/mapping/snapshot.hpp"
-#include "server/session/session_registry.hpp"
-#include "server/session/weaves.hpp"
+#include "server/sessions/replay_jobs.hpp"
+#include "server/sessions/session_registry.hpp"
 #include "server/tiles/map_image.hpp"
 #include "server/tiles/tile.hpp"
 
@@ -28,7 +28,7 @@ namespace scanloom::http {
 
 /// Versions of the algorithms that compute maps from logs, and bytes from maps.
 struct MakingVersions {
-    std::uint32_t weaving = mapping::kWeavingVersion;
+    std::uint32_t weaving = mapping::kProjectionVersion;
     std::uint32_t rendering = tiles::kRenderingVersion;
 };
 
@@ -95,8 +95,8 @@ enum class Waiting { kAllowed, kNotAllowed };
 [[nodiscard]] Result<TwoMaps> find_two_maps(const Context& context, std::initializer_list<std::string_view> known);
 
 /// Errors: kNotFound if there is no such replay job.
-[[nodiscard]] Result<std::shared_ptr<session::Weave>> find_weave(session::Weaves& weaves,
-                                                                 const session::Session& session, std::string_view id);
+[[nodiscard]] Result<std::shared_ptr<session::ReplayJob>>
+find_weave(session::ReplayJobs& weaves, const session::Session& session, std::string_view id);
 
 /// Returns the bbox parameter, `min_x,min_y,max_x,max_y` in metres, or nullopt if it is not given.
 /// Errors: kInvalidField if it is not four numbers.

@@ -1,10 +1,10 @@
 #include "server/http/handlers/handlers.hpp"
 
+#include "core/mapping/snapshot.hpp"
 #include "server/http/conditional.hpp"
 #include "server/http/handlers/lookup.hpp"
 #include "server/http/problem.hpp"
 #include "server/http/text.hpp"
-#include "server/mapping/digest.hpp"
 #include "server/tiles/difference.hpp"
 #include "server/tiles/map_files.hpp"
 #include "server/tiles/map_image.hpp"

@@ -1,14 +1,14 @@
 #include "server/http/handlers/handlers.hpp"
 
-#include "server/guide/patience.hpp"
-#include "server/guide/robots.hpp"
+#include "core/planning/coverage.hpp"
+#include "core/planning/goals.hpp"
+#include "core/planning/grid_path.hpp"
+#include "server/guidance/robots.hpp"
+#include "server/guidance/search_limit.hpp"
 #include "server/http/geojson.hpp"
 #include "server/http/handlers/planning_request.hpp"
 #include "server/http/json_read.hpp"
 #include "server/http/text.hpp"
-#include "server/planning/coverage.hpp"
-#include "server/planning/goals.hpp"
-#include "server/planning/grid_path.hpp"
 
 #include <boost/json/array.hpp>
 #include <fmt/format.h>
@@ -127,7 +127,7 @@ Result<Response> post_coverage(Context& context) {
     if (!options) return options.error();
 
     auto coverage = planning::plan_coverage(snapshot.classes, snapshot.config.cell_size, start->point, *options,
-                                            guide::Patience(context.services.sessions));
+                                            guide::SearchLimit(context.services.sessions));
     if (!coverage) return coverage.error();
     auto permit = context.services.responses.take(coverage->path.points.size() * kPointTextBytes +
                                                   coverage->unreachable.size() * kCellTextBytes);

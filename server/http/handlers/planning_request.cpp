@@ -1,11 +1,11 @@
 #include "server/http/handlers/planning_request.hpp"
 
 #include "common/scan/limits.hpp"
-#include "server/guide/robots.hpp"
+#include "core/planning/coverage_region.hpp"
+#include "server/guidance/robots.hpp"
 #include "server/http/handlers/weave_request.hpp"
 #include "server/http/json_read.hpp"
 #include "server/http/text.hpp"
-#include "server/planning/region.hpp"
 
 #include <boost/json/array.hpp>
 #include <fmt/format.h>

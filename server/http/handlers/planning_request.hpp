@@ -2,10 +2,10 @@
 
 #include "common/error/error.hpp"
 #include "common/geometry/pose2.hpp"
+#include "core/planning/goals.hpp"
+#include "core/planning/passability.hpp"
 #include "server/http/context.hpp"
 #include "server/http/handlers/lookup.hpp"
-#include "server/planning/goals.hpp"
-#include "server/planning/passability.hpp"
 
 #include <boost/json/object.hpp>
 #include <boost/json/value.hpp>

@@ -1,9 +1,9 @@
 #include "server/http/handlers/session_json.hpp"
 
+#include "core/mapping/map_config.hpp"
 #include "server/http/handlers/lookup.hpp"
 #include "server/http/json_read.hpp"
 #include "server/http/text.hpp"
-#include "server/mapping/map_config.hpp"
 #include "server/tiles/map_image.hpp"
 
 #include <boost/json/array.hpp>
@@ -94,7 +94,7 @@ boost::json::object to_json(const session::Session& session) {
     return session_json(session.info(), *session.snapshot(), &session, std::nullopt);
 }
 
-boost::json::object to_json(const session::Listed& listed, std::optional<std::string> store_failure) {
+boost::json::object to_json(const session::ListedSession& listed, std::optional<std::string> store_failure) {
     const auto* session = listed.session.get();
     const auto maps = session == nullptr ? listed.summary.facts : session->snapshot();
     return session_json(listed.info, *maps, session, std::move(store_failure));

@@ -2,9 +2,9 @@
 
 #include "common/error/error.hpp"
 #include "common/scan/session_options.hpp"
-#include "server/mapping/map_config.hpp"
-#include "server/session/roster.hpp"
-#include "server/session/session.hpp"
+#include "core/mapping/map_config.hpp"
+#include "server/sessions/session.hpp"
+#include "server/sessions/session_cache.hpp"
 
 #include <boost/json/object.hpp>
 
@@ -16,7 +16,8 @@ namespace scanloom::http {
 /// Returns all properties of a session, as the API shows them.
 [[nodiscard]] boost::json::object to_json(const session::Session& session);
 /// @param store_failure  why the store accepts no changes; nullopt if it does. Sessions notice it only when a robot sends
-[[nodiscard]] boost::json::object to_json(const session::Listed& listed, std::optional<std::string> store_failure);
+[[nodiscard]] boost::json::object to_json(const session::ListedSession& listed,
+                                          std::optional<std::string> store_failure);
 
 /// Returns a short description of a session that accepts no scans until it is loaded again from the store: its name,
 /// its state and the reason.

@@ -3,11 +3,11 @@
 #include "common/json/json_text.hpp"
 #include "common/ros_map/description.hpp"
 #include "common/scan/limits.hpp"
+#include "core/mapping/map_config.hpp"
 #include "server/http/handlers/lookup.hpp"
 #include "server/http/handlers/session_json.hpp"
 #include "server/http/multipart.hpp"
 #include "server/http/text.hpp"
-#include "server/mapping/map_config.hpp"
 #include "server/tiles/ros_map_import.hpp"
 
 #include <boost/json/array.hpp>
@@ -60,11 +60,11 @@ Result<Page> parse_page(const Query& query) {
 }
 
 /// A session that is served, or the reason why it is not.
-using Listed = Result<session::Listed>;
+using ListedSession = Result<session::ListedSession>;
 
-std::map<std::string, Listed, std::less<>> sessions_by_name(const session::SessionRegistry& sessions,
-                                                            const access::Token& seen_by) {
-    std::map<std::string, Listed, std::less<>> listed;
+std::map<std::string, ListedSession, std::less<>> sessions_by_name(const session::SessionRegistry& sessions,
+                                                                   const auth::Token& seen_by) {
+    std::map<std::string, ListedSession, std::less<>> listed;
     for (auto& session : sessions.all()) listed.emplace(session.info.name, session);
     for (const auto& [name, reason] : sessions.damaged()) listed.emplace(name, reason);
     std::erase_if(listed, [&](const auto& entry) { return !is_for(seen_by, entry.first); });
@@ -80,14 +80,14 @@ struct StoreState {
         : damaged(services.check.damaged()), failure(services.log.stats().last_error) {}
 };
 
-boost::json::object listed_json(const session::Listed& listed, const StoreState& store) {
+boost::json::object listed_json(const session::ListedSession& listed, const StoreState& store) {
     auto json = to_json(listed, store.failure);
     const auto damage = store.damaged.find(listed.info.name);
     if (damage != store.damaged.end()) json["damage"] = damage->second.message;
     return json;
 }
 
-boost::json::object listed_json(const Listed& listed, std::string_view name, const StoreState& store) {
+boost::json::object listed_json(const ListedSession& listed, std::string_view name, const StoreState& store) {
     return listed ? listed_json(*listed, store) : damaged_json(name, listed.error());
 }
 
@@ -112,11 +112,11 @@ Result<Response> create_session(Context& context) {
     if (auto known = context.query.check_only({}); !known) return known.error();
     const auto wanted = parse_session_request(context.request.body);
     if (!wanted) return wanted.error();
-    if (const auto why = Doorman::objection(*context.token, wanted->name))
-        return context.services.doorman.refuse(context.request, *why, wanted->name);
+    if (const auto why = Authorizer::objection(*context.token, wanted->name))
+        return context.services.authorizer.refuse(context.request, *why, wanted->name);
     const auto session =
-        context.services.sessions.create(wanted->name, wanted->options, session::maker_of(*context.token));
-    if (!session) return context.services.doorman.noted(context, session.error(), wanted->name);
+        context.services.sessions.create(wanted->name, wanted->options, session::creator_of(*context.token));
+    if (!session) return context.services.authorizer.noted(context, session.error(), wanted->name);
     auto response = ok(to_json(**session)).set("Location", fmt::format("/api/v1/sessions/{}", wanted->name));
     response.status = Status::created;
     return response;
@@ -203,8 +203,8 @@ Result<Response> import_map(Context& context) {
     }
     const auto& name = context.arguments["session"];
     const auto session =
-        context.services.sessions.import_map(name, form->options, *patches, session::maker_of(*context.token));
-    if (!session) return context.services.doorman.noted(context, session.error(), name);
+        context.services.sessions.import_map(name, form->options, *patches, session::creator_of(*context.token));
+    if (!session) return context.services.authorizer.noted(context, session.error(), name);
     auto response = ok(to_json(**session)).set("Location", fmt::format("/api/v1/sessions/{}", (*session)->info().name));
     response.status = Status::created;
     return response;

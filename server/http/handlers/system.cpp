@@ -18,7 +18,7 @@ namespace scanloom::http {
 namespace {
 
 /// Damaged and failed sessions do not affect readiness, because the other sessions are available.
-boost::json::object readiness(const Services& services, const access::TokenRef& seen_by) {
+boost::json::object readiness(const Services& services, const auth::TokenRef& seen_by) {
     const auto is_seen = [&](std::string_view session) { return seen_by && is_for(*seen_by, session); };
     boost::json::array damaged;
     auto found = services.sessions.damaged();

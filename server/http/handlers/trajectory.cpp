@@ -3,7 +3,7 @@
 #include "server/http/geojson.hpp"
 #include "server/http/handlers/lookup.hpp"
 #include "server/http/text.hpp"
-#include "server/session/old_paths.hpp"
+#include "server/sessions/stored_trajectories.hpp"
 
 #include <fmt/format.h>
 

@@ -2,8 +2,8 @@
 
 #include "common/error/error.hpp"
 #include "server/http/target.hpp"
-#include "server/session/session.hpp"
-#include "server/session/weave_request.hpp"
+#include "server/sessions/replay_request.hpp"
+#include "server/sessions/session.hpp"
 
 #include <boost/json/object.hpp>
 
@@ -24,8 +24,8 @@ namespace scanloom::http {
 ///   until=976052857.5s            before the first scan with a later stamp on the robots' clocks, in seconds
 ///   until=2000-12-05T22:27:37Z    the same, for clocks that count from 1970
 /// Errors: kInvalidField, naming the parameter; kConflict if the log has no such entry yet.
-[[nodiscard]] Result<session::WeaveRequest> weave_request(const session::Session& session, const Query& query);
-[[nodiscard]] Result<session::WeaveRequest> weave_request(const session::Session& session,
-                                                          const boost::json::object& body);
+[[nodiscard]] Result<session::ReplayRequest> weave_request(const session::Session& session, const Query& query);
+[[nodiscard]] Result<session::ReplayRequest> weave_request(const session::Session& session,
+                                                           const boost::json::object& body);
 
 } // namespace scanloom::http

@@ -13,7 +13,7 @@
 namespace scanloom::http {
 namespace {
 
-using State = session::Weave::State;
+using State = session::ReplayJob::State;
 
 std::string_view name_of(State state) {
     switch (state) {
@@ -26,7 +26,7 @@ std::string_view name_of(State state) {
     return "";
 }
 
-boost::json::object shown(const session::Weave& weave) {
+boost::json::object shown(const session::ReplayJob& weave) {
     const auto progress = weave.progress();
     const auto maps = weave.maps();
     const auto& stamp = weave.request().end.stamp;

@@ -26,9 +26,9 @@ LandmarkChanges changed_landmarks(const landmarks::LandmarkView& landmarks, Land
     return changed;
 }
 
-wire::ScanPoints points_of(const mapping::FoldedScan& folded, std::size_t stride) {
-    const Scan& scan = folded.scan;
-    const Sensor& sensor = *folded.sensor;
+wire::ScanPoints points_of(const mapping::FoldedScan& applied, std::size_t stride) {
+    const Scan& scan = applied.scan;
+    const Sensor& sensor = *applied.sensor;
     wire::ScanPoints out{sensor.id, sensor.kind, scan.stamp, compose(scan.pose, sensor.mount), {}};
     const BeamAngles angles = angles_of(scan, sensor);
     const ReadingRules rules{sensor.range_min, sensor.range_max, false};

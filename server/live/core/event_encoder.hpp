@@ -1,10 +1,9 @@
 #pragma once
 
 #include "common/wire/live.hpp"
-#include "server/landmarks/landmark_layer.hpp"
-#include "server/landmarks/landmark_map.hpp"
-#include "server/mapping/layer.hpp"
-#include "server/mapping/snapshot.hpp"
+#include "core/landmarks/landmark_map.hpp"
+#include "core/mapping/layer.hpp"
+#include "core/mapping/snapshot.hpp"
 
 #include <array>
 #include <compare>

@@ -1,7 +1,7 @@
 #include "tests/bench/projection/columns.hpp"
 
-#include "robot_client/sim/laser.hpp"
-#include "robot_client/sim/world.hpp"
+#include "sim/range_sensors.hpp"
+#include "sim/world.hpp"
 #include "tests/support/whole_log.hpp"
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 
 #include "common/scan/scan.hpp"
 #include "common/scan/sensor.hpp"
-#include "server/mapping/beam_fan.hpp"
+#include "core/mapping/beam_fan.hpp"
 
 #include <cmath>
 #include <cstddef>

@@ -1,6 +1,6 @@
 #include "tests/bench/projection/peers.hpp"
 
-#include "server/mapping/sweep/sweep.hpp"
+#include "core/mapping/sweep/sweep.hpp"
 #include "tests/bench/projection/flat_map.hpp"
 
 #include <opencv2/imgproc.hpp>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "server/session/session_registry.hpp"
+#include "server/sessions/session_registry.hpp"
 #include "server/store/scan_log.hpp"
 #include "tests/fault/simulation/disk.hpp"
 #include "tests/fault/simulation/machine.hpp"

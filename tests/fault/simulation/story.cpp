@@ -167,7 +167,7 @@ private:
         for (;;) {
             while (!server_) world_.step(Time::max());
             std::optional<Result<std::shared_ptr<session::Session>>> woken;
-            server_->sessions().wake(
+            server_->sessions().load(
                 name, [&](Result<std::shared_ptr<session::Session>> session) { woken = std::move(session); });
             while (!woken) world_.step(Time::max());
             if (*woken || world_.now() > end) return *woken;

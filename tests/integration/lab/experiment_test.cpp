@@ -1,7 +1,6 @@
 #include "lab/experiment.hpp"
 #include "lab/map_cells.hpp"
 #include "lab/report.hpp"
-#include "lab/standard.hpp"
 
 #include <gtest/gtest.h>
 

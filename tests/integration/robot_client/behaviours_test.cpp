@@ -1,9 +1,9 @@
-#include "robot_client/drive/wall_follower.hpp"
-#include "robot_client/drive/waypoints.hpp"
-#include "robot_client/drive/zigzag.hpp"
-#include "robot_client/sim/floor_plan_of.hpp"
-#include "robot_client/sim/simulator.hpp"
-#include "robot_client/sim/tour.hpp"
+#include "sim/drive/wall_follower.hpp"
+#include "sim/drive/waypoints.hpp"
+#include "sim/drive/zigzag.hpp"
+#include "sim/ground_truth.hpp"
+#include "sim/simulator.hpp"
+#include "sim/tour.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

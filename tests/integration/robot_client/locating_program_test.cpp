@@ -1,5 +1,5 @@
-#include "robot_client/sim/laser.hpp"
-#include "robot_client/sim/world.hpp"
+#include "sim/range_sensors.hpp"
+#include "sim/world.hpp"
 #include "tests/support/ld06_bytes.hpp"
 #include "tests/support/running_server.hpp"
 #include "tests/support/temporary_directory.hpp"

@@ -1,9 +1,9 @@
-#include "robot_client/source/locating_source.hpp"
-#include "robot_client/source/replayed_source.hpp"
+#include "robot_client/sources/locating_source.hpp"
+#include "robot_client/sources/replayed_source.hpp"
 #include "robot_client/uplink/server_requests.hpp"
 #include "tests/integration/robot_client/live_feed_fixture.hpp"
 #include "tests/support/recorded_source.hpp"
-#include "tests/unit/robot_client/source/carried_lidar.hpp"
+#include "tests/unit/robot_client/sources/carried_lidar.hpp"
 
 #include <boost/asio/experimental/awaitable_operators.hpp>
 

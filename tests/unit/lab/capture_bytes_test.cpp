@@ -1,4 +1,4 @@
-#include "lab/capture_bytes.hpp"
+#include "lab/recording.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "lab/landmark_picture.hpp"
+#include "lab/cloud_pictures.hpp"
 
 #include "tests/unit/lab/drawn_clouds.hpp"
 

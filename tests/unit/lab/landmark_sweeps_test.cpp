@@ -1,4 +1,4 @@
-#include "lab/landmark_sweeps.hpp"
+#include "lab/landmark_comparison.hpp"
 
 #include "lab/door_room.hpp"
 

@@ -1,4 +1,4 @@
-#include "lab/ld06_recording.hpp"
+#include "lab/recording.hpp"
 
 #include "tests/support/ld06_bytes.hpp"
 #include "tests/support/temporary_directory.hpp"

@@ -1,4 +1,4 @@
-#include "lab/lidar_capture.hpp"
+#include "lab/recording.hpp"
 
 #include "lab/door_room.hpp"
 

@@ -1,4 +1,4 @@
-#include "lab/located_picture.hpp"
+#include "lab/cloud_pictures.hpp"
 
 #include <opencv2/imgcodecs.hpp>
 

@@ -1,4 +1,4 @@
-#include "lab/output_directory.hpp"
+#include "lab/run.hpp"
 
 #include "tests/support/temporary_directory.hpp"
 

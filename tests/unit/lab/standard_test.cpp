@@ -1,4 +1,4 @@
-#include "lab/standard.hpp"
+#include "lab/experiment.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "lab/trials.hpp"
+#include "lab/alignment_trials.hpp"
 
 #include "lab/each_index.hpp"
 #include "tests/support/angles.hpp"

@@ -1,7 +1,7 @@
-#include "lab/visibility.hpp"
+#include "lab/scoring.hpp"
 
-#include "robot_client/sim/random.hpp"
-#include "robot_client/sim/ray_casting.hpp"
+#include "sim/noise.hpp"
+#include "sim/ray_casting.hpp"
 #include "tests/support/angles.hpp"
 #include "tests/support/point_text.hpp"
 

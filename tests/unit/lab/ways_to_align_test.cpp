@@ -1,7 +1,7 @@
 #include "lab/alignment_methods.hpp"
 
 #include "lab/door_room.hpp"
-#include "lab/lidar_capture.hpp"
+#include "lab/recording.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

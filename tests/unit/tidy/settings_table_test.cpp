@@ -1,4 +1,4 @@
-#include "server/mapping/map_config.hpp"
+#include "core/mapping/map_config.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -17,8 +17,10 @@ using testing::HasSubstr;
 std::string default_of(const mapping::ConfigField& field) {
     return std::visit(
         []<class Value>(const Value& value) {
-            if constexpr (std::is_same_v<Value, double>) return fmt::format("{:.6g}", value);
-            else return fmt::format("{}", value);
+            if constexpr (std::is_same_v<Value, double>)
+                return fmt::format("{:.6g}", value);
+            else
+                return fmt::format("{}", value);
         },
         mapping::value_of(field, mapping::MapConfig{}));
 }

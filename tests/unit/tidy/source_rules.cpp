@@ -32,72 +32,69 @@ const std::vector<Folder> kFolders = {
 
     {.path = "common/link", .may_include = {"common/error", "common/limits", "common/scan", "common/wire"}},
 
-    {.path = "server/access", .may_include = {"common/error", "common/hash", "common/scan"}, .pure = true},
     {.path = "server/log", .may_include = {}},
-    {.path = "server/guard",
-     .may_include = {"common/error", "common/net", "common/scan", "server/access", "server/log", "server/metrics"}},
-    {.path = "server/grid", .may_include = {"common/scan"}, .pure = true},
-    {.path = "server/classify",
-     .may_include = {"common/error", "common/geometry", "common/scan", "server/grid"},
+    {.path = "server/auth",
+     .may_include = {"common/error", "common/hash", "common/net", "common/scan", "server/log", "server/metrics"}},
+    {.path = "core/grid", .may_include = {"common/scan"}, .pure = true},
+    {.path = "core/classify",
+     .may_include = {"common/error", "common/geometry", "common/scan", "core/grid"},
      .pure = true},
-    {.path = "server/planning",
-     .may_include = {"common/error", "common/geometry", "common/scan", "server/classify", "server/grid"},
+    {.path = "core/planning",
+     .may_include = {"common/error", "common/geometry", "common/scan", "core/classify", "core/grid"},
      .pure = true},
-    {.path = "server/landmarks", .may_include = {"common/error", "common/geometry", "common/scan"}, .pure = true},
-    {.path = "server/mapping",
-     .may_include = {"common/error", "common/geometry", "common/hash", "common/scan", "server/classify", "server/grid"},
+    {.path = "core/landmarks", .may_include = {"common/error", "common/geometry", "common/scan"}, .pure = true},
+    {.path = "core/mapping",
+     .may_include = {"common/error", "common/geometry", "common/hash", "common/scan", "core/classify", "core/grid"},
      .pure = true},
-    {.path = "server/store", .may_include = {"common", "server/mapping"}},
-    {.path = "server/session",
-     .may_include = {"common", "server/access", "server/grid", "server/landmarks", "server/log", "server/mapping",
+    {.path = "server/store", .may_include = {"common", "core/mapping"}},
+    {.path = "server/sessions",
+     .may_include = {"common", "server/auth", "core/grid", "core/landmarks", "server/log", "core/mapping",
                      "server/store"}},
-    {.path = "server/guide",
-     .may_include = {"common", "server/grid", "server/landmarks", "server/mapping", "server/planning",
-                     "server/session"}},
+    {.path = "server/guidance",
+     .may_include = {"common", "core/grid", "core/landmarks", "core/mapping", "core/planning", "server/sessions"}},
     {.path = "server/tiles",
-     .may_include = {"common/error", "common/geometry", "common/ros_map", "common/scan", "server/classify",
-                     "server/grid", "server/mapping"}},
+     .may_include = {"common/error", "common/geometry", "common/ros_map", "common/scan", "core/classify", "core/grid",
+                     "core/mapping"}},
     {.path = "server/exchange",
-     .may_include = {"common/error", "common/geometry", "common/scan", "server/landmarks"},
+     .may_include = {"common/error", "common/geometry", "common/scan", "core/landmarks"},
      .pure = true},
-    {.path = "server/metrics", .may_include = {"common/error", "server/access"}},
+    {.path = "server/metrics", .may_include = {"common/error", "server/auth"}},
     {.path = "server/sockets", .may_include = {"common"}},
     {.path = "server/ingest",
-     .may_include = {"common", "server/access", "server/guard", "server/guide", "server/landmarks", "server/log",
-                     "server/mapping", "server/metrics", "server/planning", "server/session", "server/sockets",
-                     "server/store"}},
+     .may_include = {"common", "server/auth", "server/guidance", "core/landmarks", "server/log", "core/mapping",
+                     "server/metrics", "core/planning", "server/sessions", "server/sockets", "server/store"}},
     {.path = "server/live/core",
-     .may_include = {"common/error", "common/geometry", "common/scan", "common/wire", "server/grid", "server/landmarks",
-                     "server/mapping", "server/tiles"},
+     .may_include = {"common/error", "common/geometry", "common/scan", "common/wire", "core/grid", "core/landmarks",
+                     "core/mapping", "server/tiles"},
      .pure = true},
     {.path = "server/live",
-     .may_include = {"common", "server/guard", "server/guide", "server/mapping", "server/metrics", "server/session",
+     .may_include = {"common", "server/auth", "server/guidance", "core/mapping", "server/metrics", "server/sessions",
                      "server/sockets", "server/store"}},
     {.path = "server/http",
-     .may_include = {"common", "server/access", "server/classify", "server/exchange", "server/grid", "server/guard",
-                     "server/guide", "server/landmarks", "server/live", "server/mapping", "server/metrics",
-                     "server/planning", "server/session", "server/sockets", "server/store", "server/tiles"}},
-    {.path = "server/app", .may_include = {"common", "server"}},
+     .may_include = {"common", "server/auth", "core/classify", "server/exchange", "core/grid", "server/guard",
+                     "server/guidance", "core/landmarks", "server/live", "core/mapping", "server/metrics",
+                     "core/planning", "server/sessions", "server/sockets", "server/store", "server/tiles"}},
+    {.path = "server/app", .may_include = {"common", "core", "server"}},
 
-    {.path = "robot_client/drive", .may_include = {"common/error", "common/geometry", "common/scan"}, .pure = true},
-    {.path = "robot_client/sim",
-     .may_include = {"common/error", "common/geometry", "common/ros_map", "common/scan", "robot_client/drive"},
+    {.path = "sim/drive", .may_include = {"common/error", "common/geometry", "common/scan"}, .pure = true},
+    {.path = "sim",
+     .may_include = {"common/error", "common/geometry", "common/ros_map", "common/scan", "sim/drive"},
      .pure = true},
-    {.path = "robot_client/source",
+    {.path = "robot_client/sources",
      .may_include = {"common/error", "common/geometry", "common/hash", "common/net", "common/ros_map", "common/scan",
-                     "robot_client/drive", "robot_client/sim"}},
+                     "sim/drive", "sim"}},
     {.path = "robot_client/spool",
-     .may_include = {"common/error", "common/scan", "common/wire", "robot_client/source"}},
-    {.path = "robot_client/uplink", .may_include = {"common", "robot_client/source", "robot_client/spool"}},
+     .may_include = {"common/error", "common/scan", "common/wire", "robot_client/sources"}},
+    {.path = "robot_client/uplink", .may_include = {"common", "robot_client/sources", "robot_client/spool"}},
     {.path = "robot_client/client",
-     .may_include = {"common", "robot_client/source", "robot_client/spool", "robot_client/uplink"}},
-    {.path = "robot_client/app", .may_include = {"common", "robot_client"}},
+     .may_include = {"common", "robot_client/sources", "robot_client/spool", "robot_client/uplink"}},
+    {.path = "robot_client/app", .may_include = {"common", "sim", "robot_client"}},
     {.path = "robot_client/examples", .may_include = {}}, // uses only the installed client
 
     // Experiments combine the simulator and the maps. No other folder does, and no folder includes them.
     {.path = "lab",
-     .may_include = {"common", "server/grid", "server/landmarks", "server/mapping", "server/tiles",
-                     "robot_client/drive", "robot_client/sim", "robot_client/source"}},
+     .may_include = {"common", "core/grid", "core/landmarks", "core/mapping", "server/tiles", "sim/drive", "sim",
+                     "robot_client/sources"}},
 
     // The load generator runs outside the server: it does not include the server, and no folder includes it.
     {.path = "load/core",
@@ -105,8 +102,7 @@ const std::vector<Folder> kFolders = {
      .pure = true},
     {.path = "load/net", .may_include = {"common", "load/core", "robot_client/uplink"}},
     {.path = "load/app",
-     .may_include = {"common", "load", "robot_client/drive", "robot_client/sim", "robot_client/source",
-                     "robot_client/uplink"}},
+     .may_include = {"common", "load", "sim/drive", "sim", "robot_client/sources", "robot_client/uplink"}},
 };
 
 /// A package whose headers only some folders may include.
@@ -118,26 +114,26 @@ struct Package {
 const std::vector<Package> kPackages = {
     {"scanloom/v1/", {"common/wire"}},
     {"google/protobuf/", {"common/wire"}},
-    {"openssl/", {"common/hash", "common/net", "server/access", "server/guard", "server/http"}},
-    {"toml++/", {"server/access"}},
-    {"Eigen/", {"server/landmarks"}},
-    {"nanoflann.hpp", {"server/landmarks"}},
+    {"openssl/", {"common/hash", "common/net", "server/auth", "server/http"}},
+    {"toml++/", {"server/auth"}},
+    {"Eigen/", {"core/landmarks"}},
+    {"nanoflann.hpp", {"core/landmarks"}},
     {"spng.h", {"server/tiles"}},
     {"yaml-cpp/", {"common/ros_map"}},
     {"opencv2/", {"server/tiles", "lab"}},
     {"rocksdb/", {"server/store"}},
     {"prometheus/", {"server/metrics"}},
     {"spdlog/",
-     {"server/log", "server/session", "server/sockets", "server/guard", "server/ingest", "server/live", "server/http",
-      "server/app", "robot_client/app"}},
+     {"server/log", "server/sessions", "server/sockets", "server/ingest", "server/live", "server/http", "server/app",
+      "robot_client/app"}},
     {"boost/asio",
-     {"common/net", "server/session", "server/sockets", "server/ingest", "server/live", "server/http", "server/app",
-      "robot_client/source", "robot_client/spool", "robot_client/uplink", "robot_client/client", "robot_client/app",
+     {"common/net", "server/sessions", "server/sockets", "server/ingest", "server/live", "server/http", "server/app",
+      "robot_client/sources", "robot_client/spool", "robot_client/uplink", "robot_client/client", "robot_client/app",
       "load/net", "load/app"}},
     {"boost/beast", {"common/net", "server/live", "server/http", "server/app", "load/net"}},
-    {"bzlib.h", {"robot_client/source"}},
-    {"zlib.h", {"robot_client/source", "robot_client/spool", "server/http", "server/tiles"}},
-    {"zstd.h", {"common/wire", "server/session"}},
+    {"bzlib.h", {"robot_client/sources"}},
+    {"zlib.h", {"robot_client/sources", "robot_client/spool", "server/http", "server/tiles"}},
+    {"zstd.h", {"common/wire", "server/sessions"}},
     {"CLI/", {"common/app", "server/app", "robot_client/app", "lab", "load/app"}},
 };
 
@@ -152,7 +148,7 @@ const Names kOutsideWorld = {
     "time.h",     "unistd.h",
 };
 
-/// Returns whether `path` is inside `folder`: "server" and "server/mapping" contain "server/mapping/cell.hpp";
+/// Returns whether `path` is inside `folder`: "server" and "core/mapping" contain "core/mapping/cell.hpp";
 /// "server/map" does not.
 bool holds(std::string_view folder, std::string_view path) {
     return path.starts_with(folder) && (path.size() == folder.size() || path[folder.size()] == '/');
@@ -171,7 +167,7 @@ std::optional<std::string_view> included(std::string_view line) {
 }
 
 std::optional<std::string> forbidden_arrow(const Folder& folder, std::string_view header) {
-    const bool ours = any_holds({"common", "server", "robot_client", "lab", "load", "tests"}, header);
+    const bool ours = any_holds({"common", "core", "server", "sim", "robot_client", "lab", "load", "tests"}, header);
     if (ours && !holds(folder.path, header) && !any_holds(folder.may_include, header)) {
         return fmt::format("{} may not include {}", folder.path, header);
     }
@@ -199,7 +195,7 @@ void for_each_line(std::string_view text, Visit visit) {
 }
 
 void check_includes(std::string_view path, std::string_view text, std::vector<std::string>& complaints) {
-    if (!any_holds({"common", "server", "robot_client", "lab", "load"}, path)) return;
+    if (!any_holds({"common", "core", "server", "sim", "robot_client", "lab", "load"}, path)) return;
     const auto folder = std::ranges::find_if(kFolders, [&](const Folder& row) { return holds(row.path, path); });
     if (folder == kFolders.end()) {
         complaints.push_back(fmt::format("{}: its folder has no row in tests/unit/tidy/source_rules.cpp", path));

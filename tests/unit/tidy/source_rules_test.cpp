@@ -22,22 +22,22 @@ std::vector<std::string> including(std::string_view path, std::string_view heade
 }
 
 TEST(SourceRules, ServerAndRobotMustNotIncludeEachOther) {
-    EXPECT_THAT(including("server/app/main.cpp", "\"robot_client/sim/world.hpp\""),
-                ElementsAre("server/app/main.cpp:2: server/app may not include robot_client/sim/world.hpp"));
-    EXPECT_THAT(including("robot_client/app/main.cpp", "\"server/grid/cell.hpp\""),
-                ElementsAre(HasSubstr("may not include server/grid/cell.hpp")));
+    EXPECT_THAT(including("server/app/main.cpp", "\"sim/world.hpp\""),
+                ElementsAre("server/app/main.cpp:2: server/app may not include sim/world.hpp"));
+    EXPECT_THAT(including("robot_client/app/main.cpp", "\"core/grid/cell.hpp\""),
+                ElementsAre(HasSubstr("may not include core/grid/cell.hpp")));
 }
 
 TEST(SourceRules, CommonMustNotIncludeServerOrRobot) {
-    EXPECT_THAT(including("common/wire/messages.cpp", "\"server/grid/cell.hpp\""), testing::SizeIs(1));
-    EXPECT_THAT(including("common/scan/scan.cpp", "\"robot_client/sim/world.hpp\""), testing::SizeIs(1));
+    EXPECT_THAT(including("common/wire/messages.cpp", "\"core/grid/cell.hpp\""), testing::SizeIs(1));
+    EXPECT_THAT(including("common/scan/scan.cpp", "\"sim/world.hpp\""), testing::SizeIs(1));
     EXPECT_THAT(including("common/scan/scan.cpp", "\"common/wire/messages.hpp\""), testing::SizeIs(1));
 }
 
 TEST(SourceRules, LabMayIncludeServerAndRobotButMustNotBeIncluded) {
-    EXPECT_THAT(including("lab/weaving.cpp", "\"server/mapping/projection.hpp\""), IsEmpty());
-    EXPECT_THAT(including("lab/recording.cpp", "\"robot_client/sim/world.hpp\""), IsEmpty());
-    EXPECT_THAT(including("lab/weaving.cpp", "\"server/session/session.hpp\""), testing::SizeIs(1));
+    EXPECT_THAT(including("lab/weaving.cpp", "\"core/mapping/projection.hpp\""), IsEmpty());
+    EXPECT_THAT(including("lab/recording.cpp", "\"sim/world.hpp\""), IsEmpty());
+    EXPECT_THAT(including("lab/weaving.cpp", "\"server/sessions/session.hpp\""), testing::SizeIs(1));
     EXPECT_THAT(including("lab/weaving.cpp", "\"robot_client/uplink/uplink.hpp\""), testing::SizeIs(1));
     EXPECT_THAT(including("server/tiles/map_image.cpp", "\"lab/weaving.hpp\""), testing::SizeIs(1));
     EXPECT_THAT(including("robot_client/app/main.cpp", "\"lab/weaving.hpp\""), testing::SizeIs(1));
@@ -46,7 +46,7 @@ TEST(SourceRules, LabMayIncludeServerAndRobotButMustNotBeIncluded) {
 TEST(SourceRules, LoadMustNotIncludeTheServerNorBeIncluded) {
     EXPECT_THAT(including("load/net/robot.cpp", "\"load/core/measured_client.hpp\""), IsEmpty());
     EXPECT_THAT(including("load/core/measured_client.cpp", "\"load/net/robot.hpp\""), testing::SizeIs(1));
-    EXPECT_THAT(including("load/app/run.cpp", "\"server/session/session.hpp\""), testing::SizeIs(1));
+    EXPECT_THAT(including("load/app/run.cpp", "\"server/sessions/session.hpp\""), testing::SizeIs(1));
     EXPECT_THAT(including("robot_client/app/main.cpp", "\"load/app/run.hpp\""), testing::SizeIs(1));
 }
 
@@ -69,11 +69,11 @@ TEST(SourceRules, OpenCvIsLimitedToTiles) {
 TEST(SourceRules, PureFoldersMustNotIncludeSystemHeaders) {
     for (const auto* header : {"<chrono>", "<thread>", "<mutex>", "<fstream>", "<iostream>", "<sys/socket.h>",
                                "<unistd.h>", "<spdlog/spdlog.h>", "<boost/asio/ip/tcp.hpp>", "<rocksdb/db.h>"}) {
-        EXPECT_THAT(including("server/mapping/cell.cpp", header), testing::SizeIs(1)) << header;
+        EXPECT_THAT(including("core/mapping/cell.cpp", header), testing::SizeIs(1)) << header;
         EXPECT_THAT(including("common/geometry/pose2.hpp", header), Not(IsEmpty())) << header;
     }
-    EXPECT_THAT(including("server/mapping/cell.cpp", "<vector>"), IsEmpty());
-    EXPECT_THAT(including("server/session/session.cpp", "<thread>"), IsEmpty());
+    EXPECT_THAT(including("core/mapping/cell.cpp", "<vector>"), IsEmpty());
+    EXPECT_THAT(including("server/sessions/session.cpp", "<thread>"), IsEmpty());
     EXPECT_THAT(including("server/live/core/event_encoder.cpp", "<chrono>"), testing::SizeIs(1));
     EXPECT_THAT(including("server/live/viewer.cpp", "<chrono>"), IsEmpty());
 }

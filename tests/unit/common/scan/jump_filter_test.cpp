@@ -1,4 +1,4 @@
-#include "common/scan/jump_filter.hpp"
+#include "common/scan/scan_filter.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 #include "robot_client/app/options.hpp"
 
-#include "robot_client/sim/truth_grid.hpp"
+#include "sim/ground_truth.hpp"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

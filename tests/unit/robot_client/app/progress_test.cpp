@@ -1,7 +1,5 @@
 #include "robot_client/app/progress.hpp"
 
-#include "robot_client/app/recent_rate.hpp"
-
 #include <gtest/gtest.h>
 
 namespace scanloom::robot {

@@ -1,5 +1,3 @@
-#include "robot_client/app/summary.hpp"
-
 #include "robot_client/app/progress.hpp"
 
 #include <gmock/gmock.h>

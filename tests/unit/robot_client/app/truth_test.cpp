@@ -1,7 +1,7 @@
 #include "robot_client/app/truth.hpp"
 
-#include "robot_client/sim/truth_grid.hpp"
-#include "robot_client/source/world_file.hpp"
+#include "robot_client/sources/world_file.hpp"
+#include "sim/ground_truth.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "robot_client/spool/background_sync.hpp"
+#include "robot_client/spool/synced_file.hpp"
 
 #include <gtest/gtest.h>
 

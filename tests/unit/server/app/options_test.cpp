@@ -1,6 +1,6 @@
 #include "server/app/options.hpp"
 
-#include "server/access/token_text.hpp"
+#include "server/auth/token_set.hpp"
 #include "tests/support/temporary_directory.hpp"
 
 #include <gmock/gmock.h>
@@ -214,11 +214,11 @@ TEST(TokenCommand, PrintsASecretAndItsLines) {
     const auto leave = std::get<Leave>(token({"--name", "depot", "--role", "robot", "--session", "depot-*", "lab"}));
     ASSERT_EQ(leave.code, kExitDone);
     const auto secret = leave.text.substr(0, leave.text.find('\n'));
-    const auto tokens = access::parse_tokens(leave.text.substr(leave.text.find("[[token]]"))).value();
+    const auto tokens = auth::parse_tokens(leave.text.substr(leave.text.find("[[token]]"))).value();
     const auto made = tokens.find(secret);
     ASSERT_NE(made, nullptr);
     EXPECT_EQ(made->name, "depot");
-    EXPECT_EQ(made->role, access::Role::kRobot);
+    EXPECT_EQ(made->role, auth::Role::kRobot);
     EXPECT_THAT(made->sessions, ElementsAre("depot-*", "lab"));
     EXPECT_NE(leave.text, std::get<Leave>(token({"--name", "depot", "--role", "robot"})).text);
 }

@@ -1,6 +1,6 @@
 #include "tests/unit/server/http/api_fixture.hpp"
 
-#include "server/access/secret.hpp"
+#include "server/auth/secret.hpp"
 
 #include <algorithm>
 #include <map>
@@ -9,14 +9,14 @@
 namespace scanloom::http {
 namespace {
 
-using access::Role;
-using access::Token;
+using auth::Role;
+using auth::Token;
 
 constexpr std::string_view kHost = "maps.lab:8080";
 constexpr std::string_view kOwnPage = "http://maps.lab:8080";
 
-access::TokenRef token(std::string name, Role role, std::vector<std::string> sessions) {
-    const auto hash = access::hash_of("secret of " + name);
+auth::TokenRef token(std::string name, Role role, std::vector<std::string> sessions) {
+    const auto hash = auth::hash_of("secret of " + name);
     return std::make_shared<const Token>(Token{std::move(name), hash, role, std::move(sessions), {}});
 }
 
@@ -26,7 +26,7 @@ protected:
     ApiAccessTest() {
         create("depot-1");
         create("lab");
-        gate_.replace(access::TokenSet(all_));
+        authenticator_.replace(auth::TokenSet(all_));
     }
 
     /// `who` is the name of a token; empty: nobody.
@@ -46,11 +46,11 @@ protected:
         return answer(api_, request(std::move(method), std::move(target), who, std::move(body)));
     }
 
-    [[nodiscard]] double refusals(access::Reason reason) {
-        return metrics_.refusals().of(access::Port::kHttp, reason).Value();
+    [[nodiscard]] double refusals(auth::Reason reason) {
+        return metrics_.refusals().of(auth::Port::kHttp, reason).Value();
     }
 
-    std::vector<access::TokenRef> all_ = {
+    std::vector<auth::TokenRef> all_ = {
         token("robot", Role::kRobot, {"*"}),           token("viewer", Role::kViewer, {"depot-*"}),
         token("viewer-all", Role::kViewer, {"*"}),     token("operator", Role::kOperator, {"depot-*"}),
         token("operator-all", Role::kOperator, {"*"}),
@@ -161,8 +161,8 @@ TEST_F(ApiAccessTest, WhoShowsNoTokenIsToldHow) {
     const auto unknown = ask_as("stranger", "GET", "/api/v1/sessions");
     EXPECT_THAT(detail(unknown, Status::unauthorized), HasSubstr("not in force"));
     EXPECT_EQ(unknown.get("WWW-Authenticate"), R"(Bearer realm="scanloom", error="invalid_token")");
-    EXPECT_EQ(refusals(access::Reason::kNoToken), 1.0);
-    EXPECT_EQ(refusals(access::Reason::kUnknownToken), 1.0);
+    EXPECT_EQ(refusals(auth::Reason::kNoToken), 1.0);
+    EXPECT_EQ(refusals(auth::Reason::kUnknownToken), 1.0);
 }
 
 /// What tells them apart would tell which sessions exist.
@@ -210,14 +210,14 @@ TEST_F(ApiAccessTest, OperatorsMakeTheSessionsTheyAreFor) {
 TEST_F(ApiAccessTest, ATokenMakesAsManySessionsAsItsLimitSays) {
     auto two = *token("two", Role::kOperator, {"*"});
     two.limits.sessions = 2;
-    gate_.replace(access::TokenSet({std::make_shared<const Token>(two)}));
+    authenticator_.replace(auth::TokenSet({std::make_shared<const Token>(two)}));
     const auto make = [&](const std::string& name) {
         return ask_as("two", "POST", "/api/v1/sessions", R"({"name":")" + name + R"("})");
     };
     EXPECT_EQ(make("a").status, Status::created);
     EXPECT_EQ(make("b").status, Status::created);
     EXPECT_THAT(detail(make("c"), Status::insufficient_storage), AllOf(HasSubstr("'two'"), HasSubstr("`sessions`")));
-    EXPECT_EQ(refusals(access::Reason::kLimit), 1.0);
+    EXPECT_EQ(refusals(auth::Reason::kLimit), 1.0);
     EXPECT_EQ(ask_as("two", "DELETE", "/api/v1/sessions/depot-1").status, Status::no_content);
     EXPECT_EQ(make("c").status, Status::insufficient_storage) << "that was somebody else's";
     EXPECT_EQ(ask_as("two", "DELETE", "/api/v1/sessions/a").status, Status::no_content);
@@ -230,7 +230,7 @@ TEST_F(ApiAccessTest, ReadinessNamesSessionsToThoseWhoMaySeeThem) {
     session::SessionRegistry registry(damaged, {pool_.get_executor(), [] { return 0.0; }});
     ASSERT_TRUE(registry.recover());
     ASSERT_EQ(registry.damaged().size(), 1U);
-    TestApi api(registry, weaves_, goals_, damaged, metrics_, {gate_, audit_, logins_}, {});
+    TestApi api(registry, weaves_, goals_, damaged, metrics_, {authenticator_, audit_, logins_}, {});
     api.set_recovered();
     const auto count = [&](const std::string& who) {
         const auto response = api.answer(request("GET", "/readyz", who));
@@ -319,7 +319,7 @@ TEST_F(ApiLoginTest, WhatChangesAnythingHasToComeFromAPageOfThisServer) {
     for (const auto* foreign : {"", "null", "http://elsewhere", "https://maps.lab.elsewhere:8080"}) {
         EXPECT_EQ(create(foreign), Status::forbidden) << foreign;
     }
-    EXPECT_EQ(refusals(access::Reason::kForeignPage), 4.0);
+    EXPECT_EQ(refusals(auth::Reason::kForeignPage), 4.0);
     EXPECT_EQ(registry_.find("new"), nullptr);
     for (const auto& route : routes()) {
         if (route.method == Method::kGet) continue;
@@ -351,7 +351,7 @@ TEST_F(ApiTest, WithoutTokensToo) {
                   Status::forbidden)
             << "which browsers send without asking first";
     }
-    EXPECT_EQ(metrics_.refusals().of(access::Port::kHttp, access::Reason::kForeignPage).Value(), 6.0);
+    EXPECT_EQ(metrics_.refusals().of(auth::Port::kHttp, auth::Reason::kForeignPage).Value(), 6.0);
     const auto from_elsewhere = [&](const Route& route, std::string_view authorization) {
         Request asked;
         asked.method = name_of(route.method);
@@ -412,7 +412,7 @@ TEST_F(ApiLoginTest, AWrongTokenSignsNobodyIn) {
     const auto response = ask_as("", "POST", "/api/v1/login", R"({"token":"guess"})");
     EXPECT_EQ(response.status, Status::unauthorized);
     EXPECT_EQ(response.get("Set-Cookie"), "");
-    EXPECT_EQ(refusals(access::Reason::kUnknownToken), 1.0);
+    EXPECT_EQ(refusals(auth::Reason::kUnknownToken), 1.0);
     for (const auto* wrong : {"", "{}", R"({"token":1})", R"({"token":"a","more":1})"}) {
         EXPECT_EQ(ask_as("", "POST", "/api/v1/login", wrong).status, Status::bad_request) << wrong;
     }
@@ -425,7 +425,7 @@ TEST_F(ApiLoginTest, AllThatAnybodyMay) {
     for (const auto* open : {"/livez", "/readyz", "/openapi.json"})
         EXPECT_EQ(ask_as("", "GET", open).status, Status::ok);
     EXPECT_EQ(ask_as("", "DELETE", "/api/v1/login").status, Status::no_content);
-    EXPECT_EQ(refusals(access::Reason::kNoToken), 0.0);
+    EXPECT_EQ(refusals(auth::Reason::kNoToken), 0.0);
 }
 
 TEST_F(ApiTest, WithoutTokensNobodyHasToSignIn) {

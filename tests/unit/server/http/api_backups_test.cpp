@@ -10,7 +10,7 @@ protected:
     TemporaryDirectory directory_;
     std::unique_ptr<store::ScanLog> disk_ = store::open_rocksdb(directory_.path() / "store").value();
     std::unique_ptr<store::Backups> backups_ = store::Backups::open(directory_.path() / "backups", 2, *disk_).value();
-    TestApi over_disk_{registry_, weaves_, goals_, *disk_, metrics_, {gate_, audit_, logins_}, {}};
+    TestApi over_disk_{registry_, weaves_, goals_, *disk_, metrics_, {authenticator_, audit_, logins_}, {}};
 
     Response ask_disk(std::string method, std::string target = "/api/v1/backups") {
         return answer(over_disk_,

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "server/http/routes.hpp"
-#include "server/session/session_registry.hpp"
+#include "server/sessions/session_registry.hpp"
 #include "tests/support/memory_scan_log.hpp"
 #include "tests/support/weave_waiting.hpp"
 #include "tests/unit/server/http/described_answer.hpp"
@@ -164,18 +164,18 @@ protected:
 
     boost::asio::thread_pool pool_{2};
     store::MemoryScanLog log_;
-    std::atomic<session::Roster::Clock::time_point> clock_{}; ///< stands, unless a test sets it
+    std::atomic<session::SessionCache::Clock::time_point> clock_{}; ///< stands, unless a test sets it
     session::SessionRegistry registry_{log_,
                                        {.compute = pool_.get_executor(),
                                         .now = [] { return 1795251600.5; },
                                         .clock = [this] { return clock_.load(); }}};
     metrics::Metrics metrics_{"1.2.3"};
-    session::Weaves weaves_{log_, pool_.get_executor()};
-    guide::GoalBook goals_;
-    guard::Gate gate_;
-    guard::Audit audit_{metrics_.refusals()};
-    guard::Logins logins_;
-    TestApi api_{registry_, weaves_, goals_, log_, metrics_, {gate_, audit_, logins_}, {}};
+    session::ReplayJobs weaves_{log_, pool_.get_executor()};
+    guide::GoalAssignments goals_;
+    auth::Authenticator authenticator_;
+    auth::AuditLog audit_{metrics_.refusals()};
+    auth::LoginSessions logins_;
+    TestApi api_{registry_, weaves_, goals_, log_, metrics_, {authenticator_, audit_, logins_}, {}};
     std::vector<std::shared_ptr<Link>> links_;
 };
 

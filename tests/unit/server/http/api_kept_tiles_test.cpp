@@ -94,7 +94,7 @@ TEST_F(KeptTilesTest, OfADeletedSessionNothingIsKept) {
 }
 
 TEST_F(KeptTilesTest, BeforeTheSessionsAreRecoveredNothingIsLookedFor) {
-    TestApi fresh(registry_, weaves_, goals_, log_, metrics_, {gate_, audit_, logins_}, {});
+    TestApi fresh(registry_, weaves_, goals_, log_, metrics_, {authenticator_, audit_, logins_}, {});
     const auto asked = fresh.ask({.target = kNative});
     EXPECT_EQ(asked.response->status, Status::service_unavailable);
     EXPECT_TRUE(asked.pools.empty());

@@ -1,4 +1,4 @@
-#include "server/landmarks/matching.hpp"
+#include "core/landmarks/landmark.hpp"
 #include "tests/support/room_scans.hpp"
 #include "tests/unit/server/http/api_fixture.hpp"
 

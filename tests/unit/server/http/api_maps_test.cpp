@@ -1,6 +1,6 @@
 #include "tests/unit/server/http/api_fixture.hpp"
 
-#include "server/mapping/digest.hpp"
+#include "core/mapping/snapshot.hpp"
 
 #include <boost/json/array.hpp>
 

@@ -1,9 +1,9 @@
 #include "tests/unit/server/http/api_fixture.hpp"
 
-#include "server/classify/frontiers.hpp"
-#include "server/planning/coverage.hpp"
-#include "server/planning/goals.hpp"
-#include "server/planning/grid_path.hpp"
+#include "core/classify/frontiers.hpp"
+#include "core/planning/coverage.hpp"
+#include "core/planning/goals.hpp"
+#include "core/planning/grid_path.hpp"
 
 #include <boost/json/array.hpp>
 #include <boost/json/serialize.hpp>

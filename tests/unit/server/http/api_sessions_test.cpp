@@ -191,7 +191,7 @@ TEST_F(ApiTest, ADamagedSessionSaysSo) {
     ASSERT_TRUE(registry.recover());
     ASSERT_EQ(registry.damaged().size(), 1U);
     const auto name = registry.damaged().begin()->first; // "#" and its id
-    TestApi api(registry, weaves_, goals_, log_, metrics_, {gate_, audit_, logins_}, {});
+    TestApi api(registry, weaves_, goals_, log_, metrics_, {authenticator_, audit_, logins_}, {});
     api.set_recovered();
     const auto path = "/api/v1/sessions/%23" + name.substr(1);
     for (const auto* rest : {"", "/changes", "/map.png", "/tiles/occupancy/0/0/0.png"}) {
@@ -208,7 +208,7 @@ TEST_F(ApiTest, DamagedSessionsAreListedAndDoNotHinderTheOthers) {
     ASSERT_TRUE(log_.create_session("no record of a session"));
     session::SessionRegistry registry(log_, {pool_.get_executor(), [] { return 0.0; }});
     ASSERT_TRUE(registry.recover());
-    TestApi api(registry, weaves_, goals_, log_, metrics_, {gate_, audit_, logins_}, {});
+    TestApi api(registry, weaves_, goals_, log_, metrics_, {authenticator_, audit_, logins_}, {});
     api.set_recovered();
     const auto json = [&](std::string target) {
         const auto response = answer(api, {.target = std::move(target)});

@@ -5,7 +5,7 @@ namespace scanloom::http {
 namespace {
 
 TEST_F(ApiTest, ReadinessFollowsTheServersLife) {
-    TestApi starting(registry_, weaves_, goals_, log_, metrics_, {gate_, audit_, logins_}, {});
+    TestApi starting(registry_, weaves_, goals_, log_, metrics_, {authenticator_, audit_, logins_}, {});
     const auto ready = [&](TestApi& api) { return answer(api, {.target = "/readyz"}); };
     EXPECT_EQ(ready(starting).status, Status::service_unavailable);
     EXPECT_THAT(std::string(ready(starting).body.bytes()), HasSubstr("recovered"));
@@ -52,7 +52,7 @@ TEST_F(ApiTest, MetricsNameNoSession) {
 TEST_F(ApiTest, EveryOperationAnswersAsItIsDescribed) {
     create("a");
     stream("a", 2);
-    TestApi starting(registry_, weaves_, goals_, log_, metrics_, {gate_, audit_, logins_}, {});
+    TestApi starting(registry_, weaves_, goals_, log_, metrics_, {authenticator_, audit_, logins_}, {});
     for (const auto& route : routes()) {
         if (route.method == Method::kDelete && route.path == "/api/v1/sessions/{session}") continue; // at the end
         for (const std::string session : {"a", "nobody"}) {

@@ -1,7 +1,7 @@
 #include "tests/unit/server/http/api_fixture.hpp"
 
+#include "core/mapping/snapshot.hpp"
 #include "server/http/handlers/lookup.hpp"
-#include "server/mapping/digest.hpp"
 
 #include <boost/asio/post.hpp>
 #include <boost/json/array.hpp>
@@ -236,8 +236,8 @@ protected:
     boost::asio::thread_pool one_{1};
     std::promise<void> go_on_;
     bool gone_on_ = false;
-    session::Weaves held_{log_, one_.get_executor()};
-    TestApi held_api_{registry_, held_, goals_, log_, metrics_, {gate_, audit_, logins_}, {}};
+    session::ReplayJobs held_{log_, one_.get_executor()};
+    TestApi held_api_{registry_, held_, goals_, log_, metrics_, {authenticator_, audit_, logins_}, {}};
 };
 
 TEST_F(ApiHeldWeavesTest, WhoWaitsWhileTheSessionIsDeletedIsToldSo) {
@@ -267,7 +267,7 @@ TEST_F(ApiHeldWeavesTest, WhoLosesPatienceIsToldHowFarItIsAndJoinsItTheNextTime)
 }
 
 TEST_F(ApiHeldWeavesTest, OnlySoManyRequestsWaitAndNoThreadDoes) {
-    TestApi api(registry_, held_, goals_, log_, metrics_, {gate_, audit_, logins_}, {}, {.weaves_max = 1});
+    TestApi api(registry_, held_, goals_, log_, metrics_, {authenticator_, audit_, logins_}, {}, {.weaves_max = 1});
     api.set_recovered();
     const auto first = api.start({.target = "/api/v1/sessions/a/digest?cell_size=0.1"});
     while (held_.under_way() == 0) api.poll(*first);

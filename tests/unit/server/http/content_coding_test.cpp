@@ -108,7 +108,7 @@ TEST_F(ContentCodingTest, FilesOfTheViewerAreCompressedOnlyWhenTheyAreRead) {
     std::filesystem::create_directory(folder.path() / "assets");
     const std::string script(10'000, '1');
     std::ofstream(folder.path() / "assets" / "a.js") << script;
-    TestApi api(registry_, weaves_, goals_, log_, metrics_, {gate_, audit_, logins_},
+    TestApi api(registry_, weaves_, goals_, log_, metrics_, {authenticator_, audit_, logins_},
                 load_web_files(folder.path()).value());
     Request request;
     request.method = "GET";

@@ -10,7 +10,7 @@ namespace {
 class GeneratedRequests : public ApiTest {
 protected:
     void restore_session() {
-        if (!registry_.wake("lab")) {
+        if (!registry_.load("lab")) {
             create("lab");
             stream("lab", 3);
         }

@@ -53,7 +53,7 @@ TEST(OwnPage, IsNoneOfAStrangersPages) {
 
 TEST(OwnPage, OverTlsIsNoneThatCameWithout) {
     EXPECT_TRUE(is_own_page("https://maps.example", "maps.example", true));
-    EXPECT_FALSE(is_own_page("http://maps.example", "maps.example", true)) << "anybody on the way may have made it";
+    EXPECT_FALSE(is_own_page("http://maps.example", "maps.example", true)) << "anonymous on the way may have made it";
 }
 
 TEST(WebSocketKey, IsSixteenBytesInBase64) {

@@ -48,7 +48,8 @@ inline std::vector<Route> echoing_routes() {
 class RunningHttp {
 public:
     explicit RunningHttp(ServerConfig config = {}, Answer answer = echo)
-        : api_(sessions_, weaves_, goals_, log_, metrics_, {gate_, audit_, logins_}, {}, config, executors(), routes_) {
+        : api_(sessions_, weaves_, goals_, log_, metrics_, {authenticator_, audit_, logins_}, {}, config, executors(),
+               routes_) {
         api_.services().answer = std::move(answer);
         config.endpoint = {boost::asio::ip::address_v4::loopback(), 0};
         server_ = Server::listen(io_, api_.api(), config, counters()).value();
@@ -77,8 +78,8 @@ public:
     [[nodiscard]] boost::asio::io_context& io() { return io_; }
     [[nodiscard]] const Api& api() const { return api_.api(); }
     [[nodiscard]] metrics::HttpCounters& counters() { return metrics_.http(); }
-    [[nodiscard]] double refusals(access::Reason reason) {
-        return metrics_.refusals().of(access::Port::kHttp, reason).Value();
+    [[nodiscard]] double refusals(auth::Reason reason) {
+        return metrics_.refusals().of(auth::Port::kHttp, reason).Value();
     }
 
 private:
@@ -101,11 +102,11 @@ private:
     store::MemoryScanLog log_;
     metrics::Metrics metrics_{"test"};
     session::SessionRegistry sessions_{log_, {pools_[0].get_executor(), [] { return 0.0; }}};
-    session::Weaves weaves_{log_, pools_[0].get_executor()};
-    guide::GoalBook goals_;
-    guard::Gate gate_;
-    guard::Audit audit_{metrics_.refusals()};
-    guard::Logins logins_;
+    session::ReplayJobs weaves_{log_, pools_[0].get_executor()};
+    guide::GoalAssignments goals_;
+    auth::Authenticator authenticator_;
+    auth::AuditLog audit_{metrics_.refusals()};
+    auth::LoginSessions logins_;
     std::vector<Route> routes_ = echoing_routes();
     TestApi api_;
     std::shared_ptr<Server> server_;

@@ -113,7 +113,7 @@ TEST(HttpServer, HostsOfStrangersAreMisdirectedAndTold) {
     RunningHttp server;
     EXPECT_EQ(answer_to(server, "GET / HTTP/1.1\r\nHost: evil.example\r\n\r\n").status, 421);
     EXPECT_EQ(answer_to(server, "GET / HTTP/1.1\r\nHost: 127.0.0.1:80\r\n\r\n").status, 200);
-    EXPECT_EQ(server.refusals(access::Reason::kForeignHost), 1.0);
+    EXPECT_EQ(server.refusals(auth::Reason::kForeignHost), 1.0);
 }
 
 TEST(HttpServer, OversizedHeadersAreRefused) {

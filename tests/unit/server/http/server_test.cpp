@@ -226,9 +226,9 @@ TEST(HttpServer, StoppingFinishesWhatIsUnderWay) {
 }
 
 /// Holds up every request it is told to, until it goes.
-class Gate {
+class Authenticator {
 public:
-    explicit Gate(int awaited) : awaited_(awaited) {}
+    explicit Authenticator(int awaited) : awaited_(awaited) {}
 
     void pass_slowly() {
         if (--awaited_ == 0) all_in_.set_value();
@@ -252,9 +252,9 @@ std::string post(std::string_view target) {
 }
 
 TEST(HttpServer, HealthAndTheViewerAreAnsweredWhateverElseIsBusy) {
-    Gate gate(3);
+    Authenticator authenticator(3);
     RunningHttp server({}, [&](const Request& request) {
-        if (request.target.starts_with("/api") || request.target == "/metrics") gate.pass_slowly();
+        if (request.target.starts_with("/api") || request.target == "/metrics") authenticator.pass_slowly();
         return echo(request);
     });
     std::vector<std::unique_ptr<HttpClient>> busy;
@@ -262,11 +262,11 @@ TEST(HttpServer, HealthAndTheViewerAreAnsweredWhateverElseIsBusy) {
         busy.push_back(std::make_unique<HttpClient>(server.port()));
         busy.back()->send(request);
     }
-    gate.wait_until_all_are_in(); // no executor has a thread left
+    authenticator.wait_until_all_are_in(); // no executor has a thread left
     for (const auto* target : {"/livez", "/readyz", "/", "/assets/a.js", "/openapi.json", "/nothing"}) {
         EXPECT_EQ(answer_to(server, get(target)).status, 200) << target;
     }
-    gate.open();
+    authenticator.open();
     for (const auto& client : busy) EXPECT_EQ(client->read().status, 200);
 }
 
@@ -286,19 +286,19 @@ TEST(HttpServer, OneTooManyOfAKindIsToldToComeBackAndHoldsUpNothingElse) {
     };
     for (const auto& kind : kinds) {
         SCOPED_TRACE(kind.taken);
-        Gate gate(1);
+        Authenticator authenticator(1);
         RunningHttp server(kind.config, [&](const Request& request) {
-            if (kind.taken.starts_with(request.method + " " + request.target + " ")) gate.pass_slowly();
+            if (kind.taken.starts_with(request.method + " " + request.target + " ")) authenticator.pass_slowly();
             return echo(request);
         });
         HttpClient first(server.port());
         first.send(kind.taken);
-        gate.wait_until_all_are_in();
+        authenticator.wait_until_all_are_in();
         auto refused = answer_to(server, kind.refused);
         EXPECT_EQ(refused.status, 503);
         EXPECT_EQ(refused.fields["retry-after"], "1");
         EXPECT_EQ(answer_to(server, kind.answered).status, 200);
-        gate.open();
+        authenticator.open();
         EXPECT_EQ(first.read().status, 200);
         EXPECT_EQ(answer_to(server, kind.refused).status, 200);
     }

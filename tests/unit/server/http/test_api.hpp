@@ -65,9 +65,10 @@ struct TestServices : Services {
 /// An Api over given parts; what tests seldom look at is its own.
 class TestApi {
 public:
-    TestApi(session::SessionRegistry& sessions, session::Weaves& weaves, guide::GoalBook& goals, store::ScanLog& log,
-            const metrics::Metrics& metrics, Doorman doorman, WebFiles web = {}, const ServerConfig& limits = {},
-            std::optional<Executors> executors = std::nullopt, std::span<const Route> of_routes = routes())
+    TestApi(session::SessionRegistry& sessions, session::ReplayJobs& weaves, guide::GoalAssignments& goals,
+            store::ScanLog& log, const metrics::Metrics& metrics, Authorizer authorizer, WebFiles web = {},
+            const ServerConfig& limits = {}, std::optional<Executors> executors = std::nullopt,
+            std::span<const Route> of_routes = routes())
         : check_(log, sessions), locator_(log),
           pools_(executors ? *executors : polled_.executors(), limits), services_{{.sessions = sessions,
                                                                                    .weaves = weaves,
@@ -76,7 +77,7 @@ public:
                                                                                    .log = log,
                                                                                    .check = check_,
                                                                                    .metrics = metrics,
-                                                                                   .doorman = doorman,
+                                                                                   .authorizer = authorizer,
                                                                                    .pools = pools_,
                                                                                    .web = std::move(web)}},
           api_(services_, of_routes) {}

@@ -209,8 +209,8 @@ TEST_F(TlsServerTest, WhoShowsNoCertificateThatIsTrustedIsTurnedAwayWhicheverTls
         EXPECT_EQ(answer_to(expired), 0);
     }
     server.stop();
-    EXPECT_EQ(server.refusals(access::Reason::kNoCertificate), 2.0);
-    EXPECT_EQ(server.refusals(access::Reason::kForeignCertificate), 4.0);
+    EXPECT_EQ(server.refusals(auth::Reason::kNoCertificate), 2.0);
+    EXPECT_EQ(server.refusals(auth::Reason::kForeignCertificate), 4.0);
 }
 
 TEST_F(TlsServerTest, WhoIsTurnedAwayHearsWhy) {

@@ -1,6 +1,6 @@
 #include "server/live/core/event_encoder.hpp"
 
-#include "server/mapping/projection.hpp"
+#include "core/mapping/projection.hpp"
 #include "tests/support/live_replay.hpp"
 #include "tests/support/random_scans.hpp"
 
@@ -24,9 +24,9 @@ public:
     explicit Growing(std::uint32_t robots) {
         Sensor sonar{.id = 9, .kind = SensorKind::kSonar, .angles = UniformAngles{0.0, 1.0, 6}, .range_max = 4.0};
         for (std::uint32_t robot = 0; robot < robots; ++robot) {
-            fold(RobotJoined{robot, "r" + std::to_string(robot)});
-            fold(SensorDescribed{robot, testing_support::small_laser()});
-            fold(SensorDescribed{robot, sonar});
+            apply(RobotJoined{robot, "r" + std::to_string(robot)});
+            apply(SensorDescribed{robot, testing_support::small_laser()});
+            apply(SensorDescribed{robot, sonar});
         }
         newest_.resize(robots);
         connected.resize(robots, true);
@@ -43,12 +43,12 @@ public:
     }
 
     void take(RobotIndex robot, Scan scan) {
-        fold(ScanTaken{robot, scan});
+        apply(ScanTaken{robot, scan});
         newest_[robot] = std::make_shared<const mapping::FoldedScan>(
             mapping::FoldedScan{projection_.revision(), projection_.sensor_of(robot, scan.sensor), std::move(scan)});
     }
 
-    void fold(const LogEntry& entry) { projection_.fold(entry).value(); }
+    void apply(const LogEntry& entry) { projection_.apply(entry).value(); }
 
     [[nodiscard]] mapping::Snapshot maps() {
         auto maps = projection_.snapshot();
@@ -186,7 +186,7 @@ TEST(EventEncoder, SendsChangedBodyRadius) {
     };
     EXPECT_EQ(sent().robots(0).body_radius(), 0.0) << "not stated";
     for (const double radius : {0.25, 0.5}) {
-        session.fold(RobotJoined{1, "r1", "", radius});
+        session.apply(RobotJoined{1, "r1", "", radius});
         const auto event = sent();
         ASSERT_EQ(event.robots_size(), 1);
         EXPECT_EQ(event.robots(0).robot(), 1U);
@@ -258,8 +258,8 @@ TEST(ScanPoints, AreEndPointsOfBeamsThatHit) {
     scan.stamp = 7.5;
     scan.pose = {5.0, 5.0, std::numbers::pi / 2};
     scan.ranges = {2'000, 3'000, kNoReturn, kInvalidRange};
-    const mapping::FoldedScan folded{1, std::make_shared<const Sensor>(sensor), scan};
-    const auto points = points_of(folded, 1);
+    const mapping::FoldedScan applied{1, std::make_shared<const Sensor>(sensor), scan};
+    const auto points = points_of(applied, 1);
     EXPECT_NEAR(points.origin.x, 5.0, 1e-9);
     EXPECT_NEAR(points.origin.y, 6.0, 1e-9);
     EXPECT_THAT(points.points, ElementsAre(PointMm{0, 2'000}, PointMm{-3'000, 0}));

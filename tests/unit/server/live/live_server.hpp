@@ -115,8 +115,8 @@ public:
     [[nodiscard]] session::SessionRegistry& sessions() { return sessions_; }
     [[nodiscard]] session::Session& session() { return *sessions_.find("lab"); }
     [[nodiscard]] store::ScanLog& log() { return log_; }
-    [[nodiscard]] guide::WayBook& ways() { return goals_.ways(); }
-    [[nodiscard]] guard::Gate& gate() { return gate_; }
+    [[nodiscard]] guide::RobotPaths& ways() { return goals_.ways(); }
+    [[nodiscard]] auth::Authenticator& authenticator() { return authenticator_; }
     [[nodiscard]] metrics::RefusalCounters& refusals() { return metrics_.refusals(); }
     [[nodiscard]] metrics::LiveCounters& counters() { return metrics_.http().live; }
     [[nodiscard]] std::uint16_t port() const { return server_->port(); }
@@ -141,12 +141,13 @@ private:
     metrics::Metrics metrics_{"test"};
     boost::asio::io_context io_;
     session::SessionRegistry sessions_{log_, {compute_.get_executor(), [] { return 1'000.0; }}};
-    session::Weaves weaves_{log_, compute_.get_executor()};
-    guide::GoalBook goals_;
-    guard::Gate gate_;
-    guard::Audit audit_{metrics_.refusals()};
-    guard::Logins logins_;
-    http::TestApi api_{sessions_, weaves_, goals_, log_, metrics_, {gate_, audit_, logins_}, {}, {}, executors()};
+    session::ReplayJobs weaves_{log_, compute_.get_executor()};
+    guide::GoalAssignments goals_;
+    auth::Authenticator authenticator_;
+    auth::AuditLog audit_{metrics_.refusals()};
+    auth::LoginSessions logins_;
+    http::TestApi api_{sessions_, weaves_, goals_,     log_, metrics_, {authenticator_, audit_, logins_},
+                       {},        {},      executors()};
     std::shared_ptr<http::Server> server_;
     std::array<std::thread, 2> threads_;
     std::map<std::string, std::shared_ptr<StreamingRobot>> robots_;

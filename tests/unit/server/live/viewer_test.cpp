@@ -60,11 +60,11 @@ TEST(LiveViewer, EndsWhenTokensNoLongerAllowIt) {
     LiveServer server;
     LiveClient client(server.port());
     ASSERT_TRUE(client.read());
-    server.gate().replace(access::TokenSet()); // viewers without a token are disconnected
+    server.authenticator().replace(auth::TokenSet()); // viewers without a token are disconnected
     EXPECT_EQ(client.read_to_the_end(), 0U);
     EXPECT_EQ(client.code(), 4401U);
     EXPECT_THAT(client.reason(), HasSubstr("sign in"));
-    EXPECT_EQ(server.refusals().of(access::Port::kHttp, access::Reason::kRevoked).Value(), 1.0);
+    EXPECT_EQ(server.refusals().of(auth::Port::kHttp, auth::Reason::kRevoked).Value(), 1.0);
 }
 
 /// A session watched over TLS, to an end that the viewer or the server makes.
@@ -167,7 +167,7 @@ TEST(LiveViewer, ReceivesTheExpiryOfAGoal) {
     LiveClient client(server.port());
     LiveReplay viewer;
     catch_up(server, client, viewer);
-    const auto almost_over = guide::WayBook::Clock::now() - guide::WayBook::kKeptForAbsent + 200ms;
+    const auto almost_over = guide::RobotPaths::Clock::now() - guide::RobotPaths::kKeptForAbsent + 200ms;
     server.ways().give_goal(server.sessions().find("lab"), 0, {}, {}, almost_over);
     read_until(client, viewer, [&] { return viewer.last.goals_revision() == 2; });
 }

@@ -1,6 +1,6 @@
 #include "server/tiles/difference.hpp"
 
-#include "server/mapping/projection.hpp"
+#include "core/mapping/projection.hpp"
 #include "tests/support/random_scans.hpp"
 #include "tests/support/snapshot_cells.hpp"
 
@@ -24,13 +24,13 @@ Snapshot woven(const SessionOptions& options, std::uint64_t scans) {
     Sensor ring = testing_support::small_laser();
     ring.id = 3;
     ring.kind = SensorKind::kSonar;
-    EXPECT_TRUE(projection.fold(RobotJoined{0, "r"}));
-    EXPECT_TRUE(projection.fold(SensorDescribed{0, testing_support::small_laser()}));
-    EXPECT_TRUE(projection.fold(SensorDescribed{0, ring}));
+    EXPECT_TRUE(projection.apply(RobotJoined{0, "r"}));
+    EXPECT_TRUE(projection.apply(SensorDescribed{0, testing_support::small_laser()}));
+    EXPECT_TRUE(projection.apply(SensorDescribed{0, ring}));
     for (std::uint64_t seq = 1; seq <= scans; ++seq) {
         Scan scan = testing_support::random_scan(5, seq);
         if (seq % 2 == 0) scan.sensor = ring.id;
-        EXPECT_TRUE(projection.fold(ScanTaken{0, scan}));
+        EXPECT_TRUE(projection.apply(ScanTaken{0, scan}));
     }
     return projection.snapshot();
 }

@@ -1,6 +1,6 @@
 #include "server/tiles/map_image.hpp"
 
-#include "server/mapping/projection.hpp"
+#include "core/mapping/projection.hpp"
 #include "server/tiles/layer_style.hpp"
 #include "tests/support/pixel_oracle.hpp"
 #include "tests/support/random_map.hpp"
@@ -87,13 +87,13 @@ TEST(MapImage, OfAnyLayerContainsEveryCell) {
     for (const auto source : {ClassSource::kOccupancy, ClassSource::kHimm}) {
         mapping::Projection projection(mapping::resolve({.cell_size = 0.1, .class_source = source}).value());
         Sensor sonar{.id = 9, .kind = SensorKind::kSonar, .angles = UniformAngles{0.0, 1.0, 6}, .range_max = 4.0};
-        ASSERT_TRUE(projection.fold(RobotJoined{0, "r"}));
-        ASSERT_TRUE(projection.fold(SensorDescribed{0, testing_support::small_laser()}));
-        ASSERT_TRUE(projection.fold(SensorDescribed{0, sonar}));
+        ASSERT_TRUE(projection.apply(RobotJoined{0, "r"}));
+        ASSERT_TRUE(projection.apply(SensorDescribed{0, testing_support::small_laser()}));
+        ASSERT_TRUE(projection.apply(SensorDescribed{0, sonar}));
         for (Scan scan : testing_support::random_scans(3, 1, 8)) {
             if (scan.seq % 4 == 0) scan.sensor = 9;
             if (scan.seq % 4 == 0) scan.ranges.resize(6);
-            ASSERT_TRUE(projection.fold(ScanTaken{0, scan}));
+            ASSERT_TRUE(projection.apply(ScanTaken{0, scan}));
         }
         const auto snapshot = projection.snapshot();
         for (const Layer layer : mapping::kLayers) {

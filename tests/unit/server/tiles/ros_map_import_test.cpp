@@ -1,7 +1,7 @@
 #include "server/tiles/ros_map_import.hpp"
 
 #include "common/ros_map/description.hpp"
-#include "server/mapping/projection.hpp"
+#include "core/mapping/projection.hpp"
 #include "server/tiles/map_files.hpp"
 #include "server/tiles/map_image.hpp"
 #include "tests/support/random_map.hpp"
@@ -24,7 +24,7 @@ Bytes bytes_of(std::string_view text) { return {text.begin(), text.end()}; }
 /// The maps of a session that begins with these patches.
 mapping::Snapshot imported(const std::vector<MapPatch>& patches, double cell_size) {
     mapping::Projection projection(mapping::resolve({.cell_size = cell_size}).value());
-    for (const auto& patch : patches) EXPECT_TRUE(projection.fold(patch));
+    for (const auto& patch : patches) EXPECT_TRUE(projection.apply(patch));
     return projection.snapshot();
 }
 

@@ -153,7 +153,7 @@ TEST(Changes, EqualRevisionsOfATileHaveEqualBytes) {
             Revision seen = 0;
             for (std::size_t n = 0; n < log.size(); ++n) {
                 if (n == cut) projection.emplace(testing_support::restored(*projection));
-                ASSERT_TRUE(projection->fold(log[n]));
+                ASSERT_TRUE(projection->apply(log[n]));
                 if (n % looks_every != 0) continue;
                 const auto snapshot = projection->snapshot();
                 ASSERT_NO_FATAL_FAILURE(cache.look_at(snapshot)) << "after entry " << n << ", cut at " << cut;

@@ -1,0 +1,78 @@
+#pragma once
+
+#include "core/landmarks/refinement.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace scanloom::landmarks {
+
+/// How far a sensor could see from one place in each direction, according to the points that it saw there.
+class Horizon {
+public:
+    /// @param points  metres
+    /// @param from    the position of the sensor, in the frame of the points
+    Horizon(std::span<const Point2> points, const Point2& from);
+
+    enum class Verdict {
+        kOpen,    ///< free space: the points in this direction are further away
+        kHidden,  ///< behind the points in this direction
+        kUnknown, ///< about as far as the points in this direction, or there are none
+    };
+    /// Returns what the sensor saw at a place.
+    [[nodiscard]] Verdict at(const Point2& place) const;
+    [[nodiscard]] const Point2& from() const noexcept { return from_; }
+    [[nodiscard]] double reach() const noexcept { return reach_; } ///< metres, distance of the furthest point
+    /// Returns whether any point in any direction is further away than the place. at() returns kOpen for no other
+    /// places; this check is faster.
+    [[nodiscard]] bool reaches(const Point2& place) const { return squared_norm(place - from_) < reach_ * reach_; }
+
+private:
+    static constexpr std::size_t kSectors = 360;
+
+    struct Reach {
+        double nearest;
+        double furthest;
+    };
+    [[nodiscard]] static std::size_t sector_of(const Point2& offset);
+
+    Point2 from_;
+    double reach_ = 0.0;
+    std::array<Reach, kSectors> reaches_;
+};
+
+/// How many surface elements of one view support or contradict a pose, as seen by another view.
+struct Evidence {
+    std::size_t matched = 0;      ///< inliers: lie on the other view's surface
+    std::size_t contradicted = 0; ///< outliers: lie in the free space of the other view
+    std::size_t elements = 0;     ///< all; those neither matched nor contradicted were not visible to the other view
+
+    friend Evidence operator+(const Evidence& a, const Evidence& b) {
+        return {a.matched + b.matched, a.contradicted + b.contradicted, a.elements + b.elements};
+    }
+};
+
+/// What one view shows at a surface element of another.
+enum class Finding : std::uint8_t {
+    kUnseen,       ///< the element was not visible
+    kMatched,      ///< inlier: the element lies on the view's surface
+    kContradicted, ///< outlier: the element lies in the view's free space
+};
+
+/// Tests the surface elements of a second view, in a given pose, against what a first view shows. An element is an
+/// outlier if it is not on the first view's surface and any of the horizons looked through its position.
+/// @param horizons  of the places that the first view was seen from
+/// Precondition: the surface has elements.
+[[nodiscard]] std::vector<Finding> findings_of(const Surface& surface, std::span<const Horizon* const> horizons,
+                                               std::span<const Surfel> second, const Pose2& T_first_second);
+
+/// Counts the findings of each kind.
+[[nodiscard]] Evidence evidence_of(std::span<const Finding> findings);
+
+/// Returns whether any of the horizons looked through a place.
+[[nodiscard]] bool is_open(std::span<const Horizon* const> horizons, const Point2& place);
+
+} // namespace scanloom::landmarks

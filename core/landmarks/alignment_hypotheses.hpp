@@ -1,0 +1,114 @@
+#pragma once
+
+#include "common/error/error.hpp"
+#include "core/landmarks/alignment.hpp"
+#include "core/landmarks/alignment_evidence.hpp"
+#include "core/landmarks/alignment_surfels.hpp"
+#include "core/landmarks/refinement.hpp"
+
+#include <cstddef>
+#include <functional>
+#include <span>
+#include <vector>
+
+namespace scanloom::landmarks {
+
+inline constexpr std::size_t kSurfelsMax = 250;
+
+/// Returns at most count_max surface elements, chosen evenly among the cloud's rows.
+[[nodiscard]] std::vector<Surfel> sample(std::span<const Surfel> surfels, std::size_t count_max);
+
+/// Searches the poses in which two surfaces may match, the likeliest first.
+///
+/// For each of evenly spaced rotations, every pair of surface elements of similar direction votes for the translation
+/// that moves one onto the other. Maxima of the votes are hypotheses. So the search needs no initial guess, and also
+/// finds the other poses that may be correct. Hypotheses are distinct and not refined: a good one is within about 0.2 m
+/// and 3 degrees of the pose it represents.
+/// @param distance_max  metres from the first frame's origin to the second's, along each axis
+/// @param count_max     at most this many hypotheses are returned
+/// @param first_max     at most this many surface elements of the first surface are used, evenly chosen; of the second
+///     kSurfelsMax
+/// @param ask           called before each rotation; an error that it returns ends the search
+/// Errors: those of `ask`.
+/// Cost: the number of rotations times the number of pairs of elements used.
+/// Source: Ballard, Generalizing the Hough transform to detect arbitrary shapes (1981); Olson, Real-time correlative
+///     scan matching (2009), for the exhaustive search.
+[[nodiscard]] Result<std::vector<Pose2>> find_hypotheses(
+    std::span<const Surfel> first, std::span<const Surfel> second, double distance_max, std::size_t count_max,
+    std::size_t first_max = kSurfelsMax, const std::function<Result<>()>& ask = [] { return Result<>(); });
+
+/// Searches the translations for one rotation, as find_hypotheses() does. If things repeat, it finds most of the places
+/// that may be confused.
+/// @param yaw           radians, rotation of the second surface
+/// @param distance_max  metres from the first frame's origin to the second's, along each axis
+[[nodiscard]] std::vector<Pose2> find_translations(std::span<const Surfel> first, std::span<const Surfel> second,
+                                                   double yaw, double distance_max, std::size_t count_max,
+                                                   std::size_t first_max = kSurfelsMax);
+
+/// A surface that was seen from one or several places, in one frame, to match others against.
+struct Seen {
+    Surface surface;
+    std::vector<const Horizon*> horizons; ///< of the places it was seen from; must outlive this object
+    bool is_map = false;                  ///< seen from several places; surfaces seen more often have more elements
+};
+
+/// The direction in which lines constrain a pose least, and how much they constrain it, relative to the elements used.
+struct WeakDirection {
+    Point2 direction;
+    double held;
+};
+[[nodiscard]] WeakDirection weak_direction(const LineFit& fit);
+
+/// Returns whether two poses are further apart than kDistinctDistance or kDistinctTurn.
+[[nodiscard]] bool is_distinct(const Pose2& a, const Pose2& b);
+
+/// A refined hypothesis and its evidence.
+struct Candidate {
+    LineFit fit;
+    Evidence second_in_first;
+    Evidence first_in_second;
+    bool is_on_map = false;
+    /// For two views: what the first view shows at the second's elements, then what the second shows at the first's.
+    /// Empty if the hypothesis was matched against a map.
+    std::vector<Finding> findings;
+    std::vector<Point2> places; ///< positions of these elements in the first view's frame
+
+    [[nodiscard]] const Pose2& pose() const { return fit.T_first_second; }
+    [[nodiscard]] Evidence both() const { return second_in_first + first_in_second; }
+    /// Returns the number of inliers minus the weighted number of outliers. On a map only the view's elements count as
+    /// inliers, because a wall that was seen more often has more elements than its length.
+    [[nodiscard]] double score() const;
+};
+
+/// How clearly surface elements distinguish two poses. Each element that is an inlier of only one of the poses counts
+/// as one, and as more if it is an outlier of the other, as in Candidate::score().
+struct Difference {
+    double for_one = 0.0;
+    double for_other = 0.0;
+    double of_one_thing = 0.0; ///< the largest part of for_one around one place: perhaps one thing that moved
+};
+
+/// Compares the evidence of two candidates.
+/// @param thing_radius  metres, the size of a thing that may have moved
+/// Precondition: both candidates are of the same two views.
+/// Cost: quadratic in the number of elements that support `one`.
+[[nodiscard]] Difference difference(const Candidate& one, const Candidate& other, double thing_radius);
+
+/// Refines a hypothesis and collects its evidence.
+/// @param start  a pose that is off by a few centimetres; see settle()
+/// Precondition: both have surface elements; the origin of the second's frame is the position it was seen from.
+[[nodiscard]] Candidate judged(const Seen& first, const Seen& second, const Pose2& start);
+
+/// Returns the best candidate and the few others that are distinct and nearly as good. Each may become the correct pose
+/// when it is slid; see add_slid().
+[[nodiscard]] std::vector<Candidate> likely(std::vector<Candidate> candidates);
+
+/// Adds the candidates that result from sliding `best` along its weakest direction, because refinement in a
+/// corridor stops wherever something is near.
+void add_slid(const Seen& first, const Seen& second, const Candidate& best, std::vector<Candidate>& candidates);
+
+/// Sorts candidates by score, the best first. Of the candidates that are not distinct from the best, the one that fits
+/// best comes first.
+void rank(std::vector<Candidate>& candidates);
+
+} // namespace scanloom::landmarks

@@ -1,0 +1,96 @@
+#pragma once
+
+#include "common/error/error.hpp"
+#include "common/geometry/pose2.hpp"
+#include "common/scan/scan.hpp"
+#include "core/landmarks/captures.hpp"
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace scanloom::landmarks {
+
+/// How a filter changed a scan.
+struct FilterFigures {
+    /// Metres: the root mean square distance of each point to the unfiltered point of its beam. 0 if there are no
+    ///     points.
+    double rmse = 0.0;
+    /// How much smoother the scan became along each axis of the sensor: 1 - after / before. 1: all noise is gone; below
+    /// 0: there is more noise; nullopt: there was no roughness.
+    ///
+    /// Roughness is the median of |a - 2 b + c| over the points a, b, c of each three neighbouring beams that are all
+    /// returns. It is 0 on a straight wall of evenly spaced points and, as a median, not affected by corners and jumps.
+    std::optional<double> noise_reduction_x;
+    std::optional<double> noise_reduction_y;
+
+    friend bool operator==(const FilterFigures&, const FilterFigures&) = default;
+};
+
+/// Computes how a filter changed a scan.
+/// @param before  ranges of the scan, one for each beam
+/// @param after   filtered ranges; the same beams are returns as in `before`
+/// @param angles  directions of the beams
+[[nodiscard]] FilterFigures filter_figures(std::span<const RangeMm> before, std::span<const RangeMm> after,
+                                           const BeamAngles& angles);
+
+/// Returns whether the last beam is next to the first one.
+///
+/// It is if the angle between them is at most two and a half times the mean step from beam to beam, so that one beam
+/// may be missing there. A scan that repeats its first direction at its end is a full circle. Fewer than three beams
+/// are not.
+[[nodiscard]] bool is_full_circle(const BeamAngles& angles);
+
+/// A point of a fused cloud.
+struct FusedPoint {
+    Point2 position;    ///< metres; if only one cloud saw it, exactly its coordinates
+    std::size_t clouds; ///< how many clouds saw it, at least 1
+    std::size_t first;  ///< index of the first cloud that saw it
+};
+
+/// Fuses several clouds into one. Points of different clouds that correspond become one point; all others stay.
+///
+/// The clouds are processed in their order; each point of the first cloud starts a group. The points of each further
+/// cloud are matched with the groups found so far, as match() does: mutual nearest neighbours at most `threshold`
+/// apart, where the position of a group is the per-axis median of its points (of an even number, the mean of the middle
+/// two). A matched point joins its group; any other point starts a new one. So a group has at most one point of each
+/// cloud, and equal points of one cloud remain separate. The fused points are the medians of the groups. Their counts
+/// of clouds add up to the number of points of all clouds.
+/// @param clouds     metres, all in one frame; see transform_points()
+/// @param threshold  metres
+/// @param ask        called before each cloud, because many clouds take seconds; an error that it returns ends the
+///     fusion
+/// @return the fused points, in the order in which their groups started
+/// Errors: kInvalidField if the threshold is negative or not finite; those of check_points() and `ask`.
+/// Cost: for each cloud O(n log n) of its points and the groups around them; for each point that joins a group, the
+///     size of the group.
+[[nodiscard]] Result<std::vector<FusedPoint>> fuse(
+    std::span<const std::vector<Point2>> clouds, double threshold,
+    const std::function<Result<>()>& ask = [] { return Result<>(); });
+
+/// What a stationary lidar saw from one place in some turns.
+struct CloudView {
+    std::span<const Point2> points; ///< metres, in any frame
+    Point2 from{0.0, 0.0};          ///< position of the sensor, in that frame
+};
+
+/// A point of a session's fused cloud.
+struct CloudPoint {
+    double angle = 0.0;        ///< radians, counter-clockwise from the robot's heading, in (-pi, pi]
+    double distance = 0.0;     ///< metres from the robot's position
+    Point2 position{0.0, 0.0}; ///< metres, map frame
+    std::size_t seen = 0;      ///< number of keyframes that show it
+    RobotIndex robot = 0;      ///< of the first of them; angle and distance are relative to its pose
+    Revision revision = 0;     ///< log entry at which the first of them ended
+};
+
+/// Fuses the points of keyframes into one cloud; see fuse().
+/// @param threshold  metres
+/// @return the points, in the order in which they were first seen
+/// Errors: those of fuse().
+[[nodiscard]] Result<std::vector<CloudPoint>> fuse_captures(
+    std::span<const RobotCapture> captures, double threshold,
+    const std::function<Result<>()>& ask = [] { return Result<>(); });
+
+} // namespace scanloom::landmarks

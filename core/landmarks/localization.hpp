@@ -1,0 +1,35 @@
+#pragma once
+
+#include "common/error/error.hpp"
+#include "core/landmarks/alignment.hpp"
+#include "core/landmarks/reference_map.hpp"
+
+#include <functional>
+#include <optional>
+
+namespace scanloom::landmarks {
+
+/// A part of the map: a square around its middle.
+struct Neighbourhood {
+    Point2 middle{0.0, 0.0}; ///< metres, map frame
+    double radius = 0.0;     ///< metres from the middle to each side, more than 0
+};
+
+/// Finds the pose of a view in a map, without an initial guess.
+///
+/// Searches as align() does for two views, everywhere that robots have looked. T_first_second of the result takes the
+/// view's frame to the map's. The result is clear only if no other place of the map, or of the neighbourhood, has
+/// nearly as many inliers. `explained` is the fraction of the view that is in the map.
+/// @param view  what the robot sees
+/// @param near  the part of the map to search; nullopt: the whole map
+/// @param ask   called from time to time, because a search in a large map may take seconds; an error that it returns
+///     ends the search
+/// Errors: kNothingMapped if no laser has seen anything anywhere; kTooLarge if the map is more than 200 m wide and no
+///     neighbourhood limits the search; those of check_view() and `ask`.
+/// Cost: that of align(), and for each of about 100 rotations the surface elements of the map times 250.
+/// Source: see find_hypotheses(), settle() and fit_to_lines().
+[[nodiscard]] Result<Alignment> locate(
+    const ReferenceViews& map, const CloudView& view, const std::optional<Neighbourhood>& near = {},
+    const std::function<Result<>()>& ask = [] { return Result<>(); });
+
+} // namespace scanloom::landmarks

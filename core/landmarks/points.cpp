@@ -1,0 +1,94 @@
+#include "core/landmarks/points.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <tuple>
+
+namespace scanloom::landmarks {
+
+Result<std::vector<Point2>> transform_points(std::span<const Point2> points, const Point2& translation,
+                                             double rotation_rad, double scale) {
+    if (auto good = check_points(points); !good) return good.error();
+    if (!is_finite(translation) || !std::isfinite(rotation_rad)) {
+        return Error{Errc::kInvalidField, fmt::format("translation ({:g}, {:g}) m and rotation {:g} rad must be finite",
+                                                      translation.x, translation.y, rotation_rad)};
+    }
+    if (!(scale > 0.0) || !std::isfinite(scale)) {
+        return Error{Errc::kInvalidField, fmt::format("scale is {:g}; it must be finite and more than 0", scale)};
+    }
+    const Pose2 pose{translation.x, translation.y, rotation_rad};
+    std::vector<Point2> transformed;
+    transformed.reserve(points.size());
+    for (const Point2& point : points) transformed.push_back(transform(pose, scale * point));
+    if (auto good = check_points(transformed, "transformed"); !good) return good.error();
+    return transformed;
+}
+
+Result<> check_points(std::span<const Point2> points, std::string_view name) {
+    if (points.size() > kPointsMax) {
+        return Error{Errc::kTooLarge, fmt::format("{} are {}, more than the {} points of one cloud: give fewer", name,
+                                                  points.size(), kPointsMax)};
+    }
+    for (std::size_t n = 0; n < points.size(); ++n) {
+        if (!is_finite(points[n])) {
+            return Error{Errc::kInvalidField, fmt::format("{}[{}] is not finite: leave it out", name, n)};
+        }
+        if (max_abs(points[n]) > kPointCoordinateMax) {
+            return Error{Errc::kInvalidField,
+                         fmt::format("{}[{}] is ({}, {}), further than {} m from the origin: leave it out", name, n,
+                                     points[n].x, points[n].y, kPointCoordinateMax)};
+        }
+    }
+    return {};
+}
+
+namespace {
+
+struct CellPlace {
+    double x;
+    double y;
+    std::uint32_t index;
+
+    [[nodiscard]] bool operator<(const CellPlace& other) const {
+        return std::tie(x, y, index) < std::tie(other.x, other.y, other.index);
+    }
+    [[nodiscard]] bool is_at(const CellPlace& other) const { return x == other.x && y == other.y; }
+};
+
+std::vector<CellPlace> sorted_places(std::span<const Point2> cloud) {
+    std::vector<CellPlace> places(cloud.size());
+    for (std::uint32_t n = 0; n < places.size(); ++n) places[n] = {cloud[n].x, cloud[n].y, n};
+    std::sort(places.begin(), places.end());
+    return places;
+}
+
+} // namespace
+
+DistinctPoints distinct_points(std::span<const Point2> cloud) {
+    assert(cloud.size() <= kPointsMax);
+    DistinctPoints distinct;
+    distinct.of.resize(cloud.size());
+    const std::vector<CellPlace> places = sorted_places(cloud);
+    for (std::size_t n = 0, first = 0; n < places.size(); ++n) {
+        if (!places[n].is_at(places[first])) first = n;
+        distinct.of[places[n].index] =
+            places[first].index; // index in the cloud; replaced by the number of the distinct point below
+    }
+    for (std::uint32_t n = 0; n < cloud.size(); ++n) {
+        const std::uint32_t first = distinct.of[n];
+        if (first == n) {
+            distinct.of[n] = static_cast<std::uint32_t>(distinct.points.size());
+            distinct.points.push_back(cloud[n]);
+            distinct.counts.push_back(1);
+        } else {
+            distinct.of[n] = distinct.of[first];
+            ++distinct.counts[distinct.of[n]];
+        }
+    }
+    return distinct;
+}
+
+} // namespace scanloom::landmarks

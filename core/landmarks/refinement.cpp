@@ -1,0 +1,149 @@
+#include "core/landmarks/refinement.hpp"
+
+#include "core/landmarks/alignment.hpp"
+
+#include <Eigen/Dense>
+
+#include <algorithm>
+#include <cmath>
+
+namespace scanloom::landmarks {
+namespace {
+
+constexpr int kSettleStepsMax = 20;
+constexpr double kSettleDistance = 0.5; // metres; pairs further apart do not correspond
+constexpr double kCloser = 0.75;        // fraction of these pairs that is used
+constexpr std::size_t kSettlePairsMin = 10;
+constexpr double kAtRest = 2e-3; // metres, and radians
+
+constexpr int kFitStepsMax = 15;
+constexpr double kFitDistance = 0.15;        // metres between elements that correspond
+constexpr double kResidualMax = 0.08;        // metres from a line
+constexpr double kCorrespondingCosine = 0.9; // cosine between normals that correspond
+constexpr double kRoundWeight = 0.2;         // of an element that is not straight: its position depends on the view
+constexpr double kDamping = 1e-3;            // of the elements used: constrains what no line constrains
+constexpr double kFitted = 1e-5;             // metres, and radians
+
+bool is_at_rest(const Pose2& before, const Pose2& after, double limit) {
+    return std::hypot(after.x - before.x, after.y - before.y) < limit &&
+           std::abs(normalize_angle(after.yaw - before.yaw)) < limit;
+}
+
+struct ClosePair {
+    PointPair pair;
+    double distance;
+};
+
+std::vector<PointPair> closest_pairs(const Surface& first, std::span<const Surfel> second, const Pose2& pose) {
+    std::vector<ClosePair> close;
+    for (const Surfel& there : second) {
+        const auto [index, distance] = first.nearest(transform(pose, there.position));
+        if (distance > kSettleDistance) continue;
+        close.push_back({{first.surfels()[index].position, there.position}, distance});
+    }
+    std::ranges::stable_sort(close, {}, &ClosePair::distance);
+    close.resize(static_cast<std::size_t>(kCloser * static_cast<double>(close.size())));
+    std::vector<PointPair> pairs;
+    for (const auto& [pair, distance] : close) pairs.push_back(pair);
+    return pairs;
+}
+
+/// The normal equations of one Gauss-Newton step: matrix * step = gradient.
+struct NormalEquations {
+    Eigen::Matrix3d matrix = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
+    double squares = 0.0;
+    double weights = 0.0;
+    double agreement = 0.0;
+    std::size_t used = 0;
+
+    void add(const Point2& normal, const Point2& from_second_origin, double residual, double weight) {
+        const Point2 turned{-from_second_origin.y, from_second_origin.x};
+        const Eigen::Vector3d jacobian(normal.x, normal.y, dot(normal, turned));
+        matrix += weight * jacobian * jacobian.transpose();
+        gradient -= weight * residual * jacobian;
+        squares += weight * residual * residual;
+        weights += weight;
+    }
+};
+
+/// Adds a pair of elements that may correspond, one of each surface, both in the first's frame.
+/// @param line    normal of the line that the distance is measured from
+/// @param origin  of the second's frame
+void add(NormalEquations& equations, const Surfel& here, const Surfel& there, const Point2& line,
+         const Point2& origin) {
+    if (here.is_straight() != there.is_straight()) return;
+    const Point2 offset = there.position - here.position;
+    const Point2 from_origin = there.position - origin;
+    const double off = here.is_straight() ? dot(line, offset) : norm(offset);
+    const double closeness = 1.0 - off * off / (kResidualMax * kResidualMax);
+    if (closeness <= 0.0) return;
+    if (here.is_straight()) {
+        if (std::abs(dot(here.normal, there.normal)) < kCorrespondingCosine) return;
+        equations.add(line, from_origin, off, closeness * closeness); // Tukey's biweight
+        equations.agreement += closeness * closeness * closeness;     // the objective that the biweight maximizes
+    } else {
+        equations.add({1.0, 0.0}, from_origin, offset.x, kRoundWeight);
+        equations.add({0.0, 1.0}, from_origin, offset.y, kRoundWeight);
+        equations.agreement += kRoundWeight * closeness;
+    }
+    ++equations.used;
+}
+
+/// Adds the elements of both surfaces, each with the nearest of the other surface and that one's line.
+NormalEquations normal_equations(const Surface& first, const Surface& second, const Pose2& pose) {
+    NormalEquations equations;
+    const Point2 origin{pose.x, pose.y};
+    const Pose2 back = inverse(pose);
+    for (const Surfel& element : second.surfels()) {
+        const Surfel there = transformed(pose, element);
+        const auto [index, distance] = first.nearest(there.position);
+        if (distance > kFitDistance) continue;
+        const Surfel& here = first.surfels()[index];
+        add(equations, here, there, here.normal, origin);
+    }
+    for (const Surfel& here : first.surfels()) {
+        const auto [index, distance] = second.nearest(transform(back, here.position));
+        if (distance > kFitDistance) continue;
+        const Surfel there = transformed(pose, second.surfels()[index]);
+        add(equations, here, there, there.normal, origin);
+    }
+    return equations;
+}
+
+} // namespace
+
+Pose2 settle(const Surface& first, std::span<const Surfel> second, const Pose2& T_first_second) {
+    Pose2 pose = T_first_second;
+    for (int step = 0; step < kSettleStepsMax; ++step) {
+        const auto pairs = closest_pairs(first, second, pose);
+        if (pairs.size() < kSettlePairsMin) break;
+        const auto fit = align_pairs(pairs);
+        if (!fit) break;
+        const bool rests = is_at_rest(pose, fit->T_first_second, kAtRest);
+        pose = fit->T_first_second;
+        if (rests) break;
+    }
+    return pose;
+}
+
+LineFit fit_to_lines(const Surface& first, const Surface& second, const Pose2& T_first_second) {
+    LineFit fit{.T_first_second = T_first_second};
+    for (int step = 0; step < kFitStepsMax; ++step) {
+        const auto equations = normal_equations(first, second, fit.T_first_second);
+        if (equations.used == 0) break;
+        fit.used = equations.used;
+        fit.agreement = equations.agreement;
+        fit.rms = std::sqrt(equations.squares / equations.weights);
+        fit.normal_matrix = equations.matrix;
+        const Eigen::Matrix3d damped =
+            equations.matrix + kDamping * static_cast<double>(equations.used) * Eigen::Matrix3d::Identity();
+        const Eigen::Vector3d change = damped.ldlt().solve(equations.gradient);
+        const Pose2 before = fit.T_first_second;
+        fit.T_first_second = {before.x + change.x(), before.y + change.y(), normalize_angle(before.yaw + change.z())};
+        if (is_at_rest(before, fit.T_first_second, kFitted)) break;
+    }
+    return fit;
+}
+
+} // namespace scanloom::landmarks

@@ -1,0 +1,56 @@
+#pragma once
+
+#include "core/landmarks/alignment_surfels.hpp"
+#include "core/landmarks/point_index.hpp"
+
+#include <Eigen/Core>
+
+#include <span>
+#include <vector>
+
+namespace scanloom::landmarks {
+
+/// Surface elements with a search for the nearest one.
+class Surface {
+public:
+    explicit Surface(std::vector<Surfel> surfels) : surfels_(std::move(surfels)), tree_(positions_of(surfels_)) {}
+
+    [[nodiscard]] const std::vector<Surfel>& surfels() const noexcept { return surfels_; }
+    /// Returns the surface element nearest to a place.
+    /// Precondition: there is at least one.
+    [[nodiscard]] Neighbor nearest(const Point2& place) const { return *tree_.nearest(place); }
+
+private:
+    std::vector<Surfel> surfels_;
+    PointTree tree_;
+};
+
+/// Refines a pose that is off by up to half a metre and some degrees, by iterated closest points. Only the closer part
+/// of the pairs counts, because one view does not show everything that the other shows.
+/// @param T_first_second  the pose to refine
+/// @return the pose at convergence or after the last step; T_first_second if nothing is close
+/// Precondition: both have surface elements.
+/// Source: Besl, McKay, A method for registration of 3-D shapes (1992); Chetverikov et al., The trimmed iterative
+///     closest point algorithm (2002).
+[[nodiscard]] Pose2 settle(const Surface& first, std::span<const Surfel> second, const Pose2& T_first_second);
+
+/// The result of fit_to_lines().
+struct LineFit {
+    Pose2 T_first_second;
+    double agreement = 0.0;                                  ///< increases with the number of elements on lines
+    std::size_t used = 0;                                    ///< elements of both surfaces that were used
+    double rms = 0.0;                                        ///< metres, of their distances from the other's lines
+    Eigen::Matrix3d normal_matrix = Eigen::Matrix3d::Zero(); ///< of the residuals by (x, y, yaw)
+};
+
+/// Refines a pose that is off by a few centimetres, so that each surface's elements lie on the lines of the other.
+///
+/// Elements can slide along a line, so the density and spacing of the points do not matter. The pose does not change in
+/// directions that no line constrains.
+/// @param T_first_second  the pose to refine
+/// Precondition: both have surface elements.
+/// Source: Censi, An ICP variant using a point-to-line metric (2008), in both directions; Gauss-Newton with Tukey's
+///     biweight.
+[[nodiscard]] LineFit fit_to_lines(const Surface& first, const Surface& second, const Pose2& T_first_second);
+
+} // namespace scanloom::landmarks

@@ -1,0 +1,37 @@
+#pragma once
+
+#include "core/classify/cell_class.hpp"
+#include "core/mapping/laser_chunk.hpp"
+#include "core/mapping/occupancy.hpp"
+
+/// Kernels that apply the verdicts of a scan to a chunk, 64 cells at a time. They are compiled for several instruction
+/// sets; the one to use is selected at run time. The arithmetic uses integers only, so that all instruction sets give
+/// the same cells.
+namespace scanloom::mapping::simd {
+
+/// Returns whether the verdicts change nothing, because they only report free space in cells that are already saturated
+/// as free.
+/// @param evidence  verdicts for the occupancy layer
+/// @param counted  verdicts for the HIMM layer
+[[nodiscard]] constexpr bool is_settled(const LaserChunk& chunk, const ChunkVerdicts& evidence,
+                                        const ChunkVerdicts& counted) noexcept {
+    std::uint64_t news = evidence.occupied_rows | counted.occupied_rows;
+    for (std::size_t j = 0; j < evidence.free.size(); ++j) {
+        news |= evidence.free[j] & ~chunk.settled_occupancy[j];
+        news |= counted.free[j] & ~chunk.settled_himm[j];
+    }
+    return news == 0;
+}
+
+/// Adds the evidence of a scan to the occupancy layer: l = clamp(l + model(cell) - l0, l_min, l_max) for each cell with
+/// a verdict.
+void add_evidence(LaserChunk& chunk, const ChunkVerdicts& verdicts, const OccupancyRule& rule);
+
+/// Updates the HIMM layer: increments the counters of occupied cells and decrements those of free cells.
+void count_hits(LaserChunk& chunk, const ChunkVerdicts& verdicts, const HimmRule& rule);
+
+/// Updates the types of the cells in `touched` from their values. Cells without a value keep their type.
+void fold_types(LaserChunk& chunk, const grid::BitPlane& touched, const classify::Hysteresis<LogOdds>& by_occupancy);
+void fold_types(LaserChunk& chunk, const grid::BitPlane& touched, const classify::Hysteresis<HimmCount>& by_himm);
+
+} // namespace scanloom::mapping::simd

@@ -1,0 +1,219 @@
+#include "core/mapping/projection.hpp"
+
+#include "core/mapping/reach.hpp"
+
+#include <fmt/format.h>
+
+#include <cassert>
+#include <cmath>
+#include <utility>
+
+namespace scanloom::mapping {
+Projection::Projection(const MapConfig& config, SharedExclusions exclusions)
+    : Projection(config, std::move(exclusions), LaserLayers(config), SonarLayer(config),
+                 classify::ClassLayer(danger_reach(config))) {}
+
+Projection::Projection(const MapConfig& config, SharedExclusions exclusions, LaserLayers laser, SonarLayer sonar,
+                       classify::ClassLayer classes)
+    : config_(config), laser_(std::move(laser)), sonar_(std::move(sonar)), classes_(std::move(classes)),
+      filter_(config.max_jump, std::move(exclusions)) {}
+
+std::shared_ptr<const Sensor> Projection::sensor_of(RobotIndex robot, std::uint32_t id) const {
+    const auto* known = robot < robots().size() ? robots()[robot].find_sensor(id) : nullptr;
+    return known == nullptr ? nullptr : known->sensor;
+}
+
+bool Projection::is_outdated_by(const LogEntry& entry) const noexcept {
+    const bool is_exclusion =
+        std::holds_alternative<ScansExcluded>(entry) || std::holds_alternative<ExclusionLifted>(entry);
+    return is_exclusion && exclusions()->revision() <= revision();
+}
+
+Result<> Projection::apply(const LogEntry& entry) {
+    double unbounded = HUGE_VAL;
+    if (auto applied = apply(entry, unbounded); !applied) return applied.error();
+    return {};
+}
+
+Result<bool> Projection::apply(const LogEntry& entry, double& work) {
+    if (auto follows = rules_.check(entry); !follows) return follows.error();
+    if (is_outdated_by(entry)) {
+        return Error{Errc::kConflict,
+                     fmt::format("log entry {} changes which of the earlier scans are integrated; fold "
+                                 "the log from its beginning with its exclusions",
+                                 revision() + 1)};
+    }
+    const bool is_in = std::visit([&](const auto& body) { return integrate_entry(body, work); }, entry);
+    if (is_in) rules_.apply(entry);
+    return is_in;
+}
+
+// Each integrate_entry() requires an entry that rules_ accepts and returns whether it is completely applied.
+
+bool Projection::integrate_entry(const RobotJoined& joined, double&) {
+    if (joined.robot == robots_.size()) robots_.emplace_back();
+    return true;
+}
+
+bool Projection::integrate_entry(const SensorDescribed& described, double&) {
+    robots_[described.robot].fans.erase(described.sensor.id);
+    return true;
+}
+
+bool Projection::integrate_entry(const ScanTaken& taken, double& work) {
+    const Revision revision = this->revision() + 1;
+    auto& robot = robots_[taken.robot];
+    const auto& scan = taken.scan;
+    const ScanUse use = filter_.use_of(revision, scan_pose_of(taken));
+    const Sensor& sensor = *robots()[taken.robot].find_sensor(scan.sensor)->sensor;
+    if (use == ScanUse::kIntegrated && !integrate(robot, sensor, scan, work)) return false;
+    filter_.take(revision, scan_pose_of(taken));
+    if (use == ScanUse::kExcluded) ++robot.excluded;
+    if (use != ScanUse::kIntegrated) return true;
+    robot.scan_count += 1;
+    robot.newest = {revision, scan.stamp, scan.pose};
+    robot.trajectory.append(*robot.newest);
+    return true;
+}
+
+bool Projection::integrate_entry(const MapPatch& patch, double& work) {
+    work -= reach_of(config_, patch).work;
+    laser_.import(patch, revision() + 1);
+    return true;
+}
+
+/// Does nothing: the excluded scans were left out when they were reached.
+bool Projection::integrate_entry(const ScansExcluded&, double&) { return true; }
+
+bool Projection::integrate_entry(const ExclusionLifted&, double&) { return true; }
+
+/// @return whether the scan is completely integrated
+bool Projection::integrate(Robot& robot, const Sensor& sensor, const Scan& scan, double& work) {
+    const auto& fan = fan_of(robot, sensor, scan).fan;
+    const Pose2 T_map_sensor = compose(scan.pose, sensor.mount);
+    const ReadingRules readings{sensor.range_min, sensor.range_max, config_.drop_no_return};
+    const bool complete =
+        sensor.kind == SensorKind::kLaser
+            ? laser_.integrate({std::get<LaserFan>(fan), scan.ranges, T_map_sensor, readings}, revision() + 1, work)
+            : sonar_.integrate({std::get<SonarFan>(fan), scan.ranges, T_map_sensor, readings}, revision() + 1, work);
+    is_applying_ = !complete;
+    return complete;
+}
+
+const Projection::KnownFan& Projection::fan_of(Robot& robot, const Sensor& sensor, const Scan& scan) {
+    auto& known = robot.fans[sensor.id];
+    if (is_applying_) return known;
+    if (scan.angles || known.beams != scan.ranges.size()) {
+        const BeamAngles angles = angles_of(scan, sensor);
+        if (sensor.kind == SensorKind::kLaser) {
+            known.fan = make_laser_fan(config_, angles, sensor.aperture);
+        } else {
+            known.fan = make_sonar_fan(config_, angles, sensor.aperture);
+        }
+        known.beams = scan.angles ? 0 : scan.ranges.size();
+    }
+    return known;
+}
+
+std::size_t Projection::page_count() const noexcept {
+    std::size_t blocks = 0;
+    for (const auto& robot : robots_) blocks += robot.trajectory.block_count();
+    return chunk_count() + blocks;
+}
+
+Snapshot Projection::snapshot() {
+    Snapshot snapshot{.revision = revision(),
+                      .config = config_,
+                      .exclusions = filter_.exclusions(),
+                      .bounds = bounds(),
+                      .chunk_count = chunk_count(),
+                      .laser = laser_.snapshot(),
+                      .sonar = sonar_.snapshot()};
+    bring_classes_up_to(snapshot.laser);
+    snapshot.classes = classes_.snapshot();
+    snapshot.robots.reserve(robots_.size());
+    for (RobotIndex index = 0; index < robots_.size(); ++index) {
+        const LoggedRobot& logged = robots()[index];
+        const Robot& robot = robots_[index];
+        auto& state = snapshot.robots.emplace_back();
+        state.name = logged.name;
+        state.body_radius = logged.body_radius;
+        state.last_seq = logged.last_seq;
+        state.scan_count = robot.scan_count;
+        state.excluded = robot.excluded;
+        state.jumps = filter_.jumps().state(index).left_out;
+        state.trajectory = robot.trajectory.snapshot();
+        if (!robot.newest) continue;
+        state.stamp = robot.newest->stamp;
+        state.pose = robot.newest->pose;
+    }
+    return snapshot;
+}
+
+/// Cost: the chunks that changed since the last call, and their neighbours.
+void Projection::bring_classes_up_to(const LaserView& laser) {
+    std::vector<grid::ChunkKey> changed;
+    const Revision newest =
+        std::max(revision(), laser.newest({})); // chunks of a checkpoint may be newer than its state
+    laser.visit({}, classes_at_, [&](grid::ChunkKey key, const LaserChunk&) { changed.push_back(key); });
+    const auto types_of = [&](grid::ChunkKey key) {
+        const LaserChunk* chunk = laser.find(key);
+        return chunk == nullptr ? nullptr : &chunk->occ_types;
+    };
+    classes_.update(changed, types_of, newest);
+    classes_at_ = revision();
+}
+
+Projection Projection::branch() {
+    assert(!is_applying_);
+    Projection other(config_, filter_.exclusions(), laser_.branch(), sonar_.branch(), classes_.branch());
+    other.rules_ = rules_;
+    other.classes_at_ = classes_at_;
+    other.robots_.reserve(robots_.size());
+    for (const auto& robot : robots_) other.robots_.push_back(robot.branch());
+    other.filter_ = filter_;
+    return other;
+}
+
+/// Leaves out the fans, which are recomputed when needed.
+Projection::Robot Projection::Robot::branch() const { return {scan_count, excluded, newest, trajectory.branch(), {}}; }
+
+ProjectionState Projection::state() const {
+    ProjectionState state{revision(), bounds(), chunk_count(), {}, filter_.exclusions()};
+    for (RobotIndex index = 0; index < robots_.size(); ++index) {
+        const Robot& robot = robots_[index];
+        state.robots.push_back(
+            {robots()[index], robot.scan_count, robot.newest, filter_.jumps().state(index), robot.excluded});
+        if (robot.newest) state.pages += 1; // what restore() keeps of its trajectory
+    }
+    return state;
+}
+
+void Projection::restore(const ProjectionState& state) {
+    rules_ =
+        LogRules(state.revision, {state.robots.begin(), state.robots.end()}, state.exclusions->as_of(state.revision));
+    filter_ = ScanFilter(config_.max_jump, state.exclusions);
+    laser_.restore(state.bounds.laser);
+    sonar_.restore(state.bounds.sonar);
+    for (const auto& saved : state.robots) {
+        auto& robot = robots_.emplace_back();
+        robot.scan_count = saved.scan_count;
+        robot.excluded = saved.excluded;
+        robot.newest = saved.newest;
+        const bool has_point = saved.newest && saved.scan_count > 0; // the newest point; earlier ones are in the log
+        robot.trajectory = Trajectory(saved.scan_count - (has_point ? 1 : 0));
+        if (has_point) robot.trajectory.append(*saved.newest);
+        auto& jumps = filter_.jumps();
+        if (jumps.is_on()) jumps.restore(static_cast<RobotIndex>(robots_.size() - 1), saved.jumps);
+    }
+}
+
+LaserChunk& Projection::restore_laser_chunk(grid::ChunkKey key, Revision revision) {
+    return laser_.restore(key, revision);
+}
+
+SonarChunk& Projection::restore_sonar_chunk(grid::ChunkKey key, Revision revision) {
+    return sonar_.restore(key, revision);
+}
+
+} // namespace scanloom::mapping

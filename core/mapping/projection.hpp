@@ -1,0 +1,174 @@
+#pragma once
+
+#include "common/error/error.hpp"
+#include "common/scan/log_rules.hpp"
+#include "common/scan/scan_filter.hpp"
+#include "core/classify/class_layer.hpp"
+#include "core/mapping/snapshot.hpp"
+
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <span>
+#include <variant>
+#include <vector>
+
+namespace scanloom::mapping {
+
+/// Version of the mapping algorithms. Increased when the same log would give another map; a checkpoint of another
+/// version is discarded, and its log replayed.
+inline constexpr std::uint32_t kProjectionVersion = 4;
+
+/// The state of a projection without its chunks and without its trajectories, which the log contains. A checkpoint
+/// stores it with the chunks.
+struct ProjectionState {
+    struct Robot : LoggedRobot {
+        std::uint64_t scan_count = 0;          ///< integrated scans
+        std::optional<TrajectoryPoint> newest; ///< of the integrated scans
+        JumpFilter::Robot jumps;               ///< only with max_jump
+        std::uint64_t excluded = 0;            ///< scans that exclusions left out
+    };
+
+    Revision revision = 0;
+    LayerBounds bounds;
+    std::size_t pages = 0; ///< Projection::page_count() after restore()
+    std::vector<Robot> robots;
+    SharedExclusions exclusions = no_exclusions();
+};
+
+/// Approximate memory of one page of a projection: a chunk with its classes and its share of the trees, or a block of a
+/// trajectory.
+inline constexpr std::size_t kPageBytes = 20 << 10;
+
+/// The maps of one session, derived deterministically from its log.
+///
+/// The same entries with the same configuration give the same cells, however the entries were batched, replayed or
+/// interrupted.
+/// Threads: one writer; any number of threads may read snapshots.
+class Projection {
+public:
+    /// @param config  the session's settings
+    /// @param exclusions  exclusions of the whole log that will be applied; they leave out earlier scans
+    explicit Projection(const MapConfig& config, SharedExclusions exclusions = no_exclusions());
+
+    [[nodiscard]] const MapConfig& config() const noexcept { return config_; }
+    [[nodiscard]] Revision revision() const noexcept { return rules_.revision(); }
+
+    /// Boxes around the cells that any scan changed.
+    [[nodiscard]] LayerBounds bounds() const noexcept { return {laser_.bounds(), sonar_.bounds()}; }
+
+    /// Returns the number of chunks of laser and sonar layers.
+    [[nodiscard]] std::size_t chunk_count() const noexcept { return laser_.chunk_count() + sonar_.chunk_count(); }
+
+    /// Returns the memory use in pages: one for each chunk and for each block of a trajectory. See kPageBytes.
+    [[nodiscard]] std::size_t page_count() const noexcept;
+
+    /// Returns how many chunks of the last snapshot have been copied for writing. While that snapshot is held, that
+    /// many chunks exist in addition to chunk_count().
+    [[nodiscard]] std::size_t copied_count() const noexcept { return laser_.copied() + sonar_.copied(); }
+
+    /// Returns the robots that the log describes, by RobotIndex. Valid until the next apply().
+    [[nodiscard]] const std::vector<LoggedRobot>& robots() const noexcept { return rules_.robots(); }
+
+    /// Returns a sensor's description, or nullptr if the robot has not joined or has not described the sensor.
+    [[nodiscard]] std::shared_ptr<const Sensor> sensor_of(RobotIndex robot, std::uint32_t id) const;
+
+    /// Returns whether the newest entry was not integrated.
+    /// Precondition: the newest entry is a scan of that robot.
+    [[nodiscard]] bool has_left_out_newest(RobotIndex robot) const noexcept {
+        const auto& newest = robots_[robot].newest;
+        return !newest || newest->revision != revision();
+    }
+
+    [[nodiscard]] const SharedExclusions& exclusions() const noexcept { return filter_.exclusions(); }
+
+    /// Returns whether the next entry excludes scans that these maps may contain, or brings excluded scans back. The
+    /// log must then be replayed from its beginning with its exclusions; apply() rejects the entry.
+    [[nodiscard]] bool is_outdated_by(const LogEntry& entry) const noexcept;
+
+    /// Applies the next entry of the log to the maps.
+    /// Errors: kMalformed if the entry cannot follow the earlier ones (an unknown robot or sensor, a seq out of order),
+    ///         which occurs in damaged logs only; kConflict if is_outdated_by(entry). After an error, the projection is
+    ///         unchanged.
+    [[nodiscard]] Result<> apply(const LogEntry& entry);
+
+    /// Applies the next entry of the log, or a part of a large scan: returns early when `work` is used up.
+    /// @param entry  the entry that follows revision()
+    /// @param work  budget in the unit of Reach::work; reduced by the work that was done
+    /// @return whether the entry is completely applied; if false, repeat the call with the same entry before any other
+    ///         change
+    /// Errors: kMalformed if the entry cannot follow the earlier ones; kConflict if is_outdated_by(entry). After an
+    ///         error, the projection is unchanged.
+    [[nodiscard]] Result<bool> apply(const LogEntry& entry, double& work);
+
+    /// Returns the maps up to revision(). Cheap; later writes copy the chunks that they change.
+    [[nodiscard]] Snapshot snapshot();
+
+    /// Returns a second, independent projection with the same contents and its own writer. Cheap: both share their
+    /// chunks, and each copies those that it changes.
+    /// Precondition: no entry is partially applied.
+    [[nodiscard]] Projection branch();
+
+    /// Returns the state to store in a checkpoint.
+    [[nodiscard]] ProjectionState state() const;
+
+    /// Restores a projection from a checkpoint.
+    ///
+    /// Call it on a new projection: first restore() with the state, then restore_laser_chunk() or restore_sonar_chunk()
+    /// for every chunk, whose cells the caller fills in. Chunks may be newer than the state if writing the checkpoint
+    /// was interrupted. Applying the log's entries after the state's revision then gives the same maps. The restored
+    /// trajectories start with each robot's newest point; earlier points are only in the log.
+    void restore(const ProjectionState& state);
+    [[nodiscard]] LaserChunk& restore_laser_chunk(grid::ChunkKey key, Revision revision);
+    [[nodiscard]] SonarChunk& restore_sonar_chunk(grid::ChunkKey key, Revision revision);
+
+    /// Returns the newest revision of the restored chunks. If the log has fewer entries, the chunks belong to another
+    /// log.
+    [[nodiscard]] Revision newest_restored() const noexcept {
+        return std::max(laser_.newest_restored(), sonar_.newest_restored());
+    }
+
+private:
+    /// The beam directions of a sensor's own angles, reused for scans with the same number of beams.
+    struct KnownFan {
+        std::size_t beams = 0;
+        std::variant<LaserFan, SonarFan> fan;
+    };
+
+    /// The state of one robot.
+    struct Robot {
+        [[nodiscard]] Robot branch() const;
+
+        std::uint64_t scan_count = 0; // integrated
+        std::uint64_t excluded = 0;
+        std::optional<TrajectoryPoint> newest; // of its integrated scans
+        Trajectory trajectory;
+        std::map<std::uint32_t, KnownFan> fans;
+    };
+
+    Projection(const MapConfig& config, SharedExclusions exclusions, LaserLayers laser, SonarLayer sonar,
+               classify::ClassLayer classes);
+
+    bool integrate_entry(const RobotJoined& joined, double& work);
+    bool integrate_entry(const SensorDescribed& described, double& work);
+    bool integrate_entry(const ScanTaken& taken, double& work);
+    bool integrate_entry(const MapPatch& patch, double& work);
+    bool integrate_entry(const ScansExcluded& excluded, double& work);
+    bool integrate_entry(const ExclusionLifted& lifted, double& work);
+    [[nodiscard]] bool integrate(Robot& robot, const Sensor& sensor, const Scan& scan, double& work);
+    [[nodiscard]] const KnownFan& fan_of(Robot& robot, const Sensor& sensor, const Scan& scan);
+
+    void bring_classes_up_to(const LaserView& laser);
+
+    MapConfig config_;
+    LogRules rules_;
+    LaserLayers laser_;
+    SonarLayer sonar_;
+    classify::ClassLayer classes_;
+    Revision classes_at_ = 0;   // the classes match the laser chunks at this revision
+    std::vector<Robot> robots_; // by RobotIndex, as many as in rules_
+    ScanFilter filter_;
+    bool is_applying_ = false; // a scan is partially integrated
+};
+
+} // namespace scanloom::mapping

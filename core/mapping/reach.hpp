@@ -1,0 +1,66 @@
+#pragma once
+
+#include "common/scan/log_entry.hpp"
+#include "common/scan/scan.hpp"
+#include "common/scan/sensor.hpp"
+#include "core/grid/chunk.hpp"
+#include "core/mapping/map_config.hpp"
+#include "core/mapping/ray_models.hpp"
+#include "core/mapping/sonar_model.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+/// Estimates of work, used to integrate a scan in slices. The unit is about one visited cell or row of cells.
+namespace scanloom::mapping {
+
+/// Fixed work for each chunk that a scan changes.
+inline constexpr double kWorkPerChunk = 512.0;
+
+/// Work for a chunk in which a sweep has a verdict, for all laser layers together.
+inline constexpr double kWorkPerSweptChunk = 2048.0;
+
+/// Returns the work of tracing one beam.
+[[nodiscard]] double work_of_beam(const Reading& reading, const RayGeometry& geometry) noexcept;
+
+/// Returns the work of one sonar cone, where each cell costs more than with a laser.
+/// @param aperture  full width of the cone, radians
+[[nodiscard]] double work_of_cone(double aperture, RangeMm range, const ModelGeometry& geometry) noexcept;
+
+/// Returns the distance up to which a reading shows anything, in metres; 0 if it shows nothing.
+[[nodiscard]] double reached(RangeMm range, const ModelGeometry& geometry) noexcept;
+
+/// Upper bounds of what integrating a scan may change, computed beforehand to limit memory and work.
+struct Reach {
+    SensorKind kind = SensorKind::kLaser; ///< laser and sonar layers have separate chunks
+    grid::CellBox cells;                  ///< contains every cell that the scan can change; empty if it shows nothing
+    double work = 0.0;                    ///< in the unit of work.hpp; never much too low
+};
+
+/// Returns the reach of a scan.
+/// Cost: proportional to the number of beams; no beam is traced.
+[[nodiscard]] Reach reach_of(const MapConfig& config, const Sensor& sensor, const Scan& scan);
+
+/// Returns the reach of importing a part of a map.
+[[nodiscard]] Reach reach_of(const MapConfig& config, const MapPatch& patch);
+
+/// Returns the number of chunks that contain any cell of the box.
+[[nodiscard]] std::int64_t chunk_count_of(const grid::CellBox& box) noexcept;
+
+/// Limit of the work of one scan, greater than that of any laser scan.
+inline constexpr double kScanWorkMax = 1e9;
+
+/// Limit of a sensor's range, in cells.
+inline constexpr double kReachCellsMax = 8192.0;
+
+/// Checks a sensor's range against the cell size.
+/// Errors: kInvalidField if range_max spans more than kReachCellsMax cells.
+[[nodiscard]] Result<> check_reach(const MapConfig& config, const Sensor& sensor);
+
+/// Checks the work of integrating a scan or importing a part of a map.
+/// Errors: kInvalidField if the work exceeds kScanWorkMax and would take seconds: too many, too wide or too long cones,
+///         or too large a map, for the cell size.
+[[nodiscard]] Result<> check_work(const Reach& reach);
+
+} // namespace scanloom::mapping

@@ -1,0 +1,133 @@
+#pragma once
+
+#include "common/scan/scan_filter.hpp"
+#include "core/classify/cell_class.hpp"
+#include "core/grid/cell.hpp"
+#include "core/mapping/laser_layers.hpp"
+#include "core/mapping/layer.hpp"
+#include "core/mapping/map_config.hpp"
+#include "core/mapping/sonar_layer.hpp"
+#include "core/mapping/trajectory.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace scanloom::mapping {
+
+/// A scan that was applied, with its sensor's description at that time.
+struct FoldedScan {
+    Revision revision = 0; ///< of the scan's log entry
+    std::shared_ptr<const Sensor> sensor;
+    Scan scan;
+};
+
+/// The state of one robot. Its index in Snapshot::robots is its RobotIndex.
+struct RobotState {
+    std::string name;
+    std::optional<double> body_radius; ///< metres, as stated when the robot last joined
+    std::uint64_t last_seq = 0;
+    std::uint64_t scan_count = 0; ///< integrated
+    std::uint64_t jumps = 0;      ///< scans that max_jump left out
+    std::uint64_t excluded = 0;   ///< scans that exclusions left out
+    double stamp = 0.0;           ///< seconds, of the newest integrated scan
+    std::optional<Pose2> pose;    ///< T_map_robot of the newest integrated scan
+    TrajectoryView trajectory;
+
+    /// For display only, not part of the maps. Set only in a session that accepts scans, to a scan received since the
+    /// session was loaded.
+    std::shared_ptr<const FoldedScan> newest_scan;
+};
+
+/// Boxes around the cells of each layer that any scan changed.
+struct LayerBounds {
+    LaserLayers::Bounds laser;
+    grid::CellBox sonar;
+
+    friend bool operator==(const LayerBounds&, const LayerBounds&) = default;
+};
+
+/// Returns the box of cells that any layer has observed.
+[[nodiscard]] grid::CellBox bounds_of(const LayerBounds& bounds) noexcept;
+
+/// The maps of a session at one revision, shared by all readers. Immutable; hold it by shared_ptr<const Snapshot> as
+/// long as needed.
+struct Snapshot {
+    Revision revision = 0;
+    MapConfig config;
+    SharedExclusions exclusions = no_exclusions(); ///< of the session's log
+    LayerBounds bounds;
+    std::size_t chunk_count = 0; ///< of laser and sonar layers
+    LaserView laser;
+    SonarView sonar;
+    classify::ClassView classes;
+    std::vector<RobotState> robots;
+};
+
+/// Returns the box of cells that a layer shows.
+[[nodiscard]] grid::CellBox bounds_of(const Snapshot& snapshot, Layer layer) noexcept;
+
+/// Returns the box of cells that any layer has observed.
+[[nodiscard]] inline grid::CellBox bounds_of(const Snapshot& snapshot) noexcept { return bounds_of(snapshot.bounds); }
+
+/// The cells of one chunk of a layer, bottom row first.
+template <class Value>
+using ChunkCells = std::array<Value, std::size_t{grid::kChunkSide} * grid::kChunkSide>;
+
+/// Returns whether any sensor has observed the cell.
+[[nodiscard]] constexpr bool is_known(LogOdds cell) noexcept { return cell != kUnknownLogOdds; }
+[[nodiscard]] constexpr bool is_known(HimmCount cell) noexcept { return cell != kUnseenHimm; }
+[[nodiscard]] constexpr bool is_known(classify::CellClass cell) noexcept {
+    return cell != classify::CellClass::kUnexplored;
+}
+
+/// Calls use(view, cells_of) and returns its result.
+///
+/// `view` is the ChunkView that contains the layer; cells_of(chunk) returns the layer's ChunkCells of one of its
+/// chunks.
+template <class Use>
+decltype(auto) with_layer(const Snapshot& snapshot, Layer layer, Use&& use) {
+    switch (layer) {
+    case Layer::kHimm:
+        return use(
+            snapshot.laser, [](const LaserChunk& chunk) -> const auto& { return chunk.himm; });
+    case Layer::kSonar:
+        return use(
+            snapshot.sonar, [](const SonarChunk& chunk) -> const auto& { return chunk.cells; });
+    case Layer::kClassification:
+        return use(
+            snapshot.classes, [](const classify::ClassChunk& chunk) -> const auto& { return chunk.cells; });
+    case Layer::kOccupancy: break;
+    }
+    return use(
+        snapshot.laser, [](const LaserChunk& chunk) -> const auto& { return chunk.occupancy; });
+}
+
+/// Returns the SHA-256 digest of a layer's cells and cell size, in lower-case hexadecimal.
+///
+/// Equal maps have equal digests, whatever order, batches or checkpoints they were made through; different maps have
+/// different digests.
+///
+/// The hash covers the cell size in metres as a float64, then, in increasing order of ChunkKey, each chunk that
+/// contains a known cell: ci and cj as int32 and the 4096 cells, bottom row first. All numbers are little-endian. A
+/// cell is an int16 in the occupancy and sonar layers (log_odds.hpp) and one byte in the himm layer (himm.hpp) and in
+/// the classification (classify/cell_class.hpp).
+/// Cost: reads every cell of the layer once.
+[[nodiscard]] std::string digest_of(const Snapshot& snapshot, Layer layer);
+
+/// The largest map, in chunks, for which main_bounds_of() searches. Larger maps would take more than a few
+/// milliseconds.
+inline constexpr std::size_t kMainBoundsChunksMax = 65'536;
+
+/// Returns the part of a map to show first: the box of the largest explored area and of the areas around the robots'
+/// newest positions. Chunks that touch, or have one chunk between them, belong to the same area. Cells far away that
+/// result from a single scan with a wrong pose do not count.
+/// @return the box in cells; empty if nothing is explored or the map has more than kMainBoundsChunksMax chunks
+[[nodiscard]] grid::CellBox main_bounds_of(const Snapshot& snapshot);
+
+} // namespace scanloom::mapping

@@ -1,0 +1,73 @@
+#pragma once
+
+#include "core/mapping/sweep/sweep.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+/// Vectorised arithmetic of a sweep, for two, four or eight sectors at a time. Each function is compiled for several
+/// instruction sets; the one to use is selected at run time. All of them give the same bits: they use only +, -, *, /,
+/// square roots and rounding up, without fused operations, and process all sectors with the same operations.
+namespace scanloom::mapping::simd {
+
+/// The edges of a ring in map directions. Each array has room for sectors + 1 + kRingPadding values.
+struct Edges {
+    double* x;
+    double* y;
+};
+
+/// Rotates the ring's edges by an angle.
+/// @param cosine  of the angle
+/// @param sine  of the angle
+void turn_edges(const FanRing& ring, double cosine, double sine, const Edges& turned);
+
+/// The rule that converts a reading to radii in cells.
+struct RadiusRule {
+    double range_min = 0.0; ///< metres, and the same below
+    double range_max = 0.0;
+    double half_band = 0.0; ///< alpha / 2
+    double cells_per_metre = 0.0;
+    bool drop_no_return = false;
+};
+
+/// Computes for each sector the radius of the free area and the radius of the free and occupied area; both are 0 if the
+/// reading shows nothing.
+/// @param millimetres  one reading per sector, followed by kRingPadding values; 0: invalid; greater than range_max: no
+///                     return
+/// @param sectors  number of sectors
+/// @param rule  sensor limits and cell size
+/// @param inner  receives the radius of the free area, in cells
+/// @param outer  receives the radius of the free and occupied area, in cells
+/// Source: section 3 of the design models, model 1.
+void radii_of(const std::int32_t* millimetres, std::size_t sectors, const RadiusRule& rule, double* inner,
+              double* outer);
+
+inline constexpr std::size_t kContoursMax = 4;
+
+/// Nested areas that a scan sees: for each sector of a ring, everything nearer than a radius.
+///
+/// The border of each area is one closed line of arcs and of straight pieces along the edges between sectors. Lengths
+/// are in cells; x and y are parallel to the map's axes, with the sensor at the origin.
+///
+/// The edges are sectors + 1 values followed by kRingPadding unused values. The radii are `sectors` values with the
+/// same padding; radius[k][-1] equals the last one, and no value of radius[k] is greater than that of radius[k + 1].
+struct Contours {
+    Edges edges;
+    std::size_t sectors = 0;
+    std::size_t count = 0; ///< 2 or 4
+    std::array<const double*, kContoursMax> radius{};
+};
+
+/// A rectangle in cells, relative to the sensor.
+struct Box {
+    double x_min = 0.0;
+    double y_min = 0.0;
+    double x_max = 0.0;
+    double y_max = 0.0;
+};
+
+/// Returns the bounding box of the outermost contour and the sensor.
+[[nodiscard]] Box box_of(const Contours& contours);
+
+} // namespace scanloom::mapping::simd

@@ -1,0 +1,303 @@
+#include "robot_client/sources/ld06_live.hpp"
+
+#include "common/net/await_tuple.hpp"
+#include "robot_client/sources/ld06_packet.hpp"
+#include "robot_client/sources/ld06_remarks.hpp"
+#include "robot_client/sources/ld06_turns.hpp"
+#include "robot_client/sources/pose_feed.hpp"
+#include "robot_client/sources/seconds.hpp"
+
+#include <boost/asio/bind_cancellation_slot.hpp>
+#include <boost/asio/cancellation_signal.hpp>
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/asio/this_coro.hpp>
+#include <fmt/format.h>
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <deque>
+#include <exception>
+#include <optional>
+#include <utility>
+
+namespace scanloom::robot {
+
+namespace asio = boost::asio;
+
+namespace {
+
+/// Stops a coroutine from outside, if it still exists: it may have ended, or its executor may be destroyed.
+struct StopSwitch {
+    asio::cancellation_signal signal;
+    bool is_running = false;
+
+    void press() {
+        if (is_running) signal.emit(asio::cancellation_type::terminal);
+    }
+};
+
+/// Placed in a coroutine's frame, so that the switch knows when the frame is destroyed.
+class Running {
+public:
+    explicit Running(StopSwitch& stop) : stop_(stop) { stop_.is_running = true; }
+    Running(const Running&) = delete;
+    Running& operator=(const Running&) = delete;
+    ~Running() { stop_.is_running = false; }
+
+private:
+    StopSwitch& stop_;
+};
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::size_t kPosesKept = 4096; // 40 s of 100 a second
+constexpr double kOtherClock = 60.0;     // seconds; no late pose is this far from a scan
+
+double unix_now() { return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count(); }
+
+} // namespace
+
+/// State shared by the reading coroutines and next(). Timers and lines are in the frames of the coroutines, so they
+/// never outlive their executor.
+class Ld06Live::State final : public Ld06Listener, public std::enable_shared_from_this<Ld06Live::State> {
+public:
+    explicit State(Ld06LiveOptions options)
+        : options_(std::move(options)), sensor_(ld06_sensor(options_.scan)),
+          are_poses_coming_(options_.pose_descriptor >= 0) {}
+    State(const State&) = delete;
+    State& operator=(const State&) = delete;
+    ~State() override {
+        if (options_.pose_descriptor >= 0) ::close(options_.pose_descriptor); // never read
+    }
+
+    [[nodiscard]] asio::awaitable<Result<std::optional<Observation>>> next();
+    void stop();
+    [[nodiscard]] std::string remarks() const { return ld06_remarks(decoder_.counts(), turns_, losses_); }
+
+    void on_open() override;
+    bool on_bytes(std::span<const std::uint8_t> bytes) override;
+
+private:
+    struct Waiting {
+        Scan scan;
+        Clock::time_point until; ///< it waits for a pose until then
+    };
+
+    /// Makes the timer of next() known while next() waits.
+    class Asleep {
+    public:
+        Asleep(asio::steady_timer*& place, asio::steady_timer& timer) : place_(place) { place_ = &timer; }
+        Asleep(const Asleep&) = delete;
+        Asleep& operator=(const Asleep&) = delete;
+        ~Asleep() { place_ = nullptr; }
+
+    private:
+        asio::steady_timer*& place_;
+    };
+
+    /// The result of looking up the pose of a scan.
+    struct Answer {
+        std::optional<Pose2> pose;
+        bool is_final = true;
+    };
+
+    void start(const asio::any_io_executor& executor);
+    template <class Body>
+    void spawn(const asio::any_io_executor& executor, StopSwitch& stop, Body body);
+    void add(const StampedPose& pose);
+    [[nodiscard]] Answer pose_for(const Waiting& waiting) const;
+    [[nodiscard]] std::optional<Observation> take_ready();
+    void report_other_clock(double stamp);
+    [[nodiscard]] Result<std::optional<Observation>> end_when_stopped() const;
+    void wake();
+
+    Ld06LiveOptions options_;
+    std::shared_ptr<const Sensor> sensor_;
+    Ld06Decoder decoder_;
+    Ld06LiveClock clock_;
+    Ld06Turns turns_;
+    std::deque<Waiting> waiting_;
+    bool are_poses_coming_;
+    Ld06Losses losses_;
+    std::uint64_t given_ = 0; ///< scans
+    bool other_clock_reported_ = false;
+    bool poses_ahead_reported_ = false;
+    std::optional<Error> ended_; ///< why the sensor gives no more scans
+    bool is_started_ = false;
+    bool is_stopped_ = false;
+    asio::steady_timer* asleep_ = nullptr;
+    StopSwitch stop_sensor_;
+    StopSwitch stop_poses_;
+};
+
+// Reading -------------------------------------------------------------------------------------------------------------
+
+/// Runs `body` until it ends or is stopped.
+template <class Body>
+void Ld06Live::State::spawn(const asio::any_io_executor& executor, StopSwitch& stop, Body body) {
+    const auto run = [](std::shared_ptr<State> self, StopSwitch& own, Body inner) -> asio::awaitable<void> {
+        const Running running(own);
+        co_await inner(std::move(self));
+    };
+    const auto at_end = [self = shared_from_this()](const std::exception_ptr& failed) {
+        if (failed) std::rethrow_exception(failed);
+    };
+    asio::co_spawn(executor, run(shared_from_this(), stop, body),
+                   asio::bind_cancellation_slot(stop.signal.slot(), at_end));
+}
+
+void Ld06Live::State::start(const asio::any_io_executor& executor) {
+    is_started_ = true;
+    spawn(executor, stop_sensor_, [](std::shared_ptr<State> self) -> asio::awaitable<void> {
+        self->ended_ = co_await read_ld06_device(self->options_.device, *self);
+        self->wake();
+    });
+    if (!are_poses_coming_) return;
+    spawn(executor, stop_poses_, [](std::shared_ptr<State> self) -> asio::awaitable<void> {
+        const auto& note = self->options_.device.note;
+        const auto on_pose = [state = self.get()](const StampedPose& pose) { state->add(pose); };
+        const auto end = co_await feed_poses(std::exchange(self->options_.pose_descriptor, -1), on_pose, note);
+        if (!end.empty()) note(end + "; scans after the last pose are skipped");
+        self->are_poses_coming_ = false;
+        self->wake();
+    });
+}
+
+void Ld06Live::State::on_open() {
+    decoder_.restart();
+    clock_.restart();
+    turns_.restart();
+}
+
+bool Ld06Live::State::on_bytes(std::span<const std::uint8_t> bytes) {
+    const double arrival = unix_now();
+    decoder_.feed(bytes);
+    bool is_packet = false;
+    while (const auto packet = decoder_.next()) {
+        is_packet = true;
+        turns_.add(*packet, clock_.stamp(packet->timestamp, arrival));
+    }
+    while (const auto turn = turns_.next()) {
+        waiting_.push_back({ld06_scan(*turn, options_.scan), Clock::now() + options_.pose_wait});
+        if (waiting_.size() > kScansWaitingMax) {
+            waiting_.pop_front();
+            ++losses_.too_many_waiting;
+        }
+        wake();
+    }
+    return is_packet;
+}
+
+void Ld06Live::State::add(const StampedPose& pose) {
+    auto* timeline = std::get_if<PoseTimeline>(&options_.poses);
+    if (timeline == nullptr) return;
+    const double now = unix_now();
+    const double latest = now + seconds(options_.pose_ahead_max);
+    timeline->forget_after(latest); // the clock was set back
+    if (pose.stamp > latest) {
+        if (std::exchange(poses_ahead_reported_, true)) return;
+        options_.device.note(fmt::format("poses are skipped: a pose with t = {:.0f} arrived at {:.0f}; for a device t "
+                                         "is Unix time in seconds, and the clocks must agree",
+                                         pose.stamp, now));
+        return;
+    }
+    timeline->insert(pose);
+    timeline->keep_newest(kPosesKept);
+    wake();
+}
+
+// Giving --------------------------------------------------------------------------------------------------------------
+
+asio::awaitable<Result<std::optional<Observation>>> Ld06Live::State::next() {
+    const auto self = shared_from_this();
+    const auto executor = co_await asio::this_coro::executor;
+    if (!is_started_ && !is_stopped_) start(executor);
+    asio::steady_timer timer(executor);
+    const Asleep asleep(asleep_, timer);
+    while (!is_stopped_) {
+        if (auto ready = take_ready()) co_return std::optional(std::move(*ready));
+        if (waiting_.empty() && ended_) co_return *ended_;
+        timer.expires_at(waiting_.empty() ? Clock::time_point::max() : waiting_.front().until);
+        co_await timer.async_wait(kAwaitTuple);
+    }
+    co_return end_when_stopped();
+}
+
+/// Returns the next scan with a known pose; skips scans that will have none.
+std::optional<Observation> Ld06Live::State::take_ready() {
+    while (!waiting_.empty()) {
+        const Answer answer = pose_for(waiting_.front());
+        if (!answer.is_final) return std::nullopt;
+        Scan scan = std::move(waiting_.front().scan);
+        waiting_.pop_front();
+        if (answer.pose) {
+            scan.pose = *answer.pose;
+            ++given_;
+            return Observation{sensor_, std::move(scan)};
+        }
+        ++losses_.without_pose;
+        report_other_clock(scan.stamp);
+    }
+    return std::nullopt;
+}
+
+/// Reports poses whose clock has another origin. Without the message they would be skipped silently forever.
+void Ld06Live::State::report_other_clock(double stamp) {
+    const auto& timeline = std::get<PoseTimeline>(options_.poses);
+    if (timeline.empty() || other_clock_reported_) return;
+    const double newest = timeline.newest().stamp;
+    if (std::max(stamp - newest, timeline.oldest().stamp - stamp) <= kOtherClock) return;
+    other_clock_reported_ = true;
+    options_.device.note(fmt::format("scans are skipped: the poses are at t = {:.0f}, and the scans at t = {:.0f}; for "
+                                     "a device t is Unix time in seconds",
+                                     newest, stamp));
+}
+
+/// Returns an error if there were scans and none had a pose, although stop() was requested.
+Result<std::optional<Observation>> Ld06Live::State::end_when_stopped() const {
+    if (given_ > 0 || losses_.without_pose == 0) return std::optional<Observation>{};
+    return Error{Errc::kNotFound, fmt::format("no scan was sent: none of {} scans is within the time range of the "
+                                              "poses; for a device the t of --poses is Unix time in seconds",
+                                              losses_.without_pose)};
+}
+
+Ld06Live::State::Answer Ld06Live::State::pose_for(const Waiting& waiting) const {
+    if (const auto* fixed = std::get_if<Pose2>(&options_.poses)) return {*fixed};
+    const auto& timeline = std::get<PoseTimeline>(options_.poses);
+    const double stamp = waiting.scan.stamp;
+    if (const auto pose = timeline.at(stamp)) return {*pose};
+    const bool is_after_all = timeline.empty() || stamp > timeline.newest().stamp;
+    if (!is_after_all) return {};
+    if (are_poses_coming_ && Clock::now() < waiting.until) return {std::nullopt, false};
+    if (are_poses_coming_ && !timeline.empty() && stamp - timeline.newest().stamp <= seconds(options_.pose_age_max)) {
+        return {timeline.newest().robot};
+    }
+    return {};
+}
+
+void Ld06Live::State::wake() {
+    if (asleep_ != nullptr) asleep_->cancel();
+}
+
+void Ld06Live::State::stop() {
+    is_stopped_ = true;
+    stop_sensor_.press();
+    stop_poses_.press();
+    wake();
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+
+Ld06Live::Ld06Live(Ld06LiveOptions options) : state_(std::make_shared<State>(std::move(options))) {}
+
+Ld06Live::~Ld06Live() { state_->stop(); }
+
+asio::awaitable<Result<std::optional<Observation>>> Ld06Live::next() { return state_->next(); }
+
+void Ld06Live::stop() { state_->stop(); }
+
+std::string Ld06Live::remarks() const { return state_->remarks(); }
+
+} // namespace scanloom::robot

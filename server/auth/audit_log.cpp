@@ -1,0 +1,76 @@
+#include "server/auth/audit_log.hpp"
+
+#include "common/scan/limits.hpp"
+#include "server/log/context.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <string>
+#include <string_view>
+#include <utility>
+
+namespace scanloom::auth {
+namespace {
+
+constexpr double kBetweenStrangers = 1.0; // seconds
+
+/// Returns text from a client only if it is a valid name, which has neither spaces nor line breaks.
+std::string_view name_or(std::string_view text, std::string_view otherwise) {
+    if (text.empty()) return "-";
+    return is_valid_name(text) ? text : otherwise;
+}
+
+void tell(const auth::RefusalTable::Line& line) {
+    const auto& [port, reason, who, token, session] = line.newest;
+    log::warn({.session = is_valid_name(session) ? std::string_view(session) : "", .peer = who},
+              "event=refused port={} who={} token={} reason={} session={} count={}", name_of(port), who,
+              name_or(token, "?"), name_of(reason), name_or(session, "?"), line.count);
+}
+
+} // namespace
+
+double steady_seconds() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+AuditLog::~AuditLog() {
+    for (const auto& line : table_.rest()) tell(line);
+}
+
+void AuditLog::note(auth::Refusal refusal) {
+    counters_.of(refusal.port, refusal.reason).Increment();
+    std::vector<auth::RefusalTable::Line> lines;
+    {
+        const std::lock_guard lock(mutex_);
+        lines = table_.note(std::move(refusal), now_());
+    }
+    for (const auto& line : lines) tell(line);
+}
+
+void AuditLog::tell_what_is_due() {
+    std::vector<auth::RefusalTable::Line> lines;
+    {
+        const std::lock_guard lock(mutex_);
+        lines = table_.due(now_());
+    }
+    for (const auto& line : lines) tell(line);
+}
+
+std::optional<std::uint64_t> AuditLog::take_line_of_stranger() {
+    const std::lock_guard lock(mutex_);
+    const double now = now_();
+    if (stranger_told_ && now < *stranger_told_ + kBetweenStrangers) {
+        ++strangers_untold_;
+        return std::nullopt;
+    }
+    stranger_told_ = now;
+    return std::exchange(strangers_untold_, 0);
+}
+
+void AuditLog::note(auth::Port port, const std::string& who, net::ClientFault fault) {
+    const bool is_missing = fault == net::ClientFault::kMissing;
+    note({port, is_missing ? auth::Reason::kNoCertificate : auth::Reason::kForeignCertificate, who, {}, {}});
+}
+
+} // namespace scanloom::auth

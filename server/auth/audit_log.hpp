@@ -1,0 +1,57 @@
+#pragma once
+
+#include "common/net/tls.hpp"
+#include "server/auth/refusals.hpp"
+#include "server/metrics/metrics.hpp"
+
+#include <cstdint>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <string>
+
+namespace scanloom::auth {
+
+/// Returns the time of a monotonic clock, in seconds.
+[[nodiscard]] double steady_seconds();
+
+/// The audit log: counts refusals and logs them. It never receives secrets.
+///
+/// A line reads: event=refused port=robot who=10.0.0.7 token=depot reason=wrong_session session=lab count=1
+/// Threads: any thread.
+class AuditLog {
+public:
+    /// @param now  a monotonic clock, in seconds
+    explicit AuditLog(metrics::RefusalCounters& counters, std::function<double()> now = steady_seconds)
+        : counters_(counters), now_(std::move(now)) {}
+
+    /// Logs the refusals that were not logged yet.
+    ~AuditLog();
+    AuditLog(const AuditLog&) = delete;
+    AuditLog& operator=(const AuditLog&) = delete;
+
+    /// Counts the refusal, and logs it as RefusalTable allows.
+    void note(auth::Refusal refusal);
+
+    /// Counts and logs a client without a valid certificate.
+    /// @param who  the client's address, without a port
+    void note(auth::Port port, const std::string& who, net::ClientFault fault);
+
+    /// Logs the lines that are due. Call it periodically.
+    void tell_what_is_due();
+
+    /// Decides whether to log the end of a connection that was never admitted. At most one per second is logged, so
+    /// that such connections cannot fill the disk.
+    /// @return how many were not logged since the last line, or nullopt if this one is not to be logged either
+    [[nodiscard]] std::optional<std::uint64_t> take_line_of_stranger();
+
+private:
+    metrics::RefusalCounters& counters_;
+    std::function<double()> now_;
+    std::mutex mutex_; // guards the following members
+    auth::RefusalTable table_;
+    std::optional<double> stranger_told_; // time of the last such line
+    std::uint64_t strangers_untold_ = 0;  // connections since then
+};
+
+} // namespace scanloom::auth

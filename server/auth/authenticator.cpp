@@ -1,0 +1,184 @@
+#include "server/auth/authenticator.hpp"
+
+#include <fmt/format.h>
+
+#include <map>
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace scanloom::auth {
+
+auth::TokenRef Credential::token() const {
+    const std::lock_guard lock(mutex_);
+    return token_;
+}
+
+void Credential::when_changed(const std::function<void()>& told) {
+    bool has_changed = false;
+    {
+        const std::lock_guard lock(mutex_);
+        told_ = told;
+        has_changed = changed_;
+    }
+    if (has_changed) told();
+}
+
+void Credential::change(auth::TokenRef token) {
+    std::function<void()> told;
+    {
+        const std::lock_guard lock(mutex_);
+        token_ = std::move(token);
+        changed_ = true;
+        told = told_;
+    }
+    if (told) told();
+}
+
+namespace {
+
+using auth::Reason;
+using auth::Token;
+using auth::TokenRef;
+
+Denied denied(Reason reason, const TokenRef& token, std::string message, Errc code = Errc::kUnauthorized) {
+    return {reason, token ? token->name : std::string(), {code, std::move(message)}};
+}
+
+Denied unknown(std::string_view secret) {
+    if (secret.empty())
+        return denied(Reason::kNoToken, nullptr,
+                      "a token is needed and none was sent; ask whoever runs this server for one");
+    return denied(Reason::kUnknownToken, nullptr,
+                  "the token that was sent is not in force here; ask whoever runs this server for one");
+}
+
+TokenRef found(const std::shared_ptr<const auth::TokenSet>& tokens, std::string_view hash) {
+    return tokens ? tokens->find_hash(hash) : auth::anonymous();
+}
+
+bool permits(const Token& token, Purpose purpose) {
+    return purpose == Purpose::kDrive ? may_drive(token.role) : may_look(token.role);
+}
+
+} // namespace
+
+struct Authenticator::Ledger : std::enable_shared_from_this<Authenticator::Ledger> {
+    /// The connected robots of one token, with their number of links: a robot that reconnects has two for a short time.
+    using Robots = std::map<std::string, std::size_t>;
+
+    mutable std::mutex mutex;
+    std::shared_ptr<const auth::TokenSet> tokens; // null: every client is admitted
+    std::map<const Credential*, std::weak_ptr<Credential>> passes;
+    std::map<std::string, Robots, std::less<>> connected; // by the token's hash
+
+    std::shared_ptr<const auth::TokenSet> in_force() const {
+        const std::lock_guard lock(mutex);
+        return tokens;
+    }
+
+    std::optional<Denied> objection(const TokenRef& token, const std::string& robot) const {
+        const auto known = connected.find(token->hash);
+        if (known == connected.end() || known->second.contains(robot)) return std::nullopt;
+        const auto limit = token->limits.connections;
+        if (known->second.size() < limit) return std::nullopt;
+        return denied(Reason::kLimit, token,
+                      fmt::format("{} robots are connected with the token '{}', the most that its limit `connections` "
+                                  "allows; disconnect one, or have the limit raised",
+                                  limit, token->name),
+                      Errc::kOverloaded);
+    }
+
+    std::shared_ptr<Credential> give(const TokenRef& token, Purpose purpose, const std::string& session,
+                                     const std::string& user) {
+        auto forget_it = [ledger = shared_from_this()](Credential* pass) {
+            ledger->forget(*pass);
+            delete pass;
+        };
+        std::shared_ptr<Credential> pass(new Credential(token, purpose, session, user), std::move(forget_it));
+        passes.emplace(pass.get(), pass);
+        if (purpose == Purpose::kDrive) ++connected[token->hash][user];
+        return pass;
+    }
+
+    void forget(const Credential& pass) {
+        const std::lock_guard lock(mutex);
+        passes.erase(&pass);
+        if (pass.purpose() != Purpose::kDrive) return;
+        auto& robots = connected[pass.hash()];
+        if (--robots[pass.user()] == 0) robots.erase(pass.user());
+        if (robots.empty()) connected.erase(pass.hash());
+    }
+};
+
+namespace {
+
+/// Returns why the token does not permit the purpose, or nullopt if it does.
+std::optional<Denied> objection(const TokenRef& token, Purpose purpose, const std::string& session) {
+    if (!permits(*token, purpose)) {
+        return denied(Reason::kWrongRole, token,
+                      fmt::format("the token '{}' has the role {}, which {}; use one of another role", token->name,
+                                  name_of(token->role),
+                                  purpose == Purpose::kDrive ? "sends no scans" : "does not look at maps"));
+    }
+    if (is_for(*token, session)) return std::nullopt;
+    return denied(Reason::kWrongSession, token,
+                  fmt::format("the token '{}' is not for the session '{}'; use another token or another session",
+                              token->name, session));
+}
+
+} // namespace
+
+Authenticator::Authenticator() : ledger_(std::make_shared<Ledger>()) {}
+
+Authenticator::Authenticator(auth::TokenSet tokens) : Authenticator() { replace(std::move(tokens)); }
+
+bool Authenticator::is_open() const { return ledger_->in_force() == nullptr; }
+
+Admitted<TokenRef> Authenticator::admit(std::string_view secret) const {
+    const auto tokens = ledger_->in_force(); // hashing needs no lock
+    if (auto token = tokens ? tokens->find(secret) : auth::anonymous()) return token;
+    return unknown(secret);
+}
+
+TokenRef Authenticator::find_hash(std::string_view hash) const { return found(ledger_->in_force(), hash); }
+
+Admitted<std::shared_ptr<Credential>> Authenticator::let_drive(std::string_view secret, const std::string& session,
+                                                               const std::string& robot) {
+    const auto admitted = admit(secret);
+    if (!admitted) return admitted.error();
+    const std::lock_guard lock(ledger_->mutex);
+    const auto token = found(ledger_->tokens, (*admitted)->hash); // the tokens may have been replaced meanwhile
+    if (!token) return unknown(secret);
+    if (auto why = objection(token, Purpose::kDrive, session)) return *why;
+    const std::string user = session + "/" + robot;
+    if (auto why = ledger_->objection(token, user)) return *why;
+    return ledger_->give(token, Purpose::kDrive, session, user);
+}
+
+Admitted<std::shared_ptr<Credential>> Authenticator::let_watch(const TokenRef& token, const std::string& session) {
+    const std::lock_guard lock(ledger_->mutex);
+    const auto now = found(ledger_->tokens, token->hash);
+    if (!now) return unknown(token->hash);
+    if (auto why = objection(now, Purpose::kWatch, session)) return *why;
+    return ledger_->give(now, Purpose::kWatch, session, "");
+}
+
+void Authenticator::replace(auth::TokenSet tokens) {
+    std::vector<std::pair<std::shared_ptr<Credential>, TokenRef>> changes;
+    {
+        const std::lock_guard lock(ledger_->mutex);
+        ledger_->tokens = std::make_shared<const auth::TokenSet>(std::move(tokens));
+        for (const auto& [key, weak] : ledger_->passes) {
+            auto pass = weak.lock();
+            if (!pass) continue;
+            auto token = found(ledger_->tokens, pass->hash());
+            if (token && objection(token, pass->purpose(), pass->session())) token = nullptr;
+            changes.emplace_back(std::move(pass), std::move(token));
+        }
+    }
+    // Without the lock: the callback may call the authenticator.
+    for (auto& [pass, token] : changes) pass->change(std::move(token));
+}
+
+} // namespace scanloom::auth

@@ -1,0 +1,118 @@
+#pragma once
+
+#include "common/error/error.hpp"
+#include "server/auth/refusals.hpp"
+#include "server/auth/token.hpp"
+#include "server/auth/token_set.hpp"
+
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <string_view>
+#include <utility>
+
+namespace scanloom::auth {
+
+/// What a pass permits.
+enum class Purpose {
+    kDrive, ///< a robot's link
+    kWatch, ///< a live viewer
+};
+
+/// Permission to use a session while the tokens in force allow it. Granted by Authenticator.
+/// Threads: any thread.
+class Credential {
+public:
+    Credential(auth::TokenRef token, Purpose purpose, std::string session, std::string user)
+        : purpose_(purpose), session_(std::move(session)), user_(std::move(user)), hash_(token->hash),
+          token_(std::move(token)) {}
+
+    /// Returns the token as it is in force now, or null if it no longer permits this use.
+    [[nodiscard]] auth::TokenRef token() const;
+
+    /// Sets the callback for changes of token(). It is called from any thread after each replacement of the tokens, and
+    /// at once if one has happened already.
+    void when_changed(const std::function<void()>& told);
+
+    [[nodiscard]] Purpose purpose() const noexcept { return purpose_; }
+    [[nodiscard]] const std::string& session() const noexcept { return session_; }
+    [[nodiscard]] const std::string& user() const noexcept { return user_; }
+    [[nodiscard]] const std::string& hash() const noexcept { return hash_; }
+
+    /// Sets the token and calls the callback. Only for Authenticator.
+    void change(auth::TokenRef token);
+
+private:
+    const Purpose purpose_;
+    const std::string session_;
+    const std::string user_; // distinguishes the robots of one token
+    const std::string hash_;
+
+    mutable std::mutex mutex_; // guards the following members; held only to copy them
+    auth::TokenRef token_;
+    bool changed_ = false;
+    std::function<void()> told_;
+};
+
+/// Why a client was refused: the reason and token for the log, the error for the client.
+struct Denied {
+    auth::Reason reason = auth::Reason::kNoToken;
+    std::string token; ///< the token's name; empty: not known
+    Error error;
+};
+
+template <class T>
+using Admitted = boost::system::result<T, Denied>;
+
+[[noreturn]] inline void throw_exception_from_error(const Denied& denied, const boost::source_location&) {
+    throw ErrorException(denied.error);
+}
+
+/// Authenticates clients by their tokens, and grants passes for robot links and live viewers.
+///
+/// Without tokens every client is admitted, with the token auth::anonymous().
+/// Threads: any thread; calls wait only for each other.
+class Authenticator {
+public:
+    /// Creates a authenticator without tokens.
+    Authenticator();
+
+    /// Creates a authenticator with tokens; an empty set admits no client.
+    explicit Authenticator(auth::TokenSet tokens);
+
+    /// Returns whether the server has no tokens, so that every client is admitted.
+    [[nodiscard]] bool is_open() const;
+
+    /// Returns the token of the secret.
+    /// Errors: kNoToken if the secret is empty; kUnknownToken if its token is not in force.
+    [[nodiscard]] Admitted<auth::TokenRef> admit(std::string_view secret) const;
+
+    /// Returns the token by its secret's hash, or null if it is not in force.
+    [[nodiscard]] auth::TokenRef find_hash(std::string_view hash) const;
+
+    /// Permits the robot a link to the session, which need not exist.
+    ///
+    /// The pass counts as one of the token's connections until it is destroyed. Several passes for one robot in one
+    /// session count once, because the session keeps only the robot's newest link.
+    /// Errors: those of admit(); kWrongRole or kWrongSession if the token does not permit it; kLimit if the token's
+    ///         `connections` are used up.
+    [[nodiscard]] Admitted<std::shared_ptr<Credential>> let_drive(std::string_view secret, const std::string& session,
+                                                                  const std::string& robot);
+
+    /// Permits an admitted client to watch the session.
+    /// Errors: kUnknownToken if the token is no longer in force; kWrongRole or kWrongSession if it does not permit it.
+    [[nodiscard]] Admitted<std::shared_ptr<Credential>> let_watch(const auth::TokenRef& token,
+                                                                  const std::string& session);
+
+    /// Replaces the tokens in force. Passes that the new tokens do not permit end; the other passes get their token's
+    /// new limits.
+    void replace(auth::TokenSet tokens);
+
+private:
+    struct Ledger;
+
+    const std::shared_ptr<Ledger> ledger_; // outlives the passes
+};
+
+} // namespace scanloom::auth

@@ -1,0 +1,71 @@
+#include "server/auth/login_sessions.hpp"
+
+#include "server/auth/secret.hpp"
+
+namespace scanloom::auth {
+
+void LoginTable::open(std::string_view cookie, const std::string& token_hash, double now) {
+    make_room(token_hash, now);
+    logins_[hash_of(cookie)] = {token_hash, now};
+}
+
+std::optional<std::string> LoginTable::use(std::string_view cookie, double now) {
+    const auto login = logins_.find(hash_of(cookie));
+    if (login == logins_.end()) return std::nullopt;
+    if (now - login->second.used > kIdleSeconds) {
+        logins_.erase(login);
+        return std::nullopt;
+    }
+    login->second.used = now;
+    return login->second.token_hash;
+}
+
+void LoginTable::close(std::string_view cookie) { logins_.erase(hash_of(cookie)); }
+
+void LoginTable::make_room(const std::string& token_hash, double now) {
+    std::erase_if(logins_, [&](const auto& login) { return now - login.second.used > kIdleSeconds; });
+    std::size_t of_token = 0;
+    auto oldest = logins_.end();
+    auto oldest_of_token = logins_.end();
+    for (auto login = logins_.begin(); login != logins_.end(); ++login) {
+        const auto is_older = [&](auto than) {
+            return than == logins_.end() || login->second.used < than->second.used;
+        };
+        if (is_older(oldest)) oldest = login;
+        if (login->second.token_hash != token_hash) continue;
+        ++of_token;
+        if (is_older(oldest_of_token)) oldest_of_token = login;
+    }
+    if (of_token >= kLoginsOfTokenMax) {
+        logins_.erase(oldest_of_token);
+    } else if (logins_.size() >= kLoginsMax) {
+        logins_.erase(oldest);
+    }
+}
+
+} // namespace scanloom::auth
+
+namespace scanloom::auth {
+
+std::string LoginSessions::open(const auth::Token& token) {
+    auto cookie = random_secret();
+    const std::lock_guard lock(mutex_);
+    table_.open(cookie, token.hash, now_());
+    return cookie;
+}
+
+auth::TokenRef LoginSessions::find(std::string_view cookie, const Authenticator& authenticator) {
+    std::optional<std::string> hash;
+    {
+        const std::lock_guard lock(mutex_);
+        hash = table_.use(cookie, now_());
+    }
+    return hash ? authenticator.find_hash(*hash) : nullptr;
+}
+
+void LoginSessions::close(std::string_view cookie) {
+    const std::lock_guard lock(mutex_);
+    table_.close(cookie);
+}
+
+} // namespace scanloom::auth

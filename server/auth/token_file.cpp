@@ -1,0 +1,87 @@
+#include "server/auth/token_file.hpp"
+
+#include "server/auth/token_set.hpp"
+
+#include <fmt/format.h>
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstddef>
+#include <string>
+#include <system_error>
+
+namespace scanloom::auth {
+namespace {
+
+constexpr std::size_t kBytesMax = std::size_t{4} << 20;
+
+/// An open file descriptor, closed by the destructor.
+class Opened {
+public:
+    explicit Opened(const std::filesystem::path& path)
+        : descriptor_(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {}
+    ~Opened() {
+        if (descriptor_ >= 0) ::close(descriptor_);
+    }
+    Opened(const Opened&) = delete;
+    Opened& operator=(const Opened&) = delete;
+
+    [[nodiscard]] int descriptor() const noexcept { return descriptor_; }
+
+private:
+    int descriptor_;
+};
+
+Error unreadable(const std::filesystem::path& path, int why) {
+    return {Errc::kNotFound,
+            fmt::format("{}: the tokens cannot be read: {}", path.string(), std::generic_category().message(why))};
+}
+
+/// Checks the open file, not the path, so that the file cannot be replaced between the check and the read.
+Result<> check_file(const std::filesystem::path& path, int descriptor) {
+    struct stat facts {};
+    if (::fstat(descriptor, &facts) != 0) return unreadable(path, errno);
+    if (!S_ISREG(facts.st_mode)) {
+        return Error{Errc::kNotFound, fmt::format("{}: this is no file; name the file with the tokens", path.string())};
+    }
+    if ((facts.st_mode & (S_IWGRP | S_IWOTH)) != 0) {
+        return Error{Errc::kInvalidField,
+                     fmt::format("{0}: others than its owner may write to it, and so let themselves in; chmod go-w {0}",
+                                 path.string())};
+    }
+    if (static_cast<std::size_t>(facts.st_size) <= kBytesMax) return {};
+    return Error{Errc::kTooLarge,
+                 fmt::format("{}: it has {} bytes; tokens take {} at most", path.string(), facts.st_size, kBytesMax)};
+}
+
+Result<std::string> content_of(const std::filesystem::path& path) {
+    const Opened file(path);
+    if (file.descriptor() < 0) return unreadable(path, errno);
+    if (auto fit = check_file(path, file.descriptor()); !fit) return fit.error();
+    std::string content(kBytesMax, '\0');
+    std::size_t size = 0;
+    while (size < content.size()) {
+        const auto got = ::read(file.descriptor(), content.data() + size, content.size() - size);
+        if (got < 0 && errno == EINTR) continue;
+        if (got < 0) return unreadable(path, errno);
+        if (got == 0) break;
+        size += static_cast<std::size_t>(got);
+    }
+    content.resize(size);
+    return content;
+}
+
+} // namespace
+
+Result<auth::TokenSet> read_tokens(const std::filesystem::path& path) {
+    const auto content = content_of(path);
+    if (!content) return content.error();
+    auto tokens = auth::parse_tokens(*content);
+    if (!tokens) return prefixed(path.string() + ":", tokens.error());
+    return tokens;
+}
+
+} // namespace scanloom::auth

@@ -1,0 +1,59 @@
+#pragma once
+
+#include "common/error/error.hpp"
+#include "server/auth/token.hpp"
+
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace scanloom::auth {
+
+/// An immutable set of tokens.
+class TokenSet {
+public:
+    TokenSet() = default;
+
+    /// Pre: all names differ, all hashes differ, and each hash satisfies is_hash().
+    explicit TokenSet(std::vector<TokenRef> tokens) : tokens_(std::move(tokens)) {}
+
+    /// Finds the token of the secret.
+    /// @return null if there is none
+    /// Cost: one hash, and one comparison with every token. The time does not depend on the secret and so reveals
+    ///       nothing.
+    [[nodiscard]] TokenRef find(std::string_view secret) const;
+
+    /// Finds the token by hash_of() its secret.
+    /// @return null if there is none
+    [[nodiscard]] TokenRef find_hash(std::string_view hash) const;
+
+    [[nodiscard]] const std::vector<TokenRef>& tokens() const noexcept { return tokens_; }
+
+private:
+    std::vector<TokenRef> tokens_;
+};
+
+} // namespace scanloom::auth
+
+/// Reads and writes tokens as TOML.
+namespace scanloom::auth {
+
+/// Parses the file of --tokens:
+///
+///     [[token]]
+///     name = "depot-robots"
+///     sha256 = "9f86d081..."                # of the secret
+///     role = "robot"                        # or viewer, operator
+///     sessions = ["depot-*", "test"]        # patterns
+///     limits = { connections = 8, sensors = 4 }   # the members of Limits; omitted ones have their defaults
+///
+/// Errors: kMalformed if the text is not TOML or has non-ASCII characters outside comments; kInvalidField if it has no
+///         [[token]] or more than 10 000, if a key is missing, unknown or has an invalid value, or if two tokens have
+///         the same name or hash. The message begins with the line number and a colon.
+[[nodiscard]] Result<TokenSet> parse_tokens(std::string_view toml);
+
+/// Returns the lines that add the token to the file. Limits equal to their defaults are omitted.
+[[nodiscard]] std::string text_of(const Token& token);
+
+} // namespace scanloom::auth

@@ -1,0 +1,59 @@
+#include "server/guidance/locator.hpp"
+
+#include <memory>
+#include <utility>
+
+namespace scanloom::guide {
+namespace {
+
+/// Returns all reference views, also those of captures that have not ended: a robot that has not stood long enough has
+/// seen something as well.
+landmarks::ReferenceViews views_of(session::Folded<landmarks::ReferenceLayer> applied) {
+    auto views = std::move(applied.state);
+    for (const auto& open : applied.open) {
+        if (open.capture.points.empty()) continue;
+        views.push_back(std::make_shared<const landmarks::ReferenceView>(landmarks::reference_view_of(open)));
+    }
+    return views;
+}
+
+const Error kOnlyMap{
+    Errc::kUndetermined,
+    "there is a map, as of an import, but no laser has seen a thing in this session, and robots are found "
+    "in what lasers saw: send the first scans from a pose that is known"};
+
+const Error kBegun{Errc::kOverloaded,
+                   "nothing is mapped yet, and another robot has just been told so: the map begins where that one "
+                   "stands; ask again soon"};
+
+} // namespace
+
+Result<Located> Locator::locate(const session::Session& session, RobotIndex robot, const landmarks::CloudView& view,
+                                const std::optional<landmarks::Neighbourhood>& near,
+                                const std::function<Result<>()>& ask) {
+    const auto snapshot = session.snapshot();
+    auto applied = folds_.up_to(session.info(), snapshot->revision, [&] { return ask().has_value(); });
+    if (!applied) return applied.error();
+    const Revision revision = applied->revision;
+    const bool has_map = !mapping::bounds_of(*snapshot).empty();
+    auto found = landmarks::locate(views_of(std::move(*applied)), view, near, ask);
+    if (!found) {
+        const bool is_empty = found.error().code == Errc::kNothingMapped;
+        if (is_empty && has_map) return kOnlyMap;
+        if (is_empty && !first_places_.take(session.info().id, robot, MapStart::Clock::now())) return kBegun;
+        return found.error();
+    }
+    switch (found->certainty) {
+    case landmarks::Certainty::kClear: return Located{std::move(*found), revision};
+    case landmarks::Certainty::kAmbiguous: return Error{Errc::kAmbiguous, std::move(found->why)};
+    case landmarks::Certainty::kUndetermined: break;
+    }
+    return Error{Errc::kUndetermined, std::move(found->why)};
+}
+
+void Locator::remove(store::SessionId session) {
+    folds_.remove(session);
+    first_places_.remove(session);
+}
+
+} // namespace scanloom::guide

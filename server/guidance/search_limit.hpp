@@ -1,0 +1,45 @@
+#pragma once
+
+#include "common/error/error.hpp"
+#include "server/sessions/session_registry.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <string_view>
+
+namespace scanloom::guide {
+
+/// Limits how long a search may take: it ends when the server shuts down, because the shutdown waits for it, and when
+/// its time is over, because other requests wait for it as well.
+/// Threads: one at a time.
+class SearchLimit {
+public:
+    using Clock = std::chrono::steady_clock;
+
+    static constexpr std::chrono::seconds kTime{20};
+
+    /// Starts the time of a search.
+    /// @param sessions  must outlive this object
+    /// @param instead   what to request instead to need less time; part of the error message; a string literal
+    explicit SearchLimit(const session::SessionRegistry& sessions, Clock::time_point end = Clock::now() + kTime,
+                         std::string_view instead =
+                             "ask for a smaller region, or for rows further apart, or plan on a map "
+                             "of larger cells")
+        : sessions_(sessions), end_(end), instead_(instead) {}
+
+    /// Returns success while the search may continue.
+    /// Errors: kShuttingDown if the server is shutting down; kTooLarge if the search takes too long.
+    [[nodiscard]] Result<> operator()() const {
+        if (sessions_.is_draining()) return Error{Errc::kShuttingDown, "the server is shutting down"};
+        if (Clock::now() < end_) return {};
+        return Error{Errc::kTooLarge, fmt::format("the search takes too long and was given up: {}", instead_)};
+    }
+
+private:
+    const session::SessionRegistry& sessions_;
+    Clock::time_point end_;
+    std::string_view instead_;
+};
+
+} // namespace scanloom::guide

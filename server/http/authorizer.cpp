@@ -1,0 +1,133 @@
+#include "server/http/authorizer.hpp"
+
+#include "server/http/context.hpp"
+#include "server/http/credentials.hpp"
+#include "server/http/host.hpp"
+#include "server/http/problem.hpp"
+#include "server/http/text.hpp"
+
+#include <fmt/format.h>
+
+#include <string>
+#include <utility>
+
+namespace scanloom::http {
+namespace {
+
+using auth::Denied;
+using auth::Reason;
+using auth::Token;
+using auth::TokenRef;
+
+Denied denied(Reason reason, const Token& token, std::string why) {
+    return {reason, token.name, {Errc::kUnauthorized, std::move(why)}};
+}
+
+/// Any page can make a browser send requests here, with the cookie, also from a machine in a private network. Other
+/// pages cannot see the response to a request that only reads. All other requests must come from a page of this server.
+bool is_of_foreign_page(const Request& request) {
+    const bool only_reads = !request.upgrade && (request.method == "GET" || request.method == "HEAD");
+    return !only_reads && !is_own_page(request.origin, request.host, request.is_secure);
+}
+
+Denied foreign_page(const Request& request, std::string token) {
+    return {Reason::kForeignPage,
+            std::move(token),
+            {Errc::kUnauthorized,
+             fmt::format("pages of {} may not do this in your name; use the viewer that this server serves",
+                         in_quotes(request.origin))}};
+}
+
+bool has_role(const Token& token, Access access) {
+    switch (access) {
+    case Access::kCreate:
+    case Access::kChange:
+    case Access::kBackup: return may_change(token.role);
+    case Access::kGuide: return may_guide(token.role);
+    case Access::kOpen:
+    case Access::kServer: return true;
+    case Access::kList:
+    case Access::kRead: return may_look(token.role);
+    }
+    return false;
+}
+
+std::optional<Denied> objection_to(const Token& token, Access access, std::string_view session) {
+    if (!has_role(token, access)) {
+        return denied(Reason::kWrongRole, token,
+                      fmt::format("the token '{}' has the role {}, which may not do this; use one of another role",
+                                  token.name, name_of(token.role)));
+    }
+    if ((access == Access::kServer || access == Access::kBackup) && !is_for_all(token)) {
+        return denied(
+            Reason::kWrongSession, token,
+            fmt::format("this is about all sessions, and the token '{}' is not for all; use one whose sessions "
+                        "are *",
+                        token.name));
+    }
+    return is_about_one_session(access) ? Authorizer::objection(token, session) : std::nullopt;
+}
+
+} // namespace
+
+std::variant<TokenRef, Response> Authorizer::admit(const Request& request, Access access,
+                                                   std::string_view session) const {
+    // Only a program that knows a token sends it in the Authorization field. A browser adds other credentials, for
+    // example those for a proxy, by itself.
+    const bool has_token = !authenticator_.is_open() && bearer_of(request.authorization);
+    const bool is_foreign = !has_token && !request.origin.empty() && is_of_foreign_page(request);
+    const bool needs_token = !authenticator_.is_open() && access != Access::kOpen;
+    if (is_foreign && !needs_token) return refuse(request, foreign_page(request, ""), session);
+    if (authenticator_.is_open()) return auth::anonymous();
+    auto who = identify(request);
+    if (access == Access::kOpen) return who ? *who : nullptr;
+    if (!who) return refuse(request, who.error(), session);
+    if (const auto why = objection_to(**who, access, session)) return refuse(request, *why, session);
+    return *who;
+}
+
+std::optional<Denied> Authorizer::objection(const Token& token, std::string_view session) {
+    if (is_for(token, session)) return std::nullopt;
+    return denied(
+        Reason::kWrongSession, token,
+        fmt::format("the token '{}' is not for this session; use another token or another session", token.name));
+}
+
+auth::Admitted<TokenRef> Authorizer::identify(const Request& request) const {
+    if (!bearer_of(request.authorization)) {
+        if (const auto cookie = cookie_of(request.cookie, kLoginCookie)) return identify_browser(request, *cookie);
+    }
+    return authenticator_.admit(bearer_of(request.authorization).value_or(""));
+}
+
+auth::Admitted<TokenRef> Authorizer::identify_browser(const Request& request, std::string_view cookie) const {
+    auto token = logins_.find(cookie, authenticator_);
+    if (!token) {
+        return Denied{
+            Reason::kUnknownToken, "", {Errc::kUnauthorized, "you are signed in no more; sign in again with a token"}};
+    }
+    if (is_of_foreign_page(request)) return foreign_page(request, token->name);
+    return token;
+}
+
+/// Source: RFC 6750, section 3.
+Response Authorizer::refuse(const Request& request, const Denied& why, std::string_view session) const {
+    note(request, why, session);
+    const auto path = instance_of(request.target);
+    if (why.reason == Reason::kNoToken)
+        return problem(why.error, path).set("WWW-Authenticate", R"(Bearer realm="scanloom")");
+    if (why.reason == Reason::kUnknownToken)
+        return problem(why.error, path).set("WWW-Authenticate", R"(Bearer realm="scanloom", error="invalid_token")");
+    return problem(Status::forbidden, why.error.message, path);
+}
+
+Error Authorizer::noted(const Context& context, Error error, std::string_view session) const {
+    if (error.code == Errc::kFull) note(context.request, {Reason::kLimit, context.token->name, error}, session);
+    return error;
+}
+
+void Authorizer::note(const Request& request, const Denied& why, std::string_view session) const {
+    audit_.note({auth::Port::kHttp, why.reason, request.peer, why.token, std::string(session)});
+}
+
+} // namespace scanloom::http

@@ -1,0 +1,89 @@
+#pragma once
+
+#include "common/error/error.hpp"
+#include "common/scan/log_entry.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace scanloom::session {
+
+/// Receives acknowledgements and errors for a robot's link. Called on the session's strand: must not block.
+class RobotListener {
+public:
+    virtual ~RobotListener() = default;
+
+    /// Acknowledges scans.
+    /// @param durable_seq  every scan up to this number is in the log and in the maps
+    /// @param bytes  credit returned for submitted data, in addition to earlier calls
+    virtual void on_durable(std::uint64_t durable_seq, std::size_t bytes) = 0;
+
+    /// Reports the error with which the session has closed this link. It accepts no further data from it.
+    virtual void on_failed(const Error& error) = 0;
+};
+
+/// A robot that joins a session, from the fields of its Hello.
+struct JoinRequest {
+    std::string robot;
+    std::string source = {};                ///< Hello.source
+    std::optional<double> body_radius = {}; ///< metres
+};
+
+/// The result of joining a session.
+struct Joined {
+    RobotIndex robot = 0;
+    std::uint64_t last_durable_seq = 0;
+    std::set<std::uint32_t> sensors = {}; ///< sensors that the robot has described, on this or earlier links
+};
+
+/// Interface that is notified when the visible state of a session has changed: its maps, the links of its robots, its
+/// closing or failure, or data that other components keep about the session.
+class Watcher {
+public:
+    virtual ~Watcher() = default;
+
+    /// Called after a change, possibly often, on the session's strand or on any other thread. Must not block.
+    virtual void on_changed() noexcept = 0;
+};
+
+/// The watchers of a session, held by weak pointers.
+///
+/// Their number is not limited here: the callers that admit watchers limit it.
+/// Cost: one call of on_changed() per watcher and notification.
+/// Threads: any thread.
+class Watchers {
+public:
+    void add(std::weak_ptr<Watcher> watcher) {
+        const std::lock_guard lock(mutex_);
+        forget_the_gone();
+        watchers_.push_back(std::move(watcher));
+    }
+
+    /// Calls on_changed() of each watcher.
+    void tell() {
+        const std::lock_guard lock(mutex_);
+        bool any_gone = false;
+        for (const auto& watcher : watchers_) {
+            const auto present = watcher.lock();
+            if (present) present->on_changed();
+            any_gone = any_gone || !present;
+        }
+        if (any_gone) forget_the_gone();
+    }
+
+private:
+    void forget_the_gone() {
+        std::erase_if(watchers_, [](const auto& watcher) { return watcher.expired(); });
+    }
+
+    std::mutex mutex_;
+    std::vector<std::weak_ptr<Watcher>> watchers_;
+};
+
+} // namespace scanloom::session

@@ -1,0 +1,69 @@
+#include "server/sessions/log_readers.hpp"
+
+#include "common/wire/log_codec.hpp"
+#include "server/sessions/recovery.hpp"
+
+namespace scanloom::session {
+namespace {
+
+const Error kEndOfReading{Errc::kInternal, "the end of what is to be read"};
+
+/// Adds an entry that is not a scan.
+Result<> add_entry(Exclusions& exclusions, Revision revision, std::string_view bytes) {
+    const auto entry = wire::decode_entry(bytes);
+    if (!entry) return damaged_entry(revision, entry.error());
+    if (const auto* excluded = std::get_if<ScansExcluded>(&*entry)) return exclusions.add(revision, *excluded);
+    if (const auto* lifted = std::get_if<ExclusionLifted>(&*entry)) return exclusions.add(revision, *lifted);
+    return {};
+}
+
+} // namespace
+
+Result<Exclusions> read_exclusions(store::ScanLog& log, store::SessionId session, const ReadsOn& reads_on) {
+    Exclusions exclusions;
+    const auto read = log.read(session, 0, [&](Revision revision, std::string_view bytes) -> Result<> {
+        const auto scan = wire::decode_scan_pose(bytes);
+        if (!scan) return damaged_entry(revision, scan.error());
+        if (!reads_on(revision, *scan)) return kEndOfReading;
+        return *scan ? Result<>() : add_entry(exclusions, revision, bytes);
+    });
+    if (!read && read.error() != kEndOfReading) return read.error();
+    return exclusions;
+}
+
+namespace {
+
+constexpr Revision kLookEvery = 256; // entries, which take a few milliseconds
+
+const Error kEnd{Errc::kInternal, "the end of what is to be read"};
+
+} // namespace
+
+Result<> read_captures(store::ScanLog& log, store::SessionId session, landmarks::SessionCaptures& captures,
+                       Revision until, const VisitCapture& visit, const AskWhetherToGoOn& ask) {
+    const auto add = [&](Revision revision, std::string_view bytes) -> Result<> {
+        const auto taken = wire::decode_scan_pose(bytes);
+        if (!taken) return damaged_entry(revision, taken.error());
+        if (*taken && !captures.needs(**taken)) {
+            captures.pass_over(**taken);
+            return {};
+        }
+        const auto entry = wire::decode_entry(bytes);
+        if (!entry) return damaged_entry(revision, entry.error());
+        const auto ended = captures.add(*entry);
+        if (!ended) return {};
+        auto visited = visit(*ended); // may take long, so ask() follows
+        return visited ? ask(revision) : visited;
+    };
+    if (captures.revision() >= until) return {};
+    const auto read =
+        log.read(session, captures.revision(), [&](Revision revision, std::string_view bytes) -> Result<> {
+            if (auto added = add(revision, bytes); !added) return added;
+            if (revision >= until) return kEnd;
+            return revision % kLookEvery == 0 ? ask(revision) : Result<>();
+        });
+    if (read || read.error() == kEnd) return {};
+    return read;
+}
+
+} // namespace scanloom::session

@@ -1,0 +1,140 @@
+#include "server/sessions/repair.hpp"
+
+#include "common/wire/log_codec.hpp"
+#include "server/sessions/log_reconstruction.hpp"
+
+#include <boost/endian/conversion.hpp>
+#include <fmt/format.h>
+
+#include <array>
+#include <fstream>
+#include <future>
+#include <utility>
+#include <vector>
+
+namespace scanloom::session {
+namespace {
+
+/// Appends entries to a log in pieces, and waits for each piece.
+class LogWriter {
+public:
+    LogWriter(store::ScanLog& log, store::SessionId session) : log_(log), session_(session) {}
+
+    Result<> add(const LogEntry& entry) {
+        entries_.push_back(wire::encode_entry(entry));
+        bytes_ += entries_.back().size();
+        return bytes_ < kPieceBytes ? Result<>{} : write();
+    }
+
+    Result<> write() {
+        if (entries_.empty()) return {};
+        const Revision first = end_ + 1;
+        end_ += entries_.size();
+        bytes_ = 0;
+        return store::append_and_wait(log_, session_, first, std::exchange(entries_, {}));
+    }
+
+    [[nodiscard]] Revision end() const noexcept { return end_ + entries_.size(); }
+
+private:
+    static constexpr std::size_t kPieceBytes = std::size_t{1} << 20;
+
+    store::ScanLog& log_;
+    const store::SessionId session_;
+    std::vector<std::string> entries_;
+    std::size_t bytes_ = 0;
+    Revision end_ = 0;
+};
+
+/// The file of entries that cannot be applied. Created with the first entry.
+class AsideFile {
+public:
+    explicit AsideFile(std::filesystem::path path) : path_(std::move(path)) {}
+
+    Result<> add(std::string_view entry) {
+        const auto decoded = wire::plain_entry(entry);
+        const auto plain = decoded ? std::string_view(*decoded) : entry; // undecodable entries are copied
+        if (count_++ == 0) {
+            std::error_code problem;
+            std::filesystem::create_directories(path_.parent_path(), problem);
+            file_.open(path_, std::ios::binary);
+        }
+        std::array<unsigned char, 4> length{};
+        boost::endian::store_big_u32(length.data(), static_cast<std::uint32_t>(plain.size()));
+        file_.write(reinterpret_cast<const char*>(length.data()), length.size());
+        file_.write(plain.data(), static_cast<std::streamsize>(plain.size()));
+        return is_well();
+    }
+
+    Result<> close() {
+        if (count_ == 0) return {};
+        file_.close();
+        return is_well();
+    }
+
+    [[nodiscard]] std::uint64_t count() const noexcept { return count_; }
+
+private:
+    [[nodiscard]] Result<> is_well() const {
+        if (file_) return {};
+        return Error{Errc::kStoreFailed, fmt::format("cannot write {}; make room on its disk", path_.native())};
+    }
+
+    const std::filesystem::path path_;
+    std::ofstream file_;
+    std::uint64_t count_ = 0;
+};
+
+/// Returns the record for the new store, without the number of imported patches. Some of them may be lost, and a start
+/// removes a session that has fewer entries than its import.
+std::optional<std::string> record_to_keep(const std::string& bytes, const std::string& name) {
+    auto record = wire::decode_session(bytes);
+    if (!record) return std::nullopt;
+    record->map_patches = 0;
+    record->name = name;
+    return wire::encode_session(*record);
+}
+
+/// Creates the session in the new store. @return nullopt if its record is lost or cannot be decoded
+Result<std::optional<store::SessionId>> target_of(const std::optional<std::string>& record, const std::string& name,
+                                                  store::ScanLog& to) {
+    const auto kept = record ? record_to_keep(*record, name) : std::nullopt;
+    if (!kept) return std::optional<store::SessionId>();
+    const auto created = to.create_session(*kept);
+    if (!created) return created.error();
+    return std::optional(*created);
+}
+
+} // namespace
+
+Result<RepairedSession> repair_session(const store::DamagedStore& from, store::SessionId id,
+                                       const std::optional<std::string>& record, const std::string& name,
+                                       store::ScanLog& to, const std::filesystem::path& aside) {
+    const auto target = target_of(record, name, to);
+    if (!target) return target.error();
+    RepairedSession repaired{.name = name, .aside = aside / (name + ".scanlog")};
+    LogReconstruction reconstruction;
+    LogWriter kept(to, target->value_or(0));
+    AsideFile set_aside(repaired.aside);
+    const auto read = from.read(id, [&](Revision revision, std::string_view bytes) -> Result<> {
+        auto entry = wire::decode_entry(bytes);
+        if (!entry || !*target) return set_aside.add(bytes);
+        const auto entries = reconstruction.add(revision, std::move(*entry));
+        if (entries.empty()) return set_aside.add(bytes);
+        for (const auto& one : entries) {
+            if (auto added = kept.add(one); !added) return added;
+        }
+        return {};
+    });
+    if (!read) return read.error();
+    if (auto written = kept.write(); !written) return written.error();
+    if (auto closed = set_aside.close(); !closed) return closed.error();
+    repaired.kept = kept.end() - reconstruction.stood_in();
+    repaired.stood_in = reconstruction.stood_in();
+    repaired.missing = reconstruction.missing();
+    repaired.set_aside = set_aside.count();
+    if (repaired.set_aside == 0) repaired.aside.clear();
+    return repaired;
+}
+
+} // namespace scanloom::session

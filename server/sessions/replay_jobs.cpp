@@ -1,0 +1,209 @@
+#include "server/sessions/replay_jobs.hpp"
+
+#include <boost/asio/post.hpp>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
+#include <new>
+#include <utility>
+
+namespace scanloom::session {
+namespace {
+
+std::size_t chunks_of(const ReplayJob& weave) {
+    const auto maps = weave.maps();
+    return maps ? maps->chunk_count : 0;
+}
+
+Error shutting_down() { return {Errc::kShuttingDown, "the server is shutting down; try again when it is back"}; }
+
+Error was_removed(const ReplayJob& weave) {
+    return {Errc::kNotFound,
+            fmt::format("weave {} was deleted before these maps were done; start it again", weave.id())};
+}
+
+} // namespace
+
+ReplayJobs::ReplayJobs(store::ScanLog& log, boost::asio::any_io_executor executor, const ReplayLimits& limits)
+    : log_(log), executor_(std::move(executor)), limits_(limits), budget_(limits.chunks_max) {}
+
+Result<std::shared_ptr<ReplayJob>> ReplayJobs::start(const SessionInfo& session, const ReplayRequest& request,
+                                                     Revision newest, Listing listing) {
+    const std::lock_guard lock(mutex_);
+    auto weave = started(session, request, target_of(request, newest));
+    if (weave && listing == Listing::kListed) (*weave)->set_listed(++listed_);
+    evict();
+    return weave;
+}
+
+/// Pre: mutex_ is held.
+Result<std::shared_ptr<ReplayJob>> ReplayJobs::started(const SessionInfo& session, const ReplayRequest& request,
+                                                       Revision target) {
+    auto weave = touch(session.id, replay_id_of(session, request));
+    if (weave && weave->join(target)) return weave;
+    if (auto room = check_room(); !room) return room.error();
+    if (weave && weave->progress().state == ReplayJob::State::kDone) {
+        if (!weave->resume(target, budget_)) {
+            return Error{Errc::kOverloaded, "the maps that are woven at this moment need all memory that there is for "
+                                            "them; try again soon"};
+        }
+    } else {
+        const std::uint64_t listed = weave ? weave->listed() : 0;
+        if (weave) weaves_.pop_front();
+        weave = std::make_shared<ReplayJob>(session, request, target);
+        weave->set_listed(listed);
+        weaves_.push_front(weave);
+    }
+    launch(weave);
+    return weave;
+}
+
+std::size_t ReplayJobs::under_way() const {
+    const std::lock_guard lock(mutex_);
+    return count_under_way();
+}
+
+/// Pre: mutex_ is held.
+std::size_t ReplayJobs::count_under_way() const {
+    return static_cast<std::size_t>(
+        std::ranges::count_if(weaves_, [](const auto& weave) { return !has_ended(weave->progress().state); }));
+}
+
+/// Pre: mutex_ is held.
+Result<> ReplayJobs::check_room() const {
+    if (stopped_) return shutting_down();
+    if (count_under_way() < limits_.waiting_max) return {};
+    return Error{Errc::kOverloaded, "too many maps are being woven at this moment; try again soon"};
+}
+
+/// Starts a job. It begins here and not on the executor, so that the state of an earlier job is visible to the next
+/// one. Pre: mutex_ is held.
+void ReplayJobs::launch(const std::shared_ptr<ReplayJob>& weave) {
+    if (weave->has_begun() || begin(weave)) post(weave);
+}
+
+void ReplayJobs::post(std::shared_ptr<ReplayJob> weave) {
+    boost::asio::post(executor_, [this, weave = std::move(weave)] { run(weave); });
+}
+
+void ReplayJobs::run(const std::shared_ptr<ReplayJob>& weave) {
+    if (weave->run(log_, budget_)) return post(weave); // after the other waiting jobs
+    const std::lock_guard lock(mutex_);
+    launch_those_behind(*weave);
+    evict();
+}
+
+/// Starts the job from the best other job. Pre: mutex_ is held. @return false if it waits for the end of another job
+bool ReplayJobs::begin(const std::shared_ptr<ReplayJob>& weave) {
+    try {
+        while (const auto start = furthest_before(*weave)) {
+            if (start->is_on_its_way) {
+                behind_.push_back({start->weave, weave});
+                return false;
+            }
+            if (weave->begin_from(*start->weave)) return true;
+        }
+    } catch (const std::bad_alloc&) { // start from the beginning, which reports missing memory itself
+    }
+    return true;
+}
+
+/// Pre: mutex_ is held.
+std::optional<ReplayJobs::Start> ReplayJobs::furthest_before(const ReplayJob& weave) const {
+    const auto wanted = weave.progress();
+    std::optional<Start> furthest;
+    if (has_ended(wanted.state)) return furthest; // cancelled
+    for (const auto& other : weaves_) {
+        if (other.get() == &weave) continue;
+        const bool is_on_its_way = other->leads_to(weave, wanted.target);
+        const auto at = is_on_its_way ? std::optional(other->progress().woven) : other->base_for(weave, wanted.target);
+        if (!at || (furthest && std::pair(*at, is_on_its_way) <= std::pair(furthest->at, furthest->is_on_its_way))) {
+            continue;
+        }
+        furthest = Start{other, *at, is_on_its_way};
+    }
+    return furthest;
+}
+
+/// Pre: mutex_ is held.
+void ReplayJobs::launch_those_behind(const ReplayJob& ended) {
+    const auto waited = std::stable_partition(behind_.begin(), behind_.end(),
+                                              [&](const Behind& behind) { return behind.ahead.get() != &ended; });
+    const std::vector<Behind> next(waited, behind_.end());
+    behind_.erase(waited, behind_.end());
+    for (const Behind& behind : next) launch(behind.weave); // in the order in which they started to wait
+}
+
+std::shared_ptr<ReplayJob> ReplayJobs::find(store::SessionId session, std::string_view id) {
+    const std::lock_guard lock(mutex_);
+    return touch(session, id);
+}
+
+/// Returns the job, moved to the front of the list; null if it does not exist. Pre: mutex_ is held.
+std::shared_ptr<ReplayJob> ReplayJobs::touch(store::SessionId session, std::string_view id) {
+    evict();
+    const auto found = std::ranges::find_if(
+        weaves_, [&](const auto& weave) { return weave->session().id == session && weave->id() == id; });
+    if (found == weaves_.end()) return nullptr;
+    weaves_.splice(weaves_.begin(), weaves_, found);
+    return weaves_.front();
+}
+
+std::vector<std::shared_ptr<ReplayJob>> ReplayJobs::list(store::SessionId session) const {
+    const std::lock_guard lock(mutex_);
+    std::vector<std::shared_ptr<ReplayJob>> of_session;
+    std::ranges::copy_if(weaves_, std::back_inserter(of_session),
+                         [&](const auto& weave) { return weave->session().id == session && weave->listed() > 0; });
+    std::ranges::sort(of_session, std::greater{}, &ReplayJob::listed);
+    return of_session;
+}
+
+bool ReplayJobs::remove(store::SessionId session, std::string_view id) {
+    const std::lock_guard lock(mutex_);
+    return std::erase_if(weaves_, [&](const auto& weave) {
+               if (weave->session().id != session || weave->id() != id) return false;
+               weave->cancel(was_removed(*weave));
+               return true;
+           }) > 0;
+}
+
+void ReplayJobs::remove_all(store::SessionId session) {
+    const std::lock_guard lock(mutex_);
+    std::erase_if(weaves_, [&](const auto& weave) {
+        if (weave->session().id != session) return false;
+        weave->cancel(session_was_deleted(weave->session()));
+        return true;
+    });
+}
+
+std::int64_t ReplayJobs::chunks() const {
+    const std::lock_guard lock(mutex_);
+    std::size_t kept = 0;
+    for (const auto& weave : weaves_) {
+        if (has_ended(weave->progress().state)) kept += chunks_of(*weave);
+    }
+    return budget_.used() + static_cast<std::int64_t>(kept);
+}
+
+void ReplayJobs::stop() {
+    const std::lock_guard lock(mutex_);
+    stopped_ = true;
+    for (const auto& weave : weaves_) weave->cancel(shutting_down());
+}
+
+/// Pre: mutex_ is held.
+void ReplayJobs::evict() {
+    std::size_t kept = 0;
+    std::size_t chunks = 0;
+    for (const bool listed : {true, false}) {
+        std::erase_if(weaves_, [&](const auto& weave) {
+            if ((weave->listed() > 0) != listed || !has_ended(weave->progress().state)) return false;
+            ++kept;
+            chunks += chunks_of(*weave);
+            return kept > limits_.kept_max || chunks > limits_.chunks_kept_max;
+        });
+    }
+}
+
+} // namespace scanloom::session

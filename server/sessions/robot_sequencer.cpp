@@ -1,0 +1,248 @@
+#include "server/sessions/robot_sequencer.hpp"
+
+#include "common/wire/messages.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace scanloom::session {
+namespace {
+
+constexpr std::size_t kRobotsMax = 1024; // per session
+
+Error begun_already(const std::string& robot, const std::string& session) {
+    return {Errc::kConflict,
+            fmt::format("begins_map: robot '{}' was to begin the map of session '{}' from a pose that people said, but "
+                        "something is mapped by now, and nobody knows how the two lie to each other: have the robot's "
+                        "place told anew, or send these scans into another session",
+                        robot, session)};
+}
+
+} // namespace
+
+void RobotSequencer::restore(const mapping::ProjectionState& state) {
+    sequencer_.resize(state.robots.size());
+    for (std::size_t n = 0; n < sequencer_.size(); ++n) restore(sequencer_[n], state.robots[n]);
+}
+
+void RobotSequencer::restore(Member& member, const LoggedRobot& logged) {
+    const std::uint64_t lost = member.robot.last_seq - std::min(member.robot.last_seq, logged.last_seq);
+    counters_.scans_dropped += lost;
+    member.robot = logged;
+    member.durable_seq = logged.last_seq;
+    if (member.showed_seq > logged.last_seq) member.showed_seq = 0;
+    member.under_way = 0;
+}
+
+RobotIndex RobotSequencer::index_of(const Member& member) const {
+    return static_cast<RobotIndex>(&member - sequencer_.data());
+}
+
+RobotSequencer::Member* RobotSequencer::member_of(const std::shared_ptr<RobotListener>& listener) {
+    const auto member =
+        std::find_if(sequencer_.begin(), sequencer_.end(), [&](const Member& m) { return m.listener == listener; });
+    return member == sequencer_.end() ? nullptr : &*member;
+}
+
+PendingEntry RobotSequencer::submitted(Member& member, std::optional<LogEntry> entry, std::size_t bytes) {
+    ++member.under_way;
+    return {index_of(member), std::move(entry), {}, bytes};
+}
+
+// PendingJoin and leaving
+
+std::optional<PendingEntry> RobotSequencer::join(PendingJoin joining) {
+    const auto& who = joining.who;
+    auto known =
+        std::find_if(sequencer_.begin(), sequencer_.end(), [&](const Member& m) { return m.robot.name == who.robot; });
+    if (known == sequencer_.end() && sequencer_.size() >= kRobotsMax) {
+        joining.done(Error{Errc::kFull,
+                           fmt::format("session '{}' has {} robots already, the most it can hold; use another session",
+                                       info_.name, sequencer_.size())});
+        return std::nullopt;
+    }
+    const bool is_new = known == sequencer_.end();
+    Member& member = is_new ? sequencer_.emplace_back() : *known;
+    if (is_new) {
+        member.robot.name = who.robot;
+    } else if (auto agrees = check_source(member, who.source); !agrees) {
+        joining.done(agrees.error());
+        return std::nullopt;
+    } else {
+        fail(member, {Errc::kReplaced, fmt::format("robot '{}' of session '{}' connected again; this link is closed",
+                                                   who.robot, info_.name)});
+    }
+    std::optional<PendingEntry> entry;
+    if (is_new || member.robot.source != who.source || member.robot.body_radius != who.body_radius) {
+        member.robot.source = who.source;
+        member.robot.body_radius = who.body_radius;
+        entry = submitted(member, RobotJoined{index_of(member), who.robot, who.source, who.body_radius}, 0);
+    }
+    member.joining = std::move(joining);
+    admit(member);
+    return entry;
+}
+
+/// Checks that a robot continues with the same source. Scans are identified by their sequence number only, so the scans
+/// of another recording would be taken for the rest of this one.
+Result<> RobotSequencer::check_source(const Member& member, const std::string& source) const {
+    const LoggedRobot& robot = member.robot;
+    if (robot.accepts(source)) return {};
+    const auto in_words = [](const std::string& name) { return name.empty() ? "a live robot" : "'" + name + "'"; };
+    return Error{Errc::kConflict,
+                 fmt::format("hello.source: the {} scans of robot '{}' in session '{}' come from {}, not from {}; "
+                             "continue with the same, or use another robot or session name",
+                             robot.last_seq, robot.name, info_.name, in_words(robot.source), in_words(source))};
+}
+
+/// Admits the link that waits to join, if all entries of the robot's earlier links are in the maps.
+void RobotSequencer::admit(Member& member) {
+    if (!member.joining || member.under_way > 0) return;
+    const auto joining = *std::exchange(member.joining, std::nullopt);
+    member.listener = joining.listener;
+    set_connected(member, true);
+    Joined joined{index_of(member), member.durable_seq};
+    for (const auto& [id, known] : member.robot.sensors) joined.sensors.insert(id);
+    joining.done(std::move(joined));
+}
+
+void RobotSequencer::leave(const std::shared_ptr<RobotListener>& listener) {
+    Member* member = member_of(listener);
+    if (member == nullptr) return;
+    member->listener.reset();
+    set_connected(*member, false);
+}
+
+void RobotSequencer::fail(Member& member, const Error& error) {
+    if (const auto joining = std::exchange(member.joining, std::nullopt)) joining->done(error);
+    if (!member.listener) return;
+    const auto listener = std::move(member.listener);
+    member.listener.reset();
+    set_connected(member, false);
+    listener->on_failed(error);
+}
+
+void RobotSequencer::fail_all(const Error& error) {
+    for (auto& member : sequencer_) fail(member, error);
+}
+
+void RobotSequencer::refuse(RobotIndex robot, const Error& error, const mapping::ProjectionState& state) {
+    restore(sequencer_[robot], state.robots[robot]);
+    fail(sequencer_[robot], error);
+}
+
+bool RobotSequencer::is_connected(RobotIndex robot) const {
+    const std::lock_guard lock(connected_mutex_);
+    return robot < connected_.size() && connected_[robot];
+}
+
+std::vector<bool> RobotSequencer::connected() const {
+    const std::lock_guard lock(connected_mutex_);
+    return connected_;
+}
+
+void RobotSequencer::set_connected(const Member& member, bool connected) {
+    ++connection_changes_;
+    const std::lock_guard lock(connected_mutex_);
+    connected_.resize(std::max(connected_.size(), sequencer_.size()));
+    connected_[index_of(member)] = connected;
+}
+
+// Entries
+
+std::vector<PendingEntry> RobotSequencer::describe(const std::shared_ptr<RobotListener>& from, Sensor sensor,
+                                                   std::size_t bytes) {
+    std::vector<PendingEntry> entries;
+    Member* member = member_of(from);
+    if (member == nullptr) return entries;
+    if (auto ok = mapping::check_reach(info_.config, sensor); !ok) {
+        fail(*member, prefixed("sensor_description.", ok.error()));
+        return entries;
+    }
+    std::optional<LogEntry> entry;
+    const auto* known = member->robot.find_sensor(sensor.id);
+    if (known == nullptr || *known->sensor != sensor) {
+        member->robot.sensors[sensor.id].sensor = std::make_shared<const Sensor>(sensor);
+        entry = SensorDescribed{index_of(*member), std::move(sensor)};
+    }
+    entries.push_back(submitted(*member, std::move(entry), bytes));
+    return entries;
+}
+
+std::vector<PendingEntry> RobotSequencer::take(const std::shared_ptr<RobotListener>& from, std::vector<Scan> scans,
+                                               std::size_t bytes, bool is_mapped) {
+    std::vector<PendingEntry> entries;
+    Member* member = member_of(from);
+    if (member == nullptr) { // the link failed or was replaced; the robot sends them again
+        counters_.scans_dropped += scans.size();
+        return entries;
+    }
+    std::optional<Error> fault;
+    std::size_t n = 0;
+    for (; n < scans.size() && !fault; ++n) {
+        Scan& scan = scans[n];
+        if (scan.seq <= member->robot.last_seq) { // sent again after a reconnect
+            ++counters_.scans_duplicates;
+            continue;
+        }
+        if (auto ok = check_next(*member, scan, is_mapped); !ok) {
+            fault = prefixed(fmt::format("scan_batch.scans[{}].", n), ok.error());
+            continue;
+        }
+        const auto reach = mapping::reach_of(info_.config, *member->robot.find_sensor(scan.sensor)->sensor, scan);
+        if (auto ok = mapping::check_work(reach); !ok) {
+            fault = prefixed(fmt::format("scan_batch.scans[{}].", n), ok.error());
+            continue;
+        }
+        member->robot.last_seq = scan.seq;
+        if (member->showed_seq == 0 && !reach.cells.empty()) member->showed_seq = scan.seq;
+        entries.push_back(submitted(*member, ScanTaken{index_of(*member), std::move(scan)}, 0));
+        entries.back().reach = reach;
+    }
+    if (fault) counters_.scans_dropped += scans.size() - (n - 1); // the invalid scan and those after it
+    if (entries.empty()) entries.push_back(submitted(*member, std::nullopt, 0));
+    entries.back().bytes = bytes;     // returned when the whole frame is in the maps
+    if (fault) fail(*member, *fault); // the scans before it are accepted
+    return entries;
+}
+
+Result<> RobotSequencer::check_next(const Member& member, const Scan& scan, bool is_mapped) const {
+    const LoggedRobot& robot = member.robot;
+    if (!robot.is_next(scan.seq)) {
+        return Error{
+            Errc::kOutOfOrder,
+            fmt::format("seq is {}, {} is the next of robot '{}'; connect again and continue after last_durable_seq",
+                        scan.seq, robot.last_seq + 1, robot.name)};
+    }
+    const auto* known = robot.find_sensor(scan.sensor);
+    if (known == nullptr) {
+        return Error{Errc::kInvalidField,
+                     fmt::format("sensor is {}, which was not described; send a SensorDescription first", scan.sensor)};
+    }
+    if (scan.begins_map && robot.last_seq == 0) { // later scans are placed relative to the first
+        const auto shows = [](const Member& other) { return other.showed_seq > 0; };
+        if (is_mapped || std::ranges::any_of(sequencer_, shows)) return begun_already(robot.name, info_.name);
+    }
+    return wire::check_scan(scan, *known->sensor);
+}
+
+// Acknowledgements
+
+void RobotSequencer::release(const Group& group) {
+    std::map<RobotIndex, std::size_t> bytes; // one message per robot
+    for (const auto& released : group.entries) {
+        Member& member = sequencer_[released.robot];
+        bytes[released.robot] += released.bytes;
+        --member.under_way;
+        if (!released.entry) continue;
+        if (const auto* taken = std::get_if<ScanTaken>(&*released.entry)) member.durable_seq = taken->scan.seq;
+    }
+    for (const auto& [robot, released] : bytes) {
+        Member& member = sequencer_[robot];
+        if (member.listener) member.listener->on_durable(member.durable_seq, released);
+        admit(member);
+    }
+}
+
+} // namespace scanloom::session

@@ -1,0 +1,404 @@
+#include "server/sessions/session.hpp"
+
+#include "common/wire/log_codec.hpp"
+#include "core/mapping/snapshot.hpp"
+#include "server/log/context.hpp"
+#include "server/sessions/checkpoint.hpp"
+
+#include <boost/asio/post.hpp>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace scanloom::session {
+namespace {
+
+constexpr double kSliceWork = 5e6;            // in the unit of Reach::work: a few milliseconds
+constexpr double kInPlaceWork = 1e6;          // of a group: about a millisecond, during which readers may have to wait
+constexpr std::size_t kGroupsDurableMax = 2;  // one is being applied, one waits
+constexpr Revision kCheckpointEvery = 4096;   // entries applied between two checkpoints, or
+constexpr double kCheckpointEveryWork = 1e10; // this much work: bounds the work that a restart repeats
+constexpr std::size_t kCheckpointEveryDescribed = std::size_t{4} << 20; // bytes: bounds a checkpoint's last piece
+
+/// Returns the number of entries between two checkpoints of a session: kCheckpointEvery to 1.5 times as many, depending
+/// on the session. With one value for all, sessions that started together would always write at the same time.
+constexpr Revision checkpoint_every(store::SessionId session) {
+    return kCheckpointEvery + (session - 1) * 0x9E37'79B9 % (kCheckpointEvery / 2); // Fibonacci hashing
+}
+
+/// @param created_by  token whose limit it is, if `chunks_max` is below SessionLimits::kMost
+Error full(std::size_t chunks, std::size_t chunks_max, const std::string& created_by) {
+    const auto whose =
+        chunks_max == SessionLimits::kMost
+            ? std::string("the most there may be")
+            : fmt::format("as the limit `cells` of the token '{}' has it, which made the session", created_by);
+    return {Errc::kFull,
+            fmt::format("the map has {} chunks of 64 x 64 cells and a scan could take it beyond {}, {}; use "
+                        "larger cells or another session",
+                        chunks, chunks_max, whose)};
+}
+
+Error short_of_memory() {
+    return {Errc::kOverloaded,
+            "the maps that are in use take all the memory that the server may use for maps; try again "
+            "later, or have it given more (--map-memory)"};
+}
+
+Error no_memory() {
+    return {Errc::kOverloaded, "there is no memory left for this map; use larger cells or another session"};
+}
+
+/// Returns the maps that are published if memory runs out while the session's maps are withdrawn.
+const std::shared_ptr<const mapping::Snapshot>& no_maps() {
+    static const auto none = std::make_shared<const mapping::Snapshot>();
+    return none;
+}
+
+} // namespace
+
+Session::Session(SessionInfo info, mapping::Projection projection, std::optional<Revision> checkpointed,
+                 store::ScanLog& log, boost::asio::any_io_executor compute, std::shared_ptr<SessionCounters> counters,
+                 const SessionLimits& limits, std::optional<boost::asio::any_io_executor> may_wait)
+    : info_(std::move(info)), log_(log), counters_(std::move(counters)), limits_(limits),
+      may_wait_(may_wait.value_or(compute)), strand_(std::move(compute)), sequencer_(info_, *counters_),
+      projection_(std::move(projection)), appended_(projection_.revision()), share_(limits.shared),
+      pages_(projection_.page_count()), checkpointed_(checkpointed) {
+    share_.take_anyway(static_cast<std::int64_t>(pages_)); // its log is stored, so its maps must be served
+    sequencer_.restore(projection_.state());
+    static_cast<void>(no_maps()); // create it while there is memory
+    if (!publish()) throw std::bad_alloc();
+}
+
+grid::CellBox Session::main_bounds() const {
+    const auto maps = snapshot();
+    const std::lock_guard lock(main_bounds_mutex_);
+    if (main_bounds_at_ != maps->revision) {
+        main_bounds_ = mapping::main_bounds_of(*maps);
+        main_bounds_at_ = maps->revision;
+    }
+    return main_bounds_;
+}
+
+std::optional<Error> Session::failure() const {
+    const std::lock_guard lock(failure_mutex_);
+    return failure_;
+}
+
+std::optional<Error> Session::closing() const {
+    const std::lock_guard lock(failure_mutex_);
+    return closing_;
+}
+
+template <class Work>
+void Session::on_strand(Work work) {
+    boost::asio::post(strand_, [self = shared_from_this(), work = std::move(work)]() mutable {
+        work(*self);
+        self->backlog_size_ = self->waiting_.size();
+        self->tell_watchers(); // last, so that acknowledgements go out first
+    });
+}
+
+void Session::tell_watchers() {
+    const auto told_before = std::exchange(connections_told_, sequencer_.connection_changes());
+    const bool has_news = std::exchange(has_news_, false);
+    if (has_news || told_before != connections_told_) watchers_.tell();
+}
+
+// From a link to the log
+
+void Session::join(JoinRequest who, std::shared_ptr<RobotListener> listener, std::function<void(Result<Joined>)> done) {
+    on_strand([joining = PendingJoin{std::move(who), std::move(listener), std::move(done)}](Session& self) mutable {
+        if (self.refusing_) return joining.done(*self.refusing_);
+        std::vector<PendingEntry> entries;
+        if (auto entry = self.sequencer_.join(std::move(joining))) entries.push_back(std::move(*entry));
+        self.enqueue(std::move(entries));
+    });
+}
+
+void Session::leave(std::shared_ptr<RobotListener> listener) {
+    on_strand([listener = std::move(listener)](Session& self) { self.sequencer_.leave(listener); });
+}
+
+void Session::submit(std::shared_ptr<RobotListener> from, Sensor sensor, std::size_t bytes) {
+    on_strand([from = std::move(from), sensor = std::move(sensor), bytes](Session& self) mutable {
+        if (!self.refusing_) self.enqueue(self.sequencer_.describe(from, std::move(sensor), bytes));
+    });
+}
+
+void Session::submit(std::shared_ptr<RobotListener> from, std::vector<Scan> scans, std::size_t bytes) {
+    on_strand([from = std::move(from), scans = std::move(scans), bytes](Session& self) mutable {
+        if (self.refusing_) {
+            self.counters_->scans_dropped += scans.size();
+            return;
+        }
+        const bool is_mapped = !mapping::bounds_of(self.projection_.bounds()).empty();
+        self.enqueue(self.sequencer_.take(from, std::move(scans), bytes, is_mapped));
+    });
+}
+
+void Session::enqueue(std::vector<PendingEntry> entries) {
+    for (auto& entry : entries) waiting_.add(std::move(entry));
+    append_next();
+}
+
+/// Appends the waiting entries to the log, one group at a time. The next group is appended when the last one is
+/// durable, and at most one durable group waits to be applied.
+void Session::append_next() {
+    while (!appending_ && durable_.size() < kGroupsDurableMax && !waiting_.empty()) {
+        const auto taken = static_cast<std::int64_t>(projection_.chunk_count()) + chunks_under_way_;
+        const auto left = static_cast<std::int64_t>(limits_.chunks_max) - taken;
+        auto group = waiting_.next_group(std::min(left, share_.free()));
+        if (!group.entries.empty() && !share_.take(group.chunks)) { // another session took them first
+            waiting_.put_back(std::exchange(group, {}));
+        }
+        if (!group.entries.empty()) {
+            append(std::move(group));
+        } else if (durable_.empty()) {
+            refuse_first(share_.free() < left ? short_of_memory()
+                                              : full(projection_.chunk_count(), limits_.chunks_max, info_.created_by));
+        } else {
+            return; // wait until the number of new chunks is known
+        }
+    }
+}
+
+void Session::append(Group group) {
+    std::vector<std::string> entries;
+    for (const auto& submitted : group.entries) {
+        if (submitted.entry) entries.push_back(wire::encode_entry(*submitted.entry));
+    }
+    if (entries.empty()) return sequencer_.release(group);
+    appending_ = true;
+    chunks_under_way_ += group.chunks;
+    const Revision first = appended_ + 1;
+    appended_ += entries.size();
+    log_.append(info_.id, first, std::move(entries),
+                [self = shared_from_this(), group = std::move(group)](const Result<>& appended) mutable {
+                    self->on_strand([group = std::move(group), appended](Session& session) mutable {
+                        session.on_appended(std::move(group), appended);
+                    });
+                });
+}
+
+/// Refuses the entries of the robot whose entry is first. Call only while no group is being appended or applied.
+void Session::refuse_first(const Error& error) {
+    if (error.code == Errc::kOverloaded && limits_.on_short) {
+        limits_.on_short(static_cast<std::size_t>(mapping::chunk_count_of(waiting_.front().reach.cells)));
+    }
+    const RobotIndex robot = waiting_.front().robot;
+    waiting_.drop(robot);
+    sequencer_.refuse(robot, error, projection_.state());
+}
+
+// From the log to the maps, and to the links
+
+void Session::on_appended(Group group, const Result<>& appended) {
+    appending_ = false;
+    if (!appended && appended.error().code == Errc::kOverloaded) return set_back(appended.error());
+    if (!appended) return stop_writing(appended.error());
+    if (broken_) return finish_closing();
+    durable_.push_back(std::move(group));
+    if (hurried_) return finish_closing();
+    append_next(); // the next group is written while this one is applied
+    if (durable_.size() == 1) fold_slice();
+}
+
+/// Applies entries for one slice of work, then yields the thread. A small group is applied as a whole, and in place if
+/// no reader holds the published maps. Otherwise each chunk that the group changes is copied first.
+void Session::fold_slice() {
+    if (hurried_) return finish_closing();
+    if (durable_.empty()) return; // dropped in the meantime
+    const Group& group = durable_.front();
+    const bool in_place = group.work <= kInPlaceWork && published_.take_back();
+    auto applied = apply_some(in_place ? HUGE_VAL : kSliceWork);
+    const bool finished = applied && applied_ == group.entries.size();
+    if (in_place && !finished) { // failed or hurried: publish for the waiting readers
+        const auto published = publish();
+        if (applied) applied = published;
+    }
+    if (!applied) return stop_writing(applied.error());
+    if (finished) finish_group();
+    if (!durable_.empty()) return on_strand([](Session& self) { self.fold_slice(); });
+    finish_setting_back();
+    finish_closing();
+}
+
+/// Applies up to `work` of the first group. Fails if memory runs out, which must not affect other sessions, or if a
+/// durable entry cannot follow, which is a program error because RobotSequencer checks the entries.
+Result<> Session::apply_some(double work) {
+    try {
+        auto& entries = durable_.front().entries;
+        for (; applied_ < entries.size() && work > 0.0 && !hurried_; ++applied_) {
+            PendingEntry& next = entries[applied_];
+            if (!next.entry) continue;
+            const auto applied = projection_.apply(*next.entry, work);
+            if (!applied) return applied.error();
+            if (!*applied) return {}; // continues in the next slice
+            work_since_checkpoint_ += next.reach.work;
+            if (auto* taken = std::get_if<ScanTaken>(&*next.entry)) count_and_keep(*taken);
+            if (std::holds_alternative<SensorDescribed>(*next.entry)) described_since_checkpoint_ += next.bytes;
+        }
+        return {};
+    } catch (const std::bad_alloc&) {
+        return no_memory();
+    }
+}
+
+/// Counts an applied scan and moves its readings into newest_scans_. RobotSequencer needs only the sequence number of
+/// the rest.
+void Session::count_and_keep(ScanTaken& applied) {
+    if (projection_.has_left_out_newest(applied.robot)) {
+        ++counters_->scans_jumped;
+        return;
+    }
+    ++counters_->scans_applied;
+    if (newest_scans_.size() <= applied.robot) newest_scans_.resize(applied.robot + 1);
+    newest_scans_[applied.robot] = std::make_shared<const mapping::FoldedScan>(mapping::FoldedScan{
+        projection_.revision(), projection_.sensor_of(applied.robot, applied.scan.sensor), std::move(applied.scan)});
+}
+
+void Session::finish_group() {
+    const Group group = std::move(durable_.front());
+    durable_.pop_front();
+    applied_ = 0;
+    chunks_under_way_ -= group.chunks;
+    const auto grown = projection_.page_count() - std::exchange(pages_, projection_.page_count());
+    share_.give_back(group.chunks - static_cast<std::int64_t>(grown)); // `grown` may include trajectory blocks, too
+    const auto published = publish();
+    sequencer_.release(group);
+    if (!published) return stop_writing(published.error());
+    if (is_checkpoint_due()) begin_checkpoint();
+    append_next();
+}
+
+/// Publishes the maps. If memory runs out, readers get the previous maps, or empty ones if those were withdrawn.
+Result<> Session::publish() {
+    try {
+        auto maps = projection_.snapshot();
+        for (std::size_t n = 0; n < newest_scans_.size(); ++n) maps.robots[n].newest_scan = newest_scans_[n];
+        published_.set(std::make_shared<const mapping::Snapshot>(std::move(maps)));
+        has_news_ = true;
+        return {};
+    } catch (const std::bad_alloc&) {
+        published_.fall_back_to(no_maps());
+        return no_memory();
+    }
+}
+
+bool Session::is_checkpoint_due() const {
+    return projection_.revision() - checkpointed_.value_or(0) >= checkpoint_every(info_.id) ||
+           work_since_checkpoint_ >= kCheckpointEveryWork || described_since_checkpoint_ >= kCheckpointEveryDescribed;
+}
+
+void Session::begin_checkpoint() {
+    if (checkpointing_) return;
+    checkpointing_ = true;
+    work_since_checkpoint_ = 0.0;
+    described_since_checkpoint_ = 0;
+    auto write = [self = shared_from_this(), snapshot = snapshot(), state = projection_.state(),
+                  since = checkpointed_] {
+        const auto written =
+            session::write_checkpoint(self->log_, self->info_.id, *snapshot, state, since, self->hurried_);
+        if (!written && !self->hurried_)
+            log::warn({.session = self->info_.name}, "session '{}': no checkpoint: {}", self->info_.name,
+                      written.error().message);
+        self->on_strand([revision = written ? std::optional(state.revision) : since](Session& session) {
+            session.checkpointed_ = revision;
+            session.checkpointing_ = false;
+            session.finish_closing();
+        });
+    };
+    boost::asio::post(may_wait_, std::move(write)); // not on the strand, which continues to apply entries
+}
+
+// Failures and closing
+
+/// Stops ingestion after a failed write, after which the contents of the disk are unknown until the store is opened
+/// again, or because a durable entry could not be applied. The maps remain readable.
+void Session::stop_writing(const Error& error) {
+    log::error({.session = info_.name}, "session '{}': {}", info_.name, error.message);
+    refusing_ = error;
+    broken_ = true;
+    {
+        const std::lock_guard lock(failure_mutex_);
+        failure_ = error;
+    }
+    has_news_ = true;
+    sequencer_.fail_all(error);
+    drop_what_is_under_way();
+    finish_closing();
+}
+
+/// Resets the session to the durable entries because the log had no room for the last group. All entries after them are
+/// dropped; robots that reconnect send them again.
+void Session::set_back(const Error& error) {
+    refusing_ = error; // until the durable entries are in the maps
+    setting_back_ = true;
+    sequencer_.fail_all(error);
+    waiting_.clear();
+    finish_setting_back();
+    finish_closing();
+}
+
+void Session::finish_setting_back() {
+    if (!setting_back_ || !durable_.empty() || broken_) return;
+    setting_back_ = false;
+    drop_what_is_under_way();
+    appended_ = projection_.revision();
+    refusing_ = closing();
+}
+
+void Session::drop_what_is_under_way() {
+    waiting_.clear();
+    durable_.clear();
+    applied_ = 0;
+    share_.give_back(std::exchange(chunks_under_way_, 0));
+    sequencer_.restore(projection_.state());
+}
+
+void Session::close(Error reason, std::function<void()> done) {
+    on_strand([reason = std::move(reason), done = std::move(done)](Session& self) mutable {
+        {
+            const std::lock_guard lock(self.failure_mutex_);
+            self.closing_ = reason;
+        }
+        self.has_news_ = true;
+        if (!self.refusing_) self.refusing_ = std::move(reason);
+        self.closed_ = std::move(done);
+        self.finish_closing();
+    });
+}
+
+void Session::hurry() {
+    hurried_ = true;
+    on_strand([](Session& self) { self.finish_closing(); });
+}
+
+void Session::discard(Error reason, std::function<void()> done) {
+    hurried_ = true;
+    close(std::move(reason), std::move(done));
+}
+
+/// Continues closing as far as possible. Called after each event that closing waits for.
+void Session::finish_closing() {
+    if (!closed_ || appending_ || checkpointing_) return;
+    if (hurried_) {
+        for (const Group& group : durable_) sequencer_.release(group); // the next recovery applies them
+        sequencer_.fail_all(*refusing_);
+        drop_what_is_under_way();
+    }
+    if (!waiting_.empty() || !durable_.empty()) return;
+    sequencer_.fail_all(*refusing_);
+    if (projection_.revision() > checkpointed_.value_or(0) && !broken_ && !hurried_ && !final_checkpoint_tried_) {
+        final_checkpoint_tried_ = true;
+        return begin_checkpoint();
+    }
+    share_.give_back_all(); // readers may still hold the maps for a while
+    const auto closed = std::move(closed_);
+    closed_ = nullptr;
+    closed();
+}
+
+} // namespace scanloom::session

@@ -1,0 +1,243 @@
+#include "server/sessions/session_cache.hpp"
+
+#include <algorithm>
+#include <mutex>
+#include <utility>
+
+namespace scanloom::session {
+
+void SessionCache::touch(const Entry& entry, Clock::time_point now) const {
+    entry.used = now.time_since_epoch().count();
+}
+
+std::shared_ptr<Session> SessionCache::find(std::string_view name, Clock::time_point now) const {
+    const std::shared_lock lock(mutex_);
+    const auto found = entries_.find(name);
+    if (found == entries_.end() || found->second.state != State::kLoaded) return nullptr;
+    touch(found->second, now);
+    return found->second.session;
+}
+
+bool SessionCache::needs_loading(std::string_view name) const {
+    const std::shared_lock lock(mutex_);
+    const auto found = entries_.find(name);
+    return found != entries_.end() && found->second.state != State::kLoaded;
+}
+
+bool SessionCache::contains(std::string_view name) const {
+    const std::shared_lock lock(mutex_);
+    return entries_.contains(name);
+}
+
+std::optional<SessionInfo> SessionCache::info(std::string_view name) const {
+    const std::shared_lock lock(mutex_);
+    const auto found = entries_.find(name);
+    return found == entries_.end() ? std::nullopt : std::optional(found->second.info);
+}
+
+std::optional<ListedSession> SessionCache::listed(std::string_view name) const {
+    const std::shared_lock lock(mutex_);
+    const auto found = entries_.find(name);
+    if (found == entries_.end()) return std::nullopt;
+    const Entry& entry = found->second;
+    return ListedSession{entry.info, entry.session, entry.summary};
+}
+
+std::vector<std::shared_ptr<Session>> SessionCache::loaded() const {
+    const std::shared_lock lock(mutex_);
+    std::vector<std::shared_ptr<Session>> sessions;
+    sessions.reserve(entries_.size());
+    for (const auto& [name, entry] : entries_) {
+        if (entry.state == State::kLoaded) sessions.push_back(entry.session);
+    }
+    return sessions;
+}
+
+std::vector<ListedSession> SessionCache::all() const {
+    const std::shared_lock lock(mutex_);
+    std::vector<ListedSession> all;
+    all.reserve(entries_.size());
+    for (const auto& [name, entry] : entries_) all.push_back({entry.info, entry.session, entry.summary});
+    return all;
+}
+
+void SessionCache::add(std::shared_ptr<Session> session, Clock::time_point now) {
+    const std::unique_lock lock(mutex_);
+    Entry& entry = entries_[session->info().name];
+    entry.info = session->info();
+    entry.session = std::move(session);
+    entry.state = State::kLoaded;
+    touch(entry, now);
+}
+
+void SessionCache::add(SessionInfo info, Summary summary) {
+    const std::unique_lock lock(mutex_);
+    Entry& entry = entries_[info.name];
+    entry.info = std::move(info);
+    entry.summary = std::move(summary);
+}
+
+// Loading
+
+EvictedSession SessionCache::load(Entry& entry) {
+    entry.state = State::kInTransition;
+    return {entry.info, entry.summary.pages};
+}
+
+std::optional<EvictedSession> SessionCache::load_if_wanted(Entry& entry) {
+    if (entry.state != State::kEvicted || entry.waiting.empty()) return std::nullopt;
+    return load(entry);
+}
+
+std::optional<EvictedSession> SessionCache::want(std::string_view name, Clock::time_point now, Loaded on_loaded) {
+    std::shared_ptr<Session> awake;
+    {
+        const std::unique_lock lock(mutex_);
+        const auto found = entries_.find(name);
+        if (found != entries_.end()) {
+            Entry& entry = found->second;
+            touch(entry, now);
+            if (entry.state != State::kLoaded) {
+                entry.waiting.push_back(std::move(on_loaded));
+                return load_if_wanted(entry);
+            }
+            awake = entry.session;
+        }
+    }
+    on_loaded(std::move(awake));
+    return std::nullopt;
+}
+
+void SessionCache::arrived(std::shared_ptr<Session> session, Clock::time_point now) {
+    std::vector<Loaded> waiting;
+    {
+        const std::unique_lock lock(mutex_);
+        Entry& entry = entries_.find(session->info().name)->second;
+        entry.info = session->info(); // its exclusions may have changed
+        entry.session = session;
+        entry.state = State::kLoaded;
+        entry.summary = {};
+        touch(entry, now);
+        waiting.swap(entry.waiting);
+    }
+    arrival_.notify_all();
+    for (const auto& on_loaded : waiting) on_loaded(session);
+}
+
+void SessionCache::failed(const std::string& name, const Error& why) {
+    std::vector<Loaded> waiting;
+    {
+        const std::unique_lock lock(mutex_);
+        Entry& entry = entries_.find(name)->second;
+        entry.state = State::kEvicted;
+        waiting.swap(entry.waiting);
+    }
+    arrival_.notify_all();
+    for (const auto& on_loaded : waiting) on_loaded(why);
+}
+
+// Eviction
+
+std::vector<std::shared_ptr<Session>> SessionCache::evict(Clock::time_point used_until, std::size_t pages_wanted) {
+    const std::unique_lock lock(mutex_); // no caller can obtain a session without users meanwhile
+    std::vector<Entry*> idle;
+    for (auto& [name, entry] : entries_) {
+        const bool is_held = entry.session.use_count() > 1;
+        const bool was_used = entry.used > used_until.time_since_epoch().count();
+        if (entry.state == State::kLoaded && !is_held && !was_used) idle.push_back(&entry);
+    }
+    std::ranges::sort(idle, {}, [](const Entry* entry) { return entry->used.load(); });
+    std::vector<std::shared_ptr<Session>> sent;
+    std::size_t pages = 0;
+    for (Entry* entry : idle) {
+        if (pages >= pages_wanted) break;
+        entry->summary = summary_of(*entry->session->snapshot());
+        pages += entry->summary.pages;
+        entry->state = State::kInTransition;
+        sent.push_back(entry->session);
+    }
+    return sent;
+}
+
+std::vector<std::shared_ptr<Session>> SessionCache::evict_failed() {
+    const std::unique_lock lock(mutex_);
+    std::vector<std::shared_ptr<Session>> sent;
+    for (auto& [name, entry] : entries_) {
+        if (entry.state != State::kLoaded || !entry.session->failure()) continue;
+        entry.state = State::kInTransition;
+        sent.push_back(entry.session);
+    }
+    return sent;
+}
+
+std::optional<EvictedSession> SessionCache::arrived(const std::string& name, Summary summary) {
+    std::optional<EvictedSession> wanted;
+    std::shared_ptr<Session> last; // destroyed after the lock is released
+    {
+        const std::unique_lock lock(mutex_);
+        Entry& entry = entries_.find(name)->second;
+        entry.session.swap(last);
+        if (summary.facts) entry.info.exclusions = summary.facts->exclusions;
+        entry.summary = std::move(summary);
+        entry.state = State::kEvicted;
+        wanted = load_if_wanted(entry);
+    }
+    arrival_.notify_all();
+    return wanted;
+}
+
+// Deletion
+
+std::optional<ListedSession> SessionCache::leave(std::string_view name) {
+    std::unique_lock lock(mutex_);
+    for (;;) {
+        const auto found = entries_.find(name);
+        if (found == entries_.end()) return std::nullopt;
+        Entry& entry = found->second;
+        if (entry.state != State::kInTransition) {
+            entry.state = State::kInTransition;
+            return ListedSession{entry.info, entry.session, entry.summary};
+        }
+        arrival_.wait(lock);
+    }
+}
+
+void SessionCache::remove(std::string_view name, const Error& why) {
+    std::vector<Loaded> waiting;
+    std::shared_ptr<Session> last;
+    {
+        const std::unique_lock lock(mutex_);
+        const auto found = entries_.find(name);
+        if (found == entries_.end()) return;
+        waiting.swap(found->second.waiting);
+        last.swap(found->second.session);
+        entries_.erase(found);
+    }
+    arrival_.notify_all();
+    for (const auto& on_loaded : waiting) on_loaded(why);
+}
+
+std::optional<EvictedSession> SessionCache::stay(std::string_view name) {
+    std::vector<Loaded> waiting;
+    std::shared_ptr<Session> awake;
+    std::optional<EvictedSession> wanted;
+    {
+        const std::unique_lock lock(mutex_);
+        Entry& entry = entries_.find(name)->second;
+        entry.state = entry.session ? State::kLoaded : State::kEvicted;
+        wanted = load_if_wanted(entry);
+        if ((awake = entry.session)) waiting.swap(entry.waiting);
+    }
+    arrival_.notify_all();
+    for (const auto& on_loaded : waiting) on_loaded(awake);
+    return wanted;
+}
+
+void SessionCache::settle() const {
+    std::shared_lock lock(mutex_);
+    arrival_.wait(lock, [this] {
+        return std::ranges::none_of(entries_, [](const auto& e) { return e.second.state == State::kInTransition; });
+    });
+}
+
+} // namespace scanloom::session

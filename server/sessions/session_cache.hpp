@@ -1,0 +1,136 @@
+#pragma once
+
+#include "common/error/error.hpp"
+#include "server/sessions/session.hpp"
+#include "server/sessions/summary.hpp"
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <cstddef>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <shared_mutex>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace scanloom::session {
+
+/// One entry of the list of sessions, in memory or not.
+struct ListedSession {
+    SessionInfo info;
+    std::shared_ptr<Session> session; ///< null: not in memory
+    Summary summary;                  ///< only if it is not in memory
+};
+
+/// A session that must be loaded from the store.
+struct EvictedSession {
+    SessionInfo info;
+    std::size_t pages = 0; ///< that its maps will need
+};
+
+/// Session cache: the list of all sessions, which of them are in memory, and the callers that wait for the others.
+///
+/// A session is in memory (awake), evicted (asleep), or in transition: being loaded, evicted or deleted. Only sessions
+/// without an owner outside the cache are evicted, so holding a session keeps it in memory. A transition belongs to the
+/// caller that started it; all other callers wait until it ends.
+/// Threads: any thread. Only leave() and settle() block. Callbacks run before the call returns, without a lock held.
+class SessionCache {
+public:
+    using Clock = std::chrono::steady_clock;
+    using Loaded = std::function<void(Result<std::shared_ptr<Session>>)>;
+
+    /// Returns the session if it is in memory and sets its time of last use to `now`; otherwise null.
+    [[nodiscard]] std::shared_ptr<Session> find(std::string_view name, Clock::time_point now) const;
+
+    /// Returns whether the session exists and is not in memory.
+    [[nodiscard]] bool needs_loading(std::string_view name) const;
+
+    [[nodiscard]] bool contains(std::string_view name) const;
+
+    /// Returns the session's properties; nullopt if it does not exist.
+    [[nodiscard]] std::optional<SessionInfo> info(std::string_view name) const;
+
+    /// Returns the session's entry of all(); nullopt if it does not exist.
+    [[nodiscard]] std::optional<ListedSession> listed(std::string_view name) const;
+
+    /// Returns the sessions in memory, sorted by name.
+    [[nodiscard]] std::vector<std::shared_ptr<Session>> loaded() const;
+
+    /// Returns all sessions, sorted by name.
+    [[nodiscard]] std::vector<ListedSession> all() const;
+
+    /// Adds a session that is in memory, last used at `now`. No session of that name may exist.
+    void add(std::shared_ptr<Session> session, Clock::time_point now);
+
+    /// Adds a session that is not in memory. No session of that name may exist.
+    void add(SessionInfo info, Summary summary);
+
+    /// Passes the session to `on_loaded`: immediately if it is in memory, otherwise when it has been loaded.
+    ///
+    /// @param on_loaded  called once: with the session, with null if it does not exist, or with the error of failed() or
+    ///               remove()
+    /// @return a session that the caller must load and then report with arrived() or failed(), if any
+    [[nodiscard]] std::optional<EvictedSession> want(std::string_view name, Clock::time_point now, Loaded on_loaded);
+
+    /// Starts to evict sessions, the least recently used first, until they have `pages_wanted` pages together.
+    ///
+    /// Only sessions without an owner outside the cache that were not used after `used_until` are evicted.
+    /// @return the sessions, which the caller must close and then report with arrived()
+    [[nodiscard]] std::vector<std::shared_ptr<Session>> evict(Clock::time_point used_until, std::size_t pages_wanted);
+
+    /// Starts to evict all sessions that have failed, even if they have other owners.
+    /// @return the sessions, which the caller must close and then report with arrived()
+    [[nodiscard]] std::vector<std::shared_ptr<Session>> evict_failed();
+
+    /// Ends a load: the session is in memory. Passes it to the waiting callers.
+    void arrived(std::shared_ptr<Session> session, Clock::time_point now);
+
+    /// Ends an eviction: the session is not in memory.
+    /// @return the session if a caller has requested it in the meantime, to be loaded as after want()
+    [[nodiscard]] std::optional<EvictedSession> arrived(const std::string& name, Summary summary);
+
+    /// Ends a load that failed: passes `why` to the waiting callers. The session stays evicted.
+    void failed(const std::string& name, const Error& why);
+
+    /// Waits until the session is in no transition, then starts to delete it, or to change it while it is closed.
+    /// @return the session in its state before; nullopt if it does not exist. The caller must end the transition with
+    /// remove(), stay() or arrived().
+    [[nodiscard]] std::optional<ListedSession> leave(std::string_view name);
+
+    /// Removes the session from the list and passes `why` to the waiting callers.
+    void remove(std::string_view name, const Error& why);
+
+    /// Ends the transition of leave() without a change.
+    /// @return a session to load, as want()
+    [[nodiscard]] std::optional<EvictedSession> stay(std::string_view name);
+
+    /// Waits until no session is in transition.
+    void settle() const;
+
+private:
+    enum class State { kLoaded, kEvicted, kInTransition };
+
+    struct Entry {
+        SessionInfo info;
+        State state = State::kEvicted;
+        std::shared_ptr<Session> session; // also while it is being evicted or deleted
+        Summary summary;                  // of a session that is not in memory
+        mutable std::atomic<Clock::rep> used = 0;
+        std::vector<Loaded> waiting;
+    };
+    using Entries = std::map<std::string, Entry, std::less<>>;
+
+    [[nodiscard]] static EvictedSession load(Entry& entry);
+    [[nodiscard]] static std::optional<EvictedSession> load_if_wanted(Entry& entry);
+    void touch(const Entry& entry, Clock::time_point now) const;
+
+    mutable std::shared_mutex mutex_; // guards the entries; held briefly
+    mutable std::condition_variable_any arrival_;
+    Entries entries_;
+};
+
+} // namespace scanloom::session

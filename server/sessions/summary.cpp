@@ -1,0 +1,65 @@
+#include "server/sessions/summary.hpp"
+
+#include "core/mapping/projection.hpp"
+#include "server/sessions/checkpoint.hpp"
+
+#include <utility>
+
+namespace scanloom::session {
+namespace {
+
+const Error kSummaryIsRead{Errc::kShuttingDown, "what follows are sensors and cells"};
+
+Summary summary_of(const mapping::ProjectionState& state, const mapping::MapConfig& config) {
+    mapping::Snapshot facts{
+        .revision = state.revision, .config = config, .exclusions = state.exclusions, .bounds = state.bounds};
+    for (const auto& robot : state.robots) {
+        auto& told = facts.robots.emplace_back();
+        told.name = robot.name;
+        told.body_radius = robot.body_radius;
+        told.last_seq = robot.last_seq;
+        told.scan_count = robot.scan_count;
+        told.jumps = robot.jumps.left_out;
+        told.excluded = robot.excluded;
+        if (!robot.newest) continue;
+        told.stamp = robot.newest->stamp;
+        told.pose = robot.newest->pose;
+    }
+    return {std::make_shared<const mapping::Snapshot>(std::move(facts)), state.pages};
+}
+
+} // namespace
+
+Summary summary_of(const mapping::Snapshot& snapshot) {
+    mapping::Snapshot facts{.revision = snapshot.revision,
+                            .config = snapshot.config,
+                            .exclusions = snapshot.exclusions,
+                            .bounds = snapshot.bounds};
+    for (const auto& robot : snapshot.robots) {
+        auto& told = facts.robots.emplace_back(robot);
+        told.trajectory = {};
+        told.newest_scan = nullptr;
+    }
+    return {std::make_shared<const mapping::Snapshot>(std::move(facts)), snapshot.chunk_count};
+}
+
+Result<std::optional<Summary>> read_summary(store::ScanLog& log, store::SessionId session,
+                                            const mapping::MapConfig& config) {
+    const auto end = log.end_of(session);
+    if (!end) return end.error();
+    CheckpointReader reader(config);
+    std::optional<Error> unusable;
+    auto read = log.read_checkpoint(session, [&](std::string_view key, std::string_view value) -> Result<> {
+        if (key >= CheckpointReader::kAfterState) return kSummaryIsRead;
+        auto added = reader.add(key, value);
+        if (!added) unusable = added.error();
+        return added;
+    });
+    if (unusable) return std::optional<Summary>{};
+    if (!read && read.error() != kSummaryIsRead) return read.error();
+    const auto state = std::move(reader).state();
+    if (!state || state->revision != *end) return std::optional<Summary>{};
+    return std::optional(summary_of(*state, config));
+}
+
+} // namespace scanloom::session

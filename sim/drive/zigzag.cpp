@@ -1,0 +1,267 @@
+#include "sim/drive/zigzag.hpp"
+
+#include "sim/drive/ground.hpp"
+#include "sim/drive/path_follower.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+namespace scanloom::robot {
+namespace {
+
+/// Adjacent cells of one row: x_begin <= x < x_end.
+struct Row {
+    std::int32_t y = 0;
+    std::int32_t x_begin = 0;
+    std::int32_t x_end = 0;
+};
+
+using Cells = std::vector<std::uint8_t>;
+
+bool is_set(const Ground& ground, const Cells& cells, Spot spot) {
+    return ground.holds(spot) && cells[ground.index_of(spot)] != 0;
+}
+
+std::vector<Row> rows_at(const Ground& ground, const Cells& cells, std::int32_t y) {
+    std::vector<Row> rows;
+    for (std::int32_t x = 0; x < ground.plan().width; ++x) {
+        if (!is_set(ground, cells, {x, y})) continue;
+        if (!is_set(ground, cells, {x - 1, y})) rows.push_back({y, x, x});
+        rows.back().x_end = x + 1;
+    }
+    return rows;
+}
+
+/// Returns the only one of `rows` that adjoins `row`, or nullopt if there is none or more than one.
+std::optional<std::size_t> only_neighbour(const std::vector<Row>& rows, const Row& row) {
+    std::optional<std::size_t> only;
+    for (std::size_t n = 0; n < rows.size(); ++n) {
+        if (rows[n].x_begin >= row.x_end || row.x_begin >= rows[n].x_end) continue;
+        if (only) return std::nullopt;
+        only = n;
+    }
+    return only;
+}
+
+std::vector<std::vector<Row>> blocks_of_rows(const Ground& ground, const Cells& cells) {
+    std::vector<std::vector<Row>> blocks;
+    std::vector<Row> below;
+    std::vector<std::size_t> blocks_below; // the block of each row below
+    for (std::int32_t y = 0; y < ground.plan().height; ++y) {
+        const auto rows = rows_at(ground, cells, y);
+        std::vector<std::size_t> blocks_here;
+        for (const Row& row : rows) {
+            const auto under = only_neighbour(below, row);
+            const bool goes_on = under && only_neighbour(rows, below[*under]);
+            blocks_here.push_back(goes_on ? blocks_below[*under] : blocks.size());
+            if (!goes_on) blocks.emplace_back();
+            blocks[blocks_here.back()].push_back(row);
+        }
+        below = rows;
+        blocks_below = std::move(blocks_here);
+    }
+    return blocks;
+}
+
+/// Returns whether each cell of a row has a cell of the area `up` rows above it.
+bool borders(const Ground& ground, const Cells& cells, const Row& row, std::int32_t up) {
+    for (std::int32_t x = row.x_begin; x < row.x_end; ++x) {
+        if (!is_set(ground, cells, {x, row.y + up})) return false;
+    }
+    return true;
+}
+
+Block lanes_of(const Ground& ground, const Cells& cells, const std::vector<Row>& rows, std::int32_t spacing) {
+    // If another block has a lane along the border, the first lane here is one spacing away from it.
+    const bool open_below = borders(ground, cells, rows.front(), -1);
+    const bool open_above = borders(ground, cells, rows.back(), 1);
+    const std::int32_t first = open_below ? -1 : 0;
+    const std::int32_t last = static_cast<std::int32_t>(rows.size()) - (open_above ? 0 : 1);
+    const std::int32_t spaces = std::max(1, (last - first + spacing - 1) / spacing);
+    Block block;
+    for (std::int32_t n = 0; n <= spaces; ++n) {
+        if ((n == 0 && open_below) || (n == spaces && (open_above || last == first))) continue;
+        const double place = first + static_cast<double>(n) * (last - first) / spaces;
+        const Row& row = rows[static_cast<std::size_t>(std::lround(place))];
+        block.push_back({ground.centre_of({row.x_begin, row.y}), ground.centre_of({row.x_end - 1, row.y})});
+    }
+    return block;
+}
+
+} // namespace
+
+std::vector<Block> lanes_over(const Ground& ground, const Cells& cells, double spacing_m) {
+    const auto spacing = std::max(1, static_cast<std::int32_t>(spacing_m / ground.plan().cell_size + 1e-9));
+    std::vector<Block> blocks;
+    for (const auto& rows : blocks_of_rows(ground, cells)) {
+        Block block = lanes_of(ground, cells, rows, spacing);
+        if (!block.empty()) blocks.push_back(std::move(block));
+    }
+    return blocks;
+}
+
+namespace {
+
+// control steps
+constexpr int kBlockedStepsPerDetour = 40;
+constexpr int kLanePatienceSteps = 200;
+constexpr int kDetoursMax = 4;
+constexpr int kOtherPathsMax = 3;
+
+/// Lanes overlap by one cell, so small deviations from a lane do not matter.
+double spacing_of(const FloorPlan& plan) { return std::max(2.0 * kBodyRadius - plan.cell_size, plan.cell_size); }
+
+/// Returns true once for every two seconds that the robot is blocked.
+bool is_out_of_patience(const PathFollower& follower) {
+    return follower.blocked_steps() > 0 && follower.blocked_steps() % kBlockedStepsPerDetour == 0;
+}
+
+} // namespace
+
+Zigzag::Zigzag(FloorPlan plan) : ground_(std::move(plan), kLaneClearance) {}
+
+Velocity Zigzag::step(const Senses& senses) {
+    const Point2 position = position_of(senses.pose);
+    if (task_ == Task::kBegin) begin(position);
+    meter_.pass(ground_, position);
+    switch (task_) {
+    case Task::kGo: return go(senses);
+    case Task::kSweep: return sweep(senses);
+    case Task::kDetour: return go_around(senses);
+    case Task::kBegin:
+    case Task::kDone: break;
+    }
+    return {};
+}
+
+std::string Zigzag::remarks() const {
+    std::string text = fmt::format("swept {:.1f} % of the {:.0f} reachable m2, in {} lanes", 100.0 * coverage(),
+                                   meter_.reachable_m2(), lanes_swept_);
+    if (detours_ > 0) text += fmt::format(", {} detours", detours_);
+    if (given_up_ > 0) text += fmt::format(", {} lanes abandoned", given_up_);
+    return text;
+}
+
+void Zigzag::begin(const Point2& position) {
+    const auto places = reachable_from(ground_, position);
+    meter_ = CoverageMeter(ground_, places);
+    blocks_ = lanes_over(ground_, places, spacing_of(ground_.plan()));
+    begin_next_lane(position);
+}
+
+/// Chooses the block whose first or last lane has the nearest end, and orders its lanes from there.
+void Zigzag::choose_block(const Point2& position) {
+    std::vector<Point2> entries; // four for each block
+    for (const Block& block : blocks_) {
+        for (const Lane& lane : {block.front(), block.back()}) {
+            entries.push_back(lane.west);
+            entries.push_back(lane.east);
+        }
+    }
+    const auto nearest = nearest_by_path(ground_, position, entries);
+    if (!nearest) return;
+    const auto chosen = blocks_.begin() + static_cast<std::ptrdiff_t>(*nearest / 4);
+    lanes_.assign(chosen->begin(), chosen->end());
+    if (*nearest % 4 >= 2) std::ranges::reverse(lanes_);
+    blocks_.erase(chosen);
+}
+
+void Zigzag::begin_next_lane(const Point2& position) {
+    for (;;) {
+        if (lanes_.empty()) choose_block(position);
+        if (lanes_.empty()) break; // all lanes are swept, or none of the rest can be reached
+        const Lane lane = lanes_.front();
+        lanes_.pop_front();
+        const bool from_west = norm(lane.west - position) <= norm(lane.east - position);
+        lane_begin_ = from_west ? lane.west : lane.east;
+        lane_end_ = from_west ? lane.east : lane.west;
+        lane_detours_ = 0;
+        other_paths_ = 0;
+        obstacles_.clear();
+        if (auto path = find_path(ground_, position, lane_begin_)) {
+            follower_ = PathFollower(std::move(*path));
+            task_ = Task::kGo;
+            return;
+        }
+        given_up_ += 1;
+    }
+    for (const Block& block : blocks_) given_up_ += static_cast<int>(block.size());
+    blocks_.clear();
+    task_ = Task::kDone;
+}
+
+Velocity Zigzag::go(const Senses& senses) {
+    const Point2 position = position_of(senses.pose);
+    if (follower_.has_arrived()) {
+        sweep_on();
+        return sweep(senses);
+    }
+    const Velocity velocity = follower_.step(senses);
+    if (!is_out_of_patience(follower_)) return velocity;
+    other_paths_ += 1;
+    for (const Point2& obstacle : unexpected_obstacles(ground_, senses)) obstacles_.push_back(obstacle);
+    const auto around = find_path(ground_.without(obstacles_, kLaneClearance), position, lane_begin_);
+    if (other_paths_ > kOtherPathsMax) {
+        give_up_lane(position);
+    } else if (around) {
+        follower_ = PathFollower(*around);
+    }
+    return {};
+}
+
+Velocity Zigzag::sweep(const Senses& senses) {
+    const Point2 position = position_of(senses.pose);
+    if (follower_.has_arrived()) {
+        lanes_swept_ += 1;
+        begin_next_lane(position);
+        return {};
+    }
+    const Velocity velocity = follower_.step(senses);
+    if (is_out_of_patience(follower_) && lane_detours_ < kDetoursMax) {
+        detour_ = Detour::plan(ground_, senses, lane_end_);
+        if (detour_) {
+            lane_detours_ += 1;
+            task_ = Task::kDetour;
+        }
+    }
+    if (follower_.blocked_steps() > kLanePatienceSteps) give_up_lane(position);
+    return velocity;
+}
+
+Velocity Zigzag::go_around(const Senses& senses) {
+    const Velocity velocity = detour_->step(ground_, senses);
+    const Point2 position = position_of(senses.pose);
+    switch (detour_->state()) {
+    case Detour::State::kActive: return velocity;
+    case Detour::State::kBackOnLine:
+        detours_ += 1;
+        sweep_on();
+        break;
+    case Detour::State::kPastEnd:
+        detours_ += 1;
+        lanes_swept_ += 1;
+        begin_next_lane(position);
+        break;
+    case Detour::State::kFailed: // moving obstacles may have left
+        sweep_on();
+        break;
+    }
+    return {};
+}
+
+/// Continues along the lane from the robot's position next to it.
+void Zigzag::sweep_on() {
+    task_ = Task::kSweep;
+    follower_ = PathFollower({lane_begin_, lane_end_});
+}
+
+void Zigzag::give_up_lane(const Point2& position) {
+    given_up_ += 1;
+    begin_next_lane(position);
+}
+
+} // namespace scanloom::robot

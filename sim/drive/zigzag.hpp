@@ -1,0 +1,81 @@
+#pragma once
+
+#include "sim/drive/behaviour.hpp"
+#include "sim/drive/coverage_meter.hpp"
+#include "sim/drive/detour.hpp"
+#include "sim/drive/ground.hpp"
+#include "sim/drive/path_follower.hpp"
+
+#include <deque>
+#include <optional>
+#include <vector>
+
+namespace scanloom::robot {
+
+/// A straight segment of a sweep, parallel to the x axis; metres in the map frame.
+struct Lane {
+    Point2 west{0.0, 0.0};
+    Point2 east{0.0, 0.0};
+};
+
+/// Lanes one above the other, from the south, that are swept back and forth without choosing an order.
+using Block = std::vector<Lane>;
+
+/// Divides cells into blocks and each block into evenly spaced lanes at most `spacing_m` apart. There is one lane along
+/// the lowest row and one along the highest, but none if that whole row borders another block, whose lane there is near
+/// enough. A block ends where a row has several neighbours above or below it, or shares one.
+/// @param cells  for each cell of the ground's plan, 1 if it belongs to the area, else 0
+/// Source: Choset, Pignon, Coverage Path Planning: The Boustrophedon Cellular Decomposition (FSR 1997).
+[[nodiscard]] std::vector<Block> lanes_over(const Ground& ground, const std::vector<std::uint8_t>& cells,
+                                            double spacing_m);
+
+/// Sweeps the free cells of a known map back and forth, lane by lane and block by block, the nearest block next. An
+/// obstacle in a lane that is not in the map stops the robot. It waits two seconds for the obstacle to leave, then
+/// drives around it (Detour), or gives up the rest of the lane if there is no room. On the path to a lane it takes
+/// another path instead.
+class Zigzag final : public Behaviour {
+public:
+    /// Distance in metres that lanes keep from obstacles of the plan.
+    static constexpr double kLaneClearance = kBodyRadius + 0.10;
+
+    explicit Zigzag(FloorPlan plan);
+
+    [[nodiscard]] Velocity step(const Senses& senses) override;
+    [[nodiscard]] bool is_done() const override { return task_ == Task::kDone; }
+    [[nodiscard]] bool has_an_end() const override { return true; }
+    [[nodiscard]] std::string remarks() const override;
+
+    [[nodiscard]] double coverage() const noexcept { return meter_.share(); } ///< 0 .. 1, of what the robot can reach
+    [[nodiscard]] int detours() const noexcept { return detours_; }
+    [[nodiscard]] int lanes_given_up() const noexcept { return given_up_; }
+
+private:
+    enum class Task { kBegin, kGo, kSweep, kDetour, kDone };
+
+    void begin(const Point2& position);
+    void choose_block(const Point2& position);
+    void begin_next_lane(const Point2& position);
+    [[nodiscard]] Velocity go(const Senses& senses);
+    [[nodiscard]] Velocity sweep(const Senses& senses);
+    [[nodiscard]] Velocity go_around(const Senses& senses);
+    void sweep_on();
+    void give_up_lane(const Point2& position);
+
+    Ground ground_;
+    CoverageMeter meter_;
+    std::vector<Block> blocks_; // not begun
+    std::deque<Lane> lanes_;    // lanes of the current block that are not begun
+    Point2 lane_begin_{0.0, 0.0};
+    Point2 lane_end_{0.0, 0.0};
+    Task task_ = Task::kBegin;
+    PathFollower follower_;
+    std::optional<Detour> detour_;
+    int lane_detours_ = 0;          // begun in this lane
+    int other_paths_ = 0;           // paths tried to reach this lane
+    std::vector<Point2> obstacles_; // obstacles seen there that are not in the plan
+    int lanes_swept_ = 0;
+    int detours_ = 0; // that returned to their lane
+    int given_up_ = 0;
+};
+
+} // namespace scanloom::robot

@@ -1,0 +1,96 @@
+#include "sim/simulator.hpp"
+
+#include "sim/drive/nearby_obstacles.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <numbers>
+
+namespace scanloom::robot {
+namespace {
+
+Pose2 choose_start(const World& world, Random& random) {
+    for (;;) { // ends because a free place exists
+        const Box& floor = world.starts[random.index(world.starts.size())];
+        const Point2 place{random.uniform(floor.x_min, floor.x_max), random.uniform(floor.y_min, floor.y_max)};
+        if (clearance(world, place) < world.start_clearance) continue;
+        return {place.x, place.y, random.uniform(-std::numbers::pi, std::numbers::pi)};
+    }
+}
+
+std::vector<RangeMm> measure(const World& world, const Sensor& sensor, const Pose2& robot,
+                             const std::optional<Noise>& noise, Random& random) {
+    const Pose2 T_map_sensor = compose(robot, sensor.mount);
+    return sensor.kind == SensorKind::kLaser ? sweep(world, sensor, T_map_sensor, noise, random)
+                                             : listen(world, sensor, T_map_sensor, noise, random);
+}
+
+/// Returns the sectors of a scan. Of sonars, only those whose whole cone points ahead count: echoes of the others may
+/// come from behind the robot and are no reason to back off.
+SectorRanges sectors_of(Scan scan, const Sensor& sensor) {
+    constexpr double kAhead = std::numbers::pi / 2.0 + 1e-9;
+    for (std::size_t i = 0; sensor.kind == SensorKind::kSonar && i < scan.ranges.size(); ++i) {
+        const double axis = normalize_angle(beam_angle(sensor.angles, i));
+        if (std::abs(axis) + sensor.aperture / 2.0 > kAhead) scan.ranges[i] = kInvalidRange;
+    }
+    return sector_ranges(scan, sensor);
+}
+
+} // namespace
+
+Simulator::Simulator(SimulatorOptions options, std::unique_ptr<Behaviour> behaviour)
+    : options_(std::move(options)), behaviour_(std::move(behaviour)), random_(options_.seed),
+      start_(options_.start ? *options_.start : choose_start(options_.world, random_)), pose_(start_) {
+    for (const auto& sensor : {options_.laser, options_.sonar}) {
+        if (sensor) sensors_.push_back(std::make_shared<const Sensor>(*sensor));
+    }
+    assert(!sensors_.empty());
+}
+
+Scan Simulator::next_scan() {
+    const std::uint64_t moment = scans_ / sensors_.size();
+    const std::size_t which = scans_ % sensors_.size();
+    if (moment > 0 && which == 0) {
+        for (int i = 0; i < kControlStepsPerScan; ++i) control_step();
+    }
+    const Sensor& sensor = *sensors_[which];
+    Scan scan;
+    scan.stamp = static_cast<double>(moment * kControlStepsPerScan) * kControlPeriod;
+    scan.sensor = sensor.id;
+    scan.pose = pose_sent();
+    scan.odometry = odometry_;
+    scan.ranges = measure(options_.world, sensor, pose_, options_.noise, random_);
+    if (which == 0) {
+        senses_.nearest = sectors_of(scan, sensor);
+        senses_.obstacles = obstacles_of(scan, sensor);
+    }
+    ++scans_;
+    return scan;
+}
+
+const std::shared_ptr<const Sensor>& Simulator::sensor_of(const Scan& scan) const {
+    return *std::ranges::find_if(sensors_, [&](const auto& sensor) { return sensor->id == scan.sensor; });
+}
+
+void Simulator::control_step() {
+    senses_.pose = pose_sent();
+    const Velocity wanted = behaviour_->step(senses_);
+    const Motion motion = drive(options_.world, pose_, wanted);
+    if (motion.forward == 0.0 && wanted.forward != 0.0) ++collisions_;
+    pose_ = moved(pose_, motion);
+    odometry_ = moved(odometry_, as_the_wheels_tell(motion));
+    walk(options_.world, {pose_.x, pose_.y}, kControlPeriod);
+}
+
+Pose2 Simulator::pose_sent() const { return options_.pose == PoseSent::kTrue ? pose_ : compose(start_, odometry_); }
+
+Motion Simulator::as_the_wheels_tell(const Motion& motion) {
+    if (!options_.noise) return motion;
+    const Noise& noise = *options_.noise;
+    return {motion.forward + random_.gaussian(noise.odometry_forward * std::abs(motion.forward)),
+            motion.turn + random_.gaussian(noise.odometry_turn * std::abs(motion.turn) +
+                                           noise.odometry_drift * std::abs(motion.forward))};
+}
+
+} // namespace scanloom::robot

@@ -1,0 +1,79 @@
+#pragma once
+
+#include "sim/drive/behaviour.hpp"
+#include "sim/noise.hpp"
+#include "sim/range_sensors.hpp"
+#include "sim/unicycle.hpp"
+#include "sim/world.hpp"
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace scanloom::robot {
+
+inline constexpr int kControlStepsPerScan = 2;                               ///< 20 Hz control, 10 Hz sensors
+inline constexpr double kScanPeriod = kControlStepsPerScan * kControlPeriod; ///< seconds
+
+/// The pose that a robot sends with its scans.
+enum class PoseSent {
+    kTrue,     ///< the true pose
+    kOdometry, ///< the odometry from the true start on, which drifts
+};
+
+struct SimulatorOptions {
+    World world;
+    std::optional<Sensor> laser; ///< none: the robot has sonars
+    std::optional<Noise> noise;  ///< none: all measurements are exact
+    std::uint64_t seed = 1;
+    std::optional<Pose2> start;  ///< none: a free place chosen by the seed
+    std::optional<Sensor> sonar; ///< a further sensor with its own id
+    PoseSent pose = PoseSent::kTrue;
+};
+
+/// A robot that drives through a world and scans it. The options determine everything: there is no clock and no other
+/// randomness. People in the world keep walking while it drives.
+///
+/// scan.pose is chosen by the options, and so is Senses::pose: the map frame is that of the scans. scan.odometry starts
+/// at (0, 0, 0). The robot steers by its laser. Without a laser it steers by its sonars and places each echo on the
+/// cone's axis; sonars whose cone includes directions behind the robot do not count in Senses::nearest.
+class Simulator {
+public:
+    /// Pre: the options contain a sensor.
+    Simulator(SimulatorOptions options, std::unique_ptr<Behaviour> behaviour);
+
+    /// Returns the next scan. Each sensor scans ten times per second, all at the same time; the laser's scan comes
+    /// first. The first scans are taken where the robot starts, at 0 s.
+    [[nodiscard]] Scan next_scan();
+
+    /// Returns the sensors, in the order of their scans.
+    [[nodiscard]] const std::vector<std::shared_ptr<const Sensor>>& sensors() const noexcept { return sensors_; }
+    /// Returns the sensor that took a scan. Pre: it is one of this simulator's.
+    [[nodiscard]] const std::shared_ptr<const Sensor>& sensor_of(const Scan& scan) const;
+
+    /// Returns the current world, in which people have moved.
+    [[nodiscard]] const World& world() const noexcept { return options_.world; }
+    /// Returns the robot's true pose.
+    [[nodiscard]] const Pose2& pose() const noexcept { return pose_; }
+    [[nodiscard]] const Behaviour& behaviour() const noexcept { return *behaviour_; }
+    /// Returns the number of control steps in which a solid or a person blocked the robot.
+    [[nodiscard]] std::uint64_t collisions() const noexcept { return collisions_; }
+
+private:
+    void control_step();
+    [[nodiscard]] Motion as_the_wheels_tell(const Motion& motion);
+    [[nodiscard]] Pose2 pose_sent() const;
+
+    SimulatorOptions options_;
+    std::unique_ptr<Behaviour> behaviour_;
+    Random random_;
+    std::vector<std::shared_ptr<const Sensor>> sensors_;
+    Pose2 start_;
+    Pose2 pose_;
+    Pose2 odometry_;
+    Senses senses_;
+    std::uint64_t scans_ = 0;
+    std::uint64_t collisions_ = 0;
+};
+
+} // namespace scanloom::robot

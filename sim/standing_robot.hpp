@@ -1,0 +1,42 @@
+#pragma once
+
+#include "sim/noise.hpp"
+#include "sim/world.hpp"
+
+#include <cstdint>
+#include <vector>
+
+/// Scans of a stationary robot in worlds where a door moves: test data for scan matching.
+namespace scanloom::robot {
+
+/// Returns the points of several turns of "lidar360" with noise, in the robot's frame.
+[[nodiscard]] std::vector<Point2> standing_capture(const World& world, const Pose2& place, int turns, Random& random);
+
+/// Returns possible doors: closed in the office's doorways and at the hall's cabin, ajar along the room's walls.
+[[nodiscard]] std::vector<Box> doors_of(const World& world);
+
+/// Returns the world with one more solid.
+[[nodiscard]] World with_door(const World& world, const Box& door);
+
+/// Returns a start for a robot, at least 0.3 m from anything, with a random heading.
+[[nodiscard]] Pose2 free_place(const World& world, Random& random);
+
+/// Returns whether the line between two places is free, and the space just behind the second.
+[[nodiscard]] bool sees(const World& world, const Pose2& from, const Pose2& to);
+
+inline constexpr int kAlignedTurns = 20; ///< turns of the lidar in each of the two places
+
+/// Scans of a robot from two places of a world, between which a door moved.
+struct TwoCaptures {
+    std::vector<Point2> first; ///< each in its robot's frame
+    std::vector<Point2> second;
+    Pose2 T_first_second;
+};
+
+/// Makes scans from two places 0.5 to 2 m apart with random headings, each in sight of the other, with the door open in
+/// one of them.
+/// @param doors  one of them moves; empty: none moves
+[[nodiscard]] TwoCaptures two_captures(const World& open, const std::vector<Box>& doors, std::uint64_t seed,
+                                       int turns = kAlignedTurns);
+
+} // namespace scanloom::robot

@@ -1,0 +1,190 @@
+#include "core/landmarks/alignment_evidence.hpp"
+#include "core/landmarks/alignment_hypotheses.hpp"
+#include "core/landmarks/refinement.hpp"
+#include "tests/support/angles.hpp"
+#include "tests/unit/core/landmarks/pose_errors.hpp"
+#include "tests/unit/core/landmarks/random_points.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+// Parts of an alignment: surface elements, hypotheses, refinement, evidence.
+
+namespace scanloom::landmarks {
+namespace {
+
+using namespace testing_support;
+
+/// Returns noisy points on the border of a room around the origin that has no rotational symmetry.
+std::vector<Point2> odd_room(std::mt19937& random) {
+    const std::vector<Point2> corners = {{-3.0, -2.0}, {3.0, -2.0}, {3.0, 1.0}, {1.0, 1.0}, {1.0, 3.0}, {-3.0, 3.0}};
+    std::vector<Point2> points;
+    for (std::size_t side = 0; side < corners.size(); ++side) {
+        const Point2& a = corners[side];
+        const Point2& b = corners[(side + 1) % corners.size()];
+        for (int n = 0; n < 600; ++n) {
+            const Point2 noise{uniform(random, -0.02, 0.02), uniform(random, -0.02, 0.02)};
+            points.push_back(a + (b - a) * uniform(random, 0.0, 1.0) + noise);
+        }
+    }
+    return points;
+}
+
+std::vector<Point2> seen_from(const Pose2& place, std::vector<Point2> points) {
+    for (Point2& point : points) point = transform(inverse(place), point);
+    return points;
+}
+
+/// Returns the surface elements of points observed from the origin.
+std::vector<Surfel> surfels_around(const std::vector<Point2>& points) { return surfels_of(CloudView{points}); }
+
+TEST(Surfels, LieOnTheWallAtAnyPointDensity) {
+    std::mt19937 random(1);
+    std::vector<Point2> points;
+    for (int n = 0; n < 4000; ++n) {
+        const double x = n % 4 == 0 ? uniform(random, 0.0, 4.0) : uniform(random, 0.0, 1.0);
+        points.push_back({x, 7.0 + uniform(random, -0.02, 0.02)});
+    }
+    const auto surfels = surfels_around(points);
+    EXPECT_LE(surfels.size(), 84U);
+    for (const Surfel& surfel : surfels) {
+        ASSERT_TRUE(surfel.is_straight());
+        EXPECT_NEAR(surfel.position.y, 7.0, 0.006);
+        EXPECT_GT(std::abs(surfel.normal.y), 0.99);
+    }
+    EXPECT_TRUE(surfels_of(std::span<const CloudView>(), 0.0).empty());
+    EXPECT_FALSE(surfels_around(std::vector<Point2>(9, Point2{1.0, 1.0})).front().is_straight());
+}
+
+TEST(Surfels, FarElementsHaveTheWallsDirection) {
+    std::mt19937 random(6);
+    std::normal_distribution<double> range_noise(0.0, 0.02);
+    std::normal_distribution<double> angle_noise(0.0, 0.005);
+    std::vector<Point2> points; // a wall along x at a distance of 4 m, observed up to 12 m to the side
+    for (int turn = 0; turn < 20; ++turn) {
+        for (int degree = 20; degree < 45; ++degree) {
+            const double range = 4.0 / std::sin(degree * kDegree) + range_noise(random);
+            const double angle = degree * kDegree + angle_noise(random);
+            points.push_back({range * std::cos(angle), range * std::sin(angle)});
+        }
+    }
+    const auto surfels = surfels_around(points);
+    const auto along = std::ranges::count_if(surfels, [](const auto& one) { return std::abs(one.normal.y) > 0.97; });
+    EXPECT_GT(along, 2 * std::ssize(surfels) / 3);
+}
+
+TEST(Surfels, SurfelsOfSeveralViewsUseAllPoints) {
+    std::mt19937 random(7);
+    const auto here = odd_room(random);
+    const auto there = odd_room(random);
+    auto all = here;
+    all.insert(all.end(), there.begin(), there.end());
+    const auto both =
+        surfels_of(std::vector<CloudView>{{{}, {0.0, 0.0}}, {here, {0.0, 0.0}}, {there, {0.0, 0.0}}}, kAroundOfView);
+    const auto one = surfels_around(all);
+    ASSERT_EQ(both.size(), one.size());
+    for (std::size_t n = 0; n < one.size(); ++n) {
+        EXPECT_EQ(both[n].position, one[n].position);
+        EXPECT_EQ(both[n].normal, one[n].normal);
+    }
+}
+
+TEST(Hypotheses, ContainTheGroundTruthAmongTheFirst) {
+    std::mt19937 random(2);
+    for (int round = 0; round < 20; ++round) {
+        const Pose2 place{uniform(random, -2.0, 0.5), uniform(random, -1.5, 0.5), uniform(random, -3.0, 3.0)};
+        const auto first = surfels_around(odd_room(random));
+        const auto second = surfels_around(seen_from(place, odd_room(random)));
+        const auto hypotheses = find_hypotheses(first, second, 5.0, 5).value();
+        const bool found = std::ranges::any_of(hypotheses, [&](const Pose2& pose) {
+            return metres_off(pose, place) < 0.3 && degrees_off(pose, place) < 4.0;
+        });
+        EXPECT_TRUE(found) << "round " << round;
+    }
+}
+
+TEST(Hypotheses, SearchStopsWhenTheCallbackReturnsAnError) {
+    std::mt19937 random(5);
+    const auto room = surfels_around(odd_room(random));
+    for (const int last : {1, 2, 60, 120}) { // of 120 rotations
+        int calls = 0;
+        const auto stop_at_last = [&]() -> Result<> {
+            return ++calls < last ? Result<>() : Error{Errc::kShuttingDown, "the server is shutting down"};
+        };
+        const auto found = find_hypotheses(room, room, 5.0, 5, kSurfelsMax, stop_at_last);
+        ASSERT_FALSE(found) << last;
+        EXPECT_EQ(found.error().code, Errc::kShuttingDown);
+        EXPECT_EQ(calls, last);
+    }
+}
+
+TEST(Refinement, ConvergesFromANearbyPose) {
+    std::mt19937 random(3);
+    const Surface first(surfels_around(odd_room(random)));
+    for (int round = 0; round < 50; ++round) {
+        const Pose2 place{uniform(random, -2.0, 0.5), uniform(random, -1.5, 0.5), uniform(random, -3.0, 3.0)};
+        const Surface second(surfels_around(seen_from(place, odd_room(random))));
+        const Pose2 start{place.x + uniform(random, -0.2, 0.2), place.y + uniform(random, -0.2, 0.2),
+                          place.yaw + uniform(random, -0.07, 0.07)};
+        const Pose2 settled = settle(first, second.surfels(), start);
+        EXPECT_LT(metres_off(settled, place), 0.05);
+        const auto fit = fit_to_lines(first, second, settled);
+        EXPECT_LT(metres_off(fit.T_first_second, place), 0.005);
+        EXPECT_LT(degrees_off(fit.T_first_second, place), 0.1);
+        EXPECT_LT(fit.rms, 0.01);
+    }
+}
+
+TEST(Refinement, KeepsThePoseWithoutNearbySurfaces) {
+    std::mt19937 random(4);
+    const Surface room(surfels_around(odd_room(random)));
+    const Pose2 far{50.0, 50.0, 1.0};
+    EXPECT_EQ(settle(room, room.surfels(), far), far);
+    const auto fit = fit_to_lines(room, room, far);
+    EXPECT_EQ(fit.T_first_second, far);
+    EXPECT_EQ(fit.used, 0U);
+}
+
+TEST(Evidence, ElementInOpenSpaceOfTheOtherViewContradicts) {
+    std::mt19937 random(5);
+    const auto room = odd_room(random);
+    const Surface surface(surfels_around(room));
+    const Horizon horizon(room, {0.0, 0.0});
+    const std::vector<Surfel> things = {
+        {{-3.0, 1.0}, {1.0, 0.0}},  // on the wall
+        {{-3.0, 1.0}, {0.0, 1.0}},  // at the same position, but perpendicular to the wall
+        {{-1.5, 0.0}, {0.0, 0.0}},  // in open space
+        {{-9.0, 0.0}, {0.0, 0.0}},  // behind the wall
+        {{-2.88, 1.0}, {1.0, 0.0}}, // neither on the wall nor clearly in front of it
+    };
+    const auto findings = findings_of(surface, std::vector{&horizon}, things, {});
+    EXPECT_EQ(findings, (std::vector{Finding::kMatched, Finding::kUnseen, Finding::kContradicted, Finding::kUnseen,
+                                     Finding::kUnseen}));
+    const auto evidence = evidence_of(findings);
+    EXPECT_EQ(evidence.elements, 5U);
+    EXPECT_EQ(evidence.matched, 1U);
+    EXPECT_EQ(evidence.contradicted, 1U);
+    EXPECT_EQ(horizon.at({-1.5, 0.0}), Horizon::Verdict::kOpen);
+    EXPECT_EQ(horizon.at({-9.0, 0.0}), Horizon::Verdict::kHidden);
+    EXPECT_EQ(Horizon({}, {0.0, 0.0}).at({1.0, 0.0}), Horizon::Verdict::kUnknown);
+}
+
+TEST(Candidates, DifferByElementsThatOnlyOneMatches) {
+    using enum Finding;
+    const std::vector<Point2> places = {{0.0, 0.0}, {0.0, 1.0}, {0.0, 2.0}, {0.0, 3.0}, {0.0, 9.0}};
+    const Candidate one{
+        .fit = {}, .findings = {kMatched, kMatched, kContradicted, kUnseen, kMatched}, .places = places};
+    const Candidate other{
+        .fit = {}, .findings = {kUnseen, kUnseen, kUnseen, kContradicted, kContradicted}, .places = places};
+    const Difference between = difference(one, other, 2.5);
+    EXPECT_EQ(between.for_one, 1.0 + 1.0 + 2.0 + 3.0);
+    EXPECT_EQ(between.for_other, 2.0);
+    EXPECT_EQ(between.of_one_thing, 1.0 + 1.0 + 2.0) << "the largest group is around (0, 1)";
+    EXPECT_EQ(difference(one, other, 0.5).of_one_thing, 3.0);
+    EXPECT_EQ(difference(one, one, 1.0).for_one, 0.0);
+}
+
+} // namespace
+} // namespace scanloom::landmarks

@@ -1,0 +1,120 @@
+#pragma once
+
+#include "robot_client/sources/ld06_live.hpp"
+#include "tests/support/ld06_bytes.hpp"
+
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/io_context.hpp>
+#include <gtest/gtest.h>
+
+#include <fcntl.h>
+#include <stdlib.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include <functional>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+/// Fixtures for lidars that are read live.
+namespace scanloom::robot {
+
+namespace asio = boost::asio;
+using testing_support::Bytes;
+using testing_support::Ld06Spinner;
+
+inline double unix_now() {
+    return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
+/// The sensor's end of a pseudo-terminal.
+class PseudoTerminal {
+public:
+    PseudoTerminal() : descriptor_(::posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC)) {
+        if (descriptor_ < 0 || ::grantpt(descriptor_) != 0 || ::unlockpt(descriptor_) != 0) {
+            throw std::runtime_error("no pseudo-terminal");
+        }
+        device_ = ::ptsname(descriptor_);
+    }
+    PseudoTerminal(const PseudoTerminal&) = delete;
+    PseudoTerminal& operator=(const PseudoTerminal&) = delete;
+    ~PseudoTerminal() {
+        hang_up();
+        if (other_end_ >= 0) ::close(other_end_);
+    }
+
+    /// Opens the other end in raw mode, so that bytes sent before the test opens the device stay unchanged.
+    void keep_open() {
+        other_end_ = ::open(device_.c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC);
+        termios raw{};
+        ASSERT_EQ(::tcgetattr(other_end_, &raw), 0);
+        ::cfmakeraw(&raw);
+        ASSERT_EQ(::tcsetattr(other_end_, TCSANOW, &raw), 0);
+    }
+
+    [[nodiscard]] const std::string& device() const { return device_; }
+    void send(const Bytes& bytes) const {
+        ASSERT_EQ(::write(descriptor_, bytes.data(), bytes.size()), static_cast<ssize_t>(bytes.size()));
+    }
+    void hang_up() {
+        if (descriptor_ >= 0) ::close(std::exchange(descriptor_, -1));
+    }
+
+private:
+    int descriptor_;
+    int other_end_ = -1;
+    std::string device_;
+};
+
+using Next = Result<std::optional<Observation>>;
+
+class Ld06Lives : public testing::Test {
+protected:
+    Ld06LiveOptions options(Ld06Endpoint endpoint, Ld06Poses poses = Pose2{1.0, 2.0, 0.5}) {
+        Ld06LiveOptions live;
+        live.device.endpoint = std::move(endpoint);
+        live.device.note = [this](const std::string& text) {
+            notes_.push_back(text);
+            if (on_note_) on_note_();
+        };
+        live.poses = std::move(poses);
+        return live;
+    }
+
+    /// Runs the io_context until next() completes; `meanwhile` runs once after next() has started to wait.
+    Next next_of(
+        LiveSource& source, const std::function<void()>& meanwhile = [] {}) {
+        std::optional<Next> result;
+        asio::co_spawn(io_, source.next(), [&](std::exception_ptr failed, Next next) {
+            if (failed) std::rethrow_exception(failed);
+            result = std::move(next);
+        });
+        io_.restart();
+        io_.poll();
+        meanwhile();
+        while (!result && io_.run_one() > 0) {
+        }
+        return result ? *result : Next(Error{Errc::kInternal, "next() did not complete"});
+    }
+
+    /// Expects that next() returns a scan.
+    Scan scan_of(
+        LiveSource& source, const std::function<void()>& meanwhile = [] {}) {
+        const auto next = next_of(source, meanwhile);
+        if (next && *next) return (*next)->scan;
+        ADD_FAILURE() << (next ? "the source has ended" : next.error().message);
+        return {};
+    }
+
+    /// Returns bytes of the end of one turn and of the complete next turn.
+    static Bytes one_turn() { return Ld06Spinner(35'000).next_bytes(40); }
+
+    asio::io_context io_{1};
+    std::vector<std::string> notes_;
+    std::function<void()> on_note_;
+};
+
+} // namespace scanloom::robot

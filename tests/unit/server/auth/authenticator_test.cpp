@@ -1,0 +1,116 @@
+#include "server/auth/authenticator.hpp"
+
+#include "server/auth/secret.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace scanloom::auth {
+namespace {
+
+using auth::Reason;
+using auth::Role;
+using auth::Token;
+using auth::TokenRef;
+using auth::TokenSet;
+using testing::HasSubstr;
+
+TokenRef token(std::string name, Role role, std::vector<std::string> sessions = {"*"}, std::size_t connections = 8) {
+    Token made{std::move(name), "", role, std::move(sessions), {}};
+    made.hash = auth::hash_of("secret of " + made.name);
+    made.limits.connections = connections;
+    return std::make_shared<const Token>(std::move(made));
+}
+
+template <class T>
+std::pair<Reason, std::string> refusal(const Admitted<T>& admitted) {
+    return {admitted.error().reason, admitted.error().token};
+}
+
+TEST(Authenticator, IsOpenWithoutTokens) {
+    Authenticator authenticator;
+    EXPECT_TRUE(authenticator.is_open());
+    EXPECT_EQ(authenticator.admit("").value(), auth::anonymous());
+    EXPECT_TRUE(authenticator.let_drive("", "lab", "r").value()->token());
+    EXPECT_TRUE(authenticator.let_watch(auth::anonymous(), "lab").value()->token());
+}
+
+TEST(Authenticator, LetsInWhomItsTokensAllow) {
+    Authenticator authenticator(TokenSet({token("robot", Role::kRobot, {"depot-*"}), token("viewer", Role::kViewer)}));
+    EXPECT_FALSE(authenticator.is_open());
+    EXPECT_EQ(authenticator.let_drive("secret of robot", "depot-1", "r").value()->token()->name, "robot");
+    using Refusal = std::pair<Reason, std::string>;
+    EXPECT_EQ(refusal(authenticator.let_drive("", "depot-1", "r")), Refusal(Reason::kNoToken, ""));
+    EXPECT_EQ(refusal(authenticator.let_drive("guess", "depot-1", "r")), Refusal(Reason::kUnknownToken, ""));
+    EXPECT_EQ(refusal(authenticator.let_drive("secret of robot", "lab", "r")), Refusal(Reason::kWrongSession, "robot"));
+    EXPECT_EQ(refusal(authenticator.let_drive("secret of viewer", "lab", "r")), Refusal(Reason::kWrongRole, "viewer"));
+    EXPECT_TRUE(authenticator.let_watch(authenticator.admit("secret of viewer").value(), "lab"));
+    EXPECT_EQ(refusal(authenticator.let_watch(authenticator.admit("secret of robot").value(), "depot-1")),
+              Refusal(Reason::kWrongRole, "robot"));
+}
+
+TEST(Authenticator, ATokenHasAsManyRobotsAsItsLimitSays) {
+    Authenticator authenticator(
+        TokenSet({token("two", Role::kRobot, {"*"}, 2), token("other", Role::kRobot, {"*"}, 1)}));
+    auto first = authenticator.let_drive("secret of two", "lab", "a").value();
+    const auto second = authenticator.let_drive("secret of two", "lab", "b").value();
+    const auto refused = authenticator.let_drive("secret of two", "lab", "c");
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().reason, Reason::kLimit);
+    EXPECT_EQ(refused.error().error.code, Errc::kOverloaded);
+    EXPECT_THAT(refused.error().error.message, AllOf(HasSubstr("'two'"), HasSubstr("`connections`")));
+    EXPECT_TRUE(authenticator.let_drive("secret of other", "lab", "c"));
+    const auto again = authenticator.let_drive("secret of two", "lab", "b"); // its old link is not gone yet
+    EXPECT_TRUE(again);
+    EXPECT_FALSE(authenticator.let_drive("secret of two", "depot", "b")); // of the same name, elsewhere
+    first.reset();
+    EXPECT_TRUE(authenticator.let_drive("secret of two", "lab", "c"));
+}
+
+TEST(Authenticator, PassesEndWithWhatAllowedThem) {
+    Authenticator authenticator(TokenSet(
+        {token("a", Role::kRobot), token("b", Role::kRobot), token("c", Role::kOperator), token("d", Role::kRobot)}));
+    std::map<std::string, int> told;
+    std::map<std::string, std::shared_ptr<Credential>> passes;
+    for (const std::string name : {"a", "b", "c", "d"}) {
+        passes[name] = authenticator.let_drive("secret of " + name, "lab", "robot-" + name).value();
+        passes[name]->when_changed([&told, name] { ++told[name]; });
+    }
+    passes["watch"] = authenticator.let_watch(authenticator.admit("secret of c").value(), "lab").value();
+    EXPECT_TRUE(told.empty());
+    // a as before, b is gone, c watches and drives no more, d is for other sessions.
+    authenticator.replace(
+        TokenSet({token("a", Role::kRobot, {"*"}, 3), token("c", Role::kViewer), token("d", Role::kRobot, {"x"})}));
+    EXPECT_EQ(passes["a"]->token()->limits.connections, 3U);
+    for (const auto* gone : {"b", "c", "d"}) EXPECT_EQ(passes[gone]->token(), nullptr) << gone;
+    EXPECT_NE(passes["watch"]->token(), nullptr);
+    for (const auto* name : {"a", "b", "c", "d"}) EXPECT_EQ(told[name], 1) << name;
+}
+
+TEST(Authenticator, WhoAsksLateIsToldAtOnce) {
+    Authenticator authenticator(TokenSet({token("a", Role::kRobot)}));
+    const auto pass = authenticator.let_drive("secret of a", "lab", "r").value();
+    authenticator.replace(TokenSet({token("b", Role::kRobot)}));
+    bool told = false;
+    pass->when_changed([&] { told = true; });
+    EXPECT_TRUE(told);
+}
+
+TEST(Authenticator, WhoeverCameBeforeThereWereTokensGoes) {
+    Authenticator authenticator;
+    const auto pass = authenticator.let_drive("", "lab", "r").value();
+    authenticator.replace(TokenSet({token("a", Role::kRobot)}));
+    EXPECT_EQ(pass->token(), nullptr);
+}
+
+TEST(Authenticator, APassMayOutliveIt) {
+    std::shared_ptr<Credential> pass;
+    {
+        Authenticator authenticator;
+        pass = authenticator.let_drive("", "lab", "r").value();
+    }
+    EXPECT_NE(pass->token(), nullptr);
+}
+
+} // namespace
+} // namespace scanloom::auth

@@ -1,0 +1,51 @@
+#include "server/auth/token_set.hpp"
+
+#include "server/auth/secret.hpp"
+
+#include <gtest/gtest.h>
+
+namespace scanloom::auth {
+namespace {
+
+TokenRef token(std::string name, std::string_view secret) {
+    return std::make_shared<const Token>(Token{std::move(name), hash_of(secret), Role::kRobot, {"*"}, {}});
+}
+
+TEST(TokenSet, FindsEachByItsSecretAlone) {
+    const TokenSet tokens({token("a", "secret a"), token("b", "secret b"), token("c", "secret c")});
+    EXPECT_EQ(tokens.find("secret a")->name, "a");
+    EXPECT_EQ(tokens.find("secret b")->name, "b");
+    EXPECT_EQ(tokens.find("secret c")->name, "c");
+    for (const auto& wrong : {std::string(), std::string("secret"), std::string("secret d"), hash_of("secret a")}) {
+        EXPECT_EQ(tokens.find(wrong), nullptr) << wrong;
+    }
+    EXPECT_EQ(TokenSet().find("secret a"), nullptr);
+}
+
+TEST(Token, IsForTheSessionsOfItsPatterns) {
+    const Token two{"a", "", Role::kViewer, {"lab", "depot-*"}, {}};
+    EXPECT_TRUE(is_for(two, "lab"));
+    EXPECT_TRUE(is_for(two, "depot-7"));
+    EXPECT_FALSE(is_for(two, "depot"));
+    EXPECT_FALSE(is_for_all(two));
+    EXPECT_FALSE(is_for_all({"b", "", Role::kViewer, {"**a"}, {}}));
+    EXPECT_TRUE(is_for_all({"b", "", Role::kViewer, {"x", "*"}, {}}));
+}
+
+TEST(Token, AnybodyMayDoEverything) {
+    EXPECT_TRUE(may_change(anonymous()->role));
+    EXPECT_TRUE(is_for_all(*anonymous()));
+}
+
+TEST(Role, EachMayDoItsOwn) {
+    for (const Role role : kRoles) {
+        EXPECT_EQ(may_drive(role), role != Role::kViewer);
+        EXPECT_EQ(may_look(role), role != Role::kRobot);
+        EXPECT_EQ(may_change(role), role == Role::kOperator);
+        EXPECT_EQ(role_of(name_of(role)), role);
+    }
+    EXPECT_EQ(role_of("admin"), std::nullopt);
+}
+
+} // namespace
+} // namespace scanloom::auth

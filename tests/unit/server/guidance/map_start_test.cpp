@@ -1,0 +1,37 @@
+#include "server/guidance/map_start.hpp"
+
+#include <gtest/gtest.h>
+
+namespace scanloom::guide {
+namespace {
+
+using std::chrono::seconds;
+
+constexpr MapStart::Clock::time_point kStart{};
+
+TEST(MapStart, AreGrantedToOneRobotPerSession) {
+    MapStart places;
+    EXPECT_TRUE(places.take(1, 0, kStart));
+    EXPECT_FALSE(places.take(1, 1, kStart + seconds(29)));
+    EXPECT_TRUE(places.take(1, 0, kStart + seconds(29))) << "a repeated request gets the same answer";
+    EXPECT_TRUE(places.take(2, 1, kStart + seconds(29))) << "each session has its own map";
+}
+
+TEST(MapStart, AreGrantedToAnotherRobotAfterTheTerm) {
+    MapStart places;
+    EXPECT_TRUE(places.take(1, 0, kStart));
+    EXPECT_TRUE(places.take(1, 0, kStart + seconds(20))) << "a repeated request does not extend the term";
+    EXPECT_TRUE(places.take(1, 1, kStart + seconds(30)));
+    EXPECT_FALSE(places.take(1, 0, kStart + seconds(59)));
+    EXPECT_TRUE(places.take(1, 0, kStart + seconds(60)));
+}
+
+TEST(MapStart, AreReleasedWhenTheSessionIsRemoved) {
+    MapStart places;
+    EXPECT_TRUE(places.take(1, 0, kStart));
+    places.remove(1);
+    EXPECT_TRUE(places.take(1, 1, kStart));
+}
+
+} // namespace
+} // namespace scanloom::guide

@@ -1,0 +1,33 @@
+#include "server/guidance/robots.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace scanloom::guide {
+namespace {
+
+mapping::Snapshot two_robots() {
+    mapping::Snapshot maps;
+    maps.robots.resize(2);
+    maps.robots[0].name = "mute";
+    maps.robots[1].name = "r";
+    maps.robots[1].pose = Pose2{1.0, 2.0, 0.5};
+    return maps;
+}
+
+TEST(Robots, AreFoundByName) {
+    EXPECT_EQ(find_robot(two_robots(), "r").value(), 1U);
+    EXPECT_EQ(find_robot(two_robots(), "R").error().code, Errc::kNotFound);
+}
+
+TEST(Robots, HaveThePoseOfTheirNewestScan) {
+    EXPECT_EQ(pose_of(two_robots(), 1).value(), (Pose2{1.0, 2.0, 0.5}));
+    const auto unknown = pose_of(two_robots(), 0);
+    ASSERT_FALSE(unknown);
+    EXPECT_EQ(unknown.error().code, Errc::kNoPath);
+    EXPECT_THAT(unknown.error().message, testing::HasSubstr("'mute'"));
+    EXPECT_EQ(pose_of(two_robots(), 2).error().code, Errc::kNoPath) << "the robot joined after the snapshot";
+}
+
+} // namespace
+} // namespace scanloom::guide

@@ -1,0 +1,119 @@
+#include "server/sessions/session_cache.hpp"
+
+#include "tests/unit/server/sessions/session_fixture.hpp"
+
+#include <chrono>
+#include <string>
+#include <vector>
+
+namespace scanloom::session {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+using Time = SessionCache::Clock::time_point;
+
+Time at(int second) { return Time(std::chrono::seconds(second)); }
+
+/// A session cache with sessions that have no scans and are referenced only by the cache.
+class RosterTest : public SessionTest {
+protected:
+    void add(const std::string& name, int second) {
+        cache_.add(std::make_shared<Session>(SessionInfo{++last_id_, name, 0.0, config_}, mapping::Projection(config_),
+                                             0, log_, compute_.get_executor()),
+                   at(second));
+    }
+
+    void add_evicted(const std::string& name) {
+        cache_.add(SessionInfo{++last_id_, name, 0.0, config_}, summary_of(mapping::Snapshot{}));
+    }
+
+    std::vector<std::string> evict(int second, std::size_t pages = 1) {
+        std::vector<std::string> names;
+        for (const auto& session : cache_.evict(at(second), pages)) names.push_back(session->info().name);
+        return names;
+    }
+
+    /// Returns a callback that records the session's name or the error message.
+    SessionCache::Loaded note(std::string caller) {
+        return [this, caller = std::move(caller)](const Result<std::shared_ptr<Session>>& session) {
+            notified_.push_back(caller + ": " +
+                                (!session   ? session.error().message
+                                 : *session ? (*session)->info().name
+                                            : "none"));
+        };
+    }
+
+    void expect_loaded(const std::string& name, bool loaded) {
+        EXPECT_EQ(cache_.find(name, at(0)) != nullptr, loaded) << name;
+        EXPECT_EQ(cache_.needs_loading(name), !loaded) << name;
+    }
+
+    store::SessionId last_id_ = 0;
+    SessionCache cache_;
+    std::vector<std::string> notified_;
+};
+
+TEST_F(RosterTest, OneCallerLoadsAnEvictedSessionForAll) {
+    add_evicted("a");
+    const auto evicted = cache_.want("a", at(1), note("first"));
+    ASSERT_TRUE(evicted);
+    EXPECT_EQ(evicted->info.name, "a");
+    EXPECT_FALSE(cache_.want("a", at(1), note("second")));
+    EXPECT_THAT(notified_, IsEmpty());
+    expect_loaded("a", false);
+    cache_.arrived(
+        std::make_shared<Session>(evicted->info, mapping::Projection(config_), 0, log_, compute_.get_executor()),
+        at(2));
+    EXPECT_THAT(notified_, ElementsAre("first: a", "second: a"));
+    expect_loaded("a", true);
+}
+
+TEST_F(RosterTest, EvictsLeastRecentlyUsedSessionsAndNoMoreThanNeeded) {
+    add("older", 10);
+    add("newer", 20);
+    add("used", 5);
+    ASSERT_TRUE(cache_.find("used", at(30)));
+    EXPECT_THAT(evict(9), IsEmpty()) << "each session was used later";
+    EXPECT_THAT(evict(25, 0), IsEmpty()) << "no pages are needed";
+    EXPECT_THAT(evict(25), ElementsAre("older", "newer")) << "both sessions have no pages";
+    expect_loaded("older", false);
+    expect_loaded("used", true);
+}
+
+TEST_F(RosterTest, CallerDuringEvictionGetsTheReloadedSession) {
+    add("a", 0);
+    ASSERT_THAT(evict(1), ElementsAre("a"));
+    EXPECT_FALSE(cache_.want("a", at(2), note("late"))) << "the session is being evicted by another caller";
+    const auto evicted = cache_.arrived("a", summary_of(mapping::Snapshot{}));
+    ASSERT_TRUE(evicted) << "the caller must load the session";
+    EXPECT_THAT(notified_, IsEmpty());
+}
+
+TEST_F(RosterTest, EvictedSessionIsListedWithItsLastSummary) {
+    add("a", 0);
+    ASSERT_THAT(evict(1), ElementsAre("a"));
+    mapping::Snapshot last{.revision = 7};
+    last.robots.resize(2);
+    EXPECT_FALSE(cache_.arrived("a", summary_of(last)));
+    const auto listed = cache_.all();
+    ASSERT_EQ(listed.size(), 1U);
+    EXPECT_EQ(listed[0].session, nullptr);
+    EXPECT_EQ(listed[0].summary.facts->revision, 7U);
+    EXPECT_EQ(listed[0].summary.facts->robots.size(), 2U);
+    EXPECT_THAT(cache_.loaded(), IsEmpty());
+}
+
+TEST_F(RosterTest, WaitingCallerIsNotifiedOfRemoval) {
+    add("a", 0);
+    ASSERT_TRUE(cache_.leave("a"));
+    EXPECT_FALSE(cache_.want("a", at(1), note("late")));
+    cache_.remove("a", {Errc::kGone, "deleted"});
+    EXPECT_THAT(notified_, ElementsAre("late: deleted"));
+    EXPECT_FALSE(cache_.contains("a"));
+    EXPECT_FALSE(cache_.leave("a"));
+}
+
+} // namespace
+} // namespace scanloom::session
