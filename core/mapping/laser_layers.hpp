@@ -39,7 +39,7 @@ struct LaserScan {
 
 /// The layers derived from laser scans: occupancy, HIMM, and the hysteresis of the classes. Updated scan by scan.
 /// Threads: one writer; any number of threads may read views.
-/// Source: see occupancy.hpp, himm.hpp and classify/hysteresis.hpp.
+/// Source: see occupancy.hpp, laser_chunk.hpp and core/classify/cell_class.hpp.
 class LaserLayers {
 public:
     explicit LaserLayers(const MapConfig& config);

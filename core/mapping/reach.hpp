@@ -35,7 +35,7 @@ inline constexpr double kWorkPerSweptChunk = 2048.0;
 struct Reach {
     SensorKind kind = SensorKind::kLaser; ///< laser and sonar layers have separate chunks
     grid::CellBox cells;                  ///< contains every cell that the scan can change; empty if it shows nothing
-    double work = 0.0;                    ///< in the unit of work.hpp; never much too low
+    double work = 0.0;                    ///< in the unit of kScanWorkMax; never much too low
 };
 
 /// Returns the reach of a scan.

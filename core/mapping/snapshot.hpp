@@ -115,7 +115,7 @@ decltype(auto) with_layer(const Snapshot& snapshot, Layer layer, Use&& use) {
 ///
 /// The hash covers the cell size in metres as a float64, then, in increasing order of ChunkKey, each chunk that
 /// contains a known cell: ci and cj as int32 and the 4096 cells, bottom row first. All numbers are little-endian. A
-/// cell is an int16 in the occupancy and sonar layers (log_odds.hpp) and one byte in the himm layer (himm.hpp) and in
+/// cell is an int16 in the occupancy and sonar layers and one byte in the himm layer (laser_chunk.hpp) and in
 /// the classification (classify/cell_class.hpp).
 /// Cost: reads every cell of the layer once.
 [[nodiscard]] std::string digest_of(const Snapshot& snapshot, Layer layer);

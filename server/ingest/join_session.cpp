@@ -25,7 +25,7 @@ asio::awaitable<Found> create(const wire::Hello& hello, session::SessionRegistry
     co_return created;
 }
 
-/// Calls SessionRegistry::wake(), and resumes with its result on the coroutine's own executor.
+/// Calls SessionRegistry::load(), and resumes with its result on the coroutine's own executor.
 asio::awaitable<Found> woken(const std::string& name, session::SessionRegistry& sessions) {
     const auto executor = co_await asio::this_coro::executor;
     co_return co_await asio::async_initiate<const asio::use_awaitable_t<>&, void(Found)>(

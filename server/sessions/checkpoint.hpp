@@ -24,7 +24,7 @@
 ///   weave/laser/<chunk>      revision and cells of one chunk, layer by layer, compressed
 ///   weave/sonar/<chunk>      revision and cells of one chunk, compressed
 /// <index>, <id> and <chunk> are fixed-width hexadecimal numbers. Trajectories are stored only in the log
-/// (old_paths.hpp).
+/// (stored_trajectories.hpp).
 ///
 /// A checkpoint is written in pieces of 4 MiB, measured before compression: the format first, then the chunks. The
 /// parts that must agree on the revision are the last piece: head, robots, and the sensors described since the last

@@ -49,8 +49,8 @@ struct RegistryConfig {
 /// All sessions by name.
 ///
 /// A session without users is evicted from memory, with a checkpoint at the end of its log, and is loaded again on the
-/// next request. Robots, viewers and requests hold the session that they use. The facts that a list of sessions shows
-/// stay in memory.
+/// next request. Robots and requests hold the session that they use; viewers do not, and reconnect. The facts that a
+/// list of sessions shows stay in memory.
 /// Threads: any thread. All functions that store, remove or wait block on the disk: create(), import_map(), exclude(),
 /// lift_exclusion(), remove(), recover(), drain() and the load() that returns a session. Do not call these on I/O
 /// threads or on threads of the config's executors.

@@ -5,7 +5,7 @@
 #include <vector>
 
 /// Rules of this source tree that the compiler does not check: which folder may include which, which headers pure
-/// folders must not include, and forbidden words. ARCHITECTURE.md gives the reasons.
+/// folders must not include, and forbidden words. ARCHITECTURE.md describes the folders.
 namespace scanloom::tidy {
 
 /// Returns one sentence per violation in a file; empty if there are none.

@@ -18,7 +18,7 @@ constexpr Pose2 kFirstPlace{1.0, 2.0, 0.5};
 const Located kLocated{{3.0, 4.0, 1.0}, 0.93, 0.02, 0.01};
 const Error kRefusal{Errc::kAmbiguous, "it may be here or there"};
 
-class HaltsTest : public testing::Test {
+class StationaryPhasesTest : public testing::Test {
 protected:
     void add(std::vector<Observation> turns) {
         for (auto& turn : turns) {
@@ -39,7 +39,7 @@ protected:
     StationaryPhases phases_{kFirstPlace};
 };
 
-TEST_F(HaltsTest, QuestionFollowsTenSimilarTurns) {
+TEST_F(StationaryPhasesTest, QuestionFollowsTenSimilarTurns) {
     stand(kHere, 9);
     EXPECT_FALSE(phases_.question());
     stand(kHere, 1);
@@ -50,7 +50,7 @@ TEST_F(HaltsTest, QuestionFollowsTenSimilarTurns) {
     EXPECT_THAT(given(), IsEmpty());
 }
 
-TEST_F(HaltsTest, LocatedTurnsHaveTheLocatedPose) {
+TEST_F(StationaryPhasesTest, LocatedTurnsHaveTheLocatedPose) {
     stand(kHere, 10);
     phases_.answer(kLocated);
     EXPECT_THAT(
@@ -75,7 +75,7 @@ TEST_F(HaltsTest, LocatedTurnsHaveTheLocatedPose) {
     EXPECT_EQ(phases_.carried(), 0U);
 }
 
-TEST_F(HaltsTest, TurnsOfAMovementAndJustBeforeAreDropped) {
+TEST_F(StationaryPhasesTest, TurnsOfAMovementAndJustBeforeAreDropped) {
     stand(kHere, 10);
     phases_.answer(kLocated);
     stand(kHere, 10);
@@ -99,7 +99,7 @@ TEST_F(HaltsTest, TurnsOfAMovementAndJustBeforeAreDropped) {
     EXPECT_EQ(phases_.dropped(), 3U + 30U);
 }
 
-TEST_F(HaltsTest, MovingLidarAsksNoQuestion) {
+TEST_F(StationaryPhasesTest, MovingLidarAsksNoQuestion) {
     walk(kHere, kThere, 40);
     walk(kThere, {2.0, 0.0, -1.0}, 40);
     EXPECT_EQ(phases_.carried(), 0U) << "the lidar was never stationary";
@@ -107,7 +107,7 @@ TEST_F(HaltsTest, MovingLidarAsksNoQuestion) {
     EXPECT_GE(phases_.dropped(), 75U);
 }
 
-TEST_F(HaltsTest, PassingPeopleDoNotEndAHalt) {
+TEST_F(StationaryPhasesTest, PassingPeopleDoNotEndAHalt) {
     stand(kHere, 10);
     phases_.answer(kLocated);
     for (int n = 0; n < 30; ++n) {
@@ -120,7 +120,7 @@ TEST_F(HaltsTest, PassingPeopleDoNotEndAHalt) {
     EXPECT_EQ(phases_.carried(), 0U);
 }
 
-TEST_F(HaltsTest, TurnsWithoutReadingsDoNotEndAHalt) {
+TEST_F(StationaryPhasesTest, TurnsWithoutReadingsDoNotEndAHalt) {
     stand(kHere, 5);
     const auto covered = [&] {
         auto turns = lidar_.turns_at(kHere, 3);
@@ -138,7 +138,7 @@ TEST_F(HaltsTest, TurnsWithoutReadingsDoNotEndAHalt) {
     EXPECT_EQ(phases_.dropped(), 6U);
 }
 
-TEST_F(HaltsTest, QuestionsAndPosesUseTheOdometryFrame) {
+TEST_F(StationaryPhasesTest, QuestionsAndPosesUseTheOdometryFrame) {
     const Pose2 odometry{0.5, -0.25, 1.0};
     auto turns = lidar_.turns_at(kHere, 10);
     for (auto& turn : turns) turn.scan.pose = odometry;
@@ -148,7 +148,7 @@ TEST_F(HaltsTest, QuestionsAndPosesUseTheOdometryFrame) {
     EXPECT_EQ(given().front().pose, compose(kLocated.T_map_odom, odometry));
 }
 
-TEST_F(HaltsTest, FirstHaltUsesTheGivenPoseInAnEmptyMap) {
+TEST_F(StationaryPhasesTest, FirstHaltUsesTheGivenPoseInAnEmptyMap) {
     const Error nothing{Errc::kNothingMapped, "no laser has seen anything yet"};
     auto turns = lidar_.turns_at(kHere, 10);
     for (auto& turn : turns) turn.scan.pose = {5.0, 5.0, -2.0};
@@ -173,7 +173,7 @@ TEST_F(HaltsTest, FirstHaltUsesTheGivenPoseInAnEmptyMap) {
     EXPECT_THAT(given(), IsEmpty()) << "only the first place begins the map";
 }
 
-TEST_F(HaltsTest, RefusedQuestionIsRepeatedAfterTenSeconds) {
+TEST_F(StationaryPhasesTest, RefusedQuestionIsRepeatedAfterTenSeconds) {
     stand(kHere, 10);
     phases_.answer(kRefusal);
     EXPECT_EQ(phases_.refusal(), kRefusal);
@@ -189,7 +189,7 @@ TEST_F(HaltsTest, RefusedQuestionIsRepeatedAfterTenSeconds) {
     EXPECT_EQ(phases_.carried(), 0U);
 }
 
-TEST_F(HaltsTest, RefusedQuestionIsRepeatedAfterAClockStepBack) {
+TEST_F(StationaryPhasesTest, RefusedQuestionIsRepeatedAfterAClockStepBack) {
     stand(kHere, 10);
     phases_.answer(kRefusal);
     lidar_.let_time_pass(-500.0);
@@ -197,7 +197,7 @@ TEST_F(HaltsTest, RefusedQuestionIsRepeatedAfterAClockStepBack) {
     EXPECT_TRUE(phases_.question());
 }
 
-TEST_F(HaltsTest, QuestionAtAnotherPlaceIsImmediate) {
+TEST_F(StationaryPhasesTest, QuestionAtAnotherPlaceIsImmediate) {
     stand(kHere, 10);
     phases_.answer(kRefusal);
     walk(kHere, kThere, 30);
@@ -206,7 +206,7 @@ TEST_F(HaltsTest, QuestionAtAnotherPlaceIsImmediate) {
     EXPECT_EQ(phases_.carried(), 1U);
 }
 
-TEST_F(HaltsTest, EachMessageIsReportedOnce) {
+TEST_F(StationaryPhasesTest, EachMessageIsReportedOnce) {
     const std::string message =
         "it may be here or there; no scans are sent from here; retrying in 10 s, or at another place";
     const auto ask = [&](const Error& refusal) {

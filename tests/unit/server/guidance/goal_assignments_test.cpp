@@ -13,7 +13,7 @@ namespace {
 using planning::Exploration;
 
 /// A corridor with two unexplored ends: one frontier on the left and one on the right.
-class GoalBookTest : public session::SessionTest {
+class GoalAssignmentsTest : public session::SessionTest {
 protected:
     void SetUp() override {
         SessionTest::SetUp();
@@ -66,7 +66,7 @@ protected:
     GoalAssignments::Clock::time_point now_{};
 };
 
-TEST_F(GoalBookTest, NewRequestReleasesThePreviousGoal) {
+TEST_F(GoalAssignmentsTest, NewRequestReleasesThePreviousGoal) {
     for (const char* robot : {"a", "b"}) join(robot);
     EXPECT_EQ(next(0), 'l');
     maps_.classes = testing_support::drawn({"f............................f"});
@@ -74,7 +74,7 @@ TEST_F(GoalBookTest, NewRequestReleasesThePreviousGoal) {
     EXPECT_EQ(book_.next(session_, maps_, 1, {1.2, 0.05}, now_, kPoint).value().path.points.back().x < 1.5, true);
 }
 
-TEST_F(GoalBookTest, GoalIsReleasedWhenItsRobotLeaves) {
+TEST_F(GoalAssignmentsTest, GoalIsReleasedWhenItsRobotLeaves) {
     const auto link = join("a");
     join("b");
     EXPECT_EQ(next(0), 'l');
@@ -84,7 +84,7 @@ TEST_F(GoalBookTest, GoalIsReleasedWhenItsRobotLeaves) {
     EXPECT_EQ(next(0), 'r') << "the robot reconnects and requests a goal again";
 }
 
-TEST_F(GoalBookTest, GoalOfAnAbsentRobotExpires) {
+TEST_F(GoalAssignmentsTest, GoalOfAnAbsentRobotExpires) {
     for (const char* robot : {"a", "b", "c"}) leave(join(robot));
     EXPECT_EQ(next(0), 'l');
     now_ += RobotPaths::kKeptForAbsent;
@@ -93,7 +93,7 @@ TEST_F(GoalBookTest, GoalOfAnAbsentRobotExpires) {
     EXPECT_EQ(next(2), 'l');
 }
 
-TEST_F(GoalBookTest, GoalExcludesItsFrontierAtOtherResolutions) {
+TEST_F(GoalAssignmentsTest, GoalExcludesItsFrontierAtOtherResolutions) {
     for (const char* robot : {"a", "b"}) join(robot);
     EXPECT_EQ(next(0), 'l');
     maps_.config.cell_size = 0.05;
@@ -102,14 +102,14 @@ TEST_F(GoalBookTest, GoalExcludesItsFrontierAtOtherResolutions) {
     EXPECT_GT(book_.next(session_, maps_, 1, {1.2, 0.025}, now_, kPoint).value().path.points.back().x, 1.5);
 }
 
-TEST_F(GoalBookTest, RefusedRequestReleasesTheGoal) {
+TEST_F(GoalAssignmentsTest, RefusedRequestReleasesTheGoal) {
     for (const char* robot : {"a", "b"}) join(robot);
     EXPECT_EQ(next(0), 'l');
     EXPECT_FALSE(book_.next(session_, maps_, 0, {100.0, 0.25}, now_, kPoint));
     EXPECT_EQ(next(1), 'l');
 }
 
-TEST_F(GoalBookTest, SessionsDoNotShareGoals) {
+TEST_F(GoalAssignmentsTest, SessionsDoNotShareGoals) {
     join("a");
     EXPECT_EQ(next(0), 'l');
     const auto first = session_;
@@ -120,7 +120,7 @@ TEST_F(GoalBookTest, SessionsDoNotShareGoals) {
 
 // Frontiers that could not be observed
 
-TEST_F(GoalBookTest, UnobservableFrontierIsExcludedForAllRobots) {
+TEST_F(GoalAssignmentsTest, UnobservableFrontierIsExcludedForAllRobots) {
     for (const char* robot : {"a", "b"}) join(robot);
     const auto left = request(0);
     EXPECT_EQ(left.given_up, 0U);
@@ -136,7 +136,7 @@ TEST_F(GoalBookTest, UnobservableFrontierIsExcludedForAllRobots) {
     EXPECT_EQ(next(1), 'c');
 }
 
-TEST_F(GoalBookTest, RobotThatHasNotObservedKeepsItsGoal) {
+TEST_F(GoalAssignmentsTest, RobotThatHasNotObservedKeepsItsGoal) {
     join("a");
     const auto goal = request(0);
     const auto expect_same_goal = [&](const char* condition) {
@@ -153,7 +153,7 @@ TEST_F(GoalBookTest, RobotThatHasNotObservedKeepsItsGoal) {
     expect_same_goal("at a distance from the goal");
 }
 
-TEST_F(GoalBookTest, IgnoresScansFromBeforeTheGoal) {
+TEST_F(GoalAssignmentsTest, IgnoresScansFromBeforeTheGoal) {
     join("a");
     scan_at(request(0), 0);
     EXPECT_EQ(request(0).given_up, 3U);
@@ -164,7 +164,7 @@ TEST_F(GoalBookTest, IgnoresScansFromBeforeTheGoal) {
     EXPECT_EQ(request(0).given_up, 3U);
 }
 
-TEST_F(GoalBookTest, FiveSecondsAtTheGoalCountAsObservation) {
+TEST_F(GoalAssignmentsTest, FiveSecondsAtTheGoalCountAsObservation) {
     join("a");
     const auto goal = request(0);
     for (int second = 0; second < 10; ++second) scan_at(goal, 0, 3.0);
@@ -175,7 +175,7 @@ TEST_F(GoalBookTest, FiveSecondsAtTheGoalCountAsObservation) {
     EXPECT_EQ(request(0).given_up, 3U);
 }
 
-TEST_F(GoalBookTest, CellThatIsNoLongerFrontierIsNotGivenUp) {
+TEST_F(GoalAssignmentsTest, CellThatIsNoLongerFrontierIsNotGivenUp) {
     join("a");
     const auto before = maps_.classes;
     scan_at(request(0), 0);
@@ -194,7 +194,7 @@ TEST_F(GoalBookTest, CellThatIsNoLongerFrontierIsNotGivenUp) {
     EXPECT_EQ(after.goal->target, (grid::Cell{0, 2})) << "the middle cell is a frontier cell again";
 }
 
-TEST_F(GoalBookTest, RecurringFrontierIsGivenUpAfterTwoObservations) {
+TEST_F(GoalAssignmentsTest, RecurringFrontierIsGivenUpAfterTwoObservations) {
     join("a");
     const auto open = maps_.classes;
     const auto closed = testing_support::drawn({"##############################", //
@@ -221,7 +221,7 @@ TEST_F(GoalBookTest, RecurringFrontierIsGivenUpAfterTwoObservations) {
     EXPECT_EQ(request(0).given_up, 0U) << "only FRONTIER cells are given up";
 }
 
-TEST_F(GoalBookTest, EarlierMapsDoNotRestoreGivenUpCells) {
+TEST_F(GoalAssignmentsTest, EarlierMapsDoNotRestoreGivenUpCells) {
     join("a");
     maps_.revision = 5;
     scan_at(request(0), 0);
@@ -233,7 +233,7 @@ TEST_F(GoalBookTest, EarlierMapsDoNotRestoreGivenUpCells) {
     EXPECT_EQ(request(0).given_up, 3U);
 }
 
-TEST_F(GoalBookTest, RestoresTheOldestCellsBeyondTheLimit) {
+TEST_F(GoalAssignmentsTest, RestoresTheOldestCellsBeyondTheLimit) {
     join("a");
     const std::string row = "." + std::string(299, 'f');
     maps_.classes = testing_support::drawn(std::vector<std::string_view>(300, row));
@@ -246,7 +246,7 @@ TEST_F(GoalBookTest, RestoresTheOldestCellsBeyondTheLimit) {
     EXPECT_EQ(next.outcome, Exploration::kGoal);
 }
 
-TEST_F(GoalBookTest, RemovesTheLeastRecentlyUsedSettingsBeyondTheLimit) {
+TEST_F(GoalAssignmentsTest, RemovesTheLeastRecentlyUsedSettingsBeyondTheLimit) {
     join("a");
     for (std::size_t n = 0; n <= GoalAssignments::kSettingsMax; ++n) {
         maps_.config.danger_cells = static_cast<std::int32_t>(n) + 1;
@@ -260,7 +260,7 @@ TEST_F(GoalBookTest, RemovesTheLeastRecentlyUsedSettingsBeyondTheLimit) {
     EXPECT_EQ(request(0).given_up, 0U);
 }
 
-TEST_F(GoalBookTest, GivesUpOnlyVisibleCellsNearTheTarget) {
+TEST_F(GoalAssignmentsTest, GivesUpOnlyVisibleCellsNearTheTarget) {
     join("a");
     const std::string far(14, '.');
     maps_.classes = testing_support::drawn({far + "f", far + "f", far + "f", far + "f", far + "f", far + "f", far + "f",
@@ -273,7 +273,7 @@ TEST_F(GoalBookTest, GivesUpOnlyVisibleCellsNearTheTarget) {
     EXPECT_GT(again.goal->target.j, 12);
 }
 
-TEST_F(GoalBookTest, GivenUpCellsArePerSessionAndSettings) {
+TEST_F(GoalAssignmentsTest, GivenUpCellsArePerSessionAndSettings) {
     join("a");
     scan_at(request(0), 0);
     const auto right = request(0);
@@ -288,7 +288,7 @@ TEST_F(GoalBookTest, GivenUpCellsArePerSessionAndSettings) {
     EXPECT_EQ(request(0).given_up, 0U);
 }
 
-TEST_F(GoalBookTest, ConcurrentRequestsGetDifferentFrontiers) {
+TEST_F(GoalAssignmentsTest, ConcurrentRequestsGetDifferentFrontiers) {
     for (const char* robot : {"a", "b"}) join(robot);
     for (int round = 0; round < 50; ++round) {
         std::array<char, 2> got{};

@@ -23,7 +23,7 @@ HeldPath way(PathKind kind, std::size_t points = 2) {
     return way;
 }
 
-class WayBookTest : public session::SessionTest {
+class RobotPathsTest : public session::SessionTest {
 protected:
     std::uint64_t give_goal(RobotIndex robot, std::size_t points = 2) {
         return book_.give_goal(session_, robot, kGoal, way(PathKind::kGoal, points), now_);
@@ -44,7 +44,7 @@ protected:
     RobotPaths::Clock::time_point now_{};
 };
 
-TEST_F(WayBookTest, IsEmptyInitially) {
+TEST_F(RobotPathsTest, IsEmptyInitially) {
     join("a");
     EXPECT_EQ(revision(), 0U);
     EXPECT_THAT(page().robots, IsEmpty());
@@ -53,7 +53,7 @@ TEST_F(WayBookTest, IsEmptyInitially) {
     EXPECT_EQ(revision(), 0U);
 }
 
-TEST_F(WayBookTest, ListsFinishedRobotsUntilTheirNextRequestEvenIfAbsent) {
+TEST_F(RobotPathsTest, ListsFinishedRobotsUntilTheirNextRequestEvenIfAbsent) {
     const auto link = join("a");
     join("b");
     give_goal(0);
@@ -77,7 +77,7 @@ TEST_F(WayBookTest, ListsFinishedRobotsUntilTheirNextRequestEvenIfAbsent) {
     EXPECT_GT(revision(), last);
 }
 
-TEST_F(WayBookTest, RobotHoldsItsGoalAndItsNewestPath) {
+TEST_F(RobotPathsTest, RobotHoldsItsGoalAndItsNewestPath) {
     for (const char* robot : {"a", "b"}) join(robot);
     give_way(1, way(PathKind::kCoverage));
     give_goal(0);
@@ -106,7 +106,7 @@ TEST_F(WayBookTest, RobotHoldsItsGoalAndItsNewestPath) {
     EXPECT_EQ(page().robots.size(), 1U) << "a robot without goal and path is not listed";
 }
 
-TEST_F(WayBookTest, OnlyChangesRaiseTheRevisionAndNotify) {
+TEST_F(RobotPathsTest, OnlyChangesRaiseTheRevisionAndNotify) {
     const auto link = join("a");
     const auto watcher = std::make_shared<CountingWatcher>();
     session_->watch(watcher);
@@ -140,7 +140,7 @@ TEST_F(WayBookTest, OnlyChangesRaiseTheRevisionAndNotify) {
     EXPECT_EQ(watcher->notified, 0);
 }
 
-TEST_F(WayBookTest, LeavingReleasesGoalAndPathForGood) {
+TEST_F(RobotPathsTest, LeavingReleasesGoalAndPathForGood) {
     const auto link = join("a");
     const auto goal = give_goal(0);
     now_ += std::chrono::hours(10);
@@ -153,13 +153,13 @@ TEST_F(WayBookTest, LeavingReleasesGoalAndPathForGood) {
     EXPECT_THAT(page().robots, IsEmpty());
 }
 
-TEST_F(WayBookTest, PathOfAnAbsentRobotIsDiscarded) {
+TEST_F(RobotPathsTest, PathOfAnAbsentRobotIsDiscarded) {
     leave(join("a"));
     give_way(0, way(PathKind::kPlan));
     EXPECT_THAT(page().robots, IsEmpty());
 }
 
-TEST_F(WayBookTest, GoalOfAnAbsentRobotExpires) {
+TEST_F(RobotPathsTest, GoalOfAnAbsentRobotExpires) {
     leave(join("a"));
     EXPECT_EQ(book_.state(session_, now_).until, RobotPaths::Clock::time_point::max());
     give_goal(0);
@@ -172,7 +172,7 @@ TEST_F(WayBookTest, GoalOfAnAbsentRobotExpires) {
     EXPECT_THAT(page().robots, IsEmpty());
 }
 
-TEST_F(WayBookTest, ConnectingKeepsTheGoalUntilTheRobotLeaves) {
+TEST_F(RobotPathsTest, ConnectingKeepsTheGoalUntilTheRobotLeaves) {
     leave(join("a"));
     give_goal(0);
     const auto link = join("a");
@@ -183,7 +183,7 @@ TEST_F(WayBookTest, ConnectingKeepsTheGoalUntilTheRobotLeaves) {
     EXPECT_THAT(page().robots, IsEmpty());
 }
 
-TEST_F(WayBookTest, EachGoalHasItsOwnNumber) {
+TEST_F(RobotPathsTest, EachGoalHasItsOwnNumber) {
     join("a");
     const auto first = give_goal(0);
     const auto second = give_goal(0);
@@ -195,7 +195,7 @@ TEST_F(WayBookTest, EachGoalHasItsOwnNumber) {
     EXPECT_FALSE(book_.holds(session_, 0, second, now_));
 }
 
-TEST_F(WayBookTest, StateIsPerSessionAndEndsWithIt) {
+TEST_F(RobotPathsTest, StateIsPerSessionAndEndsWithIt) {
     join("a");
     give_goal(0);
     const std::weak_ptr<session::Session> before = session_;
@@ -206,7 +206,7 @@ TEST_F(WayBookTest, StateIsPerSessionAndEndsWithIt) {
     EXPECT_THAT(page().robots, IsEmpty());
 }
 
-TEST_F(WayBookTest, TruncatesLongPathAtItsEnd) {
+TEST_F(RobotPathsTest, TruncatesLongPathAtItsEnd) {
     join("a");
     give_way(0, way(PathKind::kCoverage, RobotPaths::kWayPointsMax));
     EXPECT_EQ(page().robots[0].way->points_left_out, 0U);
@@ -219,7 +219,7 @@ TEST_F(WayBookTest, TruncatesLongPathAtItsEnd) {
         << "the length includes the omitted points";
 }
 
-TEST_F(WayBookTest, TotalPathPointsPerSessionAreBounded) {
+TEST_F(RobotPathsTest, TotalPathPointsPerSessionAreBounded) {
     constexpr std::size_t kFull = RobotPaths::kPointsMax / RobotPaths::kWayPointsMax;
     for (RobotIndex robot = 0; robot <= kFull; ++robot) give_goal(robot, RobotPaths::kWayPointsMax);
     auto now = page();

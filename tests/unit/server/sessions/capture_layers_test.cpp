@@ -29,9 +29,9 @@ std::vector<landmarks::MapLandmark> all_of(const landmarks::LandmarkState& state
 }
 
 /// Two robots that drive and stand in a room; one of them has a sonar as well.
-class LandmarkFoldsTest : public testing::Test {
+class CaptureLayersTest : public testing::Test {
 protected:
-    LandmarkFoldsTest() {
+    CaptureLayersTest() {
         info_.id = log_.create_session("s").value();
         info_.name = "s";
         const Sensor laser = reference_laser();
@@ -99,7 +99,7 @@ protected:
     Revision end_ = 0;
 };
 
-TEST_F(LandmarkFoldsTest, AreIndependentOfTheNumberOfSteps) {
+TEST_F(CaptureLayersTest, AreIndependentOfTheNumberOfSteps) {
     std::mt19937 random(7);
     LandmarkLayers folds(log_);
     for (Revision until = 0; until < end_; until = std::min(end_, until + 1 + random() % 100)) {
@@ -111,13 +111,13 @@ TEST_F(LandmarkFoldsTest, AreIndependentOfTheNumberOfSteps) {
     EXPECT_GT(expected(end_).captures, 20U);
 }
 
-TEST_F(LandmarkFoldsTest, RequestForAnEarlierRevisionReturnsTheNewestState) {
+TEST_F(CaptureLayersTest, RequestForAnEarlierRevisionReturnsTheNewestState) {
     LandmarkLayers folds(log_);
     folds.up_to(info_, end_, kContinue).value();
     EXPECT_EQ(folds.up_to(info_, 10, kContinue).value().revision, end_);
 }
 
-TEST_F(LandmarkFoldsTest, LongComputationContinuesWithTheNextRequest) {
+TEST_F(CaptureLayersTest, LongComputationContinuesWithTheNextRequest) {
     LandmarkLayers folds(log_, {.patience = 0ms});
     int calls = 0;
     auto applied = folds.up_to(info_, end_, kContinue);
@@ -130,13 +130,13 @@ TEST_F(LandmarkFoldsTest, LongComputationContinuesWithTheNextRequest) {
     expect_landmarks(*applied, end_);
 }
 
-TEST_F(LandmarkFoldsTest, CancelledComputationContinuesLater) {
+TEST_F(CaptureLayersTest, CancelledComputationContinuesLater) {
     LandmarkLayers folds(log_);
     EXPECT_EQ(folds.up_to(info_, end_, [] { return false; }).error().code, Errc::kShuttingDown);
     expect_landmarks(folds.up_to(info_, end_, kContinue).value(), end_);
 }
 
-TEST_F(LandmarkFoldsTest, DamagedEntryIsReportedAndEarlierEntriesStayAvailable) {
+TEST_F(CaptureLayersTest, DamagedEntryIsReportedAndEarlierEntriesStayAvailable) {
     append("nonsense");
     append(std::vector<LogEntry>{entries_.back()});
     LandmarkLayers folds(log_);
@@ -149,7 +149,7 @@ TEST_F(LandmarkFoldsTest, DamagedEntryIsReportedAndEarlierEntriesStayAvailable) 
     expect_landmarks(folds.up_to(info_, end_ - 2, kContinue).value(), end_ - 2);
 }
 
-TEST_F(LandmarkFoldsTest, TooManyLandmarksAreRefused) {
+TEST_F(CaptureLayersTest, TooManyLandmarksAreRefused) {
     const auto many = all_of(expected(end_)).size();
     EXPECT_TRUE(LandmarkLayers(log_, {.size_max = many}).up_to(info_, end_, kContinue));
     LandmarkLayers folds(log_, {.size_max = many - 1});
@@ -157,7 +157,7 @@ TEST_F(LandmarkFoldsTest, TooManyLandmarksAreRefused) {
 }
 
 /// The test detects a kept state by whether the log is read again.
-TEST_F(LandmarkFoldsTest, RemovesLeastRecentlyUsedAndDeletedSessions) {
+TEST_F(CaptureLayersTest, RemovesLeastRecentlyUsedAndDeletedSessions) {
     const auto is_kept = [&](LandmarkLayers& folds, const SessionInfo& session) {
         log_.fail_reading(Error{Errc::kStoreFailed, "the disk is gone"});
         const bool kept = folds.up_to(session, end_, kContinue).has_value();

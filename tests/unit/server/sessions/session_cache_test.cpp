@@ -17,7 +17,7 @@ using Time = SessionCache::Clock::time_point;
 Time at(int second) { return Time(std::chrono::seconds(second)); }
 
 /// A session cache with sessions that have no scans and are referenced only by the cache.
-class RosterTest : public SessionTest {
+class SessionCacheTest : public SessionTest {
 protected:
     void add(const std::string& name, int second) {
         cache_.add(std::make_shared<Session>(SessionInfo{++last_id_, name, 0.0, config_}, mapping::Projection(config_),
@@ -55,7 +55,7 @@ protected:
     std::vector<std::string> notified_;
 };
 
-TEST_F(RosterTest, OneCallerLoadsAnEvictedSessionForAll) {
+TEST_F(SessionCacheTest, OneCallerLoadsAnEvictedSessionForAll) {
     add_evicted("a");
     const auto evicted = cache_.want("a", at(1), note("first"));
     ASSERT_TRUE(evicted);
@@ -70,7 +70,7 @@ TEST_F(RosterTest, OneCallerLoadsAnEvictedSessionForAll) {
     expect_loaded("a", true);
 }
 
-TEST_F(RosterTest, EvictsLeastRecentlyUsedSessionsAndNoMoreThanNeeded) {
+TEST_F(SessionCacheTest, EvictsLeastRecentlyUsedSessionsAndNoMoreThanNeeded) {
     add("older", 10);
     add("newer", 20);
     add("used", 5);
@@ -82,7 +82,7 @@ TEST_F(RosterTest, EvictsLeastRecentlyUsedSessionsAndNoMoreThanNeeded) {
     expect_loaded("used", true);
 }
 
-TEST_F(RosterTest, CallerDuringEvictionGetsTheReloadedSession) {
+TEST_F(SessionCacheTest, CallerDuringEvictionGetsTheReloadedSession) {
     add("a", 0);
     ASSERT_THAT(evict(1), ElementsAre("a"));
     EXPECT_FALSE(cache_.want("a", at(2), note("late"))) << "the session is being evicted by another caller";
@@ -91,7 +91,7 @@ TEST_F(RosterTest, CallerDuringEvictionGetsTheReloadedSession) {
     EXPECT_THAT(notified_, IsEmpty());
 }
 
-TEST_F(RosterTest, EvictedSessionIsListedWithItsLastSummary) {
+TEST_F(SessionCacheTest, EvictedSessionIsListedWithItsLastSummary) {
     add("a", 0);
     ASSERT_THAT(evict(1), ElementsAre("a"));
     mapping::Snapshot last{.revision = 7};
@@ -105,7 +105,7 @@ TEST_F(RosterTest, EvictedSessionIsListedWithItsLastSummary) {
     EXPECT_THAT(cache_.loaded(), IsEmpty());
 }
 
-TEST_F(RosterTest, WaitingCallerIsNotifiedOfRemoval) {
+TEST_F(SessionCacheTest, WaitingCallerIsNotifiedOfRemoval) {
     add("a", 0);
     ASSERT_TRUE(cache_.leave("a"));
     EXPECT_FALSE(cache_.want("a", at(1), note("late")));

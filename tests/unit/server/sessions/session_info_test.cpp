@@ -17,7 +17,7 @@ TEST(SessionLimits, TakeTheDocumentedMemory) {
     for (const std::size_t chunks :
          {SessionLimits{}.chunks_max, ReplayLimits{}.chunks_max, ReplayLimits{}.chunks_kept_max}) {
         const double gibibytes = static_cast<double>(chunks * kBytesOfAChunk) / (1 << 30);
-        EXPECT_NEAR(gibibytes, 2.5, 0.05) << "see the headers of both and ARCHITECTURE.md";
+        EXPECT_NEAR(gibibytes, 2.5, 0.05) << "see the headers of both and docs/internals/threads.md";
     }
 }
 

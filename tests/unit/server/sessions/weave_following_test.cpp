@@ -7,12 +7,12 @@ namespace scanloom::session {
 namespace {
 
 /// Replay jobs of a log that grows between requests.
-class FollowingWeaveTest : public WeaveFixture {
+class FollowingReplayTest : public WeaveFixture {
 protected:
     [[nodiscard]] static std::vector<int> once(Revision entries) { return std::vector<int>(entries, 1); }
 };
 
-TEST_F(FollowingWeaveTest, RepeatedRequestContinuesTheJob) {
+TEST_F(FollowingReplayTest, RepeatedRequestContinuesTheJob) {
     const SessionOptions options{.cell_size = 0.1};
     std::shared_ptr<ReplayJob> first;
     for (const Revision revision : {Revision{0}, Revision{1}, Revision{10}, Revision{10}, Revision{11}, Revision{42}}) {
@@ -31,7 +31,7 @@ TEST_F(FollowingWeaveTest, RepeatedRequestContinuesTheJob) {
     EXPECT_THAT(weaves_.list(session_.id), testing::ElementsAre(first));
 }
 
-TEST_F(FollowingWeaveTest, RequestsJoinARunningJobAndAreServedInOrder) {
+TEST_F(FollowingReplayTest, RequestsJoinARunningJobAndAreServedInOrder) {
     append_up_to(20);
     const auto first_round = log_.pause_at(10);
     const auto second_round = log_.pause_at(30);
@@ -57,7 +57,7 @@ TEST_F(FollowingWeaveTest, RequestsJoinARunningJobAndAreServedInOrder) {
     EXPECT_THAT(weaves_.list(session_.id), testing::SizeIs(1));
 }
 
-TEST_F(FollowingWeaveTest, OtherJobsRunBetweenTwoRounds) {
+TEST_F(FollowingReplayTest, OtherJobsRunBetweenTwoRounds) {
     boost::asio::thread_pool one(1);
     ReplayJobs weaves(log_, one.get_executor());
     append_up_to(20);
@@ -79,7 +79,7 @@ TEST_F(FollowingWeaveTest, OtherJobsRunBetweenTwoRounds) {
     one.join();
 }
 
-TEST_F(FollowingWeaveTest, ConcurrentRequestsReadEachEntryOnce) {
+TEST_F(FollowingReplayTest, ConcurrentRequestsReadEachEntryOnce) {
     std::vector<std::thread> viewers;
     std::atomic<Revision> newest = 0;
     for (int n = 0; n < 4; ++n) {
@@ -104,7 +104,7 @@ TEST_F(FollowingWeaveTest, ConcurrentRequestsReadEachEntryOnce) {
     EXPECT_THAT(weaves_.list(session_.id), testing::SizeIs(1));
 }
 
-TEST_F(FollowingWeaveTest, PastStampIsReplayedOnce) {
+TEST_F(FollowingReplayTest, PastStampIsReplayedOnce) {
     append_all();
     const auto past = request({}, {std::nullopt, 1017.5});
     const auto job = finished(past);
@@ -118,7 +118,7 @@ TEST_F(FollowingWeaveTest, PastStampIsReplayedOnce) {
     EXPECT_EQ(log_.taken(), once(19));
 }
 
-TEST_F(FollowingWeaveTest, FutureStampIsFollowedToTheFirstLaterScan) {
+TEST_F(FollowingReplayTest, FutureStampIsFollowedToTheFirstLaterScan) {
     const auto to_come = request({}, {std::nullopt, 1017.5});
     append_up_to(10);
     const auto job = finished(to_come);
@@ -134,7 +134,7 @@ TEST_F(FollowingWeaveTest, FutureStampIsFollowedToTheFirstLaterScan) {
     EXPECT_EQ(log_.taken(), once(19));
 }
 
-TEST_F(FollowingWeaveTest, FailedContinuationKeepsItsMapsAndRestarts) {
+TEST_F(FollowingReplayTest, FailedContinuationKeepsItsMapsAndRestarts) {
     append_up_to(20);
     const auto fine = request({.cell_size = 0.01});
     const auto job = finished(fine);
@@ -152,7 +152,7 @@ TEST_F(FollowingWeaveTest, FailedContinuationKeepsItsMapsAndRestarts) {
     EXPECT_THAT(weaves_.list(session_.id), testing::ElementsAre(again));
 }
 
-TEST_F(FollowingWeaveTest, CancelledContinuationEnds) {
+TEST_F(FollowingReplayTest, CancelledContinuationEnds) {
     append_up_to(20);
     const auto job = finished(request({}));
     append_all();
@@ -167,7 +167,7 @@ TEST_F(FollowingWeaveTest, CancelledContinuationEnds) {
 }
 
 /// Rounds of one replay job, and the chunks that remain for others.
-class FollowingBudgetTest : public FollowingWeaveTest {
+class FollowingBudgetTest : public FollowingReplayTest {
 protected:
     /// Runs a job of 20 entries and appends 22 more.
     ReplayJob& first_round(limits::MemoryBudget& budget) {
@@ -248,7 +248,7 @@ TEST_F(FollowingBudgetTest, WaitsAndKeepsItsMapsWhileOthersHaveAllRoom) {
     EXPECT_EQ(job.maps()->revision, 42U);
 }
 
-TEST_F(FollowingWeaveTest, RequestIsOverloadedWhileOthersHaveAllRoom) {
+TEST_F(FollowingReplayTest, RequestIsOverloadedWhileOthersHaveAllRoom) {
     append_up_to(20);
     const auto chunks = finished(request({}))->maps()->chunk_count;
     ReplayJobs tight(log_, pool_.get_executor(), {.chunks_max = chunks});

@@ -15,9 +15,9 @@ Sensor sonar_ring(std::uint32_t id, double range_max) {
 
 /// Replay jobs of a session's past at several revisions: a log of two robots with lasers and sonars that join and
 /// describe their sensors repeatedly while the other robot drives.
-class WeaveHistoryTest : public WeaveFixture {
+class ReplayHistoryTest : public WeaveFixture {
 protected:
-    WeaveHistoryTest() {
+    ReplayHistoryTest() {
         entries_.clear();
         entries_.emplace_back(RobotJoined{0, "a"});
         entries_.emplace_back(SensorDescribed{0, testing_support::small_laser()});
@@ -62,7 +62,7 @@ private:
     }
 };
 
-TEST_F(WeaveHistoryTest, StepsReadEachEntryOnceAndMatchAFullReplay) {
+TEST_F(ReplayHistoryTest, StepsReadEachEntryOnceAndMatchAFullReplay) {
     const SessionOptions kinds[] = {
         {},
         {.cell_size = 0.1, .class_source = ClassSource::kHimm},
@@ -83,7 +83,7 @@ TEST_F(WeaveHistoryTest, StepsReadEachEntryOnceAndMatchAFullReplay) {
     }
 }
 
-TEST_F(WeaveHistoryTest, RobotsAndBoundsKeepTheirRevisionWhenOthersContinue) {
+TEST_F(ReplayHistoryTest, RobotsAndBoundsKeepTheirRevisionWhenOthersContinue) {
     const auto early = finished(until(15))->maps();
     const auto later = finished(until(last()))->maps();
     const auto between = finished(until(25))->maps(); // starts from the first job again: a second branch
@@ -111,7 +111,7 @@ TEST_F(WeaveHistoryTest, RobotsAndBoundsKeepTheirRevisionWhenOthersContinue) {
     }
 }
 
-TEST_F(WeaveHistoryTest, GoingBackStartsFromTheNearestEarlierMaps) {
+TEST_F(ReplayHistoryTest, GoingBackStartsFromTheNearestEarlierMaps) {
     for (const Revision revision : {10, 20, 30}) EXPECT_EQ(finished(until(revision))->progress().revision, revision);
     const int before = entries_read();
     EXPECT_EQ(digests_of(*finished(until(24))->maps()), digests_of_session({}, 24));
@@ -120,7 +120,7 @@ TEST_F(WeaveHistoryTest, GoingBackStartsFromTheNearestEarlierMaps) {
     EXPECT_EQ(entries_read() - before, 4 + 9) << "no earlier maps are kept";
 }
 
-TEST_F(WeaveHistoryTest, ContinuesOnlyFromTheSameSettingsAndSession) {
+TEST_F(ReplayHistoryTest, ContinuesOnlyFromTheSameSettingsAndSession) {
     static_cast<void>(finished(until(20)));
     const int before = entries_read();
     EXPECT_EQ(digests_of(*finished(until(21, {.danger_radius = 0.3}))->maps()),
@@ -133,7 +133,7 @@ TEST_F(WeaveHistoryTest, ContinuesOnlyFromTheSameSettingsAndSession) {
     EXPECT_EQ(job->maps()->revision, 0U) << "the log of the other session is empty";
 }
 
-TEST_F(WeaveHistoryTest, RemovingTheBaseKeepsJobsStartedFromIt) {
+TEST_F(ReplayHistoryTest, RemovingTheBaseKeepsJobsStartedFromIt) {
     const auto base = finished(until(20));
     const auto pause = log_.pause_at(25);
     const auto later = start(until(30));
@@ -146,7 +146,7 @@ TEST_F(WeaveHistoryTest, RemovingTheBaseKeepsJobsStartedFromIt) {
     EXPECT_EQ(entries_read(), 30);
 }
 
-TEST_F(WeaveHistoryTest, FollowingJobIsABaseAndContinues) {
+TEST_F(ReplayHistoryTest, FollowingJobIsABaseAndContinues) {
     const auto following = finished(request({}));
     EXPECT_EQ(entries_read(), static_cast<int>(last()));
     const auto before = following->maps();
@@ -165,7 +165,7 @@ TEST_F(WeaveHistoryTest, FollowingJobIsABaseAndContinues) {
     EXPECT_EQ(fixed->maps()->robots[0].trajectory.size(), 18U);
 }
 
-TEST_F(WeaveHistoryTest, StampStartsOnlyFromMapsWithoutLaterScans) {
+TEST_F(ReplayHistoryTest, StampStartsOnlyFromMapsWithoutLaterScans) {
     const auto stamp = [](double seconds) { return request({}, {std::nullopt, seconds}); };
     static_cast<void>(finished(until(10)));
     static_cast<void>(finished(until(30)));
@@ -178,7 +178,7 @@ TEST_F(WeaveHistoryTest, StampStartsOnlyFromMapsWithoutLaterScans) {
     EXPECT_EQ(entries_read() - before, 11 + 3) << "a description precedes the next scan";
 }
 
-TEST_F(WeaveHistoryTest, JobWaitsForARunningBase) {
+TEST_F(ReplayHistoryTest, JobWaitsForARunningBase) {
     const auto pause = log_.pause_at(10);
     const auto first = start(until(20));
     pause->wait();
@@ -193,7 +193,7 @@ TEST_F(WeaveHistoryTest, JobWaitsForARunningBase) {
     EXPECT_EQ(digests_of(*third->maps()), digests_of_session({}, last()));
 }
 
-TEST_F(WeaveHistoryTest, JobStartsAloneIfItsBaseIsCancelled) {
+TEST_F(ReplayHistoryTest, JobStartsAloneIfItsBaseIsCancelled) {
     const auto pause = log_.pause_at(10);
     const auto first = start(until(20));
     pause->wait();
@@ -205,7 +205,7 @@ TEST_F(WeaveHistoryTest, JobStartsAloneIfItsBaseIsCancelled) {
     EXPECT_EQ(digests_of(*second->maps()), digests_of_session({}, 30));
 }
 
-TEST_F(WeaveHistoryTest, WaitingJobIsCancelledImmediately) {
+TEST_F(ReplayHistoryTest, WaitingJobIsCancelledImmediately) {
     const auto pause = log_.pause_at(10);
     const auto first = start(until(20));
     pause->wait();
@@ -217,7 +217,7 @@ TEST_F(WeaveHistoryTest, WaitingJobIsCancelledImmediately) {
     EXPECT_EQ(finished(until(30))->maps()->revision, 30U);
 }
 
-TEST_F(WeaveHistoryTest, JobBetweenTwoTurnsIsABase) {
+TEST_F(ReplayHistoryTest, JobBetweenTwoTurnsIsABase) {
     limits::MemoryBudget budget(1000);
     ReplayJob far(session_, until(last()), last());
     ASSERT_TRUE(far.run(log_, budget, 1.0)); // one entry
@@ -236,7 +236,7 @@ TEST_F(WeaveHistoryTest, JobBetweenTwoTurnsIsABase) {
     EXPECT_TRUE(budget.take(1000)) << "all chunks are returned";
 }
 
-TEST_F(WeaveHistoryTest, ChunksOfTheBaseCountImmediately) {
+TEST_F(ReplayHistoryTest, ChunksOfTheBaseCountImmediately) {
     limits::MemoryBudget plenty(1000);
     ReplayJob base(session_, until(20), 20);
     ASSERT_FALSE(base.run(log_, plenty));

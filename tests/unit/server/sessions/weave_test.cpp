@@ -11,14 +11,14 @@ namespace {
 const Error kEnough{Errc::kNotFound, "enough"};
 
 /// Replay jobs of a log that does not grow.
-class WeaveTest : public WeaveFixture {
+class ReplayJobTest : public WeaveFixture {
 protected:
-    WeaveTest() { append_all(); }
+    ReplayJobTest() { append_all(); }
 
     [[nodiscard]] Revision newest() const { return appended_; }
 };
 
-TEST_F(WeaveTest, EqualsTheMapsOfASessionWithTheseSettings) {
+TEST_F(ReplayJobTest, EqualsTheMapsOfASessionWithTheseSettings) {
     for (const SessionOptions& options :
          {SessionOptions{}, SessionOptions{.cell_size = 0.1}, SessionOptions{.ray_model = RayModel::kTraversal},
           SessionOptions{.cell_size = 0.02, .p_occupied = 0.7, .class_source = ClassSource::kHimm},
@@ -30,7 +30,7 @@ TEST_F(WeaveTest, EqualsTheMapsOfASessionWithTheseSettings) {
     }
 }
 
-TEST_F(WeaveTest, EndsAtARevisionOrBeforeTheFirstLaterScan) {
+TEST_F(ReplayJobTest, EndsAtARevisionOrBeforeTheFirstLaterScan) {
     for (const Revision revision : {Revision{0}, Revision{1}, Revision{2}, Revision{3}, Revision{17}, newest()}) {
         const auto job = finished(request({}, {revision, std::nullopt}));
         EXPECT_EQ(job->maps()->revision, revision);
@@ -43,7 +43,7 @@ TEST_F(WeaveTest, EndsAtARevisionOrBeforeTheFirstLaterScan) {
     }
 }
 
-TEST_F(WeaveTest, EqualRequestReturnsTheSameJob) {
+TEST_F(ReplayJobTest, EqualRequestReturnsTheSameJob) {
     const auto first = finished(request({}, {5, std::nullopt}));
     EXPECT_EQ(start(request({}, {5, std::nullopt})), first);
     EXPECT_EQ(weaves_.find(session_.id, first->id()), first);
@@ -56,7 +56,7 @@ TEST_F(WeaveTest, EqualRequestReturnsTheSameJob) {
     EXPECT_THAT(weaves_.list(session_.id + 1), testing::IsEmpty());
 }
 
-TEST_F(WeaveTest, RemovedJobCanBeStartedAgain) {
+TEST_F(ReplayJobTest, RemovedJobCanBeStartedAgain) {
     const auto first = finished(request({}, {5, std::nullopt}));
     EXPECT_TRUE(weaves_.remove(session_.id, first->id()));
     EXPECT_FALSE(weaves_.remove(session_.id, first->id()));
@@ -66,7 +66,7 @@ TEST_F(WeaveTest, RemovedJobCanBeStartedAgain) {
     EXPECT_THAT(weaves_.list(session_.id), testing::IsEmpty());
 }
 
-TEST_F(WeaveTest, SensorTooLargeForTheSettingsFailsWithAMessage) {
+TEST_F(ReplayJobTest, SensorTooLargeForTheSettingsFailsWithAMessage) {
     append(SensorDescribed{0, far_laser()});
     const auto job = finished(request({.cell_size = 0.01}));
     EXPECT_EQ(job->progress().state, State::kFailed);
@@ -77,7 +77,7 @@ TEST_F(WeaveTest, SensorTooLargeForTheSettingsFailsWithAMessage) {
     EXPECT_EQ(finished(request({.cell_size = 0.062}))->progress().state, State::kDone);
 }
 
-TEST_F(WeaveTest, ScanTooLargeForTheSettingsFails) {
+TEST_F(ReplayJobTest, ScanTooLargeForTheSettingsFails) {
     Sensor ring = testing_support::small_laser();
     ring.id = 9;
     ring.name = "";
@@ -98,7 +98,7 @@ TEST_F(WeaveTest, ScanTooLargeForTheSettingsFails) {
         "cell_size");
 }
 
-TEST_F(WeaveTest, ImportedMapOfTooManyCellsFails) {
+TEST_F(ReplayJobTest, ImportedMapOfTooManyCellsFails) {
     MapPatch patch;
     patch.cell_size = 1.0;
     patch.width = 512;
@@ -115,7 +115,7 @@ TEST_F(WeaveTest, ImportedMapOfTooManyCellsFails) {
               "cell_size");
 }
 
-TEST_F(WeaveTest, DeletedSessionFailsTheJobWithAMessage) {
+TEST_F(ReplayJobTest, DeletedSessionFailsTheJobWithAMessage) {
     ASSERT_TRUE(log_.remove_session(session_.id));
     const auto job = finished(request({}));
     EXPECT_EQ(job->progress().state, State::kFailed);
@@ -124,7 +124,7 @@ TEST_F(WeaveTest, DeletedSessionFailsTheJobWithAMessage) {
     EXPECT_THAT(session_was_deleted(session_).message, testing::StartsWith("session 's' was deleted"));
 }
 
-TEST_F(WeaveTest, LongJobRunsInTurns) {
+TEST_F(ReplayJobTest, LongJobRunsInTurns) {
     limits::MemoryBudget budget(1000);
     ReplayJob job(session_, request({}), newest());
     int turns = 1;
@@ -140,7 +140,7 @@ TEST_F(WeaveTest, LongJobRunsInTurns) {
     EXPECT_EQ(log_.taken(), std::vector<int>(newest(), 1));
 }
 
-TEST_F(WeaveTest, CancelBetweenTwoTurnsReturnsTheChunks) {
+TEST_F(ReplayJobTest, CancelBetweenTwoTurnsReturnsTheChunks) {
     limits::MemoryBudget budget(1000);
     ReplayJob job(session_, request({}), newest());
     ASSERT_TRUE(job.run(log_, budget, 5e4));
@@ -150,7 +150,7 @@ TEST_F(WeaveTest, CancelBetweenTwoTurnsReturnsTheChunks) {
     EXPECT_TRUE(budget.take(1000));
 }
 
-TEST_F(WeaveTest, JobCancelledBeforeItsTurnNeverRuns) {
+TEST_F(ReplayJobTest, JobCancelledBeforeItsTurnNeverRuns) {
     limits::MemoryBudget budget(1000);
     ReplayJob job(session_, request({}), newest());
     job.cancel(kEnough);
@@ -162,7 +162,7 @@ TEST_F(WeaveTest, JobCancelledBeforeItsTurnNeverRuns) {
     EXPECT_EQ(job.maps(), nullptr);
 }
 
-TEST_F(WeaveTest, CancelDuringATurnReturnsTheChunks) {
+TEST_F(ReplayJobTest, CancelDuringATurnReturnsTheChunks) {
     const auto pause = log_.pause_at(10);
     limits::MemoryBudget budget(1000);
     ReplayJob job(session_, request({}), newest());
@@ -181,7 +181,7 @@ TEST_F(WeaveTest, CancelDuringATurnReturnsTheChunks) {
     EXPECT_TRUE(budget.take(1000)) << "all chunks are returned";
 }
 
-TEST_F(WeaveTest, EachEndReportsItsReason) {
+TEST_F(ReplayJobTest, EachEndReportsItsReason) {
     boost::asio::thread_pool idle(1);
     std::promise<void> go_on;
     boost::asio::post(idle, [&] { go_on.get_future().wait(); });
@@ -200,7 +200,7 @@ TEST_F(WeaveTest, EachEndReportsItsReason) {
     idle.join();
 }
 
-TEST_F(WeaveTest, FailsBeyondTheBudgetAndTakesNoChunks) {
+TEST_F(ReplayJobTest, FailsBeyondTheBudgetAndTakesNoChunks) {
     limits::MemoryBudget budget(3);
     ReplayJob job(session_, request({.cell_size = 0.01}), newest());
     EXPECT_FALSE(job.run(log_, budget));
@@ -209,7 +209,7 @@ TEST_F(WeaveTest, FailsBeyondTheBudgetAndTakesNoChunks) {
     EXPECT_TRUE(budget.take(3));
 }
 
-TEST_F(WeaveTest, CountsTheChunksOfAllJobs) {
+TEST_F(ReplayJobTest, CountsTheChunksOfAllJobs) {
     EXPECT_EQ(weaves_.chunks(), 0);
     const auto job = finished(request({}));
     const auto chunks = static_cast<std::int64_t>(job->maps()->chunk_count);
@@ -220,7 +220,7 @@ TEST_F(WeaveTest, CountsTheChunksOfAllJobs) {
     EXPECT_EQ(weaves_.chunks(), chunks);
 }
 
-TEST_F(WeaveTest, RemovesTheLeastRecentlyUsedBeyondTheChunkLimit) {
+TEST_F(ReplayJobTest, RemovesTheLeastRecentlyUsedBeyondTheChunkLimit) {
     const auto chunks = finished(request({}))->maps()->chunk_count;
     ReplayJobs few(log_, pool_.get_executor(), {.chunks_kept_max = 3 * chunks});
     std::vector<std::string> ids;
@@ -238,7 +238,7 @@ TEST_F(WeaveTest, RemovesTheLeastRecentlyUsedBeyondTheChunkLimit) {
     pool_.join();
 }
 
-TEST_F(WeaveTest, RefusesTooManyWaitingJobsAndJobsAfterStop) {
+TEST_F(ReplayJobTest, RefusesTooManyWaitingJobsAndJobsAfterStop) {
     boost::asio::thread_pool idle(1);
     std::promise<void> go_on;
     boost::asio::post(idle, [&] { go_on.get_future().wait(); });
