@@ -20,7 +20,8 @@ class ThreadPools {
 public:
     /// @param threads  that integrate scans; the same number, but at least two, answers requests and searches maps
     explicit ThreadPools(std::size_t threads)
-        : sessions_(threads), short_(std::max<std::size_t>(2, threads)), long_(std::max<std::size_t>(2, threads)) {}
+        : sessions_(threads), short_(std::max<std::size_t>(2, threads)), long_(std::max<std::size_t>(2, threads)),
+          disk_(std::clamp<std::size_t>(threads / 2, 1, 2)) {}
 
     /// Runs all tasks that were posted, also by tasks, then ends the threads.
     void join() {
@@ -43,7 +44,7 @@ private:
     sockets::WorkerPool long_;
     sockets::WorkerPool background_{1, 10}; // robots and viewers are more urgent
     sockets::WorkerPool changes_{2};
-    sockets::WorkerPool disk_{2};
+    sockets::WorkerPool disk_;
 
 public:
     using Executor = boost::asio::any_io_executor;
