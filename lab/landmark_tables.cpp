@@ -19,7 +19,9 @@ std::string metres(std::optional<double> value) { return value ? fmt::format("{:
 std::string whole(std::size_t value) { return fmt::format("{}", value); }
 std::string millimetres(double metres) { return fmt::format("{:.1f}", 1e3 * metres); }
 std::string degrees(const PoseError& error) { return fmt::format("{:.2f}", error.degrees()); }
-std::string published_range_text(const ValueRange& span) { return fmt::format("{:.2f} to {:.2f}", span.low, span.high); }
+std::string published_range_text(const ValueRange& span) {
+    return fmt::format("{:.2f} to {:.2f}", span.low, span.high);
+}
 
 const std::vector<std::string> kComparisonHead{"matched",   "only first", "only second", "persistence",
                                                "stability", "mean m",     "sd m",        "linearity",
@@ -91,7 +93,8 @@ Table door_table(const LandmarkResults& results) {
         table.rows.push_back(joined({place_name(n), kClosed}, comparison_cells(place.control)));
     }
     table.rows.push_back({"published", "", "", "", "", published_range_text(kPublishedPersistence),
-                          published_range_text(kPublishedStability), "", "", "", "", "", published_range_text(kPublishedContinuity)});
+                          published_range_text(kPublishedStability), "", "", "", "", "",
+                          published_range_text(kPublishedContinuity)});
     return table;
 }
 
