@@ -206,6 +206,10 @@ std::optional<wire::Message> ClientProtocol::next_message(Time now) {
         return options_.hello;
     }
     if (!link_->welcomed) return std::nullopt;
+    if (options_.first_sensor && !is_described(options_.first_sensor)) {
+        link_->described[options_.first_sensor->id] = options_.first_sensor;
+        return *options_.first_sensor;
+    }
     if (!link_->pings_to_answer.empty()) {
         const wire::Pong pong{link_->pings_to_answer.front()};
         link_->pings_to_answer.erase(link_->pings_to_answer.begin());

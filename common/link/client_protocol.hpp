@@ -23,7 +23,8 @@ namespace scanloom::link {
 
 struct ClientProtocolOptions {
     wire::Hello hello;
-    std::string server;                                  ///< address of the server, for messages
+    std::string server;                         ///< address of the server, for messages
+    std::shared_ptr<const Sensor> first_sensor; ///< described right after the welcome; null: before its first scan
     std::size_t batch_bytes_max = std::size_t{64} << 10; ///< of one ScanBatch of several scans
     std::size_t batch_scans_max = kScansPerBatchMax;
     std::chrono::milliseconds batch_delay{0};          ///< how long a scan may wait for others to share its batch

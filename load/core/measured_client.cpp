@@ -18,6 +18,7 @@ link::ClientProtocolOptions options_for(const RobotPlan& plan, const Course& cou
     options.hello.session = plan.session;
     options.hello.robot = plan.name;
     options.server = std::move(server);
+    options.first_sensor = course.sensor; // so that each robot adds two entries to its session, also without scans
     options.batch_bytes_max = wire::kFrameBytesMax;
     options.batch_scans_max = course.batch;
     options.only_full_batches = true;
