@@ -40,7 +40,7 @@ build_tier() {
     case $1 in
         first) make_preset test tests ;;
         *)
-            need fault package tidy
+            need fault package tidy readers
             make_preset test "tests_$1" "${programs[@]}"
             ;;
     esac
@@ -189,7 +189,7 @@ sanitize() {
 # run_nightly: all tests, and whatever takes hours or looks at the sources in another way. A part that fails does not end it.
 run_nightly() {
     local failed=()
-    need fmt fuzz bench system readers
+    need fmt fuzz bench system large_readers
     build_tier nightly
     nightly_part run_ctest test --label-exclude '^nightly$'
     nightly_part ctest --preset test --label-regex '^nightly$' # they compare speeds: one at a time
