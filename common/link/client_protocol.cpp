@@ -30,7 +30,7 @@ double seconds_in(std::chrono::milliseconds duration) { return std::chrono::dura
 wire::LinkError in_plain_text(wire::LinkError failure) {
     auto& [code, message] = failure.error;
     message = message.empty()
-                  ? fmt::format("the server ended the link with the error {} and did not say why", name_of(code))
+                  ? fmt::format("the server ended the link with the error {} and gave no reason", name_of(code))
                   : printable(message);
     return failure;
 }
@@ -74,9 +74,9 @@ std::optional<wire::LinkError> ClientProtocol::on_bytes(std::size_t count, Time 
 /// Makes the error for bytes that are not valid frames. Before the welcome they mean that another program listens
 /// there.
 wire::LinkError ClientProtocol::unreadable(const Error& error) const {
-    if (link_->welcomed) return {prefixed("what the server sent cannot be read: ", error), true};
+    if (link_->welcomed) return {prefixed("the data from the server cannot be read: ", error), true};
     return give_up({Errc::kMalformed,
-                    fmt::format("what listens at {} does not speak Scanloom's robot link; give the server's robot "
+                    fmt::format("the program at {} does not speak Scanloom's robot link; give the server's robot "
                                 "port to --server",
                                 options_.server)});
 }
@@ -111,8 +111,8 @@ std::optional<wire::LinkError> ClientProtocol::take(const wire::Message& message
 wire::LinkError ClientProtocol::on_error(wire::LinkError failure, Time now) {
     failure = in_plain_text(std::move(failure));
     if (failure.error.code == Errc::kMalformed && requests_.is_locating()) {
-        failure.error.message += "; a server of an earlier version cannot tell a robot where it is: update it, or say "
-                                 "where the robot is";
+        failure.error.message +=
+            "; servers of earlier versions cannot localize robots: update the server, or give the robot's pose";
     }
     if (failure.error.code != Errc::kReplaced) return failure;
     failure.retryable = may_be_replaced(now);
@@ -157,7 +157,7 @@ std::optional<Error> ClientProtocol::agree_on_scans(const wire::Welcome& welcome
         if (!is_first && welcome.session_id != session_id_ && acknowledged_before > 0) {
             lost_scans_ += acknowledged_before;
             return Error{Errc::kGone, fmt::format("session {} was deleted and created again while {} of its scans "
-                                                  "were acknowledged; start again to fill the new one",
+                                                  "were acknowledged; restart to fill the new one",
                                                   options_.hello.session, acknowledged_before)};
         }
         if (auto ok = scans_.rewind(welcome.last_durable_seq); !ok) {

@@ -23,7 +23,7 @@ Result<> LimitCheck::check_sensor(const Sensor& sensor) {
     return Error{
         Errc::kTooLarge,
         fmt::format("sensor_description.sensor is {}, of another sensor than the {} that the limit `sensors` of "
-                    "the token '{}' allows a robot; use these, or have the limit raised",
+                    "the token '{}' allows a robot; use these, or raise the limit",
                     sensor.id, limits_.sensors, limits_.token)};
 }
 
@@ -34,7 +34,7 @@ Result<> LimitCheck::check_beams(const wire::ScanBatch& batch) const {
         return Error{
             Errc::kTooLarge,
             fmt::format("scan_batch.scans[{}].ranges has {} beams, the limit `beams` of the token '{}' allows {} "
-                        "a scan; send fewer, or have the limit raised",
+                        "a scan; send fewer, or raise the limit",
                         n, beams, limits_.token, limits_.beams)};
     }
     return {};

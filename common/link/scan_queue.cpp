@@ -30,9 +30,10 @@ Result<> ScanQueue::rewind(std::uint64_t seq) {
     if (seq < acknowledged_) {
         return Error{
             Errc::kConflict,
-            fmt::format("the server holds {} scans of this robot but had acknowledged {}; scans {} to {} are "
-                        "no longer in memory: restore the server's store, or start again and go by what is said then",
-                        seq, acknowledged_, seq + 1, acknowledged_)};
+            fmt::format(
+                "the server holds {} scans of this robot but had acknowledged {}; scans {} to {} are "
+                "no longer in memory: restore the server's store, or restart the robot client and follow its message",
+                seq, acknowledged_, seq + 1, acknowledged_)};
     }
     if (seq > sent_ever_) {
         return Error{

@@ -90,8 +90,8 @@ void ServerProtocol::on_timer(Time now) {
     if (resumes_ && now >= *resumes_) resumes_.reset();
     if (now < deadline_) return;
     if (state_ == State::kFarewell || state_ == State::kHangingUp) state_ = State::kClosed;
-    fail({Errc::kTimeout, is_welcome_ ? "nothing was received for too long; send a ping now and then"
-                                      : "no hello was received in time"});
+    fail({Errc::kTimeout,
+          is_welcome_ ? "nothing was received for too long; send pings" : "no hello was received in time"});
 }
 
 ServerProtocol::Reading ServerProtocol::reading() const noexcept {
@@ -169,7 +169,7 @@ std::optional<ServerProtocol::Action> ServerProtocol::next_of_frames(Time now) {
         const auto body = decoder_.next();
         if (!body) {
             Error error = body.error();
-            if (is_welcome_ && error.code == Errc::kTooLarge) error.message += "; send fewer scans a batch";
+            if (is_welcome_ && error.code == Errc::kTooLarge) error.message += "; send fewer scans per batch";
             fail(error);
             break;
         }
@@ -250,9 +250,11 @@ Result<std::optional<ServerProtocol::Action>> ServerProtocol::take_request(Reque
         return AnswerRequest{std::move(request)};
     }
     queue_.add(refusal_of(
-        request, {Errc::kOverloaded, fmt::format("{} requests are under way, the most a link may have; read their "
-                                                 "replies before the next",
-                                                 under_way)}));
+        request,
+        {Errc::kOverloaded,
+         fmt::format(
+             "{} requests are under way, the most that a link may have; read their replies before the next request",
+             under_way)}));
     return std::nullopt;
 }
 

@@ -88,8 +88,8 @@ Result<> check_guarded(const std::string& key_file) {
     const auto allowed = std::filesystem::status(key_file, failed).permissions();
     if (failed || (allowed & (perms::others_all | perms::group_write)) == perms::none) return {};
     return Error{Errc::kInvalidField,
-                 fmt::format("{0}: this private key may be read by everybody or changed by others than its owner, who "
-                             "can then pass for the server; chmod g-w,o= {0}",
+                 fmt::format("{0}: this private key can be read by all users or changed by users other than its owner, "
+                             "who can then impersonate the server; chmod g-w,o= {0}",
                              key_file)};
 }
 
@@ -128,13 +128,13 @@ std::string certificate_text(long verify_result) {
     switch (verify_result) {
     case X509_V_ERR_HOSTNAME_MISMATCH:
     case X509_V_ERR_IP_ADDRESS_MISMATCH:
-        return "its certificate is for another name; give --server the name that is in it, or have the server given a "
-               "certificate for this one";
-    case X509_V_ERR_CERT_HAS_EXPIRED: return "its certificate has expired; have the server given a new one";
+        return "its certificate is for another name; give --server the name that is in it, or install a certificate "
+               "for this name on the server";
+    case X509_V_ERR_CERT_HAS_EXPIRED: return "its certificate has expired; install a new one on the server";
     case X509_V_ERR_CERT_NOT_YET_VALID: return "its certificate is not valid yet; check the clocks of both";
     default:
-        return fmt::format("nobody who is trusted here signed its certificate ({}); name the certificate that signed "
-                           "it with --tls-ca",
+        return fmt::format("its certificate is not signed by a trusted certificate ({}); name the certificate that "
+                           "signed it with --tls-ca",
                            X509_verify_cert_error_string(verify_result));
     }
 }
@@ -169,14 +169,14 @@ std::string handshake_text(const boost::system::error_code& failed, long verify_
         return certificate_text(verify_result);
     }
     if (is_refused_certificate(failed)) {
-        return fmt::format("the server takes only whoever shows a certificate that it trusts ({}); name yours with "
+        return fmt::format("the server accepts only clients with a certificate that it trusts ({}); name yours with "
                            "--tls-cert and --tls-key",
                            failed.message());
     }
     if (reason == SSL_R_WRONG_VERSION_NUMBER || reason == SSL_R_HTTP_REQUEST || !is_openssl) {
-        return fmt::format("what listens there does not speak TLS ({}); leave --tls out, or have the server given a "
-                           "certificate",
-                           failed.message());
+        return fmt::format(
+            "the program there does not speak TLS ({}); leave --tls out, or install a certificate on the server",
+            failed.message());
     }
     return failed.message();
 }

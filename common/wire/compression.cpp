@@ -52,7 +52,7 @@ Result<ScanBatch> decompress(const CompressedScanBatch& batch) {
     std::string body(batch.size, '\0');
     const std::size_t bytes = ZSTD_decompress(body.data(), body.size(), batch.zstd.data(), batch.zstd.size());
     if (ZSTD_isError(bytes) != 0) return malformed(fmt::format("is damaged: {}", ZSTD_getErrorName(bytes)));
-    if (bytes != body.size()) return malformed("holds less than it says");
+    if (bytes != body.size()) return malformed("holds less than it states");
     auto message = decode(body);
     if (!message) return prefixed("compressed_scan_batch: ", message.error());
     auto* scans = std::get_if<ScanBatch>(&*message);

@@ -55,14 +55,14 @@ Result<std::optional<std::string_view>> FrameDecoder::next() {
     if (std::ranges::find(kHttp, begin) != std::end(kHttp)) {
         holds_http_ = true;
         failed_ = Error{Errc::kMalformed,
-                        fmt::format("what came begins with \"{}\": that is HTTP, no frame; robots connect to the robot "
-                                    "port (--listen), browsers to the HTTP port (--http)",
+                        fmt::format("the data begins with \"{}\": this is HTTP, not a frame; connect robots to the "
+                                    "robot port (--listen), browsers to the HTTP port (--http)",
                                     begin)};
         return *failed_;
     }
     if (begin.starts_with(kTlsHandshake)) {
         failed_ = Error{Errc::kMalformed,
-                        "what came is a handshake of TLS, no frame, and this port is not encrypted; connect without "
+                        "the data is a TLS handshake, not a frame, and this port is not encrypted; connect without "
                         "TLS, or give the server a certificate (--robot-tls-cert)"};
         return *failed_;
     }
@@ -94,10 +94,9 @@ Result<> FrameDecoder::check(std::string_view body) {
     const Checksum checksum = checksum_of(body);
     if (checksum == Checksum::kRight) has_checksums_ = true;
     if (checksum == Checksum::kRight || (checksum == Checksum::kAbsent && !has_checksums_)) return {};
-    return Error{Errc::kDamaged,
-                 fmt::format("a frame of {} bytes was damaged on its way: its checksum is {}; connect again, and look "
-                             "at the network if it happens often",
-                             body.size(), checksum == Checksum::kWrong ? "wrong" : "missing")};
+    return Error{Errc::kDamaged, fmt::format("a frame of {} bytes was damaged in transmission: its checksum is {}; "
+                                             "connect again, and check the network if it happens often",
+                                             body.size(), checksum == Checksum::kWrong ? "wrong" : "missing")};
 }
 
 void append_frame(std::string& out, std::string_view body) {

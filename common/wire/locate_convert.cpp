@@ -46,7 +46,7 @@ Result<std::vector<PointMm>> read_points(const Differences& proto) {
 Result<std::optional<Near>> read_near(const v1::LocateRequest& proto) {
     if (!proto.has_near()) {
         if (proto.radius() == 0.0) return std::optional<Near>();
-        return invalid_field("radius is there, but near is not; say around which point");
+        return invalid_field("radius is given, but near is not; give the centre in near");
     }
     if (auto ok = check("near", proto.near()); !ok) return ok.error();
     if (!(proto.radius() > 0.0 && proto.radius() <= kRadiusMax)) {

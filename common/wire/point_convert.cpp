@@ -32,7 +32,7 @@ Point2 value_of(const v1::Point& point) { return {point.x(), point.y()}; }
 
 Error value_of(const v1::Refusal& refusal) { return {to_errc(refusal.code()), refusal.message()}; }
 
-Error without_outcome() { return invalid_field("outcome is absent; a reply tells what was found, or why nothing was"); }
+Error without_outcome() { return invalid_field("outcome is absent; a reply has a result or an error"); }
 
 void append_differences(std::span<const PointMm> points, Differences& out) {
     out.Reserve(out.size() + static_cast<int>(2 * points.size()));

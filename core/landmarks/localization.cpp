@@ -152,7 +152,7 @@ Result<Alignment> locate(const ReferenceViews& views, const CloudView& view, con
     if (where.radius > kHalfExtentMax) {
         return Error{Errc::kTooLarge,
                      fmt::format("{:.0f} m of the map would have to be looked at, and at most {:.0f} m "
-                                 "are: say near which place it is, and how near",
+                                 "are: give a point near its position, and the distance",
                                  2.0 * where.radius, 2.0 * kHalfExtentMax)};
     }
     const auto map = ReferenceMap::of(some, extent->middle, ask);

@@ -60,12 +60,12 @@ void AuditLog::tell_what_is_due() {
 std::optional<std::uint64_t> AuditLog::take_line_of_stranger() {
     const std::lock_guard lock(mutex_);
     const double now = now_();
-    if (stranger_told_ && now < *stranger_told_ + kBetweenStrangers) {
-        ++strangers_untold_;
+    if (stranger_logged_ && now < *stranger_logged_ + kBetweenStrangers) {
+        ++strangers_unlogged_;
         return std::nullopt;
     }
-    stranger_told_ = now;
-    return std::exchange(strangers_untold_, 0);
+    stranger_logged_ = now;
+    return std::exchange(strangers_unlogged_, 0);
 }
 
 void AuditLog::note(auth::Port port, const std::string& who, net::ClientFault fault) {

@@ -50,8 +50,8 @@ private:
     std::function<double()> now_;
     std::mutex mutex_; // guards the following members
     auth::RefusalTable table_;
-    std::optional<double> stranger_told_; // time of the last such line
-    std::uint64_t strangers_untold_ = 0;  // connections since then
+    std::optional<double> stranger_logged_; // time of the last such line
+    std::uint64_t strangers_unlogged_ = 0;  // connections since then
 };
 
 } // namespace scanloom::auth

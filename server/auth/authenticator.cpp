@@ -14,25 +14,25 @@ auth::TokenRef Credential::token() const {
     return token_;
 }
 
-void Credential::when_changed(const std::function<void()>& told) {
+void Credential::when_changed(const std::function<void()>& on_change) {
     bool has_changed = false;
     {
         const std::lock_guard lock(mutex_);
-        told_ = told;
+        on_change_ = on_change;
         has_changed = changed_;
     }
-    if (has_changed) told();
+    if (has_changed) on_change();
 }
 
 void Credential::change(auth::TokenRef token) {
-    std::function<void()> told;
+    std::function<void()> on_change;
     {
         const std::lock_guard lock(mutex_);
         token_ = std::move(token);
         changed_ = true;
-        told = told_;
+        on_change = on_change_;
     }
-    if (told) told();
+    if (on_change) on_change();
 }
 
 namespace {
@@ -48,13 +48,13 @@ Denied denied(Reason reason, const TokenRef& token, std::string message, Errc co
 Denied unknown(std::string_view secret) {
     if (secret.empty())
         return denied(Reason::kNoToken, nullptr,
-                      "a token is needed and none was sent; ask whoever runs this server for one");
+                      "a token is needed and none was sent; ask the operator of this server for one");
     return denied(Reason::kUnknownToken, nullptr,
-                  "the token that was sent is not in force here; ask whoever runs this server for one");
+                  "the token that was sent is not valid here; ask the operator of this server for one");
 }
 
 TokenRef found(const std::shared_ptr<const auth::TokenSet>& tokens, std::string_view hash) {
-    return tokens ? tokens->find_hash(hash) : auth::anonymous();
+    return tokens ? tokens->find_hash(hash) : auth::default_token();
 }
 
 bool permits(const Token& token, Purpose purpose) {
@@ -84,7 +84,7 @@ struct Authenticator::Ledger : std::enable_shared_from_this<Authenticator::Ledge
         if (known->second.size() < limit) return std::nullopt;
         return denied(Reason::kLimit, token,
                       fmt::format("{} robots are connected with the token '{}', the most that its limit `connections` "
-                                  "allows; disconnect one, or have the limit raised",
+                                  "allows; disconnect one, or raise the limit",
                                   limit, token->name),
                       Errc::kOverloaded);
     }
@@ -117,9 +117,9 @@ namespace {
 std::optional<Denied> objection(const TokenRef& token, Purpose purpose, const std::string& session) {
     if (!permits(*token, purpose)) {
         return denied(Reason::kWrongRole, token,
-                      fmt::format("the token '{}' has the role {}, which {}; use one of another role", token->name,
+                      fmt::format("the token '{}' has the role {}, which {}; use a token of another role", token->name,
                                   name_of(token->role),
-                                  purpose == Purpose::kDrive ? "sends no scans" : "does not look at maps"));
+                                  purpose == Purpose::kDrive ? "sends no scans" : "does not read maps"));
     }
     if (is_for(*token, session)) return std::nullopt;
     return denied(Reason::kWrongSession, token,
@@ -137,7 +137,7 @@ bool Authenticator::is_open() const { return ledger_->in_force() == nullptr; }
 
 Admitted<TokenRef> Authenticator::admit(std::string_view secret) const {
     const auto tokens = ledger_->in_force(); // hashing needs no lock
-    if (auto token = tokens ? tokens->find(secret) : auth::anonymous()) return token;
+    if (auto token = tokens ? tokens->find(secret) : auth::default_token()) return token;
     return unknown(secret);
 }
 

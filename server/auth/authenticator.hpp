@@ -33,7 +33,7 @@ public:
 
     /// Sets the callback for changes of token(). It is called from any thread after each replacement of the tokens, and
     /// at once if one has happened already.
-    void when_changed(const std::function<void()>& told);
+    void when_changed(const std::function<void()>& on_change);
 
     [[nodiscard]] Purpose purpose() const noexcept { return purpose_; }
     [[nodiscard]] const std::string& session() const noexcept { return session_; }
@@ -52,7 +52,7 @@ private:
     mutable std::mutex mutex_; // guards the following members; held only to copy them
     auth::TokenRef token_;
     bool changed_ = false;
-    std::function<void()> told_;
+    std::function<void()> on_change_;
 };
 
 /// Why a client was refused: the reason and token for the log, the error for the client.
@@ -71,7 +71,7 @@ using Admitted = boost::system::result<T, Denied>;
 
 /// Authenticates clients by their tokens, and grants passes for robot links and live viewers.
 ///
-/// Without tokens every client is admitted, with the token auth::anonymous().
+/// Without tokens every client is admitted, with the token auth::default_token().
 /// Threads: any thread; calls wait only for each other.
 class Authenticator {
 public:

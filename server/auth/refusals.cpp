@@ -15,10 +15,10 @@ std::vector<RefusalTable::Line> RefusalTable::note(Refusal refusal, double now) 
     const auto [entry, is_new] = kept_.try_emplace(std::move(key));
     Kept& kept = entry->second;
     kept.newest = std::move(refusal);
-    ++kept.untold;
+    ++kept.unlogged;
     if (is_new) {
-        lines.push_back({kept.newest, std::exchange(kept.untold, 0)});
-        kept.told = now;
+        lines.push_back({kept.newest, std::exchange(kept.unlogged, 0)});
+        kept.logged = now;
     }
     return lines;
 }
@@ -36,13 +36,13 @@ void RefusalTable::sweep(double now, std::vector<Line>& lines) {
     swept_ = now;
     for (auto entry = kept_.begin(); entry != kept_.end();) {
         Kept& kept = entry->second;
-        if (now - kept.told < kPauseSeconds) {
+        if (now - kept.logged < kPauseSeconds) {
             ++entry;
-        } else if (kept.untold == 0) {
+        } else if (kept.unlogged == 0) {
             entry = kept_.erase(entry);
         } else {
-            lines.push_back({kept.newest, std::exchange(kept.untold, 0)});
-            kept.told = now;
+            lines.push_back({kept.newest, std::exchange(kept.unlogged, 0)});
+            kept.logged = now;
             ++entry;
         }
     }
@@ -51,7 +51,7 @@ void RefusalTable::sweep(double now, std::vector<Line>& lines) {
 std::vector<RefusalTable::Line> RefusalTable::rest() {
     std::vector<Line> lines;
     for (auto& [key, kept] : kept_) {
-        if (kept.untold > 0) lines.push_back({kept.newest, std::exchange(kept.untold, 0)});
+        if (kept.unlogged > 0) lines.push_back({kept.newest, std::exchange(kept.unlogged, 0)});
     }
     return lines;
 }

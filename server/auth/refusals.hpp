@@ -97,8 +97,8 @@ private:
     using Key = std::tuple<std::string, Port, Reason>;
     struct Kept {
         Refusal newest;
-        double told = 0.0;        // time of the last line
-        std::uint64_t untold = 0; // refusals since then
+        double logged = 0.0;        // time of the last line
+        std::uint64_t unlogged = 0; // refusals since then
     };
 
     void sweep(double now, std::vector<Line>& lines);

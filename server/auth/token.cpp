@@ -43,7 +43,7 @@ bool is_for_all(const Token& token) noexcept {
     return std::ranges::any_of(token.sessions, [](const auto& pattern) { return pattern == "*"; });
 }
 
-const TokenRef& anonymous() {
+const TokenRef& default_token() {
     static const TokenRef token = std::make_shared<const Token>(Token{"", "", Role::kOperator, {"*"}, no_limits()});
     return token;
 }

@@ -107,6 +107,6 @@ using TokenRef = std::shared_ptr<const Token>;
 [[nodiscard]] bool is_for_all(const Token& token) noexcept;
 
 /// Returns the token that every client has if the server has no tokens: an operator for all sessions, without a name.
-[[nodiscard]] const TokenRef& anonymous();
+[[nodiscard]] const TokenRef& default_token();
 
 } // namespace scanloom::auth

@@ -49,7 +49,7 @@ Result<> check_file(const std::filesystem::path& path, int descriptor) {
     }
     if ((facts.st_mode & (S_IWGRP | S_IWOTH)) != 0) {
         return Error{Errc::kInvalidField,
-                     fmt::format("{0}: others than its owner may write to it, and so let themselves in; chmod go-w {0}",
+                     fmt::format("{0}: users other than its owner can write to it and add tokens; chmod go-w {0}",
                                  path.string())};
     }
     if (static_cast<std::size_t>(facts.st_size) <= kBytesMax) return {};

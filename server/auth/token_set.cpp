@@ -164,14 +164,15 @@ Result<> read_sessions(const toml::table& table, Token& token) {
     const auto* node = table.get("sessions");
     if (node == nullptr) {
         return fault(table.source(),
-                     "sessions is missing in this [[token]]; add sessions = [\"*\"], or which it is for");
+                     "sessions is missing in this [[token]]; add sessions = [\"*\"], or patterns of its sessions");
     }
     const auto* patterns = node->as_array();
     if (patterns == nullptr || patterns->empty() || patterns->size() > kPatternsMax) {
-        return fault(node->source(),
-                     fmt::format("sessions is no list of 1 to {} patterns; write sessions = [\"*\"], or "
-                                 "which it is for",
-                                 kPatternsMax));
+        return fault(
+            node->source(),
+            fmt::format(
+                "sessions is no list of 1 to {} patterns; write sessions = [\"*\"], or patterns of its sessions",
+                kPatternsMax));
     }
     for (const auto& element : *patterns) {
         auto pattern = element.value_exact<std::string>();

@@ -64,7 +64,7 @@ mapping::RobotState state_of(const mapping::Snapshot& maps, RobotIndex robot) {
     return robot < maps.robots.size() ? maps.robots[robot] : mapping::RobotState{};
 }
 
-/// Appends the cells that `to` does not contain yet, then removes the oldest ones beyond kInVainCellsMax.
+/// Appends the cells that `to` does not contain yet, then removes the oldest ones beyond kUnobservedCellsMax.
 void add(const std::vector<grid::Cell>& cells, std::vector<grid::Cell>& to) {
     const auto place = [](grid::Cell cell) { return std::pair(cell.j, cell.i); };
     auto known = to;
@@ -72,7 +72,7 @@ void add(const std::vector<grid::Cell>& cells, std::vector<grid::Cell>& to) {
     std::ranges::copy_if(cells, std::back_inserter(to),
                          [&](grid::Cell cell) { return !std::ranges::binary_search(known, place(cell), {}, place); });
     const std::size_t too_many =
-        std::max(to.size(), GoalAssignments::kInVainCellsMax) - GoalAssignments::kInVainCellsMax;
+        std::max(to.size(), GoalAssignments::kUnobservedCellsMax) - GoalAssignments::kUnobservedCellsMax;
     to.erase(to.begin(), to.begin() + static_cast<std::ptrdiff_t>(too_many));
 }
 
@@ -82,7 +82,7 @@ Visit begin_visit(const planning::FrontierGoal& goal, const mapping::RobotState&
             state.scan_count, std::nullopt};
 }
 
-Goal told(const planning::FrontierGoal& goal, const mapping::Snapshot& maps) {
+Goal shared_goal(const planning::FrontierGoal& goal, const mapping::Snapshot& maps) {
     const double cell_size = maps.config.cell_size;
     return {centre_of(goal.cell, cell_size), centre_of(goal.target, cell_size), goal.in_danger, maps.revision};
 }
@@ -97,21 +97,21 @@ Result<planning::NextGoal> GoalAssignments::next(const std::shared_ptr<const ses
     const std::lock_guard lock(mutex_);
     forget_what_counts_no_longer(now);
     const mapping::RobotState state = state_of(maps, robot);
-    InVain unobservable = add_unobservable(session, maps);
+    Unobserved unobserved = take_unobserved(session, maps);
     std::optional<Visit> going_on; // the robot is at the goal but has not looked yet
     if (const auto* had = find_entry(session, robot);
         had != nullptr && had->settings == maps.config && is_there(had->visit, state)) {
         if (has_looked(had->visit, state, cell_size)) {
-            add(planning::unobservable_cells(maps.classes, had->goal, had->around_target), unobservable.cells);
-            count_look(had->around_target, unobservable);
+            add(planning::unobservable_cells(maps.classes, had->goal, had->around_target), unobserved.cells);
+            count_look(had->around_target, unobserved);
         } else {
             going_on = had->visit;
         }
     }
-    add(planning::still_frontier(maps.classes, looked_at_often(unobservable)), unobservable.cells);
+    add(planning::still_frontier(maps.classes, looked_at_often(unobserved)), unobserved.cells);
     auto found = planning::next_goal(maps.classes, cell_size, position, targets_of_others(session, robot, cell_size),
-                                     options, unobservable.cells);
-    keep(std::move(unobservable));
+                                     options, unobserved.cells);
+    keep(std::move(unobserved));
     forget_entry(session, robot);
     if (!found || !found->goal) {
         ways_.take_back(session, robot, found && found->outcome == planning::Exploration::kComplete);
@@ -121,7 +121,7 @@ Result<planning::NextGoal> GoalAssignments::next(const std::shared_ptr<const ses
     if (going_on && is_there(visit, state)) { // also for a better goal: the robot keeps its waiting time
         visit.asking_since = going_on->asking_since.value_or(state.stamp);
     }
-    const auto given = ways_.give_goal(session, robot, told(*found->goal, maps),
+    const auto given = ways_.give_goal(session, robot, shared_goal(*found->goal, maps),
                                        {PathKind::kGoal, found->path.points, found->path.length_m, maps.revision}, now);
     entries_.push_back({session, robot, given, maps.config, found->goal->cell, found->around_target, visit});
     return found;
@@ -150,44 +150,45 @@ std::vector<grid::Cell> GoalAssignments::targets_of_others(const std::shared_ptr
 
 /// Removes and returns the record of the session and settings, without cells that are no longer FRONTIER. Maps older
 /// than the record do not change it.
-GoalAssignments::InVain GoalAssignments::add_unobservable(const std::shared_ptr<const session::Session>& session,
-                                                          const mapping::Snapshot& maps) {
-    const auto known = std::ranges::find_if(
-        unobservable_, [&](const InVain& one) { return one.settings == maps.config && one.session.lock() == session; });
-    if (known == unobservable_.end()) return {session, maps.config, maps.revision, {}, {}};
-    InVain taken = std::move(*known);
-    unobservable_.erase(known);
+GoalAssignments::Unobserved GoalAssignments::take_unobserved(const std::shared_ptr<const session::Session>& session,
+                                                             const mapping::Snapshot& maps) {
+    const auto known = std::ranges::find_if(unobserved_, [&](const Unobserved& one) {
+        return one.settings == maps.config && one.session.lock() == session;
+    });
+    if (known == unobserved_.end()) return {session, maps.config, maps.revision, {}, {}};
+    Unobserved taken = std::move(*known);
+    unobserved_.erase(known);
     if (maps.revision < taken.revision) return taken;
     taken.revision = maps.revision;
     taken.cells = planning::still_frontier(maps.classes, taken.cells);
     return taken;
 }
 
-void GoalAssignments::keep(InVain unobservable) {
-    if (unobservable.cells.empty() && unobservable.looks.empty()) return;
-    const auto session = unobservable.session.lock();
-    const auto is_of_session = [&](const InVain& one) { return one.session.lock() == session; };
-    if (std::ranges::count_if(unobservable_, is_of_session) == static_cast<std::ptrdiff_t>(kSettingsMax)) {
-        unobservable_.erase(std::ranges::find_if(unobservable_, is_of_session));
+void GoalAssignments::keep(Unobserved unobserved) {
+    if (unobserved.cells.empty() && unobserved.looks.empty()) return;
+    const auto session = unobserved.session.lock();
+    const auto is_of_session = [&](const Unobserved& one) { return one.session.lock() == session; };
+    if (std::ranges::count_if(unobserved_, is_of_session) == static_cast<std::ptrdiff_t>(kSettingsMax)) {
+        unobserved_.erase(std::ranges::find_if(unobserved_, is_of_session));
     }
-    unobservable_.push_back(std::move(unobservable));
+    unobserved_.push_back(std::move(unobserved));
 }
 
-void GoalAssignments::count_look(const std::vector<grid::Cell>& around_target, InVain& unobservable) {
-    if (unobservable.looks.size() + around_target.size() > kInVainCellsMax) unobservable.looks.clear();
-    for (const grid::Cell cell : around_target) ++unobservable.looks[{cell.j, cell.i}];
+void GoalAssignments::count_look(const std::vector<grid::Cell>& around_target, Unobserved& unobserved) {
+    if (unobserved.looks.size() + around_target.size() > kUnobservedCellsMax) unobserved.looks.clear();
+    for (const grid::Cell cell : around_target) ++unobserved.looks[{cell.j, cell.i}];
 }
 
-std::vector<grid::Cell> GoalAssignments::looked_at_often(const InVain& unobservable) {
+std::vector<grid::Cell> GoalAssignments::looked_at_often(const Unobserved& unobserved) {
     std::vector<grid::Cell> cells;
-    for (const auto& [place, times] : unobservable.looks) {
+    for (const auto& [place, times] : unobserved.looks) {
         if (times >= kLooksMax) cells.push_back({place.second, place.first});
     }
     return cells;
 }
 
 void GoalAssignments::forget_what_counts_no_longer(Clock::time_point now) {
-    std::erase_if(unobservable_, [](const InVain& one) { return one.session.expired(); });
+    std::erase_if(unobserved_, [](const Unobserved& one) { return one.session.expired(); });
     std::erase_if(entries_, [&](const Entry& entry) {
         const auto session = entry.session.lock();
         return !session || !ways_.holds(session, entry.robot, entry.given, now);

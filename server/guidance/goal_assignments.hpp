@@ -63,14 +63,14 @@ struct Visit {
 /// Maps may also alternate in places away from the robot: beams along a wall clear what beams towards the wall have
 /// shown, and those show it again. So cells around targets are also excluded whenever they are FRONTIER again after
 /// kLooksMax looks. Excluded cells and looks are kept for each session and the settings of its maps, at most
-/// kInVainCellsMax cells each. Beyond that, the oldest cells are dropped and looks are counted from 0 again.
+/// kUnobservedCellsMax cells each. Beyond that, the oldest cells are dropped and looks are counted from 0 again.
 ///
 /// Threads: any thread; one search at a time.
 class GoalAssignments {
 public:
     using Clock = RobotPaths::Clock;
 
-    static constexpr std::size_t kInVainCellsMax = std::size_t{1} << 16;
+    static constexpr std::size_t kUnobservedCellsMax = std::size_t{1} << 16;
     static constexpr int kLooksMax = 2;
     static constexpr std::size_t kSettingsMax = 8; ///< of one session; the least recently used are dropped
 
@@ -100,7 +100,7 @@ private:
 
     using Looks = std::map<std::pair<std::int32_t, std::int32_t>, int>; // number of looks by (j, i)
 
-    struct InVain {
+    struct Unobserved {
         std::weak_ptr<const session::Session> session;
         mapping::MapConfig settings;
         Revision revision;             // of the newest maps used
@@ -115,16 +115,16 @@ private:
     [[nodiscard]] std::vector<grid::Cell> targets_of_others(const std::shared_ptr<const session::Session>& session,
                                                             RobotIndex robot, double cell_size) const;
     void forget_entry(const std::shared_ptr<const session::Session>& session, RobotIndex robot);
-    [[nodiscard]] InVain add_unobservable(const std::shared_ptr<const session::Session>& session,
-                                          const mapping::Snapshot& maps);
-    void keep(InVain unobservable);
-    static void count_look(const std::vector<grid::Cell>& around_target, InVain& unobservable);
-    [[nodiscard]] static std::vector<grid::Cell> looked_at_often(const InVain& unobservable);
+    [[nodiscard]] Unobserved take_unobserved(const std::shared_ptr<const session::Session>& session,
+                                             const mapping::Snapshot& maps);
+    void keep(Unobserved unobserved);
+    static void count_look(const std::vector<grid::Cell>& around_target, Unobserved& unobserved);
+    [[nodiscard]] static std::vector<grid::Cell> looked_at_often(const Unobserved& unobserved);
 
     RobotPaths ways_;
     std::mutex mutex_;
-    std::vector<Entry> entries_;       // at most one for each robot
-    std::vector<InVain> unobservable_; // at most one for each session and settings; the most recently used last
+    std::vector<Entry> entries_;         // at most one for each robot
+    std::vector<Unobserved> unobserved_; // at most one for each session and settings; the most recently used last
 };
 
 } // namespace scanloom::guide

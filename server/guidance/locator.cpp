@@ -17,14 +17,12 @@ landmarks::ReferenceViews views_of(session::Folded<landmarks::ReferenceLayer> ap
     return views;
 }
 
-const Error kOnlyMap{
-    Errc::kUndetermined,
-    "there is a map, as of an import, but no laser has seen a thing in this session, and robots are found "
-    "in what lasers saw: send the first scans from a pose that is known"};
+const Error kOnlyMap{Errc::kUndetermined, "the session has only an imported map, and localization needs laser scans of "
+                                          "the session: send the first scans from a known pose"};
 
-const Error kBegun{Errc::kOverloaded,
-                   "nothing is mapped yet, and another robot has just been told so: the map begins where that one "
-                   "stands; ask again soon"};
+const Error kBegun{
+    Errc::kOverloaded,
+    "nothing is mapped yet, and another robot was asked to begin the map at its own pose; try again soon"};
 
 } // namespace
 

@@ -9,14 +9,15 @@ namespace scanloom::guide {
 Result<RobotIndex> find_robot(const mapping::Snapshot& maps, std::string_view name) {
     const auto found = std::ranges::find(maps.robots, name, &mapping::RobotState::name);
     if (found != maps.robots.end()) return static_cast<RobotIndex>(found - maps.robots.begin());
-    return Error{Errc::kNotFound, "there is no robot of that name in these maps; the session lists its robots"};
+    return Error{Errc::kNotFound, "these maps have no robot of that name; the session lists its robots"};
 }
 
 Result<Pose2> pose_of(const mapping::Snapshot& maps, RobotIndex robot) {
-    if (robot >= maps.robots.size()) return Error{Errc::kNoPath, "the robot has just joined, and sent no scan yet"};
+    if (robot >= maps.robots.size()) return Error{Errc::kNoPath, "the robot has joined but has sent no scan yet"};
     const auto& state = maps.robots[robot];
     if (state.pose) return *state.pose;
-    return Error{Errc::kNoPath, fmt::format("where robot '{}' is, is not known: it has sent no scan yet", state.name)};
+    return Error{Errc::kNoPath,
+                 fmt::format("the position of robot '{}' is not known: it has sent no scan yet", state.name)};
 }
 
 } // namespace scanloom::guide

@@ -33,7 +33,7 @@ public:
     [[nodiscard]] Result<> operator()() const {
         if (sessions_.is_draining()) return Error{Errc::kShuttingDown, "the server is shutting down"};
         if (Clock::now() < end_) return {};
-        return Error{Errc::kTooLarge, fmt::format("the search takes too long and was given up: {}", instead_)};
+        return Error{Errc::kTooLarge, fmt::format("the search took too long and was stopped: {}", instead_)};
     }
 
 private:

@@ -34,7 +34,7 @@ Denied foreign_page(const Request& request, std::string token) {
     return {Reason::kForeignPage,
             std::move(token),
             {Errc::kUnauthorized,
-             fmt::format("pages of {} may not do this in your name; use the viewer that this server serves",
+             fmt::format("pages of {} may not send this request; use the viewer that this server serves",
                          in_quotes(request.origin))}};
 }
 
@@ -54,16 +54,17 @@ bool has_role(const Token& token, Access access) {
 
 std::optional<Denied> objection_to(const Token& token, Access access, std::string_view session) {
     if (!has_role(token, access)) {
-        return denied(Reason::kWrongRole, token,
-                      fmt::format("the token '{}' has the role {}, which may not do this; use one of another role",
-                                  token.name, name_of(token.role)));
+        return denied(
+            Reason::kWrongRole, token,
+            fmt::format("the token '{}' has the role {}, which does not permit this; use a token of another role",
+                        token.name, name_of(token.role)));
     }
     if ((access == Access::kServer || access == Access::kBackup) && !is_for_all(token)) {
         return denied(
             Reason::kWrongSession, token,
-            fmt::format("this is about all sessions, and the token '{}' is not for all; use one whose sessions "
-                        "are *",
-                        token.name));
+            fmt::format(
+                "this needs a token for all sessions, and the token '{}' is not one; use a token whose sessions are *",
+                token.name));
     }
     return is_about_one_session(access) ? Authorizer::objection(token, session) : std::nullopt;
 }
@@ -78,7 +79,7 @@ std::variant<TokenRef, Response> Authorizer::admit(const Request& request, Acces
     const bool is_foreign = !has_token && !request.origin.empty() && is_of_foreign_page(request);
     const bool needs_token = !authenticator_.is_open() && access != Access::kOpen;
     if (is_foreign && !needs_token) return refuse(request, foreign_page(request, ""), session);
-    if (authenticator_.is_open()) return auth::anonymous();
+    if (authenticator_.is_open()) return auth::default_token();
     auto who = identify(request);
     if (access == Access::kOpen) return who ? *who : nullptr;
     if (!who) return refuse(request, who.error(), session);
@@ -104,7 +105,7 @@ auth::Admitted<TokenRef> Authorizer::identify_browser(const Request& request, st
     auto token = logins_.find(cookie, authenticator_);
     if (!token) {
         return Denied{
-            Reason::kUnknownToken, "", {Errc::kUnauthorized, "you are signed in no more; sign in again with a token"}};
+            Reason::kUnknownToken, "", {Errc::kUnauthorized, "your sign-in has expired; sign in again with a token"}};
     }
     if (is_of_foreign_page(request)) return foreign_page(request, token->name);
     return token;

@@ -119,7 +119,7 @@ asio::awaitable<bool> Connection::shake_hands() {
     if (!failed) co_return true;
     spdlog::debug("{}: TLS handshake: {}", peer_, failed.message());
     if (net::is_plain_http(failed)) {
-        co_await tell_plainly("this port speaks HTTPS alone; ask for the same address with https:// before it");
+        co_await tell_plainly("this port accepts HTTPS only; use the same address with https:// before it");
     } else if (const auto fault = net::client_fault_of(failed)) {
         service_->api.services().authorizer.note(peer_, *fault);
         must_linger_ = true; // until the peer has read the TLS alert
@@ -264,7 +264,8 @@ asio::awaitable<void> Connection::show(const live::Invitation& invitation, const
         service_->counters.live.refused.Increment();
         refusal = problem(Error{Errc::kOverloaded, "too many viewers watch at this moment; try again later"}, path);
     } else if (buffer_.size() > 0) {
-        refusal = problem(Status::bad_request, "a WebSocket sends nothing before its upgrade is answered", path);
+        refusal =
+            problem(Status::bad_request, "a WebSocket client sends nothing before the answer to its upgrade", path);
     }
     if (refusal) {
         co_await write(*refusal, {});

@@ -52,7 +52,7 @@ Result<Pools::Permit> Pools::enter(Pool pool) const {
 }
 
 Result<Pools::Permit> Pools::wait_for_replay() const {
-    return take(replays_, "too many maps are being waited for at this moment; try again soon");
+    return take(replays_, "too many requests are waiting for maps at this moment; try again soon");
 }
 
 } // namespace scanloom::http

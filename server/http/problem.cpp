@@ -12,7 +12,7 @@ namespace {
 std::string_view title_of(Errc code) {
     switch (code) {
     case Errc::kMalformed: return "Not understood";
-    case Errc::kDamaged: return "Damaged on its way";
+    case Errc::kDamaged: return "Damaged in transmission";
     case Errc::kTooLarge: return "Too large";
     case Errc::kUnsupportedVersion: return "Unsupported version";
     case Errc::kInvalidField: return "Invalid value";
@@ -20,7 +20,7 @@ std::string_view title_of(Errc code) {
     case Errc::kAlreadyExists: return "Exists already";
     case Errc::kConflict: return "Conflict with what exists";
     case Errc::kOutOfOrder: return "Out of order";
-    case Errc::kCreditExceeded: return "Too much at once";
+    case Errc::kCreditExceeded: return "Credit exceeded";
     case Errc::kTimeout: return "Took too long";
     case Errc::kReplaced: return "Replaced";
     case Errc::kGone: return "Deleted meanwhile";
@@ -31,9 +31,9 @@ std::string_view title_of(Errc code) {
     case Errc::kUnreachable: return "Unreachable";
     case Errc::kOverloaded: return "Too busy now";
     case Errc::kFull: return "Full";
-    case Errc::kNoPath: return "No way there";
-    case Errc::kAmbiguous: return "Not to be told apart";
-    case Errc::kUndetermined: return "Not to be told";
+    case Errc::kNoPath: return "No path";
+    case Errc::kAmbiguous: return "Ambiguous position";
+    case Errc::kUndetermined: return "Undetermined position";
     case Errc::kNothingMapped: return "Nothing mapped yet";
     case Errc::kInternal: return "The server failed";
     }

@@ -30,7 +30,7 @@ std::optional<Response> refusal_of(const beast::flat_buffer& unread, beast::erro
     using beast::http::error;
     if (is_frame(unread)) {
         return problem(Status::bad_request,
-                       "this is no HTTP but what robots send; they connect to the robot port (--listen)", "");
+                       "this is the protocol of robots, not HTTP; connect robots to the robot port (--listen)", "");
     }
     if (reason == error::header_limit || reason == error::buffer_overflow) {
         return problem(Status::request_header_fields_too_large,
@@ -54,14 +54,14 @@ std::optional<Response> refusal_of_fields(const Incoming& message, const std::st
             return problem(Status::bad_request, "a Transfer-Encoding needs HTTP/1.1, and no Content-Length", path);
         }
         if (message.count(field::transfer_encoding) > 1 || !beast::iequals(coding, "chunked")) {
-            return problem(Status::not_implemented, "the only Transfer-Encoding that is read is 'chunked'", path);
+            return problem(Status::not_implemented, "the only supported Transfer-Encoding is 'chunked'", path);
         }
     }
     const auto [first, last] = message.equal_range(field::content_encoding);
     for (auto coding = first; coding != last; ++coding) {
         if (coding->value().empty() || beast::iequals(coding->value(), "identity")) continue;
         return problem(Status::unsupported_media_type,
-                       fmt::format("the Content-Encoding {} is not read; send the body as it is",
+                       fmt::format("the Content-Encoding {} is not supported; send the body without it",
                                    in_quotes(view(coding->value()))),
                        path)
             .set("Accept-Encoding", "identity");
@@ -87,9 +87,8 @@ std::optional<Response> refusal_of(const Parser& parser, const Request& head, st
     }
     if (service.check_host && !head.host.empty() && !is_known_host(head.host, service.config.host_names)) {
         service.api.services().authorizer.note({auth::Port::kHttp, auth::Reason::kForeignHost, head.peer, "", ""});
-        return problem(
-            Status::misdirected_request,
-            fmt::format("this server does not know itself as {}; ask it by its address", in_quotes(head.host)), path);
+        return problem(Status::misdirected_request,
+                       fmt::format("{} is not a name of this server; use its address", in_quotes(head.host)), path);
     }
     return std::nullopt;
 }

@@ -47,7 +47,7 @@ void IngestServer::stop() {
 void IngestServer::on_accepted(asio::ip::tcp::socket socket) {
     const bool full = count(State::kServed) >= config_.links_max;
     if (full && services_.audit.take_line_of_stranger())
-        spdlog::warn("a robot was turned away: {} links are open, the most allowed", config_.links_max);
+        spdlog::warn("a robot was refused: {} links are open, the most allowed", config_.links_max);
     if (full && count(State::kLeaving) >= kTurnedAwayMax) return;
     if (!full) make_room();
     auto connection = std::make_shared<RobotConnection>(sockets::stream_over(std::move(socket), config_.tls), services_,
@@ -85,7 +85,7 @@ void IngestServer::make_room() {
     if (count(State::kWithoutHello) < config_.greeting_max) return;
     const auto oldest = without_hello_.front();
     if (services_.audit.take_line_of_stranger())
-        spdlog::warn("a connection was cut off: it said no hello, and {} do not, the most allowed",
+        spdlog::warn("a connection was closed: it has sent no hello, like {} others, the most allowed",
                      config_.greeting_max);
     change(*oldest, State::kLeaving);
     if (const auto connection = oldest->connection.lock()) connection->cut_off();

@@ -36,10 +36,12 @@ std::vector<wire::CellRun> runs_of(std::span<const grid::Cell> cells) {
 /// Errors: kTooLarge if the path and the runs do not fit into one frame.
 Result<wire::Path> to_wire(planning::Path path, std::size_t runs = 0) {
     if (path.points.size() + runs > wire::kPathPointsMax) {
-        return Error{Errc::kTooLarge,
-                     fmt::format("the path has {} points, and what it leaves out {} runs of cells, at most {} together "
-                                 "fit a reply; ask for a smaller region, or rows further apart",
-                                 path.points.size(), runs, wire::kPathPointsMax)};
+        return Error{
+            Errc::kTooLarge,
+            fmt::format(
+                "the path has {} points, and the area that it cannot reach {} runs of cells; at most {} together "
+                "fit a reply; ask for a smaller region, or rows further apart",
+                path.points.size(), runs, wire::kPathPointsMax)};
     }
     return wire::Path{std::move(path.points), path.length_m, path.cost};
 }
@@ -140,7 +142,7 @@ wire::Message reply_from(const wire::LocateRequest& request, const Requester& re
     std::optional<landmarks::Neighbourhood> near;
     if (request.near) near = landmarks::Neighbourhood{request.near->point, request.near->radius};
     const guide::SearchLimit patience(services.sessions, guide::SearchLimit::Clock::now() + guide::SearchLimit::kTime,
-                                      "say near which place it is");
+                                      "give a point near its position");
     const auto ask = [&]() -> Result<> { return *requester.is_gone ? Result<>(kLinkClosed) : patience(); };
     const auto located = services.locator.locate(*requester.session, requester.robot,
                                                  {.points = points, .from = request.from}, near, ask);
@@ -156,7 +158,8 @@ wire::Message reply_from(const wire::LocateRequest& request, const Requester& re
 std::optional<Error> RequestExecutor::submit(Requester requester, link::Request request, Done done) {
     const bool locates = std::holds_alternative<wire::LocateRequest>(request);
     auto slot = (locates ? locating_slots_ : slots_).try_acquire();
-    if (!slot) return Error{Errc::kOverloaded, "too many robots ask at this moment; ask again soon"};
+    if (!slot)
+        return Error{Errc::kOverloaded, "too many requests of robots are waiting at this moment; try again soon"};
     boost::asio::post(locates ? locating_ : planning_,
                       [this, requester = std::move(requester), request = std::move(request), done = std::move(done),
                        slot = std::move(slot)]() mutable {

@@ -257,9 +257,8 @@ void RobotConnection::apply_permission() {
     }
     const std::string name = token_ ? token_->name : std::string();
     record_refusal(auth::Reason::kRevoked, name, pass_->session());
-    protocol_.fail(
-        {Errc::kUnauthorized,
-         fmt::format("the token '{}' does not allow this any more; ask the server's operator for another", name)});
+    protocol_.fail({Errc::kUnauthorized,
+                    fmt::format("the token '{}' no longer permits this; ask the server's operator for another", name)});
 }
 
 // Logs ----------------------------------------------------------------------------------------------------------------
@@ -269,7 +268,7 @@ void RobotConnection::record_refusal(auth::Reason reason, const std::string& tok
 }
 
 void RobotConnection::log_end() const {
-    const std::string who = robot_.empty() ? fmt::format("a link from {} that never said a valid hello ended:", peer_)
+    const std::string who = robot_.empty() ? fmt::format("a link from {} without a valid hello ended:", peer_)
                                            : fmt::format("robot '{}' at {} left:", robot_, peer_);
     const auto& why = protocol_.ended_by();
     const std::string_view how = why ? std::string_view(why->message) : "goodbye";
@@ -278,7 +277,7 @@ void RobotConnection::log_end() const {
     const auto not_logged = services_.audit.take_line_of_stranger();
     if (!not_logged) return;
     const auto others =
-        *not_logged > 0 ? fmt::format(" ({} others were not let in since the last line like this)", *not_logged) : "";
+        *not_logged > 0 ? fmt::format(" ({} others were refused since the last line like this)", *not_logged) : "";
     log::info(about, "{} {}{}", who, how, others);
 }
 

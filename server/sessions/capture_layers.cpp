@@ -14,8 +14,9 @@ using Clock = std::chrono::steady_clock;
 const Error kTooMany{Errc::kFull, "more than there may be"};
 
 Error not_yet(std::string_view what, Revision applied, Revision revision) {
-    return {Errc::kOverloaded, fmt::format("the {} of {} of {} log entries are found; ask again, it goes on from there",
-                                           what, applied, revision)};
+    return {Errc::kOverloaded,
+            fmt::format("the {} of {} of {} log entries are found; repeat the request to continue from there", what,
+                        applied, revision)};
 }
 
 } // namespace
@@ -30,7 +31,7 @@ Result<Folded<Layer>> CaptureLayers<Layer>::up_to(const SessionInfo& session, Re
     const std::unique_lock folding(kept->mutex, std::chrono::system_clock::now() + limits_.patience);
     if (!folding) {
         return Error{Errc::kOverloaded,
-                     fmt::format("others have the {} of this session found at this moment; ask again",
+                     fmt::format("another request is finding the {} of this session at this moment; try again",
                                  LayerTraits<Layer>::kWhat)};
     }
     if (kept->is_full) return full(session);

@@ -28,7 +28,7 @@ struct LayerTraits;
 template <>
 struct LayerTraits<landmarks::LandmarkLayer> {
     static constexpr std::string_view kWhat = "landmarks";
-    static constexpr std::string_view kInstead = "points.csv has what its robots saw";
+    static constexpr std::string_view kInstead = "points.csv has the points that its robots observed";
     static constexpr std::size_t kSizeMax = 262'144; // 100 MiB
     static constexpr bool kWithOpen = false;
 };
@@ -36,7 +36,7 @@ struct LayerTraits<landmarks::LandmarkLayer> {
 template <>
 struct LayerTraits<landmarks::ReferenceLayer> {
     static constexpr std::string_view kWhat = "reference points";
-    static constexpr std::string_view kInstead = "robots cannot be located in it any more";
+    static constexpr std::string_view kInstead = "robots can no longer be localized in it";
     static constexpr std::size_t kSizeMax = 8'388'608; // 64 MiB
     static constexpr bool kWithOpen = true;
 };

@@ -214,7 +214,7 @@ Result<> CheckpointReader::add_format(std::string_view value) {
     has_format_ = true;
     if (version != mapping::kProjectionVersion) {
         return Error{Errc::kUnsupportedVersion,
-                     fmt::format("the checkpoint was woven by version {}, this program weaves version {}", version,
+                     fmt::format("the checkpoint was computed by version {}, this program computes version {}", version,
                                  mapping::kProjectionVersion)};
     }
     parts_version_ = parts_version;

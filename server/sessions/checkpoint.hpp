@@ -29,7 +29,7 @@
 /// A checkpoint is written in pieces of 4 MiB, measured before compression: the format first, then the chunks. The
 /// parts that must agree on the revision are the last piece: head, robots, and the sensors described since the last
 /// checkpoint. A checkpoint that a crash interrupted is usable: its chunks may be newer than its head, and the revision
-/// of a chunk tells which entries of the log it contains.
+/// of a chunk states which entries of the log it contains.
 namespace scanloom::session {
 
 /// Writes the parts that changed after `since`. Without `since`, replaces the whole checkpoint.

@@ -38,7 +38,7 @@ Error no_room(std::int64_t pages, std::int64_t free, std::int64_t most) {
     };
     if (pages > most) {
         return {Errc::kFull, fmt::format("this map takes up to {} MiB, and the memory for maps has {} MiB in all; use "
-                                         "larger cells, or have the server given more (--map-memory)",
+                                         "larger cells, or raise the server's --map-memory",
                                          mebibytes(pages), mebibytes(most))};
     }
     return {Errc::kOverloaded, fmt::format("there is no room for this map in the memory for maps: it takes up to {} "

@@ -15,16 +15,14 @@ namespace {
 /// How long a request waits for memory, because the users of other sessions may release them soon.
 constexpr std::chrono::seconds kPatience{5};
 
-Error leaves_memory() { return {Errc::kShuttingDown, "the session leaves memory; connect again"}; }
+Error leaves_memory() { return {Errc::kShuttingDown, "the session is evicted from memory; connect again"}; }
 
 Error shutting_down() { return {Errc::kShuttingDown, "the server is shutting down; try again when it is back"}; }
 
 Error no_room(const EvictedSession& evicted) {
-    return {
-        Errc::kOverloaded,
-        fmt::format("session '{}' needs {} MiB for its maps, and those that are in use leave less of the memory for "
-                    "maps; try again later, or have the server given more (--map-memory)",
-                    evicted.info.name, evicted.pages * mapping::kPageBytes >> 20)};
+    return {Errc::kOverloaded, fmt::format("session '{}' needs {} MiB for its maps, and the maps in use leave less of "
+                                           "the memory for maps; try again later, or raise the server's --map-memory",
+                                           evicted.info.name, evicted.pages * mapping::kPageBytes >> 20)};
 }
 
 } // namespace
@@ -32,13 +30,13 @@ Error no_room(const EvictedSession& evicted) {
 // Loading
 
 void SessionRegistry::load(std::string_view name, SessionCache::Loaded on_loaded) {
-    auto told = [this, name = std::string(name),
-                 on_loaded = std::move(on_loaded)](Result<std::shared_ptr<Session>> session) {
+    auto on_session = [this, name = std::string(name),
+                       on_loaded = std::move(on_loaded)](Result<std::shared_ptr<Session>> session) {
         if (!session || *session) return on_loaded(std::move(session));
         const auto damage = damage_of(name);
         on_loaded(damage ? *damage : no_such_session(name));
     };
-    if (const auto evicted = cache_.want(name, config_.clock(), std::move(told))) start_reading(*evicted);
+    if (const auto evicted = cache_.want(name, config_.clock(), std::move(on_session))) start_reading(*evicted);
 }
 
 Result<std::shared_ptr<Session>> SessionRegistry::load(std::string_view name) {
@@ -132,7 +130,7 @@ void SessionRegistry::read_failed_again() {
     auto failed = cache_.evict_failed();
     std::vector<std::string> names;
     for (const auto& session : failed) names.push_back(session->info().name);
-    lay_down(std::move(failed), {Errc::kShuttingDown, "the session is read from the store again; connect again"});
+    lay_down(std::move(failed), {Errc::kShuttingDown, "the session is reloaded from the store; connect again"});
     for (const auto& name : names) load(name, [](const Result<std::shared_ptr<Session>>&) {});
 }
 

@@ -26,7 +26,7 @@ void close_and_wait(Session& session) {
 
 Result<> check_room(const SessionInfo& info) {
     if (info.exclusions->count_in_effect() < Exclusions::kMost) return {};
-    return Error{Errc::kFull, fmt::format("session '{}' has {} exclusions in effect, the most there may be; lift some, "
+    return Error{Errc::kFull, fmt::format("session '{}' has {} exclusions in effect, the limit; lift some, "
                                           "or exclude larger ranges",
                                           info.name, Exclusions::kMost)};
 }

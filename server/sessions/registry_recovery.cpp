@@ -104,10 +104,11 @@ void SessionRegistry::add_recovered(std::shared_ptr<Session> session, std::funct
         return done();
     }
     auto& recovered = *session; // the memory for maps is exceeded: evict it immediately
-    recovered.close({Errc::kShuttingDown, "the session leaves memory"}, [this, session, done = std::move(done)] {
-        cache_.add(session->info(), summary_of(*session->snapshot()));
-        done();
-    });
+    recovered.close({Errc::kShuttingDown, "the session is evicted from memory"},
+                    [this, session, done = std::move(done)] {
+                        cache_.add(session->info(), summary_of(*session->snapshot()));
+                        done();
+                    });
 }
 
 } // namespace scanloom::session

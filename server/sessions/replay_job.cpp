@@ -17,15 +17,14 @@ constexpr double kSliceWork = 5e6; // between two checks whether to continue
 constexpr double kEntryWork = 1e4; // of reading an entry
 
 /// Reasons to end reading that are not failures.
-const Error kEnd{Errc::kShuttingDown, "the end of what is to be woven"};
-const Error kTurnIsOver{Errc::kShuttingDown, "others have their turn"};
+const Error kEnd{Errc::kShuttingDown, "the end of the replay"};
+const Error kTurnIsOver{Errc::kShuttingDown, "other replay jobs have their turn"};
 const Error kCancelled{Errc::kShuttingDown, "cancelled"};
 const Error kOutdated{Errc::kShuttingDown, "the entry excludes scans that are in these maps, or brings some back"};
 
 Error no_room() {
-    return {Errc::kFull,
-            "this map and others that are woven at the moment need more memory than there is for them; use "
-            "larger cells, or try again when the others are done"};
+    return {Errc::kFull, "this map and those of other replay jobs need more memory than there is for them; use "
+                         "larger cells, or try again when the other jobs are done"};
 }
 
 SharedExclusions shared(Exclusions exclusions) { return std::make_shared<const Exclusions>(std::move(exclusions)); }
@@ -34,7 +33,7 @@ SharedExclusions shared(Exclusions exclusions) { return std::make_shared<const E
 
 Error session_was_deleted(const SessionInfo& session) {
     return {Errc::kNotFound,
-            fmt::format("session '{}' was deleted while maps were woven from its log; see the list of sessions",
+            fmt::format("session '{}' was deleted while its maps were computed again; see the list of sessions",
                         session.name)};
 }
 

@@ -20,7 +20,7 @@ Error shutting_down() { return {Errc::kShuttingDown, "the server is shutting dow
 
 Error was_removed(const ReplayJob& weave) {
     return {Errc::kNotFound,
-            fmt::format("weave {} was deleted before these maps were done; start it again", weave.id())};
+            fmt::format("replay job {} was deleted before these maps were done; start it again", weave.id())};
 }
 
 } // namespace
@@ -45,8 +45,8 @@ Result<std::shared_ptr<ReplayJob>> ReplayJobs::started(const SessionInfo& sessio
     if (auto room = check_room(); !room) return room.error();
     if (weave && weave->progress().state == ReplayJob::State::kDone) {
         if (!weave->resume(target, budget_)) {
-            return Error{Errc::kOverloaded, "the maps that are woven at this moment need all memory that there is for "
-                                            "them; try again soon"};
+            return Error{Errc::kOverloaded,
+                         "the running replay jobs need all memory that there is for their maps; try again soon"};
         }
     } else {
         const std::uint64_t listed = weave ? weave->listed() : 0;
@@ -74,7 +74,7 @@ std::size_t ReplayJobs::count_under_way() const {
 Result<> ReplayJobs::check_room() const {
     if (stopped_) return shutting_down();
     if (count_under_way() < limits_.waiting_max) return {};
-    return Error{Errc::kOverloaded, "too many maps are being woven at this moment; try again soon"};
+    return Error{Errc::kOverloaded, "too many replay jobs are running at this moment; try again soon"};
 }
 
 /// Starts a job. It begins here and not on the executor, so that the state of an earlier job is visible to the next

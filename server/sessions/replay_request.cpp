@@ -42,9 +42,10 @@ std::string named(const mapping::Projection& projection, RobotIndex robot, const
 double cell_size_for(const Sensor& sensor) { return std::ceil(sensor.range_max / mapping::kReachCellsMax * 1e3) / 1e3; }
 
 Error too_many_cells(const mapping::Projection& projection, const std::string& what) {
-    return {Errc::kInvalidField, fmt::format("{} covers too many cells of {} metres to be woven at once; give a larger "
-                                             "cell_size",
-                                             what, projection.config().cell_size)};
+    return {Errc::kInvalidField,
+            fmt::format("{} covers too many cells of {} metres to be computed at once; give a larger "
+                        "cell_size",
+                        what, projection.config().cell_size)};
 }
 
 Result<> check(const mapping::Projection&, const RobotJoined&) { return {}; }

@@ -13,9 +13,9 @@ constexpr std::size_t kRobotsMax = 1024; // per session
 
 Error begun_already(const std::string& robot, const std::string& session) {
     return {Errc::kConflict,
-            fmt::format("begins_map: robot '{}' was to begin the map of session '{}' from a pose that people said, but "
-                        "something is mapped by now, and nobody knows how the two lie to each other: have the robot's "
-                        "place told anew, or send these scans into another session",
+            fmt::format("begins_map: robot '{}' was to begin the map of session '{}' from a given pose, but the "
+                        "session has a map by now, and the pose of one relative to the other is not known: give the "
+                        "robot's pose again, or send these scans to another session",
                         robot, session)};
 }
 
@@ -57,9 +57,9 @@ std::optional<PendingEntry> RobotSequencer::join(PendingJoin joining) {
     auto known =
         std::find_if(sequencer_.begin(), sequencer_.end(), [&](const Member& m) { return m.robot.name == who.robot; });
     if (known == sequencer_.end() && sequencer_.size() >= kRobotsMax) {
-        joining.done(Error{Errc::kFull,
-                           fmt::format("session '{}' has {} robots already, the most it can hold; use another session",
-                                       info_.name, sequencer_.size())});
+        joining.done(
+            Error{Errc::kFull, fmt::format("session '{}' has {} robots already, the limit; use another session",
+                                           info_.name, sequencer_.size())});
         return std::nullopt;
     }
     const bool is_new = known == sequencer_.end();

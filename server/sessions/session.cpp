@@ -30,10 +30,9 @@ constexpr Revision checkpoint_every(store::SessionId session) {
 
 /// @param created_by  token whose limit it is, if `chunks_max` is below SessionLimits::kMost
 Error full(std::size_t chunks, std::size_t chunks_max, const std::string& created_by) {
-    const auto whose =
-        chunks_max == SessionLimits::kMost
-            ? std::string("the most there may be")
-            : fmt::format("as the limit `cells` of the token '{}' has it, which made the session", created_by);
+    const auto whose = chunks_max == SessionLimits::kMost
+                           ? std::string("the limit of every session")
+                           : fmt::format("the limit `cells` of the token '{}' that created the session", created_by);
     return {Errc::kFull,
             fmt::format("the map has {} chunks of 64 x 64 cells and a scan could take it beyond {}, {}; use "
                         "larger cells or another session",
@@ -41,9 +40,9 @@ Error full(std::size_t chunks, std::size_t chunks_max, const std::string& create
 }
 
 Error short_of_memory() {
-    return {Errc::kOverloaded,
-            "the maps that are in use take all the memory that the server may use for maps; try again "
-            "later, or have it given more (--map-memory)"};
+    return {
+        Errc::kOverloaded,
+        "the maps in use take all memory that the server may use for maps; try again later, or raise its --map-memory"};
 }
 
 Error no_memory() {
@@ -101,9 +100,9 @@ void Session::on_strand(Work work) {
 }
 
 void Session::tell_watchers() {
-    const auto told_before = std::exchange(connections_told_, sequencer_.connection_changes());
+    const auto reported_before = std::exchange(connections_reported_, sequencer_.connection_changes());
     const bool has_news = std::exchange(has_news_, false);
-    if (has_news || told_before != connections_told_) watchers_.tell();
+    if (has_news || reported_before != connections_reported_) watchers_.tell();
 }
 
 // From a link to the log

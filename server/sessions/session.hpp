@@ -180,8 +180,8 @@ private:
     bool broken_ = false;           // the log or the memory failed: no more appending, applying or checkpoints
     std::function<void()> closed_;  // called when closing is done
 
-    bool has_news_ = false;              // a change to notify, not counting connections
-    std::uint64_t connections_told_ = 0; // RobotSequencer::connection_changes() at the last notification
+    bool has_news_ = false;                  // a change to notify, not counting connections
+    std::uint64_t connections_reported_ = 0; // RobotSequencer::connection_changes() at the last notification
 
     mutable Watchers watchers_;
     std::atomic<bool> hurried_ = false;         // set from any thread, because the strand may be busy

@@ -65,21 +65,23 @@ Result<> compare_maps(Checking& checking, const mapping::MapConfig& config, cons
     if (exclusions != *recovered->projection.exclusions()) {
         return Error{Errc::kMalformed, "the exclusions of the log differ from those of the checkpoint"};
     }
-    mapping::Projection woven(config, recovered->projection.exclusions());
+    mapping::Projection whole(config, recovered->projection.exclusions());
     auto applied = checking.log.read(checking.id, 0, [&](Revision, std::string_view bytes) -> Result<> {
         const auto entry = wire::decode_entry(bytes);
         if (!entry) return entry.error();
-        if (auto added = woven.apply(*entry); !added) return added;
+        if (auto added = whole.apply(*entry); !added) return added;
         return checking.go_on(bytes.size());
     });
     if (!applied) return applied;
     const auto left = recovered->projection.snapshot();
-    const auto right = woven.snapshot();
+    const auto right = whole.snapshot();
     for (const auto layer : mapping::kLayers) {
         if (mapping::digest_of(left, layer) == mapping::digest_of(right, layer)) continue;
-        return Error{Errc::kMalformed, fmt::format("layer {} woven from the whole log differs from that of the "
-                                                   "checkpoint and the rest of the log",
-                                                   mapping::name_of(layer))};
+        return Error{
+            Errc::kMalformed,
+            fmt::format(
+                "layer {} computed from the whole log differs from that of the checkpoint and the rest of the log",
+                mapping::name_of(layer))};
     }
     return {};
 }
@@ -87,7 +89,7 @@ Result<> compare_maps(Checking& checking, const mapping::MapConfig& config, cons
 Result<> check_checkpoint_and_maps(Checking& checking, const mapping::MapConfig& config, const LogRules& log,
                                    CheckDepth depth) {
     if (auto checkpoint = check_checkpoint(checking, config, log.revision()); !checkpoint) {
-        return prefixed("its log is whole and is woven anew, but ", checkpoint.error());
+        return prefixed("its log is whole and its maps are computed again, but ", checkpoint.error());
     }
     return depth == CheckDepth::kMaps ? compare_maps(checking, config, log.exclusions()) : Result<>{};
 }

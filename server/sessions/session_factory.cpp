@@ -36,8 +36,8 @@ Result<std::shared_ptr<Session>> SessionFactory::read(const SessionInfo& info, c
     if (!recovered) return recovered.error();
     if (recovered->checkpoint_rejected) {
         log::warn({.session = info.name},
-                  "session '{}': its checkpoint cannot be used ({}); it was woven from its whole log", info.name,
-                  recovered->checkpoint_rejected->message);
+                  "session '{}': its checkpoint cannot be used ({}); its maps were computed from its whole log",
+                  info.name, recovered->checkpoint_rejected->message);
     }
     if (!recovered->complete) {
         keep_progress(log, info, *recovered, hurried);

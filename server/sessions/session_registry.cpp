@@ -69,7 +69,7 @@ std::optional<Error> SessionRegistry::damage_of(std::string_view name) const {
 
 void SessionRegistry::keep_damaged(std::string name, store::SessionId id, Error why) {
     if (why.code == Errc::kStoreFailed) { // it is not retried before the next start
-        why = {Errc::kDataLoss, why.message + "; if its disk is well again, start the server again"};
+        why = {Errc::kDataLoss, why.message + "; if its disk is readable again, restart the server"};
     }
     log::error({.session = name}, "session '{}' cannot be recovered: {}", name, why.message);
     const std::unique_lock lock(damaged_mutex_);
@@ -92,8 +92,8 @@ Result<> SessionRegistry::check_new(std::string_view name, const Creator& creato
     const auto made = static_cast<std::size_t>(std::ranges::count_if(
         cache_.all(), [&](const ListedSession& listed) { return listed.info.created_by == creator.token; }));
     if (made < creator.sessions_max) return {};
-    return Error{Errc::kFull, fmt::format("there are {} sessions that were made with the token '{}', the most that its "
-                                          "limit `sessions` allows; delete one, or have the limit raised",
+    return Error{Errc::kFull, fmt::format("there are {} sessions that were created with the token '{}', the most that "
+                                          "its limit `sessions` allows; delete one, or raise the limit",
                                           made, creator.token)};
 }
 

@@ -9,7 +9,7 @@
 namespace scanloom::session {
 namespace {
 
-const Error kRestIsKept{Errc::kInternal, "what follows is kept in memory, or too much"};
+const Error kRestIsKept{Errc::kInternal, "the rest is in memory, or exceeds the limit"};
 
 constexpr Revision kAskEvery = 1024; // entries, which take a few milliseconds
 

@@ -8,22 +8,22 @@
 namespace scanloom::session {
 namespace {
 
-const Error kSummaryIsRead{Errc::kShuttingDown, "what follows are sensors and cells"};
+const Error kSummaryIsRead{Errc::kShuttingDown, "only sensors and cells follow"};
 
 Summary summary_of(const mapping::ProjectionState& state, const mapping::MapConfig& config) {
     mapping::Snapshot facts{
         .revision = state.revision, .config = config, .exclusions = state.exclusions, .bounds = state.bounds};
     for (const auto& robot : state.robots) {
-        auto& told = facts.robots.emplace_back();
-        told.name = robot.name;
-        told.body_radius = robot.body_radius;
-        told.last_seq = robot.last_seq;
-        told.scan_count = robot.scan_count;
-        told.jumps = robot.jumps.left_out;
-        told.excluded = robot.excluded;
+        auto& shown = facts.robots.emplace_back();
+        shown.name = robot.name;
+        shown.body_radius = robot.body_radius;
+        shown.last_seq = robot.last_seq;
+        shown.scan_count = robot.scan_count;
+        shown.jumps = robot.jumps.left_out;
+        shown.excluded = robot.excluded;
         if (!robot.newest) continue;
-        told.stamp = robot.newest->stamp;
-        told.pose = robot.newest->pose;
+        shown.stamp = robot.newest->stamp;
+        shown.pose = robot.newest->pose;
     }
     return {std::make_shared<const mapping::Snapshot>(std::move(facts)), state.pages};
 }
@@ -36,9 +36,9 @@ Summary summary_of(const mapping::Snapshot& snapshot) {
                             .exclusions = snapshot.exclusions,
                             .bounds = snapshot.bounds};
     for (const auto& robot : snapshot.robots) {
-        auto& told = facts.robots.emplace_back(robot);
-        told.trajectory = {};
-        told.newest_scan = nullptr;
+        auto& shown = facts.robots.emplace_back(robot);
+        shown.trajectory = {};
+        shown.newest_scan = nullptr;
     }
     return {std::make_shared<const mapping::Snapshot>(std::move(facts)), snapshot.chunk_count};
 }

@@ -42,7 +42,7 @@ describe('a server with tokens', { timeout: 240_000 }, () => {
       assert.equal(await page.isVisible(other), false, other);
     await keepPicture(page, 'sign-in');
     await signIn(page, 'scanloom_guess');
-    await hasText(page, 'dialog[open] .dialog-failure', /not in force/);
+    await hasText(page, 'dialog[open] .dialog-failure', /not valid here/);
     await page.keyboard.press('Escape');
     assert.equal(await page.isVisible('dialog[open] #token'), true);
     await signIn(page, viewer.secret);

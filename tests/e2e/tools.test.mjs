@@ -199,7 +199,7 @@ describe('tools on the map', { timeout: 280_000 }, () => {
       await shows(/Path found/);
       await page.fill('#tool-body [name=body_radius]', '4');
       await page.press('#tool-body [name=body_radius]', 'Enter');
-      await alerted(/^No way there: .*\.$/);
+      await alerted(/^No path: .*\.$/);
       assert.equal(await page.locator('.tool-figures').count(), 0);
       await page.fill('#tool-body [name=body_radius]', '0.1');
       await page.press('#tool-body [name=body_radius]', 'Enter');

@@ -96,7 +96,7 @@ TEST_F(AccessTest, RevokingATokenEndsItsLinksOnly) {
     const auto end = farewell_to(*gone);
     EXPECT_EQ(end.error.code, Errc::kUnauthorized);
     EXPECT_FALSE(end.retryable);
-    EXPECT_THAT(end.error.message, HasSubstr("the token 'robot' does not allow this any more"));
+    EXPECT_THAT(end.error.message, HasSubstr("the token 'robot' no longer permits this"));
     EXPECT_EQ(refusals(Reason::kRevoked), 1.0);
     stream(*stays, 1, 1, 10);
     stays->send(wire::Goodbye{""});

@@ -144,7 +144,7 @@ TEST_F(LocateRequestsTest, OnAnEmptyMapOnlyOneOfTwoRobotsMayBeginIt) {
     second->send(question_from(kTruth, 1));
     const auto refused = second->receive_kind<wire::LocateReply>().correction.error();
     EXPECT_EQ(refused.code, Errc::kOverloaded) << "the robot may retry";
-    EXPECT_THAT(refused.message, HasSubstr("the map begins where that one stands"));
+    EXPECT_THAT(refused.message, HasSubstr("asked to begin the map at its own pose"));
 
     first->send(round_laser());
     first->send(wire::ScanBatch{{room_scan(1, {-2.0, -1.0, 0.4}), room_scan(2, {1.0, 2.0, -2.0})}});
@@ -194,7 +194,7 @@ TEST_F(LocateRequestsTest, ARobotMayNotBeginAnImportedMap) {
     carried->send(question_from(kTruth));
     const auto refused = carried->receive_kind<wire::LocateReply>().correction.error();
     EXPECT_EQ(refused.code, Errc::kUndetermined);
-    EXPECT_THAT(refused.message, HasSubstr("send the first scans from a pose that is known"));
+    EXPECT_THAT(refused.message, HasSubstr("send the first scans from a known pose"));
 }
 
 /// On an empty map, the first robot with that reply begins the map: a robot that has disconnected gets no reply.

@@ -176,10 +176,9 @@ public:
         if (!query_.wants(one.robot, ends)) return {};
         points_ += one.capture.points.size();
         if (points_ > kPointsMax) {
-            return Error{Errc::kTooLarge,
-                         fmt::format("these captures have more than {} points; ask for a part of them, "
-                                     "such as since={}&until={}, or for one robot's",
-                                     kPointsMax, query_.since, last_)};
+            return Error{Errc::kTooLarge, fmt::format("these captures have more than {} points; request a part of "
+                                                      "them, such as since={}&until={}, or those of one robot",
+                                                      kPointsMax, query_.since, last_)};
         }
         last_ = one.ended;
         captures_.push_back(one);
@@ -207,7 +206,7 @@ public:
         }
         if (std::chrono::steady_clock::now() < deadline_) return {};
         return Error{Errc::kTooLarge,
-                     fmt::format("this takes longer than {} s; ask for fewer captures at a time (since, until, robot)",
+                     fmt::format("this takes longer than {} s; request fewer captures at a time (since, until, robot)",
                                  kPatience.count())};
     }
 

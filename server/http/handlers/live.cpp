@@ -16,7 +16,8 @@ namespace {
 constexpr std::string_view kVersion = "13"; // RFC 6455
 
 Response upgrade_required(const Context& context) {
-    return problem(Status::upgrade_required, "this is a WebSocket; ask for it with Upgrade: websocket, version 13",
+    return problem(Status::upgrade_required,
+                   "this address is a WebSocket; request it with Upgrade: websocket, version 13",
                    instance_of(context.request.target))
         .set("Upgrade", "websocket")
         .set("Connection", "Upgrade")

@@ -57,7 +57,7 @@ Result<Response> delete_login(Context& context) {
         if (!is_own_page(context.request.origin, context.request.host, context.request.is_secure)) {
             return authorizer.refuse(
                 context.request,
-                {auth::Reason::kForeignPage, "", {Errc::kUnauthorized, "only a page of this server signs out"}});
+                {auth::Reason::kForeignPage, "", {Errc::kUnauthorized, "sign out from a page of this server"}});
         }
         authorizer.logins().close(*cookie);
     }

@@ -24,8 +24,7 @@ std::optional<Error> damage_of(const session::SessionRegistry& sessions, const s
                          fmt::format("the session {} is not loaded: {}", name, found->second.message)};
         }
         return Error{Errc::kDataLoss,
-                     fmt::format("the session {} could not be recovered: {}; waiting will not mend it, DELETE forgets "
-                                 "it",
+                     fmt::format("the session {} could not be recovered: {}; a retry does not help, DELETE removes it",
                                  name, found->second.message)};
     }
     return std::nullopt;
@@ -79,13 +78,13 @@ Result<Maps> maps_of(std::shared_ptr<session::Session> session, const std::share
     const auto progress = weave->progress();
     if (progress.error) return *progress.error;
     const auto earlier =
-        progress.revision ? fmt::format(", or take those with {} of them as weave={}", *progress.revision, weave->id())
+        progress.revision ? fmt::format(", or use those with {} of them with weave={}", *progress.revision, weave->id())
                           : std::string();
     return Error{
         Errc::kOverloaded,
-        fmt::format("these maps are being woven, {} of {} entries are in; ask again soon, see weave/{} for how "
-                    "far it is{}",
-                    progress.woven, progress.target, weave->id(), earlier)};
+        fmt::format(
+            "these maps are being computed, {} of {} entries are applied; retry soon, see weave/{} for the progress{}",
+            progress.woven, progress.target, weave->id(), earlier)};
 }
 
 } // namespace
@@ -93,9 +92,8 @@ Result<Maps> maps_of(std::shared_ptr<session::Session> session, const std::share
 Result<std::shared_ptr<session::ReplayJob>> find_weave(session::ReplayJobs& weaves, const session::Session& session,
                                                        std::string_view id) {
     if (auto weave = weaves.find(session.info().id, id)) return weave;
-    return Error{
-        Errc::kNotFound,
-        fmt::format("there is no weave {} of this session, or no longer; start it with POST .../weave", in_quotes(id))};
+    return Error{Errc::kNotFound,
+                 fmt::format("the session has no replay job {}; start one with POST .../weave", in_quotes(id))};
 }
 
 namespace {
@@ -158,7 +156,8 @@ boost::asio::awaitable<Result<Maps>> find_maps_or_replay(Context& context, std::
     if (auto ok = context.query.check_only(all); !ok) co_return ok.error();
     if (!asks_for_weaving(context.query)) co_return chosen(context, kWeave);
     if (context.query.find(kWeave)) {
-        co_return Error{Errc::kInvalidField, "weave names maps that have their settings; leave the other settings out"};
+        co_return Error{Errc::kInvalidField,
+                        "weave selects maps that have their own settings; remove the other settings"};
     }
     co_return co_await replayed(context);
 }
@@ -169,8 +168,7 @@ Result<TwoMaps> find_two_maps(const Context& context, std::initializer_list<std:
     if (auto ok = context.query.check_only(all); !ok) return ok.error();
     if (!context.query.find(kWeave) && !context.query.find(kWith)) {
         return Error{Errc::kInvalidField,
-                     "a weave to compare with is needed: weave=, with=, or both; where one is left out, the session's "
-                     "own map takes its place"};
+                     "weave=, with= or both are needed; the one that is not given is the session's own map"};
     }
     auto a = chosen(context, kWeave);
     if (!a) return a.error();

@@ -174,9 +174,9 @@ Result<> check_cells_searched(const mapping::Snapshot& maps, const std::vector<R
         searched += window->search_cells;
     }
     if (searched <= kCellsSearchedMax) return {};
-    return Error{Errc::kInvalidField, fmt::format("robot is missing: the map is too large to look for the ways of "
-                                                  "all {} robots; name one",
-                                                  robots.size())};
+    return Error{Errc::kInvalidField,
+                 fmt::format("robot is missing: the map is too large to search the paths of all {} robots; name one",
+                             robots.size())};
 }
 
 /// The goal from which to explore a frontier, and the robot for it.
@@ -252,7 +252,7 @@ Result<Response> get_frontiers(Context& context) {
     for (const auto& frontier : frontiers) bytes += (frontier.cells.size() + 2) * kCellTextBytes;
     if (bytes > kTextBytesMax) {
         return Error{Errc::kTooLarge, fmt::format("these are {} frontiers, too many for an answer; give a larger "
-                                                  "size_min, or look at the tiles of classification",
+                                                  "size_min, or use the tiles of classification",
                                                   frontiers.size())};
     }
     auto permit = context.services.responses.take(bytes);

@@ -194,10 +194,9 @@ Result<Response> import_map(Context& context) {
         SessionOptions as_fine_as_the_image;
         as_fine_as_the_image.cell_size = description->resolution;
         if (!mapping::resolve(as_fine_as_the_image)) {
-            return Error{Errc::kInvalidField,
-                         fmt::format("the map has {:g} metres a pixel, of which no session can have "
-                                     "cells; add the field cell_size, 0.01 to 1.0 metres",
-                                     description->resolution)};
+            return Error{Errc::kInvalidField, fmt::format("the map has {:g} metres per pixel, which is no valid cell "
+                                                          "size; add the field cell_size, 0.01 to 1.0 metres",
+                                                          description->resolution)};
         }
         form->options.cell_size = description->resolution;
     }

@@ -71,11 +71,11 @@ Families store_families(const store::ScanLog& log) {
     return {
         gauge_now("scanloom_store_bytes", "Bytes of the store on disk.", number(log.bytes_on_disk())),
         gauge_now("scanloom_store_queued_bytes", "Bytes that wait to be written.", number(stats.queued_bytes)),
-        gauge_now("scanloom_store_failed", "1 when the store takes no changes any more.", stats.last_error ? 1.0 : 0.0),
-        gauge_now("scanloom_store_full", "1 when the disk has no room for more scans.", stats.no_room ? 1.0 : 0.0),
+        gauge_now("scanloom_store_failed", "1 if the store accepts no more changes.", stats.last_error ? 1.0 : 0.0),
+        gauge_now("scanloom_store_full", "1 if the disk has no room for more scans.", stats.no_room ? 1.0 : 0.0),
         gauge_now("scanloom_store_damaged",
-                  "1 when the store's tables are merged no more, as one of them is damaged. Damage that is met where "
-                  "sessions are read is in scanloom_sessions_damaged.",
+                  "1 if the store no longer merges its tables because one is damaged. Damage that is found while "
+                  "sessions are read counts in scanloom_sessions_damaged.",
                   stats.damage ? 1.0 : 0.0),
         counter_now("scanloom_store_appends_total", "Appends that became durable.", number(stats.appends)),
         counter_now("scanloom_store_entries_total", "Log entries that became durable.", number(stats.entries)),
@@ -97,10 +97,9 @@ Families session_families(const session::SessionRegistry& sessions, const sessio
     return {
         gauge_now("scanloom_sessions", "Sessions that are served.", static_cast<double>(sessions.all().size())),
         gauge_now("scanloom_sessions_loaded", "Sessions whose maps are in memory.", static_cast<double>(served.size())),
-        gauge_now("scanloom_map_memory_bytes", "Memory of these maps, about.", bytes_of(sessions.pages().used())),
-        gauge_now("scanloom_map_memory_limit_bytes", "What they may take together.",
-                  bytes_of(sessions.pages().total())),
-        gauge_now("scanloom_sessions_failed", "Sessions that take no scans until they are read from the store again.",
+        gauge_now("scanloom_map_memory_bytes", "Approximate memory of these maps.", bytes_of(sessions.pages().used())),
+        gauge_now("scanloom_map_memory_limit_bytes", "Limit of this memory.", bytes_of(sessions.pages().total())),
+        gauge_now("scanloom_sessions_failed", "Sessions that accept no scans until they are reloaded from the store.",
                   static_cast<double>(failed)),
         gauge_now("scanloom_sessions_damaged", "Sessions that could not be recovered, or were found damaged since.",
                   static_cast<double>(sessions.damaged().size() + check.damaged().size())),
@@ -115,19 +114,19 @@ Families session_families(const session::SessionRegistry& sessions, const sessio
         counter_now("scanloom_scans_duplicates_total", "Scans sent again after a reconnect and dropped.",
                     static_cast<double>(sessions.counters().scans_duplicates)),
         counter_now("scanloom_scans_dropped_total",
-                    "Scans that were refused, or that came when their link had been replaced; never acknowledged.",
+                    "Scans that were refused, or that arrived after their link was replaced; never acknowledged.",
                     static_cast<double>(sessions.counters().scans_dropped)),
     };
 }
 
 Families tile_families(const tiles::TileCache::Stats& stats) {
     return {
-        counter_now("scanloom_tile_cache_hits_total", "Tiles asked for that were there.",
+        counter_now("scanloom_tile_cache_hits_total", "Requested tiles that were in the cache.",
                     static_cast<double>(stats.hits)),
-        counter_now("scanloom_tile_cache_misses_total", "Tiles asked for that had to be made.",
+        counter_now("scanloom_tile_cache_misses_total", "Requested tiles that were not in the cache.",
                     static_cast<double>(stats.misses)),
-        gauge_now("scanloom_tile_cache_bytes", "Bytes of the tiles that are kept.", static_cast<double>(stats.bytes)),
-        gauge_now("scanloom_tile_cache_tiles", "Tiles that are kept.", static_cast<double>(stats.tiles)),
+        gauge_now("scanloom_tile_cache_bytes", "Bytes of the tiles in the cache.", static_cast<double>(stats.bytes)),
+        gauge_now("scanloom_tile_cache_tiles", "Tiles in the cache.", static_cast<double>(stats.tiles)),
     };
 }
 
@@ -142,7 +141,7 @@ Result<Response> get_metrics(Context& context) {
     const Services& services = context.services;
     Families families = services.metrics.collect();
     append(families, session_families(services.sessions, services.check));
-    append(families, {gauge_now("scanloom_weave_memory_bytes", "Memory of the maps woven anew, at most.",
+    append(families, {gauge_now("scanloom_weave_memory_bytes", "Upper bound of the memory of the maps of replay jobs.",
                                 bytes_of(services.weaves.chunks()))});
     append(families, store_families(services.log));
     append(families, tile_families(services.tiles.stats()));

@@ -34,7 +34,7 @@ void run(World& world, Time until) {
     }
 }
 
-TEST(SimulatedNetwork, WhatIsSentDuringAPartitionArrivesWhenItHasEnded) {
+TEST(SimulatedNetwork, DataSentDuringAPartitionArrivesAfterIt) {
     World world(1);
     const Time from = world.now() + 1s;
     const Time until = from + 10s;
@@ -51,7 +51,7 @@ TEST(SimulatedNetwork, WhatIsSentDuringAPartitionArrivesWhenItHasEnded) {
     EXPECT_EQ(ends.heard(Side::kRobot), "before, during");
 }
 
-TEST(SimulatedNetwork, NoConnectionIsMadeAcrossAPartitionThatLasts) {
+TEST(SimulatedNetwork, ConnectingAcrossALongPartitionFails) {
     World world(1);
     const Time until = world.now() + 10s;
     const NetworkTrouble trouble{.partitions = {{world.now(), until}}};
@@ -60,7 +60,7 @@ TEST(SimulatedNetwork, NoConnectionIsMadeAcrossAPartitionThatLasts) {
     EXPECT_NE(Connection::make(world, trouble), nullptr);
 }
 
-TEST(SimulatedNetwork, ADeafLinkStillCarriesTheOtherDirection) {
+TEST(SimulatedNetwork, DeafLinkCarriesTheOtherDirection) {
     World world(1);
     int deaf_robots = 0;
     int deaf_servers = 0;

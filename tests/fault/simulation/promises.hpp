@@ -13,7 +13,7 @@ namespace scanloom::simulation {
 
 /// The scans that servers acknowledged as durable, whether the acknowledgement reached the robot or not.
 ///
-/// Kept apart from the robots, as a robot whose program ends sends its recording again from the start and so fills a
+/// Not part of the robots, because a robot whose program ends sends its recording again from the start and so fills a
 /// gap that a server left. A check at the end alone would not find the gap.
 class Promises {
 public:

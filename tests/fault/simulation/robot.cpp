@@ -58,7 +58,7 @@ void Robot::crash() {
 void Robot::connect() {
     connection_ = connect_();
     ++links_;
-    if (!connection_) return lose({{Errc::kUnreachable, "nobody listens"}, true});
+    if (!connection_) return lose({{Errc::kUnreachable, "no server listens"}, true});
     connection_->listen(Side::kRobot, {[this](std::string_view bytes) { hear(bytes); },
                                        [this] {
                                            lose({{Errc::kUnreachable, "the connection was lost"}, true});

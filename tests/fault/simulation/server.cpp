@@ -139,9 +139,9 @@ private:
     }
 
     static asio::awaitable<void> join(std::shared_ptr<Link> self, wire::Hello hello) {
-        const session::Creator anonymous;
-        auto session = co_await ingest::session_for(hello, self->server_.sessions(), anonymous,
-                                                    self->server_.machine_->executor());
+        const session::Creator maker;
+        auto session =
+            co_await ingest::session_for(hello, self->server_.sessions(), maker, self->server_.machine_->executor());
         if (!session) {
             self->handle([&] { self->protocol_.on_not_joined(session.error()); });
             co_return;

@@ -22,7 +22,7 @@ bool is_found_out(Story story) {
     return false;
 }
 
-TEST_F(SimulationTest, ASeedIsTheSameStoryAgain) {
+TEST_F(SimulationTest, EqualSeedsGiveEqualRuns) {
     for (std::uint64_t seed = 1; seed <= 100; ++seed) {
         const auto first = tell({.seed = seed});
         const auto again = tell({.seed = seed});
@@ -32,19 +32,19 @@ TEST_F(SimulationTest, ASeedIsTheSameStoryAgain) {
 }
 
 /// The row "simulation" runs more of them.
-TEST_F(SimulationTest, EveryStoryKeepsWhatWasAcknowledged) {
+TEST_F(SimulationTest, AcknowledgedScansAreKeptInEveryRun) {
     for (std::uint64_t seed = 1; seed <= 400; ++seed) {
         const auto ending = tell({.seed = seed});
         EXPECT_TRUE(ending.outcome.passed()) << "seed " << seed;
     }
 }
 
-TEST_F(SimulationTest, OtherSeedsAreOtherStories) {
+TEST_F(SimulationTest, DifferentSeedsGiveDifferentRuns) {
     EXPECT_NE(tell({.seed = 1}).fingerprint, tell({.seed = 2}).fingerprint);
 }
 
 /// Independent of later events: a robot that starts again may send the scans once more.
-TEST_F(SimulationTest, EveryStoryInWhichAcknowledgedScansWereDroppedIsFoundOut) {
+TEST_F(SimulationTest, DroppedAcknowledgedScansAreDetected) {
     std::uint64_t with_broken_promises = 0;
     for (std::uint64_t seed = 1; seed <= 200; ++seed) {
         const auto ending = tell({.seed = seed, .hasty_disk = true});
@@ -56,7 +56,7 @@ TEST_F(SimulationTest, EveryStoryInWhichAcknowledgedScansWereDroppedIsFoundOut) 
     EXPECT_GT(with_broken_promises, 50U) << "nothing was tried";
 }
 
-TEST_F(SimulationTest, ADiskThatStoresTwiceIsFoundOut) { EXPECT_TRUE(is_found_out({.forgetful_disk = true})); }
+TEST_F(SimulationTest, DuplicateStorageIsDetected) { EXPECT_TRUE(is_found_out({.forgetful_disk = true})); }
 
 } // namespace
 } // namespace scanloom::simulation

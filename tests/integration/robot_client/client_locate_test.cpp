@@ -57,7 +57,7 @@ TEST_F(ClientLocate, ReturnsTheServersRefusal) {
 
 TEST_F(ClientLocate, ReportsAServerOfAnEarlierVersion) {
     const auto client = client_of({.knows_locating = false});
-    EXPECT_THAT(client->locate(laser(), scans(), 20s).error().message, HasSubstr("a server of an earlier version"));
+    EXPECT_THAT(client->locate(laser(), scans(), 20s).error().message, HasSubstr("servers of earlier versions"));
 }
 
 TEST_F(ClientLocate, TimesOutWithoutAServer) {

@@ -125,7 +125,7 @@ TEST_F(LinkKinds, AnExpiredCertificateIsReportedAsExpired) {
     auto made = options();
     made.tls = net::client_tls(expired.certificate).value();
     EXPECT_FALSE(run(made));
-    EXPECT_THAT(troubles_.at(0), HasSubstr("its certificate has expired; have the server given a new one"));
+    EXPECT_THAT(troubles_.at(0), HasSubstr("its certificate has expired; install a new one on the server"));
 }
 
 TEST_F(LinkKinds, AServerMayRequireAClientCertificate) {

@@ -118,7 +118,7 @@ TEST_F(LocationTest, OnAnOldServerEndsTheLinkWithAHint) {
     ScriptedSource source;
     const auto outcome = run_and_ask(source);
     ASSERT_FALSE(outcome);
-    EXPECT_THAT(outcome.error().message, HasSubstr("update it, or say where the robot is"));
+    EXPECT_THAT(outcome.error().message, HasSubstr("update the server, or give the robot's pose"));
     EXPECT_FALSE(answer_);
 }
 

@@ -224,8 +224,9 @@ TEST_F(UplinkTest, AnUnexpectedFrameIsReportedAsAServerError) {
     wire::encode(wire::Message(wire::Welcome{"f1", 0, {}, 20'000}), bytes);
     serve({{.answer_hello_with = bytes + "\xff\xff\xff\xff"}, {}});
     EXPECT_TRUE(run(options()));
-    EXPECT_THAT(troubles_, ElementsAre("what the server sent cannot be read: a frame announces 4294967295 bytes, at "
-                                       "most 1048576 are allowed here"));
+    EXPECT_THAT(troubles_,
+                ElementsAre("the data from the server cannot be read: a frame announces 4294967295 bytes, at "
+                            "most 1048576 are allowed here"));
 }
 
 TEST_F(UplinkTest, GivesUpWithoutAServerAndReportsTheReason) {

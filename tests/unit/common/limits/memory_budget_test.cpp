@@ -7,7 +7,7 @@
 namespace scanloom::limits {
 namespace {
 
-TEST(MemoryBudget, GivesWhatIsFreeAndNothingInPart) {
+TEST(MemoryBudget, GrantsFreeMemoryOnlyInFull) {
     MemoryBudget budget(10);
     EXPECT_TRUE(budget.take(7));
     EXPECT_FALSE(budget.take(4));
@@ -19,7 +19,7 @@ TEST(MemoryBudget, GivesWhatIsFreeAndNothingInPart) {
     EXPECT_EQ(budget.free(), budget.total());
 }
 
-TEST(MemoryBudget, RefusesWhileMoreThanAllIsTaken) {
+TEST(MemoryBudget, RefusesWhileOverdrawn) {
     MemoryBudget budget(2);
     budget.take_anyway(5);
     EXPECT_EQ(budget.free(), -3);
@@ -36,7 +36,7 @@ TEST(MemoryShare, TakesFromAllBudgetsOrFromNone) {
         EXPECT_EQ(share.most(), 4);
         EXPECT_TRUE(share.take(3));
         EXPECT_FALSE(share.take(2));
-        EXPECT_EQ(large->free(), 7) << "what the large budget had given is returned";
+        EXPECT_EQ(large->free(), 7) << "the share of the large budget is returned";
         EXPECT_EQ(share.free(), 1);
         share.take_anyway(2);
         EXPECT_EQ(share.free(), 0) << "not negative";

@@ -15,7 +15,7 @@ TEST(TokenBucket, ReturnsTheTimeUntilTheMissingAmountHasFlowedIn) {
     EXPECT_EQ(bucket.take(250.0, 51.0), 0.0);
 }
 
-TEST(TokenBucket, ACallerThatWaitsHasTheRateAndOneBurst) {
+TEST(TokenBucket, WaitingCallerGetsTheRateAndOneBurst) {
     TokenBucket bucket(1000.0, 1.0, 0.0);
     double now = 0.0;
     double passed = 0.0;
@@ -26,7 +26,7 @@ TEST(TokenBucket, ACallerThatWaitsHasTheRateAndOneBurst) {
     EXPECT_NEAR(passed, 1000.0 * (now + 1.0), 1.0);
 }
 
-TEST(TokenBucket, ALongSilenceSavesNoMoreThanTheBurst) {
+TEST(TokenBucket, IdleTimeSavesAtMostTheBurst) {
     TokenBucket bucket(1000.0, 1.0, 0.0);
     EXPECT_EQ(bucket.take(1000.0, 3600.0), 0.0);
     EXPECT_DOUBLE_EQ(bucket.take(1000.0, 3600.0), 1.0);
@@ -47,7 +47,7 @@ TEST(TokenBucket, AnInfiniteRateNeverWaits) {
     EXPECT_DOUBLE_EQ(bucket.take(1000.0, 0.0), 1.0);
 }
 
-TEST(TokenBucket, AClockThatStandsStillOrGoesBackGivesNothing) {
+TEST(TokenBucket, StoppedOrBackwardClockAddsNothing) {
     TokenBucket bucket(10.0, 1.0, 5.0);
     EXPECT_EQ(bucket.take(10.0, 4.0), 0.0);
     EXPECT_DOUBLE_EQ(bucket.take(10.0, 4.0), 1.0);

@@ -5,7 +5,7 @@
 namespace scanloom::link {
 namespace {
 
-TEST(CreditWindow, ABatchCountsWholeUntilItsLastScanIsDurable) {
+TEST(CreditWindow, BatchCountsUntilItsLastScanIsDurable) {
     CreditWindow window;
     window.reset(1000);
     window.sent(10, 300);
@@ -19,7 +19,7 @@ TEST(CreditWindow, ABatchCountsWholeUntilItsLastScanIsDurable) {
     EXPECT_EQ(window.available(), 1000U);
 }
 
-TEST(CreditWindow, ALoweredCreditLeavesNothingRatherThanLessThanNothing) {
+TEST(CreditWindow, LoweredCreditLeavesZero) {
     CreditWindow window;
     window.reset(1000);
     window.sent(1, 900);
@@ -27,7 +27,7 @@ TEST(CreditWindow, ALoweredCreditLeavesNothingRatherThanLessThanNothing) {
     EXPECT_EQ(window.available(), 0U);
 }
 
-TEST(CreditWindow, ANewLinkHasNothingUnderWay) {
+TEST(CreditWindow, NewLinkHasNothingInFlight) {
     CreditWindow window;
     window.reset(1000);
     window.sent(1, 900);

@@ -11,7 +11,7 @@ wire::Message no_path(std::uint64_t id) { return wire::PlanReply{id, 1, Error{Er
 
 const Request kPlan = wire::PlanRequest{.goal = {1.0, 2.0}};
 
-TEST(OpenRequests, AreSentInOrderAndOnce) {
+TEST(OpenRequests, AreSentOnceInOrder) {
     OpenRequests requests;
     EXPECT_FALSE(requests.next());
     for (int n = 0; n < 2; ++n) EXPECT_TRUE(requests.add(kPlan, [](const Reply&) {}));
@@ -21,7 +21,7 @@ TEST(OpenRequests, AreSentInOrderAndOnce) {
     EXPECT_FALSE(requests.next());
 }
 
-TEST(OpenRequests, OneTooManyIsNotTaken) {
+TEST(OpenRequests, ExcessRequestIsRefused) {
     OpenRequests requests;
     for (std::size_t n = 0; n < OpenRequests::kMax; ++n) EXPECT_TRUE(requests.add(kPlan, [](const Reply&) {}));
     EXPECT_FALSE(requests.add(kPlan, [](const Reply&) {}));
@@ -29,7 +29,7 @@ TEST(OpenRequests, OneTooManyIsNotTaken) {
     EXPECT_TRUE(requests.add(kPlan, [](const Reply&) {}));
 }
 
-TEST(OpenRequests, AnswersFindTheirRequestInAnyOrder) {
+TEST(OpenRequests, RepliesMatchTheirRequestsInAnyOrder) {
     OpenRequests requests;
     std::string answered;
     EXPECT_TRUE(requests.add(kPlan, [&](const Reply&) { answered += 'a'; }));
@@ -42,7 +42,7 @@ TEST(OpenRequests, AnswersFindTheirRequestInAnyOrder) {
     EXPECT_FALSE(requests.answer(no_path(first))) << "twice";
 }
 
-TEST(OpenRequests, NothingButAReplyOfItsKindToWhatWasSentAnswersOne) {
+TEST(OpenRequests, OnlyAReplyOfTheRightTypeIsAccepted) {
     OpenRequests requests;
     EXPECT_TRUE(requests.add(kPlan, [](const Reply&) { ADD_FAILURE(); }));
     EXPECT_FALSE(requests.answer(no_path(1))) << "it was not sent yet";
@@ -64,7 +64,7 @@ TEST(OpenRequests, AreSentAgainOnANewLink) {
     EXPECT_FALSE(requests.next());
 }
 
-TEST(OpenRequests, WhatWasAbandonedBeforeItWasSentNeverIs) {
+TEST(OpenRequests, AbandonedBeforeSendingIsNotSent) {
     OpenRequests requests;
     const auto left = requests.add(kPlan, [](const Reply&) { ADD_FAILURE(); });
     const auto kept = requests.add(kPlan, [](const Reply&) {});
@@ -73,7 +73,7 @@ TEST(OpenRequests, WhatWasAbandonedBeforeItWasSentNeverIs) {
     EXPECT_FALSE(requests.next());
 }
 
-TEST(OpenRequests, WhatWasAbandonedLaterTakesItsPlaceUntilItsReplyCame) {
+TEST(OpenRequests, AbandonedAfterSendingCountsUntilItsReply) {
     OpenRequests requests;
     std::optional<std::uint64_t> left;
     for (std::size_t n = 0; n < OpenRequests::kMax; ++n) {
@@ -87,7 +87,7 @@ TEST(OpenRequests, WhatWasAbandonedLaterTakesItsPlaceUntilItsReplyCame) {
     requests.abandon(*left); // again, and too late
 }
 
-TEST(OpenRequests, WhatWasAbandonedIsForgottenWithItsLink) {
+TEST(OpenRequests, AbandonedIsRemovedWithItsLink) {
     OpenRequests requests;
     const auto left = requests.add(kPlan, [](const Reply&) { ADD_FAILURE(); });
     EXPECT_TRUE(requests.next());
@@ -97,7 +97,7 @@ TEST(OpenRequests, WhatWasAbandonedIsForgottenWithItsLink) {
     for (std::size_t n = 0; n < OpenRequests::kMax; ++n) EXPECT_TRUE(requests.add(kPlan, [](const Reply&) {}));
 }
 
-TEST(OpenRequests, WhoIsAnsweredMayAskAgainAtOnce) {
+TEST(OpenRequests, CallbackMayAddARequest) {
     OpenRequests requests;
     EXPECT_TRUE(requests.add(kPlan, [&](const Reply&) { EXPECT_TRUE(requests.add(kPlan, [](const Reply&) {})); }));
     EXPECT_TRUE(requests.answer(no_path(id_of(requests.next()))));

@@ -5,7 +5,7 @@
 namespace scanloom::link {
 namespace {
 
-TEST(PrintableText, PrintableTextStaysAsItIs) {
+TEST(PrintableText, PrintableTextIsUnchanged) {
     for (const std::string_view text : {"", "scan 3 is missing; send it", "C:\\x",
                                         "stra\xc3\x9f"
                                         "e",
@@ -14,7 +14,7 @@ TEST(PrintableText, PrintableTextStaysAsItIs) {
     }
 }
 
-TEST(PrintableText, ControlCharactersAreWrittenOut) {
+TEST(PrintableText, ControlCharactersAreEscaped) {
     EXPECT_EQ(printable("a\x1b[2J\r\nb\x7f"), R"(a\x1b[2J\x0d\x0ab\x7f)");
     EXPECT_EQ(printable(std::string_view("a\0b", 3)), R"(a\x00b)");
     EXPECT_EQ(printable("\xc2\x9b"
@@ -27,7 +27,7 @@ TEST(PrintableText, ControlCharactersAreWrittenOut) {
         << "C1 as a byte";
 }
 
-TEST(PrintableText, WhatTurnsTheTextOrEndsALineIsWrittenOut) {
+TEST(PrintableText, DirectionAndLineSeparatorsAreEscaped) {
     EXPECT_EQ(printable("bad \u202etxt.exe"), R"(bad \xe2\x80\xaetxt.exe)");
     for (const std::string_view text : {"\u061c", "\u200e", "\u200f", "\u2028", "\u2029", "\u202a", "\u202b", "\u202c",
                                         "\u202d", "\u202e", "\u2066", "\u2067", "\u2068", "\u2069"}) {
@@ -39,20 +39,20 @@ TEST(PrintableText, WhatTurnsTheTextOrEndsALineIsWrittenOut) {
     }
 }
 
-TEST(PrintableText, BytesThatAreNoTextAreWrittenOut) {
+TEST(PrintableText, InvalidBytesAreEscaped) {
     EXPECT_EQ(printable("\xff\xfe"), R"(\xff\xfe)");
     EXPECT_EQ(printable("\xc3"), R"(\xc3)") << "cut short";
     EXPECT_EQ(printable("\xc0\x9b"
                         "\xe0\x82\x9b"
                         "\xf0\x80\x82\x9b"),
               R"(\xc0\x9b\xe0\x82\x9b\xf0\x80\x82\x9b)")
-        << "a control character in more bytes than it needs";
+        << "an overlong encoding of a control character";
     EXPECT_EQ(printable("\xed\xa0\x80"), R"(\xed\xa0\x80)") << "half of a UTF-16 pair";
     EXPECT_EQ(printable("\xf4\x90\x80\x80"), R"(\xf4\x90\x80\x80)") << "beyond Unicode";
     EXPECT_EQ(printable("\xf9\x80\x80\x80"), R"(\xf9\x80\x80\x80)") << "no first byte";
 }
 
-TEST(PrintableText, IsBoundedAndCutBetweenCharacters) {
+TEST(PrintableText, IsCutBetweenCharacters) {
     EXPECT_EQ(printable(std::string(kPrintableTextMax, 'a')), std::string(kPrintableTextMax, 'a'));
     EXPECT_EQ(printable(std::string(1'000'000, 'a')), std::string(kPrintableTextMax, 'a') + "...");
     EXPECT_EQ(printable(std::string(kPrintableTextMax - 1, 'a') + "\xc3\x9f"),
@@ -60,14 +60,14 @@ TEST(PrintableText, IsBoundedAndCutBetweenCharacters) {
     EXPECT_EQ(printable(std::string(1'000, '\x1b')).size(), kPrintableTextMax + 3);
 }
 
-TEST(Utf8, TextOfAnyLanguageIs) {
+TEST(Utf8, AcceptsTextOfAnyLanguage) {
     for (const auto* text :
          {"", "laser", "\xc3\xa4", "\xe2\x82\xac", "\xf0\x9f\xa4\x96", "a\xc3\xa4z", "\xf4\x8f\xbf\xbf"}) {
         EXPECT_TRUE(is_utf8(text)) << text;
     }
 }
 
-TEST(Utf8, BytesThatAreCutShortOrLongerThanNeededOrNoCharacterAreNot) {
+TEST(Utf8, RejectsTruncatedOverlongAndInvalidSequences) {
     for (const auto* text : {"\xff", "a\x80", "\xc3", "\xc3(", "\xe2\x82", "\xc0\x80", "\xe0\x80\xaf", "\xed\xa0\x80",
                              "\xf4\x90\x80\x80", "\xf8\x88\x80\x80\x80"}) {
         EXPECT_FALSE(is_utf8(text)) << text;

@@ -143,7 +143,7 @@ TEST(ServerProtocol, JoinsWelcomesSubmitsAndAcknowledges) {
     EXPECT_THAT(owner.take(), ElementsAre("send ack 10"));
 }
 
-TEST(ServerProtocol, AnyCutOfTheBytesGivesTheSameActions) {
+TEST(ServerProtocol, AnySplitOfTheBytesGivesTheSameActions) {
     const std::string bytes = frame_of(small_laser()) + frame_of(wire::ScanBatch{random_scans(1, 1, 2)}) +
                               frame_of(wire::PlanRequest{.id = 1}) + frame_of(wire::Ping{1}) + frame_of(wire::Pong{1}) +
                               frame_of(wire::Goodbye{});
@@ -238,7 +238,7 @@ TEST(ServerProtocolDeadline, OnlyWholeFramesKeepALinkAlive) {
     EXPECT_THAT(owner.error().error.message, StartsWith("nothing was received for too long"));
 }
 
-TEST(ServerProtocolDeadline, NoneWhileTheServerIsAwaited) {
+TEST(ServerProtocolDeadline, NoneWhileTheServerIsBusy) {
     Owner owner;
     owner.open();
     owner.receive(hello());
@@ -249,7 +249,7 @@ TEST(ServerProtocolDeadline, NoneWhileTheServerIsAwaited) {
     EXPECT_EQ(owner.protocol.deadline(), Time::max()) << "settling";
 }
 
-TEST(ServerProtocolDeadline, ARobotThatDoesNotReadTheFarewellIsClosed) {
+TEST(ServerProtocolDeadline, UnreadErrorIsClosedAtTheDeadline) {
     Owner owner;
     owner.join();
     owner.completes_writes = false;
@@ -261,7 +261,7 @@ TEST(ServerProtocolDeadline, ARobotThatDoesNotReadTheFarewellIsClosed) {
     EXPECT_EQ(owner.protocol.deadline(), Time::max());
 }
 
-TEST(ServerProtocolDeadline, ARobotThatDoesNotHangUpIsClosed) {
+TEST(ServerProtocolDeadline, OpenConnectionIsClosedAtTheDeadline) {
     Owner owner;
     owner.join();
     owner.receive(frame_of(wire::Goodbye{}));
@@ -271,7 +271,7 @@ TEST(ServerProtocolDeadline, ARobotThatDoesNotHangUpIsClosed) {
     EXPECT_THAT(owner.take(), ElementsAre("close"));
 }
 
-TEST(ServerProtocolDeadline, APauseByTheRateLimitMovesIt) {
+TEST(ServerProtocolDeadline, RateLimitPauseMovesIt) {
     Owner owner;
     owner.join();
     owner.protocol.set_limits({.token = "depot", .bytes_per_second = 1024.0}, owner.now);
@@ -312,7 +312,7 @@ TEST(ServerProtocolRefusal, EndsTheLinkAndSaysWhy) {
     Scan wide = random_scan(1, 1);
     wide.ranges.resize(30);
     const std::vector<Refused> cases = {
-        {std::string("\x00\x20\x00\x00", 4), Errc::kTooLarge, "; send fewer scans a batch"},
+        {std::string("\x00\x20\x00\x00", 4), Errc::kTooLarge, "; send fewer scans per batch"},
         {damaged, Errc::kDamaged, ""},
         {no_message, Errc::kMalformed, ""},
         {hello(), Errc::kMalformed, "a hello frame is not for the server; after the hello it takes"},
@@ -408,7 +408,7 @@ TEST(ServerProtocolRefusal, OfRequestsBeyondFourLetsTheLinkContinue) {
     EXPECT_EQ(owner.requests.size(), 5U);
 }
 
-TEST(ServerProtocolRefusal, OfARobotThatIsTurnedAway) {
+TEST(ServerProtocolRefusal, OfARobotBeyondTheLimits) {
     Owner owner;
     owner.protocol.turn_away({{Errc::kOverloaded, "full"}, true}, owner.now);
     owner.open();
@@ -421,12 +421,12 @@ TEST(ServerProtocolRefusal, OfARobotThatIsTurnedAway) {
     Owner slow;
     slow.protocol.turn_away({{Errc::kOverloaded, "full"}, true}, slow.now);
     slow.pass(2s);
-    EXPECT_THAT(slow.take(), ElementsAre("shut down")) << "the handshake was not done in time";
+    EXPECT_THAT(slow.take(), ElementsAre("shut down")) << "the handshake timed out";
 }
 
 // Ends ----------------------------------------------------------------------------------------------------------------
 
-TEST(ServerProtocolEnd, AGoodbyeWaitsForScansAndReplies) {
+TEST(ServerProtocolEnd, GoodbyeWaitsForScansAndReplies) {
     Owner owner;
     owner.join();
     owner.receive(frame_of(wire::ScanBatch{random_scans(1, 1, 1)}) + frame_of(wire::PlanRequest{.id = 1}) +
@@ -441,7 +441,7 @@ TEST(ServerProtocolEnd, AGoodbyeWaitsForScansAndReplies) {
     EXPECT_FALSE(owner.protocol.ended_by());
 }
 
-TEST(ServerProtocolEnd, AFailureAfterTheGoodbyeIsSent) {
+TEST(ServerProtocolEnd, FailureAfterTheGoodbyeIsSent) {
     Owner owner;
     owner.join();
     owner.receive(frame_of(wire::ScanBatch{random_scans(1, 1, 1)}) + frame_of(wire::Goodbye{}));
@@ -450,7 +450,7 @@ TEST(ServerProtocolEnd, AFailureAfterTheGoodbyeIsSent) {
     EXPECT_EQ(owner.error(), (wire::LinkError{{Errc::kStoreFailed, "no space left"}, true}));
 }
 
-TEST(ServerProtocolEnd, AnAckThatWaitsIsSentBeforeTheError) {
+TEST(ServerProtocolEnd, PendingAckIsSentBeforeTheError) {
     Owner owner;
     owner.join();
     owner.completes_writes = false;
@@ -482,7 +482,7 @@ TEST(ServerProtocolEnd, OnlyTheFirstFailureCounts) {
     EXPECT_EQ(owner.error().error.code, Errc::kUnauthorized);
 }
 
-TEST(ServerProtocolEnd, ARobotThatHangsUpIsSentNothing) {
+TEST(ServerProtocolEnd, NothingIsSentAfterTheRobotCloses) {
     Owner owner;
     owner.join();
     owner.receive(frame_of(wire::ScanBatch{random_scans(1, 1, 1)}) + frame_of(wire::Ping{}).substr(0, 3));
@@ -493,7 +493,7 @@ TEST(ServerProtocolEnd, ARobotThatHangsUpIsSentNothing) {
     EXPECT_EQ(owner.protocol.ended_by()->code, Errc::kUnreachable);
 }
 
-TEST(ServerProtocolEnd, AFailedHandshakeIsFollowedByTheEnd) {
+TEST(ServerProtocolEnd, FailedHandshakeEndsTheConnection) {
     Owner owner;
     owner.protocol.on_handshake_failed();
     owner.advance();
@@ -501,7 +501,7 @@ TEST(ServerProtocolEnd, AFailedHandshakeIsFollowedByTheEnd) {
     EXPECT_EQ(owner.protocol.reading(), Reading::kUntilEnd) << "so that the client can read the alert";
 }
 
-TEST(ServerProtocolEnd, AFailedWriteDiscardsTheQueue) {
+TEST(ServerProtocolEnd, FailedWriteDiscardsTheQueue) {
     Owner owner;
     owner.join();
     owner.completes_writes = false;

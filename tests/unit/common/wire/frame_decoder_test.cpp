@@ -86,7 +86,7 @@ TEST(FrameDecoder, HttpIsRecognised) {
         const auto body = decoder.next();
         ASSERT_FALSE(body);
         EXPECT_EQ(body.error().code, Errc::kMalformed);
-        EXPECT_THAT(body.error().message, testing::HasSubstr("robots connect to the robot port"));
+        EXPECT_THAT(body.error().message, testing::HasSubstr("connect robots to the robot port"));
         EXPECT_TRUE(decoder.holds_http());
     }
 }
@@ -97,7 +97,7 @@ TEST(FrameDecoder, TlsIsRecognised) {
     const auto body = decoder.next();
     ASSERT_FALSE(body);
     EXPECT_EQ(body.error().code, Errc::kMalformed);
-    EXPECT_THAT(body.error().message, testing::HasSubstr("a handshake of TLS"));
+    EXPECT_THAT(body.error().message, testing::HasSubstr("a TLS handshake"));
 }
 
 } // namespace

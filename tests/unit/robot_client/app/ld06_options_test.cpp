@@ -37,7 +37,7 @@ std::string refused(const std::vector<std::string>& words) {
     return leave->text;
 }
 
-TEST(Ld06OptionsOf, TheCommandLineAreTaken) {
+TEST(Ld06OptionsOf, AreReadFromTheCommandLine) {
     const auto options =
         std::get<Ld06Options>(parsed({"/dev/ttyUSB0", "--pose", "-1,2.5,6", "--mount=0.1,0,-1.5", "--min-range", "0.2",
                                       "--min-confidence", "0", "--median", "5", "--speed", "1", "--reopen-for", "0"})
@@ -52,7 +52,7 @@ TEST(Ld06OptionsOf, TheCommandLineAreTaken) {
     EXPECT_EQ(options.reopen_for, 0.0);
 }
 
-TEST(Ld06OptionsOf, ACommandLineWithoutThemAreTheDefaults) {
+TEST(Ld06OptionsOf, AreTheDefaultsWithoutFlags) {
     const auto options = std::get<Ld06Options>(parsed({"f", "--poses", "-"}).source);
     EXPECT_EQ(options.poses, "-");
     EXPECT_FALSE(options.pose || options.range_min || options.confidence_min || options.median_window);
@@ -61,16 +61,16 @@ TEST(Ld06OptionsOf, ACommandLineWithoutThemAreTheDefaults) {
     EXPECT_EQ(options.reopen_for, 60.0);
 }
 
-TEST(Ld06OptionsOf, ALidarThatAsksWhereItIsAreTaken) {
+TEST(Ld06OptionsOf, LocalizationIsAccepted) {
     const auto bare = std::get<Ld06Options>(parsed({"/dev/ttyUSB0", "--locate"}).source);
     EXPECT_TRUE(bare.locate);
     EXPECT_FALSE(bare.pose || bare.near);
-    const auto told = std::get<Ld06Options>(parsed({"f", "--locate", "--near=-1,2.5,4", "--pose", "1,2,3"}).source);
-    EXPECT_EQ(told.near, (wire::Near{{-1.0, 2.5}, 4.0}));
-    EXPECT_EQ(told.pose, (Pose2{1.0, 2.0, 3.0}));
+    const auto located = std::get<Ld06Options>(parsed({"f", "--locate", "--near=-1,2.5,4", "--pose", "1,2,3"}).source);
+    EXPECT_EQ(located.near, (wire::Near{{-1.0, 2.5}, 4.0}));
+    EXPECT_EQ(located.pose, (Pose2{1.0, 2.0, 3.0}));
 }
 
-TEST(Ld06OptionsOf, ALidarThatAsksAndIsToldAreRefused) {
+TEST(Ld06OptionsOf, LocalizationWithAGivenPoseIsRefused) {
     EXPECT_THAT(refused({"f", "--locate", "--poses", "p"}), HasSubstr("leave one of them out"));
     EXPECT_THAT(refused({"f", "--pose", "0,0,0", "--near", "0,0,1"}), HasSubstr("--near needs --locate"));
     EXPECT_THAT(refused({"f", "--locate", "--speed", "1"}), HasSubstr("leave --speed out"));
@@ -84,7 +84,7 @@ TEST(Ld06OptionsOf, ALidarThatAsksAndIsToldAreRefused) {
     EXPECT_THAT(refused({"f", "--locate", "--near", "0,-2e6,1"}), HasSubstr("-2000000 m is outside the map"));
 }
 
-TEST(Ld06OptionsOf, AYawInDegreesAreRefused) {
+TEST(Ld06OptionsOf, YawInDegreesIsRefused) {
     for (const auto* pose : {"0,0,90", "0,0,-90", "0,0,6.2832"}) {
         EXPECT_THAT(refused({"f", "--pose", pose}), HasSubstr("yaw is in radians")) << pose;
         EXPECT_THAT(refused({"f", "--pose", "0,0,0", "--mount", pose}), HasSubstr("90 degrees are 1.570796")) << pose;
@@ -93,7 +93,7 @@ TEST(Ld06OptionsOf, AYawInDegreesAreRefused) {
     EXPECT_NEAR(options.pose->yaw, 0.0, 1e-6);
 }
 
-TEST(Ld06OptionsOf, AWrongCommandLineAreRefused) {
+TEST(Ld06OptionsOf, InvalidCommandLinesAreRefused) {
     EXPECT_THAT(refused({"--pose", "0,0,0"}), HasSubstr("name the INPUT"));
     EXPECT_THAT(refused({"f"}), HasSubstr("state the robot's pose"));
     EXPECT_THAT(refused({"f", "--pose", "0,0,0", "--poses", "p"}), HasSubstr("state the robot's pose"));
@@ -136,7 +136,7 @@ private:
     Console console_{standard_error()};
 };
 
-TEST_F(PreparedLd06, ACaptureFileIsARecording) {
+TEST_F(PreparedLd06, CaptureFileIsARecording) {
     const auto prepared = prepare({capture(), "--poses", file("poses", "0 0 0 0\noops\n9 9 0 0\n"), "--speed", "2",
                                    "--max-range", "2", "--min-range", "1.5", "--mount", "1,0,0"});
     ASSERT_TRUE(prepared) << prepared.error().message;
@@ -152,17 +152,17 @@ TEST_F(PreparedLd06, ACaptureFileIsARecording) {
     EXPECT_EQ(observation.scan.ranges.back(), kInvalidRange);
 }
 
-TEST_F(PreparedLd06, ADeviceAndAnAddressAreRead) {
+TEST_F(PreparedLd06, DeviceAndAddressAreLive) {
     for (const auto* input : {"/dev/null", "tcp://127.0.0.1:4001"}) {
         const auto prepared = prepare({input, "--pose", "0,0,0"});
         ASSERT_TRUE(prepared) << prepared.error().message;
         EXPECT_TRUE(prepared->live);
         EXPECT_FALSE(prepared->source);
-        EXPECT_EQ(prepared->fingerprint, "") << "what was sent once cannot be sent again";
+        EXPECT_EQ(prepared->fingerprint, "") << "sent scans cannot be sent again";
     }
 }
 
-TEST_F(PreparedLd06, WhatAsksWhereItIsIsLiveWhateverItIs) {
+TEST_F(PreparedLd06, LocalizingSourceIsLive) {
     for (const auto& input : {std::string("/dev/null"), std::string("tcp://127.0.0.1:4001"), capture()}) {
         const auto prepared = prepare({input, "--locate", "--near", "1,2,3"});
         ASSERT_TRUE(prepared) << prepared.error().message;
@@ -170,13 +170,13 @@ TEST_F(PreparedLd06, WhatAsksWhereItIsIsLiveWhateverItIs) {
         EXPECT_EQ(prepared->locating, prepared->live.get());
         EXPECT_EQ(prepared->near, (wire::Near{{1.0, 2.0}, 3.0}));
         EXPECT_FALSE(prepared->source);
-        EXPECT_EQ(prepared->fingerprint, "") << "its scans depend on what it is told";
+        EXPECT_EQ(prepared->fingerprint, "") << "its scans depend on the reply";
         EXPECT_EQ(prepared->live->can_wait(), input == capture());
         EXPECT_THAT(prepared->remarks(), HasSubstr("carried 0 times, 0 turns while carried or not localized"));
     }
 }
 
-TEST_F(PreparedLd06, WhatIsNeitherIsAnError) {
+TEST_F(PreparedLd06, OtherSourcesAreAnError) {
     EXPECT_THAT(prepare({"/dev/nonexistent", "--pose", "0,0,0"}).error().message, HasSubstr("no such device or file"));
     EXPECT_THAT(prepare({"/tmp", "--pose", "0,0,0"}).error().message, HasSubstr("not a serial device or a file"));
     EXPECT_THAT(prepare({capture(), "--poses", "/nonexistent"}).error().message, HasSubstr("no such file"));

@@ -35,7 +35,7 @@ protected:
     Leave left(const std::vector<std::string>& words) {
         auto result = parse(words);
         if (const auto* leave = std::get_if<Leave>(&result)) return *leave;
-        ADD_FAILURE() << "no reason to leave";
+        ADD_FAILURE() << "it keeps retrying";
         return {};
     }
 
@@ -61,7 +61,7 @@ private:
     std::filesystem::path file_;
 };
 
-TEST_F(Options, MayStandBeforeOrBehindTheSubcommand) {
+TEST_F(Options, AreAcceptedBeforeAndAfterTheSubcommand) {
     for (const auto& words :
          {std::vector<std::string>{"--server", "h:1", "--session", "s", "--robot", "r", "replay", "f.clf", "--speed",
                                    "2"},
@@ -77,11 +77,11 @@ TEST_F(Options, MayStandBeforeOrBehindTheSubcommand) {
     }
 }
 
-TEST_F(Options, DefaultsAreThoseOfTheContract) {
+TEST_F(Options, DefaultsAreAsDocumented) {
     const auto replay = parsed({"replay", "f", "--session", "s", "--robot", "r"});
     EXPECT_EQ(replay.server.host + ":" + replay.server.port, "127.0.0.1:7447");
     EXPECT_EQ(std::get<ReplayOptions>(replay.source).speed, 0.0);
-    EXPECT_FALSE(replay.give_up_after) << "it depends on what is streamed";
+    EXPECT_FALSE(replay.give_up_after) << "it depends on the source";
     EXPECT_TRUE(replay.spool.empty());
     EXPECT_EQ(replay.when_full, WhenFull::kDropOldest);
     EXPECT_FALSE(replay.compress);
@@ -91,19 +91,19 @@ TEST_F(Options, DefaultsAreThoseOfTheContract) {
     EXPECT_FALSE(std::get<SimulateOptions>(simulate.source).duration);
 }
 
-TEST_F(Options, WhatWaitsAndHowItTravelsCanBeSaid) {
-    const auto said = parsed({"ld06",         "/dev/x", "--pose",        "0,0,0",        "--session",       "s",
-                              "--robot",      "r",      "--spool",       "/var/spool/x", "--spool-size",    "2",
-                              "--memory",     "0.5",    "--when-full",   "drop-newest",  "--batch-delay",   "1.5",
-                              "--batch-size", "8",      "--compression", "zstd",         "--give-up-after", "0"});
-    EXPECT_EQ(said.spool, "/var/spool/x");
-    EXPECT_EQ(said.spool_bytes_max, 2U << 20);
-    EXPECT_EQ(said.memory_bytes_max, 1U << 19);
-    EXPECT_EQ(said.when_full, WhenFull::kDropNewest);
-    EXPECT_EQ(said.batch_delay, std::chrono::milliseconds(1500));
-    EXPECT_EQ(said.batch_bytes_max, 8U << 10);
-    EXPECT_TRUE(said.compress);
-    EXPECT_EQ(said.give_up_after, std::chrono::milliseconds(0));
+TEST_F(Options, QueueAndTransportAreConfigurable) {
+    const auto given = parsed({"ld06",         "/dev/x", "--pose",        "0,0,0",        "--session",       "s",
+                               "--robot",      "r",      "--spool",       "/var/spool/x", "--spool-size",    "2",
+                               "--memory",     "0.5",    "--when-full",   "drop-newest",  "--batch-delay",   "1.5",
+                               "--batch-size", "8",      "--compression", "zstd",         "--give-up-after", "0"});
+    EXPECT_EQ(given.spool, "/var/spool/x");
+    EXPECT_EQ(given.spool_bytes_max, 2U << 20);
+    EXPECT_EQ(given.memory_bytes_max, 1U << 19);
+    EXPECT_EQ(given.when_full, WhenFull::kDropNewest);
+    EXPECT_EQ(given.batch_delay, std::chrono::milliseconds(1500));
+    EXPECT_EQ(given.batch_bytes_max, 8U << 10);
+    EXPECT_TRUE(given.compress);
+    EXPECT_EQ(given.give_up_after, std::chrono::milliseconds(0));
     for (const auto& wrong : {std::pair{"--spool-size", "0"},
                               {"--memory", "nan"},
                               {"--when-full", "wait"},
@@ -113,7 +113,7 @@ TEST_F(Options, WhatWaitsAndHowItTravelsCanBeSaid) {
     }
 }
 
-TEST_F(Options, ABodyIsStatedForAnySource) {
+TEST_F(Options, BodyRadiusIsAcceptedForEverySource) {
     EXPECT_EQ(parsed({"simulate", "--session", "s", "--robot", "r"}).body_radius, std::nullopt);
     EXPECT_EQ(parsed({"replay", "f", "--session", "s", "--robot", "r", "--body-radius", "5"}).body_radius, 5.0);
     for (const auto* radius : {"0", "-1", "5.1", "nan", "x"}) {
@@ -122,7 +122,7 @@ TEST_F(Options, ABodyIsStatedForAnySource) {
     }
 }
 
-TEST_F(Options, TheTruthNeedsNoServerSessionOrRobot) {
+TEST_F(Options, TruthNeedsNoServerSessionOrRobot) {
     const auto result = parse({"truth", "--world", "a map.yaml", "--output", "x", "--cell-size", "0.2"});
     ASSERT_TRUE(std::holds_alternative<TruthOptions>(result));
     const auto& truth = std::get<TruthOptions>(result);
@@ -130,7 +130,7 @@ TEST_F(Options, TheTruthNeedsNoServerSessionOrRobot) {
     EXPECT_EQ(truth.cell_size, 0.2);
 }
 
-TEST_F(Options, ASimulatedRobotHasSensorsNoiseAndAPoseToSend) {
+TEST_F(Options, SimulatedRobotHasSensorsNoiseAndSentPose) {
     const auto plain = std::get<SimulateOptions>(parsed({"simulate", "--session", "s", "--robot", "r"}).source);
     EXPECT_EQ(plain.laser + " " + plain.sonar + " " + plain.pose, "reference none true");
     EXPECT_FALSE(plain.odometry_noise);
@@ -144,7 +144,7 @@ TEST_F(Options, ASimulatedRobotHasSensorsNoiseAndAPoseToSend) {
     EXPECT_EQ(std::get<ReplayOptions>(parsed({"replay", "f", "--session", "s", "--robot", "r"}).source).file, "f");
 }
 
-TEST_F(Options, SonarTakesTwoFilesAndItsAperture) {
+TEST_F(Options, SonarTakesTwoFilesAndAnAperture) {
     const auto options = parsed({"sonar", "m.txt", "p.txt", "--aperture", "15", "--session", "s", "--robot", "r"});
     const auto& sonar = std::get<SonarReplayOptions>(options.source);
     EXPECT_EQ(sonar.measurements + " " + sonar.poses, "m.txt p.txt");
@@ -152,7 +152,7 @@ TEST_F(Options, SonarTakesTwoFilesAndItsAperture) {
     EXPECT_EQ(sonar.speed, 0.0);
 }
 
-TEST_F(Options, FlagBeatsEnvironmentBeatsFile) {
+TEST_F(Options, FlagOverridesEnvironmentOverridesFile) {
     const auto path =
         file("session = \"from_file\"\nrobot = \"r\"\ncell-size = 0.1\n[simulate]\nseed = 5\nworld = \"room\"\n");
     const std::vector<std::string> words{"simulate", "--config", path};
@@ -173,19 +173,19 @@ TEST_F(Options, FlagBeatsEnvironmentBeatsFile) {
     EXPECT_EQ(std::get<SimulateOptions>(parsed(flags).source).seed, 7U);
 }
 
-TEST_F(Options, TheEnvironmentMayNameTheFileAndServesBothSources) {
+TEST_F(Options, EnvironmentNamesTheFileForBothSources) {
     set("SCANLOOM_CONFIG", file("session = \"s\"\nrobot = \"r\"\n").c_str());
     set("SCANLOOM_SPEED", "3");
     EXPECT_EQ(std::get<SimulateOptions>(parsed({"simulate"}).source).speed, 3.0);
     EXPECT_EQ(std::get<ReplayOptions>(parsed({"replay", "f"}).source).speed, 3.0);
 }
 
-TEST_F(Options, AFileThatTheEnvironmentNamesMustBeThere) {
+TEST_F(Options, MissingFileOfTheEnvironmentIsAnError) {
     set("SCANLOOM_CONFIG", "/nonexistent.toml");
     EXPECT_EQ(left({"simulate", "--session", "s", "--robot", "r"}).code, kExitUsage);
 }
 
-TEST_F(Options, ServersAreHostAndPort) {
+TEST_F(Options, ServerIsHostAndPort) {
     const auto host = [&](const std::string& server) {
         return parsed({"replay", "f", "--session", "s", "--robot", "r", "--server", server}).server.host;
     };
@@ -199,7 +199,7 @@ TEST_F(Options, ServersAreHostAndPort) {
     }
 }
 
-TEST_F(Options, EachMistakeIsOneLineAndAUsageError) {
+TEST_F(Options, MistakesAreOneLineUsageErrors) {
     const std::vector<std::string> good{"simulate", "--session", "s", "--robot", "r"};
     const auto with = [&](std::vector<std::string> more) {
         more.insert(more.begin(), good.begin(), good.end());
@@ -266,7 +266,7 @@ TEST_F(Options, EachMistakeIsOneLineAndAUsageError) {
     }
 }
 
-TEST_F(Options, SeedsReachAsFarAsTheirTypeAlsoInTheFile) {
+TEST_F(Options, SeedsUseTheirFullRangeAlsoInTheFile) {
     const std::vector<std::string> words{
         "simulate", "--session", "s", "--robot", "r", "--config", file("[simulate]\nseed = -1\n")};
     EXPECT_THAT(left(words).text, HasSubstr("--seed"));
@@ -274,17 +274,17 @@ TEST_F(Options, SeedsReachAsFarAsTheirTypeAlsoInTheFile) {
     EXPECT_EQ(std::get<SimulateOptions>(largest.source).seed, std::numeric_limits<std::uint64_t>::max());
 }
 
-TEST_F(Options, WhatExploresMayHaveASpoolAsItsScansAreNeverTheSame) {
+TEST_F(Options, ExplorerMayHaveASpool) {
     EXPECT_EQ(parsed({"simulate", "--drive", "explore", "--session", "s", "--robot", "r", "--spool", "d"}).spool, "d");
 }
 
-TEST_F(Options, TheWidthOfUniformNoiseCanBeSaid) {
+TEST_F(Options, UniformNoiseWidthIsConfigurable) {
     const auto options =
         parsed({"simulate", "--session", "s", "--robot", "r", "--noise", "uniform", "--noise-width", "0.1"});
     EXPECT_EQ(std::get<SimulateOptions>(options.source).noise_width, 0.1);
 }
 
-TEST_F(Options, HelpTellsWhereWorldsAre) {
+TEST_F(Options, HelpNamesTheFolderOfWorlds) {
     const auto help = left({"simulate", "--help"}).text;
     for (const NamedWorld& world : kWorlds) {
         const TruthGrid truth = truth_of(world.make(), 0.5);
@@ -301,7 +301,7 @@ TEST_F(Options, HelpTellsWhereWorldsAre) {
     }
 }
 
-TEST_F(Options, HelpTellsWhereLogsEnd) { EXPECT_THAT(left({"--help"}).text, HasSubstr("for logs at most 50")); }
+TEST_F(Options, HelpNamesTheEndOfLogs) { EXPECT_THAT(left({"--help"}).text, HasSubstr("for logs at most 50")); }
 
 TEST_F(Options, HelpAndVersionAreNotErrors) {
     EXPECT_EQ(left({"--help"}).code, kExitDone);

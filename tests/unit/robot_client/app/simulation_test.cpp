@@ -26,7 +26,7 @@ PreparedSource prepared(const std::string& drive, const std::string& world = "ro
     return std::move(*result);
 }
 
-TEST(Simulation, EachDriveHasAFingerprintOfItsOwn) {
+TEST(Simulation, EachDriveHasItsOwnFingerprint) {
     const std::set<std::string> fingerprints{prepared("wall_follower").fingerprint,
                                              prepared("zigzag").fingerprint,
                                              prepared("waypoints").fingerprint,
@@ -37,7 +37,7 @@ TEST(Simulation, EachDriveHasAFingerprintOfItsOwn) {
     EXPECT_EQ(prepared("waypoints", "room", "1,2").fingerprint, prepared("waypoints", "room", "1.0 2.0;").fingerprint);
 }
 
-TEST(Simulation, OneThatExploresIsLiveAndNothingIdentifiesItsScans) {
+TEST(Simulation, ExplorerIsLiveWithoutFingerprint) {
     const auto exploring = prepared("explore");
     EXPECT_EQ(exploring.source, nullptr);
     ASSERT_NE(exploring.live, nullptr);
@@ -46,9 +46,9 @@ TEST(Simulation, OneThatExploresIsLiveAndNothingIdentifiesItsScans) {
     EXPECT_TRUE(exploring.live->can_wait());
 }
 
-TEST(Simulation, ADriveThatIsDoneEndsIt) {
+TEST(Simulation, EndsWithItsDrive) {
     auto source = prepared("waypoints", "room", "1,3.5").source;
-    EXPECT_EQ(source->scan_count(), std::nullopt) << "nobody knows before";
+    EXPECT_EQ(source->scan_count(), std::nullopt) << "not known in advance";
     std::uint64_t scans = 0;
     while (*source->next()) ASSERT_LT(++scans, 6000U);
     EXPECT_GT(scans, 50U);
@@ -57,13 +57,13 @@ TEST(Simulation, ADriveThatIsDoneEndsIt) {
     EXPECT_FALSE(*source->next());
 }
 
-TEST(Simulation, WaypointsWhereNoRobotCanBeAreToldWithTheReason) {
+TEST(Simulation, UnreachableWaypointsAreRefusedWithTheReason) {
     const World room = make_room();
     const Box inner = *std::ranges::find_if(
         room.solids, [](const Box& box) { return std::max(std::abs(box.x_min), std::abs(box.x_max)) < 4.0; });
     const Point2 middle{(inner.x_min + inner.x_max) / 2.0, (inner.y_min + inner.y_max) / 2.0};
-    const Point2 beside{inner.x_min - 0.1, middle.y};
-    auto source = prepared("waypoints", "room", to_text({{40.0, 0.0}, middle, beside})).source;
+    const Point2 outside{inner.x_min - 0.1, middle.y};
+    auto source = prepared("waypoints", "room", to_text({{40.0, 0.0}, middle, outside})).source;
     while (*source->next()) {
     }
     EXPECT_THAT(source->remarks(),
@@ -72,7 +72,7 @@ TEST(Simulation, WaypointsWhereNoRobotCanBeAreToldWithTheReason) {
     EXPECT_THAT(source->remarks(), testing::EndsWith(") too close to an obstacle"));
 }
 
-TEST(Simulation, ALimitEndsADriveThatWouldEndLater) {
+TEST(Simulation, LimitEndsALongerDrive) {
     SimulateOptions simulate;
     simulate.world = "room";
     simulate.drive = "zigzag";
@@ -86,10 +86,10 @@ TEST(Simulation, ALimitEndsADriveThatWouldEndLater) {
     EXPECT_EQ(source->scan_count(), 20U);
 }
 
-TEST(Simulation, EveryWorldWithANameHasATourThatKeepsClearOfWhatStandsThere) {
+TEST(Simulation, NamedWorldsHaveCollisionFreeTours) {
     for (const NamedWorld& named : kWorlds) {
         World world = named.make();
-        world.walkers.clear(); // they come and go
+        world.walkers.clear(); // they move
         const auto tour = tour_of(named.name);
         EXPECT_GT(tour.size(), 5U) << named.name;
         for (const Point2& waypoint : tour) {

@@ -25,14 +25,14 @@ const Summary kSummary{"lab",
                        std::nullopt,
                        ""};
 
-TEST(SummaryJson, TellsWhatWasStoredBeforeAndWhatWasSentNow) {
+TEST(SummaryJson, HasScansStoredBeforeAndSentNow) {
     EXPECT_EQ(
         summary_json(kSummary),
         R"({"scans":38,"acknowledged":25,"stored_before":10,"sent":18,"bytes":4321,"seconds":1.500,)"
         R"("skipped_lines":3,"reconnects":2,"waiting":7,"dropped":1,"session":"lab","robot":"r1","source":"carmen:9f3a","order":"time"})");
 }
 
-TEST(SummaryJson, OfARefusedRobotSaysWhyAndHowManyScansThereAre) {
+TEST(SummaryJson, RefusedRobotHasReasonAndScanCount) {
     Summary refused = kSummary;
     refused.status = {};
     refused.scan_count = 910;
@@ -45,7 +45,7 @@ TEST(SummaryJson, OfARefusedRobotSaysWhyAndHowManyScansThereAre) {
         R"("remarks":"7 m driven","error":"hello.session is \"lab\",\nwhich is full"})");
 }
 
-TEST(SummaryJson, OfASensorThatNeverReachedItsServerCountsWhatItTook) {
+TEST(SummaryJson, CountsScansWithoutAServer) {
     Summary sensor = kSummary;
     sensor.status = {.waiting = 170};
     sensor.order = {};

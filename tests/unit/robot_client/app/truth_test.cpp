@@ -11,7 +11,7 @@
 namespace scanloom::robot {
 namespace {
 
-TEST(Truth, WhatIsWrittenIsAWorldOfTheSameTruth) {
+TEST(Truth, WrittenWorldHasTheSameTruth) {
     const auto folder = std::filesystem::path(testing::TempDir()) / "scanloom truth_test";
     std::filesystem::remove_all(folder);
     const std::string prefix = (folder / "deep" / "the room: 1").string();
@@ -24,7 +24,7 @@ TEST(Truth, WhatIsWrittenIsAWorldOfTheSameTruth) {
     std::filesystem::remove_all(folder);
 }
 
-TEST(Truth, IsThatOfEveryWorldAndOfTheWalkersOneWithoutThem) {
+TEST(Truth, WrittenMapHasTheTruthOfEveryNamedWorld) {
     const std::string prefix = std::filesystem::path(testing::TempDir()) / "scanloom_truth_of";
     for (const NamedWorld& world : kWorlds) {
         ASSERT_TRUE(write_truth({std::string(world.name), 0.2, prefix})) << world.name;
@@ -35,7 +35,7 @@ TEST(Truth, IsThatOfEveryWorldAndOfTheWalkersOneWithoutThem) {
     for (const char* end : {".pgm", ".yaml"}) std::filesystem::remove(prefix + end);
 }
 
-TEST(Truth, WhatCannotBeWrittenIsSaid) {
+TEST(Truth, WriteFailureIsReported) {
     EXPECT_THAT(write_truth({"room", 0.1, "/proc/none/room"}).error().message,
                 testing::HasSubstr("/proc/none: the folder cannot be created"));
     EXPECT_THAT(write_truth({"room", 0.1, "/proc/room"}).error().message,

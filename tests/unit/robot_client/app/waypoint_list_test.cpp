@@ -23,20 +23,20 @@ protected:
     TemporaryDirectory directory_;
 };
 
-TEST_F(WaypointList, IsWrittenInOneLine) {
+TEST_F(WaypointList, IsReadFromOneLine) {
     const auto waypoints = read_waypoints("1,2.5; -3 , +4;1e1 0;");
     ASSERT_TRUE(waypoints);
     EXPECT_EQ(*waypoints, (std::vector<Point2>{{1.0, 2.5}, {-3.0, 4.0}, {10.0, 0.0}}));
     EXPECT_EQ(to_text(*waypoints), "1,2.5;-3,4;10,0");
 }
 
-TEST_F(WaypointList, OrInAFile) {
+TEST_F(WaypointList, IsReadFromAFile) {
     const auto waypoints = read_waypoints(file("# a tour\n1 2.5\r\n\n-3,4 # there\n"));
     ASSERT_TRUE(waypoints);
     EXPECT_EQ(*waypoints, (std::vector<Point2>{{1.0, 2.5}, {-3.0, 4.0}}));
 }
 
-TEST_F(WaypointList, WhatIsNoneIsNamedWithItsPlace) {
+TEST_F(WaypointList, ErrorsNameTheirPosition) {
     EXPECT_THAT(read_waypoints("1,2;3;4,5").error().message, HasSubstr("number 2: '3'"));
     EXPECT_THAT(read_waypoints("1,2;;4,5").error().message, HasSubstr("number 2: ''"));
     EXPECT_THAT(read_waypoints("1,2,3").error().message, HasSubstr("number 1"));
@@ -45,7 +45,7 @@ TEST_F(WaypointList, WhatIsNoneIsNamedWithItsPlace) {
     EXPECT_THAT(read_waypoints(file("nan 1\n")).error().message, HasSubstr("line 1"));
 }
 
-TEST_F(WaypointList, HoldsOneAtLeastAndTenThousandAtMost) {
+TEST_F(WaypointList, HasOneToTenThousandWaypoints) {
     EXPECT_THAT(read_waypoints(";").error().message, HasSubstr("the list is empty"));
     EXPECT_THAT(read_waypoints(file("# none\n")).error().message, HasSubstr("the list is empty"));
     std::string many;
@@ -55,7 +55,7 @@ TEST_F(WaypointList, HoldsOneAtLeastAndTenThousandAtMost) {
     EXPECT_EQ(read_waypoints(file(many))->size(), 10'000U);
 }
 
-TEST_F(WaypointList, AFileThatIsNotThereIsSaidToBeNeither) {
+TEST_F(WaypointList, MissingFileIsNotFound) {
     const auto waypoints = read_waypoints("/nonexistent/tour.txt");
     ASSERT_FALSE(waypoints);
     EXPECT_EQ(waypoints.error().code, Errc::kNotFound);

@@ -154,7 +154,7 @@ TEST_F(LocatingSourceTest, TurnsOfARefusedPlaceAreDropped) {
 
 TEST_F(LocatingSourceTest, RepeatsTheRequestIfTheServerIsOverloaded) {
     auto source = replayed(lidar_.turns_at(kHere, 20));
-    const Error busy{Errc::kOverloaded, "too many robots ask at this moment; ask again soon"};
+    const Error busy{Errc::kOverloaded, "too many requests of robots are waiting at this moment; try again soon"};
     source.ask_with(answers({busy, Error{Errc::kShuttingDown, "the server is shutting down"}, busy, kFound}));
     EXPECT_EQ(poses_of(source).size(), 20U);
     EXPECT_TRUE(outcome_);
@@ -166,7 +166,8 @@ TEST_F(LocatingSourceTest, RepeatsTheRequestIfTheServerIsOverloaded) {
 TEST_F(LocatingSourceTest, StopEndsTheWaitBeforeARetry) {
     LocatingSource source(std::make_unique<WaitingLidar>(lidar_.turns_at(kHere, 20)), {}, record_messages(),
                           std::chrono::hours(1));
-    source.ask_with(answers({Error{Errc::kOverloaded, "too many robots ask at this moment; ask again soon"}}));
+    source.ask_with(
+        answers({Error{Errc::kOverloaded, "too many requests of robots are waiting at this moment; try again soon"}}));
     const Given given = next(source, [&] { source.stop(); });
     EXPECT_EQ(requests_, 1U);
     EXPECT_EQ(given.error().code, Errc::kNotFound);

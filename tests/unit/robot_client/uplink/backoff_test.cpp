@@ -7,7 +7,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-TEST(Backoff, DoublesToItsLongestWithJitterAndStartsAgainAfterReset) {
+TEST(Backoff, DoublesToItsMaximumAndRestartsAfterReset) {
     Backoff backoff(1);
     std::chrono::milliseconds longest = 200ms;
     for (int i = 0; i < 12; ++i) {
@@ -20,7 +20,7 @@ TEST(Backoff, DoublesToItsLongestWithJitterAndStartsAgainAfterReset) {
     EXPECT_LE(backoff.next(), 200ms);
 }
 
-TEST(Backoff, RobotsWithDifferentSeedsDoNotReturnTogether) {
+TEST(Backoff, DifferentSeedsGiveDifferentDelays) {
     Backoff one(1);
     Backoff two(2);
     int same = 0;

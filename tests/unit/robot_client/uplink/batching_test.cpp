@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-/// When scans wait for one another, and how they travel.
+/// Batching and compression of scans.
 namespace scanloom::robot {
 namespace {
 
@@ -27,7 +27,7 @@ protected:
 
     void connect(std::uint64_t durable = 0) {
         client_->protocol.open(now_);
-        said();
+        sent_batches();
         ASSERT_FALSE(client_->receive(wire::Welcome{"a1", durable, {}, 1 << 20, server_understands_}, now_));
     }
 
@@ -39,8 +39,8 @@ protected:
         }
     }
 
-    /// Scans of each batch that it has to say now.
-    std::vector<std::size_t> said() {
+    /// Returns the number of scans of each batch that it sends now.
+    std::vector<std::size_t> sent_batches() {
         std::vector<std::size_t> batches;
         while (const auto frame = client_->next_frame(now_)) {
             auto message = *wire::decode(std::string_view(*frame).substr(wire::kLengthPrefixBytes));
@@ -61,64 +61,64 @@ protected:
     int compressed_ = 0;
 };
 
-TEST_F(Batching, WithoutADelayEachScanGoesAtOnce) {
+TEST_F(Batching, WithoutDelayEachScanIsSentAtOnce) {
     begin(0ms);
     for (int n = 0; n < 3; ++n) {
         add(1);
-        EXPECT_THAT(said(), ElementsAre(1));
+        EXPECT_THAT(sent_batches(), ElementsAre(1));
     }
 }
 
-TEST_F(Batching, ScansWaitForOthersUntilTheOldestHasWaitedLongEnough) {
+TEST_F(Batching, BatchIsSentWhenItsOldestScanIsDue) {
     begin(1s);
     add(1);
-    EXPECT_THAT(said(), IsEmpty());
+    EXPECT_THAT(sent_batches(), IsEmpty());
     EXPECT_EQ(client_->protocol.deadline(now_), now_ + 1s);
     now_ += 600ms;
     add(1);
-    EXPECT_THAT(said(), IsEmpty());
+    EXPECT_THAT(sent_batches(), IsEmpty());
     EXPECT_EQ(client_->protocol.deadline(now_), now_ + 400ms);
     now_ += 399ms;
-    EXPECT_THAT(said(), IsEmpty());
+    EXPECT_THAT(sent_batches(), IsEmpty());
     now_ += 1ms;
-    EXPECT_THAT(said(), ElementsAre(2));
+    EXPECT_THAT(sent_batches(), ElementsAre(2));
     add(1);
-    EXPECT_THAT(said(), IsEmpty()) << "the next waits for itself";
+    EXPECT_THAT(sent_batches(), IsEmpty()) << "the next scan has its own delay";
 }
 
-TEST_F(Batching, AFullBatchDoesNotWait) {
+TEST_F(Batching, FullBatchDoesNotWait) {
     begin(1h);
     add(10); // of some 900 bytes each
-    EXPECT_THAT(said(), ElementsAre(4, 4)) << "the last two may be joined by others";
+    EXPECT_THAT(sent_batches(), ElementsAre(4, 4)) << "the last two wait for others";
 }
 
-TEST_F(Batching, TheLastScansDoNotWait) {
+TEST_F(Batching, LastScansDoNotWait) {
     begin(1h);
     add(2);
     client_->protocol.end();
-    EXPECT_THAT(said(), ElementsAre(2));
+    EXPECT_THAT(sent_batches(), ElementsAre(2));
 }
 
-TEST_F(Batching, WhatIsSentAgainDoesNotWaitAgain) {
+TEST_F(Batching, ResentScansDoNotWaitAgain) {
     begin(1s);
     add(2);
     now_ += 1s;
-    EXPECT_THAT(said(), ElementsAre(2));
+    EXPECT_THAT(sent_batches(), ElementsAre(2));
     client_->protocol.close();
     connect(1);
-    EXPECT_THAT(said(), ElementsAre(1));
+    EXPECT_THAT(sent_batches(), ElementsAre(1));
 }
 
-TEST_F(Batching, WhereThereIsNoCreditADelayThatIsOverWakesNobody) {
+TEST_F(Batching, ExpiredDelayWithoutCreditSetsNoDeadline) {
     begin(10ms);
     ASSERT_FALSE(client_->receive(wire::Ack{0, 0, 1}, now_));
     add(1);
     now_ += 10ms;
-    EXPECT_THAT(said(), IsEmpty());
-    EXPECT_GT(client_->protocol.deadline(now_), now_) << "only an ack can help";
+    EXPECT_THAT(sent_batches(), IsEmpty());
+    EXPECT_GT(client_->protocol.deadline(now_), now_) << "only an ack gives new credit";
 }
 
-TEST_F(Batching, OnlyFullBatchesAreSentIfTheClientWantsThatAndTheLastScansGoAlone) {
+TEST_F(Batching, FullBatchesOnlySendsTheRestAtTheEnd) {
     link::ClientProtocolOptions options;
     options.hello.robot = "r1";
     options.hello.session = "s1";
@@ -127,14 +127,14 @@ TEST_F(Batching, OnlyFullBatchesAreSentIfTheClientWantsThatAndTheLastScansGoAlon
     client_.emplace(options, now_);
     connect();
     add(2);
-    EXPECT_THAT(said(), IsEmpty());
+    EXPECT_THAT(sent_batches(), IsEmpty());
     add(5);
-    EXPECT_THAT(said(), ElementsAre(3, 3));
+    EXPECT_THAT(sent_batches(), ElementsAre(3, 3));
     client_->protocol.end();
-    EXPECT_THAT(said(), ElementsAre(1));
+    EXPECT_THAT(sent_batches(), ElementsAre(1));
 }
 
-TEST_F(Batching, ScansThatCameBeforeTheServerGoBehindThoseItHolds) {
+TEST_F(Batching, ScansQueuedBeforeTheWelcomeFollowTheServersScans) {
     link::ClientProtocolOptions options;
     options.hello.robot = "r1";
     options.hello.session = "s1";
@@ -142,7 +142,7 @@ TEST_F(Batching, ScansThatCameBeforeTheServerGoBehindThoseItHolds) {
     add(3);
     EXPECT_TRUE(client_->buffer.drop_oldest_unsent());
     connect(40);
-    EXPECT_THAT(said(), ElementsAre(2));
+    EXPECT_THAT(sent_batches(), ElementsAre(2));
     EXPECT_EQ(client_->buffer.last(), 42U);
     ASSERT_FALSE(client_->receive(wire::Ack{42, 41, 1 << 20}, now_));
     EXPECT_EQ(client_->buffer.acknowledged(), 42U);

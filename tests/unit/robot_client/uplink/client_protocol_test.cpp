@@ -41,7 +41,7 @@ class ClientProtocolTest : public testing::Test {
 protected:
     void welcome(std::uint64_t last_durable = 0, std::uint64_t credit = kPlenty, wire::Limits limits = {}) {
         client_.protocol.open(now_);
-        ASSERT_TRUE(std::holds_alternative<wire::Hello>(said().at(0)));
+        ASSERT_TRUE(std::holds_alternative<wire::Hello>(sent_messages().at(0)));
         ASSERT_FALSE(client_.receive(wire::Welcome{"a1", last_durable, limits, credit}, now_));
     }
 
@@ -53,8 +53,8 @@ protected:
         return client_.receive(wire::Ack{durable, durable, credit}, now_);
     }
 
-    /// Everything it has to say now.
-    std::vector<wire::Message> said() {
+    /// Returns the messages that it sends now.
+    std::vector<wire::Message> sent_messages() {
         std::vector<wire::Message> messages;
         while (auto frame = client_.next_frame(now_)) {
             frame_bytes_.push_back(frame->size());
@@ -63,10 +63,10 @@ protected:
         return messages;
     }
 
-    /// The seqs of all scans it has to say now.
-    std::vector<std::uint64_t> said_seqs() {
+    /// Returns the seqs of the scans that it sends now.
+    std::vector<std::uint64_t> sent_seqs() {
         std::vector<std::uint64_t> seqs;
-        for (const auto& message : said()) {
+        for (const auto& message : sent_messages()) {
             if (const auto* batch = std::get_if<wire::ScanBatch>(&message)) {
                 for (const Scan& scan : batch->scans) seqs.push_back(scan.seq);
             }
@@ -86,17 +86,17 @@ std::vector<std::uint64_t> from_to(std::uint64_t first, std::uint64_t last) {
     return seqs;
 }
 
-TEST_F(ClientProtocolTest, SaysHelloFirstAndNothingElseBeforeTheWelcome) {
-    EXPECT_TRUE(said().empty()) << "there is no link yet";
+TEST_F(ClientProtocolTest, SendsOnlyHelloBeforeTheWelcome) {
+    EXPECT_TRUE(sent_messages().empty()) << "there is no link yet";
     client_.protocol.open(now_);
-    const auto messages = said();
+    const auto messages = sent_messages();
     ASSERT_EQ(messages.size(), 1U);
     EXPECT_EQ(std::get<wire::Hello>(messages[0]).robot, "r1");
     EXPECT_FALSE(client_.protocol.resumed_after());
 }
 
-/// An earlier link's hello may arrive late; another program comes back again and again.
-TEST_F(ClientProtocolTest, GivesUpOnlyWhenItIsReplacedAgainAndAgain) {
+/// One replacement may be a late hello of an earlier link; repeated ones are another program.
+TEST_F(ClientProtocolTest, GivesUpAfterRepeatedReplacement) {
     const wire::LinkError replaced{{Errc::kReplaced, "robot 'r1' connected again"}, false};
     const auto end_of_link = [&] {
         welcome();
@@ -117,45 +117,45 @@ TEST_F(ClientProtocolTest, GivesUpOnlyWhenItIsReplacedAgainAndAgain) {
     EXPECT_THAT(last.error.message, HasSubstr("another program uses the same --robot and --session"));
 }
 
-TEST_F(ClientProtocolTest, DescribesASensorBeforeItsFirstScanAndOnceALink) {
+TEST_F(ClientProtocolTest, DescribesASensorOncePerLinkBeforeItsFirstScan) {
     welcome();
     add(2);
-    auto messages = said();
+    auto messages = sent_messages();
     ASSERT_EQ(messages.size(), 2U);
     EXPECT_EQ(std::get<Sensor>(messages[0]), *laser_);
     EXPECT_EQ(std::get<wire::ScanBatch>(messages[1]).scans.size(), 2U);
     add(1);
-    messages = said();
+    messages = sent_messages();
     ASSERT_EQ(messages.size(), 1U);
     EXPECT_TRUE(std::holds_alternative<wire::ScanBatch>(messages[0]));
     client_.protocol.close();
     welcome(3);
     add(1);
-    EXPECT_TRUE(std::holds_alternative<Sensor>(said().at(0))) << "a new link knows no sensors";
+    EXPECT_TRUE(std::holds_alternative<Sensor>(sent_messages().at(0))) << "a new link needs all descriptions";
 }
 
-TEST_F(ClientProtocolTest, ADescriptionThatChangesIsSaidBetweenTheScansItDivides) {
+TEST_F(ClientProtocolTest, ChangedDescriptionIsSentBetweenItsScans) {
     welcome();
     add(2);
     client_.add(observation(laser(20.0)), now_);
     add(1);
-    const auto messages = said();
+    const auto messages = sent_messages();
     std::vector<std::string> names;
     for (const auto& message : messages) names.emplace_back(wire::name_of(message));
     EXPECT_EQ(names, (std::vector<std::string>{"sensor_description", "scan_batch", "sensor_description", "scan_batch",
                                                "sensor_description", "scan_batch"}));
 }
 
-TEST_F(ClientProtocolTest, ScansWaitingTogetherShareFramesOfAboutTheWantedSize) {
+TEST_F(ClientProtocolTest, WaitingScansShareFramesOfTheConfiguredSize) {
     welcome(0, 100 << 20);
     add(500);
     frame_bytes_.clear();
-    EXPECT_EQ(said_seqs(), from_to(1, 500));
+    EXPECT_EQ(sent_seqs(), from_to(1, 500));
     EXPECT_LT(frame_bytes_.size(), 20U);
     for (const std::size_t bytes : frame_bytes_) EXPECT_LE(bytes, options().batch_bytes_max);
 }
 
-TEST_F(ClientProtocolTest, NeverHasMoreThanItsCreditUnderWay) {
+TEST_F(ClientProtocolTest, NeverExceedsItsCredit) {
     std::mt19937 random(5);
     welcome(0, 5000);
     add(300);
@@ -184,7 +184,7 @@ TEST_F(ClientProtocolTest, NeverHasMoreThanItsCreditUnderWay) {
     EXPECT_EQ(durable, 300U);
 }
 
-TEST_F(ClientProtocolTest, CreditIsOfWhatTheBatchesHoldNotOfWhatTravels) {
+TEST_F(ClientProtocolTest, CreditCountsUncompressedBytes) {
     link::ClientProtocolOptions compressing = options();
     compressing.compress = true;
     ClientLink client{compressing, kStart};
@@ -207,63 +207,63 @@ TEST_F(ClientProtocolTest, CreditIsOfWhatTheBatchesHoldNotOfWhatTravels) {
     EXPECT_LE(held, 2000U);
 }
 
-TEST_F(ClientProtocolTest, WithoutCreditItWaits) {
+TEST_F(ClientProtocolTest, WaitsWithoutCredit) {
     welcome(0, 0);
     add(1);
-    EXPECT_TRUE(said_seqs().empty());
+    EXPECT_TRUE(sent_seqs().empty());
     ASSERT_FALSE(ack(0, kPlenty));
-    EXPECT_EQ(said_seqs(), from_to(1, 1));
+    EXPECT_EQ(sent_seqs(), from_to(1, 1));
 }
 
-TEST_F(ClientProtocolTest, KeepsToTheServersBatchLimits) {
+TEST_F(ClientProtocolTest, KeepsTheServersBatchLimits) {
     welcome(0, kPlenty, {2000, 4096, 3});
     add(7);
-    for (const auto& message : said()) {
+    for (const auto& message : sent_messages()) {
         const auto* batch = std::get_if<wire::ScanBatch>(&message);
         EXPECT_LE(batch ? batch->scans.size() : 0U, 3U);
     }
     for (const std::size_t bytes : frame_bytes_) EXPECT_LE(bytes, 2000 + wire::kLengthPrefixBytes);
 }
 
-TEST_F(ClientProtocolTest, AScanTheServerWillNotTakeIsAFinalError) {
+TEST_F(ClientProtocolTest, ScanBeyondTheServersLimitsIsAFinalError) {
     welcome(0, kPlenty, {kPlenty, 100, 3});
     add(1);
-    EXPECT_TRUE(said_seqs().empty());
+    EXPECT_TRUE(sent_seqs().empty());
     const auto failure = client_.protocol.check(now_);
     ASSERT_TRUE(failure);
     EXPECT_FALSE(failure->retryable);
     EXPECT_THAT(failure->error.message, HasSubstr("scan 1 has 180 beams, the server takes at most 100"));
 }
 
-TEST_F(ClientProtocolTest, AFreshProgramContinuesBehindTheServersScans) {
+TEST_F(ClientProtocolTest, NewProgramContinuesAfterTheServersScans) {
     welcome(41);
     EXPECT_EQ(client_.protocol.resumed_after(), 41U);
     add(2);
-    EXPECT_EQ(said_seqs(), from_to(42, 43));
+    EXPECT_EQ(sent_seqs(), from_to(42, 43));
 }
 
-TEST_F(ClientProtocolTest, AfterAReconnectItResendsWhatWasNotDurable) {
+TEST_F(ClientProtocolTest, ReconnectResendsScansThatAreNotDurable) {
     welcome();
     add(10);
-    EXPECT_EQ(said_seqs(), from_to(1, 10));
+    EXPECT_EQ(sent_seqs(), from_to(1, 10));
     ASSERT_FALSE(ack(4));
     client_.protocol.close();
-    EXPECT_TRUE(said().empty());
+    EXPECT_TRUE(sent_messages().empty());
     add(2);
     welcome(6); // the server had stored two more than it could acknowledge
-    EXPECT_EQ(said_seqs(), from_to(7, 12));
+    EXPECT_EQ(sent_seqs(), from_to(7, 12));
     EXPECT_EQ(client_.buffer.acknowledged(), 6U);
     EXPECT_EQ(client_.protocol.welcomes(), 2U);
 }
 
-TEST_F(ClientProtocolTest, AServerThatLostAcknowledgedScansIsAFinalError) {
+TEST_F(ClientProtocolTest, LostAcknowledgedScansAreAFinalError) {
     welcome();
     add(10);
-    said();
+    sent_messages();
     ASSERT_FALSE(ack(8));
     client_.protocol.close();
     client_.protocol.open(now_);
-    said();
+    sent_messages();
     const auto failure = client_.receive(wire::Welcome{"a1", 5, {}, kPlenty}, now_);
     ASSERT_TRUE(failure);
     EXPECT_FALSE(failure->retryable);
@@ -271,14 +271,14 @@ TEST_F(ClientProtocolTest, AServerThatLostAcknowledgedScansIsAFinalError) {
     EXPECT_EQ(client_.protocol.lost_scans(), 3U);
 }
 
-TEST_F(ClientProtocolTest, ASessionMadeAnewMeanwhileIsAFinalError) {
+TEST_F(ClientProtocolTest, RecreatedSessionIsAFinalError) {
     welcome();
     add(10);
-    said();
+    sent_messages();
     ASSERT_FALSE(ack(8));
     client_.protocol.close();
     client_.protocol.open(now_);
-    said();
+    sent_messages();
     const auto failure = client_.receive(wire::Welcome{"b2", 0, {}, kPlenty}, now_);
     ASSERT_TRUE(failure);
     EXPECT_FALSE(failure->retryable);
@@ -286,7 +286,7 @@ TEST_F(ClientProtocolTest, ASessionMadeAnewMeanwhileIsAFinalError) {
     EXPECT_EQ(client_.protocol.lost_scans(), 8U);
 }
 
-TEST_F(ClientProtocolTest, TheServersErrorsEndTheLinkAsTheySay) {
+TEST_F(ClientProtocolTest, ServerErrorsEndTheLink) {
     welcome();
     for (const bool retryable : {true, false}) {
         const wire::LinkError said_by_server{{Errc::kConflict, "cell_size is 0.05 there"}, retryable};
@@ -295,7 +295,7 @@ TEST_F(ClientProtocolTest, TheServersErrorsEndTheLinkAsTheySay) {
     EXPECT_TRUE(client_.receive(wire::Goodbye{"restarting"}, now_)->retryable);
 }
 
-TEST_F(ClientProtocolTest, FramesOutOfPlaceEndTheLink) {
+TEST_F(ClientProtocolTest, UnexpectedFramesEndTheLink) {
     client_.protocol.open(now_);
     EXPECT_THAT(client_.receive(wire::Ack{}, now_)->error.message, HasSubstr("unexpected ack"));
     EXPECT_TRUE(client_.receive(wire::Welcome{}, now_)) << "before the hello";
@@ -307,28 +307,28 @@ TEST_F(ClientProtocolTest, FramesOutOfPlaceEndTheLink) {
     EXPECT_FALSE(client_.receive(wire::Correction{}, now_));
 }
 
-TEST_F(ClientProtocolTest, AnAckThatFallsBackIsReadForItsCreditOnly) {
+TEST_F(ClientProtocolTest, OlderAckOnlyUpdatesTheCredit) {
     welcome();
     add(3);
-    said();
+    sent_messages();
     ASSERT_FALSE(ack(2));
     ASSERT_FALSE(ack(1));
     EXPECT_EQ(client_.buffer.acknowledged(), 2U);
 }
 
-TEST_F(ClientProtocolTest, AnswersPingsAndPingsInSilence) {
+TEST_F(ClientProtocolTest, AnswersPingsAndPingsWhenIdle) {
     welcome();
     ASSERT_FALSE(client_.receive(wire::Ping{77}, now_));
-    EXPECT_EQ(said(), (std::vector<wire::Message>{wire::Pong{77}}));
+    EXPECT_EQ(sent_messages(), (std::vector<wire::Message>{wire::Pong{77}}));
     now_ += 4999ms;
-    EXPECT_TRUE(said().empty());
+    EXPECT_TRUE(sent_messages().empty());
     EXPECT_EQ(client_.protocol.deadline(now_), now_ + 1ms);
     now_ += 1ms;
-    EXPECT_TRUE(std::holds_alternative<wire::Ping>(said().at(0)));
-    EXPECT_TRUE(said().empty()) << "one ping at a time";
+    EXPECT_TRUE(std::holds_alternative<wire::Ping>(sent_messages().at(0)));
+    EXPECT_TRUE(sent_messages().empty()) << "one ping at a time";
 }
 
-TEST_F(ClientProtocolTest, ASilentLinkIsDeadAndAnyFrameKeepsItAlive) {
+TEST_F(ClientProtocolTest, SilentLinkFailsAndAnyFrameKeepsItAlive) {
     welcome();
     now_ += 14s;
     EXPECT_FALSE(client_.protocol.check(now_));
@@ -341,31 +341,31 @@ TEST_F(ClientProtocolTest, ASilentLinkIsDeadAndAnyFrameKeepsItAlive) {
     EXPECT_THAT(client_.protocol.check(now_)->error.message, HasSubstr("nothing came from the server for 15 s"));
 }
 
-TEST_F(ClientProtocolTest, AHelloWithoutAnswerIsADeadLink) {
+TEST_F(ClientProtocolTest, UnansweredHelloFailsTheLink) {
     client_.protocol.open(now_);
-    said();
+    sent_messages();
     EXPECT_EQ(client_.protocol.deadline(now_), kStart + 10s);
     EXPECT_FALSE(client_.protocol.check(now_ + 9999ms));
     EXPECT_THAT(client_.protocol.check(now_ + 10s)->error.message, HasSubstr("did not answer the hello within 10 s"));
 }
 
-TEST_F(ClientProtocolTest, SaysGoodbyeOnceEverythingIsDurable) {
+TEST_F(ClientProtocolTest, SendsGoodbyeWhenAllScansAreDurable) {
     welcome();
     add(2);
-    said();
+    sent_messages();
     client_.protocol.end();
-    EXPECT_TRUE(said().empty());
+    EXPECT_TRUE(sent_messages().empty());
     ASSERT_FALSE(ack(1));
     EXPECT_FALSE(client_.protocol.is_done());
     ASSERT_FALSE(ack(2));
     EXPECT_TRUE(client_.protocol.is_done());
-    EXPECT_TRUE(std::holds_alternative<wire::Goodbye>(said().at(0)));
+    EXPECT_TRUE(std::holds_alternative<wire::Goodbye>(sent_messages().at(0)));
     EXPECT_TRUE(client_.protocol.said_goodbye());
     now_ += 60s;
-    EXPECT_TRUE(said().empty()) << "goodbye is the last word";
+    EXPECT_TRUE(sent_messages().empty()) << "nothing follows the goodbye";
 }
 
-TEST_F(ClientProtocolTest, StallsOnlyWhileSomethingWaitsAndProgressEndsIt) {
+TEST_F(ClientProtocolTest, StallsOnlyWithWaitingScansUntilProgress) {
     EXPECT_EQ(client_.protocol.stalled_since(), kStart) << "the server was never reached";
     now_ += 5s;
     welcome();
@@ -373,19 +373,19 @@ TEST_F(ClientProtocolTest, StallsOnlyWhileSomethingWaitsAndProgressEndsIt) {
     now_ += 5s;
     add(2);
     EXPECT_EQ(client_.protocol.stalled_since(), now_);
-    said();
+    sent_messages();
     now_ += 5s;
     ASSERT_FALSE(ack(1));
     EXPECT_EQ(client_.protocol.stalled_since(), now_);
     const Time progress = now_;
     now_ += 5s;
     ASSERT_FALSE(ack(1));
-    EXPECT_EQ(client_.protocol.stalled_since(), progress) << "an ack that says nothing new is no progress";
+    EXPECT_EQ(client_.protocol.stalled_since(), progress) << "a repeated ack is no progress";
     ASSERT_FALSE(ack(2));
     EXPECT_EQ(client_.protocol.stalled_since(), std::nullopt);
 }
 
-TEST(ClientProtocol, AnyCutOfTheServersBytesGivesTheSameResult) {
+TEST(ClientProtocol, AnySplitOfTheServersBytesGivesTheSameResult) {
     std::string bytes;
     wire::encode(wire::Welcome{"a1", 5, {}, kPlenty}, bytes);
     wire::encode(wire::Ping{3}, bytes);
@@ -402,21 +402,21 @@ TEST(ClientProtocol, AnyCutOfTheServersBytesGivesTheSameResult) {
     }
 }
 
-TEST_F(ClientProtocolTest, BytesThatAreNoFramesAreAnotherProgramBeforeTheWelcomeAndDamageAfterIt) {
+TEST_F(ClientProtocolTest, InvalidBytesAreAFinalErrorOnlyBeforeTheWelcome) {
     client_.protocol.open(now_);
     const auto other = client_.receive_bytes("HTTP/1.1 400 Bad Request\r\n", now_);
     ASSERT_TRUE(other);
     EXPECT_FALSE(other->retryable);
-    EXPECT_THAT(other->error.message, HasSubstr("what listens at host:1 does not speak Scanloom's robot link"));
+    EXPECT_THAT(other->error.message, HasSubstr("the program at host:1 does not speak Scanloom's robot link"));
     client_.protocol.close();
     welcome();
     const auto damaged = client_.receive_bytes(std::string(4, '\xff'), now_);
     ASSERT_TRUE(damaged);
     EXPECT_TRUE(damaged->retryable);
-    EXPECT_THAT(damaged->error.message, testing::StartsWith("what the server sent cannot be read: "));
+    EXPECT_THAT(damaged->error.message, testing::StartsWith("the data from the server cannot be read: "));
 }
 
-TEST_F(ClientProtocolTest, WithoutAnEarlierRunScansOfTheServerAreAnothers) {
+TEST_F(ClientProtocolTest, ServersScansWithoutAnEarlierRunAreAConflict) {
     auto fresh = options();
     fresh.continues_earlier_run = false;
     ClientLink client(fresh, kStart);
@@ -429,9 +429,9 @@ TEST_F(ClientProtocolTest, WithoutAnEarlierRunScansOfTheServerAreAnothers) {
     EXPECT_EQ(client.protocol.lost_scans(), 0U);
 }
 
-/// A server that loses its link at random and keeps a random part of what reached it: in the end it has every scan
+/// A server that loses its link at random and stores a random part of the received scans: at the end it has every scan
 /// once.
-TEST(ClientProtocol, EveryScanArrivesOnceAndInOrderHoweverLinksBreak) {
+TEST(ClientProtocol, ScansArriveOnceInOrderOverBrokenLinks) {
     for (unsigned seed = 0; seed < 200; ++seed) {
         std::mt19937 random(seed);
         Time now = kStart;
@@ -455,7 +455,7 @@ TEST(ClientProtocol, EveryScanArrivesOnceAndInOrderHoweverLinksBreak) {
                 if (auto frame = robot.next_frame(now)) {
                     const auto message = *wire::decode(std::string_view(*frame).substr(wire::kLengthPrefixBytes));
                     const auto* batch = std::get_if<wire::ScanBatch>(&message);
-                    if (batch && random() % 10 != 0) { // else it is lost with the link
+                    if (batch && random() % 10 != 0) { // otherwise it is lost with the link
                         for (const Scan& scan : batch->scans) ASSERT_EQ(scan.seq, ++stored);
                     } else if (batch) {
                         break;
@@ -472,7 +472,7 @@ TEST(ClientProtocol, EveryScanArrivesOnceAndInOrderHoweverLinksBreak) {
     }
 }
 
-TEST_F(ClientProtocolTest, AServersTextIsShownWithoutItsControlCharacters) {
+TEST_F(ClientProtocolTest, ControlCharactersOfTheServerAreEscaped) {
     welcome();
     const auto refused = client_.receive(wire::LinkError{{Errc::kConflict, "no\x1b[2J\xc2\x9b!"}, false}, now_);
     ASSERT_TRUE(refused);
@@ -483,20 +483,20 @@ TEST_F(ClientProtocolTest, AServersTextIsShownWithoutItsControlCharacters) {
     EXPECT_LT(left->error.message.size(), 600U);
 }
 
-TEST_F(ClientProtocolTest, AServerThatDoesNotSayWhyIsSpokenFor) {
+TEST_F(ClientProtocolTest, MissingErrorMessageIsReplaced) {
     welcome();
     EXPECT_EQ(client_.receive(wire::LinkError{{Errc::kConflict, ""}, false}, now_)->error.message,
-              "the server ended the link with the error conflict and did not say why");
+              "the server ended the link with the error conflict and gave no reason");
     EXPECT_EQ(client_.receive(wire::Goodbye{}, now_)->error.message, "the server said goodbye without a reason");
 }
 
-TEST_F(ClientProtocolTest, AsksBeforeItSendsScansAndHandsOverTheReply) {
+TEST_F(ClientProtocolTest, SendsRequestsBeforeScansAndPassesOnTheReply) {
     std::vector<link::Reply> replies;
     EXPECT_TRUE(client_.protocol.ask(wire::PlanRequest{.goal = {1.0, 2.0}},
                                      [&](const link::Reply& one) { replies.push_back(one); }));
     welcome();
     add(1);
-    const auto messages = said();
+    const auto messages = sent_messages();
     ASSERT_EQ(messages.size(), 3U);
     const auto request = std::get<wire::PlanRequest>(messages[0]);
     EXPECT_EQ(request.goal, (Point2{1.0, 2.0}));
@@ -505,10 +505,10 @@ TEST_F(ClientProtocolTest, AsksBeforeItSendsScansAndHandsOverTheReply) {
     EXPECT_FALSE(client_.receive(reply, now_));
     ASSERT_EQ(replies.size(), 1U);
     EXPECT_EQ(std::get<wire::PlanReply>(replies[0]), reply);
-    EXPECT_EQ(said_seqs(), from_to(1, 0)) << "all is said";
+    EXPECT_EQ(sent_seqs(), from_to(1, 0)) << "all messages are sent";
 }
 
-TEST_F(ClientProtocolTest, AReplyThatNobodyAskedForIsAFaultOfTheServer) {
+TEST_F(ClientProtocolTest, UnexpectedReplyEndsTheLink) {
     welcome();
     const auto failure = client_.receive(wire::PlanReply{1, 5, Error{Errc::kNoPath, "a wall"}}, now_);
     ASSERT_TRUE(failure);

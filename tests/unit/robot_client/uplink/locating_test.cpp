@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-/// A robot that asks where it is.
+/// A robot that requests its localization.
 namespace scanloom::robot {
 namespace {
 
@@ -29,11 +29,11 @@ protected:
 
     void connect() {
         client_->protocol.open(now_);
-        EXPECT_EQ(said().size(), 1U);
+        EXPECT_EQ(sent_messages().size(), 1U);
         EXPECT_FALSE(client_->receive(wire::Welcome{"a1", 0, {}, 1 << 20}, now_));
     }
 
-    std::vector<wire::Message> said() {
+    std::vector<wire::Message> sent_messages() {
         std::vector<wire::Message> messages;
         while (auto frame = client_->next_frame(now_)) {
             messages.push_back(*wire::decode(std::string_view(*frame).substr(wire::kLengthPrefixBytes)));
@@ -45,7 +45,7 @@ protected:
         const auto failure =
             client_->receive(wire::LinkError{{code, "a frame without a body this program knows"}, false}, now_);
         if (failure) return failure->error;
-        ADD_FAILURE() << "the link goes on";
+        ADD_FAILURE() << "the link continues";
         return {};
     }
 
@@ -53,10 +53,10 @@ protected:
     std::optional<ClientLink> client_;
 };
 
-TEST_F(Locating, AsksAndHandsOverTheReply) {
+TEST_F(Locating, SendsTheRequestAndPassesOnTheReply) {
     std::vector<link::Reply> replies;
     const auto id = client_->protocol.ask(question(), [&](const link::Reply& reply) { replies.push_back(reply); });
-    const auto messages = said();
+    const auto messages = sent_messages();
     ASSERT_EQ(messages.size(), 1U);
     auto asked = question();
     asked.id = id.value();
@@ -68,30 +68,30 @@ TEST_F(Locating, AsksAndHandsOverTheReply) {
     EXPECT_EQ(std::get<wire::LocateReply>(replies[0]), reply);
 }
 
-TEST_F(Locating, AsksAgainOnTheNextLink) {
+TEST_F(Locating, RequestIsSentAgainOnTheNextLink) {
     EXPECT_TRUE(client_->protocol.ask(question(), [](const link::Reply&) {}));
-    EXPECT_EQ(said().size(), 1U);
+    EXPECT_EQ(sent_messages().size(), 1U);
     client_->protocol.close();
     connect();
-    EXPECT_EQ(said().size(), 1U);
+    EXPECT_EQ(sent_messages().size(), 1U);
 }
 
-TEST_F(Locating, AServerThatDoesNotKnowTheQuestionIsCalledAnEarlierOne) {
+TEST_F(Locating, UnknownRequestBlamesAnEarlierServerVersion) {
     EXPECT_TRUE(client_->protocol.ask(question(), [](const link::Reply&) {}));
-    EXPECT_EQ(said().size(), 1U);
+    EXPECT_EQ(sent_messages().size(), 1U);
     EXPECT_THAT(refused(Errc::kMalformed).message,
-                HasSubstr("; a server of an earlier version cannot tell a robot where it is: update it, or say"));
-    EXPECT_THAT(refused(Errc::kUnauthorized).message, Not(HasSubstr("earlier version")));
+                HasSubstr("; servers of earlier versions cannot localize robots: update the server, or give"));
+    EXPECT_THAT(refused(Errc::kUnauthorized).message, Not(HasSubstr("earlier versions")));
 }
 
-TEST_F(Locating, OfAServerThatWasNotAskedNothingIsGuessed) {
-    EXPECT_THAT(refused(Errc::kMalformed).message, Not(HasSubstr("earlier version"))) << "before the question";
+TEST_F(Locating, ErrorWithoutOpenRequestBlamesNoVersion) {
+    EXPECT_THAT(refused(Errc::kMalformed).message, Not(HasSubstr("earlier versions"))) << "before the request";
     EXPECT_TRUE(client_->protocol.ask(question(), [](const link::Reply&) {}));
-    EXPECT_THAT(refused(Errc::kMalformed).message, Not(HasSubstr("earlier version"))) << "before it was sent";
-    const auto messages = said();
+    EXPECT_THAT(refused(Errc::kMalformed).message, Not(HasSubstr("earlier versions"))) << "before it was sent";
+    const auto messages = sent_messages();
     const auto id = std::get<wire::LocateRequest>(messages.at(0)).id;
     EXPECT_FALSE(client_->receive(wire::LocateReply{id, 1, Error{Errc::kAmbiguous, "here or there"}}, now_));
-    EXPECT_THAT(refused(Errc::kMalformed).message, Not(HasSubstr("earlier version"))) << "after it was answered";
+    EXPECT_THAT(refused(Errc::kMalformed).message, Not(HasSubstr("earlier versions"))) << "after its reply";
 }
 
 } // namespace

@@ -8,13 +8,13 @@ namespace {
 using namespace std::chrono_literals;
 constexpr Pacer::Time kPacerStart{1000s};
 
-TEST(Pacer, SpeedZeroIsAtOnce) {
+TEST(Pacer, SpeedZeroDoesNotWait) {
     Pacer pacer(0.0);
     EXPECT_EQ(pacer.due(5.0, kPacerStart), kPacerStart);
     EXPECT_EQ(pacer.due(500.0, kPacerStart), kPacerStart);
 }
 
-TEST(Pacer, KeepsThePaceOfTheStampsFromTheFirstOn) {
+TEST(Pacer, KeepsThePaceOfTheStamps) {
     Pacer pacer(2.0);
     EXPECT_EQ(pacer.due(976052857.0, kPacerStart), kPacerStart);
     EXPECT_EQ(pacer.due(976052858.0, kPacerStart + 10s), kPacerStart + 500ms)
@@ -22,7 +22,7 @@ TEST(Pacer, KeepsThePaceOfTheStampsFromTheFirstOn) {
     EXPECT_EQ(pacer.due(976052867.0, kPacerStart + 10s), kPacerStart + 5s);
 }
 
-TEST(Pacer, AStampThatGoesBackIsDueAtOnceAndShiftsNoneAfterIt) {
+TEST(Pacer, EarlierStampIsDueAtOnceAndShiftsNoOther) {
     Pacer pacer(1.0);
     EXPECT_EQ(pacer.due(100.0, kPacerStart), kPacerStart);
     EXPECT_LT(pacer.due(99.2, kPacerStart + 1s), kPacerStart + 1s);
@@ -31,7 +31,7 @@ TEST(Pacer, AStampThatGoesBackIsDueAtOnceAndShiftsNoneAfterIt) {
     EXPECT_EQ(pacer.due(104.0, kPacerStart + 3s), kPacerStart + 4s);
 }
 
-TEST(Pacer, APauseCountsAsTenMinutesAtMostAndThePaceGoesOnBehindIt) {
+TEST(Pacer, PauseIsCutToTenMinutes) {
     Pacer pacer(2.0);
     EXPECT_EQ(pacer.due(0.0, kPacerStart), kPacerStart);
     EXPECT_EQ(pacer.due(600.0, kPacerStart), kPacerStart + 5min);
@@ -40,14 +40,14 @@ TEST(Pacer, APauseCountsAsTenMinutesAtMostAndThePaceGoesOnBehindIt) {
     EXPECT_EQ(pacer.due(1e300, kPacerStart), kPacerStart + 15min + 500ms);
 }
 
-TEST(Pacer, AStepBackCostsNoTime) {
+TEST(Pacer, StepBackAddsNoTime) {
     Pacer pacer(1.0);
     EXPECT_EQ(pacer.due(1e9, kPacerStart), kPacerStart);
     EXPECT_EQ(pacer.due(0.0, kPacerStart), kPacerStart);
     EXPECT_EQ(pacer.due(1.0, kPacerStart), kPacerStart + 1s);
 }
 
-TEST(Pacer, NoWaitIsBeyondTheClock) {
+TEST(Pacer, WaitDoesNotOverflowTheClock) {
     constexpr auto kLargest = std::chrono::duration_cast<Pacer::Time::duration>(1s * Pacer::kWaitMax);
     Pacer slow(1e-300);
     EXPECT_EQ(slow.due(-1e308, kPacerStart), kPacerStart);

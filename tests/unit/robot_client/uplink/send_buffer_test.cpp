@@ -29,33 +29,33 @@ std::vector<Scan> unsent(const SendBuffer& buffer) {
     return std::get<wire::ScanBatch>(*wire::decode(std::string_view(frame).substr(wire::kLengthPrefixBytes))).scans;
 }
 
-TEST(SendBuffer, HasNoRoomBeyondItsBytesUntilSomeAreAcknowledged) {
+TEST(SendBuffer, IsFullUntilScansAreAcknowledged) {
     SendBuffer buffer(3 * wire_bytes_max(observation().scan));
     int pushed = 0;
     for (; buffer.has_room(); ++pushed) buffer.push(observation());
     EXPECT_EQ(pushed, 3);
     buffer.mark_sent(2);
-    EXPECT_FALSE(buffer.has_room()) << "sent is not stored";
+    EXPECT_FALSE(buffer.has_room()) << "sent scans are not stored yet";
     buffer.acknowledge(1);
     EXPECT_TRUE(buffer.has_room());
 }
 
-TEST(SendBuffer, RewindMayGoBeyondWhatWasSentSinceTheLastRewind) {
+TEST(SendBuffer, RewindMayPassScansSentBeforeTheLastRewind) {
     SendBuffer buffer = with_scans(10);
     buffer.mark_sent(8);
-    ASSERT_TRUE(buffer.rewind(2)); // nothing is sent again before this link breaks, too
-    ASSERT_TRUE(buffer.rewind(7)) << "the first link had brought over 7";
+    ASSERT_TRUE(buffer.rewind(2)); // this link breaks before any scan is sent again
+    ASSERT_TRUE(buffer.rewind(7)) << "the first link had delivered 7";
     EXPECT_EQ(buffer.sent(), 7U);
     EXPECT_EQ(unsent(buffer).front().seq, 8U);
 }
 
-TEST(SendBuffer, ScansThatWereNeverSentFromHereAreAnothersWithTheSameName) {
+TEST(SendBuffer, RewindBeyondSentScansIsAConflict) {
     SendBuffer buffer = with_scans(10);
     buffer.mark_sent(8);
     EXPECT_THAT(buffer.rewind(9).error().message, testing::HasSubstr("another program"));
 }
 
-TEST(SendBuffer, TheOldestThatWasNeverSentCanBeDroppedAndTheOthersMoveUp) {
+TEST(SendBuffer, DropsTheOldestUnsentScan) {
     SendBuffer buffer(1 << 20);
     for (std::size_t beams = 1; beams <= 6; ++beams) buffer.push(observation(beams));
     buffer.mark_sent(3);
@@ -73,10 +73,10 @@ TEST(SendBuffer, TheOldestThatWasNeverSentCanBeDroppedAndTheOthersMoveUp) {
     buffer.acknowledge(5);
     EXPECT_TRUE(buffer.all_acknowledged());
     for (int n = 0; buffer.has_room() && n < 10'000; ++n) buffer.push(observation());
-    EXPECT_GT(buffer.last(), 5000U) << "what was dropped takes no room";
+    EXPECT_GT(buffer.last(), 5000U) << "dropped scans take no space";
 }
 
-TEST(WireBytesMax, IsNeverLessThanWhatTheScanTakes) {
+TEST(WireBytesMax, IsAtLeastTheEncodedSize) {
     for (const std::size_t beams : {1U, 180U, 4096U}) {
         for (int variant = 0; variant < 5; ++variant) {
             Scan scan;

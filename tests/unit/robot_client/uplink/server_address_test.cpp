@@ -5,7 +5,7 @@
 namespace scanloom::robot {
 namespace {
 
-TEST(ServerAddress, TakesNamesAndAddresses) {
+TEST(ServerAddress, AcceptsNamesAndAddresses) {
     EXPECT_EQ(parse_server_address("pi.local:4001")->host, "pi.local");
     EXPECT_EQ(parse_server_address("pi.local:4001")->port, "4001");
     EXPECT_EQ(parse_server_address("[::1]:1")->host, "::1");

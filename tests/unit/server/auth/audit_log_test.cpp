@@ -16,7 +16,7 @@ namespace {
 using auth::Port;
 using auth::Reason;
 
-/// What is logged as long as it exists.
+/// Captures the log during its lifetime.
 class Logged {
 public:
     Logged() : before_(spdlog::default_logger()) {
@@ -43,14 +43,14 @@ protected:
     double now_ = 100.0;
 };
 
-TEST_F(AuditTest, ARefusalIsOneLine) {
+TEST_F(AuditTest, RefusalIsOneLine) {
     AuditLog audit(counters_, [this] { return now_; });
     audit.note({Port::kRobot, Reason::kWrongSession, "192.0.2.7", "depot", "lab"});
     EXPECT_EQ(logged_.text(), "warning event=refused port=robot who=192.0.2.7 token=depot reason=wrong_session "
                               "session=lab count=1\n");
 }
 
-TEST_F(AuditTest, WhatComesInAFloodIsCountedAndToldOnceAMinuteAndInTheEnd) {
+TEST_F(AuditTest, FloodIsLoggedOncePerMinuteAndAtTheEnd) {
     {
         AuditLog audit(counters_, [this] { return now_; });
         for (int n = 0; n < 1000; ++n) audit.note({Port::kHttp, Reason::kNoToken, "192.0.2.7", "", ""});
@@ -63,7 +63,7 @@ TEST_F(AuditTest, WhatComesInAFloodIsCountedAndToldOnceAMinuteAndInTheEnd) {
     EXPECT_EQ(counters_.of(Port::kRobot, Reason::kNoToken).Value(), 0.0);
 }
 
-TEST_F(AuditTest, TheRestOfAFloodIsToldWithoutAnotherRefusal) {
+TEST_F(AuditTest, RestOfAFloodIsLoggedWithoutAnotherRefusal) {
     AuditLog audit(counters_, [this] { return now_; });
     for (int n = 0; n < 1000; ++n) audit.note({Port::kHttp, Reason::kNoToken, "192.0.2.7", "", ""});
     now_ += 59.0;
@@ -74,7 +74,7 @@ TEST_F(AuditTest, TheRestOfAFloodIsToldWithoutAnotherRefusal) {
     EXPECT_THAT(logged_.text(), testing::EndsWith("count=999\n"));
 }
 
-TEST_F(AuditTest, OfStrangersALineASecondIsToldWithHowManyWereNot) {
+TEST_F(AuditTest, StrangersAreLoggedOncePerSecondWithTheCount) {
     AuditLog audit(counters_, [&] { return now_; });
     EXPECT_EQ(audit.take_line_of_stranger(), 0U);
     for (int n = 0; n < 3000; ++n) EXPECT_FALSE(audit.take_line_of_stranger());
@@ -86,7 +86,7 @@ TEST_F(AuditTest, OfStrangersALineASecondIsToldWithHowManyWereNot) {
     EXPECT_EQ(audit.take_line_of_stranger(), 0U);
 }
 
-TEST_F(AuditTest, NobodyForgesALine) {
+TEST_F(AuditTest, ClientTextCannotForgeALine) {
     AuditLog audit(counters_, [this] { return now_; });
     audit.note({Port::kHttp, Reason::kWrongSession, "192.0.2.7", "depot", "a\nwarning event=refused who=somebody"});
     EXPECT_THAT(logged_.text(), testing::EndsWith("session=? count=1\n"));

@@ -30,12 +30,12 @@ std::pair<Reason, std::string> refusal(const Admitted<T>& admitted) {
 TEST(Authenticator, IsOpenWithoutTokens) {
     Authenticator authenticator;
     EXPECT_TRUE(authenticator.is_open());
-    EXPECT_EQ(authenticator.admit("").value(), auth::anonymous());
+    EXPECT_EQ(authenticator.admit("").value(), auth::default_token());
     EXPECT_TRUE(authenticator.let_drive("", "lab", "r").value()->token());
-    EXPECT_TRUE(authenticator.let_watch(auth::anonymous(), "lab").value()->token());
+    EXPECT_TRUE(authenticator.let_watch(auth::default_token(), "lab").value()->token());
 }
 
-TEST(Authenticator, LetsInWhomItsTokensAllow) {
+TEST(Authenticator, AdmitsOnlyWhatTheTokenPermits) {
     Authenticator authenticator(TokenSet({token("robot", Role::kRobot, {"depot-*"}), token("viewer", Role::kViewer)}));
     EXPECT_FALSE(authenticator.is_open());
     EXPECT_EQ(authenticator.let_drive("secret of robot", "depot-1", "r").value()->token()->name, "robot");
@@ -49,7 +49,7 @@ TEST(Authenticator, LetsInWhomItsTokensAllow) {
               Refusal(Reason::kWrongRole, "robot"));
 }
 
-TEST(Authenticator, ATokenHasAsManyRobotsAsItsLimitSays) {
+TEST(Authenticator, RobotsBeyondTheConnectionLimitAreRefused) {
     Authenticator authenticator(
         TokenSet({token("two", Role::kRobot, {"*"}, 2), token("other", Role::kRobot, {"*"}, 1)}));
     auto first = authenticator.let_drive("secret of two", "lab", "a").value();
@@ -60,50 +60,50 @@ TEST(Authenticator, ATokenHasAsManyRobotsAsItsLimitSays) {
     EXPECT_EQ(refused.error().error.code, Errc::kOverloaded);
     EXPECT_THAT(refused.error().error.message, AllOf(HasSubstr("'two'"), HasSubstr("`connections`")));
     EXPECT_TRUE(authenticator.let_drive("secret of other", "lab", "c"));
-    const auto again = authenticator.let_drive("secret of two", "lab", "b"); // its old link is not gone yet
+    const auto again = authenticator.let_drive("secret of two", "lab", "b"); // its old link still exists
     EXPECT_TRUE(again);
     EXPECT_FALSE(authenticator.let_drive("secret of two", "depot", "b")); // of the same name, elsewhere
     first.reset();
     EXPECT_TRUE(authenticator.let_drive("secret of two", "lab", "c"));
 }
 
-TEST(Authenticator, PassesEndWithWhatAllowedThem) {
+TEST(Authenticator, PassesEndWithTheirPermission) {
     Authenticator authenticator(TokenSet(
         {token("a", Role::kRobot), token("b", Role::kRobot), token("c", Role::kOperator), token("d", Role::kRobot)}));
-    std::map<std::string, int> told;
+    std::map<std::string, int> changes;
     std::map<std::string, std::shared_ptr<Credential>> passes;
     for (const std::string name : {"a", "b", "c", "d"}) {
         passes[name] = authenticator.let_drive("secret of " + name, "lab", "robot-" + name).value();
-        passes[name]->when_changed([&told, name] { ++told[name]; });
+        passes[name]->when_changed([&changes, name] { ++changes[name]; });
     }
     passes["watch"] = authenticator.let_watch(authenticator.admit("secret of c").value(), "lab").value();
-    EXPECT_TRUE(told.empty());
-    // a as before, b is gone, c watches and drives no more, d is for other sessions.
+    EXPECT_TRUE(changes.empty());
+    // a is unchanged, b is removed, c has become a viewer, d is for other sessions.
     authenticator.replace(
         TokenSet({token("a", Role::kRobot, {"*"}, 3), token("c", Role::kViewer), token("d", Role::kRobot, {"x"})}));
     EXPECT_EQ(passes["a"]->token()->limits.connections, 3U);
     for (const auto* gone : {"b", "c", "d"}) EXPECT_EQ(passes[gone]->token(), nullptr) << gone;
     EXPECT_NE(passes["watch"]->token(), nullptr);
-    for (const auto* name : {"a", "b", "c", "d"}) EXPECT_EQ(told[name], 1) << name;
+    for (const auto* name : {"a", "b", "c", "d"}) EXPECT_EQ(changes[name], 1) << name;
 }
 
-TEST(Authenticator, WhoAsksLateIsToldAtOnce) {
+TEST(Authenticator, LateCallbackIsCalledAtOnce) {
     Authenticator authenticator(TokenSet({token("a", Role::kRobot)}));
     const auto pass = authenticator.let_drive("secret of a", "lab", "r").value();
     authenticator.replace(TokenSet({token("b", Role::kRobot)}));
-    bool told = false;
-    pass->when_changed([&] { told = true; });
-    EXPECT_TRUE(told);
+    bool was_called = false;
+    pass->when_changed([&] { was_called = true; });
+    EXPECT_TRUE(was_called);
 }
 
-TEST(Authenticator, WhoeverCameBeforeThereWereTokensGoes) {
+TEST(Authenticator, FirstTokensEndEarlierPasses) {
     Authenticator authenticator;
     const auto pass = authenticator.let_drive("", "lab", "r").value();
     authenticator.replace(TokenSet({token("a", Role::kRobot)}));
     EXPECT_EQ(pass->token(), nullptr);
 }
 
-TEST(Authenticator, APassMayOutliveIt) {
+TEST(Authenticator, PassMayOutliveTheGate) {
     std::shared_ptr<Credential> pass;
     {
         Authenticator authenticator;

@@ -9,7 +9,7 @@ namespace {
 
 auth::Token viewer() { return {"viewer", auth::hash_of("secret"), auth::Role::kViewer, {"*"}, {}}; }
 
-TEST(LoginSessions, LeadToTheTokenAsItIsInForceNow) {
+TEST(LoginSessions, FindTheCurrentToken) {
     double now = 5.0;
     Authenticator authenticator(auth::TokenSet({std::make_shared<const auth::Token>(viewer())}));
     LoginSessions logins([&] { return now; });
@@ -26,7 +26,7 @@ TEST(LoginSessions, LeadToTheTokenAsItIsInForceNow) {
     EXPECT_EQ(logins.find(cookie, authenticator), nullptr);
 }
 
-TEST(LoginSessions, AreOverWhenGivenBackOrForgotten) {
+TEST(LoginSessions, EndWhenRemovedOrExpired) {
     double now = 5.0;
     Authenticator authenticator(auth::TokenSet({std::make_shared<const auth::Token>(viewer())}));
     LoginSessions logins([&] { return now; });

@@ -6,7 +6,7 @@
 namespace scanloom::auth {
 namespace {
 
-TEST(LoginTable, ACookieLeadsToItsTokenUntilItIsGivenBack) {
+TEST(LoginTable, CookieFindsItsTokenUntilRemoved) {
     LoginTable table;
     table.open("one", "hash a", 10.0);
     table.open("two", "hash b", 10.0);
@@ -19,7 +19,7 @@ TEST(LoginTable, ACookieLeadsToItsTokenUntilItIsGivenBack) {
     EXPECT_EQ(table.use("two", 11.0), "hash b");
 }
 
-TEST(LoginTable, UseKeepsItAliveAndIdlenessEndsIt) {
+TEST(LoginTable, ExpiresOnlyWithoutUse) {
     LoginTable table;
     table.open("one", "hash", 0.0);
     EXPECT_TRUE(table.use("one", LoginTable::kIdleSeconds));
@@ -28,7 +28,7 @@ TEST(LoginTable, UseKeepsItAliveAndIdlenessEndsIt) {
     EXPECT_EQ(table.size(), 0U);
 }
 
-TEST(LoginTable, OneTokenPushesOutItsOwnAlone) {
+TEST(LoginTable, FullTokenEvictsOnlyItsOwnLogins) {
     LoginTable table;
     table.open("other", "b", 0.0);
     for (std::size_t n = 0; n < 1000; ++n) table.open(fmt::format("{}", n), "a", 1.0 + static_cast<double>(n));
@@ -38,7 +38,7 @@ TEST(LoginTable, OneTokenPushesOutItsOwnAlone) {
     EXPECT_FALSE(table.use("0", 1001.0));
 }
 
-TEST(LoginTable, ManyTokensTogetherAreBoundedToo) {
+TEST(LoginTable, TotalOfAllTokensIsBounded) {
     LoginTable table;
     for (std::size_t n = 0; n < LoginTable::kLoginsMax + 10; ++n) {
         table.open(fmt::format("{}", n), fmt::format("{}", n), static_cast<double>(n) / 1000.0);

@@ -8,14 +8,14 @@
 namespace scanloom::auth {
 namespace {
 
-/// The definition, as slow as it is plain.
+/// The definition as a simple, slow function.
 bool oracle(std::string_view pattern, std::string_view name) {
     if (pattern.empty()) return name.empty();
     if (pattern[0] == '*') return oracle(pattern.substr(1), name) || (!name.empty() && oracle(pattern, name.substr(1)));
     return !name.empty() && (pattern[0] == '?' || pattern[0] == name[0]) && oracle(pattern.substr(1), name.substr(1));
 }
 
-TEST(Pattern, MatchesWhatItsDefinitionDoes) {
+TEST(Pattern, AgreesWithTheReferenceMatcher) {
     std::mt19937 random(7);
     const auto text = [&](std::string_view letters, std::size_t size_max) {
         std::string made(random() % (size_max + 1), ' ');
@@ -33,7 +33,7 @@ TEST(Pattern, MatchesWhatItsDefinitionDoes) {
     EXPECT_LT(matching, 190'000U);
 }
 
-TEST(Pattern, AWordOfItsOwnMatchesItselfAlone) {
+TEST(Pattern, PlainWordMatchesOnlyItself) {
     EXPECT_TRUE(matches("lab", "lab"));
     EXPECT_FALSE(matches("lab", "lab2"));
     EXPECT_FALSE(matches("lab", "la"));
@@ -41,8 +41,8 @@ TEST(Pattern, AWordOfItsOwnMatchesItselfAlone) {
     EXPECT_FALSE(matches("", "lab"));
 }
 
-TEST(Pattern, ManyStarsEndSoon) {
-    // Trying each way to divide the name would take 2^60 steps.
+TEST(Pattern, ManyStarsMatchInBoundedTime) {
+    // Trying all divisions of the name would take 2^60 steps.
     std::string pattern;
     for (int n = 0; n < 31; ++n) pattern += "*a";
     EXPECT_FALSE(matches(pattern, std::string(64, 'b')));
@@ -50,7 +50,7 @@ TEST(Pattern, ManyStarsEndSoon) {
     EXPECT_TRUE(matches(pattern, std::string(64, 'a')));
 }
 
-TEST(Pattern, HoldsWhatNamesHoldAndTheTwoSigns) {
+TEST(Pattern, AcceptsNameCharactersAndWildcards) {
     for (const auto* valid : {"*", "?", "lab-*", "A_9-?"}) EXPECT_TRUE(is_valid_pattern(valid)) << valid;
     for (const auto* wrong : {"", "a b", "lab/*", "[ab]", "a\n", "ä"}) EXPECT_FALSE(is_valid_pattern(wrong)) << wrong;
     EXPECT_TRUE(is_valid_pattern(std::string(64, '*')));

@@ -13,7 +13,7 @@ std::string secret() {
     return secret_of(random);
 }
 
-TEST(Secret, ShowsAllItsBitsAndWhatItIs) {
+TEST(Secret, HasAPrefixAndAllItsBits) {
     EXPECT_EQ(secret().size(), 9U + 64U);
     EXPECT_TRUE(secret().starts_with("scanloom_030a11"));
     std::array<std::byte, 32> one{};
@@ -21,17 +21,17 @@ TEST(Secret, ShowsAllItsBitsAndWhatItIs) {
     EXPECT_NE(secret_of(one), secret_of({}));
 }
 
-TEST(Secret, IsNoName) { EXPECT_FALSE(is_valid_name(secret())); }
+TEST(Secret, IsNotAValidName) { EXPECT_FALSE(is_valid_name(secret())); }
 
-TEST(Secret, ItsHashIsSha256) {
-    // FIPS 180-4, the example of one block.
+TEST(Secret, HashIsSha256) {
+    // The one-block example of FIPS 180-4.
     EXPECT_EQ(hash_of("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
     EXPECT_TRUE(is_hash(hash_of(secret())));
     EXPECT_FALSE(is_hash(secret()));
     EXPECT_FALSE(is_hash(std::string(64, 'A')));
 }
 
-TEST(Secret, NoPartOfOneIsLeftInALog) {
+TEST(Secret, IsRemovedFromLogText) {
     const auto whole = secret();
     EXPECT_EQ(without_secrets("a " + whole + " b"), "a scanloom_... b");
     EXPECT_EQ(without_secrets("\"" + whole.substr(0, 63) + "...\""), "\"scanloom_......\"");
@@ -39,7 +39,7 @@ TEST(Secret, NoPartOfOneIsLeftInALog) {
     EXPECT_EQ(without_secrets(whole + "/" + whole), "scanloom_.../scanloom_...");
 }
 
-TEST(Secret, WhatIsNoneStays) {
+TEST(Secret, OtherTextIsUnchanged) {
     for (const auto* text : {"", "scanloom", "scanloom_", "scanloom_links_open 3", "scanloom_add 1", "a scanloom_b"}) {
         EXPECT_EQ(without_secrets(text), text);
     }

@@ -35,18 +35,18 @@ protected:
     TemporaryDirectory directory_;
 };
 
-TEST_F(TokenFileTest, IsReadWhereItsOwnerAloneMayWrite) {
+TEST_F(TokenFileTest, IsReadIfOnlyItsOwnerCanWrite) {
     EXPECT_EQ(fault(write(good_)), "taken");
     EXPECT_EQ(fault(write(good_, perms::owner_read | perms::owner_write | perms::group_read | perms::others_read)),
               "taken");
     for (const auto others : {perms::group_write, perms::others_write}) {
         const auto path = write(good_, perms::owner_read | perms::owner_write | others);
-        EXPECT_THAT(fault(path), AllOf(StartsWith(path.string() + ": others than its owner may write"),
+        EXPECT_THAT(fault(path), AllOf(StartsWith(path.string() + ": users other than its owner can write"),
                                        HasSubstr("chmod go-w " + path.string())));
     }
 }
 
-TEST_F(TokenFileTest, WhatIsNoSuchFileIsSaidSo) {
+TEST_F(TokenFileTest, UnusableFilesAreRefused) {
     EXPECT_THAT(fault(directory_.path() / "none"), HasSubstr("cannot be read"));
     EXPECT_THAT(fault(directory_.path()), HasSubstr("this is no file"));
     EXPECT_THAT(fault(write(std::string(5 << 20, '#'))), HasSubstr("bytes"));

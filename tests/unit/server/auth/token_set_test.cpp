@@ -11,7 +11,7 @@ TokenRef token(std::string name, std::string_view secret) {
     return std::make_shared<const Token>(Token{std::move(name), hash_of(secret), Role::kRobot, {"*"}, {}});
 }
 
-TEST(TokenSet, FindsEachByItsSecretAlone) {
+TEST(TokenSet, FindsEachTokenByItsSecret) {
     const TokenSet tokens({token("a", "secret a"), token("b", "secret b"), token("c", "secret c")});
     EXPECT_EQ(tokens.find("secret a")->name, "a");
     EXPECT_EQ(tokens.find("secret b")->name, "b");
@@ -22,7 +22,7 @@ TEST(TokenSet, FindsEachByItsSecretAlone) {
     EXPECT_EQ(TokenSet().find("secret a"), nullptr);
 }
 
-TEST(Token, IsForTheSessionsOfItsPatterns) {
+TEST(Token, PermitsSessionsOfItsPatterns) {
     const Token two{"a", "", Role::kViewer, {"lab", "depot-*"}, {}};
     EXPECT_TRUE(is_for(two, "lab"));
     EXPECT_TRUE(is_for(two, "depot-7"));
@@ -32,12 +32,12 @@ TEST(Token, IsForTheSessionsOfItsPatterns) {
     EXPECT_TRUE(is_for_all({"b", "", Role::kViewer, {"x", "*"}, {}}));
 }
 
-TEST(Token, AnybodyMayDoEverything) {
-    EXPECT_TRUE(may_change(anonymous()->role));
-    EXPECT_TRUE(is_for_all(*anonymous()));
+TEST(Token, DefaultTokenPermitsEverything) {
+    EXPECT_TRUE(may_change(default_token()->role));
+    EXPECT_TRUE(is_for_all(*default_token()));
 }
 
-TEST(Role, EachMayDoItsOwn) {
+TEST(Role, PermitsItsOwnActions) {
     for (const Role role : kRoles) {
         EXPECT_EQ(may_drive(role), role != Role::kViewer);
         EXPECT_EQ(may_look(role), role != Role::kRobot);

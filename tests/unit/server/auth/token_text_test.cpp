@@ -27,7 +27,7 @@ std::string fault(const std::string& toml) {
     return tokens ? "taken" : tokens.error().message;
 }
 
-/// The stanza with one line in another's place.
+/// Returns the stanza with one line replaced.
 std::string fault_with(const std::string& key, const std::string& line) {
     std::string toml;
     const auto whole = stanza("a", '1');
@@ -39,7 +39,7 @@ std::string fault_with(const std::string& key, const std::string& line) {
     return fault(toml);
 }
 
-TEST(TokenText, ATokenHasWhatItSays) {
+TEST(TokenText, TokenHasTheWrittenValues) {
     const auto tokens =
         parse_tokens("# ours\n[[token]]\nname = \"depot\"\nsha256 = \"" + hash('a') +
                      "\"\nrole = \"viewer\"\nsessions = [\"depot-*\", # both\n  \"lab\"]\n"
@@ -61,7 +61,7 @@ TEST(TokenText, ATokenHasWhatItSays) {
     EXPECT_EQ(tokens.tokens()[1]->limits, Limits{});
 }
 
-TEST(TokenText, WhatIsWrittenIsRead) {
+TEST(TokenText, WrittenTextIsReadBack) {
     Token token{"depot", hash_of("x"), Role::kOperator, {"lab", "depot-?"}, {}};
     EXPECT_EQ(*parse_tokens(text_of(token)).value().tokens()[0], token);
     EXPECT_THAT(text_of(token), Not(HasSubstr("limits")));
@@ -69,7 +69,7 @@ TEST(TokenText, WhatIsWrittenIsRead) {
     EXPECT_EQ(*parse_tokens(text_of(token)).value().tokens()[0], token);
 }
 
-TEST(TokenText, EveryFaultNamesItsLineAndWhatToDo) {
+TEST(TokenText, ErrorsNameTheLineAndTheFix) {
     EXPECT_THAT(fault("a = \n"), StartsWith("1: this is no TOML"));
     EXPECT_THAT(fault("\n\ntokens = 1\n"), AllOf(StartsWith("3: 'tokens' is unknown"), HasSubstr("[[token]]")));
     EXPECT_THAT(fault("[token]\nname = \"a\"\n"), HasSubstr("'token' is unknown"));
@@ -86,7 +86,7 @@ TEST(TokenText, EveryFaultNamesItsLineAndWhatToDo) {
     EXPECT_THAT(fault_with("role", "rolle = \"robot\"\n"), StartsWith("4: 'rolle' is unknown in a [[token]]"));
 }
 
-TEST(TokenText, BracketsWithoutANameAreNoTables) {
+TEST(TokenText, BracketsWithoutANameAreRefused) {
     for (const auto* wrong : {"[[[token]]]", "[&", "[", "[[", "[[ ]]", "[]", "  [ .a]", "[[\t!]]", "[=]", "a = [}"}) {
         EXPECT_THAT(fault(fmt::format("# one\n{}\n", wrong)), HasSubstr(": this is no TOML: ")) << wrong;
     }
@@ -94,7 +94,7 @@ TEST(TokenText, BracketsWithoutANameAreNoTables) {
     EXPECT_THAT(fault("token = [\n  1 ]\n"), HasSubstr("[[token]]"));
 }
 
-TEST(TokenText, BeyondAsciiAreOnlyComments) {
+TEST(TokenText, NonAsciiIsAcceptedOnlyInComments) {
     const std::string comment = "# J\u00fcrgen's \"tablet\" \xcc\xaa \xff\n";
     EXPECT_THAT(fault("\xef\xbb\xbf"
                       "a = 1\n"),
@@ -106,7 +106,7 @@ TEST(TokenText, BeyondAsciiAreOnlyComments) {
     }
 }
 
-TEST(TokenText, EveryLimitHasItsBounds) {
+TEST(TokenText, LimitsOutOfBoundsAreRefused) {
     const auto with = [](const std::string& limits) { return fault(stanza("a", '1') + "limits = " + limits + "\n"); };
     EXPECT_EQ(with("{ sensors = 64, beams = 4096, bytes_per_second = 1024 }"), "taken");
     EXPECT_THAT(with("{ sensors = 65 }"), StartsWith("6: sensors is not a whole number from 1 to 64"));
@@ -119,18 +119,18 @@ TEST(TokenText, EveryLimitHasItsBounds) {
     EXPECT_THAT(with("8"), StartsWith("6: limits is no table"));
 }
 
-TEST(TokenText, TwoOfANameOrASecretAreRefused) {
+TEST(TokenText, DuplicateNamesAndSecretsAreRefused) {
     EXPECT_THAT(fault(stanza("a", '1') + stanza("a", '2')), StartsWith("6: there is a token of the name 'a' already"));
     EXPECT_THAT(fault(stanza("a", '1') + stanza("b", '1')), StartsWith("6: 'a' and 'b' have the same secret"));
 }
 
-TEST(TokenText, ASecretInPlaceOfItsHashIsNotTold) {
+TEST(TokenText, SecretInPlaceOfTheHashIsNotPrinted) {
     const auto secret = secret_of({});
     const auto message = fault_with("sha256", "sha256 = \"" + secret + "\"\n");
     EXPECT_THAT(message, AllOf(StartsWith("3: sha256 is not 64 digits"), Not(HasSubstr(secret.substr(0, 20)))));
 }
 
-TEST(TokenText, AFileWithoutTokensIsAnAccident) {
+TEST(TokenText, FileWithoutTokensIsRefused) {
     EXPECT_THAT(fault(""), HasSubstr("there is no [[token]]"));
     EXPECT_THAT(fault("# nothing\n"), HasSubstr("there is no [[token]]"));
 }

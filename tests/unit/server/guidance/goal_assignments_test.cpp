@@ -242,7 +242,7 @@ TEST_F(GoalAssignmentsTest, RestoresTheOldestCellsBeyondTheLimit) {
     const auto request_here = [&] { return book_.next(session_, maps_, 0, {0.05, 0.05}, now_, options).value(); };
     scan_at(request_here(), 0);
     const auto next = request_here();
-    EXPECT_EQ(next.given_up, GoalAssignments::kInVainCellsMax);
+    EXPECT_EQ(next.given_up, GoalAssignments::kUnobservedCellsMax);
     EXPECT_EQ(next.outcome, Exploration::kGoal);
 }
 

@@ -20,7 +20,7 @@ auth::TokenRef token(std::string name, Role role, std::vector<std::string> sessi
     return std::make_shared<const Token>(Token{std::move(name), hash, role, std::move(sessions), {}});
 }
 
-/// An API that asks for tokens, with the sessions depot-1 and lab.
+/// An API that requires tokens, with the sessions depot-1 and lab.
 class ApiAccessTest : public ApiTest {
 protected:
     ApiAccessTest() {
@@ -29,7 +29,7 @@ protected:
         authenticator_.replace(auth::TokenSet(all_));
     }
 
-    /// `who` is the name of a token; empty: nobody.
+    /// `who` is the name of a token; empty: without a token.
     static Request request(std::string method, std::string target, const std::string& who, std::string body = "") {
         Request asked;
         asked.method = std::move(method);
@@ -61,13 +61,13 @@ bool is_let_in(const Response& response) {
     return response.status != Status::unauthorized && response.status != Status::forbidden;
 }
 
-/// The table of docs/security.md, written down once more.
-TEST_F(ApiAccessTest, EachRoleMayDoItsOwnAndNothingElse) {
+/// A copy of the table in docs/security.md.
+TEST_F(ApiAccessTest, EachRoleIsPermittedItsOwnRequestsOnly) {
     const std::set<std::string_view> open = {"/",       "/assets/{file}", "/livez",
                                              "/readyz", "/openapi.json",  "/api/v1/login"};
     const std::set<std::string_view> change_nothing = {"plan", "coverage", "weave"};
     for (const auto& route : routes()) {
-        if (open.contains(route.path)) continue; // AllThatAnybodyMay
+        if (open.contains(route.path)) continue; // OpenRoutesNeedNoToken
         const std::string method(name_of(route.method));
         const bool looks = method == "GET" || change_nothing.contains(route.path.substr(route.path.rfind('/') + 1));
         const bool names_one = route.path.find("{session}") != std::string_view::npos;
@@ -81,12 +81,12 @@ TEST_F(ApiAccessTest, EachRoleMayDoItsOwnAndNothingElse) {
             const bool is_metrics = route.path == "/metrics";
             const bool is_store = route.path == "/api/v1/backups";
             EXPECT_FALSE(allowed("")) << method << " " << target;
-            EXPECT_FALSE(allowed("stranger")) << method << " " << target;
+            EXPECT_FALSE(allowed("unknown")) << method << " " << target;
             const bool guides = method == "POST" && route.path.ends_with("/goal");
             EXPECT_EQ(allowed("robot"), is_metrics || guides) << method << " " << target;
             EXPECT_EQ(allowed("viewer"), looks && matches && !is_metrics && !is_store) << method << " " << target;
             EXPECT_EQ(allowed("viewer-all"), looks && !is_store) << method << " " << target;
-            if (method == "DELETE" && name != "none" && name != "depot-none") continue; // they are needed on
+            if (method == "DELETE" && name != "none" && name != "depot-none") continue; // the next requests need it
             EXPECT_EQ(allowed("operator"), matches && !is_metrics && !is_store) << method << " " << target;
             EXPECT_TRUE(allowed("operator-all")) << method << " " << target;
         }
@@ -95,8 +95,8 @@ TEST_F(ApiAccessTest, EachRoleMayDoItsOwnAndNothingElse) {
     EXPECT_EQ(ask_as("operator-all", "DELETE", "/api/v1/sessions/lab").status, Status::no_content);
 }
 
-/// Who may not change anything, and what a foreign page has a browser send, leaves what others see as it was.
-TEST_F(ApiAccessTest, OnlyWhoMayChangeThingsChangesThem) {
+/// Requests without permission, and requests of foreign pages, do not change the responses to other clients.
+TEST_F(ApiAccessTest, ViewersCannotChangeSessions) {
     stream("depot-1", 3);
     const std::map<std::string_view, std::string> bodies = {
         {"/api/v1/login", R"({"token":"secret of operator-all"})"},
@@ -119,10 +119,10 @@ TEST_F(ApiAccessTest, OnlyWhoMayChangeThingsChangesThem) {
     const auto before = state();
     for (const auto& route : routes()) {
         const bool only_reads = route.method == Method::kGet;
-        const bool is_weave =
-            name_of(route.method) == "POST" && route.path.ends_with("/weave"); // viewers may, and it is listed
+        const bool is_weave = name_of(route.method) == "POST" &&
+                              route.path.ends_with("/weave"); // viewers may start one, and it is listed
         const auto body = bodies.contains(route.path) ? bodies.at(route.path) : "{}";
-        for (const auto* who : {"", "stranger", "robot", "viewer", "viewer-all", "operator-all"}) {
+        for (const auto* who : {"", "unknown", "robot", "viewer", "viewer-all", "operator-all"}) {
             for (const auto* origin : {"", "http://elsewhere", "http://maps.lab:9090", "http://localhost:8080"}) {
                 const std::string name(who);
                 const bool guides = name == "robot" && route.path.ends_with("/goal");
@@ -145,28 +145,28 @@ TEST_F(ApiAccessTest, OnlyWhoMayChangeThingsChangesThem) {
     EXPECT_EQ(
         ask_as("robot", "POST", "/api/v1/sessions/depot-1/goal", bodies.at("/api/v1/sessions/{session}/goal")).status,
         Status::ok);
-    EXPECT_NE(state(), before) << "what must not happen can be seen";
+    EXPECT_NE(state(), before) << "otherwise this test cannot detect a change";
 }
 
-TEST_F(ApiAccessTest, HeadIsAnsweredAsGet) {
+TEST_F(ApiAccessTest, HeadNeedsThePermissionOfGet) {
     EXPECT_EQ(ask_as("", "HEAD", "/api/v1/sessions/lab").status, Status::unauthorized);
     EXPECT_EQ(ask_as("viewer", "HEAD", "/api/v1/sessions/lab").status, Status::forbidden);
     EXPECT_EQ(ask_as("viewer", "HEAD", "/api/v1/sessions/depot-1").status, Status::ok);
 }
 
-TEST_F(ApiAccessTest, WhoShowsNoTokenIsToldHow) {
+TEST_F(ApiAccessTest, RequestWithoutTokenIsUnauthorized) {
     const auto none = ask_as("", "GET", "/api/v1/sessions");
     EXPECT_THAT(detail(none, Status::unauthorized), HasSubstr("a token is needed"));
     EXPECT_EQ(none.get("WWW-Authenticate"), R"(Bearer realm="scanloom")");
-    const auto unknown = ask_as("stranger", "GET", "/api/v1/sessions");
-    EXPECT_THAT(detail(unknown, Status::unauthorized), HasSubstr("not in force"));
+    const auto unknown = ask_as("unknown", "GET", "/api/v1/sessions");
+    EXPECT_THAT(detail(unknown, Status::unauthorized), HasSubstr("not valid here"));
     EXPECT_EQ(unknown.get("WWW-Authenticate"), R"(Bearer realm="scanloom", error="invalid_token")");
     EXPECT_EQ(refusals(auth::Reason::kNoToken), 1.0);
     EXPECT_EQ(refusals(auth::Reason::kUnknownToken), 1.0);
 }
 
-/// What tells them apart would tell which sessions exist.
-TEST_F(ApiAccessTest, AForbiddenSessionAndAnUnknownOneLookAlike) {
+/// A difference would disclose which sessions exist.
+TEST_F(ApiAccessTest, ForbiddenAndUnknownSessionsHaveEqualResponses) {
     for (const auto& route : routes()) {
         if (route.path.find("{session}") == std::string_view::npos) continue;
         const auto answers = [&](const std::string& session) {
@@ -187,7 +187,7 @@ TEST_F(ApiAccessTest, AForbiddenSessionAndAnUnknownOneLookAlike) {
     EXPECT_EQ(made("lab"), made("bal"));
 }
 
-TEST_F(ApiAccessTest, ListsShowWhatTheTokenIsFor) {
+TEST_F(ApiAccessTest, ListsContainOnlySessionsOfTheToken) {
     const auto names = [&](const std::string& who) {
         std::vector<std::string> shown;
         const auto page = boost::json::parse(ask_as(who, "GET", "/api/v1/sessions").body.bytes());
@@ -196,18 +196,18 @@ TEST_F(ApiAccessTest, ListsShowWhatTheTokenIsFor) {
     };
     EXPECT_THAT(names("viewer"), testing::ElementsAre("depot-1"));
     EXPECT_THAT(names("viewer-all"), testing::ElementsAre("depot-1", "lab"));
-    // Nor does the end of a page tell that another session follows.
+    // The end of a page does not disclose that another session follows.
     const auto page = boost::json::parse(ask_as("viewer", "GET", "/api/v1/sessions?limit=1").body.bytes());
     EXPECT_TRUE(page.at("next").is_null());
 }
 
-TEST_F(ApiAccessTest, OperatorsMakeTheSessionsTheyAreFor) {
+TEST_F(ApiAccessTest, OperatorsCreateOnlySessionsOfTheirPatterns) {
     EXPECT_EQ(ask_as("operator", "POST", "/api/v1/sessions", R"({"name":"depot-2"})").status, Status::created);
     EXPECT_EQ(ask_as("operator", "POST", "/api/v1/sessions", R"({"name":"attic"})").status, Status::forbidden);
     EXPECT_EQ(registry_.find("attic"), nullptr);
 }
 
-TEST_F(ApiAccessTest, ATokenMakesAsManySessionsAsItsLimitSays) {
+TEST_F(ApiAccessTest, CreatingBeyondTheSessionLimitIsRefused) {
     auto two = *token("two", Role::kOperator, {"*"});
     two.limits.sessions = 2;
     authenticator_.replace(auth::TokenSet({std::make_shared<const Token>(two)}));
@@ -219,12 +219,12 @@ TEST_F(ApiAccessTest, ATokenMakesAsManySessionsAsItsLimitSays) {
     EXPECT_THAT(detail(make("c"), Status::insufficient_storage), AllOf(HasSubstr("'two'"), HasSubstr("`sessions`")));
     EXPECT_EQ(refusals(auth::Reason::kLimit), 1.0);
     EXPECT_EQ(ask_as("two", "DELETE", "/api/v1/sessions/depot-1").status, Status::no_content);
-    EXPECT_EQ(make("c").status, Status::insufficient_storage) << "that was somebody else's";
+    EXPECT_EQ(make("c").status, Status::insufficient_storage) << "it belongs to another token";
     EXPECT_EQ(ask_as("two", "DELETE", "/api/v1/sessions/a").status, Status::no_content);
     EXPECT_EQ(make("c").status, Status::created);
 }
 
-TEST_F(ApiAccessTest, ReadinessNamesSessionsToThoseWhoMaySeeThem) {
+TEST_F(ApiAccessTest, ReadinessListsOnlySessionsOfTheToken) {
     store::MemoryScanLog damaged;
     static_cast<void>(damaged.create_session("no record")); // cannot be read
     session::SessionRegistry registry(damaged, {pool_.get_executor(), [] { return 0.0; }});
@@ -238,13 +238,13 @@ TEST_F(ApiAccessTest, ReadinessNamesSessionsToThoseWhoMaySeeThem) {
         return boost::json::parse(response.body.bytes()).at("damaged").as_array().size();
     };
     EXPECT_EQ(count(""), 0U);
-    EXPECT_EQ(count("stranger"), 0U);
+    EXPECT_EQ(count("unknown"), 0U);
     EXPECT_EQ(count("viewer"), 0U);
     EXPECT_EQ(count("viewer-all"), 1U);
     registry.drain();
 }
 
-TEST_F(ApiAccessTest, TilesAreKeptByNobodyInBetween) {
+TEST_F(ApiAccessTest, TilesAreNotCachedByProxies) {
     stream("lab", 1);
     const auto session = boost::json::parse(ask_as("viewer-all", "GET", "/api/v1/sessions/lab").body.bytes());
     const auto tile =
@@ -257,7 +257,7 @@ TEST_F(ApiAccessTest, TilesAreKeptByNobodyInBetween) {
     EXPECT_EQ(at_once.response->get("Cache-Control"), kept);
 }
 
-TEST_F(ApiAccessTest, WhatAHeaderCanRefuseIsRefusedBeforeTheBody) {
+TEST_F(ApiAccessTest, HeadersAreAuthorizedBeforeTheBodyIsRead) {
     const auto refused = [&](const std::string& who, const std::string& target, std::string type) {
         auto asked = request("POST", target, who);
         asked.content_type = std::move(type);
@@ -277,7 +277,7 @@ TEST_F(ApiAccessTest, WhatAHeaderCanRefuseIsRefusedBeforeTheBody) {
 
 class ApiLoginTest : public ApiAccessTest {
 protected:
-    /// Its cookie, as a browser sends it back.
+    /// Returns its cookie in the form that a browser sends.
     std::string sign_in(const std::string& who) {
         const auto response = ask_as("", "POST", "/api/v1/login", R"({"token":"secret of )" + who + R"("})");
         EXPECT_EQ(response.status, Status::ok) << response.body.bytes();
@@ -296,7 +296,7 @@ protected:
     }
 };
 
-TEST_F(ApiLoginTest, ACookieStandsForTheTokenUntilItIsGivenBack) {
+TEST_F(ApiLoginTest, CookieAuthenticatesUntilSignOut) {
     const auto cookie = sign_in("viewer");
     const auto look = [&](const std::string& session) {
         return answer(api_, with(cookie, "GET", "/api/v1/sessions/" + session, "")).status;
@@ -311,7 +311,7 @@ TEST_F(ApiLoginTest, ACookieStandsForTheTokenUntilItIsGivenBack) {
     EXPECT_EQ(look("depot-1"), Status::unauthorized);
 }
 
-TEST_F(ApiLoginTest, WhatChangesAnythingHasToComeFromAPageOfThisServer) {
+TEST_F(ApiLoginTest, ChangesByCookieNeedAnOwnOrigin) {
     const auto cookie = sign_in("operator-all");
     const auto create = [&](std::string_view origin) {
         return answer(api_, with(cookie, "POST", "/api/v1/sessions", origin, R"({"name":"new"})")).status;
@@ -332,7 +332,7 @@ TEST_F(ApiLoginTest, WhatChangesAnythingHasToComeFromAPageOfThisServer) {
     EXPECT_EQ(answer(api_, with(cookie, "GET", "/api/v1/sessions", "")).status, Status::ok);
 }
 
-TEST_F(ApiTest, WithoutTokensToo) {
+TEST_F(ApiTest, ChangesFromForeignPagesAreRefusedWithoutTokens) {
     const auto create = [&](std::string_view origin, std::string_view type, std::string_view target) {
         Request asked;
         asked.method = "POST";
@@ -349,7 +349,7 @@ TEST_F(ApiTest, WithoutTokensToo) {
         EXPECT_THAT(answered.body.bytes(), HasSubstr(foreign));
         EXPECT_EQ(create(foreign, "multipart/form-data; boundary=b", "/api/v1/sessions/new/import").status,
                   Status::forbidden)
-            << "which browsers send without asking first";
+            << "browsers send it without a preflight request";
     }
     EXPECT_EQ(metrics_.refusals().of(auth::Port::kHttp, auth::Reason::kForeignPage).Value(), 6.0);
     const auto from_elsewhere = [&](const Route& route, std::string_view authorization) {
@@ -382,16 +382,16 @@ TEST_F(ApiTest, WithoutTokensToo) {
     look.target = "/api/v1/sessions";
     look.host = kHost;
     look.origin = "http://elsewhere";
-    EXPECT_EQ(answer(api_, look).status, Status::ok) << "its page does not get to see it";
+    EXPECT_EQ(answer(api_, look).status, Status::ok) << "its page cannot read the response";
 }
 
-TEST_F(ApiLoginTest, ATokenInTheHeaderNeedsNoPage) {
+TEST_F(ApiLoginTest, BearerTokenNeedsNoOrigin) {
     auto asked = request("POST", "/api/v1/sessions", "operator-all", R"({"name":"new"})");
-    asked.origin = "http://elsewhere"; // no page can send that header without being allowed to
+    asked.origin = "http://elsewhere"; // no page can send that header without permission
     EXPECT_EQ(answer(api_, asked).status, Status::created);
 }
 
-TEST_F(ApiLoginTest, AWebSocketTakesCookieOrHeader) {
+TEST_F(ApiLoginTest, WebSocketAcceptsCookieOrBearerToken) {
     const auto cookie = sign_in("viewer");
     const WebSocketUpgrade upgrade{"13", "dGhlIHNhbXBsZSBub25jZQ==", std::string(kOwnPage)};
     const auto watch = [&](Request asked, std::string_view origin) {
@@ -408,7 +408,7 @@ TEST_F(ApiLoginTest, AWebSocketTakesCookieOrHeader) {
     EXPECT_EQ(watch(request("GET", live, ""), kOwnPage), Status::unauthorized);
 }
 
-TEST_F(ApiLoginTest, AWrongTokenSignsNobodyIn) {
+TEST_F(ApiLoginTest, LoginWithAWrongTokenIsRefused) {
     const auto response = ask_as("", "POST", "/api/v1/login", R"({"token":"guess"})");
     EXPECT_EQ(response.status, Status::unauthorized);
     EXPECT_EQ(response.get("Set-Cookie"), "");
@@ -418,7 +418,7 @@ TEST_F(ApiLoginTest, AWrongTokenSignsNobodyIn) {
     }
 }
 
-TEST_F(ApiLoginTest, AllThatAnybodyMay) {
+TEST_F(ApiLoginTest, OpenRoutesNeedNoToken) {
     const auto who = boost::json::parse(ask_as("", "GET", "/api/v1/login").body.bytes());
     EXPECT_EQ(who.at("needed"), true);
     EXPECT_TRUE(who.at("token").is_null());
@@ -428,7 +428,7 @@ TEST_F(ApiLoginTest, AllThatAnybodyMay) {
     EXPECT_EQ(refusals(auth::Reason::kNoToken), 0.0);
 }
 
-TEST_F(ApiTest, WithoutTokensNobodyHasToSignIn) {
+TEST_F(ApiTest, LoginIsNotNeededWithoutTokens) {
     const auto who = boost::json::parse(get("/api/v1/login").body.bytes());
     EXPECT_EQ(who.at("needed"), false);
     const auto response = ask("POST", "/api/v1/login", R"({"token":"any"})");

@@ -18,7 +18,7 @@ protected:
     }
 };
 
-TEST_F(ApiBackupsTest, TheyAreMadeAndListedAlsoBeforeTheSessionsAreRecovered) {
+TEST_F(ApiBackupsTest, AreCreatedAndListedBeforeRecoveryEnds) {
     over_disk_.services().backups = backups_.get();
     const auto made = ask_disk("POST");
     EXPECT_EQ(made.status, Status::created);

@@ -5,10 +5,10 @@
 
 namespace scanloom::http {
 
-/// openapi.json, as the server has it.
+/// Returns openapi.json as JSON.
 [[nodiscard]] const boost::json::value& described_api();
 
-/// What a "$ref" leads to, or the value itself.
+/// Returns the target of a "$ref", or the value itself.
 [[nodiscard]] const boost::json::object& resolved(const boost::json::value& value);
 
 } // namespace scanloom::http

@@ -14,8 +14,8 @@ protected:
         stream("a", 5);
     }
 
-    /// The id of a weave that is done.
-    std::string woven(const std::string& body) {
+    /// Returns the id of a finished replay job.
+    std::string finished_job(const std::string& body) {
         const auto response = ask("POST", "/api/v1/sessions/a/weave", body);
         const std::string id(boost::json::parse(response.body.bytes()).at("id").as_string());
         finish_weave("a", id);
@@ -26,9 +26,9 @@ protected:
     static std::string image_at(const std::string& query) { return "/api/v1/sessions/a/difference.png?" + query; }
 };
 
-TEST_F(ApiDifferenceTest, IsWhatTheComparisonOfTheTwoMapsSays) {
-    const auto coarse = woven(R"({"cell_size":0.1})");
-    const auto early = woven(R"({"until":4})");
+TEST_F(ApiDifferenceTest, EqualsTheComparisonOfTheMaps) {
+    const auto coarse = finished_job(R"({"cell_size":0.1})");
+    const auto early = finished_job(R"({"until":4})");
     const auto maps_of = [&](const std::string& id) {
         return weaves_.find(registry_.find("a")->info().id, id)->maps();
     };
@@ -55,8 +55,8 @@ TEST_F(ApiDifferenceTest, IsWhatTheComparisonOfTheTwoMapsSays) {
     EXPECT_GT(sums.known, 1000U);
 }
 
-TEST_F(ApiDifferenceTest, TheSessionsOwnMapTakesThePlaceOfTheOneLeftOut) {
-    const auto early = woven(R"({"until":4})");
+TEST_F(ApiDifferenceTest, MissingParameterSelectsTheSessionsMap) {
+    const auto early = finished_job(R"({"until":4})");
     const auto later = get_json(at("weave=" + early));
     EXPECT_EQ(later.at("a").at("weave").as_string(), early);
     EXPECT_EQ(later.at("b"), (boost::json::object{{"weave", nullptr}, {"revision", 7}, {"cell_size", 0.05}}));
@@ -67,8 +67,8 @@ TEST_F(ApiDifferenceTest, TheSessionsOwnMapTakesThePlaceOfTheOneLeftOut) {
     EXPECT_EQ(turned.at("cells").at("only_a"), later.at("cells").at("only_b"));
 }
 
-TEST_F(ApiDifferenceTest, AMapHasNoDifferenceFromItself) {
-    const auto same = woven("{}");
+TEST_F(ApiDifferenceTest, EqualMapsHaveNoDifference) {
+    const auto same = finished_job("{}");
     for (const auto* layer : {"occupancy", "himm", "classification"}) {
         const auto json = get_json(at(fmt::format("weave={0}&with={0}&layer={1}", same, layer)));
         EXPECT_EQ(json.at("layer"), layer);
@@ -79,8 +79,8 @@ TEST_F(ApiDifferenceTest, AMapHasNoDifferenceFromItself) {
     }
 }
 
-TEST_F(ApiDifferenceTest, APartThatNobodyKnowsHasNoAgreement) {
-    const auto json = get_json(at("weave=" + woven("{}") + "&bbox=50,50,51,50.5"));
+TEST_F(ApiDifferenceTest, UnknownAreaHasNoAgreement) {
+    const auto json = get_json(at("weave=" + finished_job("{}") + "&bbox=50,50,51,50.5"));
     EXPECT_EQ(json.at("width"), 20);
     EXPECT_EQ(json.at("height"), 10);
     EXPECT_EQ(json.at("cells").at("neither"), 200);
@@ -89,8 +89,8 @@ TEST_F(ApiDifferenceTest, APartThatNobodyKnowsHasNoAgreement) {
     EXPECT_TRUE(json.at("mean_difference").is_null());
 }
 
-TEST_F(ApiDifferenceTest, ItsImageTellsWhereItLiesAndIsNotSentTwice) {
-    const auto early = woven(R"({"until":4})");
+TEST_F(ApiDifferenceTest, ImageHasBoundsAndEntityTag) {
+    const auto early = finished_job(R"({"until":4})");
     const auto image = get(image_at("weave=" + early + "&bbox=-1,-0.5,2,3"));
     EXPECT_EQ(image.status, Status::ok);
     EXPECT_EQ(image.get("Content-Type"), "image/png");
@@ -103,14 +103,14 @@ TEST_F(ApiDifferenceTest, ItsImageTellsWhereItLiesAndIsNotSentTwice) {
     EXPECT_EQ(get(image_at("weave=" + early + "&bbox=-1,-0.5,2,3"), etag).status, Status::ok) << "the map has grown";
 }
 
-TEST_F(ApiDifferenceTest, WhatCannotBeComparedIsRefused) {
-    const auto id = woven("{}");
+TEST_F(ApiDifferenceTest, InvalidComparisonsAreRefused) {
+    const auto id = finished_job("{}");
     for (const auto* file : {"difference", "difference.png"}) {
         const auto asked = [&](const std::string& query) {
             return get(fmt::format("/api/v1/sessions/a/{}?{}", file, query));
         };
-        EXPECT_THAT(detail(asked("layer=himm"), Status::bad_request), HasSubstr("weave=, with=, or both"));
-        EXPECT_THAT(detail(asked("with=0123456789abcdef"), Status::not_found), HasSubstr("no weave"));
+        EXPECT_THAT(detail(asked("layer=himm"), Status::bad_request), HasSubstr("weave=, with= or both"));
+        EXPECT_THAT(detail(asked("with=0123456789abcdef"), Status::not_found), HasSubstr("no replay job"));
         EXPECT_EQ(asked("weave=" + id + "&with=x").status, Status::not_found);
         EXPECT_EQ(asked("weave=" + id + "&layer=height").status, Status::not_found);
         EXPECT_EQ(asked("weave=" + id + "&layer=sonar").status, Status::not_found) << "there is none";
@@ -121,8 +121,8 @@ TEST_F(ApiDifferenceTest, WhatCannotBeComparedIsRefused) {
     }
 }
 
-TEST_F(ApiDifferenceTest, HugeImagesAreTwoAtATime) {
-    const auto huge = image_at("weave=" + woven("{}") + "&bbox=-75,-75,75,75"); // 9 million pixels
+TEST_F(ApiDifferenceTest, AtMostTwoHugeImagesAtATime) {
+    const auto huge = image_at("weave=" + finished_job("{}") + "&bbox=-75,-75,75,75"); // 9 million pixels
     const auto first = get(huge);
     const auto second = get(huge);
     EXPECT_EQ(second.status, Status::ok);

@@ -18,7 +18,7 @@ protected:
                    fmt::format(R"({{"robot":"{}","from":{},"to":{}}})", robot, from, to));
     }
 
-    /// A log as a whole.
+    /// Returns a whole log.
     std::string log(std::string query = "") {
         const auto response = get("/api/v1/sessions/a/log" + query);
         std::string text;
@@ -34,13 +34,13 @@ protected:
     }
 };
 
-TEST_F(ApiExclusionsTest, LeaveMapsAndTextsButNotTheLog) {
+TEST_F(ApiExclusionsTest, RemoveScansFromMapsAndTextsButNotTheLog) {
     const auto log_before = log();
     const auto tile_before = get("/api/v1/sessions/a/tiles/occupancy/9/256/255.png");
     const auto session_before = shown();
     const auto response = exclude("103", "103.5");
     ASSERT_EQ(response.status, Status::created) << response.body.bytes();
-    EXPECT_EQ(get_json("/api/v1/sessions/a").at("revision"), 7) << "before its maps are there";
+    EXPECT_EQ(get_json("/api/v1/sessions/a").at("revision"), 7) << "before its maps are computed";
     EXPECT_EQ(get_json("/api/v1/sessions/a").at("exclusions"), 7);
     EXPECT_EQ(boost::json::parse(response.body.bytes()),
               (boost::json::value{{"id", 1}, {"robot", "r1"}, {"from", 103}, {"to", 103.5}, {"revision", 7}}));
@@ -52,7 +52,7 @@ TEST_F(ApiExclusionsTest, LeaveMapsAndTextsButNotTheLog) {
     EXPECT_EQ(session.at("robots").at(0).at("excluded"), 1);
     EXPECT_EQ(session.at("robots").at(0).at("last_seq"), 4);
     EXPECT_EQ(session.at("exclusions"), 7);
-    EXPECT_NE(session.at("id"), session_before.at("id")) << "viewers keep nothing of the earlier maps";
+    EXPECT_NE(session.at("id"), session_before.at("id")) << "viewers discard the earlier maps";
     EXPECT_NE(get("/api/v1/sessions/a/tiles/occupancy/9/256/255.png").get("ETag"), tile_before.get("ETag"));
     EXPECT_EQ(get_json("/api/v1/sessions/a/changes?since=6").at("reset"), true);
     EXPECT_EQ(get_json("/api/v1/sessions/a/changes?since=7").at("reset"), false);
@@ -65,7 +65,7 @@ TEST_F(ApiExclusionsTest, LeaveMapsAndTextsButNotTheLog) {
     EXPECT_NE(get(digest + "6").body.bytes(), get(digest + "7").body.bytes());
 }
 
-TEST_F(ApiExclusionsTest, AreListedUntilTheyAreLifted) {
+TEST_F(ApiExclusionsTest, AreListedUntilLifted) {
     const auto digest = get_json("/api/v1/sessions/a/digest").at("layers");
     ASSERT_EQ(exclude(R"("seq:2")", R"("seq:3")").status, Status::created);
     ASSERT_EQ(exclude("0", "1").status, Status::created);
@@ -84,7 +84,7 @@ TEST_F(ApiExclusionsTest, AreListedUntilTheyAreLifted) {
                 HasSubstr("exclusion \"x\""));
 }
 
-TEST_F(ApiExclusionsTest, SayWhatIsWrongWithARequest) {
+TEST_F(ApiExclusionsTest, InvalidRequestsAreRefusedWithTheReason) {
     const auto refusal = [&](std::string from, std::string to, std::string robot = "r1") {
         return detail(exclude(std::move(from), std::move(to), std::move(robot)), Status::bad_request);
     };

@@ -25,7 +25,7 @@ namespace scanloom::http {
 using testing::HasSubstr;
 using testing::StartsWith;
 
-/// A link that says when a scan has become durable.
+/// A link that records when a scan has become durable.
 class Link final : public session::RobotListener {
 public:
     explicit Link(std::uint64_t awaited_seq) : awaited_(awaited_seq) {}
@@ -52,7 +52,7 @@ inline Sensor laser() {
     return sensor;
 }
 
-/// A wall all around, two metres away.
+/// A wall around the robot at 2 m.
 inline Scan scan(std::uint64_t seq) {
     Scan taken;
     taken.seq = seq;
@@ -63,7 +63,7 @@ inline Scan scan(std::uint64_t seq) {
     return taken;
 }
 
-/// The address of a route in which every variable has a value.
+/// Returns the address of a route with a value for every variable.
 inline std::string target_of(const Route& route, std::string_view session) {
     std::string target(route.path);
     const std::map<std::string, std::string> values = {{"{session}", std::string(session)},
@@ -100,7 +100,7 @@ protected:
         return answer(api_, request);
     }
 
-    /// Whatever is answered, openapi.json has to say so.
+    /// Checks every response against openapi.json.
     static Response answer(TestApi& api, const Request& request) {
         auto response = api.answer(request);
         EXPECT_THAT(undescribed(request, response), testing::IsEmpty());
@@ -117,7 +117,7 @@ protected:
         return boost::json::parse(response.body.bytes());
     }
 
-    /// What a refusal says, after checking its status.
+    /// Returns the detail of a refusal after checking its status.
     std::string detail(const Response& response, Status status) {
         EXPECT_EQ(response.status, status) << response.body.bytes();
         EXPECT_EQ(response.get("Content-Type"), "application/problem+json");
@@ -128,14 +128,14 @@ protected:
         ASSERT_EQ(ask("POST", "/api/v1/sessions", R"({"name":")" + name + R"("})").status, Status::created);
     }
 
-    /// Scans `first` to `last` of robot r1, taken and woven; the link stays.
+    /// Sends scans `first` to `last` of robot r1 and waits until they are integrated; the link stays open.
     void stream(std::string_view name, std::uint64_t last, std::uint64_t first = 1) {
         std::vector<Scan> scans;
         for (std::uint64_t seq = first; seq <= last; ++seq) scans.push_back(scan(seq));
         stream(name, "r1", std::move(scans));
     }
 
-    /// A robot's next scans, taken and woven; the link stays.
+    /// Sends the robot's next scans and waits until they are integrated; the link stays open.
     void stream(std::string_view name, const std::string& robot, std::vector<Scan> scans) {
         const auto session = registry_.find(name);
         const auto link = join(name, robot, scans.back().seq);
@@ -155,7 +155,7 @@ protected:
         return link;
     }
 
-    /// Returns when the weave has ended.
+    /// Waits for the end of the replay job.
     void finish_weave(std::string_view name, std::string_view id) {
         const auto weave = weaves_.find(registry_.find(name)->info().id, id);
         ASSERT_NE(weave, nullptr);
@@ -164,7 +164,7 @@ protected:
 
     boost::asio::thread_pool pool_{2};
     store::MemoryScanLog log_;
-    std::atomic<session::SessionCache::Clock::time_point> clock_{}; ///< stands, unless a test sets it
+    std::atomic<session::SessionCache::Clock::time_point> clock_{}; ///< constant, unless a test sets it
     session::SessionRegistry registry_{log_,
                                        {.compute = pool_.get_executor(),
                                         .now = [] { return 1795251600.5; },

@@ -12,7 +12,7 @@ namespace {
 
 using testing::IsEmpty;
 
-/// A wall all around, three metres away, and a sector in which nothing was read: frontiers are there and behind.
+/// A wall around the robot at 3 m, with a sector without readings: frontiers are in that sector and behind the wall.
 Scan scan_with_a_gap(double x) {
     Scan taken = scan(1);
     taken.pose.x = x;
@@ -39,7 +39,7 @@ protected:
     boost::json::value goal_of(const std::string& robot) { return get_json("/api/v1/sessions/a/goal?robot=" + robot); }
     boost::json::array features() { return goals().at("features").as_array(); }
 
-    /// The robot of a link leaves; returns when the session knows.
+    /// Disconnects the robot of a link; returns when the session has processed it.
     void leave(RobotIndex robot) {
         const auto session = registry_.find("a");
         session->leave(links_.at(robot));
@@ -50,7 +50,7 @@ protected:
     static constexpr const char* kTarget = "/api/v1/sessions/a/goals.geojson";
 };
 
-TEST_F(ApiGoalsTest, NothingGivenIsAnEmptyCollection) {
+TEST_F(ApiGoalsTest, WithoutGoalsTheCollectionIsEmpty) {
     const auto answer = get(kTarget);
     EXPECT_EQ(answer.status, Status::ok);
     EXPECT_EQ(answer.get("Content-Type"), kGeoJson);
@@ -59,7 +59,7 @@ TEST_F(ApiGoalsTest, NothingGivenIsAnEmptyCollection) {
               R"({"type":"FeatureCollection","frame_id":"map","units":"m","revision":0,"explored":[],"features":[]})");
 }
 
-TEST_F(ApiGoalsTest, WaysAndGoalsAreWrittenAsTheyWereGiven) {
+TEST_F(ApiGoalsTest, PathsAndGoalsEqualTheAssignedOnes) {
     const auto session = registry_.find("a");
     goals_.ways().give_goal(session, 0, {{1.025, 0.5}, {1.5, 0.75}, true, 3},
                             {guide::PathKind::kGoal, {{0.5, 1.25}, {1.025, 0.5}}, 0.915492, 3},
@@ -76,14 +76,14 @@ TEST_F(ApiGoalsTest, WaysAndGoalsAreWrittenAsTheyWereGiven) {
     const auto way = features().at(0);
     EXPECT_EQ(way.at("properties").at("kind"), "plan");
     EXPECT_EQ(way.at("properties").at("points_left_out"), 9);
-    EXPECT_EQ(way.at("geometry").at("coordinates").as_array().size(), 2U) << "a LineString has two positions at least";
+    EXPECT_EQ(way.at("geometry").at("coordinates").as_array().size(), 2U) << "a LineString has at least two positions";
     goals_.ways().give_way(session, 0, guide::HeldPath{guide::PathKind::kCoverage, {{0.5, 1.25}, {0.5, 1.5}}, 0.25, 3},
                            guide::RobotPaths::Clock::now());
     EXPECT_EQ(features().at(0).at("properties").at("kind"), "coverage");
     EXPECT_EQ(features().at(1).at("properties").at("role"), "goal");
 }
 
-TEST_F(ApiGoalsTest, GoalsOfTwoRobotsAreThoseThatTheyWereAnswered) {
+TEST_F(ApiGoalsTest, GoalsOfTwoRobotsEqualTheirReplies) {
     stream("a", "r2", {scan_with_a_gap(2.0)});
     const std::array answers = {ask_for_goal("r1"), ask_for_goal("r2")};
     const auto shown = features();
@@ -106,7 +106,7 @@ TEST_F(ApiGoalsTest, GoalsOfTwoRobotsAreThoseThatTheyWereAnswered) {
     }
 }
 
-TEST_F(ApiGoalsTest, TheGoalOfARobotIsTheOneThatWasAssigned) {
+TEST_F(ApiGoalsTest, GoalOfARobotEqualsTheAssignedOne) {
     const auto none = goal_of("r1");
     EXPECT_EQ(none.at("outcome"), "none");
     EXPECT_TRUE(none.at("goal").is_null() && none.at("path").is_null() && none.at("length").is_null());
@@ -116,10 +116,10 @@ TEST_F(ApiGoalsTest, TheGoalOfARobotIsTheOneThatWasAssigned) {
     goals_.ways().give_way(registry_.find("a"), 0, guide::HeldPath{guide::PathKind::kPlan, {{0.5, 1.25}}, 0.0, 3},
                            guide::RobotPaths::Clock::now());
     EXPECT_EQ(goal_of("r1").at("goal"), assigned.at("goal"));
-    EXPECT_TRUE(goal_of("r1").at("path").is_null()) << "its way leads elsewhere";
+    EXPECT_TRUE(goal_of("r1").at("path").is_null()) << "its path leads to another place";
 }
 
-TEST_F(ApiGoalsTest, AskingChangesNothing) {
+TEST_F(ApiGoalsTest, ReadingGoalsDoesNotChangeThem) {
     stream("a", "r2", {scan_with_a_gap(2.0)});
     ask_for_goal("r1");
     const auto before = text();
@@ -129,12 +129,12 @@ TEST_F(ApiGoalsTest, AskingChangesNothing) {
     EXPECT_EQ(get_json("/api/v1/sessions/a/frontiers.geojson").at("any_reachable"), true);
     EXPECT_EQ(ask("POST", "/api/v1/sessions/a/plan", R"({"from":{"robot":"r1"},"to":[2.5,0.2]})").status, Status::ok);
     EXPECT_EQ(ask("POST", "/api/v1/sessions/a/coverage", R"({"start":{"robot":"r1"}})").status, Status::ok);
-    EXPECT_EQ(text(), before) << "what people ask for is no robot's way";
+    EXPECT_EQ(text(), before) << "a request without a robot stores no path";
     ask_for_goal("r1");
     EXPECT_NE(text(), before);
 }
 
-TEST_F(ApiGoalsTest, AGoalThatIsNoMoreIsNotShown) {
+TEST_F(ApiGoalsTest, EndedGoalsAreNotShown) {
     ask_for_goal("r1");
     EXPECT_EQ(features().size(), 2U);
     EXPECT_EQ(ask_for_goal("r1", 100'000).at("outcome"), "complete");

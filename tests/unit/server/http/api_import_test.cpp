@@ -24,7 +24,7 @@ protected:
     static std::pair<std::string, std::string> image() { return {"image", std::string(kImage)}; }
 };
 
-TEST_F(ApiImportTest, AMapBecomesASessionToBeExtended) {
+TEST_F(ApiImportTest, CreatesASessionThatAcceptsScans) {
     const auto made = import("depot", {yaml(), image()});
     ASSERT_EQ(made.status, Status::created) << made.body.bytes();
     EXPECT_EQ(made.get("Location"), "/api/v1/sessions/depot");
@@ -37,7 +37,7 @@ TEST_F(ApiImportTest, AMapBecomesASessionToBeExtended) {
     EXPECT_THAT(detail(get("/api/v1/sessions/depot/log?format=clf"), Status::conflict), HasSubstr("imported"));
 }
 
-TEST_F(ApiImportTest, SettingsOfTheSessionGoWithIt) {
+TEST_F(ApiImportTest, FormFieldsSetTheSessionSettings) {
     ASSERT_EQ(import("depot", {yaml(), image(), {"cell_size", "0.05"}, {"ray_model", "traversal"}}).status,
               Status::created);
     const auto config = get_json("/api/v1/sessions/depot").at("config");
@@ -47,7 +47,7 @@ TEST_F(ApiImportTest, SettingsOfTheSessionGoWithIt) {
               "100,100,0,0,0,0,-1,-1\n100,100,0,0,0,0,-1,-1\n0,0,0,0,0,0,0,0\n0,0,0,0,0,0,0,0\n");
 }
 
-TEST_F(ApiImportTest, WhatIsWrongMakesNoSession) {
+TEST_F(ApiImportTest, InvalidFormsCreateNoSession) {
     const auto refused = [&](const std::vector<std::pair<std::string, std::string>>& fields, Status status) {
         return detail(import("depot", fields), status);
     };
@@ -55,7 +55,7 @@ TEST_F(ApiImportTest, WhatIsWrongMakesNoSession) {
     EXPECT_THAT(refused({image()}, Status::bad_request), HasSubstr("yaml is missing"));
     EXPECT_THAT(refused({yaml(), image(), {"cell_size", "7"}}, Status::bad_request), HasSubstr("cell_size is 7"));
     EXPECT_THAT(refused({{"yaml", "resolution: 2\norigin: [0, 0, 0]\n"}, image()}, Status::bad_request),
-                HasSubstr("2 metres a pixel, of which no session can have cells; add the field cell_size"));
+                HasSubstr("2 metres per pixel, which is no valid cell size; add the field cell_size"));
     EXPECT_THAT(refused({yaml(), image(), {"colour", "7"}}, Status::bad_request), HasSubstr("colour"));
     EXPECT_THAT(refused({{"yaml", "x"}, image()}, Status::bad_request), HasSubstr("yaml"));
     EXPECT_THAT(refused({yaml(), {"image", "x"}}, Status::bad_request), HasSubstr("image"));
@@ -66,7 +66,7 @@ TEST_F(ApiImportTest, WhatIsWrongMakesNoSession) {
     EXPECT_THAT(refused({yaml(), image()}, Status::conflict), HasSubstr("exists already"));
 }
 
-TEST_F(ApiImportTest, AFailedStoreLeavesNoHalfOfIt) {
+TEST_F(ApiImportTest, FailedStoreLeavesNoPartialSession) {
     log_.fail_from_next_change({Errc::kStoreFailed, "the disk is full"});
     EXPECT_EQ(import("depot", {yaml(), image()}).status, Status::service_unavailable);
     EXPECT_EQ(get("/api/v1/sessions/depot").status, Status::not_found);

@@ -19,13 +19,13 @@ const std::string kWhole = "/api/v1/sessions/a/tiles/occupancy/0/0/0.png";
 /// Tiles that need no thread other than an I/O thread.
 class KeptTilesTest : public ApiTest {
 protected:
-    /// The answer, if an I/O thread gave it.
+    /// Returns the response if an I/O thread computed it.
     std::optional<Response> at_once(std::string target, std::string if_none_match = "") {
         auto asked = api_.ask({.target = std::move(target), .if_none_match = std::move(if_none_match)});
         return asked.pools.empty() ? std::move(asked.response) : std::nullopt;
     }
 
-    /// The pools that a tile needs.
+    /// Returns the pools that a tile uses.
     std::vector<Pool> pools(std::string target) { return api_.ask({.target = std::move(target)}).pools; }
 
     double counted(const std::string& name) {
@@ -35,7 +35,7 @@ protected:
     }
 };
 
-TEST_F(KeptTilesTest, ATileThatIsThereIsAnsweredAtOnceAsItWasMade) {
+TEST_F(KeptTilesTest, CachedTileEqualsTheRenderedOne) {
     create("a");
     stream("a", 1);
     EXPECT_FALSE(at_once(kNative));
@@ -48,7 +48,7 @@ TEST_F(KeptTilesTest, ATileThatIsThereIsAnsweredAtOnceAsItWasMade) {
     EXPECT_FALSE(at_once(kNative)) << "which has changed";
 }
 
-TEST_F(KeptTilesTest, WhatIsKnownOrWasNeverTouchedOrCannotBeIsAnsweredAtOnce) {
+TEST_F(KeptTilesTest, CurrentEmptyAndInvalidTilesAreAnsweredWithoutRendering) {
     create("a");
     stream("a", 1);
     EXPECT_EQ(at_once(kNative, std::string(get(kNative).get("ETag")))->status, Status::not_modified);
@@ -57,7 +57,7 @@ TEST_F(KeptTilesTest, WhatIsKnownOrWasNeverTouchedOrCannotBeIsAnsweredAtOnce) {
     EXPECT_EQ(at_once("/api/v1/sessions/b/tiles/occupancy/9/0/0.bin")->status, Status::not_found);
 }
 
-TEST_F(KeptTilesTest, OnlyTheFirstDrawingOfAWholeMapIsASurvey) {
+TEST_F(KeptTilesTest, OnlyTheFirstRenderingOfAWholeMapIsASurvey) {
     create("a");
     stream("a", 1);
     EXPECT_THAT(pools(kNative), testing::ElementsAre(Pool::kQueries));
@@ -78,7 +78,7 @@ TEST_F(KeptTilesTest, HitsMissesAndBytesAreCounted) {
     EXPECT_GT(counted("scanloom_tile_cache_bytes"), static_cast<double>(get(kNative).body.bytes().size()));
 }
 
-TEST_F(KeptTilesTest, OfADeletedSessionNothingIsKept) {
+TEST_F(KeptTilesTest, DeletedSessionLeavesNoTiles) {
     create("a");
     create("b");
     stream("a", 1);
@@ -87,21 +87,21 @@ TEST_F(KeptTilesTest, OfADeletedSessionNothingIsKept) {
         static_cast<void>(get(fmt::format("/api/v1/sessions/{}/tiles/occupancy/0/0/0.png", session)));
     }
     const double tiles = counted("scanloom_tile_cache_tiles");
-    EXPECT_EQ(tiles, 4.0) << "a PNG and the drawing of each";
+    EXPECT_EQ(tiles, 4.0) << "a PNG and the pixels of each";
     EXPECT_EQ(ask("DELETE", "/api/v1/sessions/a").status, Status::no_content);
     EXPECT_EQ(counted("scanloom_tile_cache_tiles"), 2.0);
     EXPECT_TRUE(at_once("/api/v1/sessions/b/tiles/occupancy/0/0/0.png"));
 }
 
-TEST_F(KeptTilesTest, BeforeTheSessionsAreRecoveredNothingIsLookedFor) {
+TEST_F(KeptTilesTest, CacheIsNotUsedBeforeRecoveryEnds) {
     TestApi fresh(registry_, weaves_, goals_, log_, metrics_, {authenticator_, audit_, logins_}, {});
     const auto asked = fresh.ask({.target = kNative});
     EXPECT_EQ(asked.response->status, Status::service_unavailable);
     EXPECT_TRUE(asked.pools.empty());
 }
 
-/// What the threads do with each other is for the sanitizers; here every answer is one of those there may be.
-TEST_F(KeptTilesTest, TilesAreAskedForByManyWhileARobotDrivesAndASessionIsDeleted) {
+/// The sanitizers check the threads for races; this test checks that every response is a possible one.
+TEST_F(KeptTilesTest, ConcurrentRequestsDuringScansAndDeletionSucceed) {
     create("a");
     create("doomed");
     stream("a", 1);

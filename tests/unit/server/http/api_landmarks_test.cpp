@@ -14,7 +14,7 @@ class ApiLandmarksTest : public ApiTest {
 protected:
     void SetUp() override { create("a"); }
 
-    /// Scans `first` to `last` of the round, taken and woven.
+    /// Sends scans `first` to `last` of the tour and waits until they are integrated.
     void drive(std::uint64_t first, std::uint64_t last) {
         const auto session = registry_.find("a");
         const auto link = join("a", "r1", last);
@@ -41,13 +41,13 @@ std::vector<std::uint64_t> ids_of(const boost::json::value& collection) {
     return ids;
 }
 
-TEST_F(ApiLandmarksTest, OfASessionWithoutScansThereAreNone) {
+TEST_F(ApiLandmarksTest, SessionWithoutScansHasNone) {
     EXPECT_EQ(get("/api/v1/sessions/a/landmarks.geojson").body.bytes(),
               R"({"type":"FeatureCollection","frame_id":"map","units":"m","revision":0,"reset":false,"captures":0,)"
               R"("landmarks":0,"tolerance":0.25,"persistence":null,"stability":null,"continuity":null,"features":[]})");
 }
 
-TEST_F(ApiLandmarksTest, ThingsInTheRoomAreFoundWhereTheyAre) {
+TEST_F(ApiLandmarksTest, PositionsMatchTheObjectsOfTheRoom) {
     drive(1, 240);
     const auto found = landmarks();
     EXPECT_EQ(found.at("revision"), 242);
@@ -69,7 +69,7 @@ TEST_F(ApiLandmarksTest, ThingsInTheRoomAreFoundWhereTheyAre) {
     }
 }
 
-TEST_F(ApiLandmarksTest, WhatWasSeenSinceIsToldAndGivesTogetherWithTheRestAll) {
+TEST_F(ApiLandmarksTest, UpdatesSinceARevisionCompleteTheEarlierAnswer) {
     drive(1, 100);
     const auto before = landmarks();
     drive(101, 240);
@@ -93,7 +93,7 @@ TEST_F(ApiLandmarksTest, WhatWasSeenSinceIsToldAndGivesTogetherWithTheRestAll) {
     EXPECT_EQ(landmarks("since=242").at("reset"), false);
 }
 
-TEST_F(ApiLandmarksTest, ASessionThatWasMadeAnewTellsAllAndSaysSo) {
+TEST_F(ApiLandmarksTest, RecreatedSessionReturnsAllWithReset) {
     drive(1, 60);
     const auto all = landmarks();
     const auto beyond = landmarks("since=100000");
@@ -101,7 +101,7 @@ TEST_F(ApiLandmarksTest, ASessionThatWasMadeAnewTellsAllAndSaysSo) {
     EXPECT_EQ(beyond.at("features"), all.at("features"));
 }
 
-TEST_F(ApiLandmarksTest, OnlyThoseOfAPlaceOrThatWereSeenOften) {
+TEST_F(ApiLandmarksTest, BboxAndSeenMinFilterLandmarks) {
     drive(1, 240);
     const auto all = landmarks();
     std::size_t inside = 0;
@@ -121,7 +121,7 @@ TEST_F(ApiLandmarksTest, OnlyThoseOfAPlaceOrThatWereSeenOften) {
     EXPECT_LT(often, ids_of(all).size());
 }
 
-TEST_F(ApiLandmarksTest, NonsenseIsRefusedAndTheSentenceSaysWhat) {
+TEST_F(ApiLandmarksTest, InvalidParametersAreNamed) {
     const std::string path = "/api/v1/sessions/a/landmarks.geojson?";
     for (const auto& [query, what] : {
              std::pair{"seen_min=0", "seen_min is \"0\"; a whole number from 1 to 4294967295 is needed"},

@@ -17,7 +17,7 @@ protected:
     const WebSocketUpgrade wanted_{.version = "13", .key = "dGhlIHNhbXBsZSBub25jZQ==", .origin = ""};
 };
 
-TEST_F(ApiLiveTest, AWebSocketIsInvitedToWatchTheSession) {
+TEST_F(ApiLiveTest, WebSocketRequestIsUpgraded) {
     create("lab");
     const auto response = upgrade(wanted_);
     EXPECT_EQ(response.status, Status::switching_protocols);
@@ -27,7 +27,7 @@ TEST_F(ApiLiveTest, AWebSocketIsInvitedToWatchTheSession) {
     EXPECT_EQ(response.invitation->tag, get_json("/api/v1/sessions/lab").at("id").as_string());
 }
 
-TEST_F(ApiLiveTest, WhatIsNoWebSocketIsToldToUpgrade) {
+TEST_F(ApiLiveTest, OtherRequestsAreUpgradeRequired) {
     create("lab");
     for (const auto& response : {get("/api/v1/sessions/lab/live"), ask("HEAD", "/api/v1/sessions/lab/live"),
                                  upgrade({.version = "8", .key = wanted_.key, .origin = ""}),
@@ -39,7 +39,7 @@ TEST_F(ApiLiveTest, WhatIsNoWebSocketIsToldToUpgrade) {
     }
 }
 
-TEST_F(ApiLiveTest, PagesOfStrangersAreForbidden) {
+TEST_F(ApiLiveTest, ForeignPagesAreForbidden) {
     create("lab");
     for (const auto* origin : {"http://evil.example", "null", "http://localhost.evil.example:8080"}) {
         const auto response = upgrade({.version = "13", .key = wanted_.key, .origin = origin});
@@ -51,7 +51,7 @@ TEST_F(ApiLiveTest, PagesOfStrangersAreForbidden) {
     EXPECT_EQ(own.status, Status::switching_protocols);
 }
 
-TEST_F(ApiLiveTest, WhatCannotBeWatchedIsRefused) {
+TEST_F(ApiLiveTest, InvalidRequestsAreRefused) {
     create("lab");
     EXPECT_THAT(detail(upgrade(wanted_, "/api/v1/sessions/hall/live"), Status::not_found), HasSubstr("hall"));
     EXPECT_THAT(detail(upgrade(wanted_, "/api/v1/sessions/lab/live?weave=x"), Status::bad_request), HasSubstr("weave"));

@@ -4,13 +4,13 @@
 
 #include <boost/json/array.hpp>
 
-/// What is made from a whole map: files, digests, paths.
+/// Files, digests and trajectories of a whole map.
 namespace scanloom::http {
 namespace {
 
-TEST_F(ApiTest, MapFilesAreWhatTheySay) {
+TEST_F(ApiTest, MapFilesHaveTheirFormats) {
     create("a");
-    EXPECT_EQ(get("/api/v1/sessions/a/map.png").status, Status::not_found); // nothing was seen
+    EXPECT_EQ(get("/api/v1/sessions/a/map.png").status, Status::not_found); // no cell was observed
     stream("a", 1);
     const auto image = get("/api/v1/sessions/a/map.png");
     EXPECT_EQ(image.get("Content-Type"), "image/png");
@@ -23,7 +23,7 @@ TEST_F(ApiTest, MapFilesAreWhatTheySay) {
     EXPECT_EQ(get("/api/v1/sessions/a/map.png", std::string(image.get("ETag"))).status, Status::not_modified);
 }
 
-TEST_F(ApiTest, BadBoxesAreRefused) {
+TEST_F(ApiTest, InvalidBboxIsRefused) {
     create("a");
     stream("a", 1);
     for (const auto* box : {"", "1", "0,0,1", "0,0,1,1,1", "0,0,1,x", "0,0,nan,1", "0,0,1e999,1", "0,0,0,0", "1,1,0,0",
@@ -35,7 +35,7 @@ TEST_F(ApiTest, BadBoxesAreRefused) {
     EXPECT_EQ(get("/api/v1/sessions/a/map.png?bbox=-90000,-90000,90000,90000").status, Status::payload_too_large);
 }
 
-TEST_F(ApiTest, HugeMapImagesAreBoundedUntilTheyAreSent) {
+TEST_F(ApiTest, HugeMapImagesHoldAPermitUntilSent) {
     create("a");
     stream("a", 1);
     const std::string huge = "bbox=-75,-75,75,75"; // 9 million pixels
@@ -49,7 +49,7 @@ TEST_F(ApiTest, HugeMapImagesAreBoundedUntilTheyAreSent) {
         EXPECT_EQ(refused.status, Status::service_unavailable);
         EXPECT_EQ(refused.get("Retry-After"), "1");
     }
-    EXPECT_EQ(get("/api/v1/sessions/a/map.png").status, Status::ok) << "a small one is not held up by them";
+    EXPECT_EQ(get("/api/v1/sessions/a/map.png").status, Status::ok) << "a small image does not wait for them";
     EXPECT_EQ(get("/api/v1/sessions/a/map.yaml?" + huge).status, Status::ok);
     const std::string etag(unsent[0].get("ETag"));
     EXPECT_EQ(get("/api/v1/sessions/a/map.png?" + huge, etag).status, Status::not_modified);
@@ -57,7 +57,7 @@ TEST_F(ApiTest, HugeMapImagesAreBoundedUntilTheyAreSent) {
     EXPECT_EQ(get("/api/v1/sessions/a/map.png?" + huge).status, Status::ok);
 }
 
-TEST_F(ApiTest, DigestIsThatOfTheSnapshot) {
+TEST_F(ApiTest, DigestEqualsThatOfTheSnapshot) {
     create("a");
     stream("a", 2);
     const auto snapshot = registry_.find("a")->snapshot();
@@ -68,7 +68,7 @@ TEST_F(ApiTest, DigestIsThatOfTheSnapshot) {
               (boost::json::object{{"revision", 4}, {"layers", {{"himm", layers.at("himm")}}}}));
 }
 
-TEST_F(ApiTest, TrajectoryIsWhereTheScansWereTaken) {
+TEST_F(ApiTest, TrajectoryHasThePosesOfTheScans) {
     create("a");
     EXPECT_TRUE(get_json("/api/v1/sessions/a/trajectory.geojson").at("features").as_array().empty());
     stream("a", 3);
@@ -85,10 +85,10 @@ TEST_F(ApiTest, TrajectoryIsWhereTheScansWereTaken) {
                                   {"coordinates", boost::json::array{boost::json::array{1.5, 1.25}}}}));
     const auto none = get_json("/api/v1/sessions/a/trajectory.geojson?since=5");
     EXPECT_EQ(none.at("features").at(0).at("geometry").at("coordinates"), boost::json::array{});
-    EXPECT_EQ(get_json("/api/v1/sessions/a/trajectory.geojson?since=6"), whole); // of a session before
+    EXPECT_EQ(get_json("/api/v1/sessions/a/trajectory.geojson?since=6"), whole); // of an earlier session
 }
 
-TEST_F(ApiTest, TrajectoryTellsTimesOnlyWhenItIsAskedTo) {
+TEST_F(ApiTest, TrajectoryHasTimesOnRequestOnly) {
     create("a");
     std::vector<Scan> scans = {scan(1), scan(2), scan(3)};
     scans[0].stamp = 976052857.33794796;
@@ -111,7 +111,7 @@ TEST_F(ApiTest, TrajectoryTellsTimesOnlyWhenItIsAskedTo) {
     EXPECT_EQ(none, boost::json::parse(R"({"robot":"r1","points":0,"revisions":[],"stamps":[],"yaws":[]})"));
 }
 
-TEST_F(ApiTest, ALongTrajectoryIsWholeThoughItsBeginningIsNotInMemory) {
+TEST_F(ApiTest, LongTrajectoryIncludesPositionsNotInMemory) {
     create("a");
     constexpr std::size_t kScans = mapping::kTrajectoryKept + 2000;
     std::vector<Scan> scans;
@@ -120,7 +120,8 @@ TEST_F(ApiTest, ALongTrajectoryIsWholeThoughItsBeginningIsNotInMemory) {
         scans.back().pose.x = static_cast<double>(n % 16) / 4;
     }
     stream("a", "r1", std::move(scans));
-    ASSERT_GT(registry_.find("a")->snapshot()->robots.at(0).trajectory.begin(), 0U) << "or this test shows nothing";
+    ASSERT_GT(registry_.find("a")->snapshot()->robots.at(0).trajectory.begin(), 0U)
+        << "otherwise this test checks nothing";
     const auto whole = get_json("/api/v1/sessions/a/trajectory.geojson?times=true");
     EXPECT_EQ(whole.at("revision"), kScans + 2);
     const auto& path = whole.at("features").at(0);
@@ -135,7 +136,7 @@ TEST_F(ApiTest, ALongTrajectoryIsWholeThoughItsBeginningIsNotInMemory) {
     }
 }
 
-TEST_F(ApiTest, TimesAreTrueOrFalse) {
+TEST_F(ApiTest, InvalidTimesAreRefused) {
     create("a");
     for (const auto* times : {"", "1", "yes", "TRUE"}) {
         const auto refused = get(fmt::format("/api/v1/sessions/a/trajectory.geojson?times={}", times));

@@ -8,7 +8,7 @@
 namespace scanloom::http {
 namespace {
 
-/// What is wrong with the text, as Prometheus would have it: every family once, its HELP and TYPE before its samples,
+/// Returns the errors of the text by the rules of Prometheus: every family once, its HELP and TYPE before its samples,
 /// and every histogram with a sum, a count, and rising buckets up to all.
 class TextCheck {
 public:
@@ -68,7 +68,7 @@ private:
     std::string last_bound_;
 };
 
-TEST_F(ApiTest, MetricsAreTextThatPrometheusReads) {
+TEST_F(ApiTest, MetricsAreInThePrometheusTextFormat) {
     create("a");
     stream("a", 3);
     metrics_.ingest().ack_seconds.observe(std::chrono::milliseconds(3), 3);

@@ -15,7 +15,7 @@
 namespace scanloom::http {
 namespace {
 
-/// A wall all around, three metres away, and a sector in which nothing was read: frontiers are there and behind.
+/// A wall around the robot at 3 m, with a sector without readings: frontiers are in that sector and behind the wall.
 Scan scan_with_a_gap() {
     Scan taken = scan(1);
     taken.ranges.assign(181, 3'000);
@@ -23,7 +23,7 @@ Scan scan_with_a_gap() {
     return taken;
 }
 
-constexpr double kX = 0.5; // where it was taken
+constexpr double kX = 0.5; // where the scan was taken
 constexpr double kY = 1.25;
 
 class ApiPlanningTest : public ApiTest {
@@ -69,7 +69,7 @@ double length_of(const std::vector<Point2>& points) {
     return length;
 }
 
-/// What a ring encloses; negative where it is a hole.
+/// Returns the area of a ring; negative for a hole.
 double area_of(const boost::json::value& ring) {
     double twice = 0.0;
     const auto& corners = ring.as_array();
@@ -91,7 +91,7 @@ double area_of_polygons(const boost::json::value& geometry) {
 
 // Frontiers
 
-TEST_F(ApiPlanningTest, FrontiersAreThoseOfTheClassesWithTheirCellsAsAreas) {
+TEST_F(ApiPlanningTest, FrontiersHaveTheirCellsAsPolygons) {
     const auto answer = frontiers();
     const auto expected = classify::find_frontiers(maps()->classes);
     const auto& features = answer.at("features").as_array();
@@ -108,7 +108,7 @@ TEST_F(ApiPlanningTest, FrontiersAreThoseOfTheClassesWithTheirCellsAsAreas) {
     }
 }
 
-TEST_F(ApiPlanningTest, FrontiersHaveTheGoalsOfTheRobot) {
+TEST_F(ApiPlanningTest, FrontiersHaveTheGoalsOfTheNamedRobot) {
     const auto found = classify::find_frontiers(maps()->classes);
     const auto goals = planning::frontier_goals(maps()->classes, cell_size(), found, {kX, kY}).value();
     for (const char* query : {"", "robot=r1"}) {
@@ -130,7 +130,7 @@ TEST_F(ApiPlanningTest, FrontiersHaveTheGoalsOfTheRobot) {
     }
 }
 
-TEST_F(ApiPlanningTest, EachFrontierHasTheRobotThatIsNearest) {
+TEST_F(ApiPlanningTest, EachFrontierHasTheNearestRobot) {
     Scan elsewhere = scan_with_a_gap();
     elsewhere.pose.x = 2.0;
     stream("a", "r2", {elsewhere});
@@ -152,7 +152,7 @@ TEST_F(ApiPlanningTest, EachFrontierHasTheRobotThatIsNearest) {
     EXPECT_EQ(robots, (std::set<std::string>{"r1", "r2"}));
 }
 
-TEST_F(ApiPlanningTest, OneScanFarAwayChangesNoPlan) {
+TEST_F(ApiPlanningTest, DistantScanDoesNotChangeThePlan) {
     const std::string to_the_wall = R"({"from":[1.0,1.0],"to":[2.5,0.2]})";
     const std::string unknown = R"({"from":[1.0,1.0],"to":[2.5,0.2],"allow_unknown":true})";
     const auto plan = post_json("plan", to_the_wall).at("geometry");
@@ -169,13 +169,13 @@ TEST_F(ApiPlanningTest, OneScanFarAwayChangesNoPlan) {
     EXPECT_EQ(frontiers().at("robots").as_array().size(), 2U);
 }
 
-TEST_F(ApiPlanningTest, AllFrontiersAreListedHoweverWideTheBody) {
+TEST_F(ApiPlanningTest, FrontiersAreListedForAnyBodyRadius) {
     const auto wide = frontiers("body_radius=5").at("features").as_array().size();
     EXPECT_EQ(wide, classify::find_frontiers(maps()->classes).size());
     EXPECT_GT(wide, 1U);
 }
 
-TEST_F(ApiPlanningTest, SmallFrontiersMayBeLeftOut) {
+TEST_F(ApiPlanningTest, SizeMinLeavesOutSmallFrontiers) {
     const std::size_t largest = classify::find_frontiers(maps()->classes).front().cells.size();
     EXPECT_EQ(frontiers("size_min=" + std::to_string(largest)).at("features").as_array().size(), 1U);
     const auto none = frontiers("size_min=" + std::to_string(largest + 1));
@@ -183,14 +183,14 @@ TEST_F(ApiPlanningTest, SmallFrontiersMayBeLeftOut) {
     EXPECT_FALSE(none.at("any_reachable").as_bool());
 }
 
-TEST_F(ApiPlanningTest, SettingsAreWovenFirst) {
+TEST_F(ApiPlanningTest, SettingsAreRefused) {
     EXPECT_THAT(detail(get("/api/v1/sessions/a/frontiers.geojson?cell_size=0.1"), Status::bad_request),
                 HasSubstr("POST them to .../weave"));
     EXPECT_THAT(detail(post("goal?until=3", R"({"robot":"r1"})"), Status::bad_request),
                 HasSubstr("POST them to .../weave"));
 }
 
-TEST_F(ApiPlanningTest, WithoutARobotThatIsSomewhereNothingIsReachable) {
+TEST_F(ApiPlanningTest, FrontiersAreUnreachableWithoutARobotPose) {
     create("b");
     const auto empty = get_json("/api/v1/sessions/b/frontiers.geojson");
     EXPECT_FALSE(empty.at("any_reachable").as_bool());
@@ -201,10 +201,10 @@ TEST_F(ApiPlanningTest, WithoutARobotThatIsSomewhereNothingIsReachable) {
     EXPECT_FALSE(of_mute.at("any_reachable").as_bool());
     ASSERT_FALSE(of_mute.at("features").as_array().empty());
     EXPECT_TRUE(of_mute.at("features").at(0).at("properties").at("goal").is_null());
-    EXPECT_EQ(boost::json::serialize(frontiers().at("robots")), R"(["r1"])") << "the mute one is left out";
+    EXPECT_EQ(boost::json::serialize(frontiers().at("robots")), R"(["r1"])") << "the robot without scans is left out";
 }
 
-TEST_F(ApiPlanningTest, BadParametersAreNamed) {
+TEST_F(ApiPlanningTest, InvalidParametersAreNamed) {
     const std::string session = "/api/v1/sessions/a/";
     for (const auto& [target, beginning] : {
              std::pair{"frontiers.geojson?size_min=0", "size_min is \"0\""},
@@ -219,7 +219,8 @@ TEST_F(ApiPlanningTest, BadParametersAreNamed) {
         EXPECT_THAT(detail(get(session + target), Status::bad_request), StartsWith(beginning));
     }
     for (const char* target : {"frontiers.geojson?robot=r9", "goal?robot=r9"}) {
-        EXPECT_THAT(detail(get(session + target), Status::not_found), StartsWith("robot is \"r9\": there is no robot"));
+        EXPECT_THAT(detail(get(session + target), Status::not_found),
+                    StartsWith("robot is \"r9\": these maps have no robot"));
     }
     EXPECT_EQ(get("/api/v1/sessions/none/frontiers.geojson").status, Status::not_found);
     EXPECT_EQ(post("goal?weave=0123456789abcdef", R"({"robot":"r1"})").status, Status::not_found);
@@ -227,7 +228,7 @@ TEST_F(ApiPlanningTest, BadParametersAreNamed) {
 
 // Plans
 
-TEST_F(ApiPlanningTest, APlanIsThePathThatPlanningFinds) {
+TEST_F(ApiPlanningTest, PlanEqualsThePathOfThePlanner) {
     const auto answer = post_json("plan", R"({"from":[1.0,1.0],"to":[2.5,0.2]})");
     const auto expected = planning::plan_path(maps()->classes, cell_size(), {1.0, 1.0}, {2.5, 0.2}).value();
     EXPECT_EQ(answer.at("type"), "Feature");
@@ -240,22 +241,22 @@ TEST_F(ApiPlanningTest, APlanIsThePathThatPlanningFinds) {
     EXPECT_NEAR(number(answer.at("properties").at("cost")), expected.cost, 1e-6);
 }
 
-TEST_F(ApiPlanningTest, APlanMayBeginAtARobot) {
+TEST_F(ApiPlanningTest, PlanStartsAtTheNamedRobot) {
     const auto points = points_of(post_json("plan", R"({"from":{"robot":"r1"},"to":[2.5,0.2]})").at("geometry"));
     EXPECT_EQ(points.front(), (Point2{kX, kY}));
     EXPECT_EQ(points.back(), (Point2{2.5, 0.2}));
 }
 
-TEST_F(ApiPlanningTest, WaysForARobotAreForItsBodyUnlessAnotherIsAskedFor) {
+TEST_F(ApiPlanningTest, BodyRadiusDefaultsToThatOfTheRobot) {
     Scan scan = scan_with_a_gap();
     scan.seq = 2;
-    const auto link = join("a", "r1", scan.seq, 0.5); // comes again, and states it
+    const auto link = join("a", "r1", scan.seq, 0.5); // joins again with a body radius
     registry_.find("a")->submit(link, {scan}, 1);
     link->wait();
     const std::string near_wall = R"({"from":{"robot":"r1"},"to":[3.2,1.25])";
     EXPECT_THAT(detail(post("plan", near_wall + "}"), Status::conflict), HasSubstr("than the body radius of 0.5 m"));
     EXPECT_EQ(post("plan", near_wall + R"(,"body_radius":0.1})").status, Status::ok);
-    EXPECT_EQ(post("plan", R"({"from":[1.0,1.0],"to":[3.2,1.25]})").status, Status::ok) << "nobody is named";
+    EXPECT_EQ(post("plan", R"({"from":[1.0,1.0],"to":[3.2,1.25]})").status, Status::ok) << "no robot is named";
 
     const auto covered = [&](const std::string& body) { return post_json("coverage", body).at("features").at(0); };
     EXPECT_EQ(covered("{}"), covered(R"({"body_radius":0.5})"));
@@ -268,7 +269,7 @@ TEST_F(ApiPlanningTest, WaysForARobotAreForItsBodyUnlessAnotherIsAskedFor) {
     EXPECT_NE(own, goal(R"(,"body_radius":0.15)"));
 }
 
-TEST_F(ApiPlanningTest, OptionsOfAPlanAreHeeded) {
+TEST_F(ApiPlanningTest, PlanOptionsAreApplied) {
     const std::string beyond = R"({"from":[1.0,1.0],"to":[-2.5,1.0])";
     EXPECT_THAT(detail(post("plan", beyond + "}"), Status::conflict), HasSubstr("the goal (-2.5, 1) is "));
     const auto around = post_json("plan", beyond + R"(,"allow_unknown":true})");
@@ -281,12 +282,12 @@ TEST_F(ApiPlanningTest, OptionsOfAPlanAreHeeded) {
     EXPECT_GT(number(dear.at("properties").at("cost")), number(dear.at("properties").at("length")) + 1.0);
 }
 
-TEST_F(ApiPlanningTest, WhereThereIsNoWayTheReasonIsGiven) {
+TEST_F(ApiPlanningTest, MissingPathHasAReason) {
     join("a", "mute", 1);
     for (const auto& [body, why] : {
              std::pair{R"({"from":[1.0,1.0],"to":[3.53,1.25]})", "inside an obstacle"},
              std::pair{R"({"from":[900,1],"to":[1,1.25]})", "the start (900, 1) is outside the map"},
-             std::pair{R"({"from":{"robot":"mute"},"to":[1,1.25]})", "from: where robot 'mute' is, is not known"},
+             std::pair{R"({"from":{"robot":"mute"},"to":[1,1.25]})", "from: the position of robot 'mute' is not known"},
          }) {
         const auto response = post("plan", body);
         EXPECT_THAT(detail(response, Status::conflict), HasSubstr(why));
@@ -294,7 +295,7 @@ TEST_F(ApiPlanningTest, WhereThereIsNoWayTheReasonIsGiven) {
     }
 }
 
-TEST_F(ApiPlanningTest, BadPlansAreRefusedByTheNameOfTheirField) {
+TEST_F(ApiPlanningTest, InvalidPlanFieldsAreNamed) {
     for (const auto& [body, beginning] : {
              std::pair{R"({})", "from is missing"},
              std::pair{R"({"from":[1,1]})", "to is missing"},
@@ -321,14 +322,14 @@ TEST_F(ApiPlanningTest, BadPlansAreRefusedByTheNameOfTheirField) {
         expect_bad("plan", body, beginning);
     }
     EXPECT_THAT(detail(post("plan", R"({"from":{"robot":"r9"},"to":[1,1]})"), Status::not_found),
-                StartsWith("from is robot \"r9\": there is no robot"));
+                StartsWith("from is robot \"r9\": these maps have no robot"));
     EXPECT_THAT(detail(post("plan?speed=9", R"({"from":[1,1],"to":[1,1]})"), Status::bad_request),
                 StartsWith("the parameter \"speed\" is unknown"));
 }
 
 // Coverage
 
-TEST_F(ApiPlanningTest, ACoverageIsThePathOverAllGroundAndWhatItCannotCover) {
+TEST_F(ApiPlanningTest, CoverageHasThePathAndTheUnreachableArea) {
     const auto answer = post_json("coverage", R"({"spacing":0.3,"body_radius":0.2})");
     planning::CoverageOptions options;
     options.spacing_m = 0.3;
@@ -350,7 +351,7 @@ TEST_F(ApiPlanningTest, ACoverageIsThePathOverAllGroundAndWhatItCannotCover) {
     EXPECT_NEAR(area_of_polygons(answer.at("features").at(1).at("geometry")), unreachable, 1e-6);
 }
 
-TEST_F(ApiPlanningTest, ARegionIsAPolygonOrABox) {
+TEST_F(ApiPlanningTest, RegionIsAPolygonOrABox) {
     const std::string start = R"({"start":[1.0,1.0],"region":)";
     const auto box = post_json("coverage", start + "[1,0.5,2,1.5]}");
     const auto polygon = post_json("coverage", start + "[[1,0.5],[2,0.5],[2,1.5],[1,1.5]]}");
@@ -360,7 +361,7 @@ TEST_F(ApiPlanningTest, ARegionIsAPolygonOrABox) {
     EXPECT_NEAR(number(triangle.at("features").at(0).at("properties").at("free_area")), 0.5, 0.1);
 }
 
-TEST_F(ApiPlanningTest, WithoutAStartTheOnlyRobotIsMeant) {
+TEST_F(ApiPlanningTest, StartDefaultsToTheOnlyRobot) {
     EXPECT_EQ(points_of(post_json("coverage", "{}").at("features").at(0).at("geometry")).front(), (Point2{kX, kY}));
     stream("a", "r2", {scan_with_a_gap()});
     expect_bad("coverage", "{}", "start is missing, and the session has 2 robots");
@@ -372,7 +373,7 @@ TEST_F(ApiPlanningTest, WithoutAStartTheOnlyRobotIsMeant) {
     EXPECT_THAT(detail(ask("POST", "/api/v1/sessions/b/coverage", "{}"), Status::conflict), HasSubstr("'mute'"));
 }
 
-TEST_F(ApiPlanningTest, BadCoveragesAreRefusedByTheNameOfTheirField) {
+TEST_F(ApiPlanningTest, InvalidCoverageFieldsAreNamed) {
     std::string corners = "[0,0]";
     for (int n = 0; n < 4096; ++n) corners += ",[1,1]";
     const auto too_many = R"({"region":[)" + corners + "]}";
@@ -400,7 +401,7 @@ TEST_F(ApiPlanningTest, BadCoveragesAreRefusedByTheNameOfTheirField) {
 
 // Goals
 
-TEST_F(ApiPlanningTest, AGoalIsTheFrontierWithTheCheapestWay) {
+TEST_F(ApiPlanningTest, GoalIsTheFrontierWithTheCheapestPath) {
     const auto answer = post_json("goal", R"({"robot":"r1"})");
     const auto expected = planning::next_goal(maps()->classes, cell_size(), {kX, kY}).value();
     ASSERT_EQ(answer.at("outcome"), "goal");
@@ -411,10 +412,10 @@ TEST_F(ApiPlanningTest, AGoalIsTheFrontierWithTheCheapestWay) {
     EXPECT_NEAR(number(answer.at("target").at("x")), (expected.goal->target.i + 0.5) * 0.05, 1e-6);
     EXPECT_NEAR(number(answer.at("target").at("y")), (expected.goal->target.j + 0.5) * 0.05, 1e-6);
     EXPECT_NEAR(number(answer.at("length")), expected.path.length_m, 1e-6);
-    EXPECT_EQ(post_json("goal", R"({"robot":"r1"})"), answer) << "asking again gives back the one before";
+    EXPECT_EQ(post_json("goal", R"({"robot":"r1"})"), answer) << "a new request releases the previous goal";
 }
 
-/// Which of the frontiers an answer's target is a cell of.
+/// Returns the index of the frontier that contains the target of a response.
 std::size_t frontier_of(const boost::json::value& answer, const std::vector<classify::Frontier>& frontiers) {
     const auto cell_of = [](const boost::json::value& metres) {
         return static_cast<std::int32_t>(std::floor(number(metres) / 0.05));
@@ -425,7 +426,7 @@ std::size_t frontier_of(const boost::json::value& answer, const std::vector<clas
     return static_cast<std::size_t>(found - frontiers.begin());
 }
 
-TEST_F(ApiPlanningTest, TwoRobotsNeverGetTheSameFrontierUntilNoneIsLeft) {
+TEST_F(ApiPlanningTest, TwoRobotsGetDifferentFrontiersUntilNoneIsLeft) {
     std::set<std::size_t> given;
     std::string outcome = "goal";
     for (int n = 0; outcome == "goal"; ++n) {
@@ -443,7 +444,7 @@ TEST_F(ApiPlanningTest, TwoRobotsNeverGetTheSameFrontierUntilNoneIsLeft) {
     EXPECT_GE(given.size(), 2U);
 }
 
-TEST_F(ApiPlanningTest, WhatARobotHasLookedAtInVainIsGivenUp) {
+TEST_F(ApiPlanningTest, UnobservableFrontierCellsAreGivenUp) {
     const auto answer = post_json("goal", R"({"robot":"r1"})");
     EXPECT_EQ(answer.at("given_up"), 0);
     Scan blind = scan_with_a_gap();
@@ -459,12 +460,12 @@ TEST_F(ApiPlanningTest, WhatARobotHasLookedAtInVainIsGivenUp) {
     EXPECT_NE(next.at("target"), answer.at("target"));
 }
 
-TEST_F(ApiPlanningTest, ARobotWithoutAPoseHasNoGoal) {
+TEST_F(ApiPlanningTest, RobotWithoutPoseHasNoGoal) {
     join("a", "mute", 1);
     EXPECT_THAT(detail(post("goal", R"({"robot":"mute"})"), Status::conflict), HasSubstr("has sent no scan yet"));
 }
 
-TEST_F(ApiPlanningTest, GoalsOfFaultyRequestsAreRefused) {
+TEST_F(ApiPlanningTest, InvalidGoalRequestsAreRefused) {
     for (const auto& [body, beginning] : {
              std::pair{"{}", "robot is missing"},
              std::pair{R"({"robot":1})", "robot is "},
@@ -480,7 +481,7 @@ TEST_F(ApiPlanningTest, GoalsOfFaultyRequestsAreRefused) {
 
 // All
 
-TEST_F(ApiPlanningTest, AWeaveIsPlannedOnAsTheSessionIs) {
+TEST_F(ApiPlanningTest, PlansOnAReplayJobLikeOnTheSession) {
     const auto started = ask("POST", "/api/v1/sessions/a/weave", R"({"cell_size":0.1})");
     const std::string id(boost::json::parse(started.body.bytes()).at("id").as_string());
     finish_weave("a", id);
@@ -494,7 +495,7 @@ TEST_F(ApiPlanningTest, AWeaveIsPlannedOnAsTheSessionIs) {
     EXPECT_EQ(post_json("goal?" + weave, R"({"robot":"r1"})").at("outcome"), "goal");
 }
 
-TEST_F(ApiPlanningTest, NoSearchIsBegunWhileTheServerShutsDown) {
+TEST_F(ApiPlanningTest, SearchIsRefusedDuringShutdown) {
     registry_.drain();
     EXPECT_THAT(detail(post("plan", R"({"from":[1.0,1.0],"to":[2.5,0.2]})"), Status::service_unavailable),
                 HasSubstr("shutting down"));

@@ -49,7 +49,7 @@ protected:
 
 class ApiPointsTrials : public ApiPointsTest {};
 
-TEST_F(ApiPointsTest, EveryPointThatWasSeenIsInOneOfTheCloud) {
+TEST_F(ApiPointsTest, CloudContainsAllObservedPoints) {
     const auto apart = lines("threshold=0");
     const auto fused = lines();
     EXPECT_LT(fused.size(), apart.size());
@@ -59,11 +59,11 @@ TEST_F(ApiPointsTest, EveryPointThatWasSeenIsInOneOfTheCloud) {
         ASSERT_THAT(point, SizeIs(7));
         EXPECT_LE(std::abs(std::stod(point[2])), 5.01) << "in the room";
         EXPECT_LE(std::abs(std::stod(point[3])), 5.01);
-        EXPECT_LE(std::stod(point[1]), 5.01) << "as far as the laser reaches";
+        EXPECT_LE(std::stod(point[1]), 5.01) << "within the range of the laser";
     }
 }
 
-TEST_F(ApiPointsTest, OfOneRobotAndOfAPartOfTheLog) {
+TEST_F(ApiPointsTest, RobotAndRevisionsFilterPoints) {
     const auto all = seen_in_all(lines());
     EXPECT_EQ(seen_in_all(lines("robot=r1")) + seen_in_all(lines("robot=r2")), all);
     for (const auto& point : lines("robot=r2")) EXPECT_EQ(point[5], "r2");
@@ -75,11 +75,11 @@ TEST_F(ApiPointsTest, OfOneRobotAndOfAPartOfTheLog) {
     EXPECT_THAT(lines("until=0"), SizeIs(0));
 }
 
-/// Also where a capture of a robot that stands has many scans, and another robot's begins and ends meanwhile.
-TEST_F(ApiPointsTrials, PartsThatFollowEachOtherHaveEveryCaptureOnce) {
+/// Also if a capture of a stationary robot has many scans while a capture of another robot begins and ends.
+TEST_F(ApiPointsTrials, ConsecutivePartsContainEachCaptureOnce) {
     create("stand");
     const auto session = registry_.find("stand");
-    auto standing = testing_support::room_scans(44); // it is in the middle of the last capture
+    auto standing = testing_support::room_scans(44); // the log ends in the middle of the last capture
     for (std::size_t n = 0; n < standing.size(); ++n) {
         if (n % 20 != 0) standing[n] = standing[n - 1];
         standing[n].seq = n + 1;
@@ -111,7 +111,7 @@ TEST_F(ApiPointsTrials, PartsThatFollowEachOtherHaveEveryCaptureOnce) {
         EXPECT_EQ(seen("?until=" + revision) + seen("?since=" + revision), whole) << at;
     }
     EXPECT_EQ(seen("?since=1000"), 0U);
-    // Whoever asks for what is new, again and again, has each once, too: what is being taken ends later.
+    // Repeated requests for new points also return each capture once: the current capture ends later.
     const auto ended = seen("?until=" + std::to_string(newest));
     EXPECT_LT(ended, whole);
     const auto link = join("stand", "r3", 1);
@@ -121,19 +121,19 @@ TEST_F(ApiPointsTrials, PartsThatFollowEachOtherHaveEveryCaptureOnce) {
     EXPECT_EQ(ended + seen("?since=" + std::to_string(newest)), seen(""));
 }
 
-TEST_F(ApiPointsTest, PlyHasTheSamePoints) {
+TEST_F(ApiPointsTest, PlyHasThePointsOfTheCsv) {
     const auto response = get("/api/v1/sessions/a/points.ply");
     EXPECT_EQ(response.get("Content-Type"), "model/ply");
     EXPECT_THAT(std::string(response.body.bytes()), StartsWith("ply\nformat ascii 1.0\n"));
     EXPECT_THAT(std::string(response.body.bytes()), HasSubstr(fmt::format("element vertex {}\n", lines().size())));
 }
 
-TEST_F(ApiPointsTest, OfASessionWithoutScansThereAreNone) {
+TEST_F(ApiPointsTest, SessionWithoutScansHasNone) {
     create("b");
     EXPECT_EQ(get("/api/v1/sessions/b/points.csv").body.bytes(), "angle,distance,x,y,seen,robot,revision\n");
 }
 
-TEST_F(ApiPointsTest, NonsenseIsRefusedAndTheSentenceSaysWhat) {
+TEST_F(ApiPointsTest, InvalidParametersAreNamed) {
     const std::string path = "/api/v1/sessions/a/points.csv?";
     for (const auto& [query, what] : {
              std::pair{"threshold=-1", "threshold is \"-1\"; metres from 0 to 1 are needed"},

@@ -2,11 +2,11 @@
 
 #include <boost/json/array.hpp>
 
-/// Sessions over HTTP: made, shown, listed, deleted; damaged and failed ones.
+/// Sessions over HTTP: creation, display, list, deletion; damaged and failed sessions.
 namespace scanloom::http {
 namespace {
 
-TEST_F(ApiTest, ACreatedSessionIsShownWithItsDefaults) {
+TEST_F(ApiTest, CreatedSessionHasDefaultSettings) {
     const auto response = ask("POST", "/api/v1/sessions", R"({"name":"intel","cell_size":0.1})");
     EXPECT_EQ(response.status, Status::created);
     EXPECT_EQ(response.get("Location"), "/api/v1/sessions/intel");
@@ -23,7 +23,7 @@ TEST_F(ApiTest, ACreatedSessionIsShownWithItsDefaults) {
     EXPECT_EQ(shown.at("robots"), boost::json::array{});
 }
 
-TEST_F(ApiTest, BadSessionRequestsAreRefusedByField) {
+TEST_F(ApiTest, InvalidSessionFieldsAreNamed) {
     const std::vector<std::pair<std::string, std::string>> cases = {
         {R"({})", "name is missing"},
         {R"({"name":7})", "name is not a string"},
@@ -45,7 +45,7 @@ TEST_F(ApiTest, BadSessionRequestsAreRefusedByField) {
     EXPECT_TRUE(registry_.list().empty());
 }
 
-TEST_F(ApiTest, SettingsOfAnotherKindAreRefusedByNameAndMakeNoSession) {
+TEST_F(ApiTest, SettingsOfWrongTypesAreNamedAndCreateNoSession) {
     const auto refuse = [&](const mapping::ConfigField& field, const char* value) {
         const auto body = R"({"name":"a",")" + std::string(field.name) + "\":" + value + "}";
         EXPECT_THAT(detail(ask("POST", "/api/v1/sessions", body), Status::bad_request), testing::StartsWith(field.name))
@@ -61,10 +61,10 @@ TEST_F(ApiTest, SettingsOfAnotherKindAreRefusedByNameAndMakeNoSession) {
         if (std::holds_alternative<std::string_view>(held)) refuse(field, "1");
     }
     EXPECT_TRUE(registry_.list().empty());
-    EXPECT_TRUE(get_json("/api/v1/sessions").at("sessions").as_array().empty()) << "not even half made";
+    EXPECT_TRUE(get_json("/api/v1/sessions").at("sessions").as_array().empty()) << "no partial session exists";
 }
 
-TEST_F(ApiTest, EverySettingIsShownAsItWasGiven) {
+TEST_F(ApiTest, AllSettingsAreReturnedAsGiven) {
     const std::string config = R"({"ray_model":"bresenham","accumulate":true,"hit_radius":0.2,"drop_no_return":true,)"
                                R"("cell_size":0.1,"p_occupied":0.8,"p_free":0.2,"p_prior":0.4,"p_min":0.01,)"
                                R"("p_max":0.99,"obstacle_thickness":0.3,"beam_aperture":0.02,"himm_increment":4,)"
@@ -82,7 +82,7 @@ TEST_F(ApiTest, EverySettingIsShownAsItWasGiven) {
     for (const auto& [name, value] : wanted) EXPECT_EQ(shown.at(name), value) << name;
 }
 
-TEST_F(ApiTest, OnlyJsonIsTaken) {
+TEST_F(ApiTest, OtherContentTypesAreRefused) {
     Request request{
         .method = "POST", .target = "/api/v1/sessions", .content_type = "text/plain", .body = R"({"name":"a"})"};
     EXPECT_THAT(detail(answer(api_, request), Status::unsupported_media_type), HasSubstr("application/json"));
@@ -90,13 +90,13 @@ TEST_F(ApiTest, OnlyJsonIsTaken) {
     EXPECT_EQ(answer(api_, request).status, Status::created);
 }
 
-TEST_F(ApiTest, AFailedStoreIsUnavailableAndAllSessionsShowIt) {
+TEST_F(ApiTest, FailedStoreMakesAllSessionsFailed) {
     create("lab");
     log_.fail_from_next_change({Errc::kStoreFailed, "the disk is full"});
     EXPECT_THAT(detail(ask("POST", "/api/v1/sessions", R"({"name":"a"})"), Status::service_unavailable),
                 HasSubstr("disk is full"));
     for (const auto& shown : {get_json("/api/v1/sessions/lab"), get_json("/api/v1/sessions").at("sessions").at(0)}) {
-        EXPECT_EQ(shown.at("state"), "failed") << "although no robot has sent a scan since";
+        EXPECT_EQ(shown.at("state"), "failed") << "although no robot has sent a scan since then";
         EXPECT_THAT(std::string(shown.at("reason").as_string()), HasSubstr("disk is full"));
     }
 }
@@ -115,7 +115,7 @@ TEST_F(ApiTest, SessionsAreListedInPages) {
     EXPECT_TRUE(get_json("/api/v1/sessions").at("next").is_null());
 }
 
-TEST_F(ApiTest, BadPagesAreRefusedByParameter) {
+TEST_F(ApiTest, InvalidPageParametersAreNamed) {
     for (const auto* query : {"limit=0", "limit=1001", "limit=x", "limit=", "limit=-1", "limit=18446744073709551616"}) {
         EXPECT_THAT(detail(get(fmt::format("/api/v1/sessions?{}", query)), Status::bad_request),
                     StartsWith("limit is"));
@@ -124,12 +124,12 @@ TEST_F(ApiTest, BadPagesAreRefusedByParameter) {
     EXPECT_THAT(detail(get("/api/v1/sessions?page=2"), Status::bad_request), HasSubstr("\"page\""));
 }
 
-TEST_F(ApiTest, AStreamingRobotIsShown) {
+TEST_F(ApiTest, StreamingRobotIsListed) {
     create("a");
     stream("a", 3);
     const auto shown = get_json("/api/v1/sessions/a");
     EXPECT_EQ(shown.at("scans"), 3);
-    EXPECT_EQ(shown.at("revision"), 5); // and the robot's joining and its sensor
+    EXPECT_EQ(shown.at("revision"), 5); // plus the entries of the robot and its sensor
     EXPECT_EQ(shown.at("robots"), (boost::json::array{{{"name", "r1"},
                                                        {"connected", true},
                                                        {"scans", 3},
@@ -143,7 +143,7 @@ TEST_F(ApiTest, AStreamingRobotIsShown) {
     EXPECT_NEAR(shown.at("bounds").at("min_y").to_number<double>(), -0.75, 0.2);
 }
 
-TEST_F(ApiTest, ScansThatMaxJumpLeavesOutAreCountedAndOnlyInTheLog) {
+TEST_F(ApiTest, ScansBeyondMaxJumpAreCountedAndOnlyInTheLog) {
     ASSERT_EQ(ask("POST", "/api/v1/sessions", R"({"name":"a","max_jump":2})").status, Status::created);
     Scan stray = scan(3);
     stray.pose.x = 450.0;
@@ -163,29 +163,29 @@ TEST_F(ApiTest, ScansThatMaxJumpLeavesOutAreCountedAndOnlyInTheLog) {
     EXPECT_NE(get(digest + "&max_jump=0").body.bytes(), get(digest).body.bytes());
 }
 
-TEST_F(ApiTest, TheBodyThatARobotStatesIsShown) {
+TEST_F(ApiTest, BodyRadiusOfARobotIsReturned) {
     create("a");
     join("a", "r1", 1, 0.25);
     EXPECT_EQ(get_json("/api/v1/sessions/a").at("robots").at(0).at("body_radius"), 0.25);
 }
 
-TEST_F(ApiTest, EveryAddressOfASessionKnowsWhenThereIsNone) {
+TEST_F(ApiTest, UnknownSessionIsNotFoundOnEveryRoute) {
     for (const auto* path : {"", "/tiles/occupancy/0/0/0.png", "/tiles/occupancy/0/0/0.bin", "/tiles/occupancy.json",
                              "/changes", "/map.png", "/map.pgm", "/map.yaml", "/map.csv", "/map.npy", "/digest",
                              "/difference?with=0", "/difference.png?with=0", "/trajectory.geojson"}) {
-        EXPECT_THAT(detail(get(fmt::format("/api/v1/sessions/nobody{}", path)), Status::not_found),
-                    HasSubstr("there is no session 'nobody'"));
+        EXPECT_THAT(detail(get(fmt::format("/api/v1/sessions/missing{}", path)), Status::not_found),
+                    HasSubstr("there is no session 'missing'"));
     }
-    for (const auto* name : {"nobody",
+    for (const auto* name : {"missing",
                              "%23"
                              "12",
-                             "%FFno%22body"}) {
+                             "%FFmis%22sing"}) {
         const auto target = fmt::format("/api/v1/sessions/{}", name);
         EXPECT_EQ(detail(ask("DELETE", target), Status::not_found), detail(get(target), Status::not_found));
     }
 }
 
-TEST_F(ApiTest, ADamagedSessionSaysSo) {
+TEST_F(ApiTest, DamagedSessionIsReported) {
     ASSERT_TRUE(log_.create_session("no record of a session"));
     session::SessionRegistry registry(log_, {pool_.get_executor(), [] { return 0.0; }});
     ASSERT_TRUE(registry.recover());
@@ -197,13 +197,13 @@ TEST_F(ApiTest, ADamagedSessionSaysSo) {
     for (const auto* rest : {"", "/changes", "/map.png", "/tiles/occupancy/0/0/0.png"}) {
         const auto response = answer(api, {.target = path + rest});
         EXPECT_THAT(detail(response, Status::internal_server_error), HasSubstr("could not be recovered"));
-        EXPECT_EQ(response.get("Retry-After"), "") << "waiting does not help";
+        EXPECT_EQ(response.get("Retry-After"), "") << "a retry does not help";
     }
     EXPECT_EQ(answer(api, {.method = "DELETE", .target = path}).status, Status::no_content);
     EXPECT_EQ(answer(api, {.target = path}).status, Status::not_found);
 }
 
-TEST_F(ApiTest, DamagedSessionsAreListedAndDoNotHinderTheOthers) {
+TEST_F(ApiTest, DamagedSessionsAreListedAndOthersAreServed) {
     create("a");
     ASSERT_TRUE(log_.create_session("no record of a session"));
     session::SessionRegistry registry(log_, {pool_.get_executor(), [] { return 0.0; }});
@@ -233,7 +233,7 @@ TEST_F(ApiTest, DamagedSessionsAreListedAndDoNotHinderTheOthers) {
     registry.drain();
 }
 
-TEST_F(ApiTest, ASessionThatTakesNoScansSaysSoAndItsMapIsServed) {
+TEST_F(ApiTest, FailedSessionHasAReasonAndServesItsMap) {
     create("a");
     create("b");
     stream("a", 1);
@@ -251,7 +251,7 @@ TEST_F(ApiTest, ASessionThatTakesNoScansSaysSoAndItsMapIsServed) {
     EXPECT_EQ(get("/api/v1/sessions/a/map.png").status, Status::ok);
     EXPECT_THAT(std::string(get("/metrics").body.bytes()), HasSubstr("scanloom_sessions_failed 1\n"));
 
-    log_.reopen(); // as when it was not the store that failed
+    log_.reopen(); // as if the cause were not the store
     EXPECT_EQ(get_json("/api/v1/sessions").at("sessions").at(1).at("state"), "ok");
     EXPECT_EQ(get_json("/readyz").at("failed"),
               (boost::json::array{{{"name", "a"}, {"state", "failed"}, {"reason", "the disk is full"}}}));

@@ -13,7 +13,7 @@ namespace {
 
 class ApiSleepingTest : public ApiTest {
 protected:
-    /// A session of some scans that has left memory.
+    /// A session with some scans that was evicted from memory.
     void SetUp() override {
         create("a");
         stream("a", 5);
@@ -39,10 +39,10 @@ protected:
     Response tile_;
 };
 
-TEST_F(ApiSleepingTest, AreShownAndListedAsTheyWereWithoutBeingRead) {
+TEST_F(ApiSleepingTest, AreListedWithoutBeingLoaded) {
     auto expected = shown_;
     expected["loaded"] = false;
-    expected["main_bounds"] = nullptr; // those are found in the map
+    expected["main_bounds"] = nullptr; // these counts are computed from the map
     expected["robots"].at(0).as_object()["connected"] = false;
     EXPECT_EQ(get_json("/api/v1/sessions/a"), expected);
     EXPECT_EQ(get_json("/api/v1/sessions").at("sessions").at(0), expected);
@@ -53,14 +53,14 @@ TEST_F(ApiSleepingTest, AreShownAndListedAsTheyWereWithoutBeingRead) {
     EXPECT_THAT(metrics, HasSubstr("scanloom_map_memory_bytes 0\n"));
 }
 
-TEST_F(ApiSleepingTest, HoldUpNoIoThreadAndAnswerAsBeforeOnceTheyAreThere) {
+TEST_F(ApiSleepingTest, LoadWithoutBlockingIoThreads) {
     std::promise<void> go_on;
     const auto gone_on = go_on.get_future().share();
     std::vector<std::shared_ptr<TestApi::Running>> waiting;
     for (int thread = 0; thread < 2; ++thread) boost::asio::post(pool_, [gone_on] { gone_on.wait(); });
     for (const char* target : {kTile, "/api/v1/sessions/a/digest", "/api/v1/sessions/a/live"}) {
         waiting.push_back(api_.start(request_for(target)));
-        api_.poll(*waiting.back()); // returns, although no thread is free to read the session
+        api_.poll(*waiting.back()); // returns, although no thread is free to load the session
         EXPECT_FALSE(waiting.back()->done) << target;
     }
     EXPECT_TRUE(registry_.needs_loading("a"));
@@ -79,7 +79,7 @@ TEST_F(ApiSleepingTest, HoldUpNoIoThreadAndAnswerAsBeforeOnceTheyAreThere) {
     EXPECT_EQ(get_json("/api/v1/sessions/a"), expected);
 }
 
-TEST_F(ApiSleepingTest, CanBeDeletedAsTheyAre) {
+TEST_F(ApiSleepingTest, AreDeletedWithoutBeingLoaded) {
     EXPECT_EQ(ask("DELETE", "/api/v1/sessions/a").status, Status::no_content);
     EXPECT_EQ(get("/api/v1/sessions/a").status, Status::not_found);
     EXPECT_TRUE(log_.sessions()->empty());

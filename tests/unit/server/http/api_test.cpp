@@ -1,10 +1,10 @@
 #include "tests/unit/server/http/api_fixture.hpp"
 
-/// Health, metrics, and what holds for every route.
+/// Health, metrics and properties of all routes.
 namespace scanloom::http {
 namespace {
 
-TEST_F(ApiTest, ReadinessFollowsTheServersLife) {
+TEST_F(ApiTest, ReadinessFollowsRecoveryAndShutdown) {
     TestApi starting(registry_, weaves_, goals_, log_, metrics_, {authenticator_, audit_, logins_}, {});
     const auto ready = [&](TestApi& api) { return answer(api, {.target = "/readyz"}); };
     EXPECT_EQ(ready(starting).status, Status::service_unavailable);
@@ -18,26 +18,26 @@ TEST_F(ApiTest, ReadinessFollowsTheServersLife) {
     EXPECT_THAT(std::string(ready(starting).body.bytes()), HasSubstr("shutting down"));
 }
 
-TEST_F(ApiTest, ReadinessDoesNotLookAtTheDisk) {
+TEST_F(ApiTest, ReadinessDoesNotReadTheDisk) {
     EXPECT_EQ(get("/readyz").status, Status::ok);
     EXPECT_EQ(log_.looks_at_the_disk(), 0);
     EXPECT_EQ(get("/metrics").status, Status::ok);
     EXPECT_EQ(log_.looks_at_the_disk(), 1);
 }
 
-TEST_F(ApiTest, ReadinessNamesAFailedStore) {
+TEST_F(ApiTest, ReadinessReportsAFailedStore) {
     log_.fail_from_next_change({Errc::kStoreFailed, "the disk is full"});
     ask("POST", "/api/v1/sessions", R"({"name":"a"})");
     EXPECT_THAT(std::string(get("/readyz").body.bytes()), HasSubstr("the store failed: the disk is full"));
 }
 
-TEST_F(ApiTest, ReadinessTellsWhereRobotsConnect) {
+TEST_F(ApiTest, ReadinessHasTheAddressOfTheRobotPort) {
     EXPECT_TRUE(get_json("/readyz").at("robots").at("host").is_null());
     api_.services().robots = {"192.0.2.7", 7448};
     EXPECT_EQ(get_json("/readyz").at("robots"), (boost::json::object{{"host", "192.0.2.7"}, {"port", 7448}}));
 }
 
-TEST_F(ApiTest, MetricsNameNoSession) {
+TEST_F(ApiTest, MetricsContainNoSessionName) {
     create("private-name");
     const auto response = get("/metrics");
     EXPECT_EQ(response.get("Content-Type"), "text/plain; version=0.0.4; charset=utf-8");
@@ -49,16 +49,16 @@ TEST_F(ApiTest, MetricsNameNoSession) {
     EXPECT_THAT(text, Not(HasSubstr("private-name")));
 }
 
-TEST_F(ApiTest, EveryOperationAnswersAsItIsDescribed) {
+TEST_F(ApiTest, EveryOperationMatchesItsDescription) {
     create("a");
     stream("a", 2);
     TestApi starting(registry_, weaves_, goals_, log_, metrics_, {authenticator_, audit_, logins_}, {});
     for (const auto& route : routes()) {
         if (route.method == Method::kDelete && route.path == "/api/v1/sessions/{session}") continue; // at the end
-        for (const std::string session : {"a", "nobody"}) {
+        for (const std::string session : {"a", "missing"}) {
             const auto address = target_of(route, session);
             for (const auto* query : {"", "?odd=1", "?since=x", "?v=x", "?bbox=x", "?layer=height"}) {
-                ask(std::string(name_of(route.method)), address + query, R"({"name":"b"})"); // asks openapi.json, too
+                ask(std::string(name_of(route.method)), address + query, R"({"name":"b"})"); // also checks openapi.json
             }
             answer(
                 starting,
@@ -69,7 +69,7 @@ TEST_F(ApiTest, EveryOperationAnswersAsItIsDescribed) {
     answer(starting, {.method = "DELETE", .target = "/api/v1/sessions/a"});
 }
 
-TEST_F(ApiTest, RoutesThatAreNotAreProblems) {
+TEST_F(ApiTest, UnknownRoutesAreProblems) {
     EXPECT_EQ(get("/api/v2/sessions").status, Status::not_found);
     EXPECT_EQ(get("no path").status, Status::bad_request);
     const auto refused = ask("PATCH", "/api/v1/sessions/a");
@@ -77,7 +77,7 @@ TEST_F(ApiTest, RoutesThatAreNotAreProblems) {
     EXPECT_EQ(refused.get("Allow"), "GET, HEAD, DELETE");
 }
 
-TEST_F(ApiTest, TheRootExplainsAMissingViewer) {
+TEST_F(ApiTest, MissingViewerIsExplained) {
     EXPECT_EQ(get("/?session=a").status, Status::not_found);
     EXPECT_THAT(std::string(get("/").body.bytes()), HasSubstr("was not built"));
     EXPECT_EQ(get("/assets/x.js").status, Status::not_found);

@@ -25,7 +25,7 @@ TEST_F(ApiTest, TilesShowTheMap) {
     EXPECT_EQ(get("/api/v1/sessions/a/tiles/occupancy/9/0/0.png").status, Status::ok); // never touched
 }
 
-TEST_F(ApiTest, ATileThatDidNotChangeIsNotSentAgain) {
+TEST_F(ApiTest, UnchangedTileIsNotModified) {
     create("a");
     stream("a", 1);
     for (const auto* tile : {"9/256/255.png", "9/256/255.bin", "9/0/0.png"}) {
@@ -57,12 +57,13 @@ TEST_F(ApiTest, EntityTagFollowsTheTileAndTheSession) {
     EXPECT_NE(get(unseen).get("ETag"), far);
 }
 
-TEST_F(ApiTest, AnotherVersionOfTheProgramSharesNoEntityTag) {
+TEST_F(ApiTest, ProgramVersionChangesEntityTags) {
     create("a");
     stream("a", 1);
     const auto info = registry_.find("a")->info();
     const auto tag = session_tag(info);
-    EXPECT_EQ(get_json("/api/v1/sessions/a").at("id").as_string(), tag); // also what is kept for good under this id
+    EXPECT_EQ(get_json("/api/v1/sessions/a").at("id").as_string(),
+              tag); // also responses that are cached forever under this id
     EXPECT_NE(session_tag(info, {.weaving = mapping::kProjectionVersion + 1}), tag);
     EXPECT_NE(session_tag(info, {.rendering = tiles::kRenderingVersion + 1}), tag);
     for (const auto* file :
@@ -71,7 +72,7 @@ TEST_F(ApiTest, AnotherVersionOfTheProgramSharesNoEntityTag) {
     }
 }
 
-TEST_F(ApiTest, BoundsReadAsPeopleWriteThem) {
+TEST_F(ApiTest, CoordinatesHaveNoRoundingNoise) {
     create("a");
     stream("a", 1);
     for (const auto* path : {"", "/tiles/occupancy.json", "/trajectory.geojson"}) {
@@ -80,7 +81,7 @@ TEST_F(ApiTest, BoundsReadAsPeopleWriteThem) {
     }
 }
 
-TEST_F(ApiTest, OnlyAVersionThatCannotChangeIsKeptForGood) {
+TEST_F(ApiTest, OnlyCurrentRevisionsAreImmutable) {
     create("a");
     stream("a", 3); // revisions 3, 4, 5 touch the tile
     const auto id = get_json("/api/v1/sessions/a").at("id").as_string();
@@ -88,15 +89,15 @@ TEST_F(ApiTest, OnlyAVersionThatCannotChangeIsKeptForGood) {
         return std::string(get("/api/v1/sessions/a/tiles/occupancy/9/256/255.png?" + query).get("Cache-Control"));
     };
     EXPECT_THAT(kept("v=5"), Not(HasSubstr("immutable")))
-        << "a session made anew may reach revision 5 with another map";
+        << "a recreated session may reach revision 5 with another map";
     EXPECT_THAT(kept(fmt::format("v=5&id={}", std::string_view(id))), HasSubstr("immutable"));
-    EXPECT_EQ(kept("v=4"), "no-cache"); // the tile of revision 4 is no more
+    EXPECT_EQ(kept("v=4"), "no-cache"); // the tile of revision 4 no longer exists
     EXPECT_EQ(kept("v=6"), "no-cache"); // not yet
     EXPECT_EQ(kept("v=5&id=0"), "no-cache");
     EXPECT_EQ(kept("id=0"), "no-cache");
 }
 
-TEST_F(ApiTest, TilesThatCannotBeAreRefused) {
+TEST_F(ApiTest, InvalidTileKeysAreRefused) {
     create("a");
     const auto status = [&](const std::string& tile) { return get("/api/v1/sessions/a/tiles/" + tile).status; };
     for (const auto* tile :
@@ -111,7 +112,7 @@ TEST_F(ApiTest, TilesThatCannotBeAreRefused) {
     }
 }
 
-TEST_F(ApiTest, ChangesAreTheTilesTouchedSince) {
+TEST_F(ApiTest, ChangesListTilesChangedSinceARevision) {
     create("a");
     EXPECT_EQ(
         get_json("/api/v1/sessions/a/changes"),
@@ -131,7 +132,7 @@ TEST_F(ApiTest, ChangesAreTheTilesTouchedSince) {
     EXPECT_EQ(of_a_session_before.at("reset"), true);
 }
 
-TEST_F(ApiTest, BadChangesAreRefusedByParameter) {
+TEST_F(ApiTest, InvalidChangesParametersAreNamed) {
     create("a");
     for (const auto* since : {"x", "-1", "1.5", "", "18446744073709551616"}) {
         EXPECT_THAT(detail(get(fmt::format("/api/v1/sessions/a/changes?since={}", since)), Status::bad_request),
@@ -143,7 +144,7 @@ TEST_F(ApiTest, BadChangesAreRefusedByParameter) {
     EXPECT_THAT(detail(get("/api/v1/sessions/a/changes?until=3"), Status::bad_request), HasSubstr("\"until\""));
 }
 
-TEST_F(ApiTest, TileJsonSaysWhereTilesAreInMetres) {
+TEST_F(ApiTest, TileJsonHasBoundsInMetres) {
     create("a");
     const auto blank = get_json("/api/v1/sessions/a/tiles/occupancy.json");
     EXPECT_EQ(blank.at("tilejson"), "3.0.0");

@@ -26,22 +26,22 @@ protected:
         return boost::json::parse(response.body.bytes());
     }
 
-    /// The list, which is empty before these settings are posted.
+    /// Returns the list of replay jobs; it is empty before the settings are posted.
     boost::json::value listed_after(const std::string& settings) {
         EXPECT_EQ(get_json("/api/v1/sessions/a/weave").at("weaves"), boost::json::array{});
         start(settings);
         return get_json("/api/v1/sessions/a/weave").at("weaves");
     }
 
-    /// The id of a weave that is done.
-    std::string woven(const std::string& body) {
+    /// Returns the id of a finished replay job.
+    std::string finished_job(const std::string& body) {
         const std::string id(start(body).at("id").as_string());
         finish_weave("a", id);
         return id;
     }
 };
 
-TEST_F(ApiWeavesTest, SettingsGiveTheDigestOfASessionCreatedWithThem) {
+TEST_F(ApiWeavesTest, MapsEqualThoseOfASessionWithTheSettings) {
     for (const std::string settings : {"cell_size=0.1", "ray_model=traversal", "class_source=himm&himm_increment=5",
                                        "ray_model=bresenham&accumulate=true&hit_radius=0.1"}) {
         std::string body = R"({"name":"b")";
@@ -80,7 +80,7 @@ TEST_F(ApiWeavesTest, UntilIsARevisionOrATime) {
     EXPECT_THAT(detail(get("/api/v1/sessions/a/digest?until=8"), Status::conflict), HasSubstr("revision 7"));
 }
 
-TEST_F(ApiWeavesTest, WrongSettingsAreRefusedByName) {
+TEST_F(ApiWeavesTest, InvalidSettingsAreNamed) {
     for (const auto& [query, name] : std::initializer_list<std::pair<const char*, const char*>>{
              {"cell_size=0", "cell_size is 0"},
              {"cell_size=wide", "cell_size must be a number"},
@@ -108,9 +108,9 @@ TEST_F(ApiWeavesTest, WrongSettingsAreRefusedByName) {
     EXPECT_EQ(get_json("/api/v1/sessions/a/weave"), (boost::json::object{{"weaves", boost::json::array{}}}));
 }
 
-TEST_F(ApiWeavesTest, AWeaveIsShownWhereverMapsAre) {
-    const auto id = woven(R"({"cell_size":0.1,"until":6})");
-    EXPECT_EQ(woven(R"({"until":"6","cell_size":0.1})"), id) << "the same again";
+TEST_F(ApiWeavesTest, AllMapRoutesAcceptAReplayJob) {
+    const auto id = finished_job(R"({"cell_size":0.1,"until":6})");
+    EXPECT_EQ(finished_job(R"({"until":"6","cell_size":0.1})"), id) << "the same again";
     const auto shown = get_json("/api/v1/sessions/a/weave/" + id);
     EXPECT_EQ(shown.at("state"), "done");
     EXPECT_EQ(shown.at("woven"), 6);
@@ -132,8 +132,8 @@ TEST_F(ApiWeavesTest, AWeaveIsShownWhereverMapsAre) {
     EXPECT_EQ(get("/api/v1/sessions/a/map.png?until=6&" + weave).status, Status::bad_request);
 }
 
-TEST_F(ApiWeavesTest, WhatGetStartsTakesNoPlaceFromWhatPostStarted) {
-    const auto id = woven(R"({"cell_size":0.1})");
+TEST_F(ApiWeavesTest, JobsOfGetDoNotEvictJobsOfPost) {
+    const auto id = finished_job(R"({"cell_size":0.1})");
     for (int n = 1; n <= 40; ++n) {
         const auto digest = get(fmt::format("/api/v1/sessions/a/digest?danger_radius={}", 0.01 * n));
         EXPECT_EQ(digest.status, Status::ok);
@@ -143,17 +143,17 @@ TEST_F(ApiWeavesTest, WhatGetStartsTakesNoPlaceFromWhatPostStarted) {
     EXPECT_EQ(weaves[0].at("id").as_string(), id);
 }
 
-TEST_F(ApiWeavesTest, SettingsAskedForAgainFollowTheSession) {
+TEST_F(ApiWeavesTest, RepeatedSettingsFollowTheSession) {
     const std::string digest = "/api/v1/sessions/a/digest?cell_size=0.1";
     EXPECT_EQ(get_json(digest).at("revision"), 7);
     stream("a", 6, 6); // revision 8
     EXPECT_EQ(get_json(digest).at("revision"), 8);
     stream("a", 9, 7);
-    const auto woven = get_json(digest);
-    EXPECT_EQ(woven.at("revision"), 11);
+    const auto replayed = get_json(digest);
+    EXPECT_EQ(replayed.at("revision"), 11);
     ASSERT_EQ(ask("POST", "/api/v1/sessions", R"({"name":"b","cell_size":0.1})").status, Status::created);
     stream("b", 9);
-    EXPECT_EQ(woven, get_json("/api/v1/sessions/b/digest"));
+    EXPECT_EQ(replayed, get_json("/api/v1/sessions/b/digest"));
     const auto weaves = listed_after(R"({"cell_size":0.1})");
     ASSERT_EQ(weaves.as_array().size(), 1U);
     EXPECT_EQ(weaves.at(0).at("revision"), 11);
@@ -162,7 +162,7 @@ TEST_F(ApiWeavesTest, SettingsAskedForAgainFollowTheSession) {
     EXPECT_EQ(weaves.at(0).at("follows"), true);
 }
 
-TEST_F(ApiWeavesTest, ATimeThatIsPastIsOneWeaveHoweverFarTheSessionGoes) {
+TEST_F(ApiWeavesTest, PastTimeKeepsItsJobWhenTheSessionGrows) {
     const auto past = get_json("/api/v1/sessions/a/digest?until=103.5s");
     stream("a", 6, 6);
     EXPECT_EQ(get_json("/api/v1/sessions/a/digest?until=103.5s"), past);
@@ -173,29 +173,30 @@ TEST_F(ApiWeavesTest, ATimeThatIsPastIsOneWeaveHoweverFarTheSessionGoes) {
     EXPECT_EQ(weaves.at(0).at("follows"), false);
 }
 
-TEST_F(ApiWeavesTest, AWeaveByItsIdStaysAsItIsUntilItIsPostedAgain) {
-    const auto id = woven(R"({"cell_size":0.1})");
+TEST_F(ApiWeavesTest, JobByIdIsUnchangedUntilPostedAgain) {
+    const auto id = finished_job(R"({"cell_size":0.1})");
     const auto by_id = "/api/v1/sessions/a/digest?weave=" + id;
     stream("a", 6, 6);
     EXPECT_EQ(get_json(by_id).at("revision"), 7);
-    EXPECT_EQ(woven(R"({"cell_size":0.1})"), id);
+    EXPECT_EQ(finished_job(R"({"cell_size":0.1})"), id);
     EXPECT_EQ(get_json(by_id).at("revision"), 8);
-    EXPECT_EQ(ask("POST", "/api/v1/sessions/a/weave", R"({"cell_size":0.1})").status, Status::ok) << "all is in";
+    EXPECT_EQ(ask("POST", "/api/v1/sessions/a/weave", R"({"cell_size":0.1})").status, Status::ok)
+        << "all entries are applied";
 }
 
-TEST_F(ApiWeavesTest, EntityTagsChangeWithTheMapsOfAWeave) {
+TEST_F(ApiWeavesTest, EntityTagsChangeWithTheMapsOfAJob) {
     const std::string map = "/api/v1/sessions/a/map.png?cell_size=0.1";
-    const auto id = woven(R"({"cell_size":0.1})");
+    const auto id = finished_job(R"({"cell_size":0.1})");
     const std::string tile = "/api/v1/sessions/a/tiles/occupancy/9/256/255.bin";
     const auto versioned =
         fmt::format("{}?weave={}&v=8&id={}-{}", tile, id, session_tag(registry_.find("a")->info()), id);
     const auto earlier_map = get(map);
     const auto earlier_tile = get(tile + "?weave=" + id);
     EXPECT_EQ(get(map, std::string(earlier_map.get("ETag"))).status, Status::not_modified);
-    EXPECT_EQ(get(versioned).get("Cache-Control"), kRevalidate) << "entry 8 is to come";
+    EXPECT_EQ(get(versioned).get("Cache-Control"), kRevalidate) << "entry 8 does not exist yet";
 
     stream("a", 6, 6);
-    woven(R"({"cell_size":0.1})");
+    finished_job(R"({"cell_size":0.1})");
     const auto map_now = get(map, std::string(earlier_map.get("ETag")));
     EXPECT_EQ(map_now.status, Status::ok);
     EXPECT_NE(map_now.body.bytes(), earlier_map.body.bytes());
@@ -205,7 +206,7 @@ TEST_F(ApiWeavesTest, EntityTagsChangeWithTheMapsOfAWeave) {
     EXPECT_EQ(get(versioned).get("Cache-Control"), kImmutable);
 }
 
-/// An API whose weaves wait until they are let go.
+/// An API whose replay jobs wait until let_go().
 class ApiHeldWeavesTest : public ApiWeavesTest {
 protected:
     ApiHeldWeavesTest() {
@@ -222,7 +223,7 @@ protected:
         if (!std::exchange(gone_on_, true)) go_on_.set_value();
     }
 
-    /// What whoever asks for the map with these settings is answered, when `meanwhile` was done while he waited.
+    /// Requests the map with these settings and calls `meanwhile` while the request waits. @return the response
     Response waited_for(const std::string& settings, const std::function<void()>& meanwhile) {
         Request request;
         request.method = "GET";
@@ -240,7 +241,7 @@ protected:
     TestApi held_api_{registry_, held_, goals_, log_, metrics_, {authenticator_, audit_, logins_}, {}};
 };
 
-TEST_F(ApiHeldWeavesTest, WhoWaitsWhileTheSessionIsDeletedIsToldSo) {
+TEST_F(ApiHeldWeavesTest, DeletedSessionEndsWaitingRequests) {
     const auto response = waited_for("cell_size=0.1", [&] {
         Request request;
         request.method = "DELETE";
@@ -250,30 +251,31 @@ TEST_F(ApiHeldWeavesTest, WhoWaitsWhileTheSessionIsDeletedIsToldSo) {
     EXPECT_THAT(detail(response, Status::not_found), StartsWith("session 'a' was deleted"));
 }
 
-TEST_F(ApiHeldWeavesTest, WhoWaitsGetsTheMapsOfWhenHeAskedOrLaterOnes) {
+TEST_F(ApiHeldWeavesTest, WaitingRequestsGetTheirRevisionOrALaterOne) {
     const auto response = waited_for("cell_size=0.1", [&] { let_go(); });
     EXPECT_EQ(response.status, Status::ok);
     EXPECT_EQ(response.get("ETag"), get("/api/v1/sessions/a/map.png?cell_size=0.1").get("ETag"));
 }
 
-TEST_F(ApiHeldWeavesTest, WhoLosesPatienceIsToldHowFarItIsAndJoinsItTheNextTime) {
+TEST_F(ApiHeldWeavesTest, TimedOutRequestReportsProgressAndRejoins) {
     held_api_.services().replay_patience = std::chrono::milliseconds(0);
     const Request request{.target = "/api/v1/sessions/a/map.png?cell_size=0.1"};
     EXPECT_THAT(detail(answer(held_api_, request), Status::service_unavailable),
-                HasSubstr("0 of 7 entries are in; ask again soon"));
+                HasSubstr("0 of 7 entries are applied; retry soon"));
     stream("a", 6, 6);
-    EXPECT_THAT(detail(answer(held_api_, request), Status::service_unavailable), HasSubstr("0 of 8 entries are in"));
+    EXPECT_THAT(detail(answer(held_api_, request), Status::service_unavailable),
+                HasSubstr("0 of 8 entries are applied"));
     EXPECT_EQ(held_.under_way(), 1U);
 }
 
-TEST_F(ApiHeldWeavesTest, OnlySoManyRequestsWaitAndNoThreadDoes) {
+TEST_F(ApiHeldWeavesTest, WaitingRequestsAreBoundedAndBlockNoThread) {
     TestApi api(registry_, held_, goals_, log_, metrics_, {authenticator_, audit_, logins_}, {}, {.weaves_max = 1});
     api.set_recovered();
     const auto first = api.start({.target = "/api/v1/sessions/a/digest?cell_size=0.1"});
     while (held_.under_way() == 0) api.poll(*first);
     EXPECT_THAT(first->asked.pools, testing::ElementsAre(Pool::kWholeMaps));
     const auto refused = api.answer({.target = "/api/v1/sessions/a/map.png?cell_size=0.2"});
-    EXPECT_THAT(detail(refused, Status::service_unavailable), HasSubstr("too many maps are being waited for"));
+    EXPECT_THAT(detail(refused, Status::service_unavailable), HasSubstr("too many requests are waiting for maps"));
     EXPECT_EQ(api.answer({.target = "/api/v1/sessions/a/digest"}).status, Status::ok) << "on the same pool";
     EXPECT_FALSE(first->done);
     let_go();
@@ -282,13 +284,13 @@ TEST_F(ApiHeldWeavesTest, OnlySoManyRequestsWaitAndNoThreadDoes) {
     EXPECT_EQ(api.answer({.target = "/api/v1/sessions/a/map.png?cell_size=0.2"}).status, Status::ok);
 }
 
-TEST_F(ApiWeavesTest, AWeaveThatIsGoneIsNotFound) {
-    const auto id = woven("{}");
+TEST_F(ApiWeavesTest, DeletedJobIsNotFound) {
+    const auto id = finished_job("{}");
     EXPECT_EQ(ask("DELETE", "/api/v1/sessions/a/weave/" + id).status, Status::no_content);
     EXPECT_EQ(ask("DELETE", "/api/v1/sessions/a/weave/" + id).status, Status::not_found);
     EXPECT_EQ(get("/api/v1/sessions/a/weave/" + id).status, Status::not_found);
-    EXPECT_THAT(detail(get("/api/v1/sessions/a/map.png?weave=" + id), Status::not_found), HasSubstr("no weave"));
-    const auto kept = woven("{}");
+    EXPECT_THAT(detail(get("/api/v1/sessions/a/map.png?weave=" + id), Status::not_found), HasSubstr("no replay job"));
+    const auto kept = finished_job("{}");
     ASSERT_EQ(ask("DELETE", "/api/v1/sessions/a").status, Status::no_content);
     create("a");
     EXPECT_EQ(get("/api/v1/sessions/a/map.png?weave=" + kept).status, Status::not_found);

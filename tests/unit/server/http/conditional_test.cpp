@@ -5,7 +5,7 @@
 namespace scanloom::http {
 namespace {
 
-TEST(IfNoneMatch, OneTagMatchesItselfOnly) {
+TEST(IfNoneMatch, TagMatchesOnlyItself) {
     EXPECT_TRUE(if_none_match_has("\"a-1\"", "\"a-1\""));
     EXPECT_FALSE(if_none_match_has("\"a-2\"", "\"a-1\""));
     EXPECT_FALSE(if_none_match_has("", "\"a-1\""));
@@ -17,23 +17,23 @@ TEST(IfNoneMatch, AnyTagOfAListMatches) {
     EXPECT_FALSE(if_none_match_has("\"x\", \"y\"", "\"a-1\""));
 }
 
-TEST(IfNoneMatch, WeakTagsCountAsStrongOnes) {
+TEST(IfNoneMatch, WeakTagsMatchStrongOnes) {
     EXPECT_TRUE(if_none_match_has("W/\"a-1\"", "\"a-1\""));
     EXPECT_TRUE(if_none_match_has("\"x\", W/\"a-1\"", "\"a-1\""));
 }
 
-TEST(IfNoneMatch, AsteriskMatchesWhateverThereIs) {
+TEST(IfNoneMatch, AsteriskMatchesAnyTag) {
     EXPECT_TRUE(if_none_match_has("*", "\"a-1\""));
     EXPECT_TRUE(if_none_match_has(" * ", "\"a-1\""));
     EXPECT_FALSE(if_none_match_has("*, \"a-1\"", "\"a-1\""));
 }
 
-TEST(IfNoneMatch, CommasWithinATagDoNotDivideIt) {
+TEST(IfNoneMatch, CommasInATagDoNotSplitIt) {
     EXPECT_TRUE(if_none_match_has("\"a,b\"", "\"a,b\""));
     EXPECT_FALSE(if_none_match_has("\"a,b\"", "\"b\""));
 }
 
-TEST(IfNoneMatch, WhatIsNoListOfTagsSaysNothing) {
+TEST(IfNoneMatch, InvalidListsMatchNothing) {
     for (const auto* field : {"a-1", "\"a-1", "\"a-1\" \"b\"", "W\"a-1\"", "w/\"a-1\"", "\"a-1\"; x", ","}) {
         EXPECT_FALSE(if_none_match_has(field, "\"a-1\"")) << field;
     }

@@ -11,7 +11,7 @@
 namespace scanloom::http {
 namespace {
 
-/// By zlib's own reader of gzip, which checks sum and length.
+/// Decompresses with zlib's gzip reader, which checks checksum and length.
 std::string gunzipped(std::string_view bytes) {
     z_stream stream{};
     EXPECT_EQ(inflateInit2(&stream, 15 + 16), Z_OK);
@@ -27,26 +27,26 @@ std::string gunzipped(std::string_view bytes) {
         text.append(piece.data(), piece.size() - stream.avail_out);
     }
     EXPECT_EQ(state, Z_STREAM_END);
-    EXPECT_EQ(stream.avail_in, 0U) << "nothing follows";
+    EXPECT_EQ(stream.avail_in, 0U) << "no data follows";
     inflateEnd(&stream);
     return text;
 }
 
-TEST(AcceptsGzip, WhereItIsListedWithAWeight) {
+TEST(AcceptsGzip, IfListedWithAWeight) {
     for (const auto* field : {"gzip", "GZip", "x-gzip", "deflate, gzip;q=1.0, *;q=0.5", "br,gzip", "*", "gzip;q=0.001",
                               "gzip ; q=0.5", ", gzip", "identity;q=0, *;q=0.1"}) {
         EXPECT_TRUE(accepts_gzip(field)) << field;
     }
 }
 
-TEST(AcceptsGzip, NotWhereItIsExcludedOrNotListed) {
+TEST(AcceptsGzip, NotIfExcludedOrNotListed) {
     for (const auto* field : {"", "br", "deflate", "gzip;q=0", "gzip;q=0.000", "*;q=0", "*, gzip;q=0", "gzipped",
                               "gzip;q=2", "gzip;q=-1", "gzip;q=x", "gzip;level=1", "identity"}) {
         EXPECT_FALSE(accepts_gzip(field)) << field;
     }
 }
 
-TEST(GzipOf, IsReadAgainAsItWas) {
+TEST(GzipOf, DecompressesToTheInput) {
     std::mt19937 random(3);
     for (const std::size_t size : {1'400U, 100'000U, 3'000'000U}) {
         std::string text(size, ' ');
@@ -57,7 +57,7 @@ TEST(GzipOf, IsReadAgainAsItWas) {
     }
 }
 
-TEST(EncodedFor, OnlyLargeTextsThatBecomeSmaller) {
+TEST(EncodedFor, CompressesOnlyLargeTextsThatShrink) {
     std::mt19937 random(4);
     const auto coding = [](std::string_view type, std::string text) {
         return std::string(encoded_for("gzip", ok(type, Body(std::move(text)))).get("Content-Encoding"));
@@ -85,7 +85,7 @@ protected:
     }
 };
 
-TEST_F(ContentCodingTest, ATableOfAMapComesAsGzipToWhoTakesIt) {
+TEST_F(ContentCodingTest, MapTableIsCompressedIfAccepted) {
     create("a");
     stream("a", 3);
     const std::string table = "/api/v1/sessions/a/map.csv";
@@ -103,7 +103,7 @@ TEST_F(ContentCodingTest, ATableOfAMapComesAsGzipToWhoTakesIt) {
     EXPECT_EQ(ask_for("/api/v1/sessions/a/map.npy", "gzip").get("Content-Encoding"), "");
 }
 
-TEST_F(ContentCodingTest, FilesOfTheViewerAreCompressedOnlyWhenTheyAreRead) {
+TEST_F(ContentCodingTest, ViewerFilesAreCompressedOnce) {
     TemporaryDirectory folder;
     std::filesystem::create_directory(folder.path() / "assets");
     const std::string script(10'000, '1');

@@ -5,7 +5,7 @@
 namespace scanloom::http {
 namespace {
 
-TEST(Credentials, ABearerTokenIsWhatFollowsTheScheme) {
+TEST(Credentials, BearerTokenFollowsTheScheme) {
     EXPECT_EQ(bearer_of("Bearer abc"), "abc");
     EXPECT_EQ(bearer_of("bearer   abc  "), "abc");
     for (const auto* wrong : {"", "Bearer", "Bearer ", "Bearer    ", "Basic abc", "abc", "Bearerabc"}) {
@@ -13,7 +13,7 @@ TEST(Credentials, ABearerTokenIsWhatFollowsTheScheme) {
     }
 }
 
-TEST(Credentials, ACookieIsFoundAmongOthers) {
+TEST(Credentials, CookieIsFoundAmongOthers) {
     EXPECT_EQ(cookie_of("a=1; scanloom_login=xyz; b=2", kLoginCookie), "xyz");
     EXPECT_EQ(cookie_of("scanloom_login=x=y", kLoginCookie), "x=y");
     EXPECT_EQ(cookie_of("scanloom_login=", kLoginCookie), "");
@@ -23,7 +23,7 @@ TEST(Credentials, ACookieIsFoundAmongOthers) {
     }
 }
 
-TEST(Credentials, TheCookieIsHiddenFromScriptsAndFromOtherPages) {
+TEST(Credentials, CookieIsHttpOnlyAndSameSite) {
     EXPECT_EQ(set_login_cookie("x", false), "scanloom_login=x; Path=/; HttpOnly; SameSite=Strict");
     EXPECT_EQ(set_login_cookie("x", true), "scanloom_login=x; Path=/; HttpOnly; SameSite=Strict; Secure");
     EXPECT_EQ(set_login_cookie("", false), "scanloom_login=; Path=/; HttpOnly; SameSite=Strict; Max-Age=0");

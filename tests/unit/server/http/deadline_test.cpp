@@ -10,7 +10,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Owns a deadline, and counts how often it has passed.
+/// Owns a deadline and counts its expirations.
 struct Owner : std::enable_shared_from_this<Owner> {
     explicit Owner(boost::asio::io_context& io) : deadline(io.get_executor()) {}
 
@@ -22,7 +22,7 @@ struct Owner : std::enable_shared_from_this<Owner> {
     int passed = 0;
 };
 
-/// run() returns when nothing is waited for any more, so that these tests look at no clock.
+/// run() returns when no timer is pending, so that these tests need no clock.
 class DeadlineTest : public testing::Test {
 protected:
     DeadlineTest() { owner_->watch(); }
@@ -31,20 +31,20 @@ protected:
     std::shared_ptr<Owner> owner_ = std::make_shared<Owner>(io_);
 };
 
-TEST_F(DeadlineTest, PassesOnce) {
+TEST_F(DeadlineTest, ExpiresOnce) {
     owner_->deadline.set_after(0ms);
     io_.run();
     EXPECT_EQ(owner_->passed, 1);
 }
 
-TEST_F(DeadlineTest, OneThatComesNearerPassesThen) {
+TEST_F(DeadlineTest, EarlierDeadlineExpiresEarlier) {
     owner_->deadline.set_after(1h);
     owner_->deadline.set_after(0ms);
     io_.run();
     EXPECT_EQ(owner_->passed, 1);
 }
 
-TEST_F(DeadlineTest, OneThatIsPutOffPassesLater) {
+TEST_F(DeadlineTest, PostponedDeadlineExpiresLater) {
     owner_->deadline.set_after(0ms);
     const auto later = Deadline::Clock::now() + 20ms;
     owner_->deadline.set(later);
@@ -53,7 +53,7 @@ TEST_F(DeadlineTest, OneThatIsPutOffPassesLater) {
     EXPECT_GE(Deadline::Clock::now(), later);
 }
 
-TEST_F(DeadlineTest, OneThatWasClearedDoesNotPass) {
+TEST_F(DeadlineTest, ClearedDeadlineDoesNotExpire) {
     owner_->deadline.set_after(0ms);
     owner_->deadline.clear();
     io_.run();
@@ -64,14 +64,14 @@ TEST_F(DeadlineTest, OneThatWasClearedDoesNotPass) {
     EXPECT_EQ(owner_->passed, 1) << "but the next does";
 }
 
-TEST_F(DeadlineTest, StoppingLeavesNothingToWaitFor) {
+TEST_F(DeadlineTest, StopEndsTheWait) {
     owner_->deadline.set_after(1h);
     owner_->deadline.stop();
     io_.run();
     EXPECT_EQ(owner_->passed, 0);
 }
 
-TEST_F(DeadlineTest, AnOwnerThatIsGoneIsNotCalled) {
+TEST_F(DeadlineTest, DestroyedOwnerIsNotCalled) {
     owner_->deadline.set_after(1h);
     owner_.reset();
     EXPECT_GE(io_.run(), 0U); // returns

@@ -21,11 +21,11 @@ namespace {
 
 namespace json = boost::json;
 
-/// The fields an object may have and those it must have, also of the schemas that it is all of.
+/// The permitted and the required fields of an object, including those of the schemas in its allOf.
 struct Fields {
     std::map<std::string, const json::value*> named;
     std::set<std::string> required;
-    const json::value* others = nullptr; // schema of those without a name of their own
+    const json::value* others = nullptr; // schema of all other fields
 };
 
 void collect(const json::object& schema, Fields& fields) {
@@ -63,7 +63,7 @@ Faults faults_of_object(const json::object& schema, const json::object& object, 
     for (const auto& name : fields.required) {
         if (!object.contains(name)) faults.push_back(fmt::format("{}.{} is missing", where, name));
     }
-    if (fields.named.empty() && fields.others == nullptr) return faults; // any object will do
+    if (fields.named.empty() && fields.others == nullptr) return faults; // any object is valid
     for (const auto& field : object) {
         const std::string name(field.key());
         const auto named = fields.named.find(name);
@@ -107,7 +107,7 @@ Faults faults_of(const json::value& schema_or_reference, const json::value& valu
     return faults;
 }
 
-/// The description of the operation that answers the request; null when there is none.
+/// Returns the description of the operation of the request, or null if there is none.
 const json::object* operation_of(const Request& request) {
     const auto target = parse_target(request.target);
     if (!target) return nullptr;

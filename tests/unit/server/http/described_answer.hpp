@@ -8,9 +8,9 @@
 
 namespace scanloom::http {
 
-/// What openapi.json does not say of this answer to this request: a status, a media type, a field of its JSON that is
-/// missing, has another type or is not named there. Empty when it says all. Where a request finds no operation, the
-/// answer has to be a problem.
+/// Returns the differences between this response to this request and openapi.json: a status, a media type, a field of
+/// its JSON that is missing, has another type or is not described. Empty if there are none. A request without an
+/// operation must have a problem as its response.
 [[nodiscard]] std::vector<std::string> undescribed(const Request& request, const Response& response);
 
 } // namespace scanloom::http

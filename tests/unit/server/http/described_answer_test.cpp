@@ -18,7 +18,7 @@ const Request kDigest{.target = "/api/v1/sessions/a/digest"};
 
 std::vector<std::string> of_digest(std::string_view body) { return undescribed(kDigest, ok(boost::json::parse(body))); }
 
-TEST(DescribedAnswer, EveryFaultIsFound) {
+TEST(DescribedAnswer, FindsEveryFault) {
     EXPECT_THAT(of_digest(R"({"layers":{}})"), ElementsAre(HasSubstr("body.revision is missing")));
     EXPECT_THAT(of_digest(R"({"revision":1,"layers":{},"x":1})"), ElementsAre(HasSubstr("body.x is not described")));
     EXPECT_THAT(of_digest(R"({"revision":"1","layers":{}})"), ElementsAre(HasSubstr("body.revision is no integer")));

@@ -16,13 +16,13 @@ namespace json = boost::json;
 
 using namespace std::string_view_literals;
 
-/// Names that exist, sessions and robots, and what is none.
+/// Names of existing sessions and robots, and invalid names.
 constexpr std::array kNames = {"lab"sv, "lab"sv, "lab"sv, "r1"sv, "new"sv, "none"sv};
 constexpr std::array kOddTexts = {""sv,       " "sv,    "NaN"sv,     "-0"sv,       "1e999"sv,
                                   "0x10"sv,   "null"sv, "..%2f.."sv, "\xff\xfe"sv, "\0"sv,
                                   "Zürich"sv, "a b"sv,  "true"sv,    "1,2"sv,      "9999999999999999999"sv};
 
-/// Percent-encoded, but for letters, digits and what queries have between numbers.
+/// Percent-encodes all but letters, digits and the separators of numbers in queries.
 std::string encoded(std::string_view text) {
     std::string out;
     for (const char c : text) {
@@ -98,7 +98,7 @@ std::string RequestGenerator::path_value(std::string_view name, const json::valu
     return encoded(text_of(schema));
 }
 
-/// As a query has it: lists with commas.
+/// Formats a value for a query: lists with commas.
 std::string RequestGenerator::text_of(const json::value& schema) {
     const auto value = value_of(schema);
     if (value.is_string()) return std::string(value.as_string());
@@ -196,7 +196,7 @@ std::string RequestGenerator::json_body(const json::value& schema) {
     }
 }
 
-/// A map to import, damaged now and then.
+/// Returns a map to import, sometimes damaged.
 std::string RequestGenerator::form_body() {
     const std::array images = {"P2\n4 2\n255\n0 254 254 205\n254 254 254 254\n"sv,
                                "P2\n2 1\n1\n0 1\n"sv,

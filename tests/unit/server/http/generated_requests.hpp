@@ -10,8 +10,8 @@
 
 namespace scanloom::http {
 
-/// Requests made from openapi.json: every operation, with values that are valid, at the edge, or wrong. The same seed
-/// makes the same requests.
+/// Requests generated from openapi.json: every operation, with valid, boundary and invalid values. The same seed
+/// generates the same requests.
 class RequestGenerator {
 public:
     explicit RequestGenerator(unsigned seed) : random_(seed) {}

@@ -12,7 +12,7 @@ TEST(KnownHost, AddressesAndLocalhostAreKnown) {
     }
 }
 
-TEST(KnownHost, NamesOfStrangersAreNot) {
+TEST(KnownHost, OtherNamesAreUnknown) {
     for (const auto* host : {"evil.example", "127.0.0.1.evil.example", "localhost.evil.example:8080", "user@localhost",
                              "", ":80", "local host", "127.0.0.1:x"}) {
         EXPECT_FALSE(is_known_host(host, {})) << host;
@@ -24,7 +24,7 @@ TEST(KnownHost, ConfiguredNamesAreKnown) {
     EXPECT_FALSE(is_known_host("xmaps.example", {"maps.example"}));
 }
 
-TEST(OwnPage, HasTheHostAndThePortThatWereAsked) {
+TEST(OwnPage, HasTheHostAndPortOfTheRequest) {
     EXPECT_TRUE(is_own_page("http://10.0.0.7:8080", "10.0.0.7:8080", false));
     EXPECT_TRUE(is_own_page("http://LOCALHOST:8080", "localhost:8080", false));
     EXPECT_TRUE(is_own_page("http://[::1]:8080", "[::1]:8080", false));
@@ -33,7 +33,7 @@ TEST(OwnPage, HasTheHostAndThePortThatWereAsked) {
     EXPECT_TRUE(is_own_page("http://maps.example:80", "maps.example", false));
 }
 
-TEST(OwnPage, IsNoneOfAnotherPortOfTheSameHost) {
+TEST(OwnPage, RejectsAnotherPortOfTheSameHost) {
     for (const auto* origin : {"http://localhost:5173", "http://localhost", "http://127.0.0.1:8080",
                                "http://[::1]:8080", "https://localhost"}) {
         EXPECT_FALSE(is_own_page(origin, "localhost:8080", false)) << origin;
@@ -41,7 +41,7 @@ TEST(OwnPage, IsNoneOfAnotherPortOfTheSameHost) {
     EXPECT_FALSE(is_own_page("https://maps.example:8443", "maps.example", false));
 }
 
-TEST(OwnPage, IsNoneOfAStrangersPages) {
+TEST(OwnPage, RejectsForeignHosts) {
     for (const auto* origin :
          {"http://evil.example", "http://maps.example.evil.example", "http://localhost.evil.example", "null", "",
           "maps.example", "file://", "http://", "http://:80", "ftp://maps.example:8080",
@@ -51,13 +51,14 @@ TEST(OwnPage, IsNoneOfAStrangersPages) {
     }
 }
 
-TEST(OwnPage, OverTlsIsNoneThatCameWithout) {
+TEST(OwnPage, RejectsHttpOriginsOverTls) {
     EXPECT_TRUE(is_own_page("https://maps.example", "maps.example", true));
-    EXPECT_FALSE(is_own_page("http://maps.example", "maps.example", true)) << "anonymous on the way may have made it";
+    EXPECT_FALSE(is_own_page("http://maps.example", "maps.example", true))
+        << "an attacker on the network may have sent it";
 }
 
 TEST(WebSocketKey, IsSixteenBytesInBase64) {
-    EXPECT_TRUE(is_websocket_key("dGhlIHNhbXBsZSBub25jZQ==")); // RFC 6455's own
+    EXPECT_TRUE(is_websocket_key("dGhlIHNhbXBsZSBub25jZQ==")); // the example of RFC 6455
     for (const auto* key : {"", "dGhlIHNhbXBsZSBub25jZQ", "dGhlIHNhbXBsZSBub25jZQ=", "dGhlIHNhbXBsZSBub25j Q==",
                             "dGhlIHNhbXBsZSBub25jZQA==", "========================"}) {
         EXPECT_FALSE(is_websocket_key(key)) << key;

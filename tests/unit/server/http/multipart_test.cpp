@@ -15,7 +15,7 @@ std::string part(std::string_view name, std::string_view content) {
            "\"; filename=\"a;b.pgm\"\r\nContent-Type: text/plain\r\n\r\n" + std::string(content) + "\r\n";
 }
 
-TEST(Multipart, FieldsAreWhatWasSentByteForByte) {
+TEST(Multipart, FieldsEqualTheSentBytes) {
     const std::string bytes("a\r\n--xy\0\r\n-- \r\n", 16);
     const std::string body = part("image", bytes) + part("yaml", "") + "--xyz--\r\nepilogue";
     const auto fields = parse_form(kType, body);
@@ -27,7 +27,7 @@ TEST(Multipart, FieldsAreWhatWasSentByteForByte) {
     EXPECT_EQ(fields->at(1).content, "");
 }
 
-TEST(Multipart, TheBoundaryMayBeQuoted) {
+TEST(Multipart, QuotedBoundaryIsAccepted) {
     EXPECT_EQ(parse_form("multipart/form-data; charset=utf-8; Boundary=\"xyz\"", part("a", "1") + "--xyz--")->size(),
               1U);
     EXPECT_TRUE(is_form("Multipart/Form-Data; boundary=x"));
@@ -36,7 +36,7 @@ TEST(Multipart, TheBoundaryMayBeQuoted) {
     EXPECT_FALSE(is_form(""));
 }
 
-TEST(Multipart, WhateverIsCutOffIsMalformed) {
+TEST(Multipart, TruncatedFormsAreMalformed) {
     const std::string body = part("a", "1") + part("b", "2") + "--xyz--";
     for (std::size_t size = 0; size < body.size(); ++size) {
         const auto cut = parse_form(kType, std::string_view(body).substr(0, size));
@@ -45,7 +45,7 @@ TEST(Multipart, WhateverIsCutOffIsMalformed) {
     }
 }
 
-TEST(Multipart, WhatIsNoFormIsRefusedWithTheReason) {
+TEST(Multipart, OtherBodiesAreRefusedWithTheReason) {
     const std::string body = part("a", "1") + "--xyz--";
     EXPECT_THAT(parse_form("multipart/form-data", body).error().message, HasSubstr("no boundary"));
     EXPECT_THAT(parse_form("multipart/form-data; boundary=", body).error().message, HasSubstr("no boundary"));

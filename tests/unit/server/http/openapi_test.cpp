@@ -25,13 +25,13 @@ void walk(const boost::json::value& value, Visit&& visit) {
     }
 }
 
-TEST_F(ApiTest, ServesTheDescriptionInTheTree) {
+TEST_F(ApiTest, ServesTheOpenApiFile) {
     std::ifstream file(OPENAPI_FILE);
     const std::string text(std::istreambuf_iterator<char>(file), {});
     EXPECT_EQ(get("/openapi.json").body.bytes(), text);
 }
 
-TEST(OpenApi, DescribesEveryRouteAndNoOther) {
+TEST(OpenApi, DescribesExactlyTheRoutes) {
     std::set<std::string> routed;
     for (const auto& route : routes())
         routed.insert(std::string(name_of(route.method)) + " " + std::string(route.path));
@@ -47,7 +47,7 @@ TEST(OpenApi, DescribesEveryRouteAndNoOther) {
     EXPECT_EQ(described, routed);
 }
 
-TEST(OpenApi, EveryReferenceLeadsSomewhere) {
+TEST(OpenApi, AllReferencesResolve) {
     const auto& root = described_api();
     std::size_t count = 0;
     walk(root, [&](const boost::json::value& value) {
@@ -61,7 +61,7 @@ TEST(OpenApi, EveryReferenceLeadsSomewhere) {
     EXPECT_GT(count, 50U);
 }
 
-TEST(OpenApi, EveryVariableOfAPathIsAParameterOfItsOperations) {
+TEST(OpenApi, PathVariablesAreParameters) {
     const auto& root = described_api();
     for (const auto& path : root.at("paths").as_object()) {
         for (const auto& operation : path.value().as_object()) {

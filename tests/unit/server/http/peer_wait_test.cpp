@@ -7,7 +7,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-TEST(PeerWait, IsTheTimeBeyondWhatIsAllowed) {
+TEST(PeerWait, IsTheTimeBeyondTheAllowance) {
     const PeerWait::Clock::time_point start{};
     PeerWait wait;
     EXPECT_FALSE(wait.behind(start));
@@ -18,7 +18,7 @@ TEST(PeerWait, IsTheTimeBeyondWhatIsAllowed) {
     wait.end();
     EXPECT_FALSE(wait.behind(start + 5s));
     wait.begin(start + 6s);
-    EXPECT_EQ(wait.behind(start + 7s), 1s) << "begins from nothing";
+    EXPECT_EQ(wait.behind(start + 7s), 1s) << "a new wait starts at 0";
 }
 
 } // namespace

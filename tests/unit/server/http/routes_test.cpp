@@ -25,14 +25,14 @@ std::variant<Match, NoSuchPath, MethodNotAllowed> route(std::string_view method,
     return find_route(routes(), method, parse_target(path).value().segments);
 }
 
-/// A path that the pattern matches: the name of each variable stands for its value.
+/// Returns a path that the pattern matches: the value of each variable is its name.
 std::string example_of(std::string_view pattern) {
     std::string path(pattern);
     std::erase_if(path, [](char c) { return c == '{' || c == '}'; });
     return path;
 }
 
-TEST(Routes, EachIsFoundByItsOwnPath) {
+TEST(Routes, EachIsFoundByItsPath) {
     for (const auto& entry : routes()) {
         const auto found = route(name_of(entry.method), example_of(entry.path));
         const auto* match = std::get_if<Match>(&found);
@@ -41,7 +41,7 @@ TEST(Routes, EachIsFoundByItsOwnPath) {
     }
 }
 
-TEST(Routes, AreAboutASessionOnlyIfTheirPathNamesIt) {
+TEST(Routes, ConcernASessionOnlyIfThePathNamesIt) {
     for (const auto& entry : routes()) {
         const bool names_it = entry.path.find("{session}") != std::string_view::npos;
         EXPECT_EQ(is_about_one_session(entry.access), names_it) << entry.path;
@@ -59,7 +59,7 @@ TEST(Routes, HaveThePoolOfTheirWork) {
         {"GET", "/openapi.json", Pool::kIo},
         {"POST", "/api/v1/login", Pool::kIo},
         {"GET", "/metrics", Pool::kMetrics},
-        // Whole maps do not hold up their parts.
+        // Requests for whole maps do not delay tiles.
         {"GET", session + "/digest", Pool::kWholeMaps},
         {"GET", session + "/map.png", Pool::kWholeMaps},
         {"GET", session + "/map.csv", Pool::kWholeMaps},
@@ -83,13 +83,13 @@ TEST(Routes, HaveThePoolOfTheirWork) {
         {"GET", session + "/tiles/occupancy/x/0/0.png", Pool::kIo},
         {"GET", "/api/v1/sessions", Pool::kQueries},
         {"GET", "/api/v1/backups", Pool::kQueries},
-        {"POST", session + "/weave", Pool::kQueries}, // which only begins
+        {"POST", session + "/weave", Pool::kQueries}, // which only starts a job
         {"GET", session + "/frontiers.geojson?robot=r", Pool::kPlanning},
         {"GET", session + "/goal?robot=r", Pool::kQueries},
         {"POST", session + "/goal", Pool::kPlanning},
         {"POST", session + "/plan", Pool::kPlanning},
         {"POST", session + "/coverage?weave=0123456789abcdef", Pool::kPlanning},
-        // What waits for the disk.
+        // Operations that wait for the disk.
         {"POST", session + "/import", Pool::kImport},
         {"POST", "/api/v1/sessions", Pool::kStore},
         {"DELETE", session, Pool::kStore},
@@ -100,7 +100,7 @@ TEST(Routes, HaveThePoolOfTheirWork) {
     }
 }
 
-TEST(Routes, UnknownPathsAreNotFoundWhateverTheMethod) {
+TEST(Routes, UnknownPathsAreNotFoundForAnyMethod) {
     for (const auto* path : {"/api", "/api/v1/sessions/", "/api/v1/sessions/a/b", "/livez/", "//livez", "/LIVEZ", "/a",
                              "/assets/", "/assets/a/b"}) {
         EXPECT_TRUE(std::holds_alternative<NoSuchPath>(route("GET", path))) << path;
@@ -108,7 +108,7 @@ TEST(Routes, UnknownPathsAreNotFoundWhateverTheMethod) {
     }
 }
 
-TEST(Routes, OtherMethodsOfAKnownPathLearnWhichArePossible) {
+TEST(Routes, WrongMethodReturnsTheAllowedOnes) {
     EXPECT_EQ(std::get<MethodNotAllowed>(route("PUT", "/api/v1/sessions")).allow, "GET, HEAD, POST");
     EXPECT_EQ(std::get<MethodNotAllowed>(route("POST", "/api/v1/sessions/a")).allow, "GET, HEAD, DELETE");
     EXPECT_EQ(std::get<MethodNotAllowed>(route("OPTIONS", "/livez")).allow, "GET, HEAD");

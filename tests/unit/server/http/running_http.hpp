@@ -20,7 +20,7 @@
 
 namespace scanloom::http {
 
-/// Says what it was asked; fails when asked to.
+/// Responds with the request; throws on request.
 inline Response echo(const Request& request) {
     if (request.target == "/throw") throw std::runtime_error("asked to");
     return ok("text/plain", Body(request.method + " " + request.target + " " + request.body));
@@ -30,7 +30,7 @@ inline Result<Response> ask_test(Context& context) {
     return static_cast<TestServices&>(context.services).answer(context.request);
 }
 
-/// The server's routes and some more, all of which ask the test.
+/// The routes of the server and some more, all with the test's handler.
 inline std::vector<Route> echoing_routes() {
     std::vector<Route> echoing;
     for (const auto& route : routes()) {

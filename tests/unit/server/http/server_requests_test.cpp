@@ -7,7 +7,7 @@
 
 #include <string>
 
-/// What the server reads as requests, and what it refuses.
+/// Valid and invalid requests of the server.
 namespace scanloom::http {
 namespace {
 
@@ -68,7 +68,7 @@ TEST(HttpServer, ConnectionIsClosedWhenAskedFor) {
     }
 }
 
-TEST(HttpServer, WhatIsNotHttpIsABadRequest) {
+TEST(HttpServer, OtherProtocolsAreBadRequests) {
     RunningHttp server;
     for (const auto* bytes :
          {"\x16\x02garbage\r\n\r\n", "GET\r\n\r\n", "GET / HTTP/9.9\r\n\r\n", "GET / HTTP/1.1\r\nno colon\r\n\r\n",
@@ -87,15 +87,15 @@ TEST(HttpServer, WhatIsNotHttpIsABadRequest) {
     EXPECT_EQ(answer_to(server, get("/")).status, 200);
 }
 
-TEST(HttpServer, WhoGreetsInTlsWhereThereIsNoneIsLeftInOrder) {
+TEST(HttpServer, TlsClientOnAPlainPortIsClosedInOrder) {
     RunningHttp server;
     HttpClient client(server.port());
     client.send("\x16\x03\x01\x02\x01garbage\r\n\r\n");
-    EXPECT_EQ(client.read().status, 0) << "whatever were said could not be read there";
+    EXPECT_EQ(client.read().status, 0) << "the client could not read a plain response";
     EXPECT_TRUE(client.ends_in_order());
 }
 
-TEST(HttpServer, RobotsAreSentToTheirPort) {
+TEST(HttpServer, RobotsAreReferredToTheRobotPort) {
     RunningHttp server;
     const std::string_view frame("\0\0\0\x08\x12\x06robot1", 12);
     const auto answer = answer_to(server, frame);
@@ -103,13 +103,13 @@ TEST(HttpServer, RobotsAreSentToTheirPort) {
     EXPECT_THAT(answer.body, HasSubstr("robot port"));
 }
 
-TEST(HttpServer, OneHostFieldIsNeeded) {
+TEST(HttpServer, ExactlyOneHostFieldIsRequired) {
     RunningHttp server;
     EXPECT_EQ(answer_to(server, "GET / HTTP/1.1\r\n\r\n").status, 400);
     EXPECT_EQ(answer_to(server, "GET / HTTP/1.1\r\nHost: localhost\r\nHost: localhost\r\n\r\n").status, 400);
 }
 
-TEST(HttpServer, HostsOfStrangersAreMisdirectedAndTold) {
+TEST(HttpServer, UnknownHostsAreMisdirectedAndLogged) {
     RunningHttp server;
     EXPECT_EQ(answer_to(server, "GET / HTTP/1.1\r\nHost: evil.example\r\n\r\n").status, 421);
     EXPECT_EQ(answer_to(server, "GET / HTTP/1.1\r\nHost: 127.0.0.1:80\r\n\r\n").status, 200);
@@ -126,13 +126,13 @@ TEST(HttpServer, OversizedHeadersAreRefused) {
     EXPECT_EQ(answer_to(server, get("/" + std::string(100'000, 'a'))).status, 431);
 }
 
-TEST(HttpServer, HeadersUpToTheLimitAreRead) {
+TEST(HttpServer, HeadersUpToTheLimitAreAccepted) {
     RunningHttp server;
     EXPECT_EQ(answer_to(server, get("/" + std::string(8'200, 'a'))).status, 431);
     EXPECT_EQ(answer_to(server, get("/" + std::string(7'000, 'a'))).status, 200);
 }
 
-TEST(HttpServer, OversizedBodiesAreRefusedBeforeTheyAreRead) {
+TEST(HttpServer, OversizedBodiesAreRefusedBeforeReading) {
     RunningHttp server;
     HttpClient client(server.port());
     client.send(
@@ -145,10 +145,10 @@ TEST(HttpServer, OversizedBodiesAreRefusedBeforeTheyAreRead) {
         "POST / HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\nContent-Length: 300000\r\n\r\n" +
         std::string(300'000, 'a'));
     EXPECT_EQ(eager.read().status, 413);
-    EXPECT_TRUE(eager.ends_in_order()); // a reset might overtake the answer, as its sender went on sending
+    EXPECT_TRUE(eager.ends_in_order()); // a reset might overtake the response because the client continues to send
 }
 
-TEST(HttpServer, BodiesUpToTheLimitAreRead) {
+TEST(HttpServer, BodiesUpToTheLimitAreAccepted) {
     RunningHttp server;
     const std::string body(262'144, 'a');
     const auto answer = answer_to(
@@ -164,7 +164,7 @@ std::string chunked(std::string_view chunks, std::string_view fields = "") {
                        fields, chunks);
 }
 
-TEST(HttpServer, ChunkedBodiesAreReadUpToTheLimit) {
+TEST(HttpServer, ChunkedBodiesUpToTheLimitAreAccepted) {
     RunningHttp server;
     HttpClient client(server.port());
     client.send(chunked("5\r\nhello\r\n6;name=value\r\n world\r\n0\r\n\r\n") + get("/next"));
@@ -197,7 +197,7 @@ TEST(HttpServer, OtherTransferEncodingsAndTrailersAreRefused) {
     EXPECT_EQ(answer_to(server, get("/")).status, 200);
 }
 
-TEST(HttpServer, BodiesInAnotherCodingAndContentTypesGivenTwiceAreRefused) {
+TEST(HttpServer, ContentEncodingAndDuplicateContentTypeAreRefused) {
     RunningHttp server;
     const auto with = [&](std::string_view fields) {
         return answer_to(
@@ -214,7 +214,7 @@ TEST(HttpServer, BodiesInAnotherCodingAndContentTypesGivenTwiceAreRefused) {
     EXPECT_EQ(with("Content-Type: text/plain\r\n").status, 400);
 }
 
-TEST(HttpServer, AbsoluteTargetsAreReadWithTheirOwnHost) {
+TEST(HttpServer, AbsoluteTargetReplacesTheHost) {
     RunningHttp server;
     const auto ask = [&](std::string_view target, std::string_view host) {
         return answer_to(server, fmt::format("GET {} HTTP/1.1\r\nHost: {}\r\n\r\n", target, host));
@@ -228,7 +228,7 @@ TEST(HttpServer, AbsoluteTargetsAreReadWithTheirOwnHost) {
     EXPECT_EQ(ask("http:///", "evil.example").status, 421);
 }
 
-TEST(HttpServer, OneEmptyLineBeforeARequestIsSkipped) {
+TEST(HttpServer, EmptyLineBeforeARequestIsSkipped) {
     RunningHttp server;
     HttpClient client(server.port());
     client.send("\r\n" + get("/a") + "\r\n" + get("/b"));
@@ -240,7 +240,7 @@ TEST(HttpServer, OneEmptyLineBeforeARequestIsSkipped) {
     EXPECT_EQ(answer_to(server, "\r\n\r\n" + get("/")).status, 400);
 }
 
-TEST(HttpServer, ClientsOfHttp10KeepTheConnectionWhenTheyAskForIt) {
+TEST(HttpServer, Http10ConnectionIsKeptOnRequest) {
     RunningHttp server;
     HttpClient client(server.port());
     client.send("GET /a HTTP/1.0\r\nConnection: keep-alive\r\n\r\n");
@@ -250,7 +250,7 @@ TEST(HttpServer, ClientsOfHttp10KeepTheConnectionWhenTheyAskForIt) {
     EXPECT_TRUE(client.ends_in_order());
 }
 
-TEST(HttpServer, AWaitingBodyIsAskedFor) {
+TEST(HttpServer, ExpectContinueIsAnswered) {
     RunningHttp server;
     HttpClient client(server.port());
     client.send("POST / HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\nExpect: "

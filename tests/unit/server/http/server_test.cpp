@@ -29,7 +29,7 @@ TEST(HttpServer, SlowHeadersAreCutOff) {
     EXPECT_TRUE(client.is_closed());
 }
 
-TEST(HttpServer, DrippingBytesDoNotPostponeTheDeadline) {
+TEST(HttpServer, SlowBytesDoNotPostponeTheDeadline) {
     RunningHttp server(ServerConfig{.header_bytes_max = 1U << 30, .header = 50ms}); // so that only time can end it
     HttpClient client(server.port());
     client.send("GET /");
@@ -39,14 +39,14 @@ TEST(HttpServer, DrippingBytesDoNotPostponeTheDeadline) {
     EXPECT_TRUE(client.is_closed());
 }
 
-TEST(HttpServer, ABodyThatStopsComingIsCutOffThoughItsTimeIsNotOver) {
+TEST(HttpServer, StalledBodyIsCutOffBeforeItsDeadline) {
     RunningHttp server(ServerConfig{.body = 1h, .body_pause = 50ms});
     HttpClient client(server.port());
     client.send("POST / HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\nContent-Length: 5\r\n\r\nhel");
     EXPECT_TRUE(client.is_closed());
 }
 
-TEST(HttpServer, AnAnnouncedLengthGivesNoTimeBeforeItIsSent) {
+TEST(HttpServer, AnnouncedLengthDoesNotExtendTheDeadline) {
     RunningHttp server(ServerConfig{.body = 50ms, .body_pause = 1h, .read_rate_min = 100});
     HttpClient client(server.port());
     client.send(
@@ -64,7 +64,7 @@ TEST(HttpServer, IdleConnectionsAreClosed) {
     EXPECT_TRUE(used.is_closed());
 }
 
-TEST(HttpServer, WhoDoesNotReadIsCutOff) {
+TEST(HttpServer, ClientThatDoesNotReadIsCutOff) {
     std::promise<void> entered;
     RunningHttp server(ServerConfig{.write = 50ms, .drain = 1h}, [&](const Request&) {
         entered.set_value();
@@ -73,10 +73,10 @@ TEST(HttpServer, WhoDoesNotReadIsCutOff) {
     HttpClient client(server.port());
     client.send(get("/"));
     entered.get_future().wait();
-    server.stop(); // returns when the connection is closed, though nobody read a byte
+    server.stop(); // returns when the connection is closed, although no byte was read
 }
 
-TEST(HttpServer, WhoDoesNotHangUpAfterTheLastAnswerIsHungUpOn) {
+TEST(HttpServer, ClientThatDoesNotCloseIsCutOff) {
     RunningHttp server(ServerConfig{.linger = 50ms, .drain = 1h});
     HttpClient client(server.port());
     client.send("GET / HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n");
@@ -84,7 +84,7 @@ TEST(HttpServer, WhoDoesNotHangUpAfterTheLastAnswerIsHungUpOn) {
     server.stop(); // returns when the connection is closed
 }
 
-TEST(HttpServer, WhoIsNotReadyWhenDrainingIsOverIsCutOff) {
+TEST(HttpServer, UnfinishedRequestIsCutOffAfterDraining) {
     RunningHttp server(ServerConfig{.header = 1h, .drain = 50ms});
     HttpClient client(server.port());
     client.send("GET / HTTP/1.1\r\nHost: loc");
@@ -95,7 +95,7 @@ TEST(HttpServer, WhoIsNotReadyWhenDrainingIsOverIsCutOff) {
     EXPECT_TRUE(client.is_closed());
 }
 
-TEST(HttpServer, WhoReadsTooSlowlyIsCutOff) {
+TEST(HttpServer, SlowReaderIsCutOff) {
     constexpr std::size_t kSize = 64 << 20; // seconds of slow reading
     RunningHttp server(ServerConfig{.write = 50ms, .write_rate_min = std::uint64_t{1} << 40},
                        [](const Request&) { return ok("text/plain", Body(std::string(kSize, 'a'))); });
@@ -104,23 +104,23 @@ TEST(HttpServer, WhoReadsTooSlowlyIsCutOff) {
     EXPECT_LT(client.read_slowly(), kSize);
 }
 
-TEST(HttpServer, LargeAnswersArriveWhole) {
+TEST(HttpServer, LargeResponsesArriveComplete) {
     RunningHttp server({}, [](const Request&) { return ok("text/plain", Body(std::string(8 << 20, 'b'))); });
     EXPECT_EQ(answer_to(server, get("/")).body, std::string(8 << 20, 'b'));
 }
 
-TEST(HttpServer, AFaultCostsOneAnswerOnly) {
+TEST(HttpServer, ExceptionFailsOneRequestOnly) {
     RunningHttp server;
     HttpClient client(server.port());
     client.send(get("/throw"));
     const auto answer = client.read();
     EXPECT_EQ(answer.status, 500);
-    EXPECT_THAT(answer.body, Not(HasSubstr("asked to"))); // the reason is the log's
+    EXPECT_THAT(answer.body, Not(HasSubstr("asked to"))); // the reason is only logged
     client.send(get("/"));
     EXPECT_EQ(client.read().status, 200);
 }
 
-TEST(HttpServer, OneConnectionTooManyIsTold) {
+TEST(HttpServer, ExcessConnectionGetsAResponse) {
     std::promise<void> entered;
     std::promise<void> go_on;
     RunningHttp server(ServerConfig{.connections_max = 1}, [&](const Request& request) {
@@ -138,7 +138,7 @@ TEST(HttpServer, OneConnectionTooManyIsTold) {
     EXPECT_EQ(first.read().status, 200);
 }
 
-TEST(HttpServer, NobodyKeepsAPlaceBySayingNothing) {
+TEST(HttpServer, SilentConnectionIsReplaced) {
     RunningHttp server(ServerConfig{.connections_max = 3});
     HttpClient silent(server.port());
     HttpClient silent_too(server.port());
@@ -168,7 +168,7 @@ TEST(MayConnect, BoundsEachAddressExceptLoopbackAndProxies) {
         EXPECT_TRUE(may_connect(address(free), 2, config)) << free;
 }
 
-TEST(HttpServer, NewConnectionsGetThePlacesOfSlowBodies) {
+TEST(HttpServer, NewConnectionsReplaceSlowBodies) {
     RunningHttp server(ServerConfig{.connections_max = 2});
     std::array<HttpClient, 2> slow{HttpClient(server.port()), HttpClient(server.port())};
     for (auto& client : slow) {
@@ -185,7 +185,7 @@ TEST(HttpServer, NewConnectionsGetThePlacesOfSlowBodies) {
     for (auto& client : slow) EXPECT_TRUE(client.is_closed());
 }
 
-TEST(HttpServer, ANewConnectionGetsThePlaceOfASlowReader) {
+TEST(HttpServer, NewConnectionReplacesASlowReader) {
     std::promise<void> entered;
     RunningHttp server(ServerConfig{.connections_max = 1, .write = 1h}, [&](const Request& request) {
         if (request.target != "/large") return echo(request);
@@ -196,13 +196,13 @@ TEST(HttpServer, ANewConnectionGetsThePlaceOfASlowReader) {
     reader.send(get("/large"));
     entered.get_future().wait();
     auto answer = answer_to(server, get("/livez"));
-    constexpr int kAttemptsMax = 20'000; // while the answer is being made, the reader waits for the server
+    constexpr int kAttemptsMax = 20'000; // while the response is computed, the reader waits for the server
     for (int attempt = 1; answer.status != 200 && attempt < kAttemptsMax; ++attempt)
         answer = answer_to(server, get("/livez"));
     EXPECT_EQ(answer.status, 200);
 }
 
-TEST(HttpServer, StoppingFinishesWhatIsUnderWay) {
+TEST(HttpServer, StopFinishesRunningRequests) {
     std::promise<void> entered;
     std::promise<void> go_on;
     RunningHttp server({}, [&](const Request& request) {
@@ -218,14 +218,14 @@ TEST(HttpServer, StoppingFinishesWhatIsUnderWay) {
     server.server().stop([&done] { done.set_value(); });
     EXPECT_TRUE(idle.is_closed()); // at once, while the other is still served
     go_on.set_value();
-    EXPECT_EQ(busy.read().status, 200); // it may not have been told yet that it is the last
+    EXPECT_EQ(busy.read().status, 200); // the server may not have marked it as the last one yet
     EXPECT_TRUE(busy.is_closed());
     busy.shutdown_send();
     done.get_future().wait();
     server.set_stopped();
 }
 
-/// Holds up every request it is told to, until it goes.
+/// Blocks the selected requests until its destruction.
 class Authenticator {
 public:
     explicit Authenticator(int awaited) : awaited_(awaited) {}
@@ -251,7 +251,7 @@ std::string post(std::string_view target) {
                        target.ends_with("/import") ? "multipart/form-data" : "application/json");
 }
 
-TEST(HttpServer, HealthAndTheViewerAreAnsweredWhateverElseIsBusy) {
+TEST(HttpServer, HealthAndViewerAreServedWhenPoolsAreBusy) {
     Authenticator authenticator(3);
     RunningHttp server({}, [&](const Request& request) {
         if (request.target.starts_with("/api") || request.target == "/metrics") authenticator.pass_slowly();
@@ -270,11 +270,11 @@ TEST(HttpServer, HealthAndTheViewerAreAnsweredWhateverElseIsBusy) {
     for (const auto& client : busy) EXPECT_EQ(client->read().status, 200);
 }
 
-TEST(HttpServer, OneTooManyOfAKindIsToldToComeBackAndHoldsUpNothingElse) {
+TEST(HttpServer, ExcessRequestOfAPoolIsRefusedWithoutDelayingOthers) {
     struct Kind {
         ServerConfig config;
-        std::string taken;    ///< takes the only place of its kind
-        std::string refused;  ///< needs the same place
+        std::string taken;    ///< takes the only permit of its pool
+        std::string refused;  ///< needs the same permit
         std::string answered; ///< needs none
     };
     const std::string session = "/api/v1/sessions/s";
@@ -304,7 +304,7 @@ TEST(HttpServer, OneTooManyOfAKindIsToldToComeBackAndHoldsUpNothingElse) {
     }
 }
 
-TEST(HttpServer, APortInUseIsAClearError) {
+TEST(HttpServer, PortInUseIsAnError) {
     RunningHttp server;
     ServerConfig config;
     config.endpoint = {boost::asio::ip::address_v4::loopback(), server.port()};
@@ -314,7 +314,7 @@ TEST(HttpServer, APortInUseIsAClearError) {
     EXPECT_THAT(second.error().message, HasSubstr(fmt::format("127.0.0.1:{}", server.port())));
 }
 
-TEST(HttpServer, CountsAnswersByClass) {
+TEST(HttpServer, CountsResponsesByStatusClass) {
     RunningHttp server;
     EXPECT_EQ(answer_to(server, get("/")).status, 200);
     EXPECT_EQ(answer_to(server, "garbage\r\n\r\n").status, 400);

@@ -62,7 +62,7 @@ struct TestServices : Services {
     Answer answer = nullptr;
 };
 
-/// An Api over given parts; what tests seldom look at is its own.
+/// An Api over given parts; it owns the parts that tests seldom use.
 class TestApi {
 public:
     TestApi(session::SessionRegistry& sessions, session::ReplayJobs& weaves, guide::GoalAssignments& goals,
@@ -91,14 +91,14 @@ public:
         std::vector<Pool> pools; ///< on which it ran, except the I/O threads
     };
 
-    /// A request under way.
+    /// A running request.
     struct Running {
         Request request;
         Asked asked = {};
-        std::atomic<bool> done = false; ///< then there is a response
+        std::atomic<bool> done = false; ///< then `response` is set
     };
 
-    /// Starts a request, which goes on in poll().
+    /// Starts a request, which continues in poll().
     [[nodiscard]] std::shared_ptr<Running> start(Request request) {
         std::shared_ptr<Running> running(new Running{std::move(request)});
         boost::asio::co_spawn(boost::asio::make_strand(polled_.of(Pool::kIo)), serve(running),
@@ -110,7 +110,7 @@ public:
 
     void poll(Running& running) { polled_.poll(running.asked.pools); }
 
-    /// Asks and returns when the response is there.
+    /// Sends a request and waits for its response.
     [[nodiscard]] Asked ask(Request request) {
         const auto running = start(std::move(request));
         while (!running->done) {
@@ -122,7 +122,7 @@ public:
 
     [[nodiscard]] Response answer(const Request& request) { return *ask(request).response; }
 
-    /// The refusal of a request whose header is enough for it.
+    /// Returns the refusal of a request by its header.
     [[nodiscard]] std::optional<Response> refuse(const Request& request) const {
         auto admitted = admit(request);
         auto* refusal = std::get_if<Response>(&admitted);

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-/// The HTTP port where it has a certificate.
+/// The HTTP port with a certificate.
 namespace scanloom::http {
 namespace {
 
@@ -42,7 +42,7 @@ protected:
     std::shared_ptr<sockets::PortTls> tls_ = sockets::PortTls::open({files_.certificate, files_.key}).value();
 };
 
-TEST_F(TlsServerTest, AnswersAsItDoesPlainly) {
+TEST_F(TlsServerTest, RespondsLikeThePlainServer) {
     RunningHttp server(config());
     TlsHttpClient client(server.port(), manner());
     ASSERT_TRUE(client.is_trusted());
@@ -50,14 +50,14 @@ TEST_F(TlsServerTest, AnswersAsItDoesPlainly) {
         client.send(get(fmt::format("/{}", i)));
         EXPECT_EQ(client.read().body, fmt::format("GET /{} ", i));
     }
-    const std::string body(200'000, 'x'); // some records of TLS
+    const std::string body(200'000, 'x'); // several TLS records
     client.send(fmt::format(
         "POST /a HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\nContent-Length: {}\r\n\r\n{}",
         body.size(), body));
     EXPECT_EQ(client.read().body, "POST /a " + body);
 }
 
-TEST_F(TlsServerTest, LargeAnswersArriveWholeAndTheEndIsToldInTls) {
+TEST_F(TlsServerTest, LargeResponsesArriveCompleteWithCloseNotify) {
     RunningHttp server(config(), [](const Request&) { return ok("text/plain", Body(std::string(8 << 20, 'b'))); });
     TlsHttpClient client(server.port(), manner());
     client.send("GET / HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n");
@@ -65,7 +65,7 @@ TEST_F(TlsServerTest, LargeAnswersArriveWholeAndTheEndIsToldInTls) {
     EXPECT_TRUE(client.is_taken_leave_of());
 }
 
-TEST_F(TlsServerTest, RequestsAreKnownToBeSecureThereAndOnlyThere) {
+TEST_F(TlsServerTest, OnlyTlsRequestsAreSecure) {
     const auto tell = [](const Request& request) { return ok("text/plain", Body(request.is_secure ? "yes" : "no")); };
     RunningHttp server(config(), tell);
     TlsHttpClient client(server.port(), manner());
@@ -81,25 +81,25 @@ TEST_F(TlsServerTest, RequestsAreKnownToBeSecureThereAndOnlyThere) {
     EXPECT_FALSE(plainly.fields.contains("strict-transport-security"));
 }
 
-TEST_F(TlsServerTest, WhoAsksPlainlyIsToldSoPlainly) {
+TEST_F(TlsServerTest, PlainHttpGetsAPlainResponse) {
     RunningHttp server(config());
     HttpClient client(server.port());
     client.send(get("/"));
     const auto answer = client.read();
     EXPECT_EQ(answer.status, 400);
     EXPECT_THAT(answer.body, HasSubstr("https://"));
-    EXPECT_FALSE(answer.fields.contains("strict-transport-security")) << "nobody would have to believe it";
+    EXPECT_FALSE(answer.fields.contains("strict-transport-security")) << "browsers ignore it over plain HTTP";
     EXPECT_TRUE(client.ends_in_order());
 }
 
-TEST_F(TlsServerTest, WhoSpeaksNeitherIsLeft) {
+TEST_F(TlsServerTest, OtherProtocolsAreClosed) {
     RunningHttp server(config());
     HttpClient client(server.port());
     client.send(std::string(64, '\0'));
     EXPECT_EQ(client.read().status, 0);
 }
 
-TEST_F(TlsServerTest, WhoDoesNotFinishTheHandshakeIsCutOffAndHoldsUpNobody) {
+TEST_F(TlsServerTest, UnfinishedHandshakeIsCutOffWithoutDelayingOthers) {
     auto impatient = config();
     impatient.handshake = 50ms;
     RunningHttp server(impatient);
@@ -113,7 +113,7 @@ TEST_F(TlsServerTest, WhoDoesNotFinishTheHandshakeIsCutOffAndHoldsUpNobody) {
     EXPECT_TRUE(slow.is_closed());
 }
 
-TEST_F(TlsServerTest, WhoDoesNotReturnTheGoodbyeIsHungUpOn) {
+TEST_F(TlsServerTest, ClientWithoutCloseNotifyIsCutOff) {
     auto impatient = config();
     impatient.linger = 50ms;
     impatient.drain = 1h;
@@ -124,20 +124,20 @@ TEST_F(TlsServerTest, WhoDoesNotReturnTheGoodbyeIsHungUpOn) {
     server.stop(); // returns when the connection is closed
 }
 
-TEST_F(TlsServerTest, StoppingWaitsForNoHandshake) {
+TEST_F(TlsServerTest, StopDoesNotWaitForHandshakes) {
     auto patient = config();
     patient.handshake = 1h;
     patient.drain = 1h;
     RunningHttp server(patient);
     HttpClient slow(server.port());
     slow.send(std::string_view("\x16\x03\x01\x02\x00\x01", 6));
-    TlsHttpClient quick(server.port(), manner()); // accepted after the other
+    TlsHttpClient quick(server.port(), manner()); // accepted after the first one
     ASSERT_TRUE(quick.is_trusted());
     server.stop(); // returns
     EXPECT_TRUE(slow.is_closed());
 }
 
-TEST_F(TlsServerTest, OldVersionsAreNotSpoken) {
+TEST_F(TlsServerTest, OldVersionsAreRefused) {
     RunningHttp server(config());
     auto old = manner();
     old.version_min = TLS1_VERSION;
@@ -151,7 +151,7 @@ TEST_F(TlsServerTest, OldVersionsAreNotSpoken) {
     EXPECT_EQ(TlsHttpClient(server.port(), manner()).version(), "TLSv1.3");
 }
 
-TEST_F(TlsServerTest, NobodyGetsASecondHandshakeOrATicket) {
+TEST_F(TlsServerTest, RenegotiationAndTicketsAreRefused) {
     RunningHttp server(config());
     for (const int version : {TLS1_2_VERSION, TLS1_3_VERSION}) {
         auto chosen = manner();
@@ -164,7 +164,7 @@ TEST_F(TlsServerTest, NobodyGetsASecondHandshakeOrATicket) {
     }
 }
 
-TEST_F(TlsServerTest, CertificatesAreReadAgainAndABadFileChangesNothing) {
+TEST_F(TlsServerTest, CertificatesAreReloadedAndInvalidFilesIgnored) {
     RunningHttp server(config());
     const auto old = manner();
     TlsHttpClient before(server.port(), old);
@@ -174,17 +174,17 @@ TEST_F(TlsServerTest, CertificatesAreReadAgainAndABadFileChangesNothing) {
     const auto broken = tls_->read_again();
     ASSERT_FALSE(broken);
     EXPECT_THAT(broken.error().message, HasSubstr(files_.certificate.string()));
-    EXPECT_TRUE(TlsHttpClient(server.port(), {.trusted = kept}).is_trusted()) << "the old one stays in force";
+    EXPECT_TRUE(TlsHttpClient(server.port(), {.trusted = kept}).is_trusted()) << "the old certificate stays valid";
 
     files_ = write_certificate(directory_.path(), "127.0.0.1");
     ASSERT_TRUE(tls_->read_again());
     EXPECT_TRUE(TlsHttpClient(server.port(), manner()).is_trusted());
     EXPECT_FALSE(TlsHttpClient(server.port(), {.trusted = kept}).is_trusted());
-    before.send(get("/")); // what is open goes on
+    before.send(get("/")); // open connections continue
     EXPECT_EQ(before.read().status, 200);
 }
 
-TEST_F(TlsServerTest, WhoShowsNoCertificateThatIsTrustedIsTurnedAwayWhicheverTlsHeSpeaks) {
+TEST_F(TlsServerTest, UntrustedClientIsRefusedInEveryTlsVersion) {
     const auto known = write_certificate(directory_.path(), "known.example");
     const auto stranger = write_certificate(directory_.path(), "stranger.example");
     const auto expired = write_certificate(directory_.path(), "expired.example", -3600);
@@ -213,19 +213,19 @@ TEST_F(TlsServerTest, WhoShowsNoCertificateThatIsTrustedIsTurnedAwayWhicheverTls
     EXPECT_EQ(server.refusals(auth::Reason::kForeignCertificate), 4.0);
 }
 
-TEST_F(TlsServerTest, WhoIsTurnedAwayHearsWhy) {
+TEST_F(TlsServerTest, RefusedClientReceivesTheReason) {
     const auto known = write_certificate(directory_.path(), "known.example");
     auto mutual = config();
     mutual.tls = sockets::PortTls::open({files_.certificate, files_.key, known.certificate}).value();
     RunningHttp server(mutual);
     TlsHttpClient client(server.port(), manner());
-    ASSERT_TRUE(client.is_trusted()) << "of TLS 1.3 the client comes to the end first";
+    ASSERT_TRUE(client.is_trusted()) << "in TLS 1.3 the client finishes the handshake first";
     client.send(get("/"));
     EXPECT_EQ(client.read().status, 0);
     EXPECT_THAT(client.complaint(), HasSubstr("certificate required"));
 }
 
-TEST_F(TlsServerTest, OneConnectionTooManyIsClosedWithoutAWord) {
+TEST_F(TlsServerTest, ExcessConnectionIsClosedWithoutResponse) {
     auto small = config();
     small.connections_max = 1;
     std::promise<void> entered;
@@ -244,7 +244,7 @@ TEST_F(TlsServerTest, OneConnectionTooManyIsClosedWithoutAWord) {
     EXPECT_EQ(first.read().status, 200);
 }
 
-TEST_F(TlsServerTest, WhoDoesNotShakeHandsMakesRoom) {
+TEST_F(TlsServerTest, ConnectionWithoutHandshakeIsReplaced) {
     auto small = config();
     small.connections_max = 1;
     RunningHttp server(small);

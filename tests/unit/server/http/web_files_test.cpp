@@ -25,7 +25,7 @@ protected:
     TemporaryDirectory folder_;
 };
 
-TEST_F(WebFilesTest, PageIsServedWithTheViewersPolicy) {
+TEST_F(WebFilesTest, PageHasTheContentSecurityPolicy) {
     write("index.html", "<p>hello");
     const auto response = serve_web_file(load(), "index.html", "", "").value();
     EXPECT_EQ(response.status, Status::ok);
@@ -37,7 +37,7 @@ TEST_F(WebFilesTest, PageIsServedWithTheViewersPolicy) {
                       HasSubstr("frame-ancestors 'none'")));
 }
 
-TEST_F(WebFilesTest, ThePageMayOpenWebSocketsOfThisServerAlone) {
+TEST_F(WebFilesTest, PolicyAllowsOnlyWebSocketsOfThisServer) {
     write("index.html", "");
     const auto policy_for = [&](std::string_view host) {
         return std::string(serve_web_file(load(), "index.html", "", host).value().get("Content-Security-Policy"));
@@ -52,7 +52,7 @@ TEST_F(WebFilesTest, ThePageMayOpenWebSocketsOfThisServerAlone) {
     }
 }
 
-TEST_F(WebFilesTest, HashedAssetsAreKeptForGood) {
+TEST_F(WebFilesTest, HashedAssetsAreImmutable) {
     write("index.html", "");
     write("assets/index-BvC3kD9x.js", "1");
     write("assets/icon.svg", "<svg/>");
@@ -73,7 +73,7 @@ TEST_F(WebFilesTest, EntityTagFollowsTheContent) {
     EXPECT_EQ(serve_web_file(load(), "index.html", etag, "").value().status, Status::ok);
 }
 
-TEST_F(WebFilesTest, WhatIsNotModifiedKeepsItsPolicyAndItsCaching) {
+TEST_F(WebFilesTest, NotModifiedKeepsPolicyAndCaching) {
     write("index.html", "<p>hello");
     write("assets/index-BvC3kD9x.js", "1");
     const auto files = load();
@@ -93,7 +93,7 @@ TEST_F(WebFilesTest, WhatIsNotModifiedKeepsItsPolicyAndItsCaching) {
     }
 }
 
-TEST_F(WebFilesTest, OnlyWhatWasReadAtTheStartIsServed) {
+TEST_F(WebFilesTest, OnlyFilesReadAtTheStartAreServed) {
     write("index.html", "");
     write("secret.txt", "secret");
     write("assets/deeper/a.js", "1");
@@ -105,7 +105,7 @@ TEST_F(WebFilesTest, OnlyWhatWasReadAtTheStartIsServed) {
     }
 }
 
-TEST_F(WebFilesTest, WithoutAViewerThePageSaysWhatToDo) {
+TEST_F(WebFilesTest, MissingViewerPageSaysHowToBuildIt) {
     const auto files = load_web_files(folder_.path() / "missing").value();
     EXPECT_TRUE(files.empty());
     const auto response = serve_web_file(files, "index.html", "", "").value();

@@ -18,7 +18,7 @@ protected:
 
     [[nodiscard]] double in_flight() const { return counters_.scans_in_flight.Value(); }
 
-    /// Bounds in seconds of the buckets that hold something, and how many.
+    /// Returns the upper bounds (s) and counts of the non-empty buckets.
     [[nodiscard]] std::vector<std::pair<double, std::uint64_t>> waits() const {
         std::vector<std::pair<double, std::uint64_t>> waits;
         std::uint64_t before = 0;
@@ -37,7 +37,7 @@ protected:
     std::optional<Unacknowledged> link_{std::in_place, counters_};
 };
 
-TEST_F(UnacknowledgedTest, EachScanWaitsFromItsReadingToItsAck) {
+TEST_F(UnacknowledgedTest, ScanIsCountedFromReadToAck) {
     link_->add(10, 10, at(0));
     link_->add(13, 3, at(30));
     EXPECT_EQ(in_flight(), 13.0);
@@ -49,23 +49,23 @@ TEST_F(UnacknowledgedTest, EachScanWaitsFromItsReadingToItsAck) {
     EXPECT_EQ(in_flight(), 0.0);
 }
 
-TEST_F(UnacknowledgedTest, OneAckMayBeOfManyBatchesAndOfAPartOfOneMore) {
+TEST_F(UnacknowledgedTest, AckCoversBatchesAndAPartOfTheNext) {
     for (std::uint64_t n = 1; n <= 4; ++n) link_->add(10 * n, 10, at(0));
     link_->acknowledge(35, at(2));
     EXPECT_THAT(waits(), ElementsAre(Pair(0.0025, 30U)));
     EXPECT_EQ(in_flight(), 10.0);
-    link_->acknowledge(35, at(3)); // no news
+    link_->acknowledge(35, at(3)); // no change
     EXPECT_EQ(in_flight(), 10.0);
 }
 
-TEST_F(UnacknowledgedTest, ScansSentAgainAreAcknowledgedAtOnce) {
+TEST_F(UnacknowledgedTest, ResentScansAreAcknowledgedAtOnce) {
     link_->add(20, 5, at(0));
     link_->acknowledge(100, at(0));
     EXPECT_THAT(waits(), ElementsAre(Pair(0.0005, 5U)));
     EXPECT_EQ(in_flight(), 0.0);
 }
 
-TEST_F(UnacknowledgedTest, WhatALinkLeavesBehindIsNotInFlightAnyMore) {
+TEST_F(UnacknowledgedTest, ClosedLinkHasNoScansInFlight) {
     Unacknowledged other(counters_);
     other.add(1, 1, at(0));
     link_->add(10, 10, at(0));

@@ -344,7 +344,7 @@ TEST(Checkpoint, OtherMappingVersionIsRefused) {
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().code, Errc::kUnsupportedVersion);
     EXPECT_THAT(refused.error().message,
-                HasSubstr(fmt::format("woven by version {}", mapping::kProjectionVersion + 1)));
+                HasSubstr(fmt::format("computed by version {}", mapping::kProjectionVersion + 1)));
 }
 
 } // namespace

@@ -222,7 +222,7 @@ TEST_F(EvictedSessions, ReadErrorAtTheStartIsReportedUntilARestart) {
     restart();
     const auto refused = registry_->load("a").error();
     EXPECT_EQ(refused.code, Errc::kDataLoss) << "the error is permanent";
-    EXPECT_THAT(refused.message, HasSubstr("input/output error; if its disk is well again, start the server again"));
+    EXPECT_THAT(refused.message, HasSubstr("input/output error; if its disk is readable again, restart the server"));
     EXPECT_THAT(registry_->damaged(), SizeIs(1));
     log_.fail_reading({});
     restart();

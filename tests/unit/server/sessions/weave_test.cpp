@@ -94,7 +94,7 @@ TEST_F(ReplayJobTest, ScanTooLargeForTheSettingsFails) {
     EXPECT_EQ(job->progress().state, State::kFailed);
     EXPECT_EQ(
         job->progress().error->message,
-        "scan 41 by sensor 9 of robot 'r' covers too many cells of 0.01 metres to be woven at once; give a larger "
+        "scan 41 by sensor 9 of robot 'r' covers too many cells of 0.01 metres to be computed at once; give a larger "
         "cell_size");
 }
 
@@ -111,7 +111,7 @@ TEST_F(ReplayJobTest, ImportedMapOfTooManyCellsFails) {
     ReplayJob job(session, request({.cell_size = 0.01}), 1);
     EXPECT_FALSE(job.run(log, budget));
     EXPECT_EQ(job.progress().error->message,
-              "a part of the imported map covers too many cells of 0.01 metres to be woven at once; give a larger "
+              "a part of the imported map covers too many cells of 0.01 metres to be computed at once; give a larger "
               "cell_size");
 }
 

@@ -36,7 +36,7 @@ TEST(WorkerPool, ContinuesAfterAnException) {
         });
     }
     pool.join();
-    EXPECT_EQ(done, 50) << "also those behind it on the same strand";
+    EXPECT_EQ(done, 50) << "also later tasks on the same strand";
 }
 
 TEST(WorkerPool, JoinWaitsForTasksPostedByTasks) {
@@ -49,7 +49,7 @@ TEST(WorkerPool, JoinWaitsForTasksPostedByTasks) {
 
 namespace asio = boost::asio;
 
-/// A coroutine here that has a piece of work done elsewhere; both run by hand.
+/// A coroutine that runs work on another executor; the test polls both.
 class ComputeOnTest : public testing::Test {
 protected:
     template <class Work>
@@ -76,7 +76,7 @@ TEST_F(ComputeOnTest, ResumesAheadOfQueuedWork) {
     elsewhere_.run_one();
     here_.poll();
     EXPECT_EQ(made_, 7);
-    EXPECT_EQ(elsewhere_.poll(), 1U) << "the other work alone is left";
+    EXPECT_EQ(elsewhere_.poll(), 1U) << "only the other work is left";
 }
 
 TEST_F(ComputeOnTest, RunsOnTheExecutorWhileTheContextWaits) {
@@ -86,10 +86,10 @@ TEST_F(ComputeOnTest, RunsOnTheExecutorWhileTheContextWaits) {
         return 0;
     });
     EXPECT_FALSE(done_there);
-    EXPECT_FALSE(here_.stopped()) << "it would end before the answer";
+    EXPECT_FALSE(here_.stopped()) << "it would end before the result";
     elsewhere_.run();
     EXPECT_EQ(done_there, true);
-    EXPECT_FALSE(made_) << "what follows is done here";
+    EXPECT_FALSE(made_) << "the continuation runs here";
     here_.run();
     EXPECT_EQ(made_, 0);
 }
