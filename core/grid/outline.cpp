@@ -16,7 +16,7 @@ namespace {
 /// Directions of a walk along the sides of a cell, with the cell on the left: right along its bottom, up, left, down.
 constexpr std::array<Cell, 4> kWays = {Cell{1, 0}, Cell{0, 1}, Cell{-1, 0}, Cell{0, -1}};
 
-Cell beside(Cell cell, std::size_t way) { return {cell.i + kWays[way].i, cell.j + kWays[way].j}; }
+Cell neighbour(Cell cell, std::size_t way) { return {cell.i + kWays[way].i, cell.j + kWays[way].j}; }
 std::size_t left_of(std::size_t way) { return (way + 1) % 4; }
 std::size_t right_of(std::size_t way) { return (way + 3) % 4; }
 
@@ -63,7 +63,7 @@ public:
         for (std::size_t at = 0; at < cells_.size(); ++at) {
             if (area_[at] == kNone) flood(at);
             for (std::size_t side = 0; side < 4; ++side) {
-                if (walked_[at][side] || find(beside(cells_[at], right_of(side)))) continue;
+                if (walked_[at][side] || find(neighbour(cells_[at], right_of(side)))) continue;
                 auto& outline = outlines_[area_[at]];
                 std::ranges::move(rings_of(walk(at, side)), std::back_inserter(outline)); // first the outer ring
             }
@@ -89,7 +89,7 @@ private:
             const Cell cell = cells_[open.back()];
             open.pop_back();
             for (std::size_t way = 0; way < 4; ++way) {
-                const auto next = find(beside(cell, way));
+                const auto next = find(neighbour(cell, way));
                 if (!next || area_[*next] != kNone) continue;
                 area_[*next] = area;
                 open.push_back(*next);
@@ -105,9 +105,9 @@ private:
             walked_[at][side] = true;
             if (side != before) corners.push_back(first_corner(cells_[at], side));
             before = side;
-            const Cell forward = beside(cells_[at], side);
+            const Cell forward = neighbour(cells_[at], side);
             const auto ahead = find(forward);
-            const auto right = find(beside(forward, right_of(side)));
+            const auto right = find(neighbour(forward, right_of(side)));
             if (!ahead) {
                 side = left_of(side);
             } else if (!right) {

@@ -188,9 +188,9 @@ bool may_be_unfinished(const Candidate& other, const Candidate& best) {
 }
 
 /// For two views, returns whether the elements in which a nearby pose differs from the best clearly support the best.
-bool is_told_from(const Candidate& best, const Candidate& beside) {
-    if (is_elsewhere(beside.pose(), best.pose())) return false;
-    const auto [for_best, for_other, of_one_thing] = difference(best, beside, kThingRadius);
+bool is_distinguished_from(const Candidate& best, const Candidate& other) {
+    if (is_elsewhere(other.pose(), best.pose())) return false;
+    const auto [for_best, for_other, of_one_thing] = difference(best, other, kThingRadius);
     const double more = for_best - for_other;
     return more >= kTelling && for_best >= kTellingRatio * for_other && more - of_one_thing >= kTellingElsewhere;
 }
@@ -213,7 +213,7 @@ const Candidate* rival_of(const std::vector<Candidate>& candidates, LaidOn first
         if (!is_distinct(other.pose(), best.pose())) continue;
         if (first == LaidOn::kMap) {
             if (other.score() >= near || may_be_unfinished(other, best)) return &other;
-        } else if ((other.score() >= near && !is_told_from(best, other)) || may_be_elsewhere(other, best)) {
+        } else if ((other.score() >= near && !is_distinguished_from(best, other)) || may_be_elsewhere(other, best)) {
             return &other;
         }
     }

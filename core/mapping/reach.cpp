@@ -189,9 +189,10 @@ Result<> check_reach(const MapConfig& config, const Sensor& sensor) {
 
 Result<> check_work(const Reach& reach) {
     if (reach.work <= kScanWorkMax) return {};
-    return Error{Errc::kInvalidField,
-                 "this covers too many cells to be woven at once; use larger cells, or of a sensor fewer beams in a "
-                 "scan, or a smaller range_max"};
+    return Error{
+        Errc::kInvalidField,
+        "this covers too many cells to be integrated at once; use larger cells, or of a sensor fewer beams in a "
+        "scan, or a smaller range_max"};
 }
 
 } // namespace scanloom::mapping

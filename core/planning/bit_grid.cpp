@@ -114,8 +114,9 @@ BitGrid connected(const BitGrid& grid, Spot seed) {
         const std::int32_t end = next_clear(grid.row(at.y), at.x);
         set_run(found.row(at.y), begin, end);
         for (const std::int32_t y : {at.y - 1, at.y + 1}) {
-            const auto beside = grid.row(y);
-            for (std::int32_t x = next_set(beside, begin); x < end; x = next_set(beside, next_clear(beside, x))) {
+            const auto adjacent_row = grid.row(y);
+            for (std::int32_t x = next_set(adjacent_row, begin); x < end;
+                 x = next_set(adjacent_row, next_clear(adjacent_row, x))) {
                 if (!found.test({x, y})) seeds.push_back({x, y});
             }
         }

@@ -49,7 +49,7 @@ GoalSeeker::GoalSeeker(const Passability& passability, const CostSearch& search,
       seen_(passability_.ground.width(), passability_.ground.height()) {}
 
 std::optional<FrontierGoal> GoalSeeker::seek(const Frontier& frontier, std::size_t place) {
-    std::vector<Spot> ring = beside(frontier);
+    std::vector<Spot> ring = cells_next_to(frontier);
     std::vector<Spot> all_seen = ring;
     std::optional<Spot> fallback;
     std::optional<Spot> best;
@@ -67,7 +67,7 @@ std::optional<FrontierGoal> GoalSeeker::seek(const Frontier& frontier, std::size
 }
 
 /// Returns the free cells among the 8 neighbours of each cell of the frontier; each frontier cell has one.
-std::vector<Spot> GoalSeeker::beside(const Frontier& frontier) {
+std::vector<Spot> GoalSeeker::cells_next_to(const Frontier& frontier) {
     std::vector<Spot> ring;
     for (const grid::Cell cell : frontier.cells) {
         for (std::int32_t dj = -1; dj <= 1; ++dj) {
@@ -85,9 +85,9 @@ std::vector<Spot> GoalSeeker::beside(const Frontier& frontier) {
 std::vector<Spot> GoalSeeker::around(const std::vector<Spot>& ring) {
     std::vector<Spot> next;
     for (const Spot at : ring) {
-        for (const Spot beside :
+        for (const Spot adjacent :
              {Spot{at.x + 1, at.y}, Spot{at.x - 1, at.y}, Spot{at.x, at.y + 1}, Spot{at.x, at.y - 1}}) {
-            add(beside, next);
+            add(adjacent, next);
         }
     }
     return next;

@@ -29,7 +29,7 @@ public:
     [[nodiscard]] std::optional<FrontierGoal> seek(const classify::Frontier& frontier, std::size_t place);
 
 private:
-    [[nodiscard]] std::vector<Spot> beside(const classify::Frontier& frontier);
+    [[nodiscard]] std::vector<Spot> cells_next_to(const classify::Frontier& frontier);
     [[nodiscard]] std::vector<Spot> around(const std::vector<Spot>& ring);
     void add(Spot spot, std::vector<Spot>& ring);
     [[nodiscard]] std::optional<Spot> cheapest(const std::vector<Spot>& ring, bool in_danger,

@@ -51,9 +51,9 @@ void read_chunk(Passability& passability, grid::ChunkKey key, const ClassChunk& 
 /// The middle of the step is m sqrt(2) from the corner of the square m cells to its side; both centres are sqrt(2 m^2 +
 /// 1/2) from that corner. No other square is nearer to the middle than to the centres.
 double radius_for_steps(double radius) {
-    const double beside = std::floor(std::numbers::sqrt2 / 2.0 * (radius + kRoundingCells));
-    const double of_centres = std::sqrt(2.0 * beside * beside + 0.5);
-    return beside >= 1.0 ? std::max(radius, of_centres) : radius;
+    const double offset = std::floor(std::numbers::sqrt2 / 2.0 * (radius + kRoundingCells));
+    const double of_centres = std::sqrt(2.0 * offset * offset + 0.5);
+    return offset >= 1.0 ? std::max(radius, of_centres) : radius;
 }
 
 void set_all(BitGrid& grid) {

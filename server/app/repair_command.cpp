@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Returns the directory's path with `ending` appended to its name, also if the path ends with a slash.
-fs::path beside(const fs::path& directory, const char* ending) {
+fs::path sibling_path(const fs::path& directory, const char* ending) {
     const auto absolute = fs::absolute(directory).lexically_normal();
     auto path = absolute.has_filename() ? absolute : absolute.parent_path();
     return path += ending;
@@ -30,7 +30,7 @@ std::string line_of(const session::RepairedSession& session) {
     if (session.missing > 0) line += fmt::format(", {} lost", session.missing);
     if (session.stood_in > 0) line += fmt::format(" ({} scans stood in for by empty ones)", session.stood_in);
     if (session.set_aside > 0) {
-        line += fmt::format(", {} that cannot be woven in {}", session.set_aside, session.aside.native());
+        line += fmt::format(", {} that cannot be applied in {}", session.set_aside, session.aside.native());
     }
     return line + "\n";
 }
@@ -69,7 +69,7 @@ Result<Sum> save(const store::DamagedStore& from, const store::UnfinishedStore& 
 }
 
 Result<Sum> repair(const ServerOptions& options) {
-    const auto lost = beside(options.repaired, ".lost");
+    const auto lost = sibling_path(options.repaired, ".lost");
     auto unfinished = store::UnfinishedStore::begin(options.repaired, lost);
     if (!unfinished) return unfinished.error();
     const auto damaged = store::DamagedStore::open(options.store);

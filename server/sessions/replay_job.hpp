@@ -40,7 +40,7 @@ public:
 
     struct Progress {
         State state = State::kWaiting;
-        Revision woven = 0;               ///< applied entries
+        Revision applied = 0;             ///< applied entries
         Revision target = 0;              ///< entries to apply
         std::optional<Revision> revision; ///< of the finished maps, if there are any
         bool follows = false;             ///< whether the target can be raised

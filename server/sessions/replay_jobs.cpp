@@ -117,7 +117,8 @@ std::optional<ReplayJobs::Start> ReplayJobs::furthest_before(const ReplayJob& we
     for (const auto& other : weaves_) {
         if (other.get() == &weave) continue;
         const bool is_on_its_way = other->leads_to(weave, wanted.target);
-        const auto at = is_on_its_way ? std::optional(other->progress().woven) : other->base_for(weave, wanted.target);
+        const auto at =
+            is_on_its_way ? std::optional(other->progress().applied) : other->base_for(weave, wanted.target);
         if (!at || (furthest && std::pair(*at, is_on_its_way) <= std::pair(furthest->at, furthest->is_on_its_way))) {
             continue;
         }

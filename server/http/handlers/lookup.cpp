@@ -84,7 +84,7 @@ Result<Maps> maps_of(std::shared_ptr<session::Session> session, const std::share
         Errc::kOverloaded,
         fmt::format(
             "these maps are being computed, {} of {} entries are applied; retry soon, see weave/{} for the progress{}",
-            progress.woven, progress.target, weave->id(), earlier)};
+            progress.applied, progress.target, weave->id(), earlier)};
 }
 
 } // namespace

@@ -35,7 +35,7 @@ boost::json::object shown(const session::ReplayJob& weave) {
     boost::json::object json{{"id", weave.id()},
                              {"state", name_of(progress.state)},
                              {"revision", nullptr},
-                             {"woven", progress.woven},
+                             {"woven", progress.applied},
                              {"until", std::move(until)},
                              {"follows", progress.follows},
                              {"exclusions", maps ? maps->exclusions->revision() : 0},

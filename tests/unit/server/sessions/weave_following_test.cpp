@@ -22,7 +22,7 @@ TEST_F(FollowingReplayTest, RepeatedRequestContinuesTheJob) {
         EXPECT_EQ(job, first);
         EXPECT_EQ(job->progress().state, State::kDone);
         EXPECT_EQ(job->progress().target, revision);
-        EXPECT_EQ(job->progress().woven, revision);
+        EXPECT_EQ(job->progress().applied, revision);
         EXPECT_EQ(job->progress().revision, revision);
         EXPECT_TRUE(job->progress().follows);
         EXPECT_EQ(digests_of(*job->maps()), digests_of_session(options, revision));
@@ -47,7 +47,7 @@ TEST_F(FollowingReplayTest, RequestsJoinARunningJobAndAreServedInOrder) {
     second_round->wait();
     EXPECT_EQ(job->progress().state, State::kWeaving);
     EXPECT_EQ(job->progress().revision, 20U) << "the earlier maps stay available";
-    EXPECT_EQ(job->progress().woven, 29U);
+    EXPECT_EQ(job->progress().applied, 29U);
     EXPECT_EQ(testing_support::wait_for_maps(*job, 42, std::chrono::milliseconds(0)), nullptr);
     second_round->end();
     const auto for_the_second = testing_support::wait_for_maps(*job, 42, kTimeout);

@@ -74,7 +74,7 @@ TEST_F(ReplayHistoryTest, StepsReadEachEntryOnceAndMatchAFullReplay) {
         for (Revision revision = 0; revision <= last(); ++revision) {
             const auto job = finished(until(revision, options));
             ASSERT_EQ(job->progress().state, State::kDone);
-            EXPECT_EQ(job->progress().woven, revision);
+            EXPECT_EQ(job->progress().applied, revision);
             const auto maps = job->maps();
             EXPECT_EQ(maps->revision, revision);
             EXPECT_EQ(digests_of(*maps), digests_of_session(options, revision)) << "until " << revision;
@@ -245,7 +245,7 @@ TEST_F(ReplayHistoryTest, ChunksOfTheBaseCountImmediately) {
     limits::MemoryBudget tight(base.maps()->chunk_count - 1);
     EXPECT_FALSE(again.run(log_, tight));
     EXPECT_EQ(again.progress().error->code, Errc::kFull);
-    EXPECT_EQ(again.progress().woven, 20U) << "no entry was applied";
+    EXPECT_EQ(again.progress().applied, 20U) << "no entry was applied";
     EXPECT_TRUE(tight.take(static_cast<std::int64_t>(base.maps()->chunk_count) - 1)) << "all chunks are returned";
     EXPECT_EQ(digests_of(*base.maps()), digests_of_session({}, 20));
 }

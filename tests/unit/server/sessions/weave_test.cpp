@@ -25,7 +25,7 @@ TEST_F(ReplayJobTest, EqualsTheMapsOfASessionWithTheseSettings) {
           SessionOptions{.ray_model = RayModel::kBresenham, .accumulate = true, .hit_radius = 0.1}}) {
         const auto job = finished(request(options));
         ASSERT_EQ(job->progress().state, State::kDone);
-        EXPECT_EQ(job->progress().woven, newest());
+        EXPECT_EQ(job->progress().applied, newest());
         EXPECT_EQ(digests_of(*job->maps()), digests_of_session(options, newest()));
     }
 }
@@ -131,7 +131,7 @@ TEST_F(ReplayJobTest, LongJobRunsInTurns) {
     while (job.run(log_, budget, 5e4)) { // a few entries per turn
         EXPECT_EQ(job.progress().state, State::kWaiting);
         EXPECT_EQ(job.maps(), nullptr);
-        EXPECT_LT(job.progress().woven, newest());
+        EXPECT_LT(job.progress().applied, newest());
         ++turns;
     }
     EXPECT_GT(turns, 3);
@@ -158,7 +158,7 @@ TEST_F(ReplayJobTest, JobCancelledBeforeItsTurnNeverRuns) {
     EXPECT_FALSE(job.run(log_, budget));
     EXPECT_EQ(job.progress().state, State::kCancelled);
     EXPECT_EQ(job.progress().error, kEnough);
-    EXPECT_EQ(job.progress().woven, 0U);
+    EXPECT_EQ(job.progress().applied, 0U);
     EXPECT_EQ(job.maps(), nullptr);
 }
 
@@ -169,7 +169,7 @@ TEST_F(ReplayJobTest, CancelDuringATurnReturnsTheChunks) {
     std::thread runner([&] { EXPECT_FALSE(job.run(log_, budget)); });
     pause->wait();
     EXPECT_EQ(job.progress().state, State::kWeaving);
-    EXPECT_EQ(job.progress().woven, 9U);
+    EXPECT_EQ(job.progress().applied, 9U);
     EXPECT_EQ(testing_support::wait_for_maps(job, newest(), std::chrono::milliseconds(0)), nullptr);
     job.cancel(kEnough);
     job.cancel({Errc::kInternal, "again"});
@@ -177,7 +177,7 @@ TEST_F(ReplayJobTest, CancelDuringATurnReturnsTheChunks) {
     runner.join();
     EXPECT_EQ(job.progress().state, State::kCancelled);
     EXPECT_EQ(job.progress().error, kEnough) << "the first reason is kept";
-    EXPECT_EQ(job.progress().woven, 9U);
+    EXPECT_EQ(job.progress().applied, 9U);
     EXPECT_TRUE(budget.take(1000)) << "all chunks are returned";
 }
 

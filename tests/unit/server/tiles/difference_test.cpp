@@ -19,7 +19,7 @@ using mapping::Layer;
 using mapping::Snapshot;
 
 /// What a robot with a laser and sonars sees, under some settings.
-Snapshot woven(const SessionOptions& options, std::uint64_t scans) {
+Snapshot maps_of(const SessionOptions& options, std::uint64_t scans) {
     mapping::Projection projection(mapping::resolve(options).value());
     Sensor ring = testing_support::small_laser();
     ring.id = 3;
@@ -107,9 +107,9 @@ INSTANTIATE_TEST_SUITE_P(All, DifferenceOf,
 
 TEST_P(DifferenceOf, ClassifiesEachPlaceByTheCellsOfBothMaps) {
     const auto [layer, size_a, size_b] = GetParam();
-    const auto a = woven({.cell_size = size_a, .danger_radius = 0.3}, 40);
+    const auto a = maps_of({.cell_size = size_a, .danger_radius = 0.3}, 40);
     const auto b =
-        woven({.cell_size = size_b, .class_p_occupied = 0.7, .class_himm_occupied = 7, .danger_radius = 0.3}, 60);
+        maps_of({.cell_size = size_b, .class_p_occupied = 0.7, .class_himm_occupied = 7, .danger_radius = 0.3}, 60);
     const ComparedMaps maps{a, b, layer};
     const auto frame = difference_frame(maps, Extent{-9.0, -10.0, 9.5, 8.7}).value();
     EXPECT_EQ(frame.cell_size, std::min(size_a, size_b));
@@ -140,9 +140,9 @@ TEST_P(DifferenceOf, ClassifiesEachPlaceByTheCellsOfBothMaps) {
 }
 
 TEST(Difference, CoversBothMaps) {
-    const auto few = woven({.cell_size = 0.1}, 3);
-    const auto many = woven({.cell_size = 0.05}, 30);
-    const auto blank = woven({.cell_size = 0.02}, 0);
+    const auto few = maps_of({.cell_size = 0.1}, 3);
+    const auto many = maps_of({.cell_size = 0.05}, 30);
+    const auto blank = maps_of({.cell_size = 0.02}, 0);
     const auto cells = difference_frame({few, many}, std::nullopt).value().cells;
     auto all = mapping::bounds_of(many, Layer::kOccupancy);
     const auto coarse = mapping::bounds_of(few, Layer::kOccupancy);
@@ -155,8 +155,8 @@ TEST(Difference, CoversBothMaps) {
 }
 
 TEST(Difference, PngHasPaletteIndicesAndIsTransparentWhereUnknown) {
-    const auto a = woven({.cell_size = 0.1}, 20);
-    const auto b = woven({.cell_size = 0.05}, 30);
+    const auto a = maps_of({.cell_size = 0.1}, 20);
+    const auto b = maps_of({.cell_size = 0.05}, 30);
     const ComparedMaps maps{a, b};
     const auto frame = difference_frame(maps, std::nullopt).value();
     const auto png = difference_png(maps, frame);
@@ -183,8 +183,8 @@ TEST(Difference, PngHasPaletteIndicesAndIsTransparentWhereUnknown) {
 }
 
 TEST(Difference, PngOfManyChunksIsComplete) {
-    const auto a = woven({.cell_size = 0.01}, 60); // noise enough for more than a piece of 64 KiB
-    const auto b = woven({.cell_size = 0.013}, 80);
+    const auto a = maps_of({.cell_size = 0.01}, 60); // noise enough for more than a piece of 64 KiB
+    const auto b = maps_of({.cell_size = 0.013}, 80);
     const ComparedMaps maps{a, b};
     const auto frame = difference_frame(maps, std::nullopt).value();
     const auto png = difference_png(maps, frame);
