@@ -50,7 +50,7 @@ PendingEntry RobotSequencer::submitted(Member& member, std::optional<LogEntry> e
     return {index_of(member), std::move(entry), {}, bytes};
 }
 
-// PendingJoin and leaving
+// Joining and leaving
 
 std::optional<PendingEntry> RobotSequencer::join(PendingJoin joining) {
     const auto& who = joining.who;
