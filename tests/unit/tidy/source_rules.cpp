@@ -71,9 +71,9 @@ const std::vector<Folder> kFolders = {
      .may_include = {"common", "server/auth", "server/guidance", "core/mapping", "server/metrics", "server/sessions",
                      "server/sockets", "server/store"}},
     {.path = "server/http",
-     .may_include = {"common", "server/auth", "core/classify", "server/exchange", "core/grid", 
-                     "server/guidance", "core/landmarks", "server/live", "core/mapping", "server/metrics",
-                     "core/planning", "server/sessions", "server/sockets", "server/store", "server/tiles"}},
+     .may_include = {"common", "server/auth", "core/classify", "server/exchange", "core/grid", "server/guidance",
+                     "core/landmarks", "server/live", "core/mapping", "server/metrics", "core/planning",
+                     "server/sessions", "server/sockets", "server/store", "server/tiles"}},
     {.path = "server/app", .may_include = {"common", "core", "server"}},
 
     {.path = "sim/drive", .may_include = {"common/error", "common/geometry", "common/scan"}, .pure = true},
