@@ -45,7 +45,6 @@ using ClassView = grid::ChunkView<ClassChunk>;
 ///
 /// `Value` is the type of a layer's cells; a greater value means more evidence that a cell is occupied.
 /// Precondition: free < occupied, first_free <= free.
-/// Source: section 6 of the design models.
 template <class Value>
 struct Hysteresis {
     Value occupied;   ///< a cell is occupied at this value or above

@@ -174,7 +174,7 @@ struct SensorOnGrid {
 /// @param reading  the beam's reading
 /// @param sensor  the sensor's pose on the grid
 /// @param geometry  ray model, hit radius and cell size
-/// Source: the cells: ray_tracing.hpp; the radius: section 3 of the design models.
+/// Source: Bresenham (1965); Amanatides, Woo (1987): see the functions above.
 void trace_beam(ScanMarks& marks, const Direction& beam, const Reading& reading, const SensorOnGrid& sensor,
                 const RayGeometry& geometry);
 

@@ -53,7 +53,6 @@ public:
     /// Returns new messages for people. Each is given once per phase, or again after many others.
     [[nodiscard]] std::vector<std::string> take_messages();
 
-    [[nodiscard]] bool is_located() const noexcept { return T_map_odom_.has_value(); }
     [[nodiscard]] std::uint64_t given() const noexcept { return given_; }
     /// Returns the number of phases that ended because the sensor was moved.
     [[nodiscard]] std::uint64_t carried() const noexcept { return carried_; }

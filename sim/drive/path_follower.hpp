@@ -43,7 +43,7 @@ private:
 
 /// Follows a path of straight segments. It aims at a point of the current segment, a little ahead and never beyond its
 /// end, so no corner is cut; at sharp corners it stops and turns. It stops for an obstacle on the path 0.2 m before the
-/// distance kKeptClear (way_ahead.hpp). It approaches walls beyond a corner or beyond the end up to kKeptClear.
+/// distance kKeptClear (nearby_obstacles.hpp). It approaches walls beyond a corner or beyond the end up to kKeptClear.
 ///
 /// Source: for the aim: Coulter, Implementation of the Pure Pursuit Path Tracking Algorithm (CMU-RI-TR-92-01, 1992).
 class PathFollower {

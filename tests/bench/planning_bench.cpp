@@ -1,5 +1,4 @@
 #include "core/planning/coverage.hpp"
-#include "core/planning/distance_field.hpp"
 #include "core/planning/goals.hpp"
 #include "tests/support/plan_worlds.hpp"
 
@@ -87,12 +86,6 @@ void CostsFromOnePlaceInOffice(benchmark::State& state) {
     }
 }
 
-void DistancesOfOffice(benchmark::State& state) {
-    for (auto _ : state) {
-        benchmark::DoNotOptimize(planning::distance_field(office(), kCellSize, {0, 0, kWidth, kHeight}));
-    }
-}
-
 /// The changes of one scan: a fan of 5 m, 16 chunks, whose cells all change between free and unexplored.
 void ClassesOfAScan(benchmark::State& state) {
     classify::ClassLayer layer(3);
@@ -138,7 +131,6 @@ void CoverageOfOffice(benchmark::State& state) {
 }
 
 BENCHMARK(ClassesOfAScan)->Arg(1)->Arg(2)->Unit(benchmark::kMicrosecond);
-BENCHMARK(DistancesOfOffice)->Unit(benchmark::kMillisecond);
 BENCHMARK(NextGoalInOffice)->Unit(benchmark::kMillisecond);
 BENCHMARK(CoverageOfOffice)->Unit(benchmark::kMillisecond);
 BENCHMARK(PathAcrossOffice)->Unit(benchmark::kMillisecond);

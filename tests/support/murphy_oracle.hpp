@@ -15,7 +15,7 @@
 #include <string>
 
 /// Murphy's sonar model in probabilities, cell by cell and cone by cone.
-/// Source  Murphy, Introduction to AI Robotics (2000), chapter 11; section 5 of the design models.
+/// Source  Murphy, Introduction to AI Robotics (2000), chapter 11.
 namespace scanloom::oracle {
 
 enum class Region { kNone, kObstacle, kFree };

@@ -39,7 +39,7 @@ struct RadiusRule {
 /// @param rule  sensor limits and cell size
 /// @param inner  receives the radius of the free area, in cells
 /// @param outer  receives the radius of the free and occupied area, in cells
-/// Source: section 3 of the design models, model 1.
+/// Source: Thrun, Burgard, Fox, Probabilistic Robotics (2005), section 9.2.
 void radii_of(const std::int32_t* millimetres, std::size_t sectors, const RadiusRule& rule, double* inner,
               double* outer);
 

@@ -245,7 +245,7 @@ TEST_P(InstructionSet, SaturatedCellsIgnoreFurtherEqualVerdicts) {
     EXPECT_FALSE(simd::is_settled(chunk, random.verdicts, random.verdicts));
 }
 
-/// Section 6 of the design models, applied to one cell.
+/// Applies the definition to one cell.
 template <class Value>
 classify::OccType type_after(classify::OccType before, Value value, const classify::Hysteresis<Value>& rule) {
     using classify::OccType;
