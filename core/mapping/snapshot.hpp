@@ -21,7 +21,7 @@
 namespace scanloom::mapping {
 
 /// A scan that was applied, with its sensor's description at that time.
-struct FoldedScan {
+struct IntegratedScan {
     Revision revision = 0; ///< of the scan's log entry
     std::shared_ptr<const Sensor> sensor;
     Scan scan;
@@ -41,7 +41,7 @@ struct RobotState {
 
     /// For display only, not part of the maps. Set only in a session that accepts scans, to a scan received since the
     /// session was loaded.
-    std::shared_ptr<const FoldedScan> newest_scan;
+    std::shared_ptr<const IntegratedScan> newest_scan;
 };
 
 /// Boxes around the cells of each layer that any scan changed.

@@ -320,7 +320,7 @@ void Spool::acknowledge(std::uint64_t seq) {
     forget_acknowledged(false);
 }
 
-void Spool::tidy_up() {
+void Spool::remove_acknowledged() {
     writer_.reset();
     forget_acknowledged(true);
 }

@@ -76,7 +76,7 @@ public:
     void acknowledge(std::uint64_t seq);
 
     /// Removes the files of acknowledged scans. Call it when no more scans will be appended.
-    void tidy_up();
+    void remove_acknowledged();
 
     [[nodiscard]] std::uint64_t waiting() const noexcept { return waiting_; } ///< scans not handed out
     [[nodiscard]] std::uint64_t dropped() const noexcept { return dropped_; } ///< scans, dropped by this program

@@ -85,7 +85,8 @@ asio::awaitable<void> LiveFeed::hand_over(Intake& intake) {
             }
         }
         if (ended_ && waiting() == 0) {
-            if (spool_ && begun_) spool_->tidy_up(); // files acknowledged before; acknowledged() removes the rest
+            if (spool_ && begun_)
+                spool_->remove_acknowledged(); // files acknowledged before; acknowledged() removes the rest
             co_return;
         }
         room_.notify();
@@ -117,7 +118,7 @@ Result<> LiveFeed::hand_over_from_spool(Intake& intake) {
 void LiveFeed::acknowledged(std::uint64_t seq) {
     if (!spool_ || !begun_) return;
     spool_->acknowledge(seq);
-    if (ended_) spool_->tidy_up();
+    if (ended_) spool_->remove_acknowledged();
 }
 
 std::optional<std::string> LiveFeed::unfinished(std::uint64_t) const {

@@ -31,7 +31,7 @@ constexpr auto kPatience = std::chrono::seconds(9);
 /// next start, or the robots still have them.
 constexpr auto kWeavingPatience = std::chrono::seconds(5);
 
-/// Interval of tidy_up(), and so the longest delay before an idle session is evicted.
+/// Interval of run_maintenance(), and so the longest delay before an idle session is evicted.
 constexpr auto kTidyEvery = std::chrono::seconds(1);
 
 double seconds_since_epoch() {
@@ -56,7 +56,7 @@ Result<std::shared_ptr<sockets::PortTls>> tls_of(const sockets::TlsFiles& files)
 
 namespace {
 
-session::ReplayLimits weaves_within(std::size_t bytes) {
+session::ReplayLimits replay_limits(std::size_t bytes) {
     const std::size_t chunks = bytes / 2 / mapping::kPageBytes; // a chunk is a page
     return {.chunks_max = chunks, .chunks_kept_max = chunks};
 }
@@ -71,7 +71,7 @@ Server::Server(const ServerOptions& options, const ConnectionLimits& limits, std
                                                  .reading = pools_.loading,
                                                  .pages_max = options.map_memory_bytes / mapping::kPageBytes,
                                                  .idle_after = options.idle_after}),
-      check_(*log_, sessions_), weaves_(*log_, pools_.replay, weaves_within(options.weave_memory_bytes)),
+      check_(*log_, sessions_), weaves_(*log_, pools_.replay, replay_limits(options.weave_memory_bytes)),
       locator_(*log_), requests_(pools_.planning, pools_.locating, {goals_, locator_, sessions_}), hangup_(io_, SIGHUP),
       patience_(io_), weaving_patience_(io_), tidying_(asio::make_strand(io_)) {}
 
@@ -201,7 +201,7 @@ Result<> Server::run() {
     if (!sessions_.is_draining()) {
         services_->recovered = true;
         ingest_->start();
-        asio::post(tidying_.get_executor(), [this] { tidy_up(); });
+        asio::post(tidying_.get_executor(), [this] { run_maintenance(); });
         check_.start();
         announce();
     }
@@ -234,22 +234,22 @@ void Server::wait_for_signal() {
 }
 
 /// Does periodic maintenance until the server drains.
-void Server::tidy_up() {
+void Server::run_maintenance() {
     if (sessions_.is_draining()) return;
     asio::post(pools_.loading, [this] { // not on pools_.changes: its tasks may wait for work started here
-        tell_of_failed_store();
+        log_store_failure();
         if (log_->reopen()) spdlog::info("the store {} has been opened again", options_.store.string());
         sessions_.tidy();
-        audit_.tell_what_is_due();
+        audit_.log_due();
     });
     tidying_.expires_after(kTidyEvery);
     tidying_.async_wait([this](const boost::system::error_code& error) {
-        if (!error) tidy_up();
+        if (!error) run_maintenance();
     });
 }
 
 /// Logs each failure of the store once. Sessions notice a failure only when a robot sends scans.
-void Server::tell_of_failed_store() {
+void Server::log_store_failure() {
     const auto failure = log_->stats().last_error;
     const bool was_known = store_has_failed_.exchange(failure.has_value());
     if (failure && !was_known) spdlog::error("{}", *failure);

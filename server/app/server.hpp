@@ -53,8 +53,8 @@ private:
     [[nodiscard]] Result<> listen(http::WebFiles web);
     void announce() const;
     void wait_for_signal();
-    void tidy_up();
-    void tell_of_failed_store();
+    void run_maintenance();
+    void log_store_failure();
     void wait_for_hangup();
     void read_tokens_again();
     void read_certificates_again();

@@ -48,7 +48,7 @@ void AuditLog::note(auth::Refusal refusal) {
     for (const auto& line : lines) tell(line);
 }
 
-void AuditLog::tell_what_is_due() {
+void AuditLog::log_due() {
     std::vector<auth::RefusalTable::Line> lines;
     {
         const std::lock_guard lock(mutex_);
@@ -57,7 +57,7 @@ void AuditLog::tell_what_is_due() {
     for (const auto& line : lines) tell(line);
 }
 
-std::optional<std::uint64_t> AuditLog::take_line_of_stranger() {
+std::optional<std::uint64_t> AuditLog::admit_log_line() {
     const std::lock_guard lock(mutex_);
     const double now = now_();
     if (stranger_logged_ && now < *stranger_logged_ + kBetweenStrangers) {

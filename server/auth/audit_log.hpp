@@ -38,12 +38,12 @@ public:
     void note(auth::Port port, const std::string& who, net::ClientFault fault);
 
     /// Logs the lines that are due. Call it periodically.
-    void tell_what_is_due();
+    void log_due();
 
     /// Decides whether to log the end of a connection that was never admitted. At most one per second is logged, so
     /// that such connections cannot fill the disk.
     /// @return how many were not logged since the last line, or nullopt if this one is not to be logged either
-    [[nodiscard]] std::optional<std::uint64_t> take_line_of_stranger();
+    [[nodiscard]] std::optional<std::uint64_t> admit_log_line();
 
 private:
     metrics::RefusalCounters& counters_;

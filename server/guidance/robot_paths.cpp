@@ -17,11 +17,11 @@ std::uint64_t RobotPaths::give_goal(const SessionPtr& session, RobotIndex robot,
         given = ++record.revision;
         record.holdings[robot] = {now, connected, goal, given, bounded(record, std::move(way))};
     }
-    session->tell_changed();
+    session->notify_changed();
     return given;
 }
 
-void RobotPaths::give_way(const SessionPtr& session, RobotIndex robot, std::optional<HeldPath> way,
+void RobotPaths::set_path(const SessionPtr& session, RobotIndex robot, std::optional<HeldPath> way,
                           Clock::time_point now) {
     {
         const std::lock_guard lock(mutex_);
@@ -36,7 +36,7 @@ void RobotPaths::give_way(const SessionPtr& session, RobotIndex robot, std::opti
         if (had_none && has_none) return;
         ++record.revision;
     }
-    session->tell_changed();
+    session->notify_changed();
 }
 
 void RobotPaths::take_back(const SessionPtr& session, RobotIndex robot, bool explored) {
@@ -49,7 +49,7 @@ void RobotPaths::take_back(const SessionPtr& session, RobotIndex robot, bool exp
         if (!held && !is_news) return;
         ++record.revision;
     }
-    session->tell_changed();
+    session->notify_changed();
 }
 
 bool RobotPaths::holds(const SessionPtr& session, RobotIndex robot, std::uint64_t goal, Clock::time_point now) {

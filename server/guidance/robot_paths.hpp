@@ -81,7 +81,7 @@ public:
 
     /// Replaces the path of a robot by the one that it requested over its connection. Its goal stays.
     /// @param way  nullopt: no path was found
-    void give_way(const SessionPtr& session, RobotIndex robot, std::optional<HeldPath> way, Clock::time_point now);
+    void set_path(const SessionPtr& session, RobotIndex robot, std::optional<HeldPath> way, Clock::time_point now);
 
     /// Removes everything that a robot holds.
     /// @param explored  whether the reason is that the robot can reach nothing left to explore

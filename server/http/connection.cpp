@@ -119,7 +119,7 @@ asio::awaitable<bool> Connection::shake_hands() {
     if (!failed) co_return true;
     spdlog::debug("{}: TLS handshake: {}", peer_, failed.message());
     if (net::is_plain_http(failed)) {
-        co_await tell_plainly("this port accepts HTTPS only; use the same address with https:// before it");
+        co_await answer_without_tls("this port accepts HTTPS only; use the same address with https:// before it");
     } else if (const auto fault = net::client_fault_of(failed)) {
         service_->api.services().authorizer.note(peer_, *fault);
         must_linger_ = true; // until the peer has read the TLS alert
@@ -128,7 +128,7 @@ asio::awaitable<bool> Connection::shake_hands() {
 }
 
 /// Answers without TLS a peer that sent a request without TLS.
-asio::awaitable<void> Connection::tell_plainly(std::string_view sentence) {
+asio::awaitable<void> Connection::answer_without_tls(std::string_view sentence) {
     const auto response = problem(Status::bad_request, sentence, "");
     service_->counters.answered(static_cast<unsigned>(response.status)).Increment();
     stream_ = net::LinkStream(std::move(stream_.socket()));

@@ -77,7 +77,7 @@ private:
     void begin_to_wait();
     void end_waiting();
     void close();
-    [[nodiscard]] boost::asio::awaitable<void> tell_plainly(std::string_view sentence);
+    [[nodiscard]] boost::asio::awaitable<void> answer_without_tls(std::string_view sentence);
 
     net::LinkStream stream_; // its socket never blocks
     Deadline deadline_;      // closes it

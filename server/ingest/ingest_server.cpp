@@ -46,7 +46,7 @@ void IngestServer::stop() {
 
 void IngestServer::on_accepted(asio::ip::tcp::socket socket) {
     const bool full = count(State::kServed) >= config_.links_max;
-    if (full && services_.audit.take_line_of_stranger())
+    if (full && services_.audit.admit_log_line())
         spdlog::warn("a robot was refused: {} links are open, the most allowed", config_.links_max);
     if (full && count(State::kLeaving) >= kTurnedAwayMax) return;
     if (!full) make_room();
@@ -84,7 +84,7 @@ void IngestServer::begin(const std::shared_ptr<Entry>& entry, RobotConnection& c
 void IngestServer::make_room() {
     if (count(State::kWithoutHello) < config_.greeting_max) return;
     const auto oldest = without_hello_.front();
-    if (services_.audit.take_line_of_stranger())
+    if (services_.audit.admit_log_line())
         spdlog::warn("a connection was closed: it has sent no hello, like {} others, the most allowed",
                      config_.greeting_max);
     change(*oldest, State::kLeaving);

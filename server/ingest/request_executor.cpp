@@ -128,7 +128,7 @@ wire::Message reply_from(const Kind& request, const Requester& requester, const 
     }
     auto found = Search{requester, *maps, goals, guide::SearchLimit(services.sessions), *start}(request);
     if constexpr (!std::is_same_v<Kind, wire::GoalRequest>) { // the goal book already knows the paths to goals
-        goals.ways().give_way(requester.session, requester.robot, way_of(found, maps->revision),
+        goals.ways().set_path(requester.session, requester.robot, way_of(found, maps->revision),
                               guide::RobotPaths::Clock::now());
     }
     return reply(request, maps->revision, std::move(found));

@@ -274,7 +274,7 @@ void RobotConnection::log_end() const {
     const std::string_view how = why ? std::string_view(why->message) : "goodbye";
     const log::Context about{session_ ? std::string_view(session_->info().name) : "", robot_, peer_};
     if (token_) return log::info(about, "{} {}", who, how);
-    const auto not_logged = services_.audit.take_line_of_stranger();
+    const auto not_logged = services_.audit.admit_log_line();
     if (!not_logged) return;
     const auto others =
         *not_logged > 0 ? fmt::format(" ({} others were refused since the last line like this)", *not_logged) : "";

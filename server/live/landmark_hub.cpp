@@ -32,7 +32,7 @@ void WatchedLandmarks::find(const session::Session& session, Revision revision, 
     } catch (const std::exception& failure) { // std::bad_alloc
         keep(Error{Errc::kOverloaded, failure.what()}, revision, search.pause);
     }
-    session.tell_changed();
+    session.notify_changed();
 }
 
 Result<FoundLandmarks> WatchedLandmarks::find_for_a_turn(const session::Session& session, Revision revision,

@@ -42,7 +42,7 @@ struct LayerTraits<landmarks::ReferenceLayer> {
 };
 
 template <class Layer>
-struct CaptureFoldsLimits {
+struct CaptureLayerLimits {
     std::size_t kept_max = 64;                           ///< cached sessions
     std::size_t size_max = LayerTraits<Layer>::kSizeMax; ///< of all cached layers together, and of each one
     std::chrono::milliseconds patience{5'000};           ///< that a call reads the log or waits for another call
@@ -66,7 +66,7 @@ struct Folded {
 template <class Layer>
 class CaptureLayers {
 public:
-    explicit CaptureLayers(store::ScanLog& log, const CaptureFoldsLimits<Layer>& limits = {})
+    explicit CaptureLayers(store::ScanLog& log, const CaptureLayerLimits<Layer>& limits = {})
         : log_(log), limits_(limits) {}
 
     /// Returns the layer of the log's entries up to `revision`, or up to a later revision of an earlier request.
@@ -101,7 +101,7 @@ private:
     void account(Kept& kept);
 
     store::ScanLog& log_;
-    const CaptureFoldsLimits<Layer> limits_;
+    const CaptureLayerLimits<Layer> limits_;
     std::mutex mutex_;
     std::list<std::shared_ptr<Kept>> kept_; // most recently used first
 };

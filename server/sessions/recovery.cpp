@@ -36,8 +36,8 @@ Result<FromCheckpoint> read_checkpoint(store::ScanLog& log, store::SessionId ses
 }
 
 /// Applies the entries after the projection's revision. @return false if it was stopped before the end of the log
-Result<bool> fold_rest(store::ScanLog& log, store::SessionId session, mapping::Projection& projection,
-                       const std::atomic<bool>& stop) {
+Result<bool> apply_rest(store::ScanLog& log, store::SessionId session, mapping::Projection& projection,
+                        const std::atomic<bool>& stop) {
     auto read = log.read(session, projection.revision(), [&](Revision revision, std::string_view bytes) -> Result<> {
         if (stop) return stopped();
         auto entry = wire::decode_entry(bytes);
@@ -57,7 +57,7 @@ Result<Recovered> recover_from_log(store::ScanLog& log, store::SessionId session
         read_exclusions(log, session, [&](Revision, const std::optional<ScanPose>&) { return !stop.load(); });
     if (!exclusions) return exclusions.error();
     Recovered recovered{mapping::Projection(config, std::make_shared<const Exclusions>(std::move(*exclusions)))};
-    const auto complete = stop ? Result<bool>(false) : fold_rest(log, session, recovered.projection, stop);
+    const auto complete = stop ? Result<bool>(false) : apply_rest(log, session, recovered.projection, stop);
     if (!complete) return complete.error();
     recovered.complete = *complete;
     return recovered;
@@ -76,7 +76,7 @@ Result<Recovered> recover_from_checkpoint(store::ScanLog& log, store::SessionId 
     } else if (checkpoint->can_be_added_to) {
         recovered.checkpointed = recovered.projection.revision();
     }
-    const auto complete = fold_rest(log, session, recovered.projection, stop);
+    const auto complete = apply_rest(log, session, recovered.projection, stop);
     if (!complete) return complete.error();
     recovered.complete = *complete;
     if (recovered.complete && recovered.projection.revision() < recovered.projection.newest_restored()) {

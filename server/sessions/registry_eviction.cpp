@@ -36,7 +36,7 @@ void SessionRegistry::load(std::string_view name, SessionCache::Loaded on_loaded
         const auto damage = damage_of(name);
         on_loaded(damage ? *damage : no_such_session(name));
     };
-    if (const auto evicted = cache_.want(name, config_.clock(), std::move(on_session))) start_reading(*evicted);
+    if (const auto evicted = cache_.want(name, config_.clock(), std::move(on_session))) start_load(*evicted);
 }
 
 Result<std::shared_ptr<Session>> SessionRegistry::load(std::string_view name) {
@@ -46,11 +46,11 @@ Result<std::shared_ptr<Session>> SessionRegistry::load(std::string_view name) {
     return on_loaded.get();
 }
 
-void SessionRegistry::start_reading(const EvictedSession& evicted) {
+void SessionRegistry::start_load(const EvictedSession& evicted) {
     boost::asio::post(reading_, [this, wanted = Wanted{evicted, config_.clock() + kPatience}] { read(wanted); });
 }
 
-void SessionRegistry::start_reading_again() {
+void SessionRegistry::retry_loads() {
     std::vector<Wanted> again;
     {
         const std::lock_guard lock(room_mutex_);
@@ -62,7 +62,7 @@ void SessionRegistry::start_reading_again() {
 void SessionRegistry::read(const Wanted& wanted) {
     const auto& [info, pages] = wanted.evicted;
     if (draining_) return cache_.failed(info.name, shutting_down());
-    if (!take_room(wanted)) return;
+    if (!reserve_pages(wanted)) return;
     auto session = factory_.read(info, draining_, hurried_);
     pages_->give_back(static_cast<std::int64_t>(pages)); // the session has taken its own pages
     if (session && *session) return cache_.arrived(std::move(*session), config_.clock());
@@ -76,7 +76,7 @@ void SessionRegistry::read(const Wanted& wanted) {
 }
 
 /// Takes the pages for a session. @return false if it will be retried or was refused
-bool SessionRegistry::take_room(const Wanted& wanted) {
+bool SessionRegistry::reserve_pages(const Wanted& wanted) {
     const auto& [info, pages] = wanted.evicted;
     if (pages_->take(static_cast<std::int64_t>(pages))) return true;
     if (config_.clock() >= wanted.until) {
@@ -87,50 +87,52 @@ bool SessionRegistry::take_room(const Wanted& wanted) {
         const std::lock_guard lock(room_mutex_);
         waiting_for_room_.push_back(wanted);
     }
-    make_room(pages);                     // the end of an eviction retries it
-    if (draining_) start_reading_again(); // the last eviction may be over already
+    free_pages(pages);            // the end of an eviction retries it
+    if (draining_) retry_loads(); // the last eviction may be over already
     return false;
 }
 
 // Eviction
 
 void SessionRegistry::tidy() {
-    if (!log_.stats().last_error) read_failed_again();
-    lay_down(cache_.evict(config_.clock() - config_.idle_after, std::numeric_limits<std::size_t>::max()),
-             leaves_memory());
-    make_room(spare_pages()); // before scans must be refused
-    start_reading_again();
+    if (!log_.stats().last_error) reload_failed();
+    close_for_eviction(cache_.evict(config_.clock() - config_.idle_after, std::numeric_limits<std::size_t>::max()),
+                       leaves_memory());
+    free_pages(spare_pages()); // before scans must be refused
+    retry_loads();
 }
 
 /// Returns the number of pages to keep free for growing maps, as long as there are sessions to evict.
 std::size_t SessionRegistry::spare_pages() const noexcept { return static_cast<std::size_t>(pages_->total()) / 16; }
 
 /// Evicts sessions without users until `pages` pages are free.
-void SessionRegistry::make_room(std::size_t pages) {
+void SessionRegistry::free_pages(std::size_t pages) {
     const auto missing = static_cast<std::int64_t>(pages) - pages_->free();
     if (missing <= 0) return;
-    lay_down(cache_.evict(SessionCache::Clock::time_point::max(), static_cast<std::size_t>(missing)), leaves_memory());
+    close_for_eviction(cache_.evict(SessionCache::Clock::time_point::max(), static_cast<std::size_t>(missing)),
+                       leaves_memory());
 }
 
-void SessionRegistry::lay_down(std::vector<std::shared_ptr<Session>> sessions, const Error& why) {
-    for (const auto& session : sessions) session->close(why, [this, session] { is_asleep_now(*session); });
+void SessionRegistry::close_for_eviction(std::vector<std::shared_ptr<Session>> sessions, const Error& why) {
+    for (const auto& session : sessions) session->close(why, [this, session] { on_evicted(*session); });
 }
 
-void SessionRegistry::is_asleep_now(const Session& session) {
+void SessionRegistry::on_evicted(const Session& session) {
     auto summary = summary_of(*session.snapshot());
-    boost::asio::post(may_wait_, [this, pages = summary.pages] { give_back_memory(pages); });
+    boost::asio::post(may_wait_, [this, pages = summary.pages] { trim_heap(pages); });
     const auto wanted = cache_.arrived(session.info().name, std::move(summary));
-    if (wanted) start_reading(*wanted);
-    start_reading_again();
+    if (wanted) start_load(*wanted);
+    retry_loads();
 }
 
 /// Reloads all failed sessions. Called each time, because a session may notice its failure only after the store was
 /// opened again.
-void SessionRegistry::read_failed_again() {
+void SessionRegistry::reload_failed() {
     auto failed = cache_.evict_failed();
     std::vector<std::string> names;
     for (const auto& session : failed) names.push_back(session->info().name);
-    lay_down(std::move(failed), {Errc::kShuttingDown, "the session is reloaded from the store; connect again"});
+    close_for_eviction(std::move(failed),
+                       {Errc::kShuttingDown, "the session is reloaded from the store; connect again"});
     for (const auto& name : names) load(name, [](const Result<std::shared_ptr<Session>>&) {});
 }
 

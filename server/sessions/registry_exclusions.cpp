@@ -70,7 +70,7 @@ Result<Revision> SessionRegistry::change_exclusions(std::string_view name, const
     auto left = cache_.leave(name);
     if (!left) return damage_of(name).value_or(no_such_session(name));
     const auto stay = [&](Error why) {
-        if (const auto wanted = cache_.stay(name)) start_reading(*wanted);
+        if (const auto wanted = cache_.stay(name)) start_load(*wanted);
         return why;
     };
     try {
@@ -94,12 +94,12 @@ Result<Revision> SessionRegistry::change_exclusions(std::string_view name, const
             facts->exclusions = exclusions;
             left->summary.facts = facts;
         }
-        if (const auto wanted = cache_.arrived(left->info.name, left->summary)) start_reading(*wanted);
+        if (const auto wanted = cache_.arrived(left->info.name, left->summary)) start_load(*wanted);
         if (!appended) return appended.error();
         return *end + 1;
     } catch (const std::bad_alloc&) {
         if (left->session && left->session->closing()) { // it is closed and must be loaded again
-            if (const auto wanted = cache_.arrived(left->info.name, left->summary)) start_reading(*wanted);
+            if (const auto wanted = cache_.arrived(left->info.name, left->summary)) start_load(*wanted);
             return Error{Errc::kOverloaded, "there is no memory left for this; try again later"};
         }
         return stay({Errc::kOverloaded, "there is no memory left for this; try again later"});

@@ -75,7 +75,7 @@ Result<> SessionRegistry::recover() {
 
 void SessionRegistry::recover_one(const SessionInfo& info, std::uint32_t map_patches, std::function<void()> done) {
     if (draining_) return done(); // the next start replays the rest
-    if (can_stay_asleep(info, map_patches)) return done();
+    if (try_add_evicted(info, map_patches)) return done();
     auto session = factory_.read(info, draining_, hurried_);
     if (session && *session && (*session)->snapshot()->revision < map_patches) {
         log::warn({.session = info.name}, "session '{}' is removed: its import came to {} of {} parts before a crash",
@@ -89,7 +89,7 @@ void SessionRegistry::recover_one(const SessionInfo& info, std::uint32_t map_pat
 }
 
 /// Adds the session without its maps if its checkpoint has the facts that a list shows. @return whether it was added
-bool SessionRegistry::can_stay_asleep(const SessionInfo& info, std::uint32_t map_patches) {
+bool SessionRegistry::try_add_evicted(const SessionInfo& info, std::uint32_t map_patches) {
     auto summary = read_summary(log_, info.id, info.config);
     if (!summary || !*summary || (*summary)->facts->revision < map_patches) return false; // loading it gives the reason
     SessionInfo asleep = info;

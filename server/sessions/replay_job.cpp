@@ -162,10 +162,10 @@ bool ReplayJob::run(store::ScanLog& log, limits::MemoryBudget& budget, double tu
     turn_left_ = turn_work;
     try {
         if (!projection_) projection_.emplace(request_.config, shared(session_.exclusions->as_of(*target)));
-        auto is_complete = weave_up_to(*target, log, budget);
+        auto is_complete = apply_up_to(*target, log, budget);
         if (!is_complete && is_complete.error() == kOutdated) {
             const auto begun = begin_again(*target, log, budget);
-            is_complete = begun ? weave_up_to(*target, log, budget) : begun.error();
+            is_complete = begun ? apply_up_to(*target, log, budget) : begun.error();
         }
         if (!is_complete && is_complete.error() == kTurnIsOver) return wait_for_another_turn(*target);
         if (is_complete) return publish(*target, *is_complete, budget);
@@ -193,7 +193,7 @@ bool ReplayJob::wait_for_another_turn(Revision target) {
 }
 
 /// Applies entries up to `target`. @return whether the job has reached its end
-Result<bool> ReplayJob::weave_up_to(Revision target, store::ScanLog& log, limits::MemoryBudget& budget) {
+Result<bool> ReplayJob::apply_up_to(Revision target, store::ScanLog& log, limits::MemoryBudget& budget) {
     bool is_complete = request_.end.revision.has_value();
     if (auto claimed = claim(budget); !claimed) return claimed.error(); // of its initial state
     const auto read =

@@ -123,7 +123,7 @@ private:
     [[nodiscard]] bool is_same_map(const ReplayJob& other) const noexcept;
     [[nodiscard]] std::optional<Revision> revision_before(const ReplayJob& other, Revision target) const;
     [[nodiscard]] std::optional<Revision> begin();
-    [[nodiscard]] Result<bool> weave_up_to(Revision target, store::ScanLog& log, limits::MemoryBudget& budget);
+    [[nodiscard]] Result<bool> apply_up_to(Revision target, store::ScanLog& log, limits::MemoryBudget& budget);
     [[nodiscard]] bool is_beyond_end(Revision revision, const LogEntry& entry) const;
     [[nodiscard]] Result<> begin_again(Revision target, store::ScanLog& log, limits::MemoryBudget& budget);
     [[nodiscard]] bool wait_for_another_turn(Revision target);

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kRobotsMax = 1024; // per session
 
-Error begun_already(const std::string& robot, const std::string& session) {
+Error map_already_begun(const std::string& robot, const std::string& session) {
     return {Errc::kConflict,
             fmt::format("begins_map: robot '{}' was to begin the map of session '{}' from a given pose, but the "
                         "session has a map by now, and the pose of one relative to the other is not known: give the "
@@ -222,7 +222,7 @@ Result<> RobotSequencer::check_next(const Member& member, const Scan& scan, bool
     }
     if (scan.begins_map && robot.last_seq == 0) { // later scans are placed relative to the first
         const auto shows = [](const Member& other) { return other.showed_seq > 0; };
-        if (is_mapped || std::ranges::any_of(sequencer_, shows)) return begun_already(robot.name, info_.name);
+        if (is_mapped || std::ranges::any_of(sequencer_, shows)) return map_already_begun(robot.name, info_.name);
     }
     return wire::check_scan(scan, *known->sensor);
 }

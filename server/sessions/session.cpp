@@ -95,11 +95,11 @@ void Session::on_strand(Work work) {
     boost::asio::post(strand_, [self = shared_from_this(), work = std::move(work)]() mutable {
         work(*self);
         self->backlog_size_ = self->waiting_.size();
-        self->tell_watchers(); // last, so that acknowledgements go out first
+        self->notify_watchers(); // last, so that acknowledgements go out first
     });
 }
 
-void Session::tell_watchers() {
+void Session::notify_watchers() {
     const auto reported_before = std::exchange(connections_reported_, sequencer_.connection_changes());
     const bool has_news = std::exchange(has_news_, false);
     if (has_news || reported_before != connections_reported_) watchers_.tell();
@@ -201,12 +201,12 @@ void Session::on_appended(Group group, const Result<>& appended) {
     durable_.push_back(std::move(group));
     if (hurried_) return finish_closing();
     append_next(); // the next group is written while this one is applied
-    if (durable_.size() == 1) fold_slice();
+    if (durable_.size() == 1) apply_slice();
 }
 
 /// Applies entries for one slice of work, then yields the thread. A small group is applied as a whole, and in place if
 /// no reader holds the published maps. Otherwise each chunk that the group changes is copied first.
-void Session::fold_slice() {
+void Session::apply_slice() {
     if (hurried_) return finish_closing();
     if (durable_.empty()) return; // dropped in the meantime
     const Group& group = durable_.front();
@@ -219,7 +219,7 @@ void Session::fold_slice() {
     }
     if (!applied) return stop_writing(applied.error());
     if (finished) finish_group();
-    if (!durable_.empty()) return on_strand([](Session& self) { self.fold_slice(); });
+    if (!durable_.empty()) return on_strand([](Session& self) { self.apply_slice(); });
     finish_setting_back();
     finish_closing();
 }
@@ -254,7 +254,7 @@ void Session::count_and_keep(ScanTaken& applied) {
     }
     ++counters_->scans_applied;
     if (newest_scans_.size() <= applied.robot) newest_scans_.resize(applied.robot + 1);
-    newest_scans_[applied.robot] = std::make_shared<const mapping::FoldedScan>(mapping::FoldedScan{
+    newest_scans_[applied.robot] = std::make_shared<const mapping::IntegratedScan>(mapping::IntegratedScan{
         projection_.revision(), projection_.sensor_of(applied.robot, applied.scan.sensor), std::move(applied.scan)});
 }
 
@@ -326,7 +326,7 @@ void Session::stop_writing(const Error& error) {
     }
     has_news_ = true;
     sequencer_.fail_all(error);
-    drop_what_is_under_way();
+    drop_pending();
     finish_closing();
 }
 
@@ -344,12 +344,12 @@ void Session::set_back(const Error& error) {
 void Session::finish_setting_back() {
     if (!setting_back_ || !durable_.empty() || broken_) return;
     setting_back_ = false;
-    drop_what_is_under_way();
+    drop_pending();
     appended_ = projection_.revision();
     refusing_ = closing();
 }
 
-void Session::drop_what_is_under_way() {
+void Session::drop_pending() {
     waiting_.clear();
     durable_.clear();
     applied_ = 0;
@@ -386,7 +386,7 @@ void Session::finish_closing() {
     if (hurried_) {
         for (const Group& group : durable_) sequencer_.release(group); // the next recovery applies them
         sequencer_.fail_all(*refusing_);
-        drop_what_is_under_way();
+        drop_pending();
     }
     if (!waiting_.empty() || !durable_.empty()) return;
     sequencer_.fail_all(*refusing_);

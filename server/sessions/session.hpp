@@ -77,7 +77,7 @@ public:
     void watch(std::weak_ptr<Watcher> watcher) { watchers_.add(std::move(watcher)); }
 
     /// Notifies the watchers that data which another component keeps about this session has changed.
-    void tell_changed() const { watchers_.tell(); }
+    void notify_changed() const { watchers_.tell(); }
 
     /// Returns whether the robot is connected.
     [[nodiscard]] bool is_connected(RobotIndex robot) const { return sequencer_.is_connected(robot); }
@@ -137,16 +137,16 @@ private:
     void append(Group group);
     void refuse_first(const Error& error);
     void on_appended(Group group, const Result<>& appended);
-    void fold_slice();
+    void apply_slice();
     [[nodiscard]] Result<> apply_some(double work);
     void count_and_keep(ScanTaken& applied);
     void finish_group();
     [[nodiscard]] Result<> publish();
-    void tell_watchers();
+    void notify_watchers();
     void stop_writing(const Error& error);
     void set_back(const Error& error);
     void finish_setting_back();
-    void drop_what_is_under_way();
+    void drop_pending();
     [[nodiscard]] bool is_checkpoint_due() const;
     void begin_checkpoint();
     void finish_closing();
@@ -164,8 +164,8 @@ private:
     Backlog waiting_;
     std::deque<Group> durable_; // not applied yet; the first one may be applied in part
     std::size_t applied_ = 0;   // applied entries of the first group
-    std::vector<std::shared_ptr<const mapping::FoldedScan>> newest_scans_; // by RobotIndex; null: none yet
-    Revision appended_ = 0;                                                // newest entry passed to the log
+    std::vector<std::shared_ptr<const mapping::IntegratedScan>> newest_scans_; // by RobotIndex; null: none yet
+    Revision appended_ = 0;                                                    // newest entry passed to the log
     bool appending_ = false;
     std::int64_t chunks_under_way_ = 0; // that the groups being appended or applied may create
     limits::MemoryShare share_;         // of the limits' budgets: pages_ and chunks_under_way_

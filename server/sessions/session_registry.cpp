@@ -41,7 +41,7 @@ SessionRegistry::SessionRegistry(store::ScanLog& log, RegistryConfig config)
       pages_(std::make_shared<limits::MemoryBudget>(config_.pages_max)), factory_{log_, config_.compute, may_wait_} {
     factory_.limits.shared = {pages_};
     factory_.limits.on_short = [this](std::size_t pages) {
-        boost::asio::post(may_wait_, [this, pages] { make_room(pages + spare_pages()); });
+        boost::asio::post(may_wait_, [this, pages] { free_pages(pages + spare_pages()); });
     };
 }
 
@@ -131,8 +131,8 @@ Result<std::shared_ptr<Session>> SessionRegistry::import_map(std::string_view na
         share.give_back_all();
         if (projection.error().code == Errc::kOverloaded) {
             const std::size_t pages = pages_of_imported(*config, patches);
-            make_room(pages);
-            give_back_memory(pages); // of the patches that were integrated
+            free_pages(pages);
+            trim_heap(pages); // of the patches that were integrated
         }
         return projection.error();
     }
@@ -173,18 +173,18 @@ Result<> SessionRegistry::remove(std::string_view name) {
     }
     const auto summary = left->session ? summary_of(*left->session->snapshot()) : left->summary;
     if (auto removed = log_.remove_session(left->info.id); !removed) { // it still exists, closed
-        if (const auto wanted = cache_.arrived(left->info.name, summary)) start_reading(*wanted);
+        if (const auto wanted = cache_.arrived(left->info.name, summary)) start_load(*wanted);
         return removed.error();
     }
     cache_.remove(name, no_such_session(name));
     left.reset(); // frees the maps, unless the strand still holds the session
-    boost::asio::post(may_wait_, [this, pages = summary.pages] { give_back_memory(pages); });
+    boost::asio::post(may_wait_, [this, pages = summary.pages] { trim_heap(pages); });
     return {};
 }
 
 /// Returns free memory to the system after `pages` were freed, but not each time. The allocator keeps free memory
 /// between used blocks, and for each thread as much as it ever used.
-void SessionRegistry::give_back_memory(std::size_t pages) {
+void SessionRegistry::trim_heap(std::size_t pages) {
     constexpr std::size_t kWorthwhile = 4096; // 80 MiB
     {
         const std::lock_guard lock(room_mutex_);
@@ -198,10 +198,10 @@ void SessionRegistry::give_back_memory(std::size_t pages) {
 }
 
 void SessionRegistry::drain() {
-    draining_ = true;      // stops recover() and loads
-    start_reading_again(); // the thread that holds the mutex may wait for one of these loads
+    draining_ = true; // stops recover() and loads
+    retry_loads();    // the thread that holds the mutex may wait for one of these loads
     const std::lock_guard changing(changing_);
-    start_reading_again();
+    retry_loads();
     cache_.settle();
     const auto sessions = list();
     const auto closed = std::make_shared<std::latch>(static_cast<std::ptrdiff_t>(sessions.size()));

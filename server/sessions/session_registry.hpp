@@ -163,10 +163,10 @@ private:
 
     [[nodiscard]] Result<> check_new(std::string_view name, const Creator& creator) const;
     [[nodiscard]] std::shared_ptr<Session> add(SessionInfo info, mapping::Projection projection);
-    void give_back_memory(std::size_t pages);
+    void trim_heap(std::size_t pages);
 
     void recover_one(const SessionInfo& info, std::uint32_t map_patches, std::function<void()> done);
-    [[nodiscard]] bool can_stay_asleep(const SessionInfo& info, std::uint32_t map_patches);
+    [[nodiscard]] bool try_add_evicted(const SessionInfo& info, std::uint32_t map_patches);
     void add_recovered(std::shared_ptr<Session> session, std::function<void()> done);
     void keep_damaged(std::string name, store::SessionId id, Error why);
     [[nodiscard]] std::optional<Error> damage_of(std::string_view name) const;
@@ -177,15 +177,15 @@ private:
         SessionCache::Clock::time_point until; // refused after this time if there is still no memory
     };
 
-    void start_reading(const EvictedSession& evicted);
-    void start_reading_again();
+    void start_load(const EvictedSession& evicted);
+    void retry_loads();
     void read(const Wanted& wanted);
-    [[nodiscard]] bool take_room(const Wanted& wanted);
+    [[nodiscard]] bool reserve_pages(const Wanted& wanted);
     [[nodiscard]] std::size_t spare_pages() const noexcept;
-    void make_room(std::size_t pages);
-    void read_failed_again();
-    void lay_down(std::vector<std::shared_ptr<Session>> sessions, const Error& why);
-    void is_asleep_now(const Session& session);
+    void free_pages(std::size_t pages);
+    void reload_failed();
+    void close_for_eviction(std::vector<std::shared_ptr<Session>> sessions, const Error& why);
+    void on_evicted(const Session& session);
 
     using MakeEntry = std::function<Result<LogEntry>(const SessionInfo&)>;
     [[nodiscard]] Result<Revision> change_exclusions(std::string_view name, const MakeEntry& make);

@@ -26,7 +26,7 @@ LandmarkChanges changed_landmarks(const landmarks::LandmarkView& landmarks, Land
     return changed;
 }
 
-wire::ScanPoints points_of(const mapping::FoldedScan& applied, std::size_t stride) {
+wire::ScanPoints points_of(const mapping::IntegratedScan& applied, std::size_t stride) {
     const Scan& scan = applied.scan;
     const Sensor& sensor = *applied.sensor;
     wire::ScanPoints out{sensor.id, sensor.kind, scan.stamp, compose(scan.pose, sensor.mount), {}};

@@ -72,7 +72,7 @@ struct LandmarkChanges {
 /// @param scan  a scan that fits its sensor
 /// @param stride  >= 1; the first hit and every `stride`-th one after it are returned
 /// @return offsets from the position of the sensor, along the axes of the map frame
-[[nodiscard]] wire::ScanPoints points_of(const mapping::FoldedScan& scan, std::size_t stride);
+[[nodiscard]] wire::ScanPoints points_of(const mapping::IntegratedScan& scan, std::size_t stride);
 
 /// Bounds of one event, together about 450 KiB.
 inline constexpr std::size_t kTilesMax = 2048;        ///< of a layer; if more changed, the event reports "everything"

@@ -74,7 +74,7 @@ TEST_F(SpoolTest, AcknowledgedFilesAreRemoved) {
     EXPECT_LT(spool_->bytes(), bytes);
     handed_out();
     spool_->acknowledge(5000);
-    spool_->tidy_up();
+    spool_->remove_acknowledged();
     EXPECT_THAT(files(), IsEmpty());
     EXPECT_EQ(spool_->bytes(), 0U);
     open();
@@ -180,7 +180,7 @@ TEST_F(SpoolTest, ForeignScansDoNotReplaceUnsentScans) {
     take(1, 5);
     handed_out();
     spool_->acknowledge(5);
-    spool_->tidy_up();
+    spool_->remove_acknowledged();
     open();
     take(6, 9);
     ASSERT_TRUE(spool_->begin("a1", 300)) << "295 scans were sent without a spool";

@@ -67,23 +67,23 @@ TEST_F(AuditTest, RestOfAFloodIsLoggedWithoutAnotherRefusal) {
     AuditLog audit(counters_, [this] { return now_; });
     for (int n = 0; n < 1000; ++n) audit.note({Port::kHttp, Reason::kNoToken, "192.0.2.7", "", ""});
     now_ += 59.0;
-    audit.tell_what_is_due();
+    audit.log_due();
     EXPECT_THAT(logged_.text(), testing::EndsWith("count=1\n"));
     now_ += 1.0;
-    audit.tell_what_is_due();
+    audit.log_due();
     EXPECT_THAT(logged_.text(), testing::EndsWith("count=999\n"));
 }
 
 TEST_F(AuditTest, StrangersAreLoggedOncePerSecondWithTheCount) {
     AuditLog audit(counters_, [&] { return now_; });
-    EXPECT_EQ(audit.take_line_of_stranger(), 0U);
-    for (int n = 0; n < 3000; ++n) EXPECT_FALSE(audit.take_line_of_stranger());
+    EXPECT_EQ(audit.admit_log_line(), 0U);
+    for (int n = 0; n < 3000; ++n) EXPECT_FALSE(audit.admit_log_line());
     now_ += 0.99;
-    EXPECT_FALSE(audit.take_line_of_stranger());
+    EXPECT_FALSE(audit.admit_log_line());
     now_ += 0.02;
-    EXPECT_EQ(audit.take_line_of_stranger(), 3001U);
+    EXPECT_EQ(audit.admit_log_line(), 3001U);
     now_ += 1.0;
-    EXPECT_EQ(audit.take_line_of_stranger(), 0U);
+    EXPECT_EQ(audit.admit_log_line(), 0U);
 }
 
 TEST_F(AuditTest, ClientTextCannotForgeALine) {

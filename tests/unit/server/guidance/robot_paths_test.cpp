@@ -28,8 +28,8 @@ protected:
     std::uint64_t give_goal(RobotIndex robot, std::size_t points = 2) {
         return book_.give_goal(session_, robot, kGoal, way(PathKind::kGoal, points), now_);
     }
-    void give_way(RobotIndex robot, std::optional<HeldPath> given) {
-        book_.give_way(session_, robot, std::move(given), now_);
+    void set_path(RobotIndex robot, std::optional<HeldPath> given) {
+        book_.set_path(session_, robot, std::move(given), now_);
     }
     void leave(const std::shared_ptr<session::RecordedLink>& link) {
         session_->leave(link);
@@ -49,7 +49,7 @@ TEST_F(RobotPathsTest, IsEmptyInitially) {
     EXPECT_EQ(revision(), 0U);
     EXPECT_THAT(page().robots, IsEmpty());
     book_.take_back(session_, 0);
-    give_way(0, std::nullopt);
+    set_path(0, std::nullopt);
     EXPECT_EQ(revision(), 0U);
 }
 
@@ -79,7 +79,7 @@ TEST_F(RobotPathsTest, ListsFinishedRobotsUntilTheirNextRequestEvenIfAbsent) {
 
 TEST_F(RobotPathsTest, RobotHoldsItsGoalAndItsNewestPath) {
     for (const char* robot : {"a", "b"}) join(robot);
-    give_way(1, way(PathKind::kCoverage));
+    set_path(1, way(PathKind::kCoverage));
     give_goal(0);
     auto now = page();
     ASSERT_EQ(now.robots.size(), 2U);
@@ -89,10 +89,10 @@ TEST_F(RobotPathsTest, RobotHoldsItsGoalAndItsNewestPath) {
     EXPECT_FALSE(now.robots[1].goal);
     EXPECT_EQ(now.robots[1].way->kind, PathKind::kCoverage);
 
-    give_way(0, way(PathKind::kPlan));
+    set_path(0, way(PathKind::kPlan));
     EXPECT_TRUE(page().robots[0].goal) << "a plan can lead to the goal";
     EXPECT_EQ(page().robots[0].way->kind, PathKind::kPlan);
-    give_way(0, std::nullopt);
+    set_path(0, std::nullopt);
     EXPECT_TRUE(page().robots[0].goal);
     EXPECT_EQ(page().robots[0].way, nullptr);
     give_goal(0);
@@ -101,8 +101,8 @@ TEST_F(RobotPathsTest, RobotHoldsItsGoalAndItsNewestPath) {
     EXPECT_EQ(page().robots[1].way->kind, PathKind::kGoal) << "the newest path of any kind is kept";
     book_.take_back(session_, 0);
     EXPECT_EQ(page().robots.size(), 1U);
-    give_way(0, way(PathKind::kPlan));
-    give_way(0, std::nullopt);
+    set_path(0, way(PathKind::kPlan));
+    set_path(0, std::nullopt);
     EXPECT_EQ(page().robots.size(), 1U) << "a robot without goal and path is not listed";
 }
 
@@ -119,13 +119,13 @@ TEST_F(RobotPathsTest, OnlyChangesRaiseTheRevisionAndNotify) {
     };
     give_goal(0);
     expect_change("a goal");
-    give_way(0, way(PathKind::kPlan));
+    set_path(0, way(PathKind::kPlan));
     expect_change("a plan");
-    give_way(0, way(PathKind::kPlan));
+    set_path(0, way(PathKind::kPlan));
     expect_change("another plan");
-    give_way(0, std::nullopt);
+    set_path(0, std::nullopt);
     expect_change("no path");
-    give_way(0, std::nullopt);
+    set_path(0, std::nullopt);
     static_cast<void>(page());
     EXPECT_EQ(revision(), before) << "requests do not change the revision";
     EXPECT_EQ(watcher->notified, 0);
@@ -155,7 +155,7 @@ TEST_F(RobotPathsTest, LeavingReleasesGoalAndPathForGood) {
 
 TEST_F(RobotPathsTest, PathOfAnAbsentRobotIsDiscarded) {
     leave(join("a"));
-    give_way(0, way(PathKind::kPlan));
+    set_path(0, way(PathKind::kPlan));
     EXPECT_THAT(page().robots, IsEmpty());
 }
 
@@ -189,7 +189,7 @@ TEST_F(RobotPathsTest, EachGoalHasItsOwnNumber) {
     const auto second = give_goal(0);
     EXPECT_FALSE(book_.holds(session_, 0, first, now_));
     EXPECT_TRUE(book_.holds(session_, 0, second, now_));
-    give_way(0, way(PathKind::kPlan));
+    set_path(0, way(PathKind::kPlan));
     EXPECT_TRUE(book_.holds(session_, 0, second, now_));
     book_.take_back(session_, 0);
     EXPECT_FALSE(book_.holds(session_, 0, second, now_));
@@ -208,9 +208,9 @@ TEST_F(RobotPathsTest, StateIsPerSessionAndEndsWithIt) {
 
 TEST_F(RobotPathsTest, TruncatesLongPathAtItsEnd) {
     join("a");
-    give_way(0, way(PathKind::kCoverage, RobotPaths::kWayPointsMax));
+    set_path(0, way(PathKind::kCoverage, RobotPaths::kWayPointsMax));
     EXPECT_EQ(page().robots[0].way->points_left_out, 0U);
-    give_way(0, way(PathKind::kCoverage, RobotPaths::kWayPointsMax + 5));
+    set_path(0, way(PathKind::kCoverage, RobotPaths::kWayPointsMax + 5));
     const auto kept = page().robots[0].way;
     EXPECT_EQ(kept->points.size(), RobotPaths::kWayPointsMax);
     EXPECT_EQ(kept->points.back().x, static_cast<double>(RobotPaths::kWayPointsMax - 1));

@@ -44,8 +44,8 @@ public:
 
     void take(RobotIndex robot, Scan scan) {
         apply(ScanTaken{robot, scan});
-        newest_[robot] = std::make_shared<const mapping::FoldedScan>(
-            mapping::FoldedScan{projection_.revision(), projection_.sensor_of(robot, scan.sensor), std::move(scan)});
+        newest_[robot] = std::make_shared<const mapping::IntegratedScan>(mapping::IntegratedScan{
+            projection_.revision(), projection_.sensor_of(robot, scan.sensor), std::move(scan)});
     }
 
     void apply(const LogEntry& entry) { projection_.apply(entry).value(); }
@@ -64,7 +64,7 @@ public:
 
 private:
     mapping::Projection projection_{mapping::resolve({.cell_size = 0.05}).value()};
-    std::vector<std::shared_ptr<const mapping::FoldedScan>> newest_;
+    std::vector<std::shared_ptr<const mapping::IntegratedScan>> newest_;
 };
 
 TEST(EventEncoder, GivesNewestSnapshotToClientThatReadsEveryEvent) {
@@ -219,7 +219,7 @@ TEST(EventEncoder, BoundsEventForAnyNumberOfRobots) {
         std::make_shared<const Sensor>(Sensor{.angles = UniformAngles{0.0, 0.001, 4096}, .range_max = 1000.0});
     Scan scan;
     scan.ranges.assign(4096, 999'999);
-    const auto newest = std::make_shared<const mapping::FoldedScan>(mapping::FoldedScan{9, sensor, scan});
+    const auto newest = std::make_shared<const mapping::IntegratedScan>(mapping::IntegratedScan{9, sensor, scan});
     mapping::Trajectory trail;
     for (int n = 0; n < 1000; ++n) trail.append({1, 0.0, {n % 2 == 0 ? 1e6 : -1e6, n % 2 == 0 ? -1e6 : 1e6, 0.0}});
     for (std::uint32_t n = 0; n < kRobots; ++n) {
@@ -258,7 +258,7 @@ TEST(ScanPoints, AreEndPointsOfBeamsThatHit) {
     scan.stamp = 7.5;
     scan.pose = {5.0, 5.0, std::numbers::pi / 2};
     scan.ranges = {2'000, 3'000, kNoReturn, kInvalidRange};
-    const mapping::FoldedScan applied{1, std::make_shared<const Sensor>(sensor), scan};
+    const mapping::IntegratedScan applied{1, std::make_shared<const Sensor>(sensor), scan};
     const auto points = points_of(applied, 1);
     EXPECT_NEAR(points.origin.x, 5.0, 1e-9);
     EXPECT_NEAR(points.origin.y, 6.0, 1e-9);
@@ -266,7 +266,7 @@ TEST(ScanPoints, AreEndPointsOfBeamsThatHit) {
     EXPECT_EQ(points.stamp, 7.5);
 
     scan.ranges = {400, 10'000, 1'000, 9'999}; // nearer than range_min, farther than range_max
-    const mapping::FoldedScan bounds{1, std::make_shared<const Sensor>(sensor), scan};
+    const mapping::IntegratedScan bounds{1, std::make_shared<const Sensor>(sensor), scan};
     EXPECT_THAT(points_of(bounds, 1).points, ElementsAre(PointMm{0, -1'000}, PointMm{9'999, 0}));
     EXPECT_THAT(points_of(bounds, 2).points, ElementsAre(PointMm{0, -1'000}));
 }

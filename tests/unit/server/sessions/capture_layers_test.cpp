@@ -170,9 +170,9 @@ TEST_F(CaptureLayersTest, RemovesLeastRecentlyUsedAndDeletedSessions) {
         store::append_and_wait(log_, second.id, revision, {wire::encode_entry(entries_[revision - 1])}).value();
     }
     const auto many = all_of(expected(end_)).size();
-    for (const auto& limits : {CaptureFoldsLimits<landmarks::LandmarkLayer>{.kept_max = 1},
-                               CaptureFoldsLimits<landmarks::LandmarkLayer>{.size_max = 2 * many - 1},
-                               CaptureFoldsLimits<landmarks::LandmarkLayer>{}}) {
+    for (const auto& limits : {CaptureLayerLimits<landmarks::LandmarkLayer>{.kept_max = 1},
+                               CaptureLayerLimits<landmarks::LandmarkLayer>{.size_max = 2 * many - 1},
+                               CaptureLayerLimits<landmarks::LandmarkLayer>{}}) {
         const bool has_room = limits.kept_max > 1 && limits.size_max >= 2 * many;
         LandmarkLayers folds(log_, limits);
         folds.up_to(info_, end_, kContinue).value();
