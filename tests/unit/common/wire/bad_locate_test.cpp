@@ -63,7 +63,7 @@ TEST(BadLocateRequest, RefusesMessagesThatOurClientCannotCreate) {
     request.clear_points();
     for (int n = 0; n < 40; ++n) request.add_points(1);
     request.clear_near();
-    expect_refused(frame.SerializeAsString(), Errc::kInvalidField, "locate_request.radius is there, but near is not;");
+    expect_refused(frame.SerializeAsString(), Errc::kInvalidField, "locate_request.radius is given, but near is not;");
 
     frame.mutable_locate_reply()->set_id(1);
     expect_refused(frame.SerializeAsString(), Errc::kInvalidField, "locate_reply.outcome is absent;");

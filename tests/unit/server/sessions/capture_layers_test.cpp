@@ -123,7 +123,7 @@ TEST_F(CaptureLayersTest, LongComputationContinuesWithTheNextRequest) {
     auto applied = folds.up_to(info_, end_, kContinue);
     for (; !applied; applied = folds.up_to(info_, end_, kContinue)) {
         EXPECT_EQ(applied.error().code, Errc::kOverloaded);
-        EXPECT_THAT(applied.error().message, HasSubstr("of 905 log entries are found; ask again"));
+        EXPECT_THAT(applied.error().message, HasSubstr("of 905 log entries are found; repeat the request"));
         ASSERT_LT(++calls, 100);
     }
     EXPECT_GT(calls, 1);
