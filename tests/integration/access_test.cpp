@@ -57,7 +57,7 @@ TEST_F(AccessTest, TokensPermitTheirOwnSessions) {
     };
     const std::vector<Case> cases = {
         {"", "depot-1", "hello.token: a token is needed", Reason::kNoToken},
-        {"stranger", "depot-1", "hello.token: the token that was sent is not in force", Reason::kUnknownToken},
+        {"stranger", "depot-1", "hello.token: the token that was sent is not valid here", Reason::kUnknownToken},
         {"viewer", "depot-1", "hello.token: the token 'viewer' has the role viewer", Reason::kWrongRole},
         {"robot", "lab", "hello.token: the token 'robot' is not for the session 'lab'", Reason::kWrongSession},
         {"operator", "depot-1", "hello.token: the token 'operator' is not for the session", Reason::kWrongSession},

@@ -84,7 +84,7 @@ std::vector<Fault> faults_after_the_hello() {
         {length_prefix(wire::kFrameBytesMax + 1), Errc::kTooLarge,
          "a frame announces 1048577 bytes, at most 1048576 are allowed here; send fewer scans per batch"},
         {frame_around("garbage that is no protobuf"), Errc::kMalformed, "33 bytes that are not a scanloom.v1.Frame"},
-        {damaged(frame_of(small_laser())), Errc::kDamaged, "a frame of 54 bytes was damaged on its way", true},
+        {damaged(frame_of(small_laser())), Errc::kDamaged, "a frame of 54 bytes was damaged in transmission", true},
         {frame_of(hello("faulty")), Errc::kMalformed, "a hello frame is not for the server"},
         {frame_of(wire::Ack{}), Errc::kMalformed, "a ack frame is not for the server"},
         {laser + batch_with([](Scan& s) { s.pose.x = kNan; }), Errc::kInvalidField,

@@ -15,7 +15,7 @@ namespace {
 
 namespace json = boost::json;
 
-constexpr const char* kSchemasWithSettings[] = {"SessionRequest", "SessionConfig", "ReplayRequest"};
+constexpr const char* kSchemasWithSettings[] = {"SessionRequest", "SessionConfig", "WeaveRequest"};
 
 const json::object& component(const char* kind, std::string_view name) {
     return described_api().at("components").at(kind).at(name).as_object();
@@ -122,7 +122,7 @@ TEST(OpenApiSettings, OnlySessionRequestHasDefaults) {
         EXPECT_FALSE(
             component("schemas", "SessionConfig").at("properties").at(field.name).as_object().contains("default"));
         EXPECT_FALSE(
-            component("schemas", "ReplayRequest").at("properties").at(field.name).as_object().contains("default"));
+            component("schemas", "WeaveRequest").at("properties").at(field.name).as_object().contains("default"));
     }
 }
 

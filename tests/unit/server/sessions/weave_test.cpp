@@ -189,7 +189,7 @@ TEST_F(ReplayJobTest, EachEndReportsItsReason) {
     const auto removed = some.start(session_, request({}, {1, std::nullopt}), newest()).value();
     some.remove(session_.id, removed->id());
     EXPECT_EQ(removed->progress().error->code, Errc::kNotFound);
-    EXPECT_THAT(removed->progress().error->message, testing::HasSubstr("weave " + removed->id() + " was deleted"));
+    EXPECT_THAT(removed->progress().error->message, testing::HasSubstr("replay job " + removed->id() + " was deleted"));
     const auto deleted = some.start(session_, request({}, {2, std::nullopt}), newest()).value();
     some.remove_all(session_.id);
     EXPECT_EQ(deleted->progress().error, session_was_deleted(session_));
