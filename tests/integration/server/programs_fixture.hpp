@@ -28,10 +28,12 @@ protected:
         ASSERT_EQ(robot.wait(), 0);
     }
 
-    void simulate(const std::string& session, const std::string& cell_size) {
-        stream(
-            session, cell_size,
-            {"simulate", "--world", "office", "--seed", "5", "--speed", "0", "--scans", "300", "--noise", "gaussian"});
+    /// Streams 300 scans, 10 per second.
+    /// @param speed  times as fast as that; "0": as fast as possible, so that the server may store many in one write
+    void simulate(const std::string& session, const std::string& cell_size, const std::string& speed = "0") {
+        stream(session, cell_size,
+               {"simulate", "--world", "office", "--seed", "5", "--speed", speed, "--scans", "300", "--noise",
+                "gaussian"});
     }
 
     /// Returns the digest of each layer.

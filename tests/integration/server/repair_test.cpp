@@ -60,7 +60,7 @@ TEST_F(RepairTest, AnIntactStoreKeepsItsMaps) {
 }
 
 TEST_F(RepairTest, LossesOfADamagedStoreAreReportedAndTheRobotContinues) {
-    simulate("one", "0.1");
+    simulate("one", "0.1", "15"); // so that other writes follow the damaged one
     kill_server();
     const auto log = store::only_file_like(store(), ".log");
     store::flip_bit(log, std::filesystem::file_size(log) / 2, 1);
