@@ -149,7 +149,10 @@ protected:
         static_cast<void>(session()); // a registry must not be destroyed while it reads a session
         switch (random() % 4) {
         case 0: registry_->drain(); [[fallthrough]]; // writes a checkpoint
-        case 1: restart(); break;                    // without a checkpoint, as after a crash
+        case 1:                                      // without a checkpoint, as after a crash
+            wait_for_posted_tasks();                 // an eviction may have posted some to the registry
+            restart();
+            break;
         case 2:
             clock_ = clock_.load() + std::chrono::hours(1);
             registry_->tidy();

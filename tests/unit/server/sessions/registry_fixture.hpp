@@ -3,12 +3,14 @@
 #include "server/sessions/session_registry.hpp"
 #include "tests/unit/server/sessions/session_fixture.hpp"
 
+#include <boost/asio/post.hpp>
 #include <boost/asio/thread_pool.hpp>
 
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <future>
+#include <latch>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -72,6 +74,17 @@ protected:
         ASSERT_TRUE(registry_->recover());
     }
 
+    /// Waits until the pools have run every task that was posted to them before.
+    void wait_for_posted_tasks() {
+        for (auto* pool : {&compute_, &reading_}) {
+            const auto free_threads = std::make_shared<std::latch>(kThreads); // of all threads, so no task is running
+            for (std::ptrdiff_t n = 0; n < kThreads; ++n) {
+                boost::asio::post(*pool, [free_threads] { free_threads->arrive_and_wait(); });
+            }
+            free_threads->wait();
+        }
+    }
+
     std::unique_ptr<SessionRegistry> make(store::ScanLog& log, std::size_t pages_max = RegistryConfig{}.pages_max) {
         return std::make_unique<SessionRegistry>(log, RegistryConfig{.compute = compute_.get_executor(),
                                                                      .now = [] { return 1000.5; },
@@ -91,8 +104,9 @@ protected:
 
     std::atomic<SessionCache::Clock::time_point> clock_ = SessionCache::Clock::time_point(std::chrono::hours(1));
     store::MemoryScanLog log_;
-    boost::asio::thread_pool compute_{2};
-    boost::asio::thread_pool reading_{2};
+    static constexpr std::ptrdiff_t kThreads = 2; // of each pool
+    boost::asio::thread_pool compute_{kThreads};
+    boost::asio::thread_pool reading_{kThreads};
     std::unique_ptr<SessionRegistry> registry_ = make(log_);
 };
 
