@@ -9,7 +9,7 @@
 namespace scanloom::tidy {
 
 /// Returns one sentence per violation in a file; empty if there are none.
-/// @param path  relative to the root, with slashes: "server/grid/cell.hpp"
+/// @param path  relative to the root, with slashes: "core/grid/cell.hpp"
 [[nodiscard]] std::vector<std::string> complaints_about(std::string_view path, std::string_view text);
 
 } // namespace scanloom::tidy
