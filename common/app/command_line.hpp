@@ -13,9 +13,9 @@
 #include <string>
 #include <string_view>
 
-/// What the option parsers share: how a program ends after a usage error, and checks of numbers for
-/// CLI::Option::check(), each of which returns an empty string if the text is valid, else what is wrong. Only option
-/// parsers include this header.
+/// Functions that all option parsers use: they end a program after a usage error, and check numbers for
+/// CLI::Option::check(). A check returns an empty string if the text is valid, otherwise the error. Only option parsers
+/// include this header.
 namespace scanloom {
 
 /// Explains in one line, without CLI11's own terms, why CLI11 rejected the flags, the environment or the file.

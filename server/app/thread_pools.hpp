@@ -52,7 +52,7 @@ public:
     const Executor sessions = sessions_.get_executor(); ///< the sessions' strands: everything that changes a map
     const Executor queries = short_.get_executor();     ///< answers from a part of a snapshot
     const Executor metrics = strand(queries);           ///< answers about the process and the store
-    const Executor live = strand(queries); ///< encodes the events of viewers, each of which reads a snapshot
+    const Executor live = strand(queries);              ///< encodes the events of viewers; each event reads a snapshot
     const Executor whole_maps = strand(long_.get_executor());  ///< answers from a whole snapshot, up to a second each
     const Executor log_reading = strand(long_.get_executor()); ///< trajectories and landmarks from the log
     const Executor log_export = strand(long_.get_executor());  ///< logs, piece by piece

@@ -145,7 +145,8 @@ TEST(SourceRules, SourceTreeFollowsTheRules) {
     EXPECT_GT(files, 50U) << "too few source files in " << SOURCE_TREE;
 }
 
-/// Counts a word in a text in lower case. Members of JSON that users have, as "woven", do not count.
+/// Returns how often a word occurs in a lower-case text. A word in quotes, such as the JSON member "woven", or before a
+/// colon does not count.
 std::size_t uses_of(std::string_view word, std::string_view text) {
     constexpr std::string_view kPartOfName = "abcdefghijklmnopqrstuvwxyz_\"':";
     std::size_t uses = 0;

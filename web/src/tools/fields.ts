@@ -34,7 +34,7 @@ export function numberInput(name: string, value: number | null, { min, max, empt
   return input;
 }
 
-/** Returns null when the field is empty, which only fields with a placeholder may be. */
+/** Returns the number in the field, or null if the field is empty. Only a field with a placeholder may be empty. */
 export function numberOf(input: HTMLInputElement): number | null {
   return input.value === '' ? null : input.valueAsNumber;
 }

@@ -276,7 +276,7 @@ using testing::IsEmpty;
 using testing::SizeIs;
 using testing_support::LiveReplay;
 
-/// A session's landmarks while captures come, each of which sees some known ones again and some new ones.
+/// The landmarks of a session. Each new capture contains some known landmarks and some new ones.
 class Seeing {
 public:
     explicit Seeing(unsigned seed) : random_(seed) {}

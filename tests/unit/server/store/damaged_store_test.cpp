@@ -40,7 +40,7 @@ protected:
             }
         }
         auto log = open_rocksdb(at("original")).value();
-        log->remove_session(3).value(); // of which a table still has the record
+        log->remove_session(3).value(); // a table still has its record
         for (Revision revision = kInTable + 1; revision <= kInTable + kInLog; ++revision) {
             append_and_wait(*log, 1, revision, {distinct_entry(1, revision)}).value();
         }
