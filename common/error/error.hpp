@@ -44,8 +44,8 @@ enum class Errc {
 
 /// A failure: a code for programs and one sentence for people, which says what is wrong, where, and what to do.
 struct Error {
-    Errc code;
-    std::string message;
+    Errc code;           ///< what kind of failure
+    std::string message; ///< for people; names the field, file or peer that is concerned
 
     friend bool operator==(const Error&, const Error&) = default;
 };
@@ -57,7 +57,9 @@ using Result = boost::system::result<T, Error>;
 /// What Result::value() throws on a failure.
 class ErrorException : public std::runtime_error {
 public:
+    /// Creates an exception whose what() is the error's message.
     explicit ErrorException(const Error& error) : std::runtime_error(error.message), error_(error) {}
+    /// Returns the error that value() was called on.
     [[nodiscard]] const Error& error() const noexcept { return error_; }
 
 private:

@@ -7,15 +7,15 @@
 namespace scanloom {
 
 // Limits of what a client may send. A larger value is rejected with an error that names the field.
-inline constexpr std::size_t kBeamsMax = 4096; ///< beams of one scan
-inline constexpr std::size_t kSensorsMax = 64; ///< sensors of one robot
-inline constexpr std::size_t kScansPerBatchMax = 1024;
-inline constexpr std::size_t kNameBytesMax = 64; ///< session, robot and sensor names
-inline constexpr double kCoordinateMax = 1e6;    ///< metres from the origin, each axis
-inline constexpr double kBodyRadiusMax = 5.0;    ///< metres, of a robot
-inline constexpr double kMapCellSizeMax = 100.0; ///< metres, of an imported map
-inline constexpr double kRangeMax = 1000.0;      ///< metres, a sensor's range_max
-inline constexpr double kReachCellsMax = 8192.0; ///< cells of the session, a sensor's range_max
+inline constexpr std::size_t kBeamsMax = 4096;         ///< beams of one scan
+inline constexpr std::size_t kSensorsMax = 64;         ///< sensors of one robot
+inline constexpr std::size_t kScansPerBatchMax = 1024; ///< scans of one ScanBatch message
+inline constexpr std::size_t kNameBytesMax = 64;       ///< session, robot and sensor names
+inline constexpr double kCoordinateMax = 1e6;          ///< metres from the origin, each axis
+inline constexpr double kBodyRadiusMax = 5.0;          ///< metres, of a robot
+inline constexpr double kMapCellSizeMax = 100.0;       ///< metres, of an imported map
+inline constexpr double kRangeMax = 1000.0;            ///< metres, a sensor's range_max
+inline constexpr double kReachCellsMax = 8192.0;       ///< cells of the session, a sensor's range_max
 
 /// The largest angle from the first to the last beam of a scan, in radians. A sensor may repeat its first direction at
 /// the end of a turn, and an increment stored as float32 may carry the last beam past it: the 360 beams of a TurtleBot3

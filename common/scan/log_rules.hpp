@@ -16,13 +16,13 @@ namespace scanloom {
 
 /// A sensor as described by a log entry. The description is shared and never changes.
 struct KnownSensor {
-    Revision revision = 0; ///< of that entry, or of a later checkpoint
-    std::shared_ptr<const Sensor> sensor;
+    Revision revision = 0;                ///< of that entry, or of a later checkpoint
+    std::shared_ptr<const Sensor> sensor; ///< not null
 };
 
 /// A robot as described by the entries of a log up to one of them.
 struct LoggedRobot {
-    std::string name;
+    std::string name;                             ///< RobotJoined::name
     std::string source;                           ///< RobotJoined::source
     std::optional<double> body_radius;            ///< RobotJoined::body_radius
     std::uint64_t last_seq = 0;                   ///< of its newest scan; 0 if it has none
@@ -33,6 +33,7 @@ struct LoggedRobot {
         return last_seq == 0 || source == other_source;
     }
 
+    /// Returns whether a scan with this seq follows the robot's newest scan.
     [[nodiscard]] bool is_next(std::uint64_t seq) const noexcept { return seq == last_seq + 1; }
 
     /// Returns the sensor with this id; nullptr if the robot has not described it.
@@ -48,6 +49,9 @@ public:
     LogRules() = default;
 
     /// Restores the state after the entry with this revision from a checkpoint.
+    /// @param revision    of the newest entry that the state contains
+    /// @param robots      by RobotIndex
+    /// @param exclusions  of the log up to `revision`
     LogRules(Revision revision, std::vector<LoggedRobot> robots, Exclusions exclusions)
         : revision_(revision), robots_(std::move(robots)), exclusions_(std::move(exclusions)) {}
 
@@ -68,6 +72,7 @@ public:
     /// Returns the robots, by RobotIndex.
     [[nodiscard]] const std::vector<LoggedRobot>& robots() const noexcept { return robots_; }
 
+    /// Returns the exclusions of the log, including those that were lifted.
     [[nodiscard]] const Exclusions& exclusions() const noexcept { return exclusions_; }
 
 private:

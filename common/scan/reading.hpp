@@ -16,11 +16,13 @@ struct ReadingRules {
 
 /// What one beam shows: free space up to `metres`, and an obstacle there if `is_hit`.
 struct Reading {
-    double metres = 0.0;
-    bool is_hit = false;
+    double metres = 0.0; ///< length of the free part of the beam
+    bool is_hit = false; ///< whether an obstacle ends it
 };
 
 /// Interprets the reading of one beam.
+/// @param range  millimetres, or kInvalidRange or kNoReturn
+/// @param rules  of the sensor that took it
 /// @return nullopt if the beam shows nothing: the reading is invalid, below range_min, or a no-return that is dropped
 [[nodiscard]] inline std::optional<Reading> reading_of(RangeMm range, const ReadingRules& rules) noexcept {
     if (range == kInvalidRange) return std::nullopt;

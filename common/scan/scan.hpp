@@ -17,11 +17,17 @@ inline constexpr RangeMm kInvalidRange = 0;        ///< no valid reading
 inline constexpr RangeMm kNoReturn = 0xFFFF'FFFFU; ///< nothing within the sensor's range_max
 
 /// Rounds a reading in metres to millimetres. Readings are rounded once, where they enter the system (on the robot).
+/// @param range_m  metres, from the sensor; any value
 /// @return kInvalidRange for NaN, zero and negative lengths; kNoReturn for +inf and lengths beyond 4,294,967 m
 [[nodiscard]] RangeMm to_range_mm(double range_m) noexcept;
 
 /// Applies to_range_mm() to each reading of a scan: `scan.ranges = to_ranges_mm(metres)`.
+/// @param ranges_m  metres, one per beam
+/// @return the readings in the same order
 [[nodiscard]] std::vector<RangeMm> to_ranges_mm(std::span<const float> ranges_m);
+/// Applies to_range_mm() to each reading of a scan.
+/// @param ranges_m  metres, one per beam
+/// @return the readings in the same order
 [[nodiscard]] std::vector<RangeMm> to_ranges_mm(std::span<const double> ranges_m);
 
 /// One sweep of one sensor, taken from one pose. Metres and radians, counter-clockwise.
@@ -45,6 +51,9 @@ struct Scan {
 
 /// Returns the directions of the beams of `scan`: its own angles, or its sensor's. Uniform angles of the sensor are
 /// shortened or continued to the number of ranges.
+/// @param scan    a scan that `sensor` took
+/// @param sensor  its angles are used if the scan has none
+/// @return radians in the sensor frame, one direction per range
 /// Precondition: the scan is validated: explicit angles have one entry per range.
 [[nodiscard]] BeamAngles angles_of(const Scan& scan, const Sensor& sensor);
 

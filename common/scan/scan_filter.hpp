@@ -15,9 +15,9 @@ namespace scanloom {
 
 /// An exclusion with the log entries that added and lifted it.
 struct Exclusion {
-    ScansExcluded excluded;
-    Revision since = 0;  ///< log entry that added it; it covers scans of earlier entries only
-    Revision lifted = 0; ///< log entry that lifted it; 0: in effect
+    ScansExcluded excluded; ///< which scans it covers
+    Revision since = 0;     ///< log entry that added it; it covers scans of earlier entries only
+    Revision lifted = 0;    ///< log entry that lifted it; 0: in effect
 
     friend bool operator==(const Exclusion&, const Exclusion&) = default;
 };
@@ -28,18 +28,24 @@ public:
     static constexpr std::size_t kMost = 1000; ///< largest number in effect at a time; add() does not check it
 
     /// Checks whether the entry can follow.
+    /// @param excluded  the next entry of the log
     /// Errors: kMalformed if its id is not greater than all earlier ones.
     [[nodiscard]] Result<> check(const ScansExcluded& excluded) const;
 
     /// Checks whether the entry can follow.
+    /// @param lifted  the next entry of the log
     /// Errors: kMalformed if no exclusion with its id is in effect.
     [[nodiscard]] Result<> check(const ExclusionLifted& lifted) const;
 
     /// Adds the log entry with this revision.
+    /// @param revision  of this entry; greater than those of earlier ones
+    /// @param excluded  the entry
     /// Errors: those of check().
     [[nodiscard]] Result<> add(Revision revision, const ScansExcluded& excluded);
 
     /// Adds the log entry with this revision.
+    /// @param revision  of this entry; greater than those of earlier ones
+    /// @param lifted    the entry
     /// Errors: those of check().
     [[nodiscard]] Result<> add(Revision revision, const ExclusionLifted& lifted);
 
@@ -54,6 +60,7 @@ public:
 
     /// Returns all exclusions by rising id, including those that were lifted.
     [[nodiscard]] const std::vector<Exclusion>& all() const noexcept { return all_; }
+    /// Returns the number of exclusions that were not lifted.
     [[nodiscard]] std::size_t count_in_effect() const noexcept;
 
     friend bool operator==(const Exclusions&, const Exclusions&) = default;
@@ -88,15 +95,22 @@ public:
     /// @param max_jump_m  metres; 0: all scans are integrated
     explicit JumpFilter(double max_jump_m = 0.0) : max_jump_m_(max_jump_m) {}
 
+    /// Returns whether any scan can be left out: max_jump is not 0.
     [[nodiscard]] bool is_on() const noexcept { return max_jump_m_ > 0.0; }
 
     /// Returns whether the robot's next scan is integrated if it is taken at `place` (metres, map frame).
+    /// @param robot  also one that has no scans yet
+    /// @param place  position of the robot at the scan, metres, map frame
     [[nodiscard]] bool integrates(RobotIndex robot, const Point2& place) const noexcept;
 
     /// Adds the robot's next scan, taken at `place` (metres, map frame), and returns whether it is integrated.
+    /// @param robot  also one that has no scans yet
+    /// @param place  position of the robot at the scan, metres, map frame
     bool take(RobotIndex robot, const Point2& place);
 
+    /// Returns the state that a checkpoint stores; the initial state for a robot without scans.
     [[nodiscard]] Robot state(RobotIndex robot) const { return robot < robots_.size() ? robots_[robot] : Robot{}; }
+    /// Restores the state of a robot from a checkpoint.
     void restore(RobotIndex robot, const Robot& state);
 
 private:
@@ -126,13 +140,20 @@ public:
     [[nodiscard]] bool depends_on_earlier_scans() const noexcept { return jumps_.is_on(); }
 
     /// Returns how the scan is used if it is the log's next one, in the entry with this revision.
+    /// @param revision  of the entry; greater than those of earlier ones
+    /// @param scan      robot, seq, stamp and pose of the scan
     [[nodiscard]] ScanUse use_of(Revision revision, const ScanPose& scan) const noexcept;
 
     /// Adds the log's next scan, in the entry with this revision, and returns how it is used.
+    /// @param revision  of the entry; greater than those of earlier ones
+    /// @param scan      robot, seq, stamp and pose of the scan
     ScanUse take(Revision revision, const ScanPose& scan);
 
+    /// Returns the exclusions that it applies; not null.
     [[nodiscard]] const SharedExclusions& exclusions() const noexcept { return exclusions_; }
+    /// Returns the filter for max_jump.
     [[nodiscard]] const JumpFilter& jumps() const noexcept { return jumps_; }
+    /// Returns the filter for max_jump, to restore its state.
     [[nodiscard]] JumpFilter& jumps() noexcept { return jumps_; }
 
 private:
