@@ -14,6 +14,7 @@ public:
     /// Released with the last copy. May outlive the semaphore.
     using Permit = std::shared_ptr<const void>;
 
+    /// Creates a semaphore with this many permits.
     explicit Semaphore(std::size_t permits) : free_(std::make_shared<std::atomic<std::ptrdiff_t>>(permits)) {}
 
     /// Takes a permit.
