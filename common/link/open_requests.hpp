@@ -23,11 +23,15 @@ class OpenRequests {
 public:
     static constexpr std::size_t kMax = 4; ///< the most that a server processes at a time
 
+    /// Adds a request to be sent.
+    /// @param request   its id is replaced
+    /// @param answered  called once, from answer(), unless the request is abandoned first
     /// @return the request's id, or nullopt if kMax requests are open; then it is not added
     [[nodiscard]] std::optional<std::uint64_t> add(Request request, Answered answered);
 
     /// Drops the callback of a request. An unsent request is never sent. The server counts a sent one as open until its
     /// reply was read or the link has ended.
+    /// @param id  what add() returned; unknown ids are ignored
     void abandon(std::uint64_t id);
 
     /// Marks all requests as unsent after a link has ended, and forgets the abandoned ones.
@@ -37,6 +41,7 @@ public:
     [[nodiscard]] std::optional<wire::Message> next();
 
     /// Passes a reply to the callback of its request, which may add a request at once.
+    /// @param message  any message from the server
     /// @return false if the message is not a reply to an open request
     [[nodiscard]] bool answer(const wire::Message& message);
 

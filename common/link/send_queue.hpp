@@ -22,22 +22,26 @@ class SendQueue {
 public:
     /// The bytes of one write.
     struct Piece {
-        std::string bytes;
+        std::string bytes;                          ///< not empty
         std::shared_ptr<const void> kept{};         ///< released when the bytes are written
         std::optional<std::uint64_t> durable_seq{}; ///< of the newest ack in it
     };
 
     /// Appends a message, after the ack that waits, if any.
+    /// @param message  any message of a server but an ack or a reply to a request
     void add(const wire::Message& message);
 
     /// Appends bytes that are not a frame.
+    /// @param bytes  written as they are, after the messages added before
     void add_bytes(std::string_view bytes);
 
     /// Queues an ack. It replaces an earlier one that still waits.
+    /// @param ack  its durable_seq is not less than that of earlier acks
     void acknowledge(const wire::Ack& ack);
 
     /// Queues the frame of a reply, which is written when no other frame waits.
-    /// @param kept  released when the frame is written
+    /// @param frame  the encoded reply, including its length prefix
+    /// @param kept   released when the frame is written
     void add_reply(std::string frame, std::shared_ptr<const void> kept);
 
     /// Ignores all further additions.

@@ -42,25 +42,29 @@ struct ServerProtocolConfig {
 /// Source: proto/scanloom/v1/frame.proto.
 class ServerProtocol {
 public:
+    /// Points in time, which the caller passes; the class reads no clock.
     using Time = std::chrono::steady_clock::time_point;
+    /// Differences of points in time.
     using Duration = Time::duration;
 
     /// Authenticate the robot and let it join its session; then call on_joined() or on_not_joined().
     struct Join {
-        wire::Hello hello;
+        wire::Hello hello; ///< session, robot, token and options of the robot
     };
+    /// Pass a sensor's description to the session; then call on_durable().
     struct SubmitSensor {
-        Sensor sensor;
+        Sensor sensor;     ///< validated
         std::size_t bytes; ///< of credit, which on_durable() returns
     };
+    /// Pass scans to the session; then call on_durable().
     struct SubmitScans {
-        std::vector<Scan> scans;
-        std::size_t bytes; ///< of credit, which on_durable() returns
-        Time read;         ///< when their last byte was read
+        std::vector<Scan> scans; ///< validated, of one ScanBatch, by rising seq
+        std::size_t bytes;       ///< of credit, which on_durable() returns
+        Time read;               ///< when their last byte was read
     };
     /// Answer a request; then call on_reply() or on_request_refused().
     struct AnswerRequest {
-        Request request;
+        Request request; ///< with the id that the reply must have
     };
     /// Record in the audit log that the robot exceeded a limit of its token. The link ends.
     struct RecordLimit {};
@@ -68,9 +72,11 @@ public:
     struct Leave {};
     /// Write the bytes, then call on_written().
     using Send = SendQueue::Piece;
+    /// Shut down the sending side of the connection. All bytes were written before.
     struct ShutDownSending {};
     /// Close the connection. The last action.
     struct Close {};
+    /// What the owner of the link does next.
     using Action =
         std::variant<Join, SubmitSensor, SubmitScans, AnswerRequest, RecordLimit, Leave, Send, ShutDownSending, Close>;
 
@@ -83,48 +89,74 @@ public:
 
     /// The result of joining a session.
     struct Joined {
-        std::string session_id; ///< Welcome.session_id
-        std::uint64_t last_durable_seq = 0;
+        std::string session_id;               ///< Welcome.session_id
+        std::uint64_t last_durable_seq = 0;   ///< of this robot; 0 if the session has no scan of it
         std::set<std::uint32_t> sensors = {}; ///< ids of the sensors that the robot has described
     };
 
+    /// Starts the link of a connection that was accepted.
+    /// @param config  deadlines and credit
+    /// @param now     when the connection was accepted
     ServerProtocol(const ServerProtocolConfig& config, Time now);
 
     /// Sends the robot the reason why it is not served, instead of serving it. Call it before on_open().
+    /// @param why  code and message that the robot receives
+    /// @param now  the current time
     void turn_away(wire::LinkError why, Time now);
 
     // The connection
     /// Frames can be exchanged: the TLS handshake is done, or the connection has no TLS.
     void on_open();
+    /// The TLS handshake failed. The link ends.
     void on_handshake_failed();
     /// Returns the space for the next read, valid until on_bytes(). Pre: reading() is not kNothing.
     [[nodiscard]] std::span<std::byte> prepare();
     /// Takes the first `count` bytes of the prepared space.
+    /// @param count  at most the size of the space
+    /// @param now    the current time, not before that of earlier calls
     /// @return how long the link is not read because of its rate limit
     Duration on_bytes(std::size_t count, Time now);
     /// The robot closed the connection, or it failed.
     void on_read_failed();
+    /// The bytes of the last Send were written.
     void on_written() noexcept { is_writing_ = false; }
+    /// The bytes of the last Send could not be written. Later bytes are discarded.
     void on_write_failed();
+    /// A deadline may have passed. Call it at deadline(); an earlier call has no effect.
     void on_timer(Time now);
 
     // The session and the owner
     /// Applies the limits of the robot's token.
+    /// @param limits  of the token that authenticated the robot
+    /// @param now     the current time
     void set_limits(LinkLimits limits, Time now);
+    /// The robot has joined its session. The welcome is sent.
+    /// @param joined  what the welcome contains
+    /// @param now     the current time
     void on_joined(Joined joined, Time now);
+    /// The robot was not authenticated or could not join. The link ends with an error.
+    /// @param why  code and message that the robot receives
     void on_not_joined(const Error& why);
     /// The scans up to `durable_seq` are durable and in the maps.
-    /// @param bytes  credit returned, in addition to earlier calls
+    /// @param durable_seq  highest Scan::seq of this robot that is durable; not less than in earlier calls
+    /// @param bytes        credit returned, in addition to earlier calls
     void on_durable(std::uint64_t durable_seq, std::size_t bytes);
     /// Queues the frame of a reply.
-    /// @param kept  released when the frame is written
+    /// @param frame  the encoded reply, including its length prefix
+    /// @param kept   released when the frame is written
     void on_reply(std::string frame, std::shared_ptr<const void> kept);
+    /// Queues the reply that refuses a request.
+    /// @param request  as in AnswerRequest
+    /// @param why      code and message of the reply
     void on_request_refused(const Request& request, const Error& why);
     /// Ends the link with an error. Only the first one counts.
+    /// @param why  code and message that the robot receives
     void fail(const Error& why);
 
     // What to do
+    /// Returns the next action, or nullopt if there is none until the next event.
     [[nodiscard]] std::optional<Action> next_action(Time now);
+    /// Returns what to read now.
     [[nodiscard]] Reading reading() const noexcept;
     /// Returns when to call on_timer(); Time::max(): never.
     [[nodiscard]] Time deadline() const noexcept;
@@ -181,6 +213,7 @@ private:
 };
 
 /// Returns whether the same hello may succeed after this error.
+/// @param code  of the error that ended the link
 [[nodiscard]] bool is_retryable(Errc code) noexcept;
 
 } // namespace scanloom::link
