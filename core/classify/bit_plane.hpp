@@ -15,8 +15,8 @@ static_assert(std::endian::native == std::endian::little, "cells are read eight 
 
 namespace bits {
 
-inline constexpr std::uint64_t kOnes = 0x0101010101010101; ///< a one in each of 8 bytes
-inline constexpr std::uint64_t kLowSevenBits = 0x7f7f7f7f7f7f7f7f;
+inline constexpr std::uint64_t kOnes = 0x0101010101010101;         ///< a one in each of 8 bytes
+inline constexpr std::uint64_t kLowSevenBits = 0x7f7f7f7f7f7f7f7f; ///< bits 0..6 of each of 8 bytes
 
 /// Packs the lowest bits of 8 bytes into bits 0..7, that of the lowest byte first.
 /// Precondition: the other bits of the bytes are 0.

@@ -12,14 +12,16 @@ enum class OccType : std::uint8_t { kUnexplored = 0, kFree = 1, kOccupied = 2 };
 
 /// The OccTypes of one chunk's cells. No cell is both free and occupied.
 struct OccPlanes {
-    grid::BitPlane free{};
-    grid::BitPlane occupied{};
+    grid::BitPlane free{};     ///< set: the cell is free
+    grid::BitPlane occupied{}; ///< set: the cell is occupied
 
+    /// Returns the type of a cell of the chunk.
     [[nodiscard]] OccType at(grid::Cell cell) const noexcept {
         const auto is_set = [&](const grid::BitPlane& plane) { return grid::is_set(plane, cell); };
         return is_set(free) ? OccType::kFree : is_set(occupied) ? OccType::kOccupied : OccType::kUnexplored;
     }
 
+    /// Sets the type of a cell of the chunk.
     void set(grid::Cell cell, OccType type) noexcept {
         grid::set(free, cell, type == OccType::kFree);
         grid::set(occupied, cell, type == OccType::kOccupied);
@@ -31,7 +33,9 @@ struct OccPlanes {
 ///   danger    free, and an occupied cell is near: see ClassLayer
 enum class CellClass : std::uint8_t { kUnexplored = 0, kFree = 1, kOccupied = 2, kFrontier = 3, kDanger = 4 };
 
+/// The classes of one chunk's cells.
 using ClassChunk = grid::Chunk<CellClass>;
+/// The classes of all cells at one moment.
 using ClassView = grid::ChunkView<ClassChunk>;
 
 /// Returns the class of a cell; kUnexplored if its chunk does not exist.

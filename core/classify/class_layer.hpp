@@ -23,6 +23,7 @@ namespace scanloom::classify {
 /// Threads: one writer; any number of threads may read snapshots.
 class ClassLayer {
 public:
+    /// The largest reach of the danger class, in cells: a cell's class depends on its chunk and the 8 around it only.
     static constexpr std::int32_t kDangerCellsMax = grid::kChunkSide;
 
     /// Returns the current OccTypes of a chunk, or nullptr if it was never written, i.e. all its cells are unexplored.
@@ -42,6 +43,7 @@ public:
     /// Returns the number of chunks with a cell whose class is, or once was, other than unexplored.
     [[nodiscard]] std::size_t chunk_count() const noexcept { return tree_.size(); }
 
+    /// Returns the current classes. Later updates do not change the snapshot.
     [[nodiscard]] ClassView snapshot() { return tree_.snapshot(); }
 
     /// Returns a copy that has its own writer; see grid::ChunkTree::branch().

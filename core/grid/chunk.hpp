@@ -10,14 +10,14 @@
 
 namespace scanloom::grid {
 
-inline constexpr std::int32_t kChunkBits = 6;
+inline constexpr std::int32_t kChunkBits = 6; ///< bits of a cell's index within its chunk, along each axis
 inline constexpr std::int32_t kChunkSide = 1 << kChunkBits; ///< cells
 
 /// The key of a chunk. Chunk (ci, cj) contains the cells with i in [64 ci, 64 ci + 64) and j in [64 cj, 64 cj + 64).
 /// Keys are ordered by rows from the bottom, then from the left.
 struct ChunkKey {
-    std::int32_t cj = 0;
-    std::int32_t ci = 0;
+    std::int32_t cj = 0; ///< row of chunks
+    std::int32_t ci = 0; ///< column of chunks
 
     friend auto operator<=>(const ChunkKey&, const ChunkKey&) = default;
 };
@@ -35,23 +35,27 @@ struct ChunkKey {
 /// 64 x 64 cells of one layer, the bottom row first.
 template <class CellValue>
 struct Chunk : TreeItem {
-    std::array<CellValue, std::size_t{kChunkSide} * kChunkSide> cells;
+    std::array<CellValue, std::size_t{kChunkSide} * kChunkSide> cells; ///< index_in_chunk() is the index of a cell
 
+    /// Returns the value of a cell. Only the cell's position within its chunk counts.
     [[nodiscard]] CellValue& at(Cell cell) noexcept { return cells[index_in_chunk(cell)]; }
+    /// Returns the value of a cell. Only the cell's position within its chunk counts.
     [[nodiscard]] const CellValue& at(Cell cell) const noexcept { return cells[index_in_chunk(cell)]; }
 };
 
 /// The chunks with ci_begin <= ci < ci_end and cj_begin <= cj < cj_end; all chunks by default.
 struct ChunkBox {
-    std::int64_t ci_begin = std::int64_t{std::numeric_limits<std::int32_t>::min()};
-    std::int64_t cj_begin = std::int64_t{std::numeric_limits<std::int32_t>::min()};
-    std::int64_t ci_end = std::int64_t{std::numeric_limits<std::int32_t>::max()} + 1;
-    std::int64_t cj_end = std::int64_t{std::numeric_limits<std::int32_t>::max()} + 1;
+    std::int64_t ci_begin = std::int64_t{std::numeric_limits<std::int32_t>::min()};   ///< first column
+    std::int64_t cj_begin = std::int64_t{std::numeric_limits<std::int32_t>::min()};   ///< first row
+    std::int64_t ci_end = std::int64_t{std::numeric_limits<std::int32_t>::max()} + 1; ///< column after the last one
+    std::int64_t cj_end = std::int64_t{std::numeric_limits<std::int32_t>::max()} + 1; ///< row after the last one
 
+    /// Returns whether all chunks of `other`, which is not empty, are in this box.
     [[nodiscard]] bool contains(const ChunkBox& other) const noexcept {
         return ci_begin <= other.ci_begin && other.ci_end <= ci_end && cj_begin <= other.cj_begin &&
                other.cj_end <= cj_end;
     }
+    /// Returns whether any chunk is in both boxes; neither is empty.
     [[nodiscard]] bool intersects(const ChunkBox& other) const noexcept {
         return ci_begin < other.ci_end && other.ci_begin < ci_end && cj_begin < other.cj_end && other.cj_begin < cj_end;
     }
@@ -78,10 +82,12 @@ using BitPlane = std::array<std::uint64_t, kChunkSide>;
     return static_cast<std::size_t>(cell.j & (kChunkSide - 1));
 }
 
+/// Returns whether the bit of a cell is set in the plane of its chunk.
 [[nodiscard]] constexpr bool is_set(const BitPlane& plane, Cell cell) noexcept {
     return (plane[row_of(cell)] & bit_of(cell)) != 0;
 }
 
+/// Sets or clears the bit of a cell in the plane of its chunk.
 constexpr void set(BitPlane& plane, Cell cell, bool value) noexcept {
     plane[row_of(cell)] = (plane[row_of(cell)] & ~bit_of(cell)) | (value ? bit_of(cell) : 0);
 }

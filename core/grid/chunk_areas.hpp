@@ -14,6 +14,7 @@ inline constexpr std::int32_t kAreaReachMax = 16;
 /// The chunks whose cells, and the cells of chunks within reach of them, have int32 indices.
 inline constexpr std::int64_t kNumberedChunkEnd =
     std::int64_t{std::numeric_limits<std::int32_t>::max()} / kChunkSide - kAreaReachMax - 1;
+/// The chunks on which areas are computed: the cells of all chunks within reach of them have int32 indices.
 inline constexpr ChunkBox kNumberedChunks{-kNumberedChunkEnd, -kNumberedChunkEnd, kNumberedChunkEnd, kNumberedChunkEnd};
 
 /// Returns the box of a chunk's cells.
@@ -41,14 +42,18 @@ public:
     [[nodiscard]] std::int64_t taken_count() const noexcept { return taken_count_; }
 
     /// Takes all areas and extends the box to contain them.
+    /// @param box  extended; may be empty before
     void take_all(CellBox& box);
 
     /// Takes the area of a chunk and extends the box to contain it. If the chunk is not one of these chunks, takes the
     /// areas within reach of it.
+    /// @param key  of any chunk
+    /// @param box  extended; may be empty before
     void take_around(ChunkKey key, CellBox& box);
 
     /// Takes every area within reach of the box extended by one chunk, and extends the box to contain these areas and
     /// one more chunk on every side. Repeats for areas that come within reach as the box grows.
+    /// @param box  extended; not empty before
     void take_touched(CellBox& box);
 
 private:

@@ -74,15 +74,19 @@ template <class ChunkType>
 class ChunkView {
 public:
     ChunkView() = default;
+    /// Creates a view of the contents of a tree. Obtain views from ChunkTree::snapshot() instead.
     explicit ChunkView(tree::Quadrants quadrants) : quadrants_(std::move(quadrants)) {}
 
-    /// The chunk, or nullptr where nothing was ever written.
+    /// Returns the chunk, or nullptr if no cell of it was ever written. The pointer is valid as long as this view.
     [[nodiscard]] const ChunkType* find(ChunkKey key) const noexcept {
         return static_cast<const ChunkType*>(tree::find(quadrants_, key));
     }
 
     /// Calls visit(ChunkKey, const ChunkType&) for every chunk in the box that changed after revision `since`, in no
     /// particular order.
+    /// @param box    chunks to visit
+    /// @param since  chunks with this revision or an older one are skipped; 0: all are visited
+    /// @param visit  called in the thread of the caller
     /// Cost: proportional to the chunks visited, independent of the size of the tree.
     template <class Visit>
     void visit(const ChunkBox& box, Revision since, Visit&& visit) const {
@@ -90,6 +94,7 @@ public:
     }
 
     /// Returns the newest revision of any chunk in the box; 0 if there is none.
+    /// @param box  chunks to search
     [[nodiscard]] Revision newest(const ChunkBox& box) const {
         Revision newest = 0;
         for_each_root(box, [&](const Walk& walk) { newest_below(walk, box, newest); });
@@ -171,6 +176,7 @@ private:
 template <class ChunkType>
 class ChunkTree {
 public:
+    /// Creates a tree without chunks.
     /// @param blank  the contents of a chunk before its first write; trees of the same kind share it
     explicit ChunkTree(std::shared_ptr<const ChunkType> blank) : blank_(std::move(blank)) {}
     ChunkTree(ChunkTree&&) noexcept = default;
@@ -179,6 +185,8 @@ public:
 
     /// Returns the chunk for writing at `revision`; creates it if it does not exist.
     /// The reference is valid until the next snapshot() or branch().
+    /// @param key       any chunk
+    /// @param revision  of the change; not less than that of earlier writes
     [[nodiscard]] ChunkType& write(ChunkKey key, Revision revision) {
         auto& quadrant = quadrants_[tree::quadrant_of(key)];
         const std::uint32_t u = tree::away_from_origin(key.ci);
@@ -192,6 +200,7 @@ public:
     }
 
     /// Returns the current chunk, or nullptr if it was never written. The pointer is valid until the next write.
+    /// @param key  any chunk
     [[nodiscard]] const ChunkType* find(ChunkKey key) const noexcept {
         return static_cast<const ChunkType*>(tree::find(quadrants_, key));
     }

@@ -16,7 +16,9 @@ struct TreeItem {
     Revision revision = 0; ///< the newest change in it or below it
 
     TreeItem() = default;
+    /// Copies the revision. The copy has no holders yet.
     TreeItem(const TreeItem& other) noexcept : revision(other.revision) {} // a copy has holders of its own
+    /// Copies the revision. Both items keep their holders.
     TreeItem& operator=(const TreeItem& other) noexcept {
         revision = other.revision;
         return *this;
@@ -39,8 +41,11 @@ template <class Item>
 class ItemRef {
 public:
     ItemRef() = default;
+    /// Becomes another holder of the item.
     ItemRef(const ItemRef& other) noexcept : item_(other.item_) { hold(); }
+    /// Takes the item over and leaves `other` empty.
     ItemRef(ItemRef&& other) noexcept : item_(std::exchange(other.item_, nullptr)) {}
+    /// Holds the item of `other` instead of its own.
     ItemRef& operator=(ItemRef other) noexcept {
         std::swap(item_, other.item_);
         return *this;
@@ -48,6 +53,7 @@ public:
     ~ItemRef() { let_go(); }
 
     /// Returns the only holder of a new item and takes ownership of it.
+    /// @param item  made by new; held by no other reference
     [[nodiscard]] static ItemRef of_new(Item* item) noexcept {
         ItemRef ref;
         ref.item_ = item;
@@ -63,8 +69,11 @@ public:
         return ref;
     }
 
+    /// Returns the item, or nullptr if the reference is empty.
     [[nodiscard]] Item* get() const noexcept { return item_; }
+    /// Returns the item. Precondition: the reference is not empty.
     [[nodiscard]] Item* operator->() const noexcept { return item_; }
+    /// Returns whether the reference holds an item.
     [[nodiscard]] explicit operator bool() const noexcept { return item_ != nullptr; }
 
     /// Returns whether the item has another holder. Once false, it remains false until this holder is copied.
