@@ -10,8 +10,8 @@ namespace scanloom::mapping {
 
 /// A direction in the sensor frame as a unit vector.
 struct Direction {
-    double x = 1.0;
-    double y = 0.0;
+    double x = 1.0; ///< cosine of the angle
+    double y = 0.0; ///< sine of the angle
 };
 
 /// The largest angular width of a Sector, in radians. A wider beam has several sectors.
@@ -20,9 +20,9 @@ inline constexpr double kSectorWidthMax = std::numbers::pi / 24.0;
 /// The directions from `low` counter-clockwise up to, but not including, `high`, for which one beam is the nearest and
 /// near enough. At most kSectorWidthMax wide.
 struct Sector {
-    std::uint32_t beam = 0;
-    Direction low;
-    Direction high;
+    std::uint32_t beam = 0; ///< index of the beam
+    Direction low;          ///< in the sensor frame; included
+    Direction high;         ///< in the sensor frame; excluded
 };
 
 /// Non-overlapping sectors that assign the directions around a sensor to the beams of a scan: the nearest-beam rule of

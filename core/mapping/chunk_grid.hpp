@@ -21,9 +21,12 @@ namespace scanloom::mapping {
 template <class ChunkType>
 class ChunkGrid {
 public:
+    /// Creates a grid without chunks.
+    /// @param blank  contents of a chunk before its first write; not null
     explicit ChunkGrid(std::shared_ptr<const ChunkType> blank) : tree_(std::move(blank)) {}
 
     /// Starts the log entry `revision`. Call it before the entry's changes are written.
+    /// @param revision  of the entry; greater than that of the entry before
     /// Precondition: revisions increase.
     void begin(Revision revision) {
         revision_ = revision;
@@ -33,6 +36,7 @@ public:
 
     /// Returns the chunk for writing by the current entry, or nullptr if the chunk already contains that entry.
     /// The pointer is valid until the next snapshot().
+    /// @param key  any chunk
     [[nodiscard]] ChunkType* write(grid::ChunkKey key) {
         if (holds_already(key)) return nullptr;
         if (current_ == nullptr || key != current_key_) { // neighbouring runs are mostly in the same chunk
@@ -43,10 +47,15 @@ public:
     }
 
     /// Returns the current chunk, or nullptr if it was never written. The pointer is valid until the next write.
+    /// @param key  any chunk
     [[nodiscard]] const ChunkType* find(grid::ChunkKey key) const noexcept { return tree_.find(key); }
 
     /// Splits the cells i_begin..i_end - 1 of row j at chunk borders and calls change(chunk, i, count) for each part:
     /// the cells i..i + count - 1. Skips chunks that already contain the current entry.
+    /// @param j        row
+    /// @param i_begin  first column
+    /// @param i_end    column after the last one
+    /// @param change   called from left to right
     template <class Change>
     void write_row(std::int32_t j, std::int32_t i_begin, std::int32_t i_end, Change&& change) {
         for (std::int32_t i = i_begin; i < i_end;) {
@@ -60,6 +69,8 @@ public:
     }
 
     /// Restores a chunk of a checkpoint and returns it; the caller fills in its cells.
+    /// @param key       a chunk that was not restored yet
+    /// @param revision  of the chunk in the checkpoint; may be newer than the checkpoint's state
     [[nodiscard]] ChunkType& restore(grid::ChunkKey key, Revision revision) {
         restored_[key] = revision;
         newest_restored_ = std::max(newest_restored_, revision);
@@ -79,6 +90,7 @@ public:
         return keys;
     }
 
+    /// Returns the number of chunks.
     [[nodiscard]] std::size_t chunk_count() const noexcept { return tree_.size(); }
 
     /// See ChunkTree::copied().
@@ -90,6 +102,7 @@ public:
         return ChunkGrid(*this, tree_.branch());
     }
 
+    /// Returns the current contents. Later writes do not change the snapshot.
     [[nodiscard]] grid::ChunkView<ChunkType> snapshot() {
         current_ = nullptr;
         return tree_.snapshot();

@@ -11,8 +11,9 @@ namespace scanloom::mapping::simd {
 
 /// Returns whether the verdicts change nothing, because they only report free space in cells that are already saturated
 /// as free.
+/// @param chunk     the cells before the scan
 /// @param evidence  verdicts for the occupancy layer
-/// @param counted  verdicts for the HIMM layer
+/// @param counted   verdicts for the HIMM layer
 [[nodiscard]] constexpr bool is_settled(const LaserChunk& chunk, const ChunkVerdicts& evidence,
                                         const ChunkVerdicts& counted) noexcept {
     std::uint64_t news = evidence.occupied_rows | counted.occupied_rows;
@@ -25,13 +26,28 @@ namespace scanloom::mapping::simd {
 
 /// Adds the evidence of a scan to the occupancy layer: l = clamp(l + model(cell) - l0, l_min, l_max) for each cell with
 /// a verdict.
+/// @param chunk     changed
+/// @param verdicts  of one scan for this chunk
+/// @param rule      evidence, prior and clamp
+/// Source: Thrun, Burgard, Fox, Probabilistic Robotics (2005), Table 9.1.
 void add_evidence(LaserChunk& chunk, const ChunkVerdicts& verdicts, const OccupancyRule& rule);
 
 /// Updates the HIMM layer: increments the counters of occupied cells and decrements those of free cells.
+/// @param chunk     changed
+/// @param verdicts  of one scan for this chunk
+/// @param rule      increment and decrement
+/// Source: Borenstein, Koren, Histogramic In-Motion Mapping (1991), section III.
 void count_hits(LaserChunk& chunk, const ChunkVerdicts& verdicts, const HimmRule& rule);
 
-/// Updates the types of the cells in `touched` from their values. Cells without a value keep their type.
+/// Updates the types of the cells in `touched` from their log-odds. Cells without a value keep their type.
+/// @param chunk         changed
+/// @param touched       the cells that a scan changed
+/// @param by_occupancy  limits, in log-odds
 void fold_types(LaserChunk& chunk, const grid::BitPlane& touched, const classify::Hysteresis<LogOdds>& by_occupancy);
+/// Updates the types of the cells in `touched` from their HIMM counters. Cells without a value keep their type.
+/// @param chunk    changed
+/// @param touched  the cells that a scan changed
+/// @param by_himm  limits, 0..15
 void fold_types(LaserChunk& chunk, const grid::BitPlane& touched, const classify::Hysteresis<HimmCount>& by_himm);
 
 } // namespace scanloom::mapping::simd

@@ -15,15 +15,18 @@ enum class Layer : std::uint8_t {
     kClassification, ///< free, occupied, unexplored, frontier, danger
 };
 
+/// All layers, in the order of their numbers.
 inline constexpr std::array kLayers = {Layer::kOccupancy, Layer::kHimm, Layer::kSonar, Layer::kClassification};
 
 /// Returns the layer's name in URLs, e.g. "occupancy".
+/// @param layer  any layer
 [[nodiscard]] constexpr std::string_view name_of(Layer layer) noexcept {
     constexpr std::array<std::string_view, 4> kNames = {"occupancy", "himm", "sonar", "classification"};
     return kNames[static_cast<std::size_t>(layer)];
 }
 
 /// Returns the layer with a name in URLs, or nullopt if there is none.
+/// @param name  e.g. "himm"
 [[nodiscard]] constexpr std::optional<Layer> layer_of(std::string_view name) noexcept {
     for (const Layer layer : kLayers) {
         if (name_of(layer) == name) return layer;

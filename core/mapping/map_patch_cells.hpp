@@ -10,6 +10,7 @@
 namespace scanloom::mapping {
 
 /// Returns the box of cells that a patch covers.
+/// @param patch      metres, map frame
 /// @param cell_size  metres; of the returned cells, not of the patch
 [[nodiscard]] inline grid::CellBox cells_of(const MapPatch& patch, double cell_size) noexcept {
     if (patch.cells.empty()) return {};
@@ -24,7 +25,9 @@ namespace scanloom::mapping {
 ///
 /// If the patch's cells are no larger than the map's, there is one call for each patch cell, with the map cell that
 /// contains its centre. Otherwise, there is one call for each map cell whose centre lies in the patch.
+/// @param patch      metres, map frame
 /// @param cell_size  metres; of the map's cells
+/// @param visit      called in the order of the patch's or the map's rows, from the bottom
 template <class Visit>
 void for_each_cell_of(const MapPatch& patch, double cell_size, Visit&& visit) {
     constexpr double kSnap = 1e-9; // treats sizes that differ by rounding alone as equal

@@ -22,6 +22,7 @@ inline constexpr std::uint32_t kProjectionVersion = 4;
 /// The state of a projection without its chunks and without its trajectories, which the log contains. A checkpoint
 /// stores it with the chunks.
 struct ProjectionState {
+    /// A robot of the log, and what the projection counts of it.
     struct Robot : LoggedRobot {
         std::uint64_t scan_count = 0;          ///< integrated scans
         std::optional<TrajectoryPoint> newest; ///< of the integrated scans
@@ -29,11 +30,11 @@ struct ProjectionState {
         std::uint64_t excluded = 0;            ///< scans that exclusions left out
     };
 
-    Revision revision = 0;
-    LayerBounds bounds;
-    std::size_t pages = 0; ///< Projection::page_count() after restore()
-    std::vector<Robot> robots;
-    SharedExclusions exclusions = no_exclusions();
+    Revision revision = 0;                         ///< of the newest entry that it contains
+    LayerBounds bounds;                            ///< of all layers
+    std::size_t pages = 0;                         ///< Projection::page_count() after restore()
+    std::vector<Robot> robots;                     ///< by RobotIndex
+    SharedExclusions exclusions = no_exclusions(); ///< of the log up to `revision`
 };
 
 /// Approximate memory of one page of a projection: a chunk with its classes and its share of the trees, or a block of a
@@ -51,10 +52,12 @@ public:
     /// @param exclusions  exclusions of the whole log that will be applied; they leave out earlier scans
     explicit Projection(const MapConfig& config, SharedExclusions exclusions = no_exclusions());
 
+    /// Returns the session's settings.
     [[nodiscard]] const MapConfig& config() const noexcept { return config_; }
+    /// Returns the revision of the newest entry that is applied; 0 if there is none.
     [[nodiscard]] Revision revision() const noexcept { return rules_.revision(); }
 
-    /// Boxes around the cells that any scan changed.
+    /// Returns the boxes around the cells that any scan changed.
     [[nodiscard]] LayerBounds bounds() const noexcept { return {laser_.bounds(), sonar_.bounds()}; }
 
     /// Returns the number of chunks of laser and sonar layers.
@@ -71,22 +74,28 @@ public:
     [[nodiscard]] const std::vector<LoggedRobot>& robots() const noexcept { return rules_.robots(); }
 
     /// Returns a sensor's description, or nullptr if the robot has not joined or has not described the sensor.
+    /// @param robot  index in the session
+    /// @param id     Sensor::id
     [[nodiscard]] std::shared_ptr<const Sensor> sensor_of(RobotIndex robot, std::uint32_t id) const;
 
     /// Returns whether the newest entry was not integrated.
+    /// @param robot  index in the session
     /// Precondition: the newest entry is a scan of that robot.
     [[nodiscard]] bool has_left_out_newest(RobotIndex robot) const noexcept {
         const auto& newest = robots_[robot].newest;
         return !newest || newest->revision != revision();
     }
 
+    /// Returns the exclusions that are applied to scans; not null.
     [[nodiscard]] const SharedExclusions& exclusions() const noexcept { return filter_.exclusions(); }
 
     /// Returns whether the next entry excludes scans that these maps may contain, or brings excluded scans back. The
     /// log must then be replayed from its beginning with its exclusions; apply() rejects the entry.
+    /// @param entry  the entry that follows revision()
     [[nodiscard]] bool is_outdated_by(const LogEntry& entry) const noexcept;
 
     /// Applies the next entry of the log to the maps.
+    /// @param entry  the entry that follows revision()
     /// Errors: kMalformed if the entry cannot follow the earlier ones (an unknown robot or sensor, a seq out of order),
     ///         which occurs in damaged logs only; kConflict if is_outdated_by(entry). After an error, the projection is
     ///         unchanged.
@@ -118,8 +127,11 @@ public:
     /// for every chunk, whose cells the caller fills in. Chunks may be newer than the state if writing the checkpoint
     /// was interrupted. Applying the log's entries after the state's revision then gives the same maps. The restored
     /// trajectories start with each robot's newest point; earlier points are only in the log.
+    /// @param state  of a checkpoint of the same session
     void restore(const ProjectionState& state);
+    /// Restores a chunk of the laser layers and returns it; the caller fills in its cells.
     [[nodiscard]] LaserChunk& restore_laser_chunk(grid::ChunkKey key, Revision revision);
+    /// Restores a chunk of the sonar layer and returns it; the caller fills in its cells.
     [[nodiscard]] SonarChunk& restore_sonar_chunk(grid::ChunkKey key, Revision revision);
 
     /// Returns the newest revision of the restored chunks. If the log has fewer entries, the chunks belong to another

@@ -17,11 +17,12 @@ namespace scanloom::mapping {
 
 /// A point in cell units. Cell (i, j) is the square from (i, j) to (i + 1, j + 1).
 struct GridPoint {
-    double x = 0.0;
-    double y = 0.0;
+    double x = 0.0; ///< cells
+    double y = 0.0; ///< cells
 };
 
 /// Returns the cell that contains a point.
+/// @param point  in cells; within the int32 range
 [[nodiscard]] inline grid::Cell cell_at(GridPoint point) noexcept {
     return {static_cast<std::int32_t>(std::floor(point.x)), static_cast<std::int32_t>(std::floor(point.y))};
 }
@@ -31,6 +32,9 @@ struct GridPoint {
 /// Each step along the longer axis visits one cell: the one nearest to the line between the two centres. Of two cells
 /// at the same distance, it visits the one further along the shorter axis, so that a line has the same shape for every
 /// sign of its direction.
+/// @param from   first cell
+/// @param to     last cell
+/// @param visit  receives each cell
 /// Source: Bresenham, Algorithm for Computer Control of a Digital Plotter (1965), with its rounding made explicit.
 template <class Visit>
 void bresenham(grid::Cell from, grid::Cell to, Visit&& visit) {
@@ -59,6 +63,9 @@ void bresenham(grid::Cell from, grid::Cell to, Visit&& visit) {
 
 /// Calls visit(Cell) for every cell that a segment crosses, in order, from the cell of `from` to the cell of `to`.
 /// Where the segment passes exactly through a corner, it visits the adjacent cell along x.
+/// @param from   start of the segment, in cells
+/// @param to     end of the segment, in cells
+/// @param visit  receives each cell
 /// Cost: proportional to the cells visited. Each border is computed from the segment's ends, so that rounding errors do
 ///       not accumulate.
 /// Source: Amanatides, Woo, A Fast Voxel Traversal Algorithm for Ray Tracing (1987).
@@ -95,7 +102,7 @@ void traverse(GridPoint from, GridPoint to, Visit&& visit) {
 /// The cells of one chunk that rays passed or hit.
 struct ChunkMarks {
     grid::BitPlane passed{}; ///< by a ray, before its hit
-    grid::BitPlane hit{};
+    grid::BitPlane hit{};    ///< where a ray ended at an obstacle
 };
 
 /// The cells that the rays of a scan pass and hit. A cell counts once, however many rays cross it, and a hit takes
@@ -103,7 +110,9 @@ struct ChunkMarks {
 /// Memory: two bits per cell of the chunks that rays touch.
 class ScanMarks {
 public:
+    /// Marks a cell that a ray passes.
     void pass(grid::Cell cell) { mark(cell, &ChunkMarks::passed); }
+    /// Marks a cell in which a ray hits something.
     void hit(grid::Cell cell) { mark(cell, &ChunkMarks::hit); }
 
     /// Returns the marks of all chunks that have any.
@@ -133,6 +142,7 @@ private:
 };
 
 /// Returns the verdicts of a chunk's marks; a hit takes precedence over a pass.
+/// @param marks  of one chunk
 [[nodiscard]] inline ChunkVerdicts verdicts_of(const ChunkMarks& marks) noexcept {
     ChunkVerdicts verdicts{.occupied = marks.hit};
     for (std::size_t j = 0; j < marks.passed.size(); ++j) {
@@ -145,26 +155,30 @@ private:
 
 /// The properties of a sensor and a map that beam tracing uses. Lengths are in metres.
 struct RayGeometry {
-    ReadingRules readings;
+    ReadingRules readings;                 ///< range limits of the sensor
     RayModel model = RayModel::kBresenham; ///< or kTraversal
     double hit_radius = 0.0;               ///< cells whose centres are within this distance of a hit count as hit
-    double cell_size = 0.05;
+    double cell_size = 0.05;               ///< side of a cell
 };
 
 /// A sensor's position and orientation on the grid.
 struct SensorOnGrid {
+    /// Converts a pose to the grid.
+    /// @param T_map_sensor  metres, radians
+    /// @param cell_size     metres
     SensorOnGrid(const Pose2& T_map_sensor, double cell_size) noexcept
         : at{T_map_sensor.x * (1.0 / cell_size), T_map_sensor.y * (1.0 / cell_size)},
           cosine(std::cos(T_map_sensor.yaw)), sine(std::sin(T_map_sensor.yaw)) {}
 
     /// Rotates a direction from the sensor frame to the map frame.
+    /// @param d  in the sensor frame
     [[nodiscard]] Direction to_map(const Direction& d) const noexcept {
         return {cosine * d.x - sine * d.y, sine * d.x + cosine * d.y};
     }
 
-    GridPoint at;
-    double cosine;
-    double sine;
+    GridPoint at;  ///< position, in cells
+    double cosine; ///< of its yaw in the map frame
+    double sine;   ///< of its yaw in the map frame
 };
 
 /// Marks the cells that one beam passes and the cells that it hits. A beam without a return passes all cells up to and

@@ -22,13 +22,19 @@ inline constexpr double kWorkPerChunk = 512.0;
 inline constexpr double kWorkPerSweptChunk = 2048.0;
 
 /// Returns the work of tracing one beam.
+/// @param reading   of the beam
+/// @param geometry  ray model, hit radius and cell size
 [[nodiscard]] double work_of_beam(const Reading& reading, const RayGeometry& geometry) noexcept;
 
 /// Returns the work of one sonar cone, where each cell costs more than with a laser.
 /// @param aperture  full width of the cone, radians
+/// @param range     millimetres, kInvalidRange or kNoReturn
+/// @param geometry  range limits, thickness and cell size
 [[nodiscard]] double work_of_cone(double aperture, RangeMm range, const ModelGeometry& geometry) noexcept;
 
 /// Returns the distance up to which a reading shows anything, in metres; 0 if it shows nothing.
+/// @param range     millimetres, kInvalidRange or kNoReturn
+/// @param geometry  range limits, thickness and cell size
 [[nodiscard]] double reached(RangeMm range, const ModelGeometry& geometry) noexcept;
 
 /// Upper bounds of what integrating a scan may change, computed beforehand to limit memory and work.
@@ -39,10 +45,15 @@ struct Reach {
 };
 
 /// Returns the reach of a scan.
+/// @param config  of the session
+/// @param sensor  that took the scan
+/// @param scan    with as many ranges as beams
 /// Cost: proportional to the number of beams; no beam is traced.
 [[nodiscard]] Reach reach_of(const MapConfig& config, const Sensor& sensor, const Scan& scan);
 
 /// Returns the reach of importing a part of a map.
+/// @param config  of the session
+/// @param patch   metres, map frame
 [[nodiscard]] Reach reach_of(const MapConfig& config, const MapPatch& patch);
 
 /// Returns the number of chunks that contain any cell of the box.
@@ -55,10 +66,13 @@ inline constexpr double kScanWorkMax = 1e9;
 inline constexpr double kReachCellsMax = 8192.0;
 
 /// Checks a sensor's range against the cell size.
+/// @param config  its cell size is used
+/// @param sensor  its range_max is used, metres
 /// Errors: kInvalidField if range_max spans more than kReachCellsMax cells.
 [[nodiscard]] Result<> check_reach(const MapConfig& config, const Sensor& sensor);
 
 /// Checks the work of integrating a scan or importing a part of a map.
+/// @param reach  of the scan or the part of a map
 /// Errors: kInvalidField if the work exceeds kScanWorkMax and would take seconds: too many, too wide or too long cones,
 ///         or too large a map, for the cell size.
 [[nodiscard]] Result<> check_work(const Reach& reach);

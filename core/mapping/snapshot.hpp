@@ -22,22 +22,22 @@ namespace scanloom::mapping {
 
 /// A scan that was applied, with its sensor's description at that time.
 struct IntegratedScan {
-    Revision revision = 0; ///< of the scan's log entry
-    std::shared_ptr<const Sensor> sensor;
-    Scan scan;
+    Revision revision = 0;                ///< of the scan's log entry
+    std::shared_ptr<const Sensor> sensor; ///< not null
+    Scan scan;                            ///< as in the log
 };
 
 /// The state of one robot. Its index in Snapshot::robots is its RobotIndex.
 struct RobotState {
-    std::string name;
+    std::string name;                  ///< unique within the session
     std::optional<double> body_radius; ///< metres, as stated when the robot last joined
-    std::uint64_t last_seq = 0;
-    std::uint64_t scan_count = 0; ///< integrated
-    std::uint64_t jumps = 0;      ///< scans that max_jump left out
-    std::uint64_t excluded = 0;   ///< scans that exclusions left out
-    double stamp = 0.0;           ///< seconds, of the newest integrated scan
-    std::optional<Pose2> pose;    ///< T_map_robot of the newest integrated scan
-    TrajectoryView trajectory;
+    std::uint64_t last_seq = 0;        ///< of its newest scan in the log; 0 if it has none
+    std::uint64_t scan_count = 0;      ///< integrated
+    std::uint64_t jumps = 0;           ///< scans that max_jump left out
+    std::uint64_t excluded = 0;        ///< scans that exclusions left out
+    double stamp = 0.0;                ///< seconds, of the newest integrated scan
+    std::optional<Pose2> pose;         ///< T_map_robot of the newest integrated scan
+    TrajectoryView trajectory;         ///< of its integrated scans
 
     /// For display only, not part of the maps. Set only in a session that accepts scans, to a scan received since the
     /// session was loaded.
@@ -46,30 +46,33 @@ struct RobotState {
 
 /// Boxes around the cells of each layer that any scan changed.
 struct LayerBounds {
-    LaserLayers::Bounds laser;
-    grid::CellBox sonar;
+    LaserLayers::Bounds laser; ///< of the laser layers
+    grid::CellBox sonar;       ///< of the sonar layer
 
     friend bool operator==(const LayerBounds&, const LayerBounds&) = default;
 };
 
 /// Returns the box of cells that any layer has observed.
+/// @param bounds  of all layers
 [[nodiscard]] grid::CellBox bounds_of(const LayerBounds& bounds) noexcept;
 
 /// The maps of a session at one revision, shared by all readers. Immutable; hold it by shared_ptr<const Snapshot> as
 /// long as needed.
 struct Snapshot {
-    Revision revision = 0;
-    MapConfig config;
+    Revision revision = 0;                         ///< of the newest entry that the maps contain
+    MapConfig config;                              ///< settings of the session
     SharedExclusions exclusions = no_exclusions(); ///< of the session's log
-    LayerBounds bounds;
-    std::size_t chunk_count = 0; ///< of laser and sonar layers
-    LaserView laser;
-    SonarView sonar;
-    classify::ClassView classes;
-    std::vector<RobotState> robots;
+    LayerBounds bounds;                            ///< of all layers
+    std::size_t chunk_count = 0;                   ///< of laser and sonar layers
+    LaserView laser;                               ///< occupancy, HIMM and types
+    SonarView sonar;                               ///< log-odds from sonars
+    classify::ClassView classes;                   ///< classification
+    std::vector<RobotState> robots;                ///< by RobotIndex
 };
 
 /// Returns the box of cells that a layer shows.
+/// @param snapshot  the maps
+/// @param layer     any layer
 [[nodiscard]] grid::CellBox bounds_of(const Snapshot& snapshot, Layer layer) noexcept;
 
 /// Returns the box of cells that any layer has observed.
@@ -79,9 +82,11 @@ struct Snapshot {
 template <class Value>
 using ChunkCells = std::array<Value, std::size_t{grid::kChunkSide} * grid::kChunkSide>;
 
-/// Returns whether any sensor has observed the cell.
+/// Returns whether a laser or sonar has observed the cell.
 [[nodiscard]] constexpr bool is_known(LogOdds cell) noexcept { return cell != kUnknownLogOdds; }
+/// Returns whether a laser has observed the cell.
 [[nodiscard]] constexpr bool is_known(HimmCount cell) noexcept { return cell != kUnseenHimm; }
+/// Returns whether the cell is explored or a frontier.
 [[nodiscard]] constexpr bool is_known(classify::CellClass cell) noexcept {
     return cell != classify::CellClass::kUnexplored;
 }
@@ -90,6 +95,9 @@ using ChunkCells = std::array<Value, std::size_t{grid::kChunkSide} * grid::kChun
 ///
 /// `view` is the ChunkView that contains the layer; cells_of(chunk) returns the layer's ChunkCells of one of its
 /// chunks.
+/// @param snapshot  the maps
+/// @param layer     any layer
+/// @param use       called once
 template <class Use>
 decltype(auto) with_layer(const Snapshot& snapshot, Layer layer, Use&& use) {
     switch (layer) {
@@ -117,6 +125,8 @@ decltype(auto) with_layer(const Snapshot& snapshot, Layer layer, Use&& use) {
 /// contains a known cell: ci and cj as int32 and the 4096 cells, bottom row first. All numbers are little-endian. A
 /// cell is an int16 in the occupancy and sonar layers and one byte in the himm layer (laser_chunk.hpp) and in
 /// the classification (classify/cell_class.hpp).
+/// @param snapshot  the maps
+/// @param layer     any layer
 /// Cost: reads every cell of the layer once.
 [[nodiscard]] std::string digest_of(const Snapshot& snapshot, Layer layer);
 
@@ -127,6 +137,7 @@ inline constexpr std::size_t kMainBoundsChunksMax = 65'536;
 /// Returns the part of a map to show first: the box of the largest explored area and of the areas around the robots'
 /// newest positions. Chunks that touch, or have one chunk between them, belong to the same area. Cells far away that
 /// result from a single scan with a wrong pose do not count.
+/// @param snapshot  the maps
 /// @return the box in cells; empty if nothing is explored or the map has more than kMainBoundsChunksMax chunks
 [[nodiscard]] grid::CellBox main_bounds_of(const Snapshot& snapshot);
 

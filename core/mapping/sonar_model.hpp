@@ -112,9 +112,9 @@ enum class Verdict : std::uint8_t { kFree, kOccupied };
 
 /// The properties of a sensor and a map that the model uses. Lengths are in metres.
 struct ModelGeometry {
-    ReadingRules readings;
-    double thickness = 0.1; ///< alpha; at least one cell is used
-    double cell_size = 0.05;
+    ReadingRules readings;   ///< range limits of the sensor
+    double thickness = 0.1;  ///< alpha; at least one cell is used
+    double cell_size = 0.05; ///< side of a cell
 
     /// Returns half the width of the occupied band around a hit, in metres.
     [[nodiscard]] double half_band() const noexcept { return std::max(thickness, cell_size) / 2.0; }

@@ -39,6 +39,7 @@ using TrajectoryBlocks = std::vector<std::shared_ptr<TrajectoryBlock>>;
 class TrajectoryView {
 public:
     TrajectoryView() = default;
+    /// Creates a view of the blocks of a trajectory. Obtain views from Trajectory::snapshot() instead.
     TrajectoryView(std::shared_ptr<const detail::TrajectoryBlocks> blocks, std::size_t begin, std::size_t size)
         : blocks_(std::move(blocks)), begin_(begin), size_(size) {}
 
@@ -48,12 +49,15 @@ public:
     /// Returns the number of points, including those no longer kept.
     [[nodiscard]] std::size_t size() const noexcept { return size_; }
 
+    /// Returns the point with this index.
+    /// @param index  number of the robot's integrated scan, from 0
     /// Precondition: begin() <= index < size().
     [[nodiscard]] const TrajectoryPoint& operator[](std::size_t index) const noexcept {
         return (*(*blocks_)[(index - begin_) / kTrajectoryBlock])[(index - begin_) % kTrajectoryBlock];
     }
 
     /// Returns the index of the first point that is kept and newer than `since`; size() if there is none.
+    /// @param since  revision of a log entry
     [[nodiscard]] std::size_t first_after(Revision since) const noexcept {
         std::size_t low = begin_;
         std::size_t high = size_;
@@ -84,12 +88,14 @@ public:
     Trajectory() = default;
 
     /// Starts a trajectory after `before` points that it does not keep.
+    /// @param before  number of earlier points
     explicit Trajectory(std::size_t before) : begin_(before), size_(before) {}
 
     Trajectory(Trajectory&&) noexcept = default;
     Trajectory& operator=(Trajectory&&) noexcept = default;
     ~Trajectory() = default;
 
+    /// Adds a point. Pre: its revision is greater than that of the newest point.
     void append(const TrajectoryPoint& point) {
         if (!owns_last_) own_last();
         if (in_last() == 0) begin_block();
@@ -97,8 +103,10 @@ public:
         ++size_;
     }
 
+    /// Returns the number of blocks that are kept.
     [[nodiscard]] std::size_t block_count() const noexcept { return blocks_->size(); }
 
+    /// Returns the current points. Points appended later are not in the view.
     [[nodiscard]] TrajectoryView snapshot() const { return {blocks_, begin_, size_}; }
 
     /// Returns a second trajectory with the same points and its own writer.

@@ -30,6 +30,9 @@ using Planes = std::array<std::uint64_t*, kContoursMax>;
 ///
 /// Contours mostly run side by side. Along an edge between sectors, only the parts in which two contours differ cross
 /// the plane between them. A step from a near beam to a far one is therefore traced once, in the first plane.
+/// @param contours  of the scan
+/// @param strip     which rows and columns the planes hold
+/// @param planes    changed; one for each contour
 /// Precondition: the strip's columns contain the contours.
 /// Cost: sectors and crossings.
 /// Source: the parity rule of scan conversion: Foley, van Dam et al., Computer Graphics (1990), section 3.6.

@@ -10,14 +10,14 @@
 /// Working data of flip_crossings(), common to all instruction sets.
 namespace scanloom::mapping::simd {
 
-constexpr std::size_t kLanesMax = 32; // of doubles
+constexpr std::size_t kLanesMax = 32; ///< doubles in the widest vector register
 static_assert(kRingPadding > kLanesMax);
 
 /// Pieces of a border that cross rows, with one array for each number of a piece.
 template <std::size_t numbers>
 struct Pieces {
-    std::array<double*, numbers> of;
-    std::size_t count = 0;
+    std::array<double*, numbers> of; ///< by number: one array of `count` values each
+    std::size_t count = 0;           ///< pieces
 };
 
 // The first two numbers are the rows that a piece crosses: first, and one past the last.
@@ -35,6 +35,8 @@ struct Crossings {
 
 /// Returns arrays with room for the pieces of any contours. Each thread that integrates scans keeps its arrays from
 /// scan to scan.
+/// @param sectors   of the ring
+/// @param contours  at most kContoursMax
 inline std::array<Crossings, kContoursMax> room_for(std::size_t sectors, std::size_t contours) {
     static thread_local std::vector<double> room;
     const std::size_t each = 2 * sectors + kRingPadding; // two steps an edge

@@ -20,19 +20,20 @@ namespace scanloom::mapping {
 /// The edges are unit vectors in the sensor frame: sectors + 1 values, then kRingPadding zeros, so that a vector
 /// register can be loaded from any edge.
 struct FanRing {
-    static constexpr std::uint32_t kNoBeam = 0xFFFF'FFFFU;
+    static constexpr std::uint32_t kNoBeam = 0xFFFF'FFFFU; ///< no beam sees the sector
 
-    std::size_t sectors = 0;
+    std::size_t sectors = 0;          ///< of the whole turn
     std::size_t in_order = 0;         ///< number of leading sectors for which sector m belongs to beam m
     std::vector<std::uint32_t> beams; ///< beam of each sector; kNoBeam: unseen
-    std::vector<double> edges_x;
-    std::vector<double> edges_y;
+    std::vector<double> edges_x;      ///< components along x
+    std::vector<double> edges_y;      ///< components along y
 };
 
 /// More values than any vector register has lanes of doubles.
 inline constexpr std::size_t kRingPadding = 40;
 
 /// Returns the fan as a ring, with the parts that no beam sees added.
+/// @param fan  sectors in the sensor frame
 [[nodiscard]] FanRing make_fan_ring(const BeamFan& fan);
 
 /// Evaluates the inverse sensor model of one scan for each cell, without approximation, chunk by chunk.
@@ -56,20 +57,21 @@ inline constexpr std::size_t kRingPadding = 40;
 ///         the occupied test, which is a misprint.
 class Sweep {
 public:
+    /// One inverse sensor model to evaluate.
     struct Band {
-        const FanRing* ring;
-        double thickness; ///< alpha, metres; at least one cell is used
+        const FanRing* ring; ///< not null
+        double thickness;    ///< alpha, metres; at least one cell is used
     };
 
     /// The inputs common to all bands.
     struct Scene {
         std::span<const RangeMm> ranges; ///< one for each beam of the fans
-        Pose2 T_map_sensor;
-        ReadingRules readings;
-        double cell_size; ///< metres
+        Pose2 T_map_sensor;              ///< pose of the sensor at the scan: metres, radians
+        ReadingRules readings;           ///< range limits of the sensor
+        double cell_size;                ///< metres
     };
 
-    static constexpr std::size_t kBandsMax = 2;
+    static constexpr std::size_t kBandsMax = 2; ///< one for evidence, one for HIMM
 
     /// Prepares the sweep of a scan. The arguments need not outlive the constructor.
     /// @param scene  the scan and the map's cell size
@@ -83,6 +85,8 @@ public:
 
     /// Calls chunk(grid::ChunkKey, std::span<const ChunkVerdicts>) with the verdicts of each band, for every chunk of
     /// the strip in which any band has a verdict.
+    /// @param strip  from 0
+    /// @param chunk  called for the chunks of each row from left to right, the bottom row first
     /// Precondition: strip < strips().
     template <class Chunk>
     void visit(std::size_t strip, Chunk&& chunk) {
