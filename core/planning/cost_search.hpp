@@ -23,21 +23,28 @@ namespace scanloom::planning {
 class CostSearch {
 public:
     /// Keeps a reference to `passability`, which must outlive the search.
+    /// @param passability  decides which cells can be entered, and where a metre costs more
     explicit CostSearch(const Passability& passability);
     explicit CostSearch(Passability&&) = delete;
 
     /// Computes the cost of every cell that can be reached from `start`.
+    /// @param start  a cell of the window that can be entered
     void from(Spot start);
 
     /// Searches until the cost of `goal` is known.
+    /// @param start  a cell of the window that can be entered
+    /// @param goal   likewise
     /// Precondition: `goal` can be reached from `start`; see connected().
     void between(Spot start, Spot goal);
 
     /// Searches until the cheapest of the wanted cells is found.
+    /// @param start   a cell of the window that can be entered
+    /// @param wanted  cells to search for, of the same window
     /// @return the cheapest of them, of equally cheap ones the first by rows; nullopt if none can be reached
     [[nodiscard]] std::optional<Spot> nearest(Spot start, const BitGrid& wanted);
 
     /// Returns what it costs to get to a cell in the last search; infinity if the search did not reach the cell.
+    /// @param spot  a cell of the window
     [[nodiscard]] double cost(Spot spot) const noexcept {
         const std::uint32_t cell = index_of(spot);
         const auto& block = blocks_[cell / kBlockCells];
@@ -45,6 +52,7 @@ public:
     }
 
     /// Returns the cells from the last search's start to `goal`, both included.
+    /// @param goal  a cell of the window
     /// Precondition: the last search reached `goal`.
     [[nodiscard]] std::vector<Spot> path_to(Spot goal) const;
 

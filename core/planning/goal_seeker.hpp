@@ -14,18 +14,22 @@ namespace scanloom::planning {
 [[nodiscard]] double square_of_distance(grid::Cell a, grid::Cell b) noexcept;
 
 /// Returns the frontier's cell nearest to `to`; of equally near ones the first by rows.
+/// @param frontier  not empty
+/// @param to        any cell
 [[nodiscard]] grid::Cell nearest_cell(const classify::Frontier& frontier, grid::Cell to);
 
 /// Searches for the goal of a frontier, ring after ring of free cells around it; see frontier_goals().
 class GoalSeeker {
 public:
     /// Keeps references to both, which must outlive the seeker.
-    /// @param search  holds the cost from the robot to every cell
-    /// @param rings   how many rings to examine
+    /// @param passability  of the map that the frontiers are from
+    /// @param search       holds the cost from the robot to every cell
+    /// @param rings        how many rings to examine
     GoalSeeker(const Passability& passability, const CostSearch& search, std::int32_t rings);
 
     /// Returns the goal for a frontier, or nullopt if the robot can reach none.
-    /// @param place  index of the frontier among all frontiers
+    /// @param frontier  of the same map
+    /// @param place     index of the frontier among all frontiers
     [[nodiscard]] std::optional<FrontierGoal> seek(const classify::Frontier& frontier, std::size_t place);
 
 private:

@@ -10,6 +10,7 @@
 
 namespace scanloom::planning {
 
+/// Options of frontier_goals() and next_goal().
 struct ExplorationOptions {
     PassabilityOptions passability; ///< allow_unknown and on_known are ignored: a robot explores from known ground
     std::optional<std::size_t> frontier_size_min; ///< cells; nullopt: see frontier_size_min()
@@ -21,6 +22,8 @@ struct ExplorationOptions {
 /// By default a frontier narrower than the body is ignored, because the body would not get through. A frontier is as
 /// long as the body is wide if it has 2 body_radius / (sqrt(2) cell_size) cells; diagonal frontiers are the longest for
 /// their number of cells. The result is at least 1.
+/// @param options      body radius, or a fixed number of cells
+/// @param cell_size_m  metres
 [[nodiscard]] std::size_t frontier_size_min(const ExplorationOptions& options, double cell_size_m);
 
 /// A cell from which a robot can explore a frontier.
@@ -47,9 +50,14 @@ using FrontierGoals = std::vector<std::optional<FrontierGoal>>;
 /// standing there is no worse, and otherwise a passage as narrow as the danger along its walls would never be explored.
 /// On the path and at the goal the whole body stays on known ground, because walls may begin wherever known ground
 /// ends. Only a robot that already has unknown ground under its body, and otherwise no goal, may cross unknown ground.
-/// @param robot  position of the robot, metres, map frame
+/// @param classes      of the map
+/// @param cell_size_m  metres
+/// @param frontiers    of find_frontiers(); FrontierGoal::frontier is an index of these
+/// @param robot        position of the robot, metres, map frame
+/// @param options      body and costs
 /// Precondition: `frontiers` are the frontiers of `classes`.
 /// Errors: those of plan_path() that concern its start, its options or the map.
+/// Source: Yamauchi, A Frontier-Based Approach for Autonomous Exploration (1997): the nearest frontier by path cost.
 [[nodiscard]] Result<FrontierGoals> frontier_goals(const classify::ClassView& classes, double cell_size_m,
                                                    std::span<const classify::Frontier> frontiers, const Point2& robot,
                                                    const ExplorationOptions& options = {});
@@ -61,30 +69,36 @@ using FrontierGoals = std::vector<std::optional<FrontierGoal>>;
 /// @param goals  the goals of each robot
 /// @param taken  which frontiers are taken already; empty: none
 /// @return for each robot the index of its frontier, or nullopt if none is left that it can reach
+/// Source: Burgard, Moors, Stachniss, Schneider, Coordinated Multi-Robot Exploration (2005), with path costs alone.
 [[nodiscard]] std::vector<std::optional<std::size_t>> assign_frontiers(std::span<const FrontierGoals> goals,
                                                                        std::vector<bool> taken = {});
 
+/// Whether a robot has something to explore.
 enum class Exploration {
     kGoal,          ///< the robot has a goal
     kTakenByOthers, ///< other robots pursue all frontiers that this one can reach
     kComplete,      ///< no frontier that is large enough can be reached: the map is complete
 };
 
+/// What a robot should explore next.
 struct NextGoal {
-    Exploration outcome = Exploration::kComplete;
-    std::optional<FrontierGoal> goal;      ///< with kGoal
-    Path path;                             ///< with kGoal: to the centre of the goal's cell
-    std::vector<grid::Cell> around_target; ///< with kGoal: the frontier's cells within standoff_m of the target
-    std::size_t given_up = 0;              ///< number of cells that were excluded
+    Exploration outcome = Exploration::kComplete; ///< decides which of the other members are set
+    std::optional<FrontierGoal> goal;             ///< with kGoal
+    Path path;                                    ///< with kGoal: to the centre of the goal's cell
+    std::vector<grid::Cell> around_target;        ///< with kGoal: the frontier's cells within standoff_m of the target
+    std::size_t given_up = 0;                     ///< number of cells that were excluded
 };
 
 /// Returns what a robot should explore next: of the frontiers that no other robot pursues, the one with the cheapest
 /// path to its goal. Call it again whenever the map has changed.
+/// @param classes            of the map
+/// @param cell_size_m        metres
 /// @param robot              position of the robot, metres, map frame
 /// @param targets_of_others  FrontierGoal::target of the goals that other robots pursue. Each takes the frontier that
 ///     contains the cell or, as the map may have changed since, the nearest frontier within standoff_m.
-/// @param given_up           FRONTIER cells to exclude, because they could not be observed; see unobservable_cells(). The
-///     remaining cells of their frontiers form frontiers of their own.
+/// @param options            body, costs and distances
+/// @param given_up           FRONTIER cells to exclude, because they could not be observed; see unobservable_cells().
+///     The remaining cells of their frontiers form frontiers of their own.
 /// Errors: those of frontier_goals().
 [[nodiscard]] Result<NextGoal> next_goal(const classify::ClassView& classes, double cell_size_m, const Point2& robot,
                                          std::span<const grid::Cell> targets_of_others = {},
@@ -97,11 +111,14 @@ struct NextGoal {
 /// frontier_goals(). The target is one of them unless the map around the goal has changed. If the caller excludes them
 /// from then on, exploration ends.
 /// @param classes        the current classes; may have changed since the goal was assigned
+/// @param goal           FrontierGoal::cell of the goal
 /// @param around_target  NextGoal::around_target of the goal
 [[nodiscard]] std::vector<grid::Cell> unobservable_cells(const classify::ClassView& classes, grid::Cell goal,
                                                          std::span<const grid::Cell> around_target);
 
 /// Returns those of `cells` that are FRONTIER, in the same order.
+/// @param classes  of the map
+/// @param cells    any cells
 [[nodiscard]] std::vector<grid::Cell> still_frontier(const classify::ClassView& classes,
                                                      std::span<const grid::Cell> cells);
 

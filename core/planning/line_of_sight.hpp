@@ -13,6 +13,8 @@ namespace scanloom::planning {
 
 /// Returns whether no cell on the straight line between two cells is occupied, testing one cell for each step along the
 /// line's longer axis.
+/// @param from         first cell of the line
+/// @param to           last cell of the line
 /// @param is_occupied  called with cells between the two, without the two
 template <class IsOccupied>
 [[nodiscard]] bool sees(grid::Cell from, grid::Cell to, IsOccupied&& is_occupied) {
@@ -30,8 +32,9 @@ template <class IsOccupied>
 /// be entered, even only at a corner.
 ///
 /// Along the border between two cells the segment costs what the more expensive cell costs.
-/// @param from  in cells from the window's lower-left corner
-/// @param to    in the same unit
+/// @param passability  decides which cells can be entered, and where a metre costs more
+/// @param from         in cells from the window's lower-left corner
+/// @param to           in the same unit
 /// Precondition: both points are in cells that can be entered.
 /// Source: Amanatides, Woo, A Fast Voxel Traversal Algorithm for Ray Tracing (Eurographics 1987).
 [[nodiscard]] std::optional<double> cost_of_line(const Passability& passability, const Point2& from, const Point2& to);
@@ -41,8 +44,9 @@ template <class IsOccupied>
 /// The body is clear if its centre stays further than its radius from the square of every obstacle cell
 /// (Passability::obstacles) and, with on_known, from the area outside the window. Exact except for rounding; see
 /// kRoundingCells. A body of radius 0 is always clear: callers check the cells that its centre crosses.
-/// @param from  start of the segment, in cells from the window's lower-left corner
-/// @param to    end of the segment, in the same unit; may be equal to `from`
+/// @param passability  its obstacles and its body radius are used
+/// @param from         start of the segment, in cells from the window's lower-left corner
+/// @param to           end of the segment, in the same unit; may be equal to `from`
 [[nodiscard]] bool keeps_clear(const Passability& passability, const Point2& from, const Point2& to);
 
 } // namespace scanloom::planning

@@ -12,12 +12,13 @@
 
 namespace scanloom::planning {
 
-inline constexpr double kDangerCostMax = 1000.0;
+inline constexpr double kDangerCostMax = 1000.0; ///< of PassabilityOptions::danger_cost
 
 /// Tolerance of radii, in cells: a radius of three cells reaches the third cell even if the quotient of two decimal
 /// fractions was rounded.
 inline constexpr double kRoundingCells = 1e-9;
 
+/// The body that moves, and where it may go.
 struct PassabilityOptions {
     double body_radius_m = 0.15; ///< 0: the body is a point
     double danger_cost = 1.0;    ///< additional cost of a metre in danger
@@ -34,36 +35,47 @@ struct PassabilityOptions {
 /// radius larger by up to 0.17 cells applies. A metre in a DANGER cell costs 1 + danger_cost, any other metre 1. Spots
 /// are cells of the window; see search_window().
 struct Passability {
-    grid::CellBox window;
-    double cell_size_m = 0.0;
-    PassabilityOptions options;
-    BitGrid occupied;
+    grid::CellBox window;       ///< cells of the map that the grids below describe
+    double cell_size_m = 0.0;   ///< metres
+    PassabilityOptions options; ///< what it was computed for
+    BitGrid occupied;           ///< OCCUPIED
     BitGrid ground;    ///< where a point can be: FREE and DANGER; with allow_unknown every cell that is not OCCUPIED
     BitGrid danger;    ///< DANGER
     BitGrid obstacles; ///< what the body keeps clear of: OCCUPIED; with on_known every cell that is not ground
     BitGrid fits;      ///< where the body's centre can be: the ground that is far enough from the obstacles
     BitGrid enterable; ///< `fits` and the cells that open_start() opens
 
+    /// Returns the cell of the map that a place in the window denotes.
     [[nodiscard]] grid::Cell cell_at(Spot spot) const noexcept {
         return {window.i_begin + spot.x, window.j_begin + spot.y};
     }
     /// Returns the centre of a cell in metres of the map frame.
+    /// @param spot  a cell of the window
+    /// @return metres, map frame
     [[nodiscard]] Point2 centre_of(Spot spot) const noexcept {
         const grid::Cell cell = cell_at(spot);
         return {(cell.i + 0.5) * cell_size_m, (cell.j + 0.5) * cell_size_m};
     }
     /// Returns the cell's place in the window, or nullopt if the cell is outside.
+    /// @param cell  any cell of the map
     [[nodiscard]] std::optional<Spot> spot_of(grid::Cell cell) const noexcept;
-    /// Returns the cell that contains a point (metres, map frame), or nullopt if the point is outside the window.
+    /// Returns the place in the window of the cell that contains a point, or nullopt if the point is outside the
+    /// window.
+    /// @param point  metres, map frame
     [[nodiscard]] std::optional<Spot> spot_at(const Point2& point) const noexcept;
 };
 
 /// Converts a point from metres of the map frame to cells from the window's lower-left corner.
-/// @param cell  the cell that contains the point; the result lies within it even if the difference was rounded
+/// @param passability  its window and cell size are used
+/// @param point        metres, map frame
+/// @param cell         the cell that contains the point; the result lies within it even if the difference was rounded
+/// @return cells from the window's lower-left corner
 [[nodiscard]] Point2 to_cells(const Passability& passability, const Point2& point, Spot cell);
 
 /// Computes the passability of the search_window() of `ends`.
+/// @param classes      of the map
 /// @param cell_size_m  metres
+/// @param options      body, costs, and whether unexplored cells can be entered
 /// @param ends         metres, map frame: the start of a path, then its possible goals; empty: all explored ground
 /// Errors: kInvalidField for an option out of range or a point that is not finite; kTooLarge if the window is too large
 ///     (see search_window()).
@@ -79,13 +91,17 @@ struct Passability {
 /// connected to it, within a body radius and a cell of it, and no nearer to an occupied cell than it is. With on_known,
 /// this includes cells up to four times as far away that lead to known ground on all sides, because a laser that looks
 /// ahead shows a robot no ground at its own sides.
-/// @param start  metres, map frame
+/// @param passability  changed if the start is not usable as it is
+/// @param start        metres, map frame
+/// @return the start's cell, in the window
 /// Errors: kNoPath if the start is outside the map, inside an obstacle or in unknown space; kInvalidField if it is not
 ///     finite.
 [[nodiscard]] Result<Spot> open_start(Passability& passability, const Point2& start);
 
 /// Checks that a path can end at a point and returns the point's cell.
-/// @param goal  metres, map frame
+/// @param passability  of the search
+/// @param goal         metres, map frame
+/// @return the goal's cell, in the window
 /// Errors: kNoPath if the goal is outside the map, inside an obstacle or in unknown space, or if the point or its
 ///     cell's centre is nearer to an obstacle than the body radius; kInvalidField if it is not finite.
 [[nodiscard]] Result<Spot> check_goal(const Passability& passability, const Point2& goal);

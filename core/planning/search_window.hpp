@@ -14,7 +14,7 @@ inline constexpr std::int64_t kSearchCellsMax = std::int64_t{1} << 26; ///< a se
 
 /// The properties of a body that determine a search window.
 struct Reach {
-    double body_radius_m = 0.0;
+    double body_radius_m = 0.0; ///< metres
     bool allow_unknown = false; ///< unexplored cells can be entered
 };
 
@@ -40,7 +40,9 @@ struct SearchWindow {
 ///   that this larger box touches. So the box contains a path around everything in it.
 ///
 /// Therefore a stray scan far away does not enlarge the window.
+/// @param classes      of the map
 /// @param cell_size_m  metres
+/// @param reach        what can be entered, and how near areas must be to count as one
 /// @param ends         metres, map frame: the start of a path, then its possible goals
 /// @return the window; its box is {0, 0, 0, 0} if nothing is explored around the first end
 /// Errors: kTooLarge if the box has more than kWindowCellsMax cells or more than kSearchCellsMax must be searched;
