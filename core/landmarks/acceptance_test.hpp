@@ -15,6 +15,7 @@ struct Continuity {
     double evenness = 0.0;  ///< 1 / (1 + cv), cv the standard deviation of the gaps divided by their mean
     double fill = 0.0;      ///< fraction of the extent that is in gaps below 2 eps
 
+    /// Returns the mean of the three values: the continuity that landmarks report.
     [[nodiscard]] double mean() const noexcept { return (linearity + evenness + fill) / 3.0; }
 
     friend bool operator==(const Continuity&, const Continuity&) = default;
@@ -49,6 +50,8 @@ enum class LaidOn {
 /// the elements in which the two differ support the best, and not only the elements of one thing, which may have
 /// moved. All surface elements of both views are compared for this. A distant pose makes the result ambiguous even with
 /// fewer inliers if fewer of its elements lie in observed free space.
+/// @param candidates  of one view, ranked
+/// @param first       what the candidates were matched against
 /// Precondition: the candidates are ranked; see rank().
 [[nodiscard]] Alignment judge(const std::vector<Candidate>& candidates, LaidOn first);
 

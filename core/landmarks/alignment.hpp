@@ -15,6 +15,7 @@ namespace scanloom::landmarks {
 
 inline constexpr std::size_t kViewPointsMin = 20; ///< points that a view needs to be matched
 
+/// Settings of align().
 struct AlignmentSettings {
     double distance_max = 5.0; ///< metres between the sensor positions of the two views, along each axis of the first
 };
@@ -31,10 +32,10 @@ enum class Certainty {
 
 /// The pose of one view relative to another, as found by scan matching.
 struct Alignment {
-    Pose2 T_first_second; ///< takes points of the second view's frame to the first's
-    Certainty certainty = Certainty::kUndetermined;
-    std::string why;            ///< why the certainty is not kClear, a sentence; empty if it is
-    std::optional<Pose2> rival; ///< the best of the other poses that may be correct as well
+    Pose2 T_first_second;                           ///< takes points of the second view's frame to the first's
+    Certainty certainty = Certainty::kUndetermined; ///< result of the acceptance test; see judge()
+    std::string why;                                ///< why the certainty is not kClear, a sentence; empty if it is
+    std::optional<Pose2> rival;                     ///< the best of the other poses that may be correct as well
 
     /// Ratios, 0 to 1, of the second view's surface, in which every 10 cm count as one element.
     double explained = 0.0;      ///< inlier ratio: lies on a surface of the first view
@@ -46,6 +47,7 @@ struct Alignment {
 
 /// Checks that a view can be matched.
 /// @param name  the name of the view in error messages
+/// @param view  points and sensor position in one frame, metres
 /// Errors: kInvalidField if a point or the sensor position is invalid (see check_points()), or if the view has fewer
 ///     than kViewPointsMin points. The message contains the name.
 [[nodiscard]] Result<> check_view(std::string_view name, const CloudView& view);
@@ -63,8 +65,12 @@ struct Alignment {
 /// A pose is returned in each case, for display. No alignment can show that two views are of the same place, because
 /// rooms may be equal. The sigmas are those of the fit, from its residuals and the directions of the surfaces; they do
 /// not include things that moved or other poses.
+/// @param first     view in whose frame the pose is returned, metres
+/// @param second    view whose pose is searched, metres
+/// @param settings  limits of the search
 /// Errors: those of check_view(); kInvalidField if distance_max is not more than 0 and at most 100.
 /// Cost: O(n log n) of the points, and some tens of milliseconds.
+/// Source: the steps are find_hypotheses(), settle(), fit_to_lines() and judge().
 [[nodiscard]] Result<Alignment> align(const CloudView& first, const CloudView& second,
                                       const AlignmentSettings& settings = {});
 
@@ -77,7 +83,7 @@ struct PointPair {
 
 /// The rigid transform that fits pairs best, in the least-squares sense.
 struct PairAlignment {
-    Pose2 T_first_second;
+    Pose2 T_first_second;          ///< takes second points to first ones: metres, radians
     double rms = 0.0;              ///< metres, weighted, of the remaining distances
     std::vector<std::size_t> used; ///< indices of the pairs that were used, ascending
 };
@@ -87,6 +93,7 @@ struct PairAlignment {
 ///
 /// Pairs of weight 0 are ignored. Two pairs are enough, and so are pairs on one line: in the plane only a reflection
 /// would fit those as well.
+/// @param pairs  positions and weights, metres
 /// Errors: kInvalidField for an invalid point (see check_points()), a weight that is negative or not finite, fewer than
 ///     2 pairs with weight, or a rotation that is not determined, for example if all points of one side are equal.
 /// Source: Umeyama, Least-squares estimation of transformation parameters between two point patterns (1991); in the
@@ -98,6 +105,7 @@ struct PairAlignment {
 /// Each combination of two pairs gives a transform to test (of more than 64 pairs, evenly chosen ones are combined).
 /// The best transform is fitted to all pairs that agree with it. `used` contains the pairs that agree; their rms is
 /// that of align_pairs() with these pairs alone.
+/// @param pairs            positions and weights, metres
 /// @param inlier_distance  metres within which a pair agrees with a transform
 /// Errors: kInvalidField for an invalid point or weight or fewer than 2 pairs with weight, as align_pairs(), for an
 ///     inlier distance that is not finite and more than 0, or if fewer than 3 pairs agree (any 2 of similar length do);

@@ -17,17 +17,21 @@ public:
     /// @param from    the position of the sensor, in the frame of the points
     Horizon(std::span<const Point2> points, const Point2& from);
 
+    /// What the sensor saw at a place.
     enum class Verdict {
         kOpen,    ///< free space: the points in this direction are further away
         kHidden,  ///< behind the points in this direction
         kUnknown, ///< about as far as the points in this direction, or there are none
     };
     /// Returns what the sensor saw at a place.
+    /// @param place  metres, in the frame of the points
     [[nodiscard]] Verdict at(const Point2& place) const;
+    /// Returns the position of the sensor, metres, in the frame of the points.
     [[nodiscard]] const Point2& from() const noexcept { return from_; }
     [[nodiscard]] double reach() const noexcept { return reach_; } ///< metres, distance of the furthest point
     /// Returns whether any point in any direction is further away than the place. at() returns kOpen for no other
     /// places; this check is faster.
+    /// @param place  metres, in the frame of the points
     [[nodiscard]] bool reaches(const Point2& place) const { return squared_norm(place - from_) < reach_ * reach_; }
 
 private:
@@ -50,6 +54,7 @@ struct Evidence {
     std::size_t contradicted = 0; ///< outliers: lie in the free space of the other view
     std::size_t elements = 0;     ///< all; those neither matched nor contradicted were not visible to the other view
 
+    /// Returns the sums of the counts.
     friend Evidence operator+(const Evidence& a, const Evidence& b) {
         return {a.matched + b.matched, a.contradicted + b.contradicted, a.elements + b.elements};
     }
@@ -64,7 +69,11 @@ enum class Finding : std::uint8_t {
 
 /// Tests the surface elements of a second view, in a given pose, against what a first view shows. An element is an
 /// outlier if it is not on the first view's surface and any of the horizons looked through its position.
-/// @param horizons  of the places that the first view was seen from
+/// @param surface         of the first view, in the first frame
+/// @param horizons        of the places that the first view was seen from
+/// @param second          surface elements of the second view, in the second frame
+/// @param T_first_second  pose of the second frame in the first frame
+/// @return one finding for each element of `second`
 /// Precondition: the surface has elements.
 [[nodiscard]] std::vector<Finding> findings_of(const Surface& surface, std::span<const Horizon* const> horizons,
                                                std::span<const Surfel> second, const Pose2& T_first_second);
@@ -73,6 +82,8 @@ enum class Finding : std::uint8_t {
 [[nodiscard]] Evidence evidence_of(std::span<const Finding> findings);
 
 /// Returns whether any of the horizons looked through a place.
+/// @param horizons  in one frame
+/// @param place     metres, in that frame
 [[nodiscard]] bool is_open(std::span<const Horizon* const> horizons, const Point2& place);
 
 } // namespace scanloom::landmarks

@@ -13,9 +13,11 @@
 
 namespace scanloom::landmarks {
 
-inline constexpr std::size_t kSurfelsMax = 250;
+inline constexpr std::size_t kSurfelsMax = 250; ///< surface elements of a view that vote
 
 /// Returns at most count_max surface elements, chosen evenly among the cloud's rows.
+/// @param surfels    ordered by rows; see surfels_of()
+/// @param count_max  at least 1
 [[nodiscard]] std::vector<Surfel> sample(std::span<const Surfel> surfels, std::size_t count_max);
 
 /// Searches the poses in which two surfaces may match, the likeliest first.
@@ -24,11 +26,14 @@ inline constexpr std::size_t kSurfelsMax = 250;
 /// that moves one onto the other. Maxima of the votes are hypotheses. So the search needs no initial guess, and also
 /// finds the other poses that may be correct. Hypotheses are distinct and not refined: a good one is within about 0.2 m
 /// and 3 degrees of the pose it represents.
+/// @param first         surface elements in the first frame
+/// @param second        surface elements in the second frame
 /// @param distance_max  metres from the first frame's origin to the second's, along each axis
 /// @param count_max     at most this many hypotheses are returned
 /// @param first_max     at most this many surface elements of the first surface are used, evenly chosen; of the second
 ///     kSurfelsMax
 /// @param ask           called before each rotation; an error that it returns ends the search
+/// @return T_first_second of each hypothesis
 /// Errors: those of `ask`.
 /// Cost: the number of rotations times the number of pairs of elements used.
 /// Source: Ballard, Generalizing the Hough transform to detect arbitrary shapes (1981); Olson, Real-time correlative
@@ -39,41 +44,52 @@ inline constexpr std::size_t kSurfelsMax = 250;
 
 /// Searches the translations for one rotation, as find_hypotheses() does. If things repeat, it finds most of the places
 /// that may be confused.
+/// @param first         surface elements in the first frame
+/// @param second        surface elements in the second frame
 /// @param yaw           radians, rotation of the second surface
 /// @param distance_max  metres from the first frame's origin to the second's, along each axis
+/// @param count_max     at most this many poses are returned
+/// @param first_max     at most this many surface elements of the first surface are used
+/// @return T_first_second of each hypothesis
 [[nodiscard]] std::vector<Pose2> find_translations(std::span<const Surfel> first, std::span<const Surfel> second,
                                                    double yaw, double distance_max, std::size_t count_max,
                                                    std::size_t first_max = kSurfelsMax);
 
 /// A surface that was seen from one or several places, in one frame, to match others against.
 struct Seen {
-    Surface surface;
+    Surface surface;                      ///< metres, in the frame of the horizons
     std::vector<const Horizon*> horizons; ///< of the places it was seen from; must outlive this object
     bool is_map = false;                  ///< seen from several places; surfaces seen more often have more elements
 };
 
 /// The direction in which lines constrain a pose least, and how much they constrain it, relative to the elements used.
 struct WeakDirection {
-    Point2 direction;
-    double held;
+    Point2 direction; ///< unit vector, in the first frame
+    double held;      ///< smallest eigenvalue of the position's normal matrix, per element; 0: not at all
 };
+/// Returns the direction in which the lines of a fit constrain the position least.
+/// @param fit  result of fit_to_lines()
 [[nodiscard]] WeakDirection weak_direction(const LineFit& fit);
 
 /// Returns whether two poses are further apart than kDistinctDistance or kDistinctTurn.
+/// @param a  metres, radians
+/// @param b  in the same frame
 [[nodiscard]] bool is_distinct(const Pose2& a, const Pose2& b);
 
 /// A refined hypothesis and its evidence.
 struct Candidate {
-    LineFit fit;
-    Evidence second_in_first;
-    Evidence first_in_second;
-    bool is_on_map = false;
+    LineFit fit;              ///< the pose and how well it fits
+    Evidence second_in_first; ///< elements of the second view, seen by the first
+    Evidence first_in_second; ///< elements of the first view, seen by the second; on a map those around the view
+    bool is_on_map = false;   ///< whether the first surface is that of a map
     /// For two views: what the first view shows at the second's elements, then what the second shows at the first's.
     /// Empty if the hypothesis was matched against a map.
     std::vector<Finding> findings;
     std::vector<Point2> places; ///< positions of these elements in the first view's frame
 
+    /// Returns T_first_second.
     [[nodiscard]] const Pose2& pose() const { return fit.T_first_second; }
+    /// Returns the evidence of both directions together.
     [[nodiscard]] Evidence both() const { return second_in_first + first_in_second; }
     /// Returns the number of inliers minus the weighted number of outliers. On a map only the view's elements count as
     /// inliers, because a wall that was seen more often has more elements than its length.
@@ -83,28 +99,37 @@ struct Candidate {
 /// How clearly surface elements distinguish two poses. Each element that is an inlier of only one of the poses counts
 /// as one, and as more if it is an outlier of the other, as in Candidate::score().
 struct Difference {
-    double for_one = 0.0;
-    double for_other = 0.0;
+    double for_one = 0.0;      ///< weight of the elements that support the first pose
+    double for_other = 0.0;    ///< weight of the elements that support the other pose
     double of_one_thing = 0.0; ///< the largest part of for_one around one place: perhaps one thing that moved
 };
 
 /// Compares the evidence of two candidates.
+/// @param one           candidate that is supported by Difference::for_one
+/// @param other         candidate that is supported by Difference::for_other
 /// @param thing_radius  metres, the size of a thing that may have moved
 /// Precondition: both candidates are of the same two views.
 /// Cost: quadratic in the number of elements that support `one`.
 [[nodiscard]] Difference difference(const Candidate& one, const Candidate& other, double thing_radius);
 
 /// Refines a hypothesis and collects its evidence.
-/// @param start  a pose that is off by a few centimetres; see settle()
+/// @param first   surface and horizons in the first frame
+/// @param second  surface and horizons in the second frame
+/// @param start   a pose that is off by a few centimetres; see settle()
 /// Precondition: both have surface elements; the origin of the second's frame is the position it was seen from.
 [[nodiscard]] Candidate judged(const Seen& first, const Seen& second, const Pose2& start);
 
 /// Returns the best candidate and the few others that are distinct and nearly as good. Each may become the correct pose
 /// when it is slid; see add_slid().
+/// @param candidates  in any order
 [[nodiscard]] std::vector<Candidate> likely(std::vector<Candidate> candidates);
 
 /// Adds the candidates that result from sliding `best` along its weakest direction, because refinement in a
 /// corridor stops wherever something is near.
+/// @param first       surface and horizons in the first frame
+/// @param second      surface and horizons in the second frame
+/// @param best        its pose is slid
+/// @param candidates  extended
 void add_slid(const Seen& first, const Seen& second, const Candidate& best, std::vector<Candidate>& candidates);
 
 /// Sorts candidates by score, the best first. Of the candidates that are not distinct from the best, the one that fits

@@ -32,11 +32,11 @@ inline constexpr double kCaptureAgainAfter = 30.0;
 /// A keyframe: what a robot saw from one place, in one scan of a robot that drives on or up to kCaptureScansMax of a
 /// stationary robot.
 struct Capture {
-    Pose2 pose;         ///< T_map_robot, of the first scan
-    double stamp = 0.0; ///< seconds, of the first scan
-    Revision first = 0; ///< log entries of the first and the last of its scans
-    Revision last = 0;
-    std::uint32_t scans = 0;
+    Pose2 pose;                  ///< T_map_robot, of the first scan
+    double stamp = 0.0;          ///< seconds, of the first scan
+    Revision first = 0;          ///< log entries of the first and the last of its scans
+    Revision last = 0;           ///< likewise
+    std::uint32_t scans = 0;     ///< 1 to kCaptureScansMax
     std::vector<PointMm> points; ///< map frame; where the laser beams hit something
     Point2 from{0.0, 0.0};       ///< metres, map frame: position of the laser at the first scan
 
@@ -52,6 +52,9 @@ struct Capture {
 class CaptureCutter {
 public:
     /// Adds the next scan.
+    /// @param scan      the robot's next integrated laser scan
+    /// @param sensor    the laser that took it
+    /// @param revision  of the scan's log entry
     /// @return the keyframe that ended, because it is full or the robot moved on; nullopt: none ended
     /// Precondition: `sensor` is a laser and took the scan; revisions increase.
     [[nodiscard]] std::optional<Capture> add(const Scan& scan, const Sensor& sensor, Revision revision);
@@ -74,9 +77,9 @@ private:
 
 /// A keyframe and the robot that it is from.
 struct RobotCapture {
-    RobotIndex robot = 0;
-    Capture capture;
-    Revision ended = 0; ///< log entry at which it ended: its last scan, or a later one if the robot moved on
+    RobotIndex robot = 0; ///< index in the session
+    Capture capture;      ///< what it saw
+    Revision ended = 0;   ///< log entry at which it ended: its last scan, or a later one if the robot moved on
 
     friend bool operator==(const RobotCapture&, const RobotCapture&) = default;
 };
@@ -93,14 +96,17 @@ public:
 
     /// Returns whether a scan, as the next entry, may change anything. The readings are not needed to know. If it
     /// returns false, call pass_over() instead of add().
+    /// @param scan  the next entry of the log
     [[nodiscard]] bool needs(const ScanPose& scan) const noexcept {
         if (filter_.use_of(revision_ + 1, scan) != ScanUse::kIntegrated) return false;
         return scan.robot >= cutters_.size() || cutters_[scan.robot].needs(scan.stamp, scan.pose);
     }
     /// Skips the next entry.
+    /// @param scan  the next entry of the log, for which needs() returned false
     void pass_over(const ScanPose& scan) { filter_.take(++revision_, scan); }
 
     /// Adds the next entry. A scan of a sensor that was never described is skipped: only a damaged log contains one.
+    /// @param entry  the next entry of the log
     /// @return the keyframe that ended with this entry; nullopt: none ended
     [[nodiscard]] std::optional<RobotCapture> add(const LogEntry& entry);
 

@@ -23,7 +23,7 @@ struct FilterFigures {
     /// Roughness is the median of |a - 2 b + c| over the points a, b, c of each three neighbouring beams that are all
     /// returns. It is 0 on a straight wall of evenly spaced points and, as a median, not affected by corners and jumps.
     std::optional<double> noise_reduction_x;
-    std::optional<double> noise_reduction_y;
+    std::optional<double> noise_reduction_y; ///< likewise, along y
 
     friend bool operator==(const FilterFigures&, const FilterFigures&) = default;
 };
@@ -40,6 +40,7 @@ struct FilterFigures {
 /// It is if the angle between them is at most two and a half times the mean step from beam to beam, so that one beam
 /// may be missing there. A scan that repeats its first direction at its end is a full circle. Fewer than three beams
 /// are not.
+/// @param angles  radians, in the order of the beams
 [[nodiscard]] bool is_full_circle(const BeamAngles& angles);
 
 /// A point of a fused cloud.
@@ -86,7 +87,9 @@ struct CloudPoint {
 };
 
 /// Fuses the points of keyframes into one cloud; see fuse().
+/// @param captures   points in millimetres of the map frame
 /// @param threshold  metres
+/// @param ask        see fuse()
 /// @return the points, in the order in which they were first seen
 /// Errors: those of fuse().
 [[nodiscard]] Result<std::vector<CloudPoint>> fuse_captures(

@@ -30,6 +30,7 @@ inline constexpr double kAdaptiveEpsMax = 0.5; // metres
 ///
 /// A point with fewer other points counts with the furthest of them. Without points, or with all points in one square,
 /// the result is kThinningSide.
+/// @param cloud       metres
 /// @param min_points  as in dbscan()
 /// @return eps, metres, kThinningSide .. kAdaptiveEpsMax
 /// Precondition: the cloud passed check_points().
@@ -39,16 +40,16 @@ inline constexpr double kAdaptiveEpsMax = 0.5; // metres
 ///     the position of the strongest bend depends on the largest values, which are stray points.
 [[nodiscard]] Result<double> adaptive_eps(const DistinctPoints& cloud, std::size_t min_points);
 
-inline constexpr std::int32_t kNoise = -1;
+inline constexpr std::int32_t kNoise = -1; ///< cluster of a point that belongs to none
 
-inline constexpr double kEpsMin = 1e-6; ///< metres
-inline constexpr double kEpsMax = 1e6;  ///< metres
-inline constexpr std::size_t kMinPointsMax = 1000;
+inline constexpr double kEpsMin = 1e-6;            ///< metres
+inline constexpr double kEpsMax = 1e6;             ///< metres
+inline constexpr std::size_t kMinPointsMax = 1000; ///< of the parameter min_points
 
 /// An assignment of points to clusters.
 struct Clustering {
     std::vector<std::int32_t> cluster_of; ///< for each point 0 .. clusters - 1, or kNoise
-    std::size_t clusters = 0;
+    std::size_t clusters = 0;             ///< number of clusters
 
     friend bool operator==(const Clustering&, const Clustering&) = default;
 };
@@ -60,8 +61,9 @@ struct Clustering {
 /// point is in it (of equally near ones, the one with the lowest index). All other points are noise. Clusters are
 /// numbered by their first core point. So the result depends on the points only; in the paper a border point belongs to
 /// the cluster that is found first.
-/// @param points  metres
-/// @param eps     metres; a distance is within eps if dx * dx + dy * dy <= eps * eps in double precision
+/// @param points      metres
+/// @param eps         metres; a distance is within eps if dx * dx + dy * dy <= eps * eps in double precision
+/// @param min_points  points, at least 1
 /// Errors: kInvalidField if eps is outside kEpsMin .. kEpsMax or min_points outside 1 .. kMinPointsMax; those of
 ///     check_points().
 /// Cost: O(n log n), however many points lie within eps of each other; at worst n * min_points more.
@@ -71,14 +73,19 @@ struct Clustering {
 
 /// Finds clusters in a cloud whose equal points were merged before. Clustering::cluster_of is by the points of the
 /// cloud.
+/// @param points      metres; each counts as often as it occurs in the cloud
+/// @param eps         metres
+/// @param min_points  points, at least 1
 /// Precondition: the points of the cloud passed check_points().
 /// Errors: kInvalidField as the other overload.
 [[nodiscard]] Result<Clustering> dbscan(const DistinctPoints& points, double eps, std::size_t min_points);
 
 /// Checks the range of eps.
+/// @param eps  metres
 /// Errors: kInvalidField if eps is outside kEpsMin .. kEpsMax.
 [[nodiscard]] Result<> check_eps(double eps);
 /// Checks the range of min_points.
+/// @param min_points  points
 /// Errors: kInvalidField if min_points is outside 1 .. kMinPointsMax.
 [[nodiscard]] Result<> check_min_points(std::size_t min_points);
 

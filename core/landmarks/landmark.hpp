@@ -14,10 +14,10 @@ namespace scanloom::landmarks {
 /// A thing in a room, as a lidar sees it: a piece of a wall, a cupboard, a door. Metres, in the frame of the points.
 struct Landmark {
     Point2 position{0.0, 0.0}; ///< per-axis median of its points; not necessarily one of them
-    std::size_t points = 0;
-    Point2 size{0.0, 0.0};   ///< its extent along x and along y
-    double spread = 0.0;     ///< median distance of its points from the position
-    double continuity = 0.0; ///< Continuity::mean()
+    std::size_t points = 0;    ///< of its cluster
+    Point2 size{0.0, 0.0};     ///< its extent along x and along y
+    double spread = 0.0;       ///< median distance of its points from the position
+    double continuity = 0.0;   ///< Continuity::mean()
 
     friend bool operator==(const Landmark&, const Landmark&) = default;
 };
@@ -25,6 +25,7 @@ struct Landmark {
 /// Returns the positions of landmarks, for match().
 [[nodiscard]] std::vector<Point2> positions_of(std::span<const Landmark> landmarks);
 
+/// Settings of find_landmarks().
 struct LandmarkSettings {
     std::size_t min_points = 5; ///< see dbscan()
     std::optional<double> eps;  ///< metres; nullopt: adaptive_eps()
@@ -33,13 +34,14 @@ struct LandmarkSettings {
 /// The landmarks of a cloud, and how they were found.
 struct LandmarkSurvey {
     std::vector<Landmark> landmarks; ///< one for each cluster, in the order of the clusters
-    Clustering clustering;
-    double eps = 0.0; ///< the eps that was used, metres
+    Clustering clustering;           ///< of the points
+    double eps = 0.0;                ///< the eps that was used, metres
 };
 
 /// Finds the landmarks of a cloud, the points of one keyframe, and returns how they were found. Medians of an even
 /// count are the mean of the middle two.
-/// @param points  metres; without points there are no landmarks
+/// @param points    metres; without points there are no landmarks
+/// @param settings  of the clustering
 /// Errors: kInvalidField if eps or min_points is out of range (see dbscan()) or a point is invalid (see
 ///     check_points()).
 /// Cost: O(n log n).
@@ -47,7 +49,8 @@ struct LandmarkSurvey {
                                                       const LandmarkSettings& settings = {});
 
 /// Finds the landmarks of a cloud, the points of one keyframe.
-/// @param points  metres
+/// @param points    metres
+/// @param settings  of the clustering
 /// Errors: those of survey_landmarks().
 [[nodiscard]] Result<std::vector<Landmark>> find_landmarks(std::span<const Point2> points,
                                                            const LandmarkSettings& settings = {});
@@ -67,6 +70,8 @@ struct Match {
 ///
 /// Of several nearest points the one with the lowest index counts. So each point is in at most one match, and of equal
 /// points in one set only the first can be matched.
+/// @param first      metres
+/// @param second     metres, in the same frame
 /// @param tolerance  metres; matched points are at most this far apart
 /// @return the matches in the order of `first`; empty if a set is empty
 /// Errors: kInvalidField if the tolerance is negative or not finite; those of check_points().
@@ -76,7 +81,7 @@ struct Match {
 
 /// How consistent two sets of landmarks are. A value is nullopt if it would be divided by 0.
 struct Metrics {
-    std::size_t matched = 0;
+    std::size_t matched = 0;             ///< number of matches
     std::optional<double> persistence;   ///< fraction of the first set's landmarks that are matched
     std::optional<double> stability;     ///< fraction of the matches at most half the tolerance apart
     std::optional<double> distance_mean; ///< metres, of the matches

@@ -30,7 +30,7 @@ struct MapLandmark {
     friend bool operator==(const MapLandmark&, const MapLandmark&) = default;
 };
 
-inline constexpr std::size_t kLandmarkBlock = 32;
+inline constexpr std::size_t kLandmarkBlock = 32; ///< landmarks of one block, which views share
 
 namespace detail {
 struct LandmarkBlock {
@@ -45,13 +45,16 @@ using LandmarkBlocks = std::vector<std::shared_ptr<const LandmarkBlock>>;
 class LandmarkView {
 public:
     LandmarkView() = default;
+    /// Creates a view of the landmarks of a map. Obtain views from LandmarkMap::snapshot() instead.
     explicit LandmarkView(std::shared_ptr<const detail::LandmarkBlocks> blocks) : blocks_(std::move(blocks)) {}
 
+    /// Returns the number of landmarks.
     [[nodiscard]] std::size_t size() const noexcept {
         return blocks_->empty() ? 0 : (blocks_->size() - 1) * kLandmarkBlock + blocks_->back()->landmarks.size();
     }
 
     /// Returns the landmark with the given id.
+    /// @param id  MapLandmark::id
     /// Precondition: id < size().
     [[nodiscard]] const MapLandmark& operator[](std::size_t id) const noexcept {
         return (*blocks_)[id / kLandmarkBlock]->landmarks[id % kLandmarkBlock];
@@ -70,10 +73,13 @@ class LandmarkMap {
 public:
     /// Adds the landmarks of one keyframe. A landmark that is the mutual nearest neighbour of a known one, within
     /// kTolerance, counts as another observation of it. The others are new, in their order.
+    /// @param seen      landmarks of the keyframe, metres, map frame
+    /// @param revision  log entry at which the keyframe ended
     /// @return how many were known
     /// Cost: proportional to the landmarks of the keyframe and the known ones around them.
     std::size_t add(std::span<const Landmark> seen, Revision revision);
 
+    /// Returns the number of landmarks.
     [[nodiscard]] std::size_t size() const noexcept { return size_; }
 
     /// Returns a view of the current landmarks. Cheap: only blocks that change later are copied.
@@ -102,20 +108,20 @@ private:
 /// the number to divide it by.
 struct PairSums {
     std::uint64_t persistence_pairs = 0; ///< pairs whose first keyframe has landmarks
-    double persistence = 0.0;
-    std::uint64_t stability_pairs = 0; ///< pairs in which landmarks matched
-    double stability = 0.0;
-    std::uint64_t landmarks = 0; ///< of all keyframes
-    double continuity = 0.0;     ///< sum over these landmarks
+    double persistence = 0.0;            ///< sum of Metrics::persistence
+    std::uint64_t stability_pairs = 0;   ///< pairs in which landmarks matched
+    double stability = 0.0;              ///< sum of Metrics::stability
+    std::uint64_t landmarks = 0;         ///< of all keyframes
+    double continuity = 0.0;             ///< sum over these landmarks
 
     friend bool operator==(const PairSums&, const PairSums&) = default;
 };
 
 /// The landmarks of a session at one moment.
 struct LandmarkState {
-    LandmarkView landmarks;
-    std::uint64_t captures = 0;
-    PairSums sums;
+    LandmarkView landmarks;     ///< by id
+    std::uint64_t captures = 0; ///< number of keyframes
+    PairSums sums;              ///< over successive keyframes
 };
 
 /// The landmarks of a session's keyframes. Finds the landmarks of each keyframe (adaptive eps, DBSCAN, medians) and
@@ -124,10 +130,12 @@ struct LandmarkState {
 class LandmarkLayer {
 public:
     /// Adds the next keyframe. Its robot may have any index, also one that was not seen before.
+    /// @param ended  a keyframe of SessionCaptures; they are added in the order in which they end
     void add(const RobotCapture& ended);
 
     /// Returns the number of landmarks.
     [[nodiscard]] std::size_t size() const noexcept { return map_.size(); }
+    /// Returns the current landmarks and sums. Cheap: only blocks that change later are copied.
     [[nodiscard]] LandmarkState snapshot() { return {map_.snapshot(), captures_, sums_}; }
 
 private:

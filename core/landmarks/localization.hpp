@@ -20,6 +20,7 @@ struct Neighbourhood {
 /// Searches as align() does for two views, everywhere that robots have looked. T_first_second of the result takes the
 /// view's frame to the map's. The result is clear only if no other place of the map, or of the neighbourhood, has
 /// nearly as many inliers. `explained` is the fraction of the view that is in the map.
+/// @param map   keyframes of a session; see ReferenceLayer
 /// @param view  what the robot sees
 /// @param near  the part of the map to search; nullopt: the whole map
 /// @param ask   called from time to time, because a search in a large map may take seconds; an error that it returns

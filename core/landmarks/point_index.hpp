@@ -14,23 +14,27 @@ namespace scanloom::landmarks {
 /// An index of points by the squares of a grid that contain them.
 class CellIndex {
 public:
+    /// A square that contains points.
     struct Cell {
-        std::int64_t j = 0; ///< row
-        std::int64_t i = 0; ///< column
-        std::uint32_t begin = 0;
-        std::uint32_t end = 0; ///< the cell's points are order()[begin .. end)
+        std::int64_t j = 0;      ///< row
+        std::int64_t i = 0;      ///< column
+        std::uint32_t begin = 0; ///< index in order() of its first point
+        std::uint32_t end = 0;   ///< the cell's points are order()[begin .. end)
     };
 
-    static constexpr std::int64_t kReach = 2;
+    static constexpr std::int64_t kReach = 2; ///< squares, along each axis
 
     /// Creates an index for neighbour searches. Any two points of one square are within `radius` of each other, and
     /// points within `radius` of a point are at most kReach squares away.
+    /// @param points  metres
     /// @param radius  metres
     /// Precondition: the points pass check_points(); radius >= 1e-6.
     /// Cost: O(n log n).
     [[nodiscard]] static CellIndex of_radius(std::span<const Point2> points, double radius);
 
     /// Creates an index with squares of a given side, in metres.
+    /// @param points  metres
+    /// @param side    metres
     /// Precondition: the points pass check_points(); side >= 1e-6.
     /// Cost: O(n log n).
     [[nodiscard]] static CellIndex of_side(std::span<const Point2> points, double side) { return {points, side}; }
@@ -39,12 +43,15 @@ public:
     [[nodiscard]] const std::vector<std::uint32_t>& order() const noexcept { return order_; }
     /// Returns the cells that contain points, by rows.
     [[nodiscard]] const std::vector<Cell>& cells() const noexcept { return cells_; }
+    /// Returns the indices of the points in a cell, ascending.
     [[nodiscard]] std::span<const std::uint32_t> points_of(const Cell& cell) const {
         return std::span(order_).subspan(cell.begin, cell.end - cell.begin);
     }
 
     /// Calls `visit` with the index of each cell around a cell, without the cell itself, in the order of cells(), until
     /// `visit` returns false.
+    /// @param cell   index in cells()
+    /// @param visit  receives indices in cells()
     template <class Visit>
     void around(std::size_t cell, Visit visit) const {
         for (std::int64_t row = -kReach; row <= kReach; ++row) {
@@ -67,6 +74,7 @@ private:
     std::vector<Cell> cells_;
 };
 
+/// A point that a search found.
 struct Neighbor {
     std::size_t index = 0; ///< index of the point in the tree's input
     double distance = 0.0; ///< metres
@@ -84,20 +92,30 @@ struct Neighbor {
 /// Source: Bentley, Multidimensional binary search trees (1975), implemented by nanoflann.
 class PointTree {
 public:
+    /// Builds the tree.
+    /// @param points  metres; copied
     explicit PointTree(std::span<const Point2> points);
+    /// Takes the contents of another tree, which may then only be assigned to or destroyed.
     PointTree(PointTree&& other) noexcept;
+    /// Takes the contents of another tree, which may then only be assigned to or destroyed.
     PointTree& operator=(PointTree&& other) noexcept;
     ~PointTree();
 
+    /// Returns the number of points.
     [[nodiscard]] std::size_t size() const noexcept;
 
     /// Returns the nearest point, or nullopt if the tree is empty.
+    /// @param place  metres
     [[nodiscard]] std::optional<Neighbor> nearest(const Point2& place) const;
 
     /// Returns the `count` nearest points, or all if there are fewer. A point at the place itself is included.
+    /// @param place  metres
+    /// @param count  largest number of results
     [[nodiscard]] std::vector<Neighbor> nearest(const Point2& place, std::size_t count) const;
 
     /// Returns all points at a distance of at most `radius` metres.
+    /// @param place   metres
+    /// @param radius  metres
     /// Precondition: radius >= 0; infinity returns all points.
     [[nodiscard]] std::vector<Neighbor> within(const Point2& place, double radius) const;
 

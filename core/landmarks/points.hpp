@@ -19,6 +19,7 @@ namespace scanloom::landmarks {
 /// Scales points, rotates them around the origin, then translates them: translation + R(rotation) * scale * point.
 ///
 /// Keeps the order and number of points. Scale 1, rotation 0 and translation 0 return identical coordinates.
+/// @param points        metres
 /// @param translation   metres
 /// @param rotation_rad  counter-clockwise
 /// @param scale         more than 0; does not mirror
@@ -26,7 +27,9 @@ namespace scanloom::landmarks {
 [[nodiscard]] Result<std::vector<Point2>> transform_points(std::span<const Point2> points, const Point2& translation,
                                                            double rotation_rad, double scale = 1.0);
 
+/// Converts a point to Eigen's type.
 [[nodiscard]] inline Eigen::Vector2d to_eigen(const Point2& point) { return {point.x, point.y}; }
+/// Converts a point from Eigen's type.
 [[nodiscard]] inline Point2 from_eigen(const Eigen::Vector2d& vector) { return {vector.x(), vector.y()}; }
 
 inline constexpr double kPointCoordinateMax = 1e7;       ///< metres from the origin, each axis
@@ -40,6 +43,7 @@ inline constexpr std::size_t kPointsMax = 1'000'000'000; ///< of one cloud
 [[nodiscard]] Result<> check_points(std::span<const Point2> points, std::string_view name = "points");
 
 /// Returns the middle value; of an even count, the mean of the middle two. Reorders the values.
+/// @param values  reordered
 /// Precondition: there is at least one value; all are finite.
 [[nodiscard]] inline double median(std::span<double> values) {
     assert(!values.empty());
@@ -53,12 +57,13 @@ inline constexpr std::size_t kPointsMax = 1'000'000'000; ///< of one cloud
 /// order of their first occurrence, so of two distinct points the one with the lower number also has the lower index in
 /// the cloud.
 struct DistinctPoints {
-    std::vector<Point2> points;
+    std::vector<Point2> points;        ///< metres
     std::vector<std::uint32_t> counts; ///< for each distinct point, how many points of the cloud are equal to it
     std::vector<std::uint32_t> of;     ///< for each point of the cloud, the number of its distinct point
 };
 
 /// Merges the equal points of a cloud.
+/// @param cloud  metres
 /// Precondition: the points pass check_points().
 /// Cost: O(n log n).
 [[nodiscard]] DistinctPoints distinct_points(std::span<const Point2> cloud);

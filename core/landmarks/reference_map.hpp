@@ -19,10 +19,11 @@ namespace scanloom::landmarks {
 struct ReferenceView {
     Point2 from{0.0, 0.0};       ///< metres, map frame
     std::vector<PointMm> points; ///< map frame
-    Revision ended = 0;
+    Revision ended = 0;          ///< log entry at which the keyframe ended
 };
 
 /// Converts a keyframe to a view. Of more than kPointsOfAView points, evenly chosen ones are kept.
+/// @param capture  points in millimetres of the map frame
 [[nodiscard]] ReferenceView reference_view_of(const RobotCapture& capture);
 
 /// Views, ordered by the log entry at which they ended.
@@ -41,10 +42,13 @@ public:
     /// The memory that a view needs in addition to its points during localization, in points.
     static constexpr std::size_t kViewItself = 720;
 
+    /// Adds a keyframe. It replaces the oldest one of the same place and direction if there are kViewsOfAPlace already.
+    /// @param ended  a keyframe of SessionCaptures; they are added in the order in which they end
     void add(const RobotCapture& ended);
 
     /// Returns the number of points of all views kept, plus kViewItself for each view.
     [[nodiscard]] std::size_t size() const noexcept { return size_; }
+    /// Returns the keyframes that are kept now.
     [[nodiscard]] ReferenceViews snapshot() const;
 
 private:
@@ -54,6 +58,7 @@ private:
     std::size_t size_ = 0;
 };
 
+/// Some of the views, ordered as in ReferenceViews.
 using ReferenceViewSpan = std::span<const std::shared_ptr<const ReferenceView>>;
 
 /// The parameter `around` of surfels_of() for a map and for views matched against it. A wall is seen from many places,
@@ -66,6 +71,7 @@ struct Extent {
     double half = 0.0;       ///< metres from the middle to each side
 };
 /// Returns the extent of the views' points, or nullopt if there are none.
+/// @param views  points in millimetres of the map frame
 [[nodiscard]] std::optional<Extent> extent_of(ReferenceViewSpan views);
 
 /// The surface that robots saw from many places, without what has gone since: elements that more views looked through
@@ -77,6 +83,7 @@ struct Extent {
 class ReferenceMap {
 public:
     /// Builds the map of views.
+    /// @param views   points in millimetres of the map frame
     /// @param middle  origin of the map's own frame; metres, map frame
     /// @param ask     called for each view and each surface element; an error that it returns ends the construction
     /// Errors: those of `ask`.
@@ -85,16 +92,21 @@ public:
         ReferenceViewSpan views, const Point2& middle,
         const std::function<Result<>()>& ask = [] { return Result<>(); });
 
+    /// Returns whether the map has no surface elements.
     [[nodiscard]] bool is_empty() const noexcept { return surfels_.empty(); }
     [[nodiscard]] const Point2& middle() const noexcept { return middle_; } ///< metres, map frame
+    /// Returns the surface elements, metres, relative to middle().
     [[nodiscard]] const std::vector<Surfel>& surfels() const noexcept { return surfels_; }
 
     /// Returns the surface within `radius` metres of a place, and the horizons of the views that may show it. This
     /// object must outlive the result.
+    /// @param place   metres, relative to middle()
+    /// @param radius  metres
     [[nodiscard]] Seen around(const Point2& place, double radius) const;
 
     /// Returns whether a sensor can be at a place: a view looked at the place or through it, or was taken there. Places
     /// behind walls are excluded.
+    /// @param place  metres, relative to middle()
     [[nodiscard]] bool is_possible(const Point2& place) const;
 
 private:

@@ -13,10 +13,13 @@ namespace scanloom::landmarks {
 /// Surface elements with a search for the nearest one.
 class Surface {
 public:
+    /// Builds the search index of surface elements.
     explicit Surface(std::vector<Surfel> surfels) : surfels_(std::move(surfels)), tree_(positions_of(surfels_)) {}
 
+    /// Returns the surface elements.
     [[nodiscard]] const std::vector<Surfel>& surfels() const noexcept { return surfels_; }
     /// Returns the surface element nearest to a place.
+    /// @param place  metres, in the frame of the elements
     /// Precondition: there is at least one.
     [[nodiscard]] Neighbor nearest(const Point2& place) const { return *tree_.nearest(place); }
 
@@ -27,6 +30,8 @@ private:
 
 /// Refines a pose that is off by up to half a metre and some degrees, by iterated closest points. Only the closer part
 /// of the pairs counts, because one view does not show everything that the other shows.
+/// @param first           surface in the first frame
+/// @param second          surface elements in the second frame
 /// @param T_first_second  the pose to refine
 /// @return the pose at convergence or after the last step; T_first_second if nothing is close
 /// Precondition: both have surface elements.
@@ -36,7 +41,7 @@ private:
 
 /// The result of fit_to_lines().
 struct LineFit {
-    Pose2 T_first_second;
+    Pose2 T_first_second;                                    ///< the refined pose: metres, radians
     double agreement = 0.0;                                  ///< increases with the number of elements on lines
     std::size_t used = 0;                                    ///< elements of both surfaces that were used
     double rms = 0.0;                                        ///< metres, of their distances from the other's lines
@@ -47,6 +52,8 @@ struct LineFit {
 ///
 /// Elements can slide along a line, so the density and spacing of the points do not matter. The pose does not change in
 /// directions that no line constrains.
+/// @param first           surface in the first frame
+/// @param second          surface in the second frame
 /// @param T_first_second  the pose to refine
 /// Precondition: both have surface elements.
 /// Source: Censi, An ICP variant using a point-to-line metric (2008), in both directions; Gauss-Newton with Tukey's
