@@ -26,6 +26,7 @@
 
 namespace scanloom::robot {
 
+/// Options of a client. The defaults suit a robot that connects to a server without TLS on the same machine.
 struct ClientOptions {
     std::string server = "127.0.0.1:7447"; ///< the server's robot port: HOST:PORT or [ADDRESS]:PORT
     std::string session;                   ///< [A-Za-z0-9_-]{1,64}; created if it does not exist
@@ -34,7 +35,7 @@ struct ClientOptions {
     std::optional<double> cell_size;       ///< metres, for a new session; an existing session must have the same
     std::optional<double> body_radius;     ///< metres; a disc of this radius around the robot's origin holds the robot
 
-    bool tls = false;
+    bool tls = false;          ///< encrypt the link; the server must be started with TLS
     std::string tls_ca_file;   ///< PEM, enables tls; empty: the system's certificates
     std::string tls_cert_file; ///< PEM, enables tls: for a server that requires client certificates; empty: none
     std::string tls_key_file;  ///< private key of tls_cert_file, without a password; empty: in the same file
@@ -53,12 +54,13 @@ struct ClientOptions {
     std::function<void(const std::string&)> tell = [](const std::string&) {};
 };
 
+/// Counters of a client at one moment.
 struct ClientStatus {
     std::uint64_t acknowledged = 0; ///< scans of this robot that are stored, including those of earlier runs
     std::uint64_t waiting = 0;      ///< scans that are not stored yet, sent or not
     std::uint64_t dropped = 0;      ///< scans lost because there was no room
     std::uint64_t bytes = 0;        ///< sent
-    bool is_linked = false;
+    bool is_linked = false;         ///< whether the server has welcomed this robot on a link that is up now
 };
 
 /// Options of plan().
@@ -88,14 +90,14 @@ struct CoverageOptions {
 /// Adjacent cells in one row of the map: (i, j), (i + 1, j), ... Cell (i, j) has its lower-left corner at (i, j) *
 /// cell_size.
 struct CellRun {
-    std::int32_t j = 0;
-    std::int32_t i = 0;
-    std::int32_t count = 0;
+    std::int32_t j = 0;     ///< row, counted from the origin upwards
+    std::int32_t i = 0;     ///< column of the first cell, counted from the origin to the right
+    std::int32_t count = 0; ///< cells, at least 1
 };
 
 /// A path that covers all free ground.
 struct Coverage {
-    Path path;
+    Path path;                        ///< from the start
     double free_area = 0.0;           ///< square metres of free cells in the region
     double covered_area = 0.0;        ///< square metres of those cells that the path covers
     std::vector<CellRun> unreachable; ///< the remaining free cells; no path reaches them
@@ -104,15 +106,16 @@ struct Coverage {
 
 /// The next exploration goal.
 struct ExplorationGoal {
+    /// Whether the robot has something to explore.
     enum class Outcome {
         kGoal,          ///< `path` leads to the next goal
         kTakenByOthers, ///< other robots drive to all goals that this robot can reach
         kComplete,      ///< no goal can be reached any more
     };
-    Outcome outcome = Outcome::kComplete;
-    std::vector<Point2> path; ///< with kGoal: path to the goal, metres in the map frame
-    Point2 target{0.0, 0.0};  ///< with kGoal: the point to observe from the end of the path
-    bool in_danger = false;   ///< with kGoal: the path ends near an obstacle because there was no other place to stand
+    Outcome outcome = Outcome::kComplete; ///< decides which members below are set
+    std::vector<Point2> path;             ///< with kGoal: path to the goal, metres in the map frame
+    Point2 target{0.0, 0.0};              ///< with kGoal: the point to observe from the end of the path
+    bool in_danger = false; ///< with kGoal: the path ends near an obstacle because there was no other place to stand
     std::uint32_t given_up = 0; ///< frontier cells no longer counted because robots could not observe them
 };
 
@@ -129,7 +132,7 @@ struct LocateOptions {
 /// Pose of a robot's odometry frame in the map. The pose of a scan in the map is compose(T_map_odom, T_odom_robot),
 /// see pose2.hpp.
 struct Location {
-    Pose2 T_map_odom;
+    Pose2 T_map_odom;            ///< metres, radians
     double explained = 0.0;      ///< inlier ratio: share of the observed points that match the map, 0 to 1
     double position_sigma = 0.0; ///< metres; of the sensor's position, in its least certain direction
     double yaw_sigma = 0.0;      ///< radians
@@ -148,9 +151,17 @@ struct Location {
 /// Errors: a Result is true or holds error() with a code for programs and a message for people (error.hpp). value()
 ///         throws ErrorException if there is an error.
 /// Threads: any thread, several at a time. Scans are stored in the order of the send() calls.
+///
+/// A request is sent once the scans sent before it are in the server's maps or dropped, so the server knows the robot's
+/// pose of the newest scan. At most four requests are open at a time; those of other threads wait for their turn within
+/// their own `patience`. All requests may fail with kInvalidField or kTooLarge if no server accepts the option that the
+/// message names, with the server's error, with kTimeout after `patience`, and with the error that ended the link
+/// permanently.
 class Client {
 public:
     /// Starts the client's thread. The server need not be reachable yet.
+    /// @param options  see ClientOptions; all are checked before anything is started
+    /// @return the client, which sends scans until it is closed or destroyed
     /// Errors: kInvalidField if an option is invalid; kStoreFailed or kConflict if the spool cannot be opened; errors
     ///         of the TLS files.
     [[nodiscard]] static Result<std::unique_ptr<Client>> start(ClientOptions options);
@@ -163,7 +174,9 @@ public:
 
     /// Queues a scan and returns at once.
     /// @param sensor  the sensor that took the scan; a changed description is sent to the server
-    /// @param scan    its ranges are to_ranges_mm() of metres, one per beam; the client sets its seq
+    /// @param scan    its ranges are to_ranges_mm() of metres, one per beam; its pose is T_map_robot in metres and
+    ///                radians; the client sets its seq
+    /// @return success if the scan was queued, or dropped for lack of room: see ClientStatus::dropped
     /// Errors: kInvalidField or kTooLarge if no server accepts the value that the message names; kOverloaded if the
     ///         client cannot keep up because its disk does not respond; the error that ended the link permanently, e.g.
     ///         kUnauthorized.
@@ -171,28 +184,44 @@ public:
 
     /// Waits until all scans sent before this call are stored. Scans that other threads send meanwhile are not waited
     /// for.
+    /// @param patience  longest time to wait, milliseconds; 0: only check
+    /// @return success if all these scans are stored
     /// Errors: kTimeout; kOverloaded if scans were dropped for lack of room since the last flush(): the message gives
     ///         their number, all others are stored; the error that ended the link permanently.
     [[nodiscard]] Result<> flush(std::chrono::milliseconds patience);
 
-    /// Waits as flush() does, then closes the link. Further calls of send() fail with kGone.
+    /// Waits until all scans sent before are stored, then closes the link. Further calls of send() fail with kGone.
+    /// @param patience  longest time to wait, milliseconds
+    /// @return success if all scans are stored and the link is closed
     /// Errors: as flush(). After kTimeout call it again; after any other error the client is closed.
     [[nodiscard]] Result<> close(std::chrono::milliseconds patience);
 
-    // Requests. Each is sent once the scans sent before are in the server's maps or dropped, so the server knows the
-    // robot's pose of the newest scan. At most four are open at a time; requests of other threads wait for their turn
-    // within their own `patience`.
-    // Errors of all requests: kInvalidField or kTooLarge if no server accepts the option that the message names; the
-    // server's error, e.g. kNoPath; kTimeout; the error that ended the link permanently.
+    // Requests.
 
-    /// Plans the cheapest path to `goal`, in metres in the map frame.
+    /// Plans the cheapest path to a goal.
+    /// @param goal      metres in the map frame
+    /// @param patience  longest time to wait, milliseconds
+    /// @param options   start, body radius and costs
+    /// @return the path, from the start to `goal`, in metres in the map frame
+    /// Errors: kNoPath if no path leads there: the message says what blocks it; those of all requests, see Client.
+    /// Source: Dijkstra, A note on two problems in connexion with graphs (1959), over the cells; then straightened.
     [[nodiscard]] Result<Path> plan(const Point2& goal, std::chrono::milliseconds patience,
                                     const PlanOptions& options = {});
 
-    /// Asks for the next exploration goal.
+    /// Asks for the next exploration goal. The server keeps it for this robot, so that other robots get other goals.
+    /// @param patience  longest time to wait, milliseconds
+    /// @return the goal and the path to it, in metres in the map frame; or why there is none
+    /// Errors: kNoPath if the robot stands where no path can start, e.g. inside an obstacle; those of all requests, see
+    ///     Client.
+    /// Source: Yamauchi, A frontier-based approach for autonomous exploration (1997).
     [[nodiscard]] Result<ExplorationGoal> next_goal(std::chrono::milliseconds patience);
 
     /// Plans a path that covers all free ground, or that of a region.
+    /// @param patience  longest time to wait, milliseconds
+    /// @param options   start, body radius, distance of the rows and region
+    /// @return the path in metres in the map frame, and the ground that it cannot reach
+    /// Errors: kNoPath if no free ground can be reached from the start; those of all requests, see Client.
+    /// Source: Choset, Pignon, Coverage path planning: the boustrophedon cellular decomposition (1998).
     [[nodiscard]] Result<Coverage> coverage(std::chrono::milliseconds patience, const CoverageOptions& options = {});
 
     /// Finds the robot's pose in the map from laser scans taken at one place. It serves robots without odometry and
@@ -201,14 +230,21 @@ public:
     /// @param scans    one or more, ten are plenty, with at least kLocatePointsMin returns in total; of more than
     ///                 32,768 returns an even selection is used. Scan::pose is the robot's pose in its odometry frame,
     ///                 or the origin without odometry
+    /// @param patience  longest time to wait, milliseconds
+    /// @param options   part of the map to search
+    /// @return the pose of the odometry frame in the map frame, with its uncertainty
     /// Errors: kAmbiguous if several places look alike; kUndetermined if too little of the scans is in the map;
-    ///         kNothingMapped if no laser has mapped anything yet (see Scan::begins_map); otherwise as above.
+    ///         kNothingMapped if no laser has mapped anything yet (see Scan::begins_map); those of all requests, see
+    ///         Client.
+    /// Source: Olson, Real-time correlative scan matching (2009), for the search; Censi, An ICP variant using a
+    ///         point-to-line metric (2008), for the refinement.
     [[nodiscard]] Result<Location> locate(const std::shared_ptr<const Sensor>& sensor, std::span<const Scan> scans,
                                           std::chrono::milliseconds patience, const LocateOptions& options = {});
     /// Smallest number of returns that locate() accepts.
     static constexpr std::size_t kLocatePointsMin = 20;
 
-    /// Returns the current counters. Blocks, as the destructor does, while the spool's disk does not respond.
+    /// Reads the counters. Blocks, as the destructor does, while the spool's disk does not respond.
+    /// @return the counters at this moment
     [[nodiscard]] ClientStatus status() const;
 
 private:
