@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Creates the packages for Debian 12 from built programs: a Debian package, an archive with the same files, and a list
-# of their components (SPDX). The same build and commit give the same bytes.
+# Creates the packages for Debian 12 from built programs and the pages of the C++ API: a Debian package, an archive with
+# the same files, and a list of their components (SPDX). The same build and commit give the same bytes.
 # usage: package.sh BUILD_DIRECTORY OUTPUT_DIRECTORY
 set -euo pipefail
 unset CDPATH
@@ -16,6 +16,7 @@ fail() {
 
 [[ -x $build/bin/scanloom-server ]] || fail "there is no scanloom-server in $build/bin; build it first"
 [[ -f $build/web/index.html ]] || fail "there is no viewer in $build/web; build it first, which needs node and npm"
+[[ -n $(type -P doxygen) ]] || fail "doxygen is not installed; ./scanloom install package installs it"
 
 version=$("$build/bin/scanloom-server" --version)
 version=${version##* }
@@ -44,6 +45,7 @@ for file in README.md ARCHITECTURE.md CHANGELOG.md CONTRIBUTING.md GLOSSARY.md S
     docker/* proto/scanloom/v1/*.proto robot_client/examples/send_scan/send_scan.cpp robot_client/python/scanloom_client.py; do
     install -D --mode 644 "$file" "$docs/$file"
 done
+packaging/api_pages.sh "$version" "$docs/api"
 node packaging/sbom.mjs "$version" "$architecture" web/package-lock.json "$root"/usr/bin/* >"$output/$name.spdx.json"
 install -D --mode 644 "$output/$name.spdx.json" "$docs/scanloom.spdx.json"
 

@@ -117,6 +117,7 @@ readonly parts_of_all=(
     '^openapi_;server/http/openapi.json tests/openapi'
     '^readers$;server/exchange server/http server/tiles tests/readers'
     '^package$;cmake docker packaging robot_client/client robot_client/package scanloom tests/package'
+    '^api_pages$;common core docs/api packaging/api_pages.sh robot_client/client tests/package'
     '^bench_chart$;tests/bench/report'
 )
 readonly files_of_all_parts=(CMakeLists.txt tests/support)

@@ -22,7 +22,7 @@ import { deadLinks } from './links.mjs';
 const source = resolve(import.meta.dirname ?? new URL('.', import.meta.url).pathname, '../..');
 const build = process.env.SCANLOOM_BUILD_DIR ?? join(source, 'build');
 const has = (command) => spawnSync(command, ['--version']).error === undefined;
-const missing = ['dpkg-deb', 'dpkg-shlibdeps'].find((command) => !has(command));
+const missing = ['dpkg-deb', 'dpkg-shlibdeps', 'doxygen'].find((command) => !has(command));
 const skip = missing ? `${missing} is not installed` : false;
 const run = (command, ...args) => execFileSync(command, args, { encoding: 'utf8', stdio: ['ignore', 'pipe', 'pipe'] });
 
@@ -39,7 +39,9 @@ before(() => {
 });
 after(() => rmSync(place, { recursive: true, force: true }));
 
-test('the package has the programs, the viewer, the service, its configuration and the documents', { skip }, () => {
+test('the package has the programs, the viewer, the service, its configuration, the documents and the API pages', {
+  skip,
+}, () => {
   for (const file of [
     'usr/bin/scanloom-server',
     'usr/bin/scanloom-robot',
@@ -51,6 +53,8 @@ test('the package has the programs, the viewer, the service, its configuration a
     'etc/scanloom/scanloom-server.toml',
     'usr/share/doc/scanloom/docs/security.md',
     'usr/share/doc/scanloom/scanloom.spdx.json',
+    'usr/share/doc/scanloom/api/index.html',
+    'usr/share/doc/scanloom/api/classscanloom_1_1robot_1_1Client.html',
   ]) {
     assert.ok(existsSync(join(root, file)), file);
   }
