@@ -47,7 +47,7 @@ try:
 except ImportError as missing:
     raise ImportError("scanloom_client needs protobuf; install python3-protobuf, or protobuf with pip") from missing
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 __all__ = ["BufferFull", "Client", "Coverage", "Goal", "Location", "Path", "ScanloomError", "Sensor", "Status", "Timing"]
 
 Point = Tuple[float, float]
