@@ -4,7 +4,6 @@
 #include "lab/landmark_comparison.hpp"
 #include "server/tiles/bytes.hpp"
 #include "server/tiles/map_image.hpp"
-#include "sim/map_world.hpp"
 
 #include <opencv2/core.hpp>
 
@@ -60,10 +59,5 @@ void draw_scale(cv::Mat& picture, const Panel& panel);
 /// Errors: throws std::runtime_error if OpenCV fails.
 [[nodiscard]] tiles::Bytes comparison_png(const SeenLandmarks& first, const SeenLandmarks& second,
                                           std::span<const landmarks::Match> matches, const Point2& sensor);
-
-/// Draws a map and a view localized in it as a PNG: the map's points in blue, the places of its captures as blue discs,
-/// and over them in orange the view at its localized pose, with its sensor as a black cross.
-/// Errors: throws std::runtime_error if OpenCV fails.
-[[nodiscard]] tiles::Bytes located_png(const robot::MappedWorld& scene, const Pose2& T_map_found);
 
 } // namespace scanloom::lab

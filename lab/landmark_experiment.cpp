@@ -7,14 +7,8 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 namespace scanloom::lab {
 namespace {
-
-// indices into trial_worlds()
-constexpr std::size_t kStranger = 0; // the room, whose views are searched in maps of other worlds
-constexpr std::size_t kDrawnMap = 1; // the office
 
 /// The captures from one place.
 struct PlaceCaptures {
@@ -42,9 +36,6 @@ private:
     [[nodiscard]] Result<> compare_neighbours();
     [[nodiscard]] Result<> add_neighbour(std::size_t from, std::size_t to, bool door_moved);
     [[nodiscard]] Result<> sweep();
-    [[nodiscard]] Result<> try_alignments(TrialResults& trials);
-    [[nodiscard]] Result<> try_maps(TrialResults& trials, std::size_t captures);
-    [[nodiscard]] Result<> keep_located_picture(TrialResults& trials);
     [[nodiscard]] Result<> compare_halves(const RecordedCapture& recorded);
     [[nodiscard]] Result<> keep_picture(CapturePair& pair, const Point2& sensor, std::string file);
 
@@ -53,7 +44,6 @@ private:
     robot::Random random_;
     const robot::World closed_ = make_door_room(Door::kClosed);
     const robot::World open_ = make_door_room(Door::kOpen);
-    const std::vector<robot::World> worlds_ = trial_worlds();
     std::vector<PlaceCaptures> captures_;
     LandmarkResults results_;
 };
@@ -80,15 +70,6 @@ Result<LandmarkResults> Experiment::run() {
     if (auto done = compare_neighbours(); !done) return done.error();
     surroundings_.on_part("the sweeps");
     if (auto done = sweep(); !done) return done.error();
-    if (plan_.scenes > 0) {
-        TrialResults& trials = results_.trials.emplace(TrialResults{.scenes = plan_.scenes});
-        if (auto done = try_alignments(trials); !done) return done.error();
-        for (const std::size_t captures : kMapSizes) {
-            if (captures > plan_.captures_max) break;
-            if (auto done = try_maps(trials, captures); !done) return done.error();
-        }
-        if (auto done = keep_located_picture(trials); !done) return done.error();
-    }
     if (plan_.recorded) {
         surroundings_.on_part("the recording");
         if (auto done = compare_halves(*plan_.recorded); !done) return done.error();
@@ -112,13 +93,8 @@ Result<> Experiment::add_place(std::size_t index) {
     auto control = compare(door->first, *again);
     if (!control) return control.error();
     const Pose2& place = kDoorRoomPlaces[index];
-    auto door_methods = align_by_both_methods({door->first, door->second, place, place}, door->comparison.matches);
-    if (!door_methods) return door_methods.error();
-    auto control_methods = align_by_both_methods({door->first, *again, place, place}, control->matches);
-    if (!control_methods) return control_methods.error();
     if (auto kept = keep_picture(*door, {place.x, place.y}, fmt::format("place_{}.png", index + 1)); !kept) return kept;
-    results_.places.push_back(
-        {place, std::move(*door), std::move(*control), std::move(*door_methods), std::move(*control_methods)});
+    results_.places.push_back({place, std::move(*door), std::move(*control)});
     return {};
 }
 
@@ -137,14 +113,7 @@ Result<> Experiment::add_neighbour(std::size_t from, std::size_t to, bool door_m
     const LidarCapture& second = door_moved ? captures_[to].open : captures_[to].closed;
     auto pair = pair_of(see(first.scans, first.sensor), see(second.scans, second.sensor));
     if (!pair) return pair.error();
-    auto methods = align_by_both_methods({pair->first, pair->second, kDoorRoomPlaces[from], kDoorRoomPlaces[to]},
-                                         pair->comparison.matches);
-    if (!methods) return methods.error();
-    results_.neighbours.push_back({.from = from,
-                                   .to = to,
-                                   .door_moved = door_moved,
-                                   .comparison = std::move(pair->comparison),
-                                   .methods = std::move(*methods)});
+    results_.neighbours.push_back({from, to, door_moved, std::move(pair->comparison)});
     return {};
 }
 
@@ -165,47 +134,6 @@ Result<> Experiment::sweep() {
     return {};
 }
 
-Result<> Experiment::try_alignments(TrialResults& trials) {
-    for (const robot::World& world : worlds_) {
-        surroundings_.on_part(fmt::format("{} alignments in the {}", plan_.scenes, world.name));
-        auto row = try_alignment(world, plan_.seed, plan_.scenes, surroundings_.now);
-        if (!row) return row.error();
-        trials.aligned.push_back(std::move(*row));
-    }
-    return {};
-}
-
-Result<> Experiment::try_maps(TrialResults& trials, std::size_t captures) {
-    for (const robot::World& world : worlds_) {
-        surroundings_.on_part(
-            fmt::format("{} views in maps of the {}, captures: {}", plan_.scenes, world.name, captures));
-        auto row = try_locating(world, captures, plan_.seed, plan_.scenes, surroundings_.now);
-        if (!row) return row.error();
-        trials.located.push_back(std::move(*row));
-    }
-    const robot::World& seen = worlds_[kStranger];
-    const robot::World& map = worlds_[kDrawnMap];
-    surroundings_.on_part(
-        fmt::format("{} views of the {} in maps of the {}, captures: {}", plan_.scenes, seen.name, map.name, captures));
-    auto row = try_strangers(seen, map, captures, plan_.seed, plan_.scenes, surroundings_.now);
-    if (!row) return row.error();
-    trials.strangers.push_back(std::move(*row));
-    return {};
-}
-
-/// Draws the first right result in the largest map of the office.
-Result<> Experiment::keep_located_picture(TrialResults& trials) {
-    const robot::World& world = worlds_[kDrawnMap];
-    const auto last =
-        std::ranges::find(trials.located.rbegin(), trials.located.rend(), world.name, &LocatingTrials::map);
-    if (last == trials.located.rend()) return {};
-    const auto right = std::ranges::find(last->trials.each, Verdict::kRight, &Trial::verdict);
-    if (right == last->trials.each.end()) return {};
-    trials.picture = LocatedPicture{"located.png", world.name, last->captures, *right};
-    return surroundings_.keep_picture(trials.picture->file,
-                                      located_png(located_scene(world, last->captures, right->seed), right->found));
-}
-
 Result<> Experiment::compare_halves(const RecordedCapture& recorded) {
     const auto& [sensor, scans] = recorded.capture;
     auto all = see(scans, sensor);
@@ -214,11 +142,9 @@ Result<> Experiment::compare_halves(const RecordedCapture& recorded) {
     auto halves = pair_of(see(std::span(scans).first(half), sensor), see(std::span(scans).subspan(half), sensor));
     if (!halves) return halves.error();
     const Pose2& place = scans.front().pose;
-    auto methods = align_by_both_methods({halves->first, halves->second, place, place}, halves->comparison.matches);
-    if (!methods) return methods.error();
     if (auto kept = keep_picture(*halves, {place.x, place.y}, "recording.png"); !kept) return kept;
-    results_.recorded = RecordedResult{recorded.name,   recorded.remarks,   scans.size(),
-                                       std::move(*all), std::move(*halves), std::move(*methods)};
+    results_.recorded =
+        RecordedResult{recorded.name, recorded.remarks, scans.size(), std::move(*all), std::move(*halves)};
     return {};
 }
 

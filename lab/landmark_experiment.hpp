@@ -1,7 +1,5 @@
 #pragma once
 
-#include "lab/alignment_methods.hpp"
-#include "lab/alignment_trials.hpp"
 #include "lab/landmark_comparison.hpp"
 #include "lab/recording.hpp"
 
@@ -29,8 +27,6 @@ struct PlaceResult {
     Pose2 place;        ///< T_map_lidar
     CapturePair door;   ///< first with the door closed, second with it open
     Comparison control; ///< the closed capture and another closed one: the effect of noise alone
-    AlignmentMethods door_methods;
-    AlignmentMethods control_methods;
 };
 
 /// Two neighbouring places.
@@ -39,7 +35,6 @@ struct NeighbourResult {
     std::size_t to = 0;
     bool door_moved = false; ///< closed in the first, open in the second; otherwise closed in both
     Comparison comparison;   ///< in the map frame, by the true poses
-    AlignmentMethods methods;
 };
 
 /// Results for a recording.
@@ -48,8 +43,7 @@ struct RecordedResult {
     std::string remarks;
     std::size_t turns = 0;
     SeenLandmarks all;
-    CapturePair halves;       ///< the first and the second half of the turns
-    AlignmentMethods methods; ///< of the halves; the true transform is the identity, because the lidar stood still
+    CapturePair halves; ///< the first and the second half of the turns
 };
 
 struct LandmarkResults {
@@ -59,7 +53,6 @@ struct LandmarkResults {
     std::vector<ToleranceRow> tolerances;
     std::vector<ReadingsRow> readings;
     std::vector<FilterRow> windows;
-    std::optional<TrialResults> trials;
     std::optional<RecordedResult> recorded;
 };
 
@@ -71,10 +64,8 @@ struct LandmarkSurroundings {
 };
 
 struct LandmarkPlan {
-    std::uint64_t seed = 1;                       ///< of the noise and the scenes
+    std::uint64_t seed = 1;                       ///< of the noise
     std::size_t readings_max = kReadings.back();  ///< of the sweep of readings; fewer take less time
-    std::size_t scenes = kScenes;                 ///< of each kind; 0: the report omits this part
-    std::size_t captures_max = kMapSizes.back();  ///< of a map in which a view is localized; fewer take less time
     std::optional<RecordedCapture> recorded = {}; ///< absent: the report omits this part
 };
 

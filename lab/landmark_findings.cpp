@@ -1,6 +1,6 @@
 #include "lab/landmark_findings.hpp"
 
-#include "lab/landmark_tables.hpp"
+#include "lab/markdown.hpp"
 
 #include <fmt/format.h>
 
@@ -9,8 +9,6 @@
 
 namespace scanloom::lab {
 namespace {
-
-constexpr const char* kDoorOpened = ", door opened";
 
 /// Returns the values of those comparisons that have one.
 template <class Choose>
@@ -33,59 +31,19 @@ std::string against(std::string_view what, std::span<const double> values, const
                     const std::string& why) {
     if (values.empty()) return fmt::format("{} cannot be computed: no landmarks matched.", what);
     const std::string place = placed(values, published);
-    auto text = fmt::format("{} is {}, {} the published {:.2f} to {:.2f}", what, range_text(values), place,
-                            published.low, published.high);
+    const auto text =
+        fmt::format("{} is {}, {} the published {}", what, range_text(values), place, range_text(published));
     return place == "within" ? text + "." : fmt::format("{}: {}", text, why);
 }
-
-/// "1 to 2, door opened"
-std::string named(const NeighbourResult& neighbour) {
-    return pair_name(neighbour) + (neighbour.door_moved ? kDoorOpened : "");
-}
-
-/// Errors of poses, and the number of poses requested.
-class Errors {
-public:
-    void add(const PoseError* error) {
-        ++requested_;
-        if (!error) return;
-        millimetres_.push_back(error->millimetres());
-        degrees_.push_back(error->degrees());
-    }
-
-    /// "5 of 6 transforms, off by 0.4 to 2.1 mm and 0.01 to 0.30 degrees"
-    [[nodiscard]] std::string text() const {
-        if (millimetres_.empty()) return fmt::format("none of {} transforms", requested_);
-        return fmt::format("{} of {} transforms, off by {} mm and {} degrees", millimetres_.size(), requested_,
-                           range_text(millimetres_, 1), range_text(degrees_));
-    }
-
-private:
-    std::size_t requested_ = 0;
-    std::vector<double> millimetres_;
-    std::vector<double> degrees_;
-};
-
-/// Errors of both methods for some pairs of captures.
-struct MethodErrors {
-    Errors by_landmarks;
-    Errors by_surfaces; ///< only clear alignments
-
-    void add(const AlignmentMethods& methods) {
-        const auto& [alignment, error] = methods.by_surfaces;
-        by_landmarks.add(methods.by_landmarks.fit ? &methods.by_landmarks.fit->error : nullptr);
-        by_surfaces.add(alignment.certainty == landmarks::Certainty::kClear ? &error : nullptr);
-    }
-};
 
 } // namespace
 
 std::string placed(std::span<const double> values, const ValueRange& published) {
     const auto [low, high] = std::ranges::minmax(values);
     const auto hundredths = [](double value) { return std::lround(100.0 * value); };
-    if (hundredths(low) > hundredths(published.high)) return "above";
-    if (hundredths(high) < hundredths(published.low)) return "below";
-    if (hundredths(low) >= hundredths(published.low) && hundredths(high) <= hundredths(published.high)) return "within";
+    if (hundredths(low) > hundredths(published[1])) return "above";
+    if (hundredths(high) < hundredths(published[0])) return "below";
+    if (hundredths(low) >= hundredths(published[0]) && hundredths(high) <= hundredths(published[1])) return "within";
     return "partly outside";
 }
 
@@ -119,7 +77,7 @@ std::vector<std::string> door_findings(const LandmarkResults& results) {
                             "With this fill, the published value allows at most {:.2f} for the sum of linearity and "
                             "evenness: its clusters were less linear, or fill was defined differently.",
                             part(&Continuity::fill), part(&Continuity::linearity), part(&Continuity::evenness),
-                            3.0 * kPublishedContinuity.high - 1.0)),
+                            3.0 * kPublishedContinuity[1] - 1.0)),
     };
 }
 
@@ -162,66 +120,14 @@ std::string window_finding(const std::vector<FilterRow>& rows) {
     return text + fmt::format("; with {} it is {:.2f} m.", widest.window, widest.corner_error);
 }
 
-std::vector<std::string> alignment_findings(const LandmarkResults& results) {
-    std::vector<std::string> findings;
-    std::size_t clear = 0;
-    double position = 0.0;
-    double yaw = 0.0;
-    for (const NeighbourResult& neighbour : results.neighbours) {
-        const auto& [alignment, error] = neighbour.methods.by_surfaces;
-        if (alignment.certainty != landmarks::Certainty::kClear) {
-            findings.push_back(named(neighbour) + ": " + alignment.why);
-            continue;
-        }
-        ++clear;
-        position = std::max(position, error.millimetres());
-        yaw = std::max(yaw, error.degrees());
-    }
-    findings.insert(findings.begin(),
-                    clear == 0 ? std::string("None is clear.")
-                               : fmt::format("{} of {} are clear, with errors of at most {:.1f} mm and {:.2f} degrees.",
-                                             clear, results.neighbours.size(), position, yaw));
-    return findings;
-}
-
-std::vector<std::string> method_findings(const LandmarkResults& results) {
-    MethodErrors same;
-    MethodErrors next;
-    std::vector<std::string> refusals;
-    const auto note = [&](MethodErrors& errors, const AlignmentMethods& methods, const std::string& name) {
-        errors.add(methods);
-        const std::string& refusal = methods.by_landmarks.refusal;
-        if (!refusal.empty()) refusals.push_back(fmt::format("{}: refused by landmarks: {}.", name, refusal));
-    };
-    for (std::size_t n = 0; n < results.places.size(); ++n) {
-        note(same, results.places[n].door_methods, place_name(n) + kDoorOpened);
-        note(same, results.places[n].control_methods, place_name(n));
-    }
-    for (const NeighbourResult& neighbour : results.neighbours) note(next, neighbour.methods, named(neighbour));
-    std::vector<std::string> findings{
-        fmt::format("For one place, landmarks give {}; surfaces {}. The medians of the same clusters hardly move "
-                    "there. But matching requires both sets in one frame with an error below the tolerance, {} m, and "
-                    "used the true poses here: landmarks can refine an approximate pose, but cannot find one.",
-                    same.by_landmarks.text(), same.by_surfaces.text(), landmarks::kTolerance),
-        fmt::format("From one place to the next, landmarks give {}; surfaces {}. Other parts of a wall are visible "
-                    "from there, and the median of a cluster is the middle of the visible part, not of the wall: few "
-                    "landmarks match even with the true poses, and matching ones may be different parts of an object.",
-                    next.by_landmarks.text(), next.by_surfaces.text()),
-        "Therefore align() uses surface elements: a wall is on the same line from every viewpoint, and every part of "
-        "it that is visible in both captures counts."};
-    findings.insert(findings.end(), refusals.begin(), refusals.end());
-    return findings;
-}
-
 std::string recording_finding(const RecordedResult& recorded) {
     const Comparison& comparison = recorded.halves.comparison;
     const auto compared = [](std::string_view what, const std::optional<double>& value, const ValueRange& published) {
         if (!value) return fmt::format("{} cannot be computed", what);
-        return fmt::format("{} is {:.2f}, {} the published {:.2f} to {:.2f}", what, *value,
-                           placed(std::span(&*value, 1), published), published.low, published.high);
+        return fmt::format("{} is {:.2f}, {} the published {}", what, *value, placed(std::span(&*value, 1), published),
+                           range_text(published));
     };
-    return fmt::format("{}; {}; {}. Between the halves nothing was moved on purpose, and the lidar was stationary.",
-                       compared("Persistence", persistence(comparison), kPublishedPersistence),
+    return fmt::format("{}; {}; {}", compared("Persistence", persistence(comparison), kPublishedPersistence),
                        compared("stability", stability(comparison), kPublishedStability),
                        compared("continuity", continuity(comparison), kPublishedContinuity));
 }

@@ -1,182 +1,134 @@
-#include "lab/landmark_report.hpp"
-
-#include "lab/door_room.hpp"
-#include "lab/landmark_findings.hpp"
-#include "lab/landmark_tables.hpp"
 #include "lab/report.hpp"
-#include "lab/trial_report.hpp"
+
+#include "lab/landmark_findings.hpp"
+#include "lab/markdown.hpp"
+#include "lab/report_texts.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace scanloom::lab {
 namespace {
 
-constexpr const char* kPictureKey =
-    "Left, in blue: the first capture; right, in orange: the second; each over the other one in grey. Discs are "
-    "matched landmarks, joined by dashed lines; red rings are unmatched landmarks. The cross is the lidar.";
+using namespace fmt::literals;
 
-Items conditions(const LandmarkResults& results) {
-    std::string places;
+std::string share(std::optional<double> value) { return value ? fmt::format("{:.2f}", *value) : "-"; }
+std::string metres(std::optional<double> value) { return value ? fmt::format("{:.3f}", *value) : "-"; }
+
+constexpr const char* kComparisonHead =
+    "matched | only first | only second | persistence | stability | mean m | sd m | "
+    "linearity | evenness | fill | continuity";
+
+/// Returns the cells of kComparisonHead.
+std::string comparison_cells(const Comparison& comparison) {
+    const auto& [matched, persistence, stability, mean, sigma] = comparison.metrics;
+    const auto& continuity = comparison.continuity;
+    return fmt::format("{} | {} | {} | {} | {} | {} | {} | {:.2f} | {:.2f} | {:.2f} | {:.2f}", matched,
+                       comparison.only_first, comparison.only_second, share(persistence), share(stability),
+                       metres(mean), metres(sigma), continuity.linearity, continuity.evenness, continuity.fill,
+                       continuity.mean());
+}
+
+std::string door_table(const LandmarkResults& results) {
+    Table table(fmt::format("place | door | {}", kComparisonHead));
     for (std::size_t n = 0; n < results.places.size(); ++n) {
-        const Pose2& place = results.places[n].place;
-        places += fmt::format("{}{} at ({}, {})", n == 0 ? "" : ", ", place_name(n), place.x, place.y);
+        table.add("{} | opened | {}", n + 1, comparison_cells(results.places[n].door.comparison));
+        table.add("{} | closed in both | {}", n + 1, comparison_cells(results.places[n].control));
     }
-    const robot::Noise noise;
-    return {{
-        "The room is the simulator's, 10 x 10 m with furniture, and has a doorway of 1 m in its eastern wall with a "
-        "lobby behind it. The door is closed, or opens into the room at a right angle to the wall.",
-        fmt::format(
-            "A stationary lidar with 360 beams over 360 degrees and a range of 12 m is at one of three places: {} m.",
-            places),
-        fmt::format("A capture is {} turns. Ranges have a noise of {} m, beam angles of {} rad (standard deviations). "
-                    "Seed: {}.",
-                    kTurns, noise.range, noise.beam_angle, results.seed),
-        "Landmarks, their eps and the tolerance of matching are the defaults of the server: eps by the cloud, 5 "
-        "points, 0.25 m. Clouds are compared in the map frame, by the true poses; only the alignments do not use them.",
-    }};
+    table.add("published |  |  |  |  | {} | {} |  |  |  |  |  | {}", range_text(kPublishedPersistence),
+              range_text(kPublishedStability), range_text(kPublishedContinuity));
+    return table.text();
 }
 
-Items landmark_definitions() {
-    return {{
-        "matched: landmarks of both captures that are each other's nearest and within the tolerance. only first, only "
-        "second: the others of each capture.",
-        "persistence: the matched share of the first capture's landmarks. stability: the share of the matched ones "
-        "that are within half the tolerance. mean, sd: mean and standard deviation of the distances of matched "
-        "landmarks.",
-        "continuity: the mean of a cluster's linearity, evenness of spacing and fill, here over the landmarks of both "
-        "captures.",
-    }};
-}
-
-/// Returns the option --scenes as given, or "" for the default.
-std::string scenes_option(const LandmarkResults& results) {
-    const std::size_t scenes = results.trials ? results.trials->scenes : 0;
-    return scenes == kScenes ? "" : fmt::format(" --scenes {}", scenes);
-}
-
-void add_doors(Document& document, const LandmarkResults& results) {
-    document.push_back(Heading{2, "A door, closed and open"});
-    document.push_back(
-        Paragraph{"The first capture has the door closed, the second has it open or, for comparison, still closed."});
-    document.push_back(door_table(results));
-    document.push_back(Items{door_findings(results)});
-    document.push_back(Paragraph{kPictureKey});
-    for (std::size_t n = 0; n < results.places.size(); ++n) {
-        document.push_back(Picture{fmt::format("{}/{}", kPicturesFolder, results.places[n].door.picture),
-                                   fmt::format("place {}: door closed, door open", place_name(n))});
+std::string neighbour_table(const LandmarkResults& results) {
+    Table table(fmt::format("places | door | {}", kComparisonHead));
+    for (const auto& [from, to, door_moved, comparison] : results.neighbours) {
+        table.add("{} to {} | {} | {}", from + 1, to + 1, door_moved ? "opened" : "closed in both",
+                  comparison_cells(comparison));
     }
+    return table.text();
 }
 
-void add_sweeps(Document& document, const LandmarkResults& results) {
-    document.insert(
-        document.end(),
-        {
-            Heading{2, "Tolerance"},
-            Paragraph{"Door closed and opened; the matches of the three places together."},
-            tolerance_table(results),
-            Paragraph{tolerance_finding(results)},
-            Heading{2, "Number of readings"},
-            Paragraph{fmt::format(
-                "A reading is a turn of the lidar, a scan of 360 beams; place {}, door closed. The robot's bytes are "
-                "the frames that it sends, a batch of Protocol Buffers for each turn. The server's bytes are computed "
-                "from its data during clustering: 24 bytes for each point (the point, the index of its distinct point, "
-                "its cluster), 52 for each distinct point, 56 for each cell of the grid over these; spare capacity of "
-                "vectors and search trees of crowded cells are not included.",
-                place_name(0))},
-            readings_table(results),
-            Heading{2, "Median filter"},
-            Paragraph{fmt::format("For each turn of the capture of place {}, door closed. RMSE: relative to the "
-                                  "unfiltered points. Noise reduction: the decrease of the bend between neighbouring "
-                                  "points, along each axis. Errors: median distances between readings with and without "
-                                  "noise, for beams within three beams of a corner or an edge, and for the others.",
-                                  place_name(0))},
-            window_table(results),
-            Paragraph{window_finding(results.windows)},
-        });
+std::string tolerance_table(const LandmarkResults& results) {
+    Table table("tolerance m | matched | persistence | stability | mean m | sd m");
+    for (const auto& [tolerance, metrics] : results.tolerances) {
+        table.add("{:.1f} | {} | {} | {} | {} | {}", tolerance, metrics.matched, share(metrics.persistence),
+                  share(metrics.stability), metres(metrics.distance_mean), metres(metrics.distance_sigma));
+    }
+    table.add("published, {:.1f} |  |  |  | {:.3f} | {:.3f}", kPublishedTolerance, kPublishedDistanceMean,
+              kPublishedDistanceSigma);
+    return table.text();
 }
 
-void add_neighbours(Document& document, const LandmarkResults& results) {
-    document.insert(document.end(),
-                    {
-                        Heading{2, "From one place to the next"},
-                        Paragraph{"The same figures for captures of different places, the first with the door closed."},
-                        neighbour_table(results),
-                        Heading{2, "Alignment"},
-                        Paragraph{"The pose of the second capture relative to the first, without an initial guess; off "
-                                  "by: difference from the ground truth. Inlier and outlier ratio: of the "
-                                  "second capture's surface."},
-                        alignment_table(results),
-                        Items{alignment_findings(results)},
-                        Heading{2, "Alignment by landmarks alone"},
-                        Paragraph{fmt::format(
-                            "The transform of the landmarks that were matched above, in the map frame and by the true "
-                            "poses, next to that of the surfaces, which use no pose; for one place, and from one place "
-                            "to the next. Agreeing: pairs that the transform brings within half the tolerance, {} m; "
-                            "rms: their root mean square. Off by: where the second lidar would be.",
-                            kAgreeingDistance)},
-                        methods_table(results),
-                        Items{method_findings(results)},
-                    });
+std::string readings_table(const LandmarkResults& results) {
+    Table table("readings | points | eps m | landmarks | robot's bytes | server's bytes");
+    for (const ReadingsRow& row : results.readings) {
+        table.add("{} | {} | {:.3f} | {} | {} | {}", row.readings, row.points, row.eps, row.landmarks, row.robot_bytes,
+                  row.server_bytes);
+    }
+    return table.text();
 }
 
-void add_recording(Document& document, const RecordedResult& recorded) {
-    document.insert(
-        document.end(),
-        {
-            Heading{2, "A recording"},
-            Paragraph{fmt::format("{}, bytes of a real, stationary LD06 in a room: {}. The file is not part of the "
-                                  "project. The first half of the turns is compared with the second.",
-                                  recorded.name, recorded.remarks)},
-            recording_table(recorded),
-            halves_table(recorded),
-            Paragraph{recording_finding(recorded)},
-            Paragraph{
-                "The halves, aligned by their landmarks and by their surfaces; off by: difference from no motion."},
-            halves_methods_table(recorded),
-            Paragraph{kPictureKey},
-            Picture{fmt::format("{}/{}", kPicturesFolder, recorded.halves.picture),
-                    fmt::format("first and second half of {}, recorded from a real LD06", recorded.name)},
-        });
+std::string window_table(const LandmarkResults& results) {
+    Table table("window | RMSE m | noise reduction x | noise reduction y | error on walls m | at corners m");
+    for (const auto& [window, figures, wall_error, corner_error] : results.windows) {
+        table.add("{} | {:.3f} | {} | {} | {:.3f} | {:.3f}", window, figures.rmse, share(figures.noise_reduction_x),
+                  share(figures.noise_reduction_y), wall_error, corner_error);
+    }
+    return table.text();
+}
+
+std::string recording_part(const RecordedResult& recorded) {
+    const auto& [name, remarks, turns, all, halves] = recorded;
+    Table parts("part | turns | points | eps m | landmarks");
+    const auto add = [&](std::string_view part, std::size_t count, const SeenLandmarks& seen) {
+        parts.add("{} | {} | {} | {:.3f} | {}", part, count, seen.points.size(), seen.survey.eps,
+                  seen.survey.landmarks.size());
+    };
+    add("whole", turns, all);
+    add("first half", turns / 2, halves.first);
+    add("second half", turns - turns / 2, halves.second);
+    Table comparison(kComparisonHead);
+    comparison.add("{}", comparison_cells(halves.comparison));
+    return fmt::format(
+        report_texts::landmark_recording, "name"_a = name, "remarks"_a = remarks, "parts"_a = parts.text(),
+        "halves"_a = comparison.text(), "finding"_a = recording_finding(recorded),
+        "picture"_a =
+            picture(halves.picture, fmt::format("first and second half of {}, recorded from a real LD06", name)));
 }
 
 } // namespace
 
-Document landmark_report_of(const LandmarkResults& results) {
-    Document document{
-        Heading{1, "Landmarks of a stationary lidar"},
-        Paragraph{"The server's results for captures of a stationary lidar: landmarks, their persistence when a door "
-                  "is moved, their dependence on tolerance, number of readings and filter, alignment of captures of "
-                  "different places, and localization of views in maps. Made by"},
-        Code{fmt::format("./scanloom build && build/bin/scanloom-lab landmarks --out docs/landmarks --seed {}{}{}",
-                         results.seed, scenes_option(results),
-                         results.recorded ? " --capture " + results.recorded->name : "")},
-        Paragraph{
-            "The same seed gives the same bytes. The durations are in a separate file, because they differ each time:"},
-        Link{"Times", kTimesFile},
-        Heading{2, "Conditions"},
-        conditions(results),
-        Heading{2, "What is measured"},
-        landmark_definitions(),
-    };
-    add_doors(document, results);
-    add_neighbours(document, results);
-    if (results.trials) add_trials(document, *results.trials);
-    add_sweeps(document, results);
-    if (results.recorded) add_recording(document, *results.recorded);
-    return document;
+std::string report_of(const LandmarkResults& results) {
+    std::vector<std::string> places;
+    std::vector<std::string> pictures;
+    for (const auto& [place, door, control] : results.places) {
+        const std::size_t number = places.size() + 1;
+        places.push_back(fmt::format("{} at ({}, {})", number, place.x, place.y));
+        pictures.push_back(picture(door.picture, fmt::format("place {}: door closed, door open", number)));
+    }
+    const robot::Noise noise;
+    auto report =
+        fmt::format(report_texts::landmarks, "seed"_a = results.seed,
+                    "capture"_a = results.recorded ? " --capture " + results.recorded->name : "",
+                    "places"_a = fmt::join(places, ", "), "turns"_a = kTurns, "range_noise"_a = noise.range,
+                    "angle_noise"_a = noise.beam_angle, "doors"_a = door_table(results),
+                    "door_findings"_a = items(door_findings(results)), "pictures"_a = fmt::join(pictures, "\n\n"),
+                    "neighbours"_a = neighbour_table(results), "tolerances"_a = tolerance_table(results),
+                    "tolerance_finding"_a = tolerance_finding(results), "readings"_a = readings_table(results),
+                    "windows"_a = window_table(results), "window_finding"_a = window_finding(results.windows));
+    if (results.recorded) report += "\n" + recording_part(*results.recorded);
+    return report;
 }
 
-Document landmark_times_report_of(const LandmarkResults& results, std::string_view machine) {
-    Document document{
-        Heading{1, "Times of the landmark experiment"},
-        Paragraph{fmt::format("Milliseconds to find the landmarks of a capture, the adaptive eps included: the median "
-                              "of {} times. One thread. Measured on: {}.",
-                              kTimings, machine)},
-        Link{"The report", kReportFile},
-        readings_times_table(results),
-    };
-    if (results.trials) add_trial_times(document, *results.trials);
-    return document;
+std::string times_report_of(const LandmarkResults& results, std::string_view machine) {
+    Table readings("readings | points | median ms | ns a point");
+    for (const ReadingsRow& row : results.readings) {
+        readings.add("{} | {} | {:.2f} | {:.0f}", row.readings, row.points, row.milliseconds,
+                     1e6 * row.milliseconds / static_cast<double>(row.points));
+    }
+    return fmt::format(report_texts::landmark_times, "timings"_a = kTimings, "machine"_a = machine,
+                       "readings"_a = readings.text());
 }
 
 } // namespace scanloom::lab

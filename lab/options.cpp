@@ -36,16 +36,10 @@ CLI::App* add_experiment(CLI::App& app, ExperimentOptions& options) {
 CLI::App* add_landmarks(CLI::App& app, LandmarkOptions& options) {
     auto* landmarks = app.add_subcommand(
         "landmarks", "Results of a stationary lidar: landmarks while a door moves, sweeps of tolerance, readings and "
-                     "filter, alignment and localization, as a report; takes some minutes");
+                     "filter, as a report");
     landmarks->add_option("--out", options.out, kOutHelp);
     landmarks->add_option("--seed", options.seed, kSeedHelp)->check(check_whole_number_from(0))->capture_default_str();
-    landmarks
-        ->add_option("--scenes", options.scenes,
-                     "Number of scenes for each world and map to test alignment and localization, 0 (no such part in "
-                     "the report) to 10000")
-        ->check(check_within(0, 10'000))
-        ->check(check_whole_number_from(0))
-        ->capture_default_str();
+    landmarks->add_option("--scenes", [](const auto&) { return true; })->group(""); // until 2.0; has no effect
     landmarks
         ->add_option("--capture", options.capture,
                      "File with the bytes of a stationary LD06, at least two turns; adds a part to the report")

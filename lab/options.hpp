@@ -1,7 +1,5 @@
 #pragma once
 
-#include "lab/alignment_trials.hpp"
-
 #include "common/app/program.hpp"
 
 #include <cstdint>
@@ -21,7 +19,6 @@ struct ExperimentOptions {
 struct LandmarkOptions {
     std::string out;                    ///< directory of the report
     std::uint64_t seed = 1;             ///< of the noise
-    std::size_t scenes = kScenes;       ///< of each kind
     std::optional<std::string> capture; ///< file with the bytes that an LD06 sent
 };
 

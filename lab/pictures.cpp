@@ -1,13 +1,12 @@
 #include "lab/pictures.hpp"
 
+#include "lab/cloud_pictures.hpp"
 #include "lab/map_cells.hpp"
 
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 namespace scanloom::lab {
 namespace {
@@ -123,11 +122,7 @@ tiles::Bytes strip_png(std::span<const Moment> moments, const Recording& recordi
         draw_run(picture, canvas, recording, moment.scans);
         picture.copyTo(strip(cv::Rect(n * (canvas.width + kGap), 0, canvas.width, canvas.height)));
     }
-    tiles::Bytes png;
-    if (!cv::imencode(".png", strip, png, {cv::IMWRITE_PNG_COMPRESSION, 9})) {
-        throw std::runtime_error("OpenCV could not encode a PNG");
-    }
-    return png;
+    return png_of(strip);
 }
 
 } // namespace scanloom::lab

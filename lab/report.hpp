@@ -1,23 +1,32 @@
 #pragma once
 
-#include "lab/document.hpp"
 #include "lab/experiment.hpp"
+#include "lab/landmark_experiment.hpp"
 
+#include <string>
 #include <string_view>
 
+/// The reports of the experiments, as Markdown.
 namespace scanloom::lab {
 
-/// Names of the report's files, without extension, and of its folder for pictures.
+/// Names of a report's files, without extension.
 inline constexpr const char* kReportFile = "report";
 inline constexpr const char* kTimesFile = "times";
-inline constexpr const char* kPicturesFolder = "pictures";
 
 /// Returns the part that is equal, byte by byte, for equal matrices.
-[[nodiscard]] Document report_of(const Matrix& matrix, const std::vector<RunResult>& results);
+[[nodiscard]] std::string report_of(const Matrix& matrix, const std::vector<RunResult>& results);
 
 /// Returns the part that differs each time: the durations.
 /// @param machine  description of the machine, see machine_description()
-[[nodiscard]] Document times_report_of(const Matrix& matrix, const std::vector<RunResult>& results,
-                                       std::string_view machine);
+[[nodiscard]] std::string times_report_of(const Matrix& matrix, const std::vector<RunResult>& results,
+                                          std::string_view machine);
+
+/// Returns the part that is equal, byte by byte, for equal seeds and recordings. A figure without a value (a share of
+/// nothing) is a dash.
+[[nodiscard]] std::string report_of(const LandmarkResults& results);
+
+/// Returns the part that differs each time: the durations.
+/// @param machine  description of the machine, see machine_description()
+[[nodiscard]] std::string times_report_of(const LandmarkResults& results, std::string_view machine);
 
 } // namespace scanloom::lab

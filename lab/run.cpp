@@ -2,7 +2,7 @@
 
 #include "common/app/machine.hpp"
 #include "common/app/standard_streams.hpp"
-#include "lab/landmark_report.hpp"
+#include "lab/markdown.hpp"
 #include "lab/report.hpp"
 
 #include <boost/json/serialize.hpp>
@@ -73,11 +73,6 @@ private:
     double reported_ = 0.0;
 };
 
-Result<> write_document(const OutputDirectory& directory, const std::string& name, const Document& document) {
-    if (auto written = directory.write(name + ".md", to_markdown(document)); !written) return written.error();
-    return directory.write(name + ".html", to_html(document, std::get<Heading>(document.front()).text));
-}
-
 /// The directories of a report.
 struct ReportFiles {
     OutputDirectory directory;
@@ -91,9 +86,13 @@ struct ReportFiles {
         return ReportFiles{std::move(*directory), std::move(*pictures)};
     }
 
-    [[nodiscard]] Result<> write(const Document& report, const Document& times) const {
-        if (auto written = write_document(directory, kReportFile, report); !written) return written;
-        return write_document(directory, kTimesFile, times);
+    /// Writes both parts of a report, as Markdown and as HTML.
+    [[nodiscard]] Result<> write(std::string_view report, std::string_view times) const {
+        for (const auto& [name, text] : {std::pair{kReportFile, report}, {kTimesFile, times}}) {
+            if (auto written = directory.write(fmt::format("{}.md", name), text); !written) return written;
+            if (auto written = directory.write(fmt::format("{}.html", name), to_html(text)); !written) return written;
+        }
+        return {};
     }
 
     /// Returns the name of the report as JSON.
@@ -122,7 +121,7 @@ Result<std::string> run_experiment_of(const ExperimentOptions& options, Console&
 }
 
 Result<std::string> run_landmarks_of(const LandmarkOptions& options, Console& console) {
-    LandmarkPlan plan{.seed = options.seed, .scenes = options.scenes};
+    LandmarkPlan plan{.seed = options.seed};
     if (options.capture) {
         auto read = read_ld06_recording(*options.capture);
         if (!read) return read.error();
@@ -138,12 +137,11 @@ Result<std::string> run_landmarks_of(const LandmarkOptions& options, Console& co
     const auto tell = [&](std::string_view doing) { console.progress(doing); };
     const auto results = run_landmark_experiment(plan, {steady_seconds, keep, tell});
     if (!results) return results.error();
-    auto written =
-        files->write(landmark_report_of(*results), landmark_times_report_of(*results, machine_description()));
+    auto written = files->write(report_of(*results), times_report_of(*results, machine_description()));
     if (!written) return written.error();
-    return fmt::format(R"({{"places":{},"scenes":{},"recorded_turns":{},"seconds":{:.3f},"report":{}}})",
-                       results->places.size(), plan.scenes, results->recorded ? results->recorded->turns : 0,
-                       steady_seconds() - begun, files->report_name());
+    return fmt::format(R"({{"places":{},"recorded_turns":{},"seconds":{:.3f},"report":{}}})", results->places.size(),
+                       results->recorded ? results->recorded->turns : 0, steady_seconds() - begun,
+                       files->report_name());
 }
 
 template <class Options>

@@ -76,10 +76,10 @@ TEST_F(Lab, WritesTheSameReportTwiceWithAllItsPictures) {
 TEST_F(Lab, WritesTheSameLandmarkReportTwice) {
     const auto first = place_.path() / "first";
     const auto second = place_.path() / "second";
-    const auto outcome = run({"landmarks", "--seed", "5", "--scenes", "0", "--out", first.string()});
+    const auto outcome = run({"landmarks", "--seed", "5", "--out", first.string()});
     EXPECT_EQ(outcome.code, 0) << outcome.errors;
     EXPECT_EQ(boost::json::parse(outcome.line).at("report").as_string(), (first / "report.html").string());
-    EXPECT_EQ(run({"landmarks", "--seed", "5", "--scenes", "0", "--out", second.string()}).code, 0);
+    EXPECT_EQ(run({"landmarks", "--seed", "5", "--out", second.string()}).code, 0);
     const auto files = lasting_files(first);
     EXPECT_EQ(files, lasting_files(second));
     EXPECT_EQ(files.size(), 2U + 3U) << "the report's two forms, and a picture for each place";

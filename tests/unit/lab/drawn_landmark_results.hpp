@@ -3,7 +3,6 @@
 #include "lab/landmark_experiment.hpp"
 
 #include "tests/unit/lab/drawn_clouds.hpp"
-#include "tests/unit/lab/drawn_trials.hpp"
 
 namespace scanloom::lab {
 
@@ -17,44 +16,26 @@ inline Comparison drawn_comparison() {
     return comparison;
 }
 
-/// Returns alignments in which 4 of 5 pairs agree and the surfaces give a clear result.
-inline AlignmentMethods drawn_methods() {
-    AlignmentMethods methods;
-    methods.by_landmarks = {.pairs = 5, .fit = LandmarkFit{4, 0.006, {0.008, 0.02}}, .refusal = {}};
-    methods.by_surfaces.alignment.certainty = landmarks::Certainty::kClear;
-    methods.by_surfaces.alignment.T_first_second = {1.0, -0.5, 0.1};
-    methods.by_surfaces.error = {0.012, 0.01};
-    return methods;
-}
-
-/// Returns results with one place, one neighbour, one row in each sweep, some trials, and a recording.
+/// Returns results with one place, one neighbour, one row in each sweep, and a recording.
 inline LandmarkResults drawn_landmark_results() {
     LandmarkResults results;
     results.seed = 7;
     Comparison control = drawn_comparison();
     control.metrics.persistence = 1.0;
-    results.places.push_back({{1.5, -2.0, 0.0},
-                              {seen_bars({}), seen_bars({}), drawn_comparison(), "p.png"},
-                              control,
-                              drawn_methods(),
-                              drawn_methods()});
+    results.places.push_back({{1.5, -2.0, 0.0}, {seen_bars({}), seen_bars({}), drawn_comparison(), "p.png"}, control});
     NeighbourResult neighbour;
     neighbour.to = 1;
     neighbour.comparison = drawn_comparison();
     neighbour.comparison.metrics.persistence = 0.25;
-    neighbour.methods = drawn_methods();
-    neighbour.methods.by_landmarks = {.pairs = 1, .fit = {}, .refusal = "too few pairs"};
     results.neighbours.push_back(neighbour);
     results.tolerances.push_back({0.1, drawn_comparison().metrics});
     results.readings.push_back({50, 18000, 9, 0.15, 74941, 1166716, 6.5});
     results.windows.push_back({1, {0.0, 0.0, std::nullopt}, 0.015, 0.018});
-    results.trials = drawn_trial_results();
     results.recorded = RecordedResult{"c.bin",
                                       "0 damaged packets",
                                       9,
                                       seen_bars({{0.0, 0.0}}),
-                                      {seen_bars({}), seen_bars({}), drawn_comparison(), "r.png"},
-                                      drawn_methods()};
+                                      {seen_bars({}), seen_bars({}), drawn_comparison(), "r.png"}};
     return results;
 }
 

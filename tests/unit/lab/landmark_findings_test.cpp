@@ -8,9 +8,7 @@
 namespace scanloom::lab {
 namespace {
 
-using testing::ElementsAre;
 using testing::HasSubstr;
-using testing::Not;
 
 std::string placement_of(const std::vector<double>& values) { return placed(values, {0.18, 0.49}); }
 
@@ -53,32 +51,6 @@ TEST(LandmarkFindings, CornersAreRoundedIfTheirErrorExceedsTheUnfilteredOne) {
     EXPECT_THAT(finding, HasSubstr("from 7 it is more than twice as large; with 9 it is 0.50 m"));
     EXPECT_THAT(window_finding({row(1, 0.015, 0.018), row(3, 0.010, 0.018)}),
                 HasSubstr("No window increases the error"));
-}
-
-TEST(LandmarkFindings, UnclearAlignmentsAreExplainedAndExcludedFromErrors) {
-    auto results = drawn_landmark_results();
-    EXPECT_THAT(alignment_findings(results),
-                ElementsAre("1 of 1 are clear, with errors of at most 12.0 mm and 0.57 degrees."));
-    auto& alignment = results.neighbours[0].methods.by_surfaces.alignment;
-    alignment.certainty = landmarks::Certainty::kAmbiguous;
-    alignment.why = "another pose does as well.";
-    EXPECT_THAT(alignment_findings(results), ElementsAre("None is clear.", "1 to 2: another pose does as well."));
-}
-
-TEST(LandmarkFindings, LandmarkTransformsAndRefusalsAreReportedForOneAndTwoPlaces) {
-    auto results = drawn_landmark_results();
-    results.places[0].control_methods.by_landmarks.fit->error = {0.001, 0.0};
-    const auto findings = method_findings(results);
-    ASSERT_EQ(findings.size(), 4U);
-    EXPECT_THAT(findings[0],
-                HasSubstr("For one place, landmarks give 2 of 2 transforms, off by 1.0 to 8.0 mm and 0.00 to 1.15 "
-                          "degrees; surfaces 2 of 2 transforms, off by 12.0 mm and 0.57 degrees. "));
-    EXPECT_THAT(findings[1],
-                HasSubstr("landmarks give none of 1 transforms; surfaces 1 of 1 transforms, off by 12.0 mm"));
-    EXPECT_EQ(findings[3], "1 to 2: refused by landmarks: too few pairs.");
-    results.neighbours[0].methods.by_surfaces.alignment.certainty = landmarks::Certainty::kUndetermined;
-    EXPECT_THAT(method_findings(results)[1],
-                HasSubstr("landmarks give none of 1 transforms; surfaces none of 1 transforms. "));
 }
 
 TEST(LandmarkFindings, RecordingHalvesAreComparedWithPublishedValues) {

@@ -1,6 +1,4 @@
-#include "sim/standing_robot.hpp"
-
-#include "sim/map_world.hpp"
+#include "tests/support/standing_robot.hpp"
 
 #include <gtest/gtest.h>
 
@@ -65,7 +63,7 @@ TEST(MappedWorld, EachPlaceIsNearAnEarlierOne) {
         ASSERT_EQ(mapped.map.size(), 6U);
         std::vector<Point2> places;
         for (const auto& view : mapped.map) places.push_back(view.from);
-        places.push_back({mapped.truth.x, mapped.truth.y});
+        places.push_back({mapped.ground_truth.x, mapped.ground_truth.y});
         for (std::size_t n = 1; n < places.size(); ++n) {
             EXPECT_TRUE(std::any_of(places.begin(), places.begin() + static_cast<std::ptrdiff_t>(n),
                                     [&](const Point2& earlier) { return apart(earlier, places[n]) <= 3.0; }))
@@ -82,7 +80,7 @@ TEST(MappedWorld, ViewsAreInTheWorldFrameAndTheRobotsInItsOwn) {
         EXPECT_GT(view.points.size(), 1000U);
         for (const PointMm& point : view.points) EXPECT_TRUE(bounds.contains(in_metres(point)));
     }
-    for (const Point2& point : mapped.seen) EXPECT_TRUE(bounds.contains(transform(mapped.truth, point)));
+    for (const Point2& point : mapped.seen) EXPECT_TRUE(bounds.contains(transform(mapped.ground_truth, point)));
 }
 
 } // namespace

@@ -1,6 +1,6 @@
 #include "core/landmarks/alignment.hpp"
-#include "sim/standing_robot.hpp"
 #include "tests/support/angles.hpp"
+#include "tests/support/standing_robot.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

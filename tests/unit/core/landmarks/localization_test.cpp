@@ -1,7 +1,7 @@
 #include "core/landmarks/localization.hpp"
-#include "sim/standing_robot.hpp"
 #include "tests/support/angles.hpp"
-#include "tests/unit/core/landmarks/located_robot.hpp"
+#include "tests/support/located_robot.hpp"
+#include "tests/support/standing_robot.hpp"
 #include "tests/unit/core/landmarks/pose_errors.hpp"
 
 #include <gmock/gmock.h>
@@ -32,8 +32,8 @@ int clear_of(const robot::World& world, int seeds, int places) {
         EXPECT_EQ(found.why.empty(), found.certainty == Certainty::kClear);
         if (found.certainty != Certainty::kClear) continue;
         ++clear;
-        expect_right(found, mapped.truth, world.name + ", seed " + std::to_string(seed));
-        EXPECT_LT(metres_off(found.T_first_second, mapped.truth), 6.0 * found.position_sigma);
+        expect_right(found, mapped.ground_truth, world.name + ", seed " + std::to_string(seed));
+        EXPECT_LT(metres_off(found.T_first_second, mapped.ground_truth), 6.0 * found.position_sigma);
         EXPECT_GT(found.explained, 0.5);
     }
     return clear;
@@ -93,7 +93,7 @@ struct HardScene {
 TEST(Localization, LocalizesWithoutSurfacesBehindTheRobot) {
     for (const auto& [world, places, seed] : {HardScene{robot::make_hall(), 1, 123}, {robot::make_hall(), 4, 168}}) {
         const auto mapped = mapped_world(world, places, seed);
-        expect_right(locate(as_references(mapped.map), {.points = mapped.seen}).value(), mapped.truth,
+        expect_right(locate(as_references(mapped.map), {.points = mapped.seen}).value(), mapped.ground_truth,
                      world.name + ", seed " + std::to_string(seed));
     }
 }
@@ -106,7 +106,8 @@ TEST(Localization, IsAmbiguousIfASimilarPlaceIsMappedBetter) {
         const auto mapped = mapped_world(world, places, seed);
         const auto found = locate(as_references(mapped.map), {.points = mapped.seen}).value();
         EXPECT_EQ(found.certainty, Certainty::kAmbiguous) << world.name << ", seed " << seed;
-        EXPECT_GT(metres_off(found.T_first_second, mapped.truth), 1.0) << "the scene no longer leads to a wrong pose";
+        EXPECT_GT(metres_off(found.T_first_second, mapped.ground_truth), 1.0)
+            << "the scene no longer leads to a wrong pose";
         EXPECT_THAT(found.why, HasSubstr("another pose"));
     }
 }

@@ -1,5 +1,5 @@
 #include "core/landmarks/reference_map.hpp"
-#include "tests/unit/core/landmarks/located_robot.hpp"
+#include "tests/support/located_robot.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 #include "core/landmarks/landmark.hpp"
-#include "sim/standing_robot.hpp"
+#include "tests/support/standing_robot.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,12 +1,13 @@
 #pragma once
 
+#include "common/geometry/point_mm.hpp"
 #include "sim/noise.hpp"
 #include "sim/world.hpp"
 
 #include <cstdint>
 #include <vector>
 
-/// Scans of a stationary robot in worlds where a door moves: test data for scan matching.
+/// Scans of a stationary robot in worlds where a door moves: test data for scan matching and localization.
 namespace scanloom::robot {
 
 /// Returns the points of several turns of "lidar360" with noise, in the robot's frame.
@@ -38,5 +39,28 @@ struct TwoCaptures {
 /// @param doors  one of them moves; empty: none moves
 [[nodiscard]] TwoCaptures two_captures(const World& open, const std::vector<Box>& doors, std::uint64_t seed,
                                        int turns = kAlignedTurns);
+
+inline constexpr int kMappedTurns = 10; ///< turns of the lidar for each view of a map
+
+/// The points observed from one place.
+struct StandingView {
+    Point2 from{0.0, 0.0};       ///< metres, world frame
+    std::vector<PointMm> points; ///< world frame
+};
+
+[[nodiscard]] StandingView standing_view(const World& world, const Pose2& place, Random& random,
+                                         int turns = kMappedTurns);
+
+/// A world observed from several places, and what a robot observes at another one.
+struct MappedWorld {
+    std::vector<StandingView> map;
+    std::vector<Point2> seen; ///< in the robot's frame
+    Pose2 ground_truth;       ///< T_world_robot
+};
+
+/// Makes such a world. Each place, including the robot's, is in sight of an earlier one; a door is open in every second
+/// view.
+/// @param apart_max  largest distance in metres between a place and that earlier one
+[[nodiscard]] MappedWorld mapped_world(const World& open, int places, std::uint64_t seed, double apart_max = 3.0);
 
 } // namespace scanloom::robot

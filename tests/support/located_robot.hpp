@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/landmarks/reference_map.hpp"
-#include "sim/map_world.hpp"
+#include "tests/support/standing_robot.hpp"
 
 #include <memory>
 #include <vector>
