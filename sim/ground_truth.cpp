@@ -140,10 +140,13 @@ std::string truth_yaml(const TruthGrid& truth, std::string_view image) {
 }
 
 FloorPlan floor_plan_of(const TruthGrid& truth) {
-    FloorPlan plan{truth.cell_size, truth.i_begin, truth.j_begin, truth.width, truth.height, {}};
-    plan.is_free.reserve(truth.cells.size());
-    std::ranges::transform(truth.cells, std::back_inserter(plan.is_free),
-                           [](Truth cell) { return static_cast<std::uint8_t>(cell == Truth::kFree ? 1 : 0); });
+    FloorPlan plan(truth.cell_size,
+                   {truth.i_begin, truth.j_begin, truth.i_begin + truth.width, truth.j_begin + truth.height});
+    for (std::int32_t y = 0; y < truth.height; ++y) {
+        for (std::int32_t x = 0; x < truth.width; ++x) {
+            if (truth.at(truth.i_begin + x, truth.j_begin + y) == Truth::kFree) plan.free.set({x, y});
+        }
+    }
     return plan;
 }
 

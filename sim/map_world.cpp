@@ -1,5 +1,6 @@
 #include "sim/map_world.hpp"
 
+#include "core/planning/bit_grid.hpp"
 #include "sim/shapes.hpp"
 #include "sim/unicycle.hpp"
 
@@ -8,60 +9,43 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 
 namespace scanloom::robot {
+
+using planning::BitGrid;
+using planning::Spot;
 namespace {
 
-/// A number of cells; saturates.
-using Steps = std::uint16_t;
-
-/// Returns each cell's Chebyshev distance to the nearest occupied cell; no other metric gives more. Uses two passes:
-/// the nearest occupied cell lies before a cell or behind it.
-std::vector<Steps> steps_to_solids(const MapCells& map) {
-    constexpr int kFarthest = std::numeric_limits<Steps>::max();
-    const auto width = static_cast<std::ptrdiff_t>(map.width);
-    const auto height = static_cast<std::ptrdiff_t>(map.height());
-    const auto index = [&](std::ptrdiff_t i, std::ptrdiff_t j) { return static_cast<std::size_t>(j * width + i); };
-    std::vector<Steps> steps(map.cells.size());
-    for (std::size_t n = 0; n < steps.size(); ++n) steps[n] = map.cells[n] == MapCell::kOccupied ? 0 : kFarthest;
-    const auto look = [&](std::ptrdiff_t i, std::ptrdiff_t j, std::ptrdiff_t back) {
-        int nearest = steps[index(i, j)];
-        const auto come_from = [&](std::ptrdiff_t from_i, std::ptrdiff_t from_j) {
-            if (from_i < 0 || from_i >= width || from_j < 0 || from_j >= height) return;
-            nearest = std::min(nearest, steps[index(from_i, from_j)] + 1);
-        };
-        come_from(i + back, j);
-        for (const std::ptrdiff_t aside : {-1, 0, 1}) come_from(i + aside, j + back);
-        steps[index(i, j)] = static_cast<Steps>(nearest);
-    };
-    for (std::ptrdiff_t j = 0; j < height; ++j) {
-        for (std::ptrdiff_t i = 0; i < width; ++i) look(i, j, -1);
+/// Returns the cells of one kind.
+BitGrid cells_of(const MapCells& map, MapCell kind) {
+    BitGrid cells(static_cast<std::int32_t>((map.width + 63) / 64 * 64), static_cast<std::int32_t>(map.height()));
+    for (std::size_t n = 0; n < map.cells.size(); ++n) {
+        if (map.cells[n] != kind) continue;
+        cells.set({static_cast<std::int32_t>(n % map.width), static_cast<std::int32_t>(n / map.width)});
     }
-    for (std::ptrdiff_t j = height; j-- > 0;) {
-        for (std::ptrdiff_t i = width; i-- > 0;) look(i, j, 1);
-    }
-    return steps;
+    return cells;
 }
 
-/// Returns the number of cells at which every point of one cell is at least `metres` from every point of the other.
-int steps_for(double metres, double resolution) { return static_cast<int>(std::ceil(metres / resolution - 1e-9)) + 1; }
+/// Returns the cells of which a point may be nearer than `cells` cells to a point of a solid one. Their Chebyshev
+/// distances are at most `cells` rounded up; no other metric gives more.
+BitGrid cells_near(const BitGrid& solids, double cells) {
+    const auto reach = static_cast<std::int32_t>(std::ceil(cells - 1e-9));
+    return planning::dilated(solids, std::vector(static_cast<std::size_t>(reach) + 1, reach));
+}
 
 /// Returns the open cells connected to one of them (four neighbours), and closes them.
-std::vector<std::size_t> take_part(std::size_t seed, std::size_t width, std::vector<bool>& is_open) {
-    std::vector<std::size_t> part;
-    const auto reach = [&](std::size_t at) {
-        if (!is_open[at]) return;
-        is_open[at] = false;
+std::vector<Spot> take_part(Spot seed, BitGrid& open) {
+    std::vector<Spot> part;
+    const auto reach = [&](Spot at) {
+        if (!open.test(at)) return;
+        open.clear(at);
         part.push_back(at);
     };
     reach(seed);
     for (std::size_t n = 0; n < part.size(); ++n) {
-        const std::size_t at = part[n];
-        if (at % width > 0) reach(at - 1);
-        if (at % width + 1 < width) reach(at + 1);
-        if (at >= width) reach(at - width);
-        if (at + width < is_open.size()) reach(at + width);
+        const Spot at = part[n];
+        for (const Spot next : {Spot{at.x - 1, at.y}, {at.x + 1, at.y}, {at.x, at.y - 1}, {at.x, at.y + 1}})
+            reach(next);
     }
     return part;
 }
@@ -69,22 +53,22 @@ std::vector<std::size_t> take_part(std::size_t seed, std::size_t width, std::vec
 } // namespace
 
 std::vector<std::size_t> start_cells(const MapCells& map, double resolution, double clearance_m, double passage_m) {
-    const auto steps = steps_to_solids(map);
-    const int wanted = steps_for(clearance_m, resolution);
-    const int passable = steps_for(passage_m, resolution);
-    std::vector<bool> is_open(map.cells.size());
-    for (std::size_t n = 0; n < map.cells.size(); ++n) {
-        is_open[n] = map.cells[n] == MapCell::kFree && steps[n] >= passable;
-    }
-    std::vector<std::size_t> best;
-    for (std::size_t seed = 0; seed < map.cells.size(); ++seed) {
-        if (!is_open[seed]) continue;
-        auto part = take_part(seed, map.width, is_open);
-        std::erase_if(part, [&](std::size_t at) { return steps[at] < wanted; });
+    const BitGrid solids = cells_of(map, MapCell::kOccupied);
+    const BitGrid tight = cells_near(solids, clearance_m / resolution);
+    BitGrid open = cells_of(map, MapCell::kFree);
+    open.subtract(cells_near(solids, passage_m / resolution));
+    std::vector<Spot> best;
+    planning::for_each_set(BitGrid(open), [&](Spot seed) {
+        auto part = take_part(seed, open);
+        std::erase_if(part, [&](Spot at) { return tight.test(at); });
         if (part.size() > best.size()) best = std::move(part);
+    });
+    std::vector<std::size_t> starts;
+    for (const Spot at : best) {
+        starts.push_back(static_cast<std::size_t>(at.y) * map.width + static_cast<std::size_t>(at.x));
     }
-    std::ranges::sort(best);
-    return best;
+    std::ranges::sort(starts);
+    return starts;
 }
 
 namespace {

@@ -49,7 +49,7 @@ Result<NamedBehaviour> make_waypoints(const SimulateOptions& simulate, const Wor
 Result<NamedBehaviour> make_behaviour(const SimulateOptions& simulate, const World& world) {
     if (simulate.drive == "waypoints") return make_waypoints(simulate, world);
     if (simulate.drive == "zigzag") {
-        return NamedBehaviour{std::make_unique<Zigzag>(floor_plan_of(truth_of(world, kPlanCellSize))), simulate.drive};
+        return NamedBehaviour{std::make_unique<Zigzag>(floor_plan_of(truth_of(world, kPlanCellSize))), "zigzag 2"};
     }
     return NamedBehaviour{std::make_unique<WallFollower>(), simulate.drive};
 }

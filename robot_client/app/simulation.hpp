@@ -12,7 +12,7 @@ namespace scanloom::robot {
 
 struct NamedBehaviour {
     std::unique_ptr<Behaviour> behaviour;
-    std::string name; ///< includes the parameters: the same name drives in the same way
+    std::string name; ///< includes the parameters and the version: the same name drives in the same way
 };
 
 /// Makes the behaviour of a simulated robot that needs no goals from the server.

@@ -132,7 +132,7 @@ void Detour::begin_next_part(const Ground& ground, const Point2& position) {
 
 /// Returns how far the ground is free parallel to the line, in metres, up to the line's end.
 double Detour::free_length(const Ground& ground) const {
-    const double step = ground.plan().cell_size;
+    const double step = ground.cell_size();
     double room = 0.0;
     while (room < line_.length) {
         const double next = std::min(room + step, line_.length);

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "sim/drive/behaviour.hpp"
-#include "sim/drive/coverage_meter.hpp"
 #include "sim/drive/detour.hpp"
 #include "sim/drive/ground.hpp"
 #include "sim/drive/path_follower.hpp"
@@ -23,11 +22,9 @@ using Block = std::vector<Lane>;
 
 /// Divides cells into blocks and each block into evenly spaced lanes at most `spacing_m` apart. There is one lane along
 /// the lowest row and one along the highest, but none if that whole row borders another block, whose lane there is near
-/// enough. A block ends where a row has several neighbours above or below it, or shares one.
-/// @param cells  for each cell of the ground's plan, 1 if it belongs to the area, else 0
-/// Source: Choset, Pignon, Coverage Path Planning: The Boustrophedon Cellular Decomposition (FSR 1997).
-[[nodiscard]] std::vector<Block> lanes_over(const Ground& ground, const std::vector<std::uint8_t>& cells,
-                                            double spacing_m);
+/// enough. For the blocks see planning::sweep_blocks().
+/// @param cells  the cells of the area
+[[nodiscard]] std::vector<Block> lanes_over(const Ground& ground, const BitGrid& cells, double spacing_m);
 
 /// Sweeps the free cells of a known map back and forth, lane by lane and block by block, the nearest block next. An
 /// obstacle in a lane that is not in the map stops the robot. It waits two seconds for the obstacle to leave, then
@@ -38,7 +35,7 @@ public:
     /// Distance in metres that lanes keep from obstacles of the plan.
     static constexpr double kLaneClearance = kBodyRadius + 0.10;
 
-    explicit Zigzag(FloorPlan plan);
+    explicit Zigzag(const FloorPlan& plan);
 
     [[nodiscard]] Velocity step(const Senses& senses) override;
     [[nodiscard]] bool is_done() const override { return task_ == Task::kDone; }

@@ -76,9 +76,11 @@ const std::vector<Folder> kFolders = {
                      "server/sessions", "server/sockets", "server/store", "server/tiles"}},
     {.path = "server/app", .may_include = {"common", "core", "server"}},
 
-    {.path = "sim/drive", .may_include = {"common/error", "common/geometry", "common/scan"}, .pure = true},
+    {.path = "sim/drive",
+     .may_include = {"common/error", "common/geometry", "common/scan", "core/grid", "core/planning"},
+     .pure = true},
     {.path = "sim",
-     .may_include = {"common/error", "common/geometry", "common/ros_map", "common/scan", "sim/drive"},
+     .may_include = {"common/error", "common/geometry", "common/ros_map", "common/scan", "core/planning", "sim/drive"},
      .pure = true},
     {.path = "robot_client/sources",
      .may_include = {"common/error", "common/geometry", "common/hash", "common/net", "common/ros_map", "common/scan",

@@ -9,12 +9,14 @@ namespace scanloom::robot {
 
 /// Rows from the top, all of equal length: '.' is free, any other character is not. The lower left cell is (0, 0).
 inline FloorPlan drawn_plan(const std::vector<std::string_view>& rows, double cell_size) {
-    FloorPlan plan;
-    plan.cell_size = cell_size;
-    plan.width = static_cast<std::int32_t>(rows.front().size());
-    plan.height = static_cast<std::int32_t>(rows.size());
-    for (auto row = rows.rbegin(); row != rows.rend(); ++row) {
-        for (const char cell : *row) plan.is_free.push_back(cell == '.' ? 1 : 0);
+    const auto width = static_cast<std::int32_t>(rows.front().size());
+    const auto height = static_cast<std::int32_t>(rows.size());
+    FloorPlan plan(cell_size, {0, 0, width, height});
+    for (std::int32_t y = 0; y < height; ++y) {
+        for (std::int32_t x = 0; x < width; ++x) {
+            if (rows[static_cast<std::size_t>(height - 1 - y)][static_cast<std::size_t>(x)] == '.')
+                plan.free.set({x, y});
+        }
     }
     return plan;
 }

@@ -1,6 +1,5 @@
 #include "sim/drive/ground.hpp"
 
-#include "sim/drive/coverage_meter.hpp"
 #include "tests/unit/sim/drive/drawn_plan.hpp"
 
 #include <gtest/gtest.h>
@@ -15,8 +14,8 @@ namespace {
 /// Draws the ground, rows from the top: '#' not free, '.' the body fits, 'o' the body does not fit.
 std::string drawn(const Ground& ground) {
     std::string text;
-    for (std::int32_t y = ground.plan().height - 1; y >= 0; --y) {
-        for (std::int32_t x = 0; x < ground.plan().width; ++x) {
+    for (auto y = static_cast<std::int32_t>(ground.passability().window.height()) - 1; y >= 0; --y) {
+        for (std::int32_t x = 0; x < ground.passability().window.width(); ++x) {
             text += !ground.is_free({x, y}) ? '#' : ground.fits({x, y}) ? '.' : 'o';
         }
         text += '\n';
@@ -63,8 +62,7 @@ TEST(Ground, WithoutExcludesCellsNearObstacles) {
 
 TEST(Ground, ConvertsPointsAndCellsWithNegativeCoordinates) {
     FloorPlan plan = drawn_plan({"..", ".."}, 0.1);
-    plan.i_begin = -3;
-    plan.j_begin = -5;
+    plan.window = {-3, -5, -1, -3};
     const Ground ground(plan, 0.0);
     EXPECT_EQ(ground.spot_of({-0.25, -0.45}), (Spot{0, 0}));
     EXPECT_EQ(ground.spot_of(ground.centre_of({1, 1})), (Spot{1, 1}));

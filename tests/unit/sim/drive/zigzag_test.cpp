@@ -14,7 +14,7 @@ namespace {
 
 std::vector<Block> lanes_of(const std::vector<std::string_view>& rows, double spacing) {
     const Ground ground(drawn_plan(rows, 1.0), 0.0);
-    return lanes_over(ground, ground.plan().is_free, spacing);
+    return lanes_over(ground, ground.free(), spacing);
 }
 
 std::vector<double> heights(const Block& block) {
