@@ -80,4 +80,8 @@ inline constexpr std::array kWorlds{NamedWorld{"room", make_room}, NamedWorld{"r
 /// Errors: kNotFound if there is no world of that name; the message lists all names.
 [[nodiscard]] Result<World> find_world(std::string_view name);
 
+/// Returns a round tour of a world of find_world(): waypoints, each in sight of the one before, in metres in the world
+/// frame. Empty if the world has no tour.
+[[nodiscard]] std::vector<Point2> tour_of(std::string_view world);
+
 } // namespace scanloom::robot

@@ -9,7 +9,7 @@
 #include "sim/drive/waypoints.hpp"
 #include "sim/drive/zigzag.hpp"
 #include "sim/ground_truth.hpp"
-#include "sim/tour.hpp"
+#include "sim/world.hpp"
 
 #include <fmt/format.h>
 

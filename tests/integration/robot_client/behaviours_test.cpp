@@ -3,7 +3,7 @@
 #include "sim/drive/zigzag.hpp"
 #include "sim/ground_truth.hpp"
 #include "sim/simulator.hpp"
-#include "sim/tour.hpp"
+#include "sim/world.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 #include "robot_client/app/simulation.hpp"
 
 #include "robot_client/app/waypoint_list.hpp"
-#include "sim/tour.hpp"
+#include "sim/world.hpp"
 #include "tests/support/point_text.hpp"
 #include "tests/support/temporary_directory.hpp"
 
