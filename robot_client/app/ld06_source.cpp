@@ -4,7 +4,7 @@
 #include "robot_client/sources/ld06_live.hpp"
 #include "robot_client/sources/locating_source.hpp"
 #include "robot_client/sources/pose_feed.hpp"
-#include "robot_client/sources/pose_lines.hpp"
+#include "robot_client/sources/pose_path.hpp"
 #include "robot_client/sources/replayed_source.hpp"
 #include "robot_client/uplink/server_address.hpp"
 

@@ -80,6 +80,23 @@ Result<std::optional<double>> read_stamp(TokenSpan trailer) {
     return std::optional(*stamp);
 }
 
+/// Reads the tail of a laser line: no poses or two (the laser's and the robot's), then the trailer.
+/// @param robot  names the second pose in messages
+Result<CarmenLine> with_tail(CarmenScan scan, TokenSpan poses, std::string_view robot, TokenSpan trailer) {
+    if (!poses.empty()) {
+        auto laser_pose = read_pose("laser", poses.first(3));
+        if (!laser_pose) return laser_pose.error();
+        auto robot_pose = read_pose(robot, poses.subspan(3, 3));
+        if (!robot_pose) return robot_pose.error();
+        scan.laser = *laser_pose;
+        scan.robot = *robot_pose;
+    }
+    auto stamp = read_stamp(trailer);
+    if (!stamp) return stamp.error();
+    scan.stamp = *stamp;
+    return CarmenLine(std::move(scan));
+}
+
 UniformAngles flaser_angles(std::size_t count) {
     const auto beams = static_cast<std::uint32_t>(count);
     if (count == 1) return {0.0, kPi / 180.0, beams};
@@ -99,16 +116,7 @@ Result<CarmenLine> read_flaser(TokenSpan tokens) {
         return malformed(fmt::format("{} values follow the {} ranges; two poses and the time stamps are 9",
                                      tokens.size(), scan.ranges.size()));
     }
-    auto laser = read_pose("laser", tokens.first(3));
-    if (!laser) return laser.error();
-    auto odometry = read_pose("odom", tokens.subspan(3, 3));
-    if (!odometry) return odometry.error();
-    auto stamp = read_stamp(tokens.subspan(6));
-    if (!stamp) return stamp.error();
-    scan.laser = *laser;
-    scan.robot = *odometry;
-    scan.stamp = *stamp;
-    return CarmenLine(std::move(scan));
+    return with_tail(std::move(scan), tokens.first(6), "odom", tokens.subspan(6));
 }
 
 /// Reads laser_type start_angle fov angular_resolution maximum_range accuracy remission_mode and removes them.
@@ -182,18 +190,8 @@ Result<CarmenLine> read_new_laser(TokenSpan tokens, CarmenKind kind, std::uint32
         return malformed(fmt::format("{} values follow the {} ranges, which fit no form of this line", tokens.size(),
                                      scan.ranges.size()));
     }
-    if (has_poses) {
-        auto laser = read_pose("laser", tokens.subspan(shape->remissions, 3));
-        if (!laser) return laser.error();
-        auto robot = read_pose("robot", tokens.subspan(shape->remissions + 3, 3));
-        if (!robot) return robot.error();
-        scan.laser = *laser;
-        scan.robot = *robot;
-    }
-    auto stamp = read_stamp(tokens.last(shape->trailer));
-    if (!stamp) return stamp.error();
-    scan.stamp = *stamp;
-    return CarmenLine(std::move(scan));
+    const TokenSpan poses = has_poses ? tokens.subspan(shape->remissions, 6) : TokenSpan{};
+    return with_tail(std::move(scan), poses, "robot", tokens.last(shape->trailer));
 }
 
 /// Reads x y theta tv rv accel, and a trailer with a stamp.

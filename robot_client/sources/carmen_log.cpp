@@ -1,51 +1,274 @@
 #include "robot_client/sources/carmen_log.hpp"
 
+#include "common/hash/sha256.hpp"
+
 #include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+#include <utility>
 
 namespace scanloom::robot {
 
-Result<CarmenLog> CarmenLog::open(const std::filesystem::path& path, const CarmenOptions& options,
-                                  const std::function<void(const SkippedLine&)>& report, const OnRead& on_read) {
-    auto index = index_carmen_log(path, options, report, on_read);
-    if (!index) return index.error();
-    auto records = CarmenRecords::open(path, options.limits);
-    if (!records) return records.error();
-    return CarmenLog(path, options, std::move(*index), std::move(*records));
+ScanOrder order_of(std::span<const double> stamps) {
+    ScanOrder result;
+    result.order.resize(stamps.size());
+    std::iota(result.order.begin(), result.order.end(), 0U);
+
+    std::vector<double> newest(stamps.begin(), stamps.end()); // newest stamp of each scan's part, up to that scan
+    for (std::size_t i = 1; i < stamps.size(); ++i) {
+        if (stamps[i] < stamps[i - 1]) ++result.steps_back;
+        const double back = newest[i - 1] - stamps[i];
+        result.back_max = std::max(result.back_max, back);
+        if (back > kStampJitterMax) result.file_order = false;
+        if (back <= kStampJitterMax) newest[i] = std::max(newest[i - 1], stamps[i]);
+    }
+    std::ranges::stable_sort(result.order, {}, [&](std::uint32_t i) { return newest[i]; });
+    result.is_of_stamps = std::ranges::is_sorted(result.order, {}, [&](std::uint32_t i) { return stamps[i]; });
+    return result;
 }
 
-CarmenLog::CarmenLog(const std::filesystem::path& path, const CarmenOptions& options, CarmenIndex index,
-                     CarmenRecords records)
-    : path_(path.string()), index_(std::move(index)), records_(std::move(records)),
+namespace {
+
+/// The place of a laser line that is not sent.
+constexpr std::uint32_t kUnused = std::numeric_limits<std::uint32_t>::max();
+
+struct LaserLine {
+    double stamp = 0.0;
+    std::size_t line_number = 0;
+    bool is_raw = false;
+    bool is_used = false;
+};
+
+} // namespace
+
+Result<std::optional<CarmenLog::Line>> CarmenLog::Lines::next() {
+    for (;;) {
+        const auto line = reader.next();
+        if (!line) return line.error();
+        if (!*line) return std::optional<Line>{};
+        auto content = parse_carmen_line(**line);
+        if (content && std::holds_alternative<std::monostate>(*content)) continue;
+        auto* scan = content ? std::get_if<CarmenScan>(&*content) : nullptr;
+        if (scan != nullptr) scan->stamp = last_stamp = scan->stamp.value_or(last_stamp);
+        return std::optional(Line{**line, std::move(content)});
+    }
+}
+
+class CarmenLog::Indexer {
+public:
+    Indexer(const CarmenOptions& options, const std::function<void(const SkippedLine&)>& report)
+        : options_(options), report_(report) {
+        hash_.update("carmen 1\n"); // increase it when the same lines give different scans
+    }
+
+    [[nodiscard]] Result<> read(Lines& lines);
+    [[nodiscard]] Index build();
+
+private:
+    void take(std::size_t line_number, const CarmenScan& scan);
+    void take(std::size_t line_number, const CarmenOdometry& odometry);
+    void take(std::size_t line_number, const CarmenLaserOffset& offset);
+    void take(std::size_t line_number, const CarmenUnreadLaser& line);
+    void take(std::size_t, std::monostate) {}
+    void skip(std::size_t line_number, std::string reason);
+    void report_unread_kinds();
+    void keep_one_view_of_each_scan();
+    void drop_lines_without_pose(const PosePath& path);
+    void order_scans(Index& index);
+    [[nodiscard]] std::string fingerprint();
+
+    const CarmenOptions& options_;
+    const std::function<void(const SkippedLine&)>& report_;
+    Sha256 hash_;
+    std::vector<LaserLine> lines_;
+    std::vector<StampedPose> odometry_;
+    double laser_offset_forward_ = 0.0;
+    bool has_flaser_ = false;
+    bool has_robot_laser_ = false;
+    bool has_raw_ = false;
+    std::size_t skipped_ = 0;
+
+    struct UnreadKind {
+        std::size_t first_line = 0;
+        std::size_t count = 0;
+    };
+    std::map<std::string_view, UnreadKind> unread_;
+};
+
+Result<> CarmenLog::Indexer::read(Lines& lines) {
+    for (;;) {
+        const auto line = lines.next();
+        if (!line) return line.error();
+        if (!*line) return {};
+        const std::size_t line_number = lines.reader.line_number();
+        const auto& [text, content] = **line;
+        if (!content) {
+            skip(line_number, content.error().message);
+            continue;
+        }
+        if (!std::holds_alternative<CarmenUnreadLaser>(*content)) {
+            hash_.update(text);
+            hash_.update("\n");
+        }
+        std::visit([&](const auto& one) { take(line_number, one); }, *content);
+        if (lines_.size() == kUnused) {
+            return Error{Errc::kTooLarge, fmt::format("more than {} laser lines; split the log", lines_.size() - 1)};
+        }
+    }
+}
+
+void CarmenLog::Indexer::take(std::size_t line_number, const CarmenScan& scan) {
+    has_flaser_ |= scan.kind == CarmenKind::kFlaser;
+    has_robot_laser_ |= scan.kind == CarmenKind::kRobotLaser;
+    const bool is_raw = scan.kind == CarmenKind::kRawLaser;
+    has_raw_ |= is_raw;
+    if (!is_raw) odometry_ = {}; // no RAWLASER line will be used, so none needs a pose
+    const auto usable = check_usable(scan, options_);
+    if (!usable) skip(line_number, usable.error().message);
+    lines_.push_back({*scan.stamp, line_number, is_raw, usable.has_value()});
+}
+
+void CarmenLog::Indexer::take(std::size_t, const CarmenOdometry& odometry) {
+    if (!has_flaser_ && !has_robot_laser_) odometry_.push_back(odometry);
+}
+
+void CarmenLog::Indexer::take(std::size_t, const CarmenLaserOffset& offset) { laser_offset_forward_ = offset.forward; }
+
+void CarmenLog::Indexer::take(std::size_t line_number, const CarmenUnreadLaser& line) {
+    auto& kind = unread_[line.kind];
+    if (++kind.count == 1) kind.first_line = line_number;
+}
+
+void CarmenLog::Indexer::skip(std::size_t line_number, std::string reason) {
+    ++skipped_;
+    report_({line_number, std::move(reason)});
+}
+
+void CarmenLog::Indexer::report_unread_kinds() {
+    for (const auto& [kind, lines] : unread_) {
+        skipped_ += lines.count;
+        report_(
+            {lines.first_line,
+             fmt::format(
+                 "{}: {} lines of an unsupported kind; supported are FLASER, ROBOTLASER1, ROBOTLASER2 and RAWLASER1",
+                 kind, lines.count)});
+    }
+}
+
+/// Drops the RAWLASER lines of logs that also have other laser lines: such logs contain every scan twice.
+void CarmenLog::Indexer::keep_one_view_of_each_scan() {
+    if (!has_flaser_ && !has_robot_laser_) return;
+    for (LaserLine& line : lines_) line.is_used = line.is_used && !line.is_raw;
+}
+
+void CarmenLog::Indexer::drop_lines_without_pose(const PosePath& path) {
+    for (LaserLine& line : lines_) {
+        if (!line.is_used || !line.is_raw || path.at(line.stamp)) continue;
+        line.is_used = false;
+        skip(line.line_number, fmt::format("RAWLASER1: no ODOM line within {:g} s for its pose", kPoseGapMax));
+    }
+}
+
+void CarmenLog::Indexer::order_scans(Index& index) {
+    std::vector<std::uint32_t> used;
+    std::vector<double> stamps;
+    for (std::uint32_t i = 0; i < lines_.size(); ++i) {
+        if (!lines_[i].is_used) continue;
+        used.push_back(i);
+        stamps.push_back(lines_[i].stamp);
+    }
+    const ScanOrder scans = order_of(stamps);
+    index.scan_count = static_cast<std::uint32_t>(used.size());
+    index.places.assign(lines_.size(), kUnused);
+    for (std::uint32_t place = 0; place < used.size(); ++place) index.places[used[scans.order[place]]] = place;
+    index.stamps = scans;
+    if (!scans.is_of_stamps) hash_.update("with jitter in its place\n"); // "carmen 1" alone: strictly by stamp
+}
+
+/// Options count only if they change the scans: stating a default makes no difference.
+std::string CarmenLog::Indexer::fingerprint() {
+    const auto hash_options = [&](std::string_view lines, CarmenKind kind, const std::string& range_max) {
+        hash_.update(fmt::format("{} {} {}\n", lines, range_max,
+                                 no_return_of(kind, options_) == NoReturn::kFree ? "free" : "drop"));
+    };
+    if (has_flaser_) {
+        const double range_max = options_.range_max.value_or(kCarmenRangeMax);
+        hash_options("flaser", CarmenKind::kFlaser, fmt::format("{}", range_max));
+    }
+    if (has_robot_laser_ || has_raw_) {
+        hash_options("robotlaser", CarmenKind::kRobotLaser,
+                     options_.range_max ? fmt::format("{}", *options_.range_max) : "as stated");
+    }
+    return "carmen:" + hash_.hex().substr(0, 32);
+}
+
+CarmenLog::Index CarmenLog::Indexer::build() {
+    Index index;
+    report_unread_kinds();
+    keep_one_view_of_each_scan();
+    index.path = PosePath(std::move(odometry_));
+    drop_lines_without_pose(index.path);
+    order_scans(index);
+    index.fingerprint = fingerprint();
+    index.laser_offset_forward = laser_offset_forward_;
+    index.skipped_lines = skipped_;
+    return index;
+}
+
+Result<CarmenLog> CarmenLog::open(const std::filesystem::path& path, const CarmenOptions& options,
+                                  const std::function<void(const SkippedLine&)>& report, const OnRead& on_read) {
+    auto reader = LineReader::open(path, options.limits, on_read);
+    if (!reader) return reader.error();
+    Lines lines{std::move(*reader)};
+    Indexer indexer(options, report);
+    if (auto ok = indexer.read(lines); !ok) return ok.error();
+    Index index = indexer.build();
+    if (index.scan_count == 0) {
+        return Error{Errc::kNotFound,
+                     fmt::format("{}: no usable scan in its {} lines ({} skipped); a CARMEN log with FLASER, "
+                                 "ROBOTLASER1, ROBOTLASER2 or RAWLASER1 lines is needed",
+                                 path.string(), lines.reader.line_number(), index.skipped_lines)};
+    }
+    auto again = LineReader::open(path, options.limits);
+    if (!again) return again.error();
+    return CarmenLog(path, options, std::move(index), std::move(*again));
+}
+
+CarmenLog::CarmenLog(const std::filesystem::path& path, const CarmenOptions& options, Index index, LineReader reader)
+    : path_(path.string()), index_(std::move(index)), lines_{std::move(reader)},
       observer_(options, index_.laser_offset_forward) {}
 
 Result<std::optional<Observation>> CarmenLog::next() {
     if (place_ == index_.scan_count) return std::optional<Observation>{};
-    auto line = next_in_place();
-    if (!line) return line.error();
-    if (line->scan.kind == CarmenKind::kRawLaser) {
-        const auto pose = index_.path.at(line->stamp);
+    auto scan = next_in_place();
+    if (!scan) return scan.error();
+    if (scan->kind == CarmenKind::kRawLaser) {
+        const auto pose = index_.path.at(*scan->stamp);
         if (!pose) return changed();
-        line->scan.robot = *pose;
+        scan->robot = *pose;
     }
-    auto observation = observer_.observe(line->scan, line->stamp);
+    auto observation = observer_.observe(*scan);
     if (!observation) return changed();
     ++place_;
     return std::optional(std::move(*observation));
 }
 
-Result<StampedScan> CarmenLog::next_in_place() {
+Result<CarmenScan> CarmenLog::next_in_place() {
     if (auto early = early_.extract(place_)) return std::move(early.mapped());
     for (;;) {
-        auto record = records_.next();
-        if (!record) return record.error();
-        if (!*record) return changed();
-        auto* line = std::get_if<StampedScan>(&(*record)->content);
-        if (!line) continue;
+        auto line = lines_.next();
+        if (!line) return line.error();
+        if (!*line) return changed();
+        auto& content = (*line)->content;
+        auto* scan = content ? std::get_if<CarmenScan>(&*content) : nullptr;
+        if (scan == nullptr) continue;
         if (laser_lines_ == index_.places.size()) return changed();
         const std::uint32_t place = index_.places[laser_lines_++];
-        if (place == CarmenIndex::kUnused) continue;
-        if (place == place_) return std::move(*line);
-        early_.emplace(place, std::move(*line));
+        if (place == kUnused) continue;
+        if (place == place_) return std::move(*scan);
+        early_.emplace(place, std::move(*scan));
     }
 }
 

@@ -1,15 +1,44 @@
 #pragma once
 
-#include "robot_client/sources/carmen_index.hpp"
-#include "robot_client/sources/carmen_record.hpp"
+#include "robot_client/sources/carmen_observer.hpp"
+#include "robot_client/sources/line_reader.hpp"
+#include "robot_client/sources/pose_path.hpp"
 #include "robot_client/sources/source.hpp"
 
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <span>
 #include <string>
+#include <string_view>
+#include <vector>
 
 namespace scanloom::robot {
+
+/// Stamps that go back by at most this are jitter. A log whose stamps go back by more has parts out of order.
+inline constexpr double kStampJitterMax = 2.0; // seconds
+
+/// What the stamps of a log's scans show about their order.
+struct StampReport {
+    std::size_t steps_back = 0; ///< scans with a smaller stamp than the scan before in the file
+    double back_max = 0.0;      ///< the farthest that a stamp lies behind the newest one before it, seconds
+    bool file_order = true;     ///< whether scans are sent in the order of the file; otherwise by time
+};
+
+/// The order in which the scans of a log are sent.
+struct ScanOrder : StampReport {
+    std::vector<std::uint32_t> order; ///< indices of the scans
+    bool is_of_stamps = true;         ///< whether no stamp goes back in this order
+};
+
+/// Computes the order of a log's scans. Scans keep the order of the file if their stamps only jitter: that is the order
+/// in which they were taken, and sorting would make the robot jump back and forth. Where a stamp lies more than
+/// kStampJitterMax behind the newest one before it, a new part begins. The parts are then ordered by time (stable);
+/// within each part, jitter still changes nothing.
+/// Pre: stamps are finite, fewer than 2^32.
+[[nodiscard]] ScanOrder order_of(std::span<const double> stamps);
 
 /// A source of the laser lines of a CARMEN log (plain, gzip or bzip2), in the order of the file. Only if parts of the
 /// file are out of order in time, scans follow their ipc_timestamp (see ScanOrder). A line without a stamp takes that
@@ -28,7 +57,12 @@ namespace scanloom::robot {
 /// bytes for each laser line, and the scans that precede earlier-sent ones in the file.
 class CarmenLog final : public Source {
 public:
-    /// Errors: those of index_carmen_log().
+    /// Reads the log once.
+    /// @param report   called for each malformed line in the order of the file, then once for each unread kind of laser
+    ///                 line, then for each RAWLASER line without a pose
+    /// @param on_read  called after each chunk of the file
+    /// Errors: those of LineReader; kNotFound if no line is usable; kTooLarge if there are more than 2^32 - 2 laser
+    ///         lines.
     [[nodiscard]] static Result<CarmenLog> open(const std::filesystem::path& path, const CarmenOptions& options,
                                                 const std::function<void(const SkippedLine&)>& report,
                                                 const OnRead& on_read = {});
@@ -44,19 +78,49 @@ public:
     [[nodiscard]] const std::string& fingerprint() const noexcept { return index_.fingerprint; }
 
 private:
-    CarmenLog(const std::filesystem::path& path, const CarmenOptions& options, CarmenIndex index,
-              CarmenRecords records);
+    class Indexer;
 
-    [[nodiscard]] Result<StampedScan> next_in_place();
+    struct Line {
+        std::string_view text;      ///< valid until the next line
+        Result<CarmenLine> content; ///< the error of a line that cannot be used
+    };
+
+    /// The lines of a log, one at a time.
+    struct Lines {
+        LineReader reader;
+        double last_stamp = 0.0; ///< seconds, of the laser line before
+
+        /// Reads the next line with content; a laser line without a stamp gets that of the laser line before.
+        /// @return nullopt after the last line
+        /// Errors: those of LineReader.
+        [[nodiscard]] Result<std::optional<Line>> next();
+    };
+
+    /// The data of a whole log that are needed before its first scan can be sent. They are small, so a log may be
+    /// large.
+    struct Index {
+        std::vector<std::uint32_t> places; ///< for each laser line, in the order of the file: its index among the scans
+                                           ///< in sending order, from 0, or kUnused if the line is not sent
+        std::uint32_t scan_count = 0;
+        PosePath path; ///< only if the scans come from RAWLASER lines
+        double laser_offset_forward = 0.0;
+        std::size_t skipped_lines = 0;
+        StampReport stamps;
+        std::string fingerprint; ///< of the lines and options that determine the scans, and of their order
+    };
+
+    CarmenLog(const std::filesystem::path& path, const CarmenOptions& options, Index index, LineReader reader);
+
+    [[nodiscard]] Result<CarmenScan> next_in_place();
     [[nodiscard]] Error changed() const;
 
     std::string path_;
-    CarmenIndex index_;
-    CarmenRecords records_;
+    Index index_;
+    Lines lines_;
     CarmenObserver observer_;
-    std::size_t laser_lines_ = 0;                ///< read so far
-    std::uint32_t place_ = 0;                    ///< index of the next scan in sending order
-    std::map<std::uint32_t, StampedScan> early_; ///< read before they are sent, by their index in sending order
+    std::size_t laser_lines_ = 0;               ///< read so far
+    std::uint32_t place_ = 0;                   ///< index of the next scan in sending order
+    std::map<std::uint32_t, CarmenScan> early_; ///< read before they are sent, by their index in sending order
 };
 
 } // namespace scanloom::robot

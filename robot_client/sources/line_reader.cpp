@@ -1,15 +1,20 @@
 #include "robot_client/sources/line_reader.hpp"
 
-#include "robot_client/sources/unpacked_file.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
 #include <charconv>
+#include <cmath>
 #include <cstring>
+#include <fstream>
 #include <limits>
+#include <new>
+#include <variant>
+
+#include <bzlib.h>
+#include <zlib.h>
 
 namespace scanloom::robot {
 
@@ -33,6 +38,23 @@ std::optional<double> to_number(std::string_view token) {
     return value;
 }
 
+Result<std::vector<double>> read_numbers(std::span<const std::string_view> tokens, std::size_t count,
+                                         std::string_view what) {
+    if (tokens.size() != count) {
+        return Error{Errc::kMalformed, fmt::format("{} values; {} are needed: {}", tokens.size(), count, what)};
+    }
+    std::vector<double> numbers;
+    for (const std::string_view token : tokens) {
+        const auto number = to_number(token);
+        if (!number) return Error{Errc::kMalformed, fmt::format("'{}' is not a number", shown_token(token))};
+        if (!std::isfinite(*number)) {
+            return Error{Errc::kInvalidField, fmt::format("'{}' is not finite", shown_token(token))};
+        }
+        numbers.push_back(*number);
+    }
+    return numbers;
+}
+
 std::string shown_token(std::string_view token) {
     constexpr std::size_t kShownMax = 24;
     std::string text(token.substr(0, kShownMax));
@@ -41,6 +63,146 @@ std::string shown_token(std::string_view token) {
     }
     return token.size() > kShownMax ? text + "..." : text;
 }
+
+namespace {
+
+enum class Unpacking { kGoesOn, kEnded, kDamaged };
+
+/// One member of a gzip file, which may contain several in sequence.
+struct GzipMember {
+    z_stream stream{};
+
+    GzipMember() {
+        constexpr int kGzipOnly = 16;
+        if (inflateInit2(&stream, MAX_WBITS + kGzipOnly) != Z_OK) throw std::bad_alloc();
+    }
+    GzipMember(const GzipMember&) = delete;
+    GzipMember& operator=(const GzipMember&) = delete;
+    ~GzipMember() { inflateEnd(&stream); }
+
+    Unpacking step() {
+        const int result = inflate(&stream, Z_NO_FLUSH);
+        if (result == Z_MEM_ERROR) throw std::bad_alloc();
+        if (result == Z_STREAM_END) return Unpacking::kEnded;
+        return result == Z_OK || result == Z_BUF_ERROR ? Unpacking::kGoesOn : Unpacking::kDamaged;
+    }
+};
+
+/// One member of a bzip2 file.
+struct Bzip2Member {
+    bz_stream stream{};
+
+    Bzip2Member() {
+        if (BZ2_bzDecompressInit(&stream, 0, 0) != BZ_OK) throw std::bad_alloc();
+    }
+    Bzip2Member(const Bzip2Member&) = delete;
+    Bzip2Member& operator=(const Bzip2Member&) = delete;
+    ~Bzip2Member() { BZ2_bzDecompressEnd(&stream); }
+
+    Unpacking step() {
+        const int result = BZ2_bzDecompress(&stream);
+        if (result == BZ_MEM_ERROR) throw std::bad_alloc();
+        if (result == BZ_STREAM_END) return Unpacking::kEnded;
+        return result == BZ_OK ? Unpacking::kGoesOn : Unpacking::kDamaged;
+    }
+};
+
+constexpr std::size_t kFileChunkBytes = 16'384;
+
+/// Reads the bytes of a file, plain or decompressed. Zero bytes after compressed data are padding, as archives and
+/// tapes leave it.
+class UnpackedFile {
+public:
+    explicit UnpackedFile(const std::filesystem::path& path) : file_(path, std::ios::binary) {
+        std::array<char, 3> first{};
+        file_.read(first.data(), first.size());
+        const std::string_view known(first.data(), static_cast<std::size_t>(file_.gcount()));
+        is_gzip_ = known.starts_with("\x1f\x8b");
+        is_plain_ = !is_gzip_ && !known.starts_with("BZh");
+        file_.clear();
+        file_.seekg(0);
+    }
+
+    [[nodiscard]] bool is_open() const { return file_.is_open(); }
+    [[nodiscard]] bool is_gzip() const noexcept { return is_gzip_; }
+    /// Returns whether the end was reached because reading the file failed.
+    [[nodiscard]] bool has_failed() const { return file_.bad(); }
+    /// Returns how many bytes of the file itself were read, compressed or not.
+    [[nodiscard]] std::uint64_t bytes_read() const noexcept { return bytes_read_; }
+
+    /// Fills `text`, which must not be empty, from its beginning. Bytes before damage are returned first.
+    /// @return number of bytes, 0 at the end; nullopt if the compressed data are damaged or truncated
+    [[nodiscard]] std::optional<std::size_t> read(std::span<char> text) {
+        while (!is_damaged_) {
+            if (packed_.empty()) refill();
+            if (is_plain_) return take(packed_.copy(text.data(), text.size()));
+            if (packed_.empty() && is_between_members()) return 0;
+            if (is_between_members()) {
+                if (!is_first_member_ && packed_.front() == '\0') {
+                    is_damaged_ = !only_zeros_are_left();
+                    continue;
+                }
+                is_gzip_ ? void(member_.emplace<GzipMember>()) : void(member_.emplace<Bzip2Member>());
+                is_first_member_ = false;
+            }
+            const std::size_t made =
+                is_gzip_ ? unpack(std::get<GzipMember>(member_), text) : unpack(std::get<Bzip2Member>(member_), text);
+            if (made > 0) return made;
+        }
+        return std::nullopt;
+    }
+
+private:
+    [[nodiscard]] bool is_between_members() const noexcept { return member_.index() == 0; }
+
+    std::size_t take(std::size_t count) {
+        packed_.remove_prefix(count);
+        return count;
+    }
+
+    void refill() {
+        file_.read(buffer_.data(), static_cast<std::streamsize>(buffer_.size()));
+        packed_ = std::string_view(buffer_.data(), static_cast<std::size_t>(file_.gcount()));
+        bytes_read_ += packed_.size();
+    }
+
+    bool only_zeros_are_left() {
+        for (; !packed_.empty(); refill()) {
+            if (packed_.find_first_not_of('\0') != std::string_view::npos) return false;
+        }
+        return true;
+    }
+
+    /// Consumes as much as possible of the packed bytes and fills as much as possible of `text`.
+    /// @return number of bytes filled
+    template <class Member>
+    std::size_t unpack(Member& member, std::span<char> text) {
+        auto& stream = member.stream;
+        stream.next_in = reinterpret_cast<decltype(stream.next_in)>(const_cast<char*>(packed_.data())); // only read
+        stream.avail_in = static_cast<unsigned>(packed_.size());
+        stream.next_out = reinterpret_cast<decltype(stream.next_out)>(text.data());
+        stream.avail_out = static_cast<unsigned>(text.size());
+        const Unpacking state = member.step();
+        const std::size_t taken = take(packed_.size() - stream.avail_in);
+        const std::size_t made = text.size() - stream.avail_out;
+        const bool is_cut_short = taken == 0 && made == 0; // it needs more input and there is none
+        is_damaged_ = state == Unpacking::kDamaged || (state == Unpacking::kGoesOn && is_cut_short);
+        if (state == Unpacking::kEnded) member_.emplace<std::monostate>();
+        return made;
+    }
+
+    std::ifstream file_;
+    std::array<char, kFileChunkBytes> buffer_{};
+    std::string_view packed_; // the remaining part of the buffer
+    bool is_gzip_ = false;
+    bool is_plain_ = false;
+    std::variant<std::monostate, GzipMember, Bzip2Member> member_; // std::monostate between two members
+    std::uint64_t bytes_read_ = 0;
+    bool is_first_member_ = true;
+    bool is_damaged_ = false;
+};
+
+} // namespace
 
 struct LineReader::State {
     State(const std::filesystem::path& name, LineLimits given, OnRead listener)
@@ -55,7 +217,7 @@ struct LineReader::State {
     OnRead on_read;
     std::uint64_t bytes_total = 0;
     UnpackedFile file;
-    std::array<char, 16384> chunk{};
+    std::array<char, kFileChunkBytes> chunk{};
     std::size_t chunk_begin = 0;
     std::size_t chunk_end = 0;
     std::uint64_t text_bytes = 0;
@@ -81,14 +243,13 @@ struct LineReader::State {
 };
 
 Error LineReader::State::cannot_unpack() const {
-    const bool is_gzip = file.packing() == Packing::kGzip;
     const std::string readable = text_bytes == 0
                                      ? "no text could be read; download the file again"
                                      : fmt::format("only its first {} lines ({} bytes of text) could be read; download "
                                                    "the file again, or unpack them with {} and replay them",
-                                                   line_number, text_bytes, is_gzip ? "zcat" : "bzcat");
-    return {Errc::kMalformed,
-            fmt::format("{}: the {} data is damaged or truncated: {}", path, is_gzip ? "gzip" : "bzip2", readable)};
+                                                   line_number, text_bytes, file.is_gzip() ? "zcat" : "bzcat");
+    return {Errc::kMalformed, fmt::format("{}: the {} data is damaged or truncated: {}", path,
+                                          file.is_gzip() ? "gzip" : "bzip2", readable)};
 }
 
 Result<> LineReader::State::refill() {

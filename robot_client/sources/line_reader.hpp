@@ -8,6 +8,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -23,6 +24,12 @@ using Tokens = std::vector<std::string_view>;
 /// Converts a whole token to a number; one too large for a double becomes infinite.
 [[nodiscard]] std::optional<double> to_number(std::string_view token);
 
+/// Converts the tokens of a line to finite numbers.
+/// @param what  names the numbers in messages
+/// Errors: kMalformed if there are not `count` tokens or one is not a number; kInvalidField if one is not finite.
+[[nodiscard]] Result<std::vector<double>> read_numbers(std::span<const std::string_view> tokens, std::size_t count,
+                                                       std::string_view what);
+
 /// Returns a token for messages: shortened, and without characters that a terminal could interpret.
 [[nodiscard]] std::string shown_token(std::string_view token);
 
@@ -30,6 +37,12 @@ using Tokens = std::vector<std::string_view>;
 struct LineLimits {
     std::uint64_t text_bytes_max = std::uint64_t{1} << 30; ///< after decompression
     std::size_t line_bytes_max = std::size_t{1} << 20;
+};
+
+/// A line that could not be used, and the reason.
+struct SkippedLine {
+    std::size_t line_number = 0;
+    std::string reason;
 };
 
 /// How far a file has been read, in bytes of the file as it is, compressed or not.

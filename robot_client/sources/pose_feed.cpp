@@ -1,7 +1,7 @@
 #include "robot_client/sources/pose_feed.hpp"
 
 #include "common/net/await_tuple.hpp"
-#include "robot_client/sources/pose_lines.hpp"
+#include "robot_client/sources/pose_path.hpp"
 
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/posix/stream_descriptor.hpp>

@@ -9,7 +9,7 @@
 
 namespace scanloom::robot {
 
-/// Reads lines of poses (see pose_lines.hpp) as they arrive from a pipe, terminal or socket, and closes it at the end.
+/// Reads lines of poses (see pose_path.hpp) as they arrive from a pipe, terminal or socket, and closes it at the end.
 /// The first lines that cannot be used are reported to `note`.
 /// @return why no more poses arrive, for people; empty if cancelled
 [[nodiscard]] boost::asio::awaitable<std::string> feed_poses(int descriptor,

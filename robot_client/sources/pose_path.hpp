@@ -1,10 +1,16 @@
 #pragma once
 
+#include "common/error/error.hpp"
 #include "common/geometry/pose2.hpp"
+#include "robot_client/sources/line_reader.hpp"
 
 #include <cstddef>
 #include <deque>
+#include <filesystem>
+#include <functional>
+#include <istream>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 namespace scanloom::robot {
@@ -14,6 +20,10 @@ struct StampedPose {
     Pose2 robot;
     double stamp = 0.0; ///< seconds, finite
 };
+
+/// Makes a stamped pose; its yaw, in radians, may exceed a full turn.
+/// Errors: kInvalidField if it is beyond kCoordinateMax.
+[[nodiscard]] Result<StampedPose> stamped_pose(double x, double y, double yaw, double stamp);
 
 /// Interpolates between two poses, or extrapolates, with constant velocity and the shorter direction of turning.
 /// @return `from` if both have the same stamp
@@ -61,5 +71,27 @@ public:
 private:
     std::deque<StampedPose> poses_; // by increasing stamp
 };
+
+/// Parses one line of poses: `t x y yaw` in seconds, metres and radians counter-clockwise. The yaw may exceed a full
+/// turn, as odometry counts it. Text after these values is ignored.
+/// @return nullopt for a blank line or one that begins with '#'
+/// Errors: kMalformed or kInvalidField if the line is not as above, not finite, or beyond kCoordinateMax.
+[[nodiscard]] Result<std::optional<StampedPose>> read_pose_line(std::string_view line);
+
+struct PoseLines {
+    PoseTimeline poses;
+    std::size_t skipped = 0; ///< lines that could not be used
+};
+
+/// Reads a whole file of such lines.
+/// @param report  called for each line that cannot be used
+/// Errors: those of LineReader; kNotFound if no line is usable.
+[[nodiscard]] Result<PoseLines> read_pose_lines(const std::filesystem::path& path,
+                                                const std::function<void(const SkippedLine&)>& report,
+                                                LineLimits limits = {});
+
+/// Reads a whole stream of such lines. `name` identifies it in messages. Errors: kNotFound if no line is usable.
+[[nodiscard]] Result<PoseLines> read_pose_lines(std::istream& lines, std::string_view name,
+                                                const std::function<void(const SkippedLine&)>& report);
 
 } // namespace scanloom::robot

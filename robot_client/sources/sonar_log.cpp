@@ -26,38 +26,15 @@ Sensor make_ring(const SonarOptions& options) {
     return {0, SensorKind::kSonar, "sonar ring", Pose2{}, std::move(angles), options.aperture, 0.0, options.range_max};
 }
 
-/// Reads the numbers of one line.
-/// Errors: kMalformed, kInvalidField.
-Result<std::vector<double>> read_numbers(std::string_view line, std::size_t count, std::string_view what) {
-    const Tokens tokens = split(line);
-    if (tokens.size() != count) {
-        return Error{Errc::kMalformed, fmt::format("{} values; {} are needed: {}", tokens.size(), count, what)};
-    }
-    std::vector<double> numbers;
-    for (const std::string_view token : tokens) {
-        const auto number = to_number(token);
-        if (!number) return Error{Errc::kMalformed, fmt::format("'{}' is not a number", shown_token(token))};
-        if (!std::isfinite(*number)) {
-            return Error{Errc::kInvalidField, fmt::format("'{}' is not finite", shown_token(token))};
-        }
-        numbers.push_back(*number);
-    }
-    return numbers;
-}
-
 Result<StampedPose> read_pose(std::string_view line) {
-    const auto numbers = read_numbers(line, 4, "time_ms x y heading");
+    const auto numbers = read_numbers(split(line), 4, "time_ms x y heading");
     if (!numbers) return numbers.error();
     const auto& n = *numbers;
-    const Pose2 pose{n[1] * kMetresPerMm, n[2] * kMetresPerMm, normalize_angle(n[3] * kRadiansPerUnit)};
-    if (std::max(std::abs(pose.x), std::abs(pose.y)) > kCoordinateMax) {
-        return Error{Errc::kInvalidField, fmt::format("the pose is more than {} m from the origin", kCoordinateMax)};
-    }
-    return StampedPose{pose, n[0] * kSecondsPerMs};
+    return stamped_pose(n[1] * kMetresPerMm, n[2] * kMetresPerMm, n[3] * kRadiansPerUnit, n[0] * kSecondsPerMs);
 }
 
 Result<Scan> read_measurement(std::string_view line, const SonarOptions& options) {
-    const auto numbers = read_numbers(line, 1 + kBeamDegrees.size(), "time_ms and 8 ranges in mm");
+    const auto numbers = read_numbers(split(line), 1 + kBeamDegrees.size(), "time_ms and 8 ranges in mm");
     if (!numbers) return numbers.error();
     Scan scan;
     scan.stamp = numbers->front() * kSecondsPerMs;

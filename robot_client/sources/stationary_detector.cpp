@@ -24,7 +24,9 @@ std::vector<std::int32_t> gaps_between(std::span<const std::int32_t> steps, std:
     return gaps;
 }
 
-std::int32_t median_of(std::vector<std::int32_t> values) {
+/// Returns the middle value; changes the order. Pre: there is one.
+template <class Number>
+Number median_of(std::span<Number> values) {
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
     std::nth_element(values.begin(), middle, values.end());
     return *middle;
@@ -40,7 +42,8 @@ std::vector<RangeMm> median_filtered(std::span<const RangeMm> ranges, std::span<
     const std::size_t count = ranges.size();
     if (count < static_cast<std::size_t>(window)) return filtered;
     const auto gaps = gaps_between(steps, steps_per_turn);
-    const std::int32_t gap_max = kGapsMax * median_of(gaps);
+    auto sorted = gaps;
+    const std::int32_t gap_max = kGapsMax * median_of(std::span(sorted));
     /// Returns whether beam `i` and the next one are adjacent returns.
     const auto goes_on = [&](std::size_t i) {
         return is_return(ranges[i]) && is_return(ranges[(i + 1) % count]) && gaps[i] <= gap_max;
@@ -52,9 +55,7 @@ std::vector<RangeMm> median_filtered(std::span<const RangeMm> ranges, std::span<
         while (reach < half && goes_on((i + reach) % count) && goes_on((i + count - reach - 1) % count)) ++reach;
         const std::size_t size = 2 * reach + 1;
         for (std::size_t k = 0; k < size; ++k) values[k] = ranges[(i + count - reach + k) % count];
-        const auto middle = values.begin() + static_cast<std::ptrdiff_t>(reach);
-        std::nth_element(values.begin(), middle, values.begin() + static_cast<std::ptrdiff_t>(size));
-        filtered[i] = *middle;
+        filtered[i] = median_of(std::span(values).first(size));
     }
     return filtered;
 }
@@ -71,12 +72,8 @@ constexpr std::size_t kDirectionsMin = kDirections / 10;
 /// Smallest share of the comparable directions. In a real recording, the least among turns cut by a gap is 0.23.
 constexpr double kComparedPartMin = 0.2;
 
-/// Returns NaN for no values. Changes the order of `values`.
-double median_of(std::vector<double>& values) {
-    if (values.empty()) return kNothing;
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
+double median_or_nothing(std::vector<double>& values) {
+    return values.empty() ? kNothing : median_of(std::span(values));
 }
 
 std::size_t direction_of(double angle_rad) {
@@ -98,7 +95,7 @@ TurnProfile medians_of(const std::vector<TurnProfile>& turns) {
         for (const TurnProfile& turn : turns) {
             if (!std::isnan(turn[direction])) values.push_back(turn[direction]);
         }
-        medians[direction] = 2 * values.size() >= turns.size() ? median_of(values) : kNothing;
+        medians[direction] = 2 * values.size() >= turns.size() ? median_or_nothing(values) : kNothing;
     }
     return medians;
 }
@@ -114,7 +111,7 @@ TurnProfile profile_of(const Scan& scan, const Sensor& sensor) {
         if (reading && reading->is_hit) met[direction_of(beam_angle(angles, beam))].push_back(reading->metres);
     }
     TurnProfile profile;
-    std::ranges::transform(met, profile.begin(), [](std::vector<double>& ranges) { return median_of(ranges); });
+    std::ranges::transform(met, profile.begin(), median_or_nothing);
     return profile;
 }
 

@@ -1,4 +1,4 @@
-#include "robot_client/sources/pose_lines.hpp"
+#include "robot_client/sources/pose_path.hpp"
 
 #include "tests/support/temporary_directory.hpp"
 

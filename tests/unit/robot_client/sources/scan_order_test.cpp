@@ -1,4 +1,4 @@
-#include "robot_client/sources/carmen_index.hpp"
+#include "robot_client/sources/carmen_log.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@ TEST(ScanOrder, IncreasingStampsKeepTheFileOrder) {
         const auto scans = order_of(stamps);
         EXPECT_EQ(scans.order.size(), stamps.size());
         EXPECT_TRUE(std::is_sorted(scans.order.begin(), scans.order.end()));
-        EXPECT_TRUE(scans.is_of_file);
+        EXPECT_TRUE(scans.file_order);
         EXPECT_TRUE(scans.is_of_stamps);
         EXPECT_EQ(scans.steps_back, 0U);
         EXPECT_EQ(scans.back_max, 0.0);
@@ -23,12 +23,12 @@ TEST(ScanOrder, IncreasingStampsKeepTheFileOrder) {
 TEST(ScanOrder, JitterIsMeasuredFromTheNewestStamp) {
     const auto jitter = order_of(Stamps{10, 9, 8, 11});
     EXPECT_EQ(jitter.order, (Order{0, 1, 2, 3}));
-    EXPECT_TRUE(jitter.is_of_file);
+    EXPECT_TRUE(jitter.file_order);
     EXPECT_FALSE(jitter.is_of_stamps);
     EXPECT_EQ(jitter.steps_back, 2U);
     EXPECT_EQ(jitter.back_max, 2.0);
     const auto beyond = order_of(Stamps{10, 9, 7.9, 11});
-    EXPECT_FALSE(beyond.is_of_file) << "each step is within the jitter, but their sum is not";
+    EXPECT_FALSE(beyond.file_order) << "each step is within the jitter, but their sum is not";
     EXPECT_EQ(beyond.order, (Order{2, 0, 1, 3}));
 }
 
@@ -36,7 +36,7 @@ TEST(ScanOrder, PartsAreSortedAndJitterWithinPartsIsKept) {
     // scans 100 to 103 were written before scans 50 to 52
     const auto scans = order_of(Stamps{100, 101, 100.5, 103, 50, 51, 50.5, 52});
     EXPECT_EQ(scans.order, (Order{4, 5, 6, 7, 0, 1, 2, 3}));
-    EXPECT_FALSE(scans.is_of_file);
+    EXPECT_FALSE(scans.file_order);
     EXPECT_FALSE(scans.is_of_stamps);
     EXPECT_EQ(scans.steps_back, 3U);
     EXPECT_EQ(scans.back_max, 53.0);

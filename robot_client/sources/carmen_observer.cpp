@@ -1,4 +1,4 @@
-#include "robot_client/sources/carmen_record.hpp"
+#include "robot_client/sources/carmen_observer.hpp"
 
 #include "common/scan/limits.hpp"
 
@@ -8,38 +8,6 @@
 #include <cmath>
 
 namespace scanloom::robot {
-
-Result<CarmenRecords> CarmenRecords::open(const std::filesystem::path& path, LineLimits limits, OnRead on_read) {
-    auto lines = LineReader::open(path, limits, std::move(on_read));
-    if (!lines) return lines.error();
-    return CarmenRecords(std::move(*lines));
-}
-
-Result<std::optional<CarmenRecord>> CarmenRecords::next() {
-    for (;;) {
-        const auto line = lines_.next();
-        if (!line) return line.error();
-        if (!*line) return std::optional<CarmenRecord>{};
-        CarmenRecord record{lines_.line_number(), **line, CarmenLaserOffset{}};
-        auto parsed = parse_carmen_line(record.text);
-        if (!parsed) {
-            record.content = parsed.error();
-        } else if (auto* scan = std::get_if<CarmenScan>(&*parsed)) {
-            last_stamp_ = scan->stamp.value_or(last_stamp_);
-            record.content = StampedScan{std::move(*scan), last_stamp_};
-        } else if (const auto* odometry = std::get_if<CarmenOdometry>(&*parsed)) {
-            record.content = *odometry;
-        } else if (const auto* offset = std::get_if<CarmenLaserOffset>(&*parsed)) {
-            record.content = *offset;
-        } else if (const auto* unread = std::get_if<CarmenUnreadLaser>(&*parsed)) {
-            record.content = *unread;
-        } else {
-            continue; // a comment, or a line without laser data
-        }
-        return std::optional(std::move(record));
-    }
-}
-
 namespace {
 
 /// Logs print poses with six decimals, so mounts derived from them agree to a few times that.
@@ -88,18 +56,23 @@ Result<> check_usable(const CarmenScan& line, const CarmenOptions& options) {
     return Error{Errc::kTooLarge, fmt::format("the laser is more than {} m from its robot", kCoordinateMax)};
 }
 
-Result<Observation> CarmenObserver::observe(const CarmenScan& line, double stamp) {
+Result<Observation> CarmenObserver::observe(const CarmenScan& line) {
     if (auto ok = check_usable(line, options_); !ok) return ok.error();
-    const auto range_max = range_max_of(line, options_);
+    const double range_max = *range_max_of(line, options_);
     const Pose2 mount = mount_of(line, laser_offset_forward_);
     Observation observation;
     observation.sensor =
-        sensor_like({line.sensor, SensorKind::kLaser, name_for(line), mount, line.angles, 0.0, 0.0, *range_max});
+        sensor_like({line.sensor, SensorKind::kLaser, name_for(line), mount, line.angles, 0.0, 0.0, range_max});
 
     Scan& scan = observation.scan;
-    scan.stamp = stamp;
+    scan.stamp = *line.stamp;
     scan.sensor = line.sensor;
-    scan.ranges = ranges_of(line, *range_max);
+    scan.ranges = line.ranges;
+    const RangeMm no_return = no_return_of(line.kind, options_) == NoReturn::kFree ? kNoReturn : kInvalidRange;
+    const auto is_beyond = [&, max = to_range_mm(range_max)](RangeMm range) {
+        return range != kInvalidRange && range >= max;
+    };
+    std::ranges::replace_if(scan.ranges, is_beyond, no_return);
     switch (line.kind) {
     case CarmenKind::kFlaser:
         scan.pose = line.laser;
@@ -109,15 +82,6 @@ Result<Observation> CarmenObserver::observe(const CarmenScan& line, double stamp
     case CarmenKind::kRawLaser: scan.pose = line.robot; break;
     }
     return observation;
-}
-
-std::vector<RangeMm> CarmenObserver::ranges_of(const CarmenScan& line, double range_max) const {
-    const RangeMm no_return = no_return_of(line.kind, options_) == NoReturn::kFree ? kNoReturn : kInvalidRange;
-    const RangeMm range_max_mm = to_range_mm(range_max);
-    std::vector<RangeMm> ranges(line.ranges.size());
-    std::transform(line.ranges.begin(), line.ranges.end(), ranges.begin(),
-                   [&](RangeMm range) { return range == kInvalidRange || range < range_max_mm ? range : no_return; });
-    return ranges;
 }
 
 std::shared_ptr<const Sensor> CarmenObserver::sensor_like(const Sensor& wanted) {
