@@ -1,7 +1,7 @@
 #pragma once
 
 #include "robot_client/sources/live_source.hpp"
-#include "robot_client/uplink/wake_signal.hpp"
+#include "robot_client/sources/wake_signal.hpp"
 
 #include <deque>
 

@@ -1,9 +1,6 @@
 #include "robot_client/sources/exploring_source.hpp"
 
-#include "common/net/await_tuple.hpp"
-
 #include <boost/asio/experimental/awaitable_operators.hpp>
-#include <boost/asio/this_coro.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -36,7 +33,6 @@ ExploringSource::ExploringSource(SimulatorOptions options, SimulationLimits limi
 
 asio::awaitable<Result<std::optional<Observation>>> ExploringSource::next() {
     assert(next_goal_);
-    wake_.emplace(co_await asio::this_coro::executor);
     if (is_stopped_ || resumed_after_ + scans_ >= limits_.scans) co_return std::optional<Observation>{};
     if (explore_->needs_goal()) {
         if (auto result = co_await request_goal(); !result) co_return result.error();
@@ -52,7 +48,7 @@ asio::awaitable<Result<std::optional<Observation>>> ExploringSource::next() {
 
 void ExploringSource::stop() {
     is_stopped_ = true;
-    if (wake_) wake_->cancel();
+    wake_.notify();
 }
 
 asio::awaitable<Result<>> ExploringSource::request_goal() {
@@ -62,7 +58,7 @@ asio::awaitable<Result<>> ExploringSource::request_goal() {
                                                    "check that place, or give another --seed",
                                                    pose.x, pose.y)};
     }
-    auto answer = co_await (next_goal_() || until_stopped());
+    auto answer = co_await (next_goal_() || wake_.wait());
     due_ = Clock::time_point::min(); // the simulation stood still meanwhile
     if (is_stopped_ || answer.index() != 0) co_return Result<>{};
     co_return take(std::get<0>(std::move(answer)));
@@ -89,14 +85,9 @@ asio::awaitable<void> ExploringSource::wait_until_due(double stamp) {
     const double passed = stamp - std::exchange(stamp_, stamp); // zero between sensors that scan at the same time
     if (speed_ <= 0.0 || passed <= 0.0) co_return;
     due_ = std::max(due_, Clock::now());
-    wake_->expires_at(due_);
+    const auto due = due_;
     due_ += std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(passed / speed_));
-    if (!is_stopped_) co_await wake_->async_wait(kAwaitTuple);
-}
-
-asio::awaitable<void> ExploringSource::until_stopped() {
-    wake_->expires_at(Clock::time_point::max());
-    co_await wake_->async_wait(kAwaitTuple);
+    if (!is_stopped_) co_await wake_.wait(due);
 }
 
 } // namespace scanloom::robot

@@ -2,11 +2,11 @@
 
 #include "robot_client/sources/live_source.hpp"
 #include "robot_client/sources/simulated_source.hpp"
+#include "robot_client/sources/wake_signal.hpp"
 #include "sim/drive/explore.hpp"
 #include "sim/simulator.hpp"
 
 #include <boost/asio/awaitable.hpp>
-#include <boost/asio/steady_timer.hpp>
 
 #include <chrono>
 #include <cstdint>
@@ -51,7 +51,6 @@ private:
     [[nodiscard]] boost::asio::awaitable<Result<>> request_goal();
     [[nodiscard]] Result<> take(Result<NextStop> answer);
     [[nodiscard]] boost::asio::awaitable<void> wait_until_due(double stamp);
-    [[nodiscard]] boost::asio::awaitable<void> until_stopped();
 
     Explore* explore_; // owned by the simulator
     Simulator simulator_;
@@ -64,7 +63,7 @@ private:
     double stamp_ = -1.0;     // of the newest scan
     int failures_ = 0;        // in a row
     bool is_stopped_ = false;
-    std::optional<boost::asio::steady_timer> wake_; // while next() waits
+    WakeSignal wake_;
     Clock::time_point due_ = Clock::time_point::min();
 };
 

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "robot_client/sources/ld06_packet.hpp"
-#include "robot_client/sources/ld06_remarks.hpp"
 #include "robot_client/sources/ld06_turns.hpp"
 #include "robot_client/sources/pose_path.hpp"
 

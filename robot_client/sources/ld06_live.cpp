@@ -1,16 +1,13 @@
 #include "robot_client/sources/ld06_live.hpp"
 
-#include "common/net/await_tuple.hpp"
 #include "robot_client/sources/ld06_packet.hpp"
-#include "robot_client/sources/ld06_remarks.hpp"
 #include "robot_client/sources/ld06_turns.hpp"
+#include "robot_client/sources/messages.hpp"
 #include "robot_client/sources/pose_feed.hpp"
-#include "robot_client/sources/seconds.hpp"
+#include "robot_client/sources/wake_signal.hpp"
 
-#include <boost/asio/bind_cancellation_slot.hpp>
-#include <boost/asio/cancellation_signal.hpp>
 #include <boost/asio/co_spawn.hpp>
-#include <boost/asio/steady_timer.hpp>
+#include <boost/asio/experimental/awaitable_operators.hpp>
 #include <boost/asio/this_coro.hpp>
 #include <fmt/format.h>
 
@@ -25,30 +22,9 @@
 namespace scanloom::robot {
 
 namespace asio = boost::asio;
+using namespace asio::experimental::awaitable_operators;
 
 namespace {
-
-/// Stops a coroutine from outside, if it still exists: it may have ended, or its executor may be destroyed.
-struct StopSwitch {
-    asio::cancellation_signal signal;
-    bool is_running = false;
-
-    void press() {
-        if (is_running) signal.emit(asio::cancellation_type::terminal);
-    }
-};
-
-/// Placed in a coroutine's frame, so that the switch knows when the frame is destroyed.
-class Running {
-public:
-    explicit Running(StopSwitch& stop) : stop_(stop) { stop_.is_running = true; }
-    Running(const Running&) = delete;
-    Running& operator=(const Running&) = delete;
-    ~Running() { stop_.is_running = false; }
-
-private:
-    StopSwitch& stop_;
-};
 
 using Clock = std::chrono::steady_clock;
 
@@ -85,18 +61,6 @@ private:
         Clock::time_point until; ///< it waits for a pose until then
     };
 
-    /// Makes the timer of next() known while next() waits.
-    class Asleep {
-    public:
-        Asleep(asio::steady_timer*& place, asio::steady_timer& timer) : place_(place) { place_ = &timer; }
-        Asleep(const Asleep&) = delete;
-        Asleep& operator=(const Asleep&) = delete;
-        ~Asleep() { place_ = nullptr; }
-
-    private:
-        asio::steady_timer*& place_;
-    };
-
     /// The result of looking up the pose of a scan.
     struct Answer {
         std::optional<Pose2> pose;
@@ -104,14 +68,13 @@ private:
     };
 
     void start(const asio::any_io_executor& executor);
-    template <class Body>
-    void spawn(const asio::any_io_executor& executor, StopSwitch& stop, Body body);
+    [[nodiscard]] static asio::awaitable<void> read_sensor(std::shared_ptr<State> self);
+    [[nodiscard]] static asio::awaitable<void> read_poses(std::shared_ptr<State> self);
     void add(const StampedPose& pose);
     [[nodiscard]] Answer pose_for(const Waiting& waiting) const;
     [[nodiscard]] std::optional<Observation> take_ready();
     void report_other_clock(double stamp);
     [[nodiscard]] Result<std::optional<Observation>> end_when_stopped() const;
-    void wake();
 
     Ld06LiveOptions options_;
     std::shared_ptr<const Sensor> sensor_;
@@ -127,42 +90,38 @@ private:
     std::optional<Error> ended_; ///< why the sensor gives no more scans
     bool is_started_ = false;
     bool is_stopped_ = false;
-    asio::steady_timer* asleep_ = nullptr;
-    StopSwitch stop_sensor_;
-    StopSwitch stop_poses_;
+    WakeSignal wake_; ///< of next()
+    WakeSignal stop_; ///< of the reading coroutines
 };
 
 // Reading -------------------------------------------------------------------------------------------------------------
 
-/// Runs `body` until it ends or is stopped.
-template <class Body>
-void Ld06Live::State::spawn(const asio::any_io_executor& executor, StopSwitch& stop, Body body) {
-    const auto run = [](std::shared_ptr<State> self, StopSwitch& own, Body inner) -> asio::awaitable<void> {
-        const Running running(own);
-        co_await inner(std::move(self));
-    };
-    const auto at_end = [self = shared_from_this()](const std::exception_ptr& failed) {
-        if (failed) std::rethrow_exception(failed);
-    };
-    asio::co_spawn(executor, run(shared_from_this(), stop, body),
-                   asio::bind_cancellation_slot(stop.signal.slot(), at_end));
-}
-
 void Ld06Live::State::start(const asio::any_io_executor& executor) {
     is_started_ = true;
-    spawn(executor, stop_sensor_, [](std::shared_ptr<State> self) -> asio::awaitable<void> {
-        self->ended_ = co_await read_ld06_device(self->options_.device, *self);
-        self->wake();
-    });
-    if (!are_poses_coming_) return;
-    spawn(executor, stop_poses_, [](std::shared_ptr<State> self) -> asio::awaitable<void> {
-        const auto& note = self->options_.device.note;
-        const auto on_pose = [state = self.get()](const StampedPose& pose) { state->add(pose); };
-        const auto end = co_await feed_poses(std::exchange(self->options_.pose_descriptor, -1), on_pose, note);
-        if (!end.empty()) note(end + "; scans after the last pose are skipped");
-        self->are_poses_coming_ = false;
-        self->wake();
-    });
+    const auto at_end = [](const std::exception_ptr& failed) {
+        if (failed) std::rethrow_exception(failed);
+    };
+    asio::co_spawn(executor, read_sensor(shared_from_this()), at_end);
+    if (are_poses_coming_) asio::co_spawn(executor, read_poses(shared_from_this()), at_end);
+}
+
+asio::awaitable<void> Ld06Live::State::read_sensor(std::shared_ptr<State> self) {
+    auto reading = read_ld06_device(self->options_.device, *self);
+    const auto first = co_await (std::move(reading) || self->stop_.wait());
+    if (const auto* error = std::get_if<0>(&first)) self->ended_ = *error;
+    self->wake_.notify();
+}
+
+asio::awaitable<void> Ld06Live::State::read_poses(std::shared_ptr<State> self) {
+    const auto& note = self->options_.device.note;
+    const auto on_pose = [state = self.get()](const StampedPose& pose) { state->add(pose); };
+    auto reading = feed_poses(std::exchange(self->options_.pose_descriptor, -1), on_pose, note);
+    const auto first = co_await (std::move(reading) || self->stop_.wait());
+    if (const auto* end = std::get_if<0>(&first); end != nullptr && !end->empty()) {
+        note(*end + "; scans after the last pose are skipped");
+    }
+    self->are_poses_coming_ = false;
+    self->wake_.notify();
 }
 
 void Ld06Live::State::on_open() {
@@ -185,7 +144,7 @@ bool Ld06Live::State::on_bytes(std::span<const std::uint8_t> bytes) {
             waiting_.pop_front();
             ++losses_.too_many_waiting;
         }
-        wake();
+        wake_.notify();
     }
     return is_packet;
 }
@@ -205,22 +164,18 @@ void Ld06Live::State::add(const StampedPose& pose) {
     }
     timeline->insert(pose);
     timeline->keep_newest(kPosesKept);
-    wake();
+    wake_.notify();
 }
 
 // Giving --------------------------------------------------------------------------------------------------------------
 
 asio::awaitable<Result<std::optional<Observation>>> Ld06Live::State::next() {
     const auto self = shared_from_this();
-    const auto executor = co_await asio::this_coro::executor;
-    if (!is_started_ && !is_stopped_) start(executor);
-    asio::steady_timer timer(executor);
-    const Asleep asleep(asleep_, timer);
+    if (!is_started_ && !is_stopped_) start(co_await asio::this_coro::executor);
     while (!is_stopped_) {
         if (auto ready = take_ready()) co_return std::optional(std::move(*ready));
         if (waiting_.empty() && ended_) co_return *ended_;
-        timer.expires_at(waiting_.empty() ? Clock::time_point::max() : waiting_.front().until);
-        co_await timer.async_wait(kAwaitTuple);
+        co_await wake_.wait(waiting_.empty() ? Clock::time_point::max() : waiting_.front().until);
     }
     co_return end_when_stopped();
 }
@@ -277,15 +232,10 @@ Ld06Live::State::Answer Ld06Live::State::pose_for(const Waiting& waiting) const 
     return {};
 }
 
-void Ld06Live::State::wake() {
-    if (asleep_ != nullptr) asleep_->cancel();
-}
-
 void Ld06Live::State::stop() {
     is_stopped_ = true;
-    stop_sensor_.press();
-    stop_poses_.press();
-    wake();
+    stop_.notify();
+    wake_.notify();
 }
 
 // ---------------------------------------------------------------------------------------------------------------------

@@ -8,6 +8,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 /// Compute the time of packets from the milliseconds that they contain, which wrap every 30 s.
@@ -111,6 +112,15 @@ private:
     std::uint64_t gaps_ = 0;
     std::uint64_t too_long_ = 0;
 };
+
+/// Counts of the turns that did not become scans.
+struct Ld06Losses {
+    std::uint64_t without_pose = 0;
+    std::uint64_t too_many_waiting = 0; ///< dropped because next() was not called in time
+};
+
+/// Returns a summary for people: "3 damaged packets, 225 turns, 4 of them cut by 2 gaps", and further losses.
+[[nodiscard]] std::string ld06_remarks(const Ld06Counts& counts, const Ld06Turns& turns, const Ld06Losses& losses);
 
 /// Defaults are those of the sensor's data sheet unless a comment states another source.
 struct Ld06ScanOptions {

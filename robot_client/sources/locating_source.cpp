@@ -1,11 +1,9 @@
 #include "robot_client/sources/locating_source.hpp"
 
 #include "common/error/further.hpp"
-#include "common/net/await_tuple.hpp"
-#include "robot_client/sources/counted.hpp"
+#include "robot_client/sources/messages.hpp"
 
 #include <boost/asio/experimental/awaitable_operators.hpp>
-#include <boost/asio/this_coro.hpp>
 #include <fmt/format.h>
 
 #include <cassert>
@@ -19,24 +17,8 @@ using namespace asio::experimental::awaitable_operators;
 
 namespace {
 
-using Time = std::chrono::steady_clock::time_point;
-
 /// Returns whether the server may locate the robot if it is request again.
 bool may_pass(Errc code) { return code == Errc::kOverloaded || code == Errc::kShuttingDown; }
-
-/// Makes a timer known while it exists. It may be destroyed before or after the source.
-class Shown {
-public:
-    Shown(std::shared_ptr<asio::steady_timer*> place, asio::steady_timer& timer) : place_(std::move(place)) {
-        *place_ = &timer;
-    }
-    Shown(const Shown&) = delete;
-    Shown& operator=(const Shown&) = delete;
-    ~Shown() { *place_ = nullptr; }
-
-private:
-    std::shared_ptr<asio::steady_timer*> place_;
-};
 
 } // namespace
 
@@ -74,7 +56,7 @@ asio::awaitable<void> LocatingSource::request_location(SeenPoints seen) {
     bool is_reported = false;
     while (!is_stopped_) {
         auto request = points; // a named variable, because g++ 12 destroys such temporaries twice
-        const auto answer = co_await (locate_(std::move(request), from) || wait(Time::max()));
+        const auto answer = co_await (locate_(std::move(request), from) || wait(WakeSignal::Time::max()));
         if (answer.index() != 0) continue;
         const Result<Located>& located = std::get<0>(answer);
         if (located || !may_pass(located.error().code)) {
@@ -88,16 +70,13 @@ asio::awaitable<void> LocatingSource::request_location(SeenPoints seen) {
 }
 
 /// Waits until the given time or until stop().
-asio::awaitable<void> LocatingSource::wait(Time until) {
-    if (is_stopped_) co_return;
-    asio::steady_timer timer(co_await asio::this_coro::executor, until);
-    const Shown shown(awaiting_, timer);
-    co_await timer.async_wait(kAwaitTuple);
+asio::awaitable<void> LocatingSource::wait(WakeSignal::Time until) {
+    if (!is_stopped_) co_await wake_.wait(until);
 }
 
 void LocatingSource::stop() {
     is_stopped_ = true;
-    if (*awaiting_ != nullptr) (*awaiting_)->cancel();
+    wake_.notify();
     turns_->stop();
 }
 

@@ -2,9 +2,9 @@
 
 #include "robot_client/sources/live_source.hpp"
 #include "robot_client/sources/stationary_phases.hpp"
+#include "robot_client/sources/wake_signal.hpp"
 
 #include <boost/asio/awaitable.hpp>
-#include <boost/asio/steady_timer.hpp>
 
 #include <chrono>
 #include <cstdint>
@@ -50,7 +50,7 @@ public:
 
 private:
     [[nodiscard]] boost::asio::awaitable<void> request_location(SeenPoints seen);
-    [[nodiscard]] boost::asio::awaitable<void> wait(std::chrono::steady_clock::time_point until);
+    [[nodiscard]] boost::asio::awaitable<void> wait(WakeSignal::Time until);
     void report_messages();
     [[nodiscard]] Result<std::optional<Observation>> outcome() const;
 
@@ -61,8 +61,7 @@ private:
     Locate locate_;
     bool has_ended_ = false;
     bool is_stopped_ = false;
-    /// The timer of wait() while it runs; it is in the frame of that coroutine.
-    std::shared_ptr<boost::asio::steady_timer*> awaiting_ = std::make_shared<boost::asio::steady_timer*>(nullptr);
+    WakeSignal wake_; ///< of wait()
 };
 
 } // namespace scanloom::robot

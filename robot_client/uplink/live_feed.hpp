@@ -1,9 +1,9 @@
 #pragma once
 
 #include "robot_client/sources/live_source.hpp"
+#include "robot_client/sources/wake_signal.hpp"
 #include "robot_client/spool/spool.hpp"
 #include "robot_client/uplink/feed.hpp"
-#include "robot_client/uplink/wake_signal.hpp"
 
 #include <functional>
 #include <memory>

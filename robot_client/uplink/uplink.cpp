@@ -2,7 +2,7 @@
 
 #include "common/error/further.hpp"
 #include "common/net/await_tuple.hpp"
-#include "robot_client/sources/seconds.hpp"
+#include "robot_client/sources/messages.hpp"
 
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/connect.hpp>

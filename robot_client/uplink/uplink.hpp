@@ -3,11 +3,11 @@
 #include "common/link/client_protocol.hpp"
 #include "common/net/link_stream.hpp"
 #include "common/net/tls.hpp"
+#include "robot_client/sources/wake_signal.hpp"
 #include "robot_client/uplink/backoff.hpp"
 #include "robot_client/uplink/feed.hpp"
 #include "robot_client/uplink/send_buffer.hpp"
 #include "robot_client/uplink/server_address.hpp"
-#include "robot_client/uplink/wake_signal.hpp"
 
 #include <boost/asio/awaitable.hpp>
 #include <boost/asio/io_context.hpp>
