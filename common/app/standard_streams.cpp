@@ -31,14 +31,13 @@ namespace {
 
 /// Opens a pipe or a terminal a second time, non-blocking. O_NONBLOCK belongs to the open file, which is shared with
 /// the programs that passed the descriptor on, so it must not be set on theirs. If the file cannot be opened (a socket,
-/// a terminal of another user), returns `descriptor`; has_room() is then checked before each write.
-int reopened(int descriptor) {
+/// a terminal of another user), returns none; has_room() is then checked before each write.
+FileDescriptor reopened(int descriptor) {
     struct stat status {};
     const bool may_wait = fstat(descriptor, &status) == 0 && (S_ISFIFO(status.st_mode) || isatty(descriptor) == 1);
-    if (!may_wait) return descriptor;
+    if (!may_wait) return {};
     const auto path = fmt::format("/proc/self/fd/{}", descriptor);
-    const int own = open(path.c_str(), O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
-    return own >= 0 ? own : descriptor;
+    return FileDescriptor(open(path.c_str(), O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
 }
 
 /// Returns whether PIPE_BUF bytes can be written without waiting, unless another program writes first.
@@ -55,11 +54,7 @@ bool is_capable_terminal(int descriptor) {
 } // namespace
 
 StandardError::StandardError(int descriptor)
-    : given_(descriptor), descriptor_(reopened(descriptor)), is_terminal_(is_capable_terminal(descriptor)) {}
-
-StandardError::~StandardError() {
-    if (descriptor_ != given_) close(descriptor_);
-}
+    : given_(descriptor), own_(reopened(descriptor)), is_terminal_(is_capable_terminal(descriptor)) {}
 
 void StandardError::write(std::string_view line) {
     const std::lock_guard lock(mutex_);
@@ -79,8 +74,9 @@ void StandardError::write(std::string_view line) {
 /// Returns false if not all of the text could be written at once.
 bool StandardError::put(std::string_view text) {
     while (!text.empty()) {
-        if (descriptor_ == given_ && !has_room(given_)) return false;
-        const auto count = ::write(descriptor_, text.data(), std::min<std::size_t>(text.size(), PIPE_BUF));
+        if (!own_ && !has_room(given_)) return false;
+        const auto count =
+            ::write(own_ ? own_.get() : given_, text.data(), std::min<std::size_t>(text.size(), PIPE_BUF));
         if (count <= 0) return false;
         is_at_line_start_ = text[static_cast<std::size_t>(count) - 1] == '\n';
         text.remove_prefix(static_cast<std::size_t>(count));

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "common/files/file_descriptor.hpp"
+
 #include <chrono>
 #include <cstdint>
 #include <mutex>
@@ -23,9 +25,6 @@ void open_missing_standard_streams();
 class StandardError {
 public:
     explicit StandardError(int descriptor);
-    ~StandardError();
-    StandardError(const StandardError&) = delete;
-    StandardError& operator=(const StandardError&) = delete;
 
     /// Writes a line with its line ending, or a partial line that will be overwritten.
     void write(std::string_view line);
@@ -37,7 +36,7 @@ private:
     [[nodiscard]] bool put(std::string_view text);
 
     const int given_;
-    const int descriptor_;
+    const FileDescriptor own_; // of the same file, opened again; none: write to given_
     const bool is_terminal_;
     std::mutex mutex_;
     std::uint64_t dropped_ = 0;

@@ -42,7 +42,7 @@ Result<> write_numbering(const std::filesystem::path& file, const Numbering& num
     // Constant size and one block of the disk, so it is never half written.
     const std::string content = content_of(numbering);
     const std::string text = fmt::format("{}{:>10}\n", content, checksum(content));
-    const FileHandle handle(::open(file.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0644));
+    const FileDescriptor handle(::open(file.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0644));
     if (!handle) return file_error("cannot open", file);
     if (::pwrite(handle.get(), text.data(), text.size(), 0) != static_cast<ssize_t>(text.size()) ||
         (sync == Sync::kYes && ::fdatasync(handle.get()) != 0)) {

@@ -42,7 +42,7 @@ std::optional<SentAs> read_segment_head(std::string_view bytes) {
 
 Result<> write_segment_head(const std::filesystem::path& file, const SentAs& sent) {
     const std::string head = segment_head(sent);
-    const FileHandle handle(::open(file.c_str(), O_WRONLY | O_CLOEXEC));
+    const FileDescriptor handle(::open(file.c_str(), O_WRONLY | O_CLOEXEC));
     if (!handle) return file_error("cannot open", file);
     if (::pwrite(handle.get(), head.data(), head.size(), 0) != static_cast<ssize_t>(head.size()) ||
         ::fdatasync(handle.get()) != 0) {
@@ -58,7 +58,7 @@ constexpr std::size_t kReadBytes = std::size_t{32} << 10;
 } // namespace
 
 Result<SegmentWriter> SegmentWriter::create(std::filesystem::path file, std::uint64_t first) {
-    FileHandle handle(::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, 0644));
+    FileDescriptor handle(::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, 0644));
     if (!handle) return file_error("cannot create", file);
     SegmentWriter writer(std::move(file), std::move(handle));
     if (auto ok = writer.append(segment_head({first, 0})); !ok) {
@@ -86,7 +86,7 @@ Result<> SegmentWriter::append(std::string_view bytes) {
 }
 
 Result<SegmentReader> SegmentReader::open(std::filesystem::path file) {
-    FileHandle handle(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
+    FileDescriptor handle(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
     if (!handle) return file_error("cannot open", file);
     SegmentReader reader(std::move(file), std::move(handle));
     while (reader.buffer_.size() < kSegmentHeadBytes) {

@@ -48,14 +48,14 @@ public:
     [[nodiscard]] Result<> append(std::string_view bytes);
 
     [[nodiscard]] std::uint64_t bytes() const noexcept { return bytes_; }
-    [[nodiscard]] const std::shared_ptr<const FileHandle>& handle() const noexcept { return handle_; }
+    [[nodiscard]] const std::shared_ptr<const FileDescriptor>& handle() const noexcept { return handle_; }
 
 private:
-    SegmentWriter(std::filesystem::path file, FileHandle handle)
-        : file_(std::move(file)), handle_(std::make_shared<const FileHandle>(std::move(handle))) {}
+    SegmentWriter(std::filesystem::path file, FileDescriptor handle)
+        : file_(std::move(file)), handle_(std::make_shared<const FileDescriptor>(std::move(handle))) {}
 
     std::filesystem::path file_;
-    std::shared_ptr<const FileHandle> handle_; ///< null: no further writes are possible
+    std::shared_ptr<const FileDescriptor> handle_; ///< null: no further writes are possible
     std::uint64_t bytes_ = 0;
 };
 
@@ -76,11 +76,12 @@ public:
     [[nodiscard]] std::uint64_t position() const noexcept { return position_; }
 
 private:
-    SegmentReader(std::filesystem::path file, FileHandle handle) : file_(std::move(file)), handle_(std::move(handle)) {}
+    SegmentReader(std::filesystem::path file, FileDescriptor handle)
+        : file_(std::move(file)), handle_(std::move(handle)) {}
     [[nodiscard]] Result<bool> read_more();
 
     std::filesystem::path file_;
-    FileHandle handle_;
+    FileDescriptor handle_;
     std::optional<SentAs> sent_as_;
     std::string buffer_; // bytes read, from position_ on; the first consumed_ of them are records already returned
     std::size_t consumed_ = 0;   // bytes

@@ -41,7 +41,7 @@ Result<> Spool::lock() {
                      fmt::format("cannot create {}: {}", options_.directory.string(), failed.message())};
     }
     const fs::path file = options_.directory / "lock";
-    lock_ = FileHandle(::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644));
+    lock_ = FileDescriptor(::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644));
     if (!lock_) return file_error("cannot open", file);
     if (::flock(lock_.get(), LOCK_EX | LOCK_NB) == 0) return {};
     if (errno != EWOULDBLOCK) return file_error("cannot lock", file);

@@ -104,7 +104,7 @@ private:
 
     SpoolOptions options_;
     std::function<void(const std::string&)> report_;
-    FileHandle lock_;
+    FileDescriptor lock_;
     BackgroundSync sync_;
     std::deque<SpoolFile> segments_;
     std::uint64_t bytes_ = 0;

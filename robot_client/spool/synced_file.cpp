@@ -16,7 +16,7 @@ Error file_error(std::string_view what, const std::filesystem::path& file) {
 
 BackgroundSync::BackgroundSync(Job sync, std::chrono::milliseconds period)
     : sync_(std::move(sync)), period_(period), thread_([this](const std::stop_token& stop) { run(stop); }) {
-    if (!sync_) sync_ = [](const FileHandle& file) { ::fdatasync(file.get()); }; // the next write reports failures
+    if (!sync_) sync_ = [](const FileDescriptor& file) { ::fdatasync(file.get()); }; // the next write reports failures
 }
 
 void BackgroundSync::wrote(const Handle& file) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "common/error/error.hpp"
+#include "common/files/file_descriptor.hpp"
 
 #include <chrono>
 #include <condition_variable>
@@ -11,10 +12,7 @@
 #include <stop_token>
 #include <string_view>
 #include <thread>
-#include <utility>
 #include <vector>
-
-#include <unistd.h>
 
 namespace scanloom::robot {
 
@@ -22,33 +20,12 @@ namespace scanloom::robot {
 /// @param what  e.g. "cannot write"
 [[nodiscard]] Error file_error(std::string_view what, const std::filesystem::path& file);
 
-/// An open file descriptor, closed on destruction.
-class FileHandle {
-public:
-    FileHandle() = default;
-    explicit FileHandle(int descriptor) noexcept : descriptor_(descriptor) {}
-    FileHandle(FileHandle&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
-    FileHandle& operator=(FileHandle&& other) noexcept {
-        std::swap(descriptor_, other.descriptor_);
-        return *this;
-    }
-    ~FileHandle() {
-        if (descriptor_ >= 0) ::close(descriptor_);
-    }
-
-    [[nodiscard]] int get() const noexcept { return descriptor_; }
-    explicit operator bool() const noexcept { return descriptor_ >= 0; }
-
-private:
-    int descriptor_ = -1;
-};
-
 /// Syncs written files to the disk, at most once per second and on its own thread, because an SD card is slow. A killed
 /// program loses none of its writes; a power failure may lose the last second or two.
 class BackgroundSync {
 public:
-    using Handle = std::shared_ptr<const FileHandle>;
-    using Job = std::function<void(const FileHandle&)>;
+    using Handle = std::shared_ptr<const FileDescriptor>;
+    using Job = std::function<void(const FileDescriptor&)>;
 
     /// @param sync    function that syncs one file; default: fdatasync
     /// @param period  time between two syncs

@@ -1,5 +1,6 @@
 #include "server/auth/token_file.hpp"
 
+#include "common/files/file_descriptor.hpp"
 #include "server/auth/token_set.hpp"
 
 #include <fmt/format.h>
@@ -17,23 +18,6 @@ namespace scanloom::auth {
 namespace {
 
 constexpr std::size_t kBytesMax = std::size_t{4} << 20;
-
-/// An open file descriptor, closed by the destructor.
-class Opened {
-public:
-    explicit Opened(const std::filesystem::path& path)
-        : descriptor_(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {}
-    ~Opened() {
-        if (descriptor_ >= 0) ::close(descriptor_);
-    }
-    Opened(const Opened&) = delete;
-    Opened& operator=(const Opened&) = delete;
-
-    [[nodiscard]] int descriptor() const noexcept { return descriptor_; }
-
-private:
-    int descriptor_;
-};
 
 Error unreadable(const std::filesystem::path& path, int why) {
     return {Errc::kNotFound,
@@ -58,13 +42,13 @@ Result<> check_file(const std::filesystem::path& path, int descriptor) {
 }
 
 Result<std::string> content_of(const std::filesystem::path& path) {
-    const Opened file(path);
-    if (file.descriptor() < 0) return unreadable(path, errno);
-    if (auto fit = check_file(path, file.descriptor()); !fit) return fit.error();
+    const FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+    if (!file) return unreadable(path, errno);
+    if (auto fit = check_file(path, file.get()); !fit) return fit.error();
     std::string content(kBytesMax, '\0');
     std::size_t size = 0;
     while (size < content.size()) {
-        const auto got = ::read(file.descriptor(), content.data() + size, content.size() - size);
+        const auto got = ::read(file.get(), content.data() + size, content.size() - size);
         if (got < 0 && errno == EINTR) continue;
         if (got < 0) return unreadable(path, errno);
         if (got == 0) break;

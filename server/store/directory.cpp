@@ -7,7 +7,6 @@
 #include <system_error>
 
 #include <fcntl.h>
-#include <unistd.h>
 
 namespace scanloom::store {
 namespace {
@@ -26,13 +25,10 @@ Error not_locked(const fs::path& directory, const Error& why) {
 /// Whether a program that does not take Scanloom's lock has RocksDB open here. The files of an open database must not
 /// be changed.
 bool rocksdb_is_open(const fs::path& directory) {
-    const int file = ::open((directory / "LOCK").c_str(), O_RDONLY | O_CLOEXEC);
-    if (file < 0) return false;
+    const FileDescriptor file(::open((directory / "LOCK").c_str(), O_RDONLY | O_CLOEXEC));
     struct flock probe = {};
     probe.l_type = F_WRLCK;
-    const bool held = ::fcntl(file, F_GETLK, &probe) == 0 && probe.l_type != F_UNLCK;
-    ::close(file);
-    return held;
+    return file && ::fcntl(file.get(), F_GETLK, &probe) == 0 && probe.l_type != F_UNLCK;
 }
 
 /// What the file names in a directory show about the store in it.

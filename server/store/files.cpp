@@ -9,9 +9,11 @@
 #include <fstream>
 #include <string>
 #include <system_error>
+#include <utility>
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 namespace scanloom::store {
@@ -22,41 +24,47 @@ namespace fs = std::filesystem;
 std::string text_of(int error) { return std::system_category().message(error); }
 
 Result<> sync(const fs::path& path, int flags, std::string_view what) {
-    const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | flags);
-    if (file < 0) return failure("cannot open the {} {}: {}", what, path.native(), text_of(errno));
-    const bool synced = ::fsync(file) == 0;
-    const std::string problem = synced ? "" : text_of(errno);
-    ::close(file);
-    if (!synced) return failure("cannot sync the {} {}: {}", what, path.native(), problem);
-    return {};
+    const FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | flags));
+    if (!file) return failure("cannot open the {} {}: {}", what, path.native(), text_of(errno));
+    if (::fsync(file.get()) == 0) return {};
+    return failure("cannot sync the {} {}: {}", what, path.native(), text_of(errno));
 }
 
 } // namespace
 
 Result<FileLock> FileLock::exclusive(const fs::path& file) {
-    const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
-    if (descriptor < 0) return failure("cannot write {}: {}", file.native(), text_of(errno));
-    return locked(file, descriptor, LOCK_EX);
+    FileDescriptor opened(::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644));
+    if (!opened) return failure("cannot write {}: {}", file.native(), text_of(errno));
+    return locked(file, std::move(opened), LOCK_EX);
 }
 
 Result<FileLock> FileLock::shared(const fs::path& file) {
-    const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
-    if (descriptor < 0 && errno == ENOENT) return FileLock(-1);
-    if (descriptor < 0) return failure("cannot read {}: {}", file.native(), text_of(errno));
-    return locked(file, descriptor, LOCK_SH);
+    FileDescriptor opened(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
+    if (!opened && errno == ENOENT) return FileLock(std::move(opened));
+    if (!opened) return failure("cannot read {}: {}", file.native(), text_of(errno));
+    return locked(file, std::move(opened), LOCK_SH);
 }
 
-Result<FileLock> FileLock::locked(const fs::path& file, int descriptor, int operation) {
-    FileLock held(descriptor);
-    if (::flock(descriptor, operation | LOCK_NB) == 0) return held;
-    const int error = errno;
-    if (error == EWOULDBLOCK)
+Result<FileLock> FileLock::locked(const fs::path& file, FileDescriptor opened, int operation) {
+    if (::flock(opened.get(), operation | LOCK_NB) == 0) return FileLock(std::move(opened));
+    if (errno == EWOULDBLOCK)
         return Error{Errc::kConflict, fmt::format("{} is held by another process", file.native())};
-    return failure("cannot lock {}: {}", file.native(), text_of(error));
+    return failure("cannot lock {}: {}", file.native(), text_of(errno));
 }
 
-FileLock::~FileLock() {
-    if (descriptor_ >= 0) ::close(descriptor_);
+Result<HeldFile> HeldFile::open(fs::path path) {
+    FileDescriptor file(::open(path.c_str(), O_PATH | O_CLOEXEC));
+    if (file) return HeldFile(std::move(path), std::move(file));
+    const bool is_missing = errno == ENOENT || errno == ENOTDIR;
+    return Error{is_missing ? Errc::kNotFound : Errc::kStoreFailed,
+                 fmt::format("cannot open {}: {}", path.native(), text_of(errno))};
+}
+
+bool HeldFile::is_in_place() const {
+    struct stat held = {};
+    struct stat found = {};
+    if (::stat(path_.c_str(), &found) != 0) return errno != ENOENT && errno != ENOTDIR;
+    return ::fstat(file_.get(), &held) != 0 || (held.st_dev == found.st_dev && held.st_ino == found.st_ino);
 }
 
 Result<> sync_directory(const fs::path& directory) { return sync(directory, O_DIRECTORY, "directory"); }

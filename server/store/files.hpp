@@ -1,6 +1,7 @@
 #pragma once
 
 #include "common/error/error.hpp"
+#include "common/files/file_descriptor.hpp"
 
 #include <cstdint>
 #include <filesystem>
@@ -24,16 +25,33 @@ public:
     /// Errors: kConflict: another process holds it exclusively; kStoreFailed: the file cannot be read or locked.
     [[nodiscard]] static Result<FileLock> shared(const std::filesystem::path& file);
 
-    FileLock(FileLock&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
-    FileLock& operator=(FileLock&&) = delete;
-    ~FileLock();
+private:
+    [[nodiscard]] static Result<FileLock> locked(const std::filesystem::path& file, FileDescriptor opened,
+                                                 int operation);
+
+    explicit FileLock(FileDescriptor file) noexcept : file_(std::move(file)) {}
+
+    FileDescriptor file_; // may be none
+};
+
+/// Keeps a file open to detect that its path no longer leads to it: the file was deleted, moved or replaced.
+///
+/// The file system does not reuse the inode of an open file, so equal device and inode mean the same file.
+/// Threads: any, concurrently.
+class HeldFile {
+public:
+    /// @param path  of a file or a directory; must stay valid relative to the working directory
+    /// Errors: kNotFound: the path leads to no file; kStoreFailed: the file cannot be opened.
+    [[nodiscard]] static Result<HeldFile> open(std::filesystem::path path);
+
+    /// @return false if the path leads to no file or to another one. Costs two system calls.
+    [[nodiscard]] bool is_in_place() const;
 
 private:
-    [[nodiscard]] static Result<FileLock> locked(const std::filesystem::path& file, int descriptor, int operation);
+    HeldFile(std::filesystem::path path, FileDescriptor file) : path_(std::move(path)), file_(std::move(file)) {}
 
-    explicit FileLock(int descriptor) noexcept : descriptor_(descriptor) {}
-
-    int descriptor_; // or -1
+    std::filesystem::path path_;
+    FileDescriptor file_;
 };
 
 /// Makes creations, renames and removals in a directory durable. Without it, a power loss may undo them.

@@ -3,17 +3,11 @@
 #include "server/store/directory.hpp"
 #include "server/store/store_error.hpp"
 
-#include <fmt/format.h>
 #include <rocksdb/convenience.h>
 #include <rocksdb/transaction_log.h>
 
-#include <cerrno>
 #include <memory>
-#include <system_error>
-
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
+#include <utility>
 
 namespace scanloom::store {
 namespace {
@@ -31,33 +25,6 @@ bool is_lost(std::optional<HeldFile>& file, const fs::path& path) {
 }
 
 } // namespace
-
-Result<HeldFile> HeldFile::open(std::filesystem::path path) {
-    const int descriptor = ::open(path.c_str(), O_PATH | O_CLOEXEC);
-    if (descriptor < 0) {
-        const int problem = errno;
-        return Error{problem == ENOENT || problem == ENOTDIR ? Errc::kNotFound : Errc::kStoreFailed,
-                     fmt::format("cannot open {}: {}", path.native(), std::system_category().message(problem))};
-    }
-    return HeldFile(std::move(path), descriptor);
-}
-
-HeldFile& HeldFile::operator=(HeldFile&& other) noexcept {
-    std::swap(path_, other.path_);
-    std::swap(descriptor_, other.descriptor_);
-    return *this;
-}
-
-HeldFile::~HeldFile() {
-    if (descriptor_ >= 0) ::close(descriptor_);
-}
-
-bool HeldFile::is_in_place() const {
-    struct stat held = {};
-    struct stat found = {};
-    if (::stat(path_.c_str(), &found) != 0) return errno != ENOENT && errno != ENOTDIR;
-    return ::fstat(descriptor_, &held) != 0 || (held.st_dev == found.st_dev && held.st_ino == found.st_ino);
-}
 
 FilesWatch::FilesWatch(rocksdb::DB& database, fs::path directory)
     : database_(database), directory_(std::move(directory)) {

@@ -11,12 +11,14 @@
 namespace scanloom::robot {
 namespace {
 
-std::shared_ptr<const FileHandle> file(int descriptor) { return std::make_shared<const FileHandle>(descriptor); }
+std::shared_ptr<const FileDescriptor> file(int descriptor) {
+    return std::make_shared<const FileDescriptor>(descriptor);
+}
 
 TEST(BackgroundSync, WritesDuringAPauseAreSyncedWithoutFurtherWrites) {
     std::promise<void> first;
     std::promise<void> second;
-    BackgroundSync sync([&, times = 0](const FileHandle&) mutable { (++times == 1 ? first : second).set_value(); },
+    BackgroundSync sync([&, times = 0](const FileDescriptor&) mutable { (++times == 1 ? first : second).set_value(); },
                         std::chrono::milliseconds(1));
     const auto written = file(::open("/dev/null", O_WRONLY | O_CLOEXEC));
     sync.wrote(written);
@@ -32,7 +34,7 @@ TEST(BackgroundSync, ClosedFilesAreSyncedOnceAlsoAtTheEnd) {
         std::promise<void> begun;
         std::promise<void> go_on;
         BackgroundSync sync(
-            [&](const FileHandle& each) {
+            [&](const FileDescriptor& each) {
                 synced.push_back(each.get());
                 if (synced.size() > 1) return;
                 begun.set_value();
