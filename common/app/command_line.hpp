@@ -1,12 +1,13 @@
 #pragma once
 
 #include "common/app/program.hpp"
+#include "common/scan/limits.hpp"
+#include "common/text/parse_number.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -71,6 +72,12 @@ namespace scanloom {
     };
 }
 
+/// Accepts names of sessions, robots and tokens.
+[[nodiscard]] inline std::string check_name(const std::string& name) {
+    if (is_valid_name(name)) return {};
+    return fmt::format("'{}' is not a name; use 1 to {} characters of A-Z a-z 0-9 _ -", name, kNameBytesMax);
+}
+
 [[nodiscard]] inline std::string check_positive(const std::string& text) {
     double value = 0.0;
     if (CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value > 0.0) return {};
@@ -86,10 +93,7 @@ namespace scanloom {
 /// Accepts whole numbers from `low` on. Rejects -1, which CLI11 alone converts to the largest number.
 [[nodiscard]] inline auto check_whole_number_from(std::uint64_t low) {
     return [=](const std::string& text) {
-        std::uint64_t value = 0;
-        const char* end = text.data() + text.size();
-        const auto [stopped, error] = std::from_chars(text.data(), end, value);
-        if (error == std::errc{} && stopped == end && value >= low) return std::string();
+        if (const auto value = parse_number<std::uint64_t>(text); value && *value >= low) return std::string();
         return fmt::format("'{}' is not a whole number from {} to {}", text, low,
                            std::numeric_limits<std::uint64_t>::max());
     };

@@ -1,5 +1,6 @@
 #include "core/mapping/map_config.hpp"
 
+#include "common/text/parse_number.hpp"
 #include "core/classify/class_layer.hpp"
 #include "core/mapping/laser_chunk.hpp"
 
@@ -7,7 +8,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <string>
 #include <type_traits>
@@ -65,20 +65,11 @@ Result<Value> as(const char* name, const ConfigValue& value) {
     }
 }
 
-/// Returns the number if the whole text is one.
-template <class Number>
-std::optional<Number> parse(std::string_view text) {
-    Number number{};
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
-    return number;
-}
-
 /// Converts text to a value of the type that the text looks like.
 ConfigValue value_in(std::string_view text) {
     if (text == "true" || text == "false") return text == "true";
-    if (const auto whole = parse<std::int32_t>(text)) return *whole;
-    if (const auto number = parse<double>(text)) return *number;
+    if (const auto whole = parse_number<std::int32_t>(text)) return *whole;
+    if (const auto number = parse_number<double>(text)) return *number;
     return text;
 }
 

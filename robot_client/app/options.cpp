@@ -39,11 +39,6 @@ struct Raw {
     std::string compression = "none";
 };
 
-std::string check_name(const std::string& name) {
-    if (is_valid_name(name)) return {};
-    return fmt::format("'{}' is not a name; use 1 to {} characters of A-Z a-z 0-9 _ -", name, kNameBytesMax);
-}
-
 void add_link_options(CLI::App& app, RobotOptions& options, Raw& raw) {
     app.add_option("--server", raw.server, "Robot port of the server, HOST:PORT")->capture_default_str();
     // not required() in the parser: truth needs neither

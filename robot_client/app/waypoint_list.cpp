@@ -1,12 +1,12 @@
 #include "robot_client/app/waypoint_list.hpp"
 
 #include "common/scan/limits.hpp"
+#include "common/text/parse_number.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <optional>
@@ -27,10 +27,8 @@ std::string_view trimmed(std::string_view text) {
 std::optional<double> as_coordinate(std::string_view text) {
     text = trimmed(text);
     if (text.starts_with('+')) text.remove_prefix(1);
-    double value = 0.0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    const bool is_one = error == std::errc() && end == text.data() + text.size() && std::abs(value) <= kCoordinateMax;
-    return is_one ? std::optional(value) : std::nullopt; // the comparison also rejects NaN
+    const auto value = parse_number<double>(text);
+    return value && std::abs(*value) <= kCoordinateMax ? value : std::nullopt; // the comparison also rejects NaN
 }
 
 /// Parses "x,y" or "x y".

@@ -1,6 +1,7 @@
 #include "robot_client/uplink/server_address.hpp"
 
-#include <charconv>
+#include "common/text/parse_number.hpp"
+
 #include <cstdint>
 
 namespace scanloom::robot {
@@ -15,10 +16,7 @@ std::optional<ServerAddress> parse_server_address(std::string_view text) {
     } else if (host.find(':') != std::string_view::npos) {
         return std::nullopt; // an IPv6 address without brackets is ambiguous
     }
-    std::uint16_t number = 0;
-    const auto [stopped, failed] = std::from_chars(port.data(), port.data() + port.size(), number);
-    if (host.empty() || failed != std::errc{} || stopped != port.data() + port.size() || number == 0)
-        return std::nullopt;
+    if (host.empty() || parse_number<std::uint16_t>(port).value_or(0) == 0) return std::nullopt;
     return ServerAddress{std::string(host), std::string(port)};
 }
 

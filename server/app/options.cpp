@@ -3,6 +3,7 @@
 #include "common/app/command_line.hpp"
 #include "common/app/machine.hpp"
 #include "common/app/settings.hpp"
+#include "common/text/parse_number.hpp"
 #include "server/app/places.hpp"
 #include "server/app/resource_limits.hpp"
 #include "server/app/token_command.hpp"
@@ -13,7 +14,6 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <charconv>
 #include <chrono>
 #include <thread>
 
@@ -202,13 +202,8 @@ Result<> settle_task(const Raw& raw, ServerOptions& options) {
     if (raw.restore.empty()) return {};
     options.task = Task::kRestore;
     if (raw.restore == "newest") return {};
-    std::uint32_t id = 0;
-    const char* end = raw.restore.data() + raw.restore.size();
-    const auto [stopped, error] = std::from_chars(raw.restore.data(), end, id);
-    if (error == std::errc{} && stopped == end && id > 0) {
-        options.backup = id;
-        return {};
-    }
+    options.backup = parse_number<std::uint32_t>(raw.restore);
+    if (options.backup.value_or(0) > 0) return {};
     return Error{Errc::kInvalidField,
                  fmt::format("--restore '{}' is not a backup; give its number, or 'newest'", raw.restore)};
 }
@@ -279,11 +274,9 @@ Result<boost::asio::ip::tcp::endpoint> parse_endpoint(const std::string& text) {
     if (host.size() > 2 && host.front() == '[' && host.back() == ']') host = host.substr(1, host.size() - 2);
     boost::system::error_code failed;
     const auto address = boost::asio::ip::make_address(host, failed);
-    std::uint16_t port = 0;
-    const char* end = text.data() + text.size();
-    const auto [stopped, error] = std::from_chars(text.data() + colon + 1, end, port);
-    if (failed || error != std::errc{} || stopped != end) return malformed;
-    return boost::asio::ip::tcp::endpoint(address, port);
+    const auto port = parse_number<std::uint16_t>(std::string_view(text).substr(colon + 1));
+    if (failed || !port) return malformed;
+    return boost::asio::ip::tcp::endpoint(address, *port);
 }
 
 namespace {

@@ -19,11 +19,6 @@ constexpr const char* kAboutToken =
     "Creates a token: prints its secret, once, and the lines to add to the file of --tokens.\n"
     "A client that sends the secret gets the permissions of the token; the file contains only its hash.";
 
-std::string check_name(const std::string& name) {
-    if (is_valid_name(name)) return {};
-    return fmt::format("'{}' is not a name; use 1 to {} characters of A-Z a-z 0-9 _ -", name, kNameBytesMax);
-}
-
 std::string check_pattern(const std::string& pattern) {
     if (auth::is_valid_pattern(pattern)) return {};
     return fmt::format("'{}' is not a pattern of sessions; use 1 to {} characters of A-Z a-z 0-9 _ - * ?", pattern,

@@ -1,30 +1,25 @@
 #pragma once
 
-#include <charconv>
+#include "common/text/parse_number.hpp"
+
 #include <cmath>
 #include <concepts>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <system_error>
 
 namespace scanloom::http {
 
 /// Parses an integer in decimal digits with at most one leading minus sign. Returns nullopt if it does not fit into T.
 template <std::integral T>
 [[nodiscard]] std::optional<T> parse_integer(std::string_view text) {
-    T value{};
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-    return value;
+    return parse_number<T>(text);
 }
 
 /// Parses a finite number in the notation of JSON.
 [[nodiscard]] inline std::optional<double> parse_real(std::string_view text) {
-    double value = 0.0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
-    return value;
+    const auto value = parse_number<double>(text);
+    return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
 /// Rounds metres for output to a micrometre: -19.95 instead of -19.950000000000003, the product of a cell count and the

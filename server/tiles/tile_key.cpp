@@ -1,9 +1,10 @@
 #include "server/tiles/tile_key.hpp"
 
+#include "common/text/parse_number.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <utility>
 
 namespace scanloom::tiles {
@@ -28,9 +29,8 @@ Result<> check_written(std::string_view name, std::string_view text) {
 
 /// Precondition: is_whole_number(text).
 Result<std::uint32_t> parse_up_to(std::uint32_t last, std::string_view name, std::string_view text) {
-    std::uint32_t value = 0;
-    const auto parsed = std::from_chars(text.data(), text.data() + text.size(), value); // rejects a sign too
-    if (parsed.ec == std::errc{} && value <= last) return value;
+    const auto value = parse_number<std::uint32_t>(text); // rejects a sign too
+    if (value && *value <= last) return *value;
     return Error{Errc::kNotFound, fmt::format("there is no such tile: {} must be from 0 to {}", name, last)};
 }
 
