@@ -22,24 +22,24 @@ rocksdb::BackupEngineOptions engine_options(const fs::path& directory) {
     return options;
 }
 
-} // namespace
-
-Result<std::unique_ptr<rocksdb::BackupEngine>> open_engine(const fs::path& directory) {
-    rocksdb::BackupEngine* opened = nullptr;
-    const auto status = rocksdb::BackupEngine::Open(rocksdb::Env::Default(), engine_options(directory), &opened);
-    std::unique_ptr<rocksdb::BackupEngine> engine(opened);
+template <class Engine>
+Result<std::unique_ptr<Engine>> open_as(const fs::path& directory, std::string_view use) {
+    Engine* opened = nullptr;
+    const auto status = Engine::Open(engine_options(directory), rocksdb::Env::Default(), &opened);
+    std::unique_ptr<Engine> engine(opened);
     if (status.ok()) return engine;
-    return failure("the backups in {} cannot be used: {}; name another directory", directory.native(),
+    return failure("the backups in {} cannot be {}: {}; name another directory", directory.native(), use,
                    status.ToString());
 }
 
+} // namespace
+
+Result<std::unique_ptr<rocksdb::BackupEngine>> open_engine(const fs::path& directory) {
+    return open_as<rocksdb::BackupEngine>(directory, "used");
+}
+
 Result<std::unique_ptr<rocksdb::BackupEngineReadOnly>> open_engine_to_read(const fs::path& directory) {
-    rocksdb::BackupEngineReadOnly* opened = nullptr;
-    const auto status =
-        rocksdb::BackupEngineReadOnly::Open(rocksdb::Env::Default(), engine_options(directory), &opened);
-    std::unique_ptr<rocksdb::BackupEngineReadOnly> engine(opened);
-    if (status.ok()) return engine;
-    return failure("the backups in {} cannot be read: {}", directory.native(), status.ToString());
+    return open_as<rocksdb::BackupEngineReadOnly>(directory, "read");
 }
 
 BackupMetadata metadata_of(const rocksdb::BackupInfo& info) {

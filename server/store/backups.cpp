@@ -1,12 +1,10 @@
 #include "server/store/backups.hpp"
 
 #include "server/store/backup_engine.hpp"
-#include "server/store/compaction.hpp"
-#include "server/store/rocksdb_options.hpp"
+#include "server/store/rocksdb_scan_log.hpp"
 #include "server/store/store_error.hpp"
 
 #include <fmt/format.h>
-#include <rocksdb/db.h>
 
 #include <algorithm>
 #include <string>
@@ -46,18 +44,14 @@ Result<> check_empty(const fs::path& store) {
                  fmt::format("{} is not empty; name a directory that does not exist yet", store.native())};
 }
 
-/// A store that has written nothing since its last table has no write-ahead log to copy, but a store without a log
-/// counts as damaged. Opening it creates one.
-Result<> complete(const fs::path& store, const StoreOptions& options) {
-    for (const auto& file : fs::directory_iterator(store)) {
-        if (file.path().extension() == ".log") return {};
+/// Returns the device that holds the directory, or that would hold it if it were created; 0 if it is unknown.
+std::uint64_t disk_of(const fs::path& directory) {
+    std::error_code none;
+    struct stat found = {};
+    for (auto place = fs::absolute(directory, none);; place = place.parent_path()) {
+        if (::stat(place.c_str(), &found) == 0) return found.st_dev;
+        if (!place.has_relative_path()) return 0;
     }
-    rocksdb::DB* opened = nullptr;
-    const auto status =
-        rocksdb::DB::Open(rocksdb_options(options, std::make_shared<CompactionWatch>()), store.native(), &opened);
-    const std::unique_ptr<rocksdb::DB> database(opened);
-    if (!status.ok()) return failure("the restored store {} cannot be opened: {}", store.native(), status.ToString());
-    return {};
 }
 
 } // namespace
@@ -81,21 +75,6 @@ Result<std::unique_ptr<Backups>> Backups::open(const fs::path& directory, std::s
 Backups::Backups(fs::path directory, std::size_t kept, Report report)
     : directory_(std::move(directory)), kept_(std::max<std::size_t>(kept, 1)), report_(std::move(report)) {}
 
-std::optional<Backups::FileId> Backups::id_of(const fs::path& file) {
-    struct stat found = {};
-    if (::stat(file.c_str(), &found) != 0) return {};
-    return FileId{found.st_dev, found.st_ino};
-}
-
-/// Returns the device that holds the directory, or that would hold it if it were created.
-std::uint64_t Backups::disk_of(const fs::path& directory) {
-    std::error_code none;
-    auto place = fs::absolute(directory, none);
-    auto found = id_of(place);
-    for (; !found && place.has_relative_path(); found = id_of(place)) place = place.parent_path();
-    return found ? found->disk : 0;
-}
-
 /// Locks the directory again if the lock file was removed: such a lock excludes no other server.
 Result<> Backups::take_directory() {
     std::error_code problem;
@@ -103,7 +82,7 @@ Result<> Backups::take_directory() {
     if (problem)
         return failure("cannot create the directory of backups {}: {}", directory_.native(), problem.message());
     const auto file = directory_ / "scanloom.lock";
-    if (lock_ && id_of(file) == locked_) return {};
+    if (lock_ && locked_->is_in_place()) return {};
     auto lock = FileLock::exclusive(file);
     if (!lock && lock.error().code == Errc::kConflict) {
         return Error{Errc::kConflict, fmt::format("the directory of backups {} is in use by another scanloom-server; "
@@ -111,8 +90,10 @@ Result<> Backups::take_directory() {
                                                   directory_.native())};
     }
     if (!lock) return failure("the backups in {} cannot be used: {}", directory_.native(), lock.error().message);
-    lock_.emplace(*std::move(lock));
-    locked_ = id_of(file);
+    auto locked = HeldFile::open(file);
+    if (!locked) return locked.error();
+    lock_ = *std::move(lock);
+    locked_ = *std::move(locked);
     return {};
 }
 
@@ -203,8 +184,9 @@ Result<Backup> restore_backup(const fs::path& directory, std::optional<std::uint
         return failure("backup {} cannot be restored into {}: {}; delete what there is of it, and try another one",
                        backup->id, store.native(), restored.ToString());
     }
-    if (auto completed = complete(store, options); !completed) return completed.error();
-    if (auto log = open_rocksdb(store, options); !log) return log.error();
+    // A store that has written nothing since its last table has no write-ahead log to copy. Opening it creates one, but
+    // a complete store has one.
+    if (auto log = RocksdbScanLog::open(store, LockedDirectory::Files::kDamaged, options); !log) return log.error();
     return *backup;
 }
 

@@ -69,17 +69,7 @@ public:
     void stop();
 
 private:
-    /// Identifies a file independently of its name.
-    struct FileId {
-        std::uint64_t disk = 0;
-        std::uint64_t inode = 0;
-
-        friend bool operator==(const FileId&, const FileId&) = default;
-    };
-
     Backups(std::filesystem::path directory, std::size_t kept, Report report);
-    [[nodiscard]] static std::optional<FileId> id_of(const std::filesystem::path& file);
-    [[nodiscard]] static std::uint64_t disk_of(const std::filesystem::path& directory);
     [[nodiscard]] Result<> take_directory();
     [[nodiscard]] Result<> check_disk() const;
     [[nodiscard]] Result<std::vector<Backup>> delete_old() const;
@@ -89,15 +79,15 @@ private:
     const std::filesystem::path directory_;
     const std::size_t kept_;
     const Report report_;
-    std::uint64_t disk_ = 0;       // of the directory when it was opened
-    std::optional<FileLock> lock_; // guarded by making_, like locked_
-    std::optional<FileId> locked_; // the lock file
-    std::mutex making_;            // held during make()
-    std::mutex state_mutex_;       // guards the members below
-    std::vector<Backup> last_;     // as last listed
-    bool is_making_ = false;       // whether make() is running
-    std::uint64_t changes_ = 0;    // counts starts and ends of make()
-    std::stop_source stopping_;    // not guarded
+    std::uint64_t disk_ = 0;         // of the directory when it was opened
+    std::optional<FileLock> lock_;   // guarded by making_, like locked_
+    std::optional<HeldFile> locked_; // the lock file
+    std::mutex making_;              // held during make()
+    std::mutex state_mutex_;         // guards the members below
+    std::vector<Backup> last_;       // as last listed
+    bool is_making_ = false;         // whether make() is running
+    std::uint64_t changes_ = 0;      // counts starts and ends of make()
+    std::stop_source stopping_;      // not guarded
 };
 
 /// Restores a backup into a new store, verifies each file's checksum, and opens the store once.

@@ -1,21 +1,17 @@
 #include "server/store/crash_recovery.hpp"
 
+#include "common/text/parse_number.hpp"
 #include "server/store/directory.hpp"
 #include "server/store/log_file.hpp"
 #include "server/store/store_error.hpp"
 
-#include <fmt/format.h>
+#include <rocksdb/env.h>
 
-#include <cerrno>
-#include <charconv>
 #include <fstream>
 #include <map>
 #include <optional>
 #include <string>
 #include <system_error>
-
-#include <fcntl.h>
-#include <unistd.h>
 
 namespace scanloom::store {
 namespace {
@@ -25,55 +21,42 @@ namespace fs = std::filesystem;
 constexpr std::string_view kManifest = "MANIFEST-";
 
 Result<std::string> contents_of(const fs::path& file) {
-    std::error_code problem;
-    const auto size = fs::file_size(file, problem);
-    if (problem) return failure("cannot read {} of the store: {}", file.native(), problem.message());
-    std::string bytes(size, '\0');
-    std::ifstream in(file, std::ios::binary);
-    if (!in.read(bytes.data(), static_cast<std::streamsize>(size))) {
-        return failure("cannot read {} of the store; check the disk", file.native());
-    }
-    return bytes;
+    std::string bytes;
+    const auto status = rocksdb::ReadFileToString(rocksdb::Env::Default(), file.native(), &bytes);
+    if (status.ok()) return bytes;
+    return failure("cannot read {} of the store: {}; check its disk", file.native(), status.ToString());
 }
 
-Result<LogFileCheck> checked(const fs::path& file) {
+Error damaged_at(const fs::path& file, std::uint64_t byte) {
+    return failure("{} of the store is damaged at byte {}; {}", file.native(), byte, kRecover);
+}
+
+/// Finds the end of the complete writes of a file, and the size of an unfinished one behind them, 0 if there is none.
+Result<UnfinishedWrite> checked(const fs::path& file) {
     const auto bytes = contents_of(file);
     if (!bytes) return bytes.error();
-    auto check = check_log_file(*bytes);
-    if (check.damage) {
-        return failure("{} of the store is damaged at byte {}; {}", file.native(), *check.damage, kRecover);
-    }
-    return check;
+    const auto check = check_log_file(*bytes);
+    if (check.damage) return damaged_at(file, *check.damage);
+    return UnfinishedWrite{file, check.whole_bytes, bytes->size() - check.whole_bytes};
 }
 
 using Logs = std::map<std::uint64_t, fs::path>;
-
-/// Parses what follows "MANIFEST-" or precedes ".log".
-std::optional<std::uint64_t> number_in(std::string_view digits) {
-    std::uint64_t number = 0;
-    const auto [end, unread] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
-    if (unread != std::errc() || end != digits.data() + digits.size()) return std::nullopt;
-    return number;
-}
 
 /// Returns the logs by ascending number, so the last one is the newest. The others were synced completely, and RocksDB
 /// recorded their sizes in its manifest.
 Logs write_ahead_logs(const fs::path& directory) {
     Logs logs;
     for (const auto& file : regular_files(directory, ".log")) {
-        if (const auto number = number_in(file.stem().native())) logs.emplace(*number, file);
+        if (const auto number = parse_number<std::uint64_t>(file.stem().native())) logs.emplace(*number, file);
     }
     return logs;
 }
 
 Result<> cut_off(const fs::path& file, std::size_t bytes) {
-    const int descriptor = ::open(file.c_str(), O_WRONLY | O_CLOEXEC);
-    const bool done =
-        descriptor >= 0 && ::ftruncate(descriptor, static_cast<off_t>(bytes)) == 0 && ::fsync(descriptor) == 0;
-    const std::string problem = std::system_category().message(errno);
-    if (descriptor >= 0) ::close(descriptor);
-    if (done) return {};
-    return failure("cannot cut the unfinished write off {} of the store: {}", file.native(), problem);
+    std::error_code problem;
+    fs::resize_file(file, bytes, problem);
+    if (!problem) return sync_file(file);
+    return failure("cannot cut the unfinished write off {} of the store: {}", file.native(), problem.message());
 }
 
 } // namespace
@@ -85,7 +68,7 @@ Result<> check_newest_log(const fs::path& directory) {
     std::ifstream in(directory / "CURRENT");
     std::string manifest;
     if (!(in >> manifest) || !manifest.starts_with(kManifest)) return {}; // a new store
-    const auto number = number_in(std::string_view(manifest).substr(kManifest.size()));
+    const auto number = parse_number<std::uint64_t>(std::string_view(manifest).substr(kManifest.size()));
     if (!number || logs.rbegin()->first + 1 >= *number) return {};
     return failure("the newest write-ahead log of the store {} is missing: {} is older than {}; {}", directory.native(),
                    logs.rbegin()->second.filename().native(), manifest, kRecover);
@@ -116,19 +99,12 @@ Result<> check_manifest(const fs::path& directory) {
 Result<std::optional<UnfinishedWrite>> find_unfinished_write(const LockedDirectory& directory) {
     if (auto manifest = check_manifest(directory.path()); !manifest) return manifest.error();
     if (auto newest = check_newest_log(directory.path()); !newest) return newest.error();
-    const auto logs = write_ahead_logs(directory.path());
     std::optional<UnfinishedWrite> unfinished;
-    for (const auto& [number, log] : logs) {
-        if (unfinished) {
-            return failure("{} of the store is damaged at byte {}; {}", unfinished->file.native(),
-                           unfinished->whole_bytes, kRecover);
-        }
+    for (const auto& [number, log] : write_ahead_logs(directory.path())) {
+        if (unfinished) return damaged_at(unfinished->file, unfinished->whole_bytes);
         const auto check = checked(log);
         if (!check) return check.error();
-        std::error_code problem;
-        const auto size = fs::file_size(log, problem);
-        if (problem) return failure("cannot read {} of the store: {}", log.native(), problem.message());
-        if (check->whole_bytes < size) unfinished = {log, check->whole_bytes, size - check->whole_bytes};
+        if (check->bytes > 0) unfinished = *check;
     }
     return unfinished;
 }
