@@ -140,16 +140,8 @@ Result<std::unique_ptr<Database>> Database::open(const fs::path& directory, Lock
     if (!status.ok()) return cannot_open(directory, status);
     if (auto written = write_format_if_needed(*database, directory); !written) return written.error();
     if (auto finished = locked->finish_creation(); !finished) return finished.error();
-    auto ends = read_ends(*database, directory);
-    if (!ends) return ends.error();
-    auto watched = std::make_unique<FilesWatch>(*database, directory);
-    return std::unique_ptr<Database>(new Database({.directory = std::move(*locked),
-                                                   .database = std::move(database),
-                                                   .ends = std::move(*ends),
-                                                   .torn_bytes = *torn_bytes,
-                                                   .watch = watch,
-                                                   .files = std::move(watched)},
-                                                  options));
+    auto files_watch = std::make_unique<FilesWatch>(*database, directory);
+    return read_ends({std::move(*locked), std::move(database), *torn_bytes, watch, std::move(files_watch)}, options);
 }
 
 Result<std::unique_ptr<Database>> Database::open_read_only(const fs::path& directory, const StoreOptions& options) {
@@ -168,15 +160,16 @@ Result<std::unique_ptr<Database>> Database::open_read_only(const fs::path& direc
     std::unique_ptr<rocksdb::DB> database(opened);
     if (!status.ok()) return cannot_open(directory, status);
     if (const auto format = must_write_format(*database, directory); !format) return format.error();
-    auto ends = read_ends(*database, directory);
+    return read_ends({std::move(*locked), std::move(database), *unfinished ? (*unfinished)->bytes : 0,
+                      std::make_shared<CompactionWatch>()},
+                     options);
+}
+
+/// Completes the opening of a database.
+Result<std::unique_ptr<Database>> Database::read_ends(Opened opened, const StoreOptions& options) {
+    auto ends = store::read_ends(*opened.database, opened.directory.path());
     if (!ends) return ends.error();
-    return std::unique_ptr<Database>(new Database({.directory = std::move(*locked),
-                                                   .database = std::move(database),
-                                                   .ends = std::move(*ends),
-                                                   .torn_bytes = *unfinished ? (*unfinished)->bytes : 0,
-                                                   .watch = std::make_shared<CompactionWatch>(),
-                                                   .files = nullptr},
-                                                  options));
+    return std::unique_ptr<Database>(new Database(std::move(opened), std::move(*ends), options));
 }
 
 bool Database::can_be_opened(const fs::path& directory, const StoreOptions& options) {
@@ -195,16 +188,14 @@ bool Database::can_be_opened(const fs::path& directory, const StoreOptions& opti
     return written;
 }
 
-Database::Database(Opened opened, const StoreOptions& options)
-    : directory_(std::move(opened.directory)), database_(std::move(opened.database)), ends_(std::move(opened.ends)),
-      torn_bytes_(opened.torn_bytes), watch_(std::move(opened.watch)),
-      compactions_(*database_, options.disk_reserve_bytes), files_(std::move(opened.files)),
+Database::Database(Opened opened, LogEnds ends, const StoreOptions& options)
+    : opened_(std::move(opened)), ends_(std::move(ends)), compactions_(rocksdb(), options.disk_reserve_bytes),
       on_damage_(options.on_damage),
-      committer_(*database_, name(), options.disk_reserve_bytes, compactions_, files_.get()) {
-    watch_->set_report([this](const rocksdb::Status& reason) { continue_without_compaction(reason); });
+      committer_(rocksdb(), name(), options.disk_reserve_bytes, compactions_, opened_.files.get()) {
+    opened_.watch->set_report([this](const rocksdb::Status& reason) { continue_without_compaction(reason); });
 }
 
-Database::~Database() { watch_->set_report(nullptr); }
+Database::~Database() { opened_.watch->set_report(nullptr); }
 
 /// Stops compactions, which RocksDB would otherwise retry every second without end.
 void Database::continue_without_compaction(const rocksdb::Status& reason) {
@@ -228,19 +219,19 @@ void Database::continue_without_compaction(const rocksdb::Status& reason) {
 }
 
 void Database::free_disk(SessionId session) {
-    if (!committer_.stats().no_room) database_->Flush({}).PermitUncheckedError();
+    if (!committer_.stats().no_room) rocksdb().Flush({}).PermitUncheckedError();
     for (const KeyRange& range : {entries_of(session), parts_of(session)}) {
         const rocksdb::Slice begin(range.begin);
         const rocksdb::Slice end(range.end);
-        rocksdb::DeleteFilesInRange(database_.get(), database_->DefaultColumnFamily(), &begin, &end, false)
+        rocksdb::DeleteFilesInRange(&rocksdb(), rocksdb().DefaultColumnFamily(), &begin, &end, false)
             .PermitUncheckedError();
-        rocksdb::experimental::SuggestCompactRange(database_.get(), &begin, &end).PermitUncheckedError();
+        rocksdb::experimental::SuggestCompactRange(&rocksdb(), &begin, &end).PermitUncheckedError();
     }
 }
 
 std::vector<SessionId> Database::owners_without_record() {
     std::set<SessionId> found;
-    const std::unique_ptr<rocksdb::Iterator> iterator(database_->NewIterator({}));
+    const std::unique_ptr<rocksdb::Iterator> iterator(rocksdb().NewIterator({}));
     for (const auto range_of : {&parts_of, &entries_of}) {
         for (iterator->Seek(range_of(0).begin); iterator->Valid();) {
             const std::string key = iterator->key().ToString();
@@ -255,7 +246,7 @@ std::vector<SessionId> Database::owners_without_record() {
 
 StoreStats Database::stats() const {
     StoreStats stats = committer_.stats();
-    stats.torn_bytes_dropped = torn_bytes_;
+    stats.torn_bytes_dropped = opened_.torn_bytes;
     const std::lock_guard lock(damage_mutex_);
     if (damage_) stats.damage = damage_->message;
     return stats;

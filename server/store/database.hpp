@@ -58,19 +58,19 @@ public:
     Database(const Database&) = delete;
     Database& operator=(const Database&) = delete;
 
-    [[nodiscard]] rocksdb::DB& rocksdb() noexcept { return *database_; }
+    [[nodiscard]] rocksdb::DB& rocksdb() noexcept { return *opened_.database; }
     [[nodiscard]] Committer& committer() noexcept { return committer_; }
 
     /// Threads: `next_session` and `revisions`: the committer's; `damaged`: any.
     [[nodiscard]] LogEnds& ends() noexcept { return ends_; }
 
     /// Returns the directory as a string, for messages.
-    [[nodiscard]] const std::string& name() const noexcept { return directory_.path().native(); }
+    [[nodiscard]] const std::string& name() const noexcept { return opened_.directory.path().native(); }
 
     /// Checks that the store is still in its place. RocksDB opens tables by path, so it would read a store that took
     /// the place of this one.
     /// Errors: kStoreFailed: it is not.
-    [[nodiscard]] Result<> check_files() { return files_ ? files_->check() : Result<>(); }
+    [[nodiscard]] Result<> check_files() { return opened_.files ? opened_.files->check() : Result<>(); }
 
     /// Frees the disk space of a removed session. Deletes tables that contain nothing else immediately. Compactions
     /// remove the rest, but only once the removal is in a table: so the memtable is flushed first if there is room. A
@@ -85,26 +85,22 @@ public:
     [[nodiscard]] StoreStats stats() const;
 
 private:
-    /// How a database was found when it was opened.
+    /// An open database, and how it was found.
     struct Opened {
         LockedDirectory directory;
         std::unique_ptr<rocksdb::DB> database;
-        LogEnds ends;
-        std::uint64_t torn_bytes = 0;
+        std::uint64_t torn_bytes = 0; // of the write that a crash left unfinished
         std::shared_ptr<CompactionWatch> watch;
-        std::unique_ptr<FilesWatch> files; // null for a read-only database
+        std::unique_ptr<FilesWatch> files{}; // null for a read-only database
     };
 
-    Database(Opened opened, const StoreOptions& options);
+    [[nodiscard]] static Result<std::unique_ptr<Database>> read_ends(Opened opened, const StoreOptions& options);
+    Database(Opened opened, LogEnds ends, const StoreOptions& options);
     void continue_without_compaction(const rocksdb::Status& reason);
 
-    LockedDirectory directory_;
-    std::unique_ptr<rocksdb::DB> database_;
+    Opened opened_;
     LogEnds ends_;
-    std::uint64_t torn_bytes_; // of the write that a crash left unfinished
-    std::shared_ptr<CompactionWatch> watch_;
     CompactionSwitch compactions_;
-    std::unique_ptr<FilesWatch> files_; // may be null
     std::function<void(const Error&)> on_damage_;
     mutable std::mutex damage_mutex_;
     std::optional<Error> damage_; // guarded by damage_mutex_

@@ -17,34 +17,37 @@ namespace fs = std::filesystem;
 // Cost of a change in addition to its own bytes; keeps a flood of empty changes within the bound of a group.
 constexpr std::uint64_t kChangeBytes = 64;
 
-struct SealedPair {
-    std::string key;
-    std::string value;
-};
-
-SealedPair sealed_pair(std::string key, std::string value) {
-    std::string sealed_value = sealed(key, std::move(value));
-    return {std::move(key), std::move(sealed_value)};
-}
-
-std::uint64_t bytes_of(const std::vector<SealedPair>& pairs) {
-    std::uint64_t bytes = kChangeBytes;
-    for (const auto& pair : pairs) bytes += pair.key.size() + pair.value.size();
-    return bytes;
-}
-
 /// Returns whether a batch accepted an operation.
 Result<> accepted(const rocksdb::Status& status) {
     if (status.ok()) return {};
     return failure("the store cannot accept a change: {}", status.ToString());
 }
 
-Result<> put(rocksdb::WriteBatch& batch, const std::vector<SealedPair>& pairs) {
-    for (const auto& pair : pairs) {
-        if (auto put = accepted(batch.Put(pair.key, pair.value)); !put) return put;
+/// Keys with their sealed values.
+class SealedPairs {
+public:
+    void add(std::string key, std::string value) {
+        std::string sealed_value = sealed(key, std::move(value));
+        bytes_ += key.size() + sealed_value.size();
+        pairs_.emplace_back(std::move(key), std::move(sealed_value));
     }
-    return {};
-}
+
+    [[nodiscard]] std::size_t size() const noexcept { return pairs_.size(); }
+
+    /// Returns the approximate size of a change that writes the pairs.
+    [[nodiscard]] std::uint64_t bytes() const noexcept { return bytes_; }
+
+    [[nodiscard]] Result<> put(rocksdb::WriteBatch& batch) const {
+        for (const auto& [key, value] : pairs_) {
+            if (auto put = accepted(batch.Put(key, value)); !put) return put;
+        }
+        return {};
+    }
+
+private:
+    std::vector<std::pair<std::string, std::string>> pairs_;
+    std::uint64_t bytes_ = kChangeBytes;
+};
 
 Error no_such_session(SessionId session) {
     return {Errc::kNotFound, fmt::format("the store has no session {}; it may have been removed", session)};
@@ -77,16 +80,6 @@ struct Scan {
     std::unique_ptr<rocksdb::Iterator> iterator;
 };
 
-/// Errors: kNotFound: there is no such session; kDataLoss, kStoreFailed: its record cannot be read.
-Result<> check_session(Database& database, SessionId session) {
-    if (auto in_place = database.check_files(); !in_place) return in_place;
-    std::string record;
-    const auto status = database.rocksdb().Get({}, session_key(session), &record);
-    if (status.ok()) return {};
-    if (status.IsNotFound()) return no_such_session(session);
-    return unreadable(database.name(), session, status);
-}
-
 void add(StoreStats& to, const StoreStats& from) {
     to.appends += from.appends;
     to.entries += from.entries;
@@ -118,24 +111,45 @@ Result<RocksdbScanLog::Use> RocksdbScanLog::use() const {
     return failure("the store failed and is being reopened: {}", before_.last_error.value_or("try again later"));
 }
 
-Result<SessionId> RocksdbScanLog::create_session(std::string_view record) {
+/// Errors: kNotFound: there is no such session; kDataLoss, kStoreFailed: its record cannot be read.
+Result<RocksdbScanLog::Use> RocksdbScanLog::use_for(SessionId session) const {
+    auto use = this->use();
+    if (!use) return use;
+    if (auto in_place = use->database.check_files(); !in_place) return in_place.error();
+    std::string record;
+    const auto status = use->database.rocksdb().Get({}, session_key(session), &record);
+    if (status.ok()) return use;
+    if (status.IsNotFound()) return no_such_session(session);
+    return unreadable(use->database.name(), session, status);
+}
+
+/// Commits a change and waits until it is durable.
+/// @param bytes       its approximate size
+/// @param frees_disk  whether it is accepted when the disk has no room
+Result<> RocksdbScanLog::commit(std::uint64_t bytes, const AddTo& add_to, bool frees_disk) {
     const auto use = this->use();
     if (!use) return use.error();
-    Database& database = use->database;
-    SessionId created = 0;
     Change change;
-    change.bytes = kChangeBytes + record.size();
-    change.add_to = [&ends = database.ends(), &created, record](rocksdb::WriteBatch& batch) -> Result<> {
-        created = ends.next_session;
-        std::vector<SealedPair> pairs;
-        pairs.push_back(sealed_pair(session_key(created), std::string(record)));
-        pairs.push_back(sealed_pair(std::string(kNextSessionKey), number_bytes(created + 1)));
-        if (auto added = put(batch, pairs); !added) return added;
-        ends.next_session = created + 1;
-        ends.revisions.emplace(created, 0);
-        return {};
-    };
-    if (auto committed = database.committer().submit_and_wait(std::move(change)); !committed) return committed.error();
+    change.bytes = bytes;
+    change.frees_disk = frees_disk;
+    change.add_to = [&ends = use->database.ends(), &add_to](rocksdb::WriteBatch& batch) { return add_to(ends, batch); };
+    return use->database.committer().submit_and_wait(std::move(change));
+}
+
+Result<SessionId> RocksdbScanLog::create_session(std::string_view record) {
+    SessionId created = 0;
+    const auto committed =
+        commit(kChangeBytes + record.size(), [&](LogEnds& ends, rocksdb::WriteBatch& batch) -> Result<> {
+            created = ends.next_session;
+            SealedPairs pairs;
+            pairs.add(session_key(created), std::string(record));
+            pairs.add(std::string(kNextSessionKey), number_bytes(created + 1));
+            if (auto added = pairs.put(batch); !added) return added;
+            ends.next_session = created + 1;
+            ends.revisions.emplace(created, 0);
+            return {};
+        });
+    if (!committed) return committed.error();
     return created;
 }
 
@@ -166,21 +180,13 @@ Result<std::vector<StoredSession>> RocksdbScanLog::sessions() {
 }
 
 Result<Revision> RocksdbScanLog::end_of(SessionId session) {
-    const auto use = this->use();
+    const auto use = use_for(session);
     if (!use) return use.error();
-    Database& database = use->database;
-    if (auto exists = check_session(database, session); !exists) return exists.error();
-    return end_of_log(database.rocksdb(), database.name(), session);
+    return end_of_log(use->database.rocksdb(), use->database.name(), session);
 }
 
 Result<> RocksdbScanLog::remove_session(SessionId session) {
-    const auto use = this->use();
-    if (!use) return use.error();
-    Database& database = use->database;
-    Change change;
-    change.bytes = kChangeBytes;
-    change.frees_disk = true;
-    change.add_to = [&ends = database.ends(), session](rocksdb::WriteBatch& batch) -> Result<> {
+    const auto remove = [session](LogEnds& ends, rocksdb::WriteBatch& batch) -> Result<> {
         if (ends.revisions.erase(session) == 0) return no_such_session(session);
         auto status = batch.Delete(session_key(session));
         for (const KeyRange& range : {entries_of(session), parts_of(session)}) {
@@ -188,17 +194,15 @@ Result<> RocksdbScanLog::remove_session(SessionId session) {
         }
         return accepted(status);
     };
-    if (auto committed = database.committer().submit_and_wait(std::move(change)); !committed) return committed;
-    database.free_disk(session);
+    if (auto committed = commit(kChangeBytes, remove, true); !committed) return committed;
+    if (const auto use = this->use()) use->database.free_disk(session);
     return {};
 }
 
 void RocksdbScanLog::append(SessionId session, Revision first, std::vector<std::string> entries, Done done) {
     // Sealed on the caller's thread, because one committer serves all sessions.
-    std::vector<SealedPair> pairs;
-    pairs.reserve(entries.size());
-    for (auto& entry : entries)
-        pairs.push_back(sealed_pair(entry_key(session, first + pairs.size()), std::move(entry)));
+    SealedPairs pairs;
+    for (auto& entry : entries) pairs.add(entry_key(session, first + pairs.size()), std::move(entry));
 
     const std::shared_lock lock(mutex_, std::try_to_lock);
     if (!lock || !database_) {
@@ -206,7 +210,7 @@ void RocksdbScanLog::append(SessionId session, Revision first, std::vector<std::
     }
     LogEnds& ends = database_->ends();
     Change change;
-    change.bytes = bytes_of(pairs);
+    change.bytes = pairs.bytes();
     change.appends = 1;
     change.entries = pairs.size();
     change.add_to = [&ends, session, first, pairs = std::move(pairs)](rocksdb::WriteBatch& batch) -> Result<> {
@@ -218,7 +222,7 @@ void RocksdbScanLog::append(SessionId session, Revision first, std::vector<std::
                                                       "ends with {}",
                                                       session, first, end->second)};
         }
-        if (auto added = put(batch, pairs); !added) return added;
+        if (auto added = pairs.put(batch); !added) return added;
         end->second += pairs.size();
         return {};
     };
@@ -236,10 +240,9 @@ Result<> RocksdbScanLog::read(SessionId session, Revision after, const VisitEntr
 }
 
 Result<> RocksdbScanLog::read_entries(SessionId session, Revision after, const VisitEntry& visit) {
-    const auto use = this->use();
+    const auto use = use_for(session);
     if (!use) return use.error();
     Database& database = use->database;
-    if (auto exists = check_session(database, session); !exists) return exists;
     const KeyRange range = entries_of(session);
     const Scan scan(database.rocksdb(), range);
     // Starts with the entry before, to check that the log reaches that far.
@@ -266,42 +269,25 @@ Result<> RocksdbScanLog::read_entries(SessionId session, Revision after, const V
 }
 
 Result<> RocksdbScanLog::clear_checkpoint(SessionId session) {
-    const auto use = this->use();
-    if (!use) return use.error();
-    Database& database = use->database;
-    Change change;
-    change.bytes = kChangeBytes;
-    change.add_to = [&ends = database.ends(), session](rocksdb::WriteBatch& batch) -> Result<> {
+    return commit(kChangeBytes, [session](LogEnds& ends, rocksdb::WriteBatch& batch) -> Result<> {
         if (!ends.revisions.contains(session)) return no_such_session(session);
         const KeyRange range = parts_of(session);
         return accepted(batch.DeleteRange(range.begin, range.end));
-    };
-    return database.committer().submit_and_wait(std::move(change));
+    });
 }
 
 Result<> RocksdbScanLog::write_checkpoint(SessionId session, std::vector<CheckpointPart> parts) {
-    std::vector<SealedPair> pairs;
-    pairs.reserve(parts.size());
-    for (auto& part : parts) pairs.push_back(sealed_pair(part_key(session, part.key), std::move(part.value)));
-
-    const auto use = this->use();
-    if (!use) return use.error();
-    Database& database = use->database;
-    Change change;
-    change.bytes = bytes_of(pairs);
-    change.add_to = [&ends = database.ends(), session,
-                     pairs = std::move(pairs)](rocksdb::WriteBatch& batch) -> Result<> {
-        if (!ends.revisions.contains(session)) return no_such_session(session);
-        return put(batch, pairs);
-    };
-    return database.committer().submit_and_wait(std::move(change));
+    SealedPairs pairs;
+    for (auto& part : parts) pairs.add(part_key(session, part.key), std::move(part.value));
+    return commit(pairs.bytes(), [session, &pairs](LogEnds& ends, rocksdb::WriteBatch& batch) -> Result<> {
+        return ends.revisions.contains(session) ? pairs.put(batch) : no_such_session(session);
+    });
 }
 
 Result<> RocksdbScanLog::read_checkpoint(SessionId session, const VisitPart& visit) {
-    const auto use = this->use();
+    const auto use = use_for(session);
     if (!use) return use.error();
     Database& database = use->database;
-    if (auto exists = check_session(database, session); !exists) return exists;
     const KeyRange range = parts_of(session);
     const Scan scan(database.rocksdb(), range);
     for (scan.iterator->Seek(range.begin); scan.iterator->Valid(); scan.iterator->Next()) {

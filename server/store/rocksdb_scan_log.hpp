@@ -4,7 +4,11 @@
 #include "server/store/rocksdb_store.hpp"
 #include "server/store/scan_log.hpp"
 
+#include <rocksdb/write_batch.h>
+
+#include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <shared_mutex>
@@ -50,6 +54,11 @@ private:
         Database& database;
     };
     [[nodiscard]] Result<Use> use() const;
+    [[nodiscard]] Result<Use> use_for(SessionId session) const;
+
+    /// Adds a change to a write, or returns an error and adds nothing.
+    using AddTo = std::function<Result<>(LogEnds&, rocksdb::WriteBatch&)>;
+    [[nodiscard]] Result<> commit(std::uint64_t bytes, const AddTo& add_to, bool frees_disk = false);
     [[nodiscard]] Result<> read_entries(SessionId session, Revision after, const VisitEntry& visit);
 
     const std::filesystem::path directory_;
