@@ -6,8 +6,6 @@
 namespace scanloom::session {
 namespace {
 
-const Error kEndOfReading{Errc::kInternal, "the end of what is to be read"};
-
 /// Adds an entry that is not a scan.
 Result<> add_entry(Exclusions& exclusions, Revision revision, std::string_view bytes) {
     const auto entry = wire::decode_entry(bytes);
@@ -21,21 +19,19 @@ Result<> add_entry(Exclusions& exclusions, Revision revision, std::string_view b
 
 Result<Exclusions> read_exclusions(store::ScanLog& log, store::SessionId session, const ReadsOn& reads_on) {
     Exclusions exclusions;
-    const auto read = log.read(session, 0, [&](Revision revision, std::string_view bytes) -> Result<> {
+    const auto read = log.read(session, 0, [&](Revision revision, std::string_view bytes) -> store::Visited {
         const auto scan = wire::decode_scan_pose(bytes);
         if (!scan) return damaged_entry(revision, scan.error());
-        if (!reads_on(revision, *scan)) return kEndOfReading;
+        if (!reads_on(revision, *scan)) return store::Visit::kStop;
         return *scan ? Result<>() : add_entry(exclusions, revision, bytes);
     });
-    if (!read && read.error() != kEndOfReading) return read.error();
+    if (!read) return read.error();
     return exclusions;
 }
 
 namespace {
 
 constexpr Revision kLookEvery = 256; // entries, which take a few milliseconds
-
-const Error kEnd{Errc::kInternal, "the end of what is to be read"};
 
 } // namespace
 
@@ -56,14 +52,11 @@ Result<> read_captures(store::ScanLog& log, store::SessionId session, landmarks:
         return visited ? ask(revision) : visited;
     };
     if (captures.revision() >= until) return {};
-    const auto read =
-        log.read(session, captures.revision(), [&](Revision revision, std::string_view bytes) -> Result<> {
-            if (auto added = add(revision, bytes); !added) return added;
-            if (revision >= until) return kEnd;
-            return revision % kLookEvery == 0 ? ask(revision) : Result<>();
-        });
-    if (read || read.error() == kEnd) return {};
-    return read;
+    return log.read(session, captures.revision(), [&](Revision revision, std::string_view bytes) -> store::Visited {
+        if (auto added = add(revision, bytes); !added) return added;
+        if (revision >= until) return store::Visit::kStop;
+        return revision % kLookEvery == 0 ? ask(revision) : Result<>();
+    });
 }
 
 } // namespace scanloom::session

@@ -17,7 +17,6 @@ constexpr double kSliceWork = 5e6; // between two checks whether to continue
 constexpr double kEntryWork = 1e4; // of reading an entry
 
 /// Reasons to end reading that are not failures.
-const Error kEnd{Errc::kShuttingDown, "the end of the replay"};
 const Error kTurnIsOver{Errc::kShuttingDown, "other replay jobs have their turn"};
 const Error kCancelled{Errc::kShuttingDown, "cancelled"};
 const Error kOutdated{Errc::kShuttingDown, "the entry excludes scans that are in these maps, or brings some back"};
@@ -196,22 +195,22 @@ bool ReplayJob::wait_for_another_turn(Revision target) {
 Result<bool> ReplayJob::apply_up_to(Revision target, store::ScanLog& log, limits::MemoryBudget& budget) {
     bool is_complete = request_.end.revision.has_value();
     if (auto claimed = claim(budget); !claimed) return claimed.error(); // of its initial state
-    const auto read =
-        log.read(session_.id, projection_->revision(), [&](Revision revision, std::string_view bytes) -> Result<> {
-            if (revision > target) return kEnd;
-            if (turn_left_ <= 0.0) return kTurnIsOver;
-            const auto entry = wire::decode_entry(bytes);
-            if (!entry) return damaged_entry(revision, entry.error());
-            if (is_beyond_end(revision, *entry)) {
-                is_complete = true;
-                return kEnd;
-            }
-            if (projection_->is_outdated_by(*entry)) return kOutdated;
-            if (auto ok = check_replayable(*projection_, *entry); !ok) return ok;
-            return apply(*entry, budget);
-        });
+    const auto read = log.read(session_.id, projection_->revision(),
+                               [&](Revision revision, std::string_view bytes) -> store::Visited {
+                                   if (revision > target) return store::Visit::kStop;
+                                   if (turn_left_ <= 0.0) return kTurnIsOver;
+                                   const auto entry = wire::decode_entry(bytes);
+                                   if (!entry) return damaged_entry(revision, entry.error());
+                                   if (is_beyond_end(revision, *entry)) {
+                                       is_complete = true;
+                                       return store::Visit::kStop;
+                                   }
+                                   if (projection_->is_outdated_by(*entry)) return kOutdated;
+                                   if (auto ok = check_replayable(*projection_, *entry); !ok) return ok;
+                                   return apply(*entry, budget);
+                               });
     if (!read && read.error().code == Errc::kNotFound) return session_was_deleted(session_);
-    if (!read && read.error() != kEnd) return read.error();
+    if (!read) return read.error();
     return is_complete;
 }
 

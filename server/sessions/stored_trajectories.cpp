@@ -9,8 +9,6 @@
 namespace scanloom::session {
 namespace {
 
-const Error kRestIsKept{Errc::kInternal, "the rest is in memory, or exceeds the limit"};
-
 constexpr Revision kAskEvery = 1024; // entries, which take a few milliseconds
 
 /// Returns the first revision from which the maps keep all points of a robot.
@@ -67,14 +65,14 @@ Result<StoredTrajectories> read_old_paths(store::ScanLog& log, store::SessionId 
     const Revision all_kept = kept.empty() ? 0 : *std::ranges::max_element(kept);
     std::size_t points = 0;
     ScanFilter filter(maps.config.max_jump, maps.exclusions);
-    const auto visit = [&](Revision revision, std::string_view bytes) -> Result<> {
-        if (revision >= all_kept) return kRestIsKept;
+    const auto visit = [&](Revision revision, std::string_view bytes) -> store::Visited {
+        if (revision >= all_kept) return store::Visit::kStop; // the rest is in memory
         if (revision % kAskEvery == 0 && !is_wanted()) {
             return Error{Errc::kShuttingDown, "the server is shutting down; try again when it is back"};
         }
         if (points == points_max) {
             paths.until = revision - 1;
-            return kRestIsKept;
+            return store::Visit::kStop;
         }
         const auto taken = wire::decode_scan_pose(bytes);
         if (!taken) return damaged_entry(revision, taken.error());
@@ -87,7 +85,7 @@ Result<StoredTrajectories> read_old_paths(store::ScanLog& log, store::SessionId 
     };
     if (all_kept > since + 1) {
         const auto read = log.read(session, filter.depends_on_earlier_scans() ? 0 : since, visit);
-        if (!read && read.error() != kRestIsKept) return read.error();
+        if (!read) return read.error();
     }
     shorten(paths, maps, since, points_max);
     return paths;

@@ -259,8 +259,10 @@ Result<std::uint64_t> DamagedStore::read(SessionId session, const ScanLog::Visit
         std::erase_if(scans, [](const auto& scan) { return !scan->valid(); });
         if (!entry) {
             ++damaged;
-        } else if (auto visited = visit(next, *entry); !visited) {
+        } else if (const auto visited = visit(next, *entry); !visited) {
             return visited.error();
+        } else if (*visited == Visit::kStop) {
+            break;
         }
     }
     return damaged;

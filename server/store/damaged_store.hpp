@@ -40,9 +40,9 @@ public:
     /// Returns the records by session id; nullopt for a session that has entries but no intact record.
     [[nodiscard]] const std::map<SessionId, std::optional<std::string>>& sessions() const noexcept { return sessions_; }
 
-    /// Visits the intact entries of a session's log by ascending revision; entries between them are lost. Stops at the
-    /// visitor's error.
+    /// Visits the intact entries of a session's log by ascending revision; entries between them are lost.
     /// @return number of entries with a wrong checksum in blocks that can be read
+    /// Errors: those of the visitor.
     [[nodiscard]] Result<std::uint64_t> read(SessionId session, const ScanLog::VisitEntry& visit) const;
 
     /// Returns sentences that describe what is damaged and what was kept of it.

@@ -255,7 +255,9 @@ Result<> RocksdbScanLog::read_entries(SessionId session, Revision after, const V
         const auto entry = unsealed(key, scan.iterator->value().ToStringView());
         if (!entry) return damaged(database.name(), session, fmt::format("the entry of revision {}", expected));
         if (expected > after) {
-            if (auto visited = visit(expected, *entry); !visited) return visited;
+            const auto visited = visit(expected, *entry);
+            if (!visited) return visited.error();
+            if (*visited == Visit::kStop) return {};
         }
         ++expected;
     }

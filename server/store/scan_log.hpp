@@ -44,6 +44,17 @@ struct StoreStats {
     std::optional<std::string> damage;     ///< found in the files at run time; writing continues
 };
 
+/// Whether a visitor receives the next item.
+enum class Visit : std::uint8_t { kContinue, kStop };
+
+/// What a visitor returns: a Visit, or an error, with which the visit fails. A Result<> without an error continues.
+class Visited : public Result<Visit> {
+public:
+    using Result<Visit>::Result;
+    Visited() : Result<Visit>(Visit::kContinue) {}
+    Visited(const Result<>& done) : Result<Visit>(done ? Result<Visit>(Visit::kContinue) : done.error()) {}
+};
+
 /// The durable state of all sessions: an append-only log of entries for each, and checkpoints of the maps computed from
 /// it.
 ///
@@ -58,7 +69,7 @@ struct StoreStats {
 class ScanLog {
 public:
     using Done = std::function<void(Result<>)>;
-    using VisitEntry = std::function<Result<>(Revision, std::string_view)>;
+    using VisitEntry = std::function<Visited(Revision, std::string_view)>;
     using VisitPart = std::function<Result<>(std::string_view key, std::string_view value)>;
 
     ScanLog() = default;
@@ -93,10 +104,10 @@ public:
     ///        because credit is returned only after `done` was called. Its size is stats().queued_bytes.
     virtual void append(SessionId session, Revision first, std::vector<std::string> entries, Done done) = 0;
 
-    /// Visits the entries after revision `after` in order, up to the end of the log at the time of the call. Stops at
-    /// the visitor's error.
+    /// Visits the entries after revision `after` in order, up to the end of the log at the time of the call, or until
+    /// the visitor stops.
     ///
-    /// Errors: kDataLoss, naming session and revision: an entry is damaged or missing, or the log ends before `after`,
+    /// Errors: those of the visitor; kDataLoss, naming session and revision: an entry is damaged or missing, or the log ends before `after`,
     ///         as after a checkpoint that is ahead of its log.
     [[nodiscard]] virtual Result<> read(SessionId session, Revision after, const VisitEntry& visit) = 0;
 

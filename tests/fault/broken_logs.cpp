@@ -144,7 +144,7 @@ public:
     using PassingLog::PassingLog;
 
     Result<> read(SessionId session, Revision after, const VisitEntry& visit) override {
-        return PassingLog::read(session, after, [&](Revision revision, std::string_view bytes) -> Result<> {
+        return PassingLog::read(session, after, [&](Revision revision, std::string_view bytes) -> store::Visited {
             auto entry = wire::decode_entry(bytes);
             auto* taken = entry ? std::get_if<ScanTaken>(&*entry) : nullptr;
             if (taken == nullptr || revision % kSpoilsEvery != 0) return visit(revision, bytes);

@@ -145,7 +145,9 @@ Result<> MemoryScanLog::read(SessionId session, Revision after, const VisitEntry
         return Error{Errc::kDataLoss, fmt::format("the log of session {} ends before revision {}", session, after)};
     }
     for (Revision revision = after + 1; revision <= copy->entries.size(); ++revision) {
-        if (auto visited = visit(revision, copy->entries[revision - 1]); !visited) return visited;
+        const auto visited = visit(revision, copy->entries[revision - 1]);
+        if (!visited) return visited.error();
+        if (*visited == Visit::kStop) break;
     }
     return {};
 }

@@ -21,8 +21,6 @@ namespace {
 
 constexpr std::size_t kPieceBytes = std::size_t{64} << 10;
 
-const Error kPieceIsFull{Errc::kShuttingDown, "the piece is large enough"};
-
 /// Writes entries in one of the formats.
 class Format {
 public:
@@ -88,14 +86,12 @@ public:
 private:
     [[nodiscard]] Result<> read() {
         if (read_ == newest_) return {};
-        const auto done =
-            log_.read(session_->info().id, read_, [&](Revision revision, std::string_view bytes) -> Result<> {
-                if (revision > newest_ || piece_.size() >= kPieceBytes) return kPieceIsFull;
-                if (auto appended = format_->append(piece_, bytes); !appended) return appended;
-                read_ = revision;
-                return {};
-            });
-        return done || done.error() == kPieceIsFull ? Result<>{} : done;
+        return log_.read(session_->info().id, read_, [&](Revision revision, std::string_view bytes) -> store::Visited {
+            if (revision > newest_ || piece_.size() >= kPieceBytes) return store::Visit::kStop;
+            if (auto appended = format_->append(piece_, bytes); !appended) return appended;
+            read_ = revision;
+            return {};
+        });
     }
 
     std::shared_ptr<session::Session> session_;

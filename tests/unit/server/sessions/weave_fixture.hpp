@@ -30,11 +30,11 @@ constexpr std::chrono::minutes kTimeout{2}; // upper bound for events that must 
 class WatchedLog final : public store::MemoryScanLog {
 public:
     Result<> read(store::SessionId session, Revision after, const VisitEntry& visit) override {
-        return MemoryScanLog::read(session, after, [&](Revision revision, std::string_view bytes) -> Result<> {
+        return MemoryScanLog::read(session, after, [&](Revision revision, std::string_view bytes) -> store::Visited {
             pause_before(revision);
             auto visited = visit(revision, bytes);
             const std::lock_guard lock(mutex_);
-            if (visited) ++taken_[revision];
+            if (visited && *visited == store::Visit::kContinue) ++taken_[revision];
             return visited;
         });
     }
