@@ -1,44 +1,32 @@
 #include "common/link/printable_text.hpp"
 
+#include <boost/locale/utf.hpp>
 #include <fmt/format.h>
 
-#include <array>
 #include <optional>
 
 namespace scanloom::link {
 namespace {
 
+namespace utf = boost::locale::utf;
+
 struct Character {
-    char32_t value = 0;
+    utf::code_point value = 0;
     std::size_t size = 0; ///< bytes
 };
 
-unsigned char byte_at(std::string_view text, std::size_t i) {
-    return i < text.size() ? static_cast<unsigned char>(text[i]) : 0;
-}
-
 /// Returns the first character of a UTF-8 text, or nullopt if the text is empty or does not begin with valid UTF-8.
+/// Overlong encodings are invalid: they would be another way to write smaller characters, including controls.
 std::optional<Character> first_character(std::string_view text) {
-    if (text.empty()) return std::nullopt;
-    const unsigned char first = byte_at(text, 0);
-    if (first < 0x80) return Character{first, 1};
-    const std::size_t size = first >= 0xf0 ? 4 : first >= 0xe0 ? 3 : 2;
-    char32_t character = first & (0x7fU >> size);
-    for (std::size_t i = 1; i < size; ++i) {
-        if ((byte_at(text, i) & 0xc0) != 0x80) return std::nullopt;
-        character = character << 6 | (byte_at(text, i) & 0x3fU);
-    }
-    // Reject overlong encodings: they would be another way to write smaller characters, including controls.
-    constexpr std::array<char32_t, 5> kSmallest{0, 0, 0x80, 0x800, 0x10000};
-    const bool is_text = first >= 0xc0 && first < 0xf8 && character >= kSmallest[size] && character <= 0x10ffff &&
-                         (character < 0xd800 || character > 0xdfff);
-    if (!is_text) return std::nullopt;
-    return Character{character, size};
+    const char* next = text.data();
+    const auto value = utf::utf_traits<char>::decode(next, text.data() + text.size());
+    if (value == utf::illegal || value == utf::incomplete) return std::nullopt;
+    return Character{value, static_cast<std::size_t>(next - text.data())};
 }
 
 /// Returns whether a character is not displayed itself but changes how the text is displayed.
 /// Source: Unicode 15: general categories Cc, Zl and Zp, and the property Bidi_Control.
-bool is_control(char32_t c) {
+bool is_control(utf::code_point c) {
     return c < 0x20 || (c >= 0x7f && c < 0xa0) || c == 0x061c || c == 0x200e || c == 0x200f ||
            (c >= 0x2028 && c <= 0x202e) || (c >= 0x2066 && c <= 0x2069);
 }
