@@ -6,11 +6,8 @@
 #include "server/http/multipart.hpp"
 #include "server/http/problem.hpp"
 #include "server/http/text.hpp"
+#include "server/sockets/worker_pool.hpp"
 
-#include <boost/asio/async_result.hpp>
-#include <boost/asio/post.hpp>
-#include <boost/asio/this_coro.hpp>
-#include <boost/asio/use_awaitable.hpp>
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
@@ -45,16 +42,8 @@ Result<> check_content_type(Method method, const Request& request) {
 /// Returns the session, which is loaded from the store if it is not in memory.
 asio::awaitable<Result<SessionRef>> load_session(session::SessionRegistry& sessions, const std::string& name) {
     if (auto session = sessions.find(name)) co_return session;
-    const asio::any_io_executor executor = co_await asio::this_coro::executor;
-    const Result<SessionRef> loaded =
-        co_await asio::async_initiate<const asio::use_awaitable_t<>&, void(Result<SessionRef>)>(
-            [&](auto handler) {
-                auto shared = std::make_shared<decltype(handler)>(std::move(handler));
-                sessions.load(name, [shared, executor](const Result<SessionRef>& result) {
-                    asio::post(executor, [shared, result] { std::move (*shared)(result); });
-                });
-            },
-            asio::use_awaitable);
+    const auto load = [&](auto done) { sessions.load(name, std::move(done)); };
+    const auto loaded = co_await sockets::resume_with<Result<SessionRef>>(load);
     if (loaded) co_return loaded;
     co_return damage_of(sessions, name).value_or(loaded.error());
 }

@@ -3,13 +3,10 @@
 #include "core/mapping/map_config.hpp"
 #include "server/sockets/worker_pool.hpp"
 
-#include <boost/asio/async_result.hpp>
-#include <boost/asio/post.hpp>
-#include <boost/asio/this_coro.hpp>
-#include <boost/asio/use_awaitable.hpp>
 #include <fmt/format.h>
 
 #include <string>
+#include <utility>
 
 namespace scanloom::ingest {
 namespace asio = boost::asio;
@@ -25,17 +22,9 @@ asio::awaitable<Found> create(const wire::Hello& hello, session::SessionRegistry
     co_return created;
 }
 
-/// Calls SessionRegistry::load(), and resumes with its result on the coroutine's own executor.
 asio::awaitable<Found> woken(const std::string& name, session::SessionRegistry& sessions) {
-    const auto executor = co_await asio::this_coro::executor;
-    co_return co_await asio::async_initiate<const asio::use_awaitable_t<>&, void(Found)>(
-        [&](auto handler) {
-            auto shared = std::make_shared<decltype(handler)>(std::move(handler));
-            sessions.load(name, [shared, executor](Found session) {
-                asio::post(executor, [shared, session] { std::move (*shared)(session); });
-            });
-        },
-        asio::use_awaitable);
+    const auto load = [&](auto done) { sessions.load(name, std::move(done)); };
+    co_return co_await sockets::resume_with<Found>(load);
 }
 
 /// Returns the error for the robot if the session could not be loaded.
@@ -75,16 +64,10 @@ asio::awaitable<Found> session_for(const wire::Hello& hello, session::SessionReg
 
 asio::awaitable<Result<session::Joined>> join_session(session::Session& session, const wire::Hello& hello,
                                                       std::shared_ptr<session::RobotListener> listener) {
-    const auto executor = co_await asio::this_coro::executor;
-    co_return co_await asio::async_initiate<const asio::use_awaitable_t<>&, void(Result<session::Joined>)>(
-        [&](auto handler) {
-            auto shared = std::make_shared<decltype(handler)>(std::move(handler));
-            session.join({hello.robot, hello.source, hello.body_radius}, std::move(listener),
-                         [shared, executor](Result<session::Joined> joined) {
-                             asio::post(executor, [shared, joined] { std::move (*shared)(joined); });
-                         });
-        },
-        asio::use_awaitable);
+    const auto join = [&](auto done) {
+        session.join({hello.robot, hello.source, hello.body_radius}, std::move(listener), std::move(done));
+    };
+    co_return co_await sockets::resume_with<Result<session::Joined>>(join);
 }
 
 } // namespace scanloom::ingest

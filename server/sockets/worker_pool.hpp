@@ -12,6 +12,7 @@
 
 #include <cstddef>
 #include <exception>
+#include <memory>
 #include <thread>
 #include <type_traits>
 #include <utility>
@@ -76,6 +77,22 @@ boost::asio::awaitable<std::invoke_result_t<Work&>> compute_on(boost::asio::any_
                 asio::post(here, [handler = std::move(handler), failed, made = std::move(made)]() mutable {
                     std::move(handler)(failed, std::move(made));
                 });
+            });
+        },
+        asio::use_awaitable);
+}
+
+/// Calls `start` with a callback, and resumes on the coroutine's own executor with the value that the callback
+/// receives, on any thread.
+template <class Value, class Start>
+boost::asio::awaitable<Value> resume_with(const Start& start) {
+    namespace asio = boost::asio;
+    const auto executor = co_await asio::this_coro::executor;
+    co_return co_await asio::async_initiate<const asio::use_awaitable_t<>&, void(Value)>(
+        [&](auto handler) {
+            auto shared = std::make_shared<decltype(handler)>(std::move(handler));
+            start([shared, executor](const Value& value) {
+                asio::post(executor, [shared, value] { std::move (*shared)(value); });
             });
         },
         asio::use_awaitable);
