@@ -43,10 +43,6 @@ void LoginTable::make_room(const std::string& token_hash, double now) {
     }
 }
 
-} // namespace scanloom::auth
-
-namespace scanloom::auth {
-
 std::string LoginSessions::open(const auth::Token& token) {
     auto cookie = random_secret();
     const std::lock_guard lock(mutex_);

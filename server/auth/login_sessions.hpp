@@ -50,10 +50,6 @@ private:
     std::map<std::string, Login, std::less<>> logins_; // by the cookie's hash
 };
 
-} // namespace scanloom::auth
-
-namespace scanloom::auth {
-
 /// The browsers that are signed in, until this program ends.
 /// Threads: any thread.
 class LoginSessions {

@@ -54,10 +54,6 @@ std::string without_secrets(std::string_view text) {
     }
 }
 
-} // namespace scanloom::auth
-
-namespace scanloom::auth {
-
 std::string random_secret() {
     std::array<std::byte, 32> random{};
     if (RAND_bytes(reinterpret_cast<unsigned char*>(random.data()), static_cast<int>(random.size())) != 1)

@@ -26,10 +26,6 @@ namespace scanloom::auth {
 /// send a secret in a field that is logged.
 [[nodiscard]] std::string without_secrets(std::string_view text);
 
-} // namespace scanloom::auth
-
-namespace scanloom::auth {
-
 /// Creates a secret from 256 random bits of the system.
 /// Errors: std::runtime_error if the system has none.
 [[nodiscard]] std::string random_secret();
