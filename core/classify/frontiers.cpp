@@ -2,12 +2,14 @@
 
 #include "core/classify/bit_plane.hpp"
 
+#include <boost/pending/disjoint_sets.hpp>
+
 #include <algorithm>
 #include <compare>
 #include <cstring>
 #include <functional>
 #include <limits>
-#include <numeric>
+#include <ranges>
 
 namespace scanloom::classify {
 namespace {
@@ -88,29 +90,10 @@ std::vector<Run> cut_out(const std::vector<Run>& runs, std::span<const grid::Cel
     return left;
 }
 
-/// Disjoint sets of connected runs.
-/// Source: Tarjan, Efficiency of a Good But Not Linear Set Union Algorithm (1975).
-class Sets {
-public:
-    explicit Sets(std::size_t size) : parent_(size) { std::iota(parent_.begin(), parent_.end(), std::size_t{0}); }
-
-    [[nodiscard]] std::size_t find(std::size_t item) {
-        while (parent_[item] != item) item = parent_[item] = parent_[parent_[item]];
-        return item;
-    }
-
-    /// Joins two sets; the smaller index represents the result.
-    void join(std::size_t a, std::size_t b) {
-        a = find(a);
-        b = find(b);
-        parent_[std::max(a, b)] = std::min(a, b);
-    }
-
-private:
-    std::vector<std::size_t> parent_;
-};
+using Sets = boost::disjoint_sets_with_storage<>;
 
 /// Joins each run with the runs of the row below that it touches, at a corner or along a side.
+/// @return sets of connected runs; the first run represents its set
 Sets connect(const std::vector<Run>& runs) {
     Sets sets(runs.size());
     std::size_t below = 0;
@@ -121,9 +104,12 @@ Sets connect(const std::vector<Run>& runs) {
         };
         while (wholly_before(runs[below])) ++below;
         for (std::size_t other = below; runs[other].j == run.j - 1 && runs[other].i_begin <= run.i_end; ++other) {
-            sets.join(above, other);
+            sets.union_set(above, other);
         }
     }
+    const auto all = std::views::iota(std::size_t{0}, runs.size());
+    sets.compress_sets(all.begin(), all.end());
+    sets.normalize_sets(all.begin(), all.end());
     return sets;
 }
 
@@ -153,7 +139,7 @@ std::vector<Frontier> find_frontiers(const ClassView& classes, std::size_t size_
     std::vector<std::vector<Run>> groups(runs.size()); // indexed by the first run, which represents its set
     std::vector<std::size_t> sizes(runs.size());
     for (std::size_t run = 0; run < runs.size(); ++run) {
-        const std::size_t group = sets.find(run);
+        const std::size_t group = sets.find_set(run);
         groups[group].push_back(runs[run]);
         sizes[group] += static_cast<std::size_t>(runs[run].i_end - runs[run].i_begin);
     }

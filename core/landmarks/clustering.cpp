@@ -3,12 +3,12 @@
 #include "core/landmarks/point_index.hpp"
 #include "core/landmarks/points.hpp"
 
+#include <boost/pending/disjoint_sets.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <iterator>
 #include <limits>
-#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -85,25 +85,6 @@ constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
 /// More core points than these are searched with a tree.
 constexpr std::size_t kFewPoints = 64;
-
-/// Disjoint sets that can be merged. Each is identified by its lowest element.
-class DisjointSets {
-public:
-    explicit DisjointSets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0U); }
-
-    [[nodiscard]] std::uint32_t find(std::uint32_t element) {
-        while (parent_[element] != element) element = parent_[element] = parent_[parent_[element]];
-        return element;
-    }
-
-    void unite(std::uint32_t a, std::uint32_t b) {
-        const auto [low, high] = std::minmax({find(a), find(b)});
-        parent_[high] = low;
-    }
-
-private:
-    std::vector<std::uint32_t> parent_;
-};
 
 /// A core point and its squared distance from a place.
 struct Near {
@@ -189,7 +170,7 @@ private:
         std::size_t together = 0; // number of points, all within eps of each other
         for (const std::uint32_t point : points) together += distinct_.counts[point];
         for (const std::uint32_t point : points) {
-            cell_of_[point] = static_cast<std::uint32_t>(cell);
+            cell_of_[point] = cell;
             if (is_core(cell, point, together)) core_.add(point, distinct_.points[point]);
         }
     }
@@ -213,11 +194,8 @@ private:
         if (core_.points(cell).empty()) return;
         cells_.around(cell, [&](std::size_t other) {
             if (other > cell) return false;
-            const auto a = static_cast<std::uint32_t>(cell);
-            const auto b = static_cast<std::uint32_t>(other);
-            if (!core_.points(other).empty() && sets_.find(a) != sets_.find(b) && meet(cell, other)) {
-                sets_.unite(a, b);
-            }
+            const bool is_apart = sets_.find_set(cell) != sets_.find_set(other);
+            if (!core_.points(other).empty() && is_apart && meet(cell, other)) sets_.union_set(cell, other);
             return true;
         });
     }
@@ -232,9 +210,9 @@ private:
     /// Numbers the clusters by their first core points. Returns the number of clusters.
     std::size_t number() {
         std::vector<std::uint32_t> first(cell_count(), kNone); // for each set, its first core point
-        for (std::uint32_t cell = 0; cell < cell_count(); ++cell) {
+        for (std::size_t cell = 0; cell < cell_count(); ++cell) {
             if (core_.indices(cell).empty()) continue;
-            std::uint32_t& at = first[sets_.find(cell)];
+            std::uint32_t& at = first[sets_.find_set(cell)];
             at = std::min(at, core_.indices(cell).front());
         }
         std::vector<std::uint32_t> firsts;
@@ -242,7 +220,7 @@ private:
         std::ranges::sort(firsts);
         cluster_of_set_.assign(cell_count(), kNoise);
         for (std::size_t n = 0; n < firsts.size(); ++n) {
-            cluster_of_set_[sets_.find(cell_of_[firsts[n]])] = static_cast<std::int32_t>(n);
+            cluster_of_set_[sets_.find_set(cell_of_[firsts[n]])] = static_cast<std::int32_t>(n);
         }
         return firsts.size();
     }
@@ -250,7 +228,7 @@ private:
     void give_points(std::size_t cell, std::vector<std::int32_t>& cluster_of) {
         for (const std::uint32_t point : cells_.points_of(cell_at(cell))) {
             const auto owner = nearest_core(cell, point);
-            cluster_of[point] = owner == kNone ? kNoise : cluster_of_set_[sets_.find(cell_of_[owner])];
+            cluster_of[point] = owner == kNone ? kNoise : cluster_of_set_[sets_.find_set(cell_of_[owner])];
         }
     }
 
@@ -272,8 +250,8 @@ private:
     std::size_t min_points_;
     CellIndex cells_;
     CorePoints core_;
-    DisjointSets sets_; // of cells
-    std::vector<std::uint32_t> cell_of_;
+    boost::disjoint_sets_with_storage<> sets_; // of cells
+    std::vector<std::size_t> cell_of_;
     std::vector<std::int32_t> cluster_of_set_;
 };
 
