@@ -1,11 +1,9 @@
 #include "common/app/standard_streams.hpp"
-#include "server/app/check_command.hpp"
 #include "server/app/options.hpp"
-#include "server/app/repair_command.hpp"
 #include "server/app/resource_limits.hpp"
-#include "server/app/restore_command.hpp"
 #include "server/app/server.hpp"
 #include "server/app/standard_error_sink.hpp"
+#include "server/app/store_commands.hpp"
 #include "server/log/context.hpp"
 
 #include <fmt/format.h>
