@@ -1,7 +1,7 @@
 #pragma once
 
 #include "common/link/credit_window.hpp"
-#include "common/link/open_requests.hpp"
+#include "common/link/requests.hpp"
 #include "common/link/scan_queue.hpp"
 #include "common/scan/limits.hpp"
 #include "common/wire/compression.hpp"

@@ -1,4 +1,4 @@
-#include "common/link/open_requests.hpp"
+#include "common/link/requests.hpp"
 
 #include <gtest/gtest.h>
 
