@@ -1,4 +1,4 @@
-#include "server/guidance/map_start.hpp"
+#include "server/guidance/locator.hpp"
 
 #include <gtest/gtest.h>
 
