@@ -31,6 +31,24 @@ constexpr milliseconds kLookPeriod{100};
 
 } // namespace
 
+void PushedSource::push(Observation observation) {
+    scans_.push_back(std::move(observation));
+    added_.notify();
+}
+
+asio::awaitable<Result<std::optional<Observation>>> PushedSource::next() {
+    while (scans_.empty() && !stopped_) co_await added_.wait();
+    if (scans_.empty()) co_return std::optional<Observation>{};
+    std::optional<Observation> first(std::move(scans_.front()));
+    scans_.pop_front();
+    co_return first;
+}
+
+void PushedSource::stop() {
+    stopped_ = true;
+    added_.notify();
+}
+
 Client::Worker::Patience::Patience(milliseconds given)
     : length(std::clamp(given, milliseconds(0), kPatienceMax)), until(Clock::now() + length) {}
 

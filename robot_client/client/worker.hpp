@@ -1,15 +1,17 @@
 #pragma once
 
 #include "robot_client/client/client.hpp"
-#include "robot_client/client/pushed_source.hpp"
+#include "robot_client/sources/live_source.hpp"
 #include "robot_client/uplink/live_feed.hpp"
 #include "robot_client/uplink/uplink.hpp"
+#include "robot_client/sources/wake_signal.hpp"
 
 #include <boost/asio/awaitable.hpp>
 #include <boost/asio/executor_work_guard.hpp>
 #include <boost/asio/io_context.hpp>
 
 #include <atomic>
+#include <deque>
 #include <future>
 #include <memory>
 #include <mutex>
@@ -18,6 +20,24 @@
 #include <thread>
 
 namespace scanloom::robot {
+
+/// A source of the scans that its owner pushes.
+/// Threads: as for LiveSource, including push() and stop().
+class PushedSource final : public LiveSource {
+public:
+    void push(Observation observation);
+
+    [[nodiscard]] boost::asio::awaitable<Result<std::optional<Observation>>> next() override;
+    /// Ends the source after the scans that were pushed before.
+    void stop() override;
+
+    [[nodiscard]] std::size_t waiting() const noexcept { return scans_.size(); }
+
+private:
+    std::deque<Observation> scans_;
+    bool stopped_ = false;
+    WakeSignal added_;
+};
 
 /// Runs the uplink on a thread of its own.
 ///
