@@ -2,37 +2,34 @@
 
 #include <algorithm>
 #include <utility>
+#include <type_traits>
 
 namespace scanloom::link {
+namespace {
 
-std::optional<Request> as_request(wire::Message&& message) {
-    if (auto* plan = std::get_if<wire::PlanRequest>(&message)) return std::move(*plan);
-    if (auto* goal = std::get_if<wire::GoalRequest>(&message)) return std::move(*goal);
-    if (auto* coverage = std::get_if<wire::CoverageRequest>(&message)) return std::move(*coverage);
-    if (auto* locate = std::get_if<wire::LocateRequest>(&message)) return std::move(*locate);
-    return std::nullopt;
+template <class Kind, class Kinds>
+constexpr bool kIsOneOf = false;
+template <class Kind, class... Kinds>
+constexpr bool kIsOneOf<Kind, std::variant<Kinds...>> = (std::is_same_v<Kind, Kinds> || ...);
+
+/// Returns the message as one of the kinds that `Kinds`, a variant, may hold; nullopt if it is of another kind.
+/// @param message  a wire::Message; moved from only if it is of such a kind and not const
+template <class Kinds, class Message>
+std::optional<Kinds> as_one_of(Message& message) {
+    return std::visit(
+        [](auto& kind) -> std::optional<Kinds> {
+            if constexpr (kIsOneOf<std::remove_cvref_t<decltype(kind)>, Kinds>) {
+                return std::move(kind);
+            } else {
+                return std::nullopt;
+            }
+        },
+        message);
 }
 
-std::optional<Reply> as_reply(const wire::Message& message) {
-    if (const auto* plan = std::get_if<wire::PlanReply>(&message)) return *plan;
-    if (const auto* goal = std::get_if<wire::GoalReply>(&message)) return *goal;
-    if (const auto* coverage = std::get_if<wire::CoverageReply>(&message)) return *coverage;
-    if (const auto* location = std::get_if<wire::LocateReply>(&message)) return *location;
-    return std::nullopt;
-}
+} // namespace
 
-wire::PlanReply reply(const wire::PlanRequest& to, std::uint64_t revision, Result<wire::Path> path) {
-    return {to.id, revision, std::move(path)};
-}
-wire::GoalReply reply(const wire::GoalRequest& to, std::uint64_t revision, Result<wire::Goal> goal) {
-    return {to.id, revision, std::move(goal)};
-}
-wire::CoverageReply reply(const wire::CoverageRequest& to, std::uint64_t revision, Result<wire::Coverage> coverage) {
-    return {to.id, revision, std::move(coverage)};
-}
-wire::LocateReply reply(const wire::LocateRequest& to, std::uint64_t revision, Result<wire::Correction> correction) {
-    return {to.id, revision, std::move(correction)};
-}
+std::optional<Request> as_request(wire::Message&& message) { return as_one_of<Request>(message); }
 
 wire::Message refusal_of(const Request& request, const Error& why) {
     return std::visit([&](const auto& kind) -> wire::Message { return reply(kind, 0, why); }, request);
@@ -69,7 +66,7 @@ std::optional<wire::Message> OpenRequests::next() {
 }
 
 bool OpenRequests::answer(const wire::Message& message) {
-    const auto reply = as_reply(message);
+    const auto reply = as_one_of<Reply>(message);
     if (!reply) return false;
     const auto asked = open_.find(std::visit([](const auto& kind) { return kind.id; }, *reply));
     const bool is_of_it =

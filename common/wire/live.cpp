@@ -1,6 +1,5 @@
 #include "common/wire/live.hpp"
 
-#include "common/wire/point_convert.hpp"
 #include "common/wire/proto_convert.hpp"
 
 #include "scanloom/v1/live.pb.h"

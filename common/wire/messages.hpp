@@ -114,6 +114,16 @@ struct Correction {
 inline constexpr std::size_t kPathPointsMax = 65'000; ///< so that every path fits a frame
 inline constexpr std::size_t kRegionPointsMax = 4096;
 
+/// The reply to the request with the same `id`.
+template <class T>
+struct ReplyOf {
+    std::uint64_t id = 0;
+    std::uint64_t revision = 0; ///< of the maps
+    Result<T> result;           ///< the result, or why there is none
+
+    friend bool operator==(const ReplyOf&, const ReplyOf&) = default;
+};
+
 /// Straight lines from point to point. Metres, map frame.
 struct Path {
     std::vector<Point2> points; ///< at least 1
@@ -123,9 +133,10 @@ struct Path {
     friend bool operator==(const Path&, const Path&) = default;
 };
 
-/// Asks for the cheapest path. A reply has the `id` of its request. decode() validates only the points of a request;
-/// handlers validate the rest.
+/// Asks for the cheapest path. decode() validates only the points of a request; handlers validate the rest.
 struct PlanRequest {
+    using Reply = ReplyOf<Path>;
+
     std::uint64_t id = 0;
     std::optional<Point2> start; ///< nullopt: where the robot's newest scan was taken
     Point2 goal{0.0, 0.0};
@@ -134,23 +145,6 @@ struct PlanRequest {
     std::optional<double> danger_cost;
 
     friend bool operator==(const PlanRequest&, const PlanRequest&) = default;
-};
-
-struct PlanReply {
-    std::uint64_t id = 0;
-    std::uint64_t revision = 0; ///< of the maps
-    Result<Path> path;          ///< the path, or why there is none
-
-    friend bool operator==(const PlanReply&, const PlanReply&) = default;
-};
-
-struct GoalRequest {
-    std::uint64_t id = 0;
-    std::optional<Point2> start;
-    std::optional<double> body_radius;   ///< metres
-    std::uint32_t frontier_size_min = 0; ///< cells; 0: the width of the body
-
-    friend bool operator==(const GoalRequest&, const GoalRequest&) = default;
 };
 
 enum class Exploration : std::uint8_t { kGoal = 1, kTakenByOthers = 2, kComplete = 3 };
@@ -165,22 +159,15 @@ struct Goal {
     friend bool operator==(const Goal&, const Goal&) = default;
 };
 
-struct GoalReply {
-    std::uint64_t id = 0;
-    std::uint64_t revision = 0;
-    Result<Goal> goal;
+struct GoalRequest {
+    using Reply = ReplyOf<Goal>;
 
-    friend bool operator==(const GoalReply&, const GoalReply&) = default;
-};
-
-struct CoverageRequest {
     std::uint64_t id = 0;
     std::optional<Point2> start;
-    std::optional<double> body_radius; ///< metres
-    std::optional<double> spacing;     ///< metres
-    std::vector<Point2> region;        ///< corners of a polygon; empty: all free ground around the start
+    std::optional<double> body_radius;   ///< metres
+    std::uint32_t frontier_size_min = 0; ///< cells; 0: the width of the body
 
-    friend bool operator==(const CoverageRequest&, const CoverageRequest&) = default;
+    friend bool operator==(const GoalRequest&, const GoalRequest&) = default;
 };
 
 /// Adjacent cells in a row of a map: (i, j), (i + 1, j), ...
@@ -203,12 +190,16 @@ struct Coverage {
     friend bool operator==(const Coverage&, const Coverage&) = default;
 };
 
-struct CoverageReply {
-    std::uint64_t id = 0;
-    std::uint64_t revision = 0;
-    Result<Coverage> coverage;
+struct CoverageRequest {
+    using Reply = ReplyOf<Coverage>;
 
-    friend bool operator==(const CoverageReply&, const CoverageReply&) = default;
+    std::uint64_t id = 0;
+    std::optional<Point2> start;
+    std::optional<double> body_radius; ///< metres
+    std::optional<double> spacing;     ///< metres
+    std::vector<Point2> region;        ///< corners of a polygon; empty: all free ground around the start
+
+    friend bool operator==(const CoverageRequest&, const CoverageRequest&) = default;
 };
 
 inline constexpr std::size_t kLocatePointsMin = 20;
@@ -223,6 +214,8 @@ struct Near {
 };
 
 struct LocateRequest {
+    using Reply = ReplyOf<Correction>;
+
     std::uint64_t id = 0;
     std::vector<PointMm> points; ///< odometry frame, within kCoordinateMax
     Point2 from{0.0, 0.0};       ///< metres, odometry frame: from where they were observed
@@ -231,13 +224,10 @@ struct LocateRequest {
     friend bool operator==(const LocateRequest&, const LocateRequest&) = default;
 };
 
-struct LocateReply {
-    std::uint64_t id = 0;
-    std::uint64_t revision = 0;
-    Result<Correction> correction;
-
-    friend bool operator==(const LocateReply&, const LocateReply&) = default;
-};
+using PlanReply = PlanRequest::Reply;
+using GoalReply = GoalRequest::Reply;
+using CoverageReply = CoverageRequest::Reply;
+using LocateReply = LocateRequest::Reply;
 
 using Message = std::variant<Hello, Welcome, Sensor, ScanBatch, Ack, LinkError, Ping, Pong, Goodbye, Correction,
                              PlanRequest, PlanReply, GoalRequest, GoalReply, CoverageRequest, CoverageReply,

@@ -146,19 +146,28 @@ Result<> check_beam_counts(const Scan& scan) {
 
 Error invalid_field(std::string message) { return {Errc::kInvalidField, std::move(message)}; }
 
+Result<> check_coordinate(std::string_view field, double value) {
+    if (!std::isfinite(value)) return invalid_field(fmt::format("{} is {}; a finite number is needed", field, value));
+    if (std::abs(value) > kCoordinateMax) {
+        return invalid_field(fmt::format("{} is {}; at most {} either way is allowed", field, value, kCoordinateMax));
+    }
+    return {};
+}
+
+void append_differences(std::span<const PointMm> points, Differences& out) {
+    out.Reserve(out.size() + static_cast<int>(2 * points.size()));
+    PointMm before;
+    for (const PointMm& point : points) {
+        out.AddAlreadyReserved(point.x - before.x);
+        out.AddAlreadyReserved(point.y - before.y);
+        before = point;
+    }
+}
+
 Result<Pose2> from_proto(const v1::Pose2& proto) {
-    const auto check = [](const char* name, double value) -> Result<> {
-        if (!std::isfinite(value))
-            return invalid_field(fmt::format("{} is {}; a finite number is needed", name, value));
-        if (std::abs(value) > kCoordinateMax) {
-            return invalid_field(
-                fmt::format("{} is {}; at most {} either way is allowed", name, value, kCoordinateMax));
-        }
-        return {};
-    };
-    if (auto ok = check("x", proto.x()); !ok) return ok.error();
-    if (auto ok = check("y", proto.y()); !ok) return ok.error();
-    if (auto ok = check("yaw", proto.yaw()); !ok) return ok.error();
+    if (auto ok = check_coordinate("x", proto.x()); !ok) return ok.error();
+    if (auto ok = check_coordinate("y", proto.y()); !ok) return ok.error();
+    if (auto ok = check_coordinate("yaw", proto.yaw()); !ok) return ok.error();
     return Pose2{proto.x(), proto.y(), normalize_angle(proto.yaw())};
 }
 

@@ -1,12 +1,19 @@
 #pragma once
 
 #include "common/error/error.hpp"
+#include "common/geometry/point_mm.hpp"
 #include "common/scan/scan.hpp"
 #include "common/scan/sensor.hpp"
 
 #include "scanloom/v1/scan.pb.h"
 
-/// Converts sensors, scans and poses between protobuf messages and plain values, for frames and log entries.
+#include <google/protobuf/repeated_field.h>
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+/// Converts sensors, scans, poses and points between protobuf messages and plain values, for frames and log entries.
 /// from_proto() validates every value; the error names the field relative to the message.
 namespace scanloom::wire {
 
@@ -21,6 +28,17 @@ void to_proto(const Scan& scan, v1::Scan& out);
 void to_proto_without_ranges(const Scan& scan, v1::Scan& out);
 void to_proto(const Pose2& pose, v1::Pose2& out);
 
+/// Points as differences: x and y of the first point, then x and y of each point minus those of the previous one.
+/// Successive points are close to each other, so that a difference takes one or two bytes.
+using Differences = google::protobuf::RepeatedField<std::int32_t>;
+
+/// Appends the differences of the points. Precondition: the points are within kCoordinateMax.
+void append_differences(std::span<const PointMm> points, Differences& out);
+
 [[nodiscard]] Error invalid_field(std::string message);
+
+/// Checks that a coordinate or an angle is finite and within kCoordinateMax.
+/// Errors: kInvalidField; the message names the field.
+[[nodiscard]] Result<> check_coordinate(std::string_view field, double value);
 
 } // namespace scanloom::wire

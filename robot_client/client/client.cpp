@@ -119,7 +119,7 @@ Result<Path> Client::plan(const Point2& goal, milliseconds patience, const PlanO
 Result<ExplorationGoal> Client::next_goal(milliseconds patience) {
     auto reply = worker_->ask(wire::GoalRequest{}, patience);
     if (!reply) return reply.error();
-    auto& goal = std::get<wire::GoalReply>(*reply).goal;
+    auto& goal = std::get<wire::GoalReply>(*reply).result;
     if (!goal) return goal.error();
     ExplorationGoal next;
     next.given_up = goal->given_up;
@@ -158,7 +158,7 @@ Result<Location> Client::locate(const std::shared_ptr<const Sensor>& sensor, std
     if (options.near) request.near = wire::Near{options.near->point, options.near->radius};
     auto reply = worker_->ask(std::move(request), patience);
     if (!reply) return reply.error();
-    const auto& found = std::get<wire::LocateReply>(*reply).correction;
+    const auto& found = std::get<wire::LocateReply>(*reply).result;
     if (!found) return found.error();
     return Location{found->T_map_odom, found->explained, found->position_sigma, found->yaw_sigma, found->revision};
 }

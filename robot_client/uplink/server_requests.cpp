@@ -59,7 +59,7 @@ asio::awaitable<Result<NextStop>> ask_for_goal(Uplink& uplink, double body_radiu
     link::Request request = wire::GoalRequest{.body_radius = body_radius_m};
     Result<link::Reply> reply = co_await ask_once_applied(uplink, std::move(request));
     if (!reply) co_return reply.error();
-    auto& goal = std::get<wire::GoalReply>(*reply).goal;
+    auto& goal = std::get<wire::GoalReply>(*reply).result;
     if (!goal) co_return goal.error();
     co_return as_stop(std::move(*goal));
 }
@@ -80,7 +80,7 @@ asio::awaitable<Result<Located>> ask_for_place(Uplink& uplink, wire::LocateReque
     link::Request question = std::move(request); // a named variable, because g++ 12 destroys such temporaries twice
     const Result<link::Reply> reply = co_await ask_once_applied(uplink, std::move(question));
     if (!reply) co_return reply.error();
-    const auto& correction = std::get<wire::LocateReply>(*reply).correction;
+    const auto& correction = std::get<wire::LocateReply>(*reply).result;
     if (!correction) co_return correction.error();
     co_return Located{correction->T_map_odom, correction->explained, correction->position_sigma, correction->yaw_sigma};
 }

@@ -30,14 +30,14 @@ void check_path(const Path& path) {
 void check_requests_and_replies(const Message& message) {
     if (const auto* plan = std::get_if<PlanRequest>(&message)) check_points({plan->goal});
     if (const auto* coverage = std::get_if<CoverageRequest>(&message)) check_points(coverage->region);
-    if (const auto* plan = std::get_if<PlanReply>(&message); plan != nullptr && plan->path) check_path(*plan->path);
-    if (const auto* goal = std::get_if<GoalReply>(&message); goal != nullptr && goal->goal) {
-        fuzz::check(goal->goal->path.has_value() == (goal->goal->exploration == Exploration::kGoal),
+    if (const auto* plan = std::get_if<PlanReply>(&message); plan != nullptr && plan->result) check_path(*plan->result);
+    if (const auto* goal = std::get_if<GoalReply>(&message); goal != nullptr && goal->result) {
+        fuzz::check(goal->result->path.has_value() == (goal->result->exploration == Exploration::kGoal),
                     "a goal has a path");
-        if (goal->goal->path) check_path(*goal->goal->path);
+        if (goal->result->path) check_path(*goal->result->path);
     }
-    if (const auto* coverage = std::get_if<CoverageReply>(&message); coverage != nullptr && coverage->coverage) {
-        check_path(coverage->coverage->path);
+    if (const auto* coverage = std::get_if<CoverageReply>(&message); coverage != nullptr && coverage->result) {
+        check_path(coverage->result->path);
     }
 }
 

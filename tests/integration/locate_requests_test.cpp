@@ -85,13 +85,13 @@ TEST_F(LocateRequestsTest, ALidarWithoutOdometryIsLocalized) {
     const auto reply = carried->receive_kind<wire::LocateReply>();
     EXPECT_EQ(reply.id, 7U);
     EXPECT_EQ(reply.revision, ingest.snapshot("lab")->revision);
-    ASSERT_TRUE(reply.correction) << reply.correction.error().message;
-    EXPECT_NEAR(reply.correction->T_map_odom.x, kTruth.x, 0.02);
-    EXPECT_NEAR(reply.correction->T_map_odom.y, kTruth.y, 0.02);
-    EXPECT_NEAR(reply.correction->T_map_odom.yaw, kTruth.yaw, 0.005);
-    EXPECT_EQ(reply.correction->revision, reply.revision);
-    EXPECT_GT(reply.correction->explained, 0.9);
-    EXPECT_LT(reply.correction->position_sigma, 0.01);
+    ASSERT_TRUE(reply.result) << reply.result.error().message;
+    EXPECT_NEAR(reply.result->T_map_odom.x, kTruth.x, 0.02);
+    EXPECT_NEAR(reply.result->T_map_odom.y, kTruth.y, 0.02);
+    EXPECT_NEAR(reply.result->T_map_odom.yaw, kTruth.yaw, 0.005);
+    EXPECT_EQ(reply.result->revision, reply.revision);
+    EXPECT_GT(reply.result->explained, 0.9);
+    EXPECT_LT(reply.result->position_sigma, 0.01);
 }
 
 TEST_F(LocateRequestsTest, LocateRequestsAreNotStored) {
@@ -100,7 +100,7 @@ TEST_F(LocateRequestsTest, LocateRequestsAreNotStored) {
     const auto carried = welcomed(port(), hello("carried"));
     const auto before = ingest.snapshot("lab")->revision;
     carried->send(question_from(kTruth));
-    EXPECT_TRUE(carried->receive_kind<wire::LocateReply>().correction);
+    EXPECT_TRUE(carried->receive_kind<wire::LocateReply>().result);
     EXPECT_EQ(ingest.snapshot("lab")->revision, before);
 }
 
@@ -108,31 +108,31 @@ TEST_F(LocateRequestsTest, AnAmbiguousPoseIsRefusedAndTheLinkContinues) {
     start();
     const auto carried = welcomed(port(), hello("carried"));
     carried->send(question_from(kTruth, 1));
-    EXPECT_EQ(carried->receive_kind<wire::LocateReply>().correction.error().code, Errc::kNothingMapped);
+    EXPECT_EQ(carried->receive_kind<wire::LocateReply>().result.error().code, Errc::kNothingMapped);
 
     const auto mapper = mapping();
     auto elsewhere = question_from(kTruth, 2);
     for (auto& point : elsewhere.points) point = {point.x / 3, point.y / 3}; // a small room
     carried->send(elsewhere);
-    EXPECT_EQ(carried->receive_kind<wire::LocateReply>().correction.error().code, Errc::kUndetermined);
+    EXPECT_EQ(carried->receive_kind<wire::LocateReply>().result.error().code, Errc::kUndetermined);
 
     auto wall = question_from(kTruth, 3);
     for (std::size_t n = 0; n < wall.points.size(); ++n) wall.points[n] = {static_cast<std::int32_t>(n), 1000};
     carried->send(wall);
-    const auto refused = carried->receive_kind<wire::LocateReply>().correction.error();
+    const auto refused = carried->receive_kind<wire::LocateReply>().result.error();
     EXPECT_TRUE(refused.code == Errc::kAmbiguous || refused.code == Errc::kUndetermined) << refused.message;
 
     auto far = question_from(kTruth, 4);
     far.near = wire::Near{{500.0, 0.0}, 10.0};
     carried->send(far);
-    const auto nothing = carried->receive_kind<wire::LocateReply>().correction.error();
+    const auto nothing = carried->receive_kind<wire::LocateReply>().result.error();
     EXPECT_EQ(nothing.code, Errc::kUndetermined);
     EXPECT_THAT(nothing.message, HasSubstr("within 10 m of (500, 0)"));
 
     auto near = question_from(kTruth, 5);
     near.near = wire::Near{{1.5, 1.0}, 2.0};
     carried->send(near);
-    EXPECT_TRUE(carried->receive_kind<wire::LocateReply>().correction);
+    EXPECT_TRUE(carried->receive_kind<wire::LocateReply>().result);
 }
 
 TEST_F(LocateRequestsTest, OnAnEmptyMapOnlyOneOfTwoRobotsMayBeginIt) {
@@ -140,9 +140,9 @@ TEST_F(LocateRequestsTest, OnAnEmptyMapOnlyOneOfTwoRobotsMayBeginIt) {
     const auto first = welcomed(port(), hello("first"));
     const auto second = welcomed(port(), hello("second"));
     first->send(question_from(kTruth, 1));
-    EXPECT_EQ(first->receive_kind<wire::LocateReply>().correction.error().code, Errc::kNothingMapped);
+    EXPECT_EQ(first->receive_kind<wire::LocateReply>().result.error().code, Errc::kNothingMapped);
     second->send(question_from(kTruth, 1));
-    const auto refused = second->receive_kind<wire::LocateReply>().correction.error();
+    const auto refused = second->receive_kind<wire::LocateReply>().result.error();
     EXPECT_EQ(refused.code, Errc::kOverloaded) << "the robot may retry";
     EXPECT_THAT(refused.message, HasSubstr("asked to begin the map at its own pose"));
 
@@ -151,7 +151,7 @@ TEST_F(LocateRequestsTest, OnAnEmptyMapOnlyOneOfTwoRobotsMayBeginIt) {
     first->wait_for_ack(2);
     second->send(question_from(kTruth, 2));
     const auto reply = second->receive_kind<wire::LocateReply>();
-    EXPECT_TRUE(reply.correction) << reply.correction.error().message;
+    EXPECT_TRUE(reply.result) << reply.result.error().message;
 }
 
 TEST_F(LocateRequestsTest, ManyLocateRequestsDoNotBlockPlanRequests) {
@@ -168,9 +168,9 @@ TEST_F(LocateRequestsTest, ManyLocateRequestsDoNotBlockPlanRequests) {
     }
     const auto late = welcomed(port(), hello("late"));
     late->send(question_from(kTruth));
-    EXPECT_EQ(late->receive_kind<wire::LocateReply>().correction.error().code, Errc::kOverloaded);
+    EXPECT_EQ(late->receive_kind<wire::LocateReply>().result.error().code, Errc::kOverloaded);
     mapper->send(wire::PlanRequest{.id = 9, .goal = {1.0, 2.5}});
-    EXPECT_TRUE(mapper->receive_kind<wire::PlanReply>().path);
+    EXPECT_TRUE(mapper->receive_kind<wire::PlanReply>().result);
     go_on.set_value();
 }
 
@@ -182,7 +182,7 @@ TEST_F(LocateRequestsTest, ANewRobotIsLocalizedInItsOwnMap) {
     robot->wait_for_ack(1);
     robot->send(question_from({-1.0, -1.8, 2.5}));
     const auto reply = robot->receive_kind<wire::LocateReply>();
-    EXPECT_TRUE(reply.correction) << reply.correction.error().message;
+    EXPECT_TRUE(reply.result) << reply.result.error().message;
 }
 
 /// Robots are localized in the laser map: an imported map is not empty, and no robot begins another one in it.
@@ -192,7 +192,7 @@ TEST_F(LocateRequestsTest, ARobotMayNotBeginAnImportedMap) {
     ASSERT_TRUE(ingest.sessions().import_map("lab", {}, {patch}));
     const auto carried = welcomed(port(), hello("carried"));
     carried->send(question_from(kTruth));
-    const auto refused = carried->receive_kind<wire::LocateReply>().correction.error();
+    const auto refused = carried->receive_kind<wire::LocateReply>().result.error();
     EXPECT_EQ(refused.code, Errc::kUndetermined);
     EXPECT_THAT(refused.message, HasSubstr("send the first scans from a known pose"));
 }
@@ -212,7 +212,7 @@ TEST_F(LocateRequestsTest, AClosedLinkDoesNotDelayOthers) {
     const auto patient = welcomed(port(), hello("patient"));
     patient->send(question_from(kTruth));
     go_on.set_value();
-    EXPECT_EQ(patient->receive_kind<wire::LocateReply>().correction.error().code, Errc::kNothingMapped);
+    EXPECT_EQ(patient->receive_kind<wire::LocateReply>().result.error().code, Errc::kNothingMapped);
 }
 
 } // namespace

@@ -69,21 +69,21 @@ TEST_F(RequestsTest, APlanIsThePathOfThePlanner) {
     const auto expected = planning::plan_path(maps->classes, 0.05, {1.0, 1.0}, {2.5, 0.2}, options).value();
     EXPECT_EQ(reply.id, 7U);
     EXPECT_EQ(reply.revision, 3U);
-    EXPECT_EQ(reply.path.value(), (wire::Path{expected.points, expected.length_m, expected.cost}));
+    EXPECT_EQ(reply.result.value(), (wire::Path{expected.points, expected.length_m, expected.cost}));
 }
 
 TEST_F(RequestsTest, WithoutAStartTheNewestPoseIsUsed) {
     start();
     const auto robot = looking_around("r");
     robot->send(plan_to({2.5, 0.2}));
-    EXPECT_EQ(robot->receive_kind<wire::PlanReply>().path.value().points.front(), (Point2{0.5, 1.25}));
+    EXPECT_EQ(robot->receive_kind<wire::PlanReply>().result.value().points.front(), (Point2{0.5, 1.25}));
     const auto mute = welcomed(port(), hello("mute"));
     mute->send(plan_to({2.5, 0.2}));
-    EXPECT_EQ(mute->receive_kind<wire::PlanReply>().path.error().code, Errc::kNoPath);
+    EXPECT_EQ(mute->receive_kind<wire::PlanReply>().result.error().code, Errc::kNoPath);
     mute->send(wire::GoalRequest{});
-    EXPECT_THAT(mute->receive_kind<wire::GoalReply>().goal.error().message, testing::HasSubstr("'mute'"));
+    EXPECT_THAT(mute->receive_kind<wire::GoalReply>().result.error().message, testing::HasSubstr("'mute'"));
     mute->send(wire::CoverageRequest{});
-    EXPECT_EQ(mute->receive_kind<wire::CoverageReply>().coverage.error().code, Errc::kNoPath);
+    EXPECT_EQ(mute->receive_kind<wire::CoverageReply>().result.error().code, Errc::kNoPath);
 }
 
 TEST_F(RequestsTest, PathsFitTheBodyRadiusOfTheHello) {
@@ -96,17 +96,17 @@ TEST_F(RequestsTest, PathsFitTheBodyRadiusOfTheHello) {
     robot->wait_for_ack(1);
     robot->send(plan_to({3.2, 1.25}));
     const auto refused = robot->receive_kind<wire::PlanReply>();
-    EXPECT_THAT(refused.path.error().message, testing::HasSubstr("than the body radius of 0.5 m"));
+    EXPECT_THAT(refused.result.error().message, testing::HasSubstr("than the body radius of 0.5 m"));
     robot->send(wire::PlanRequest{.id = 2, .goal = {3.2, 1.25}, .body_radius = 0.1});
-    EXPECT_TRUE(robot->receive_kind<wire::PlanReply>().path);
+    EXPECT_TRUE(robot->receive_kind<wire::PlanReply>().result);
     robot->send(wire::GoalRequest{.id = 3});
     robot->send(wire::GoalRequest{.id = 4, .body_radius = 0.5});
-    const auto own = robot->receive_kind<wire::GoalReply>().goal.value();
-    EXPECT_EQ(own.target, robot->receive_kind<wire::GoalReply>().goal.value().target);
+    const auto own = robot->receive_kind<wire::GoalReply>().result.value();
+    EXPECT_EQ(own.target, robot->receive_kind<wire::GoalReply>().result.value().target);
     robot->send(wire::CoverageRequest{.id = 5});
     robot->send(wire::CoverageRequest{.id = 6, .body_radius = 0.5});
-    const auto coverage = robot->receive_kind<wire::CoverageReply>().coverage.value();
-    EXPECT_EQ(coverage, robot->receive_kind<wire::CoverageReply>().coverage.value());
+    const auto coverage = robot->receive_kind<wire::CoverageReply>().result.value();
+    EXPECT_EQ(coverage, robot->receive_kind<wire::CoverageReply>().result.value());
 }
 
 TEST_F(RequestsTest, TheLastPlanIsKeptUntilTheRobotLeaves) {
@@ -118,22 +118,22 @@ TEST_F(RequestsTest, TheLastPlanIsKeptUntilTheRobotLeaves) {
     const auto plan = robot->receive_kind<wire::PlanReply>();
     ASSERT_EQ(page().robots.size(), 1U);
     EXPECT_EQ(page().robots[0].way->kind, guide::PathKind::kPlan);
-    EXPECT_EQ(page().robots[0].way->points, plan.path.value().points);
-    EXPECT_EQ(page().robots[0].way->length_m, plan.path.value().length);
+    EXPECT_EQ(page().robots[0].way->points, plan.result.value().points);
+    EXPECT_EQ(page().robots[0].way->length_m, plan.result.value().length);
     EXPECT_EQ(page().robots[0].way->revision, plan.revision);
 
     robot->send(wire::CoverageRequest{.id = 2});
     const auto coverage = robot->receive_kind<wire::CoverageReply>();
     EXPECT_EQ(page().robots[0].way->kind, guide::PathKind::kCoverage);
-    EXPECT_EQ(page().robots[0].way->points, coverage.coverage.value().path.points);
+    EXPECT_EQ(page().robots[0].way->points, coverage.result.value().path.points);
 
     robot->send(wire::GoalRequest{.id = 3, .frontier_size_min = 10});
     const auto goal = robot->receive_kind<wire::GoalReply>();
-    EXPECT_EQ(page().robots[0].goal->target, goal.goal.value().target);
-    EXPECT_EQ(page().robots[0].way->points, goal.goal.value().path->points);
+    EXPECT_EQ(page().robots[0].goal->target, goal.result.value().target);
+    EXPECT_EQ(page().robots[0].way->points, goal.result.value().path->points);
 
     robot->send(plan_to({3.53, 1.25})); // inside a wall
-    EXPECT_FALSE(robot->receive_kind<wire::PlanReply>().path);
+    EXPECT_FALSE(robot->receive_kind<wire::PlanReply>().result);
     EXPECT_TRUE(page().robots[0].goal);
     EXPECT_EQ(page().robots[0].way, nullptr);
 
@@ -148,14 +148,14 @@ TEST_F(RequestsTest, UnsatisfiableRequestsAreRefusedAndTheLinkContinues) {
     const auto robot = looking_around("r");
     robot->send(plan_to({3.53, 1.25}));
     const auto blocked = robot->receive_kind<wire::PlanReply>();
-    EXPECT_EQ(blocked.path.error().code, Errc::kNoPath);
-    EXPECT_THAT(blocked.path.error().message, testing::HasSubstr("inside an obstacle"));
+    EXPECT_EQ(blocked.result.error().code, Errc::kNoPath);
+    EXPECT_THAT(blocked.result.error().message, testing::HasSubstr("inside an obstacle"));
     robot->send(wire::PlanRequest{.id = 2, .goal = {2.5, 0.2}, .body_radius = -1.0});
     const auto bad = robot->receive_kind<wire::PlanReply>();
-    EXPECT_EQ(bad.path.error().code, Errc::kInvalidField);
-    EXPECT_THAT(bad.path.error().message, testing::StartsWith("body_radius is -1 m"));
+    EXPECT_EQ(bad.result.error().code, Errc::kInvalidField);
+    EXPECT_THAT(bad.result.error().message, testing::StartsWith("body_radius is -1 m"));
     robot->send(wire::CoverageRequest{.id = 3, .spacing = 9.0});
-    EXPECT_EQ(robot->receive_kind<wire::CoverageReply>().coverage.error().code, Errc::kInvalidField);
+    EXPECT_EQ(robot->receive_kind<wire::CoverageReply>().result.error().code, Errc::kInvalidField);
     robot->send(wire::ScanBatch{{scan_with_a_gap(2)}});
     robot->wait_for_ack(2);
 }
@@ -173,7 +173,7 @@ TEST_F(RequestsTest, TwoRobotsNeverGetTheSameFrontierOverAnyPort) {
     const auto first = looking_around("a");
     const auto second = looking_around("b");
     first->send(wire::GoalRequest{.id = 1, .frontier_size_min = 10});
-    const auto goal = first->receive_kind<wire::GoalReply>().goal.value();
+    const auto goal = first->receive_kind<wire::GoalReply>().result.value();
     ASSERT_EQ(goal.exploration, wire::Exploration::kGoal);
     EXPECT_EQ(goal.path->points.front(), (Point2{0.5, 1.25}));
 
@@ -195,7 +195,7 @@ TEST_F(RequestsTest, TwoRobotsNeverGetTheSameFrontierOverAnyPort) {
     for (int n = 0;; ++n) {
         others.push_back(looking_around("c" + std::to_string(n)));
         others.back()->send(wire::GoalRequest{.id = 9, .frontier_size_min = 10});
-        const auto next = others.back()->receive_kind<wire::GoalReply>().goal.value();
+        const auto next = others.back()->receive_kind<wire::GoalReply>().result.value();
         if (next.exploration != wire::Exploration::kGoal) {
             EXPECT_EQ(next.exploration, wire::Exploration::kTakenByOthers);
             break;
@@ -208,7 +208,7 @@ TEST_F(RequestsTest, UnobservableFrontiersAreExcluded) {
     start();
     const auto robot = looking_around("r");
     robot->send(wire::GoalRequest{.id = 1});
-    const auto goal = robot->receive_kind<wire::GoalReply>().goal.value();
+    const auto goal = robot->receive_kind<wire::GoalReply>().result.value();
     ASSERT_TRUE(goal.path && goal.target);
     EXPECT_EQ(goal.given_up, 0U);
     const Point2 place = goal.path->points.back();
@@ -219,7 +219,7 @@ TEST_F(RequestsTest, UnobservableFrontiersAreExcluded) {
     robot->send(wire::ScanBatch{{blind}});
     robot->wait_for_ack(2);
     robot->send(wire::GoalRequest{.id = 2});
-    const auto next = robot->receive_kind<wire::GoalReply>().goal.value();
+    const auto next = robot->receive_kind<wire::GoalReply>().result.value();
     EXPECT_GT(next.given_up, 0U);
     EXPECT_NE(next.target, goal.target);
 }
@@ -230,14 +230,14 @@ TEST_F(RequestsTest, CoverageReachesTheGroundOfItsRegion) {
     robot->send(wire::CoverageRequest{.id = 5, .region = {{1.0, 0.5}, {2.0, 0.5}, {2.0, 1.5}, {1.0, 1.5}}});
     const auto reply = robot->receive_kind<wire::CoverageReply>();
     EXPECT_EQ(reply.id, 5U);
-    const auto coverage = reply.coverage.value();
+    const auto coverage = reply.result.value();
     EXPECT_NEAR(coverage.free_area, 1.0, 0.1);
     EXPECT_NEAR(coverage.covered_area, coverage.free_area, 0.1);
     EXPECT_EQ(coverage.path.points.front(), (Point2{0.5, 1.25}));
     EXPECT_GT(coverage.path.length, 3.0);
 
     robot->send(wire::CoverageRequest{.id = 6});
-    const auto everywhere = robot->receive_kind<wire::CoverageReply>().coverage.value();
+    const auto everywhere = robot->receive_kind<wire::CoverageReply>().result.value();
     EXPECT_EQ(everywhere.cell_size, 0.05);
     double cells = 0.0;
     for (const auto& run : everywhere.unreachable) cells += run.count;
@@ -250,7 +250,8 @@ TEST_F(RequestsTest, RequestsUseTheMapsOfTheRobotsSession) {
     const auto here = looking_around("r", "here");
     const auto elsewhere = welcomed(port(), hello("r", "elsewhere"));
     elsewhere->send(wire::PlanRequest{.id = 1, .start = Point2{1.0, 1.0}, .goal = {2.5, 0.2}});
-    EXPECT_THAT(elsewhere->receive_kind<wire::PlanReply>().path.error().message, testing::HasSubstr("outside the map"));
+    EXPECT_THAT(elsewhere->receive_kind<wire::PlanReply>().result.error().message,
+                testing::HasSubstr("outside the map"));
 }
 
 TEST_F(RequestsTest, ScansAreAcknowledgedDuringASearch) {
@@ -263,7 +264,7 @@ TEST_F(RequestsTest, ScansAreAcknowledgedDuringASearch) {
     robot->send(wire::Ping{9});
     EXPECT_EQ(robot->receive_kind<wire::Pong>().nonce, 9U);
     go_on.set_value();
-    EXPECT_TRUE(robot->receive_kind<wire::PlanReply>().path);
+    EXPECT_TRUE(robot->receive_kind<wire::PlanReply>().result);
 }
 
 TEST_F(RequestsTest, ARequestBeyondTheLimitIsRefusedAndTheOthersAreAnswered) {
@@ -273,16 +274,16 @@ TEST_F(RequestsTest, ARequestBeyondTheLimitIsRefusedAndTheOthersAreAnswered) {
     for (std::uint64_t id = 1; id <= 5; ++id) robot->send(plan_to({2.5, 0.2}, id));
     const auto refused = robot->receive_kind<wire::PlanReply>();
     EXPECT_EQ(refused.id, 5U);
-    EXPECT_EQ(refused.path.error().code, Errc::kOverloaded);
-    EXPECT_THAT(refused.path.error().message, testing::StartsWith("4 requests are under way"));
+    EXPECT_EQ(refused.result.error().code, Errc::kOverloaded);
+    EXPECT_THAT(refused.result.error().message, testing::StartsWith("4 requests are under way"));
     go_on.set_value();
     for (std::uint64_t id = 1; id <= 4; ++id) {
         const auto reply = robot->receive_kind<wire::PlanReply>();
         EXPECT_EQ(reply.id, id);
-        EXPECT_TRUE(reply.path);
+        EXPECT_TRUE(reply.result);
     }
     robot->send(plan_to({2.5, 0.2}, 6));
-    EXPECT_TRUE(robot->receive_kind<wire::PlanReply>().path);
+    EXPECT_TRUE(robot->receive_kind<wire::PlanReply>().result);
 }
 
 TEST_F(RequestsTest, ARequestBeyondTheLimitOfAllLinksIsRefused) {
@@ -297,10 +298,10 @@ TEST_F(RequestsTest, ARequestBeyondTheLimitOfAllLinksIsRefused) {
     second->send(wire::GoalRequest{.id = 3});
     const auto refused = second->receive_kind<wire::GoalReply>();
     EXPECT_EQ(refused.id, 3U);
-    EXPECT_EQ(refused.goal.error().code, Errc::kOverloaded);
+    EXPECT_EQ(refused.result.error().code, Errc::kOverloaded);
     go_on.set_value();
-    EXPECT_TRUE(first->receive_kind<wire::PlanReply>().path);
-    EXPECT_TRUE(first->receive_kind<wire::PlanReply>().path);
+    EXPECT_TRUE(first->receive_kind<wire::PlanReply>().result);
+    EXPECT_TRUE(first->receive_kind<wire::PlanReply>().result);
 }
 
 TEST_F(RequestsTest, AGoodbyeWaitsForReplies) {
@@ -309,7 +310,7 @@ TEST_F(RequestsTest, AGoodbyeWaitsForReplies) {
     auto go_on = hold_searches();
     robot->send_bytes(frame_of(plan_to({2.5, 0.2}, 8)) + frame_of(wire::Goodbye{"done"}));
     go_on.set_value();
-    EXPECT_TRUE(robot->receive_kind<wire::PlanReply>().path);
+    EXPECT_TRUE(robot->receive_kind<wire::PlanReply>().result);
     EXPECT_FALSE(robot->receive().has_value());
 }
 
@@ -326,7 +327,7 @@ TEST_F(RequestsTest, ARobotThatLeavesBeforeItsReplyDisturbsNoOtherRobot) {
     }
     other->send(plan_to({2.5, 0.2}));
     go_on.set_value();
-    EXPECT_TRUE(other->receive_kind<wire::PlanReply>().path);
+    EXPECT_TRUE(other->receive_kind<wire::PlanReply>().result);
 }
 
 TEST_F(RequestsTest, UnreadRefusalsEndTheLink) {
@@ -373,7 +374,7 @@ TEST_F(RequestsTest, NoSearchStartsDuringShutdown) {
     go_on.set_value();
     const auto frame = sent.get_future().get();
     const auto reply = wire::decode(std::string_view(frame).substr(wire::kLengthPrefixBytes)).value();
-    EXPECT_EQ(std::get<wire::PlanReply>(reply).path.error().code, Errc::kShuttingDown);
+    EXPECT_EQ(std::get<wire::PlanReply>(reply).result.error().code, Errc::kShuttingDown);
 }
 
 } // namespace

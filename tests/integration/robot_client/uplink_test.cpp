@@ -98,7 +98,7 @@ TEST_F(UplinkTest, RequestsAreAnsweredBetweenScans) {
     serve({{}});
     std::vector<Point2> ends;
     const auto answered = [&](const link::Reply& reply) {
-        ends.push_back(std::get<wire::PlanReply>(reply).path.value().points.back());
+        ends.push_back(std::get<wire::PlanReply>(reply).result.value().points.back());
     };
     server_->on_stored = [&](std::size_t stored) {
         if (stored != 100 && stored != 200) return;

@@ -400,7 +400,7 @@ TEST(ServerProtocolRefusal, OfRequestsBeyondFourLetsTheLinkContinue) {
     EXPECT_EQ(owner.requests.size(), 4U);
     const auto& refused = std::get<wire::PlanReply>(owner.sent.back());
     EXPECT_EQ(refused.id, 5U);
-    EXPECT_THAT(refused.path.error().message, StartsWith("4 requests are under way"));
+    EXPECT_THAT(refused.result.error().message, StartsWith("4 requests are under way"));
     owner.protocol.on_request_refused(owner.requests.front(), {Errc::kOverloaded, "too many robots"});
     owner.advance();
     EXPECT_EQ(std::get<wire::PlanReply>(owner.sent.back()).id, 1U);
