@@ -13,6 +13,7 @@
 #include <limits>
 #include <string>
 #include <string_view>
+#include <utility>
 
 /// Functions that all option parsers use: they end a program after a usage error, and check numbers for
 /// CLI::Option::check(). A check returns an empty string if the text is valid, otherwise the error. Only option parsers
@@ -52,6 +53,13 @@ namespace scanloom {
     }
     const std::string what = sentence_of(reason);
     return usage_error(app, what == "A subcommand is required" ? commands : what);
+}
+
+/// Adds an option whose values are checked and whose default is in the output of --help.
+/// @param check  for CLI::Option::check()
+template <class Value, class Check>
+CLI::Option* add_checked(CLI::App& app, const std::string& name, Value& into, const std::string& help, Check check) {
+    return app.add_option(name, into, help)->check(std::move(check))->capture_default_str();
 }
 
 /// Accepts numbers from `low` to `high`. Rejects NaN, which CLI::Range accepts.

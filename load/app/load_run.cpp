@@ -47,27 +47,6 @@ FleetPlan fleet_plan(const LoadOptions& options) {
             .threads = std::min(options.threads, options.robots)};
 }
 
-RunSettings settings_of(const LoadOptions& options, const Course& course) {
-    RunSettings settings;
-    settings.robots = options.robots;
-    settings.sessions = options.sessions;
-    settings.rate = options.rate;
-    settings.batch = options.batch;
-    settings.duration = options.duration;
-    settings.world = options.world;
-    settings.laser = options.laser;
-    settings.noise = options.noise;
-    settings.beams = course.beams;
-    settings.cell_size = options.cell_size;
-    settings.seed = options.seed;
-    settings.threads = options.threads;
-    settings.viewers = options.viewers;
-    settings.tile_readers = options.tile_readers;
-    settings.tile_rate = options.tile_rate;
-    settings.faults = options.faults_text;
-    return settings;
-}
-
 } // namespace
 
 LoadRun::LoadRun(asio::io_context& io, const LoadOptions& options, const Course& course, const RobotLinkOptions& link,
@@ -76,7 +55,8 @@ LoadRun::LoadRun(asio::io_context& io, const LoadOptions& options, const Course&
       robots_(spread_over(sessions_, options.robots, course.scans.size())), http_(io.get_executor(), http),
       fleet_(fleet_plan(options), robots_, clock_, course_, link_),
       audience_({options.viewers, options.tile_readers, options.tile_rate, http, sessions_}, clock_) {
-    report_.settings = settings_of(options, course);
+    report_.settings = options;
+    report_.settings.beams = course.beams;
     report_.evidence.verify = options.verify;
     report_.evidence.sessions = options.sessions;
     report_.evidence.shares_sessions = options.sessions < options.robots;

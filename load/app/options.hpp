@@ -1,47 +1,23 @@
 #pragma once
 
+#include "common/app/link_options.hpp"
 #include "common/app/program.hpp"
 #include "load/core/fault_schedule.hpp"
-#include "load/core/verdict.hpp"
-#include "robot_client/uplink/server_address.hpp"
+#include "load/core/report.hpp"
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <variant>
 
 namespace scanloom::load {
 
-struct LoadOptions {
-    robot::ServerAddress server;
-    robot::ServerAddress http;
-    bool http_tls = false;  ///< --http began with https://
-    std::string token_file; ///< empty: no token
-    bool tls = false;
-    std::string tls_ca_file;   ///< empty: certificates that the system trusts
-    std::string tls_cert_file; ///< client certificate for both ports; empty: none
-    std::string tls_key_file;
+struct LoadOptions : LinkOptions, RunSettings {
+    net::Address http;
+    bool http_tls = false; ///< --http began with https://
 
-    std::uint32_t robots = 100;
-    std::uint32_t sessions = 0; ///< as given; parse_options() replaces 0 by one per robot
-    double rate = 10.0;         ///< scans per second of each robot; 0: as fast as the credit allows
-    std::uint32_t batch = 1;    ///< scans per frame
-    double duration = 30.0;     ///< seconds
     double connections_per_second = 500.0;
     double give_up_after = 30.0; ///< seconds
-    std::uint32_t threads = 1;
-
-    std::string world = "office";
-    std::string laser = "reference";
-    std::string noise = "none";
-    std::uint64_t seed = 1;
-    std::uint32_t course = 600;      ///< scans until they repeat
-    std::optional<double> cell_size; ///< metres
-
-    std::uint32_t viewers = 0;
-    std::uint32_t tile_readers = 0;
-    double tile_rate = 20.0; ///< tiles per second of each reader
-    std::string faults_text;
+    std::uint32_t course = 600;  ///< scans until they repeat
     FaultMeans faults{};
 
     Verify verify = Verify::kDigests;

@@ -10,7 +10,6 @@
 
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
-#include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/signal_set.hpp>
 #include <fmt/format.h>
 
@@ -28,40 +27,21 @@ namespace {
 
 constexpr std::uint64_t kDescriptorsBesides = 64; ///< for threads, files and the program's own requests
 
-Result<std::vector<asio::ip::tcp::endpoint>> resolve(asio::io_context& io, const robot::ServerAddress& server) {
-    asio::ip::tcp::resolver resolver(io);
-    boost::system::error_code failed;
-    std::vector<asio::ip::tcp::endpoint> endpoints;
-    for (const auto& found : resolver.resolve(server.host, server.port, failed)) endpoints.push_back(found.endpoint());
-    if (!failed) return endpoints;
-    return Error{Errc::kUnreachable,
-                 fmt::format("cannot find {}:{}: {}; check --server", server.host, server.port, failed.message())};
-}
-
-Result<net::TlsContext> tls_of(const LoadOptions& options) {
-    return net::client_tls(options.tls_ca_file, {options.tls_cert_file, options.tls_key_file});
-}
-
 Result<HttpPlace> http_place(const LoadOptions& options, const std::string& token) {
-    HttpPlace place{options.http, nullptr, token};
-    if (!options.http_tls) return place;
-    auto tls = tls_of(options);
+    auto tls = tls_of(options, options.http_tls);
     if (!tls) return tls.error();
-    place.tls = std::move(*tls);
-    return place;
+    return HttpPlace{options.http, std::move(*tls), token};
 }
 
-Result<RobotLinkOptions> link_options(asio::io_context& io, const LoadOptions& options) {
+Result<RobotLinkOptions> link_options(const LoadOptions& options) {
     RobotLinkOptions link;
-    auto endpoints = resolve(io, options.server);
+    auto endpoints = net::resolve(options.server);
     if (!endpoints) return endpoints.error();
-    link.server = std::move(*endpoints);
-    link.host = options.server.host;
-    if (options.tls) {
-        auto tls = tls_of(options);
-        if (!tls) return tls.error();
-        link.tls = std::move(*tls);
-    }
+    link.server = options.server;
+    link.endpoints = std::move(*endpoints);
+    auto tls = tls_of(options, options.tls);
+    if (!tls) return tls.error();
+    link.tls = std::move(*tls);
     auto token = read_token(options.token_file);
     if (!token) return token.error();
     link.hello.token = std::move(*token);
@@ -128,7 +108,7 @@ ExitCode run(const LoadOptions& options) {
         file.emplace(std::move(*prepared));
     }
     asio::io_context io(1);
-    const auto link = link_options(io, options);
+    const auto link = link_options(options);
     if (!link) return fail(link.error());
     const auto http = http_place(options, link->hello.token);
     if (!http) return fail(http.error());

@@ -116,7 +116,7 @@ std::vector<std::string> live_table(const RunSettings& settings, Micros begun, c
         rows.push_back(row("viewers", fmt::format("{} watch, {:.0f} events/s", now.audience.watching, shown.events)));
     }
     if (settings.tile_readers > 0) rows.push_back(row("tiles", fmt::format("{:.0f}/s", shown.tiles)));
-    if (!settings.faults.empty()) {
+    if (!settings.faults_text.empty()) {
         rows.push_back(row("faults", fmt::format("{}, {} reconnects", grouped(faults_of(fleet)),
                                                  grouped(fleet.links - fleet.greeted))));
     }

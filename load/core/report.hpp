@@ -13,22 +13,22 @@ namespace scanloom::load {
 
 /// The settings of a run.
 struct RunSettings {
-    std::uint32_t robots = 0;
-    std::uint32_t sessions = 0;
-    double rate = 0.0; ///< scans per second of each robot; 0: as fast as the credit allows
-    std::uint32_t batch = 1;
-    double duration = 0.0; ///< seconds
-    std::string world;
-    std::string laser;
-    std::string noise;
-    std::size_t beams = 0;           ///< per scan
+    std::uint32_t robots = 100;
+    std::uint32_t sessions = 0; ///< parse_options() replaces 0 by one per robot
+    double rate = 10.0;         ///< scans per second of each robot; 0: as fast as the credit allows
+    std::uint32_t batch = 1;    ///< scans per frame
+    double duration = 30.0;     ///< seconds
+    std::string world = "office";
+    std::string laser = "reference";
+    std::string noise = "none";
+    std::size_t beams = 0;           ///< per scan, by the laser
     std::optional<double> cell_size; ///< metres; absent: the server's default
-    std::uint64_t seed = 0;
+    std::uint64_t seed = 1;
     std::uint32_t threads = 1;
     std::uint32_t viewers = 0;
     std::uint32_t tile_readers = 0;
-    double tile_rate = 0.0;
-    std::string faults; ///< as given on the command line
+    double tile_rate = 20.0; ///< tiles per second of each reader
+    std::string faults_text; ///< as given on the command line
 };
 
 /// Everything that a run reports.

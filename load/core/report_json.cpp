@@ -43,7 +43,7 @@ json::object settings_json(const RunSettings& settings) {
                         {"viewers", settings.viewers},
                         {"tile_readers", settings.tile_readers},
                         {"tile_rate", settings.tile_rate},
-                        {"faults", settings.faults}};
+                        {"faults", settings.faults_text}};
     object["cell_size"] = settings.cell_size ? json::value(*settings.cell_size) : json::value();
     return object;
 }

@@ -1,8 +1,7 @@
 #pragma once
 
 #include "common/error/error.hpp"
-#include "common/net/link_stream.hpp"
-#include "load/net/http_place.hpp"
+#include "common/net/connect.hpp"
 
 #include <boost/asio/any_io_executor.hpp>
 #include <boost/asio/awaitable.hpp>
@@ -20,6 +19,13 @@
 
 namespace scanloom::load {
 
+/// Address and credentials for the server's HTTP port.
+struct HttpPlace {
+    net::Address server;
+    net::TlsContext tls; ///< null: without TLS
+    std::string token;   ///< empty: none
+};
+
 inline constexpr unsigned kOk = 200; ///< HTTP status
 
 struct HttpAnswer {
@@ -35,7 +41,7 @@ class HttpConnection {
 public:
     HttpConnection(boost::asio::any_io_executor executor, HttpPlace place);
 
-    /// Sends a request and waits for the answer.
+    /// Sends a request and waits for the answer; connecting and the answer each have the timeout.
     /// Pre: the connection outlives the request.
     /// Errors: kUnreachable: the server does not answer; kTimeout.
     [[nodiscard]] boost::asio::awaitable<Result<HttpAnswer>> ask(boost::beast::http::verb method, std::string target,
@@ -54,11 +60,9 @@ private:
     using Request = boost::beast::http::request<boost::beast::http::empty_body>;
     using Parser = boost::beast::http::response_parser<boost::beast::http::string_body>;
 
-    [[nodiscard]] boost::asio::awaitable<boost::system::error_code> connect();
+    [[nodiscard]] boost::asio::awaitable<Result<>> connect();
     [[nodiscard]] boost::asio::awaitable<boost::system::error_code> exchange(const Request& request, Parser& parser);
-    [[nodiscard]] boost::asio::awaitable<boost::system::error_code> within_timeout(const Request& request,
-                                                                                   Parser& parser);
-    [[nodiscard]] Error unreachable(const boost::system::error_code& failed) const;
+    [[nodiscard]] Error unreachable(const std::string& why) const;
 
     boost::asio::any_io_executor executor_;
     HttpPlace place_;

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "load/core/audience_figures.hpp"
-#include "load/net/http_place.hpp"
+#include "load/net/http_connection.hpp"
 #include "load/net/run_clock.hpp"
 
 #include <boost/asio/awaitable.hpp>

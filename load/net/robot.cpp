@@ -4,7 +4,6 @@
 #include "load/core/words.hpp"
 
 #include <boost/asio/co_spawn.hpp>
-#include <boost/asio/connect.hpp>
 #include <boost/asio/detached.hpp>
 #include <boost/asio/write.hpp>
 #include <fmt/format.h>
@@ -14,14 +13,11 @@
 namespace scanloom::load {
 
 namespace asio = boost::asio;
-using asio::ip::tcp;
 
 namespace {
 
 constexpr std::size_t kReadBytes = 512; // acks have about twenty bytes each
-constexpr Micros kConnectMax = 10 * kSecond;
-
-wire::LinkError lost(std::string message) { return {{Errc::kUnreachable, std::move(message)}, true}; }
+constexpr std::chrono::seconds kConnectMax{10};
 
 } // namespace
 
@@ -33,10 +29,9 @@ void Troubles::add(const Troubles& other) {
 }
 
 struct Robot::Link {
-    explicit Link(net::LinkStream carried, Micros now) : stream(std::move(carried)), begun(now) {}
+    explicit Link(net::LinkStream carried) : stream(std::move(carried)) {}
 
     net::LinkStream stream;
-    Micros begun;
     bool is_up = false; // connected, and encrypted if required
     bool is_writing = false;
     bool has_heard = false; // received anything
@@ -44,7 +39,7 @@ struct Robot::Link {
 };
 
 Robot::Robot(RobotPlan plan, Shared shared)
-    : shared_(shared), client_(std::move(plan), shared.course, shared.link.hello, shared.link.host),
+    : shared_(shared), client_(std::move(plan), shared.course, shared.link.hello, shared.link.server.text()),
       backoff_(client_.plan().index + 1), timer_(shared.io) {}
 
 void Robot::start() { asio::co_spawn(shared_.io, run(), asio::detached); }
@@ -82,32 +77,15 @@ void Robot::note(const wire::LinkError& failure) {
 // ---------------------------------------------------------------------------------------------------------------
 
 asio::awaitable<wire::LinkError> Robot::use_one_link() {
-    tcp::socket socket(shared_.io);
-    const auto& tls = shared_.link.tls;
-    link_ = std::make_shared<Link>(tls ? net::LinkStream(std::move(socket), *tls) : net::LinkStream(std::move(socket)),
-                                   shared_.clock.now());
+    link_ = std::make_shared<Link>(net::client_stream(shared_.io.get_executor(), shared_.link.tls));
     const auto link = link_;
-    const boost::system::error_code failed = co_await connect(link);
-    if (failed) {
-        co_return lost(fmt::format("no connection: {}",
-                                   tls ? net::handshake_text(failed, link->stream.verify_result()) : failed.message()));
-    }
+    const auto connected =
+        co_await net::connect(link->stream, shared_.link.server, shared_.link.endpoints, kConnectMax);
+    if (!connected) co_return wire::LinkError{connected.error(), true};
     link->is_up = true;
     client_.open(shared_.clock.now());
     flush();
     co_return co_await read_frames(link);
-}
-
-asio::awaitable<boost::system::error_code> Robot::connect(std::shared_ptr<Link> link) {
-    auto& socket = link->stream.socket();
-    const auto [refused, endpoint] = co_await asio::async_connect(socket, shared_.link.server, kAwaitTuple);
-    if (refused) co_return refused;
-    boost::system::error_code ignored; // without it, small frames only wait longer
-    socket.set_option(tcp::no_delay(true), ignored);
-    if (!shared_.link.tls) co_return refused;
-    link->stream.expect_host(shared_.link.host);
-    const auto [failed] = co_await link->stream.async_handshake(net::LinkStream::Role::kClient, kAwaitTuple);
-    co_return failed;
 }
 
 asio::awaitable<wire::LinkError> Robot::read_frames(std::shared_ptr<Link> link) {
@@ -115,7 +93,7 @@ asio::awaitable<wire::LinkError> Robot::read_frames(std::shared_ptr<Link> link) 
         const auto room = client_.prepare(kReadBytes);
         const auto [failed, count] =
             co_await link->stream.async_read_some(asio::buffer(room.data(), room.size()), kAwaitTuple);
-        if (failed) co_return lost(ended(*link, failed));
+        if (failed) co_return ended(*link, failed);
         while (shared_.clock.now() < stalled_until_ && !stopped_) {
             timer_.expires_at(shared_.clock.at(stalled_until_));
             co_await timer_.async_wait(kAwaitTuple);
@@ -126,11 +104,12 @@ asio::awaitable<wire::LinkError> Robot::read_frames(std::shared_ptr<Link> link) 
 }
 
 /// A server that requires TLS closes the connection after the first bytes that are not TLS.
-std::string Robot::ended(const Link& link, const boost::system::error_code& why) const {
-    if (net::is_refused_certificate(why)) return net::handshake_text(why, 0);
+wire::LinkError Robot::ended(const Link& link, const boost::system::error_code& why) const {
     const bool may_want_tls = !shared_.link.tls && !link.has_heard;
-    return fmt::format("the connection was lost: {}{}", why.message(),
-                       may_want_tls ? " before the server said a word; it may want TLS (--tls)" : "");
+    return {{Errc::kUnreachable,
+             fmt::format("the connection was lost: {}{}", net::failure_text(link.stream, why),
+                         may_want_tls ? " before the server said a word; it may want TLS (--tls)" : "")},
+            true};
 }
 
 std::optional<wire::LinkError> Robot::take(Link& link, std::size_t bytes) {
@@ -177,10 +156,9 @@ void Robot::end() {
 
 void Robot::look_after(Micros now) {
     if (!link_ || now < stalled_until_) return;
-    const bool is_late = !link_->is_up && now - link_->begun > kConnectMax;
     const auto failure = client_.check(now);
-    if (failure) note(*failure);
-    if (is_late || failure) {
+    if (failure) {
+        note(*failure);
         link_->stream.close();
     } else {
         flush();
@@ -194,7 +172,7 @@ bool Robot::strike(Fault fault) {
     switch (fault) {
     case Fault::kStall: stalled_until_ = shared_.clock.now() + kStallTime; return true;
     case Fault::kCut:
-        socket.set_option(tcp::socket::linger(true, 0), ignored); // resets the connection instead of closing it
+        socket.set_option(asio::socket_base::linger(true, 0), ignored); // resets the connection instead of closing it
         link_->stream.close();
         break;
     case Fault::kHalfOpen:

@@ -1,7 +1,6 @@
 #pragma once
 
-#include "common/net/link_stream.hpp"
-#include "common/net/tls.hpp"
+#include "common/net/connect.hpp"
 #include "load/core/fault_schedule.hpp"
 #include "load/core/measured_client.hpp"
 #include "load/net/run_clock.hpp"
@@ -9,7 +8,6 @@
 
 #include <boost/asio/awaitable.hpp>
 #include <boost/asio/io_context.hpp>
-#include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/steady_timer.hpp>
 
 #include <memory>
@@ -20,10 +18,10 @@ namespace scanloom::load {
 
 /// Address and credentials of all robots. Constant during a run.
 struct RobotLinkOptions {
-    std::vector<boost::asio::ip::tcp::endpoint> server;
-    std::string host;    ///< as in the server's certificate
-    net::TlsContext tls; ///< null: links are not encrypted
-    wire::Hello hello;   ///< without session and robot name
+    net::Address server;
+    net::Endpoints endpoints; ///< of `server`
+    net::TlsContext tls;      ///< null: links are not encrypted
+    wire::Hello hello;        ///< without session and robot name
 };
 
 /// Errors of robots, in sentences.
@@ -80,9 +78,8 @@ private:
 
     [[nodiscard]] boost::asio::awaitable<void> run();
     [[nodiscard]] boost::asio::awaitable<wire::LinkError> use_one_link();
-    [[nodiscard]] boost::asio::awaitable<boost::system::error_code> connect(std::shared_ptr<Link> link);
     [[nodiscard]] boost::asio::awaitable<wire::LinkError> read_frames(std::shared_ptr<Link> link);
-    [[nodiscard]] std::string ended(const Link& link, const boost::system::error_code& why) const;
+    [[nodiscard]] wire::LinkError ended(const Link& link, const boost::system::error_code& why) const;
     [[nodiscard]] std::optional<wire::LinkError> take(Link& link, std::size_t bytes);
     void flush();
     void close_link();

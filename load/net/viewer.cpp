@@ -2,10 +2,7 @@
 #include "common/net/websocket_teardown.hpp"
 #include "load/net/http_connection.hpp"
 #include "load/net/onlooker.hpp"
-#include "load/net/open_link.hpp"
 
-#include <boost/asio/error.hpp>
-#include <boost/asio/experimental/awaitable_operators.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/this_coro.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
@@ -27,34 +24,30 @@ using Stream = beast::websocket::stream<net::LinkStream>;
 
 /// Result of a request to watch.
 struct Entry {
-    boost::system::error_code failed;
-    std::string refusal; ///< the server's answer if it refused; otherwise empty
+    std::string trouble; ///< for people; empty: the viewer watches
+    bool is_refused = false;
 };
 
+/// A session without changes sends no events, so only the admission has time limits.
 asio::awaitable<Entry> enter(Stream& stream, const OnlookerShared& shared, std::string session) {
-    const auto& server = shared.http.server;
-    const auto unlinked = co_await open_link(stream.next_layer(), shared.http);
-    if (unlinked) co_return Entry{unlinked, {}};
-    const auto host = fmt::format("{}:{}", server.host, server.port);
+    const net::Address& server = shared.http.server;
+    const auto connected = co_await net::connect(stream.next_layer(), server, kEnterMax);
+    if (!connected) co_return Entry{connected.error().message};
     const auto target = fmt::format("/api/v1/sessions/{}/live", session);
     if (const auto authorization = authorization_of(shared.http.token); !authorization.empty()) {
         stream.set_option(beast::websocket::stream_base::decorator(
             [authorization](auto& request) { request.set(beast::http::field::authorization, authorization); }));
     }
     beast::websocket::response_type answer;
-    const auto [failed] = co_await stream.async_handshake(answer, host, target, kAwaitTuple);
-    if (failed != beast::websocket::error::upgrade_declined) co_return Entry{failed, {}};
-    co_return Entry{failed, refusal({answer.result_int(), {}, answer.body()}, target).message};
-}
-
-/// A session without changes sends no events, so only the admission has a time limit.
-asio::awaitable<Entry> enter_in_time(Stream& stream, const OnlookerShared& shared, std::string session) {
-    using namespace asio::experimental::awaitable_operators;
-    asio::steady_timer timer(stream.get_executor());
-    timer.expires_after(kEnterMax);
-    auto first = co_await (enter(stream, shared, std::move(session)) || timer.async_wait(kAwaitTuple));
-    if (first.index() != 0) co_return Entry{asio::error::timed_out, {}};
-    co_return std::get<0>(std::move(first));
+    const auto answered =
+        co_await net::within(kEnterMax, stream.async_handshake(answer, server.text(), target, kAwaitTuple));
+    if (!answered) co_return Entry{fmt::format("no answer within {} s", kEnterMax.count())};
+    const auto [failed] = *answered;
+    if (!failed) co_return Entry{};
+    if (failed != beast::websocket::error::upgrade_declined) {
+        co_return Entry{net::failure_text(stream.next_layer(), failed)};
+    }
+    co_return Entry{refusal({answer.result_int(), {}, answer.body()}, target).message, true};
 }
 
 asio::awaitable<boost::system::error_code> take_events(Stream& stream, AudienceFigures& figures) {
@@ -100,21 +93,20 @@ asio::awaitable<void> watch(OnlookerShared& shared, std::string session) {
     AudienceFigures& figures = shared.figures;
     Standing standing(figures);
     while (!shared.stopped) {
-        Stream stream(link_to(shared.http, executor));
-        Entry entry = co_await enter_in_time(stream, shared, session);
-        const bool watches = !entry.failed;
+        Stream stream(net::client_stream(executor, shared.http.tls));
+        Entry entry = co_await enter(stream, shared, session);
+        const bool watches = entry.trouble.empty();
         if (watches) {
             standing.let_in();
             ++figures.watching;
-            entry.failed = co_await take_events(stream, figures);
+            const auto ended = co_await take_events(stream, figures);
+            entry.trouble = net::failure_text(stream.next_layer(), ended);
             --figures.watching;
         }
         if (shared.stopped) co_return;
         if (watches) ++figures.viewer_ends;
-        if (!entry.refusal.empty()) standing.refused();
-        figures.trouble =
-            fmt::format("a viewer of session {}: {}", session,
-                        entry.refusal.empty() ? trouble_with(stream.next_layer(), entry.failed) : entry.refusal);
+        if (entry.is_refused) standing.refused();
+        figures.trouble = fmt::format("a viewer of session {}: {}", session, entry.trouble);
         pause.expires_after(kPause);
         co_await pause.async_wait(kAwaitTuple);
     }

@@ -1,10 +1,10 @@
 #include "robot_client/app/ld06_options.hpp"
 
 #include "common/app/command_line.hpp"
+#include "common/net/connect.hpp"
 #include "common/scan/limits.hpp"
 #include "robot_client/sources/stationary_detector.hpp"
 #include "robot_client/uplink/limits.hpp"
-#include "robot_client/uplink/server_address.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -143,20 +143,16 @@ CLI::App* add_ld06(CLI::App& app, Ld06Options& options) {
                      "Beams; each reading becomes the median of this many neighbours. Odd, 3 to 101; from about 15 "
                      "corners are rounded. Default: off")
         ->check(check_window);
-    ld06->add_option("--speed", options.speed,
-                     "For a capture file: 1 = as recorded, 0 = as fast as the server accepts scans")
-        ->check(check_not_negative)
-        ->capture_default_str();
-    ld06->add_option("--reopen-for", options.reopen_for,
-                     "Seconds during which a lost device is reopened; 0 = not at all")
-        ->check(check_within(0.0, 1e6))
-        ->capture_default_str();
+    add_checked(*ld06, "--speed", options.speed,
+                "For a capture file: 1 = as recorded, 0 = as fast as the server accepts scans", check_not_negative);
+    add_checked(*ld06, "--reopen-for", options.reopen_for,
+                "Seconds during which a lost device is reopened; 0 = not at all", check_within(0.0, 1e6));
     return ld06;
 }
 
 std::string complaint_about(const Ld06Options& options) {
     if (options.input.empty()) return "ld06: name the INPUT: a serial device, tcp://HOST:PORT, or a capture file";
-    if (options.input.starts_with(kTcpScheme) && !parse_server_address(options.input.substr(kTcpScheme.size()))) {
+    if (options.input.starts_with(kTcpScheme) && !net::parse_address(options.input.substr(kTcpScheme.size()))) {
         return fmt::format("ld06: '{}' is not tcp://HOST:PORT", options.input);
     }
     return complaint_about_places(options);

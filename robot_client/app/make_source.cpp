@@ -9,7 +9,6 @@
 #include "robot_client/sources/pose_path.hpp"
 #include "robot_client/sources/replayed_source.hpp"
 #include "robot_client/sources/sonar_log.hpp"
-#include "robot_client/uplink/server_address.hpp"
 
 #include <fmt/format.h>
 
@@ -207,9 +206,8 @@ Result<PreparedSource> make(const RobotOptions& options, const Ld06Options& ld06
     const auto scan = scan_options(options, ld06);
     if (!scan) return scan.error();
     if (ld06.input.starts_with(kTcpScheme)) {
-        const auto peer =
-            parse_server_address(ld06.input.substr(kTcpScheme.size())).value(); // the options were checked
-        return prepare_device(ld06, *scan, TcpPeer{peer.host, peer.port}, console);
+        const auto peer = net::parse_address(ld06.input.substr(kTcpScheme.size())); // the options were checked
+        return prepare_device(ld06, *scan, peer.value(), console);
     }
     std::error_code failed;
     const auto status = std::filesystem::status(ld06.input, failed);

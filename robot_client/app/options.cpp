@@ -28,7 +28,6 @@ constexpr const char* kFooter =
 
 /// Options as the parser sets them, before they are moved into RobotOptions.
 struct Raw {
-    std::string server = "127.0.0.1:7447";
     std::string no_return;
     std::optional<double> give_up_after;
     double spool_mib = 256.0;
@@ -39,27 +38,13 @@ struct Raw {
     std::string compression = "none";
 };
 
-void add_link_options(CLI::App& app, RobotOptions& options, Raw& raw) {
-    app.add_option("--server", raw.server, "Robot port of the server, HOST:PORT")->capture_default_str();
+void add_session_options(CLI::App& app, RobotOptions& options, Raw& raw) {
     // not required() in the parser: truth needs neither
     app.add_option("--session", options.session,
                    "Session for the scans; created if it does not exist. Required for streaming")
         ->check(check_name);
     app.add_option("--robot", options.robot, "Name of this robot within the session. Required for streaming")
         ->check(check_name);
-    app.add_option("--token-file", options.token_file, "File with the token of this robot")->check(CLI::ExistingFile);
-    app.add_flag("--tls", options.tls, "Encrypt the link, and verify that the server is the one that --server names");
-    app.add_option("--tls-ca", options.tls_ca_file,
-                   "File with the certificates to trust, in PEM, instead of the system's; means --tls")
-        ->check(CLI::ExistingFile);
-    auto* certificate =
-        app.add_option("--tls-cert", options.tls_cert_file,
-                       "File with the client certificate for a server that requires one, in PEM; means --tls")
-            ->check(CLI::ExistingFile);
-    auto* key = app.add_option("--tls-key", options.tls_key_file, "File with its private key, without a password")
-                    ->check(CLI::ExistingFile);
-    certificate->needs(key);
-    key->needs(certificate);
     app.add_option("--cell-size", options.cell_size, "Cell size in metres, for a session that this run creates")
         ->check(check_within(kCellSizeMin, kCellSizeMax));
     app.add_option("--body-radius", options.body_radius,
@@ -76,31 +61,22 @@ void add_waiting_options(CLI::App& app, RobotOptions& options, Raw& raw) {
         "--spool", options.spool,
         "Directory that keeps the scans of a sensor until they are stored, so that neither a long outage nor the end "
         "of this program loses any. Not for repeatable sources: logs, captures, most simulations");
-    app.add_option("--spool-size", raw.spool_mib, "Maximum size of the spool on the disk, MiB")
-        ->check(check_within(kSpoolMibMin, kSpoolMibMax))
-        ->capture_default_str();
-    app.add_option("--memory", raw.memory_mib,
-                   "Maximum memory for unacknowledged scans, MiB; reading of recordings pauses at this limit")
-        ->check(check_within(kMemoryMibMin, kMemoryMibMax))
-        ->capture_default_str();
-    app.add_option("--when-full", raw.when_full,
-                   "Scans to drop when the spool, or without one the memory, is full. Scans that may have been sent "
-                   "are never dropped")
-        ->check(CLI::IsMember({"drop-oldest", "drop-newest"}))
-        ->capture_default_str();
+    add_checked(app, "--spool-size", raw.spool_mib, "Maximum size of the spool on the disk, MiB",
+                check_within(kSpoolMibMin, kSpoolMibMax));
+    add_checked(app, "--memory", raw.memory_mib,
+                "Maximum memory for unacknowledged scans, MiB; reading of recordings pauses at this limit",
+                check_within(kMemoryMibMin, kMemoryMibMax));
+    add_checked(app, "--when-full", raw.when_full,
+                "Scans to drop when the spool, or without one the memory, is full. Scans that may have been sent "
+                "are never dropped",
+                CLI::IsMember({"drop-oldest", "drop-newest"}));
 }
 
 void add_wire_options(CLI::App& app, Raw& raw) {
-    app.add_option("--batch-delay", raw.batch_delay,
-                   "Maximum time in seconds that a scan waits for others of its batch")
-        ->check(check_within(0.0, kBatchDelayMax))
-        ->capture_default_str();
-    app.add_option("--batch-size", raw.batch_kib, "Maximum size of a batch of scans, KiB")
-        ->check(check_within(1.0, 1000.0))
-        ->capture_default_str();
-    app.add_option("--compression", raw.compression, "Compression, for slow links")
-        ->check(CLI::IsMember({"none", "zstd"}))
-        ->capture_default_str();
+    add_checked(app, "--batch-delay", raw.batch_delay,
+                "Maximum time in seconds that a scan waits for others of its batch", check_within(0.0, kBatchDelayMax));
+    add_checked(app, "--batch-size", raw.batch_kib, "Maximum size of a batch of scans, KiB", check_within(1.0, 1000.0));
+    add_checked(app, "--compression", raw.compression, "Compression, for slow links", CLI::IsMember({"none", "zstd"}));
 }
 
 /// Converts the parts of `raw` whose form differs from `options`.
@@ -110,7 +86,6 @@ void sort_in(const Raw& raw, RobotOptions& options) {
     const auto milliseconds = [](double seconds) {
         return std::chrono::milliseconds(static_cast<std::int64_t>(std::min(seconds, 1e9) * 1e3));
     };
-    options.tls = options.tls || !options.tls_ca_file.empty() || !options.tls_cert_file.empty();
     if (!raw.no_return.empty()) options.no_return = raw.no_return == "free" ? NoReturn::kFree : NoReturn::kDrop;
     if (raw.give_up_after) options.give_up_after = milliseconds(*raw.give_up_after);
     options.spool_bytes_max = bytes(raw.spool_mib * kMebibyte);
@@ -136,12 +111,10 @@ CLI::App* add_replay(CLI::App& app, ReplayOptions& options) {
     auto* replay = app.add_subcommand("replay", "Replay a CARMEN log");
     // not required() in the parser: an environment for both sources would then require it everywhere
     replay->add_option("FILE", options.file, "CARMEN log, plain, gzip or bzip2")->configurable(false);
-    replay
-        ->add_option("--speed", options.speed,
-                     "1 = as recorded, 0 = as fast as the server accepts scans. A pause of more than 10 minutes in the "
-                     "log counts as 10")
-        ->check(check_not_negative)
-        ->capture_default_str();
+    add_checked(*replay, "--speed", options.speed,
+                "1 = as recorded, 0 = as fast as the server accepts scans. A pause of more than 10 minutes in the "
+                "log counts as 10",
+                check_not_negative);
     return replay;
 }
 
@@ -153,12 +126,10 @@ CLI::App* add_sonar(CLI::App& app, SonarReplayOptions& options) {
         ->configurable(false);
     sonar->add_option("POSES", options.poses, "Lines of: time_ms x y heading, in mm and tenths of a degree")
         ->configurable(false);
-    sonar->add_option("--aperture", options.aperture_deg, "Degrees, full width of a sonar's cone")
-        ->check(check_within(1.0, 180.0))
-        ->capture_default_str();
-    sonar->add_option("--speed", options.speed, "1 = as recorded, 0 = as fast as the server accepts scans")
-        ->check(check_not_negative)
-        ->capture_default_str();
+    add_checked(*sonar, "--aperture", options.aperture_deg, "Degrees, full width of a sonar's cone",
+                check_within(1.0, 180.0));
+    add_checked(*sonar, "--speed", options.speed, "1 = as recorded, 0 = as fast as the server accepts scans",
+                check_not_negative);
     return sonar;
 }
 
@@ -176,7 +147,8 @@ std::variant<RobotOptions, TruthOptions, Leave> parse_options(int argc, const ch
     CLI::App app(kAbout, "scanloom-robot");
     app.footer(kFooter);
     app.set_version_flag("--version", fmt::format("scanloom-robot {}", kVersion));
-    add_link_options(app, options, raw);
+    add_link_options(app, options, "File with the token of this robot");
+    add_session_options(app, options, raw);
     add_scan_options(app, options, raw);
     add_waiting_options(app, options, raw);
     add_wire_options(app, raw);
@@ -202,9 +174,6 @@ std::variant<RobotOptions, TruthOptions, Leave> parse_options(int argc, const ch
     for (const char* needed : {"--session", "--robot"}) {
         if (app.get_option(needed)->empty()) return usage_error(app, fmt::format("{} is required", needed));
     }
-    const auto server = parse_server_address(raw.server);
-    if (!server) return usage_error(app, fmt::format("--server: '{}' is not HOST:PORT", raw.server));
-    options.server = *server;
     if (options.cell_size && options.range_max.value_or(0.0) > kReachCellsMax * *options.cell_size) {
         return usage_error(app, fmt::format("--max-range {} spans more than {} cells of --cell-size {}, the limit of "
                                             "servers; use larger cells, or a shorter range",

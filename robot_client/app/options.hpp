@@ -1,10 +1,10 @@
 #pragma once
 
+#include "common/app/link_options.hpp"
 #include "common/app/program.hpp"
 #include "robot_client/app/ld06_options.hpp"
 #include "robot_client/sources/source.hpp"
 #include "robot_client/spool/spool.hpp"
-#include "robot_client/uplink/server_address.hpp"
 
 #include <chrono>
 #include <cstdint>
@@ -53,15 +53,9 @@ struct SonarReplayOptions {
     double speed = 0.0; ///< as in ReplayOptions
 };
 
-struct RobotOptions {
-    ServerAddress server;
+struct RobotOptions : LinkOptions {
     std::string session;
     std::string robot;
-    std::string token_file; ///< empty: no token
-    bool tls = false;
-    std::string tls_ca_file;   ///< empty: the system's certificates
-    std::string tls_cert_file; ///< certificate of this robot; empty: none
-    std::string tls_key_file;
     std::optional<double> cell_size;   ///< metres
     std::optional<double> range_max;   ///< metres
     std::optional<double> body_radius; ///< metres

@@ -129,11 +129,9 @@ ExitCode run(const RobotOptions& options) {
     if (!feed) return fail(feed.error());
 
     UplinkOptions carried = uplink_options(options, *token, *prepared, console);
-    if (options.tls) {
-        auto tls = net::client_tls(options.tls_ca_file, {options.tls_cert_file, options.tls_key_file});
-        if (!tls) return fail(tls.error());
-        carried.tls = std::move(*tls);
-    }
+    auto tls = tls_of(options, options.tls);
+    if (!tls) return fail(tls.error());
+    carried.tls = std::move(*tls);
 
     asio::io_context io(1);
     Uplink uplink(io, std::move(carried), **feed);

@@ -29,21 +29,17 @@ constexpr const char* kWorldsFooter =
     "                     hit nothing outside it";
 
 void add_sensors(CLI::App& simulate, SimulateOptions& options) {
-    simulate
-        .add_option(
-            "--laser", options.laser,
-            "Laser: 684 beams over 180 degrees and 5 m; 360 over 360 degrees and 12 m; 1081 over 270 degrees and 30 m")
-        ->check(CLI::IsMember({"reference", "lidar360", "wide", "none"}))
-        ->capture_default_str();
-    simulate.add_option("--sonar", options.sonar, "Sonars, with or without a laser: 16 over 360 degrees, 5 m")
-        ->check(CLI::IsMember({"none", "ring16"}))
-        ->capture_default_str();
+    add_checked(
+        simulate, "--laser", options.laser,
+        "Laser: 684 beams over 180 degrees and 5 m; 360 over 360 degrees and 12 m; 1081 over 270 degrees and 30 m",
+        CLI::IsMember({"reference", "lidar360", "wide", "none"}));
+    add_checked(simulate, "--sonar", options.sonar, "Sonars, with or without a laser: 16 over 360 degrees, 5 m",
+                CLI::IsMember({"none", "ring16"}));
 }
 
 void add_noise(CLI::App& simulate, SimulateOptions& options) {
-    simulate.add_option("--noise", options.noise, "Noise of its measurements")
-        ->check(CLI::IsMember({"none", "gaussian", "uniform"}))
-        ->capture_default_str();
+    add_checked(simulate, "--noise", options.noise, "Noise of its measurements",
+                CLI::IsMember({"none", "gaussian", "uniform"}));
     simulate
         .add_option(
             "--noise-width", options.noise_width,
@@ -62,12 +58,10 @@ void add_noise(CLI::App& simulate, SimulateOptions& options) {
 }
 
 void add_drive(CLI::App& simulate, SimulateOptions& options) {
-    simulate
-        .add_option("--drive", options.drive,
-                    "Behaviour: along the walls on its right, endlessly; from waypoint to waypoint; back and forth "
-                    "over all free ground; or to the server's exploration goals, until nothing is left to explore")
-        ->check(CLI::IsMember({"wall_follower", "waypoints", "zigzag", "explore"}))
-        ->capture_default_str();
+    add_checked(simulate, "--drive", options.drive,
+                "Behaviour: along the walls on its right, endlessly; from waypoint to waypoint; back and forth "
+                "over all free ground; or to the server's exploration goals, until nothing is left to explore",
+                CLI::IsMember({"wall_follower", "waypoints", "zigzag", "explore"}));
     simulate
         .add_option("--waypoints", options.waypoints,
                     "Waypoints, in metres in the world frame (see below): \"x,y;x,y;...\", or a file with a line \"x "
@@ -80,13 +74,11 @@ void add_drive(CLI::App& simulate, SimulateOptions& options) {
 CLI::App* add_simulate(CLI::App& app, SimulateOptions& options) {
     auto* simulate = app.add_subcommand("simulate", "Simulate a robot that drives through a world");
     simulate->footer(kWorldsFooter);
-    simulate->add_option("--world", options.world, world_help("The world"))->check(check_world)->capture_default_str();
+    add_checked(*simulate, "--world", options.world, world_help("The world"), check_world);
     add_drive(*simulate, options);
     add_sensors(*simulate, options);
     add_noise(*simulate, options);
-    simulate->add_option("--seed", options.seed, "The same seed gives the same scans")
-        ->check(check_whole_number_from(0))
-        ->capture_default_str();
+    add_checked(*simulate, "--seed", options.seed, "The same seed gives the same scans", check_whole_number_from(0));
     simulate
         ->add_option("--duration", options.duration,
                      "Seconds to simulate, earlier runs included; default: until the behaviour ends, or an interrupt")
@@ -95,9 +87,8 @@ CLI::App* add_simulate(CLI::App& app, SimulateOptions& options) {
         ->add_option("--scans", options.scans,
                      "Scans to take, earlier runs included; default: until the behaviour ends, or an interrupt")
         ->check(check_whole_number_from(1));
-    simulate->add_option("--speed", options.speed, "1 = real time, 0 = as fast as the server accepts scans")
-        ->check(check_not_negative)
-        ->capture_default_str();
+    add_checked(*simulate, "--speed", options.speed, "1 = real time, 0 = as fast as the server accepts scans",
+                check_not_negative);
     return simulate;
 }
 
@@ -108,9 +99,7 @@ CLI::App* add_truth(CLI::App& app, TruthOptions& options) {
         "through them as if they were free: exclude them when a map is scored against the ground truth.");
     // not required() in the parser: an environment for several subcommands would then require them everywhere
     truth->add_option("--world", options.world, world_help("Of what"))->check(check_world);
-    truth->add_option("--cell-size", options.cell_size, "Cell size in metres")
-        ->check(check_within(0.01, 1.0))
-        ->capture_default_str();
+    add_checked(*truth, "--cell-size", options.cell_size, "Cell size in metres", check_within(0.01, 1.0));
     truth
         ->add_option("--output", options.output,
                      "Writes PREFIX.pgm and PREFIX.yaml, for map_server and imports; creates their folder")

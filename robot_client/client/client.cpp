@@ -19,7 +19,7 @@ namespace {
 
 Result<UplinkOptions> uplink_options(const ClientOptions& options) {
     if (auto ok = check(options); !ok) return ok.error();
-    const auto server = parse_server_address(options.server);
+    const auto server = net::parse_address(options.server);
     if (!server) return Error{Errc::kInvalidField, fmt::format("'{}' is not HOST:PORT", options.server)};
     UplinkOptions uplink;
     uplink.server = *server;

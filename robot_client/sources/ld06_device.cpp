@@ -6,7 +6,6 @@
 
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/connect.hpp>
-#include <boost/asio/experimental/awaitable_operators.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/this_coro.hpp>
 #include <fmt/format.h>
@@ -20,7 +19,6 @@ namespace scanloom::robot {
 namespace asio = boost::asio;
 using asio::ip::tcp;
 using boost::system::error_code;
-using namespace asio::experimental::awaitable_operators;
 
 namespace {
 
@@ -57,22 +55,19 @@ asio::awaitable<Result<Ld06Link>> open(SerialDevice device, std::chrono::millise
     co_return Ld06Link(std::move(port));
 }
 
-asio::awaitable<error_code> connect(tcp::socket& socket, const TcpPeer& peer) {
+asio::awaitable<error_code> connect(tcp::socket& socket, const net::Address& peer) {
     tcp::resolver resolver(co_await asio::this_coro::executor);
     auto [unknown, addresses] = co_await resolver.async_resolve(peer.host, peer.port, kAwaitTuple);
     if (unknown) co_return unknown;
     co_return std::get<0>(co_await asio::async_connect(socket, addresses, kAwaitTuple));
 }
 
-asio::awaitable<Result<Ld06Link>> open(TcpPeer peer, std::chrono::milliseconds timeout) {
+asio::awaitable<Result<Ld06Link>> open(net::Address peer, std::chrono::milliseconds timeout) {
     const auto executor = co_await asio::this_coro::executor;
     tcp::socket socket(executor);
-    asio::steady_timer timer(executor, timeout);
-    const auto first = co_await (connect(socket, peer) || timer.async_wait(kAwaitTuple));
-    const auto* connected = std::get_if<0>(&first);
-    if (connected != nullptr && !*connected) co_return Ld06Link(std::move(socket));
-    const std::string why =
-        connected != nullptr ? connected->message() : fmt::format("no answer for {:g} s", seconds(timeout));
+    const auto failed = co_await net::within(timeout, connect(socket, peer));
+    if (failed && !*failed) co_return Ld06Link(std::move(socket));
+    const std::string why = failed ? failed->message() : fmt::format("no answer for {:g} s", seconds(timeout));
     co_return Error{Errc::kUnreachable,
                     fmt::format("cannot be reached ({}); check the address and that ser2net runs there", why)};
 }
@@ -81,10 +76,7 @@ asio::awaitable<Result<Ld06Link>> open(TcpPeer peer, std::chrono::milliseconds t
 
 std::string name_of(const Ld06Endpoint& endpoint) {
     if (const auto* device = std::get_if<SerialDevice>(&endpoint)) return device->path;
-    const auto& peer = std::get<TcpPeer>(endpoint);
-    const bool is_bare_ipv6 = peer.host.find(':') != std::string::npos;
-    return is_bare_ipv6 ? fmt::format("tcp://[{}]:{}", peer.host, peer.port)
-                        : fmt::format("tcp://{}:{}", peer.host, peer.port);
+    return "tcp://" + std::get<net::Address>(endpoint).text();
 }
 
 asio::awaitable<Result<Ld06Link>> open_link(Ld06Endpoint endpoint, std::chrono::milliseconds timeout) {
@@ -95,16 +87,14 @@ asio::awaitable<Result<Ld06Link>> open_link(Ld06Endpoint endpoint, std::chrono::
 
 asio::awaitable<Result<std::size_t>> read_some(Ld06Link& link, std::span<std::uint8_t> bytes,
                                                std::chrono::milliseconds timeout) {
-    asio::steady_timer timer(co_await asio::this_coro::executor, timeout);
     const auto buffer = asio::buffer(bytes.data(), bytes.size());
-    const auto first =
-        co_await (std::visit([&](auto& line) { return line.async_read_some(buffer, kAwaitTuple); }, link) ||
-                  timer.async_wait(kAwaitTuple));
-    if (first.index() == 1) {
+    const auto read = co_await net::within(
+        timeout, std::visit([&](auto& line) { return line.async_read_some(buffer, kAwaitTuple); }, link));
+    if (!read) {
         co_return Error{Errc::kTimeout,
                         fmt::format("no byte for {:g} s; check that the sensor has power and turns", seconds(timeout))};
     }
-    const auto [failed, count] = std::get<0>(first);
+    const auto [failed, count] = *read;
     if (!failed) co_return count;
     // a terminal without its other end reports an I/O error
     const bool hung_up = failed == asio::error::eof || failed == error_code(EIO, boost::system::system_category());

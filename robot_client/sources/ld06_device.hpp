@@ -1,6 +1,7 @@
 #pragma once
 
 #include "common/error/error.hpp"
+#include "common/net/connect.hpp"
 
 #include <boost/asio/awaitable.hpp>
 #include <boost/asio/ip/tcp.hpp>
@@ -21,13 +22,8 @@ struct SerialDevice {
     std::string path;
 };
 
-/// A TCP server that passes on a serial line byte by byte (ser2net, raw).
-struct TcpPeer {
-    std::string host;
-    std::string port;
-};
-
-using Ld06Endpoint = std::variant<SerialDevice, TcpPeer>;
+/// A device, or a TCP server that passes on a serial line byte by byte (ser2net, raw).
+using Ld06Endpoint = std::variant<SerialDevice, net::Address>;
 
 /// Returns the endpoint as users write it.
 [[nodiscard]] std::string name_of(const Ld06Endpoint& endpoint);

@@ -5,7 +5,6 @@
 #include "robot_client/sources/messages.hpp"
 
 #include <boost/asio/buffer.hpp>
-#include <boost/asio/connect.hpp>
 #include <boost/asio/error.hpp>
 #include <boost/asio/experimental/awaitable_operators.hpp>
 #include <boost/asio/this_coro.hpp>
@@ -17,7 +16,6 @@
 namespace scanloom::robot {
 
 namespace asio = boost::asio;
-using asio::ip::tcp;
 using namespace asio::experimental::awaitable_operators;
 
 namespace {
@@ -30,7 +28,7 @@ wire::LinkError lost(std::string message) { return {{Errc::kUnreachable, std::mo
 
 link::ClientProtocolOptions protocol_options(const UplinkOptions& options) {
     auto made = options.protocol;
-    made.server = fmt::format("{}:{}", options.server.host, options.server.port);
+    made.server = options.server.text();
     return made;
 }
 
@@ -152,7 +150,7 @@ std::string Uplink::what_is_wrong() const {
                (last_trouble_ ? fmt::format(" (before this link: {})", last_trouble_->message) : std::string());
     }
     if (last_trouble_) return last_trouble_->message;
-    return fmt::format("no answer from {}:{} yet", options_.server.host, options_.server.port);
+    return fmt::format("no answer from {} yet", options_.server.text());
 }
 
 // Links ---------------------------------------------------------------------------------------------------------------
@@ -177,56 +175,12 @@ asio::awaitable<void> Uplink::keep_linked() {
 }
 
 asio::awaitable<wire::LinkError> Uplink::use_one_link() {
-    net::LinkStream::Socket socket(io_);
-    if (auto failure = co_await connect(socket)) co_return *failure;
-    net::LinkStream stream =
-        options_.tls ? net::LinkStream(std::move(socket), *options_.tls) : net::LinkStream(std::move(socket));
-    if (auto failure = co_await shake_hands(stream)) co_return *failure;
+    net::LinkStream stream = net::client_stream(io_.get_executor(), options_.tls);
+    const auto connected = co_await net::connect(stream, options_.server, options_.connect_timeout);
+    if (!connected) co_return wire::LinkError{connected.error(), true};
     protocol_.open(Clock::now());
     const auto ended = co_await (read_frames(stream) || write_frames(stream) || watch_link());
     co_return std::visit([](const wire::LinkError& failure) { return failure; }, ended);
-}
-
-asio::awaitable<std::optional<wire::LinkError>> Uplink::shake_hands(net::LinkStream& stream) {
-    if (!options_.tls) co_return std::nullopt;
-    stream.expect_host(options_.server.host);
-    asio::steady_timer timer(io_);
-    const auto shaken = co_await (stream.async_handshake(net::LinkStream::Role::kClient, kAwaitTuple) ||
-                                  wait(timer, Clock::now() + options_.connect_timeout));
-    if (shaken.index() != 0) {
-        co_return lost(fmt::format("{}:{} did not answer with TLS within {:g} s", options_.server.host,
-                                   options_.server.port, seconds(options_.connect_timeout)));
-    }
-    const auto [failed] = std::get<0>(shaken);
-    if (!failed) co_return std::nullopt;
-    co_return lost(fmt::format("no encrypted link to {}:{}: {}", options_.server.host, options_.server.port,
-                               net::handshake_text(failed, stream.verify_result())));
-}
-
-asio::awaitable<std::optional<wire::LinkError>> Uplink::connect(net::LinkStream::Socket& socket) {
-    const std::string where = fmt::format("{}:{}", options_.server.host, options_.server.port);
-    tcp::resolver resolver(io_);
-    const auto [unresolved, addresses] =
-        co_await resolver.async_resolve(options_.server.host, options_.server.port, kAwaitTuple);
-    if (unresolved) {
-        co_return lost(fmt::format("cannot find {}: {}; check --server", where, unresolved.message()));
-    }
-    asio::steady_timer timer(io_);
-    const auto connected = co_await (asio::async_connect(socket, addresses, kAwaitTuple) ||
-                                     wait(timer, Clock::now() + options_.connect_timeout));
-    const bool in_time = connected.index() == 0;
-    const auto refused = in_time ? std::get<0>(std::get<0>(connected)) : boost::system::error_code();
-    if (!in_time || refused == asio::error::operation_aborted) {
-        co_return lost(fmt::format("no connection to {} within {:g} s; check --server and the network", where,
-                                   seconds(options_.connect_timeout)));
-    }
-    if (refused) {
-        co_return lost(
-            fmt::format("cannot connect to {}: {}; is scanloom-server running there?", where, refused.message()));
-    }
-    boost::system::error_code ignored; // without no_delay small frames only wait longer
-    socket.set_option(tcp::no_delay(true), ignored);
-    co_return std::nullopt;
 }
 
 asio::awaitable<wire::LinkError> Uplink::read_frames(net::LinkStream& stream) {
@@ -234,21 +188,20 @@ asio::awaitable<wire::LinkError> Uplink::read_frames(net::LinkStream& stream) {
         const auto room = protocol_.prepare(kReadBytes);
         const auto [failed, count] =
             co_await stream.async_read_some(asio::buffer(room.data(), room.size()), kAwaitTuple);
-        if (failed) co_return closed(failed);
+        if (failed) co_return closed(stream, failed);
         if (auto failure = take(count)) co_return *failure;
     }
 }
 
-wire::LinkError Uplink::closed(const boost::system::error_code& failed) const {
+wire::LinkError Uplink::closed(const net::LinkStream& stream, const boost::system::error_code& failed) const {
     if (net::is_refused_certificate(failed)) {
-        return lost(fmt::format("no encrypted link to {}:{}: {}", options_.server.host, options_.server.port,
-                                net::handshake_text(failed, 0)));
+        return lost(fmt::format("no encrypted link to {}: {}", options_.server.text(), failure_text(stream, failed)));
     }
     if (protocol_.is_welcome() || options_.tls || failed != asio::error::eof) {
         return lost(fmt::format("the connection was lost: {}", failed.message()));
     }
-    return lost(fmt::format("{}:{} hung up without an answer; where it wants encrypted links, give --tls",
-                            options_.server.host, options_.server.port));
+    return lost(fmt::format("{} hung up without an answer; where it wants encrypted links, give --tls",
+                            options_.server.text()));
 }
 
 std::optional<wire::LinkError> Uplink::take(std::size_t bytes) {

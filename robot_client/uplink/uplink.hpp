@@ -1,13 +1,11 @@
 #pragma once
 
 #include "common/link/client_protocol.hpp"
-#include "common/net/link_stream.hpp"
-#include "common/net/tls.hpp"
+#include "common/net/connect.hpp"
 #include "robot_client/sources/wake_signal.hpp"
 #include "robot_client/uplink/backoff.hpp"
 #include "robot_client/uplink/feed.hpp"
 #include "robot_client/uplink/send_buffer.hpp"
-#include "robot_client/uplink/server_address.hpp"
 
 #include <boost/asio/awaitable.hpp>
 #include <boost/asio/io_context.hpp>
@@ -21,7 +19,7 @@
 namespace scanloom::robot {
 
 struct UplinkOptions {
-    ServerAddress server;
+    net::Address server;
     net::TlsContext tls;                                  ///< none: the link is not encrypted
     link::ClientProtocolOptions protocol;                 ///< `server` is set by the Uplink
     std::size_t buffer_bytes_max = std::size_t{32} << 20; ///< of unacknowledged scans; when full, the source waits
@@ -106,12 +104,10 @@ private:
     [[nodiscard]] boost::asio::awaitable<void> keep_linked();
     [[nodiscard]] boost::asio::awaitable<void> watch_progress();
     [[nodiscard]] boost::asio::awaitable<wire::LinkError> use_one_link();
-    [[nodiscard]] boost::asio::awaitable<std::optional<wire::LinkError>> connect(net::LinkStream::Socket& socket);
-    [[nodiscard]] boost::asio::awaitable<std::optional<wire::LinkError>> shake_hands(net::LinkStream& stream);
     [[nodiscard]] boost::asio::awaitable<wire::LinkError> read_frames(net::LinkStream& stream);
     [[nodiscard]] boost::asio::awaitable<wire::LinkError> write_frames(net::LinkStream& stream);
     [[nodiscard]] boost::asio::awaitable<wire::LinkError> watch_link();
-    [[nodiscard]] wire::LinkError closed(const boost::system::error_code& failed) const;
+    [[nodiscard]] wire::LinkError closed(const net::LinkStream& stream, const boost::system::error_code& failed) const;
     [[nodiscard]] std::optional<wire::LinkError> take(std::size_t bytes);
     [[nodiscard]] std::optional<Error> reason_to_give_up() const;
 

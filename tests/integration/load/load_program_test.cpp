@@ -261,7 +261,7 @@ TEST_F(LoadProgram, AMissingServerIsReportedAndExitsWith1) {
     const auto outcome = finish(unasked);
     EXPECT_EQ(outcome.code, 1);
     ASSERT_TRUE(outcome.report.is_object());
-    EXPECT_THAT(outcome.verdict(), HasSubstr("no connection: Connection refused"));
+    EXPECT_THAT(outcome.verdict(), HasSubstr("cannot connect to 127.0.0.1:1: Connection refused"));
 }
 
 TEST_F(LoadProgram, AServerThatClosesSilentlyGivesAHintOnTls) {

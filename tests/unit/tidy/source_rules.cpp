@@ -28,8 +28,8 @@ const std::vector<Folder> kFolders = {
     {.path = "common/limits", .may_include = {"common/error"}, .pure = true},
     {.path = "common/scan", .may_include = {"common/error", "common/geometry"}, .pure = true},
     {.path = "common/ros_map", .may_include = {"common/error", "common/scan"}, .pure = true},
-    {.path = "common/app", .may_include = {"common/error", "common/files", "common/scan", "common/text"}},
-    {.path = "common/net", .may_include = {"common/error"}},
+    {.path = "common/app", .may_include = {"common/error", "common/files", "common/net", "common/scan", "common/text"}},
+    {.path = "common/net", .may_include = {"common/error", "common/text"}},
     {.path = "common/wire", .may_include = {"common/error", "common/geometry", "common/hash", "common/scan"}},
 
     {.path = "common/link", .may_include = {"common/error", "common/limits", "common/scan", "common/wire"}},

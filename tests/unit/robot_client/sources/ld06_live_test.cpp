@@ -159,7 +159,7 @@ TEST_F(Ld06Lives, CanBeDestroyedBeforeOrAfterItsExecutor) {
 class Ld06OverTcp : public Ld06Lives {
 protected:
     [[nodiscard]] Ld06Endpoint endpoint() const {
-        return TcpPeer{"127.0.0.1", std::to_string(acceptor_.local_endpoint().port())};
+        return net::Address{"127.0.0.1", std::to_string(acceptor_.local_endpoint().port())};
     }
 
     /// Accepts one connection per answer, sends the bytes and closes the connection.
