@@ -8,6 +8,9 @@
 #include "server/http/text.hpp"
 #include "server/sockets/worker_pool.hpp"
 
+#include <boost/asio/bind_executor.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/use_awaitable.hpp>
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
@@ -49,6 +52,16 @@ asio::awaitable<Result<SessionRef>> load_session(session::SessionRegistry& sessi
 }
 
 } // namespace
+
+asio::awaitable<void> Context::run_on(Pool next) {
+    if (next == pool) co_return;
+    pool = next;
+    if (next == Pool::kIo) {
+        co_await asio::post(asio::use_awaitable);
+    } else {
+        co_await asio::post(asio::bind_executor(services.pools.executor_of(next), asio::use_awaitable));
+    }
+}
 
 std::variant<Api::Routed, Response> Api::route(const Request& head) const {
     const auto path = instance_of(head.target);

@@ -1,8 +1,7 @@
 #include "server/http/authorizer.hpp"
 
 #include "server/http/context.hpp"
-#include "server/http/credentials.hpp"
-#include "server/http/host.hpp"
+#include "server/http/header_fields.hpp"
 #include "server/http/problem.hpp"
 #include "server/http/text.hpp"
 

@@ -3,11 +3,9 @@
 #include "common/net/link_stream.hpp"
 #include "server/http/deadline.hpp"
 #include "server/http/incoming.hpp"
-#include "server/http/peer_wait.hpp"
-#include "server/http/refusals.hpp"
 #include "server/http/request.hpp"
 #include "server/http/response.hpp"
-#include "server/http/service.hpp"
+#include "server/http/server_config.hpp"
 #include "server/live/viewer.hpp"
 
 #include <boost/asio/awaitable.hpp>

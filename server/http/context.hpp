@@ -5,7 +5,6 @@
 #include "server/guidance/goal_assignments.hpp"
 #include "server/guidance/locator.hpp"
 #include "server/http/authorizer.hpp"
-#include "server/http/path_pattern.hpp"
 #include "server/http/pools.hpp"
 #include "server/http/request.hpp"
 #include "server/http/response_limit.hpp"

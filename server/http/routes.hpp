@@ -1,9 +1,9 @@
 #pragma once
 
 #include "common/error/error.hpp"
-#include "server/http/path_pattern.hpp"
 #include "server/http/pools.hpp"
 #include "server/http/response.hpp"
+#include "server/http/target.hpp"
 
 #include <boost/asio/awaitable.hpp>
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "server/live/viewer_limits.hpp"
+#include "server/metrics/metrics.hpp"
 #include "server/sockets/listening_port.hpp"
 
 #include <boost/asio/ip/tcp.hpp>
@@ -49,6 +50,17 @@ struct ServerConfig {
     /// Host names of the server in addition to localhost and IP addresses. On a loopback address all other names are
     /// refused; on another address they are refused if this list is not empty.
     std::vector<std::string> host_names;
+};
+
+class Api;
+
+/// State that all connections of a server share.
+struct Service {
+    ServerConfig config;
+    bool check_host = true;
+    const Api& api;
+    metrics::HttpCounters& counters;
+    live::ViewerSemaphore viewers; ///< connections of live viewers
 };
 
 } // namespace scanloom::http

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <concepts>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -32,6 +33,12 @@ template <std::integral T>
 
 /// Quotes untrusted text for a message or a log line: at most 64 characters, with '?' for everything but printable
 /// ASCII.
-[[nodiscard]] std::string in_quotes(std::string_view text);
+[[nodiscard]] inline std::string in_quotes(std::string_view text) {
+    constexpr std::size_t kShown = 64;
+    std::string result = "\"";
+    for (const char c : text.substr(0, kShown)) result += (c >= ' ' && c <= '~') ? c : '?';
+    result += text.size() > kShown ? "...\"" : "\"";
+    return result;
+}
 
 } // namespace scanloom::http

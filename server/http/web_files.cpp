@@ -1,8 +1,7 @@
 #include "server/http/web_files.hpp"
 
-#include "server/http/conditional.hpp"
 #include "server/http/content_coding.hpp"
-#include "server/http/host.hpp"
+#include "server/http/header_fields.hpp"
 #include "server/http/text.hpp"
 
 #include <fmt/format.h>

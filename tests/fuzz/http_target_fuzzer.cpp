@@ -1,6 +1,4 @@
-#include "server/http/conditional.hpp"
-#include "server/http/host.hpp"
-#include "server/http/path_pattern.hpp"
+#include "server/http/header_fields.hpp"
 #include "server/http/target.hpp"
 #include "tests/fuzz/check.hpp"
 

@@ -1,7 +1,6 @@
 #include "server/http/handlers/handlers.hpp"
 
-#include "server/http/credentials.hpp"
-#include "server/http/host.hpp"
+#include "server/http/header_fields.hpp"
 #include "server/http/json_read.hpp"
 
 #include <boost/json/array.hpp>

@@ -1,8 +1,8 @@
 #include "server/http/handlers/handlers.hpp"
 
 #include "core/mapping/snapshot.hpp"
-#include "server/http/conditional.hpp"
 #include "server/http/handlers/lookup.hpp"
+#include "server/http/header_fields.hpp"
 #include "server/http/problem.hpp"
 #include "server/http/text.hpp"
 #include "server/tiles/difference.hpp"

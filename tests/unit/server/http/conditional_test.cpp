@@ -1,4 +1,4 @@
-#include "server/http/conditional.hpp"
+#include "server/http/header_fields.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "server/http/peer_wait.hpp"
+#include "server/http/deadline.hpp"
 
 #include <gtest/gtest.h>
 

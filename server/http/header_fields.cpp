@@ -1,13 +1,13 @@
-#include "server/http/host.hpp"
+#include "server/http/header_fields.hpp"
 
 #include <boost/url/grammar/ci_string.hpp>
 #include <boost/url/parse.hpp>
 #include <boost/url/url_view.hpp>
+#include <fmt/format.h>
 
 #include <algorithm>
 
 namespace scanloom::http {
-
 bool is_known_host(std::string_view host_field, const std::vector<std::string>& names) {
     const auto authority = boost::urls::parse_authority(host_field);
     if (!authority || authority->has_userinfo()) return false;
@@ -57,6 +57,66 @@ std::string websocket_sources(std::string_view host_field, bool is_secure) {
     const std::string host(host_field);
     if (!is_plain) return {};
     return is_secure ? "wss://" + host : "ws://" + host + " wss://" + host;
+}
+
+std::optional<std::string_view> bearer_of(std::string_view authorization) noexcept {
+    constexpr std::string_view kScheme = "Bearer ";
+    if (!boost::urls::grammar::ci_is_equal(authorization.substr(0, kScheme.size()), kScheme)) return std::nullopt;
+    authorization.remove_prefix(kScheme.size());
+    const auto begin = authorization.find_first_not_of(' ');
+    if (begin == std::string_view::npos) return std::nullopt;
+    return authorization.substr(begin, authorization.find_last_not_of(' ') + 1 - begin);
+}
+
+std::optional<std::string_view> cookie_of(std::string_view cookie_field, std::string_view name) noexcept {
+    while (!cookie_field.empty()) {
+        const auto end = cookie_field.find(';');
+        auto pair = cookie_field.substr(0, end);
+        cookie_field = end == std::string_view::npos ? std::string_view() : cookie_field.substr(end + 1);
+        pair.remove_prefix(std::min(pair.find_first_not_of(" \t"), pair.size()));
+        if (pair.starts_with(name) && pair.substr(name.size()).starts_with('=')) return pair.substr(name.size() + 1);
+    }
+    return std::nullopt;
+}
+
+std::string set_login_cookie(std::string_view value, bool is_secure) {
+    return fmt::format("{}={}; Path=/; HttpOnly; SameSite=Strict{}{}", kLoginCookie, value, is_secure ? "; Secure" : "",
+                       value.empty() ? "; Max-Age=0" : "");
+}
+
+namespace {
+
+void skip(std::string_view& text, std::string_view characters) {
+    text.remove_prefix(std::min(text.find_first_not_of(characters), text.size()));
+}
+
+/// Removes one entity tag from the front and returns it without its W/; empty if there is none.
+std::string_view take_tag(std::string_view& text) {
+    if (text.starts_with("W/")) text.remove_prefix(2);
+    if (!text.starts_with('"')) return {};
+    const auto close = text.find('"', 1);
+    if (close == std::string_view::npos) return {};
+    const auto tag = text.substr(0, close + 1);
+    text.remove_prefix(tag.size());
+    return tag;
+}
+
+} // namespace
+
+bool if_none_match_has(std::string_view field, std::string_view etag) {
+    constexpr std::string_view kBlank = " \t";
+    skip(field, kBlank);
+    if (field.starts_with('*')) return field.find_first_not_of(" \t", 1) == std::string_view::npos;
+    bool found = false;
+    while (!field.empty()) {
+        const auto tag = take_tag(field);
+        if (tag.empty()) return false;
+        found = found || tag == etag;
+        skip(field, kBlank);
+        if (!field.empty() && !field.starts_with(',')) return false;
+        skip(field, ", \t"); // lists may contain empty elements
+    }
+    return found;
 }
 
 } // namespace scanloom::http

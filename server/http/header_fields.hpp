@@ -1,10 +1,14 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+/// Parses the header fields of requests, and writes those that depend on them.
 namespace scanloom::http {
+
+// Host and Origin
 
 /// Returns whether a Host field names this server: "localhost", an IP address, or one of `names`, with or without a
 /// port, in any case.
@@ -27,5 +31,30 @@ namespace scanloom::http {
 /// Returns the WebSocket addresses of this server for a Content-Security-Policy: "ws://localhost:8080
 /// wss://localhost:8080", or only the second one over TLS (`is_secure`). Empty if the Host field is not usable.
 [[nodiscard]] std::string websocket_sources(std::string_view host_field, bool is_secure);
+
+// Authorization and Cookie
+
+inline constexpr std::string_view kLoginCookie = "scanloom_login";
+
+/// Returns the token of an Authorization field "Bearer TOKEN" (RFC 6750, section 2.1), or nullopt for another form.
+[[nodiscard]] std::optional<std::string_view> bearer_of(std::string_view authorization) noexcept;
+
+/// Returns the value of the first cookie called `name` in a Cookie field (RFC 6265, section 4.2).
+[[nodiscard]] std::optional<std::string_view> cookie_of(std::string_view cookie_field, std::string_view name) noexcept;
+
+/// Returns a Set-Cookie field that restricts the cookie to this server's own pages and hides it from scripts.
+/// @param value      empty to delete the cookie
+/// @param is_secure  whether the browser sends it over TLS only
+[[nodiscard]] std::string set_login_cookie(std::string_view value, bool is_secure);
+
+// If-None-Match
+
+/// Returns whether an If-None-Match field contains `etag`.
+///
+/// @param field  "*" or a list of entity tags, compared weakly (W/ is ignored); a malformed field matches nothing, so
+///               that the response is sent in full
+/// @param etag   an entity tag with its quotes
+/// Source: RFC 9110, sections 8.8.3.2 and 13.1.2.
+[[nodiscard]] bool if_none_match_has(std::string_view field, std::string_view etag);
 
 } // namespace scanloom::http
