@@ -8,6 +8,7 @@
 #include <boost/json/array.hpp>
 #include <boost/json/object.hpp>
 
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -15,6 +16,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 /// GeoJSON as text, in metres of the map frame. RFC 7946 knows only degrees; foreign members state the difference. The
@@ -50,5 +52,16 @@ inline constexpr std::size_t kCellTextBytes = 120;
 
 /// Returns 200 with a text that may be large. The response keeps `permit` until it has been sent.
 [[nodiscard]] Response ok_text(std::string_view content_type, limits::Semaphore::Permit permit, std::string text);
+
+/// Returns ok_text() of a text that is made only if there is a permit for it.
+/// @param permit  the result of ResponseLimit::take()
+/// @param make    returns the text
+/// Errors: that of `permit`.
+template <std::invocable Make>
+[[nodiscard]] Result<Response> ok_text(std::string_view content_type, Result<limits::Semaphore::Permit> permit,
+                                       const Make& make) {
+    if (!permit) return permit.error();
+    return ok_text(content_type, std::move(*permit), make());
+}
 
 } // namespace scanloom::http

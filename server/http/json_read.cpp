@@ -103,6 +103,13 @@ Result<boost::json::object> parse_json_object(std::string_view body) {
     return std::move(value.get_object());
 }
 
+Result<boost::json::object> parse_json_object(std::string_view body, std::span<const std::string_view> known) {
+    auto object = parse_json_object(body);
+    if (!object) return object;
+    if (auto allowed = check_members(*object, known); !allowed) return allowed.error();
+    return object;
+}
+
 Result<> check_members(const boost::json::object& object, std::span<const std::string_view> known) {
     for (const auto& member : object) {
         const std::string_view name(member.key().data(), member.key().size());

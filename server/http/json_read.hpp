@@ -4,6 +4,7 @@
 
 #include <boost/json/object.hpp>
 
+#include <initializer_list>
 #include <optional>
 #include <span>
 #include <string>
@@ -17,6 +18,15 @@ namespace scanloom::http {
 /// Parses a body as a JSON object of at most 8 levels.
 /// Errors: kMalformed if it is not JSON, deeper, or not an object; kInvalidField if a key is given twice.
 [[nodiscard]] Result<boost::json::object> parse_json_object(std::string_view body);
+
+/// Parses a body as a JSON object that has no other members than `known`.
+/// Errors: those of parse_json_object(body) and check_members().
+[[nodiscard]] Result<boost::json::object> parse_json_object(std::string_view body,
+                                                            std::span<const std::string_view> known);
+[[nodiscard]] inline Result<boost::json::object> parse_json_object(std::string_view body,
+                                                                   std::initializer_list<std::string_view> known) {
+    return parse_json_object(body, std::span(known.begin(), known.size()));
+}
 
 /// Returns the first key that occurs twice in one object of `json`, at any depth, or nullopt. A parser that keeps the
 /// last of two values would silently ignore the first one.

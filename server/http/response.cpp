@@ -39,6 +39,14 @@ Response ok(std::string_view content_type, Body body) {
 
 Response ok(const boost::json::value& json) { return ok(kJson, Body(json_text(json))).set("Cache-Control", kNotKept); }
 
+Response created(const boost::json::value& json) {
+    auto response = ok(json);
+    response.status = Status::created;
+    return response;
+}
+
+Response no_content() { return {.status = Status::no_content, .fields = {}, .body = {}}; }
+
 Response not_modified(std::string_view etag, std::string_view cache_control) {
     Response response{.status = Status::not_modified, .fields = {}, .body = {}};
     response.set("ETag", etag).set("Cache-Control", cache_control);

@@ -83,6 +83,12 @@ struct Response {
 /// 200 with JSON that must not be cached.
 [[nodiscard]] Response ok(const boost::json::value& json);
 
+/// 201 with JSON that describes what was created.
+[[nodiscard]] Response created(const boost::json::value& json);
+
+/// 204, without a body.
+[[nodiscard]] Response no_content();
+
 /// 304: the client already has the current content.
 [[nodiscard]] Response not_modified(std::string_view etag, std::string_view cache_control);
 

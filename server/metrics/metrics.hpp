@@ -15,13 +15,25 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace scanloom::metrics {
 
 /// Returns a family of one metric whose value is read at the time of the scrape instead of being counted.
-[[nodiscard]] prometheus::MetricFamily gauge_now(std::string name, std::string help, double value);
-[[nodiscard]] prometheus::MetricFamily counter_now(std::string name, std::string help, double value);
+template <class Number>
+[[nodiscard]] prometheus::MetricFamily gauge_now(std::string name, std::string help, Number value) {
+    prometheus::ClientMetric metric;
+    metric.gauge.value = static_cast<double>(value);
+    return {std::move(name), std::move(help), prometheus::MetricType::Gauge, {metric}};
+}
+
+template <class Number>
+[[nodiscard]] prometheus::MetricFamily counter_now(std::string name, std::string help, Number value) {
+    prometheus::ClientMetric metric;
+    metric.counter.value = static_cast<double>(value);
+    return {std::move(name), std::move(help), prometheus::MetricType::Counter, {metric}};
+}
 
 /// Returns the families in the Prometheus text format 0.0.4.
 [[nodiscard]] std::string to_text(const std::vector<prometheus::MetricFamily>& families);

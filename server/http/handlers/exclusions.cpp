@@ -1,14 +1,13 @@
 #include "server/http/handlers/handlers.hpp"
 
-#include "server/guidance/robots.hpp"
 #include "server/http/handlers/lookup.hpp"
+#include "server/http/handlers/parameters.hpp"
 #include "server/http/json_read.hpp"
 #include "server/http/text.hpp"
 
 #include <boost/json/array.hpp>
 #include <fmt/format.h>
 
-#include <array>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -16,7 +15,6 @@
 namespace scanloom::http {
 namespace {
 
-constexpr std::array<std::string_view, 3> kExclusionMembers = {"robot", "from", "to"};
 constexpr std::string_view kSeq = "seq:";
 
 /// One end of a range.
@@ -68,10 +66,8 @@ boost::json::object exclusion_json(const Exclusion& exclusion, std::string_view 
 
 /// Returns the session's data without its maps.
 Result<std::shared_ptr<const mapping::Snapshot>> find_facts(const Context& context) {
-    const auto& sessions = context.services.sessions;
-    const auto& name = context.arguments["session"];
-    const auto listed = sessions.listed(name);
-    if (!listed) return damage_of(sessions, name).value_or(session::no_such_session(name));
+    const auto listed = find_listed(context);
+    if (!listed) return listed.error();
     return listed->session ? listed->session->snapshot() : listed->summary.facts;
 }
 
@@ -79,22 +75,19 @@ Result<std::shared_ptr<const mapping::Snapshot>> find_facts(const Context& conte
 
 Result<Response> exclude_scans(Context& context) {
     if (auto known = context.query.check_only({}); !known) return known.error();
-    const auto body = parse_json_object(context.request.body);
+    const auto body = parse_json_object(context.request.body, {"robot", "from", "to"});
     if (!body) return body.error();
-    if (auto known = check_members(*body, kExclusionMembers); !known) return known.error();
     const auto robot = read_text(*body, "robot");
     if (!robot) return robot.error();
     const auto range = read_range(*body);
     if (!range) return range.error();
     const auto facts = find_facts(context);
     if (!facts) return facts.error();
-    const auto index = guide::find_robot(**facts, *robot);
-    if (!index) return prefixed(fmt::format("robot is {}: ", in_quotes(*robot)), index.error());
+    const auto index = robot_named(**facts, *robot);
+    if (!index) return index.error();
     const auto exclusion = context.services.sessions.exclude(context.arguments["session"], *index, *range);
     if (!exclusion) return exclusion.error();
-    auto response = ok(exclusion_json(*exclusion, *robot));
-    response.status = Status::created;
-    return response;
+    return created(exclusion_json(*exclusion, *robot));
 }
 
 Result<Response> list_exclusions(Context& context) {
@@ -116,7 +109,7 @@ Result<Response> lift_exclusion(Context& context) {
         return Error{Errc::kNotFound, fmt::format("there is no exclusion {}; ids are whole numbers", in_quotes(text))};
     if (auto lifted = context.services.sessions.lift_exclusion(context.arguments["session"], *id); !lifted)
         return lifted.error();
-    return Response{.status = Status::no_content, .fields = {}, .body = {}};
+    return no_content();
 }
 
 } // namespace scanloom::http

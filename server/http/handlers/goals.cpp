@@ -3,7 +3,7 @@
 #include "common/scan/limits.hpp"
 #include "server/guidance/robots.hpp"
 #include "server/http/geojson.hpp"
-#include "server/http/handlers/lookup.hpp"
+#include "server/http/handlers/parameters.hpp"
 #include "server/http/handlers/planning_request.hpp"
 #include "server/http/json_read.hpp"
 #include "server/http/text.hpp"
@@ -13,7 +13,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -64,14 +63,6 @@ std::string goal_text(std::string_view robot, const guide::Goal& goal, const gui
                        leads_there ? fmt::to_string(rounded_metres(way->length_m)) : "null");
 }
 
-Result<RobotIndex> find_robot(const mapping::Snapshot& maps, std::string_view name) {
-    const auto robot = guide::find_robot(maps, name);
-    if (!robot) return prefixed(fmt::format("robot is {}: ", in_quotes(name)), robot.error());
-    return *robot;
-}
-
-constexpr std::array<std::string_view, 3> kGoalMembers = {"robot", "size_min", "body_radius"};
-
 } // namespace
 
 Result<Response> get_goal(Context& context) {
@@ -81,7 +72,7 @@ Result<Response> get_goal(Context& context) {
     const auto name = context.query.find("robot");
     if (!name) return Error{Errc::kInvalidField, "robot is missing; name the robot whose goal is asked for"};
     const auto maps = (*session)->snapshot();
-    const auto robot = find_robot(*maps, *name);
+    const auto robot = robot_named(*maps, *name);
     if (!robot) return robot.error();
 
     const auto page = context.services.goals.ways().page(*session, guide::RobotPaths::Clock::now());
@@ -91,21 +82,20 @@ Result<Response> get_goal(Context& context) {
         const auto head = head_text(*name, maps->revision, explored ? "complete" : "none");
         return ok_text(kJson, nullptr, fmt::format("{}{}}}", head, kNoGoal));
     }
-    auto permit = context.services.responses.take((held->way ? held->way->points.size() : 0) * kPointTextBytes);
-    if (!permit) return permit.error();
-    return ok_text(kJson, std::move(*permit), goal_text(*name, *held->goal, held->way.get()));
+    const std::size_t points = held->way ? held->way->points.size() : 0;
+    return ok_text(kJson, context.services.responses.take(points * kPointTextBytes),
+                   [&] { return goal_text(*name, *held->goal, held->way.get()); });
 }
 
 Result<Response> assign_goal(Context& context) {
     const auto found = find_for_search(context, {});
     if (!found) return found.error();
     const auto& snapshot = *found->snapshot;
-    const auto body = parse_json_object(context.request.body);
+    const auto body = parse_json_object(context.request.body, {"robot", "size_min", "body_radius"});
     if (!body) return body.error();
-    if (auto known = check_members(*body, kGoalMembers); !known) return known.error();
     const auto name = read_text(*body, "robot");
     if (!name) return name.error();
-    const auto robot = find_robot(snapshot, *name);
+    const auto robot = robot_named(snapshot, *name);
     if (!robot) return robot.error();
     const auto options = exploration_options(*body, snapshot.robots[*robot].body_radius);
     if (!options) return options.error();
@@ -115,9 +105,8 @@ Result<Response> assign_goal(Context& context) {
     const auto next = context.services.goals.next(found->session, snapshot, *robot, Point2{pose->x, pose->y},
                                                   guide::GoalAssignments::Clock::now(), *options);
     if (!next) return next.error();
-    auto permit = context.services.responses.take(next->path.points.size() * kPointTextBytes);
-    if (!permit) return permit.error();
-    return ok_text(kJson, std::move(*permit), goal_text(*name, snapshot, *next));
+    return ok_text(kJson, context.services.responses.take(next->path.points.size() * kPointTextBytes),
+                   [&] { return goal_text(*name, snapshot, *next); });
 }
 
 namespace {

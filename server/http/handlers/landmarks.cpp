@@ -2,10 +2,8 @@
 
 #include "core/landmarks/landmark.hpp"
 #include "server/exchange/point_text.hpp"
-#include "server/guidance/robots.hpp"
 #include "server/http/geojson.hpp"
-#include "server/http/handlers/lookup.hpp"
-#include "server/http/text.hpp"
+#include "server/http/handlers/parameters.hpp"
 #include "server/sessions/log_readers.hpp"
 
 #include <boost/json/object.hpp>
@@ -15,7 +13,6 @@
 #include <chrono>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -39,15 +36,6 @@ struct LandmarkQuery {
         return one.last > since && one.seen >= seen_min && inside;
     }
 };
-
-Result<std::uint32_t> seen_min_parameter(const Query& query) {
-    const auto text = query.find("seen_min");
-    if (!text) return std::uint32_t{1};
-    const auto number = parse_integer<std::uint32_t>(*text);
-    if (number && *number > 0) return *number;
-    return Error{Errc::kInvalidField, fmt::format("seen_min is {}; a whole number from 1 to {} is needed",
-                                                  in_quotes(*text), std::numeric_limits<std::uint32_t>::max())};
-}
 
 double rounded(double ratio) { return std::round(ratio * 1e4) / 1e4; }
 
@@ -79,7 +67,9 @@ Result<Response> get_landmarks(Context& context) {
     if (*bbox && ((*bbox)->min_x > (*bbox)->max_x || (*bbox)->min_y > (*bbox)->max_y)) {
         return Error{Errc::kInvalidField, "bbox is empty: min_x,min_y,max_x,max_y in metres, the smaller ones first"};
     }
-    const auto seen_min = seen_min_parameter(context.query);
+    const auto seen_min =
+        parameter(context.query, "seen_min", std::uint32_t{1}, integer_from<std::uint32_t>(1, UINT32_MAX),
+                  "a whole number from 1 to 4294967295 is needed");
     if (!seen_min) return seen_min.error();
     const auto& session = context.session;
     if (!session) return session.error();
@@ -125,42 +115,30 @@ enum class PointFile { kCsv, kPly };
 /// Selects captures and sets how they are fused.
 struct CloudQuery {
     Revision since = 0;
-    std::optional<Revision> until;
+    std::optional<Revision> until; ///< nullopt: unfinished captures, too; else they belong to a later part
     std::optional<RobotIndex> robot;
     double threshold = kThreshold;
 
     [[nodiscard]] bool wants(RobotIndex of, Revision ended) const { return ended > since && (!robot || of == *robot); }
 };
 
-/// Without `until`, unfinished captures are included too. With it they are not, because they belong to a later part.
-Result<std::optional<Revision>> until_parameter(const Query& query) {
-    const auto text = query.find("until");
-    if (!text) return std::optional<Revision>();
-    const auto revision = parse_integer<Revision>(*text);
-    if (revision) return revision;
-    return Error{Errc::kInvalidField, fmt::format("until is {}; a revision is needed", in_quotes(*text))};
-}
-
-Result<double> threshold_parameter(const Query& query) {
-    const auto text = query.find("threshold");
-    if (!text) return kThreshold;
-    const auto metres = parse_real(*text);
-    if (metres && *metres >= 0.0 && *metres <= kThresholdMax) return *metres;
-    return Error{Errc::kInvalidField,
-                 fmt::format("threshold is {}; metres from 0 to {:g} are needed", in_quotes(*text), kThresholdMax)};
+std::optional<double> parse_threshold(std::string_view text) {
+    const auto metres = parse_real(text);
+    return metres && *metres >= 0.0 && *metres <= kThresholdMax ? metres : std::nullopt;
 }
 
 Result<CloudQuery> cloud_query(const mapping::Snapshot& snapshot, const Query& query) {
     const auto since = since_parameter(query);
     if (!since) return since.error();
-    const auto until = until_parameter(query);
+    const auto until =
+        parameter(query, "until", std::optional<Revision>(), parse_integer<Revision>, "a revision is needed");
     if (!until) return until.error();
-    const auto threshold = threshold_parameter(query);
+    const auto threshold = parameter(query, "threshold", kThreshold, parse_threshold, "metres from 0 to 1 are needed");
     if (!threshold) return threshold.error();
     CloudQuery asked{*since, *until, std::nullopt, *threshold};
     if (const auto name = query.find("robot")) {
-        const auto robot = guide::find_robot(snapshot, *name);
-        if (!robot) return prefixed(fmt::format("robot is {}: ", in_quotes(*name)), robot.error());
+        const auto robot = robot_named(snapshot, *name);
+        if (!robot) return robot.error();
         asked.robot = *robot;
     }
     return asked;

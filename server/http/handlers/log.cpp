@@ -11,6 +11,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -21,57 +22,44 @@ namespace {
 
 constexpr std::size_t kPieceBytes = std::size_t{64} << 10;
 
-/// Writes entries in one of the formats.
-class Format {
-public:
-    Format() = default;
-    Format(const Format&) = delete;
-    Format& operator=(const Format&) = delete;
-    virtual ~Format() = default;
-
-    [[nodiscard]] virtual std::string head() const = 0;
-    [[nodiscard]] virtual Result<> append(std::string& text, std::string_view entry) = 0;
+/// A format of a log.
+struct LogFormat {
+    std::string_view content_type;
+    std::string_view ending; ///< of the file's name
+    std::string head;        ///< before the first entry
+    std::function<Result<>(std::string& text, std::string_view entry)> append;
 };
 
-class ProtobufFormat final : public Format {
-public:
-    [[nodiscard]] std::string head() const override { return {}; }
-    [[nodiscard]] Result<> append(std::string& text, std::string_view bytes) override {
-        const auto entry = wire::plain_entry(bytes);
-        if (!entry) return entry.error();
-        std::array<unsigned char, 4> length{};
-        boost::endian::store_big_u32(length.data(), static_cast<std::uint32_t>(entry->size()));
-        text.append(reinterpret_cast<const char*>(length.data()), length.size()).append(*entry);
-        return {};
-    }
-};
+LogFormat protobuf_format() {
+    return {"application/octet-stream", "scanlog", {}, [](std::string& text, std::string_view bytes) -> Result<> {
+                const auto entry = wire::plain_entry(bytes);
+                if (!entry) return entry.error();
+                std::array<unsigned char, 4> length{};
+                boost::endian::store_big_u32(length.data(), static_cast<std::uint32_t>(entry->size()));
+                text.append(reinterpret_cast<const char*>(length.data()), length.size()).append(*entry);
+                return {};
+            }};
+}
 
-class CarmenFormat final : public Format {
-public:
-    explicit CarmenFormat(const session::SessionInfo& session)
-        : session_(session.name), carmen_(session::scan_filter_of(session)) {}
-
-    [[nodiscard]] std::string head() const override { return exchange::CarmenText::head(session_); }
-    [[nodiscard]] Result<> append(std::string& text, std::string_view bytes) override {
-        const auto entry = wire::decode_entry(bytes);
-        if (!entry) return Error{Errc::kDataLoss, entry.error().message};
-        const auto lines = carmen_.lines(*entry);
-        if (!lines) return lines.error();
-        text += *lines;
-        return {};
-    }
-
-private:
-    std::string session_;
-    exchange::CarmenText carmen_;
-};
+LogFormat carmen_format(const session::SessionInfo& session) {
+    return {"text/plain; charset=utf-8", "clf", exchange::CarmenText::head(session.name),
+            [carmen = exchange::CarmenText(session::scan_filter_of(session))](
+                std::string& text, std::string_view bytes) mutable -> Result<> {
+                const auto entry = wire::decode_entry(bytes);
+                if (!entry) return Error{Errc::kDataLoss, entry.error().message};
+                const auto lines = carmen.lines(*entry);
+                if (!lines) return lines.error();
+                text += *lines;
+                return {};
+            }};
+}
 
 /// Reads a log piece by piece. Between two pieces it keeps only the position at which to continue.
 class LogStream final : public BodyStream {
 public:
-    LogStream(std::shared_ptr<session::Session> session, store::ScanLog& log, std::unique_ptr<Format> format)
+    LogStream(std::shared_ptr<session::Session> session, store::ScanLog& log, LogFormat format)
         : session_(std::move(session)), log_(log), format_(std::move(format)), newest_(session_->snapshot()->revision),
-          piece_(format_->head()) {}
+          piece_(format_.head) {}
 
     /// Reads the first piece, so that a log that cannot be written is reported before anything is sent.
     [[nodiscard]] Result<> begin() { return read(); }
@@ -88,7 +76,7 @@ private:
         if (read_ == newest_) return {};
         return log_.read(session_->info().id, read_, [&](Revision revision, std::string_view bytes) -> store::Visited {
             if (revision > newest_ || piece_.size() >= kPieceBytes) return store::Visit::kStop;
-            if (auto appended = format_->append(piece_, bytes); !appended) return appended;
+            if (auto appended = format_.append(piece_, bytes); !appended) return appended;
             read_ = revision;
             return {};
         });
@@ -96,7 +84,7 @@ private:
 
     std::shared_ptr<session::Session> session_;
     store::ScanLog& log_;
-    std::unique_ptr<Format> format_;
+    LogFormat format_;
     const Revision newest_;
     Revision read_ = 0;
     std::string piece_; // read and not yet returned
@@ -116,15 +104,13 @@ Result<Response> get_log(Context& context) {
     if (!session) return session.error();
     const auto& info = (*session)->info();
 
-    std::unique_ptr<Format> written_as = std::make_unique<ProtobufFormat>();
-    if (is_carmen) written_as = std::make_unique<CarmenFormat>(info);
-    auto stream = std::make_shared<LogStream>(*session, context.services.log, std::move(written_as));
+    const LogFormat written_as = is_carmen ? carmen_format(info) : protobuf_format();
+    auto stream = std::make_shared<LogStream>(*session, context.services.log, written_as);
     if (auto begun = stream->begin(); !begun) return begun.error();
 
     Response response;
-    response.set("Content-Type", is_carmen ? "text/plain; charset=utf-8" : "application/octet-stream")
-        .set("Content-Disposition",
-             fmt::format("attachment; filename=\"{}.{}\"", info.name, is_carmen ? "clf" : "scanlog"))
+    response.set("Content-Type", written_as.content_type)
+        .set("Content-Disposition", fmt::format("attachment; filename=\"{}.{}\"", info.name, written_as.ending))
         .set("Cache-Control", kNotKept);
     response.stream = std::move(stream);
     return response;

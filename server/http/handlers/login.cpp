@@ -6,8 +6,6 @@
 #include <boost/json/array.hpp>
 #include <boost/json/object.hpp>
 
-#include <array>
-
 namespace scanloom::http {
 namespace {
 
@@ -35,10 +33,8 @@ Result<Response> get_login(Context& context) {
 Result<Response> post_login(Context& context) {
     const Authorizer& authorizer = context.services.authorizer;
     if (auto known = context.query.check_only({}); !known) return known.error();
-    const auto body = parse_json_object(context.request.body);
+    const auto body = parse_json_object(context.request.body, {"token"});
     if (!body) return body.error();
-    constexpr std::array<std::string_view, 1> kMembers = {"token"};
-    if (auto known = check_members(*body, kMembers); !known) return known.error();
     const auto secret = read_text(*body, "token");
     if (!secret) return secret.error();
     const auto token = authorizer.authenticator().admit(*secret);
@@ -60,9 +56,7 @@ Result<Response> delete_login(Context& context) {
         }
         authorizer.logins().close(*cookie);
     }
-    Response response{.status = Status::no_content, .fields = {}, .body = {}};
-    response.set("Set-Cookie", set_login_cookie("", context.request.is_secure));
-    return response;
+    return no_content().set("Set-Cookie", set_login_cookie("", context.request.is_secure));
 }
 
 } // namespace scanloom::http

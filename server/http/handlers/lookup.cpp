@@ -9,13 +9,11 @@
 #include <boost/asio/this_coro.hpp>
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
-#include <limits>
 #include <string_view>
 #include <vector>
 
 namespace scanloom::http {
+
 std::optional<Error> damage_of(const session::SessionRegistry& sessions, const std::string& name) {
     const auto damaged = sessions.damaged();
     if (const auto found = damaged.find(name); found != damaged.end()) {
@@ -30,6 +28,13 @@ std::optional<Error> damage_of(const session::SessionRegistry& sessions, const s
     return std::nullopt;
 }
 
+Result<session::ListedSession> find_listed(const Context& context) {
+    const auto& sessions = context.services.sessions;
+    const auto& name = context.arguments["session"];
+    if (auto listed = sessions.listed(name)) return *std::move(listed);
+    return damage_of(sessions, name).value_or(session::no_such_session(name));
+}
+
 std::string session_tag(const session::SessionInfo& info, const MakingVersions& versions) {
     const auto tag = fmt::format("{}-{}.{}", session::tag_of(info), versions.weaving, versions.rendering);
     return tag_with(tag, *info.exclusions);
@@ -37,29 +42,6 @@ std::string session_tag(const session::SessionInfo& info, const MakingVersions& 
 
 std::string tag_with(std::string_view tag, const Exclusions& exclusions) {
     return exclusions.revision() == 0 ? std::string(tag) : fmt::format("{}-x{}", tag, exclusions.revision());
-}
-
-Result<mapping::Layer> find_layer(std::string_view name) {
-    if (const auto layer = mapping::layer_of(name)) return *layer;
-    std::array<std::string_view, mapping::kLayers.size()> names;
-    std::ranges::transform(mapping::kLayers, names.begin(), mapping::name_of);
-    return Error{Errc::kNotFound,
-                 fmt::format("there is no layer {}; possible are {}", in_quotes(name), fmt::join(names, ", "))};
-}
-
-Result<mapping::Layer> layer_parameter(const Query& query) {
-    return find_layer(query.find("layer").value_or(mapping::name_of(mapping::Layer::kOccupancy)));
-}
-
-Result<Revision> since_parameter(const Query& query) {
-    const auto text = query.find("since").value_or("0");
-    if (const auto since = parse_integer<Revision>(text)) return *since;
-    return Error{Errc::kInvalidField, fmt::format("since is {}; a revision is needed, a whole number from 0 to {}",
-                                                  in_quotes(text), std::numeric_limits<Revision>::max())};
-}
-
-Revision since_in(const mapping::Snapshot& snapshot, Revision since) noexcept {
-    return since >= snapshot.exclusions->revision() && since <= snapshot.revision ? since : 0;
 }
 
 namespace {
@@ -175,32 +157,6 @@ Result<TwoMaps> find_two_maps(const Context& context, std::initializer_list<std:
     auto b = chosen(context, kWith);
     if (!b) return b.error();
     return TwoMaps{std::move(*a), std::move(*b)};
-}
-
-namespace {
-
-std::optional<tiles::Extent> parse_extent(std::string_view text) {
-    std::array<double, 4> edges{};
-    for (std::size_t i = 0; i < edges.size(); ++i) {
-        const auto comma = text.find(',');
-        if ((comma == std::string_view::npos) != (i + 1 == edges.size())) return std::nullopt;
-        const auto edge = parse_real(text.substr(0, comma));
-        if (!edge) return std::nullopt;
-        edges[i] = *edge;
-        text.remove_prefix(comma == std::string_view::npos ? text.size() : comma + 1);
-    }
-    return tiles::Extent{edges[0], edges[1], edges[2], edges[3]};
-}
-
-} // namespace
-
-Result<std::optional<tiles::Extent>> bbox_parameter(const Query& query) {
-    const auto text = query.find("bbox");
-    if (!text) return std::optional<tiles::Extent>();
-    const auto extent = parse_extent(*text);
-    if (extent) return extent;
-    return Error{Errc::kInvalidField,
-                 fmt::format("bbox is {}; min_x,min_y,max_x,max_y in metres is needed", in_quotes(*text))};
 }
 
 } // namespace scanloom::http

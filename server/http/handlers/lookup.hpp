@@ -26,6 +26,10 @@ namespace scanloom::http {
 /// ran out while loading it.
 [[nodiscard]] std::optional<Error> damage_of(const session::SessionRegistry& sessions, const std::string& name);
 
+/// Returns the session in the path, in memory or not.
+/// Errors: kNotFound; those of damage_of().
+[[nodiscard]] Result<session::ListedSession> find_listed(const Context& context);
+
 /// Versions of the algorithms that compute maps from logs, and bytes from maps.
 struct MakingVersions {
     std::uint32_t weaving = mapping::kProjectionVersion;
@@ -40,22 +44,6 @@ struct MakingVersions {
 
 /// Returns the tag of maps with these exclusions. Each change of the exclusions changes the maps at the same revisions.
 [[nodiscard]] std::string tag_with(std::string_view tag, const Exclusions& exclusions);
-
-/// Errors: kNotFound if there is no such layer.
-[[nodiscard]] Result<mapping::Layer> find_layer(std::string_view name);
-
-/// Returns the layer parameter, or occupancy if it is not given.
-/// Errors: kNotFound if there is no such layer.
-[[nodiscard]] Result<mapping::Layer> layer_parameter(const Query& query);
-
-/// Returns the since parameter, or 0 if it is not given.
-/// Errors: kInvalidField if it is not a revision.
-[[nodiscard]] Result<Revision> since_parameter(const Query& query);
-
-/// Returns the revision from which to report changes: usually `since`. Returns 0 if the session has not reached
-/// `since`, because then the client knows only a deleted session of this name; and if `since` is before the newest
-/// change of exclusions, which may have changed the maps anywhere.
-[[nodiscard]] Revision since_in(const mapping::Snapshot& snapshot, Revision since) noexcept;
 
 /// The maps that a request refers to.
 struct Maps {
@@ -97,9 +85,5 @@ enum class Waiting { kAllowed, kNotAllowed };
 /// Errors: kNotFound if there is no such replay job.
 [[nodiscard]] Result<std::shared_ptr<session::ReplayJob>>
 find_weave(session::ReplayJobs& weaves, const session::Session& session, std::string_view id);
-
-/// Returns the bbox parameter, `min_x,min_y,max_x,max_y` in metres, or nullopt if it is not given.
-/// Errors: kInvalidField if it is not four numbers.
-[[nodiscard]] Result<std::optional<tiles::Extent>> bbox_parameter(const Query& query);
 
 } // namespace scanloom::http

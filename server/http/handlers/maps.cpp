@@ -2,6 +2,8 @@
 
 #include "core/mapping/snapshot.hpp"
 #include "server/http/handlers/lookup.hpp"
+#include "server/http/handlers/parameters.hpp"
+#include "server/http/handlers/session_json.hpp"
 #include "server/http/header_fields.hpp"
 #include "server/http/problem.hpp"
 #include "server/http/text.hpp"
@@ -157,13 +159,6 @@ boost::json::object shown(const Maps& maps, std::optional<std::string_view> weav
     return json;
 }
 
-boost::json::object shown(const tiles::Extent& extent) {
-    return {{"min_x", rounded_metres(extent.min_x)},
-            {"min_y", rounded_metres(extent.min_y)},
-            {"max_x", rounded_metres(extent.max_x)},
-            {"max_y", rounded_metres(extent.max_y)}};
-}
-
 /// Returns part / whole, or null if the whole is 0.
 boost::json::value part_of(double part, std::uint64_t whole) {
     if (whole == 0) return nullptr;
@@ -194,7 +189,7 @@ Result<Response> get_difference(Context& context) {
                              {"cell_size", frame.cell_size},
                              {"width", frame.width()},
                              {"height", frame.height()},
-                             {"bounds", shown(tiles::extent_of(frame.cells, frame.cell_size))},
+                             {"bounds", to_json(tiles::extent_of(frame.cells, frame.cell_size))},
                              {"cells", std::move(cells)},
                              {"areas", std::move(areas)},
                              {"agreement", part_of(static_cast<double>(sums.agreeing), sums.known)},

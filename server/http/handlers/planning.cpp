@@ -6,6 +6,7 @@
 #include "server/guidance/robots.hpp"
 #include "server/guidance/search_limit.hpp"
 #include "server/http/geojson.hpp"
+#include "server/http/handlers/parameters.hpp"
 #include "server/http/handlers/planning_request.hpp"
 #include "server/http/json_read.hpp"
 #include "server/http/text.hpp"
@@ -23,12 +24,9 @@
 namespace scanloom::http {
 namespace {
 
-constexpr std::array<std::string_view, 5> kPlanMembers = {"from", "to", "allow_unknown", "body_radius", "danger_cost"};
-
 Result<boost::json::object> parse_plan(std::string_view text) {
-    auto body = parse_json_object(text);
+    auto body = parse_json_object(text, {"from", "to", "allow_unknown", "body_radius", "danger_cost"});
     if (!body) return body;
-    if (auto known = check_members(*body, kPlanMembers); !known) return known.error();
     for (const char* name : {"from", "to"}) {
         if (!body->contains(name)) {
             return Error{Errc::kInvalidField, fmt::format("{} is missing; give [x, y] in metres", name)};
@@ -54,17 +52,13 @@ Result<Response> post_plan(Context& context) {
 
     const auto path = planning::plan_path(snapshot.classes, snapshot.config.cell_size, from->point, *to, *options);
     if (!path) return path.error();
-    auto permit = context.services.responses.take(path->points.size() * kPointTextBytes);
-    if (!permit) return permit.error();
     const boost::json::object properties{{"length", rounded_metres(path->length_m)},
                                          {"cost", rounded_metres(path->cost)}};
-    return ok_text(kGeoJson, std::move(*permit),
-                   feature_document(snapshot.revision, properties, line_string(path->points)));
+    return ok_text(kGeoJson, context.services.responses.take(path->points.size() * kPointTextBytes),
+                   [&] { return feature_document(snapshot.revision, properties, line_string(path->points)); });
 }
 
 namespace {
-
-constexpr std::array<std::string_view, 4> kCoverageMembers = {"start", "spacing", "region", "body_radius"};
 
 Result<Place> start_of(const boost::json::object& body, const mapping::Snapshot& maps) {
     if (const auto* start = body.if_contains("start")) return read_place(*start, "start", maps);
@@ -118,9 +112,8 @@ Result<Response> post_coverage(Context& context) {
     const auto found = find_for_search(context, {});
     if (!found) return found.error();
     const auto& snapshot = *found->snapshot;
-    const auto body = parse_json_object(context.request.body);
+    const auto body = parse_json_object(context.request.body, {"start", "spacing", "region", "body_radius"});
     if (!body) return body.error();
-    if (auto known = check_members(*body, kCoverageMembers); !known) return known.error();
     const auto start = start_of(*body, snapshot);
     if (!start) return start.error();
     const auto options = options_of(*body, start->body_radius);
@@ -129,10 +122,10 @@ Result<Response> post_coverage(Context& context) {
     auto coverage = planning::plan_coverage(snapshot.classes, snapshot.config.cell_size, start->point, *options,
                                             guide::SearchLimit(context.services.sessions));
     if (!coverage) return coverage.error();
-    auto permit = context.services.responses.take(coverage->path.points.size() * kPointTextBytes +
-                                                  coverage->unreachable.size() * kCellTextBytes);
-    if (!permit) return permit.error();
-    return ok_text(kGeoJson, std::move(*permit), document_of(snapshot, std::move(*coverage)));
+    const std::size_t bytes =
+        coverage->path.points.size() * kPointTextBytes + coverage->unreachable.size() * kCellTextBytes;
+    return ok_text(kGeoJson, context.services.responses.take(bytes),
+                   [&] { return document_of(snapshot, std::move(*coverage)); });
 }
 
 namespace {
@@ -145,8 +138,8 @@ constexpr std::size_t kTextBytesMax = std::size_t{64} << 20;
 Result<std::vector<RobotIndex>> robots_asked_for(const mapping::Snapshot& maps, const Query& query) {
     std::vector<RobotIndex> robots;
     if (const auto name = query.find("robot")) {
-        const auto robot = guide::find_robot(maps, *name);
-        if (!robot) return prefixed(fmt::format("robot is {}: ", in_quotes(*name)), robot.error());
+        const auto robot = robot_named(maps, *name);
+        if (!robot) return robot.error();
         robots.push_back(*robot);
     } else {
         for (RobotIndex robot = 0; robot < maps.robots.size(); ++robot) robots.push_back(robot);

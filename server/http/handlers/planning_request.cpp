@@ -3,6 +3,7 @@
 #include "common/scan/limits.hpp"
 #include "core/planning/coverage_region.hpp"
 #include "server/guidance/robots.hpp"
+#include "server/http/handlers/parameters.hpp"
 #include "server/http/handlers/weave_request.hpp"
 #include "server/http/json_read.hpp"
 #include "server/http/text.hpp"
@@ -14,6 +15,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 
 namespace scanloom::http {
 namespace {
@@ -69,19 +71,15 @@ Result<Maps> find_for_search(const Context& context, std::initializer_list<std::
 Result<planning::ExplorationOptions> exploration_options(const Query& query, const std::optional<double>& own) {
     planning::ExplorationOptions options;
     options.passability.body_radius_m = own.value_or(options.passability.body_radius_m);
-    if (const auto text = query.find("size_min")) {
-        const auto size = parse_integer<std::size_t>(*text);
-        if (!size || *size < 1) {
-            return invalid(
-                fmt::format("size_min is {}; a whole number of cells from 1 on is needed", in_quotes(*text)));
-        }
-        options.frontier_size_min = *size;
-    }
-    if (const auto text = query.find("body_radius")) {
-        const auto radius = parse_real(*text);
-        if (!radius) return invalid(fmt::format("body_radius is {}; metres are needed", in_quotes(*text)));
-        options.passability.body_radius_m = *radius;
-    }
+    const auto size = parameter(query, "size_min", options.frontier_size_min,
+                                integer_from<std::size_t>(1, std::numeric_limits<std::size_t>::max()),
+                                "a whole number of cells from 1 on is needed");
+    if (!size) return size.error();
+    options.frontier_size_min = *size;
+    const auto radius =
+        parameter(query, "body_radius", options.passability.body_radius_m, parse_real, "metres are needed");
+    if (!radius) return radius.error();
+    options.passability.body_radius_m = *radius;
     return options;
 }
 

@@ -27,11 +27,7 @@ std::string rfc3339(double seconds) {
 
 boost::json::value bounds_json(const grid::CellBox& bounds, double cell_size) {
     if (bounds.empty()) return nullptr;
-    const auto extent = tiles::extent_of(bounds, cell_size);
-    return boost::json::object{{"min_x", rounded_metres(extent.min_x)},
-                               {"min_y", rounded_metres(extent.min_y)},
-                               {"max_x", rounded_metres(extent.max_x)},
-                               {"max_y", rounded_metres(extent.max_y)}};
+    return to_json(tiles::extent_of(bounds, cell_size));
 }
 
 boost::json::array layer_names() {
@@ -90,6 +86,13 @@ boost::json::object session_json(const session::SessionInfo& info, const mapping
 
 } // namespace
 
+boost::json::object to_json(const tiles::Extent& extent) {
+    return {{"min_x", rounded_metres(extent.min_x)},
+            {"min_y", rounded_metres(extent.min_y)},
+            {"max_x", rounded_metres(extent.max_x)},
+            {"max_y", rounded_metres(extent.max_y)}};
+}
+
 boost::json::object to_json(const session::Session& session) {
     return session_json(session.info(), *session.snapshot(), &session, std::nullopt);
 }
@@ -111,11 +114,10 @@ boost::json::object damaged_json(std::string_view name, const Error& reason) {
 }
 
 Result<SessionRequest> parse_session_request(std::string_view body) {
-    const auto object = parse_json_object(body);
-    if (!object) return object.error();
     std::vector<std::string_view> known = {"name"};
     for (const auto& field : mapping::config_fields()) known.push_back(field.name);
-    if (auto ok = check_members(*object, known); !ok) return ok.error();
+    const auto object = parse_json_object(body, known);
+    if (!object) return object.error();
 
     SessionRequest wanted;
     auto name = read_text(*object, "name");

@@ -5,6 +5,7 @@
 #include "core/mapping/map_config.hpp"
 #include "server/sessions/session.hpp"
 #include "server/sessions/session_cache.hpp"
+#include "server/tiles/map_image.hpp"
 
 #include <boost/json/object.hpp>
 
@@ -12,6 +13,9 @@
 #include <string_view>
 
 namespace scanloom::http {
+
+/// Returns the corners of a rectangle, in metres.
+[[nodiscard]] boost::json::object to_json(const tiles::Extent& extent);
 
 /// Returns all properties of a session, as the API shows them.
 [[nodiscard]] boost::json::object to_json(const session::Session& session);

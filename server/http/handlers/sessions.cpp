@@ -5,6 +5,7 @@
 #include "common/scan/limits.hpp"
 #include "core/mapping/map_config.hpp"
 #include "server/http/handlers/lookup.hpp"
+#include "server/http/handlers/parameters.hpp"
 #include "server/http/handlers/session_json.hpp"
 #include "server/http/multipart.hpp"
 #include "server/http/text.hpp"
@@ -28,35 +29,25 @@
 namespace scanloom::http {
 namespace {
 
-constexpr std::size_t kLimitMax = 1000;
-
 /// Accepts a session's name, or '#' and the number of a session whose record cannot be read.
-bool is_listed_name(std::string_view text) { return is_valid_name(text.substr(text.starts_with('#') ? 1 : 0)); }
+std::optional<std::string_view> parse_listed_name(std::string_view text) {
+    return is_valid_name(text.substr(text.starts_with('#') ? 1 : 0)) ? std::optional(text) : std::nullopt;
+}
 
 struct Page {
-    std::size_t limit = 100;
+    std::size_t limit;
     std::string_view after; ///< empty: starts with the first
 };
 
 Result<Page> parse_page(const Query& query) {
     if (auto ok = query.check_only({"limit", "after"}); !ok) return ok.error();
-    Page page;
-    if (const auto text = query.find("limit")) {
-        const auto limit = parse_integer<std::size_t>(*text);
-        if (!limit || *limit < 1 || *limit > kLimitMax) {
-            return Error{Errc::kInvalidField, fmt::format("limit is {}; a whole number from 1 to {} is needed",
-                                                          in_quotes(*text), kLimitMax)};
-        }
-        page.limit = *limit;
-    }
-    if (const auto after = query.find("after")) {
-        if (!is_listed_name(*after)) {
-            return Error{Errc::kInvalidField,
-                         fmt::format("after is {}; the name of a session is needed", in_quotes(*after))};
-        }
-        page.after = *after;
-    }
-    return page;
+    const auto limit = parameter(query, "limit", std::size_t{100}, integer_from<std::size_t>(1, 1000),
+                                 "a whole number from 1 to 1000 is needed");
+    if (!limit) return limit.error();
+    const auto after =
+        parameter(query, "after", std::string_view(), parse_listed_name, "the name of a session is needed");
+    if (!after) return after.error();
+    return Page{*limit, *after};
 }
 
 /// A session that is served, or the reason why it is not.
@@ -91,6 +82,10 @@ boost::json::object listed_json(const ListedSession& listed, std::string_view na
     return listed ? listed_json(*listed, store) : damaged_json(name, listed.error());
 }
 
+Response created_session(const session::Session& session) {
+    return created(to_json(session)).set("Location", fmt::format("/api/v1/sessions/{}", session.info().name));
+}
+
 } // namespace
 
 Result<Response> list_sessions(Context& context) {
@@ -117,18 +112,14 @@ Result<Response> create_session(Context& context) {
     const auto session =
         context.services.sessions.create(wanted->name, wanted->options, session::creator_of(*context.token));
     if (!session) return context.services.authorizer.noted(context, session.error(), wanted->name);
-    auto response = ok(to_json(**session)).set("Location", fmt::format("/api/v1/sessions/{}", wanted->name));
-    response.status = Status::created;
-    return response;
+    return created_session(**session);
 }
 
 Result<Response> get_session(Context& context) {
     if (auto known = context.query.check_only({}); !known) return known.error();
-    const auto& name = context.arguments["session"];
-    if (const auto listed = context.services.sessions.listed(name))
-        return ok(listed_json(*listed, StoreState(context.services)));
-    const auto damage = damage_of(context.services.sessions, name);
-    return damage ? *damage : session::no_such_session(name);
+    const auto listed = find_listed(context);
+    if (!listed) return listed.error();
+    return ok(listed_json(*listed, StoreState(context.services)));
 }
 
 Result<Response> delete_session(Context& context) {
@@ -142,7 +133,7 @@ Result<Response> delete_session(Context& context) {
         context.services.locator.remove(info->id);
         context.services.tiles.forget(session::tag_of(*info));
     }
-    return Response{.status = Status::no_content, .fields = {}, .body = {}};
+    return no_content();
 }
 
 namespace {
@@ -204,9 +195,7 @@ Result<Response> import_map(Context& context) {
     const auto session =
         context.services.sessions.import_map(name, form->options, *patches, session::creator_of(*context.token));
     if (!session) return context.services.authorizer.noted(context, session.error(), name);
-    auto response = ok(to_json(**session)).set("Location", fmt::format("/api/v1/sessions/{}", (*session)->info().name));
-    response.status = Status::created;
-    return response;
+    return created_session(**session);
 }
 
 } // namespace scanloom::http

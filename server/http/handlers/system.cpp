@@ -67,66 +67,62 @@ using metrics::gauge_now;
 
 Families store_families(const store::ScanLog& log) {
     const auto stats = log.stats();
-    const auto number = [](std::uint64_t count) { return static_cast<double>(count); };
     return {
-        gauge_now("scanloom_store_bytes", "Bytes of the store on disk.", number(log.bytes_on_disk())),
-        gauge_now("scanloom_store_queued_bytes", "Bytes that wait to be written.", number(stats.queued_bytes)),
+        gauge_now("scanloom_store_bytes", "Bytes of the store on disk.", log.bytes_on_disk()),
+        gauge_now("scanloom_store_queued_bytes", "Bytes that wait to be written.", stats.queued_bytes),
         gauge_now("scanloom_store_failed", "1 if the store accepts no more changes.", stats.last_error ? 1.0 : 0.0),
         gauge_now("scanloom_store_full", "1 if the disk has no room for more scans.", stats.no_room ? 1.0 : 0.0),
         gauge_now("scanloom_store_damaged",
                   "1 if the store no longer merges its tables because one is damaged. Damage that is found while "
                   "sessions are read counts in scanloom_sessions_damaged.",
                   stats.damage ? 1.0 : 0.0),
-        counter_now("scanloom_store_appends_total", "Appends that became durable.", number(stats.appends)),
-        counter_now("scanloom_store_entries_total", "Log entries that became durable.", number(stats.entries)),
-        counter_now("scanloom_store_synced_writes_total", "Group commits, one fsync each.",
-                    number(stats.synced_writes)),
+        counter_now("scanloom_store_appends_total", "Appends that became durable.", stats.appends),
+        counter_now("scanloom_store_entries_total", "Log entries that became durable.", stats.entries),
+        counter_now("scanloom_store_synced_writes_total", "Group commits, one fsync each.", stats.synced_writes),
         counter_now("scanloom_store_torn_bytes_dropped_total", "Bytes of a write that the last crash cut short.",
-                    number(stats.torn_bytes_dropped)),
+                    stats.torn_bytes_dropped),
     };
 }
 
 double bytes_of(std::int64_t pages) { return static_cast<double>(pages) * static_cast<double>(mapping::kPageBytes); }
 
 Families session_families(const session::SessionRegistry& sessions, const session::BackgroundCheck& check) {
+    const auto& counters = sessions.counters();
     const auto served = sessions.list();
     std::size_t backlog = 0;
     for (const auto& session : served) backlog += session->backlog_size();
     const auto failed =
         std::ranges::count_if(served, [](const auto& session) { return session->failure().has_value(); });
     return {
-        gauge_now("scanloom_sessions", "Sessions that are served.", static_cast<double>(sessions.all().size())),
-        gauge_now("scanloom_sessions_loaded", "Sessions whose maps are in memory.", static_cast<double>(served.size())),
+        gauge_now("scanloom_sessions", "Sessions that are served.", sessions.all().size()),
+        gauge_now("scanloom_sessions_loaded", "Sessions whose maps are in memory.", served.size()),
         gauge_now("scanloom_map_memory_bytes", "Approximate memory of these maps.", bytes_of(sessions.pages().used())),
         gauge_now("scanloom_map_memory_limit_bytes", "Limit of this memory.", bytes_of(sessions.pages().total())),
         gauge_now("scanloom_sessions_failed", "Sessions that accept no scans until they are reloaded from the store.",
-                  static_cast<double>(failed)),
+                  failed),
         gauge_now("scanloom_sessions_damaged", "Sessions that could not be recovered, or were found damaged since.",
-                  static_cast<double>(sessions.damaged().size() + check.damaged().size())),
+                  sessions.damaged().size() + check.damaged().size()),
         counter_now("scanloom_sessions_checked_total", "Sessions left in the store at the start that were read since.",
-                    static_cast<double>(check.checked())),
-        gauge_now("scanloom_backlog_entries", "Log entries of all sessions that wait to be appended.",
-                  static_cast<double>(backlog)),
+                    check.checked()),
+        gauge_now("scanloom_backlog_entries", "Log entries of all sessions that wait to be appended.", backlog),
         counter_now("scanloom_scans_applied_total", "Scans that are durable and in their map.",
-                    static_cast<double>(sessions.counters().scans_applied)),
+                    counters.scans_applied.load()),
         counter_now("scanloom_scans_jumped_total", "Scans that are durable and that max_jump left out of their map.",
-                    static_cast<double>(sessions.counters().scans_jumped)),
+                    counters.scans_jumped.load()),
         counter_now("scanloom_scans_duplicates_total", "Scans sent again after a reconnect and dropped.",
-                    static_cast<double>(sessions.counters().scans_duplicates)),
+                    counters.scans_duplicates.load()),
         counter_now("scanloom_scans_dropped_total",
                     "Scans that were refused, or that arrived after their link was replaced; never acknowledged.",
-                    static_cast<double>(sessions.counters().scans_dropped)),
+                    counters.scans_dropped.load()),
     };
 }
 
 Families tile_families(const tiles::TileCache::Stats& stats) {
     return {
-        counter_now("scanloom_tile_cache_hits_total", "Requested tiles that were in the cache.",
-                    static_cast<double>(stats.hits)),
-        counter_now("scanloom_tile_cache_misses_total", "Requested tiles that were not in the cache.",
-                    static_cast<double>(stats.misses)),
-        gauge_now("scanloom_tile_cache_bytes", "Bytes of the tiles in the cache.", static_cast<double>(stats.bytes)),
-        gauge_now("scanloom_tile_cache_tiles", "Tiles in the cache.", static_cast<double>(stats.tiles)),
+        counter_now("scanloom_tile_cache_hits_total", "Requested tiles that were in the cache.", stats.hits),
+        counter_now("scanloom_tile_cache_misses_total", "Requested tiles that were not in the cache.", stats.misses),
+        gauge_now("scanloom_tile_cache_bytes", "Bytes of the tiles in the cache.", stats.bytes),
+        gauge_now("scanloom_tile_cache_tiles", "Tiles in the cache.", stats.tiles),
     };
 }
 
@@ -198,9 +194,7 @@ Result<Response> make_backup(Context& context) {
     if (backups == nullptr) return none_kept();
     const auto made = backups->make(context.services.log);
     if (!made) return made.error();
-    auto response = ok(backup_json(*made));
-    response.status = Status::created;
-    return response;
+    return created(backup_json(*made));
 }
 
 } // namespace scanloom::http

@@ -29,17 +29,6 @@ struct Version {
     std::optional<std::string_view> session_tag;
 };
 
-Result<Version> parse_version(const Query& query) {
-    Version version{.revision = std::nullopt, .session_tag = query.find("id")};
-    if (const auto text = query.find("v")) {
-        version.revision = parse_integer<Revision>(*text);
-        if (!version.revision) {
-            return Error{Errc::kInvalidField, fmt::format("v is {}; a revision is needed", in_quotes(*text))};
-        }
-    }
-    return version;
-}
-
 /// Returns whether the current tile will always be the tile of that version: it has not changed since, and that
 /// revision has been reached.
 bool is_final(const Version& version, std::string_view tag, Revision tile, Revision now) {
@@ -54,13 +43,14 @@ struct TileParameters {
 };
 
 Result<TileParameters> parse(const Context& context) {
-    const auto version = parse_version(context.query);
-    if (!version) return version.error();
+    const auto revision =
+        parameter(context.query, "v", std::optional<Revision>(), parse_integer<Revision>, "a revision is needed");
+    if (!revision) return revision.error();
     const auto key = tiles::parse_tile_key(context.arguments["z"], context.arguments["x"], context.arguments["y"]);
     if (!key) return key.error();
     const auto layer = find_layer(context.arguments["layer"]);
     if (!layer) return layer.error();
-    return TileParameters{*version, *key, *layer};
+    return TileParameters{{*revision, context.query.find("id")}, *key, *layer};
 }
 
 /// A requested tile before rendering.

@@ -1,8 +1,7 @@
 #include "server/http/handlers/handlers.hpp"
 
 #include "server/http/geojson.hpp"
-#include "server/http/handlers/lookup.hpp"
-#include "server/http/text.hpp"
+#include "server/http/handlers/parameters.hpp"
 #include "server/sessions/stored_trajectories.hpp"
 
 #include <fmt/format.h>
@@ -11,6 +10,7 @@
 #include <cmath>
 #include <iterator>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -25,10 +25,8 @@ struct TrajectoryParameters {
     bool with_times = false;
 };
 
-Result<bool> times_parameter(const Query& query) {
-    const auto text = query.find("times").value_or("false");
-    if (text == "true" || text == "false") return text == "true";
-    return Error{Errc::kInvalidField, fmt::format("times is {}; true or false is needed", in_quotes(text))};
+std::optional<bool> parse_bool(std::string_view text) {
+    return text == "true" || text == "false" ? std::optional(text == "true") : std::nullopt;
 }
 
 /// The selected points of a robot: first those read from the log, then those in memory.
@@ -111,7 +109,7 @@ Result<Response> get_trajectory(Context& context) {
     if (auto known = context.query.check_only({"since", "times"}); !known) return known.error();
     const auto since = since_parameter(context.query);
     if (!since) return since.error();
-    const auto with_times = times_parameter(context.query);
+    const auto with_times = parameter(context.query, "times", false, parse_bool, "true or false is needed");
     if (!with_times) return with_times.error();
     const auto& session = context.session;
     if (!session) return session.error();

@@ -45,15 +45,19 @@ boost::json::object shown(const session::ReplayJob& weave) {
     return json;
 }
 
+Result<std::shared_ptr<session::ReplayJob>> weave_in_path(const Context& context) {
+    if (!context.session) return context.session.error();
+    return find_weave(context.services.weaves, **context.session, context.arguments["weave"]);
+}
+
 } // namespace
 
 Result<Response> start_weave(Context& context) {
     if (auto known = context.query.check_only({}); !known) return known.error();
     const auto& session = context.session;
     if (!session) return session.error();
-    const auto body = parse_json_object(context.request.body);
+    const auto body = parse_json_object(context.request.body, weave_parameters());
     if (!body) return body.error();
-    if (auto known = check_members(*body, weave_parameters()); !known) return known.error();
     const auto request = weave_request(**session, *body);
     if (!request) return request.error();
     const auto weave = context.services.weaves.start((*session)->info(), *request, (*session)->snapshot()->revision);
@@ -76,21 +80,17 @@ Result<Response> list_weaves(Context& context) {
 
 Result<Response> get_weave(Context& context) {
     if (auto known = context.query.check_only({}); !known) return known.error();
-    const auto& session = context.session;
-    if (!session) return session.error();
-    const auto weave = find_weave(context.services.weaves, **session, context.arguments["weave"]);
+    const auto weave = weave_in_path(context);
     if (!weave) return weave.error();
     return ok(shown(**weave));
 }
 
 Result<Response> delete_weave(Context& context) {
     if (auto known = context.query.check_only({}); !known) return known.error();
-    const auto& session = context.session;
-    if (!session) return session.error();
-    const auto weave = find_weave(context.services.weaves, **session, context.arguments["weave"]);
+    const auto weave = weave_in_path(context);
     if (!weave) return weave.error();
-    context.services.weaves.remove((*session)->info().id, (*weave)->id());
-    return Response{.status = Status::no_content, .fields = {}, .body = {}};
+    context.services.weaves.remove((*context.session)->info().id, (*weave)->id());
+    return no_content();
 }
 
 } // namespace scanloom::http
