@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <utility>
 
 namespace scanloom::session {
@@ -86,6 +87,27 @@ private:
     std::shared_ptr<const mapping::Snapshot> maps_;
     bool taken_back_ = false;
     mutable std::size_t waiting_ = 0; // threads in get()
+};
+
+/// Remembers mapping::main_bounds_of() the newest maps.
+/// Threads: any thread.
+class MainBounds {
+public:
+    /// Returns mapping::main_bounds_of(maps).
+    /// Cost: a few milliseconds for the first call at each revision.
+    [[nodiscard]] grid::CellBox of(const mapping::Snapshot& maps) const {
+        const std::lock_guard lock(mutex_);
+        if (at_ != maps.revision) {
+            bounds_ = mapping::main_bounds_of(maps);
+            at_ = maps.revision;
+        }
+        return bounds_;
+    }
+
+private:
+    mutable std::mutex mutex_; // guards the members below
+    mutable grid::CellBox bounds_;
+    mutable std::optional<Revision> at_;
 };
 
 } // namespace scanloom::session

@@ -13,13 +13,13 @@
 namespace scanloom::session {
 namespace {
 
-constexpr double kSliceWork = 5e6; // between two checks whether to continue
-constexpr double kEntryWork = 1e4; // of reading an entry
+constexpr double kReplaySliceWork = 5e6; // between two checks whether to continue
+constexpr double kEntryWork = 1e4;       // of reading an entry
 
 /// Reasons to end reading that are not failures.
 const Error kTurnIsOver{Errc::kShuttingDown, "other replay jobs have their turn"};
 const Error kCancelled{Errc::kShuttingDown, "cancelled"};
-const Error kOutdated{Errc::kShuttingDown, "the entry excludes scans that are in these maps, or brings some back"};
+const Error kOutdatedMaps{Errc::kShuttingDown, "the entry excludes scans that are in these maps, or brings some back"};
 
 Error no_room() {
     return {Errc::kFull, "this map and those of other replay jobs need more memory than there is for them; use "
@@ -162,7 +162,7 @@ bool ReplayJob::run(store::ScanLog& log, limits::MemoryBudget& budget, double tu
     try {
         if (!projection_) projection_.emplace(request_.config, shared(session_.exclusions->as_of(*target)));
         auto is_complete = apply_up_to(*target, log, budget);
-        if (!is_complete && is_complete.error() == kOutdated) {
+        if (!is_complete && is_complete.error() == kOutdatedMaps) {
             const auto begun = begin_again(*target, log, budget);
             is_complete = begun ? apply_up_to(*target, log, budget) : begun.error();
         }
@@ -205,7 +205,7 @@ Result<bool> ReplayJob::apply_up_to(Revision target, store::ScanLog& log, limits
                                        is_complete = true;
                                        return store::Visit::kStop;
                                    }
-                                   if (projection_->is_outdated_by(*entry)) return kOutdated;
+                                   if (projection_->is_outdated_by(*entry)) return kOutdatedMaps;
                                    if (auto ok = check_replayable(*projection_, *entry); !ok) return ok;
                                    return apply(*entry, budget);
                                });
@@ -238,11 +238,11 @@ Result<> ReplayJob::begin_again(Revision target, store::ScanLog& log, limits::Me
 Result<> ReplayJob::apply(const LogEntry& entry, limits::MemoryBudget& budget) {
     for (bool in = false; !in;) {
         if (cancelled_) return kCancelled;
-        double work = kSliceWork;
+        double work = kReplaySliceWork;
         const auto applied = projection_->apply(entry, work);
         if (!applied) return applied.error();
         in = *applied;
-        turn_left_ -= std::max(kSliceWork - work, kEntryWork);
+        turn_left_ -= std::max(kReplaySliceWork - work, kEntryWork);
         if (auto claimed = claim(budget); !claimed) return claimed;
     }
     woven_ = projection_->revision();

@@ -16,8 +16,6 @@ std::size_t chunks_of(const ReplayJob& weave) {
     return maps ? maps->chunk_count : 0;
 }
 
-Error shutting_down() { return {Errc::kShuttingDown, "the server is shutting down; try again when it is back"}; }
-
 Error was_removed(const ReplayJob& weave) {
     return {Errc::kNotFound,
             fmt::format("replay job {} was deleted before these maps were done; start it again", weave.id())};

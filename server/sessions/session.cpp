@@ -70,16 +70,6 @@ Session::Session(SessionInfo info, mapping::Projection projection, std::optional
     if (!publish()) throw std::bad_alloc();
 }
 
-grid::CellBox Session::main_bounds() const {
-    const auto maps = snapshot();
-    const std::lock_guard lock(main_bounds_mutex_);
-    if (main_bounds_at_ != maps->revision) {
-        main_bounds_ = mapping::main_bounds_of(*maps);
-        main_bounds_at_ = maps->revision;
-    }
-    return main_bounds_;
-}
-
 std::optional<Error> Session::failure() const {
     const std::lock_guard lock(failure_mutex_);
     return failure_;

@@ -55,9 +55,8 @@ public:
     /// Returns the newest maps, or null if they are being changed in place. Does not wait.
     [[nodiscard]] std::shared_ptr<const mapping::Snapshot> try_snapshot() const { return published_.try_get(); }
 
-    /// Returns mapping::main_bounds_of() the newest maps.
-    /// Cost: a few milliseconds for the first call at each revision.
-    [[nodiscard]] grid::CellBox main_bounds() const;
+    /// Returns MainBounds::of() the newest maps.
+    [[nodiscard]] grid::CellBox main_bounds() const { return main_bounds_.of(*snapshot()); }
 
     /// Returns the number of entries that wait to be appended to the log.
     [[nodiscard]] std::size_t backlog_size() const noexcept { return backlog_size_; }
@@ -188,10 +187,7 @@ private:
     std::atomic<std::size_t> backlog_size_ = 0; // of waiting_, for any thread
 
     PublishedMaps published_;
-
-    mutable std::mutex main_bounds_mutex_; // guards the members up to main_bounds_at_
-    mutable grid::CellBox main_bounds_;
-    mutable std::optional<Revision> main_bounds_at_;
+    MainBounds main_bounds_;
 
     mutable std::mutex failure_mutex_; // guards the members below; held briefly
     std::optional<Error> failure_;

@@ -24,13 +24,10 @@ std::string tag_of(const SessionInfo& info) {
 
 ScanFilter scan_filter_of(const SessionInfo& info) { return ScanFilter(info.config.max_jump, info.exclusions); }
 
-namespace {
-
-constexpr std::size_t kCellsOfChunk = 64 * 64;
-
-} // namespace
+Error shutting_down() { return {Errc::kShuttingDown, "the server is shutting down; try again when it is back"}; }
 
 Creator creator_of(const auth::Token& token) {
+    constexpr std::size_t kCellsOfChunk = 64 * 64;
     const auto chunks = std::max<std::size_t>(1, token.limits.cells / kCellsOfChunk);
     return {token.name, token.limits.sessions, std::min(chunks, SessionLimits::kMost)};
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "common/error/error.hpp"
 #include "common/limits/memory_budget.hpp"
 #include "common/scan/scan_filter.hpp"
 #include "core/mapping/map_config.hpp"
@@ -58,6 +59,9 @@ struct SessionCounters {
     std::atomic<std::uint64_t> scans_duplicates = 0; ///< sent again after a reconnect and dropped
     std::atomic<std::uint64_t> scans_dropped = 0;    ///< refused, or received after their link ended; not acknowledged
 };
+
+/// Returns the error (kShuttingDown) for requests that arrive while the server shuts down.
+[[nodiscard]] Error shutting_down();
 
 /// The creator of a session and the limits of its token.
 struct Creator {

@@ -1,18 +1,19 @@
 #include "server/sessions/session_registry.hpp"
 
+#include "common/limits/memory_budget.hpp"
 #include "common/scan/limits.hpp"
 #include "common/wire/log_codec.hpp"
 #include "server/log/context.hpp"
-#include "server/sessions/checkpoint.hpp"
 #include "server/sessions/imported_map.hpp"
+#include "server/sessions/recovery.hpp"
 
-#include <malloc.h>
-
-#include <boost/asio/post.hpp>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <future>
 #include <latch>
+#include <new>
+#include <utility>
 
 namespace scanloom::session {
 namespace {
@@ -33,64 +34,59 @@ wire::SessionRecord record_of(std::string_view name, double created, const mappi
     return record;
 }
 
-} // namespace
-
-SessionRegistry::SessionRegistry(store::ScanLog& log, RegistryConfig config)
-    : log_(log), config_(std::move(config)), may_wait_(config_.may_wait.value_or(config_.compute)),
-      reading_(config_.reading.value_or(config_.compute)),
-      pages_(std::make_shared<limits::MemoryBudget>(config_.pages_max)), factory_{log_, config_.compute, may_wait_} {
-    factory_.limits.shared = {pages_};
-    factory_.limits.on_short = [this](std::size_t pages) {
-        boost::asio::post(may_wait_, [this, pages] { free_pages(pages + spare_pages()); });
-    };
+Error maps_are_computed_again(const std::string& name) {
+    return {Errc::kShuttingDown,
+            fmt::format("the maps of session '{}' are computed again from its log; connect again", name)};
 }
 
-Error no_such_session(std::string_view name) {
-    if (!is_valid_name(name)) return {Errc::kNotFound, "there is no session of that name; see the list of sessions"};
-    return {Errc::kNotFound, fmt::format("there is no session '{}'; see the list of sessions", name)};
+/// Closes the session and waits for it. Acknowledged scans are durable; robots send the others again.
+void discard_and_wait(Session& session, Error reason) {
+    const auto closed = std::make_shared<std::promise<void>>();
+    auto is_closed = closed->get_future();
+    session.discard(std::move(reason), [closed] { closed->set_value(); });
+    is_closed.wait();
+}
+
+Result<> check_room(const SessionInfo& info) {
+    if (info.exclusions->count_in_effect() < Exclusions::kMost) return {};
+    return Error{Errc::kFull, fmt::format("session '{}' has {} exclusions in effect, the limit; lift some, "
+                                          "or exclude larger ranges",
+                                          info.name, Exclusions::kMost)};
+}
+
+} // namespace
+
+Result<> SessionRegistry::recover() {
+    const std::lock_guard changing(changing_); // drain() waits for it
+    return recover_sessions(state_);
 }
 
 std::shared_ptr<Session> SessionRegistry::find(std::string_view name) const {
-    return cache_.find(name, config_.clock());
+    return state_.cache.find(name, state_.config.clock());
 }
 
-std::map<std::string, Error> SessionRegistry::damaged() const {
-    const std::shared_lock lock(damaged_mutex_);
-    std::map<std::string, Error> reasons;
-    for (const auto& [name, damaged] : damaged_) reasons.emplace(name, damaged.error);
-    return reasons;
-}
-
-std::optional<Error> SessionRegistry::damage_of(std::string_view name) const {
-    const std::shared_lock lock(damaged_mutex_);
-    const auto found = damaged_.find(name);
-    return found == damaged_.end() ? std::nullopt : std::optional(found->second.error);
-}
-
-void SessionRegistry::keep_damaged(std::string name, store::SessionId id, Error why) {
-    if (why.code == Errc::kStoreFailed) { // it is not retried before the next start
-        why = {Errc::kDataLoss, why.message + "; if its disk is readable again, restart the server"};
-    }
-    log::error({.session = name}, "session '{}' cannot be recovered: {}", name, why.message);
-    const std::unique_lock lock(damaged_mutex_);
-    damaged_[std::move(name)] = {id, std::move(why)};
+Result<std::shared_ptr<Session>> SessionRegistry::load(std::string_view name) {
+    const auto promise = std::make_shared<std::promise<Result<std::shared_ptr<Session>>>>();
+    auto on_loaded = promise->get_future();
+    load(name, [promise](Result<std::shared_ptr<Session>> session) { promise->set_value(std::move(session)); });
+    return on_loaded.get();
 }
 
 Result<> SessionRegistry::check_new(std::string_view name, const Creator& creator) const {
-    if (draining_)
+    if (state_.draining)
         return Error{Errc::kShuttingDown,
                      "the server is shutting down and makes no new sessions; try again when it is back"};
-    if (cache_.contains(name)) {
+    if (state_.cache.contains(name)) {
         return Error{Errc::kAlreadyExists,
                      fmt::format("session '{}' exists already; choose another name or delete it first", name)};
     }
-    if (damage_of(name)) {
+    if (state_.damaged.find(name)) {
         return Error{Errc::kAlreadyExists,
                      fmt::format("session '{}' exists but is damaged; delete it first or choose another name", name)};
     }
     if (creator.token.empty()) return {};
     const auto made = static_cast<std::size_t>(std::ranges::count_if(
-        cache_.all(), [&](const ListedSession& listed) { return listed.info.created_by == creator.token; }));
+        state_.cache.all(), [&](const ListedSession& listed) { return listed.info.created_by == creator.token; }));
     if (made < creator.sessions_max) return {};
     return Error{Errc::kFull, fmt::format("there are {} sessions that were created with the token '{}', the most that "
                                           "its limit `sessions` allows; delete one, or raise the limit",
@@ -98,8 +94,8 @@ Result<> SessionRegistry::check_new(std::string_view name, const Creator& creato
 }
 
 std::shared_ptr<Session> SessionRegistry::add(SessionInfo info, mapping::Projection projection) {
-    auto session = factory_.make(std::move(info), std::move(projection), 0);
-    cache_.add(session, config_.clock());
+    auto session = state_.factory.make(std::move(info), std::move(projection), 0);
+    state_.cache.add(session, state_.config.clock());
     return session;
 }
 
@@ -111,8 +107,8 @@ Result<std::shared_ptr<Session>> SessionRegistry::create(std::string_view name, 
 
     const std::lock_guard changing(changing_);
     if (auto is_new = check_new(name, creator); !is_new) return is_new.error();
-    const auto record = record_of(name, config_.now(), *config, creator);
-    const auto id = log_.create_session(wire::encode_session(record));
+    const auto record = record_of(name, state_.config.now(), *config, creator);
+    const auto id = state_.log.create_session(wire::encode_session(record));
     if (!id) return id.error();
     return add({*id, record.name, record.created, *config, creator.token, creator.chunks_max},
                mapping::Projection(*config));
@@ -125,28 +121,28 @@ Result<std::shared_ptr<Session>> SessionRegistry::import_map(std::string_view na
     const auto config = mapping::resolve(options);
     if (!config) return config.error();
     // Done before the lock and before anything is stored, because it takes seconds and may run out of memory.
-    limits::MemoryShare share({pages_});
+    limits::MemoryShare share({state_.pages});
     auto projection = integrate_imported(*config, patches, creator, share);
     if (!projection) {
         share.give_back_all();
         if (projection.error().code == Errc::kOverloaded) {
             const std::size_t pages = pages_of_imported(*config, patches);
-            free_pages(pages);
-            trim_heap(pages); // of the patches that were integrated
+            loader_.free_pages(pages);
+            loader_.trim_heap(pages); // of the patches that were integrated
         }
         return projection.error();
     }
 
     const std::lock_guard changing(changing_);
     if (auto is_new = check_new(name, creator); !is_new) return is_new.error();
-    auto record = record_of(name, config_.now(), *config, creator);
+    auto record = record_of(name, state_.config.now(), *config, creator);
     record.map_patches = static_cast<std::uint32_t>(patches.size());
-    const auto id = log_.create_session(wire::encode_session(record));
+    const auto id = state_.log.create_session(wire::encode_session(record));
     if (!id) return id.error();
     for (std::size_t n = 0; n < patches.size(); ++n) {
-        const auto imported = store::append_and_wait(log_, *id, n + 1, {wire::encode_entry(patches[n])});
+        const auto imported = store::append_and_wait(state_.log, *id, n + 1, {wire::encode_entry(patches[n])});
         if (imported) continue;
-        static_cast<void>(log_.remove_session(*id)); // if this fails, the next start removes it
+        static_cast<void>(state_.log.remove_session(*id)); // if this fails, the next start removes it
         return imported.error();
     }
     share.give_back_all(); // the session takes its pages itself
@@ -155,54 +151,104 @@ Result<std::shared_ptr<Session>> SessionRegistry::import_map(std::string_view na
 
 Result<> SessionRegistry::remove(std::string_view name) {
     const std::lock_guard changing(changing_);
-    auto left = cache_.leave(name);
-    if (!left) {
-        const std::unique_lock lock(damaged_mutex_);
-        const auto damaged = damaged_.find(name);
-        if (damaged == damaged_.end()) return no_such_session(name);
-        if (auto removed = log_.remove_session(damaged->second.id); !removed) return removed.error();
-        damaged_.erase(damaged);
-        return {};
-    }
+    auto left = state_.cache.leave(name);
+    if (!left) return state_.damaged.remove(name, state_.log);
     const Error gone{Errc::kGone, fmt::format("session '{}' was deleted", name)};
-    if (left->session) {
-        const auto closed = std::make_shared<std::promise<void>>();
-        auto is_closed = closed->get_future();
-        left->session->discard(gone, [closed] { closed->set_value(); });
-        is_closed.wait();
-    }
+    if (left->session) discard_and_wait(*left->session, gone);
     const auto summary = left->session ? summary_of(*left->session->snapshot()) : left->summary;
-    if (auto removed = log_.remove_session(left->info.id); !removed) { // it still exists, closed
-        if (const auto wanted = cache_.arrived(left->info.name, summary)) start_load(*wanted);
+    if (auto removed = state_.log.remove_session(left->info.id); !removed) { // it still exists, closed
+        loader_.load(state_.cache.arrived(left->info.name, summary));
         return removed.error();
     }
-    cache_.remove(name, no_such_session(name));
+    state_.cache.remove(name, no_such_session(name));
     left.reset(); // frees the maps, unless the strand still holds the session
-    boost::asio::post(may_wait_, [this, pages = summary.pages] { trim_heap(pages); });
+    loader_.trim_heap_later(summary.pages);
     return {};
 }
 
-/// Returns free memory to the system after `pages` were freed, but not each time. The allocator keeps free memory
-/// between used blocks, and for each thread as much as it ever used.
-void SessionRegistry::trim_heap(std::size_t pages) {
-    constexpr std::size_t kWorthwhile = 4096; // 80 MiB
-    {
-        const std::lock_guard lock(room_mutex_);
-        freed_pages_ += pages;
-        if (freed_pages_ < kWorthwhile) return;
-        freed_pages_ = 0;
-    }
-#ifdef __GLIBC__
-    malloc_trim(0);
-#endif
+// Exclusions
+
+Result<Exclusion> SessionRegistry::exclude(std::string_view name, RobotIndex robot,
+                                           const std::variant<StampRange, SeqRange>& scans) {
+    ScansExcluded excluded{0, robot, scans};
+    const auto since = change_exclusions(name, [&](const SessionInfo& info) -> Result<LogEntry> {
+        if (auto room = check_room(info); !room) return room.error();
+        const auto& known = info.exclusions->all();
+        excluded.id = known.empty() ? 1 : known.back().excluded.id + 1;
+        return LogEntry(excluded);
+    });
+    if (!since) return since.error();
+    log::info({.session = name}, "session '{}': exclusion {} was added; its maps are computed again", name,
+              excluded.id);
+    return Exclusion{excluded, *since};
 }
 
-void SessionRegistry::drain() {
-    draining_ = true; // stops recover() and loads
-    retry_loads();    // the thread that holds the mutex may wait for one of these loads
+Result<> SessionRegistry::lift_exclusion(std::string_view name, std::uint64_t id) {
+    const ExclusionLifted lifted{id};
+    const auto since = change_exclusions(name, [&](const SessionInfo& info) -> Result<LogEntry> {
+        if (info.exclusions->check(lifted)) return LogEntry(lifted);
+        return Error{Errc::kNotFound,
+                     fmt::format("session '{}' has no exclusion {} in effect; GET .../exclusions lists "
+                                 "those that it has",
+                                 info.name, id)};
+    });
+    if (!since) return since.error();
+    log::info({.session = name}, "session '{}': exclusion {} was lifted; its maps are computed again", name, id);
+    return {};
+}
+
+/// Appends the entry while the session is closed, so that no other thread writes to its log. Its maps are computed
+/// again when the next client or robot asks for it. @return the entry's revision
+Result<Revision> SessionRegistry::change_exclusions(std::string_view name, const MakeEntry& make) {
     const std::lock_guard changing(changing_);
-    retry_loads();
-    cache_.settle();
+    if (state_.draining) return shutting_down();
+    auto left = state_.cache.leave(name);
+    if (!left) return state_.why_missing(name);
+    const auto stay = [&](Error why) {
+        loader_.load(state_.cache.stay(name));
+        return why;
+    };
+    try {
+        const auto entry = make(left->info);
+        if (!entry) return stay(entry.error());
+        if (left->session) left->summary = summary_of(*left->session->snapshot());
+        auto facts = std::make_shared<mapping::Snapshot>(*left->summary.facts);
+        auto exclusions = std::make_shared<Exclusions>(*left->info.exclusions);
+        std::vector<std::string> bytes = {wire::encode_entry(*entry)};
+        if (left->session) discard_and_wait(*left->session, maps_are_computed_again(left->info.name));
+        const auto end = state_.log.end_of(left->info.id);
+        const auto appended =
+            end ? store::append_and_wait(state_.log, left->info.id, *end + 1, std::move(bytes)) : Result<>(end.error());
+        if (appended) { // the summary until the session is loaded again
+            facts->revision = *end + 1;
+            if (const auto* excluded = std::get_if<ScansExcluded>(&*entry)) {
+                static_cast<void>(exclusions->add(*end + 1, *excluded));
+            } else {
+                static_cast<void>(exclusions->add(*end + 1, std::get<ExclusionLifted>(*entry)));
+            }
+            facts->exclusions = exclusions;
+            left->summary.facts = facts;
+        }
+        loader_.load(state_.cache.arrived(left->info.name, left->summary));
+        if (!appended) return appended.error();
+        return *end + 1;
+    } catch (const std::bad_alloc&) {
+        if (left->session && left->session->closing()) { // it is closed and must be loaded again
+            loader_.load(state_.cache.arrived(left->info.name, left->summary));
+            return Error{Errc::kOverloaded, "there is no memory left for this; try again later"};
+        }
+        return stay({Errc::kOverloaded, "there is no memory left for this; try again later"});
+    }
+}
+
+// Shutdown
+
+void SessionRegistry::drain() {
+    state_.draining = true; // stops recover() and loads
+    loader_.retry();        // the thread that holds the mutex may wait for one of these loads
+    const std::lock_guard changing(changing_);
+    loader_.retry();
+    state_.cache.settle();
     const auto sessions = list();
     const auto closed = std::make_shared<std::latch>(static_cast<std::ptrdiff_t>(sessions.size()));
     for (const auto& session : sessions) {
@@ -213,8 +259,8 @@ void SessionRegistry::drain() {
 }
 
 void SessionRegistry::hurry() {
-    hurried_ = true;
-    for (const auto& listed : cache_.all()) {
+    state_.hurried = true;
+    for (const auto& listed : state_.cache.all()) {
         if (listed.session) listed.session->hurry();
     }
 }

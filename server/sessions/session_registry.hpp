@@ -2,49 +2,25 @@
 
 #include "common/error/error.hpp"
 #include "common/scan/session_options.hpp"
+#include "server/sessions/registry_state.hpp"
 #include "server/sessions/session_cache.hpp"
-#include "server/sessions/session_factory.hpp"
 #include "server/sessions/session_info.hpp"
+#include "server/sessions/session_loader.hpp"
 #include "server/store/scan_log.hpp"
 
-#include <boost/asio/any_io_executor.hpp>
-
-#include <atomic>
-#include <chrono>
 #include <cstdint>
 #include <functional>
-#include <limits>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
-#include <shared_mutex>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
 namespace scanloom::session {
-
-/// Returns the error (kNotFound) for a session that does not exist.
-/// @param name  any string, also an invalid session name
-[[nodiscard]] Error no_such_session(std::string_view name);
-
-/// Executors, clocks and memory limits of a registry.
-struct RegistryConfig {
-    boost::asio::any_io_executor compute;                   ///< sessions apply entries on it
-    std::function<double()> now;                            ///< seconds since the epoch, for SessionInfo::created
-    std::optional<boost::asio::any_io_executor> may_wait{}; ///< sessions write checkpoints on it; default: `compute`
-    std::optional<boost::asio::any_io_executor> reading{};  ///< sessions are loaded on it; default: `compute`
-
-    std::function<SessionCache::Clock::time_point()> clock = [] { return SessionCache::Clock::now(); };
-
-    /// Pages of the maps of all sessions in memory. When they are used up, unused sessions are evicted. If that is not
-    /// enough, new scans and requests for sessions that are not in memory are refused.
-    std::size_t pages_max = std::numeric_limits<std::int64_t>::max();
-    SessionCache::Clock::duration idle_after =
-        std::chrono::minutes(10); ///< tidy() evicts sessions that are unused as long
-};
 
 /// All sessions by name.
 ///
@@ -56,14 +32,12 @@ struct RegistryConfig {
 /// threads or on threads of the config's executors.
 class SessionRegistry {
 public:
-    SessionRegistry(store::ScanLog& log, RegistryConfig config);
+    /// @param log  must outlive this object
+    SessionRegistry(store::ScanLog& log, RegistryConfig config) : state_(log, std::move(config)), loader_(state_) {}
 
-    /// Finds the stored sessions. Call once, before any other function.
+    /// Finds the stored sessions; see recover_sessions(). Call once, before any other function.
     ///
-    /// A session with a checkpoint at the end of its log stays out of memory. For the others, the newest checkpoint is
-    /// loaded and the rest of the log is replayed. A damaged session is left out and listed by damaged(); it does not
-    /// prevent the recovery of the others. drain() stops the recovery early; the entries applied so far are kept in
-    /// checkpoints.
+    /// A damaged session is left out and listed by damaged(); it does not prevent the recovery of the others.
     /// Errors: kStoreFailed if the sessions cannot be listed.
     [[nodiscard]] Result<> recover();
 
@@ -71,33 +45,33 @@ public:
     [[nodiscard]] std::shared_ptr<Session> find(std::string_view name) const;
 
     /// Returns whether the session exists and load() would have to load it first.
-    [[nodiscard]] bool needs_loading(std::string_view name) const { return cache_.needs_loading(name); }
+    [[nodiscard]] bool needs_loading(std::string_view name) const { return state_.cache.needs_loading(name); }
 
     /// Passes the session to `on_loaded`, after loading it from the store if necessary.
     ///
     /// @param on_loaded  called once, possibly before this function returns, with the session or one of
     ///               kNotFound, kOverloaded (no memory for it now), kStoreFailed, kShuttingDown, or the error in
     ///               damaged() if the session is damaged
-    void load(std::string_view name, SessionCache::Loaded on_loaded);
+    void load(std::string_view name, SessionCache::Loaded on_loaded) { loader_.load(name, std::move(on_loaded)); }
 
     /// Returns the session, after loading it from the store if necessary. Blocks until then.
     /// Errors: those that load() with a callback passes on.
     [[nodiscard]] Result<std::shared_ptr<Session>> load(std::string_view name);
 
     /// Returns the sessions in memory, sorted by name.
-    [[nodiscard]] std::vector<std::shared_ptr<Session>> list() const { return cache_.loaded(); }
+    [[nodiscard]] std::vector<std::shared_ptr<Session>> list() const { return state_.cache.loaded(); }
 
     /// Returns all sessions except the damaged ones, sorted by name.
-    [[nodiscard]] std::vector<ListedSession> all() const { return cache_.all(); }
+    [[nodiscard]] std::vector<ListedSession> all() const { return state_.cache.all(); }
 
     /// Returns the entry of the session in all(); nullopt if it does not exist or is damaged.
-    [[nodiscard]] std::optional<ListedSession> listed(std::string_view name) const { return cache_.listed(name); }
+    [[nodiscard]] std::optional<ListedSession> listed(std::string_view name) const { return state_.cache.listed(name); }
 
     /// Returns the session's properties; nullopt if it does not exist or is damaged.
-    [[nodiscard]] std::optional<SessionInfo> info(std::string_view name) const { return cache_.info(name); }
+    [[nodiscard]] std::optional<SessionInfo> info(std::string_view name) const { return state_.cache.info(name); }
 
     /// Returns the sessions that could not be recovered, with the reason for each, by name.
-    [[nodiscard]] std::map<std::string, Error> damaged() const;
+    [[nodiscard]] std::map<std::string, Error> damaged() const { return state_.damaged.all(); }
 
     /// Creates an empty session.
     ///
@@ -139,7 +113,7 @@ public:
     ///
     /// Retries the loading of sessions for which there was no memory. If the store accepts writes, reloads the sessions
     /// that have failed, as a restart would; their robots and viewers are asked to connect again.
-    void tidy();
+    void tidy() { loader_.tidy(); }
 
     /// Shuts down: refuses new sessions, stops recover() and closes all sessions. Returns when everything that was
     /// submitted is durable.
@@ -148,66 +122,23 @@ public:
     /// Makes drain() end soon. See Session::hurry().
     void hurry();
 
-    [[nodiscard]] const SessionCounters& counters() const noexcept { return *factory_.counters; }
+    [[nodiscard]] const SessionCounters& counters() const noexcept { return *state_.factory.counters; }
 
-    [[nodiscard]] bool is_draining() const noexcept { return draining_; }
+    [[nodiscard]] bool is_draining() const noexcept { return state_.draining; }
 
     /// Returns the budget of the maps in memory.
-    [[nodiscard]] const limits::MemoryBudget& pages() const noexcept { return *pages_; }
+    [[nodiscard]] const limits::MemoryBudget& pages() const noexcept { return *state_.pages; }
 
 private:
-    struct Damaged {
-        store::SessionId id = 0;
-        Error error;
-    };
+    using MakeEntry = std::function<Result<LogEntry>(const SessionInfo&)>;
 
     [[nodiscard]] Result<> check_new(std::string_view name, const Creator& creator) const;
     [[nodiscard]] std::shared_ptr<Session> add(SessionInfo info, mapping::Projection projection);
-    void trim_heap(std::size_t pages);
-
-    void recover_one(const SessionInfo& info, std::uint32_t map_patches, std::function<void()> done);
-    [[nodiscard]] bool try_add_evicted(const SessionInfo& info, std::uint32_t map_patches);
-    void add_recovered(std::shared_ptr<Session> session, std::function<void()> done);
-    void keep_damaged(std::string name, store::SessionId id, Error why);
-    [[nodiscard]] std::optional<Error> damage_of(std::string_view name) const;
-
-    /// A session that was requested and must be loaded.
-    struct Wanted {
-        EvictedSession evicted;
-        SessionCache::Clock::time_point until; // refused after this time if there is still no memory
-    };
-
-    void start_load(const EvictedSession& evicted);
-    void retry_loads();
-    void read(const Wanted& wanted);
-    [[nodiscard]] bool reserve_pages(const Wanted& wanted);
-    [[nodiscard]] std::size_t spare_pages() const noexcept;
-    void free_pages(std::size_t pages);
-    void reload_failed();
-    void close_for_eviction(std::vector<std::shared_ptr<Session>> sessions, const Error& why);
-    void on_evicted(const Session& session);
-
-    using MakeEntry = std::function<Result<LogEntry>(const SessionInfo&)>;
     [[nodiscard]] Result<Revision> change_exclusions(std::string_view name, const MakeEntry& make);
 
-    store::ScanLog& log_;
-    const RegistryConfig config_;
-    const boost::asio::any_io_executor may_wait_;
-    const boost::asio::any_io_executor reading_;
-    const std::shared_ptr<limits::MemoryBudget> pages_;
-    SessionFactory factory_;
-    std::atomic<bool> draining_ = false;
-    std::atomic<bool> hurried_ = false;
-
-    std::mutex changing_; // held during recover(), create() and remove(), which write to the store first
-    SessionCache cache_;
-
-    mutable std::shared_mutex damaged_mutex_;
-    std::map<std::string, Damaged, std::less<>> damaged_;
-
-    std::mutex room_mutex_;                // guards the members below
-    std::vector<Wanted> waiting_for_room_; // to be retried
-    std::size_t freed_pages_ = 0;          // since memory was last returned to the system
+    RegistryState state_;
+    SessionLoader loader_;
+    std::mutex changing_; // held during recover() and by the functions that write to the store first
 };
 
 } // namespace scanloom::session

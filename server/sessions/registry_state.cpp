@@ -1,8 +1,11 @@
-#include "server/sessions/session_factory.hpp"
+#include "server/sessions/registry_state.hpp"
 
+#include "common/scan/limits.hpp"
 #include "server/log/context.hpp"
 #include "server/sessions/checkpoint.hpp"
 #include "server/sessions/recovery.hpp"
+
+#include <fmt/format.h>
 
 #include <utility>
 
@@ -21,6 +24,42 @@ void keep_progress(store::ScanLog& log, const SessionInfo& info, Recovered& reco
 }
 
 } // namespace
+
+Error no_such_session(std::string_view name) {
+    if (!is_valid_name(name)) return {Errc::kNotFound, "there is no session of that name; see the list of sessions"};
+    return {Errc::kNotFound, fmt::format("there is no session '{}'; see the list of sessions", name)};
+}
+
+void DamagedSessions::add(std::string name, store::SessionId id, Error why) {
+    if (why.code == Errc::kStoreFailed) { // it is not retried before the next start
+        why = {Errc::kDataLoss, why.message + "; if its disk is readable again, restart the server"};
+    }
+    log::error({.session = name}, "session '{}' cannot be recovered: {}", name, why.message);
+    const std::unique_lock lock(mutex_);
+    damaged_[std::move(name)] = {id, std::move(why)};
+}
+
+std::optional<Error> DamagedSessions::find(std::string_view name) const {
+    const std::shared_lock lock(mutex_);
+    const auto found = damaged_.find(name);
+    return found == damaged_.end() ? std::nullopt : std::optional(found->second.error);
+}
+
+std::map<std::string, Error> DamagedSessions::all() const {
+    const std::shared_lock lock(mutex_);
+    std::map<std::string, Error> reasons;
+    for (const auto& [name, damaged] : damaged_) reasons.emplace(name, damaged.error);
+    return reasons;
+}
+
+Result<> DamagedSessions::remove(std::string_view name, store::ScanLog& log) {
+    const std::unique_lock lock(mutex_);
+    const auto damaged = damaged_.find(name);
+    if (damaged == damaged_.end()) return no_such_session(name);
+    if (auto removed = log.remove_session(damaged->second.id); !removed) return removed.error();
+    damaged_.erase(damaged);
+    return {};
+}
 
 std::shared_ptr<Session> SessionFactory::make(SessionInfo info, mapping::Projection projection,
                                               std::optional<Revision> checkpointed) const {

@@ -1,0 +1,125 @@
+#pragma once
+
+#include "common/error/error.hpp"
+#include "common/limits/memory_budget.hpp"
+#include "server/sessions/session_cache.hpp"
+#include "server/store/scan_log.hpp"
+
+#include <boost/asio/any_io_executor.hpp>
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <shared_mutex>
+#include <string>
+#include <string_view>
+#include <utility>
+
+/// The state that the parts of a registry share: SessionRegistry, SessionLoader and recover_sessions().
+namespace scanloom::session {
+
+/// Returns the error (kNotFound) for a session that does not exist.
+/// @param name  any string, also an invalid session name
+[[nodiscard]] Error no_such_session(std::string_view name);
+
+/// Executors, clocks and memory limits of a registry.
+struct RegistryConfig {
+    boost::asio::any_io_executor compute;                   ///< sessions apply entries on it
+    std::function<double()> now;                            ///< seconds since the epoch, for SessionInfo::created
+    std::optional<boost::asio::any_io_executor> may_wait{}; ///< sessions write checkpoints on it; default: `compute`
+    std::optional<boost::asio::any_io_executor> reading{};  ///< sessions are loaded on it; default: `compute`
+
+    std::function<SessionCache::Clock::time_point()> clock = [] { return SessionCache::Clock::now(); };
+
+    /// Pages of the maps of all sessions in memory. When they are used up, unused sessions are evicted. If that is not
+    /// enough, new scans and requests for sessions that are not in memory are refused.
+    std::size_t pages_max = std::numeric_limits<std::int64_t>::max();
+    SessionCache::Clock::duration idle_after =
+        std::chrono::minutes(10); ///< tidy() evicts sessions that are unused as long
+};
+
+/// Creates the sessions of a server from what they share.
+struct SessionFactory {
+    store::ScanLog& log;
+    boost::asio::any_io_executor compute;  ///< sessions apply entries on it
+    boost::asio::any_io_executor may_wait; ///< sessions write checkpoints on it, which blocks
+    SessionLimits limits{};
+    std::shared_ptr<SessionCounters> counters = std::make_shared<SessionCounters>();
+
+    /// Creates a session from a projection of its whole log.
+    /// @param checkpointed  revision of the stored checkpoint, as Recovered::checkpointed
+    [[nodiscard]] std::shared_ptr<Session> make(SessionInfo info, mapping::Projection projection,
+                                                std::optional<Revision> checkpointed) const;
+
+    /// Loads a session from the store: the newest checkpoint, then the rest of the log.
+    ///
+    /// If `stop` becomes true before the end of the log, stores a checkpoint of the entries applied so far, unless
+    /// `hurried` is true.
+    /// @return the session; null if it was stopped
+    /// Errors: those of recover().
+    /// Threads: any thread that may wait for the disk.
+    [[nodiscard]] Result<std::shared_ptr<Session>> read(const SessionInfo& info, const std::atomic<bool>& stop,
+                                                        const std::atomic<bool>& hurried) const;
+};
+
+/// The sessions that could not be recovered, by name.
+/// Threads: any thread.
+class DamagedSessions {
+public:
+    /// Adds a session, or replaces the reason, and writes it to the program's log.
+    /// @param name  the session's name, or '#' and its number if its record cannot be decoded
+    void add(std::string name, store::SessionId id, Error why);
+
+    /// Returns why the session cannot be recovered: kDataLoss, kMalformed or kConflict for stored data that must be
+    /// deleted or repaired, kOverloaded if memory ran out; nullopt if it is not damaged.
+    [[nodiscard]] std::optional<Error> find(std::string_view name) const;
+
+    /// Returns the sessions with the reason for each.
+    [[nodiscard]] std::map<std::string, Error> all() const;
+
+    /// Deletes a session from the store.
+    /// Errors: kNotFound if it is not damaged; kStoreFailed.
+    [[nodiscard]] Result<> remove(std::string_view name, store::ScanLog& log);
+
+private:
+    struct Damaged {
+        store::SessionId id = 0;
+        Error error;
+    };
+
+    mutable std::shared_mutex mutex_;
+    std::map<std::string, Damaged, std::less<>> damaged_;
+};
+
+struct RegistryState {
+    RegistryState(store::ScanLog& scan_log, RegistryConfig registry_config)
+        : log(scan_log), config(std::move(registry_config)), may_wait(config.may_wait.value_or(config.compute)),
+          reading(config.reading.value_or(config.compute)),
+          pages(std::make_shared<limits::MemoryBudget>(config.pages_max)), factory{log, config.compute, may_wait} {
+        factory.limits.shared = {pages};
+    }
+
+    /// Returns why a session that the cache does not have cannot be served.
+    [[nodiscard]] Error why_missing(std::string_view name) const {
+        return damaged.find(name).value_or(no_such_session(name));
+    }
+
+    store::ScanLog& log;
+    const RegistryConfig config;
+    const boost::asio::any_io_executor may_wait;
+    const boost::asio::any_io_executor reading;
+    const std::shared_ptr<limits::MemoryBudget> pages; ///< of the maps in memory
+    SessionFactory factory;
+    std::atomic<bool> draining = false; ///< the server shuts down: no recovery, no loading, no new sessions
+    std::atomic<bool> hurried = false;  ///< the shutdown must end soon
+    SessionCache cache;
+    DamagedSessions damaged;
+};
+
+} // namespace scanloom::session
