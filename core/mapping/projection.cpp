@@ -9,6 +9,7 @@
 #include <utility>
 
 namespace scanloom::mapping {
+
 Projection::Projection(const MapConfig& config, SharedExclusions exclusions)
     : Projection(config, std::move(exclusions), LaserLayers(config), SonarLayer(config),
                  classify::ClassLayer(danger_reach(config))) {}
@@ -36,6 +37,7 @@ Result<> Projection::apply(const LogEntry& entry) {
 }
 
 Result<bool> Projection::apply(const LogEntry& entry, double& work) {
+    // Check that the entry can follow the earlier ones
     if (auto follows = rules_.check(entry); !follows) return follows.error();
     if (is_outdated_by(entry)) {
         return Error{Errc::kConflict,
@@ -43,7 +45,9 @@ Result<bool> Projection::apply(const LogEntry& entry, double& work) {
                                  "the log from its beginning with its exclusions",
                                  revision() + 1)};
     }
+    // Integrate it into the maps
     const bool is_in = std::visit([&](const auto& body) { return integrate_entry(body, work); }, entry);
+    // Count it when it is completely integrated: revision() is its number then
     if (is_in) rules_.apply(entry);
     return is_in;
 }
@@ -62,11 +66,26 @@ bool Projection::integrate_entry(const SensorDescribed& described, double&) {
 
 bool Projection::integrate_entry(const ScanTaken& taken, double& work) {
     const Revision revision = this->revision() + 1;
-    auto& robot = robots_[taken.robot];
-    const auto& scan = taken.scan;
+    const Scan& scan = taken.scan;
+    Robot& robot = robots_[taken.robot];
+
+    // Decide whether the maps contain the scan: exclusions and max_jump may leave it out
     const ScanUse use = filter_.use_of(revision, scan_pose_of(taken));
-    const Sensor& sensor = *robots()[taken.robot].find_sensor(scan.sensor)->sensor;
-    if (use == ScanUse::kIntegrated && !integrate(robot, sensor, scan, work)) return false;
+    if (use == ScanUse::kIntegrated) {
+        // Place the beams of the sensor in the map
+        const Sensor& sensor = *robots()[taken.robot].find_sensor(scan.sensor)->sensor;
+        const Pose2 T_map_sensor = compose(scan.pose, sensor.mount);
+        const auto& fan = fan_of(robot, sensor, scan).fan;
+        const ReadingRules readings{sensor.range_min, sensor.range_max, config_.drop_no_return};
+        // Update the cells that they cross; a large scan continues in the next call
+        const bool complete =
+            sensor.kind == SensorKind::kLaser
+                ? laser_.integrate({std::get<LaserFan>(fan), scan.ranges, T_map_sensor, readings}, revision, work)
+                : sonar_.integrate({std::get<SonarFan>(fan), scan.ranges, T_map_sensor, readings}, revision, work);
+        is_applying_ = !complete;
+        if (!complete) return false;
+    }
+    // Record the scan: the pose for max_jump, the counts, the trajectory
     filter_.take(revision, scan_pose_of(taken));
     if (use == ScanUse::kExcluded) ++robot.excluded;
     if (use != ScanUse::kIntegrated) return true;
@@ -86,19 +105,6 @@ bool Projection::integrate_entry(const MapPatch& patch, double& work) {
 bool Projection::integrate_entry(const ScansExcluded&, double&) { return true; }
 
 bool Projection::integrate_entry(const ExclusionLifted&, double&) { return true; }
-
-/// @return whether the scan is completely integrated
-bool Projection::integrate(Robot& robot, const Sensor& sensor, const Scan& scan, double& work) {
-    const auto& fan = fan_of(robot, sensor, scan).fan;
-    const Pose2 T_map_sensor = compose(scan.pose, sensor.mount);
-    const ReadingRules readings{sensor.range_min, sensor.range_max, config_.drop_no_return};
-    const bool complete =
-        sensor.kind == SensorKind::kLaser
-            ? laser_.integrate({std::get<LaserFan>(fan), scan.ranges, T_map_sensor, readings}, revision() + 1, work)
-            : sonar_.integrate({std::get<SonarFan>(fan), scan.ranges, T_map_sensor, readings}, revision() + 1, work);
-    is_applying_ = !complete;
-    return complete;
-}
 
 const Projection::KnownFan& Projection::fan_of(Robot& robot, const Sensor& sensor, const Scan& scan) {
     auto& known = robot.fans[sensor.id];

@@ -167,7 +167,6 @@ private:
     bool integrate_entry(const MapPatch& patch, double& work);
     bool integrate_entry(const ScansExcluded& excluded, double& work);
     bool integrate_entry(const ExclusionLifted& lifted, double& work);
-    [[nodiscard]] bool integrate(Robot& robot, const Sensor& sensor, const Scan& scan, double& work);
     [[nodiscard]] const KnownFan& fan_of(Robot& robot, const Sensor& sensor, const Scan& scan);
 
     void bring_classes_up_to(const LaserView& laser);

@@ -191,32 +191,41 @@ void Session::on_appended(Group group, const Result<>& appended) {
     durable_.push_back(std::move(group));
     if (hurried_) return finish_closing();
     append_next(); // the next group is written while this one is applied
-    if (durable_.size() == 1) apply_slice();
+    if (durable_.size() == 1) apply_batch();
 }
 
-/// Applies entries for one slice of work, then yields the thread. A small group is applied as a whole, and in place if
-/// no reader holds the published maps. Otherwise each chunk that the group changes is copied first.
-void Session::apply_slice() {
+/// Applies durable entries to the maps for one slice of work, then yields the thread to other sessions.
+void Session::apply_batch() {
     if (hurried_) return finish_closing();
     if (durable_.empty()) return; // dropped in the meantime
-    const Group& group = durable_.front();
-    const bool in_place = group.work <= kInPlaceWork && published_.take_back();
-    auto applied = apply_some(in_place ? HUGE_VAL : kSliceWork);
-    const bool finished = applied && applied_ == group.entries.size();
+
+    // A small group is applied as a whole, and in place if no reader holds the published maps. Otherwise each chunk
+    // that the group changes is copied first.
+    const bool in_place = durable_.front().work <= kInPlaceWork && published_.take_back();
+    auto applied = apply_entries(in_place ? HUGE_VAL : kSliceWork);
+    const bool finished = applied && applied_ == durable_.front().entries.size();
     if (in_place && !finished) { // failed or hurried: publish for the waiting readers
         const auto published = publish();
         if (applied) applied = published;
     }
     if (!applied) return stop_writing(applied.error());
-    if (finished) finish_group();
-    if (!durable_.empty()) return on_strand([](Session& self) { self.apply_slice(); });
+
+    if (finished) {
+        const Group group = take_applied_group();
+        const auto published = publish();
+        sequencer_.release(group); // its scans are durable and in the maps: they are acknowledged
+        if (!published) return stop_writing(published.error());
+        if (is_checkpoint_due()) begin_checkpoint();
+        append_next();
+    }
+    if (!durable_.empty()) return on_strand([](Session& self) { self.apply_batch(); });
     finish_setting_back();
     finish_closing();
 }
 
 /// Applies up to `work` of the first group. Fails if memory runs out, which must not affect other sessions, or if a
 /// durable entry cannot follow, which is a program error because RobotSequencer checks the entries.
-Result<> Session::apply_some(double work) {
+Result<> Session::apply_entries(double work) {
     try {
         auto& entries = durable_.front().entries;
         for (; applied_ < entries.size() && work > 0.0 && !hurried_; ++applied_) {
@@ -248,18 +257,15 @@ void Session::count_and_keep(ScanTaken& applied) {
         projection_.revision(), projection_.sensor_of(applied.robot, applied.scan.sensor), std::move(applied.scan)});
 }
 
-void Session::finish_group() {
-    const Group group = std::move(durable_.front());
+/// Removes the first group, which is applied, and returns the share of the memory that it did not need.
+Group Session::take_applied_group() {
+    Group group = std::move(durable_.front());
     durable_.pop_front();
     applied_ = 0;
     chunks_under_way_ -= group.chunks;
     const auto grown = projection_.page_count() - std::exchange(pages_, projection_.page_count());
     share_.give_back(group.chunks - static_cast<std::int64_t>(grown)); // `grown` may include trajectory blocks, too
-    const auto published = publish();
-    sequencer_.release(group);
-    if (!published) return stop_writing(published.error());
-    if (is_checkpoint_due()) begin_checkpoint();
-    append_next();
+    return group;
 }
 
 /// Publishes the maps. If memory runs out, readers get the previous maps, or empty ones if those were withdrawn.

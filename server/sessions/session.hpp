@@ -136,10 +136,10 @@ private:
     void append(Group group);
     void refuse_first(const Error& error);
     void on_appended(Group group, const Result<>& appended);
-    void apply_slice();
-    [[nodiscard]] Result<> apply_some(double work);
+    void apply_batch();
+    [[nodiscard]] Result<> apply_entries(double work);
     void count_and_keep(ScanTaken& applied);
-    void finish_group();
+    [[nodiscard]] Group take_applied_group();
     [[nodiscard]] Result<> publish();
     void notify_watchers();
     void stop_writing(const Error& error);
