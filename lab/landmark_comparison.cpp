@@ -1,6 +1,8 @@
 #include "lab/landmark_comparison.hpp"
 
+#include "core/landmarks/filter_figures.hpp"
 #include "core/landmarks/landmark.hpp"
+#include "core/landmarks/landmark_matching.hpp"
 #include "core/landmarks/points.hpp"
 #include "lab/recording.hpp"
 #include "robot_client/sources/stationary_detector.hpp"

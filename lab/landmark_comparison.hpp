@@ -1,8 +1,8 @@
 #pragma once
 
-#include "core/landmarks/acceptance_test.hpp"
-#include "core/landmarks/cloud_fusion.hpp"
+#include "core/landmarks/filter_figures.hpp"
 #include "core/landmarks/landmark.hpp"
+#include "core/landmarks/landmark_matching.hpp"
 #include "lab/integrate_recording.hpp"
 #include "lab/recording.hpp"
 

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "common/error/error.hpp"
-#include "core/landmarks/alignment.hpp"
 #include "core/landmarks/alignment_evidence.hpp"
 #include "core/landmarks/alignment_surfels.hpp"
 #include "core/landmarks/refinement.hpp"

@@ -1,6 +1,5 @@
+#include "core/landmarks/alignment.hpp"
 #pragma once
-
-#include "core/landmarks/cloud_fusion.hpp"
 
 #include <span>
 #include <vector>

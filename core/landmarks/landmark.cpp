@@ -1,8 +1,6 @@
 #include "core/landmarks/landmark.hpp"
 
-#include "core/landmarks/acceptance_test.hpp"
 #include "core/landmarks/clustering.hpp"
-#include "core/landmarks/point_index.hpp"
 #include "core/landmarks/points.hpp"
 
 #include <fmt/format.h>
@@ -14,6 +12,54 @@
 
 namespace scanloom::landmarks {
 namespace {
+
+struct Axes {
+    double major = 0.0; ///< eigenvalues, square metres
+    double minor = 0.0;
+    Point2 direction{1.0, 0.0}; ///< of the major axis
+};
+
+/// Computes the axes of points. Coordinates are relative to the first point, so that equal points have exactly no
+/// extent.
+Axes axes_of(std::span<const Point2> points) {
+    const auto count = static_cast<double>(points.size());
+    Point2 mean{0.0, 0.0};
+    for (const Point2& point : points) mean += (point - points.front()) / count;
+    double xx = 0.0;
+    double xy = 0.0;
+    double yy = 0.0;
+    for (const Point2& point : points) {
+        const Point2 off = point - points.front() - mean;
+        xx += off.x * off.x / count;
+        xy += off.x * off.y / count;
+        yy += off.y * off.y / count;
+    }
+    const double middle = 0.5 * (xx + yy);
+    const double apart = std::hypot(0.5 * (xx - yy), xy);
+    Axes axes{middle + apart, std::max(middle - apart, 0.0)};
+    // Of the two forms of the eigenvector, the one without cancellation.
+    const Point2 direction = xx >= yy ? Point2{axes.major - yy, xy} : Point2{xy, axes.major - xx};
+    if (norm(direction) > 0.0) axes.direction = normalized(direction);
+    return axes;
+}
+
+std::vector<double> gaps_along(std::span<const Point2> points, const Point2& direction) {
+    std::vector<double> places(points.size());
+    std::ranges::transform(points, places.begin(),
+                           [&](const Point2& point) { return dot(point - points.front(), direction); });
+    std::ranges::sort(places);
+    std::vector<double> gaps(places.size() - 1);
+    for (std::size_t n = 0; n < gaps.size(); ++n) gaps[n] = places[n + 1] - places[n];
+    return gaps;
+}
+
+/// Returns the evenness of gaps; see Continuity.
+/// Precondition: mean > 0.
+double evenness_of(std::span<const double> gaps, double mean) {
+    double variance = 0.0;
+    for (const double gap : gaps) variance += (gap - mean) * (gap - mean) / static_cast<double>(gaps.size());
+    return 1.0 / (1.0 + std::sqrt(variance) / mean);
+}
 
 /// The points of each cluster, in the order of the cloud.
 class Members {
@@ -66,6 +112,22 @@ Landmark landmark_of(std::span<const Point2> points, double eps) {
 
 } // namespace
 
+Continuity continuity_of(std::span<const Point2> points, double eps) {
+    if (points.size() < 2) return {};
+    const Axes axes = axes_of(points);
+    if (!(axes.major > 0.0)) return {};
+    const std::vector<double> gaps = gaps_along(points, axes.direction);
+    double extent = 0.0;
+    double filled = 0.0;
+    for (const double gap : gaps) {
+        extent += gap;
+        if (gap < 2.0 * eps) filled += gap;
+    }
+    if (!(extent > 0.0)) return {};
+    return {1.0 - axes.minor / axes.major, evenness_of(gaps, extent / static_cast<double>(gaps.size())),
+            filled / extent};
+}
+
 std::vector<Point2> positions_of(std::span<const Landmark> landmarks) {
     std::vector<Point2> positions;
     positions.reserve(landmarks.size());
@@ -92,67 +154,6 @@ Result<std::vector<Landmark>> find_landmarks(std::span<const Point2> points, con
     auto survey = survey_landmarks(points, settings);
     if (!survey) return survey.error();
     return std::move(survey->landmarks);
-}
-
-namespace {
-
-/// The distinct points of a set, in the order of their first occurrence.
-struct Distinct {
-    explicit Distinct(std::span<const Point2> all) {
-        auto [its_points, counts, of] = distinct_points(all);
-        points = std::move(its_points);
-        for (std::size_t n = 0; n < all.size(); ++n) {
-            if (of[n] == first_of.size()) first_of.push_back(n);
-        }
-        tree = PointTree(points);
-    }
-
-    std::vector<Point2> points;
-    std::vector<std::size_t> first_of; // for each distinct point, its lowest index in the set
-    PointTree tree{{}};
-};
-
-} // namespace
-
-Result<std::vector<Match>> match(std::span<const Point2> first, std::span<const Point2> second, double tolerance) {
-    if (auto good = check_points(first, "first"); !good) return good.error();
-    if (auto good = check_points(second, "second"); !good) return good.error();
-    if (!(tolerance >= 0.0) || !std::isfinite(tolerance)) {
-        return Error{Errc::kInvalidField,
-                     fmt::format("tolerance is {:g} m; it must be finite and 0 or more", tolerance)};
-    }
-    std::vector<Match> matches;
-    if (first.empty() || second.empty()) return matches;
-    // Of equal points only the first can be matched. In trees of all points, each equal point would examine all the
-    // others.
-    const Distinct here(first);
-    const Distinct there(second);
-    for (std::size_t n = 0; n < here.points.size(); ++n) {
-        const auto [other, distance] = *there.tree.nearest(here.points[n]);
-        if (distance > tolerance) continue;
-        if (here.tree.nearest(there.points[other])->index != n) continue;
-        matches.push_back({here.first_of[n], there.first_of[other], distance});
-    }
-    return matches;
-}
-
-Metrics metrics_of(std::span<const Match> matches, std::size_t first_count, double tolerance) {
-    assert(matches.size() <= first_count);
-    Metrics metrics{.matched = matches.size()};
-    const auto count = static_cast<double>(matches.size());
-    if (first_count > 0) metrics.persistence = count / static_cast<double>(first_count);
-    if (matches.empty()) return metrics;
-    const auto close = std::ranges::count_if(
-        matches, [&](double d) { return d <= tolerance / 2.0; }, &Match::distance);
-    metrics.stability = static_cast<double>(close) / count;
-    double sum = 0.0;
-    for (const Match& match : matches) sum += match.distance;
-    const double mean = sum / count;
-    double squares = 0.0;
-    for (const Match& match : matches) squares += (match.distance - mean) * (match.distance - mean);
-    metrics.distance_mean = mean;
-    metrics.distance_sigma = std::sqrt(squares / count);
-    return metrics;
 }
 
 } // namespace scanloom::landmarks

@@ -11,6 +11,29 @@
 
 namespace scanloom::landmarks {
 
+/// How similar a cluster is to a piece of a wall that was seen without interruption. Each value is in [0, 1].
+struct Continuity {
+    double linearity = 0.0; ///< 1 - minor / major eigenvalue of the points' covariance
+    double evenness = 0.0;  ///< 1 / (1 + cv), cv the standard deviation of the gaps divided by their mean
+    double fill = 0.0;      ///< fraction of the extent that is in gaps below 2 eps
+
+    [[nodiscard]] double mean() const noexcept { return (linearity + evenness + fill) / 3.0; }
+
+    friend bool operator==(const Continuity&, const Continuity&) = default;
+};
+
+/// Computes the continuity of the points of one cluster, in any order.
+///
+/// Gaps are between successive points along the major axis; equal points have a gap of 0. The extent is the sum of the
+/// gaps. The standard deviation is that of the gaps themselves (divided by their number). If no axis is the major one,
+/// the x axis is used. Without extent (no point, one point, all points equal) all values are 0. Two points have one
+/// gap, so their evenness is 1.
+/// @param points  metres
+/// @param eps     metres
+/// Precondition: the points pass check_points(); eps > 0.
+/// Cost: O(n log n).
+[[nodiscard]] Continuity continuity_of(std::span<const Point2> points, double eps);
+
 /// A thing in a room, as a lidar sees it: a piece of a wall, a cupboard, a door. Metres, in the frame of the points.
 struct Landmark {
     Point2 position{0.0, 0.0}; ///< per-axis median of its points; not necessarily one of them
@@ -54,47 +77,5 @@ struct LandmarkSurvey {
 /// Errors: those of survey_landmarks().
 [[nodiscard]] Result<std::vector<Landmark>> find_landmarks(std::span<const Point2> points,
                                                            const LandmarkSettings& settings = {});
-
-inline constexpr double kTolerance = 0.25; ///< metres
-
-/// Points of two sets that are each other's nearest neighbours.
-struct Match {
-    std::size_t first;  ///< index in the first set
-    std::size_t second; ///< index in the second set
-    double distance;    ///< metres
-
-    friend bool operator==(const Match&, const Match&) = default;
-};
-
-/// Finds mutual nearest neighbours of two sets in one frame.
-///
-/// Of several nearest points the one with the lowest index counts. So each point is in at most one match, and of equal
-/// points in one set only the first can be matched.
-/// @param first      metres
-/// @param second     metres, in the same frame
-/// @param tolerance  metres; matched points are at most this far apart
-/// @return the matches in the order of `first`; empty if a set is empty
-/// Errors: kInvalidField if the tolerance is negative or not finite; those of check_points().
-/// Cost: O(n log n) of the points.
-[[nodiscard]] Result<std::vector<Match>> match(std::span<const Point2> first, std::span<const Point2> second,
-                                               double tolerance = kTolerance);
-
-/// How consistent two sets of landmarks are. A value is nullopt if it would be divided by 0.
-struct Metrics {
-    std::size_t matched = 0;             ///< number of matches
-    std::optional<double> persistence;   ///< fraction of the first set's landmarks that are matched
-    std::optional<double> stability;     ///< fraction of the matches at most half the tolerance apart
-    std::optional<double> distance_mean; ///< metres, of the matches
-    std::optional<double>
-        distance_sigma; ///< metres, standard deviation of the matches' distances, divided by their number
-};
-
-/// Computes how consistent two sets of landmarks are.
-/// @param matches      the result of match() with `tolerance`
-/// @param first_count  number of landmarks of the first set
-/// @param tolerance    metres
-/// Precondition: there are no more matches than first_count.
-[[nodiscard]] Metrics metrics_of(std::span<const Match> matches, std::size_t first_count,
-                                 double tolerance = kTolerance);
 
 } // namespace scanloom::landmarks

@@ -1,6 +1,7 @@
 #include "core/landmarks/landmark_map.hpp"
 
 #include "core/landmarks/landmark.hpp"
+#include "core/landmarks/landmark_matching.hpp"
 #include "core/landmarks/points.hpp"
 
 #include <algorithm>

@@ -1,6 +1,5 @@
 #include "core/landmarks/refinement.hpp"
-
-#include "core/landmarks/alignment.hpp"
+#include "core/landmarks/pair_alignment.hpp"
 
 #include <Eigen/Dense>
 

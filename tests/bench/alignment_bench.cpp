@@ -1,6 +1,6 @@
 #include "core/landmarks/alignment.hpp"
 #include "core/landmarks/cloud_fusion.hpp"
-#include "core/landmarks/landmark.hpp"
+#include "core/landmarks/landmark_matching.hpp"
 #include "sim/range_sensors.hpp"
 
 #include <benchmark/benchmark.h>

@@ -1,6 +1,7 @@
 #include "server/http/handlers/handlers.hpp"
 
-#include "core/landmarks/landmark.hpp"
+#include "core/landmarks/cloud_fusion.hpp"
+#include "core/landmarks/landmark_matching.hpp"
 #include "server/exchange/point_text.hpp"
 #include "server/http/geojson.hpp"
 #include "server/http/handlers/parameters.hpp"

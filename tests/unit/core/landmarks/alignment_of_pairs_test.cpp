@@ -1,4 +1,4 @@
-#include "core/landmarks/alignment.hpp"
+#include "core/landmarks/pair_alignment.hpp"
 #include "tests/unit/core/landmarks/random_points.hpp"
 
 #include <gmock/gmock.h>

@@ -1,4 +1,4 @@
-#include "core/landmarks/acceptance_test.hpp"
+#include "core/landmarks/landmark.hpp"
 #include "tests/unit/core/landmarks/random_points.hpp"
 
 #include <gmock/gmock.h>

@@ -1,4 +1,4 @@
-#include "core/landmarks/cloud_fusion.hpp"
+#include "core/landmarks/filter_figures.hpp"
 #include "tests/support/angles.hpp"
 #include "tests/unit/core/landmarks/random_points.hpp"
 

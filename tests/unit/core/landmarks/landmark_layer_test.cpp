@@ -1,7 +1,5 @@
 #include "core/landmarks/landmark_map.hpp"
 
-#include "core/landmarks/landmark.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

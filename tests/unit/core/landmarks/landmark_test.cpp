@@ -1,4 +1,3 @@
-#include "core/landmarks/acceptance_test.hpp"
 #include "core/landmarks/clustering.hpp"
 #include "core/landmarks/landmark.hpp"
 #include "tests/unit/core/landmarks/clustering_oracle.hpp"

@@ -1,4 +1,4 @@
-#include "core/landmarks/landmark.hpp"
+#include "core/landmarks/landmark_matching.hpp"
 #include "tests/unit/core/landmarks/random_points.hpp"
 
 #include <gmock/gmock.h>

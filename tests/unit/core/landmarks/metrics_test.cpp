@@ -1,4 +1,4 @@
-#include "core/landmarks/landmark.hpp"
+#include "core/landmarks/landmark_matching.hpp"
 
 #include <gtest/gtest.h>
 
