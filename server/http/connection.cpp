@@ -45,10 +45,11 @@ bool skip_empty_line(beast::flat_buffer& received) {
 
 Connection::Connection(net::LinkStream stream, std::shared_ptr<const Service> service)
     : stream_(std::move(stream)), deadline_(stream_.get_executor()),
-      buffer_(service->config.header_bytes_max + kReadBytes), service_(std::move(service)) {
+      buffer_(service->config.header_bytes_max + kReadBytes), service_(std::move(service)),
+      writer_(stream_, deadline_, wait_, *service_) {
     beast::error_code ignored;
     peer_ = stream_.socket().remote_endpoint(ignored).address().to_string();
-    begin_to_wait();
+    wait_.begin(PeerWait::Clock::now());
 }
 
 asio::awaitable<void> Connection::run() {
@@ -58,25 +59,14 @@ asio::awaitable<void> Connection::run() {
     deadline_.watch(weak_from_this(), [this] { close(); });
     bool open = co_await shake_hands();
     while (open && !stopping_) {
-        begin_to_wait();
+        wait_.begin(PeerWait::Clock::now());
         open = co_await wait_for_request();
         if (open) open = co_await serve_request();
     }
-    end_waiting();
-    if (must_linger_) co_await linger();
+    wait_.end();
+    co_await writer_.finish();
     deadline_.stop();
     close();
-}
-
-void Connection::begin_to_wait() {
-    if (waits_) return;
-    waits_ = true;
-    wait_.begin(PeerWait::Clock::now());
-}
-
-void Connection::end_waiting() {
-    waits_ = false;
-    wait_.end();
 }
 
 std::optional<std::chrono::duration<double>> Connection::behind() const noexcept {
@@ -84,9 +74,9 @@ std::optional<std::chrono::duration<double>> Connection::behind() const noexcept
 }
 
 void Connection::make_room() {
-    wait_.end();
+    wait_.stop_measuring();
     asio::dispatch(stream_.get_executor(), [self = shared_from_this()] {
-        if (self->waits_) self->close();
+        if (self->wait_.is_waiting()) self->close();
     });
 }
 
@@ -119,20 +109,13 @@ asio::awaitable<bool> Connection::shake_hands() {
     if (!failed) co_return true;
     spdlog::debug("{}: TLS handshake: {}", peer_, failed.message());
     if (net::is_plain_http(failed)) {
-        co_await answer_without_tls("this port accepts HTTPS only; use the same address with https:// before it");
+        co_await writer_.write_without_tls(problem(
+            Status::bad_request, "this port accepts HTTPS only; use the same address with https:// before it", ""));
     } else if (const auto fault = net::client_fault_of(failed)) {
         service_->api.services().authorizer.note(peer_, *fault);
-        must_linger_ = true; // until the peer has read the TLS alert
+        writer_.keep_until_read(); // the TLS alert
     }
     co_return false;
-}
-
-/// Answers without TLS a peer that sent a request without TLS.
-asio::awaitable<void> Connection::answer_without_tls(std::string_view sentence) {
-    const auto response = problem(Status::bad_request, sentence, "");
-    service_->counters.answered(static_cast<unsigned>(response.status)).Increment();
-    stream_ = net::LinkStream(std::move(stream_.socket()));
-    must_linger_ = co_await write_all(head_text(response, Persistence::kClose, date_now()), response.body.bytes());
 }
 
 asio::awaitable<bool> Connection::wait_for_request() {
@@ -160,7 +143,7 @@ asio::awaitable<bool> Connection::serve_request() {
     // refusal_of() applies the limit of the route once it is known.
     parser.body_limit(service_->config.import_bytes_max);
     const auto error = co_await read_header(parser);
-    end_waiting();
+    wait_.end();
     if (error) {
         co_await refuse(error);
         co_return false;
@@ -171,13 +154,13 @@ asio::awaitable<bool> Connection::serve_request() {
     auto routed = service_->api.route(request);
     const auto bytes_max = body_bytes_max(std::get_if<Api::Routed>(&routed), service_->config);
     if (const auto refusal = refusal_of(parser, request, bytes_max, *service_)) {
-        co_await write(*refusal, {});
+        co_await writer_.write(*refusal);
         co_return false;
     }
     auto admitted = admit(request, std::move(routed));
     if (!parser.is_done()) {
         if (const auto* refusal = std::get_if<Response>(&admitted)) { // before the body is sent
-            co_await write(*refusal, {});
+            co_await writer_.write(*refusal);
             co_return false;
         }
         if (parser.chunked()) parser.body_limit(bytes_max);
@@ -203,7 +186,7 @@ asio::awaitable<bool> Connection::serve_request() {
         co_return false;
     }
     if (stopping_) manner.keep_alive = false;
-    co_return co_await write(*response, manner);
+    co_return co_await writer_.write(*response, manner);
 }
 
 /// Returns the request if its header permits it, or the refusal.
@@ -228,13 +211,13 @@ asio::awaitable<beast::error_code> Connection::read_header(Parser& parser) {
 asio::awaitable<bool> Connection::read_body(Parser& parser) {
     if (parser.is_done()) co_return true;
     if (beast::iequals(parser.get()[beast::http::field::expect], "100-continue")) {
-        const bool asked = co_await write_all("HTTP/1.1 100 Continue\r\n\r\n", {});
+        const bool asked = co_await writer_.write_all("HTTP/1.1 100 Continue\r\n\r\n");
         if (!asked) co_return false;
     }
     const auto& config = service_->config;
     const auto begin = std::chrono::steady_clock::now();
     const auto fields = field_count(parser.get());
-    begin_to_wait();
+    wait_.begin(PeerWait::Clock::now());
     while (!parser.is_done()) {
         const auto received = static_cast<double>(parser.get().body().size());
         const std::chrono::duration<double> more(received / static_cast<double>(config.read_rate_min));
@@ -247,11 +230,11 @@ asio::awaitable<bool> Connection::read_body(Parser& parser) {
         co_await refuse(error);
         co_return false;
     }
-    end_waiting();
+    wait_.end();
     if (field_count(parser.get()) == fields) co_return true;
-    co_await write(problem(Status::bad_request, "fields behind a chunked body are not read; send them before it",
-                           instance_of(head_of(parser.get()).target)),
-                   {});
+    co_await writer_.write(problem(Status::bad_request,
+                                   "fields behind a chunked body are not read; send them before it",
+                                   instance_of(head_of(parser.get()).target)));
     co_return false;
 }
 
@@ -268,7 +251,7 @@ asio::awaitable<void> Connection::show(const live::Invitation& invitation, const
             problem(Status::bad_request, "a WebSocket client sends nothing before the answer to its upgrade", path);
     }
     if (refusal) {
-        co_await write(*refusal, {});
+        co_await writer_.write(*refusal);
         co_return;
     }
     service_->counters.answered(static_cast<unsigned>(Status::switching_protocols)).Increment();
@@ -282,9 +265,9 @@ asio::awaitable<void> Connection::show(const live::Invitation& invitation, const
 
 asio::awaitable<void> Connection::refuse(beast::error_code reason) {
     if (is_tls_hello(buffer_)) {
-        must_linger_ = true; // the peer cannot read a response without TLS
+        writer_.keep_until_read(); // the peer cannot read a response without TLS
     } else if (const auto refusal = refusal_of(buffer_, reason)) {
-        co_await write(*refusal, {});
+        co_await writer_.write(*refusal);
     }
 }
 

@@ -5,6 +5,7 @@
 #include "server/http/incoming.hpp"
 #include "server/http/request.hpp"
 #include "server/http/response.hpp"
+#include "server/http/response_writer.hpp"
 #include "server/http/server_config.hpp"
 #include "server/live/viewer.hpp"
 
@@ -16,7 +17,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <variant>
 
 namespace scanloom::http {
@@ -61,33 +61,18 @@ private:
                                                               std::variant<Api::Routed, Response> routed) const;
     [[nodiscard]] boost::asio::awaitable<void> show(const live::Invitation& invitation, const Incoming& upgrade);
     [[nodiscard]] boost::asio::awaitable<void> refuse(boost::beast::error_code reason);
-    /// How to write a response.
-    struct Manner {
-        bool with_body = true;
-        bool keep_alive = false;
-        bool takes_chunks = true; ///< HTTP/1.1
-    };
-
-    [[nodiscard]] boost::asio::awaitable<bool> write(const Response& response, Manner manner);
-    [[nodiscard]] boost::asio::awaitable<bool> write_stream(BodyStream& stream, Framing framing);
-    [[nodiscard]] boost::asio::awaitable<bool> write_all(std::string_view head, std::string_view body);
-    [[nodiscard]] boost::asio::awaitable<void> linger();
-    void begin_to_wait();
-    void end_waiting();
     void close();
-    [[nodiscard]] boost::asio::awaitable<void> answer_without_tls(std::string_view sentence);
 
     net::LinkStream stream_; // its socket never blocks
     Deadline deadline_;      // closes it
+    PeerWait wait_;          // for its peer
     boost::beast::flat_buffer buffer_;
     std::string peer_; // the address
     std::shared_ptr<const Service> service_;
+    ResponseWriter writer_;
     std::shared_ptr<live::Viewer> viewer_; // owns the socket once it is set
     bool idle_ = false;                    // between requests, or before the first one
-    bool waits_ = false;                   // whether the server waits for the peer
-    PeerWait wait_;                        // the same for other threads
     bool stopping_ = false;
-    bool must_linger_ = false; // the peer may not have read the last response yet
 };
 
 } // namespace scanloom::http

@@ -43,19 +43,30 @@ private:
     std::function<void()> passed_;
 };
 
-/// Measures how long a connection has waited for its peer, compared with the data that the peer sent or received
+/// Whether a connection waits for its peer, and how long compared with the data that the peer sent or received
 /// meanwhile.
-/// Threads: begin(), end() and allow() from one thread at a time; behind() from any.
+/// Threads: behind() and stop_measuring() from any; the others from one thread at a time.
 class PeerWait {
 public:
     using Clock = std::chrono::steady_clock;
 
+    /// Begins to wait, unless the connection waits already.
     void begin(Clock::time_point now) noexcept {
+        if (is_waiting_) return;
+        is_waiting_ = true;
         allowed_seconds_ = 0.0;
         since_ = now;
     }
 
-    void end() noexcept { since_ = kNever; }
+    void end() noexcept {
+        is_waiting_ = false;
+        stop_measuring();
+    }
+
+    /// Makes behind() return nullopt until the next begin() after an end().
+    void stop_measuring() noexcept { since_ = kNever; }
+
+    [[nodiscard]] bool is_waiting() const noexcept { return is_waiting_; }
 
     /// @param seconds  the time that the data sent or received since begin() may take
     void allow(double seconds) noexcept { allowed_seconds_ = seconds; }
@@ -70,6 +81,7 @@ public:
 private:
     static constexpr auto kNever = Clock::time_point::max();
 
+    bool is_waiting_ = false;
     std::atomic<Clock::time_point> since_ = kNever;
     std::atomic<double> allowed_seconds_ = 0.0;
 };

@@ -63,6 +63,16 @@ std::string_view date_now() {
     return text;
 }
 
+Transfer transfer_of(const Response& response, const Manner& manner) noexcept {
+    const Framing framing = response.stream == nullptr ? Framing::kLength
+                            : manner.takes_chunks      ? Framing::kChunked
+                                                       : Framing::kUntilClosed;
+    const bool is_kept = manner.keep_alive && framing != Framing::kUntilClosed;
+    return {framing, !is_kept              ? Persistence::kClose
+                     : manner.takes_chunks ? Persistence::kKeepAlive
+                                           : Persistence::kKeepAliveOfHttp10};
+}
+
 std::string head_text(const Response& response, Persistence persistence, std::string_view date, Framing framing,
                       bool is_secure) {
     constexpr std::size_t kUsualBytes = 512;

@@ -109,6 +109,21 @@ enum class Framing {
 /// Whether the connection stays open. Clients of HTTP/1.0 need the field `Connection: keep-alive`.
 enum class Persistence { kClose, kKeepAlive, kKeepAliveOfHttp10 };
 
+/// What a request states about its response.
+struct Manner {
+    bool with_body = true;
+    bool keep_alive = false;
+    bool takes_chunks = true; ///< HTTP/1.1
+};
+
+struct Transfer {
+    Framing framing;
+    Persistence persistence;
+};
+
+/// Returns how to send a response. A stream to a client that does not take chunks ends with the connection.
+[[nodiscard]] Transfer transfer_of(const Response& response, const Manner& manner) noexcept;
+
 /// Returns the status line and the fields up to the empty line, as sent. Adds the fields that every response has:
 /// framing, persistence, and restrictions for browsers.
 /// @param date       an IMF-fixdate (RFC 9110, section 5.6.7)
