@@ -11,7 +11,10 @@
 #include <string_view>
 #include <vector>
 
+/// Tokens: the roles that they permit, the limits and the sessions that they are for.
 namespace scanloom::auth {
+
+// Roles
 
 /// The set of actions that a token permits.
 enum class Role {
@@ -22,6 +25,7 @@ enum class Role {
 
 inline constexpr std::array kRoles = {Role::kRobot, Role::kViewer, Role::kOperator};
 
+/// Returns the name in token files: "robot", "viewer" or "operator".
 [[nodiscard]] constexpr std::string_view name_of(Role role) noexcept {
     switch (role) {
     case Role::kRobot: return "robot";
@@ -51,6 +55,8 @@ inline constexpr std::array kRoles = {Role::kRobot, Role::kViewer, Role::kOperat
 /// Returns whether the role permits HTTP requests that change something.
 [[nodiscard]] constexpr bool may_change(Role role) noexcept { return role == Role::kOperator; }
 
+// Limits
+
 /// The limits of one token. The server's own bounds apply in addition.
 struct Limits {
     std::size_t connections = 64;               ///< robots connected at once
@@ -74,18 +80,18 @@ inline constexpr double kBytesPerSecondMin = 1024.0;
     return limits;
 }
 
-} // namespace scanloom::auth
-
-/// Patterns of session names: '*' matches any text, including the empty text, '?' matches one character, and any other
-/// character matches itself.
-namespace scanloom::auth {
+// Patterns of session names: '*' matches any text, including the empty text, '?' matches one character, and any other
+// character matches itself.
 
 /// Returns whether the pattern has 1 to 64 characters of A-Z a-z 0-9 _ - * ?
 [[nodiscard]] bool is_valid_pattern(std::string_view pattern) noexcept;
 
 /// Returns whether the whole name matches the pattern.
+/// @param pattern  any text; is_valid_pattern() is not required
 /// Cost: at most the product of the two lengths, for every pattern.
 [[nodiscard]] bool matches(std::string_view pattern, std::string_view name) noexcept;
+
+// Tokens
 
 /// What the holder of a secret is permitted to do. The secret itself is not stored: the server keeps only its hash.
 struct Token {

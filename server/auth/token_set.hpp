@@ -34,12 +34,7 @@ private:
     std::vector<TokenRef> tokens_;
 };
 
-} // namespace scanloom::auth
-
-/// Reads and writes tokens as TOML.
-namespace scanloom::auth {
-
-/// Parses the file of --tokens:
+/// Parses the file of --tokens, which is TOML:
 ///
 ///     [[token]]
 ///     name = "depot-robots"

@@ -14,12 +14,19 @@
 #include <type_traits>
 #include <vector>
 
-/// Encodes and decodes plain values in the parts of a checkpoint.
+struct ZSTD_CCtx_s;
+struct ZSTD_DCtx_s;
+
+/// The parts of a checkpoint: their values, their compression, and the part with the exclusions.
 namespace scanloom::session {
+
+// Plain values
 
 static_assert(std::endian::native == std::endian::little, "checkpoints are written in the machine's own order");
 
-/// Appends the bytes of `value`.
+/// Appends the bytes of a value, in the order of this machine.
+/// @param out    the part
+/// @param value  has no pointers, and no bytes between its members
 template <class Value>
 void put(std::string& out, const Value& value) {
     static_assert(std::is_trivially_copyable_v<Value>);
@@ -29,9 +36,11 @@ void put(std::string& out, const Value& value) {
 /// Reads values from the front of a part. After the first value that does not fit, failed() stays true.
 class PartReader {
 public:
+    /// @param bytes  must outlive this object
     explicit PartReader(std::string_view bytes) : rest_(bytes) {}
 
-    /// Removes and returns the next value; a zero value if too few bytes are left.
+    /// Removes the next value.
+    /// @return the value; a zero value if too few bytes are left, and then failed() is true
     template <class Value>
     Value take() {
         static_assert(std::is_trivially_copyable_v<Value>);
@@ -48,10 +57,13 @@ public:
     /// Removes `bytes` bytes, or all that are left.
     void skip(std::size_t bytes) { rest_.remove_prefix(std::min(bytes, rest_.size())); }
 
+    /// Returns the bytes that were not read yet.
     [[nodiscard]] std::string_view rest() const noexcept { return rest_; }
 
     /// Returns whether all bytes were read and no value was missing.
     [[nodiscard]] bool complete() const noexcept { return !failed_ && rest_.empty(); }
+
+    /// Returns whether a value was missing.
     [[nodiscard]] bool failed() const noexcept { return failed_; }
 
 private:
@@ -59,22 +71,17 @@ private:
     bool failed_ = false;
 };
 
-} // namespace scanloom::session
+// Compression of chunks. The store itself does not compress, because most of its data are scans, whose ranges are
+// packed already.
 
-struct ZSTD_CCtx_s;
-struct ZSTD_DCtx_s;
-
-/// Compression of a checkpoint's chunks by Zstandard at its fastest level. The store itself does not compress, because
-/// most of its data are scans, whose ranges are packed already.
-namespace scanloom::session {
-
-/// Compresses parts. Keeps tables of a few hundred KiB between parts.
+/// Compresses parts by Zstandard at its fastest level. Keeps tables of a few hundred KiB between parts.
 /// Throws std::bad_alloc if memory ran out.
 /// Threads: one at a time.
 class PartCompressor {
 public:
     PartCompressor();
 
+    /// Returns one Zstandard frame that states the number of bytes.
     [[nodiscard]] std::string compressed(std::string_view bytes);
 
 private:
@@ -91,8 +98,10 @@ class PartDecompressor {
 public:
     PartDecompressor();
 
-    /// Returns the original bytes; nullopt if they are damaged or more than `bytes_max`. Never allocates more than
-    /// `bytes_max`.
+    /// Decompresses one part. Never allocates more than `bytes_max`.
+    /// @param bytes      a result of PartCompressor::compressed(), maybe damaged
+    /// @param bytes_max  the most bytes that the part may have
+    /// @return the original bytes; nullopt if they are damaged or more than `bytes_max`
     [[nodiscard]] std::optional<std::string> decompressed(std::string_view bytes, std::size_t bytes_max);
 
 private:
@@ -102,23 +111,22 @@ private:
     std::unique_ptr<ZSTD_DCtx_s, Free> context_;
 };
 
-} // namespace scanloom::session
-
-/// The checkpoint part that holds a session's exclusions.
-///
-/// Format: the number of exclusions, the exclusions by rising id, then the number of excluded scans of each robot.
-namespace scanloom::session {
+// Exclusions
 
 inline constexpr std::string_view kExclusionsPart = "head/exclusions"; ///< key of the part
 
+/// A session's exclusions, and what they left out so far.
 struct ExclusionsPart {
     Exclusions exclusions;
     std::vector<std::uint64_t> excluded; ///< scans, by RobotIndex
 };
 
+/// Returns the part: the number of exclusions, the exclusions by rising id, then the number of excluded scans of each
+/// robot.
 [[nodiscard]] std::string exclusions_part(const mapping::ProjectionState& state);
 
-/// Returns nullopt if the part is damaged.
+/// Decodes a part of exclusions_part().
+/// @return nullopt if the part is damaged
 [[nodiscard]] std::optional<ExclusionsPart> read_exclusions_part(std::string_view value);
 
 } // namespace scanloom::session

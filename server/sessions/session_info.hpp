@@ -18,6 +18,8 @@
 
 namespace scanloom::session {
 
+// Properties of one session
+
 /// Resources that one session may use. They are enforced when scans are accepted; applying an entry of the log does not
 /// check them again.
 struct SessionLimits {
@@ -44,12 +46,14 @@ struct SessionInfo {
     SharedExclusions exclusions = no_exclusions(); ///< in the log when it was last read from the store
 };
 
-/// Returns the filter that decides which scans the session's maps contain.
+/// Returns the filter that decides which scans the session's maps contain: its exclusions and its max_jump.
 [[nodiscard]] ScanFilter scan_filter_of(const SessionInfo& info);
 
 /// Returns 16 hexadecimal digits that identify a session. A deleted session of the same name, or a session of another
 /// store, has another tag.
 [[nodiscard]] std::string tag_of(const SessionInfo& info);
+
+// What all sessions share
 
 /// Counters of all sessions together. Every submitted scan is counted in exactly one of them, or is still in progress.
 /// Threads: any thread.
