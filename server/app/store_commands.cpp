@@ -3,7 +3,6 @@
 #include "common/app/standard_streams.hpp"
 #include "common/json/json_text.hpp"
 #include "server/sessions/repair.hpp"
-#include "server/sessions/repaired_names.hpp"
 #include "server/sessions/session_check.hpp"
 #include "server/store/backups.hpp"
 #include "server/store/block_scan.hpp"

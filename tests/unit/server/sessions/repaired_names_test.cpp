@@ -1,4 +1,4 @@
-#include "server/sessions/repaired_names.hpp"
+#include "server/sessions/repair.hpp"
 
 #include "common/scan/limits.hpp"
 #include "common/wire/log_codec.hpp"
