@@ -1,5 +1,7 @@
 #include "core/landmarks/landmark_map.hpp"
 
+#include "core/landmarks/landmark_matching.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
