@@ -53,6 +53,7 @@ Ground Ground::without(std::span<const Point2> obstacles, double clearance_m) co
     less.passability_.occupied |= added;
     less.passability_.obstacles |= added;
     less.passability_.enterable.subtract(cells_near(added, clearance_m, cell_size()));
+    less.passability_.options.body_radius_m = std::min(passability_.options.body_radius_m, clearance_m);
     return less;
 }
 

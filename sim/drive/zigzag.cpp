@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -58,6 +59,21 @@ constexpr int kOtherPathsMax = 3;
 
 /// Lanes overlap by one cell, so small deviations from a lane do not matter.
 double spacing_of(double cell_size) { return std::max(2.0 * kBodyRadius - cell_size, cell_size); }
+
+/// Distance in metres that a detour keeps from an obstacle.
+constexpr double kPassing = kBodyRadius + 0.07;
+
+/// Returns the points of the newest scan that are not in the plan: more than 0.12 m from everything that stands still
+/// there, and not in an obstacle of `known` either. Metres in the map frame.
+std::vector<Point2> unexpected_obstacles(const Ground& ground, const Ground& known, const Senses& senses) {
+    constexpr double kExpected = 0.12; // metres
+    std::vector<Point2> unexpected;
+    std::ranges::copy_if(senses.obstacles, std::back_inserter(unexpected), [&](const Point2& obstacle) {
+        return !ground.is_near_solid(obstacle, kExpected) &&
+               !known.passability().obstacles.test(known.spot_of(obstacle));
+    });
+    return unexpected;
+}
 
 /// Returns true once for every two seconds that the robot is blocked.
 bool is_out_of_patience(const PathFollower& follower) {
@@ -147,7 +163,7 @@ Velocity Zigzag::go(const Senses& senses) {
     const Velocity velocity = follower_.step(senses);
     if (!is_out_of_patience(follower_)) return velocity;
     other_paths_ += 1;
-    for (const Point2& obstacle : unexpected_obstacles(ground_, senses)) obstacles_.push_back(obstacle);
+    std::ranges::copy(unexpected_obstacles(ground_, ground_, senses), std::back_inserter(obstacles_));
     const auto around = find_path(ground_.without(obstacles_, kLaneClearance), position, lane_begin_);
     if (other_paths_ > kOtherPathsMax) {
         give_up_lane(position);
@@ -166,8 +182,9 @@ Velocity Zigzag::sweep(const Senses& senses) {
     }
     const Velocity velocity = follower_.step(senses);
     if (is_out_of_patience(follower_) && lane_detours_ < kDetoursMax) {
-        detour_ = Detour::plan(ground_, senses, lane_end_);
-        if (detour_) {
+        around_ = ground_;
+        blocked_at_ = position;
+        if (plan_detour(senses)) {
             lane_detours_ += 1;
             task_ = Task::kDetour;
         }
@@ -177,24 +194,34 @@ Velocity Zigzag::sweep(const Senses& senses) {
 }
 
 Velocity Zigzag::go_around(const Senses& senses) {
-    const Velocity velocity = detour_->step(ground_, senses);
-    const Point2 position = position_of(senses.pose);
-    switch (detour_->state()) {
-    case Detour::State::kActive: return velocity;
-    case Detour::State::kBackOnLine:
+    if (follower_.has_arrived()) {
         detours_ += 1;
         sweep_on();
-        break;
-    case Detour::State::kPastEnd:
-        detours_ += 1;
-        lanes_swept_ += 1;
-        begin_next_lane(position);
-        break;
-    case Detour::State::kFailed: // moving obstacles may have left
-        sweep_on();
-        break;
+        return {};
     }
-    return {};
+    const bool sees_more = !unexpected_obstacles(ground_, *around_, senses).empty();
+    const bool is_lost = sees_more && !plan_detour(senses);
+    const Velocity velocity = follower_.step(senses);
+    if (is_lost || follower_.blocked_steps() > kBlockedStepsPerDetour) sweep_on(); // moving obstacles may have left
+    return velocity;
+}
+
+/// Plans a path around the obstacles seen during this detour to the first place of the lane beyond them.
+/// @return whether there is one
+bool Zigzag::plan_detour(const Senses& senses) {
+    around_ = around_->without(unexpected_obstacles(ground_, *around_, senses), kPassing);
+    const double step = lane_end_.x < blocked_at_.x ? -ground_.cell_size() : ground_.cell_size();
+    bool is_blocked = false;
+    for (Point2 place{blocked_at_.x, lane_end_.y}; (lane_end_.x - place.x) * step >= 0.0; place.x += step) {
+        const bool fits = around_->fits(around_->spot_of(place));
+        is_blocked |= !fits;
+        if (!is_blocked || !fits) continue;
+        if (auto path = find_path(*around_, position_of(senses.pose), place)) {
+            follower_ = PathFollower(std::move(*path));
+            return true;
+        }
+    }
+    return false;
 }
 
 /// Continues along the lane from the robot's position next to it.

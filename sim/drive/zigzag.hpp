@@ -1,7 +1,6 @@
 #pragma once
 
 #include "sim/drive/behaviour.hpp"
-#include "sim/drive/detour.hpp"
 #include "sim/drive/ground.hpp"
 #include "sim/drive/path_follower.hpp"
 
@@ -28,8 +27,8 @@ using Block = std::vector<Lane>;
 
 /// Sweeps the free cells of a known map back and forth, lane by lane and block by block, the nearest block next. An
 /// obstacle in a lane that is not in the map stops the robot. It waits two seconds for the obstacle to leave, then
-/// drives around it (Detour), or gives up the rest of the lane if there is no room. On the path to a lane it takes
-/// another path instead.
+/// makes a detour to the first place of the lane beyond what it sees of the obstacle, and plans again whenever it sees
+/// more. It gives up the rest of the lane if there is no path. On the path to a lane it takes another path instead.
 class Zigzag final : public Behaviour {
 public:
     /// Distance in metres that lanes keep from obstacles of the plan.
@@ -55,6 +54,7 @@ private:
     [[nodiscard]] Velocity go(const Senses& senses);
     [[nodiscard]] Velocity sweep(const Senses& senses);
     [[nodiscard]] Velocity go_around(const Senses& senses);
+    [[nodiscard]] bool plan_detour(const Senses& senses);
     void sweep_on();
     void give_up_lane(const Point2& position);
 
@@ -66,7 +66,8 @@ private:
     Point2 lane_end_{0.0, 0.0};
     Task task_ = Task::kBegin;
     PathFollower follower_;
-    std::optional<Detour> detour_;
+    Point2 blocked_at_{0.0, 0.0};   // where this detour began
+    std::optional<Ground> around_;  // the ground without the obstacles seen during this detour
     int lane_detours_ = 0;          // begun in this lane
     int other_paths_ = 0;           // paths tried to reach this lane
     std::vector<Point2> obstacles_; // obstacles seen there that are not in the plan
