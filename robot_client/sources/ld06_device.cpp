@@ -102,8 +102,6 @@ asio::awaitable<Result<std::size_t>> read_some(Ld06Link& link, std::span<std::ui
                     hung_up ? "disconnected; check the cable" : fmt::format("cannot be read ({})", failed.message())};
 }
 
-namespace asio = boost::asio;
-
 namespace {
 
 using Clock = std::chrono::steady_clock;
