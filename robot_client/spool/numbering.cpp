@@ -1,6 +1,6 @@
 #include "robot_client/spool/numbering.hpp"
 
-#include "robot_client/spool/record.hpp"
+#include "robot_client/spool/segment.hpp"
 #include "robot_client/spool/synced_file.hpp"
 
 #include <fcntl.h>

@@ -34,7 +34,7 @@ struct SpoolOptions {
 ///     acknowledged | handed out by next(), perhaps sent | waiting | what append() adds
 ///
 /// A scan is in its file before append() returns, and the file is synced to the disk within a second or two. The scans
-/// are in files of some MiB (see segment.hpp and record.hpp), each with the sensors that it needs. A file is
+/// are in files of some MiB (see segment.hpp), each with the sensors that it needs. A file is
 /// removed once all of it is acknowledged. Its head contains the seqs of its scans on the server, so losing one file,
 /// or its end, does not affect the others. The file `numbering` stores how far the server is.
 /// Threads: one at a time. Only one program at a time uses the directory.

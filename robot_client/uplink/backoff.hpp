@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <random>
@@ -18,7 +19,12 @@ public:
     explicit Backoff(std::uint32_t seed, const BackoffWaits& waits = {})
         : random_(seed), waits_(waits), wait_(waits.first) {}
 
-    [[nodiscard]] std::chrono::milliseconds next();
+    [[nodiscard]] std::chrono::milliseconds next() {
+        std::uniform_int_distribution<std::int64_t> part(wait_.count() / 2, wait_.count());
+        const std::chrono::milliseconds chosen{part(random_)};
+        wait_ = std::min(2 * wait_, waits_.longest);
+        return chosen;
+    }
 
     /// Makes the next wait the first, short one. Call it after a success.
     void reset() noexcept { wait_ = waits_.first; }
