@@ -1,9 +1,9 @@
 #include "core/mapping/chunk_kernels.hpp"
-#include "core/mapping/instruction_set.hpp"
 #include "core/mapping/laser_layers.hpp"
 #include "core/mapping/sweep/sweep.hpp"
 #include "tests/bench/projection/columns.hpp"
 #include "tests/bench/projection/peers.hpp"
+#include "tests/support/instruction_set.hpp"
 
 #include <benchmark/benchmark.h>
 

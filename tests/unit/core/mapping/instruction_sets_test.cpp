@@ -1,7 +1,7 @@
 #include "core/mapping/chunk_kernels.hpp"
-#include "core/mapping/instruction_set.hpp"
 #include "core/mapping/projection.hpp"
 #include "tests/support/digests.hpp"
+#include "tests/support/instruction_set.hpp"
 #include "tests/support/random_angles.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "core/mapping/instruction_set.hpp"
+#include "tests/support/instruction_set.hpp"
 
 #include <hwy/highway.h>
 
