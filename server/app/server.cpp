@@ -52,10 +52,6 @@ Result<std::shared_ptr<sockets::PortTls>> tls_of(const sockets::TlsFiles& files)
     return sockets::PortTls::open(files);
 }
 
-} // namespace
-
-namespace {
-
 session::ReplayLimits replay_limits(std::size_t bytes) {
     const std::size_t chunks = bytes / 2 / mapping::kPageBytes; // a chunk is a page
     return {.chunks_max = chunks, .chunks_kept_max = chunks};

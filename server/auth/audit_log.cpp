@@ -21,7 +21,7 @@ std::string_view name_or(std::string_view text, std::string_view otherwise) {
     return is_valid_name(text) ? text : otherwise;
 }
 
-void tell(const auth::RefusalTable::Line& line) {
+void tell(const RefusalTable::Line& line) {
     const auto& [port, reason, who, token, session] = line.newest;
     log::warn({.session = is_valid_name(session) ? std::string_view(session) : "", .peer = who},
               "event=refused port={} who={} token={} reason={} session={} count={}", name_of(port), who,
@@ -38,9 +38,9 @@ AuditLog::~AuditLog() {
     for (const auto& line : table_.rest()) tell(line);
 }
 
-void AuditLog::note(auth::Refusal refusal) {
+void AuditLog::note(Refusal refusal) {
     counters_.of(refusal.port, refusal.reason).Increment();
-    std::vector<auth::RefusalTable::Line> lines;
+    std::vector<RefusalTable::Line> lines;
     {
         const std::lock_guard lock(mutex_);
         lines = table_.note(std::move(refusal), now_());
@@ -49,7 +49,7 @@ void AuditLog::note(auth::Refusal refusal) {
 }
 
 void AuditLog::log_due() {
-    std::vector<auth::RefusalTable::Line> lines;
+    std::vector<RefusalTable::Line> lines;
     {
         const std::lock_guard lock(mutex_);
         lines = table_.due(now_());
@@ -68,9 +68,9 @@ std::optional<std::uint64_t> AuditLog::admit_log_line() {
     return std::exchange(strangers_unlogged_, 0);
 }
 
-void AuditLog::note(auth::Port port, const std::string& who, net::ClientFault fault) {
+void AuditLog::note(Port port, const std::string& who, net::ClientFault fault) {
     const bool is_missing = fault == net::ClientFault::kMissing;
-    note({port, is_missing ? auth::Reason::kNoCertificate : auth::Reason::kForeignCertificate, who, {}, {}});
+    note({port, is_missing ? Reason::kNoCertificate : Reason::kForeignCertificate, who, {}, {}});
 }
 
 } // namespace scanloom::auth

@@ -31,11 +31,11 @@ public:
     AuditLog& operator=(const AuditLog&) = delete;
 
     /// Counts the refusal, and logs it as RefusalTable allows.
-    void note(auth::Refusal refusal);
+    void note(Refusal refusal);
 
     /// Counts and logs a client without a valid certificate.
     /// @param who  the client's address, without a port
-    void note(auth::Port port, const std::string& who, net::ClientFault fault);
+    void note(Port port, const std::string& who, net::ClientFault fault);
 
     /// Logs the lines that are due. Call it periodically.
     void log_due();
@@ -49,7 +49,7 @@ private:
     metrics::RefusalCounters& counters_;
     std::function<double()> now_;
     std::mutex mutex_; // guards the following members
-    auth::RefusalTable table_;
+    RefusalTable table_;
     std::optional<double> stranger_logged_; // time of the last such line
     std::uint64_t strangers_unlogged_ = 0;  // connections since then
 };

@@ -9,7 +9,7 @@
 
 namespace scanloom::auth {
 
-auth::TokenRef Credential::token() const {
+TokenRef Credential::token() const {
     const std::lock_guard lock(mutex_);
     return token_;
 }
@@ -24,7 +24,7 @@ void Credential::when_changed(const std::function<void()>& on_change) {
     if (has_changed) on_change();
 }
 
-void Credential::change(auth::TokenRef token) {
+void Credential::change(TokenRef token) {
     std::function<void()> on_change;
     {
         const std::lock_guard lock(mutex_);
@@ -36,10 +36,6 @@ void Credential::change(auth::TokenRef token) {
 }
 
 namespace {
-
-using auth::Reason;
-using auth::Token;
-using auth::TokenRef;
 
 Denied denied(Reason reason, const TokenRef& token, std::string message, Errc code = Errc::kUnauthorized) {
     return {reason, token ? token->name : std::string(), {code, std::move(message)}};
@@ -53,8 +49,8 @@ Denied unknown(std::string_view secret) {
                   "the token that was sent is not valid here; ask the operator of this server for one");
 }
 
-TokenRef found(const std::shared_ptr<const auth::TokenSet>& tokens, std::string_view hash) {
-    return tokens ? tokens->find_hash(hash) : auth::default_token();
+TokenRef found(const std::shared_ptr<const TokenSet>& tokens, std::string_view hash) {
+    return tokens ? tokens->find_hash(hash) : default_token();
 }
 
 bool permits(const Token& token, Purpose purpose) {
@@ -68,11 +64,11 @@ struct Authenticator::Ledger : std::enable_shared_from_this<Authenticator::Ledge
     using Robots = std::map<std::string, std::size_t>;
 
     mutable std::mutex mutex;
-    std::shared_ptr<const auth::TokenSet> tokens; // null: every client is admitted
+    std::shared_ptr<const TokenSet> tokens; // null: every client is admitted
     std::map<const Credential*, std::weak_ptr<Credential>> passes;
     std::map<std::string, Robots, std::less<>> connected; // by the token's hash
 
-    std::shared_ptr<const auth::TokenSet> in_force() const {
+    std::shared_ptr<const TokenSet> in_force() const {
         const std::lock_guard lock(mutex);
         return tokens;
     }
@@ -131,13 +127,13 @@ std::optional<Denied> objection(const TokenRef& token, Purpose purpose, const st
 
 Authenticator::Authenticator() : ledger_(std::make_shared<Ledger>()) {}
 
-Authenticator::Authenticator(auth::TokenSet tokens) : Authenticator() { replace(std::move(tokens)); }
+Authenticator::Authenticator(TokenSet tokens) : Authenticator() { replace(std::move(tokens)); }
 
 bool Authenticator::is_open() const { return ledger_->in_force() == nullptr; }
 
 Admitted<TokenRef> Authenticator::admit(std::string_view secret) const {
     const auto tokens = ledger_->in_force(); // hashing needs no lock
-    if (auto token = tokens ? tokens->find(secret) : auth::default_token()) return token;
+    if (auto token = tokens ? tokens->find(secret) : default_token()) return token;
     return unknown(secret);
 }
 
@@ -164,11 +160,11 @@ Admitted<std::shared_ptr<Credential>> Authenticator::let_watch(const TokenRef& t
     return ledger_->give(now, Purpose::kWatch, session, "");
 }
 
-void Authenticator::replace(auth::TokenSet tokens) {
+void Authenticator::replace(TokenSet tokens) {
     std::vector<std::pair<std::shared_ptr<Credential>, TokenRef>> changes;
     {
         const std::lock_guard lock(ledger_->mutex);
-        ledger_->tokens = std::make_shared<const auth::TokenSet>(std::move(tokens));
+        ledger_->tokens = std::make_shared<const TokenSet>(std::move(tokens));
         for (const auto& [key, weak] : ledger_->passes) {
             auto pass = weak.lock();
             if (!pass) continue;

@@ -24,12 +24,12 @@ enum class Purpose {
 /// Threads: any thread.
 class Credential {
 public:
-    Credential(auth::TokenRef token, Purpose purpose, std::string session, std::string user)
+    Credential(TokenRef token, Purpose purpose, std::string session, std::string user)
         : purpose_(purpose), session_(std::move(session)), user_(std::move(user)), hash_(token->hash),
           token_(std::move(token)) {}
 
     /// Returns the token as it is in force now, or null if it no longer permits this use.
-    [[nodiscard]] auth::TokenRef token() const;
+    [[nodiscard]] TokenRef token() const;
 
     /// Sets the callback for changes of token(). It is called from any thread after each replacement of the tokens, and
     /// at once if one has happened already.
@@ -41,7 +41,7 @@ public:
     [[nodiscard]] const std::string& hash() const noexcept { return hash_; }
 
     /// Sets the token and calls the callback. Only for Authenticator.
-    void change(auth::TokenRef token);
+    void change(TokenRef token);
 
 private:
     const Purpose purpose_;
@@ -50,14 +50,14 @@ private:
     const std::string hash_;
 
     mutable std::mutex mutex_; // guards the following members; held only to copy them
-    auth::TokenRef token_;
+    TokenRef token_;
     bool changed_ = false;
     std::function<void()> on_change_;
 };
 
 /// Why a client was refused: the reason and token for the log, the error for the client.
 struct Denied {
-    auth::Reason reason = auth::Reason::kNoToken;
+    Reason reason = Reason::kNoToken;
     std::string token; ///< the token's name; empty: not known
     Error error;
 };
@@ -71,7 +71,7 @@ using Admitted = boost::system::result<T, Denied>;
 
 /// Authenticates clients by their tokens, and grants passes for robot links and live viewers.
 ///
-/// Without tokens every client is admitted, with the token auth::default_token().
+/// Without tokens every client is admitted, with the token default_token().
 /// Threads: any thread; calls wait only for each other.
 class Authenticator {
 public:
@@ -79,17 +79,17 @@ public:
     Authenticator();
 
     /// Creates a authenticator with tokens; an empty set admits no client.
-    explicit Authenticator(auth::TokenSet tokens);
+    explicit Authenticator(TokenSet tokens);
 
     /// Returns whether the server has no tokens, so that every client is admitted.
     [[nodiscard]] bool is_open() const;
 
     /// Returns the token of the secret.
     /// Errors: kNoToken if the secret is empty; kUnknownToken if its token is not in force.
-    [[nodiscard]] Admitted<auth::TokenRef> admit(std::string_view secret) const;
+    [[nodiscard]] Admitted<TokenRef> admit(std::string_view secret) const;
 
     /// Returns the token by its secret's hash, or null if it is not in force.
-    [[nodiscard]] auth::TokenRef find_hash(std::string_view hash) const;
+    [[nodiscard]] TokenRef find_hash(std::string_view hash) const;
 
     /// Permits the robot a link to the session, which need not exist.
     ///
@@ -102,12 +102,11 @@ public:
 
     /// Permits an admitted client to watch the session.
     /// Errors: kUnknownToken if the token is no longer in force; kWrongRole or kWrongSession if it does not permit it.
-    [[nodiscard]] Admitted<std::shared_ptr<Credential>> let_watch(const auth::TokenRef& token,
-                                                                  const std::string& session);
+    [[nodiscard]] Admitted<std::shared_ptr<Credential>> let_watch(const TokenRef& token, const std::string& session);
 
     /// Replaces the tokens in force. Passes that the new tokens do not permit end; the other passes get their token's
     /// new limits.
-    void replace(auth::TokenSet tokens);
+    void replace(TokenSet tokens);
 
 private:
     struct Ledger;

@@ -43,14 +43,14 @@ void LoginTable::make_room(const std::string& token_hash, double now) {
     }
 }
 
-std::string LoginSessions::open(const auth::Token& token) {
+std::string LoginSessions::open(const Token& token) {
     auto cookie = random_secret();
     const std::lock_guard lock(mutex_);
     table_.open(cookie, token.hash, now_());
     return cookie;
 }
 
-auth::TokenRef LoginSessions::find(std::string_view cookie, const Authenticator& authenticator) {
+TokenRef LoginSessions::find(std::string_view cookie, const Authenticator& authenticator) {
     std::optional<std::string> hash;
     {
         const std::lock_guard lock(mutex_);

@@ -60,11 +60,11 @@ public:
     /// Signs a browser in with the token.
     /// @return the value for the browser's cookie
     /// Errors: std::runtime_error if the system has no random bits.
-    [[nodiscard]] std::string open(const auth::Token& token);
+    [[nodiscard]] std::string open(const Token& token);
 
     /// Records a use of the login, and returns its token as it is in force now.
     /// @return null if the login is unknown or has expired, or if the token is no longer in force
-    [[nodiscard]] auth::TokenRef find(std::string_view cookie, const Authenticator& authenticator);
+    [[nodiscard]] TokenRef find(std::string_view cookie, const Authenticator& authenticator);
 
     /// Signs the browser out.
     void close(std::string_view cookie);
@@ -72,7 +72,7 @@ public:
 private:
     std::function<double()> now_;
     std::mutex mutex_; // guards the table
-    auth::LoginTable table_;
+    LoginTable table_;
 };
 
 } // namespace scanloom::auth

@@ -58,7 +58,7 @@ std::string random_secret() {
     std::array<std::byte, 32> random{};
     if (RAND_bytes(reinterpret_cast<unsigned char*>(random.data()), static_cast<int>(random.size())) != 1)
         throw std::runtime_error("the system gives no random numbers, so no secret can be made");
-    return auth::secret_of(random);
+    return secret_of(random);
 }
 
 } // namespace scanloom::auth

@@ -60,10 +60,10 @@ Result<std::string> content_of(const std::filesystem::path& path) {
 
 } // namespace
 
-Result<auth::TokenSet> read_tokens(const std::filesystem::path& path) {
+Result<TokenSet> read_tokens(const std::filesystem::path& path) {
     const auto content = content_of(path);
     if (!content) return content.error();
-    auto tokens = auth::parse_tokens(*content);
+    auto tokens = parse_tokens(*content);
     if (!tokens) return prefixed(path.string() + ":", tokens.error());
     return tokens;
 }

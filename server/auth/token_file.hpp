@@ -7,10 +7,10 @@
 
 namespace scanloom::auth {
 
-/// Reads the file of --tokens, in the format of auth::parse_tokens().
+/// Reads the file of --tokens, in the format of parse_tokens().
 /// Errors: kNotFound if the path cannot be read or is not a regular file; kInvalidField if users other than its owner
 ///         may write to it, and so grant themselves access; kTooLarge if it is larger than 4 MiB; those of
 ///         parse_tokens(). The message begins with the path.
-[[nodiscard]] Result<auth::TokenSet> read_tokens(const std::filesystem::path& path);
+[[nodiscard]] Result<TokenSet> read_tokens(const std::filesystem::path& path);
 
 } // namespace scanloom::auth
