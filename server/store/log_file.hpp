@@ -29,6 +29,9 @@ struct LogFileCheck {
 [[nodiscard]] LogFileCheck check_log_file(std::string_view bytes);
 
 /// Returns every complete write of a log file, including those after damage. A write with any damage is omitted.
+///
+/// RocksDB's own reader cannot be used for this: behind a record with a wrong checksum or length it drops the rest of
+/// the block of 32 KiB, and behind a block that the disk cannot read the rest of the file.
 [[nodiscard]] std::vector<std::string> whole_writes_of(std::string_view bytes);
 
 } // namespace scanloom::store
