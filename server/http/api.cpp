@@ -2,6 +2,7 @@
 
 #include "server/http/content_coding.hpp"
 #include "server/http/handlers/lookup.hpp"
+#include "server/http/handlers/weave_request.hpp"
 #include "server/http/json_read.hpp"
 #include "server/http/multipart.hpp"
 #include "server/http/problem.hpp"
@@ -14,6 +15,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <exception>
 #include <memory>
 #include <optional>
@@ -40,6 +42,20 @@ Result<> check_content_type(Method method, const Request& request) {
     return Error{Errc::kInvalidField,
                  fmt::format("the body is {}; send Content-Type: {}", in_quotes(request.content_type),
                              wants_form ? "multipart/form-data" : "application/json")};
+}
+
+bool reads(const Route& route, std::string_view parameter) {
+    return std::ranges::find(route.parameters, parameter) != route.parameters.end();
+}
+
+/// Checks that the operation reads all parameters.
+Result<> check_parameters(const Route& route, const Query& query) {
+    if (takes_any_parameter(route)) return {};
+    auto known = query.check_only(route.parameters);
+    if (known || !asks_for_weaving(query) || !reads(route, "weave") || reads(route, "until")) return known;
+    return Error{Errc::kInvalidField,
+                 fmt::format("{}. For settings and until, POST them to .../weave, and give its id as weave=",
+                             known.error().message)};
 }
 
 /// Returns the session, which is loaded from the store if it is not in memory.
@@ -134,6 +150,7 @@ asio::awaitable<Result<Response>> Api::call(const Route& route, Context& context
         permit = std::move(*taken);
     }
     co_await context.run_on(route.pool);
+    if (auto known = check_parameters(route, context.query); !known) co_return known.error();
     co_return co_await route.handler(context);
 }
 

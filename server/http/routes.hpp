@@ -7,6 +7,7 @@
 
 #include <boost/asio/awaitable.hpp>
 
+#include <array>
 #include <span>
 #include <string>
 #include <string_view>
@@ -53,6 +54,9 @@ enum class Sessions {
     kLoaded, ///< the one in the path, which is loaded from the store first: Context::session
 };
 
+/// The parameters of a route that ignores those which the server does not know: the viewer's page reads its own.
+inline constexpr std::array<std::string_view, 1> kAnyParameters = {"*"};
+
 /// Computes the response to a request. A handler that waits, or continues on another pool, is a coroutine.
 class Handler {
 public:
@@ -76,8 +80,14 @@ struct Route {
     Access access;
     Pool pool; ///< on which the handler starts
     Sessions sessions;
+    std::span<const std::string_view> parameters; ///< of the query; others are refused, unless it is kAnyParameters
     Handler handler;
 };
+
+/// Returns whether the operation ignores parameters that it does not know.
+[[nodiscard]] constexpr bool takes_any_parameter(const Route& route) noexcept {
+    return route.parameters.data() == kAnyParameters.data();
+}
 
 /// Returns all operations of this server.
 [[nodiscard]] std::span<const Route> routes() noexcept;

@@ -66,7 +66,6 @@ std::string goal_text(std::string_view robot, const guide::Goal& goal, const gui
 } // namespace
 
 Result<Response> get_goal(Context& context) {
-    if (auto known = context.query.check_only({"robot"}); !known) return known.error();
     const auto& session = context.session;
     if (!session) return session.error();
     const auto name = context.query.find("robot");
@@ -88,7 +87,7 @@ Result<Response> get_goal(Context& context) {
 }
 
 Result<Response> assign_goal(Context& context) {
-    const auto found = find_for_search(context, {});
+    const auto found = find_for_search(context);
     if (!found) return found.error();
     const auto& snapshot = *found->snapshot;
     const auto body = parse_json_object(context.request.body, {"robot", "size_min", "body_radius"});
@@ -142,7 +141,6 @@ std::string feature_of(const std::string& robot, const guide::Goal& goal) {
 } // namespace
 
 Result<Response> get_goals(Context& context) {
-    if (auto known = context.query.check_only({}); !known) return known.error();
     const auto& session = context.session;
     if (!session) return session.error();
 

@@ -60,7 +60,6 @@ std::string feature_of(const landmarks::MapLandmark& one) {
 } // namespace
 
 Result<Response> get_landmarks(Context& context) {
-    if (auto known = context.query.check_only({"since", "bbox", "seen_min"}); !known) return known.error();
     const auto since = since_parameter(context.query);
     if (!since) return since.error();
     const auto bbox = bbox_parameter(context.query);
@@ -213,7 +212,6 @@ Result<> choose(store::ScanLog& log, const session::SessionInfo& session, const 
 }
 
 Result<Response> get_points(const Context& context, PointFile file) {
-    if (auto known = context.query.check_only({"since", "until", "robot", "threshold"}); !known) return known.error();
     const auto& session = context.session;
     if (!session) return session.error();
     const auto snapshot = (*session)->snapshot();

@@ -27,7 +27,6 @@ Response upgrade_required(const Context& context) {
 } // namespace
 
 Result<Response> get_live(Context& context) {
-    if (auto known = context.query.check_only({}); !known) return known.error();
     const auto& session = context.session;
     if (!session) return session.error();
     const auto& upgrade = context.request.upgrade;

@@ -93,7 +93,6 @@ private:
 } // namespace
 
 Result<Response> get_log(Context& context) {
-    if (auto known = context.query.check_only({"format"}); !known) return known.error();
     const auto format = context.query.find("format").value_or("protobuf");
     const bool is_carmen = format == "clf";
     if (!is_carmen && format != "protobuf") {

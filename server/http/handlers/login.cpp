@@ -26,13 +26,11 @@ boost::json::object login_json(const Authorizer& authorizer, const auth::TokenRe
 
 Result<Response> get_login(Context& context) {
     const Authorizer& authorizer = context.services.authorizer;
-    if (auto known = context.query.check_only({}); !known) return known.error();
     return ok(login_json(authorizer, context.token));
 }
 
 Result<Response> post_login(Context& context) {
     const Authorizer& authorizer = context.services.authorizer;
-    if (auto known = context.query.check_only({}); !known) return known.error();
     const auto body = parse_json_object(context.request.body, {"token"});
     if (!body) return body.error();
     const auto secret = read_text(*body, "token");
@@ -47,7 +45,6 @@ Result<Response> post_login(Context& context) {
 
 Result<Response> delete_login(Context& context) {
     const Authorizer& authorizer = context.services.authorizer;
-    if (auto known = context.query.check_only({}); !known) return known.error();
     if (const auto cookie = cookie_of(context.request.cookie, kLoginCookie)) {
         if (!is_own_page(context.request.origin, context.request.host, context.request.is_secure)) {
             return authorizer.refuse(

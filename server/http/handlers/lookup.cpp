@@ -10,7 +10,6 @@
 #include <fmt/format.h>
 
 #include <string_view>
-#include <vector>
 
 namespace scanloom::http {
 
@@ -123,19 +122,9 @@ boost::asio::awaitable<Result<Maps>> replayed(Context& context) {
 
 } // namespace
 
-Result<Maps> find_maps(const Context& context, std::initializer_list<std::string_view> known, Waiting waiting) {
-    std::vector<std::string_view> all(known);
-    all.push_back(kWeave);
-    if (auto ok = context.query.check_only(all); !ok) return ok.error();
-    return chosen(context, kWeave, waiting);
-}
+Result<Maps> find_maps(const Context& context, Waiting waiting) { return chosen(context, kWeave, waiting); }
 
-boost::asio::awaitable<Result<Maps>> find_maps_or_replay(Context& context, std::span<const std::string_view> known) {
-    std::vector<std::string_view> all(known.begin(), known.end());
-    all.push_back(kWeave);
-    const auto settings = weave_parameters();
-    all.insert(all.end(), settings.begin(), settings.end());
-    if (auto ok = context.query.check_only(all); !ok) co_return ok.error();
+boost::asio::awaitable<Result<Maps>> find_maps_or_replay(Context& context) {
     if (!asks_for_weaving(context.query)) co_return chosen(context, kWeave);
     if (context.query.find(kWeave)) {
         co_return Error{Errc::kInvalidField,
@@ -144,10 +133,7 @@ boost::asio::awaitable<Result<Maps>> find_maps_or_replay(Context& context, std::
     co_return co_await replayed(context);
 }
 
-Result<TwoMaps> find_two_maps(const Context& context, std::initializer_list<std::string_view> known) {
-    std::vector<std::string_view> all(known);
-    all.insert(all.end(), {kWeave, kWith});
-    if (auto ok = context.query.check_only(all); !ok) return ok.error();
+Result<TwoMaps> find_two_maps(const Context& context) {
     if (!context.query.find(kWeave) && !context.query.find(kWith)) {
         return Error{Errc::kInvalidField,
                      "weave=, with= or both are needed; the one that is not given is the session's own map"};

@@ -13,10 +13,8 @@
 #include <boost/asio/awaitable.hpp>
 
 #include <cstdint>
-#include <initializer_list>
 #include <memory>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 
@@ -63,24 +61,20 @@ struct TwoMaps {
 enum class Waiting { kAllowed, kNotAllowed };
 
 /// Returns existing maps: the session's own, or the newest that the replay job `weave` has finished.
-/// @param known    the other parameters that the caller reads
 /// @param waiting  kNotAllowed: without a snapshot while the session's own maps are being written
-/// Errors: those of Context::session; kInvalidField for an unknown parameter; kNotFound if there is no such job;
-///         kOverloaded if it has no maps yet; the job's own error if it failed.
-[[nodiscard]] Result<Maps> find_maps(const Context& context, std::initializer_list<std::string_view> known,
-                                     Waiting waiting = Waiting::kAllowed);
+/// Errors: those of Context::session; kNotFound if there is no such job; kOverloaded if it has no maps yet; the job's
+///         own error if it failed.
+[[nodiscard]] Result<Maps> find_maps(const Context& context, Waiting waiting = Waiting::kAllowed);
 
 /// Returns what find_maps() returns if no settings are given. Otherwise starts a replay job with the settings, waits
 /// until it has reached the session's current revision, and continues on the same pool.
-/// @param known  the other parameters that the caller reads; outlives the coroutine
 /// Errors: those of find_maps(), weave_request() and Pools::wait_for_replay().
-[[nodiscard]] boost::asio::awaitable<Result<Maps>> find_maps_or_replay(Context& context,
-                                                                       std::span<const std::string_view> known);
+[[nodiscard]] boost::asio::awaitable<Result<Maps>> find_maps_or_replay(Context& context);
 
 /// Returns two maps to compare, those of the parameters `weave` and `with`. At least one of them must name a replay
 /// job; an absent one means the session's own map. Both may name the same job.
 /// Errors: those of find_maps(); kInvalidField if neither is given.
-[[nodiscard]] Result<TwoMaps> find_two_maps(const Context& context, std::initializer_list<std::string_view> known);
+[[nodiscard]] Result<TwoMaps> find_two_maps(const Context& context);
 
 /// Errors: kNotFound if there is no such replay job.
 [[nodiscard]] Result<std::shared_ptr<session::ReplayJob>>

@@ -14,7 +14,6 @@
 #include <boost/json/object.hpp>
 #include <fmt/format.h>
 
-#include <array>
 #include <memory>
 #include <optional>
 #include <string>
@@ -42,12 +41,10 @@ std::int64_t one_byte(mapping::Layer) { return 1; }
 
 std::int64_t csv_bytes(mapping::Layer) { return 4; } // "100,"
 
-constexpr std::array<std::string_view, 2> kFileParameters = {"layer", "bbox"};
-
 asio::awaitable<Result<WantedMapFile>> wanted_map(Context& context, BytesPerCell bytes_per_cell) {
     const auto bbox = bbox_parameter(context.query);
     if (!bbox) co_return bbox.error();
-    auto found = co_await find_maps_or_replay(context, kFileParameters);
+    auto found = co_await find_maps_or_replay(context);
     if (!found) co_return found.error();
     const auto layer = layer_parameter(context.query);
     if (!layer) co_return layer.error();
@@ -113,8 +110,7 @@ asio::awaitable<Result<Response>> get_map_yaml(Context& context) {
 }
 
 asio::awaitable<Result<Response>> get_digest(Context& context) {
-    static constexpr std::array<std::string_view, 1> kParameters = {"layer"};
-    const auto found = co_await find_maps_or_replay(context, kParameters);
+    const auto found = co_await find_maps_or_replay(context);
     if (!found) co_return found.error();
     const auto layer = layer_parameter(context.query);
     if (!layer) co_return layer.error();
@@ -143,7 +139,7 @@ struct WantedDifference {
 Result<WantedDifference> wanted_difference(const Context& context) {
     const auto bbox = bbox_parameter(context.query);
     if (!bbox) return bbox.error();
-    auto maps = find_two_maps(context, {"layer", "bbox"});
+    auto maps = find_two_maps(context);
     if (!maps) return maps.error();
     const auto layer = layer_parameter(context.query);
     if (!layer) return layer.error();

@@ -38,7 +38,7 @@ Result<boost::json::object> parse_plan(std::string_view text) {
 } // namespace
 
 Result<Response> post_plan(Context& context) {
-    const auto found = find_for_search(context, {});
+    const auto found = find_for_search(context);
     if (!found) return found.error();
     const auto& snapshot = *found->snapshot;
     const auto body = parse_plan(context.request.body);
@@ -109,7 +109,7 @@ std::string document_of(const mapping::Snapshot& maps, planning::Coverage&& cove
 } // namespace
 
 Result<Response> post_coverage(Context& context) {
-    const auto found = find_for_search(context, {});
+    const auto found = find_for_search(context);
     if (!found) return found.error();
     const auto& snapshot = *found->snapshot;
     const auto body = parse_json_object(context.request.body, {"start", "spacing", "region", "body_radius"});
@@ -229,7 +229,7 @@ std::string feature_of(const mapping::Snapshot& maps, const classify::Frontier& 
 } // namespace
 
 Result<Response> get_frontiers(Context& context) {
-    const auto found = find_for_search(context, {"robot", "size_min", "body_radius"});
+    const auto found = find_for_search(context);
     if (!found) return found.error();
     const auto& snapshot = *found->snapshot;
     const auto options = exploration_options(context.query);

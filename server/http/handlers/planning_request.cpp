@@ -4,7 +4,6 @@
 #include "core/planning/coverage_region.hpp"
 #include "server/guidance/robots.hpp"
 #include "server/http/handlers/parameters.hpp"
-#include "server/http/handlers/weave_request.hpp"
 #include "server/http/json_read.hpp"
 #include "server/http/text.hpp"
 
@@ -60,12 +59,9 @@ Result<std::vector<Point2>> read_box(const boost::json::array& edges, std::strin
 
 } // namespace
 
-Result<Maps> find_for_search(const Context& context, std::initializer_list<std::string_view> known) {
+Result<Maps> find_for_search(const Context& context) {
     if (context.services.sessions.is_draining()) return Error{Errc::kShuttingDown, "the server is shutting down"};
-    if (asks_for_weaving(context.query)) {
-        return invalid("settings and until are not taken here: POST them to .../weave, and give its id as weave=");
-    }
-    return find_maps(context, known);
+    return find_maps(context);
 }
 
 Result<planning::ExplorationOptions> exploration_options(const Query& query, const std::optional<double>& own) {

@@ -10,7 +10,6 @@
 #include <boost/json/object.hpp>
 #include <boost/json/value.hpp>
 
-#include <initializer_list>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -26,7 +25,7 @@ struct Place {
 
 /// Returns find_maps() for a search. No search starts while the server shuts down.
 /// Errors: those of find_maps(); kShuttingDown.
-[[nodiscard]] Result<Maps> find_for_search(const Context& context, std::initializer_list<std::string_view> known);
+[[nodiscard]] Result<Maps> find_for_search(const Context& context);
 
 /// Reads size_min and body_radius from the parameters or members.
 /// @param own  the robot's body radius (m), if known; used if body_radius is not given

@@ -40,7 +40,6 @@ struct Page {
 };
 
 Result<Page> parse_page(const Query& query) {
-    if (auto ok = query.check_only({"limit", "after"}); !ok) return ok.error();
     const auto limit = parameter(query, "limit", std::size_t{100}, integer_from<std::size_t>(1, 1000),
                                  "a whole number from 1 to 1000 is needed");
     if (!limit) return limit.error();
@@ -104,7 +103,6 @@ Result<Response> list_sessions(Context& context) {
 }
 
 Result<Response> create_session(Context& context) {
-    if (auto known = context.query.check_only({}); !known) return known.error();
     const auto wanted = parse_session_request(context.request.body);
     if (!wanted) return wanted.error();
     if (const auto why = Authorizer::objection(*context.token, wanted->name))
@@ -116,14 +114,12 @@ Result<Response> create_session(Context& context) {
 }
 
 Result<Response> get_session(Context& context) {
-    if (auto known = context.query.check_only({}); !known) return known.error();
     const auto listed = find_listed(context);
     if (!listed) return listed.error();
     return ok(listed_json(*listed, StoreState(context.services)));
 }
 
 Result<Response> delete_session(Context& context) {
-    if (auto known = context.query.check_only({}); !known) return known.error();
     const auto& name = context.arguments["session"];
     const auto info = context.services.sessions.info(name);
     if (auto removed = context.services.sessions.remove(name); !removed) return removed.error();
@@ -172,7 +168,6 @@ Result<Form> read_form(const Request& request) {
 } // namespace
 
 Result<Response> import_map(Context& context) {
-    if (auto known = context.query.check_only({}); !known) return known.error();
     auto form = read_form(context.request);
     if (!form) return form.error();
     const auto description = parse_ros_yaml(*form->yaml);

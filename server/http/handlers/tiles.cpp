@@ -91,7 +91,7 @@ Response answer_of(const WantedTile& wanted, tiles::SharedBytes bytes) {
 /// @return a refusal, "not modified", or a tile that exists; else the pool that makes the tile
 Result<std::variant<Response, Pool>> find_tile(const Context& context, const TileParameters& asked,
                                                tiles::TileFormat format) {
-    auto found = find_maps(context, {"v", "id"}, Waiting::kNotAllowed);
+    auto found = find_maps(context, Waiting::kNotAllowed);
     if (!found) return found.error();
     auto& tiles = context.services.tiles;
     const auto pool_for = [&](const Maps& maps, const tiles::TilePlace& place, Revision revision) {
@@ -106,7 +106,7 @@ Result<std::variant<Response, Pool>> find_tile(const Context& context, const Til
 
 /// Makes the tile from the newest maps, as others may have made it since find_tile().
 Result<Response> make_tile(const Context& context, const TileParameters& asked, tiles::TileFormat format) {
-    auto found = find_maps(context, {"v", "id"});
+    auto found = find_maps(context);
     if (!found) return found.error();
     const WantedTile wanted = wanted_tile(asked, std::move(*found), format);
     if (is_known(wanted, context)) return not_modified(wanted.etag, wanted.kept);
@@ -143,7 +143,7 @@ boost::json::array corners(const tiles::Extent& extent) {
 } // namespace
 
 Result<Response> get_tilejson(Context& context) {
-    const auto found = find_maps(context, {});
+    const auto found = find_maps(context);
     if (!found) return found.error();
     const auto layer = find_layer(context.arguments["layer"]);
     if (!layer) return layer.error();
@@ -171,7 +171,7 @@ Result<Response> get_tilejson(Context& context) {
 Result<Response> get_changes(Context& context) {
     const auto since = since_parameter(context.query);
     if (!since) return since.error();
-    const auto found = find_maps(context, {"layer", "since"});
+    const auto found = find_maps(context);
     if (!found) return found.error();
     const auto layer = layer_parameter(context.query);
     if (!layer) return layer.error();

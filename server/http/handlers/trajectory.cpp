@@ -106,7 +106,6 @@ std::size_t bytes_about(const mapping::Snapshot& snapshot, const TrajectoryParam
 } // namespace
 
 Result<Response> get_trajectory(Context& context) {
-    if (auto known = context.query.check_only({"since", "times"}); !known) return known.error();
     const auto since = since_parameter(context.query);
     if (!since) return since.error();
     const auto with_times = parameter(context.query, "times", false, parse_bool, "true or false is needed");

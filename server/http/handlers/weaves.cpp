@@ -53,7 +53,6 @@ Result<std::shared_ptr<session::ReplayJob>> weave_in_path(const Context& context
 } // namespace
 
 Result<Response> start_weave(Context& context) {
-    if (auto known = context.query.check_only({}); !known) return known.error();
     const auto& session = context.session;
     if (!session) return session.error();
     const auto body = parse_json_object(context.request.body, weave_parameters());
@@ -70,7 +69,6 @@ Result<Response> start_weave(Context& context) {
 }
 
 Result<Response> list_weaves(Context& context) {
-    if (auto known = context.query.check_only({}); !known) return known.error();
     const auto& session = context.session;
     if (!session) return session.error();
     boost::json::array weaves;
@@ -79,14 +77,12 @@ Result<Response> list_weaves(Context& context) {
 }
 
 Result<Response> get_weave(Context& context) {
-    if (auto known = context.query.check_only({}); !known) return known.error();
     const auto weave = weave_in_path(context);
     if (!weave) return weave.error();
     return ok(shown(**weave));
 }
 
 Result<Response> delete_weave(Context& context) {
-    if (auto known = context.query.check_only({}); !known) return known.error();
     const auto weave = weave_in_path(context);
     if (!weave) return weave.error();
     context.services.weaves.remove((*context.session)->info().id, (*weave)->id());

@@ -69,6 +69,16 @@ TEST_F(ApiTest, EveryOperationMatchesItsDescription) {
     answer(starting, {.method = "DELETE", .target = "/api/v1/sessions/a"});
 }
 
+TEST_F(ApiTest, UnknownParametersAreRefused) {
+    create("a");
+    for (const auto& route : routes()) {
+        if (route.method == Method::kPostForm || takes_any_parameter(route)) continue;
+        const auto address = target_of(route, "a") + "?odd=1";
+        EXPECT_EQ(ask(std::string(name_of(route.method)), address, "{}").status, Status::bad_request) << address;
+    }
+    EXPECT_EQ(get("/?odd=1").body.bytes(), get("/").body.bytes());
+}
+
 TEST_F(ApiTest, UnknownRoutesAreProblems) {
     EXPECT_EQ(get("/api/v2/sessions").status, Status::not_found);
     EXPECT_EQ(get("no path").status, Status::bad_request);

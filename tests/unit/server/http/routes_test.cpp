@@ -17,8 +17,10 @@ concept IsRow = requires(Columns... columns) {
     Route{columns...};
 };
 
-static_assert(IsRow<Method, std::string_view, Access, Pool, Sessions, Handler>);
-static_assert(!IsRow<Method, std::string_view, Access, Pool, Sessions>, "a row without a handler does not compile");
+using Parameters = std::span<const std::string_view>;
+static_assert(IsRow<Method, std::string_view, Access, Pool, Sessions, Parameters, Handler>);
+static_assert(!IsRow<Method, std::string_view, Access, Pool, Sessions, Parameters>,
+              "a row without a handler does not compile");
 static_assert(!std::is_default_constructible_v<Handler>);
 
 std::variant<Match, NoSuchPath, MethodNotAllowed> route(std::string_view method, std::string_view path) {
