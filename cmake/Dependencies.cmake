@@ -22,6 +22,15 @@ if(SCANLOOM_SERVER)
   # Its headers alone: one file uses them, and Debian's library would be one more to install.
   find_path(TOMLPLUSPLUS_INCLUDE_DIR toml++/toml.h REQUIRED)
   mark_as_advanced(TOMLPLUSPLUS_INCLUDE_DIR SPNG_LIBRARY)
+  # For server/http/openapi.py. Debian's Python is preferred, because another one in PATH may lack yaml.
+  function(scanloom_has_yaml result python)
+    execute_process(COMMAND ${python} -c "import yaml" RESULT_VARIABLE failed OUTPUT_QUIET ERROR_QUIET)
+    if(NOT failed EQUAL 0)
+      set(${result} FALSE PARENT_SCOPE)
+    endif()
+  endfunction()
+  find_program(SCANLOOM_YAML_PYTHON python3 HINTS /usr/bin VALIDATOR scanloom_has_yaml REQUIRED
+               DOC "A Python with yaml, from Debian's package python3-yaml")
 endif()
 
 # Asio and Beast, compiled once instead of in every file that includes them.

@@ -114,7 +114,7 @@ readonly parts_of_all=(
     '^e2e_([^l]|layers);server/http server/live tests/e2e web'
     '^python_client_;proto robot_client/python server/ingest tests/integration/robot_client/python'
     '^observability_;docs/observability server/http/handlers/system.cpp server/metrics tests/integration/observability'
-    '^openapi_;server/http/openapi.json tests/openapi'
+    '^openapi_;server/http/openapi.cpp server/http/openapi.py server/http/openapi.yaml server/http/routes.cpp tests/openapi'
     '^readers$;server/exchange server/http server/tiles tests/readers'
     '^package$;cmake docker packaging robot_client/client robot_client/package scanloom tests/package'
     '^api_pages$;common core docs/api packaging/api_pages.sh robot_client/client tests/package'

@@ -77,6 +77,7 @@ private:
 struct Route {
     Method method;
     std::string_view path; ///< a pattern, see match_path()
+    std::string_view name; ///< operationId in the OpenAPI description; its texts are in openapi.yaml
     Access access;
     Pool pool; ///< on which the handler starts
     Sessions sessions;

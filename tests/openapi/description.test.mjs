@@ -1,10 +1,25 @@
-// The description of the HTTP API passes a linter and a parser.
+// A linter and a parser read the description of the HTTP API that the server returns.
 import assert from 'node:assert/strict';
-import { test } from 'node:test';
+import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
 import SwaggerParser from '@apidevtools/swagger-parser';
 import { createConfig, lint } from '@redocly/openapi-core';
+import { endWithThisProgram, Server } from '../e2e/programs.mjs';
 
-const description = new URL('../../server/http/openapi.json', import.meta.url).pathname;
+const folder = mkdtempSync(join(tmpdir(), 'scanloom-openapi-'));
+const description = join(folder, 'openapi.json');
+
+before(async () => {
+  endWithThisProgram();
+  const server = await Server.start();
+  const response = await fetch(`${server.address}openapi.json`);
+  writeFileSync(description, await response.text());
+  await server.stop();
+});
+
+after(() => rmSync(folder, { recursive: true, force: true }));
 
 test("Redocly's linter finds no error", async () => {
   const config = await createConfig({ extends: ['recommended'] });

@@ -22,7 +22,7 @@ namespace scanloom::http {
 /// GET /metrics: returns the counters and the current state of the process, the store and the sessions.
 [[nodiscard]] Result<Response> get_metrics(Context& context);
 
-/// GET /openapi.json: returns server/http/openapi.json, which is compiled in.
+/// GET /openapi.json: returns openapi().
 [[nodiscard]] Result<Response> get_openapi(Context& context);
 
 /// GET /: returns the viewer's page. Only the viewer reads the query.

@@ -1,8 +1,9 @@
 #include "server/http/handlers/handlers.hpp"
 
+#include "common/json/json_text.hpp"
 #include "server/http/content_coding.hpp"
 #include "server/http/handlers/session_json.hpp"
-#include "server/http/openapi_text.hpp"
+#include "server/http/openapi.hpp"
 #include "server/http/problem.hpp"
 #include "server/metrics/metrics.hpp"
 #include "server/metrics/process.hpp"
@@ -12,6 +13,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <string>
 #include <vector>
 
 namespace scanloom::http {
@@ -144,8 +146,9 @@ Result<Response> get_metrics(Context& context) {
 }
 
 Result<Response> get_openapi(Context& /*context*/) {
-    static const auto kCompressed = gzip_of(kJson, kOpenapiText);
-    auto response = ok(kJson, Body(std::string(kOpenapiText)));
+    static const std::string kText = json_text(openapi()) + '\n';
+    static const auto kCompressed = gzip_of(kJson, kText);
+    auto response = ok(kJson, Body(kText));
     response.gzip = kCompressed;
     return std::move(response).set("Cache-Control", kNotKept);
 }

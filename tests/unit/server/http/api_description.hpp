@@ -5,7 +5,7 @@
 
 namespace scanloom::http {
 
-/// Returns openapi.json as JSON.
+/// Returns openapi().
 [[nodiscard]] const boost::json::value& described_api();
 
 /// Returns the target of a "$ref", or the value itself.

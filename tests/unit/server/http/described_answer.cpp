@@ -1,5 +1,7 @@
 #include "tests/unit/server/http/described_answer.hpp"
 
+#include "common/json/json_text.hpp"
+#include "server/http/openapi.hpp"
 #include "server/http/routes.hpp"
 #include "server/http/target.hpp"
 #include "tests/unit/server/http/api_description.hpp"
@@ -10,7 +12,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 #include <iterator>
 #include <map>
 #include <set>
@@ -136,10 +137,7 @@ Faults faults_of_body(const json::object& described, const Response& response) {
 } // namespace
 
 const json::value& described_api() {
-    static const json::value whole = [] {
-        std::ifstream file(OPENAPI_FILE);
-        return json::parse(std::string(std::istreambuf_iterator<char>(file), {}));
-    }();
+    static const json::value whole = json::parse(json_text(openapi()));
     return whole;
 }
 

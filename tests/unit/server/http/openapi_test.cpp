@@ -1,22 +1,26 @@
-#include "server/http/routes.hpp"
+#include "server/http/openapi.hpp"
+
+#include "common/json/json_text.hpp"
+#include "core/mapping/map_config.hpp"
 #include "tests/unit/server/http/api_description.hpp"
 #include "tests/unit/server/http/api_fixture.hpp"
 
 #include <boost/json/array.hpp>
 #include <boost/json/parse.hpp>
-#include <boost/url/grammar/ci_string.hpp>
 #include <gtest/gtest.h>
-
-#include <fstream>
-#include <iterator>
-#include <set>
 
 namespace scanloom::http {
 namespace {
 
+namespace json = boost::json;
+
+const json::object& component(const char* kind, const char* name) {
+    return openapi().at("components").at(kind).at(name).as_object();
+}
+
 /// Calls visit with each value below and at `value`.
 template <class Visit>
-void walk(const boost::json::value& value, Visit&& visit) {
+void walk(const json::value& value, Visit&& visit) {
     visit(value);
     if (value.is_object()) {
         for (const auto& member : value.get_object()) walk(member.value(), visit);
@@ -25,64 +29,55 @@ void walk(const boost::json::value& value, Visit&& visit) {
     }
 }
 
-TEST_F(ApiTest, ServesTheOpenApiFile) {
-    std::ifstream file(OPENAPI_FILE);
-    const std::string text(std::istreambuf_iterator<char>(file), {});
-    EXPECT_EQ(get("/openapi.json").body.bytes(), text);
-}
-
-TEST(OpenApi, DescribesExactlyTheRoutes) {
-    std::set<std::string> routed;
-    for (const auto& route : routes())
-        routed.insert(std::string(name_of(route.method)) + " " + std::string(route.path));
-    std::set<std::string> described;
-    const auto& whole = described_api();
-    for (const auto& path : whole.at("paths").as_object()) {
-        for (const auto& method : path.value().as_object()) {
-            const bool is_get = boost::urls::grammar::ci_is_equal(method.key(), "get");
-            const std::string name = is_get ? "GET" : method.key() == "post" ? "POST" : "DELETE";
-            described.insert(name + " " + std::string(path.key()));
-        }
-    }
-    EXPECT_EQ(described, routed);
+TEST_F(ApiTest, ServesTheOpenApiDescription) {
+    EXPECT_EQ(get("/openapi.json").body.bytes(), json_text(openapi()) + "\n");
 }
 
 TEST(OpenApi, AllReferencesResolve) {
     const auto& root = described_api();
     std::size_t count = 0;
-    walk(root, [&](const boost::json::value& value) {
+    walk(root, [&](const json::value& value) {
         const auto* reference = value.is_object() ? value.get_object().if_contains("$ref") : nullptr;
         if (reference == nullptr) return;
         const std::string address(reference->as_string());
-        boost::json::error_code failed;
+        json::error_code failed;
         EXPECT_NE(root.find_pointer(address.substr(1), failed), nullptr) << address;
         ++count;
     });
     EXPECT_GT(count, 50U);
 }
 
-TEST(OpenApi, PathVariablesAreParameters) {
-    const auto& root = described_api();
-    for (const auto& path : root.at("paths").as_object()) {
-        for (const auto& operation : path.value().as_object()) {
-            std::set<std::string> described;
-            if (const auto* parameters = operation.value().as_object().if_contains("parameters")) {
-                for (const auto& parameter : parameters->as_array()) {
-                    boost::json::error_code failed;
-                    const std::string address(parameter.at("$ref").as_string());
-                    const auto* target = root.find_pointer(address.substr(1), failed);
-                    ASSERT_NE(target, nullptr) << address;
-                    if (target->at("in") == "path") described.insert(std::string(target->at("name").as_string()));
-                }
-            }
-            std::set<std::string> named;
-            const std::string pattern(path.key());
-            for (auto open = pattern.find('{'); open != std::string::npos; open = pattern.find('{', open + 1)) {
-                named.insert(pattern.substr(open + 1, pattern.find('}', open) - open - 1));
-            }
-            EXPECT_EQ(described, named) << pattern;
-        }
-    }
+TEST(OpenApi, OperationHasTheColumnsOfItsRoute) {
+    const auto& get = openapi().at("paths").at("/api/v1/sessions/{session}/points.csv").at("get").as_object();
+    EXPECT_EQ(get.at("operationId"), "pointsCsv");
+    EXPECT_EQ(get.at("parameters"), json::parse(R"([{"$ref": "#/components/parameters/session"},
+                                                    {"$ref": "#/components/parameters/since"},
+                                                    {"$ref": "#/components/parameters/untilOfPoints"},
+                                                    {"$ref": "#/components/parameters/robotOfPoints"},
+                                                    {"$ref": "#/components/parameters/threshold"}])"));
+    for (const char* status : {"200", "400", "401", "403", "404", "413", "500", "503"})
+        EXPECT_TRUE(get.at("responses").as_object().contains(status)) << status;
+    EXPECT_FALSE(get.contains("security"));
+    EXPECT_EQ(openapi().at("paths").at("/livez").at("get").at("security"), json::array());
+}
+
+TEST(OpenApi, SettingsHaveTypeUnitBoundsAndDefault) {
+    const auto& request = component("schemas", "SessionRequest").at("properties").as_object();
+    EXPECT_EQ(request.at("p_free"), json::parse(R"({"type": "number", "format": "double", "minimum": 0.0,
+        "maximum": 0.5, "exclusiveMinimum": true, "exclusiveMaximum": true, "default": 0.1,
+        "description": "Probability of occupation before a hit."})"));
+    EXPECT_EQ(request.at("danger_cells").at("format"), "int32");
+    EXPECT_EQ(request.at("danger_cells").at("default"), 3);
+    EXPECT_EQ(request.at("accumulate").at("type"), "boolean");
+    EXPECT_EQ(request.at("accumulate").at("default"), false);
+    EXPECT_EQ(request.at("ray_model").at("enum"), json::parse(R"(["inverse_sensor_model","bresenham","traversal"])"));
+    EXPECT_EQ(request.at("ray_model").at("default"), "inverse_sensor_model");
+    EXPECT_EQ(component("schemas", "SessionConfig").at("required").as_array().size(), mapping::config_fields().size());
+    EXPECT_EQ(component("parameters", "cell_size"), json::parse(R"({"name": "cell_size", "in": "query",
+        "required": false, "schema": {"type": "number", "format": "double", "minimum": 0.01, "maximum": 1.0},
+        "description": "Side of a cell (m). The maps are computed again from the log with it."})"));
+    for (const auto* schema : {"SessionConfig", "WeaveRequest"})
+        EXPECT_FALSE(component("schemas", schema).at("properties").at("p_free").as_object().contains("default"));
 }
 
 } // namespace

@@ -18,8 +18,8 @@ concept IsRow = requires(Columns... columns) {
 };
 
 using Parameters = std::span<const std::string_view>;
-static_assert(IsRow<Method, std::string_view, Access, Pool, Sessions, Parameters, Handler>);
-static_assert(!IsRow<Method, std::string_view, Access, Pool, Sessions, Parameters>,
+static_assert(IsRow<Method, std::string_view, std::string_view, Access, Pool, Sessions, Parameters, Handler>);
+static_assert(!IsRow<Method, std::string_view, std::string_view, Access, Pool, Sessions, Parameters>,
               "a row without a handler does not compile");
 static_assert(!std::is_default_constructible_v<Handler>);
 

@@ -34,12 +34,13 @@ inline Result<Response> ask_test(Context& context) {
 inline std::vector<Route> echoing_routes() {
     std::vector<Route> echoing;
     for (const auto& route : routes()) {
-        echoing.push_back(
-            {route.method, route.path, route.access, route.pool, Sessions::kUnused, kAnyParameters, ask_test});
+        echoing.push_back({route.method, route.path, route.name, route.access, route.pool, Sessions::kUnused,
+                           kAnyParameters, ask_test});
     }
     for (const auto method : {Method::kGet, Method::kPost}) {
         for (const auto* path : {"/", "/{a}", "/{a}/{b}"}) {
-            echoing.push_back({method, path, Access::kOpen, Pool::kIo, Sessions::kUnused, kAnyParameters, ask_test});
+            echoing.push_back(
+                {method, path, "echo", Access::kOpen, Pool::kIo, Sessions::kUnused, kAnyParameters, ask_test});
         }
     }
     return echoing;
