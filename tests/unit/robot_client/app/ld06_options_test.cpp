@@ -1,6 +1,7 @@
 #include "robot_client/app/ld06_options.hpp"
 
 #include "common/app/standard_streams.hpp"
+#include "robot_client/app/make_source.hpp"
 #include "robot_client/app/options.hpp"
 #include "tests/support/ld06_bytes.hpp"
 #include "tests/support/temporary_directory.hpp"
