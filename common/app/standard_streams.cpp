@@ -99,19 +99,34 @@ std::chrono::milliseconds Console::progress_period() const {
     return out_.is_terminal() ? std::chrono::milliseconds(200) : std::chrono::milliseconds(5000);
 }
 
+std::string Console::erasure() const {
+    if (lines_ > 1) return fmt::format("\r\x1b[{}A\x1b[J", lines_ - 1); // up to the first line; erases to the end
+    return lines_ == 1 ? "\r\x1b[K" : "";
+}
+
 void Console::progress(std::string_view text) {
-    line_is_open_ = out_.is_terminal();
-    out_.write(line_is_open_ ? fmt::format("\r\x1b[K{}", text) : fmt::format("{}\n", text));
+    if (!is_terminal()) return out_.write(fmt::format("{}\n", text));
+    out_.write(fmt::format("{}{}", lines_ == 0 ? "\r\x1b[K" : erasure(), text));
+    lines_ = 1 + static_cast<std::size_t>(std::ranges::count(text, '\n'));
+}
+
+void Console::passing(std::string_view text) {
+    if (is_terminal()) progress(text);
 }
 
 void Console::note(std::string_view text) {
-    out_.write(fmt::format("{}{}\n", line_is_open_ ? "\r\x1b[K" : "", text));
-    line_is_open_ = false;
+    out_.write(fmt::format("{}{}\n", erasure(), text));
+    lines_ = 0;
 }
 
 void Console::finish() {
-    if (line_is_open_) out_.write("\n");
-    line_is_open_ = false;
+    if (lines_ > 0) out_.write("\n");
+    lines_ = 0;
+}
+
+void Console::clear() {
+    if (lines_ > 0) out_.write(erasure());
+    lines_ = 0;
 }
 
 } // namespace scanloom

@@ -3,6 +3,7 @@
 #include "common/files/file_descriptor.hpp"
 
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <mutex>
 #include <string>
@@ -51,8 +52,8 @@ private:
 
 /// Prints the progress and the notes of a running program on stderr, and never waits for a reader.
 ///
-/// On a terminal the progress is one line that is overwritten; elsewhere it is a plain line every few seconds. There
-/// are no colours, so NO_COLOR has nothing to switch off.
+/// On a terminal the progress is overwritten; elsewhere it is a plain line every few seconds. There are no colours, so
+/// NO_COLOR has nothing to switch off.
 class Console {
 public:
     explicit Console(StandardError& out) : out_(out) {}
@@ -60,18 +61,29 @@ public:
     /// Returns how often to call progress().
     [[nodiscard]] std::chrono::milliseconds progress_period() const;
 
-    /// Replaces the progress line.
+    /// Returns whether the progress is overwritten and may have several lines.
+    [[nodiscard]] bool is_terminal() const { return out_.is_terminal(); }
+
+    /// Replaces the progress.
     void progress(std::string_view text);
 
-    /// Prints a line in place of the progress line.
+    /// Replaces the progress on a terminal; does nothing elsewhere.
+    void passing(std::string_view text);
+
+    /// Prints a line in place of the progress.
     void note(std::string_view text);
 
-    /// Ends the progress line; its last text stays visible.
+    /// Ends the progress; its last text stays visible.
     void finish();
 
+    /// Removes the progress.
+    void clear();
+
 private:
+    [[nodiscard]] std::string erasure() const;
+
     StandardError& out_;
-    bool line_is_open_ = false;
+    std::size_t lines_ = 0; ///< of the progress on the terminal; the cursor is in the last one
 };
 
 } // namespace scanloom

@@ -2,14 +2,18 @@
 
 #include "common/net/await_tuple.hpp"
 #include "load/core/words.hpp"
-#include "load/net/own_use.hpp"
 #include "load/net/server_api.hpp"
 #include "load/net/verification.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
+
+#include <sys/resource.h>
+#include <unistd.h>
 
 namespace scanloom::load {
 
@@ -22,6 +26,21 @@ constexpr Micros kShowPeriod = kSecond;
 constexpr Micros kHeadStart = 200 * kMillisecond; ///< from notifying the robots until they start
 constexpr std::chrono::seconds kTimeout{60};      ///< with the server's HTTP when it is no longer under load
 constexpr std::string_view kCalm = "calm";
+
+double in_seconds(const timeval& time) {
+    return static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_usec) * 1e-6;
+}
+
+/// Returns CPU time and memory used by this process so far.
+ProcessUse own_use() {
+    rusage use{};
+    getrusage(RUSAGE_SELF, &use);
+    std::ifstream file("/proc/self/statm"); // unit: pages; all, then resident ones
+    double all = 0.0;
+    double resident = 0.0;
+    file >> all >> resident;
+    return {in_seconds(use.ru_utime) + in_seconds(use.ru_stime), resident * static_cast<double>(sysconf(_SC_PAGESIZE))};
+}
 
 std::string prefix_of(const LoadOptions& options) { return fmt::format("load-{}-", options.seed); }
 
@@ -50,8 +69,8 @@ FleetPlan fleet_plan(const LoadOptions& options) {
 } // namespace
 
 LoadRun::LoadRun(asio::io_context& io, const LoadOptions& options, const Course& course, const RobotLinkOptions& link,
-                 const HttpPlace& http, LiveDisplay& display)
-    : io_(io), options_(options), course_(course), link_(link), display_(display), sessions_(session_names(options)),
+                 const HttpPlace& http, Console& console)
+    : io_(io), options_(options), course_(course), link_(link), console_(console), sessions_(session_names(options)),
       robots_(spread_over(sessions_, options.robots, course.scans.size())), http_(io.get_executor(), http),
       fleet_(fleet_plan(options), robots_, clock_, course_, link_),
       audience_({options.viewers, options.tile_readers, options.tile_rate, http, sessions_}, clock_) {
@@ -97,7 +116,7 @@ asio::awaitable<Result<RunReport>> LoadRun::conduct() {
     co_await verify();
     co_await clean_up();
     report_.verdict = verdict_on(evidence);
-    display_.clear();
+    console_.clear();
     co_return report_;
 }
 
@@ -129,7 +148,7 @@ asio::awaitable<Result<>> LoadRun::make_room() {
                         names->size() == 1 ? "it" : "them")};
     }
     for (const auto& name : *names) {
-        display_.passing(fmt::format("deleting {}", name));
+        console_.passing(fmt::format("deleting {}", name));
         const auto deleted = co_await delete_session(http_, name);
         if (!deleted) co_return deleted.error();
     }
@@ -144,7 +163,7 @@ asio::awaitable<bool> LoadRun::connect_robots() {
     Micros advanced = clock_.now();
     for (;;) {
         const auto progress = fleet_.progress();
-        display_.passing(fmt::format("{} of {} robots connected{}", grouped(progress.linked), grouped(options_.robots),
+        console_.passing(fmt::format("{} of {} robots connected{}", grouped(progress.linked), grouped(options_.robots),
                                      progress.trouble.empty() ? "" : "; " + progress.trouble));
         if (progress.greeted == options_.robots) co_return true;
         if (progress.failed > 0 || interrupted_) co_return false;
@@ -180,7 +199,7 @@ asio::awaitable<void> LoadRun::wait_for_the_last_ack() {
         const auto progress = fleet_.progress();
         const Micros now = clock_.now();
         if (progress.finished + progress.failed == options_.robots) co_return;
-        const std::uint64_t before = std::exchange(acknowledged, progress.acknowledged);
+        const std::uint64_t before = std::exchange(acknowledged, progress.scans_acknowledged);
         if (acknowledged > before || (now < end && !interrupted_)) advanced = now;
         if (now > advanced + timeout) co_return;
         if (now < shown.at + kShowPeriod) continue;
@@ -210,10 +229,10 @@ asio::awaitable<void> LoadRun::pause(Micros time) {
 }
 
 void LoadRun::show(const Moment& before, const Moment& now) {
-    if (display_.is_table()) {
-        display_.show(live_table(report_.settings, begun_, before, now));
+    if (console_.is_terminal()) {
+        console_.progress(fmt::format("{}", fmt::join(live_table(report_.settings, begun_, before, now), "\n")));
     } else {
-        display_.note(live_line(report_.settings, begun_, before, now));
+        console_.note(live_line(report_.settings, begun_, before, now));
     }
 }
 
@@ -233,7 +252,7 @@ asio::awaitable<void> LoadRun::verify() {
     Evidence& evidence = report_.evidence;
     const bool is_complete = evidence.failures.empty() && evidence.scans_acknowledged == evidence.scans_sent;
     if (options_.verify == Verify::kNone || !is_complete) co_return; // scans in flight may still arrive
-    const auto report = [this](const std::string& text) { display_.passing(text); };
+    const auto report = [this](const std::string& text) { console_.passing(text); };
     const auto sessions = expected();
     co_await verify_counts(http_, sessions, report, evidence);
     const bool compare = options_.verify == Verify::kDigests && !evidence.shares_sessions;
@@ -247,10 +266,10 @@ asio::awaitable<void> LoadRun::clean_up() {
     auto names = sessions_;
     if (calm_) names.push_back(calm_name());
     for (std::size_t i = 0; i < names.size(); ++i) {
-        display_.passing(fmt::format("deleting {} of {} sessions", grouped(i), grouped(names.size())));
+        console_.passing(fmt::format("deleting {} of {} sessions", grouped(i), grouped(names.size())));
         const auto deleted = co_await delete_session(http_, names[i]);
         if (deleted) continue;
-        display_.note(fmt::format("the sessions from {} remain on the server: {}", names[i], deleted.error().message));
+        console_.note(fmt::format("the sessions from {} remain on the server: {}", names[i], deleted.error().message));
         co_return;
     }
 }

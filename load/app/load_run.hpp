@@ -1,12 +1,12 @@
 #pragma once
 
-#include "load/app/live_display.hpp"
+#include "common/app/standard_streams.hpp"
 #include "load/app/options.hpp"
 #include "load/core/live_view.hpp"
 #include "load/net/audience.hpp"
-#include "load/net/calm_session.hpp"
 #include "load/net/fleet.hpp"
 #include "load/net/http_connection.hpp"
+#include "load/net/verification.hpp"
 
 #include <boost/asio/awaitable.hpp>
 #include <boost/asio/io_context.hpp>
@@ -25,7 +25,7 @@ class LoadRun {
 public:
     /// The references must outlive this object.
     LoadRun(boost::asio::io_context& io, const LoadOptions& options, const Course& course, const RobotLinkOptions& link,
-            const HttpPlace& http, LiveDisplay& display);
+            const HttpPlace& http, Console& console);
 
     /// Runs everything. Call once.
     /// Errors: kAlreadyExists: there are sessions with the run's names; those of HTTP. Nothing was started then.
@@ -53,7 +53,7 @@ private:
     const LoadOptions& options_;
     const Course& course_;
     const RobotLinkOptions& link_;
-    LiveDisplay& display_;
+    Console& console_;
     RunClock clock_;
     std::vector<std::string> sessions_;
     std::vector<RobotPlan> robots_;

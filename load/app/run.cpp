@@ -6,7 +6,6 @@
 #include "load/app/load_run.hpp"
 #include "load/app/report_file.hpp"
 #include "load/core/words.hpp"
-#include "load/net/own_use.hpp"
 
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
@@ -18,6 +17,8 @@
 #include <cstdio>
 #include <optional>
 #include <system_error>
+
+#include <sys/resource.h>
 
 namespace scanloom::load {
 
@@ -51,6 +52,16 @@ Result<RobotLinkOptions> link_options(const LoadOptions& options) {
     return link;
 }
 
+/// Raises this process's limit of file descriptors to the allowed maximum and returns it.
+std::uint64_t raise_descriptor_limit() {
+    rlimit limit{};
+    if (getrlimit(RLIMIT_NOFILE, &limit) != 0) return 0;
+    limit.rlim_cur = limit.rlim_max;
+    setrlimit(RLIMIT_NOFILE, &limit);
+    getrlimit(RLIMIT_NOFILE, &limit);
+    return limit.rlim_cur;
+}
+
 Result<> check_descriptors(const LoadOptions& options) {
     const bool leaves_links = options.faults[static_cast<std::size_t>(Fault::kHalfOpen)] > 0.0;
     const std::uint64_t needed = std::uint64_t{options.robots} * (leaves_links ? 2 : 1) + options.viewers +
@@ -64,10 +75,10 @@ Result<> check_descriptors(const LoadOptions& options) {
 }
 
 /// The first signal ends the streaming, the second the program.
-asio::awaitable<void> obey_signals(asio::io_context& io, LoadRun& run, LiveDisplay& display) {
+asio::awaitable<void> obey_signals(asio::io_context& io, LoadRun& run, Console& console) {
     asio::signal_set signals(io, SIGINT, SIGTERM);
     if (std::get<0>(co_await signals.async_wait(kAwaitTuple))) co_return;
-    display.note("interrupted: waiting for sent scans, then verifying them; interrupt again to end immediately, which "
+    console.note("interrupted: waiting for sent scans, then verifying them; interrupt again to end immediately, which "
                  "leaves the sessions on the server");
     run.interrupt();
     if (std::get<0>(co_await signals.async_wait(kAwaitTuple))) co_return;
@@ -93,9 +104,9 @@ Result<> write_report(const RunReport& report, const std::string& json_file, std
 } // namespace
 
 ExitCode run(const LoadOptions& options) {
-    LiveDisplay display(standard_error());
+    Console console(standard_error());
     const auto fail = [&](const Error& error) {
-        display.note("scanloom-load: " + error.message);
+        console.note("scanloom-load: " + error.message);
         return error.code == Errc::kTooLarge ? kExitUsage : kExitFailed;
     };
     std::optional<ReportFile> file;
@@ -113,13 +124,13 @@ ExitCode run(const LoadOptions& options) {
     const auto http = http_place(options, link->hello.token);
     if (!http) return fail(http.error());
     if (auto ok = check_descriptors(options); !ok) return fail(ok.error());
-    display.passing("simulating the trajectory");
+    console.passing("simulating the trajectory");
     const auto course = drive_course(options);
     if (!course) return fail(course.error());
 
-    LoadRun run(io, options, *course, *link, *http, display);
+    LoadRun run(io, options, *course, *link, *http, console);
     std::optional<Result<RunReport>> outcome; // absent if a second signal ended the run
-    asio::co_spawn(io, obey_signals(io, run, display), asio::detached);
+    asio::co_spawn(io, obey_signals(io, run, console), asio::detached);
     asio::co_spawn(io, run.conduct(), [&](std::exception_ptr failed, Result<RunReport> result) {
         if (failed) std::rethrow_exception(failed);
         outcome = std::move(result);

@@ -1,7 +1,6 @@
 #pragma once
 
-#include "load/core/audience_figures.hpp"
-#include "load/core/fleet_figures.hpp"
+#include "load/core/figures.hpp"
 #include "load/core/report.hpp"
 
 #include <optional>

@@ -4,7 +4,7 @@
 #include "common/link/scan_queue.hpp"
 #include "common/wire/messages.hpp"
 #include "load/core/course.hpp"
-#include "load/core/fleet_figures.hpp"
+#include "load/core/figures.hpp"
 #include "load/core/micros.hpp"
 
 #include <cstddef>

@@ -20,5 +20,8 @@ namespace scanloom::load {
 [[nodiscard]] constexpr double per_second(double count, double seconds) noexcept {
     return seconds > 0.0 ? count / seconds : 0.0;
 }
+[[nodiscard]] constexpr double per_second(std::uint64_t count, double seconds) noexcept {
+    return per_second(static_cast<double>(count), seconds);
+}
 
 } // namespace scanloom::load

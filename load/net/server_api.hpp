@@ -1,7 +1,7 @@
 #pragma once
 
 #include "common/error/error.hpp"
-#include "load/core/process_use.hpp"
+#include "load/core/figures.hpp"
 #include "load/core/tile_tour.hpp"
 #include "load/core/verdict.hpp"
 #include "load/net/http_connection.hpp"

@@ -1,4 +1,4 @@
-#include "load/core/process_use.hpp"
+#include "load/core/figures.hpp"
 
 #include <gtest/gtest.h>
 

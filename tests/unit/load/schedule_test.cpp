@@ -1,4 +1,4 @@
-#include "load/core/schedule.hpp"
+#include "load/core/course.hpp"
 
 #include <gtest/gtest.h>
 

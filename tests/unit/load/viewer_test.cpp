@@ -1,4 +1,4 @@
-#include "load/net/onlooker.hpp"
+#include "load/net/audience.hpp"
 
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
