@@ -1,6 +1,7 @@
 #pragma once
 
 #include "common/app/program.hpp"
+#include "common/error/error.hpp"
 #include "common/scan/limits.hpp"
 #include "common/text/parse_number.hpp"
 
@@ -55,6 +56,19 @@ namespace scanloom {
     return usage_error(app, what == "A subcommand is required" ? commands : what);
 }
 
+/// Adds an option whose text is parsed.
+/// @param into   receives the value; must outlive the parsing
+/// @param parse  returns a Result; the message of an error is shown after the option's name
+template <class Value, class Parse>
+CLI::Option* add_parsed(CLI::App& app, const std::string& name, Value& into, const std::string& help, Parse parse) {
+    const auto check = [parse](const std::string& text) {
+        const auto value = parse(text);
+        return value ? std::string() : value.error().message;
+    };
+    const auto assign = [&into, parse](const std::string& text) { into = parse(text).value(); };
+    return app.add_option_function<std::string>(name, assign, help)->check(check);
+}
+
 /// Adds an option whose values are checked and whose default is in the output of --help.
 /// @param check  for CLI::Option::check()
 template <class Value, class Check>
@@ -62,22 +76,25 @@ CLI::Option* add_checked(CLI::App& app, const std::string& name, Value& into, co
     return app.add_option(name, into, help)->check(std::move(check))->capture_default_str();
 }
 
-/// Accepts numbers from `low` to `high`. Rejects NaN, which CLI::Range accepts.
-[[nodiscard]] inline auto check_within(double low, double high) {
+/// Accepts numbers for which `is_valid` holds. Never accepts NaN, which CLI::Range accepts.
+/// @param what  the end of the error text "'TEXT' is not ..."
+template <class Predicate>
+[[nodiscard]] auto check_number(std::string what, Predicate is_valid) {
     return [=](const std::string& text) {
         double value = 0.0;
-        if (CLI::detail::lexical_cast(text, value) && value >= low && value <= high) return std::string();
-        return fmt::format("'{}' is not within {:g} to {:g}", text, low, high);
+        if (CLI::detail::lexical_cast(text, value) && !std::isnan(value) && is_valid(value)) return std::string();
+        return fmt::format("'{}' is not {}", text, what);
     };
 }
 
-/// Accepts numbers above `low` and up to `high`.
+[[nodiscard]] inline auto check_within(double low, double high) {
+    return check_number(fmt::format("within {:g} to {:g}", low, high),
+                        [=](double value) { return value >= low && value <= high; });
+}
+
 [[nodiscard]] inline auto check_above_up_to(double low, double high) {
-    return [=](const std::string& text) {
-        double value = 0.0;
-        if (CLI::detail::lexical_cast(text, value) && value > low && value <= high) return std::string();
-        return fmt::format("'{}' is not more than {:g} and at most {:g}", text, low, high);
-    };
+    return check_number(fmt::format("more than {:g} and at most {:g}", low, high),
+                        [=](double value) { return value > low && value <= high; });
 }
 
 /// Accepts names of sessions, robots and tokens.
@@ -87,15 +104,11 @@ CLI::Option* add_checked(CLI::App& app, const std::string& name, Value& into, co
 }
 
 [[nodiscard]] inline std::string check_positive(const std::string& text) {
-    double value = 0.0;
-    if (CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value > 0.0) return {};
-    return fmt::format("'{}' is not more than 0", text);
+    return check_number("more than 0", [](double value) { return std::isfinite(value) && value > 0.0; })(text);
 }
 
 [[nodiscard]] inline std::string check_not_negative(const std::string& text) {
-    double value = 0.0;
-    if (CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value >= 0.0) return {};
-    return fmt::format("'{}' is not 0 or more", text);
+    return check_number("0 or more", [](double value) { return std::isfinite(value) && value >= 0.0; })(text);
 }
 
 /// Accepts whole numbers from `low` on. Rejects -1, which CLI11 alone converts to the largest number.

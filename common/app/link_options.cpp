@@ -1,18 +1,14 @@
 #include "common/app/link_options.hpp"
 
+#include "common/app/command_line.hpp"
+
 #include <CLI/CLI.hpp>
-#include <fmt/format.h>
 
 namespace scanloom {
 
 void add_link_options(CLI::App& app, LinkOptions& options, const std::string& token_help) {
-    const auto set_server = [&options](const std::string& text) { options.server = net::parse_address(text).value(); };
-    const auto check_server = [](const std::string& text) {
-        return net::parse_address(text) ? std::string() : fmt::format("'{}' is not HOST:PORT", text);
-    };
     const auto enable_tls = [&options](const std::string&) { options.tls = true; };
-    app.add_option_function<std::string>("--server", set_server, "Robot port of the server, HOST:PORT")
-        ->check(check_server)
+    add_parsed(app, "--server", options.server, "Robot port of the server, HOST:PORT", net::parse_address)
         ->default_str(options.server.text());
     app.add_option("--token-file", options.token_file, token_help)->check(CLI::ExistingFile);
     app.add_flag("--tls", options.tls, "Encrypt the link, and verify that the server is the one that --server names");

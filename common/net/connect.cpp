@@ -37,17 +37,18 @@ std::string Address::text() const {
     return host.find(':') == std::string::npos ? fmt::format("{}:{}", host, port) : fmt::format("[{}]:{}", host, port);
 }
 
-std::optional<Address> parse_address(std::string_view text) {
+Result<Address> parse_address(std::string_view text) {
+    const Error other_form{Errc::kInvalidField, fmt::format("'{}' is not HOST:PORT", text)};
     const std::size_t colon = text.rfind(':');
-    if (colon == std::string_view::npos) return std::nullopt;
+    if (colon == std::string_view::npos) return other_form;
     std::string_view host = text.substr(0, colon);
     const std::string_view port = text.substr(colon + 1);
     if (host.size() > 2 && host.front() == '[' && host.back() == ']') {
         host = host.substr(1, host.size() - 2);
     } else if (host.find(':') != std::string_view::npos) {
-        return std::nullopt; // an IPv6 address without brackets is ambiguous
+        return other_form; // an IPv6 address without brackets is ambiguous
     }
-    if (host.empty() || parse_number<std::uint16_t>(port).value_or(0) == 0) return std::nullopt;
+    if (host.empty() || parse_number<std::uint16_t>(port).value_or(0) == 0) return other_form;
     return Address{std::string(host), std::string(port)};
 }
 

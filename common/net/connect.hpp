@@ -31,8 +31,8 @@ struct Address {
 };
 
 /// Parses HOST:PORT. An IPv6 address must be in brackets, as in [::1]:7447; names are not resolved.
-/// @return nullopt if the text has another form
-[[nodiscard]] std::optional<Address> parse_address(std::string_view text);
+/// Errors: kInvalidField if the text has another form.
+[[nodiscard]] Result<Address> parse_address(std::string_view text);
 
 using Endpoints = std::vector<boost::asio::ip::tcp::endpoint>;
 

@@ -27,11 +27,13 @@ constexpr double kSecondsMax = 1e6;
 constexpr double kThreadsMax = 64;
 constexpr double kOnlookersMax = 1000;
 
-/// As filled by the parser, before conversion to LoadOptions.
-struct Raw {
-    std::string http = "127.0.0.1:8080";
-    std::string verify = "digests";
-};
+Result<HttpAddress> parse_http(std::string_view text) {
+    constexpr std::string_view kScheme = "https://";
+    const bool has_tls = text.starts_with(kScheme);
+    const auto address = net::parse_address(text.substr(has_tls ? kScheme.size() : 0));
+    if (address) return HttpAddress{*address, has_tls};
+    return Error{Errc::kInvalidField, fmt::format("'{}' is not HOST:PORT, nor https://HOST:PORT", text)};
+}
 
 template <class Number>
 void add_count(CLI::App& app, const char* name, Number& into, const char* help, double low, double high) {
@@ -59,15 +61,10 @@ void add_load_options(CLI::App& app, LoadOptions& options) {
     add_count(app, "--threads", options.threads, "Threads of the robots; use more if one falls behind", 1, kThreadsMax);
 }
 
-std::string check_world(const std::string& world) {
-    if (robot::is_world_file(world)) return {};
-    const auto found = robot::find_world(world);
-    return found ? "" : found.error().message + ", or the .yaml file of a ROS map";
-}
-
 void add_scan_options(CLI::App& app, LoadOptions& options) {
     add_checked(app, "--world", options.world,
-                "Where the robots drive: room, room_walker, office, hall, or FILE.yaml, a map of ROS", check_world);
+                "Where the robots drive: room, room_walker, office, hall, or FILE.yaml, a map of ROS",
+                robot::check_world);
     add_checked(app, "--laser", options.laser,
                 "Their laser: 684 beams over 180 degrees and 5 m; 360 over 360 degrees and 12 m; 1081 over 270 "
                 "degrees and 30 m",
@@ -88,12 +85,12 @@ void add_onlooker_options(CLI::App& app, LoadOptions& options) {
     add_checked(app, "--tile-rate", options.tile_rate, "Tiles per second of each reader", check_within(0.1, kRateMax));
 }
 
-void add_end_options(CLI::App& app, LoadOptions& options, Raw& raw) {
+void add_end_options(CLI::App& app, LoadOptions& options, std::string& verify) {
     app.add_option("--faults", options.faults_text,
                    "Faults of links: kinds with the mean seconds between two faults of a link, as in "
                    "cut=20,half-open=60,stall=30")
         ->type_name("KIND=SECONDS,...");
-    add_checked(app, "--verify", raw.verify,
+    add_checked(app, "--verify", verify,
                 "Verification at the end: each session has all acknowledged scans, and its maps equal those of an "
                 "undisturbed session with the same scans",
                 CLI::IsMember({"none", "counts", "digests"}));
@@ -103,11 +100,7 @@ void add_end_options(CLI::App& app, LoadOptions& options, Raw& raw) {
                    "File for the report as JSON; - is standard output, instead of the text");
 }
 
-std::optional<std::string> sort_in(const Raw& raw, LoadOptions& options) {
-    constexpr std::string_view kScheme = "https://";
-    options.http_tls = raw.http.starts_with(kScheme);
-    const auto http = net::parse_address(raw.http.substr(options.http_tls ? kScheme.size() : 0));
-    if (!http) return fmt::format("--http: '{}' is not HOST:PORT, nor https://HOST:PORT", raw.http);
+std::optional<std::string> sort_in(const std::string& verify, LoadOptions& options) {
     const auto faults = parse_faults(options.faults_text);
     if (!faults) return "--faults: " + faults.error().message;
     if (options.sessions > options.robots) {
@@ -115,10 +108,9 @@ std::optional<std::string> sort_in(const Raw& raw, LoadOptions& options) {
                            options.robots);
     }
     if (options.rate > 0.0 && options.rate * options.duration * options.robots > 1e15) return "--duration: too long";
-    options.http = *http;
     options.faults = *faults;
     if (options.sessions == 0) options.sessions = options.robots;
-    options.verify = raw.verify == "none" ? Verify::kNone : raw.verify == "counts" ? Verify::kCounts : Verify::kDigests;
+    options.verify = verify == "none" ? Verify::kNone : verify == "counts" ? Verify::kCounts : Verify::kDigests;
     return std::nullopt;
 }
 
@@ -126,26 +118,27 @@ std::optional<std::string> sort_in(const Raw& raw, LoadOptions& options) {
 
 std::variant<LoadOptions, Leave> parse_options(int argc, const char* const* argv) {
     LoadOptions options;
-    Raw raw;
+    std::string verify = "digests";
     CLI::App app(kAbout, "scanloom-load");
     app.footer(kFooter);
     app.set_version_flag("--version", fmt::format("scanloom-load {}", kVersion));
     add_link_options(app, options, "File with a token of the role operator, for the robots and for HTTP");
-    app.add_option("--http", raw.http,
-                   "HTTP port of the server, HOST:PORT, or https://HOST:PORT if it has TLS: for viewers, verification, "
-                   "and its CPU use")
-        ->capture_default_str();
+    add_parsed(app, "--http", options.http,
+               "HTTP port of the server, HOST:PORT, or https://HOST:PORT if it has TLS: for viewers, verification, and "
+               "its CPU use",
+               parse_http)
+        ->default_str(options.http.text());
     add_load_options(app, options);
     add_scan_options(app, options);
     add_onlooker_options(app, options);
-    add_end_options(app, options, raw);
+    add_end_options(app, options, verify);
     try {
         read_settings_from_environment_and_file(app);
         app.parse(argc, argv);
     } catch (const CLI::ParseError& reason) {
         return leave_for(app, reason);
     }
-    if (auto mistake = sort_in(raw, options)) return usage_error(app, *mistake);
+    if (auto mistake = sort_in(verify, options)) return usage_error(app, *mistake);
     return options;
 }
 

@@ -11,9 +11,12 @@
 
 namespace scanloom::load {
 
+struct HttpAddress : net::Address {
+    bool tls = false;
+};
+
 struct LoadOptions : LinkOptions, RunSettings {
-    net::Address http;
-    bool http_tls = false; ///< --http began with https://
+    HttpAddress http{{"127.0.0.1", "8080"}};
 
     double connections_per_second = 500.0;
     double give_up_after = 30.0; ///< seconds

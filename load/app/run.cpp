@@ -29,7 +29,7 @@ namespace {
 constexpr std::uint64_t kDescriptorsBesides = 64; ///< for threads, files and the program's own requests
 
 Result<HttpPlace> http_place(const LoadOptions& options, const std::string& token) {
-    auto tls = tls_of(options, options.http_tls);
+    auto tls = tls_of(options, options.http.tls);
     if (!tls) return tls.error();
     return HttpPlace{options.http, std::move(*tls), token};
 }

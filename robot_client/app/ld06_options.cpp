@@ -17,56 +17,44 @@ namespace scanloom::robot {
 namespace {
 
 /// Parses three finite numbers separated by commas.
-std::optional<std::array<double, 3>> to_numbers(const std::string& text) {
+/// @param form  what the text should be, for the error
+Result<std::array<double, 3>> parse_numbers(const std::string& text, std::string_view form) {
     std::array<double, 3> numbers{};
     const auto words = CLI::detail::split(text, ',');
-    if (words.size() != numbers.size()) return std::nullopt;
-    for (std::size_t i = 0; i < numbers.size(); ++i) {
-        if (!CLI::detail::lexical_cast(words[i], numbers[i]) || !std::isfinite(numbers[i])) return std::nullopt;
+    bool is_valid = words.size() == numbers.size();
+    for (std::size_t i = 0; is_valid && i < numbers.size(); ++i) {
+        is_valid = CLI::detail::lexical_cast(words[i], numbers[i]) && std::isfinite(numbers[i]);
     }
-    return numbers;
+    if (is_valid) return numbers;
+    return Error{Errc::kInvalidField, fmt::format("'{}' is not {}", text, form)};
 }
 
-/// Returns why a place is invalid, or an empty string.
-std::string complaint_about_place(double x, double y) {
+Result<> check_place(double x, double y) {
     const double farthest = std::abs(x) > std::abs(y) ? x : y;
     if (std::abs(farthest) <= kCoordinateMax) return {};
-    return fmt::format("{} m is outside the map, which extends {} m in each direction", farthest, kCoordinateMax);
+    return Error{Errc::kInvalidField, fmt::format("{} m is outside the map, which extends {} m in each direction",
+                                                  farthest, kCoordinateMax)};
 }
 
-/// Parses X,Y,YAW; keeps the yaw as written.
-std::optional<Pose2> to_pose(const std::string& text) {
-    const auto numbers = to_numbers(text);
-    if (!numbers) return std::nullopt;
-    return Pose2{(*numbers)[0], (*numbers)[1], (*numbers)[2]};
+Result<Pose2> parse_pose(const std::string& text) {
+    const auto numbers = parse_numbers(text, "X,Y,YAW in metres and radians");
+    if (!numbers) return numbers.error();
+    const auto [x, y, yaw] = *numbers;
+    if (auto ok = check_place(x, y); !ok) return ok.error();
+    if (std::abs(yaw) <= 2.0 * std::numbers::pi) return Pose2{x, y, normalize_angle(yaw)};
+    return Error{
+        Errc::kInvalidField,
+        fmt::format("yaw is in radians, and {:g} of them are more than a full turn; 90 degrees are 1.570796", yaw)};
 }
 
-std::string check_pose(const std::string& text) {
-    const auto pose = to_pose(text);
-    if (!pose) return fmt::format("'{}' is not X,Y,YAW in metres and radians", text);
-    if (auto complaint = complaint_about_place(pose->x, pose->y); !complaint.empty()) return complaint;
-    if (std::abs(pose->yaw) <= 2.0 * std::numbers::pi) return {};
-    return fmt::format("yaw is in radians, and {:g} of them are more than a full turn; 90 degrees are 1.570796",
-                       pose->yaw);
-}
-
-Pose2 checked_pose(const std::string& text) {
-    const Pose2 pose = *to_pose(text);
-    return {pose.x, pose.y, normalize_angle(pose.yaw)};
-}
-
-std::string check_near(const std::string& text) {
-    const auto numbers = to_numbers(text);
-    if (!numbers) return fmt::format("'{}' is not X,Y,RADIUS in metres", text);
+Result<wire::Near> parse_near(const std::string& text) {
+    const auto numbers = parse_numbers(text, "X,Y,RADIUS in metres");
+    if (!numbers) return numbers.error();
     const auto [x, y, radius] = *numbers;
-    if (auto complaint = complaint_about_place(x, y); !complaint.empty()) return complaint;
-    if (radius >= kNearRadiusMin && radius <= kNearRadiusMax) return {};
-    return fmt::format("the radius {:g} m is out of range: {:g} to {:g}", radius, kNearRadiusMin, kNearRadiusMax);
-}
-
-wire::Near checked_near(const std::string& text) {
-    const auto numbers = *to_numbers(text);
-    return {{numbers[0], numbers[1]}, numbers[2]};
+    if (auto ok = check_place(x, y); !ok) return ok.error();
+    if (radius >= kNearRadiusMin && radius <= kNearRadiusMax) return wire::Near{{x, y}, radius};
+    return Error{Errc::kInvalidField, fmt::format("the radius {:g} m is out of range: {:g} to {:g}", radius,
+                                                  kNearRadiusMin, kNearRadiusMax)};
 }
 
 std::string check_window(const std::string& text) {
@@ -85,30 +73,27 @@ std::string check_confidence(const std::string& text) {
 }
 
 void add_poses(CLI::App& ld06, Ld06Options& options) {
-    ld06.add_option_function<std::string>(
-            "--pose", [&](const std::string& text) { options.pose = checked_pose(text); },
-            "X,Y,YAW of a stationary robot: metres, and radians counter-clockwise. With --locate: its first pose, used "
-            "if no map exists yet; default then: 0,0,0")
-        ->check(check_pose);
+    add_parsed(
+        ld06, "--pose", options.pose,
+        "X,Y,YAW of a stationary robot: metres, and radians counter-clockwise. With --locate: its first pose, used "
+        "if no map exists yet; default then: 0,0,0",
+        parse_pose);
     ld06.add_option(
         "--poses", options.poses,
         "File of lines: t x y yaw, '-' = stdin. t is seconds since the first packet for a file, and Unix time for a "
         "device. Poses are interpolated; scans before the first and after the last line are skipped");
-    ld06.add_option_function<std::string>(
-            "--mount", [&](const std::string& text) { options.mount = checked_pose(text); },
-            "X,Y,YAW of the sensor on the robot; its 0 degrees are its x axis. Default: 0,0,0")
-        ->check(check_pose);
+    add_parsed(ld06, "--mount", options.mount,
+               "X,Y,YAW of the sensor on the robot; its 0 degrees are its x axis. Default: 0,0,0", parse_pose);
 }
 
 void add_locating(CLI::App& ld06, Ld06Options& options) {
     ld06.add_flag("--locate", options.locate,
                   "For a lidar without odometry that is carried from place to place: the server localizes it by its "
                   "scans. Scans taken while it moves are dropped. Each run sends a capture file again");
-    ld06.add_option_function<std::string>(
-            "--near", [&](const std::string& text) { options.near = checked_near(text); },
-            "X,Y,RADIUS in metres, with --locate: the maximum distance of the first place from X,Y along each axis; "
-            "later places are at most 100 m apart. Default: anywhere in the map")
-        ->check(check_near);
+    add_parsed(ld06, "--near", options.near,
+               "X,Y,RADIUS in metres, with --locate: the maximum distance of the first place from X,Y along each axis; "
+               "later places are at most 100 m apart. Default: anywhere in the map",
+               parse_near);
 }
 
 /// Returns why the options for the robot's place are invalid, or an empty string.

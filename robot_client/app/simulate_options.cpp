@@ -8,12 +8,6 @@
 namespace scanloom::robot {
 namespace {
 
-std::string check_world(const std::string& world) {
-    if (is_world_file(world)) return {};
-    const auto found = find_world(world);
-    return found ? "" : found.error().message + ", or the .yaml file of a ROS map";
-}
-
 std::string world_help(std::string text) {
     text += ": ";
     for (const NamedWorld& world : kWorlds) text.append(world.name).append(", ");

@@ -20,7 +20,7 @@ namespace {
 Result<UplinkOptions> uplink_options(const ClientOptions& options) {
     if (auto ok = check(options); !ok) return ok.error();
     const auto server = net::parse_address(options.server);
-    if (!server) return Error{Errc::kInvalidField, fmt::format("'{}' is not HOST:PORT", options.server)};
+    if (!server) return server.error();
     UplinkOptions uplink;
     uplink.server = *server;
     if (options.tls || !options.tls_ca_file.empty() || !options.tls_cert_file.empty()) {

@@ -61,6 +61,12 @@ Result<World> load_map(const fs::path& yaml) {
 
 bool is_world_file(std::string_view world) { return world.ends_with(".yaml") || world.ends_with(".yml"); }
 
+std::string check_world(const std::string& world) {
+    if (is_world_file(world)) return {};
+    const auto found = find_world(world);
+    return found ? "" : found.error().message + ", or the .yaml file of a ROS map";
+}
+
 Result<World> load_world(const std::string& world) {
     return is_world_file(world) ? load_map(world) : find_world(world);
 }
