@@ -3,7 +3,6 @@
 #include "common/scan/limits.hpp"
 #include "common/wire/packed_ranges.hpp"
 #include "common/wire/proto_convert.hpp"
-#include "common/wire/session_convert.hpp"
 
 #include "scanloom/v1/log.pb.h"
 

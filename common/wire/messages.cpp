@@ -5,7 +5,6 @@
 #include "common/wire/frame_decoder.hpp"
 #include "common/wire/proto_convert.hpp"
 #include "common/wire/request_convert.hpp"
-#include "common/wire/session_convert.hpp"
 
 #include "scanloom/v1/frame.pb.h"
 

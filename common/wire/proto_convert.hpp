@@ -4,8 +4,10 @@
 #include "common/geometry/point_mm.hpp"
 #include "common/scan/scan.hpp"
 #include "common/scan/sensor.hpp"
+#include "common/scan/session_options.hpp"
 
 #include "scanloom/v1/scan.pb.h"
+#include "scanloom/v1/session.pb.h"
 
 #include <google/protobuf/repeated_field.h>
 
@@ -13,8 +15,9 @@
 #include <span>
 #include <string_view>
 
-/// Converts sensors, scans, poses and points between protobuf messages and plain values, for frames and log entries.
-/// from_proto() validates every value; the error names the field relative to the message.
+/// Converts sensors, scans, poses, points and the settings of sessions between protobuf messages and plain values, for
+/// frames and log entries. from_proto() validates every value of a scan or a sensor; the error names the field relative
+/// to the message.
 namespace scanloom::wire {
 
 [[nodiscard]] Result<Sensor> from_proto(const v1::SensorDescription& description);
@@ -40,5 +43,11 @@ void append_differences(std::span<const PointMm> points, Differences& out);
 /// Checks that a coordinate or an angle is finite and within kCoordinateMax.
 /// Errors: kInvalidField; the message names the field.
 [[nodiscard]] Result<> check_coordinate(std::string_view field, double value);
+
+/// Does not check the ranges of the settings; the session does.
+/// Errors: kInvalidField if an enumeration has a value that this program does not know.
+[[nodiscard]] Result<SessionOptions> from_proto(const v1::SessionConfig& config);
+
+void to_proto(const SessionOptions& options, v1::SessionConfig& out);
 
 } // namespace scanloom::wire
