@@ -137,4 +137,15 @@ private:
     std::variant<Socket, Tls> stream_;
 };
 
+// Functions that Beast's WebSocket finds for its stream type by argument-dependent lookup.
+
+/// Closes the connection in an orderly way.
+template <class Handler>
+void async_teardown(boost::beast::role_type role, LinkStream& stream, Handler&& handler) {
+    stream.async_teardown(role, std::forward<Handler>(handler));
+}
+
+/// Closes the connection at once, when a timeout of the WebSocket expires.
+inline void beast_close_socket(LinkStream& stream) { stream.close(); }
+
 } // namespace scanloom::net

@@ -1,7 +1,7 @@
 #include "load/net/audience.hpp"
 
 #include "common/net/await_tuple.hpp"
-#include "common/net/websocket_teardown.hpp"
+#include "common/net/link_stream.hpp"
 #include "load/core/tile_tour.hpp"
 #include "load/net/http_connection.hpp"
 #include "load/net/server_api.hpp"

@@ -1,6 +1,6 @@
 #include "robot_client/sources/ld06_device.hpp"
 
-#include "common/error/further.hpp"
+#include "common/error/error.hpp"
 #include "common/net/await_tuple.hpp"
 #include "robot_client/sources/messages.hpp"
 

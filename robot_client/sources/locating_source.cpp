@@ -1,6 +1,6 @@
 #include "robot_client/sources/locating_source.hpp"
 
-#include "common/error/further.hpp"
+#include "common/error/error.hpp"
 #include "robot_client/sources/messages.hpp"
 
 #include <boost/asio/experimental/awaitable_operators.hpp>

@@ -1,6 +1,6 @@
 #include "robot_client/sources/stationary_phases.hpp"
 
-#include "common/error/further.hpp"
+#include "common/error/error.hpp"
 
 #include <fmt/format.h>
 

@@ -2,7 +2,6 @@
 
 #include "common/error/error.hpp"
 #include "common/net/link_stream.hpp"
-#include "common/net/websocket_teardown.hpp"
 #include "server/live/core/event_encoder.hpp"
 #include "server/live/invitation.hpp"
 #include "server/live/viewer_limits.hpp"
