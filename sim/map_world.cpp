@@ -1,8 +1,8 @@
 #include "sim/map_world.hpp"
 
 #include "core/planning/bit_grid.hpp"
+#include "sim/drive/behaviour.hpp"
 #include "sim/shapes.hpp"
-#include "sim/unicycle.hpp"
 
 #include <fmt/format.h>
 

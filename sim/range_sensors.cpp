@@ -1,7 +1,7 @@
 #include "sim/range_sensors.hpp"
 
+#include "sim/drive/behaviour.hpp"
 #include "sim/ray_casting.hpp"
-#include "sim/unicycle.hpp"
 
 #include <fmt/format.h>
 

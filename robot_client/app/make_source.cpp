@@ -7,7 +7,7 @@
 #include "robot_client/sources/locating_source.hpp"
 #include "robot_client/sources/pose_feed.hpp"
 #include "robot_client/sources/pose_path.hpp"
-#include "robot_client/sources/replayed_source.hpp"
+#include "robot_client/sources/live_source.hpp"
 #include "robot_client/sources/sonar_log.hpp"
 
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 #include "server/guidance/goal_assignments.hpp"
 #include "sim/ground_truth.hpp"
-#include "sim/unicycle.hpp"
+#include "sim/simulator.hpp"
 #include "tests/support/exploring_robot.hpp"
 #include "tests/unit/server/sessions/session_fixture.hpp"
 

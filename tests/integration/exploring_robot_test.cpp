@@ -1,5 +1,5 @@
 #include "sim/ground_truth.hpp"
-#include "sim/unicycle.hpp"
+#include "sim/simulator.hpp"
 #include "tests/support/goal_oracle.hpp"
 #include "tests/support/unexplored.hpp"
 #include "tests/unit/server/sessions/session_fixture.hpp"

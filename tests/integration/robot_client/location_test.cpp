@@ -1,5 +1,5 @@
+#include "robot_client/sources/live_source.hpp"
 #include "robot_client/sources/locating_source.hpp"
-#include "robot_client/sources/replayed_source.hpp"
 #include "robot_client/uplink/server_requests.hpp"
 #include "tests/integration/robot_client/live_feed_fixture.hpp"
 #include "tests/support/recorded_source.hpp"

@@ -1,4 +1,4 @@
-#include "sim/unicycle.hpp"
+#include "sim/simulator.hpp"
 
 #include "sim/noise.hpp"
 #include "tests/support/angles.hpp"

@@ -1,6 +1,6 @@
 #include "sim/world.hpp"
 
-#include "sim/unicycle.hpp"
+#include "sim/simulator.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 #include "robot_client/sources/locating_source.hpp"
 
-#include "robot_client/sources/replayed_source.hpp"
+#include "robot_client/sources/live_source.hpp"
 #include "tests/support/recorded_source.hpp"
 #include "tests/unit/robot_client/sources/carried_lidar.hpp"
 
