@@ -1,5 +1,6 @@
-#include "core/landmarks/alignment.hpp"
 #pragma once
+
+#include "core/landmarks/alignment.hpp"
 
 #include <span>
 #include <vector>
