@@ -1,8 +1,8 @@
 #include "common/link/requests.hpp"
 
 #include <algorithm>
-#include <utility>
 #include <type_traits>
+#include <utility>
 
 namespace scanloom::link {
 namespace {

@@ -4,10 +4,10 @@
 #include "robot_client/sources/carmen_log.hpp"
 #include "robot_client/sources/ld06_capture.hpp"
 #include "robot_client/sources/ld06_live.hpp"
+#include "robot_client/sources/live_source.hpp"
 #include "robot_client/sources/locating_source.hpp"
 #include "robot_client/sources/pose_feed.hpp"
 #include "robot_client/sources/pose_path.hpp"
-#include "robot_client/sources/live_source.hpp"
 #include "robot_client/sources/sonar_log.hpp"
 
 #include <fmt/format.h>

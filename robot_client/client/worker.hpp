@@ -2,9 +2,9 @@
 
 #include "robot_client/client/client.hpp"
 #include "robot_client/sources/live_source.hpp"
+#include "robot_client/sources/wake_signal.hpp"
 #include "robot_client/uplink/live_feed.hpp"
 #include "robot_client/uplink/uplink.hpp"
-#include "robot_client/sources/wake_signal.hpp"
 
 #include <boost/asio/awaitable.hpp>
 #include <boost/asio/executor_work_guard.hpp>
