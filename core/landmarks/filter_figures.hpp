@@ -18,7 +18,7 @@ struct FilterFigures {
     /// Roughness is the median of |a - 2 b + c| over the points a, b, c of each three neighbouring beams that are all
     /// returns. It is 0 on a straight wall of evenly spaced points and, as a median, not affected by corners and jumps.
     std::optional<double> noise_reduction_x;
-    std::optional<double> noise_reduction_y;
+    std::optional<double> noise_reduction_y; ///< likewise, along y
 
     friend bool operator==(const FilterFigures&, const FilterFigures&) = default;
 };

@@ -17,6 +17,7 @@ struct Continuity {
     double evenness = 0.0;  ///< 1 / (1 + cv), cv the standard deviation of the gaps divided by their mean
     double fill = 0.0;      ///< fraction of the extent that is in gaps below 2 eps
 
+    /// Returns the mean of the three values: the continuity that landmarks report.
     [[nodiscard]] double mean() const noexcept { return (linearity + evenness + fill) / 3.0; }
 
     friend bool operator==(const Continuity&, const Continuity&) = default;

@@ -36,7 +36,7 @@ struct Match {
 
 /// How consistent two sets of landmarks are. A value is nullopt if it would be divided by 0.
 struct Metrics {
-    std::size_t matched = 0;
+    std::size_t matched = 0;             ///< number of matches
     std::optional<double> persistence;   ///< fraction of the first set's landmarks that are matched
     std::optional<double> stability;     ///< fraction of the matches at most half the tolerance apart
     std::optional<double> distance_mean; ///< metres, of the matches

@@ -18,7 +18,7 @@ struct PointPair {
 
 /// The rigid transform that fits pairs best, in the least-squares sense.
 struct PairAlignment {
-    Pose2 T_first_second;
+    Pose2 T_first_second;          ///< takes second points to first ones: metres, radians
     double rms = 0.0;              ///< metres, weighted, of the remaining distances
     std::vector<std::size_t> used; ///< indices of the pairs that were used, ascending
 };
