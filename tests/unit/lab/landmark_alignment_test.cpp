@@ -1,4 +1,5 @@
 #include "core/landmarks/alignment.hpp"
+#include "core/landmarks/pair_alignment.hpp"
 #include "lab/door_room.hpp"
 #include "lab/landmark_comparison.hpp"
 #include "tests/unit/core/landmarks/pose_errors.hpp"
