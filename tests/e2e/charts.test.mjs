@@ -6,7 +6,7 @@ import { withFakeServer } from './fake_fixture.mjs';
 
 const kTitles = ['Scans per second', 'Ack latency', 'Queue', 'CPU', 'Memory'];
 
-describe("the server's charts", { timeout: 180_000 }, () => {
+describe("the server's charts", () => {
   let server;
   let page;
   const openPage = withFakeServer((fresh) => (server = fresh));

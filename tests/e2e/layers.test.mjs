@@ -18,7 +18,7 @@ import { FakeSession } from './fake_session.mjs';
 import { kMiddle, pixelOf } from './one_tile.mjs';
 
 const kLayers = ['occupancy', 'sonar', 'himm', 'classification'];
-describe('layers', { timeout: 180_000 }, () => {
+describe('layers', () => {
   let server;
   let page;
   let session;

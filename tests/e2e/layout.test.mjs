@@ -14,7 +14,7 @@ const kPhones = [
   [667, 375],
 ];
 
-describe('the page', { timeout: 120_000 }, () => {
+describe('the page', () => {
   let server;
   let page;
   const openPage = withFakeServer((fresh) => (server = fresh));

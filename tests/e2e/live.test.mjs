@@ -17,7 +17,7 @@ import { Server, startRobot, stop } from './programs.mjs';
 
 const kSource = ['simulate', '--world', 'office', '--drive', 'wall_follower', '--seed', '1', '--speed', '4'];
 
-describe('a robot that streams to the server', { timeout: 240_000 }, () => {
+describe('a robot that streams to the server', () => {
   let server;
   let robot;
   let browser;

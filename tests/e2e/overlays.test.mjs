@@ -18,7 +18,7 @@ import { withFakeServer } from './fake_fixture.mjs';
 import { FakeSession } from './fake_session.mjs';
 import { kMiddle, pixelOf } from './one_tile.mjs';
 
-describe('on the map', { timeout: 180_000 }, () => {
+describe('on the map', () => {
   let server;
   let page;
   let session;

@@ -9,7 +9,7 @@ import { launchBrowser, openPage, hasText } from './browser.mjs';
 import { required } from './environment.mjs';
 import { ended, Server, startRobot } from './programs.mjs';
 
-describe('a server with TLS', { timeout: 240_000 }, () => {
+describe('a server with TLS', () => {
   const place = mkdtempSync(join(tmpdir(), 'scanloom-secure-'));
   let server;
   let browser;

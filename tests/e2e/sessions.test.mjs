@@ -7,7 +7,7 @@ import { FakeSession } from './fake_session.mjs';
 
 const kHostile = '"><img src=x onerror="document.title=1">';
 
-describe('the list of sessions', { timeout: 240_000 }, () => {
+describe('the list of sessions', () => {
   let server;
   let page;
   let complaints = [];

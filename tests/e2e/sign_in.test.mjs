@@ -9,7 +9,7 @@ import { keepPicture, launchBrowser, openPage, hasText } from './browser.mjs';
 import { required } from './environment.mjs';
 import { Server } from './programs.mjs';
 
-describe('a server with tokens', { timeout: 240_000 }, () => {
+describe('a server with tokens', () => {
   const place = mkdtempSync(join(tmpdir(), 'scanloom-tokens-'));
   const file = join(place, 'tokens.toml');
   let operator;

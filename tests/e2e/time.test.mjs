@@ -8,7 +8,7 @@ const kSimulation = ['simulate', '--world', 'office', '--drive', 'wall_follower'
 const kHash = '#session=run';
 const kPose = '[data-robot="r1"] [data-role="pose"]';
 
-describe('the history of a session', { timeout: 240_000 }, () => {
+describe('the history of a session', () => {
   let server;
   let browser;
   let page;

@@ -35,7 +35,7 @@ function roomPgm() {
   return Buffer.concat([Buffer.from(`P5\n${width} ${height}\n255\n`), cells]);
 }
 
-describe('tools on the map', { timeout: 280_000 }, () => {
+describe('tools on the map', () => {
   let server;
   let browser;
   let page;

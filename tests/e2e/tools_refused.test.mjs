@@ -19,7 +19,7 @@ const kAreas = {
   ...{ free_occupied: 0.25, occupied_free: 0.5, undecided: 7 },
 };
 
-describe('tools that are refused', { timeout: 180_000 }, () => {
+describe('tools that are refused', () => {
   let server;
   let page;
   let session;

@@ -5,7 +5,7 @@ import { colourOf, countPixels, hasText, showsColour } from './browser.mjs';
 import { withFakeServer } from './fake_fixture.mjs';
 import { FakeSession } from './fake_session.mjs';
 
-describe('trouble', { timeout: 120_000 }, () => {
+describe('trouble', () => {
   let server;
   let session;
   const open = withFakeServer((fresh) => {

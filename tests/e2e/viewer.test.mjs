@@ -16,7 +16,7 @@ import { FakeSession } from './fake_session.mjs';
 
 const kHostile = '<img src=x onerror="document.title=1">';
 
-describe('the viewer', { timeout: 180_000 }, () => {
+describe('the viewer', () => {
   let server;
   let page;
   let complaints = [];
