@@ -8,15 +8,15 @@ constexpr double kWallNorth = 5.2;
 constexpr double kDoorSouth = 2.2;
 constexpr double kDoorNorth = 3.2;
 
-constexpr robot::Box kLeafClosed{5.08, kDoorSouth, 5.12, kDoorNorth};
-constexpr robot::Box kLeafOpen{4.0, kDoorNorth, 5.0, kDoorNorth + 0.04};
+constexpr sim::Box kLeafClosed{5.08, kDoorSouth, 5.12, kDoorNorth};
+constexpr sim::Box kLeafOpen{4.0, kDoorNorth, 5.0, kDoorNorth + 0.04};
 
 } // namespace
 
-robot::World make_door_room(Door door) {
-    const robot::World room = robot::make_room();
+sim::World make_door_room(Door door) {
+    const sim::World room = sim::make_room();
     auto solids = room.solids;
-    std::erase(solids, robot::Box{5.0, kWallSouth, 5.2, kWallNorth});
+    std::erase(solids, sim::Box{5.0, kWallSouth, 5.2, kWallNorth});
     solids.insert(solids.end(), {
                                     {5.0, kWallSouth, 5.2, kDoorSouth},
                                     {5.0, kDoorNorth, 5.2, kWallNorth},
@@ -26,7 +26,7 @@ robot::World make_door_room(Door door) {
                                     {7.2, 1.0, 7.4, 4.4},
                                 });
     solids.push_back(door == Door::kClosed ? kLeafClosed : kLeafOpen);
-    return robot::make_world("door_room", std::move(solids), room.floors);
+    return sim::make_world("door_room", std::move(solids), room.floors);
 }
 
 } // namespace scanloom::lab

@@ -11,7 +11,7 @@ enum class Door { kClosed, kOpen };
 /// Returns the simulator's room with a doorway, 1 m wide, in its eastern wall, and a lobby of 2 x 3 m behind it. The
 /// door is a leaf, 4 cm thick, hinged at the northern end of the doorway. Closed, it fills the doorway; open, it stands
 /// at a right angle to it, inside the room. Nothing else differs.
-[[nodiscard]] robot::World make_door_room(Door door);
+[[nodiscard]] sim::World make_door_room(Door door);
 
 /// Lidar poses in the room, T_map_lidar. The door is visible from all of them, and the second place is visible from the
 /// other two.

@@ -15,7 +15,7 @@ namespace scanloom::lab {
 namespace {
 
 /// Returns the box of the truth with a margin, so that walls that maps place outside the room are found, also at 0.5 m.
-grid::CellBox box_of(const robot::TruthGrid& truth) {
+grid::CellBox box_of(const sim::TruthGrid& truth) {
     const auto margin = static_cast<std::int32_t>(std::ceil(2.0 / truth.cell_size));
     return {truth.i_begin - margin, truth.j_begin - margin, truth.i_begin + truth.width + margin,
             truth.j_begin + truth.height + margin};
@@ -23,9 +23,9 @@ grid::CellBox box_of(const robot::TruthGrid& truth) {
 
 /// Marks the cells that a walker covered or that scans of it may mark: within half the thickness of obstacles plus the
 /// tolerance of the scores.
-void mark_discs(const std::vector<robot::Disc>& discs, double reach, double cell_size, std::uint8_t value,
+void mark_discs(const std::vector<sim::Disc>& discs, double reach, double cell_size, std::uint8_t value,
                 CellMask& mask) {
-    for (const robot::Disc& disc : discs) {
+    for (const sim::Disc& disc : discs) {
         const double radius = disc.radius + reach;
         const auto first = [&](double metres) { return static_cast<std::int32_t>(std::floor(metres / cell_size)); };
         for (std::int32_t j = first(disc.centre.y - radius); j <= first(disc.centre.y + radius); ++j) {
@@ -40,9 +40,9 @@ void mark_discs(const std::vector<robot::Disc>& discs, double reach, double cell
 } // namespace
 
 Standard make_standard(const std::vector<Pose2>& path, double cell_size_m) {
-    const robot::World world = world_of("room");
-    const robot::TruthGrid grid = robot::truth_of(world, cell_size_m);
-    Standard standard{TruthCells(box_of(grid), robot::Truth::kOutside), {}};
+    const sim::World world = world_of("room");
+    const sim::TruthGrid grid = sim::truth_of(world, cell_size_m);
+    Standard standard{TruthCells(box_of(grid), sim::Truth::kOutside), {}};
     for_each_cell(standard.truth.box, [&](grid::Cell cell) { standard.truth.at(cell) = grid.at(cell.i, cell.j); });
     standard.seen = visible_cells(world, grid, reference_laser(), path, standard.truth.box);
     return standard;

@@ -28,7 +28,7 @@ public:
 
 private:
     [[nodiscard]] LidarCapture take(Door door, const Pose2& place, std::size_t turns = kTurns) {
-        return take_capture(door == Door::kClosed ? closed_ : open_, place, turns, robot::Noise{}, random_);
+        return take_capture(door == Door::kClosed ? closed_ : open_, place, turns, sim::Noise{}, random_);
     }
 
     [[nodiscard]] Result<> compare_doors();
@@ -41,9 +41,9 @@ private:
 
     const LandmarkPlan& plan_;
     const LandmarkSurroundings& surroundings_;
-    robot::Random random_;
-    const robot::World closed_ = make_door_room(Door::kClosed);
-    const robot::World open_ = make_door_room(Door::kOpen);
+    sim::Random random_;
+    const sim::World closed_ = make_door_room(Door::kClosed);
+    const sim::World open_ = make_door_room(Door::kOpen);
     std::vector<PlaceCaptures> captures_;
     LandmarkResults results_;
 };

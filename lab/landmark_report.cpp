@@ -107,7 +107,7 @@ std::string report_of(const LandmarkResults& results) {
         places.push_back(fmt::format("{} at ({}, {})", number, place.x, place.y));
         pictures.push_back(picture(door.picture, fmt::format("place {}: door closed, door open", number)));
     }
-    const robot::Noise noise;
+    const sim::Noise noise;
     auto report =
         fmt::format(report_texts::landmarks, "seed"_a = results.seed,
                     "capture"_a = results.recorded ? " --capture " + results.recorded->name : "",

@@ -5,9 +5,9 @@
 namespace scanloom::lab {
 namespace {
 
-using MaybeNoise = std::optional<robot::Noise>;
+using MaybeNoise = std::optional<sim::Noise>;
 
-robot::Noise uniform(double width_m) { return {.range = 0.0, .range_uniform = width_m, .beam_angle = 0.0}; }
+sim::Noise uniform(double width_m) { return {.range = 0.0, .range_uniform = width_m, .beam_angle = 0.0}; }
 
 std::vector<Scene> scenes() { return {{"static", "room"}, {"dynamic", "room_walker"}}; }
 
@@ -20,7 +20,7 @@ std::vector<RayModelChoice> ray_models() {
 }
 
 constexpr NoiseChoice kNoNoise{"none", [](double) { return MaybeNoise{}; }, false};
-constexpr NoiseChoice kGaussian{"gaussian", [](double) { return MaybeNoise(robot::Noise{}); }, true};
+constexpr NoiseChoice kGaussian{"gaussian", [](double) { return MaybeNoise(sim::Noise{}); }, true};
 constexpr NoiseChoice kOneCell{"1_cell", [](double cell_size_m) { return MaybeNoise(uniform(cell_size_m)); }, false};
 constexpr NoiseChoice kThreeCells{"3_cells", [](double cell_size_m) { return MaybeNoise(uniform(3.0 * cell_size_m)); },
                                   false};

@@ -24,7 +24,7 @@ struct RayModelChoice {
 
 struct NoiseChoice {
     std::string_view name;
-    std::optional<robot::Noise> (*at)(double cell_size_m);
+    std::optional<sim::Noise> (*at)(double cell_size_m);
     bool drops_no_return; ///< omits beams without return, as the reference implementation of this noise does
 };
 

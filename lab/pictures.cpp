@@ -99,11 +99,10 @@ void draw_run(cv::Mat& picture, const Canvas& canvas, const Recording& recording
         cv::circle(picture, canvas.at(point), canvas.length(0.02), kPointColour, cv::FILLED, cv::LINE_8, kShift);
     }
     const Point2 robot{newest.pose.x, newest.pose.y};
-    cv::circle(picture, canvas.at(robot), canvas.length(robot::kBodyRadius), kPathColour, cv::FILLED, cv::LINE_8,
-               kShift);
-    cv::line(picture, canvas.at(robot), canvas.at(transform(newest.pose, {2.0 * robot::kBodyRadius, 0.0})), kPathColour,
+    cv::circle(picture, canvas.at(robot), canvas.length(sim::kBodyRadius), kPathColour, cv::FILLED, cv::LINE_8, kShift);
+    cv::line(picture, canvas.at(robot), canvas.at(transform(newest.pose, {2.0 * sim::kBodyRadius, 0.0})), kPathColour,
              2, cv::LINE_8, kShift);
-    for (const robot::Disc& walker : recording.walkers[scans - 1]) {
+    for (const sim::Disc& walker : recording.walkers[scans - 1]) {
         cv::circle(picture, canvas.at(walker.centre), canvas.length(walker.radius), kWalkerColour, 2, cv::LINE_8,
                    kShift);
     }

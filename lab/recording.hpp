@@ -34,21 +34,21 @@ inline const Point2 kRoomMiddle{0.137, 0.163}; // metres
 
 /// Returns a world of the simulator with its origin at kRoomMiddle.
 /// Pre: the world exists.
-[[nodiscard]] robot::World world_of(std::string_view name);
+[[nodiscard]] sim::World world_of(std::string_view name);
 
 /// What a robot observed along its trajectory.
 struct Recording {
     Sensor laser;
-    std::vector<Scan> scans;                       ///< seq 1, 2, ...; with true poses
-    std::vector<std::vector<robot::Disc>> walkers; ///< their positions, for each scan
-    std::size_t of_walkers = 0;                    ///< readings of all scans, without their noise, that hit a walker
+    std::vector<Scan> scans;                     ///< seq 1, 2, ...; with true poses
+    std::vector<std::vector<sim::Disc>> walkers; ///< their positions, for each scan
+    std::size_t of_walkers = 0;                  ///< readings of all scans, without their noise, that hit a walker
 };
 
 /// Returns the reference laser: 684 beams over -90..+90 degrees, 5 m.
 [[nodiscard]] Sensor reference_laser();
 
 /// Returns the trajectory of the wall follower in the static room without noise. Every run uses it, so that runs differ
-/// only in what they vary. (Walkers avoid the robot: see scanloom::robot::walk().)
+/// only in what they vary. (Walkers avoid the robot: see scanloom::sim::walk().)
 /// @return the pose of each scan
 [[nodiscard]] std::vector<Pose2> drive_from(const Start& start, std::size_t scans);
 
@@ -63,8 +63,8 @@ struct LidarCapture {
 };
 
 /// Simulates turns of the simulator's "lidar360": 360 beams, 12 m, ten turns per second.
-[[nodiscard]] LidarCapture take_capture(const robot::World& world, const Pose2& T_map_lidar, std::size_t turns,
-                                        const std::optional<robot::Noise>& noise, robot::Random& random);
+[[nodiscard]] LidarCapture take_capture(const sim::World& world, const Pose2& T_map_lidar, std::size_t turns,
+                                        const std::optional<sim::Noise>& noise, sim::Random& random);
 
 /// Returns the points hit by the beams, in the robot's frame: turn by turn, within a turn in the order of the beams.
 [[nodiscard]] std::vector<Point2> points_of(std::span<const Scan> scans, const Sensor& sensor);

@@ -12,7 +12,7 @@ constexpr double kHairsBreadth = 1e-6; // metres: decides on which side of a wal
 /// Decides which points can be seen from a trajectory.
 class Views {
 public:
-    Views(const robot::World& world, const Sensor& laser, std::span<const Pose2> path)
+    Views(const sim::World& world, const Sensor& laser, std::span<const Pose2> path)
         : obstacles_(*world.obstacles), path_(path), range_max_(laser.range_max),
           first_angle_(beam_angle(laser.angles, 0)),
           last_angle_(beam_angle(laser.angles, beam_count(laser.angles) - 1)) {}
@@ -34,21 +34,21 @@ private:
         return obstacles_.cast_ray({pose.x, pose.y}, yaw, length) >= length - kHairsBreadth;
     }
 
-    const robot::Obstacles& obstacles_;
+    const sim::Obstacles& obstacles_;
     std::span<const Pose2> path_;
     double range_max_;
     double first_angle_;
     double last_angle_;
 };
 
-void see_free_cells(const robot::TruthGrid& truth, const Views& views, CellMask& seen) {
+void see_free_cells(const sim::TruthGrid& truth, const Views& views, CellMask& seen) {
     for_each_cell(seen.box, [&](grid::Cell cell) {
-        if (truth.at(cell.i, cell.j) != robot::Truth::kFree) return;
+        if (truth.at(cell.i, cell.j) != sim::Truth::kFree) return;
         seen.at(cell) = views.see({(cell.i + 0.5) * truth.cell_size, (cell.j + 0.5) * truth.cell_size});
     });
 }
 
-void see_side(const robot::Segment& side, double cell_size_m, const Views& views, CellMask& seen) {
+void see_side(const sim::Segment& side, double cell_size_m, const Views& views, CellMask& seen) {
     const Point2 begin{side.ax, side.ay};
     const Point2 along = Point2{side.bx, side.by} - begin;
     const Point2 inward = Point2{-along.y, along.x} / norm(along) * kHairsBreadth; // sides run counter-clockwise
@@ -64,12 +64,12 @@ void see_side(const robot::Segment& side, double cell_size_m, const Views& views
 
 } // namespace
 
-CellMask visible_cells(const robot::World& world, const robot::TruthGrid& truth, const Sensor& laser,
+CellMask visible_cells(const sim::World& world, const sim::TruthGrid& truth, const Sensor& laser,
                        std::span<const Pose2> path, const grid::CellBox& box) {
     const Views views(world, laser, path);
     CellMask seen(box, 0);
     see_free_cells(truth, views, seen);
-    for (const robot::Segment& side : world.outlines) see_side(side, truth.cell_size, views, seen);
+    for (const sim::Segment& side : world.outlines) see_side(side, truth.cell_size, views, seen);
     return seen;
 }
 
@@ -104,7 +104,7 @@ CellMask around(const CellGrid<Value>& grid, Value value) {
 
 Scores score(const StateGrid& map, const TruthCells& truth, const CellMask& seen, const CellMask& walked) {
     assert(map.box == truth.box && map.box == seen.box && map.box == walked.box);
-    const CellMask near_solid = around(truth, robot::Truth::kOccupied);
+    const CellMask near_solid = around(truth, sim::Truth::kOccupied);
     const CellMask near_occupied = around(map, CellState::kOccupied);
     Scores scores;
     std::size_t matched = 0;
@@ -116,7 +116,7 @@ Scores score(const StateGrid& map, const TruthCells& truth, const CellMask& seen
     std::size_t open_found = 0;
     for_each_cell(map.box, [&](grid::Cell cell) {
         const bool is_occupied = map.at(cell) == CellState::kOccupied;
-        const bool is_solid = truth.at(cell) == robot::Truth::kOccupied;
+        const bool is_solid = truth.at(cell) == sim::Truth::kOccupied;
         if (is_occupied) {
             ++scores.occupied;
             matched += near_solid.at(cell);
@@ -128,7 +128,7 @@ Scores score(const StateGrid& map, const TruthCells& truth, const CellMask& seen
             ++surface;
             found += near_occupied.at(cell);
             found_exactly += is_occupied;
-        } else if (truth.at(cell) == robot::Truth::kFree && !near_solid.at(cell)) {
+        } else if (truth.at(cell) == sim::Truth::kFree && !near_solid.at(cell)) {
             ++open;
             open_found += map.at(cell) == CellState::kFree;
         }

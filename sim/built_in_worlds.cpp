@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-namespace scanloom::robot {
+namespace scanloom::sim {
 
 // 10 x 10 m inside, around the world's origin. Furniture leaves either no gap or one that a robot fits through.
 World make_room() {
@@ -274,4 +274,4 @@ std::vector<Point2> tour_of(std::string_view world) {
     return {};
 }
 
-} // namespace scanloom::robot
+} // namespace scanloom::sim

@@ -8,7 +8,7 @@
 #include <iterator>
 #include <span>
 
-namespace scanloom::robot {
+namespace scanloom::sim {
 namespace {
 
 /// Reachability is computed on cells of at most this size: larger ones would close doors.
@@ -150,4 +150,4 @@ FloorPlan floor_plan_of(const TruthGrid& truth) {
     return plan;
 }
 
-} // namespace scanloom::robot
+} // namespace scanloom::sim

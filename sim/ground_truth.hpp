@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-namespace scanloom::robot {
+namespace scanloom::sim {
 
 enum class Truth : std::uint8_t {
     kOutside,  ///< outside the walls, enclosed by solids (not reachable from a floor), or unknown, though rays pass
@@ -51,4 +51,4 @@ struct TruthGrid {
 /// Returns the floor plan of a known world for a robot.
 [[nodiscard]] FloorPlan floor_plan_of(const TruthGrid& truth);
 
-} // namespace scanloom::robot
+} // namespace scanloom::sim

@@ -10,7 +10,7 @@
 #include <cmath>
 #include <cstdint>
 
-namespace scanloom::robot {
+namespace scanloom::sim {
 
 using planning::BitGrid;
 using planning::Spot;
@@ -113,4 +113,4 @@ Result<World> world_of_map(std::string name, const RosMapDescription& map, const
     return world;
 }
 
-} // namespace scanloom::robot
+} // namespace scanloom::sim

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace scanloom::robot {
+namespace scanloom::sim {
 
 /// Returns the free cells that are at least `clearance_m` metres from occupied cells at all of their points, in the
 /// part of the map that has most of them and that a robot with `passage_m` metres around its centre can drive through.
@@ -24,4 +24,4 @@ namespace scanloom::robot {
 /// Errors: kInvalidField if no place in the map has room for a robot.
 [[nodiscard]] Result<World> world_of_map(std::string name, const RosMapDescription& map, const MapCells& cells);
 
-} // namespace scanloom::robot
+} // namespace scanloom::sim

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace scanloom::robot {
+namespace scanloom::sim {
 
 double Random::uniform(double low, double high) {
     const double unit =
@@ -41,4 +41,4 @@ double true_direction(double yaw_rad, const std::optional<Noise>& noise, Random&
     return noise ? yaw_rad + random.gaussian(noise->beam_angle) : yaw_rad;
 }
 
-} // namespace scanloom::robot
+} // namespace scanloom::sim

@@ -7,7 +7,7 @@
 #include <optional>
 #include <random>
 
-namespace scanloom::robot {
+namespace scanloom::sim {
 
 /// Random numbers that are the same on every machine. The C++ standard defines the engine; the distributions are
 /// implemented here because those of <random> differ between libraries.
@@ -49,4 +49,4 @@ struct Noise {
 /// Returns the true direction of a beam, in radians. Draws a random number only if there is noise.
 [[nodiscard]] double true_direction(double yaw_rad, const std::optional<Noise>& noise, Random& random);
 
-} // namespace scanloom::robot
+} // namespace scanloom::sim

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace scanloom::robot {
+namespace scanloom::sim {
 
 BucketFrame BucketFrame::over(const Box& extent, std::size_t items) {
     constexpr double kMargin = 1e-3; // metres: no shape lies on the frame's own border
@@ -93,7 +93,7 @@ double Obstacles::cast_ray(const Point2& origin, double yaw_rad, double range_ma
     double nearest = kFar;
     for (;;) {
         for (const Segment& segment : outlines_.in(across.at(), up.at())) {
-            nearest = robot::cast_ray(segment, ray, nearest);
+            nearest = sim::cast_ray(segment, ray, nearest);
         }
         const double next = std::min(across.next(), up.next());
         if (nearest <= next || next > range_max) return nearest;
@@ -105,7 +105,7 @@ double Obstacles::distance(const Point2& point) const {
     double nearest = kFar;
     outlines_.visit_outwards(
         point, [&] { return nearest; },
-        [&](const Segment& segment) { nearest = std::min(nearest, robot::distance(segment, point)); });
+        [&](const Segment& segment) { nearest = std::min(nearest, sim::distance(segment, point)); });
     return nearest;
 }
 
@@ -117,4 +117,4 @@ bool Obstacles::contain(const Point2& point) const {
     return std::ranges::any_of(solids_.in(column, row), [&](const Box& box) { return box.contains(point); });
 }
 
-} // namespace scanloom::robot
+} // namespace scanloom::sim

@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-namespace scanloom::robot {
+namespace scanloom::sim {
 
 /// A part of the plane, divided into equal squares (buckets).
 struct BucketFrame {
@@ -150,4 +150,4 @@ private:
     BucketGrid<Box> solids_;
 };
 
-} // namespace scanloom::robot
+} // namespace scanloom::sim

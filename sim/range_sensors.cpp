@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <numbers>
 
-namespace scanloom::robot {
+namespace scanloom::sim {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
@@ -81,4 +81,4 @@ std::vector<RangeMm> listen(const World& world, const Sensor& sonar, const Pose2
     return ranges;
 }
 
-} // namespace scanloom::robot
+} // namespace scanloom::sim

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace scanloom::robot {
+namespace scanloom::sim {
 
 /// Returns a laser by name. "reference": 684 beams over -90..+90 degrees, 5 m. "lidar360": 360 beams all round, 12 m.
 /// "wide": 1081 beams over 270 degrees, 30 m. All are mounted on the robot's centre and turn ten times per second.
@@ -32,4 +32,4 @@ namespace scanloom::robot {
 [[nodiscard]] std::vector<RangeMm> listen(const World& world, const Sensor& sonar, const Pose2& T_map_sonar,
                                           const std::optional<Noise>& noise, Random& random);
 
-} // namespace scanloom::robot
+} // namespace scanloom::sim

@@ -6,7 +6,7 @@
 #include <limits>
 #include <numbers>
 
-namespace scanloom::robot {
+namespace scanloom::sim {
 namespace {
 
 /// Each segment is extended at both ends by this share of its length, so that rounding does not open a corner.
@@ -101,4 +101,4 @@ double distance_within(const Cone& cone, const Disc& disc) {
     return std::min(cast_ray(disc, cone.apex, cone.yaw + cone.half), cast_ray(disc, cone.apex, cone.yaw - cone.half));
 }
 
-} // namespace scanloom::robot
+} // namespace scanloom::sim

@@ -4,7 +4,7 @@
 
 #include <span>
 
-namespace scanloom::robot {
+namespace scanloom::sim {
 
 /// A half-line.
 struct Ray {
@@ -45,4 +45,4 @@ struct Cone {
 [[nodiscard]] double distance_within(const Cone& cone, const Segment& segment);
 [[nodiscard]] double distance_within(const Cone& cone, const Disc& disc);
 
-} // namespace scanloom::robot
+} // namespace scanloom::sim

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace scanloom::robot {
+namespace scanloom::sim {
 
 Box bounds_of(const Segment& segment) noexcept {
     return {std::min(segment.ax, segment.bx), std::min(segment.ay, segment.by), std::max(segment.ax, segment.bx),
@@ -133,4 +133,4 @@ std::vector<Segment> outlines_of(const MapCells& map, const MapFrame& frame) {
     return outlines;
 }
 
-} // namespace scanloom::robot
+} // namespace scanloom::sim

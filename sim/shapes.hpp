@@ -5,7 +5,7 @@
 
 #include <vector>
 
-namespace scanloom::robot {
+namespace scanloom::sim {
 
 /// A straight segment that sensors see and robots collide with. Metres, in the world frame.
 struct Segment {
@@ -73,4 +73,4 @@ struct MapFrame {
 /// Returns the border of the occupied cells as maximal straight segments, with the occupied side on their left.
 [[nodiscard]] std::vector<Segment> outlines_of(const MapCells& map, const MapFrame& frame);
 
-} // namespace scanloom::robot
+} // namespace scanloom::sim

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace scanloom::robot {
+namespace scanloom::sim {
 
 Pose2 moved(const Pose2& pose, const Motion& motion) {
     // The chord of an arc: as long as the arc if it is straight, and turned by half of its angle.
@@ -111,4 +111,4 @@ Motion Simulator::as_the_wheels_tell(const Motion& motion) {
                                            noise.odometry_drift * std::abs(motion.forward))};
 }
 
-} // namespace scanloom::robot
+} // namespace scanloom::sim

@@ -9,7 +9,7 @@
 #include <memory>
 #include <vector>
 
-namespace scanloom::robot {
+namespace scanloom::sim {
 
 inline constexpr int kControlStepsPerScan = 2;                               ///< 20 Hz control, 10 Hz sensors
 inline constexpr double kScanPeriod = kControlStepsPerScan * kControlPeriod; ///< seconds
@@ -90,4 +90,4 @@ private:
     std::uint64_t collisions_ = 0;
 };
 
-} // namespace scanloom::robot
+} // namespace scanloom::sim

@@ -6,7 +6,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace scanloom::robot {
+namespace scanloom::sim {
 namespace {
 
 double length_of(const std::vector<Point2>& loop) {
@@ -91,4 +91,4 @@ Result<World> find_world(std::string_view name) {
     return Error{Errc::kNotFound, fmt::format("unknown world '{}'; choose {}", name, names)};
 }
 
-} // namespace scanloom::robot
+} // namespace scanloom::sim

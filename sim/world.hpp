@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-namespace scanloom::robot {
+namespace scanloom::sim {
 
 /// A person as a laser sees one: a disc that moves around a closed loop at constant speed.
 struct Walker {
@@ -84,4 +84,4 @@ inline constexpr std::array kWorlds{NamedWorld{"room", make_room}, NamedWorld{"r
 /// frame. Empty if the world has no tour.
 [[nodiscard]] std::vector<Point2> tour_of(std::string_view world);
 
-} // namespace scanloom::robot
+} // namespace scanloom::sim

@@ -14,17 +14,17 @@
 namespace scanloom::load {
 namespace {
 
-Result<robot::Simulator> make_simulator(const LoadOptions& options) {
+Result<sim::Simulator> make_simulator(const LoadOptions& options) {
     auto world = robot::load_world(options.world);
     if (!world) return world.error();
-    auto laser = robot::find_laser(options.laser);
+    auto laser = sim::find_laser(options.laser);
     if (!laser) return laser.error();
-    robot::SimulatorOptions simulator;
+    sim::SimulatorOptions simulator;
     simulator.world = std::move(*world);
     simulator.laser = std::move(*laser);
     simulator.seed = options.seed;
-    if (options.noise == "gaussian") simulator.noise = robot::Noise{};
-    return robot::Simulator(std::move(simulator), std::make_unique<robot::WallFollower>());
+    if (options.noise == "gaussian") simulator.noise = sim::Noise{};
+    return sim::Simulator(std::move(simulator), std::make_unique<sim::WallFollower>());
 }
 
 Result<> check_batch(const Course& course) {
@@ -49,7 +49,7 @@ Result<Course> drive_course(const LoadOptions& options) {
     if (is_paced) count = std::min(count, Schedule::scans_within(options.duration, options.rate));
     std::vector<Scan> scans;
     for (std::uint64_t i = 0; i < count; ++i) scans.push_back(simulator->next_scan());
-    const double rate = is_paced ? options.rate : 1.0 / robot::kScanPeriod;
+    const double rate = is_paced ? options.rate : 1.0 / sim::kScanPeriod;
     Course course = make_course(*simulator->sensors().front(), scans, rate, options.batch);
     if (is_paced) course.schedule = Schedule(options.robots, options.rate);
     if (auto ok = check_batch(course); !ok) return ok.error();

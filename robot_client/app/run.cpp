@@ -135,7 +135,7 @@ ExitCode run(const RobotOptions& options) {
 
     asio::io_context io(1);
     Uplink uplink(io, std::move(carried), **feed);
-    if (prepared->exploring != nullptr) prepared->exploring->ask_with(guided_by(uplink, Explore::kPathClearance));
+    if (prepared->exploring != nullptr) prepared->exploring->ask_with(guided_by(uplink, sim::Explore::kPathClearance));
     if (prepared->locating != nullptr)
         prepared->locating->ask_with(located_by(uplink, prepared->near, prepared->first_place));
     std::optional<Result<>> outcome; // none if a second signal ended the run

@@ -10,7 +10,7 @@ namespace {
 
 std::string world_help(std::string text) {
     text += ": ";
-    for (const NamedWorld& world : kWorlds) text.append(world.name).append(", ");
+    for (const sim::NamedWorld& world : sim::kWorlds) text.append(world.name).append(", ");
     return text + "or FILE.yaml, a map of ROS";
 }
 

@@ -23,35 +23,36 @@ namespace {
 constexpr double kPlanCellSize = 0.05; // metres
 
 /// Returns why a robot cannot be at a place, whatever its path.
-std::string unreachable(const World& world, const Point2& place) {
+std::string unreachable(const sim::World& world, const Point2& place) {
     if (!bounds_of(world).contains(place)) return "outside the world";
     if (world.obstacles->contain(place)) return "inside an obstacle";
-    if (world.obstacles->distance(place) < kBodyRadius) return "too close to an obstacle";
+    if (world.obstacles->distance(place) < sim::kBodyRadius) return "too close to an obstacle";
     return {};
 }
 
-Result<NamedBehaviour> make_waypoints(const SimulateOptions& simulate, const World& world) {
+Result<NamedBehaviour> make_waypoints(const SimulateOptions& simulate, const sim::World& world) {
     const bool is_tour = simulate.waypoints.empty();
-    auto waypoints = is_tour ? Result<std::vector<Point2>>(tour_of(world.name)) : read_waypoints(simulate.waypoints);
+    auto waypoints =
+        is_tour ? Result<std::vector<Point2>>(sim::tour_of(world.name)) : read_waypoints(simulate.waypoints);
     if (!waypoints) return waypoints.error();
     if (waypoints->empty()) {
         return Error{Errc::kInvalidField, fmt::format("the world {} has no tour; give --waypoints", simulate.world)};
     }
     std::string name = fmt::format("{} {}", is_tour ? "tour" : "waypoints", to_text(*waypoints));
-    return NamedBehaviour{
-        std::make_unique<Waypoints>(std::move(*waypoints), is_tour ? TourStart::kNearest : TourStart::kFirst,
-                                    [world](const Point2& place) { return unreachable(world, place); }),
-        std::move(name)};
+    return NamedBehaviour{std::make_unique<sim::Waypoints>(
+                              std::move(*waypoints), is_tour ? sim::TourStart::kNearest : sim::TourStart::kFirst,
+                              [world](const Point2& place) { return unreachable(world, place); }),
+                          std::move(name)};
 }
 
 } // namespace
 
-Result<NamedBehaviour> make_behaviour(const SimulateOptions& simulate, const World& world) {
+Result<NamedBehaviour> make_behaviour(const SimulateOptions& simulate, const sim::World& world) {
     if (simulate.drive == "waypoints") return make_waypoints(simulate, world);
     if (simulate.drive == "zigzag") {
-        return NamedBehaviour{std::make_unique<Zigzag>(floor_plan_of(truth_of(world, kPlanCellSize))), "zigzag 2"};
+        return NamedBehaviour{std::make_unique<sim::Zigzag>(floor_plan_of(truth_of(world, kPlanCellSize))), "zigzag 2"};
     }
-    return NamedBehaviour{std::make_unique<WallFollower>(), simulate.drive};
+    return NamedBehaviour{std::make_unique<sim::WallFollower>(), simulate.drive};
 }
 
 namespace {
@@ -64,16 +65,17 @@ Result<> check_range(const Sensor& sensor) {
 }
 
 /// Errors: unknown names, and a range that leaves a sensor nothing to measure.
-Result<> choose_sensors(const RobotOptions& options, const SimulateOptions& simulate, SimulatorOptions& simulator) {
+Result<> choose_sensors(const RobotOptions& options, const SimulateOptions& simulate,
+                        sim::SimulatorOptions& simulator) {
     if (simulate.laser != "none") {
-        auto laser = find_laser(simulate.laser);
+        auto laser = sim::find_laser(simulate.laser);
         if (!laser) return laser.error();
         if (options.range_max) laser->range_max = *options.range_max;
         if (auto ok = check_range(*laser); !ok) return ok.error();
         simulator.laser = std::move(*laser);
     }
     if (simulate.sonar != "none") {
-        auto sonar = find_sonar(simulate.sonar);
+        auto sonar = sim::find_sonar(simulate.sonar);
         if (!sonar) return sonar.error();
         sonar->range_max = std::min(sonar->range_max, options.range_max.value_or(sonar->range_max));
         if (auto ok = check_range(*sonar); !ok) return ok.error();
@@ -82,27 +84,27 @@ Result<> choose_sensors(const RobotOptions& options, const SimulateOptions& simu
     return {};
 }
 
-std::optional<Noise> noise_of(const SimulateOptions& simulate) {
-    constexpr Noise kOfOdometryOnly{.range = 0.0, .beam_angle = 0.0};
+std::optional<sim::Noise> noise_of(const SimulateOptions& simulate) {
+    constexpr sim::Noise kOfOdometryOnly{.range = 0.0, .beam_angle = 0.0};
     const double odometry = simulate.odometry_noise.value_or(simulate.noise == "none" ? 0.0 : 1.0);
-    if (simulate.noise == "gaussian") return with_odometry({}, odometry);
+    if (simulate.noise == "gaussian") return sim::with_odometry({}, odometry);
     if (simulate.noise == "uniform") {
-        Noise noise = kOfOdometryOnly;
+        sim::Noise noise = kOfOdometryOnly;
         noise.range_uniform = simulate.noise_width.value_or(kNoiseWidth);
-        return with_odometry(noise, odometry);
+        return sim::with_odometry(noise, odometry);
     }
-    if (odometry > 0.0) return with_odometry(kOfOdometryOnly, odometry);
+    if (odometry > 0.0) return sim::with_odometry(kOfOdometryOnly, odometry);
     return std::nullopt;
 }
 
-Result<SimulatorOptions> make_options(const RobotOptions& options, const SimulateOptions& simulate) {
+Result<sim::SimulatorOptions> make_options(const RobotOptions& options, const SimulateOptions& simulate) {
     auto world = load_world(simulate.world);
     if (!world) return world.error();
-    SimulatorOptions simulator;
+    sim::SimulatorOptions simulator;
     simulator.world = std::move(*world);
     simulator.noise = noise_of(simulate);
     simulator.seed = simulate.seed;
-    simulator.pose = simulate.pose == "odometry" ? PoseSent::kOdometry : PoseSent::kTrue;
+    simulator.pose = simulate.pose == "odometry" ? sim::PoseSent::kOdometry : sim::PoseSent::kTrue;
     if (auto chosen = choose_sensors(options, simulate, simulator); !chosen) return chosen.error();
     return simulator;
 }
@@ -118,7 +120,7 @@ Result<PreparedSource> prepare_simulation(const RobotOptions& options, const Sim
     const NoReturn no_return = options.no_return.value_or(NoReturn::kFree);
     PreparedSource prepared;
     prepared.speed = simulate.speed;
-    prepared.body_radius = kBodyRadius;
+    prepared.body_radius = sim::kBodyRadius;
     if (simulate.drive == "explore") {
         auto exploring = std::make_unique<ExploringSource>(std::move(*simulator), limits, no_return, simulate.speed);
         prepared.exploring = exploring.get();
@@ -128,8 +130,8 @@ Result<PreparedSource> prepare_simulation(const RobotOptions& options, const Sim
     auto made = make_behaviour(simulate, simulator->world);
     if (!made) return made.error();
     prepared.fingerprint = fingerprint_of(*simulator, made->name, no_return);
-    prepared.source = std::make_unique<SimulatedSource>(Simulator(std::move(*simulator), std::move(made->behaviour)),
-                                                        limits, no_return);
+    prepared.source = std::make_unique<SimulatedSource>(
+        sim::Simulator(std::move(*simulator), std::move(made->behaviour)), limits, no_return);
     return prepared;
 }
 

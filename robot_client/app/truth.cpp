@@ -36,8 +36,8 @@ Result<> write_file(const std::string& path, std::span<const char> content) {
 }
 
 /// Called before memory is allocated for the cells.
-Result<> check_size(const World& world, double cell_size) {
-    const Box box = bounds_of(world);
+Result<> check_size(const sim::World& world, double cell_size) {
+    const sim::Box box = bounds_of(world);
     const double cells = (box.x_max - box.x_min) / cell_size * ((box.y_max - box.y_min) / cell_size);
     if (cells <= static_cast<double>(kRosImagePixelsMax)) return {};
     return Error{Errc::kTooLarge,
@@ -52,7 +52,7 @@ Result<std::string> write_truth(const TruthOptions& options) {
     if (!world) return world.error();
     if (auto ok = check_size(*world, options.cell_size); !ok) return ok.error();
     if (auto made = make_folder(options.output); !made) return made.error();
-    const TruthGrid truth = truth_of(*world, options.cell_size);
+    const sim::TruthGrid truth = truth_of(*world, options.cell_size);
     const std::string image = options.output + ".pgm";
     const std::string yaml = options.output + ".yaml";
     const auto pgm = truth_pgm(truth);

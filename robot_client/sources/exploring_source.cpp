@@ -21,11 +21,12 @@ constexpr int kTimesBlockedMax = 30;
 
 } // namespace
 
-ExploringSource::ExploringSource(SimulatorOptions options, SimulationLimits limits, NoReturn no_return, double speed)
-    : ExploringSource(std::move(options), limits, no_return, speed, std::make_unique<Explore>()) {}
+ExploringSource::ExploringSource(sim::SimulatorOptions options, SimulationLimits limits, NoReturn no_return,
+                                 double speed)
+    : ExploringSource(std::move(options), limits, no_return, speed, std::make_unique<sim::Explore>()) {}
 
-ExploringSource::ExploringSource(SimulatorOptions options, SimulationLimits limits, NoReturn no_return, double speed,
-                                 std::unique_ptr<Explore> explore)
+ExploringSource::ExploringSource(sim::SimulatorOptions options, SimulationLimits limits, NoReturn no_return,
+                                 double speed, std::unique_ptr<sim::Explore> explore)
     : explore_(explore.get()), simulator_(std::move(options), std::move(explore)), limits_(limits),
       no_return_(no_return), speed_(speed) {
     limits_.scans = std::min(limits_.scans, scans_within(limits_.duration, simulator_.sensors().size()));
@@ -40,7 +41,7 @@ asio::awaitable<Result<std::optional<Observation>>> ExploringSource::next() {
     if (is_stopped_ || explore_->is_done()) co_return std::optional<Observation>{};
     Observation observation = observed(simulator_, no_return_);
     const std::uint64_t moments = resumed_after_ / simulator_.sensors().size();
-    observation.scan.stamp += static_cast<double>(moments) * kScanPeriod;
+    observation.scan.stamp += static_cast<double>(moments) * sim::kScanPeriod;
     scans_ += 1;
     co_await wait_until_due(observation.scan.stamp);
     co_return std::optional(std::move(observation));

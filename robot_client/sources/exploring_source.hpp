@@ -25,7 +25,7 @@ namespace scanloom::robot {
 class ExploringSource final : public LiveSource {
 public:
     /// @param speed  of the simulation, as a multiple of real time; 0 = as fast as scans are taken
-    ExploringSource(SimulatorOptions options, SimulationLimits limits, NoReturn no_return, double speed);
+    ExploringSource(sim::SimulatorOptions options, SimulationLimits limits, NoReturn no_return, double speed);
 
     /// Sets the function that returns the next goal. Call it before the first next().
     void ask_with(NextGoal next_goal) { next_goal_ = std::move(next_goal); }
@@ -40,20 +40,20 @@ public:
     void stop() override;
     [[nodiscard]] std::string remarks() const override { return explore_->remarks(); }
 
-    [[nodiscard]] const Simulator& simulator() const noexcept { return simulator_; }
+    [[nodiscard]] const sim::Simulator& simulator() const noexcept { return simulator_; }
 
 private:
     using Clock = std::chrono::steady_clock;
 
-    ExploringSource(SimulatorOptions options, SimulationLimits limits, NoReturn no_return, double speed,
-                    std::unique_ptr<Explore> explore);
+    ExploringSource(sim::SimulatorOptions options, SimulationLimits limits, NoReturn no_return, double speed,
+                    std::unique_ptr<sim::Explore> explore);
 
     [[nodiscard]] boost::asio::awaitable<Result<>> request_goal();
     [[nodiscard]] Result<> take(Result<NextStop> answer);
     [[nodiscard]] boost::asio::awaitable<void> wait_until_due(double stamp);
 
-    Explore* explore_; // owned by the simulator
-    Simulator simulator_;
+    sim::Explore* explore_; // owned by the simulator
+    sim::Simulator simulator_;
     SimulationLimits limits_;
     NoReturn no_return_;
     double speed_;

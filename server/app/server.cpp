@@ -52,7 +52,7 @@ Result<std::shared_ptr<sockets::PortTls>> tls_of(const sockets::TlsFiles& files)
     return sockets::PortTls::open(files);
 }
 
-session::ReplayLimits replay_limits(std::size_t bytes) {
+sessions::ReplayLimits replay_limits(std::size_t bytes) {
     const std::size_t chunks = bytes / 2 / mapping::kPageBytes; // a chunk is a page
     return {.chunks_max = chunks, .chunks_kept_max = chunks};
 }
@@ -89,7 +89,7 @@ Result<std::unique_ptr<Server>> Server::open(const ServerOptions& options, const
     store.on_damage = [](const Error& damage) { spdlog::error("{}", damage.message); };
     store.on_rocksdb_log = [](std::string_view line) { spdlog::debug("RocksDB: {}", line); };
     store.disk_reserve_bytes = options.disk_reserve_bytes;
-    const auto check = std::make_shared<session::BackgroundCheck*>(nullptr); // created after the log
+    const auto check = std::make_shared<sessions::BackgroundCheck*>(nullptr); // created after the log
     store.on_unreadable = [check](store::SessionId session, const Error& why) {
         if (*check != nullptr) (*check)->note(session, why);
     };

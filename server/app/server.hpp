@@ -72,11 +72,11 @@ private:
     // Links left open in `io_` hold sessions whose strands run on `pools_`, so io_ must be destroyed first.
     ThreadPools pools_;
     boost::asio::io_context io_;
-    session::SessionRegistry sessions_;
-    session::BackgroundCheck check_;
-    session::ReplayJobs weaves_;
-    guide::GoalAssignments goals_;
-    guide::Locator locator_;
+    sessions::SessionRegistry sessions_;
+    sessions::BackgroundCheck check_;
+    sessions::ReplayJobs weaves_;
+    guidance::GoalAssignments goals_;
+    guidance::Locator locator_;
     ingest::RequestExecutor requests_;
     std::optional<http::Pools> http_pools_;
     std::unique_ptr<http::Services> services_; // of api_

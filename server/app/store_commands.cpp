@@ -41,12 +41,12 @@ constexpr std::uint64_t kProgressEvery = 100'000;
 /// Prints the findings, and counts them for the summary.
 class Findings {
 public:
-    void whole(const session::SessionCheck& session) {
+    void whole(const sessions::SessionCheck& session) {
         count(session);
         std::cout << fmt::format("{}: {} entries, whole\n", session.name, session.entries) << std::flush;
     }
 
-    void damaged(const session::SessionCheck& session) {
+    void damaged(const sessions::SessionCheck& session) {
         count(session);
         std::cout << fmt::format("{}: {} entries, then DAMAGED: {}\n", session.name, session.entries,
                                  session.damage->message)
@@ -71,7 +71,7 @@ public:
     }
 
 private:
-    void count(const session::SessionCheck& session) {
+    void count(const sessions::SessionCheck& session) {
         ++sessions_;
         entries_ += session.entries;
     }
@@ -98,12 +98,12 @@ private:
     std::uint64_t bytes_ = 0;
 };
 
-void check_sessions(store::ReadOnlyStore& store, session::CheckDepth depth, Findings& findings) {
+void check_sessions(store::ReadOnlyStore& store, sessions::CheckDepth depth, Findings& findings) {
     const auto sessions = store.log->sessions();
     if (!sessions) return findings.store_damaged(sessions.error());
     Progress progress;
     for (const auto& stored : *sessions) {
-        const auto checked = session::check_session(*store.log, stored, depth, std::ref(progress));
+        const auto checked = sessions::check_session(*store.log, stored, depth, std::ref(progress));
         if (checked->damage) {
             findings.damaged(*checked);
         } else {
@@ -141,7 +141,7 @@ ExitCode check_store(const ServerOptions& options) {
                                  store->unfinished_bytes);
     }
     const bool is_deep = options.task == Task::kCheckMaps;
-    check_sessions(*store, is_deep ? session::CheckDepth::kMaps : session::CheckDepth::kCheckpoint, findings);
+    check_sessions(*store, is_deep ? sessions::CheckDepth::kMaps : sessions::CheckDepth::kCheckpoint, findings);
     check_tables(options.store, findings);
     return findings.conclude(seconds_since(begin));
 }
@@ -155,7 +155,7 @@ fs::path sibling_path(const fs::path& directory, const char* ending) {
     return path += ending;
 }
 
-std::string line_of(const session::RepairedSession& session) {
+std::string line_of(const sessions::RepairedSession& session) {
     auto line = fmt::format("{}: {} entries kept", session.name, session.kept);
     if (session.missing > 0) line += fmt::format(", {} lost", session.missing);
     if (session.stood_in > 0) line += fmt::format(" ({} scans stood in for by empty ones)", session.stood_in);
@@ -174,7 +174,7 @@ struct Sum {
     std::uint64_t set_aside = 0;
     std::size_t damaged_files = 0; // of the old store
 
-    void add(const session::RepairedSession& session) {
+    void add(const sessions::RepairedSession& session) {
         ++sessions;
         kept += session.kept;
         missing += session.missing;
@@ -188,9 +188,9 @@ Result<Sum> save(const store::DamagedStore& from, const store::UnfinishedStore& 
     const auto repaired = to.open_log();
     if (!repaired) return repaired.error();
     Sum sum;
-    const auto names = session::repaired_names(from.sessions());
+    const auto names = sessions::repaired_names(from.sessions());
     for (const auto& [id, record] : from.sessions()) {
-        const auto session = session::repair_session(from, id, record, names.at(id), **repaired, lost);
+        const auto session = sessions::repair_session(from, id, record, names.at(id), **repaired, lost);
         if (!session) return session.error();
         std::cout << line_of(*session) << std::flush;
         sum.add(*session);

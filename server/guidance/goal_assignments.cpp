@@ -5,7 +5,7 @@
 #include <iterator>
 #include <utility>
 
-namespace scanloom::guide {
+namespace scanloom::guidance {
 namespace {
 
 bool is_within(const Pose2& pose, const Point2& place, double radius) {
@@ -89,7 +89,7 @@ Goal shared_goal(const planning::FrontierGoal& goal, const mapping::Snapshot& ma
 
 } // namespace
 
-Result<planning::NextGoal> GoalAssignments::next(const std::shared_ptr<const session::Session>& session,
+Result<planning::NextGoal> GoalAssignments::next(const std::shared_ptr<const sessions::Session>& session,
                                                  const mapping::Snapshot& maps, RobotIndex robot,
                                                  const Point2& position, Clock::time_point now,
                                                  const planning::ExplorationOptions& options) {
@@ -127,18 +127,18 @@ Result<planning::NextGoal> GoalAssignments::next(const std::shared_ptr<const ses
     return found;
 }
 
-const GoalAssignments::Entry* GoalAssignments::find_entry(const std::shared_ptr<const session::Session>& session,
+const GoalAssignments::Entry* GoalAssignments::find_entry(const std::shared_ptr<const sessions::Session>& session,
                                                           RobotIndex robot) const {
     const auto entry = std::ranges::find_if(
         entries_, [&](const Entry& one) { return one.robot == robot && one.session.lock() == session; });
     return entry == entries_.end() ? nullptr : &*entry;
 }
 
-void GoalAssignments::forget_entry(const std::shared_ptr<const session::Session>& session, RobotIndex robot) {
+void GoalAssignments::forget_entry(const std::shared_ptr<const sessions::Session>& session, RobotIndex robot) {
     std::erase_if(entries_, [&](const Entry& one) { return one.robot == robot && one.session.lock() == session; });
 }
 
-std::vector<grid::Cell> GoalAssignments::targets_of_others(const std::shared_ptr<const session::Session>& session,
+std::vector<grid::Cell> GoalAssignments::targets_of_others(const std::shared_ptr<const sessions::Session>& session,
                                                            RobotIndex robot, double cell_size) const {
     std::vector<grid::Cell> targets;
     for (const Entry& entry : entries_) {
@@ -150,7 +150,7 @@ std::vector<grid::Cell> GoalAssignments::targets_of_others(const std::shared_ptr
 
 /// Removes and returns the record of the session and settings, without cells that are no longer FRONTIER. Maps older
 /// than the record do not change it.
-GoalAssignments::Unobserved GoalAssignments::take_unobserved(const std::shared_ptr<const session::Session>& session,
+GoalAssignments::Unobserved GoalAssignments::take_unobserved(const std::shared_ptr<const sessions::Session>& session,
                                                              const mapping::Snapshot& maps) {
     const auto known = std::ranges::find_if(unobserved_, [&](const Unobserved& one) {
         return one.settings == maps.config && one.session.lock() == session;
@@ -195,4 +195,4 @@ void GoalAssignments::forget_what_counts_no_longer(Clock::time_point now) {
     });
 }
 
-} // namespace scanloom::guide
+} // namespace scanloom::guidance

@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-namespace scanloom::guide {
+namespace scanloom::guidance {
 
 /// These limits decide whether a robot has been at its goal and has observed its target.
 inline constexpr double kArrivedCells = 2.0;                     ///< a scan this near was taken at the goal, or
@@ -79,7 +79,7 @@ public:
     /// @param position  of the robot, metres, map frame
     /// @return the goal, or why there is none
     /// Errors: those of planning::next_goal(); the robot has no goal then.
-    [[nodiscard]] Result<planning::NextGoal> next(const std::shared_ptr<const session::Session>& session,
+    [[nodiscard]] Result<planning::NextGoal> next(const std::shared_ptr<const sessions::Session>& session,
                                                   const mapping::Snapshot& maps, RobotIndex robot,
                                                   const Point2& position, Clock::time_point now,
                                                   const planning::ExplorationOptions& options = {});
@@ -89,7 +89,7 @@ public:
 
 private:
     struct Entry {
-        std::weak_ptr<const session::Session> session;
+        std::weak_ptr<const sessions::Session> session;
         RobotIndex robot;
         std::uint64_t given;         // result of RobotPaths::give_goal()
         mapping::MapConfig settings; // settings of the maps
@@ -101,7 +101,7 @@ private:
     using Looks = std::map<std::pair<std::int32_t, std::int32_t>, int>; // number of looks by (j, i)
 
     struct Unobserved {
-        std::weak_ptr<const session::Session> session;
+        std::weak_ptr<const sessions::Session> session;
         mapping::MapConfig settings;
         Revision revision;             // of the newest maps used
         std::vector<grid::Cell> cells; // FRONTIER cells that could not be observed, the oldest first
@@ -110,12 +110,12 @@ private:
 
     void forget_what_counts_no_longer(Clock::time_point now);
 
-    [[nodiscard]] const Entry* find_entry(const std::shared_ptr<const session::Session>& session,
+    [[nodiscard]] const Entry* find_entry(const std::shared_ptr<const sessions::Session>& session,
                                           RobotIndex robot) const;
-    [[nodiscard]] std::vector<grid::Cell> targets_of_others(const std::shared_ptr<const session::Session>& session,
+    [[nodiscard]] std::vector<grid::Cell> targets_of_others(const std::shared_ptr<const sessions::Session>& session,
                                                             RobotIndex robot, double cell_size) const;
-    void forget_entry(const std::shared_ptr<const session::Session>& session, RobotIndex robot);
-    [[nodiscard]] Unobserved take_unobserved(const std::shared_ptr<const session::Session>& session,
+    void forget_entry(const std::shared_ptr<const sessions::Session>& session, RobotIndex robot);
+    [[nodiscard]] Unobserved take_unobserved(const std::shared_ptr<const sessions::Session>& session,
                                              const mapping::Snapshot& maps);
     void keep(Unobserved unobserved);
     static void count_look(const std::vector<grid::Cell>& around_target, Unobserved& unobserved);
@@ -127,4 +127,4 @@ private:
     std::vector<Unobserved> unobserved_; // at most one for each session and settings; the most recently used last
 };
 
-} // namespace scanloom::guide
+} // namespace scanloom::guidance

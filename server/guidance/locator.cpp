@@ -3,7 +3,7 @@
 #include <memory>
 #include <utility>
 
-namespace scanloom::guide {
+namespace scanloom::guidance {
 
 bool MapStart::take(store::SessionId session, RobotIndex robot, Clock::time_point now) {
     const std::lock_guard lock(mutex_);
@@ -20,7 +20,7 @@ namespace {
 
 /// Returns all reference views, also those of captures that have not ended: a robot that has not stood long enough has
 /// seen something as well.
-landmarks::ReferenceViews views_of(session::Folded<landmarks::ReferenceLayer> applied) {
+landmarks::ReferenceViews views_of(sessions::Folded<landmarks::ReferenceLayer> applied) {
     auto views = std::move(applied.state);
     for (const auto& open : applied.open) {
         if (open.capture.points.empty()) continue;
@@ -38,7 +38,7 @@ const Error kBegun{
 
 } // namespace
 
-Result<Located> Locator::locate(const session::Session& session, RobotIndex robot, const landmarks::CloudView& view,
+Result<Located> Locator::locate(const sessions::Session& session, RobotIndex robot, const landmarks::CloudView& view,
                                 const std::optional<landmarks::Neighbourhood>& near,
                                 const std::function<Result<>()>& ask) {
     const auto snapshot = session.snapshot();
@@ -66,4 +66,4 @@ void Locator::remove(store::SessionId session) {
     first_places_.remove(session);
 }
 
-} // namespace scanloom::guide
+} // namespace scanloom::guidance

@@ -12,7 +12,7 @@
 #include <mutex>
 #include <optional>
 
-namespace scanloom::guide {
+namespace scanloom::guidance {
 
 /// Decides which robot starts the map of a session in which nothing is mapped yet, if several robots ask for their
 /// pose.
@@ -64,7 +64,7 @@ public:
     /// Errors: kAmbiguous or kUndetermined if the map does not determine the pose; the message says why. kNothingMapped
     ///     if nothing is mapped yet and this robot may start the map; kOverloaded if another robot may (see
     ///     MapStart). Those of landmarks::locate(), CaptureLayers::up_to() and `ask`.
-    [[nodiscard]] Result<Located> locate(const session::Session& session, RobotIndex robot,
+    [[nodiscard]] Result<Located> locate(const sessions::Session& session, RobotIndex robot,
                                          const landmarks::CloudView& view,
                                          const std::optional<landmarks::Neighbourhood>& near,
                                          const std::function<Result<>()>& ask);
@@ -73,8 +73,8 @@ public:
     void remove(store::SessionId session);
 
 private:
-    session::ReferenceLayers folds_;
+    sessions::ReferenceLayers folds_;
     MapStart first_places_;
 };
 
-} // namespace scanloom::guide
+} // namespace scanloom::guidance

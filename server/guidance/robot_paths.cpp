@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace scanloom::guide {
+namespace scanloom::guidance {
 
 std::uint64_t RobotPaths::give_goal(const SessionPtr& session, RobotIndex robot, const Goal& goal, HeldPath way,
                                     Clock::time_point now) {
@@ -107,7 +107,7 @@ std::shared_ptr<const HeldPath> RobotPaths::bounded(const Record& record, HeldPa
     return std::make_shared<const HeldPath>(std::move(way));
 }
 
-void RobotPaths::forget_what_is_over(Record& record, const session::Session& session, Clock::time_point now) {
+void RobotPaths::forget_what_is_over(Record& record, const sessions::Session& session, Clock::time_point now) {
     if (record.holdings.empty()) return;
     const auto connected = session.connected();
     const auto is_here = [&](RobotIndex robot) { return robot < connected.size() && connected[robot]; };
@@ -119,4 +119,4 @@ void RobotPaths::forget_what_is_over(Record& record, const session::Session& ses
     if (forgotten > 0) ++record.revision;
 }
 
-} // namespace scanloom::guide
+} // namespace scanloom::guidance

@@ -16,7 +16,7 @@
 
 /// The goals and paths that robots hold. Positions and lengths are in metres of the map frame. A revision is that of
 /// the maps that were searched.
-namespace scanloom::guide {
+namespace scanloom::guidance {
 
 struct Goal {
     Point2 place{0.0, 0.0};  ///< where the robot should stand
@@ -71,7 +71,7 @@ public:
         std::vector<RobotIndex> explored; ///< robots whose last request found no goal left to reach, ascending
     };
 
-    using SessionPtr = std::shared_ptr<const session::Session>;
+    using SessionPtr = std::shared_ptr<const sessions::Session>;
 
     /// Gives a robot a goal and the path to it, which replace everything the robot held. Like every change, this
     /// notifies the session's watchers.
@@ -112,10 +112,10 @@ private:
     [[nodiscard]] Record& record_of(const SessionPtr& session);
     [[nodiscard]] Record* find(const SessionPtr& session, Clock::time_point now);
     [[nodiscard]] static std::shared_ptr<const HeldPath> bounded(const Record& record, HeldPath way);
-    static void forget_what_is_over(Record& record, const session::Session& session, Clock::time_point now);
+    static void forget_what_is_over(Record& record, const sessions::Session& session, Clock::time_point now);
 
     std::mutex mutex_;
-    std::map<std::weak_ptr<const session::Session>, Record, std::owner_less<>> records_;
+    std::map<std::weak_ptr<const sessions::Session>, Record, std::owner_less<>> records_;
 };
 
-} // namespace scanloom::guide
+} // namespace scanloom::guidance

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace scanloom::guide {
+namespace scanloom::guidance {
 
 Result<RobotIndex> find_robot(const mapping::Snapshot& maps, std::string_view name) {
     const auto found = std::ranges::find(maps.robots, name, &mapping::RobotState::name);
@@ -20,4 +20,4 @@ Result<Pose2> pose_of(const mapping::Snapshot& maps, RobotIndex robot) {
                  fmt::format("the position of robot '{}' is not known: it has sent no scan yet", state.name)};
 }
 
-} // namespace scanloom::guide
+} // namespace scanloom::guidance

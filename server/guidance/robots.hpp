@@ -6,7 +6,7 @@
 
 #include <string_view>
 
-namespace scanloom::guide {
+namespace scanloom::guidance {
 
 /// Returns the index of the robot with the given name.
 /// Errors: kNotFound if no robot of that name ever joined the session.
@@ -16,4 +16,4 @@ namespace scanloom::guide {
 /// Errors: kNoPath if the robot has sent no scan or joined after the maps' last entry, so that no path can start there.
 [[nodiscard]] Result<Pose2> pose_of(const mapping::Snapshot& maps, RobotIndex robot);
 
-} // namespace scanloom::guide
+} // namespace scanloom::guidance

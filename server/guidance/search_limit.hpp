@@ -8,7 +8,7 @@
 #include <chrono>
 #include <string_view>
 
-namespace scanloom::guide {
+namespace scanloom::guidance {
 
 /// Limits how long a search may take: it ends when the server shuts down, because the shutdown waits for it, and when
 /// its time is over, because other requests wait for it as well.
@@ -22,7 +22,7 @@ public:
     /// Starts the time of a search.
     /// @param sessions  must outlive this object
     /// @param instead   what to request instead to need less time; part of the error message; a string literal
-    explicit SearchLimit(const session::SessionRegistry& sessions, Clock::time_point end = Clock::now() + kTime,
+    explicit SearchLimit(const sessions::SessionRegistry& sessions, Clock::time_point end = Clock::now() + kTime,
                          std::string_view instead =
                              "ask for a smaller region, or for rows further apart, or plan on a map "
                              "of larger cells")
@@ -37,9 +37,9 @@ public:
     }
 
 private:
-    const session::SessionRegistry& sessions_;
+    const sessions::SessionRegistry& sessions_;
     Clock::time_point end_;
     std::string_view instead_;
 };
 
-} // namespace scanloom::guide
+} // namespace scanloom::guidance

@@ -29,7 +29,7 @@ namespace asio = boost::asio;
 
 namespace {
 
-using SessionRef = std::shared_ptr<session::Session>;
+using SessionRef = std::shared_ptr<sessions::Session>;
 
 /// Checks that the Content-Type is the one that the method reads.
 Result<> check_content_type(Method method, const Request& request) {
@@ -59,7 +59,7 @@ Result<> check_parameters(const Route& route, const Query& query) {
 }
 
 /// Returns the session, which is loaded from the store if it is not in memory.
-asio::awaitable<Result<SessionRef>> load_session(session::SessionRegistry& sessions, const std::string& name) {
+asio::awaitable<Result<SessionRef>> load_session(sessions::SessionRegistry& sessions, const std::string& name) {
     if (auto session = sessions.find(name)) co_return session;
     const auto load = [&](auto done) { sessions.load(name, std::move(done)); };
     const auto loaded = co_await sockets::resume_with<Result<SessionRef>>(load);

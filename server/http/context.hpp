@@ -40,12 +40,12 @@ struct RobotPort {
 /// What handlers use, and what is kept from one request to the next.
 /// Threads: any thread may use each part.
 struct Services {
-    session::SessionRegistry& sessions;
-    session::ReplayJobs& weaves; ///< replay jobs
-    guide::GoalAssignments& goals;
-    guide::Locator& locator;
+    sessions::SessionRegistry& sessions;
+    sessions::ReplayJobs& weaves; ///< replay jobs
+    guidance::GoalAssignments& goals;
+    guidance::Locator& locator;
     store::ScanLog& log;
-    const session::BackgroundCheck& check;
+    const sessions::BackgroundCheck& check;
     const metrics::Metrics& metrics;
     Authorizer authorizer;
     const Pools& pools;
@@ -57,7 +57,7 @@ struct Services {
 
     std::atomic<bool> recovered = false; ///< before, requests for sessions receive kOverloaded
     tiles::TileMaker tiles{tile_bytes_max};
-    session::LandmarkLayers landmarks{log};
+    sessions::LandmarkLayers landmarks{log};
     live::LandmarkHub watched_landmarks{landmarks};
     ResponseLimit responses;
 };
@@ -71,7 +71,7 @@ struct Context {
     auth::TokenRef token; ///< of the client; null only if the operation needs no token
 
     /// The session in the path, or why it cannot be served. Only if the route has Sessions::kLoaded.
-    Result<std::shared_ptr<session::Session>> session = Error{Errc::kInternal, "this route loads no session"};
+    Result<std::shared_ptr<sessions::Session>> session = Error{Errc::kInternal, "this route loads no session"};
 
     Pool pool = Pool::kIo; ///< where the handler runs
 

@@ -12,23 +12,23 @@ namespace scanloom::ingest {
 namespace asio = boost::asio;
 namespace {
 
-using Found = Result<std::shared_ptr<session::Session>>;
+using Found = Result<std::shared_ptr<sessions::Session>>;
 
-asio::awaitable<Found> create(const wire::Hello& hello, session::SessionRegistry& sessions,
-                              const session::Creator& maker, asio::any_io_executor may_wait) {
+asio::awaitable<Found> create(const wire::Hello& hello, sessions::SessionRegistry& sessions,
+                              const sessions::Creator& maker, asio::any_io_executor may_wait) {
     auto created = co_await sockets::compute_on(std::move(may_wait),
                                                 [&] { return sessions.create(hello.session, *hello.create, maker); });
     if (!created && created.error().code == Errc::kInvalidField) co_return prefixed("hello.create.", created.error());
     co_return created;
 }
 
-asio::awaitable<Found> woken(const std::string& name, session::SessionRegistry& sessions) {
+asio::awaitable<Found> woken(const std::string& name, sessions::SessionRegistry& sessions) {
     const auto load = [&](auto done) { sessions.load(name, std::move(done)); };
     co_return co_await sockets::resume_with<Found>(load);
 }
 
 /// Returns the error for the robot if the session could not be loaded.
-Error absence_of(const std::string& name, const session::SessionRegistry& sessions, const Error& why) {
+Error absence_of(const std::string& name, const sessions::SessionRegistry& sessions, const Error& why) {
     const auto damaged = sessions.damaged();
     const auto damage = damaged.find(name);
     if (damage == damaged.end()) {
@@ -45,8 +45,8 @@ Error absence_of(const std::string& name, const session::SessionRegistry& sessio
 
 } // namespace
 
-asio::awaitable<Found> session_for(const wire::Hello& hello, session::SessionRegistry& sessions,
-                                   const session::Creator& maker, asio::any_io_executor may_wait) {
+asio::awaitable<Found> session_for(const wire::Hello& hello, sessions::SessionRegistry& sessions,
+                                   const sessions::Creator& maker, asio::any_io_executor may_wait) {
     auto session = co_await woken(hello.session, sessions);
     if (!session && session.error().code == Errc::kNotFound && hello.create) {
         auto created = co_await create(hello, sessions, maker, std::move(may_wait));
@@ -62,12 +62,12 @@ asio::awaitable<Found> session_for(const wire::Hello& hello, session::SessionReg
     co_return session;
 }
 
-asio::awaitable<Result<session::Joined>> join_session(session::Session& session, const wire::Hello& hello,
-                                                      std::shared_ptr<session::RobotListener> listener) {
+asio::awaitable<Result<sessions::Joined>> join_session(sessions::Session& session, const wire::Hello& hello,
+                                                       std::shared_ptr<sessions::RobotListener> listener) {
     const auto join = [&](auto done) {
         session.join({hello.robot, hello.source, hello.body_radius}, std::move(listener), std::move(done));
     };
-    co_return co_await sockets::resume_with<Result<session::Joined>>(join);
+    co_return co_await sockets::resume_with<Result<sessions::Joined>>(join);
 }
 
 } // namespace scanloom::ingest

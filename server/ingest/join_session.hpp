@@ -19,12 +19,12 @@ namespace scanloom::ingest {
 /// Errors: kNotFound if the session does not exist and the hello has no `create`; kConflict if its settings differ from
 ///         hello.create, or its log is damaged; kOverloaded if there is not enough memory to load it; those of
 ///         SessionRegistry::create() except kAlreadyExists.
-[[nodiscard]] boost::asio::awaitable<Result<std::shared_ptr<session::Session>>>
-session_for(const wire::Hello& hello, session::SessionRegistry& sessions, const session::Creator& maker,
+[[nodiscard]] boost::asio::awaitable<Result<std::shared_ptr<sessions::Session>>>
+session_for(const wire::Hello& hello, sessions::SessionRegistry& sessions, const sessions::Creator& maker,
             boost::asio::any_io_executor may_wait);
 
 /// Calls Session::join(), and resumes with its result on the coroutine's own executor.
-[[nodiscard]] boost::asio::awaitable<Result<session::Joined>>
-join_session(session::Session& session, const wire::Hello& hello, std::shared_ptr<session::RobotListener> listener);
+[[nodiscard]] boost::asio::awaitable<Result<sessions::Joined>>
+join_session(sessions::Session& session, const wire::Hello& hello, std::shared_ptr<sessions::RobotListener> listener);
 
 } // namespace scanloom::ingest

@@ -50,8 +50,8 @@ Result<wire::Path> to_wire(planning::Path path, std::size_t runs = 0) {
 struct Search {
     const Requester& requester;
     const mapping::Snapshot& maps;
-    guide::GoalAssignments& goals;
-    const guide::SearchLimit may_go_on;
+    guidance::GoalAssignments& goals;
+    const guidance::SearchLimit may_go_on;
     const Point2& start;
 
     /// Uses the requested body radius (m), or else the robot's own.
@@ -76,8 +76,8 @@ struct Search {
         planning::ExplorationOptions options;
         options.passability = passability_of(request.body_radius);
         if (request.frontier_size_min > 0) options.frontier_size_min = request.frontier_size_min;
-        auto next =
-            goals.next(requester.session, maps, requester.robot, start, guide::GoalAssignments::Clock::now(), options);
+        auto next = goals.next(requester.session, maps, requester.robot, start, guidance::GoalAssignments::Clock::now(),
+                               options);
         if (!next) return next.error();
         const auto given_up = static_cast<std::uint32_t>(next->given_up); // fits: GoalAssignments keeps fewer
         if (next->outcome == planning::Exploration::kTakenByOthers) {
@@ -107,29 +107,29 @@ struct Search {
 };
 
 /// Returns the path that live viewers show for the robot.
-std::optional<guide::HeldPath> way_of(const Result<wire::Path>& path, Revision revision) {
+std::optional<guidance::HeldPath> way_of(const Result<wire::Path>& path, Revision revision) {
     if (!path) return std::nullopt;
-    return guide::HeldPath{guide::PathKind::kPlan, path->points, path->length, revision};
+    return guidance::HeldPath{guidance::PathKind::kPlan, path->points, path->length, revision};
 }
-std::optional<guide::HeldPath> way_of(const Result<wire::Coverage>& coverage, Revision revision) {
+std::optional<guidance::HeldPath> way_of(const Result<wire::Coverage>& coverage, Revision revision) {
     if (!coverage) return std::nullopt;
-    return guide::HeldPath{guide::PathKind::kCoverage, coverage->path.points, coverage->path.length, revision};
+    return guidance::HeldPath{guidance::PathKind::kCoverage, coverage->path.points, coverage->path.length, revision};
 }
 
 template <class Kind>
 wire::Message reply_from(const Kind& request, const Requester& requester, const RequestServices& services) {
-    guide::GoalAssignments& goals = services.goals;
+    guidance::GoalAssignments& goals = services.goals;
     const auto maps = requester.session->snapshot();
     auto start = request.start;
     if (!start) {
-        const auto pose = guide::pose_of(*maps, requester.robot);
+        const auto pose = guidance::pose_of(*maps, requester.robot);
         if (!pose) return reply(request, maps->revision, pose.error());
         start = Point2{pose->x, pose->y};
     }
-    auto found = Search{requester, *maps, goals, guide::SearchLimit(services.sessions), *start}(request);
+    auto found = Search{requester, *maps, goals, guidance::SearchLimit(services.sessions), *start}(request);
     if constexpr (!std::is_same_v<Kind, wire::GoalRequest>) { // the goal book already knows the paths to goals
         goals.ways().set_path(requester.session, requester.robot, way_of(found, maps->revision),
-                              guide::RobotPaths::Clock::now());
+                              guidance::RobotPaths::Clock::now());
     }
     return reply(request, maps->revision, std::move(found));
 }
@@ -141,8 +141,9 @@ wire::Message reply_from(const wire::LocateRequest& request, const Requester& re
     const auto points = landmarks::in_metres(request.points);
     std::optional<landmarks::Neighbourhood> near;
     if (request.near) near = landmarks::Neighbourhood{request.near->point, request.near->radius};
-    const guide::SearchLimit patience(services.sessions, guide::SearchLimit::Clock::now() + guide::SearchLimit::kTime,
-                                      "give a point near its position");
+    const guidance::SearchLimit patience(services.sessions,
+                                         guidance::SearchLimit::Clock::now() + guidance::SearchLimit::kTime,
+                                         "give a point near its position");
     const auto ask = [&]() -> Result<> { return *requester.is_gone ? Result<>(kLinkClosed) : patience(); };
     const auto located = services.locator.locate(*requester.session, requester.robot,
                                                  {.points = points, .from = request.from}, near, ask);

@@ -22,7 +22,7 @@ namespace scanloom::ingest {
 
 /// The robot that sent a request.
 struct Requester {
-    std::shared_ptr<session::Session> session;
+    std::shared_ptr<sessions::Session> session;
     RobotIndex robot = 0;
     /// Set when the link is closed, so that the reply is no longer needed.
     std::shared_ptr<const std::atomic<bool>> is_gone = std::make_shared<const std::atomic<bool>>(false);
@@ -30,9 +30,9 @@ struct Requester {
 
 /// The objects that answer requests. All outlive this struct and its copies.
 struct RequestServices {
-    guide::GoalAssignments& goals;
-    guide::Locator& locator;
-    const session::SessionRegistry& sessions;
+    guidance::GoalAssignments& goals;
+    guidance::Locator& locator;
+    const sessions::SessionRegistry& sessions;
 };
 
 /// Answers the requests of all links outside the I/O threads, from each session's newest maps. A reply takes

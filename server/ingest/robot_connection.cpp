@@ -217,7 +217,7 @@ asio::awaitable<void> RobotConnection::join(std::shared_ptr<RobotConnection> sel
 /// exist.
 asio::awaitable<Result<Protocol::Joined>> RobotConnection::enter(const wire::Hello& hello) {
     if (auto ok = authenticate(hello); !ok) co_return ok.error();
-    auto session = co_await session_for(hello, services_.sessions, session::creator_of(*token_), services_.may_wait);
+    auto session = co_await session_for(hello, services_.sessions, sessions::creator_of(*token_), services_.may_wait);
     if (!session && session.error().code == Errc::kFull)
         record_refusal(auth::Reason::kLimit, token_->name, hello.session);
     if (!session) co_return session.error();
@@ -227,7 +227,7 @@ asio::awaitable<Result<Protocol::Joined>> RobotConnection::enter(const wire::Hel
     robot_index_ = joined->robot;
     log::info({hello.session, robot_, peer_}, "robot '{}' at {} joined session '{}' after scan {} ({})", robot_, peer_,
               hello.session, joined->last_durable_seq, hello.client);
-    co_return Protocol::Joined{session::tag_of(session_->info()), joined->last_durable_seq, joined->sensors};
+    co_return Protocol::Joined{sessions::tag_of(session_->info()), joined->last_durable_seq, joined->sensors};
 }
 
 Result<> RobotConnection::authenticate(const wire::Hello& hello) {

@@ -25,7 +25,7 @@ namespace scanloom::ingest {
 
 /// The parts of the server that a connection uses.
 struct LinkServices {
-    session::SessionRegistry& sessions;
+    sessions::SessionRegistry& sessions;
     boost::asio::any_io_executor may_wait; ///< for work that waits for the disk
     metrics::IngestCounters& counters;
     RequestExecutor& requests;
@@ -36,7 +36,7 @@ struct LinkServices {
 /// One robot's connection: the sockets, timers and services around a link::ServerProtocol, which decides what happens.
 ///
 /// Threads: all private members on the stream's strand; public functions from any thread.
-class RobotConnection : public session::RobotListener, public std::enable_shared_from_this<RobotConnection> {
+class RobotConnection : public sessions::RobotListener, public std::enable_shared_from_this<RobotConnection> {
 public:
     /// Pre: the stream's executor is a strand.
     RobotConnection(net::LinkStream stream, LinkServices services, const link::ServerProtocolConfig& config);
@@ -102,8 +102,8 @@ private:
     std::shared_ptr<auth::Credential> pass_; // from the hello to the end
     auth::TokenRef token_;                   // that last permitted the link; null before the hello
     std::string robot_;
-    std::shared_ptr<session::Session> session_; // joined
-    RobotIndex robot_index_ = 0;                // in the session
+    std::shared_ptr<sessions::Session> session_; // joined
+    RobotIndex robot_index_ = 0;                 // in the session
     Unacknowledged unacknowledged_;
     std::shared_ptr<std::atomic<bool>> is_gone_ =
         std::make_shared<std::atomic<bool>>(false); // no reply is needed any more; read by the RequestExecutor

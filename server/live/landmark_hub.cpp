@@ -13,8 +13,8 @@ bool is_passing(const Error& error) { return error.code == Errc::kShuttingDown |
 
 } // namespace
 
-WatchedLandmarks::Look WatchedLandmarks::look(const std::shared_ptr<const session::Session>& session, Revision revision,
-                                              const LandmarkSearch& search) {
+WatchedLandmarks::Look WatchedLandmarks::look(const std::shared_ptr<const sessions::Session>& session,
+                                              Revision revision, const LandmarkSearch& search) {
     const std::lock_guard lock(mutex_);
     if (is_finding_ || revision <= searched_) return {found_}; // a notification follows, or nothing is new
     if (Clock::now() < next_) return {found_, next_};
@@ -26,7 +26,8 @@ WatchedLandmarks::Look WatchedLandmarks::look(const std::shared_ptr<const sessio
 }
 
 /// Runs on the search's executor.
-void WatchedLandmarks::find(const session::Session& session, Revision revision, const LandmarkSearch& search) noexcept {
+void WatchedLandmarks::find(const sessions::Session& session, Revision revision,
+                            const LandmarkSearch& search) noexcept {
     try {
         keep(find_for_a_turn(session, revision, search.turn), revision, search.pause);
     } catch (const std::exception& failure) { // std::bad_alloc
@@ -35,7 +36,7 @@ void WatchedLandmarks::find(const session::Session& session, Revision revision, 
     session.notify_changed();
 }
 
-Result<FoundLandmarks> WatchedLandmarks::find_for_a_turn(const session::Session& session, Revision revision,
+Result<FoundLandmarks> WatchedLandmarks::find_for_a_turn(const sessions::Session& session, Revision revision,
                                                          std::chrono::milliseconds turn) {
     const auto end = Clock::now() + turn;
     auto applied =

@@ -26,7 +26,7 @@ class WatchedLandmarks : public std::enable_shared_from_this<WatchedLandmarks> {
 public:
     using Clock = std::chrono::steady_clock;
 
-    explicit WatchedLandmarks(session::LandmarkLayers& folds) : folds_(folds) {}
+    explicit WatchedLandmarks(sessions::LandmarkLayers& folds) : folds_(folds) {}
 
     struct Look {
         std::shared_ptr<const FoundLandmarks> found;        ///< null: nothing yet
@@ -36,16 +36,16 @@ public:
     /// Returns the landmarks found so far. If the log has new entries and the pause is over, starts a search on the
     /// search's executor, which notifies the session's watchers at its end.
     /// @param revision  current revision of the session
-    [[nodiscard]] Look look(const std::shared_ptr<const session::Session>& session, Revision revision,
+    [[nodiscard]] Look look(const std::shared_ptr<const sessions::Session>& session, Revision revision,
                             const LandmarkSearch& search);
 
 private:
-    void find(const session::Session& session, Revision revision, const LandmarkSearch& search) noexcept;
-    [[nodiscard]] Result<FoundLandmarks> find_for_a_turn(const session::Session& session, Revision revision,
+    void find(const sessions::Session& session, Revision revision, const LandmarkSearch& search) noexcept;
+    [[nodiscard]] Result<FoundLandmarks> find_for_a_turn(const sessions::Session& session, Revision revision,
                                                          std::chrono::milliseconds turn);
     void keep(Result<FoundLandmarks> found, Revision revision, std::chrono::milliseconds pause);
 
-    session::LandmarkLayers& folds_;
+    sessions::LandmarkLayers& folds_;
     std::mutex mutex_;
     std::shared_ptr<const FoundLandmarks> found_;
     Revision searched_ = 0; // log entries that were searched completely
@@ -57,13 +57,13 @@ private:
 /// Threads: any thread.
 class LandmarkHub {
 public:
-    explicit LandmarkHub(session::LandmarkLayers& folds) : folds_(folds) {}
+    explicit LandmarkHub(sessions::LandmarkLayers& folds) : folds_(folds) {}
 
     /// Returns the landmarks of a session. Callers that hold the result at the same time share one object.
     [[nodiscard]] std::shared_ptr<WatchedLandmarks> of(store::SessionId session);
 
 private:
-    session::LandmarkLayers& folds_;
+    sessions::LandmarkLayers& folds_;
     std::mutex mutex_;
     std::map<store::SessionId, std::weak_ptr<WatchedLandmarks>> watched_;
 };

@@ -33,7 +33,7 @@ websocket::close_reason close_with(websocket::close_code code, std::string_view 
 }
 
 /// Returns the current state of a session, which must not be deleted.
-SessionSnapshot snapshot_of(const session::Session& session, std::uint64_t goals_revision) {
+SessionSnapshot snapshot_of(const sessions::Session& session, std::uint64_t goals_revision) {
     SessionSnapshot snapshot{session.snapshot(), session.connected(), wire::LiveState::kOk, {}, goals_revision};
     const auto closing = session.closing();
     const auto failure = session.failure();
@@ -219,7 +219,7 @@ Viewer::NextStep Viewer::next_step() {
 }
 
 /// @return when to look for landmarks again
-Viewer::Clock::time_point Viewer::add_landmarks(const std::shared_ptr<const session::Session>& session,
+Viewer::Clock::time_point Viewer::add_landmarks(const std::shared_ptr<const sessions::Session>& session,
                                                 SessionSnapshot& snapshot) {
     if (!encoder_.subscribes_to_landmarks()) return Clock::time_point::max();
     const LandmarkSearch search{services_.finding, services_.config.landmarks_pause, services_.config.landmarks_turn};

@@ -36,7 +36,7 @@ namespace scanloom::live {
 /// disconnects or violates the WebSocket protocol, or if a timeout expires.
 /// Threads: the socket's executor, a strand. next_step() runs on `showing` while the coroutine on the strand waits for
 /// it. on_changed(), stop() and abort() may be called from any thread.
-class Viewer final : public session::Watcher, public std::enable_shared_from_this<Viewer> {
+class Viewer final : public sessions::Watcher, public std::enable_shared_from_this<Viewer> {
 public:
     using Upgrade = boost::beast::http::request<boost::beast::http::string_body>;
 
@@ -80,7 +80,7 @@ private:
     [[nodiscard]] boost::asio::awaitable<bool> send(const std::string& event);
     [[nodiscard]] boost::asio::awaitable<void> close();
     [[nodiscard]] NextStep next_step();
-    [[nodiscard]] Clock::time_point add_landmarks(const std::shared_ptr<const session::Session>& session,
+    [[nodiscard]] Clock::time_point add_landmarks(const std::shared_ptr<const sessions::Session>& session,
                                                   SessionSnapshot& snapshot);
     [[nodiscard]] std::optional<Close> fault_of_message();
     void end(Close why);

@@ -11,7 +11,7 @@
 #include <exception>
 #include <utility>
 
-namespace scanloom::session {
+namespace scanloom::sessions {
 namespace {
 
 constexpr int kNiceness = 19;
@@ -136,4 +136,4 @@ void BackgroundCheck::wait() const {
     changed_.wait(lock, [this] { return done_; });
 }
 
-} // namespace scanloom::session
+} // namespace scanloom::sessions

@@ -13,7 +13,7 @@
 #include <string>
 #include <thread>
 
-namespace scanloom::session {
+namespace scanloom::sessions {
 
 /// Checks the sessions that were not loaded at startup, one after another, and reports the damaged ones.
 ///
@@ -80,4 +80,4 @@ private:
     std::thread thread_;
 };
 
-} // namespace scanloom::session
+} // namespace scanloom::sessions

@@ -4,7 +4,7 @@
 #include <map>
 #include <utility>
 
-namespace scanloom::session {
+namespace scanloom::sessions {
 
 Group Backlog::next_group(std::int64_t room) {
     Group group;
@@ -36,4 +36,4 @@ void Backlog::drop(RobotIndex robot) {
     std::erase_if(waiting_, [robot](const PendingEntry& entry) { return entry.robot == robot; });
 }
 
-} // namespace scanloom::session
+} // namespace scanloom::sessions

@@ -9,7 +9,7 @@
 #include <optional>
 #include <vector>
 
-namespace scanloom::session {
+namespace scanloom::sessions {
 
 /// A validated entry from a robot that is not yet in the log and the maps.
 struct PendingEntry {
@@ -54,4 +54,4 @@ private:
     std::deque<PendingEntry> waiting_;
 };
 
-} // namespace scanloom::session
+} // namespace scanloom::sessions

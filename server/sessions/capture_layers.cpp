@@ -6,7 +6,7 @@
 #include <new>
 #include <utility>
 
-namespace scanloom::session {
+namespace scanloom::sessions {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -116,4 +116,4 @@ void CaptureLayers<Layer>::remove(store::SessionId session) {
 template class CaptureLayers<landmarks::LandmarkLayer>;
 template class CaptureLayers<landmarks::ReferenceLayer>;
 
-} // namespace scanloom::session
+} // namespace scanloom::sessions

@@ -16,7 +16,7 @@
 #include <string_view>
 #include <vector>
 
-namespace scanloom::session {
+namespace scanloom::sessions {
 
 /// Properties of a layer that is computed from captures and has add(RobotCapture), size() and snapshot().
 ///
@@ -116,4 +116,4 @@ using ReferenceLayers = CaptureLayers<landmarks::ReferenceLayer>;
 extern template class CaptureLayers<landmarks::LandmarkLayer>;
 extern template class CaptureLayers<landmarks::ReferenceLayer>;
 
-} // namespace scanloom::session
+} // namespace scanloom::sessions

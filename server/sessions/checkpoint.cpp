@@ -11,7 +11,7 @@
 #include <optional>
 #include <utility>
 
-namespace scanloom::session {
+namespace scanloom::sessions {
 namespace {
 
 constexpr std::string_view kLaserChunk = "weave/laser/";
@@ -352,4 +352,4 @@ Result<mapping::Projection> CheckpointReader::finish() && {
     return std::move(projection_);
 }
 
-} // namespace scanloom::session
+} // namespace scanloom::sessions

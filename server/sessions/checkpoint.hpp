@@ -30,7 +30,7 @@
 /// parts that must agree on the revision are the last piece: head, robots, and the sensors described since the last
 /// checkpoint. A checkpoint that a crash interrupted is usable: its chunks may be newer than its head, and the revision
 /// of a chunk states which entries of the log it contains.
-namespace scanloom::session {
+namespace scanloom::sessions {
 
 /// Writes the parts that changed after `since`. Without `since`, replaces the whole checkpoint.
 ///
@@ -97,4 +97,4 @@ private:
     bool weaving_ = false; // the state is complete and was passed to the projection
 };
 
-} // namespace scanloom::session
+} // namespace scanloom::sessions

@@ -8,7 +8,7 @@
 #include <utility>
 #include <variant>
 
-namespace scanloom::session {
+namespace scanloom::sessions {
 namespace {
 
 constexpr int kLevel = 1; // cells repeat; higher levels gain little
@@ -100,4 +100,4 @@ std::optional<ExclusionsPart> read_exclusions_part(std::string_view value) {
     return read;
 }
 
-} // namespace scanloom::session
+} // namespace scanloom::sessions

@@ -18,7 +18,7 @@ struct ZSTD_CCtx_s;
 struct ZSTD_DCtx_s;
 
 /// The parts of a checkpoint: their values, their compression, and the part with the exclusions.
-namespace scanloom::session {
+namespace scanloom::sessions {
 
 // Plain values
 
@@ -129,4 +129,4 @@ struct ExclusionsPart {
 /// @return nullopt if the part is damaged
 [[nodiscard]] std::optional<ExclusionsPart> read_exclusions_part(std::string_view value);
 
-} // namespace scanloom::session
+} // namespace scanloom::sessions

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <new>
 
-namespace scanloom::session {
+namespace scanloom::sessions {
 namespace {
 
 Result<> check_patches(const mapping::MapConfig& config, const std::vector<MapPatch>& patches, const Creator& creator) {
@@ -80,4 +80,4 @@ Result<mapping::Projection> integrate_imported(const mapping::MapConfig& config,
     }
 }
 
-} // namespace scanloom::session
+} // namespace scanloom::sessions

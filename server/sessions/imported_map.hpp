@@ -9,7 +9,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace scanloom::session {
+namespace scanloom::sessions {
 
 /// Returns an upper bound of the pages that an imported map needs.
 [[nodiscard]] std::size_t pages_of_imported(const mapping::MapConfig& config, const std::vector<MapPatch>& patches);
@@ -24,4 +24,4 @@ namespace scanloom::session {
                                                              const std::vector<MapPatch>& patches,
                                                              const Creator& creator, limits::MemoryShare& share);
 
-} // namespace scanloom::session
+} // namespace scanloom::sessions

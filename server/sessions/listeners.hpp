@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace scanloom::session {
+namespace scanloom::sessions {
 
 /// Receives acknowledgements and errors for a robot's link. Called on the session's strand: must not block.
 class RobotListener {
@@ -86,4 +86,4 @@ private:
     std::vector<std::weak_ptr<Watcher>> watchers_;
 };
 
-} // namespace scanloom::session
+} // namespace scanloom::sessions

@@ -3,7 +3,7 @@
 #include "common/wire/log_codec.hpp"
 #include "server/sessions/recovery.hpp"
 
-namespace scanloom::session {
+namespace scanloom::sessions {
 namespace {
 
 /// Adds an entry that is not a scan.
@@ -59,4 +59,4 @@ Result<> read_captures(store::ScanLog& log, store::SessionId session, landmarks:
     });
 }
 
-} // namespace scanloom::session
+} // namespace scanloom::sessions

@@ -8,7 +8,7 @@
 #include <functional>
 #include <optional>
 
-namespace scanloom::session {
+namespace scanloom::sessions {
 
 /// Called before each entry with its revision and, if it is a scan, the scan's pose. False ends the reading before it.
 using ReadsOn = std::function<bool(Revision, const std::optional<ScanPose>&)>;
@@ -37,4 +37,4 @@ using AskWhetherToGoOn = std::function<Result<>(Revision read)>;
                                      landmarks::SessionCaptures& captures, Revision until, const VisitCapture& visit,
                                      const AskWhetherToGoOn& ask);
 
-} // namespace scanloom::session
+} // namespace scanloom::sessions

@@ -5,7 +5,7 @@
 #include <utility>
 #include <variant>
 
-namespace scanloom::session {
+namespace scanloom::sessions {
 namespace {
 
 /// Returns an empty scan, which fits every sensor.
@@ -76,4 +76,4 @@ std::vector<LogEntry> LogReconstruction::stand_ins_before(const ScanTaken& taken
     return entries;
 }
 
-} // namespace scanloom::session
+} // namespace scanloom::sessions

@@ -7,7 +7,7 @@
 #include <map>
 #include <vector>
 
-namespace scanloom::session {
+namespace scanloom::sessions {
 
 /// Makes a valid log from the intact entries of a damaged one.
 ///
@@ -44,4 +44,4 @@ private:
     std::uint64_t stood_in_ = 0;
 };
 
-} // namespace scanloom::session
+} // namespace scanloom::sessions

@@ -9,7 +9,7 @@
 #include <optional>
 #include <utility>
 
-namespace scanloom::session {
+namespace scanloom::sessions {
 
 /// The newest maps of a session, written by one thread and read by many.
 ///
@@ -110,4 +110,4 @@ private:
     mutable std::optional<Revision> at_;
 };
 
-} // namespace scanloom::session
+} // namespace scanloom::sessions

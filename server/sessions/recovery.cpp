@@ -17,7 +17,7 @@
 #include <utility>
 #include <vector>
 
-namespace scanloom::session {
+namespace scanloom::sessions {
 namespace {
 
 Error stopped() { return {Errc::kShuttingDown, "stopped before the log's end"}; }
@@ -223,4 +223,4 @@ Result<> recover_sessions(RegistryState& state) {
     return {};
 }
 
-} // namespace scanloom::session
+} // namespace scanloom::sessions

@@ -10,7 +10,7 @@
 #include <atomic>
 #include <optional>
 
-namespace scanloom::session {
+namespace scanloom::sessions {
 
 struct RegistryState;
 
@@ -49,4 +49,4 @@ struct Recovered {
 /// Threads: one call, which blocks; not on a thread of the config's executors.
 [[nodiscard]] Result<> recover_sessions(RegistryState& state);
 
-} // namespace scanloom::session
+} // namespace scanloom::sessions

@@ -9,7 +9,7 @@
 
 #include <utility>
 
-namespace scanloom::session {
+namespace scanloom::sessions {
 namespace {
 
 /// Stores a checkpoint of a stopped recovery, so that a long recovery finishes even if it is stopped repeatedly.
@@ -87,4 +87,4 @@ Result<std::shared_ptr<Session>> SessionFactory::read(const SessionInfo& info, c
     return make(std::move(read), std::move(recovered->projection), recovered->checkpointed);
 }
 
-} // namespace scanloom::session
+} // namespace scanloom::sessions

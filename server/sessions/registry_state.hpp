@@ -22,7 +22,7 @@
 #include <utility>
 
 /// The state that the parts of a registry share: SessionRegistry, SessionLoader and recover_sessions().
-namespace scanloom::session {
+namespace scanloom::sessions {
 
 /// Returns the error (kNotFound) for a session that does not exist.
 /// @param name  any string, also an invalid session name
@@ -122,4 +122,4 @@ struct RegistryState {
     DamagedSessions damaged;
 };
 
-} // namespace scanloom::session
+} // namespace scanloom::sessions

@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-namespace scanloom::session {
+namespace scanloom::sessions {
 namespace {
 
 std::string with_id(std::string name, store::SessionId id) {
@@ -172,4 +172,4 @@ Result<RepairedSession> repair_session(const store::DamagedStore& from, store::S
     return repaired;
 }
 
-} // namespace scanloom::session
+} // namespace scanloom::sessions

@@ -10,7 +10,7 @@
 #include <string>
 
 /// Repair of a store: what remains of its sessions is copied to a new one.
-namespace scanloom::session {
+namespace scanloom::sessions {
 
 /// Returns a unique name for each session of a repaired store.
 ///
@@ -41,4 +41,4 @@ struct RepairedSession {
                                                      const std::optional<std::string>& record, const std::string& name,
                                                      store::ScanLog& to, const std::filesystem::path& aside);
 
-} // namespace scanloom::session
+} // namespace scanloom::sessions

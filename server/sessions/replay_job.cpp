@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace scanloom::session {
+namespace scanloom::sessions {
 namespace {
 
 constexpr double kReplaySliceWork = 5e6; // between two checks whether to continue
@@ -306,4 +306,4 @@ void ReplayJob::end(State state, limits::MemoryBudget& budget) {
     call_waiting();
 }
 
-} // namespace scanloom::session
+} // namespace scanloom::sessions

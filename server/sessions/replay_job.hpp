@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-namespace scanloom::session {
+namespace scanloom::sessions {
 
 /// Replay job: computes the maps of a session again from its log, with other settings or up to an earlier moment. The
 /// result equals the maps of a session that was created with these settings and received the same log.
@@ -172,4 +172,4 @@ private:
 /// Returns the error (kNotFound) for clients that wait for a replay job of a session that was deleted.
 [[nodiscard]] Error session_was_deleted(const SessionInfo& session);
 
-} // namespace scanloom::session
+} // namespace scanloom::sessions

@@ -8,7 +8,7 @@
 #include <new>
 #include <utility>
 
-namespace scanloom::session {
+namespace scanloom::sessions {
 namespace {
 
 std::size_t chunks_of(const ReplayJob& weave) {
@@ -205,4 +205,4 @@ void ReplayJobs::evict() {
     }
 }
 
-} // namespace scanloom::session
+} // namespace scanloom::sessions

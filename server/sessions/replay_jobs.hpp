@@ -15,7 +15,7 @@
 #include <string_view>
 #include <vector>
 
-namespace scanloom::session {
+namespace scanloom::sessions {
 
 struct ReplayLimits {
     std::size_t waiting_max = 16;          ///< jobs that have not ended
@@ -111,4 +111,4 @@ private:
     std::vector<Behind> behind_;
 };
 
-} // namespace scanloom::session
+} // namespace scanloom::sessions

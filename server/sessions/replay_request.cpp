@@ -10,7 +10,7 @@
 #include <string>
 #include <variant>
 
-namespace scanloom::session {
+namespace scanloom::sessions {
 
 std::string replay_id_of(const SessionInfo& session, const ReplayRequest& request) {
     std::string text = tag_of(session);
@@ -83,4 +83,4 @@ Result<> check_replayable(const mapping::Projection& projection, const LogEntry&
     return std::visit([&](const auto& body) { return check(projection, body); }, entry);
 }
 
-} // namespace scanloom::session
+} // namespace scanloom::sessions

@@ -9,7 +9,7 @@
 #include <optional>
 #include <string>
 
-namespace scanloom::session {
+namespace scanloom::sessions {
 
 /// The end of a replay job. At most one member has a value; if none has, the job follows its session.
 struct ReplayEnd {
@@ -46,4 +46,4 @@ struct ReplayRequest {
 /// Errors: kInvalidField if the cells are too small for the range of the sensor or the size of the scan or map.
 [[nodiscard]] Result<> check_replayable(const mapping::Projection& projection, const LogEntry& entry);
 
-} // namespace scanloom::session
+} // namespace scanloom::sessions

@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-namespace scanloom::session {
+namespace scanloom::sessions {
 namespace {
 
 constexpr std::size_t kRobotsMax = 1024; // per session
@@ -245,4 +245,4 @@ void RobotSequencer::release(const Group& group) {
     }
 }
 
-} // namespace scanloom::session
+} // namespace scanloom::sessions

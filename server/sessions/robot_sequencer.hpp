@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-namespace scanloom::session {
+namespace scanloom::sessions {
 
 /// A new link that waits until the entries of the robot's earlier links are in the maps.
 struct PendingJoin {
@@ -104,4 +104,4 @@ private:
     std::vector<bool> connected_;
 };
 
-} // namespace scanloom::session
+} // namespace scanloom::sessions

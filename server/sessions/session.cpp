@@ -12,7 +12,7 @@
 #include <cmath>
 #include <utility>
 
-namespace scanloom::session {
+namespace scanloom::sessions {
 namespace {
 
 constexpr double kSliceWork = 5e6;            // in the unit of Reach::work: a few milliseconds
@@ -295,7 +295,7 @@ void Session::begin_checkpoint() {
     auto write = [self = shared_from_this(), snapshot = snapshot(), state = projection_.state(),
                   since = checkpointed_] {
         const auto written =
-            session::write_checkpoint(self->log_, self->info_.id, *snapshot, state, since, self->hurried_);
+            sessions::write_checkpoint(self->log_, self->info_.id, *snapshot, state, since, self->hurried_);
         if (!written && !self->hurried_)
             log::warn({.session = self->info_.name}, "session '{}': no checkpoint: {}", self->info_.name,
                       written.error().message);
@@ -396,4 +396,4 @@ void Session::finish_closing() {
     closed();
 }
 
-} // namespace scanloom::session
+} // namespace scanloom::sessions

@@ -23,7 +23,7 @@
 #include <string>
 #include <vector>
 
-namespace scanloom::session {
+namespace scanloom::sessions {
 
 /// One session: the only writer of its log and of the maps derived from it.
 ///
@@ -194,4 +194,4 @@ private:
     std::optional<Error> closing_;
 };
 
-} // namespace scanloom::session
+} // namespace scanloom::sessions

@@ -4,7 +4,7 @@
 #include <mutex>
 #include <utility>
 
-namespace scanloom::session {
+namespace scanloom::sessions {
 
 void SessionCache::touch(const Entry& entry, Clock::time_point now) const {
     entry.used = now.time_since_epoch().count();
@@ -240,4 +240,4 @@ void SessionCache::settle() const {
     });
 }
 
-} // namespace scanloom::session
+} // namespace scanloom::sessions

@@ -17,7 +17,7 @@
 #include <string_view>
 #include <vector>
 
-namespace scanloom::session {
+namespace scanloom::sessions {
 
 /// One entry of the list of sessions, in memory or not.
 struct ListedSession {
@@ -133,4 +133,4 @@ private:
     Entries entries_;
 };
 
-} // namespace scanloom::session
+} // namespace scanloom::sessions

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-namespace scanloom::session {
+namespace scanloom::sessions {
 namespace {
 
 /// The state of one check. `stopped` is the error that `pace` returned.
@@ -120,4 +120,4 @@ Result<SessionCheck> check_session(store::ScanLog& log, const store::StoredSessi
     return found;
 }
 
-} // namespace scanloom::session
+} // namespace scanloom::sessions

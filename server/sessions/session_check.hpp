@@ -9,7 +9,7 @@
 #include <optional>
 #include <string>
 
-namespace scanloom::session {
+namespace scanloom::sessions {
 
 /// How much of a session is checked.
 enum class CheckDepth {
@@ -36,4 +36,4 @@ using CheckPace = std::function<Result<>(std::size_t bytes)>;
 [[nodiscard]] Result<SessionCheck> check_session(store::ScanLog& log, const store::StoredSession& stored,
                                                  CheckDepth depth, const CheckPace& pace);
 
-} // namespace scanloom::session
+} // namespace scanloom::sessions

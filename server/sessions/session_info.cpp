@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <bit>
 
-namespace scanloom::session {
+namespace scanloom::sessions {
 namespace {
 
 /// A bijection in which each input bit affects all output bits. Source: Steele, Lea, Flood (2014), SplitMix64.
@@ -32,4 +32,4 @@ Creator creator_of(const auth::Token& token) {
     return {token.name, token.limits.sessions, std::min(chunks, SessionLimits::kMost)};
 }
 
-} // namespace scanloom::session
+} // namespace scanloom::sessions

@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-namespace scanloom::session {
+namespace scanloom::sessions {
 
 // Properties of one session
 
@@ -77,4 +77,4 @@ struct Creator {
 /// Returns the creator that uses `token`, with the limits of the token.
 [[nodiscard]] Creator creator_of(const auth::Token& token);
 
-} // namespace scanloom::session
+} // namespace scanloom::sessions

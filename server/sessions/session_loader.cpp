@@ -9,7 +9,7 @@
 #include <limits>
 #include <utility>
 
-namespace scanloom::session {
+namespace scanloom::sessions {
 namespace {
 
 /// How long a request waits for memory, because the users of other sessions may release them soon.
@@ -151,4 +151,4 @@ void SessionLoader::trim_heap_later(std::size_t pages) {
     boost::asio::post(state_.may_wait, [this, pages] { trim_heap(pages); });
 }
 
-} // namespace scanloom::session
+} // namespace scanloom::sessions

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-namespace scanloom::session {
+namespace scanloom::sessions {
 
 /// Loads sessions from the store when they are requested, and evicts unused ones so that there is memory for them.
 /// Threads: any thread. No function blocks.
@@ -64,4 +64,4 @@ private:
     std::size_t freed_pages_ = 0;          // since memory was last returned to the system
 };
 
-} // namespace scanloom::session
+} // namespace scanloom::sessions

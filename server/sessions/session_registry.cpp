@@ -15,7 +15,7 @@
 #include <new>
 #include <utility>
 
-namespace scanloom::session {
+namespace scanloom::sessions {
 namespace {
 
 Result<> check_name(std::string_view name) {
@@ -265,4 +265,4 @@ void SessionRegistry::hurry() {
     }
 }
 
-} // namespace scanloom::session
+} // namespace scanloom::sessions

@@ -20,7 +20,7 @@
 #include <variant>
 #include <vector>
 
-namespace scanloom::session {
+namespace scanloom::sessions {
 
 /// All sessions by name.
 ///
@@ -141,4 +141,4 @@ private:
     std::mutex changing_; // held during recover() and by the functions that write to the store first
 };
 
-} // namespace scanloom::session
+} // namespace scanloom::sessions

@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-namespace scanloom::session {
+namespace scanloom::sessions {
 namespace {
 
 constexpr Revision kAskEvery = 1024; // entries, which take a few milliseconds
@@ -91,4 +91,4 @@ Result<StoredTrajectories> read_old_paths(store::ScanLog& log, store::SessionId 
     return paths;
 }
 
-} // namespace scanloom::session
+} // namespace scanloom::sessions

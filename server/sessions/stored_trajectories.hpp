@@ -10,7 +10,7 @@
 #include <vector>
 
 /// Reads the old parts of robots' trajectories from the log. The maps keep only a bounded number of points in memory.
-namespace scanloom::session {
+namespace scanloom::sessions {
 
 /// Upper bound of the points of all robots that are returned at once. They take up to 40 MiB while they are read, and
 /// 30 MiB as text.
@@ -41,4 +41,4 @@ struct StoredTrajectories {
                                                         const std::function<bool()>& is_wanted,
                                                         std::size_t points_max = kPathPointsMax);
 
-} // namespace scanloom::session
+} // namespace scanloom::sessions

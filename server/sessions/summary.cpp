@@ -5,7 +5,7 @@
 
 #include <utility>
 
-namespace scanloom::session {
+namespace scanloom::sessions {
 namespace {
 
 const Error kSummaryIsRead{Errc::kShuttingDown, "only sensors and cells follow"};
@@ -62,4 +62,4 @@ Result<std::optional<Summary>> read_summary(store::ScanLog& log, store::SessionI
     return std::optional(summary_of(*state, config));
 }
 
-} // namespace scanloom::session
+} // namespace scanloom::sessions

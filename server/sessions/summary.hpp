@@ -8,7 +8,7 @@
 #include <memory>
 #include <optional>
 
-namespace scanloom::session {
+namespace scanloom::sessions {
 
 /// Facts about a session that is not in memory.
 struct Summary {
@@ -26,4 +26,4 @@ struct Summary {
 [[nodiscard]] Result<std::optional<Summary>> read_summary(store::ScanLog& log, store::SessionId session,
                                                           const mapping::MapConfig& config);
 
-} // namespace scanloom::session
+} // namespace scanloom::sessions

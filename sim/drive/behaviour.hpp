@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace scanloom::robot {
+namespace scanloom::sim {
 
 /// The reference robot's body: a disc with a differential drive. (Wheelbase 0.230 m, wheel radius 0.035 m; the unicycle
 /// model needs neither.)
@@ -56,4 +56,4 @@ public:
     [[nodiscard]] virtual std::string remarks() const { return {}; }
 };
 
-} // namespace scanloom::robot
+} // namespace scanloom::sim

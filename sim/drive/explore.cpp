@@ -10,7 +10,7 @@
 #include <numbers>
 #include <utility>
 
-namespace scanloom::robot {
+namespace scanloom::sim {
 namespace {
 
 constexpr int kLookBlockedStepsMax = 40; // two seconds
@@ -119,4 +119,4 @@ void Explore::note(const Point2& position) {
     steps_ += 1;
 }
 
-} // namespace scanloom::robot
+} // namespace scanloom::sim

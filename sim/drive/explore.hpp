@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace scanloom::robot {
+namespace scanloom::sim {
 
 /// Drives to the goals it is given and observes the target there, until exploration is finished: first a full turn at
 /// the start, then path after path. It does not know the source of the goals: while needs_goal(), its caller calls one
@@ -63,4 +63,4 @@ private:
     Point2 blocked_at_{0.0, 0.0};
 };
 
-} // namespace scanloom::robot
+} // namespace scanloom::sim

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <utility>
 
-namespace scanloom::robot {
+namespace scanloom::sim {
 namespace {
 
 /// Returns the cells whose centres are nearer than `clearance_m` to the square of one of `cells`.
@@ -142,4 +142,4 @@ double CoverageMeter::share() const noexcept {
     return reachable_ == 0 ? 1.0 : static_cast<double>(passed_) / static_cast<double>(reachable_);
 }
 
-} // namespace scanloom::robot
+} // namespace scanloom::sim

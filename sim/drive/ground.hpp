@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-namespace scanloom::robot {
+namespace scanloom::sim {
 
 using planning::BitGrid;
 using planning::Spot;
@@ -93,4 +93,4 @@ private:
     double cell_m2_ = 0.0;
 };
 
-} // namespace scanloom::robot
+} // namespace scanloom::sim

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace scanloom::robot {
+namespace scanloom::sim {
 namespace {
 
 constexpr double kNear = 1.0;    // metres
@@ -98,4 +98,4 @@ double safe_speed(const Senses& senses, double yaw) {
     return std::min(kForwardMax, free_ahead(senses, yaw) / kSecondsAhead);
 }
 
-} // namespace scanloom::robot
+} // namespace scanloom::sim

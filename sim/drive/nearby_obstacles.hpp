@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-namespace scanloom::robot {
+namespace scanloom::sim {
 
 /// Remembers for three seconds the obstacles within a metre of the robot, because a laser that points ahead loses sight
 /// of what is next to a turning robot.
@@ -52,4 +52,4 @@ inline constexpr double kKeptClear = kBodyRadius + 0.02;
 /// time despite the delay of its scan.
 [[nodiscard]] double safe_speed(const Senses& senses, double yaw);
 
-} // namespace scanloom::robot
+} // namespace scanloom::sim

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <utility>
 
-namespace scanloom::robot {
+namespace scanloom::sim {
 namespace {
 
 constexpr double kGain = 4.0;      // radians per second for each radian
@@ -127,4 +127,4 @@ bool PathFollower::stops_at_next_corner() const {
     return dot(before, after) < std::cos(kGentleCorner);
 }
 
-} // namespace scanloom::robot
+} // namespace scanloom::sim

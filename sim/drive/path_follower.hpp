@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace scanloom::robot {
+namespace scanloom::sim {
 
 /// Radians per second: the usual limit of the turn rate.
 inline constexpr double kEasyTurn = 1.5;
@@ -75,4 +75,4 @@ private:
     int blocked_steps_ = 0;
 };
 
-} // namespace scanloom::robot
+} // namespace scanloom::sim

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numbers>
 
-namespace scanloom::robot {
+namespace scanloom::sim {
 namespace {
 
 // metres
@@ -87,4 +87,4 @@ void WallFollower::search() {
     turned_ = 0.0;
 }
 
-} // namespace scanloom::robot
+} // namespace scanloom::sim

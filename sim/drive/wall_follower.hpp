@@ -2,7 +2,7 @@
 
 #include "sim/drive/behaviour.hpp"
 
-namespace scanloom::robot {
+namespace scanloom::sim {
 
 /// Follows the wall on its right at 0.6 m, around its ends and through doors, and recovers when it has come too close
 /// to something.
@@ -34,4 +34,4 @@ private:
     int blocked_steps_ = 0;
 };
 
-} // namespace scanloom::robot
+} // namespace scanloom::sim

@@ -10,7 +10,7 @@
 #include <numbers>
 #include <utility>
 
-namespace scanloom::robot {
+namespace scanloom::sim {
 namespace {
 
 constexpr double kReach = 0.5;        // rho_0, metres
@@ -147,4 +147,4 @@ bool Waypoints::has_progress(double distance) {
     return steps_no_nearer_ < kStuckSteps;
 }
 
-} // namespace scanloom::robot
+} // namespace scanloom::sim

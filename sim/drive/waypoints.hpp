@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace scanloom::robot {
+namespace scanloom::sim {
 
 /// Computes the force of an artificial potential field on a robot, in the map frame. Its length is 1 if only a goal at
 /// least one metre away acts.
@@ -71,4 +71,4 @@ private:
     int steps_no_nearer_ = -1; // -1: the drive to it has not begun
 };
 
-} // namespace scanloom::robot
+} // namespace scanloom::sim

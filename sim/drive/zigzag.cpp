@@ -12,7 +12,7 @@
 #include <optional>
 #include <utility>
 
-namespace scanloom::robot {
+namespace scanloom::sim {
 namespace {
 
 /// Returns whether each cell of a row has a cell of the area `up` rows above it.
@@ -235,4 +235,4 @@ void Zigzag::give_up_lane(const Point2& position) {
     begin_next_lane(position);
 }
 
-} // namespace scanloom::robot
+} // namespace scanloom::sim

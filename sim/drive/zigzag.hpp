@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-namespace scanloom::robot {
+namespace scanloom::sim {
 
 /// A straight segment of a sweep, parallel to the x axis; metres in the map frame.
 struct Lane {
@@ -76,4 +76,4 @@ private:
     int given_up_ = 0;
 };
 
-} // namespace scanloom::robot
+} // namespace scanloom::sim

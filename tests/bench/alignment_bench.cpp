@@ -17,12 +17,12 @@ constexpr Pose2 kSecond{-2.6, 0.2, -2.0};
 
 /// Returns points in the robot's frame.
 std::vector<Point2> capture(const Pose2& place, std::size_t count, std::uint64_t seed) {
-    const auto room = robot::make_room();
-    const Sensor laser = robot::find_laser("lidar360").value();
-    robot::Random random(seed);
+    const auto room = sim::make_room();
+    const Sensor laser = sim::find_laser("lidar360").value();
+    sim::Random random(seed);
     std::vector<Point2> points;
     while (points.size() < count) {
-        const auto ranges = robot::sweep(room, laser, place, robot::Noise{}, random);
+        const auto ranges = sim::sweep(room, laser, place, sim::Noise{}, random);
         for (std::size_t n = 0; n < ranges.size() && points.size() < count; ++n) {
             if (ranges[n] == kInvalidRange || ranges[n] == kNoReturn) continue;
             const double angle = beam_angle(laser.angles, n);

@@ -19,13 +19,13 @@ enum Cloud : std::int64_t {
 };
 
 std::vector<Point2> make_capture(Cloud cloud, std::size_t count) {
-    const auto room = robot::make_room();
-    const Sensor laser = robot::find_laser("lidar360").value();
+    const auto room = sim::make_room();
+    const Sensor laser = sim::find_laser("lidar360").value();
     const Pose2 place{-3.3, 1.2, 1.0};
-    robot::Random random(1);
+    sim::Random random(1);
     std::vector<Point2> points;
     while (points.size() < count) {
-        const auto ranges = robot::sweep(room, laser, place, robot::Noise{}, random);
+        const auto ranges = sim::sweep(room, laser, place, sim::Noise{}, random);
         for (std::size_t n = 0; n < ranges.size() && points.size() < count; ++n) {
             if (ranges[n] == kInvalidRange || ranges[n] == kNoReturn) continue;
             const double angle = beam_angle(laser.angles, n);

@@ -178,7 +178,7 @@ std::vector<std::string> entries_of(std::int64_t count) {
 void recover_each_time(benchmark::State& state, store::ScanLog& log, store::SessionId session) {
     const std::atomic<bool> stop = false;
     for (auto _ : state) {
-        auto recovered = session::recover(log, session, {}, stop);
+        auto recovered = sessions::recover(log, session, {}, stop);
         if (!recovered) return state.SkipWithError(recovered.error().message.c_str());
         benchmark::DoNotOptimize(recovered);
     }

@@ -76,7 +76,7 @@ void OriginalStores::append_scans(store::ScanLog& log, std::uint64_t count) {
 /// Does the same as a server that stops.
 void OriginalStores::write_checkpoints(store::ScanLog& log) const {
     boost::asio::thread_pool compute(1);
-    session::SessionRegistry sessions(log, {compute.get_executor(), [] { return double{kCreated}; }});
+    sessions::SessionRegistry sessions(log, {compute.get_executor(), [] { return double{kCreated}; }});
     sessions.recover().value();
     sessions.drain();
     compute.join();

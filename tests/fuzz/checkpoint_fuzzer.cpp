@@ -28,7 +28,7 @@ std::string_view take_text(std::string_view& input) {
 SCANLOOM_FUZZER(checkpoint)(const std::uint8_t* data, std::size_t size) {
     using namespace scanloom;
     std::string_view input(reinterpret_cast<const char*>(data), size);
-    session::CheckpointReader reader{mapping::MapConfig{}};
+    sessions::CheckpointReader reader{mapping::MapConfig{}};
     while (!input.empty()) {
         const auto key = take_text(input);
         const auto value = take_text(input);
@@ -42,7 +42,7 @@ SCANLOOM_FUZZER(checkpoint)(const std::uint8_t* data, std::size_t size) {
     if (!projection) return 0;
     store::MemoryScanLog log;
     const auto id = log.create_session("s").value();
-    const auto written = session::write_checkpoint(log, id, projection->snapshot(), projection->state(), 0, false);
+    const auto written = sessions::write_checkpoint(log, id, projection->snapshot(), projection->state(), 0, false);
     fuzz::check(written.has_value(), "a checkpoint that was read can be written");
     return 0;
 }

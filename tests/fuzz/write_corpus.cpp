@@ -218,7 +218,7 @@ void write_checkpoint(const std::filesystem::path& folder) {
     }
     store::MemoryScanLog log;
     const auto id = log.create_session("s").value();
-    session::write_checkpoint(log, id, projection.snapshot(), projection.state(), 0, false).value();
+    sessions::write_checkpoint(log, id, projection.snapshot(), projection.state(), 0, false).value();
     write_parts(folder / "one_scan", log, id);
 }
 

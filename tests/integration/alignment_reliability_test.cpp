@@ -25,8 +25,8 @@ constexpr double kRightMetres = 0.02;
 constexpr double kRightDegrees = 0.5;
 constexpr std::size_t kMayDiffer = 2; // scenes whose result may differ with another compiler or processor
 
-robot::World world_of(const std::string& name) {
-    auto world = robot::find_world(name).value();
+sim::World world_of(const std::string& name) {
+    auto world = sim::find_world(name).value();
     if (name == "office") world.starts = {{-15.0, -10.0, 15.0, 10.0}}; // also in rooms, not only in the corridor
     return world;
 }
@@ -58,8 +58,8 @@ protected:
         const auto references = as_references(scene.map);
         if (world.name == seen) return {locate(references, {.points = scene.seen}).value(), scene.ground_truth};
         const auto other = world_of(seen);
-        robot::Random random(seed);
-        const auto view = standing_capture(other, free_place(other, random), robot::kMappedTurns, random);
+        sim::Random random(seed);
+        const auto view = standing_capture(other, free_place(other, random), sim::kMappedTurns, random);
         return {locate(references, {.points = view}).value(), std::nullopt};
     }
 };

@@ -12,7 +12,7 @@
 #include <vector>
 
 /// Robots that drive to the server's goals until nothing is left to explore.
-namespace scanloom::guide {
+namespace scanloom::guidance {
 namespace {
 
 using planning::Exploration;
@@ -25,46 +25,46 @@ constexpr int kGoalsMax = 100; // the largest number in the runs below is 42
 /// Avoids walls exactly on cell borders.
 const Point2 kMiddle{0.137, 0.163};
 
-robot::World moved(const robot::World& world) {
-    const auto move = [](std::vector<robot::Box> boxes) {
-        for (robot::Box& box : boxes) {
+sim::World moved(const sim::World& world) {
+    const auto move = [](std::vector<sim::Box> boxes) {
+        for (sim::Box& box : boxes) {
             box = {box.x_min + kMiddle.x, box.y_min + kMiddle.y, box.x_max + kMiddle.x, box.y_max + kMiddle.y};
         }
         return boxes;
     };
-    return robot::make_world(world.name, move(world.solids), move(world.floors));
+    return sim::make_world(world.name, move(world.solids), move(world.floors));
 }
 
-robot::World furnished_room() { return moved(robot::make_room()); }
+sim::World furnished_room() { return moved(sim::make_room()); }
 
 /// A corridor, two rooms above and three below it, with doors of 0.9 m and some furniture. 10 x 8 m inside.
-robot::World five_rooms() {
-    return moved(robot::make_world("five_rooms",
-                                   {
-                                       // shell
-                                       {-0.2, -0.2, 10.2, 0.0},
-                                       {-0.2, 8.0, 10.2, 8.2},
-                                       {-0.2, -0.2, 0.0, 8.2},
-                                       {10.0, -0.2, 10.2, 8.2},
-                                       // below the corridor: doors at 1.5, 5.2 and 8.5
-                                       {0.0, 2.85, 1.05, 3.0},
-                                       {1.95, 2.85, 4.75, 3.0},
-                                       {5.65, 2.85, 8.05, 3.0},
-                                       {8.95, 2.85, 10.0, 3.0},
-                                       {3.4, 0.0, 3.55, 3.0},
-                                       {6.9, 0.0, 7.05, 3.0},
-                                       // above it: doors at 3 and 7
-                                       {0.0, 4.6, 2.55, 4.75},
-                                       {3.45, 4.6, 6.55, 4.75},
-                                       {7.45, 4.6, 10.0, 4.75},
-                                       {4.9, 4.6, 5.05, 8.0},
-                                       // a desk, a cupboard, a table, a shelf
-                                       {0.0, 0.0, 1.6, 0.7},
-                                       {4.2, 1.0, 5.2, 1.6},
-                                       {1.4, 6.0, 2.6, 6.8},
-                                       {9.5, 5.5, 10.0, 7.5},
-                                   },
-                                   {{0.0, 3.0, 10.0, 4.6}}));
+sim::World five_rooms() {
+    return moved(sim::make_world("five_rooms",
+                                 {
+                                     // shell
+                                     {-0.2, -0.2, 10.2, 0.0},
+                                     {-0.2, 8.0, 10.2, 8.2},
+                                     {-0.2, -0.2, 0.0, 8.2},
+                                     {10.0, -0.2, 10.2, 8.2},
+                                     // below the corridor: doors at 1.5, 5.2 and 8.5
+                                     {0.0, 2.85, 1.05, 3.0},
+                                     {1.95, 2.85, 4.75, 3.0},
+                                     {5.65, 2.85, 8.05, 3.0},
+                                     {8.95, 2.85, 10.0, 3.0},
+                                     {3.4, 0.0, 3.55, 3.0},
+                                     {6.9, 0.0, 7.05, 3.0},
+                                     // above it: doors at 3 and 7
+                                     {0.0, 4.6, 2.55, 4.75},
+                                     {3.45, 4.6, 6.55, 4.75},
+                                     {7.45, 4.6, 10.0, 4.75},
+                                     {4.9, 4.6, 5.05, 8.0},
+                                     // a desk, a cupboard, a table, a shelf
+                                     {0.0, 0.0, 1.6, 0.7},
+                                     {4.2, 1.0, 5.2, 1.6},
+                                     {1.4, 6.0, 2.6, 6.8},
+                                     {9.5, 5.5, 10.0, 7.5},
+                                 },
+                                 {{0.0, 3.0, 10.0, 4.6}}));
 }
 
 Sensor laser(bool all_round) {
@@ -77,19 +77,19 @@ Sensor laser(bool all_round) {
     return sensor;
 }
 
-std::optional<robot::Noise> range_noise(bool noisy) {
+std::optional<sim::Noise> range_noise(bool noisy) {
     if (!noisy) return std::nullopt;
-    return robot::Noise{.range = 0.02, .beam_angle = 0.0};
+    return sim::Noise{.range = 0.02, .beam_angle = 0.0};
 }
 
 /// Returns the known part of the free cells of a perfect map.
-double known_share(const robot::World& world, const classify::ClassView& classes) {
-    const auto truth = robot::truth_of(world, kCellSize);
+double known_share(const sim::World& world, const classify::ClassView& classes) {
+    const auto truth = sim::truth_of(world, kCellSize);
     int free = 0;
     int known = 0;
     for (std::int32_t j = truth.j_begin; j < truth.j_begin + truth.height; ++j) {
         for (std::int32_t i = truth.i_begin; i < truth.i_begin + truth.width; ++i) {
-            if (truth.at(i, j) != robot::Truth::kFree) continue;
+            if (truth.at(i, j) != sim::Truth::kFree) continue;
             const auto found = class_at(classes, {i, j});
             free += 1;
             known += found != classify::CellClass::kUnexplored && found != classify::CellClass::kFrontier ? 1 : 0;
@@ -98,10 +98,10 @@ double known_share(const robot::World& world, const classify::ClassView& classes
     return static_cast<double>(known) / free;
 }
 
-class ExplorationTest : public session::SessionTest {
+class ExplorationTest : public sessions::SessionTest {
 protected:
     /// Lets the robots explore until the server has reported a complete map to each of them.
-    void explore(const robot::World& world, std::vector<ExploringRobot> robots) {
+    void explore(const sim::World& world, std::vector<ExploringRobot> robots) {
         mapping::Projection maps(mapping::resolve({}).value());
         GoalAssignments book;
         std::vector<bool> ended(robots.size());
@@ -114,7 +114,7 @@ protected:
             for (RobotIndex n = 0; n < robots.size(); ++n) {
                 if (!ended[n] && robots[n].has_arrived()) ended[n] = !ask(book, maps, n, robots[n]);
                 if (!robots[n].has_arrived()) robots[n].step(maps);
-                ASSERT_GE(robots[n].least_clearance(), robot::kBodyRadius - kCellSize);
+                ASSERT_GE(robots[n].least_clearance(), sim::kBodyRadius - kCellSize);
             }
             if (HasFatalFailure()) return;
         }
@@ -163,7 +163,7 @@ private:
 
 struct Case {
     const char* name;
-    robot::World (*world)();
+    sim::World (*world)();
     bool all_round;
     bool noisy;
     std::vector<Pose2> starts;
@@ -204,4 +204,4 @@ TEST_F(ExplorationTest, TwoRobotsFinishAndNeverShareAFrontier) {
 }
 
 } // namespace
-} // namespace scanloom::guide
+} // namespace scanloom::guidance

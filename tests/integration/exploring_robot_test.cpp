@@ -25,13 +25,13 @@ constexpr std::uint64_t kSeedsPerCase = 5; // so that cases can run in parallel
 constexpr SimulationLimits kLimits{.duration = 3600.0};
 
 /// Returns the known part of the free cells of a perfect map.
-double known_share(const World& world, const mapping::Snapshot& maps) {
+double known_share(const sim::World& world, const mapping::Snapshot& maps) {
     const auto truth = truth_of(world, maps.config.cell_size);
     int free = 0;
     int known = 0;
     for (std::int32_t j = truth.j_begin; j < truth.j_begin + truth.height; ++j) {
         for (std::int32_t i = truth.i_begin; i < truth.i_begin + truth.width; ++i) {
-            if (truth.at(i, j) != Truth::kFree) continue;
+            if (truth.at(i, j) != sim::Truth::kFree) continue;
             const auto found = class_at(maps.classes, {i, j});
             free += 1;
             known += found != classify::CellClass::kUnexplored && found != classify::CellClass::kFrontier ? 1 : 0;
@@ -41,7 +41,7 @@ double known_share(const World& world, const mapping::Snapshot& maps) {
 }
 
 /// Returns the area that the robot could still explore.
-std::vector<grid::Cell> left_unexplored(const World& world, GoalOracle& oracle, const Pose2& robot) {
+std::vector<grid::Cell> left_unexplored(const sim::World& world, GoalOracle& oracle, const Pose2& robot) {
     const auto maps = oracle.maps();
     const auto truth = truth_of(world, maps.config.cell_size);
     constexpr std::int32_t kMargin = 40; // cells; noisy readings end behind walls
@@ -49,10 +49,10 @@ std::vector<grid::Cell> left_unexplored(const World& world, GoalOracle& oracle, 
                              truth.j_begin + truth.height + kMargin};
     // the width of the requested paths: 2 * 0.22 m over cells of 0.05 m along their diagonals
     const auto size_min =
-        static_cast<std::size_t>(2.0 * Explore::kPathClearance / (std::numbers::sqrt2 * maps.config.cell_size));
+        static_cast<std::size_t>(2.0 * sim::Explore::kPathClearance / (std::numbers::sqrt2 * maps.config.cell_size));
     const Unexplored unexplored(maps.classes, area,
                                 {.cell_size = maps.config.cell_size,
-                                 .clearance = Explore::kPathClearance,
+                                 .clearance = sim::Explore::kPathClearance,
                                  .size_min = size_min,
                                  .looked_at = oracle.looked_at()});
     EXPECT_GT(unexplored.reach({robot.x, robot.y}), 1000) << "the check itself reaches most of the office";
@@ -62,7 +62,7 @@ std::vector<grid::Cell> left_unexplored(const World& world, GoalOracle& oracle, 
 /// A robot whose scans go to the oracle, which returns its goals.
 class Explorer {
 public:
-    Explorer(GoalOracle& oracle, RobotIndex index, SimulatorOptions options)
+    Explorer(GoalOracle& oracle, RobotIndex index, sim::SimulatorOptions options)
         : oracle_(oracle), index_(index), source_(std::move(options), kLimits, NoReturn::kFree, 0.0) {
         oracle_.join(index_, *source_.simulator().sensors().front());
         source_.ask_with([this]() -> boost::asio::awaitable<Result<NextStop>> { co_return oracle_.next(index_); });
@@ -102,7 +102,7 @@ void expect_explored(const Explorer& robot, GoalOracle& oracle) {
     const auto& simulator = robot.source().simulator();
     EXPECT_TRUE(left_unexplored(simulator.world(), oracle, simulator.pose()).empty());
     EXPECT_EQ(robot.source().simulator().collisions(), 0U);
-    EXPECT_GE(robot.clearance_min(), kBodyRadius);
+    EXPECT_GE(robot.clearance_min(), sim::kBodyRadius);
     EXPECT_TRUE(robot.source().remarks().starts_with("explored: no frontier is reachable with a clearance of 0.22 m, "))
         << robot.source().remarks();
 }
@@ -110,19 +110,19 @@ void expect_explored(const Explorer& robot, GoalOracle& oracle) {
 /// One degree between beams: a third of the time of the reference laser, with the same result. (Twenty offices with
 /// that laser and noise take 140 s of CPU time.)
 Sensor coarse_laser() {
-    Sensor laser = *find_laser("reference");
+    Sensor laser = *sim::find_laser("reference");
     laser.angles = UniformAngles{-std::numbers::pi / 2.0, std::numbers::pi / 180.0, 181};
     return laser;
 }
 
-Sensor reference_laser() { return *find_laser("reference"); }
+Sensor reference_laser() { return *sim::find_laser("reference"); }
 
 /// It frees cells along the walls behind the robot that it showed as free before: maps that alternate.
-Sensor all_round_laser() { return *find_laser("lidar360"); }
+Sensor all_round_laser() { return *sim::find_laser("lidar360"); }
 
 struct Case {
     const char* name;
-    World (*world)();
+    sim::World (*world)();
     Sensor (*laser)();
     bool noisy;
     std::uint64_t first_seed;
@@ -132,31 +132,31 @@ struct Case {
 };
 
 std::vector<Case> cases() {
-    std::vector<Case> cases{{"hall", make_hall, coarse_laser, false, 1, 1},
-                            {"office_noisy", make_office, reference_laser, true, 1, 2},
-                            {"office_reference", make_office, reference_laser, false, 1, 1},
-                            {"office_all_round", make_office, all_round_laser, false, 1, 1},
-                            {"room_walker_all_round_noisy", make_room_walker, all_round_laser, true, 17, 2},
-                            {"room_noisy", make_room, reference_laser, true, 1, 5},
-                            {"room_walker_noisy", make_room_walker, reference_laser, true, 1, 5}};
+    std::vector<Case> cases{{"hall", sim::make_hall, coarse_laser, false, 1, 1},
+                            {"office_noisy", sim::make_office, reference_laser, true, 1, 2},
+                            {"office_reference", sim::make_office, reference_laser, false, 1, 1},
+                            {"office_all_round", sim::make_office, all_round_laser, false, 1, 1},
+                            {"room_walker_all_round_noisy", sim::make_room_walker, all_round_laser, true, 17, 2},
+                            {"room_noisy", sim::make_room, reference_laser, true, 1, 5},
+                            {"room_walker_noisy", sim::make_room_walker, reference_laser, true, 1, 5}};
     for (std::uint64_t seed = 1; seed <= 20; seed += kSeedsPerCase) {
-        cases.push_back({"room", make_room, reference_laser, false, seed, kSeedsPerCase});
-        cases.push_back({"room_walker", make_room_walker, reference_laser, false, seed, kSeedsPerCase});
-        cases.push_back({"office", make_office, coarse_laser, false, seed, kSeedsPerCase});
+        cases.push_back({"room", sim::make_room, reference_laser, false, seed, kSeedsPerCase});
+        cases.push_back({"room_walker", sim::make_room_walker, reference_laser, false, seed, kSeedsPerCase});
+        cases.push_back({"office", sim::make_office, coarse_laser, false, seed, kSeedsPerCase});
     }
     return cases;
 }
 
-class ExploringRobots : public session::SessionTest {};
+class ExploringRobots : public sessions::SessionTest {};
 class ExploringRobot : public ExploringRobots, public testing::WithParamInterface<Case> {};
 
 TEST_P(ExploringRobot, EndsWithACompleteMapAndWithoutCollisions) {
     const Case& one = GetParam();
-    const World world = one.world();
+    const sim::World world = one.world();
     for (std::uint64_t seed = one.first_seed; seed < one.first_seed + one.seeds; ++seed) {
         SCOPED_TRACE(testing::Message() << "seed " << seed);
         GoalOracle oracle(session_);
-        Explorer robot(oracle, 0, {world, one.laser(), one.noisy ? std::optional(Noise{}) : std::nullopt, seed});
+        Explorer robot(oracle, 0, {world, one.laser(), one.noisy ? std::optional(sim::Noise{}) : std::nullopt, seed});
         while (robot.step()) {
         }
         expect_explored(robot, oracle);
@@ -168,7 +168,7 @@ INSTANTIATE_TEST_SUITE_P(Worlds, ExploringRobot, testing::ValuesIn(cases()),
                          [](const auto& one) { return testing::PrintToString(one.param); });
 
 TEST_F(ExploringRobots, TwoRobotsExploreTheOfficeTogether) {
-    const World world = make_office();
+    const sim::World world = sim::make_office();
     GoalOracle oracle(session_);
     Explorer first(oracle, 0, {world, coarse_laser(), std::nullopt, 1, Pose2{-13.0, -3.0, 0.0}});
     Explorer second(oracle, 1, {world, coarse_laser(), std::nullopt, 2, Pose2{13.0, 3.0, 0.0}});
@@ -185,7 +185,7 @@ TEST_F(ExploringRobots, TwoRobotsExploreTheOfficeTogether) {
 TEST_F(ExploringRobots, TheSameSeedGivesTheSameTrajectory) {
     const auto scans = [&] {
         GoalOracle oracle(session_);
-        Explorer robot(oracle, 0, {make_room_walker(), reference_laser(), Noise{}, 7});
+        Explorer robot(oracle, 0, {sim::make_room_walker(), reference_laser(), sim::Noise{}, 7});
         std::vector<Pose2> poses;
         while (robot.step()) poses.push_back(robot.source().simulator().pose());
         return poses;

@@ -241,14 +241,14 @@ TEST_F(IngestTest, PingsWithUnreadPongsAreLimited) {
 
 TEST_F(IngestTest, AFullSessionIsAFinalError) {
     start();
-    struct Silent : session::RobotListener {
+    struct Silent : sessions::RobotListener {
         void on_durable(std::uint64_t, std::size_t) override {}
         void on_failed(const Error&) override {}
     };
     const auto robot = welcomed(port(), hello("r"));
     const auto session = running_->sessions().find("lab");
     for (int n = 1; n < 1024; ++n) {
-        session->join({"r" + std::to_string(n)}, std::make_shared<Silent>(), [](const Result<session::Joined>&) {});
+        session->join({"r" + std::to_string(n)}, std::make_shared<Silent>(), [](const Result<sessions::Joined>&) {});
     }
     RobotSocket last(port());
     last.send(hello("last"));

@@ -57,19 +57,19 @@ protected:
         entries_.push_back(std::move(entry));
     }
 
-    std::shared_ptr<const mapping::Snapshot> maps_until(session::ReplayJobs& weaves, Revision until) {
-        const session::ReplayRequest request{session_.config, {until, std::nullopt}};
+    std::shared_ptr<const mapping::Snapshot> maps_until(sessions::ReplayJobs& weaves, Revision until) {
+        const sessions::ReplayRequest request{session_.config, {until, std::nullopt}};
         const auto weave = weaves.start(session_, request, entries_.size()).value();
         return testing_support::wait_for_maps(*weave, until, std::chrono::minutes(5));
     }
 
     store::MemoryScanLog log_;
-    session::SessionInfo session_;
+    sessions::SessionInfo session_;
     std::vector<std::string> bytes_;
     std::vector<LogEntry> entries_;
     std::uint64_t scans_ = 0;
     boost::asio::thread_pool pool_{2};
-    session::ReplayJobs weaves_{log_, pool_.get_executor()};
+    sessions::ReplayJobs weaves_{log_, pool_.get_executor()};
 };
 
 TEST_F(RealWeaves, EveryStepEqualsAMapComputedFromTheStart) {

@@ -113,18 +113,18 @@ TEST_F(RequestsTest, TheLastPlanIsKeptUntilTheRobotLeaves) {
     auto& ingest = start();
     const auto robot = looking_around("r");
     const auto session = ingest.sessions().find("lab");
-    const auto page = [&] { return ingest.goals().ways().page(session, guide::RobotPaths::Clock::now()); };
+    const auto page = [&] { return ingest.goals().ways().page(session, guidance::RobotPaths::Clock::now()); };
     robot->send(plan_to({2.5, 0.2}));
     const auto plan = robot->receive_kind<wire::PlanReply>();
     ASSERT_EQ(page().robots.size(), 1U);
-    EXPECT_EQ(page().robots[0].way->kind, guide::PathKind::kPlan);
+    EXPECT_EQ(page().robots[0].way->kind, guidance::PathKind::kPlan);
     EXPECT_EQ(page().robots[0].way->points, plan.result.value().points);
     EXPECT_EQ(page().robots[0].way->length_m, plan.result.value().length);
     EXPECT_EQ(page().robots[0].way->revision, plan.revision);
 
     robot->send(wire::CoverageRequest{.id = 2});
     const auto coverage = robot->receive_kind<wire::CoverageReply>();
-    EXPECT_EQ(page().robots[0].way->kind, guide::PathKind::kCoverage);
+    EXPECT_EQ(page().robots[0].way->kind, guidance::PathKind::kCoverage);
     EXPECT_EQ(page().robots[0].way->points, coverage.result.value().path.points);
 
     robot->send(wire::GoalRequest{.id = 3, .frontier_size_min = 10});
@@ -183,8 +183,8 @@ TEST_F(RequestsTest, TwoRobotsNeverGetTheSameFrontierOverAnyPort) {
     planning::ExplorationOptions options;
     options.frontier_size_min = 10;
     const auto other = ingest.goals()
-                           .next(session, *maps, guide::find_robot(*maps, "b").value(), {0.5, 1.25},
-                                 guide::GoalAssignments::Clock::now(), options)
+                           .next(session, *maps, guidance::find_robot(*maps, "b").value(), {0.5, 1.25},
+                                 guidance::GoalAssignments::Clock::now(), options)
                            .value();
     ASSERT_TRUE(other.goal);
     const Point2 target = Point2{other.goal->target.i + 0.5, other.goal->target.j + 0.5} * 0.05;
@@ -364,7 +364,7 @@ TEST_F(RequestsTest, NoSearchStartsDuringShutdown) {
     const auto session = ingest.sessions().find("lab");
     auto go_on = hold_searches();
     std::promise<std::string> sent;
-    guide::GoalAssignments goals;
+    guidance::GoalAssignments goals;
     RequestExecutor requests(ingest.planning(), ingest.planning(), {goals, ingest.locator(), ingest.sessions()});
     ASSERT_FALSE(
         requests.submit({session, 0}, plan_to({2.5, 0.2}),

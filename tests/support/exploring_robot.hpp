@@ -17,8 +17,8 @@ class ExploringRobot {
 public:
     static constexpr double kStep = 0.25; // metres
 
-    ExploringRobot(RobotIndex index, const robot::World& world, Sensor laser, const Pose2& start,
-                   const std::optional<robot::Noise>& noise)
+    ExploringRobot(RobotIndex index, const sim::World& world, Sensor laser, const Pose2& start,
+                   const std::optional<sim::Noise>& noise)
         : index_(index), world_(&world), laser_(std::move(laser)), noise_(noise), random_(index + 1), pose_(start) {}
 
     void join(mapping::Projection& maps) {
@@ -45,7 +45,7 @@ public:
             if (norm(*target_ - place()) > 0.0) pose_.yaw = direction(*target_ - place());
             target_.reset();
         }
-        least_clearance_ = std::min(least_clearance_, robot::clearance(*world_, place()));
+        least_clearance_ = std::min(least_clearance_, sim::clearance(*world_, place()));
         scan(maps);
     }
 
@@ -81,15 +81,15 @@ private:
         scan.stamp = 0.5 * static_cast<double>(seq_);
         scan.sensor = laser_.id;
         scan.pose = pose_;
-        scan.ranges = robot::sweep(*world_, laser_, pose_, noise_, random_);
+        scan.ranges = sim::sweep(*world_, laser_, pose_, noise_, random_);
         maps.apply(ScanTaken{index_, std::move(scan)}).value();
     }
 
     RobotIndex index_;
-    const robot::World* world_;
+    const sim::World* world_;
     Sensor laser_;
-    std::optional<robot::Noise> noise_;
-    robot::Random random_;
+    std::optional<sim::Noise> noise_;
+    sim::Random random_;
     Pose2 pose_;
     std::uint64_t seq_ = 0;
     std::vector<Point2> way_;

@@ -18,9 +18,9 @@ namespace scanloom::testing_support {
 /// Computes a server's answers to the robots of one session, without a server.
 class GoalOracle {
 public:
-    explicit GoalOracle(std::shared_ptr<const session::Session> session, const mapping::MapConfig& config = {})
+    explicit GoalOracle(std::shared_ptr<const sessions::Session> session, const mapping::MapConfig& config = {})
         : session_(std::move(session)), maps_(config) {
-        options_.passability.body_radius_m = robot::Explore::kPathClearance;
+        options_.passability.body_radius_m = sim::Explore::kPathClearance;
     }
 
     void join(RobotIndex robot, const Sensor& laser) {
@@ -58,9 +58,9 @@ public:
     }
 
 private:
-    std::shared_ptr<const session::Session> session_;
+    std::shared_ptr<const sessions::Session> session_;
     mapping::Projection maps_;
-    guide::GoalAssignments book_;
+    guidance::GoalAssignments book_;
     planning::ExplorationOptions options_;
     int asked_ = 0;
     std::map<RobotIndex, std::vector<grid::Cell>> around_target_; // of the goals that robots drive to

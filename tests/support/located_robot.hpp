@@ -9,19 +9,19 @@
 /// Views of simulated worlds in the server's format.
 namespace scanloom::testing_support {
 
-inline std::shared_ptr<const landmarks::ReferenceView> as_reference(const robot::StandingView& view) {
+inline std::shared_ptr<const landmarks::ReferenceView> as_reference(const sim::StandingView& view) {
     return std::make_shared<const landmarks::ReferenceView>(landmarks::ReferenceView{view.from, view.points});
 }
 
-inline landmarks::ReferenceViews as_references(const std::vector<robot::StandingView>& views) {
+inline landmarks::ReferenceViews as_references(const std::vector<sim::StandingView>& views) {
     landmarks::ReferenceViews references;
     for (const auto& view : views) references.push_back(as_reference(view));
     return references;
 }
 
-inline std::shared_ptr<const landmarks::ReferenceView> reference_view(const robot::World& world, const Pose2& place,
-                                                                      robot::Random& random, int turns = 10) {
-    return as_reference(robot::standing_view(world, place, random, turns));
+inline std::shared_ptr<const landmarks::ReferenceView> reference_view(const sim::World& world, const Pose2& place,
+                                                                      sim::Random& random, int turns = 10) {
+    return as_reference(sim::standing_view(world, place, random, turns));
 }
 
 } // namespace scanloom::testing_support

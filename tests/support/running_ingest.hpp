@@ -45,12 +45,12 @@ public:
     }
 
     void stop_accepting() { server_->stop(); }
-    [[nodiscard]] session::SessionRegistry& sessions() { return sessions_; }
+    [[nodiscard]] sessions::SessionRegistry& sessions() { return sessions_; }
     [[nodiscard]] metrics::IngestCounters& counters() { return metrics_.ingest(); }
     [[nodiscard]] metrics::RefusalCounters& refusals() { return metrics_.refusals(); }
     [[nodiscard]] auth::Authenticator& authenticator() { return authenticator_; }
-    [[nodiscard]] guide::GoalAssignments& goals() { return goals_; }
-    [[nodiscard]] guide::Locator& locator() { return locator_; }
+    [[nodiscard]] guidance::GoalAssignments& goals() { return goals_; }
+    [[nodiscard]] guidance::Locator& locator() { return locator_; }
     [[nodiscard]] boost::asio::any_io_executor planning() { return planning_.get_executor(); }
     [[nodiscard]] boost::asio::any_io_executor locating() { return locating_.get_executor(); }
     [[nodiscard]] boost::asio::any_io_executor may_wait() { return may_wait_.get_executor(); }
@@ -75,9 +75,9 @@ private:
     boost::asio::thread_pool planning_{1};
     boost::asio::thread_pool locating_{1};
     boost::asio::io_context io_;
-    session::SessionRegistry sessions_;
-    guide::GoalAssignments goals_;
-    guide::Locator locator_;
+    sessions::SessionRegistry sessions_;
+    guidance::GoalAssignments goals_;
+    guidance::Locator locator_;
     RequestExecutor requests_;
     std::unique_ptr<IngestServer> server_;
     std::vector<std::thread> io_threads_;

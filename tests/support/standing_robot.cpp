@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace scanloom::robot {
+namespace scanloom::sim {
 namespace {
 
 constexpr double kClearance = 0.3; // metres
@@ -116,4 +116,4 @@ MappedWorld mapped_world(const World& open, int places, std::uint64_t seed, doub
     return mapped;
 }
 
-} // namespace scanloom::robot
+} // namespace scanloom::sim

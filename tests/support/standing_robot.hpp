@@ -8,7 +8,7 @@
 #include <vector>
 
 /// Scans of a stationary robot in worlds where a door moves: test data for scan matching and localization.
-namespace scanloom::robot {
+namespace scanloom::sim {
 
 /// Returns the points of several turns of "lidar360" with noise, in the robot's frame.
 [[nodiscard]] std::vector<Point2> standing_capture(const World& world, const Pose2& place, int turns, Random& random);
@@ -63,4 +63,4 @@ struct MappedWorld {
 /// @param apart_max  largest distance in metres between a place and that earlier one
 [[nodiscard]] MappedWorld mapped_world(const World& open, int places, std::uint64_t seed, double apart_max = 3.0);
 
-} // namespace scanloom::robot
+} // namespace scanloom::sim

@@ -55,8 +55,8 @@ std::string goal_text(std::string_view robot, const mapping::Snapshot& maps, con
 }
 
 /// Describes a goal that was assigned earlier. If the robot has planned another path since, the goal has no path.
-std::string goal_text(std::string_view robot, const guide::Goal& goal, const guide::HeldPath* way) {
-    const bool leads_there = way != nullptr && way->kind == guide::PathKind::kGoal;
+std::string goal_text(std::string_view robot, const guidance::Goal& goal, const guidance::HeldPath* way) {
+    const bool leads_there = way != nullptr && way->kind == guidance::PathKind::kGoal;
     return head_text(robot, goal.revision, "goal") +
            fmt::format(R"("goal":{},"target":{},"in_danger":{},"path":{},"length":{}}})", point_text(goal.place),
                        point_text(goal.target), goal.in_danger, leads_there ? line_string(way->points) : "null",
@@ -74,8 +74,8 @@ Result<Response> get_goal(Context& context) {
     const auto robot = robot_named(*maps, *name);
     if (!robot) return robot.error();
 
-    const auto page = context.services.goals.ways().page(*session, guide::RobotPaths::Clock::now());
-    const auto held = std::ranges::find(page.robots, *robot, &guide::RobotPaths::Held::robot);
+    const auto page = context.services.goals.ways().page(*session, guidance::RobotPaths::Clock::now());
+    const auto held = std::ranges::find(page.robots, *robot, &guidance::RobotPaths::Held::robot);
     if (held == page.robots.end() || !held->goal) {
         const bool explored = std::ranges::binary_search(page.explored, *robot);
         const auto head = head_text(*name, maps->revision, explored ? "complete" : "none");
@@ -98,11 +98,11 @@ Result<Response> assign_goal(Context& context) {
     if (!robot) return robot.error();
     const auto options = exploration_options(*body, snapshot.robots[*robot].body_radius);
     if (!options) return options.error();
-    const auto pose = guide::pose_of(snapshot, *robot);
+    const auto pose = guidance::pose_of(snapshot, *robot);
     if (!pose) return pose.error();
 
     const auto next = context.services.goals.next(found->session, snapshot, *robot, Point2{pose->x, pose->y},
-                                                  guide::GoalAssignments::Clock::now(), *options);
+                                                  guidance::GoalAssignments::Clock::now(), *options);
     if (!next) return next.error();
     return ok_text(kJson, context.services.responses.take(next->path.points.size() * kPointTextBytes),
                    [&] { return goal_text(*name, snapshot, *next); });
@@ -110,16 +110,16 @@ Result<Response> assign_goal(Context& context) {
 
 namespace {
 
-std::string_view name_of(guide::PathKind kind) {
+std::string_view name_of(guidance::PathKind kind) {
     switch (kind) {
-    case guide::PathKind::kGoal: return "goal";
-    case guide::PathKind::kPlan: return "plan";
-    case guide::PathKind::kCoverage: return "coverage";
+    case guidance::PathKind::kGoal: return "goal";
+    case guidance::PathKind::kPlan: return "plan";
+    case guidance::PathKind::kCoverage: return "coverage";
     }
     return "";
 }
 
-std::string feature_of(const std::string& robot, const guide::HeldPath& way) {
+std::string feature_of(const std::string& robot, const guidance::HeldPath& way) {
     const boost::json::object properties{{"role", "way"},
                                          {"robot", robot},
                                          {"kind", name_of(way.kind)},
@@ -129,7 +129,7 @@ std::string feature_of(const std::string& robot, const guide::HeldPath& way) {
     return feature(properties, line_string(way.points));
 }
 
-std::string feature_of(const std::string& robot, const guide::Goal& goal) {
+std::string feature_of(const std::string& robot, const guidance::Goal& goal) {
     const boost::json::object properties{{"role", "goal"},
                                          {"robot", robot},
                                          {"target", position(goal.target)},
@@ -144,7 +144,7 @@ Result<Response> get_goals(Context& context) {
     const auto& session = context.session;
     if (!session) return session.error();
 
-    const auto page = context.services.goals.ways().page(*session, guide::RobotPaths::Clock::now());
+    const auto page = context.services.goals.ways().page(*session, guidance::RobotPaths::Clock::now());
     std::size_t bytes = page.explored.size() * kNameBytesMax;
     for (const auto& held : page.robots) bytes += ((held.way ? held.way->points.size() : 0) + 16) * kPointTextBytes;
     auto permit = context.services.responses.take(bytes);

@@ -176,7 +176,7 @@ private:
 /// Stops a request that takes too long, because others wait for the same thread.
 class SearchLimit {
 public:
-    explicit SearchLimit(const session::SessionRegistry& sessions) : sessions_(sessions) {}
+    explicit SearchLimit(const sessions::SessionRegistry& sessions) : sessions_(sessions) {}
 
     Result<> operator()() const {
         if (sessions_.is_draining()) {
@@ -191,16 +191,16 @@ public:
 private:
     static constexpr std::chrono::seconds kPatience{5};
 
-    const session::SessionRegistry& sessions_;
+    const sessions::SessionRegistry& sessions_;
     const std::chrono::steady_clock::time_point deadline_ = std::chrono::steady_clock::now() + kPatience;
 };
 
-Result<> choose(store::ScanLog& log, const session::SessionInfo& session, const CloudQuery& query, Revision newest,
+Result<> choose(store::ScanLog& log, const sessions::SessionInfo& session, const CloudQuery& query, Revision newest,
                 const SearchLimit& patience, Chosen& chosen) {
     const Revision until = std::min(newest, query.until.value_or(newest));
     // The filter is the same for every `until`, so that parts make up the whole.
-    landmarks::SessionCaptures cut(session::scan_filter_of(session));
-    auto read = session::read_captures(
+    landmarks::SessionCaptures cut(sessions::scan_filter_of(session));
+    auto read = sessions::read_captures(
         log, session.id, cut, until,
         [&](const landmarks::RobotCapture& ended) { return chosen.add(ended, ended.ended); },
         [&](Revision) { return patience(); });

@@ -41,9 +41,9 @@ LogFormat protobuf_format() {
             }};
 }
 
-LogFormat carmen_format(const session::SessionInfo& session) {
+LogFormat carmen_format(const sessions::SessionInfo& session) {
     return {"text/plain; charset=utf-8", "clf", exchange::CarmenText::head(session.name),
-            [carmen = exchange::CarmenText(session::scan_filter_of(session))](
+            [carmen = exchange::CarmenText(sessions::scan_filter_of(session))](
                 std::string& text, std::string_view bytes) mutable -> Result<> {
                 const auto entry = wire::decode_entry(bytes);
                 if (!entry) return Error{Errc::kDataLoss, entry.error().message};
@@ -57,7 +57,7 @@ LogFormat carmen_format(const session::SessionInfo& session) {
 /// Reads a log piece by piece. Between two pieces it keeps only the position at which to continue.
 class LogStream final : public BodyStream {
 public:
-    LogStream(std::shared_ptr<session::Session> session, store::ScanLog& log, LogFormat format)
+    LogStream(std::shared_ptr<sessions::Session> session, store::ScanLog& log, LogFormat format)
         : session_(std::move(session)), log_(log), format_(std::move(format)), newest_(session_->snapshot()->revision),
           piece_(format_.head) {}
 
@@ -82,7 +82,7 @@ private:
         });
     }
 
-    std::shared_ptr<session::Session> session_;
+    std::shared_ptr<sessions::Session> session_;
     store::ScanLog& log_;
     LogFormat format_;
     const Revision newest_;

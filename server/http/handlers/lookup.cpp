@@ -13,7 +13,7 @@
 
 namespace scanloom::http {
 
-std::optional<Error> damage_of(const session::SessionRegistry& sessions, const std::string& name) {
+std::optional<Error> damage_of(const sessions::SessionRegistry& sessions, const std::string& name) {
     const auto damaged = sessions.damaged();
     if (const auto found = damaged.find(name); found != damaged.end()) {
         if (found->second.code == Errc::kOverloaded) { // the session itself is intact
@@ -27,15 +27,15 @@ std::optional<Error> damage_of(const session::SessionRegistry& sessions, const s
     return std::nullopt;
 }
 
-Result<session::ListedSession> find_listed(const Context& context) {
+Result<sessions::ListedSession> find_listed(const Context& context) {
     const auto& sessions = context.services.sessions;
     const auto& name = context.arguments["session"];
     if (auto listed = sessions.listed(name)) return *std::move(listed);
-    return damage_of(sessions, name).value_or(session::no_such_session(name));
+    return damage_of(sessions, name).value_or(sessions::no_such_session(name));
 }
 
-std::string session_tag(const session::SessionInfo& info, const MakingVersions& versions) {
-    const auto tag = fmt::format("{}-{}.{}", session::tag_of(info), versions.weaving, versions.rendering);
+std::string session_tag(const sessions::SessionInfo& info, const MakingVersions& versions) {
+    const auto tag = fmt::format("{}-{}.{}", sessions::tag_of(info), versions.weaving, versions.rendering);
     return tag_with(tag, *info.exclusions);
 }
 
@@ -49,7 +49,7 @@ constexpr std::string_view kWeave = "weave";
 constexpr std::string_view kWith = "with";
 
 /// Returns the maps of a replay job, or the reason why it has none.
-Result<Maps> maps_of(std::shared_ptr<session::Session> session, const std::shared_ptr<session::ReplayJob>& weave,
+Result<Maps> maps_of(std::shared_ptr<sessions::Session> session, const std::shared_ptr<sessions::ReplayJob>& weave,
                      std::shared_ptr<const mapping::Snapshot> maps) {
     if (maps) {
         auto tag = fmt::format("{}-{}", session_tag(session->info()), weave->id());
@@ -70,8 +70,8 @@ Result<Maps> maps_of(std::shared_ptr<session::Session> session, const std::share
 
 } // namespace
 
-Result<std::shared_ptr<session::ReplayJob>> find_weave(session::ReplayJobs& weaves, const session::Session& session,
-                                                       std::string_view id) {
+Result<std::shared_ptr<sessions::ReplayJob>> find_weave(sessions::ReplayJobs& weaves, const sessions::Session& session,
+                                                        std::string_view id) {
     if (auto weave = weaves.find(session.info().id, id)) return weave;
     return Error{Errc::kNotFound,
                  fmt::format("the session has no replay job {}; start one with POST .../weave", in_quotes(id))};
@@ -94,7 +94,7 @@ Result<Maps> chosen(const Context& context, std::string_view parameter, Waiting 
 }
 
 /// Suspends the coroutine until the job has maps of `target` or has ended, at most for Services::replay_patience.
-boost::asio::awaitable<void> wait_for(Context& context, session::ReplayJob& weave, Revision target) {
+boost::asio::awaitable<void> wait_for(Context& context, sessions::ReplayJob& weave, Revision target) {
     const Pool pool = context.pool;
     co_await context.run_on(Pool::kIo); // one thread at a time uses the timer
     const auto executor = co_await boost::asio::this_coro::executor;
@@ -113,9 +113,9 @@ boost::asio::awaitable<Result<Maps>> replayed(Context& context) {
     if (!permit) co_return permit.error();
     const Revision newest = (*session)->snapshot()->revision;
     auto& weaves = context.services.weaves;
-    const auto weave = weaves.start((*session)->info(), *request, newest, session::ReplayJobs::Listing::kUnlisted);
+    const auto weave = weaves.start((*session)->info(), *request, newest, sessions::ReplayJobs::Listing::kUnlisted);
     if (!weave) co_return weave.error();
-    const Revision target = session::target_of(*request, newest);
+    const Revision target = sessions::target_of(*request, newest);
     co_await wait_for(context, **weave, target);
     co_return maps_of(*session, *weave, (*weave)->maps_with(target));
 }

@@ -22,11 +22,11 @@ namespace scanloom::http {
 
 /// Returns why a stored session cannot be served, or nullopt: kDataLoss if its log is damaged, kOverloaded if memory
 /// ran out while loading it.
-[[nodiscard]] std::optional<Error> damage_of(const session::SessionRegistry& sessions, const std::string& name);
+[[nodiscard]] std::optional<Error> damage_of(const sessions::SessionRegistry& sessions, const std::string& name);
 
 /// Returns the session in the path, in memory or not.
 /// Errors: kNotFound; those of damage_of().
-[[nodiscard]] Result<session::ListedSession> find_listed(const Context& context);
+[[nodiscard]] Result<sessions::ListedSession> find_listed(const Context& context);
 
 /// Versions of the algorithms that compute maps from logs, and bytes from maps.
 struct MakingVersions {
@@ -38,14 +38,14 @@ struct MakingVersions {
 /// of an earlier store, and of the same session as another version of the program shows it, because viewers cache
 /// immutable responses. It is part of every entity tag of data of the session. It begins with the session_id that
 /// robots receive.
-[[nodiscard]] std::string session_tag(const session::SessionInfo& info, const MakingVersions& versions = {});
+[[nodiscard]] std::string session_tag(const sessions::SessionInfo& info, const MakingVersions& versions = {});
 
 /// Returns the tag of maps with these exclusions. Each change of the exclusions changes the maps at the same revisions.
 [[nodiscard]] std::string tag_with(std::string_view tag, const Exclusions& exclusions);
 
 /// The maps that a request refers to.
 struct Maps {
-    std::shared_ptr<session::Session> session;
+    std::shared_ptr<sessions::Session> session;
     std::shared_ptr<const mapping::Snapshot> snapshot;
     std::shared_ptr<const void> origin; ///< their producer: the session or the replay job
     std::string tag;                    ///< unique among all sessions and replay jobs; for entity tags
@@ -77,7 +77,7 @@ enum class Waiting { kAllowed, kNotAllowed };
 [[nodiscard]] Result<TwoMaps> find_two_maps(const Context& context);
 
 /// Errors: kNotFound if there is no such replay job.
-[[nodiscard]] Result<std::shared_ptr<session::ReplayJob>>
-find_weave(session::ReplayJobs& weaves, const session::Session& session, std::string_view id);
+[[nodiscard]] Result<std::shared_ptr<sessions::ReplayJob>>
+find_weave(sessions::ReplayJobs& weaves, const sessions::Session& session, std::string_view id);
 
 } // namespace scanloom::http

@@ -52,7 +52,7 @@ Result<std::optional<tiles::Extent>> bbox_parameter(const Query& query) {
 }
 
 Result<RobotIndex> robot_named(const mapping::Snapshot& maps, std::string_view name) {
-    const auto robot = guide::find_robot(maps, name);
+    const auto robot = guidance::find_robot(maps, name);
     if (!robot) return prefixed(fmt::format("robot is {}: ", in_quotes(name)), robot.error());
     return *robot;
 }

@@ -63,7 +63,7 @@ namespace {
 Result<Place> start_of(const boost::json::object& body, const mapping::Snapshot& maps) {
     if (const auto* start = body.if_contains("start")) return read_place(*start, "start", maps);
     if (maps.robots.size() == 1) {
-        const auto pose = guide::pose_of(maps, 0);
+        const auto pose = guidance::pose_of(maps, 0);
         if (!pose) return prefixed("start is missing: ", pose.error());
         return Place{{pose->x, pose->y}, maps.robots[0].body_radius};
     }
@@ -120,7 +120,7 @@ Result<Response> post_coverage(Context& context) {
     if (!options) return options.error();
 
     auto coverage = planning::plan_coverage(snapshot.classes, snapshot.config.cell_size, start->point, *options,
-                                            guide::SearchLimit(context.services.sessions));
+                                            guidance::SearchLimit(context.services.sessions));
     if (!coverage) return coverage.error();
     const std::size_t bytes =
         coverage->path.points.size() * kPointTextBytes + coverage->unreachable.size() * kCellTextBytes;

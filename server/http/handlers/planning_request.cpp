@@ -127,9 +127,9 @@ Result<Place> read_place(const boost::json::value& value, std::string_view name,
     if (auto ok = check_members(value.get_object(), kKnown); !ok) return prefixed(within, ok.error());
     const auto robot = read_text(value.get_object(), "robot");
     if (!robot) return prefixed(within, robot.error());
-    const auto index = guide::find_robot(maps, *robot);
+    const auto index = guidance::find_robot(maps, *robot);
     if (!index) return prefixed(fmt::format("{} is robot {}: ", name, in_quotes(*robot)), index.error());
-    const auto pose = guide::pose_of(maps, *index);
+    const auto pose = guidance::pose_of(maps, *index);
     if (!pose) return prefixed(within, pose.error());
     return Place{{pose->x, pose->y}, maps.robots[*index].body_radius};
 }

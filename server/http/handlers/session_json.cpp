@@ -47,8 +47,8 @@ boost::json::value radius_json(const std::optional<double>& radius) {
 }
 
 /// @param session  null if it is not in memory
-boost::json::object session_json(const session::SessionInfo& info, const mapping::Snapshot& snapshot,
-                                 const session::Session* session, std::optional<std::string> failure) {
+boost::json::object session_json(const sessions::SessionInfo& info, const mapping::Snapshot& snapshot,
+                                 const sessions::Session* session, std::optional<std::string> failure) {
     boost::json::array robots;
     std::uint64_t scans = 0;
     for (RobotIndex index = 0; index < snapshot.robots.size(); ++index) {
@@ -93,11 +93,11 @@ boost::json::object to_json(const tiles::Extent& extent) {
             {"max_y", rounded_metres(extent.max_y)}};
 }
 
-boost::json::object to_json(const session::Session& session) {
+boost::json::object to_json(const sessions::Session& session) {
     return session_json(session.info(), *session.snapshot(), &session, std::nullopt);
 }
 
-boost::json::object to_json(const session::ListedSession& listed, std::optional<std::string> store_failure) {
+boost::json::object to_json(const sessions::ListedSession& listed, std::optional<std::string> store_failure) {
     const auto* session = listed.session.get();
     const auto maps = session == nullptr ? listed.summary.facts : session->snapshot();
     return session_json(listed.info, *maps, session, std::move(store_failure));

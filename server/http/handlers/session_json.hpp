@@ -18,9 +18,9 @@ namespace scanloom::http {
 [[nodiscard]] boost::json::object to_json(const tiles::Extent& extent);
 
 /// Returns all properties of a session, as the API shows them.
-[[nodiscard]] boost::json::object to_json(const session::Session& session);
+[[nodiscard]] boost::json::object to_json(const sessions::Session& session);
 /// @param store_failure  why the store accepts no changes; nullopt if it does. Sessions notice it only when a robot sends
-[[nodiscard]] boost::json::object to_json(const session::ListedSession& listed,
+[[nodiscard]] boost::json::object to_json(const sessions::ListedSession& listed,
                                           std::optional<std::string> store_failure);
 
 /// Returns a short description of a session that accepts no scans until it is loaded again from the store: its name,

@@ -50,9 +50,9 @@ Result<Page> parse_page(const Query& query) {
 }
 
 /// A session that is served, or the reason why it is not.
-using ListedSession = Result<session::ListedSession>;
+using ListedSession = Result<sessions::ListedSession>;
 
-std::map<std::string, ListedSession, std::less<>> sessions_by_name(const session::SessionRegistry& sessions,
+std::map<std::string, ListedSession, std::less<>> sessions_by_name(const sessions::SessionRegistry& sessions,
                                                                    const auth::Token& seen_by) {
     std::map<std::string, ListedSession, std::less<>> listed;
     for (auto& session : sessions.all()) listed.emplace(session.info.name, session);
@@ -70,7 +70,7 @@ struct StoreState {
         : damaged(services.check.damaged()), failure(services.log.stats().last_error) {}
 };
 
-boost::json::object listed_json(const session::ListedSession& listed, const StoreState& store) {
+boost::json::object listed_json(const sessions::ListedSession& listed, const StoreState& store) {
     auto json = to_json(listed, store.failure);
     const auto damage = store.damaged.find(listed.info.name);
     if (damage != store.damaged.end()) json["damage"] = damage->second.message;
@@ -81,7 +81,7 @@ boost::json::object listed_json(const ListedSession& listed, std::string_view na
     return listed ? listed_json(*listed, store) : damaged_json(name, listed.error());
 }
 
-Response created_session(const session::Session& session) {
+Response created_session(const sessions::Session& session) {
     return created(to_json(session)).set("Location", fmt::format("/api/v1/sessions/{}", session.info().name));
 }
 
@@ -108,7 +108,7 @@ Result<Response> create_session(Context& context) {
     if (const auto why = Authorizer::objection(*context.token, wanted->name))
         return context.services.authorizer.refuse(context.request, *why, wanted->name);
     const auto session =
-        context.services.sessions.create(wanted->name, wanted->options, session::creator_of(*context.token));
+        context.services.sessions.create(wanted->name, wanted->options, sessions::creator_of(*context.token));
     if (!session) return context.services.authorizer.noted(context, session.error(), wanted->name);
     return created_session(**session);
 }
@@ -127,7 +127,7 @@ Result<Response> delete_session(Context& context) {
         context.services.weaves.remove_all(info->id);
         context.services.landmarks.remove(info->id);
         context.services.locator.remove(info->id);
-        context.services.tiles.forget(session::tag_of(*info));
+        context.services.tiles.forget(sessions::tag_of(*info));
     }
     return no_content();
 }
@@ -188,7 +188,7 @@ Result<Response> import_map(Context& context) {
     }
     const auto& name = context.arguments["session"];
     const auto session =
-        context.services.sessions.import_map(name, form->options, *patches, session::creator_of(*context.token));
+        context.services.sessions.import_map(name, form->options, *patches, sessions::creator_of(*context.token));
     if (!session) return context.services.authorizer.noted(context, session.error(), name);
     return created_session(**session);
 }

@@ -86,7 +86,7 @@ Families store_families(const store::ScanLog& log) {
 
 double bytes_of(std::int64_t pages) { return static_cast<double>(pages) * static_cast<double>(mapping::kPageBytes); }
 
-Families session_families(const session::SessionRegistry& sessions, const session::BackgroundCheck& check) {
+Families session_families(const sessions::SessionRegistry& sessions, const sessions::BackgroundCheck& check) {
     const auto& counters = sessions.counters();
     const auto served = sessions.list();
     std::size_t backlog = 0;

@@ -95,12 +95,12 @@ void append_feature(std::string& text, const std::string& robot, const Points& p
 
 std::size_t bytes_about(const mapping::Snapshot& snapshot, const TrajectoryParameters& asked) {
     const std::size_t point_bytes = asked.with_times ? 60 : 24;
-    const std::size_t old = session::count_old_points(snapshot, asked.since);
+    const std::size_t old = sessions::count_old_points(snapshot, asked.since);
     std::size_t points = old;
     for (const auto& robot : snapshot.robots)
         points += robot.trajectory.size() - robot.trajectory.first_after(asked.since);
-    return std::min(points, session::kPathPointsMax) * point_bytes +
-           std::min(old, session::kPathPointsMax) * sizeof(mapping::TrajectoryPoint);
+    return std::min(points, sessions::kPathPointsMax) * point_bytes +
+           std::min(old, sessions::kPathPointsMax) * sizeof(mapping::TrajectoryPoint);
 }
 
 } // namespace
@@ -117,8 +117,8 @@ Result<Response> get_trajectory(Context& context) {
     const TrajectoryParameters asked{since_in(*snapshot, *since), *with_times};
     auto permit = context.services.responses.take(bytes_about(*snapshot, asked));
     if (!permit) return permit.error();
-    const auto old = session::read_old_paths(context.services.log, (*session)->info().id, *snapshot, asked.since,
-                                             [&] { return !context.services.sessions.is_draining(); });
+    const auto old = sessions::read_old_paths(context.services.log, (*session)->info().id, *snapshot, asked.since,
+                                              [&] { return !context.services.sessions.is_draining(); });
     if (!old) return old.error();
     std::string text = fmt::format(
         R"({{"type":"FeatureCollection","frame_id":"map","units":"m","revision":{},"features":[)", old->until);

@@ -52,27 +52,27 @@ Error wrong_until(std::string_view shown) {
 }
 
 /// @param newest  the session's revision
-Result<session::ReplayEnd> parse_until(std::string_view text, Revision newest) {
+Result<sessions::ReplayEnd> parse_until(std::string_view text, Revision newest) {
     if (const auto revision = parse_integer<Revision>(text)) {
-        if (*revision <= newest) return session::ReplayEnd{*revision, std::nullopt};
+        if (*revision <= newest) return sessions::ReplayEnd{*revision, std::nullopt};
         return Error{Errc::kConflict,
                      fmt::format("until is {}, but the session is at revision {}; ask again when it is there",
                                  *revision, newest)};
     }
     const auto stamp = text.ends_with('s') ? parse_real(text.substr(0, text.size() - 1)) : parse_rfc3339(text);
-    if (stamp) return session::ReplayEnd{std::nullopt, *stamp};
+    if (stamp) return sessions::ReplayEnd{std::nullopt, *stamp};
     if (text.find(' ') == std::string_view::npos) return wrong_until(in_quotes(text));
     return wrong_until(in_quotes(text) + " (a + in an address is a space, and %2B a +)");
 }
 
-Result<session::ReplayRequest> request_of(const session::Session& session, const SessionOptions& options,
-                                          std::optional<std::string_view> until) {
+Result<sessions::ReplayRequest> request_of(const sessions::Session& session, const SessionOptions& options,
+                                           std::optional<std::string_view> until) {
     const auto config = mapping::resolve(options);
     if (!config) return config.error();
-    if (!until) return session::ReplayRequest{*config, {}};
+    if (!until) return sessions::ReplayRequest{*config, {}};
     const auto end = parse_until(*until, session.snapshot()->revision);
     if (!end) return end.error();
-    return session::ReplayRequest{*config, *end};
+    return sessions::ReplayRequest{*config, *end};
 }
 
 } // namespace
@@ -90,7 +90,7 @@ bool asks_for_weaving(const Query& query) {
     return std::ranges::any_of(weave_parameters(), [&](std::string_view name) { return query.find(name).has_value(); });
 }
 
-Result<session::ReplayRequest> weave_request(const session::Session& session, const Query& query) {
+Result<sessions::ReplayRequest> weave_request(const sessions::Session& session, const Query& query) {
     auto options = mapping::options_of(session.info().config);
     for (const auto& field : mapping::config_fields()) {
         const auto text = query.find(field.name);
@@ -100,7 +100,7 @@ Result<session::ReplayRequest> weave_request(const session::Session& session, co
     return request_of(session, options, query.find(kUntil));
 }
 
-Result<session::ReplayRequest> weave_request(const session::Session& session, const boost::json::object& body) {
+Result<sessions::ReplayRequest> weave_request(const sessions::Session& session, const boost::json::object& body) {
     auto options = mapping::options_of(session.info().config);
     if (auto read = read_options(body, options); !read) return read.error();
     const auto* until = body.if_contains(kUntil);

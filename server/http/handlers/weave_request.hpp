@@ -24,8 +24,8 @@ namespace scanloom::http {
 ///   until=976052857.5s            before the first scan with a later stamp on the robots' clocks, in seconds
 ///   until=2000-12-05T22:27:37Z    the same, for clocks that count from 1970
 /// Errors: kInvalidField, naming the parameter; kConflict if the log has no such entry yet.
-[[nodiscard]] Result<session::ReplayRequest> weave_request(const session::Session& session, const Query& query);
-[[nodiscard]] Result<session::ReplayRequest> weave_request(const session::Session& session,
-                                                           const boost::json::object& body);
+[[nodiscard]] Result<sessions::ReplayRequest> weave_request(const sessions::Session& session, const Query& query);
+[[nodiscard]] Result<sessions::ReplayRequest> weave_request(const sessions::Session& session,
+                                                            const boost::json::object& body);
 
 } // namespace scanloom::http

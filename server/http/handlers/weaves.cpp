@@ -13,7 +13,7 @@
 namespace scanloom::http {
 namespace {
 
-using State = session::ReplayJob::State;
+using State = sessions::ReplayJob::State;
 
 std::string_view name_of(State state) {
     switch (state) {
@@ -26,7 +26,7 @@ std::string_view name_of(State state) {
     return "";
 }
 
-boost::json::object shown(const session::ReplayJob& weave) {
+boost::json::object shown(const sessions::ReplayJob& weave) {
     const auto progress = weave.progress();
     const auto maps = weave.maps();
     const auto& stamp = weave.request().end.stamp;
@@ -45,7 +45,7 @@ boost::json::object shown(const session::ReplayJob& weave) {
     return json;
 }
 
-Result<std::shared_ptr<session::ReplayJob>> weave_in_path(const Context& context) {
+Result<std::shared_ptr<sessions::ReplayJob>> weave_in_path(const Context& context) {
     if (!context.session) return context.session.error();
     return find_weave(context.services.weaves, **context.session, context.arguments["weave"]);
 }

@@ -22,25 +22,25 @@ double half_side_of(const std::vector<Scan>& scans, double range_max) {
 
 /// Returns scans from places all over the world, each with free space around it, in all directions.
 Column simulated(const std::string& world_name, const std::string& laser, double cell_size, bool is_noisy = false) {
-    const auto world = robot::find_world(world_name).value();
+    const auto world = sim::find_world(world_name).value();
     Column column{world_name + (is_noisy ? "+noise" : "") + "/" + std::to_string(cell_size).substr(0, 4),
                   cell_size,
-                  robot::find_laser(laser).value(),
+                  sim::find_laser(laser).value(),
                   {},
                   0.0};
-    robot::Random random(1);
-    const auto box = robot::bounds_of(world);
+    sim::Random random(1);
+    const auto box = sim::bounds_of(world);
     while (column.scans.size() < kScans) {
         const Pose2 pose{random.uniform(box.x_min, box.x_max), random.uniform(box.y_min, box.y_max),
                          random.uniform(-3.1, 3.1)};
         const Point2 place{pose.x, pose.y};
         const bool is_on_a_floor =
             std::ranges::any_of(world.floors, [&](const auto& floor) { return floor.contains(place); });
-        if (!is_on_a_floor || robot::clearance(world, place) < 0.3) continue;
-        const auto noise = is_noisy ? std::optional(robot::Noise{}) : std::nullopt;
+        if (!is_on_a_floor || sim::clearance(world, place) < 0.3) continue;
+        const auto noise = is_noisy ? std::optional(sim::Noise{}) : std::nullopt;
         column.scans.push_back({.seq = column.scans.size() + 1,
                                 .pose = pose,
-                                .ranges = robot::sweep(world, column.sensor, pose, noise, random)});
+                                .ranges = sim::sweep(world, column.sensor, pose, noise, random)});
     }
     column.half_side = half_side_of(column.scans, column.sensor.range_max);
     return column;

@@ -19,7 +19,7 @@ using namespace std::chrono_literals;
 
 /// Connects a link::ServerProtocol to the simulated network and the sessions, as ingest::RobotConnection does for a
 /// socket.
-class Server::Link final : public session::RobotListener, public std::enable_shared_from_this<Link> {
+class Server::Link final : public sessions::RobotListener, public std::enable_shared_from_this<Link> {
 public:
     Link(Server& server, std::shared_ptr<Connection> connection)
         : server_(server), connection_(std::move(connection)), strand_(server.machine_->executor()),
@@ -139,7 +139,7 @@ private:
     }
 
     static asio::awaitable<void> join(std::shared_ptr<Link> self, wire::Hello hello) {
-        const session::Creator maker;
+        const sessions::Creator maker;
         auto session =
             co_await ingest::session_for(hello, self->server_.sessions(), maker, self->server_.machine_->executor());
         if (!session) {
@@ -156,7 +156,7 @@ private:
             self->robot_ = hello.robot;
             self->session_ = *session;
             self->server_.promise_(hello.robot, joined->last_durable_seq);
-            self->protocol_.on_joined({session::tag_of((*session)->info()), joined->last_durable_seq, joined->sensors},
+            self->protocol_.on_joined({sessions::tag_of((*session)->info()), joined->last_durable_seq, joined->sensors},
                                       self->server_.world_.now());
         });
     }
@@ -165,7 +165,7 @@ private:
     std::shared_ptr<Connection> connection_;
     asio::strand<asio::any_io_executor> strand_;
     Protocol protocol_;
-    std::shared_ptr<session::Session> session_; // joined
+    std::shared_ptr<sessions::Session> session_; // joined
     std::string robot_;
     std::string received_;   // not read yet
     bool has_ended_ = false; // no more data arrives
@@ -182,7 +182,7 @@ Server::Server(World& world, Disk& disk, const ServerOptions& options, Promise p
     }
     machine_->hasten();
     disk_.set_at_once(true);
-    session::RegistryConfig config{.compute = machine_->executor(), .now = [] { return 1'000.0; }};
+    sessions::RegistryConfig config{.compute = machine_->executor(), .now = [] { return 1'000.0; }};
     config.clock = [this] { return world_.now(); };
     config.pages_max = options_.pages_max;
     config.idle_after = options_.idle_after;

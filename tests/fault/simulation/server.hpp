@@ -40,7 +40,7 @@ public:
     /// Drains, as on SIGTERM.
     void stop();
 
-    [[nodiscard]] session::SessionRegistry& sessions() { return *sessions_; }
+    [[nodiscard]] sessions::SessionRegistry& sessions() { return *sessions_; }
 
 private:
     class Link;
@@ -53,7 +53,7 @@ private:
     const Promise promise_;
     std::unique_ptr<Machine> machine_;
     std::unique_ptr<store::ScanLog> log_;
-    std::optional<session::SessionRegistry> sessions_;
+    std::optional<sessions::SessionRegistry> sessions_;
     std::vector<std::shared_ptr<Link>> links_;
     std::shared_ptr<Server*> self_ = std::make_shared<Server*>(this); // for events that may run after the destructor
 };

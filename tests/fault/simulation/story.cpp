@@ -162,13 +162,13 @@ private:
     }
 
     /// Also works if the server must be started first or its store be reopened.
-    Result<std::shared_ptr<session::Session>> wake(const std::string& name) {
+    Result<std::shared_ptr<sessions::Session>> wake(const std::string& name) {
         const Time end = world_.now() + kTimeToMend;
         for (;;) {
             while (!server_) world_.step(Time::max());
-            std::optional<Result<std::shared_ptr<session::Session>>> woken;
+            std::optional<Result<std::shared_ptr<sessions::Session>>> woken;
             server_->sessions().load(
-                name, [&](Result<std::shared_ptr<session::Session>> session) { woken = std::move(session); });
+                name, [&](Result<std::shared_ptr<sessions::Session>> session) { woken = std::move(session); });
             while (!woken) world_.step(Time::max());
             if (*woken || world_.now() > end) return *woken;
             const Time later = world_.now() + 1s;

@@ -20,19 +20,19 @@ namespace {
 
 constexpr std::uint64_t kSeedsPerCase = 5; // so that cases can run in parallel
 
-std::unique_ptr<Behaviour> wall_follower(const World&) { return std::make_unique<WallFollower>(); }
+std::unique_ptr<sim::Behaviour> wall_follower(const sim::World&) { return std::make_unique<sim::WallFollower>(); }
 
-std::unique_ptr<Behaviour> waypoints(const World& world) {
-    return std::make_unique<Waypoints>(tour_of(world.name), TourStart::kNearest);
+std::unique_ptr<sim::Behaviour> waypoints(const sim::World& world) {
+    return std::make_unique<sim::Waypoints>(sim::tour_of(world.name), sim::TourStart::kNearest);
 }
 
-std::unique_ptr<Behaviour> zigzag(const World& world) {
-    return std::make_unique<Zigzag>(floor_plan_of(truth_of(world, 0.05)));
+std::unique_ptr<sim::Behaviour> zigzag(const sim::World& world) {
+    return std::make_unique<sim::Zigzag>(floor_plan_of(truth_of(world, 0.05)));
 }
 
 struct Drive {
     const char* name;
-    std::unique_ptr<Behaviour> (*make)(const World&);
+    std::unique_ptr<sim::Behaviour> (*make)(const sim::World&);
     double seconds; // upper limit
     double metres;  // lower limit of the driven distance
 };
@@ -47,7 +47,7 @@ constexpr double kLargeSweep = 400.0; // seconds
 
 struct Case {
     Drive drive;
-    NamedWorld world;
+    sim::NamedWorld world;
     const char* laser;
     bool noisy;
     std::uint64_t first_seed;
@@ -61,7 +61,7 @@ struct Case {
 std::vector<Case> cases() {
     std::vector<Case> cases;
     for (const Drive& drive : kDrives) {
-        for (const NamedWorld& world : kWorlds) {
+        for (const sim::NamedWorld& world : sim::kWorlds) {
             for (std::uint64_t seed = 1; seed <= 20; seed += kSeedsPerCase) {
                 cases.push_back({drive, world, "reference", false, seed});
             }
@@ -74,15 +74,15 @@ std::vector<Case> cases() {
 
 class Behaviours : public testing::TestWithParam<Case> {};
 
-bool is_room(const World& world) { return world.name.starts_with("room"); }
+bool is_room(const sim::World& world) { return world.name.starts_with("room"); }
 
 /// Further checks of behaviours that end.
-void expect_of(const Behaviour& behaviour, const World& world) {
-    if (const auto* tour = dynamic_cast<const Waypoints*>(&behaviour)) {
+void expect_of(const sim::Behaviour& behaviour, const sim::World& world) {
+    if (const auto* tour = dynamic_cast<const sim::Waypoints*>(&behaviour)) {
         EXPECT_TRUE(tour->is_done());
-        EXPECT_GE(static_cast<double>(tour->reached()), 0.9 * static_cast<double>(tour_of(world.name).size()));
+        EXPECT_GE(static_cast<double>(tour->reached()), 0.9 * static_cast<double>(sim::tour_of(world.name).size()));
     }
-    if (const auto* sweep = dynamic_cast<const Zigzag*>(&behaviour)) {
+    if (const auto* sweep = dynamic_cast<const sim::Zigzag*>(&behaviour)) {
         EXPECT_EQ(sweep->is_done(), is_room(world));
         if (is_room(world)) {
             EXPECT_GT(sweep->coverage(), world.walkers.empty() ? 0.95 : 0.9);
@@ -95,24 +95,25 @@ void expect_of(const Behaviour& behaviour, const World& world) {
 
 TEST_P(Behaviours, DriveWithoutCollisionsAndMakeProgress) {
     const auto [drive, named, laser, noisy, first_seed] = GetParam();
-    const World world = named.make();
+    const sim::World world = named.make();
     for (std::uint64_t seed = first_seed; seed < first_seed + kSeedsPerCase; ++seed) {
         SCOPED_TRACE(testing::Message() << "seed " << seed);
-        Simulator simulator({world, *find_laser(laser), noisy ? std::optional(Noise{}) : std::nullopt, seed},
-                            drive.make(world));
+        sim::Simulator simulator(
+            {world, *sim::find_laser(laser), noisy ? std::optional(sim::Noise{}) : std::nullopt, seed},
+            drive.make(world));
         Pose2 last = simulator.next_scan().pose;
         double metres = 0.0;
         double clearance_min = 10.0;
         const bool is_cut = drive.make == zigzag && !is_room(world);
         const double seconds = is_cut ? kLargeSweep : drive.seconds;
-        for (double time = 0.0; time < seconds && !simulator.behaviour().is_done(); time += kScanPeriod) {
+        for (double time = 0.0; time < seconds && !simulator.behaviour().is_done(); time += sim::kScanPeriod) {
             const Pose2 pose = simulator.next_scan().pose;
             metres += std::hypot(pose.x - last.x, pose.y - last.y);
             last = pose;
             clearance_min = std::min(clearance_min, clearance(simulator.world(), {pose.x, pose.y}));
         }
         EXPECT_EQ(simulator.collisions(), 0U);
-        EXPECT_GE(clearance_min, kBodyRadius);
+        EXPECT_GE(clearance_min, sim::kBodyRadius);
         EXPECT_GT(metres, drive.metres);
         expect_of(simulator.behaviour(), world);
     }
@@ -122,12 +123,12 @@ INSTANTIATE_TEST_SUITE_P(All, Behaviours, testing::ValuesIn(cases()),
                          [](const auto& one) { return testing::PrintToString(one.param); });
 
 TEST(Behaviours, ASweepOfTheOfficeEndsAndCoversMostOfIt) {
-    const World office = make_office();
-    Simulator simulator({office, *find_laser("reference"), std::nullopt, 1}, zigzag(office));
-    for (double time = 0.0; time < 6000.0 && !simulator.behaviour().is_done(); time += kScanPeriod) {
+    const sim::World office = sim::make_office();
+    sim::Simulator simulator({office, *sim::find_laser("reference"), std::nullopt, 1}, zigzag(office));
+    for (double time = 0.0; time < 6000.0 && !simulator.behaviour().is_done(); time += sim::kScanPeriod) {
         static_cast<void>(simulator.next_scan());
     }
-    const auto& sweep = dynamic_cast<const Zigzag&>(simulator.behaviour());
+    const auto& sweep = dynamic_cast<const sim::Zigzag&>(simulator.behaviour());
     EXPECT_TRUE(sweep.is_done());
     EXPECT_GT(sweep.coverage(), 0.95);
     EXPECT_EQ(sweep.lanes_given_up(), 0);
@@ -135,10 +136,10 @@ TEST(Behaviours, ASweepOfTheOfficeEndsAndCoversMostOfIt) {
 }
 
 TEST(Behaviours, TheSameSeedGivesTheSameDrive) {
-    const World world = make_room_walker();
+    const sim::World world = sim::make_room_walker();
     for (const Drive& drive : kDrives) {
         const auto scans = [&] {
-            Simulator simulator({world, *find_laser("reference"), Noise{}, 3}, drive.make(world));
+            sim::Simulator simulator({world, *sim::find_laser("reference"), sim::Noise{}, 3}, drive.make(world));
             std::vector<Scan> taken;
             for (int n = 0; n < 1500; ++n) taken.push_back(simulator.next_scan());
             return taken;

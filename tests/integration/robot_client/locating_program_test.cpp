@@ -36,14 +36,14 @@ struct Stand {
 };
 
 /// Bytes of an LD06 that is placed at one pose after another, with a sigma of 0.02 m.
-Bytes carried(const robot::World& world, const std::vector<Stand>& stands) {
-    Sensor laser = robot::find_laser("lidar360").value();
+Bytes carried(const sim::World& world, const std::vector<Stand>& stands) {
+    Sensor laser = sim::find_laser("lidar360").value();
     laser.angles = UniformAngles{0.0, 2.0 * std::numbers::pi / kBeams, kBeams};
-    robot::Random random(1);
+    sim::Random random(1);
     std::vector<std::uint16_t> distances; // clockwise, like its rotation
     for (const auto& [place, turns] : stands) {
         for (int turn = 0; turn < turns; ++turn) {
-            const auto ranges = sweep(world, laser, place, robot::Noise{}, random);
+            const auto ranges = sweep(world, laser, place, sim::Noise{}, random);
             for (std::size_t n = 0; n < kBeams; ++n) {
                 const RangeMm range = ranges[(kBeams - n) % kBeams];
                 distances.push_back(range < 12'000 ? static_cast<std::uint16_t>(range) : std::uint16_t{0});
@@ -97,7 +97,7 @@ protected:
 
     TemporaryDirectory place_;
     RunningServer server_{place_.path() / "store", place_.path() / "log"};
-    const robot::World room_ = robot::make_room();
+    const sim::World room_ = sim::make_room();
     std::string summary_;
     std::string output_; ///< messages for the user
 };
@@ -116,7 +116,7 @@ TEST_F(LocatingProgramTest, LocalizesEachPlaceAfterTheFirst) {
 
 TEST_F(LocatingProgramTest, SendsNoScanFromAnUnknownPlace) {
     ASSERT_EQ(send("carried", carried(room_, {{kFirst, 20}}), {}), 0) << output_;
-    EXPECT_EQ(send("lost", carried(robot::make_office(), {{{-12.0, 7.0, 0.0}, 20}}), {}), 1);
+    EXPECT_EQ(send("lost", carried(sim::make_office(), {{{-12.0, 7.0, 0.0}, 20}}), {}), 1);
     EXPECT_THAT(output_, HasSubstr("no scans are sent from here"));
     EXPECT_THAT(summary_, HasSubstr(R"("error":"no scan was sent: )"));
     EXPECT_EQ(server_.get_json("/api/v1/sessions/lab").at("scans").to_number<int>(), 18)

@@ -8,7 +8,7 @@
 namespace scanloom::lab {
 namespace {
 
-double look(const robot::World& world, double x, double y, double yaw) {
+double look(const sim::World& world, double x, double y, double yaw) {
     return world.obstacles->cast_ray({x, y}, yaw, 20.0);
 }
 
@@ -20,7 +20,7 @@ TEST(DoorRoom, ClosedDoorBlocksTheViewAndOpenDoorShowsTheLobby) {
 }
 
 TEST(DoorRoom, EqualsTheSimulatorsRoomExceptForTheDoor) {
-    const auto room = robot::make_room();
+    const auto room = sim::make_room();
     const auto closed = make_door_room(Door::kClosed);
     for (int degree = 0; degree < 360; ++degree) {
         const double yaw = degree * std::numbers::pi / 180.0;
@@ -39,7 +39,7 @@ TEST(DoorRoom, PlacesAreFreeAndSeeTheDoorAndTheSecondPlace) {
     };
     const Pose2& second = kDoorRoomPlaces[1];
     for (const Pose2& place : kDoorRoomPlaces) {
-        EXPECT_GT(robot::clearance(world, {place.x, place.y}), 0.3) << place.x;
+        EXPECT_GT(sim::clearance(world, {place.x, place.y}), 0.3) << place.x;
         EXPECT_TRUE(sees(place, {second.x, second.y})) << place.x;
         EXPECT_TRUE(sees(place, {5.08, 2.7})) << place.x;
     }

@@ -31,9 +31,9 @@ inline StateGrid map_of(const Rows& rows) {
 
 /// '#' solid, '.' free, any other character outside.
 inline TruthCells truth_cells_of(const Rows& rows) {
-    return drawn(rows, robot::Truth::kOutside, [](robot::Truth& cell, char c) {
-        if (c == '#') cell = robot::Truth::kOccupied;
-        if (c == '.') cell = robot::Truth::kFree;
+    return drawn(rows, sim::Truth::kOutside, [](sim::Truth& cell, char c) {
+        if (c == '#') cell = sim::Truth::kOccupied;
+        if (c == '.') cell = sim::Truth::kFree;
     });
 }
 

@@ -21,7 +21,7 @@ struct LidarView {
 class LandmarkAlignment : public testing::Test {
 protected:
     LidarView view(Door door, const Pose2& place) {
-        const auto [sensor, scans] = take_capture(make_door_room(door), place, 20, robot::Noise{}, random_);
+        const auto [sensor, scans] = take_capture(make_door_room(door), place, 20, sim::Noise{}, random_);
         return {place, points_of(scans, sensor), see_landmarks(points_in_map(scans, sensor)).value()};
     }
 
@@ -45,7 +45,7 @@ protected:
     }
 
 private:
-    robot::Random random_{1};
+    sim::Random random_{1};
 };
 
 TEST_F(LandmarkAlignment, LandmarksAndSurfacesAlignOnePlaceWhileADoorMoves) {

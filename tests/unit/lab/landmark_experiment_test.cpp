@@ -61,10 +61,10 @@ TEST(LandmarkExperiment, FindsTheDoorAndComparesNeighbouringPlaces) {
 }
 
 TEST(LandmarkExperiment, ComparesTheHalvesOfARecording) {
-    robot::Random random(2);
-    const auto room = robot::make_room();
+    sim::Random random(2);
+    const auto room = sim::make_room();
     LandmarkPlan plan;
-    plan.recorded = RecordedCapture{take_capture(room, {}, 7, robot::Noise{}, random), "c.bin", "fine"};
+    plan.recorded = RecordedCapture{take_capture(room, {}, 7, sim::Noise{}, random), "c.bin", "fine"};
     const auto [results, report, pictures] = run_with(std::move(plan));
     ASSERT_TRUE(results.recorded);
     EXPECT_EQ(results.recorded->turns, 7U);

@@ -30,12 +30,12 @@ TEST(ToleranceSweep, CombinesTheMatchesOfAllPairs) {
 
 class StandingLidar : public testing::Test {
 protected:
-    LidarCapture capture(std::size_t turns, const std::optional<robot::Noise>& noise = robot::Noise{}) {
+    LidarCapture capture(std::size_t turns, const std::optional<sim::Noise>& noise = sim::Noise{}) {
         return take_capture(make_door_room(Door::kClosed), kDoorRoomPlaces[0], turns, noise, random_);
     }
 
 private:
-    robot::Random random_{1};
+    sim::Random random_{1};
 };
 
 TEST_F(StandingLidar, CountsReadingsPerTurnAndReportsMedianTimes) {

@@ -49,10 +49,10 @@ TEST(LidarCaptures, ReadingsOutsideTheSensorsLimitsGiveNoPoints) {
 TEST(LidarCaptures, AreDeterministicTurnsFromOnePlace) {
     const auto world = make_door_room(Door::kClosed);
     const Pose2 place{3.0, 2.7, 0.0};
-    robot::Random first(5);
-    robot::Random second(5);
-    const auto capture = take_capture(world, place, 3, robot::Noise{}, first);
-    EXPECT_EQ(capture.scans, take_capture(world, place, 3, robot::Noise{}, second).scans);
+    sim::Random first(5);
+    sim::Random second(5);
+    const auto capture = take_capture(world, place, 3, sim::Noise{}, first);
+    EXPECT_EQ(capture.scans, take_capture(world, place, 3, sim::Noise{}, second).scans);
     ASSERT_EQ(capture.scans.size(), 3U);
     EXPECT_EQ(capture.scans[2].seq, 3U);
     EXPECT_EQ(capture.scans[2].pose, place);

@@ -33,7 +33,7 @@ TEST(Drive, DrivesOnceAroundTheRoomWithoutTouchingTheWalker) {
         EXPECT_EQ(record(kMatrix.scenes[1], path, noise("gaussian"), 0.1, 1).of_walkers, recording.of_walkers);
         EXPECT_EQ(record(kMatrix.scenes[0], path, noise("none"), 0.1, 1).of_walkers, 0U);
         for (std::size_t n = 0; n < path.size(); ++n) {
-            EXPECT_GT(distance(recording.walkers[n].at(0), {path[n].x, path[n].y}), robot::kBodyRadius);
+            EXPECT_GT(distance(recording.walkers[n].at(0), {path[n].x, path[n].y}), sim::kBodyRadius);
         }
     }
 }

@@ -14,14 +14,14 @@ namespace scanloom::lab {
 namespace {
 
 /// Returns a corridor of 2 x 1.2 m with walls of 0.2 m and a pillar.
-robot::World corridor() {
-    return robot::make_world("corridor",
-                             {{-0.2, -0.2, 2.2, 0.0},
-                              {-0.2, 1.2, 2.2, 1.4},
-                              {-0.2, -0.2, 0.0, 1.4},
-                              {2.0, -0.2, 2.2, 1.4},
-                              {0.8, 0.4, 1.0, 0.8}},
-                             {{0.0, 0.0, 2.0, 1.2}});
+sim::World corridor() {
+    return sim::make_world("corridor",
+                           {{-0.2, -0.2, 2.2, 0.0},
+                            {-0.2, 1.2, 2.2, 1.4},
+                            {-0.2, -0.2, 0.0, 1.4},
+                            {2.0, -0.2, 2.2, 1.4},
+                            {0.8, 0.4, 1.0, 0.8}},
+                           {{0.0, 0.0, 2.0, 1.2}});
 }
 
 Sensor laser(double first, double last, double range_max) {
@@ -32,8 +32,8 @@ Sensor laser(double first, double last, double range_max) {
 }
 
 std::string seen_from(const Pose2& pose, const Sensor& sensor) {
-    const robot::World world = corridor();
-    const auto truth = robot::truth_of(world, 0.2);
+    const sim::World world = corridor();
+    const auto truth = sim::truth_of(world, 0.2);
     const std::vector<Pose2> path{pose};
     const auto seen = visible_cells(world, truth, sensor, path, {-2, -1, 12, 7});
     std::string text;
@@ -67,18 +67,18 @@ TEST(VisibleCells, AreWithinRangeAndFieldOfView) {
 }
 
 TEST(VisibleCells, MatchRayCastingToEachFreeCell) {
-    const robot::World room = robot::make_room();
-    const auto truth = robot::truth_of(room, 0.25);
+    const sim::World room = sim::make_room();
+    const auto truth = sim::truth_of(room, 0.25);
     const std::vector<Pose2> path{{-3.9, -3.1, 0.4}, {3.3, 3.7, -2.0}};
     const auto seen = visible_cells(room, truth, laser(-kPi / 2, kPi / 2, 5.0), path, {-25, -25, 25, 25});
     for_each_cell(seen.box, [&](grid::Cell cell) {
-        if (truth.at(cell.i, cell.j) != robot::Truth::kFree) return;
+        if (truth.at(cell.i, cell.j) != sim::Truth::kFree) return;
         const Point2 centre{(cell.i + 0.5) * 0.25, (cell.j + 0.5) * 0.25};
         bool wanted = false;
         for (const Pose2& pose : path) {
             const Point2 local = transform(inverse(pose), centre);
             const double free =
-                robot::cast_ray(room.outlines, {pose.x, pose.y}, std::atan2(centre.y - pose.y, centre.x - pose.x));
+                sim::cast_ray(room.outlines, {pose.x, pose.y}, std::atan2(centre.y - pose.y, centre.x - pose.x));
             wanted |= local.x > 0.0 && norm(local) < 5.0 && norm(local) < free;
         }
         EXPECT_EQ(seen.at(cell) != 0, wanted) << testing_support::text_of(centre);

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <limits>
 
-namespace scanloom::robot {
+namespace scanloom::sim {
 namespace {
 
 constexpr double kNoHit = std::numeric_limits<double>::infinity();
@@ -103,4 +103,4 @@ TEST(Cone, DistanceToADiscMatchesSampling) {
 }
 
 } // namespace
-} // namespace scanloom::robot
+} // namespace scanloom::sim

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace scanloom::robot {
+namespace scanloom::sim {
 namespace {
 
 TEST(Lasers, BeamAnglesMatchTheirDescription) {
@@ -102,4 +102,4 @@ TEST(Sweep, DetectsAWalkerInFrontOfAWall) {
 }
 
 } // namespace
-} // namespace scanloom::robot
+} // namespace scanloom::sim

@@ -15,7 +15,7 @@
 #include <string_view>
 #include <vector>
 
-namespace scanloom::robot {
+namespace scanloom::sim {
 namespace {
 
 /// Parses rows from the top: '#' occupied, '.' free, ' ' unknown.
@@ -246,4 +246,4 @@ TEST_P(TruthMaps, ConvertingToAMapAndBackKeepsTheGroundTruth) {
 INSTANTIATE_TEST_SUITE_P(CellSizes, TruthMaps, testing::Values(0.05, 0.1, 0.25, 0.5));
 
 } // namespace
-} // namespace scanloom::robot
+} // namespace scanloom::sim

@@ -11,7 +11,7 @@
 #include <limits>
 #include <vector>
 
-namespace scanloom::robot {
+namespace scanloom::sim {
 namespace {
 
 constexpr double kFar = std::numeric_limits<double>::infinity();
@@ -128,4 +128,4 @@ TEST(Obstacles, EmptyObstaclesStopNoRay) {
 }
 
 } // namespace
-} // namespace scanloom::robot
+} // namespace scanloom::sim

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace scanloom::robot {
+namespace scanloom::sim {
 namespace {
 
 TEST(Random, UniformValuesAreEqualOnEveryMachine) {
@@ -36,4 +36,4 @@ TEST(Random, IndicesCoverTheirRange) {
 }
 
 } // namespace
-} // namespace scanloom::robot
+} // namespace scanloom::sim

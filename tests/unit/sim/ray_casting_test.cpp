@@ -9,7 +9,7 @@
 #include <cmath>
 #include <limits>
 
-namespace scanloom::robot {
+namespace scanloom::sim {
 namespace {
 
 TEST(RayCasting, DistanceToAWallMatchesGeometry) {
@@ -110,4 +110,4 @@ TEST_P(Worlds, NoRayLeavesTheWorld) {
 INSTANTIATE_TEST_SUITE_P(All, Worlds, testing::Values("room", "office", "hall"));
 
 } // namespace
-} // namespace scanloom::robot
+} // namespace scanloom::sim

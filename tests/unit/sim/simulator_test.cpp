@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-namespace scanloom::robot {
+namespace scanloom::sim {
 namespace {
 
 Simulator make(const char* world, std::uint64_t seed, std::optional<Noise> noise = {},
@@ -229,4 +229,4 @@ TEST(WallFollowerDrives, VisitsEveryOfficeRoomInOrder) {
 }
 
 } // namespace
-} // namespace scanloom::robot
+} // namespace scanloom::sim

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace scanloom::robot {
+namespace scanloom::sim {
 namespace {
 
 Sensor ring() { return find_sonar("ring16").value(); }
@@ -103,4 +103,4 @@ TEST(Listen, NoiseHasItsDeviationAndKeepsNoReturns) {
 }
 
 } // namespace
-} // namespace scanloom::robot
+} // namespace scanloom::sim

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace scanloom::robot {
+namespace scanloom::sim {
 namespace {
 
 /// Returns an office whose robots start in its north-western rooms only.
@@ -84,4 +84,4 @@ TEST(MappedWorld, ViewsAreInTheWorldFrameAndTheRobotsInItsOwn) {
 }
 
 } // namespace
-} // namespace scanloom::robot
+} // namespace scanloom::sim

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string>
 
-namespace scanloom::robot {
+namespace scanloom::sim {
 namespace {
 
 /// Draws the grid, rows from the top: '#' occupied, '.' free, ' ' outside.
@@ -85,4 +85,4 @@ TEST_P(TruthGrids, MatchTheSolidsInEveryCellOfTheOffice) {
 INSTANTIATE_TEST_SUITE_P(CellSizes, TruthGrids, testing::Values(0.05, 0.1, 0.25, 0.5, 1.0));
 
 } // namespace
-} // namespace scanloom::robot
+} // namespace scanloom::sim

@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-namespace scanloom::robot {
+namespace scanloom::sim {
 namespace {
 
 TEST(Unicycle, MovesStraightAndTurnsInPlace) {
@@ -65,4 +65,4 @@ TEST(Unicycle, BlockedRobotCanTurn) {
 }
 
 } // namespace
-} // namespace scanloom::robot
+} // namespace scanloom::sim

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace scanloom::robot {
+namespace scanloom::sim {
 namespace {
 
 /// Returns a walker with a loop of 8 s.
@@ -62,4 +62,4 @@ TEST(Walker, RoomLoopKeepsClearOfTheFurniture) {
 }
 
 } // namespace
-} // namespace scanloom::robot
+} // namespace scanloom::sim

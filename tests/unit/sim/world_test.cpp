@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace scanloom::robot {
+namespace scanloom::sim {
 namespace {
 
 TEST(FindWorld, UnknownNameListsTheWorlds) {
@@ -39,4 +39,4 @@ TEST(Hall, GapsBetweenBoxesAreWideEnoughForARobot) {
 }
 
 } // namespace
-} // namespace scanloom::robot
+} // namespace scanloom::sim

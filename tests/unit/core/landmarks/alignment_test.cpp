@@ -12,8 +12,8 @@
 namespace scanloom::landmarks {
 namespace {
 
-using robot::Box;
-using robot::TwoCaptures;
+using sim::Box;
+using sim::TwoCaptures;
 using testing::HasSubstr;
 
 struct Off {
@@ -28,17 +28,17 @@ Off off(const Pose2& pose, const Pose2& ground_truth) {
 }
 
 /// Returns a room around the origin that is empty except for `things`.
-robot::World room_of(double half_width, double half_height, const std::vector<Box>& things = {}) {
+sim::World room_of(double half_width, double half_height, const std::vector<Box>& things = {}) {
     std::vector<Box> solids = {{-half_width - 1.0, -half_height - 1.0, half_width + 1.0, -half_height},
                                {-half_width - 1.0, half_height, half_width + 1.0, half_height + 1.0},
                                {-half_width - 1.0, -half_height - 1.0, -half_width, half_height + 1.0},
                                {half_width, -half_height - 1.0, half_width + 1.0, half_height + 1.0}};
     solids.insert(solids.end(), things.begin(), things.end());
-    return robot::make_world("test", std::move(solids), {{-half_width, -half_height, half_width, half_height}});
+    return sim::make_world("test", std::move(solids), {{-half_width, -half_height, half_width, half_height}});
 }
 
-TwoCaptures captures_at(const robot::World& world, const Pose2& first, const Pose2& second) {
-    robot::Random random(1);
+TwoCaptures captures_at(const sim::World& world, const Pose2& first, const Pose2& second) {
+    sim::Random random(1);
     auto before = standing_capture(world, first, 20, random);
     auto after = standing_capture(world, second, 20, random);
     return {std::move(before), std::move(after), compose(inverse(first), second)};
@@ -49,7 +49,7 @@ Alignment aligned(const TwoCaptures& captures) {
 }
 
 /// Returns the number of clear alignments and expects each of them to be correct.
-int clear_of(const robot::World& world, int seeds) {
+int clear_of(const sim::World& world, int seeds) {
     int clear = 0;
     int beyond_sigmas = 0;
     for (int seed = 0; seed < seeds; ++seed) {
@@ -69,27 +69,27 @@ int clear_of(const robot::World& world, int seeds) {
 
 /// Three of the many scenes of AlignmentTrials.
 TEST(Alignment, AlignsCapturesInRoomOfficeAndHall) {
-    EXPECT_EQ(clear_of(robot::make_room(), 3), 3);
-    EXPECT_GE(clear_of(robot::make_office(), 3), 2);
-    EXPECT_GE(clear_of(robot::make_hall(), 3), 2);
+    EXPECT_EQ(clear_of(sim::make_room(), 3), 3);
+    EXPECT_GE(clear_of(sim::make_office(), 3), 2);
+    EXPECT_GE(clear_of(sim::make_hall(), 3), 2);
 }
 
-TEST(AlignmentTrials, AlignsCapturesInARoomWithoutPrior) { EXPECT_GE(clear_of(robot::make_room(), 100), 99); }
+TEST(AlignmentTrials, AlignsCapturesInARoomWithoutPrior) { EXPECT_GE(clear_of(sim::make_room(), 100), 99); }
 
 TEST(AlignmentTrials, AlignsCapturesInAnOfficeWithoutPrior) {
-    auto office = robot::make_office();
+    auto office = sim::make_office();
     office.starts = {{-15.0, -10.0, 15.0, 10.0}};
     EXPECT_GE(clear_of(office, 100), 95);
 }
 
-TEST(AlignmentTrials, AlignsCapturesInAHallOrReportsAmbiguity) { EXPECT_GE(clear_of(robot::make_hall(), 100), 95); }
+TEST(AlignmentTrials, AlignsCapturesInAHallOrReportsAmbiguity) { EXPECT_GE(clear_of(sim::make_hall(), 100), 95); }
 
 /// Random scenes on which an earlier align() was clear and wrong: rotated by half a turn, shifted to other racks, or
 /// shifted along racks.
 TEST(Alignment, IsNotClearForASlightlyBetterWrongPose) {
-    auto office = robot::make_office();
+    auto office = sim::make_office();
     office.starts = {{-15.0, -10.0, 15.0, 10.0}};
-    const auto hall = robot::make_hall();
+    const auto hall = sim::make_hall();
     for (const auto& [world, seed] : {std::pair{office, 1'887U},
                                       {office, 10'194U},
                                       {office, 10'519U},
@@ -142,7 +142,7 @@ TEST(Alignment, IsClearInASquareRoomWithATable) {
 }
 
 TEST(Alignment, IsAmbiguousIfACupboardMovedToTheOppositeCorner) {
-    robot::Random random(3);
+    sim::Random random(3);
     const Pose2 here{0.5, 0.2, 0.3};
     const Pose2 there{-0.4, 0.6, 2.0};
     const auto before = standing_capture(room_of(3.0, 2.0, {{2.7, 1.7, 3.0, 2.0}}), here, 20, random);
@@ -152,7 +152,7 @@ TEST(Alignment, IsAmbiguousIfACupboardMovedToTheOppositeCorner) {
 
 TEST(Alignment, IsNotClearIfACrateMovedAlongACorridor) {
     for (const double moved : {0.12, 0.2, 0.3, 0.45}) {
-        robot::Random random(7);
+        sim::Random random(7);
         const Pose2 here{0.0, 0.2, 0.3};
         const Pose2 there{1.0, -0.2, 2.0};
         const auto before = standing_capture(room_of(40.0, 1.0, {{2.0, -1.0, 3.0, -0.4}}), here, 20, random);
@@ -164,16 +164,16 @@ TEST(Alignment, IsNotClearIfACrateMovedAlongACorridor) {
 
 /// The legs of an L are similar: a robot in one leg may match the other leg.
 TEST(AlignmentTrials, IsClearOnlyIfCorrectInTheLegsOfAnL) {
-    const auto world = robot::make_world("L",
-                                         {{-2.0, -2.0, 16.0, -1.0},
-                                          {15.0, -2.0, 16.0, 2.0},
-                                          {1.0, 1.0, 16.0, 16.0},
-                                          {-2.0, 15.0, 1.0, 16.0},
-                                          {-2.0, -2.0, -1.0, 16.0}},
-                                         {{-1.0, -1.0, 15.0, 1.0}});
+    const auto world = sim::make_world("L",
+                                       {{-2.0, -2.0, 16.0, -1.0},
+                                        {15.0, -2.0, 16.0, 2.0},
+                                        {1.0, 1.0, 16.0, 16.0},
+                                        {-2.0, 15.0, 1.0, 16.0},
+                                        {-2.0, -2.0, -1.0, 16.0}},
+                                       {{-1.0, -1.0, 15.0, 1.0}});
     int clear = 0;
     for (std::uint64_t seed = 0; seed < 40; ++seed) {
-        robot::Random random(seed);
+        sim::Random random(seed);
         const bool is_same_leg = seed % 2 == 0;
         const double along = is_same_leg ? 0.3 * static_cast<double>(seed) : 0.04 * static_cast<double>(seed);
         const Pose2 first{along, 0.3, 0.1 * static_cast<double>(seed)};
@@ -225,16 +225,16 @@ TEST(Alignment, IsAmbiguousAmongEvenlySpacedDoorFrames) {
 }
 
 TEST(Alignment, IsUndeterminedIfOnlyDistantSurfacesOverlap) {
-    const auto hall = robot::make_hall();
+    const auto hall = sim::make_hall();
     const auto alignment = aligned(two_captures(hall, doors_of(hall), 10'987));
     EXPECT_EQ(alignment.certainty, Certainty::kUndetermined);
     EXPECT_THAT(alignment.why, HasSubstr("known to within"));
 }
 
 TEST(Alignment, IsUndeterminedForDifferentPlaces) {
-    const auto room = robot::make_room();
-    const auto hall = robot::make_hall();
-    robot::Random random(1);
+    const auto room = sim::make_room();
+    const auto hall = sim::make_hall();
+    sim::Random random(1);
     const auto first = standing_capture(room, {-3.3, 1.2, 1.0}, 20, random);
     const auto second = standing_capture(hall, {12.0, 0.0, 0.0}, 20, random);
     const auto alignment = align({.points = first}, {.points = second}).value();
@@ -243,7 +243,7 @@ TEST(Alignment, IsUndeterminedForDifferentPlaces) {
 }
 
 TEST(Alignment, IsDeterministicAndIndependentOfFrames) {
-    const auto captures = two_captures(robot::make_room(), {}, 5);
+    const auto captures = two_captures(sim::make_room(), {}, 5);
     const auto once = aligned(captures);
     const auto again = aligned(captures);
     EXPECT_EQ(once.T_first_second, again.T_first_second);
@@ -280,7 +280,7 @@ TEST(Alignment, IsNotClearForDegeneratePoints) {
 }
 
 TEST(Alignment, IsClearForOneTurnOfTheLidar) {
-    const auto captures = two_captures(robot::make_room(), {}, 3, 1);
+    const auto captures = two_captures(sim::make_room(), {}, 3, 1);
     const auto alignment = aligned(captures);
     const Off error = off(alignment.T_first_second, captures.T_first_second);
     EXPECT_EQ(alignment.certainty, Certainty::kClear) << alignment.why;

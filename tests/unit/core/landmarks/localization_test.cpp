@@ -14,7 +14,7 @@ namespace scanloom::landmarks {
 namespace {
 
 using namespace testing_support;
-using robot::Box;
+using sim::Box;
 using testing::HasSubstr;
 
 void expect_right(const Alignment& found, const Pose2& ground_truth, const std::string& where = "") {
@@ -24,7 +24,7 @@ void expect_right(const Alignment& found, const Pose2& ground_truth, const std::
 }
 
 /// Returns the number of clear localizations and expects each of them to be correct.
-int clear_of(const robot::World& world, int seeds, int places) {
+int clear_of(const sim::World& world, int seeds, int places) {
     int clear = 0;
     for (int seed = 0; seed < seeds; ++seed) {
         const auto mapped = mapped_world(world, places, static_cast<std::uint64_t>(seed));
@@ -41,19 +41,19 @@ int clear_of(const robot::World& world, int seeds, int places) {
 
 /// Some of the scenes of LocalizationTrials.
 TEST(Localization, LocalizesInARoomAndInAnOffice) {
-    EXPECT_EQ(clear_of(robot::make_room(), 2, 3), 2);
-    EXPECT_GE(clear_of(robot::make_office(), 2, 6), 1);
+    EXPECT_EQ(clear_of(sim::make_room(), 2, 3), 2);
+    EXPECT_GE(clear_of(sim::make_office(), 2, 6), 1);
 }
 
-TEST(LocalizationTrials, LocalizesInARoomWithoutPrior) { EXPECT_GE(clear_of(robot::make_room(), 20, 3), 19); }
+TEST(LocalizationTrials, LocalizesInARoomWithoutPrior) { EXPECT_GE(clear_of(sim::make_room(), 20, 3), 19); }
 
 TEST(LocalizationTrials, LocalizesInAnOfficeOrReportsAmbiguity) {
-    auto office = robot::make_office();
+    auto office = sim::make_office();
     office.starts = {{-15.0, -10.0, 15.0, 10.0}};
     EXPECT_GE(clear_of(office, 12, 6), 10);
 }
 
-TEST(LocalizationTrials, LocalizesInAHallOrReportsAmbiguity) { EXPECT_GE(clear_of(robot::make_hall(), 10, 6), 4); }
+TEST(LocalizationTrials, LocalizesInAHallOrReportsAmbiguity) { EXPECT_GE(clear_of(sim::make_hall(), 10, 6), 4); }
 
 /// Two equal rooms are 20 m apart; one is mapped from twenty places and the other from two. Walls that were observed
 /// more often are drawn thicker, and an earlier locate() returned a pose in the wrong room.
@@ -66,16 +66,16 @@ TEST(Localization, IsAmbiguousInEqualRoomsOfDifferentMappingDensity) {
             solids.push_back(wall);
         }
     }
-    const auto world = robot::make_world("rooms", solids, {{-12.0, -1.5, -8.0, 1.0}, {8.0, -1.5, 12.0, 1.0}});
+    const auto world = sim::make_world("rooms", solids, {{-12.0, -1.5, -8.0, 1.0}, {8.0, -1.5, 12.0, 1.0}});
     for (unsigned seed = 1; seed <= 4; ++seed) {
-        robot::Random random(seed);
+        sim::Random random(seed);
         const auto place_in = [&](double x) {
             return Pose2{x + random.uniform(-1.5, 1.5), random.uniform(-1.0, 1.0), random.uniform(-3.0, 3.0)};
         };
         ReferenceViews map;
         for (int n = 0; n < 20; ++n) map.push_back(reference_view(world, place_in(-10.0), random));
         for (int n = 0; n < 2; ++n) map.push_back(reference_view(world, place_in(10.0), random));
-        const auto seen = robot::standing_capture(world, place_in(10.0), 10, random);
+        const auto seen = sim::standing_capture(world, place_in(10.0), 10, random);
         const auto found = locate(map, {.points = seen}).value();
         EXPECT_EQ(found.certainty, Certainty::kAmbiguous) << "seed " << seed << ": " << found.why;
     }
@@ -83,7 +83,7 @@ TEST(Localization, IsAmbiguousInEqualRoomsOfDifferentMappingDensity) {
 
 /// A random scene on which an earlier locate() was wrong.
 struct HardScene {
-    robot::World world;
+    sim::World world;
     int places;
     std::uint64_t seed;
 };
@@ -91,7 +91,7 @@ struct HardScene {
 /// The map has no surface behind the robot. An earlier locate() considered this place impossible and returned the next
 /// best one.
 TEST(Localization, LocalizesWithoutSurfacesBehindTheRobot) {
-    for (const auto& [world, places, seed] : {HardScene{robot::make_hall(), 1, 123}, {robot::make_hall(), 4, 168}}) {
+    for (const auto& [world, places, seed] : {HardScene{sim::make_hall(), 1, 123}, {sim::make_hall(), 4, 168}}) {
         const auto mapped = mapped_world(world, places, seed);
         expect_right(locate(as_references(mapped.map), {.points = mapped.seen}).value(), mapped.ground_truth,
                      world.name + ", seed " + std::to_string(seed));
@@ -100,9 +100,9 @@ TEST(Localization, LocalizesWithoutSurfacesBehindTheRobot) {
 
 /// The correct place is mapped only in part, and a similar place is mapped completely.
 TEST(Localization, IsAmbiguousIfASimilarPlaceIsMappedBetter) {
-    auto office = robot::make_office();
+    auto office = sim::make_office();
     office.starts = {{-15.0, -10.0, 15.0, 10.0}};
-    for (const auto& [world, places, seed] : {HardScene{office, 12, 101}, {robot::make_hall(), 1, 144}}) {
+    for (const auto& [world, places, seed] : {HardScene{office, 12, 101}, {sim::make_hall(), 1, 144}}) {
         const auto mapped = mapped_world(world, places, seed);
         const auto found = locate(as_references(mapped.map), {.points = mapped.seen}).value();
         EXPECT_EQ(found.certainty, Certainty::kAmbiguous) << world.name << ", seed " << seed;
@@ -113,18 +113,18 @@ TEST(Localization, IsAmbiguousIfASimilarPlaceIsMappedBetter) {
 }
 
 /// Returns a wide room with furniture that distinguishes its corners, plus additional `things`.
-robot::World furnished(std::vector<Box> things = {}) {
+sim::World furnished(std::vector<Box> things = {}) {
     things.insert(things.end(), {{-4.0, -4.0, 4.0, -3.0},
                                  {-4.0, 2.5, 4.0, 3.5},
                                  {-4.0, -4.0, -3.5, 3.5},
                                  {3.5, -4.0, 4.0, 3.5},
                                  {-3.5, -3.0, -2.5, -2.4},
                                  {1.0, 2.0, 2.2, 2.5}});
-    return robot::make_world("furnished", std::move(things), {{-3.4, -2.9, 3.4, 2.4}});
+    return sim::make_world("furnished", std::move(things), {{-3.4, -2.9, 3.4, 2.4}});
 }
 
-ReferenceViews map_of(const robot::World& world, const std::vector<Pose2>& places) {
-    robot::Random random(3);
+ReferenceViews map_of(const sim::World& world, const std::vector<Pose2>& places) {
+    sim::Random random(3);
     ReferenceViews map;
     for (const Pose2& place : places) map.push_back(reference_view(world, place, random));
     return map;
@@ -133,8 +133,8 @@ ReferenceViews map_of(const robot::World& world, const std::vector<Pose2>& place
 const std::vector<Pose2> kPlaces = {{0.0, 0.0, 0.0}, {-2.0, 1.0, 1.0}, {2.0, -1.0, 2.0}};
 constexpr Pose2 kGroundTruth{1.0, 0.7, -2.0};
 
-std::vector<Point2> seen_at(const robot::World& world, const Pose2& place) {
-    robot::Random random(4);
+std::vector<Point2> seen_at(const sim::World& world, const Pose2& place) {
+    sim::Random random(4);
     return standing_capture(world, place, 10, random);
 }
 
@@ -195,10 +195,10 @@ TEST(Localization, ExcludesPosesJustOutsideTheNeighbourhood) {
 }
 
 TEST(LocalizationTrials, IsNotClearInAnUnmappedPlace) {
-    const auto office = robot::make_office();
+    const auto office = sim::make_office();
     for (std::uint64_t seed = 0; seed < 10; ++seed) {
-        robot::Random random(seed);
-        const auto seen = standing_capture(robot::make_room(), free_place(robot::make_room(), random), 10, random);
+        sim::Random random(seed);
+        const auto seen = standing_capture(sim::make_room(), free_place(sim::make_room(), random), 10, random);
         const auto found = locate(as_references(mapped_world(office, 8, seed).map), {.points = seen}).value();
         EXPECT_NE(found.certainty, Certainty::kClear) << "seed " << seed;
     }
@@ -207,7 +207,7 @@ TEST(LocalizationTrials, IsNotClearInAnUnmappedPlace) {
 TEST(Localization, IgnoresRemovedObjects) {
     const auto before = furnished({{-1.5, -1.8, 0.5, -1.2}, {2.4, 1.0, 3.0, 2.0}});
     const auto after = furnished();
-    robot::Random random(5);
+    sim::Random random(5);
     ReferenceViews map = {reference_view(before, kPlaces[0], random)};
     for (const Pose2& place : kPlaces) map.push_back(reference_view(after, place, random));
     const auto found = locate(map, {.points = seen_at(after, kGroundTruth)}).value();

@@ -66,8 +66,8 @@ TEST(ReferenceLayer, IgnoresViewsWithoutPoints) {
 class ReferenceMapTest : public testing::Test {
 protected:
     ReferenceMapTest() {
-        robot::Random random(1);
-        const auto add = [&](const robot::World& world, const Pose2& place) {
+        sim::Random random(1);
+        const auto add = [&](const sim::World& world, const Pose2& place) {
             views_.push_back(reference_view(world, place, random));
         };
         add(boxed_, {-2.0, 0.0, 0.0});
@@ -76,11 +76,11 @@ protected:
         add(empty_, {0.5, 2.0, 2.0});
     }
 
-    static robot::World room(const std::vector<robot::Box>& things) {
-        std::vector<robot::Box> solids = {
+    static sim::World room(const std::vector<sim::Box>& things) {
+        std::vector<sim::Box> solids = {
             {-4.0, -4.0, 4.0, -3.0}, {-4.0, 3.0, 4.0, 4.0}, {-4.0, -4.0, -3.0, 4.0}, {3.0, -4.0, 4.0, 4.0}};
         solids.insert(solids.end(), things.begin(), things.end());
-        return robot::make_world("room", std::move(solids), {{-3.0, -3.0, 3.0, 3.0}});
+        return sim::make_world("room", std::move(solids), {{-3.0, -3.0, 3.0, 3.0}});
     }
 
     /// Returns a map whose origin is at an arbitrary place, because the result must not depend on it.
@@ -91,8 +91,8 @@ protected:
             map.surfels(), [&](const Surfel& surfel) { return norm(surfel.position + map.middle() - place) < 0.15; });
     }
 
-    const robot::World empty_ = room({});
-    const robot::World boxed_ = room({{-0.2, -0.2, 0.2, 0.2}});
+    const sim::World empty_ = room({});
+    const sim::World boxed_ = room({{-0.2, -0.2, 0.2, 0.2}});
     ReferenceViews views_;
 };
 

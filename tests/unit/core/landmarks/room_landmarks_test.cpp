@@ -13,9 +13,9 @@ namespace scanloom::landmarks {
 namespace {
 
 /// Returns the points of a stationary lidar in the map frame.
-std::vector<Point2> capture(const robot::World& world, const Pose2& place, int turns) {
-    robot::Random random(1);
-    auto points = robot::standing_capture(world, place, turns, random);
+std::vector<Point2> capture(const sim::World& world, const Pose2& place, int turns) {
+    sim::Random random(1);
+    auto points = sim::standing_capture(world, place, turns, random);
     for (auto& point : points) point = transform(place, point);
     return points;
 }
@@ -23,9 +23,9 @@ std::vector<Point2> capture(const robot::World& world, const Pose2& place, int t
 const std::vector<Pose2> kStands = {{-3.3, 1.2, 1.0}, {1.5, -3.0, 0.3}, {3.5, 3.4, -2.0}, {-3.5, -3.7, 0.0}};
 
 /// Returns the cluster with the most points on the border of a box.
-std::int32_t cluster_on(const robot::Box& box, const std::vector<Point2>& points, const Clustering& clustering) {
+std::int32_t cluster_on(const sim::Box& box, const std::vector<Point2>& points, const Clustering& clustering) {
     std::vector<int> counts(clustering.clusters);
-    const robot::Box around = robot::widened(box, 0.08);
+    const sim::Box around = sim::widened(box, 0.08);
     for (std::size_t n = 0; n < points.size(); ++n) {
         const auto cluster = clustering.cluster_of[n];
         if (cluster != kNoise && around.contains(points[n])) ++counts[static_cast<std::size_t>(cluster)];
@@ -34,7 +34,7 @@ std::int32_t cluster_on(const robot::Box& box, const std::vector<Point2>& points
 }
 
 TEST(RoomLandmarks, AreNeitherOneClusterNorNoise) {
-    const auto room = robot::make_room();
+    const auto room = sim::make_room();
     for (const Pose2& place : kStands) {
         for (const int turns : {1, 10, 50}) {
             const auto points = capture(room, place, turns);
@@ -49,7 +49,7 @@ TEST(RoomLandmarks, AreNeitherOneClusterNorNoise) {
 }
 
 TEST(RoomLandmarks, FreestandingFurnitureIsSeparateLandmarks) {
-    const auto room = robot::make_room();
+    const auto room = sim::make_room();
     const auto points = capture(room, kStands[0], 50);
     const auto clustering = survey_landmarks(points)->clustering;
     // Table, sofa, pillar and bed of make_room().
@@ -62,7 +62,7 @@ TEST(RoomLandmarks, FreestandingFurnitureIsSeparateLandmarks) {
 }
 
 TEST(RoomLandmarks, MoreTurnsFindSimilarLandmarks) {
-    const auto room = robot::make_room();
+    const auto room = sim::make_room();
     for (const Pose2& place : kStands) {
         const auto ten = find_landmarks(capture(room, place, 10)).value();
         const auto hundred = find_landmarks(capture(room, place, 100)).value();

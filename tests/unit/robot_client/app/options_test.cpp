@@ -286,13 +286,13 @@ TEST_F(Options, UniformNoiseWidthIsConfigurable) {
 
 TEST_F(Options, HelpNamesTheFolderOfWorlds) {
     const auto help = left({"simulate", "--help"}).text;
-    for (const NamedWorld& world : kWorlds) {
-        const TruthGrid truth = truth_of(world.make(), 0.5);
+    for (const sim::NamedWorld& world : sim::kWorlds) {
+        const sim::TruthGrid truth = truth_of(world.make(), 0.5);
         std::int32_t right = 0;
         std::int32_t top = 0;
         for (std::int32_t j = truth.j_begin; j < truth.j_begin + truth.height; ++j) {
             for (std::int32_t i = truth.i_begin; i < truth.i_begin + truth.width; ++i) {
-                if (truth.at(i, j) != Truth::kFree) continue;
+                if (truth.at(i, j) != sim::Truth::kFree) continue;
                 right = std::max({right, i + 1, -i});
                 top = std::max({top, j + 1, -j});
             }

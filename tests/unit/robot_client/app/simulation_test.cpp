@@ -58,9 +58,9 @@ TEST(Simulation, EndsWithItsDrive) {
 }
 
 TEST(Simulation, UnreachableWaypointsAreRefusedWithTheReason) {
-    const World room = make_room();
-    const Box inner = *std::ranges::find_if(
-        room.solids, [](const Box& box) { return std::max(std::abs(box.x_min), std::abs(box.x_max)) < 4.0; });
+    const sim::World room = sim::make_room();
+    const sim::Box inner = *std::ranges::find_if(
+        room.solids, [](const sim::Box& box) { return std::max(std::abs(box.x_min), std::abs(box.x_max)) < 4.0; });
     const Point2 middle{(inner.x_min + inner.x_max) / 2.0, (inner.y_min + inner.y_max) / 2.0};
     const Point2 outside{inner.x_min - 0.1, middle.y};
     auto source = prepared("waypoints", "room", to_text({{40.0, 0.0}, middle, outside})).source;
@@ -87,16 +87,16 @@ TEST(Simulation, LimitEndsALongerDrive) {
 }
 
 TEST(Simulation, NamedWorldsHaveCollisionFreeTours) {
-    for (const NamedWorld& named : kWorlds) {
-        World world = named.make();
+    for (const sim::NamedWorld& named : sim::kWorlds) {
+        sim::World world = named.make();
         world.walkers.clear(); // they move
-        const auto tour = tour_of(named.name);
+        const auto tour = sim::tour_of(named.name);
         EXPECT_GT(tour.size(), 5U) << named.name;
         for (const Point2& waypoint : tour) {
             EXPECT_GT(clearance(world, waypoint), 0.5) << named.name << ' ' << testing_support::text_of(waypoint);
         }
     }
-    EXPECT_TRUE(tour_of("somewhere").empty());
+    EXPECT_TRUE(sim::tour_of("somewhere").empty());
 }
 
 } // namespace

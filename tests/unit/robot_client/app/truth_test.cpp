@@ -20,13 +20,13 @@ TEST(Truth, WrittenWorldHasTheSameTruth) {
     EXPECT_EQ(*line, R"({"width":104,"height":104,"map":")" + prefix + R"(.yaml"})");
     const auto world = load_world(prefix + ".yaml");
     ASSERT_TRUE(world) << world.error().message;
-    EXPECT_EQ(truth_of(*world, 0.1).cells, truth_of(make_room(), 0.1).cells);
+    EXPECT_EQ(truth_of(*world, 0.1).cells, truth_of(sim::make_room(), 0.1).cells);
     std::filesystem::remove_all(folder);
 }
 
 TEST(Truth, WrittenMapHasTheTruthOfEveryNamedWorld) {
     const std::string prefix = std::filesystem::path(testing::TempDir()) / "scanloom_truth_of";
-    for (const NamedWorld& world : kWorlds) {
+    for (const sim::NamedWorld& world : sim::kWorlds) {
         ASSERT_TRUE(write_truth({std::string(world.name), 0.2, prefix})) << world.name;
         const auto written = load_world(prefix + ".yaml");
         ASSERT_TRUE(written) << written.error().message;

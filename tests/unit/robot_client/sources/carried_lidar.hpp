@@ -18,14 +18,14 @@ inline constexpr Pose2 kThere{-3.4, 0.0, 0.5};
 /// It has no odometry: the pose of each turn is the origin.
 class CarriedLidar {
 public:
-    explicit CarriedLidar(World world = make_room(), std::uint64_t seed = 1)
+    explicit CarriedLidar(sim::World world = sim::make_room(), std::uint64_t seed = 1)
         : world_(std::move(world)), random_(seed) {}
 
     [[nodiscard]] Observation turn_at(const Pose2& place) {
         Observation turn{sensor_, {}};
         turn.scan.stamp = stamp_;
         stamp_ += 0.1;
-        turn.scan.ranges = sweep(world_, *sensor_, place, Noise{}, random_);
+        turn.scan.ranges = sweep(world_, *sensor_, place, sim::Noise{}, random_);
         return turn;
     }
 
@@ -48,7 +48,7 @@ public:
 
     /// Returns a random pose with a clearance of 0.4 m.
     [[nodiscard]] Pose2 any_place() {
-        const Box bounds = bounds_of(world_);
+        const sim::Box bounds = bounds_of(world_);
         for (;;) {
             const Pose2 place{random_.uniform(bounds.x_min, bounds.x_max), random_.uniform(bounds.y_min, bounds.y_max),
                               random_.uniform(-3.0, 3.0)};
@@ -57,14 +57,14 @@ public:
     }
 
     [[nodiscard]] const Sensor& sensor() const noexcept { return *sensor_; }
-    [[nodiscard]] World& world() noexcept { return world_; }
-    [[nodiscard]] Random& random() noexcept { return random_; }
+    [[nodiscard]] sim::World& world() noexcept { return world_; }
+    [[nodiscard]] sim::Random& random() noexcept { return random_; }
     void let_time_pass(double seconds) noexcept { stamp_ += seconds; }
 
 private:
-    World world_;
-    Random random_;
-    std::shared_ptr<const Sensor> sensor_ = std::make_shared<const Sensor>(*find_laser("lidar360"));
+    sim::World world_;
+    sim::Random random_;
+    std::shared_ptr<const Sensor> sensor_ = std::make_shared<const Sensor>(*sim::find_laser("lidar360"));
     double stamp_ = 1000.0;
 };
 

@@ -21,7 +21,7 @@ constexpr int kFirstTurnScansMax = 42; // upper bound for the scans of the first
 class ExploringSourceTest : public testing::Test {
 protected:
     static ExploringSource make(SimulationLimits limits = {}, double speed = 0.0) {
-        return {{make_room(), *find_laser("lidar360"), std::nullopt, 3, Pose2{-3.5, -3.5, 0.0}},
+        return {{sim::make_room(), *sim::find_laser("lidar360"), std::nullopt, 3, Pose2{-3.5, -3.5, 0.0}},
                 limits,
                 NoReturn::kFree,
                 speed};

@@ -13,7 +13,8 @@ namespace scanloom::robot {
 namespace {
 
 SimulatedSource make(SimulationLimits limits, NoReturn no_return = NoReturn::kFree) {
-    return {Simulator({make_office(), *find_laser("reference"), std::nullopt, 3}, std::make_unique<WallFollower>()),
+    return {sim::Simulator({sim::make_office(), *sim::find_laser("reference"), std::nullopt, 3},
+                           std::make_unique<sim::WallFollower>()),
             limits, no_return};
 }
 
@@ -34,10 +35,11 @@ TEST(SimulatedSource, EndsAtItsFirstLimit) {
 
 /// Returns a source with a laser and sonars.
 SimulatedSource make_with_sonar(SimulationLimits limits, std::uint64_t seed, const char* world = "room_walker") {
-    SimulatorOptions options{*find_world(world), *find_laser("lidar360"), Noise{.range_uniform = 0.05}, seed};
-    options.sonar = *find_sonar("ring16");
-    options.pose = PoseSent::kOdometry;
-    return {Simulator(std::move(options), std::make_unique<WallFollower>()), limits, NoReturn::kFree};
+    sim::SimulatorOptions options{*sim::find_world(world), *sim::find_laser("lidar360"),
+                                  sim::Noise{.range_uniform = 0.05}, seed};
+    options.sonar = *sim::find_sonar("ring16");
+    options.pose = sim::PoseSent::kOdometry;
+    return {sim::Simulator(std::move(options), std::make_unique<sim::WallFollower>()), limits, NoReturn::kFree};
 }
 
 TEST(SimulatedSource, EachSensorScansWithinTheDuration) {

@@ -67,7 +67,7 @@ TEST(TurnProfile, IsTheMedianReadingPerDirection) {
 }
 
 TEST(StationaryDetection, StationarySensorIsStillAtAnyPlace) {
-    for (const auto make : {make_room, make_office}) {
+    for (const auto make : {sim::make_room, sim::make_office}) {
         CarriedLidar lidar(make());
         for (int place = 0; place < 20; ++place) {
             const Pose2 here = lidar.any_place();
@@ -94,7 +94,7 @@ TEST(StationaryDetection, DetectsAMovementOfTenCentimetresInARoom) {
 }
 
 TEST(StationaryDetection, DetectsARotationOfFiveDegrees) {
-    for (const auto make : {make_room, make_office, make_hall}) {
+    for (const auto make : {sim::make_room, sim::make_office, sim::make_hall}) {
         CarriedLidar lidar(make());
         for (int place = 0; place < 20; ++place) {
             const Pose2 here = lidar.any_place();

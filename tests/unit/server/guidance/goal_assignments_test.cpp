@@ -7,13 +7,13 @@
 #include <string>
 #include <thread>
 
-namespace scanloom::guide {
+namespace scanloom::guidance {
 namespace {
 
 using planning::Exploration;
 
 /// A corridor with two unexplored ends: one frontier on the left and one on the right.
-class GoalAssignmentsTest : public session::SessionTest {
+class GoalAssignmentsTest : public sessions::SessionTest {
 protected:
     void SetUp() override {
         SessionTest::SetUp();
@@ -28,7 +28,7 @@ protected:
 
     /// Returns the end ('l' or 'r') to which the robot's next goal leads. The robot stands left of the middle.
     char next(RobotIndex robot) { return next(robot, session_); }
-    char next(RobotIndex robot, const std::shared_ptr<session::Session>& session) {
+    char next(RobotIndex robot, const std::shared_ptr<sessions::Session>& session) {
         const auto goal = book_.next(session, maps_, robot, {1.2, 0.25}, now_, kPoint).value();
         if (goal.outcome == Exploration::kTakenByOthers) return '-';
         if (goal.outcome == Exploration::kComplete) return 'c';
@@ -52,7 +52,7 @@ protected:
         state.trajectory = trajectory_.snapshot();
     }
 
-    void leave(const std::shared_ptr<session::RecordedLink>& link) {
+    void leave(const std::shared_ptr<sessions::RecordedLink>& link) {
         session_->leave(link);
         run();
     }
@@ -301,4 +301,4 @@ TEST_F(GoalAssignmentsTest, ConcurrentRequestsGetDifferentFrontiers) {
 }
 
 } // namespace
-} // namespace scanloom::guide
+} // namespace scanloom::guidance

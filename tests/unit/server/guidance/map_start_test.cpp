@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace scanloom::guide {
+namespace scanloom::guidance {
 namespace {
 
 using std::chrono::seconds;
@@ -34,4 +34,4 @@ TEST(MapStart, AreReleasedWhenTheSessionIsRemoved) {
 }
 
 } // namespace
-} // namespace scanloom::guide
+} // namespace scanloom::guidance

@@ -5,14 +5,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace scanloom::guide {
+namespace scanloom::guidance {
 namespace {
 
 using testing::ElementsAre;
 using testing::IsEmpty;
 
 /// Counts change notifications.
-struct CountingWatcher : session::Watcher {
+struct CountingWatcher : sessions::Watcher {
     void on_changed() noexcept override { ++notified; }
     int notified = 0;
 };
@@ -23,7 +23,7 @@ HeldPath way(PathKind kind, std::size_t points = 2) {
     return way;
 }
 
-class RobotPathsTest : public session::SessionTest {
+class RobotPathsTest : public sessions::SessionTest {
 protected:
     std::uint64_t give_goal(RobotIndex robot, std::size_t points = 2) {
         return book_.give_goal(session_, robot, kGoal, way(PathKind::kGoal, points), now_);
@@ -31,7 +31,7 @@ protected:
     void set_path(RobotIndex robot, std::optional<HeldPath> given) {
         book_.set_path(session_, robot, std::move(given), now_);
     }
-    void leave(const std::shared_ptr<session::RecordedLink>& link) {
+    void leave(const std::shared_ptr<sessions::RecordedLink>& link) {
         session_->leave(link);
         run();
     }
@@ -198,7 +198,7 @@ TEST_F(RobotPathsTest, EachGoalHasItsOwnNumber) {
 TEST_F(RobotPathsTest, StateIsPerSessionAndEndsWithIt) {
     join("a");
     give_goal(0);
-    const std::weak_ptr<session::Session> before = session_;
+    const std::weak_ptr<sessions::Session> before = session_;
     start_session(); // another session
     join("a");
     EXPECT_TRUE(before.expired()) << "the book does not keep the session";
@@ -233,4 +233,4 @@ TEST_F(RobotPathsTest, TotalPathPointsPerSessionAreBounded) {
 }
 
 } // namespace
-} // namespace scanloom::guide
+} // namespace scanloom::guidance

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace scanloom::guide {
+namespace scanloom::guidance {
 namespace {
 
 mapping::Snapshot two_robots() {
@@ -30,4 +30,4 @@ TEST(Robots, HaveThePoseOfTheirNewestScan) {
 }
 
 } // namespace
-} // namespace scanloom::guide
+} // namespace scanloom::guidance

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace scanloom::guide {
+namespace scanloom::guidance {
 namespace {
 
 constexpr double kCell = 0.1;
@@ -69,4 +69,4 @@ TEST(Visit, HasLookedAfterFiveSecondsAtTheGoal) {
 }
 
 } // namespace
-} // namespace scanloom::guide
+} // namespace scanloom::guidance

@@ -227,7 +227,7 @@ TEST_F(ApiAccessTest, CreatingBeyondTheSessionLimitIsRefused) {
 TEST_F(ApiAccessTest, ReadinessListsOnlySessionsOfTheToken) {
     store::MemoryScanLog damaged;
     static_cast<void>(damaged.create_session("no record")); // cannot be read
-    session::SessionRegistry registry(damaged, {pool_.get_executor(), [] { return 0.0; }});
+    sessions::SessionRegistry registry(damaged, {pool_.get_executor(), [] { return 0.0; }});
     ASSERT_TRUE(registry.recover());
     ASSERT_EQ(registry.damaged().size(), 1U);
     TestApi api(registry, weaves_, goals_, damaged, metrics_, {authenticator_, audit_, logins_}, {});

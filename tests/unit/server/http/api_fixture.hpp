@@ -26,7 +26,7 @@ using testing::HasSubstr;
 using testing::StartsWith;
 
 /// A link that records when a scan has become durable.
-class Link final : public session::RobotListener {
+class Link final : public sessions::RobotListener {
 public:
     explicit Link(std::uint64_t awaited_seq) : awaited_(awaited_seq) {}
 
@@ -149,7 +149,7 @@ protected:
         const auto link = std::make_shared<Link>(awaited_seq);
         std::promise<void> joined;
         registry_.find(name)->join({robot, "", body_radius}, link,
-                                   [&joined](const Result<session::Joined>&) { joined.set_value(); });
+                                   [&joined](const Result<sessions::Joined>&) { joined.set_value(); });
         joined.get_future().wait();
         links_.push_back(link);
         return link;
@@ -164,14 +164,14 @@ protected:
 
     boost::asio::thread_pool pool_{2};
     store::MemoryScanLog log_;
-    std::atomic<session::SessionCache::Clock::time_point> clock_{}; ///< constant, unless a test sets it
-    session::SessionRegistry registry_{log_,
-                                       {.compute = pool_.get_executor(),
-                                        .now = [] { return 1795251600.5; },
-                                        .clock = [this] { return clock_.load(); }}};
+    std::atomic<sessions::SessionCache::Clock::time_point> clock_{}; ///< constant, unless a test sets it
+    sessions::SessionRegistry registry_{log_,
+                                        {.compute = pool_.get_executor(),
+                                         .now = [] { return 1795251600.5; },
+                                         .clock = [this] { return clock_.load(); }}};
     metrics::Metrics metrics_{"1.2.3"};
-    session::ReplayJobs weaves_{log_, pool_.get_executor()};
-    guide::GoalAssignments goals_;
+    sessions::ReplayJobs weaves_{log_, pool_.get_executor()};
+    guidance::GoalAssignments goals_;
     auth::Authenticator authenticator_;
     auth::AuditLog audit_{metrics_.refusals()};
     auth::LoginSessions logins_;

@@ -187,7 +187,7 @@ TEST_F(ApiTest, UnknownSessionIsNotFoundOnEveryRoute) {
 
 TEST_F(ApiTest, DamagedSessionIsReported) {
     ASSERT_TRUE(log_.create_session("no record of a session"));
-    session::SessionRegistry registry(log_, {pool_.get_executor(), [] { return 0.0; }});
+    sessions::SessionRegistry registry(log_, {pool_.get_executor(), [] { return 0.0; }});
     ASSERT_TRUE(registry.recover());
     ASSERT_EQ(registry.damaged().size(), 1U);
     const auto name = registry.damaged().begin()->first; // "#" and its id
@@ -206,7 +206,7 @@ TEST_F(ApiTest, DamagedSessionIsReported) {
 TEST_F(ApiTest, DamagedSessionsAreListedAndOthersAreServed) {
     create("a");
     ASSERT_TRUE(log_.create_session("no record of a session"));
-    session::SessionRegistry registry(log_, {pool_.get_executor(), [] { return 0.0; }});
+    sessions::SessionRegistry registry(log_, {pool_.get_executor(), [] { return 0.0; }});
     ASSERT_TRUE(registry.recover());
     TestApi api(registry, weaves_, goals_, log_, metrics_, {authenticator_, audit_, logins_}, {});
     api.set_recovered();

@@ -237,7 +237,7 @@ protected:
     boost::asio::thread_pool one_{1};
     std::promise<void> go_on_;
     bool gone_on_ = false;
-    session::ReplayJobs held_{log_, one_.get_executor()};
+    sessions::ReplayJobs held_{log_, one_.get_executor()};
     TestApi held_api_{registry_, held_, goals_, log_, metrics_, {authenticator_, audit_, logins_}, {}};
 };
 

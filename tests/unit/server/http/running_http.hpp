@@ -103,9 +103,9 @@ private:
     boost::asio::io_context io_;
     store::MemoryScanLog log_;
     metrics::Metrics metrics_{"test"};
-    session::SessionRegistry sessions_{log_, {pools_[0].get_executor(), [] { return 0.0; }}};
-    session::ReplayJobs weaves_{log_, pools_[0].get_executor()};
-    guide::GoalAssignments goals_;
+    sessions::SessionRegistry sessions_{log_, {pools_[0].get_executor(), [] { return 0.0; }}};
+    sessions::ReplayJobs weaves_{log_, pools_[0].get_executor()};
+    guidance::GoalAssignments goals_;
     auth::Authenticator authenticator_;
     auth::AuditLog audit_{metrics_.refusals()};
     auth::LoginSessions logins_;

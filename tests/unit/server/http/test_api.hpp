@@ -65,7 +65,7 @@ struct TestServices : Services {
 /// An Api over given parts; it owns the parts that tests seldom use.
 class TestApi {
 public:
-    TestApi(session::SessionRegistry& sessions, session::ReplayJobs& weaves, guide::GoalAssignments& goals,
+    TestApi(sessions::SessionRegistry& sessions, sessions::ReplayJobs& weaves, guidance::GoalAssignments& goals,
             store::ScanLog& log, const metrics::Metrics& metrics, Authorizer authorizer, WebFiles web = {},
             const ServerConfig& limits = {}, std::optional<Executors> executors = std::nullopt,
             std::span<const Route> of_routes = routes())
@@ -147,8 +147,8 @@ private:
         running->done = true;
     }
 
-    session::BackgroundCheck check_; // never started
-    guide::Locator locator_;
+    sessions::BackgroundCheck check_; // never started
+    guidance::Locator locator_;
     PolledPools polled_;
     Pools pools_;
     TestServices services_;

@@ -144,7 +144,7 @@ protected:
     }
 
     LiveServer server_;
-    session::LandmarkLayers folds_{server_.log()};
+    sessions::LandmarkLayers folds_{server_.log()};
     LandmarkHub hub_{folds_};
     boost::asio::io_context searching_;
 };
@@ -196,7 +196,7 @@ TEST_F(WatchedLandmarksTest, KeepFoundLandmarksAfterARefusal) {
         return look(watched, kPatient).found;
     };
     const std::size_t count = find(*hub_.of(0))->state.landmarks.size();
-    session::LandmarkLayers small(server_.log(), {.size_max = count});
+    sessions::LandmarkLayers small(server_.log(), {.size_max = count});
     LandmarkHub hub(small);
     const auto watched = hub.of(0);
     EXPECT_EQ(find(*watched)->refused, "");

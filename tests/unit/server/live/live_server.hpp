@@ -35,16 +35,16 @@ inline Scan wide_scan(std::uint64_t seq) {
 }
 
 /// A robot's link that waits for its acks.
-class StreamingRobot final : public session::RobotListener, public std::enable_shared_from_this<StreamingRobot> {
+class StreamingRobot final : public sessions::RobotListener, public std::enable_shared_from_this<StreamingRobot> {
 public:
-    void join(session::Session& session, const std::string& name) {
+    void join(sessions::Session& session, const std::string& name) {
         std::promise<void> joined;
-        session.join({name}, shared_from_this(), [&joined](const Result<session::Joined>&) { joined.set_value(); });
+        session.join({name}, shared_from_this(), [&joined](const Result<sessions::Joined>&) { joined.set_value(); });
         joined.get_future().wait();
     }
 
     /// Returns when the scan is durable and in the maps.
-    void stream(session::Session& session, Scan scan) {
+    void stream(sessions::Session& session, Scan scan) {
         std::promise<void> acked;
         acked_ = &acked;
         session.submit(shared_from_this(), {std::move(scan)}, 1);
@@ -112,10 +112,10 @@ public:
 
     void leave(const std::string& name) { sessions_.find("lab")->leave(robots_.at(name)); }
 
-    [[nodiscard]] session::SessionRegistry& sessions() { return sessions_; }
-    [[nodiscard]] session::Session& session() { return *sessions_.find("lab"); }
+    [[nodiscard]] sessions::SessionRegistry& sessions() { return sessions_; }
+    [[nodiscard]] sessions::Session& session() { return *sessions_.find("lab"); }
     [[nodiscard]] store::ScanLog& log() { return log_; }
-    [[nodiscard]] guide::RobotPaths& ways() { return goals_.ways(); }
+    [[nodiscard]] guidance::RobotPaths& ways() { return goals_.ways(); }
     [[nodiscard]] auth::Authenticator& authenticator() { return authenticator_; }
     [[nodiscard]] metrics::RefusalCounters& refusals() { return metrics_.refusals(); }
     [[nodiscard]] metrics::LiveCounters& counters() { return metrics_.http().live; }
@@ -140,9 +140,9 @@ private:
     store::MemoryScanLog log_;
     metrics::Metrics metrics_{"test"};
     boost::asio::io_context io_;
-    session::SessionRegistry sessions_{log_, {compute_.get_executor(), [] { return 1'000.0; }}};
-    session::ReplayJobs weaves_{log_, compute_.get_executor()};
-    guide::GoalAssignments goals_;
+    sessions::SessionRegistry sessions_{log_, {compute_.get_executor(), [] { return 1'000.0; }}};
+    sessions::ReplayJobs weaves_{log_, compute_.get_executor()};
+    guidance::GoalAssignments goals_;
     auth::Authenticator authenticator_;
     auth::AuditLog audit_{metrics_.refusals()};
     auth::LoginSessions logins_;

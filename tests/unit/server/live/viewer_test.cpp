@@ -167,7 +167,7 @@ TEST(LiveViewer, ReceivesTheExpiryOfAGoal) {
     LiveClient client(server.port());
     LiveReplay viewer;
     catch_up(server, client, viewer);
-    const auto almost_over = guide::RobotPaths::Clock::now() - guide::RobotPaths::kKeptForAbsent + 200ms;
+    const auto almost_over = guidance::RobotPaths::Clock::now() - guidance::RobotPaths::kKeptForAbsent + 200ms;
     server.ways().give_goal(server.sessions().find("lab"), 0, {}, {}, almost_over);
     read_until(client, viewer, [&] { return viewer.last.goals_revision() == 2; });
 }
@@ -301,7 +301,7 @@ TEST(LiveViewer, DeletingASessionClosesItsConnections) {
     LiveClient silent(server.port(), "lab", 4096);
     LiveClient client(server.port());
     ASSERT_TRUE(client.read());
-    const std::weak_ptr<session::Session> session = server.sessions().find("lab");
+    const std::weak_ptr<sessions::Session> session = server.sessions().find("lab");
     server.sessions().remove("lab").value();
     client.read_to_the_end();
     EXPECT_EQ(client.code(), 4404U);

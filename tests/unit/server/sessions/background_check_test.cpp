@@ -3,7 +3,7 @@
 #include "tests/unit/server/sessions/registry_fixture.hpp"
 
 /// The background check finds damaged sessions that have not been read since the server started.
-namespace scanloom::session {
+namespace scanloom::sessions {
 namespace {
 
 using testing::HasSubstr;
@@ -99,4 +99,4 @@ TEST_F(BackgroundCheckTest, NotesDataLossButNoTransientErrors) {
 }
 
 } // namespace
-} // namespace scanloom::session
+} // namespace scanloom::sessions

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 /// Grouping of submitted entries.
-namespace scanloom::session {
+namespace scanloom::sessions {
 namespace {
 
 constexpr std::int64_t kMuchRoom = 1'000'000;
@@ -68,4 +68,4 @@ TEST(Backlog, DropRemovesTheEntriesOfOneRobot) {
 }
 
 } // namespace
-} // namespace scanloom::session
+} // namespace scanloom::sessions

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 /// Robots that were allowed to begin the map of an empty session.
-namespace scanloom::session {
+namespace scanloom::sessions {
 namespace {
 
 using testing::HasSubstr;
@@ -97,4 +97,4 @@ TEST_F(BegunMapTest, AcceptsABeginningAfterALostScan) {
 }
 
 } // namespace
-} // namespace scanloom::session
+} // namespace scanloom::sessions

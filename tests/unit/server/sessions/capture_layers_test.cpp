@@ -11,7 +11,7 @@
 #include <random>
 #include <vector>
 
-namespace scanloom::session {
+namespace scanloom::sessions {
 namespace {
 
 using testing::HasSubstr;
@@ -186,4 +186,4 @@ TEST_F(CaptureLayersTest, RemovesLeastRecentlyUsedAndDeletedSessions) {
 }
 
 } // namespace
-} // namespace scanloom::session
+} // namespace scanloom::sessions

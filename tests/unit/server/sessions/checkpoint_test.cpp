@@ -8,7 +8,7 @@
 #include <map>
 
 /// Checkpoints: written, merged, damaged, cut and read.
-namespace scanloom::session {
+namespace scanloom::sessions {
 namespace {
 
 using testing::HasSubstr;
@@ -348,4 +348,4 @@ TEST(Checkpoint, OtherMappingVersionIsRefused) {
 }
 
 } // namespace
-} // namespace scanloom::session
+} // namespace scanloom::sessions

@@ -1,7 +1,7 @@
 #include "tests/unit/server/sessions/session_fixture.hpp"
 
 /// Maps and acknowledgements contain only durable entries; entries that cannot become durable have no effect.
-namespace scanloom::session {
+namespace scanloom::sessions {
 namespace {
 
 using testing::Each;
@@ -261,4 +261,4 @@ TEST_F(SessionTest, ForeignLogEntryStopsTheSession) {
 }
 
 } // namespace
-} // namespace scanloom::session
+} // namespace scanloom::sessions

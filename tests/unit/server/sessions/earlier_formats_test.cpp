@@ -15,7 +15,7 @@
 #include <gtest/gtest.h>
 
 /// Stores written by earlier versions open and give the same maps as then.
-namespace scanloom::session {
+namespace scanloom::sessions {
 namespace {
 
 using testing::AllOf;
@@ -185,4 +185,4 @@ TEST_F(EarlierFormatsTest, StoreOfVersion3KeepsExclusionsAndJumps) {
 }
 
 } // namespace
-} // namespace scanloom::session
+} // namespace scanloom::sessions

@@ -7,7 +7,7 @@
 #include <random>
 
 /// The maps of a session with excluded scans equal those of a session without these scans.
-namespace scanloom::session {
+namespace scanloom::sessions {
 namespace {
 
 using testing::HasSubstr;
@@ -324,4 +324,4 @@ TEST_F(ExclusionsTest, HaveNoEffectIfNotStored) {
 }
 
 } // namespace
-} // namespace scanloom::session
+} // namespace scanloom::sessions

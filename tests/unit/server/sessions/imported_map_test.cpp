@@ -9,7 +9,7 @@
 #include <future>
 
 /// Sessions that begin with an imported map.
-namespace scanloom::session {
+namespace scanloom::sessions {
 namespace {
 
 /// Returns the peak resident memory of this process.
@@ -137,4 +137,4 @@ TEST(ImportedMap, InvalidMapIsRefusedWithoutCreatingASession) {
 }
 
 } // namespace
-} // namespace scanloom::session
+} // namespace scanloom::sessions

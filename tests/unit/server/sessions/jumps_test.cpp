@@ -5,7 +5,7 @@
 #include <random>
 
 /// With max_jump, the maps of a session equal those of a session without the omitted scans.
-namespace scanloom::session {
+namespace scanloom::sessions {
 namespace {
 
 constexpr double kMaxJump = 1.0;
@@ -164,4 +164,4 @@ TEST_F(JumpsTest, AllScansAreIntegratedWithoutMaxJump) {
 }
 
 } // namespace
-} // namespace scanloom::session
+} // namespace scanloom::sessions

@@ -1,7 +1,7 @@
 #include "tests/unit/server/sessions/session_fixture.hpp"
 
 /// Expensive scans, full maps and sudden ends.
-namespace scanloom::session {
+namespace scanloom::sessions {
 namespace {
 
 using testing::HasSubstr;
@@ -253,4 +253,4 @@ TEST_F(SessionTest, RobotWithoutScansMayChangeItsSource) {
 }
 
 } // namespace
-} // namespace scanloom::session
+} // namespace scanloom::sessions

@@ -10,7 +10,7 @@
 #include <random>
 #include <set>
 
-namespace scanloom::session {
+namespace scanloom::sessions {
 namespace {
 
 using testing_support::random_scan;
@@ -124,4 +124,4 @@ TEST(LogReconstruction, DropsScanThatDoesNotMatchItsSensor) {
 }
 
 } // namespace
-} // namespace scanloom::session
+} // namespace scanloom::sessions

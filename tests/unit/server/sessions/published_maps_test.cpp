@@ -8,7 +8,7 @@
 #include <thread>
 
 /// Maps that are written while others read them.
-namespace scanloom::session {
+namespace scanloom::sessions {
 namespace {
 
 std::shared_ptr<const mapping::Snapshot> maps_at(Revision revision) {
@@ -150,4 +150,4 @@ TEST_F(SessionTest, ConcurrentReadersSeeConsistentMaps) {
 }
 
 } // namespace
-} // namespace scanloom::session
+} // namespace scanloom::sessions

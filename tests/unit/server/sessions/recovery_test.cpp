@@ -7,7 +7,7 @@
 #include <set>
 
 /// Recovery of sessions from their log, and from their checkpoint where it is valid.
-namespace scanloom::session {
+namespace scanloom::sessions {
 namespace {
 
 using testing::HasSubstr;
@@ -196,4 +196,4 @@ TEST_F(SessionTest, ClosingWithoutNewEntriesWritesNoCheckpoint) {
 }
 
 } // namespace
-} // namespace scanloom::session
+} // namespace scanloom::sessions

@@ -16,7 +16,7 @@
 #include <optional>
 #include <string>
 
-namespace scanloom::session {
+namespace scanloom::sessions {
 
 /// A link that is called by other threads. Tests wait for its events.
 struct AwaitedLink : RobotListener {
@@ -110,4 +110,4 @@ protected:
     std::unique_ptr<SessionRegistry> registry_ = make(log_);
 };
 
-} // namespace scanloom::session
+} // namespace scanloom::sessions

@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace scanloom::session {
+namespace scanloom::sessions {
 namespace {
 
 using testing::ElementsAre;
@@ -50,4 +50,4 @@ TEST(RepairedNames, AssignedNamesRespectTheLengthLimit) {
 }
 
 } // namespace
-} // namespace scanloom::session
+} // namespace scanloom::sessions

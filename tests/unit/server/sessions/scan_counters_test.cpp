@@ -3,7 +3,7 @@
 #include <utility>
 #include <vector>
 
-namespace scanloom::session {
+namespace scanloom::sessions {
 namespace {
 
 /// Each submitted scan is counted once: applied, duplicate or dropped.
@@ -87,4 +87,4 @@ TEST_F(ScanCounters, CountsSurviveARestart) {
 }
 
 } // namespace
-} // namespace scanloom::session
+} // namespace scanloom::sessions

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace scanloom::session {
+namespace scanloom::sessions {
 namespace {
 
 using testing::ElementsAre;
@@ -116,4 +116,4 @@ TEST_F(SessionCacheTest, WaitingCallerIsNotifiedOfRemoval) {
 }
 
 } // namespace
-} // namespace scanloom::session
+} // namespace scanloom::sessions

@@ -4,7 +4,7 @@
 #include "tests/unit/server/sessions/session_fixture.hpp"
 
 /// Checks of a session with a log and a checkpoint.
-namespace scanloom::session {
+namespace scanloom::sessions {
 namespace {
 
 using testing::AllOf;
@@ -124,4 +124,4 @@ TEST_F(SessionCheckTest, ReportsAnInvalidRecord) {
 }
 
 } // namespace
-} // namespace scanloom::session
+} // namespace scanloom::sessions

@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-namespace scanloom::session {
+namespace scanloom::sessions {
 
 using testing_support::random_scan;
 using testing_support::random_scans;
@@ -111,4 +111,4 @@ protected:
     std::shared_ptr<Session> session_;
 };
 
-} // namespace scanloom::session
+} // namespace scanloom::sessions

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace scanloom::session {
+namespace scanloom::sessions {
 namespace {
 
 constexpr std::size_t kBytesOfAChunk = sizeof(mapping::LaserChunk) + classify::ClassLayer::kChunkBytes;
@@ -22,4 +22,4 @@ TEST(SessionLimits, TakeTheDocumentedMemory) {
 }
 
 } // namespace
-} // namespace scanloom::session
+} // namespace scanloom::sessions

@@ -4,7 +4,7 @@
 
 #include <thread>
 
-namespace scanloom::session {
+namespace scanloom::sessions {
 namespace {
 
 using testing::ElementsAre;
@@ -310,4 +310,4 @@ TEST_F(SessionRegistryTest, ManyThreadsCanCreateAndRemoveTheSameNames) {
 }
 
 } // namespace
-} // namespace scanloom::session
+} // namespace scanloom::sessions

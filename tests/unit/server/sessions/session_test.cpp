@@ -1,7 +1,7 @@
 #include "tests/unit/server/sessions/session_fixture.hpp"
 
 /// What a session accepts from its robots, and its answers.
-namespace scanloom::session {
+namespace scanloom::sessions {
 namespace {
 
 using testing::ElementsAre;
@@ -211,4 +211,4 @@ TEST_F(SessionTest, SnapshotsContainTheNewestScanOfEachRobot) {
 }
 
 } // namespace
-} // namespace scanloom::session
+} // namespace scanloom::sessions

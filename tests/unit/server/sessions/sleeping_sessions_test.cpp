@@ -6,7 +6,7 @@
 #include <thread>
 
 /// Sessions that are evicted from memory and loaded again.
-namespace scanloom::session {
+namespace scanloom::sessions {
 namespace {
 
 using testing::HasSubstr;
@@ -286,4 +286,4 @@ TEST_F(EvictedSessions, CanBeLoadedByManyThreadsDuringEviction) {
 }
 
 } // namespace
-} // namespace scanloom::session
+} // namespace scanloom::sessions

@@ -6,7 +6,7 @@
 #include <random>
 
 /// The points read from the log and the points kept in memory together form every robot's whole trajectory.
-namespace scanloom::session {
+namespace scanloom::sessions {
 namespace {
 
 using testing::HasSubstr;
@@ -164,4 +164,4 @@ TEST_F(OldPathsTest, ReportsADamagedEntryByItsNumber) {
 }
 
 } // namespace
-} // namespace scanloom::session
+} // namespace scanloom::sessions

@@ -19,7 +19,7 @@
 #include <string>
 #include <vector>
 
-namespace scanloom::session {
+namespace scanloom::sessions {
 
 using State = ReplayJob::State;
 using testing_support::digests_of;
@@ -157,4 +157,4 @@ protected:
     ReplayJobs weaves_{log_, pool_.get_executor()};
 };
 
-} // namespace scanloom::session
+} // namespace scanloom::sessions

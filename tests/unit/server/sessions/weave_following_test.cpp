@@ -3,7 +3,7 @@
 
 #include <thread>
 
-namespace scanloom::session {
+namespace scanloom::sessions {
 namespace {
 
 /// Replay jobs of a log that grows between requests.
@@ -271,4 +271,4 @@ TEST_F(FollowingReplayTest, RequestIsOverloadedWhileOthersHaveAllRoom) {
 }
 
 } // namespace
-} // namespace scanloom::session
+} // namespace scanloom::sessions

@@ -1,6 +1,6 @@
 #include "tests/unit/server/sessions/weave_fixture.hpp"
 
-namespace scanloom::session {
+namespace scanloom::sessions {
 namespace {
 
 Sensor sonar_ring(std::uint32_t id, double range_max) {
@@ -251,4 +251,4 @@ TEST_F(ReplayHistoryTest, ChunksOfTheBaseCountImmediately) {
 }
 
 } // namespace
-} // namespace scanloom::session
+} // namespace scanloom::sessions

@@ -5,7 +5,7 @@
 
 #include <thread>
 
-namespace scanloom::session {
+namespace scanloom::sessions {
 namespace {
 
 const Error kEnough{Errc::kNotFound, "enough"};
@@ -255,4 +255,4 @@ TEST_F(ReplayJobTest, RefusesTooManyWaitingJobsAndJobsAfterStop) {
 }
 
 } // namespace
-} // namespace scanloom::session
+} // namespace scanloom::sessions

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace scanloom::robot {
+namespace scanloom::sim {
 
 /// Rows from the top, all of equal length: '.' is free, any other character is not. The lower left cell is (0, 0).
 inline FloorPlan drawn_plan(const std::vector<std::string_view>& rows, double cell_size) {
@@ -21,4 +21,4 @@ inline FloorPlan drawn_plan(const std::vector<std::string_view>& rows, double ce
     return plan;
 }
 
-} // namespace scanloom::robot
+} // namespace scanloom::sim

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-namespace scanloom::robot {
+namespace scanloom::sim {
 
 /// Returns a square room of 6 x 6 m inside, centred at the origin, with furniture.
 inline World walled(std::vector<Box> furniture) {
@@ -58,4 +58,4 @@ private:
     double clearance_min_ = std::numeric_limits<double>::infinity();
 };
 
-} // namespace scanloom::robot
+} // namespace scanloom::sim

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace scanloom::robot {
+namespace scanloom::sim {
 namespace {
 
 /// An exploring robot in a world; the test gives the goals.
@@ -95,4 +95,4 @@ TEST(Explore, ReportsThatItIsDone) {
 }
 
 } // namespace
-} // namespace scanloom::robot
+} // namespace scanloom::sim

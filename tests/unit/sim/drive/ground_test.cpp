@@ -8,7 +8,7 @@
 #include <cmath>
 #include <string>
 
-namespace scanloom::robot {
+namespace scanloom::sim {
 namespace {
 
 /// Draws the ground, rows from the top: '#' not free, '.' the body fits, 'o' the body does not fit.
@@ -127,4 +127,4 @@ TEST(CoverageMeter, CountsCoveredPartOfTheReachableArea) {
 }
 
 } // namespace
-} // namespace scanloom::robot
+} // namespace scanloom::sim

@@ -8,7 +8,7 @@
 
 #include <algorithm>
 
-namespace scanloom::robot {
+namespace scanloom::sim {
 namespace {
 
 /// Follows one path and records the longest time for which it was blocked.
@@ -112,4 +112,4 @@ TEST(PathFollower, ReturnsTheRemainingPathLength) {
 }
 
 } // namespace
-} // namespace scanloom::robot
+} // namespace scanloom::sim

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <limits>
 
-namespace scanloom::robot {
+namespace scanloom::sim {
 namespace {
 
 /// Returns the senses of a robot at the origin with heading 0, with three beams that end at each place.
@@ -89,4 +89,4 @@ TEST(FullTurn, EndsAtTheInitialHeading) {
 }
 
 } // namespace
-} // namespace scanloom::robot
+} // namespace scanloom::sim

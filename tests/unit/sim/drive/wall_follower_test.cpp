@@ -7,7 +7,7 @@
 
 #include <numbers>
 
-namespace scanloom::robot {
+namespace scanloom::sim {
 namespace {
 
 constexpr double kWallTurnMax = std::numbers::pi / 4.0;
@@ -124,4 +124,4 @@ TEST(Obstacles, AreTheEndsOfReturningBeams) {
 }
 
 } // namespace
-} // namespace scanloom::robot
+} // namespace scanloom::sim

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace scanloom::robot {
+namespace scanloom::sim {
 namespace {
 
 TEST(PotentialField, AttractsStraightToTheGoal) {
@@ -131,4 +131,4 @@ TEST(Waypoints, IsDoneWithoutWaypoints) {
 }
 
 } // namespace
-} // namespace scanloom::robot
+} // namespace scanloom::sim

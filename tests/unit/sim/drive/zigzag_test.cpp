@@ -9,7 +9,7 @@
 
 #include <algorithm>
 
-namespace scanloom::robot {
+namespace scanloom::sim {
 namespace {
 
 std::vector<Block> lanes_of(const std::vector<std::string_view>& rows, double spacing) {
@@ -127,4 +127,4 @@ TEST(Zigzag, WaitsForAPassingPerson) {
 }
 
 } // namespace
-} // namespace scanloom::robot
+} // namespace scanloom::sim
