@@ -12,7 +12,7 @@ namespace scanloom::sim {
 namespace {
 
 /// Reachability is computed on cells of at most this size: larger ones would close doors.
-constexpr double kWayCellMax = 0.1; // metres
+constexpr double kReachCellMax = 0.1; // metres
 
 /// A side within this share of a cell from a border counts as on the border.
 constexpr double kSnapCells = 1e-6;
@@ -89,19 +89,19 @@ void mark_free(const World& world, TruthGrid& grid) {
 
 TruthGrid truth_of(const World& world, double cell_size_m) {
     TruthGrid grid = blank_grid(world, cell_size_m);
-    const int parts = static_cast<int>(std::ceil(cell_size_m / kWayCellMax - 1e-9));
+    const int parts = static_cast<int>(std::ceil(cell_size_m / kReachCellMax - 1e-9));
     mark_unknown_and_solids(world, grid);
     if (parts == 1) {
         mark_free(world, grid);
     } else {
-        TruthGrid ways = blank_grid(world, cell_size_m / parts);
-        mark_unknown_and_solids(world, ways);
-        mark_free(world, ways);
+        TruthGrid finer = blank_grid(world, cell_size_m / parts);
+        mark_unknown_and_solids(world, finer);
+        mark_free(world, finer);
         std::size_t n = 0;
         for (std::int32_t j = grid.j_begin; j < grid.j_begin + grid.height; ++j) {
             for (std::int32_t i = grid.i_begin; i < grid.i_begin + grid.width; ++i, ++n) {
                 // no solid is in the cell, so one part of it decides for all
-                const bool is_reached = ways.at(i * parts, j * parts) == Truth::kFree;
+                const bool is_reached = finer.at(i * parts, j * parts) == Truth::kFree;
                 if (grid.cells[n] == Truth::kOutside && is_reached) grid.cells[n] = Truth::kFree;
             }
         }

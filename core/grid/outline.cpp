@@ -14,11 +14,13 @@ namespace scanloom::grid {
 namespace {
 
 /// Directions of a walk along the sides of a cell, with the cell on the left: right along its bottom, up, left, down.
-constexpr std::array<Cell, 4> kWays = {Cell{1, 0}, Cell{0, 1}, Cell{-1, 0}, Cell{0, -1}};
+constexpr std::array<Cell, 4> kDirections = {Cell{1, 0}, Cell{0, 1}, Cell{-1, 0}, Cell{0, -1}};
 
-Cell neighbour(Cell cell, std::size_t way) { return {cell.i + kWays[way].i, cell.j + kWays[way].j}; }
-std::size_t left_of(std::size_t way) { return (way + 1) % 4; }
-std::size_t right_of(std::size_t way) { return (way + 3) % 4; }
+Cell neighbour(Cell cell, std::size_t direction) {
+    return {cell.i + kDirections[direction].i, cell.j + kDirections[direction].j};
+}
+std::size_t left_of(std::size_t direction) { return (direction + 1) % 4; }
+std::size_t right_of(std::size_t direction) { return (direction + 3) % 4; }
 
 /// Returns the corner where the walk along a side begins.
 Cell first_corner(Cell cell, std::size_t side) {
@@ -88,8 +90,8 @@ private:
         for (std::vector<std::size_t> open = {seed}; !open.empty();) {
             const Cell cell = cells_[open.back()];
             open.pop_back();
-            for (std::size_t way = 0; way < 4; ++way) {
-                const auto next = find(neighbour(cell, way));
+            for (std::size_t direction = 0; direction < 4; ++direction) {
+                const auto next = find(neighbour(cell, direction));
                 if (!next || area_[*next] != kNone) continue;
                 area_[*next] = area;
                 open.push_back(*next);

@@ -18,7 +18,7 @@ namespace {
 struct Task {
     Passability passability;
     Spot start;
-    BitGrid way_out;                 ///< cells to leave a narrow start by; not entered again
+    BitGrid exit_cells;              ///< cells to leave a narrow start by; not entered again
     BitGrid places;                  ///< where the body's centre can be
     BitGrid free;                    ///< free cells of the region
     BitGrid reachable;               ///< cells of `free` within reach of a place
@@ -98,11 +98,11 @@ Result<Task> make_task(const classify::ClassView& classes, double cell_size_m, c
                                                 "region: give another start or region",
                                                 start.x, start.y, known_ground.body_radius_m)};
     }
-    BitGrid way_out = passability->enterable;
-    way_out.subtract(passability->fits);
+    BitGrid exit_cells = passability->enterable;
+    exit_cells.subtract(passability->fits);
     passability->enterable = places;
-    passability->enterable |= way_out;
-    return Task{std::move(*passability), *spot,           std::move(way_out),
+    passability->enterable |= exit_cells;
+    return Task{std::move(*passability), *spot,           std::move(exit_cells),
                 std::move(places),       std::move(free), std::move(reachable),
                 std::move(reach),        *spacing};
 }
@@ -125,7 +125,7 @@ public:
         }
         search_.between(at(), goal);
         append(search_.path_to(goal));
-        if (!std::exchange(has_left_, true)) task_.passability.enterable = task_.places; // without way_out
+        if (!std::exchange(has_left_, true)) task_.passability.enterable = task_.places; // without exit_cells
         return {};
     }
 
@@ -147,8 +147,8 @@ public:
     }
 
 private:
-    void append(const std::vector<Spot>& way) {
-        for (std::size_t n = 1; n < way.size(); ++n) step(way[n]);
+    void append(const std::vector<Spot>& path) {
+        for (std::size_t n = 1; n < path.size(); ++n) step(path[n]);
     }
 
     void step(Spot next) {
@@ -279,7 +279,7 @@ Result<Coverage> plan_coverage(const classify::ClassView& classes, double cell_s
     Tour tour(*task, may_go_on);
     if (auto swept = sweep_all(tour, *task); !swept) return swept.error();
     if (auto fetched = fetch_what_is_left(tour, *task); !fetched) return fetched.error();
-    task->passability.enterable |= task->way_out; // the path starts there
+    task->passability.enterable |= task->exit_cells; // the path starts there
     Coverage coverage;
     const Point2 end = task->passability.centre_of(tour.at());
     coverage.path = to_path(task->passability, tour.cells(), start, end, Shape::kSteps);

@@ -135,8 +135,8 @@ Result<Path> plan_path(const classify::ClassView& classes, double cell_size_m, c
     if (!last) return last.error();
     if (!connected(passability->enterable, *first).test(*last)) {
         return Error{Errc::kNoPath,
-                     fmt::format("there is no way from ({:g}, {:g}) to ({:g}, {:g}) for a body of radius {} m", start.x,
-                                 start.y, goal.x, goal.y, options.body_radius_m)};
+                     fmt::format("there is no path from ({:g}, {:g}) to ({:g}, {:g}) for a body of radius {} m",
+                                 start.x, start.y, goal.x, goal.y, options.body_radius_m)};
     }
     CostSearch search(*passability);
     search.between(*first, *last);

@@ -129,7 +129,7 @@ double clearance_of(const Passability& passability, Spot place, double far) {
 /// Returns the cells through which a body can leave a position where it should not be. These are the ground cells that
 /// it covers. With on_known they also include cells that are not near occupied ones, as far as necessary to get to
 /// known ground, but at most four times as far.
-BitGrid way_out(const Passability& passability, Spot place, double radius) {
+BitGrid exit_cells(const Passability& passability, Spot place, double radius) {
     BitGrid near = disc_around(passability, place, radius + 1.0);
     near &= passability.ground;
     const double clearance = clearance_of(passability, place, radius + 1.0) - kRoundingCells;
@@ -141,13 +141,13 @@ BitGrid way_out(const Passability& passability, Spot place, double radius) {
     BitGrid clear = passability.ground;
     clear.subtract(dilated(passability.occupied, disc_half_widths(radius_for_steps(radius), true)));
     for (const double times : {1.0, 1.5, 2.0, 3.0, 4.0}) {
-        BitGrid way = disc_around(passability, place, times * (radius + 1.0));
-        way &= clear;
-        way |= near;
-        way = connected(way, place);
-        BitGrid arrived = way;
+        BitGrid cells = disc_around(passability, place, times * (radius + 1.0));
+        cells &= clear;
+        cells |= near;
+        cells = connected(cells, place);
+        BitGrid arrived = cells;
         arrived &= passability.enterable;
-        if (arrived.count() > 0) return way;
+        if (arrived.count() > 0) return cells;
     }
     return near;
 }
@@ -211,7 +211,7 @@ Result<Spot> open_start(Passability& passability, const Point2& start) {
     if (const auto spot = passability.spot_at(start)) take_as_ground(passability, *spot, radius);
     const auto spot = ground_at(passability, start, "start");
     if (!spot || passability.enterable.test(*spot)) return spot;
-    passability.enterable |= way_out(passability, *spot, radius);
+    passability.enterable |= exit_cells(passability, *spot, radius);
     return spot;
 }
 

@@ -22,7 +22,7 @@ const kPictures = [
   { name: 'viewer-swipe', hash: '&layer=classification', act: (page) => page.selectOption('#second-layer', 'himm') },
   { name: 'viewer-frontiers', act: (page) => page.check('[data-switch=frontiers]') },
   { name: 'viewer-history', act: history },
-  { name: 'viewer-path', act: way },
+  { name: 'viewer-path', act: planPath },
   { name: 'viewer-difference', act: difference },
   { name: 'viewer-dark', hash: '&layer=classification', scheme: 'dark' },
   { name: 'viewer-safe', hash: '&layer=classification', act: (page) => page.selectOption('#palette', 'safe') },
@@ -91,7 +91,7 @@ async function history(page) {
 }
 
 /** From one side of the building to the other. */
-async function way(page) {
+async function planPath(page) {
   await page.keyboard.press('p');
   await page.mouse.click(673, 500);
   await page.mouse.click(1043, 560);

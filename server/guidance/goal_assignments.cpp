@@ -114,15 +114,16 @@ Result<planning::NextGoal> GoalAssignments::next(const std::shared_ptr<const ses
     keep(std::move(unobserved));
     forget_entry(session, robot);
     if (!found || !found->goal) {
-        ways_.take_back(session, robot, found && found->outcome == planning::Exploration::kComplete);
+        paths_.take_back(session, robot, found && found->outcome == planning::Exploration::kComplete);
         return found;
     }
     Visit visit = begin_visit(*found->goal, state, cell_size, options.passability.body_radius_m);
     if (going_on && is_there(visit, state)) { // also for a better goal: the robot keeps its waiting time
         visit.asking_since = going_on->asking_since.value_or(state.stamp);
     }
-    const auto given = ways_.give_goal(session, robot, shared_goal(*found->goal, maps),
-                                       {PathKind::kGoal, found->path.points, found->path.length_m, maps.revision}, now);
+    const auto given =
+        paths_.give_goal(session, robot, shared_goal(*found->goal, maps),
+                         {PathKind::kGoal, found->path.points, found->path.length_m, maps.revision}, now);
     entries_.push_back({session, robot, given, maps.config, found->goal->cell, found->around_target, visit});
     return found;
 }
@@ -191,7 +192,7 @@ void GoalAssignments::forget_what_counts_no_longer(Clock::time_point now) {
     std::erase_if(unobserved_, [](const Unobserved& one) { return one.session.expired(); });
     std::erase_if(entries_, [&](const Entry& entry) {
         const auto session = entry.session.lock();
-        return !session || !ways_.holds(session, entry.robot, entry.given, now);
+        return !session || !paths_.holds(session, entry.robot, entry.given, now);
     });
 }
 

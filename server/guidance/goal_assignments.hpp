@@ -85,7 +85,7 @@ public:
                                                   const planning::ExplorationOptions& options = {});
 
     /// Returns the goals and paths that robots hold, which include the goals assigned here.
-    [[nodiscard]] RobotPaths& ways() noexcept { return ways_; }
+    [[nodiscard]] RobotPaths& paths() noexcept { return paths_; }
 
 private:
     struct Entry {
@@ -121,7 +121,7 @@ private:
     static void count_look(const std::vector<grid::Cell>& around_target, Unobserved& unobserved);
     [[nodiscard]] static std::vector<grid::Cell> looked_at_often(const Unobserved& unobserved);
 
-    RobotPaths ways_;
+    RobotPaths paths_;
     std::mutex mutex_;
     std::vector<Entry> entries_;         // at most one for each robot
     std::vector<Unobserved> unobserved_; // at most one for each session and settings; the most recently used last

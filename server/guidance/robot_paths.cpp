@@ -5,7 +5,7 @@
 
 namespace scanloom::guidance {
 
-std::uint64_t RobotPaths::give_goal(const SessionPtr& session, RobotIndex robot, const Goal& goal, HeldPath way,
+std::uint64_t RobotPaths::give_goal(const SessionPtr& session, RobotIndex robot, const Goal& goal, HeldPath path,
                                     Clock::time_point now) {
     const bool connected = session->is_connected(robot);
     std::uint64_t given = 0;
@@ -15,23 +15,23 @@ std::uint64_t RobotPaths::give_goal(const SessionPtr& session, RobotIndex robot,
         record.holdings.erase(robot);
         record.explored.erase(robot);
         given = ++record.revision;
-        record.holdings[robot] = {now, connected, goal, given, bounded(record, std::move(way))};
+        record.holdings[robot] = {now, connected, goal, given, bounded(record, std::move(path))};
     }
     session->notify_changed();
     return given;
 }
 
-void RobotPaths::set_path(const SessionPtr& session, RobotIndex robot, std::optional<HeldPath> way,
+void RobotPaths::set_path(const SessionPtr& session, RobotIndex robot, std::optional<HeldPath> path,
                           Clock::time_point now) {
     {
         const std::lock_guard lock(mutex_);
         Record& record = record_of(session);
         auto& holding = record.holdings.try_emplace(robot, Holding{now, true, {}, 0, {}}).first->second;
-        const bool had_none = !holding.way;
+        const bool had_none = !holding.path;
         holding.was_connected = true; // otherwise it could not have asked
-        holding.way = nullptr;
-        if (way) holding.way = bounded(record, std::move(*way));
-        const bool has_none = !holding.way;
+        holding.path = nullptr;
+        if (path) holding.path = bounded(record, std::move(*path));
+        const bool has_none = !holding.path;
         if (has_none && !holding.goal) record.holdings.erase(robot);
         if (had_none && has_none) return;
         ++record.revision;
@@ -77,7 +77,7 @@ RobotPaths::Page RobotPaths::page(const SessionPtr& session, Clock::time_point n
     const Record* record = find(session, now);
     if (record == nullptr) return {};
     Page page{record->revision, {}, {record->explored.begin(), record->explored.end()}};
-    for (const auto& [robot, holding] : record->holdings) page.robots.push_back({robot, holding.goal, holding.way});
+    for (const auto& [robot, holding] : record->holdings) page.robots.push_back({robot, holding.goal, holding.path});
     return page;
 }
 
@@ -95,16 +95,16 @@ RobotPaths::Record* RobotPaths::find(const SessionPtr& session, Clock::time_poin
 }
 
 /// Returns the path, cut to as many points as the record has room for, at least the first two.
-std::shared_ptr<const HeldPath> RobotPaths::bounded(const Record& record, HeldPath way) {
+std::shared_ptr<const HeldPath> RobotPaths::bounded(const Record& record, HeldPath path) {
     std::size_t room = kPointsMax;
     for (const auto& [robot, holding] : record.holdings) {
-        if (holding.way) room -= std::min(room, holding.way->points.size());
+        if (holding.path) room -= std::min(room, holding.path->points.size());
     }
-    const std::size_t kept = std::min(way.points.size(), std::clamp<std::size_t>(room, 2, kWayPointsMax));
-    way.points_left_out += way.points.size() - kept;
-    way.points.resize(kept);
-    way.points.shrink_to_fit();
-    return std::make_shared<const HeldPath>(std::move(way));
+    const std::size_t kept = std::min(path.points.size(), std::clamp<std::size_t>(room, 2, kPathPointsMax));
+    path.points_left_out += path.points.size() - kept;
+    path.points.resize(kept);
+    path.points.shrink_to_fit();
+    return std::make_shared<const HeldPath>(std::move(path));
 }
 
 void RobotPaths::forget_what_is_over(Record& record, const sessions::Session& session, Clock::time_point now) {

@@ -42,7 +42,7 @@ struct HeldPath {
 /// or the Session object. That a robot has explored everything it can reach stays known after it has left, until it
 /// asks for a goal again. Robots that have left are removed when the book is read.
 ///
-/// Bounds: at most one goal and one path for each robot of a session, kWayPointsMax points for each path, about
+/// Bounds: at most one goal and one path for each robot of a session, kPathPointsMax points for each path, about
 ///     kPointsMax points for each session.
 /// Threads: any thread; no lock is held during a search.
 class RobotPaths {
@@ -50,7 +50,7 @@ public:
     using Clock = std::chrono::steady_clock;
 
     static constexpr Clock::duration kKeptForAbsent = std::chrono::minutes(1);
-    static constexpr std::size_t kWayPointsMax = 16'384;
+    static constexpr std::size_t kPathPointsMax = 16'384;
     static constexpr std::size_t kPointsMax = std::size_t{1} << 20; ///< a path beyond them keeps its first two points
 
     /// Whether the page of a session has changed, or will.
@@ -62,7 +62,7 @@ public:
     struct Held {
         RobotIndex robot = 0;
         std::optional<Goal> goal;
-        std::shared_ptr<const HeldPath> way; ///< null: none was found
+        std::shared_ptr<const HeldPath> path; ///< null: none was found
     };
 
     struct Page {
@@ -76,12 +76,12 @@ public:
     /// Gives a robot a goal and the path to it, which replace everything the robot held. Like every change, this
     /// notifies the session's watchers.
     /// @return a number that identifies this goal in the session; see holds()
-    std::uint64_t give_goal(const SessionPtr& session, RobotIndex robot, const Goal& goal, HeldPath way,
+    std::uint64_t give_goal(const SessionPtr& session, RobotIndex robot, const Goal& goal, HeldPath path,
                             Clock::time_point now);
 
     /// Replaces the path of a robot by the one that it requested over its connection. Its goal stays.
-    /// @param way  nullopt: no path was found
-    void set_path(const SessionPtr& session, RobotIndex robot, std::optional<HeldPath> way, Clock::time_point now);
+    /// @param path  nullopt: no path was found
+    void set_path(const SessionPtr& session, RobotIndex robot, std::optional<HeldPath> path, Clock::time_point now);
 
     /// Removes everything that a robot holds.
     /// @param explored  whether the reason is that the robot can reach nothing left to explore
@@ -100,7 +100,7 @@ private:
         bool was_connected;
         std::optional<Goal> goal;
         std::uint64_t goal_given; // Record::revision when the goal was given
-        std::shared_ptr<const HeldPath> way;
+        std::shared_ptr<const HeldPath> path;
     };
 
     struct Record {
@@ -111,7 +111,7 @@ private:
 
     [[nodiscard]] Record& record_of(const SessionPtr& session);
     [[nodiscard]] Record* find(const SessionPtr& session, Clock::time_point now);
-    [[nodiscard]] static std::shared_ptr<const HeldPath> bounded(const Record& record, HeldPath way);
+    [[nodiscard]] static std::shared_ptr<const HeldPath> bounded(const Record& record, HeldPath path);
     static void forget_what_is_over(Record& record, const sessions::Session& session, Clock::time_point now);
 
     std::mutex mutex_;

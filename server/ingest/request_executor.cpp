@@ -107,11 +107,11 @@ struct Search {
 };
 
 /// Returns the path that live viewers show for the robot.
-std::optional<guidance::HeldPath> way_of(const Result<wire::Path>& path, Revision revision) {
+std::optional<guidance::HeldPath> held_path(const Result<wire::Path>& path, Revision revision) {
     if (!path) return std::nullopt;
     return guidance::HeldPath{guidance::PathKind::kPlan, path->points, path->length, revision};
 }
-std::optional<guidance::HeldPath> way_of(const Result<wire::Coverage>& coverage, Revision revision) {
+std::optional<guidance::HeldPath> held_path(const Result<wire::Coverage>& coverage, Revision revision) {
     if (!coverage) return std::nullopt;
     return guidance::HeldPath{guidance::PathKind::kCoverage, coverage->path.points, coverage->path.length, revision};
 }
@@ -128,8 +128,8 @@ wire::Message reply_from(const Kind& request, const Requester& requester, const 
     }
     auto found = Search{requester, *maps, goals, guidance::SearchLimit(services.sessions), *start}(request);
     if constexpr (!std::is_same_v<Kind, wire::GoalRequest>) { // the goal book already knows the paths to goals
-        goals.ways().set_path(requester.session, requester.robot, way_of(found, maps->revision),
-                              guidance::RobotPaths::Clock::now());
+        goals.paths().set_path(requester.session, requester.robot, held_path(found, maps->revision),
+                               guidance::RobotPaths::Clock::now());
     }
     return reply(request, maps->revision, std::move(found));
 }

@@ -11,14 +11,14 @@
 
 namespace scanloom::live {
 
-/// What a viewer needs to show a session over its connection. Does not keep the session in memory. `ways` and the
+/// What a viewer needs to show a session over its connection. Does not keep the session in memory. `paths` and the
 /// LandmarkHub must outlive all viewers.
 struct Invitation {
     std::weak_ptr<sessions::Session> session;
     store::SessionId session_id = 0;
     std::string name; ///< of the session, for messages after it was deleted
     std::string tag;  ///< LiveEvent::session
-    guidance::RobotPaths& ways;
+    guidance::RobotPaths& paths;
     std::shared_ptr<WatchedLandmarks> landmarks;
     std::function<bool()> is_stored = [] { return false; }; ///< returns whether the session exists, in memory or not
     std::shared_ptr<auth::Credential> pass = nullptr;       ///< permission to watch; null: it cannot be revoked

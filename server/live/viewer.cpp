@@ -208,9 +208,9 @@ Viewer::NextStep Viewer::next_step() {
         return {{},
                 close_with(websocket::close_code::going_away, "the session was evicted from memory; connect again"),
                 {}};
-    const auto ways = invitation_.ways.state(session, Clock::now());
-    SessionSnapshot snapshot = snapshot_of(*session, ways.revision);
-    const auto until = std::min(ways.until, add_landmarks(session, snapshot));
+    const auto paths = invitation_.paths.state(session, Clock::now());
+    SessionSnapshot snapshot = snapshot_of(*session, paths.revision);
+    const auto until = std::min(paths.until, add_landmarks(session, snapshot));
     const auto event = encoder_.next(snapshot);
     std::optional<Close> end;
     if (closing) end = close_with(websocket::close_code::going_away, closing->message);

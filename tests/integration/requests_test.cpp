@@ -113,29 +113,29 @@ TEST_F(RequestsTest, TheLastPlanIsKeptUntilTheRobotLeaves) {
     auto& ingest = start();
     const auto robot = looking_around("r");
     const auto session = ingest.sessions().find("lab");
-    const auto page = [&] { return ingest.goals().ways().page(session, guidance::RobotPaths::Clock::now()); };
+    const auto page = [&] { return ingest.goals().paths().page(session, guidance::RobotPaths::Clock::now()); };
     robot->send(plan_to({2.5, 0.2}));
     const auto plan = robot->receive_kind<wire::PlanReply>();
     ASSERT_EQ(page().robots.size(), 1U);
-    EXPECT_EQ(page().robots[0].way->kind, guidance::PathKind::kPlan);
-    EXPECT_EQ(page().robots[0].way->points, plan.result.value().points);
-    EXPECT_EQ(page().robots[0].way->length_m, plan.result.value().length);
-    EXPECT_EQ(page().robots[0].way->revision, plan.revision);
+    EXPECT_EQ(page().robots[0].path->kind, guidance::PathKind::kPlan);
+    EXPECT_EQ(page().robots[0].path->points, plan.result.value().points);
+    EXPECT_EQ(page().robots[0].path->length_m, plan.result.value().length);
+    EXPECT_EQ(page().robots[0].path->revision, plan.revision);
 
     robot->send(wire::CoverageRequest{.id = 2});
     const auto coverage = robot->receive_kind<wire::CoverageReply>();
-    EXPECT_EQ(page().robots[0].way->kind, guidance::PathKind::kCoverage);
-    EXPECT_EQ(page().robots[0].way->points, coverage.result.value().path.points);
+    EXPECT_EQ(page().robots[0].path->kind, guidance::PathKind::kCoverage);
+    EXPECT_EQ(page().robots[0].path->points, coverage.result.value().path.points);
 
     robot->send(wire::GoalRequest{.id = 3, .frontier_size_min = 10});
     const auto goal = robot->receive_kind<wire::GoalReply>();
     EXPECT_EQ(page().robots[0].goal->target, goal.result.value().target);
-    EXPECT_EQ(page().robots[0].way->points, goal.result.value().path->points);
+    EXPECT_EQ(page().robots[0].path->points, goal.result.value().path->points);
 
     robot->send(plan_to({3.53, 1.25})); // inside a wall
     EXPECT_FALSE(robot->receive_kind<wire::PlanReply>().result);
     EXPECT_TRUE(page().robots[0].goal);
-    EXPECT_EQ(page().robots[0].way, nullptr);
+    EXPECT_EQ(page().robots[0].path, nullptr);
 
     robot->send(wire::Goodbye{});
     EXPECT_FALSE(robot->receive().has_value());

@@ -85,10 +85,10 @@ private:
     for (std::int32_t c = 0; c <= columns; ++c) world.fill(c * pitch, 0, 1, height, OccType::kOccupied);
     for (std::int32_t r = 0; r <= rows; ++r) world.fill(0, r * pitch, width, 1, OccType::kOccupied);
     std::vector<bool> seen(static_cast<std::size_t>(columns * rows));
-    std::vector<Cell> way = {{0, 0}};
+    std::vector<Cell> path = {{0, 0}};
     seen[0] = true;
-    while (!way.empty()) { // to a square not visited yet, or back
-        const Cell at = way.back();
+    while (!path.empty()) { // to a square not visited yet, or back
+        const Cell at = path.back();
         std::vector<Cell> unseen;
         for (const Cell step : {Cell{1, 0}, Cell{-1, 0}, Cell{0, 1}, Cell{0, -1}}) {
             const Cell next{at.i + step.i, at.j + step.j};
@@ -96,7 +96,7 @@ private:
             if (!seen[static_cast<std::size_t>(next.j * columns + next.i)]) unseen.push_back(next);
         }
         if (unseen.empty()) {
-            way.pop_back();
+            path.pop_back();
             continue;
         }
         const Cell next = unseen[random() % unseen.size()];
@@ -106,7 +106,7 @@ private:
         } else {
             world.fill(at.i * pitch + 1, std::max(at.j, next.j) * pitch, pitch - 1, 1, OccType::kFree);
         }
-        way.push_back(next);
+        path.push_back(next);
     }
     world.frame(1);
     return world;

@@ -96,13 +96,13 @@ inline bool meets(Point2 from, Point2 to, grid::Cell cell, double cell_size, dou
         const double low = (axis == 0 ? cell.i : cell.j) * cell_size - grown;
         const double high = low + cell_size + 2.0 * grown;
         const double start = axis == 0 ? from.x : from.y;
-        const double way = (axis == 0 ? to.x : to.y) - start;
-        if (way == 0.0) {
+        const double length = (axis == 0 ? to.x : to.y) - start;
+        if (length == 0.0) {
             if (start < low || start > high) return false;
             continue;
         }
-        const double a = (low - start) / way;
-        const double b = (high - start) / way;
+        const double a = (low - start) / length;
+        const double b = (high - start) / length;
         enters = std::max(enters, std::min(a, b));
         leaves = std::min(leaves, std::max(a, b));
         if (enters > leaves) return false;

@@ -55,12 +55,12 @@ std::string goal_text(std::string_view robot, const mapping::Snapshot& maps, con
 }
 
 /// Describes a goal that was assigned earlier. If the robot has planned another path since, the goal has no path.
-std::string goal_text(std::string_view robot, const guidance::Goal& goal, const guidance::HeldPath* way) {
-    const bool leads_there = way != nullptr && way->kind == guidance::PathKind::kGoal;
+std::string goal_text(std::string_view robot, const guidance::Goal& goal, const guidance::HeldPath* path) {
+    const bool leads_there = path != nullptr && path->kind == guidance::PathKind::kGoal;
     return head_text(robot, goal.revision, "goal") +
            fmt::format(R"("goal":{},"target":{},"in_danger":{},"path":{},"length":{}}})", point_text(goal.place),
-                       point_text(goal.target), goal.in_danger, leads_there ? line_string(way->points) : "null",
-                       leads_there ? fmt::to_string(rounded_metres(way->length_m)) : "null");
+                       point_text(goal.target), goal.in_danger, leads_there ? line_string(path->points) : "null",
+                       leads_there ? fmt::to_string(rounded_metres(path->length_m)) : "null");
 }
 
 } // namespace
@@ -74,16 +74,16 @@ Result<Response> get_goal(Context& context) {
     const auto robot = robot_named(*maps, *name);
     if (!robot) return robot.error();
 
-    const auto page = context.services.goals.ways().page(*session, guidance::RobotPaths::Clock::now());
+    const auto page = context.services.goals.paths().page(*session, guidance::RobotPaths::Clock::now());
     const auto held = std::ranges::find(page.robots, *robot, &guidance::RobotPaths::Held::robot);
     if (held == page.robots.end() || !held->goal) {
         const bool explored = std::ranges::binary_search(page.explored, *robot);
         const auto head = head_text(*name, maps->revision, explored ? "complete" : "none");
         return ok_text(kJson, nullptr, fmt::format("{}{}}}", head, kNoGoal));
     }
-    const std::size_t points = held->way ? held->way->points.size() : 0;
+    const std::size_t points = held->path ? held->path->points.size() : 0;
     return ok_text(kJson, context.services.responses.take(points * kPointTextBytes),
-                   [&] { return goal_text(*name, *held->goal, held->way.get()); });
+                   [&] { return goal_text(*name, *held->goal, held->path.get()); });
 }
 
 Result<Response> assign_goal(Context& context) {
@@ -119,14 +119,14 @@ std::string_view name_of(guidance::PathKind kind) {
     return "";
 }
 
-std::string feature_of(const std::string& robot, const guidance::HeldPath& way) {
+std::string feature_of(const std::string& robot, const guidance::HeldPath& path) {
     const boost::json::object properties{{"role", "way"},
                                          {"robot", robot},
-                                         {"kind", name_of(way.kind)},
-                                         {"length", rounded_metres(way.length_m)},
-                                         {"points_left_out", way.points_left_out},
-                                         {"revision", way.revision}};
-    return feature(properties, line_string(way.points));
+                                         {"kind", name_of(path.kind)},
+                                         {"length", rounded_metres(path.length_m)},
+                                         {"points_left_out", path.points_left_out},
+                                         {"revision", path.revision}};
+    return feature(properties, line_string(path.points));
 }
 
 std::string feature_of(const std::string& robot, const guidance::Goal& goal) {
@@ -144,9 +144,9 @@ Result<Response> get_goals(Context& context) {
     const auto& session = context.session;
     if (!session) return session.error();
 
-    const auto page = context.services.goals.ways().page(*session, guidance::RobotPaths::Clock::now());
+    const auto page = context.services.goals.paths().page(*session, guidance::RobotPaths::Clock::now());
     std::size_t bytes = page.explored.size() * kNameBytesMax;
-    for (const auto& held : page.robots) bytes += ((held.way ? held.way->points.size() : 0) + 16) * kPointTextBytes;
+    for (const auto& held : page.robots) bytes += ((held.path ? held.path->points.size() : 0) + 16) * kPointTextBytes;
     auto permit = context.services.responses.take(bytes);
     if (!permit) return permit.error();
 
@@ -155,7 +155,7 @@ Result<Response> get_goals(Context& context) {
     for (const auto& held : page.robots) {
         if (held.robot >= maps->robots.size()) continue; // its join has not been applied to the maps yet
         const std::string& name = maps->robots[held.robot].name;
-        if (held.way) features.push_back(feature_of(name, *held.way));
+        if (held.path) features.push_back(feature_of(name, *held.path));
         if (held.goal) features.push_back(feature_of(name, *held.goal));
     }
     boost::json::array explored;

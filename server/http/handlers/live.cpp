@@ -48,7 +48,7 @@ Result<Response> get_live(Context& context) {
     Response response;
     response.status = Status::switching_protocols;
     response.invitation = std::make_shared<const live::Invitation>(
-        live::Invitation{*session, info.id, info.name, session_tag(info), context.services.goals.ways(),
+        live::Invitation{*session, info.id, info.name, session_tag(info), context.services.goals.paths(),
                          context.services.watched_landmarks.of(info.id),
                          [&sessions = context.services.sessions, id = info.id, name = info.name] {
                              const auto stored = sessions.info(name);

@@ -23,12 +23,12 @@ TEST_F(ClientQuestions, ReturnTheServersAnswers) {
     ASSERT_EQ(goal->outcome, ExplorationGoal::Outcome::kGoal);
     EXPECT_FALSE(goal->path.empty());
     EXPECT_EQ(goal->given_up, 0U);
-    const auto way = client->plan({1.0, 0.0}, 20s);
-    ASSERT_TRUE(way) << way.error().message;
-    EXPECT_LT(norm(way->points.back() - Point2{1.0, 0.0}), 0.2);
-    EXPECT_GE(way->length, 0.8);
-    EXPECT_GE(way->cost, way->length);
-    EXPECT_GT(way->revision, 0U);
+    const auto path = client->plan({1.0, 0.0}, 20s);
+    ASSERT_TRUE(path) << path.error().message;
+    EXPECT_LT(norm(path->points.back() - Point2{1.0, 0.0}), 0.2);
+    EXPECT_GE(path->length, 0.8);
+    EXPECT_GE(path->cost, path->length);
+    EXPECT_GT(path->revision, 0U);
     EXPECT_EQ(client->plan({50.0, 0.0}, 20s).error().code, Errc::kNoPath);
 }
 
@@ -91,9 +91,9 @@ TEST_F(ClientQuestions, FromManyThreadsAreQueued) {
     std::vector<std::jthread> threads;
     for (int thread = 0; thread < 16; ++thread) {
         threads.emplace_back([&] {
-            const auto way = client->plan({1.0, 0.0}, 20s);
-            EXPECT_TRUE(way) << way.error().message;
-            answered += way ? 1 : 0;
+            const auto path = client->plan({1.0, 0.0}, 20s);
+            EXPECT_TRUE(path) << path.error().message;
+            answered += path ? 1 : 0;
         });
     }
     threads.clear();
@@ -107,8 +107,8 @@ TEST_F(ClientQuestions, AreDroppedWhenTheirCallerTimesOut) {
     const auto client = Client::start(made).value();
     for (int n = 0; n < 10; ++n) EXPECT_EQ(client->plan({1.0, 0.0}, 1ms).error().code, Errc::kTimeout);
     server.run();
-    const auto way = client->plan({2.0, 0.0}, 20s);
-    EXPECT_TRUE(way) << way.error().message;
+    const auto path = client->plan({2.0, 0.0}, 20s);
+    EXPECT_TRUE(path) << path.error().message;
     EXPECT_TRUE(client->close(20s));
     ASSERT_EQ(server.fake().plans().size(), 1U);
     EXPECT_EQ(server.fake().plans()[0].goal, (Point2{2.0, 0.0}));

@@ -287,7 +287,7 @@ TEST(GridPath, EntersUnknownCellsOnlyIfAllowed) {
     const PassabilityOptions allowed{.body_radius_m = 0.0, .allow_unknown = true};
     const auto refused = plan_path(view, 1.0, {0.5, 1.5}, {4.5, 1.5}, {.body_radius_m = 0.0});
     EXPECT_EQ(refused.error().code, Errc::kNoPath);
-    EXPECT_THAT(refused.error().message, HasSubstr("no way from (0.5, 1.5) to (4.5, 1.5)"));
+    EXPECT_THAT(refused.error().message, HasSubstr("no path from (0.5, 1.5) to (4.5, 1.5)"));
     EXPECT_NEAR(plan_path(view, 1.0, {0.5, 1.5}, {4.5, 1.5}, allowed)->length_m, 4.0, 1e-12);
     EXPECT_TRUE(plan_path(view, 1.0, {0.5, 1.5}, {-90.0, 300.0}, allowed)) << "all cells outside the map are unknown";
     EXPECT_TRUE(plan_path(view, 1.0, {0.5, 1.5}, {2.5, -5.5}, allowed)) << "the path goes around the end of the wall";

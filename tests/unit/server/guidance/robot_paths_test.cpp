@@ -17,16 +17,16 @@ struct CountingWatcher : sessions::Watcher {
     int notified = 0;
 };
 
-HeldPath way(PathKind kind, std::size_t points = 2) {
-    HeldPath way{kind, {}, static_cast<double>(points - 1), 7};
-    for (std::size_t n = 0; n < points; ++n) way.points.push_back({static_cast<double>(n), 0.0});
-    return way;
+HeldPath path(PathKind kind, std::size_t points = 2) {
+    HeldPath path{kind, {}, static_cast<double>(points - 1), 7};
+    for (std::size_t n = 0; n < points; ++n) path.points.push_back({static_cast<double>(n), 0.0});
+    return path;
 }
 
 class RobotPathsTest : public sessions::SessionTest {
 protected:
     std::uint64_t give_goal(RobotIndex robot, std::size_t points = 2) {
-        return book_.give_goal(session_, robot, kGoal, way(PathKind::kGoal, points), now_);
+        return book_.give_goal(session_, robot, kGoal, path(PathKind::kGoal, points), now_);
     }
     void set_path(RobotIndex robot, std::optional<HeldPath> given) {
         book_.set_path(session_, robot, std::move(given), now_);
@@ -79,29 +79,29 @@ TEST_F(RobotPathsTest, ListsFinishedRobotsUntilTheirNextRequestEvenIfAbsent) {
 
 TEST_F(RobotPathsTest, RobotHoldsItsGoalAndItsNewestPath) {
     for (const char* robot : {"a", "b"}) join(robot);
-    set_path(1, way(PathKind::kCoverage));
+    set_path(1, path(PathKind::kCoverage));
     give_goal(0);
     auto now = page();
     ASSERT_EQ(now.robots.size(), 2U);
     EXPECT_EQ(now.robots[0].robot, 0U);
     EXPECT_EQ(now.robots[0].goal->place, kGoal.place);
-    EXPECT_EQ(now.robots[0].way->kind, PathKind::kGoal);
+    EXPECT_EQ(now.robots[0].path->kind, PathKind::kGoal);
     EXPECT_FALSE(now.robots[1].goal);
-    EXPECT_EQ(now.robots[1].way->kind, PathKind::kCoverage);
+    EXPECT_EQ(now.robots[1].path->kind, PathKind::kCoverage);
 
-    set_path(0, way(PathKind::kPlan));
+    set_path(0, path(PathKind::kPlan));
     EXPECT_TRUE(page().robots[0].goal) << "a plan can lead to the goal";
-    EXPECT_EQ(page().robots[0].way->kind, PathKind::kPlan);
+    EXPECT_EQ(page().robots[0].path->kind, PathKind::kPlan);
     set_path(0, std::nullopt);
     EXPECT_TRUE(page().robots[0].goal);
-    EXPECT_EQ(page().robots[0].way, nullptr);
+    EXPECT_EQ(page().robots[0].path, nullptr);
     give_goal(0);
-    EXPECT_EQ(page().robots[0].way->kind, PathKind::kGoal);
+    EXPECT_EQ(page().robots[0].path->kind, PathKind::kGoal);
     give_goal(1);
-    EXPECT_EQ(page().robots[1].way->kind, PathKind::kGoal) << "the newest path of any kind is kept";
+    EXPECT_EQ(page().robots[1].path->kind, PathKind::kGoal) << "the newest path of any kind is kept";
     book_.take_back(session_, 0);
     EXPECT_EQ(page().robots.size(), 1U);
-    set_path(0, way(PathKind::kPlan));
+    set_path(0, path(PathKind::kPlan));
     set_path(0, std::nullopt);
     EXPECT_EQ(page().robots.size(), 1U) << "a robot without goal and path is not listed";
 }
@@ -119,9 +119,9 @@ TEST_F(RobotPathsTest, OnlyChangesRaiseTheRevisionAndNotify) {
     };
     give_goal(0);
     expect_change("a goal");
-    set_path(0, way(PathKind::kPlan));
+    set_path(0, path(PathKind::kPlan));
     expect_change("a plan");
-    set_path(0, way(PathKind::kPlan));
+    set_path(0, path(PathKind::kPlan));
     expect_change("another plan");
     set_path(0, std::nullopt);
     expect_change("no path");
@@ -155,7 +155,7 @@ TEST_F(RobotPathsTest, LeavingReleasesGoalAndPathForGood) {
 
 TEST_F(RobotPathsTest, PathOfAnAbsentRobotIsDiscarded) {
     leave(join("a"));
-    set_path(0, way(PathKind::kPlan));
+    set_path(0, path(PathKind::kPlan));
     EXPECT_THAT(page().robots, IsEmpty());
 }
 
@@ -189,7 +189,7 @@ TEST_F(RobotPathsTest, EachGoalHasItsOwnNumber) {
     const auto second = give_goal(0);
     EXPECT_FALSE(book_.holds(session_, 0, first, now_));
     EXPECT_TRUE(book_.holds(session_, 0, second, now_));
-    set_path(0, way(PathKind::kPlan));
+    set_path(0, path(PathKind::kPlan));
     EXPECT_TRUE(book_.holds(session_, 0, second, now_));
     book_.take_back(session_, 0);
     EXPECT_FALSE(book_.holds(session_, 0, second, now_));
@@ -208,27 +208,27 @@ TEST_F(RobotPathsTest, StateIsPerSessionAndEndsWithIt) {
 
 TEST_F(RobotPathsTest, TruncatesLongPathAtItsEnd) {
     join("a");
-    set_path(0, way(PathKind::kCoverage, RobotPaths::kWayPointsMax));
-    EXPECT_EQ(page().robots[0].way->points_left_out, 0U);
-    set_path(0, way(PathKind::kCoverage, RobotPaths::kWayPointsMax + 5));
-    const auto kept = page().robots[0].way;
-    EXPECT_EQ(kept->points.size(), RobotPaths::kWayPointsMax);
-    EXPECT_EQ(kept->points.back().x, static_cast<double>(RobotPaths::kWayPointsMax - 1));
+    set_path(0, path(PathKind::kCoverage, RobotPaths::kPathPointsMax));
+    EXPECT_EQ(page().robots[0].path->points_left_out, 0U);
+    set_path(0, path(PathKind::kCoverage, RobotPaths::kPathPointsMax + 5));
+    const auto kept = page().robots[0].path;
+    EXPECT_EQ(kept->points.size(), RobotPaths::kPathPointsMax);
+    EXPECT_EQ(kept->points.back().x, static_cast<double>(RobotPaths::kPathPointsMax - 1));
     EXPECT_EQ(kept->points_left_out, 5U);
-    EXPECT_EQ(kept->length_m, static_cast<double>(RobotPaths::kWayPointsMax + 4))
+    EXPECT_EQ(kept->length_m, static_cast<double>(RobotPaths::kPathPointsMax + 4))
         << "the length includes the omitted points";
 }
 
 TEST_F(RobotPathsTest, TotalPathPointsPerSessionAreBounded) {
-    constexpr std::size_t kFull = RobotPaths::kPointsMax / RobotPaths::kWayPointsMax;
-    for (RobotIndex robot = 0; robot <= kFull; ++robot) give_goal(robot, RobotPaths::kWayPointsMax);
+    constexpr std::size_t kFull = RobotPaths::kPointsMax / RobotPaths::kPathPointsMax;
+    for (RobotIndex robot = 0; robot <= kFull; ++robot) give_goal(robot, RobotPaths::kPathPointsMax);
     auto now = page();
     ASSERT_EQ(now.robots.size(), kFull + 1) << "absent robots keep their goals until they expire";
-    EXPECT_EQ(now.robots[kFull - 1].way->points.size(), RobotPaths::kWayPointsMax);
-    EXPECT_EQ(now.robots[kFull].way->points.size(), 2U);
-    EXPECT_EQ(now.robots[kFull].way->points_left_out, RobotPaths::kWayPointsMax - 2);
-    give_goal(0, RobotPaths::kWayPointsMax);
-    EXPECT_EQ(page().robots[0].way->points.size(), RobotPaths::kWayPointsMax - 2)
+    EXPECT_EQ(now.robots[kFull - 1].path->points.size(), RobotPaths::kPathPointsMax);
+    EXPECT_EQ(now.robots[kFull].path->points.size(), 2U);
+    EXPECT_EQ(now.robots[kFull].path->points_left_out, RobotPaths::kPathPointsMax - 2);
+    give_goal(0, RobotPaths::kPathPointsMax);
+    EXPECT_EQ(page().robots[0].path->points.size(), RobotPaths::kPathPointsMax - 2)
         << "its own previous points are released";
 }
 

@@ -61,9 +61,9 @@ TEST_F(ApiGoalsTest, WithoutGoalsTheCollectionIsEmpty) {
 
 TEST_F(ApiGoalsTest, PathsAndGoalsEqualTheAssignedOnes) {
     const auto session = registry_.find("a");
-    goals_.ways().give_goal(session, 0, {{1.025, 0.5}, {1.5, 0.75}, true, 3},
-                            {guidance::PathKind::kGoal, {{0.5, 1.25}, {1.025, 0.5}}, 0.915492, 3},
-                            guidance::RobotPaths::Clock::now());
+    goals_.paths().give_goal(session, 0, {{1.025, 0.5}, {1.5, 0.75}, true, 3},
+                             {guidance::PathKind::kGoal, {{0.5, 1.25}, {1.025, 0.5}}, 0.915492, 3},
+                             guidance::RobotPaths::Clock::now());
     EXPECT_EQ(
         text(),
         R"({"type":"FeatureCollection","frame_id":"map","units":"m","revision":1,"explored":[],"features":[)"
@@ -71,15 +71,15 @@ TEST_F(ApiGoalsTest, PathsAndGoalsEqualTheAssignedOnes) {
         R"("points_left_out":0,"revision":3},"geometry":{"type":"LineString","coordinates":[[0.5,1.25],[1.025,0.5]]}},)"
         R"({"type":"Feature","properties":{"role":"goal","robot":"r1","target":[1.5,0.75],"in_danger":true,)"
         R"("revision":3},"geometry":{"type":"Point","coordinates":[1.025,0.5]}}]})");
-    goals_.ways().set_path(session, 0, guidance::HeldPath{guidance::PathKind::kPlan, {{0.5, 1.25}}, 0.0, 3, 9},
-                           guidance::RobotPaths::Clock::now());
-    const auto way = features().at(0);
-    EXPECT_EQ(way.at("properties").at("kind"), "plan");
-    EXPECT_EQ(way.at("properties").at("points_left_out"), 9);
-    EXPECT_EQ(way.at("geometry").at("coordinates").as_array().size(), 2U) << "a LineString has at least two positions";
-    goals_.ways().set_path(session, 0,
-                           guidance::HeldPath{guidance::PathKind::kCoverage, {{0.5, 1.25}, {0.5, 1.5}}, 0.25, 3},
-                           guidance::RobotPaths::Clock::now());
+    goals_.paths().set_path(session, 0, guidance::HeldPath{guidance::PathKind::kPlan, {{0.5, 1.25}}, 0.0, 3, 9},
+                            guidance::RobotPaths::Clock::now());
+    const auto path = features().at(0);
+    EXPECT_EQ(path.at("properties").at("kind"), "plan");
+    EXPECT_EQ(path.at("properties").at("points_left_out"), 9);
+    EXPECT_EQ(path.at("geometry").at("coordinates").as_array().size(), 2U) << "a LineString has at least two positions";
+    goals_.paths().set_path(session, 0,
+                            guidance::HeldPath{guidance::PathKind::kCoverage, {{0.5, 1.25}, {0.5, 1.5}}, 0.25, 3},
+                            guidance::RobotPaths::Clock::now());
     EXPECT_EQ(features().at(0).at("properties").at("kind"), "coverage");
     EXPECT_EQ(features().at(1).at("properties").at("role"), "goal");
 }
@@ -91,13 +91,13 @@ TEST_F(ApiGoalsTest, GoalsOfTwoRobotsEqualTheirReplies) {
     ASSERT_EQ(shown.size(), 4U);
     for (std::size_t n = 0; n < 2; ++n) {
         const auto& answer = answers[n];
-        const auto& way = shown[2 * n];
+        const auto& path = shown[2 * n];
         const auto& goal = shown[2 * n + 1];
-        EXPECT_EQ(way.at("properties").at("robot"), answer.at("robot"));
+        EXPECT_EQ(path.at("properties").at("robot"), answer.at("robot"));
         EXPECT_EQ(goal.at("properties").at("robot"), answer.at("robot"));
-        EXPECT_EQ(way.at("geometry"), answer.at("path"));
-        EXPECT_EQ(way.at("properties").at("length"), answer.at("length"));
-        EXPECT_EQ(way.at("properties").at("revision"), answer.at("revision"));
+        EXPECT_EQ(path.at("geometry"), answer.at("path"));
+        EXPECT_EQ(path.at("properties").at("length"), answer.at("length"));
+        EXPECT_EQ(path.at("properties").at("revision"), answer.at("revision"));
         EXPECT_EQ(goal.at("properties").at("revision"), answer.at("revision"));
         EXPECT_EQ(goal.at("properties").at("in_danger"), answer.at("in_danger"));
         EXPECT_EQ(goal.at("geometry").at("coordinates").at(0), answer.at("goal").at("x"));
@@ -114,8 +114,9 @@ TEST_F(ApiGoalsTest, GoalOfARobotEqualsTheAssignedOne) {
     const auto assigned = ask_for_goal("r1");
     const auto shown = goal_of("r1");
     for (const auto& member : shown.as_object()) EXPECT_EQ(member.value(), assigned.at(member.key())) << member.key();
-    goals_.ways().set_path(registry_.find("a"), 0, guidance::HeldPath{guidance::PathKind::kPlan, {{0.5, 1.25}}, 0.0, 3},
-                           guidance::RobotPaths::Clock::now());
+    goals_.paths().set_path(registry_.find("a"), 0,
+                            guidance::HeldPath{guidance::PathKind::kPlan, {{0.5, 1.25}}, 0.0, 3},
+                            guidance::RobotPaths::Clock::now());
     EXPECT_EQ(goal_of("r1").at("goal"), assigned.at("goal"));
     EXPECT_TRUE(goal_of("r1").at("path").is_null()) << "its path leads to another place";
 }

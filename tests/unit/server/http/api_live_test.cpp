@@ -23,7 +23,7 @@ TEST_F(ApiLiveTest, WebSocketRequestIsUpgraded) {
     EXPECT_EQ(response.status, Status::switching_protocols);
     ASSERT_NE(response.invitation, nullptr);
     EXPECT_EQ(response.invitation->session.lock(), registry_.find("lab"));
-    EXPECT_EQ(&response.invitation->ways, &goals_.ways());
+    EXPECT_EQ(&response.invitation->paths, &goals_.paths());
     EXPECT_EQ(response.invitation->tag, get_json("/api/v1/sessions/lab").at("id").as_string());
 }
 

@@ -115,7 +115,7 @@ public:
     [[nodiscard]] sessions::SessionRegistry& sessions() { return sessions_; }
     [[nodiscard]] sessions::Session& session() { return *sessions_.find("lab"); }
     [[nodiscard]] store::ScanLog& log() { return log_; }
-    [[nodiscard]] guidance::RobotPaths& ways() { return goals_.ways(); }
+    [[nodiscard]] guidance::RobotPaths& paths() { return goals_.paths(); }
     [[nodiscard]] auth::Authenticator& authenticator() { return authenticator_; }
     [[nodiscard]] metrics::RefusalCounters& refusals() { return metrics_.refusals(); }
     [[nodiscard]] metrics::LiveCounters& counters() { return metrics_.http().live; }

@@ -168,7 +168,7 @@ TEST(LiveViewer, ReceivesTheExpiryOfAGoal) {
     LiveReplay viewer;
     catch_up(server, client, viewer);
     const auto almost_over = guidance::RobotPaths::Clock::now() - guidance::RobotPaths::kKeptForAbsent + 200ms;
-    server.ways().give_goal(server.sessions().find("lab"), 0, {}, {}, almost_over);
+    server.paths().give_goal(server.sessions().find("lab"), 0, {}, {}, almost_over);
     read_until(client, viewer, [&] { return viewer.last.goals_revision() == 2; });
 }
 
