@@ -65,7 +65,7 @@ struct Authenticator::Ledger : std::enable_shared_from_this<Authenticator::Ledge
 
     mutable std::mutex mutex;
     std::shared_ptr<const TokenSet> tokens; // null: every client is admitted
-    std::map<const Credential*, std::weak_ptr<Credential>> passes;
+    std::map<const Credential*, std::weak_ptr<Credential>> credentials;
     std::map<std::string, Robots, std::less<>> connected; // by the token's hash
 
     std::shared_ptr<const TokenSet> in_force() const {
@@ -87,23 +87,23 @@ struct Authenticator::Ledger : std::enable_shared_from_this<Authenticator::Ledge
 
     std::shared_ptr<Credential> give(const TokenRef& token, Purpose purpose, const std::string& session,
                                      const std::string& user) {
-        auto forget_it = [ledger = shared_from_this()](Credential* pass) {
-            ledger->forget(*pass);
-            delete pass;
+        auto forget_it = [ledger = shared_from_this()](Credential* credential) {
+            ledger->forget(*credential);
+            delete credential;
         };
-        std::shared_ptr<Credential> pass(new Credential(token, purpose, session, user), std::move(forget_it));
-        passes.emplace(pass.get(), pass);
+        std::shared_ptr<Credential> credential(new Credential(token, purpose, session, user), std::move(forget_it));
+        credentials.emplace(credential.get(), credential);
         if (purpose == Purpose::kDrive) ++connected[token->hash][user];
-        return pass;
+        return credential;
     }
 
-    void forget(const Credential& pass) {
+    void forget(const Credential& credential) {
         const std::lock_guard lock(mutex);
-        passes.erase(&pass);
-        if (pass.purpose() != Purpose::kDrive) return;
-        auto& robots = connected[pass.hash()];
-        if (--robots[pass.user()] == 0) robots.erase(pass.user());
-        if (robots.empty()) connected.erase(pass.hash());
+        credentials.erase(&credential);
+        if (credential.purpose() != Purpose::kDrive) return;
+        auto& robots = connected[credential.hash()];
+        if (--robots[credential.user()] == 0) robots.erase(credential.user());
+        if (robots.empty()) connected.erase(credential.hash());
     }
 };
 
@@ -165,16 +165,16 @@ void Authenticator::replace(TokenSet tokens) {
     {
         const std::lock_guard lock(ledger_->mutex);
         ledger_->tokens = std::make_shared<const TokenSet>(std::move(tokens));
-        for (const auto& [key, weak] : ledger_->passes) {
-            auto pass = weak.lock();
-            if (!pass) continue;
-            auto token = found(ledger_->tokens, pass->hash());
-            if (token && objection(token, pass->purpose(), pass->session())) token = nullptr;
-            changes.emplace_back(std::move(pass), std::move(token));
+        for (const auto& [key, weak] : ledger_->credentials) {
+            auto credential = weak.lock();
+            if (!credential) continue;
+            auto token = found(ledger_->tokens, credential->hash());
+            if (token && objection(token, credential->purpose(), credential->session())) token = nullptr;
+            changes.emplace_back(std::move(credential), std::move(token));
         }
     }
     // Without the lock: the callback may call the authenticator.
-    for (auto& [pass, token] : changes) pass->change(std::move(token));
+    for (auto& [credential, token] : changes) credential->change(std::move(token));
 }
 
 } // namespace scanloom::auth

@@ -14,7 +14,7 @@
 
 namespace scanloom::auth {
 
-/// What a pass permits.
+/// What a credential permits.
 enum class Purpose {
     kDrive, ///< a robot's link
     kWatch, ///< a live viewer
@@ -69,7 +69,7 @@ using Admitted = boost::system::result<T, Denied>;
     throw ErrorException(denied.error);
 }
 
-/// Authenticates clients by their tokens, and grants passes for robot links and live viewers.
+/// Authenticates clients by their tokens, and grants credentials for robot links and live viewers.
 ///
 /// Without tokens every client is admitted, with the token default_token().
 /// Threads: any thread; calls wait only for each other.
@@ -93,8 +93,8 @@ public:
 
     /// Permits the robot a link to the session, which need not exist.
     ///
-    /// The pass counts as one of the token's connections until it is destroyed. Several passes for one robot in one
-    /// session count once, because the session keeps only the robot's newest link.
+    /// The credential counts as one of the token's connections until it is destroyed. Several credentials for one robot
+    /// in one session count once, because the session keeps only the robot's newest link.
     /// Errors: those of admit(); kWrongRole or kWrongSession if the token does not permit it; kLimit if the token's
     ///         `connections` are used up.
     [[nodiscard]] Admitted<std::shared_ptr<Credential>> let_drive(std::string_view secret, const std::string& session,
@@ -104,14 +104,14 @@ public:
     /// Errors: kUnknownToken if the token is no longer in force; kWrongRole or kWrongSession if it does not permit it.
     [[nodiscard]] Admitted<std::shared_ptr<Credential>> let_watch(const TokenRef& token, const std::string& session);
 
-    /// Replaces the tokens in force. Passes that the new tokens do not permit end; the other passes get their token's
-    /// new limits.
+    /// Replaces the tokens in force. Credentials that the new tokens do not permit end; the other credentials get their
+    /// token's new limits.
     void replace(TokenSet tokens);
 
 private:
     struct Ledger;
 
-    const std::shared_ptr<Ledger> ledger_; // outlives the passes
+    const std::shared_ptr<Ledger> ledger_; // outlives the credentials
 };
 
 } // namespace scanloom::auth

@@ -164,14 +164,14 @@ void RobotConnection::perform(Protocol::AnswerRequest&& action) {
 }
 
 void RobotConnection::perform(Protocol::RecordLimit&&) {
-    record_refusal(auth::Reason::kLimit, token_->name, pass_->session());
+    record_refusal(auth::Reason::kLimit, token_->name, credential_->session());
 }
 
 void RobotConnection::perform(Protocol::Leave&&) {
     const auto& why = protocol_.ended_by();
     if (why) *is_gone_ = true;
     if (session_) session_->leave(shared_from_this());
-    pass_.reset();
+    credential_.reset();
     if (why) services_.counters.failed(why->code).Increment();
 }
 
@@ -231,32 +231,32 @@ asio::awaitable<Result<Protocol::Joined>> RobotConnection::enter(const wire::Hel
 }
 
 Result<> RobotConnection::authenticate(const wire::Hello& hello) {
-    auto pass = services_.authenticator.let_drive(hello.token, hello.session, hello.robot);
-    if (!pass) {
-        const auto& why = pass.error();
+    auto credential = services_.authenticator.let_drive(hello.token, hello.session, hello.robot);
+    if (!credential) {
+        const auto& why = credential.error();
         record_refusal(why.reason, why.token, hello.session);
         return prefixed("hello.token: ", why.error);
     }
-    pass_ = std::move(*pass);
+    credential_ = std::move(*credential);
     apply_permission();
     if (protocol_.ended_by()) return *protocol_.ended_by();
-    pass_->when_changed([weak = weak_from_this()] {
+    credential_->when_changed([weak = weak_from_this()] {
         if (const auto self = weak.lock()) self->post([](RobotConnection& to) { to.apply_permission(); });
     });
     return {};
 }
 
-/// Applies the token of the pass, which may have changed. Ends the link if the pass is no longer valid.
+/// Applies the token of the credential, which may have changed. Ends the link if the credential is no longer valid.
 void RobotConnection::apply_permission() {
-    if (!pass_) return;
-    if (auto token = pass_->token()) {
+    if (!credential_) return;
+    if (auto token = credential_->token()) {
         token_ = std::move(token);
         const auto& limits = token_->limits;
         protocol_.set_limits({token_->name, limits.bytes_per_second, limits.sensors, limits.beams}, Clock::now());
         return;
     }
     const std::string name = token_ ? token_->name : std::string();
-    record_refusal(auth::Reason::kRevoked, name, pass_->session());
+    record_refusal(auth::Reason::kRevoked, name, credential_->session());
     protocol_.fail({Errc::kUnauthorized,
                     fmt::format("the token '{}' no longer permits this; ask the server's operator for another", name)});
 }

@@ -99,8 +99,8 @@ private:
     boost::asio::steady_timer timer_;
     Clock::time_point timer_expiry_ = Clock::time_point::max(); // max: the timer is not running
 
-    std::shared_ptr<auth::Credential> pass_; // from the hello to the end
-    auth::TokenRef token_;                   // that last permitted the link; null before the hello
+    std::shared_ptr<auth::Credential> credential_; // from the hello to the end
+    auth::TokenRef token_;                         // that last permitted the link; null before the hello
     std::string robot_;
     std::shared_ptr<sessions::Session> session_; // joined
     RobotIndex robot_index_ = 0;                 // in the session

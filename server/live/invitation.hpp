@@ -21,8 +21,8 @@ struct Invitation {
     guidance::RobotPaths& paths;
     std::shared_ptr<WatchedLandmarks> landmarks;
     std::function<bool()> is_stored = [] { return false; }; ///< returns whether the session exists, in memory or not
-    std::shared_ptr<auth::Credential> pass = nullptr;       ///< permission to watch; null: it cannot be revoked
-    std::function<void()> taken_back = [] {};               ///< called when `pass` was revoked, before the viewer ends
+    std::shared_ptr<auth::Credential> credential = nullptr; ///< permission to watch; null: it cannot be revoked
+    std::function<void()> taken_back = [] {}; ///< called when `credential` was revoked, before the viewer ends
 };
 
 } // namespace scanloom::live

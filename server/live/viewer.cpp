@@ -107,8 +107,8 @@ asio::awaitable<void> Viewer::run(const Upgrade& upgrade) {
     if (!accepted) co_return;
     const Counted counted(services_.counters.viewers);
     if (const auto session = invitation_.session.lock()) session->watch(weak_from_this());
-    if (invitation_.pass) {
-        invitation_.pass->when_changed([weak = weak_from_this()] {
+    if (invitation_.credential) {
+        invitation_.credential->when_changed([weak = weak_from_this()] {
             if (const auto self = weak.lock()) self->on_changed();
         });
     }
@@ -194,7 +194,7 @@ asio::awaitable<void> Viewer::wait_for_turn() {
 /// Creates the next event. Runs on `showing`.
 Viewer::NextStep Viewer::next_step() {
     notified_ = false; // before reading the state, so that later changes notify again
-    if (invitation_.pass && !invitation_.pass->token()) {
+    if (invitation_.credential && !invitation_.credential->token()) {
         invitation_.taken_back();
         return {{}, close_with(kTokenGone, "your token is no longer valid for this session; sign in with another"), {}};
     }

@@ -43,8 +43,8 @@ Result<Response> get_live(Context& context) {
                        instance_of(context.request.target));
     }
     const auto& info = (*session)->info();
-    auto pass = context.services.authorizer.authenticator().let_watch(context.token, info.name);
-    if (!pass) return context.services.authorizer.refuse(context.request, pass.error(), info.name);
+    auto credential = context.services.authorizer.authenticator().let_watch(context.token, info.name);
+    if (!credential) return context.services.authorizer.refuse(context.request, credential.error(), info.name);
     Response response;
     response.status = Status::switching_protocols;
     response.invitation = std::make_shared<const live::Invitation>(
@@ -54,7 +54,7 @@ Result<Response> get_live(Context& context) {
                              const auto stored = sessions.info(name);
                              return stored && stored->id == id;
                          },
-                         std::move(*pass),
+                         std::move(*credential),
                          [authorizer = context.services.authorizer, peer = context.request.peer,
                           token = context.token->name, name = info.name] {
                              authorizer.note({auth::Port::kHttp, auth::Reason::kRevoked, peer, token, name});

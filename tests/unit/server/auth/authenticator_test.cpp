@@ -67,49 +67,49 @@ TEST(Authenticator, RobotsBeyondTheConnectionLimitAreRefused) {
     EXPECT_TRUE(authenticator.let_drive("secret of two", "lab", "c"));
 }
 
-TEST(Authenticator, PassesEndWithTheirPermission) {
+TEST(Authenticator, CredentialsEndWithTheirPermission) {
     Authenticator authenticator(TokenSet(
         {token("a", Role::kRobot), token("b", Role::kRobot), token("c", Role::kOperator), token("d", Role::kRobot)}));
     std::map<std::string, int> changes;
-    std::map<std::string, std::shared_ptr<Credential>> passes;
+    std::map<std::string, std::shared_ptr<Credential>> credentials;
     for (const std::string name : {"a", "b", "c", "d"}) {
-        passes[name] = authenticator.let_drive("secret of " + name, "lab", "robot-" + name).value();
-        passes[name]->when_changed([&changes, name] { ++changes[name]; });
+        credentials[name] = authenticator.let_drive("secret of " + name, "lab", "robot-" + name).value();
+        credentials[name]->when_changed([&changes, name] { ++changes[name]; });
     }
-    passes["watch"] = authenticator.let_watch(authenticator.admit("secret of c").value(), "lab").value();
+    credentials["watch"] = authenticator.let_watch(authenticator.admit("secret of c").value(), "lab").value();
     EXPECT_TRUE(changes.empty());
     // a is unchanged, b is removed, c has become a viewer, d is for other sessions.
     authenticator.replace(
         TokenSet({token("a", Role::kRobot, {"*"}, 3), token("c", Role::kViewer), token("d", Role::kRobot, {"x"})}));
-    EXPECT_EQ(passes["a"]->token()->limits.connections, 3U);
-    for (const auto* gone : {"b", "c", "d"}) EXPECT_EQ(passes[gone]->token(), nullptr) << gone;
-    EXPECT_NE(passes["watch"]->token(), nullptr);
+    EXPECT_EQ(credentials["a"]->token()->limits.connections, 3U);
+    for (const auto* gone : {"b", "c", "d"}) EXPECT_EQ(credentials[gone]->token(), nullptr) << gone;
+    EXPECT_NE(credentials["watch"]->token(), nullptr);
     for (const auto* name : {"a", "b", "c", "d"}) EXPECT_EQ(changes[name], 1) << name;
 }
 
 TEST(Authenticator, LateCallbackIsCalledAtOnce) {
     Authenticator authenticator(TokenSet({token("a", Role::kRobot)}));
-    const auto pass = authenticator.let_drive("secret of a", "lab", "r").value();
+    const auto credential = authenticator.let_drive("secret of a", "lab", "r").value();
     authenticator.replace(TokenSet({token("b", Role::kRobot)}));
     bool was_called = false;
-    pass->when_changed([&] { was_called = true; });
+    credential->when_changed([&] { was_called = true; });
     EXPECT_TRUE(was_called);
 }
 
 TEST(Authenticator, FirstTokensEndEarlierPasses) {
     Authenticator authenticator;
-    const auto pass = authenticator.let_drive("", "lab", "r").value();
+    const auto credential = authenticator.let_drive("", "lab", "r").value();
     authenticator.replace(TokenSet({token("a", Role::kRobot)}));
-    EXPECT_EQ(pass->token(), nullptr);
+    EXPECT_EQ(credential->token(), nullptr);
 }
 
-TEST(Authenticator, PassMayOutliveTheGate) {
-    std::shared_ptr<Credential> pass;
+TEST(Authenticator, CredentialMayOutliveTheAuthenticator) {
+    std::shared_ptr<Credential> credential;
     {
         Authenticator authenticator;
-        pass = authenticator.let_drive("", "lab", "r").value();
+        credential = authenticator.let_drive("", "lab", "r").value();
     }
-    EXPECT_NE(pass->token(), nullptr);
+    EXPECT_NE(credential->token(), nullptr);
 }
 
 } // namespace
