@@ -201,13 +201,13 @@ bool LaserLayers::sweep(const LaserScan& scan, double& work) {
         work -= static_cast<double>(scan.ranges.size());
         sweep.visit(done_, [&](grid::ChunkKey key, std::span<const ChunkVerdicts> verdicts) {
             work -= kWorkPerSweptChunk;
-            weave(key, verdicts);
+            integrate_chunk(key, verdicts);
         });
     }
     return done_ >= sweep.strips();
 }
 
-void LaserLayers::weave(grid::ChunkKey key, std::span<const ChunkVerdicts> verdicts) {
+void LaserLayers::integrate_chunk(grid::ChunkKey key, std::span<const ChunkVerdicts> verdicts) {
     const ChunkVerdicts& counted = verdicts.back();
     include(bounds_.himm, key, counted);
     if (verdicts.size() == 1) { // the evidence was added by trace_beams()

@@ -111,7 +111,7 @@ private:
     [[nodiscard]] bool sweep(const LaserScan& scan, double& work);
     [[nodiscard]] bool fold_classes(double& work);
     void add_first_marks();
-    void weave(grid::ChunkKey key, std::span<const ChunkVerdicts> verdicts);
+    void integrate_chunk(grid::ChunkKey key, std::span<const ChunkVerdicts> verdicts);
     [[nodiscard]] grid::BitPlane undecided(const classify::OccPlanes& types, const ChunkVerdicts& verdicts) const;
     void fold_types(LaserChunk& chunk, const grid::BitPlane& touched) const;
     void set(grid::Cell cell, MapCell to);

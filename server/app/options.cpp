@@ -47,7 +47,7 @@ struct Raw {
     std::vector<std::string> proxies;
     double tile_cache_mib = 64.0;
     double map_memory_mib = 0.0;
-    double weave_memory_mib = 0.0;
+    double replay_memory_mib = 0.0;
     double disk_reserve_mib = 256.0;
     double idle_after = 600.0;
 };
@@ -142,7 +142,7 @@ void add_options(CLI::App& app, ServerOptions& options, Raw& raw) {
         ->check(check_within(kMapMemoryMibMin, kMapMemoryMibMax))
         ->capture_default_str();
     app.add_option(
-           "--weave-memory", raw.weave_memory_mib,
+           "--weave-memory", raw.replay_memory_mib,
            "MiB for the maps of all replay jobs (other settings, earlier revisions) together: half for running jobs, "
            "half for cached maps. Default: a quarter of the available memory")
         ->check(check_within(kMapMemoryMibMin, kMapMemoryMibMax))
@@ -230,7 +230,7 @@ Result<> settle(const Raw& raw, ServerOptions& options) {
     }
     options.disk_reserve_bytes = static_cast<std::uint64_t>(raw.disk_reserve_mib * 1024 * 1024);
     options.map_memory_bytes = static_cast<std::size_t>(raw.map_memory_mib * 1024 * 1024);
-    options.weave_memory_bytes = static_cast<std::size_t>(raw.weave_memory_mib * 1024 * 1024);
+    options.replay_memory_bytes = static_cast<std::size_t>(raw.replay_memory_mib * 1024 * 1024);
     options.idle_after = std::chrono::milliseconds(static_cast<std::int64_t>(raw.idle_after * 1000));
     options.tokens = raw.tokens;
     options.tile_cache_bytes = static_cast<std::size_t>(raw.tile_cache_mib * 1024 * 1024);
@@ -249,7 +249,7 @@ std::variant<ServerOptions, Leave> read_options(int argc, const char* const* arg
     Raw raw;
     const auto memory = default_map_memory(memory_limit());
     raw.map_memory_mib = static_cast<double>(memory.maps >> 20);
-    raw.weave_memory_mib = static_cast<double>(memory.weaves >> 20);
+    raw.replay_memory_mib = static_cast<double>(memory.replay_jobs >> 20);
 
     CLI::App app(kAbout, "scanloom-server");
     app.footer(kFooter);

@@ -45,9 +45,9 @@ struct ServerOptions {
     std::size_t threads = 1;                            ///< that integrate scans; the same number answers requests
     std::size_t tile_cache_bytes = std::size_t{64} << 20;
     std::uint64_t disk_reserve_bytes = std::uint64_t{256} << 20;
-    std::size_t map_memory_bytes = std::size_t{1} << 30;   ///< for the maps of all sessions in memory
-    std::size_t weave_memory_bytes = std::size_t{1} << 29; ///< for the maps of all replay jobs
-    std::chrono::milliseconds idle_after{600'000};         ///< an unused session is evicted after this time
+    std::size_t map_memory_bytes = std::size_t{1} << 30;    ///< for the maps of all sessions in memory
+    std::size_t replay_memory_bytes = std::size_t{1} << 29; ///< for the maps of all replay jobs
+    std::chrono::milliseconds idle_after{600'000};          ///< an unused session is evicted after this time
     std::string log_level = "info";
     std::string log_format = "text"; ///< or "json"
     bool insecure = false;           ///< allow to listen beyond loopback without tokens or TLS

@@ -28,14 +28,14 @@ MapMemory default_map_memory(const MemoryLimit& limit) {
     const auto fixed = std::min(limit.address_space, kFixedAddressSpace + tiles);
     const auto available = std::min(limit.bytes, limit.address_space - fixed);
     const auto whole_mib = [](std::uint64_t bytes) { return std::max(kMapMemoryMin, bytes / kMib * kMib); };
-    return {.maps = whole_mib(available / 2), .weaves = whole_mib(available / 4)};
+    return {.maps = whole_mib(available / 2), .replay_jobs = whole_mib(available / 4)};
 }
 
 /// Returns the address space that the server needs, in bytes, with at least `maps` for maps and replay jobs.
 static std::uint64_t needed_with(const ServerOptions& options, MapMemory maps) {
     const auto stacks = 3 * options.threads * kStackBytes; // grows with --threads
     return kFixedAddressSpace + stacks + options.tile_cache_bytes + std::max(options.map_memory_bytes, maps.maps) +
-           std::max(options.weave_memory_bytes, maps.weaves);
+           std::max(options.replay_memory_bytes, maps.replay_jobs);
 }
 
 /// Returns a limit of the address space that suffices. It is found iteratively because a greater limit also increases

@@ -12,8 +12,8 @@ namespace scanloom::app {
 
 /// Memory for maps, in bytes.
 struct MapMemory {
-    std::uint64_t maps = 0;   ///< of all sessions in memory
-    std::uint64_t weaves = 0; ///< of replay jobs
+    std::uint64_t maps = 0;        ///< of all sessions in memory
+    std::uint64_t replay_jobs = 0; ///< of replay jobs
 
     friend bool operator==(const MapMemory&, const MapMemory&) = default;
 };

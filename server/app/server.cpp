@@ -29,7 +29,7 @@ constexpr auto kPatience = std::chrono::seconds(9);
 
 /// Time limit for integrating and acknowledging submitted scans at shutdown. The remaining scans are in the log for the
 /// next start, or the robots still have them.
-constexpr auto kWeavingPatience = std::chrono::seconds(5);
+constexpr auto kIntegrationTimeout = std::chrono::seconds(5);
 
 /// Interval of run_maintenance(), and so the longest delay before an idle session is evicted.
 constexpr auto kTidyEvery = std::chrono::seconds(1);
@@ -67,9 +67,9 @@ Server::Server(const ServerOptions& options, const ConnectionLimits& limits, std
                                                  .reading = pools_.loading,
                                                  .pages_max = options.map_memory_bytes / mapping::kPageBytes,
                                                  .idle_after = options.idle_after}),
-      check_(*log_, sessions_), weaves_(*log_, pools_.replay, replay_limits(options.weave_memory_bytes)),
+      check_(*log_, sessions_), replay_jobs_(*log_, pools_.replay, replay_limits(options.replay_memory_bytes)),
       locator_(*log_), requests_(pools_.planning, pools_.locating, {goals_, locator_, sessions_}), hangup_(io_, SIGHUP),
-      patience_(io_), weaving_patience_(io_), tidying_(asio::make_strand(io_)) {}
+      patience_(io_), integration_timeout_(io_), tidying_(asio::make_strand(io_)) {}
 
 Server::~Server() {
     // No task may run while the members are destroyed, in reverse order.
@@ -79,7 +79,7 @@ Server::~Server() {
 
 void Server::end_pools() {
     check_.stop();
-    weaves_.stop(); // their results are no longer needed
+    replay_jobs_.stop(); // their results are no longer needed
     pools_.join();
 }
 
@@ -163,7 +163,7 @@ Result<> Server::listen(http::WebFiles web) {
                                         .live = pools_.live},
                         config);
     services_.reset(new http::Services{.sessions = sessions_,
-                                       .weaves = weaves_,
+                                       .weaves = replay_jobs_,
                                        .goals = goals_,
                                        .locator = locator_,
                                        .log = *log_,
@@ -295,20 +295,20 @@ void Server::drain() {
     notify_service_manager("STOPPING=1");
     ingest_->stop();
     check_.stop();
-    weaves_.stop();
+    replay_jobs_.stop();
     if (backups_) backups_->stop();
     asio::post(tidying_.get_executor(), [this] { tidying_.cancel(); });
     patience_.expires_after(kPatience);
     patience_.async_wait([this](const boost::system::error_code& error) {
         if (!error) io_.stop();
     });
-    weaving_patience_.expires_after(kWeavingPatience);
-    weaving_patience_.async_wait([this](const boost::system::error_code& error) {
+    integration_timeout_.expires_after(kIntegrationTimeout);
+    integration_timeout_.async_wait([this](const boost::system::error_code& error) {
         if (!error) sessions_.hurry();
     });
     asio::post(pools_.changes, [this, busy = asio::make_work_guard(io_)] {
         sessions_.drain();
-        asio::post(io_, [this] { weaving_patience_.cancel(); });
+        asio::post(io_, [this] { integration_timeout_.cancel(); });
         http_->stop([this] {
             patience_.cancel();
             signals_->cancel();

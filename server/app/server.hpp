@@ -74,7 +74,7 @@ private:
     boost::asio::io_context io_;
     sessions::SessionRegistry sessions_;
     sessions::BackgroundCheck check_;
-    sessions::ReplayJobs weaves_;
+    sessions::ReplayJobs replay_jobs_;
     guidance::GoalAssignments goals_;
     guidance::Locator locator_;
     ingest::RequestExecutor requests_;
@@ -88,7 +88,7 @@ private:
     std::optional<boost::asio::signal_set> signals_;
     boost::asio::signal_set hangup_;
     boost::asio::steady_timer patience_;
-    boost::asio::steady_timer weaving_patience_;
+    boost::asio::steady_timer integration_timeout_;
     boost::asio::steady_timer tidying_;
     std::atomic<bool> store_has_failed_ = false; // and the failure was logged
 };

@@ -52,7 +52,7 @@ bool reads(const Route& route, std::string_view parameter) {
 Result<> check_parameters(const Route& route, const Query& query) {
     if (takes_any_parameter(route)) return {};
     auto known = query.check_only(route.parameters);
-    if (known || !asks_for_weaving(query) || !reads(route, "weave") || reads(route, "until")) return known;
+    if (known || !has_weave_parameters(query) || !reads(route, "weave") || reads(route, "until")) return known;
     return Error{Errc::kInvalidField,
                  fmt::format("{}. For settings and until, POST them to .../weave, and give its id as weave=",
                              known.error().message)};

@@ -294,7 +294,7 @@ bool CheckpointReader::add_old_points(const Numbers& numbers, std::string_view v
 }
 
 bool CheckpointReader::add_laser_chunk(const Numbers& numbers, std::string_view value) {
-    begin_weaving();
+    restore_projection();
     const auto bytes = decompressor_.decompressed(value, kChunkBytesMax);
     if (!bytes) return false;
     PartReader part(*bytes);
@@ -316,7 +316,7 @@ bool CheckpointReader::add_laser_chunk(const Numbers& numbers, std::string_view 
 }
 
 bool CheckpointReader::add_sonar_chunk(const Numbers& numbers, std::string_view value) {
-    begin_weaving();
+    restore_projection();
     const auto bytes = decompressor_.decompressed(value, kChunkBytesMax);
     if (!bytes) return false;
     PartReader part(*bytes);
@@ -327,9 +327,9 @@ bool CheckpointReader::add_sonar_chunk(const Numbers& numbers, std::string_view 
     return true;
 }
 
-void CheckpointReader::begin_weaving() {
-    if (!weaving_) projection_.restore(state_);
-    weaving_ = true;
+void CheckpointReader::restore_projection() {
+    if (!is_restored_) projection_.restore(state_);
+    is_restored_ = true;
 }
 
 bool CheckpointReader::is_newest_format() const noexcept { return !has_format_ || parts_version_ == kPartsVersion; }
@@ -340,7 +340,7 @@ std::optional<mapping::ProjectionState> CheckpointReader::state() && {
 }
 
 Result<mapping::Projection> CheckpointReader::finish() && {
-    begin_weaving();
+    restore_projection();
     for (const auto& exclusion : state_.exclusions->all()) {
         if (exclusion.excluded.robot >= state_.robots.size()) return damaged(kExclusionsPart);
     }

@@ -86,7 +86,7 @@ private:
     [[nodiscard]] bool add_old_points(const Numbers& numbers, std::string_view value);
     [[nodiscard]] bool add_laser_chunk(const Numbers& numbers, std::string_view value);
     [[nodiscard]] bool add_sonar_chunk(const Numbers& numbers, std::string_view value);
-    void begin_weaving();
+    void restore_projection();
 
     PartDecompressor decompressor_;
     mapping::Projection projection_;
@@ -94,7 +94,7 @@ private:
     std::vector<std::uint64_t> excluded_; // scans, by robot
     std::uint32_t parts_version_ = 0;
     bool has_format_ = false;
-    bool weaving_ = false; // the state is complete and was passed to the projection
+    bool is_restored_ = false; // the state is complete and was passed to the projection
 };
 
 } // namespace scanloom::sessions

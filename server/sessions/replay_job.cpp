@@ -41,7 +41,7 @@ Error session_was_deleted(const SessionInfo& session) {
 ReplayJob::Progress ReplayJob::progress() const {
     const std::lock_guard lock(mutex_);
     const bool follows = !request_.end.revision && !is_complete_;
-    return {state_, woven_, target_, maps_ ? std::optional(maps_->revision) : std::nullopt, follows, error_};
+    return {state_, applied_, target_, maps_ ? std::optional(maps_->revision) : std::nullopt, follows, error_};
 }
 
 std::shared_ptr<const mapping::Snapshot> ReplayJob::maps() const {
@@ -137,7 +137,7 @@ bool ReplayJob::begin_from(ReplayJob& base) {
     const std::lock_guard lock(mutex_);
     projection_.emplace(std::move(*branch));
     newest_stamp_ = newest_stamp;
-    woven_ = projection_->revision();
+    applied_ = projection_->revision();
     return true;
 }
 
@@ -179,7 +179,7 @@ bool ReplayJob::run(store::ScanLog& log, limits::MemoryBudget& budget, double tu
 std::optional<Revision> ReplayJob::begin() {
     const std::lock_guard lock(mutex_);
     if (state_ != State::kWaiting) return std::nullopt;
-    state_ = State::kWeaving;
+    state_ = State::kRunning;
     return std::exchange(round_, std::nullopt).value_or(target_);
 }
 
@@ -231,7 +231,7 @@ Result<> ReplayJob::begin_again(Revision target, store::ScanLog& log, limits::Me
     forget_maps();
     projection_.emplace(request_.config, shared(*exclusions));
     newest_stamp_.reset();
-    woven_ = 0;
+    applied_ = 0;
     return claim(budget);
 }
 
@@ -245,9 +245,9 @@ Result<> ReplayJob::apply(const LogEntry& entry, limits::MemoryBudget& budget) {
         turn_left_ -= std::max(kReplaySliceWork - work, kEntryWork);
         if (auto claimed = claim(budget); !claimed) return claimed;
     }
-    woven_ = projection_->revision();
+    applied_ = projection_->revision();
     const auto* taken = std::get_if<ScanTaken>(&entry);
-    if (taken != nullptr && !projection_->exclusions()->cover(woven_, scan_pose_of(*taken))) {
+    if (taken != nullptr && !projection_->exclusions()->cover(applied_, scan_pose_of(*taken))) {
         newest_stamp_ = std::max(newest_stamp_.value_or(taken->scan.stamp), taken->scan.stamp);
     }
     return {};

@@ -36,7 +36,7 @@ class ReplayJob {
 public:
     static constexpr double kTurnWork = 1e8; ///< work of a turn, in the unit of Reach::work: about one second
 
-    enum class State : std::uint8_t { kWaiting, kWeaving, kDone, kFailed, kCancelled };
+    enum class State : std::uint8_t { kWaiting, kRunning, kDone, kFailed, kCancelled };
 
     struct Progress {
         State state = State::kWaiting;
@@ -139,7 +139,7 @@ private:
     const SessionInfo session_;
     const ReplayRequest request_;
 
-    std::atomic<Revision> woven_ = 0;
+    std::atomic<Revision> applied_ = 0;
     std::atomic<bool> cancelled_ = false;
     std::atomic<std::uint64_t> listed_ = 0;
 
@@ -166,7 +166,7 @@ private:
 
 /// Returns whether the job does nothing more until it is requested again.
 [[nodiscard]] constexpr bool has_ended(ReplayJob::State state) noexcept {
-    return state != ReplayJob::State::kWaiting && state != ReplayJob::State::kWeaving;
+    return state != ReplayJob::State::kWaiting && state != ReplayJob::State::kRunning;
 }
 
 /// Returns the error (kNotFound) for clients that wait for a replay job of a session that was deleted.

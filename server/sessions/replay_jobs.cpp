@@ -11,14 +11,14 @@
 namespace scanloom::sessions {
 namespace {
 
-std::size_t chunks_of(const ReplayJob& weave) {
-    const auto maps = weave.maps();
+std::size_t chunks_of(const ReplayJob& job) {
+    const auto maps = job.maps();
     return maps ? maps->chunk_count : 0;
 }
 
-Error was_removed(const ReplayJob& weave) {
+Error was_removed(const ReplayJob& job) {
     return {Errc::kNotFound,
-            fmt::format("replay job {} was deleted before these maps were done; start it again", weave.id())};
+            fmt::format("replay job {} was deleted before these maps were done; start it again", job.id())};
 }
 
 } // namespace
@@ -29,32 +29,32 @@ ReplayJobs::ReplayJobs(store::ScanLog& log, boost::asio::any_io_executor executo
 Result<std::shared_ptr<ReplayJob>> ReplayJobs::start(const SessionInfo& session, const ReplayRequest& request,
                                                      Revision newest, Listing listing) {
     const std::lock_guard lock(mutex_);
-    auto weave = started(session, request, target_of(request, newest));
-    if (weave && listing == Listing::kListed) (*weave)->set_listed(++listed_);
+    auto job = started(session, request, target_of(request, newest));
+    if (job && listing == Listing::kListed) (*job)->set_listed(++listed_);
     evict();
-    return weave;
+    return job;
 }
 
 /// Pre: mutex_ is held.
 Result<std::shared_ptr<ReplayJob>> ReplayJobs::started(const SessionInfo& session, const ReplayRequest& request,
                                                        Revision target) {
-    auto weave = touch(session.id, replay_id_of(session, request));
-    if (weave && weave->join(target)) return weave;
+    auto job = touch(session.id, replay_id_of(session, request));
+    if (job && job->join(target)) return job;
     if (auto room = check_room(); !room) return room.error();
-    if (weave && weave->progress().state == ReplayJob::State::kDone) {
-        if (!weave->resume(target, budget_)) {
+    if (job && job->progress().state == ReplayJob::State::kDone) {
+        if (!job->resume(target, budget_)) {
             return Error{Errc::kOverloaded,
                          "the running replay jobs need all memory that there is for their maps; try again soon"};
         }
     } else {
-        const std::uint64_t listed = weave ? weave->listed() : 0;
-        if (weave) weaves_.pop_front();
-        weave = std::make_shared<ReplayJob>(session, request, target);
-        weave->set_listed(listed);
-        weaves_.push_front(weave);
+        const std::uint64_t listed = job ? job->listed() : 0;
+        if (job) jobs_.pop_front();
+        job = std::make_shared<ReplayJob>(session, request, target);
+        job->set_listed(listed);
+        jobs_.push_front(job);
     }
-    launch(weave);
-    return weave;
+    launch(job);
+    return job;
 }
 
 std::size_t ReplayJobs::under_way() const {
@@ -65,7 +65,7 @@ std::size_t ReplayJobs::under_way() const {
 /// Pre: mutex_ is held.
 std::size_t ReplayJobs::count_under_way() const {
     return static_cast<std::size_t>(
-        std::ranges::count_if(weaves_, [](const auto& weave) { return !has_ended(weave->progress().state); }));
+        std::ranges::count_if(jobs_, [](const auto& job) { return !has_ended(job->progress().state); }));
 }
 
 /// Pre: mutex_ is held.
@@ -77,30 +77,30 @@ Result<> ReplayJobs::check_room() const {
 
 /// Starts a job. It begins here and not on the executor, so that the state of an earlier job is visible to the next
 /// one. Pre: mutex_ is held.
-void ReplayJobs::launch(const std::shared_ptr<ReplayJob>& weave) {
-    if (weave->has_begun() || begin(weave)) post(weave);
+void ReplayJobs::launch(const std::shared_ptr<ReplayJob>& job) {
+    if (job->has_begun() || begin(job)) post(job);
 }
 
-void ReplayJobs::post(std::shared_ptr<ReplayJob> weave) {
-    boost::asio::post(executor_, [this, weave = std::move(weave)] { run(weave); });
+void ReplayJobs::post(std::shared_ptr<ReplayJob> job) {
+    boost::asio::post(executor_, [this, job = std::move(job)] { run(job); });
 }
 
-void ReplayJobs::run(const std::shared_ptr<ReplayJob>& weave) {
-    if (weave->run(log_, budget_)) return post(weave); // after the other waiting jobs
+void ReplayJobs::run(const std::shared_ptr<ReplayJob>& job) {
+    if (job->run(log_, budget_)) return post(job); // after the other waiting jobs
     const std::lock_guard lock(mutex_);
-    launch_those_behind(*weave);
+    launch_those_behind(*job);
     evict();
 }
 
 /// Starts the job from the best other job. Pre: mutex_ is held. @return false if it waits for the end of another job
-bool ReplayJobs::begin(const std::shared_ptr<ReplayJob>& weave) {
+bool ReplayJobs::begin(const std::shared_ptr<ReplayJob>& job) {
     try {
-        while (const auto start = furthest_before(*weave)) {
+        while (const auto start = furthest_before(*job)) {
             if (start->is_on_its_way) {
-                behind_.push_back({start->weave, weave});
+                behind_.push_back({start->job, job});
                 return false;
             }
-            if (weave->begin_from(*start->weave)) return true;
+            if (job->begin_from(*start->job)) return true;
         }
     } catch (const std::bad_alloc&) { // start from the beginning, which reports missing memory itself
     }
@@ -108,15 +108,14 @@ bool ReplayJobs::begin(const std::shared_ptr<ReplayJob>& weave) {
 }
 
 /// Pre: mutex_ is held.
-std::optional<ReplayJobs::Start> ReplayJobs::furthest_before(const ReplayJob& weave) const {
-    const auto wanted = weave.progress();
+std::optional<ReplayJobs::Start> ReplayJobs::furthest_before(const ReplayJob& job) const {
+    const auto wanted = job.progress();
     std::optional<Start> furthest;
     if (has_ended(wanted.state)) return furthest; // cancelled
-    for (const auto& other : weaves_) {
-        if (other.get() == &weave) continue;
-        const bool is_on_its_way = other->leads_to(weave, wanted.target);
-        const auto at =
-            is_on_its_way ? std::optional(other->progress().applied) : other->base_for(weave, wanted.target);
+    for (const auto& other : jobs_) {
+        if (other.get() == &job) continue;
+        const bool is_on_its_way = other->leads_to(job, wanted.target);
+        const auto at = is_on_its_way ? std::optional(other->progress().applied) : other->base_for(job, wanted.target);
         if (!at || (furthest && std::pair(*at, is_on_its_way) <= std::pair(furthest->at, furthest->is_on_its_way))) {
             continue;
         }
@@ -131,7 +130,7 @@ void ReplayJobs::launch_those_behind(const ReplayJob& ended) {
                                               [&](const Behind& behind) { return behind.ahead.get() != &ended; });
     const std::vector<Behind> next(waited, behind_.end());
     behind_.erase(waited, behind_.end());
-    for (const Behind& behind : next) launch(behind.weave); // in the order in which they started to wait
+    for (const Behind& behind : next) launch(behind.job); // in the order in which they started to wait
 }
 
 std::shared_ptr<ReplayJob> ReplayJobs::find(store::SessionId session, std::string_view id) {
@@ -142,36 +141,36 @@ std::shared_ptr<ReplayJob> ReplayJobs::find(store::SessionId session, std::strin
 /// Returns the job, moved to the front of the list; null if it does not exist. Pre: mutex_ is held.
 std::shared_ptr<ReplayJob> ReplayJobs::touch(store::SessionId session, std::string_view id) {
     evict();
-    const auto found = std::ranges::find_if(
-        weaves_, [&](const auto& weave) { return weave->session().id == session && weave->id() == id; });
-    if (found == weaves_.end()) return nullptr;
-    weaves_.splice(weaves_.begin(), weaves_, found);
-    return weaves_.front();
+    const auto found =
+        std::ranges::find_if(jobs_, [&](const auto& job) { return job->session().id == session && job->id() == id; });
+    if (found == jobs_.end()) return nullptr;
+    jobs_.splice(jobs_.begin(), jobs_, found);
+    return jobs_.front();
 }
 
 std::vector<std::shared_ptr<ReplayJob>> ReplayJobs::list(store::SessionId session) const {
     const std::lock_guard lock(mutex_);
     std::vector<std::shared_ptr<ReplayJob>> of_session;
-    std::ranges::copy_if(weaves_, std::back_inserter(of_session),
-                         [&](const auto& weave) { return weave->session().id == session && weave->listed() > 0; });
+    std::ranges::copy_if(jobs_, std::back_inserter(of_session),
+                         [&](const auto& job) { return job->session().id == session && job->listed() > 0; });
     std::ranges::sort(of_session, std::greater{}, &ReplayJob::listed);
     return of_session;
 }
 
 bool ReplayJobs::remove(store::SessionId session, std::string_view id) {
     const std::lock_guard lock(mutex_);
-    return std::erase_if(weaves_, [&](const auto& weave) {
-               if (weave->session().id != session || weave->id() != id) return false;
-               weave->cancel(was_removed(*weave));
+    return std::erase_if(jobs_, [&](const auto& job) {
+               if (job->session().id != session || job->id() != id) return false;
+               job->cancel(was_removed(*job));
                return true;
            }) > 0;
 }
 
 void ReplayJobs::remove_all(store::SessionId session) {
     const std::lock_guard lock(mutex_);
-    std::erase_if(weaves_, [&](const auto& weave) {
-        if (weave->session().id != session) return false;
-        weave->cancel(session_was_deleted(weave->session()));
+    std::erase_if(jobs_, [&](const auto& job) {
+        if (job->session().id != session) return false;
+        job->cancel(session_was_deleted(job->session()));
         return true;
     });
 }
@@ -179,8 +178,8 @@ void ReplayJobs::remove_all(store::SessionId session) {
 std::int64_t ReplayJobs::chunks() const {
     const std::lock_guard lock(mutex_);
     std::size_t kept = 0;
-    for (const auto& weave : weaves_) {
-        if (has_ended(weave->progress().state)) kept += chunks_of(*weave);
+    for (const auto& job : jobs_) {
+        if (has_ended(job->progress().state)) kept += chunks_of(*job);
     }
     return budget_.used() + static_cast<std::int64_t>(kept);
 }
@@ -188,7 +187,7 @@ std::int64_t ReplayJobs::chunks() const {
 void ReplayJobs::stop() {
     const std::lock_guard lock(mutex_);
     stopped_ = true;
-    for (const auto& weave : weaves_) weave->cancel(shutting_down());
+    for (const auto& job : jobs_) job->cancel(shutting_down());
 }
 
 /// Pre: mutex_ is held.
@@ -196,10 +195,10 @@ void ReplayJobs::evict() {
     std::size_t kept = 0;
     std::size_t chunks = 0;
     for (const bool listed : {true, false}) {
-        std::erase_if(weaves_, [&](const auto& weave) {
-            if ((weave->listed() > 0) != listed || !has_ended(weave->progress().state)) return false;
+        std::erase_if(jobs_, [&](const auto& job) {
+            if ((job->listed() > 0) != listed || !has_ended(job->progress().state)) return false;
             ++kept;
-            chunks += chunks_of(*weave);
+            chunks += chunks_of(*job);
             return kept > limits_.kept_max || chunks > limits_.chunks_kept_max;
         });
     }

@@ -30,8 +30,9 @@ struct ReplayLimits {
 /// running, the new one waits for its end. So stepping forward through the history of a session applies each entry
 /// once, and stepping back starts from the latest kept job before that moment.
 ///
-/// Queue: "weaves", at most waiting_max jobs that have not ended; another one is refused with kOverloaded. Ended jobs
-/// are evicted when their place is needed, the least recently used first, and jobs that are not listed before others.
+/// Queue: "replay jobs", at most waiting_max jobs that have not ended; another one is refused with kOverloaded. Ended
+/// jobs are evicted when their place is needed, the least recently used first, and jobs that are not listed before
+/// others.
 /// Memory: each job counts with all of its chunks, even if it shares unchanged chunks with the job that it started
 /// from. So the bounds hold in whatever order jobs are evicted.
 /// Threads: any thread; nothing here blocks.
@@ -76,7 +77,7 @@ public:
 private:
     /// A job that another job can start from.
     struct Start {
-        std::shared_ptr<ReplayJob> weave;
+        std::shared_ptr<ReplayJob> job;
         Revision at = 0;
         bool is_on_its_way = false; // it is still running, and ends where the other job can start
     };
@@ -86,11 +87,11 @@ private:
     [[nodiscard]] std::shared_ptr<ReplayJob> touch(store::SessionId session, std::string_view id);
     [[nodiscard]] std::size_t count_under_way() const;
     [[nodiscard]] Result<> check_room() const;
-    void launch(const std::shared_ptr<ReplayJob>& weave);
-    void post(std::shared_ptr<ReplayJob> weave);
-    void run(const std::shared_ptr<ReplayJob>& weave);
-    [[nodiscard]] bool begin(const std::shared_ptr<ReplayJob>& weave);
-    [[nodiscard]] std::optional<Start> furthest_before(const ReplayJob& weave) const;
+    void launch(const std::shared_ptr<ReplayJob>& job);
+    void post(std::shared_ptr<ReplayJob> job);
+    void run(const std::shared_ptr<ReplayJob>& job);
+    [[nodiscard]] bool begin(const std::shared_ptr<ReplayJob>& job);
+    [[nodiscard]] std::optional<Start> furthest_before(const ReplayJob& job) const;
     void launch_those_behind(const ReplayJob& ended);
     void evict();
 
@@ -101,12 +102,12 @@ private:
 
     mutable std::mutex mutex_;
     bool stopped_ = false;
-    std::uint64_t listed_ = 0;                     // number of the last listed job
-    std::list<std::shared_ptr<ReplayJob>> weaves_; // most recently used first
+    std::uint64_t listed_ = 0;                   // number of the last listed job
+    std::list<std::shared_ptr<ReplayJob>> jobs_; // most recently used first
 
     struct Behind {
         std::shared_ptr<ReplayJob> ahead;
-        std::shared_ptr<ReplayJob> weave; // begins when the one ahead has ended, successfully or not
+        std::shared_ptr<ReplayJob> job; // begins when the one ahead has ended, successfully or not
     };
     std::vector<Behind> behind_;
 };

@@ -22,9 +22,9 @@ const std::vector<Scan>& scans() {
 }
 
 /// The layers, ready to integrate scans of the reference laser.
-class Weaver {
+class Mapper {
 public:
-    explicit Weaver(double cell_size_m)
+    explicit Mapper(double cell_size_m)
         : fan_(mapping::make_laser_fan(config_of(cell_size_m), testing_support::reference_laser().angles, 0.0)),
           layers_(config_of(cell_size_m)) {}
 
@@ -49,15 +49,15 @@ private:
 };
 
 void Integrate(benchmark::State& state) {
-    Weaver weaver(cell_size_of(state));
-    for (auto _ : state) weaver.integrate();
+    Mapper mapper(cell_size_of(state));
+    for (auto _ : state) mapper.integrate();
 }
 
 void IntegrateAndSnapshot(benchmark::State& state) {
-    Weaver weaver(cell_size_of(state));
+    Mapper mapper(cell_size_of(state));
     for (auto _ : state) {
-        weaver.integrate();
-        weaver.take_snapshot(); // so that the next scan copies each chunk it changes
+        mapper.integrate();
+        mapper.take_snapshot(); // so that the next scan copies each chunk it changes
     }
 }
 

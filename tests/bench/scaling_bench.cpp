@@ -42,14 +42,14 @@ Scan in_room(const Scan& scan, int room, std::uint64_t seq) {
     return moved;
 }
 
-class Weaver {
+class Mapper {
 public:
-    Weaver(double cell_size_m, const Sensor& sensor) : projection_(config_of(cell_size_m)) {
+    Mapper(double cell_size_m, const Sensor& sensor) : projection_(config_of(cell_size_m)) {
         keep(RobotJoined{0, "robot"});
         keep(SensorDescribed{0, sensor});
     }
 
-    void weave(const Scan& scan, int room = 0) { keep(ScanTaken{0, in_room(scan, room, ++seq_)}); }
+    void integrate(const Scan& scan, int room = 0) { keep(ScanTaken{0, in_room(scan, room, ++seq_)}); }
     [[nodiscard]] mapping::Snapshot snapshot() { return projection_.snapshot(); }
 
 private:
@@ -68,21 +68,21 @@ private:
 };
 
 /// The worst case: a reader holds the newest maps at every scan.
-void run(benchmark::State& state, Weaver& weaver, const std::vector<Scan>& scans) {
-    for (const Scan& scan : scans) weaver.weave(scan);
-    mapping::Snapshot shown = weaver.snapshot();
+void run(benchmark::State& state, Mapper& mapper, const std::vector<Scan>& scans) {
+    for (const Scan& scan : scans) mapper.integrate(scan);
+    mapping::Snapshot shown = mapper.snapshot();
     std::size_t next = 0;
     for (auto _ : state) {
-        weaver.weave(scans[next]);
-        shown = weaver.snapshot();
+        mapper.integrate(scans[next]);
+        shown = mapper.snapshot();
         next = next + 1 == scans.size() ? 0 : next + 1;
     }
 }
 
 /// The argument: cell size in millimetres.
 void ScanByCellSize(benchmark::State& state) {
-    Weaver weaver(static_cast<double>(state.range(0)) * 0.001, testing_support::reference_laser());
-    run(state, weaver, testing_support::room_scans(kRoomScans));
+    Mapper mapper(static_cast<double>(state.range(0)) * 0.001, testing_support::reference_laser());
+    run(state, mapper, testing_support::room_scans(kRoomScans));
 }
 
 void ScanByBeams(benchmark::State& state) {
@@ -98,33 +98,33 @@ void ScanByBeams(benchmark::State& state) {
             scan.ranges.push_back(range < laser.range_max ? to_range_mm(range) : kNoReturn);
         }
     }
-    Weaver weaver(0.05, laser);
-    run(state, weaver, scans);
+    Mapper mapper(0.05, laser);
+    run(state, mapper, scans);
 }
 
-Weaver weaver_of_rooms(std::int64_t rooms, const std::vector<Scan>& scans) {
-    Weaver weaver(0.05, testing_support::reference_laser());
+Mapper mapper_of_rooms(std::int64_t rooms, const std::vector<Scan>& scans) {
+    Mapper mapper(0.05, testing_support::reference_laser());
     for (int room = 0; room < rooms; ++room) {
-        for (std::size_t n = 0; n < scans.size(); n += 6) weaver.weave(scans[n], room);
+        for (std::size_t n = 0; n < scans.size(); n += 6) mapper.integrate(scans[n], room);
     }
-    return weaver;
+    return mapper;
 }
 
 /// The argument: number of other rooms of 10 x 10 m in the map.
 void ScanByExtent(benchmark::State& state) {
     const auto scans = testing_support::room_scans(kRoomScans);
-    Weaver weaver = weaver_of_rooms(state.range(0), scans);
-    run(state, weaver, scans);
+    Mapper mapper = mapper_of_rooms(state.range(0), scans);
+    run(state, mapper, scans);
 }
 
 /// ScanByExtent without a reader that holds the maps, as in a server without viewers.
 void UnseenScanByExtent(benchmark::State& state) {
     const auto scans = testing_support::room_scans(kRoomScans);
-    Weaver weaver = weaver_of_rooms(state.range(0), scans);
-    for (const Scan& scan : scans) weaver.weave(scan);
+    Mapper mapper = mapper_of_rooms(state.range(0), scans);
+    for (const Scan& scan : scans) mapper.integrate(scan);
     std::size_t next = 0;
     for (auto _ : state) {
-        weaver.weave(scans[next]);
+        mapper.integrate(scans[next]);
         next = next + 1 == scans.size() ? 0 : next + 1;
     }
 }
@@ -148,15 +148,15 @@ std::size_t touched_cells(const mapping::Snapshot& map) {
 /// allocator's overhead), in total and per cell that any scan has changed.
 void MemoryByArea(benchmark::State& state) {
     const auto scans = testing_support::room_scans(kRoomScans);
-    weaver_of_rooms(1, scans); // so that objects shared by all maps exist before the measurement
+    mapper_of_rooms(1, scans); // so that objects shared by all maps exist before the measurement
     for (auto _ : state) {
         const double before = allocated_bytes();
-        Weaver weaver(0.05, testing_support::reference_laser());
+        Mapper mapper(0.05, testing_support::reference_laser());
         for (int room = 0; room < state.range(0); ++room) {
-            for (const Scan& scan : scans) weaver.weave(scan, room);
+            for (const Scan& scan : scans) mapper.integrate(scan, room);
         }
         const double bytes = allocated_bytes() - before;
-        const auto touched = static_cast<double>(touched_cells(weaver.snapshot()));
+        const auto touched = static_cast<double>(touched_cells(mapper.snapshot()));
         state.counters["bytes"] = bytes;
         state.counters["bytes_per_touched_cell"] = bytes / touched;
         state.counters["square_metres"] = touched * 0.0025;

@@ -67,8 +67,8 @@ protected:
     }
 };
 
-std::string name_of(const LayerCase& weaving) {
-    const auto [file, cell_size, model] = weaving;
+std::string name_of(const LayerCase& layers) {
+    const auto [file, cell_size, model] = layers;
     return std::string(file).substr(0, std::string(file).find('-')) + (cell_size == 0.05 ? "At5cmBy" : "At10cmBy") +
            (model == RayModel::kInverseSensorModel ? "Sectors"
             : model == RayModel::kBresenham        ? "Bresenham"

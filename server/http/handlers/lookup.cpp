@@ -35,7 +35,7 @@ Result<sessions::ListedSession> find_listed(const Context& context) {
 }
 
 std::string session_tag(const sessions::SessionInfo& info, const MakingVersions& versions) {
-    const auto tag = fmt::format("{}-{}.{}", sessions::tag_of(info), versions.weaving, versions.rendering);
+    const auto tag = fmt::format("{}-{}.{}", sessions::tag_of(info), versions.projection, versions.rendering);
     return tag_with(tag, *info.exclusions);
 }
 
@@ -125,7 +125,7 @@ boost::asio::awaitable<Result<Maps>> replayed(Context& context) {
 Result<Maps> find_maps(const Context& context, Waiting waiting) { return chosen(context, kWeave, waiting); }
 
 boost::asio::awaitable<Result<Maps>> find_maps_or_replay(Context& context) {
-    if (!asks_for_weaving(context.query)) co_return chosen(context, kWeave);
+    if (!has_weave_parameters(context.query)) co_return chosen(context, kWeave);
     if (context.query.find(kWeave)) {
         co_return Error{Errc::kInvalidField,
                         "weave selects maps that have their own settings; remove the other settings"};

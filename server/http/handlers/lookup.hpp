@@ -30,7 +30,7 @@ namespace scanloom::http {
 
 /// Versions of the algorithms that compute maps from logs, and bytes from maps.
 struct MakingVersions {
-    std::uint32_t weaving = mapping::kProjectionVersion;
+    std::uint32_t projection = mapping::kProjectionVersion;
     std::uint32_t rendering = tiles::kRenderingVersion;
 };
 

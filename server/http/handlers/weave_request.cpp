@@ -86,7 +86,7 @@ std::span<const std::string_view> weave_parameters() noexcept {
     return names;
 }
 
-bool asks_for_weaving(const Query& query) {
+bool has_weave_parameters(const Query& query) {
     return std::ranges::any_of(weave_parameters(), [&](std::string_view name) { return query.find(name).has_value(); });
 }
 

@@ -17,7 +17,7 @@ namespace scanloom::http {
 [[nodiscard]] std::span<const std::string_view> weave_parameters() noexcept;
 
 /// Returns whether any of weave_parameters() is given.
-[[nodiscard]] bool asks_for_weaving(const Query& query);
+[[nodiscard]] bool has_weave_parameters(const Query& query);
 
 /// Returns the session's own settings with the given ones replaced. The replay job follows the session, or ends
 ///   until=912                     with entry 912 of its log (a revision)

@@ -18,7 +18,7 @@ using State = sessions::ReplayJob::State;
 std::string_view name_of(State state) {
     switch (state) {
     case State::kWaiting: return "waiting";
-    case State::kWeaving: return "weaving";
+    case State::kRunning: return "weaving";
     case State::kDone: return "done";
     case State::kFailed: return "failed";
     case State::kCancelled: return "cancelled";

@@ -39,12 +39,12 @@ TEST(SourceRules, CommonMustNotIncludeServerOrRobot) {
 }
 
 TEST(SourceRules, LabMayIncludeServerAndRobotButMustNotBeIncluded) {
-    EXPECT_THAT(including("lab/weaving.cpp", "\"core/mapping/projection.hpp\""), IsEmpty());
+    EXPECT_THAT(including("lab/integrate_recording.cpp", "\"core/mapping/projection.hpp\""), IsEmpty());
     EXPECT_THAT(including("lab/recording.cpp", "\"sim/world.hpp\""), IsEmpty());
-    EXPECT_THAT(including("lab/weaving.cpp", "\"server/sessions/session.hpp\""), testing::SizeIs(1));
-    EXPECT_THAT(including("lab/weaving.cpp", "\"robot_client/uplink/uplink.hpp\""), testing::SizeIs(1));
-    EXPECT_THAT(including("server/tiles/map_image.cpp", "\"lab/weaving.hpp\""), testing::SizeIs(1));
-    EXPECT_THAT(including("robot_client/app/main.cpp", "\"lab/weaving.hpp\""), testing::SizeIs(1));
+    EXPECT_THAT(including("lab/integrate_recording.cpp", "\"server/sessions/session.hpp\""), testing::SizeIs(1));
+    EXPECT_THAT(including("lab/integrate_recording.cpp", "\"robot_client/uplink/uplink.hpp\""), testing::SizeIs(1));
+    EXPECT_THAT(including("server/tiles/map_image.cpp", "\"lab/integrate_recording.hpp\""), testing::SizeIs(1));
+    EXPECT_THAT(including("robot_client/app/main.cpp", "\"lab/integrate_recording.hpp\""), testing::SizeIs(1));
 }
 
 TEST(SourceRules, LoadMustNotIncludeTheServerNorBeIncluded) {

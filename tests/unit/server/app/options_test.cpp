@@ -118,7 +118,7 @@ TEST_F(ServerOptionsTest, RejectsADiskReserveBelowTheMinimum) {
 TEST_F(ServerOptionsTest, MapMemoryIsInMebibytes) {
     const auto options = std::get<ServerOptions>(read({"--map-memory", "100", "--weave-memory", "64.5"}));
     EXPECT_EQ(options.map_memory_bytes, std::size_t{100} << 20);
-    EXPECT_EQ(options.weave_memory_bytes, std::size_t{129} << 19);
+    EXPECT_EQ(options.replay_memory_bytes, std::size_t{129} << 19);
     for (const auto* wrong : {"63", "-1", "nan"}) {
         EXPECT_THAT(refusal({"--weave-memory", wrong}), HasSubstr("--weave-memory")) << wrong;
     }

@@ -47,7 +47,7 @@ constexpr std::uint64_t kNoLimit = std::numeric_limits<std::uint64_t>::max();
 ServerOptions options_with(const MapMemory& memory) {
     ServerOptions options;
     options.map_memory_bytes = memory.maps;
-    options.weave_memory_bytes = memory.weaves;
+    options.replay_memory_bytes = memory.replay_jobs;
     return options;
 }
 

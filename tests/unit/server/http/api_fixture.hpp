@@ -3,7 +3,7 @@
 #include "server/http/routes.hpp"
 #include "server/sessions/session_registry.hpp"
 #include "tests/support/memory_scan_log.hpp"
-#include "tests/support/weave_waiting.hpp"
+#include "tests/support/replay_waiting.hpp"
 #include "tests/unit/server/http/described_answer.hpp"
 #include "tests/unit/server/http/test_api.hpp"
 

@@ -64,7 +64,7 @@ TEST_F(ApiTest, ProgramVersionChangesEntityTags) {
     const auto tag = session_tag(info);
     EXPECT_EQ(get_json("/api/v1/sessions/a").at("id").as_string(),
               tag); // also responses that are cached forever under this id
-    EXPECT_NE(session_tag(info, {.weaving = mapping::kProjectionVersion + 1}), tag);
+    EXPECT_NE(session_tag(info, {.projection = mapping::kProjectionVersion + 1}), tag);
     EXPECT_NE(session_tag(info, {.rendering = tiles::kRenderingVersion + 1}), tag);
     for (const auto* file :
          {"map.png", "map.pgm", "map.yaml", "tiles/occupancy/0/0/0.png", "tiles/occupancy/0/0/0.bin"}) {

@@ -81,7 +81,7 @@ public:
         sessions_.drain();
         stop();
         for (auto& thread : threads_) thread.join();
-        weaves_.stop();
+        replay_jobs_.stop();
         showing_.join();
         pool_.join();
         compute_.join();
@@ -141,13 +141,13 @@ private:
     metrics::Metrics metrics_{"test"};
     boost::asio::io_context io_;
     sessions::SessionRegistry sessions_{log_, {compute_.get_executor(), [] { return 1'000.0; }}};
-    sessions::ReplayJobs weaves_{log_, compute_.get_executor()};
+    sessions::ReplayJobs replay_jobs_{log_, compute_.get_executor()};
     guidance::GoalAssignments goals_;
     auth::Authenticator authenticator_;
     auth::AuditLog audit_{metrics_.refusals()};
     auth::LoginSessions logins_;
-    http::TestApi api_{sessions_, weaves_, goals_,     log_, metrics_, {authenticator_, audit_, logins_},
-                       {},        {},      executors()};
+    http::TestApi api_{sessions_, replay_jobs_, goals_,     log_, metrics_, {authenticator_, audit_, logins_},
+                       {},        {},           executors()};
     std::shared_ptr<http::Server> server_;
     std::array<std::thread, 2> threads_;
     std::map<std::string, std::shared_ptr<StreamingRobot>> robots_;

@@ -10,12 +10,12 @@ namespace scanloom::testing_support {
 
 /// Waits up to `patience` for maps that contain the entry `revision`, or for the end of the job.
 /// @return null if there are no such maps
-inline std::shared_ptr<const mapping::Snapshot> wait_for_maps(sessions::ReplayJob& weave, Revision revision,
+inline std::shared_ptr<const mapping::Snapshot> wait_for_maps(sessions::ReplayJob& job, Revision revision,
                                                               std::chrono::milliseconds patience) {
     const auto ready = std::make_shared<std::promise<void>>(); // may be used after the patience is over
-    weave.notify(revision, [ready] { ready->set_value(); });
+    job.notify(revision, [ready] { ready->set_value(); });
     static_cast<void>(ready->get_future().wait_for(patience));
-    return weave.maps_with(revision);
+    return job.maps_with(revision);
 }
 
 } // namespace scanloom::testing_support

@@ -1,4 +1,4 @@
-#include "tests/unit/server/sessions/weave_fixture.hpp"
+#include "tests/unit/server/sessions/replay_fixture.hpp"
 
 namespace scanloom::sessions {
 namespace {
@@ -15,7 +15,7 @@ Sensor sonar_ring(std::uint32_t id, double range_max) {
 
 /// Replay jobs of a session's past at several revisions: a log of two robots with lasers and sonars that join and
 /// describe their sensors repeatedly while the other robot drives.
-class ReplayHistoryTest : public WeaveFixture {
+class ReplayHistoryTest : public ReplayFixture {
 protected:
     ReplayHistoryTest() {
         entries_.clear();
@@ -128,7 +128,7 @@ TEST_F(ReplayHistoryTest, ContinuesOnlyFromTheSameSettingsAndSession) {
     EXPECT_EQ(entries_read() - before, 21);
     auto other = session_;
     other.id = log_.create_session("other").value();
-    const auto job = weaves_.start(other, until(20), 0).value();
+    const auto job = replay_jobs_.start(other, until(20), 0).value();
     finish(*job);
     EXPECT_EQ(job->maps()->revision, 0U) << "the log of the other session is empty";
 }
@@ -138,7 +138,7 @@ TEST_F(ReplayHistoryTest, RemovingTheBaseKeepsJobsStartedFromIt) {
     const auto pause = log_.pause_at(25);
     const auto later = start(until(30));
     pause->wait();
-    EXPECT_TRUE(weaves_.remove(session_.id, base->id()));
+    EXPECT_TRUE(replay_jobs_.remove(session_.id, base->id()));
     pause->end();
     finish(*later);
     EXPECT_EQ(later->progress().state, State::kDone);
@@ -198,7 +198,7 @@ TEST_F(ReplayHistoryTest, JobStartsAloneIfItsBaseIsCancelled) {
     const auto first = start(until(20));
     pause->wait();
     const auto second = start(until(30));
-    EXPECT_TRUE(weaves_.remove(session_.id, first->id()));
+    EXPECT_TRUE(replay_jobs_.remove(session_.id, first->id()));
     pause->end();
     finish(*second);
     EXPECT_EQ(first->progress().state, State::kCancelled);
@@ -210,7 +210,7 @@ TEST_F(ReplayHistoryTest, WaitingJobIsCancelledImmediately) {
     const auto first = start(until(20));
     pause->wait();
     const auto second = start(until(30));
-    EXPECT_TRUE(weaves_.remove(session_.id, second->id()));
+    EXPECT_TRUE(replay_jobs_.remove(session_.id, second->id()));
     EXPECT_EQ(second->progress().state, State::kCancelled);
     pause->end();
     finish(*first);

@@ -1,5 +1,5 @@
-#include "tests/support/weave_waiting.hpp"
-#include "tests/unit/server/sessions/weave_fixture.hpp"
+#include "tests/support/replay_waiting.hpp"
+#include "tests/unit/server/sessions/replay_fixture.hpp"
 
 #include <thread>
 
@@ -7,7 +7,7 @@ namespace scanloom::sessions {
 namespace {
 
 /// Replay jobs of a log that grows between requests.
-class FollowingReplayTest : public WeaveFixture {
+class FollowingReplayTest : public ReplayFixture {
 protected:
     [[nodiscard]] static std::vector<int> once(Revision entries) { return std::vector<int>(entries, 1); }
 };
@@ -28,7 +28,7 @@ TEST_F(FollowingReplayTest, RepeatedRequestContinuesTheJob) {
         EXPECT_EQ(digests_of(*job->maps()), digests_of_session(options, revision));
         EXPECT_EQ(log_.taken(), once(revision));
     }
-    EXPECT_THAT(weaves_.list(session_.id), testing::ElementsAre(first));
+    EXPECT_THAT(replay_jobs_.list(session_.id), testing::ElementsAre(first));
 }
 
 TEST_F(FollowingReplayTest, RequestsJoinARunningJobAndAreServedInOrder) {
@@ -45,7 +45,7 @@ TEST_F(FollowingReplayTest, RequestsJoinARunningJobAndAreServedInOrder) {
     ASSERT_NE(for_the_first, nullptr);
     EXPECT_EQ(digests_of(*for_the_first), digests_of_session({}, 20));
     second_round->wait();
-    EXPECT_EQ(job->progress().state, State::kWeaving);
+    EXPECT_EQ(job->progress().state, State::kRunning);
     EXPECT_EQ(job->progress().revision, 20U) << "the earlier maps stay available";
     EXPECT_EQ(job->progress().applied, 29U);
     EXPECT_EQ(testing_support::wait_for_maps(*job, 42, std::chrono::milliseconds(0)), nullptr);
@@ -54,25 +54,25 @@ TEST_F(FollowingReplayTest, RequestsJoinARunningJobAndAreServedInOrder) {
     ASSERT_NE(for_the_second, nullptr);
     EXPECT_EQ(digests_of(*for_the_second), digests_of_session({}, 42));
     EXPECT_EQ(log_.taken(), once(42));
-    EXPECT_THAT(weaves_.list(session_.id), testing::SizeIs(1));
+    EXPECT_THAT(replay_jobs_.list(session_.id), testing::SizeIs(1));
 }
 
 TEST_F(FollowingReplayTest, OtherJobsRunBetweenTwoRounds) {
     boost::asio::thread_pool one(1);
-    ReplayJobs weaves(log_, one.get_executor());
+    ReplayJobs replay_jobs(log_, one.get_executor());
     append_up_to(20);
     const auto first_round = log_.pause_at(10);
     const auto next = log_.pause_at(30);
-    const auto job = weaves.start(session_, request({}), 20).value();
+    const auto job = replay_jobs.start(session_, request({}), 20).value();
     first_round->wait();
     append_all();
-    const auto other = weaves.start(session_, request({.cell_size = 0.1}), 42).value();
-    EXPECT_EQ(weaves.start(session_, request({}), 42).value(), job);
+    const auto other = replay_jobs.start(session_, request({.cell_size = 0.1}), 42).value();
+    EXPECT_EQ(replay_jobs.start(session_, request({}), 42).value(), job);
     first_round->end();
     next->wait();
     EXPECT_EQ(job->progress().state, State::kWaiting);
     EXPECT_EQ(job->progress().revision, 20U);
-    EXPECT_EQ(other->progress().state, State::kWeaving);
+    EXPECT_EQ(other->progress().state, State::kRunning);
     next->end();
     finish(*job);
     EXPECT_EQ(job->progress().revision, 42U);
@@ -86,7 +86,7 @@ TEST_F(FollowingReplayTest, ConcurrentRequestsReadEachEntryOnce) {
         viewers.emplace_back([&] {
             for (Revision seen = 0; seen < 42;) {
                 const Revision now = newest;
-                const auto job = weaves_.start(session_, request({}), now).value();
+                const auto job = replay_jobs_.start(session_, request({}), now).value();
                 const auto maps = testing_support::wait_for_maps(*job, now, kTimeout);
                 ASSERT_NE(maps, nullptr);
                 ASSERT_GE(maps->revision, std::max(now, seen));
@@ -101,7 +101,7 @@ TEST_F(FollowingReplayTest, ConcurrentRequestsReadEachEntryOnce) {
     for (auto& viewer : viewers) viewer.join();
     EXPECT_EQ(log_.taken(), once(42));
     EXPECT_EQ(digests_of(*finished(request({}))->maps()), digests_of_session({}, 42));
-    EXPECT_THAT(weaves_.list(session_.id), testing::SizeIs(1));
+    EXPECT_THAT(replay_jobs_.list(session_.id), testing::SizeIs(1));
 }
 
 TEST_F(FollowingReplayTest, PastStampIsReplayedOnce) {
@@ -149,7 +149,7 @@ TEST_F(FollowingReplayTest, FailedContinuationKeepsItsMapsAndRestarts) {
     EXPECT_NE(again, job);
     EXPECT_EQ(again->id(), job->id());
     EXPECT_EQ(log_.taken(), std::vector<int>(20, 2));
-    EXPECT_THAT(weaves_.list(session_.id), testing::ElementsAre(again));
+    EXPECT_THAT(replay_jobs_.list(session_.id), testing::ElementsAre(again));
 }
 
 TEST_F(FollowingReplayTest, CancelledContinuationEnds) {
@@ -159,7 +159,7 @@ TEST_F(FollowingReplayTest, CancelledContinuationEnds) {
     const auto pause = log_.pause_at(30);
     EXPECT_EQ(start(request({})), job);
     pause->wait();
-    EXPECT_TRUE(weaves_.remove(session_.id, job->id()));
+    EXPECT_TRUE(replay_jobs_.remove(session_.id, job->id()));
     pause->end();
     EXPECT_EQ(testing_support::wait_for_maps(*job, 42, kTimeout), nullptr);
     EXPECT_EQ(job->progress().state, State::kCancelled);

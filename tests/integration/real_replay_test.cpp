@@ -2,7 +2,7 @@
 #include "server/sessions/replay_jobs.hpp"
 #include "tests/support/digests.hpp"
 #include "tests/support/memory_scan_log.hpp"
-#include "tests/support/weave_waiting.hpp"
+#include "tests/support/replay_waiting.hpp"
 #include "tests/support/whole_log.hpp"
 
 #include <boost/asio/thread_pool.hpp>
@@ -22,7 +22,7 @@ std::filesystem::path intel_log() {
     return std::filesystem::path(SCANLOOM_SOURCE_DIR) / "../shared/data/logs/intel-corrected.log.gz";
 }
 
-class RealWeaves : public testing::Test {
+class RealReplay : public testing::Test {
 protected:
     static constexpr Revision kStep = 9; // entries
 
@@ -47,8 +47,8 @@ protected:
         log_.append(session_.id, 1, std::move(bytes_), [&](const Result<>&) { written.set_value(); });
         written.get_future().wait();
     }
-    ~RealWeaves() override {
-        weaves_.stop();
+    ~RealReplay() override {
+        replay_jobs_.stop();
         pool_.join();
     }
 
@@ -57,10 +57,10 @@ protected:
         entries_.push_back(std::move(entry));
     }
 
-    std::shared_ptr<const mapping::Snapshot> maps_until(sessions::ReplayJobs& weaves, Revision until) {
+    std::shared_ptr<const mapping::Snapshot> maps_until(sessions::ReplayJobs& replay_jobs, Revision until) {
         const sessions::ReplayRequest request{session_.config, {until, std::nullopt}};
-        const auto weave = weaves.start(session_, request, entries_.size()).value();
-        return testing_support::wait_for_maps(*weave, until, std::chrono::minutes(5));
+        const auto job = replay_jobs.start(session_, request, entries_.size()).value();
+        return testing_support::wait_for_maps(*job, until, std::chrono::minutes(5));
     }
 
     store::MemoryScanLog log_;
@@ -69,12 +69,12 @@ protected:
     std::vector<LogEntry> entries_;
     std::uint64_t scans_ = 0;
     boost::asio::thread_pool pool_{2};
-    sessions::ReplayJobs weaves_{log_, pool_.get_executor()};
+    sessions::ReplayJobs replay_jobs_{log_, pool_.get_executor()};
 };
 
-TEST_F(RealWeaves, EveryStepEqualsAMapComputedFromTheStart) {
+TEST_F(RealReplay, EveryStepEqualsAMapComputedFromTheStart) {
     for (Revision until = kStep; until <= entries_.size(); until += kStep) {
-        const auto maps = maps_until(weaves_, until);
+        const auto maps = maps_until(replay_jobs_, until);
         ASSERT_NE(maps, nullptr);
         ASSERT_EQ(maps->revision, until);
         if (until / kStep % 10 != 1) continue; // digests cost more than the steps

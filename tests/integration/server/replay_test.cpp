@@ -10,9 +10,9 @@
 namespace scanloom::test {
 namespace {
 
-class Reweaving : public ProgramsTest {};
+class ReplayOverHttp : public ProgramsTest {};
 
-TEST_F(Reweaving, EqualsASessionCreatedWithTheSettings) {
+TEST_F(ReplayOverHttp, EqualsASessionCreatedWithTheSettings) {
     simulate("coarse", "0.1");
     simulate("fine", "0.05");
     EXPECT_EQ(layers("coarse", "?cell_size=0.05"), layers("fine"));
@@ -20,7 +20,7 @@ TEST_F(Reweaving, EqualsASessionCreatedWithTheSettings) {
     EXPECT_NE(layers("fine"), layers("coarse"));
 }
 
-TEST_F(Reweaving, OfARealLogEqualsASessionCreatedWithTheSettings) {
+TEST_F(ReplayOverHttp, OfARealLogEqualsASessionCreatedWithTheSettings) {
     const auto intel = kRealData / "logs/intel-corrected.log.gz";
     if (!std::filesystem::exists(intel))
         GTEST_SKIP() << "the recorded data, which are no part of the project, are missing: " << intel;
@@ -31,7 +31,7 @@ TEST_F(Reweaving, OfARealLogEqualsASessionCreatedWithTheSettings) {
     EXPECT_EQ(layers("intel", "?cell_size=0.05"), layers("intel"));
 }
 
-TEST_F(Reweaving, ExtendsWithAStreamingSession) {
+TEST_F(ReplayOverHttp, ExtendsWithAStreamingSession) {
     std::atomic<bool> streamed = false;
     auto viewer = std::async(std::launch::async, [&] {
         std::int64_t seen = 0;
@@ -49,7 +49,7 @@ TEST_F(Reweaving, ExtendsWithAStreamingSession) {
     simulate("fine", "0.02");
     EXPECT_EQ(layers("live", "?cell_size=0.02"), layers("fine"));
     EXPECT_EQ(server_.get_json("/api/v1/sessions/live/weave").at("weaves").as_array().size(), 0U)
-        << "a GET with settings creates no listed weave";
+        << "a GET with settings creates no listed replay job";
 }
 
 } // namespace

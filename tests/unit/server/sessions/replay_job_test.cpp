@@ -1,5 +1,5 @@
-#include "tests/support/weave_waiting.hpp"
-#include "tests/unit/server/sessions/weave_fixture.hpp"
+#include "tests/support/replay_waiting.hpp"
+#include "tests/unit/server/sessions/replay_fixture.hpp"
 
 #include <boost/asio/post.hpp>
 
@@ -11,7 +11,7 @@ namespace {
 const Error kEnough{Errc::kNotFound, "enough"};
 
 /// Replay jobs of a log that does not grow.
-class ReplayJobTest : public WeaveFixture {
+class ReplayJobTest : public ReplayFixture {
 protected:
     ReplayJobTest() { append_all(); }
 
@@ -46,24 +46,24 @@ TEST_F(ReplayJobTest, EndsAtARevisionOrBeforeTheFirstLaterScan) {
 TEST_F(ReplayJobTest, EqualRequestReturnsTheSameJob) {
     const auto first = finished(request({}, {5, std::nullopt}));
     EXPECT_EQ(start(request({}, {5, std::nullopt})), first);
-    EXPECT_EQ(weaves_.find(session_.id, first->id()), first);
-    EXPECT_EQ(weaves_.find(session_.id + 1, first->id()), nullptr);
+    EXPECT_EQ(replay_jobs_.find(session_.id, first->id()), first);
+    EXPECT_EQ(replay_jobs_.find(session_.id + 1, first->id()), nullptr);
     for (const auto& other : {request({}), request({}, {6, std::nullopt}), request({}, {std::nullopt, 5.0}),
                               request({.danger_radius = 0.1}, {5, std::nullopt})}) {
         EXPECT_NE(start(other)->id(), first->id());
     }
-    EXPECT_THAT(weaves_.list(session_.id), testing::SizeIs(5));
-    EXPECT_THAT(weaves_.list(session_.id + 1), testing::IsEmpty());
+    EXPECT_THAT(replay_jobs_.list(session_.id), testing::SizeIs(5));
+    EXPECT_THAT(replay_jobs_.list(session_.id + 1), testing::IsEmpty());
 }
 
 TEST_F(ReplayJobTest, RemovedJobCanBeStartedAgain) {
     const auto first = finished(request({}, {5, std::nullopt}));
-    EXPECT_TRUE(weaves_.remove(session_.id, first->id()));
-    EXPECT_FALSE(weaves_.remove(session_.id, first->id()));
-    EXPECT_EQ(weaves_.find(session_.id, first->id()), nullptr);
+    EXPECT_TRUE(replay_jobs_.remove(session_.id, first->id()));
+    EXPECT_FALSE(replay_jobs_.remove(session_.id, first->id()));
+    EXPECT_EQ(replay_jobs_.find(session_.id, first->id()), nullptr);
     EXPECT_NE(finished(request({}, {5, std::nullopt})), first);
-    weaves_.remove_all(session_.id);
-    EXPECT_THAT(weaves_.list(session_.id), testing::IsEmpty());
+    replay_jobs_.remove_all(session_.id);
+    EXPECT_THAT(replay_jobs_.list(session_.id), testing::IsEmpty());
 }
 
 TEST_F(ReplayJobTest, SensorTooLargeForTheSettingsFailsWithAMessage) {
@@ -168,7 +168,7 @@ TEST_F(ReplayJobTest, CancelDuringATurnReturnsTheChunks) {
     ReplayJob job(session_, request({}), newest());
     std::thread runner([&] { EXPECT_FALSE(job.run(log_, budget)); });
     pause->wait();
-    EXPECT_EQ(job.progress().state, State::kWeaving);
+    EXPECT_EQ(job.progress().state, State::kRunning);
     EXPECT_EQ(job.progress().applied, 9U);
     EXPECT_EQ(testing_support::wait_for_maps(job, newest(), std::chrono::milliseconds(0)), nullptr);
     job.cancel(kEnough);
@@ -210,14 +210,14 @@ TEST_F(ReplayJobTest, FailsBeyondTheBudgetAndTakesNoChunks) {
 }
 
 TEST_F(ReplayJobTest, CountsTheChunksOfAllJobs) {
-    EXPECT_EQ(weaves_.chunks(), 0);
+    EXPECT_EQ(replay_jobs_.chunks(), 0);
     const auto job = finished(request({}));
     const auto chunks = static_cast<std::int64_t>(job->maps()->chunk_count);
-    EXPECT_EQ(weaves_.chunks(), chunks);
+    EXPECT_EQ(replay_jobs_.chunks(), chunks);
     static_cast<void>(finished(request({.danger_radius = 0.2})));
-    EXPECT_EQ(weaves_.chunks(), 2 * chunks);
-    EXPECT_TRUE(weaves_.remove(session_.id, job->id()));
-    EXPECT_EQ(weaves_.chunks(), chunks);
+    EXPECT_EQ(replay_jobs_.chunks(), 2 * chunks);
+    EXPECT_TRUE(replay_jobs_.remove(session_.id, job->id()));
+    EXPECT_EQ(replay_jobs_.chunks(), chunks);
 }
 
 TEST_F(ReplayJobTest, RemovesTheLeastRecentlyUsedBeyondTheChunkLimit) {

@@ -29,7 +29,7 @@ SessionOptions cells_of(double size) {
     return options;
 }
 
-TEST(Weaving, CountsTheTimeOfScansOnly) {
+TEST(IntegrateRecording, CountsTheTimeOfScansOnly) {
     double clock = 0.0;
     std::vector<std::size_t> scan_counts;
     const auto seconds = integrate_recording(
@@ -43,7 +43,7 @@ TEST(Weaving, CountsTheTimeOfScansOnly) {
     EXPECT_EQ(scan_counts, (std::vector<std::size_t>{1, 2, 3}));
 }
 
-TEST(Weaving, InvalidSettingsAreRefused) {
+TEST(IntegrateRecording, InvalidSettingsAreRefused) {
     const auto refused = integrate_recording(
         one_beam(), cells_of(0.0), [] { return 0.0; }, [](std::size_t, mapping::Projection&) {});
     ASSERT_FALSE(refused);

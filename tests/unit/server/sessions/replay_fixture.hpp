@@ -5,7 +5,7 @@
 #include "tests/support/digests.hpp"
 #include "tests/support/memory_scan_log.hpp"
 #include "tests/support/random_scans.hpp"
-#include "tests/support/weave_waiting.hpp"
+#include "tests/support/replay_waiting.hpp"
 
 #include <boost/asio/thread_pool.hpp>
 
@@ -82,11 +82,11 @@ private:
 };
 
 /// A log of 40 scans at intervals of 1 s; a test appends all or a part of its entries.
-class WeaveFixture : public testing::Test {
+class ReplayFixture : public testing::Test {
 protected:
     static constexpr std::uint64_t kScans = 40;
 
-    WeaveFixture() {
+    ReplayFixture() {
         entries_ = {RobotJoined{0, "r"}, SensorDescribed{0, testing_support::small_laser()}};
         for (std::uint64_t seq = 1; seq <= kScans; ++seq) {
             Scan scan = testing_support::random_scan(static_cast<unsigned>(seq), seq);
@@ -96,8 +96,8 @@ protected:
         session_.id = log_.create_session("s").value();
         session_.name = "s";
     }
-    ~WeaveFixture() override {
-        weaves_.stop();
+    ~ReplayFixture() override {
+        replay_jobs_.stop();
         pool_.join();
     }
 
@@ -135,7 +135,7 @@ protected:
 
     /// Starts a replay job when the session shows all entries of its log.
     [[nodiscard]] std::shared_ptr<ReplayJob> start(const ReplayRequest& wanted) {
-        return weaves_.start(session_, wanted, appended_).value();
+        return replay_jobs_.start(session_, wanted, appended_).value();
     }
 
     /// Waits until the job has ended.
@@ -154,7 +154,7 @@ protected:
     std::vector<LogEntry> entries_;
     Revision appended_ = 0; // entries
     boost::asio::thread_pool pool_{2};
-    ReplayJobs weaves_{log_, pool_.get_executor()};
+    ReplayJobs replay_jobs_{log_, pool_.get_executor()};
 };
 
 } // namespace scanloom::sessions
