@@ -33,8 +33,8 @@ UplinkOptions uplink_options(const RobotOptions& options, std::string token, con
                              Console& console) {
     UplinkOptions uplink;
     uplink.server = options.server;
-    const auto default_patience = prepared.live ? std::chrono::milliseconds(0) : uplink.give_up_after;
-    uplink.give_up_after = options.give_up_after.value_or(default_patience);
+    const auto default_timeout = prepared.live ? std::chrono::milliseconds(0) : uplink.give_up_after;
+    uplink.give_up_after = options.give_up_after.value_or(default_timeout);
     uplink.give_up_after_end = options.give_up_after.value_or(uplink.give_up_after_end);
     uplink.backoff_seed = std::random_device{}();
     uplink.on_trouble = report_once([&console](const std::string& text) { console.note(text); });

@@ -28,7 +28,7 @@ Result<UplinkOptions> uplink_options(const ClientOptions& options) {
         if (!tls) return tls.error();
         uplink.tls = std::move(*tls);
     }
-    uplink.give_up_after = uplink.give_up_after_end = milliseconds(0); // flush() has its own patience
+    uplink.give_up_after = uplink.give_up_after_end = milliseconds(0); // flush() has its own timeout
     uplink.backoff_seed = std::random_device{}();
     uplink.buffer_bytes_max = options.memory_bytes_max;
     uplink.protocol.batch_delay = options.batch_delay;
@@ -99,25 +99,25 @@ Result<> Client::send(const std::shared_ptr<const Sensor>& sensor, Scan scan) {
     return worker_->push({sensor, std::move(scan)});
 }
 
-Result<> Client::flush(milliseconds patience) { return worker_->flush(patience); }
-Result<> Client::close(milliseconds patience) { return worker_->close(patience); }
+Result<> Client::flush(milliseconds timeout) { return worker_->flush(timeout); }
+Result<> Client::close(milliseconds timeout) { return worker_->close(timeout); }
 
-Result<Path> Client::plan(const Point2& goal, milliseconds patience, const PlanOptions& options) {
+Result<Path> Client::plan(const Point2& goal, milliseconds timeout, const PlanOptions& options) {
     wire::PlanRequest request;
     request.goal = goal;
     request.start = options.start;
     request.allow_unknown = options.allow_unknown;
     request.body_radius = options.body_radius;
     request.danger_cost = options.danger_cost;
-    auto reply = worker_->ask(request, patience);
+    auto reply = worker_->ask(request, timeout);
     if (!reply) return reply.error();
     auto& [id, revision, path] = std::get<wire::PlanReply>(*reply);
     if (!path) return path.error();
     return from_wire(std::move(*path), revision);
 }
 
-Result<ExplorationGoal> Client::next_goal(milliseconds patience) {
-    auto reply = worker_->ask(wire::GoalRequest{}, patience);
+Result<ExplorationGoal> Client::next_goal(milliseconds timeout) {
+    auto reply = worker_->ask(wire::GoalRequest{}, timeout);
     if (!reply) return reply.error();
     auto& goal = std::get<wire::GoalReply>(*reply).result;
     if (!goal) return goal.error();
@@ -132,13 +132,13 @@ Result<ExplorationGoal> Client::next_goal(milliseconds patience) {
     return next;
 }
 
-Result<Coverage> Client::coverage(milliseconds patience, const CoverageOptions& options) {
+Result<Coverage> Client::coverage(milliseconds timeout, const CoverageOptions& options) {
     wire::CoverageRequest request;
     request.start = options.start;
     request.body_radius = options.body_radius;
     request.spacing = options.spacing;
     request.region = options.region;
-    auto reply = worker_->ask(std::move(request), patience);
+    auto reply = worker_->ask(std::move(request), timeout);
     if (!reply) return reply.error();
     auto& [id, revision, found] = std::get<wire::CoverageReply>(*reply);
     if (!found) return found.error();
@@ -149,14 +149,14 @@ Result<Coverage> Client::coverage(milliseconds patience, const CoverageOptions& 
 }
 
 Result<Location> Client::locate(const std::shared_ptr<const Sensor>& sensor, std::span<const Scan> scans,
-                                milliseconds patience, const LocateOptions& options) {
+                                milliseconds timeout, const LocateOptions& options) {
     auto seen = seen_from(sensor, scans);
     if (!seen) return seen.error();
     wire::LocateRequest request;
     request.points = seen->points();
     request.from = seen->from();
     if (options.near) request.near = wire::Near{options.near->point, options.near->radius};
-    auto reply = worker_->ask(std::move(request), patience);
+    auto reply = worker_->ask(std::move(request), timeout);
     if (!reply) return reply.error();
     const auto& found = std::get<wire::LocateReply>(*reply).result;
     if (!found) return found.error();

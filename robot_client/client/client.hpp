@@ -143,7 +143,7 @@ struct Location {
 ///
 /// send() returns at once. A thread of the client sends the scans, keeps them until they are stored, reconnects when
 /// the link breaks, and resumes after the last scan that the server has. Only flush(), close() and the requests plan(),
-/// next_goal(), coverage() and locate() wait for the network, at most for their `patience`. After that they return
+/// next_goal(), coverage() and locate() wait for the network, at most for their `timeout`. After that they return
 /// kTimeout: scans are still sent, a request is abandoned.
 ///
 /// Units: metres; radians, counter-clockwise; seconds; ranges in whole millimetres (scan.hpp).
@@ -154,8 +154,8 @@ struct Location {
 ///
 /// A request is sent once the scans sent before it are in the server's maps or dropped, so the server knows the robot's
 /// pose of the newest scan. At most four requests are open at a time; those of other threads wait for their turn within
-/// their own `patience`. All requests may fail with kInvalidField or kTooLarge if no server accepts the option that the
-/// message names, with the server's error, with kTimeout after `patience`, and with the error that ended the link
+/// their own `timeout`. All requests may fail with kInvalidField or kTooLarge if no server accepts the option that the
+/// message names, with the server's error, with kTimeout after `timeout`, and with the error that ended the link
 /// permanently.
 class Client {
 public:
@@ -184,45 +184,45 @@ public:
 
     /// Waits until all scans sent before this call are stored. Scans that other threads send meanwhile are not waited
     /// for.
-    /// @param patience  longest time to wait, milliseconds; 0: only check
+    /// @param timeout  longest time to wait, milliseconds; 0: only check
     /// @return success if all these scans are stored
     /// Errors: kTimeout; kOverloaded if scans were dropped for lack of room since the last flush(): the message gives
     ///         their number, all others are stored; the error that ended the link permanently.
-    [[nodiscard]] Result<> flush(std::chrono::milliseconds patience);
+    [[nodiscard]] Result<> flush(std::chrono::milliseconds timeout);
 
     /// Waits until all scans sent before are stored, then closes the link. Further calls of send() fail with kGone.
-    /// @param patience  longest time to wait, milliseconds
+    /// @param timeout  longest time to wait, milliseconds
     /// @return success if all scans are stored and the link is closed
     /// Errors: as flush(). After kTimeout call it again; after any other error the client is closed.
-    [[nodiscard]] Result<> close(std::chrono::milliseconds patience);
+    [[nodiscard]] Result<> close(std::chrono::milliseconds timeout);
 
     // Requests.
 
     /// Plans the cheapest path to a goal.
     /// @param goal      metres in the map frame
-    /// @param patience  longest time to wait, milliseconds
+    /// @param timeout  longest time to wait, milliseconds
     /// @param options   start, body radius and costs
     /// @return the path, from the start to `goal`, in metres in the map frame
     /// Errors: kNoPath if no path leads there: the message says what blocks it; those of all requests, see Client.
     /// Source: Dijkstra, A note on two problems in connexion with graphs (1959), over the cells; then straightened.
-    [[nodiscard]] Result<Path> plan(const Point2& goal, std::chrono::milliseconds patience,
+    [[nodiscard]] Result<Path> plan(const Point2& goal, std::chrono::milliseconds timeout,
                                     const PlanOptions& options = {});
 
     /// Asks for the next exploration goal. The server keeps it for this robot, so that other robots get other goals.
-    /// @param patience  longest time to wait, milliseconds
+    /// @param timeout  longest time to wait, milliseconds
     /// @return the goal and the path to it, in metres in the map frame; or why there is none
     /// Errors: kNoPath if the robot stands where no path can start, e.g. inside an obstacle; those of all requests, see
     ///     Client.
     /// Source: Yamauchi, A frontier-based approach for autonomous exploration (1997).
-    [[nodiscard]] Result<ExplorationGoal> next_goal(std::chrono::milliseconds patience);
+    [[nodiscard]] Result<ExplorationGoal> next_goal(std::chrono::milliseconds timeout);
 
     /// Plans a path that covers all free ground, or that of a region.
-    /// @param patience  longest time to wait, milliseconds
+    /// @param timeout  longest time to wait, milliseconds
     /// @param options   start, body radius, distance of the rows and region
     /// @return the path in metres in the map frame, and the ground that it cannot reach
     /// Errors: kNoPath if no free ground can be reached from the start; those of all requests, see Client.
     /// Source: Choset, Pignon, Coverage path planning: the boustrophedon cellular decomposition (1998).
-    [[nodiscard]] Result<Coverage> coverage(std::chrono::milliseconds patience, const CoverageOptions& options = {});
+    [[nodiscard]] Result<Coverage> coverage(std::chrono::milliseconds timeout, const CoverageOptions& options = {});
 
     /// Finds the robot's pose in the map from laser scans taken at one place. It serves robots without odometry and
     /// robots that lost their position. It needs no scans sent before, and does not store `scans`.
@@ -230,7 +230,7 @@ public:
     /// @param scans    one or more, ten are plenty, with at least kLocatePointsMin returns in total; of more than
     ///                 32,768 returns an even selection is used. Scan::pose is the robot's pose in its odometry frame,
     ///                 or the origin without odometry
-    /// @param patience  longest time to wait, milliseconds
+    /// @param timeout  longest time to wait, milliseconds
     /// @param options   part of the map to search
     /// @return the pose of the odometry frame in the map frame, with its uncertainty
     /// Errors: kAmbiguous if several places look alike; kUndetermined if too little of the scans is in the map;
@@ -239,7 +239,7 @@ public:
     /// Source: Olson, Real-time correlative scan matching (2009), for the search; Censi, An ICP variant using a
     ///         point-to-line metric (2008), for the refinement.
     [[nodiscard]] Result<Location> locate(const std::shared_ptr<const Sensor>& sensor, std::span<const Scan> scans,
-                                          std::chrono::milliseconds patience, const LocateOptions& options = {});
+                                          std::chrono::milliseconds timeout, const LocateOptions& options = {});
     /// Smallest number of returns that locate() accepts.
     static constexpr std::size_t kLocatePointsMin = 20;
 

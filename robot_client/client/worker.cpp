@@ -21,7 +21,7 @@ namespace {
 /// does not respond.
 constexpr std::size_t kHandedOverMax = 1024;
 
-constexpr milliseconds kPatienceMax = std::chrono::hours(24 * 365);
+constexpr milliseconds kTimeoutMax = std::chrono::hours(24 * 365);
 
 /// How late the client's thread may be, because its disk may not respond.
 constexpr milliseconds kGrace{1000};
@@ -49,8 +49,8 @@ void PushedSource::stop() {
     added_.notify();
 }
 
-Client::Worker::Patience::Patience(milliseconds given)
-    : length(std::clamp(given, milliseconds(0), kPatienceMax)), until(Clock::now() + length) {}
+Client::Worker::Timeout::Timeout(milliseconds given)
+    : length(std::clamp(given, milliseconds(0), kTimeoutMax)), until(Clock::now() + length) {}
 
 Client::Worker::Worker(UplinkOptions uplink, std::unique_ptr<Spool> spool, LiveFeedOptions feed)
     : feed_(source_, std::move(spool), std::move(feed)), uplink_(io_, std::move(uplink), feed_),
@@ -96,21 +96,21 @@ Result<> Client::Worker::push(Observation observation) {
 }
 
 Result<> Client::Worker::flush(milliseconds length) {
-    const Patience patience(length);
-    return wait_for(until_stored(patience), patience);
+    const Timeout timeout(length);
+    return wait_for(until_stored(timeout), timeout);
 }
 
 Result<> Client::Worker::close(milliseconds length) {
-    const Patience patience(length);
-    auto flushed = wait_for(until_stored(patience), patience);
+    const Timeout timeout(length);
+    auto flushed = wait_for(until_stored(timeout), timeout);
     if (!flushed && flushed.error().code != Errc::kOverloaded) return flushed;
     {
         const std::lock_guard lock(mutex_);
         if (!std::exchange(is_closing_, true)) asio::post(io_, [this] { source_.stop(); });
     }
-    if (ended_.wait_until(patience.until) != std::future_status::ready) {
+    if (ended_.wait_until(timeout.until) != std::future_status::ready) {
         return Error{Errc::kTimeout, fmt::format("the server did not close the link within {:g} s",
-                                                 std::chrono::duration<double>(patience.length).count())};
+                                                 std::chrono::duration<double>(timeout.length).count())};
     }
     if (auto failed = failure(); failed && failed->code != Errc::kGone) return *failed;
     return flushed;
@@ -122,7 +122,7 @@ std::uint64_t Client::Worker::count_of_those_not(Fate fate) const {
     return source_.waiting() + now.waiting + now.last - done;
 }
 
-asio::awaitable<Result<>> Client::Worker::until_all_are(Fate fate, Patience patience) {
+asio::awaitable<Result<>> Client::Worker::until_all_are(Fate fate, Timeout timeout) {
     const std::uint64_t handed_over = handed_over_;
     const std::uint64_t dropped = uplink_.status().dropped;
     for (;;) {
@@ -133,13 +133,13 @@ asio::awaitable<Result<>> Client::Worker::until_all_are(Fate fate, Patience pati
         const std::uint64_t newer = handed_over_ - handed_over;
         if (left == 0 || left + (uplink_.status().dropped - dropped) <= newer) co_return Result<>{};
         const auto what = fmt::format("{} scans were not {}", left, fate == Fate::kStored ? "stored" : "in the maps");
-        if (const auto why = reason_to_leave(what, patience)) co_return *why;
-        co_await uplink_.news_signal().wait(std::min(patience.until, Clock::now() + kLookPeriod));
+        if (const auto why = reason_to_leave(what, timeout)) co_return *why;
+        co_await uplink_.news_signal().wait(std::min(timeout.until, Clock::now() + kLookPeriod));
     }
 }
 
-asio::awaitable<Result<>> Client::Worker::until_stored(Patience patience) {
-    const Result<> stored = co_await until_all_are(Fate::kStored, patience);
+asio::awaitable<Result<>> Client::Worker::until_stored(Timeout timeout) {
+    const Result<> stored = co_await until_all_are(Fate::kStored, timeout);
     if (!stored) co_return stored;
     const std::uint64_t dropped = uplink_.status().dropped;
     const std::uint64_t lost = dropped - std::exchange(dropped_and_told_, dropped);
@@ -154,45 +154,45 @@ asio::awaitable<Result<>> Client::Worker::until_stored(Patience patience) {
 
 Result<link::Reply> Client::Worker::ask(link::Request request, milliseconds length) {
     if (auto ok = check(request); !ok) return ok.error();
-    const Patience patience(length);
-    return wait_for(until_answered(std::move(request), patience), patience);
+    const Timeout timeout(length);
+    return wait_for(until_answered(std::move(request), timeout), timeout);
 }
 
-asio::awaitable<Result<link::Reply>> Client::Worker::until_answered(link::Request request, Patience patience) {
-    const Result<> applied = co_await until_all_are(Fate::kInMaps, patience);
+asio::awaitable<Result<link::Reply>> Client::Worker::until_answered(link::Request request, Timeout timeout) {
+    const Result<> applied = co_await until_all_are(Fate::kInMaps, timeout);
     if (!applied) co_return applied.error();
     const auto reply = std::make_shared<std::optional<link::Reply>>();
     const link::Answered answered = [reply](const link::Reply& got) { reply->emplace(got); };
     auto id = uplink_.ask(request, answered);
     while (!id) {
-        if (const auto why = reason_to_leave("too many questions were open", patience)) co_return *why;
-        co_await uplink_.news_signal().wait(patience.until);
+        if (const auto why = reason_to_leave("too many questions were open", timeout)) co_return *why;
+        co_await uplink_.news_signal().wait(timeout.until);
         id = uplink_.ask(request, answered);
     }
     while (!*reply) {
-        if (const auto why = reason_to_leave("the server did not answer", patience)) {
+        if (const auto why = reason_to_leave("the server did not answer", timeout)) {
             uplink_.abandon(*id);
             co_return *why;
         }
-        co_await uplink_.news_signal().wait(patience.until);
+        co_await uplink_.news_signal().wait(timeout.until);
     }
     co_return **reply;
 }
 
 // Waiting -------------------------------------------------------------------------------------------------------------
 
-std::optional<Error> Client::Worker::reason_to_leave(std::string_view what, const Patience& patience) {
+std::optional<Error> Client::Worker::reason_to_leave(std::string_view what, const Timeout& timeout) {
     if (auto failed = failure()) return failed;
-    if (Clock::now() < patience.until) return std::nullopt;
+    if (Clock::now() < timeout.until) return std::nullopt;
     return Error{Errc::kTimeout,
-                 fmt::format("{} within {:g} s{}", what, std::chrono::duration<double>(patience.length).count(),
+                 fmt::format("{} within {:g} s{}", what, std::chrono::duration<double>(timeout.length).count(),
                              uplink_.status().is_linked ? "" : ": " + uplink_.what_is_wrong())};
 }
 
 template <class Value>
-Result<Value> Client::Worker::wait_for(asio::awaitable<Result<Value>> coroutine, const Patience& patience) {
+Result<Value> Client::Worker::wait_for(asio::awaitable<Result<Value>> coroutine, const Timeout& timeout) {
     auto done = asio::co_spawn(io_, std::move(coroutine), asio::use_future);
-    if (done.wait_until(patience.until + kGrace) == std::future_status::ready) return done.get();
+    if (done.wait_until(timeout.until + kGrace) == std::future_status::ready) return done.get();
     return failure().value_or(
         Error{Errc::kTimeout, "the client's thread stands still; the disk of its spool may, too"});
 }

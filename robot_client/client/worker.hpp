@@ -41,8 +41,8 @@ private:
 
 /// Runs the uplink on a thread of its own.
 ///
-/// Each waiting call runs a coroutine on that thread. The coroutine ends by itself when the caller's patience ends, so
-/// none remains after its caller has returned.
+/// Each waiting call runs a coroutine on that thread. The coroutine ends by itself when the caller's timeout has
+/// passed, so none remains after its caller has returned.
 /// Threads: any thread, several at a time. Private functions run on the worker's own thread unless their comment says
 ///          otherwise.
 class Client::Worker {
@@ -53,19 +53,19 @@ public:
     Worker& operator=(const Worker&) = delete;
 
     [[nodiscard]] Result<> push(Observation observation);
-    [[nodiscard]] Result<> flush(std::chrono::milliseconds patience);
-    [[nodiscard]] Result<> close(std::chrono::milliseconds patience);
+    [[nodiscard]] Result<> flush(std::chrono::milliseconds timeout);
+    [[nodiscard]] Result<> close(std::chrono::milliseconds timeout);
     /// Sends a request and waits for the reply, which may be a refusal by the server.
     /// Errors: kInvalidField or kTooLarge if a value would end the link; kTimeout; the error that ended the client.
-    [[nodiscard]] Result<link::Reply> ask(link::Request request, std::chrono::milliseconds patience);
+    [[nodiscard]] Result<link::Reply> ask(link::Request request, std::chrono::milliseconds timeout);
     [[nodiscard]] ClientStatus status();
 
 private:
     using Clock = std::chrono::steady_clock;
 
     /// How long a caller waits.
-    struct Patience {
-        explicit Patience(std::chrono::milliseconds length);
+    struct Timeout {
+        explicit Timeout(std::chrono::milliseconds length);
 
         std::chrono::milliseconds length;
         Clock::time_point until;
@@ -76,17 +76,17 @@ private:
 
     [[nodiscard]] boost::asio::awaitable<void> run();
     /// Waits for the scans that were handed over before. Dropped scans count as done.
-    [[nodiscard]] boost::asio::awaitable<Result<>> until_all_are(Fate fate, Patience patience);
-    [[nodiscard]] boost::asio::awaitable<Result<>> until_stored(Patience patience);
-    [[nodiscard]] boost::asio::awaitable<Result<link::Reply>> until_answered(link::Request request, Patience patience);
+    [[nodiscard]] boost::asio::awaitable<Result<>> until_all_are(Fate fate, Timeout timeout);
+    [[nodiscard]] boost::asio::awaitable<Result<>> until_stored(Timeout timeout);
+    [[nodiscard]] boost::asio::awaitable<Result<link::Reply>> until_answered(link::Request request, Timeout timeout);
     [[nodiscard]] std::uint64_t count_of_those_not(Fate fate) const;
-    /// Returns the error to stop waiting with if the client has ended or the patience is over, else nullopt.
-    [[nodiscard]] std::optional<Error> reason_to_leave(std::string_view what, const Patience& patience);
+    /// Returns the error to stop waiting with if the client has ended or the timeout has passed, else nullopt.
+    [[nodiscard]] std::optional<Error> reason_to_leave(std::string_view what, const Timeout& timeout);
 
     /// Waits for a coroutine.
     /// Threads: the caller's.
     template <class Value>
-    [[nodiscard]] Result<Value> wait_for(boost::asio::awaitable<Result<Value>> coroutine, const Patience& patience);
+    [[nodiscard]] Result<Value> wait_for(boost::asio::awaitable<Result<Value>> coroutine, const Timeout& timeout);
     /// Returns the error that the client has ended with, if it has.
     /// Threads: any thread.
     [[nodiscard]] std::optional<Error> failure();

@@ -136,10 +136,10 @@ std::optional<Error> Uplink::reason_to_give_up() const {
                                                  what_is_wrong())};
     }
     const auto since = protocol_.stalled_since();
-    const auto patience = feed_.has_ended() ? options_.give_up_after_end : options_.give_up_after;
-    if (since && patience.count() > 0 && now > *since + patience) {
+    const auto timeout = feed_.has_ended() ? options_.give_up_after_end : options_.give_up_after;
+    if (since && timeout.count() > 0 && now > *since + timeout) {
         return Error{Errc::kTimeout,
-                     fmt::format("gave up after {:g} s without progress: {}", seconds(patience), what_is_wrong())};
+                     fmt::format("gave up after {:g} s without progress: {}", seconds(timeout), what_is_wrong())};
     }
     return std::nullopt;
 }

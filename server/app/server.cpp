@@ -25,7 +25,7 @@ namespace {
 
 /// Time limit of the whole shutdown; clients that have not read their last answer by then are disconnected. Service
 /// managers kill servers that take longer than ten seconds to stop.
-constexpr auto kPatience = std::chrono::seconds(9);
+constexpr auto kStopTimeout = std::chrono::seconds(9);
 
 /// Time limit for integrating and acknowledging submitted scans at shutdown. The remaining scans are in the log for the
 /// next start, or the robots still have them.
@@ -69,7 +69,7 @@ Server::Server(const ServerOptions& options, const ConnectionLimits& limits, std
                                                  .idle_after = options.idle_after}),
       check_(*log_, sessions_), replay_jobs_(*log_, pools_.replay, replay_limits(options.replay_memory_bytes)),
       locator_(*log_), requests_(pools_.planning, pools_.locating, {goals_, locator_, sessions_}), hangup_(io_, SIGHUP),
-      patience_(io_), integration_timeout_(io_), tidying_(asio::make_strand(io_)) {}
+      stop_timeout_(io_), integration_timeout_(io_), tidying_(asio::make_strand(io_)) {}
 
 Server::~Server() {
     // No task may run while the members are destroyed, in reverse order.
@@ -298,8 +298,8 @@ void Server::drain() {
     replay_jobs_.stop();
     if (backups_) backups_->stop();
     asio::post(tidying_.get_executor(), [this] { tidying_.cancel(); });
-    patience_.expires_after(kPatience);
-    patience_.async_wait([this](const boost::system::error_code& error) {
+    stop_timeout_.expires_after(kStopTimeout);
+    stop_timeout_.async_wait([this](const boost::system::error_code& error) {
         if (!error) io_.stop();
     });
     integration_timeout_.expires_after(kIntegrationTimeout);
@@ -310,7 +310,7 @@ void Server::drain() {
         sessions_.drain();
         asio::post(io_, [this] { integration_timeout_.cancel(); });
         http_->stop([this] {
-            patience_.cancel();
+            stop_timeout_.cancel();
             signals_->cancel();
             hangup_.cancel();
         });

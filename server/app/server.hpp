@@ -87,7 +87,7 @@ private:
     std::shared_ptr<http::Server> http_;
     std::optional<boost::asio::signal_set> signals_;
     boost::asio::signal_set hangup_;
-    boost::asio::steady_timer patience_;
+    boost::asio::steady_timer stop_timeout_;
     boost::asio::steady_timer integration_timeout_;
     boost::asio::steady_timer tidying_;
     std::atomic<bool> store_has_failed_ = false; // and the failure was logged

@@ -53,7 +53,7 @@ struct Services {
     RobotPort robots = {};                                    ///< for /readyz
     store::Backups* backups = nullptr;                        ///< null: this server keeps no backups
     std::size_t tile_bytes_max = tiles::TileMaker::kBytesMax; ///< of cached tiles
-    std::chrono::milliseconds replay_patience{20'000};        ///< longest time that a request waits for a replay job
+    std::chrono::milliseconds replay_timeout{20'000};         ///< longest time that a request waits for a replay job
 
     std::atomic<bool> recovered = false; ///< before, requests for sessions receive kOverloaded
     tiles::TileMaker tiles{tile_bytes_max};

@@ -141,10 +141,10 @@ wire::Message reply_from(const wire::LocateRequest& request, const Requester& re
     const auto points = landmarks::in_metres(request.points);
     std::optional<landmarks::Neighbourhood> near;
     if (request.near) near = landmarks::Neighbourhood{request.near->point, request.near->radius};
-    const guidance::SearchLimit patience(services.sessions,
-                                         guidance::SearchLimit::Clock::now() + guidance::SearchLimit::kTime,
-                                         "give a point near its position");
-    const auto ask = [&]() -> Result<> { return *requester.is_gone ? Result<>(kLinkClosed) : patience(); };
+    const guidance::SearchLimit limit(services.sessions,
+                                      guidance::SearchLimit::Clock::now() + guidance::SearchLimit::kTime,
+                                      "give a point near its position");
+    const auto ask = [&]() -> Result<> { return *requester.is_gone ? Result<>(kLinkClosed) : limit(); };
     const auto located = services.locator.locate(*requester.session, requester.robot,
                                                  {.points = points, .from = request.from}, near, ask);
     if (!located) return reply(request, requester.session->snapshot()->revision, located.error());

@@ -26,9 +26,9 @@ Result<Folded<Layer>> CaptureLayers<Layer>::up_to(const SessionInfo& session, Re
                                                   const std::function<bool()>& is_wanted) {
     const auto kept = find_or_begin(session);
     // By the system clock, because ThreadSanitizer of GCC 12 does not support timed waits by the steady clock. If the
-    // system clock jumps, this call waits until others finish, which `patience` bounds too, or asks for a retry at
+    // system clock jumps, this call waits until others finish, which `timeout` bounds too, or asks for a retry at
     // once.
-    const std::unique_lock folding(kept->mutex, std::chrono::system_clock::now() + limits_.patience);
+    const std::unique_lock folding(kept->mutex, std::chrono::system_clock::now() + limits_.timeout);
     if (!folding) {
         return Error{Errc::kOverloaded,
                      fmt::format("another request is finding the {} of this session at this moment; try again",
@@ -65,7 +65,7 @@ Error CaptureLayers<Layer>::full(const SessionInfo& session) const {
 
 template <class Layer>
 Result<> CaptureLayers<Layer>::go_on(Kept& kept, Revision revision, const std::function<bool()>& is_wanted) const {
-    const auto deadline = Clock::now() + limits_.patience;
+    const auto deadline = Clock::now() + limits_.timeout;
     const auto add = [&](const landmarks::RobotCapture& ended) -> Result<> {
         kept.layer.add(ended);
         return kept.layer.size() <= limits_.size_max ? Result<>() : kTooMany;

@@ -45,7 +45,7 @@ template <class Layer>
 struct CaptureLayerLimits {
     std::size_t kept_max = 64;                           ///< cached sessions
     std::size_t size_max = LayerTraits<Layer>::kSizeMax; ///< of all cached layers together, and of each one
-    std::chrono::milliseconds patience{5'000};           ///< that a call reads the log or waits for another call
+    std::chrono::milliseconds timeout{5'000};            ///< that a call reads the log or waits for another call
 };
 
 /// A layer computed from a session's captures, up to a revision of its log.
@@ -72,7 +72,7 @@ public:
     /// Returns the layer of the log's entries up to `revision`, or up to a later revision of an earlier request.
     ///
     /// @param is_wanted  called from time to time; false cancels the request
-    /// Errors: kOverloaded if it takes longer than the limit `patience` or memory ran out; after a timeout, the next
+    /// Errors: kOverloaded if it takes longer than the limit `timeout` or memory ran out; after a timeout, the next
     /// request continues where this one stopped. kFull if the layer has more than size_max. kShuttingDown if is_wanted
     /// returned false. kDataLoss if an entry is damaged. Those of ScanLog::read().
     [[nodiscard]] Result<Folded<Layer>> up_to(const SessionInfo& session, Revision revision,

@@ -13,7 +13,7 @@ namespace scanloom::sessions {
 namespace {
 
 /// How long a request waits for memory, because the users of other sessions may release them soon.
-constexpr std::chrono::seconds kPatience{5};
+constexpr std::chrono::seconds kLoadTimeout{5};
 
 Error leaves_memory() { return {Errc::kShuttingDown, "the session is evicted from memory; connect again"}; }
 
@@ -45,7 +45,7 @@ void SessionLoader::load(std::string_view name, SessionCache::Loaded on_loaded) 
 void SessionLoader::load(const std::optional<EvictedSession>& wanted) {
     if (!wanted) return;
     boost::asio::post(state_.reading,
-                      [this, next = Wanted{*wanted, state_.config.clock() + kPatience}] { read(next); });
+                      [this, next = Wanted{*wanted, state_.config.clock() + kLoadTimeout}] { read(next); });
 }
 
 void SessionLoader::retry() {

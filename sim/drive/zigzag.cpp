@@ -53,7 +53,7 @@ namespace {
 
 // control steps
 constexpr int kBlockedStepsPerDetour = 40;
-constexpr int kLanePatienceSteps = 200;
+constexpr int kBlockedStepsPerLane = 200;
 constexpr int kDetoursMax = 4;
 constexpr int kOtherPathsMax = 3;
 
@@ -76,7 +76,7 @@ std::vector<Point2> unexpected_obstacles(const Ground& ground, const Ground& kno
 }
 
 /// Returns true once for every two seconds that the robot is blocked.
-bool is_out_of_patience(const PathFollower& follower) {
+bool is_time_for_detour(const PathFollower& follower) {
     return follower.blocked_steps() > 0 && follower.blocked_steps() % kBlockedStepsPerDetour == 0;
 }
 
@@ -161,7 +161,7 @@ Velocity Zigzag::go(const Senses& senses) {
         return sweep(senses);
     }
     const Velocity velocity = follower_.step(senses);
-    if (!is_out_of_patience(follower_)) return velocity;
+    if (!is_time_for_detour(follower_)) return velocity;
     other_paths_ += 1;
     std::ranges::copy(unexpected_obstacles(ground_, ground_, senses), std::back_inserter(obstacles_));
     const auto around = find_path(ground_.without(obstacles_, kLaneClearance), position, lane_begin_);
@@ -181,7 +181,7 @@ Velocity Zigzag::sweep(const Senses& senses) {
         return {};
     }
     const Velocity velocity = follower_.step(senses);
-    if (is_out_of_patience(follower_) && lane_detours_ < kDetoursMax) {
+    if (is_time_for_detour(follower_) && lane_detours_ < kDetoursMax) {
         around_ = ground_;
         blocked_at_ = position;
         if (plan_detour(senses)) {
@@ -189,7 +189,7 @@ Velocity Zigzag::sweep(const Senses& senses) {
             task_ = Task::kDetour;
         }
     }
-    if (follower_.blocked_steps() > kLanePatienceSteps) give_up_lane(position);
+    if (follower_.blocked_steps() > kBlockedStepsPerLane) give_up_lane(position);
     return velocity;
 }
 

@@ -62,16 +62,16 @@ private:
     robot::Intake* intake_ = nullptr;
 };
 
-robot::UplinkOptions options_of(const RobotPlan& plan, std::uint16_t port, const Patience& patience) {
+robot::UplinkOptions options_of(const RobotPlan& plan, std::uint16_t port, const LinkTimeouts& timeouts) {
     robot::UplinkOptions options;
     options.server = {"127.0.0.1", std::to_string(port)};
-    options.connect_timeout = patience.welcome;
-    options.give_up_after = options.give_up_after_end = patience.give_up_after;
+    options.connect_timeout = timeouts.welcome;
+    options.give_up_after = options.give_up_after_end = timeouts.give_up_after;
     options.backoff_seed = plan.seed;
-    options.backoff = {patience.backoff_first, patience.backoff_longest};
-    options.protocol.welcome_timeout = patience.welcome;
-    options.protocol.ping_after = patience.ping_after;
-    options.protocol.silence_max = patience.silence_max;
+    options.backoff = {timeouts.backoff_first, timeouts.backoff_longest};
+    options.protocol.welcome_timeout = timeouts.welcome;
+    options.protocol.ping_after = timeouts.ping_after;
+    options.protocol.silence_max = timeouts.silence_max;
     options.protocol.batch_bytes_max = 2048; // about ten scans: many frames, many acknowledgements
     options.protocol.hello.session = plan.session;
     options.protocol.hello.robot = plan.name;
@@ -86,9 +86,9 @@ SessionOptions fleet_options() { return {.cell_size = kCellSize}; }
 
 class Fleet::Robots {
 public:
-    Robots(std::vector<RobotPlan> plans, std::uint16_t port, const Patience& patience) {
+    Robots(std::vector<RobotPlan> plans, std::uint16_t port, const LinkTimeouts& timeouts) {
         for (auto& plan : plans) members_.push_back(std::make_unique<Member>(std::move(plan)));
-        for (auto& member : members_) start(*member, port, patience);
+        for (auto& member : members_) start(*member, port, timeouts);
         thread_ = std::thread([this] { io_.run(); });
     }
     ~Robots() {
@@ -141,10 +141,10 @@ private:
         std::unique_ptr<robot::Uplink> uplink;
     };
 
-    void start(Member& member, std::uint16_t port, const Patience& patience) {
+    void start(Member& member, std::uint16_t port, const LinkTimeouts& timeouts) {
         member.feed = std::make_unique<ReleasedFeed>(
             member.standing.plan, [this, &member](std::uint64_t seq) { on_acknowledged(member, seq); });
-        auto options = options_of(member.standing.plan, port, patience);
+        auto options = options_of(member.standing.plan, port, timeouts);
         options.drain_max = std::chrono::milliseconds(0);
         member.uplink = std::make_unique<robot::Uplink>(io_, std::move(options), *member.feed);
         asio::co_spawn(io_, member.uplink->run(), [this, &member](std::exception_ptr failed, Result<> outcome) {
@@ -196,8 +196,8 @@ std::vector<RobotPlan> half_sharing(unsigned robots, std::uint64_t seed, std::ui
     return made;
 }
 
-Fleet::Fleet(std::vector<RobotPlan> plans, std::uint16_t port, const Patience& patience)
-    : robots_(std::make_unique<Robots>(std::move(plans), port, patience)) {}
+Fleet::Fleet(std::vector<RobotPlan> plans, std::uint16_t port, const LinkTimeouts& timeouts)
+    : robots_(std::make_unique<Robots>(std::move(plans), port, timeouts)) {}
 Fleet::~Fleet() = default;
 
 void Fleet::release(std::uint64_t seq) { robots_->release(seq); }

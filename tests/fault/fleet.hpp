@@ -35,7 +35,7 @@ struct RobotStanding {
 };
 
 /// A robot's timeouts. The defaults make a lost connection cheap; the product does not promise them.
-struct Patience {
+struct LinkTimeouts {
     std::chrono::milliseconds welcome{2'000};
     std::chrono::milliseconds ping_after{200};
     std::chrono::milliseconds silence_max{2'000};
@@ -49,7 +49,7 @@ struct Patience {
 class Fleet {
 public:
     /// Connects the robots to `port` of this machine; a server need not listen there yet.
-    Fleet(std::vector<RobotPlan> plans, std::uint16_t port, const Patience& patience = {});
+    Fleet(std::vector<RobotPlan> plans, std::uint16_t port, const LinkTimeouts& timeouts = {});
     ~Fleet();
 
     /// Permits each robot to send its scans up to this number; none initially.

@@ -25,12 +25,12 @@ constexpr std::uint64_t kSpoiledLinksMax = 4;
 constexpr std::size_t kAtOnce = 8; // most of them wait
 
 /// Some stalls are longer than these timeouts.
-constexpr Patience kLinkPatience{.welcome = std::chrono::milliseconds(250),
-                                 .ping_after = std::chrono::milliseconds(50),
-                                 .silence_max = std::chrono::milliseconds(250),
-                                 .give_up_after = std::chrono::milliseconds(30'000),
-                                 .backoff_first = std::chrono::milliseconds(1),
-                                 .backoff_longest = std::chrono::milliseconds(20)};
+constexpr LinkTimeouts kLinkTimeouts{.welcome = std::chrono::milliseconds(250),
+                                     .ping_after = std::chrono::milliseconds(50),
+                                     .silence_max = std::chrono::milliseconds(250),
+                                     .give_up_after = std::chrono::milliseconds(30'000),
+                                     .backoff_first = std::chrono::milliseconds(1),
+                                     .backoff_longest = std::chrono::milliseconds(20)};
 
 /// The faults of a robot's connections, chosen by the seed.
 class Fates {
@@ -87,7 +87,7 @@ private:
 /// Runs one robot from its first connection to its last.
 RobotStanding stream(const RobotPlan& plan, std::uint16_t port, Fates& fates) {
     FaultProxy proxy(port, [&](std::uint64_t connection) { return fates.fate_of(connection); });
-    Fleet fleet({plan}, proxy.port(), kLinkPatience);
+    Fleet fleet({plan}, proxy.port(), kLinkTimeouts);
     fleet.release_all();
     return fleet.finish().front();
 }

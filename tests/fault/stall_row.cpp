@@ -22,8 +22,8 @@ constexpr std::uint64_t kScansPerStall = 100; // per robot
 constexpr unsigned kStallRobots = 4;
 
 /// Longer than a stall of the disk.
-constexpr Patience kStallPatience{.welcome = std::chrono::milliseconds(10'000),
-                                  .silence_max = std::chrono::milliseconds(15'000)};
+constexpr LinkTimeouts kStallTimeouts{.welcome = std::chrono::milliseconds(10'000),
+                                      .silence_max = std::chrono::milliseconds(15'000)};
 
 /// Robots may have as much data in progress as their credits permit; here the credits are small.
 constexpr std::uint64_t kGrowthMax = std::uint64_t{4} << 20;
@@ -40,7 +40,7 @@ Result<Outcome> stall_one_disk(const Run& run, std::uint64_t seed, std::uint64_t
     if (!disk) return disk.error();
     std::mt19937_64 random(seed);
     ServerProcess server(run.server, place.path(), {"--disk-reserve", "32"});
-    Fleet fleet(half_sharing(kStallRobots, seed, stalls * kScansPerStall), server.robot_port(), kStallPatience);
+    Fleet fleet(half_sharing(kStallRobots, seed, stalls * kScansPerStall), server.robot_port(), kStallTimeouts);
     server.start_and_wait();
     fleet.release(1);
     (void)fleet.wait_for_acknowledged(kStallRobots); // all sessions exist then

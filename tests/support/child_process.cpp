@@ -58,11 +58,10 @@ std::optional<std::string> ChildProcess::read_line() {
     }
 }
 
-bool ChildProcess::has_output_within(std::chrono::microseconds patience) const {
+bool ChildProcess::has_output_within(std::chrono::microseconds timeout) const {
     if (!buffered_.empty()) return true;
     constexpr std::int64_t kMicrosASecond = 1'000'000;
-    const timespec time{static_cast<time_t>(patience.count() / kMicrosASecond),
-                        patience.count() % kMicrosASecond * 1000};
+    const timespec time{static_cast<time_t>(timeout.count() / kMicrosASecond), timeout.count() % kMicrosASecond * 1000};
     pollfd output{stdout_, POLLIN, 0};
     return ppoll(&output, 1, &time, nullptr) > 0;
 }

@@ -23,8 +23,8 @@ public:
     /// Waits for the next line of the program's standard output. @return nullopt at the end of the output.
     [[nodiscard]] std::optional<std::string> read_line();
 
-    /// @return whether the program wrote to its standard output or ended within `patience`
-    [[nodiscard]] bool has_output_within(std::chrono::microseconds patience) const;
+    /// @return whether the program wrote to its standard output or ended within `timeout`
+    [[nodiscard]] bool has_output_within(std::chrono::microseconds timeout) const;
 
     [[nodiscard]] pid_t id() const noexcept { return pid_; }
 

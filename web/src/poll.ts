@@ -8,11 +8,11 @@ export interface Pace {
 const kBackoffMaxMs = 5_000;
 const kRetryMs = 500;
 
-const impatience = new EventTarget();
+const retries = new EventTarget();
 
 /** Ends all waits, because a retry may succeed now. */
 export function hurry(): void {
-  impatience.dispatchEvent(new Event('hurry'));
+  retries.dispatchEvent(new Event('hurry'));
 }
 
 /**
@@ -77,7 +77,7 @@ function pause(durationMs: number, signal: AbortSignal): Promise<void> {
     const timer = setTimeout(finish, durationMs);
     signal.addEventListener('abort', finish, { signal: done.signal });
     window.addEventListener('online', finish, { signal: done.signal });
-    impatience.addEventListener('hurry', finish, { signal: done.signal });
+    retries.addEventListener('hurry', finish, { signal: done.signal });
     document.addEventListener('visibilitychange', () => document.hidden || finish(), { signal: done.signal });
   });
 }

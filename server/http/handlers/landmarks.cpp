@@ -185,25 +185,25 @@ public:
         if (std::chrono::steady_clock::now() < deadline_) return {};
         return Error{Errc::kTooLarge,
                      fmt::format("this takes longer than {} s; request fewer captures at a time (since, until, robot)",
-                                 kPatience.count())};
+                                 kTimeout.count())};
     }
 
 private:
-    static constexpr std::chrono::seconds kPatience{5};
+    static constexpr std::chrono::seconds kTimeout{5};
 
     const sessions::SessionRegistry& sessions_;
-    const std::chrono::steady_clock::time_point deadline_ = std::chrono::steady_clock::now() + kPatience;
+    const std::chrono::steady_clock::time_point deadline_ = std::chrono::steady_clock::now() + kTimeout;
 };
 
 Result<> choose(store::ScanLog& log, const sessions::SessionInfo& session, const CloudQuery& query, Revision newest,
-                const SearchLimit& patience, Chosen& chosen) {
+                const SearchLimit& limit, Chosen& chosen) {
     const Revision until = std::min(newest, query.until.value_or(newest));
     // The filter is the same for every `until`, so that parts make up the whole.
     landmarks::SessionCaptures cut(sessions::scan_filter_of(session));
     auto read = sessions::read_captures(
         log, session.id, cut, until,
         [&](const landmarks::RobotCapture& ended) { return chosen.add(ended, ended.ended); },
-        [&](Revision) { return patience(); });
+        [&](Revision) { return limit(); });
     if (!read || query.until) return read;
     for (const auto& open : cut.open()) {
         if (auto added = chosen.add(open, newest + 1); !added) return added;
@@ -217,13 +217,13 @@ Result<Response> get_points(const Context& context, PointFile file) {
     const auto snapshot = (*session)->snapshot();
     const auto query = cloud_query(*snapshot, context.query);
     if (!query) return query.error();
-    const SearchLimit patience(context.services.sessions);
+    const SearchLimit limit(context.services.sessions);
     Chosen chosen(*query);
-    const auto read = choose(context.services.log, (*session)->info(), *query, snapshot->revision, patience, chosen);
+    const auto read = choose(context.services.log, (*session)->info(), *query, snapshot->revision, limit, chosen);
     if (!read) return read.error();
     auto permit = context.services.responses.take(chosen.points() * exchange::kPointTextBytes);
     if (!permit) return permit.error();
-    const auto cloud = landmarks::fuse_captures(chosen.captures(), query->threshold, patience);
+    const auto cloud = landmarks::fuse_captures(chosen.captures(), query->threshold, limit);
     if (!cloud) return cloud.error();
     if (file == PointFile::kPly) return ok_text("model/ply", std::move(*permit), exchange::points_ply(*cloud));
     std::vector<std::string> names;

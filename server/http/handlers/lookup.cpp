@@ -93,12 +93,12 @@ Result<Maps> chosen(const Context& context, std::string_view parameter, Waiting 
     return maps_of(*session, *weave, (*weave)->maps());
 }
 
-/// Suspends the coroutine until the job has maps of `target` or has ended, at most for Services::replay_patience.
+/// Suspends the coroutine until the job has maps of `target` or has ended, at most for Services::replay_timeout.
 boost::asio::awaitable<void> wait_for(Context& context, sessions::ReplayJob& weave, Revision target) {
     const Pool pool = context.pool;
     co_await context.run_on(Pool::kIo); // one thread at a time uses the timer
     const auto executor = co_await boost::asio::this_coro::executor;
-    const auto timer = std::make_shared<boost::asio::steady_timer>(executor, context.services.replay_patience);
+    const auto timer = std::make_shared<boost::asio::steady_timer>(executor, context.services.replay_timeout);
     weave.notify(target, [timer, executor] { boost::asio::post(executor, [timer] { timer->cancel(); }); });
     co_await timer->async_wait(kAwaitTuple);
     co_await context.run_on(pool);

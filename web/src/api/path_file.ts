@@ -67,7 +67,7 @@ export async function fetchPathFile(
   let before = 0;
   const fetchAfter = async (revision: number): Promise<PathPage> => {
     const path = trajectoryPath(session, revision);
-    const page = await patiently(() => fetchFile(path, signal, (bytes) => progress(before + bytes)), signal, pause);
+    const page = await withRetries(() => fetchFile(path, signal, (bytes) => progress(before + bytes)), signal, pause);
     before += page.size;
     return decodePathPage(await page.text());
   };
@@ -77,7 +77,7 @@ export async function fetchPathFile(
 }
 
 /** The server may limit large answers while it serves others: transient errors are retried for about half a minute. */
-async function patiently<T>(task: () => Promise<T>, signal: AbortSignal, pause: typeof rest): Promise<T> {
+async function withRetries<T>(task: () => Promise<T>, signal: AbortSignal, pause: typeof rest): Promise<T> {
   for (let failures = 1; ; ++failures) {
     try {
       return await task();

@@ -34,7 +34,7 @@ class Backoff(unittest.TestCase):
         self.assertEqual(backoff.next(), 0.2)
 
 
-class Patience(unittest.TestCase):
+class Timeouts(unittest.TestCase):
     """With times that the test chooses."""
 
     def setUp(self):

@@ -258,7 +258,7 @@ TEST_F(ApiHeldWeavesTest, WaitingRequestsGetTheirRevisionOrALaterOne) {
 }
 
 TEST_F(ApiHeldWeavesTest, TimedOutRequestReportsProgressAndRejoins) {
-    held_api_.services().replay_patience = std::chrono::milliseconds(0);
+    held_api_.services().replay_timeout = std::chrono::milliseconds(0);
     const Request request{.target = "/api/v1/sessions/a/map.png?cell_size=0.1"};
     EXPECT_THAT(detail(answer(held_api_, request), Status::service_unavailable),
                 HasSubstr("0 of 7 entries are applied; retry soon"));

@@ -100,9 +100,9 @@ TEST_F(TlsServerTest, OtherProtocolsAreClosed) {
 }
 
 TEST_F(TlsServerTest, UnfinishedHandshakeIsCutOff) {
-    auto impatient = config();
-    impatient.handshake = 50ms;
-    RunningHttp server(impatient);
+    auto limits = config();
+    limits.handshake = 50ms;
+    RunningHttp server(limits);
     HttpClient silent(server.port());
     HttpClient slow(server.port());
     slow.send(std::string_view("\x16\x03\x01\x02\x00\x01", 6));
@@ -111,9 +111,9 @@ TEST_F(TlsServerTest, UnfinishedHandshakeIsCutOff) {
 }
 
 TEST_F(TlsServerTest, UnfinishedHandshakeDoesNotDelayOthers) {
-    auto patient = config();
-    patient.handshake = 1h;
-    RunningHttp server(patient);
+    auto limits = config();
+    limits.handshake = 1h;
+    RunningHttp server(limits);
     HttpClient slow(server.port());
     slow.send(std::string_view("\x16\x03\x01\x02\x00\x01", 6));
     TlsHttpClient quick(server.port(), manner());
@@ -122,10 +122,10 @@ TEST_F(TlsServerTest, UnfinishedHandshakeDoesNotDelayOthers) {
 }
 
 TEST_F(TlsServerTest, ClientWithoutCloseNotifyIsCutOff) {
-    auto impatient = config();
-    impatient.linger = 50ms;
-    impatient.drain = 1h;
-    RunningHttp server(impatient);
+    auto limits = config();
+    limits.linger = 50ms;
+    limits.drain = 1h;
+    RunningHttp server(limits);
     TlsHttpClient client(server.port(), manner());
     client.send("GET / HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n");
     EXPECT_EQ(client.read().status, 200);
@@ -133,10 +133,10 @@ TEST_F(TlsServerTest, ClientWithoutCloseNotifyIsCutOff) {
 }
 
 TEST_F(TlsServerTest, StopDoesNotWaitForHandshakes) {
-    auto patient = config();
-    patient.handshake = 1h;
-    patient.drain = 1h;
-    RunningHttp server(patient);
+    auto limits = config();
+    limits.handshake = 1h;
+    limits.drain = 1h;
+    RunningHttp server(limits);
     HttpClient slow(server.port());
     slow.send(std::string_view("\x16\x03\x01\x02\x00\x01", 6));
     TlsHttpClient quick(server.port(), manner()); // accepted after the first one

@@ -19,7 +19,7 @@ using testing_support::HttpClient;
 using testing_support::LiveClient;
 using testing_support::LiveReplay;
 
-const LandmarkSearch kPatient{{}, 0ms, 1h};
+const LandmarkSearch kLongSearch{{}, 0ms, 1h};
 constexpr LiveConfig kQuick{.interval = 0ms, .landmarks_pause = 0ms};
 
 /// Somebody who watches the session "lab", landmarks and all.
@@ -157,9 +157,9 @@ TEST_F(WatchedLandmarksTest, AreSharedByAllHolders) {
 
 TEST_F(WatchedLandmarksTest, AreSearchedOnceForAllViewers) {
     const auto watched = hub_.of(server_.session().info().id);
-    for (int n = 0; n < 5; ++n) EXPECT_EQ(look(*watched, kPatient).found, nullptr);
+    for (int n = 0; n < 5; ++n) EXPECT_EQ(look(*watched, kLongSearch).found, nullptr);
     EXPECT_EQ(search(), 1U);
-    const auto found = look(*watched, kPatient).found;
+    const auto found = look(*watched, kLongSearch).found;
     ASSERT_TRUE(found);
     EXPECT_GT(found->state.landmarks.size(), 0U);
     EXPECT_EQ(found->revision, server_.session().snapshot()->revision);
@@ -191,9 +191,9 @@ TEST_F(WatchedLandmarksTest, ReportWhenToLookAgain) {
 
 TEST_F(WatchedLandmarksTest, KeepFoundLandmarksAfterARefusal) {
     const auto find = [&](WatchedLandmarks& watched) {
-        static_cast<void>(look(watched, kPatient));
+        static_cast<void>(look(watched, kLongSearch));
         EXPECT_EQ(search(), 1U);
-        return look(watched, kPatient).found;
+        return look(watched, kLongSearch).found;
     };
     const std::size_t count = find(*hub_.of(0))->state.landmarks.size();
     sessions::LandmarkLayers small(server_.log(), {.size_max = count});

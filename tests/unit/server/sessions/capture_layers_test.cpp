@@ -118,7 +118,7 @@ TEST_F(CaptureLayersTest, RequestForAnEarlierRevisionReturnsTheNewestState) {
 }
 
 TEST_F(CaptureLayersTest, LongComputationContinuesWithTheNextRequest) {
-    LandmarkLayers folds(log_, {.patience = 0ms});
+    LandmarkLayers folds(log_, {.timeout = 0ms});
     int calls = 0;
     auto applied = folds.up_to(info_, end_, kContinue);
     for (; !applied; applied = folds.up_to(info_, end_, kContinue)) {
