@@ -4,7 +4,7 @@
 #include "server/http/incoming.hpp"
 #include "server/http/problem.hpp"
 #include "server/http/response.hpp"
-#include "server/live/invitation.hpp"
+#include "server/live/viewed_session.hpp"
 
 #include <boost/asio/dispatch.hpp>
 #include <boost/beast/http/read.hpp>
@@ -181,8 +181,8 @@ asio::awaitable<bool> Connection::serve_request() {
         response = co_await service_->api.answer(std::get<Api::Admitted>(std::move(admitted)), request);
     }
     service_->counters.request_seconds.observe(std::chrono::steady_clock::now() - begin);
-    if (response->invitation) {
-        co_await show(*response->invitation, message);
+    if (response->viewed) {
+        co_await show(*response->viewed, message);
         co_return false;
     }
     if (stopping_) manner.keep_alive = false;
@@ -239,9 +239,9 @@ asio::awaitable<bool> Connection::read_body(Parser& parser) {
 }
 
 /// Hands the socket over to a viewer and returns when the viewer ends.
-asio::awaitable<void> Connection::show(const live::Invitation& invitation, const Incoming& upgrade) {
+asio::awaitable<void> Connection::show(const live::ViewedSession& viewed, const Incoming& upgrade) {
     const auto path = instance_of(head_of(upgrade).target);
-    auto slot = service_->viewers.try_take(invitation.session_id);
+    auto slot = service_->viewers.try_take(viewed.session_id);
     std::optional<Response> refusal;
     if (!slot) {
         service_->counters.live.refused.Increment();
@@ -257,7 +257,7 @@ asio::awaitable<void> Connection::show(const live::Invitation& invitation, const
     service_->counters.answered(static_cast<unsigned>(Status::switching_protocols)).Increment();
     const auto& executors = service_->api.services().pools.executors();
     viewer_ = std::make_shared<live::Viewer>(
-        std::move(stream_), invitation, std::move(slot),
+        std::move(stream_), viewed, std::move(slot),
         live::Viewer::Services{service_->config.live, executors.live, executors.log_reading, service_->counters.live});
     if (stopping_) viewer_->stop();
     co_await viewer_->run(upgrade);

@@ -59,7 +59,7 @@ private:
     [[nodiscard]] boost::asio::awaitable<bool> read_body(Parser& parser);
     [[nodiscard]] std::variant<Api::Admitted, Response> admit(const Request& head,
                                                               std::variant<Api::Routed, Response> routed) const;
-    [[nodiscard]] boost::asio::awaitable<void> show(const live::Invitation& invitation, const Incoming& upgrade);
+    [[nodiscard]] boost::asio::awaitable<void> show(const live::ViewedSession& viewed, const Incoming& upgrade);
     [[nodiscard]] boost::asio::awaitable<void> refuse(boost::beast::error_code reason);
     void close();
 

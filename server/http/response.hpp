@@ -13,7 +13,7 @@
 #include <vector>
 
 namespace scanloom::live {
-struct Invitation;
+struct ViewedSession;
 }
 
 namespace scanloom::http {
@@ -66,9 +66,9 @@ struct Response {
     Status status = Status::ok;
     std::vector<std::pair<std::string_view, std::string>> fields; ///< names are literals, "ETag"
     Body body;
-    std::shared_ptr<const std::string> gzip = nullptr;            ///< the body as gzip, if already compressed
-    std::shared_ptr<BodyStream> stream = nullptr;                 ///< sent instead of `body` if set
-    std::shared_ptr<const live::Invitation> invitation = nullptr; ///< with 101: a viewer takes over the connection
+    std::shared_ptr<const std::string> gzip = nullptr;           ///< the body as gzip, if already compressed
+    std::shared_ptr<BodyStream> stream = nullptr;                ///< sent instead of `body` if set
+    std::shared_ptr<const live::ViewedSession> viewed = nullptr; ///< with 101: a viewer takes over the connection
 
     Response& set(std::string_view field, std::string_view value) &;
     Response&& set(std::string_view field, std::string_view value) &&;

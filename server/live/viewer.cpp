@@ -58,10 +58,9 @@ private:
 
 } // namespace
 
-Viewer::Viewer(net::LinkStream stream, Invitation invitation, std::shared_ptr<const void> slot, Services services)
-    : stream_(std::move(stream)), invitation_(std::move(invitation)), slot_(std::move(slot)),
-      services_(std::move(services)), encoder_(invitation_.tag), turn_(stream_.get_executor()),
-      deadline_(stream_.get_executor()) {
+Viewer::Viewer(net::LinkStream stream, ViewedSession viewed, std::shared_ptr<const void> slot, Services services)
+    : stream_(std::move(stream)), viewed_(std::move(viewed)), slot_(std::move(slot)), services_(std::move(services)),
+      encoder_(viewed_.tag), turn_(stream_.get_executor()), deadline_(stream_.get_executor()) {
     const auto& config = services_.config;
     boost::system::error_code ignored;
     stream_.next_layer().socket().set_option(asio::socket_base::send_buffer_size(config.send_buffer_bytes), ignored);
@@ -106,9 +105,9 @@ asio::awaitable<void> Viewer::run(const Upgrade& upgrade) {
     const bool accepted = co_await accept(upgrade);
     if (!accepted) co_return;
     const Counted counted(services_.counters.viewers);
-    if (const auto session = invitation_.session.lock()) session->watch(weak_from_this());
-    if (invitation_.credential) {
-        invitation_.credential->when_changed([weak = weak_from_this()] {
+    if (const auto session = viewed_.session.lock()) session->watch(weak_from_this());
+    if (viewed_.credential) {
+        viewed_.credential->when_changed([weak = weak_from_this()] {
             if (const auto self = weak.lock()) self->on_changed();
         });
     }
@@ -194,21 +193,21 @@ asio::awaitable<void> Viewer::wait_for_turn() {
 /// Creates the next event. Runs on `showing`.
 Viewer::NextStep Viewer::next_step() {
     notified_ = false; // before reading the state, so that later changes notify again
-    if (invitation_.credential && !invitation_.credential->token()) {
-        invitation_.taken_back();
+    if (viewed_.credential && !viewed_.credential->token()) {
+        viewed_.on_revoked();
         return {{}, close_with(kTokenGone, "your token is no longer valid for this session; sign in with another"), {}};
     }
-    const auto session = invitation_.session.lock();
+    const auto session = viewed_.session.lock();
     const auto closing = session ? session->closing() : std::nullopt;
-    const bool is_deleted = closing ? closing->code == Errc::kGone : !session && !invitation_.is_stored();
+    const bool is_deleted = closing ? closing->code == Errc::kGone : !session && !viewed_.is_stored();
     if (is_deleted) {
-        return {{}, close_with(kSessionDeleted, fmt::format("session '{}' was deleted", invitation_.name)), {}};
+        return {{}, close_with(kSessionDeleted, fmt::format("session '{}' was deleted", viewed_.name)), {}};
     }
     if (!session)
         return {{},
                 close_with(websocket::close_code::going_away, "the session was evicted from memory; connect again"),
                 {}};
-    const auto paths = invitation_.paths.state(session, Clock::now());
+    const auto paths = viewed_.paths.state(session, Clock::now());
     SessionSnapshot snapshot = snapshot_of(*session, paths.revision);
     const auto until = std::min(paths.until, add_landmarks(session, snapshot));
     const auto event = encoder_.next(snapshot);
@@ -223,7 +222,7 @@ Viewer::Clock::time_point Viewer::add_landmarks(const std::shared_ptr<const sess
                                                 SessionSnapshot& snapshot) {
     if (!encoder_.subscribes_to_landmarks()) return Clock::time_point::max();
     const LandmarkSearch search{services_.finding, services_.config.landmarks_pause, services_.config.landmarks_turn};
-    auto look = invitation_.landmarks->look(session, snapshot.maps->revision, search);
+    auto look = viewed_.landmarks->look(session, snapshot.maps->revision, search);
     snapshot.landmarks = std::move(look.found);
     return look.until;
 }

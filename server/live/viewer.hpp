@@ -3,7 +3,7 @@
 #include "common/error/error.hpp"
 #include "common/net/link_stream.hpp"
 #include "server/live/core/event_encoder.hpp"
-#include "server/live/invitation.hpp"
+#include "server/live/viewed_session.hpp"
 #include "server/live/viewer_limits.hpp"
 #include "server/metrics/metrics.hpp"
 #include "server/sessions/listeners.hpp"
@@ -49,7 +49,7 @@ public:
     };
 
     /// @param slot  slot of the ViewerSemaphore, kept until the viewer is destroyed
-    Viewer(net::LinkStream stream, Invitation invitation, std::shared_ptr<const void> slot, Services services);
+    Viewer(net::LinkStream stream, ViewedSession viewed, std::shared_ptr<const void> slot, Services services);
 
     /// Answers the upgrade request and sends events until the connection is closed. Call once.
     [[nodiscard]] boost::asio::awaitable<void> run(const Upgrade& upgrade);
@@ -89,7 +89,7 @@ private:
 
     boost::beast::websocket::stream<net::LinkStream, false> stream_; // false: no compression
     boost::beast::flat_buffer buffer_;                               // at most request_bytes_max
-    Invitation invitation_;
+    ViewedSession viewed_;
     std::shared_ptr<const void> slot_;
     Services services_;
     EventEncoder encoder_; // not used by the strand while next_step() runs

@@ -210,9 +210,9 @@ namespace scanloom::http {
 
 // live.cpp
 
-/// Accepts a WebSocket that watches the session: 101 with an invitation. Responds 426 if the request is not for a
-/// WebSocket of version 13, and 403 to a page of another host, because browsers let any page open a WebSocket and read
-/// it. The viewer watches as long as its token permits it.
+/// Accepts a WebSocket that watches the session: 101 with the session that a viewer will show. Responds 426 if the
+/// request is not for a WebSocket of version 13, and 403 to a page of another host, because browsers let any page open
+/// a WebSocket and read it. The viewer watches as long as its token permits it.
 /// Errors: kInvalidField for an unknown parameter; those of Context::session.
 [[nodiscard]] Result<Response> get_live(Context& context);
 

@@ -4,7 +4,7 @@
 #include "server/http/header_fields.hpp"
 #include "server/http/problem.hpp"
 #include "server/http/text.hpp"
-#include "server/live/invitation.hpp"
+#include "server/live/viewed_session.hpp"
 
 #include <fmt/format.h>
 
@@ -47,18 +47,18 @@ Result<Response> get_live(Context& context) {
     if (!credential) return context.services.authorizer.refuse(context.request, credential.error(), info.name);
     Response response;
     response.status = Status::switching_protocols;
-    response.invitation = std::make_shared<const live::Invitation>(
-        live::Invitation{*session, info.id, info.name, session_tag(info), context.services.goals.paths(),
-                         context.services.watched_landmarks.of(info.id),
-                         [&sessions = context.services.sessions, id = info.id, name = info.name] {
-                             const auto stored = sessions.info(name);
-                             return stored && stored->id == id;
-                         },
-                         std::move(*credential),
-                         [authorizer = context.services.authorizer, peer = context.request.peer,
-                          token = context.token->name, name = info.name] {
-                             authorizer.note({auth::Port::kHttp, auth::Reason::kRevoked, peer, token, name});
-                         }});
+    response.viewed = std::make_shared<const live::ViewedSession>(
+        live::ViewedSession{*session, info.id, info.name, session_tag(info), context.services.goals.paths(),
+                            context.services.watched_landmarks.of(info.id),
+                            [&sessions = context.services.sessions, id = info.id, name = info.name] {
+                                const auto stored = sessions.info(name);
+                                return stored && stored->id == id;
+                            },
+                            std::move(*credential),
+                            [authorizer = context.services.authorizer, peer = context.request.peer,
+                             token = context.token->name, name = info.name] {
+                                authorizer.note({auth::Port::kHttp, auth::Reason::kRevoked, peer, token, name});
+                            }});
     return response;
 }
 

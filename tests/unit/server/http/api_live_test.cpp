@@ -1,4 +1,4 @@
-#include "server/live/invitation.hpp"
+#include "server/live/viewed_session.hpp"
 #include "tests/unit/server/http/api_fixture.hpp"
 
 namespace scanloom::http {
@@ -21,10 +21,10 @@ TEST_F(ApiLiveTest, WebSocketRequestIsUpgraded) {
     create("lab");
     const auto response = upgrade(wanted_);
     EXPECT_EQ(response.status, Status::switching_protocols);
-    ASSERT_NE(response.invitation, nullptr);
-    EXPECT_EQ(response.invitation->session.lock(), registry_.find("lab"));
-    EXPECT_EQ(&response.invitation->paths, &goals_.paths());
-    EXPECT_EQ(response.invitation->tag, get_json("/api/v1/sessions/lab").at("id").as_string());
+    ASSERT_NE(response.viewed, nullptr);
+    EXPECT_EQ(response.viewed->session.lock(), registry_.find("lab"));
+    EXPECT_EQ(&response.viewed->paths, &goals_.paths());
+    EXPECT_EQ(response.viewed->tag, get_json("/api/v1/sessions/lab").at("id").as_string());
 }
 
 TEST_F(ApiLiveTest, OtherRequestsAreUpgradeRequired) {
@@ -35,7 +35,7 @@ TEST_F(ApiLiveTest, OtherRequestsAreUpgradeRequired) {
         EXPECT_THAT(detail(response, Status::upgrade_required), HasSubstr("version 13"));
         EXPECT_EQ(response.get("Upgrade"), "websocket");
         EXPECT_EQ(response.get("Sec-WebSocket-Version"), "13");
-        EXPECT_EQ(response.invitation, nullptr);
+        EXPECT_EQ(response.viewed, nullptr);
     }
 }
 
@@ -44,7 +44,7 @@ TEST_F(ApiLiveTest, ForeignPagesAreForbidden) {
     for (const auto* origin : {"http://evil.example", "null", "http://localhost.evil.example:8080"}) {
         const auto response = upgrade({.version = "13", .key = wanted_.key, .origin = origin});
         EXPECT_THAT(detail(response, Status::forbidden), HasSubstr(origin));
-        EXPECT_EQ(response.invitation, nullptr);
+        EXPECT_EQ(response.viewed, nullptr);
     }
     EXPECT_EQ(metrics_.refusals().of(auth::Port::kHttp, auth::Reason::kForeignPage).Value(), 3.0);
     const auto own = upgrade({.version = "13", .key = wanted_.key, .origin = "http://localhost:8080"});

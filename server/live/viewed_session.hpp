@@ -13,7 +13,7 @@ namespace scanloom::live {
 
 /// What a viewer needs to show a session over its connection. Does not keep the session in memory. `paths` and the
 /// LandmarkHub must outlive all viewers.
-struct Invitation {
+struct ViewedSession {
     std::weak_ptr<sessions::Session> session;
     store::SessionId session_id = 0;
     std::string name; ///< of the session, for messages after it was deleted
@@ -22,7 +22,7 @@ struct Invitation {
     std::shared_ptr<WatchedLandmarks> landmarks;
     std::function<bool()> is_stored = [] { return false; }; ///< returns whether the session exists, in memory or not
     std::shared_ptr<auth::Credential> credential = nullptr; ///< permission to watch; null: it cannot be revoked
-    std::function<void()> taken_back = [] {}; ///< called when `credential` was revoked, before the viewer ends
+    std::function<void()> on_revoked = [] {}; ///< called when `credential` was revoked, before the viewer ends
 };
 
 } // namespace scanloom::live
