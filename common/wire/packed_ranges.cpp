@@ -72,7 +72,7 @@ void load_last(std::string_view bytes, std::uint8_t width, Block block) {
 }
 
 /// Computes the zigzag-encoded differences for whole blocks; after the last range they are 0.
-void fold_differences(std::span<const RangeMm> ranges, std::span<std::uint32_t> differences) {
+void take_differences(std::span<const RangeMm> ranges, std::span<std::uint32_t> differences) {
     differences[0] = zigzag(ranges[0]);
     for (std::size_t i = 1; i < ranges.size(); ++i) differences[i] = zigzag(ranges[i] - ranges[i - 1]);
     std::ranges::fill(differences.subspan(ranges.size()), 0U);
@@ -84,7 +84,7 @@ std::string pack_ranges(std::span<const RangeMm> ranges) {
     assert(ranges.size() <= kBeamsMax);
     const std::size_t blocks = (ranges.size() + kBlock - 1) / kBlock;
     std::array<std::uint32_t, kPaddedMax> differences;
-    if (!ranges.empty()) fold_differences(ranges, std::span(differences).first(blocks * kBlock));
+    if (!ranges.empty()) take_differences(ranges, std::span(differences).first(blocks * kBlock));
     std::array<char, kCountBytes + kPaddedMax / kBlock + kPaddedMax * sizeof(std::uint32_t)> packed;
     boost::endian::store_little_u16(reinterpret_cast<unsigned char*>(packed.data()),
                                     static_cast<std::uint16_t>(ranges.size()));

@@ -163,8 +163,8 @@ HWY_INLINE void FindLimits(const Value* cells, const grid::BitPlane& touched, co
 }
 
 template <class Value>
-HWY_INLINE void FoldTypes(const Value* cells, const grid::BitPlane& touched, const classify::Hysteresis<Value>& rule,
-                          classify::OccPlanes& types) {
+HWY_INLINE void UpdateTypes(const Value* cells, const grid::BitPlane& touched, const classify::Hysteresis<Value>& rule,
+                            classify::OccPlanes& types) {
     Limits limits;
     FindLimits(cells, touched, rule, limits);
     for (std::size_t j = 0; j < kSide; ++j) {
@@ -177,12 +177,13 @@ HWY_INLINE void FoldTypes(const Value* cells, const grid::BitPlane& touched, con
     }
 }
 
-void FoldTypesByOccupancy(LaserChunk& chunk, const grid::BitPlane& touched, const classify::Hysteresis<LogOdds>& rule) {
-    FoldTypes(chunk.occupancy.data(), touched, rule, chunk.occ_types);
+void UpdateTypesByOccupancy(LaserChunk& chunk, const grid::BitPlane& touched,
+                            const classify::Hysteresis<LogOdds>& rule) {
+    UpdateTypes(chunk.occupancy.data(), touched, rule, chunk.occ_types);
 }
 
-void FoldTypesByHimm(LaserChunk& chunk, const grid::BitPlane& touched, const classify::Hysteresis<HimmCount>& rule) {
-    FoldTypes(chunk.himm.data(), touched, rule, chunk.occ_types);
+void UpdateTypesByHimm(LaserChunk& chunk, const grid::BitPlane& touched, const classify::Hysteresis<HimmCount>& rule) {
+    UpdateTypes(chunk.himm.data(), touched, rule, chunk.occ_types);
 }
 
 } // namespace scanloom::mapping::simd::HWY_NAMESPACE
@@ -193,8 +194,8 @@ namespace scanloom::mapping::simd {
 
 HWY_EXPORT(AddEvidence);
 HWY_EXPORT(CountHits);
-HWY_EXPORT(FoldTypesByOccupancy);
-HWY_EXPORT(FoldTypesByHimm);
+HWY_EXPORT(UpdateTypesByOccupancy);
+HWY_EXPORT(UpdateTypesByHimm);
 
 void add_evidence(LaserChunk& chunk, const ChunkVerdicts& verdicts, const OccupancyRule& rule) {
     HWY_DYNAMIC_DISPATCH(AddEvidence)(chunk, verdicts, rule);
@@ -204,12 +205,12 @@ void count_hits(LaserChunk& chunk, const ChunkVerdicts& verdicts, const HimmRule
     HWY_DYNAMIC_DISPATCH(CountHits)(chunk, verdicts, rule);
 }
 
-void fold_types(LaserChunk& chunk, const grid::BitPlane& touched, const classify::Hysteresis<LogOdds>& by_occupancy) {
-    HWY_DYNAMIC_DISPATCH(FoldTypesByOccupancy)(chunk, touched, by_occupancy);
+void update_types(LaserChunk& chunk, const grid::BitPlane& touched, const classify::Hysteresis<LogOdds>& by_occupancy) {
+    HWY_DYNAMIC_DISPATCH(UpdateTypesByOccupancy)(chunk, touched, by_occupancy);
 }
 
-void fold_types(LaserChunk& chunk, const grid::BitPlane& touched, const classify::Hysteresis<HimmCount>& by_himm) {
-    HWY_DYNAMIC_DISPATCH(FoldTypesByHimm)(chunk, touched, by_himm);
+void update_types(LaserChunk& chunk, const grid::BitPlane& touched, const classify::Hysteresis<HimmCount>& by_himm) {
+    HWY_DYNAMIC_DISPATCH(UpdateTypesByHimm)(chunk, touched, by_himm);
 }
 
 } // namespace scanloom::mapping::simd

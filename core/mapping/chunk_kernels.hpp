@@ -43,11 +43,11 @@ void count_hits(LaserChunk& chunk, const ChunkVerdicts& verdicts, const HimmRule
 /// @param chunk         changed
 /// @param touched       the cells that a scan changed
 /// @param by_occupancy  limits, in log-odds
-void fold_types(LaserChunk& chunk, const grid::BitPlane& touched, const classify::Hysteresis<LogOdds>& by_occupancy);
+void update_types(LaserChunk& chunk, const grid::BitPlane& touched, const classify::Hysteresis<LogOdds>& by_occupancy);
 /// Updates the types of the cells in `touched` from their HIMM counters. Cells without a value keep their type.
 /// @param chunk    changed
 /// @param touched  the cells that a scan changed
 /// @param by_himm  limits, 0..15
-void fold_types(LaserChunk& chunk, const grid::BitPlane& touched, const classify::Hysteresis<HimmCount>& by_himm);
+void update_types(LaserChunk& chunk, const grid::BitPlane& touched, const classify::Hysteresis<HimmCount>& by_himm);
 
 } // namespace scanloom::mapping::simd

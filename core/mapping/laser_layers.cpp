@@ -126,7 +126,7 @@ bool LaserLayers::integrate(const LaserScan& scan, Revision revision, double& wo
         done_ = 0;
         changed_ = grid_.changed_in(touched_);
     }
-    if (!fold_classes(work)) return false;
+    if (!update_classes(work)) return false;
     stage_ = first_stage(config_);
     done_ = 0;
     touched_ = {};
@@ -138,7 +138,7 @@ void LaserLayers::import(const MapPatch& patch, Revision revision) {
     for_each_cell_of(patch, config_.cell_size, [&](grid::Cell cell, MapCell to) { set(cell, to); });
     double unbounded = HUGE_VAL;
     changed_ = grid_.changed_in(touched_);
-    static_cast<void>(fold_classes(unbounded));
+    static_cast<void>(update_classes(unbounded));
     done_ = 0;
     touched_ = {};
 }
@@ -224,7 +224,7 @@ void LaserLayers::integrate_chunk(grid::ChunkKey key, std::span<const ChunkVerdi
     simd::count_hits(*chunk, counted, himm_);
     simd::add_evidence(*chunk, seen, occupancy_);
     const bool by_occupancy = config_.class_source == ClassSource::kOccupancy;
-    fold_types(*chunk, undecided(chunk->occ_types, by_occupancy ? seen : counted));
+    update_types(*chunk, undecided(chunk->occ_types, by_occupancy ? seen : counted));
 }
 
 /// Returns the cells whose type the verdicts may change.
@@ -241,20 +241,20 @@ grid::BitPlane LaserLayers::undecided(const classify::OccPlanes& types, const Ch
     return cells;
 }
 
-void LaserLayers::fold_types(LaserChunk& chunk, const grid::BitPlane& touched) const {
+void LaserLayers::update_types(LaserChunk& chunk, const grid::BitPlane& touched) const {
     if (config_.class_source == ClassSource::kOccupancy) {
-        simd::fold_types(chunk, touched, by_occupancy_);
+        simd::update_types(chunk, touched, by_occupancy_);
     } else {
-        simd::fold_types(chunk, touched, by_himm_);
+        simd::update_types(chunk, touched, by_himm_);
     }
 }
 
 /// Updates the classes for models that trace rays, which may change a chunk more than once per scan.
-bool LaserLayers::fold_classes(double& work) {
+bool LaserLayers::update_classes(double& work) {
     static constexpr grid::BitPlane kAllCells = all_cells();
     for (bool first = true; done_ < changed_.size() && (first || work > 0.0); ++done_, first = false) {
         work -= kWorkPerChunk;
-        fold_types(*grid_.write(changed_[done_]), kAllCells);
+        update_types(*grid_.write(changed_[done_]), kAllCells);
     }
     return done_ == changed_.size();
 }

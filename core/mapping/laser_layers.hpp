@@ -109,11 +109,11 @@ private:
     [[nodiscard]] bool trace_beams(const LaserScan& scan, double& work);
     [[nodiscard]] bool add_marks(double& work);
     [[nodiscard]] bool sweep(const LaserScan& scan, double& work);
-    [[nodiscard]] bool fold_classes(double& work);
+    [[nodiscard]] bool update_classes(double& work);
     void add_first_marks();
     void integrate_chunk(grid::ChunkKey key, std::span<const ChunkVerdicts> verdicts);
     [[nodiscard]] grid::BitPlane undecided(const classify::OccPlanes& types, const ChunkVerdicts& verdicts) const;
-    void fold_types(LaserChunk& chunk, const grid::BitPlane& touched) const;
+    void update_types(LaserChunk& chunk, const grid::BitPlane& touched) const;
     void set(grid::Cell cell, MapCell to);
 
     const MapConfig config_;

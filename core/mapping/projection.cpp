@@ -41,7 +41,7 @@ Result<bool> Projection::apply(const LogEntry& entry, double& work) {
     if (auto follows = rules_.check(entry); !follows) return follows.error();
     if (is_outdated_by(entry)) {
         return Error{Errc::kConflict,
-                     fmt::format("log entry {} changes which of the earlier scans are integrated; fold "
+                     fmt::format("log entry {} changes which of the earlier scans are integrated; replay "
                                  "the log from its beginning with its exclusions",
                                  revision() + 1)};
     }

@@ -20,7 +20,7 @@ namespace {
 
 /// Returns all reference views, also those of captures that have not ended: a robot that has not stood long enough has
 /// seen something as well.
-landmarks::ReferenceViews views_of(sessions::Folded<landmarks::ReferenceLayer> applied) {
+landmarks::ReferenceViews views_of(sessions::ComputedLayer<landmarks::ReferenceLayer> applied) {
     auto views = std::move(applied.state);
     for (const auto& open : applied.open) {
         if (open.capture.points.empty()) continue;
@@ -42,7 +42,7 @@ Result<Located> Locator::locate(const sessions::Session& session, RobotIndex rob
                                 const std::optional<landmarks::Neighbourhood>& near,
                                 const std::function<Result<>()>& ask) {
     const auto snapshot = session.snapshot();
-    auto applied = folds_.up_to(session.info(), snapshot->revision, [&] { return ask().has_value(); });
+    auto applied = reference_layers_.up_to(session.info(), snapshot->revision, [&] { return ask().has_value(); });
     if (!applied) return applied.error();
     const Revision revision = applied->revision;
     const bool has_map = !mapping::bounds_of(*snapshot).empty();
@@ -62,7 +62,7 @@ Result<Located> Locator::locate(const sessions::Session& session, RobotIndex rob
 }
 
 void Locator::remove(store::SessionId session) {
-    folds_.remove(session);
+    reference_layers_.remove(session);
     first_places_.remove(session);
 }
 

@@ -54,7 +54,7 @@ struct Located {
 /// Threads: any thread that may wait for the disk.
 class Locator {
 public:
-    explicit Locator(store::ScanLog& log) : folds_(log) {}
+    explicit Locator(store::ScanLog& log) : reference_layers_(log) {}
 
     /// Finds the pose of a robot in the map of its session.
     /// @param robot  the robot to localize
@@ -73,7 +73,7 @@ public:
     void remove(store::SessionId session);
 
 private:
-    sessions::ReferenceLayers folds_;
+    sessions::ReferenceLayers reference_layers_;
     MapStart first_places_;
 };
 

@@ -40,7 +40,7 @@ Result<FoundLandmarks> WatchedLandmarks::find_for_a_turn(const sessions::Session
                                                          std::chrono::milliseconds turn) {
     const auto end = Clock::now() + turn;
     auto applied =
-        folds_.up_to(session.info(), revision, [&] { return Clock::now() < end && !session.closing().has_value(); });
+        layers_.up_to(session.info(), revision, [&] { return Clock::now() < end && !session.closing().has_value(); });
     if (!applied) return applied.error();
     return FoundLandmarks{std::move(applied->state), applied->revision, {}};
 }
@@ -62,7 +62,7 @@ std::shared_ptr<WatchedLandmarks> LandmarkHub::of(store::SessionId session) {
     const std::lock_guard lock(mutex_);
     auto& known = watched_[session];
     if (auto watched = known.lock()) return watched;
-    auto watched = std::make_shared<WatchedLandmarks>(folds_);
+    auto watched = std::make_shared<WatchedLandmarks>(layers_);
     known = watched;
     std::erase_if(watched_, [](const auto& each) { return each.second.expired(); });
     return watched;

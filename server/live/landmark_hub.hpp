@@ -26,7 +26,7 @@ class WatchedLandmarks : public std::enable_shared_from_this<WatchedLandmarks> {
 public:
     using Clock = std::chrono::steady_clock;
 
-    explicit WatchedLandmarks(sessions::LandmarkLayers& folds) : folds_(folds) {}
+    explicit WatchedLandmarks(sessions::LandmarkLayers& layers) : layers_(layers) {}
 
     struct Look {
         std::shared_ptr<const FoundLandmarks> found;        ///< null: nothing yet
@@ -45,7 +45,7 @@ private:
                                                          std::chrono::milliseconds turn);
     void keep(Result<FoundLandmarks> found, Revision revision, std::chrono::milliseconds pause);
 
-    sessions::LandmarkLayers& folds_;
+    sessions::LandmarkLayers& layers_;
     std::mutex mutex_;
     std::shared_ptr<const FoundLandmarks> found_;
     Revision searched_ = 0; // log entries that were searched completely
@@ -57,13 +57,13 @@ private:
 /// Threads: any thread.
 class LandmarkHub {
 public:
-    explicit LandmarkHub(sessions::LandmarkLayers& folds) : folds_(folds) {}
+    explicit LandmarkHub(sessions::LandmarkLayers& layers) : layers_(layers) {}
 
     /// Returns the landmarks of a session. Callers that hold the result at the same time share one object.
     [[nodiscard]] std::shared_ptr<WatchedLandmarks> of(store::SessionId session);
 
 private:
-    sessions::LandmarkLayers& folds_;
+    sessions::LandmarkLayers& layers_;
     std::mutex mutex_;
     std::map<store::SessionId, std::weak_ptr<WatchedLandmarks>> watched_;
 };

@@ -22,14 +22,14 @@ Error not_yet(std::string_view what, Revision applied, Revision revision) {
 } // namespace
 
 template <class Layer>
-Result<Folded<Layer>> CaptureLayers<Layer>::up_to(const SessionInfo& session, Revision revision,
-                                                  const std::function<bool()>& is_wanted) {
+Result<ComputedLayer<Layer>> CaptureLayers<Layer>::up_to(const SessionInfo& session, Revision revision,
+                                                         const std::function<bool()>& is_wanted) {
     const auto kept = find_or_begin(session);
     // By the system clock, because ThreadSanitizer of GCC 12 does not support timed waits by the steady clock. If the
     // system clock jumps, this call waits until others finish, which `timeout` bounds too, or asks for a retry at
     // once.
-    const std::unique_lock folding(kept->mutex, std::chrono::system_clock::now() + limits_.timeout);
-    if (!folding) {
+    const std::unique_lock computing(kept->mutex, std::chrono::system_clock::now() + limits_.timeout);
+    if (!computing) {
         return Error{Errc::kOverloaded,
                      fmt::format("another request is finding the {} of this session at this moment; try again",
                                  LayerTraits<Layer>::kWhat)};
@@ -45,7 +45,7 @@ Result<Folded<Layer>> CaptureLayers<Layer>::up_to(const SessionInfo& session, Re
         account(*kept);
         if (kept->is_full) return full(session);
         if (!done) return done.error();
-        Folded<Layer> applied{kept->layer.snapshot(), {}, kept->captures.revision()};
+        ComputedLayer<Layer> applied{kept->layer.snapshot(), {}, kept->captures.revision()};
         if constexpr (LayerTraits<Layer>::kWithOpen) applied.open = kept->captures.open();
         return applied;
     } catch (const std::bad_alloc&) {

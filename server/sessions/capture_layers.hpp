@@ -21,7 +21,7 @@ namespace scanloom::sessions {
 /// Properties of a layer that is computed from captures and has add(RobotCapture), size() and snapshot().
 ///
 /// kWhat and kInstead are for error messages: what size() counts, and what to use or expect if there are too many.
-/// kSizeMax is the default bound of size(). kWithOpen selects whether Folded also contains unfinished captures.
+/// kSizeMax is the default bound of size(). kWithOpen selects whether ComputedLayer also contains unfinished captures.
 template <class Layer>
 struct LayerTraits;
 
@@ -50,7 +50,7 @@ struct CaptureLayerLimits {
 
 /// A layer computed from a session's captures, up to a revision of its log.
 template <class Layer>
-struct Folded {
+struct ComputedLayer {
     decltype(std::declval<Layer&>().snapshot()) state;
     std::vector<landmarks::RobotCapture> open; ///< unfinished captures, not in `state`; empty unless kWithOpen
     Revision revision = 0;
@@ -75,8 +75,8 @@ public:
     /// Errors: kOverloaded if it takes longer than the limit `timeout` or memory ran out; after a timeout, the next
     /// request continues where this one stopped. kFull if the layer has more than size_max. kShuttingDown if is_wanted
     /// returned false. kDataLoss if an entry is damaged. Those of ScanLog::read().
-    [[nodiscard]] Result<Folded<Layer>> up_to(const SessionInfo& session, Revision revision,
-                                              const std::function<bool()>& is_wanted);
+    [[nodiscard]] Result<ComputedLayer<Layer>> up_to(const SessionInfo& session, Revision revision,
+                                                     const std::function<bool()>& is_wanted);
 
     /// Removes a deleted session from the cache.
     void remove(store::SessionId session);
@@ -108,7 +108,7 @@ private:
 
 /// Landmarks of sessions.
 using LandmarkLayers = CaptureLayers<landmarks::LandmarkLayer>;
-using FoldedLandmarks = Folded<landmarks::LandmarkLayer>;
+using ComputedLandmarks = ComputedLayer<landmarks::LandmarkLayer>;
 
 /// Reference points of sessions, in which robots are localized.
 using ReferenceLayers = CaptureLayers<landmarks::ReferenceLayer>;

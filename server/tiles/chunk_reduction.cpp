@@ -23,7 +23,7 @@ struct ColumnRange {
     std::array<std::uint16_t, kChunkSide> low; // as unknown_last()
 };
 
-ColumnRange fold_rows(const LogOdds* cells, std::int32_t rows) noexcept {
+ColumnRange reduce_rows(const LogOdds* cells, std::int32_t rows) noexcept {
     ColumnRange range;
     range.high.fill(mapping::kUnknownLogOdds);
     range.low.fill(unknown_last(mapping::kUnknownLogOdds));
@@ -97,7 +97,7 @@ ReducedChunk reduce(const mapping::ChunkCells<mapping::LogOdds>& cells, std::int
     reduced.side = kChunkSide / block;
     auto* pixel = reduced.pixels.data();
     for (std::int32_t j = 0; j < kChunkSide; j += block) {
-        const auto range = fold_rows(&cells[static_cast<std::size_t>(j) * kChunkSide], block);
+        const auto range = reduce_rows(&cells[static_cast<std::size_t>(j) * kChunkSide], block);
         for (std::int32_t i = 0; i < kChunkSide; i += block) {
             LogOdds high = mapping::kUnknownLogOdds;
             std::uint16_t low = unknown_last(mapping::kUnknownLogOdds);

@@ -59,7 +59,7 @@ Fingerprint fingerprint() {
                     LaserChunk& chunk = chunks.try_emplace(key, blank()).first->second;
                     simd::add_evidence(chunk, verdicts[0], OccupancyRule({}));
                     simd::count_hits(chunk, verdicts[1], HimmRule({}));
-                    simd::fold_types(chunk, verdicts[0].free, hysteresis);
+                    simd::update_types(chunk, verdicts[0].free, hysteresis);
                 });
             }
         }

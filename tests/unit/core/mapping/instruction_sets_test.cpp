@@ -262,8 +262,8 @@ TEST_P(InstructionSet, UpdatesTypesAsDefined) {
         const auto& touched = before.verdicts.free;
         LaserChunk by_odds = before.chunk;
         LaserChunk by_count = before.chunk;
-        simd::fold_types(by_odds, touched, by_occupancy);
-        simd::fold_types(by_count, touched, by_himm);
+        simd::update_types(by_odds, touched, by_occupancy);
+        simd::update_types(by_count, touched, by_himm);
         before.for_each_cell([&](std::size_t n, grid::Cell cell) {
             const auto type = before.chunk.occ_types.at(cell);
             const bool counts = grid::is_set(touched, cell);

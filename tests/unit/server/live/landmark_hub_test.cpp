@@ -144,8 +144,8 @@ protected:
     }
 
     LiveServer server_;
-    sessions::LandmarkLayers folds_{server_.log()};
-    LandmarkHub hub_{folds_};
+    sessions::LandmarkLayers layers_{server_.log()};
+    LandmarkHub hub_{layers_};
     boost::asio::io_context searching_;
 };
 
