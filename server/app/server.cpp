@@ -223,7 +223,7 @@ void Server::wait_for_signal() {
     signals_->async_wait([this](const boost::system::error_code& error, int) {
         if (error) return;
         signals_->async_wait([this](const boost::system::error_code& cancelled, int) {
-            if (!cancelled) sessions_.hurry(); // second signal
+            if (!cancelled) sessions_.finish_early(); // second signal
         });
         drain();
     });
@@ -304,7 +304,7 @@ void Server::drain() {
     });
     integration_timeout_.expires_after(kIntegrationTimeout);
     integration_timeout_.async_wait([this](const boost::system::error_code& error) {
-        if (!error) sessions_.hurry();
+        if (!error) sessions_.finish_early();
     });
     asio::post(pools_.changes, [this, busy = asio::make_work_guard(io_)] {
         sessions_.drain();

@@ -55,21 +55,21 @@ void BackgroundCheck::stop() {
 }
 
 void BackgroundCheck::run() {
-    std::map<store::SessionId, std::string> asleep;
+    std::map<store::SessionId, std::string> evicted;
     for (const auto& listed : sessions_.all()) {
-        if (!listed.session) asleep.emplace(listed.info.id, listed.info.name);
+        if (!listed.session) evicted.emplace(listed.info.id, listed.info.name);
     }
     const auto stored = log_.sessions();
     if (!stored) return;
     for (const auto& session : *stored) {
-        const auto name = asleep.find(session.id);
-        if (name != asleep.end()) check(session, name->second);
+        const auto name = evicted.find(session.id);
+        if (name != evicted.end()) check(session, name->second);
     }
 }
 
 void BackgroundCheck::check(const store::StoredSession& stored, const std::string& name) {
     const auto found =
-        check_session(log_, stored, CheckDepth::kLog, [this](std::size_t bytes) { return go_on_after(bytes); });
+        check_session(log_, stored, CheckDepth::kLog, [this](std::size_t bytes) { return pause_after(bytes); });
     if (!found) return; // stop() was called
     // A session that was deleted in the meantime, or whose store failed, cannot be read but may be intact.
     const bool is_damage = found->damage && is_still_there(name, stored.id) && !log_.stats().last_error;
@@ -99,7 +99,7 @@ void BackgroundCheck::keep(const std::string& name, store::SessionId id, const E
     damaged_[name] = {id, why};
 }
 
-Result<> BackgroundCheck::go_on_after(std::size_t bytes) {
+Result<> BackgroundCheck::pause_after(std::size_t bytes) {
     const std::chrono::duration<double> pause(read_rate_.take(static_cast<double>(bytes), now_in_seconds()));
     std::unique_lock lock(mutex_);
     constexpr auto kWorthAWait = std::chrono::milliseconds(10); // waking up costs more than a few entries

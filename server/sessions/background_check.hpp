@@ -64,7 +64,7 @@ private:
     void run();
     void check(const store::StoredSession& stored, const std::string& name);
     void keep(const std::string& name, store::SessionId id, const Error& why);
-    [[nodiscard]] Result<> go_on_after(std::size_t bytes);
+    [[nodiscard]] Result<> pause_after(std::size_t bytes);
     [[nodiscard]] bool is_still_there(const std::string& name, store::SessionId id) const;
 
     store::ScanLog& log_;

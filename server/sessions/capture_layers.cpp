@@ -36,7 +36,7 @@ Result<ComputedLayer<Layer>> CaptureLayers<Layer>::up_to(const SessionInfo& sess
     }
     if (kept->is_full) return full(session);
     try {
-        const auto done = go_on(*kept, revision, is_wanted);
+        const auto done = read_up_to(*kept, revision, is_wanted);
         if (kept->layer.size() > limits_.size_max) { // the size never decreases, so this is final
             kept->is_full = true;
             kept->captures = landmarks::SessionCaptures(scan_filter_of(session));
@@ -64,7 +64,7 @@ Error CaptureLayers<Layer>::full(const SessionInfo& session) const {
 }
 
 template <class Layer>
-Result<> CaptureLayers<Layer>::go_on(Kept& kept, Revision revision, const std::function<bool()>& is_wanted) const {
+Result<> CaptureLayers<Layer>::read_up_to(Kept& kept, Revision revision, const std::function<bool()>& is_wanted) const {
     const auto deadline = Clock::now() + limits_.timeout;
     const auto add = [&](const landmarks::RobotCapture& ended) -> Result<> {
         kept.layer.add(ended);

@@ -96,7 +96,7 @@ private:
     };
 
     [[nodiscard]] std::shared_ptr<Kept> find_or_begin(const SessionInfo& session);
-    [[nodiscard]] Result<> go_on(Kept& kept, Revision revision, const std::function<bool()>& is_wanted) const;
+    [[nodiscard]] Result<> read_up_to(Kept& kept, Revision revision, const std::function<bool()>& is_wanted) const;
     [[nodiscard]] Error full(const SessionInfo& session) const;
     void account(Kept& kept);
 

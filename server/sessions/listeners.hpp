@@ -61,12 +61,12 @@ class Watchers {
 public:
     void add(std::weak_ptr<Watcher> watcher) {
         const std::lock_guard lock(mutex_);
-        forget_the_gone();
+        remove_expired();
         watchers_.push_back(std::move(watcher));
     }
 
     /// Calls on_changed() of each watcher.
-    void tell() {
+    void notify() {
         const std::lock_guard lock(mutex_);
         bool any_gone = false;
         for (const auto& watcher : watchers_) {
@@ -74,11 +74,11 @@ public:
             if (present) present->on_changed();
             any_gone = any_gone || !present;
         }
-        if (any_gone) forget_the_gone();
+        if (any_gone) remove_expired();
     }
 
 private:
-    void forget_the_gone() {
+    void remove_expired() {
         std::erase_if(watchers_, [](const auto& watcher) { return watcher.expired(); });
     }
 

@@ -17,12 +17,12 @@ Result<> add_entry(Exclusions& exclusions, Revision revision, std::string_view b
 
 } // namespace
 
-Result<Exclusions> read_exclusions(store::ScanLog& log, store::SessionId session, const ReadsOn& reads_on) {
+Result<Exclusions> read_exclusions(store::ScanLog& log, store::SessionId session, const KeepReading& keep_reading) {
     Exclusions exclusions;
     const auto read = log.read(session, 0, [&](Revision revision, std::string_view bytes) -> store::Visited {
         const auto scan = wire::decode_scan_pose(bytes);
         if (!scan) return damaged_entry(revision, scan.error());
-        if (!reads_on(revision, *scan)) return store::Visit::kStop;
+        if (!keep_reading(revision, *scan)) return store::Visit::kStop;
         return *scan ? Result<>() : add_entry(exclusions, revision, bytes);
     });
     if (!read) return read.error();
@@ -36,7 +36,7 @@ constexpr Revision kLookEvery = 256; // entries, which take a few milliseconds
 } // namespace
 
 Result<> read_captures(store::ScanLog& log, store::SessionId session, landmarks::SessionCaptures& captures,
-                       Revision until, const VisitCapture& visit, const AskWhetherToGoOn& ask) {
+                       Revision until, const VisitCapture& visit, const CheckContinue& ask) {
     const auto add = [&](Revision revision, std::string_view bytes) -> Result<> {
         const auto taken = wire::decode_scan_pose(bytes);
         if (!taken) return damaged_entry(revision, taken.error());

@@ -11,21 +11,21 @@
 namespace scanloom::sessions {
 
 /// Called before each entry with its revision and, if it is a scan, the scan's pose. False ends the reading before it.
-using ReadsOn = std::function<bool(Revision, const std::optional<ScanPose>&)>;
+using KeepReading = std::function<bool(Revision, const std::optional<ScanPose>&)>;
 
-/// Reads all exclusions of a session's log, from its start until `reads_on` returns false, or to its end.
+/// Reads all exclusions of a session's log, from its start until `keep_reading` returns false, or to its end.
 ///
 /// Cost: about two seconds per million scans, whose ranges are not decoded.
 /// Errors: kDataLoss or kMalformed if an entry is damaged; those of ScanLog::read().
 /// Threads: any thread that may wait for the disk.
 [[nodiscard]] Result<Exclusions> read_exclusions(store::ScanLog& log, store::SessionId session,
-                                                 const ReadsOn& reads_on);
+                                                 const KeepReading& keep_reading);
 
 /// Called for each capture that is complete. An error ends the reading.
 using VisitCapture = std::function<Result<>(const landmarks::RobotCapture&)>;
 
 /// Called from time to time with the last revision read, because a long log takes seconds. An error ends the reading.
-using AskWhetherToGoOn = std::function<Result<>(Revision read)>;
+using CheckContinue = std::function<Result<>(Revision read)>;
 
 /// Reads the captures of a session's log from captures.revision() up to `until`. A later call continues there.
 ///
@@ -35,6 +35,6 @@ using AskWhetherToGoOn = std::function<Result<>(Revision read)>;
 /// Threads: any thread that may wait for the disk.
 [[nodiscard]] Result<> read_captures(store::ScanLog& log, store::SessionId session,
                                      landmarks::SessionCaptures& captures, Revision until, const VisitCapture& visit,
-                                     const AskWhetherToGoOn& ask);
+                                     const CheckContinue& ask);
 
 } // namespace scanloom::sessions

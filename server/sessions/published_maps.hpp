@@ -23,7 +23,7 @@ public:
     [[nodiscard]] std::shared_ptr<const mapping::Snapshot> get() const {
         std::unique_lock lock(mutex_);
         ++waiting_;
-        is_there_.wait(lock, [this] { return !taken_back_; });
+        published_.wait(lock, [this] { return !withdrawn_; });
         --waiting_;
         return maps_;
     }
@@ -48,9 +48,9 @@ public:
         {
             const std::lock_guard lock(mutex_);
             maps_.swap(maps);
-            taken_back_ = false;
+            withdrawn_ = false;
         }
-        is_there_.notify_all();
+        published_.notify_all();
     }
 
     /// Publishes `maps` if the maps are withdrawn; otherwise does nothing.
@@ -58,11 +58,11 @@ public:
     void fall_back_to(std::shared_ptr<const mapping::Snapshot> maps) noexcept {
         {
             const std::lock_guard lock(mutex_);
-            if (!taken_back_) return;
+            if (!withdrawn_) return;
             maps_.swap(maps);
-            taken_back_ = false;
+            withdrawn_ = false;
         }
-        is_there_.notify_all();
+        published_.notify_all();
     }
 
     /// Withdraws the maps and releases them, unless a reader holds them or still waits in get().
@@ -71,21 +71,21 @@ public:
     /// The writer must not call get() until then.
     /// @return whether the maps were withdrawn
     /// Threads: the writer's.
-    [[nodiscard]] bool take_back() {
+    [[nodiscard]] bool withdraw() {
         std::shared_ptr<const mapping::Snapshot> last; // destroyed after the lock is released
         const std::lock_guard lock(mutex_);
         if (waiting_ > 0 || maps_.use_count() != 1)
             return false; // readers copy the pointer under the lock, so the count cannot rise here
         last.swap(maps_);
-        taken_back_ = true;
+        withdrawn_ = true;
         return true;
     }
 
 private:
     mutable std::mutex mutex_; // guards the members below; held briefly
-    mutable std::condition_variable is_there_;
+    mutable std::condition_variable published_;
     std::shared_ptr<const mapping::Snapshot> maps_;
-    bool taken_back_ = false;
+    bool withdrawn_ = false;
     mutable std::size_t waiting_ = 0; // threads in get()
 };
 

@@ -193,7 +193,7 @@ void recover_one(RegistryState& state, const Recorded& recorded, std::function<v
     if (state.draining) return done(); // the next start replays the rest
     if (try_add_evicted(state, recorded)) return done();
     const auto& info = recorded.info;
-    auto session = state.factory.read(info, state.draining, state.hurried);
+    auto session = state.factory.read(info, state.draining, state.finish_early);
     if (session && *session && (*session)->snapshot()->revision < recorded.map_patches) {
         log::warn({.session = info.name}, "session '{}' is removed: its import came to {} of {} parts before a crash",
                   info.name, (*session)->snapshot()->revision,

@@ -14,11 +14,11 @@ namespace {
 
 /// Stores a checkpoint of a stopped recovery, so that a long recovery finishes even if it is stopped repeatedly.
 void keep_progress(store::ScanLog& log, const SessionInfo& info, Recovered& recovered,
-                   const std::atomic<bool>& hurried) {
+                   const std::atomic<bool>& finish_early) {
     if (recovered.projection.revision() <= recovered.checkpointed.value_or(0)) return; // no progress
     const auto snapshot = recovered.projection.snapshot();
     const auto written =
-        write_checkpoint(log, info.id, snapshot, recovered.projection.state(), recovered.checkpointed, hurried);
+        write_checkpoint(log, info.id, snapshot, recovered.projection.state(), recovered.checkpointed, finish_early);
     log::info({.session = info.name}, "session '{}': recovery stopped after entry {}{}", info.name, snapshot.revision,
               written ? "; the next start continues there" : "");
 }
@@ -70,7 +70,7 @@ std::shared_ptr<Session> SessionFactory::make(SessionInfo info, mapping::Project
 }
 
 Result<std::shared_ptr<Session>> SessionFactory::read(const SessionInfo& info, const std::atomic<bool>& stop,
-                                                      const std::atomic<bool>& hurried) const {
+                                                      const std::atomic<bool>& finish_early) const {
     auto recovered = recover(log, info.id, info.config, stop);
     if (!recovered) return recovered.error();
     if (recovered->checkpoint_rejected) {
@@ -79,7 +79,7 @@ Result<std::shared_ptr<Session>> SessionFactory::read(const SessionInfo& info, c
                   info.name, recovered->checkpoint_rejected->message);
     }
     if (!recovered->complete) {
-        keep_progress(log, info, *recovered, hurried);
+        keep_progress(log, info, *recovered, finish_early);
         return std::shared_ptr<Session>();
     }
     SessionInfo read = info;

@@ -60,12 +60,12 @@ struct SessionFactory {
     /// Loads a session from the store: the newest checkpoint, then the rest of the log.
     ///
     /// If `stop` becomes true before the end of the log, stores a checkpoint of the entries applied so far, unless
-    /// `hurried` is true.
+    /// `finish_early` is true.
     /// @return the session; null if it was stopped
     /// Errors: those of recover().
     /// Threads: any thread that may wait for the disk.
     [[nodiscard]] Result<std::shared_ptr<Session>> read(const SessionInfo& info, const std::atomic<bool>& stop,
-                                                        const std::atomic<bool>& hurried) const;
+                                                        const std::atomic<bool>& finish_early) const;
 };
 
 /// The sessions that could not be recovered, by name.
@@ -116,8 +116,8 @@ struct RegistryState {
     const boost::asio::any_io_executor reading;
     const std::shared_ptr<limits::MemoryBudget> pages; ///< of the maps in memory
     SessionFactory factory;
-    std::atomic<bool> draining = false; ///< the server shuts down: no recovery, no loading, no new sessions
-    std::atomic<bool> hurried = false;  ///< the shutdown must end soon
+    std::atomic<bool> draining = false;     ///< the server shuts down: no recovery, no loading, no new sessions
+    std::atomic<bool> finish_early = false; ///< the shutdown must end soon
     SessionCache cache;
     DamagedSessions damaged;
 };

@@ -88,7 +88,7 @@ void ReplayJobs::post(std::shared_ptr<ReplayJob> job) {
 void ReplayJobs::run(const std::shared_ptr<ReplayJob>& job) {
     if (job->run(log_, budget_)) return post(job); // after the other waiting jobs
     const std::lock_guard lock(mutex_);
-    launch_those_behind(*job);
+    launch_successors(*job);
     evict();
 }
 
@@ -96,8 +96,8 @@ void ReplayJobs::run(const std::shared_ptr<ReplayJob>& job) {
 bool ReplayJobs::begin(const std::shared_ptr<ReplayJob>& job) {
     try {
         while (const auto start = furthest_before(*job)) {
-            if (start->is_on_its_way) {
-                behind_.push_back({start->job, job});
+            if (start->is_running) {
+                successors_.push_back({start->job, job});
                 return false;
             }
             if (job->begin_from(*start->job)) return true;
@@ -114,23 +114,24 @@ std::optional<ReplayJobs::Start> ReplayJobs::furthest_before(const ReplayJob& jo
     if (has_ended(wanted.state)) return furthest; // cancelled
     for (const auto& other : jobs_) {
         if (other.get() == &job) continue;
-        const bool is_on_its_way = other->leads_to(job, wanted.target);
-        const auto at = is_on_its_way ? std::optional(other->progress().applied) : other->base_for(job, wanted.target);
-        if (!at || (furthest && std::pair(*at, is_on_its_way) <= std::pair(furthest->at, furthest->is_on_its_way))) {
+        const bool is_running = other->leads_to(job, wanted.target);
+        const auto at = is_running ? std::optional(other->progress().applied) : other->base_for(job, wanted.target);
+        if (!at || (furthest && std::pair(*at, is_running) <= std::pair(furthest->at, furthest->is_running))) {
             continue;
         }
-        furthest = Start{other, *at, is_on_its_way};
+        furthest = Start{other, *at, is_running};
     }
     return furthest;
 }
 
 /// Pre: mutex_ is held.
-void ReplayJobs::launch_those_behind(const ReplayJob& ended) {
-    const auto waited = std::stable_partition(behind_.begin(), behind_.end(),
-                                              [&](const Behind& behind) { return behind.ahead.get() != &ended; });
-    const std::vector<Behind> next(waited, behind_.end());
-    behind_.erase(waited, behind_.end());
-    for (const Behind& behind : next) launch(behind.job); // in the order in which they started to wait
+void ReplayJobs::launch_successors(const ReplayJob& ended) {
+    const auto waited = std::stable_partition(successors_.begin(), successors_.end(), [&](const Successor& successor) {
+        return successor.ahead.get() != &ended;
+    });
+    const std::vector<Successor> next(waited, successors_.end());
+    successors_.erase(waited, successors_.end());
+    for (const Successor& successor : next) launch(successor.job); // in the order in which they started to wait
 }
 
 std::shared_ptr<ReplayJob> ReplayJobs::find(store::SessionId session, std::string_view id) {

@@ -79,7 +79,7 @@ private:
     struct Start {
         std::shared_ptr<ReplayJob> job;
         Revision at = 0;
-        bool is_on_its_way = false; // it is still running, and ends where the other job can start
+        bool is_running = false; // it is still running, and ends where the other job can start
     };
 
     [[nodiscard]] Result<std::shared_ptr<ReplayJob>> started(const SessionInfo& session, const ReplayRequest& request,
@@ -92,7 +92,7 @@ private:
     void run(const std::shared_ptr<ReplayJob>& job);
     [[nodiscard]] bool begin(const std::shared_ptr<ReplayJob>& job);
     [[nodiscard]] std::optional<Start> furthest_before(const ReplayJob& job) const;
-    void launch_those_behind(const ReplayJob& ended);
+    void launch_successors(const ReplayJob& ended);
     void evict();
 
     store::ScanLog& log_;
@@ -105,11 +105,11 @@ private:
     std::uint64_t listed_ = 0;                   // number of the last listed job
     std::list<std::shared_ptr<ReplayJob>> jobs_; // most recently used first
 
-    struct Behind {
+    struct Successor {
         std::shared_ptr<ReplayJob> ahead;
         std::shared_ptr<ReplayJob> job; // begins when the one ahead has ended, successfully or not
     };
-    std::vector<Behind> behind_;
+    std::vector<Successor> successors_;
 };
 
 } // namespace scanloom::sessions

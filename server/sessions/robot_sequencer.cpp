@@ -22,8 +22,8 @@ Error map_already_begun(const std::string& robot, const std::string& session) {
 } // namespace
 
 void RobotSequencer::restore(const mapping::ProjectionState& state) {
-    sequencer_.resize(state.robots.size());
-    for (std::size_t n = 0; n < sequencer_.size(); ++n) restore(sequencer_[n], state.robots[n]);
+    members_.resize(state.robots.size());
+    for (std::size_t n = 0; n < members_.size(); ++n) restore(members_[n], state.robots[n]);
 }
 
 void RobotSequencer::restore(Member& member, const LoggedRobot& logged) {
@@ -36,13 +36,13 @@ void RobotSequencer::restore(Member& member, const LoggedRobot& logged) {
 }
 
 RobotIndex RobotSequencer::index_of(const Member& member) const {
-    return static_cast<RobotIndex>(&member - sequencer_.data());
+    return static_cast<RobotIndex>(&member - members_.data());
 }
 
 RobotSequencer::Member* RobotSequencer::member_of(const std::shared_ptr<RobotListener>& listener) {
     const auto member =
-        std::find_if(sequencer_.begin(), sequencer_.end(), [&](const Member& m) { return m.listener == listener; });
-    return member == sequencer_.end() ? nullptr : &*member;
+        std::find_if(members_.begin(), members_.end(), [&](const Member& m) { return m.listener == listener; });
+    return member == members_.end() ? nullptr : &*member;
 }
 
 PendingEntry RobotSequencer::submitted(Member& member, std::optional<LogEntry> entry, std::size_t bytes) {
@@ -55,15 +55,15 @@ PendingEntry RobotSequencer::submitted(Member& member, std::optional<LogEntry> e
 std::optional<PendingEntry> RobotSequencer::join(PendingJoin joining) {
     const auto& who = joining.who;
     auto known =
-        std::find_if(sequencer_.begin(), sequencer_.end(), [&](const Member& m) { return m.robot.name == who.robot; });
-    if (known == sequencer_.end() && sequencer_.size() >= kRobotsMax) {
+        std::find_if(members_.begin(), members_.end(), [&](const Member& m) { return m.robot.name == who.robot; });
+    if (known == members_.end() && members_.size() >= kRobotsMax) {
         joining.done(
             Error{Errc::kFull, fmt::format("session '{}' has {} robots already, the limit; use another session",
-                                           info_.name, sequencer_.size())});
+                                           info_.name, members_.size())});
         return std::nullopt;
     }
-    const bool is_new = known == sequencer_.end();
-    Member& member = is_new ? sequencer_.emplace_back() : *known;
+    const bool is_new = known == members_.end();
+    Member& member = is_new ? members_.emplace_back() : *known;
     if (is_new) {
         member.robot.name = who.robot;
     } else if (auto agrees = check_source(member, who.source); !agrees) {
@@ -124,12 +124,12 @@ void RobotSequencer::fail(Member& member, const Error& error) {
 }
 
 void RobotSequencer::fail_all(const Error& error) {
-    for (auto& member : sequencer_) fail(member, error);
+    for (auto& member : members_) fail(member, error);
 }
 
 void RobotSequencer::refuse(RobotIndex robot, const Error& error, const mapping::ProjectionState& state) {
-    restore(sequencer_[robot], state.robots[robot]);
-    fail(sequencer_[robot], error);
+    restore(members_[robot], state.robots[robot]);
+    fail(members_[robot], error);
 }
 
 bool RobotSequencer::is_connected(RobotIndex robot) const {
@@ -145,7 +145,7 @@ std::vector<bool> RobotSequencer::connected() const {
 void RobotSequencer::set_connected(const Member& member, bool connected) {
     ++connection_changes_;
     const std::lock_guard lock(connected_mutex_);
-    connected_.resize(std::max(connected_.size(), sequencer_.size()));
+    connected_.resize(std::max(connected_.size(), members_.size()));
     connected_[index_of(member)] = connected;
 }
 
@@ -222,7 +222,7 @@ Result<> RobotSequencer::check_next(const Member& member, const Scan& scan, bool
     }
     if (scan.begins_map && robot.last_seq == 0) { // later scans are placed relative to the first
         const auto shows = [](const Member& other) { return other.showed_seq > 0; };
-        if (is_mapped || std::ranges::any_of(sequencer_, shows)) return map_already_begun(robot.name, info_.name);
+        if (is_mapped || std::ranges::any_of(members_, shows)) return map_already_begun(robot.name, info_.name);
     }
     return wire::check_scan(scan, *known->sensor);
 }
@@ -232,14 +232,14 @@ Result<> RobotSequencer::check_next(const Member& member, const Scan& scan, bool
 void RobotSequencer::release(const Group& group) {
     std::map<RobotIndex, std::size_t> bytes; // one message per robot
     for (const auto& released : group.entries) {
-        Member& member = sequencer_[released.robot];
+        Member& member = members_[released.robot];
         bytes[released.robot] += released.bytes;
         --member.under_way;
         if (!released.entry) continue;
         if (const auto* taken = std::get_if<ScanTaken>(&*released.entry)) member.durable_seq = taken->scan.seq;
     }
     for (const auto& [robot, released] : bytes) {
-        Member& member = sequencer_[robot];
+        Member& member = members_[robot];
         if (member.listener) member.listener->on_durable(member.durable_seq, released);
         admit(member);
     }

@@ -97,7 +97,7 @@ private:
 
     const SessionInfo& info_;
     SessionCounters& counters_;
-    std::vector<Member> sequencer_; // by RobotIndex
+    std::vector<Member> members_; // by RobotIndex
     std::uint64_t connection_changes_ = 0;
 
     mutable std::mutex connected_mutex_;

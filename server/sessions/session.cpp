@@ -92,7 +92,7 @@ void Session::on_strand(Work work) {
 void Session::notify_watchers() {
     const auto reported_before = std::exchange(connections_reported_, sequencer_.connection_changes());
     const bool has_news = std::exchange(has_news_, false);
-    if (has_news || reported_before != connections_reported_) watchers_.tell();
+    if (has_news || reported_before != connections_reported_) watchers_.notify();
 }
 
 // From a link to the log
@@ -185,26 +185,26 @@ void Session::refuse_first(const Error& error) {
 
 void Session::on_appended(Group group, const Result<>& appended) {
     appending_ = false;
-    if (!appended && appended.error().code == Errc::kOverloaded) return set_back(appended.error());
+    if (!appended && appended.error().code == Errc::kOverloaded) return reset_to_durable(appended.error());
     if (!appended) return stop_writing(appended.error());
     if (broken_) return finish_closing();
     durable_.push_back(std::move(group));
-    if (hurried_) return finish_closing();
+    if (finish_early_) return finish_closing();
     append_next(); // the next group is written while this one is applied
     if (durable_.size() == 1) apply_batch();
 }
 
 /// Applies durable entries to the maps for one slice of work, then yields the thread to other sessions.
 void Session::apply_batch() {
-    if (hurried_) return finish_closing();
+    if (finish_early_) return finish_closing();
     if (durable_.empty()) return; // dropped in the meantime
 
     // A small group is applied as a whole, and in place if no reader holds the published maps. Otherwise each chunk
     // that the group changes is copied first.
-    const bool in_place = durable_.front().work <= kInPlaceWork && published_.take_back();
+    const bool in_place = durable_.front().work <= kInPlaceWork && published_.withdraw();
     auto applied = apply_entries(in_place ? HUGE_VAL : kSliceWork);
     const bool finished = applied && applied_ == durable_.front().entries.size();
-    if (in_place && !finished) { // failed or hurried: publish for the waiting readers
+    if (in_place && !finished) { // failed or told to finish early: publish for the waiting readers
         const auto published = publish();
         if (applied) applied = published;
     }
@@ -219,7 +219,7 @@ void Session::apply_batch() {
         append_next();
     }
     if (!durable_.empty()) return on_strand([](Session& self) { self.apply_batch(); });
-    finish_setting_back();
+    finish_reset();
     finish_closing();
 }
 
@@ -228,7 +228,7 @@ void Session::apply_batch() {
 Result<> Session::apply_entries(double work) {
     try {
         auto& entries = durable_.front().entries;
-        for (; applied_ < entries.size() && work > 0.0 && !hurried_; ++applied_) {
+        for (; applied_ < entries.size() && work > 0.0 && !finish_early_; ++applied_) {
             PendingEntry& next = entries[applied_];
             if (!next.entry) continue;
             const auto applied = projection_.apply(*next.entry, work);
@@ -295,8 +295,8 @@ void Session::begin_checkpoint() {
     auto write = [self = shared_from_this(), snapshot = snapshot(), state = projection_.state(),
                   since = checkpointed_] {
         const auto written =
-            sessions::write_checkpoint(self->log_, self->info_.id, *snapshot, state, since, self->hurried_);
-        if (!written && !self->hurried_)
+            sessions::write_checkpoint(self->log_, self->info_.id, *snapshot, state, since, self->finish_early_);
+        if (!written && !self->finish_early_)
             log::warn({.session = self->info_.name}, "session '{}': no checkpoint: {}", self->info_.name,
                       written.error().message);
         self->on_strand([revision = written ? std::optional(state.revision) : since](Session& session) {
@@ -328,18 +328,18 @@ void Session::stop_writing(const Error& error) {
 
 /// Resets the session to the durable entries because the log had no room for the last group. All entries after them are
 /// dropped; robots that reconnect send them again.
-void Session::set_back(const Error& error) {
+void Session::reset_to_durable(const Error& error) {
     refusing_ = error; // until the durable entries are in the maps
-    setting_back_ = true;
+    resetting_ = true;
     sequencer_.fail_all(error);
     waiting_.clear();
-    finish_setting_back();
+    finish_reset();
     finish_closing();
 }
 
-void Session::finish_setting_back() {
-    if (!setting_back_ || !durable_.empty() || broken_) return;
-    setting_back_ = false;
+void Session::finish_reset() {
+    if (!resetting_ || !durable_.empty() || broken_) return;
+    resetting_ = false;
     drop_pending();
     appended_ = projection_.revision();
     refusing_ = closing();
@@ -366,27 +366,27 @@ void Session::close(Error reason, std::function<void()> done) {
     });
 }
 
-void Session::hurry() {
-    hurried_ = true;
+void Session::finish_early() {
+    finish_early_ = true;
     on_strand([](Session& self) { self.finish_closing(); });
 }
 
-void Session::discard(Error reason, std::function<void()> done) {
-    hurried_ = true;
+void Session::close_early(Error reason, std::function<void()> done) {
+    finish_early_ = true;
     close(std::move(reason), std::move(done));
 }
 
 /// Continues closing as far as possible. Called after each event that closing waits for.
 void Session::finish_closing() {
     if (!closed_ || appending_ || checkpointing_) return;
-    if (hurried_) {
+    if (finish_early_) {
         for (const Group& group : durable_) sequencer_.release(group); // the next recovery applies them
         sequencer_.fail_all(*refusing_);
         drop_pending();
     }
     if (!waiting_.empty() || !durable_.empty()) return;
     sequencer_.fail_all(*refusing_);
-    if (projection_.revision() > checkpointed_.value_or(0) && !broken_ && !hurried_ && !final_checkpoint_tried_) {
+    if (projection_.revision() > checkpointed_.value_or(0) && !broken_ && !finish_early_ && !final_checkpoint_tried_) {
         final_checkpoint_tried_ = true;
         return begin_checkpoint();
     }

@@ -76,7 +76,7 @@ public:
     void watch(std::weak_ptr<Watcher> watcher) { watchers_.add(std::move(watcher)); }
 
     /// Notifies the watchers that data which another component keeps about this session has changed.
-    void notify_changed() const { watchers_.tell(); }
+    void notify_changed() const { watchers_.notify(); }
 
     /// Returns whether the robot is connected.
     [[nodiscard]] bool is_connected(RobotIndex robot) const { return sequencer_.is_connected(robot); }
@@ -122,10 +122,10 @@ public:
 
     /// Makes close() end soon: drops entries that are not durable, acknowledges the durable ones, which the next
     /// recovery applies, and writes no further piece of a checkpoint.
-    void hurry();
+    void finish_early();
 
-    /// Closes the session as close() after hurry(). Used when its maps are no longer needed.
-    void discard(Error reason, std::function<void()> done);
+    /// Closes the session as close() after finish_early(). Used when its maps are no longer needed.
+    void close_early(Error reason, std::function<void()> done);
 
 private:
     template <class Work>
@@ -143,8 +143,8 @@ private:
     [[nodiscard]] Result<> publish();
     void notify_watchers();
     void stop_writing(const Error& error);
-    void set_back(const Error& error);
-    void finish_setting_back();
+    void reset_to_durable(const Error& error);
+    void finish_reset();
     void drop_pending();
     [[nodiscard]] bool is_checkpoint_due() const;
     void begin_checkpoint();
@@ -175,7 +175,7 @@ private:
     bool checkpointing_ = false;
     bool final_checkpoint_tried_ = false;
     std::optional<Error> refusing_; // why no more entries are accepted
-    bool setting_back_ = false;     // to the durable entries, because the log had no room for more
+    bool resetting_ = false;        // to the durable entries, because the log had no room for more
     bool broken_ = false;           // the log or the memory failed: no more appending, applying or checkpoints
     std::function<void()> closed_;  // called when closing is done
 
@@ -183,7 +183,7 @@ private:
     std::uint64_t connections_reported_ = 0; // RobotSequencer::connection_changes() at the last notification
 
     mutable Watchers watchers_;
-    std::atomic<bool> hurried_ = false;         // set from any thread, because the strand may be busy
+    std::atomic<bool> finish_early_ = false;    // set from any thread, because the strand may be busy
     std::atomic<std::size_t> backlog_size_ = 0; // of waiting_, for any thread
 
     PublishedMaps published_;

@@ -89,8 +89,8 @@ std::optional<EvictedSession> SessionCache::load_if_wanted(Entry& entry) {
     return load(entry);
 }
 
-std::optional<EvictedSession> SessionCache::want(std::string_view name, Clock::time_point now, Loaded on_loaded) {
-    std::shared_ptr<Session> awake;
+std::optional<EvictedSession> SessionCache::request(std::string_view name, Clock::time_point now, Loaded on_loaded) {
+    std::shared_ptr<Session> loaded_session;
     {
         const std::unique_lock lock(mutex_);
         const auto found = entries_.find(name);
@@ -101,14 +101,14 @@ std::optional<EvictedSession> SessionCache::want(std::string_view name, Clock::t
                 entry.waiting.push_back(std::move(on_loaded));
                 return load_if_wanted(entry);
             }
-            awake = entry.session;
+            loaded_session = entry.session;
         }
     }
-    on_loaded(std::move(awake));
+    on_loaded(std::move(loaded_session));
     return std::nullopt;
 }
 
-void SessionCache::arrived(std::shared_ptr<Session> session, Clock::time_point now) {
+void SessionCache::end_load(std::shared_ptr<Session> session, Clock::time_point now) {
     std::vector<Loaded> waiting;
     {
         const std::unique_lock lock(mutex_);
@@ -124,7 +124,7 @@ void SessionCache::arrived(std::shared_ptr<Session> session, Clock::time_point n
     for (const auto& on_loaded : waiting) on_loaded(session);
 }
 
-void SessionCache::failed(const std::string& name, const Error& why) {
+void SessionCache::fail_load(const std::string& name, const Error& why) {
     std::vector<Loaded> waiting;
     {
         const std::unique_lock lock(mutex_);
@@ -170,7 +170,7 @@ std::vector<std::shared_ptr<Session>> SessionCache::evict_failed() {
     return sent;
 }
 
-std::optional<EvictedSession> SessionCache::arrived(const std::string& name, Summary summary) {
+std::optional<EvictedSession> SessionCache::end_eviction(const std::string& name, Summary summary) {
     std::optional<EvictedSession> wanted;
     std::shared_ptr<Session> last; // destroyed after the lock is released
     {
@@ -188,7 +188,7 @@ std::optional<EvictedSession> SessionCache::arrived(const std::string& name, Sum
 
 // Deletion
 
-std::optional<ListedSession> SessionCache::leave(std::string_view name) {
+std::optional<ListedSession> SessionCache::begin_change(std::string_view name) {
     std::unique_lock lock(mutex_);
     for (;;) {
         const auto found = entries_.find(name);
@@ -217,23 +217,23 @@ void SessionCache::remove(std::string_view name, const Error& why) {
     for (const auto& on_loaded : waiting) on_loaded(why);
 }
 
-std::optional<EvictedSession> SessionCache::stay(std::string_view name) {
+std::optional<EvictedSession> SessionCache::cancel_change(std::string_view name) {
     std::vector<Loaded> waiting;
-    std::shared_ptr<Session> awake;
+    std::shared_ptr<Session> loaded_session;
     std::optional<EvictedSession> wanted;
     {
         const std::unique_lock lock(mutex_);
         Entry& entry = entries_.find(name)->second;
         entry.state = entry.session ? State::kLoaded : State::kEvicted;
         wanted = load_if_wanted(entry);
-        if ((awake = entry.session)) waiting.swap(entry.waiting);
+        if ((loaded_session = entry.session)) waiting.swap(entry.waiting);
     }
     arrival_.notify_all();
-    for (const auto& on_loaded : waiting) on_loaded(awake);
+    for (const auto& on_loaded : waiting) on_loaded(loaded_session);
     return wanted;
 }
 
-void SessionCache::settle() const {
+void SessionCache::wait_for_transitions() const {
     std::shared_lock lock(mutex_);
     arrival_.wait(lock, [this] {
         return std::ranges::none_of(entries_, [](const auto& e) { return e.second.state == State::kInTransition; });

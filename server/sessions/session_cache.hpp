@@ -34,10 +34,11 @@ struct EvictedSession {
 
 /// Session cache: the list of all sessions, which of them are in memory, and the callers that wait for the others.
 ///
-/// A session is in memory (awake), evicted (asleep), or in transition: being loaded, evicted or deleted. Only sessions
+/// A session is in memory, evicted, or in transition: being loaded, evicted or deleted. Only sessions
 /// without an owner outside the cache are evicted, so holding a session keeps it in memory. A transition belongs to the
 /// caller that started it; all other callers wait until it ends.
-/// Threads: any thread. Only leave() and settle() block. Callbacks run before the call returns, without a lock held.
+/// Threads: any thread. Only begin_change() and wait_for_transitions() block. Callbacks run before the call returns,
+/// without a lock held.
 class SessionCache {
 public:
     using Clock = std::chrono::steady_clock;
@@ -71,45 +72,45 @@ public:
 
     /// Passes the session to `on_loaded`: immediately if it is in memory, otherwise when it has been loaded.
     ///
-    /// @param on_loaded  called once: with the session, with null if it does not exist, or with the error of failed() or
-    ///               remove()
-    /// @return a session that the caller must load and then report with arrived() or failed(), if any
-    [[nodiscard]] std::optional<EvictedSession> want(std::string_view name, Clock::time_point now, Loaded on_loaded);
+    /// @param on_loaded  called once: with the session, with null if it does not exist, or with the error of
+    ///                   fail_load() or remove()
+    /// @return a session that the caller must load and then report with end_load() or fail_load(), if any
+    [[nodiscard]] std::optional<EvictedSession> request(std::string_view name, Clock::time_point now, Loaded on_loaded);
 
     /// Starts to evict sessions, the least recently used first, until they have `pages_wanted` pages together.
     ///
     /// Only sessions without an owner outside the cache that were not used after `used_until` are evicted.
-    /// @return the sessions, which the caller must close and then report with arrived()
+    /// @return the sessions, which the caller must close and then report with end_eviction()
     [[nodiscard]] std::vector<std::shared_ptr<Session>> evict(Clock::time_point used_until, std::size_t pages_wanted);
 
     /// Starts to evict all sessions that have failed, even if they have other owners.
-    /// @return the sessions, which the caller must close and then report with arrived()
+    /// @return the sessions, which the caller must close and then report with end_eviction()
     [[nodiscard]] std::vector<std::shared_ptr<Session>> evict_failed();
 
     /// Ends a load: the session is in memory. Passes it to the waiting callers.
-    void arrived(std::shared_ptr<Session> session, Clock::time_point now);
+    void end_load(std::shared_ptr<Session> session, Clock::time_point now);
 
     /// Ends an eviction: the session is not in memory.
-    /// @return the session if a caller has requested it in the meantime, to be loaded as after want()
-    [[nodiscard]] std::optional<EvictedSession> arrived(const std::string& name, Summary summary);
+    /// @return the session if a caller has requested it in the meantime, to be loaded as after request()
+    [[nodiscard]] std::optional<EvictedSession> end_eviction(const std::string& name, Summary summary);
 
     /// Ends a load that failed: passes `why` to the waiting callers. The session stays evicted.
-    void failed(const std::string& name, const Error& why);
+    void fail_load(const std::string& name, const Error& why);
 
     /// Waits until the session is in no transition, then starts to delete it, or to change it while it is closed.
     /// @return the session in its state before; nullopt if it does not exist. The caller must end the transition with
-    /// remove(), stay() or arrived().
-    [[nodiscard]] std::optional<ListedSession> leave(std::string_view name);
+    /// remove(), cancel_change() or end_eviction().
+    [[nodiscard]] std::optional<ListedSession> begin_change(std::string_view name);
 
     /// Removes the session from the list and passes `why` to the waiting callers.
     void remove(std::string_view name, const Error& why);
 
-    /// Ends the transition of leave() without a change.
-    /// @return a session to load, as want()
-    [[nodiscard]] std::optional<EvictedSession> stay(std::string_view name);
+    /// Ends the transition of begin_change() without a change.
+    /// @return a session to load, as request()
+    [[nodiscard]] std::optional<EvictedSession> cancel_change(std::string_view name);
 
     /// Waits until no session is in transition.
-    void settle() const;
+    void wait_for_transitions() const;
 
 private:
     enum class State { kLoaded, kEvicted, kInTransition };

@@ -39,7 +39,7 @@ void SessionLoader::load(std::string_view name, SessionCache::Loaded on_loaded) 
         if (!session || *session) return on_loaded(std::move(session));
         on_loaded(state_.why_missing(name));
     };
-    load(state_.cache.want(name, state_.config.clock(), std::move(on_session)));
+    load(state_.cache.request(name, state_.config.clock(), std::move(on_session)));
 }
 
 void SessionLoader::load(const std::optional<EvictedSession>& wanted) {
@@ -60,18 +60,18 @@ void SessionLoader::retry() {
 void SessionLoader::read(const Wanted& wanted) {
     const auto& [info, pages] = wanted.evicted;
     auto& cache = state_.cache;
-    if (state_.draining) return cache.failed(info.name, shutting_down());
+    if (state_.draining) return cache.fail_load(info.name, shutting_down());
     if (!reserve_pages(wanted)) return;
-    auto session = state_.factory.read(info, state_.draining, state_.hurried);
+    auto session = state_.factory.read(info, state_.draining, state_.finish_early);
     state_.pages->give_back(static_cast<std::int64_t>(pages)); // the session has taken its own pages
-    if (session && *session) return cache.arrived(std::move(*session), state_.config.clock());
-    if (session) return cache.failed(info.name, shutting_down());
+    if (session && *session) return cache.end_load(std::move(*session), state_.config.clock());
+    if (session) return cache.fail_load(info.name, shutting_down());
     const Error& why = session.error();
     if (state_.log.stats().last_error) { // the session may be intact
-        return cache.failed(info.name, {Errc::kStoreFailed, why.message});
+        return cache.fail_load(info.name, {Errc::kStoreFailed, why.message});
     }
     const bool may_pass = why.code == Errc::kOverloaded || why.code == Errc::kStoreFailed;
-    if (may_pass) return cache.failed(info.name, why); // the next request tries again
+    if (may_pass) return cache.fail_load(info.name, why); // the next request tries again
     state_.damaged.add(info.name, info.id, why);
     cache.remove(info.name, why);
 }
@@ -81,7 +81,7 @@ bool SessionLoader::reserve_pages(const Wanted& wanted) {
     const auto& [info, pages] = wanted.evicted;
     if (state_.pages->take(static_cast<std::int64_t>(pages))) return true;
     if (state_.config.clock() >= wanted.until) {
-        state_.cache.failed(info.name, no_room(wanted.evicted));
+        state_.cache.fail_load(info.name, no_room(wanted.evicted));
         return false;
     }
     {
@@ -120,7 +120,7 @@ void SessionLoader::close(std::vector<std::shared_ptr<Session>> sessions, const 
 void SessionLoader::on_evicted(const Session& session) {
     auto summary = summary_of(*session.snapshot());
     trim_heap_later(summary.pages);
-    load(state_.cache.arrived(session.info().name, std::move(summary)));
+    load(state_.cache.end_eviction(session.info().name, std::move(summary)));
     retry();
 }
 

@@ -43,7 +43,7 @@ Error maps_are_computed_again(const std::string& name) {
 void discard_and_wait(Session& session, Error reason) {
     const auto closed = std::make_shared<std::promise<void>>();
     auto is_closed = closed->get_future();
-    session.discard(std::move(reason), [closed] { closed->set_value(); });
+    session.close_early(std::move(reason), [closed] { closed->set_value(); });
     is_closed.wait();
 }
 
@@ -151,13 +151,13 @@ Result<std::shared_ptr<Session>> SessionRegistry::import_map(std::string_view na
 
 Result<> SessionRegistry::remove(std::string_view name) {
     const std::lock_guard changing(changing_);
-    auto left = state_.cache.leave(name);
+    auto left = state_.cache.begin_change(name);
     if (!left) return state_.damaged.remove(name, state_.log);
     const Error gone{Errc::kGone, fmt::format("session '{}' was deleted", name)};
     if (left->session) discard_and_wait(*left->session, gone);
     const auto summary = left->session ? summary_of(*left->session->snapshot()) : left->summary;
     if (auto removed = state_.log.remove_session(left->info.id); !removed) { // it still exists, closed
-        loader_.load(state_.cache.arrived(left->info.name, summary));
+        loader_.load(state_.cache.end_eviction(left->info.name, summary));
         return removed.error();
     }
     state_.cache.remove(name, no_such_session(name));
@@ -202,10 +202,10 @@ Result<> SessionRegistry::lift_exclusion(std::string_view name, std::uint64_t id
 Result<Revision> SessionRegistry::change_exclusions(std::string_view name, const MakeEntry& make) {
     const std::lock_guard changing(changing_);
     if (state_.draining) return shutting_down();
-    auto left = state_.cache.leave(name);
+    auto left = state_.cache.begin_change(name);
     if (!left) return state_.why_missing(name);
     const auto stay = [&](Error why) {
-        loader_.load(state_.cache.stay(name));
+        loader_.load(state_.cache.cancel_change(name));
         return why;
     };
     try {
@@ -229,12 +229,12 @@ Result<Revision> SessionRegistry::change_exclusions(std::string_view name, const
             facts->exclusions = exclusions;
             left->summary.facts = facts;
         }
-        loader_.load(state_.cache.arrived(left->info.name, left->summary));
+        loader_.load(state_.cache.end_eviction(left->info.name, left->summary));
         if (!appended) return appended.error();
         return *end + 1;
     } catch (const std::bad_alloc&) {
         if (left->session && left->session->closing()) { // it is closed and must be loaded again
-            loader_.load(state_.cache.arrived(left->info.name, left->summary));
+            loader_.load(state_.cache.end_eviction(left->info.name, left->summary));
             return Error{Errc::kOverloaded, "there is no memory left for this; try again later"};
         }
         return stay({Errc::kOverloaded, "there is no memory left for this; try again later"});
@@ -248,7 +248,7 @@ void SessionRegistry::drain() {
     loader_.retry();        // the thread that holds the mutex may wait for one of these loads
     const std::lock_guard changing(changing_);
     loader_.retry();
-    state_.cache.settle();
+    state_.cache.wait_for_transitions();
     const auto sessions = list();
     const auto closed = std::make_shared<std::latch>(static_cast<std::ptrdiff_t>(sessions.size()));
     for (const auto& session : sessions) {
@@ -258,10 +258,10 @@ void SessionRegistry::drain() {
     closed->wait();
 }
 
-void SessionRegistry::hurry() {
-    state_.hurried = true;
+void SessionRegistry::finish_early() {
+    state_.finish_early = true;
     for (const auto& listed : state_.cache.all()) {
-        if (listed.session) listed.session->hurry();
+        if (listed.session) listed.session->finish_early();
     }
 }
 

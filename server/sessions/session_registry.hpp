@@ -119,8 +119,8 @@ public:
     /// submitted is durable.
     void drain();
 
-    /// Makes drain() end soon. See Session::hurry().
-    void hurry();
+    /// Makes drain() end soon. See Session::finish_early().
+    void finish_early();
 
     [[nodiscard]] const SessionCounters& counters() const noexcept { return *state_.factory.counters; }
 

@@ -88,7 +88,7 @@ TEST_F(HeavySessionTest, HurryEndsClosingAndARestartIntegratesTheRest) {
     run();
     bool closed = false;
     session_->close({Errc::kShuttingDown, "bye"}, [&] { closed = true; });
-    session_->hurry();
+    session_->finish_early();
     log_.release_completions();
     run();
     EXPECT_TRUE(closed);
@@ -102,7 +102,7 @@ TEST_F(HeavySessionTest, HurryEndsClosingAndARestartIntegratesTheRest) {
 TEST_F(HeavySessionTest, HurryBeforeClosingStaysInEffect) {
     session_->submit(link_, far_scans(1, 5), 10);
     run_until([&] { return log_.stats().entries == 7; });
-    session_->hurry();
+    session_->finish_early();
     run();
     bool closed = false;
     session_->close({Errc::kShuttingDown, "bye"}, [&] { closed = true; });
@@ -110,7 +110,7 @@ TEST_F(HeavySessionTest, HurryBeforeClosingStaysInEffect) {
     EXPECT_TRUE(closed);
     EXPECT_THAT(link_->failures, SizeIs(1));
     EXPECT_EQ(link_->durable_seq(), 5U);
-    EXPECT_LT(session_->snapshot()->robots[0].last_seq, 5U) << "no more scans are integrated after hurry()";
+    EXPECT_LT(session_->snapshot()->robots[0].last_seq, 5U) << "no more scans are integrated after finish_early()";
     start_session();
     EXPECT_EQ(last_durable_seq_on_joining("r"), 5U);
     EXPECT_EQ(digest(), digest_of_log());
@@ -122,7 +122,7 @@ TEST_F(HeavySessionTest, HurryWithinAGroupLeavesTheRestToTheNextStart) {
     compute_.run_one(); // the group is durable and its first slice is integrated
     bool closed = false;
     session_->close({Errc::kShuttingDown, "bye"}, [&] { closed = true; });
-    session_->hurry();
+    session_->finish_early();
     run();
     EXPECT_TRUE(closed);
     EXPECT_EQ(session_->snapshot()->revision, 2U) << "no partly integrated scan is visible";
@@ -142,7 +142,7 @@ TEST_F(SessionTest, DiscardedSessionStopsWriting) {
     run();
     const auto appends = log_.held_completions();
     bool closed = false;
-    session_->discard({Errc::kGone, "deleted"}, [&] { closed = true; });
+    session_->close_early({Errc::kGone, "deleted"}, [&] { closed = true; });
     log_.release_completions();
     run();
     EXPECT_TRUE(closed);

@@ -20,17 +20,17 @@ TEST(PublishedMaps, HeldMapsAreNotTakenBack) {
     published.set(maps_at(1));
     {
         const auto held = published.get();
-        EXPECT_FALSE(published.take_back());
+        EXPECT_FALSE(published.withdraw());
         EXPECT_EQ(published.get(), held);
     }
-    EXPECT_TRUE(published.take_back());
+    EXPECT_TRUE(published.withdraw());
 }
 
 TEST(PublishedMaps, ReaderWaitsForTheNextMapsAfterTakeBack) {
     PublishedMaps published;
     for (Revision revision = 1; revision <= 500; ++revision) {
         published.set(maps_at(revision));
-        ASSERT_TRUE(published.take_back());
+        ASSERT_TRUE(published.withdraw());
         Revision seen = 0;
         std::thread reader([&] { seen = published.get()->revision; });
         published.set(maps_at(revision + 1));
@@ -43,7 +43,7 @@ TEST(PublishedMaps, AwaitedMapsAreNotTakenBackBeforeDelivery) {
     PublishedMaps published;
     published.set(maps_at(1));
     for (Revision revision = 2; revision <= 200; ++revision) {
-        ASSERT_TRUE(published.take_back());
+        ASSERT_TRUE(published.withdraw());
         std::promise<void> release;
         Revision seen = 0;
         std::thread reader([&] {
@@ -53,7 +53,7 @@ TEST(PublishedMaps, AwaitedMapsAreNotTakenBackBeforeDelivery) {
         });
         while (!published.is_waited_for()) std::this_thread::yield();
         published.set(maps_at(revision));
-        EXPECT_FALSE(published.take_back()) << "a reader waits for the maps or holds them";
+        EXPECT_FALSE(published.withdraw()) << "a reader waits for the maps or holds them";
         release.set_value();
         reader.join();
         ASSERT_EQ(seen, revision);
@@ -64,7 +64,7 @@ TEST(PublishedMaps, TryGetReturnsNullAfterTakeBack) {
     PublishedMaps published;
     published.set(maps_at(1));
     EXPECT_EQ(published.try_get()->revision, 1U);
-    ASSERT_TRUE(published.take_back());
+    ASSERT_TRUE(published.withdraw());
     EXPECT_EQ(published.try_get(), nullptr);
     published.set(maps_at(2));
     EXPECT_EQ(published.try_get()->revision, 2U);
@@ -75,7 +75,7 @@ TEST(PublishedMaps, FallBackReplacesOnlyMapsTakenBack) {
     published.set(maps_at(1));
     published.fall_back_to(maps_at(7));
     EXPECT_EQ(published.get()->revision, 1U);
-    ASSERT_TRUE(published.take_back());
+    ASSERT_TRUE(published.withdraw());
     published.fall_back_to(maps_at(7));
     EXPECT_EQ(published.get()->revision, 7U);
 }

@@ -57,13 +57,13 @@ protected:
 
 TEST_F(SessionCacheTest, OneCallerLoadsAnEvictedSessionForAll) {
     add_evicted("a");
-    const auto evicted = cache_.want("a", at(1), note("first"));
+    const auto evicted = cache_.request("a", at(1), note("first"));
     ASSERT_TRUE(evicted);
     EXPECT_EQ(evicted->info.name, "a");
-    EXPECT_FALSE(cache_.want("a", at(1), note("second")));
+    EXPECT_FALSE(cache_.request("a", at(1), note("second")));
     EXPECT_THAT(notified_, IsEmpty());
     expect_loaded("a", false);
-    cache_.arrived(
+    cache_.end_load(
         std::make_shared<Session>(evicted->info, mapping::Projection(config_), 0, log_, compute_.get_executor()),
         at(2));
     EXPECT_THAT(notified_, ElementsAre("first: a", "second: a"));
@@ -85,8 +85,8 @@ TEST_F(SessionCacheTest, EvictsLeastRecentlyUsedSessionsAndNoMoreThanNeeded) {
 TEST_F(SessionCacheTest, CallerDuringEvictionGetsTheReloadedSession) {
     add("a", 0);
     ASSERT_THAT(evict(1), ElementsAre("a"));
-    EXPECT_FALSE(cache_.want("a", at(2), note("late"))) << "the session is being evicted by another caller";
-    const auto evicted = cache_.arrived("a", summary_of(mapping::Snapshot{}));
+    EXPECT_FALSE(cache_.request("a", at(2), note("late"))) << "the session is being evicted by another caller";
+    const auto evicted = cache_.end_eviction("a", summary_of(mapping::Snapshot{}));
     ASSERT_TRUE(evicted) << "the caller must load the session";
     EXPECT_THAT(notified_, IsEmpty());
 }
@@ -96,7 +96,7 @@ TEST_F(SessionCacheTest, EvictedSessionIsListedWithItsLastSummary) {
     ASSERT_THAT(evict(1), ElementsAre("a"));
     mapping::Snapshot last{.revision = 7};
     last.robots.resize(2);
-    EXPECT_FALSE(cache_.arrived("a", summary_of(last)));
+    EXPECT_FALSE(cache_.end_eviction("a", summary_of(last)));
     const auto listed = cache_.all();
     ASSERT_EQ(listed.size(), 1U);
     EXPECT_EQ(listed[0].session, nullptr);
@@ -107,12 +107,12 @@ TEST_F(SessionCacheTest, EvictedSessionIsListedWithItsLastSummary) {
 
 TEST_F(SessionCacheTest, WaitingCallerIsNotifiedOfRemoval) {
     add("a", 0);
-    ASSERT_TRUE(cache_.leave("a"));
-    EXPECT_FALSE(cache_.want("a", at(1), note("late")));
+    ASSERT_TRUE(cache_.begin_change("a"));
+    EXPECT_FALSE(cache_.request("a", at(1), note("late")));
     cache_.remove("a", {Errc::kGone, "deleted"});
     EXPECT_THAT(notified_, ElementsAre("late: deleted"));
     EXPECT_FALSE(cache_.contains("a"));
-    EXPECT_FALSE(cache_.leave("a"));
+    EXPECT_FALSE(cache_.begin_change("a"));
 }
 
 } // namespace

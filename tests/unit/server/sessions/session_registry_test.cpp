@@ -244,7 +244,7 @@ protected:
         digest_ = testing_support::digests_of(*session->snapshot());
     }
 
-    void stop_in_the_middle(bool in_a_hurry) {
+    void stop_in_the_middle(bool early) {
         gated_.gate = 32;
         SessionRegistry registry(gated_, {compute_.get_executor(), [] { return 0.0; }});
         std::atomic<bool> recovered = false;
@@ -258,7 +258,7 @@ protected:
             EXPECT_TRUE(recovered || registry.list().empty()) << "drain() must wait for recover()";
         });
         while (!registry.is_draining()) std::this_thread::yield();
-        if (in_a_hurry) registry.hurry();
+        if (early) registry.finish_early();
         gated_.opened.set_value();
         recovering.join();
         draining.join();
