@@ -29,7 +29,7 @@ void Troubles::add(const Troubles& other) {
 }
 
 struct Robot::Link {
-    explicit Link(net::LinkStream carried) : stream(std::move(carried)) {}
+    explicit Link(net::LinkStream connected) : stream(std::move(connected)) {}
 
     net::LinkStream stream;
     bool is_up = false; // connected, and encrypted if required

@@ -128,13 +128,13 @@ ExitCode run(const RobotOptions& options) {
     const auto feed = make_feed(options, *prepared, console);
     if (!feed) return fail(feed.error());
 
-    UplinkOptions carried = uplink_options(options, *token, *prepared, console);
+    UplinkOptions sent_options = uplink_options(options, *token, *prepared, console);
     auto tls = tls_of(options, options.tls);
     if (!tls) return fail(tls.error());
-    carried.tls = std::move(*tls);
+    sent_options.tls = std::move(*tls);
 
     asio::io_context io(1);
-    Uplink uplink(io, std::move(carried), **feed);
+    Uplink uplink(io, std::move(sent_options), **feed);
     if (prepared->exploring != nullptr) prepared->exploring->ask_with(guided_by(uplink, sim::Explore::kPathClearance));
     if (prepared->locating != nullptr)
         prepared->locating->ask_with(located_by(uplink, prepared->near, prepared->first_place));

@@ -27,7 +27,7 @@ constexpr milliseconds kTimeoutMax = std::chrono::hours(24 * 365);
 constexpr milliseconds kGrace{1000};
 
 /// How often to check for changes that are not signalled: dropped scans, and spooled scans that are already stored.
-constexpr milliseconds kLookPeriod{100};
+constexpr milliseconds kPollPeriod{100};
 
 } // namespace
 
@@ -67,7 +67,7 @@ asio::awaitable<void> Client::Worker::run() {
         const std::lock_guard lock(mutex_);
         outcome_ = outcome ? Error{Errc::kGone, "the client was closed"} : outcome.error();
     }
-    uplink_.news_signal().notify();
+    uplink_.change_signal().notify();
 }
 
 std::optional<Error> Client::Worker::failure() {
@@ -81,8 +81,8 @@ Result<> Client::Worker::push(Observation observation) {
     const std::lock_guard lock(mutex_); // every scan accepted before close() is posted before the source's end
     if (outcome_) return *outcome_;
     if (is_closing_) return Error{Errc::kGone, "the client is being closed"};
-    if (on_their_way_.fetch_add(1) >= kHandedOverMax) {
-        --on_their_way_;
+    if (posted_.fetch_add(1) >= kHandedOverMax) {
+        --posted_;
         return Error{
             Errc::kOverloaded,
             fmt::format("{} scans wait to be taken up; the disk of the spool may stand still", kHandedOverMax)};
@@ -90,7 +90,7 @@ Result<> Client::Worker::push(Observation observation) {
     asio::post(io_, [this, observation = std::move(observation)]() mutable {
         source_.push(std::move(observation));
         ++handed_over_;
-        --on_their_way_;
+        --posted_;
     });
     return {};
 }
@@ -116,33 +116,34 @@ Result<> Client::Worker::close(milliseconds length) {
     return flushed;
 }
 
-std::uint64_t Client::Worker::count_of_those_not(Fate fate) const {
+std::uint64_t Client::Worker::count_pending(ScanState state) const {
     const UplinkStatus now = uplink_.status();
-    const std::uint64_t done = fate == Fate::kStored ? now.acknowledged : std::min(uplink_.applied(), now.last);
+    const std::uint64_t done = state == ScanState::kStored ? now.acknowledged : std::min(uplink_.applied(), now.last);
     return source_.waiting() + now.waiting + now.last - done;
 }
 
-asio::awaitable<Result<>> Client::Worker::until_all_are(Fate fate, Timeout timeout) {
+asio::awaitable<Result<>> Client::Worker::until_all_reach(ScanState state, Timeout timeout) {
     const std::uint64_t handed_over = handed_over_;
     const std::uint64_t dropped = uplink_.status().dropped;
     for (;;) {
         // Scans are processed in order: when no more remain than were added later, all earlier ones are done. Which
         // scans were dropped is unknown; counting all of them as later ones only makes the wait longer, by as many
         // scans.
-        const std::uint64_t left = count_of_those_not(fate);
+        const std::uint64_t left = count_pending(state);
         const std::uint64_t newer = handed_over_ - handed_over;
         if (left == 0 || left + (uplink_.status().dropped - dropped) <= newer) co_return Result<>{};
-        const auto what = fmt::format("{} scans were not {}", left, fate == Fate::kStored ? "stored" : "in the maps");
-        if (const auto why = reason_to_leave(what, timeout)) co_return *why;
-        co_await uplink_.news_signal().wait(std::min(timeout.until, Clock::now() + kLookPeriod));
+        const auto what =
+            fmt::format("{} scans were not {}", left, state == ScanState::kStored ? "stored" : "in the maps");
+        if (const auto why = reason_to_stop_waiting(what, timeout)) co_return *why;
+        co_await uplink_.change_signal().wait(std::min(timeout.until, Clock::now() + kPollPeriod));
     }
 }
 
 asio::awaitable<Result<>> Client::Worker::until_stored(Timeout timeout) {
-    const Result<> stored = co_await until_all_are(Fate::kStored, timeout);
+    const Result<> stored = co_await until_all_reach(ScanState::kStored, timeout);
     if (!stored) co_return stored;
     const std::uint64_t dropped = uplink_.status().dropped;
-    const std::uint64_t lost = dropped - std::exchange(dropped_and_told_, dropped);
+    const std::uint64_t lost = dropped - std::exchange(dropped_reported_, dropped);
     if (lost == 0) co_return Result<>{};
     co_return Error{Errc::kOverloaded,
                     fmt::format("{} scans were dropped for want of room and are lost, the others are stored; give a "
@@ -159,29 +160,29 @@ Result<link::Reply> Client::Worker::ask(link::Request request, milliseconds leng
 }
 
 asio::awaitable<Result<link::Reply>> Client::Worker::until_answered(link::Request request, Timeout timeout) {
-    const Result<> applied = co_await until_all_are(Fate::kInMaps, timeout);
+    const Result<> applied = co_await until_all_reach(ScanState::kInMaps, timeout);
     if (!applied) co_return applied.error();
     const auto reply = std::make_shared<std::optional<link::Reply>>();
     const link::Answered answered = [reply](const link::Reply& got) { reply->emplace(got); };
     auto id = uplink_.ask(request, answered);
     while (!id) {
-        if (const auto why = reason_to_leave("too many questions were open", timeout)) co_return *why;
-        co_await uplink_.news_signal().wait(timeout.until);
+        if (const auto why = reason_to_stop_waiting("too many questions were open", timeout)) co_return *why;
+        co_await uplink_.change_signal().wait(timeout.until);
         id = uplink_.ask(request, answered);
     }
     while (!*reply) {
-        if (const auto why = reason_to_leave("the server did not answer", timeout)) {
+        if (const auto why = reason_to_stop_waiting("the server did not answer", timeout)) {
             uplink_.abandon(*id);
             co_return *why;
         }
-        co_await uplink_.news_signal().wait(timeout.until);
+        co_await uplink_.change_signal().wait(timeout.until);
     }
     co_return **reply;
 }
 
 // Waiting -------------------------------------------------------------------------------------------------------------
 
-std::optional<Error> Client::Worker::reason_to_leave(std::string_view what, const Timeout& timeout) {
+std::optional<Error> Client::Worker::reason_to_stop_waiting(std::string_view what, const Timeout& timeout) {
     if (auto failed = failure()) return failed;
     if (Clock::now() < timeout.until) return std::nullopt;
     return Error{Errc::kTimeout,
@@ -201,7 +202,7 @@ ClientStatus Client::Worker::status() {
     auto asked =
         asio::post(io_, asio::use_future([this] {
                        const UplinkStatus now = uplink_.status();
-                       return ClientStatus{now.acknowledged, count_of_those_not(Fate::kStored) + on_their_way_.load(),
+                       return ClientStatus{now.acknowledged, count_pending(ScanState::kStored) + posted_.load(),
                                            now.dropped, now.bytes, now.is_linked};
                    }));
     return asked.get();

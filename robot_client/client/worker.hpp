@@ -72,16 +72,16 @@ private:
     };
 
     /// The state that a caller waits for scans to reach.
-    enum class Fate { kStored, kInMaps };
+    enum class ScanState { kStored, kInMaps };
 
     [[nodiscard]] boost::asio::awaitable<void> run();
     /// Waits for the scans that were handed over before. Dropped scans count as done.
-    [[nodiscard]] boost::asio::awaitable<Result<>> until_all_are(Fate fate, Timeout timeout);
+    [[nodiscard]] boost::asio::awaitable<Result<>> until_all_reach(ScanState state, Timeout timeout);
     [[nodiscard]] boost::asio::awaitable<Result<>> until_stored(Timeout timeout);
     [[nodiscard]] boost::asio::awaitable<Result<link::Reply>> until_answered(link::Request request, Timeout timeout);
-    [[nodiscard]] std::uint64_t count_of_those_not(Fate fate) const;
+    [[nodiscard]] std::uint64_t count_pending(ScanState state) const;
     /// Returns the error to stop waiting with if the client has ended or the timeout has passed, else nullopt.
-    [[nodiscard]] std::optional<Error> reason_to_leave(std::string_view what, const Timeout& timeout);
+    [[nodiscard]] std::optional<Error> reason_to_stop_waiting(std::string_view what, const Timeout& timeout);
 
     /// Waits for a coroutine.
     /// Threads: the caller's.
@@ -97,8 +97,8 @@ private:
     LiveFeed feed_;
     Uplink uplink_;
     std::uint64_t handed_over_ = 0;      ///< scans, given to source_
-    std::uint64_t dropped_and_told_ = 0; ///< scans that flush() has reported
-    std::atomic<std::size_t> on_their_way_ = 0;
+    std::uint64_t dropped_reported_ = 0; ///< scans that flush() has reported
+    std::atomic<std::size_t> posted_ = 0;
     std::mutex mutex_;
     std::optional<Error> outcome_; ///< guarded by mutex_
     bool is_closing_ = false;      ///< guarded by mutex_

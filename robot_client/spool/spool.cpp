@@ -63,7 +63,7 @@ Result<> Spool::load() {
     auto left = segments_left(options_.directory, report_);
     if (!left) return left.error();
     segments_.assign(left->begin(), left->end());
-    mend_heads();
+    repair_heads();
     for (SpoolFile& segment : segments_) {
         segment.stored(numbering_.acknowledged);
         next_number_ = segment.end();
@@ -78,7 +78,7 @@ Result<> Spool::load() {
 
 /// Derives the seqs of a file with a damaged head from the file before or after it. If its scans were not sent at all,
 /// the server has fewer scans than that.
-void Spool::mend_heads() {
+void Spool::repair_heads() {
     for (std::size_t i = 0; i < segments_.size(); ++i) {
         SpoolFile& segment = segments_[i];
         if (!segment.is_headless) continue;
@@ -191,9 +191,9 @@ Result<> Spool::begin(std::string_view session_id, std::uint64_t durable_seq) {
     }
     const bool is_same = numbering_.session_id.empty() || numbering_.session_id == session_id;
     if (auto ok = is_same ? check(durable_seq) : leave_session(); !ok) return ok;
-    is_strange_ = !is_same && waiting_ > 0 && options_.poses_from_server;
+    is_foreign_ = !is_same && waiting_ > 0 && options_.poses_from_server;
     // If the server refuses these scans, the next run must mark them in any session.
-    const Numbering kept = is_strange_ ? Numbering{kNoSession, 0} : Numbering{std::string(session_id), durable_seq};
+    const Numbering kept = is_foreign_ ? Numbering{kNoSession, 0} : Numbering{std::string(session_id), durable_seq};
     if (auto ok = write_numbering(options_.directory / kNumberingFile, kept, Sync::kYes); !ok) return ok;
     numbering_ = {std::string(session_id), durable_seq};
     for (SpoolFile& segment : segments_) {
@@ -227,7 +227,7 @@ Result<> Spool::check(std::uint64_t durable_seq) const {
 Result<> Spool::follow(std::string_view session_id) {
     if (numbering_.session_id == session_id) return {};
     numbering_.session_id = session_id;
-    if (is_strange_) return {};
+    if (is_foreign_) return {};
     return write_numbering(options_.directory / kNumberingFile, numbering_, Sync::kYes);
 }
 
@@ -274,7 +274,7 @@ Result<std::optional<Observation>> Spool::next() {
             ++next_seq_;
             --waiting_;
             Observation next{sensor, std::move(batch->scans.front())};
-            next.scan.begins_map = next.scan.begins_map || is_strange_;
+            next.scan.begins_map = next.scan.begins_map || is_foreign_;
             return std::optional(std::move(next));
         }
     }
@@ -313,7 +313,7 @@ void Spool::leave_damaged(const std::string& why) {
 void Spool::acknowledge(std::uint64_t seq) {
     if (seq > numbering_.acknowledged) {
         numbering_.acknowledged = seq;
-        is_strange_ = false;
+        is_foreign_ = false;
         // If this write fails, at worst another session receives scans that this one has.
         (void)write_numbering(options_.directory / kNumberingFile, numbering_, Sync::kNo);
     }

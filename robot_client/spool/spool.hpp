@@ -95,7 +95,7 @@ private:
     [[nodiscard]] bool may_go(std::size_t index) const noexcept;
     void remove(std::size_t index);
 
-    void mend_heads();
+    void repair_heads();
     [[nodiscard]] Result<> check(std::uint64_t durable_seq) const;
     [[nodiscard]] Result<> leave_session();
     [[nodiscard]] Result<> enter();
@@ -119,7 +119,7 @@ private:
 
     // handing out
     Numbering numbering_;
-    bool is_strange_ = false; ///< the poses of the scans were set from another session's map
+    bool is_foreign_ = false; ///< the poses of the scans were set from another session's map
     std::size_t reading_ = 0; ///< index of the segment to read from
     std::optional<SegmentReader> reader_;
     std::map<std::uint32_t, std::shared_ptr<const Sensor>> read_sensors_; ///< of that file

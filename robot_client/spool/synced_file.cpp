@@ -23,20 +23,20 @@ void BackgroundSync::wrote(const Handle& file) {
     const std::lock_guard lock(mutex_);
     if (!written_.empty() && written_.back() == file) return;
     written_.push_back(file);
-    news_.notify_one();
+    changed_.notify_one();
 }
 
 /// Runs until it is stopped and everything is synced.
 void BackgroundSync::run(const std::stop_token& stop) {
     std::unique_lock lock(mutex_);
     for (;;) {
-        news_.wait(lock, stop, [&] { return !written_.empty(); });
+        changed_.wait(lock, stop, [&] { return !written_.empty(); });
         if (written_.empty()) return;
         const auto files = std::exchange(written_, {});
         lock.unlock();
         for (const auto& file : files) sync_(*file);
         lock.lock();
-        news_.wait_for(lock, stop, period_, [] { return false; });
+        changed_.wait_for(lock, stop, period_, [] { return false; });
     }
 }
 

@@ -40,7 +40,7 @@ private:
     Job sync_;
     std::chrono::milliseconds period_;
     std::mutex mutex_;
-    std::condition_variable_any news_;
+    std::condition_variable_any changed_;
     std::vector<Handle> written_; // files not synced yet; an earlier file is never written again
     std::jthread thread_;         // last: it uses the others
 };

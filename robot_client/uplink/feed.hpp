@@ -31,7 +31,7 @@ public:
     [[nodiscard]] virtual bool is_stopped() const = 0;
 
     /// Waits until one of these values may have changed, until the given time, or for wake(). One coroutine at a time.
-    [[nodiscard]] virtual boost::asio::awaitable<void> news(Time until = Time::max()) = 0;
+    [[nodiscard]] virtual boost::asio::awaitable<void> wait_for_change(Time until = Time::max()) = 0;
     virtual void wake() = 0;
 
 protected:

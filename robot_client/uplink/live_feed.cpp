@@ -46,7 +46,7 @@ void LiveFeed::keep(Intake& intake, Observation observation) {
     if (!spool_ || spool_given_up_) return keep_in_memory(intake, std::move(observation));
     const auto kept = spool_->append(observation);
     if (kept) return;
-    if (!std::exchange(told_of_spool_, true)) {
+    if (!std::exchange(spool_reported_, true)) {
         options_.tell(fmt::format("{}; scans are held in memory only, or dropped while others wait in the spool",
                                   kept.error().message));
     }
@@ -58,7 +58,7 @@ void LiveFeed::keep(Intake& intake, Observation observation) {
 }
 
 void LiveFeed::keep_in_memory(Intake& intake, Observation observation) {
-    if (!intake.has_room() && !std::exchange(told_of_dropping_, true)) {
+    if (!intake.has_room() && !std::exchange(dropping_reported_, true)) {
         options_.tell(fmt::format("the memory for scans that are not acknowledged is full: the {} are dropped; "
                                   "--spool keeps them on disk",
                                   options_.when_full == WhenFull::kDropOldest ? "oldest unsent" : "newest"));
@@ -90,7 +90,7 @@ asio::awaitable<void> LiveFeed::hand_over(Intake& intake) {
             co_return;
         }
         room_.notify();
-        co_await intake.news();
+        co_await intake.wait_for_change();
     }
 }
 
@@ -100,7 +100,7 @@ Result<> LiveFeed::hand_over_from_spool(Intake& intake) {
             const bool may_go_on = ok.error().code == Errc::kStoreFailed && spool_->waiting() == 0;
             if (!may_go_on) return ok;
             options_.tell(ok.error().message + "; scans are held in memory only");
-            told_of_spool_ = spool_given_up_ = true;
+            spool_reported_ = spool_given_up_ = true;
             return {};
         }
         begun_ = true;

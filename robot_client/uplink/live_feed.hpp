@@ -51,8 +51,8 @@ private:
     WakeSignal room_; ///< when there may be room
     Result<> outcome_;
     std::uint64_t dropped_ = 0; ///< not counting those of the spool
-    bool told_of_dropping_ = false;
-    bool told_of_spool_ = false;
+    bool dropping_reported_ = false;
+    bool spool_reported_ = false;
     bool spool_given_up_ = false;
     bool begun_ = false; ///< Spool::begin() was called
     bool ended_ = false; ///< the source has ended

@@ -39,13 +39,13 @@ RecordingFeed::RecordingFeed(Source& source, RecordingFeedOptions options)
     : source_(source), options_(std::move(options)), pacer_(options_.speed) {}
 
 asio::awaitable<Result<>> RecordingFeed::run(Intake& intake) {
-    while (!intake.resumed_after()) co_await intake.news();
-    if (auto passed = co_await pass_over(intake, *intake.resumed_after()); !passed) co_return passed;
+    while (!intake.resumed_after()) co_await intake.wait_for_change();
+    if (auto passed = co_await skip(intake, *intake.resumed_after()); !passed) co_return passed;
     co_return co_await hand_over(intake);
 }
 
 /// Skips scans that the server has from an earlier run.
-asio::awaitable<Result<>> RecordingFeed::pass_over(Intake& intake, std::uint64_t scans) {
+asio::awaitable<Result<>> RecordingFeed::skip(Intake& intake, std::uint64_t scans) {
     if (scans == 0) co_return Result<>{};
     if (auto ok = check_resume(scans, source_.scan_count()); !ok) co_return ok;
     options_.on_resume(scans);
@@ -61,7 +61,7 @@ asio::awaitable<Result<>> RecordingFeed::hand_over(Intake& intake) {
     std::uint64_t scans_since_yield = 0;
     while (!intake.is_stopped()) {
         if (!intake.has_room()) {
-            co_await intake.news();
+            co_await intake.wait_for_change();
             continue;
         }
         auto next = source_.next();
@@ -84,7 +84,7 @@ asio::awaitable<void> RecordingFeed::wait_until_due(Intake& intake, Clock::time_
         pause_ends_ = due;
         options_.on_long_pause(pause);
     }
-    while (!intake.is_stopped() && due > Clock::now()) co_await intake.news(due);
+    while (!intake.is_stopped() && due > Clock::now()) co_await intake.wait_for_change(due);
     pause_ends_.reset();
 }
 

@@ -68,7 +68,7 @@ public:
 private:
     using Clock = std::chrono::steady_clock;
 
-    [[nodiscard]] boost::asio::awaitable<Result<>> pass_over(Intake& intake, std::uint64_t scans);
+    [[nodiscard]] boost::asio::awaitable<Result<>> skip(Intake& intake, std::uint64_t scans);
     [[nodiscard]] boost::asio::awaitable<Result<>> hand_over(Intake& intake);
     [[nodiscard]] boost::asio::awaitable<void> wait_until_due(Intake& intake, Clock::time_point due);
 

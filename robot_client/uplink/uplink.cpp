@@ -105,9 +105,9 @@ void Uplink::add(Observation observation) {
 
 asio::awaitable<void> Uplink::until_applied() {
     const auto all_handed_over = [&] { return protocol_.resumed_after() && feed_.waiting() == 0; };
-    while (!all_handed_over()) co_await news_.wait(Clock::now() + kProgressPeriod);
+    while (!all_handed_over()) co_await changed_.wait(Clock::now() + kProgressPeriod);
     const std::uint64_t last = buffer_.last();
-    while (protocol_.applied() < last) co_await news_.wait();
+    while (protocol_.applied() < last) co_await changed_.wait();
 }
 
 // Progress ------------------------------------------------------------------------------------------------------------
@@ -162,7 +162,7 @@ asio::awaitable<void> Uplink::keep_linked() {
         const auto cancellation = co_await asio::this_coro::cancellation_state;
         if (cancellation.cancelled() != asio::cancellation_type::none) co_return; // the outcome is already set
         protocol_.close();
-        news_.notify();
+        changed_.notify();
         if (protocol_.is_done()) co_return;
         if (!failure.retryable) {
             outcome_ = failure.error;
@@ -255,7 +255,7 @@ void Uplink::wake_all() {
     feed_wake_.cancel();
     write_wake_.cancel();
     progress_wake_.cancel();
-    news_.notify();
+    changed_.notify();
 }
 
 } // namespace scanloom::robot

@@ -78,7 +78,7 @@ public:
     [[nodiscard]] boost::asio::awaitable<void> until_applied();
 
     /// Returns the signal for when a message arrives from the server and when a link has ended.
-    [[nodiscard]] WakeSignal& news_signal() noexcept { return news_; }
+    [[nodiscard]] WakeSignal& change_signal() noexcept { return changed_; }
 
     [[nodiscard]] UplinkStatus status() const;
     /// Returns the highest seq known to be in the server's maps.
@@ -97,7 +97,7 @@ private:
     void add(Observation observation) override;
     bool drop_oldest_unsent() override { return buffer_.drop_oldest_unsent(); }
     [[nodiscard]] bool is_stopped() const override { return stopped_.has_value(); }
-    [[nodiscard]] boost::asio::awaitable<void> news(Time until) override { return wait(feed_wake_, until); }
+    [[nodiscard]] boost::asio::awaitable<void> wait_for_change(Time until) override { return wait(feed_wake_, until); }
     void wake() override { feed_wake_.cancel(); }
 
     [[nodiscard]] boost::asio::awaitable<void> take_from_feed();
@@ -124,7 +124,7 @@ private:
     boost::asio::steady_timer feed_wake_;
     boost::asio::steady_timer write_wake_;
     boost::asio::steady_timer progress_wake_;
-    WakeSignal news_;
+    WakeSignal changed_;
     Result<> outcome_;
     std::optional<Error> last_trouble_;
     std::optional<Clock::time_point> stopped_;

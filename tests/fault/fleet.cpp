@@ -40,11 +40,11 @@ public:
 
     asio::awaitable<Result<>> run(robot::Intake& intake) override {
         intake_ = &intake;
-        while (!intake.resumed_after()) co_await intake.news();
+        while (!intake.resumed_after()) co_await intake.wait_for_change();
         std::uint64_t handed_over = *intake.resumed_after();
         while (handed_over < plan_.scans && !intake.is_stopped()) {
             if (handed_over == released_ || !intake.has_room()) {
-                co_await intake.news();
+                co_await intake.wait_for_change();
                 continue;
             }
             intake.add({laser_, testing_support::random_scan(plan_.seed, ++handed_over)});

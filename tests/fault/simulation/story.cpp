@@ -17,7 +17,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr Duration kTroubled = 15s;
-constexpr Duration kTimeToMend = 10min;
+constexpr Duration kTimeToRecover = 10min;
 
 /// All faults of a story, drawn at its start.
 struct Plot {
@@ -85,7 +85,7 @@ public:
             disk_.calm();
             plot_.network = {};
         });
-        const Time end = calm_ + kTimeToMend;
+        const Time end = calm_ + kTimeToRecover;
         while (!(world_.now() >= calm_ && all_done())) {
             if (!world_.step(end)) break;
         }
@@ -163,7 +163,7 @@ private:
 
     /// Also works if the server must be started first or its store be reopened.
     Result<std::shared_ptr<sessions::Session>> wake(const std::string& name) {
-        const Time end = world_.now() + kTimeToMend;
+        const Time end = world_.now() + kTimeToRecover;
         for (;;) {
             while (!server_) world_.step(Time::max());
             std::optional<Result<std::shared_ptr<sessions::Session>>> woken;

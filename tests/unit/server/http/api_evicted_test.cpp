@@ -11,7 +11,7 @@
 namespace scanloom::http {
 namespace {
 
-class ApiSleepingTest : public ApiTest {
+class ApiEvictedSessionsTest : public ApiTest {
 protected:
     /// A session with some scans that was evicted from memory.
     void SetUp() override {
@@ -39,7 +39,7 @@ protected:
     Response tile_;
 };
 
-TEST_F(ApiSleepingTest, AreListedWithoutBeingLoaded) {
+TEST_F(ApiEvictedSessionsTest, AreListedWithoutBeingLoaded) {
     auto expected = shown_;
     expected["loaded"] = false;
     expected["main_bounds"] = nullptr; // these counts are computed from the map
@@ -53,7 +53,7 @@ TEST_F(ApiSleepingTest, AreListedWithoutBeingLoaded) {
     EXPECT_THAT(metrics, HasSubstr("scanloom_map_memory_bytes 0\n"));
 }
 
-TEST_F(ApiSleepingTest, LoadWithoutBlockingIoThreads) {
+TEST_F(ApiEvictedSessionsTest, LoadWithoutBlockingIoThreads) {
     std::promise<void> go_on;
     const auto gone_on = go_on.get_future().share();
     std::vector<std::shared_ptr<TestApi::Running>> waiting;
@@ -79,7 +79,7 @@ TEST_F(ApiSleepingTest, LoadWithoutBlockingIoThreads) {
     EXPECT_EQ(get_json("/api/v1/sessions/a"), expected);
 }
 
-TEST_F(ApiSleepingTest, AreDeletedWithoutBeingLoaded) {
+TEST_F(ApiEvictedSessionsTest, AreDeletedWithoutBeingLoaded) {
     EXPECT_EQ(ask("DELETE", "/api/v1/sessions/a").status, Status::no_content);
     EXPECT_EQ(get("/api/v1/sessions/a").status, Status::not_found);
     EXPECT_TRUE(log_.sessions()->empty());
