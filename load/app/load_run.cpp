@@ -1,7 +1,7 @@
 #include "load/app/load_run.hpp"
 
 #include "common/net/await_tuple.hpp"
-#include "load/core/words.hpp"
+#include "load/core/figure_text.hpp"
 #include "load/net/server_api.hpp"
 #include "load/net/verification.hpp"
 
@@ -25,7 +25,7 @@ constexpr Micros kPollPeriod = 100 * kMillisecond;
 constexpr Micros kShowPeriod = kSecond;
 constexpr Micros kHeadStart = 200 * kMillisecond; ///< from notifying the robots until they start
 constexpr std::chrono::seconds kTimeout{60};      ///< with the server's HTTP when it is no longer under load
-constexpr std::string_view kCalm = "calm";
+constexpr std::string_view kReference = "calm";
 
 double in_seconds(const timeval& time) {
     return static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_usec) * 1e-6;
@@ -53,7 +53,7 @@ std::vector<std::string> session_names(const LoadOptions& options) {
 /// Whether a run of this program creates such names. Other sessions with the same prefix are not its own.
 bool is_ours(std::string_view name, std::string_view prefix) {
     const auto rest = name.substr(prefix.size());
-    return rest == kCalm || std::ranges::all_of(rest, [](char c) { return c >= '0' && c <= '9'; });
+    return rest == kReference || std::ranges::all_of(rest, [](char c) { return c >= '0' && c <= '9'; });
 }
 
 FleetPlan fleet_plan(const LoadOptions& options) {
@@ -68,14 +68,14 @@ FleetPlan fleet_plan(const LoadOptions& options) {
 
 } // namespace
 
-LoadRun::LoadRun(asio::io_context& io, const LoadOptions& options, const Course& course, const RobotLinkOptions& link,
-                 const HttpPlace& http, Console& console)
-    : io_(io), options_(options), course_(course), link_(link), console_(console), sessions_(session_names(options)),
-      robots_(spread_over(sessions_, options.robots, course.scans.size())), http_(io.get_executor(), http),
-      fleet_(fleet_plan(options), robots_, clock_, course_, link_),
+LoadRun::LoadRun(asio::io_context& io, const LoadOptions& options, const Workload& workload,
+                 const RobotLinkOptions& link, const HttpPlace& http, Console& console)
+    : io_(io), options_(options), workload_(workload), link_(link), console_(console),
+      sessions_(session_names(options)), robots_(spread_over(sessions_, options.robots, workload.scans.size())),
+      http_(io.get_executor(), http), fleet_(fleet_plan(options), robots_, clock_, workload_, link_),
       audience_({options.viewers, options.tile_readers, options.tile_rate, http, sessions_}, clock_) {
     report_.settings = options;
-    report_.settings.beams = course.beams;
+    report_.settings.beams = workload.beams;
     report_.evidence.verify = options.verify;
     report_.evidence.sessions = options.sessions;
     report_.evidence.shares_sessions = options.sessions < options.robots;
@@ -85,7 +85,7 @@ bool LoadRun::needs_http() const noexcept {
     return options_.verify != Verify::kNone || options_.viewers > 0 || options_.tile_readers > 0;
 }
 
-std::string LoadRun::calm_name() const { return prefix_of(options_) + std::string(kCalm); }
+std::string LoadRun::reference_name() const { return prefix_of(options_) + std::string(kReference); }
 
 void LoadRun::interrupt() {
     interrupted_ = true;
@@ -257,14 +257,14 @@ asio::awaitable<void> LoadRun::verify() {
     co_await verify_counts(http_, sessions, report, evidence);
     const bool compare = options_.verify == Verify::kDigests && !evidence.shares_sessions;
     if (!compare || !evidence.failures.empty()) co_return;
-    calm_ = std::make_unique<CalmSession>(io_, calm_name(), clock_, course_, link_);
-    co_await verify_digests(http_, sessions, calm_name(), *calm_, report, evidence);
+    reference_ = std::make_unique<ReferenceSession>(io_, reference_name(), clock_, workload_, link_);
+    co_await verify_digests(http_, sessions, reference_name(), *reference_, report, evidence);
 }
 
 asio::awaitable<void> LoadRun::clean_up() {
     if (options_.keep) co_return;
     auto names = sessions_;
-    if (calm_) names.push_back(calm_name());
+    if (reference_) names.push_back(reference_name());
     for (std::size_t i = 0; i < names.size(); ++i) {
         console_.passing(fmt::format("deleting {} of {} sessions", grouped(i), grouped(names.size())));
         const auto deleted = co_await delete_session(http_, names[i]);

@@ -24,8 +24,8 @@ namespace scanloom::load {
 class LoadRun {
 public:
     /// The references must outlive this object.
-    LoadRun(boost::asio::io_context& io, const LoadOptions& options, const Course& course, const RobotLinkOptions& link,
-            const HttpPlace& http, Console& console);
+    LoadRun(boost::asio::io_context& io, const LoadOptions& options, const Workload& workload,
+            const RobotLinkOptions& link, const HttpPlace& http, Console& console);
 
     /// Runs everything. Call once.
     /// Errors: kAlreadyExists: there are sessions with the run's names; those of HTTP. Nothing was started then.
@@ -47,11 +47,11 @@ private:
     void show(const Moment& before, const Moment& now);
     [[nodiscard]] std::vector<ExpectedSession> expected() const;
     [[nodiscard]] bool needs_http() const noexcept;
-    [[nodiscard]] std::string calm_name() const;
+    [[nodiscard]] std::string reference_name() const;
 
     boost::asio::io_context& io_;
     const LoadOptions& options_;
-    const Course& course_;
+    const Workload& workload_;
     const RobotLinkOptions& link_;
     Console& console_;
     RunClock clock_;
@@ -60,7 +60,7 @@ private:
     HttpConnection http_;
     Fleet fleet_;
     Audience audience_;
-    std::unique_ptr<CalmSession> calm_;
+    std::unique_ptr<ReferenceSession> reference_;
     RunReport report_;
     Micros begun_ = 0;
     bool interrupted_ = false;

@@ -2,10 +2,10 @@
 
 #include "common/app/settings.hpp"
 #include "common/net/await_tuple.hpp"
-#include "load/app/drive_course.hpp"
 #include "load/app/load_run.hpp"
+#include "load/app/record_workload.hpp"
 #include "load/app/report_file.hpp"
-#include "load/core/words.hpp"
+#include "load/core/figure_text.hpp"
 
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
@@ -125,10 +125,10 @@ ExitCode run(const LoadOptions& options) {
     if (!http) return fail(http.error());
     if (auto ok = check_descriptors(options); !ok) return fail(ok.error());
     console.passing("simulating the trajectory");
-    const auto course = drive_course(options);
-    if (!course) return fail(course.error());
+    const auto workload = record_workload(options);
+    if (!workload) return fail(workload.error());
 
-    LoadRun run(io, options, *course, *link, *http, console);
+    LoadRun run(io, options, *workload, *link, *http, console);
     std::optional<Result<RunReport>> outcome; // absent if a second signal ended the run
     asio::co_spawn(io, obey_signals(io, run, console), asio::detached);
     asio::co_spawn(io, run.conduct(), [&](std::exception_ptr failed, Result<RunReport> result) {

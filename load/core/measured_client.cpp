@@ -11,16 +11,16 @@ namespace {
 
 constexpr std::chrono::seconds kWelcomeMax{60}; // since the hello: the server creates sessions one by one
 
-link::ClientProtocolOptions options_for(const RobotPlan& plan, const Course& course, wire::Hello hello,
+link::ClientProtocolOptions options_for(const RobotPlan& plan, const Workload& workload, wire::Hello hello,
                                         std::string server) {
     link::ClientProtocolOptions options;
     options.hello = std::move(hello);
     options.hello.session = plan.session;
     options.hello.robot = plan.name;
     options.server = std::move(server);
-    options.first_sensor = course.sensor; // so that each robot adds two entries to its session, also without scans
+    options.first_sensor = workload.sensor; // so that each robot adds two entries to its session, also without scans
     options.batch_bytes_max = wire::kFrameBytesMax;
-    options.batch_scans_max = course.batch;
+    options.batch_scans_max = workload.batch;
     options.only_full_batches = true;
     options.continues_earlier_run = false;
     options.welcome_timeout = kWelcomeMax;
@@ -29,21 +29,21 @@ link::ClientProtocolOptions options_for(const RobotPlan& plan, const Course& cou
 
 } // namespace
 
-std::size_t CourseQueue::bytes_max(std::uint64_t seq) const {
-    const wire::NumberedScan scan = scan_at(*course_, first_scan_, seq);
+std::size_t WorkloadQueue::bytes_max(std::uint64_t seq) const {
+    const wire::NumberedScan scan = scan_at(*workload_, first_scan_, seq);
     return wire::batch_frame_size({&scan, 1});
 }
 
-void CourseQueue::append_batch(std::uint64_t first, std::size_t count, std::string& out) const {
+void WorkloadQueue::append_batch(std::uint64_t first, std::size_t count, std::string& out) const {
     std::vector<wire::NumberedScan> batch;
     batch.reserve(count);
-    for (std::size_t i = 0; i < count; ++i) batch.push_back(scan_at(*course_, first_scan_, first + i));
+    for (std::size_t i = 0; i < count; ++i) batch.push_back(scan_at(*workload_, first_scan_, first + i));
     wire::encode_batch(batch, out);
 }
 
-MeasuredClient::MeasuredClient(RobotPlan plan, const Course& course, wire::Hello hello, std::string server)
-    : plan_(std::move(plan)), course_(&course), scans_(course, plan_.first_scan),
-      protocol_(options_for(plan_, course, std::move(hello), std::move(server)), scans_, at(0)) {}
+MeasuredClient::MeasuredClient(RobotPlan plan, const Workload& workload, wire::Hello hello, std::string server)
+    : plan_(std::move(plan)), workload_(&workload), scans_(workload, plan_.first_scan),
+      protocol_(options_for(plan_, workload, std::move(hello), std::move(server)), scans_, at(0)) {}
 
 void MeasuredClient::close(FleetFigures& figures) noexcept {
     if (is_welcome()) --figures.linked;
@@ -99,7 +99,7 @@ void MeasuredClient::record_sent(std::uint64_t first, std::uint64_t sent_ever_be
             continue;
         }
         ++figures.scans_sent;
-        if (course_->schedule) figures.waiting_to_send.record(now - intended(seq));
+        if (workload_->schedule) figures.waiting_to_send.record(now - intended(seq));
     }
 }
 
@@ -111,13 +111,13 @@ void MeasuredClient::record_acknowledged(std::uint64_t first, Micros now, FleetF
         while (!sendings_.empty() && sendings_.front().last_seq < seq) sendings_.pop_front();
         if (sendings_.empty()) continue;
         figures.from_sending.record(now - sendings_.front().at);
-        if (course_->schedule) figures.from_intended.record(now - intended(seq));
+        if (workload_->schedule) figures.from_intended.record(now - intended(seq));
     }
 }
 
-/// Pre: the course has a schedule.
+/// Pre: the workload has a schedule.
 Micros MeasuredClient::intended(std::uint64_t seq) const noexcept {
-    return start_ + course_->schedule->due(plan_.index, seq);
+    return start_ + workload_->schedule->due(plan_.index, seq);
 }
 
 } // namespace scanloom::load

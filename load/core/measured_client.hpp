@@ -3,9 +3,9 @@
 #include "common/link/client_protocol.hpp"
 #include "common/link/scan_queue.hpp"
 #include "common/wire/messages.hpp"
-#include "load/core/course.hpp"
 #include "load/core/figures.hpp"
 #include "load/core/micros.hpp"
+#include "load/core/workload.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -23,20 +23,22 @@ struct RobotPlan {
     std::uint32_t index = 0; ///< among all robots
     std::string session;
     std::string name;           ///< within the session
-    std::size_t first_scan = 0; ///< where on the course it starts
+    std::size_t first_scan = 0; ///< its first scan in the workload
 };
 
-/// The scans of one robot on a course. They need no memory: each is generated again when it is sent.
-class CourseQueue final : public link::ScanQueue {
+/// The scans of one robot of a workload. They need no memory: each is generated again when it is sent.
+class WorkloadQueue final : public link::ScanQueue {
 public:
-    /// `course` must outlive this object.
-    CourseQueue(const Course& course, std::size_t first_scan) : course_(&course), first_scan_(first_scan) {}
+    /// `workload` must outlive this object.
+    WorkloadQueue(const Workload& workload, std::size_t first_scan) : workload_(&workload), first_scan_(first_scan) {}
 
     void set_last(std::uint64_t seq) noexcept { last_ = seq; }
 
     [[nodiscard]] std::uint64_t last() const noexcept override { return last_; }
-    [[nodiscard]] const std::shared_ptr<const Sensor>& sensor(std::uint64_t) const override { return course_->sensor; }
-    [[nodiscard]] std::size_t beams(std::uint64_t) const override { return course_->beams; }
+    [[nodiscard]] const std::shared_ptr<const Sensor>& sensor(std::uint64_t) const override {
+        return workload_->sensor;
+    }
+    [[nodiscard]] std::size_t beams(std::uint64_t) const override { return workload_->beams; }
     [[nodiscard]] std::size_t bytes_max(std::uint64_t seq) const override;
     void append_batch(std::uint64_t first, std::size_t count, std::string& out) const override;
 
@@ -44,7 +46,7 @@ private:
     void renumber(std::uint64_t first) override { last_ = first - 1; }
     void drop_until(std::uint64_t) override {}
 
-    const Course* course_;
+    const Workload* workload_;
     std::size_t first_scan_;
     std::uint64_t last_ = 0;
 };
@@ -60,9 +62,9 @@ public:
     static constexpr std::size_t kWriteMax = std::size_t{64} << 10; ///< bytes of one write(), and one frame more
     static constexpr std::uint64_t kEndless = std::numeric_limits<std::uint64_t>::max();
 
-    /// `course` must outlive this object. `hello` has no session and robot name yet.
+    /// `workload` must outlive this object. `hello` has no session and robot name yet.
     /// @param server  address of the server, for messages
-    MeasuredClient(RobotPlan plan, const Course& course, wire::Hello hello, std::string server);
+    MeasuredClient(RobotPlan plan, const Workload& workload, wire::Hello hello, std::string server);
     MeasuredClient(const MeasuredClient&) = delete;
     MeasuredClient& operator=(const MeasuredClient&) = delete;
 
@@ -105,8 +107,8 @@ private:
     [[nodiscard]] Micros intended(std::uint64_t seq) const noexcept;
 
     RobotPlan plan_;
-    const Course* course_;
-    CourseQueue scans_;
+    const Workload* workload_;
+    WorkloadQueue scans_;
     link::ClientProtocol protocol_;
     std::deque<Sending> sendings_; // on this link, not acknowledged yet
     Micros start_ = 0;

@@ -1,7 +1,7 @@
 #include "load/core/report.hpp"
 
 #include "common/json/json_text.hpp"
-#include "load/core/words.hpp"
+#include "load/core/figure_text.hpp"
 
 #include <boost/json/object.hpp>
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 #include "load/core/verdict.hpp"
 
-#include "load/core/words.hpp"
+#include "load/core/figure_text.hpp"
 
 #include <fmt/format.h>
 

@@ -42,7 +42,7 @@ struct Entry {
 };
 
 /// A session without changes sends no events, so only the admission has time limits.
-asio::awaitable<Entry> enter(Stream& stream, const OnlookerShared& shared, std::string session) {
+asio::awaitable<Entry> enter(Stream& stream, const AudienceShared& shared, std::string session) {
     const net::Address& server = shared.http.server;
     const auto connected = co_await net::connect(stream.next_layer(), server, kEnterMax);
     if (!connected) co_return Entry{connected.error().message};
@@ -77,7 +77,7 @@ asio::awaitable<boost::system::error_code> take_events(Stream& stream, AudienceF
 
 } // namespace
 
-asio::awaitable<void> watch(OnlookerShared& shared, std::string session) {
+asio::awaitable<void> watch(AudienceShared& shared, std::string session) {
     const auto executor = co_await asio::this_coro::executor;
     asio::steady_timer pause(executor);
     AudienceFigures& figures = shared.figures;
@@ -115,7 +115,7 @@ constexpr unsigned kNotModified = 304;
 /// One tile reader, with the ETags it has seen and its next request.
 class TileReader {
 public:
-    TileReader(OnlookerShared& shared, std::string session, asio::any_io_executor executor, const TileTour& tour)
+    TileReader(AudienceShared& shared, std::string session, asio::any_io_executor executor, const TileTour& tour)
         : shared_(shared), session_(std::move(session)), http_(executor, shared.http), timer_(executor), tour_(tour) {}
 
     asio::awaitable<void> run() {
@@ -161,7 +161,7 @@ private:
         shared_.figures.trouble = "a tile reader: " + error.message;
     }
 
-    OnlookerShared& shared_;
+    AudienceShared& shared_;
     std::string session_;
     HttpConnection http_;
     asio::steady_timer timer_;
@@ -171,7 +171,7 @@ private:
 
 } // namespace
 
-asio::awaitable<void> read_tiles(OnlookerShared& shared, std::string session, double rate, Micros delay) {
+asio::awaitable<void> read_tiles(AudienceShared& shared, std::string session, double rate, Micros delay) {
     TileReader reader(shared, std::move(session), co_await asio::this_coro::executor,
                       TileTour(rate, shared.clock.now() + delay));
     co_await reader.run();

@@ -17,7 +17,7 @@
 namespace scanloom::load {
 
 /// State shared by the viewers and tile readers of one thread.
-struct OnlookerShared {
+struct AudienceShared {
     const RunClock& clock;
     HttpPlace http;
     AudienceFigures& figures;
@@ -27,11 +27,11 @@ struct OnlookerShared {
 /// Watches a session over a WebSocket as the viewer's page does: all layers and points, reading every event
 /// immediately. Reconnects a second after a connection ended or was refused. `shared` must live until the executor has
 /// stopped.
-[[nodiscard]] boost::asio::awaitable<void> watch(OnlookerShared& shared, std::string session);
+[[nodiscard]] boost::asio::awaitable<void> watch(AudienceShared& shared, std::string session);
 
 /// Fetches the tiles of a session one after the other, again and again, `rate` per second, each with its last ETag, as
 /// a browser does. Starts after `delay`, so that readers do not send requests in step.
-[[nodiscard]] boost::asio::awaitable<void> read_tiles(OnlookerShared& shared, std::string session, double rate,
+[[nodiscard]] boost::asio::awaitable<void> read_tiles(AudienceShared& shared, std::string session, double rate,
                                                       Micros delay);
 
 struct AudiencePlan {
@@ -60,7 +60,7 @@ public:
 private:
     AudiencePlan plan_;
     AudienceFigures figures_;
-    OnlookerShared shared_;
+    AudienceShared shared_;
     boost::asio::io_context io_{1};
     boost::asio::executor_work_guard<boost::asio::io_context::executor_type> work_{io_.get_executor()};
     std::thread thread_;

@@ -25,11 +25,11 @@ constexpr Micros kLookAfterPeriod = kSecond;
 } // namespace
 
 Shard::Shard(std::uint32_t number, const FleetPlan& plan, const std::vector<RobotPlan>& all, const RunClock& clock,
-             const Course& course, const RobotLinkOptions& link)
-    : number_(number), plan_(plan), clock_(clock), course_(course) {
+             const Workload& workload, const RobotLinkOptions& link)
+    : number_(number), plan_(plan), clock_(clock), workload_(workload) {
     for (std::size_t i = number; i < all.size(); i += plan.threads) {
         robots_.push_back(
-            std::make_unique<Robot>(all[i], Robot::Shared{io_, clock_, course_, link, figures_, troubles_}));
+            std::make_unique<Robot>(all[i], Robot::Shared{io_, clock_, workload_, link, figures_, troubles_}));
     }
     thread_ = std::thread([this] { io_.run(); });
 }
@@ -42,7 +42,7 @@ void Shard::connect() {
 }
 
 void Shard::begin(Micros start) {
-    asio::co_spawn(io_, course_.schedule ? follow_schedule(start) : send_without_pause(start), asio::detached);
+    asio::co_spawn(io_, workload_.schedule ? follow_schedule(start) : send_without_pause(start), asio::detached);
     asio::co_spawn(io_, strike_at_random(), asio::detached);
 }
 
@@ -99,7 +99,7 @@ asio::awaitable<void> Shard::follow_schedule(Micros start) {
     const std::uint64_t places = plan_.scans * plan_.robots;
     while (place_ < places && !ended_) {
         if (hand_out_due(start)) {
-            const Micros next = start + course_.schedule->due(std::min(place_, places - 1));
+            const Micros next = start + workload_.schedule->due(std::min(place_, places - 1));
             timer.expires_at(clock_.at(std::max(next, clock_.now() + kTick)));
             co_await timer.async_wait(kAwaitTuple);
         } else {
@@ -111,7 +111,7 @@ asio::awaitable<void> Shard::follow_schedule(Micros start) {
 
 /// @return whether no more scans are due now
 bool Shard::hand_out_due(Micros start) {
-    const Schedule& schedule = *course_.schedule;
+    const Schedule& schedule = *workload_.schedule;
     const std::uint64_t places = plan_.scans * plan_.robots;
     for (std::uint64_t handed = 0; place_ < places; ++place_) {
         const std::uint32_t robot = schedule.robot_at(place_);
@@ -165,27 +165,27 @@ asio::awaitable<void> Shard::look_after_all() {
 void Shard::end_all() {
     if (std::exchange(ended_, true)) return;
     for (auto& robot : robots_) robot->end();
-    if (!course_.schedule) figures_.scans_due = figures_.scans_sent;
+    if (!workload_.schedule) figures_.scans_due = figures_.scans_sent;
 }
 
 // All robots ----------------------------------------------------------------------------------------------------------
 
 std::vector<RobotPlan> spread_over(const std::vector<std::string>& sessions, std::uint32_t robots,
-                                   std::size_t course_scans) {
+                                   std::size_t workload_scans) {
     std::vector<RobotPlan> plans;
     plans.reserve(robots);
     const std::size_t most = (robots + sessions.size() - 1) / sessions.size(); // robots of a session
     for (std::uint32_t i = 0; i < robots; ++i) {
         const std::size_t within = i / sessions.size();
-        plans.push_back({i, sessions[i % sessions.size()], fmt::format("r{}", within), within * course_scans / most});
+        plans.push_back({i, sessions[i % sessions.size()], fmt::format("r{}", within), within * workload_scans / most});
     }
     return plans;
 }
 
-Fleet::Fleet(const FleetPlan& plan, const std::vector<RobotPlan>& robots, const RunClock& clock, const Course& course,
-             const RobotLinkOptions& link) {
+Fleet::Fleet(const FleetPlan& plan, const std::vector<RobotPlan>& robots, const RunClock& clock,
+             const Workload& workload, const RobotLinkOptions& link) {
     for (std::uint32_t i = 0; i < plan.threads; ++i) {
-        shards_.push_back(std::make_unique<Shard>(i, plan, robots, clock, course, link));
+        shards_.push_back(std::make_unique<Shard>(i, plan, robots, clock, workload, link));
     }
 }
 

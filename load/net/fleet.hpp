@@ -21,8 +21,8 @@ namespace scanloom::load {
 struct FleetPlan {
     std::uint32_t robots = 0;
     double connections_per_second = 0.0;
-    std::uint64_t scans = 0; ///< of each robot, by the course's schedule
-    Micros duration = 0;     ///< used if the course has no schedule
+    std::uint64_t scans = 0; ///< of each robot, by the workload's schedule
+    Micros duration = 0;     ///< used if the workload has no schedule
     FaultMeans faults{};
     std::uint64_t seed = 0;
     std::uint32_t threads = 1;
@@ -48,7 +48,7 @@ public:
 
     /// Opens no connection yet. `all` are the robots of all shards; the references must outlive this object.
     Shard(std::uint32_t number, const FleetPlan& plan, const std::vector<RobotPlan>& all, const RunClock& clock,
-          const Course& course, const RobotLinkOptions& link);
+          const Workload& workload, const RobotLinkOptions& link);
     ~Shard();
     Shard(const Shard&) = delete;
     Shard& operator=(const Shard&) = delete;
@@ -83,7 +83,7 @@ private:
     const std::uint32_t number_;
     const FleetPlan plan_;
     const RunClock& clock_;
-    const Course& course_;
+    const Workload& workload_;
     FleetFigures figures_;
     Troubles troubles_;
     boost::asio::io_context io_{1};
@@ -95,16 +95,16 @@ private:
 };
 
 /// Spreads robots over sessions: robot i joins session i % sessions. The robots of a session start evenly spaced on the
-/// course, so that sessions with equally many robots receive the same scans.
+/// workload, so that sessions with equally many robots receive the same scans.
 [[nodiscard]] std::vector<RobotPlan> spread_over(const std::vector<std::string>& sessions, std::uint32_t robots,
-                                                 std::size_t course_scans);
+                                                 std::size_t workload_scans);
 
 /// All robots, on as many threads as planned.
 /// Threads: one at a time.
 class Fleet {
 public:
     /// The references must outlive this object.
-    Fleet(const FleetPlan& plan, const std::vector<RobotPlan>& robots, const RunClock& clock, const Course& course,
+    Fleet(const FleetPlan& plan, const std::vector<RobotPlan>& robots, const RunClock& clock, const Workload& workload,
           const RobotLinkOptions& link);
 
     void connect();

@@ -1,7 +1,7 @@
 #include "load/net/http_connection.hpp"
 
 #include "common/net/await_tuple.hpp"
-#include "load/core/words.hpp"
+#include "load/core/figure_text.hpp"
 
 #include <boost/beast/http/read.hpp>
 #include <boost/beast/http/write.hpp>

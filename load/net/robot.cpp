@@ -1,7 +1,7 @@
 #include "load/net/robot.hpp"
 
 #include "common/net/await_tuple.hpp"
-#include "load/core/words.hpp"
+#include "load/core/figure_text.hpp"
 
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
@@ -39,7 +39,7 @@ struct Robot::Link {
 };
 
 Robot::Robot(RobotPlan plan, Shared shared)
-    : shared_(shared), client_(std::move(plan), shared.course, shared.link.hello, shared.link.server.text()),
+    : shared_(shared), client_(std::move(plan), shared.workload, shared.link.hello, shared.link.server.text()),
       backoff_(client_.plan().index + 1), timer_(shared.io) {}
 
 void Robot::start() { asio::co_spawn(shared_.io, run(), asio::detached); }

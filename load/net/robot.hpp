@@ -44,7 +44,7 @@ public:
     struct Shared {
         boost::asio::io_context& io;
         const RunClock& clock;
-        const Course& course;
+        const Workload& workload;
         const RobotLinkOptions& link;
         FleetFigures& figures;
         Troubles& troubles;

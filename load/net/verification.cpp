@@ -1,7 +1,7 @@
 #include "load/net/verification.hpp"
 
 #include "common/net/await_tuple.hpp"
-#include "load/core/words.hpp"
+#include "load/core/figure_text.hpp"
 #include "load/net/server_api.hpp"
 
 #include <fmt/format.h>
@@ -19,24 +19,24 @@ constexpr Micros kTimeout = 60 * kSecond;
 constexpr std::chrono::milliseconds kLookPeriod{2};
 
 /// Sends each scan in its own frame: maps do not depend on how scans are grouped.
-Course in_peace(Course course) {
-    course.schedule.reset();
-    course.batch = 1;
-    return course;
+Workload without_schedule(Workload workload) {
+    workload.schedule.reset();
+    workload.batch = 1;
+    return workload;
 }
 
 } // namespace
 
-CalmSession::CalmSession(asio::io_context& io, std::string name, const RunClock& clock, const Course& course,
-                         const RobotLinkOptions& link)
-    : io_(io), clock_(clock), course_(in_peace(course)),
-      robot_(RobotPlan{0, std::move(name), "r0", 0}, {io_, clock_, course_, link, *figures_, troubles_}) {
+ReferenceSession::ReferenceSession(asio::io_context& io, std::string name, const RunClock& clock,
+                                   const Workload& workload, const RobotLinkOptions& link)
+    : io_(io), clock_(clock), workload_(without_schedule(workload)),
+      robot_(RobotPlan{0, std::move(name), "r0", 0}, {io_, clock_, workload_, link, *figures_, troubles_}) {
     robot_.start();
 }
 
-CalmSession::~CalmSession() { robot_.stop(); }
+ReferenceSession::~ReferenceSession() { robot_.stop(); }
 
-asio::awaitable<Result<>> CalmSession::stream_to(std::uint64_t scans) {
+asio::awaitable<Result<>> ReferenceSession::stream_to(std::uint64_t scans) {
     asio::steady_timer timer(io_);
     std::uint64_t acknowledged = robot_.client().acknowledged();
     Micros progress = clock_.now();
@@ -83,8 +83,9 @@ asio::awaitable<void> verify_counts(HttpConnection& http, const std::vector<Expe
     }
 }
 
-asio::awaitable<void> verify_digests(HttpConnection& http, std::vector<ExpectedSession> sessions, std::string calm_name,
-                                     CalmSession& calm, ReportProgress report, Evidence& evidence) {
+asio::awaitable<void> verify_digests(HttpConnection& http, std::vector<ExpectedSession> sessions,
+                                     std::string reference_name, ReferenceSession& reference, ReportProgress report,
+                                     Evidence& evidence) {
     std::erase_if(sessions,
                   [](const ExpectedSession& session) { return scans_of(session) == 0; }); // has no maps to compare
     std::ranges::sort(sessions, {}, scans_of);
@@ -93,9 +94,9 @@ asio::awaitable<void> verify_digests(HttpConnection& http, std::vector<ExpectedS
     for (std::size_t i = 0; i < sessions.size(); ++i) {
         report_progress(report, "comparing the maps of", i, sessions.size());
         if (const std::uint64_t scans = scans_of(sessions[i]); scans > streamed) {
-            const auto done = co_await calm.stream_to(scans);
+            const auto done = co_await reference.stream_to(scans);
             if (!done) co_return evidence.failures.push_back(done.error().message);
-            auto digest = co_await digest_of(http, calm_name);
+            auto digest = co_await digest_of(http, reference_name);
             if (!digest) co_return evidence.failures.push_back(digest.error().message);
             right = std::move(*digest);
             streamed = scans;

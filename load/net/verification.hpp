@@ -15,14 +15,14 @@
 
 namespace scanloom::load {
 
-/// A session into which one robot streams the course undisturbed, without faults. Its maps are what the maps of other
+/// A session into which one robot streams the workload undisturbed, without faults. Its maps are what the maps of other
 /// sessions should be.
-class CalmSession {
+class ReferenceSession {
 public:
     /// The references must outlive this object; `io` must not run after its destruction.
-    CalmSession(boost::asio::io_context& io, std::string name, const RunClock& clock, const Course& course,
-                const RobotLinkOptions& link);
-    ~CalmSession();
+    ReferenceSession(boost::asio::io_context& io, std::string name, const RunClock& clock, const Workload& workload,
+                     const RobotLinkOptions& link);
+    ~ReferenceSession();
 
     /// Streams as fast as the server accepts scans, until this many are acknowledged.
     /// Pre: not fewer scans than before.
@@ -32,7 +32,7 @@ public:
 private:
     boost::asio::io_context& io_;
     const RunClock& clock_;
-    Course course_;
+    Workload workload_;
     std::unique_ptr<FleetFigures> figures_ = std::make_unique<FleetFigures>();
     Troubles troubles_;
     Robot robot_;
@@ -47,11 +47,10 @@ using ReportProgress = std::function<void(const std::string&)>;
                                                          const std::vector<ExpectedSession>& sessions,
                                                          ReportProgress report, Evidence& evidence);
 
-/// Compares the maps of every session with those of `calm`, into which the same scans are streamed here: as many as the
-/// session with the fewest has, then up to each next number that occurs.
-/// Pre: one robot per session.
+/// Compares the maps of every session with those of `reference`, into which the same scans are streamed here: as many
+/// as the session with the fewest has, then up to each next number that occurs. Pre: one robot per session.
 [[nodiscard]] boost::asio::awaitable<void> verify_digests(HttpConnection& http, std::vector<ExpectedSession> sessions,
-                                                          std::string calm_name, CalmSession& calm,
+                                                          std::string reference_name, ReferenceSession& reference,
                                                           ReportProgress report, Evidence& evidence);
 
 } // namespace scanloom::load

@@ -30,10 +30,10 @@ protected:
 
     void set_up(std::uint32_t batch, std::size_t first_scan = 0) {
         scans_ = testing_support::random_scans(3, 1, kCourseScans);
-        course_ = make_course(testing_support::small_laser(), scans_, kRate, batch);
-        course_.schedule = Schedule(1, kRate);
+        workload_ = make_workload(testing_support::small_laser(), scans_, kRate, batch);
+        workload_.schedule = Schedule(1, kRate);
         client_ =
-            std::make_unique<MeasuredClient>(RobotPlan{0, "load-1-0", "r0", first_scan}, course_, hello_, "host:1");
+            std::make_unique<MeasuredClient>(RobotPlan{0, "load-1-0", "r0", first_scan}, workload_, hello_, "host:1");
     }
 
     /// Returns the messages that the robot sends at `now`.
@@ -84,7 +84,7 @@ protected:
     }
 
     std::vector<Scan> scans_;
-    Course course_;
+    Workload workload_;
     wire::Hello hello_{.client = "scanloom-load"};
     std::unique_ptr<FleetFigures> figures_ = std::make_unique<FleetFigures>();
     std::unique_ptr<MeasuredClient> client_;
@@ -279,7 +279,7 @@ TEST_F(MeasuredClientTest, MissingAcknowledgementsAreDetectedWhileSending) {
 }
 
 TEST_F(MeasuredClientTest, UnscheduledRobotSendsWithinTheCreditUntilTheEnd) {
-    course_.schedule.reset();
+    workload_.schedule.reset();
     link(0, 0, 1000);
     client_->due(MeasuredClient::kEndless, 0);
     const auto first = sent_seqs(0).size();

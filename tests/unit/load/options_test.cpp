@@ -1,6 +1,6 @@
 #include "load/app/options.hpp"
 
-#include "load/app/drive_course.hpp"
+#include "load/app/record_workload.hpp"
 #include "load/net/fleet.hpp"
 
 #include <gmock/gmock.h>
@@ -78,21 +78,21 @@ TEST(LoadOptions, HelpNamesEveryOption) {
 
 TEST(DriveCourse, EqualSeedsGiveEqualScansAndOthersDiffer) {
     auto options = std::get<LoadOptions>(parse({"--duration", "2", "--world", "room"}));
-    const auto course = drive_course(options);
-    ASSERT_TRUE(course);
-    EXPECT_EQ(course->scans.size(), 20U); // not more scans than are sent
-    EXPECT_EQ(course->beams, 684U);
-    EXPECT_EQ(drive_course(options)->scans.back().bytes(), course->scans.back().bytes());
+    const auto workload = record_workload(options);
+    ASSERT_TRUE(workload);
+    EXPECT_EQ(workload->scans.size(), 20U); // not more scans than are sent
+    EXPECT_EQ(workload->beams, 684U);
+    EXPECT_EQ(record_workload(options)->scans.back().bytes(), workload->scans.back().bytes());
     options.seed = 2;
-    EXPECT_NE(drive_course(options)->scans.back().bytes(), course->scans.back().bytes());
+    EXPECT_NE(record_workload(options)->scans.back().bytes(), workload->scans.back().bytes());
 }
 
 TEST(DriveCourse, RefusesABatchThatExceedsAFrame) {
     const auto options = std::get<LoadOptions>(parse({"--batch", "1024", "--laser", "wide", "--world", "room"}));
-    const auto course = drive_course(options);
-    ASSERT_FALSE(course);
-    EXPECT_EQ(course.error().code, Errc::kTooLarge);
-    EXPECT_THAT(course.error().message, HasSubstr("--batch 1024"));
+    const auto workload = record_workload(options);
+    ASSERT_FALSE(workload);
+    EXPECT_EQ(workload.error().code, Errc::kTooLarge);
+    EXPECT_THAT(workload.error().message, HasSubstr("--batch 1024"));
 }
 
 TEST(SpreadOver, EverySessionGetsEqualStartPositions) {

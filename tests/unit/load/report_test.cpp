@@ -1,6 +1,6 @@
+#include "load/core/figure_text.hpp"
 #include "load/core/live_view.hpp"
 #include "load/core/report.hpp"
-#include "load/core/words.hpp"
 
 #include <boost/json/parse.hpp>
 #include <gmock/gmock.h>
@@ -15,7 +15,7 @@ using testing::Each;
 using testing::HasSubstr;
 using testing::Not;
 
-TEST(Words, FormatsNumbersForReaders) {
+TEST(FigureText, FormatsNumbersForReaders) {
     EXPECT_EQ(grouped(0), "0");
     EXPECT_EQ(grouped(999), "999");
     EXPECT_EQ(grouped(1'000), "1,000");
@@ -176,7 +176,7 @@ TEST(Report, CoresAreAveragedOverTheObservedTime) {
     EXPECT_THAT(to_text(*made), HasSubstr("0.20 cores"));
 }
 
-TEST(Words, HarmlessRemovesControlCharacters) {
+TEST(FigureText, HarmlessRemovesControlCharacters) {
     EXPECT_EQ(harmless("a\x1b[31mred\r\nline\x7f, caf\u00e9"), "a?[31mred??line?, caf\u00e9");
 }
 

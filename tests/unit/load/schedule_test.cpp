@@ -1,4 +1,4 @@
-#include "load/core/course.hpp"
+#include "load/core/workload.hpp"
 
 #include <gtest/gtest.h>
 

@@ -62,7 +62,7 @@ protected:
     RunClock clock_;
     AudienceFigures figures_;
     AudienceFigures after_refusal_;
-    OnlookerShared shared_{
+    AudienceShared shared_{
         clock_, {{"127.0.0.1", std::to_string(acceptor_.local_endpoint().port())}, nullptr, ""}, figures_};
     std::string target_;
 };

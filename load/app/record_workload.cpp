@@ -1,4 +1,4 @@
-#include "load/app/drive_course.hpp"
+#include "load/app/record_workload.hpp"
 
 #include "common/wire/frame_decoder.hpp"
 #include "load/core/measured_client.hpp"
@@ -27,21 +27,21 @@ Result<sim::Simulator> make_simulator(const LoadOptions& options) {
     return sim::Simulator(std::move(simulator), std::make_unique<sim::WallFollower>());
 }
 
-Result<> check_batch(const Course& course) {
+Result<> check_batch(const Workload& workload) {
     std::vector<wire::NumberedScan> batch;
-    for (std::uint64_t i = 0; i < course.batch; ++i) {
-        batch.push_back({&course.scans.front(), MeasuredClient::kEndless, 1.0}); // the longest encoding of a number
+    for (std::uint64_t i = 0; i < workload.batch; ++i) {
+        batch.push_back({&workload.scans.front(), MeasuredClient::kEndless, 1.0}); // the longest encoding of a number
     }
     const std::size_t size = wire::batch_frame_size(batch);
     if (size <= wire::kFrameBytesMax) return {};
     return Error{Errc::kTooLarge,
                  fmt::format("--batch {}: a frame of so many scans has {} bytes, at most {} are allowed; use fewer",
-                             course.batch, size, wire::kFrameBytesMax)};
+                             workload.batch, size, wire::kFrameBytesMax)};
 }
 
 } // namespace
 
-Result<Course> drive_course(const LoadOptions& options) {
+Result<Workload> record_workload(const LoadOptions& options) {
     auto simulator = make_simulator(options);
     if (!simulator) return simulator.error();
     const bool is_paced = options.rate > 0.0;
@@ -50,10 +50,10 @@ Result<Course> drive_course(const LoadOptions& options) {
     std::vector<Scan> scans;
     for (std::uint64_t i = 0; i < count; ++i) scans.push_back(simulator->next_scan());
     const double rate = is_paced ? options.rate : 1.0 / sim::kScanPeriod;
-    Course course = make_course(*simulator->sensors().front(), scans, rate, options.batch);
-    if (is_paced) course.schedule = Schedule(options.robots, options.rate);
-    if (auto ok = check_batch(course); !ok) return ok.error();
-    return course;
+    Workload workload = make_workload(*simulator->sensors().front(), scans, rate, options.batch);
+    if (is_paced) workload.schedule = Schedule(options.robots, options.rate);
+    if (auto ok = check_batch(workload); !ok) return ok.error();
+    return workload;
 }
 
 } // namespace scanloom::load

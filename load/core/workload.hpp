@@ -52,7 +52,7 @@ private:
 };
 
 /// What all robots do: which scans they send, again and again, and when. Constant during a run.
-struct Course {
+struct Workload {
     std::vector<wire::PreparedScan> scans; ///< one tour through the world, in driving order
     std::size_t beams = 0;                 ///< per scan
     std::shared_ptr<const Sensor> sensor;
@@ -63,10 +63,10 @@ struct Course {
 
 /// Prepares the scans of a sensor.
 /// Pre: `scans` is not empty; batch > 0; stamp_rate > 0.
-[[nodiscard]] Course make_course(const Sensor& sensor, const std::vector<Scan>& scans, double stamp_rate,
-                                 std::uint32_t batch);
+[[nodiscard]] Workload make_workload(const Sensor& sensor, const std::vector<Scan>& scans, double stamp_rate,
+                                     std::uint32_t batch);
 
-/// Returns scan `seq` of a robot that starts at scan `first` of the course. The result is the same at each call.
-[[nodiscard]] wire::NumberedScan scan_at(const Course& course, std::size_t first, std::uint64_t seq) noexcept;
+/// Returns scan `seq` of a robot that starts at scan `first` of the workload. The result is the same at each call.
+[[nodiscard]] wire::NumberedScan scan_at(const Workload& workload, std::size_t first, std::uint64_t seq) noexcept;
 
 } // namespace scanloom::load

@@ -1,4 +1,4 @@
-#include "load/core/words.hpp"
+#include "load/core/figure_text.hpp"
 
 #include <fmt/format.h>
 
