@@ -11,8 +11,8 @@ const kRetryMs = 500;
 const retries = new EventTarget();
 
 /** Ends all waits, because a retry may succeed now. */
-export function hurry(): void {
-  retries.dispatchEvent(new Event('hurry'));
+export function retryNow(): void {
+  retries.dispatchEvent(new Event('retry'));
 }
 
 /**
@@ -77,7 +77,7 @@ function pause(durationMs: number, signal: AbortSignal): Promise<void> {
     const timer = setTimeout(finish, durationMs);
     signal.addEventListener('abort', finish, { signal: done.signal });
     window.addEventListener('online', finish, { signal: done.signal });
-    retries.addEventListener('hurry', finish, { signal: done.signal });
+    retries.addEventListener('retry', finish, { signal: done.signal });
     document.addEventListener('visibilitychange', () => document.hidden || finish(), { signal: done.signal });
   });
 }

@@ -2,7 +2,7 @@
 import { onUnauthorized } from './api/http';
 import { fetchLogin, signIn, signOut, type Login } from './api/login';
 import { el, setText } from './dom';
-import { hurry } from './poll';
+import { retryNow } from './poll';
 import { FormDialog } from './sessions/form_dialog';
 
 export class SignIn {
@@ -64,7 +64,7 @@ export class SignIn {
     const login = await signIn(this.secret.value.trim(), signal);
     this.secret.value = '';
     this.show(login);
-    hurry();
+    retryNow();
   }
 
   private show({ token }: Login): void {

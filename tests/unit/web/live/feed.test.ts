@@ -5,7 +5,7 @@ import { writeLiveEvent } from 'virtual:live-protocol';
 import type { Point } from '../../../../web/src/api/types';
 import { Feed } from '../../../../web/src/live/feed';
 import type { Trails } from '../../../../web/src/live/trails';
-import { hurry } from '../../../../web/src/poll';
+import { retryNow } from '../../../../web/src/poll';
 
 /** The page's newest connection. */
 let socket: FakeSocket;
@@ -118,7 +118,7 @@ describe('a feed', () => {
     world.id = 'second';
     socket.sendEvent('second', 5);
     await until(() => {
-      hurry();
+      retryNow();
       return world.opened === 2;
     });
     socket.sendEvent('second', 5);
