@@ -2,6 +2,7 @@
 
 #include "core/classify/bit_plane.hpp"
 
+#include <boost/iterator/counting_iterator.hpp>
 #include <boost/pending/disjoint_sets.hpp>
 
 #include <algorithm>
@@ -9,7 +10,6 @@
 #include <cstring>
 #include <functional>
 #include <limits>
-#include <ranges>
 
 namespace scanloom::classify {
 namespace {
@@ -107,9 +107,9 @@ Sets connect(const std::vector<Run>& runs) {
             sets.union_set(above, other);
         }
     }
-    const auto all = std::views::iota(std::size_t{0}, runs.size());
-    sets.compress_sets(all.begin(), all.end());
-    sets.normalize_sets(all.begin(), all.end());
+    using Index = boost::counting_iterator<std::size_t>;
+    sets.compress_sets(Index(0), Index(runs.size()));
+    sets.normalize_sets(Index(0), Index(runs.size()));
     return sets;
 }
 
