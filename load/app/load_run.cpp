@@ -74,7 +74,7 @@ LoadRun::LoadRun(asio::io_context& io, const LoadOptions& options, const Workloa
       sessions_(session_names(options)), robots_(spread_over(sessions_, options.robots, workload.scans.size())),
       http_(io.get_executor(), http), fleet_(fleet_plan(options), robots_, clock_, workload_, link_),
       audience_({options.viewers, options.tile_readers, options.tile_rate, http, sessions_}, clock_) {
-    report_.settings = options;
+    report_.settings = static_cast<const RunSettings&>(options);
     report_.settings.beams = workload.beams;
     report_.evidence.verify = options.verify;
     report_.evidence.sessions = options.sessions;

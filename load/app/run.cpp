@@ -31,7 +31,7 @@ constexpr std::uint64_t kDescriptorsBesides = 64; ///< for threads, files and th
 Result<HttpPlace> http_place(const LoadOptions& options, const std::string& token) {
     auto tls = tls_of(options, options.http.tls);
     if (!tls) return tls.error();
-    return HttpPlace{options.http, std::move(*tls), token};
+    return HttpPlace{static_cast<const net::Address&>(options.http), std::move(*tls), token};
 }
 
 Result<RobotLinkOptions> link_options(const LoadOptions& options) {

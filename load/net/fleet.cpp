@@ -73,7 +73,7 @@ std::unique_ptr<Shard::Look> Shard::look() {
 }
 
 Shard::Progress Shard::progress() {
-    return on_thread([this] { return Progress{figures_, troubles_.newest}; });
+    return on_thread([this] { return Progress{static_cast<const FleetCounts&>(figures_), troubles_.newest}; });
 }
 
 void Shard::Progress::add(const Progress& other) {
