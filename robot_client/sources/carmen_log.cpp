@@ -183,7 +183,7 @@ void CarmenLog::Indexer::order_scans(Index& index) {
     index.scan_count = static_cast<std::uint32_t>(used.size());
     index.places.assign(lines_.size(), kUnused);
     for (std::uint32_t place = 0; place < used.size(); ++place) index.places[used[scans.order[place]]] = place;
-    index.stamps = scans;
+    index.stamps = static_cast<const StampReport&>(scans);
     if (!scans.is_of_stamps) hash_.update("with jitter in its place\n"); // "carmen 1" alone: strictly by stamp
 }
 
