@@ -92,7 +92,7 @@ describe('a robot that streams to the server', () => {
   });
 
   it('leaves its map and trail after it has stopped', async () => {
-    await hasText(page, '[data-robot="r1"] .row-detail', /[1-9]\d\.\d m/);
+    await hasText(page, '[data-robot="r1"] .row-detail', /[1-9]\d+(\.\d)? m/);
     await keepPicture(page, 'live-light');
     await colourScheme(page, 'dark');
     await showsColour(page, '--cell-free');
