@@ -26,8 +26,8 @@ BitGrid cells_of(const MapCells& map, MapCell kind) {
     return cells;
 }
 
-/// Returns the cells of which a point may be nearer than `cells` cells to a point of a solid one. Their Chebyshev
-/// distances are at most `cells` rounded up; no other metric gives more.
+/// Returns the cells that may be nearer than `cells` cells to a solid cell, measured between their nearest points. It
+/// selects by the Chebyshev distance, up to `cells` rounded up: no other metric gives a smaller distance.
 BitGrid cells_near(const BitGrid& solids, double cells) {
     const auto reach = static_cast<std::int32_t>(std::ceil(cells - 1e-9));
     return planning::dilated(solids, std::vector(static_cast<std::size_t>(reach) + 1, reach));

@@ -15,13 +15,14 @@ namespace scanloom::limits {
 /// Threads: any thread.
 class MemoryBudget {
 public:
-    /// Creates a budget of which nothing is taken.
+    /// Creates a budget whose pages are all free.
     /// @param total  pages
     explicit MemoryBudget(std::size_t total)
         : total_(static_cast<std::int64_t>(total)), free_(static_cast<std::int64_t>(total)) {}
 
-    /// Takes `pages` (>= 0) if that many are free. @return whether they were taken; if not, none were
+    /// Takes pages if that many are free.
     /// @param pages  0 or more
+    /// @return whether the pages were taken; if not, none were
     [[nodiscard]] bool take(std::int64_t pages) noexcept {
         auto free = free_.load();
         while (pages <= free) {
@@ -63,8 +64,9 @@ public:
     MemoryShare& operator=(const MemoryShare&) = delete;
     ~MemoryShare() { give_back(taken_); }
 
-    /// Takes `pages` (>= 0) from every budget, or from none if one of them has too few. @return whether they were taken
+    /// Takes `pages` (>= 0) from every budget, or from none if one of them has too few.
     /// @param pages  0 or more
+    /// @return whether the pages were taken
     [[nodiscard]] bool take(std::int64_t pages) noexcept {
         if (pages == 0) return true; // even if the free count is negative
         for (auto budget = budgets_.begin(); budget != budgets_.end(); ++budget) {

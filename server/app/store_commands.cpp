@@ -158,7 +158,7 @@ fs::path sibling_path(const fs::path& directory, const char* ending) {
 std::string line_of(const sessions::RepairedSession& session) {
     auto line = fmt::format("{}: {} entries kept", session.name, session.kept);
     if (session.missing > 0) line += fmt::format(", {} lost", session.missing);
-    if (session.placeholders > 0) line += fmt::format(" ({} lost scans replaced by empty ones)", session.placeholders);
+    if (session.empty_scans > 0) line += fmt::format(" ({} lost scans replaced by empty ones)", session.empty_scans);
     if (session.set_aside > 0) {
         line += fmt::format(", {} that cannot be applied in {}", session.set_aside, session.aside.native());
     }
@@ -170,7 +170,7 @@ struct Sum {
     std::uint64_t sessions = 0;
     std::uint64_t kept = 0;
     std::uint64_t missing = 0;
-    std::uint64_t placeholders = 0;
+    std::uint64_t empty_scans = 0;
     std::uint64_t set_aside = 0;
     std::size_t damaged_files = 0; // of the old store
 
@@ -178,7 +178,7 @@ struct Sum {
         ++sessions;
         kept += session.kept;
         missing += session.missing;
-        placeholders += session.placeholders;
+        empty_scans += session.empty_scans;
         set_aside += session.set_aside;
     }
 };
@@ -223,7 +223,7 @@ ExitCode repair_store(const ServerOptions& options) {
            {"sessions", sum->sessions},
            {"kept", sum->kept},
            {"lost", sum->missing},
-           {"stood_in", sum->placeholders},
+           {"stood_in", sum->empty_scans},
            {"set_aside", sum->set_aside},
            {"seconds", seconds_since(begin)}});
     return kExitDone;

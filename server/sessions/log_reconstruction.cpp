@@ -29,16 +29,16 @@ std::vector<LogEntry> LogReconstruction::add(Revision revision, LogEntry entry) 
     std::vector<LogEntry> entries;
     if (const auto* taken = std::get_if<ScanTaken>(&entry)) {
         if (!fits(*taken)) return {};
-        entries = placeholders_before(*taken);
+        entries = empty_scans_before(*taken);
     }
-    for (const auto& placeholder : entries) {
-        if (!rules_.add(placeholder)) return {}; // cannot happen: their numbers are consecutive
+    for (const auto& empty_scan : entries) {
+        if (!rules_.add(empty_scan)) return {}; // cannot happen: their numbers are consecutive
     }
     if (!rules_.add(entry)) return {};
     if (const auto* described = std::get_if<SensorDescribed>(&entry)) {
         sensors_[{described->robot, described->sensor.id}] = described->sensor;
     }
-    placeholders_ += entries.size();
+    empty_scans_ += entries.size();
     entries.push_back(std::move(entry));
     return entries;
 }
@@ -65,10 +65,10 @@ bool LogReconstruction::fits(const ScanTaken& taken) const {
     const auto sensor = sensors_.find({taken.robot, taken.scan.sensor});
     if (sensor == sensors_.end() || !wire::check_scan(taken.scan, sensor->second)) return false;
     const auto last_seq = rules_.robots()[taken.robot].last_seq;
-    return taken.scan.seq > last_seq && taken.scan.seq - last_seq - 1 <= missing_ - placeholders_;
+    return taken.scan.seq > last_seq && taken.scan.seq - last_seq - 1 <= missing_ - empty_scans_;
 }
 
-std::vector<LogEntry> LogReconstruction::placeholders_before(const ScanTaken& taken) {
+std::vector<LogEntry> LogReconstruction::empty_scans_before(const ScanTaken& taken) {
     std::vector<LogEntry> entries;
     for (auto seq = rules_.robots()[taken.robot].last_seq + 1; seq < taken.scan.seq; ++seq) {
         entries.emplace_back(std::in_place_type<ScanTaken>, ScanTaken{taken.robot, blank(taken.scan, seq)});

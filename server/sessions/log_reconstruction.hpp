@@ -26,7 +26,7 @@ public:
     [[nodiscard]] std::vector<LogEntry> add(Revision revision, LogEntry entry);
 
     /// Returns the number of lost scans that were replaced by empty ones.
-    [[nodiscard]] std::uint64_t placeholders() const noexcept { return placeholders_; }
+    [[nodiscard]] std::uint64_t empty_scans() const noexcept { return empty_scans_; }
 
     /// Returns the number of entries that are missing in the old log before the last one added.
     [[nodiscard]] std::uint64_t missing() const noexcept { return missing_; }
@@ -34,14 +34,14 @@ public:
 private:
     [[nodiscard]] bool renumber(LogEntry& entry);
     [[nodiscard]] bool fits(const ScanTaken& taken) const;
-    [[nodiscard]] std::vector<LogEntry> placeholders_before(const ScanTaken& taken);
+    [[nodiscard]] std::vector<LogEntry> empty_scans_before(const ScanTaken& taken);
 
     LogRules rules_;
     std::map<RobotIndex, RobotIndex> robots_;                        // old to new
     std::map<std::pair<RobotIndex, std::uint32_t>, Sensor> sensors_; // by new index and sensor id
     Revision last_ = 0;
     std::uint64_t missing_ = 0;
-    std::uint64_t placeholders_ = 0;
+    std::uint64_t empty_scans_ = 0;
 };
 
 } // namespace scanloom::sessions

@@ -164,8 +164,8 @@ Result<RepairedSession> repair_session(const store::DamagedStore& from, store::S
     if (!read) return read.error();
     if (auto written = kept.write(); !written) return written.error();
     if (auto closed = set_aside.close(); !closed) return closed.error();
-    repaired.kept = kept.end() - reconstruction.placeholders();
-    repaired.placeholders = reconstruction.placeholders();
+    repaired.kept = kept.end() - reconstruction.empty_scans();
+    repaired.empty_scans = reconstruction.empty_scans();
     repaired.missing = reconstruction.missing();
     repaired.set_aside = set_aside.count();
     if (repaired.set_aside == 0) repaired.aside.clear();

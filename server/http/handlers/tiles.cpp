@@ -1,6 +1,7 @@
 #include "server/http/handlers/handlers.hpp"
 
 #include "server/http/handlers/lookup.hpp"
+#include "server/http/handlers/parameters.hpp"
 #include "server/http/header_fields.hpp"
 #include "server/http/text.hpp"
 #include "server/tiles/map_image.hpp"

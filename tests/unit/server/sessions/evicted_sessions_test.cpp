@@ -60,6 +60,21 @@ protected:
         EXPECT_TRUE(session) << session.error().message;
         return session ? testing_support::digests_of(*(*session)->snapshot()) : "";
     }
+
+    /// Expects that only one session is listed, with the facts that its maps had.
+    void expect_listed_as(const mapping::Snapshot& maps) {
+        const auto listed = registry_->all();
+        ASSERT_THAT(listed, SizeIs(1));
+        const auto& facts = *listed[0].summary.facts;
+        EXPECT_EQ(facts.revision, maps.revision);
+        EXPECT_EQ(facts.bounds, maps.bounds);
+        ASSERT_THAT(facts.robots, SizeIs(1));
+        EXPECT_EQ(facts.robots[0].name, "r");
+        EXPECT_EQ(facts.robots[0].scan_count, 7U);
+        EXPECT_EQ(facts.robots[0].last_seq, 7U);
+        EXPECT_EQ(facts.robots[0].pose, maps.robots[0].pose);
+        EXPECT_EQ(facts.robots[0].stamp, maps.robots[0].stamp);
+    }
 };
 
 TEST_F(EvictedSessions, AreEqualAfterLoading) {
@@ -77,17 +92,7 @@ TEST_F(EvictedSessions, AreListedWithTheirLastSummary) {
     create_unused("a", 7);
     const auto before = registry_->load("a").value()->snapshot();
     evict({"a"});
-    const auto listed = registry_->all();
-    ASSERT_THAT(listed, SizeIs(1));
-    const auto& facts = *listed[0].summary.facts;
-    EXPECT_EQ(facts.revision, before->revision);
-    EXPECT_EQ(facts.bounds, before->bounds);
-    ASSERT_THAT(facts.robots, SizeIs(1));
-    EXPECT_EQ(facts.robots[0].name, "r");
-    EXPECT_EQ(facts.robots[0].scan_count, 7U);
-    EXPECT_EQ(facts.robots[0].last_seq, 7U);
-    EXPECT_EQ(facts.robots[0].pose, before->robots[0].pose);
-    EXPECT_EQ(facts.robots[0].stamp, before->robots[0].stamp);
+    expect_listed_as(*before);
 }
 
 TEST_F(EvictedSessions, AreListedAfterARestartWithoutLoading) {
@@ -96,15 +101,8 @@ TEST_F(EvictedSessions, AreListedAfterARestartWithoutLoading) {
     registry_->drain();
     restart();
     EXPECT_THAT(registry_->list(), IsEmpty());
+    expect_listed_as(*before);
     const auto listed = registry_->all();
-    ASSERT_THAT(listed, SizeIs(1));
-    const auto& facts = *listed[0].summary.facts;
-    EXPECT_EQ(facts.revision, before->revision);
-    EXPECT_EQ(facts.bounds, before->bounds);
-    ASSERT_THAT(facts.robots, SizeIs(1));
-    EXPECT_EQ(facts.robots[0].scan_count, 7U);
-    EXPECT_EQ(facts.robots[0].pose, before->robots[0].pose);
-    EXPECT_EQ(facts.robots[0].stamp, before->robots[0].stamp);
     EXPECT_GT(listed[0].summary.pages, 0U);
     EXPECT_EQ(digest_after_loading("a"), digest);
     EXPECT_EQ(registry_->pages().used(), static_cast<std::int64_t>(listed[0].summary.pages));

@@ -63,7 +63,7 @@ struct ExpectedLog {
 TEST(LogReconstruction, KeepsEveryUsableScanAndItsSequenceNumber) {
     const auto log = log_of_three_robots();
     std::mt19937 random(1);
-    std::uint64_t placeholders = 0;
+    std::uint64_t empty_scans = 0;
     for (int round = 0; round < 60; ++round) {
         std::set<std::size_t> lost;
         for (std::size_t n = random() % 12; n > 0; --n) lost.insert(random() % log.size());
@@ -89,10 +89,10 @@ TEST(LogReconstruction, KeepsEveryUsableScanAndItsSequenceNumber) {
         const ExpectedLog expected(log, lost);
         EXPECT_EQ(scans, expected.scans);
         EXPECT_EQ(testing_support::digests_of(projection.snapshot()), expected.digests);
-        EXPECT_LE(reconstruction.placeholders(), lost.size());
-        placeholders += reconstruction.placeholders();
+        EXPECT_LE(reconstruction.empty_scans(), lost.size());
+        empty_scans += reconstruction.empty_scans();
     }
-    EXPECT_GT(placeholders, 100U);
+    EXPECT_GT(empty_scans, 100U);
 }
 
 TEST(LogReconstruction, UndamagedLogIsUnchanged) {
@@ -102,7 +102,7 @@ TEST(LogReconstruction, UndamagedLogIsUnchanged) {
         ASSERT_EQ(reconstruction.add(++revision, entry), std::vector<LogEntry>{entry});
     }
     EXPECT_EQ(reconstruction.missing(), 0U);
-    EXPECT_EQ(reconstruction.placeholders(), 0U);
+    EXPECT_EQ(reconstruction.empty_scans(), 0U);
 }
 
 TEST(LogReconstruction, DropsScansAcrossAnImpossibleGap) {
