@@ -5,28 +5,15 @@
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
 #include <boost/asio/post.hpp>
-#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 namespace scanloom::ingest {
 namespace asio = boost::asio;
-namespace {
-
-/// Bound on connections beyond the limit that stay open to receive the Error; more are closed without one.
-constexpr std::size_t kTurnedAwayMax = 64;
-
-wire::LinkError too_many(std::size_t links) {
-    return {
-        {Errc::kOverloaded, fmt::format("{} robots are connected, the most this server takes; try again later", links)},
-        true};
-}
-
-} // namespace
 
 IngestServer::IngestServer(asio::io_context& io, const asio::ip::tcp::endpoint& endpoint, LinkServices services,
                            const IngestConfig& config)
     : io_(io), acceptor_(asio::make_strand(io), endpoint), port_(acceptor_.local_endpoint().port()),
-      services_(services), config_(config) {
+      services_(services), config_(config), limits_(config.links_max, config.greeting_max) {
     services_.may_wait = asio::make_strand(services.may_wait);
 }
 
@@ -45,63 +32,46 @@ void IngestServer::stop() {
 }
 
 void IngestServer::on_accepted(asio::ip::tcp::socket socket) {
-    const bool full = count(State::kServed) >= config_.links_max;
-    if (full && services_.audit.admit_log_line())
+    using Admission = ConnectionLimits::Admission;
+    const auto [admission, id, oldest] = limits_.on_accepted();
+    if (admission != Admission::kServe && services_.audit.admit_log_line())
         spdlog::warn("a robot was refused: {} links are open, the most allowed", config_.links_max);
-    if (full && count(State::kLeaving) >= kTurnedAwayMax) return;
-    if (!full) make_room();
-    auto connection = std::make_shared<RobotConnection>(sockets::stream_over(std::move(socket), config_.tls), services_,
-                                                        config_.link);
-    const auto entry = std::make_shared<Entry>(Entry{connection, full ? State::kLeaving : State::kWithoutHello});
-    if (!full) without_hello_.push_back(entry);
-    ++count(entry->state);
+    if (admission == Admission::kClose) return;
+    if (oldest) cut_off(*oldest);
     services_.counters.links_open.Increment();
     try {
-        begin(entry, *connection);
+        auto connection = std::make_shared<RobotConnection>(sockets::stream_over(std::move(socket), config_.tls),
+                                                            services_, config_.link);
+        connections_.emplace(id, connection);
+        begin(id, *connection, admission == Admission::kServe);
     } catch (...) {
-        leave(entry);
+        leave(id);
         throw;
     }
 }
 
-void IngestServer::begin(const std::shared_ptr<Entry>& entry, RobotConnection& connection) {
-    const auto strand = acceptor_.get_executor();
-    auto on_hello = [this, strand, weak = std::weak_ptr(entry)] {
-        asio::post(strand, [this, weak] {
-            const auto known = weak.lock();
-            if (known && known->state == State::kWithoutHello) change(*known, State::kServed);
-        });
+void IngestServer::begin(ConnectionLimits::Id id, RobotConnection& connection, bool is_served) {
+    const auto on_strand = [strand = acceptor_.get_executor()](auto event) {
+        return [strand, event] { asio::post(strand, event); };
     };
-    auto on_closed = [this, strand, entry] { asio::post(strand, [this, entry] { leave(entry); }); };
-    if (entry->state == State::kLeaving) {
-        connection.turn_away(too_many(config_.links_max), std::move(on_closed));
+    auto on_closed = on_strand([this, id] { leave(id); });
+    if (is_served) {
+        connection.serve(on_strand([this, id] { limits_.on_hello(id); }), std::move(on_closed));
     } else {
-        connection.serve(std::move(on_hello), std::move(on_closed));
+        connection.turn_away(limits_.too_many(), std::move(on_closed));
     }
 }
 
-/// Closes the oldest connection without a hello, as the one that is least likely to be a robot.
-void IngestServer::make_room() {
-    if (count(State::kWithoutHello) < config_.greeting_max) return;
-    const auto oldest = without_hello_.front();
+void IngestServer::cut_off(ConnectionLimits::Id id) {
     if (services_.audit.admit_log_line())
         spdlog::warn("a connection was closed: it has sent no hello, like {} others, the most allowed",
                      config_.greeting_max);
-    change(*oldest, State::kLeaving);
-    if (const auto connection = oldest->connection.lock()) connection->cut_off();
+    if (const auto connection = connections_[id].lock()) connection->cut_off();
 }
 
-void IngestServer::change(Entry& entry, State state) {
-    if (entry.state == State::kWithoutHello)
-        std::erase_if(without_hello_, [&](const auto& one) { return one.get() == &entry; });
-    --count(entry.state);
-    entry.state = state;
-    ++count(state);
-}
-
-void IngestServer::leave(const std::shared_ptr<Entry>& entry) {
-    change(*entry, State::kLeaving);
-    --count(State::kLeaving);
+void IngestServer::leave(ConnectionLimits::Id id) {
+    limits_.on_closed(id);
+    connections_.erase(id);
     services_.counters.links_open.Decrement();
 }
 

@@ -1,15 +1,15 @@
 #pragma once
 
+#include "server/ingest/connection_limits.hpp"
 #include "server/ingest/robot_connection.hpp"
 #include "server/sockets/listening_port.hpp"
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <list>
+#include <map>
 #include <memory>
 
 namespace scanloom::ingest {
@@ -24,9 +24,7 @@ struct IngestConfig {
 
 /// Listens for robots and serves each connection with a RobotConnection.
 ///
-/// Connections that have not sent a hello have their own limit, so that silent connections cannot keep robots out: a
-/// robot sends its hello at once. Connections that send it at the same moment may exceed links_max, by at most
-/// greeting_max.
+/// ConnectionLimits decides which connections are served.
 ///
 /// Sessions that robots create are created one at a time. However many robots wait for theirs, they occupy one thread
 /// of LinkServices::may_wait.
@@ -47,21 +45,10 @@ public:
     void stop();
 
 private:
-    /// Whether a connection has sent its hello.
-    enum class State { kWithoutHello, kServed, kLeaving };
-
-    /// An open connection.
-    struct Entry {
-        std::weak_ptr<RobotConnection> connection; // its pending operations own it
-        State state;
-    };
-
     void on_accepted(boost::asio::ip::tcp::socket socket);
-    void begin(const std::shared_ptr<Entry>& entry, RobotConnection& connection);
-    void make_room();
-    void change(Entry& entry, State state);
-    void leave(const std::shared_ptr<Entry>& entry);
-    [[nodiscard]] std::size_t& count(State of) { return counts_[static_cast<std::size_t>(of)]; }
+    void begin(ConnectionLimits::Id id, RobotConnection& connection, bool is_served);
+    void cut_off(ConnectionLimits::Id id);
+    void leave(ConnectionLimits::Id id);
 
     boost::asio::io_context& io_;
     boost::asio::ip::tcp::acceptor acceptor_;
@@ -70,8 +57,8 @@ private:
     IngestConfig config_;
 
     // On the acceptor's strand.
-    std::list<std::shared_ptr<Entry>> without_hello_; // oldest first
-    std::array<std::size_t, 3> counts_{};             // entries by state
+    ConnectionLimits limits_;
+    std::map<ConnectionLimits::Id, std::weak_ptr<RobotConnection>> connections_; // their pending operations own them
 };
 
 } // namespace scanloom::ingest

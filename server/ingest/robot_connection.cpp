@@ -20,6 +20,10 @@ using Protocol = link::ServerProtocol;
 RobotConnection::RobotConnection(net::LinkStream stream, LinkServices services,
                                  const link::ServerProtocolConfig& config)
     : stream_(std::move(stream)), services_(services), protocol_(config, Clock::now()), timer_(stream_.get_executor()),
+      permission_(services.authenticator, protocol_,
+                  [this](auth::Reason reason, const std::string& token, const std::string& session) {
+                      services_.audit.note({auth::Port::kRobot, reason, address_, token, session});
+                  }),
       unacknowledged_(services.counters) {
     boost::system::error_code ignored;
     const auto endpoint = stream_.socket().remote_endpoint(ignored);
@@ -163,15 +167,13 @@ void RobotConnection::perform(Protocol::AnswerRequest&& action) {
     if (refused) protocol_.on_request_refused(action.request, *refused);
 }
 
-void RobotConnection::perform(Protocol::RecordLimit&&) {
-    record_refusal(auth::Reason::kLimit, token_->name, credential_->session());
-}
+void RobotConnection::perform(Protocol::RecordLimit&&) { permission_.record_limit(); }
 
 void RobotConnection::perform(Protocol::Leave&&) {
     const auto& why = protocol_.ended_by();
     if (why) *is_gone_ = true;
     if (session_) session_->leave(shared_from_this());
-    credential_.reset();
+    permission_.release();
     if (why) services_.counters.failed(why->code).Increment();
 }
 
@@ -213,13 +215,14 @@ asio::awaitable<void> RobotConnection::join(std::shared_ptr<RobotConnection> sel
     });
 }
 
-/// Authenticates the robot before the session is looked up, so that a refused client does not learn which sessions
-/// exist.
 asio::awaitable<Result<Protocol::Joined>> RobotConnection::enter(const wire::Hello& hello) {
-    if (auto ok = authenticate(hello); !ok) co_return ok.error();
-    auto session = co_await session_for(hello, services_.sessions, sessions::creator_of(*token_), services_.may_wait);
-    if (!session && session.error().code == Errc::kFull)
-        record_refusal(auth::Reason::kLimit, token_->name, hello.session);
+    const auto on_change = [weak = weak_from_this()] {
+        if (const auto self = weak.lock()) self->post([](RobotConnection& to) { to.permission_.apply(Clock::now()); });
+    };
+    if (auto ok = permission_.request(hello, Clock::now(), on_change); !ok) co_return ok.error();
+    const auto creator = sessions::creator_of(*permission_.token());
+    auto session = co_await session_for(hello, services_.sessions, creator, services_.may_wait);
+    if (!session && session.error().code == Errc::kFull) permission_.record_limit();
     if (!session) co_return session.error();
     const auto joined = co_await join_session(**session, hello, shared_from_this());
     if (!joined) co_return joined.error();
@@ -230,42 +233,7 @@ asio::awaitable<Result<Protocol::Joined>> RobotConnection::enter(const wire::Hel
     co_return Protocol::Joined{sessions::tag_of(session_->info()), joined->last_durable_seq, joined->sensors};
 }
 
-Result<> RobotConnection::authenticate(const wire::Hello& hello) {
-    auto credential = services_.authenticator.let_drive(hello.token, hello.session, hello.robot);
-    if (!credential) {
-        const auto& why = credential.error();
-        record_refusal(why.reason, why.token, hello.session);
-        return prefixed("hello.token: ", why.error);
-    }
-    credential_ = std::move(*credential);
-    apply_permission();
-    if (protocol_.ended_by()) return *protocol_.ended_by();
-    credential_->when_changed([weak = weak_from_this()] {
-        if (const auto self = weak.lock()) self->post([](RobotConnection& to) { to.apply_permission(); });
-    });
-    return {};
-}
-
-/// Applies the token of the credential, which may have changed. Ends the link if the credential is no longer valid.
-void RobotConnection::apply_permission() {
-    if (!credential_) return;
-    if (auto token = credential_->token()) {
-        token_ = std::move(token);
-        const auto& limits = token_->limits;
-        protocol_.set_limits({token_->name, limits.bytes_per_second, limits.sensors, limits.beams}, Clock::now());
-        return;
-    }
-    const std::string name = token_ ? token_->name : std::string();
-    record_refusal(auth::Reason::kRevoked, name, credential_->session());
-    protocol_.fail({Errc::kUnauthorized,
-                    fmt::format("the token '{}' no longer permits this; ask the server's operator for another", name)});
-}
-
 // Logs ----------------------------------------------------------------------------------------------------------------
-
-void RobotConnection::record_refusal(auth::Reason reason, const std::string& token, const std::string& session) const {
-    services_.audit.note({auth::Port::kRobot, reason, address_, token, session});
-}
 
 void RobotConnection::log_end() const {
     const std::string who = robot_.empty() ? fmt::format("a link from {} without a valid hello ended:", peer_)
@@ -273,7 +241,7 @@ void RobotConnection::log_end() const {
     const auto& why = protocol_.ended_by();
     const std::string_view how = why ? std::string_view(why->message) : "goodbye";
     const log::Context about{session_ ? std::string_view(session_->info().name) : "", robot_, peer_};
-    if (token_) return log::info(about, "{} {}", who, how);
+    if (permission_.token()) return log::info(about, "{} {}", who, how);
     const auto not_logged = services_.audit.admit_log_line();
     if (!not_logged) return;
     const auto others =

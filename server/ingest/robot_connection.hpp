@@ -4,6 +4,7 @@
 #include "common/net/link_stream.hpp"
 #include "server/auth/audit_log.hpp"
 #include "server/auth/authenticator.hpp"
+#include "server/ingest/link_permission.hpp"
 #include "server/ingest/request_executor.hpp"
 #include "server/ingest/unacknowledged.hpp"
 #include "server/log/context.hpp"
@@ -80,9 +81,6 @@ private:
 
     static boost::asio::awaitable<void> join(std::shared_ptr<RobotConnection> self, wire::Hello hello);
     boost::asio::awaitable<Result<link::ServerProtocol::Joined>> enter(const wire::Hello& hello);
-    [[nodiscard]] Result<> authenticate(const wire::Hello& hello);
-    void apply_permission();
-    void record_refusal(auth::Reason reason, const std::string& token, const std::string& session) const;
     void log_end() const;
 
     net::LinkStream stream_;
@@ -99,8 +97,7 @@ private:
     boost::asio::steady_timer timer_;
     Clock::time_point timer_expiry_ = Clock::time_point::max(); // max: the timer is not running
 
-    std::shared_ptr<auth::Credential> credential_; // from the hello to the end
-    auth::TokenRef token_;                         // that last permitted the link; null before the hello
+    LinkPermission permission_;
     std::string robot_;
     std::shared_ptr<sessions::Session> session_; // joined
     RobotIndex robot_index_ = 0;                 // in the session
