@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <utility>
@@ -64,8 +65,9 @@ struct Authenticator::Ledger : std::enable_shared_from_this<Authenticator::Ledge
     using Robots = std::map<std::string, std::size_t>;
 
     mutable std::mutex mutex;
-    std::shared_ptr<const TokenSet> tokens; // null: every client is admitted
-    std::map<const Credential*, std::weak_ptr<Credential>> credentials;
+    std::shared_ptr<const TokenSet> tokens;                         // null: every client is admitted
+    std::map<std::uint64_t, std::weak_ptr<Credential>> credentials; // in the order in which they were granted
+    std::uint64_t last_credential = 0;
     std::map<std::string, Robots, std::less<>> connected; // by the token's hash
 
     std::shared_ptr<const TokenSet> in_force() const {
@@ -87,19 +89,19 @@ struct Authenticator::Ledger : std::enable_shared_from_this<Authenticator::Ledge
 
     std::shared_ptr<Credential> give(const TokenRef& token, Purpose purpose, const std::string& session,
                                      const std::string& user) {
-        auto forget_it = [ledger = shared_from_this()](Credential* credential) {
-            ledger->forget(*credential);
+        auto forget_it = [ledger = shared_from_this(), number = ++last_credential](Credential* credential) {
+            ledger->forget(number, *credential);
             delete credential;
         };
         std::shared_ptr<Credential> credential(new Credential(token, purpose, session, user), std::move(forget_it));
-        credentials.emplace(credential.get(), credential);
+        credentials.emplace(last_credential, credential);
         if (purpose == Purpose::kDrive) ++connected[token->hash][user];
         return credential;
     }
 
-    void forget(const Credential& credential) {
+    void forget(std::uint64_t number, const Credential& credential) {
         const std::lock_guard lock(mutex);
-        credentials.erase(&credential);
+        credentials.erase(number);
         if (credential.purpose() != Purpose::kDrive) return;
         auto& robots = connected[credential.hash()];
         if (--robots[credential.user()] == 0) robots.erase(credential.user());
@@ -165,7 +167,7 @@ void Authenticator::replace(TokenSet tokens) {
     {
         const std::lock_guard lock(ledger_->mutex);
         ledger_->tokens = std::make_shared<const TokenSet>(std::move(tokens));
-        for (const auto& [key, weak] : ledger_->credentials) {
+        for (const auto& [number, weak] : ledger_->credentials) {
             auto credential = weak.lock();
             if (!credential) continue;
             auto token = found(ledger_->tokens, credential->hash());
