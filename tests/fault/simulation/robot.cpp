@@ -9,8 +9,8 @@ namespace scanloom::simulation {
 
 using namespace std::chrono_literals;
 
-Robot::Robot(World& world, fault::RobotPlan plan, Connect connect)
-    : world_(world), connect_(std::move(connect)),
+Robot::Robot(World& world, fault::RobotPlan plan, Connect connect, Secret secret, Explains explains)
+    : world_(world), connect_(std::move(connect)), secret_(std::move(secret)), explains_(std::move(explains)),
       laser_(std::make_shared<const Sensor>(testing_support::small_laser())) {
     standing_.plan = std::move(plan);
     start();
@@ -23,6 +23,8 @@ void Robot::start() {
     options.hello.session = standing_.plan.session;
     options.hello.create = fault::fleet_options();
     options.hello.client = "simulation";
+    options.hello.token = secret_();
+    hello_ = options.hello;
     buffer_.emplace(2'000 + world_.draw(20'000));
     options.batch_bytes_max = 200 + world_.draw(4'000);
     options.compress = world_.chance(0.3);
@@ -57,6 +59,7 @@ void Robot::crash() {
 
 void Robot::connect() {
     connection_ = connect_();
+    connected_ = world_.now();
     ++links_;
     if (!connection_) return lose({{Errc::kUnreachable, "no server listens"}, true});
     connection_->listen(Side::kRobot, {[this](std::string_view bytes) { hear(bytes); },
@@ -124,7 +127,7 @@ void Robot::lose(const wire::LinkError& why) {
     drop_connection();
     protocol_->close();
     if (why.retryable) return while_running(backoff_->next(), &Robot::connect);
-    standing_.outcome = why.error;
+    if (!explains_(hello_, why.error.code, connected_)) standing_.outcome = why.error;
     start_again();
 }
 

@@ -20,7 +20,12 @@ public:
     /// Returns a connection to the server, or null if no server listens.
     using Connect = std::function<std::shared_ptr<Connection>()>;
 
-    Robot(World& world, fault::RobotPlan plan, Connect connect);
+    /// Returns the token for a program that starts.
+    using Secret = std::function<std::string()>;
+    /// Returns whether the server had a reason at some time since `since` to refuse this robot for good.
+    using Explains = std::function<bool(const wire::Hello& hello, Errc code, Time since)>;
+
+    Robot(World& world, fault::RobotPlan plan, Connect connect, Secret secret, Explains explains);
     Robot(const Robot&) = delete;
     Robot& operator=(const Robot&) = delete;
 
@@ -28,7 +33,8 @@ public:
     void crash();
 
     [[nodiscard]] bool is_done() const { return done_; }
-    /// Returns the highest seq acknowledged as durable, and the newest of the errors that ended the program.
+    /// Returns the highest seq acknowledged as durable, and the newest of the errors that ended the program
+    /// without an explanation.
     [[nodiscard]] const fault::RobotStanding& standing() const { return standing_; }
 
 private:
@@ -47,17 +53,21 @@ private:
 
     World& world_;
     Connect connect_;
+    Secret secret_;
+    Explains explains_;
     fault::RobotStanding standing_;
     std::shared_ptr<const Sensor> laser_;
     std::uint64_t runs_ = 0;
     std::uint64_t links_ = 0;
     bool done_ = false;
 
+    wire::Hello hello_;                            // of the current run
     std::optional<robot::SendBuffer> buffer_;      // of the current run
     std::optional<link::ClientProtocol> protocol_; // of the current run; nullopt: the program is not running
     std::optional<robot::Backoff> backoff_;
     std::uint64_t handed_over_ = 0;
     std::shared_ptr<Connection> connection_;
+    Time connected_{};            // when connection_ was established
     Time watching_ = Time::max(); // the time of the next scheduled check
 };
 

@@ -33,10 +33,18 @@ TEST_F(SimulationTest, EqualSeedsGiveEqualRuns) {
 
 /// The row "simulation" runs more of them.
 TEST_F(SimulationTest, AcknowledgedScansAreKeptInEveryRun) {
+    fault::Outcome all;
     for (std::uint64_t seed = 1; seed <= 400; ++seed) {
         const auto ending = tell({.seed = seed});
-        EXPECT_TRUE(ending.outcome.passed()) << "seed " << seed;
+        EXPECT_TRUE(ending.outcome.passed())
+            << "seed " << seed << ": " << testing::PrintToString(ending.outcome.failures);
+        all.add(ending.outcome);
     }
+    for (const auto* refusal :
+         {"ended_full", "ended_too_large", "ended_unauthorized", "refused_limit", "refused_no_token", "refused_revoked",
+          "refused_too_many_links", "refused_unknown_token", "refused_without_hello", "refused_wrong_role",
+          "refused_wrong_session"})
+        EXPECT_GT(all.figures[refusal], 0U) << "never tried: " << refusal;
 }
 
 TEST_F(SimulationTest, DifferentSeedsGiveDifferentRuns) {

@@ -3,6 +3,7 @@
 #include "tests/fault/simulation/promises.hpp"
 #include "tests/fault/simulation/robot.hpp"
 #include "tests/fault/simulation/server.hpp"
+#include "tests/fault/simulation/tokens.hpp"
 #include "tests/fault/verification.hpp"
 #include "tests/support/log_reading.hpp"
 
@@ -28,6 +29,7 @@ struct Plot {
     std::uint64_t server_crashes = 0;
     std::uint64_t server_stops = 0;
     std::uint64_t robot_crashes = 0;
+    std::uint64_t token_edits = 0;
 };
 
 /// Returns 0 in half of the stories.
@@ -58,9 +60,14 @@ Plot plot_of(World& world, const Story& story) {
     plot.server.idle_after = world.chance(0.5) ? Duration(3s) : plot.server.idle_after;
     if (world.chance(0.3)) plot.server.pages_max = 14 + world.draw(6); // one session takes 6, and a scan may touch 4
     plot.server.idle_deadline = 10s;
+    if (world.chance(0.3)) {
+        plot.server.links_max = 1 + world.draw(2);
+        plot.server.greeting_max = 1 + world.draw(2);
+    }
     plot.server_crashes = world.draw(4);
     plot.server_stops = world.draw(3);
     plot.robot_crashes = world.draw(4);
+    plot.token_edits = world.draw(6);
     const auto robots = 1 + world.draw(3);
     for (std::uint64_t n = 0; n < robots; ++n) {
         plot.robots.push_back({fmt::format("session-{}", world.draw(2)), fmt::format("robot-{}", n),
@@ -72,18 +79,29 @@ Plot plot_of(World& world, const Story& story) {
 class Stage {
 public:
     explicit Stage(const Story& story)
-        : world_(story.seed, story.listener), plot_(plot_of(world_, story)), disk_(world_, plot_.disk) {}
+        : world_(story.seed, story.listener), plot_(plot_of(world_, story)), tokens_(world_, plot_.robots.size()),
+          disk_(world_, plot_.disk) {}
 
     Ending play() {
         start_server();
         for (const auto& plan : plot_.robots) {
-            robots_.push_back(std::make_unique<Robot>(world_, plan, [this] { return connect(); }));
+            const auto explains = [this](const wire::Hello& hello, Errc code, Time since) {
+                if (!tokens_.explains(hello, code, since)) return false;
+                ++ending_.outcome.figures[fmt::format("ended_{}", name_of(code))];
+                return true;
+            };
+            const auto secret = [this, n = robots_.size()] { return tokens_.secret_of(n); };
+            robots_.push_back(std::make_unique<Robot>(
+                world_, plan, [this] { return connect(); }, secret, explains));
         }
         plan_crashes();
+        plan_edits();
         calm_ = world_.now() + kTroubled;
         world_.at(calm_, [this] {
             disk_.calm();
             plot_.network = {};
+            tokens_.calm();
+            if (server_) server_->read_tokens();
         });
         const Time end = calm_ + kTimeToRecover;
         while (!(world_.now() >= calm_ && all_done())) {
@@ -94,7 +112,7 @@ public:
 
 private:
     void start_server() {
-        server_.emplace(world_, disk_, plot_.server,
+        server_.emplace(world_, disk_, plot_.server, tokens_,
                         [this](const std::string& robot, std::uint64_t seq) { promises_.say(robot, seq); });
     }
 
@@ -114,6 +132,16 @@ private:
         }
     }
 
+    /// The operator edits the tokens while the server runs, or while it does not.
+    void plan_edits() {
+        for (auto n = tokens_.is_open() ? 0 : plot_.token_edits; n > 0; --n) {
+            world_.after(world_.between(0s, kTroubled), [this] {
+                tokens_.edit();
+                if (server_) server_->read_tokens();
+            });
+        }
+    }
+
     void end_server(bool in_order) {
         if (!server_) return;
         if (in_order) server_->stop();
@@ -127,6 +155,7 @@ private:
     void check_promises() {
         ending_.outcome.add(promises_.check(disk_.durable(), plot_.robots));
         ending_.broken += promises_.count_broken(disk_.durable(), disk_.take_dropped());
+        tokens_.check_sessions(disk_.durable());
     }
 
     [[nodiscard]] bool all_done() const {
@@ -151,6 +180,7 @@ private:
             }
         }
         outcome.figures["server_ends"] = ends_;
+        outcome.add(tokens_.take_outcome());
         for (const auto& [name, members] : sessions) {
             const auto held = hold(name);
             if (held) outcome.add(fault::verify(*held, members, fault::fleet_options()));
@@ -187,6 +217,7 @@ private:
 
     World world_;
     Plot plot_;
+    Tokens tokens_;
     const bool is_forged_ = plot_.network.forge > 0.0; // allows errors of robots, but no lost scans
     Disk disk_;
     Promises promises_;
