@@ -66,6 +66,12 @@ public:
     /// Errors: those of check().
     [[nodiscard]] Result<> add(const LogEntry& entry);
 
+    /// Resets one robot to an earlier state, because its newest entries do not get into the log. revision() is not
+    /// changed.
+    /// @param robot  index in the session
+    /// @param state  the robot before those entries
+    void reset_robot(RobotIndex robot, LoggedRobot state) { robots_[robot] = std::move(state); }
+
     /// Returns the revision of the newest entry.
     [[nodiscard]] Revision revision() const noexcept { return revision_; }
 

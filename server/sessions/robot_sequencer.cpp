@@ -22,16 +22,20 @@ Error map_already_begun(const std::string& robot, const std::string& session) {
 } // namespace
 
 void RobotSequencer::restore(const mapping::ProjectionState& state) {
+    auto robots = pending_.robots();
+    robots.resize(state.robots.size());
+    pending_ = LogRules(state.revision, std::move(robots), {});
     members_.resize(state.robots.size());
-    for (std::size_t n = 0; n < members_.size(); ++n) restore(members_[n], state.robots[n]);
+    for (RobotIndex robot = 0; robot < members_.size(); ++robot) restore(robot, state.robots[robot]);
 }
 
-void RobotSequencer::restore(Member& member, const LoggedRobot& logged) {
-    const std::uint64_t lost = member.robot.last_seq - std::min(member.robot.last_seq, logged.last_seq);
-    counters_.scans_dropped += lost;
-    member.robot = logged;
-    member.durable_seq = logged.last_seq;
-    if (member.showed_seq > logged.last_seq) member.showed_seq = 0;
+void RobotSequencer::restore(RobotIndex robot, const LoggedRobot& durable) {
+    const std::uint64_t last_seq = pending_.robots()[robot].last_seq;
+    counters_.scans_dropped += last_seq - std::min(last_seq, durable.last_seq);
+    pending_.reset_robot(robot, durable);
+    Member& member = members_[robot];
+    member.durable_seq = durable.last_seq;
+    if (member.showed_seq > durable.last_seq) member.showed_seq = 0;
     member.under_way = 0;
 }
 
@@ -46,6 +50,7 @@ RobotSequencer::Member* RobotSequencer::member_of(const std::shared_ptr<RobotLis
 }
 
 PendingEntry RobotSequencer::submitted(Member& member, std::optional<LogEntry> entry, std::size_t bytes) {
+    if (entry) pending_.apply(*entry);
     ++member.under_way;
     return {index_of(member), std::move(entry), {}, bytes};
 }
@@ -55,7 +60,7 @@ PendingEntry RobotSequencer::submitted(Member& member, std::optional<LogEntry> e
 std::optional<PendingEntry> RobotSequencer::join(PendingJoin joining) {
     const auto& who = joining.who;
     auto known =
-        std::find_if(members_.begin(), members_.end(), [&](const Member& m) { return m.robot.name == who.robot; });
+        std::find_if(members_.begin(), members_.end(), [&](const Member& m) { return logged(m).name == who.robot; });
     if (known == members_.end() && members_.size() >= kRobotsMax) {
         joining.done(
             Error{Errc::kFull, fmt::format("session '{}' has {} robots already, the limit; use another session",
@@ -64,19 +69,16 @@ std::optional<PendingEntry> RobotSequencer::join(PendingJoin joining) {
     }
     const bool is_new = known == members_.end();
     Member& member = is_new ? members_.emplace_back() : *known;
-    if (is_new) {
-        member.robot.name = who.robot;
-    } else if (auto agrees = check_source(member, who.source); !agrees) {
-        joining.done(agrees.error());
-        return std::nullopt;
-    } else {
+    if (!is_new) {
+        if (auto agrees = check_source(logged(member), who.source); !agrees) {
+            joining.done(agrees.error());
+            return std::nullopt;
+        }
         fail(member, {Errc::kReplaced, fmt::format("robot '{}' of session '{}' connected again; this link is closed",
                                                    who.robot, info_.name)});
     }
     std::optional<PendingEntry> entry;
-    if (is_new || member.robot.source != who.source || member.robot.body_radius != who.body_radius) {
-        member.robot.source = who.source;
-        member.robot.body_radius = who.body_radius;
+    if (is_new || logged(member).source != who.source || logged(member).body_radius != who.body_radius) {
         entry = submitted(member, RobotJoined{index_of(member), who.robot, who.source, who.body_radius}, 0);
     }
     member.joining = std::move(joining);
@@ -86,8 +88,7 @@ std::optional<PendingEntry> RobotSequencer::join(PendingJoin joining) {
 
 /// Checks that a robot continues with the same source. Scans are identified by their sequence number only, so the scans
 /// of another recording would be taken for the rest of this one.
-Result<> RobotSequencer::check_source(const Member& member, const std::string& source) const {
-    const LoggedRobot& robot = member.robot;
+Result<> RobotSequencer::check_source(const LoggedRobot& robot, const std::string& source) const {
     if (robot.accepts(source)) return {};
     const auto in_words = [](const std::string& name) { return name.empty() ? "a live robot" : "'" + name + "'"; };
     return Error{Errc::kConflict,
@@ -103,7 +104,7 @@ void RobotSequencer::admit(Member& member) {
     member.listener = joining.listener;
     set_connected(member, true);
     Joined joined{index_of(member), member.durable_seq};
-    for (const auto& [id, known] : member.robot.sensors) joined.sensors.insert(id);
+    for (const auto& [id, known] : logged(member).sensors) joined.sensors.insert(id);
     joining.done(std::move(joined));
 }
 
@@ -128,7 +129,7 @@ void RobotSequencer::fail_all(const Error& error) {
 }
 
 void RobotSequencer::refuse(RobotIndex robot, const Error& error, const mapping::ProjectionState& state) {
-    restore(members_[robot], state.robots[robot]);
+    restore(robot, state.robots[robot]);
     fail(members_[robot], error);
 }
 
@@ -161,9 +162,8 @@ std::vector<PendingEntry> RobotSequencer::describe(const std::shared_ptr<RobotLi
         return entries;
     }
     std::optional<LogEntry> entry;
-    const auto* known = member->robot.find_sensor(sensor.id);
+    const auto* known = logged(*member).find_sensor(sensor.id);
     if (known == nullptr || *known->sensor != sensor) {
-        member->robot.sensors[sensor.id].sensor = std::make_shared<const Sensor>(sensor);
         entry = SensorDescribed{index_of(*member), std::move(sensor)};
     }
     entries.push_back(submitted(*member, std::move(entry), bytes));
@@ -182,20 +182,19 @@ std::vector<PendingEntry> RobotSequencer::take(const std::shared_ptr<RobotListen
     std::size_t n = 0;
     for (; n < scans.size() && !fault; ++n) {
         Scan& scan = scans[n];
-        if (scan.seq <= member->robot.last_seq) { // sent again after a reconnect
+        if (scan.seq <= logged(*member).last_seq) { // sent again after a reconnect
             ++counters_.scans_duplicates;
             continue;
         }
-        if (auto ok = check_next(*member, scan, is_mapped); !ok) {
+        if (auto ok = check_next(logged(*member), scan, is_mapped); !ok) {
             fault = prefixed(fmt::format("scan_batch.scans[{}].", n), ok.error());
             continue;
         }
-        const auto reach = mapping::reach_of(info_.config, *member->robot.find_sensor(scan.sensor)->sensor, scan);
+        const auto reach = mapping::reach_of(info_.config, *logged(*member).find_sensor(scan.sensor)->sensor, scan);
         if (auto ok = mapping::check_work(reach); !ok) {
             fault = prefixed(fmt::format("scan_batch.scans[{}].", n), ok.error());
             continue;
         }
-        member->robot.last_seq = scan.seq;
         if (member->showed_seq == 0 && !reach.cells.empty()) member->showed_seq = scan.seq;
         entries.push_back(submitted(*member, ScanTaken{index_of(*member), std::move(scan)}, 0));
         entries.back().reach = reach;
@@ -207,8 +206,7 @@ std::vector<PendingEntry> RobotSequencer::take(const std::shared_ptr<RobotListen
     return entries;
 }
 
-Result<> RobotSequencer::check_next(const Member& member, const Scan& scan, bool is_mapped) const {
-    const LoggedRobot& robot = member.robot;
+Result<> RobotSequencer::check_next(const LoggedRobot& robot, const Scan& scan, bool is_mapped) const {
     if (!robot.is_next(scan.seq)) {
         return Error{
             Errc::kOutOfOrder,

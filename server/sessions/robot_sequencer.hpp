@@ -1,6 +1,7 @@
 #pragma once
 
 #include "common/error/error.hpp"
+#include "common/scan/log_rules.hpp"
 #include "core/mapping/projection.hpp"
 #include "server/sessions/backlog.hpp"
 #include "server/sessions/listeners.hpp"
@@ -77,7 +78,6 @@ public:
 
 private:
     struct Member {
-        LoggedRobot robot; // as in the log after all submitted entries are appended
         std::shared_ptr<RobotListener> listener;
         std::optional<PendingJoin> joining;
         std::size_t under_way = 0; // entries submitted and not released
@@ -86,18 +86,20 @@ private:
     };
 
     [[nodiscard]] RobotIndex index_of(const Member& member) const;
+    [[nodiscard]] const LoggedRobot& logged(const Member& member) const { return pending_.robots()[index_of(member)]; }
     [[nodiscard]] Member* member_of(const std::shared_ptr<RobotListener>& listener);
     [[nodiscard]] PendingEntry submitted(Member& member, std::optional<LogEntry> entry, std::size_t bytes);
-    [[nodiscard]] Result<> check_source(const Member& member, const std::string& source) const;
-    [[nodiscard]] Result<> check_next(const Member& member, const Scan& scan, bool is_mapped) const;
-    void restore(Member& member, const LoggedRobot& logged);
+    [[nodiscard]] Result<> check_source(const LoggedRobot& robot, const std::string& source) const;
+    [[nodiscard]] Result<> check_next(const LoggedRobot& robot, const Scan& scan, bool is_mapped) const;
+    void restore(RobotIndex robot, const LoggedRobot& durable);
     void admit(Member& member);
     void fail(Member& member, const Error& error);
     void set_connected(const Member& member, bool connected);
 
     const SessionInfo& info_;
     SessionCounters& counters_;
-    std::vector<Member> members_; // by RobotIndex
+    LogRules pending_;            // the robots as in the log after all submitted entries are appended
+    std::vector<Member> members_; // by RobotIndex, as many as pending_.robots()
     std::uint64_t connection_changes_ = 0;
 
     mutable std::mutex connected_mutex_;
