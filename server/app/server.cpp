@@ -60,7 +60,7 @@ sessions::ReplayLimits replay_limits(std::size_t bytes) {
 } // namespace
 
 Server::Server(const ServerOptions& options, const ConnectionLimits& limits, std::unique_ptr<store::ScanLog> log)
-    : options_(options), limits_(limits), log_(std::move(log)), metrics_(kVersion), audit_(metrics_.refusals()),
+    : options_(options), limits_(limits), log_(std::move(log)), metrics_(kVersion), audit_(metrics_.registry()),
       pools_(options.threads), sessions_(*log_, {.compute = pools_.sessions,
                                                  .now = seconds_since_epoch,
                                                  .may_wait = pools_.checkpoints,

@@ -4,6 +4,7 @@
 #include "server/log/context.hpp"
 
 #include <fmt/format.h>
+#include <prometheus/family.h>
 
 #include <chrono>
 #include <string>
@@ -29,6 +30,19 @@ void tell(const RefusalTable::Line& line) {
 }
 
 } // namespace
+
+RefusalCounters::RefusalCounters(prometheus::Registry& registry) {
+    auto& family = prometheus::BuildCounter()
+                       .Name("scanloom_refusals_total")
+                       .Help("Refused connections and requests, by port and reason.")
+                       .Register(registry);
+    for (const auto port : kPorts) {
+        for (const auto reason : kReasons) {
+            counters_[static_cast<std::size_t>(port)][static_cast<std::size_t>(reason)] =
+                &family.Add({{"port", std::string(name_of(port))}, {"reason", std::string(name_of(reason))}});
+        }
+    }
+}
 
 double steady_seconds() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();

@@ -86,19 +86,6 @@ HttpCounters::HttpCounters(prometheus::Registry& registry)
     for (std::size_t i = 0; i < kClasses.size(); ++i) by_class_[i] = &family.Add({{"code", kClasses[i]}});
 }
 
-RefusalCounters::RefusalCounters(prometheus::Registry& registry) {
-    auto& family = prometheus::BuildCounter()
-                       .Name("scanloom_refusals_total")
-                       .Help("Refused connections and requests, by port and reason.")
-                       .Register(registry);
-    for (const auto port : auth::kPorts) {
-        for (const auto reason : auth::kReasons) {
-            counters_[static_cast<std::size_t>(port)][static_cast<std::size_t>(reason)] =
-                &family.Add({{"port", std::string(name_of(port))}, {"reason", std::string(name_of(reason))}});
-        }
-    }
-}
-
 Metrics::Metrics(std::string_view version) {
     prometheus::BuildGauge()
         .Name("scanloom_build_info")

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "common/error/error.hpp"
-#include "server/auth/refusals.hpp"
 
 #include <prometheus/counter.h>
 #include <prometheus/gauge.h>
@@ -115,20 +114,6 @@ private:
     std::array<prometheus::Counter*, 5> by_class_;
 };
 
-/// Counters of refused connections and requests on both ports.
-/// Threads: any thread.
-class RefusalCounters {
-public:
-    explicit RefusalCounters(prometheus::Registry& registry);
-
-    [[nodiscard]] prometheus::Counter& of(auth::Port port, auth::Reason reason) const {
-        return *counters_[static_cast<std::size_t>(port)][static_cast<std::size_t>(reason)];
-    }
-
-private:
-    std::array<std::array<prometheus::Counter*, auth::kReasons.size()>, auth::kPorts.size()> counters_{};
-};
-
 /// Owns every counter of the process. Label values come from fixed lists; names chosen by users are never labels.
 class Metrics {
 public:
@@ -136,7 +121,9 @@ public:
 
     [[nodiscard]] IngestCounters& ingest() noexcept { return ingest_; }
     [[nodiscard]] HttpCounters& http() noexcept { return http_; }
-    [[nodiscard]] RefusalCounters& refusals() noexcept { return refusals_; }
+
+    /// Returns the registry, in which other folders register families of their own.
+    [[nodiscard]] prometheus::Registry& registry() noexcept { return registry_; }
 
     /// Returns the current values of all families.
     [[nodiscard]] std::vector<prometheus::MetricFamily> collect() const;
@@ -145,7 +132,6 @@ private:
     prometheus::Registry registry_;
     IngestCounters ingest_{registry_};
     HttpCounters http_{registry_};
-    RefusalCounters refusals_{registry_};
 };
 
 } // namespace scanloom::metrics

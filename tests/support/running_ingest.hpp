@@ -47,7 +47,7 @@ public:
     void stop_accepting() { server_->stop(); }
     [[nodiscard]] sessions::SessionRegistry& sessions() { return sessions_; }
     [[nodiscard]] metrics::IngestCounters& counters() { return metrics_.ingest(); }
-    [[nodiscard]] metrics::RefusalCounters& refusals() { return metrics_.refusals(); }
+    [[nodiscard]] const auth::RefusalCounters& refusals() { return audit_.counters(); }
     [[nodiscard]] auth::Authenticator& authenticator() { return authenticator_; }
     [[nodiscard]] guidance::GoalAssignments& goals() { return goals_; }
     [[nodiscard]] guidance::Locator& locator() { return locator_; }
@@ -70,7 +70,7 @@ private:
     boost::asio::thread_pool compute_{2};
     metrics::Metrics metrics_{"test"};
     auth::Authenticator authenticator_;
-    auth::AuditLog audit_{metrics_.refusals()};
+    auth::AuditLog audit_{metrics_.registry()};
     boost::asio::thread_pool may_wait_{2};
     boost::asio::thread_pool planning_{1};
     boost::asio::thread_pool locating_{1};

@@ -80,6 +80,10 @@ TEST(SourceRules, PureFoldersMustNotIncludeSystemHeaders) {
     EXPECT_THAT(including("server/sessions/session.cpp", "<thread>"), IsEmpty());
     EXPECT_THAT(including("server/live/core/event_encoder.cpp", "<chrono>"), testing::SizeIs(1));
     EXPECT_THAT(including("server/live/viewer.cpp", "<chrono>"), IsEmpty());
+    EXPECT_THAT(including("common/link/server_protocol.cpp", "<chrono>"), IsEmpty());
+    EXPECT_THAT(including("common/link/server_protocol.cpp", "<mutex>"), testing::SizeIs(1));
+    EXPECT_THAT(complaints_about("common/link/link.cpp", "const auto now = std::chrono::steady_clock::now();\n"),
+                testing::SizeIs(1));
 }
 
 TEST(SourceRules, NewFolderNeedsARow) {

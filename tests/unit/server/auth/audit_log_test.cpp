@@ -38,33 +38,33 @@ private:
 class AuditTest : public testing::Test {
 protected:
     prometheus::Registry registry_;
-    metrics::RefusalCounters counters_{registry_};
     Logged logged_;
     double now_ = 100.0;
 };
 
 TEST_F(AuditTest, RefusalIsOneLine) {
-    AuditLog audit(counters_, [this] { return now_; });
+    AuditLog audit(registry_, [this] { return now_; });
     audit.note({Port::kRobot, Reason::kWrongSession, "192.0.2.7", "depot", "lab"});
     EXPECT_EQ(logged_.text(), "warning event=refused port=robot who=192.0.2.7 token=depot reason=wrong_session "
                               "session=lab count=1\n");
 }
 
 TEST_F(AuditTest, FloodIsLoggedOncePerMinuteAndAtTheEnd) {
+    const RefusalCounters counters(registry_); // the audit log's, as the registry has one of each name
     {
-        AuditLog audit(counters_, [this] { return now_; });
+        AuditLog audit(registry_, [this] { return now_; });
         for (int n = 0; n < 1000; ++n) audit.note({Port::kHttp, Reason::kNoToken, "192.0.2.7", "", ""});
         now_ += 60.0;
         audit.note({Port::kHttp, Reason::kNoToken, "192.0.2.7", "", ""});
         EXPECT_THAT(logged_.text(), testing::EndsWith("token=- reason=no_token session=- count=999\n"));
     }
     EXPECT_THAT(logged_.text(), testing::EndsWith("token=- reason=no_token session=- count=1\n"));
-    EXPECT_EQ(counters_.of(Port::kHttp, Reason::kNoToken).Value(), 1001.0);
-    EXPECT_EQ(counters_.of(Port::kRobot, Reason::kNoToken).Value(), 0.0);
+    EXPECT_EQ(counters.of(Port::kHttp, Reason::kNoToken).Value(), 1001.0);
+    EXPECT_EQ(counters.of(Port::kRobot, Reason::kNoToken).Value(), 0.0);
 }
 
 TEST_F(AuditTest, RestOfAFloodIsLoggedWithoutAnotherRefusal) {
-    AuditLog audit(counters_, [this] { return now_; });
+    AuditLog audit(registry_, [this] { return now_; });
     for (int n = 0; n < 1000; ++n) audit.note({Port::kHttp, Reason::kNoToken, "192.0.2.7", "", ""});
     now_ += 59.0;
     audit.log_due();
@@ -75,7 +75,7 @@ TEST_F(AuditTest, RestOfAFloodIsLoggedWithoutAnotherRefusal) {
 }
 
 TEST_F(AuditTest, StrangersAreLoggedOncePerSecondWithTheCount) {
-    AuditLog audit(counters_, [&] { return now_; });
+    AuditLog audit(registry_, [&] { return now_; });
     EXPECT_EQ(audit.admit_log_line(), 0U);
     for (int n = 0; n < 3000; ++n) EXPECT_FALSE(audit.admit_log_line());
     now_ += 0.99;
@@ -87,7 +87,7 @@ TEST_F(AuditTest, StrangersAreLoggedOncePerSecondWithTheCount) {
 }
 
 TEST_F(AuditTest, ClientTextCannotForgeALine) {
-    AuditLog audit(counters_, [this] { return now_; });
+    AuditLog audit(registry_, [this] { return now_; });
     audit.note({Port::kHttp, Reason::kWrongSession, "192.0.2.7", "depot", "a\nwarning event=refused who=somebody"});
     EXPECT_THAT(logged_.text(), testing::EndsWith("session=? count=1\n"));
     EXPECT_EQ(logged_.text().find('\n'), logged_.text().size() - 1);

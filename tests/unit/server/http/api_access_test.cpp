@@ -47,7 +47,7 @@ protected:
     }
 
     [[nodiscard]] double refusals(auth::Reason reason) {
-        return metrics_.refusals().of(auth::Port::kHttp, reason).Value();
+        return audit_.counters().of(auth::Port::kHttp, reason).Value();
     }
 
     std::vector<auth::TokenRef> all_ = {
@@ -351,7 +351,7 @@ TEST_F(ApiTest, ChangesFromForeignPagesAreRefusedWithoutTokens) {
                   Status::forbidden)
             << "browsers send it without a preflight request";
     }
-    EXPECT_EQ(metrics_.refusals().of(auth::Port::kHttp, auth::Reason::kForeignPage).Value(), 6.0);
+    EXPECT_EQ(audit_.counters().of(auth::Port::kHttp, auth::Reason::kForeignPage).Value(), 6.0);
     const auto from_elsewhere = [&](const Route& route, std::string_view authorization) {
         Request asked;
         asked.method = name_of(route.method);

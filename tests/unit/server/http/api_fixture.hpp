@@ -173,7 +173,7 @@ protected:
     sessions::ReplayJobs weaves_{log_, pool_.get_executor()};
     guidance::GoalAssignments goals_;
     auth::Authenticator authenticator_;
-    auth::AuditLog audit_{metrics_.refusals()};
+    auth::AuditLog audit_{metrics_.registry()};
     auth::LoginSessions logins_;
     TestApi api_{registry_, weaves_, goals_, log_, metrics_, {authenticator_, audit_, logins_}, {}};
     std::vector<std::shared_ptr<Link>> links_;

@@ -46,7 +46,7 @@ TEST_F(ApiLiveTest, ForeignPagesAreForbidden) {
         EXPECT_THAT(detail(response, Status::forbidden), HasSubstr(origin));
         EXPECT_EQ(response.viewed, nullptr);
     }
-    EXPECT_EQ(metrics_.refusals().of(auth::Port::kHttp, auth::Reason::kForeignPage).Value(), 3.0);
+    EXPECT_EQ(audit_.counters().of(auth::Port::kHttp, auth::Reason::kForeignPage).Value(), 3.0);
     const auto own = upgrade({.version = "13", .key = wanted_.key, .origin = "http://localhost:8080"});
     EXPECT_EQ(own.status, Status::switching_protocols);
 }

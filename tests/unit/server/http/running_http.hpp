@@ -81,7 +81,7 @@ public:
     [[nodiscard]] const Api& api() const { return api_.api(); }
     [[nodiscard]] metrics::HttpCounters& counters() { return metrics_.http(); }
     [[nodiscard]] double refusals(auth::Reason reason) {
-        return metrics_.refusals().of(auth::Port::kHttp, reason).Value();
+        return audit_.counters().of(auth::Port::kHttp, reason).Value();
     }
 
 private:
@@ -107,7 +107,7 @@ private:
     sessions::ReplayJobs weaves_{log_, pools_[0].get_executor()};
     guidance::GoalAssignments goals_;
     auth::Authenticator authenticator_;
-    auth::AuditLog audit_{metrics_.refusals()};
+    auth::AuditLog audit_{metrics_.registry()};
     auth::LoginSessions logins_;
     std::vector<Route> routes_ = echoing_routes();
     TestApi api_;

@@ -117,7 +117,7 @@ public:
     [[nodiscard]] store::ScanLog& log() { return log_; }
     [[nodiscard]] guidance::RobotPaths& paths() { return goals_.paths(); }
     [[nodiscard]] auth::Authenticator& authenticator() { return authenticator_; }
-    [[nodiscard]] metrics::RefusalCounters& refusals() { return metrics_.refusals(); }
+    [[nodiscard]] const auth::RefusalCounters& refusals() { return audit_.counters(); }
     [[nodiscard]] metrics::LiveCounters& counters() { return metrics_.http().live; }
     [[nodiscard]] std::uint16_t port() const { return server_->port(); }
 
@@ -144,7 +144,7 @@ private:
     sessions::ReplayJobs replay_jobs_{log_, compute_.get_executor()};
     guidance::GoalAssignments goals_;
     auth::Authenticator authenticator_;
-    auth::AuditLog audit_{metrics_.refusals()};
+    auth::AuditLog audit_{metrics_.registry()};
     auth::LoginSessions logins_;
     http::TestApi api_{sessions_, replay_jobs_, goals_,     log_, metrics_, {authenticator_, audit_, logins_},
                        {},        {},           executors()};
