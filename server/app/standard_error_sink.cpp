@@ -1,7 +1,7 @@
 #include "server/app/standard_error_sink.hpp"
 
 #include "common/app/standard_streams.hpp"
-#include "server/auth/secret.hpp"
+#include "server/auth/token.hpp"
 
 #include <spdlog/sinks/base_sink.h>
 

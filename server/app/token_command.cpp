@@ -2,9 +2,8 @@
 
 #include "common/app/command_line.hpp"
 #include "common/scan/limits.hpp"
-#include "server/auth/secret.hpp"
 #include "server/auth/token.hpp"
-#include "server/auth/token_set.hpp"
+#include "server/auth/token_file.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>

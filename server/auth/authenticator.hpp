@@ -1,9 +1,7 @@
 #pragma once
 
 #include "common/error/error.hpp"
-#include "server/auth/refusals.hpp"
 #include "server/auth/token.hpp"
-#include "server/auth/token_set.hpp"
 
 #include <functional>
 #include <memory>

@@ -1,6 +1,6 @@
 #include "server/auth/login_sessions.hpp"
 
-#include "server/auth/secret.hpp"
+#include "server/auth/token.hpp"
 
 namespace scanloom::auth {
 

@@ -9,10 +9,35 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
-/// Tokens: the roles that they permit, the limits and the sessions that they are for.
+/// Tokens: their secrets, the roles that they permit, the limits and the sessions that they are for.
 namespace scanloom::auth {
+
+// Secrets: the text by which a client proves that it holds a token
+
+/// Returns "scanloom_" and 64 hexadecimal digits.
+///
+/// A secret is longer than any valid name, so it cannot be mistaken for a session or robot name. The prefix makes
+/// secrets recognizable, so that logs can be cleaned of them and secret scanners find them in repositories.
+/// @param random  256 unpredictable bits
+[[nodiscard]] std::string secret_of(const std::array<std::byte, 32>& random);
+
+/// Returns the SHA-256 of the secret as 64 lower-case hexadecimal digits. A slow password hash would add no protection,
+/// because 256 random bits cannot be guessed from a dictionary.
+[[nodiscard]] std::string hash_of(std::string_view secret);
+
+/// Returns whether the text has the form that hash_of() returns.
+[[nodiscard]] bool is_hash(std::string_view text) noexcept;
+
+/// Returns the text with every secret, even a truncated one, replaced by "scanloom_...". For logs, because clients may
+/// send a secret in a field that is logged.
+[[nodiscard]] std::string without_secrets(std::string_view text);
+
+/// Creates a secret from 256 random bits of the system.
+/// Errors: std::runtime_error if the system has none.
+[[nodiscard]] std::string random_secret();
 
 // Roles
 
@@ -114,5 +139,66 @@ using TokenRef = std::shared_ptr<const Token>;
 
 /// Returns the token that every client has if the server has no tokens: an operator for all sessions, without a name.
 [[nodiscard]] const TokenRef& default_token();
+
+/// An immutable set of tokens.
+class TokenSet {
+public:
+    TokenSet() = default;
+
+    /// Pre: all names differ, all hashes differ, and each hash satisfies is_hash().
+    explicit TokenSet(std::vector<TokenRef> tokens) : tokens_(std::move(tokens)) {}
+
+    /// Finds the token of the secret.
+    /// @return null if there is none
+    /// Cost: one hash, and one comparison with every token. The time does not depend on the secret and so reveals
+    ///       nothing.
+    [[nodiscard]] TokenRef find(std::string_view secret) const;
+
+    /// Finds the token by hash_of() its secret.
+    /// @return null if there is none
+    [[nodiscard]] TokenRef find_hash(std::string_view hash) const;
+
+    [[nodiscard]] const std::vector<TokenRef>& tokens() const noexcept { return tokens_; }
+
+private:
+    std::vector<TokenRef> tokens_;
+};
+
+// Refusals
+
+/// Why a connection or a request is refused.
+enum class Reason {
+    kNoToken,            ///< no token was sent and one is required
+    kUnknownToken,       ///< the token that was sent is not in force
+    kWrongRole,          ///< the token's role does not permit the action
+    kWrongSession,       ///< the token is not for that session
+    kForeignPage,        ///< a page of another site sent the request from a browser that is signed in here
+    kForeignHost,        ///< the request names a host that is not this server's, as in DNS rebinding
+    kLimit,              ///< a limit of the token is reached
+    kRevoked,            ///< the token in use no longer permits it
+    kNoCertificate,      ///< no client certificate was sent and one is required
+    kForeignCertificate, ///< the client certificate was not signed by the configured CA, or is not valid now
+};
+
+inline constexpr std::array kReasons = {
+    Reason::kNoToken,       Reason::kUnknownToken,      Reason::kWrongRole, Reason::kWrongSession,
+    Reason::kForeignPage,   Reason::kForeignHost,       Reason::kLimit,     Reason::kRevoked,
+    Reason::kNoCertificate, Reason::kForeignCertificate};
+
+[[nodiscard]] constexpr std::string_view name_of(Reason reason) noexcept {
+    switch (reason) {
+    case Reason::kNoToken: return "no_token";
+    case Reason::kUnknownToken: return "unknown_token";
+    case Reason::kWrongRole: return "wrong_role";
+    case Reason::kWrongSession: return "wrong_session";
+    case Reason::kForeignPage: return "foreign_page";
+    case Reason::kForeignHost: return "foreign_host";
+    case Reason::kLimit: return "limit";
+    case Reason::kRevoked: return "revoked";
+    case Reason::kNoCertificate: return "no_certificate";
+    case Reason::kForeignCertificate: return "foreign_certificate";
+    }
+    return "unknown";
+}
 
 } // namespace scanloom::auth

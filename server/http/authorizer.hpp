@@ -3,7 +3,6 @@
 #include "server/auth/audit_log.hpp"
 #include "server/auth/authenticator.hpp"
 #include "server/auth/login_sessions.hpp"
-#include "server/auth/refusals.hpp"
 #include "server/auth/token.hpp"
 #include "server/http/request.hpp"
 #include "server/http/response.hpp"

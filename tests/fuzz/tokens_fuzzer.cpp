@@ -1,6 +1,5 @@
-#include "server/auth/secret.hpp"
 #include "server/auth/token.hpp"
-#include "server/auth/token_set.hpp"
+#include "server/auth/token_file.hpp"
 #include "tests/fuzz/check.hpp"
 
 #include <cctype>

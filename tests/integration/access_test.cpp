@@ -1,6 +1,6 @@
 #include "tests/integration/ingest_fixture.hpp"
 
-#include "server/auth/secret.hpp"
+#include "server/auth/token.hpp"
 
 namespace scanloom::ingest {
 namespace {

@@ -1,7 +1,7 @@
 #include "tests/fault/simulation/tokens.hpp"
 
 #include "common/wire/log_codec.hpp"
-#include "server/auth/secret.hpp"
+#include "server/auth/token.hpp"
 #include "tests/support/random_scans.hpp"
 
 #include <fmt/format.h>

@@ -3,7 +3,7 @@
 #include "common/error/error.hpp"
 #include "common/scan/scan.hpp"
 #include "common/wire/messages.hpp"
-#include "server/auth/token_set.hpp"
+#include "server/auth/token.hpp"
 #include "tests/fault/outcome.hpp"
 #include "tests/fault/simulation/world.hpp"
 #include "tests/support/memory_scan_log.hpp"

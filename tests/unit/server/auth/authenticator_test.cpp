@@ -1,6 +1,6 @@
 #include "server/auth/authenticator.hpp"
 
-#include "server/auth/secret.hpp"
+#include "server/auth/token.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

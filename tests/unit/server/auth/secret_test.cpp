@@ -1,4 +1,4 @@
-#include "server/auth/secret.hpp"
+#include "server/auth/token.hpp"
 
 #include "common/scan/limits.hpp"
 

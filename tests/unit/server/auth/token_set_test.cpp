@@ -1,6 +1,4 @@
-#include "server/auth/token_set.hpp"
-
-#include "server/auth/secret.hpp"
+#include "server/auth/token.hpp"
 
 #include <gtest/gtest.h>
 

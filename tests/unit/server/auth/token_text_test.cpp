@@ -1,6 +1,6 @@
-#include "server/auth/token_set.hpp"
+#include "server/auth/token_file.hpp"
 
-#include "server/auth/secret.hpp"
+#include "server/auth/token.hpp"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

@@ -1,6 +1,6 @@
 #include "tests/unit/server/http/api_fixture.hpp"
 
-#include "server/auth/secret.hpp"
+#include "server/auth/token.hpp"
 
 #include <algorithm>
 #include <map>

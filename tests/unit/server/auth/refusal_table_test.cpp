@@ -1,4 +1,4 @@
-#include "server/auth/refusals.hpp"
+#include "server/auth/audit_log.hpp"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
