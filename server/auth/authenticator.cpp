@@ -54,10 +54,6 @@ TokenRef found(const std::shared_ptr<const TokenSet>& tokens, std::string_view h
     return tokens ? tokens->find_hash(hash) : default_token();
 }
 
-bool permits(const Token& token, Purpose purpose) {
-    return purpose == Purpose::kDrive ? may_drive(token.role) : may_look(token.role);
-}
-
 } // namespace
 
 struct Authenticator::Ledger : std::enable_shared_from_this<Authenticator::Ledger> {
@@ -75,7 +71,7 @@ struct Authenticator::Ledger : std::enable_shared_from_this<Authenticator::Ledge
         return tokens;
     }
 
-    std::optional<Denied> objection(const TokenRef& token, const std::string& robot) const {
+    std::optional<Denied> connection_limit_of(const TokenRef& token, const std::string& robot) const {
         const auto known = connected.find(token->hash);
         if (known == connected.end() || known->second.contains(robot)) return std::nullopt;
         const auto limit = token->limits.connections;
@@ -87,45 +83,27 @@ struct Authenticator::Ledger : std::enable_shared_from_this<Authenticator::Ledge
                       Errc::kOverloaded);
     }
 
-    std::shared_ptr<Credential> give(const TokenRef& token, Purpose purpose, const std::string& session,
+    std::shared_ptr<Credential> give(const TokenRef& token, Action action, const std::string& session,
                                      const std::string& user) {
         auto forget_it = [ledger = shared_from_this(), number = ++last_credential](Credential* credential) {
             ledger->forget(number, *credential);
             delete credential;
         };
-        std::shared_ptr<Credential> credential(new Credential(token, purpose, session, user), std::move(forget_it));
+        std::shared_ptr<Credential> credential(new Credential(token, action, session, user), std::move(forget_it));
         credentials.emplace(last_credential, credential);
-        if (purpose == Purpose::kDrive) ++connected[token->hash][user];
+        if (action == Action::kDrive) ++connected[token->hash][user];
         return credential;
     }
 
     void forget(std::uint64_t number, const Credential& credential) {
         const std::lock_guard lock(mutex);
         credentials.erase(number);
-        if (credential.purpose() != Purpose::kDrive) return;
+        if (credential.action() != Action::kDrive) return;
         auto& robots = connected[credential.hash()];
         if (--robots[credential.user()] == 0) robots.erase(credential.user());
         if (robots.empty()) connected.erase(credential.hash());
     }
 };
-
-namespace {
-
-/// Returns why the token does not permit the purpose, or nullopt if it does.
-std::optional<Denied> objection(const TokenRef& token, Purpose purpose, const std::string& session) {
-    if (!permits(*token, purpose)) {
-        return denied(Reason::kWrongRole, token,
-                      fmt::format("the token '{}' has the role {}, which {}; use a token of another role", token->name,
-                                  name_of(token->role),
-                                  purpose == Purpose::kDrive ? "sends no scans" : "does not read maps"));
-    }
-    if (is_for(*token, session)) return std::nullopt;
-    return denied(Reason::kWrongSession, token,
-                  fmt::format("the token '{}' is not for the session '{}'; use another token or another session",
-                              token->name, session));
-}
-
-} // namespace
 
 Authenticator::Authenticator() : ledger_(std::make_shared<Ledger>()) {}
 
@@ -148,18 +126,18 @@ Admitted<std::shared_ptr<Credential>> Authenticator::let_drive(std::string_view 
     const std::lock_guard lock(ledger_->mutex);
     const auto token = found(ledger_->tokens, (*admitted)->hash); // the tokens may have been replaced meanwhile
     if (!token) return unknown(secret);
-    if (auto why = objection(token, Purpose::kDrive, session)) return *why;
+    if (auto permitted = check_permission(*token, Action::kDrive, session); !permitted) return permitted.error();
     const std::string user = session + "/" + robot;
-    if (auto why = ledger_->objection(token, user)) return *why;
-    return ledger_->give(token, Purpose::kDrive, session, user);
+    if (auto why = ledger_->connection_limit_of(token, user)) return *why;
+    return ledger_->give(token, Action::kDrive, session, user);
 }
 
 Admitted<std::shared_ptr<Credential>> Authenticator::let_watch(const TokenRef& token, const std::string& session) {
     const std::lock_guard lock(ledger_->mutex);
     const auto now = found(ledger_->tokens, token->hash);
     if (!now) return unknown(token->hash);
-    if (auto why = objection(now, Purpose::kWatch, session)) return *why;
-    return ledger_->give(now, Purpose::kWatch, session, "");
+    if (auto permitted = check_permission(*now, Action::kRead, session); !permitted) return permitted.error();
+    return ledger_->give(now, Action::kRead, session, "");
 }
 
 void Authenticator::replace(TokenSet tokens) {
@@ -171,7 +149,7 @@ void Authenticator::replace(TokenSet tokens) {
             auto credential = weak.lock();
             if (!credential) continue;
             auto token = found(ledger_->tokens, credential->hash());
-            if (token && objection(token, credential->purpose(), credential->session())) token = nullptr;
+            if (token && !check_permission(*token, credential->action(), credential->session())) token = nullptr;
             changes.emplace_back(std::move(credential), std::move(token));
         }
     }

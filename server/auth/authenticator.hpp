@@ -12,18 +12,12 @@
 
 namespace scanloom::auth {
 
-/// What a credential permits.
-enum class Purpose {
-    kDrive, ///< a robot's link
-    kWatch, ///< a live viewer
-};
-
 /// Permission to use a session while the tokens in force allow it. Granted by Authenticator.
 /// Threads: any thread.
 class Credential {
 public:
-    Credential(TokenRef token, Purpose purpose, std::string session, std::string user)
-        : purpose_(purpose), session_(std::move(session)), user_(std::move(user)), hash_(token->hash),
+    Credential(TokenRef token, Action action, std::string session, std::string user)
+        : action_(action), session_(std::move(session)), user_(std::move(user)), hash_(token->hash),
           token_(std::move(token)) {}
 
     /// Returns the token as it is in force now, or null if it no longer permits this use.
@@ -33,7 +27,8 @@ public:
     /// at once if one has happened already.
     void when_changed(const std::function<void()>& on_change);
 
-    [[nodiscard]] Purpose purpose() const noexcept { return purpose_; }
+    /// Returns what it permits: kDrive or kRead.
+    [[nodiscard]] Action action() const noexcept { return action_; }
     [[nodiscard]] const std::string& session() const noexcept { return session_; }
     [[nodiscard]] const std::string& user() const noexcept { return user_; }
     [[nodiscard]] const std::string& hash() const noexcept { return hash_; }
@@ -42,7 +37,7 @@ public:
     void change(TokenRef token);
 
 private:
-    const Purpose purpose_;
+    const Action action_;
     const std::string session_;
     const std::string user_; // distinguishes the robots of one token
     const std::string hash_;
@@ -53,30 +48,16 @@ private:
     std::function<void()> on_change_;
 };
 
-/// Why a client was refused: the reason and token for the log, the error for the client.
-struct Denied {
-    Reason reason = Reason::kNoToken;
-    std::string token; ///< the token's name; empty: not known
-    Error error;
-};
-
-template <class T>
-using Admitted = boost::system::result<T, Denied>;
-
-[[noreturn]] inline void throw_exception_from_error(const Denied& denied, const boost::source_location&) {
-    throw ErrorException(denied.error);
-}
-
 /// Authenticates clients by their tokens, and grants credentials for robot links and live viewers.
 ///
 /// Without tokens every client is admitted, with the token default_token().
 /// Threads: any thread; calls wait only for each other.
 class Authenticator {
 public:
-    /// Creates a authenticator without tokens.
+    /// Creates an authenticator without tokens.
     Authenticator();
 
-    /// Creates a authenticator with tokens; an empty set admits no client.
+    /// Creates an authenticator with tokens; an empty set admits no client.
     explicit Authenticator(TokenSet tokens);
 
     /// Returns whether the server has no tokens, so that every client is admitted.

@@ -3,6 +3,7 @@
 #include "common/hash/sha256.hpp"
 #include "common/scan/limits.hpp"
 
+#include <fmt/format.h>
 #include <openssl/crypto.h>
 #include <openssl/rand.h>
 
@@ -97,6 +98,24 @@ bool is_for(const Token& token, std::string_view session) noexcept {
 
 bool is_for_all(const Token& token) noexcept {
     return std::ranges::any_of(token.sessions, [](const auto& pattern) { return pattern == "*"; });
+}
+
+Admitted<void> check_permission(const Token& token, Action action, std::optional<std::string_view> session) {
+    if (!permits(token.role, action)) {
+        const auto lack = action == Action::kDrive  ? "sends no scans"
+                          : action == Action::kRead ? "does not read maps"
+                                                    : "does not permit this";
+        return Denied{Reason::kWrongRole, token.name,
+                      Error{Errc::kUnauthorized,
+                            fmt::format("the token '{}' has the role {}, which {}; use a token of another role",
+                                        token.name, name_of(token.role), lack)}};
+    }
+    if (!session || is_for(token, *session)) return {};
+    const auto which = is_valid_name(*session) ? fmt::format("the session '{}'", *session) : "this session";
+    return Denied{
+        Reason::kWrongSession, token.name,
+        Error{Errc::kUnauthorized,
+              fmt::format("the token '{}' is not for {}; use another token or another session", token.name, which)}};
 }
 
 const TokenRef& default_token() {

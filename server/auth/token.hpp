@@ -1,5 +1,6 @@
 #pragma once
 
+#include "common/error/error.hpp"
 #include "common/scan/limits.hpp"
 
 #include <array>
@@ -68,17 +69,24 @@ inline constexpr std::array kRoles = {Role::kRobot, Role::kViewer, Role::kOperat
     return std::nullopt;
 }
 
-/// Returns whether the role permits robot links.
-[[nodiscard]] constexpr bool may_drive(Role role) noexcept { return role != Role::kViewer; }
+/// What a role permits.
+enum class Action {
+    kDrive,  ///< robot links
+    kRead,   ///< HTTP requests that change nothing, live viewers
+    kGuide,  ///< assigning goals to robots over HTTP
+    kChange, ///< HTTP requests that change something
+};
 
-/// Returns whether the role permits HTTP requests that change nothing.
-[[nodiscard]] constexpr bool may_look(Role role) noexcept { return role != Role::kRobot; }
-
-/// Returns whether the role permits assigning goals to robots over HTTP.
-[[nodiscard]] constexpr bool may_guide(Role role) noexcept { return role != Role::kViewer; }
-
-/// Returns whether the role permits HTTP requests that change something.
-[[nodiscard]] constexpr bool may_change(Role role) noexcept { return role == Role::kOperator; }
+/// Returns whether the role permits the action.
+[[nodiscard]] constexpr bool permits(Role role, Action action) noexcept {
+    switch (action) {
+    case Action::kDrive:
+    case Action::kGuide: return role != Role::kViewer;
+    case Action::kRead: return role != Role::kRobot;
+    case Action::kChange: return role == Role::kOperator;
+    }
+    return false;
+}
 
 // Limits
 
@@ -200,5 +208,25 @@ inline constexpr std::array kReasons = {
     }
     return "unknown";
 }
+
+/// Why a client was refused: the reason and token for the log, the error for the client.
+struct Denied {
+    Reason reason = Reason::kNoToken;
+    std::string token; ///< the token's name; empty: not known
+    Error error;
+};
+
+template <class T>
+using Admitted = boost::system::result<T, Denied>;
+
+[[noreturn]] inline void throw_exception_from_error(const Denied& denied, const boost::source_location&) {
+    throw ErrorException(denied.error);
+}
+
+/// Checks that the token permits an action.
+/// @param session  name of the session that the action concerns; nullopt: none in particular
+/// Errors: kWrongRole; kWrongSession.
+[[nodiscard]] Admitted<void> check_permission(const Token& token, Action action,
+                                              std::optional<std::string_view> session);
 
 } // namespace scanloom::auth

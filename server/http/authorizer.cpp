@@ -7,20 +7,18 @@
 
 #include <fmt/format.h>
 
+#include <optional>
 #include <string>
 #include <utility>
 
 namespace scanloom::http {
 namespace {
 
+using auth::Action;
 using auth::Denied;
 using auth::Reason;
 using auth::Token;
 using auth::TokenRef;
-
-Denied denied(Reason reason, const Token& token, std::string why) {
-    return {reason, token.name, {Errc::kUnauthorized, std::move(why)}};
-}
 
 /// Any page can make a browser send requests here, with the cookie, also from a machine in a private network. Other
 /// pages cannot see the response to a request that only reads. All other requests must come from a page of this server.
@@ -37,35 +35,32 @@ Denied foreign_page(const Request& request, std::string token) {
                          in_quotes(request.origin))}};
 }
 
-bool has_role(const Token& token, Access access) {
+/// Returns the action that an access requires of the token's role, or nullopt if every role permits it.
+std::optional<Action> action_of(Access access) {
     switch (access) {
     case Access::kCreate:
     case Access::kChange:
-    case Access::kBackup: return may_change(token.role);
-    case Access::kGuide: return may_guide(token.role);
-    case Access::kOpen:
-    case Access::kServer: return true;
+    case Access::kBackup: return Action::kChange;
+    case Access::kGuide: return Action::kGuide;
     case Access::kList:
-    case Access::kRead: return may_look(token.role);
+    case Access::kRead: return Action::kRead;
+    case Access::kOpen:
+    case Access::kServer: break;
     }
-    return false;
+    return std::nullopt;
 }
 
-std::optional<Denied> objection_to(const Token& token, Access access, std::string_view session) {
-    if (!has_role(token, access)) {
-        return denied(
-            Reason::kWrongRole, token,
-            fmt::format("the token '{}' has the role {}, which does not permit this; use a token of another role",
-                        token.name, name_of(token.role)));
+auth::Admitted<void> check_access(const Token& token, Access access, std::string_view session) {
+    if (const auto action = action_of(access)) {
+        const auto concerned = is_about_one_session(access) ? std::optional(session) : std::nullopt;
+        if (auto permitted = check_permission(token, *action, concerned); !permitted) return permitted;
     }
-    if ((access == Access::kServer || access == Access::kBackup) && !is_for_all(token)) {
-        return denied(
-            Reason::kWrongSession, token,
-            fmt::format(
-                "this needs a token for all sessions, and the token '{}' is not one; use a token whose sessions are *",
-                token.name));
-    }
-    return is_about_one_session(access) ? Authorizer::objection(token, session) : std::nullopt;
+    if ((access != Access::kServer && access != Access::kBackup) || is_for_all(token)) return {};
+    return Denied{
+        Reason::kWrongSession, token.name,
+        Error{Errc::kUnauthorized, fmt::format("this needs a token for all sessions, and the token '{}' is not one; "
+                                               "use a token whose sessions are *",
+                                               token.name)}};
 }
 
 } // namespace
@@ -82,15 +77,9 @@ std::variant<TokenRef, Response> Authorizer::admit(const Request& request, Acces
     auto who = identify(request);
     if (access == Access::kOpen) return who ? *who : nullptr;
     if (!who) return refuse(request, who.error(), session);
-    if (const auto why = objection_to(**who, access, session)) return refuse(request, *why, session);
+    if (const auto permitted = check_access(**who, access, session); !permitted)
+        return refuse(request, permitted.error(), session);
     return *who;
-}
-
-std::optional<Denied> Authorizer::objection(const Token& token, std::string_view session) {
-    if (is_for(token, session)) return std::nullopt;
-    return denied(
-        Reason::kWrongSession, token,
-        fmt::format("the token '{}' is not for this session; use another token or another session", token.name));
 }
 
 auth::Admitted<TokenRef> Authorizer::identify(const Request& request) const {

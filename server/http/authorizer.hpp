@@ -8,7 +8,6 @@
 #include "server/http/response.hpp"
 #include "server/http/routes.hpp"
 
-#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -32,9 +31,6 @@ public:
     /// @return the token, null for an unknown client if the operation needs no token; or the response that refuses
     [[nodiscard]] std::variant<auth::TokenRef, Response> admit(const Request& request, Access access,
                                                                std::string_view session) const;
-
-    /// Returns why `token` does not permit access to `session`, or nullopt if it does.
-    [[nodiscard]] static std::optional<auth::Denied> objection(const auth::Token& token, std::string_view session);
 
     /// Writes the refusal to the audit log.
     /// @return 401 with WWW-Authenticate if the request had no known token, else 403

@@ -105,8 +105,8 @@ Result<Response> list_sessions(Context& context) {
 Result<Response> create_session(Context& context) {
     const auto wanted = parse_session_request(context.request.body);
     if (!wanted) return wanted.error();
-    if (const auto why = Authorizer::objection(*context.token, wanted->name))
-        return context.services.authorizer.refuse(context.request, *why, wanted->name);
+    if (const auto permitted = check_permission(*context.token, auth::Action::kChange, wanted->name); !permitted)
+        return context.services.authorizer.refuse(context.request, permitted.error(), wanted->name);
     const auto session =
         context.services.sessions.create(wanted->name, wanted->options, sessions::creator_of(*context.token));
     if (!session) return context.services.authorizer.noted(context, session.error(), wanted->name);

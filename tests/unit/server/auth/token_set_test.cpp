@@ -31,15 +31,15 @@ TEST(Token, PermitsSessionsOfItsPatterns) {
 }
 
 TEST(Token, DefaultTokenPermitsEverything) {
-    EXPECT_TRUE(may_change(default_token()->role));
+    EXPECT_TRUE(permits(default_token()->role, Action::kChange));
     EXPECT_TRUE(is_for_all(*default_token()));
 }
 
 TEST(Role, PermitsItsOwnActions) {
     for (const Role role : kRoles) {
-        EXPECT_EQ(may_drive(role), role != Role::kViewer);
-        EXPECT_EQ(may_look(role), role != Role::kRobot);
-        EXPECT_EQ(may_change(role), role == Role::kOperator);
+        EXPECT_EQ(permits(role, Action::kDrive), role != Role::kViewer);
+        EXPECT_EQ(permits(role, Action::kRead), role != Role::kRobot);
+        EXPECT_EQ(permits(role, Action::kChange), role == Role::kOperator);
         EXPECT_EQ(role_of(name_of(role)), role);
     }
     EXPECT_EQ(role_of("admin"), std::nullopt);

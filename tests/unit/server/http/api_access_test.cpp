@@ -167,22 +167,24 @@ TEST_F(ApiAccessTest, RequestWithoutTokenIsUnauthorized) {
 
 /// A difference would disclose which sessions exist.
 TEST_F(ApiAccessTest, ForbiddenAndUnknownSessionsHaveEqualResponses) {
+    const auto without = [](std::string text, const std::string& name) {
+        for (auto at = text.find(name); at != std::string::npos; at = text.find(name)) text.erase(at, name.size());
+        return text;
+    };
     for (const auto& route : routes()) {
         if (route.path.find("{session}") == std::string_view::npos) continue;
         const auto answers = [&](const std::string& session) {
             const auto target = target_of(route, session);
             const auto response = ask_as("operator", std::string(name_of(route.method)), target, "{}");
-            std::string text(response.body.bytes());
-            for (auto at = text.find(session); at != std::string::npos; at = text.find(session))
-                text.erase(at, session.size());
-            return std::pair(response.status, text);
+            return std::pair(response.status, without(std::string(response.body.bytes()), session));
         };
         EXPECT_EQ(answers("lab").first, Status::forbidden) << route.path;
         EXPECT_EQ(answers("lab"), answers("bal")) << route.path;
     }
     const auto made = [&](const std::string& name) {
-        return detail(ask_as("operator", "POST", "/api/v1/sessions", R"({"name":")" + name + R"("})"),
-                      Status::forbidden);
+        return without(
+            detail(ask_as("operator", "POST", "/api/v1/sessions", R"({"name":")" + name + R"("})"), Status::forbidden),
+            name);
     };
     EXPECT_EQ(made("lab"), made("bal"));
 }
