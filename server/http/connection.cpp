@@ -241,9 +241,9 @@ asio::awaitable<bool> Connection::read_body(Parser& parser) {
 /// Hands the socket over to a viewer and returns when the viewer ends.
 asio::awaitable<void> Connection::show(const live::ViewedSession& viewed, const Incoming& upgrade) {
     const auto path = instance_of(head_of(upgrade).target);
-    auto slot = service_->viewers.try_take(viewed.session_id);
+    auto permit = service_->viewers.try_acquire(viewed.session_id);
     std::optional<Response> refusal;
-    if (!slot) {
+    if (!permit) {
         service_->counters.live.refused.Increment();
         refusal = problem(Error{Errc::kOverloaded, "too many viewers watch at this moment; try again later"}, path);
     } else if (buffer_.size() > 0) {
@@ -257,7 +257,7 @@ asio::awaitable<void> Connection::show(const live::ViewedSession& viewed, const 
     service_->counters.answered(static_cast<unsigned>(Status::switching_protocols)).Increment();
     const auto& executors = service_->api.services().pools.executors();
     viewer_ = std::make_shared<live::Viewer>(
-        std::move(stream_), viewed, std::move(slot),
+        std::move(stream_), viewed, std::move(permit),
         live::Viewer::Services{service_->config.live, executors.live, executors.log_reading, service_->counters.live});
     if (stopping_) viewer_->stop();
     co_await viewer_->run(upgrade);

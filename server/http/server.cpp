@@ -38,8 +38,8 @@ Result<std::shared_ptr<Server>> Server::listen(net::io_context& io, const Api& a
                                                metrics::HttpCounters& counters) {
     const auto endpoint = config.endpoint;
     const bool check_host = endpoint.address().is_loopback() || !config.host_names.empty();
-    auto service =
-        std::make_shared<const Service>(Service{config, check_host, api, counters, live::ViewerSemaphore(config.live)});
+    auto service = std::make_shared<const Service>(
+        Service{config, check_host, api, counters, {config.live.viewers_max, config.live.viewers_per_session_max}});
     std::shared_ptr<Server> server(new Server(io, std::move(service)));
     if (const auto failed = server->bind()) {
         return Error{Errc::kUnreachable,

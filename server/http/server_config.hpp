@@ -1,8 +1,10 @@
 #pragma once
 
-#include "server/live/viewer_limits.hpp"
+#include "common/limits/semaphore.hpp"
+#include "server/live/live_config.hpp"
 #include "server/metrics/metrics.hpp"
 #include "server/sockets/listening_port.hpp"
+#include "server/store/scan_log.hpp"
 
 #include <boost/asio/ip/tcp.hpp>
 
@@ -60,7 +62,7 @@ struct Service {
     bool check_host = true;
     const Api& api;
     metrics::HttpCounters& counters;
-    live::ViewerSemaphore viewers; ///< connections of live viewers
+    limits::KeyedSemaphore<store::SessionId> viewers; ///< connections of live viewers
 };
 
 } // namespace scanloom::http

@@ -158,15 +158,15 @@ wire::Message reply_from(const wire::LocateRequest& request, const Requester& re
 
 std::optional<Error> RequestExecutor::submit(Requester requester, link::Request request, Done done) {
     const bool locates = std::holds_alternative<wire::LocateRequest>(request);
-    auto slot = (locates ? locating_slots_ : slots_).try_acquire();
-    if (!slot)
+    auto permit = (locates ? locating_permits_ : permits_).try_acquire();
+    if (!permit)
         return Error{Errc::kOverloaded, "too many requests of robots are waiting at this moment; try again soon"};
     boost::asio::post(locates ? locating_ : planning_,
                       [this, requester = std::move(requester), request = std::move(request), done = std::move(done),
-                       slot = std::move(slot)]() mutable {
+                       permit = std::move(permit)]() mutable {
                           std::string frame;
                           wire::encode(answer(request, requester), frame);
-                          done(std::move(frame), std::move(slot));
+                          done(std::move(frame), std::move(permit));
                       });
     return std::nullopt;
 }

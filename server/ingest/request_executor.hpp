@@ -46,9 +46,9 @@ public:
     static constexpr std::size_t kRequestsMax = 256;
     static constexpr std::size_t kLocatingMax = 32; ///< with more, a request would wait for minutes
 
-    /// Receives the frame of the reply, and a slot to be kept until the frame is written. Called once, on the executor
-    /// of the request.
-    using Done = std::function<void(std::string frame, std::shared_ptr<const void> slot)>;
+    /// Receives the frame of the reply, and a permit to be kept until the frame is written. Called once, on the
+    /// executor of the request.
+    using Done = std::function<void(std::string frame, limits::Semaphore::Permit permit)>;
 
     /// @param planning      has one thread, because a search may take half a gigabyte of memory
     /// @param locating      has one thread; separate, because a relocalization takes seconds in which planned paths
@@ -56,7 +56,7 @@ public:
     /// @param requests_max  bound on requests for paths that are not answered yet
     RequestExecutor(boost::asio::any_io_executor planning, boost::asio::any_io_executor locating,
                     RequestServices services, std::size_t requests_max = kRequestsMax)
-        : planning_(std::move(planning)), locating_(std::move(locating)), services_(services), slots_(requests_max) {}
+        : planning_(std::move(planning)), locating_(std::move(locating)), services_(services), permits_(requests_max) {}
 
     /// Queues a request.
     /// @return kOverloaded if too many requests wait; `done` is not called then
@@ -68,8 +68,8 @@ private:
     boost::asio::any_io_executor planning_;
     boost::asio::any_io_executor locating_;
     RequestServices services_;
-    limits::Semaphore slots_;
-    limits::Semaphore locating_slots_{kLocatingMax};
+    limits::Semaphore permits_;
+    limits::Semaphore locating_permits_{kLocatingMax};
 };
 
 } // namespace scanloom::ingest

@@ -158,9 +158,9 @@ void RobotConnection::perform(Protocol::SubmitScans&& action) {
 }
 
 void RobotConnection::perform(Protocol::AnswerRequest&& action) {
-    auto done = [self = shared_from_this()](std::string frame, std::shared_ptr<const void> slot) {
-        self->post([frame = std::move(frame), slot = std::move(slot)](RobotConnection& to) mutable {
-            to.protocol_.on_reply(std::move(frame), std::move(slot));
+    auto done = [self = shared_from_this()](std::string frame, limits::Semaphore::Permit permit) {
+        self->post([frame = std::move(frame), permit = std::move(permit)](RobotConnection& to) mutable {
+            to.protocol_.on_reply(std::move(frame), std::move(permit));
         });
     };
     const auto refused = services_.requests.submit({session_, robot_index_, is_gone_}, action.request, std::move(done));

@@ -58,9 +58,10 @@ private:
 
 } // namespace
 
-Viewer::Viewer(net::LinkStream stream, ViewedSession viewed, std::shared_ptr<const void> slot, Services services)
-    : stream_(std::move(stream)), viewed_(std::move(viewed)), slot_(std::move(slot)), services_(std::move(services)),
-      encoder_(viewed_.tag), turn_(stream_.get_executor()), deadline_(stream_.get_executor()) {
+Viewer::Viewer(net::LinkStream stream, ViewedSession viewed, limits::Semaphore::Permit permit, Services services)
+    : stream_(std::move(stream)), viewed_(std::move(viewed)), permit_(std::move(permit)),
+      services_(std::move(services)), encoder_(viewed_.tag), turn_(stream_.get_executor()),
+      deadline_(stream_.get_executor()) {
     const auto& config = services_.config;
     boost::system::error_code ignored;
     stream_.next_layer().socket().set_option(asio::socket_base::send_buffer_size(config.send_buffer_bytes), ignored);

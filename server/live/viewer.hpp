@@ -1,10 +1,11 @@
 #pragma once
 
 #include "common/error/error.hpp"
+#include "common/limits/semaphore.hpp"
 #include "common/net/link_stream.hpp"
 #include "server/live/core/event_encoder.hpp"
+#include "server/live/live_config.hpp"
 #include "server/live/viewed_session.hpp"
-#include "server/live/viewer_limits.hpp"
 #include "server/metrics/metrics.hpp"
 #include "server/sessions/listeners.hpp"
 
@@ -48,8 +49,8 @@ public:
         metrics::LiveCounters& counters;
     };
 
-    /// @param slot  slot of the ViewerSemaphore, kept until the viewer is destroyed
-    Viewer(net::LinkStream stream, ViewedSession viewed, std::shared_ptr<const void> slot, Services services);
+    /// @param permit  to view the session; kept until the viewer is destroyed
+    Viewer(net::LinkStream stream, ViewedSession viewed, limits::Semaphore::Permit permit, Services services);
 
     /// Answers the upgrade request and sends events until the connection is closed. Call once.
     [[nodiscard]] boost::asio::awaitable<void> run(const Upgrade& upgrade);
@@ -90,7 +91,7 @@ private:
     boost::beast::websocket::stream<net::LinkStream, false> stream_; // false: no compression
     boost::beast::flat_buffer buffer_;                               // at most request_bytes_max
     ViewedSession viewed_;
-    std::shared_ptr<const void> slot_;
+    limits::Semaphore::Permit permit_;
     Services services_;
     EventEncoder encoder_; // not used by the strand while next_step() runs
     boost::asio::steady_timer turn_;

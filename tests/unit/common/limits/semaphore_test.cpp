@@ -63,5 +63,30 @@ TEST(Semaphore, IsNeverHeldByMoreThreadsThanItHasPermits) {
     EXPECT_TRUE(again);
 }
 
+TEST(KeyedSemaphore, BoundsAllPermitsAndThoseOfOneKey) {
+    const KeyedSemaphore<int> semaphore(3, 2);
+    auto first = semaphore.try_acquire(1);
+    const auto second = semaphore.try_acquire(1);
+    EXPECT_TRUE(first && second);
+    EXPECT_FALSE(semaphore.try_acquire(1)) << "two are taken for this key";
+    auto other = semaphore.try_acquire(2);
+    EXPECT_TRUE(other);
+    EXPECT_FALSE(semaphore.try_acquire(3)) << "all three are taken";
+    first.reset();
+    EXPECT_TRUE(semaphore.try_acquire(1));
+    other.reset();
+    EXPECT_TRUE(semaphore.try_acquire(3));
+}
+
+TEST(KeyedSemaphore, MayBeOutlivedByItsPermits) {
+    Semaphore::Permit permit;
+    {
+        const KeyedSemaphore<int> semaphore(1, 1);
+        permit = semaphore.try_acquire(1);
+    }
+    EXPECT_TRUE(permit);
+    permit.reset();
+}
+
 } // namespace
 } // namespace scanloom::limits

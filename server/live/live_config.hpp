@@ -1,12 +1,7 @@
 #pragma once
 
-#include "server/store/scan_log.hpp"
-
 #include <chrono>
 #include <cstddef>
-#include <map>
-#include <memory>
-#include <mutex>
 
 namespace scanloom::live {
 
@@ -24,32 +19,6 @@ struct LiveConfig {
     std::chrono::milliseconds idle{300'000};          ///< without received data; a ping is sent after half of it
     std::chrono::milliseconds write{30'000};          ///< for sending one event
     std::chrono::milliseconds farewell{1'000};        ///< for the current event and the closing handshake
-};
-
-/// Semaphore that limits the number of viewers, in total and per session.
-/// Threads: any thread.
-class ViewerSemaphore {
-public:
-    explicit ViewerSemaphore(const LiveConfig& config)
-        : taken_(std::make_shared<Taken>()), max_(config.viewers_max), max_of_session_(config.viewers_per_session_max) {
-    }
-
-    /// Takes a slot, which is released when the last copy of the pointer is destroyed. Does not wait.
-    /// @return null if all slots are taken
-    [[nodiscard]] std::shared_ptr<const void> try_take(store::SessionId session) const;
-
-private:
-    struct Taken {
-        std::mutex mutex;
-        std::map<store::SessionId, std::size_t> by_session;
-        std::size_t count = 0;
-
-        void give_back(store::SessionId session);
-    };
-
-    std::shared_ptr<Taken> taken_; // kept alive by the slots
-    std::size_t max_;
-    std::size_t max_of_session_;
 };
 
 } // namespace scanloom::live
