@@ -87,7 +87,7 @@ Result<std::unique_ptr<Server>> Server::open(const ServerOptions& options, const
                                              const store::OpenStore& open_log) {
     store::StoreOptions store;
     store.on_damage = [](const Error& damage) { spdlog::error("{}", damage.message); };
-    store.on_rocksdb_log = [](std::string_view line) { spdlog::debug("RocksDB: {}", line); };
+    store.on_log_line = [](std::string_view line) { spdlog::debug("RocksDB: {}", line); };
     store.disk_reserve_bytes = options.disk_reserve_bytes;
     const auto check = std::make_shared<sessions::BackgroundCheck*>(nullptr); // created after the log
     store.on_unreadable = [check](store::SessionId session, const Error& why) {

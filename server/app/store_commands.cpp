@@ -5,7 +5,6 @@
 #include "server/sessions/repair.hpp"
 #include "server/sessions/session_check.hpp"
 #include "server/store/backups.hpp"
-#include "server/store/block_scan.hpp"
 #include "server/store/damaged_store.hpp"
 #include "server/store/files.hpp"
 #include "server/store/rocksdb_store.hpp"

@@ -15,10 +15,6 @@
 #include <string>
 #include <vector>
 
-namespace rocksdb {
-class DB;
-}
-
 /// Backups of a store, in RocksDB's format.
 /// Source: RocksDB 7.8, utilities/backup_engine.h.
 namespace scanloom::store {
@@ -32,16 +28,6 @@ struct Backup {
 
     friend bool operator==(const Backup&, const Backup&) = default;
 };
-
-/// Returns the identity of a store; see ScanLog::identity().
-/// Errors: kStoreFailed.
-[[nodiscard]] Result<std::string> identity_of(rocksdb::DB& database);
-
-/// Makes a backup and compares its files with their checksums.
-/// @param sessions  number of sessions in the store, kept with the backup
-/// Errors: those of ScanLog::backup_to().
-[[nodiscard]] Result<> back_up(rocksdb::DB& database, const std::filesystem::path& directory, std::size_t sessions,
-                               const std::stop_token& stop);
 
 /// Makes and lists backups of a store that is in use, in a separate directory.
 ///

@@ -1,9 +1,5 @@
 #include "server/store/block_scan.hpp"
 
-#include "server/store/rocksdb_options.hpp"
-#include "server/store/store_error.hpp"
-
-#include <fmt/format.h>
 #include <rocksdb/options.h>
 
 namespace scanloom::store {
@@ -67,14 +63,6 @@ void BlockScan::update_number() {
         number_ = number_of(key().substr(range_.begin.size(), sizeof(std::uint64_t)));
         if (!number_) iterator_->Next();
     }
-}
-
-Result<> check_table(const std::filesystem::path& table, const StoreOptions& options) {
-    rocksdb::SstFileReader reader(options_of_table(options));
-    auto status = reader.Open(table.native());
-    if (status.ok()) status = reader.VerifyChecksum();
-    if (status.ok()) return {};
-    return Error{Errc::kDataLoss, fmt::format("{} is damaged ({}); {}", table.native(), status.ToString(), kRecover)};
 }
 
 } // namespace scanloom::store

@@ -54,8 +54,4 @@ private:
     std::optional<std::uint64_t> number_;         // of the current key
 };
 
-/// Reads a table file and compares every block with its checksum, including blocks that no session needs any more.
-/// Errors: kDataLoss, naming the file.
-[[nodiscard]] Result<> check_table(const std::filesystem::path& table, const StoreOptions& options = {});
-
 } // namespace scanloom::store

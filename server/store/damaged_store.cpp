@@ -84,8 +84,15 @@ Result<std::unique_ptr<DamagedStore>> DamagedStore::open(const fs::path& store, 
     return opened;
 }
 
+struct DamagedStore::Rocksdb {
+    rocksdb::Options table_options;       // for reading one table by itself
+    std::unique_ptr<rocksdb::DB> catalog; // which sessions exist; null: the manifest does not name every table
+};
+
 DamagedStore::DamagedStore(LockedDirectory directory, const StoreOptions& options)
-    : directory_(std::move(directory)), options_(options), table_options_(options_of_table(options)) {}
+    : directory_(std::move(directory)), options_(options), rocksdb_(new Rocksdb{options_of_table(options), nullptr}) {}
+
+DamagedStore::~DamagedStore() = default;
 
 /// Checks that every file can be opened.
 Result<> DamagedStore::open_files() const {
@@ -103,7 +110,7 @@ Result<> DamagedStore::open_files() const {
 
 void DamagedStore::open_tables() {
     for (const auto& file : regular_files(directory_.path(), kTable)) {
-        rocksdb::SstFileReader reader(table_options_);
+        rocksdb::SstFileReader reader(rocksdb_->table_options);
         if (const auto status = reader.Open(file.native()); !status.ok()) {
             note_damage(file,
                         fmt::format("its index cannot be read, and all its entries are lost ({})", status.ToString()));
@@ -128,13 +135,13 @@ void DamagedStore::open_catalog() {
         return note_damage("MANIFEST", manifest.error().message);
     rocksdb::DB* opened = nullptr;
     const auto status = rocksdb::DB::OpenForReadOnly(options_of_catalog(options_), store.native(), &opened);
-    catalog_.reset(opened);
+    rocksdb_->catalog.reset(opened);
     if (!status.ok()) {
         return note_damage(fs::exists(store / "CURRENT") ? "MANIFEST" : "CURRENT",
                            fmt::format("RocksDB cannot open the store ({})", status.ToString()));
     }
     std::vector<rocksdb::LiveFileMetaData> live;
-    catalog_->GetLiveFilesMetaData(&live);
+    rocksdb_->catalog->GetLiveFilesMetaData(&live);
     std::set<std::string> named;
     for (const auto& table : live) {
         named.insert(table.relative_filename);
@@ -146,7 +153,7 @@ void DamagedStore::open_catalog() {
         if (named.contains(table.filename().native())) continue;
         note_damage("MANIFEST",
                     fmt::format("it does not name {}; the entries of that table are kept", table.filename().native()));
-        catalog_.reset();
+        rocksdb_->catalog.reset();
     }
 }
 
@@ -210,9 +217,10 @@ void DamagedStore::find_sessions() {
     for (const auto& [key, value] : logged_) add_record(key, value);
     for (const auto& [key, value] : logged_) add_owner(*owner_of(key));
     for (const auto& table : tables_) {
-        BlockScan records(table.file, {std::string(kSessionsBegin), std::string(kSessionsEnd)}, table_options_);
+        BlockScan records(table.file, {std::string(kSessionsBegin), std::string(kSessionsEnd)},
+                          rocksdb_->table_options);
         for (; records.valid(); records.next()) add_record(records.key(), records.sealed_value());
-        BlockScan owners(table.file, {std::string(kEntriesBegin), std::string(kEntriesEnd)}, table_options_);
+        BlockScan owners(table.file, {std::string(kEntriesBegin), std::string(kEntriesEnd)}, rocksdb_->table_options);
         for (; owners.valid(); owners.seek(owners.number() + 1)) add_owner(owners.number());
     }
 }
@@ -224,9 +232,9 @@ bool DamagedStore::is_removed(SessionId session) const {
     const auto entry = logged_.lower_bound(entries_of(session).begin);
     const bool is_logged =
         logged_.contains(session_key(session)) || (entry != logged_.end() && entry->first < entries_of(session).end);
-    if (!catalog_ || is_logged) return false;
+    if (!rocksdb_->catalog || is_logged) return false;
     std::string record;
-    return catalog_->Get({}, session_key(session), &record).IsNotFound();
+    return rocksdb_->catalog->Get({}, session_key(session), &record).IsNotFound();
 }
 
 Result<std::uint64_t> DamagedStore::read(SessionId session, const ScanLog::VisitEntry& visit) const {
@@ -234,7 +242,7 @@ Result<std::uint64_t> DamagedStore::read(SessionId session, const ScanLog::Visit
     std::vector<std::unique_ptr<BlockScan>> scans;
     for (const auto& table : tables_) {
         if (table.largest < range.begin || table.smallest >= range.end) continue;
-        auto scan = std::make_unique<BlockScan>(table.file, range, table_options_);
+        auto scan = std::make_unique<BlockScan>(table.file, range, rocksdb_->table_options);
         if (scan->valid()) scans.push_back(std::move(scan));
     }
     auto logged = logged_.lower_bound(range.begin);

@@ -5,9 +5,6 @@
 #include "server/store/rocksdb_store.hpp"
 #include "server/store/scan_log.hpp"
 
-#include <rocksdb/db.h>
-#include <rocksdb/options.h>
-
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -36,6 +33,7 @@ public:
     ///         be lost silently.
     [[nodiscard]] static Result<std::unique_ptr<DamagedStore>> open(const std::filesystem::path& store,
                                                                     const StoreOptions& options = {});
+    ~DamagedStore();
 
     /// Returns the records by session id; nullopt for a session that has entries but no intact record.
     [[nodiscard]] const std::map<SessionId, std::optional<std::string>>& sessions() const noexcept { return sessions_; }
@@ -51,6 +49,8 @@ public:
     [[nodiscard]] std::size_t damaged_files() const noexcept { return damaged_.size(); }
 
 private:
+    struct Rocksdb; // its options and the database
+
     /// A table that can be opened, and the range of its keys; if an end of it is unknown, the range is unlimited there.
     struct Table {
         std::filesystem::path file;
@@ -70,11 +70,10 @@ private:
 
     const LockedDirectory directory_;
     const StoreOptions options_;
-    const rocksdb::Options table_options_; // for reading one table by itself
+    const std::unique_ptr<Rocksdb> rocksdb_;
     std::vector<Table> tables_;
     std::map<std::string, std::string> logged_; // records and entries of the write-ahead logs, sealed, by key
     std::set<SessionId> removed_;               // by the write-ahead logs
-    std::unique_ptr<rocksdb::DB> catalog_;      // which sessions exist; null: the manifest does not name every table
     std::map<SessionId, std::optional<std::string>> sessions_;
     std::set<std::string> damaged_; // names of files
     std::vector<std::string> notes_;

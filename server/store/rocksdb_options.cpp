@@ -100,7 +100,7 @@ void set_disk(rocksdb::Options& rocksdb, const StoreOptions& options) {
 }
 
 void set_reports(rocksdb::Options& rocksdb, const StoreOptions& options) {
-    rocksdb.info_log = std::make_shared<RocksdbLog>(options.on_rocksdb_log);
+    rocksdb.info_log = std::make_shared<RocksdbLog>(options.on_log_line);
     rocksdb.stats_dump_period_sec = 0;
     rocksdb.stats_persist_period_sec = 0;
 }

@@ -1,6 +1,6 @@
 #include "server/store/rocksdb_scan_log.hpp"
 
-#include "server/store/backups.hpp"
+#include "server/store/backup_engine.hpp"
 #include "server/store/files.hpp"
 #include "server/store/record.hpp"
 #include "server/store/store_error.hpp"

@@ -1,7 +1,12 @@
 #include "server/store/rocksdb_store.hpp"
 
 #include "server/store/database.hpp"
+#include "server/store/rocksdb_options.hpp"
 #include "server/store/rocksdb_scan_log.hpp"
+#include "server/store/store_error.hpp"
+
+#include <fmt/format.h>
+#include <rocksdb/sst_file_reader.h>
 
 #include <utility>
 
@@ -20,6 +25,14 @@ Result<ReadOnlyStore> open_read_only(const fs::path& directory, const StoreOptio
     store.without_record = (*database)->owners_without_record();
     store.log = std::make_unique<RocksdbScanLog>(std::move(*database), options);
     return store;
+}
+
+Result<> check_table(const fs::path& table, const StoreOptions& options) {
+    rocksdb::SstFileReader reader(options_of_table(options));
+    auto status = reader.Open(table.native());
+    if (status.ok()) status = reader.VerifyChecksum();
+    if (status.ok()) return {};
+    return Error{Errc::kDataLoss, fmt::format("{} is damaged ({}); {}", table.native(), status.ToString(), kRecover)};
 }
 
 } // namespace scanloom::store

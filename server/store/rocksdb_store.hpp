@@ -35,8 +35,9 @@ struct StoreOptions {
     /// kStoreFailed.
     std::function<void(SessionId, const Error&)> on_unreadable;
 
-    /// Called with each RocksDB log line of level WARN and above, from a RocksDB thread. Null: the lines are dropped.
-    std::function<void(std::string_view)> on_rocksdb_log;
+    /// Called with each line of level WARN and above that the database logs, from one of its threads. Null: the lines
+    /// are dropped.
+    std::function<void(std::string_view)> on_log_line;
 
     /// The file layer; tests replace it to inject failures. Null: the system's.
     rocksdb::Env* env = nullptr;
@@ -68,5 +69,9 @@ struct ReadOnlyStore {
 ///         or is so damaged that a start would refuse it as well; kUnsupportedVersion: a newer program wrote it.
 [[nodiscard]] Result<ReadOnlyStore> open_read_only(const std::filesystem::path& directory,
                                                    const StoreOptions& options = {});
+
+/// Reads a table file and compares every block with its checksum, including blocks that no session needs any more.
+/// Errors: kDataLoss, naming the file.
+[[nodiscard]] Result<> check_table(const std::filesystem::path& table, const StoreOptions& options = {});
 
 } // namespace scanloom::store

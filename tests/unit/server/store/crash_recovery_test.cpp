@@ -1,4 +1,3 @@
-#include "server/store/block_scan.hpp"
 #include "server/store/log_file.hpp"
 #include "server/store/rocksdb_store.hpp"
 #include "server/store/scan_log.hpp"
