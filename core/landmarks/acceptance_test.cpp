@@ -85,26 +85,27 @@ void add_sigmas(const LineFit& fit, Alignment& alignment) {
 std::optional<std::string> undetermined(const Candidate& best, LaidOn first) {
     const double percent = 100.0 * overlap_of(best, first);
     if (first == LaidOn::kView && !overlaps(best, first, kOverlapMin)) {
-        return fmt::format("only {:.0f} % of the two views overlap, {} surface elements: take captures that are nearer "
-                           "to each other, or of more turns",
-                           percent, best.both().matched);
+        return fmt::format(
+            "only {:.0f} % of the two views overlap ({} surface elements); take captures that are nearer "
+            "to each other, or of more turns",
+            percent, best.both().matched);
     }
     if (first == LaidOn::kMap && !overlaps(best, first, kFoundMin)) {
-        return fmt::format("only {:.0f} % of what is seen is in the map, {} surface elements: go where more of it has "
-                           "been mapped",
+        return fmt::format("only {:.0f} % of the view is in the map ({} surface elements); move to a place where more "
+                           "is mapped",
                            percent, best.both().matched);
     }
     const double alone = share(best.second_in_first.contradicted, best.second_in_first.elements);
     if (first == LaidOn::kMap && alone > kOutOfPlaceMax) {
-        return fmt::format(
-            "{:.0f} % of what is seen stands where the map is free: it may be another place, or much has "
-            "moved",
-            100.0 * alone);
+        return fmt::format("{:.0f} % of the view is in the free space of the map; it may be another place, or many "
+                           "objects have moved",
+                           100.0 * alone);
     }
     if (contradicted_of(best) > (first == LaidOn::kView ? kContradictedMax : kContradictedInMapMax)) {
-        return fmt::format("{:.0f} % of what both could see is in one of the two alone: it may not be the same place, "
-                           "or much of it has moved",
-                           100.0 * contradicted_of(best));
+        return fmt::format(
+            "{:.0f} % of the surface visible from both places is in one view only; they may be different "
+            "places, or many objects have moved",
+            100.0 * contradicted_of(best));
     }
     return std::nullopt;
 }
@@ -155,11 +156,11 @@ const Candidate* rival_of(const std::vector<Candidate>& candidates, LaidOn first
 std::string rivalled(const Candidate& best, const Candidate& rival, LaidOn first) {
     const Pose2 apart = compose(inverse(best.pose()), rival.pose());
     const bool is_likelier = first == LaidOn::kView && rival.both().contradicted < best.both().contradicted;
-    return fmt::format("another pose, {:.2f} m and {:.0f} degrees away, explains {:.0f} % where this one explains "
-                       "{:.0f} %{}: look from where more can be told apart",
+    return fmt::format("another pose, {:.2f} m and {:.0f} degrees away, matches {:.0f} % of the view, and this pose "
+                       "matches {:.0f} %{}; move to a place with more distinct surroundings",
                        std::hypot(apart.x, apart.y), std::abs(apart.yaw) * 180.0 / std::numbers::pi,
                        100.0 * overlap_of(rival, first), 100.0 * overlap_of(best, first),
-                       is_likelier ? ", and less speaks against it" : "");
+                       is_likelier ? ", but the other one has fewer outliers" : "");
 }
 
 } // namespace
@@ -167,9 +168,8 @@ std::string rivalled(const Candidate& best, const Candidate& rival, LaidOn first
 Alignment judge(const std::vector<Candidate>& candidates, LaidOn first) {
     if (candidates.empty()) {
         return {.why = first == LaidOn::kView
-                           ? "no pose lays anything of one view on the other: take captures that are nearer to each "
-                             "other"
-                           : "no pose lays what is seen on the map: go where it has been mapped"};
+                           ? "the two views do not match in any pose; take captures that are nearer to each other"
+                           : "the view does not match the map in any pose; move to a place that is mapped"};
     }
     const Candidate& best = candidates.front();
     Alignment alignment{.T_first_second = best.pose(),
@@ -188,16 +188,16 @@ Alignment judge(const std::vector<Candidate>& candidates, LaidOn first) {
     if (rival) alignment.rival = rival->pose();
     if (held < kHeld) {
         alignment.certainty = Certainty::kAmbiguous;
-        alignment.why = fmt::format("hardly anything holds the pose along ({:.2f}, {:.2f}), as in a corridor: look "
-                                    "from where its end can be seen",
+        alignment.why = fmt::format("the position along ({:.2f}, {:.2f}) is not determined, as in a corridor; move "
+                                    "to a place from which its end is visible",
                                     direction.x, direction.y);
     } else if (rival) {
         alignment.certainty = Certainty::kAmbiguous;
         alignment.why = rivalled(best, *rival, first);
     } else if (alignment.position_sigma > (first == LaidOn::kView ? kSigmaMax : kSigmaInMapMax)) {
         alignment.certainty = Certainty::kUndetermined;
-        alignment.why = fmt::format("along ({:.2f}, {:.2f}) the place is known to within {:.0f} cm only, as what both "
-                                    "show is little or far away: look for more turns, or from nearer to things",
+        alignment.why = fmt::format("the position along ({:.2f}, {:.2f}) is uncertain by {:.0f} cm, because the common "
+                                    "surface is small or far away; take more turns, or move nearer to objects",
                                     direction.x, direction.y, std::ceil(300.0 * alignment.position_sigma));
     }
     return alignment;

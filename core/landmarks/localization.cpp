@@ -127,8 +127,8 @@ Neighbourhood within(const Extent& extent, const std::optional<Neighbourhood>& n
 
 /// Returns the reason why nothing can be found. Other places may be mapped.
 std::string nothing_there(const std::optional<Neighbourhood>& near) {
-    if (!near) return "all that the session's lasers have seen has gone since: go where it has been mapped";
-    return fmt::format("no laser has seen anything within {:g} m of ({:g}, {:g}): say another place, or none",
+    if (!near) return "no surface of this map is still valid; move to a place that was mapped recently";
+    return fmt::format("the map has no laser points within {:g} m of ({:g}, {:g}); give another place, or none",
                        near->radius, near->middle.x, near->middle.y);
 }
 
@@ -136,24 +136,25 @@ std::string nothing_there(const std::optional<Neighbourhood>& near) {
 
 Result<Alignment> locate(const ReferenceViews& views, const CloudView& view, const std::optional<Neighbourhood>& near,
                          const std::function<Result<>()>& ask) {
-    if (auto good = check_view("what is seen", view); !good) return good.error();
+    if (auto good = check_view("the view", view); !good) return good.error();
     std::vector<Point2> points;
     for (const Point2& point : view.points) points.push_back(point - view.from);
     const Horizon horizon(points, {0.0, 0.0});
 
     if (views.empty()) {
         return Error{Errc::kNothingMapped,
-                     "no laser of this session has seen anything yet; send the first scans from a pose that is known"};
+                     "this session has no laser points yet; send the first scans from a pose that is known"};
     }
     const ReferenceViews some = near ? views_near(views, *near, horizon.reach() + kBeyond) : views;
     const auto extent = extent_of(some);
     if (!extent) return Alignment{.why = nothing_there(near)};
     const Neighbourhood where = within(*extent, near);
     if (where.radius > kHalfExtentMax) {
-        return Error{Errc::kTooLarge,
-                     fmt::format("{:.0f} m of the map would have to be looked at, and at most {:.0f} m "
-                                 "are: give a point near its position, and the distance",
-                                 2.0 * where.radius, 2.0 * kHalfExtentMax)};
+        return Error{
+            Errc::kTooLarge,
+            fmt::format("the search would cover {:.0f} m of the map, and the limit is {:.0f} m; give a point near the "
+                        "robot's position, and the distance",
+                        2.0 * where.radius, 2.0 * kHalfExtentMax)};
     }
     const auto map = ReferenceMap::of(some, extent->middle, ask);
     if (!map) return map.error();

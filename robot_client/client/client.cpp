@@ -48,9 +48,9 @@ Result<UplinkOptions> uplink_options(const ClientOptions& options) {
 /// Errors: kInvalidField or kTooLarge if no server accepts a value.
 Result<SeenPoints> seen_from(const std::shared_ptr<const Sensor>& sensor, std::span<const Scan> scans) {
     static_assert(Client::kLocatePointsMin == kSeenPointsMin);
-    if (!sensor) return Error{Errc::kInvalidField, "scans need their sensor"};
+    if (!sensor) return Error{Errc::kInvalidField, "locate() needs the sensor of the scans"};
     if (sensor->kind != SensorKind::kLaser) {
-        return Error{Errc::kInvalidField, "only what lasers see tells where a robot is; give the scans of one"};
+        return Error{Errc::kInvalidField, "locate() needs laser scans; this sensor is a sonar"};
     }
     SeenPoints seen;
     for (std::size_t n = 0; n < scans.size(); ++n) {
@@ -58,9 +58,8 @@ Result<SeenPoints> seen_from(const std::shared_ptr<const Sensor>& sensor, std::s
         seen.add(scans[n], *sensor);
     }
     if (seen.count() >= kSeenPointsMin) return seen;
-    return Error{Errc::kInvalidField, fmt::format("the scans met something {} times; {} are needed to tell where they "
-                                                  "were taken",
-                                                  seen.count(), kSeenPointsMin)};
+    return Error{Errc::kInvalidField,
+                 fmt::format("the scans have {} returns; at least {} are needed", seen.count(), kSeenPointsMin)};
 }
 
 Path from_wire(wire::Path path, std::uint64_t revision) {

@@ -200,7 +200,7 @@ wire::LinkError Uplink::closed(const net::LinkStream& stream, const boost::syste
     if (protocol_.is_welcome() || options_.tls || failed != asio::error::eof) {
         return lost(fmt::format("the connection was lost: {}", failed.message()));
     }
-    return lost(fmt::format("{} hung up without an answer; where it wants encrypted links, give --tls",
+    return lost(fmt::format("{} closed the connection without an answer; if the server requires TLS, add --tls",
                             options_.server.text()));
 }
 

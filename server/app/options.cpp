@@ -42,8 +42,8 @@ struct Raw {
     std::string store;
     std::string check;   ///< "log" or "deep"; empty: not given
     std::string restore; ///< "newest", or an id; empty: not given
-    std::string tokens;  ///< empty: not given; so for `web`
-    std::string web;
+    std::string tokens;  ///< empty: not given
+    std::string web;     ///< empty: not given
     std::vector<std::string> proxies;
     double tile_cache_mib = 64.0;
     double map_memory_mib = 0.0;

@@ -39,8 +39,8 @@ struct HeldPath {
 ///
 /// A robot holds its goal and path until it is given others or has left. What was given to a robot that was not
 /// connected is held until the robot has connected and left, or for kKeptForAbsent. Nothing outlives the server process
-/// or the Session object. That a robot has explored everything it can reach stays known after it has left, until it
-/// asks for a goal again. Robots that have left are removed when the book is read.
+/// or the Session object. If a robot has explored everything it can reach, this is stored until it
+/// asks for a goal again, also after it has left. Other robots that have left are removed at the next read.
 ///
 /// Bounds: at most one goal and one path for each robot of a session, kPathPointsMax points for each path, about
 ///     kPointsMax points for each session.

@@ -41,7 +41,7 @@ public:
     };
 
     /// Finds the route.
-    /// @param head  need not have a body; so for admit()
+    /// @param head  the request line and the fields; the body may be missing
     /// @return the route, or the refusal
     [[nodiscard]] std::variant<Routed, Response> route(const Request& head) const;
 

@@ -32,7 +32,7 @@ public:
     /// Writes a response without TLS to a peer that sent a request without TLS. The stream has no TLS from then on.
     [[nodiscard]] boost::asio::awaitable<void> write_without_tls(const Response& response);
 
-    /// Makes finish() wait: the peer may not have read yet what was sent.
+    /// Makes finish() wait for the peer to read the last response.
     void keep_until_read() noexcept { must_linger_ = true; }
 
     /// Waits a while for the peer to read the last response. Call before the stream is closed.

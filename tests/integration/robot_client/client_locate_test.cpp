@@ -74,11 +74,11 @@ TEST_F(ClientLocate, RefusesInvalidArgumentsByName) {
         EXPECT_EQ(location.error().code, Errc::kInvalidField);
         EXPECT_THAT(location.error().message, HasSubstr(message));
     };
-    refused(nullptr, scans(), "scans need their sensor");
-    refused(laser(), {}, "met something 0 times; 20 are needed");
+    refused(nullptr, scans(), "needs the sensor of the scans");
+    refused(laser(), {}, "have 0 returns; at least 20 are needed");
     Sensor sonar = *laser();
     sonar.kind = SensorKind::kSonar;
-    refused(std::make_shared<const Sensor>(sonar), scans(), "only what lasers see");
+    refused(std::make_shared<const Sensor>(sonar), scans(), "needs laser scans; this sensor is a sonar");
     auto wrong = scans();
     wrong[3].pose.x = std::numeric_limits<double>::quiet_NaN();
     refused(laser(), wrong, "scans[3]: ");

@@ -153,7 +153,7 @@ TEST_F(LinkKinds, AMissingClientCertificateIsReportedWithAHint) {
 TEST_F(LinkKinds, TlsOnOneSideOnlyIsReportedWithAHint) {
     serve("127.0.0.1");
     EXPECT_FALSE(run(options()));
-    EXPECT_THAT(troubles_.at(0), HasSubstr("give --tls"));
+    EXPECT_THAT(troubles_.at(0), HasSubstr("add --tls"));
     const auto trusted = files_.certificate;
     server_.reset();
     io_.restart();

@@ -93,7 +93,9 @@ TEST(AcceptanceTest, LessContradictedDistantCandidateIsAmbiguous) {
     const auto alignment = judged(best, other);
     EXPECT_EQ(alignment.certainty, Certainty::kAmbiguous);
     EXPECT_EQ(alignment.rival, kElsewhere);
-    EXPECT_THAT(alignment.why, HasSubstr("explains 70 % where this one explains 98 %, and less speaks against it"));
+    EXPECT_THAT(
+        alignment.why,
+        HasSubstr("matches 70 % of the view, and this pose matches 98 %, but the other one has fewer outliers"));
     EXPECT_TRUE(is_clear(best, CandidateAt(kElsewhere).with(kUnseen, 140, 20)));
     EXPECT_TRUE(is_clear(best, CandidateAt(kElsewhere).with(kUnseen, 120, 20).with(kContradicted, 5)));
     EXPECT_TRUE(is_clear(CandidateAt(kBest).with(kContradicted, 39), CandidateAt(kElsewhere).with(kUnseen, 281)))
@@ -105,7 +107,7 @@ TEST(AcceptanceTest, HighOutlierRatioIsUndetermined) {
     EXPECT_TRUE(is_clear(CandidateAt(kBest).with(kContradicted, 40), nothing));
     const auto alignment = judged(CandidateAt(kBest).with(kContradicted, 41), nothing);
     EXPECT_EQ(alignment.certainty, Certainty::kUndetermined);
-    EXPECT_THAT(alignment.why, HasSubstr("10 % of what both could see is in one of the two alone"));
+    EXPECT_THAT(alignment.why, HasSubstr("10 % of the surface visible from both places is in one view only"));
 }
 
 } // namespace

@@ -239,7 +239,7 @@ TEST(Localization, DistinguishesAnEmptyMapFromAnUnmappedNeighbourhood) {
     const auto nowhere = locate({}, {.points = seen});
     ASSERT_FALSE(nowhere);
     EXPECT_EQ(nowhere.error().code, Errc::kNothingMapped);
-    EXPECT_THAT(nowhere.error().message, HasSubstr("no laser of this session has seen anything yet"));
+    EXPECT_THAT(nowhere.error().message, HasSubstr("this session has no laser points yet"));
 
     const auto elsewhere = locate(map_of(furnished(), kPlaces), {.points = seen}, Neighbourhood{{100.0, 0.0}, 5.0});
     ASSERT_TRUE(elsewhere) << "the robot must not be localized in another mapped place";
@@ -271,7 +271,7 @@ TEST(Localization, RequiresANeighbourhoodInATooWideMap) {
 TEST(Localization, RefusesInvalidViews) {
     const auto map = map_of(furnished(), kPlaces);
     EXPECT_THAT(locate(map, {.points = std::vector<Point2>(19, {1.0, 1.0})}).error().message,
-                HasSubstr("what is seen has 19 points; 20 or more"));
+                HasSubstr("the view has 19 points; 20 or more"));
     std::vector<Point2> points(30, {1.0, 1.0});
     points[7].x = std::numeric_limits<double>::quiet_NaN();
     EXPECT_EQ(locate(map, {.points = points}).error().code, Errc::kInvalidField);
