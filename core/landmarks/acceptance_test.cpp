@@ -13,138 +13,144 @@
 namespace scanloom::landmarks {
 namespace {
 
-constexpr double kMargin = 0.08;       // of the best score: no other pose may come this near to it,
-constexpr double kMarginElements = 30; // or this near in elements: things may have moved
-constexpr double kHeld = 0.02;         // of the elements used: below this, a direction is not constrained
-constexpr double kElementsMin = 40;
-constexpr double kContradictedMax = 0.1;       // outliers / (inliers + outliers) for two views,
-constexpr double kContradictedInMapMax = 0.15; // and on a map
+constexpr double kScoreMargin = 0.08;       // of the best score: no other pose may come this near to it,
+constexpr double kScoreMarginElements = 30; // or this near in elements: things may have moved
+constexpr double kConstraintMin = 0.02;     // of the elements used: below this, a direction is not constrained
+constexpr double kInliersMin = 40;
+constexpr double kOutlierRatioMax = 0.1;       // outliers / (inliers + outliers) for two views,
+constexpr double kOutlierRatioOnMapMax = 0.15; // and on a map
 
-constexpr double kOverlapMin = 0.3;      // inlier ratio for two views
+constexpr double kInlierRatioMin = 0.3;  // inlier ratio for two views
 constexpr double kSigmaMax = 0.02 / 3.0; // metres for two views: 2 cm are three sigmas
 
 /// Along a hall, a pose near the best has hardly fewer inliers of two views, because few elements constrain the pose in
 /// that direction. It does not compete if the elements in which the two differ distinguish them clearly. The elements
 /// that support the best must exceed the others by this number,
-constexpr double kTelling = 20.0;
-constexpr double kTellingRatio = 3.0;      // and by this factor;
-constexpr double kTellingElsewhere = 10.0; // and by this number without all elements around any one place,
-constexpr double kThingRadius = 1.0;       // metres: the size of one thing that may have moved.
+constexpr double kDistinguishingMin = 20.0;
+constexpr double kDistinguishingRatioMin = 3.0;      // and by this factor;
+constexpr double kDistinguishingElsewhereMin = 10.0; // and by this number without all elements around any one place,
+constexpr double kObjectRadius = 1.0;                // metres: the size of one thing that may have moved.
 
 /// A distant pose may be correct although it has fewer inliers: with two doors, one closed and one opened since, a room
 /// may look like itself rotated by half a turn. The pose competes if it has this fraction of the best pose's inliers,
-constexpr double kAsMuch = 0.9;
-constexpr double kUnlikely = 8.0; // minus this many elements for each outlier that it has fewer.
+constexpr double kDistantInlierFraction = 0.9;
+constexpr double kDistantOutlierWeight = 8.0; // minus this many elements for each outlier that it has fewer.
 
-constexpr double kFoundMin = 0.5;        // inlier ratio of a view on a map
-constexpr double kSigmaInMapMax = 0.033; // metres: the map itself is no more accurate
-constexpr double kOutOfPlaceMax = 0.06;  // of a view: outliers on a map
+constexpr double kInlierRatioOnMapMin = 0.5;       // inlier ratio of a view on a map
+constexpr double kSigmaOnMapMax = 0.033;           // metres: the map itself is no more accurate
+constexpr double kViewOutlierRatioOnMapMax = 0.06; // of a view: outliers on a map
 
 /// On a map, a pose with fewer inliers than the best competes as well, unless the best has this inlier ratio. It must
 /// have
-constexpr double kAllFound = 0.97;
-constexpr double kRivalFoundMin = 0.3;    // this inlier ratio,
-constexpr double kHardlyMore = 0.002;     // an outlier ratio at most this much above the best pose's,
-constexpr double kElsewhere = 0.5;        // and be this far away, in metres,
-constexpr double kTurnedElsewhere = 0.17; // or in radians, so that it is not the best pose itself
+constexpr double kCompleteInlierRatio = 0.97;
+constexpr double kCompetingInlierRatioMin = 0.3; // this inlier ratio,
+constexpr double kOutlierRatioTolerance = 0.002; // an outlier ratio at most this much above the best pose's,
+constexpr double kElsewhereDistance = 0.5;       // and be this far away, in metres,
+constexpr double kElsewhereTurn = 0.17;          // or in radians, so that it is not the best pose itself
 
 /// Neighbouring surface elements come from the same points, so this many of them count as one observation. Of 937 clear
 /// alignments in the simulator's office and hall, one position was off by more than three sigmas, and ten yaws were.
-constexpr double kShared = 12.0;
+constexpr double kElementsPerObservation = 12.0;
 
 double share(std::size_t part, std::size_t all) {
     return all == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(all);
 }
 
 /// Returns the inlier ratio of what must overlap: of both views, or of the view on a map.
-double overlap_of(const Candidate& candidate, LaidOn first) {
-    const Evidence of = first == LaidOn::kView ? candidate.both() : candidate.second_in_first;
-    return share(of.matched, of.elements);
+double inlier_ratio_of(const Candidate& candidate, MatchedAgainst against) {
+    const Evidence of = against == MatchedAgainst::kView ? candidate.both() : candidate.second_in_first;
+    return share(of.inliers, of.elements);
 }
 
-double contradicted_of(const Candidate& candidate) {
+double outlier_ratio_of(const Candidate& candidate) {
     const Evidence both = candidate.both();
-    return share(both.contradicted, both.matched + both.contradicted);
+    return share(both.outliers, both.inliers + both.outliers);
 }
 
-bool overlaps(const Candidate& candidate, LaidOn first, double overlap_min) {
-    return overlap_of(candidate, first) >= overlap_min && static_cast<double>(candidate.both().matched) >= kElementsMin;
+bool overlaps(const Candidate& candidate, MatchedAgainst against, double overlap_min) {
+    return inlier_ratio_of(candidate, against) >= overlap_min &&
+           static_cast<double>(candidate.both().inliers) >= kInliersMin;
 }
 
 /// Sets the standard deviations of the fit, from its residuals and 3 unknowns.
 void add_sigmas(const LineFit& fit, Alignment& alignment) {
-    const double held = 1e-6 * std::max(1.0, static_cast<double>(fit.used)); // keeps the covariance finite
-    const Eigen::Matrix3d covariance =
-        kShared * fit.rms * fit.rms * (fit.normal_matrix + held * Eigen::Matrix3d::Identity()).inverse();
+    const double regularization = 1e-6 * std::max(1.0, static_cast<double>(fit.used)); // keeps the covariance finite
+    const Eigen::Matrix3d covariance = kElementsPerObservation * fit.rms * fit.rms *
+                                       (fit.normal_matrix + regularization * Eigen::Matrix3d::Identity()).inverse();
     Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes;
     axes.computeDirect(covariance.topLeftCorner<2, 2>());
     alignment.position_sigma = std::sqrt(std::max(0.0, axes.eigenvalues()[1]));
     alignment.yaw_sigma = std::sqrt(std::max(0.0, covariance(2, 2)));
 }
 
-std::optional<std::string> undetermined(const Candidate& best, LaidOn first) {
-    const double percent = 100.0 * overlap_of(best, first);
-    if (first == LaidOn::kView && !overlaps(best, first, kOverlapMin)) {
+std::optional<std::string> why_undetermined(const Candidate& best, MatchedAgainst against) {
+    const double percent = 100.0 * inlier_ratio_of(best, against);
+    if (against == MatchedAgainst::kView && !overlaps(best, against, kInlierRatioMin)) {
         return fmt::format(
             "only {:.0f} % of the two views overlap ({} surface elements); take captures that are nearer "
             "to each other, or of more turns",
-            percent, best.both().matched);
+            percent, best.both().inliers);
     }
-    if (first == LaidOn::kMap && !overlaps(best, first, kFoundMin)) {
+    if (against == MatchedAgainst::kMap && !overlaps(best, against, kInlierRatioOnMapMin)) {
         return fmt::format("only {:.0f} % of the view is in the map ({} surface elements); move to a place where more "
                            "is mapped",
-                           percent, best.both().matched);
+                           percent, best.both().inliers);
     }
-    const double alone = share(best.second_in_first.contradicted, best.second_in_first.elements);
-    if (first == LaidOn::kMap && alone > kOutOfPlaceMax) {
+    const double alone = share(best.second_in_first.outliers, best.second_in_first.elements);
+    if (against == MatchedAgainst::kMap && alone > kViewOutlierRatioOnMapMax) {
         return fmt::format("{:.0f} % of the view is in the free space of the map; it may be another place, or many "
                            "objects have moved",
                            100.0 * alone);
     }
-    if (contradicted_of(best) > (first == LaidOn::kView ? kContradictedMax : kContradictedInMapMax)) {
+    if (outlier_ratio_of(best) > (against == MatchedAgainst::kView ? kOutlierRatioMax : kOutlierRatioOnMapMax)) {
         return fmt::format(
             "{:.0f} % of the surface visible from both places is in one view only; they may be different "
             "places, or many objects have moved",
-            100.0 * contradicted_of(best));
+            100.0 * outlier_ratio_of(best));
     }
     return std::nullopt;
 }
 
 bool is_elsewhere(const Pose2& a, const Pose2& b) {
-    return std::hypot(a.x - b.x, a.y - b.y) > kElsewhere || std::abs(normalize_angle(a.yaw - b.yaw)) > kTurnedElsewhere;
+    return std::hypot(a.x - b.x, a.y - b.y) > kElsewhereDistance ||
+           std::abs(normalize_angle(a.yaw - b.yaw)) > kElsewhereTurn;
 }
 
 /// Returns whether the correct pose may be `other`, in an incomplete part of the map, and `best` may only look similar.
 bool may_be_unfinished(const Candidate& other, const Candidate& best) {
-    return overlap_of(best, LaidOn::kMap) < kAllFound && overlaps(other, LaidOn::kMap, kRivalFoundMin) &&
-           contradicted_of(other) <= contradicted_of(best) + kHardlyMore && is_elsewhere(other.pose(), best.pose());
+    return inlier_ratio_of(best, MatchedAgainst::kMap) < kCompleteInlierRatio &&
+           overlaps(other, MatchedAgainst::kMap, kCompetingInlierRatioMin) &&
+           outlier_ratio_of(other) <= outlier_ratio_of(best) + kOutlierRatioTolerance &&
+           is_elsewhere(other.pose(), best.pose());
 }
 
 /// For two views, returns whether the elements in which a nearby pose differs from the best clearly support the best.
 bool is_distinguished_from(const Candidate& best, const Candidate& other) {
     if (is_elsewhere(other.pose(), best.pose())) return false;
-    const auto [for_best, for_other, of_one_thing] = difference(best, other, kThingRadius);
+    const auto [for_best, for_other, of_one_thing] = difference(best, other, kObjectRadius);
     const double more = for_best - for_other;
-    return more >= kTelling && for_best >= kTellingRatio * for_other && more - of_one_thing >= kTellingElsewhere;
+    return more >= kDistinguishingMin && for_best >= kDistinguishingRatioMin * for_other &&
+           more - of_one_thing >= kDistinguishingElsewhereMin;
 }
 
 /// For two views, returns whether the correct pose may be the distant pose `other`.
 bool may_be_elsewhere(const Candidate& other, const Candidate& best) {
-    const auto worth = [](const Candidate& one, double as_much) {
+    const auto worth = [](const Candidate& one, double inlier_fraction) {
         const Evidence both = one.both();
-        return as_much * static_cast<double>(both.matched) - kUnlikely * static_cast<double>(both.contradicted);
+        return inlier_fraction * static_cast<double>(both.inliers) -
+               kDistantOutlierWeight * static_cast<double>(both.outliers);
     };
-    return overlaps(other, LaidOn::kView, kOverlapMin) && worth(other, 1.0) >= worth(best, kAsMuch) &&
-           is_elsewhere(other.pose(), best.pose());
+    return overlaps(other, MatchedAgainst::kView, kInlierRatioMin) &&
+           worth(other, 1.0) >= worth(best, kDistantInlierFraction) && is_elsewhere(other.pose(), best.pose());
 }
 
 /// Returns the best candidate that is distinct from the first and may be correct as well, or nullptr.
-const Candidate* rival_of(const std::vector<Candidate>& candidates, LaidOn first) {
+const Candidate* competing_candidate(const std::vector<Candidate>& candidates, MatchedAgainst against) {
     const Candidate& best = candidates.front();
-    const double near = best.score() - std::max(kMargin * best.score(), kMarginElements);
+    const double near = best.score() - std::max(kScoreMargin * best.score(), kScoreMarginElements);
     for (const Candidate& other : candidates) {
         if (!is_distinct(other.pose(), best.pose())) continue;
-        if (first == LaidOn::kMap) {
+        if (against == MatchedAgainst::kMap) {
             if (other.score() >= near || may_be_unfinished(other, best)) return &other;
         } else if ((other.score() >= near && !is_distinguished_from(best, other)) || may_be_elsewhere(other, best)) {
             return &other;
@@ -153,48 +159,48 @@ const Candidate* rival_of(const std::vector<Candidate>& candidates, LaidOn first
     return nullptr;
 }
 
-std::string rivalled(const Candidate& best, const Candidate& rival, LaidOn first) {
-    const Pose2 apart = compose(inverse(best.pose()), rival.pose());
-    const bool is_likelier = first == LaidOn::kView && rival.both().contradicted < best.both().contradicted;
+std::string ambiguity_text(const Candidate& best, const Candidate& competing, MatchedAgainst against) {
+    const Pose2 apart = compose(inverse(best.pose()), competing.pose());
+    const bool is_likelier = against == MatchedAgainst::kView && competing.both().outliers < best.both().outliers;
     return fmt::format("another pose, {:.2f} m and {:.0f} degrees away, matches {:.0f} % of the view, and this pose "
                        "matches {:.0f} %{}; move to a place with more distinct surroundings",
                        std::hypot(apart.x, apart.y), std::abs(apart.yaw) * 180.0 / std::numbers::pi,
-                       100.0 * overlap_of(rival, first), 100.0 * overlap_of(best, first),
+                       100.0 * inlier_ratio_of(competing, against), 100.0 * inlier_ratio_of(best, against),
                        is_likelier ? ", but the other one has fewer outliers" : "");
 }
 
 } // namespace
 
-Alignment judge(const std::vector<Candidate>& candidates, LaidOn first) {
+Alignment test_acceptance(const std::vector<Candidate>& candidates, MatchedAgainst against) {
     if (candidates.empty()) {
-        return {.why = first == LaidOn::kView
+        return {.why = against == MatchedAgainst::kView
                            ? "the two views do not match in any pose; take captures that are nearer to each other"
                            : "the view does not match the map in any pose; move to a place that is mapped"};
     }
     const Candidate& best = candidates.front();
     Alignment alignment{.T_first_second = best.pose(),
                         .certainty = Certainty::kClear,
-                        .explained = share(best.second_in_first.matched, best.second_in_first.elements),
-                        .contradicted = share(best.second_in_first.contradicted, best.second_in_first.elements),
+                        .inlier_ratio = share(best.second_in_first.inliers, best.second_in_first.elements),
+                        .outlier_ratio = share(best.second_in_first.outliers, best.second_in_first.elements),
                         .rms = best.fit.rms};
     add_sigmas(best.fit, alignment);
-    if (auto why = undetermined(best, first)) {
+    if (auto why = why_undetermined(best, against)) {
         alignment.certainty = Certainty::kUndetermined;
         alignment.why = std::move(*why);
         return alignment;
     }
-    const auto [direction, held] = weak_direction(best.fit);
-    const Candidate* rival = rival_of(candidates, first);
-    if (rival) alignment.rival = rival->pose();
-    if (held < kHeld) {
+    const auto [direction, constraint] = weak_direction(best.fit);
+    const Candidate* competing = competing_candidate(candidates, against);
+    if (competing) alignment.competing_pose = competing->pose();
+    if (constraint < kConstraintMin) {
         alignment.certainty = Certainty::kAmbiguous;
         alignment.why = fmt::format("the position along ({:.2f}, {:.2f}) is not determined, as in a corridor; move "
                                     "to a place from which its end is visible",
                                     direction.x, direction.y);
-    } else if (rival) {
+    } else if (competing) {
         alignment.certainty = Certainty::kAmbiguous;
-        alignment.why = rivalled(best, *rival, first);
-    } else if (alignment.position_sigma > (first == LaidOn::kView ? kSigmaMax : kSigmaInMapMax)) {
+        alignment.why = ambiguity_text(best, *competing, against);
+    } else if (alignment.position_sigma > (against == MatchedAgainst::kView ? kSigmaMax : kSigmaOnMapMax)) {
         alignment.certainty = Certainty::kUndetermined;
         alignment.why = fmt::format("the position along ({:.2f}, {:.2f}) is uncertain by {:.0f} cm, because the common "
                                     "surface is small or far away; take more turns, or move nearer to objects",

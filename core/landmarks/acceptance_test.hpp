@@ -8,7 +8,7 @@
 namespace scanloom::landmarks {
 
 /// What a view was matched against.
-enum class LaidOn {
+enum class MatchedAgainst {
     kView, ///< a view from one other place
     kMap,  ///< a map seen from many places: mostly not visible from one place, and maybe incomplete
 };
@@ -25,8 +25,8 @@ enum class LaidOn {
 /// moved. All surface elements of both views are compared for this. A distant pose makes the result ambiguous even with
 /// fewer inliers if fewer of its elements lie in observed free space.
 /// @param candidates  of one view, ranked
-/// @param first       what the candidates were matched against
+/// @param against     what the candidates were matched against
 /// Precondition: the candidates are ranked; see rank().
-[[nodiscard]] Alignment judge(const std::vector<Candidate>& candidates, LaidOn first);
+[[nodiscard]] Alignment test_acceptance(const std::vector<Candidate>& candidates, MatchedAgainst against);
 
 } // namespace scanloom::landmarks

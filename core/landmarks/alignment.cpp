@@ -32,10 +32,10 @@ std::vector<Candidate> find_candidates(const Seen& first, const Seen& second, do
     const auto& there = second.surface.surfels();
     const auto hypotheses = find_hypotheses(here, there, distance_max, kHypotheses).value(); // cannot fail
     for (const Pose2& hypothesis : hypotheses) {
-        candidates.push_back(judged(first, second, settle(first.surface, there, hypothesis)));
+        candidates.push_back(make_candidate(first, second, refine_by_icp(first.surface, there, hypothesis)));
     }
     if (candidates.empty()) return candidates;
-    for (const Candidate& one : likely(candidates)) add_slid(first, second, one, candidates);
+    for (const Candidate& one : likely_candidates(candidates)) add_shifted(first, second, one, candidates);
     rank(candidates);
     return candidates;
 }
@@ -70,9 +70,11 @@ Result<Alignment> align(const CloudView& first, const CloudView& second, const A
     const Horizon from_there(there, {0.0, 0.0});
     const Seen seen_here{Surface(surfels_of(CloudView{here})), {&from_here}};
     const Seen seen_there{Surface(surfels_of(CloudView{there})), {&from_there}};
-    Alignment alignment = judge(find_candidates(seen_here, seen_there, settings.distance_max), LaidOn::kView);
+    Alignment alignment =
+        test_acceptance(find_candidates(seen_here, seen_there, settings.distance_max), MatchedAgainst::kView);
     alignment.T_first_second = with_origins(alignment.T_first_second, first.from, second.from);
-    if (alignment.rival) alignment.rival = with_origins(*alignment.rival, first.from, second.from);
+    if (alignment.competing_pose)
+        alignment.competing_pose = with_origins(*alignment.competing_pose, first.from, second.from);
     return alignment;
 }
 

@@ -38,13 +38,13 @@ enum class Certainty {
 /// The pose of one view relative to another, as found by scan matching.
 struct Alignment {
     Pose2 T_first_second;                           ///< takes points of the second view's frame to the first's
-    Certainty certainty = Certainty::kUndetermined; ///< result of the acceptance test; see judge()
+    Certainty certainty = Certainty::kUndetermined; ///< result of the acceptance test; see test_acceptance()
     std::string why;                                ///< why the certainty is not kClear, a sentence; empty if it is
-    std::optional<Pose2> rival;                     ///< the best of the other poses that may be correct as well
+    std::optional<Pose2> competing_pose;            ///< the best of the other poses that may be correct as well
 
     /// Ratios, 0 to 1, of the second view's surface, in which every 10 cm count as one element.
-    double explained = 0.0;      ///< inlier ratio: lies on a surface of the first view
-    double contradicted = 0.0;   ///< outlier ratio: lies in the first view's free space; moved things or a wrong pose
+    double inlier_ratio = 0.0;   ///< lies on a surface of the first view
+    double outlier_ratio = 0.0;  ///< lies in the first view's free space; moved things or a wrong pose
     double rms = 0.0;            ///< metres, distance of the inliers from the lines of the first view
     double position_sigma = 0.0; ///< metres, of the second view's sensor position, in its least certain direction
     double yaw_sigma = 0.0;      ///< radians
@@ -75,7 +75,7 @@ struct Alignment {
 /// @param settings  limits of the search
 /// Errors: those of check_view(); kInvalidField if distance_max is not more than 0 and at most 100.
 /// Cost: O(n log n) of the points, and some tens of milliseconds.
-/// Source: the steps are find_hypotheses(), settle(), fit_to_lines() and judge().
+/// Source: the steps are find_hypotheses(), refine_by_icp(), fit_to_lines() and test_acceptance().
 [[nodiscard]] Result<Alignment> align(const CloudView& first, const CloudView& second,
                                       const AlignmentSettings& settings = {});
 

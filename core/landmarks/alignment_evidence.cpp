@@ -68,9 +68,9 @@ std::vector<Finding> findings_of(const Surface& surface, std::span<const Horizon
     for (const Surfel& there : second) {
         const Point2 place = transform(T_first_second, there.position);
         if (is_matched(surface, there, place, rotation)) {
-            findings.push_back(Finding::kMatched);
+            findings.push_back(Finding::kInlier);
         } else {
-            findings.push_back(is_open(horizons, place) ? Finding::kContradicted : Finding::kUnseen);
+            findings.push_back(is_open(horizons, place) ? Finding::kOutlier : Finding::kUnseen);
         }
     }
     return findings;
@@ -78,7 +78,7 @@ std::vector<Finding> findings_of(const Surface& surface, std::span<const Horizon
 
 Evidence evidence_of(std::span<const Finding> findings) {
     const auto count = [&](Finding finding) { return static_cast<std::size_t>(std::ranges::count(findings, finding)); };
-    return {count(Finding::kMatched), count(Finding::kContradicted), findings.size()};
+    return {count(Finding::kInlier), count(Finding::kOutlier), findings.size()};
 }
 
 } // namespace scanloom::landmarks

@@ -50,21 +50,21 @@ private:
 
 /// How many surface elements of one view support or contradict a pose, as seen by another view.
 struct Evidence {
-    std::size_t matched = 0;      ///< inliers: lie on the other view's surface
-    std::size_t contradicted = 0; ///< outliers: lie in the free space of the other view
-    std::size_t elements = 0;     ///< all; those neither matched nor contradicted were not visible to the other view
+    std::size_t inliers = 0;  ///< lie on the other view's surface
+    std::size_t outliers = 0; ///< lie in the free space of the other view
+    std::size_t elements = 0; ///< all; those neither inliers nor outliers were not visible to the other view
 
     /// Returns the sums of the counts.
     friend Evidence operator+(const Evidence& a, const Evidence& b) {
-        return {a.matched + b.matched, a.contradicted + b.contradicted, a.elements + b.elements};
+        return {a.inliers + b.inliers, a.outliers + b.outliers, a.elements + b.elements};
     }
 };
 
 /// What one view shows at a surface element of another.
 enum class Finding : std::uint8_t {
-    kUnseen,       ///< the element was not visible
-    kMatched,      ///< inlier: the element lies on the view's surface
-    kContradicted, ///< outlier: the element lies in the view's free space
+    kUnseen,  ///< the element was not visible
+    kInlier,  ///< inlier: the element lies on the view's surface
+    kOutlier, ///< outlier: the element lies in the view's free space
 };
 
 /// Tests the surface elements of a second view, in a given pose, against what a first view shows. An element is an

@@ -142,17 +142,17 @@ std::vector<Pose2> find_translations(std::span<const Surfel> first, std::span<co
 
 namespace {
 
-constexpr double kSlideStep = 0.05; // metres
-constexpr int kSlideSteps = 12;     // to either side
+constexpr double kShiftStep = 0.05; // metres
+constexpr int kShiftSteps = 12;     // to either side
 
-constexpr double kLikely = 0.8; // fraction of the best score
+constexpr double kLikelyScoreMin = 0.8; // fraction of the best score
 constexpr std::size_t kLikelyMax = 4;
 
-constexpr double kContradiction = 2.0; // an outlier outweighs this many inliers
+constexpr double kOutlierWeight = 2.0; // an outlier outweighs this many inliers
 
-double worth(Finding finding) {
+double weight_of(Finding finding) {
     if (finding == Finding::kUnseen) return 0.0;
-    return finding == Finding::kMatched ? 1.0 : -kContradiction;
+    return finding == Finding::kInlier ? 1.0 : -kOutlierWeight;
 }
 
 void by_score(std::vector<Candidate>& candidates) {
@@ -175,8 +175,8 @@ WeakDirection weak_direction(const LineFit& fit) {
 
 double Candidate::score() const {
     const Evidence all = both();
-    const std::size_t matched = is_on_map ? 2 * second_in_first.matched : all.matched;
-    return static_cast<double>(matched) - kContradiction * static_cast<double>(all.contradicted);
+    const std::size_t inliers = is_on_map ? 2 * second_in_first.inliers : all.inliers;
+    return static_cast<double>(inliers) - kOutlierWeight * static_cast<double>(all.outliers);
 }
 
 Difference difference(const Candidate& one, const Candidate& other, double thing_radius) {
@@ -184,7 +184,7 @@ Difference difference(const Candidate& one, const Candidate& other, double thing
     Difference between;
     std::vector<std::pair<Point2, double>> for_one;
     for (std::size_t i = 0; i < one.findings.size(); ++i) {
-        const double more = worth(one.findings[i]) - worth(other.findings[i]);
+        const double more = weight_of(one.findings[i]) - weight_of(other.findings[i]);
         if (more > 0.0) for_one.emplace_back(one.places[i], more);
         (more > 0.0 ? between.for_one : between.for_other) += std::abs(more);
     }
@@ -196,7 +196,7 @@ Difference difference(const Candidate& one, const Candidate& other, double thing
     return between;
 }
 
-Candidate judged(const Seen& first, const Seen& second, const Pose2& start) {
+Candidate make_candidate(const Seen& first, const Seen& second, const Pose2& start) {
     Candidate candidate{.fit = fit_to_lines(first.surface, second.surface, start), .is_on_map = first.is_map};
     auto findings = findings_of(first.surface, first.horizons, second.surface.surfels(), candidate.pose());
     const auto of_first =
@@ -213,12 +213,12 @@ Candidate judged(const Seen& first, const Seen& second, const Pose2& start) {
     return candidate;
 }
 
-std::vector<Candidate> likely(std::vector<Candidate> candidates) {
+std::vector<Candidate> likely_candidates(std::vector<Candidate> candidates) {
     by_score(candidates);
     std::vector<Candidate> some;
     for (Candidate& candidate : candidates) {
         if (some.size() == kLikelyMax) break;
-        if (!some.empty() && candidate.score() < kLikely * some.front().score()) break;
+        if (!some.empty() && candidate.score() < kLikelyScoreMin * some.front().score()) break;
         const bool is_new =
             std::ranges::all_of(some, [&](const auto& one) { return is_distinct(one.pose(), candidate.pose()); });
         if (is_new) some.push_back(std::move(candidate));
@@ -226,12 +226,12 @@ std::vector<Candidate> likely(std::vector<Candidate> candidates) {
     return some;
 }
 
-void add_slid(const Seen& first, const Seen& second, const Candidate& best, std::vector<Candidate>& candidates) {
+void add_shifted(const Seen& first, const Seen& second, const Candidate& best, std::vector<Candidate>& candidates) {
     const Pose2 from = best.pose();
     const Point2 along = weak_direction(best.fit).direction;
-    for (int step = -kSlideSteps; step <= kSlideSteps; ++step) {
-        const Point2 slid = kSlideStep * step * along;
-        candidates.push_back(judged(first, second, {from.x + slid.x, from.y + slid.y, from.yaw}));
+    for (int step = -kShiftSteps; step <= kShiftSteps; ++step) {
+        const Point2 shifted = kShiftStep * step * along;
+        candidates.push_back(make_candidate(first, second, {from.x + shifted.x, from.y + shifted.y, from.yaw}));
     }
 }
 

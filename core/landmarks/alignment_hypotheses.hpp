@@ -63,8 +63,8 @@ struct Seen {
 
 /// The direction in which lines constrain a pose least, and how much they constrain it, relative to the elements used.
 struct WeakDirection {
-    Point2 direction; ///< unit vector, in the first frame
-    double held;      ///< smallest eigenvalue of the position's normal matrix, per element; 0: not at all
+    Point2 direction;  ///< unit vector, in the first frame
+    double constraint; ///< smallest eigenvalue of the position's normal matrix, per element; 0: not at all
 };
 /// Returns the direction in which the lines of a fit constrain the position least.
 /// @param fit  result of fit_to_lines()
@@ -114,22 +114,22 @@ struct Difference {
 /// Refines a hypothesis and collects its evidence.
 /// @param first   surface and horizons in the first frame
 /// @param second  surface and horizons in the second frame
-/// @param start   a pose that is off by a few centimetres; see settle()
+/// @param start   a pose that is off by a few centimetres; see refine_by_icp()
 /// Precondition: both have surface elements; the origin of the second's frame is the position it was seen from.
-[[nodiscard]] Candidate judged(const Seen& first, const Seen& second, const Pose2& start);
+[[nodiscard]] Candidate make_candidate(const Seen& first, const Seen& second, const Pose2& start);
 
 /// Returns the best candidate and the few others that are distinct and nearly as good. Each may become the correct pose
-/// when it is slid; see add_slid().
+/// when it is shifted; see add_shifted().
 /// @param candidates  in any order
-[[nodiscard]] std::vector<Candidate> likely(std::vector<Candidate> candidates);
+[[nodiscard]] std::vector<Candidate> likely_candidates(std::vector<Candidate> candidates);
 
-/// Adds the candidates that result from sliding `best` along its weakest direction, because refinement in a
+/// Adds the candidates that result from shifting `best` along its weakest direction, because refinement in a
 /// corridor stops wherever something is near.
 /// @param first       surface and horizons in the first frame
 /// @param second      surface and horizons in the second frame
-/// @param best        its pose is slid
+/// @param best        its pose is shifted
 /// @param candidates  extended
-void add_slid(const Seen& first, const Seen& second, const Candidate& best, std::vector<Candidate>& candidates);
+void add_shifted(const Seen& first, const Seen& second, const Candidate& best, std::vector<Candidate>& candidates);
 
 /// Sorts candidates by score, the best first. Of the candidates that are not distinct from the best, the one that fits
 /// best comes first.

@@ -55,7 +55,7 @@ public:
     [[nodiscard]] std::vector<Pose2> repetitions(double yaw) const;
     /// Refines a hypothesis and adds the result if a sensor can be there.
     void add(const Pose2& hypothesis, std::vector<Candidate>& candidates) const;
-    [[nodiscard]] Result<> add_slid_of_the_likely(std::vector<Candidate>& candidates,
+    [[nodiscard]] Result<> add_shifted_candidates(std::vector<Candidate>& candidates,
                                                   const std::function<Result<>()>& ask) const;
 
 private:
@@ -101,16 +101,17 @@ std::vector<Pose2> Search::in_map(std::vector<Pose2> poses) const {
 void Search::add(const Pose2& hypothesis, std::vector<Candidate>& candidates) const {
     const Seen first = map_.around({hypothesis.x, hypothesis.y}, reach_);
     if (first.surface.surfels().empty()) return;
-    candidates.push_back(judged(first, second_, settle(first.surface, second_.surface.surfels(), hypothesis)));
+    candidates.push_back(
+        make_candidate(first, second_, refine_by_icp(first.surface, second_.surface.surfels(), hypothesis)));
     if (!is_possible(candidates.back())) candidates.pop_back();
 }
 
-Result<> Search::add_slid_of_the_likely(std::vector<Candidate>& candidates,
+Result<> Search::add_shifted_candidates(std::vector<Candidate>& candidates,
                                         const std::function<Result<>()>& ask) const {
     const auto begin = static_cast<std::ptrdiff_t>(candidates.size());
-    for (const Candidate& one : likely(candidates)) {
+    for (const Candidate& one : likely_candidates(candidates)) {
         if (auto go_on = ask(); !go_on) return go_on;
-        add_slid(map_.around({one.pose().x, one.pose().y}, reach_), second_, one, candidates);
+        add_shifted(map_.around({one.pose().x, one.pose().y}, reach_), second_, one, candidates);
     }
     const auto impossible = std::remove_if(candidates.begin() + begin, candidates.end(),
                                            [&](const Candidate& candidate) { return !is_possible(candidate); });
@@ -176,17 +177,17 @@ Result<Alignment> locate(const ReferenceViews& views, const CloudView& view, con
             }
         }
     }
-    if (auto slid = search.add_slid_of_the_likely(candidates, ask); !slid) return slid.error();
+    if (auto shifted = search.add_shifted_candidates(candidates, ask); !shifted) return shifted.error();
     std::erase_if(candidates, [&](const Candidate& candidate) {
         return apart({candidate.pose().x, candidate.pose().y}, where.middle) > where.radius;
     });
     rank(candidates);
-    Alignment found = judge(candidates, LaidOn::kMap);
+    Alignment found = test_acceptance(candidates, MatchedAgainst::kMap);
     const auto in_map = [&](const Pose2& pose) {
         return compose({map->middle().x, map->middle().y, 0.0}, compose(pose, {-view.from.x, -view.from.y, 0.0}));
     };
     found.T_first_second = in_map(found.T_first_second);
-    if (found.rival) found.rival = in_map(*found.rival);
+    if (found.competing_pose) found.competing_pose = in_map(*found.competing_pose);
     return found;
 }
 

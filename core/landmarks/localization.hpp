@@ -19,7 +19,7 @@ struct Neighbourhood {
 ///
 /// Searches as align() does for two views, everywhere that robots have looked. T_first_second of the result takes the
 /// view's frame to the map's. The result is clear only if no other place of the map, or of the neighbourhood, has
-/// nearly as many inliers. `explained` is the fraction of the view that is in the map.
+/// nearly as many inliers. `inlier_ratio` is the fraction of the view that is in the map.
 /// @param map   keyframes of a session; see ReferenceLayer
 /// @param view  what the robot sees
 /// @param near  the part of the map to search; nullopt: the whole map
@@ -28,7 +28,7 @@ struct Neighbourhood {
 /// Errors: kNothingMapped if no laser has seen anything anywhere; kTooLarge if the map is more than 200 m wide and no
 ///     neighbourhood limits the search; those of check_view() and `ask`.
 /// Cost: that of align(), and for each of about 100 rotations the surface elements of the map times 250.
-/// Source: see find_hypotheses(), settle() and fit_to_lines().
+/// Source: see find_hypotheses(), refine_by_icp() and fit_to_lines().
 [[nodiscard]] Result<Alignment> locate(
     const ReferenceViews& map, const CloudView& view, const std::optional<Neighbourhood>& near = {},
     const std::function<Result<>()>& ask = [] { return Result<>(); });

@@ -14,8 +14,8 @@ namespace {
 
 constexpr double kUndetermined = 1e-9; // relative to the value for points that agree
 constexpr int kStepsMax = 50;
-constexpr std::size_t kSeedsMax = 64; // pairs that are combined, two at a time
-constexpr double kRivalMin = 0.8;     // of the best worth: another transform above this makes it ambiguous
+constexpr std::size_t kSeedsMax = 64;      // pairs that are combined, two at a time
+constexpr double kCompetingWorthMin = 0.8; // of the best worth: another transform above this makes it ambiguous
 constexpr std::size_t kAgreeingMin = 3;
 
 Result<> check(std::span<const PointPair> pairs) {
@@ -112,7 +112,7 @@ bool is_better(const Consensus& a, const Consensus& b) { return a.worth > b.wort
 PointPair at(std::span<const PointPair> pairs, std::size_t n) { return {pairs[n].first, pairs[n].second, 1.0}; }
 
 /// Fits the transform to the agreeing pairs repeatedly, as long as the consensus improves.
-Consensus settled(Consensus consensus, std::span<const PointPair> pairs, double inlier_distance) {
+Consensus refitted(Consensus consensus, std::span<const PointPair> pairs, double inlier_distance) {
     for (int step = 0; step < kStepsMax && consensus.pairs.size() >= 2; ++step) {
         std::vector<PointPair> agreeing;
         for (const std::size_t n : consensus.pairs) agreeing.push_back(pairs[n]);
@@ -172,21 +172,22 @@ Result<PairAlignment> align_pairs_robustly(std::span<const PointPair> pairs, dou
     for_each_consensus(pairs, inlier_distance, [&](Consensus found) {
         if (is_better(found, best)) best = std::move(found);
     });
-    best = settled(std::move(best), pairs, inlier_distance);
+    best = refitted(std::move(best), pairs, inlier_distance);
     if (best.pairs.size() < kAgreeingMin) {
         return Error{Errc::kInvalidField,
                      fmt::format("pairs that agree on a transform within {:g} m: {}; {} are needed: give "
                                  "more pairs or a larger inlier_distance",
                                  inlier_distance, best.pairs.size(), kAgreeingMin)};
     }
-    Consensus rival;
+    Consensus competing;
     for_each_consensus(pairs, inlier_distance, [&](Consensus found) {
-        if (is_other(found, best) && is_better(found, rival)) rival = std::move(found);
+        if (is_other(found, best) && is_better(found, competing)) competing = std::move(found);
     });
-    rival = settled(std::move(rival), pairs, inlier_distance);
-    if (is_other(rival, best) && rival.pairs.size() >= kAgreeingMin && rival.worth >= kRivalMin * best.worth) {
+    competing = refitted(std::move(competing), pairs, inlier_distance);
+    if (is_other(competing, best) && competing.pairs.size() >= kAgreeingMin &&
+        competing.worth >= kCompetingWorthMin * best.worth) {
         return Error{Errc::kAmbiguous, fmt::format("{} pairs agree on one transform and {} on another: give more pairs",
-                                                   best.pairs.size(), rival.pairs.size())};
+                                                   best.pairs.size(), competing.pairs.size())};
     }
     std::vector<PointPair> weighted(pairs.begin(), pairs.end());
     for (PointPair& pair : weighted) pair.weight = 0.0;

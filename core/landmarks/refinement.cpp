@@ -9,11 +9,11 @@
 namespace scanloom::landmarks {
 namespace {
 
-constexpr int kSettleStepsMax = 20;
-constexpr double kSettleDistance = 0.5; // metres; pairs further apart do not correspond
-constexpr double kCloser = 0.75;        // fraction of these pairs that is used
-constexpr std::size_t kSettlePairsMin = 10;
-constexpr double kAtRest = 2e-3; // metres, and radians
+constexpr int kIcpStepsMax = 20;
+constexpr double kIcpDistance = 0.5;  // metres; pairs further apart do not correspond
+constexpr double kIcpFraction = 0.75; // fraction of these pairs that is used
+constexpr std::size_t kIcpPairsMin = 10;
+constexpr double kIcpConverged = 2e-3; // metres, and radians
 
 constexpr int kFitStepsMax = 15;
 constexpr double kFitDistance = 0.15;        // metres between elements that correspond
@@ -21,9 +21,9 @@ constexpr double kResidualMax = 0.08;        // metres from a line
 constexpr double kCorrespondingCosine = 0.9; // cosine between normals that correspond
 constexpr double kRoundWeight = 0.2;         // of an element that is not straight: its position depends on the view
 constexpr double kDamping = 1e-3;            // of the elements used: constrains what no line constrains
-constexpr double kFitted = 1e-5;             // metres, and radians
+constexpr double kFitConverged = 1e-5;       // metres, and radians
 
-bool is_at_rest(const Pose2& before, const Pose2& after, double limit) {
+bool has_converged(const Pose2& before, const Pose2& after, double limit) {
     return std::hypot(after.x - before.x, after.y - before.y) < limit &&
            std::abs(normalize_angle(after.yaw - before.yaw)) < limit;
 }
@@ -37,11 +37,11 @@ std::vector<PointPair> closest_pairs(const Surface& first, std::span<const Surfe
     std::vector<ClosePair> close;
     for (const Surfel& there : second) {
         const auto [index, distance] = first.nearest(transform(pose, there.position));
-        if (distance > kSettleDistance) continue;
+        if (distance > kIcpDistance) continue;
         close.push_back({{first.surfels()[index].position, there.position}, distance});
     }
     std::ranges::stable_sort(close, {}, &ClosePair::distance);
-    close.resize(static_cast<std::size_t>(kCloser * static_cast<double>(close.size())));
+    close.resize(static_cast<std::size_t>(kIcpFraction * static_cast<double>(close.size())));
     std::vector<PointPair> pairs;
     for (const auto& [pair, distance] : close) pairs.push_back(pair);
     return pairs;
@@ -112,16 +112,16 @@ NormalEquations normal_equations(const Surface& first, const Surface& second, co
 
 } // namespace
 
-Pose2 settle(const Surface& first, std::span<const Surfel> second, const Pose2& T_first_second) {
+Pose2 refine_by_icp(const Surface& first, std::span<const Surfel> second, const Pose2& T_first_second) {
     Pose2 pose = T_first_second;
-    for (int step = 0; step < kSettleStepsMax; ++step) {
+    for (int step = 0; step < kIcpStepsMax; ++step) {
         const auto pairs = closest_pairs(first, second, pose);
-        if (pairs.size() < kSettlePairsMin) break;
+        if (pairs.size() < kIcpPairsMin) break;
         const auto fit = align_pairs(pairs);
         if (!fit) break;
-        const bool rests = is_at_rest(pose, fit->T_first_second, kAtRest);
+        const bool converged = has_converged(pose, fit->T_first_second, kIcpConverged);
         pose = fit->T_first_second;
-        if (rests) break;
+        if (converged) break;
     }
     return pose;
 }
@@ -140,7 +140,7 @@ LineFit fit_to_lines(const Surface& first, const Surface& second, const Pose2& T
         const Eigen::Vector3d change = damped.ldlt().solve(equations.gradient);
         const Pose2 before = fit.T_first_second;
         fit.T_first_second = {before.x + change.x(), before.y + change.y(), normalize_angle(before.yaw + change.z())};
-        if (is_at_rest(before, fit.T_first_second, kFitted)) break;
+        if (has_converged(before, fit.T_first_second, kFitConverged)) break;
     }
     return fit;
 }

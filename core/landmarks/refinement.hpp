@@ -37,7 +37,7 @@ private:
 /// Precondition: both have surface elements.
 /// Source: Besl, McKay, A method for registration of 3-D shapes (1992); Chetverikov et al., The trimmed iterative
 ///     closest point algorithm (2002).
-[[nodiscard]] Pose2 settle(const Surface& first, std::span<const Surfel> second, const Pose2& T_first_second);
+[[nodiscard]] Pose2 refine_by_icp(const Surface& first, std::span<const Surfel> second, const Pose2& T_first_second);
 
 /// The result of fit_to_lines().
 struct LineFit {

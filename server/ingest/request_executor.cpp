@@ -150,7 +150,7 @@ wire::Message reply_from(const wire::LocateRequest& request, const Requester& re
     if (!located) return reply(request, requester.session->snapshot()->revision, located.error());
     const auto& found = located->alignment;
     return reply(request, located->revision,
-                 wire::Correction{found.T_first_second, located->revision, found.explained, found.position_sigma,
+                 wire::Correction{found.T_first_second, located->revision, found.inlier_ratio, found.position_sigma,
                                   found.yaw_sigma});
 }
 

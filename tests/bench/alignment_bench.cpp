@@ -46,7 +46,7 @@ void AlignTwoCaptures(benchmark::State& state) {
         const auto alignment = align({.points = first}, {.points = second});
         if (!alignment || alignment->certainty != Certainty::kClear)
             return state.SkipWithError("the alignment is not clear");
-        state.counters["explained"] = alignment->explained;
+        state.counters["explained"] = alignment->inlier_ratio;
         state.counters["sigma_mm"] = 1e3 * alignment->position_sigma;
     }
 }

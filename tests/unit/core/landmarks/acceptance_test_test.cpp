@@ -20,7 +20,7 @@ constexpr Pose2 kElsewhere{3.0, 0.0, 0.0};
 /// A candidate pose that matches all surface elements except those changed by with().
 class CandidateAt {
 public:
-    explicit CandidateAt(const Pose2& pose) : findings_(kElements, kMatched) {
+    explicit CandidateAt(const Pose2& pose) : findings_(kElements, kInlier) {
         candidate_.fit.T_first_second = pose;
         candidate_.fit.used = kElements;
         candidate_.fit.rms = 0.005;
@@ -46,21 +46,21 @@ private:
     std::vector<Finding> findings_;
 };
 
-Alignment judged(const Candidate& best, const Candidate& other) {
+Alignment tested(const Candidate& best, const Candidate& other) {
     std::vector<Candidate> candidates = {best, other};
     rank(candidates);
-    return judge(candidates, LaidOn::kView);
+    return test_acceptance(candidates, MatchedAgainst::kView);
 }
 
 bool is_clear(const Candidate& best, const Candidate& other) {
-    return judged(best, other).certainty == Certainty::kClear;
+    return tested(best, other).certainty == Certainty::kClear;
 }
 
 TEST(AcceptanceTest, NearCandidateIsRejectedByFewElements) {
     EXPECT_TRUE(is_clear(CandidateAt(kBest), CandidateAt(kNear).with(kUnseen, 25, 0, 10)));
     EXPECT_FALSE(is_clear(CandidateAt(kBest), CandidateAt(kNear).with(kUnseen, 19, 0, 10)))
         << "too few elements differ";
-    EXPECT_TRUE(is_clear(CandidateAt(kBest), CandidateAt(kNear).with(kContradicted, 9, 0, 40)))
+    EXPECT_TRUE(is_clear(CandidateAt(kBest), CandidateAt(kNear).with(kOutlier, 9, 0, 40)))
         << "a contradiction counts three times";
 }
 
@@ -83,29 +83,29 @@ TEST(AcceptanceTest, DistantCandidateIsRejectedByManyElements) {
     EXPECT_TRUE(is_clear(CandidateAt(kBest), CandidateAt(kElsewhere).with(kUnseen, 41, 0, 9)));
     EXPECT_FALSE(is_clear(CandidateAt(kBest), CandidateAt({0.0, 0.0, 0.3}).with(kUnseen, 38, 0, 10)))
         << "a rotated pose is a distant pose, too";
-    EXPECT_FALSE(is_clear(CandidateAt(kBest), CandidateAt(kElsewhere).with(kContradicted, 8, 0, 45)))
+    EXPECT_FALSE(is_clear(CandidateAt(kBest), CandidateAt(kElsewhere).with(kOutlier, 8, 0, 45)))
         << "too few elements differ";
 }
 
 TEST(AcceptanceTest, LessContradictedDistantCandidateIsAmbiguous) {
-    const auto best = CandidateAt(kBest).with(kContradicted, 10);
+    const auto best = CandidateAt(kBest).with(kOutlier, 10);
     const auto other = CandidateAt(kElsewhere).with(kUnseen, 120, 20);
-    const auto alignment = judged(best, other);
+    const auto alignment = tested(best, other);
     EXPECT_EQ(alignment.certainty, Certainty::kAmbiguous);
-    EXPECT_EQ(alignment.rival, kElsewhere);
+    EXPECT_EQ(alignment.competing_pose, kElsewhere);
     EXPECT_THAT(
         alignment.why,
         HasSubstr("matches 70 % of the view, and this pose matches 98 %, but the other one has fewer outliers"));
     EXPECT_TRUE(is_clear(best, CandidateAt(kElsewhere).with(kUnseen, 140, 20)));
-    EXPECT_TRUE(is_clear(best, CandidateAt(kElsewhere).with(kUnseen, 120, 20).with(kContradicted, 5)));
-    EXPECT_TRUE(is_clear(CandidateAt(kBest).with(kContradicted, 39), CandidateAt(kElsewhere).with(kUnseen, 281)))
+    EXPECT_TRUE(is_clear(best, CandidateAt(kElsewhere).with(kUnseen, 120, 20).with(kOutlier, 5)));
+    EXPECT_TRUE(is_clear(CandidateAt(kBest).with(kOutlier, 39), CandidateAt(kElsewhere).with(kUnseen, 281)))
         << "the other candidate has almost no overlap";
 }
 
 TEST(AcceptanceTest, HighOutlierRatioIsUndetermined) {
     const auto nothing = CandidateAt(kElsewhere).with(kUnseen, kElements);
-    EXPECT_TRUE(is_clear(CandidateAt(kBest).with(kContradicted, 40), nothing));
-    const auto alignment = judged(CandidateAt(kBest).with(kContradicted, 41), nothing);
+    EXPECT_TRUE(is_clear(CandidateAt(kBest).with(kOutlier, 40), nothing));
+    const auto alignment = tested(CandidateAt(kBest).with(kOutlier, 41), nothing);
     EXPECT_EQ(alignment.certainty, Certainty::kUndetermined);
     EXPECT_THAT(alignment.why, HasSubstr("10 % of the surface visible from both places is in one view only"));
 }

@@ -128,9 +128,9 @@ TEST(Refinement, ConvergesFromANearbyPose) {
         const Surface second(surfels_around(seen_from(place, odd_room(random))));
         const Pose2 start{place.x + uniform(random, -0.2, 0.2), place.y + uniform(random, -0.2, 0.2),
                           place.yaw + uniform(random, -0.07, 0.07)};
-        const Pose2 settled = settle(first, second.surfels(), start);
-        EXPECT_LT(metres_off(settled, place), 0.05);
-        const auto fit = fit_to_lines(first, second, settled);
+        const Pose2 refined = refine_by_icp(first, second.surfels(), start);
+        EXPECT_LT(metres_off(refined, place), 0.05);
+        const auto fit = fit_to_lines(first, second, refined);
         EXPECT_LT(metres_off(fit.T_first_second, place), 0.005);
         EXPECT_LT(degrees_off(fit.T_first_second, place), 0.1);
         EXPECT_LT(fit.rms, 0.01);
@@ -141,7 +141,7 @@ TEST(Refinement, KeepsThePoseWithoutNearbySurfaces) {
     std::mt19937 random(4);
     const Surface room(surfels_around(odd_room(random)));
     const Pose2 far{50.0, 50.0, 1.0};
-    EXPECT_EQ(settle(room, room.surfels(), far), far);
+    EXPECT_EQ(refine_by_icp(room, room.surfels(), far), far);
     const auto fit = fit_to_lines(room, room, far);
     EXPECT_EQ(fit.T_first_second, far);
     EXPECT_EQ(fit.used, 0U);
@@ -160,12 +160,12 @@ TEST(Evidence, ElementInOpenSpaceOfTheOtherViewContradicts) {
         {{-2.88, 1.0}, {1.0, 0.0}}, // neither on the wall nor clearly in front of it
     };
     const auto findings = findings_of(surface, std::vector{&horizon}, things, {});
-    EXPECT_EQ(findings, (std::vector{Finding::kMatched, Finding::kUnseen, Finding::kContradicted, Finding::kUnseen,
-                                     Finding::kUnseen}));
+    EXPECT_EQ(findings,
+              (std::vector{Finding::kInlier, Finding::kUnseen, Finding::kOutlier, Finding::kUnseen, Finding::kUnseen}));
     const auto evidence = evidence_of(findings);
     EXPECT_EQ(evidence.elements, 5U);
-    EXPECT_EQ(evidence.matched, 1U);
-    EXPECT_EQ(evidence.contradicted, 1U);
+    EXPECT_EQ(evidence.inliers, 1U);
+    EXPECT_EQ(evidence.outliers, 1U);
     EXPECT_EQ(horizon.at({-1.5, 0.0}), Horizon::Verdict::kOpen);
     EXPECT_EQ(horizon.at({-9.0, 0.0}), Horizon::Verdict::kHidden);
     EXPECT_EQ(Horizon({}, {0.0, 0.0}).at({1.0, 0.0}), Horizon::Verdict::kUnknown);
@@ -174,10 +174,8 @@ TEST(Evidence, ElementInOpenSpaceOfTheOtherViewContradicts) {
 TEST(Candidates, DifferByElementsThatOnlyOneMatches) {
     using enum Finding;
     const std::vector<Point2> places = {{0.0, 0.0}, {0.0, 1.0}, {0.0, 2.0}, {0.0, 3.0}, {0.0, 9.0}};
-    const Candidate one{
-        .fit = {}, .findings = {kMatched, kMatched, kContradicted, kUnseen, kMatched}, .places = places};
-    const Candidate other{
-        .fit = {}, .findings = {kUnseen, kUnseen, kUnseen, kContradicted, kContradicted}, .places = places};
+    const Candidate one{.fit = {}, .findings = {kInlier, kInlier, kOutlier, kUnseen, kInlier}, .places = places};
+    const Candidate other{.fit = {}, .findings = {kUnseen, kUnseen, kUnseen, kOutlier, kOutlier}, .places = places};
     const Difference between = difference(one, other, 2.5);
     EXPECT_EQ(between.for_one, 1.0 + 1.0 + 2.0 + 3.0);
     EXPECT_EQ(between.for_other, 2.0);

@@ -111,8 +111,9 @@ TEST(Alignment, IsAmbiguousByAQuarterTurnInASquareRoom) {
     const auto alignment = aligned(captures);
     EXPECT_EQ(alignment.certainty, Certainty::kAmbiguous);
     EXPECT_THAT(alignment.why, HasSubstr("another pose"));
-    ASSERT_TRUE(alignment.rival);
-    const double turn = std::abs(normalize_angle(alignment.rival->yaw - alignment.T_first_second.yaw)) / kDegree;
+    ASSERT_TRUE(alignment.competing_pose);
+    const double turn =
+        std::abs(normalize_angle(alignment.competing_pose->yaw - alignment.T_first_second.yaw)) / kDegree;
     EXPECT_NEAR(std::remainder(turn, 90.0), 0.0, 1.0);
     EXPECT_GT(turn, 80.0);
 }
@@ -137,8 +138,8 @@ TEST(Alignment, IsClearInASquareRoomWithATable) {
     const auto alignment = aligned(captures);
     EXPECT_EQ(alignment.certainty, Certainty::kClear) << alignment.why;
     EXPECT_TRUE(off(alignment.T_first_second, captures.T_first_second).is_right());
-    EXPECT_GT(alignment.explained, 0.9);
-    EXPECT_LT(alignment.contradicted, 0.01);
+    EXPECT_GT(alignment.inlier_ratio, 0.9);
+    EXPECT_LT(alignment.outlier_ratio, 0.01);
 }
 
 TEST(Alignment, IsAmbiguousIfACupboardMovedToTheOppositeCorner) {
@@ -195,12 +196,12 @@ TEST(Alignment, IsAmbiguousAlongALongCorridor) {
     const auto alignment = aligned(captures);
     EXPECT_EQ(alignment.certainty, Certainty::kAmbiguous);
     EXPECT_NE(alignment.why, "");
-    ASSERT_TRUE(alignment.rival);
+    ASSERT_TRUE(alignment.competing_pose);
     const Pose2 T_map_first{0.0, 0.2, 0.3};
     const Pose2 one = compose(T_map_first, alignment.T_first_second);
     EXPECT_NEAR(std::abs(one.y), 0.2, 0.02)
         << "the position across the corridor is determined except for a rotation by half a turn";
-    EXPECT_GT(off(alignment.T_first_second, *alignment.rival).metres, kDistinctDistance);
+    EXPECT_GT(off(alignment.T_first_second, *alignment.competing_pose).metres, kDistinctDistance);
 }
 
 TEST(Alignment, IsNotClearBetweenParallelLines) {

@@ -34,7 +34,7 @@ int clear_of(const sim::World& world, int seeds, int places) {
         ++clear;
         expect_right(found, mapped.ground_truth, world.name + ", seed " + std::to_string(seed));
         EXPECT_LT(metres_off(found.T_first_second, mapped.ground_truth), 6.0 * found.position_sigma);
-        EXPECT_GT(found.explained, 0.5);
+        EXPECT_GT(found.inlier_ratio, 0.5);
     }
     return clear;
 }
@@ -176,8 +176,8 @@ TEST(Localization, IsAmbiguousInEqualRoomsWithoutNeighbourhood) {
     const auto found = locate(map, {.points = seen}).value();
     EXPECT_EQ(found.certainty, Certainty::kAmbiguous);
     EXPECT_THAT(found.why, HasSubstr("another pose, 20.0"));
-    ASSERT_TRUE(found.rival);
-    EXPECT_NEAR(std::abs(found.rival->x - found.T_first_second.x), 20.0, 0.05);
+    ASSERT_TRUE(found.competing_pose);
+    EXPECT_NEAR(std::abs(found.competing_pose->x - found.T_first_second.x), 20.0, 0.05);
 
     const Neighbourhood first{{0.0, 0.0}, 5.0};
     const Neighbourhood second{{21.0, 1.0}, 5.0};
@@ -212,7 +212,7 @@ TEST(Localization, IgnoresRemovedObjects) {
     for (const Pose2& place : kPlaces) map.push_back(reference_view(after, place, random));
     const auto found = locate(map, {.points = seen_at(after, kGroundTruth)}).value();
     expect_right(found, kGroundTruth);
-    EXPECT_LT(found.contradicted, 0.01);
+    EXPECT_LT(found.outlier_ratio, 0.01);
 }
 
 TEST(Localization, StopsWhenTheCallbackReturnsAnError) {
