@@ -40,7 +40,7 @@ Result<UplinkOptions> uplink_options(const ClientOptions& options) {
     uplink.protocol.hello.create->cell_size = options.cell_size;
     uplink.protocol.hello.client = "scanloom client library";
     uplink.protocol.hello.body_radius = options.body_radius;
-    uplink.on_trouble = report_once(options.tell);
+    uplink.on_trouble = report_once(options.on_message);
     return uplink;
 }
 
@@ -69,15 +69,16 @@ Path from_wire(wire::Path path, std::uint64_t revision) {
 } // namespace
 
 Result<std::unique_ptr<Client>> Client::start(ClientOptions options) {
+    if (!options.on_message) options.on_message = options.tell ? std::move(options.tell) : [](const std::string&) {};
     auto uplink = uplink_options(options);
     if (!uplink) return uplink.error();
     const auto when_full = options.drop_newest ? WhenFull::kDropNewest : WhenFull::kDropOldest;
     auto spool = open_spool_of(options.session, options.robot, {options.spool, options.spool_bytes_max, when_full},
-                               options.tell);
+                               options.on_message);
     if (!spool) return spool.error();
     LiveFeedOptions feed;
     feed.when_full = when_full;
-    feed.tell = std::move(options.tell);
+    feed.on_message = std::move(options.on_message);
     return std::unique_ptr<Client>(new Client(
         std::make_unique<Worker>(std::move(*uplink), std::move(*spool), std::move(feed)), options.cell_size));
 }
@@ -159,7 +160,12 @@ Result<Location> Client::locate(const std::shared_ptr<const Sensor>& sensor, std
     if (!reply) return reply.error();
     const auto& found = std::get<wire::LocateReply>(*reply).result;
     if (!found) return found.error();
-    return Location{found->T_map_odom, found->explained, found->position_sigma, found->yaw_sigma, found->revision};
+    return Location{.T_map_odom = found->T_map_odom,
+                    .inlier_ratio = found->explained,
+                    .position_sigma = found->position_sigma,
+                    .yaw_sigma = found->yaw_sigma,
+                    .revision = found->revision,
+                    .explained = found->explained};
 }
 
 ClientStatus Client::status() const { return worker_->status(); }

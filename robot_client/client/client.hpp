@@ -50,8 +50,9 @@ struct ClientOptions {
     std::chrono::milliseconds batch_delay{0}; ///< how long a scan may wait for others to share its batch, at most 60 s
 
     /// Receives messages for people, for example that the server is unreachable or that scans are dropped. Runs on the
-    /// client's thread, which waits for it. It must not call the client and must not throw.
-    std::function<void(const std::string&)> tell = [](const std::string&) {};
+    /// client's thread, which waits for it. It must not call the client and must not throw. Empty: no messages.
+    std::function<void(const std::string&)> on_message;
+    std::function<void(const std::string&)> tell; ///< earlier name of on_message, until 0.3; used if that is empty
 };
 
 /// Counters of a client at one moment.
@@ -133,10 +134,11 @@ struct LocateOptions {
 /// see pose2.hpp.
 struct Location {
     Pose2 T_map_odom;            ///< metres, radians
-    double explained = 0.0;      ///< inlier ratio: share of the observed points that match the map, 0 to 1
+    double inlier_ratio = 0.0;   ///< share of the observed points that match the map, 0 to 1
     double position_sigma = 0.0; ///< metres; of the sensor's position, in its least certain direction
     double yaw_sigma = 0.0;      ///< radians
     std::uint64_t revision = 0;  ///< of the session's maps that were used
+    double explained = 0.0;      ///< earlier name of inlier_ratio, until 0.3; the same value
 };
 
 /// A robot's connection to a Scanloom server, for use in the robot's own program.

@@ -134,10 +134,15 @@ class Location:
     """The pose of a robot's odometry frame in the map: at(odometry) returns the pose for send()."""
 
     T_map_odom: Pose
-    explained: float  # inlier ratio: part of the scan that matches the map, 0 to 1
+    inlier_ratio: float  # part of the scan that matches the map, 0 to 1
     position_sigma: float  # metres, of the sensor's position, in the least certain direction
     yaw_sigma: float  # radians
     revision: int  # of the session's maps that were used
+
+    @property
+    def explained(self) -> float:
+        """Earlier name of inlier_ratio, until 0.3."""
+        return self.inlier_ratio
 
     def at(self, odometry: Pose = (0.0, 0.0, 0.0)) -> Pose:
         return _compose(self.T_map_odom, odometry)

@@ -21,9 +21,9 @@
 namespace scanloom::robot {
 
 /// Pose of a robot's odometry frame in the map, with its uncertainty.
-struct Located {
+struct LocateResult {
     Pose2 T_map_odom;
-    double explained = 0.0;      ///< inlier ratio: share of the observed points that match the map, 0 to 1
+    double inlier_ratio = 0.0;   ///< share of the observed points that match the map, 0 to 1
     double position_sigma = 0.0; ///< metres; standard deviation in the least certain direction
     double yaw_sigma = 0.0;      ///< radians
 };
@@ -31,7 +31,7 @@ struct Located {
 /// Requests the position of a robot that saw these points from this place, both in its odometry frame, on maps that
 /// contain all its scans so far.
 /// Pre: 20 to 32,768 points.
-using Locate = std::function<boost::asio::awaitable<Result<Located>>(std::vector<PointMm> points, Point2 from)>;
+using Locate = std::function<boost::asio::awaitable<Result<LocateResult>>(std::vector<PointMm> points, Point2 from)>;
 
 /// The next exploration goal of a robot.
 struct NextStop {

@@ -58,7 +58,7 @@ asio::awaitable<void> LocatingSource::request_location(SeenPoints seen) {
         auto request = points; // a named variable, because g++ 12 destroys such temporaries twice
         const auto answer = co_await (locate_(std::move(request), from) || wait(WakeSignal::Time::max()));
         if (answer.index() != 0) continue;
-        const Result<Located>& located = std::get<0>(answer);
+        const Result<LocateResult>& located = std::get<0>(answer);
         if (located || !may_pass(located.error().code)) {
             phases_.answer(located);
             co_return;

@@ -76,7 +76,7 @@ std::optional<SeenPoints> StationaryPhases::question() const {
     return seen;
 }
 
-void StationaryPhases::answer(const Result<Located>& located) {
+void StationaryPhases::answer(const Result<LocateResult>& located) {
     assert(!held_.empty() && !T_map_odom_);
     if (!located) {
         const bool is_first = located.error().code == Errc::kNothingMapped && first_place_;
@@ -84,7 +84,7 @@ void StationaryPhases::answer(const Result<Located>& located) {
     }
     T_map_odom_ = located->T_map_odom;
     report(fmt::format("localized at {}: {:.0f} % of the scan matches the map; accuracy {:.1f} cm and {:.2f} degrees",
-                       text_of(compose(*T_map_odom_, held_.back().scan.pose)), 100.0 * located->explained,
+                       text_of(compose(*T_map_odom_, held_.back().scan.pose)), 100.0 * located->inlier_ratio,
                        kAlmostSure * 100.0 * located->position_sigma,
                        kAlmostSure * located->yaw_sigma * 180.0 / std::numbers::pi));
     release(kTurnsHeldBack);

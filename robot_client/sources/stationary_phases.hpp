@@ -42,7 +42,7 @@ public:
 
     /// Takes the reply to question(). After a refusal the turns are dropped; the request is repeated for newer turns
     /// kRetryAfter later, or at another place.
-    void answer(const Result<Located>& located);
+    void answer(const Result<LocateResult>& located);
 
     /// Ends the sequence: the turns of a phase that lasted to the end are given.
     void end();

@@ -47,8 +47,8 @@ void LiveFeed::keep(Intake& intake, Observation observation) {
     const auto kept = spool_->append(observation);
     if (kept) return;
     if (!std::exchange(spool_reported_, true)) {
-        options_.tell(fmt::format("{}; scans are held in memory only, or dropped while others wait in the spool",
-                                  kept.error().message));
+        options_.on_message(fmt::format("{}; scans are held in memory only, or dropped while others wait in the spool",
+                                        kept.error().message));
     }
     // Scans are sent in the order in which they were taken. A scan that bypasses the spool would break its numbering,
     // so this program cannot return to the spool.
@@ -59,9 +59,9 @@ void LiveFeed::keep(Intake& intake, Observation observation) {
 
 void LiveFeed::keep_in_memory(Intake& intake, Observation observation) {
     if (!intake.has_room() && !std::exchange(dropping_reported_, true)) {
-        options_.tell(fmt::format("the memory for scans that are not acknowledged is full: the {} are dropped; "
-                                  "--spool keeps them on disk",
-                                  options_.when_full == WhenFull::kDropOldest ? "oldest unsent" : "newest"));
+        options_.on_message(fmt::format("the memory for scans that are not acknowledged is full: the {} are dropped; "
+                                        "--spool keeps them on disk",
+                                        options_.when_full == WhenFull::kDropOldest ? "oldest unsent" : "newest"));
     }
     while (!intake.has_room()) { // the oldest scan may be smaller than the new one
         ++dropped_;
@@ -99,7 +99,7 @@ Result<> LiveFeed::hand_over_from_spool(Intake& intake) {
         if (auto ok = spool_->begin(intake.session_id(), *intake.resumed_after()); !ok) {
             const bool may_go_on = ok.error().code == Errc::kStoreFailed && spool_->waiting() == 0;
             if (!may_go_on) return ok;
-            options_.tell(ok.error().message + "; scans are held in memory only");
+            options_.on_message(ok.error().message + "; scans are held in memory only");
             spool_reported_ = spool_given_up_ = true;
             return {};
         }
@@ -128,10 +128,10 @@ std::optional<std::string> LiveFeed::unfinished(std::uint64_t) const {
 }
 
 Result<std::unique_ptr<Spool>> open_spool_of(const std::string& session, const std::string& robot, SpoolOptions options,
-                                             const std::function<void(const std::string&)>& tell) {
+                                             const std::function<void(const std::string&)>& on_message) {
     if (options.directory.empty()) return std::unique_ptr<Spool>{};
     options.directory /= fmt::format("{}.{}", session, robot);
-    return Spool::open(std::move(options), tell);
+    return Spool::open(std::move(options), on_message);
 }
 
 } // namespace scanloom::robot

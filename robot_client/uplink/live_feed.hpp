@@ -17,7 +17,7 @@ struct LiveFeedOptions {
     /// are any.
     std::function<void(std::uint64_t)> on_resume = [](std::uint64_t) {};
     /// Receives messages for people, for example that scans are dropped or that the spool cannot be written.
-    std::function<void(const std::string&)> tell = [](const std::string&) {};
+    std::function<void(const std::string&)> on_message = [](const std::string&) {};
 };
 
 /// Feeds scans that cannot be obtained again. It takes scans whether or not the server is reachable. With a spool,
@@ -59,10 +59,10 @@ private:
 };
 
 /// Opens the robot's spool, the directory SESSION.ROBOT in SpoolOptions::directory. Returns null if that is empty.
-/// @param tell  receives messages for people
+/// @param on_message  receives messages for people
 /// Errors: those of Spool::open().
 [[nodiscard]] Result<std::unique_ptr<Spool>> open_spool_of(const std::string& session, const std::string& robot,
                                                            SpoolOptions options,
-                                                           const std::function<void(const std::string&)>& tell);
+                                                           const std::function<void(const std::string&)>& on_message);
 
 } // namespace scanloom::robot

@@ -76,13 +76,14 @@ namespace {
 
 static_assert(kSeenPointsMin == wire::kLocatePointsMin && kSeenPointsMax == wire::kLocatePointsMax);
 
-asio::awaitable<Result<Located>> ask_for_place(Uplink& uplink, wire::LocateRequest request) {
+asio::awaitable<Result<LocateResult>> ask_for_place(Uplink& uplink, wire::LocateRequest request) {
     link::Request question = std::move(request); // a named variable, because g++ 12 destroys such temporaries twice
     const Result<link::Reply> reply = co_await ask_once_applied(uplink, std::move(question));
     if (!reply) co_return reply.error();
     const auto& correction = std::get<wire::LocateReply>(*reply).result;
     if (!correction) co_return correction.error();
-    co_return Located{correction->T_map_odom, correction->explained, correction->position_sigma, correction->yaw_sigma};
+    co_return LocateResult{correction->T_map_odom, correction->explained, correction->position_sigma,
+                           correction->yaw_sigma};
 }
 
 /// The prior of a locate request. The prior of the first place does not hold for later ones: a robot that was carried
@@ -98,7 +99,8 @@ struct Sought {
     }
 };
 
-asio::awaitable<Result<Located>> locate(Uplink& uplink, wire::LocateRequest request, std::shared_ptr<Sought> sought) {
+asio::awaitable<Result<LocateResult>> locate(Uplink& uplink, wire::LocateRequest request,
+                                             std::shared_ptr<Sought> sought) {
     const Point2 from = request.from;
     auto located = co_await ask_for_place(uplink, std::move(request));
     if (located) {

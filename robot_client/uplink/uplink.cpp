@@ -244,10 +244,10 @@ asio::awaitable<void> Uplink::wait(asio::steady_timer& timer, Clock::time_point 
     co_await timer.async_wait(kAwaitTuple);
 }
 
-std::function<void(const Error&)> report_once(std::function<void(const std::string&)> tell) {
-    return [tell = std::move(tell), reported = std::string()](const Error& error) mutable {
+std::function<void(const Error&)> report_once(std::function<void(const std::string&)> on_message) {
+    return [on_message = std::move(on_message), reported = std::string()](const Error& error) mutable {
         if (error.message == std::exchange(reported, error.message)) return;
-        tell(further(error.message, "trying again"));
+        on_message(further(error.message, "trying again"));
     };
 }
 

@@ -131,7 +131,7 @@ private:
 };
 
 /// Makes a UplinkOptions::on_trouble that reports repeated identical errors only once.
-/// @param tell  receives messages for people
-[[nodiscard]] std::function<void(const Error&)> report_once(std::function<void(const std::string&)> tell);
+/// @param on_message  receives messages for people
+[[nodiscard]] std::function<void(const Error&)> report_once(std::function<void(const std::string&)> on_message);
 
 } // namespace scanloom::robot

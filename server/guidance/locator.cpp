@@ -38,9 +38,10 @@ const Error kBegun{
 
 } // namespace
 
-Result<Located> Locator::locate(const sessions::Session& session, RobotIndex robot, const landmarks::CloudView& view,
-                                const std::optional<landmarks::Neighbourhood>& near,
-                                const std::function<Result<>()>& ask) {
+Result<LocateResult> Locator::locate(const sessions::Session& session, RobotIndex robot,
+                                     const landmarks::CloudView& view,
+                                     const std::optional<landmarks::Neighbourhood>& near,
+                                     const std::function<Result<>()>& ask) {
     const auto snapshot = session.snapshot();
     auto applied = reference_layers_.up_to(session.info(), snapshot->revision, [&] { return ask().has_value(); });
     if (!applied) return applied.error();
@@ -54,7 +55,7 @@ Result<Located> Locator::locate(const sessions::Session& session, RobotIndex rob
         return found.error();
     }
     switch (found->certainty) {
-    case landmarks::Certainty::kClear: return Located{std::move(*found), revision};
+    case landmarks::Certainty::kClear: return LocateResult{std::move(*found), revision};
     case landmarks::Certainty::kAmbiguous: return Error{Errc::kAmbiguous, std::move(found->why)};
     case landmarks::Certainty::kUndetermined: break;
     }

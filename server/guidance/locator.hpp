@@ -44,7 +44,7 @@ private:
 };
 
 /// The pose that was found for a robot.
-struct Located {
+struct LocateResult {
     landmarks::Alignment alignment; ///< of certainty kClear; T_first_second is T_map_odom
     Revision revision = 0;          ///< of the map's last log entry that the search used
 };
@@ -64,10 +64,10 @@ public:
     /// Errors: kAmbiguous or kUndetermined if the map does not determine the pose; the message says why. kNothingMapped
     ///     if nothing is mapped yet and this robot may start the map; kOverloaded if another robot may (see
     ///     MapStart). Those of landmarks::locate(), CaptureLayers::up_to() and `ask`.
-    [[nodiscard]] Result<Located> locate(const sessions::Session& session, RobotIndex robot,
-                                         const landmarks::CloudView& view,
-                                         const std::optional<landmarks::Neighbourhood>& near,
-                                         const std::function<Result<>()>& ask);
+    [[nodiscard]] Result<LocateResult> locate(const sessions::Session& session, RobotIndex robot,
+                                              const landmarks::CloudView& view,
+                                              const std::optional<landmarks::Neighbourhood>& near,
+                                              const std::function<Result<>()>& ask);
 
     /// Forgets a session that was deleted.
     void remove(store::SessionId session);

@@ -9,7 +9,7 @@ int main(int argc, char** argv) try {
     options.server = argc > 1 ? argv[1] : "127.0.0.1:7447";
     options.session = "example";
     options.robot = "cpp";
-    options.tell = [](const std::string& news) { std::cerr << news << '\n'; };
+    options.on_message = [](const std::string& news) { std::cerr << news << '\n'; };
     const auto robot = scanloom::robot::Client::start(options).value();
 
     const auto laser = std::make_shared<scanloom::Sensor>();

@@ -34,7 +34,8 @@ TEST_F(ClientLocate, ReturnsTheServersPose) {
     const auto location = client->locate(laser(), scans(), 20s, {.near = {{{4.0, 5.0}, 6.0}}});
     ASSERT_TRUE(location) << location.error().message;
     EXPECT_EQ(location->T_map_odom, (Pose2{1.0, 2.0, 3.0}));
-    EXPECT_EQ(location->explained, 0.9);
+    EXPECT_EQ(location->inlier_ratio, 0.9);
+    EXPECT_EQ(location->explained, 0.9) << "the earlier name";
     EXPECT_EQ(location->position_sigma, 0.01);
     EXPECT_EQ(location->yaw_sigma, 0.02);
     EXPECT_EQ(location->revision, 7U);

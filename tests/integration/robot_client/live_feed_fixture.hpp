@@ -92,7 +92,7 @@ private:
 class LiveFeedTest : public testing::Test {
 protected:
     LiveFeedTest() {
-        options_.tell = [this](const std::string& text) { warnings_.push_back(text); };
+        options_.on_message = [this](const std::string& text) { warnings_.push_back(text); };
     }
 
     UplinkOptions uplink_options() {
@@ -108,7 +108,8 @@ protected:
     }
 
     std::unique_ptr<Spool> spool(std::uint64_t bytes_max = 64 << 20) {
-        return Spool::open({directory_.path() / "spool", bytes_max, WhenFull::kDropOldest}, options_.tell).value();
+        return Spool::open({directory_.path() / "spool", bytes_max, WhenFull::kDropOldest}, options_.on_message)
+            .value();
     }
 
     /// Runs a program until it ends or is killed; `meanwhile` is called when everything is set up.

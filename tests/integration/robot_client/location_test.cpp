@@ -56,7 +56,7 @@ protected:
         return asked;
     }
 
-    std::optional<Result<Located>> answer_;
+    std::optional<Result<LocateResult>> answer_;
 };
 
 TEST_F(LocationTest, IsTheServersAnswer) {
@@ -65,7 +65,7 @@ TEST_F(LocationTest, IsTheServersAnswer) {
     ASSERT_TRUE(run_and_ask(source));
     ASSERT_TRUE(answer_ && *answer_);
     EXPECT_EQ((*answer_)->T_map_odom, (Pose2{1.0, 2.0, 3.0}));
-    EXPECT_EQ((*answer_)->explained, 0.9);
+    EXPECT_EQ((*answer_)->inlier_ratio, 0.9);
     EXPECT_EQ((*answer_)->position_sigma, 0.01);
     EXPECT_EQ((*answer_)->yaw_sigma, 0.02);
     ASSERT_EQ(server_.locates().size(), 1U);
@@ -153,7 +153,7 @@ TEST_F(LocationTest, OfACarriedLidarIsRequestedAtEachPlaceAndSetInEveryScan) {
         if (server_.locates().size() > stored_when_asked.size()) stored_when_asked.push_back(stored - 1);
     };
     LocatingSource source(std::make_unique<ReplayedSource>(std::make_unique<RecordedSource>(std::move(turns))), {},
-                          options_.tell);
+                          options_.on_message);
     const auto outcome =
         run(source, nullptr, [&] { source.ask_with(located_by(*uplink_, std::nullopt, kFirstPlace)); });
     ASSERT_TRUE(outcome) << outcome.error().message;

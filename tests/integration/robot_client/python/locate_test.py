@@ -39,7 +39,8 @@ class Locate(LinkTest):
         with self.client() as robot:
             location = robot.locate(self.laser(robot, **ROUND), [[1.0, 2.0, math.inf, math.nan]] * 10)
         self.assertEqual(location.T_map_odom, (1.0, 2.0, math.pi / 2))
-        self.assertEqual((location.explained, location.position_sigma, location.yaw_sigma, location.revision),
+        self.assertEqual(location.explained, location.inlier_ratio, "the earlier name")
+        self.assertEqual((location.inlier_ratio, location.position_sigma, location.yaw_sigma, location.revision),
                          (0.9, 0.01, 0.02, 9))
         for actual, wanted in zip(location.at((1.0, 0.5, math.pi)), (0.5, 3.0, -math.pi / 2)):
             self.assertAlmostEqual(actual, wanted)

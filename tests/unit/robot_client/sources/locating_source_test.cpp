@@ -24,7 +24,7 @@ using testing::IsEmpty;
 
 using Given = Result<std::optional<Observation>>;
 
-const Located kFound{{3.0, 4.0, 1.0}, 0.93, 0.02, 0.01};
+const LocateResult kFound{{3.0, 4.0, 1.0}, 0.93, 0.02, 0.01};
 const Error kUnknownPlace{Errc::kUndetermined, "too little of this is in the map"};
 
 /// Gives recorded turns, then waits for stop().
@@ -65,13 +65,13 @@ protected:
     }
 
     /// Returns a callback that gives the answers in order and repeats the last one.
-    Locate answers(std::vector<Result<Located>> all) {
-        return [this, all](std::vector<PointMm> points, Point2 from) -> asio::awaitable<Result<Located>> {
+    Locate answers(std::vector<Result<LocateResult>> all) {
+        return [this, all](std::vector<PointMm> points, Point2 from) -> asio::awaitable<Result<LocateResult>> {
             return answer(all[std::min(requests_++, all.size() - 1)], points.size(), from);
         };
     }
 
-    asio::awaitable<Result<Located>> answer(Result<Located> located, std::size_t points, Point2 from) {
+    asio::awaitable<Result<LocateResult>> answer(Result<LocateResult> located, std::size_t points, Point2 from) {
         EXPECT_GE(points, 3000U);
         EXPECT_EQ(from, (Point2{0.0, 0.0}));
         co_return located;
@@ -82,7 +82,7 @@ protected:
         return [this](std::vector<PointMm>, Point2) { return wait_forever(); };
     }
 
-    asio::awaitable<Result<Located>> wait_forever() {
+    asio::awaitable<Result<LocateResult>> wait_forever() {
         ++requests_;
         asio::steady_timer never(co_await asio::this_coro::executor, asio::steady_timer::time_point::max());
         co_await never.async_wait(asio::use_awaitable);
@@ -127,7 +127,7 @@ TEST_F(LocatingSourceTest, LocatedTurnsHaveTheLocatedPose) {
     append(turns, lidar_.turns_between(kHere, kThere, 30));
     append(turns, lidar_.turns_at(kThere, 20));
     auto source = replayed(turns);
-    const Located second{{7.0, 8.0, -1.0}, 0.8, 0.02, 0.01};
+    const LocateResult second{{7.0, 8.0, -1.0}, 0.8, 0.02, 0.01};
     source.ask_with(answers({Error{Errc::kNothingMapped, "nothing is mapped"}, second}));
     const auto poses = poses_of(source);
     ASSERT_TRUE(outcome_);

@@ -15,7 +15,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 
 constexpr Pose2 kFirstPlace{1.0, 2.0, 0.5};
-const Located kLocated{{3.0, 4.0, 1.0}, 0.93, 0.02, 0.01};
+const LocateResult kLocated{{3.0, 4.0, 1.0}, 0.93, 0.02, 0.01};
 const Error kRefusal{Errc::kAmbiguous, "it may be here or there"};
 
 class StationaryPhasesTest : public testing::Test {
@@ -90,7 +90,7 @@ TEST_F(StationaryPhasesTest, TurnsOfAMovementAndJustBeforeAreDropped) {
     EXPECT_FALSE(phases_.question());
     stand(kThere, 1);
     EXPECT_TRUE(phases_.question());
-    phases_.answer(Located{{5.0, 6.0, 0.0}, 0.9, 0.01, 0.01});
+    phases_.answer(LocateResult{{5.0, 6.0, 0.0}, 0.9, 0.01, 0.01});
     phases_.end();
     const auto scans = given();
     EXPECT_EQ(scans.size(), 10U);
