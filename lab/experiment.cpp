@@ -14,8 +14,9 @@
 namespace scanloom::lab {
 namespace {
 
-/// Returns the box of the truth with a margin, so that walls that maps place outside the room are found, also at 0.5 m.
-grid::CellBox box_of(const sim::TruthGrid& truth) {
+/// Returns the box of the ground truth with a margin, so that walls that maps place outside the room are found, also at
+/// 0.5 m.
+grid::CellBox box_of(const sim::GroundTruthGrid& truth) {
     const auto margin = static_cast<std::int32_t>(std::ceil(2.0 / truth.cell_size));
     return {truth.i_begin - margin, truth.j_begin - margin, truth.i_begin + truth.width + margin,
             truth.j_begin + truth.height + margin};
@@ -41,8 +42,8 @@ void mark_discs(const std::vector<sim::Disc>& discs, double reach, double cell_s
 
 Standard make_standard(const std::vector<Pose2>& path, double cell_size_m) {
     const sim::World world = world_of("room");
-    const sim::TruthGrid grid = sim::truth_of(world, cell_size_m);
-    Standard standard{TruthCells(box_of(grid), sim::Truth::kOutside), {}};
+    const sim::GroundTruthGrid grid = sim::ground_truth_of(world, cell_size_m);
+    Standard standard{GroundTruthCells(box_of(grid), sim::GroundTruth::kOutside), {}};
     for_each_cell(standard.truth.box, [&](grid::Cell cell) { standard.truth.at(cell) = grid.at(cell.i, cell.j); });
     standard.seen = visible_cells(world, grid, reference_laser(), path, standard.truth.box);
     return standard;

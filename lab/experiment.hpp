@@ -16,7 +16,7 @@ namespace scanloom::lab {
 
 /// What the maps of all runs along one trajectory, at one cell size, are compared with.
 struct Standard {
-    TruthCells truth;
+    GroundTruthCells truth;
     CellMask seen; ///< see visible_cells()
 };
 

@@ -34,7 +34,7 @@ inline constexpr double kPublishedDistanceSigma = 0.013;
 /// Describes the distances of matched landmarks at the published tolerance, compared with the published ones.
 [[nodiscard]] std::string tolerance_finding(const LandmarkResults& results);
 
-/// States from which window on filtered corners are rounded: further from the truth than unfiltered ones.
+/// States from which window on filtered corners are rounded: further from the ground truth than unfiltered ones.
 [[nodiscard]] std::string window_finding(const std::vector<FilterRow>& rows);
 
 /// Compares the halves of a recording with the published values.

@@ -41,9 +41,9 @@ private:
     double last_angle_;
 };
 
-void see_free_cells(const sim::TruthGrid& truth, const Views& views, CellMask& seen) {
+void see_free_cells(const sim::GroundTruthGrid& truth, const Views& views, CellMask& seen) {
     for_each_cell(seen.box, [&](grid::Cell cell) {
-        if (truth.at(cell.i, cell.j) != sim::Truth::kFree) return;
+        if (truth.at(cell.i, cell.j) != sim::GroundTruth::kFree) return;
         seen.at(cell) = views.see({(cell.i + 0.5) * truth.cell_size, (cell.j + 0.5) * truth.cell_size});
     });
 }
@@ -64,7 +64,7 @@ void see_side(const sim::Segment& side, double cell_size_m, const Views& views, 
 
 } // namespace
 
-CellMask visible_cells(const sim::World& world, const sim::TruthGrid& truth, const Sensor& laser,
+CellMask visible_cells(const sim::World& world, const sim::GroundTruthGrid& truth, const Sensor& laser,
                        std::span<const Pose2> path, const grid::CellBox& box) {
     const Views views(world, laser, path);
     CellMask seen(box, 0);
@@ -102,9 +102,9 @@ CellMask around(const CellGrid<Value>& grid, Value value) {
 
 } // namespace
 
-Scores score(const StateGrid& map, const TruthCells& truth, const CellMask& seen, const CellMask& walked) {
+Scores score(const StateGrid& map, const GroundTruthCells& truth, const CellMask& seen, const CellMask& walked) {
     assert(map.box == truth.box && map.box == seen.box && map.box == walked.box);
-    const CellMask near_solid = around(truth, sim::Truth::kOccupied);
+    const CellMask near_solid = around(truth, sim::GroundTruth::kOccupied);
     const CellMask near_occupied = around(map, CellState::kOccupied);
     Scores scores;
     std::size_t matched = 0;
@@ -116,7 +116,7 @@ Scores score(const StateGrid& map, const TruthCells& truth, const CellMask& seen
     std::size_t open_found = 0;
     for_each_cell(map.box, [&](grid::Cell cell) {
         const bool is_occupied = map.at(cell) == CellState::kOccupied;
-        const bool is_solid = truth.at(cell) == sim::Truth::kOccupied;
+        const bool is_solid = truth.at(cell) == sim::GroundTruth::kOccupied;
         if (is_occupied) {
             ++scores.occupied;
             matched += near_solid.at(cell);
@@ -128,7 +128,7 @@ Scores score(const StateGrid& map, const TruthCells& truth, const CellMask& seen
             ++surface;
             found += near_occupied.at(cell);
             found_exactly += is_occupied;
-        } else if (truth.at(cell) == sim::Truth::kFree && !near_solid.at(cell)) {
+        } else if (truth.at(cell) == sim::GroundTruth::kFree && !near_solid.at(cell)) {
             ++open;
             open_found += map.at(cell) == CellState::kFree;
         }

@@ -53,14 +53,14 @@ void for_each_cell(const grid::CellBox& box, Visit&& visit) {
 ///             points are 2 cm or a quarter cell apart, whichever is less
 /// Walkers hide nothing.
 /// Pre: the laser has uniform angles and is mounted at the robot's centre.
-[[nodiscard]] CellMask visible_cells(const sim::World& world, const sim::TruthGrid& truth, const Sensor& laser,
+[[nodiscard]] CellMask visible_cells(const sim::World& world, const sim::GroundTruthGrid& truth, const Sensor& laser,
                                      std::span<const Pose2> path, const grid::CellBox& box);
 
 /// The state of a cell in a map.
 enum class CellState : std::uint8_t { kUnknown, kFree, kOccupied };
 
 using StateGrid = CellGrid<CellState>;
-using TruthCells = CellGrid<sim::Truth>;
+using GroundTruthCells = CellGrid<sim::GroundTruth>;
 
 /// Where a tolerance applies, a cell within this Chebyshev distance counts as the cell itself.
 inline constexpr std::int32_t kTolerance = 1; // cells
@@ -85,6 +85,7 @@ struct Scores {
 /// @param seen    visible cells, see visible_cells(). Other cells are not required, but occupied cells that the map has
 ///                there count.
 /// @param walked  cells where a walker was and no longer is
-[[nodiscard]] Scores score(const StateGrid& map, const TruthCells& truth, const CellMask& seen, const CellMask& walked);
+[[nodiscard]] Scores score(const StateGrid& map, const GroundTruthCells& truth, const CellMask& seen,
+                           const CellMask& walked);
 
 } // namespace scanloom::lab

@@ -25,20 +25,21 @@ std::int32_t end_cell(double metres, double cells_per_metre) {
     return static_cast<std::int32_t>(std::ceil(metres * cells_per_metre - kSnapCells));
 }
 
-TruthGrid blank_grid(const World& world, double cell_size_m) {
+GroundTruthGrid blank_grid(const World& world, double cell_size_m) {
     const Box all = bounds_of(world);
     const double cells_per_metre = 1.0 / cell_size_m;
-    TruthGrid grid{cell_size_m, first_cell(all.x_min, cells_per_metre), first_cell(all.y_min, cells_per_metre), 0, 0,
-                   {}};
+    GroundTruthGrid grid{
+        cell_size_m, first_cell(all.x_min, cells_per_metre), first_cell(all.y_min, cells_per_metre), 0, 0, {}};
     grid.width = end_cell(all.x_max, cells_per_metre) - grid.i_begin;
     grid.height = end_cell(all.y_max, cells_per_metre) - grid.j_begin;
-    grid.cells.assign(static_cast<std::size_t>(grid.width) * static_cast<std::size_t>(grid.height), Truth::kOutside);
+    grid.cells.assign(static_cast<std::size_t>(grid.width) * static_cast<std::size_t>(grid.height),
+                      GroundTruth::kOutside);
     return grid;
 }
 
-/// Calls visit(Truth&, index) for the cells of the grid that a box occupies.
+/// Calls visit(GroundTruth&, index) for the cells of the grid that a box occupies.
 template <class Visit>
-void for_cells_of(const Box& box, TruthGrid& grid, Visit&& visit) {
+void for_cells_of(const Box& box, GroundTruthGrid& grid, Visit&& visit) {
     const double cells_per_metre = 1.0 / grid.cell_size;
     const auto columns = std::pair{std::max(0, first_cell(box.x_min, cells_per_metre) - grid.i_begin),
                                    std::min(grid.width, end_cell(box.x_max, cells_per_metre) - grid.i_begin)};
@@ -54,23 +55,23 @@ void for_cells_of(const Box& box, TruthGrid& grid, Visit&& visit) {
 }
 
 /// Marks a cell with unknown parts, which cannot be passed. None remain in the result.
-constexpr Truth kClosed = static_cast<Truth>(3);
+constexpr GroundTruth kClosed = static_cast<GroundTruth>(3);
 
-void mark_unknown_and_solids(const World& world, TruthGrid& grid) {
+void mark_unknown_and_solids(const World& world, GroundTruthGrid& grid) {
     for (const Box& box : world.unknown) {
-        for_cells_of(box, grid, [](Truth& cell, std::size_t) { cell = kClosed; });
+        for_cells_of(box, grid, [](GroundTruth& cell, std::size_t) { cell = kClosed; });
     }
     for (const Box& box : world.solids) {
-        for_cells_of(box, grid, [](Truth& cell, std::size_t) { cell = Truth::kOccupied; });
+        for_cells_of(box, grid, [](GroundTruth& cell, std::size_t) { cell = GroundTruth::kOccupied; });
     }
 }
 
 /// Marks as free what is connected to the floors (four neighbours).
-void mark_free(const World& world, TruthGrid& grid) {
+void mark_free(const World& world, GroundTruthGrid& grid) {
     std::vector<std::size_t> open;
-    const auto reach = [&](Truth& cell, std::size_t index) {
-        if (cell != Truth::kOutside) return;
-        cell = Truth::kFree;
+    const auto reach = [&](GroundTruth& cell, std::size_t index) {
+        if (cell != GroundTruth::kOutside) return;
+        cell = GroundTruth::kFree;
         open.push_back(index);
     };
     for (const Box& floor : world.floors) for_cells_of(floor, grid, reach);
@@ -87,43 +88,43 @@ void mark_free(const World& world, TruthGrid& grid) {
 
 } // namespace
 
-TruthGrid truth_of(const World& world, double cell_size_m) {
-    TruthGrid grid = blank_grid(world, cell_size_m);
+GroundTruthGrid ground_truth_of(const World& world, double cell_size_m) {
+    GroundTruthGrid grid = blank_grid(world, cell_size_m);
     const int parts = static_cast<int>(std::ceil(cell_size_m / kReachCellMax - 1e-9));
     mark_unknown_and_solids(world, grid);
     if (parts == 1) {
         mark_free(world, grid);
     } else {
-        TruthGrid finer = blank_grid(world, cell_size_m / parts);
+        GroundTruthGrid finer = blank_grid(world, cell_size_m / parts);
         mark_unknown_and_solids(world, finer);
         mark_free(world, finer);
         std::size_t n = 0;
         for (std::int32_t j = grid.j_begin; j < grid.j_begin + grid.height; ++j) {
             for (std::int32_t i = grid.i_begin; i < grid.i_begin + grid.width; ++i, ++n) {
                 // no solid is in the cell, so one part of it decides for all
-                const bool is_reached = finer.at(i * parts, j * parts) == Truth::kFree;
-                if (grid.cells[n] == Truth::kOutside && is_reached) grid.cells[n] = Truth::kFree;
+                const bool is_reached = finer.at(i * parts, j * parts) == GroundTruth::kFree;
+                if (grid.cells[n] == GroundTruth::kOutside && is_reached) grid.cells[n] = GroundTruth::kFree;
             }
         }
     }
-    std::ranges::replace(grid.cells, kClosed, Truth::kOutside);
+    std::ranges::replace(grid.cells, kClosed, GroundTruth::kOutside);
     return grid;
 }
 
 namespace {
 
-std::uint8_t grey_of(Truth truth) {
+std::uint8_t grey_of(GroundTruth truth) {
     switch (truth) {
-    case Truth::kOccupied: return kRosGreyOccupied;
-    case Truth::kFree: return kRosGreyFree;
-    case Truth::kOutside: break;
+    case GroundTruth::kOccupied: return kRosGreyOccupied;
+    case GroundTruth::kFree: return kRosGreyFree;
+    case GroundTruth::kOutside: break;
     }
     return kRosGreyUnknown;
 }
 
 } // namespace
 
-std::vector<std::uint8_t> truth_pgm(const TruthGrid& truth) {
+std::vector<std::uint8_t> ground_truth_pgm(const GroundTruthGrid& truth) {
     const auto width = static_cast<std::size_t>(truth.width);
     const auto height = static_cast<std::size_t>(truth.height);
     const auto header = ros_pgm_header(width, height, truth.cell_size);
@@ -135,16 +136,16 @@ std::vector<std::uint8_t> truth_pgm(const TruthGrid& truth) {
     return pgm;
 }
 
-std::string truth_yaml(const TruthGrid& truth, std::string_view image) {
+std::string ground_truth_yaml(const GroundTruthGrid& truth, std::string_view image) {
     return ros_yaml(image, truth.cell_size, truth.i_begin * truth.cell_size, truth.j_begin * truth.cell_size);
 }
 
-FloorPlan floor_plan_of(const TruthGrid& truth) {
+FloorPlan floor_plan_of(const GroundTruthGrid& truth) {
     FloorPlan plan(truth.cell_size,
                    {truth.i_begin, truth.j_begin, truth.i_begin + truth.width, truth.j_begin + truth.height});
     for (std::int32_t y = 0; y < truth.height; ++y) {
         for (std::int32_t x = 0; x < truth.width; ++x) {
-            if (truth.at(truth.i_begin + x, truth.j_begin + y) == Truth::kFree) plan.free.set({x, y});
+            if (truth.at(truth.i_begin + x, truth.j_begin + y) == GroundTruth::kFree) plan.free.set({x, y});
         }
     }
     return plan;

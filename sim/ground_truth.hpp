@@ -10,7 +10,7 @@
 
 namespace scanloom::sim {
 
-enum class Truth : std::uint8_t {
+enum class GroundTruth : std::uint8_t {
     kOutside,  ///< outside the walls, enclosed by solids (not reachable from a floor), or unknown, though rays pass
                ///< through it
     kFree,     ///< nothing is in the cell
@@ -18,18 +18,18 @@ enum class Truth : std::uint8_t {
 };
 
 /// The perfect map of a world. It does not contain walkers.
-struct TruthGrid {
+struct GroundTruthGrid {
     double cell_size = 0.0;   ///< metres
     std::int32_t i_begin = 0; ///< cell (0, 0) has its lower-left corner at the world origin, as in maps
     std::int32_t j_begin = 0;
     std::int32_t width = 0;
     std::int32_t height = 0;
-    std::vector<Truth> cells; ///< width * height, bottom row first
+    std::vector<GroundTruth> cells; ///< width * height, bottom row first
 
     /// Cells outside the grid are kOutside.
-    [[nodiscard]] Truth at(std::int32_t i, std::int32_t j) const noexcept {
+    [[nodiscard]] GroundTruth at(std::int32_t i, std::int32_t j) const noexcept {
         const bool inside = i >= i_begin && j >= j_begin && i < i_begin + width && j < j_begin + height;
-        if (!inside) return Truth::kOutside;
+        if (!inside) return GroundTruth::kOutside;
         return cells[static_cast<std::size_t>(j - j_begin) * static_cast<std::size_t>(width) +
                      static_cast<std::size_t>(i - i_begin)];
     }
@@ -38,17 +38,17 @@ struct TruthGrid {
 /// Computes the grid that covers all solids and floors of the world. A solid whose side lies on the border of a cell
 /// does not occupy that cell. Time: the number of cells, at cells of 0.1 m or less.
 /// Pre: 0.005 <= cell_size_m <= 1; openings that robots use are at least 0.2 m wide.
-[[nodiscard]] TruthGrid truth_of(const World& world, double cell_size_m);
+[[nodiscard]] GroundTruthGrid ground_truth_of(const World& world, double cell_size_m);
 
-/// Write the truth as the two files of ROS map_saver: occupied, free, and unknown outside.
+/// Write the ground truth as the two files of ROS map_saver: occupied, free, and unknown outside.
 
 /// Returns a binary PGM, top row first.
-[[nodiscard]] std::vector<std::uint8_t> truth_pgm(const TruthGrid& truth);
+[[nodiscard]] std::vector<std::uint8_t> ground_truth_pgm(const GroundTruthGrid& truth);
 
 /// Returns the YAML description. `image` is the file name of the PGM in the same folder.
-[[nodiscard]] std::string truth_yaml(const TruthGrid& truth, std::string_view image);
+[[nodiscard]] std::string ground_truth_yaml(const GroundTruthGrid& truth, std::string_view image);
 
 /// Returns the floor plan of a known world for a robot.
-[[nodiscard]] FloorPlan floor_plan_of(const TruthGrid& truth);
+[[nodiscard]] FloorPlan floor_plan_of(const GroundTruthGrid& truth);
 
 } // namespace scanloom::sim

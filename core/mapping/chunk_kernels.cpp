@@ -39,11 +39,11 @@ HWY_INLINE void KeepLanes(D d, hn::Mask<D> lanes, std::uint64_t& row, std::size_
 }
 
 /// Returns the rows in which the verdicts may change a cell, one bit per row.
-HWY_INLINE std::uint64_t RowsWithNews(const ChunkVerdicts& verdicts, const grid::BitPlane& settled) {
+HWY_INLINE std::uint64_t RowsWithNews(const ChunkVerdicts& verdicts, const grid::BitPlane& saturated) {
     const hn::ScalableTag<std::uint64_t> d;
     std::uint64_t rows = verdicts.occupied_rows;
     for (std::size_t j = 0; j < kSide; j += hn::Lanes(d)) {
-        const auto news = hn::AndNot(hn::LoadU(d, settled.data() + j), hn::LoadU(d, verdicts.free.data() + j));
+        const auto news = hn::AndNot(hn::LoadU(d, saturated.data() + j), hn::LoadU(d, verdicts.free.data() + j));
         std::uint64_t bits = 0;
         hn::StoreMaskBits(d, hn::Ne(news, hn::Zero(d)), reinterpret_cast<std::uint8_t*>(&bits));
         rows |= bits << j;
@@ -83,10 +83,10 @@ void AddEvidence(LaserChunk& chunk, const ChunkVerdicts& verdicts, const Occupan
     const bool has_rest = free_step.rest != 0 || occupied_step.rest != 0;
     const auto before = [&](V cells) HWY_ATTR { return hn::IfThenElse(hn::Eq(cells, unknown), prior, cells); };
     const auto clamped = [&](V cells) HWY_ATTR { return hn::Min(hn::Max(cells, l_min), l_max); };
-    const bool can_settle = rule.free <= 0;
-    ForEachRow(RowsWithNews(verdicts, chunk.settled_occupancy), [&](std::size_t j) HWY_ATTR {
+    const bool can_saturate = rule.free <= 0;
+    ForEachRow(RowsWithNews(verdicts, chunk.saturated_occupancy), [&](std::size_t j) HWY_ATTR {
         LogOdds* row = chunk.occupancy.data() + j * kSide;
-        std::uint64_t settled = 0;
+        std::uint64_t saturated = 0;
         const bool is_plain = verdicts.free[j] == kAll && !has_rest;
         for (std::size_t n = 0; n < kSide; n += hn::Lanes(d)) {
             const V cells = hn::LoadU(d, row + n);
@@ -101,9 +101,9 @@ void AddEvidence(LaserChunk& chunk, const ChunkVerdicts& verdicts, const Occupan
                 after = hn::IfThenElse(hn::Or(is_free, is_occupied), clamped(sum), cells);
             }
             hn::StoreU(after, d, row + n);
-            KeepLanes(d, hn::Eq(after, l_min), settled, n);
+            KeepLanes(d, hn::Eq(after, l_min), saturated, n);
         }
-        chunk.settled_occupancy[j] = can_settle ? settled : 0;
+        chunk.saturated_occupancy[j] = can_saturate ? saturated : 0;
     });
 }
 
@@ -114,9 +114,9 @@ void CountHits(LaserChunk& chunk, const ChunkVerdicts& verdicts, const HimmRule&
     const V most = hn::Set(d, kHimmMax);
     const V up = hn::Set(d, static_cast<HimmCount>(rule.up));
     const V down = hn::Set(d, static_cast<HimmCount>(rule.down));
-    ForEachRow(RowsWithNews(verdicts, chunk.settled_himm), [&](std::size_t j) HWY_ATTR {
+    ForEachRow(RowsWithNews(verdicts, chunk.saturated_himm), [&](std::size_t j) HWY_ATTR {
         HimmCount* row = chunk.himm.data() + j * kSide;
-        std::uint64_t settled = 0;
+        std::uint64_t saturated = 0;
         for (std::size_t n = 0; n < kSide; n += hn::Lanes(d)) {
             const auto is_free = LanesOf(d, verdicts.free[j], n);
             const auto is_occupied = LanesOf(d, verdicts.occupied[j], n);
@@ -126,9 +126,9 @@ void CountHits(LaserChunk& chunk, const ChunkVerdicts& verdicts, const HimmRule&
                 hn::IfThenElse(is_occupied, hn::Min(hn::SaturatedAdd(known, up), most), hn::SaturatedSub(known, down));
             const V after = hn::IfThenElse(hn::Or(is_free, is_occupied), counted, cells);
             hn::StoreU(after, d, row + n);
-            KeepLanes(d, hn::Eq(after, hn::Zero(d)), settled, n);
+            KeepLanes(d, hn::Eq(after, hn::Zero(d)), saturated, n);
         }
-        chunk.settled_himm[j] = settled;
+        chunk.saturated_himm[j] = saturated;
     });
 }
 

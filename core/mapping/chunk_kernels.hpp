@@ -14,12 +14,12 @@ namespace scanloom::mapping::simd {
 /// @param chunk     the cells before the scan
 /// @param evidence  verdicts for the occupancy layer
 /// @param counted   verdicts for the HIMM layer
-[[nodiscard]] constexpr bool is_settled(const LaserChunk& chunk, const ChunkVerdicts& evidence,
-                                        const ChunkVerdicts& counted) noexcept {
+[[nodiscard]] constexpr bool is_saturated(const LaserChunk& chunk, const ChunkVerdicts& evidence,
+                                          const ChunkVerdicts& counted) noexcept {
     std::uint64_t news = evidence.occupied_rows | counted.occupied_rows;
     for (std::size_t j = 0; j < evidence.free.size(); ++j) {
-        news |= evidence.free[j] & ~chunk.settled_occupancy[j];
-        news |= counted.free[j] & ~chunk.settled_himm[j];
+        news |= evidence.free[j] & ~chunk.saturated_occupancy[j];
+        news |= counted.free[j] & ~chunk.saturated_himm[j];
     }
     return news == 0;
 }

@@ -73,8 +73,8 @@ struct LaserChunk : grid::TreeItem {
 
     /// Cells saturated as free: more evidence for free space does not change them, so rows with no other evidence need
     /// not be read. Checkpoints do not store these bits; a missing bit costs time but does not change results.
-    grid::BitPlane settled_occupancy{};
-    grid::BitPlane settled_himm{}; ///< likewise: counters of 0
+    grid::BitPlane saturated_occupancy{};
+    grid::BitPlane saturated_himm{}; ///< likewise: counters of 0
 };
 
 /// The verdicts of a scan for the cells of one chunk. No cell is both free and occupied.

@@ -218,7 +218,7 @@ void LaserLayers::integrate_chunk(grid::ChunkKey key, std::span<const ChunkVerdi
     const ChunkVerdicts& seen = verdicts.front();
     include(bounds_.occupancy, key, seen);
     const LaserChunk* known = grid_.find(key);
-    if (known != nullptr && simd::is_settled(*known, seen, counted)) return;
+    if (known != nullptr && simd::is_saturated(*known, seen, counted)) return;
     LaserChunk* chunk = grid_.write(key);
     if (chunk == nullptr) return;
     simd::count_hits(*chunk, counted, himm_);

@@ -17,7 +17,8 @@ int main(int argc, char** argv) try {
         fmt::print(leave->code == scanloom::kExitDone ? stdout : stderr, "{}", leave->text);
         return leave->code;
     }
-    if (const auto* truth = std::get_if<scanloom::robot::TruthOptions>(&options)) return scanloom::robot::run(*truth);
+    if (const auto* truth = std::get_if<scanloom::robot::GroundTruthOptions>(&options))
+        return scanloom::robot::run(*truth);
     return scanloom::robot::run(std::get<scanloom::robot::RobotOptions>(options));
 } catch (const std::exception& error) {
     scanloom::standard_error().write(fmt::format("scanloom-robot: {}\n", error.what()));

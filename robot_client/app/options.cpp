@@ -135,13 +135,13 @@ CLI::App* add_sonar(CLI::App& app, SonarReplayOptions& options) {
 
 } // namespace
 
-std::variant<RobotOptions, TruthOptions, Leave> parse_options(int argc, const char* const* argv) {
+std::variant<RobotOptions, GroundTruthOptions, Leave> parse_options(int argc, const char* const* argv) {
     RobotOptions options;
     Raw raw;
     ReplayOptions replay_options;
     SonarReplayOptions sonar_options;
     SimulateOptions simulate_options;
-    TruthOptions truth_options;
+    GroundTruthOptions truth_options;
     Ld06Options ld06_options;
 
     CLI::App app(kAbout, "scanloom-robot");
@@ -156,7 +156,7 @@ std::variant<RobotOptions, TruthOptions, Leave> parse_options(int argc, const ch
     const CLI::App* sonar = add_sonar(app, sonar_options)->fallthrough();
     const CLI::App* ld06 = add_ld06(app, ld06_options)->fallthrough();
     const CLI::App* simulate = add_simulate(app, simulate_options)->fallthrough();
-    const CLI::App* truth = add_truth(app, truth_options)->fallthrough();
+    const CLI::App* truth = add_ground_truth(app, truth_options)->fallthrough();
     app.require_subcommand(1);
 
     try {

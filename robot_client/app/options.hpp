@@ -38,8 +38,8 @@ struct SimulateOptions {
     double speed = 1.0; ///< 0 = as fast as the server accepts scans, 1 = real time
 };
 
-/// Writes the truth of a world as map files; needs no server.
-struct TruthOptions {
+/// Writes the ground truth of a world as map files; needs no server.
+struct GroundTruthOptions {
     std::string world;
     double cell_size = 0.05; ///< metres
     std::string output;      ///< path of the files without .pgm and .yaml
@@ -77,6 +77,6 @@ struct RobotOptions : LinkOptions {
 
 /// Reads the command line, SCANLOOM_* environment variables and the file of --config. Flags override the environment,
 /// which overrides the file.
-[[nodiscard]] std::variant<RobotOptions, TruthOptions, Leave> parse_options(int argc, const char* const* argv);
+[[nodiscard]] std::variant<RobotOptions, GroundTruthOptions, Leave> parse_options(int argc, const char* const* argv);
 
 } // namespace scanloom::robot

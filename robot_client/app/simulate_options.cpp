@@ -86,7 +86,7 @@ CLI::App* add_simulate(CLI::App& app, SimulateOptions& options) {
     return simulate;
 }
 
-CLI::App* add_truth(CLI::App& app, TruthOptions& options) {
+CLI::App* add_ground_truth(CLI::App& app, GroundTruthOptions& options) {
     auto* truth = app.add_subcommand("truth", "Write the ground truth map of a world, without a server");
     truth->footer(
         "Unknown cells of a ROS map are unknown in its ground truth, too, although rays of simulated robots pass\n"
@@ -124,7 +124,7 @@ std::optional<std::string> mistake_in(const SimulateOptions& options) {
     return std::nullopt;
 }
 
-std::optional<std::string> mistake_in(const TruthOptions& options) {
+std::optional<std::string> mistake_in(const GroundTruthOptions& options) {
     if (options.world.empty()) return "truth: name the --world";
     if (options.output.empty() || options.output.ends_with('/'))
         return "truth: name the files to write, --output PREFIX";

@@ -11,10 +11,10 @@ namespace scanloom::robot {
 
 /// Add the subcommands for simulation and truth, which set `options`.
 CLI::App* add_simulate(CLI::App& app, SimulateOptions& options);
-CLI::App* add_truth(CLI::App& app, TruthOptions& options);
+CLI::App* add_ground_truth(CLI::App& app, GroundTruthOptions& options);
 
 /// Returns one sentence about an error that a single option does not show, or nullopt if there is none.
 [[nodiscard]] std::optional<std::string> mistake_in(const SimulateOptions& options);
-[[nodiscard]] std::optional<std::string> mistake_in(const TruthOptions& options);
+[[nodiscard]] std::optional<std::string> mistake_in(const GroundTruthOptions& options);
 
 } // namespace scanloom::robot

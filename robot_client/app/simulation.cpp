@@ -50,7 +50,8 @@ Result<NamedBehaviour> make_waypoints(const SimulateOptions& simulate, const sim
 Result<NamedBehaviour> make_behaviour(const SimulateOptions& simulate, const sim::World& world) {
     if (simulate.drive == "waypoints") return make_waypoints(simulate, world);
     if (simulate.drive == "zigzag") {
-        return NamedBehaviour{std::make_unique<sim::Zigzag>(floor_plan_of(truth_of(world, kPlanCellSize))), "zigzag 2"};
+        return NamedBehaviour{std::make_unique<sim::Zigzag>(floor_plan_of(ground_truth_of(world, kPlanCellSize))),
+                              "zigzag 2"};
     }
     return NamedBehaviour{std::make_unique<sim::WallFollower>(), simulate.drive};
 }

@@ -47,25 +47,25 @@ Result<> check_size(const sim::World& world, double cell_size) {
 
 } // namespace
 
-Result<std::string> write_truth(const TruthOptions& options) {
+Result<std::string> write_ground_truth(const GroundTruthOptions& options) {
     const auto world = load_world(options.world);
     if (!world) return world.error();
     if (auto ok = check_size(*world, options.cell_size); !ok) return ok.error();
     if (auto made = make_folder(options.output); !made) return made.error();
-    const sim::TruthGrid truth = truth_of(*world, options.cell_size);
+    const sim::GroundTruthGrid truth = ground_truth_of(*world, options.cell_size);
     const std::string image = options.output + ".pgm";
     const std::string yaml = options.output + ".yaml";
-    const auto pgm = truth_pgm(truth);
+    const auto pgm = ground_truth_pgm(truth);
     const std::span pixels(reinterpret_cast<const char*>(pgm.data()), pgm.size());
     if (auto written = write_file(image, pixels); !written) return written.error();
-    const std::string description = truth_yaml(truth, std::filesystem::path(image).filename().string());
+    const std::string description = ground_truth_yaml(truth, std::filesystem::path(image).filename().string());
     if (auto written = write_file(yaml, description); !written) return written.error();
     return fmt::format(R"({{"width":{},"height":{},"map":{}}})", truth.width, truth.height,
                        boost::json::serialize(yaml));
 }
 
-ExitCode run(const TruthOptions& options) {
-    const auto line = write_truth(options);
+ExitCode run(const GroundTruthOptions& options) {
+    const auto line = write_ground_truth(options);
     if (!line) {
         Console(standard_error()).note("scanloom-robot: " + line.error().message);
         return kExitFailed;

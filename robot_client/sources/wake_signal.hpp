@@ -11,7 +11,7 @@
 
 namespace scanloom::robot {
 
-/// Wakes all coroutines that wait for it. A woken coroutine checks itself whether anything has changed. A WakeSignal
+/// Wakes all coroutines that wait for it. A resumed coroutine checks itself whether anything has changed. A WakeSignal
 /// may be destroyed before or after the executor of the waiting coroutines.
 /// Threads: one at a time.
 class WakeSignal {

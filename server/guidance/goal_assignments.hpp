@@ -55,7 +55,7 @@ struct Visit {
 /// it. So it no longer counts after the robot has left; a robot that returns asks again. Goals do not survive a
 /// restart. They are stored as positions in the map frame, so goals found in maps with another cell size count as well.
 ///
-/// The book also remembers frontiers that robots could not observe, so that exploration ends where a frontier cannot be
+/// It also stores frontiers that robots could not observe, so that exploration ends where a frontier cannot be
 /// seen (glass, a narrow gap, things too low for the laser). When a robot that has_looked() asks again, the cells that
 /// planning::unobservable_cells() returns are excluded from the goals of all robots, as long as they are FRONTIER: each
 /// visit changes the map or excludes a cell. A robot that has not looked yet gets the same goal or a better one.

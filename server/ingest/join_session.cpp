@@ -22,7 +22,7 @@ asio::awaitable<Found> create(const wire::Hello& hello, sessions::SessionRegistr
     co_return created;
 }
 
-asio::awaitable<Found> woken(const std::string& name, sessions::SessionRegistry& sessions) {
+asio::awaitable<Found> loaded(const std::string& name, sessions::SessionRegistry& sessions) {
     const auto load = [&](auto done) { sessions.load(name, std::move(done)); };
     co_return co_await sockets::resume_with<Found>(load);
 }
@@ -47,11 +47,11 @@ Error absence_of(const std::string& name, const sessions::SessionRegistry& sessi
 
 asio::awaitable<Found> session_for(const wire::Hello& hello, sessions::SessionRegistry& sessions,
                                    const sessions::Creator& maker, asio::any_io_executor may_wait) {
-    auto session = co_await woken(hello.session, sessions);
+    auto session = co_await loaded(hello.session, sessions);
     if (!session && session.error().code == Errc::kNotFound && hello.create) {
         auto created = co_await create(hello, sessions, maker, std::move(may_wait));
         if (created || created.error().code != Errc::kAlreadyExists) co_return created;
-        session = co_await woken(hello.session, sessions); // another robot created it first
+        session = co_await loaded(hello.session, sessions); // another robot created it first
     }
     if (!session) co_return absence_of(hello.session, sessions, session.error());
     if (hello.create) {

@@ -127,7 +127,7 @@ wire::Message reply_from(const Kind& request, const Requester& requester, const 
         start = Point2{pose->x, pose->y};
     }
     auto found = Search{requester, *maps, goals, guidance::SearchLimit(services.sessions), *start}(request);
-    if constexpr (!std::is_same_v<Kind, wire::GoalRequest>) { // the goal book already knows the paths to goals
+    if constexpr (!std::is_same_v<Kind, wire::GoalRequest>) { // goal assignments already store the paths to goals
         goals.paths().set_path(requester.session, requester.robot, held_path(found, maps->revision),
                                guidance::RobotPaths::Clock::now());
     }

@@ -204,7 +204,7 @@ void Session::apply_batch() {
     const bool in_place = durable_.front().work <= kInPlaceWork && published_.withdraw();
     auto applied = apply_entries(in_place ? HUGE_VAL : kSliceWork);
     const bool finished = applied && applied_ == durable_.front().entries.size();
-    if (in_place && !finished) { // failed or told to finish early: publish for the waiting readers
+    if (in_place && !finished) { // failed, or asked to finish early: publish for the waiting readers
         const auto published = publish();
         if (applied) applied = published;
     }

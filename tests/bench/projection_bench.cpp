@@ -53,7 +53,7 @@ public:
         for (std::size_t strip = 0; strip < sweep.strips(); ++strip) {
             sweep.visit(strip, [&](grid::ChunkKey key, std::span<const mapping::ChunkVerdicts> verdicts) {
                 mapping::LaserChunk& chunk = *grid_.write(key);
-                if constexpr (kSaturation == Saturation::kForgotten) chunk.settled_occupancy = {};
+                if constexpr (kSaturation == Saturation::kForgotten) chunk.saturated_occupancy = {};
                 mapping::simd::add_evidence(chunk, verdicts.front(), rule_);
             });
         }

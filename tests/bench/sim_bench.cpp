@@ -29,9 +29,9 @@ sim::World ragged_map() {
 
 /// Returns the ground truth of the hall as a map.
 sim::World hall_map() {
-    const sim::TruthGrid truth = truth_of(sim::make_hall(), 0.05);
-    const auto map = parse_ros_yaml(truth_yaml(truth, "")).value();
-    return sim::world_of_map("hall", map, read_ros_pgm(map, truth_pgm(truth)).value()).value();
+    const sim::GroundTruthGrid truth = ground_truth_of(sim::make_hall(), 0.05);
+    const auto map = parse_ros_yaml(ground_truth_yaml(truth, "")).value();
+    return sim::world_of_map("hall", map, read_ros_pgm(map, ground_truth_pgm(truth)).value()).value();
 }
 
 sim::World depot() {

@@ -84,12 +84,12 @@ std::optional<sim::Noise> range_noise(bool noisy) {
 
 /// Returns the known part of the free cells of a perfect map.
 double known_share(const sim::World& world, const classify::ClassView& classes) {
-    const auto truth = sim::truth_of(world, kCellSize);
+    const auto truth = sim::ground_truth_of(world, kCellSize);
     int free = 0;
     int known = 0;
     for (std::int32_t j = truth.j_begin; j < truth.j_begin + truth.height; ++j) {
         for (std::int32_t i = truth.i_begin; i < truth.i_begin + truth.width; ++i) {
-            if (truth.at(i, j) != sim::Truth::kFree) continue;
+            if (truth.at(i, j) != sim::GroundTruth::kFree) continue;
             const auto found = class_at(classes, {i, j});
             free += 1;
             known += found != classify::CellClass::kUnexplored && found != classify::CellClass::kFrontier ? 1 : 0;

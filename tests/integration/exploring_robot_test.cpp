@@ -26,12 +26,12 @@ constexpr SimulationLimits kLimits{.duration = 3600.0};
 
 /// Returns the known part of the free cells of a perfect map.
 double known_share(const sim::World& world, const mapping::Snapshot& maps) {
-    const auto truth = truth_of(world, maps.config.cell_size);
+    const auto truth = ground_truth_of(world, maps.config.cell_size);
     int free = 0;
     int known = 0;
     for (std::int32_t j = truth.j_begin; j < truth.j_begin + truth.height; ++j) {
         for (std::int32_t i = truth.i_begin; i < truth.i_begin + truth.width; ++i) {
-            if (truth.at(i, j) != sim::Truth::kFree) continue;
+            if (truth.at(i, j) != sim::GroundTruth::kFree) continue;
             const auto found = class_at(maps.classes, {i, j});
             free += 1;
             known += found != classify::CellClass::kUnexplored && found != classify::CellClass::kFrontier ? 1 : 0;
@@ -43,7 +43,7 @@ double known_share(const sim::World& world, const mapping::Snapshot& maps) {
 /// Returns the area that the robot could still explore.
 std::vector<grid::Cell> left_unexplored(const sim::World& world, GoalOracle& oracle, const Pose2& robot) {
     const auto maps = oracle.maps();
-    const auto truth = truth_of(world, maps.config.cell_size);
+    const auto truth = ground_truth_of(world, maps.config.cell_size);
     constexpr std::int32_t kMargin = 40; // cells; noisy readings end behind walls
     const grid::CellBox area{truth.i_begin - kMargin, truth.j_begin - kMargin, truth.i_begin + truth.width + kMargin,
                              truth.j_begin + truth.height + kMargin};

@@ -27,7 +27,7 @@ std::unique_ptr<sim::Behaviour> waypoints(const sim::World& world) {
 }
 
 std::unique_ptr<sim::Behaviour> zigzag(const sim::World& world) {
-    return std::make_unique<sim::Zigzag>(floor_plan_of(truth_of(world, 0.05)));
+    return std::make_unique<sim::Zigzag>(floor_plan_of(ground_truth_of(world, 0.05)));
 }
 
 struct Drive {

@@ -30,10 +30,10 @@ inline StateGrid map_of(const Rows& rows) {
 }
 
 /// '#' solid, '.' free, any other character outside.
-inline TruthCells truth_cells_of(const Rows& rows) {
-    return drawn(rows, sim::Truth::kOutside, [](sim::Truth& cell, char c) {
-        if (c == '#') cell = sim::Truth::kOccupied;
-        if (c == '.') cell = sim::Truth::kFree;
+inline GroundTruthCells truth_cells_of(const Rows& rows) {
+    return drawn(rows, sim::GroundTruth::kOutside, [](sim::GroundTruth& cell, char c) {
+        if (c == '#') cell = sim::GroundTruth::kOccupied;
+        if (c == '.') cell = sim::GroundTruth::kFree;
     });
 }
 

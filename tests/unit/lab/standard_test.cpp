@@ -8,18 +8,18 @@ namespace {
 TEST(Standard, IsTheRoomWithCellsVisibleFromThePath) {
     const std::vector<Pose2> path{{-3.5, -3.8, 0.0}};
     const auto standard = make_standard(path, 0.1);
-    const auto count = [&](sim::Truth truth, bool is_seen) {
+    const auto count = [&](sim::GroundTruth truth, bool is_seen) {
         std::size_t cells = 0;
         for_each_cell(standard.truth.box, [&](grid::Cell cell) {
             cells += standard.truth.at(cell) == truth && (standard.seen.at(cell) != 0) == is_seen;
         });
         return cells;
     };
-    EXPECT_GT(count(sim::Truth::kFree, true), 500U);
-    EXPECT_GT(count(sim::Truth::kFree, false), 5000U);
-    EXPECT_GT(count(sim::Truth::kOccupied, true), 40U);
-    EXPECT_EQ(count(sim::Truth::kOutside, true), 0U);
-    EXPECT_EQ(standard.truth.at({-69, 0}), sim::Truth::kOutside) << "2 m outside the wall";
+    EXPECT_GT(count(sim::GroundTruth::kFree, true), 500U);
+    EXPECT_GT(count(sim::GroundTruth::kFree, false), 5000U);
+    EXPECT_GT(count(sim::GroundTruth::kOccupied, true), 40U);
+    EXPECT_EQ(count(sim::GroundTruth::kOutside, true), 0U);
+    EXPECT_EQ(standard.truth.at({-69, 0}), sim::GroundTruth::kOutside) << "2 m outside the wall";
 }
 
 TEST(WalkedCells, AreOnTheWalkersTrackExceptAtItsEnd) {

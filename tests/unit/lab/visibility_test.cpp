@@ -33,7 +33,7 @@ Sensor laser(double first, double last, double range_max) {
 
 std::string seen_from(const Pose2& pose, const Sensor& sensor) {
     const sim::World world = corridor();
-    const auto truth = sim::truth_of(world, 0.2);
+    const auto truth = sim::ground_truth_of(world, 0.2);
     const std::vector<Pose2> path{pose};
     const auto seen = visible_cells(world, truth, sensor, path, {-2, -1, 12, 7});
     std::string text;
@@ -68,11 +68,11 @@ TEST(VisibleCells, AreWithinRangeAndFieldOfView) {
 
 TEST(VisibleCells, MatchRayCastingToEachFreeCell) {
     const sim::World room = sim::make_room();
-    const auto truth = sim::truth_of(room, 0.25);
+    const auto truth = sim::ground_truth_of(room, 0.25);
     const std::vector<Pose2> path{{-3.9, -3.1, 0.4}, {3.3, 3.7, -2.0}};
     const auto seen = visible_cells(room, truth, laser(-kPi / 2, kPi / 2, 5.0), path, {-25, -25, 25, 25});
     for_each_cell(seen.box, [&](grid::Cell cell) {
-        if (truth.at(cell.i, cell.j) != sim::Truth::kFree) return;
+        if (truth.at(cell.i, cell.j) != sim::GroundTruth::kFree) return;
         const Point2 centre{(cell.i + 0.5) * 0.25, (cell.j + 0.5) * 0.25};
         bool wanted = false;
         for (const Pose2& pose : path) {

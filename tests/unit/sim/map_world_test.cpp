@@ -193,7 +193,7 @@ TEST(MapWorld, NarrowMapHasNarrowStartsAndTooNarrowMapIsRefused) {
 
 TEST(MapWorld, GroundTruthEqualsTheMap) {
     const MapCells map = open_room();
-    const TruthGrid ground_truth = truth_of(world_of_map("m", kHalfMetres, map).value(), 0.5);
+    const GroundTruthGrid ground_truth = ground_truth_of(world_of_map("m", kHalfMetres, map).value(), 0.5);
     EXPECT_EQ(ground_truth.i_begin, -2) << "the unknown columns on the left are not included";
     EXPECT_EQ(ground_truth.j_begin, 20);
     EXPECT_EQ(ground_truth.width, 12);
@@ -201,9 +201,9 @@ TEST(MapWorld, GroundTruthEqualsTheMap) {
     for (std::int32_t j = 0; j < 8; ++j) {
         for (std::int32_t i = 0; i < 14; ++i) {
             const MapCell cell = map.cells[static_cast<std::size_t>(j * 14 + i)];
-            const Truth wanted = cell == MapCell::kOccupied ? Truth::kOccupied
-                                 : cell == MapCell::kFree   ? Truth::kFree
-                                                            : Truth::kOutside;
+            const GroundTruth wanted = cell == MapCell::kOccupied ? GroundTruth::kOccupied
+                                       : cell == MapCell::kFree   ? GroundTruth::kFree
+                                                                  : GroundTruth::kOutside;
             EXPECT_EQ(ground_truth.at(i - 4, j + 20), wanted) << i << ' ' << j;
         }
     }
@@ -212,14 +212,14 @@ TEST(MapWorld, GroundTruthEqualsTheMap) {
 TEST(MapWorld, UnknownCellsStayUnknownNextToFreeCells) {
     const MapCells map = drawn({"......    ", "......    ", "......    ", "......    ", "......   #"});
     for (const double cell_size : {0.1, 0.5, 1.0}) {
-        const TruthGrid ground_truth = truth_of(world_of_map("m", kHalfMetres, map).value(), cell_size);
+        const GroundTruthGrid ground_truth = ground_truth_of(world_of_map("m", kHalfMetres, map).value(), cell_size);
         const auto at = [&](double x, double y) {
             return ground_truth.at(static_cast<std::int32_t>(std::floor(x / cell_size)),
                                    static_cast<std::int32_t>(std::floor(y / cell_size)));
         };
-        EXPECT_EQ(at(-1.4, 10.6), Truth::kFree) << cell_size;
-        EXPECT_EQ(at(1.6, 11.6), Truth::kOutside) << cell_size;
-        EXPECT_EQ(at(2.6, 10.1), Truth::kOccupied) << cell_size;
+        EXPECT_EQ(at(-1.4, 10.6), GroundTruth::kFree) << cell_size;
+        EXPECT_EQ(at(1.6, 11.6), GroundTruth::kOutside) << cell_size;
+        EXPECT_EQ(at(2.6, 10.1), GroundTruth::kOccupied) << cell_size;
     }
 }
 
@@ -227,15 +227,15 @@ class TruthMaps : public testing::TestWithParam<double> {};
 
 TEST_P(TruthMaps, ConvertingToAMapAndBackKeepsTheGroundTruth) {
     for (const NamedWorld& named : kWorlds) {
-        const TruthGrid ground_truth = truth_of(named.make(), GetParam());
-        const auto map = parse_ros_yaml(truth_yaml(ground_truth, "x.pgm")).value();
-        const auto cells = read_ros_pgm(map, truth_pgm(ground_truth)).value();
+        const GroundTruthGrid ground_truth = ground_truth_of(named.make(), GetParam());
+        const auto map = parse_ros_yaml(ground_truth_yaml(ground_truth, "x.pgm")).value();
+        const auto cells = read_ros_pgm(map, ground_truth_pgm(ground_truth)).value();
         const auto world = world_of_map("again", map, cells);
         if (!world) { // cells so large that walls leave no space
             EXPECT_GE(GetParam(), 0.5) << named.name;
             continue;
         }
-        const TruthGrid again = truth_of(*world, GetParam());
+        const GroundTruthGrid again = ground_truth_of(*world, GetParam());
         EXPECT_EQ(again.i_begin, ground_truth.i_begin);
         EXPECT_EQ(again.j_begin, ground_truth.j_begin);
         EXPECT_EQ(again.width, ground_truth.width);

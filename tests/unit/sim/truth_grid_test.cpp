@@ -10,11 +10,11 @@ namespace scanloom::sim {
 namespace {
 
 /// Draws the grid, rows from the top: '#' occupied, '.' free, ' ' outside.
-std::string drawn(const TruthGrid& grid) {
+std::string drawn(const GroundTruthGrid& grid) {
     std::string text;
     for (std::int32_t j = grid.j_begin + grid.height - 1; j >= grid.j_begin; --j) {
         for (std::int32_t i = grid.i_begin; i < grid.i_begin + grid.width; ++i) {
-            text += grid.at(i, j) == Truth::kOccupied ? '#' : grid.at(i, j) == Truth::kFree ? '.' : ' ';
+            text += grid.at(i, j) == GroundTruth::kOccupied ? '#' : grid.at(i, j) == GroundTruth::kFree ? '.' : ' ';
         }
         text += '\n';
     }
@@ -32,33 +32,33 @@ World closet() {
                       {{0.0, 0.0, 1.0, 1.0}});
 }
 
-TEST(TruthGrid, RoundingMarksNoAdjacentCell) {
-    const auto tenths = truth_of(make_world("", {{0.0, 0.0, 1.1, 0.3}}, {}), 0.1); // 1.1 * 10 > 11
+TEST(GroundTruthGrid, RoundingMarksNoAdjacentCell) {
+    const auto tenths = ground_truth_of(make_world("", {{0.0, 0.0, 1.1, 0.3}}, {}), 0.1); // 1.1 * 10 > 11
     EXPECT_EQ(tenths.width, 11);
     EXPECT_EQ(tenths.height, 3);
-    const auto hundredths = truth_of(make_world("", {{0.29, 0.0, 0.57, 0.07}}, {}), 0.01); // 0.29 * 100 < 29
+    const auto hundredths = ground_truth_of(make_world("", {{0.29, 0.0, 0.57, 0.07}}, {}), 0.01); // 0.29 * 100 < 29
     EXPECT_EQ(hundredths.i_begin, 29);
     EXPECT_EQ(hundredths.width, 28);
     EXPECT_EQ(hundredths.height, 7);
 }
 
-TEST(TruthGrid, UnreachableCellsAreOutside) {
+TEST(GroundTruthGrid, UnreachableCellsAreOutside) {
     World world = closet();
     world.solids.push_back({0.0, 0.6, 1.0, 0.8});
     world.floors = {{0.0, 0.0, 1.0, 0.6}};
-    EXPECT_EQ(drawn(truth_of(world, 0.2)), "#######\n"
-                                           "#     #\n"
-                                           "#######\n"
-                                           "#.....#\n"
-                                           "#.##..#\n"
-                                           "#.##..#\n"
-                                           "#######\n");
-    EXPECT_EQ(truth_of(world, 0.2).at(-2, 3), Truth::kOutside);
-    EXPECT_EQ(truth_of(world, 0.2).at(1000, 0), Truth::kOutside);
+    EXPECT_EQ(drawn(ground_truth_of(world, 0.2)), "#######\n"
+                                                  "#     #\n"
+                                                  "#######\n"
+                                                  "#.....#\n"
+                                                  "#.##..#\n"
+                                                  "#.##..#\n"
+                                                  "#######\n");
+    EXPECT_EQ(ground_truth_of(world, 0.2).at(-2, 3), GroundTruth::kOutside);
+    EXPECT_EQ(ground_truth_of(world, 0.2).at(1000, 0), GroundTruth::kOutside);
 }
 
-TEST(TruthGrid, WalkersAreExcluded) {
-    EXPECT_EQ(truth_of(make_room_walker(), 0.1).cells, truth_of(make_room(), 0.1).cells);
+TEST(GroundTruthGrid, WalkersAreExcluded) {
+    EXPECT_EQ(ground_truth_of(make_room_walker(), 0.1).cells, ground_truth_of(make_room(), 0.1).cells);
 }
 
 class TruthGrids : public testing::TestWithParam<double> {};
@@ -66,7 +66,7 @@ class TruthGrids : public testing::TestWithParam<double> {};
 TEST_P(TruthGrids, MatchTheSolidsInEveryCellOfTheOffice) {
     const World office = make_office();
     const double size = GetParam();
-    const auto grid = truth_of(office, size);
+    const auto grid = ground_truth_of(office, size);
     for (std::int32_t j = grid.j_begin - 1; j <= grid.j_begin + grid.height; ++j) {
         for (std::int32_t i = grid.i_begin - 1; i <= grid.i_begin + grid.width; ++i) {
             const double x = i * size;
@@ -76,7 +76,9 @@ TEST_P(TruthGrids, MatchTheSolidsInEveryCellOfTheOffice) {
                        box.y_max > y + 1e-7;
             });
             const bool is_indoors = std::abs(x + size / 2) < 15.0 && std::abs(y + size / 2) < 10.0;
-            const Truth wanted = is_touched ? Truth::kOccupied : is_indoors ? Truth::kFree : Truth::kOutside;
+            const GroundTruth wanted = is_touched   ? GroundTruth::kOccupied
+                                       : is_indoors ? GroundTruth::kFree
+                                                    : GroundTruth::kOutside;
             ASSERT_EQ(grid.at(i, j), wanted) << x << ' ' << y;
         }
     }

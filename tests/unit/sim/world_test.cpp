@@ -19,7 +19,7 @@ TEST(FindWorld, WorldsAreFoundByName) {
 }
 
 TEST(Hall, IsSixtyByFortyMetres) {
-    const TruthGrid grid = truth_of(make_hall(), 0.1);
+    const GroundTruthGrid grid = ground_truth_of(make_hall(), 0.1);
     EXPECT_EQ(grid.width, 606);
     EXPECT_EQ(grid.height, 406);
     EXPECT_EQ(make_hall().floors.at(0), (Box{-30.0, -20.0, 30.0, 20.0}));

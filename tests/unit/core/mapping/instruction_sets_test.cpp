@@ -231,18 +231,18 @@ TEST_P(InstructionSet, SaturatedCellsIgnoreFurtherEqualVerdicts) {
     random.verdicts.occupied.fill(0);
     random.verdicts.occupied_rows = 0;
     LaserChunk chunk = random.chunk;
-    EXPECT_FALSE(simd::is_settled(chunk, random.verdicts, random.verdicts));
+    EXPECT_FALSE(simd::is_saturated(chunk, random.verdicts, random.verdicts));
     for (int n = 0; n < 30; ++n) {
         simd::add_evidence(chunk, random.verdicts, OccupancyRule({}));
         simd::count_hits(chunk, random.verdicts, HimmRule({}));
     }
-    EXPECT_TRUE(simd::is_settled(chunk, random.verdicts, random.verdicts));
+    EXPECT_TRUE(simd::is_saturated(chunk, random.verdicts, random.verdicts));
     const grid::Cell cell{3, 0}; // of a row whose cells are all free
     ChunkVerdicts hit;
     grid::set(hit.occupied, cell, true);
     hit.occupied_rows = 1;
     simd::add_evidence(chunk, hit, OccupancyRule({}));
-    EXPECT_FALSE(simd::is_settled(chunk, random.verdicts, random.verdicts));
+    EXPECT_FALSE(simd::is_saturated(chunk, random.verdicts, random.verdicts));
 }
 
 /// Applies the definition to one cell.

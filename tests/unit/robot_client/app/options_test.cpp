@@ -17,7 +17,7 @@ using testing::HasSubstr;
 
 class Options : public testing::Test {
 protected:
-    std::variant<RobotOptions, TruthOptions, Leave> parse(std::vector<std::string> words) {
+    std::variant<RobotOptions, GroundTruthOptions, Leave> parse(std::vector<std::string> words) {
         std::vector<const char*> argv{"scanloom-robot"};
         for (const auto& word : words) argv.push_back(word.c_str());
         return parse_options(static_cast<int>(argv.size()), argv.data());
@@ -124,8 +124,8 @@ TEST_F(Options, BodyRadiusIsAcceptedForEverySource) {
 
 TEST_F(Options, TruthNeedsNoServerSessionOrRobot) {
     const auto result = parse({"truth", "--world", "a map.yaml", "--output", "x", "--cell-size", "0.2"});
-    ASSERT_TRUE(std::holds_alternative<TruthOptions>(result));
-    const auto& truth = std::get<TruthOptions>(result);
+    ASSERT_TRUE(std::holds_alternative<GroundTruthOptions>(result));
+    const auto& truth = std::get<GroundTruthOptions>(result);
     EXPECT_EQ(truth.world + " " + truth.output, "a map.yaml x");
     EXPECT_EQ(truth.cell_size, 0.2);
 }
@@ -287,12 +287,12 @@ TEST_F(Options, UniformNoiseWidthIsConfigurable) {
 TEST_F(Options, HelpNamesTheFolderOfWorlds) {
     const auto help = left({"simulate", "--help"}).text;
     for (const sim::NamedWorld& world : sim::kWorlds) {
-        const sim::TruthGrid truth = truth_of(world.make(), 0.5);
+        const sim::GroundTruthGrid truth = ground_truth_of(world.make(), 0.5);
         std::int32_t right = 0;
         std::int32_t top = 0;
         for (std::int32_t j = truth.j_begin; j < truth.j_begin + truth.height; ++j) {
             for (std::int32_t i = truth.i_begin; i < truth.i_begin + truth.width; ++i) {
-                if (truth.at(i, j) != sim::Truth::kFree) continue;
+                if (truth.at(i, j) != sim::GroundTruth::kFree) continue;
                 right = std::max({right, i + 1, -i});
                 top = std::max({top, j + 1, -j});
             }

@@ -99,10 +99,10 @@ TEST_P(RealMap, RobotDrivesThroughIt) {
                   cast_ray(world->outlines, {start.x, start.y}, yaw));
         for (int scan = 0; scan < 300; ++scan) static_cast<void>(simulator.next_scan());
         EXPECT_EQ(simulator.collisions(), 0U) << seed;
-        EXPECT_EQ(truth_of(*world, 0.05)
+        EXPECT_EQ(ground_truth_of(*world, 0.05)
                       .at(static_cast<std::int32_t>(std::floor(simulator.pose().x * 20)),
                           static_cast<std::int32_t>(std::floor(simulator.pose().y * 20))),
-                  sim::Truth::kFree);
+                  sim::GroundTruth::kFree);
     }
 }
 

@@ -201,7 +201,7 @@ TEST_F(RobotPathsTest, StateIsPerSessionAndEndsWithIt) {
     const std::weak_ptr<sessions::Session> before = session_;
     start_session(); // another session
     join("a");
-    EXPECT_TRUE(before.expired()) << "the book does not keep the session";
+    EXPECT_TRUE(before.expired()) << "RobotPaths does not keep the session";
     EXPECT_EQ(revision(), 0U);
     EXPECT_THAT(page().robots, IsEmpty());
 }

@@ -91,7 +91,7 @@ TEST(TileMaker, DrawsRecomputedMapsWithoutEarlierDrawings) {
     layers.restore({0, 0}, 1).occupancy.fill(-3000);
     layers.restore({0, 8}, 5).occupancy.fill(-3000);
     const mapping::Snapshot again{.revision = 5, .laser = layers.snapshot()};
-    static_cast<void>(made(maker, uniform(3000, 2), kWhole)); // tells no change of this chunk since revision 2
+    static_cast<void>(made(maker, uniform(3000, 2), kWhole)); // reports no change of this chunk since revision 2
     const auto tile = made(maker, again, kWhole, std::make_shared<const int>(0));
     EXPECT_EQ(*tile, *tile_png(again, Layer::kOccupancy, {0, 0, 0}));
 }

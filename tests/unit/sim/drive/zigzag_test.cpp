@@ -67,7 +67,7 @@ TEST(Lanes, BulgingOutlineGivesNoNewBlock) { EXPECT_EQ(lanes_of({"....", "###.",
 /// A zigzag over the plan of `known`, driven in a world that may differ.
 struct Swept {
     Swept(const World& known, World world, const Pose2& start = {-2.0, -2.0, 0.0})
-        : Swept(std::make_unique<Zigzag>(floor_plan_of(truth_of(known, 0.05))), std::move(world), start) {}
+        : Swept(std::make_unique<Zigzag>(floor_plan_of(ground_truth_of(known, 0.05))), std::move(world), start) {}
     Swept(std::unique_ptr<Zigzag> made, World world, const Pose2& start)
         : zigzag(made.get()), driven(std::move(world), start, std::move(made)) {}
 
