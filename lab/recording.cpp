@@ -1,5 +1,6 @@
 #include "lab/recording.hpp"
 
+#include "common/scan/limits.hpp"
 #include "common/scan/reading.hpp"
 #include "common/wire/messages.hpp"
 #include "core/landmarks/alignment.hpp"
@@ -182,7 +183,7 @@ Result<RecordedCapture> read_ld06_recording(const std::filesystem::path& path) {
     const auto last = std::span(scans).subspan(first.size());
     for (const auto& [which, half] : {std::pair{"first", first}, std::pair{"last", last}}) {
         const std::size_t points = points_of(half, recorded.capture.sensor).size();
-        if (points >= landmarks::kViewPointsMin) continue;
+        if (points >= kViewPointsMin) continue;
         return Error{
             Errc::kInvalidField,
             fmt::format(

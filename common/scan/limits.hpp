@@ -17,6 +17,9 @@ inline constexpr double kMapCellSizeMax = 100.0;       ///< metres, of an import
 inline constexpr double kRangeMax = 1000.0;            ///< metres, a sensor's range_max
 inline constexpr double kReachCellsMax = 8192.0;       ///< cells of the session, a sensor's range_max
 
+inline constexpr std::size_t kViewPointsMin = 20;     ///< of a view: fewer points do not determine a pose
+inline constexpr std::size_t kViewPointsMax = 32'768; ///< of a LocateRequest, so that it fits a frame
+
 /// The largest angle from the first to the last beam of a scan, in radians. A sensor may repeat its first direction at
 /// the end of a turn, and an increment stored as float32 may carry the last beam past it: the 360 beams of a TurtleBot3
 /// exceed the turn by 4.8e-6 rad.

@@ -111,7 +111,7 @@ struct Correction {
     friend bool operator==(const Correction&, const Correction&) = default;
 };
 
-inline constexpr std::size_t kPathPointsMax = 65'000; ///< so that every path fits a frame
+inline constexpr std::size_t kReplyPointsMax = 65'000; ///< of a path in a reply, so that it fits a frame
 inline constexpr std::size_t kRegionPointsMax = 4096;
 
 /// The reply to the request with the same `id`.
@@ -179,7 +179,7 @@ struct CellRun {
     friend bool operator==(const CellRun&, const CellRun&) = default;
 };
 
-/// A path that covers free ground. Its points and the runs together are at most kPathPointsMax.
+/// A path that covers free ground. Its points and the runs together are at most kReplyPointsMax.
 struct Coverage {
     Path path;
     double free_area = 0.0;           ///< square metres
@@ -201,9 +201,6 @@ struct CoverageRequest {
 
     friend bool operator==(const CoverageRequest&, const CoverageRequest&) = default;
 };
-
-inline constexpr std::size_t kLocatePointsMin = 20;
-inline constexpr std::size_t kLocatePointsMax = 32'768; ///< so that every request fits a frame
 
 /// A square around a point of the map.
 struct Near {

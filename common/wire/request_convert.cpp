@@ -69,7 +69,7 @@ Result<> read_points(std::string_view field, const Coordinates& proto, std::size
 }
 
 Result<> read_points(const Differences& proto, std::vector<PointMm>& points) {
-    if (auto ok = check_count("points", proto.size(), kLocatePointsMax, kLocatePointsMin); !ok) return ok;
+    if (auto ok = check_count("points", proto.size(), kViewPointsMax, kViewPointsMin); !ok) return ok;
     points.reserve(static_cast<std::size_t>(proto.size()) / 2);
     std::int64_t at[2] = {0, 0};
     for (int n = 0; n < proto.size(); ++n) {
@@ -128,7 +128,7 @@ void write_points(const std::vector<Point2>& points, Coordinates& out) {
 
 static Result<Path> from_proto(const v1::Path& proto) {
     Path path;
-    if (auto ok = read_points("points", proto.points(), kPathPointsMax, path.points); !ok) return ok.error();
+    if (auto ok = read_points("points", proto.points(), kReplyPointsMax, path.points); !ok) return ok.error();
     if (path.points.empty()) return invalid_field("points is empty; a path has at least 1 point");
     if (auto ok = check_sizes({{"length", proto.length()}, {"cost", proto.cost()}}); !ok) return ok.error();
     path.length = proto.length();

@@ -20,8 +20,8 @@ namespace scanloom::wire {
 [[nodiscard]] Result<LocateReply> from_proto(const v1::LocateReply& reply);
 [[nodiscard]] Result<Correction> from_proto(const v1::Correction& correction);
 
-/// Precondition: a path has at most kPathPointsMax points, a region at most kRegionPointsMax, a localization request
-/// kLocatePointsMin to kLocatePointsMax, within kCoordinateMax.
+/// Precondition: a path has at most kReplyPointsMax points, a region at most kRegionPointsMax, a localization request
+/// kViewPointsMin to kViewPointsMax, within kCoordinateMax.
 void to_proto(const PlanRequest& request, v1::PlanRequest& out);
 void to_proto(const PlanReply& reply, v1::PlanReply& out);
 void to_proto(const GoalRequest& request, v1::GoalRequest& out);

@@ -2,6 +2,7 @@
 
 #include "common/error/error.hpp"
 #include "common/geometry/pose2.hpp"
+#include "common/scan/limits.hpp"
 
 #include <cstddef>
 #include <optional>
@@ -11,8 +12,6 @@
 #include <vector>
 
 namespace scanloom::landmarks {
-
-inline constexpr std::size_t kViewPointsMin = 20; ///< points that a view needs to be matched
 
 /// What a stationary lidar saw from one place in some turns.
 struct CloudView {

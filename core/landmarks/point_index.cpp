@@ -180,7 +180,7 @@ struct PointTree::Tree {
 };
 
 PointTree::PointTree(std::span<const Point2> points) {
-    assert(points.size() <= kPointsMax);
+    assert(points.size() <= kCloudPointsMax);
     assert(std::ranges::all_of(points, [](const Point2& point) { return is_finite(point); }));
     tree_ = std::make_unique<const Tree>(points);
 }

@@ -28,9 +28,9 @@ Result<std::vector<Point2>> transform_points(std::span<const Point2> points, con
 }
 
 Result<> check_points(std::span<const Point2> points, std::string_view name) {
-    if (points.size() > kPointsMax) {
+    if (points.size() > kCloudPointsMax) {
         return Error{Errc::kTooLarge, fmt::format("{} are {}, more than the {} points of one cloud: give fewer", name,
-                                                  points.size(), kPointsMax)};
+                                                  points.size(), kCloudPointsMax)};
     }
     for (std::size_t n = 0; n < points.size(); ++n) {
         if (!is_finite(points[n])) {
@@ -68,7 +68,7 @@ std::vector<CellPlace> sorted_places(std::span<const Point2> cloud) {
 } // namespace
 
 DistinctPoints distinct_points(std::span<const Point2> cloud) {
-    assert(cloud.size() <= kPointsMax);
+    assert(cloud.size() <= kCloudPointsMax);
     DistinctPoints distinct;
     distinct.of.resize(cloud.size());
     const std::vector<CellPlace> places = sorted_places(cloud);

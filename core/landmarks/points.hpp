@@ -32,14 +32,14 @@ namespace scanloom::landmarks {
 /// Converts a point from Eigen's type.
 [[nodiscard]] inline Point2 from_eigen(const Eigen::Vector2d& vector) { return {vector.x(), vector.y()}; }
 
-inline constexpr double kPointCoordinateMax = 1e7;       ///< metres from the origin, each axis
-inline constexpr std::size_t kPointsMax = 1'000'000'000; ///< of one cloud
+inline constexpr double kPointCoordinateMax = 1e7;            ///< metres from the origin, each axis
+inline constexpr std::size_t kCloudPointsMax = 1'000'000'000; ///< of one cloud
 
 /// Checks that points are usable: squares of their distances and numbers of cells stay far from overflow.
 /// @param points  metres
 /// @param name    how an error message calls them: "second[3] is not finite"
 /// Errors: kInvalidField if a point is not finite or beyond kPointCoordinateMax, with the first such point in the
-///     message; kTooLarge if there are more than kPointsMax.
+///     message; kTooLarge if there are more than kCloudPointsMax.
 [[nodiscard]] Result<> check_points(std::span<const Point2> points, std::string_view name = "points");
 
 /// Returns the middle value; of an even count, the mean of the middle two. Reorders the values.

@@ -47,7 +47,6 @@ Result<UplinkOptions> uplink_options(const ClientOptions& options) {
 /// Collects the points of the scans of a locate request.
 /// Errors: kInvalidField or kTooLarge if no server accepts a value.
 Result<SeenPoints> seen_from(const std::shared_ptr<const Sensor>& sensor, std::span<const Scan> scans) {
-    static_assert(Client::kLocatePointsMin == kSeenPointsMin);
     if (!sensor) return Error{Errc::kInvalidField, "locate() needs the sensor of the scans"};
     if (sensor->kind != SensorKind::kLaser) {
         return Error{Errc::kInvalidField, "locate() needs laser scans; this sensor is a sonar"};
@@ -57,9 +56,9 @@ Result<SeenPoints> seen_from(const std::shared_ptr<const Sensor>& sensor, std::s
         if (auto ok = check(*sensor, scans[n]); !ok) return prefixed(fmt::format("scans[{}]: ", n), ok.error());
         seen.add(scans[n], *sensor);
     }
-    if (seen.count() >= kSeenPointsMin) return seen;
+    if (seen.count() >= kViewPointsMin) return seen;
     return Error{Errc::kInvalidField,
-                 fmt::format("the scans have {} returns; at least {} are needed", seen.count(), kSeenPointsMin)};
+                 fmt::format("the scans have {} returns; at least {} are needed", seen.count(), kViewPointsMin)};
 }
 
 Path from_wire(wire::Path path, std::uint64_t revision) {

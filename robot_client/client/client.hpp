@@ -11,6 +11,7 @@
 
 #include "common/error/error.hpp"
 #include "common/geometry/pose2.hpp"
+#include "common/scan/limits.hpp"
 #include "common/scan/scan.hpp"
 #include "common/scan/sensor.hpp"
 
@@ -243,7 +244,7 @@ public:
     [[nodiscard]] Result<Location> locate(const std::shared_ptr<const Sensor>& sensor, std::span<const Scan> scans,
                                           std::chrono::milliseconds timeout, const LocateOptions& options = {});
     /// Smallest number of returns that locate() accepts.
-    static constexpr std::size_t kLocatePointsMin = 20;
+    static constexpr std::size_t kLocatePointsMin = kViewPointsMin;
 
     /// Reads the counters. Blocks, as the destructor does, while the spool's disk does not respond.
     /// @return the counters at this moment

@@ -23,10 +23,10 @@ void SeenPoints::add(const Scan& scan, const Sensor& sensor) {
 }
 
 std::vector<PointMm> SeenPoints::points() const {
-    if (points_.size() <= kSeenPointsMax) return points_;
+    if (points_.size() <= kViewPointsMax) return points_;
     std::vector<PointMm> some;
-    some.reserve(kSeenPointsMax);
-    for (std::size_t n = 0; n < kSeenPointsMax; ++n) some.push_back(points_[n * points_.size() / kSeenPointsMax]);
+    some.reserve(kViewPointsMax);
+    for (std::size_t n = 0; n < kViewPointsMax; ++n) some.push_back(points_[n * points_.size() / kViewPointsMax]);
     return some;
 }
 

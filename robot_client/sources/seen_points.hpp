@@ -9,9 +9,6 @@
 
 namespace scanloom::robot {
 
-inline constexpr std::size_t kSeenPointsMin = 20; ///< fewer points do not determine a position
-inline constexpr std::size_t kSeenPointsMax = 32'768;
-
 /// The points that a stationary robot's lasers observed, added scan by scan.
 ///
 /// Units: points in whole millimetres, otherwise metres.
@@ -22,10 +19,10 @@ public:
     /// took the scan; its angles have one entry per range.
     void add(const Scan& scan, const Sensor& sensor);
 
-    /// Returns all points, or kSeenPointsMax selected evenly.
+    /// Returns all points, or kViewPointsMax selected evenly.
     [[nodiscard]] std::vector<PointMm> points() const;
 
-    /// Returns the number of all points, also beyond kSeenPointsMax.
+    /// Returns the number of all points, also beyond kViewPointsMax.
     [[nodiscard]] std::size_t count() const noexcept { return points_.size(); }
 
     /// Returns the mean position of the sensors, in metres. Pre: a scan was added.

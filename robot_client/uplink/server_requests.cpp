@@ -74,8 +74,6 @@ NextGoal guided_by(Uplink& uplink, double body_radius_m) {
 
 namespace {
 
-static_assert(kSeenPointsMin == wire::kLocatePointsMin && kSeenPointsMax == wire::kLocatePointsMax);
-
 asio::awaitable<Result<LocateResult>> ask_for_place(Uplink& uplink, wire::LocateRequest request) {
     link::Request question = std::move(request); // a named variable, because g++ 12 destroys such temporaries twice
     const Result<link::Reply> reply = co_await ask_once_applied(uplink, std::move(question));

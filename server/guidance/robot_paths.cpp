@@ -96,11 +96,11 @@ RobotPaths::Record* RobotPaths::find(const SessionPtr& session, Clock::time_poin
 
 /// Returns the path, cut to as many points as the record has room for, at least the first two.
 std::shared_ptr<const HeldPath> RobotPaths::bounded(const Record& record, HeldPath path) {
-    std::size_t room = kPointsMax;
+    std::size_t room = kSessionPathPointsMax;
     for (const auto& [robot, holding] : record.holdings) {
         if (holding.path) room -= std::min(room, holding.path->points.size());
     }
-    const std::size_t kept = std::min(path.points.size(), std::clamp<std::size_t>(room, 2, kPathPointsMax));
+    const std::size_t kept = std::min(path.points.size(), std::clamp<std::size_t>(room, 2, kShownPathPointsMax));
     path.points_left_out += path.points.size() - kept;
     path.points.resize(kept);
     path.points.shrink_to_fit();

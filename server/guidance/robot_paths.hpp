@@ -42,16 +42,16 @@ struct HeldPath {
 /// or the Session object. If a robot has explored everything it can reach, this is stored until it
 /// asks for a goal again, also after it has left. Other robots that have left are removed at the next read.
 ///
-/// Bounds: at most one goal and one path for each robot of a session, kPathPointsMax points for each path, about
-///     kPointsMax points for each session.
+/// Bounds: at most one goal and one path for each robot of a session, kShownPathPointsMax points for each path, about
+///     kSessionPathPointsMax points for each session.
 /// Threads: any thread; no lock is held during a search.
 class RobotPaths {
 public:
     using Clock = std::chrono::steady_clock;
 
     static constexpr Clock::duration kKeptForAbsent = std::chrono::minutes(1);
-    static constexpr std::size_t kPathPointsMax = 16'384;
-    static constexpr std::size_t kPointsMax = std::size_t{1} << 20; ///< a path beyond them keeps its first two points
+    static constexpr std::size_t kShownPathPointsMax = 16'384;
+    static constexpr std::size_t kSessionPathPointsMax = std::size_t{1} << 20; ///< paths beyond keep two points
 
     /// Whether the page of a session has changed, or will.
     struct State {

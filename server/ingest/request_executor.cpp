@@ -35,13 +35,13 @@ std::vector<wire::CellRun> runs_of(std::span<const grid::Cell> cells) {
 /// @param runs  number of cell runs in the same reply
 /// Errors: kTooLarge if the path and the runs do not fit into one frame.
 Result<wire::Path> to_wire(planning::Path path, std::size_t runs = 0) {
-    if (path.points.size() + runs > wire::kPathPointsMax) {
+    if (path.points.size() + runs > wire::kReplyPointsMax) {
         return Error{
             Errc::kTooLarge,
             fmt::format(
                 "the path has {} points, and the area that it cannot reach {} runs of cells; at most {} together "
                 "fit a reply; ask for a smaller region, or rows further apart",
-                path.points.size(), runs, wire::kPathPointsMax)};
+                path.points.size(), runs, wire::kReplyPointsMax)};
     }
     return wire::Path{std::move(path.points), path.length_m, path.cost};
 }

@@ -14,7 +14,7 @@ namespace scanloom::sessions {
 
 /// Upper bound of the points of all robots that are returned at once. They take up to 40 MiB while they are read, and
 /// 30 MiB as text.
-inline constexpr std::size_t kPathPointsMax = std::size_t{1} << 19;
+inline constexpr std::size_t kTrajectoryPointsMax = std::size_t{1} << 19;
 
 /// Points of trajectories that are no longer in memory.
 struct StoredTrajectories {
@@ -39,6 +39,6 @@ struct StoredTrajectories {
 [[nodiscard]] Result<StoredTrajectories> read_old_paths(store::ScanLog& log, store::SessionId session,
                                                         const mapping::Snapshot& maps, Revision since,
                                                         const std::function<bool()>& is_wanted,
-                                                        std::size_t points_max = kPathPointsMax);
+                                                        std::size_t points_max = kTrajectoryPointsMax);
 
 } // namespace scanloom::sessions

@@ -23,7 +23,7 @@ void check_points(const std::vector<Point2>& points) {
 }
 
 void check_path(const Path& path) {
-    fuzz::check(!path.points.empty() && path.points.size() <= kPathPointsMax, "a path has 1 to 65,000 points");
+    fuzz::check(!path.points.empty() && path.points.size() <= kReplyPointsMax, "a path has 1 to 65,000 points");
     check_points(path.points);
 }
 

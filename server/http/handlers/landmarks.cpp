@@ -106,8 +106,8 @@ Result<Response> get_landmarks(Context& context) {
 
 namespace {
 
-constexpr std::size_t kPointsMax = 1'000'000; // of all captures; need 100 MiB during fusion
-constexpr double kThreshold = 0.05;           // metres
+constexpr std::size_t kFusedPointsMax = 1'000'000; // of all captures; need 100 MiB during fusion
+constexpr double kThreshold = 0.05;                // metres
 constexpr double kThresholdMax = 1.0;
 
 enum class PointFile { kCsv, kPly };
@@ -153,10 +153,10 @@ public:
     Result<> add(const landmarks::RobotCapture& one, Revision ends) {
         if (!query_.wants(one.robot, ends)) return {};
         points_ += one.capture.points.size();
-        if (points_ > kPointsMax) {
+        if (points_ > kFusedPointsMax) {
             return Error{Errc::kTooLarge, fmt::format("these captures have more than {} points; request a part of "
                                                       "them, such as since={}&until={}, or those of one robot",
-                                                      kPointsMax, query_.since, last_)};
+                                                      kFusedPointsMax, query_.since, last_)};
         }
         last_ = one.ended;
         captures_.push_back(one);

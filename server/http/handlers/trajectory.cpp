@@ -99,8 +99,8 @@ std::size_t bytes_about(const mapping::Snapshot& snapshot, const TrajectoryParam
     std::size_t points = old;
     for (const auto& robot : snapshot.robots)
         points += robot.trajectory.size() - robot.trajectory.first_after(asked.since);
-    return std::min(points, sessions::kPathPointsMax) * point_bytes +
-           std::min(old, sessions::kPathPointsMax) * sizeof(mapping::TrajectoryPoint);
+    return std::min(points, sessions::kTrajectoryPointsMax) * point_bytes +
+           std::min(old, sessions::kTrajectoryPointsMax) * sizeof(mapping::TrajectoryPoint);
 }
 
 } // namespace

@@ -1,3 +1,4 @@
+#include "common/scan/limits.hpp"
 #include "tests/unit/common/wire/example_messages.hpp"
 #include "tests/unit/common/wire/refusals.hpp"
 
@@ -29,7 +30,7 @@ TEST(BadCorrection, IsRefusedByFieldName) {
 TEST(BadLocateRequest, IsRefusedByFieldName) {
     const InvalidCase<LocateRequest> kCases[] = {
         {[](LocateRequest& r) { r.points.resize(19); }, "locate_request.points has 19 points; at least 20"},
-        {[](LocateRequest& r) { r.points.resize(kLocatePointsMax + 1); },
+        {[](LocateRequest& r) { r.points.resize(kViewPointsMax + 1); },
          "locate_request.points has 32769 points, at most 32768", Errc::kTooLarge},
         {[](LocateRequest& r) {
              r.points[3] = {0, 1'000'000'001};
@@ -72,7 +73,7 @@ TEST(BadLocateRequest, RefusesMessagesThatOurClientCannotCreate) {
 TEST(LocateRequest, LargestRequestFitsInAFrame) {
     LocateRequest request = example_locate_request();
     request.points.clear();
-    for (std::size_t n = 0; n < kLocatePointsMax; ++n) {
+    for (std::size_t n = 0; n < kViewPointsMax; ++n) {
         const std::int32_t far = n % 2 == 0 ? 1'000'000'000 : -1'000'000'000;
         request.points.push_back({far, -far});
     }

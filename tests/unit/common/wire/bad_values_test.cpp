@@ -280,7 +280,7 @@ TEST(BadReply, InvalidPathIsRefusedByFieldName) {
         {[](Path& p) { p.points[1].x = kNan; }, "points[2] is nan;"},
         {[](Path& p) { p.points[2].y = 1.1e6; }, "points[5] is 1100000;"},
         {[](Path& p) {
-             p.points.assign(kPathPointsMax + 1, {0.0, 0.0});
+             p.points.assign(kReplyPointsMax + 1, {0.0, 0.0});
          },
          "points has 65001 points, at most 65000", Errc::kTooLarge},
         {[](Path& p) { p.length = kNan; }, "length is nan;"},

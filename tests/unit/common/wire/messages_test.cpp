@@ -136,9 +136,9 @@ TEST(Messages, LargestScanAndLargestBatchAreAccepted) {
 }
 
 TEST(Messages, LongestPathFitsInAFrame) {
-    const Path path{std::vector<Point2>(kPathPointsMax, Point2{-1e5 / 3.0, 1e6 / 3.0}), 1e9 / 3.0, 1e10 / 3.0};
+    const Path path{std::vector<Point2>(kReplyPointsMax, Point2{-1e5 / 3.0, 1e6 / 3.0}), 1e9 / 3.0, 1e10 / 3.0};
     const Path short_path{{Point2{1.0, 2.0}}, 0.0, 0.0};
-    const std::vector<CellRun> runs(kPathPointsMax - 1, {INT32_MIN, INT32_MAX, INT32_MAX});
+    const std::vector<CellRun> runs(kReplyPointsMax - 1, {INT32_MIN, INT32_MAX, INT32_MAX});
     for (const Message& reply :
          {Message(PlanReply{UINT64_MAX, UINT64_MAX, path}),
           Message(GoalReply{UINT64_MAX, UINT64_MAX, Goal{Exploration::kGoal, path, Point2{0.1, 0.2}}}),

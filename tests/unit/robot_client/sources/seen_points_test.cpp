@@ -1,5 +1,7 @@
 #include "robot_client/sources/seen_points.hpp"
 
+#include "common/scan/limits.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -52,12 +54,12 @@ TEST(PointsSeen, ExcludePointsBeyondTheCoordinateLimit) {
 
 TEST(PointsSeen, AreThinnedEvenly) {
     SeenPoints seen;
-    const std::size_t scans = 3 * kSeenPointsMax / 4;
+    const std::size_t scans = 3 * kViewPointsMax / 4;
     for (std::size_t n = 0; n < scans; ++n) {
         seen.add(scan_of({1000, 1000, 1000, 1000}, {static_cast<double>(n), 0.0, 0.0}), mounted_laser());
     }
     const auto points = seen.points();
-    ASSERT_EQ(points.size(), kSeenPointsMax);
+    ASSERT_EQ(points.size(), kViewPointsMax);
     for (std::size_t n = 1; n < points.size(); ++n) {
         EXPECT_LE(std::abs(points[n].x - points[n - 1].x), 3000) << "at least every third point is kept";
     }

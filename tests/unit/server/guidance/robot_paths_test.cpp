@@ -208,27 +208,27 @@ TEST_F(RobotPathsTest, StateIsPerSessionAndEndsWithIt) {
 
 TEST_F(RobotPathsTest, TruncatesLongPathAtItsEnd) {
     join("a");
-    set_path(0, path(PathKind::kCoverage, RobotPaths::kPathPointsMax));
+    set_path(0, path(PathKind::kCoverage, RobotPaths::kShownPathPointsMax));
     EXPECT_EQ(page().robots[0].path->points_left_out, 0U);
-    set_path(0, path(PathKind::kCoverage, RobotPaths::kPathPointsMax + 5));
+    set_path(0, path(PathKind::kCoverage, RobotPaths::kShownPathPointsMax + 5));
     const auto kept = page().robots[0].path;
-    EXPECT_EQ(kept->points.size(), RobotPaths::kPathPointsMax);
-    EXPECT_EQ(kept->points.back().x, static_cast<double>(RobotPaths::kPathPointsMax - 1));
+    EXPECT_EQ(kept->points.size(), RobotPaths::kShownPathPointsMax);
+    EXPECT_EQ(kept->points.back().x, static_cast<double>(RobotPaths::kShownPathPointsMax - 1));
     EXPECT_EQ(kept->points_left_out, 5U);
-    EXPECT_EQ(kept->length_m, static_cast<double>(RobotPaths::kPathPointsMax + 4))
+    EXPECT_EQ(kept->length_m, static_cast<double>(RobotPaths::kShownPathPointsMax + 4))
         << "the length includes the omitted points";
 }
 
 TEST_F(RobotPathsTest, TotalPathPointsPerSessionAreBounded) {
-    constexpr std::size_t kFull = RobotPaths::kPointsMax / RobotPaths::kPathPointsMax;
-    for (RobotIndex robot = 0; robot <= kFull; ++robot) give_goal(robot, RobotPaths::kPathPointsMax);
+    constexpr std::size_t kFull = RobotPaths::kSessionPathPointsMax / RobotPaths::kShownPathPointsMax;
+    for (RobotIndex robot = 0; robot <= kFull; ++robot) give_goal(robot, RobotPaths::kShownPathPointsMax);
     auto now = page();
     ASSERT_EQ(now.robots.size(), kFull + 1) << "absent robots keep their goals until they expire";
-    EXPECT_EQ(now.robots[kFull - 1].path->points.size(), RobotPaths::kPathPointsMax);
+    EXPECT_EQ(now.robots[kFull - 1].path->points.size(), RobotPaths::kShownPathPointsMax);
     EXPECT_EQ(now.robots[kFull].path->points.size(), 2U);
-    EXPECT_EQ(now.robots[kFull].path->points_left_out, RobotPaths::kPathPointsMax - 2);
-    give_goal(0, RobotPaths::kPathPointsMax);
-    EXPECT_EQ(page().robots[0].path->points.size(), RobotPaths::kPathPointsMax - 2)
+    EXPECT_EQ(now.robots[kFull].path->points_left_out, RobotPaths::kShownPathPointsMax - 2);
+    give_goal(0, RobotPaths::kShownPathPointsMax);
+    EXPECT_EQ(page().robots[0].path->points.size(), RobotPaths::kShownPathPointsMax - 2)
         << "its own previous points are released";
 }
 

@@ -52,7 +52,7 @@ protected:
         projection_.emplace(mapping::MapConfig{}).restore(state);
     }
 
-    void expect_whole_paths(Revision since, std::size_t points_max = kPathPointsMax) {
+    void expect_whole_paths(Revision since, std::size_t points_max = kTrajectoryPointsMax) {
         const auto maps = projection_->snapshot();
         std::vector<Path> read(3);
         std::size_t answers = 0;
