@@ -95,7 +95,7 @@ Result<planning::NextGoal> GoalAssignments::next(const std::shared_ptr<const ses
                                                  const planning::ExplorationOptions& options) {
     const double cell_size = maps.config.cell_size;
     const std::lock_guard lock(mutex_);
-    forget_what_counts_no_longer(now);
+    remove_expired(now);
     const mapping::RobotState state = state_of(maps, robot);
     Unobserved unobserved = take_unobserved(session, maps);
     std::optional<Visit> going_on; // the robot is at the goal but has not looked yet
@@ -188,7 +188,7 @@ std::vector<grid::Cell> GoalAssignments::looked_at_often(const Unobserved& unobs
     return cells;
 }
 
-void GoalAssignments::forget_what_counts_no_longer(Clock::time_point now) {
+void GoalAssignments::remove_expired(Clock::time_point now) {
     std::erase_if(unobserved_, [](const Unobserved& one) { return one.session.expired(); });
     std::erase_if(entries_, [&](const Entry& entry) {
         const auto session = entry.session.lock();

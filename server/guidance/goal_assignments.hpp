@@ -108,7 +108,7 @@ private:
         Looks looks;                   // how often robots looked at cells around their targets
     };
 
-    void forget_what_counts_no_longer(Clock::time_point now);
+    void remove_expired(Clock::time_point now);
 
     [[nodiscard]] const Entry* find_entry(const std::shared_ptr<const sessions::Session>& session,
                                           RobotIndex robot) const;

@@ -90,7 +90,7 @@ RobotPaths::Record& RobotPaths::record_of(const SessionPtr& session) {
 RobotPaths::Record* RobotPaths::find(const SessionPtr& session, Clock::time_point now) {
     const auto found = records_.find(session);
     if (found == records_.end()) return nullptr;
-    forget_what_is_over(found->second, *session, now);
+    remove_expired(found->second, *session, now);
     return &found->second;
 }
 
@@ -107,7 +107,7 @@ std::shared_ptr<const HeldPath> RobotPaths::bounded(const Record& record, HeldPa
     return std::make_shared<const HeldPath>(std::move(path));
 }
 
-void RobotPaths::forget_what_is_over(Record& record, const sessions::Session& session, Clock::time_point now) {
+void RobotPaths::remove_expired(Record& record, const sessions::Session& session, Clock::time_point now) {
     if (record.holdings.empty()) return;
     const auto connected = session.connected();
     const auto is_here = [&](RobotIndex robot) { return robot < connected.size() && connected[robot]; };

@@ -112,7 +112,7 @@ private:
     [[nodiscard]] Record& record_of(const SessionPtr& session);
     [[nodiscard]] Record* find(const SessionPtr& session, Clock::time_point now);
     [[nodiscard]] static std::shared_ptr<const HeldPath> bounded(const Record& record, HeldPath path);
-    static void forget_what_is_over(Record& record, const sessions::Session& session, Clock::time_point now);
+    static void remove_expired(Record& record, const sessions::Session& session, Clock::time_point now);
 
     std::mutex mutex_;
     std::map<std::weak_ptr<const sessions::Session>, Record, std::owner_less<>> records_;

@@ -41,31 +41,31 @@ SharedBytes TileCache::get(const TilePlace& place, Revision revision, const std:
         ++stats_.hits;
         return found;
     }
-    const auto under_way = std::ranges::find_if(
-        flights_, [&](const Flight& flight) { return flight.revision == revision && flight.place == place; });
-    if (under_way != flights_.end()) {
+    const auto other = std::ranges::find_if(
+        pending_, [&](const PendingTile& pending) { return pending.revision == revision && pending.place == place; });
+    if (other != pending_.end()) {
         ++stats_.hits;
-        const auto landed = under_way->landed;
+        const auto result = other->result;
         lock.unlock();
-        return landed.get();
+        return result.get();
     }
     ++stats_.misses;
-    const auto flight = flights_.insert(flights_.end(), Flight{place, revision});
+    const auto pending = pending_.insert(pending_.end(), PendingTile{place, revision});
     lock.unlock();
     KeptTile made;
     try {
         made = make();
     } catch (...) {
         lock.lock();
-        flight->promise.set_exception(std::current_exception());
-        flights_.erase(flight);
+        pending->promise.set_exception(std::current_exception());
+        pending_.erase(pending);
         throw;
     }
     lock.lock();
     auto bytes = made.bytes;
-    const bool is_forgotten = flight->is_forgotten;
-    flight->promise.set_value(bytes);
-    flights_.erase(flight);
+    const bool is_forgotten = pending->is_forgotten;
+    pending->promise.set_value(bytes);
+    pending_.erase(pending);
     if (!is_forgotten) keep_locked(place, std::move(made));
     return bytes;
 }
@@ -88,7 +88,7 @@ void TileCache::forget(std::string_view maps) {
         if (is_of(entry->place->maps, maps)) drop(entry);
         entry = next;
     }
-    for (auto& flight : flights_) flight.is_forgotten = flight.is_forgotten || is_of(flight.place.maps, maps);
+    for (auto& pending : pending_) pending.is_forgotten = pending.is_forgotten || is_of(pending.place.maps, maps);
 }
 
 TileCache::Stats TileCache::stats() const {

@@ -87,11 +87,11 @@ private:
     using Entries = std::unordered_map<TilePlace, std::list<Entry>::iterator, PlaceHash>;
 
     /// A tile that is being made.
-    struct Flight {
+    struct PendingTile {
         TilePlace place;
         Revision revision;
         std::promise<SharedBytes> promise{};
-        std::shared_future<SharedBytes> landed = promise.get_future().share();
+        std::shared_future<SharedBytes> result = promise.get_future().share();
         bool is_forgotten = false;
     };
 
@@ -105,7 +105,7 @@ private:
     mutable std::mutex mutex_;
     std::list<Entry> used_; // most recently used first
     Entries entries_;
-    std::list<Flight> flights_;
+    std::list<PendingTile> pending_;
     Stats stats_;
 };
 

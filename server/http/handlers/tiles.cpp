@@ -32,7 +32,7 @@ struct Version {
 
 /// Returns whether the current tile will always be the tile of that version: it has not changed since, and that
 /// revision has been reached.
-bool is_final(const Version& version, std::string_view tag, Revision tile, Revision now) {
+bool is_immutable(const Version& version, std::string_view tag, Revision tile, Revision now) {
     return version.revision && *version.revision >= tile && *version.revision <= now && version.session_tag == tag;
 }
 
@@ -60,7 +60,7 @@ struct WantedTile {
     tiles::TilePlace place;
     Revision revision; ///< of the tile
     std::string etag;
-    std::string_view kept; ///< Cache-Control
+    std::string_view cache_control;
 };
 
 tiles::TilePlace place_of(const TileParameters& asked, const Maps& maps, tiles::TileFormat format) {
@@ -70,7 +70,7 @@ tiles::TilePlace place_of(const TileParameters& asked, const Maps& maps, tiles::
 WantedTile wanted_tile(const TileParameters& asked, Maps maps, tiles::TileFormat format) {
     const Revision revision = tiles::tile_revision(*maps.snapshot, asked.layer, asked.key);
     auto etag = tiles::etag_of(maps.tag, mapping::name_of(asked.layer), asked.key, revision);
-    const bool is_kept = is_final(asked.version, maps.tag, revision, maps.snapshot->revision);
+    const bool is_kept = is_immutable(asked.version, maps.tag, revision, maps.snapshot->revision);
     auto place = place_of(asked, maps, format);
     return WantedTile{std::move(maps), std::move(place), revision, std::move(etag), is_kept ? kImmutable : kRevalidate};
 }
@@ -85,7 +85,7 @@ Response answer_of(const WantedTile& wanted, tiles::SharedBytes bytes) {
     const bool is_png = wanted.place.format == tiles::TileFormat::kPng;
     return ok(is_png ? "image/png" : "application/octet-stream", Body(std::move(bytes)))
         .set("ETag", wanted.etag)
-        .set("Cache-Control", wanted.kept);
+        .set("Cache-Control", wanted.cache_control);
 }
 
 /// Does what takes microseconds and does not wait.
@@ -100,7 +100,7 @@ Result<std::variant<Response, Pool>> find_tile(const Context& context, const Til
     };
     if (!found->snapshot) return {pool_for(*found, place_of(asked, *found, format), kNewest)};
     const WantedTile wanted = wanted_tile(asked, std::move(*found), format);
-    if (is_known(wanted, context)) return {not_modified(wanted.etag, wanted.kept)};
+    if (is_known(wanted, context)) return {not_modified(wanted.etag, wanted.cache_control)};
     if (auto bytes = tiles.find(wanted.place, wanted.revision)) return {answer_of(wanted, std::move(bytes))};
     return {pool_for(wanted.maps, wanted.place, wanted.revision)};
 }
@@ -110,7 +110,7 @@ Result<Response> make_tile(const Context& context, const TileParameters& asked, 
     auto found = find_maps(context);
     if (!found) return found.error();
     const WantedTile wanted = wanted_tile(asked, std::move(*found), format);
-    if (is_known(wanted, context)) return not_modified(wanted.etag, wanted.kept);
+    if (is_known(wanted, context)) return not_modified(wanted.etag, wanted.cache_control);
     return answer_of(wanted, context.services.tiles.make(source_of(wanted.maps), wanted.place, wanted.revision));
 }
 
