@@ -2,18 +2,37 @@
 
 #include "server/http/handlers/handlers.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <utility>
 
+/// Begins the paths of a session.
+#define SESSION "/api/v1/sessions/{session}"
+
 namespace scanloom::http {
+namespace {
+
+/// Returns `names` and the name of every setting of a session.
+template <std::size_t N>
+consteval auto with_settings(const std::string_view (&names)[N]) {
+    constexpr auto kSettings = std::to_array<std::string_view>({
+#define SCANLOOM_SETTING(type, name, ...) #name,
+#include "common/scan/settings.def"
+    });
+    std::array<std::string_view, N + kSettings.size()> all;
+    std::ranges::copy(kSettings, std::ranges::copy(names, all.begin()).out);
+    return all;
+}
+
+} // namespace
 
 std::span<const Route> routes() noexcept {
     using enum Method;
     using enum Access;
     using enum Pool;
     using enum Sessions;
-    // clang-format off
-    // Query parameters. Those of whole maps include every setting of a session.
+    // The query parameters of an operation.
     static constexpr std::string_view kChanges[] = {"layer", "since", "weave"};
     static constexpr std::string_view kDifference[] = {"weave", "with", "layer", "bbox"};
     static constexpr std::string_view kFrontiers[] = {"robot", "size_min", "body_radius", "weave"};
@@ -25,115 +44,62 @@ std::span<const Route> routes() noexcept {
     static constexpr std::string_view kRobot[] = {"robot"};
     static constexpr std::string_view kTile[] = {"v", "id", "weave"};
     static constexpr std::string_view kTrajectory[] = {"since", "times"};
-    static constexpr std::string_view kMapFile[] = {"layer", "bbox", "weave", "until",
-#define SCANLOOM_SETTING(type, name, ...) #name,
-#include "common/scan/settings.def"
-    };
-    static constexpr std::string_view kDigest[] = {"layer", "weave", "until",
-#define SCANLOOM_SETTING(type, name, ...) #name,
-#include "common/scan/settings.def"
-    };
+    static constexpr auto kMapFile = with_settings({"layer", "bbox", "weave", "until"});
+    static constexpr auto kDigest = with_settings({"layer", "weave", "until"});
     static constexpr auto kRoutes = std::to_array<Route>({
-        // method  path, name
-        // access   pool         sessions parameters, handler
-        {kGet,     "/", "viewer",
-         kOpen,   kIo,         kUnused, kAnyParameters, get_viewer},
-        {kGet,     "/assets/{file}", "viewerAsset",
-         kOpen,   kIo,         kUnused, {}, get_viewer_asset},
-        {kGet,     "/livez", "livez",
-         kOpen,   kIo,         kUnused, {}, get_livez},
-        {kGet,     "/readyz", "readyz",
-         kOpen,   kIo,         kUnused, {}, get_readyz},
-        {kGet,     "/metrics", "metrics",
-         kServer, kMetrics,    kUnused, {}, get_metrics},
-        {kGet,     "/openapi.json", "openapi",
-         kOpen,   kIo,         kUnused, {}, get_openapi},
-        {kGet,     "/api/v1/login", "getLogin",
-         kOpen,   kIo,         kUnused, {}, get_login},
-        {kPost,    "/api/v1/login", "login",
-         kOpen,   kIo,         kUnused, {}, post_login},
-        {kDelete,  "/api/v1/login", "logout",
-         kOpen,   kIo,         kUnused, {}, delete_login},
-        {kGet,     "/api/v1/backups", "listBackups",
-         kBackup, kQueries,    kUnused, {}, list_backups},
-        {kPost,    "/api/v1/backups", "makeBackup",
-         kBackup, kStore,      kUnused, {}, make_backup},
-        {kGet,     "/api/v1/sessions", "listSessions",
-         kList,   kQueries,    kListed, kPage, list_sessions},
-        {kPost,    "/api/v1/sessions", "createSession",
-         kCreate, kStore,      kListed, {}, create_session},
-        {kGet,     "/api/v1/sessions/{session}", "getSession",
-         kRead,   kQueries,    kListed, {}, get_session},
-        {kDelete,  "/api/v1/sessions/{session}", "deleteSession",
-         kChange, kStore,      kListed, {}, delete_session},
-        {kPostForm,"/api/v1/sessions/{session}/import", "importMap",
-         kChange, kImport,     kListed, {}, import_map},
-        {kPost,    "/api/v1/sessions/{session}/exclude", "excludeScans",
-         kChange, kStore,      kListed, {}, exclude_scans},
-        {kGet,     "/api/v1/sessions/{session}/exclusions", "listExclusions",
-         kRead,   kQueries,    kListed, {}, list_exclusions},
-        {kDelete,  "/api/v1/sessions/{session}/exclusions/{exclusion}", "liftExclusion",
-         kChange, kStore,      kListed, {}, lift_exclusion},
-        {kGet,     "/api/v1/sessions/{session}/tiles/{layer}/{z}/{x}/{y}.png", "tilePng",
-         kRead,   kIo,         kLoaded, kTile, get_tile_png},
-        {kGet,     "/api/v1/sessions/{session}/tiles/{layer}/{z}/{x}/{y}.bin", "tileBin",
-         kRead,   kIo,         kLoaded, kTile, get_tile_bin},
-        {kGet,     "/api/v1/sessions/{session}/tiles/{layer}.json", "tileJson",
-         kRead,   kQueries,    kLoaded, kJob, get_tilejson},
-        {kGet,     "/api/v1/sessions/{session}/changes", "changes",
-         kRead,   kQueries,    kLoaded, kChanges, get_changes},
-        {kGet,     "/api/v1/sessions/{session}/map.png", "mapPng",
-         kRead,   kWholeMaps,  kLoaded, kMapFile, get_map_png},
-        {kGet,     "/api/v1/sessions/{session}/map.pgm", "mapPgm",
-         kRead,   kWholeMaps,  kLoaded, kMapFile, get_map_pgm},
-        {kGet,     "/api/v1/sessions/{session}/map.yaml", "mapYaml",
-         kRead,   kQueries,    kLoaded, kMapFile, get_map_yaml},
-        {kGet,     "/api/v1/sessions/{session}/map.csv", "mapCsv",
-         kRead,   kWholeMaps,  kLoaded, kMapFile, get_map_csv},
-        {kGet,     "/api/v1/sessions/{session}/map.npy", "mapNpy",
-         kRead,   kWholeMaps,  kLoaded, kMapFile, get_map_npy},
-        {kGet,     "/api/v1/sessions/{session}/digest", "digest",
-         kRead,   kWholeMaps,  kLoaded, kDigest, get_digest},
-        {kGet,     "/api/v1/sessions/{session}/difference", "difference",
-         kRead,   kWholeMaps,  kLoaded, kDifference, get_difference},
-        {kGet,     "/api/v1/sessions/{session}/difference.png", "differencePng",
-         kRead,   kWholeMaps,  kLoaded, kDifference, get_difference_png},
-        {kGet,     "/api/v1/sessions/{session}/trajectory.geojson", "trajectory",
-         kRead,   kLogReading, kLoaded, kTrajectory, get_trajectory},
-        {kGet,     "/api/v1/sessions/{session}/landmarks.geojson", "landmarks",
-         kRead,   kLogReading, kLoaded, kLandmarks, get_landmarks},
-        {kGet,     "/api/v1/sessions/{session}/points.csv", "pointsCsv",
-         kRead,   kLogReading, kLoaded, kPoints, get_points_csv},
-        {kGet,     "/api/v1/sessions/{session}/points.ply", "pointsPly",
-         kRead,   kLogReading, kLoaded, kPoints, get_points_ply},
-        {kGet,     "/api/v1/sessions/{session}/frontiers.geojson", "frontiers",
-         kRead,   kPlanning,   kLoaded, kFrontiers, get_frontiers},
-        {kPost,    "/api/v1/sessions/{session}/plan", "plan",
-         kRead,   kPlanning,   kLoaded, kJob, post_plan},
-        {kPost,    "/api/v1/sessions/{session}/coverage", "coverage",
-         kRead,   kPlanning,   kLoaded, kJob, post_coverage},
-        {kGet,     "/api/v1/sessions/{session}/goal", "goal",
-         kRead,   kQueries,    kLoaded, kRobot, get_goal},
-        {kPost,    "/api/v1/sessions/{session}/goal", "assignGoal",
-         kGuide,  kPlanning,   kLoaded, kJob, assign_goal},
-        {kGet,     "/api/v1/sessions/{session}/goals.geojson", "goals",
-         kRead,   kQueries,    kLoaded, {}, get_goals},
-        {kGet,     "/api/v1/sessions/{session}/weave", "listWeaves",
-         kRead,   kQueries,    kLoaded, {}, list_weaves},
-        {kPost,    "/api/v1/sessions/{session}/weave", "startWeave",
-         kRead,   kQueries,    kLoaded, {}, start_weave},
-        {kGet,     "/api/v1/sessions/{session}/weave/{weave}", "getWeave",
-         kRead,   kQueries,    kLoaded, {}, get_weave},
-        {kDelete,  "/api/v1/sessions/{session}/weave/{weave}", "deleteWeave",
-         kChange, kQueries,    kLoaded, {}, delete_weave},
-        {kGet,     "/api/v1/sessions/{session}/log", "getLog",
-         kRead,   kLogExport,  kLoaded, kLog, get_log},
-        {kGet,     "/api/v1/sessions/{session}/live", "live",
-         kRead,   kQueries,    kLoaded, {}, get_live},
+        // method, path, name, permission, pool, sessions, parameters, handler
+        {kGet, "/", "viewer", kOpen, kIo, kUnused, kAnyParameters, get_viewer},
+        {kGet, "/assets/{file}", "viewerAsset", kOpen, kIo, kUnused, {}, get_viewer_asset},
+        {kGet, "/livez", "livez", kOpen, kIo, kUnused, {}, get_livez},
+        {kGet, "/readyz", "readyz", kOpen, kIo, kUnused, {}, get_readyz},
+        {kGet, "/metrics", "metrics", kServer, kMetrics, kUnused, {}, get_metrics},
+        {kGet, "/openapi.json", "openapi", kOpen, kIo, kUnused, {}, get_openapi},
+        {kGet, "/api/v1/login", "getLogin", kOpen, kIo, kUnused, {}, get_login},
+        {kPost, "/api/v1/login", "login", kOpen, kIo, kUnused, {}, post_login},
+        {kDelete, "/api/v1/login", "logout", kOpen, kIo, kUnused, {}, delete_login},
+        {kGet, "/api/v1/backups", "listBackups", kBackup, kQueries, kUnused, {}, list_backups},
+        {kPost, "/api/v1/backups", "makeBackup", kBackup, kStore, kUnused, {}, make_backup},
+        {kGet, "/api/v1/sessions", "listSessions", kList, kQueries, kListed, kPage, list_sessions},
+        {kPost, "/api/v1/sessions", "createSession", kCreate, kStore, kListed, {}, create_session},
+        {kGet, SESSION, "getSession", kRead, kQueries, kListed, {}, get_session},
+        {kDelete, SESSION, "deleteSession", kChange, kStore, kListed, {}, delete_session},
+        {kPostForm, SESSION "/import", "importMap", kChange, kImport, kListed, {}, import_map},
+        {kPost, SESSION "/exclude", "excludeScans", kChange, kStore, kListed, {}, exclude_scans},
+        {kGet, SESSION "/exclusions", "listExclusions", kRead, kQueries, kListed, {}, list_exclusions},
+        {kDelete, SESSION "/exclusions/{exclusion}", "liftExclusion", kChange, kStore, kListed, {}, lift_exclusion},
+        {kGet, SESSION "/tiles/{layer}/{z}/{x}/{y}.png", "tilePng", kRead, kIo, kLoaded, kTile, get_tile_png},
+        {kGet, SESSION "/tiles/{layer}/{z}/{x}/{y}.bin", "tileBin", kRead, kIo, kLoaded, kTile, get_tile_bin},
+        {kGet, SESSION "/tiles/{layer}.json", "tileJson", kRead, kQueries, kLoaded, kJob, get_tilejson},
+        {kGet, SESSION "/changes", "changes", kRead, kQueries, kLoaded, kChanges, get_changes},
+        {kGet, SESSION "/map.png", "mapPng", kRead, kWholeMaps, kLoaded, kMapFile, get_map_png},
+        {kGet, SESSION "/map.pgm", "mapPgm", kRead, kWholeMaps, kLoaded, kMapFile, get_map_pgm},
+        {kGet, SESSION "/map.yaml", "mapYaml", kRead, kQueries, kLoaded, kMapFile, get_map_yaml},
+        {kGet, SESSION "/map.csv", "mapCsv", kRead, kWholeMaps, kLoaded, kMapFile, get_map_csv},
+        {kGet, SESSION "/map.npy", "mapNpy", kRead, kWholeMaps, kLoaded, kMapFile, get_map_npy},
+        {kGet, SESSION "/digest", "digest", kRead, kWholeMaps, kLoaded, kDigest, get_digest},
+        {kGet, SESSION "/difference", "difference", kRead, kWholeMaps, kLoaded, kDifference, get_difference},
+        {kGet, SESSION "/difference.png", "differencePng", kRead, kWholeMaps, kLoaded, kDifference, get_difference_png},
+        {kGet, SESSION "/trajectory.geojson", "trajectory", kRead, kLogReading, kLoaded, kTrajectory, get_trajectory},
+        {kGet, SESSION "/landmarks.geojson", "landmarks", kRead, kLogReading, kLoaded, kLandmarks, get_landmarks},
+        {kGet, SESSION "/points.csv", "pointsCsv", kRead, kLogReading, kLoaded, kPoints, get_points_csv},
+        {kGet, SESSION "/points.ply", "pointsPly", kRead, kLogReading, kLoaded, kPoints, get_points_ply},
+        {kGet, SESSION "/frontiers.geojson", "frontiers", kRead, kPlanning, kLoaded, kFrontiers, get_frontiers},
+        {kPost, SESSION "/plan", "plan", kRead, kPlanning, kLoaded, kJob, post_plan},
+        {kPost, SESSION "/coverage", "coverage", kRead, kPlanning, kLoaded, kJob, post_coverage},
+        {kGet, SESSION "/goal", "goal", kRead, kQueries, kLoaded, kRobot, get_goal},
+        {kPost, SESSION "/goal", "assignGoal", kGuide, kPlanning, kLoaded, kJob, assign_goal},
+        {kGet, SESSION "/goals.geojson", "goals", kRead, kQueries, kLoaded, {}, get_goals},
+        {kGet, SESSION "/weave", "listWeaves", kRead, kQueries, kLoaded, {}, list_weaves},
+        {kPost, SESSION "/weave", "startWeave", kRead, kQueries, kLoaded, {}, start_weave},
+        {kGet, SESSION "/weave/{weave}", "getWeave", kRead, kQueries, kLoaded, {}, get_weave},
+        {kDelete, SESSION "/weave/{weave}", "deleteWeave", kChange, kQueries, kLoaded, {}, delete_weave},
+        {kGet, SESSION "/log", "getLog", kRead, kLogExport, kLoaded, kLog, get_log},
+        {kGet, SESSION "/live", "live", kRead, kQueries, kLoaded, {}, get_live},
     });
-    // clang-format on
     return kRoutes;
 }
+
+#undef SESSION
 
 std::string_view name_of(Method method) noexcept {
     switch (method) {
