@@ -34,6 +34,7 @@ Result<Response> get_live(Context& context) {
     if (!is_websocket_key(upgrade->key)) {
         return Error{Errc::kInvalidField, "Sec-WebSocket-Key is not 16 bytes in base64; send a new one each time"};
     }
+    // Browsers let any page open a WebSocket and read it.
     if (!upgrade->origin.empty() && !is_own_page(upgrade->origin, context.request.host, context.request.is_secure)) {
         context.services.authorizer.note({auth::Port::kHttp, auth::Reason::kForeignPage, context.request.peer,
                                           context.token->name, (*session)->info().name});
