@@ -153,15 +153,15 @@ Result<> Server::listen(http::WebFiles web) {
     config.proxies = options_.http_proxies;
     config.tls = http_tls_;
     config.connections_max = limits_.http;
-    http_pools_.emplace(http::Executors{.metrics = pools_.metrics,
-                                        .queries = pools_.queries,
-                                        .whole_maps = pools_.whole_maps,
-                                        .log_reading = pools_.log_reading,
-                                        .log_export = pools_.log_export,
-                                        .planning = pools_.planning,
-                                        .store = pools_.changes,
-                                        .live = pools_.live},
-                        config);
+    http_work_.emplace(http::Executors{.metrics = pools_.metrics,
+                                       .queries = pools_.queries,
+                                       .whole_maps = pools_.whole_maps,
+                                       .log_reading = pools_.log_reading,
+                                       .log_export = pools_.log_export,
+                                       .planning = pools_.planning,
+                                       .store = pools_.changes,
+                                       .live = pools_.live},
+                       config);
     services_.reset(new http::Services{.sessions = sessions_,
                                        .weaves = replay_jobs_,
                                        .goals = goals_,
@@ -170,7 +170,7 @@ Result<> Server::listen(http::WebFiles web) {
                                        .check = check_,
                                        .metrics = metrics_,
                                        .authorizer = {authenticator_, audit_, logins_},
-                                       .pools = *http_pools_,
+                                       .work_classes = *http_work_,
                                        .web = std::move(web),
                                        .robots = {address.is_unspecified() ? "" : address.to_string(), ingest_->port()},
                                        .backups = backups_.get(),

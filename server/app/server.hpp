@@ -78,7 +78,7 @@ private:
     guidance::GoalAssignments goals_;
     guidance::Locator locator_;
     ingest::RequestExecutor requests_;
-    std::optional<http::Pools> http_pools_;
+    std::optional<http::WorkClasses> http_work_;
     std::unique_ptr<http::Services> services_; // of api_
     std::optional<http::Api> api_;
     std::shared_ptr<sockets::PortTls> robot_tls_; // null: the port does not use TLS; so for http_tls_

@@ -69,13 +69,13 @@ asio::awaitable<Result<SessionRef>> load_session(sessions::SessionRegistry& sess
 
 } // namespace
 
-asio::awaitable<void> Context::run_on(Pool next) {
-    if (next == pool) co_return;
-    pool = next;
-    if (next == Pool::kIo) {
+asio::awaitable<void> Context::run_on(WorkClass next) {
+    if (next == work) co_return;
+    work = next;
+    if (next == WorkClass::kIo) {
         co_await asio::post(asio::use_awaitable);
     } else {
-        co_await asio::post(asio::bind_executor(services.pools.executor_of(next), asio::use_awaitable));
+        co_await asio::post(asio::bind_executor(services.work_classes.executor_of(next), asio::use_awaitable));
     }
 }
 
@@ -106,9 +106,9 @@ std::variant<Api::Admitted, Response> Api::admit(const Request& head, Routed rou
     if (auto accepted = check_content_type(route.method, head); !accepted) {
         return problem(Status::unsupported_media_type, accepted.error().message, path);
     }
-    Pools::Permit permit;
+    WorkClasses::Permit permit;
     if (route.method == Method::kPostForm) {
-        auto taken = services_.pools.enter(route.pool);
+        auto taken = services_.work_classes.enter(route.work);
         if (!taken) return problem(taken.error(), path);
         permit = std::move(*taken);
     }
@@ -125,7 +125,7 @@ asio::awaitable<Response> Api::answer(Admitted admitted, const Request& request)
             response = problem(made.error(), instance_of(request.target));
         } else {
             response = for_client(match.route.access, std::move(*made));
-            const bool can_encode = context.pool != Pool::kIo || response->gzip; // compressing takes milliseconds
+            const bool can_encode = context.work != WorkClass::kIo || response->gzip; // compressing takes milliseconds
             if (can_encode) response = encoded_for(request.accept_encoding, std::move(*response));
         }
     } catch (const std::exception& failure) { // costs one response
@@ -133,11 +133,11 @@ asio::awaitable<Response> Api::answer(Admitted admitted, const Request& request)
         response = problem(Error{Errc::kInternal, "the server failed to answer; its log says why"},
                            instance_of(request.target));
     }
-    co_await context.run_on(Pool::kIo);
+    co_await context.run_on(WorkClass::kIo);
     co_return std::move(*response);
 }
 
-asio::awaitable<Result<Response>> Api::call(const Route& route, Context& context, Pools::Permit& permit) const {
+asio::awaitable<Result<Response>> Api::call(const Route& route, Context& context, WorkClasses::Permit& permit) const {
     if (route.sessions != Sessions::kUnused && !services_.recovered) {
         co_return Error{Errc::kOverloaded, "the sessions are still being recovered from the store; try again soon"};
     }
@@ -145,11 +145,11 @@ asio::awaitable<Result<Response>> Api::call(const Route& route, Context& context
         context.session = co_await load_session(services_.sessions, context.arguments["session"]);
     }
     if (!permit) {
-        auto taken = services_.pools.enter(route.pool);
+        auto taken = services_.work_classes.enter(route.work);
         if (!taken) co_return taken.error();
         permit = std::move(*taken);
     }
-    co_await context.run_on(route.pool);
+    co_await context.run_on(route.work);
     if (auto known = check_parameters(route, context.query); !known) co_return known.error();
     co_return co_await route.handler(context);
 }

@@ -2,11 +2,11 @@
 
 #include "server/auth/token.hpp"
 #include "server/http/context.hpp"
-#include "server/http/pools.hpp"
 #include "server/http/request.hpp"
 #include "server/http/response.hpp"
 #include "server/http/routes.hpp"
 #include "server/http/target.hpp"
+#include "server/http/work_classes.hpp"
 
 #include <boost/asio/awaitable.hpp>
 
@@ -18,8 +18,8 @@ namespace scanloom::http {
 /// Finds the route of a request, checks its permission and has its handler compute the response.
 ///
 /// A failure becomes a response, too, with application/problem+json.
-/// Bounds: the limits of Pools; large responses take a permit, such as map images of up to 64 MB; cached tiles take at
-///     most Services::tile_bytes_max.
+/// Bounds: the limits of WorkClasses; large responses take a permit, such as map images of up to 64 MB; cached tiles
+///     take at most Services::tile_bytes_max.
 /// Threads: any thread.
 class Api {
 public:
@@ -37,7 +37,7 @@ public:
     struct Admitted {
         Routed routed;
         auth::TokenRef token;
-        Pools::Permit permit; ///< of its pool; null: not taken yet, or the pool has no limit
+        WorkClasses::Permit permit; ///< of its work; null: not taken yet, or there is no limit
     };
 
     /// Finds the route.
@@ -45,7 +45,7 @@ public:
     /// @return the route, or the refusal
     [[nodiscard]] std::variant<Routed, Response> route(const Request& head) const;
 
-    /// Checks the permission and the Content-Type. For a large body, also takes a permit of the pool.
+    /// Checks the permission and the Content-Type. For a large body, also takes a permit of its work.
     [[nodiscard]] std::variant<Admitted, Response> admit(const Request& head, Routed routed) const;
 
     /// Computes the response. The session that the route needs is loaded first; no thread waits for that.
@@ -56,7 +56,7 @@ public:
 
 private:
     [[nodiscard]] boost::asio::awaitable<Result<Response>> call(const Route& route, Context& context,
-                                                                Pools::Permit& permit) const;
+                                                                WorkClasses::Permit& permit) const;
     [[nodiscard]] Response for_client(Access access, Response response) const;
 
     Services& services_;

@@ -255,7 +255,7 @@ asio::awaitable<void> Connection::show(const live::ViewedSession& viewed, const 
         co_return;
     }
     service_->counters.answered(static_cast<unsigned>(Status::switching_protocols)).Increment();
-    const auto& executors = service_->api.services().pools.executors();
+    const auto& executors = service_->api.services().work_classes.executors();
     viewer_ = std::make_shared<live::Viewer>(
         std::move(stream_), viewed, std::move(permit),
         live::Viewer::Services{service_->config.live, executors.live, executors.log_reading, service_->counters.live});

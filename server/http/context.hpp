@@ -5,11 +5,11 @@
 #include "server/guidance/goal_assignments.hpp"
 #include "server/guidance/locator.hpp"
 #include "server/http/authorizer.hpp"
-#include "server/http/pools.hpp"
 #include "server/http/request.hpp"
 #include "server/http/response_limit.hpp"
 #include "server/http/target.hpp"
 #include "server/http/web_files.hpp"
+#include "server/http/work_classes.hpp"
 #include "server/live/landmark_hub.hpp"
 #include "server/metrics/metrics.hpp"
 #include "server/sessions/background_check.hpp"
@@ -48,7 +48,7 @@ struct Services {
     const sessions::BackgroundCheck& check;
     const metrics::Metrics& metrics;
     Authorizer authorizer;
-    const Pools& pools;
+    const WorkClasses& work_classes;
     WebFiles web = {};                                        ///< of the viewer
     RobotPort robots = {};                                    ///< for /readyz
     store::Backups* backups = nullptr;                        ///< null: this server keeps no backups
@@ -73,10 +73,10 @@ struct Context {
     /// The session in the path, or why it cannot be served. Only if the route has Sessions::kLoaded.
     Result<std::shared_ptr<sessions::Session>> session = Error{Errc::kInternal, "this route loads no session"};
 
-    Pool pool = Pool::kIo; ///< where the handler runs
+    WorkClass work = WorkClass::kIo; ///< decides where the handler runs now
 
-    /// Continues on a thread of `next`. Pool::kIo is the executor of the connection.
-    [[nodiscard]] boost::asio::awaitable<void> run_on(Pool next);
+    /// Continues on the executor of `next`; for WorkClass::kIo on that of the connection.
+    [[nodiscard]] boost::asio::awaitable<void> run_on(WorkClass next);
 };
 
 } // namespace scanloom::http

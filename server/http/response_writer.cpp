@@ -58,7 +58,7 @@ asio::awaitable<void> ResponseWriter::write_without_tls(const Response& response
 asio::awaitable<bool> ResponseWriter::write_stream(BodyStream& body, Framing framing) {
     for (;;) {
         const Result<std::string> piece = co_await sockets::compute_on(
-            service_.api.services().pools.executors().log_export, [&body] { return next_guarded(body); });
+            service_.api.services().work_classes.executors().log_export, [&body] { return next_guarded(body); });
         if (!piece) {
             spdlog::error("an answer broke off: {}", piece.error().message);
             co_return false;

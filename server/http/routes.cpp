@@ -30,7 +30,7 @@ consteval auto with_settings(const std::string_view (&names)[N]) {
 std::span<const Route> routes() noexcept {
     using enum Method;
     using enum Access;
-    using enum Pool;
+    using enum WorkClass;
     using enum Sessions;
     // The query parameters of an operation.
     static constexpr std::string_view kChanges[] = {"layer", "since", "weave"};
@@ -47,7 +47,7 @@ std::span<const Route> routes() noexcept {
     static constexpr auto kMapFile = with_settings({"layer", "bbox", "weave", "until"});
     static constexpr auto kDigest = with_settings({"layer", "weave", "until"});
     static constexpr auto kRoutes = std::to_array<Route>({
-        // method, path, name, permission, pool, sessions, parameters, handler
+        // method, path, name, permission, work, sessions, parameters, handler
         {kGet, "/", "viewer", kOpen, kIo, kUnused, kAnyParameters, get_viewer},
         {kGet, "/assets/{file}", "viewerAsset", kOpen, kIo, kUnused, {}, get_viewer_asset},
         {kGet, "/livez", "livez", kOpen, kIo, kUnused, {}, get_livez},

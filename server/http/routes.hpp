@@ -1,9 +1,9 @@
 #pragma once
 
 #include "common/error/error.hpp"
-#include "server/http/pools.hpp"
 #include "server/http/response.hpp"
 #include "server/http/target.hpp"
+#include "server/http/work_classes.hpp"
 
 #include <boost/asio/awaitable.hpp>
 
@@ -57,7 +57,7 @@ enum class Sessions {
 /// The parameters of a route that ignores those which the server does not know: the viewer's page reads its own.
 inline constexpr std::array<std::string_view, 1> kAnyParameters = {"*"};
 
-/// Computes the response to a request. A handler that waits, or continues on another pool, is a coroutine.
+/// Computes the response to a request. A handler that waits, or continues on another executor, is a coroutine.
 class Handler {
 public:
     using Function = Result<Response> (*)(Context&);
@@ -79,7 +79,7 @@ struct Route {
     std::string_view path; ///< a pattern, see match_path()
     std::string_view name; ///< operationId in the OpenAPI description; its texts are in openapi.yaml
     Access access;
-    Pool pool; ///< on which the handler starts
+    WorkClass work; ///< decides where the handler starts, and how many requests may run
     Sessions sessions;
     std::span<const std::string_view> parameters; ///< of the query; others are refused, unless it is kAnyParameters
     Handler handler;

@@ -29,7 +29,7 @@ namespace scanloom::http {
 ///         that waits for the executors. To accept one more, the server closes the connection whose peer is furthest
 ///         behind (Connection::behind()); if every peer waits for the server, the new one receives 503. At most
 ///         config.connections_per_peer_max of one address, except loopback and config.proxies.
-///         The limits of Pools answer one more request with 503.
+///         The limits of WorkClasses answer one more request with 503.
 ///         Live viewers: at most config.live.viewers_max of the connections.
 /// Threads: any.
 class Server : public std::enable_shared_from_this<Server> {

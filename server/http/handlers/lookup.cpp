@@ -95,13 +95,13 @@ Result<Maps> chosen(const Context& context, std::string_view parameter, Waiting 
 
 /// Suspends the coroutine until the job has maps of `target` or has ended, at most for Services::replay_timeout.
 boost::asio::awaitable<void> wait_for(Context& context, sessions::ReplayJob& weave, Revision target) {
-    const Pool pool = context.pool;
-    co_await context.run_on(Pool::kIo); // one thread at a time uses the timer
+    const WorkClass work = context.work;
+    co_await context.run_on(WorkClass::kIo); // one thread at a time uses the timer
     const auto executor = co_await boost::asio::this_coro::executor;
     const auto timer = std::make_shared<boost::asio::steady_timer>(executor, context.services.replay_timeout);
     weave.notify(target, [timer, executor] { boost::asio::post(executor, [timer] { timer->cancel(); }); });
     co_await timer->async_wait(kAwaitTuple);
-    co_await context.run_on(pool);
+    co_await context.run_on(work);
 }
 
 boost::asio::awaitable<Result<Maps>> replayed(Context& context) {
@@ -109,7 +109,7 @@ boost::asio::awaitable<Result<Maps>> replayed(Context& context) {
     if (!session) co_return session.error();
     const auto request = weave_request(**session, context.query);
     if (!request) co_return request.error();
-    const auto permit = context.services.pools.wait_for_replay();
+    const auto permit = context.services.work_classes.wait_for_replay();
     if (!permit) co_return permit.error();
     const Revision newest = (*session)->snapshot()->revision;
     auto& weaves = context.services.weaves;

@@ -67,8 +67,8 @@ enum class Waiting { kAllowed, kNotAllowed };
 [[nodiscard]] Result<Maps> find_maps(const Context& context, Waiting waiting = Waiting::kAllowed);
 
 /// Returns what find_maps() returns if no settings are given. Otherwise starts a replay job with the settings, waits
-/// until it has reached the session's current revision, and continues on the same pool.
-/// Errors: those of find_maps(), weave_request() and Pools::wait_for_replay().
+/// until it has reached the session's current revision, and continues on the same executor.
+/// Errors: those of find_maps(), weave_request() and WorkClasses::wait_for_replay().
 [[nodiscard]] boost::asio::awaitable<Result<Maps>> find_maps_or_replay(Context& context);
 
 /// Returns two maps to compare, those of the parameters `weave` and `with`. At least one of them must name a replay

@@ -89,20 +89,20 @@ Response answer_of(const WantedTile& wanted, tiles::SharedBytes bytes) {
 }
 
 /// Does what takes microseconds and does not wait.
-/// @return a refusal, "not modified", or a tile that exists; else the pool that makes the tile
-Result<std::variant<Response, Pool>> find_tile(const Context& context, const TileParameters& asked,
-                                               tiles::TileFormat format) {
+/// @return a refusal, "not modified", or a tile that exists; else the class of the work that makes the tile
+Result<std::variant<Response, WorkClass>> find_tile(const Context& context, const TileParameters& asked,
+                                                    tiles::TileFormat format) {
     auto found = find_maps(context, Waiting::kNotAllowed);
     if (!found) return found.error();
     auto& tiles = context.services.tiles;
-    const auto pool_for = [&](const Maps& maps, const tiles::TilePlace& place, Revision revision) {
-        return tiles.is_quick(maps.origin, place, revision) ? Pool::kQueries : Pool::kWholeMaps;
+    const auto work_for = [&](const Maps& maps, const tiles::TilePlace& place, Revision revision) {
+        return tiles.is_quick(maps.origin, place, revision) ? WorkClass::kQueries : WorkClass::kWholeMaps;
     };
-    if (!found->snapshot) return {pool_for(*found, place_of(asked, *found, format), kNewest)};
+    if (!found->snapshot) return {work_for(*found, place_of(asked, *found, format), kNewest)};
     const WantedTile wanted = wanted_tile(asked, std::move(*found), format);
     if (is_known(wanted, context)) return {not_modified(wanted.etag, wanted.cache_control)};
     if (auto bytes = tiles.find(wanted.place, wanted.revision)) return {answer_of(wanted, std::move(bytes))};
-    return {pool_for(wanted.maps, wanted.place, wanted.revision)};
+    return {work_for(wanted.maps, wanted.place, wanted.revision)};
 }
 
 /// Makes the tile from the newest maps, as others may have made it since find_tile().
@@ -120,7 +120,7 @@ boost::asio::awaitable<Result<Response>> get_tile(Context& context, tiles::TileF
     auto found = find_tile(context, *asked, format);
     if (!found) co_return found.error();
     if (auto* response = std::get_if<Response>(&*found)) co_return std::move(*response);
-    co_await context.run_on(std::get<Pool>(*found));
+    co_await context.run_on(std::get<WorkClass>(*found));
     co_return make_tile(context, *asked, format);
 }
 

@@ -255,7 +255,7 @@ TEST_F(ApiAccessTest, TilesAreNotCachedByProxies) {
     const std::string kept = "private, max-age=31536000, immutable";
     EXPECT_EQ(ask_as("viewer-all", "GET", tile).get("Cache-Control"), kept);
     const auto at_once = api_.ask(request("GET", tile, "viewer-all"));
-    EXPECT_TRUE(at_once.pools.empty());
+    EXPECT_TRUE(at_once.work.empty());
     EXPECT_EQ(at_once.response->get("Cache-Control"), kept);
 }
 

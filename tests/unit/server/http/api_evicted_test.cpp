@@ -70,7 +70,7 @@ TEST_F(ApiEvictedSessionsTest, LoadWithoutBlockingIoThreads) {
     }
     EXPECT_EQ(waiting.front()->asked.response->body.bytes(), tile_.body.bytes());
     EXPECT_EQ(waiting.at(1)->asked.response->status, Status::ok);
-    EXPECT_TRUE(api_.ask(request_for(kTile)).pools.empty());
+    EXPECT_TRUE(api_.ask(request_for(kTile)).work.empty());
     const auto again = get(kTile);
     EXPECT_EQ(again.get("ETag"), tile_.get("ETag"));
     EXPECT_EQ(again.body.bytes(), tile_.body.bytes());

@@ -22,11 +22,11 @@ protected:
     /// Returns the response if an I/O thread computed it.
     std::optional<Response> at_once(std::string target, std::string if_none_match = "") {
         auto asked = api_.ask({.target = std::move(target), .if_none_match = std::move(if_none_match)});
-        return asked.pools.empty() ? std::move(asked.response) : std::nullopt;
+        return asked.work.empty() ? std::move(asked.response) : std::nullopt;
     }
 
-    /// Returns the pools that a tile uses.
-    std::vector<Pool> pools(std::string target) { return api_.ask({.target = std::move(target)}).pools; }
+    /// Returns the classes of work that a tile needs.
+    std::vector<WorkClass> work(std::string target) { return api_.ask({.target = std::move(target)}).work; }
 
     double counted(const std::string& name) {
         const std::string text(get("/metrics").body.bytes());
@@ -60,10 +60,10 @@ TEST_F(KeptTilesTest, CurrentEmptyAndInvalidTilesAreAnsweredWithoutRendering) {
 TEST_F(KeptTilesTest, OnlyTheFirstRenderingOfAWholeMapIsASurvey) {
     create("a");
     stream("a", 1);
-    EXPECT_THAT(pools(kNative), testing::ElementsAre(Pool::kQueries));
-    EXPECT_THAT(pools(kWhole), testing::ElementsAre(Pool::kWholeMaps));
+    EXPECT_THAT(work(kNative), testing::ElementsAre(WorkClass::kQueries));
+    EXPECT_THAT(work(kWhole), testing::ElementsAre(WorkClass::kWholeMaps));
     stream("a", 2, 2);
-    EXPECT_THAT(pools(kWhole), testing::ElementsAre(Pool::kQueries));
+    EXPECT_THAT(work(kWhole), testing::ElementsAre(WorkClass::kQueries));
 }
 
 TEST_F(KeptTilesTest, HitsMissesAndBytesAreCounted) {
@@ -97,7 +97,7 @@ TEST_F(KeptTilesTest, CacheIsNotUsedBeforeRecoveryEnds) {
     TestApi fresh(registry_, weaves_, goals_, log_, metrics_, {authenticator_, audit_, logins_}, {});
     const auto asked = fresh.ask({.target = kNative});
     EXPECT_EQ(asked.response->status, Status::service_unavailable);
-    EXPECT_TRUE(asked.pools.empty());
+    EXPECT_TRUE(asked.work.empty());
 }
 
 /// The sanitizers check the threads for races; this test checks that every response is a possible one.

@@ -273,10 +273,10 @@ TEST_F(ApiHeldWeavesTest, WaitingRequestsAreBoundedAndBlockNoThread) {
     api.set_recovered();
     const auto first = api.start({.target = "/api/v1/sessions/a/digest?cell_size=0.1"});
     while (held_.under_way() == 0) api.poll(*first);
-    EXPECT_THAT(first->asked.pools, testing::ElementsAre(Pool::kWholeMaps));
+    EXPECT_THAT(first->asked.work, testing::ElementsAre(WorkClass::kWholeMaps));
     const auto refused = api.answer({.target = "/api/v1/sessions/a/map.png?cell_size=0.2"});
     EXPECT_THAT(detail(refused, Status::service_unavailable), HasSubstr("too many requests are waiting for maps"));
-    EXPECT_EQ(api.answer({.target = "/api/v1/sessions/a/digest"}).status, Status::ok) << "on the same pool";
+    EXPECT_EQ(api.answer({.target = "/api/v1/sessions/a/digest"}).status, Status::ok) << "on the same thread";
     EXPECT_FALSE(first->done);
     let_go();
     while (!first->done) api.poll(*first);

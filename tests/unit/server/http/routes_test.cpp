@@ -18,8 +18,8 @@ concept IsRow = requires(Columns... columns) {
 };
 
 using Parameters = std::span<const std::string_view>;
-static_assert(IsRow<Method, std::string_view, std::string_view, Access, Pool, Sessions, Parameters, Handler>);
-static_assert(!IsRow<Method, std::string_view, std::string_view, Access, Pool, Sessions, Parameters>,
+static_assert(IsRow<Method, std::string_view, std::string_view, Access, WorkClass, Sessions, Parameters, Handler>);
+static_assert(!IsRow<Method, std::string_view, std::string_view, Access, WorkClass, Sessions, Parameters>,
               "a row without a handler does not compile");
 static_assert(!std::is_default_constructible_v<Handler>);
 
@@ -52,53 +52,53 @@ TEST(Routes, ConcernASessionOnlyIfThePathNamesIt) {
     }
 }
 
-TEST(Routes, HaveThePoolOfTheirWork) {
+TEST(Routes, HaveTheClassOfTheirWork) {
     const std::string session = "/api/v1/sessions/s";
-    const std::vector<std::tuple<std::string, std::string, Pool>> rows = {
-        {"GET", "/", Pool::kIo},
-        {"GET", "/livez", Pool::kIo},
-        {"GET", "/readyz", Pool::kIo},
-        {"GET", "/openapi.json", Pool::kIo},
-        {"POST", "/api/v1/login", Pool::kIo},
-        {"GET", "/metrics", Pool::kMetrics},
+    const std::vector<std::tuple<std::string, std::string, WorkClass>> rows = {
+        {"GET", "/", WorkClass::kIo},
+        {"GET", "/livez", WorkClass::kIo},
+        {"GET", "/readyz", WorkClass::kIo},
+        {"GET", "/openapi.json", WorkClass::kIo},
+        {"POST", "/api/v1/login", WorkClass::kIo},
+        {"GET", "/metrics", WorkClass::kMetrics},
         // Requests for whole maps do not delay tiles.
-        {"GET", session + "/digest", Pool::kWholeMaps},
-        {"GET", session + "/map.png", Pool::kWholeMaps},
-        {"GET", session + "/map.csv", Pool::kWholeMaps},
-        {"GET", session + "/map.npy", Pool::kWholeMaps},
-        {"GET", session + "/map.pgm?bbox=0,0,1,1", Pool::kWholeMaps},
-        {"GET", session + "/map.png?weave=0123456789abcdef", Pool::kWholeMaps},
-        {"GET", session + "/difference?weave=0", Pool::kWholeMaps},
-        {"GET", session + "/difference.png?with=0", Pool::kWholeMaps},
-        {"GET", session + "/trajectory.geojson", Pool::kLogReading},
-        {"GET", session + "/trajectory.geojson?since=3&times=true", Pool::kLogReading},
-        {"GET", session + "/landmarks.geojson", Pool::kLogReading},
-        {"GET", session + "/points.csv", Pool::kLogReading},
-        {"GET", session + "/log?format=clf", Pool::kLogExport},
-        {"GET", session, Pool::kQueries},
-        {"GET", session + "/map.yaml", Pool::kQueries},
-        {"GET", session + "/changes?since=3", Pool::kQueries},
-        {"GET", session + "/goals.geojson", Pool::kQueries},
-        {"GET", session + "/tiles/occupancy.json", Pool::kQueries},
-        {"GET", session + "/tiles/occupancy/5/0/0.png", Pool::kIo},
-        {"GET", session + "/tiles/occupancy/9/256/255.bin", Pool::kIo},
-        {"GET", session + "/tiles/occupancy/x/0/0.png", Pool::kIo},
-        {"GET", "/api/v1/sessions", Pool::kQueries},
-        {"GET", "/api/v1/backups", Pool::kQueries},
-        {"POST", session + "/weave", Pool::kQueries}, // which only starts a job
-        {"GET", session + "/frontiers.geojson?robot=r", Pool::kPlanning},
-        {"GET", session + "/goal?robot=r", Pool::kQueries},
-        {"POST", session + "/goal", Pool::kPlanning},
-        {"POST", session + "/plan", Pool::kPlanning},
-        {"POST", session + "/coverage?weave=0123456789abcdef", Pool::kPlanning},
+        {"GET", session + "/digest", WorkClass::kWholeMaps},
+        {"GET", session + "/map.png", WorkClass::kWholeMaps},
+        {"GET", session + "/map.csv", WorkClass::kWholeMaps},
+        {"GET", session + "/map.npy", WorkClass::kWholeMaps},
+        {"GET", session + "/map.pgm?bbox=0,0,1,1", WorkClass::kWholeMaps},
+        {"GET", session + "/map.png?weave=0123456789abcdef", WorkClass::kWholeMaps},
+        {"GET", session + "/difference?weave=0", WorkClass::kWholeMaps},
+        {"GET", session + "/difference.png?with=0", WorkClass::kWholeMaps},
+        {"GET", session + "/trajectory.geojson", WorkClass::kLogReading},
+        {"GET", session + "/trajectory.geojson?since=3&times=true", WorkClass::kLogReading},
+        {"GET", session + "/landmarks.geojson", WorkClass::kLogReading},
+        {"GET", session + "/points.csv", WorkClass::kLogReading},
+        {"GET", session + "/log?format=clf", WorkClass::kLogExport},
+        {"GET", session, WorkClass::kQueries},
+        {"GET", session + "/map.yaml", WorkClass::kQueries},
+        {"GET", session + "/changes?since=3", WorkClass::kQueries},
+        {"GET", session + "/goals.geojson", WorkClass::kQueries},
+        {"GET", session + "/tiles/occupancy.json", WorkClass::kQueries},
+        {"GET", session + "/tiles/occupancy/5/0/0.png", WorkClass::kIo},
+        {"GET", session + "/tiles/occupancy/9/256/255.bin", WorkClass::kIo},
+        {"GET", session + "/tiles/occupancy/x/0/0.png", WorkClass::kIo},
+        {"GET", "/api/v1/sessions", WorkClass::kQueries},
+        {"GET", "/api/v1/backups", WorkClass::kQueries},
+        {"POST", session + "/weave", WorkClass::kQueries}, // which only starts a job
+        {"GET", session + "/frontiers.geojson?robot=r", WorkClass::kPlanning},
+        {"GET", session + "/goal?robot=r", WorkClass::kQueries},
+        {"POST", session + "/goal", WorkClass::kPlanning},
+        {"POST", session + "/plan", WorkClass::kPlanning},
+        {"POST", session + "/coverage?weave=0123456789abcdef", WorkClass::kPlanning},
         // Operations that wait for the disk.
-        {"POST", session + "/import", Pool::kImport},
-        {"POST", "/api/v1/sessions", Pool::kStore},
-        {"DELETE", session, Pool::kStore},
-        {"POST", "/api/v1/backups", Pool::kStore},
+        {"POST", session + "/import", WorkClass::kImport},
+        {"POST", "/api/v1/sessions", WorkClass::kStore},
+        {"DELETE", session, WorkClass::kStore},
+        {"POST", "/api/v1/backups", WorkClass::kStore},
     };
-    for (const auto& [method, target, pool] : rows) {
-        EXPECT_EQ(std::get<Match>(route(method, target)).route.pool, pool) << method << " " << target;
+    for (const auto& [method, target, work] : rows) {
+        EXPECT_EQ(std::get<Match>(route(method, target)).route.work, work) << method << " " << target;
     }
 }
 

@@ -34,19 +34,19 @@ inline Result<Response> ask_test(Context& context) {
 inline std::vector<Route> echoing_routes() {
     std::vector<Route> echoing;
     for (const auto& route : routes()) {
-        echoing.push_back({route.method, route.path, route.name, route.access, route.pool, Sessions::kUnused,
+        echoing.push_back({route.method, route.path, route.name, route.access, route.work, Sessions::kUnused,
                            kAnyParameters, ask_test});
     }
     for (const auto method : {Method::kGet, Method::kPost}) {
         for (const auto* path : {"/", "/{a}", "/{a}/{b}"}) {
             echoing.push_back(
-                {method, path, "echo", Access::kOpen, Pool::kIo, Sessions::kUnused, kAnyParameters, ask_test});
+                {method, path, "echo", Access::kOpen, WorkClass::kIo, Sessions::kUnused, kAnyParameters, ask_test});
         }
     }
     return echoing;
 }
 
-/// An http::Server on two threads, with a thread for each pool.
+/// An http::Server on two threads, with a thread for each executor.
 class RunningHttp {
 public:
     explicit RunningHttp(ServerConfig config = {}, Answer answer = echo)

@@ -273,7 +273,7 @@ TEST(HttpServer, HealthAndViewerAreServedWhenPoolsAreBusy) {
 TEST(HttpServer, ExcessRequestOfAPoolIsRefusedWithoutDelayingOthers) {
     struct Kind {
         ServerConfig config;
-        std::string taken;    ///< takes the only permit of its pool
+        std::string taken;    ///< takes the only permit of its class of work
         std::string refused;  ///< needs the same permit
         std::string answered; ///< needs none
     };

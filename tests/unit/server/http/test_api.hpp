@@ -24,35 +24,35 @@
 namespace scanloom::http {
 
 /// Queues of work that run when they are polled.
-class PolledPools {
+class PolledWork {
 public:
     [[nodiscard]] Executors executors() {
-        return {.metrics = of(Pool::kMetrics).get_executor(),
-                .queries = of(Pool::kQueries).get_executor(),
-                .whole_maps = of(Pool::kWholeMaps).get_executor(),
-                .log_reading = of(Pool::kLogReading).get_executor(),
-                .log_export = of(Pool::kLogExport).get_executor(),
-                .planning = of(Pool::kPlanning).get_executor(),
-                .store = of(Pool::kStore).get_executor(),
-                .live = of(Pool::kIo).get_executor()};
+        return {.metrics = of(WorkClass::kMetrics).get_executor(),
+                .queries = of(WorkClass::kQueries).get_executor(),
+                .whole_maps = of(WorkClass::kWholeMaps).get_executor(),
+                .log_reading = of(WorkClass::kLogReading).get_executor(),
+                .log_export = of(WorkClass::kLogExport).get_executor(),
+                .planning = of(WorkClass::kPlanning).get_executor(),
+                .store = of(WorkClass::kStore).get_executor(),
+                .live = of(WorkClass::kIo).get_executor()};
     }
 
-    /// Runs what is queued and adds the pools that had work to `ran`.
-    void poll(std::vector<Pool>& ran) {
+    /// Runs what is queued and adds the classes that had work to `ran`.
+    void poll(std::vector<WorkClass>& ran) {
         for (std::size_t n = 0; n < queues_.size(); ++n) {
             const bool had_work = queues_[n].io.poll() > 0;
-            if (had_work && n != 0) ran.push_back(static_cast<Pool>(n));
+            if (had_work && n != 0) ran.push_back(static_cast<WorkClass>(n));
         }
     }
 
-    [[nodiscard]] boost::asio::io_context& of(Pool pool) { return queues_[static_cast<std::size_t>(pool)].io; }
+    [[nodiscard]] boost::asio::io_context& of(WorkClass work) { return queues_[static_cast<std::size_t>(work)].io; }
 
 private:
     struct Queue {
         boost::asio::io_context io;
         boost::asio::executor_work_guard<boost::asio::io_context::executor_type> guard{io.get_executor()};
     };
-    std::array<Queue, static_cast<std::size_t>(Pool::kStore) + 1> queues_;
+    std::array<Queue, static_cast<std::size_t>(WorkClass::kStore) + 1> queues_;
 };
 
 /// Computes the response to a request, instead of the handlers.
@@ -70,16 +70,16 @@ public:
             const ServerConfig& limits = {}, std::optional<Executors> executors = std::nullopt,
             std::span<const Route> of_routes = routes())
         : check_(log, sessions), locator_(log),
-          pools_(executors ? *executors : polled_.executors(), limits), services_{{.sessions = sessions,
-                                                                                   .weaves = weaves,
-                                                                                   .goals = goals,
-                                                                                   .locator = locator_,
-                                                                                   .log = log,
-                                                                                   .check = check_,
-                                                                                   .metrics = metrics,
-                                                                                   .authorizer = authorizer,
-                                                                                   .pools = pools_,
-                                                                                   .web = std::move(web)}},
+          work_classes_(executors ? *executors : polled_.executors(), limits), services_{{.sessions = sessions,
+                                                                                          .weaves = weaves,
+                                                                                          .goals = goals,
+                                                                                          .locator = locator_,
+                                                                                          .log = log,
+                                                                                          .check = check_,
+                                                                                          .metrics = metrics,
+                                                                                          .authorizer = authorizer,
+                                                                                          .work_classes = work_classes_,
+                                                                                          .web = std::move(web)}},
           api_(services_, of_routes) {}
 
     [[nodiscard]] TestServices& services() { return services_; }
@@ -88,7 +88,7 @@ public:
 
     struct Asked {
         std::optional<Response> response;
-        std::vector<Pool> pools; ///< on which it ran, except the I/O threads
+        std::vector<WorkClass> work; ///< for which it left the I/O threads
     };
 
     /// A running request.
@@ -101,14 +101,14 @@ public:
     /// Starts a request, which continues in poll().
     [[nodiscard]] std::shared_ptr<Running> start(Request request) {
         std::shared_ptr<Running> running(new Running{std::move(request)});
-        boost::asio::co_spawn(boost::asio::make_strand(polled_.of(Pool::kIo)), serve(running),
+        boost::asio::co_spawn(boost::asio::make_strand(polled_.of(WorkClass::kIo)), serve(running),
                               [](const std::exception_ptr& failed) {
                                   if (failed) std::rethrow_exception(failed);
                               });
         return running;
     }
 
-    void poll(Running& running) { polled_.poll(running.asked.pools); }
+    void poll(Running& running) { polled_.poll(running.asked.work); }
 
     /// Sends a request and waits for its response.
     [[nodiscard]] Asked ask(Request request) {
@@ -149,8 +149,8 @@ private:
 
     sessions::BackgroundCheck check_; // never started
     guidance::Locator locator_;
-    PolledPools polled_;
-    Pools pools_;
+    PolledWork polled_;
+    WorkClasses work_classes_;
     TestServices services_;
     Api api_;
 };
