@@ -141,8 +141,9 @@ asio::awaitable<Result<Response>> Api::call(const Route& route, Context& context
     if (route.sessions != Sessions::kUnused && !services_.recovered) {
         co_return Error{Errc::kOverloaded, "the sessions are still being recovered from the store; try again soon"};
     }
+    Result<SessionRef> session = SessionRef();
     if (route.sessions == Sessions::kLoaded) {
-        context.session = co_await load_session(services_.sessions, context.arguments["session"]);
+        session = co_await load_session(services_.sessions, context.arguments["session"]);
     }
     if (!permit) {
         auto taken = services_.work_classes.enter(route.work);
@@ -151,6 +152,8 @@ asio::awaitable<Result<Response>> Api::call(const Route& route, Context& context
     }
     co_await context.run_on(route.work);
     if (auto known = check_parameters(route, context.query); !known) co_return known.error();
+    if (!session) co_return session.error();
+    context.session = *std::move(session);
     co_return co_await route.handler(context);
 }
 

@@ -70,8 +70,7 @@ struct Context {
     const Query& query;
     auth::TokenRef token; ///< of the client; null only if the operation needs no token
 
-    /// The session in the path, or why it cannot be served. Only if the route has Sessions::kLoaded.
-    Result<std::shared_ptr<sessions::Session>> session = Error{Errc::kInternal, "this route loads no session"};
+    std::shared_ptr<sessions::Session> session = nullptr; ///< that in the path; null without Sessions::kLoaded
 
     WorkClass work = WorkClass::kIo; ///< decides where the handler runs now
 

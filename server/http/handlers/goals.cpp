@@ -66,15 +66,13 @@ std::string goal_text(std::string_view robot, const guidance::Goal& goal, const 
 } // namespace
 
 Result<Response> get_goal(Context& context) {
-    const auto& session = context.session;
-    if (!session) return session.error();
     const auto name = context.query.find("robot");
     if (!name) return Error{Errc::kInvalidField, "robot is missing; name the robot whose goal is asked for"};
-    const auto maps = (*session)->snapshot();
+    const auto maps = context.session->snapshot();
     const auto robot = robot_named(*maps, *name);
     if (!robot) return robot.error();
 
-    const auto page = context.services.goals.paths().page(*session, guidance::RobotPaths::Clock::now());
+    const auto page = context.services.goals.paths().page(context.session, guidance::RobotPaths::Clock::now());
     const auto held = std::ranges::find(page.robots, *robot, &guidance::RobotPaths::Held::robot);
     if (held == page.robots.end() || !held->goal) {
         const bool explored = std::ranges::binary_search(page.explored, *robot);
@@ -141,16 +139,13 @@ std::string feature_of(const std::string& robot, const guidance::Goal& goal) {
 } // namespace
 
 Result<Response> get_goals(Context& context) {
-    const auto& session = context.session;
-    if (!session) return session.error();
-
-    const auto page = context.services.goals.paths().page(*session, guidance::RobotPaths::Clock::now());
+    const auto page = context.services.goals.paths().page(context.session, guidance::RobotPaths::Clock::now());
     std::size_t bytes = page.explored.size() * kNameBytesMax;
     for (const auto& held : page.robots) bytes += ((held.path ? held.path->points.size() : 0) + 16) * kPointTextBytes;
     auto permit = context.services.responses.take(bytes);
     if (!permit) return permit.error();
 
-    const auto maps = (*session)->snapshot();
+    const auto maps = context.session->snapshot();
     std::vector<std::string> features;
     for (const auto& held : page.robots) {
         if (held.robot >= maps->robots.size()) continue; // its join has not been applied to the maps yet

@@ -72,10 +72,8 @@ Result<Response> get_landmarks(Context& context) {
                   "a whole number from 1 to 4294967295 is needed");
     if (!seen_min) return seen_min.error();
     const auto& session = context.session;
-    if (!session) return session.error();
-
-    const auto snapshot = (*session)->snapshot();
-    const auto applied = context.services.landmarks.up_to((*session)->info(), snapshot->revision,
+    const auto snapshot = session->snapshot();
+    const auto applied = context.services.landmarks.up_to(session->info(), snapshot->revision,
                                                           [&] { return !context.services.sessions.is_draining(); });
     if (!applied) return applied.error();
     const LandmarkQuery asked{since_in(*snapshot, *since), *bbox, *seen_min};
@@ -213,13 +211,12 @@ Result<> choose(store::ScanLog& log, const sessions::SessionInfo& session, const
 
 Result<Response> get_points(const Context& context, PointFile file) {
     const auto& session = context.session;
-    if (!session) return session.error();
-    const auto snapshot = (*session)->snapshot();
+    const auto snapshot = session->snapshot();
     const auto query = cloud_query(*snapshot, context.query);
     if (!query) return query.error();
     const SearchLimit limit(context.services.sessions);
     Chosen chosen(*query);
-    const auto read = choose(context.services.log, (*session)->info(), *query, snapshot->revision, limit, chosen);
+    const auto read = choose(context.services.log, session->info(), *query, snapshot->revision, limit, chosen);
     if (!read) return read.error();
     auto permit = context.services.responses.take(chosen.points() * exchange::kPointTextBytes);
     if (!permit) return permit.error();

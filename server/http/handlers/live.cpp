@@ -28,7 +28,6 @@ Response upgrade_required(const Context& context) {
 
 Result<Response> get_live(Context& context) {
     const auto& session = context.session;
-    if (!session) return session.error();
     const auto& upgrade = context.request.upgrade;
     if (!upgrade || upgrade->version != kVersion) return upgrade_required(context);
     if (!is_websocket_key(upgrade->key)) {
@@ -37,19 +36,19 @@ Result<Response> get_live(Context& context) {
     // Browsers let any page open a WebSocket and read it.
     if (!upgrade->origin.empty() && !is_own_page(upgrade->origin, context.request.host, context.request.is_secure)) {
         context.services.authorizer.note({auth::Port::kHttp, auth::Reason::kForeignPage, context.request.peer,
-                                          context.token->name, (*session)->info().name});
+                                          context.token->name, session->info().name});
         return problem(Status::forbidden,
                        fmt::format("pages of {} may not watch this server; open the viewer that it serves",
                                    in_quotes(upgrade->origin)),
                        instance_of(context.request.target));
     }
-    const auto& info = (*session)->info();
+    const auto& info = session->info();
     auto credential = context.services.authorizer.authenticator().let_watch(context.token, info.name);
     if (!credential) return context.services.authorizer.refuse(context.request, credential.error(), info.name);
     Response response;
     response.status = Status::switching_protocols;
     response.viewed = std::make_shared<const live::ViewedSession>(
-        live::ViewedSession{*session, info.id, info.name, session_tag(info), context.services.goals.paths(),
+        live::ViewedSession{session, info.id, info.name, session_tag(info), context.services.goals.paths(),
                             context.services.watched_landmarks.of(info.id),
                             [&sessions = context.services.sessions, id = info.id, name = info.name] {
                                 const auto stored = sessions.info(name);

@@ -100,11 +100,10 @@ Result<Response> get_log(Context& context) {
                      fmt::format("format is {}; possible are clf and protobuf", in_quotes(format))};
     }
     const auto& session = context.session;
-    if (!session) return session.error();
-    const auto& info = (*session)->info();
+    const auto& info = session->info();
 
     const LogFormat written_as = is_carmen ? carmen_format(info) : protobuf_format();
-    auto stream = std::make_shared<LogStream>(*session, context.services.log, written_as);
+    auto stream = std::make_shared<LogStream>(session, context.services.log, written_as);
     if (auto begun = stream->begin(); !begun) return begun.error();
 
     Response response;

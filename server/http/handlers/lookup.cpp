@@ -82,15 +82,14 @@ namespace {
 /// Returns the maps of the replay job that `parameter` names, or the session's own maps.
 Result<Maps> chosen(const Context& context, std::string_view parameter, Waiting waiting = Waiting::kAllowed) {
     const auto& session = context.session;
-    if (!session) return session.error();
     const auto id = context.query.find(parameter);
     if (!id) {
-        auto snapshot = waiting == Waiting::kAllowed ? (*session)->snapshot() : (*session)->try_snapshot();
-        return Maps{*session, std::move(snapshot), *session, session_tag((*session)->info())};
+        auto snapshot = waiting == Waiting::kAllowed ? session->snapshot() : session->try_snapshot();
+        return Maps{session, std::move(snapshot), session, session_tag(session->info())};
     }
-    const auto weave = find_weave(context.services.weaves, **session, *id);
+    const auto weave = find_weave(context.services.weaves, *session, *id);
     if (!weave) return weave.error();
-    return maps_of(*session, *weave, (*weave)->maps());
+    return maps_of(session, *weave, (*weave)->maps());
 }
 
 /// Suspends the coroutine until the job has maps of `target` or has ended, at most for Services::replay_timeout.
@@ -106,18 +105,17 @@ boost::asio::awaitable<void> wait_for(Context& context, sessions::ReplayJob& wea
 
 boost::asio::awaitable<Result<Maps>> replayed(Context& context) {
     const auto& session = context.session;
-    if (!session) co_return session.error();
-    const auto request = weave_request(**session, context.query);
+    const auto request = weave_request(*session, context.query);
     if (!request) co_return request.error();
     const auto permit = context.services.work_classes.wait_for_replay();
     if (!permit) co_return permit.error();
-    const Revision newest = (*session)->snapshot()->revision;
+    const Revision newest = session->snapshot()->revision;
     auto& weaves = context.services.weaves;
-    const auto weave = weaves.start((*session)->info(), *request, newest, sessions::ReplayJobs::Listing::kUnlisted);
+    const auto weave = weaves.start(session->info(), *request, newest, sessions::ReplayJobs::Listing::kUnlisted);
     if (!weave) co_return weave.error();
     const Revision target = sessions::target_of(*request, newest);
     co_await wait_for(context, **weave, target);
-    co_return maps_of(*session, *weave, (*weave)->maps_with(target));
+    co_return maps_of(session, *weave, (*weave)->maps_with(target));
 }
 
 } // namespace

@@ -62,8 +62,8 @@ enum class Waiting { kAllowed, kNotAllowed };
 
 /// Returns existing maps: the session's own, or the newest that the replay job `weave` has finished.
 /// @param waiting  kNotAllowed: without a snapshot while the session's own maps are being written
-/// Errors: those of Context::session; kNotFound if there is no such job; kOverloaded if it has no maps yet; the job's
-///         own error if it failed.
+/// Errors: kNotFound if there is no such job; kOverloaded if it has no maps yet; the job's own error if it
+///         failed.
 [[nodiscard]] Result<Maps> find_maps(const Context& context, Waiting waiting = Waiting::kAllowed);
 
 /// Returns what find_maps() returns if no settings are given. Otherwise starts a replay job with the settings, waits

@@ -111,13 +111,11 @@ Result<Response> get_trajectory(Context& context) {
     const auto with_times = parameter(context.query, "times", false, parse_bool, "true or false is needed");
     if (!with_times) return with_times.error();
     const auto& session = context.session;
-    if (!session) return session.error();
-
-    const auto snapshot = (*session)->snapshot();
+    const auto snapshot = session->snapshot();
     const TrajectoryParameters asked{since_in(*snapshot, *since), *with_times};
     auto permit = context.services.responses.take(bytes_about(*snapshot, asked));
     if (!permit) return permit.error();
-    const auto old = sessions::read_old_paths(context.services.log, (*session)->info().id, *snapshot, asked.since,
+    const auto old = sessions::read_old_paths(context.services.log, session->info().id, *snapshot, asked.since,
                                               [&] { return !context.services.sessions.is_draining(); });
     if (!old) return old.error();
     std::string text = fmt::format(

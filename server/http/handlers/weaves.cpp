@@ -46,33 +46,30 @@ boost::json::object shown(const sessions::ReplayJob& weave) {
 }
 
 Result<std::shared_ptr<sessions::ReplayJob>> weave_in_path(const Context& context) {
-    if (!context.session) return context.session.error();
-    return find_weave(context.services.weaves, **context.session, context.arguments["weave"]);
+    return find_weave(context.services.weaves, *context.session, context.arguments["weave"]);
 }
 
 } // namespace
 
 Result<Response> start_weave(Context& context) {
     const auto& session = context.session;
-    if (!session) return session.error();
     const auto body = parse_json_object(context.request.body, weave_parameters());
     if (!body) return body.error();
-    const auto request = weave_request(**session, *body);
+    const auto request = weave_request(*session, *body);
     if (!request) return request.error();
-    const auto weave = context.services.weaves.start((*session)->info(), *request, (*session)->snapshot()->revision);
+    const auto weave = context.services.weaves.start(session->info(), *request, session->snapshot()->revision);
     if (!weave) return weave.error();
     auto response =
         ok(shown(**weave))
-            .set("Location", fmt::format("/api/v1/sessions/{}/weave/{}", (*session)->info().name, (*weave)->id()));
+            .set("Location", fmt::format("/api/v1/sessions/{}/weave/{}", session->info().name, (*weave)->id()));
     if ((*weave)->progress().state != State::kDone) response.status = Status::accepted;
     return response;
 }
 
 Result<Response> list_weaves(Context& context) {
     const auto& session = context.session;
-    if (!session) return session.error();
     boost::json::array weaves;
-    for (const auto& weave : context.services.weaves.list((*session)->info().id)) weaves.push_back(shown(*weave));
+    for (const auto& weave : context.services.weaves.list(session->info().id)) weaves.push_back(shown(*weave));
     return ok(boost::json::object{{"weaves", std::move(weaves)}});
 }
 
@@ -85,7 +82,7 @@ Result<Response> get_weave(Context& context) {
 Result<Response> delete_weave(Context& context) {
     const auto weave = weave_in_path(context);
     if (!weave) return weave.error();
-    context.services.weaves.remove((*context.session)->info().id, (*weave)->id());
+    context.services.weaves.remove(context.session->info().id, (*weave)->id());
     return no_content();
 }
 
