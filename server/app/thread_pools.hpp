@@ -12,9 +12,13 @@ namespace scanloom::app {
 
 /// The threads of the server, but for those that serve sockets (io_context) and those of the store.
 ///
-/// A pool has one kind of work: short computation, long computation, work at low priority, or work that waits. Work of
-/// one class that must not run twice at a time has a strand of its pool: it occupies at most one of the pool's threads,
-/// so that the other classes continue. Short work never waits for long work, and acknowledgements for neither.
+/// A pool has one kind of work: short computation, long computation, work at low priority, or work that waits. A class
+/// of work that must not run twice at a time has a strand of its pool, and occupies at most one of the pool's threads.
+///
+/// Short work never waits for long work, and acknowledgements wait for neither. Long work can wait for other long work:
+/// five classes share the long pool, so with two cores two of them run and the other three wait until one task ends.
+/// More threads would let them share the cores instead, but an idle server should have few threads: at most 16 with two
+/// cores.
 /// Threads: any thread. join() from the thread that owns the pools.
 class ThreadPools {
 public:
