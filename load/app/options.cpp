@@ -3,8 +3,8 @@
 #include "common/app/command_line.hpp"
 #include "common/app/settings.hpp"
 #include "common/scan/limits.hpp"
-#include "robot_client/sources/world_file.hpp"
 #include "robot_client/uplink/limits.hpp"
+#include "sim/robot/world_file.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -64,7 +64,7 @@ void add_load_options(CLI::App& app, LoadOptions& options) {
 void add_scan_options(CLI::App& app, LoadOptions& options) {
     add_checked(app, "--world", options.world,
                 "Where the robots drive: room, room_walker, office, hall, or FILE.yaml, a map of ROS",
-                robot::check_world);
+                sim::check_world);
     add_checked(app, "--laser", options.laser,
                 "Their laser: 684 beams over 180 degrees and 5 m; 360 over 360 degrees and 12 m; 1081 over 270 "
                 "degrees and 30 m",

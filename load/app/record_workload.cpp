@@ -2,8 +2,8 @@
 
 #include "common/wire/frame_decoder.hpp"
 #include "load/core/measured_client.hpp"
-#include "robot_client/sources/world_file.hpp"
 #include "sim/drive/wall_follower.hpp"
+#include "sim/robot/world_file.hpp"
 #include "sim/simulator.hpp"
 
 #include <fmt/format.h>
@@ -15,7 +15,7 @@ namespace scanloom::load {
 namespace {
 
 Result<sim::Simulator> make_simulator(const LoadOptions& options) {
-    auto world = robot::load_world(options.world);
+    auto world = sim::load_world(options.world);
     if (!world) return world.error();
     auto laser = sim::find_laser(options.laser);
     if (!laser) return laser.error();

@@ -2,10 +2,10 @@
 
 #include "robot_client/app/options.hpp"
 #include "robot_client/app/progress.hpp"
-#include "robot_client/sources/exploring_source.hpp"
 #include "robot_client/sources/live_source.hpp"
 #include "robot_client/sources/locating_source.hpp"
 #include "robot_client/sources/source.hpp"
+#include "sim/robot/exploring_source.hpp"
 
 #include <memory>
 #include <optional>
@@ -19,13 +19,13 @@ struct PreparedSource {
     std::unique_ptr<LiveSource> live;         ///< a live source: exactly one of the two is set
     std::optional<std::size_t> skipped_lines; ///< of text files that were read
     double speed = 0.0;
-    std::string fingerprint;              ///< for Hello.source
-    std::string_view order;               ///< of a log's scans: "file" or "time", a literal; else empty
-    ExploringSource* exploring = nullptr; ///< set if it is `live`; needs ask_with()
-    LocatingSource* locating = nullptr;   ///< set if it is `live`; needs ask_with()
-    std::optional<wire::Near> near;       ///< of `locating`: prior of the first place
-    Point2 first_place{0.0, 0.0};         ///< of `locating`: the assumed first place if no map exists
-    std::optional<double> body_radius;    ///< metres, of the robot that took the scans, if known
+    std::string fingerprint;                   ///< for Hello.source
+    std::string_view order;                    ///< of a log's scans: "file" or "time", a literal; else empty
+    sim::ExploringSource* exploring = nullptr; ///< set if it is `live`; needs ask_with()
+    LocatingSource* locating = nullptr;        ///< set if it is `live`; needs ask_with()
+    std::optional<wire::Near> near;            ///< of `locating`: prior of the first place
+    Point2 first_place{0.0, 0.0};              ///< of `locating`: the assumed first place if no map exists
+    std::optional<double> body_radius;         ///< metres, of the robot that took the scans, if known
 
     /// Returns the remarks of the source.
     [[nodiscard]] std::string remarks() const { return live ? live->remarks() : source->remarks(); }

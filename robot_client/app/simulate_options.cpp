@@ -1,7 +1,7 @@
 #include "robot_client/app/simulate_options.hpp"
 
 #include "common/app/command_line.hpp"
-#include "robot_client/sources/world_file.hpp"
+#include "sim/robot/world_file.hpp"
 
 #include <fmt/format.h>
 
@@ -68,7 +68,7 @@ void add_drive(CLI::App& simulate, SimulateOptions& options) {
 CLI::App* add_simulate(CLI::App& app, SimulateOptions& options) {
     auto* simulate = app.add_subcommand("simulate", "Simulate a robot that drives through a world");
     simulate->footer(kWorldsFooter);
-    add_checked(*simulate, "--world", options.world, world_help("The world"), check_world);
+    add_checked(*simulate, "--world", options.world, world_help("The world"), sim::check_world);
     add_drive(*simulate, options);
     add_sensors(*simulate, options);
     add_noise(*simulate, options);
@@ -92,7 +92,7 @@ CLI::App* add_ground_truth(CLI::App& app, GroundTruthOptions& options) {
         "Unknown cells of a ROS map are unknown in its ground truth, too, although rays of simulated robots pass\n"
         "through them as if they were free: exclude them when a map is scored against the ground truth.");
     // not required() in the parser: an environment for several subcommands would then require them everywhere
-    truth->add_option("--world", options.world, world_help("Of what"))->check(check_world);
+    truth->add_option("--world", options.world, world_help("Of what"))->check(sim::check_world);
     add_checked(*truth, "--cell-size", options.cell_size, "Cell size in metres", check_within(0.01, 1.0));
     truth
         ->add_option("--output", options.output,

@@ -1,14 +1,14 @@
 #include "robot_client/app/simulation.hpp"
 
 #include "robot_client/app/waypoint_list.hpp"
-#include "robot_client/sources/exploring_source.hpp"
-#include "robot_client/sources/simulated_source.hpp"
-#include "robot_client/sources/world_file.hpp"
 #include "sim/drive/behaviour.hpp"
 #include "sim/drive/wall_follower.hpp"
 #include "sim/drive/waypoints.hpp"
 #include "sim/drive/zigzag.hpp"
 #include "sim/ground_truth.hpp"
+#include "sim/robot/exploring_source.hpp"
+#include "sim/robot/simulated_source.hpp"
+#include "sim/robot/world_file.hpp"
 #include "sim/world.hpp"
 
 #include <fmt/format.h>
@@ -99,7 +99,7 @@ std::optional<sim::Noise> noise_of(const SimulateOptions& simulate) {
 }
 
 Result<sim::SimulatorOptions> make_options(const RobotOptions& options, const SimulateOptions& simulate) {
-    auto world = load_world(simulate.world);
+    auto world = sim::load_world(simulate.world);
     if (!world) return world.error();
     sim::SimulatorOptions simulator;
     simulator.world = std::move(*world);
@@ -115,7 +115,7 @@ Result<sim::SimulatorOptions> make_options(const RobotOptions& options, const Si
 Result<PreparedSource> prepare_simulation(const RobotOptions& options, const SimulateOptions& simulate) {
     auto simulator = make_options(options, simulate);
     if (!simulator) return simulator.error();
-    SimulationLimits limits;
+    sim::SimulationLimits limits;
     if (simulate.duration) limits.duration = *simulate.duration;
     if (simulate.scans) limits.scans = *simulate.scans;
     const NoReturn no_return = options.no_return.value_or(NoReturn::kFree);
@@ -123,15 +123,16 @@ Result<PreparedSource> prepare_simulation(const RobotOptions& options, const Sim
     prepared.speed = simulate.speed;
     prepared.body_radius = sim::kBodyRadius;
     if (simulate.drive == "explore") {
-        auto exploring = std::make_unique<ExploringSource>(std::move(*simulator), limits, no_return, simulate.speed);
+        auto exploring =
+            std::make_unique<sim::ExploringSource>(std::move(*simulator), limits, no_return, simulate.speed);
         prepared.exploring = exploring.get();
         prepared.live = std::move(exploring);
         return prepared;
     }
     auto made = make_behaviour(simulate, simulator->world);
     if (!made) return made.error();
-    prepared.fingerprint = fingerprint_of(*simulator, made->name, no_return);
-    prepared.source = std::make_unique<SimulatedSource>(
+    prepared.fingerprint = sim::fingerprint_of(*simulator, made->name, no_return);
+    prepared.source = std::make_unique<sim::SimulatedSource>(
         sim::Simulator(std::move(*simulator), std::move(made->behaviour)), limits, no_return);
     return prepared;
 }

@@ -2,8 +2,8 @@
 
 #include "common/app/standard_streams.hpp"
 #include "common/ros_map/pgm.hpp"
-#include "robot_client/sources/world_file.hpp"
 #include "sim/ground_truth.hpp"
+#include "sim/robot/world_file.hpp"
 
 #include <boost/json/serialize.hpp>
 #include <fmt/format.h>
@@ -48,7 +48,7 @@ Result<> check_size(const sim::World& world, double cell_size) {
 } // namespace
 
 Result<std::string> write_ground_truth(const GroundTruthOptions& options) {
-    const auto world = load_world(options.world);
+    const auto world = sim::load_world(options.world);
     if (!world) return world.error();
     if (auto ok = check_size(*world, options.cell_size); !ok) return ok.error();
     if (auto made = make_folder(options.output); !made) return made.error();

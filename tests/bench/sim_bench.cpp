@@ -1,8 +1,8 @@
-#include "robot_client/sources/world_file.hpp"
 #include "sim/drive/wall_follower.hpp"
 #include "sim/ground_truth.hpp"
 #include "sim/map_world.hpp"
 #include "sim/ray_casting.hpp"
+#include "sim/robot/world_file.hpp"
 #include "sim/simulator.hpp"
 
 #include <benchmark/benchmark.h>
@@ -35,7 +35,7 @@ sim::World hall_map() {
 }
 
 sim::World depot() {
-    auto world = load_world(SCANLOOM_SOURCE_DIR "/../shared/data/maps/depot/depot.yaml");
+    auto world = sim::load_world(SCANLOOM_SOURCE_DIR "/../shared/data/maps/depot/depot.yaml");
     return world ? std::move(*world) : sim::World{};
 }
 

@@ -22,7 +22,7 @@ using testing_support::GoalOracle;
 using testing_support::Unexplored;
 
 constexpr std::uint64_t kSeedsPerCase = 5; // so that cases can run in parallel
-constexpr SimulationLimits kLimits{.duration = 3600.0};
+constexpr sim::SimulationLimits kLimits{.duration = 3600.0};
 
 /// Returns the known part of the free cells of a perfect map.
 double known_share(const sim::World& world, const mapping::Snapshot& maps) {
@@ -86,14 +86,14 @@ public:
         return true;
     }
 
-    [[nodiscard]] const ExploringSource& source() const { return source_; }
+    [[nodiscard]] const sim::ExploringSource& source() const { return source_; }
     [[nodiscard]] double clearance_min() const { return clearance_min_; }
 
 private:
     boost::asio::io_context io_;
     GoalOracle& oracle_;
     RobotIndex index_;
-    ExploringSource source_;
+    sim::ExploringSource source_;
     std::uint64_t seq_ = 0;
     double clearance_min_ = 10.0;
 };

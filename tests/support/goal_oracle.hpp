@@ -1,9 +1,9 @@
 #pragma once
 
 #include "core/mapping/projection.hpp"
-#include "robot_client/sources/exploring_source.hpp"
 #include "server/guidance/goal_assignments.hpp"
 #include "sim/drive/explore.hpp"
+#include "sim/robot/exploring_source.hpp"
 
 #include <cstdint>
 #include <map>

@@ -1,7 +1,7 @@
 #include "robot_client/app/truth.hpp"
 
-#include "robot_client/sources/world_file.hpp"
 #include "sim/ground_truth.hpp"
+#include "sim/robot/world_file.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ TEST(GroundTruth, WrittenWorldHasTheSameTruth) {
     const auto line = write_ground_truth({"room", 0.1, prefix});
     ASSERT_TRUE(line) << line.error().message;
     EXPECT_EQ(*line, R"({"width":104,"height":104,"map":")" + prefix + R"(.yaml"})");
-    const auto world = load_world(prefix + ".yaml");
+    const auto world = sim::load_world(prefix + ".yaml");
     ASSERT_TRUE(world) << world.error().message;
     EXPECT_EQ(ground_truth_of(*world, 0.1).cells, ground_truth_of(sim::make_room(), 0.1).cells);
     std::filesystem::remove_all(folder);
@@ -28,7 +28,7 @@ TEST(GroundTruth, WrittenMapHasTheTruthOfEveryNamedWorld) {
     const std::string prefix = std::filesystem::path(testing::TempDir()) / "scanloom_truth_of";
     for (const sim::NamedWorld& world : sim::kWorlds) {
         ASSERT_TRUE(write_ground_truth({std::string(world.name), 0.2, prefix})) << world.name;
-        const auto written = load_world(prefix + ".yaml");
+        const auto written = sim::load_world(prefix + ".yaml");
         ASSERT_TRUE(written) << written.error().message;
         EXPECT_EQ(ground_truth_of(*written, 0.2).cells, ground_truth_of(world.make(), 0.2).cells) << world.name;
     }

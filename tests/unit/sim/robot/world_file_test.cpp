@@ -1,4 +1,4 @@
-#include "robot_client/sources/world_file.hpp"
+#include "sim/robot/world_file.hpp"
 
 #include "sim/drive/wall_follower.hpp"
 #include "sim/ground_truth.hpp"
@@ -12,7 +12,7 @@
 #include <fstream>
 #include <numbers>
 
-namespace scanloom::robot {
+namespace scanloom::sim {
 namespace {
 
 namespace fs = std::filesystem;
@@ -45,7 +45,7 @@ TEST_F(WorldFile, ImagePathIsRelativeToTheDescription) {
     const auto world = load_world(yaml);
     ASSERT_TRUE(world) << world.error().message;
     EXPECT_EQ(world->name, "m");
-    EXPECT_THAT(world->floors, testing::ElementsAre(sim::Box{0, 0, 9, 9}));
+    EXPECT_THAT(world->floors, testing::ElementsAre(Box{0, 0, 9, 9}));
     const auto absolute =
         write("n.yml", "image: " + (folder_ / "images/a map.pgm").string() + "\nresolution: 0.5\norigin: [0, 0, 0]\n");
     EXPECT_TRUE(load_world(absolute));
@@ -88,12 +88,12 @@ TEST_P(RealMap, RobotDrivesThroughIt) {
     }
     const auto world = load_world(yaml.string());
     ASSERT_TRUE(world) << world.error().message;
-    sim::Random random(2);
+    Random random(2);
     for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-        sim::Simulator simulator({*world, sim::find_laser("lidar360").value(), std::nullopt, seed},
-                                 std::make_unique<sim::WallFollower>());
+        Simulator simulator({*world, find_laser("lidar360").value(), std::nullopt, seed},
+                            std::make_unique<WallFollower>());
         const Pose2 start = simulator.pose();
-        EXPECT_GE(clearance(*world, {start.x, start.y}), sim::kStartClearance - 1e-6);
+        EXPECT_GE(clearance(*world, {start.x, start.y}), kStartClearance - 1e-6);
         const double yaw = random.uniform(-std::numbers::pi, std::numbers::pi);
         EXPECT_EQ(world->obstacles->cast_ray({start.x, start.y}, yaw, HUGE_VAL),
                   cast_ray(world->outlines, {start.x, start.y}, yaw));
@@ -102,9 +102,9 @@ TEST_P(RealMap, RobotDrivesThroughIt) {
         EXPECT_EQ(ground_truth_of(*world, 0.05)
                       .at(static_cast<std::int32_t>(std::floor(simulator.pose().x * 20)),
                           static_cast<std::int32_t>(std::floor(simulator.pose().y * 20))),
-                  sim::GroundTruth::kFree);
+                  GroundTruth::kFree);
     }
 }
 
 } // namespace
-} // namespace scanloom::robot
+} // namespace scanloom::sim

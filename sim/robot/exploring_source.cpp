@@ -1,4 +1,4 @@
-#include "robot_client/sources/exploring_source.hpp"
+#include "sim/robot/exploring_source.hpp"
 
 #include <boost/asio/experimental/awaitable_operators.hpp>
 #include <fmt/format.h>
@@ -8,7 +8,7 @@
 #include <utility>
 #include <variant>
 
-namespace scanloom::robot {
+namespace scanloom::sim {
 
 namespace asio = boost::asio;
 using namespace asio::experimental::awaitable_operators;
@@ -21,27 +21,27 @@ constexpr int kTimesBlockedMax = 30;
 
 } // namespace
 
-ExploringSource::ExploringSource(sim::SimulatorOptions options, SimulationLimits limits, NoReturn no_return,
+ExploringSource::ExploringSource(SimulatorOptions options, SimulationLimits limits, robot::NoReturn no_return,
                                  double speed)
-    : ExploringSource(std::move(options), limits, no_return, speed, std::make_unique<sim::Explore>()) {}
+    : ExploringSource(std::move(options), limits, no_return, speed, std::make_unique<Explore>()) {}
 
-ExploringSource::ExploringSource(sim::SimulatorOptions options, SimulationLimits limits, NoReturn no_return,
-                                 double speed, std::unique_ptr<sim::Explore> explore)
+ExploringSource::ExploringSource(SimulatorOptions options, SimulationLimits limits, robot::NoReturn no_return,
+                                 double speed, std::unique_ptr<Explore> explore)
     : explore_(explore.get()), simulator_(std::move(options), std::move(explore)), limits_(limits),
       no_return_(no_return), speed_(speed) {
     limits_.scans = std::min(limits_.scans, scans_within(limits_.duration, simulator_.sensors().size()));
 }
 
-asio::awaitable<Result<std::optional<Observation>>> ExploringSource::next() {
+asio::awaitable<Result<std::optional<robot::Observation>>> ExploringSource::next() {
     assert(next_goal_);
-    if (is_stopped_ || resumed_after_ + scans_ >= limits_.scans) co_return std::optional<Observation>{};
+    if (is_stopped_ || resumed_after_ + scans_ >= limits_.scans) co_return std::optional<robot::Observation>{};
     if (explore_->needs_goal()) {
         if (auto result = co_await request_goal(); !result) co_return result.error();
     }
-    if (is_stopped_ || explore_->is_done()) co_return std::optional<Observation>{};
-    Observation observation = observed(simulator_, no_return_);
+    if (is_stopped_ || explore_->is_done()) co_return std::optional<robot::Observation>{};
+    robot::Observation observation = observed(simulator_, no_return_);
     const std::uint64_t moments = resumed_after_ / simulator_.sensors().size();
-    observation.scan.stamp += static_cast<double>(moments) * sim::kScanPeriod;
+    observation.scan.stamp += static_cast<double>(moments) * kScanPeriod;
     scans_ += 1;
     co_await wait_until_due(observation.scan.stamp);
     co_return std::optional(std::move(observation));
@@ -65,7 +65,7 @@ asio::awaitable<Result<>> ExploringSource::request_goal() {
     co_return take(std::get<0>(std::move(answer)));
 }
 
-Result<> ExploringSource::take(Result<NextStop> answer) {
+Result<> ExploringSource::take(Result<robot::NextStop> answer) {
     if (!answer) {
         failures_ += 1;
         if (failures_ >= kFailuresMax) return answer.error();
@@ -74,9 +74,9 @@ Result<> ExploringSource::take(Result<NextStop> answer) {
     }
     failures_ = 0;
     switch (answer->outcome) {
-    case NextStop::Outcome::kGoal: explore_->go(std::move(answer->path), answer->target); break;
-    case NextStop::Outcome::kTakenByOthers: explore_->wait(kRetryAfter); break;
-    case NextStop::Outcome::kComplete: explore_->finish(); break;
+    case robot::NextStop::Outcome::kGoal: explore_->go(std::move(answer->path), answer->target); break;
+    case robot::NextStop::Outcome::kTakenByOthers: explore_->wait(kRetryAfter); break;
+    case robot::NextStop::Outcome::kComplete: explore_->finish(); break;
     }
     return {};
 }
@@ -91,4 +91,4 @@ asio::awaitable<void> ExploringSource::wait_until_due(double stamp) {
     if (!is_stopped_) co_await wake_.wait(due);
 }
 
-} // namespace scanloom::robot
+} // namespace scanloom::sim

@@ -1,4 +1,4 @@
-#include "robot_client/sources/world_file.hpp"
+#include "sim/robot/world_file.hpp"
 
 #include "common/ros_map/description.hpp"
 #include "common/ros_map/pgm.hpp"
@@ -12,7 +12,7 @@
 #include <iterator>
 #include <span>
 
-namespace scanloom::robot {
+namespace scanloom::sim {
 namespace {
 
 namespace fs = std::filesystem;
@@ -38,7 +38,7 @@ Result<std::string> content_of(const fs::path& path) {
     return Error{Errc::kNotFound, fmt::format("{}: the file cannot be read", path.string())};
 }
 
-Result<sim::World> load_map(const fs::path& yaml) {
+Result<World> load_map(const fs::path& yaml) {
     const auto text = content_of(yaml);
     if (!text) return text.error();
     const auto description = parse_ros_yaml(*text);
@@ -52,7 +52,7 @@ Result<sim::World> load_map(const fs::path& yaml) {
     const std::span bytes(reinterpret_cast<const std::uint8_t*>(file->data()), file->size());
     const auto cells = read_ros_pgm(*description, bytes);
     if (!cells) return about(image, cells.error());
-    auto world = sim::world_of_map(yaml.stem().string(), *description, *cells);
+    auto world = world_of_map(yaml.stem().string(), *description, *cells);
     if (!world) return about(image, world.error());
     return world;
 }
@@ -63,12 +63,12 @@ bool is_world_file(std::string_view world) { return world.ends_with(".yaml") || 
 
 std::string check_world(const std::string& world) {
     if (is_world_file(world)) return {};
-    const auto found = sim::find_world(world);
+    const auto found = find_world(world);
     return found ? "" : found.error().message + ", or the .yaml file of a ROS map";
 }
 
-Result<sim::World> load_world(const std::string& world) {
-    return is_world_file(world) ? load_map(world) : sim::find_world(world);
+Result<World> load_world(const std::string& world) {
+    return is_world_file(world) ? load_map(world) : find_world(world);
 }
 
-} // namespace scanloom::robot
+} // namespace scanloom::sim

@@ -1,4 +1,4 @@
-#include "robot_client/sources/simulated_source.hpp"
+#include "sim/robot/simulated_source.hpp"
 
 #include "common/wire/messages.hpp"
 #include "sim/drive/wall_follower.hpp"
@@ -9,12 +9,11 @@
 #include <string>
 #include <vector>
 
-namespace scanloom::robot {
+namespace scanloom::sim {
 namespace {
 
-SimulatedSource make(SimulationLimits limits, NoReturn no_return = NoReturn::kFree) {
-    return {sim::Simulator({sim::make_office(), *sim::find_laser("reference"), std::nullopt, 3},
-                           std::make_unique<sim::WallFollower>()),
+SimulatedSource make(SimulationLimits limits, robot::NoReturn no_return = robot::NoReturn::kFree) {
+    return {Simulator({make_office(), *find_laser("reference"), std::nullopt, 3}, std::make_unique<WallFollower>()),
             limits, no_return};
 }
 
@@ -35,11 +34,10 @@ TEST(SimulatedSource, EndsAtItsFirstLimit) {
 
 /// Returns a source with a laser and sonars.
 SimulatedSource make_with_sonar(SimulationLimits limits, std::uint64_t seed, const char* world = "room_walker") {
-    sim::SimulatorOptions options{*sim::find_world(world), *sim::find_laser("lidar360"),
-                                  sim::Noise{.range_uniform = 0.05}, seed};
-    options.sonar = *sim::find_sonar("ring16");
-    options.pose = sim::PoseSent::kOdometry;
-    return {sim::Simulator(std::move(options), std::make_unique<sim::WallFollower>()), limits, NoReturn::kFree};
+    SimulatorOptions options{*find_world(world), *find_laser("lidar360"), Noise{.range_uniform = 0.05}, seed};
+    options.sonar = *find_sonar("ring16");
+    options.pose = PoseSent::kOdometry;
+    return {Simulator(std::move(options), std::make_unique<WallFollower>()), limits, robot::NoReturn::kFree};
 }
 
 TEST(SimulatedSource, EachSensorScansWithinTheDuration) {
@@ -85,7 +83,7 @@ TEST(SimulatedSource, NoReturnsAreFreeOrDropped) {
         return std::count(scan.ranges.begin(), scan.ranges.end(), mark) > 0;
     };
     auto free = make({.scans = 1});
-    auto drop = make({.scans = 1}, NoReturn::kDrop);
+    auto drop = make({.scans = 1}, robot::NoReturn::kDrop);
     const Scan freed = (*free.next())->scan;
     const Scan dropped = (*drop.next())->scan;
     EXPECT_TRUE(has(freed, kNoReturn) && !has(freed, kInvalidRange));
@@ -93,4 +91,4 @@ TEST(SimulatedSource, NoReturnsAreFreeOrDropped) {
 }
 
 } // namespace
-} // namespace scanloom::robot
+} // namespace scanloom::sim

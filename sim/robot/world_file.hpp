@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace scanloom::robot {
+namespace scanloom::sim {
 
 /// Returns whether `world` names a file: *.yaml or *.yml.
 [[nodiscard]] bool is_world_file(std::string_view world);
@@ -19,6 +19,6 @@ namespace scanloom::robot {
 /// image in the same folder.
 /// Errors: those of find_world(). For a map, with the path of the file first: kNotFound if it cannot be read; those of
 ///         parse_ros_yaml(), read_ros_pgm() and world_of_map().
-[[nodiscard]] Result<sim::World> load_world(const std::string& world);
+[[nodiscard]] Result<World> load_world(const std::string& world);
 
-} // namespace scanloom::robot
+} // namespace scanloom::sim

@@ -1,4 +1,4 @@
-#include "robot_client/sources/exploring_source.hpp"
+#include "sim/robot/exploring_source.hpp"
 
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
@@ -10,29 +10,29 @@
 #include <exception>
 #include <utility>
 
-namespace scanloom::robot {
+namespace scanloom::sim {
 namespace {
 
 namespace asio = boost::asio;
-using Given = Result<std::optional<Observation>>;
+using Given = Result<std::optional<robot::Observation>>;
 
 constexpr int kFirstTurnScansMax = 42; // upper bound for the scans of the first full turn
 
 class ExploringSourceTest : public testing::Test {
 protected:
     static ExploringSource make(SimulationLimits limits = {}, double speed = 0.0) {
-        return {{sim::make_room(), *sim::find_laser("lidar360"), std::nullopt, 3, Pose2{-3.5, -3.5, 0.0}},
+        return {{make_room(), *find_laser("lidar360"), std::nullopt, 3, Pose2{-3.5, -3.5, 0.0}},
                 limits,
-                NoReturn::kFree,
+                robot::NoReturn::kFree,
                 speed};
     }
 
     /// Returns a callback that gives the answers in order and counts the requests.
-    NextGoal answers(std::vector<Result<NextStop>> all) {
-        return [this, all = std::move(all)]() -> asio::awaitable<Result<NextStop>> {
+    robot::NextGoal answers(std::vector<Result<robot::NextStop>> all) {
+        return [this, all = std::move(all)]() -> asio::awaitable<Result<robot::NextStop>> {
             const std::size_t n = requests_++;
             EXPECT_LT(n, all.size());
-            co_return n < all.size() ? all[n] : Result<NextStop>(NextStop{});
+            co_return n < all.size() ? all[n] : Result<robot::NextStop>(robot::NextStop{});
         };
     }
 
@@ -53,17 +53,17 @@ protected:
         return scans;
     }
 
-    static NextStop goal(std::vector<Point2> path, const Point2& target) {
-        NextStop stop;
-        stop.outcome = NextStop::Outcome::kGoal;
+    static robot::NextStop goal(std::vector<Point2> path, const Point2& target) {
+        robot::NextStop stop;
+        stop.outcome = robot::NextStop::Outcome::kGoal;
         stop.path = std::move(path);
         stop.target = target;
         return stop;
     }
 
-    static NextStop taken() {
-        NextStop stop;
-        stop.outcome = NextStop::Outcome::kTakenByOthers;
+    static robot::NextStop taken() {
+        robot::NextStop stop;
+        stop.outcome = robot::NextStop::Outcome::kTakenByOthers;
         return stop;
     }
 
@@ -73,7 +73,7 @@ protected:
 
 TEST_F(ExploringSourceTest, RequestsGoalsAfterObservingAndEndsWhenExplored) {
     auto source = make();
-    source.ask_with(answers({goal({{-3.5, -3.5}, {-3.5, -1.5}}, {-3.5, 0.0}), NextStop{}}));
+    source.ask_with(answers({goal({{-3.5, -3.5}, {-3.5, -1.5}}, {-3.5, 0.0}), robot::NextStop{}}));
     const auto scans = all_of(source);
     EXPECT_EQ(requests_, 2U);
     ASSERT_GT(scans.size(), 70U);
@@ -89,7 +89,7 @@ TEST_F(ExploringSourceTest, RequestsGoalsAfterObservingAndEndsWhenExplored) {
 
 TEST_F(ExploringSourceTest, TakenGoalsAreRequestedAgainAfterOneSecond) {
     auto source = make();
-    source.ask_with(answers({taken(), taken(), NextStop{}}));
+    source.ask_with(answers({taken(), taken(), robot::NextStop{}}));
     const auto scans = all_of(source);
     EXPECT_EQ(requests_, 3U);
     EXPECT_LE(scans.size(), kFirstTurnScansMax + 20U);
@@ -99,7 +99,7 @@ TEST_F(ExploringSourceTest, TakenGoalsAreRequestedAgainAfterOneSecond) {
 TEST_F(ExploringSourceTest, ErrorsAreRetriedUntilTheTenthInARow) {
     const Error refused{Errc::kOverloaded, "no time for this now"};
     auto source = make();
-    std::vector<Result<NextStop>> all(9, refused);
+    std::vector<Result<robot::NextStop>> all(9, refused);
     all.emplace_back(taken()); // therefore the errors are not ten in a row
     all.insert(all.end(), 10, refused);
     source.ask_with(answers(all));
@@ -112,7 +112,7 @@ TEST_F(ExploringSourceTest, ErrorsAreRetriedUntilTheTenthInARow) {
 
 TEST_F(ExploringSourceTest, EndsIfEveryGoalIsBlocked) {
     auto source = make();
-    source.ask_with([this]() -> asio::awaitable<Result<NextStop>> {
+    source.ask_with([this]() -> asio::awaitable<Result<robot::NextStop>> {
         ++requests_;
         co_return goal({{-3.5, -3.5}, {-9.0, -9.0}}, {-9.0, -9.0}); // through the walls of a corner
     });
@@ -137,11 +137,11 @@ TEST_F(ExploringSourceTest, LimitsIncludeEarlierRuns) {
 TEST_F(ExploringSourceTest, StopDuringARequestEndsTheSource) {
     auto source = make();
     bool needs_goal = false;
-    source.ask_with([&]() -> asio::awaitable<Result<NextStop>> {
+    source.ask_with([&]() -> asio::awaitable<Result<robot::NextStop>> {
         needs_goal = true;
         asio::steady_timer never(co_await asio::this_coro::executor, asio::steady_timer::time_point::max());
         co_await never.async_wait(asio::use_awaitable);
-        co_return NextStop{};
+        co_return robot::NextStop{};
     });
     std::optional<Given> last;
     int scans = 0;
@@ -165,7 +165,7 @@ TEST_F(ExploringSourceTest, StopDuringARequestEndsTheSource) {
 }
 
 TEST_F(ExploringSourceTest, ScansAreIndependentOfTheSpeed) {
-    const std::vector<Result<NextStop>> all{goal({{-3.5, -3.5}, {-3.5, -3.0}}, {-3.5, 0.0}), NextStop{}};
+    const std::vector<Result<robot::NextStop>> all{goal({{-3.5, -3.5}, {-3.5, -3.0}}, {-3.5, 0.0}), robot::NextStop{}};
     auto first = make();
     first.ask_with(answers(all));
     const auto scans = all_of(first);
@@ -176,4 +176,4 @@ TEST_F(ExploringSourceTest, ScansAreIndependentOfTheSpeed) {
 }
 
 } // namespace
-} // namespace scanloom::robot
+} // namespace scanloom::sim

@@ -1,9 +1,9 @@
 #pragma once
 
 #include "robot_client/sources/live_source.hpp"
-#include "robot_client/sources/simulated_source.hpp"
 #include "robot_client/sources/wake_signal.hpp"
 #include "sim/drive/explore.hpp"
+#include "sim/robot/simulated_source.hpp"
 #include "sim/simulator.hpp"
 
 #include <boost/asio/awaitable.hpp>
@@ -14,7 +14,7 @@
 #include <optional>
 #include <string>
 
-namespace scanloom::robot {
+namespace scanloom::sim {
 
 /// A simulated robot that explores a world and goes where the server directs it, until exploration is complete or the
 /// first of its limits is reached. The simulation stands still while a reply is awaited, so the same replies give the
@@ -22,13 +22,13 @@ namespace scanloom::robot {
 /// in a row.
 ///
 /// Threads: as for LiveSource.
-class ExploringSource final : public LiveSource {
+class ExploringSource final : public robot::LiveSource {
 public:
     /// @param speed  of the simulation, as a multiple of real time; 0 = as fast as scans are taken
-    ExploringSource(sim::SimulatorOptions options, SimulationLimits limits, NoReturn no_return, double speed);
+    ExploringSource(SimulatorOptions options, SimulationLimits limits, robot::NoReturn no_return, double speed);
 
     /// Sets the function that returns the next goal. Call it before the first next().
-    void ask_with(NextGoal next_goal) { next_goal_ = std::move(next_goal); }
+    void ask_with(robot::NextGoal next_goal) { next_goal_ = std::move(next_goal); }
 
     [[nodiscard]] bool can_wait() const override { return true; }
     /// Stamps continue after those of the stored scans, and limits count those scans. The robot itself starts at its
@@ -36,35 +36,35 @@ public:
     void resume_after(std::uint64_t scans) override { resumed_after_ = scans; }
 
     /// Errors: the last of ten failed replies; kNoPath if something blocks the robot wherever it is sent.
-    [[nodiscard]] boost::asio::awaitable<Result<std::optional<Observation>>> next() override;
+    [[nodiscard]] boost::asio::awaitable<Result<std::optional<robot::Observation>>> next() override;
     void stop() override;
     [[nodiscard]] std::string remarks() const override { return explore_->remarks(); }
 
-    [[nodiscard]] const sim::Simulator& simulator() const noexcept { return simulator_; }
+    [[nodiscard]] const Simulator& simulator() const noexcept { return simulator_; }
 
 private:
     using Clock = std::chrono::steady_clock;
 
-    ExploringSource(sim::SimulatorOptions options, SimulationLimits limits, NoReturn no_return, double speed,
-                    std::unique_ptr<sim::Explore> explore);
+    ExploringSource(SimulatorOptions options, SimulationLimits limits, robot::NoReturn no_return, double speed,
+                    std::unique_ptr<Explore> explore);
 
     [[nodiscard]] boost::asio::awaitable<Result<>> request_goal();
-    [[nodiscard]] Result<> take(Result<NextStop> answer);
+    [[nodiscard]] Result<> take(Result<robot::NextStop> answer);
     [[nodiscard]] boost::asio::awaitable<void> wait_until_due(double stamp);
 
-    sim::Explore* explore_; // owned by the simulator
-    sim::Simulator simulator_;
+    Explore* explore_; // owned by the simulator
+    Simulator simulator_;
     SimulationLimits limits_;
-    NoReturn no_return_;
+    robot::NoReturn no_return_;
     double speed_;
-    NextGoal next_goal_;
+    robot::NextGoal next_goal_;
     std::uint64_t resumed_after_ = 0;
     std::uint64_t scans_ = 0; // of this run
     double stamp_ = -1.0;     // of the newest scan
     int failures_ = 0;        // in a row
     bool is_stopped_ = false;
-    WakeSignal wake_;
+    robot::WakeSignal wake_;
     Clock::time_point due_ = Clock::time_point::min();
 };
 
-} // namespace scanloom::robot
+} // namespace scanloom::sim
