@@ -18,6 +18,12 @@ enum class Layer : std::uint8_t {
 /// All layers, in the order of their numbers.
 inline constexpr std::array kLayers = {Layer::kOccupancy, Layer::kHimm, Layer::kSonar, Layer::kClassification};
 
+/// Returns whether the values of a layer are probabilities of occupation.
+/// @param layer  any layer
+[[nodiscard]] constexpr bool is_probability(Layer layer) noexcept {
+    return layer == Layer::kOccupancy || layer == Layer::kSonar;
+}
+
 /// Returns the layer's name in URLs, e.g. "occupancy".
 /// @param layer  any layer
 [[nodiscard]] constexpr std::string_view name_of(Layer layer) noexcept {

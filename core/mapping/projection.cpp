@@ -76,7 +76,7 @@ bool Projection::integrate_entry(const ScanTaken& taken, double& work) {
         const Sensor& sensor = *robots()[taken.robot].find_sensor(scan.sensor)->sensor;
         const Pose2 T_map_sensor = compose(scan.pose, sensor.mount);
         const auto& fan = fan_of(robot, sensor, scan).fan;
-        const ReadingRules readings{sensor.range_min, sensor.range_max, config_.drop_no_return};
+        const ReadingRules readings = rules_of(config_, sensor);
         // Update the cells that they cross; a large scan continues in the next call
         const bool complete =
             sensor.kind == SensorKind::kLaser

@@ -34,11 +34,11 @@ double work_of_cone(double aperture, RangeMm range, const ModelGeometry& geometr
     return kWorkPerSonarCell * 0.5 * aperture * cells * cells + 2.0 * cells + 1.0;
 }
 
-namespace {
-
-ReadingRules rules_of(const MapConfig& config, const Sensor& sensor) {
+ReadingRules rules_of(const MapConfig& config, const Sensor& sensor) noexcept {
     return {sensor.range_min, sensor.range_max, config.drop_no_return};
 }
+
+namespace {
 
 /// Returns an upper bound of a sector's width. For explicit angles, a closer bound would need a sort.
 double sector_width(double aperture, const Sensor& sensor, const Scan& scan) {

@@ -1,6 +1,8 @@
 #pragma once
 
+#include "common/scan/limits.hpp"
 #include "common/scan/log_entry.hpp"
+#include "common/scan/reading.hpp"
 #include "common/scan/scan.hpp"
 #include "common/scan/sensor.hpp"
 #include "core/grid/chunk.hpp"
@@ -37,6 +39,11 @@ inline constexpr double kWorkPerSweptChunk = 2048.0;
 /// @param geometry  range limits, thickness and cell size
 [[nodiscard]] double reached(RangeMm range, const ModelGeometry& geometry) noexcept;
 
+/// Returns how the readings of a sensor are interpreted in a session's maps.
+/// @param config  of the session
+/// @param sensor  that took the readings
+[[nodiscard]] ReadingRules rules_of(const MapConfig& config, const Sensor& sensor) noexcept;
+
 /// Upper bounds of what integrating a scan may change, computed beforehand to limit memory and work.
 struct Reach {
     SensorKind kind = SensorKind::kLaser; ///< laser and sonar layers have separate chunks
@@ -61,9 +68,6 @@ struct Reach {
 
 /// Limit of the work of one scan, greater than that of any laser scan.
 inline constexpr double kScanWorkMax = 1e9;
-
-/// Limit of a sensor's range, in cells.
-inline constexpr double kReachCellsMax = 8192.0;
 
 /// Checks a sensor's range against the cell size.
 /// @param config  its cell size is used

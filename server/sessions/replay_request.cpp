@@ -39,7 +39,7 @@ std::string named(const mapping::Projection& projection, RobotIndex robot, const
 }
 
 /// Returns the smallest cell size, in metres with whole millimetres, at which the sensor's range is allowed.
-double cell_size_for(const Sensor& sensor) { return std::ceil(sensor.range_max / mapping::kReachCellsMax * 1e3) / 1e3; }
+double cell_size_for(const Sensor& sensor) { return std::ceil(sensor.range_max / kReachCellsMax * 1e3) / 1e3; }
 
 Error too_many_cells(const mapping::Projection& projection, const std::string& what) {
     return {Errc::kInvalidField,
@@ -56,7 +56,7 @@ Result<> check(const mapping::Projection& projection, const SensorDescribed& des
     if (mapping::check_reach(config, sensor)) return {};
     return Error{Errc::kInvalidField,
                  fmt::format("{} reaches {} metres, more than {} cells of {} metres; give a cell_size of {} or more",
-                             named(projection, described.robot, sensor), sensor.range_max, mapping::kReachCellsMax,
+                             named(projection, described.robot, sensor), sensor.range_max, kReachCellsMax,
                              config.cell_size, cell_size_for(sensor))};
 }
 

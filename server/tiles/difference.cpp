@@ -75,7 +75,7 @@ std::vector<Verdict> verdicts_of(mapping::Layer layer, const mapping::MapConfig&
 /// Returns the probability of every value, indexed by the value's bits as uint16; 0 for layers without probabilities.
 std::vector<double> probabilities_of(mapping::Layer layer) {
     std::vector<double> probabilities(kValues, 0.0);
-    if (layer != mapping::Layer::kOccupancy && layer != mapping::Layer::kSonar) return probabilities;
+    if (!mapping::is_probability(layer)) return probabilities;
     for (std::size_t bits = 0; bits < kValues; ++bits) {
         probabilities[bits] = mapping::probability_of(static_cast<Value>(bits));
     }

@@ -21,16 +21,12 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "arrays are written as they lie in memory, as '<f4'");
 
-bool is_probability(mapping::Layer layer) noexcept {
-    return layer == mapping::Layer::kOccupancy || layer == mapping::Layer::kSonar;
-}
-
 /// Returns the header: magic, version 1.0, and a description padded so that the data start at a multiple of 64 bytes.
 std::string npy_header(mapping::Layer layer, const MapFrame& frame) {
     constexpr std::size_t kAlignment = 64;
     constexpr std::size_t kBeforeText = 10; // magic, version, length of the text
     std::string text = fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': ({}, {}), }}",
-                                   is_probability(layer) ? "<f4" : "|u1", frame.height(), frame.width());
+                                   mapping::is_probability(layer) ? "<f4" : "|u1", frame.height(), frame.width());
     const std::size_t unpadded = kBeforeText + text.size() + 1;
     text.append((kAlignment - unpadded % kAlignment) % kAlignment, ' ');
     text += '\n';
@@ -66,12 +62,14 @@ std::string map_csv(const MapImage& image) {
     return csv;
 }
 
-std::int64_t npy_bytes_per_cell(mapping::Layer layer) noexcept { return is_probability(layer) ? sizeof(float) : 1; }
+std::int64_t npy_bytes_per_cell(mapping::Layer layer) noexcept {
+    return mapping::is_probability(layer) ? sizeof(float) : 1;
+}
 
 Bytes map_npy(const mapping::Snapshot& snapshot, mapping::Layer layer, const MapFrame& frame) {
     const auto header = npy_header(layer, frame);
     Bytes npy(header.begin(), header.end());
-    if (!is_probability(layer)) {
+    if (!mapping::is_probability(layer)) {
         const auto image = render_map(snapshot, layer, frame);
         npy.insert(npy.end(), image.codes.begin(), image.codes.end());
         return npy;

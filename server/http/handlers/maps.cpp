@@ -161,10 +161,6 @@ boost::json::value part_of(double part, std::uint64_t whole) {
     return part / static_cast<double>(whole);
 }
 
-bool is_probability(mapping::Layer layer) {
-    return layer == mapping::Layer::kOccupancy || layer == mapping::Layer::kSonar;
-}
-
 } // namespace
 
 Result<Response> get_difference(Context& context) {
@@ -190,7 +186,7 @@ Result<Response> get_difference(Context& context) {
                              {"areas", std::move(areas)},
                              {"agreement", part_of(static_cast<double>(sums.agreeing), sums.known)},
                              {"mean_difference", nullptr}};
-    if (is_probability(wanted->layer)) json["mean_difference"] = part_of(sums.difference, sums.known);
+    if (mapping::is_probability(wanted->layer)) json["mean_difference"] = part_of(sums.difference, sums.known);
     return ok(json);
 }
 
