@@ -63,7 +63,7 @@ Server::Server(const ServerOptions& options, const ConnectionLimits& limits, std
     : options_(options), limits_(limits), log_(std::move(log)), metrics_(kVersion), audit_(metrics_.registry()),
       pools_(options.threads), sessions_(*log_, {.compute = pools_.sessions,
                                                  .now = seconds_since_epoch,
-                                                 .may_wait = pools_.checkpoints,
+                                                 .blocking_executor = pools_.checkpoints,
                                                  .reading = pools_.loading,
                                                  .pages_max = options.map_memory_bytes / mapping::kPageBytes,
                                                  .idle_after = options.idle_after}),

@@ -14,7 +14,7 @@ IngestServer::IngestServer(asio::io_context& io, const asio::ip::tcp::endpoint& 
                            const IngestConfig& config)
     : io_(io), acceptor_(asio::make_strand(io), endpoint), port_(acceptor_.local_endpoint().port()),
       services_(services), config_(config), limits_(config.links_max, config.greeting_max) {
-    services_.may_wait = asio::make_strand(services.may_wait);
+    services_.blocking_executor = asio::make_strand(services.blocking_executor);
 }
 
 void IngestServer::start() {

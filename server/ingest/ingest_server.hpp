@@ -27,7 +27,7 @@ struct IngestConfig {
 /// ConnectionLimits decides which connections are served.
 ///
 /// Sessions that robots create are created one at a time. However many robots wait for theirs, they occupy one thread
-/// of LinkServices::may_wait.
+/// of LinkServices::blocking_executor.
 /// Threads: those of the io_context; start() and stop() from any thread.
 class IngestServer {
 public:

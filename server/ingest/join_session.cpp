@@ -15,8 +15,8 @@ namespace {
 using Found = Result<std::shared_ptr<sessions::Session>>;
 
 asio::awaitable<Found> create(const wire::Hello& hello, sessions::SessionRegistry& sessions,
-                              const sessions::Creator& maker, asio::any_io_executor may_wait) {
-    auto created = co_await sockets::compute_on(std::move(may_wait),
+                              const sessions::Creator& maker, asio::any_io_executor blocking_executor) {
+    auto created = co_await sockets::compute_on(std::move(blocking_executor),
                                                 [&] { return sessions.create(hello.session, *hello.create, maker); });
     if (!created && created.error().code == Errc::kInvalidField) co_return prefixed("hello.create.", created.error());
     co_return created;
@@ -46,10 +46,10 @@ Error absence_of(const std::string& name, const sessions::SessionRegistry& sessi
 } // namespace
 
 asio::awaitable<Found> session_for(const wire::Hello& hello, sessions::SessionRegistry& sessions,
-                                   const sessions::Creator& maker, asio::any_io_executor may_wait) {
+                                   const sessions::Creator& maker, asio::any_io_executor blocking_executor) {
     auto session = co_await loaded(hello.session, sessions);
     if (!session && session.error().code == Errc::kNotFound && hello.create) {
-        auto created = co_await create(hello, sessions, maker, std::move(may_wait));
+        auto created = co_await create(hello, sessions, maker, std::move(blocking_executor));
         if (created || created.error().code != Errc::kAlreadyExists) co_return created;
         session = co_await loaded(hello.session, sessions); // another robot created it first
     }

@@ -221,7 +221,7 @@ asio::awaitable<Result<Protocol::Joined>> RobotConnection::enter(const wire::Hel
     };
     if (auto ok = permission_.request(hello, Clock::now(), on_change); !ok) co_return ok.error();
     const auto creator = sessions::creator_of(*permission_.token());
-    auto session = co_await session_for(hello, services_.sessions, creator, services_.may_wait);
+    auto session = co_await session_for(hello, services_.sessions, creator, services_.blocking_executor);
     if (!session && session.error().code == Errc::kFull) permission_.record_limit();
     if (!session) co_return session.error();
     const auto joined = co_await join_session(**session, hello, shared_from_this());

@@ -27,7 +27,7 @@ namespace scanloom::ingest {
 /// The parts of the server that a connection uses.
 struct LinkServices {
     sessions::SessionRegistry& sessions;
-    boost::asio::any_io_executor may_wait; ///< for work that waits for the disk
+    boost::asio::any_io_executor blocking_executor; ///< for work that waits for the disk
     metrics::IngestCounters& counters;
     RequestExecutor& requests;
     auth::Authenticator& authenticator;

@@ -66,7 +66,7 @@ std::shared_ptr<Session> SessionFactory::make(SessionInfo info, mapping::Project
     auto own = limits;
     own.chunks_max = info.chunks_max;
     return std::make_shared<Session>(std::move(info), std::move(projection), checkpointed, log, compute, counters, own,
-                                     may_wait);
+                                     blocking_executor);
 }
 
 Result<std::shared_ptr<Session>> SessionFactory::read(const SessionInfo& info, const std::atomic<bool>& stop,

@@ -30,10 +30,11 @@ namespace scanloom::sessions {
 
 /// Executors, clocks and memory limits of a registry.
 struct RegistryConfig {
-    boost::asio::any_io_executor compute;                   ///< sessions apply entries on it
-    std::function<double()> now;                            ///< seconds since the epoch, for SessionInfo::created
-    std::optional<boost::asio::any_io_executor> may_wait{}; ///< sessions write checkpoints on it; default: `compute`
-    std::optional<boost::asio::any_io_executor> reading{};  ///< sessions are loaded on it; default: `compute`
+    boost::asio::any_io_executor compute; ///< sessions apply entries on it
+    std::function<double()> now;          ///< seconds since the epoch, for SessionInfo::created
+    std::optional<boost::asio::any_io_executor>
+        blocking_executor{};                               ///< sessions write checkpoints on it; default: `compute`
+    std::optional<boost::asio::any_io_executor> reading{}; ///< sessions are loaded on it; default: `compute`
 
     std::function<SessionCache::Clock::time_point()> clock = [] { return SessionCache::Clock::now(); };
 
@@ -47,8 +48,8 @@ struct RegistryConfig {
 /// Creates the sessions of a server from what they share.
 struct SessionFactory {
     store::ScanLog& log;
-    boost::asio::any_io_executor compute;  ///< sessions apply entries on it
-    boost::asio::any_io_executor may_wait; ///< sessions write checkpoints on it, which blocks
+    boost::asio::any_io_executor compute;           ///< sessions apply entries on it
+    boost::asio::any_io_executor blocking_executor; ///< sessions write checkpoints on it, which blocks
     SessionLimits limits{};
     std::shared_ptr<SessionCounters> counters = std::make_shared<SessionCounters>();
 
@@ -99,9 +100,11 @@ private:
 
 struct RegistryState {
     RegistryState(store::ScanLog& scan_log, RegistryConfig registry_config)
-        : log(scan_log), config(std::move(registry_config)), may_wait(config.may_wait.value_or(config.compute)),
+        : log(scan_log), config(std::move(registry_config)),
+          blocking_executor(config.blocking_executor.value_or(config.compute)),
           reading(config.reading.value_or(config.compute)),
-          pages(std::make_shared<limits::MemoryBudget>(config.pages_max)), factory{log, config.compute, may_wait} {
+          pages(std::make_shared<limits::MemoryBudget>(config.pages_max)), factory{log, config.compute,
+                                                                                   blocking_executor} {
         factory.limits.shared = {pages};
     }
 
@@ -112,7 +115,7 @@ struct RegistryState {
 
     store::ScanLog& log;
     const RegistryConfig config;
-    const boost::asio::any_io_executor may_wait;
+    const boost::asio::any_io_executor blocking_executor;
     const boost::asio::any_io_executor reading;
     const std::shared_ptr<limits::MemoryBudget> pages; ///< of the maps in memory
     SessionFactory factory;

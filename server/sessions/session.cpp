@@ -59,11 +59,11 @@ const std::shared_ptr<const mapping::Snapshot>& no_maps() {
 
 Session::Session(SessionInfo info, mapping::Projection projection, std::optional<Revision> checkpointed,
                  store::ScanLog& log, boost::asio::any_io_executor compute, std::shared_ptr<SessionCounters> counters,
-                 const SessionLimits& limits, std::optional<boost::asio::any_io_executor> may_wait)
+                 const SessionLimits& limits, std::optional<boost::asio::any_io_executor> blocking_executor)
     : info_(std::move(info)), log_(log), counters_(std::move(counters)), limits_(limits),
-      may_wait_(may_wait.value_or(compute)), strand_(std::move(compute)), sequencer_(info_, *counters_),
-      projection_(std::move(projection)), appended_(projection_.revision()), share_(limits.shared),
-      pages_(projection_.page_count()), checkpointed_(checkpointed) {
+      blocking_executor_(blocking_executor.value_or(compute)), strand_(std::move(compute)),
+      sequencer_(info_, *counters_), projection_(std::move(projection)), appended_(projection_.revision()),
+      share_(limits.shared), pages_(projection_.page_count()), checkpointed_(checkpointed) {
     share_.take_anyway(static_cast<std::int64_t>(pages_)); // its log is stored, so its maps must be served
     sequencer_.restore(projection_.state());
     static_cast<void>(no_maps()); // create it while there is memory
@@ -235,7 +235,7 @@ Result<> Session::apply_entries(double work) {
             if (!applied) return applied.error();
             if (!*applied) return {}; // continues in the next slice
             work_since_checkpoint_ += next.reach.work;
-            if (auto* taken = std::get_if<ScanTaken>(&*next.entry)) count_and_keep(*taken);
+            if (auto* taken = std::get_if<ScanTaken>(&*next.entry)) record_applied_scan(*taken);
             if (std::holds_alternative<SensorDescribed>(*next.entry)) described_since_checkpoint_ += next.bytes;
         }
         return {};
@@ -246,7 +246,7 @@ Result<> Session::apply_entries(double work) {
 
 /// Counts an applied scan and moves its readings into newest_scans_. RobotSequencer needs only the sequence number of
 /// the rest.
-void Session::count_and_keep(ScanTaken& applied) {
+void Session::record_applied_scan(ScanTaken& applied) {
     if (projection_.has_left_out_newest(applied.robot)) {
         ++counters_->scans_jumped;
         return;
@@ -305,7 +305,7 @@ void Session::begin_checkpoint() {
             session.finish_closing();
         });
     };
-    boost::asio::post(may_wait_, std::move(write)); // not on the strand, which continues to apply entries
+    boost::asio::post(blocking_executor_, std::move(write)); // not on the strand, which continues to apply entries
 }
 
 // Failures and closing

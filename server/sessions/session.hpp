@@ -40,11 +40,12 @@ public:
     /// @param checkpointed  revision of the stored checkpoint, as Recovered::checkpointed
     /// @param log  must outlive the session
     /// @param compute  applies entries
-    /// @param may_wait  writes checkpoints, which blocks; `compute` by default
+    /// @param blocking_executor  writes checkpoints, which blocks; `compute` by default
     Session(SessionInfo info, mapping::Projection projection, std::optional<Revision> checkpointed, store::ScanLog& log,
             boost::asio::any_io_executor compute,
             std::shared_ptr<SessionCounters> counters = std::make_shared<SessionCounters>(),
-            const SessionLimits& limits = {}, std::optional<boost::asio::any_io_executor> may_wait = std::nullopt);
+            const SessionLimits& limits = {},
+            std::optional<boost::asio::any_io_executor> blocking_executor = std::nullopt);
 
     [[nodiscard]] const SessionInfo& info() const noexcept { return info_; }
 
@@ -138,7 +139,7 @@ private:
     void on_appended(Group group, const Result<>& appended);
     void apply_batch();
     [[nodiscard]] Result<> apply_entries(double work);
-    void count_and_keep(ScanTaken& applied);
+    void record_applied_scan(ScanTaken& applied);
     [[nodiscard]] Group take_applied_group();
     [[nodiscard]] Result<> publish();
     void notify_watchers();
@@ -154,7 +155,7 @@ private:
     store::ScanLog& log_;
     const std::shared_ptr<SessionCounters> counters_;
     const SessionLimits limits_;
-    boost::asio::any_io_executor may_wait_;
+    boost::asio::any_io_executor blocking_executor_;
     boost::asio::strand<boost::asio::any_io_executor> strand_;
     RobotSequencer sequencer_;
 

@@ -27,7 +27,7 @@ Error no_room(const EvictedSession& evicted) {
 
 SessionLoader::SessionLoader(RegistryState& state) : state_(state) {
     state_.factory.limits.on_short = [this](std::size_t pages) {
-        boost::asio::post(state_.may_wait, [this, pages] { free_pages(pages + spare_pages()); });
+        boost::asio::post(state_.blocking_executor, [this, pages] { free_pages(pages + spare_pages()); });
     };
 }
 
@@ -148,7 +148,7 @@ void SessionLoader::trim_heap(std::size_t pages) {
 }
 
 void SessionLoader::trim_heap_later(std::size_t pages) {
-    boost::asio::post(state_.may_wait, [this, pages] { trim_heap(pages); });
+    boost::asio::post(state_.blocking_executor, [this, pages] { trim_heap(pages); });
 }
 
 } // namespace scanloom::sessions

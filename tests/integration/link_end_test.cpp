@@ -143,7 +143,7 @@ TEST(Ingest, CreatingSessionsDoesNotBlockOtherChanges) {
     log.wait_until_reached();
     for (int n = 0; n < 1000; ++n) { // meanwhile the other hellos arrive
         const auto changed = std::make_shared<std::promise<void>>();
-        boost::asio::post(ingest.may_wait(), [changed] { changed->set_value(); });
+        boost::asio::post(ingest.blocking_executor(), [changed] { changed->set_value(); });
         changed->get_future().wait(); // would wait forever if robots held every thread
     }
     log.open();

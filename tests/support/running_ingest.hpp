@@ -23,7 +23,8 @@ public:
         if (auto recovered = sessions_.recover(); !recovered) throw ErrorException(recovered.error());
         server_ = std::make_unique<IngestServer>(
             io_, boost::asio::ip::tcp::endpoint(boost::asio::ip::address_v4::loopback(), 0),
-            LinkServices{sessions_, may_wait_.get_executor(), metrics_.ingest(), requests_, authenticator_, audit_},
+            LinkServices{sessions_, blocking_executor_.get_executor(), metrics_.ingest(), requests_, authenticator_,
+                         audit_},
             config);
         server_->start();
         for (int n = 0; n < 2; ++n) io_threads_.emplace_back([this] { io_.run(); });
@@ -40,7 +41,7 @@ public:
         for (auto& thread : io_threads_) thread.join();
         planning_.join();
         locating_.join();
-        may_wait_.join();
+        blocking_executor_.join();
         compute_.join();
     }
 
@@ -53,7 +54,7 @@ public:
     [[nodiscard]] guidance::Locator& locator() { return locator_; }
     [[nodiscard]] boost::asio::any_io_executor planning() { return planning_.get_executor(); }
     [[nodiscard]] boost::asio::any_io_executor locating() { return locating_.get_executor(); }
-    [[nodiscard]] boost::asio::any_io_executor may_wait() { return may_wait_.get_executor(); }
+    [[nodiscard]] boost::asio::any_io_executor blocking_executor() { return blocking_executor_.get_executor(); }
     [[nodiscard]] std::uint16_t port() const { return server_->port(); }
 
     [[nodiscard]] std::shared_ptr<const mapping::Snapshot> snapshot(const std::string& session) {
@@ -71,7 +72,7 @@ private:
     metrics::Metrics metrics_{"test"};
     auth::Authenticator authenticator_;
     auth::AuditLog audit_{metrics_.registry()};
-    boost::asio::thread_pool may_wait_{2};
+    boost::asio::thread_pool blocking_executor_{2};
     boost::asio::thread_pool planning_{1};
     boost::asio::thread_pool locating_{1};
     boost::asio::io_context io_;
