@@ -35,8 +35,8 @@ struct Hello {
 };
 
 struct Limits {
-    std::uint32_t frame_size_max = 0;
-    std::uint32_t beams_max = 0;
+    std::uint32_t frame_size_max = 0; ///< bytes of a frame, without its length prefix
+    std::uint32_t beams_max = 0;      ///< of a scan
     std::uint32_t scans_per_batch_max = 0;
 
     friend bool operator==(const Limits&, const Limits&) = default;
@@ -46,8 +46,8 @@ struct Welcome {
     std::string session_id;
     std::uint64_t last_durable_seq = 0;
     Limits limits;
-    std::uint64_t credit_bytes = 0;
-    bool zstd = false; ///< whether the server accepts CompressedScanBatch
+    std::uint64_t credit_bytes = 0; ///< that may be sent without an acknowledgement
+    bool zstd = false;              ///< whether the server accepts CompressedScanBatch
 
     friend bool operator==(const Welcome&, const Welcome&) = default;
 };
@@ -67,9 +67,9 @@ struct CompressedScanBatch {
 };
 
 struct Ack {
-    std::uint64_t durable_seq = 0;
-    std::uint64_t applied_seq = 0;
-    std::uint64_t credit_bytes = 0;
+    std::uint64_t durable_seq = 0;  ///< this scan and all earlier ones are durable
+    std::uint64_t applied_seq = 0;  ///< this scan and all earlier ones are in the maps
+    std::uint64_t credit_bytes = 0; ///< that may be sent without an acknowledgement
 
     friend bool operator==(const Ack&, const Ack&) = default;
 };
@@ -102,7 +102,7 @@ struct Goodbye {
 
 /// The pose of a robot's odometry frame in the map, as the server has estimated it.
 struct Correction {
-    Pose2 T_map_odom;
+    Pose2 T_map_odom; ///< metres, radians
     std::uint64_t revision = 0;
     double explained = 0.0;      ///< inlier ratio of the robot's points in the map, 0 to 1
     double position_sigma = 0.0; ///< metres, in the most uncertain direction
@@ -127,8 +127,8 @@ struct ReplyOf {
 /// Straight lines from point to point. Metres, map frame.
 struct Path {
     std::vector<Point2> points; ///< at least 1
-    double length = 0.0;
-    double cost = 0.0; ///< length, but a metre in danger counts 1 + danger_cost
+    double length = 0.0;        ///< metres
+    double cost = 0.0;          ///< metres, but a metre in danger counts 1 + danger_cost
 
     friend bool operator==(const Path&, const Path&) = default;
 };
@@ -139,10 +139,10 @@ struct PlanRequest {
 
     std::uint64_t id = 0;
     std::optional<Point2> start; ///< nullopt: where the robot's newest scan was taken
-    Point2 goal{0.0, 0.0};
+    Point2 goal{0.0, 0.0};       ///< metres, map frame
     bool allow_unknown = false;
     std::optional<double> body_radius; ///< metres
-    std::optional<double> danger_cost;
+    std::optional<double> danger_cost; ///< additional metres for each metre in danger
 
     friend bool operator==(const PlanRequest&, const PlanRequest&) = default;
 };
@@ -152,7 +152,7 @@ enum class Exploration : std::uint8_t { kGoal = 1, kTakenByOthers = 2, kComplete
 struct Goal {
     Exploration exploration = Exploration::kComplete;
     std::optional<Path> path;     ///< with kGoal: leads to where to stand
-    std::optional<Point2> target; ///< with kGoal: the frontier's cell nearest to there, to look at
+    std::optional<Point2> target; ///< with kGoal: the frontier's cell nearest to there, to look at; metres, map frame
     std::uint32_t given_up = 0;   ///< frontier cells that no longer count, because robots could not observe them
     bool in_danger = false;       ///< whether the place to stand is in danger, as there is no other
 
@@ -197,15 +197,15 @@ struct CoverageRequest {
     std::optional<Point2> start;
     std::optional<double> body_radius; ///< metres
     std::optional<double> spacing;     ///< metres
-    std::vector<Point2> region;        ///< corners of a polygon; empty: all free ground around the start
+    std::vector<Point2> region;        ///< corners of a polygon, metres; empty: all free ground around the start
 
     friend bool operator==(const CoverageRequest&, const CoverageRequest&) = default;
 };
 
 /// A square around a point of the map.
 struct Near {
-    Point2 point{0.0, 0.0};
-    double radius = 0.0; ///< metres, along each axis
+    Point2 point{0.0, 0.0}; ///< metres, map frame
+    double radius = 0.0;    ///< metres, along each axis
 
     friend bool operator==(const Near&, const Near&) = default;
 };

@@ -34,9 +34,9 @@ struct PreparedSource {
 /// Opens the recording, prepares a live source for the device, or sets up the simulation. Reports the first invalid
 /// lines of a log or of poses, stamps that go back, and later events of a device to the console, which must outlive the
 /// source.
-/// Errors: those of CarmenLog::open(), SonarLog::open(), Ld06Capture::open(), read_pose_lines() and prepare_simulation();
-///         kNotFound if the device does not exist; kInvalidField if options contradict each other or a spool is given
-///         for a capture file.
+/// Errors: those of CarmenLog::open(), SonarLog::open(), Ld06Capture::open(), read_pose_lines() and
+///         prepare_simulation(); kNotFound if the device does not exist; kInvalidField if options contradict each other
+///         or a spool is given for a capture file.
 [[nodiscard]] Result<PreparedSource> make_source(const RobotOptions& options, Console& console);
 
 } // namespace scanloom::robot

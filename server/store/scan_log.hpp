@@ -107,8 +107,8 @@ public:
     /// Visits the entries after revision `after` in order, up to the end of the log at the time of the call, or until
     /// the visitor stops.
     ///
-    /// Errors: those of the visitor; kDataLoss, naming session and revision: an entry is damaged or missing, or the log ends before `after`,
-    ///         as after a checkpoint that is ahead of its log.
+    /// Errors: those of the visitor; kDataLoss, naming session and revision: an entry is damaged or missing,
+    ///         or the log ends before `after`, as after a checkpoint that is ahead of its log.
     [[nodiscard]] virtual Result<> read(SessionId session, Revision after, const VisitEntry& visit) = 0;
 
     /// Removes all parts. Goes through the commit queue and returns when written.

@@ -19,7 +19,8 @@ namespace scanloom::http {
 
 /// Returns all properties of a session, as the API shows them.
 [[nodiscard]] boost::json::object to_json(const sessions::Session& session);
-/// @param store_failure  why the store accepts no changes; nullopt if it does. Sessions notice it only when a robot sends
+/// @param store_failure  why the store accepts no changes; nullopt if it does. Sessions notice it only when
+///                       a robot sends
 [[nodiscard]] boost::json::object to_json(const sessions::ListedSession& listed,
                                           std::optional<std::string> store_failure);
 
