@@ -119,8 +119,8 @@ Admitted<TokenRef> Authenticator::admit(std::string_view secret) const {
 
 TokenRef Authenticator::find_hash(std::string_view hash) const { return found(ledger_->in_force(), hash); }
 
-Admitted<std::shared_ptr<Credential>> Authenticator::let_drive(std::string_view secret, const std::string& session,
-                                                               const std::string& robot) {
+Admitted<std::shared_ptr<Credential>>
+Authenticator::grant_robot_link(std::string_view secret, const std::string& session, const std::string& robot) {
     const auto admitted = admit(secret);
     if (!admitted) return admitted.error();
     const std::lock_guard lock(ledger_->mutex);
@@ -132,7 +132,7 @@ Admitted<std::shared_ptr<Credential>> Authenticator::let_drive(std::string_view 
     return ledger_->give(token, Action::kDrive, session, user);
 }
 
-Admitted<std::shared_ptr<Credential>> Authenticator::let_watch(const TokenRef& token, const std::string& session) {
+Admitted<std::shared_ptr<Credential>> Authenticator::grant_viewing(const TokenRef& token, const std::string& session) {
     const std::lock_guard lock(ledger_->mutex);
     const auto now = found(ledger_->tokens, token->hash);
     if (!now) return unknown(token->hash);

@@ -76,12 +76,13 @@ public:
     /// in one session count once, because the session keeps only the robot's newest link.
     /// Errors: those of admit(); kWrongRole or kWrongSession if the token does not permit it; kLimit if the token's
     ///         `connections` are used up.
-    [[nodiscard]] Admitted<std::shared_ptr<Credential>> let_drive(std::string_view secret, const std::string& session,
-                                                                  const std::string& robot);
+    [[nodiscard]] Admitted<std::shared_ptr<Credential>>
+    grant_robot_link(std::string_view secret, const std::string& session, const std::string& robot);
 
     /// Permits an admitted client to watch the session.
     /// Errors: kUnknownToken if the token is no longer in force; kWrongRole or kWrongSession if it does not permit it.
-    [[nodiscard]] Admitted<std::shared_ptr<Credential>> let_watch(const TokenRef& token, const std::string& session);
+    [[nodiscard]] Admitted<std::shared_ptr<Credential>> grant_viewing(const TokenRef& token,
+                                                                      const std::string& session);
 
     /// Replaces the tokens in force. Credentials that the new tokens do not permit end; the other credentials get their
     /// token's new limits.

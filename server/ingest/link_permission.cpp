@@ -5,7 +5,7 @@
 namespace scanloom::ingest {
 
 Result<> LinkPermission::request(const wire::Hello& hello, Time now, const std::function<void()>& on_change) {
-    auto credential = authenticator_.let_drive(hello.token, hello.session, hello.robot);
+    auto credential = authenticator_.grant_robot_link(hello.token, hello.session, hello.robot);
     if (!credential) {
         const auto& why = credential.error();
         on_refused_(why.reason, why.token, hello.session);

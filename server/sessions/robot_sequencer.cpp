@@ -35,8 +35,8 @@ void RobotSequencer::restore(RobotIndex robot, const LoggedRobot& durable) {
     pending_.reset_robot(robot, durable);
     Member& member = members_[robot];
     member.durable_seq = durable.last_seq;
-    if (member.showed_seq > durable.last_seq) member.showed_seq = 0;
-    member.under_way = 0;
+    if (member.first_visible_seq > durable.last_seq) member.first_visible_seq = 0;
+    member.pending_entries = 0;
 }
 
 RobotIndex RobotSequencer::index_of(const Member& member) const {
@@ -51,7 +51,7 @@ RobotSequencer::Member* RobotSequencer::member_of(const std::shared_ptr<RobotLis
 
 PendingEntry RobotSequencer::submitted(Member& member, std::optional<LogEntry> entry, std::size_t bytes) {
     if (entry) pending_.apply(*entry);
-    ++member.under_way;
+    ++member.pending_entries;
     return {index_of(member), std::move(entry), {}, bytes};
 }
 
@@ -99,7 +99,7 @@ Result<> RobotSequencer::check_source(const LoggedRobot& robot, const std::strin
 
 /// Admits the link that waits to join, if all entries of the robot's earlier links are in the maps.
 void RobotSequencer::admit(Member& member) {
-    if (!member.joining || member.under_way > 0) return;
+    if (!member.joining || member.pending_entries > 0) return;
     const auto joining = *std::exchange(member.joining, std::nullopt);
     member.listener = joining.listener;
     set_connected(member, true);
@@ -195,7 +195,7 @@ std::vector<PendingEntry> RobotSequencer::take(const std::shared_ptr<RobotListen
             fault = prefixed(fmt::format("scan_batch.scans[{}].", n), ok.error());
             continue;
         }
-        if (member->showed_seq == 0 && !reach.cells.empty()) member->showed_seq = scan.seq;
+        if (member->first_visible_seq == 0 && !reach.cells.empty()) member->first_visible_seq = scan.seq;
         entries.push_back(submitted(*member, ScanTaken{index_of(*member), std::move(scan)}, 0));
         entries.back().reach = reach;
     }
@@ -219,7 +219,7 @@ Result<> RobotSequencer::check_next(const LoggedRobot& robot, const Scan& scan, 
                      fmt::format("sensor is {}, which was not described; send a SensorDescription first", scan.sensor)};
     }
     if (scan.begins_map && robot.last_seq == 0) { // later scans are placed relative to the first
-        const auto shows = [](const Member& other) { return other.showed_seq > 0; };
+        const auto shows = [](const Member& other) { return other.first_visible_seq > 0; };
         if (is_mapped || std::ranges::any_of(members_, shows)) return map_already_begun(robot.name, info_.name);
     }
     return wire::check_scan(scan, *known->sensor);
@@ -232,7 +232,7 @@ void RobotSequencer::release(const Group& group) {
     for (const auto& released : group.entries) {
         Member& member = members_[released.robot];
         bytes[released.robot] += released.bytes;
-        --member.under_way;
+        --member.pending_entries;
         if (!released.entry) continue;
         if (const auto* taken = std::get_if<ScanTaken>(&*released.entry)) member.durable_seq = taken->scan.seq;
     }

@@ -80,9 +80,9 @@ private:
     struct Member {
         std::shared_ptr<RobotListener> listener;
         std::optional<PendingJoin> joining;
-        std::size_t under_way = 0; // entries submitted and not released
+        std::size_t pending_entries = 0; // entries submitted and not released
         std::uint64_t durable_seq = 0;
-        std::uint64_t showed_seq = 0; // of the first scan accepted here that can change a cell; 0: none
+        std::uint64_t first_visible_seq = 0; // of the first scan accepted here that can change a cell; 0: none
     };
 
     [[nodiscard]] RobotIndex index_of(const Member& member) const;

@@ -43,7 +43,7 @@ Result<Response> get_live(Context& context) {
                        instance_of(context.request.target));
     }
     const auto& info = session->info();
-    auto credential = context.services.authorizer.authenticator().let_watch(context.token, info.name);
+    auto credential = context.services.authorizer.authenticator().grant_viewing(context.token, info.name);
     if (!credential) return context.services.authorizer.refuse(context.request, credential.error(), info.name);
     Response response;
     response.status = Status::switching_protocols;

@@ -197,7 +197,7 @@ private:
         granted_ = server_.world_.now();
         server_.tokens_.check_connections(*hello_, server_.connected_with(hello_->token));
         const auto creator = sessions::creator_of(*permission_.token());
-        auto session = co_await ingest::session_for(*hello_, server_.sessions(), creator, server_.may_wait_);
+        auto session = co_await ingest::session_for(*hello_, server_.sessions(), creator, server_.blocking_executor_);
         if (!session && session.error().code == Errc::kFull) permission_.record_limit();
         if (!session) co_return session.error();
         auto joined = co_await ingest::join_session(**session, *hello_, shared_from_this());
@@ -226,7 +226,7 @@ private:
 Server::Server(World& world, Disk& disk, const ServerOptions& options, Tokens& tokens, Promise promise)
     : world_(world), disk_(disk), options_(options), tokens_(tokens), promise_(std::move(promise)),
       limits_(options.links_max, options.greeting_max), machine_(std::make_unique<Machine>(world)),
-      may_wait_(asio::make_strand(machine_->executor())) {
+      blocking_executor_(asio::make_strand(machine_->executor())) {
     world_.note("server starts");
     read_tokens();
     while (!log_) { // the supervisor restarts the server in this case

@@ -68,7 +68,7 @@ private:
     std::unique_ptr<Machine> machine_;
     std::unique_ptr<store::ScanLog> log_;
     std::optional<sessions::SessionRegistry> sessions_;
-    boost::asio::any_io_executor may_wait_; // creates sessions, one at a time
+    boost::asio::any_io_executor blocking_executor_; // creates sessions, one at a time
     std::vector<std::shared_ptr<Link>> links_;
     std::shared_ptr<Server*> self_ = std::make_shared<Server*>(this); // for events that may run after the destructor
 };

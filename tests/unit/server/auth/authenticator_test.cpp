@@ -31,40 +31,42 @@ TEST(Authenticator, IsOpenWithoutTokens) {
     Authenticator authenticator;
     EXPECT_TRUE(authenticator.is_open());
     EXPECT_EQ(authenticator.admit("").value(), auth::default_token());
-    EXPECT_TRUE(authenticator.let_drive("", "lab", "r").value()->token());
-    EXPECT_TRUE(authenticator.let_watch(auth::default_token(), "lab").value()->token());
+    EXPECT_TRUE(authenticator.grant_robot_link("", "lab", "r").value()->token());
+    EXPECT_TRUE(authenticator.grant_viewing(auth::default_token(), "lab").value()->token());
 }
 
 TEST(Authenticator, AdmitsOnlyWhatTheTokenPermits) {
     Authenticator authenticator(TokenSet({token("robot", Role::kRobot, {"depot-*"}), token("viewer", Role::kViewer)}));
     EXPECT_FALSE(authenticator.is_open());
-    EXPECT_EQ(authenticator.let_drive("secret of robot", "depot-1", "r").value()->token()->name, "robot");
+    EXPECT_EQ(authenticator.grant_robot_link("secret of robot", "depot-1", "r").value()->token()->name, "robot");
     using Refusal = std::pair<Reason, std::string>;
-    EXPECT_EQ(refusal(authenticator.let_drive("", "depot-1", "r")), Refusal(Reason::kNoToken, ""));
-    EXPECT_EQ(refusal(authenticator.let_drive("guess", "depot-1", "r")), Refusal(Reason::kUnknownToken, ""));
-    EXPECT_EQ(refusal(authenticator.let_drive("secret of robot", "lab", "r")), Refusal(Reason::kWrongSession, "robot"));
-    EXPECT_EQ(refusal(authenticator.let_drive("secret of viewer", "lab", "r")), Refusal(Reason::kWrongRole, "viewer"));
-    EXPECT_TRUE(authenticator.let_watch(authenticator.admit("secret of viewer").value(), "lab"));
-    EXPECT_EQ(refusal(authenticator.let_watch(authenticator.admit("secret of robot").value(), "depot-1")),
+    EXPECT_EQ(refusal(authenticator.grant_robot_link("", "depot-1", "r")), Refusal(Reason::kNoToken, ""));
+    EXPECT_EQ(refusal(authenticator.grant_robot_link("guess", "depot-1", "r")), Refusal(Reason::kUnknownToken, ""));
+    EXPECT_EQ(refusal(authenticator.grant_robot_link("secret of robot", "lab", "r")),
+              Refusal(Reason::kWrongSession, "robot"));
+    EXPECT_EQ(refusal(authenticator.grant_robot_link("secret of viewer", "lab", "r")),
+              Refusal(Reason::kWrongRole, "viewer"));
+    EXPECT_TRUE(authenticator.grant_viewing(authenticator.admit("secret of viewer").value(), "lab"));
+    EXPECT_EQ(refusal(authenticator.grant_viewing(authenticator.admit("secret of robot").value(), "depot-1")),
               Refusal(Reason::kWrongRole, "robot"));
 }
 
 TEST(Authenticator, RobotsBeyondTheConnectionLimitAreRefused) {
     Authenticator authenticator(
         TokenSet({token("two", Role::kRobot, {"*"}, 2), token("other", Role::kRobot, {"*"}, 1)}));
-    auto first = authenticator.let_drive("secret of two", "lab", "a").value();
-    const auto second = authenticator.let_drive("secret of two", "lab", "b").value();
-    const auto refused = authenticator.let_drive("secret of two", "lab", "c");
+    auto first = authenticator.grant_robot_link("secret of two", "lab", "a").value();
+    const auto second = authenticator.grant_robot_link("secret of two", "lab", "b").value();
+    const auto refused = authenticator.grant_robot_link("secret of two", "lab", "c");
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().reason, Reason::kLimit);
     EXPECT_EQ(refused.error().error.code, Errc::kOverloaded);
     EXPECT_THAT(refused.error().error.message, AllOf(HasSubstr("'two'"), HasSubstr("`connections`")));
-    EXPECT_TRUE(authenticator.let_drive("secret of other", "lab", "c"));
-    const auto again = authenticator.let_drive("secret of two", "lab", "b"); // its old link still exists
+    EXPECT_TRUE(authenticator.grant_robot_link("secret of other", "lab", "c"));
+    const auto again = authenticator.grant_robot_link("secret of two", "lab", "b"); // its old link still exists
     EXPECT_TRUE(again);
-    EXPECT_FALSE(authenticator.let_drive("secret of two", "depot", "b")); // of the same name, elsewhere
+    EXPECT_FALSE(authenticator.grant_robot_link("secret of two", "depot", "b")); // of the same name, elsewhere
     first.reset();
-    EXPECT_TRUE(authenticator.let_drive("secret of two", "lab", "c"));
+    EXPECT_TRUE(authenticator.grant_robot_link("secret of two", "lab", "c"));
 }
 
 TEST(Authenticator, CredentialsEndWithTheirPermission) {
@@ -73,10 +75,10 @@ TEST(Authenticator, CredentialsEndWithTheirPermission) {
     std::map<std::string, int> changes;
     std::map<std::string, std::shared_ptr<Credential>> credentials;
     for (const std::string name : {"a", "b", "c", "d"}) {
-        credentials[name] = authenticator.let_drive("secret of " + name, "lab", "robot-" + name).value();
+        credentials[name] = authenticator.grant_robot_link("secret of " + name, "lab", "robot-" + name).value();
         credentials[name]->when_changed([&changes, name] { ++changes[name]; });
     }
-    credentials["watch"] = authenticator.let_watch(authenticator.admit("secret of c").value(), "lab").value();
+    credentials["watch"] = authenticator.grant_viewing(authenticator.admit("secret of c").value(), "lab").value();
     EXPECT_TRUE(changes.empty());
     // a is unchanged, b is removed, c has become a viewer, d is for other sessions.
     authenticator.replace(
@@ -89,7 +91,7 @@ TEST(Authenticator, CredentialsEndWithTheirPermission) {
 
 TEST(Authenticator, LateCallbackIsCalledAtOnce) {
     Authenticator authenticator(TokenSet({token("a", Role::kRobot)}));
-    const auto credential = authenticator.let_drive("secret of a", "lab", "r").value();
+    const auto credential = authenticator.grant_robot_link("secret of a", "lab", "r").value();
     authenticator.replace(TokenSet({token("b", Role::kRobot)}));
     bool was_called = false;
     credential->when_changed([&] { was_called = true; });
@@ -98,7 +100,7 @@ TEST(Authenticator, LateCallbackIsCalledAtOnce) {
 
 TEST(Authenticator, FirstTokensEndEarlierPasses) {
     Authenticator authenticator;
-    const auto credential = authenticator.let_drive("", "lab", "r").value();
+    const auto credential = authenticator.grant_robot_link("", "lab", "r").value();
     authenticator.replace(TokenSet({token("a", Role::kRobot)}));
     EXPECT_EQ(credential->token(), nullptr);
 }
@@ -107,7 +109,7 @@ TEST(Authenticator, CredentialMayOutliveTheAuthenticator) {
     std::shared_ptr<Credential> credential;
     {
         Authenticator authenticator;
-        credential = authenticator.let_drive("", "lab", "r").value();
+        credential = authenticator.grant_robot_link("", "lab", "r").value();
     }
     EXPECT_NE(credential->token(), nullptr);
 }
