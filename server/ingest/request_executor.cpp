@@ -1,8 +1,6 @@
 #include "server/ingest/request_executor.hpp"
 
-#include "core/planning/coverage.hpp"
-#include "core/planning/grid_path.hpp"
-#include "server/guidance/robots.hpp"
+#include "server/guidance/plans.hpp"
 #include "server/guidance/search_limit.hpp"
 
 #include <boost/asio/post.hpp>
@@ -46,38 +44,26 @@ Result<wire::Path> to_wire(planning::Path path, std::size_t runs = 0) {
     return wire::Path{std::move(path.points), path.length_m, path.cost};
 }
 
-/// Answers requests from one snapshot and one start point.
+/// Answers requests from one snapshot and one start.
 struct Search {
     const Requester& requester;
+    const RequestServices& services;
     const mapping::Snapshot& maps;
-    guidance::GoalAssignments& goals;
-    const guidance::SearchLimit may_go_on;
-    const Point2& start;
-
-    /// Uses the requested body radius (m), or else the robot's own.
-    [[nodiscard]] planning::PassabilityOptions passability_of(const std::optional<double>& body_radius) const {
-        planning::PassabilityOptions options;
-        const auto& own = maps.robots.at(requester.robot).body_radius;
-        options.body_radius_m = body_radius.value_or(own.value_or(options.body_radius_m));
-        return options;
-    }
+    const guidance::Start& start;
 
     [[nodiscard]] Result<wire::Path> operator()(const wire::PlanRequest& request) const {
-        auto options = passability_of(request.body_radius);
-        options.allow_unknown = request.allow_unknown;
-        options.on_known = !request.allow_unknown;
-        options.danger_cost = request.danger_cost.value_or(options.danger_cost);
-        auto path = planning::plan_path(maps.classes, maps.config.cell_size, start, request.goal, options);
+        auto path = guidance::plan_path(maps, start, request.goal,
+                                        {request.body_radius, request.allow_unknown, request.danger_cost});
         if (!path) return path.error();
         return to_wire(std::move(*path));
     }
 
     [[nodiscard]] Result<wire::Goal> operator()(const wire::GoalRequest& request) const {
         planning::ExplorationOptions options;
-        options.passability = passability_of(request.body_radius);
+        options.passability = guidance::passability_of({.radius = request.body_radius}, start.body_radius);
         if (request.frontier_size_min > 0) options.frontier_size_min = request.frontier_size_min;
-        auto next = goals.next(requester.session, maps, requester.robot, start, guidance::GoalAssignments::Clock::now(),
-                               options);
+        auto next = services.goals.next(requester.session, maps, requester.robot, start.point,
+                                        guidance::GoalAssignments::Clock::now(), options);
         if (!next) return next.error();
         const auto given_up = static_cast<std::uint32_t>(next->given_up); // fits: GoalAssignments keeps fewer
         if (next->outcome == planning::Exploration::kTakenByOthers) {
@@ -92,9 +78,8 @@ struct Search {
     }
 
     [[nodiscard]] Result<wire::Coverage> operator()(const wire::CoverageRequest& request) const {
-        planning::CoverageOptions options{passability_of(request.body_radius), request.spacing, request.region};
-        options.passability.on_known = true;
-        auto coverage = planning::plan_coverage(maps.classes, maps.config.cell_size, start, options, may_go_on);
+        auto coverage = guidance::plan_coverage(maps, start, {request.body_radius, request.spacing, request.region},
+                                                services.sessions);
         if (!coverage) return coverage.error();
         auto unreachable = runs_of(coverage->unreachable);
         auto path = to_wire(std::move(coverage->path), unreachable.size());
@@ -118,18 +103,13 @@ std::optional<guidance::HeldPath> held_path(const Result<wire::Coverage>& covera
 
 template <class Kind>
 wire::Message reply_from(const Kind& request, const Requester& requester, const RequestServices& services) {
-    guidance::GoalAssignments& goals = services.goals;
     const auto maps = requester.session->snapshot();
-    auto start = request.start;
-    if (!start) {
-        const auto pose = guidance::pose_of(*maps, requester.robot);
-        if (!pose) return reply(request, maps->revision, pose.error());
-        start = Point2{pose->x, pose->y};
-    }
-    auto found = Search{requester, *maps, goals, guidance::SearchLimit(services.sessions), *start}(request);
-    if constexpr (!std::is_same_v<Kind, wire::GoalRequest>) { // goal assignments already store the paths to goals
-        goals.paths().set_path(requester.session, requester.robot, held_path(found, maps->revision),
-                               guidance::RobotPaths::Clock::now());
+    const auto start = guidance::start_of(*maps, requester.robot, request.start);
+    if (!start) return reply(request, maps->revision, start.error());
+    auto found = Search{requester, services, *maps, *start}(request);
+    if constexpr (!std::is_same_v<Kind, wire::GoalRequest>) { // GoalAssignments has set the path to the goal
+        services.goals.paths().set_path(requester.session, requester.robot, held_path(found, maps->revision),
+                                        guidance::RobotPaths::Clock::now());
     }
     return reply(request, maps->revision, std::move(found));
 }
@@ -141,8 +121,7 @@ wire::Message reply_from(const wire::LocateRequest& request, const Requester& re
     const auto points = landmarks::in_metres(request.points);
     std::optional<landmarks::Neighbourhood> near;
     if (request.near) near = landmarks::Neighbourhood{request.near->point, request.near->radius};
-    const guidance::SearchLimit limit(services.sessions,
-                                      guidance::SearchLimit::Clock::now() + guidance::SearchLimit::kTime,
+    const guidance::SearchLimit limit(services.sessions, guidance::SearchLimit::kTime,
                                       "give a point near its position");
     const auto ask = [&]() -> Result<> { return *requester.is_gone ? Result<>(kLinkClosed) : limit(); };
     const auto located = services.locator.locate(*requester.session, requester.robot,

@@ -1,7 +1,7 @@
 #include "server/http/handlers/handlers.hpp"
 
 #include "common/scan/limits.hpp"
-#include "server/guidance/robots.hpp"
+#include "server/guidance/plans.hpp"
 #include "server/http/geojson.hpp"
 #include "server/http/handlers/parameters.hpp"
 #include "server/http/handlers/planning_request.hpp"
@@ -96,10 +96,10 @@ Result<Response> assign_goal(Context& context) {
     if (!robot) return robot.error();
     const auto options = exploration_options(*body, snapshot.robots[*robot].body_radius);
     if (!options) return options.error();
-    const auto pose = guidance::pose_of(snapshot, *robot);
-    if (!pose) return pose.error();
+    const auto start = guidance::start_of(snapshot, *robot);
+    if (!start) return start.error();
 
-    const auto next = context.services.goals.next(found->session, snapshot, *robot, Point2{pose->x, pose->y},
+    const auto next = context.services.goals.next(found->session, snapshot, *robot, start->point,
                                                   guidance::GoalAssignments::Clock::now(), *options);
     if (!next) return next.error();
     return ok_text(kJson, context.services.responses.take(next->path.points.size() * kPointTextBytes),

@@ -3,6 +3,7 @@
 #include "core/landmarks/cloud_fusion.hpp"
 #include "core/landmarks/landmark_matching.hpp"
 #include "server/exchange/point_text.hpp"
+#include "server/guidance/search_limit.hpp"
 #include "server/http/geojson.hpp"
 #include "server/http/handlers/parameters.hpp"
 #include "server/sessions/log_readers.hpp"
@@ -171,30 +172,10 @@ private:
     Revision last_ = 0; // the last log entry of the captures that fit
 };
 
-/// Stops a request that takes too long, because others wait for the same thread.
-class SearchLimit {
-public:
-    explicit SearchLimit(const sessions::SessionRegistry& sessions) : sessions_(sessions) {}
-
-    Result<> operator()() const {
-        if (sessions_.is_draining()) {
-            return Error{Errc::kShuttingDown, "the server is shutting down; try again when it is back"};
-        }
-        if (std::chrono::steady_clock::now() < deadline_) return {};
-        return Error{Errc::kTooLarge,
-                     fmt::format("this takes longer than {} s; request fewer captures at a time (since, until, robot)",
-                                 kTimeout.count())};
-    }
-
-private:
-    static constexpr std::chrono::seconds kTimeout{5};
-
-    const sessions::SessionRegistry& sessions_;
-    const std::chrono::steady_clock::time_point deadline_ = std::chrono::steady_clock::now() + kTimeout;
-};
+constexpr std::chrono::seconds kPointsTime{5}; // others wait for the same thread
 
 Result<> choose(store::ScanLog& log, const sessions::SessionInfo& session, const CloudQuery& query, Revision newest,
-                const SearchLimit& limit, Chosen& chosen) {
+                const guidance::SearchLimit& limit, Chosen& chosen) {
     const Revision until = std::min(newest, query.until.value_or(newest));
     // The filter is the same for every `until`, so that parts make up the whole.
     landmarks::SessionCaptures cut(sessions::scan_filter_of(session));
@@ -214,7 +195,8 @@ Result<Response> get_points(const Context& context, PointFile file) {
     const auto snapshot = session->snapshot();
     const auto query = cloud_query(*snapshot, context.query);
     if (!query) return query.error();
-    const SearchLimit limit(context.services.sessions);
+    const guidance::SearchLimit limit(context.services.sessions, kPointsTime,
+                                      "request fewer captures at a time (since, until, robot)");
     Chosen chosen(*query);
     const auto read = choose(context.services.log, session->info(), *query, snapshot->revision, limit, chosen);
     if (!read) return read.error();

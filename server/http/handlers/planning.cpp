@@ -3,8 +3,7 @@
 #include "core/planning/coverage.hpp"
 #include "core/planning/goals.hpp"
 #include "core/planning/grid_path.hpp"
-#include "server/guidance/robots.hpp"
-#include "server/guidance/search_limit.hpp"
+#include "server/guidance/plans.hpp"
 #include "server/http/geojson.hpp"
 #include "server/http/handlers/parameters.hpp"
 #include "server/http/handlers/planning_request.hpp"
@@ -45,12 +44,12 @@ Result<Response> post_plan(Context& context) {
     if (!body) return body.error();
     const auto to = read_point(body->at("to"), "to");
     if (!to) return to.error();
-    const auto from = read_place(body->at("from"), "from", snapshot);
+    const auto from = read_start(body->at("from"), "from", snapshot);
     if (!from) return from.error();
-    const auto options = passability_options(*body, from->body_radius);
-    if (!options) return options.error();
+    const auto requested = requested_body(*body);
+    if (!requested) return requested.error();
 
-    const auto path = planning::plan_path(snapshot.classes, snapshot.config.cell_size, from->point, *to, *options);
+    const auto path = guidance::plan_path(snapshot, *from, *to, *requested);
     if (!path) return path.error();
     const boost::json::object properties{{"length", rounded_metres(path->length_m)},
                                          {"cost", rounded_metres(path->cost)}};
@@ -60,32 +59,32 @@ Result<Response> post_plan(Context& context) {
 
 namespace {
 
-Result<Place> start_of(const boost::json::object& body, const mapping::Snapshot& maps) {
-    if (const auto* start = body.if_contains("start")) return read_place(*start, "start", maps);
+Result<guidance::Start> coverage_start(const boost::json::object& body, const mapping::Snapshot& maps) {
+    if (const auto* start = body.if_contains("start")) return read_start(*start, "start", maps);
     if (maps.robots.size() == 1) {
-        const auto pose = guidance::pose_of(maps, 0);
-        if (!pose) return prefixed("start is missing: ", pose.error());
-        return Place{{pose->x, pose->y}, maps.robots[0].body_radius};
+        const auto start = guidance::start_of(maps, 0);
+        if (!start) return prefixed("start is missing: ", start.error());
+        return start;
     }
     return Error{Errc::kInvalidField, fmt::format(R"(start is missing, and the session has {} robots; give [x, y] or )"
                                                   R"({{"robot": "name"}})",
                                                   maps.robots.size())};
 }
 
-Result<planning::CoverageOptions> options_of(const boost::json::object& body, const std::optional<double>& own) {
-    planning::CoverageOptions options;
-    const auto passability = passability_options(body, own);
-    if (!passability) return passability.error();
-    options.passability = *passability;
+Result<guidance::CoverageRequest> coverage_request(const boost::json::object& body) {
+    guidance::CoverageRequest request;
+    const auto radius = read_number(body, "body_radius");
+    if (!radius) return radius.error();
+    request.body_radius = *radius;
     const auto spacing = read_number(body, "spacing");
     if (!spacing) return spacing.error();
-    options.spacing_m = *spacing;
+    request.spacing = *spacing;
     if (const auto* given = body.if_contains("region")) {
         auto region = read_region(*given, "region");
         if (!region) return region.error();
-        options.region = std::move(*region);
+        request.region = std::move(*region);
     }
-    return options;
+    return request;
 }
 
 std::string document_of(const mapping::Snapshot& maps, planning::Coverage&& coverage) {
@@ -114,13 +113,12 @@ Result<Response> post_coverage(Context& context) {
     const auto& snapshot = *found->snapshot;
     const auto body = parse_json_object(context.request.body, {"start", "spacing", "region", "body_radius"});
     if (!body) return body.error();
-    const auto start = start_of(*body, snapshot);
+    const auto start = coverage_start(*body, snapshot);
     if (!start) return start.error();
-    const auto options = options_of(*body, start->body_radius);
-    if (!options) return options.error();
+    auto request = coverage_request(*body);
+    if (!request) return request.error();
 
-    auto coverage = planning::plan_coverage(snapshot.classes, snapshot.config.cell_size, start->point, *options,
-                                            guidance::SearchLimit(context.services.sessions));
+    auto coverage = guidance::plan_coverage(snapshot, *start, *std::move(request), context.services.sessions);
     if (!coverage) return coverage.error();
     const std::size_t bytes =
         coverage->path.points.size() * kPointTextBytes + coverage->unreachable.size() * kCellTextBytes;

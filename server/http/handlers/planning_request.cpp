@@ -28,21 +28,6 @@ Result<double> read_coordinate(const boost::json::value& value, std::string_view
     return invalid(fmt::format("{} is {} m; it must be within {} m of the origin", name, metres, kCoordinateMax));
 }
 
-Result<> set(const boost::json::object& body, std::string_view name, double& to) {
-    const auto number = read_number(body, name);
-    if (!number) return number.error();
-    to = number->value_or(to);
-    return {};
-}
-
-Result<> set(const boost::json::object& body, std::string_view name, bool& to) {
-    const auto* value = body.if_contains(name);
-    if (value == nullptr) return {};
-    if (!value->is_bool()) return invalid(fmt::format("{} is neither true nor false", name));
-    to = value->get_bool();
-    return {};
-}
-
 Result<std::vector<Point2>> read_box(const boost::json::array& edges, std::string_view name) {
     std::array<double, 4> box{};
     for (std::size_t n = 0; n < box.size(); ++n) {
@@ -64,44 +49,47 @@ Result<Maps> find_for_search(const Context& context) {
     return find_maps(context);
 }
 
-Result<planning::ExplorationOptions> exploration_options(const Query& query, const std::optional<double>& own) {
+Result<planning::ExplorationOptions> exploration_options(const Query& query) {
     planning::ExplorationOptions options;
-    options.passability.body_radius_m = own.value_or(options.passability.body_radius_m);
     const auto size = parameter(query, "size_min", options.frontier_size_min,
                                 integer_from<std::size_t>(1, std::numeric_limits<std::size_t>::max()),
                                 "a whole number of cells from 1 on is needed");
     if (!size) return size.error();
     options.frontier_size_min = *size;
-    const auto radius =
-        parameter(query, "body_radius", options.passability.body_radius_m, parse_real, "metres are needed");
+    const auto radius = parameter(query, "body_radius", std::optional<double>(), parse_real, "metres are needed");
     if (!radius) return radius.error();
-    options.passability.body_radius_m = *radius;
+    options.passability = guidance::passability_of({.radius = *radius}, std::nullopt);
     return options;
 }
 
 Result<planning::ExplorationOptions> exploration_options(const boost::json::object& body,
                                                          const std::optional<double>& own) {
     planning::ExplorationOptions options;
-    options.passability.body_radius_m = own.value_or(options.passability.body_radius_m);
     if (const auto* size = body.if_contains("size_min")) {
         if (!size->is_int64() || size->get_int64() < 1) {
             return invalid("size_min is no whole number of cells from 1 on");
         }
         options.frontier_size_min = static_cast<std::size_t>(size->get_int64());
     }
-    if (auto ok = set(body, "body_radius", options.passability.body_radius_m); !ok) return ok.error();
+    const auto radius = read_number(body, "body_radius");
+    if (!radius) return radius.error();
+    options.passability = guidance::passability_of({.radius = *radius}, own);
     return options;
 }
 
-Result<planning::PassabilityOptions> passability_options(const boost::json::object& body,
-                                                         const std::optional<double>& own) {
-    planning::PassabilityOptions options;
-    options.body_radius_m = own.value_or(options.body_radius_m);
-    if (auto ok = set(body, "allow_unknown", options.allow_unknown); !ok) return ok.error();
-    options.on_known = !options.allow_unknown;
-    if (auto ok = set(body, "body_radius", options.body_radius_m); !ok) return ok.error();
-    if (auto ok = set(body, "danger_cost", options.danger_cost); !ok) return ok.error();
-    return options;
+Result<guidance::RequestedBody> requested_body(const boost::json::object& body) {
+    guidance::RequestedBody requested;
+    if (const auto* value = body.if_contains("allow_unknown")) {
+        if (!value->is_bool()) return invalid("allow_unknown is neither true nor false");
+        requested.allow_unknown = value->get_bool();
+    }
+    const auto radius = read_number(body, "body_radius");
+    if (!radius) return radius.error();
+    requested.radius = *radius;
+    const auto danger_cost = read_number(body, "danger_cost");
+    if (!danger_cost) return danger_cost.error();
+    requested.danger_cost = *danger_cost;
+    return requested;
 }
 
 Result<Point2> read_point(const boost::json::value& value, std::string_view name) {
@@ -115,12 +103,13 @@ Result<Point2> read_point(const boost::json::value& value, std::string_view name
     return Point2{*x, *y};
 }
 
-Result<Place> read_place(const boost::json::value& value, std::string_view name, const mapping::Snapshot& maps) {
+Result<guidance::Start> read_start(const boost::json::value& value, std::string_view name,
+                                   const mapping::Snapshot& maps) {
     if (!value.is_object()) {
         if (!value.is_array()) return invalid(fmt::format(R"({} is neither [x, y] nor {{"robot": "name"}})", name));
         const auto point = read_point(value, name);
         if (!point) return point.error();
-        return Place{*point};
+        return guidance::Start{*point};
     }
     constexpr std::array<std::string_view, 1> kKnown = {"robot"};
     const auto within = fmt::format("{}: ", name);
@@ -129,9 +118,9 @@ Result<Place> read_place(const boost::json::value& value, std::string_view name,
     if (!robot) return prefixed(within, robot.error());
     const auto index = guidance::find_robot(maps, *robot);
     if (!index) return prefixed(fmt::format("{} is robot {}: ", name, in_quotes(*robot)), index.error());
-    const auto pose = guidance::pose_of(maps, *index);
-    if (!pose) return prefixed(within, pose.error());
-    return Place{{pose->x, pose->y}, maps.robots[*index].body_radius};
+    const auto start = guidance::start_of(maps, *index);
+    if (!start) return prefixed(within, start.error());
+    return start;
 }
 
 Result<std::vector<Point2>> read_region(const boost::json::value& value, std::string_view name) {

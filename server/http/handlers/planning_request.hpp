@@ -3,7 +3,7 @@
 #include "common/error/error.hpp"
 #include "common/geometry/pose2.hpp"
 #include "core/planning/goals.hpp"
-#include "core/planning/passability.hpp"
+#include "server/guidance/plans.hpp"
 #include "server/http/context.hpp"
 #include "server/http/handlers/lookup.hpp"
 
@@ -17,12 +17,6 @@
 /// Parsing that all requests for planned paths share. Each error names the field.
 namespace scanloom::http {
 
-/// The start of a path.
-struct Place {
-    Point2 point;                           ///< metres, map frame
-    std::optional<double> body_radius = {}; ///< metres; of the named robot, if it stated one
-};
-
 /// Returns find_maps() for a search. No search starts while the server shuts down.
 /// Errors: those of find_maps(); kShuttingDown.
 [[nodiscard]] Result<Maps> find_for_search(const Context& context);
@@ -30,17 +24,14 @@ struct Place {
 /// Reads size_min and body_radius from the parameters or members.
 /// @param own  the robot's body radius (m), if known; used if body_radius is not given
 /// Errors: kInvalidField.
-[[nodiscard]] Result<planning::ExplorationOptions> exploration_options(const Query& query,
-                                                                       const std::optional<double>& own = {});
+[[nodiscard]] Result<planning::ExplorationOptions> exploration_options(const Query& query);
 
 [[nodiscard]] Result<planning::ExplorationOptions> exploration_options(const boost::json::object& body,
-                                                                       const std::optional<double>& own = {});
+                                                                       const std::optional<double>& own);
 
 /// Reads the optional members allow_unknown, body_radius and danger_cost. The planner checks the ranges.
-/// @param own  the robot's body radius (m), if known; used if body_radius is not given
 /// Errors: kInvalidField.
-[[nodiscard]] Result<planning::PassabilityOptions> passability_options(const boost::json::object& body,
-                                                                       const std::optional<double>& own);
+[[nodiscard]] Result<guidance::RequestedBody> requested_body(const boost::json::object& body);
 
 /// Reads [x, y] in metres.
 /// Errors: kInvalidField if the value is something else, or further out than any robot may be.
@@ -48,8 +39,8 @@ struct Place {
 
 /// Reads [x, y], or {"robot": name} for the position of that robot.
 /// Errors: kInvalidField; kNotFound if there is no such robot; kNoPath if its position is unknown.
-[[nodiscard]] Result<Place> read_place(const boost::json::value& value, std::string_view name,
-                                       const mapping::Snapshot& maps);
+[[nodiscard]] Result<guidance::Start> read_start(const boost::json::value& value, std::string_view name,
+                                                 const mapping::Snapshot& maps);
 
 /// Reads the corners of a polygon [[x, y], ...], or a box [min_x, min_y, max_x, max_y].
 /// Errors: kInvalidField.
