@@ -127,7 +127,8 @@ void name_variables(CLI::App& level) {
         const char* value = std::getenv(name.c_str());
         if (value != nullptr && *value == '\0') throw CLI::ValidationError(name, check_not_empty(value));
         option->envname(name);
-        option->check(&check_not_empty);
+        // transform() puts it before the other checks.
+        option->transform(CLI::Validator([](std::string& text) { return check_not_empty(text); }, ""));
     }
 }
 

@@ -10,6 +10,7 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <fmt/ostream.h>
 
 #include <algorithm>
 #include <array>
@@ -35,29 +36,47 @@ constexpr double kMapMemoryMibMin = 64.0;
 constexpr double kMapMemoryMibMax = 1024.0 * 1024.0 * 1024.0;
 constexpr double kIdleAfterMax = 365.0 * 24 * 3600;
 
-/// The settings as parsed, before they are validated and converted.
-struct Raw {
-    std::string listen = "127.0.0.1:7447";
-    std::string http = "127.0.0.1:8080";
-    std::string store;
-    std::string check;   ///< "log" or "deep"; empty: not given
-    std::string restore; ///< "newest", or an id; empty: not given
-    std::string tokens;  ///< empty: not given
-    std::string web;     ///< empty: not given
-    std::vector<std::string> proxies;
-    double tile_cache_mib = 64.0;
-    double map_memory_mib = 0.0;
-    double replay_memory_mib = 0.0;
-    double disk_reserve_mib = 256.0;
-    double idle_after = 600.0;
-};
-
 /// Returns where a package installs the viewer, if it exists there; otherwise its place in the build directory.
 std::filesystem::path default_web() {
     std::error_code ignored;
     const auto programs = std::filesystem::read_symlink("/proc/self/exe", ignored).parent_path();
     const auto installed = programs.parent_path() / "share" / "scanloom" / "web";
     return std::filesystem::exists(installed, ignored) ? installed : programs.parent_path() / "web";
+}
+
+// Checks for CLI::Option::check(): the error, or an empty text.
+
+std::string check_directory(const std::string& text) {
+    if (text.find("://") == std::string::npos) return "";
+    return fmt::format("{}: this version keeps its log in a directory; give a path", text);
+}
+
+std::string check_viewer(const std::string& directory) {
+    std::error_code ignored;
+    if (std::filesystem::is_regular_file(std::filesystem::path(directory) / "index.html", ignored)) return "";
+    return fmt::format("{} has no index.html; give the directory that the viewer was built into, or omit --web",
+                       directory);
+}
+
+std::string check_host_name(const std::string& name) {
+    const bool valid = !name.empty() && std::ranges::all_of(name, [](unsigned char c) {
+        return std::isalnum(c) != 0 || c == '.' || c == '-' || c == '_';
+    });
+    return valid ? "" : fmt::format("'{}' is not a host name; write it without scheme and port", name);
+}
+
+std::string check_address(const std::string& text) {
+    boost::system::error_code failed;
+    boost::asio::ip::make_address(text, failed);
+    return failed ? fmt::format("'{}' is not an address; write 192.0.2.7", text) : "";
+}
+
+/// Returns the number of a backup, or nullopt for the newest one.
+Result<std::optional<std::uint32_t>> parse_backup(const std::string& text) {
+    if (text == "newest") return std::optional<std::uint32_t>();
+    const auto number = parse_number<std::uint32_t>(text);
+    if (number.value_or(0) > 0) return number;
+    return Error{Errc::kInvalidField, fmt::format("'{}' is not a backup; give its number, or 'newest'", text)};
 }
 
 /// @param port  prefix of the port's options
@@ -81,13 +100,24 @@ void add_tls_options(CLI::App& app, sockets::TlsFiles& files, const std::string&
         ->needs(certificate);
 }
 
-void add_options(CLI::App& app, ServerOptions& options, Raw& raw) {
-    app.add_option("--listen", raw.listen, "Address and port for robots; port 0 picks a free one")
-        ->capture_default_str();
-    app.add_flag("--check{log}", raw.check,
-                 "Read the whole store, report damage, and exit; changes nothing. No server may have the store open. "
-                 "--check=deep also computes the maps of every log again and compares them")
-        ->check(CLI::IsMember({"log", "deep"}));
+/// Adds an option in MiB, whose default is the current value of `bytes`.
+template <class Bytes>
+CLI::Option* add_mib_option(CLI::App& app, const std::string& name, Bytes& bytes, const std::string& help, double low,
+                            double high) {
+    const auto assign = [&bytes](double mib) { bytes = static_cast<Bytes>(mib * 1024 * 1024); };
+    return app.add_option_function<double>(name, assign, help)
+        ->check(check_within(low, high))
+        ->default_str(fmt::format("{}", bytes >> 20));
+}
+
+/// Adds the options that select another task than to serve.
+void add_task_options(CLI::App& app, ServerOptions& options) {
+    const std::string about_check =
+        "Read the whole store, report damage, and exit; changes nothing. No server may have the store open. "
+        "--check=deep also computes the maps of every log again and compares them";
+    app.add_flag("--check{log}", about_check)
+        ->check(CLI::IsMember({"log", "deep"}))
+        ->each([&](const std::string& text) { options.task = text == "deep" ? Task::kCheckMaps : Task::kCheck; });
     auto* backups = app.add_option("--backups", options.backups,
                                    "Directory for backups of the store, best on another disk; POST /api/v1/backups "
                                    "creates one while the server runs");
@@ -97,60 +127,90 @@ void add_options(CLI::App& app, ServerOptions& options, Raw& raw) {
     auto* repair = app.add_option("--repair", options.repaired,
                                   "Write the intact parts of a damaged store to a new store, and exit; --store is the "
                                   "damaged store, which is not changed")
-                       ->excludes("--check");
-    app.add_option("--restore", raw.restore,
-                   "Write the store of a backup, given by its number or 'newest', and exit; --store must be empty")
+                       ->excludes("--check")
+                       ->each([&](const std::string&) { options.task = Task::kRepair; });
+    add_parsed(app, "--restore", options.backup,
+               "Write the store of a backup, given by its number or 'newest', and exit; --store must be empty",
+               parse_backup)
         ->needs(backups)
         ->excludes("--check")
-        ->excludes(repair);
-    app.add_option("--http", raw.http, "Address and port for browsers and API clients")->capture_default_str();
-    app.add_option("--store", raw.store, "Directory of the log; created if it does not exist")->required();
+        ->excludes(repair)
+        ->each([&](const std::string&) { options.task = Task::kRestore; });
+}
+
+void add_http_options(CLI::App& app, ServerOptions& options) {
+    add_parsed(app, "--http", options.http, "Address and port for browsers and API clients", parse_endpoint)
+        ->default_str(fmt::format("{}", fmt::streamed(options.http)));
     app.add_option(
            "--http-host", options.http_hosts,
            "Host name of the HTTP port, in addition to localhost and addresses; separate several names by commas, or "
            "repeat the option. Other names are refused on a loopback address, and on all addresses if one is given")
+        ->check(&check_host_name)
         ->delimiter(',')
         ->allow_extra_args(false);
-    app.add_option(
-           "--http-proxy", raw.proxies,
+    app.add_option_function<std::vector<std::string>>(
+           "--http-proxy",
+           [&](const auto& texts) {
+               for (const auto& text : texts) options.http_proxies.push_back(boost::asio::ip::make_address(text));
+           },
            "Address of a reverse proxy; separate several addresses by commas, or repeat the option. It may open any "
            "number of connections to the HTTP port; other remote addresses may open 256")
+        ->check(&check_address)
         ->delimiter(',')
         ->allow_extra_args(false);
+    app.add_option("--web", options.web, "Directory of the viewer's files; it contains index.html")
+        ->check(&check_viewer);
+}
+
+void add_memory_options(CLI::App& app, ServerOptions& options) {
+    add_mib_option(app, "--tile-cache", options.tile_cache_bytes, "MiB of tiles that are cached; 0 disables the cache",
+                   0.0, kTileCacheMibMax);
+    add_mib_option(
+        app, "--disk-reserve", options.disk_reserve_bytes,
+        "MiB to keep free on the store's disk; with less, the server stores nothing until space is free again", 0.0,
+        kTileCacheMibMax)
+        ->check(check_number(fmt::format("enough: when the disk fills up, the store needs {} MiB to finish what it has "
+                                         "begun; reserve at least that much",
+                                         kDiskReserveMibMin),
+                             [](double mib) { return mib >= kDiskReserveMibMin; }));
+    add_mib_option(app, "--map-memory", options.map_memory_bytes,
+                   "MiB for the maps of all sessions together; when they are used up, unused sessions are evicted from "
+                   "memory. Default: half of the available memory",
+                   kMapMemoryMibMin, kMapMemoryMibMax);
+    add_mib_option(
+        app, "--weave-memory", options.replay_memory_bytes,
+        "MiB for the maps of all replay jobs (other settings, earlier revisions) together: half for running jobs, "
+        "half for cached maps. Default: a quarter of the available memory",
+        kMapMemoryMibMin, kMapMemoryMibMax);
+    const auto set_idle = [&](double seconds) {
+        options.idle_after = std::chrono::milliseconds(static_cast<std::int64_t>(seconds * 1000));
+    };
+    app.add_option_function<double>(
+           "--idle-after", set_idle,
+           "Seconds after which an unused session is evicted from memory; the next request loads it again")
+        ->check(check_within(1.0, kIdleAfterMax))
+        ->default_str(fmt::format("{}", options.idle_after.count() / 1000));
+}
+
+void add_options(CLI::App& app, ServerOptions& options) {
+    add_parsed(app, "--listen", options.listen, "Address and port for robots; port 0 picks a free one", parse_endpoint)
+        ->default_str(fmt::format("{}", fmt::streamed(options.listen)));
+    app.add_option("--store", options.store, "Directory of the log; created if it does not exist")
+        ->required()
+        ->check(&check_directory);
+    add_task_options(app, options);
+    add_http_options(app, options);
     add_tls_options(app, options.robot_tls, "--robot", "robots");
     add_tls_options(app, options.http_tls, "--http", "browsers and programs");
     app.add_option(
-        "--tokens", raw.tokens,
+        "--tokens", options.tokens,
         "File of the tokens and their permissions (TOML); without it, every client may do everything. SIGHUP makes "
         "the server read it again");
-    app.add_option("--web", raw.web, "Directory of the viewer's files; it contains index.html");
     app.add_option("--threads", options.threads,
                    "Number of threads that compute maps; the same number answers requests")
         ->check(CLI::Range(1, 256))
         ->capture_default_str();
-    app.add_option("--tile-cache", raw.tile_cache_mib, "MiB of tiles that are cached; 0 disables the cache")
-        ->check(check_within(0.0, kTileCacheMibMax))
-        ->capture_default_str();
-    app.add_option(
-           "--disk-reserve", raw.disk_reserve_mib,
-           "MiB to keep free on the store's disk; with less, the server stores nothing until space is free again")
-        ->check(check_within(0.0, kTileCacheMibMax))
-        ->capture_default_str();
-    app.add_option("--map-memory", raw.map_memory_mib,
-                   "MiB for the maps of all sessions together; when they are used up, unused sessions are evicted from "
-                   "memory. Default: half of the available memory")
-        ->check(check_within(kMapMemoryMibMin, kMapMemoryMibMax))
-        ->capture_default_str();
-    app.add_option(
-           "--weave-memory", raw.replay_memory_mib,
-           "MiB for the maps of all replay jobs (other settings, earlier revisions) together: half for running jobs, "
-           "half for cached maps. Default: a quarter of the available memory")
-        ->check(check_within(kMapMemoryMibMin, kMapMemoryMibMax))
-        ->capture_default_str();
-    app.add_option("--idle-after", raw.idle_after,
-                   "Seconds after which an unused session is evicted from memory; the next request loads it again")
-        ->check(check_within(1.0, kIdleAfterMax))
-        ->capture_default_str();
+    add_memory_options(app, options);
     app.add_option("--log-level", options.log_level, "Minimum level of the lines on standard error")
         ->check(CLI::IsMember({"trace", "debug", "info", "warn", "error", "off"}))
         ->capture_default_str();
@@ -163,105 +223,29 @@ void add_options(CLI::App& app, ServerOptions& options, Raw& raw) {
         "Allow other machines to connect although a port has neither tokens nor TLS: all of them may send and read");
 }
 
-/// Sets the directory of the viewer. A directory that was named must have an index.html; the default one may be
-/// missing.
-Result<> settle_web(const std::string& named, ServerOptions& options) {
-    options.web = named.empty() ? default_web() : std::filesystem::path(named);
-    std::error_code ignored;
-    if (named.empty() || std::filesystem::is_regular_file(options.web / "index.html", ignored)) return {};
-    return Error{Errc::kNotFound, fmt::format("--web {}: the directory has no index.html; give the directory that the "
-                                              "viewer was built into, or omit --web",
-                                              named)};
-}
-
-Result<> check_host_names(const std::vector<std::string>& names) {
-    for (const auto& name : names) {
-        const bool valid = !name.empty() && std::ranges::all_of(name, [](unsigned char c) {
-            return std::isalnum(c) != 0 || c == '.' || c == '-' || c == '_';
-        });
-        if (valid) continue;
-        return Error{Errc::kInvalidField,
-                     fmt::format("--http-host '{}' is not a host name; write it without scheme and port", name)};
-    }
-    return {};
-}
-
-Result<> settle_proxies(const std::vector<std::string>& named, ServerOptions& options) {
-    for (const auto& text : named) {
-        boost::system::error_code failed;
-        options.http_proxies.push_back(boost::asio::ip::make_address(text, failed));
-        if (!failed) continue;
-        return Error{Errc::kInvalidField, fmt::format("--http-proxy '{}' is not an address; write 192.0.2.7", text)};
-    }
-    return {};
-}
-
-Result<> settle_task(const Raw& raw, ServerOptions& options) {
-    if (!raw.check.empty()) options.task = raw.check == "deep" ? Task::kCheckMaps : Task::kCheck;
-    if (!options.repaired.empty()) options.task = Task::kRepair;
-    if (raw.restore.empty()) return {};
-    options.task = Task::kRestore;
-    if (raw.restore == "newest") return {};
-    options.backup = parse_number<std::uint32_t>(raw.restore);
-    if (options.backup.value_or(0) > 0) return {};
-    return Error{Errc::kInvalidField,
-                 fmt::format("--restore '{}' is not a backup; give its number, or 'newest'", raw.restore)};
-}
-
-Result<> settle(const Raw& raw, ServerOptions& options) {
-    const auto listen = parse_endpoint(raw.listen);
-    if (!listen) return prefixed("--listen ", listen.error());
-    options.listen = *listen;
-    const auto http = parse_endpoint(raw.http);
-    if (!http) return prefixed("--http ", http.error());
-    options.http = *http;
-    if (raw.store.find("://") != std::string::npos) {
-        return Error{Errc::kInvalidField,
-                     fmt::format("--store {}: this version keeps its log in a directory; give a path", raw.store)};
-    }
-    options.store = raw.store;
-    if (auto task = settle_task(raw, options); !task) return task;
-    if (auto apart = check_places(options); !apart) return apart;
-    if (raw.disk_reserve_mib < kDiskReserveMibMin) {
-        return Error{Errc::kInvalidField,
-                     fmt::format("--disk-reserve {}: when the disk fills up, the store needs {} MiB to finish what it "
-                                 "has begun; reserve at least that much",
-                                 raw.disk_reserve_mib, kDiskReserveMibMin)};
-    }
-    options.disk_reserve_bytes = static_cast<std::uint64_t>(raw.disk_reserve_mib * 1024 * 1024);
-    options.map_memory_bytes = static_cast<std::size_t>(raw.map_memory_mib * 1024 * 1024);
-    options.replay_memory_bytes = static_cast<std::size_t>(raw.replay_memory_mib * 1024 * 1024);
-    options.idle_after = std::chrono::milliseconds(static_cast<std::int64_t>(raw.idle_after * 1000));
-    options.tokens = raw.tokens;
-    options.tile_cache_bytes = static_cast<std::size_t>(raw.tile_cache_mib * 1024 * 1024);
-    if (auto found = settle_web(raw.web, options); !found) return found.error();
-    if (auto valid = check_host_names(options.http_hosts); !valid) return valid.error();
-    if (auto valid = settle_proxies(raw.proxies, options); !valid) return valid.error();
-    return check_guarded(options);
-}
-
 } // namespace
 
 std::variant<ServerOptions, Leave> read_options(int argc, const char* const* argv) {
     if (auto made = token_command(argc, argv)) return std::move(*made);
     ServerOptions options;
     options.threads = std::max(1U, std::thread::hardware_concurrency());
-    Raw raw;
     const auto memory = default_map_memory(memory_limit());
-    raw.map_memory_mib = static_cast<double>(memory.maps >> 20);
-    raw.replay_memory_mib = static_cast<double>(memory.replay_jobs >> 20);
+    options.map_memory_bytes = memory.maps >> 20 << 20; // whole MiB, as --help shows
+    options.replay_memory_bytes = memory.replay_jobs >> 20 << 20;
 
     CLI::App app(kAbout, "scanloom-server");
     app.footer(kFooter);
     app.set_version_flag("--version", fmt::format("scanloom-server {}", kVersion));
-    add_options(app, options, raw);
+    add_options(app, options);
     try {
         read_settings_from_environment_and_file(app);
         app.parse(argc, argv);
     } catch (const CLI::ParseError& reason) {
         return leave_for(app, reason);
     }
-    if (auto settled = settle(raw, options); !settled) return usage_error(app, settled.error().message);
+    if (options.web.empty()) options.web = default_web();
+    if (auto apart = check_places(options); !apart) return usage_error(app, apart.error().message);
+    if (auto guarded = check_guarded(options); !guarded) return usage_error(app, guarded.error().message);
     return options;
 }
 

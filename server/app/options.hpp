@@ -29,8 +29,8 @@ enum class Task {
 /// The settings of scanloom-server, from flags, SCANLOOM_* variables and a TOML file, in order of precedence.
 struct ServerOptions {
     Task task = Task::kServe;
-    boost::asio::ip::tcp::endpoint listen; ///< for robots
-    boost::asio::ip::tcp::endpoint http;   ///< for browsers and API clients
+    boost::asio::ip::tcp::endpoint listen{boost::asio::ip::address_v4::loopback(), 7447}; ///< for robots
+    boost::asio::ip::tcp::endpoint http{boost::asio::ip::address_v4::loopback(), 8080};   ///< for browsers, API clients
     std::filesystem::path store;
     std::filesystem::path repaired;      ///< the store that --repair creates
     std::filesystem::path backups;       ///< directory of the backups; empty: backups are disabled

@@ -75,7 +75,8 @@ TEST(Ld06OptionsOf, LocalizationWithAGivenPoseIsRefused) {
     EXPECT_THAT(refused({"f", "--pose", "0,0,0", "--near", "0,0,1"}), HasSubstr("--near needs --locate"));
     EXPECT_THAT(refused({"f", "--locate", "--speed", "1"}), HasSubstr("leave --speed out"));
     EXPECT_THAT(refused({"f"}), HasSubstr("or let the server determine it with --locate"));
-    for (const auto* near : {"", "1,2", "1,2,3,4", "1,2,x", "nan,0,1", "0,0,inf"}) {
+    EXPECT_THAT(refused({"f", "--locate", "--near", ""}), HasSubstr("given but empty"));
+    for (const auto* near : {"1,2", "1,2,3,4", "1,2,x", "nan,0,1", "0,0,inf"}) {
         EXPECT_THAT(refused({"f", "--locate", "--near", near}), HasSubstr("is not X,Y,RADIUS in metres")) << near;
     }
     for (const auto* near : {"0,0,0", "0,0,-1", "0,0,1001", "0,0,1e9", "0,0,1e-300"}) {
@@ -97,7 +98,8 @@ TEST(Ld06OptionsOf, InvalidCommandLinesAreRefused) {
     EXPECT_THAT(refused({"--pose", "0,0,0"}), HasSubstr("name the INPUT"));
     EXPECT_THAT(refused({"f"}), HasSubstr("state the robot's pose"));
     EXPECT_THAT(refused({"f", "--pose", "0,0,0", "--poses", "p"}), HasSubstr("state the robot's pose"));
-    for (const auto* pose : {"", "1,2", "1,2,3,4", "1,2,x", "1,2,nan", "1,inf,0", "1 2 3"}) {
+    EXPECT_THAT(refused({"f", "--pose", ""}), HasSubstr("given but empty"));
+    for (const auto* pose : {"1,2", "1,2,3,4", "1,2,x", "1,2,nan", "1,inf,0", "1 2 3"}) {
         EXPECT_THAT(refused({"f", "--pose", pose}), HasSubstr("is not X,Y,YAW")) << pose;
         EXPECT_THAT(refused({"f", "--pose", "0,0,0", "--mount", pose}), HasSubstr("is not X,Y,YAW")) << pose;
     }

@@ -71,7 +71,7 @@ TEST_F(ServerOptionsTest, ReadsHashInAStringAsText) {
 
 TEST_F(ServerOptionsTest, RejectsAGivenDirectoryWithoutViewer) {
     const auto path = directory_.path().string();
-    EXPECT_THAT(refusal({"--web", path}), AllOf(HasSubstr("--web " + path), HasSubstr("index.html")));
+    EXPECT_THAT(refusal({"--web", path}), AllOf(HasSubstr("--web: " + path), HasSubstr("index.html")));
     EXPECT_THAT(refusal({"--config", file("a.toml", "web = \"" + path + "\"\n")}), HasSubstr("index.html"));
     file("index.html", "<html></html>");
     EXPECT_EQ(std::get<ServerOptions>(read({"--web", path})).web, path);
