@@ -3,7 +3,6 @@
 #include "common/scan/limits.hpp"
 #include "common/scan/reading.hpp"
 #include "common/wire/messages.hpp"
-#include "core/landmarks/alignment.hpp"
 #include "core/landmarks/point_index.hpp"
 #include "core/landmarks/points.hpp"
 #include "robot_client/sources/ld06_capture.hpp"

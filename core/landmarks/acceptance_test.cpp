@@ -8,6 +8,7 @@
 #include <numbers>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace scanloom::landmarks {
@@ -16,32 +17,13 @@ namespace {
 constexpr double kScoreMargin = 0.08;       // of the best score: no other pose may come this near to it,
 constexpr double kScoreMarginElements = 30; // or this near in elements: things may have moved
 constexpr double kConstraintMin = 0.02;     // of the elements used: below this, a direction is not constrained
-constexpr double kInliersMin = 40;
-constexpr double kOutlierRatioMax = 0.1;       // outliers / (inliers + outliers) for two views,
-constexpr double kOutlierRatioOnMapMax = 0.15; // and on a map
+constexpr double kInliersMin = 40;          // of both surfaces
+constexpr double kInlierRatioMin = 0.5;     // of the view
+constexpr double kOutlierRatioMax = 0.15;   // outliers / (inliers + outliers) of both surfaces
+constexpr double kViewOutlierRatioMax = 0.06;
+constexpr double kSigmaMax = 0.033; // metres: the map itself is no more accurate
 
-constexpr double kInlierRatioMin = 0.3;  // inlier ratio for two views
-constexpr double kSigmaMax = 0.02 / 3.0; // metres for two views: 2 cm are three sigmas
-
-/// Along a hall, a pose near the best has hardly fewer inliers of two views, because few elements constrain the pose in
-/// that direction. It does not compete if the elements in which the two differ distinguish them clearly. The elements
-/// that support the best must exceed the others by this number,
-constexpr double kDistinguishingMin = 20.0;
-constexpr double kDistinguishingRatioMin = 3.0;      // and by this factor;
-constexpr double kDistinguishingElsewhereMin = 10.0; // and by this number without all elements around any one place,
-constexpr double kObjectRadius = 1.0;                // metres: the size of one thing that may have moved.
-
-/// A distant pose may be correct although it has fewer inliers: with two doors, one closed and one opened since, a room
-/// may look like itself rotated by half a turn. The pose competes if it has this fraction of the best pose's inliers,
-constexpr double kDistantInlierFraction = 0.9;
-constexpr double kDistantOutlierWeight = 8.0; // minus this many elements for each outlier that it has fewer.
-
-constexpr double kInlierRatioOnMapMin = 0.5;       // inlier ratio of a view on a map
-constexpr double kSigmaOnMapMax = 0.033;           // metres: the map itself is no more accurate
-constexpr double kViewOutlierRatioOnMapMax = 0.06; // of a view: outliers on a map
-
-/// On a map, a pose with fewer inliers than the best competes as well, unless the best has this inlier ratio. It must
-/// have
+/// A pose with fewer inliers than the best competes as well, unless the best has this inlier ratio. It must have
 constexpr double kCompleteInlierRatio = 0.97;
 constexpr double kCompetingInlierRatioMin = 0.3; // this inlier ratio,
 constexpr double kOutlierRatioTolerance = 0.002; // an outlier ratio at most this much above the best pose's,
@@ -56,10 +38,9 @@ double share(std::size_t part, std::size_t all) {
     return all == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(all);
 }
 
-/// Returns the inlier ratio of what must overlap: of both views, or of the view on a map.
-double inlier_ratio_of(const Candidate& candidate, MatchedAgainst against) {
-    const Evidence of = against == MatchedAgainst::kView ? candidate.both() : candidate.second_in_first;
-    return share(of.inliers, of.elements);
+/// Returns the fraction of the view that is in the map.
+double inlier_ratio_of(const Candidate& candidate) {
+    return share(candidate.second_in_first.inliers, candidate.second_in_first.elements);
 }
 
 double outlier_ratio_of(const Candidate& candidate) {
@@ -67,9 +48,8 @@ double outlier_ratio_of(const Candidate& candidate) {
     return share(both.outliers, both.inliers + both.outliers);
 }
 
-bool overlaps(const Candidate& candidate, MatchedAgainst against, double overlap_min) {
-    return inlier_ratio_of(candidate, against) >= overlap_min &&
-           static_cast<double>(candidate.both().inliers) >= kInliersMin;
+bool overlaps(const Candidate& candidate, double overlap_min) {
+    return inlier_ratio_of(candidate) >= overlap_min && static_cast<double>(candidate.both().inliers) >= kInliersMin;
 }
 
 /// Sets the standard deviations of the fit, from its residuals and 3 unknowns.
@@ -83,26 +63,19 @@ void add_sigmas(const LineFit& fit, Alignment& alignment) {
     alignment.yaw_sigma = std::sqrt(std::max(0.0, covariance(2, 2)));
 }
 
-std::optional<std::string> why_undetermined(const Candidate& best, MatchedAgainst against) {
-    const double percent = 100.0 * inlier_ratio_of(best, against);
-    if (against == MatchedAgainst::kView && !overlaps(best, against, kInlierRatioMin)) {
-        return fmt::format(
-            "only {:.0f} % of the two views overlap ({} surface elements); take captures that are nearer "
-            "to each other, or of more turns",
-            percent, best.both().inliers);
-    }
-    if (against == MatchedAgainst::kMap && !overlaps(best, against, kInlierRatioOnMapMin)) {
+std::optional<std::string> why_undetermined(const Candidate& best) {
+    if (!overlaps(best, kInlierRatioMin)) {
         return fmt::format("only {:.0f} % of the view is in the map ({} surface elements); move to a place where more "
                            "is mapped",
-                           percent, best.both().inliers);
+                           100.0 * inlier_ratio_of(best), best.both().inliers);
     }
     const double alone = share(best.second_in_first.outliers, best.second_in_first.elements);
-    if (against == MatchedAgainst::kMap && alone > kViewOutlierRatioOnMapMax) {
+    if (alone > kViewOutlierRatioMax) {
         return fmt::format("{:.0f} % of the view is in the free space of the map; it may be another place, or many "
                            "objects have moved",
                            100.0 * alone);
     }
-    if (outlier_ratio_of(best) > (against == MatchedAgainst::kView ? kOutlierRatioMax : kOutlierRatioOnMapMax)) {
+    if (outlier_ratio_of(best) > kOutlierRatioMax) {
         return fmt::format(
             "{:.0f} % of the surface visible from both places is in one view only; they may be different "
             "places, or many objects have moved",
@@ -118,79 +91,50 @@ bool is_elsewhere(const Pose2& a, const Pose2& b) {
 
 /// Returns whether the correct pose may be `other`, in an incomplete part of the map, and `best` may only look similar.
 bool may_be_unfinished(const Candidate& other, const Candidate& best) {
-    return inlier_ratio_of(best, MatchedAgainst::kMap) < kCompleteInlierRatio &&
-           overlaps(other, MatchedAgainst::kMap, kCompetingInlierRatioMin) &&
+    return inlier_ratio_of(best) < kCompleteInlierRatio && overlaps(other, kCompetingInlierRatioMin) &&
            outlier_ratio_of(other) <= outlier_ratio_of(best) + kOutlierRatioTolerance &&
            is_elsewhere(other.pose(), best.pose());
 }
 
-/// For two views, returns whether the elements in which a nearby pose differs from the best clearly support the best.
-bool is_distinguished_from(const Candidate& best, const Candidate& other) {
-    if (is_elsewhere(other.pose(), best.pose())) return false;
-    const auto [for_best, for_other, of_one_thing] = difference(best, other, kObjectRadius);
-    const double more = for_best - for_other;
-    return more >= kDistinguishingMin && for_best >= kDistinguishingRatioMin * for_other &&
-           more - of_one_thing >= kDistinguishingElsewhereMin;
-}
-
-/// For two views, returns whether the correct pose may be the distant pose `other`.
-bool may_be_elsewhere(const Candidate& other, const Candidate& best) {
-    const auto worth = [](const Candidate& one, double inlier_fraction) {
-        const Evidence both = one.both();
-        return inlier_fraction * static_cast<double>(both.inliers) -
-               kDistantOutlierWeight * static_cast<double>(both.outliers);
-    };
-    return overlaps(other, MatchedAgainst::kView, kInlierRatioMin) &&
-           worth(other, 1.0) >= worth(best, kDistantInlierFraction) && is_elsewhere(other.pose(), best.pose());
-}
-
 /// Returns the best candidate that is distinct from the first and may be correct as well, or nullptr.
-const Candidate* competing_candidate(const std::vector<Candidate>& candidates, MatchedAgainst against) {
+const Candidate* competing_candidate(const std::vector<Candidate>& candidates) {
     const Candidate& best = candidates.front();
     const double near = best.score() - std::max(kScoreMargin * best.score(), kScoreMarginElements);
     for (const Candidate& other : candidates) {
         if (!is_distinct(other.pose(), best.pose())) continue;
-        if (against == MatchedAgainst::kMap) {
-            if (other.score() >= near || may_be_unfinished(other, best)) return &other;
-        } else if ((other.score() >= near && !is_distinguished_from(best, other)) || may_be_elsewhere(other, best)) {
-            return &other;
-        }
+        if (other.score() >= near || may_be_unfinished(other, best)) return &other;
     }
     return nullptr;
 }
 
-std::string ambiguity_text(const Candidate& best, const Candidate& competing, MatchedAgainst against) {
+std::string ambiguity_text(const Candidate& best, const Candidate& competing) {
     const Pose2 apart = compose(inverse(best.pose()), competing.pose());
-    const bool is_likelier = against == MatchedAgainst::kView && competing.both().outliers < best.both().outliers;
     return fmt::format("another pose, {:.2f} m and {:.0f} degrees away, matches {:.0f} % of the view, and this pose "
-                       "matches {:.0f} %{}; move to a place with more distinct surroundings",
+                       "matches {:.0f} %; move to a place with more distinct surroundings",
                        std::hypot(apart.x, apart.y), std::abs(apart.yaw) * 180.0 / std::numbers::pi,
-                       100.0 * inlier_ratio_of(competing, against), 100.0 * inlier_ratio_of(best, against),
-                       is_likelier ? ", but the other one has fewer outliers" : "");
+                       100.0 * inlier_ratio_of(competing), 100.0 * inlier_ratio_of(best));
 }
 
 } // namespace
 
-Alignment test_acceptance(const std::vector<Candidate>& candidates, MatchedAgainst against) {
+Alignment test_acceptance(const std::vector<Candidate>& candidates) {
     if (candidates.empty()) {
-        return {.why = against == MatchedAgainst::kView
-                           ? "the two views do not match in any pose; take captures that are nearer to each other"
-                           : "the view does not match the map in any pose; move to a place that is mapped"};
+        return {.why = "the view does not match the map in any pose; move to a place that is mapped"};
     }
     const Candidate& best = candidates.front();
     Alignment alignment{.T_first_second = best.pose(),
                         .certainty = Certainty::kClear,
-                        .inlier_ratio = share(best.second_in_first.inliers, best.second_in_first.elements),
+                        .inlier_ratio = inlier_ratio_of(best),
                         .outlier_ratio = share(best.second_in_first.outliers, best.second_in_first.elements),
                         .rms = best.fit.rms};
     add_sigmas(best.fit, alignment);
-    if (auto why = why_undetermined(best, against)) {
+    if (auto why = why_undetermined(best)) {
         alignment.certainty = Certainty::kUndetermined;
         alignment.why = std::move(*why);
         return alignment;
     }
     const auto [direction, constraint] = weak_direction(best.fit);
-    const Candidate* competing = competing_candidate(candidates, against);
+    const Candidate* competing = competing_candidate(candidates);
     if (competing) alignment.competing_pose = competing->pose();
     if (constraint < kConstraintMin) {
         alignment.certainty = Certainty::kAmbiguous;
@@ -199,8 +143,8 @@ Alignment test_acceptance(const std::vector<Candidate>& candidates, MatchedAgain
                                     direction.x, direction.y);
     } else if (competing) {
         alignment.certainty = Certainty::kAmbiguous;
-        alignment.why = ambiguity_text(best, *competing, against);
-    } else if (alignment.position_sigma > (against == MatchedAgainst::kView ? kSigmaMax : kSigmaOnMapMax)) {
+        alignment.why = ambiguity_text(best, *competing);
+    } else if (alignment.position_sigma > kSigmaMax) {
         alignment.certainty = Certainty::kUndetermined;
         alignment.why = fmt::format("the position along ({:.2f}, {:.2f}) is uncertain by {:.0f} cm, because the common "
                                     "surface is small or far away; take more turns, or move nearer to objects",

@@ -23,6 +23,13 @@ bool is_matched(const Surface& surface, const Surfel& there, const Point2& place
     return !there.is_straight() || std::abs(dot(here.normal, transform(rotation, there.normal))) >= kSameSurfaceCosine;
 }
 
+/// Returns whether any of the horizons looked through a place.
+bool is_open(std::span<const Horizon* const> horizons, const Point2& place) {
+    return std::ranges::any_of(horizons, [&](const Horizon* horizon) {
+        return horizon->reaches(place) && horizon->at(place) == Horizon::Verdict::kOpen;
+    });
+}
+
 } // namespace
 
 Horizon::Horizon(std::span<const Point2> points, const Point2& from) : from_(from) {
@@ -54,31 +61,19 @@ Horizon::Verdict Horizon::at(const Point2& place) const {
     return range > around.furthest + kDepth ? Verdict::kHidden : Verdict::kUnknown;
 }
 
-bool is_open(std::span<const Horizon* const> horizons, const Point2& place) {
-    return std::ranges::any_of(horizons, [&](const Horizon* horizon) {
-        return horizon->reaches(place) && horizon->at(place) == Horizon::Verdict::kOpen;
-    });
-}
-
-std::vector<Finding> findings_of(const Surface& surface, std::span<const Horizon* const> horizons,
-                                 std::span<const Surfel> second, const Pose2& T_first_second) {
-    std::vector<Finding> findings;
-    findings.reserve(second.size());
+Evidence evidence_of(const Surface& surface, std::span<const Horizon* const> horizons, std::span<const Surfel> second,
+                     const Pose2& T_first_second) {
+    Evidence evidence{.elements = second.size()};
     const Pose2 rotation{0.0, 0.0, T_first_second.yaw};
     for (const Surfel& there : second) {
         const Point2 place = transform(T_first_second, there.position);
         if (is_matched(surface, there, place, rotation)) {
-            findings.push_back(Finding::kInlier);
-        } else {
-            findings.push_back(is_open(horizons, place) ? Finding::kOutlier : Finding::kUnseen);
+            ++evidence.inliers;
+        } else if (is_open(horizons, place)) {
+            ++evidence.outliers;
         }
     }
-    return findings;
-}
-
-Evidence evidence_of(std::span<const Finding> findings) {
-    const auto count = [&](Finding finding) { return static_cast<std::size_t>(std::ranges::count(findings, finding)); };
-    return {count(Finding::kInlier), count(Finding::kOutlier), findings.size()};
+    return evidence;
 }
 
 } // namespace scanloom::landmarks

@@ -4,9 +4,7 @@
 
 #include <array>
 #include <cstddef>
-#include <cstdint>
 #include <span>
-#include <vector>
 
 namespace scanloom::landmarks {
 
@@ -60,30 +58,14 @@ struct Evidence {
     }
 };
 
-/// What one view shows at a surface element of another.
-enum class Finding : std::uint8_t {
-    kUnseen,  ///< the element was not visible
-    kInlier,  ///< inlier: the element lies on the view's surface
-    kOutlier, ///< outlier: the element lies in the view's free space
-};
-
 /// Tests the surface elements of a second view, in a given pose, against what a first view shows. An element is an
 /// outlier if it is not on the first view's surface and any of the horizons looked through its position.
 /// @param surface         of the first view, in the first frame
 /// @param horizons        of the places that the first view was seen from
 /// @param second          surface elements of the second view, in the second frame
 /// @param T_first_second  pose of the second frame in the first frame
-/// @return one finding for each element of `second`
 /// Precondition: the surface has elements.
-[[nodiscard]] std::vector<Finding> findings_of(const Surface& surface, std::span<const Horizon* const> horizons,
-                                               std::span<const Surfel> second, const Pose2& T_first_second);
-
-/// Counts the findings of each kind.
-[[nodiscard]] Evidence evidence_of(std::span<const Finding> findings);
-
-/// Returns whether any of the horizons looked through a place.
-/// @param horizons  in one frame
-/// @param place     metres, in that frame
-[[nodiscard]] bool is_open(std::span<const Horizon* const> horizons, const Point2& place);
+[[nodiscard]] Evidence evidence_of(const Surface& surface, std::span<const Horizon* const> horizons,
+                                   std::span<const Surfel> second, const Pose2& T_first_second);
 
 } // namespace scanloom::landmarks

@@ -5,7 +5,6 @@
 #include <Eigen/Dense>
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <cstdint>
 #include <functional>
@@ -150,10 +149,8 @@ constexpr std::size_t kLikelyMax = 4;
 
 constexpr double kOutlierWeight = 2.0; // an outlier outweighs this many inliers
 
-double weight_of(Finding finding) {
-    if (finding == Finding::kUnseen) return 0.0;
-    return finding == Finding::kInlier ? 1.0 : -kOutlierWeight;
-}
+constexpr double kDistinctDistance = 0.1;   // metres; poses that differ by less are the same result
+constexpr double kDistinctTurn = 0.0523599; // radians, 3 degrees
 
 void by_score(std::vector<Candidate>& candidates) {
     std::ranges::stable_sort(candidates, std::greater(), &Candidate::score);
@@ -175,41 +172,14 @@ WeakDirection weak_direction(const LineFit& fit) {
 
 double Candidate::score() const {
     const Evidence all = both();
-    const std::size_t inliers = is_on_map ? 2 * second_in_first.inliers : all.inliers;
-    return static_cast<double>(inliers) - kOutlierWeight * static_cast<double>(all.outliers);
-}
-
-Difference difference(const Candidate& one, const Candidate& other, double thing_radius) {
-    assert(one.findings.size() == other.findings.size() && one.findings.size() == one.places.size());
-    Difference between;
-    std::vector<std::pair<Point2, double>> for_one;
-    for (std::size_t i = 0; i < one.findings.size(); ++i) {
-        const double more = weight_of(one.findings[i]) - weight_of(other.findings[i]);
-        if (more > 0.0) for_one.emplace_back(one.places[i], more);
-        (more > 0.0 ? between.for_one : between.for_other) += std::abs(more);
-    }
-    for (const auto& [middle, _] : for_one) {
-        double around = 0.0;
-        for (const auto& [place, more] : for_one) around += norm(place - middle) <= thing_radius ? more : 0.0;
-        between.of_one_thing = std::max(between.of_one_thing, around);
-    }
-    return between;
+    return 2.0 * static_cast<double>(second_in_first.inliers) - kOutlierWeight * static_cast<double>(all.outliers);
 }
 
 Candidate make_candidate(const Seen& first, const Seen& second, const Pose2& start) {
-    Candidate candidate{.fit = fit_to_lines(first.surface, second.surface, start), .is_on_map = first.is_map};
-    auto findings = findings_of(first.surface, first.horizons, second.surface.surfels(), candidate.pose());
-    const auto of_first =
-        findings_of(second.surface, second.horizons, first.surface.surfels(), inverse(candidate.pose()));
-    candidate.second_in_first = evidence_of(findings);
-    candidate.first_in_second = evidence_of(of_first);
-    if (first.is_map) return candidate;
-    findings.insert(findings.end(), of_first.begin(), of_first.end());
-    candidate.findings = std::move(findings);
-    for (const Surfel& there : second.surface.surfels()) {
-        candidate.places.push_back(transform(candidate.pose(), there.position));
-    }
-    for (const Surfel& here : first.surface.surfels()) candidate.places.push_back(here.position);
+    Candidate candidate{.fit = fit_to_lines(first.surface, second.surface, start)};
+    candidate.second_in_first = evidence_of(first.surface, first.horizons, second.surface.surfels(), candidate.pose());
+    candidate.first_in_second =
+        evidence_of(second.surface, second.horizons, first.surface.surfels(), inverse(candidate.pose()));
     return candidate;
 }
 

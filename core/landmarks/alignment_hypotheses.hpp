@@ -39,7 +39,7 @@ inline constexpr std::size_t kSurfelsMax = 250; ///< surface elements of a view 
 ///     scan matching (2009), for the exhaustive search.
 [[nodiscard]] Result<std::vector<Pose2>> find_hypotheses(
     std::span<const Surfel> first, std::span<const Surfel> second, double distance_max, std::size_t count_max,
-    std::size_t first_max = kSurfelsMax, const std::function<Result<>()>& ask = [] { return Result<>(); });
+    std::size_t first_max, const std::function<Result<>()>& ask = [] { return Result<>(); });
 
 /// Searches the translations for one rotation, as find_hypotheses() does. If things repeat, it finds most of the places
 /// that may be confused.
@@ -52,13 +52,12 @@ inline constexpr std::size_t kSurfelsMax = 250; ///< surface elements of a view 
 /// @return T_first_second of each hypothesis
 [[nodiscard]] std::vector<Pose2> find_translations(std::span<const Surfel> first, std::span<const Surfel> second,
                                                    double yaw, double distance_max, std::size_t count_max,
-                                                   std::size_t first_max = kSurfelsMax);
+                                                   std::size_t first_max);
 
 /// A surface that was seen from one or several places, in one frame, to match others against.
 struct Seen {
     Surface surface;                      ///< metres, in the frame of the horizons
     std::vector<const Horizon*> horizons; ///< of the places it was seen from; must outlive this object
-    bool is_map = false;                  ///< seen from several places; surfaces seen more often have more elements
 };
 
 /// The direction in which lines constrain a pose least, and how much they constrain it, relative to the elements used.
@@ -70,7 +69,7 @@ struct WeakDirection {
 /// @param fit  result of fit_to_lines()
 [[nodiscard]] WeakDirection weak_direction(const LineFit& fit);
 
-/// Returns whether two poses are further apart than kDistinctDistance or kDistinctTurn.
+/// Returns whether two poses are different results: they are more than 0.1 m or 3 degrees apart.
 /// @param a  metres, radians
 /// @param b  in the same frame
 [[nodiscard]] bool is_distinct(const Pose2& a, const Pose2& b);
@@ -78,38 +77,17 @@ struct WeakDirection {
 /// A refined hypothesis and its evidence.
 struct Candidate {
     LineFit fit;              ///< the pose and how well it fits
-    Evidence second_in_first; ///< elements of the second view, seen by the first
-    Evidence first_in_second; ///< elements of the first view, seen by the second; on a map those around the view
-    bool is_on_map = false;   ///< whether the first surface is that of a map
-    /// For two views: what the first view shows at the second's elements, then what the second shows at the first's.
-    /// Empty if the hypothesis was matched against a map.
-    std::vector<Finding> findings;
-    std::vector<Point2> places; ///< positions of these elements in the first view's frame
+    Evidence second_in_first; ///< elements of the view, seen by the map
+    Evidence first_in_second; ///< elements of the map around the view, seen by the view
 
     /// Returns T_first_second.
     [[nodiscard]] const Pose2& pose() const { return fit.T_first_second; }
     /// Returns the evidence of both directions together.
     [[nodiscard]] Evidence both() const { return second_in_first + first_in_second; }
-    /// Returns the number of inliers minus the weighted number of outliers. On a map only the view's elements count as
-    /// inliers, because a wall that was seen more often has more elements than its length.
+    /// Returns twice the number of the view's inliers, minus the weighted number of all outliers. The map's elements do
+    /// not count as inliers, because a wall that was seen more often has more elements than its length.
     [[nodiscard]] double score() const;
 };
-
-/// How clearly surface elements distinguish two poses. Each element that is an inlier of only one of the poses counts
-/// as one, and as more if it is an outlier of the other, as in Candidate::score().
-struct Difference {
-    double for_one = 0.0;      ///< weight of the elements that support the first pose
-    double for_other = 0.0;    ///< weight of the elements that support the other pose
-    double of_one_thing = 0.0; ///< the largest part of for_one around one place: perhaps one thing that moved
-};
-
-/// Compares the evidence of two candidates.
-/// @param one           candidate that is supported by Difference::for_one
-/// @param other         candidate that is supported by Difference::for_other
-/// @param thing_radius  metres, the size of a thing that may have moved
-/// Precondition: both candidates are of the same two views.
-/// Cost: quadratic in the number of elements that support `one`.
-[[nodiscard]] Difference difference(const Candidate& one, const Candidate& other, double thing_radius);
 
 /// Refines a hypothesis and collects its evidence.
 /// @param first   surface and horizons in the first frame

@@ -24,20 +24,17 @@ struct Moments {
     int count = 0;
     Point2 sum{0.0, 0.0};
     Eigen::Matrix2d squares = Eigen::Matrix2d::Zero();
-    double distances = 0.0; // sum of the distances from the sensor
 
-    void add(const Point2& point, double distance) {
+    void add(const Point2& point) {
         ++count;
         sum += point;
         const Eigen::Vector2d column = to_eigen(point);
         squares += column * column.transpose();
-        distances += distance;
     }
     void add(const Moments& other) {
         count += other.count;
         sum += other.sum;
         squares += other.squares;
-        distances += other.distances;
     }
     [[nodiscard]] Point2 mean() const { return sum / count; }
     [[nodiscard]] Eigen::Matrix2d covariance() const {
@@ -48,27 +45,21 @@ struct Moments {
 
 using Cells = std::map<CellKey, Moments>;
 
-/// Returns how many squares to each side belong to the line through these points.
-std::int64_t reach_of(const Moments& moments, double around) {
-    const double distance = moments.distances / moments.count;
-    return std::max<std::int64_t>(1, std::llround(around * distance / kSurfelSpacing));
-}
-
-/// Returns the moments of all points up to `reach` squares away.
-Moments within(const Cells& cells, CellKey key, std::int64_t reach) {
+/// Returns the moments of all points in a square and in its eight neighbours.
+Moments around(const Cells& cells, CellKey key) {
     Moments all;
-    for (std::int64_t y = key.first - reach; y <= key.first + reach; ++y) {
-        for (auto cell = cells.lower_bound({y, key.second - reach}); cell != cells.end(); ++cell) {
-            if (cell->first > CellKey{y, key.second + reach}) break;
+    for (std::int64_t y = key.first - 1; y <= key.first + 1; ++y) {
+        for (auto cell = cells.lower_bound({y, key.second - 1}); cell != cells.end(); ++cell) {
+            if (cell->first > CellKey{y, key.second + 1}) break;
             all.add(cell->second);
         }
     }
     return all;
 }
 
-Surfel surfel(const Cells& cells, CellKey key, const Moments& moments, double around) {
+Surfel surfel(const Cells& cells, CellKey key, const Moments& moments) {
     Surfel surfel{.position = moments.mean()};
-    const Moments all = within(cells, key, reach_of(moments, around));
+    const Moments all = around(cells, key);
     if (all.count < kStraightPointsMin) return surfel;
     Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes;
     axes.computeDirect(all.covariance());
@@ -80,23 +71,23 @@ Surfel surfel(const Cells& cells, CellKey key, const Moments& moments, double ar
 
 } // namespace
 
-std::vector<Surfel> surfels_of(std::span<const CloudView> views, double around) {
+std::vector<Surfel> surfels_of(std::span<const std::vector<Point2>> clouds) {
     std::vector<Surfel> surfels;
-    const auto any = std::ranges::find_if(views, [](const CloudView& view) { return !view.points.empty(); });
-    if (any == views.end()) return surfels;
-    const Point2 origin = any->points.front();
+    const auto any = std::ranges::find_if(clouds, [](const auto& points) { return !points.empty(); });
+    if (any == clouds.end()) return surfels;
+    const Point2 origin = any->front();
     constexpr double kCellsPerMetre = 1.0 / kSurfelSpacing;
     Cells cells;
-    for (const CloudView& view : views) {
-        for (const Point2& point : view.points) {
+    for (const auto& points : clouds) {
+        for (const Point2& point : points) {
             const Point2 offset = point - origin;
             cells[{static_cast<std::int64_t>(std::floor(offset.y * kCellsPerMetre)),
                    static_cast<std::int64_t>(std::floor(offset.x * kCellsPerMetre))}]
-                .add(offset, norm(point - view.from));
+                .add(offset);
         }
     }
     for (const auto& [key, moments] : cells) {
-        surfels.push_back(surfel(cells, key, moments, around));
+        surfels.push_back(surfel(cells, key, moments));
         surfels.back().position += origin;
     }
     return surfels;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/landmarks/alignment.hpp"
+#include "common/geometry/pose2.hpp"
 
 #include <span>
 #include <vector>
@@ -18,27 +18,14 @@ struct Surfel {
     [[nodiscard]] bool is_straight() const { return normal.x != 0.0 || normal.y != 0.0; }
 };
 
-/// Computes the surface elements of views from several places, all in one frame, ordered by rows.
+/// Computes the surface elements of clouds from several places, all in one frame, ordered by rows.
 ///
-/// The line of an element is fitted to the points around it: one square to each side, and more where the points were
-/// seen from further away. Far away, neighbouring beams meet a wall further apart than the side of a square, and noise
-/// in their angles spreads each point across its direction: the points of one square show the beam, not the wall.
-/// @param views   points and sensor positions, metres, all in one frame
-/// @param around  how far the line extends to each side, as a fraction of the distance it was seen from; 0: one square
-///     at any distance
-/// Precondition: the points and the sensor positions pass check_points().
+/// The line of an element is fitted to the points up to one square to each side: a wall is seen from many places, and
+/// where real poses are off by centimetres, a longer piece of it is no line.
+/// @param clouds  points, metres, all in one frame
+/// Precondition: the points pass check_points().
 /// Cost: O(n log n).
-[[nodiscard]] std::vector<Surfel> surfels_of(std::span<const CloudView> views, double around);
-
-/// The parameter `around` of surfels_of() for a single view.
-inline constexpr double kAroundOfView = 0.03;
-
-/// Computes the surface elements of a single view.
-/// @param view    points and sensor position, metres
-/// @param around  how far the lines extend to each side, as a fraction of the distance they were seen from
-[[nodiscard]] inline std::vector<Surfel> surfels_of(const CloudView& view, double around = kAroundOfView) {
-    return surfels_of({&view, 1}, around);
-}
+[[nodiscard]] std::vector<Surfel> surfels_of(std::span<const std::vector<Point2>> clouds);
 
 /// Transforms a surface element from frame b to frame a.
 /// @param T_a_b     pose of frame b in frame a

@@ -1,8 +1,9 @@
 #include "core/landmarks/localization.hpp"
 
+#include "common/scan/limits.hpp"
 #include "core/landmarks/acceptance_test.hpp"
 #include "core/landmarks/alignment_hypotheses.hpp"
-#include "core/landmarks/reference_map.hpp"
+#include "core/landmarks/points.hpp"
 
 #include <fmt/format.h>
 
@@ -37,9 +38,19 @@ ReferenceViews views_near(const ReferenceViews& views, const Neighbourhood& near
     return some;
 }
 
+Result<> check_view(const CloudView& view) {
+    if (auto good = check_points(view.points, "the view.points"); !good) return good;
+    if (auto good = check_points({&view.from, 1}, "the view.from"); !good) return good;
+    if (view.points.size() < kViewPointsMin) {
+        return Error{Errc::kInvalidField, fmt::format("the view has {} points; {} or more are needed to align it",
+                                                      view.points.size(), kViewPointsMin)};
+    }
+    return {};
+}
+
 /// Returns the surface elements of a view, at most kViewSurfelsMax, evenly chosen. A view of a room has some hundreds.
 std::vector<Surfel> some_surfels_of(const std::vector<Point2>& points) {
-    return sample(surfels_of(CloudView{points}, kAroundOfMap), kViewSurfelsMax);
+    return sample(surfels_of({&points, 1}), kViewSurfelsMax);
 }
 
 /// The search for the pose of a view in a map.
@@ -137,7 +148,7 @@ std::string nothing_there(const std::optional<Neighbourhood>& near) {
 
 Result<Alignment> locate(const ReferenceViews& views, const CloudView& view, const std::optional<Neighbourhood>& near,
                          const std::function<Result<>()>& ask) {
-    if (auto good = check_view("the view", view); !good) return good.error();
+    if (auto good = check_view(view); !good) return good.error();
     std::vector<Point2> points;
     for (const Point2& point : view.points) points.push_back(point - view.from);
     const Horizon horizon(points, {0.0, 0.0});
@@ -182,7 +193,7 @@ Result<Alignment> locate(const ReferenceViews& views, const CloudView& view, con
         return apart({candidate.pose().x, candidate.pose().y}, where.middle) > where.radius;
     });
     rank(candidates);
-    Alignment found = test_acceptance(candidates, MatchedAgainst::kMap);
+    Alignment found = test_acceptance(candidates);
     const auto in_map = [&](const Pose2& pose) {
         return compose({map->middle().x, map->middle().y, 0.0}, compose(pose, {-view.from.x, -view.from.y, 0.0}));
     };

@@ -67,16 +67,14 @@ Result<ReferenceMap> ReferenceMap::of(ReferenceViewSpan views, const Point2& mid
                                       const std::function<Result<>()>& ask) {
     ReferenceMap map(middle);
     std::vector<std::vector<Point2>> points; // by view
-    std::vector<CloudView> seen;
     map.horizons_.reserve(views.size());
     for (const auto& view : views) {
         if (auto go_on = ask(); !go_on) return go_on.error();
         auto& its = points.emplace_back();
         for (const PointMm& point : view->points) its.push_back(in_metres(point) - middle);
-        seen.push_back({its, view->from - middle});
-        map.horizons_.emplace_back(its, seen.back().from);
+        map.horizons_.emplace_back(its, view->from - middle);
     }
-    for (const Surfel& surfel : surfels_of(seen, kAroundOfMap)) {
+    for (const Surfel& surfel : surfels_of(points)) {
         if (auto go_on = ask(); !go_on) return go_on.error();
         if (!map.has_gone(surfel.position)) map.surfels_.push_back(surfel);
     }
@@ -100,7 +98,7 @@ Seen ReferenceMap::around(const Point2& place, double radius) const {
     std::ranges::copy_if(surfels_, std::back_inserter(near), [&](const Surfel& surfel) {
         return squared_norm(surfel.position - place) <= radius * radius;
     });
-    Seen seen{Surface(std::move(near)), {}, true};
+    Seen seen{Surface(std::move(near)), {}};
     for (const Horizon& horizon : horizons_) {
         const double far = radius + horizon.reach();
         if (squared_norm(horizon.from() - place) < far * far) seen.horizons.push_back(&horizon);

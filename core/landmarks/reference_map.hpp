@@ -61,10 +61,6 @@ private:
 /// Some of the views, ordered as in ReferenceViews.
 using ReferenceViewSpan = std::span<const std::shared_ptr<const ReferenceView>>;
 
-/// The parameter `around` of surfels_of() for a map and for views matched against it. A wall is seen from many places,
-/// and where real poses are off by centimetres, a longer piece of it is no line.
-inline constexpr double kAroundOfMap = 0.0;
-
 /// The extent of all points: a square with points on at least two opposite sides.
 struct Extent {
     Point2 middle{0.0, 0.0}; ///< metres, map frame

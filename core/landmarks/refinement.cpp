@@ -1,5 +1,4 @@
 #include "core/landmarks/refinement.hpp"
-#include "core/landmarks/pair_alignment.hpp"
 
 #include <Eigen/Dense>
 
@@ -8,6 +7,8 @@
 
 namespace scanloom::landmarks {
 namespace {
+
+constexpr double kUndetermined = 1e-9; // relative to the value for points that agree
 
 constexpr int kIcpStepsMax = 20;
 constexpr double kIcpDistance = 0.5;  // metres; pairs further apart do not correspond
@@ -112,6 +113,39 @@ NormalEquations normal_equations(const Surface& first, const Surface& second, co
 
 } // namespace
 
+std::optional<Pose2> align_pairs(std::span<const PointPair> pairs) {
+    if (pairs.size() < 2) return std::nullopt;
+    const auto count = static_cast<double>(pairs.size());
+    Point2 first_centre{0.0, 0.0};
+    Point2 second_centre{0.0, 0.0};
+    for (const PointPair& pair : pairs) {
+        first_centre += pair.first;
+        second_centre += pair.second;
+    }
+    first_centre /= count;
+    second_centre /= count;
+    double along = 0.0;
+    double across = 0.0;
+    double first_extent = 0.0;
+    double second_extent = 0.0;
+    for (const PointPair& pair : pairs) {
+        const Point2 first = pair.first - first_centre;
+        const Point2 second = pair.second - second_centre;
+        along += dot(second, first);
+        across += second.x * first.y - second.y * first.x;
+        first_extent += squared_norm(first);
+        second_extent += squared_norm(second);
+    }
+    const double size = std::max(max_abs(first_centre), max_abs(second_centre));
+    const double rounding = 1e-14 * size * size * count; // what remains of equal points minus their mean
+    if (std::hypot(along, across) <= kUndetermined * std::sqrt(first_extent * second_extent) + rounding) {
+        return std::nullopt;
+    }
+    const double yaw = normalize_angle(std::atan2(across, along));
+    const Point2 translation = first_centre - transform({0.0, 0.0, yaw}, second_centre);
+    return Pose2{translation.x, translation.y, yaw};
+}
+
 Pose2 refine_by_icp(const Surface& first, std::span<const Surfel> second, const Pose2& T_first_second) {
     Pose2 pose = T_first_second;
     for (int step = 0; step < kIcpStepsMax; ++step) {
@@ -119,8 +153,8 @@ Pose2 refine_by_icp(const Surface& first, std::span<const Surfel> second, const 
         if (pairs.size() < kIcpPairsMin) break;
         const auto fit = align_pairs(pairs);
         if (!fit) break;
-        const bool converged = has_converged(pose, fit->T_first_second, kIcpConverged);
-        pose = fit->T_first_second;
+        const bool converged = has_converged(pose, *fit, kIcpConverged);
+        pose = *fit;
         if (converged) break;
     }
     return pose;

@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -27,6 +28,24 @@ private:
     std::vector<Surfel> surfels_;
     PointTree tree_;
 };
+
+/// The positions of one place in two frames.
+struct PointPair {
+    Point2 first{0.0, 0.0};  ///< metres, in the first frame
+    Point2 second{0.0, 0.0}; ///< metres, in the second frame
+};
+
+/// Computes the rotation and translation, never a reflection, that minimize the sum of squared distances between each
+/// first point and the transformed second point.
+///
+/// Two pairs are enough, and so are pairs on one line: in the plane only a reflection would fit those as well.
+/// @param pairs  positions, metres
+/// @return T_first_second, or nullopt if it is not determined: there are fewer than 2 pairs, all points of one side are
+///     equal, or any rotation fits as well
+/// Precondition: the points pass check_points().
+/// Source: Umeyama, Least-squares estimation of transformation parameters between two point patterns (1991); in the
+///     plane the rotation is the direction of the sum of conj(second) * first, both relative to their centroids.
+[[nodiscard]] std::optional<Pose2> align_pairs(std::span<const PointPair> pairs);
 
 /// Refines a pose that is off by up to half a metre and some degrees, by iterated closest points. Only the closer part
 /// of the pairs counts, because one view does not show everything that the other shows.

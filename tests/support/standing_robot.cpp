@@ -68,23 +68,6 @@ bool sees(const World& world, const Pose2& from, const Pose2& to) {
     return world.obstacles->cast_ray({from.x, from.y}, yaw, distance + 0.3) > distance + 0.2;
 }
 
-TwoCaptures two_captures(const World& open, const std::vector<Box>& doors, std::uint64_t seed, int turns) {
-    Random random(seed);
-    const World closed = doors.empty() ? open : with_door(open, doors[random.index(doors.size())]);
-    for (;;) {
-        const Pose2 first = free_place(closed, random);
-        const double bearing = any_direction(random);
-        const double distance = random.uniform(0.5, 2.0);
-        const Pose2 second{first.x + distance * std::cos(bearing), first.y + distance * std::sin(bearing),
-                           any_direction(random)};
-        if (clearance(closed, {second.x, second.y}) < kClearance || !sees(closed, first, second)) continue;
-        const bool closes = random.index(2) == 0;
-        auto before = standing_capture(closes ? open : closed, first, turns, random);
-        auto after = standing_capture(closes ? closed : open, second, turns, random);
-        return {std::move(before), std::move(after), compose(inverse(first), second)};
-    }
-}
-
 StandingView standing_view(const World& world, const Pose2& place, Random& random, int turns) {
     StandingView view{{place.x, place.y}, {}};
     for (const Point2& point : standing_capture(world, place, turns, random)) {

@@ -25,21 +25,6 @@ namespace scanloom::sim {
 /// Returns whether the line between two places is free, and the space just behind the second.
 [[nodiscard]] bool sees(const World& world, const Pose2& from, const Pose2& to);
 
-inline constexpr int kAlignedTurns = 20; ///< turns of the lidar in each of the two places
-
-/// Scans of a robot from two places of a world, between which a door moved.
-struct TwoCaptures {
-    std::vector<Point2> first; ///< each in its robot's frame
-    std::vector<Point2> second;
-    Pose2 T_first_second;
-};
-
-/// Makes scans from two places 0.5 to 2 m apart with random headings, each in sight of the other, with the door open in
-/// one of them.
-/// @param doors  one of them moves; empty: none moves
-[[nodiscard]] TwoCaptures two_captures(const World& open, const std::vector<Box>& doors, std::uint64_t seed,
-                                       int turns = kAlignedTurns);
-
 inline constexpr int kMappedTurns = 10; ///< turns of the lidar for each view of a map
 
 /// The points observed from one place.

@@ -45,18 +45,6 @@ TEST(StandingRobot, ClosedDoorsBlockTheView) {
     }
 }
 
-TEST(StandingRobot, PairsOfPlacesAreAStepOrTwoApart) {
-    const World office = rooms();
-    for (std::uint64_t seed = 0; seed < 10; ++seed) {
-        const auto captures = two_captures(office, doors_of(office), seed, 1);
-        const double distance = std::hypot(captures.T_first_second.x, captures.T_first_second.y);
-        EXPECT_GE(distance, 0.5);
-        EXPECT_LE(distance, 2.0);
-        EXPECT_GT(captures.first.size(), 100U);
-        EXPECT_EQ(captures.first, two_captures(office, doors_of(office), seed, 1).first);
-    }
-}
-
 TEST(MappedWorld, EachPlaceIsNearAnEarlierOne) {
     for (std::uint64_t seed = 0; seed < 5; ++seed) {
         const auto mapped = mapped_world(make_hall(), 6, seed);

@@ -138,6 +138,46 @@ std::vector<Point2> seen_at(const sim::World& world, const Pose2& place) {
     return standing_capture(world, place, 10, random);
 }
 
+/// Returns a room around the origin that is empty.
+sim::World empty_room(double half_width, double half_height) {
+    return sim::make_world("empty",
+                           {{-half_width - 1.0, -half_height - 1.0, half_width + 1.0, -half_height},
+                            {-half_width - 1.0, half_height, half_width + 1.0, half_height + 1.0},
+                            {-half_width - 1.0, -half_height - 1.0, -half_width, half_height + 1.0},
+                            {half_width, -half_height - 1.0, half_width + 1.0, half_height + 1.0}},
+                           {{-half_width, -half_height, half_width, half_height}});
+}
+
+TEST(Localization, IsAmbiguousByAQuarterTurnInASquareRoom) {
+    const auto room = empty_room(3.0, 3.0);
+    const auto found = locate(map_of(room, {{0.5, 0.2, 0.3}}), {.points = seen_at(room, {-0.4, 0.6, 2.0})}).value();
+    EXPECT_EQ(found.certainty, Certainty::kAmbiguous);
+    EXPECT_THAT(found.why, HasSubstr("another pose"));
+    ASSERT_TRUE(found.competing_pose);
+    const double turn = degrees_off(*found.competing_pose, found.T_first_second);
+    EXPECT_NEAR(std::remainder(turn, 90.0), 0.0, 1.0);
+    EXPECT_GT(turn, 80.0);
+}
+
+TEST(Localization, IsAmbiguousAlongACorridor) {
+    const auto corridor = empty_room(40.0, 1.0);
+    const auto found =
+        locate(map_of(corridor, {{0.0, 0.2, 0.3}}), {.points = seen_at(corridor, {1.0, -0.2, 2.0})}).value();
+    EXPECT_EQ(found.certainty, Certainty::kAmbiguous);
+    EXPECT_NE(found.why, "");
+    EXPECT_NEAR(std::abs(found.T_first_second.y), 0.2, 0.02)
+        << "the position across the corridor is determined except for a rotation by half a turn";
+}
+
+TEST(Localization, IsDeterministic) {
+    const auto map = map_of(furnished(), kPlaces);
+    const auto seen = seen_at(furnished(), kGroundTruth);
+    const auto once = locate(map, {.points = seen}).value();
+    const auto again = locate(map, {.points = seen}).value();
+    EXPECT_EQ(once.T_first_second, again.T_first_second);
+    EXPECT_EQ(once.rms, again.rms);
+}
+
 TEST(Localization, ReturnsTheTransformFromTheRequestsFrame) {
     const auto world = furnished();
     const Pose2 T_odom_robot{40.0, -7.0, 1.2};
@@ -273,8 +313,10 @@ TEST(Localization, RefusesInvalidViews) {
     EXPECT_THAT(locate(map, {.points = std::vector<Point2>(19, {1.0, 1.0})}).error().message,
                 HasSubstr("the view has 19 points; 20 or more"));
     std::vector<Point2> points(30, {1.0, 1.0});
+    EXPECT_THAT(locate(map, {.points = points, .from = {std::nan(""), 0.0}}).error().message,
+                HasSubstr("the view.from"));
     points[7].x = std::numeric_limits<double>::quiet_NaN();
-    EXPECT_EQ(locate(map, {.points = points}).error().code, Errc::kInvalidField);
+    EXPECT_THAT(locate(map, {.points = points}).error().message, HasSubstr("the view.points[7]"));
     // equal points do not determine a pose, independent of their number
     const auto point = locate(map, {.points = std::vector<Point2>(50, {1.0, 1.0})}).value();
     EXPECT_EQ(point.certainty, Certainty::kUndetermined);
