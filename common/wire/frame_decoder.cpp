@@ -99,12 +99,6 @@ Result<> FrameDecoder::check(std::string_view body) {
                                              body.size(), checksum == Checksum::kWrong ? "wrong" : "missing")};
 }
 
-void append_frame(std::string& out, std::string_view body) {
-    assert(body.size() <= kFrameBytesMax);
-    append_length(out, body.size());
-    out.append(body);
-}
-
 void append_checked_frame(std::string& out, std::string_view body) {
     assert(body.size() + kChecksumBytes <= kFrameBytesMax);
     append_length(out, body.size() + kChecksumBytes);

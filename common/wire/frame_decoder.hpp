@@ -61,9 +61,6 @@ private:
     bool has_checksums_ = false; // whether a received frame had one
 };
 
-/// Appends a frame to `out`: the length prefix and the body. Precondition: body.size() <= kFrameBytesMax.
-void append_frame(std::string& out, std::string_view body);
-
 /// Appends a frame to `out`: the length prefix, the body and its checksum.
 /// Precondition: body.size() + kChecksumBytes <= kFrameBytesMax.
 void append_checked_frame(std::string& out, std::string_view body);

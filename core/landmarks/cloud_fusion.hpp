@@ -26,7 +26,7 @@ struct FusedPoint {
 /// two). A matched point joins its group; any other point starts a new one. So a group has at most one point of each
 /// cloud, and equal points of one cloud remain separate. The fused points are the medians of the groups. Their counts
 /// of clouds add up to the number of points of all clouds.
-/// @param clouds     metres, all in one frame; see transform_points()
+/// @param clouds     metres, all in one frame
 /// @param threshold  metres
 /// @param ask        called before each cloud, because many clouds take seconds; an error that it returns ends the
 ///     fusion

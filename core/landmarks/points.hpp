@@ -16,17 +16,6 @@
 
 namespace scanloom::landmarks {
 
-/// Scales points, rotates them around the origin, then translates them: translation + R(rotation) * scale * point.
-///
-/// Keeps the order and number of points. Scale 1, rotation 0 and translation 0 return identical coordinates.
-/// @param points        metres
-/// @param translation   metres
-/// @param rotation_rad  counter-clockwise
-/// @param scale         more than 0; does not mirror
-/// Errors: kInvalidField for a parameter out of range; those of check_points(), for the points and for the results.
-[[nodiscard]] Result<std::vector<Point2>> transform_points(std::span<const Point2> points, const Point2& translation,
-                                                           double rotation_rad, double scale = 1.0);
-
 /// Converts a point to Eigen's type.
 [[nodiscard]] inline Eigen::Vector2d to_eigen(const Point2& point) { return {point.x, point.y}; }
 /// Converts a point from Eigen's type.

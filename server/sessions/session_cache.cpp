@@ -18,12 +18,6 @@ std::shared_ptr<Session> SessionCache::find(std::string_view name, Clock::time_p
     return found->second.session;
 }
 
-bool SessionCache::needs_loading(std::string_view name) const {
-    const std::shared_lock lock(mutex_);
-    const auto found = entries_.find(name);
-    return found != entries_.end() && found->second.state != State::kLoaded;
-}
-
 bool SessionCache::contains(std::string_view name) const {
     const std::shared_lock lock(mutex_);
     return entries_.contains(name);

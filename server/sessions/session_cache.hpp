@@ -47,9 +47,6 @@ public:
     /// Returns the session if it is in memory and sets its time of last use to `now`; otherwise null.
     [[nodiscard]] std::shared_ptr<Session> find(std::string_view name, Clock::time_point now) const;
 
-    /// Returns whether the session exists and is not in memory.
-    [[nodiscard]] bool needs_loading(std::string_view name) const;
-
     [[nodiscard]] bool contains(std::string_view name) const;
 
     /// Returns the session's properties; nullopt if it does not exist.

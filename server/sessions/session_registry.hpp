@@ -44,9 +44,6 @@ public:
     /// Returns the session if it is in memory; otherwise, or if it does not exist, null.
     [[nodiscard]] std::shared_ptr<Session> find(std::string_view name) const;
 
-    /// Returns whether the session exists and load() would have to load it first.
-    [[nodiscard]] bool needs_loading(std::string_view name) const { return state_.cache.needs_loading(name); }
-
     /// Passes the session to `on_loaded`, after loading it from the store if necessary.
     ///
     /// @param on_loaded  called once, possibly before this function returns, with the session or one of

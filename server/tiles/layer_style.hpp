@@ -29,12 +29,6 @@ inline constexpr Salience kUnknownSalience = 0;
     return static_cast<Salience>(percent > 50 ? percent + 1 : 51 - percent);
 }
 
-/// Returns the percentage of a salience; the inverse of salience_of().
-[[nodiscard]] constexpr Percent percent_of_salience(Salience salience) noexcept {
-    if (salience == kUnknownSalience) return kUnknownPercent;
-    return static_cast<Percent>(salience > 51 ? salience - 1 : 51 - salience);
-}
-
 /// Returns the grey of a percentage: 255 (1 - p), rounded. White is free, black is occupied. A half rounds down, which
 /// keeps a known cell at even odds (127) distinct from an unknown one (128).
 [[nodiscard]] constexpr std::uint8_t grey_of(Percent percent) noexcept {

@@ -67,7 +67,8 @@ Velocity Explore::step(const Senses& senses) {
 }
 
 std::string Explore::remarks() const {
-    const std::string drive = fmt::format("{:.0f} m driven in {}", driven_, as_text(driven_s()));
+    const double seconds = static_cast<double>(steps_) * kControlPeriod;
+    const std::string drive = fmt::format("{:.0f} m driven in {}", driven_, as_text(seconds));
     return is_done()
                ? fmt::format("explored: no frontier is reachable with a clearance of {} m, {}", kPathClearance, drive)
                : fmt::format("exploring: {}", drive);
@@ -83,8 +84,6 @@ void Explore::wait(double seconds) {
     steps_left_ = static_cast<int>(std::lround(seconds / kControlPeriod));
     task_ = Task::kWait;
 }
-
-double Explore::driven_s() const noexcept { return static_cast<double>(steps_) * kControlPeriod; }
 
 Velocity Explore::go_on(const Senses& senses) {
     const Velocity velocity = follower_.step(senses);

@@ -38,8 +38,6 @@ public:
     /// Finishes: there is nothing left to explore.
     void finish() { task_ = Task::kDone; }
 
-    [[nodiscard]] double driven_m() const noexcept { return driven_; }
-    [[nodiscard]] double driven_s() const noexcept;
     /// Returns how many times in a row a given path was blocked at nearly the same place.
     [[nodiscard]] int times_blocked() const noexcept { return times_blocked_; }
 

@@ -42,8 +42,6 @@ public:
     [[nodiscard]] std::string remarks() const override;
 
     [[nodiscard]] double coverage() const noexcept { return meter_.share(); } ///< 0 .. 1, of what the robot can reach
-    [[nodiscard]] int detours() const noexcept { return detours_; }
-    [[nodiscard]] int lanes_given_up() const noexcept { return given_up_; }
 
 private:
     enum class Task { kBegin, kGo, kSweep, kDetour, kDone };

@@ -1,5 +1,6 @@
 #include "common/wire/frame_decoder.hpp"
 #include "tests/fuzz/check.hpp"
+#include "tests/support/plain_frame.hpp"
 
 #include <algorithm>
 #include <cstring>
@@ -50,7 +51,7 @@ SCANLOOM_FUZZER(frame_decoder)(const std::uint8_t* data, std::size_t size) {
     fuzz::check(whole.bodies == pieces.bodies, "any split of the bytes yields the same bodies");
     if (!whole.failed) {
         std::string again;
-        for (const auto& body : whole.bodies) wire::append_frame(again, body);
+        for (const auto& body : whole.bodies) testing_support::append_plain_frame(again, body);
         fuzz::check(stream.substr(0, again.size()) == again, "framing the bodies reproduces the stream");
     }
     return 0;

@@ -2,6 +2,7 @@
 
 #include "common/hash/crc32c.hpp"
 #include "common/wire/frame_decoder.hpp"
+#include "tests/support/plain_frame.hpp"
 #include "tests/unit/common/wire/example_messages.hpp"
 
 #include <gmock/gmock.h>
@@ -22,7 +23,7 @@ std::string frame_of(const Message& message) {
 std::string without_checksum(const Message& message) {
     const auto frame = frame_of(message);
     std::string plain;
-    append_frame(
+    testing_support::append_plain_frame(
         plain, std::string_view(frame).substr(kLengthPrefixBytes, frame.size() - kLengthPrefixBytes - kChecksumBytes));
     return plain;
 }

@@ -1,4 +1,5 @@
 #include "common/wire/frame_decoder.hpp"
+#include "tests/support/plain_frame.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -23,7 +24,7 @@ std::vector<std::string> drain(FrameDecoder& decoder) {
 
 std::string stream_of(const std::vector<std::string>& bodies) {
     std::string stream;
-    for (const auto& body : bodies) append_frame(stream, body);
+    for (const auto& body : bodies) testing_support::append_plain_frame(stream, body);
     return stream;
 }
 

@@ -47,7 +47,7 @@ protected:
 
     void expect_loaded(const std::string& name, bool loaded) {
         EXPECT_EQ(cache_.find(name, at(0)) != nullptr, loaded) << name;
-        EXPECT_EQ(cache_.needs_loading(name), !loaded) << name;
+        EXPECT_TRUE(cache_.contains(name)) << name;
     }
 
     store::SessionId last_id_ = 0;

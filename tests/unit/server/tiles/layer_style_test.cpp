@@ -24,13 +24,13 @@ TEST(OccupancyPercent, SalienceOrdersHighestAboveHalfThenLowest) {
     const auto expect_next = [&](int percent) {
         const auto salience = salience_of(static_cast<Percent>(percent));
         EXPECT_EQ(salience, before + 1) << percent;
-        EXPECT_EQ(percent_of_salience(salience), percent);
+        EXPECT_EQ(style_of(mapping::Layer::kOccupancy).code[salience], percent);
         before = salience;
     };
     for (int percent = 50; percent >= 0; --percent) expect_next(percent);
     for (int percent = 51; percent <= 100; ++percent) expect_next(percent);
     EXPECT_EQ(salience_of(kUnknownPercent), kUnknownSalience);
-    EXPECT_EQ(percent_of_salience(kUnknownSalience), kUnknownPercent);
+    EXPECT_EQ(style_of(mapping::Layer::kOccupancy).code[kUnknownSalience], kUnknownPercent);
 }
 
 TEST(OccupancyPercent, GreysOfPercentagesAndUnknownAreDistinct) {
