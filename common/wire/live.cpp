@@ -104,7 +104,7 @@ Result<LiveRequest> decode_live_request(std::string_view body) {
     request.points = proto.points();
     request.landmarks = proto.landmarks();
     for (const int layer : proto.layers()) {
-        if (layer < v1::LAYER_OCCUPANCY || layer > v1::LAYER_CLASSIFICATION) {
+        if (layer == v1::LAYER_UNSPECIFIED || !v1::Layer_IsValid(layer)) {
             return invalid_field(
                 fmt::format("live_request.layers[{}] is {}, which is no layer", request.layers.size(), layer));
         }

@@ -27,7 +27,8 @@ inline constexpr std::array kLayers = {Layer::kOccupancy, Layer::kHimm, Layer::k
 /// Returns the layer's name in URLs, e.g. "occupancy".
 /// @param layer  any layer
 [[nodiscard]] constexpr std::string_view name_of(Layer layer) noexcept {
-    constexpr std::array<std::string_view, 4> kNames = {"occupancy", "himm", "sonar", "classification"};
+    constexpr auto kNames = std::to_array<std::string_view>({"occupancy", "himm", "sonar", "classification"});
+    static_assert(kNames.size() == kLayers.size());
     return kNames[static_cast<std::size_t>(layer)];
 }
 

@@ -10,6 +10,7 @@
 #include <bit>
 #include <cmath>
 #include <cstddef>
+#include <cstdlib>
 #include <optional>
 #include <span>
 #include <utility>
@@ -23,11 +24,13 @@ grid::CellBox bounds_of(const Snapshot& snapshot, Layer layer) noexcept {
     case Layer::kOccupancy: return laser.occupancy;
     case Layer::kHimm: return laser.himm;
     case Layer::kSonar: return sonar;
-    case Layer::kClassification: break;
+    case Layer::kClassification: {
+        const grid::CellBox seen = snapshot.config.class_source == ClassSource::kHimm ? laser.himm : laser.occupancy;
+        if (seen.empty()) return seen;
+        return {seen.i_begin - 1, seen.j_begin - 1, seen.i_end + 1, seen.j_end + 1}; // frontiers surround free cells
     }
-    grid::CellBox seen = snapshot.config.class_source == ClassSource::kHimm ? laser.himm : laser.occupancy;
-    if (seen.empty()) return seen;
-    return {seen.i_begin - 1, seen.j_begin - 1, seen.i_end + 1, seen.j_end + 1}; // frontiers surround free cells
+    }
+    std::abort(); // each layer has a case
 }
 
 grid::CellBox bounds_of(const LayerBounds& bounds) noexcept {

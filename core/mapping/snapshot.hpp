@@ -12,6 +12,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <memory>
 #include <optional>
 #include <string>
@@ -101,6 +102,9 @@ using ChunkCells = std::array<Value, std::size_t{grid::kChunkSide} * grid::kChun
 template <class Use>
 decltype(auto) with_layer(const Snapshot& snapshot, Layer layer, Use&& use) {
     switch (layer) {
+    case Layer::kOccupancy:
+        return use(
+            snapshot.laser, [](const LaserChunk& chunk) -> const auto& { return chunk.occupancy; });
     case Layer::kHimm:
         return use(
             snapshot.laser, [](const LaserChunk& chunk) -> const auto& { return chunk.himm; });
@@ -110,10 +114,8 @@ decltype(auto) with_layer(const Snapshot& snapshot, Layer layer, Use&& use) {
     case Layer::kClassification:
         return use(
             snapshot.classes, [](const classify::ClassChunk& chunk) -> const auto& { return chunk.cells; });
-    case Layer::kOccupancy: break;
     }
-    return use(
-        snapshot.laser, [](const LaserChunk& chunk) -> const auto& { return chunk.occupancy; });
+    std::abort(); // each layer has a case
 }
 
 /// Returns the SHA-256 digest of a layer's cells and cell size, in lower-case hexadecimal.

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <vector>
 
@@ -42,9 +43,9 @@ Thresholds thresholds_of(mapping::Layer layer, const mapping::MapConfig& config)
     case mapping::Layer::kHimm: return {config.class_himm_free, config.class_himm_occupied};
     case mapping::Layer::kOccupancy:
     case mapping::Layer::kSonar: return {fixed(config.class_p_free), fixed(config.class_p_occupied)};
-    case mapping::Layer::kClassification: break;
+    case mapping::Layer::kClassification: return {}; // has no thresholds
     }
-    return {}; // has no thresholds
+    std::abort(); // each layer has a case
 }
 
 Verdict verdict_of(mapping::Layer layer, Value value, const Thresholds& thresholds) {

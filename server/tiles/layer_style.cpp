@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 namespace scanloom::tiles {
 namespace {
@@ -109,9 +110,9 @@ const LayerStyle& style_of(mapping::Layer layer) {
     case mapping::Layer::kHimm: return himm;
     case mapping::Layer::kClassification: return classes;
     case mapping::Layer::kOccupancy:
-    case mapping::Layer::kSonar: break;
+    case mapping::Layer::kSonar: return probability;
     }
-    return probability;
+    std::abort(); // each layer has a case
 }
 
 } // namespace scanloom::tiles

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <functional>
 
 namespace scanloom::live {
@@ -48,12 +49,12 @@ constexpr std::uint32_t kTilesAcross = 1U << tiles::kZoomNative;
 
 wire::LiveLayer to_wire(mapping::Layer layer) noexcept {
     switch (layer) {
+    case mapping::Layer::kOccupancy: return wire::LiveLayer::kOccupancy;
     case mapping::Layer::kHimm: return wire::LiveLayer::kHimm;
     case mapping::Layer::kSonar: return wire::LiveLayer::kSonar;
     case mapping::Layer::kClassification: return wire::LiveLayer::kClassification;
-    case mapping::Layer::kOccupancy: break;
     }
-    return wire::LiveLayer::kOccupancy;
+    std::abort(); // each layer has a case
 }
 
 bool is_connected(const SessionSnapshot& snapshot, std::size_t robot) {

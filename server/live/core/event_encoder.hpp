@@ -6,6 +6,7 @@
 #include "core/mapping/snapshot.hpp"
 
 #include <array>
+#include <bitset>
 #include <compare>
 #include <cstddef>
 #include <cstdint>
@@ -35,7 +36,7 @@ struct SessionSnapshot {
 
 /// The subscription of a viewer: the contents of its events.
 struct Subscription {
-    std::array<bool, mapping::kLayers.size()> layers = {true, true, true, true}; ///< by mapping::Layer
+    std::bitset<mapping::kLayers.size()> layers = ~std::bitset<mapping::kLayers.size()>(); ///< by mapping::Layer
     bool points = true;
     bool landmarks = false;
 };
