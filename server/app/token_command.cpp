@@ -3,7 +3,7 @@
 #include "common/app/command_line.hpp"
 #include "common/scan/limits.hpp"
 #include "server/auth/token.hpp"
-#include "server/auth/token_file.hpp"
+#include "server/auth/token_text.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>

@@ -2,14 +2,10 @@
 
 #include "common/error/error.hpp"
 #include "core/mapping/projection.hpp"
-#include "server/sessions/checkpoint_parts.hpp"
 #include "server/store/scan_log.hpp"
 
 #include <atomic>
-#include <cstdint>
 #include <optional>
-#include <string_view>
-#include <vector>
 
 /// The checkpoint of a projection in the store. With it, recovery replays only the rest of the log.
 ///
@@ -41,60 +37,5 @@ namespace scanloom::sessions {
 [[nodiscard]] Result<> write_checkpoint(store::ScanLog& log, store::SessionId session,
                                         const mapping::Snapshot& snapshot, const mapping::ProjectionState& state,
                                         std::optional<Revision> since, const std::atomic<bool>& stop);
-
-/// Restores a projection from the parts of a checkpoint.
-class CheckpointReader {
-public:
-    explicit CheckpointReader(const mapping::MapConfig& config) : projection_(config) {}
-
-    /// Adds the next part, in ascending order of keys. After an error, replay the whole log instead.
-    /// Errors: kMalformed if the part is damaged; kUnsupportedVersion if it was written by another version, whose maps
-    /// may differ.
-    [[nodiscard]] Result<> add(std::string_view key, std::string_view value);
-
-    /// Returns the projection at the revision of the checkpoint; an empty one if no part was added.
-    /// Errors: kMalformed if parts are missing.
-    [[nodiscard]] Result<mapping::Projection> finish() &&;
-
-    /// Returns whether the parts have the format that this program writes. If not, the next checkpoint must replace all
-    /// parts.
-    [[nodiscard]] bool is_newest_format() const noexcept;
-
-    /// The first key after the parts of the state. Parts from this key on are sensors and cells.
-    static constexpr std::string_view kAfterState = "sensor/";
-
-    /// Returns the state without sensors; an empty one if no part was added. Call after all parts before kAfterState.
-    /// @return nullopt if the checkpoint was written in an earlier format, which does not contain the whole state
-    [[nodiscard]] std::optional<mapping::ProjectionState> state() &&;
-
-private:
-    using Numbers = std::vector<std::uint32_t>; // those in a key
-
-    /// A kind of part, identified by the prefix of its key. `add` returns false if the part is damaged.
-    struct Kind {
-        std::string_view prefix;
-        std::size_t numbers;
-        bool (CheckpointReader::*add)(const Numbers& numbers, std::string_view value);
-    };
-    static const Kind kKinds[5];
-
-    [[nodiscard]] Result<> add_format(std::string_view value);
-    [[nodiscard]] Result<> add_head(std::string_view value);
-    [[nodiscard]] Result<> add_exclusions(std::string_view value);
-    [[nodiscard]] bool add_robot(const Numbers& numbers, std::string_view value);
-    [[nodiscard]] bool add_sensor(const Numbers& numbers, std::string_view value);
-    [[nodiscard]] bool add_old_points(const Numbers& numbers, std::string_view value);
-    [[nodiscard]] bool add_laser_chunk(const Numbers& numbers, std::string_view value);
-    [[nodiscard]] bool add_sonar_chunk(const Numbers& numbers, std::string_view value);
-    void restore_projection();
-
-    PartDecompressor decompressor_;
-    mapping::Projection projection_;
-    mapping::ProjectionState state_;
-    std::vector<std::uint64_t> excluded_; // scans, by robot
-    std::uint32_t parts_version_ = 0;
-    bool has_format_ = false;
-    bool is_restored_ = false; // the state is complete and was passed to the projection
-};
 
 } // namespace scanloom::sessions

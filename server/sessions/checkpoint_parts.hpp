@@ -20,6 +20,16 @@ struct ZSTD_DCtx_s;
 /// The parts of a checkpoint: their values, their compression, and the part with the exclusions.
 namespace scanloom::sessions {
 
+// Keys and version
+
+inline constexpr std::string_view kLaserChunk = "weave/laser/"; ///< prefix of the keys of chunks
+inline constexpr std::string_view kSonarChunk = "weave/sonar/";
+
+// Version 1 had no version number and stored chunks as in memory. Version 2 lacked the number of pages and the poses of
+// the robots, so a session had to be loaded to be listed. Versions 2 and 3 stored trajectories as
+// track/<index>/<block>.
+inline constexpr std::uint32_t kPartsVersion = 4;
+
 // Plain values
 
 static_assert(std::endian::native == std::endian::little, "checkpoints are written in the machine's own order");

@@ -2,7 +2,7 @@
 
 #include "common/wire/log_codec.hpp"
 #include "server/log/context.hpp"
-#include "server/sessions/checkpoint.hpp"
+#include "server/sessions/checkpoint_reader.hpp"
 #include "server/sessions/log_readers.hpp"
 #include "server/sessions/registry_state.hpp"
 #include "server/store/store_error.hpp"

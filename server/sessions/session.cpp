@@ -15,18 +15,9 @@
 namespace scanloom::sessions {
 namespace {
 
-constexpr double kSliceWork = 5e6;            // in the unit of Reach::work: a few milliseconds
-constexpr double kInPlaceWork = 1e6;          // of a group: about a millisecond, during which readers may have to wait
-constexpr std::size_t kGroupsDurableMax = 2;  // one is being applied, one waits
-constexpr Revision kCheckpointEvery = 4096;   // entries applied between two checkpoints, or
-constexpr double kCheckpointEveryWork = 1e10; // this much work: bounds the work that a restart repeats
-constexpr std::size_t kCheckpointEveryDescribed = std::size_t{4} << 20; // bytes: bounds a checkpoint's last piece
-
-/// Returns the number of entries between two checkpoints of a session: kCheckpointEvery to 1.5 times as many, depending
-/// on the session. With one value for all, sessions that started together would always write at the same time.
-constexpr Revision checkpoint_every(store::SessionId session) {
-    return kCheckpointEvery + (session - 1) * 0x9E37'79B9 % (kCheckpointEvery / 2); // Fibonacci hashing
-}
+constexpr double kSliceWork = 5e6;           // in the unit of Reach::work: a few milliseconds
+constexpr double kInPlaceWork = 1e6;         // of a group: about a millisecond, during which readers may have to wait
+constexpr std::size_t kGroupsDurableMax = 2; // one is being applied, one waits
 
 /// @param created_by  token whose limit it is, if `chunks_max` is below SessionLimits::kMost
 Error full(std::size_t chunks, std::size_t chunks_max, const std::string& created_by) {
@@ -45,16 +36,6 @@ Error short_of_memory() {
         "the maps in use take all memory that the server may use for maps; try again later, or raise its --map-memory"};
 }
 
-Error no_memory() {
-    return {Errc::kOverloaded, "there is no memory left for this map; use larger cells or another session"};
-}
-
-/// Returns the maps that are published if memory runs out while the session's maps are withdrawn.
-const std::shared_ptr<const mapping::Snapshot>& no_maps() {
-    static const auto none = std::make_shared<const mapping::Snapshot>();
-    return none;
-}
-
 } // namespace
 
 Session::Session(SessionInfo info, mapping::Projection projection, std::optional<Revision> checkpointed,
@@ -62,12 +43,10 @@ Session::Session(SessionInfo info, mapping::Projection projection, std::optional
                  const SessionLimits& limits, std::optional<boost::asio::any_io_executor> blocking_executor)
     : info_(std::move(info)), log_(log), counters_(std::move(counters)), limits_(limits),
       blocking_executor_(blocking_executor.value_or(compute)), strand_(std::move(compute)),
-      sequencer_(info_, *counters_), projection_(std::move(projection)), appended_(projection_.revision()),
-      share_(limits.shared), pages_(projection_.page_count()), checkpointed_(checkpointed) {
+      sequencer_(info_, *counters_), maps_(std::move(projection)), appended_(maps_.projection().revision()),
+      share_(limits.shared), pages_(maps_.projection().page_count()), checkpoints_(info_.id, checkpointed) {
     share_.take_anyway(static_cast<std::int64_t>(pages_)); // its log is stored, so its maps must be served
-    sequencer_.restore(projection_.state());
-    static_cast<void>(no_maps()); // create it while there is memory
-    if (!publish()) throw std::bad_alloc();
+    sequencer_.restore(maps_.projection().state());
 }
 
 std::optional<Error> Session::failure() const {
@@ -122,7 +101,7 @@ void Session::submit(std::shared_ptr<RobotListener> from, std::vector<Scan> scan
             self.counters_->scans_dropped += scans.size();
             return;
         }
-        const bool is_mapped = !mapping::bounds_of(self.projection_.bounds()).empty();
+        const bool is_mapped = !mapping::bounds_of(self.maps_.projection().bounds()).empty();
         self.enqueue(self.sequencer_.take(from, std::move(scans), bytes, is_mapped));
     });
 }
@@ -136,7 +115,7 @@ void Session::enqueue(std::vector<PendingEntry> entries) {
 /// durable, and at most one durable group waits to be applied.
 void Session::append_next() {
     while (!appending_ && durable_.size() < kGroupsDurableMax && !waiting_.empty()) {
-        const auto taken = static_cast<std::int64_t>(projection_.chunk_count()) + chunks_under_way_;
+        const auto taken = static_cast<std::int64_t>(maps_.projection().chunk_count()) + chunks_under_way_;
         const auto left = static_cast<std::int64_t>(limits_.chunks_max) - taken;
         auto group = waiting_.next_group(std::min(left, share_.free()));
         if (!group.entries.empty() && !share_.take(group.chunks)) { // another session took them first
@@ -145,8 +124,9 @@ void Session::append_next() {
         if (!group.entries.empty()) {
             append(std::move(group));
         } else if (durable_.empty()) {
-            refuse_first(share_.free() < left ? short_of_memory()
-                                              : full(projection_.chunk_count(), limits_.chunks_max, info_.created_by));
+            refuse_first(share_.free() < left
+                             ? short_of_memory()
+                             : full(maps_.projection().chunk_count(), limits_.chunks_max, info_.created_by));
         } else {
             return; // wait until the number of new chunks is known
         }
@@ -178,7 +158,7 @@ void Session::refuse_first(const Error& error) {
     }
     const RobotIndex robot = waiting_.front().robot;
     waiting_.drop(robot);
-    sequencer_.refuse(robot, error, projection_.state());
+    sequencer_.refuse(robot, error, maps_.projection().state());
 }
 
 // From the log to the maps, and to the links
@@ -201,21 +181,23 @@ void Session::apply_batch() {
 
     // A small group is applied as a whole, and in place if no reader holds the published maps. Otherwise each chunk
     // that the group changes is copied first.
-    const bool in_place = durable_.front().work <= kInPlaceWork && published_.withdraw();
+    const bool in_place = durable_.front().work <= kInPlaceWork && maps_.withdraw();
     auto applied = apply_entries(in_place ? HUGE_VAL : kSliceWork);
     const bool finished = applied && applied_ == durable_.front().entries.size();
     if (in_place && !finished) { // failed, or asked to finish early: publish for the waiting readers
-        const auto published = publish();
+        const auto published = maps_.publish();
+        has_news_ = true;
         if (applied) applied = published;
     }
     if (!applied) return stop_writing(applied.error());
 
     if (finished) {
         const Group group = take_applied_group();
-        const auto published = publish();
+        const auto published = maps_.publish();
+        has_news_ = true;
         sequencer_.release(group); // its scans are durable and in the maps: they are acknowledged
         if (!published) return stop_writing(published.error());
-        if (is_checkpoint_due()) begin_checkpoint();
+        if (checkpoints_.is_due(maps_.projection().revision())) begin_checkpoint();
         append_next();
     }
     if (!durable_.empty()) return on_strand([](Session& self) { self.apply_batch(); });
@@ -223,38 +205,22 @@ void Session::apply_batch() {
     finish_closing();
 }
 
-/// Applies up to `work` of the first group. Fails if memory runs out, which must not affect other sessions, or if a
-/// durable entry cannot follow, which is a program error because RobotSequencer checks the entries.
+/// Applies up to `work` of the first group.
 Result<> Session::apply_entries(double work) {
-    try {
-        auto& entries = durable_.front().entries;
-        for (; applied_ < entries.size() && work > 0.0 && !finish_early_; ++applied_) {
-            PendingEntry& next = entries[applied_];
-            if (!next.entry) continue;
-            const auto applied = projection_.apply(*next.entry, work);
-            if (!applied) return applied.error();
-            if (!*applied) return {}; // continues in the next slice
-            work_since_checkpoint_ += next.reach.work;
-            if (auto* taken = std::get_if<ScanTaken>(&*next.entry)) record_applied_scan(*taken);
-            if (std::holds_alternative<SensorDescribed>(*next.entry)) described_since_checkpoint_ += next.bytes;
+    auto& entries = durable_.front().entries;
+    for (; applied_ < entries.size() && work > 0.0 && !finish_early_; ++applied_) {
+        PendingEntry& next = entries[applied_];
+        if (!next.entry) continue;
+        const auto applied = maps_.apply(*next.entry, work);
+        if (!applied) return applied.error();
+        if (!*applied) return {}; // continues in the next slice
+        checkpoints_.count(next);
+        if (const auto* taken = std::get_if<ScanTaken>(&*next.entry)) {
+            const bool is_left_out = maps_.projection().has_left_out_newest(taken->robot);
+            ++(is_left_out ? counters_->scans_jumped : counters_->scans_applied);
         }
-        return {};
-    } catch (const std::bad_alloc&) {
-        return no_memory();
     }
-}
-
-/// Counts an applied scan and moves its readings into newest_scans_. RobotSequencer needs only the sequence number of
-/// the rest.
-void Session::record_applied_scan(ScanTaken& applied) {
-    if (projection_.has_left_out_newest(applied.robot)) {
-        ++counters_->scans_jumped;
-        return;
-    }
-    ++counters_->scans_applied;
-    if (newest_scans_.size() <= applied.robot) newest_scans_.resize(applied.robot + 1);
-    newest_scans_[applied.robot] = std::make_shared<const mapping::IntegratedScan>(mapping::IntegratedScan{
-        projection_.revision(), projection_.sensor_of(applied.robot, applied.scan.sensor), std::move(applied.scan)});
+    return {};
 }
 
 /// Removes the first group, which is applied, and returns the share of the memory that it did not need.
@@ -263,45 +229,21 @@ Group Session::take_applied_group() {
     durable_.pop_front();
     applied_ = 0;
     chunks_under_way_ -= group.chunks;
-    const auto grown = projection_.page_count() - std::exchange(pages_, projection_.page_count());
+    const auto grown = maps_.projection().page_count() - std::exchange(pages_, maps_.projection().page_count());
     share_.give_back(group.chunks - static_cast<std::int64_t>(grown)); // `grown` may include trajectory blocks, too
     return group;
 }
 
-/// Publishes the maps. If memory runs out, readers get the previous maps, or empty ones if those were withdrawn.
-Result<> Session::publish() {
-    try {
-        auto maps = projection_.snapshot();
-        for (std::size_t n = 0; n < newest_scans_.size(); ++n) maps.robots[n].newest_scan = newest_scans_[n];
-        published_.set(std::make_shared<const mapping::Snapshot>(std::move(maps)));
-        has_news_ = true;
-        return {};
-    } catch (const std::bad_alloc&) {
-        published_.fall_back_to(no_maps());
-        return no_memory();
-    }
-}
-
-bool Session::is_checkpoint_due() const {
-    return projection_.revision() - checkpointed_.value_or(0) >= checkpoint_every(info_.id) ||
-           work_since_checkpoint_ >= kCheckpointEveryWork || described_since_checkpoint_ >= kCheckpointEveryDescribed;
-}
-
 void Session::begin_checkpoint() {
-    if (checkpointing_) return;
-    checkpointing_ = true;
-    work_since_checkpoint_ = 0.0;
-    described_since_checkpoint_ = 0;
-    auto write = [self = shared_from_this(), snapshot = snapshot(), state = projection_.state(),
-                  since = checkpointed_] {
+    auto write = [self = shared_from_this(), snapshot = snapshot(), state = maps_.projection().state(),
+                  since = checkpoints_.begin()] {
         const auto written =
             sessions::write_checkpoint(self->log_, self->info_.id, *snapshot, state, since, self->finish_early_);
         if (!written && !self->finish_early_)
             log::warn({.session = self->info_.name}, "session '{}': no checkpoint: {}", self->info_.name,
                       written.error().message);
         self->on_strand([revision = written ? std::optional(state.revision) : since](Session& session) {
-            session.checkpointed_ = revision;
-            session.checkpointing_ = false;
+            session.checkpoints_.end(revision);
             session.finish_closing();
         });
     };
@@ -341,7 +283,7 @@ void Session::finish_reset() {
     if (!resetting_ || !durable_.empty() || broken_) return;
     resetting_ = false;
     drop_pending();
-    appended_ = projection_.revision();
+    appended_ = maps_.projection().revision();
     refusing_ = closing();
 }
 
@@ -350,7 +292,7 @@ void Session::drop_pending() {
     durable_.clear();
     applied_ = 0;
     share_.give_back(std::exchange(chunks_under_way_, 0));
-    sequencer_.restore(projection_.state());
+    sequencer_.restore(maps_.projection().state());
 }
 
 void Session::close(Error reason, std::function<void()> done) {
@@ -378,7 +320,7 @@ void Session::close_early(Error reason, std::function<void()> done) {
 
 /// Continues closing as far as possible. Called after each event that closing waits for.
 void Session::finish_closing() {
-    if (!closed_ || appending_ || checkpointing_) return;
+    if (!closed_ || appending_ || checkpoints_.is_writing()) return;
     if (finish_early_) {
         for (const Group& group : durable_) sequencer_.release(group); // the next recovery applies them
         sequencer_.fail_all(*refusing_);
@@ -386,7 +328,8 @@ void Session::finish_closing() {
     }
     if (!waiting_.empty() || !durable_.empty()) return;
     sequencer_.fail_all(*refusing_);
-    if (projection_.revision() > checkpointed_.value_or(0) && !broken_ && !finish_early_ && !final_checkpoint_tried_) {
+    const bool is_outdated = checkpoints_.is_outdated(maps_.projection().revision());
+    if (is_outdated && !broken_ && !finish_early_ && !final_checkpoint_tried_) {
         final_checkpoint_tried_ = true;
         return begin_checkpoint();
     }

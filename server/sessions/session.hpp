@@ -5,10 +5,11 @@
 #include "common/scan/log_entry.hpp"
 #include "core/mapping/projection.hpp"
 #include "server/sessions/backlog.hpp"
+#include "server/sessions/checkpoint_schedule.hpp"
 #include "server/sessions/listeners.hpp"
-#include "server/sessions/published_maps.hpp"
 #include "server/sessions/robot_sequencer.hpp"
 #include "server/sessions/session_info.hpp"
+#include "server/sessions/session_maps.hpp"
 #include "server/store/scan_log.hpp"
 
 #include <boost/asio/any_io_executor.hpp>
@@ -51,10 +52,10 @@ public:
 
     /// Returns the newest maps, which contain every scan acknowledged so far. Waits about a millisecond if the maps are
     /// being changed in place.
-    [[nodiscard]] std::shared_ptr<const mapping::Snapshot> snapshot() const { return published_.get(); }
+    [[nodiscard]] std::shared_ptr<const mapping::Snapshot> snapshot() const { return maps_.published().get(); }
 
     /// Returns the newest maps, or null if they are being changed in place. Does not wait.
-    [[nodiscard]] std::shared_ptr<const mapping::Snapshot> try_snapshot() const { return published_.try_get(); }
+    [[nodiscard]] std::shared_ptr<const mapping::Snapshot> try_snapshot() const { return maps_.published().try_get(); }
 
     /// Returns MainBounds::of() the newest maps.
     [[nodiscard]] grid::CellBox main_bounds() const { return main_bounds_.of(*snapshot()); }
@@ -139,15 +140,12 @@ private:
     void on_appended(Group group, const Result<>& appended);
     void apply_batch();
     [[nodiscard]] Result<> apply_entries(double work);
-    void record_applied_scan(ScanTaken& applied);
     [[nodiscard]] Group take_applied_group();
-    [[nodiscard]] Result<> publish();
     void notify_watchers();
     void stop_writing(const Error& error);
     void reset_to_durable(const Error& error);
     void finish_reset();
     void drop_pending();
-    [[nodiscard]] bool is_checkpoint_due() const;
     void begin_checkpoint();
     void finish_closing();
 
@@ -160,34 +158,29 @@ private:
     RobotSequencer sequencer_;
 
     // On the strand only.
-    mapping::Projection projection_;
+    SessionMaps maps_; // published() on any thread
     Backlog waiting_;
     std::deque<Group> durable_; // not applied yet; the first one may be applied in part
     std::size_t applied_ = 0;   // applied entries of the first group
-    std::vector<std::shared_ptr<const mapping::IntegratedScan>> newest_scans_; // by RobotIndex; null: none yet
-    Revision appended_ = 0;                                                    // newest entry passed to the log
+    Revision appended_ = 0;     // newest entry passed to the log
     bool appending_ = false;
     std::int64_t chunks_under_way_ = 0; // that the groups being appended or applied may create
     limits::MemoryShare share_;         // of the limits' budgets: pages_ and chunks_under_way_
     std::size_t pages_ = 0;             // of the maps
-    std::optional<Revision> checkpointed_;
-    double work_since_checkpoint_ = 0.0;
-    std::size_t described_since_checkpoint_ = 0; // bytes of sensor descriptions
-    bool checkpointing_ = false;
+    CheckpointSchedule checkpoints_;
     bool final_checkpoint_tried_ = false;
     std::optional<Error> refusing_; // why no more entries are accepted
     bool resetting_ = false;        // to the durable entries, because the log had no room for more
     bool broken_ = false;           // the log or the memory failed: no more appending, applying or checkpoints
     std::function<void()> closed_;  // called when closing is done
 
-    bool has_news_ = false;                  // a change to notify, not counting connections
+    bool has_news_ = true;                   // a change to notify, not counting connections
     std::uint64_t connections_reported_ = 0; // RobotSequencer::connection_changes() at the last notification
 
     mutable Watchers watchers_;
     std::atomic<bool> finish_early_ = false;    // set from any thread, because the strand may be busy
     std::atomic<std::size_t> backlog_size_ = 0; // of waiting_, for any thread
 
-    PublishedMaps published_;
     MainBounds main_bounds_;
 
     mutable std::mutex failure_mutex_; // guards the members below; held briefly

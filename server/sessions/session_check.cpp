@@ -3,7 +3,7 @@
 #include "common/scan/log_rules.hpp"
 #include "common/wire/log_codec.hpp"
 #include "core/mapping/snapshot.hpp"
-#include "server/sessions/checkpoint.hpp"
+#include "server/sessions/checkpoint_reader.hpp"
 #include "server/sessions/recovery.hpp"
 
 #include <fmt/format.h>

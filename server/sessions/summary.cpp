@@ -1,7 +1,7 @@
 #include "server/sessions/summary.hpp"
 
 #include "core/mapping/projection.hpp"
-#include "server/sessions/checkpoint.hpp"
+#include "server/sessions/checkpoint_reader.hpp"
 
 #include <utility>
 

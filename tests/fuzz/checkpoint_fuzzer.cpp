@@ -1,5 +1,6 @@
 #include "core/mapping/map_config.hpp"
 #include "server/sessions/checkpoint.hpp"
+#include "server/sessions/checkpoint_reader.hpp"
 #include "tests/fuzz/check.hpp"
 #include "tests/support/memory_scan_log.hpp"
 

@@ -1,5 +1,5 @@
 #include "server/auth/token.hpp"
-#include "server/auth/token_file.hpp"
+#include "server/auth/token_text.hpp"
 #include "tests/fuzz/check.hpp"
 
 #include <cctype>

@@ -1,6 +1,6 @@
 #include "server/app/options.hpp"
 
-#include "server/auth/token_file.hpp"
+#include "server/auth/token_text.hpp"
 #include "tests/support/temporary_directory.hpp"
 
 #include <gmock/gmock.h>

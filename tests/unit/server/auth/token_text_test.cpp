@@ -1,4 +1,4 @@
-#include "server/auth/token_file.hpp"
+#include "server/auth/token_text.hpp"
 
 #include "server/auth/token.hpp"
 

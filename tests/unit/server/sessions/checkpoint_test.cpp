@@ -1,4 +1,5 @@
 #include "server/sessions/checkpoint.hpp"
+#include "server/sessions/checkpoint_reader.hpp"
 
 #include "tests/support/digests.hpp"
 #include "tests/unit/server/sessions/session_fixture.hpp"

@@ -1,4 +1,5 @@
 #include "server/sessions/checkpoint.hpp"
+#include "server/sessions/checkpoint_reader.hpp"
 #include "server/sessions/recovery.hpp"
 #include "server/sessions/summary.hpp"
 #include "server/store/record.hpp"
