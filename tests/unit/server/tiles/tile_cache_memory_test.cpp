@@ -1,32 +1,15 @@
 #include "server/tiles/tile_cache.hpp"
 
+#include "tests/support/failing_allocation.hpp"
+
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <memory>
-#include <new>
-#include <optional>
-
-namespace {
-
-/// Of this thread: how many allocations succeed before one fails; none: all do.
-thread_local std::optional<int> allocations_left;
-
-} // namespace
-
-void* operator new(std::size_t size) {
-    if (allocations_left && (*allocations_left)-- == 0) {
-        allocations_left.reset();
-        throw std::bad_alloc();
-    }
-    if (void* memory = std::malloc(size)) return memory;
-    throw std::bad_alloc();
-}
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 
 namespace scanloom::tiles {
 namespace {
+
+using testing_support::allocations_left;
 
 const TilePlace kPlace{"the-tag-of-maps-that-is-too-long-for-no-memory", mapping::Layer::kOccupancy, {9, 1, 0}};
 
