@@ -83,15 +83,29 @@ struct Authenticator::Ledger : std::enable_shared_from_this<Authenticator::Ledge
                       Errc::kOverloaded);
     }
 
+    /// Deletes a credential, and removes it from the ledger if it was granted.
+    struct Deleter {
+        std::shared_ptr<Ledger> ledger; // null until the credential is granted
+        std::uint64_t number = 0;       // its key in `credentials`
+
+        void operator()(Credential* credential) const {
+            if (ledger) ledger->forget(number, *credential);
+            delete credential;
+        }
+    };
+
+    /// Grants a credential. Its destruction locks `mutex`.
+    /// Pre: `mutex` is locked.
+    /// Errors: throws std::bad_alloc; nothing is granted then.
     std::shared_ptr<Credential> give(const TokenRef& token, Action action, const std::string& session,
                                      const std::string& user) {
-        auto forget_it = [ledger = shared_from_this(), number = ++last_credential](Credential* credential) {
-            ledger->forget(number, *credential);
-            delete credential;
-        };
-        std::shared_ptr<Credential> credential(new Credential(token, action, session, user), std::move(forget_it));
-        credentials.emplace(last_credential, credential);
+        std::shared_ptr<Credential> credential(new Credential(token, action, session, user), Deleter{});
+        decltype(credentials) entry;
+        entry.emplace(++last_credential, credential);
         if (action == Action::kDrive) ++connected[token->hash][user];
+        // From here on nothing throws.
+        credentials.merge(entry);
+        *std::get_deleter<Deleter>(credential) = {shared_from_this(), last_credential};
         return credential;
     }
 
@@ -141,20 +155,24 @@ Admitted<std::shared_ptr<Credential>> Authenticator::grant_viewing(const TokenRe
 }
 
 void Authenticator::replace(TokenSet tokens) {
+    const auto replacement = std::make_shared<const TokenSet>(std::move(tokens));
+    // `changes` holds each credential until the lock is released, because the destruction of a credential locks, too.
     std::vector<std::pair<std::shared_ptr<Credential>, TokenRef>> changes;
     {
         const std::lock_guard lock(ledger_->mutex);
-        ledger_->tokens = std::make_shared<const TokenSet>(std::move(tokens));
+        changes.reserve(ledger_->credentials.size());
         for (const auto& [number, weak] : ledger_->credentials) {
-            auto credential = weak.lock();
+            auto& [credential, token] = changes.emplace_back(weak.lock(), nullptr);
             if (!credential) continue;
-            auto token = found(ledger_->tokens, credential->hash());
+            token = found(replacement, credential->hash());
             if (token && !check_permission(*token, credential->action(), credential->session())) token = nullptr;
-            changes.emplace_back(std::move(credential), std::move(token));
         }
+        ledger_->tokens = replacement;
     }
     // Without the lock: the callback may call the authenticator.
-    for (auto& [credential, token] : changes) credential->change(std::move(token));
+    for (auto& [credential, token] : changes) {
+        if (credential) credential->change(std::move(token));
+    }
 }
 
 } // namespace scanloom::auth
