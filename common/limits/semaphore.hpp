@@ -17,18 +17,20 @@ public:
     using Permit = std::shared_ptr<const void>;
 
     /// Creates a semaphore with this many permits.
-    explicit Semaphore(std::size_t permits) : free_(std::make_shared<std::atomic<std::ptrdiff_t>>(permits)) {}
+    explicit Semaphore(std::size_t permits) : free_(std::make_shared<std::atomic<std::size_t>>(permits)) {}
 
     /// Takes a permit.
     /// @return null if all permits are taken
     [[nodiscard]] Permit try_acquire() const {
-        if (free_->fetch_sub(1) > 0) return {free_.get(), [free = free_](const void*) { free->fetch_add(1); }};
-        free_->fetch_add(1);
-        return nullptr;
+        std::size_t free = *free_;
+        do {
+            if (free == 0) return nullptr;
+        } while (!free_->compare_exchange_weak(free, free - 1));
+        return {free_.get(), [free = free_](const void*) { free->fetch_add(1); }};
     }
 
 private:
-    std::shared_ptr<std::atomic<std::ptrdiff_t>> free_;
+    std::shared_ptr<std::atomic<std::size_t>> free_;
 };
 
 /// Limits how many uses may exist at once, in total and for each key. It never waits.

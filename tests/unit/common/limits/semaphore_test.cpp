@@ -63,6 +63,24 @@ TEST(Semaphore, IsNeverHeldByMoreThreadsThanItHasPermits) {
     EXPECT_TRUE(again);
 }
 
+TEST(Semaphore, RefusedAttemptsDoNotHideAFreePermit) {
+    for (int round = 0; round < 100; ++round) {
+        const Semaphore semaphore(1);
+        auto permit = semaphore.try_acquire();
+        bool other_acquired = false;
+        {
+            const std::jthread other([&](const std::stop_token& stop) {
+                while (!stop.stop_requested() && !other_acquired) other_acquired = semaphore.try_acquire() != nullptr;
+            });
+            for (int attempt = 0; attempt < 10'000 && permit; ++attempt) {
+                permit.reset();
+                permit = semaphore.try_acquire();
+            }
+        }
+        ASSERT_TRUE(permit || other_acquired) << round;
+    }
+}
+
 TEST(KeyedSemaphore, BoundsAllPermitsAndThoseOfOneKey) {
     const KeyedSemaphore<int> semaphore(3, 2);
     auto first = semaphore.try_acquire(1);
