@@ -15,7 +15,7 @@ class CheckpointSchedule {
 public:
     /// @param stored  revision of the stored checkpoint, if there is one
     CheckpointSchedule(store::SessionId session, std::optional<Revision> stored)
-        : every_(entries_between(session)), stored_(stored) {}
+        : every_(entries_between(session)), stored_(stored), tried_(stored.value_or(0)) {}
 
     /// Counts an entry that was applied to the maps.
     void count(const PendingEntry& applied) {
@@ -23,10 +23,11 @@ public:
         if (std::holds_alternative<SensorDescribed>(*applied.entry)) described_ += applied.bytes;
     }
 
-    /// Returns whether a checkpoint should be written.
+    /// Returns whether a checkpoint should be written. After a failed one, the next is due as late as after a stored
+    /// one.
     /// @param now  revision of the maps
     [[nodiscard]] bool is_due(Revision now) const noexcept {
-        return !writing_ && (now - stored_.value_or(0) >= every_ || work_ >= kWork || described_ >= kDescribed);
+        return !writing_ && (now - tried_ >= every_ || work_ >= kWork || described_ >= kDescribed);
     }
 
     /// Returns whether the maps are newer than the stored checkpoint.
@@ -36,9 +37,11 @@ public:
     [[nodiscard]] bool is_writing() const noexcept { return writing_; }
 
     /// Begins a checkpoint.
+    /// @param now  revision of the maps
     /// @return revision of the stored one
-    std::optional<Revision> begin() noexcept {
+    std::optional<Revision> begin(Revision now) noexcept {
         writing_ = true;
+        tried_ = now;
         work_ = 0.0;
         described_ = 0;
         return stored_;
@@ -64,6 +67,7 @@ private:
 
     Revision every_;
     std::optional<Revision> stored_;
+    Revision tried_;            // revision of the checkpoint that began last, even if it failed
     double work_ = 0.0;         // applied since the last checkpoint began
     std::size_t described_ = 0; // bytes of sensor descriptions applied since then
     bool writing_ = false;

@@ -236,7 +236,7 @@ Group Session::take_applied_group() {
 
 void Session::begin_checkpoint() {
     auto write = [self = shared_from_this(), snapshot = snapshot(), state = maps_.projection().state(),
-                  since = checkpoints_.begin()] {
+                  since = checkpoints_.begin(maps_.projection().revision())] {
         const auto written =
             sessions::write_checkpoint(self->log_, self->info_.id, *snapshot, state, since, self->finish_early_);
         if (!written && !self->finish_early_)
