@@ -149,7 +149,7 @@ Authenticator::grant_robot_link(std::string_view secret, const std::string& sess
 Admitted<std::shared_ptr<Credential>> Authenticator::grant_viewing(const TokenRef& token, const std::string& session) {
     const std::lock_guard lock(ledger_->mutex);
     const auto now = found(ledger_->tokens, token->hash);
-    if (!now) return unknown(token->hash);
+    if (!now) return unknown(token->hash); // default_token() has no hash: as if the client had sent no token
     if (auto permitted = check_permission(*now, Action::kRead, session); !permitted) return permitted.error();
     return ledger_->give(now, Action::kRead, session, "");
 }

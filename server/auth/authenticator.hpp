@@ -80,7 +80,8 @@ public:
     grant_robot_link(std::string_view secret, const std::string& session, const std::string& robot);
 
     /// Permits an admitted client to watch the session.
-    /// Errors: kUnknownToken if the token is no longer in force; kWrongRole or kWrongSession if it does not permit it.
+    /// Errors: kUnknownToken if the token is no longer in force, kNoToken if it is default_token() and the server has
+    ///         tokens now; kWrongRole or kWrongSession if the token does not permit it.
     [[nodiscard]] Admitted<std::shared_ptr<Credential>> grant_viewing(const TokenRef& token,
                                                                       const std::string& session);
 

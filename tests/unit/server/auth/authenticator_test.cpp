@@ -105,6 +105,17 @@ TEST(Authenticator, FirstTokensEndEarlierPasses) {
     EXPECT_EQ(credential->token(), nullptr);
 }
 
+TEST(Authenticator, RefusesViewersWhoseTokenWasRemoved) {
+    Authenticator authenticator;
+    const auto before = authenticator.admit("").value();
+    authenticator.replace(TokenSet({token("a", Role::kViewer)}));
+    using Refusal = std::pair<Reason, std::string>;
+    EXPECT_EQ(refusal(authenticator.grant_viewing(before, "lab")), Refusal(Reason::kNoToken, ""));
+    const auto a = authenticator.admit("secret of a").value();
+    authenticator.replace(TokenSet({token("b", Role::kViewer)}));
+    EXPECT_EQ(refusal(authenticator.grant_viewing(a, "lab")), Refusal(Reason::kUnknownToken, ""));
+}
+
 TEST(Authenticator, CredentialMayOutliveTheAuthenticator) {
     std::shared_ptr<Credential> credential;
     {
