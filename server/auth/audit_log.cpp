@@ -23,7 +23,7 @@ std::string_view name_or(std::string_view text, std::string_view otherwise) {
     return is_valid_name(text) ? text : otherwise;
 }
 
-void tell(const RefusalTable::Line& line) {
+void log_line(const RefusalTable::Line& line) {
     const auto& [port, reason, who, token, session] = line.newest;
     log::warn({.session = is_valid_name(session) ? std::string_view(session) : "", .peer = who},
               "event=refused port={} who={} token={} reason={} session={} count={}", name_of(port), who,
@@ -36,7 +36,7 @@ std::vector<RefusalTable::Line> RefusalTable::note(Refusal refusal, double now) 
     std::vector<Line> lines;
     sweep(now, lines);
     Key key{refusal.who, refusal.port, refusal.reason};
-    if (!kept_.contains(key) && kept_.size() >= kAddressesMax) {
+    if (!kept_.contains(key) && kept_.size() >= kEntriesMax) {
         refusal.who = kOthers;
         std::get<0>(key) = kOthers;
     }
@@ -102,7 +102,7 @@ double steady_seconds() {
 }
 
 AuditLog::~AuditLog() {
-    for (const auto& line : table_.rest()) tell(line);
+    for (const auto& line : table_.rest()) log_line(line);
 }
 
 void AuditLog::note(Refusal refusal) {
@@ -112,7 +112,7 @@ void AuditLog::note(Refusal refusal) {
         const std::lock_guard lock(mutex_);
         lines = table_.note(std::move(refusal), now_());
     }
-    for (const auto& line : lines) tell(line);
+    for (const auto& line : lines) log_line(line);
 }
 
 void AuditLog::log_due() {
@@ -121,7 +121,7 @@ void AuditLog::log_due() {
         const std::lock_guard lock(mutex_);
         lines = table_.due(now_());
     }
-    for (const auto& line : lines) tell(line);
+    for (const auto& line : lines) log_line(line);
 }
 
 std::optional<std::uint64_t> AuditLog::admit_log_line() {

@@ -44,11 +44,12 @@ struct Refusal {
 /// Limits the log lines about refusals, so that refused clients cannot fill the log. For each address, port and reason
 /// the first refusal is reported at once, and later ones in at most one line per minute with their count.
 ///
-/// Bounds: kAddressesMax entries. Refusals beyond are reported together, with the address kOthers.
+/// Bounds: kEntriesMax entries, each for one address, port and reason. When they are used up, refusals of further
+/// combinations are counted in one additional entry for each port and reason, with the address kOthers.
 /// All times are in seconds of a monotonic clock.
 class RefusalTable {
 public:
-    static constexpr std::size_t kAddressesMax = 1024;
+    static constexpr std::size_t kEntriesMax = 1024; ///< without those of kOthers
     static constexpr double kPauseSeconds = 60.0;
     static constexpr std::string_view kOthers = "others";
 

@@ -55,9 +55,8 @@ TEST(RefusalTable, FloodFromManyAddressesIsBounded) {
     RefusalTable table;
     std::size_t lines = 0;
     for (int n = 0; n < 100'000; ++n) lines += table.note(refusal(fmt::format("10.0.{}", n)), 1.0).size();
-    EXPECT_EQ(lines, RefusalTable::kAddressesMax + 1);
-    EXPECT_THAT(lines_of(table.rest()),
-                ElementsAre(fmt::format("others {}", 100'000 - RefusalTable::kAddressesMax - 1)));
+    EXPECT_EQ(lines, RefusalTable::kEntriesMax + 1);
+    EXPECT_THAT(lines_of(table.rest()), ElementsAre(fmt::format("others {}", 100'000 - RefusalTable::kEntriesMax - 1)));
 }
 
 } // namespace
