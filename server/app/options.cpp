@@ -30,11 +30,12 @@ constexpr const char* kFooter =
 
 // When scans filled a disk of 200 MiB, RocksDB had no room for a table with a reserve of 16 MiB, and had it with 32.
 constexpr double kDiskReserveMibMin = 32.0;
-constexpr double kTileCacheMibMax = 1024.0 * 1024.0;
+constexpr double kDiskReserveMibMax = 1024.0 * 1024.0; // 1 TiB
 
+constexpr double kTileCacheMibMax = 1024.0 * 1024.0; // 1 TiB
 constexpr double kMapMemoryMibMin = 64.0;
-constexpr double kMapMemoryMibMax = 1024.0 * 1024.0 * 1024.0;
-constexpr double kIdleAfterMax = 365.0 * 24 * 3600;
+constexpr double kMapMemoryMibMax = 1024.0 * 1024.0 * 1024.0; // 1 PiB
+constexpr double kIdleAfterMax = 365.0 * 24 * 3600;           // seconds: one year
 
 /// Returns where a package installs the viewer, if it exists there; otherwise its place in the build directory.
 std::filesystem::path default_web() {
@@ -168,7 +169,7 @@ void add_memory_options(CLI::App& app, ServerOptions& options) {
     add_mib_option(
         app, "--disk-reserve", options.disk_reserve_bytes,
         "MiB to keep free on the store's disk; with less, the server stores nothing until space is free again", 0.0,
-        kTileCacheMibMax)
+        kDiskReserveMibMax)
         ->check(check_number(fmt::format("enough: when the disk fills up, the store needs {} MiB to finish what it has "
                                          "begun; reserve at least that much",
                                          kDiskReserveMibMin),
