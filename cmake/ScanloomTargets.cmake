@@ -80,6 +80,13 @@ function(scanloom_library name)
   endif()
 endfunction()
 
+# scanloom_equal_bits(NAME): a library whose floating-point results have the same bits for every instruction set. g++ 12
+# fuses multiplications with alternating additions and subtractions in vectors although -ffp-contract=off forbids it.
+# PUBLIC, because inline functions of its headers are compiled in the targets that use it.
+function(scanloom_equal_bits name)
+  target_compile_options(${name} PUBLIC $<$<CXX_COMPILER_ID:GNU>:-fno-tree-vectorize;-fno-tree-slp-vectorize>)
+endfunction()
+
 # scanloom_program(NAME SOURCES main.cpp ... LINKS target ...)
 function(scanloom_program name)
   cmake_parse_arguments(ARG "" "" "SOURCES;LINKS" ${ARGN})

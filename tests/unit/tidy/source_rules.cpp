@@ -49,6 +49,10 @@ const std::vector<Folder> kFolders = {
      .may_include = {"common/error", "common/geometry", "common/scan", "core/classify", "core/grid"},
      .pure = true},
     {.path = "core/landmarks", .may_include = {"common/error", "common/geometry", "common/scan"}, .pure = true},
+    {.path = "core/scan_matching", .may_include = {"common/error", "common/geometry", "common/scan"}, .pure = true},
+    {.path = "core/slam",
+     .may_include = {"common/error", "common/geometry", "common/scan", "core/scan_matching"},
+     .pure = true},
     {.path = "core/mapping",
      .may_include = {"common/error", "common/geometry", "common/hash", "common/scan", "common/text", "core/classify",
                      "core/grid"},
@@ -103,8 +107,8 @@ const std::vector<Folder> kFolders = {
 
     // Experiments combine the simulator and the maps. No other folder does, and no folder includes them.
     {.path = "lab",
-     .may_include = {"common", "core/grid", "core/landmarks", "core/mapping", "server/tiles", "sim/drive", "sim",
-                     "robot_client/sources"}},
+     .may_include = {"common", "core/grid", "core/landmarks", "core/mapping", "core/scan_matching", "core/slam",
+                     "server/tiles", "sim/drive", "sim", "robot_client/sources"}},
 
     // The load generator runs outside the server: it does not include the server, and no folder includes it.
     {.path = "load/core",
@@ -126,7 +130,7 @@ const std::vector<Package> kPackages = {
     {"google/protobuf/", {"common/wire"}},
     {"openssl/", {"common/hash", "common/net", "server/auth", "server/http"}},
     {"toml++/", {"server/auth"}},
-    {"Eigen/", {"core/landmarks"}},
+    {"Eigen/", {"core/landmarks", "core/slam"}},
     {"nanoflann.hpp", {"core/landmarks"}},
     {"spng.h", {"server/tiles"}},
     {"yaml-cpp/", {"common/ros_map"}},

@@ -1,0 +1,40 @@
+#pragma once
+
+#include "core/scan_matching/point_map.hpp"
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace scanloom::slam {
+
+using scan_matching::ScanPoints;
+using scan_matching::Transform2;
+
+/// A selected scan. Maps consist of keyframes, and every other scan's pose is stored relative to one.
+struct Keyframe {
+    std::shared_ptr<const ScanPoints> scan; ///< its points
+    double travelled = 0.0; ///< metres from the first keyframe to here; a turn of one radian counts as 0.2 m
+};
+
+/// Keyframes with their poses in the frame of one map. Keeps the scans alive that the views refer to.
+class KeyframeViews {
+public:
+    /// Adds a keyframe.
+    /// @param keyframe        its scan
+    /// @param T_map_keyframe  its pose in the frame of the map
+    void add(const Keyframe& keyframe, const Transform2& T_map_keyframe) {
+        scans_.push_back(keyframe.scan);
+        views_.push_back({T_map_keyframe, scans_.back()->points, scans_.back()->laser});
+    }
+
+    /// Returns the views. Valid while this object exists and add() is not called.
+    [[nodiscard]] std::span<const scan_matching::View> views() const noexcept { return views_; }
+
+private:
+    std::vector<std::shared_ptr<const ScanPoints>> scans_; // what views_ refer to
+    std::vector<scan_matching::View> views_;
+};
+
+} // namespace scanloom::slam

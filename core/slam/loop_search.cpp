@@ -1,0 +1,137 @@
+#include "core/slam/loop_search.hpp"
+
+#include "core/scan_matching/agreement.hpp"
+#include "core/scan_matching/line_matching.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace scanloom::slam {
+namespace {
+
+constexpr std::size_t kEvery = 2;      // keyframes between searches
+constexpr std::size_t kGap = 36;       // keyframes between the newest one and the end of a submap, at least
+constexpr std::size_t kPlacesMax = 3;  // nearest submaps that are matched
+constexpr double kLoopReach = 5.0;     // metres between the robot and a submap's anchor, in addition to the drift
+constexpr double kDrift = 0.03;        // of the length of the connection along the graph
+constexpr double kDriftMax = 8.0;      // metres
+constexpr std::size_t kSpacesMax = 32; // submaps whose seen space stays in memory
+
+// The match of a keyframe with a submap.
+constexpr double kWindowMin = 0.3;    // metres: standard deviation of the estimate
+constexpr double kLoopGateMax = 0.8;  // metres
+constexpr double kEstimateTurn = 0.3; // radians, standard deviation of the estimate
+constexpr double kInlierRatioMin = 0.5;
+constexpr double kOutlierRatioMax = 0.12;
+constexpr double kConditioningMin = 0.04;
+constexpr double kBeyondWindow = 0.1; // metres that a match may be outside the window
+
+// Corrections up to here need one match.
+constexpr double kDriftOfOneMatch = 1.5; // metres: with more drift, one match is not sufficient
+constexpr double kSmallJump = 0.3;       // metres
+constexpr double kSmallTurn = 0.1;       // radians
+constexpr double kStretchPause = 3.0;    // metres travelled between stretch tests
+constexpr double kStretchWindow = 1.0;   // metres, at least
+
+constexpr double kLoopSigma = 0.02;           // metres
+constexpr double kLoopTurnSigma = 0.005;      // radians
+constexpr std::size_t kLoopsUnoptimized = 10; // at most
+constexpr double kNoticeableJump = 0.05;      // metres; a turn of one radian counts as 2 m
+
+} // namespace
+
+void LoopSearch::search(KeyframeGraph& graph) {
+    const std::size_t newest = graph.size() - 1;
+    if (newest % kEvery != 0) return;
+    submaps_.extend(graph);
+    double largest_jump = 0.0;
+    for (const Place& place : nearest_places(graph)) {
+        const Answer answer = match(graph, place);
+        if (is_large(place, answer)) {
+            if (try_stretch(graph, place, answer)) return;
+            continue;
+        }
+        if (!answer.agrees || !answer.is_determined) continue;
+        graph.add_loop({submaps_[place.submap].anchor, newest, answer.T_anchor_newest,
+                        information_of(kLoopSigma, kLoopTurnSigma), true});
+        largest_jump = std::max(largest_jump, answer.jump + 2.0 * answer.turn);
+        ++figures_.loops;
+        ++new_loops_;
+    }
+    if (largest_jump <= kNoticeableJump && new_loops_ < kLoopsUnoptimized) return;
+    constexpr int kIterations = 2;
+    new_loops_ = 0;
+    ++figures_.optimizations;
+    graph.optimize(kIterations);
+}
+
+std::vector<LoopSearch::Place> LoopSearch::nearest_places(const KeyframeGraph& graph) const {
+    const std::size_t newest = graph.size() - 1;
+    const auto lengths = graph.distances_from(newest);
+    std::vector<Place> places;
+    for (std::size_t n = 0; n < submaps_.size() && submaps_[n].last + kGap <= newest; ++n) {
+        const std::size_t anchor = submaps_[n].anchor;
+        const double distance = distance_of(inverse(graph.pose(anchor)) * graph.pose(newest));
+        const double drift = std::min(kDriftMax, kDrift * lengths[anchor]);
+        if (distance < kLoopReach + drift) places.push_back({n, distance, drift});
+    }
+    std::ranges::stable_sort(places, {}, &Place::distance);
+    if (places.size() > kPlacesMax) places.resize(kPlacesMax);
+    return places;
+}
+
+LoopSearch::Answer LoopSearch::match(const KeyframeGraph& graph, const Place& place) {
+    ++figures_.matches;
+    note_use(place.submap);
+    Submap& submap = submaps_[place.submap];
+    const std::size_t newest = graph.size() - 1;
+    const auto& points = graph[newest].scan->points;
+    const Transform2 expected = inverse(graph.pose(submap.anchor)) * graph.pose(newest);
+    const double window = std::max(place.drift, kWindowMin);
+    const auto found = match_to_lines(points, submap.map.points(), expected, {expected, window, kEstimateTurn},
+                                      {.steps_max = 15,
+                                       .first_gate = std::min(kLoopGateMax, window),
+                                       .last_gate = 0.15,
+                                       .first_scale = 0.3,
+                                       .last_scale = 0.05,
+                                       .point_sigma = 0.03});
+    const auto agreement = agreement_of(points, submap.map.points(), submap.map.space(), found.T_map_robot);
+    const Transform2 off = inverse(expected) * found.T_map_robot;
+    const double jump = distance_of(off);
+    const bool agrees =
+        found.is_refined && agreement.inlier_ratio >= kInlierRatioMin && agreement.outlier_ratio <= kOutlierRatioMax;
+    return {found.T_map_robot, jump, std::fabs(yaw_of(off)), agrees,
+            found.conditioning >= kConditioningMin && jump <= window + kBeyondWindow};
+}
+
+bool LoopSearch::is_large(const Place& place, const Answer& answer) const {
+    if (place.drift >= kDriftOfOneMatch) return true;
+    return answer.agrees && answer.is_determined && (answer.jump > kSmallJump || answer.turn > kSmallTurn);
+}
+
+bool LoopSearch::try_stretch(KeyframeGraph& graph, const Place& place, const Answer& answer) {
+    const std::size_t newest = graph.size() - 1;
+    if (graph[newest].travelled < next_test_at_) return false;
+    next_test_at_ = graph[newest].travelled + kStretchPause;
+    ++figures_.stretch_tests;
+    const std::size_t anchor = submaps_[place.submap].anchor;
+    const Transform2 correction =
+        answer.agrees ? graph.pose(anchor) * answer.T_anchor_newest * inverse(graph.pose(newest)) : Transform2();
+    if (!accept_stretch(graph, {anchor, correction, std::max(kStretchWindow, place.drift)})) return false;
+    new_loops_ = 0;
+    ++figures_.stretches_accepted;
+    ++figures_.optimizations;
+    graph.optimize_after_jump();
+    return true;
+}
+
+/// Frees the seen space of the submaps that were not used for long.
+void LoopSearch::note_use(std::size_t submap) {
+    std::erase(used_, submap);
+    used_.push_back(submap);
+    if (used_.size() <= kSpacesMax) return;
+    submaps_[used_.front()].map.release_space();
+    used_.pop_front();
+}
+
+} // namespace scanloom::slam

@@ -1,0 +1,294 @@
+#include "core/slam/stretch_test.hpp"
+
+#include "core/scan_matching/line_matching.hpp"
+#include "core/scan_matching/square_set.hpp"
+#include "core/slam/keyframe_map.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace scanloom::slam {
+namespace {
+
+using scan_matching::distance_of;
+using scan_matching::SurfacePoint;
+using scan_matching::yaw_of;
+
+constexpr double kStretchMax = 60.0;    // metres
+constexpr double kOldMapReach = 12.0;   // metres around the stretch, in addition to the window, of the old map
+constexpr double kEvidenceCell = 0.25;  // metres: one point of evidence in each square
+constexpr double kShiftDistance = 25.0; // metres of the stretch that shifts are compared by
+constexpr double kShiftStep = 0.2;      // metres between shifts
+constexpr std::size_t kShifts = 8;      // best shifts that are followed
+constexpr int kShiftsApart = 3;         // steps between them, at least
+constexpr std::size_t kFitEvery = 2;    // keyframes of the stretch
+constexpr double kFitInliers = 0.5;
+constexpr double kSamePlaceDistance = 0.5; // metres: closer ways at the newest keyframe are one
+constexpr double kSamePlaceTurn = 0.1;     // radians
+constexpr double kOverlapMin = 4.0;        // metres of the stretch that fit the old map
+// A small correction that fits well needs no proof that unseen places are wrong.
+constexpr double kSmallMove = 0.5;     // metres
+constexpr double kSmallOverlap = 15.0; // metres travelled with fits, at least
+constexpr double kSmallShareMax = 0.1; // of contradictions
+constexpr double kShareMax = 0.33;
+constexpr double kLeadMin = 4.0;          // metres of evidence
+constexpr double kLeadPart = 0.1;         // of the best one's matched metres
+constexpr double kRefutedShare = 0.1;     // by how much a refuted hypothesis's share of contradictions is larger
+constexpr double kRefutedExcess = 4.0;    // metres
+constexpr double kLoopDisagreement = 0.5; // metres between a fit and an older loop edge
+constexpr double kEdgeSigma = 0.03;       // metres
+constexpr double kEdgeTurnSigma = 0.01;   // radians
+
+/// A keyframe's pose in the old map, as matched.
+struct Fit {
+    std::size_t keyframe = 0;
+    Transform2 T_map_keyframe;
+};
+
+/// A correction of the stretch, and how well the stretch then fits the old map.
+struct StretchHypothesis {
+    Transform2 correction; // T_corrected_map at the newest keyframe
+    std::vector<Fit> fits{};
+    double matched = 0.0;      // metres of surface that agree with the old map
+    double contradicted = 0.0; // metres that contradict it
+    double overlap = 0.0;      // metres travelled with fits
+
+    [[nodiscard]] double evidence() const { return matched - 2.0 * contradicted; }
+    [[nodiscard]] double share() const { return contradicted / std::max(1e-9, matched + contradicted); }
+};
+
+/// The test of one stretch: keyframes [first_, newest_] against those before.
+class StretchTest {
+public:
+    StretchTest(const KeyframeGraph& graph, const StretchQuestion& question)
+        : graph_(graph), question_(question), newest_(graph.size() - 1), first_(newest_) {
+        const double length =
+            std::min(kStretchMax, 0.5 * (graph[newest_].travelled - graph[question.anchor].travelled));
+        while (first_ > 0 && graph[newest_].travelled - graph[first_].travelled < length) --first_;
+        collect_old_map();
+        collect_evidence();
+    }
+
+    /// Returns the accepted hypothesis, or nullopt.
+    [[nodiscard]] std::optional<StretchHypothesis> run() {
+        if (old_map_.space().is_empty()) return std::nullopt;
+        std::vector<StretchHypothesis> hypotheses;
+        add(hypotheses, follow({.correction = question_.correction}));
+        add(hypotheses, follow({.correction = Transform2()}));
+        for (const Transform2& correction : shifted_corrections()) add(hypotheses, follow({.correction = correction}));
+        std::ranges::stable_sort(hypotheses, std::greater(), &StretchHypothesis::evidence);
+        const StretchHypothesis& best = hypotheses.front();
+        if (best.share() > kShareMax || best.overlap < kOverlapMin) return std::nullopt;
+        const bool is_small =
+            moved_by(best) <= kSmallMove && best.overlap >= kSmallOverlap && best.share() <= kSmallShareMax;
+        for (std::size_t n = 1; n < hypotheses.size(); ++n) {
+            const StretchHypothesis& other = hypotheses[n];
+            if (best.evidence() - other.evidence() < std::max(kLeadMin, kLeadPart * best.matched)) return std::nullopt;
+            if (is_small && other.overlap < kOverlapMin) continue; // it would move far, to where nothing fits
+            if (other.share() <= best.share() + kRefutedShare) return std::nullopt;
+            if (other.contradicted - best.contradicted < kRefutedExcess) return std::nullopt;
+        }
+        return best;
+    }
+
+    /// Returns the first keyframe of the stretch.
+    [[nodiscard]] std::size_t first() const noexcept { return first_; }
+
+private:
+    /// Returns by how much a hypothesis moves the newest keyframe, metres.
+    [[nodiscard]] double moved_by(const StretchHypothesis& hypothesis) const {
+        const Transform2& pose = graph_.pose(newest_);
+        return distance_of(inverse(pose) * (hypothesis.correction * pose));
+    }
+
+    void collect_old_map() {
+        double left = graph_.pose(newest_).x;
+        double right = left;
+        double low = graph_.pose(newest_).y;
+        double high = low;
+        for (std::size_t n = first_; n < newest_; ++n) {
+            if (graph_[newest_].travelled - graph_[n].travelled > 2.0 * kStretchMax) continue; // before a jump
+            left = std::min(left, graph_.pose(n).x);
+            right = std::max(right, graph_.pose(n).x);
+            low = std::min(low, graph_.pose(n).y);
+            high = std::max(high, graph_.pose(n).y);
+        }
+        const double margin = question_.window + kOldMapReach;
+        KeyframeViews views;
+        for (std::size_t n = first_; n-- > 0;) {
+            const Transform2& pose = graph_.pose(n);
+            const bool is_near = pose.x >= left - margin && pose.x <= right + margin && pose.y >= low - margin &&
+                                 pose.y <= high + margin;
+            if (is_near) views.add(graph_[n], pose);
+        }
+        old_map_ = KeyframeMap(std::move(views));
+    }
+
+    /// Chooses the points that speak for or against a hypothesis: one in each square, of the newest keyframe that shows
+    /// it.
+    void collect_evidence() {
+        std::size_t count = 0;
+        for (std::size_t n = first_; n <= newest_; ++n) count += graph_[n].scan->points.size();
+        scan_matching::SquareSet taken(kEvidenceCell, count);
+        evidence_.resize(newest_ - first_ + 1);
+        for (std::size_t n = newest_ + 1; n-- > first_;) {
+            for (const SurfacePoint& point : graph_[n].scan->points) {
+                const Point2 at = graph_.pose(n) * Point2{point.x, point.y};
+                if (taken.insert(at.x, at.y)) evidence_[n - first_].push_back(point);
+            }
+        }
+    }
+
+    /// Returns the supposed correction, shifted to where the newest part of the stretch fits the old map best.
+    [[nodiscard]] std::vector<Transform2> shifted_corrections() {
+        std::vector<Point2> points;
+        for (std::size_t n = newest_ + 1;
+             n-- > first_ && graph_[newest_].travelled - graph_[n].travelled < kShiftDistance;) {
+            const Transform2 pose = question_.correction * graph_.pose(n);
+            for (const SurfacePoint& point : evidence_[n - first_]) points.push_back(pose * Point2{point.x, point.y});
+        }
+        struct Shift {
+            int score;
+            int i;
+            int j;
+        };
+        std::vector<Shift> shifts;
+        const auto range = static_cast<int>(question_.window / kShiftStep);
+        for (int j = -range; j <= range; ++j) {
+            for (int i = -range; i <= range; ++i) {
+                int score = 0;
+                for (const Point2& point : points) {
+                    const double x = point.x + i * kShiftStep;
+                    const double y = point.y + j * kShiftStep;
+                    score += old_map_.space().is_near_point(x, y) ? 1 : old_map_.space().is_free(x, y) ? -2 : 0;
+                }
+                shifts.push_back({score, i, j});
+            }
+        }
+        std::ranges::stable_sort(shifts, std::greater(), &Shift::score);
+        std::vector<Shift> kept;
+        std::vector<Transform2> corrections;
+        for (const Shift& shift : shifts) {
+            if (kept.size() == kShifts) break;
+            const bool is_near = std::ranges::any_of(kept, [&](const Shift& other) {
+                return std::abs(other.i - shift.i) <= kShiftsApart && std::abs(other.j - shift.j) <= kShiftsApart;
+            });
+            if (is_near) continue;
+            kept.push_back(shift);
+            Transform2& correction = corrections.emplace_back(question_.correction);
+            correction.x += shift.i * kShiftStep;
+            correction.y += shift.j * kShiftStep;
+        }
+        return corrections;
+    }
+
+    /// Follows a hypothesis backwards along the stretch: by the trajectory, corrected by every second keyframe that
+    /// fits.
+    [[nodiscard]] StretchHypothesis follow(StretchHypothesis hypothesis) {
+        Transform2 pose = hypothesis.correction * graph_.pose(newest_);
+        for (std::size_t n = newest_ + 1; n-- > first_;) {
+            if (n < newest_) pose = pose * (inverse(graph_.pose(n + 1)) * graph_.pose(n));
+            if ((newest_ - n) % kFitEvery == 0) {
+                const auto match =
+                    match_to_lines(graph_[n].scan->points, old_map_.points(), pose, {pose, 0.1, 0.05},
+                                   {.steps_max = 8, .first_gate = 0.4, .first_scale = 0.2, .last_scale = 0.08});
+                if (match.inlier_ratio >= kFitInliers) {
+                    pose = match.T_map_robot;
+                    if (hypothesis.fits.empty()) hypothesis.correction = pose * inverse(graph_.pose(n));
+                    hypothesis.fits.push_back({n, pose});
+                    hypothesis.overlap +=
+                        graph_[n].travelled - graph_[n > first_ + kFitEvery ? n - kFitEvery : first_].travelled;
+                }
+            }
+            for (const SurfacePoint& point : evidence_[n - first_])
+                weigh(hypothesis, pose, graph_[n].scan->laser, point);
+        }
+        return hypothesis;
+    }
+
+    void weigh(StretchHypothesis& hypothesis, const Transform2& pose, const Point2& laser, const SurfacePoint& point) {
+        const SurfacePoint moved = transform(pose, point);
+        if (old_map_.points().nearest(moved, scan_matching::kInlierDistance).point != nullptr) {
+            hypothesis.matched += kEvidenceCell;
+        } else if (old_map_.space().is_free(moved.x, moved.y) || passes_surface(pose * laser, {moved.x, moved.y})) {
+            hypothesis.contradicted += kEvidenceCell;
+        }
+    }
+
+    /// Returns whether a beam passes a surface of the old map, apart from its first 30 and its last 40 cm.
+    [[nodiscard]] bool passes_surface(const Point2& start, const Point2& end) {
+        const double dx = end.x - start.x;
+        const double dy = end.y - start.y;
+        const double length = std::sqrt(dx * dx + dy * dy);
+        for (double at = 0.3; at < length - 0.4; at += scan_matching::SeenSpace::kCell) {
+            if (old_map_.space().has_point(start.x + dx * at / length, start.y + dy * at / length)) return true;
+        }
+        return false;
+    }
+
+    /// Adds a hypothesis, unless one that ends at the same place is at least as good. Removes those that are worse.
+    void add(std::vector<StretchHypothesis>& kept, StretchHypothesis added) const {
+        const Transform2& pose = graph_.pose(newest_);
+        const auto is_same = [&](const StretchHypothesis& other) {
+            const Transform2 off = inverse(other.correction * pose) * added.correction * pose;
+            return distance_of(off) < kSamePlaceDistance && std::fabs(yaw_of(off)) < kSamePlaceTurn;
+        };
+        const auto is_better = [&](const StretchHypothesis& other) {
+            return is_same(other) && other.evidence() >= added.evidence();
+        };
+        if (std::ranges::any_of(kept, is_better)) return;
+        std::erase_if(kept, is_same);
+        kept.push_back(std::move(added));
+    }
+
+    const KeyframeGraph& graph_;
+    const StretchQuestion& question_;
+    std::size_t newest_;
+    std::size_t first_;                               // keyframe of the stretch
+    KeyframeMap old_map_;                             // of the keyframes before, in the map's frame
+    std::vector<std::vector<SurfacePoint>> evidence_; // of the keyframes from first_
+};
+
+/// Returns the keyframe before `end` whose pose is nearest to a pose; a radian counts as a metre.
+std::size_t nearest_keyframe(const KeyframeGraph& graph, std::size_t end, const Transform2& pose) {
+    std::size_t nearest = 0;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t n = 0; n < end; ++n) {
+        const Transform2 off = inverse(graph.pose(n)) * pose;
+        const double distance = distance_of(off) + std::fabs(yaw_of(off));
+        if (distance >= least) continue;
+        least = distance;
+        nearest = n;
+    }
+    return nearest;
+}
+
+} // namespace
+
+bool accept_stretch(KeyframeGraph& graph, const StretchQuestion& question) {
+    StretchTest test(graph, question);
+    const auto accepted = test.run();
+    if (!accepted) return false;
+    graph.remove_loops([&](const Edge& edge) {
+        if (edge.to < test.first() || edge.from >= test.first()) return false;
+        return std::ranges::any_of(accepted->fits, [&](const Fit& fit) {
+            if (fit.keyframe != edge.to) return false;
+            const Transform2 T_from_fit = inverse(graph.pose(edge.from)) * fit.T_map_keyframe;
+            return distance_of(inverse(T_from_fit) * edge.T_from_to) > kLoopDisagreement;
+        });
+    });
+    for (const Fit& fit : accepted->fits) {
+        const std::size_t from = nearest_keyframe(graph, test.first(), fit.T_map_keyframe);
+        graph.add_loop({from, fit.keyframe, inverse(graph.pose(from)) * fit.T_map_keyframe,
+                        information_of(kEdgeSigma, kEdgeTurnSigma), true});
+    }
+    return true;
+}
+
+} // namespace scanloom::slam

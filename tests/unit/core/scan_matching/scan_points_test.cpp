@@ -1,0 +1,86 @@
+#include "core/scan_matching/scan_points.hpp"
+#include "tests/support/building.hpp"
+
+#include <gtest/gtest.h>
+
+namespace scanloom::scan_matching {
+namespace {
+
+using testing_support::Building;
+
+ScanPoints points_in(const Building& building, const Sensor& sensor, const Pose2& pose, double noise_m = 0.0) {
+    std::mt19937 random(1);
+    return points_of(building.scan(sensor, pose, noise_m, random), sensor);
+}
+
+TEST(ScanPoints, PointsLieOnTheWallAndNormalsPointToTheLaser) {
+    Building building;
+    building.walls = {{{3.0, -10.0}, {3.0, 10.0}}};
+    const auto points = points_in(building, Building::laser(), {0.0, 0.0, 0.0}).points;
+    ASSERT_GT(points.size(), 140U);
+    for (const auto& point : points) {
+        EXPECT_NEAR(point.x, 3.0, 1e-3);
+        if (!point.has_normal()) continue; // far out, where beams are far apart
+        EXPECT_NEAR(point.normal_x, -1.0, 1e-2);
+        EXPECT_NEAR(point.normal_y, 0.0, 0.1);
+    }
+    EXPECT_TRUE(points[points.size() / 2].has_normal());
+}
+
+TEST(ScanPoints, NormalsNearACornerAreThoseOfItsWalls) {
+    Building building;
+    building.walls = {{{2.0, 0.0}, {2.0, 5.0}}, {{2.0, 0.0}, {7.0, 0.0}}};
+    building.add_box(1.0, -1.02, 1.02, -1.0); // a post that few beams hit
+    const auto [s, c] = sin_cos(1.0);         // the robot's yaw
+    std::size_t with_normal = 0;
+    for (const auto& point : points_in(building, Building::laser(), {0.0, -2.0, 1.0}).points) {
+        if (!point.has_normal()) continue;
+        ++with_normal;
+        const double x = c * point.normal_x - s * point.normal_y; // in the map's frame
+        const double y = s * point.normal_x + c * point.normal_y;
+        EXPECT_TRUE(x < -0.95 || y < -0.95) << x << ", " << y;
+        EXPECT_GT(std::hypot(point.x, point.y), 1.5) << "the post has no normal";
+    }
+    EXPECT_GT(with_normal, 30U);
+}
+
+TEST(ScanPoints, TheMountMovesAndTurnsThePoints) {
+    Building building;
+    building.walls = {{{3.0, -10.0}, {3.0, 10.0}}};
+    Sensor sensor = Building::laser();
+    sensor.mount = {0.5, 0.25, -0.75};
+    const auto shown = points_in(building, sensor, {0.0, 0.0, 0.0});
+    EXPECT_EQ(shown.laser, (Point2{0.5, 0.25}));
+    ASSERT_FALSE(shown.points.empty());
+    for (const auto& point : shown.points) EXPECT_NEAR(point.x, 3.0, 1e-3);
+    EXPECT_NEAR(shown.points[120].normal_x, -1.0, 1e-2);
+}
+
+TEST(ScanPoints, ReadingsWithoutAReturnAreLeftOut) {
+    const Sensor sensor = Building::laser();
+    Scan scan;
+    scan.ranges.assign(181, kNoReturn);
+    scan.ranges[3] = kInvalidRange;
+    scan.ranges[4] = 20;     // below range_min
+    scan.ranges[5] = 25'000; // at or beyond range_max
+    EXPECT_TRUE(points_of(scan, sensor).points.empty());
+    scan.ranges[90] = 2'000;
+    const auto points = points_of(scan, sensor).points;
+    ASSERT_EQ(points.size(), 1U);
+    EXPECT_NEAR(points[0].x, 2.0, 1e-6);
+    EXPECT_FALSE(points[0].has_normal());
+}
+
+TEST(ScanPoints, ManyBeamsAreThinnedEvenly) {
+    Sensor sensor = Building::laser();
+    sensor.angles = UniformAngles{-1.5, 3.0 / 1999, 2000};
+    Scan scan;
+    scan.ranges.assign(2000, 3'000);
+    const auto points = points_of(scan, sensor).points;
+    EXPECT_EQ(points.size(), kScanPointsMax);
+    const double angle = std::atan2(points.back().y, points.back().x);
+    EXPECT_NEAR(angle, 1.5, 5 * 3.0 / 1999);
+}
+
+} // namespace
+} // namespace scanloom::scan_matching
