@@ -1,10 +1,12 @@
 #include "robot_client/sources/carmen_log.hpp"
 
 #include "common/hash/sha256.hpp"
+#include "common/scan/limits.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numeric>
 #include <utility>
@@ -39,6 +41,28 @@ struct LaserLine {
     std::size_t line_number = 0;
     bool is_raw = false;
     bool is_used = false;
+};
+
+/// Finds the mount of the laser from the two poses of each FLASER line.
+class FlaserMount {
+public:
+    void add(const CarmenScan& line) {
+        const Pose2 mount = compose(inverse(line.robot), line.laser);
+        if (!first_) first_ = mount;
+        const double difference = std::max({std::abs(mount.x - first_->x), std::abs(mount.y - first_->y),
+                                            std::abs(normalize_angle(mount.yaw - first_->yaw))});
+        is_constant_ = is_constant_ && difference <= kConstantMountTolerance;
+    }
+
+    /// Returns T_robot_laser; the identity if it is not constant, or farther than a sensor may be from its robot.
+    [[nodiscard]] Pose2 value() const {
+        if (!first_ || !is_constant_) return {};
+        return std::max(std::abs(first_->x), std::abs(first_->y)) <= kCoordinateMax ? *first_ : Pose2{};
+    }
+
+private:
+    std::optional<Pose2> first_;
+    bool is_constant_ = true;
 };
 
 } // namespace
@@ -84,7 +108,8 @@ private:
     Sha256 hash_;
     std::vector<LaserLine> lines_;
     std::vector<StampedPose> odometry_;
-    double laser_offset_forward_ = 0.0;
+    double raw_laser_forward_ = 0.0;
+    FlaserMount flaser_mount_;
     bool has_flaser_ = false;
     bool has_robot_laser_ = false;
     bool has_raw_ = false;
@@ -127,6 +152,7 @@ void CarmenLog::Indexer::take(std::size_t line_number, const CarmenScan& scan) {
     if (!is_raw) odometry_ = {}; // no RAWLASER line will be used, so none needs a pose
     const auto usable = check_usable(scan, options_);
     if (!usable) skip(line_number, usable.error().message);
+    if (usable && scan.kind == CarmenKind::kFlaser && options_.poses != Poses::kMap) flaser_mount_.add(scan);
     lines_.push_back({*scan.stamp, line_number, is_raw, usable.has_value()});
 }
 
@@ -134,7 +160,7 @@ void CarmenLog::Indexer::take(std::size_t, const CarmenOdometry& odometry) {
     if (!has_flaser_ && !has_robot_laser_) odometry_.push_back(odometry);
 }
 
-void CarmenLog::Indexer::take(std::size_t, const CarmenLaserOffset& offset) { laser_offset_forward_ = offset.forward; }
+void CarmenLog::Indexer::take(std::size_t, const CarmenLaserOffset& offset) { raw_laser_forward_ = offset.forward; }
 
 void CarmenLog::Indexer::take(std::size_t line_number, const CarmenUnreadLaser& line) {
     auto& kind = unread_[line.kind];
@@ -201,6 +227,9 @@ std::string CarmenLog::Indexer::fingerprint() {
         hash_options("robotlaser", CarmenKind::kRobotLaser,
                      options_.range_max ? fmt::format("{}", *options_.range_max) : "as stated");
     }
+    if (options_.poses != Poses::kMap) {
+        hash_.update(fmt::format("poses {}\n", options_.poses == Poses::kOdometry ? "odometry" : "none"));
+    }
     return "carmen:" + hash_.hex().substr(0, 32);
 }
 
@@ -209,10 +238,10 @@ CarmenLog::Index CarmenLog::Indexer::build() {
     report_unread_kinds();
     keep_one_view_of_each_scan();
     index.path = PosePath(std::move(odometry_));
-    drop_lines_without_pose(index.path);
+    if (options_.poses != Poses::kNone) drop_lines_without_pose(index.path);
     order_scans(index);
     index.fingerprint = fingerprint();
-    index.laser_offset_forward = laser_offset_forward_;
+    index.mounts = {raw_laser_forward_, flaser_mount_.value()};
     index.skipped_lines = skipped_;
     return index;
 }
@@ -238,13 +267,13 @@ Result<CarmenLog> CarmenLog::open(const std::filesystem::path& path, const Carme
 
 CarmenLog::CarmenLog(const std::filesystem::path& path, const CarmenOptions& options, Index index, LineReader reader)
     : path_(path.string()), index_(std::move(index)), lines_{std::move(reader)},
-      observer_(options, index_.laser_offset_forward) {}
+      needs_poses_(options.poses != Poses::kNone), observer_(options, index_.mounts) {}
 
 Result<std::optional<Observation>> CarmenLog::next() {
     if (place_ == index_.scan_count) return std::optional<Observation>{};
     auto scan = next_in_place();
     if (!scan) return scan.error();
-    if (scan->kind == CarmenKind::kRawLaser) {
+    if (scan->kind == CarmenKind::kRawLaser && needs_poses_) {
         const auto pose = index_.path.at(*scan->stamp);
         if (!pose) return changed();
         scan->robot = *pose;

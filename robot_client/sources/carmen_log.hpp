@@ -20,6 +20,9 @@ namespace scanloom::robot {
 /// Stamps that go back by at most this are jitter. A log whose stamps go back by more has parts out of order.
 inline constexpr double kStampJitterMax = 2.0; // seconds
 
+/// FLASER lines whose second pose is odometry state the laser's mount if it is constant within this.
+inline constexpr double kConstantMountTolerance = 1e-3; // metres and radians
+
 /// What the stamps of a log's scans show about their order.
 struct StampReport {
     std::size_t steps_back = 0; ///< scans with a smaller stamp than the scan before in the file
@@ -50,6 +53,11 @@ struct ScanOrder : StampReport {
 /// scan.pose is chosen so that pose * mount is the logged laser pose.
 /// RAWLASER1: has no pose and is read only if the log has no other laser lines. The pose is interpolated between the
 /// ODOM lines around it, and the mount is PARAM robot_frontlaser_offset.
+/// This is so if the options' poses are kMap. With kOdometry, scan.odometry is the second triple of a FLASER line, the
+/// robot's pose of a ROBOTLASER line, or the interpolated pose of a RAWLASER1 line, and scan.pose is the same. The
+/// mount of a FLASER line is its first triple relative to its second if that is constant over the log, within
+/// kConstantMountTolerance; otherwise the identity. With kNone the mounts are the same, but scans have no odometry and
+/// their pose is 0; RAWLASER1 lines then need no ODOM lines.
 /// Ranges are rounded to millimetres here, once. NaN and negative readings are invalid beams, infinite ones are
 /// no-returns.
 ///
@@ -103,7 +111,7 @@ private:
                                            ///< in sending order, from 0, or kUnused if the line is not sent
         std::uint32_t scan_count = 0;
         PosePath path; ///< only if the scans come from RAWLASER lines
-        double laser_offset_forward = 0.0;
+        CarmenMounts mounts;
         std::size_t skipped_lines = 0;
         StampReport stamps;
         std::string fingerprint; ///< of the lines and options that determine the scans, and of their order
@@ -117,6 +125,7 @@ private:
     std::string path_;
     Index index_;
     Lines lines_;
+    bool needs_poses_;
     CarmenObserver observer_;
     std::size_t laser_lines_ = 0;               ///< read so far
     std::uint32_t place_ = 0;                   ///< index of the next scan in sending order

@@ -27,9 +27,10 @@ bool same_beams(const BeamAngles& a, const BeamAngles& b) {
     return first.first == second.first && first.increment == second.increment; // scans may differ in their beam count
 }
 
-Pose2 mount_of(const CarmenScan& line, double laser_offset_forward) {
-    if (line.kind == CarmenKind::kRawLaser) return {laser_offset_forward, 0.0, 0.0};
-    if (line.kind == CarmenKind::kFlaser || line.laser == line.robot) return {};
+Pose2 mount_of(const CarmenScan& line, const CarmenMounts& mounts) {
+    if (line.kind == CarmenKind::kRawLaser) return {mounts.raw_laser_forward, 0.0, 0.0};
+    if (line.kind == CarmenKind::kFlaser) return mounts.flaser;
+    if (line.laser == line.robot) return {};
     return compose(inverse(line.robot), line.laser);
 }
 
@@ -43,6 +44,18 @@ Result<double> range_max_of(const CarmenScan& line, const CarmenOptions& options
 
 std::string name_for(const CarmenScan& line) { return line.sensor == 0 ? "front laser" : "rear laser"; }
 
+/// Sets the pose and the odometry of a scan whose robot knows its pose in the map.
+void set_map_pose(Scan& scan, const CarmenScan& line, const Pose2& mount) {
+    switch (line.kind) {
+    case CarmenKind::kFlaser:
+        scan.pose = line.laser;
+        scan.odometry = line.robot;
+        break;
+    case CarmenKind::kRobotLaser: scan.pose = compose(line.laser, inverse(mount)); break;
+    case CarmenKind::kRawLaser: scan.pose = line.robot; break;
+    }
+}
+
 } // namespace
 
 NoReturn no_return_of(CarmenKind kind, const CarmenOptions& options) {
@@ -51,7 +64,7 @@ NoReturn no_return_of(CarmenKind kind, const CarmenOptions& options) {
 
 Result<> check_usable(const CarmenScan& line, const CarmenOptions& options) {
     if (const auto range_max = range_max_of(line, options); !range_max) return range_max.error();
-    const Pose2 mount = mount_of(line, 0.0);
+    const Pose2 mount = mount_of(line, {});
     if (std::max(std::abs(mount.x), std::abs(mount.y)) <= kCoordinateMax) return {};
     return Error{Errc::kTooLarge, fmt::format("the laser is more than {} m from its robot", kCoordinateMax)};
 }
@@ -59,7 +72,7 @@ Result<> check_usable(const CarmenScan& line, const CarmenOptions& options) {
 Result<Observation> CarmenObserver::observe(const CarmenScan& line) {
     if (auto ok = check_usable(line, options_); !ok) return ok.error();
     const double range_max = *range_max_of(line, options_);
-    const Pose2 mount = mount_of(line, laser_offset_forward_);
+    const Pose2 mount = mount_of(line, mounts_);
     Observation observation;
     observation.sensor =
         sensor_like({line.sensor, SensorKind::kLaser, name_for(line), mount, line.angles, 0.0, 0.0, range_max});
@@ -73,13 +86,13 @@ Result<Observation> CarmenObserver::observe(const CarmenScan& line) {
         return range != kInvalidRange && range >= max;
     };
     std::ranges::replace_if(scan.ranges, is_beyond, no_return);
-    switch (line.kind) {
-    case CarmenKind::kFlaser:
-        scan.pose = line.laser;
+    switch (options_.poses) {
+    case Poses::kMap: set_map_pose(scan, line, observation.sensor->mount); break;
+    case Poses::kOdometry:
         scan.odometry = line.robot;
+        scan.pose = line.robot; // the only pose that servers of this version use
         break;
-    case CarmenKind::kRobotLaser: scan.pose = compose(line.laser, inverse(observation.sensor->mount)); break;
-    case CarmenKind::kRawLaser: scan.pose = line.robot; break;
+    case Poses::kNone: break;
     }
     return observation;
 }

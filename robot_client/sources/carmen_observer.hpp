@@ -1,6 +1,7 @@
 #pragma once
 
 #include "common/error/error.hpp"
+#include "common/scan/poses.hpp"
 #include "robot_client/sources/carmen_line.hpp"
 #include "robot_client/sources/line_reader.hpp"
 #include "robot_client/sources/source.hpp"
@@ -18,6 +19,14 @@ struct CarmenOptions {
     /// Default: kCarmenRangeMax.
     std::optional<double> range_max;
     LineLimits limits;
+    /// How the poses of the log are used. Unless they are kMap, FLASER lines need CarmenMounts::flaser.
+    Poses poses = Poses::kMap;
+};
+
+/// Poses of lasers relative to their robot that a single line does not contain.
+struct CarmenMounts {
+    double raw_laser_forward = 0.0; ///< metres, of RAWLASER lines
+    Pose2 flaser;                   ///< T_robot_laser of FLASER lines
 };
 
 /// Logs write "no return" as 50, 80, 81.83, 81.91 ...: readings from 50 m on are no-returns unless the user sets
@@ -34,10 +43,10 @@ inline constexpr double kCarmenRangeMax = 50.0;
 /// Converts the lines of one log into scans of described sensors. Call observe() in order of time.
 class CarmenObserver {
 public:
-    CarmenObserver(const CarmenOptions& options, double laser_offset_forward)
-        : options_(options), laser_offset_forward_(laser_offset_forward) {}
+    CarmenObserver(const CarmenOptions& options, const CarmenMounts& mounts) : options_(options), mounts_(mounts) {}
 
-    /// Converts one line. Pre: a RAWLASER line has the robot's pose filled in; the line has a stamp.
+    /// Converts one line. Pre: a RAWLASER line has the robot's pose filled in, unless poses are kNone; the line has a
+    /// stamp.
     /// Errors: those of check_usable().
     [[nodiscard]] Result<Observation> observe(const CarmenScan& line);
 
@@ -45,7 +54,7 @@ private:
     [[nodiscard]] std::shared_ptr<const Sensor> sensor_like(const Sensor& wanted);
 
     CarmenOptions options_;
-    double laser_offset_forward_;
+    CarmenMounts mounts_;
     std::vector<std::shared_ptr<const Sensor>> sensors_; ///< described so far, the newest last
 };
 

@@ -41,6 +41,7 @@ bool is_welcome(const wire::Message& message) {
 SCANLOOM_FUZZER(carmen_log)(const std::uint8_t* data, std::size_t size) {
     const MemoryFile file(data, size);
     robot::CarmenOptions options;
+    options.poses = static_cast<Poses>(size % 3);
     options.limits = {.text_bytes_max = 1 << 20, .line_bytes_max = 1 << 16};
     const auto log = robot::read_whole_log(file.path(), options, [](const robot::SkippedLine& line) {
         fuzz::check(!line.reason.empty(), "every skipped line has its reason");

@@ -2,6 +2,7 @@
 
 #include "tests/support/packed_text.hpp"
 #include "tests/support/whole_log.hpp"
+#include "tests/unit/robot_client/sources/carmen_log_file.hpp"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -20,42 +21,6 @@ namespace {
 using testing::HasSubstr;
 using testing_support::bzip2;
 using testing_support::gzip;
-
-class CarmenLogFile : public testing::Test {
-protected:
-    std::filesystem::path write(std::string_view bytes) {
-        const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-        const auto path = std::filesystem::path(testing::TempDir()) / fmt::format("scanloom_{}.log", test->name());
-        std::ofstream(path, std::ios::binary) << bytes;
-        paths_.push_back(path);
-        return path;
-    }
-
-    Result<WholeLog> read(std::string_view bytes, const CarmenOptions& options = {}) {
-        return read_whole_log(write(bytes), options, [&](const SkippedLine& line) { skipped_.push_back(line); });
-    }
-
-    void TearDown() override {
-        for (const auto& path : paths_) std::filesystem::remove(path);
-    }
-
-    std::vector<SkippedLine> skipped_;
-
-private:
-    std::vector<std::filesystem::path> paths_;
-};
-
-std::string flaser(double stamp, std::string_view ranges = "2 1.0 2.0") {
-    return fmt::format("FLASER {} {} 0 0 {} 0 0 {} host 1\n", ranges, stamp, stamp, stamp);
-}
-
-std::string robot_laser(std::string_view laser, std::string_view robot, double range_max = 30.0) {
-    return fmt::format("ROBOTLASER1 0 -1.5 3 0.1 {} 0.01 0 2 1.0 {} 0 {} {} 0 0 0 0 0 13.0 host 13.1\n", range_max,
-                       range_max, laser, robot);
-}
-
-/// Returns the text of a log, given lines that end with a line break.
-std::string text_of(std::initializer_list<std::string_view> lines) { return fmt::format("{}", fmt::join(lines, "")); }
 
 TEST_F(CarmenLogFile, ReadsPlainAndCompressedFiles) {
     std::string text = "# comment\r\n";
@@ -77,13 +42,6 @@ TEST_F(CarmenLogFile, ReadsALastLineWithoutLineBreak) {
     auto text = text_of({flaser(1), flaser(2)});
     text.pop_back();
     EXPECT_EQ(read(text)->observations.size(), 2U);
-}
-
-/// Returns one reading of each scan; it identifies the scan.
-std::vector<RangeMm> first_ranges(const WholeLog& log) {
-    std::vector<RangeMm> ranges;
-    for (const auto& observation : log.observations) ranges.push_back(observation.scan.ranges[0]);
-    return ranges;
 }
 
 TEST_F(CarmenLogFile, MisplacedPartsAreSortedByStampThenByFileOrder) {
@@ -244,8 +202,6 @@ TEST_F(CarmenLogFile, BeamCountMayVaryWithOneSensorDescription) {
     EXPECT_EQ(log->observations[0].sensor, log->observations[1].sensor);
     EXPECT_EQ(log->observations[1].scan.ranges.size(), 3U);
 }
-
-constexpr std::string_view kRawLaser = "RAWLASER1 0 -1.5 3 0.1 30 0.01 0 1 1.0 0 10.5 host 1\n";
 
 TEST_F(CarmenLogFile, RawLaserPoseIsInterpolatedFromOdometry) {
     const auto log = read(text_of({"PARAM robot_frontlaser_offset 0.1 1 h 1\nODOM 2 4 3.1 0 0 0 10.25 h 1\n", kRawLaser,
