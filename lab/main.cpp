@@ -18,6 +18,7 @@ int main(int argc, char** argv) try {
     if (const auto* landmarks = std::get_if<scanloom::lab::LandmarkOptions>(&options)) {
         return scanloom::lab::run(*landmarks);
     }
+    if (const auto* score = std::get_if<scanloom::lab::ScoreOptions>(&options)) return scanloom::lab::run(*score);
     return scanloom::lab::run(std::get<scanloom::lab::ExperimentOptions>(options));
 } catch (const std::exception& error) {
     scanloom::standard_error().write(fmt::format("scanloom-lab: {}\n", error.what()));

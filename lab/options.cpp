@@ -9,9 +9,10 @@
 namespace scanloom::lab {
 namespace {
 
-constexpr const char* kAbout =
-    "Measures the quality and speed of maps and landmarks in simulated worlds with exact ground truth.\n"
-    "Exits 0 when done, 1 on failure, 2 on invalid arguments.";
+constexpr const char* kAbout = "Measures the quality and speed of maps and landmarks in simulated worlds with exact "
+                               "ground truth, and of estimated\n"
+                               "trajectories on recorded logs.\n"
+                               "Exits 0 when done, 1 on failure, 2 on invalid arguments.";
 constexpr const char* kOutHelp = "Directory for report.md, report.html, times.md, times.html and pictures/; created if "
                                  "it does not exist; existing files are overwritten";
 constexpr const char* kSeedHelp = "Seed of the noise; the same seed gives the same report, except for times";
@@ -48,22 +49,67 @@ CLI::App* add_landmarks(CLI::App& app, LandmarkOptions& options) {
     return landmarks;
 }
 
+CLI::App* add_score(CLI::App& app, ScoreOptions& options, std::string& poses) {
+    auto* score = app.add_subcommand(
+        "score",
+        "Estimates the trajectory of a recorded log and compares it with verified relative poses: the errors in "
+        "metres and degrees, and the time per scan");
+    score->add_option("LOG", options.log, "CARMEN log, plain, gzip or bzip2")->configurable(false);
+    score->add_option("RELATIONS", options.relations, "Lines of: t1 t2 x y z roll pitch yaw, in s, m and radians")
+        ->configurable(false);
+    add_checked(*score, "--poses", poses,
+                "Whether the log's odometry is used, or none of its poses. FLASER: the second pose is the odometry",
+                CLI::IsMember({"odometry", "none"}));
+    score->add_option("--trajectory", options.trajectory, "File for the final poses, in the TUM format; overwritten")
+        ->check(&check_not_empty)
+        ->type_name("FILE");
+    Perturbation& perturbation = options.perturbation;
+    add_checked(*score, "--odometry-scale", perturbation.odometry_scale,
+                "Factor of each motion of the odometry, to test robustness", check_within(0.5, 2.0));
+    score->add_option("--every", perturbation.every, "Use only every N-th scan")
+        ->check(check_whole_number_from(1))
+        ->capture_default_str()
+        ->type_name("N");
+    score->add_option("--skip", perturbation.skip, "Leave out the first N scans")
+        ->check(check_whole_number_from(0))
+        ->capture_default_str()
+        ->type_name("N");
+    return score;
+}
+
+/// Returns what is wrong with the options of score; empty if nothing is.
+std::string complaint_about(const ScoreOptions& options) {
+    if (options.log.empty() || options.relations.empty()) return "score: name two files, LOG and RELATIONS";
+    if (options.poses == Poses::kNone && options.perturbation.odometry_scale != 1.0) {
+        return "score: --odometry-scale has no effect with --poses none; leave out one of them";
+    }
+    return {};
+}
+
 } // namespace
 
-std::variant<ExperimentOptions, LandmarkOptions, Leave> parse_options(int argc, const char* const* argv) {
+std::variant<ExperimentOptions, LandmarkOptions, ScoreOptions, Leave> parse_options(int argc, const char* const* argv) {
     ExperimentOptions experiment_options;
     LandmarkOptions landmark_options;
+    ScoreOptions score_options;
+    std::string poses = "odometry";
     CLI::App app(kAbout, "scanloom-lab");
     app.footer(kFooter);
     app.set_version_flag("--version", fmt::format("scanloom-lab {}", kVersion));
     add_experiment(app, experiment_options);
     const auto* landmarks = add_landmarks(app, landmark_options);
+    const auto* score = add_score(app, score_options, poses);
     app.require_subcommand(1);
     try {
         read_settings_from_environment_and_file(app);
         app.parse(argc, argv);
     } catch (const CLI::ParseError& reason) {
-        return leave_for(app, reason, "name a command: experiment or landmarks");
+        return leave_for(app, reason, "name a command: experiment, landmarks or score");
+    }
+    if (score->parsed()) {
+        score_options.poses = poses == "none" ? Poses::kNone : Poses::kOdometry;
+        if (auto wrong = complaint_about(score_options); !wrong.empty()) return usage_error(app, wrong);
+        return score_options;
     }
     // --out is not required() by the parser, so that its error message can be ours
     if (landmarks->parsed()) {

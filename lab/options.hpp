@@ -1,6 +1,8 @@
 #pragma once
 
 #include "common/app/program.hpp"
+#include "common/scan/poses.hpp"
+#include "lab/perturbed_source.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -22,8 +24,17 @@ struct LandmarkOptions {
     std::optional<std::string> capture; ///< file with the bytes that an LD06 sent
 };
 
+struct ScoreOptions {
+    std::string log;                       ///< CARMEN log
+    std::string relations;                 ///< file with verified relative poses
+    Poses poses = Poses::kOdometry;        ///< kOdometry or kNone
+    std::optional<std::string> trajectory; ///< file for the final poses
+    Perturbation perturbation;
+};
+
 /// Reads the command line, SCANLOOM_* of the environment and the file of --config: a flag overrides the environment,
 /// which overrides the file.
-[[nodiscard]] std::variant<ExperimentOptions, LandmarkOptions, Leave> parse_options(int argc, const char* const* argv);
+[[nodiscard]] std::variant<ExperimentOptions, LandmarkOptions, ScoreOptions, Leave>
+parse_options(int argc, const char* const* argv);
 
 } // namespace scanloom::lab

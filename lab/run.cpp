@@ -2,13 +2,18 @@
 
 #include "common/app/machine.hpp"
 #include "common/app/standard_streams.hpp"
+#include "lab/estimated_trajectory.hpp"
 #include "lab/markdown.hpp"
 #include "lab/report.hpp"
+#include "lab/score_report.hpp"
+#include "lab/trajectory_score.hpp"
+#include "robot_client/sources/carmen_log.hpp"
 
 #include <boost/json/serialize.hpp>
 #include <fmt/format.h>
 
 #include <chrono>
+#include <ctime>
 #include <fstream>
 #include <optional>
 
@@ -144,6 +149,53 @@ Result<std::string> run_landmarks_of(const LandmarkOptions& options, Console& co
                        files->report_name());
 }
 
+/// Returns the CPU time of all threads of this process.
+double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+
+Result<> write_file(const std::string& path, std::string_view content) {
+    std::ofstream out(path, std::ios::binary | std::ios::trunc);
+    out.write(content.data(), static_cast<std::streamsize>(content.size()));
+    out.close();
+    if (out) return {};
+    return Error{Errc::kStoreFailed,
+                 fmt::format("{}: cannot be written; check the directory, the free space and the permissions", path)};
+}
+
+Result<std::string> run_score_of(const ScoreOptions& options, Console& console) {
+    const auto relations = read_relations(options.relations); // first, because reading them takes no time
+    if (!relations) return relations.error();
+    robot::CarmenOptions carmen;
+    carmen.poses = options.poses;
+    auto log = robot::CarmenLog::open(options.log, carmen, [](const robot::SkippedLine&) {});
+    if (!log) return log.error();
+    PerturbedSource source(*log, options.perturbation);
+
+    const double period = std::chrono::duration<double>(console.progress_period()).count();
+    double reported = steady_seconds();
+    const auto show = [&, total = source.scan_count().value_or(0)](std::size_t scans) {
+        if (steady_seconds() < reported + period) return;
+        reported = steady_seconds();
+        console.progress(fmt::format("{} of {} scans", scans, total));
+    };
+    auto estimated = estimate_trajectory(source, cpu_seconds, show);
+    if (!estimated) return prefixed(options.log + ": ", estimated.error());
+    if (options.trajectory) {
+        if (auto written = write_file(*options.trajectory, tum_text(estimated->final_poses)); !written) {
+            return written.error();
+        }
+    }
+
+    const auto use = options.perturbation.drops_scans() ? RelationUse::kOfScans : RelationUse::kInterpolated;
+    const auto final_poses = score_trajectory(estimated->final_poses, *relations, use);
+    if (!final_poses) return prefixed(options.relations + ": ", final_poses.error());
+    const auto first_poses = score_trajectory(estimated->first_poses, *relations, use);
+    if (!first_poses) return prefixed(options.relations + ": ", first_poses.error());
+    const ScoreResult result{estimated->final_poses.size(), log->skipped_lines(), estimated->cpu_seconds, *final_poses,
+                             *first_poses};
+    console.note(score_table(options, result));
+    return score_json(options, result);
+}
+
 template <class Options>
 ExitCode run_and_report(const Options& options, Result<std::string> (*work)(const Options&, Console&)) {
     Console console(standard_error());
@@ -161,5 +213,6 @@ ExitCode run_and_report(const Options& options, Result<std::string> (*work)(cons
 
 ExitCode run(const ExperimentOptions& options) { return run_and_report(options, run_experiment_of); }
 ExitCode run(const LandmarkOptions& options) { return run_and_report(options, run_landmarks_of); }
+ExitCode run(const ScoreOptions& options) { return run_and_report(options, run_score_of); }
 
 } // namespace scanloom::lab

@@ -32,5 +32,6 @@ private:
 /// Runs the chosen experiment. Progress and errors go to stderr, one line of JSON about the result to stdout.
 [[nodiscard]] ExitCode run(const ExperimentOptions& options);
 [[nodiscard]] ExitCode run(const LandmarkOptions& options);
+[[nodiscard]] ExitCode run(const ScoreOptions& options);
 
 } // namespace scanloom::lab
