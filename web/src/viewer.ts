@@ -17,7 +17,7 @@ import type { Facts } from './panel/facts';
 import type { ExploredNote } from './panel/explored_note';
 import type { Notice } from './panel/notice';
 import type { RobotList } from './panel/robot_list';
-import type { Status } from './panel/status';
+import { Draining, type Status } from './panel/status';
 import type { Picture } from './picture';
 import { RobotColours } from './robot_colours';
 import { RevisionWatch } from './revision_watch';
@@ -70,6 +70,7 @@ interface Open {
 }
 
 const kSource = 'session';
+const kServerState = 'server state';
 const kLandmarks = 'landmarks';
 
 /** The status line's code for a full server. */
@@ -109,6 +110,7 @@ export class Viewer {
     this.leave.abort();
     this.leave = new AbortController();
     this.parts.status.forget(kSource);
+    this.parts.status.forget(kServerState);
     this.clear();
     this.parts.notice.show({ kind: 'loading' });
     let seen = false;
@@ -145,6 +147,7 @@ export class Viewer {
   close(): void {
     this.leave.abort();
     this.parts.status.forget(kSource);
+    this.parts.status.forget(kServerState);
     this.clear();
   }
 
@@ -210,6 +213,7 @@ export class Viewer {
 
   private apply(event: LiveEvent): void {
     if (!this.open) return;
+    this.parts.status.settle(kServerState, event.draining ? new Draining() : null);
     const { robots, frontiers, goals, session } = this.open;
     for (const robot of event.robots) robots.set(robot.index, robotOf(robot));
     if (this.open.isNew && event.scans > 0) {

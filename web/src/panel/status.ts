@@ -3,6 +3,11 @@ import { MalformedAnswer } from '../api/decode';
 import { isUnauthorized, Refused, Unreachable } from '../api/http';
 import { setText } from '../dom';
 
+/** The server announced that it shuts down. */
+export class Draining extends Error {
+  override name = 'Draining';
+}
+
 export type Trouble = { kind: 'offline' | 'error'; text: string };
 
 const kReassureMs = 3_000;
@@ -71,6 +76,12 @@ export function troubleOf(error: unknown): Trouble {
     return {
       kind: 'offline',
       text: 'Offline: the server does not answer. Trying again; the map shows what was last received.',
+    };
+  }
+  if (error instanceof Draining) {
+    return {
+      kind: 'error',
+      text: 'The server is shutting down. It takes no more scans; robots keep theirs until it is back.',
     };
   }
   if (error instanceof Refused) {
