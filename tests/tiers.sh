@@ -232,6 +232,7 @@ run_flakes() {
     [[ $tier == first ]] || for_core make_preset
     mkdir -p "$logs"
     : >"$failures"
+    rm -f "$logs"/flakes-*-failed.log
     # Two busy loops: each test competes for its processor.
     for turn in 1 2; do
         (while :; do :; done) &
@@ -247,7 +248,7 @@ run_flakes() {
     if [[ -s $failures ]]; then
         echo "failed, of $count times:"
         sort "$failures" | uniq --count
-        fail "there are flaky tests; $logs/flakes-PRESET.log is the output of the last run"
+        fail "there are flaky tests; $logs/flakes-PRESET-failed.log is the output of the runs with failures"
     fi
     echo "no test failed in $count runs while two busy loops used the processors"
 }
@@ -263,7 +264,9 @@ list_failures() {
     local log=$logs/flakes-$1.log status=0
     ctest --preset "$1" --parallel "$(nproc)" --no-tests=error "${@:2}" --quiet --output-log "$log" || status=$?
     ((status == 0 || status == 8)) || fail "ctest ended with code $status; $log is its output"
-    ((status == 0)) || failed_tests "$log" | sed "s/^/$1: /" | tee -a "$failures"
+    ((status == 0)) && return
+    cat "$log" >>"$logs/flakes-$1-failed.log"
+    failed_tests "$log" | sed "s/^/$1: /" | tee -a "$failures"
 }
 
 # failed_tests LOG: the names of the tests that ctest lists as failed.
