@@ -38,7 +38,7 @@ private:
 template <class Key>
 class KeyedSemaphore {
 public:
-    using Permit = Semaphore::Permit;
+    using Permit = Semaphore::Permit; ///< held while the use lasts
 
     /// Creates a semaphore.
     /// @param permits          in total
