@@ -39,9 +39,8 @@ TEST(AuthenticatorMemory, FailedGrantLeavesNoConnection) {
     for (bool is_granted = false; !is_granted; ++allocations) {
         Authenticator authenticator(tokens(Role::kRobot));
         std::shared_ptr<Credential> credential;
-        is_granted = suffices(allocations, [&] {
-            credential = authenticator.grant_robot_link(kSecret, session, "a").value();
-        });
+        is_granted =
+            suffices(allocations, [&] { credential = authenticator.grant_robot_link(kSecret, session, "a").value(); });
         ASSERT_EQ(authenticator.grant_robot_link(kSecret, session, "b").has_value(), !is_granted) << allocations;
         credential.reset();
         ASSERT_TRUE(authenticator.grant_robot_link(kSecret, session, "b")) << allocations;
