@@ -80,7 +80,8 @@ std::pair<double, double> distance_between(const std::vector<Pose2>& reference, 
 class RealTrajectory : public testing::TestWithParam<RealLog> {
 protected:
     void SetUp() override {
-        if (!std::filesystem::exists(path(".clf.bz2"))) GTEST_SKIP() << "there is no " << path(".clf.bz2");
+        if (std::filesystem::exists(path(".clf.bz2"))) return;
+        GTEST_SKIP() << "recorded data, no part of the project, are not on this machine: " << path(".clf.bz2");
     }
 
     [[nodiscard]] static std::filesystem::path path(const std::string& ending) {

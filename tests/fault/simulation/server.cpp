@@ -285,7 +285,7 @@ std::size_t Server::connected_with(const std::string& secret) const {
     return robots.size();
 }
 
-/// Checks the limits of open links, of which the newest is to be served.
+/// Checks the limits of the open links. The newest of them is the one that asks to be served.
 void Server::check_links() {
     const auto count = [this](bool (Link::*is)() const) {
         return static_cast<std::size_t>(

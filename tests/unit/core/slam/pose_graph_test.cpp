@@ -40,7 +40,7 @@ Information random_information(std::mt19937& random) {
     return {full(0, 0), full(0, 1), full(0, 2), full(1, 1), full(1, 2), full(2, 2)};
 }
 
-/// Returns a chain of nodes with noisy loops, the first few of which are wrong.
+/// Returns a chain of nodes with noisy loops. The first few loops are wrong.
 Graph random_graph(std::mt19937& random, std::size_t nodes, std::size_t loops, std::size_t wrong_loops) {
     Graph graph;
     std::vector<Transform2> truth = {{}};
