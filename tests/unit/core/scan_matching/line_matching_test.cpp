@@ -114,8 +114,8 @@ TEST(LineMatching, OutliersOfAQuarterOfTheBeamsDoNotChangeThePose) {
     std::mt19937 random(3);
     Scene scene(random);
     for (std::size_t n = 0; n < scene.points.size(); n += 4) { // a quarter of the beams hits something else
-        scene.points[n].x *= 0.6F;
-        scene.points[n].y *= 0.6F;
+        scene.points[n].x *= 0.95F;
+        scene.points[n].y *= 0.95F;
     }
     const auto start = transform_of({scene.truth.x + 0.1, scene.truth.y - 0.1, scene.truth.yaw + 0.05});
     const auto match = match_to_lines(scene.points, scene.map, start, {start, 0.2, 0.2}, {});

@@ -58,6 +58,13 @@ TEST(StretchTest, AcceptsTheCorrectionOfADriftedLap) {
     EXPECT_LT(distance_of(inverse(graph.pose(newest)) * drifted.before), 0.1);
 }
 
+TEST(StretchTest, RefusesALargeCorrectionWhileThePathMayBeInUnseenSpace) {
+    Drifted drifted(ring_building(), kLapAndMore, 2.0);
+    const std::size_t edges = drifted.graph.edges().size();
+    EXPECT_FALSE(accept_stretch(drifted.graph, {20, drifted.correction, 3.0}));
+    EXPECT_EQ(drifted.graph.edges().size(), edges);
+}
+
 TEST(StretchTest, RefusesAFalseCorrection) {
     Drifted drifted(ring_building(), kLapAndMore, 0.0);
     const std::size_t edges = drifted.graph.edges().size();
