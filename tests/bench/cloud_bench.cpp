@@ -1,11 +1,10 @@
 #include "core/landmarks/cloud_fusion.hpp"
 #include "core/landmarks/landmark_matching.hpp"
 #include "core/landmarks/localization.hpp"
-#include "sim/range_sensors.hpp"
+#include "tests/bench/room_capture.hpp"
 
 #include <benchmark/benchmark.h>
 
-#include <cmath>
 #include <memory>
 #include <utility>
 
@@ -14,31 +13,11 @@
 namespace scanloom::landmarks {
 namespace {
 
+using bench::capture;
+using bench::capture_in_map;
+
 constexpr Pose2 kFirst{-3.3, 1.2, 1.0};
 constexpr Pose2 kSecond{-2.6, 0.2, -2.0};
-
-/// Returns points in the robot's frame.
-std::vector<Point2> capture(const Pose2& place, std::size_t count, std::uint64_t seed) {
-    const auto room = sim::make_room();
-    const Sensor laser = sim::find_laser("lidar360").value();
-    sim::Random random(seed);
-    std::vector<Point2> points;
-    while (points.size() < count) {
-        const auto ranges = sim::sweep(room, laser, place, sim::Noise{}, random);
-        for (std::size_t n = 0; n < ranges.size() && points.size() < count; ++n) {
-            if (ranges[n] == kInvalidRange || ranges[n] == kNoReturn) continue;
-            const double angle = beam_angle(laser.angles, n);
-            points.push_back(1e-3 * ranges[n] * Point2{std::cos(angle), std::sin(angle)});
-        }
-    }
-    return points;
-}
-
-std::vector<Point2> capture_in_map(const Pose2& place, std::size_t count, std::uint64_t seed) {
-    auto points = capture(place, count, seed);
-    for (Point2& point : points) point = transform(place, point);
-    return points;
-}
 
 void LocateInOneView(benchmark::State& state) {
     const auto count = static_cast<std::size_t>(state.range(0));

@@ -32,7 +32,7 @@ public:
         const Scan& scan = scans()[revision_ % scans().size()];
         double unbounded = HUGE_VAL;
         benchmark::DoNotOptimize(
-            layers_.integrate({fan_, scan.ranges, scan.pose, {0.0, 5.0, false}}, ++revision_, unbounded));
+            layers_.integrate({fan_, scan.ranges, *scan.pose, {0.0, 5.0, false}}, ++revision_, unbounded));
     }
     void take_snapshot() { benchmark::DoNotOptimize(layers_.snapshot()); }
 
@@ -70,8 +70,8 @@ Snapshot sixteen_rooms(double cell_size_m) {
         benchmark::DoNotOptimize(projection.apply(RobotJoined{room, "robot"}));
         benchmark::DoNotOptimize(projection.apply(SensorDescribed{room, testing_support::reference_laser()}));
         for (Scan scan : scans()) {
-            scan.pose.x += 10.0 * (room % 4) - 15.0;
-            scan.pose.y += 10.0 * (room / 4) - 15.0;
+            scan.pose->x += 10.0 * (room % 4) - 15.0;
+            scan.pose->y += 10.0 * (room / 4) - 15.0;
             benchmark::DoNotOptimize(projection.apply(ScanTaken{room, std::move(scan)}));
         }
     }

@@ -1,11 +1,10 @@
 #include "core/landmarks/clustering.hpp"
 #include "core/landmarks/landmark.hpp"
 #include "core/landmarks/point_index.hpp"
-#include "sim/range_sensors.hpp"
+#include "tests/bench/room_capture.hpp"
 
 #include <benchmark/benchmark.h>
 
-#include <cmath>
 #include <map>
 
 // Landmarks from the scans of a stationary lidar in the simulator's room, turn after turn.
@@ -19,21 +18,10 @@ enum Cloud : std::int64_t {
 };
 
 std::vector<Point2> make_capture(Cloud cloud, std::size_t count) {
-    const auto room = sim::make_room();
-    const Sensor laser = sim::find_laser("lidar360").value();
-    const Pose2 place{-3.3, 1.2, 1.0};
-    sim::Random random(1);
-    std::vector<Point2> points;
-    while (points.size() < count) {
-        const auto ranges = sim::sweep(room, laser, place, sim::Noise{}, random);
-        for (std::size_t n = 0; n < ranges.size() && points.size() < count; ++n) {
-            if (ranges[n] == kInvalidRange || ranges[n] == kNoReturn) continue;
-            const double angle = beam_angle(laser.angles, n);
-            points.push_back(transform(place, 1e-3 * ranges[n] * Point2{std::cos(angle), std::sin(angle)}));
-            if (cloud != kJittered) continue;
-            points.back() += Point2{random.uniform(-5e-4, 5e-4), random.uniform(-5e-4, 5e-4)};
-        }
-    }
+    auto points = bench::capture_in_map({-3.3, 1.2, 1.0}, count, 1);
+    if (cloud != kJittered) return points;
+    sim::Random random(2);
+    for (Point2& point : points) point += Point2{random.uniform(-5e-4, 5e-4), random.uniform(-5e-4, 5e-4)};
     return points;
 }
 

@@ -49,7 +49,7 @@ public:
     void insert(const Scan& scan) override {
         grid_.begin(++revision_);
         const mapping::Sweep::Band band{&ring_, mapping::MapConfig{}.obstacle_thickness};
-        mapping::Sweep sweep({scan.ranges, scan.pose, readings_of(column_), column_.cell_size}, {&band, 1});
+        mapping::Sweep sweep({scan.ranges, *scan.pose, readings_of(column_), column_.cell_size}, {&band, 1});
         for (std::size_t strip = 0; strip < sweep.strips(); ++strip) {
             sweep.visit(strip, [&](grid::ChunkKey key, std::span<const mapping::ChunkVerdicts> verdicts) {
                 mapping::LaserChunk& chunk = *grid_.write(key);
@@ -76,7 +76,7 @@ public:
     void insert(const Scan& scan) override {
         double unbounded = HUGE_VAL;
         benchmark::DoNotOptimize(
-            layers_.integrate({fan_, scan.ranges, scan.pose, readings_of(column_)}, ++revision_, unbounded));
+            layers_.integrate({fan_, scan.ranges, *scan.pose, readings_of(column_)}, ++revision_, unbounded));
     }
 
 private:

@@ -37,8 +37,8 @@ Scan in_room(const Scan& scan, int room, std::uint64_t seq) {
     const int along = room - side * side;
     Scan moved = scan;
     moved.seq = seq;
-    moved.pose.x += 10.0 * (along <= side ? side : 2 * side - along);
-    moved.pose.y += 10.0 * (along <= side ? along : side);
+    moved.pose->x += 10.0 * (along <= side ? side : 2 * side - along);
+    moved.pose->y += 10.0 * (along <= side ? along : side);
     return moved;
 }
 
@@ -93,8 +93,8 @@ void ScanByBeams(benchmark::State& state) {
     for (Scan& scan : scans) {
         scan.ranges.clear();
         for (std::size_t beam = 0; beam < beams; ++beam) {
-            const double direction = scan.pose.yaw + beam_angle(laser.angles, beam);
-            const double range = testing_support::room_range({scan.pose.x, scan.pose.y}, direction);
+            const double direction = scan.pose->yaw + beam_angle(laser.angles, beam);
+            const double range = testing_support::room_range({scan.pose->x, scan.pose->y}, direction);
             scan.ranges.push_back(range < laser.range_max ? to_range_mm(range) : kNoReturn);
         }
     }

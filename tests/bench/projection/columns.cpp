@@ -16,7 +16,7 @@ constexpr std::size_t kScans = 200;
 
 double half_side_of(const std::vector<Scan>& scans, double range_max) {
     double farthest = 0.0;
-    for (const Scan& scan : scans) farthest = std::max({farthest, std::abs(scan.pose.x), std::abs(scan.pose.y)});
+    for (const Scan& scan : scans) farthest = std::max({farthest, std::abs(scan.pose->x), std::abs(scan.pose->y)});
     return farthest + range_max + 1.0;
 }
 

@@ -54,14 +54,14 @@ public:
     /// call.
     [[nodiscard]] const std::vector<BeamEnd>& of(const Scan& scan) {
         ends_.clear();
-        const double cos_yaw = std::cos(scan.pose.yaw);
-        const double sin_yaw = std::sin(scan.pose.yaw);
+        const double cos_yaw = std::cos(scan.pose->yaw);
+        const double sin_yaw = std::sin(scan.pose->yaw);
         for (std::size_t beam = 0; beam < scan.ranges.size(); ++beam) {
             const bool is_hit = scan.ranges[beam] != kNoReturn && scan.ranges[beam] * 0.001 < range_max_;
             const double range = is_hit ? scan.ranges[beam] * 0.001 : range_max_;
             const auto [x, y] = directions_[beam];
-            ends_.push_back({scan.pose.x + range * (cos_yaw * x - sin_yaw * y),
-                             scan.pose.y + range * (sin_yaw * x + cos_yaw * y),
+            ends_.push_back({scan.pose->x + range * (cos_yaw * x - sin_yaw * y),
+                             scan.pose->y + range * (sin_yaw * x + cos_yaw * y),
                              is_hit && scan.ranges[beam] != kInvalidRange});
         }
         return ends_;

@@ -34,7 +34,7 @@ private:
         const double spread = beam_angle(sensor.angles, beams - 1) - beam_angle(sensor.angles, 0);
         // MRPT's scans are centred on the robot's heading; ours may not be.
         const double turn = beam_angle(sensor.angles, 0) + spread / 2.0;
-        Observation made{{}, {scan.pose.x, scan.pose.y, 0.0, scan.pose.yaw + turn, 0.0, 0.0}};
+        Observation made{{}, {scan.pose->x, scan.pose->y, 0.0, scan.pose->yaw + turn, 0.0, 0.0}};
         made.scan.aperture = static_cast<float>(spread);
         made.scan.rightToLeft = true;
         made.scan.maxRange = static_cast<float>(sensor.range_max);

@@ -24,8 +24,8 @@ public:
 
     void insert(const Scan& scan) override {
         const auto& ends = beam_ends_.of(scan);
-        const int i = map_.index_of(scan.pose.x);
-        const int j = map_.index_of(scan.pose.y);
+        const int i = map_.index_of(scan.pose->x);
+        const int j = map_.index_of(scan.pose->y);
         const auto add = [&](std::size_t at, float amount) {
             map_.cells[at] = std::clamp(map_.cells[at] + amount, -kClamp, kClamp);
         };
@@ -49,8 +49,8 @@ public:
 
     void insert(const Scan& scan) override {
         const auto& ends = beam_ends_.of(scan);
-        const int i = map_.index_of(scan.pose.x);
-        const int j = map_.index_of(scan.pose.y);
+        const int i = map_.index_of(scan.pose->x);
+        const int j = map_.index_of(scan.pose->y);
         for (const BeamEnd& end : ends) {
             for_each_on_line(i, j, map_.index_of(end.x), map_.index_of(end.y), map_.side,
                              [&](std::size_t at) { map_.cells[at] = 0; });
@@ -72,8 +72,8 @@ public:
 
     void insert(const Scan& scan) override {
         const auto& ends = beam_ends_.of(scan);
-        const int i = map_.index_of(scan.pose.x);
-        const int j = map_.index_of(scan.pose.y);
+        const int i = map_.index_of(scan.pose->x);
+        const int j = map_.index_of(scan.pose->y);
         passed_ += 2;
         for (const BeamEnd& end : ends) {
             if (!end.is_hit) continue; // ignored by this mapper, with the free cells before its end
@@ -117,7 +117,7 @@ public:
     void insert(const Scan& scan) override {
         const auto& ends = beam_ends_.of(scan);
         corners_.clear();
-        corners_.emplace_back(map_.index_of(scan.pose.x), map_.index_of(scan.pose.y));
+        corners_.emplace_back(map_.index_of(scan.pose->x), map_.index_of(scan.pose->y));
         for (const BeamEnd& end : ends) corners_.emplace_back(map_.index_of(end.x), map_.index_of(end.y));
         const cv::Rect box = cv::boundingRect(corners_);
         cv::Mat seen = mask_(box);
@@ -169,7 +169,7 @@ private:
         std::vector<Span> spans;
         const mapping::Sweep::Band band{&ring, 0.1};
         const ReadingRules readings{column.sensor.range_min, column.sensor.range_max, false};
-        mapping::Sweep sweep({scan.ranges, scan.pose, readings, column.cell_size}, {&band, 1});
+        mapping::Sweep sweep({scan.ranges, *scan.pose, readings, column.cell_size}, {&band, 1});
         for (std::size_t strip = 0; strip < sweep.strips(); ++strip) {
             sweep.visit(strip, [&](grid::ChunkKey key, std::span<const mapping::ChunkVerdicts> verdicts) {
                 add_runs(spans, key, verdicts.front().free, -4500);
