@@ -213,6 +213,9 @@ public:
         return other;
     }
 
+    /// Returns the contents of a chunk before its first write.
+    [[nodiscard]] const ChunkType& blank() const noexcept { return *blank_; }
+
     /// Returns the number of chunks.
     [[nodiscard]] std::size_t size() const noexcept { return size_; }
 

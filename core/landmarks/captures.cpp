@@ -13,7 +13,7 @@ double distance(const Pose2& a, const Pose2& b) { return std::hypot(a.x - b.x, a
 double turn(const Pose2& a, const Pose2& b) { return std::abs(normalize_angle(a.yaw - b.yaw)); }
 
 bool is_still(const Capture& capture, const Scan& scan) {
-    return distance(capture.pose, scan.pose) <= kStillDistance && turn(capture.pose, scan.pose) <= kStillTurn;
+    return distance(capture.pose, *scan.pose) <= kStillDistance && turn(capture.pose, *scan.pose) <= kStillTurn;
 }
 
 /// Returns whether a robot whose last keyframe is `last` starts another one here.
@@ -26,7 +26,7 @@ bool is_due(const Capture& last, double stamp, const Pose2& pose) {
 constexpr double kCoordinateLimit = 2e6;
 
 void add_points(Capture& capture, const Scan& scan, const Sensor& sensor) {
-    const Pose2 T_map_sensor = compose(scan.pose, sensor.mount);
+    const Pose2 T_map_sensor = compose(*scan.pose, sensor.mount);
     const BeamAngles angles = angles_of(scan, sensor);
     const ReadingRules rules{sensor.range_min, sensor.range_max, true};
     for (std::size_t beam = 0; beam < scan.ranges.size(); ++beam) {
@@ -52,9 +52,9 @@ std::optional<Capture> CaptureCutter::add(const Scan& scan, const Sensor& sensor
     std::optional<Capture> ended;
     if (is_open_ && !is_still(*newest_, scan)) ended = end();
     if (!is_open_) {
-        if (newest_ && !is_due(*newest_, scan.stamp, scan.pose)) return ended;
-        const Pose2 T_map_sensor = compose(scan.pose, sensor.mount);
-        newest_ = Capture{scan.pose, scan.stamp, revision, revision, 0, {}, {T_map_sensor.x, T_map_sensor.y}};
+        if (newest_ && !is_due(*newest_, scan.stamp, *scan.pose)) return ended;
+        const Pose2 T_map_sensor = compose(*scan.pose, sensor.mount);
+        newest_ = Capture{*scan.pose, scan.stamp, revision, revision, 0, {}, {T_map_sensor.x, T_map_sensor.y}};
         is_open_ = true;
     }
     newest_->last = revision;

@@ -99,7 +99,7 @@ public:
     /// @param scan  the next entry of the log
     [[nodiscard]] bool needs(const ScanPose& scan) const noexcept {
         if (filter_.use_of(revision_ + 1, scan) != ScanUse::kIntegrated) return false;
-        return scan.robot >= cutters_.size() || cutters_[scan.robot].needs(scan.stamp, scan.pose);
+        return scan.robot >= cutters_.size() || cutters_[scan.robot].needs(scan.stamp, *scan.pose);
     }
     /// Skips the next entry.
     /// @param scan  the next entry of the log, for which needs() returned false

@@ -90,6 +90,31 @@ public:
         return keys;
     }
 
+    /// Writes every chunk whose contents differ from that of `other`, as a change by the current entry. A chunk that
+    /// `other` does not have becomes blank.
+    /// @param other  not changed
+    /// @param is_same  bool(const ChunkType&, const ChunkType&): whether their contents are equal
+    template <class IsSame>
+    void replace_with(const ChunkGrid& other, IsSame is_same) {
+        const auto before = tree_.peek();
+        const auto after = other.tree_.peek();
+        const auto replace = [&](grid::ChunkKey key, const ChunkType& contents) {
+            ChunkType& chunk = tree_.write(key, revision_);
+            const Revision at = chunk.revision;
+            chunk = contents;
+            chunk.revision = at;
+        };
+        after.visit({}, 0, [&](grid::ChunkKey key, const ChunkType& contents) {
+            const ChunkType* chunk = before.find(key);
+            if (chunk == nullptr || !is_same(*chunk, contents)) replace(key, contents);
+        });
+        before.visit({}, 0, [&](grid::ChunkKey key, const ChunkType& chunk) {
+            if (after.find(key) == nullptr && !is_same(chunk, tree_.blank())) replace(key, tree_.blank());
+        });
+        current_ = nullptr;
+        restored_.clear();
+    }
+
     /// Returns the number of chunks.
     [[nodiscard]] std::size_t chunk_count() const noexcept { return tree_.size(); }
 

@@ -133,6 +133,15 @@ bool LaserLayers::integrate(const LaserScan& scan, Revision revision, double& wo
     return true;
 }
 
+void LaserLayers::replace_with(LaserLayers other, Revision revision) {
+    grid_.begin(revision);
+    grid_.replace_with(other.grid_, [](const LaserChunk& a, const LaserChunk& b) {
+        return a.occupancy == b.occupancy && a.himm == b.himm && a.occ_types.free == b.occ_types.free &&
+               a.occ_types.occupied == b.occ_types.occupied;
+    });
+    bounds_ = other.bounds_;
+}
+
 void LaserLayers::import(const MapPatch& patch, Revision revision) {
     grid_.begin(revision);
     for_each_cell_of(patch, config_.cell_size, [&](grid::Cell cell, MapCell to) { set(cell, to); });

@@ -66,6 +66,12 @@ public:
     /// @param revision  revision of the patch's log entry
     void import(const MapPatch& patch, Revision revision);
 
+    /// Makes the layers equal to others, as a change by the newest entry: writes the chunks whose cells differ.
+    /// @param other     with the same settings
+    /// @param revision  of the newest entry
+    /// Precondition: no scan is partially integrated.
+    void replace_with(LaserLayers other, Revision revision);
+
     /// Boxes around the cells that scans or imported maps changed.
     struct Bounds {
         grid::CellBox occupancy; ///< of the occupancy layer and the classes

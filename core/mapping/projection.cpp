@@ -10,9 +10,11 @@
 
 namespace scanloom::mapping {
 
-Projection::Projection(const MapConfig& config, SharedExclusions exclusions)
+Projection::Projection(const MapConfig& config, SharedExclusions exclusions, Revision corrected)
     : Projection(config, std::move(exclusions), LaserLayers(config), SonarLayer(config),
-                 classify::ClassLayer(danger_reach(config))) {}
+                 classify::ClassLayer(danger_reach(config))) {
+    corrected_ = corrected;
+}
 
 Projection::Projection(const MapConfig& config, SharedExclusions exclusions, LaserLayers laser, SonarLayer sonar,
                        classify::ClassLayer classes)
@@ -74,7 +76,7 @@ bool Projection::integrate_entry(const ScanTaken& taken, double& work) {
     if (use == ScanUse::kIntegrated) {
         // Place the beams of the sensor in the map
         const Sensor& sensor = *robots()[taken.robot].find_sensor(scan.sensor)->sensor;
-        const Pose2 T_map_sensor = compose(scan.pose, sensor.mount);
+        const Pose2 T_map_sensor = compose(*scan.pose, sensor.mount);
         const auto& fan = fan_of(robot, sensor, scan).fan;
         const ReadingRules readings = rules_of(config_, sensor);
         // Update the cells that they cross; a large scan continues in the next call
@@ -87,10 +89,12 @@ bool Projection::integrate_entry(const ScanTaken& taken, double& work) {
     }
     // Record the scan: the pose for max_jump, the counts, the trajectory
     filter_.take(revision, scan_pose_of(taken));
+    if (robots()[taken.robot].poses != Poses::kMap) robot.poses.append(scan.pose);
     if (use == ScanUse::kExcluded) ++robot.excluded;
+    if (use == ScanUse::kUnplaced) ++robot.unplaced;
     if (use != ScanUse::kIntegrated) return true;
     robot.scan_count += 1;
-    robot.newest = {revision, scan.stamp, scan.pose};
+    robot.newest = {revision, scan.stamp, *scan.pose};
     robot.trajectory.append(*robot.newest);
     return true;
 }
@@ -105,6 +109,18 @@ bool Projection::integrate_entry(const MapPatch& patch, double& work) {
 bool Projection::integrate_entry(const ScansExcluded&, double&) { return true; }
 
 bool Projection::integrate_entry(const ExclusionLifted&, double&) { return true; }
+
+/// Does nothing: who makes the maps with corrected poses calls replace_with().
+bool Projection::integrate_entry(const MapsCorrected&, double&) { return true; }
+
+void Projection::replace_with(Projection corrected) {
+    assert(!is_applying_ && !corrected.is_applying_ && revision() == corrected.revision());
+    laser_.replace_with(std::move(corrected.laser_), revision());
+    sonar_.replace_with(std::move(corrected.sonar_), revision());
+    robots_ = std::move(corrected.robots_);
+    filter_ = std::move(corrected.filter_);
+    corrected_ = revision();
+}
 
 const Projection::KnownFan& Projection::fan_of(Robot& robot, const Sensor& sensor, const Scan& scan) {
     auto& known = robot.fans[sensor.id];
@@ -123,7 +139,7 @@ const Projection::KnownFan& Projection::fan_of(Robot& robot, const Sensor& senso
 
 std::size_t Projection::page_count() const noexcept {
     std::size_t blocks = 0;
-    for (const auto& robot : robots_) blocks += robot.trajectory.block_count();
+    for (const auto& robot : robots_) blocks += robot.trajectory.block_count() + robot.poses.block_count();
     return chunk_count() + blocks;
 }
 
@@ -137,6 +153,7 @@ Snapshot Projection::snapshot() {
                       .sonar = sonar_.snapshot()};
     bring_classes_up_to(snapshot.laser);
     snapshot.classes = classes_.snapshot();
+    std::vector<EstimatedPosesView> poses;
     snapshot.robots.reserve(robots_.size());
     for (RobotIndex index = 0; index < robots_.size(); ++index) {
         const LoggedRobot& logged = robots()[index];
@@ -144,15 +161,19 @@ Snapshot Projection::snapshot() {
         auto& state = snapshot.robots.emplace_back();
         state.name = logged.name;
         state.body_radius = logged.body_radius;
+        state.poses = logged.poses;
         state.last_seq = logged.last_seq;
         state.scan_count = robot.scan_count;
         state.excluded = robot.excluded;
+        state.unplaced = robot.unplaced;
         state.jumps = filter_.jumps().state(index).left_out;
         state.trajectory = robot.trajectory.snapshot();
+        poses.push_back(robot.poses.snapshot());
         if (!robot.newest) continue;
         state.stamp = robot.newest->stamp;
         state.pose = robot.newest->pose;
     }
+    snapshot.scan_poses = ScanPoses(std::move(poses), corrected_);
     return snapshot;
 }
 
@@ -178,11 +199,14 @@ Projection Projection::branch() {
     other.robots_.reserve(robots_.size());
     for (const auto& robot : robots_) other.robots_.push_back(robot.branch());
     other.filter_ = filter_;
+    other.corrected_ = corrected_;
     return other;
 }
 
 /// Leaves out the fans, which are recomputed when needed.
-Projection::Robot Projection::Robot::branch() const { return {scan_count, excluded, newest, trajectory.branch(), {}}; }
+Projection::Robot Projection::Robot::branch() const {
+    return {scan_count, excluded, unplaced, newest, trajectory.branch(), poses.branch(), {}};
+}
 
 ProjectionState Projection::state() const {
     ProjectionState state{revision(), bounds(), chunk_count(), {}, filter_.exclusions()};

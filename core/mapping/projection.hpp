@@ -50,7 +50,8 @@ class Projection {
 public:
     /// @param config  the session's settings
     /// @param exclusions  exclusions of the whole log that will be applied; they leave out earlier scans
-    explicit Projection(const MapConfig& config, SharedExclusions exclusions = no_exclusions());
+    /// @param corrected  ScanPoses::corrected() of the poses that scans without poses will be given; 0: none are given
+    explicit Projection(const MapConfig& config, SharedExclusions exclusions = no_exclusions(), Revision corrected = 0);
 
     /// Returns the session's settings.
     [[nodiscard]] const MapConfig& config() const noexcept { return config_; }
@@ -94,7 +95,17 @@ public:
     /// @param entry  the entry that follows revision()
     [[nodiscard]] bool is_outdated_by(const LogEntry& entry) const noexcept;
 
-    /// Applies the next entry of the log to the maps.
+    /// Returns whether the maps depend on poses that robots did not send: any robot's poses are not Poses::kMap.
+    [[nodiscard]] bool has_estimated_poses() const noexcept {
+        return std::ranges::any_of(robots(), [](const auto& robot) { return robot.poses != Poses::kMap; });
+    }
+
+    /// Returns whether the entry can follow the earlier ones.
+    /// @param entry  the entry that follows revision()
+    /// Errors: kMalformed, as apply().
+    [[nodiscard]] Result<> check(const LogEntry& entry) const { return rules_.check(entry); }
+
+    /// Applies the next entry of the log to the maps. A scan without a pose is counted and otherwise left out.
     /// @param entry  the entry that follows revision()
     /// Errors: kMalformed if the entry cannot follow the earlier ones (an unknown robot or sensor, a seq out of order),
     ///         which occurs in damaged logs only; kConflict if is_outdated_by(entry). After an error, the projection is
@@ -109,6 +120,12 @@ public:
     /// Errors: kMalformed if the entry cannot follow the earlier ones; kConflict if is_outdated_by(entry). After an
     ///         error, the projection is unchanged.
     [[nodiscard]] Result<bool> apply(const LogEntry& entry, double& work);
+
+    /// Makes the maps equal to those of the same entries with other poses of scans, as a change by the newest entry:
+    /// only what differs is written, and gets its revision.
+    /// @param corrected  with the same settings, up to the same revision
+    /// Precondition: no entry is partially applied in either.
+    void replace_with(Projection corrected);
 
     /// Returns the maps up to revision(). Cheap; later writes copy the chunks that they change.
     [[nodiscard]] Snapshot snapshot();
@@ -153,8 +170,10 @@ private:
 
         std::uint64_t scan_count = 0; // integrated
         std::uint64_t excluded = 0;
+        std::uint64_t unplaced = 0;
         std::optional<TrajectoryPoint> newest; // of its integrated scans
         Trajectory trajectory;
+        EstimatedPoses poses; // of its scans; empty if it sends poses
         std::map<std::uint32_t, KnownFan> fans;
     };
 
@@ -167,6 +186,7 @@ private:
     bool integrate_entry(const MapPatch& patch, double& work);
     bool integrate_entry(const ScansExcluded& excluded, double& work);
     bool integrate_entry(const ExclusionLifted& lifted, double& work);
+    bool integrate_entry(const MapsCorrected& corrected, double& work);
     [[nodiscard]] const KnownFan& fan_of(Robot& robot, const Sensor& sensor, const Scan& scan);
 
     void bring_classes_up_to(const LaserView& laser);
@@ -179,6 +199,7 @@ private:
     Revision classes_at_ = 0;   // the classes match the laser chunks at this revision
     std::vector<Robot> robots_; // by RobotIndex, as many as in rules_
     ScanFilter filter_;
+    Revision corrected_ = 0;   // see ScanPoses::corrected()
     bool is_applying_ = false; // a scan is partially integrated
 };
 

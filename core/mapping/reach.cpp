@@ -139,8 +139,8 @@ Reach reach_of_laser(const MapConfig& config, const Sensor& sensor, const Scan& 
     const auto aperture_or = [&](double aperture) { return sensor.aperture > 0.0 ? sensor.aperture : aperture; };
     const bool by_sectors = config.ray_model == RayModel::kInverseSensorModel;
     Reach reach;
-    reach.cells =
-        square_around(compose(scan.pose, sensor.mount), longest + (by_sectors ? 0.0 : config.hit_radius), per_metre);
+    reach.cells = square_around(compose(scan.pose.value_or(Pose2()), sensor.mount),
+                                longest + (by_sectors ? 0.0 : config.hit_radius), per_metre);
     reach.work =
         work_of_sectors(counted, sector_width(aperture_or(config.himm_beam_aperture), sensor, scan), per_metre);
     reach.work += by_sectors
@@ -155,8 +155,9 @@ Reach reach_of_sonar(const MapConfig& config, const Sensor& sensor, const Scan& 
     const auto extent = extent_of(readings_of(scan, geometry.readings), geometry);
     if (extent.longest == 0.0) return {};
     const double aperture = sensor.aperture > 0.0 ? sensor.aperture : config.sonar_beam_aperture;
-    Reach reach{SensorKind::kSonar,
-                square_around(compose(scan.pose, sensor.mount), extent.longest, 1.0 / config.cell_size), 0.0};
+    Reach reach{
+        SensorKind::kSonar,
+        square_around(compose(scan.pose.value_or(Pose2()), sensor.mount), extent.longest, 1.0 / config.cell_size), 0.0};
     for (const RangeMm range : scan.ranges) reach.work += work_of_cone(aperture, range, geometry);
     return reach;
 }

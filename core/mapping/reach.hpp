@@ -54,7 +54,7 @@ struct Reach {
 /// Returns the reach of a scan.
 /// @param config  of the session
 /// @param sensor  that took the scan
-/// @param scan    with as many ranges as beams
+/// @param scan    with as many ranges as beams; without a pose, it counts as taken at the origin
 /// Cost: proportional to the number of beams; no beam is traced.
 [[nodiscard]] Reach reach_of(const MapConfig& config, const Sensor& sensor, const Scan& scan);
 

@@ -1,11 +1,13 @@
 #pragma once
 
+#include "common/scan/poses.hpp"
 #include "common/scan/scan_filter.hpp"
 #include "core/classify/cell_class.hpp"
 #include "core/grid/cell.hpp"
 #include "core/mapping/laser_layers.hpp"
 #include "core/mapping/layer.hpp"
 #include "core/mapping/map_config.hpp"
+#include "core/mapping/scan_poses.hpp"
 #include "core/mapping/sonar_layer.hpp"
 #include "core/mapping/trajectory.hpp"
 
@@ -25,17 +27,29 @@ namespace scanloom::mapping {
 struct IntegratedScan {
     Revision revision = 0;                ///< of the scan's log entry
     std::shared_ptr<const Sensor> sensor; ///< not null
-    Scan scan;                            ///< as in the log
+    Scan scan;                            ///< as in the log, with the pose at which it was integrated
+};
+
+/// How well the poses of a robot are known.
+struct Localization {
+    LocalizationState state = LocalizationState::kGiven; ///< in one word
+    double inlier_ratio = 0.0;                           ///< of the newest scan's points, those that fit the map
+    double position_sigma = 0.0; ///< metres, of the newest pose, in the most uncertain direction
+    double yaw_sigma = 0.0;      ///< radians, of the newest pose
+    std::size_t loops = 0;       ///< edges between places that the robot visited again
+    std::size_t corrections = 0; ///< of the poses of earlier scans in the maps
 };
 
 /// The state of one robot. Its index in Snapshot::robots is its RobotIndex.
 struct RobotState {
     std::string name;                  ///< unique within the session
     std::optional<double> body_radius; ///< metres, as stated when the robot last joined
+    Poses poses = Poses::kMap;         ///< what the robot knows of its poses
     std::uint64_t last_seq = 0;        ///< of its newest scan in the log; 0 if it has none
     std::uint64_t scan_count = 0;      ///< integrated
     std::uint64_t jumps = 0;           ///< scans that max_jump left out
     std::uint64_t excluded = 0;        ///< scans that exclusions left out
+    std::uint64_t unplaced = 0;        ///< scans left out because their poses are not known
     double stamp = 0.0;                ///< seconds, of the newest integrated scan
     std::optional<Pose2> pose;         ///< T_map_robot of the newest integrated scan
     TrajectoryView trajectory;         ///< of its integrated scans
@@ -43,6 +57,7 @@ struct RobotState {
     /// For display only, not part of the maps. Set only in a session that accepts scans, to a scan received since the
     /// session was loaded.
     std::shared_ptr<const IntegratedScan> newest_scan;
+    Localization localization; ///< likewise, while the session is loaded
 };
 
 /// Boxes around the cells of each layer that any scan changed.
@@ -69,6 +84,8 @@ struct Snapshot {
     SonarView sonar;                               ///< log-odds from sonars
     classify::ClassView classes;                   ///< classification
     std::vector<RobotState> robots;                ///< by RobotIndex
+    ScanPoses scan_poses;                          ///< of the scans that were sent without poses
+    std::uint64_t moving_scans = 0;                ///< scans whose corrected poses these maps do not show
 };
 
 /// Returns the box of cells that a layer shows.

@@ -54,6 +54,12 @@ bool SonarLayer::integrate(const SonarScan& scan, Revision revision, double& wor
     return true;
 }
 
+void SonarLayer::replace_with(SonarLayer other, Revision revision) {
+    grid_.begin(revision);
+    grid_.replace_with(other.grid_, [](const SonarChunk& a, const SonarChunk& b) { return a.cells == b.cells; });
+    bounds_ = other.bounds_;
+}
+
 void SonarLayer::add(const SonarScan& scan, std::size_t cone) {
     const ModelGeometry geometry{scan.readings, config_.sonar_obstacle_thickness, config_.cell_size};
     const double axis = scan.T_map_sensor.yaw + scan.fan.cones[cone].angle;

@@ -74,6 +74,12 @@ public:
     ///         change
     [[nodiscard]] bool integrate(const SonarScan& scan, Revision revision, double& work);
 
+    /// Makes the layer equal to another one, as a change by the newest entry: writes the chunks whose cells differ.
+    /// @param other     with the same settings
+    /// @param revision  of the newest entry
+    /// Precondition: no scan is partially integrated.
+    void replace_with(SonarLayer other, Revision revision);
+
     /// Returns the box around the cells that any scan changed.
     [[nodiscard]] const grid::CellBox& bounds() const noexcept { return bounds_; }
 

@@ -68,6 +68,20 @@ struct NormalEquations {
                     (minor_xyaw * right.x + minor_yyaw * right.y + minor_yawyaw * right.yaw) / determinant};
     }
 
+    /// Sets the standard deviations of the solution, from the inverse of the matrix. Precondition: it is not singular.
+    void set_sigmas(LineMatch& match) const {
+        const double minor_xx = yy * yawyaw - yyaw * yyaw;
+        const double minor_xy = xyaw * yyaw - xy * yawyaw;
+        const double minor_yy = xx * yawyaw - xyaw * xyaw;
+        const double minor_yawyaw = xx * yy - xy * xy;
+        const double determinant = xx * minor_xx + xy * minor_xy + xyaw * (xy * yyaw - xyaw * yy);
+        const double half_trace = 0.5 * (minor_xx + minor_yy);
+        const double root =
+            std::sqrt(std::max(0.0, half_trace * half_trace - (minor_xx * minor_yy - minor_xy * minor_xy)));
+        match.position_sigma = std::sqrt((half_trace + root) / determinant);
+        match.yaw_sigma = std::sqrt(minor_yawyaw / determinant);
+    }
+
     /// Returns the smallest by the largest eigenvalue of the position's part.
     [[nodiscard]] double conditioning() const {
         const double half_trace = 0.5 * (xx + yy);
@@ -118,6 +132,7 @@ LineMatch match_to_lines(std::span<const SurfacePoint> points, const PointMap& m
     LineMatch match{.T_map_robot = start};
     Transform2& pose = match.T_map_robot;
     double progress = 0.0; // 0: first gate and scale; from 1: the last
+    std::optional<NormalEquations> last;
     for (int step = 0; step < schedule.steps_max; ++step) {
         const double part = std::min(1.0, progress);
         const auto gate = static_cast<float>(schedule.first_gate + part * (schedule.last_gate - schedule.first_gate));
@@ -141,6 +156,7 @@ LineMatch match_to_lines(std::span<const SurfacePoint> points, const PointMap& m
             pose = start;
             break;
         }
+        last = sums;
         pose = {pose.x + change->x, pose.y + change->y, pose.rotation * sin_cos(change->yaw)};
         const double squared = (pose.x - start.x) * (pose.x - start.x) + (pose.y - start.y) * (pose.y - start.y);
         if (!(squared <= kFarthest * kFarthest)) {
@@ -153,6 +169,12 @@ LineMatch match_to_lines(std::span<const SurfacePoint> points, const PointMap& m
         progress += 1.0 / (kShrinkPart * schedule.steps_max);
         if (part < 1.0 && step2 < kShortStep * kShortStep && turn < kShortTurn) progress = 1.0;
         if (part >= 1.0 && step2 < kConvergedStep * kConvergedStep && turn < kConvergedTurn) break;
+    }
+    if (match.is_refined && last) {
+        last->set_sigmas(match);
+    } else {
+        match.position_sigma = prior.position_sigma;
+        match.yaw_sigma = prior.yaw_sigma;
     }
     match.inlier_ratio = inlier_ratio(points, map, pose);
     return match;

@@ -26,11 +26,13 @@ struct MatchSchedule {
 
 /// The result of match_to_lines().
 struct LineMatch {
-    Transform2 T_map_robot;    ///< the refined pose
-    bool is_refined = true;    ///< false: the refinement failed, and T_map_robot is the start
-    double inlier_ratio = 0.0; ///< of the scan's points, those within kInlierDistance of a point of the map
-    double conditioning = 0.0; ///< smallest by largest information about the position, over all directions; 0: the
-                               ///< scan does not determine the position along some line
+    Transform2 T_map_robot;      ///< the refined pose
+    bool is_refined = true;      ///< false: the refinement failed, and T_map_robot is the start
+    double inlier_ratio = 0.0;   ///< of the scan's points, those within kInlierDistance of a point of the map
+    double position_sigma = 0.0; ///< metres, standard deviation in the most uncertain direction, with the prior
+    double yaw_sigma = 0.0;      ///< radians, likewise
+    double conditioning = 0.0;   ///< smallest by largest information about the position, over all directions; 0: the
+                                 ///< scan does not determine the position along some line
 };
 
 inline constexpr float kInlierDistance = 0.15F; ///< metres

@@ -95,14 +95,18 @@ public:
         const LineMatch first = match(expected_, loose_, kWideGate);
         const bool is_plain = !is_doubtful(first);
         if (is_plain && care == Care::kOneIfPlain) {
-            return {{.T_keyframe_robot = first.T_map_robot, .inlier_ratio = first.inlier_ratio, .is_match = true}};
+            return {{.T_keyframe_robot = first.T_map_robot,
+                     .inlier_ratio = first.inlier_ratio,
+                     .is_match = true,
+                     .position_sigma = first.position_sigma,
+                     .yaw_sigma = first.yaw_sigma}};
         }
         keep(first);
         if (is_plain) return std::move(found_);
         try_other_priors();
         if (best_inliers() < inliers_wanted()) try_other_starts();
         if (has_odometry_ || prediction_.unmatched < kUnmatchedMax || best_inliers() < kUsable) {
-            found_.push_back({expected_, kUnmatchedValue, 0.0, false});
+            found_.push_back({expected_, kUnmatchedValue, 0.0, false, loose_.position_sigma, loose_.yaw_sigma});
         }
         return std::move(found_);
     }
@@ -148,7 +152,8 @@ private:
         const auto is_better = [&](const Candidate& other) { return is_same(other) && other.value >= score; };
         if (std::ranges::any_of(found_, is_better)) return;
         std::erase_if(found_, is_same);
-        found_.push_back({found.T_map_robot, score, found.inlier_ratio, found.inlier_ratio >= kUsable});
+        found_.push_back({found.T_map_robot, score, found.inlier_ratio, found.inlier_ratio >= kUsable,
+                          found.position_sigma, found.yaw_sigma});
     }
 
     void try_from(const Transform2& start, const PosePrior& prior, double gate) { keep(match(start, prior, gate)); }

@@ -26,6 +26,8 @@ struct Candidate {
     double value = 0.0;          ///< agreement with the map minus a penalty for the distance from the prediction
     double inlier_ratio = 0.0;   ///< of the scan's points at this pose; 0 if the scan was not matched
     bool is_match = false;       ///< whether the pose comes from the scan; otherwise it is the prediction
+    double position_sigma = 0.0; ///< metres, standard deviation in the most uncertain direction
+    double yaw_sigma = 0.0;      ///< radians, standard deviation
 };
 
 /// How carefully candidates_of() looks.

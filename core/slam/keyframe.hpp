@@ -15,6 +15,7 @@ using scan_matching::Transform2;
 /// A selected scan. Maps consist of keyframes, and every other scan's pose is stored relative to one.
 struct Keyframe {
     std::shared_ptr<const ScanPoints> scan; ///< its points
+    bool is_matched = true; ///< whether scans connect it with the keyframe before; otherwise a prediction does
     double travelled = 0.0; ///< metres from the first keyframe to here; a turn of one radian counts as 0.2 m
 };
 

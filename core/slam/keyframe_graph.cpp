@@ -25,17 +25,18 @@ constexpr std::array<std::size_t, 1> kFixed{0};
 
 void KeyframeGraph::add(std::shared_ptr<const ScanPoints> scan, const Transform2& T_newest_keyframe, bool is_matched) {
     if (keyframes_.empty()) {
-        keyframes_.push_back({std::move(scan), 0.0});
+        keyframes_.push_back({std::move(scan)});
         poses_.push_back(T_newest_keyframe);
         return;
     }
     const Transform2& T = T_newest_keyframe;
-    const double travelled = distance_of(T) + kMetresPerRadian * std::fabs(scan_matching::yaw_of(T));
+    double travelled = distance_of(T) + kMetresPerRadian * std::fabs(scan_matching::yaw_of(T));
+    if (!is_matched) travelled += kMapDistanceMax; // maps of one frame then do not contain both keyframes
     const auto information = is_matched ? information_of(kMatchedSigma, kMatchedTurnSigma)
                                         : information_of(kPredictedSigma, kPredictedTurnSigma);
     edges_.push_back({size() - 1, size(), T, information});
     poses_.push_back(poses_.back() * T);
-    keyframes_.push_back({std::move(scan), keyframes_.back().travelled + travelled});
+    keyframes_.push_back({std::move(scan), is_matched, keyframes_.back().travelled + travelled});
 }
 
 void KeyframeGraph::add_loop(const Edge& edge) { edges_.push_back(edge); }
@@ -58,7 +59,7 @@ std::vector<double> KeyframeGraph::distances_from(std::size_t keyframe) const {
     };
     std::vector<std::vector<Link>> links(size());
     for (const Edge& edge : edges_) {
-        if (edge.is_robust && edge.weight < 0.5) continue;
+        if (edge.is_robust && edge.weight < kUsedWeight) continue;
         const double length =
             edge.is_robust ? kLoopLength : keyframes_[edge.to].travelled - keyframes_[edge.from].travelled;
         links[edge.from].push_back({edge.to, length});

@@ -49,6 +49,8 @@ public:
     [[nodiscard]] const Keyframe& operator[](std::size_t keyframe) const { return keyframes_[keyframe]; }
     /// Returns T_map_keyframe.
     [[nodiscard]] const Transform2& pose(std::size_t keyframe) const { return poses_[keyframe]; }
+    /// Returns T_map_keyframe of all keyframes.
+    [[nodiscard]] std::span<const Transform2> poses() const noexcept { return poses_; }
     /// Returns all edges, in the order in which they were added.
     [[nodiscard]] std::span<const Edge> edges() const noexcept { return edges_; }
 

@@ -26,6 +26,8 @@ struct Information {
 /// @param yaw_sigma       standard deviation of the yaw, radians, positive
 [[nodiscard]] Information information_of(double position_sigma, double yaw_sigma) noexcept;
 
+inline constexpr double kUsedWeight = 0.5; ///< a robust edge of less weight counts as switched off
+
 /// A measured relative pose of two nodes.
 struct Edge {
     std::size_t from = 0;    ///< node
@@ -33,7 +35,7 @@ struct Edge {
     Transform2 T_from_to;    ///< as measured
     Information information; ///< of the measurement, in the frame of `from`
     bool is_robust = false;  ///< whether it may be wrong, as a loop closure may; then its weight depends on its error
-    double weight = 1.0;     ///< (0, 1], at the result of the last optimisation; below 0.5, it counts as switched off
+    double weight = 1.0;     ///< (0, 1], at the result of the last optimisation; see kUsedWeight
 };
 
 /// When optimize() stops, and how it treats robust edges.

@@ -42,7 +42,8 @@ void Tracker::follow(const ScanPoints& scan, const std::optional<Transform2>& mo
             followed.last = candidate.T_keyframe_robot;
             followed.value += candidate.value;
             followed.unmatched = candidate.is_match ? 0 : hypothesis.unmatched + 1;
-            followed.scans.push_back({candidate.T_keyframe_robot, candidate.inlier_ratio, candidate.is_match});
+            followed.scans.push_back({candidate.T_keyframe_robot, candidate.inlier_ratio, candidate.is_match,
+                                      candidate.position_sigma, candidate.yaw_sigma});
             if (!candidate.is_match && !motion) { // it may have stopped
                 const auto& velocity = followed.velocity;
                 followed.velocity = {0.5 * velocity.x, 0.5 * velocity.y,

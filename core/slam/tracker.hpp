@@ -14,6 +14,8 @@ struct TrackedScan {
     Transform2 T_keyframe_robot; ///< as matched, or as predicted
     double inlier_ratio = 0.0;   ///< of the scan's points; 0 if it was not matched
     bool is_matched = false;     ///< whether the scan fitted the map; otherwise the pose is a prediction
+    double position_sigma = 0.0; ///< metres, standard deviation in the most uncertain direction
+    double yaw_sigma = 0.0;      ///< radians, standard deviation
 };
 
 /// Follows a robot by matching each scan to the map of the newest keyframes. If several poses fit a scan, it follows up
@@ -33,8 +35,8 @@ public:
     /// Adds the next scan.
     /// @param scan    its points
     /// @param motion  T_last_robot by the odometry since the last scan; nullopt: there is none
-    /// @tparam IsDue  bool(const Transform2& T_keyframe_robot)
-    /// @param is_due  whether a keyframe is due at a pose relative to the newest keyframe: then the best hypothesis counts
+    /// @tparam IsDue  bool(const TrackedScan&)
+    /// @param is_due  whether a keyframe is due at a scan that fits the map: then the best hypothesis counts
     /// @return the poses of the scans that are decided now, oldest first: none, or this one and all that were open
     template <class IsDue>
     [[nodiscard]] std::vector<TrackedScan> add(const ScanPoints& scan, const std::optional<Transform2>& motion,
@@ -42,15 +44,15 @@ public:
         follow(scan, motion);
         const Hypothesis& best = hypotheses_.front();
         const bool is_decided = hypotheses_.size() == 1 || best.scans.size() >= kOpenMax ||
-                                (best.unmatched == 0 && is_due(best.scans.back().T_keyframe_robot));
+                                (best.unmatched == 0 && is_due(best.scans.back()));
         return is_decided ? decide() : std::vector<TrackedScan>();
     }
 
     /// Decides for the best hypothesis. Returns the poses of the scans that were open, oldest first.
     std::vector<TrackedScan> decide();
 
-    /// Returns the best estimate of the robot's pose, relative to the newest keyframe.
-    [[nodiscard]] const Transform2& pose() const noexcept { return hypotheses_.front().last; }
+    /// Returns the best estimate for the newest scan. Precondition: it is not decided.
+    [[nodiscard]] const TrackedScan& newest() const noexcept { return hypotheses_.front().scans.back(); }
 
     /// Returns the number of scans since the last one that matched.
     [[nodiscard]] std::size_t unmatched() const noexcept { return hypotheses_.front().unmatched; }

@@ -34,7 +34,7 @@ inline Scene scene_of(const mapping::MapConfig& config, const Sensor& sensor, co
                 .alpha = alpha,
                 .aperture = sensor.aperture > 0.0 ? sensor.aperture : beta,
                 .cell_size = config.cell_size,
-                .T_map_sensor = compose(scan.pose, sensor.mount)};
+                .T_map_sensor = compose(*scan.pose, sensor.mount)};
     for (std::size_t b = 0; b < scan.ranges.size(); ++b) {
         scene.beam_angles.push_back(beam_angle(angles, b));
         const double z = metres_of(scan.ranges[b]);
@@ -134,7 +134,7 @@ private:
         RayScene scene{.model = config_.ray_model,
                        .hit_radius = config_.hit_radius,
                        .cell_size = config_.cell_size,
-                       .T_map_sensor = compose(scan.pose, sensor.mount)};
+                       .T_map_sensor = compose(*scan.pose, sensor.mount)};
         const BeamAngles angles = angles_of(scan, sensor);
         for (std::size_t b = 0; b < scan.ranges.size(); ++b) {
             const double z = metres_of(scan.ranges[b]);

@@ -32,6 +32,7 @@ public:
         Pose2 pose;
         std::map<std::uint64_t, std::pair<std::int64_t, std::int64_t>> trail; // millimetres, by the point's number
         v1::ScanPoints scan;
+        v1::RobotLocalization localization;
     };
     using Tiles = std::map<std::uint32_t, Revision>; // by 512 y + x
 
@@ -45,6 +46,9 @@ public:
 
     void take(const v1::LiveEvent& event) {
         EXPECT_GE(event.revision(), last.revision());
+        if (event.poses_corrected() != last.poses_corrected()) {
+            for (auto& [index, robot] : robots) robot.trail.clear();
+        }
         for (const auto& changes : event.tiles()) take(changes, event.revision());
         for (const auto& robot : event.robots()) take(robot);
         if (event.has_landmarks()) take(event.landmarks());
@@ -126,6 +130,7 @@ private:
             robot.trail[update.trail_from() + static_cast<std::uint64_t>(n / 2)] = {x, y};
         }
         if (update.has_scan()) robot.scan = update.scan();
+        robot.localization = update.localization();
     }
 
     static void expect_equal(const Robot& robot, const mapping::RobotState& state) {
@@ -147,6 +152,9 @@ private:
         }
         if (state.newest_scan) {
             EXPECT_EQ(robot.scan.stamp(), state.newest_scan->scan.stamp);
+            const Pose2 origin = compose(*state.newest_scan->scan.pose, state.newest_scan->sensor->mount);
+            EXPECT_EQ(robot.scan.origin().x(), origin.x);
+            EXPECT_EQ(robot.scan.origin().y(), origin.y);
         }
     }
 };

@@ -65,7 +65,7 @@ public:
                       .range_min = sensor.range_min,
                       .range_max = sensor.range_max};
             if (config_.drop_no_return && cone.reading >= cone.range_max) continue;
-            add(cone, compose(scan.pose, sensor.mount));
+            add(cone, compose(*scan.pose, sensor.mount));
         }
     }
 

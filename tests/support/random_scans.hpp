@@ -27,9 +27,10 @@ inline Scan random_scan(unsigned seed, std::uint64_t seq) {
     scan.seq = seq;
     scan.stamp = static_cast<double>(seq) * 0.1;
     scan.sensor = small_laser().id;
-    scan.pose.x = metres(random);
-    scan.pose.y = metres(random);
-    scan.pose.yaw = normalize_angle(metres(random));
+    scan.pose = Pose2{};
+    scan.pose->x = metres(random);
+    scan.pose->y = metres(random);
+    scan.pose->yaw = normalize_angle(metres(random));
     for (int beam = 0; beam < 18; ++beam) scan.ranges.push_back(static_cast<RangeMm>(random() % 4500));
     return scan;
 }

@@ -60,8 +60,8 @@ inline std::vector<Scan> room_scans(std::size_t count) {
         scans[n].sensor = laser.id;
         scans[n].pose = {2.2 * std::cos(turn), 2.2 * std::sin(turn), normalize_angle(turn + std::numbers::pi / 2)};
         for (std::size_t beam = 0; beam < beam_count(laser.angles); ++beam) {
-            const double direction = scans[n].pose.yaw + beam_angle(laser.angles, beam);
-            const double range = room_range({scans[n].pose.x, scans[n].pose.y}, direction);
+            const double direction = scans[n].pose->yaw + beam_angle(laser.angles, beam);
+            const double range = room_range({scans[n].pose->x, scans[n].pose->y}, direction);
             scans[n].ranges.push_back(range < laser.range_max ? to_range_mm(range) : kNoReturn);
         }
     }

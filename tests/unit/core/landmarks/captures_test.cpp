@@ -157,7 +157,7 @@ Sensor sensor(std::uint32_t id, SensorKind kind, double mount_x) {
 }
 
 ScanTaken scan(RobotIndex robot, double x, std::uint32_t of = 1) {
-    return {robot, Scan{.seq = 1, .stamp = 1.0, .sensor = of, .pose = {x, 0.0, 0.0}, .ranges = {1000}}};
+    return {robot, Scan{.seq = 1, .stamp = 1.0, .sensor = of, .pose = Pose2{x, 0.0, 0.0}, .ranges = {1000}}};
 }
 
 class SessionCapturesTest : public testing::Test {
@@ -206,12 +206,13 @@ TEST_F(SessionCapturesTest, IgnoresSonarsAndUnknownSensors) {
 }
 
 TEST_F(SessionCapturesTest, NeedsReturnsFalseForSkippableScans) {
-    EXPECT_TRUE(captures_.needs({5, 1, 0.0, {}})) << "the robot has no scans yet";
+    EXPECT_TRUE(captures_.needs({5, 1, 0.0, Pose2{}})) << "the robot has no scans yet";
     static_cast<void>(captures_.add(scan(0, 0.0)));
     static_cast<void>(captures_.add(scan(0, 0.1)));
-    EXPECT_FALSE(captures_.needs({0, 3, 1.0, {0.2, 0.0, 0.0}}));
-    EXPECT_TRUE(captures_.needs({0, 3, 1.0, {0.6, 0.0, 0.0}}));
-    captures_.pass_over({0, 3, 1.0, {}});
+    EXPECT_FALSE(captures_.needs({0, 3, 1.0, Pose2{0.2, 0.0, 0.0}}));
+    EXPECT_TRUE(captures_.needs({0, 3, 1.0, Pose2{0.6, 0.0, 0.0}}));
+    EXPECT_FALSE(captures_.needs({0, 3, 1.0, std::nullopt})) << "its pose is not known";
+    captures_.pass_over({0, 3, 1.0, Pose2{}});
     EXPECT_EQ(captures_.revision(), 7U);
 }
 

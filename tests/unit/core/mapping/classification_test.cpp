@@ -180,7 +180,7 @@ public:
 
 private:
     void read(RangeMm range) {
-        Scan scan{.seq = ++seq_, .pose = {0.05, 0.05, 0.0}, .ranges = {range}};
+        Scan scan{.seq = ++seq_, .pose = Pose2{0.05, 0.05, 0.0}, .ranges = {range}};
         EXPECT_TRUE(projection_.apply(ScanTaken{0, scan}));
     }
 

@@ -42,7 +42,7 @@ std::string digests_of_random_scans(unsigned shape, const SessionOptions& option
     EXPECT_TRUE(projection.apply(RobotJoined{0, "r"}));
     EXPECT_TRUE(projection.apply(SensorDescribed{0, sensor}));
     for (std::uint64_t seq = 1; seq <= 6; ++seq) {
-        Scan scan{.seq = seq, .pose = {uniform(-3.0, 3.0), uniform(-3.0, 3.0), uniform(-3.0, 3.0)}};
+        Scan scan{.seq = seq, .pose = Pose2{uniform(-3.0, 3.0), uniform(-3.0, 3.0), uniform(-3.0, 3.0)}};
         const double wall = uniform(0.1, 0.9) * sensor.range_max;
         for (std::size_t beam = 0; beam < beam_count(sensor.angles); ++beam) {
             const auto kind = random() % 16;

@@ -48,8 +48,8 @@ public:
         for (std::size_t n = 0; n < scans; ++n) {
             Scan scan{.seq = n + 1, .pose = pose};
             if (!on_the_grid && below(2) == 0) {
-                scan.pose.x += uniform(-2.0, 2.0) * cell_size;
-                scan.pose.yaw += uniform(-0.3, 0.3);
+                scan.pose->x += uniform(-2.0, 2.0) * cell_size;
+                scan.pose->yaw += uniform(-0.3, 0.3);
             }
             scan.ranges = n > 0 && below(2) == 0 ? run.scans.back().ranges : ranges_of(run.sensor);
             run.scans.push_back(std::move(scan));
@@ -145,7 +145,8 @@ Snapshot after_one_beam(SessionOptions options, const std::vector<RangeMm>& read
     EXPECT_TRUE(projection.apply(SensorDescribed{0, beam}));
     std::uint64_t seq = 0;
     for (const RangeMm reading : readings) {
-        EXPECT_TRUE(projection.apply(ScanTaken{0, {.seq = ++seq, .pose = {0.05, 0.05, 0.0}, .ranges = {reading}}}));
+        EXPECT_TRUE(
+            projection.apply(ScanTaken{0, {.seq = ++seq, .pose = Pose2{0.05, 0.05, 0.0}, .ranges = {reading}}}));
     }
     return projection.snapshot();
 }

@@ -99,7 +99,7 @@ TEST(Projection, UpdatesEachCellByTheUpdateRule) {
     const double l0 = log_odds_of(0.4);
     const double free_cell_steps[] = {l0 + (log_odds_of(0.1) - l0), l0 + 2 * (log_odds_of(0.1) - l0)};
     for (std::uint64_t seq = 1; seq <= 10; ++seq) {
-        Scan scan{.seq = seq, .pose = {0.05, 0.05, 0.0}, .ranges = {1000}};
+        Scan scan{.seq = seq, .pose = Pose2{0.05, 0.05, 0.0}, .ranges = {1000}};
         ASSERT_TRUE(projection.apply(ScanTaken{0, scan}));
         const auto snapshot = projection.snapshot();
         const Occupancy occupancy(snapshot);
@@ -121,8 +121,8 @@ TEST(Projection, CellBackAtEvenOddsStaysKnown) {
     beam.range_max = 5.0;
     ASSERT_TRUE(projection.apply(RobotJoined{0, "r"}));
     ASSERT_TRUE(projection.apply(SensorDescribed{0, beam}));
-    ASSERT_TRUE(projection.apply(ScanTaken{0, {.seq = 1, .pose = {0.05, 0.05, 0.0}, .ranges = {1000}}}));
-    ASSERT_TRUE(projection.apply(ScanTaken{0, {.seq = 2, .pose = {0.05, 0.05, 0.0}, .ranges = {2000}}}));
+    ASSERT_TRUE(projection.apply(ScanTaken{0, {.seq = 1, .pose = Pose2{0.05, 0.05, 0.0}, .ranges = {1000}}}));
+    ASSERT_TRUE(projection.apply(ScanTaken{0, {.seq = 2, .pose = Pose2{0.05, 0.05, 0.0}, .ranges = {2000}}}));
     EXPECT_EQ(Occupancy(projection.snapshot()).at({10, 0}), 0);
 }
 
@@ -134,7 +134,7 @@ TEST(Projection, EvidenceBetweenTheClampLimitsKeepsItsSign) {
     beam.range_max = 5.0;
     ASSERT_TRUE(projection.apply(RobotJoined{0, "r"}));
     ASSERT_TRUE(projection.apply(SensorDescribed{0, beam}));
-    ASSERT_TRUE(projection.apply(ScanTaken{0, {.seq = 1, .pose = {0.05, 0.05, 0.0}, .ranges = {1000}}}));
+    ASSERT_TRUE(projection.apply(ScanTaken{0, {.seq = 1, .pose = Pose2{0.05, 0.05, 0.0}, .ranges = {1000}}}));
     EXPECT_LT(probability_of(Occupancy(projection.snapshot()).at({5, 0})), 0.01);
 }
 
@@ -218,7 +218,7 @@ TEST(Projection, RejoiningMayChangeTheBodyButNotTheSource) {
     EXPECT_EQ(radius(), 0.2);
     ASSERT_TRUE(projection.apply(RobotJoined{0, "r", "b", 0.2}));
     ASSERT_TRUE(projection.apply(SensorDescribed{0, laser()}));
-    ASSERT_TRUE(projection.apply(ScanTaken{0, {.seq = 1, .sensor = 2, .ranges = {1}}}));
+    ASSERT_TRUE(projection.apply(ScanTaken{0, {.seq = 1, .sensor = 2, .pose = Pose2{}, .ranges = {1}}}));
     const auto cells = testing_support::digests_of(projection.snapshot());
     ASSERT_TRUE(projection.apply(RobotJoined{0, "r", "b", 0.4}));
     EXPECT_EQ(radius(), 0.4);
@@ -245,7 +245,7 @@ TEST(Projection, AcceptsScansOfDifferentBeamCounts) {
     ASSERT_TRUE(projection.apply(SensorDescribed{0, laser()}));
     std::uint64_t seq = 0;
     for (const std::size_t beams : {90U, 1U, 45U, 90U, 7U}) {
-        Scan scan{.seq = ++seq, .sensor = 2, .ranges = std::vector<RangeMm>(beams, 2000)};
+        Scan scan{.seq = ++seq, .sensor = 2, .pose = Pose2{}, .ranges = std::vector<RangeMm>(beams, 2000)};
         EXPECT_TRUE(projection.apply(ScanTaken{0, scan}));
         scan.seq = ++seq;
         ExplicitAngles angles(beams);
@@ -267,10 +267,10 @@ TEST(Projection, UsesTheNewestDescriptionOfASensor) {
         for (const Sensor& described : descriptions) {
             EXPECT_TRUE(projection.apply(SensorDescribed{0, described}));
             // The scan has no valid reading, so it changes no cell, but the projection caches the beams' directions.
-            Scan scan{.seq = ++seq, .sensor = 2, .ranges = std::vector<RangeMm>(beams, kInvalidRange)};
+            Scan scan{.seq = ++seq, .sensor = 2, .pose = Pose2{}, .ranges = std::vector<RangeMm>(beams, kInvalidRange)};
             EXPECT_TRUE(projection.apply(ScanTaken{0, scan}));
         }
-        Scan scan{.seq = ++seq, .sensor = 2, .ranges = std::vector<RangeMm>(beams, kInvalidRange)};
+        Scan scan{.seq = ++seq, .sensor = 2, .pose = Pose2{}, .ranges = std::vector<RangeMm>(beams, kInvalidRange)};
         std::fill_n(scan.ranges.begin(), beams / 4, 2000);
         EXPECT_TRUE(projection.apply(ScanTaken{0, scan}));
         return testing_support::digests_of(projection.snapshot());

@@ -44,7 +44,7 @@ public:
     }
 
     void fire(const std::vector<RangeMm>& ranges) {
-        const Scan scan{.seq = ++seq_, .sensor = 1, .pose = {0.05, 0.05, 0.0}, .ranges = ranges};
+        const Scan scan{.seq = ++seq_, .sensor = 1, .pose = Pose2{0.05, 0.05, 0.0}, .ranges = ranges};
         EXPECT_TRUE(projection_.apply(ScanTaken{0, scan}));
     }
 
@@ -190,7 +190,7 @@ TEST_P(SonarLayerWith, MatchesTheProductRuleForEveryRing) {
             const Pose2 start{rng.uniform(-4.0, 4.0), rng.uniform(-4.0, 4.0), rng.uniform(-kPi, kPi)};
             for (std::uint64_t seq = 1; seq <= 1 + rng.below(5); ++seq) {
                 Scan scan{.seq = seq, .sensor = 1, .pose = start, .ranges = random_echoes(rng, ring)};
-                scan.pose.x += cell_size * rng.uniform(0.0, 3.0);
+                scan.pose->x += cell_size * rng.uniform(0.0, 3.0);
                 ASSERT_TRUE(projection.apply(ScanTaken{0, scan}));
                 oracle.add(ring, scan);
             }

@@ -9,7 +9,7 @@
 namespace scanloom::mapping {
 namespace {
 
-constexpr std::size_t kMostKept = kTrajectoryKept + 2 * kTrajectoryBlock; // points
+constexpr std::size_t kMostKept = kTrajectoryKept + 2 * kListBlock; // points
 
 TrajectoryPoint point(std::size_t n) {
     return {2 * n + 1, static_cast<double>(n) / 10, {static_cast<double>(n), 0.5, 0.25}};
@@ -33,7 +33,7 @@ TEST(Trajectory, KeepsOnlyTheNewestPoints) {
         ASSERT_EQ(view.size(), n + 1);
         ASSERT_GE(view.size() - view.begin(), std::min(n + 1, kTrajectoryKept));
         ASSERT_LE(view.size() - view.begin(), kMostKept);
-        ASSERT_LE(trajectory.block_count() * kTrajectoryBlock, kMostKept);
+        ASSERT_LE(trajectory.block_count() * kListBlock, kMostKept);
         if (n % 1000 == 0) views.push_back(view);
     }
     for (std::size_t n = 0; n < views.size(); ++n) expect_newest(views[n], 1000 * n + 1); // unchanged views
@@ -64,7 +64,7 @@ TEST(Trajectory, ContinuesAfterPointsThatItNeverStored) {
 }
 
 TEST(Trajectory, BranchesGrowIndependently) {
-    for (const std::size_t before : {std::size_t{0}, std::size_t{100}, kTrajectoryBlock, kTrajectoryKept + 700}) {
+    for (const std::size_t before : {std::size_t{0}, std::size_t{100}, kListBlock, kTrajectoryKept + 700}) {
         Trajectory first(before / 2);
         append(first, before / 2, before);
         Trajectory second = first.branch();

@@ -109,4 +109,8 @@ inline testing_support::Building ring_building() {
     return building;
 }
 
+/// A lap of ring_building() and a quarter of the next one.
+inline const std::vector<Point2> kLapAndAQuarter{{10.0, 1.0}, {33.0, 1.0}, {33.0, 21.0},
+                                                 {1.0, 21.0}, {1.0, 1.0},  {30.0, 1.0}};
+
 } // namespace scanloom::slam

@@ -44,12 +44,18 @@ TEST(TrajectoryEstimator, LaterLoopClosuresMoveFinalPosesOnly) {
     }
     estimator.finish();
     double largest = 0.0;
+    double largest_step_error = 0.0; // between scans taken in succession
     for (std::size_t n = 0; n < poses.size(); ++n) {
         ASSERT_EQ(estimator.first_pose_of(n), poses[n]);
         const Pose2 moved = compose(inverse(poses[n]), estimator.pose_of(n));
         largest = std::max(largest, std::hypot(moved.x, moved.y));
+        if (n == 0) continue;
+        const Pose2 step = compose(inverse(estimator.pose_of(n - 1)), estimator.pose_of(n));
+        const Pose2 error = compose(inverse(compose(inverse(drive.truth[n - 1]), drive.truth[n])), step);
+        largest_step_error = std::max(largest_step_error, std::hypot(error.x, error.y));
     }
     EXPECT_GT(largest, 0.05);
+    EXPECT_LT(largest_step_error, 0.03) << "scans move with their keyframes";
     EXPECT_EQ(poses.front(), (Pose2{0.0, 0.0, 0.0})) << "the map begins at the first scan";
 }
 

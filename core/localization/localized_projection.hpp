@@ -1,0 +1,64 @@
+#pragma once
+
+#include "common/error/error.hpp"
+#include "common/scan/log_entry.hpp"
+#include "core/localization/session_poses.hpp"
+#include "core/mapping/projection.hpp"
+
+#include <cstddef>
+#include <utility>
+
+namespace scanloom::localization {
+
+/// The maps of a session, with the poses of the scans that robots send without.
+///
+/// When SessionPoses corrects the poses of earlier scans, the maps still show them where they were: is_outdated(). The
+/// maps of the same entries at the corrected poses must then be made from the log; replace() takes them.
+/// Threads: one at a time; snapshots of the projection as there.
+class LocalizedProjection {
+public:
+    /// @param projection  of a log without scans that robots sent without poses
+    LocalizedProjection(
+        mapping::Projection projection) // NOLINT(google-explicit-constructor): most logs are of this kind
+        : projection_(std::move(projection)) {}
+
+    /// Returns the maps.
+    [[nodiscard]] const mapping::Projection& projection() const noexcept { return projection_; }
+    /// Returns the maps, to take snapshots of them.
+    [[nodiscard]] mapping::Projection& projection() noexcept { return projection_; }
+    /// Returns the estimated poses of the scans.
+    [[nodiscard]] const SessionPoses& poses() const noexcept { return poses_; }
+
+    /// Applies the next entry of the log, or a part of it; see mapping::Projection::apply().
+    /// @param entry  as in the log in the first call; a scan without a pose gets its estimated pose
+    /// @param work  budget in the unit of Reach::work; reduced by the work that was done
+    /// @return whether the entry is completely applied
+    /// Errors: those of mapping::Projection::apply(). After an error, the poses may contain the scan already.
+    [[nodiscard]] Result<bool> apply(LogEntry& entry, double& work);
+
+    /// Returns whether the maps show scans at poses that have been corrected.
+    [[nodiscard]] bool is_outdated() const noexcept { return shown_ < poses_.corrected(); }
+
+    /// Returns MapsCorrected::as_of of the newest such entry; 0 if there is none.
+    [[nodiscard]] Revision announced() const noexcept { return announced_; }
+
+    /// Returns the number of scans that the maps do not show at their corrected poses; 0 if they are not outdated.
+    [[nodiscard]] std::size_t moving_scans() const noexcept { return is_outdated() ? poses_.scan_count() : 0; }
+
+    /// Makes the maps those of the same entries at corrected poses; see mapping::Projection::replace_with().
+    /// @param corrected  the maps of all entries up to projection().revision()
+    /// @param as_of      SessionPoses::corrected() when its poses were taken
+    void replace(mapping::Projection corrected, Revision as_of) {
+        projection_.replace_with(std::move(corrected));
+        shown_ = as_of;
+    }
+
+private:
+    mapping::Projection projection_;
+    SessionPoses poses_;
+    Revision estimated_ = 0; // newest entry whose pose is estimated; it may be applied in part
+    Revision shown_ = 0;     // SessionPoses::corrected() of the poses in the maps
+    Revision announced_ = 0;
+};
+
+} // namespace scanloom::localization

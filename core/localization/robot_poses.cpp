@@ -1,0 +1,127 @@
+#include "core/localization/robot_poses.hpp"
+
+#include "core/scan_matching/scan_points.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace scanloom::localization {
+namespace {
+
+using scan_matching::inverse;
+using scan_matching::pose_of;
+using scan_matching::Transform2;
+using scan_matching::transform_of;
+
+/// Returns how far b is from a, metres; a turn of one radian counts as one metre.
+double distance_between(const Transform2& a, const Transform2& b) {
+    const Transform2 move = inverse(a) * b;
+    return distance_of(move) + std::fabs(yaw_of(move));
+}
+
+} // namespace
+
+std::optional<Pose2> RobotPoses::add(const Scan& scan, const Sensor& sensor) {
+    if (sensor.kind == SensorKind::kLaser) {
+        estimator_.add(scan_matching::points_of(scan, sensor), scan.odometry);
+        laser_scans_.push_back(scans_.size());
+        scans_.push_back({estimator_.scan_count() - 1, {}, scan.stamp});
+        laser_odometry_ = scan.odometry;
+    } else {
+        scans_.push_back(placed(scan));
+    }
+    PlacedScan& added = scans_.back();
+    place_.T_map_robot = newest(scan_count() - 1);
+    if (scan.odometry) {
+        place_.T_map_odom = pose_of(transform_of(place_.T_map_robot) * inverse(transform_of(*scan.odometry)));
+    }
+    // A scan that closes a loop corrects itself, too: maps show the estimate before, like those of the scans around it.
+    added.first = sensor.kind == SensorKind::kLaser ? estimator_.first_pose_of(added.laser_scan) : place_.T_map_robot;
+    const auto in_maps = is_located(scan_count() - 1) ? std::optional(added.first) : std::nullopt;
+    in_maps_.append(in_maps);
+    return in_maps;
+}
+
+/// Returns where a scan is that is not from a laser.
+RobotPoses::PlacedScan RobotPoses::placed(const Scan& scan) const {
+    const auto T_odom_robot = scan.odometry ? std::optional(transform_of(*scan.odometry)) : std::nullopt;
+    if (laser_scans_.empty()) return {kNoLaserScan, T_odom_robot.value_or(Transform2()), scan.stamp};
+    if (!T_odom_robot || !laser_odometry_) return {estimator_.scan_count() - 1, {}, scan.stamp};
+    return {estimator_.scan_count() - 1, inverse(transform_of(*laser_odometry_)) * *T_odom_robot, scan.stamp};
+}
+
+bool RobotPoses::correct_if_due() {
+    const auto& graph = estimator_.graph();
+    const double move = largest_move();
+    const bool is_paused = graph.size() < keyframes_at_correction_ + kCorrectionPause;
+    const auto parts = std::exchange(parts_, estimator_.connected_parts());
+    const bool is_connected = parts > 0 && parts_ > parts; // another part, with scans that maps left out
+    if (!is_connected && move <= (is_paused ? kJump : kSettled)) return false;
+
+    const auto before = in_maps_.snapshot();
+    mapping::EstimatedPoses after;
+    for (std::size_t scan = 0; scan < scan_count(); ++scan) {
+        std::optional<Pose2> pose = before[scan];
+        if (is_located(scan)) {
+            const Pose2 estimate = newest(scan);
+            if (!pose || distance_between(transform_of(*pose), transform_of(estimate)) > kSettled) pose = estimate;
+        }
+        after.append(pose);
+    }
+    in_maps_ = std::move(after);
+    keyframes_in_maps_.assign(graph.poses().begin(), graph.poses().end());
+    keyframes_at_correction_ = graph.size();
+    ++corrections_;
+    return true;
+}
+
+/// Returns how far a keyframe or a decided scan is from its pose in the maps, at most. Looks at keyframes only after
+/// the graph was optimized, and at scans only once.
+double RobotPoses::largest_move() {
+    double largest = 0.0;
+    const auto& graph = estimator_.graph();
+    if (keyframes_in_maps_.size() < graph.size()) { // the newest laser scan; the graph may have been optimized since
+        keyframes_in_maps_.push_back(transform_of(estimator_.first_pose_of(estimator_.scan_count() - 1)));
+    }
+    for (; decided_ < estimator_.decided_count(); ++decided_) {
+        const auto& shown = in_maps_.snapshot()[laser_scans_[decided_]];
+        if (!shown || !estimator_.is_located(decided_)) continue;
+        const auto estimate = transform_of(estimator_.pose_of(decided_));
+        largest = std::max(largest, distance_between(transform_of(*shown), estimate));
+    }
+    if (optimizations_ == estimator_.loop_figures().optimizations) return largest;
+    optimizations_ = estimator_.loop_figures().optimizations;
+    for (std::size_t n = 0; n < graph.size(); ++n) {
+        largest = std::max(largest, distance_between(keyframes_in_maps_[n], graph.pose(n)));
+    }
+    return largest;
+}
+
+Pose2 RobotPoses::newest(std::size_t scan) const {
+    const PlacedScan& placed = scans_[scan];
+    if (placed.laser_scan == kNoLaserScan) return pose_of(placed.T_laser_scan);
+    const Pose2 laser = estimator_.pose_of(placed.laser_scan);
+    return laser_scans_[placed.laser_scan] == scan ? laser : pose_of(transform_of(laser) * placed.T_laser_scan);
+}
+
+bool RobotPoses::is_located(std::size_t scan) const {
+    return scans_[scan].laser_scan == kNoLaserScan || estimator_.is_located(scans_[scan].laser_scan);
+}
+
+bool RobotPoses::is_in_map(std::size_t scan) const {
+    return scans_[scan].laser_scan == kNoLaserScan || estimator_.is_connected_scan(scans_[scan].laser_scan);
+}
+
+mapping::Localization RobotPoses::localization() const {
+    if (laser_scans_.empty()) return {.state = LocalizationState::kUnlocated};
+    const auto& newest = estimator_.newest();
+    return {estimator_.is_lost() ? LocalizationState::kLost : LocalizationState::kTracking,
+            newest.inlier_ratio,
+            newest.position_sigma,
+            newest.yaw_sigma,
+            estimator_.loop_count(),
+            corrections_};
+}
+
+} // namespace scanloom::localization

@@ -1,0 +1,111 @@
+#pragma once
+
+#include "common/scan/poses.hpp"
+#include "common/scan/scan.hpp"
+#include "common/scan/sensor.hpp"
+#include "core/mapping/scan_poses.hpp"
+#include "core/mapping/snapshot.hpp"
+#include "core/slam/trajectory_estimator.hpp"
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+namespace scanloom::localization {
+
+/// Where a robot is by its newest scan.
+struct Place {
+    Pose2 T_map_robot; ///< as estimated then
+    Pose2 T_map_odom;  ///< of the odometry frame, by the newest scan with odometry; the identity: there is none
+};
+
+/// The poses of one robot's scans, estimated from the scans and its odometry.
+///
+/// A scan has three poses: as first estimated, when it was added; the newest estimate; and the one that maps show. Maps
+/// show the first estimate until a correction is due: when a keyframe has moved by kJump since the maps last followed,
+/// or after kCorrectionPause keyframes. Then they show the newest estimates. What moved by less than kSettled stays. So
+/// the poses in the maps depend on the scans alone. The scans of other sensors than lasers follow the newest laser
+/// scan, by the odometry since.
+/// Threads: one at a time.
+class RobotPoses {
+public:
+    static constexpr double kJump = 0.1;                ///< metres; a turn of one radian counts as one metre
+    static constexpr double kSettled = 0.01;            ///< metres, likewise
+    static constexpr std::size_t kCorrectionPause = 50; ///< keyframes
+
+    /// Adds the robot's next scan.
+    /// @param scan    with odometry if the robot has any
+    /// @param sensor  that took it
+    /// @return its pose in the maps, T_map_robot; nullopt: it fits no place, so maps leave it out
+    std::optional<Pose2> add(const Scan& scan, const Sensor& sensor);
+
+    /// Lets the maps follow the newest estimates if a correction is due. Call it after each add().
+    /// @return whether the poses of earlier scans in the maps have changed
+    bool correct_if_due();
+
+    /// Returns the poses in the maps of all scans; nullopt: the scan is left out.
+    [[nodiscard]] mapping::EstimatedPosesView in_maps() const { return in_maps_.snapshot(); }
+
+    /// Returns the number of scans added.
+    [[nodiscard]] std::size_t scan_count() const noexcept { return scans_.size(); }
+
+    /// Returns the newest estimate of a scan's pose, T_map_robot, also if it fits no place.
+    /// @param scan  number of the scan, from 0. Precondition: scan < scan_count()
+    [[nodiscard]] Pose2 newest(std::size_t scan) const;
+
+    /// Returns the pose of a scan as first estimated, T_map_robot.
+    /// @param scan  number of the scan, from 0. Precondition: scan < scan_count()
+    [[nodiscard]] Pose2 first(std::size_t scan) const { return scans_[scan].first; }
+
+    /// Returns whether the scan's pose is known; see TrajectoryEstimator::is_located().
+    /// @param scan  number of the scan, from 0. Precondition: scan < scan_count()
+    [[nodiscard]] bool is_located(std::size_t scan) const;
+
+    /// Returns where the robot is by its newest scan.
+    [[nodiscard]] const Place& place() const noexcept { return place_; }
+
+    /// Returns the stamp of a scan, seconds.
+    /// @param scan  number of the scan, from 0. Precondition: scan < scan_count()
+    [[nodiscard]] double stamp(std::size_t scan) const { return scans_[scan].stamp; }
+
+    /// Returns whether a scan's place in the map is known, at least as a prediction.
+    /// @param scan  number of the scan, from 0. Precondition: scan < scan_count()
+    [[nodiscard]] bool is_in_map(std::size_t scan) const;
+
+    /// Returns how well the poses are known.
+    [[nodiscard]] mapping::Localization localization() const;
+
+    /// Returns the estimator of the laser scans.
+    [[nodiscard]] const slam::TrajectoryEstimator& estimator() const noexcept { return estimator_; }
+
+private:
+    static constexpr std::size_t kNoLaserScan = static_cast<std::size_t>(-1);
+
+    /// Where a scan is: relative to a laser scan.
+    struct PlacedScan {
+        std::size_t laser_scan = kNoLaserScan; // number among the laser scans; kNoLaserScan: none was before
+        slam::Transform2 T_laser_scan;         // of the robot at both; without a laser scan T_map_robot
+        double stamp = 0.0;                    // seconds
+        Pose2 first;                           // T_map_robot, when it was added
+    };
+
+    [[nodiscard]] PlacedScan placed(const Scan& scan) const;
+    [[nodiscard]] double largest_move();
+
+    slam::TrajectoryEstimator estimator_;
+    std::vector<PlacedScan> scans_;
+    std::vector<std::size_t> laser_scans_; // their numbers among all scans
+    mapping::EstimatedPoses in_maps_;
+    std::optional<Pose2> laser_odometry_; // of the newest laser scan
+    Place place_;
+    std::size_t corrections_ = 0;
+
+    // At the last correction, or since.
+    std::vector<slam::Transform2> keyframes_in_maps_; // the poses of the keyframes
+    std::size_t keyframes_at_correction_ = 0;
+    std::size_t optimizations_ = 0; // of the pose graph, that were looked at
+    std::size_t decided_ = 0;       // laser scans that were looked at when they were decided
+    std::size_t parts_ = 0;         // connected parts that the maps show
+};
+
+} // namespace scanloom::localization

@@ -1,0 +1,75 @@
+#pragma once
+
+#include "core/localization/robot_poses.hpp"
+#include "core/mapping/scan_poses.hpp"
+
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+namespace scanloom::localization {
+
+/// Which estimate of a scan's pose.
+enum class Estimate {
+    kNewest, ///< with all later scans
+    kFirst,  ///< when the scan was added
+};
+
+/// A robot's pose at a time.
+struct StampedPose {
+    double stamp = 0.0; ///< seconds
+    Pose2 pose;         ///< T_map_robot
+
+    friend bool operator==(const StampedPose&, const StampedPose&) = default;
+};
+
+/// The pose graph of a robot.
+struct PoseGraphView {
+    std::vector<Pose2> keyframes;  ///< T_map_keyframe
+    std::vector<bool> is_matched;  ///< see Keyframe::is_matched
+    std::vector<slam::Edge> edges; ///< between them
+};
+
+/// The poses of the scans of all robots of a session that do not send poses in the map frame: a projection of the log,
+/// like the maps. Equal entries give equal poses.
+/// Threads: one at a time.
+class SessionPoses {
+public:
+    /// Estimates the pose of the log's next scan, and sets it. Without a pose, it fits no place.
+    /// @param taken     the scan
+    /// @param sensor    that took it
+    /// @param revision  of the entry
+    void estimate(ScanTaken& taken, const Sensor& sensor, Revision revision);
+
+    /// Returns the newest entry at which the poses of earlier scans in the maps were corrected; 0: none were.
+    [[nodiscard]] Revision corrected() const noexcept { return corrected_; }
+
+    /// Returns the poses at which maps of the entries so far show the scans.
+    [[nodiscard]] mapping::ScanPoses in_maps() const;
+
+    /// Returns the number of scans with estimated poses.
+    [[nodiscard]] std::size_t scan_count() const noexcept { return scan_count_; }
+
+    /// Returns the poses of a robot's scans; nullptr if it has no scans, or sends poses.
+    /// @param robot  index in the session
+    [[nodiscard]] const RobotPoses* find(RobotIndex robot) const noexcept {
+        return robot < robots_.size() ? robots_[robot].get() : nullptr;
+    }
+
+    /// Returns the poses of a robot's scans, in their order, without those whose place in the map is not known.
+    /// @param robot     index in the session
+    /// @param estimate  which poses
+    /// @return empty if the robot sends poses
+    [[nodiscard]] std::vector<StampedPose> trajectory(RobotIndex robot, Estimate estimate) const;
+
+    /// Returns the pose graph of a robot; empty if it sends poses.
+    /// @param robot  index in the session
+    [[nodiscard]] PoseGraphView graph(RobotIndex robot) const;
+
+private:
+    std::vector<std::unique_ptr<RobotPoses>> robots_; // by RobotIndex; null: as find()
+    Revision corrected_ = 0;
+    std::size_t scan_count_ = 0;
+};
+
+} // namespace scanloom::localization
