@@ -105,7 +105,7 @@ public:
         const auto text = one_line_a_setting(*file);
         if (!text) throw CLI::ConfigError(fmt::format("{}:{}", file_name(), text.error().message));
         std::istringstream lines(*text);
-        auto settings = CLI::ConfigTOML::from_config(lines);
+        auto settings = lifted(CLI::ConfigTOML::from_config(lines));
         std::erase_if(settings, [](const CLI::ConfigItem& item) {
             return std::getenv(environment_name(item.name).c_str()) != nullptr;
         });
@@ -113,6 +113,26 @@ public:
     }
 
 private:
+    /// Moves settings that stand in the section of the subcommand but are options of the program to the front, where
+    /// they come before those outside of sections. CLI11 accepts such options on the command line only.
+    [[nodiscard]] std::vector<CLI::ConfigItem> lifted(std::vector<CLI::ConfigItem> settings) const {
+        const auto is_of_program = [&](const CLI::ConfigItem& item) {
+            if (item.parents.size() != 1 || app_.get_option_no_throw("--" + item.name) == nullptr) return false;
+            const auto sections =
+                app_.get_subcommands([&](const CLI::App* source) { return source->check_name(item.parents.front()); });
+            return !sections.empty() && sections.front()->get_option_no_throw("--" + item.name) == nullptr;
+        };
+        const auto others = std::ranges::stable_partition(settings, is_of_program).begin();
+        std::vector<CLI::ConfigItem> sorted;
+        for (auto item = settings.begin(); item != settings.end(); ++item) {
+            const bool is_lifted = item < others;
+            if (is_lifted && !app_.got_subcommand(item->parents.front())) continue; // of another source
+            if (is_lifted) item->parents.clear();
+            sorted.push_back(std::move(*item));
+        }
+        return sorted;
+    }
+
     [[nodiscard]] std::string file_name() const { return app_.get_config_ptr()->as<std::string>(); }
 
     const CLI::App& app_;

@@ -101,8 +101,10 @@ std::optional<wire::LinkError> ClientProtocol::take(const wire::Message& message
     if (welcome && link_->said_hello && !link_->welcomed) return on_welcome(*welcome, now);
     if (link_->welcomed) {
         if (const auto* ack = std::get_if<wire::Ack>(&message)) return on_ack(*ack, now);
-        if (std::holds_alternative<wire::Correction>(message))
-            return std::nullopt; // ignored: poses are sent as the source gives them
+        if (const auto* correction = std::get_if<wire::Correction>(&message)) {
+            if (options_.on_correction) options_.on_correction(*correction);
+            return std::nullopt;
+        }
         if (requests_.answer(message)) return std::nullopt;
     }
     return retry(Errc::kMalformed, fmt::format("the server sent an unexpected {}", wire::name_of(message)));

@@ -11,6 +11,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -35,6 +36,9 @@ struct ClientProtocolOptions {
     std::chrono::milliseconds welcome_timeout{10'000};   ///< from hello to welcome
     std::chrono::milliseconds ping_after{5'000};         ///< of silence
     std::chrono::milliseconds silence_max{15'000};       ///< then the link is considered dead
+
+    /// Receives the corrections of the robot's poses, from on_bytes(). Empty: they are ignored.
+    std::function<void(const wire::Correction&)> on_correction = {};
 };
 
 /// The robot's side of the robot link as a state machine without sockets, threads and clocks. It decides which frame to

@@ -24,6 +24,9 @@ constexpr std::size_t kSmallAnswerBytesMax = std::size_t{64} << 10;
 /// size of the descriptions of 64 sensors with 4096 explicit angles each.
 constexpr std::size_t kDescriptionBytesMax = std::size_t{4} << 20;
 
+constexpr ServerProtocol::Duration kCorrectionPeriod =
+    ServerProtocol::Duration(std::chrono::seconds(1)) / ServerProtocol::kCorrectionsPerSecond;
+
 double seconds_of(ServerProtocol::Time time) { return std::chrono::duration<double>(time.time_since_epoch()).count(); }
 
 std::string in_http(std::string_view sentence) {
@@ -101,7 +104,12 @@ ServerProtocol::Reading ServerProtocol::reading() const noexcept {
 }
 
 ServerProtocol::Time ServerProtocol::deadline() const noexcept {
-    return resumes_ ? std::min(*resumes_, deadline_) : deadline_;
+    const Time deadline = can_send_correction() ? std::min(correction_due_, deadline_) : deadline_;
+    return resumes_ ? std::min(*resumes_, deadline) : deadline;
+}
+
+bool ServerProtocol::can_send_correction() const noexcept {
+    return correction_ && state_ == State::kJoined && !is_writing_;
 }
 
 // The session and the owner -------------------------------------------------------------------------------------------
@@ -154,6 +162,10 @@ std::optional<ServerProtocol::Action> ServerProtocol::next_action(Time now) {
     const bool has_failed = ended_by_ && state_ != State::kJoining; // joining completes first
     if (state_ < State::kFarewell && (is_settled || has_failed)) begin_farewell(now);
     if (std::exchange(leaves_, false)) return Leave{};
+    if (can_send_correction() && now >= correction_due_) {
+        queue_.add(*std::exchange(correction_, std::nullopt));
+        correction_due_ = now + kCorrectionPeriod;
+    }
     if (state_ < State::kHangingUp && !is_writing_) {
         if (auto piece = queue_.next()) {
             is_writing_ = true;

@@ -42,6 +42,8 @@ struct ServerProtocolConfig {
 /// Source: proto/scanloom/v1/frame.proto.
 class ServerProtocol {
 public:
+    static constexpr int kCorrectionsPerSecond = 20; ///< the most that a robot receives
+
     /// Points in time, which the caller passes; the class reads no clock.
     using Time = std::chrono::steady_clock::time_point;
     /// Differences of points in time.
@@ -141,6 +143,10 @@ public:
     /// @param durable_seq  highest Scan::seq of this robot that is durable; not less than in earlier calls
     /// @param bytes        credit returned, in addition to earlier calls
     void on_durable(std::uint64_t durable_seq, std::size_t bytes);
+    /// The server has estimated where the robot is. The robot receives the newest correction only, at most
+    /// kCorrectionsPerSecond, as soon as it has read the frames before; none before the welcome or after its goodbye.
+    /// @param correction  replaces earlier ones that were not sent yet
+    void on_located(const wire::Correction& correction) noexcept { correction_ = correction; }
     /// Queues the frame of a reply.
     /// @param frame  the encoded reply, including its length prefix
     /// @param kept   released when the frame is written
@@ -186,6 +192,7 @@ private:
     [[nodiscard]] Result<> check_small_answers() const;
     [[nodiscard]] Result<> charge_batch(std::size_t bytes);
     [[nodiscard]] Result<> charge_description(std::size_t bytes);
+    [[nodiscard]] bool can_send_correction() const noexcept;
     void begin_farewell(Time now);
     void queue_last_message();
 
@@ -196,8 +203,10 @@ private:
     SendQueue queue_;
     LimitCheck limits_;
     Time deadline_;
-    std::optional<Time> resumes_; // when the link is read again
-    Time read_;                   // when bytes were last read
+    std::optional<Time> resumes_;                // when the link is read again
+    std::optional<wire::Correction> correction_; // the newest, until it is queued
+    Time correction_due_ = Time::min();          // when it may be queued
+    Time read_;                                  // when bytes were last read
 
     std::size_t under_way_ = 0; // bytes submitted and not yet durable
     std::size_t described_ = 0; // upper bound of the bytes of sensor descriptions in under_way_; at most under_way_

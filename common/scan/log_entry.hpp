@@ -1,5 +1,6 @@
 #pragma once
 
+#include "common/scan/poses.hpp"
 #include "common/scan/scan.hpp"
 #include "common/scan/sensor.hpp"
 
@@ -38,12 +39,14 @@ using RobotIndex = std::uint32_t;
 /// identifies the state of a map after that entry is applied.
 using Revision = std::uint64_t;
 
-/// A robot joins the session. It may join again with another body radius or, while it has no scans, another source.
+/// A robot joins the session. It may join again with another body radius or, while it has no scans, another source and
+/// other poses.
 struct RobotJoined {
     RobotIndex robot = 0;    ///< the next free number if the robot is new to the session
     std::string name;        ///< unique within the session; see is_valid_name()
     std::string source = {}; ///< identifies a recording or simulation, so that no other continues it; empty: none
     std::optional<double> body_radius = {}; ///< metres, above 0, at most kBodyRadiusMax; nullopt: not stated
+    Poses poses = Poses::kMap;              ///< whether its scans have poses; the same for all scans of a robot
 
     friend bool operator==(const RobotJoined&, const RobotJoined&) = default;
 };
@@ -66,10 +69,10 @@ struct ScanTaken {
 
 /// When and where a robot took a scan, which decides whether the scan is integrated.
 struct ScanPose {
-    RobotIndex robot = 0;  ///< the robot that took it
-    std::uint64_t seq = 0; ///< Scan::seq
-    double stamp = 0.0;    ///< seconds
-    Pose2 pose;            ///< T_map_robot
+    RobotIndex robot = 0;      ///< the robot that took it
+    std::uint64_t seq = 0;     ///< Scan::seq
+    double stamp = 0.0;        ///< seconds
+    std::optional<Pose2> pose; ///< T_map_robot; nullopt: not known, see Scan::pose
 
     friend bool operator==(const ScanPose&, const ScanPose&) = default;
 };
@@ -111,7 +114,16 @@ struct ExclusionLifted {
     friend bool operator==(const ExclusionLifted&, const ExclusionLifted&) = default;
 };
 
+/// The server shows maps in which the scans stand at corrected poses. When poses are corrected depends on the scans
+/// alone, so this entry changes no map; it has a revision of its own, at which readers find the maps changed.
+struct MapsCorrected {
+    Revision as_of = 0; ///< the poses are those that were estimated after this entry
+
+    friend bool operator==(const MapsCorrected&, const MapsCorrected&) = default;
+};
+
 /// One entry of a session's append-only log, from which all maps are computed.
-using LogEntry = std::variant<RobotJoined, SensorDescribed, ScanTaken, MapPatch, ScansExcluded, ExclusionLifted>;
+using LogEntry =
+    std::variant<RobotJoined, SensorDescribed, ScanTaken, MapPatch, ScansExcluded, ExclusionLifted, MapsCorrected>;
 
 } // namespace scanloom

@@ -32,7 +32,7 @@ Result<> LogRules::add(const LogEntry& entry) {
 Result<> LogRules::check_body(const RobotJoined& joined) const {
     if (joined.robot == robots_.size()) return {};
     const bool is_again = joined.robot < robots_.size() && robots_[joined.robot].name == joined.name &&
-                          robots_[joined.robot].accepts(joined.source);
+                          robots_[joined.robot].accepts(joined.source, joined.poses);
     if (is_again) return {};
     return cannot_follow(fmt::format("robot {} joins after {} others", joined.robot, robots_.size()));
 }
@@ -41,6 +41,7 @@ void LogRules::apply_body(const RobotJoined& joined) {
     if (joined.robot == robots_.size()) robots_.emplace_back().name = joined.name;
     robots_[joined.robot].source = joined.source;
     robots_[joined.robot].body_radius = joined.body_radius;
+    robots_[joined.robot].poses = joined.poses;
 }
 
 Result<> LogRules::check_body(const SensorDescribed& described) const {
@@ -60,6 +61,9 @@ Result<> LogRules::check_body(const ScanTaken& taken) const {
     const LoggedRobot& robot = robots_[taken.robot];
     if (robot.find_sensor(taken.scan.sensor) == nullptr) {
         return cannot_follow(fmt::format("a scan of sensor {}, which was never described", taken.scan.sensor));
+    }
+    if (robot.poses == Poses::kMap && !taken.scan.pose) {
+        return cannot_follow(fmt::format("scan {} of robot '{}' has no pose", taken.scan.seq, robot.name));
     }
     if (robot.is_next(taken.scan.seq)) return {};
     return cannot_follow(
@@ -85,6 +89,13 @@ void LogRules::apply_body(const ScansExcluded& excluded) {
 }
 
 Result<> LogRules::check_body(const ExclusionLifted& lifted) const { return exclusions_.check(lifted); }
+
+Result<> LogRules::check_body(const MapsCorrected& corrected) const {
+    if (corrected.as_of <= revision_) return {};
+    return cannot_follow(fmt::format("maps are corrected as of entry {}", corrected.as_of));
+}
+
+void LogRules::apply_body(const MapsCorrected&) {}
 
 void LogRules::apply_body(const ExclusionLifted& lifted) { static_cast<void>(exclusions_.add(revision_ + 1, lifted)); }
 

@@ -25,12 +25,14 @@ struct LoggedRobot {
     std::string name;                             ///< RobotJoined::name
     std::string source;                           ///< RobotJoined::source
     std::optional<double> body_radius;            ///< RobotJoined::body_radius
+    Poses poses = Poses::kMap;                    ///< RobotJoined::poses
     std::uint64_t last_seq = 0;                   ///< of its newest scan; 0 if it has none
     std::map<std::uint32_t, KnownSensor> sensors; ///< by id
 
-    /// Returns whether the robot may join again with this source: all scans of a robot come from one source.
-    [[nodiscard]] bool accepts(const std::string& other_source) const {
-        return last_seq == 0 || source == other_source;
+    /// Returns whether the robot may join again with this source and these poses: all scans of a robot come from one
+    /// source, and have poses of one kind.
+    [[nodiscard]] bool accepts(const std::string& other_source, Poses other_poses) const {
+        return last_seq == 0 || (source == other_source && poses == other_poses);
     }
 
     /// Returns whether a scan with this seq follows the robot's newest scan.
@@ -88,12 +90,14 @@ private:
     [[nodiscard]] Result<> check_body(const MapPatch& patch) const;
     [[nodiscard]] Result<> check_body(const ScansExcluded& excluded) const;
     [[nodiscard]] Result<> check_body(const ExclusionLifted& lifted) const;
+    [[nodiscard]] Result<> check_body(const MapsCorrected& corrected) const;
     void apply_body(const RobotJoined& joined);
     void apply_body(const SensorDescribed& described);
     void apply_body(const ScanTaken& taken);
     void apply_body(const MapPatch& patch);
     void apply_body(const ScansExcluded& excluded);
     void apply_body(const ExclusionLifted& lifted);
+    void apply_body(const MapsCorrected& corrected);
 
     Revision revision_ = 0;
     std::vector<LoggedRobot> robots_;

@@ -39,8 +39,8 @@ struct Scan {
     std::uint64_t seq = 0;                  ///< per (session, robot), from 1, rising by 1; robot::Client assigns it
     double stamp = 0.0;                     ///< seconds since the epoch, or since the robot's own start
     std::uint32_t sensor = 0;               ///< Sensor::id
-    Pose2 pose;                             ///< T_map_robot as the robot knows it: the map is built with it
-    std::optional<Pose2> odometry;          ///< T_odom_robot, stored so that poses can be corrected later
+    std::optional<Pose2> pose;              ///< T_map_robot; nullopt: the server estimates it (see Poses), or cannot
+    std::optional<Pose2> odometry;          ///< T_odom_robot, from which the server predicts poses that it estimates
     std::vector<RangeMm> ranges;            ///< one per beam
     std::vector<std::uint32_t> intensities; ///< empty, or one per beam; the sensor's own scale
     std::optional<BeamAngles> angles;       ///< only if they differ from the sensor's

@@ -125,6 +125,7 @@ enum class ScanUse {
     kIntegrated,
     kJump,     ///< left out because of max_jump
     kExcluded, ///< left out because of an exclusion; max_jump ignores it
+    kUnplaced, ///< left out because its pose is not known; max_jump ignores it
 };
 
 /// Decides which scans of a log are integrated. Every projection of the log uses it, so that maps, trajectories,

@@ -28,6 +28,14 @@ void write(const ScanPoints& scan, v1::ScanPoints& out) {
     append_differences(scan.points, *out.mutable_points());
 }
 
+void write(const LiveLocalization& localization, v1::RobotLocalization& out) {
+    out.set_state(static_cast<v1::LocalizationState>(localization.state));
+    out.set_poses(static_cast<v1::Poses>(localization.poses));
+    out.set_inliers(localization.inliers);
+    out.set_sigma_m(localization.sigma_m);
+    out.set_sigma_rad(localization.sigma_rad);
+}
+
 void write(const RobotUpdate& robot, v1::RobotUpdate& out) {
     out.set_robot(robot.robot);
     out.set_name(robot.name);
@@ -40,6 +48,7 @@ void write(const RobotUpdate& robot, v1::RobotUpdate& out) {
     out.set_trail_from(robot.trail_from);
     if (robot.scan) write(*robot.scan, *out.mutable_scan());
     out.set_body_radius(robot.body_radius.value_or(0.0));
+    if (robot.localization) write(*robot.localization, *out.mutable_localization());
 }
 
 void write(const LandmarkChanges& changes, v1::LandmarkChanges& out) {
@@ -82,6 +91,8 @@ std::string encode(const LiveEvent& event) {
     for (const auto& robot : event.robots) write(robot, *out.add_robots());
     out.set_goals_revision(event.goals_revision);
     if (event.landmarks) write(*event.landmarks, *out.mutable_landmarks());
+    out.set_poses_corrected(event.poses_corrected);
+    out.set_moving_scans(event.moving_scans);
     return out.SerializeAsString();
 }
 

@@ -3,6 +3,7 @@
 #include "common/error/error.hpp"
 #include "common/geometry/point_mm.hpp"
 #include "common/geometry/pose2.hpp"
+#include "common/scan/poses.hpp"
 #include "common/scan/sensor.hpp"
 
 #include <cstdint>
@@ -41,6 +42,14 @@ struct ScanPoints {
     std::vector<PointMm> points; ///< relative to the origin, along the map's axes; up to kRangeMax away
 };
 
+struct LiveLocalization {
+    LocalizationState state = LocalizationState::kGiven;
+    Poses poses = Poses::kMap;
+    float inliers = 0.0F;
+    float sigma_m = 0.0F;   ///< metres
+    float sigma_rad = 0.0F; ///< radians
+};
+
 struct RobotUpdate {
     std::uint32_t robot = 0;
     std::string name;
@@ -53,6 +62,7 @@ struct RobotUpdate {
     std::uint64_t trail_from = 0;
     std::optional<ScanPoints> scan;
     std::optional<double> body_radius; ///< metres
+    std::optional<LiveLocalization> localization;
 };
 
 struct LiveLandmark {
@@ -95,6 +105,8 @@ struct LiveEvent {
     std::vector<RobotUpdate> robots;
     std::uint64_t goals_revision = 0;
     std::optional<LandmarkChanges> landmarks;
+    std::uint64_t poses_corrected = 0;
+    std::uint64_t moving_scans = 0;
 };
 
 /// Serializes an event as the body of a binary WebSocket message.

@@ -27,6 +27,7 @@ struct EntryToProto {
         out.mutable_robot_joined()->set_name(joined.name);
         out.mutable_robot_joined()->set_source(joined.source);
         if (joined.body_radius) out.mutable_robot_joined()->set_body_radius(*joined.body_radius);
+        out.mutable_robot_joined()->set_poses(to_proto(joined.poses));
     }
     void operator()(const SensorDescribed& described) const {
         out.mutable_sensor_described()->set_robot(described.robot);
@@ -59,6 +60,7 @@ struct EntryToProto {
         }
     }
     void operator()(const ExclusionLifted& lifted) const { out.mutable_exclusion_lifted()->set_id(lifted.id); }
+    void operator()(const MapsCorrected& corrected) const { out.mutable_maps_corrected()->set_as_of(corrected.as_of); }
 };
 
 Result<LogEntry> read_robot_joined(const v1::RobotJoined& proto) {
@@ -68,6 +70,9 @@ Result<LogEntry> read_robot_joined(const v1::RobotJoined& proto) {
         if (!is_body_radius(proto.body_radius())) return damaged("a log entry");
         joined.body_radius = proto.body_radius();
     }
+    const auto poses = from_proto(proto.poses());
+    if (!poses) return damaged("a log entry");
+    joined.poses = *poses;
     return LogEntry(std::move(joined));
 }
 
@@ -133,6 +138,7 @@ Result<LogEntry> decode_entry(std::string_view bytes) {
     case v1::LogEntry::kScanTaken: return read_scan_taken(proto->scan_taken());
     case v1::LogEntry::kScansExcluded: return read_scans_excluded(proto->scans_excluded());
     case v1::LogEntry::kExclusionLifted: return LogEntry(ExclusionLifted{proto->exclusion_lifted().id()});
+    case v1::LogEntry::kMapsCorrected: return LogEntry(MapsCorrected{proto->maps_corrected().as_of()});
     case v1::LogEntry::BODY_NOT_SET: break;
     }
     return damaged("a log entry");
@@ -144,9 +150,13 @@ Result<std::optional<ScanPose>> decode_scan_pose(std::string_view bytes) {
     if (!proto->ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) return damaged("a log entry");
     if (!proto->has_scan_taken()) return std::optional<ScanPose>();
     const auto& scan = proto->scan_taken().scan();
-    const auto pose = from_proto(scan.pose());
-    if (!pose) return prefixed("scan_taken.pose: ", pose.error());
-    return std::optional(ScanPose{proto->scan_taken().robot(), scan.seq(), scan.stamp(), *pose});
+    ScanPose taken{proto->scan_taken().robot(), scan.seq(), scan.stamp(), std::nullopt};
+    if (scan.has_pose()) {
+        const auto pose = from_proto(scan.pose());
+        if (!pose) return prefixed("scan_taken.pose: ", pose.error());
+        taken.pose = *pose;
+    }
+    return std::optional(taken);
 }
 
 Result<std::string> plain_entry(std::string_view bytes) {

@@ -65,6 +65,9 @@ static Result<Hello> from_proto(const v1::Hello& proto) {
                                              *hello.body_radius, kBodyRadiusMax));
         }
     }
+    const auto poses = from_proto(proto.poses());
+    if (!poses) return poses.error();
+    hello.poses = *poses;
     if (proto.has_create()) {
         auto options = from_proto(proto.create());
         if (!options) return prefixed("create.", options.error());
@@ -82,6 +85,7 @@ static void to_proto(const Hello& hello, v1::Hello& out) {
     out.set_client(hello.client);
     out.set_source(hello.source);
     if (hello.body_radius) out.set_body_radius(*hello.body_radius);
+    out.set_poses(to_proto(hello.poses));
 }
 
 static Result<Welcome> from_proto(const v1::Welcome& proto) {

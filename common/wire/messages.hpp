@@ -3,6 +3,7 @@
 #include "common/error/error.hpp"
 #include "common/geometry/point_mm.hpp"
 #include "common/geometry/pose2.hpp"
+#include "common/scan/poses.hpp"
 #include "common/scan/scan.hpp"
 #include "common/scan/sensor.hpp"
 #include "common/scan/session_options.hpp"
@@ -30,6 +31,7 @@ struct Hello {
     std::string client;
     std::string source;                ///< identifies what is streamed, if it can be streamed again; see frame.proto
     std::optional<double> body_radius; ///< metres, above 0, at most kBodyRadiusMax
+    Poses poses = Poses::kMap;         ///< what the robot knows of its poses
 
     friend bool operator==(const Hello&, const Hello&) = default;
 };
@@ -100,13 +102,15 @@ struct Goodbye {
     friend bool operator==(const Goodbye&, const Goodbye&) = default;
 };
 
-/// The pose of a robot's odometry frame in the map, as the server has estimated it.
+/// The pose of a robot's odometry frame in the map, as the server has estimated it: the answer to a LocateRequest, and
+/// sent by itself to robots whose poses the server estimates.
 struct Correction {
-    Pose2 T_map_odom; ///< metres, radians
+    Pose2 T_map_odom; ///< metres, radians; for Poses::kNone of the robot at its newest scan
     std::uint64_t revision = 0;
     double explained = 0.0;      ///< inlier ratio of the robot's points in the map, 0 to 1
     double position_sigma = 0.0; ///< metres, in the most uncertain direction
     double yaw_sigma = 0.0;      ///< radians
+    LocalizationState state = LocalizationState::kGiven;
 
     friend bool operator==(const Correction&, const Correction&) = default;
 };

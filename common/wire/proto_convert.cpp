@@ -224,12 +224,11 @@ Result<Scan> from_proto(const v1::Scan& proto, std::vector<RangeMm> ranges) {
         return invalid_field(fmt::format("stamp is {}; a finite number of seconds is needed", scan.stamp));
     }
     scan.sensor = proto.sensor();
-    if (!proto.has_pose()) {
-        return invalid_field("pose is absent; send where the robot was, an empty Pose2 if that is (0, 0, 0)");
+    if (proto.has_pose()) {
+        auto pose = from_proto(proto.pose());
+        if (!pose) return prefixed("pose.", pose.error());
+        scan.pose = *pose;
     }
-    auto pose = from_proto(proto.pose());
-    if (!pose) return prefixed("pose.", pose.error());
-    scan.pose = *pose;
     if (proto.has_odometry()) {
         auto odometry = from_proto(proto.odometry());
         if (!odometry) return prefixed("odometry.", odometry.error());
@@ -273,11 +272,30 @@ void to_proto_without_ranges(const Scan& scan, v1::Scan& out) {
     out.set_seq(scan.seq);
     out.set_stamp(scan.stamp);
     out.set_sensor(scan.sensor);
-    to_proto(scan.pose, *out.mutable_pose());
+    if (scan.pose) to_proto(*scan.pose, *out.mutable_pose());
     if (scan.odometry) to_proto(*scan.odometry, *out.mutable_odometry());
     out.mutable_intensities()->Add(scan.intensities.begin(), scan.intensities.end());
     if (scan.angles) write_angles(*scan.angles, *out.mutable_angles());
     out.set_begins_map(scan.begins_map);
+}
+
+Result<Poses> from_proto(v1::Poses poses) {
+    switch (poses) {
+    case v1::POSES_MAP: return Poses::kMap;
+    case v1::POSES_ODOMETRY: return Poses::kOdometry;
+    case v1::POSES_NONE: return Poses::kNone;
+    default:
+        return invalid_field(fmt::format("poses is {}, which this program does not know", static_cast<int>(poses)));
+    }
+}
+
+v1::Poses to_proto(Poses poses) {
+    switch (poses) {
+    case Poses::kMap: return v1::POSES_MAP;
+    case Poses::kOdometry: return v1::POSES_ODOMETRY;
+    case Poses::kNone: return v1::POSES_NONE;
+    }
+    return v1::POSES_MAP;
 }
 
 // Settings of sessions ------------------------------------------------------------------------------------------------

@@ -25,11 +25,13 @@ namespace scanloom::wire {
 /// Converts a scan whose ranges are given separately, in place of its own.
 [[nodiscard]] Result<Scan> from_proto(const v1::Scan& scan, std::vector<RangeMm> ranges);
 [[nodiscard]] Result<Pose2> from_proto(const v1::Pose2& pose);
+[[nodiscard]] Result<Poses> from_proto(v1::Poses poses);
 
 void to_proto(const Sensor& sensor, v1::SensorDescription& out);
 void to_proto(const Scan& scan, v1::Scan& out);
 void to_proto_without_ranges(const Scan& scan, v1::Scan& out);
 void to_proto(const Pose2& pose, v1::Pose2& out);
+[[nodiscard]] v1::Poses to_proto(Poses poses);
 
 /// Points as differences: x and y of the first point, then x and y of each point minus those of the previous one.
 /// Successive points are close to each other, so that a difference takes one or two bytes.

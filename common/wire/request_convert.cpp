@@ -209,7 +209,13 @@ Result<Correction> from_proto(const v1::Correction& proto) {
     if (auto ok = check_sizes({{"position_sigma", proto.position_sigma()}, {"yaw_sigma", proto.yaw_sigma()}}); !ok) {
         return ok.error();
     }
-    return Correction{*pose, proto.revision(), proto.explained(), proto.position_sigma(), proto.yaw_sigma()};
+    const bool is_known = v1::LocalizationState_IsValid(proto.state());
+    return Correction{*pose,
+                      proto.revision(),
+                      proto.explained(),
+                      proto.position_sigma(),
+                      proto.yaw_sigma(),
+                      is_known ? static_cast<LocalizationState>(proto.state()) : LocalizationState::kGiven};
 }
 
 void to_proto(const Correction& correction, v1::Correction& out) {
@@ -218,6 +224,7 @@ void to_proto(const Correction& correction, v1::Correction& out) {
     out.set_explained(correction.explained);
     out.set_position_sigma(correction.position_sigma);
     out.set_yaw_sigma(correction.yaw_sigma);
+    out.set_state(static_cast<v1::LocalizationState>(correction.state));
 }
 
 // Requests ------------------------------------------------------------------------------------------------------------

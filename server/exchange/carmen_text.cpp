@@ -80,6 +80,8 @@ Result<std::string> CarmenText::text_of(const ScansExcluded&) { return std::stri
 
 Result<std::string> CarmenText::text_of(const ExclusionLifted&) { return std::string(); }
 
+Result<std::string> CarmenText::text_of(const MapsCorrected&) { return std::string(); }
+
 Result<std::string> CarmenText::text_of(const ScanTaken& taken) {
     const Scan& scan = taken.scan;
     const auto known = sensors_.find({taken.robot, scan.sensor});
@@ -94,7 +96,7 @@ Result<std::string> CarmenText::text_of(const ScanTaken& taken) {
     if (auto valid = check_representable(robot, sensor, angles); !valid) return valid.error();
 
     const auto& uniform = std::get<UniformAngles>(angles);
-    const Pose2 laser = compose(scan.pose, sensor.mount);
+    const Pose2 laser = compose(*scan.pose, sensor.mount);
     const auto count = scan.ranges.size();
     const double fov = uniform.increment * static_cast<double>(count == 0 ? 0 : count - 1);
     const bool goes_back = scan.stamp < latest_ - kStampJitter;

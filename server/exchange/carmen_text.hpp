@@ -47,6 +47,7 @@ private:
     [[nodiscard]] static Result<std::string> text_of(const MapPatch& patch);
     [[nodiscard]] static Result<std::string> text_of(const ScansExcluded& excluded);
     [[nodiscard]] static Result<std::string> text_of(const ExclusionLifted& lifted);
+    [[nodiscard]] static Result<std::string> text_of(const MapsCorrected& corrected);
 
     ScanFilter filter_;
     Revision revision_ = 0; ///< of the newest entry

@@ -43,7 +43,8 @@ Result<LocateResult> Locator::locate(const sessions::Session& session, RobotInde
                                      const std::optional<landmarks::Neighbourhood>& near,
                                      const std::function<Result<>()>& ask) {
     const auto snapshot = session.snapshot();
-    auto applied = reference_layers_.up_to(session.info(), snapshot->revision, [&] { return ask().has_value(); });
+    auto applied = reference_layers_.up_to(session.info(), snapshot->revision, snapshot->scan_poses,
+                                           [&] { return ask().has_value(); });
     if (!applied) return applied.error();
     const Revision revision = applied->revision;
     const bool has_map = !mapping::bounds_of(*snapshot).empty();

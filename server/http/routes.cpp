@@ -44,6 +44,7 @@ std::span<const Route> routes() noexcept {
     static constexpr std::string_view kRobot[] = {"robot"};
     static constexpr std::string_view kTile[] = {"v", "id", "weave"};
     static constexpr std::string_view kTrajectory[] = {"since", "times"};
+    static constexpr std::string_view kTum[] = {"robot", "as"};
     static constexpr auto kMapFile = with_settings({"layer", "bbox", "weave", "until"});
     static constexpr auto kDigest = with_settings({"layer", "weave", "until"});
     static constexpr auto kRoutes = std::to_array<Route>({
@@ -80,6 +81,8 @@ std::span<const Route> routes() noexcept {
         {kGet, SESSION "/difference", "difference", kRead, kWholeMaps, kLoaded, kDifference, get_difference},
         {kGet, SESSION "/difference.png", "differencePng", kRead, kWholeMaps, kLoaded, kDifference, get_difference_png},
         {kGet, SESSION "/trajectory.geojson", "trajectory", kRead, kLogReading, kLoaded, kTrajectory, get_trajectory},
+        {kGet, SESSION "/trajectory.tum", "trajectoryTum", kRead, kLogReading, kLoaded, kTum, get_trajectory_tum},
+        {kGet, SESSION "/pose_graph.geojson", "poseGraph", kRead, kLogReading, kLoaded, {}, get_pose_graph},
         {kGet, SESSION "/landmarks.geojson", "landmarks", kRead, kLogReading, kLoaded, kLandmarks, get_landmarks},
         {kGet, SESSION "/points.csv", "pointsCsv", kRead, kLogReading, kLoaded, kPoints, get_points_csv},
         {kGet, SESSION "/points.ply", "pointsPly", kRead, kLogReading, kLoaded, kPoints, get_points_ply},

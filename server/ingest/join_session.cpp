@@ -65,7 +65,7 @@ asio::awaitable<Found> session_for(const wire::Hello& hello, sessions::SessionRe
 asio::awaitable<Result<sessions::Joined>> join_session(sessions::Session& session, const wire::Hello& hello,
                                                        std::shared_ptr<sessions::RobotListener> listener) {
     const auto join = [&](auto done) {
-        session.join({hello.robot, hello.source, hello.body_radius}, std::move(listener), std::move(done));
+        session.join({hello.robot, hello.source, hello.body_radius, hello.poses}, std::move(listener), std::move(done));
     };
     co_return co_await sockets::resume_with<Result<sessions::Joined>>(join);
 }

@@ -89,6 +89,12 @@ void RobotConnection::on_durable(std::uint64_t durable_seq, std::size_t bytes) {
     post([durable_seq, bytes](RobotConnection& self) { self.protocol_.on_durable(durable_seq, bytes); });
 }
 
+void RobotConnection::on_located(const sessions::Located& located) {
+    const wire::Correction correction{located.T_map_odom,     located.revision,  located.inlier_ratio,
+                                      located.position_sigma, located.yaw_sigma, located.state};
+    post([correction](RobotConnection& self) { self.protocol_.on_located(correction); });
+}
+
 void RobotConnection::on_failed(const Error& error) {
     post([error](RobotConnection& self) { self.protocol_.fail(error); });
 }

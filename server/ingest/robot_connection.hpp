@@ -54,6 +54,7 @@ public:
     void cut_off();
 
     void on_durable(std::uint64_t durable_seq, std::size_t bytes) override;
+    void on_located(const sessions::Located& located) override;
     void on_failed(const Error& error) override;
 
 private:

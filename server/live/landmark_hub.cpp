@@ -39,8 +39,8 @@ void WatchedLandmarks::find(const sessions::Session& session, Revision revision,
 Result<FoundLandmarks> WatchedLandmarks::find_for_a_turn(const sessions::Session& session, Revision revision,
                                                          std::chrono::milliseconds turn) {
     const auto end = Clock::now() + turn;
-    auto applied =
-        layers_.up_to(session.info(), revision, [&] { return Clock::now() < end && !session.closing().has_value(); });
+    auto applied = layers_.up_to(session.info(), revision, session.snapshot()->scan_poses,
+                                 [&] { return Clock::now() < end && !session.closing().has_value(); });
     if (!applied) return applied.error();
     return FoundLandmarks{std::move(applied->state), applied->revision, {}};
 }

@@ -17,7 +17,7 @@ Group Backlog::next_group(std::int64_t room) {
         auto grown = box;
         grown.include(next.reach.cells);
         const auto chunks = group.chunks - mapping::chunk_count_of(box) + mapping::chunk_count_of(grown);
-        if (chunks > room) break;
+        if (chunks > room && !next.reach.cells.empty()) break;
         box = grown;
         group.chunks = chunks;
         group.work += next.reach.work;

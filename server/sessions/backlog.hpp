@@ -6,14 +6,17 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <limits>
 #include <optional>
 #include <vector>
 
 namespace scanloom::sessions {
 
-/// A validated entry from a robot that is not yet in the log and the maps.
+/// A validated entry that is not yet in the log and the maps.
 struct PendingEntry {
-    RobotIndex robot = 0;
+    static constexpr RobotIndex kNoRobot = std::numeric_limits<RobotIndex>::max(); ///< the entry is the server's own
+
+    RobotIndex robot = 0;          ///< that sent it; or kNoRobot
     std::optional<LogEntry> entry; ///< nullopt: a duplicate that is not stored and only holds credit
     mapping::Reach reach;          ///< of a scan
     std::size_t bytes = 0;         ///< credit that is returned when the entry is in the maps

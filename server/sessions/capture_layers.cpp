@@ -23,8 +23,9 @@ Error not_yet(std::string_view what, Revision applied, Revision revision) {
 
 template <class Layer>
 Result<ComputedLayer<Layer>> CaptureLayers<Layer>::up_to(const SessionInfo& session, Revision revision,
+                                                         const mapping::ScanPoses& poses,
                                                          const std::function<bool()>& is_wanted) {
-    const auto kept = find_or_begin(session);
+    const auto kept = find_or_begin(session, poses.corrected());
     // By the system clock, because ThreadSanitizer of GCC 12 does not support timed waits by the steady clock. If the
     // system clock jumps, this call waits until others finish, which `timeout` bounds too, or asks for a retry at
     // once.
@@ -36,7 +37,7 @@ Result<ComputedLayer<Layer>> CaptureLayers<Layer>::up_to(const SessionInfo& sess
     }
     if (kept->is_full) return full(session);
     try {
-        const auto done = read_up_to(*kept, revision, is_wanted);
+        const auto done = read_up_to(*kept, revision, poses, is_wanted);
         if (kept->layer.size() > limits_.size_max) { // the size never decreases, so this is final
             kept->is_full = true;
             kept->captures = landmarks::SessionCaptures(scan_filter_of(session));
@@ -64,7 +65,8 @@ Error CaptureLayers<Layer>::full(const SessionInfo& session) const {
 }
 
 template <class Layer>
-Result<> CaptureLayers<Layer>::read_up_to(Kept& kept, Revision revision, const std::function<bool()>& is_wanted) const {
+Result<> CaptureLayers<Layer>::read_up_to(Kept& kept, Revision revision, const mapping::ScanPoses& poses,
+                                          const std::function<bool()>& is_wanted) const {
     const auto deadline = Clock::now() + limits_.timeout;
     const auto add = [&](const landmarks::RobotCapture& ended) -> Result<> {
         kept.layer.add(ended);
@@ -75,19 +77,20 @@ Result<> CaptureLayers<Layer>::read_up_to(Kept& kept, Revision revision, const s
         if (Clock::now() >= deadline) return not_yet(LayerTraits<Layer>::kWhat, read, revision);
         return {};
     };
-    return read_captures(log_, kept.session, kept.captures, revision, add, ask);
+    return read_captures(log_, kept.session, kept.captures, revision, poses, add, ask);
 }
 
 template <class Layer>
-auto CaptureLayers<Layer>::find_or_begin(const SessionInfo& session) -> std::shared_ptr<Kept> {
+auto CaptureLayers<Layer>::find_or_begin(const SessionInfo& session, Revision corrected) -> std::shared_ptr<Kept> {
     const std::lock_guard lock(mutex_);
     auto found = std::ranges::find(kept_, session.id, [](const auto& kept) { return kept->session; });
-    if (found != kept_.end() && (*found)->exclusions < session.exclusions->revision()) {
+    if (found != kept_.end() &&
+        ((*found)->exclusions < session.exclusions->revision() || (*found)->corrected < corrected)) {
         kept_.erase(found);
         found = kept_.end();
     }
     if (found == kept_.end()) {
-        kept_.push_front(std::make_shared<Kept>(session));
+        kept_.push_front(std::make_shared<Kept>(session, corrected));
     } else {
         kept_.splice(kept_.begin(), kept_, found);
     }

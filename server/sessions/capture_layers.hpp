@@ -3,6 +3,7 @@
 #include "common/error/error.hpp"
 #include "core/landmarks/landmark_map.hpp"
 #include "core/landmarks/reference_map.hpp"
+#include "core/mapping/scan_poses.hpp"
 #include "server/sessions/log_readers.hpp"
 #include "server/sessions/session_info.hpp"
 #include "server/store/scan_log.hpp"
@@ -71,11 +72,13 @@ public:
 
     /// Returns the layer of the log's entries up to `revision`, or up to a later revision of an earlier request.
     ///
+    /// @param poses  of the scans that robots sent without; if they were corrected, the layer is computed again
     /// @param is_wanted  called from time to time; false cancels the request
     /// Errors: kOverloaded if it takes longer than the limit `timeout` or memory ran out; after a timeout, the next
     /// request continues where this one stopped. kFull if the layer has more than size_max. kShuttingDown if is_wanted
     /// returned false. kDataLoss if an entry is damaged. Those of ScanLog::read().
     [[nodiscard]] Result<ComputedLayer<Layer>> up_to(const SessionInfo& session, Revision revision,
+                                                     const mapping::ScanPoses& poses,
                                                      const std::function<bool()>& is_wanted);
 
     /// Removes a deleted session from the cache.
@@ -83,11 +86,13 @@ public:
 
 private:
     struct Kept {
-        explicit Kept(const SessionInfo& of)
-            : session(of.id), exclusions(of.exclusions->revision()), captures(scan_filter_of(of)) {}
+        Kept(const SessionInfo& of, Revision corrected_at)
+            : session(of.id), exclusions(of.exclusions->revision()), corrected(corrected_at),
+              captures(scan_filter_of(of)) {}
 
         const store::SessionId session;
         const Revision exclusions; // Exclusions::revision() of the applied exclusions
+        const Revision corrected;  // ScanPoses::corrected() of the poses
         std::timed_mutex mutex;
         landmarks::SessionCaptures captures; // guarded by mutex
         Layer layer;                         // guarded by mutex
@@ -95,8 +100,9 @@ private:
         std::size_t size = 0;                // guarded by CaptureLayers::mutex_
     };
 
-    [[nodiscard]] std::shared_ptr<Kept> find_or_begin(const SessionInfo& session);
-    [[nodiscard]] Result<> read_up_to(Kept& kept, Revision revision, const std::function<bool()>& is_wanted) const;
+    [[nodiscard]] std::shared_ptr<Kept> find_or_begin(const SessionInfo& session, Revision corrected);
+    [[nodiscard]] Result<> read_up_to(Kept& kept, Revision revision, const mapping::ScanPoses& poses,
+                                      const std::function<bool()>& is_wanted) const;
     [[nodiscard]] Error full(const SessionInfo& session) const;
     void account(Kept& kept);
 

@@ -1,7 +1,9 @@
 #pragma once
 
 #include "common/error/error.hpp"
+#include "common/geometry/pose2.hpp"
 #include "common/scan/log_entry.hpp"
+#include "common/scan/poses.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -14,7 +16,18 @@
 
 namespace scanloom::sessions {
 
-/// Receives acknowledgements and errors for a robot's link. Called on the session's strand: must not block.
+/// Where a robot is whose poses the server estimates, by its newest scan.
+struct Located {
+    Pose2 T_map_odom;            ///< of its odometry frame; for Poses::kNone the robot itself is that frame
+    Revision revision = 0;       ///< of the maps that contain the scan
+    double inlier_ratio = 0.0;   ///< of the scan's points, those that fit the map, 0 to 1
+    double position_sigma = 0.0; ///< metres, of the scan's pose, in the most uncertain direction
+    double yaw_sigma = 0.0;      ///< radians, of the scan's pose
+    LocalizationState state = LocalizationState::kGiven;
+};
+
+/// Receives acknowledgements, corrections and errors for a robot's link. Called on the session's strand: must not
+/// block.
 class RobotListener {
 public:
     virtual ~RobotListener() = default;
@@ -23,6 +36,9 @@ public:
     /// @param durable_seq  every scan up to this number is in the log and in the maps
     /// @param bytes  credit returned for submitted data, in addition to earlier calls
     virtual void on_durable(std::uint64_t durable_seq, std::size_t bytes) = 0;
+
+    /// Reports where the robot is, after scans of it are in the maps. Not called for robots that send poses.
+    virtual void on_located(const Located& located) { static_cast<void>(located); }
 
     /// Reports the error with which the session has closed this link. It accepts no further data from it.
     virtual void on_failed(const Error& error) = 0;
@@ -33,6 +49,7 @@ struct JoinRequest {
     std::string robot;
     std::string source = {};                ///< Hello.source
     std::optional<double> body_radius = {}; ///< metres
+    Poses poses = Poses::kMap;              ///< Hello.poses
 };
 
 /// The result of joining a session.

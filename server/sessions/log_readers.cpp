@@ -36,16 +36,19 @@ constexpr Revision kLookEvery = 256; // entries, which take a few milliseconds
 } // namespace
 
 Result<> read_captures(store::ScanLog& log, store::SessionId session, landmarks::SessionCaptures& captures,
-                       Revision until, const VisitCapture& visit, const CheckContinue& ask) {
+                       Revision until, const mapping::ScanPoses& poses, const VisitCapture& visit,
+                       const CheckContinue& ask) {
     const auto add = [&](Revision revision, std::string_view bytes) -> Result<> {
-        const auto taken = wire::decode_scan_pose(bytes);
+        auto taken = wire::decode_scan_pose(bytes);
         if (!taken) return damaged_entry(revision, taken.error());
+        if (*taken) poses.place(**taken);
         if (*taken && !captures.needs(**taken)) {
             captures.pass_over(**taken);
             return {};
         }
-        const auto entry = wire::decode_entry(bytes);
+        auto entry = wire::decode_entry(bytes);
         if (!entry) return damaged_entry(revision, entry.error());
+        poses.place(*entry);
         const auto ended = captures.add(*entry);
         if (!ended) return {};
         auto visited = visit(*ended); // may take long, so ask() follows

@@ -3,6 +3,7 @@
 #include "common/error/error.hpp"
 #include "common/scan/scan_filter.hpp"
 #include "core/landmarks/captures.hpp"
+#include "core/mapping/scan_poses.hpp"
 #include "server/store/scan_log.hpp"
 
 #include <functional>
@@ -31,10 +32,12 @@ using CheckContinue = std::function<Result<>(Revision read)>;
 ///
 /// Of most scans of a moving robot, only the pose is decoded.
 /// @param captures  advanced by each entry read, also if the reading ends with an error
+/// @param poses  of the scans that robots sent without; the same in later calls
 /// Errors: those of `visit` and `ask`; kDataLoss if an entry is damaged; those of ScanLog::read().
 /// Threads: any thread that may wait for the disk.
 [[nodiscard]] Result<> read_captures(store::ScanLog& log, store::SessionId session,
-                                     landmarks::SessionCaptures& captures, Revision until, const VisitCapture& visit,
+                                     landmarks::SessionCaptures& captures, Revision until,
+                                     const mapping::ScanPoses& poses, const VisitCapture& visit,
                                      const CheckContinue& ask);
 
 } // namespace scanloom::sessions

@@ -15,6 +15,7 @@ Scan blank(const Scan& next, std::uint64_t seq) {
     scan.stamp = next.stamp;
     scan.sensor = next.sensor;
     scan.pose = next.pose;
+    scan.odometry = next.odometry;
     scan.ranges = {kInvalidRange};
     scan.angles = ExplicitAngles{0.0};
     return scan;

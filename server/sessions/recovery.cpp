@@ -4,6 +4,7 @@
 #include "server/log/context.hpp"
 #include "server/sessions/checkpoint_reader.hpp"
 #include "server/sessions/log_readers.hpp"
+#include "server/sessions/map_correction.hpp"
 #include "server/sessions/registry_state.hpp"
 #include "server/store/store_error.hpp"
 
@@ -11,6 +12,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <latch>
 #include <set>
@@ -45,17 +47,21 @@ Result<FromCheckpoint> read_checkpoint(store::ScanLog& log, store::SessionId ses
     return FromCheckpoint{std::move(*projection), can_be_added_to};
 }
 
-/// Applies the entries after the projection's revision. @return false if it was stopped before the end of the log
-Result<bool> apply_rest(store::ScanLog& log, store::SessionId session, mapping::Projection& projection,
+/// Applies the entries after those that the maps contain. @return false if it was stopped before the end of the log
+Result<bool> apply_rest(store::ScanLog& log, store::SessionId session, localization::LocalizedProjection& maps,
                         const std::atomic<bool>& stop) {
-    auto read = log.read(session, projection.revision(), [&](Revision revision, std::string_view bytes) -> Result<> {
+    const auto apply = [&](Revision revision, std::string_view bytes) -> Result<> {
         if (stop) return stopped();
         auto entry = wire::decode_entry(bytes);
         if (!entry) return damaged_entry(revision, entry.error());
-        if (projection.is_outdated_by(*entry)) return kOutdated;
-        return projection.apply(*entry);
-    });
-    if (!read && read.error() == stopped()) return false;
+        if (maps.projection().is_outdated_by(*entry)) return kOutdated;
+        double work = HUGE_VAL;
+        const auto applied = maps.apply(*entry, work);
+        return applied ? Result<>() : applied.error();
+    };
+    auto read = log.read(session, maps.projection().revision(), apply);
+    if (read) read = correct_as_announced(log, session, maps, stop);
+    if (!read && stop) return false;
     if (!read) return read.error();
     return true;
 }
@@ -67,7 +73,7 @@ Result<Recovered> recover_from_log(store::ScanLog& log, store::SessionId session
         read_exclusions(log, session, [&](Revision, const std::optional<ScanPose>&) { return !stop.load(); });
     if (!exclusions) return exclusions.error();
     Recovered recovered{mapping::Projection(config, std::make_shared<const Exclusions>(std::move(*exclusions)))};
-    const auto complete = stop ? Result<bool>(false) : apply_rest(log, session, recovered.projection, stop);
+    const auto complete = stop ? Result<bool>(false) : apply_rest(log, session, recovered.maps, stop);
     if (!complete) return complete.error();
     recovered.complete = *complete;
     return recovered;
@@ -84,16 +90,16 @@ Result<Recovered> recover_from_checkpoint(store::ScanLog& log, store::SessionId 
     if (!checkpoint) {
         recovered.checkpoint_rejected = checkpoint.error();
     } else if (checkpoint->can_be_added_to) {
-        recovered.checkpointed = recovered.projection.revision();
+        recovered.checkpointed = recovered.maps.projection().revision();
     }
-    const auto complete = apply_rest(log, session, recovered.projection, stop);
+    const auto complete = apply_rest(log, session, recovered.maps, stop);
     if (!complete) return complete.error();
     recovered.complete = *complete;
-    if (recovered.complete && recovered.projection.revision() < recovered.projection.newest_restored()) {
+    if (recovered.complete && recovered.maps.projection().revision() < recovered.maps.projection().newest_restored()) {
         return Error{Errc::kDataLoss,
                      fmt::format("the log ends with entry {}, but its checkpoint holds entry {} already; the store is "
                                  "damaged; {}",
-                                 recovered.projection.revision(), recovered.projection.newest_restored(),
+                                 recovered.maps.projection().revision(), recovered.maps.projection().newest_restored(),
                                  store::kRecoverOrRemove)};
     }
     return recovered;

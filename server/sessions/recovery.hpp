@@ -2,6 +2,7 @@
 
 #include "common/error/error.hpp"
 #include "common/scan/log_entry.hpp"
+#include "core/localization/localized_projection.hpp"
 #include "core/mapping/projection.hpp"
 #include "server/store/scan_log.hpp"
 
@@ -19,9 +20,9 @@ struct RegistryState;
     return {Errc::kDataLoss, fmt::format("log entry {}: {}", revision, why.message)};
 }
 
-/// A projection that was recovered from the store.
+/// The maps of a session that were recovered from the store.
 struct Recovered {
-    mapping::Projection projection;
+    localization::LocalizedProjection maps;
     /// Revision of the checkpoint that it started from; 0 if there was none. Nullopt if the stored checkpoint cannot be
     /// used or has the format of an earlier version; the next checkpoint must replace it.
     std::optional<Revision> checkpointed{};
@@ -30,7 +31,8 @@ struct Recovered {
 };
 
 /// Recovers a session from its newest checkpoint and the rest of its log. Replays the whole log if the checkpoint
-/// cannot be used or if the rest of the log excludes scans that are in it.
+/// cannot be used or if the rest of the log excludes scans that are in it. Shows the poses as corrected last if the log
+/// has announced that; otherwise the maps are outdated.
 ///
 /// @param stop  checked from time to time
 /// Errors: kDataLoss or kMalformed if the log is damaged, with the entry in the message; kStoreFailed; kOverloaded if

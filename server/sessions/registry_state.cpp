@@ -15,10 +15,12 @@ namespace {
 /// Stores a checkpoint of a stopped recovery, so that a long recovery finishes even if it is stopped repeatedly.
 void keep_progress(store::ScanLog& log, const SessionInfo& info, Recovered& recovered,
                    const std::atomic<bool>& finish_early) {
-    if (recovered.projection.revision() <= recovered.checkpointed.value_or(0)) return; // no progress
-    const auto snapshot = recovered.projection.snapshot();
+    auto& projection = recovered.maps.projection();
+    if (projection.has_estimated_poses()) return; // a checkpoint does not contain the state of the estimation
+    if (projection.revision() <= recovered.checkpointed.value_or(0)) return; // no progress
+    const auto snapshot = projection.snapshot();
     const auto written =
-        write_checkpoint(log, info.id, snapshot, recovered.projection.state(), recovered.checkpointed, finish_early);
+        write_checkpoint(log, info.id, snapshot, projection.state(), recovered.checkpointed, finish_early);
     log::info({.session = info.name}, "session '{}': recovery stopped after entry {}{}", info.name, snapshot.revision,
               written ? "; the next start continues there" : "");
 }
@@ -61,12 +63,15 @@ Result<> DamagedSessions::remove(std::string_view name, store::ScanLog& log) {
     return {};
 }
 
-std::shared_ptr<Session> SessionFactory::make(SessionInfo info, mapping::Projection projection,
+std::shared_ptr<Session> SessionFactory::make(SessionInfo info, localization::LocalizedProjection maps,
                                               std::optional<Revision> checkpointed) const {
     auto own = limits;
     own.chunks_max = info.chunks_max;
-    return std::make_shared<Session>(std::move(info), std::move(projection), checkpointed, log, compute, counters, own,
-                                     blocking_executor);
+    const bool is_outdated = maps.is_outdated();
+    auto session = std::make_shared<Session>(std::move(info), std::move(maps), checkpointed, log, compute, counters,
+                                             own, blocking_executor);
+    if (is_outdated) session->correct_maps();
+    return session;
 }
 
 Result<std::shared_ptr<Session>> SessionFactory::read(const SessionInfo& info, const std::atomic<bool>& stop,
@@ -83,8 +88,8 @@ Result<std::shared_ptr<Session>> SessionFactory::read(const SessionInfo& info, c
         return std::shared_ptr<Session>();
     }
     SessionInfo read = info;
-    read.exclusions = recovered->projection.exclusions();
-    return make(std::move(read), std::move(recovered->projection), recovered->checkpointed);
+    read.exclusions = recovered->maps.projection().exclusions();
+    return make(std::move(read), std::move(recovered->maps), recovered->checkpointed);
 }
 
 } // namespace scanloom::sessions

@@ -53,9 +53,9 @@ struct SessionFactory {
     SessionLimits limits{};
     std::shared_ptr<SessionCounters> counters = std::make_shared<SessionCounters>();
 
-    /// Creates a session from a projection of its whole log.
+    /// Creates a session from the maps of its whole log.
     /// @param checkpointed  revision of the stored checkpoint, as Recovered::checkpointed
-    [[nodiscard]] std::shared_ptr<Session> make(SessionInfo info, mapping::Projection projection,
+    [[nodiscard]] std::shared_ptr<Session> make(SessionInfo info, localization::LocalizedProjection maps,
                                                 std::optional<Revision> checkpointed) const;
 
     /// Loads a session from the store: the newest checkpoint, then the rest of the log.

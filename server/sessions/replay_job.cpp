@@ -74,9 +74,12 @@ void ReplayJob::call_waiting() {
     });
 }
 
-bool ReplayJob::join(Revision target) {
+bool ReplayJob::join(Revision target, const mapping::ScanPoses& poses) {
     const std::lock_guard lock(mutex_);
-    if (state_ == State::kDone) return is_complete_ || target <= target_;
+    const bool is_corrected = poses.corrected() > wanted_poses_.corrected();
+    if (is_corrected || target > target_) wanted_poses_ = poses;
+    corrected_ = wanted_poses_.corrected();
+    if (state_ == State::kDone) return !is_corrected && (is_complete_ || target <= target_);
     if (has_ended(state_) || cancelled_) return false;
     target_ = std::max(target_, target);
     return true;
@@ -95,7 +98,8 @@ bool ReplayJob::resume(Revision target, limits::MemoryBudget& budget) {
 // Starting from another job
 
 bool ReplayJob::is_same_map(const ReplayJob& other) const noexcept {
-    return session_.id == other.session_.id && request_.config == other.request_.config;
+    return session_.id == other.session_.id && request_.config == other.request_.config &&
+           corrected_ == other.corrected_;
 }
 
 std::optional<Revision> ReplayJob::base_for(const ReplayJob& other, Revision target) const {
@@ -109,6 +113,7 @@ std::optional<Revision> ReplayJob::revision_before(const ReplayJob& other, Revis
     const auto& end = other.request_.end;
     const bool stands_still = state_ == State::kDone || (state_ == State::kWaiting && !cancelled_);
     if (!stands_still || !projection_ || projection_->revision() > target) return std::nullopt;
+    if (poses_.corrected() != other.corrected_) return std::nullopt;
     const Revision known = projection_->exclusions()->revision();
     const bool is_same = known == other.session_.exclusions->as_of(target).revision();
     // A job with an end stamp may end before it reads exclusions that this one does not know: they must be equal.
@@ -128,15 +133,18 @@ bool ReplayJob::begin_from(ReplayJob& base) {
     const Revision target = progress().target;
     std::optional<mapping::Projection> branch;
     std::optional<double> newest_stamp;
+    mapping::ScanPoses poses;
     {
         const std::lock_guard lock(base.mutex_);
         if (!base.revision_before(*this, target)) return false;
         branch.emplace(base.projection_->branch());
         newest_stamp = base.newest_stamp_;
+        poses = base.poses_;
     }
     const std::lock_guard lock(mutex_);
     projection_.emplace(std::move(*branch));
     newest_stamp_ = newest_stamp;
+    poses_ = poses;
     applied_ = projection_->revision();
     return true;
 }
@@ -160,7 +168,8 @@ bool ReplayJob::run(store::ScanLog& log, limits::MemoryBudget& budget, double tu
     }
     turn_left_ = turn_work;
     try {
-        if (!projection_) projection_.emplace(request_.config, shared(session_.exclusions->as_of(*target)));
+        if (!projection_)
+            projection_.emplace(request_.config, shared(session_.exclusions->as_of(*target)), poses_.corrected());
         auto is_complete = apply_up_to(*target, log, budget);
         if (!is_complete && is_complete.error() == kOutdatedMaps) {
             const auto begun = begin_again(*target, log, budget);
@@ -180,6 +189,13 @@ std::optional<Revision> ReplayJob::begin() {
     const std::lock_guard lock(mutex_);
     if (state_ != State::kWaiting) return std::nullopt;
     state_ = State::kRunning;
+    if (poses_.corrected() != wanted_poses_.corrected()) { // the scans in the projection have moved
+        projection_.reset();
+        newest_stamp_.reset();
+        applied_ = 0;
+        round_.reset();
+    }
+    poses_ = wanted_poses_;
     return std::exchange(round_, std::nullopt).value_or(target_);
 }
 
@@ -199,8 +215,9 @@ Result<bool> ReplayJob::apply_up_to(Revision target, store::ScanLog& log, limits
                                [&](Revision revision, std::string_view bytes) -> store::Visited {
                                    if (revision > target) return store::Visit::kStop;
                                    if (turn_left_ <= 0.0) return kTurnIsOver;
-                                   const auto entry = wire::decode_entry(bytes);
+                                   auto entry = wire::decode_entry(bytes);
                                    if (!entry) return damaged_entry(revision, entry.error());
+                                   poses_.place(*entry);
                                    if (is_beyond_end(revision, *entry)) {
                                        is_complete = true;
                                        return store::Visit::kStop;
@@ -229,7 +246,7 @@ Result<> ReplayJob::begin_again(Revision target, store::ScanLog& log, limits::Me
     if (!exclusions) return exclusions.error();
     if (cancelled_) return kCancelled;
     forget_maps();
-    projection_.emplace(request_.config, shared(*exclusions));
+    projection_.emplace(request_.config, shared(*exclusions), poses_.corrected());
     newest_stamp_.reset();
     applied_ = 0;
     return claim(budget);

@@ -28,6 +28,9 @@ namespace scanloom::sessions {
 ///
 /// A job that has not begun can start from a copy of the state of another job with the same session and settings. It is
 /// independent of the other job afterwards. Its maps are bit for bit the same as without that start.
+///
+/// Scans that robots sent without poses are at the poses in the session's maps at the newest request. If they were
+/// corrected since the request before, the job begins again.
 /// Memory: a round takes its chunks from the budget, also the chunks of its earlier maps that it has copied to change
 /// them. If both do not fit, it releases the earlier maps. Chunks shared with the job that it started from count for
 /// both jobs, because either may outlive the other.
@@ -49,8 +52,10 @@ public:
 
     /// Creates a job that has not begun.
     /// @param target  revision up to which entries are applied
-    ReplayJob(SessionInfo session, const ReplayRequest& request, Revision target)
-        : id_(replay_id_of(session, request)), session_(std::move(session)), request_(request), target_(target) {}
+    /// @param poses   of the session's maps
+    ReplayJob(SessionInfo session, const ReplayRequest& request, Revision target, mapping::ScanPoses poses = {})
+        : id_(replay_id_of(session, request)), session_(std::move(session)), request_(request),
+          corrected_(poses.corrected()), target_(target), wanted_poses_(std::move(poses)) {}
 
     [[nodiscard]] const std::string& id() const noexcept { return id_; }
     [[nodiscard]] const SessionInfo& session() const noexcept { return session_; }
@@ -78,9 +83,10 @@ public:
     void notify(Revision revision, std::function<void()> on_ready);
 
     /// Requests maps up to `target`.
+    /// @param poses  of the session's maps at that revision or a later one
     /// @return whether they exist or a job that is not finished will compute them; if false, call resume() for a done
     ///         job, otherwise start a new one
-    [[nodiscard]] bool join(Revision target);
+    [[nodiscard]] bool join(Revision target, const mapping::ScanPoses& poses = {});
 
     /// Prepares a done job for another run() up to `target`. Call only in state kDone, after join() returned false, and
     /// from one thread at a time.
@@ -141,17 +147,20 @@ private:
 
     std::atomic<Revision> applied_ = 0;
     std::atomic<bool> cancelled_ = false;
+    std::atomic<Revision> corrected_; // ScanPoses::corrected() of wanted_poses_
     std::atomic<std::uint64_t> listed_ = 0;
 
     // Used by the thread in run() or resume() only; between those calls, guarded by the mutex.
     std::optional<mapping::Projection> projection_; // kept to continue, and as a start for other jobs
     std::optional<double> newest_stamp_;            // seconds; of the scans in the projection
+    mapping::ScanPoses poses_;                      // of the scans in the projection
     std::int64_t claimed_ = 0;                      // chunks taken from the budget; 0 after the job has ended
     double turn_left_ = 0.0;                        // in the unit of Reach::work
 
     mutable std::mutex mutex_; // guards the members below
     State state_ = State::kWaiting;
     Revision target_;
+    mapping::ScanPoses wanted_poses_;
     std::optional<Revision> round_; // target of a round that is not finished
     bool is_complete_ = false;      // the job has reached its end; no entry can follow
     std::shared_ptr<const mapping::Snapshot> maps_;

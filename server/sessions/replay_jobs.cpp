@@ -27,9 +27,10 @@ ReplayJobs::ReplayJobs(store::ScanLog& log, boost::asio::any_io_executor executo
     : log_(log), executor_(std::move(executor)), limits_(limits), budget_(limits.chunks_max) {}
 
 Result<std::shared_ptr<ReplayJob>> ReplayJobs::start(const SessionInfo& session, const ReplayRequest& request,
-                                                     Revision newest, Listing listing) {
+                                                     Revision newest, const mapping::ScanPoses& poses,
+                                                     Listing listing) {
     const std::lock_guard lock(mutex_);
-    auto job = started(session, request, target_of(request, newest));
+    auto job = started(session, request, target_of(request, newest), poses);
     if (job && listing == Listing::kListed) (*job)->set_listed(++listed_);
     evict();
     return job;
@@ -37,9 +38,9 @@ Result<std::shared_ptr<ReplayJob>> ReplayJobs::start(const SessionInfo& session,
 
 /// Pre: mutex_ is held.
 Result<std::shared_ptr<ReplayJob>> ReplayJobs::started(const SessionInfo& session, const ReplayRequest& request,
-                                                       Revision target) {
+                                                       Revision target, const mapping::ScanPoses& poses) {
     auto job = touch(session.id, replay_id_of(session, request));
-    if (job && job->join(target)) return job;
+    if (job && job->join(target, poses)) return job;
     if (auto room = check_room(); !room) return room.error();
     if (job && job->progress().state == ReplayJob::State::kDone) {
         if (!job->resume(target, budget_)) {
@@ -49,7 +50,7 @@ Result<std::shared_ptr<ReplayJob>> ReplayJobs::started(const SessionInfo& sessio
     } else {
         const std::uint64_t listed = job ? job->listed() : 0;
         if (job) jobs_.pop_front();
-        job = std::make_shared<ReplayJob>(session, request, target);
+        job = std::make_shared<ReplayJob>(session, request, target, poses);
         job->set_listed(listed);
         jobs_.push_front(job);
     }

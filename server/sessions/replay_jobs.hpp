@@ -48,10 +48,12 @@ public:
     /// is started again from the beginning.
     ///
     /// @param newest  current revision of the session
+    /// @param poses   of the session's maps at that revision
     /// @param listing  kListed adds the job to list(); a listed job stays listed
     /// Errors: kOverloaded if too many jobs have not ended or the memory for them is used up; kShuttingDown.
     [[nodiscard]] Result<std::shared_ptr<ReplayJob>> start(const SessionInfo& session, const ReplayRequest& request,
-                                                           Revision newest, Listing listing = Listing::kListed);
+                                                           Revision newest, const mapping::ScanPoses& poses = {},
+                                                           Listing listing = Listing::kListed);
 
     /// Returns the job; null if it does not exist or was evicted.
     [[nodiscard]] std::shared_ptr<ReplayJob> find(store::SessionId session, std::string_view id);
@@ -83,7 +85,7 @@ private:
     };
 
     [[nodiscard]] Result<std::shared_ptr<ReplayJob>> started(const SessionInfo& session, const ReplayRequest& request,
-                                                             Revision target);
+                                                             Revision target, const mapping::ScanPoses& poses);
     [[nodiscard]] std::shared_ptr<ReplayJob> touch(store::SessionId session, std::string_view id);
     [[nodiscard]] std::size_t count_under_way() const;
     [[nodiscard]] Result<> check_room() const;

@@ -77,6 +77,8 @@ Result<> check(const mapping::Projection&, const ScansExcluded&) { return {}; }
 
 Result<> check(const mapping::Projection&, const ExclusionLifted&) { return {}; }
 
+Result<> check(const mapping::Projection&, const MapsCorrected&) { return {}; }
+
 } // namespace
 
 Result<> check_replayable(const mapping::Projection& projection, const LogEntry& entry) {

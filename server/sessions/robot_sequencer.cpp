@@ -57,7 +57,7 @@ PendingEntry RobotSequencer::submitted(Member& member, std::optional<LogEntry> e
 
 // Joining and leaving
 
-std::optional<PendingEntry> RobotSequencer::join(PendingJoin joining) {
+std::optional<PendingEntry> RobotSequencer::join(PendingJoin joining, bool is_mapped) {
     const auto& who = joining.who;
     auto known =
         std::find_if(members_.begin(), members_.end(), [&](const Member& m) { return logged(m).name == who.robot; });
@@ -67,10 +67,14 @@ std::optional<PendingEntry> RobotSequencer::join(PendingJoin joining) {
                                            info_.name, members_.size())});
         return std::nullopt;
     }
+    if (auto ok = check_poses(who, is_mapped); !ok) {
+        joining.done(ok.error());
+        return std::nullopt;
+    }
     const bool is_new = known == members_.end();
     Member& member = is_new ? members_.emplace_back() : *known;
     if (!is_new) {
-        if (auto agrees = check_source(logged(member), who.source); !agrees) {
+        if (auto agrees = check_again(logged(member), who); !agrees) {
             joining.done(agrees.error());
             return std::nullopt;
         }
@@ -78,23 +82,60 @@ std::optional<PendingEntry> RobotSequencer::join(PendingJoin joining) {
                                                    who.robot, info_.name)});
     }
     std::optional<PendingEntry> entry;
-    if (is_new || logged(member).source != who.source || logged(member).body_radius != who.body_radius) {
-        entry = submitted(member, RobotJoined{index_of(member), who.robot, who.source, who.body_radius}, 0);
+    const auto is_as_logged = [&](const LoggedRobot& robot) {
+        return robot.source == who.source && robot.body_radius == who.body_radius && robot.poses == who.poses;
+    };
+    if (is_new || !is_as_logged(logged(member))) {
+        entry = submitted(member, RobotJoined{index_of(member), who.robot, who.source, who.body_radius, who.poses}, 0);
     }
     member.joining = std::move(joining);
     admit(member);
     return entry;
 }
 
-/// Checks that a robot continues with the same source. Scans are identified by their sequence number only, so the scans
-/// of another recording would be taken for the rest of this one.
-Result<> RobotSequencer::check_source(const LoggedRobot& robot, const std::string& source) const {
-    if (robot.accepts(source)) return {};
+/// Checks that a robot continues with the same source and the same kind of poses. Scans are identified by their
+/// sequence number only, so the scans of another recording would be taken for the rest of this one.
+Result<> RobotSequencer::check_again(const LoggedRobot& robot, const JoinRequest& who) const {
+    if (robot.accepts(who.source, who.poses)) return {};
+    if (robot.source == who.source) {
+        return Error{Errc::kConflict,
+                     fmt::format("hello.poses: the {} scans of robot '{}' in session '{}' have poses of kind '{}', not "
+                                 "'{}'; continue with the same, or use another robot or session name",
+                                 robot.last_seq, robot.name, info_.name, name_of(robot.poses), name_of(who.poses))};
+    }
     const auto in_words = [](const std::string& name) { return name.empty() ? "a live robot" : "'" + name + "'"; };
     return Error{Errc::kConflict,
                  fmt::format("hello.source: the {} scans of robot '{}' in session '{}' come from {}, not from {}; "
                              "continue with the same, or use another robot or session name",
-                             robot.last_seq, robot.name, info_.name, in_words(robot.source), in_words(source))};
+                             robot.last_seq, robot.name, info_.name, in_words(robot.source), in_words(who.source))};
+}
+
+/// Checks that the poses of a robot and of the others are in one frame: a robot whose poses the server estimates has a
+/// map of its own.
+Result<> RobotSequencer::check_poses(const JoinRequest& who, bool is_mapped) const {
+    const auto refused = [&](std::string_view why) {
+        return Error{Errc::kConflict, fmt::format("hello.poses is '{}': {}; use another session for robot '{}'",
+                                                  name_of(who.poses), why, who.robot)};
+    };
+    for (const auto& robot : pending_.robots()) {
+        if (robot.name == who.robot) {
+            if (robot.last_seq > 0) return {}; // it was checked when it joined first
+            continue;
+        }
+        if (robot.poses != Poses::kMap) {
+            return refused(fmt::format("session '{}' has the map of robot '{}', whose poses the server estimates, and "
+                                       "the pose of another robot in it is not known",
+                                       info_.name, robot.name));
+        }
+        if (who.poses != Poses::kMap) {
+            return refused(
+                fmt::format("session '{}' has other robots, and the pose of this one relative to them is not "
+                            "known",
+                            info_.name));
+        }
+    }
+    if (who.poses == Poses::kMap || !is_mapped) return {};
+    return refused(fmt::format("session '{}' has a map, and the robot's pose in it is not known", info_.name));
 }
 
 /// Admits the link that waits to join, if all entries of the robot's earlier links are in the maps.
@@ -190,7 +231,7 @@ std::vector<PendingEntry> RobotSequencer::take(const std::shared_ptr<RobotListen
             fault = prefixed(fmt::format("scan_batch.scans[{}].", n), ok.error());
             continue;
         }
-        const auto reach = mapping::reach_of(info_.config, *logged(*member).find_sensor(scan.sensor)->sensor, scan);
+        const auto reach = reach_of(*member, scan);
         if (auto ok = mapping::check_work(reach); !ok) {
             fault = prefixed(fmt::format("scan_batch.scans[{}].", n), ok.error());
             continue;
@@ -206,6 +247,36 @@ std::vector<PendingEntry> RobotSequencer::take(const std::shared_ptr<RobotListen
     return entries;
 }
 
+/// Returns what a scan may change. Without a pose, it counts as taken where the robot is expected.
+mapping::Reach RobotSequencer::reach_of(const Member& member, Scan& scan) const {
+    const bool is_estimated = !scan.pose;
+    if (is_estimated) {
+        scan.pose = scan.odometry ? compose(member.place.T_map_odom, *scan.odometry) : member.place.T_map_robot;
+    }
+    const auto reach = mapping::reach_of(info_.config, *logged(member).find_sensor(scan.sensor)->sensor, scan);
+    if (is_estimated) scan.pose.reset();
+    return reach;
+}
+
+/// Checks that a scan has the poses that its robot announced.
+Result<> RobotSequencer::check_pose(const LoggedRobot& robot, const Scan& scan) {
+    const auto invalid = [](std::string_view why) { return Error{Errc::kInvalidField, std::string(why)}; };
+    if (robot.poses == Poses::kMap) {
+        if (scan.pose) return {};
+        return invalid("pose is absent; send where the robot was, an empty Pose2 if that is (0, 0, 0)");
+    }
+    if (scan.pose)
+        return invalid("pose is set, but hello.poses says that the server estimates the poses; leave it out");
+    if (robot.poses == Poses::kOdometry) {
+        if (scan.odometry) return {};
+        return invalid("odometry is absent, but hello.poses says that the robot has odometry; send it, or POSES_NONE");
+    }
+    if (scan.odometry) return invalid("odometry is set, but hello.poses says that the robot has none; leave it out");
+    const auto is_laser = [](const auto& known) { return known.second.sensor->kind == SensorKind::kLaser; };
+    if (std::ranges::any_of(robot.sensors, is_laser)) return {};
+    return invalid("sensor is a ring of sonars of a robot without laser and odometry, whose poses cannot be estimated");
+}
+
 Result<> RobotSequencer::check_next(const LoggedRobot& robot, const Scan& scan, bool is_mapped) const {
     if (!robot.is_next(scan.seq)) {
         return Error{
@@ -218,6 +289,7 @@ Result<> RobotSequencer::check_next(const LoggedRobot& robot, const Scan& scan, 
         return Error{Errc::kInvalidField,
                      fmt::format("sensor is {}, which was not described; send a SensorDescription first", scan.sensor)};
     }
+    if (auto ok = check_pose(robot, scan); !ok) return ok;
     if (scan.begins_map && robot.last_seq == 0) { // later scans are placed relative to the first
         const auto shows = [](const Member& other) { return other.first_visible_seq > 0; };
         if (is_mapped || std::ranges::any_of(members_, shows)) return map_already_begun(robot.name, info_.name);
@@ -225,11 +297,17 @@ Result<> RobotSequencer::check_next(const LoggedRobot& robot, const Scan& scan, 
     return wire::check_scan(scan, *known->sensor);
 }
 
+PendingEntry RobotSequencer::announce(const MapsCorrected& corrected) {
+    pending_.apply(corrected);
+    return {PendingEntry::kNoRobot, corrected, {}, 0};
+}
+
 // Acknowledgements
 
 void RobotSequencer::release(const Group& group) {
     std::map<RobotIndex, std::size_t> bytes; // one message per robot
     for (const auto& released : group.entries) {
+        if (released.robot == PendingEntry::kNoRobot) continue;
         Member& member = members_[released.robot];
         bytes[released.robot] += released.bytes;
         --member.pending_entries;

@@ -2,6 +2,7 @@
 
 #include "common/error/error.hpp"
 #include "common/scan/log_rules.hpp"
+#include "core/localization/robot_poses.hpp"
 #include "core/mapping/projection.hpp"
 #include "server/sessions/backlog.hpp"
 #include "server/sessions/listeners.hpp"
@@ -48,8 +49,9 @@ public:
 
     /// Connects a robot, and fails its earlier link with kReplaced. Calls `joining.done` when all entries of the
     /// earlier links are in the maps.
+    /// @param is_mapped  whether the maps of the session contain anything yet
     /// @return the entry to append if the robot is new or its properties have changed
-    [[nodiscard]] std::optional<PendingEntry> join(PendingJoin joining);
+    [[nodiscard]] std::optional<PendingEntry> join(PendingJoin joining, bool is_mapped);
 
     /// Disconnects a link. Ignored if it is not the current link of a robot.
     void leave(const std::shared_ptr<RobotListener>& listener);
@@ -67,6 +69,18 @@ public:
     [[nodiscard]] std::vector<PendingEntry> take(const std::shared_ptr<RobotListener>& from, std::vector<Scan> scans,
                                                  std::size_t bytes, bool is_mapped);
 
+    /// Returns the entry to append when maps follow corrected poses.
+    [[nodiscard]] PendingEntry announce(const MapsCorrected& corrected);
+
+    /// Sets where a robot is whose scans have no poses, to estimate what its next scans reach.
+    /// @param robot  index in the session
+    /// @param place  by its newest scan in the maps
+    void set_place(RobotIndex robot, const localization::Place& place) { members_[robot].place = place; }
+
+    /// Returns the link of a robot; null if it is not connected.
+    /// @param robot  index in the session
+    [[nodiscard]] RobotListener* listener_of(RobotIndex robot) const { return members_[robot].listener.get(); }
+
     /// Acknowledges a group that is in the maps: calls on_durable() of its links, and admits links that waited for it.
     void release(const Group& group);
 
@@ -83,13 +97,17 @@ private:
         std::size_t pending_entries = 0; // entries submitted and not released
         std::uint64_t durable_seq = 0;
         std::uint64_t first_visible_seq = 0; // of the first scan accepted here that can change a cell; 0: none
+        localization::Place place;           // see set_place()
     };
 
     [[nodiscard]] RobotIndex index_of(const Member& member) const;
     [[nodiscard]] const LoggedRobot& logged(const Member& member) const { return pending_.robots()[index_of(member)]; }
     [[nodiscard]] Member* member_of(const std::shared_ptr<RobotListener>& listener);
     [[nodiscard]] PendingEntry submitted(Member& member, std::optional<LogEntry> entry, std::size_t bytes);
-    [[nodiscard]] Result<> check_source(const LoggedRobot& robot, const std::string& source) const;
+    [[nodiscard]] Result<> check_again(const LoggedRobot& robot, const JoinRequest& who) const;
+    [[nodiscard]] Result<> check_poses(const JoinRequest& who, bool is_mapped) const;
+    [[nodiscard]] mapping::Reach reach_of(const Member& member, Scan& scan) const;
+    [[nodiscard]] static Result<> check_pose(const LoggedRobot& robot, const Scan& scan);
     [[nodiscard]] Result<> check_next(const LoggedRobot& robot, const Scan& scan, bool is_mapped) const;
     void restore(RobotIndex robot, const LoggedRobot& durable);
     void admit(Member& member);

@@ -38,15 +38,22 @@ Error short_of_memory() {
 
 } // namespace
 
-Session::Session(SessionInfo info, mapping::Projection projection, std::optional<Revision> checkpointed,
+Session::Session(SessionInfo info, localization::LocalizedProjection maps, std::optional<Revision> checkpointed,
                  store::ScanLog& log, boost::asio::any_io_executor compute, std::shared_ptr<SessionCounters> counters,
                  const SessionLimits& limits, std::optional<boost::asio::any_io_executor> blocking_executor)
     : info_(std::move(info)), log_(log), counters_(std::move(counters)), limits_(limits),
       blocking_executor_(blocking_executor.value_or(compute)), strand_(std::move(compute)),
-      sequencer_(info_, *counters_), maps_(std::move(projection)), appended_(maps_.projection().revision()),
+      sequencer_(info_, *counters_), maps_(std::move(maps)), appended_(maps_.projection().revision()),
       share_(limits.shared), pages_(maps_.projection().page_count()), checkpoints_(info_.id, checkpointed) {
     share_.take_anyway(static_cast<std::int64_t>(pages_)); // its log is stored, so its maps must be served
     sequencer_.restore(maps_.projection().state());
+    for (RobotIndex robot = 0; robot < maps_.projection().robots().size(); ++robot) {
+        const auto* poses = maps_.localized().poses().find(robot);
+        if (poses == nullptr) continue;
+        sequencer_.set_place(robot, poses->place());
+        loops_ += poses->estimator().loop_count();
+    }
+    moving_scans_ = maps_.localized().moving_scans();
 }
 
 std::optional<Error> Session::failure() const {
@@ -59,11 +66,11 @@ std::optional<Error> Session::closing() const {
     return closing_;
 }
 
-template <class Work>
-void Session::on_strand(Work work) {
+void Session::on_strand(std::function<void(Session&)> work) {
     boost::asio::post(strand_, [self = shared_from_this(), work = std::move(work)]() mutable {
         work(*self);
         self->backlog_size_ = self->waiting_.size();
+        self->moving_scans_ = self->maps_.localized().moving_scans();
         self->notify_watchers(); // last, so that acknowledgements go out first
     });
 }
@@ -80,7 +87,8 @@ void Session::join(JoinRequest who, std::shared_ptr<RobotListener> listener, std
     on_strand([joining = PendingJoin{std::move(who), std::move(listener), std::move(done)}](Session& self) mutable {
         if (self.refusing_) return joining.done(*self.refusing_);
         std::vector<PendingEntry> entries;
-        if (auto entry = self.sequencer_.join(std::move(joining))) entries.push_back(std::move(*entry));
+        if (auto entry = self.sequencer_.join(std::move(joining), self.is_mapped()))
+            entries.push_back(std::move(*entry));
         self.enqueue(std::move(entries));
     });
 }
@@ -101,10 +109,11 @@ void Session::submit(std::shared_ptr<RobotListener> from, std::vector<Scan> scan
             self.counters_->scans_dropped += scans.size();
             return;
         }
-        const bool is_mapped = !mapping::bounds_of(self.maps_.projection().bounds()).empty();
-        self.enqueue(self.sequencer_.take(from, std::move(scans), bytes, is_mapped));
+        self.enqueue(self.sequencer_.take(from, std::move(scans), bytes, self.is_mapped()));
     });
 }
+
+bool Session::is_mapped() const { return !mapping::bounds_of(maps_.projection().bounds()).empty(); }
 
 void Session::enqueue(std::vector<PendingEntry> entries) {
     for (auto& entry : entries) waiting_.add(std::move(entry));
@@ -181,7 +190,8 @@ void Session::apply_batch() {
 
     // A small group is applied as a whole, and in place if no reader holds the published maps. Otherwise each chunk
     // that the group changes is copied first.
-    const bool in_place = durable_.front().work <= kInPlaceWork && maps_.withdraw();
+    const bool is_short = durable_.front().work <= kInPlaceWork && !maps_.projection().has_estimated_poses();
+    const bool in_place = is_short && maps_.withdraw();
     auto applied = apply_entries(in_place ? HUGE_VAL : kSliceWork);
     const bool finished = applied && applied_ == durable_.front().entries.size();
     if (in_place && !finished) { // failed, or asked to finish early: publish for the waiting readers
@@ -195,9 +205,12 @@ void Session::apply_batch() {
         const Group group = take_applied_group();
         const auto published = maps_.publish();
         has_news_ = true;
+        report_places(group);
         sequencer_.release(group); // its scans are durable and in the maps: they are acknowledged
         if (!published) return stop_writing(published.error());
-        if (checkpoints_.is_due(maps_.projection().revision())) begin_checkpoint();
+        count_loops();
+        if (checkpoints_.is_due(maps_.projection().revision()) && can_be_stored()) begin_checkpoint();
+        begin_correction();
         append_next();
     }
     if (!durable_.empty()) return on_strand([](Session& self) { self.apply_batch(); });
@@ -215,12 +228,25 @@ Result<> Session::apply_entries(double work) {
         if (!applied) return applied.error();
         if (!*applied) return {}; // continues in the next slice
         checkpoints_.count(next);
+        if (std::holds_alternative<MapsCorrected>(*next.entry)) {
+            if (correction_) ++counters_->maps_corrected;
+            drop_correction(); // the maps have taken it
+        }
         if (const auto* taken = std::get_if<ScanTaken>(&*next.entry)) {
-            const bool is_left_out = maps_.projection().has_left_out_newest(taken->robot);
-            ++(is_left_out ? counters_->scans_jumped : counters_->scans_applied);
+            count(*taken);
+            const auto* poses = maps_.localized().poses().find(taken->robot);
+            if (poses != nullptr) sequencer_.set_place(taken->robot, poses->place());
         }
     }
     return {};
+}
+
+void Session::count(const ScanTaken& applied) {
+    if (!maps_.projection().has_left_out_newest(applied.robot)) {
+        ++counters_->scans_applied;
+    } else {
+        ++(applied.scan.pose ? counters_->scans_jumped : counters_->scans_unplaced);
+    }
 }
 
 /// Removes the first group, which is applied, and returns the share of the memory that it did not need.
@@ -285,9 +311,11 @@ void Session::finish_reset() {
     drop_pending();
     appended_ = maps_.projection().revision();
     refusing_ = closing();
+    begin_correction();
 }
 
 void Session::drop_pending() {
+    drop_correction(); // its entry may be among those that are dropped
     waiting_.clear();
     durable_.clear();
     applied_ = 0;
@@ -329,7 +357,7 @@ void Session::finish_closing() {
     if (!waiting_.empty() || !durable_.empty()) return;
     sequencer_.fail_all(*refusing_);
     const bool is_outdated = checkpoints_.is_outdated(maps_.projection().revision());
-    if (is_outdated && !broken_ && !finish_early_ && !final_checkpoint_tried_) {
+    if (is_outdated && can_be_stored() && !broken_ && !finish_early_ && !final_checkpoint_tried_) {
         final_checkpoint_tried_ = true;
         return begin_checkpoint();
     }

@@ -36,14 +36,14 @@ namespace scanloom::sessions {
 /// Threads: every public function may be called from any thread; the work runs on the strand.
 class Session : public std::enable_shared_from_this<Session> {
 public:
-    /// Creates a session from a projection of its whole log.
+    /// Creates a session from the maps of its whole log. Call correct_maps() then.
     ///
     /// @param checkpointed  revision of the stored checkpoint, as Recovered::checkpointed
     /// @param log  must outlive the session
     /// @param compute  applies entries
     /// @param blocking_executor  writes checkpoints, which blocks; `compute` by default
-    Session(SessionInfo info, mapping::Projection projection, std::optional<Revision> checkpointed, store::ScanLog& log,
-            boost::asio::any_io_executor compute,
+    Session(SessionInfo info, localization::LocalizedProjection maps, std::optional<Revision> checkpointed,
+            store::ScanLog& log, boost::asio::any_io_executor compute,
             std::shared_ptr<SessionCounters> counters = std::make_shared<SessionCounters>(),
             const SessionLimits& limits = {},
             std::optional<boost::asio::any_io_executor> blocking_executor = std::nullopt);
@@ -63,6 +63,9 @@ public:
     /// Returns the number of entries that wait to be appended to the log.
     [[nodiscard]] std::size_t backlog_size() const noexcept { return backlog_size_; }
 
+    /// Returns Snapshot::moving_scans of the newest maps. Does not wait.
+    [[nodiscard]] std::size_t moving_scans() const noexcept { return moving_scans_; }
+
     /// Returns the error that stopped ingestion, or nullopt if the session accepts scans.
     ///
     /// After a failure the session still serves its last maps but accepts no scans until it is loaded again from the
@@ -72,6 +75,13 @@ public:
     /// Returns why the session is closing, or nullopt if it is not: kGone if it is deleted, otherwise kShuttingDown. A
     /// closing session accepts no further entries.
     [[nodiscard]] std::optional<Error> closing() const;
+
+    /// Calls `read` with the estimated poses of the scans that robots sent without, on the session's strand.
+    /// @param read  must not block
+    void read_poses(std::function<void(const localization::SessionPoses&)> read);
+
+    /// Begins to correct the maps if they show scans at poses that have been corrected.
+    void correct_maps();
 
     /// Adds a watcher, which is notified of each change of the state that this class returns. A watcher that reads the
     /// state after this call misses no change.
@@ -130,9 +140,11 @@ public:
     void close_early(Error reason, std::function<void()> done);
 
 private:
-    template <class Work>
-    void on_strand(Work work);
+    void on_strand(std::function<void(Session&)> work);
 
+    [[nodiscard]] bool is_mapped() const;
+    /// Returns whether checkpoints can be written: they do not contain the state from which poses are estimated.
+    [[nodiscard]] bool can_be_stored() const { return !maps_.projection().has_estimated_poses(); }
     void enqueue(std::vector<PendingEntry> entries);
     void append_next();
     void append(Group group);
@@ -140,13 +152,20 @@ private:
     void on_appended(Group group, const Result<>& appended);
     void apply_batch();
     [[nodiscard]] Result<> apply_entries(double work);
+    void count(const ScanTaken& applied);
+    void count_loops();
     [[nodiscard]] Group take_applied_group();
+    void report_places(const Group& group);
     void notify_watchers();
     void stop_writing(const Error& error);
     void reset_to_durable(const Error& error);
     void finish_reset();
     void drop_pending();
     void begin_checkpoint();
+    void begin_correction();
+    void continue_correction();
+    void on_corrected(const Result<>& applied);
+    void drop_correction();
     void finish_closing();
 
     SessionInfo info_;
@@ -164,9 +183,12 @@ private:
     std::size_t applied_ = 0;   // applied entries of the first group
     Revision appended_ = 0;     // newest entry passed to the log
     bool appending_ = false;
-    std::int64_t chunks_under_way_ = 0; // that the groups being appended or applied may create
-    limits::MemoryShare share_;         // of the limits' budgets: pages_ and chunks_under_way_
-    std::size_t pages_ = 0;             // of the maps
+    std::int64_t chunks_under_way_ = 0;         // that the groups being appended or applied may create
+    limits::MemoryShare share_;                 // of the limits' budgets: pages_ and chunks_under_way_
+    std::size_t pages_ = 0;                     // of the maps
+    std::shared_ptr<MapCorrection> correction_; // null: none is being made, nor waits for its entry
+    std::size_t correction_pages_ = 0;          // of share_
+    std::size_t loops_ = 0;                     // of all robots, that are counted
     CheckpointSchedule checkpoints_;
     bool final_checkpoint_tried_ = false;
     std::optional<Error> refusing_; // why no more entries are accepted
@@ -180,6 +202,7 @@ private:
     mutable Watchers watchers_;
     std::atomic<bool> finish_early_ = false;    // set from any thread, because the strand may be busy
     std::atomic<std::size_t> backlog_size_ = 0; // of waiting_, for any thread
+    std::atomic<std::size_t> moving_scans_ = 0; // of maps_, for any thread
 
     MainBounds main_bounds_;
 

@@ -4,9 +4,12 @@
 #include "common/wire/log_codec.hpp"
 #include "core/mapping/snapshot.hpp"
 #include "server/sessions/checkpoint_reader.hpp"
+#include "server/sessions/map_correction.hpp"
 #include "server/sessions/recovery.hpp"
 
 #include <fmt/format.h>
+
+#include <cmath>
 
 namespace scanloom::sessions {
 namespace {
@@ -62,19 +65,21 @@ Result<> check_checkpoint(Checking& checking, const mapping::MapConfig& config, 
 Result<> compare_maps(Checking& checking, const mapping::MapConfig& config, const Exclusions& exclusions) {
     auto recovered = recover(checking.log, checking.id, config, false);
     if (!recovered) return recovered.error();
-    if (exclusions != *recovered->projection.exclusions()) {
+    if (exclusions != *recovered->maps.projection().exclusions()) {
         return Error{Errc::kMalformed, "the exclusions of the log differ from those of the checkpoint"};
     }
-    mapping::Projection whole(config, recovered->projection.exclusions());
+    localization::LocalizedProjection whole(mapping::Projection(config, recovered->maps.projection().exclusions()));
     auto applied = checking.log.read(checking.id, 0, [&](Revision, std::string_view bytes) -> Result<> {
-        const auto entry = wire::decode_entry(bytes);
+        auto entry = wire::decode_entry(bytes);
         if (!entry) return entry.error();
-        if (auto added = whole.apply(*entry); !added) return added;
+        double work = HUGE_VAL;
+        if (auto added = whole.apply(*entry, work); !added) return added.error();
         return checking.go_on(bytes.size());
     });
+    if (applied) applied = correct_as_announced(checking.log, checking.id, whole, false);
     if (!applied) return applied;
-    const auto left = recovered->projection.snapshot();
-    const auto right = whole.snapshot();
+    const auto left = recovered->maps.projection().snapshot();
+    const auto right = whole.projection().snapshot();
     for (const auto layer : mapping::kLayers) {
         if (mapping::digest_of(left, layer) == mapping::digest_of(right, layer)) continue;
         return Error{

@@ -55,13 +55,17 @@ struct SessionInfo {
 
 // What all sessions share
 
-/// Counters of all sessions together. Every submitted scan is counted in exactly one of them, or is still in progress.
+/// Counters of all sessions together. Every submitted scan is counted in exactly one of those of scans, or is still in
+/// progress.
 /// Threads: any thread.
 struct SessionCounters {
     std::atomic<std::uint64_t> scans_applied = 0;    ///< in the log and in the map
     std::atomic<std::uint64_t> scans_jumped = 0;     ///< in the log, but not in the map because of max_jump
+    std::atomic<std::uint64_t> scans_unplaced = 0;   ///< in the log, but not in the map: they fit no place
     std::atomic<std::uint64_t> scans_duplicates = 0; ///< sent again after a reconnect and dropped
     std::atomic<std::uint64_t> scans_dropped = 0;    ///< refused, or received after their link ended; not acknowledged
+    std::atomic<std::uint64_t> loops_accepted = 0;   ///< edges between places that a robot visited again
+    std::atomic<std::uint64_t> maps_corrected = 0;   ///< times that maps followed corrected poses of earlier scans
 };
 
 /// Returns the error (kShuttingDown) for requests that arrive while the server shuts down.

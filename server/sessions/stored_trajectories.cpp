@@ -74,12 +74,13 @@ Result<StoredTrajectories> read_old_paths(store::ScanLog& log, store::SessionId 
             paths.until = revision - 1;
             return store::Visit::kStop;
         }
-        const auto taken = wire::decode_scan_pose(bytes);
+        auto taken = wire::decode_scan_pose(bytes);
         if (!taken) return damaged_entry(revision, taken.error());
+        if (*taken) maps.scan_poses.place(**taken);
         if (!*taken || (*taken)->robot >= kept.size() || revision >= kept[(*taken)->robot]) return {};
         const bool is_integrated = filter.take(revision, **taken) == ScanUse::kIntegrated;
         if (!is_integrated || revision <= since) return {};
-        paths.robots[(*taken)->robot].push_back({revision, (*taken)->stamp, (*taken)->pose});
+        paths.robots[(*taken)->robot].push_back({revision, (*taken)->stamp, *(*taken)->pose});
         ++points;
         return {};
     };

@@ -25,7 +25,7 @@
 /// upgrades it to this version; its entries stay as they are.
 namespace scanloom::store {
 
-inline constexpr std::uint64_t kFormatVersion = 3;
+inline constexpr std::uint64_t kFormatVersion = 4;
 inline constexpr std::string_view kFormatKey = "f";
 inline constexpr std::string_view kNextSessionKey = "n";
 inline constexpr std::string_view kSessionsBegin = "s";

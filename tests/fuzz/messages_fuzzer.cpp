@@ -11,7 +11,7 @@ namespace {
 void check_scan_batch(const ScanBatch& batch) {
     fuzz::check(!batch.scans.empty() && batch.scans.size() <= kScansPerBatchMax, "a batch has 1 to 1024 scans");
     for (const Scan& scan : batch.scans) {
-        fuzz::check(is_finite(scan.pose), "poses are finite");
+        fuzz::check(!scan.pose || is_finite(*scan.pose), "poses are finite");
         fuzz::check(!scan.ranges.empty() && scan.ranges.size() <= kBeamsMax, "a scan has 1 to 4096 beams");
         fuzz::check(scan.intensities.empty() || scan.intensities.size() == scan.ranges.size(), "intensities fit");
         fuzz::check(!scan.angles || beam_count(*scan.angles) == scan.ranges.size(), "angles fit");

@@ -104,7 +104,7 @@ std::vector<wire::Message> messages() {
         wire::Ping{42},
         wire::Pong{42},
         wire::Goodbye{"done"},
-        wire::Correction{{1.0, 2.0, 3.0}, 9, 0.9, 0.002, 0.001},
+        wire::Correction{{1.0, 2.0, 3.0}, 9, 0.9, 0.002, 0.001, LocalizationState::kLost},
         wire::PlanRequest{1, Point2{1.0, 2.0}, {3.0, 4.0}, true, 0.2, 2.0},
         wire::PlanReply{1, 9, wire::Path{{{1.0, 2.0}, {3.0, 4.0}}, 2.9, 3.5}},
         wire::PlanReply{1, 9, Error{Errc::kNoPath, "the goal (3, 4) is inside an obstacle"}},

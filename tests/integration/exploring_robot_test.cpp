@@ -62,9 +62,10 @@ std::vector<grid::Cell> left_unexplored(const sim::World& world, GoalOracle& ora
 /// A robot whose scans go to the oracle, which returns its goals.
 class Explorer {
 public:
-    Explorer(GoalOracle& oracle, RobotIndex index, sim::SimulatorOptions options)
-        : oracle_(oracle), index_(index), source_(std::move(options), kLimits, NoReturn::kFree, 0.0) {
-        oracle_.join(index_, *source_.simulator().sensors().front());
+    /// @param is_corrected  whether the robot takes the corrections of a server that estimates its poses
+    Explorer(GoalOracle& oracle, RobotIndex index, const sim::SimulatorOptions& options, bool is_corrected = false)
+        : oracle_(oracle), index_(index), is_corrected_(is_corrected), source_(options, kLimits, NoReturn::kFree, 0.0) {
+        oracle_.join(index_, *source_.simulator().sensors().front(), options.poses);
         source_.ask_with([this]() -> boost::asio::awaitable<Result<NextStop>> { co_return oracle_.next(index_); });
     }
 
@@ -77,15 +78,19 @@ public:
         });
         io_.restart();
         io_.run();
-        if (!*next) ADD_FAILURE() << next->error().message;
+        if (!*next) failure_ = next->error();
         if (!*next || !**next) return false;
         Scan scan = (**next)->scan;
         scan.seq = ++seq_;
-        clearance_min_ = std::min(clearance_min_, clearance(source_.simulator().world(), {scan.pose.x, scan.pose.y}));
+        const auto& simulator = source_.simulator();
+        clearance_min_ = std::min(clearance_min_, clearance(simulator.world(), sim::position_of(simulator.pose())));
         oracle_.take(index_, std::move(scan));
+        if (is_corrected_) source_.correct(oracle_.T_map_odom(index_));
         return true;
     }
 
+    /// Returns why the robot has given up, if it has.
+    [[nodiscard]] const std::optional<Error>& failure() const { return failure_; }
     [[nodiscard]] const sim::ExploringSource& source() const { return source_; }
     [[nodiscard]] double clearance_min() const { return clearance_min_; }
 
@@ -93,12 +98,15 @@ private:
     boost::asio::io_context io_;
     GoalOracle& oracle_;
     RobotIndex index_;
+    bool is_corrected_;
     sim::ExploringSource source_;
     std::uint64_t seq_ = 0;
+    std::optional<Error> failure_;
     double clearance_min_ = 10.0;
 };
 
 void expect_explored(const Explorer& robot, GoalOracle& oracle) {
+    EXPECT_FALSE(robot.failure()) << robot.failure()->message;
     const auto& simulator = robot.source().simulator();
     EXPECT_TRUE(left_unexplored(simulator.world(), oracle, simulator.pose()).empty());
     EXPECT_EQ(robot.source().simulator().collisions(), 0U);
@@ -180,6 +188,24 @@ TEST_F(ExploringRobots, TwoRobotsExploreTheOfficeTogether) {
     expect_explored(second, oracle);
     EXPECT_GE(known_share(world, oracle.maps()), 0.95);
     EXPECT_GT(together, 3000) << "both robots explore a part";
+}
+
+TEST_F(ExploringRobots, CorrectionsOfTheServerMakeUpForDriftingOdometry) {
+    sim::SimulatorOptions options{sim::make_office(), coarse_laser(), sim::with_odometry({}, 2.0), 1};
+    options.pose = sim::PoseSent::kOdometry;
+    options.poses = Poses::kOdometry;
+    GoalOracle oracle(session_);
+    Explorer robot(oracle, 0, options, true);
+    int scans = 0;
+    while (robot.step()) ++scans;
+    expect_explored(robot, oracle);
+    EXPECT_GE(known_share(options.world, oracle.maps()), 0.95);
+
+    GoalOracle other(session_);
+    Explorer uncorrected(other, 0, options, false);
+    while (scans > 0 && uncorrected.step()) --scans; // not longer than the other one
+    EXPECT_FALSE(uncorrected.source().remarks().starts_with("explored")) << uncorrected.source().remarks();
+    EXPECT_LT(known_share(options.world, other.maps()), 0.5);
 }
 
 TEST_F(ExploringRobots, TheSameSeedGivesTheSameTrajectory) {

@@ -53,7 +53,7 @@ TEST_P(RealLogs, GiveTheMapsOfANaiveImplementation) {
         c.range_min = sensor->range_min;
         c.range_max = sensor->range_max;
         c.cell_size = n / step % 6 == 0 ? 0.05 : n % 2 == 0 ? 0.1 : 0.25;
-        c.T_map_sensor = compose(scan.pose, sensor->mount);
+        c.T_map_sensor = compose(*scan.pose, sensor->mount);
         c.ranges = scan.ranges;
         ASSERT_NO_FATAL_FAILURE(mapping::expect_equal_to_oracle(c, firm, mapping::Beams::kIndexed));
     }

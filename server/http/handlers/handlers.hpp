@@ -88,6 +88,11 @@ namespace scanloom::http {
 
 [[nodiscard]] Result<Response> get_trajectory(Context& context); ///< reads points from the log that memory lacks
 
+// poses.cpp: poses that the server estimates
+
+[[nodiscard]] boost::asio::awaitable<Result<Response>> get_trajectory_tum(Context& context); ///< of sent poses, too
+[[nodiscard]] boost::asio::awaitable<Result<Response>> get_pose_graph(Context& context);     ///< keyframes and edges
+
 // log.cpp
 
 [[nodiscard]] Result<Response> get_log(Context& context); ///< reads the log while it is sent

@@ -74,10 +74,10 @@ Result<Response> get_landmarks(Context& context) {
     if (!seen_min) return seen_min.error();
     const auto& session = context.session;
     const auto snapshot = session->snapshot();
-    const auto applied = context.services.landmarks.up_to(session->info(), snapshot->revision,
+    const auto applied = context.services.landmarks.up_to(session->info(), snapshot->revision, snapshot->scan_poses,
                                                           [&] { return !context.services.sessions.is_draining(); });
     if (!applied) return applied.error();
-    const LandmarkQuery asked{since_in(*snapshot, *since), *bbox, *seen_min};
+    const LandmarkQuery asked{since_in_poses(*snapshot, *since), *bbox, *seen_min};
     std::vector<const landmarks::MapLandmark*> wanted;
     for (const auto& block : applied->state.landmarks.blocks()) {
         if (block->revision <= asked.since) continue;
@@ -174,13 +174,14 @@ private:
 
 constexpr std::chrono::seconds kPointsTime{5}; // others wait for the same thread
 
-Result<> choose(store::ScanLog& log, const sessions::SessionInfo& session, const CloudQuery& query, Revision newest,
-                const guidance::SearchLimit& limit, Chosen& chosen) {
+Result<> choose(store::ScanLog& log, const sessions::SessionInfo& session, const CloudQuery& query,
+                const mapping::Snapshot& maps, const guidance::SearchLimit& limit, Chosen& chosen) {
+    const Revision newest = maps.revision;
     const Revision until = std::min(newest, query.until.value_or(newest));
     // The filter is the same for every `until`, so that parts make up the whole.
     landmarks::SessionCaptures cut(sessions::scan_filter_of(session));
     auto read = sessions::read_captures(
-        log, session.id, cut, until,
+        log, session.id, cut, until, maps.scan_poses,
         [&](const landmarks::RobotCapture& ended) { return chosen.add(ended, ended.ended); },
         [&](Revision) { return limit(); });
     if (!read || query.until) return read;
@@ -198,7 +199,7 @@ Result<Response> get_points(const Context& context, PointFile file) {
     const guidance::SearchLimit limit(context.services.sessions, kPointsTime,
                                       "request fewer captures at a time (since, until, robot)");
     Chosen chosen(*query);
-    const auto read = choose(context.services.log, session->info(), *query, snapshot->revision, limit, chosen);
+    const auto read = choose(context.services.log, session->info(), *query, *snapshot, limit, chosen);
     if (!read) return read.error();
     auto permit = context.services.responses.take(chosen.points() * exchange::kPointTextBytes);
     if (!permit) return permit.error();

@@ -41,12 +41,14 @@ LogFormat protobuf_format() {
             }};
 }
 
-LogFormat carmen_format(const sessions::SessionInfo& session) {
+/// @param poses  of the scans that robots sent without
+LogFormat carmen_format(const sessions::SessionInfo& session, const mapping::ScanPoses& poses) {
     return {"text/plain; charset=utf-8", "clf", exchange::CarmenText::head(session.name),
-            [carmen = exchange::CarmenText(sessions::scan_filter_of(session))](
-                std::string& text, std::string_view bytes) mutable -> Result<> {
-                const auto entry = wire::decode_entry(bytes);
+            [carmen = exchange::CarmenText(sessions::scan_filter_of(session)),
+             poses](std::string& text, std::string_view bytes) mutable -> Result<> {
+                auto entry = wire::decode_entry(bytes);
                 if (!entry) return Error{Errc::kDataLoss, entry.error().message};
+                poses.place(*entry);
                 const auto lines = carmen.lines(*entry);
                 if (!lines) return lines.error();
                 text += *lines;
@@ -57,9 +59,8 @@ LogFormat carmen_format(const sessions::SessionInfo& session) {
 /// Reads a log piece by piece. Between two pieces it keeps only the position at which to continue.
 class LogStream final : public BodyStream {
 public:
-    LogStream(std::shared_ptr<sessions::Session> session, store::ScanLog& log, LogFormat format)
-        : session_(std::move(session)), log_(log), format_(std::move(format)), newest_(session_->snapshot()->revision),
-          piece_(format_.head) {}
+    LogStream(std::shared_ptr<sessions::Session> session, store::ScanLog& log, LogFormat format, Revision newest)
+        : session_(std::move(session)), log_(log), format_(std::move(format)), newest_(newest), piece_(format_.head) {}
 
     /// Reads the first piece, so that a log that cannot be written is reported before anything is sent.
     [[nodiscard]] Result<> begin() { return read(); }
@@ -102,8 +103,9 @@ Result<Response> get_log(Context& context) {
     const auto& session = context.session;
     const auto& info = session->info();
 
-    const LogFormat written_as = is_carmen ? carmen_format(info) : protobuf_format();
-    auto stream = std::make_shared<LogStream>(session, context.services.log, written_as);
+    const auto maps = session->snapshot();
+    const LogFormat written_as = is_carmen ? carmen_format(info, maps->scan_poses) : protobuf_format();
+    auto stream = std::make_shared<LogStream>(session, context.services.log, written_as, maps->revision);
     if (auto begun = stream->begin(); !begun) return begun.error();
 
     Response response;

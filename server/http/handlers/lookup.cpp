@@ -54,6 +54,7 @@ Result<Maps> maps_of(std::shared_ptr<sessions::Session> session, const std::shar
     if (maps) {
         auto tag = fmt::format("{}-{}", session_tag(session->info()), weave->id());
         tag = tag_with(tag, *maps->exclusions);
+        if (const auto corrected = maps->scan_poses.corrected(); corrected > 0) tag += fmt::format("-c{}", corrected);
         return Maps{std::move(session), std::move(maps), weave, std::move(tag)};
     }
     const auto progress = weave->progress();
@@ -109,9 +110,11 @@ boost::asio::awaitable<Result<Maps>> replayed(Context& context) {
     if (!request) co_return request.error();
     const auto permit = context.services.work_classes.wait_for_replay();
     if (!permit) co_return permit.error();
-    const Revision newest = session->snapshot()->revision;
+    const auto maps = session->snapshot();
+    const Revision newest = maps->revision;
     auto& weaves = context.services.weaves;
-    const auto weave = weaves.start(session->info(), *request, newest, sessions::ReplayJobs::Listing::kUnlisted);
+    const auto weave =
+        weaves.start(session->info(), *request, newest, maps->scan_poses, sessions::ReplayJobs::Listing::kUnlisted);
     if (!weave) co_return weave.error();
     const Revision target = sessions::target_of(*request, newest);
     co_await wait_for(context, **weave, target);
@@ -141,6 +144,27 @@ Result<TwoMaps> find_two_maps(const Context& context) {
     auto b = chosen(context, kWith);
     if (!b) return b.error();
     return TwoMaps{std::move(*a), std::move(*b)};
+}
+
+boost::asio::awaitable<Result<>> wait_for_corrections(Context& context) {
+    constexpr std::chrono::milliseconds kPause{20};
+    const auto session = context.session;
+    if (session->snapshot()->moving_scans == 0) co_return Result<>();
+    const WorkClass work = context.work;
+    co_await context.run_on(WorkClass::kIo);
+    boost::asio::steady_timer timer(co_await boost::asio::this_coro::executor);
+    const auto end = std::chrono::steady_clock::now() + context.services.replay_timeout;
+    std::uint64_t moving = 1;
+    while (moving > 0 && std::chrono::steady_clock::now() < end) {
+        timer.expires_after(kPause);
+        co_await timer.async_wait(kAwaitTuple);
+        const auto maps = session->try_snapshot();
+        if (maps) moving = maps->moving_scans;
+    }
+    co_await context.run_on(work);
+    if (moving == 0) co_return Result<>();
+    co_return Error{Errc::kOverloaded,
+                    fmt::format("{} scans are being moved to corrected poses; try again soon", moving)};
 }
 
 } // namespace scanloom::http

@@ -80,4 +80,8 @@ enum class Waiting { kAllowed, kNotAllowed };
 [[nodiscard]] Result<std::shared_ptr<sessions::ReplayJob>>
 find_weave(sessions::ReplayJobs& weaves, const sessions::Session& session, std::string_view id);
 
+/// Suspends the coroutine until the session's maps show all corrected poses, at most for Services::replay_timeout.
+/// Errors: kOverloaded if they do not by then.
+[[nodiscard]] boost::asio::awaitable<Result<>> wait_for_corrections(Context& context);
+
 } // namespace scanloom::http

@@ -110,6 +110,7 @@ asio::awaitable<Result<Response>> get_map_yaml(Context& context) {
 }
 
 asio::awaitable<Result<Response>> get_digest(Context& context) {
+    if (auto corrected = co_await wait_for_corrections(context); !corrected) co_return corrected.error();
     const auto found = co_await find_maps_or_replay(context);
     if (!found) co_return found.error();
     const auto layer = layer_parameter(context.query);

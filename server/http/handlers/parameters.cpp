@@ -46,6 +46,10 @@ Revision since_in(const mapping::Snapshot& snapshot, Revision since) noexcept {
     return since >= snapshot.exclusions->revision() && since <= snapshot.revision ? since : 0;
 }
 
+Revision since_in_poses(const mapping::Snapshot& snapshot, Revision since) noexcept {
+    return since >= snapshot.scan_poses.corrected() ? since_in(snapshot, since) : 0;
+}
+
 Result<std::optional<tiles::Extent>> bbox_parameter(const Query& query) {
     return parameter(query, "bbox", std::optional<tiles::Extent>(), parse_extent,
                      "min_x,min_y,max_x,max_y in metres is needed");

@@ -54,6 +54,10 @@ template <class T, class Parse>
 /// change of exclusions, which may have changed the maps anywhere.
 [[nodiscard]] Revision since_in(const mapping::Snapshot& snapshot, Revision since) noexcept;
 
+/// Returns the revision from which to report what hangs on poses of scans: as since_in(), but 0 if poses of earlier
+/// scans were corrected after `since`.
+[[nodiscard]] Revision since_in_poses(const mapping::Snapshot& snapshot, Revision since) noexcept;
+
 /// Returns the bbox parameter, `min_x,min_y,max_x,max_y` in metres, or nullopt if it is not given.
 /// Errors: kInvalidField if it is not four numbers.
 [[nodiscard]] Result<std::optional<tiles::Extent>> bbox_parameter(const Query& query);

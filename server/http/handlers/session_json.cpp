@@ -41,6 +41,13 @@ boost::json::value pose_json(const std::optional<Pose2>& pose) {
     return boost::json::object{{"x", rounded_metres(pose->x)}, {"y", rounded_metres(pose->y)}, {"yaw", pose->yaw}};
 }
 
+boost::json::object localization_json(const mapping::RobotState& robot) {
+    const auto& known = robot.localization;
+    return {{"poses", name_of(robot.poses)},    {"state", name_of(known.state)}, {"inliers", known.inlier_ratio},
+            {"sigma_m", known.position_sigma},  {"sigma_rad", known.yaw_sigma},  {"loops", known.loops},
+            {"corrections", known.corrections}, {"unplaced", robot.unplaced}};
+}
+
 boost::json::value radius_json(const std::optional<double>& radius) {
     if (!radius) return nullptr;
     return *radius;
@@ -62,6 +69,7 @@ boost::json::object session_json(const sessions::SessionInfo& info, const mappin
                                              {"last_seq", robot.last_seq},
                                              {"stamp", robot.stamp},
                                              {"pose", pose_json(robot.pose)},
+                                             {"localization", localization_json(robot)},
                                              {"body_radius", radius_json(robot.body_radius)}});
     }
     const auto main_bounds = session == nullptr ? grid::CellBox() : session->main_bounds();
@@ -75,6 +83,7 @@ boost::json::object session_json(const sessions::SessionInfo& info, const mappin
                              {"revision", snapshot.revision},
                              {"exclusions", snapshot.exclusions->revision()},
                              {"scans", scans},
+                             {"moving_scans", snapshot.moving_scans},
                              {"config", to_json(info.config)},
                              {"layers", layer_names()},
                              {"bounds", bounds_json(mapping::bounds_of(snapshot), info.config.cell_size)},

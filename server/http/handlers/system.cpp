@@ -90,7 +90,11 @@ Families session_families(const sessions::SessionRegistry& sessions, const sessi
     const auto& counters = sessions.counters();
     const auto served = sessions.list();
     std::size_t backlog = 0;
-    for (const auto& session : served) backlog += session->backlog_size();
+    std::size_t moving = 0;
+    for (const auto& session : served) {
+        backlog += session->backlog_size();
+        moving += session->moving_scans();
+    }
     const auto failed =
         std::ranges::count_if(served, [](const auto& session) { return session->failure().has_value(); });
     return {
@@ -109,11 +113,19 @@ Families session_families(const sessions::SessionRegistry& sessions, const sessi
                     counters.scans_applied.load()),
         counter_now("scanloom_scans_jumped_total", "Scans that are durable and that max_jump left out of their map.",
                     counters.scans_jumped.load()),
+        counter_now("scanloom_scans_unplaced_total", "Scans that are durable and not in their map: they fit no place.",
+                    counters.scans_unplaced.load()),
         counter_now("scanloom_scans_duplicates_total", "Scans sent again after a reconnect and dropped.",
                     counters.scans_duplicates.load()),
         counter_now("scanloom_scans_dropped_total",
                     "Scans that were refused, or that arrived after their link was replaced; never acknowledged.",
                     counters.scans_dropped.load()),
+        counter_now("scanloom_loops_accepted_total", "Matches to places that a robot visited again.",
+                    counters.loops_accepted.load()),
+        counter_now("scanloom_maps_corrected_total",
+                    "Times that the map of a session followed corrected poses of earlier scans.",
+                    counters.maps_corrected.load()),
+        gauge_now("scanloom_moving_scans", "Scans that the maps do not show at their corrected poses yet.", moving),
     };
 }
 

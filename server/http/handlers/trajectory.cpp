@@ -119,7 +119,8 @@ Result<Response> get_trajectory(Context& context) {
                                               [&] { return !context.services.sessions.is_draining(); });
     if (!old) return old.error();
     std::string text = fmt::format(
-        R"({{"type":"FeatureCollection","frame_id":"map","units":"m","revision":{},"features":[)", old->until);
+        R"({{"type":"FeatureCollection","frame_id":"map","units":"m","revision":{},"poses_corrected":{},"features":[)",
+        old->until, snapshot->scan_poses.corrected());
     const char* separator = "";
     for (std::size_t n = 0; n < snapshot->robots.size(); ++n) {
         const auto& robot = snapshot->robots[n];

@@ -57,7 +57,8 @@ Result<Response> start_weave(Context& context) {
     if (!body) return body.error();
     const auto request = weave_request(*session, *body);
     if (!request) return request.error();
-    const auto weave = context.services.weaves.start(session->info(), *request, session->snapshot()->revision);
+    const auto maps = session->snapshot();
+    const auto weave = context.services.weaves.start(session->info(), *request, maps->revision, maps->scan_poses);
     if (!weave) return weave.error();
     auto response =
         ok(shown(**weave))

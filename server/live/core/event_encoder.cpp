@@ -30,7 +30,7 @@ LandmarkChanges changed_landmarks(const landmarks::LandmarkView& landmarks, Land
 wire::ScanPoints points_of(const mapping::IntegratedScan& applied, std::size_t stride) {
     const Scan& scan = applied.scan;
     const Sensor& sensor = *applied.sensor;
-    wire::ScanPoints out{sensor.id, sensor.kind, scan.stamp, compose(scan.pose, sensor.mount), {}};
+    wire::ScanPoints out{sensor.id, sensor.kind, scan.stamp, compose(*scan.pose, sensor.mount), {}};
     const BeamAngles angles = angles_of(scan, sensor);
     const ReadingRules rules{sensor.range_min, sensor.range_max, false};
     std::size_t hits = 0;
@@ -98,6 +98,27 @@ wire::LiveLandmark to_wire(const landmarks::MapLandmark& one) noexcept {
             one.last};
 }
 
+/// @return nullopt for a robot that sends poses in the map frame
+std::optional<wire::LiveLocalization> localization_of(const mapping::RobotState& robot) {
+    if (robot.poses == Poses::kMap) return std::nullopt;
+    const auto& known = robot.localization;
+    return wire::LiveLocalization{known.state, robot.poses, static_cast<float>(known.inlier_ratio),
+                                  static_cast<float>(known.position_sigma), static_cast<float>(known.yaw_sigma)};
+}
+
+/// Returns whether a viewer would show both in the same words: to 5 % of the points, 1 cm and half a degree.
+bool are_similar(const std::optional<wire::LiveLocalization>& a, const std::optional<wire::LiveLocalization>& b) {
+    constexpr float kPerInlierStep = 20.0F;
+    constexpr float kPerMetre = 100.0F;
+    constexpr float kPerRadian = 115.0F;
+    const auto are_near = [](float left, float right, float steps) {
+        return std::round(left * steps) == std::round(right * steps);
+    };
+    if (!a || !b) return a.has_value() == b.has_value();
+    return a->state == b->state && a->poses == b->poses && are_near(a->inliers, b->inliers, kPerInlierStep) &&
+           are_near(a->sigma_m, b->sigma_m, kPerMetre) && are_near(a->sigma_rad, b->sigma_rad, kPerRadian);
+}
+
 /// Pre: the pose is within kCoordinateMax.
 PointMm point_of(const Pose2& pose) { return in_millimetres({pose.x, pose.y}); }
 
@@ -119,11 +140,13 @@ void EventEncoder::set_subscription(const Subscription& subscription) {
 
 std::optional<wire::LiveEvent> EventEncoder::next(const SessionSnapshot& snapshot) {
     const mapping::Snapshot& maps = *snapshot.maps;
+    const Revision corrected = maps.scan_poses.corrected();
+    if (sent_ && sent_->poses_corrected != corrected) sent_robots_.clear(); // their trails and newest scans have moved
     wire::LiveEvent event;
     add_tiles(maps, event);
     add_robots(snapshot, event);
     add_landmarks(snapshot, event);
-    const SentSession now{maps.revision, snapshot.state, snapshot.goals_revision};
+    const SentSession now{maps.revision, snapshot.state, snapshot.goals_revision, corrected, maps.moving_scans};
     if (sent_ == now && event.tiles.empty() && event.robots.empty() && !event.landmarks) return std::nullopt;
     sent_ = now;
     event.session = session_;
@@ -133,6 +156,8 @@ std::optional<wire::LiveEvent> EventEncoder::next(const SessionSnapshot& snapsho
     event.counters = totals_of(snapshot);
     event.frontiers_revision = maps.classes.newest({});
     event.goals_revision = snapshot.goals_revision;
+    event.poses_corrected = corrected;
+    event.moving_scans = maps.moving_scans;
     return event;
 }
 
@@ -167,7 +192,8 @@ bool EventEncoder::shows_scan(const mapping::RobotState& robot, const SentRobot&
 
 bool EventEncoder::has_changed(const mapping::RobotState& robot, bool connected, const SentRobot& sent) const {
     return !sent.known || sent.connected != connected || sent.body_radius != robot.body_radius ||
-           sent.scan_count != robot.scan_count || shows_scan(robot, sent);
+           sent.scan_count != robot.scan_count || shows_scan(robot, sent) ||
+           !are_similar(sent.localization, localization_of(robot));
 }
 
 /// Returns the stride with which all scans of the event together have at most kScanPointsMax points, or one point each.
@@ -203,7 +229,8 @@ void EventEncoder::add_robots(const SessionSnapshot& snapshot, wire::LiveEvent& 
                                                                    {},
                                                                    0,
                                                                    {},
-                                                                   robot.body_radius});
+                                                                   robot.body_radius,
+                                                                   localization_of(robot)});
         const auto& trail = robot.trajectory;
         const std::size_t first =
             std::max({sent.trail, trail.begin(), trail.size() - std::min(trail.size(), trail_max)});
@@ -216,6 +243,7 @@ void EventEncoder::add_robots(const SessionSnapshot& snapshot, wire::LiveEvent& 
         sent.known = true;
         sent.connected = connected;
         sent.body_radius = robot.body_radius;
+        sent.localization = update.localization;
         sent.scan_count = robot.scan_count;
         sent.trail = trail.size();
     }

@@ -87,8 +87,8 @@ inline constexpr std::size_t kLandmarksMax = 1'024;
 /// Each event is created from the newest state, and intermediate states are skipped. A client that applies every event
 /// knows the state of the newest snapshot.
 ///
-/// Keeps the last sent revision of each layer, and the last sent scan and trail point of each robot. Its memory depends
-/// on the number of robots only.
+/// Keeps the last sent revision of each layer, and the last sent scan and trail point of each robot. When the poses of
+/// earlier scans were corrected, it sends all robots again. Its memory depends on the number of robots only.
 /// Cost: an event takes time in proportion to the chunks and robots that changed since the last one.
 class EventEncoder {
 public:
@@ -117,12 +117,15 @@ private:
         std::uint64_t scan_count = 0;
         std::size_t trail = 0; // points
         Revision scan = 0;     // last scan sent as points
+        std::optional<wire::LiveLocalization> localization;
     };
 
     struct SentSession {
         Revision revision = 0;
         wire::LiveState state = wire::LiveState::kOk;
         std::uint64_t goals_revision = 0;
+        Revision poses_corrected = 0;
+        std::uint64_t moving_scans = 0;
 
         friend bool operator==(const SentSession&, const SentSession&) = default;
     };

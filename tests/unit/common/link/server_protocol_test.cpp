@@ -71,6 +71,11 @@ public:
         advance();
     }
 
+    void locate(std::uint64_t revision) {
+        protocol.on_located({.revision = revision});
+        advance();
+    }
+
     void pass(ServerProtocol::Duration time) {
         now += time;
         if (now >= protocol.deadline()) protocol.on_timer(now);
@@ -118,8 +123,10 @@ private:
         for (; body && *body; body = decoder.next()) {
             sent.push_back(wire::decode(**body).value());
             const auto* ack = std::get_if<wire::Ack>(&sent.back());
+            const auto* correction = std::get_if<wire::Correction>(&sent.back());
             done.push_back("send " + std::string(wire::name_of(sent.back())) +
-                           (ack ? fmt::format(" {}", ack->durable_seq) : ""));
+                           (ack ? fmt::format(" {}", ack->durable_seq) : "") +
+                           (correction ? fmt::format(" {}", correction->revision) : ""));
         }
         if (completes_writes) protocol.on_written();
     }
@@ -201,6 +208,62 @@ TEST(ServerProtocol, RepliesFollowWhenNothingElseWaits) {
     owner.protocol.on_written();
     owner.advance();
     EXPECT_THAT(owner.take(), ElementsAre("send plan_reply"));
+}
+
+// Corrections ---------------------------------------------------------------------------------------------------------
+
+TEST(ServerProtocolCorrection, NewestIsSentAtMostTwentyTimesASecond) {
+    Owner owner;
+    owner.join();
+    owner.locate(1);
+    EXPECT_THAT(owner.take(), ElementsAre("send correction 1"));
+    owner.pass(10ms);
+    for (std::uint64_t revision = 2; revision <= 5; ++revision) owner.locate(revision);
+    EXPECT_EQ(owner.protocol.deadline(), owner.now + 40ms) << "so that the last one is sent without another event";
+    owner.pass(40ms - 1ns);
+    EXPECT_THAT(owner.take(), IsEmpty());
+    owner.pass(1ns);
+    EXPECT_THAT(owner.take(), ElementsAre("send correction 5"));
+    EXPECT_GT(owner.protocol.deadline(), owner.now + 1s) << "none is pending";
+    owner.pass(50ms);
+    owner.locate(6);
+    EXPECT_THAT(owner.take(), ElementsAre("send correction 6")) << "at once after a pause";
+}
+
+TEST(ServerProtocolCorrection, OfSeveralOnlyTheNewestIsSentToASlowReader) {
+    Owner owner;
+    owner.join();
+    owner.completes_writes = false;
+    owner.durable(1, 0);
+    owner.locate(1);
+    owner.locate(2);
+    owner.durable(2, 0);
+    owner.pass(1s);
+    EXPECT_THAT(owner.take(), ElementsAre("send ack 1"));
+    EXPECT_GT(owner.protocol.deadline(), owner.now) << "the end of the write is the next event";
+    owner.protocol.on_written();
+    owner.advance();
+    EXPECT_THAT(owner.take(), ElementsAre("send ack 2", "send correction 2"));
+}
+
+TEST(ServerProtocolCorrection, NoneBeforeTheWelcomeOrAfterTheGoodbye) {
+    Owner owner;
+    owner.open();
+    owner.receive(hello());
+    owner.locate(1);
+    EXPECT_THAT(owner.take(), ElementsAre("join r"));
+    EXPECT_EQ(owner.protocol.deadline(), Time::max());
+    owner.protocol.on_joined({"5e55"}, owner.now);
+    owner.advance();
+    EXPECT_THAT(owner.take(), ElementsAre("send welcome", "send correction 1"));
+    owner.locate(2);
+    owner.receive(frame_of(wire::ScanBatch{random_scans(1, 1, 1)}) + frame_of(wire::Goodbye{}));
+    owner.locate(3);
+    owner.pass(1s);
+    EXPECT_THAT(owner.take(), ElementsAre("scans 1..1"));
+    EXPECT_EQ(owner.protocol.deadline(), Time::max());
+    owner.durable(1, owner.submitted);
+    EXPECT_THAT(owner.take(), ElementsAre("leave", "send ack 1", "shut down"));
 }
 
 // Deadlines -----------------------------------------------------------------------------------------------------------

@@ -68,7 +68,7 @@ TEST(ScanFilter, MaxJumpIgnoresExcludedScans) {
     ASSERT_TRUE(exclusions->add(9, ScansExcluded{1, 0, SeqRange{2, 3}}));
     ScanFilter filter(1.0, exclusions);
     const auto use_of = [&](std::uint64_t seq, double x) {
-        return filter.take(seq, ScanPose{0, seq, 0.0, {x, 0.0, 0.0}});
+        return filter.take(seq, ScanPose{0, seq, 0.0, Pose2{x, 0.0, 0.0}});
     };
     EXPECT_EQ(use_of(1, 0.0), ScanUse::kIntegrated);
     EXPECT_EQ(use_of(2, 40.0), ScanUse::kExcluded);

@@ -46,5 +46,28 @@ TEST(JumpFilter, ContinuesFromARestoredState) {
     EXPECT_EQ(other.state(0).left_out, 1U);
 }
 
+TEST(ScanFilter, ScanWithoutAPoseIsUnplacedAndNoJump) {
+    ScanFilter filter(1.0);
+    const auto use_at = [&](std::uint64_t seq, std::optional<Pose2> pose) {
+        const ScanPose scan{0, seq, 0.0, pose};
+        const auto expected = filter.use_of(seq, scan);
+        EXPECT_EQ(filter.take(seq, scan), expected);
+        return expected;
+    };
+    EXPECT_EQ(use_at(1, Pose2{}), ScanUse::kIntegrated);
+    EXPECT_EQ(use_at(2, std::nullopt), ScanUse::kUnplaced);
+    EXPECT_EQ(use_at(3, Pose2{0.9, 0.0, 0.0}), ScanUse::kIntegrated);
+    EXPECT_EQ(use_at(4, Pose2{5.0, 0.0, 0.0}), ScanUse::kJump);
+    EXPECT_EQ(filter.jumps().state(0).left_out, 1U);
+}
+
+TEST(ScanFilter, ExclusionGoesBeforeAMissingPose) {
+    Exclusions exclusions;
+    ASSERT_TRUE(exclusions.add(9, ScansExcluded{1, 0, SeqRange{1, 1}}));
+    ScanFilter filter(0.0, std::make_shared<const Exclusions>(exclusions));
+    EXPECT_EQ(filter.take(1, {0, 1, 0.0, std::nullopt}), ScanUse::kExcluded);
+    EXPECT_EQ(filter.take(2, {0, 2, 0.0, std::nullopt}), ScanUse::kUnplaced);
+}
+
 } // namespace
 } // namespace scanloom

@@ -19,8 +19,11 @@ using testing_support::small_laser;
 LogEntry random_entry(std::mt19937& engine) {
     const auto random = [&](unsigned below) { return static_cast<unsigned>(engine() % below); };
     const RobotIndex robot = random(4);
-    switch (random(10)) {
-    case 0: return RobotJoined{robot, std::string(1, static_cast<char>('a' + random(3))), random(2) ? "s" : ""};
+    switch (random(11)) {
+    case 0: {
+        const std::string name(1, static_cast<char>('a' + random(3)));
+        return RobotJoined{robot, name, random(2) ? "s" : "", {}, random(4) ? Poses::kMap : Poses::kOdometry};
+    }
     case 1: {
         Sensor sensor = small_laser();
         sensor.id = random(3);
@@ -29,9 +32,11 @@ LogEntry random_entry(std::mt19937& engine) {
     case 2: return MapPatch{0.05, 0.0, 0.0, 1, {MapCell{}}};
     case 3: return ScansExcluded{random(6), robot, SeqRange{1, 2}};
     case 4: return ExclusionLifted{random(6)};
+    case 5: return MapsCorrected{random(80)};
     default: {
         Scan scan = random_scan(1, random(5) + 1);
         scan.sensor = random(3);
+        if (random(8) == 0) scan.pose.reset();
         return ScanTaken{robot, scan};
     }
     }
@@ -54,25 +59,30 @@ struct CanFollow {
     [[nodiscard]] bool has_joined(RobotIndex robot) const {
         return std::ranges::any_of(all_of<RobotJoined>(log), [&](const auto& one) { return one.robot == robot; });
     }
+    [[nodiscard]] RobotJoined joined_last(RobotIndex robot) const {
+        RobotJoined last;
+        for (const auto& one : all_of<RobotJoined>(log)) {
+            if (one.robot == robot) last = one;
+        }
+        return last;
+    }
     [[nodiscard]] std::size_t scans_of(RobotIndex robot) const {
         return static_cast<std::size_t>(std::ranges::count(all_of<ScanTaken>(log), robot, &ScanTaken::robot));
     }
 
     bool operator()(const RobotJoined& joined) const {
-        std::vector<RobotJoined> earlier;
-        for (const auto& one : all_of<RobotJoined>(log)) {
-            if (one.robot == joined.robot) earlier.push_back(one);
-        }
-        if (earlier.empty()) return joined.robot == 0 || has_joined(joined.robot - 1);
-        const bool is_same = earlier.back().source == joined.source || scans_of(joined.robot) == 0;
-        return earlier.back().name == joined.name && is_same;
+        if (!has_joined(joined.robot)) return joined.robot == 0 || has_joined(joined.robot - 1);
+        const auto newest = joined_last(joined.robot);
+        const bool is_same = newest.source == joined.source && newest.poses == joined.poses;
+        return newest.name == joined.name && (is_same || scans_of(joined.robot) == 0);
     }
     bool operator()(const SensorDescribed& described) const { return has_joined(described.robot); }
     bool operator()(const ScanTaken& taken) const {
         const bool is_described = std::ranges::any_of(all_of<SensorDescribed>(log), [&](const auto& one) {
             return one.robot == taken.robot && one.sensor.id == taken.scan.sensor;
         });
-        return is_described && taken.scan.seq == scans_of(taken.robot) + 1;
+        const bool is_next = taken.scan.seq == scans_of(taken.robot) + 1;
+        return is_described && is_next && (taken.scan.pose || joined_last(taken.robot).poses != Poses::kMap);
     }
     bool operator()(const MapPatch&) const { return !has_joined(0); }
     bool operator()(const ScansExcluded& excluded) const {
@@ -85,6 +95,7 @@ struct CanFollow {
         return std::ranges::any_of(all_of<ScansExcluded>(log), is_it) &&
                std::ranges::none_of(all_of<ExclusionLifted>(log), is_it);
     }
+    bool operator()(const MapsCorrected& corrected) const { return corrected.as_of <= log.size(); }
 };
 
 TEST(LogRules, AcceptExactlyTheEntriesInSequence) {
@@ -120,6 +131,37 @@ TEST(LogRules, ErrorsNameTheEntryAndTheReason) {
     EXPECT_EQ(refusal.code, Errc::kMalformed);
     EXPECT_EQ(refusal.message, "log entry 3: scan 4 of robot 'a' follows scan 0; the log is damaged");
     EXPECT_THAT(rules.check(ScanTaken{1, random_scan(1, 1)}).error().message, HasSubstr("robot 1, which never joined"));
+    EXPECT_EQ(rules.check(MapsCorrected{3}).error().message,
+              "log entry 3: maps are corrected as of entry 3; the log is damaged");
+    EXPECT_TRUE(rules.check(MapsCorrected{2}));
+}
+
+TEST(LogRules, RobotKeepsTheKindOfItsPosesOnceItHasScans) {
+    LogRules rules;
+    const auto joined = [](Poses poses) { return RobotJoined{.robot = 0, .name = "a", .poses = poses}; };
+    ASSERT_TRUE(rules.add(joined(Poses::kMap)));
+    ASSERT_TRUE(rules.add(SensorDescribed{0, small_laser()}));
+    ASSERT_TRUE(rules.add(joined(Poses::kOdometry)));
+    EXPECT_EQ(rules.robots()[0].poses, Poses::kOdometry);
+    Scan scan = random_scan(1, 1);
+    scan.pose.reset();
+    ASSERT_TRUE(rules.add(ScanTaken{0, scan}));
+    for (const auto other : {Poses::kMap, Poses::kNone}) EXPECT_FALSE(rules.check(joined(other))) << name_of(other);
+    EXPECT_TRUE(rules.check(joined(Poses::kOdometry)));
+}
+
+TEST(LogRules, ScanMayLackItsPoseOnlyIfTheRobotDoesNotSendPoses) {
+    Scan scan = random_scan(1, 1);
+    scan.pose.reset();
+    for (const auto poses : {Poses::kMap, Poses::kOdometry, Poses::kNone}) {
+        LogRules rules;
+        ASSERT_TRUE(rules.add(RobotJoined{.robot = 0, .name = "a", .poses = poses}));
+        ASSERT_TRUE(rules.add(SensorDescribed{0, small_laser()}));
+        const auto checked = rules.check(ScanTaken{0, scan});
+        EXPECT_EQ(checked.has_value(), poses != Poses::kMap) << name_of(poses);
+        if (checked) continue;
+        EXPECT_EQ(checked.error().message, "log entry 3: scan 1 of robot 'a' has no pose; the log is damaged");
+    }
 }
 
 } // namespace

@@ -27,6 +27,15 @@ TEST(BadCorrection, IsRefusedByFieldName) {
     }
 }
 
+TEST(Correction, StatesOfLaterVersionsAreUnspecified) {
+    v1::Frame frame;
+    ASSERT_TRUE(frame.ParseFromString(body_of(example_correction())));
+    frame.mutable_correction()->set_state(static_cast<v1::LocalizationState>(99));
+    Correction unspecified = example_correction();
+    unspecified.state = LocalizationState::kGiven;
+    EXPECT_EQ(decode(frame.SerializeAsString()).value(), Message(unspecified));
+}
+
 TEST(BadLocateRequest, IsRefusedByFieldName) {
     const InvalidCase<LocateRequest> kCases[] = {
         {[](LocateRequest& r) { r.points.resize(19); }, "locate_request.points has 19 points; at least 20"},

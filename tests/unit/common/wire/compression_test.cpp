@@ -29,7 +29,7 @@ ScanBatch many_scans() {
     ScanBatch batch{std::vector<Scan>(20, example_scan(1))};
     for (std::size_t i = 0; i < batch.scans.size(); ++i) {
         batch.scans[i].seq = i + 1;
-        batch.scans[i].pose.x += 0.01 * static_cast<double>(i);
+        batch.scans[i].pose->x += 0.01 * static_cast<double>(i);
     }
     return batch;
 }
@@ -84,7 +84,7 @@ TEST(Compression, OnlyScanBatchesMayBeCompressed) {
 
 TEST(Compression, CompressedValuesAreValidated) {
     auto batch = many_scans();
-    batch.scans[3].pose.x = std::numeric_limits<double>::quiet_NaN();
+    batch.scans[3].pose->x = std::numeric_limits<double>::quiet_NaN();
     EXPECT_THAT(decompress(holding(body_of(batch))).error().message,
                 HasSubstr("compressed_scan_batch: scan_batch.scans[3].pose.x is nan"));
 }

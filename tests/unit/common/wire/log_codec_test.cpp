@@ -2,6 +2,8 @@
 
 #include "tests/unit/common/wire/example_messages.hpp"
 
+#include "scanloom/v1/log.pb.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -18,14 +20,20 @@ using testing::StartsWith;
 std::vector<LogEntry> one_of_each() {
     Scan stepped = example_scan(18);
     stepped.angles = SteppedAngles{1.5e-5, {395'000, 12, -7}};
+    Scan unplaced = example_scan(19);
+    unplaced.pose.reset();
     return {RobotJoined{3, "robot-1"},
             RobotJoined{3, "robot-1", "carmen:12", 0.25},
+            RobotJoined{3, "robot-1", "", std::nullopt, Poses::kOdometry},
+            RobotJoined{3, "robot-1", "", std::nullopt, Poses::kNone},
             SensorDescribed{3, example_sensor()},
             ScanTaken{3, example_scan(17)},
             ScanTaken{3, stepped},
+            ScanTaken{3, unplaced},
             ScansExcluded{2, 3, StampRange{-1.5, 1e9}},
             ScansExcluded{3, 1, SeqRange{4, 4}},
-            ExclusionLifted{2}};
+            ExclusionLifted{2},
+            MapsCorrected{300}};
 }
 
 TEST(LogCodec, DecodingReturnsEveryKindOfEntry) {
@@ -48,7 +56,7 @@ TEST(LogCodec, ScanPoseIsDecodedWithoutTheScan) {
     }
     EXPECT_FALSE(decode_scan_pose("\xff"));
     auto nowhere = example_scan(1);
-    nowhere.pose.x = HUGE_VAL;
+    nowhere.pose->x = HUGE_VAL;
     EXPECT_THAT(decode_scan_pose(encode_entry(ScanTaken{0, nowhere})).error().message, HasSubstr("scan_taken.pose"));
 }
 
@@ -60,7 +68,7 @@ TEST(LogCodec, EntryOfTheFirstFormatIsDecoded) {
     const std::string bytes = std::string("\x1a\x1b\x08\x03\x12\x17", 6) + scan;
     Scan expected;
     expected.seq = 7;
-    expected.pose.x = 1.0;
+    expected.pose = Pose2{1.0, 0.0, 0.0};
     expected.ranges = {1500, 0};
     const LogEntry entry = ScanTaken{3, expected};
     EXPECT_EQ(decode_entry(bytes).value(), entry);
@@ -88,9 +96,19 @@ TEST(LogCodec, InvalidBodyRadiusIsDamage) {
     }
 }
 
+TEST(LogCodec, UnknownPosesAreDamage) {
+    v1::LogEntry entry;
+    entry.mutable_robot_joined()->set_name("r");
+    ASSERT_TRUE(decode_entry(entry.SerializeAsString()));
+    entry.mutable_robot_joined()->set_poses(static_cast<v1::Poses>(3));
+    const auto decoded = decode_entry(entry.SerializeAsString());
+    ASSERT_FALSE(decoded);
+    EXPECT_THAT(decoded.error().message, StartsWith("a log entry in the store cannot be read"));
+}
+
 TEST(LogCodec, DecodedWireScanSurvivesTheLog) {
     Scan scan = example_scan();
-    scan.pose.yaw = -9.0;
+    scan.pose->yaw = -9.0;
     const auto batch = std::get<ScanBatch>(decode(body_of(ScanBatch{{scan}})).value());
     const LogEntry entry = ScanTaken{0, batch.scans[0]};
     EXPECT_EQ(decode_entry(encode_entry(entry)).value(), entry) << "normalising a pose twice has no effect";
@@ -129,7 +147,7 @@ TEST(LogCodec, DamagedBytesAreDecodedOrRefused) {
 
 TEST(LogCodec, InvalidValuesAreRefusedByName) {
     Scan scan = example_scan();
-    scan.pose.x = std::numeric_limits<double>::quiet_NaN();
+    scan.pose->x = std::numeric_limits<double>::quiet_NaN();
     EXPECT_THAT(decode_entry(encode_entry(ScanTaken{0, scan})).error().message, StartsWith("scan_taken.pose.x is nan"));
     Sensor sensor = example_sensor();
     sensor.range_max = -1.0;

@@ -80,6 +80,8 @@ TEST(Messages, OptionalFieldsMayBeAbsent) {
     EXPECT_EQ(decode(body_of(point)).value(), point) << "a value of 0 must not become absent";
 
     Scan scan = example_scan();
+    scan.pose.reset();
+    EXPECT_EQ(decode(body_of(ScanBatch{{scan}})).value(), Message(ScanBatch{{scan}}));
     scan.odometry.reset();
     scan.intensities.clear();
     scan.angles.reset();
@@ -91,6 +93,14 @@ TEST(Messages, OptionalFieldsMayBeAbsent) {
     EXPECT_EQ(decode(body_of(sensor)).value(), Message(sensor));
     sensor.angles = SteppedAngles{-1e-9, {0, INT32_MAX, 1, -INT32_MAX, 0, -1}};
     EXPECT_EQ(decode(body_of(sensor)).value(), Message(sensor));
+}
+
+TEST(Messages, PosesOfHelloAreDecodedUnchanged) {
+    Hello hello = example_hello();
+    for (const auto poses : {Poses::kMap, Poses::kOdometry, Poses::kNone}) {
+        hello.poses = poses;
+        EXPECT_EQ(decode(body_of(hello)).value(), Message(hello)) << name_of(poses);
+    }
 }
 
 TEST(Messages, SteppedAnglesTakeTwoBytesPerBeam) {
@@ -121,9 +131,9 @@ TEST(Messages, ErrorCodesAreDecodedUnchanged) {
 
 TEST(Messages, DecodingNormalisesYaw) {
     Scan scan = example_scan();
-    scan.pose.yaw = 7.0;
+    scan.pose->yaw = 7.0;
     const auto decoded = decode(body_of(ScanBatch{{scan}})).value();
-    EXPECT_DOUBLE_EQ(std::get<ScanBatch>(decoded).scans[0].pose.yaw, 7.0 - 2.0 * std::numbers::pi);
+    EXPECT_DOUBLE_EQ(std::get<ScanBatch>(decoded).scans[0].pose->yaw, 7.0 - 2.0 * std::numbers::pi);
 }
 
 TEST(Messages, LargestScanAndLargestBatchAreAccepted) {
@@ -183,7 +193,7 @@ void expect_decoded_or_refused(std::string_view body) {
     const auto* batch = std::get_if<ScanBatch>(&*decoded);
     if (batch == nullptr) return;
     for (const auto& scan : batch->scans) {
-        EXPECT_TRUE(is_finite(scan.pose) && std::isfinite(scan.stamp));
+        EXPECT_TRUE((!scan.pose || is_finite(*scan.pose)) && std::isfinite(scan.stamp));
         EXPECT_TRUE(!scan.ranges.empty() && scan.ranges.size() <= kBeamsMax);
         EXPECT_TRUE(scan.intensities.empty() || scan.intensities.size() == scan.ranges.size());
     }

@@ -48,7 +48,7 @@ TEST(CarmenText, OmitsScansThatAreNotIntegrated) {
     EXPECT_TRUE(carmen.lines(SensorDescribed{0, laser()}));
     EXPECT_THAT(carmen.lines(ScanTaken{0, scan()}).value(), StartsWith("ROBOTLASER1"));
     Scan stray = scan();
-    stray.pose.x += 2.5;
+    stray.pose->x += 2.5;
     EXPECT_EQ(carmen.lines(ScanTaken{0, stray}).value(), "");
     EXPECT_THAT(carmen.lines(ScanTaken{0, scan()}).value(), StartsWith("ROBOTLASER1"));
 }

@@ -9,7 +9,7 @@ protected:
     void SetUp() override {
         create("a");
         Scan stray = scan(3);
-        stray.pose.x = 450.0;
+        stray.pose->x = 450.0;
         stream("a", "r1", {scan(1), scan(2), stray, scan(4)});
     }
 

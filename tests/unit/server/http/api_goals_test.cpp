@@ -15,7 +15,7 @@ using testing::IsEmpty;
 /// A wall around the robot at 3 m, with a sector without readings: frontiers are in that sector and behind the wall.
 Scan scan_with_a_gap(double x) {
     Scan taken = scan(1);
-    taken.pose.x = x;
+    taken.pose->x = x;
     taken.ranges.assign(181, 3'000);
     std::fill(taken.ranges.begin() + 100, taken.ranges.begin() + 130, kInvalidRange);
     return taken;

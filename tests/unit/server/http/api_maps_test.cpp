@@ -92,10 +92,10 @@ TEST_F(ApiTest, TrajectoryHasTimesOnRequestOnly) {
     create("a");
     std::vector<Scan> scans = {scan(1), scan(2), scan(3)};
     scans[0].stamp = 976052857.33794796;
-    scans[0].pose.yaw = -0.000004; // rounds to 0, not to -0
+    scans[0].pose->yaw = -0.000004; // rounds to 0, not to -0
     scans[1].stamp = 976052857.5;
-    scans[1].pose.yaw = 3.14159;
-    scans[2].pose.yaw = -1.23456;
+    scans[1].pose->yaw = 3.14159;
+    scans[2].pose->yaw = -1.23456;
     stream("a", "r1", std::move(scans));
     const std::string path = "/api/v1/sessions/a/trajectory.geojson";
     const std::string plain(get(path).body.bytes());
@@ -117,7 +117,7 @@ TEST_F(ApiTest, LongTrajectoryIncludesPositionsNotInMemory) {
     std::vector<Scan> scans;
     for (std::size_t n = 0; n < kScans; ++n) {
         scans.push_back(scan(n + 1));
-        scans.back().pose.x = static_cast<double>(n % 16) / 4;
+        scans.back().pose->x = static_cast<double>(n % 16) / 4;
     }
     stream("a", "r1", std::move(scans));
     ASSERT_GT(registry_.find("a")->snapshot()->robots.at(0).trajectory.begin(), 0U)

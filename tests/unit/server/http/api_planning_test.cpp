@@ -132,7 +132,7 @@ TEST_F(ApiPlanningTest, FrontiersHaveTheGoalsOfTheNamedRobot) {
 
 TEST_F(ApiPlanningTest, EachFrontierHasTheNearestRobot) {
     Scan elsewhere = scan_with_a_gap();
-    elsewhere.pose.x = 2.0;
+    elsewhere.pose->x = 2.0;
     stream("a", "r2", {elsewhere});
     const auto all = frontiers();
     const std::array alone = {frontiers("robot=r1"), frontiers("robot=r2")};
@@ -448,10 +448,10 @@ TEST_F(ApiPlanningTest, UnobservableFrontierCellsAreGivenUp) {
     const auto answer = post_json("goal", R"({"robot":"r1"})");
     EXPECT_EQ(answer.at("given_up"), 0);
     Scan blind = scan_with_a_gap();
-    blind.pose.x = number(answer.at("goal").at("x"));
-    blind.pose.y = number(answer.at("goal").at("y"));
-    blind.pose.yaw = std::atan2(number(answer.at("target").at("y")) - blind.pose.y,
-                                number(answer.at("target").at("x")) - blind.pose.x);
+    blind.pose->x = number(answer.at("goal").at("x"));
+    blind.pose->y = number(answer.at("goal").at("y"));
+    blind.pose->yaw = std::atan2(number(answer.at("target").at("y")) - blind.pose->y,
+                                 number(answer.at("target").at("x")) - blind.pose->x);
     std::ranges::fill(blind.ranges, kInvalidRange);
     blind.seq = 2;
     stream("a", "r1", {blind});

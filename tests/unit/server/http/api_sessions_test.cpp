@@ -130,6 +130,8 @@ TEST_F(ApiTest, StreamingRobotIsListed) {
     const auto shown = get_json("/api/v1/sessions/a");
     EXPECT_EQ(shown.at("scans"), 3);
     EXPECT_EQ(shown.at("revision"), 5); // plus the entries of the robot and its sensor
+    const boost::json::object given{{"poses", "map"}, {"state", "given"}, {"inliers", 0},     {"sigma_m", 0},
+                                    {"sigma_rad", 0}, {"loops", 0},       {"corrections", 0}, {"unplaced", 0}};
     EXPECT_EQ(shown.at("robots"), (boost::json::array{{{"name", "r1"},
                                                        {"connected", true},
                                                        {"scans", 3},
@@ -138,6 +140,7 @@ TEST_F(ApiTest, StreamingRobotIsListed) {
                                                        {"last_seq", 3},
                                                        {"stamp", 103},
                                                        {"pose", {{"x", 1.5}, {"y", 1.25}, {"yaw", 0}}},
+                                                       {"localization", given},
                                                        {"body_radius", nullptr}}}));
     EXPECT_NEAR(shown.at("bounds").at("max_x").to_number<double>(), 3.5, 0.2);
     EXPECT_NEAR(shown.at("bounds").at("min_y").to_number<double>(), -0.75, 0.2);
@@ -146,7 +149,7 @@ TEST_F(ApiTest, StreamingRobotIsListed) {
 TEST_F(ApiTest, ScansBeyondMaxJumpAreCountedAndOnlyInTheLog) {
     ASSERT_EQ(ask("POST", "/api/v1/sessions", R"({"name":"a","max_jump":2})").status, Status::created);
     Scan stray = scan(3);
-    stray.pose.x = 450.0;
+    stray.pose->x = 450.0;
     stream("a", "r", {scan(1), scan(2), stray, scan(4)});
     const auto session = get_json("/api/v1/sessions/a");
     EXPECT_EQ(session.at("scans"), 3);

@@ -195,6 +195,116 @@ TEST(EventEncoder, SendsChangedBodyRadius) {
     EXPECT_EQ(encoder.next(session.snapshot()), std::nullopt);
 }
 
+/// Returns the maps with all poses moved by a metre along x, as if they had been corrected at the newest entry.
+mapping::Snapshot moved(mapping::Snapshot maps) {
+    for (auto& robot : maps.robots) {
+        mapping::Trajectory trail;
+        for (std::size_t n = 0; n < robot.trajectory.size(); ++n) {
+            auto point = robot.trajectory[n];
+            point.pose.x += 1.0;
+            trail.append(point);
+        }
+        robot.trajectory = trail.snapshot();
+        robot.pose = robot.trajectory[robot.trajectory.size() - 1].pose;
+        auto newest = *robot.newest_scan;
+        newest.scan.pose = robot.pose;
+        robot.newest_scan = std::make_shared<const mapping::IntegratedScan>(std::move(newest));
+    }
+    maps.scan_poses = mapping::ScanPoses({}, maps.revision);
+    return maps;
+}
+
+TEST(EventEncoder, SendsAllTrailsAndScansAgainAfterPosesWereCorrected) {
+    Growing session(2);
+    for (int n = 0; n < 40; ++n) session.scan(static_cast<RobotIndex>(n % 2));
+    EventEncoder encoder("tag");
+    LiveReplay viewer;
+    viewer.take(wire::encode(*encoder.next(session.snapshot())));
+    EXPECT_EQ(viewer.last.poses_corrected(), 0U);
+
+    SessionSnapshot corrected = session.snapshot();
+    corrected.maps = std::make_shared<const mapping::Snapshot>(moved(session.maps()));
+    viewer.take(wire::encode(encoder.next(corrected).value()));
+    EXPECT_EQ(viewer.last.poses_corrected(), corrected.maps->revision);
+    EXPECT_EQ(viewer.last.robots(0).trail_from(), 0U);
+    EXPECT_EQ(viewer.robots.at(1).trail.size(), 20U);
+    ASSERT_NO_FATAL_FAILURE(viewer.expect_equal_to(*corrected.maps, corrected.connected));
+    EXPECT_EQ(encoder.next(corrected), std::nullopt);
+}
+
+TEST(EventEncoder, SendsNewestPointsOfLongTrailAfterPosesWereCorrected) {
+    Growing session(1);
+    for (int n = 0; n < 300; ++n) session.scan(0);
+    EventEncoder encoder("tag");
+    static_cast<void>(encoder.next(session.snapshot()));
+    SessionSnapshot corrected = session.snapshot();
+    corrected.maps = std::make_shared<const mapping::Snapshot>(moved(session.maps()));
+    const auto event = encoder.next(corrected);
+    EXPECT_EQ(event->robots.at(0).trail.size(), kTrailMax);
+    EXPECT_EQ(event->robots.at(0).trail_from, 300 - kTrailMax);
+}
+
+TEST(EventEncoder, SendsLocalizationWhenStateOrQualityChanges) {
+    using State = LocalizationState;
+    Growing session(2);
+    session.apply(RobotJoined{.robot = 2, .name = "r2", .poses = Poses::kNone});
+    EventEncoder encoder("tag");
+    mapping::Localization known;
+    const auto next = [&]() -> std::optional<v1::LiveEvent> {
+        auto maps = session.maps();
+        maps.robots[2].localization = known;
+        SessionSnapshot snapshot = session.snapshot();
+        snapshot.maps = std::make_shared<const mapping::Snapshot>(std::move(maps));
+        const auto event = encoder.next(snapshot);
+        if (!event) return std::nullopt;
+        v1::LiveEvent sent;
+        EXPECT_TRUE(sent.ParseFromString(wire::encode(*event)));
+        return sent;
+    };
+    known = {.state = State::kTracking, .inlier_ratio = 0.75, .position_sigma = 0.03125, .yaw_sigma = 0.0625};
+    auto event = next();
+    ASSERT_EQ(event->robots_size(), 3);
+    EXPECT_FALSE(event->robots(1).has_localization()) << "it sends poses in the map frame";
+    const auto sent = event->robots(2).localization();
+    EXPECT_EQ(sent.state(), v1::LOCALIZATION_STATE_TRACKING);
+    EXPECT_EQ(sent.poses(), v1::POSES_NONE);
+    EXPECT_EQ(sent.inliers(), 0.75F);
+    EXPECT_EQ(sent.sigma_m(), 0.03125F);
+    EXPECT_EQ(sent.sigma_rad(), 0.0625F);
+
+    known.position_sigma = 0.033;
+    known.inlier_ratio = 0.76;
+    EXPECT_FALSE(next()) << "hardly another quality";
+    for (const auto& change : {mapping::Localization{State::kLost, 0.76, 0.033, 0.0625},
+                               mapping::Localization{State::kLost, 0.36, 0.033, 0.0625},
+                               mapping::Localization{State::kLost, 0.36, 0.133, 0.0625},
+                               mapping::Localization{State::kUnlocated, 0.36, 0.133, 0.0875}}) {
+        known = change;
+        event = next();
+        ASSERT_TRUE(event);
+        ASSERT_EQ(event->robots_size(), 1);
+        EXPECT_EQ(event->robots(0).localization().inliers(), static_cast<float>(change.inlier_ratio));
+    }
+    EXPECT_EQ(event->robots(0).localization().state(), v1::LOCALIZATION_STATE_UNLOCATED);
+}
+
+TEST(EventEncoder, SendsEventIfOnlyMovingScansChanged) {
+    Growing session(1);
+    session.scan(0);
+    EventEncoder encoder("tag");
+    static_cast<void>(encoder.next(session.snapshot()));
+    for (const std::uint64_t moving : {1U, 0U}) {
+        auto maps = session.maps();
+        maps.moving_scans = moving;
+        SessionSnapshot snapshot = session.snapshot();
+        snapshot.maps = std::make_shared<const mapping::Snapshot>(std::move(maps));
+        v1::LiveEvent event;
+        ASSERT_TRUE(event.ParseFromString(wire::encode(encoder.next(snapshot).value())));
+        EXPECT_EQ(event.moving_scans(), moving);
+        EXPECT_EQ(event.robots_size(), 0);
+    }
+}
+
 TEST(EventEncoder, SendsEventIfOnlyGoalsChanged) {
     Growing session(1);
     session.scan(0);
@@ -217,7 +327,7 @@ TEST(EventEncoder, BoundsEventForAnyNumberOfRobots) {
     mapping::Snapshot maps{.revision = 9};
     const auto sensor =
         std::make_shared<const Sensor>(Sensor{.angles = UniformAngles{0.0, 0.001, 4096}, .range_max = 1000.0});
-    Scan scan;
+    Scan scan{.pose = Pose2{}};
     scan.ranges.assign(4096, 999'999);
     const auto newest = std::make_shared<const mapping::IntegratedScan>(mapping::IntegratedScan{9, sensor, scan});
     mapping::Trajectory trail;

@@ -103,25 +103,25 @@ TEST_F(CaptureLayersTest, AreIndependentOfTheNumberOfSteps) {
     std::mt19937 random(7);
     LandmarkLayers layers(log_);
     for (Revision until = 0; until < end_; until = std::min(end_, until + 1 + random() % 100)) {
-        expect_landmarks(layers.up_to(info_, until, kContinue).value(), until);
+        expect_landmarks(layers.up_to(info_, until, {}, kContinue).value(), until);
     }
-    expect_landmarks(layers.up_to(info_, end_, kContinue).value(), end_);
-    expect_landmarks(LandmarkLayers(log_).up_to(info_, end_, kContinue).value(), end_);
+    expect_landmarks(layers.up_to(info_, end_, {}, kContinue).value(), end_);
+    expect_landmarks(LandmarkLayers(log_).up_to(info_, end_, {}, kContinue).value(), end_);
     EXPECT_GT(all_of(expected(end_)).size(), 5U);
     EXPECT_GT(expected(end_).captures, 20U);
 }
 
 TEST_F(CaptureLayersTest, RequestForAnEarlierRevisionReturnsTheNewestState) {
     LandmarkLayers layers(log_);
-    layers.up_to(info_, end_, kContinue).value();
-    EXPECT_EQ(layers.up_to(info_, 10, kContinue).value().revision, end_);
+    layers.up_to(info_, end_, {}, kContinue).value();
+    EXPECT_EQ(layers.up_to(info_, 10, {}, kContinue).value().revision, end_);
 }
 
 TEST_F(CaptureLayersTest, LongComputationContinuesWithTheNextRequest) {
     LandmarkLayers layers(log_, {.timeout = 0ms});
     int calls = 0;
-    auto applied = layers.up_to(info_, end_, kContinue);
-    for (; !applied; applied = layers.up_to(info_, end_, kContinue)) {
+    auto applied = layers.up_to(info_, end_, {}, kContinue);
+    for (; !applied; applied = layers.up_to(info_, end_, {}, kContinue)) {
         EXPECT_EQ(applied.error().code, Errc::kOverloaded);
         EXPECT_THAT(applied.error().message, HasSubstr("of 905 log entries are found; repeat the request"));
         ASSERT_LT(++calls, 100);
@@ -132,8 +132,8 @@ TEST_F(CaptureLayersTest, LongComputationContinuesWithTheNextRequest) {
 
 TEST_F(CaptureLayersTest, CancelledComputationContinuesLater) {
     LandmarkLayers layers(log_);
-    EXPECT_EQ(layers.up_to(info_, end_, [] { return false; }).error().code, Errc::kShuttingDown);
-    expect_landmarks(layers.up_to(info_, end_, kContinue).value(), end_);
+    EXPECT_EQ(layers.up_to(info_, end_, {}, [] { return false; }).error().code, Errc::kShuttingDown);
+    expect_landmarks(layers.up_to(info_, end_, {}, kContinue).value(), end_);
 }
 
 TEST_F(CaptureLayersTest, DamagedEntryIsReportedAndEarlierEntriesStayAvailable) {
@@ -141,26 +141,26 @@ TEST_F(CaptureLayersTest, DamagedEntryIsReportedAndEarlierEntriesStayAvailable) 
     append(std::vector<LogEntry>{entries_.back()});
     LandmarkLayers layers(log_);
     for (int n = 0; n < 2; ++n) {
-        const auto applied = layers.up_to(info_, end_, kContinue);
+        const auto applied = layers.up_to(info_, end_, {}, kContinue);
         ASSERT_FALSE(applied);
         EXPECT_EQ(applied.error().code, Errc::kDataLoss);
         EXPECT_THAT(applied.error().message, HasSubstr("log entry 906"));
     }
-    expect_landmarks(layers.up_to(info_, end_ - 2, kContinue).value(), end_ - 2);
+    expect_landmarks(layers.up_to(info_, end_ - 2, {}, kContinue).value(), end_ - 2);
 }
 
 TEST_F(CaptureLayersTest, TooManyLandmarksAreRefused) {
     const auto many = all_of(expected(end_)).size();
-    EXPECT_TRUE(LandmarkLayers(log_, {.size_max = many}).up_to(info_, end_, kContinue));
+    EXPECT_TRUE(LandmarkLayers(log_, {.size_max = many}).up_to(info_, end_, {}, kContinue));
     LandmarkLayers layers(log_, {.size_max = many - 1});
-    for (int n = 0; n < 2; ++n) EXPECT_EQ(layers.up_to(info_, end_, kContinue).error().code, Errc::kFull);
+    for (int n = 0; n < 2; ++n) EXPECT_EQ(layers.up_to(info_, end_, {}, kContinue).error().code, Errc::kFull);
 }
 
 /// The test detects a kept state by whether the log is read again.
 TEST_F(CaptureLayersTest, RemovesLeastRecentlyUsedAndDeletedSessions) {
     const auto is_kept = [&](LandmarkLayers& layers, const SessionInfo& session) {
         log_.fail_reading(Error{Errc::kStoreFailed, "the disk is gone"});
-        const bool kept = layers.up_to(session, end_, kContinue).has_value();
+        const bool kept = layers.up_to(session, end_, {}, kContinue).has_value();
         log_.fail_reading(std::nullopt);
         return kept;
     };
@@ -175,11 +175,11 @@ TEST_F(CaptureLayersTest, RemovesLeastRecentlyUsedAndDeletedSessions) {
                                CaptureLayerLimits<landmarks::LandmarkLayer>{}}) {
         const bool has_room = limits.kept_max > 1 && limits.size_max >= 2 * many;
         LandmarkLayers layers(log_, limits);
-        layers.up_to(info_, end_, kContinue).value();
-        layers.up_to(second, end_, kContinue).value();
+        layers.up_to(info_, end_, {}, kContinue).value();
+        layers.up_to(second, end_, {}, kContinue).value();
         EXPECT_TRUE(is_kept(layers, second));
         EXPECT_EQ(is_kept(layers, info_), has_room);
-        layers.up_to(info_, end_, kContinue).value();
+        layers.up_to(info_, end_, {}, kContinue).value();
         layers.remove(info_.id);
         EXPECT_FALSE(is_kept(layers, info_));
     }

@@ -272,7 +272,7 @@ struct CutCheckpointTest : testing::Test {
         ASSERT_TRUE(recovered) << recovered.error().message;
         EXPECT_FALSE(recovered->checkpoint_rejected) << recovered->checkpoint_rejected->message;
         SCOPED_TRACE("cut after piece " + std::to_string(pieces));
-        expect_same(recovered->projection, whole_.projection);
+        expect_same(recovered->maps.projection(), whole_.projection);
     }
 
     mapping::MapConfig config_ = *mapping::resolve({.cell_size = 0.01});

@@ -55,8 +55,8 @@ protected:
     }
 
     void expect_its_maps(Recovered& recovered) const {
-        EXPECT_EQ(recovered.projection.revision(), 5U);
-        EXPECT_EQ(testing_support::digests_of(recovered.projection.snapshot()), digests_);
+        EXPECT_EQ(recovered.maps.projection().revision(), 5U);
+        EXPECT_EQ(testing_support::digests_of(recovered.maps.projection().snapshot()), digests_);
     }
 
     TemporaryDirectory directory_;
@@ -102,7 +102,7 @@ TEST_P(EarlierCheckpointTest, IsReadAndTheRemainingLogApplied) {
     EXPECT_FALSE(recovered.checkpoint_rejected);
     EXPECT_EQ(recovered.checkpointed, std::nullopt) << "the next checkpoint replaces it";
     expect_its_maps(recovered);
-    const auto robot = recovered.projection.state().robots.at(0);
+    const auto robot = recovered.maps.projection().state().robots.at(0);
     EXPECT_EQ(robot.name, "r");
     EXPECT_EQ(robot.source, "sim:1");
     EXPECT_EQ(robot.last_seq, 3U);
@@ -127,10 +127,10 @@ TEST_P(EarlierCheckpointTest, ContainsTheRobotsSummary) {
 TEST_P(EarlierCheckpointTest, IsReplacedByTheNewestFormatWithASummary) {
     auto recovered = recover_session();
     const auto log = store::open_rocksdb(store()).value();
-    const auto config = recovered.projection.config();
-    const auto state = recovered.projection.state();
+    const auto config = recovered.maps.projection().config();
+    const auto state = recovered.maps.projection().state();
     ASSERT_TRUE(
-        write_checkpoint(*log, kSession, recovered.projection.snapshot(), state, recovered.checkpointed, false));
+        write_checkpoint(*log, kSession, recovered.maps.projection().snapshot(), state, recovered.checkpointed, false));
 
     EXPECT_THAT(store::checkpoint_of(*log, kSession).value(), Each(Key(Not(StartsWith("track/")))))
         << "no part of the earlier checkpoint remains";
@@ -151,7 +151,7 @@ TEST_F(EarlierFormatsTest, NewerStoreIsRefusedWithAMessage) {
     const auto log = store::open_rocksdb(store());
     ASSERT_FALSE(log);
     EXPECT_EQ(log.error().code, Errc::kUnsupportedVersion);
-    EXPECT_THAT(log.error().message, AllOf(HasSubstr("newer scanloom-server (format 4, this one knows up to 3)"),
+    EXPECT_THAT(log.error().message, AllOf(HasSubstr("newer scanloom-server (format 5, this one knows up to 4)"),
                                            HasSubstr("update the server")));
 }
 
@@ -164,13 +164,13 @@ TEST_F(EarlierFormatsTest, NewerCheckpointIsReplacedByTheLog) {
     expect_its_maps(recovered);
 }
 
-/// Newest format: a session with max_jump, a jump, and exclusions before and after its checkpoint.
+/// A session with max_jump, a jump, and exclusions before and after its checkpoint.
 TEST_F(EarlierFormatsTest, StoreOfVersion3KeepsExclusionsAndJumps) {
     write("store_3_parts_4.txt");
     auto recovered = recover_session();
     EXPECT_FALSE(recovered.checkpoint_rejected);
-    EXPECT_EQ(testing_support::digests_of(recovered.projection.snapshot()), digests_);
-    const auto state = recovered.projection.state();
+    EXPECT_EQ(testing_support::digests_of(recovered.maps.projection().snapshot()), digests_);
+    const auto state = recovered.maps.projection().state();
     EXPECT_EQ(state.revision, 11U);
     EXPECT_EQ(state.robots.at(0).scan_count, 2U);
     EXPECT_EQ(state.robots.at(0).excluded, 2U);
@@ -178,11 +178,25 @@ TEST_F(EarlierFormatsTest, StoreOfVersion3KeepsExclusionsAndJumps) {
     EXPECT_EQ(state.exclusions->count_in_effect(), 2U);
 
     const auto log = store::open_rocksdb(store()).value();
-    CheckpointReader reader(recovered.projection.config());
+    CheckpointReader reader(recovered.maps.projection().config());
     for (const auto& [key, value] : store::checkpoint_of(*log, kSession).value())
         EXPECT_TRUE(reader.add(key, value)) << key;
     EXPECT_TRUE(reader.is_newest_format());
     EXPECT_EQ(std::move(reader).finish().value().exclusions()->all(), state.exclusions->as_of(9).all());
+}
+
+/// Newest format: a robot without poses, whose scans follow its odometry because it has no laser.
+TEST_F(EarlierFormatsTest, StoreOfVersion4KeepsTheKindOfPosesAndCorrections) {
+    write("store_4_estimated_poses.txt");
+    auto recovered = recover_session();
+    EXPECT_EQ(recovered.maps.announced(), 3U);
+    EXPECT_EQ(recovered.maps.projection().robots().at(0).poses, Poses::kOdometry);
+    EXPECT_EQ(recovered.maps.projection().revision(), 6U);
+    const auto maps = recovered.maps.projection().snapshot();
+    EXPECT_EQ(testing_support::digests_of(maps), digests_);
+    for (const std::uint64_t seq : {1U, 2U, 3U}) {
+        EXPECT_EQ(maps.scan_poses.find(0, seq), (Pose2{0.5 * static_cast<double>(seq), 1.0, 0.25})) << seq;
+    }
 }
 
 } // namespace

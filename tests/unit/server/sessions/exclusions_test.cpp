@@ -132,7 +132,7 @@ protected:
             found.emplace_back(one.capture.stamp, one.capture.points);
             return {};
         };
-        read_captures(log_, id_, cut, log().size(), visit, [](Revision) { return Result<>(); }).value();
+        read_captures(log_, id_, cut, log().size(), {}, visit, [](Revision) { return Result<>(); }).value();
         return found;
     }
 

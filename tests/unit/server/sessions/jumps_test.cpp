@@ -20,8 +20,8 @@ std::vector<Scan> walk(unsigned seed, std::size_t count) {
         place += {step(random), step(random)};
         if (random() % 20 == 0) place += {30.0 * step(random), 3.0}; // the robot is carried
         const bool is_wrong = random() % 6 == 0;
-        scan.pose.x = place.x + (is_wrong ? 50.0 * step(random) : 0.0);
-        scan.pose.y = place.y + (is_wrong ? 20.0 : 0.0);
+        scan.pose->x = place.x + (is_wrong ? 50.0 * step(random) : 0.0);
+        scan.pose->y = place.y + (is_wrong ? 20.0 : 0.0);
     }
     return scans;
 }
@@ -29,7 +29,7 @@ std::vector<Scan> walk(unsigned seed, std::size_t count) {
 /// Decides by the definition, from the whole log each time.
 bool is_left_out(const std::vector<Scan>& scans, std::size_t n) {
     const auto distance = [&](std::size_t to) {
-        return std::hypot(scans[n].pose.x - scans[to].pose.x, scans[n].pose.y - scans[to].pose.y);
+        return std::hypot(scans[n].pose->x - scans[to].pose->x, scans[n].pose->y - scans[to].pose->y);
     };
     if (n == 0 || distance(n - 1) <= kMaxJump) return false;
     std::size_t integrated = n - 1;
@@ -148,8 +148,8 @@ TEST_F(JumpsTest, CapturesContainNoJumps) {
         ++n;
         return {};
     };
-    ASSERT_TRUE(
-        read_captures(log_, id_, captures, session_->snapshot()->revision, visit, [](Revision) { return Result<>(); }));
+    ASSERT_TRUE(read_captures(log_, id_, captures, session_->snapshot()->revision, {}, visit,
+                              [](Revision) { return Result<>(); }));
     EXPECT_EQ(n, wanted.size());
     EXPECT_GT(n, 5U);
 }

@@ -85,7 +85,7 @@ const mapping::LaserChunk* chunk_at_origin(const mapping::Snapshot& maps) { retu
 TEST_F(SessionTest, ScansAreIntegratedInPlaceWithoutASnapshot) {
     const auto link = join("r");
     auto scans = random_scans(1, 1, 3);
-    for (auto& scan : scans) scan.pose = {};
+    for (auto& scan : scans) scan.pose = Pose2{};
     session_->submit(link, {scans[0]}, 10);
     run();
     const auto* chunk = chunk_at_origin(*session_->snapshot());

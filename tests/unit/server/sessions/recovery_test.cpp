@@ -46,8 +46,8 @@ TEST_F(RecoveryTest, CheckpointAndRemainingLogGiveTheMapOfTheWholeLog) {
     auto recovered = recover(log_, id_, config_, false);
     ASSERT_TRUE(recovered);
     EXPECT_EQ(recovered->checkpointed, 602U);
-    EXPECT_EQ(recovered->projection.revision(), 652U);
-    const auto snapshot = recovered->projection.snapshot();
+    EXPECT_EQ(recovered->maps.projection().revision(), 652U);
+    const auto snapshot = recovered->maps.projection().snapshot();
     EXPECT_EQ(testing_support::digests_of(snapshot), digest_of_log());
     EXPECT_EQ(snapshot.robots[0].scan_count, 650U);
     EXPECT_EQ(snapshot.robots[0].trajectory.size(), 650U);
@@ -66,8 +66,8 @@ TEST_F(RecoveryTest, InvalidCheckpointIsReplacedByTheLog) {
         auto recovered = recover(log_, id_, config_, false);
         ASSERT_TRUE(recovered) << key;
         EXPECT_EQ(recovered->checkpointed, std::nullopt) << key;
-        EXPECT_EQ(recovered->projection.revision(), 652U) << key;
-        EXPECT_EQ(testing_support::digests_of(recovered->projection.snapshot()), digest_of_log()) << key;
+        EXPECT_EQ(recovered->maps.projection().revision(), 652U) << key;
+        EXPECT_EQ(testing_support::digests_of(recovered->maps.projection().snapshot()), digest_of_log()) << key;
         if (const auto whole = parts.find(key); whole != parts.end()) damage(key, whole->second);
     }
 }
@@ -86,7 +86,7 @@ TEST_F(RecoveryTest, StoppedRecoveryReadsNothing) {
     const auto recovered = recover(log_, id_, config_, true);
     ASSERT_TRUE(recovered);
     EXPECT_FALSE(recovered->complete);
-    EXPECT_EQ(recovered->projection.revision(), 0U);
+    EXPECT_EQ(recovered->maps.projection().revision(), 0U);
     EXPECT_FALSE(recovered->checkpoint_rejected) << "the checkpoint was not examined";
 }
 
@@ -135,13 +135,13 @@ TEST_F(SessionTest, CheckpointIsWrittenEvery4096Entries) {
     submit(1000);
     auto recovered = recover(log_, id_, config_, false).value();
     EXPECT_EQ(recovered.checkpointed, 8514U);
-    EXPECT_EQ(testing_support::digests_of(recovered.projection.snapshot()), digest());
+    EXPECT_EQ(testing_support::digests_of(recovered.maps.projection().snapshot()), digest());
 }
 
 TEST_F(SessionTest, PendingCheckpointDoesNotDelayScans) {
     boost::asio::io_context slow; // executor for checkpoints; it runs when the test calls run()
     auto recovered = recover(log_, id_, config_, false).value();
-    session_ = std::make_shared<Session>(SessionInfo{id_, "lab", 0.0, config_}, std::move(recovered.projection),
+    session_ = std::make_shared<Session>(SessionInfo{id_, "lab", 0.0, config_}, std::move(recovered.maps),
                                          recovered.checkpointed, log_, compute_.get_executor(), counters_, limits_,
                                          slow.get_executor());
     const auto link = join("r");

@@ -20,7 +20,8 @@ protected:
         append(SensorDescribed{0, small_laser()});
         for (std::uint64_t seq = 1; seq <= 40; ++seq) append(ScanTaken{0, random_scan(1, seq)});
         auto recovered = recover(log_, id_, config_, false).value();
-        write_checkpoint(log_, id_, recovered.projection.snapshot(), recovered.projection.state(), {}, false).value();
+        auto& maps = recovered.maps.projection();
+        write_checkpoint(log_, id_, maps.snapshot(), maps.state(), {}, false).value();
     }
 
     void append(const LogEntry& entry) { append_bytes(wire::encode_entry(entry)); }

@@ -49,7 +49,7 @@ protected:
     /// Starts the session from its log, as after a restart.
     void start_session() {
         auto recovered = recover(log_, id_, config_, false).value();
-        session_ = std::make_shared<Session>(SessionInfo{id_, "lab", 0.0, config_}, std::move(recovered.projection),
+        session_ = std::make_shared<Session>(SessionInfo{id_, "lab", 0.0, config_}, std::move(recovered.maps),
                                              recovered.checkpointed, log_, compute_.get_executor(), counters_, limits_);
     }
 
@@ -64,9 +64,10 @@ protected:
         std::shared_ptr<std::optional<Result<Joined>>> answer = std::make_shared<std::optional<Result<Joined>>>();
     };
 
-    Join begin_join(const std::string& robot, const std::string& source = {}, std::optional<double> body_radius = {}) {
+    Join begin_join(const std::string& robot, const std::string& source = {}, std::optional<double> body_radius = {},
+                    Poses poses = Poses::kMap) {
         Join join;
-        session_->join({robot, source, body_radius}, join.link,
+        session_->join({robot, source, body_radius, poses}, join.link,
                        [answer = join.answer](Result<Joined> joined) { answer->emplace(std::move(joined)); });
         run();
         return join;

@@ -42,7 +42,7 @@ protected:
             scan.ranges = {kInvalidRange};
             scan.angles = ExplicitAngles{0.0};
             add(ScanTaken{robot, scan});
-            paths_[robot].push_back({end_, scan.stamp, scan.pose});
+            paths_[robot].push_back({end_, scan.stamp, *scan.pose});
         }
     }
 

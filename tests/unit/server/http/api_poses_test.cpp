@@ -1,0 +1,222 @@
+#include "tests/unit/core/slam/drive.hpp"
+#include "tests/unit/server/http/api_fixture.hpp"
+
+#include <boost/json/array.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <future>
+#include <map>
+#include <memory>
+#include <sstream>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+namespace scanloom::http {
+namespace {
+
+/// A pose of a line of trajectory.tum.
+struct TumPose {
+    double stamp = 0.0; // seconds
+    Pose2 pose;         // T_map_robot
+};
+
+/// Parses trajectory.tum.
+std::map<std::string, std::vector<TumPose>> read_tum(const std::string& text) {
+    std::map<std::string, std::vector<TumPose>> robots;
+    std::vector<TumPose>* robot = nullptr;
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);) {
+        if (line.starts_with("# robot ")) {
+            robot = &robots[line.substr(8)];
+            continue;
+        }
+        std::istringstream values(line);
+        TumPose at;
+        double z = 0.0;
+        double qx = 0.0;
+        double qy = 0.0;
+        double qz = 0.0;
+        double qw = 0.0;
+        values >> at.stamp >> at.pose.x >> at.pose.y >> z >> qx >> qy >> qz >> qw;
+        EXPECT_TRUE(values && values.eof() && robot != nullptr) << line;
+        EXPECT_EQ(std::tie(z, qx, qy), std::tuple(0.0, 0.0, 0.0)) << line;
+        EXPECT_NEAR(std::hypot(qz, qw), 1.0, 1e-6) << line;
+        at.pose.yaw = 2.0 * std::atan2(qz, qw);
+        robot->push_back(at);
+    }
+    return robots;
+}
+
+/// A lap of a corridor and a quarter, with odometry that drifts by metres.
+const slam::Drive& lap() {
+    static const slam::Drive drive =
+        slam::drive_along(slam::ring_building(), slam::kLapAndAQuarter, {.scale = 1.03, .turn = 0.004}, 1);
+    return drive;
+}
+
+class ApiPosesTest : public ApiTest {
+protected:
+    void SetUp() override { create("a"); }
+
+    /// Joins a robot that does not send poses.
+    std::shared_ptr<Link> join_as(Poses poses, std::uint64_t awaited_seq) {
+        const auto link = std::make_shared<Link>(awaited_seq);
+        std::promise<void> joined;
+        registry_.find("a")->join({.robot = "r1", .poses = poses}, link,
+                                  [&joined](const Result<sessions::Joined>&) { joined.set_value(); });
+        joined.get_future().wait();
+        links_.push_back(link);
+        return link;
+    }
+
+    /// Sends the scans of the lap, and waits until none of them is moving.
+    void drive_lap() {
+        std::vector<Scan> scans;
+        for (std::size_t n = 0; n < lap().scans.size(); ++n) {
+            Scan scan = lap().scans[n];
+            scan.seq = n + 1;
+            scan.stamp = stamp_of(n);
+            scan.pose.reset();
+            scan.odometry = lap().odometry[n];
+            scans.push_back(std::move(scan));
+        }
+        const auto session = registry_.find("a");
+        const auto link = join_as(Poses::kOdometry, scans.size());
+        session->submit(link, lap().laser, 0);
+        session->submit(link, std::move(scans), 1);
+        link->wait();
+        EXPECT_EQ(get("/api/v1/sessions/a/digest").status, Status::ok);
+    }
+
+    static double stamp_of(std::size_t scan) { return 100.0 + static_cast<double>(scan) / 10.0; }
+
+    boost::json::value localization() {
+        return get_json("/api/v1/sessions/a").at("robots").as_array().at(0).at("localization");
+    }
+
+    std::map<std::string, std::vector<TumPose>> tum(const std::string& query = "") {
+        const auto response = get("/api/v1/sessions/a/trajectory.tum" + query);
+        EXPECT_EQ(response.status, Status::ok) << response.body.bytes();
+        EXPECT_EQ(response.get("Content-Type"), "text/plain; charset=utf-8");
+        return read_tum(std::string(response.body.bytes()));
+    }
+};
+
+TEST_F(ApiPosesTest, TumTrajectoryHasEstimatedPoseOfEachScan) {
+    drive_lap();
+    const auto robots = tum();
+    ASSERT_EQ(robots.size(), 1U);
+    const auto& poses = robots.at("r1");
+    ASSERT_EQ(poses.size(), lap().scans.size());
+    for (std::size_t n = 0; n < poses.size(); ++n) EXPECT_NEAR(poses[n].stamp, stamp_of(n), 1e-6);
+    EXPECT_LT(slam::largest_error(lap(), [&](std::size_t n) { return poses[n].pose; }), 0.3);
+}
+
+TEST_F(ApiPosesTest, OnlineTrajectoryHasPosesAsFirstEstimated) {
+    drive_lap();
+    const auto newest = tum("?robot=r1").at("r1");
+    const auto online = tum("?robot=r1&as=online").at("r1");
+    ASSERT_EQ(online.size(), newest.size());
+    double largest = 0.0;
+    for (std::size_t n = 0; n < online.size(); ++n) {
+        EXPECT_EQ(online[n].stamp, newest[n].stamp);
+        largest =
+            std::max(largest, std::hypot(online[n].pose.x - newest[n].pose.x, online[n].pose.y - newest[n].pose.y));
+    }
+    EXPECT_GT(largest, 0.05) << "the end of the lap corrects its poses";
+}
+
+TEST_F(ApiPosesTest, TumTrajectoryOfRobotThatSendsPosesHasThese) {
+    stream("a", "r1", {scan(1), scan(2)});
+    stream("a", "r2", {scan(1)});
+    const auto both = tum();
+    ASSERT_EQ(both.size(), 2U);
+    EXPECT_EQ(both.at("r2").size(), 1U);
+    const auto one = tum("?robot=r1");
+    ASSERT_EQ(one.size(), 1U);
+    ASSERT_EQ(one.at("r1").size(), 2U);
+    for (const std::uint64_t seq : {1U, 2U}) {
+        const auto& at = one.at("r1")[seq - 1];
+        EXPECT_EQ(at.stamp, scan(seq).stamp);
+        EXPECT_EQ(at.pose, *scan(seq).pose);
+    }
+    EXPECT_EQ(tum("?as=online").at("r1").size(), 2U);
+    EXPECT_THAT(get_json("/api/v1/sessions/a/pose_graph.geojson").at("features").as_array(), testing::IsEmpty());
+}
+
+TEST_F(ApiPosesTest, TrajectoryOfUnknownRobotOrEstimateIsRefused) {
+    stream("a", 1);
+    const std::string tum = "/api/v1/sessions/a/trajectory.tum";
+    EXPECT_THAT(detail(get(tum + "?robot=r7"), Status::not_found), HasSubstr("r7"));
+    EXPECT_THAT(detail(get(tum + "?as=first"), Status::bad_request), HasSubstr("online is possible"));
+}
+
+TEST_F(ApiPosesTest, PoseGraphHasKeyframesAndTheirEdges) {
+    drive_lap();
+    const auto graph = get_json("/api/v1/sessions/a/pose_graph.geojson");
+    std::map<std::string, int> kinds;
+    for (const auto& feature : graph.at("features").as_array()) {
+        const auto& of = feature.at("properties");
+        const std::string kind(of.at("kind").as_string());
+        ++kinds[kind];
+        EXPECT_EQ(of.at("robot"), "r1");
+        const bool is_keyframe = kind == "keyframe";
+        EXPECT_EQ(feature.at("geometry").at("type"), is_keyframe ? "Point" : "LineString");
+        if (is_keyframe) {
+            EXPECT_EQ(of.at("keyframe").to_number<int>(), kinds[kind] - 1);
+            continue;
+        }
+        EXPECT_LT(of.at("from").to_number<int>(), kinds["keyframe"]);
+        EXPECT_LT(of.at("to").to_number<int>(), kinds["keyframe"]);
+        if (of.at("is_used").as_bool()) {
+            EXPECT_LT(of.at("residual").to_number<double>(), 0.3);
+        }
+    }
+    EXPECT_GE(kinds["keyframe"], 100) << "each 0.8 m or 0.4 radians";
+    EXPECT_GE(kinds["match"] + kinds["odometry"], kinds["keyframe"] - 1) << "each follows from another";
+    EXPECT_GT(kinds["match"], kinds["odometry"]);
+    EXPECT_GT(kinds["loop"], 0) << "at the end of the lap";
+}
+
+TEST_F(ApiPosesTest, SessionShowsWhetherPosesAreGiven) {
+    stream("a", 1);
+    EXPECT_EQ(localization().at("poses"), "map");
+    EXPECT_EQ(localization().at("state"), "given");
+}
+
+TEST_F(ApiPosesTest, SessionShowsRobotWithoutScansAsUnlocated) {
+    join_as(Poses::kNone, 1);
+    EXPECT_EQ(localization().at("poses"), "none");
+    EXPECT_EQ(localization().at("state"), "unlocated");
+}
+
+TEST_F(ApiPosesTest, MapsAndTrajectoriesFollowCorrectedPoses) {
+    drive_lap();
+    const auto session = get_json("/api/v1/sessions/a");
+    EXPECT_EQ(session.at("moving_scans"), 0);
+    const auto& known = session.at("robots").as_array().at(0).at("localization");
+    EXPECT_EQ(known.at("poses"), "odometry");
+    EXPECT_EQ(known.at("state"), "tracking");
+    EXPECT_GT(known.at("inliers").to_number<double>(), 0.7);
+    EXPECT_GT(known.at("sigma_m").to_number<double>(), 0.0);
+    EXPECT_GT(known.at("sigma_rad").to_number<double>(), 0.0);
+    EXPECT_GT(known.at("loops").to_number<int>(), 0);
+    EXPECT_EQ(known.at("unplaced"), 0);
+
+    const auto maps = registry_.find("a")->snapshot();
+    EXPECT_EQ(maps->robots.at(0).newest_scan->scan.pose, maps->robots.at(0).pose);
+    const auto path = get_json("/api/v1/sessions/a/trajectory.geojson");
+    EXPECT_EQ(path.at("poses_corrected").to_number<Revision>(), maps->scan_poses.corrected());
+    const auto metrics = std::string(get("/metrics").body.bytes());
+    EXPECT_THAT(metrics, testing::ContainsRegex("\nscanloom_loops_accepted_total [1-9]"));
+    EXPECT_THAT(metrics, testing::ContainsRegex("\nscanloom_maps_corrected_total [1-9]"));
+    EXPECT_THAT(metrics, HasSubstr("\nscanloom_moving_scans 0\n"));
+    EXPECT_THAT(metrics, HasSubstr("\nscanloom_scans_unplaced_total 0\n"));
+}
+
+} // namespace
+} // namespace scanloom::http

@@ -1,0 +1,239 @@
+#include "server/sessions/replay_job.hpp"
+#include "tests/unit/core/slam/drive.hpp"
+#include "tests/unit/server/sessions/session_fixture.hpp"
+
+#include <cstddef>
+#include <variant>
+#include <vector>
+
+namespace scanloom::sessions {
+namespace {
+
+using localization::Estimate;
+using localization::StampedPose;
+
+/// A lap of a corridor and a quarter, with odometry that drifts by metres.
+const slam::Drive& lap() {
+    static const slam::Drive drive =
+        slam::drive_along(slam::ring_building(), slam::kLapAndAQuarter, {.scale = 1.03, .turn = 0.004}, 1);
+    return drive;
+}
+
+/// The maps and the poses of a session at rest.
+struct State {
+    std::string digest;
+    std::vector<StampedPose> poses;
+
+    friend bool operator==(const State&, const State&) = default;
+};
+
+/// A link that also records where its robot is.
+struct LocatedLink : RecordedLink {
+    void on_located(const Located& where) override { located.push_back(where); }
+
+    std::vector<Located> located;
+};
+
+class EstimatedPosesTest : public SessionTest {
+protected:
+    /// Joins the robot and sends the scans that the session does not have.
+    std::shared_ptr<LocatedLink> drive_on(std::size_t scans_at_once, std::size_t end = lap().scans.size(),
+                                          Poses poses = Poses::kOdometry) {
+        const auto link = std::make_shared<LocatedLink>();
+        std::uint64_t stored = 0;
+        session_->join({"robot", {}, {}, poses}, link,
+                       [&](const Result<Joined>& joined) { stored = joined.value().last_durable_seq; });
+        run();
+        session_->submit(link, lap().laser, 0);
+        for (std::size_t n = stored; n < end;) {
+            std::vector<Scan> scans;
+            for (; n < end && scans.size() < scans_at_once; ++n) {
+                scans.push_back(lap().scans[n]);
+                scans.back().seq = n + 1;
+                scans.back().pose.reset();
+                if (poses == Poses::kMap) scans.back().pose = lap().odometry[n];
+                if (poses == Poses::kOdometry) scans.back().odometry = lap().odometry[n];
+            }
+            session_->submit(link, std::move(scans), 0);
+            run();
+        }
+        EXPECT_THAT(link->failures, testing::IsEmpty());
+        EXPECT_EQ(session_->snapshot()->robots[0].last_seq, end);
+        return link;
+    }
+
+    [[nodiscard]] State state() {
+        std::vector<StampedPose> poses;
+        session_->read_poses([&](const auto& estimated) { poses = estimated.trajectory(0, Estimate::kNewest); });
+        run();
+        return {digest(), std::move(poses)};
+    }
+
+    /// Continues with a session that has the first entries of the log.
+    void crash_after(Revision end) {
+        auto entries = store::entries_after(log_, id_, 0).value();
+        entries.resize(end);
+        id_ = log_.create_session("an unused record").value();
+        log_.append(id_, 1, std::move(entries), [](const Result<>& appended) { EXPECT_TRUE(appended); });
+        start_session();
+        if (is_outdated_) session_->correct_maps();
+    }
+
+    void start_session() {
+        auto recovered = recover(log_, id_, config_, false).value();
+        is_outdated_ = recovered.maps.is_outdated();
+        session_ = std::make_shared<Session>(SessionInfo{id_, "lab", 0.0, config_}, std::move(recovered.maps),
+                                             recovered.checkpointed, log_, compute_.get_executor(), counters_, limits_);
+    }
+
+    /// Returns the revisions of the entries that announce corrected maps.
+    [[nodiscard]] std::vector<Revision> announcements() {
+        std::vector<Revision> revisions;
+        const auto entries = logged();
+        for (std::size_t n = 0; n < entries.size(); ++n) {
+            if (std::holds_alternative<MapsCorrected>(entries[n])) revisions.push_back(n + 1);
+        }
+        return revisions;
+    }
+
+    /// Returns the digest of the maps that are made from the log with the poses that the session's maps show.
+    [[nodiscard]] std::string digest_with_poses_in_maps() {
+        mapping::Projection maps(config_);
+        for (auto entry : logged()) {
+            session_->snapshot()->scan_poses.place(entry);
+            EXPECT_TRUE(maps.apply(entry));
+        }
+        return testing_support::digests_of(maps.snapshot());
+    }
+
+    bool is_outdated_ = false; // maps of the recovered session
+};
+
+TEST_F(EstimatedPosesTest, LoopClosuresCorrectTheMaps) {
+    drive_on(20);
+    const auto maps = session_->snapshot();
+    EXPECT_EQ(maps->moving_scans, 0U);
+    EXPECT_EQ(maps->robots[0].scan_count, lap().scans.size());
+    const auto announced = announcements();
+    ASSERT_FALSE(announced.empty());
+    EXPECT_EQ(maps->scan_poses.corrected(), announced.back());
+    EXPECT_EQ(digest(), digest_with_poses_in_maps());
+    const auto poses = state().poses;
+    EXPECT_LT(slam::largest_error(lap(), [&](std::size_t n) { return poses[n].pose; }), 0.2) << "of 14 m";
+    const auto& trajectory = maps->robots[0].trajectory;
+    for (std::size_t n = 0; n < trajectory.size(); ++n) {
+        ASSERT_EQ(trajectory[n].pose, maps->scan_poses.find(0, n + 1));
+    }
+}
+
+TEST_F(EstimatedPosesTest, ARobotReceivesWhereItIsAfterEachGroup) {
+    constexpr std::size_t kScans = 60;
+    const auto newest_of = [&](const LocatedLink& link) {
+        EXPECT_EQ(link.located.size(), kScans / 20) << "one for each group with a scan";
+        const Located newest = link.located.back();
+        EXPECT_EQ(newest.revision, session_->snapshot()->revision);
+        EXPECT_EQ(newest.state, LocalizationState::kTracking);
+        const auto known = session_->snapshot()->robots[0].localization;
+        EXPECT_EQ(newest.inlier_ratio, known.inlier_ratio);
+        EXPECT_EQ(newest.position_sigma, known.position_sigma);
+        EXPECT_EQ(newest.yaw_sigma, known.yaw_sigma);
+        return newest.T_map_odom;
+    };
+    const Pose2 T_map_odom = newest_of(*drive_on(20, kScans));
+    const Pose2 pose = state().poses.back().pose;
+    const Pose2 composed = compose(T_map_odom, lap().odometry[kScans - 1]);
+    EXPECT_NEAR(composed.x, pose.x, 1e-9);
+    EXPECT_NEAR(composed.y, pose.y, 1e-9);
+    EXPECT_NEAR(composed.yaw, pose.yaw, 1e-9);
+
+    id_ = log_.create_session("an unused record").value();
+    start_session();
+    const Pose2 T_map_robot = newest_of(*drive_on(20, kScans, Poses::kNone));
+    EXPECT_EQ(T_map_robot, state().poses.back().pose) << "without odometry the robot is its odometry frame";
+}
+
+TEST_F(EstimatedPosesTest, ARobotThatSendsPosesIsNotLocated) {
+    EXPECT_THAT(drive_on(20, 40, Poses::kMap)->located, testing::IsEmpty());
+}
+
+TEST_F(EstimatedPosesTest, BatchesDoNotMatter) {
+    drive_on(100);
+    const State expected = state();
+    id_ = log_.create_session("an unused record").value();
+    start_session();
+    drive_on(7);
+    EXPECT_EQ(state(), expected);
+}
+
+TEST_F(EstimatedPosesTest, MapsAndPosesAreEqualWhereverTheServerWasKilled) {
+    drive_on(20);
+    const State expected = state();
+    const auto whole = id_;
+    const Revision end = session_->snapshot()->revision;
+    std::vector<Revision> kills{3, end / 3, end};
+    for (const Revision announced : announcements()) { // before the announcement, and after it
+        kills.push_back(announced - 1);
+        kills.push_back(announced);
+    }
+    for (const Revision kill : kills) {
+        id_ = whole;
+        crash_after(kill);
+        drive_on(20);
+        EXPECT_EQ(state(), expected) << "killed after entry " << kill;
+        EXPECT_EQ(session_->snapshot()->moving_scans, 0U);
+    }
+}
+
+TEST_F(EstimatedPosesTest, AnAnnouncedCorrectionIsShownAtOnceAfterARestart) {
+    drive_on(20);
+    const std::string expected = digest();
+    start_session();
+    EXPECT_FALSE(is_outdated_);
+    EXPECT_EQ(digest(), expected);
+}
+
+TEST_F(EstimatedPosesTest, OnlyChunksThatDifferGetANewRevision) {
+    const auto maps_after = [&](std::size_t scans) {
+        drive_on(1, scans);
+        return session_->snapshot();
+    };
+    std::size_t corrections = 0;
+    auto before = maps_after(lap().scans.size() * 3 / 4);
+    for (std::size_t n = lap().scans.size() * 3 / 4; n < lap().scans.size() && corrections == 0; ++n) {
+        auto after = maps_after(n + 1);
+        const Revision corrected = after->scan_poses.corrected();
+        corrections += corrected == before->scan_poses.corrected() ? 0 : 1;
+        after->laser.visit({}, 0, [&](grid::ChunkKey key, const mapping::LaserChunk& chunk) {
+            const auto* earlier = before->laser.find(key);
+            if (earlier == nullptr) return;
+            const bool is_same = earlier->occupancy == chunk.occupancy && earlier->himm == chunk.himm;
+            EXPECT_TRUE(is_same || chunk.revision > before->revision);
+            EXPECT_FALSE(is_same && chunk.revision == corrected && corrected > before->revision);
+        });
+        before = after;
+    }
+    EXPECT_EQ(corrections, 1U);
+}
+
+TEST_F(EstimatedPosesTest, AReplayJobShowsTheSamePoses) {
+    drive_on(20);
+    const auto maps = session_->snapshot();
+    limits::MemoryBudget budget(1'000'000);
+    ReplayJob job(session_->info(), {config_, {}}, maps->revision, maps->scan_poses);
+    while (job.run(log_, budget)) {
+    }
+    ASSERT_TRUE(job.maps());
+    EXPECT_EQ(testing_support::digests_of(*job.maps()), digest());
+}
+
+TEST_F(EstimatedPosesTest, TheMemoryOfACorrectionIsGivenBack) {
+    const auto budget = std::make_shared<limits::MemoryBudget>(1'000'000);
+    limits_.shared = {budget};
+    start_session();
+    drive_on(20);
+    EXPECT_EQ(budget->used(),
+              static_cast<std::int64_t>(recover(log_, id_, config_, false)->maps.projection().page_count()));
+}
+
+} // namespace
+} // namespace scanloom::sessions

@@ -1,0 +1,179 @@
+#include "tests/unit/server/sessions/session_fixture.hpp"
+
+#include <numbers>
+#include <string>
+#include <vector>
+
+/// Which poses a session accepts from its robots.
+namespace scanloom::sessions {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+using testing::StartsWith;
+
+Scan scan_with(std::uint64_t seq, std::optional<Pose2> pose, std::optional<Pose2> odometry) {
+    Scan scan = random_scan(1, seq);
+    scan.pose = pose;
+    scan.odometry = odometry;
+    return scan;
+}
+
+Sensor ring_of_sonars() {
+    Sensor sensor;
+    sensor.id = 3;
+    sensor.kind = SensorKind::kSonar;
+    sensor.angles = UniformAngles{-std::numbers::pi, std::numbers::pi / 4, 8};
+    sensor.aperture = 0.5;
+    sensor.range_max = 3.0;
+    return sensor;
+}
+
+class PosesTest : public SessionTest {
+protected:
+    Join join_with(Poses poses, const std::string& robot = "r", const std::string& source = {}) {
+        return begin_join(robot, source, std::nullopt, poses);
+    }
+
+    /// Joins a robot and describes its sensor.
+    std::shared_ptr<RecordedLink> joined(Poses poses, const Sensor& sensor = small_laser(),
+                                         const std::string& robot = "r") {
+        const auto join = join_with(poses, robot);
+        EXPECT_TRUE(join.answer->has_value() && join.answer->value()) << robot;
+        session_->submit(join.link, sensor, 0);
+        run();
+        return join.link;
+    }
+
+    /// Returns the message with which the session refuses a robot.
+    std::string refusal_of(const Join& join) {
+        if (!join.answer->has_value() || join.answer->value()) return "accepted";
+        EXPECT_EQ(join.answer->value().error().code, Errc::kConflict);
+        return join.answer->value().error().message;
+    }
+
+    /// Returns the message with which the session refuses a scan.
+    std::string refusal_of(const std::shared_ptr<RecordedLink>& link, const Scan& scan) {
+        session_->submit(link, {scan}, 0);
+        run();
+        if (link->failures.empty()) return "accepted";
+        EXPECT_EQ(link->failures[0].code, Errc::kInvalidField);
+        return link->failures[0].message;
+    }
+
+    std::string refusal_of(Poses poses, const Scan& scan) { return refusal_of(joined(poses), scan); }
+};
+
+constexpr Pose2 kPlace{1.0, 2.0, 0.5};
+
+TEST_F(PosesTest, RobotWithPosesMustSendThem) {
+    EXPECT_THAT(refusal_of(Poses::kMap, scan_with(1, std::nullopt, kPlace)),
+                StartsWith("scan_batch.scans[0].pose is absent; send where the robot was"));
+    EXPECT_EQ(refusal_of(Poses::kMap, scan_with(1, kPlace, std::nullopt)), "accepted");
+    EXPECT_EQ(refusal_of(Poses::kMap, scan_with(2, kPlace, kPlace)), "accepted");
+}
+
+TEST_F(PosesTest, RobotWithOdometryMustSendItAlone) {
+    EXPECT_THAT(refusal_of(Poses::kOdometry, scan_with(1, kPlace, kPlace)),
+                StartsWith("scan_batch.scans[0].pose is set, but hello.poses says"));
+    EXPECT_THAT(refusal_of(Poses::kOdometry, scan_with(1, std::nullopt, std::nullopt)),
+                StartsWith("scan_batch.scans[0].odometry is absent, but hello.poses says"));
+    EXPECT_EQ(refusal_of(Poses::kOdometry, scan_with(1, std::nullopt, kPlace)), "accepted");
+}
+
+TEST_F(PosesTest, RobotWithoutPosesMustSendNeither) {
+    EXPECT_THAT(refusal_of(Poses::kNone, scan_with(1, kPlace, std::nullopt)),
+                StartsWith("scan_batch.scans[0].pose is set, but hello.poses says"));
+    EXPECT_THAT(refusal_of(Poses::kNone, scan_with(1, std::nullopt, kPlace)),
+                StartsWith("scan_batch.scans[0].odometry is set, but hello.poses says"));
+    EXPECT_EQ(refusal_of(Poses::kNone, scan_with(1, std::nullopt, std::nullopt)), "accepted");
+}
+
+TEST_F(PosesTest, SonarsAloneNeedOdometry) {
+    Scan scan = scan_with(1, std::nullopt, std::nullopt);
+    scan.sensor = ring_of_sonars().id;
+    scan.ranges.resize(8);
+    EXPECT_THAT(refusal_of(joined(Poses::kNone, ring_of_sonars()), scan),
+                StartsWith("scan_batch.scans[0].sensor is a ring of sonars of a robot without laser and odometry"));
+    const auto with_laser = joined(Poses::kNone, ring_of_sonars());
+    session_->submit(with_laser, small_laser(), 0);
+    EXPECT_EQ(refusal_of(with_laser, scan), "accepted");
+}
+
+TEST_F(PosesTest, ScansBeforeOneWithTheWrongPoseAreKept) {
+    const auto link = joined(Poses::kOdometry);
+    session_->submit(link, {scan_with(1, std::nullopt, kPlace), scan_with(2, kPlace, kPlace)}, 10);
+    run();
+    ASSERT_THAT(link->failures, SizeIs(1));
+    EXPECT_THAT(link->failures[0].message, StartsWith("scan_batch.scans[1].pose is set"));
+    EXPECT_EQ(session_->snapshot()->robots[0].last_seq, 1U);
+    EXPECT_EQ(logged().back(), LogEntry(ScanTaken{0, scan_with(1, std::nullopt, kPlace)})) << "as it was sent";
+}
+
+TEST_F(PosesTest, RobotWithEstimatedPosesHasItsSessionAlone) {
+    joined(Poses::kOdometry);
+    for (const auto poses : {Poses::kMap, Poses::kOdometry, Poses::kNone}) {
+        EXPECT_THAT(refusal_of(join_with(poses, "other")),
+                    StartsWith("hello.poses is '" + std::string(name_of(poses)) +
+                               "': session 'lab' has the map of robot 'r', whose poses the server estimates"));
+    }
+    EXPECT_THAT(refusal_of(join_with(Poses::kMap, "other")), HasSubstr("use another session for robot 'other'"));
+}
+
+TEST_F(PosesTest, RobotWithEstimatedPosesCannotJoinOthers) {
+    joined(Poses::kMap, small_laser(), "other");
+    for (const auto poses : {Poses::kOdometry, Poses::kNone}) {
+        EXPECT_THAT(refusal_of(join_with(poses)),
+                    StartsWith("hello.poses is '" + std::string(name_of(poses)) + "': session 'lab' has other robots"));
+    }
+    EXPECT_EQ(refusal_of(join_with(Poses::kMap)), "accepted");
+}
+
+TEST_F(PosesTest, RobotWithEstimatedPosesCannotExtendAnImportedMap) {
+    const MapPatch patch{config_.cell_size, 0.0, 0.0, 1, {MapCell::kOccupied}};
+    ASSERT_TRUE(store::append_and_wait(log_, id_, 1, {wire::encode_entry(patch)}));
+    start_session();
+    ASSERT_FALSE(mapping::bounds_of(*session_->snapshot()).empty());
+    EXPECT_THAT(refusal_of(join_with(Poses::kOdometry)),
+                StartsWith("hello.poses is 'odometry': session 'lab' has a map"));
+    EXPECT_EQ(refusal_of(join_with(Poses::kMap)), "accepted");
+    EXPECT_THAT(refusal_of(join_with(Poses::kNone)), StartsWith("hello.poses is 'none': session 'lab' has a map"))
+        << "also if the robot has joined before";
+}
+
+TEST_F(PosesTest, RobotContinuesWithTheSameKindOfPoses) {
+    const auto link = joined(Poses::kMap);
+    EXPECT_EQ(refusal_of(join_with(Poses::kOdometry)), "accepted") << "it has no scans yet";
+    EXPECT_EQ(session_->snapshot()->robots.at(0).poses, Poses::kOdometry);
+    EXPECT_EQ(logged().back(), LogEntry(RobotJoined{.robot = 0, .name = "r", .poses = Poses::kOdometry}));
+    EXPECT_EQ(refusal_of(Poses::kOdometry, scan_with(1, std::nullopt, kPlace)), "accepted");
+    const auto entries = logged().size();
+    for (const auto poses : {Poses::kMap, Poses::kNone}) {
+        EXPECT_THAT(refusal_of(join_with(poses)),
+                    StartsWith("hello.poses: the 1 scans of robot 'r' in session 'lab' have poses of kind 'odometry', "
+                               "not '" +
+                               std::string(name_of(poses)) + "'; continue with the same"));
+    }
+    EXPECT_THAT(refusal_of(join_with(Poses::kMap, "r", "carmen:1")), StartsWith("hello.source: "));
+    EXPECT_EQ(refusal_of(join_with(Poses::kOdometry)), "accepted");
+    EXPECT_THAT(logged(), SizeIs(entries)) << "nothing has changed";
+    start_session();
+    EXPECT_THAT(refusal_of(join_with(Poses::kMap)), StartsWith("hello.poses: ")) << "also after a restart";
+}
+
+TEST_F(PosesTest, EstimatedPosesGoIntoNoCheckpoint) {
+    for (const bool is_estimated : {false, true}) {
+        id_ = log_.create_session("an unused record").value();
+        start_session();
+        const auto scan = is_estimated ? scan_with(1, std::nullopt, kPlace) : scan_with(1, kPlace, std::nullopt);
+        EXPECT_EQ(refusal_of(is_estimated ? Poses::kOdometry : Poses::kMap, scan), "accepted");
+        session_->close({Errc::kShuttingDown, "bye"}, [] {});
+        run();
+        EXPECT_EQ(store::checkpoint_of(log_, id_).value().empty(), is_estimated)
+            << "it would lack the state from which poses are estimated";
+    }
+}
+
+} // namespace
+} // namespace scanloom::sessions
