@@ -141,7 +141,7 @@ Result<> Experiment::compare_halves(const RecordedCapture& recorded) {
     const auto half = scans.size() / 2;
     auto halves = pair_of(see(std::span(scans).first(half), sensor), see(std::span(scans).subspan(half), sensor));
     if (!halves) return halves.error();
-    const Pose2& place = scans.front().pose;
+    const Pose2& place = *scans.front().pose;
     if (auto kept = keep_picture(*halves, {place.x, place.y}, "recording.png"); !kept) return kept;
     results_.recorded =
         RecordedResult{recorded.name, recorded.remarks, scans.size(), std::move(*all), std::move(*halves)};

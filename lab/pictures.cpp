@@ -86,22 +86,23 @@ cv::Mat draw_map(const mapping::Snapshot& snapshot, const Canvas& canvas) {
 
 void draw_run(cv::Mat& picture, const Canvas& canvas, const Recording& recording, std::size_t scans) {
     for (std::size_t n = 1; n < scans; ++n) {
-        const Pose2& from = recording.scans[n - 1].pose;
-        const Pose2& to = recording.scans[n].pose;
+        const Pose2& from = *recording.scans[n - 1].pose;
+        const Pose2& to = *recording.scans[n].pose;
         cv::line(picture, canvas.at({from.x, from.y}), canvas.at({to.x, to.y}), kPathColour, 1, cv::LINE_8, kShift);
     }
     const Scan& newest = recording.scans[scans - 1];
+    const Pose2& pose = *newest.pose;
     for (std::size_t beam = 0; beam < newest.ranges.size(); ++beam) {
         const RangeMm range = newest.ranges[beam];
         if (range == kInvalidRange || range == kNoReturn) continue;
         const double angle = beam_angle(recording.laser.angles, beam);
-        const Point2 point = transform(newest.pose, range * 1e-3 * Point2{std::cos(angle), std::sin(angle)});
+        const Point2 point = transform(pose, range * 1e-3 * Point2{std::cos(angle), std::sin(angle)});
         cv::circle(picture, canvas.at(point), canvas.length(0.02), kPointColour, cv::FILLED, cv::LINE_8, kShift);
     }
-    const Point2 robot{newest.pose.x, newest.pose.y};
+    const Point2 robot{pose.x, pose.y};
     cv::circle(picture, canvas.at(robot), canvas.length(sim::kBodyRadius), kPathColour, cv::FILLED, cv::LINE_8, kShift);
-    cv::line(picture, canvas.at(robot), canvas.at(transform(newest.pose, {2.0 * sim::kBodyRadius, 0.0})), kPathColour,
-             2, cv::LINE_8, kShift);
+    cv::line(picture, canvas.at(robot), canvas.at(transform(pose, {2.0 * sim::kBodyRadius, 0.0})), kPathColour, 2,
+             cv::LINE_8, kShift);
     for (const sim::Disc& walker : recording.walkers[scans - 1]) {
         cv::circle(picture, canvas.at(walker.centre), canvas.length(walker.radius), kWalkerColour, 2, cv::LINE_8,
                    kShift);

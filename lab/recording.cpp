@@ -70,7 +70,7 @@ std::vector<Pose2> drive_from(const Start& start, std::size_t scans) {
     sim::Simulator simulator({world_of("room"), reference_laser(), std::nullopt, 1, start.pose},
                              std::make_unique<sim::WallFollower>());
     std::vector<Pose2> path(scans);
-    std::generate(path.begin(), path.end(), [&] { return simulator.next_scan().pose; });
+    std::generate(path.begin(), path.end(), [&] { return *simulator.next_scan().pose; });
     return path;
 }
 
@@ -156,7 +156,7 @@ std::vector<Point2> points_of(std::span<const Scan> scans, const Sensor& sensor)
 std::vector<Point2> points_in_map(std::span<const Scan> scans, const Sensor& sensor) {
     std::vector<Point2> points;
     for_each_point(scans, sensor,
-                   [&](const Scan& scan, const Point2& point) { points.push_back(transform(scan.pose, point)); });
+                   [&](const Scan& scan, const Point2& point) { points.push_back(transform(*scan.pose, point)); });
     return points;
 }
 

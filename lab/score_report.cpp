@@ -7,8 +7,6 @@
 namespace scanloom::lab {
 namespace {
 
-std::string_view name_of(Poses poses) { return poses == Poses::kNone ? "none" : "odometry"; }
-
 double milliseconds_per_scan(const ScoreResult& result) {
     return 1e3 * result.cpu_seconds / static_cast<double>(result.scans);
 }

@@ -76,15 +76,25 @@ Scan Simulator::next_scan() {
     Scan scan;
     scan.stamp = static_cast<double>(moment * kControlStepsPerScan) * kControlPeriod;
     scan.sensor = sensor.id;
-    scan.pose = pose_sent();
-    scan.odometry = odometry_;
+    scan.pose = believed_pose();
     scan.ranges = measure(options_.world, sensor, pose_, options_.noise, random_);
     if (which == 0) {
         senses_.nearest = sectors_of(scan, sensor);
         senses_.obstacles = obstacles_of(scan, sensor);
     }
+    switch (options_.poses) {
+    case Poses::kMap: scan.odometry = odometry_; break;
+    case Poses::kOdometry: scan.odometry = compose(start_, odometry_); [[fallthrough]];
+    case Poses::kNone: scan.pose.reset(); break;
+    }
     ++scans_;
     return scan;
+}
+
+void Simulator::correct(const Pose2& T_map_odom) {
+    const Pose2 moved = compose(T_map_odom, inverse(T_map_odom_));
+    for (Point2& obstacle : senses_.obstacles) obstacle = transform(moved, obstacle);
+    T_map_odom_ = T_map_odom;
 }
 
 const std::shared_ptr<const Sensor>& Simulator::sensor_of(const Scan& scan) const {
@@ -92,7 +102,7 @@ const std::shared_ptr<const Sensor>& Simulator::sensor_of(const Scan& scan) cons
 }
 
 void Simulator::control_step() {
-    senses_.pose = pose_sent();
+    senses_.pose = believed_pose();
     const Velocity wanted = behaviour_->step(senses_);
     const Motion motion = drive(options_.world, pose_, wanted);
     if (motion.forward == 0.0 && wanted.forward != 0.0) ++collisions_;
@@ -101,7 +111,9 @@ void Simulator::control_step() {
     walk(options_.world, {pose_.x, pose_.y}, kControlPeriod);
 }
 
-Pose2 Simulator::pose_sent() const { return options_.pose == PoseSent::kTrue ? pose_ : compose(start_, odometry_); }
+Pose2 Simulator::believed_pose() const {
+    return options_.pose == PoseSent::kTrue ? pose_ : compose(T_map_odom_, compose(start_, odometry_));
+}
 
 Motion Simulator::as_the_wheels_tell(const Motion& motion) {
     if (!options_.noise) return motion;

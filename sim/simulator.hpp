@@ -1,5 +1,6 @@
 #pragma once
 
+#include "common/scan/poses.hpp"
 #include "sim/drive/behaviour.hpp"
 #include "sim/noise.hpp"
 #include "sim/range_sensors.hpp"
@@ -29,7 +30,7 @@ struct Motion {
 /// touch a solid or a walker does not advance; it may still turn, because it is round.
 [[nodiscard]] Motion drive(const World& world, const Pose2& pose, const Velocity& wanted);
 
-/// The pose that a robot sends with its scans.
+/// The pose by which a robot steers, and which it sends with its scans if its poses are Poses::kMap.
 enum class PoseSent {
     kTrue,     ///< the true pose
     kOdometry, ///< the odometry from the true start on, which drifts
@@ -43,14 +44,18 @@ struct SimulatorOptions {
     std::optional<Pose2> start;  ///< none: a free place chosen by the seed
     std::optional<Sensor> sonar; ///< a further sensor with its own id
     PoseSent pose = PoseSent::kTrue;
+    Poses poses = Poses::kMap; ///< what it sends with its scans
 };
 
 /// A robot that drives through a world and scans it. The options determine everything: there is no clock and no other
 /// randomness. People in the world keep walking while it drives.
 ///
-/// scan.pose is chosen by the options, and so is Senses::pose: the map frame is that of the scans. scan.odometry starts
-/// at (0, 0, 0). The robot steers by its laser. Without a laser it steers by its sonars and places each echo on the
-/// cone's axis; sonars whose cone includes directions behind the robot do not count in Senses::nearest.
+/// SimulatorOptions::pose is Senses::pose and, with Poses::kMap, scan.pose: the map frame is that of the scans.
+/// scan.odometry then starts at (0, 0, 0). With Poses::kOdometry, scan.pose is absent and scan.odometry starts at the
+/// true start, so that the frame of the odometry is that of the world at first; correct() says where it is since then.
+/// With Poses::kNone both are absent. The robot steers by its laser. Without a laser it steers by its sonars and places
+/// each echo on the cone's axis; sonars whose cone includes directions behind the robot do not count in
+/// Senses::nearest.
 class Simulator {
 public:
     /// Pre: the options contain a sensor.
@@ -59,6 +64,10 @@ public:
     /// Returns the next scan. Each sensor scans ten times per second, all at the same time; the laser's scan comes
     /// first. The first scans are taken where the robot starts, at 0 s.
     [[nodiscard]] Scan next_scan();
+
+    /// Lets the robot steer by T_map_odom times its odometry. For PoseSent::kOdometry with Poses::kOdometry.
+    /// @param T_map_odom  the frame of the odometry that is sent, in the frame of the robot's paths; at first the identity
+    void correct(const Pose2& T_map_odom);
 
     /// Returns the sensors, in the order of their scans.
     [[nodiscard]] const std::vector<std::shared_ptr<const Sensor>>& sensors() const noexcept { return sensors_; }
@@ -76,7 +85,7 @@ public:
 private:
     void control_step();
     [[nodiscard]] Motion as_the_wheels_tell(const Motion& motion);
-    [[nodiscard]] Pose2 pose_sent() const;
+    [[nodiscard]] Pose2 believed_pose() const;
 
     SimulatorOptions options_;
     std::unique_ptr<Behaviour> behaviour_;
@@ -85,6 +94,7 @@ private:
     Pose2 start_;
     Pose2 pose_;
     Pose2 odometry_;
+    Pose2 T_map_odom_; // see correct()
     Senses senses_;
     std::uint64_t scans_ = 0;
     std::uint64_t collisions_ = 0;

@@ -78,10 +78,10 @@ void add_poses(CLI::App& ld06, Ld06Options& options) {
         "X,Y,YAW of a stationary robot: metres, and radians counter-clockwise. With --locate: its first pose, used "
         "if no map exists yet; default then: 0,0,0",
         parse_pose);
-    ld06.add_option(
-        "--poses", options.poses,
-        "File of lines: t x y yaw, '-' = stdin. t is seconds since the first packet for a file, and Unix time for a "
-        "device. Poses are interpolated; scans before the first and after the last line are skipped");
+    ld06.add_option("--pose-file", options.pose_file,
+                    "File of lines: t x y yaw, '-' = stdin: poses in the map, or odometry with --poses odometry. t is "
+                    "seconds since the first packet for a file, and Unix time for a "
+                    "device. Poses are interpolated; scans before the first and after the last line are skipped");
     add_parsed(ld06, "--mount", options.mount,
                "X,Y,YAW of the sensor on the robot; its 0 degrees are its x axis. Default: 0,0,0", parse_pose);
 }
@@ -97,17 +97,27 @@ void add_locating(CLI::App& ld06, Ld06Options& options) {
 }
 
 /// Returns why the options for the robot's place are invalid, or an empty string.
-std::string complaint_about_places(const Ld06Options& options) {
+std::string complaint_about_places(const Ld06Options& options, Poses poses) {
     if (options.near && !options.locate) return "ld06: --near needs --locate; give both, or neither";
-    if (options.locate && !options.poses.empty()) {
-        return "ld06: --locate requests the pose from the server, and --poses states it; leave one of them out";
+    if (options.locate && poses != Poses::kMap) {
+        return fmt::format("ld06: --locate sends poses in the map, and --poses {} sends none; leave one of them out",
+                           name_of(poses));
+    }
+    if (options.locate && !options.pose_file.empty()) {
+        return "ld06: --locate requests the pose from the server, and --pose-file states it; leave one of them out";
     }
     if (options.locate && options.speed > 0.0) {
         return "ld06: with --locate a capture file is read as fast as the server accepts scans; leave --speed out";
     }
-    if (!options.locate && options.pose.has_value() != options.poses.empty()) {
-        return "ld06: state the robot's pose with --pose X,Y,YAW or --poses FILE, or let the server determine it with "
-               "--locate";
+    if (poses == Poses::kNone && (options.pose || !options.pose_file.empty())) {
+        return "ld06: with --poses none no poses are sent; leave --pose and --pose-file out";
+    }
+    if (poses == Poses::kOdometry && (options.pose || options.pose_file.empty())) {
+        return "ld06: --poses odometry needs the odometry; give it with --pose-file FILE, and leave --pose out";
+    }
+    if (poses == Poses::kMap && !options.locate && options.pose.has_value() != options.pose_file.empty()) {
+        return "ld06: state the robot's pose with --pose X,Y,YAW or --pose-file FILE, let the server estimate it with "
+               "--poses none, or let the server determine it with --locate";
     }
     return {};
 }
@@ -135,12 +145,12 @@ CLI::App* add_ld06(CLI::App& app, Ld06Options& options) {
     return ld06;
 }
 
-std::string complaint_about(const Ld06Options& options) {
+std::string complaint_about(const Ld06Options& options, Poses poses) {
     if (options.input.empty()) return "ld06: name the INPUT: a serial device, tcp://HOST:PORT, or a capture file";
     if (options.input.starts_with(kTcpScheme) && !net::parse_address(options.input.substr(kTcpScheme.size()))) {
         return fmt::format("ld06: '{}' is not tcp://HOST:PORT", options.input);
     }
-    return complaint_about_places(options);
+    return complaint_about_places(options, poses);
 }
 
 } // namespace scanloom::robot

@@ -64,7 +64,7 @@ Result<PreparedSource> make(const RobotOptions& options, const ReplayOptions& re
         next_progress = Clock::now() + console.progress_period();
         console.progress(reading_text(replay.file, progress));
     };
-    auto log = CarmenLog::open(replay.file, {options.no_return, options.range_max, {}}, report, show);
+    auto log = CarmenLog::open(replay.file, {options.no_return, options.range_max, {}, options.poses}, report, show);
     skipped.reset();
     if (!log) return log.error();
     const StampReport& stamps = log->stamps();
@@ -82,6 +82,7 @@ Result<PreparedSource> make(const RobotOptions& options, const SonarReplayOption
     SonarOptions ring;
     ring.no_return = options.no_return.value_or(ring.no_return);
     ring.range_max = options.range_max.value_or(ring.range_max);
+    ring.poses = options.poses;
     ring.aperture = sonar.aperture_deg * std::numbers::pi / 180.0;
     auto log = SonarLog::open(sonar.measurements, sonar.poses, ring);
     if (!log) return log.error();
@@ -109,6 +110,7 @@ Result<Ld06ScanOptions> scan_options(const RobotOptions& options, const Ld06Opti
     if (ld06.confidence_min) scan.confidence_min = static_cast<std::uint8_t>(*ld06.confidence_min);
     scan.median_window = ld06.median_window;
     scan.mount = ld06.mount;
+    scan.poses = options.poses;
     if (scan.range_min < scan.range_max) return scan;
     return Error{Errc::kInvalidField,
                  fmt::format("--min-range is {} m, but --max-range is only {} m; no reading would be valid",
@@ -116,10 +118,10 @@ Result<Ld06ScanOptions> scan_options(const RobotOptions& options, const Ld06Opti
 }
 
 Result<PoseLines> read_poses(const Ld06Options& ld06, Console& console) {
-    const std::string name = ld06.poses == kStandardInput ? "stdin" : ld06.poses;
+    const std::string name = ld06.pose_file == kStandardInput ? "stdin" : ld06.pose_file;
     SkippedLines skipped(name, console);
     const auto report = [&](const SkippedLine& line) { skipped.add(line); };
-    return ld06.poses == kStandardInput ? read_pose_lines(std::cin, name, report) : read_pose_lines(name, report);
+    return ld06.pose_file == kStandardInput ? read_pose_lines(std::cin, name, report) : read_pose_lines(name, report);
 }
 
 /// Adds a lidar that requests its position: its own poses are at the origin.
@@ -144,7 +146,7 @@ Result<PreparedSource> prepare_located_capture(const Ld06Options& ld06, const Ld
 Result<PreparedSource> prepare_capture(const Ld06Options& ld06, const Ld06ScanOptions& scan, Console& console) {
     Ld06Poses poses = ld06.pose.value_or(Pose2{});
     std::optional<std::size_t> skipped;
-    if (!ld06.pose) {
+    if (!ld06.pose_file.empty()) {
         auto lines = read_poses(ld06, console);
         if (!lines) return lines.error();
         skipped = lines->skipped;
@@ -168,11 +170,9 @@ bool is_regular_standard_input() {
 /// Sets the poses of a device: a stream that is read with it, or poses known from the start.
 Result<> add_live_poses(const Ld06Options& ld06, Ld06LiveOptions& live, std::optional<std::size_t>& skipped,
                         Console& console) {
-    if (ld06.locate) {
-        live.poses = Pose2{};
-    } else if (ld06.pose) {
-        live.poses = *ld06.pose;
-    } else if (ld06.poses == kStandardInput && !is_regular_standard_input()) {
+    if (ld06.locate || ld06.pose_file.empty()) {
+        live.poses = ld06.locate ? Pose2{} : ld06.pose.value_or(Pose2{});
+    } else if (ld06.pose_file == kStandardInput && !is_regular_standard_input()) {
         live.poses = PoseTimeline();
         live.pose_descriptor = open_standard_input_again();
     } else {
@@ -205,6 +205,11 @@ Result<PreparedSource> prepare_device(const Ld06Options& ld06, const Ld06ScanOpt
 Result<PreparedSource> make(const RobotOptions& options, const Ld06Options& ld06, Console& console) {
     const auto scan = scan_options(options, ld06);
     if (!scan) return scan.error();
+    if (ld06.is_old_name) {
+        console.note(fmt::format("ld06: --poses {0} is read as the file of --pose-file until version 0.4; use "
+                                 "--pose-file {0}",
+                                 ld06.pose_file));
+    }
     if (ld06.input.starts_with(kTcpScheme)) {
         const auto peer = net::parse_address(ld06.input.substr(kTcpScheme.size())); // the options were checked
         return prepare_device(ld06, *scan, peer.value(), console);

@@ -29,6 +29,7 @@ constexpr const char* kFooter =
 /// Options as the parser sets them, before they are moved into RobotOptions.
 struct Raw {
     std::string no_return;
+    std::string poses = "map"; // not checked in the parser, see set_poses()
     std::optional<double> give_up_after;
     double spool_mib = 256.0;
     double memory_mib = 8.0;
@@ -105,6 +106,12 @@ void add_scan_options(CLI::App& app, RobotOptions& options, Raw& raw) {
                    "Meaning of beams without a return: free up to the range, or ignored (drop). Default: free if the "
                    "source states its sensor's range, else drop (FLASER)")
         ->check(CLI::IsMember({"free", "drop"}));
+    app.add_option("--poses", raw.poses,
+                   "What the robot knows of its poses: map = poses in the map, which are used as they are; odometry = "
+                   "odometry, which drifts; none = nothing. With odometry and none the server estimates where scans "
+                   "were taken. The same for all scans of a robot")
+        ->type_name("TEXT:{map,odometry,none}")
+        ->capture_default_str();
 }
 
 CLI::App* add_replay(CLI::App& app, ReplayOptions& options) {
@@ -131,6 +138,23 @@ CLI::App* add_sonar(CLI::App& app, SonarReplayOptions& options) {
     add_checked(*sonar, "--speed", options.speed, "1 = as recorded, 0 = as fast as the server accepts scans",
                 check_not_negative);
     return sonar;
+}
+
+/// Sets options.poses to what --poses says.
+/// @param word  the value of --poses
+/// @param ld06  nullptr for another source. For one release, a word that is not known names the file of its poses.
+/// @return an error, or an empty string
+std::string set_poses(const std::string& word, Ld06Options* ld06, RobotOptions& options) {
+    if (const auto poses = find_poses(word)) {
+        options.poses = *poses;
+        return {};
+    }
+    if (ld06 == nullptr || !ld06->pose_file.empty()) {
+        return fmt::format("--poses: '{}' is not map, odometry or none", word);
+    }
+    ld06->pose_file = word;
+    ld06->is_old_name = true;
+    return {};
 }
 
 } // namespace
@@ -180,6 +204,9 @@ std::variant<RobotOptions, GroundTruthOptions, Leave> parse_options(int argc, co
                                             *options.range_max, kReachCellsMax, *options.cell_size));
     }
     sort_in(raw, options);
+    if (const auto wrong = set_poses(raw.poses, ld06->parsed() ? &ld06_options : nullptr, options); !wrong.empty()) {
+        return usage_error(app, wrong);
+    }
     const bool is_recording = !ld06->parsed() && !(simulate->parsed() && simulate_options.drive == "explore");
     if (!options.spool.empty() && is_recording) {
         return usage_error(app, "--spool is for what cannot be had again; this source can: the same command continues "
@@ -190,12 +217,18 @@ std::variant<RobotOptions, GroundTruthOptions, Leave> parse_options(int argc, co
         options.source = std::move(replay_options);
     } else if (sonar->parsed()) {
         if (sonar_options.poses.empty()) return usage_error(app, "sonar: name two files, MEASUREMENTS and POSES");
+        if (options.poses == Poses::kNone) {
+            return usage_error(app,
+                               "sonar: with --poses none the server cannot locate a robot that has only sonars; use "
+                               "--poses map or --poses odometry");
+        }
         options.source = std::move(sonar_options);
     } else if (ld06->parsed()) {
-        if (const auto wrong = complaint_about(ld06_options); !wrong.empty()) return usage_error(app, wrong);
+        if (const auto wrong = complaint_about(ld06_options, options.poses); !wrong.empty())
+            return usage_error(app, wrong);
         options.source = std::move(ld06_options);
     } else if (simulate->parsed()) {
-        if (auto mistake = mistake_in(simulate_options)) return usage_error(app, *mistake);
+        if (auto mistake = mistake_in(simulate_options, options.poses)) return usage_error(app, *mistake);
         options.source = std::move(simulate_options);
     }
     return options;

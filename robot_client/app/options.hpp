@@ -2,6 +2,7 @@
 
 #include "common/app/link_options.hpp"
 #include "common/app/program.hpp"
+#include "common/scan/poses.hpp"
 #include "robot_client/app/ld06_options.hpp"
 #include "robot_client/sources/source.hpp"
 #include "robot_client/spool/spool.hpp"
@@ -31,7 +32,7 @@ struct SimulateOptions {
     std::optional<double> odometry_noise; ///< a factor; absent: 1 with noise, 0 without
     std::string laser = "reference";      ///< or none
     std::string sonar = "none";
-    std::string pose = "true"; ///< or odometry
+    std::string pose = "true"; ///< or odometry; what it sends if its poses are Poses::kMap
     std::uint64_t seed = 1;
     std::optional<double> duration; ///< seconds of simulated time
     std::optional<std::uint64_t> scans;
@@ -60,6 +61,7 @@ struct RobotOptions : LinkOptions {
     std::optional<double> range_max;   ///< metres
     std::optional<double> body_radius; ///< metres
     std::optional<NoReturn> no_return;
+    Poses poses = Poses::kMap; ///< what the poses of the source are, and therefore how scans are sent
     std::optional<std::chrono::milliseconds> give_up_after; ///< 0: never
 
     // buffers

@@ -51,6 +51,7 @@ UplinkOptions uplink_options(const RobotOptions& options, std::string token, con
     hello.client = fmt::format("scanloom-robot {}", kVersion);
     hello.source = prepared.fingerprint;
     hello.body_radius = options.body_radius ? options.body_radius : prepared.body_radius;
+    hello.poses = options.poses;
     return uplink;
 }
 
@@ -76,7 +77,8 @@ Result<std::unique_ptr<Feed>> make_feed(const RobotOptions& options, const Prepa
                                {.directory = options.spool,
                                 .bytes_max = options.spool_bytes_max,
                                 .when_full = options.when_full,
-                                .poses_from_server = prepared.locating != nullptr},
+                                .poses_from_server = prepared.locating != nullptr,
+                                .poses = options.poses},
                                report);
     if (!spool) return spool.error();
     if (*spool && (*spool)->waiting() > 0)
@@ -132,6 +134,12 @@ ExitCode run(const RobotOptions& options) {
     auto tls = tls_of(options, options.tls);
     if (!tls) return fail(tls.error());
     sent_options.tls = std::move(*tls);
+
+    if (auto* const exploring = prepared->exploring; exploring != nullptr && options.poses == Poses::kOdometry) {
+        sent_options.protocol.on_correction = [exploring](const wire::Correction& correction) {
+            exploring->correct(correction.T_map_odom);
+        };
+    }
 
     asio::io_context io(1);
     Uplink uplink(io, std::move(sent_options), **feed);

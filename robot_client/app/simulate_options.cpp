@@ -46,7 +46,8 @@ void add_noise(CLI::App& simulate, SimulateOptions& options) {
         ->check(check_not_negative);
     // not checked in the parser: a SCANLOOM_POSE meant for another subcommand is not an error in this one
     simulate
-        .add_option("--pose", options.pose, "Pose sent with its scans: ground truth, or odometry from the true start")
+        .add_option("--pose", options.pose,
+                    "Pose sent with its scans if --poses is map: ground truth, or odometry from the true start")
         ->type_name("TEXT:{true,odometry}")
         ->capture_default_str();
 }
@@ -101,20 +102,43 @@ CLI::App* add_ground_truth(CLI::App& app, GroundTruthOptions& options) {
     return truth;
 }
 
-std::optional<std::string> mistake_in(const SimulateOptions& options) {
-    if (options.laser == "none" && options.sonar == "none") {
-        return "simulate: with --laser none the robot needs --sonar ring16";
-    }
+namespace {
+
+/// Returns why a robot with such poses cannot drive or be located, or nullopt.
+std::optional<std::string> mistake_in_poses(const SimulateOptions& options, Poses poses) {
     if (options.pose != "true" && options.pose != "odometry") {
         return fmt::format("simulate: --pose: '{}' is neither true nor odometry", options.pose);
+    }
+    if (options.pose == "odometry" && poses == Poses::kNone) {
+        return "simulate: --pose odometry has no effect with --poses none; leave --pose out";
+    }
+    if (options.laser == "none" && poses == Poses::kNone) {
+        return "simulate: with --poses none the server cannot locate a robot that has only sonars; give it a --laser";
+    }
+    if (options.drive == "zigzag" && poses == Poses::kOdometry) {
+        return "simulate: --drive zigzag follows a plan, but --poses odometry drifts from it; use --poses map";
+    }
+    if (options.drive == "zigzag" && options.pose == "odometry") {
+        return "simulate: --drive zigzag follows a plan, but --pose odometry drifts from it; use --pose true";
+    }
+    if (options.drive == "explore" && poses == Poses::kNone) {
+        return "simulate: --drive explore follows paths in the map, in which --poses none sends no pose; use --poses "
+               "map";
+    }
+    return std::nullopt;
+}
+
+} // namespace
+
+std::optional<std::string> mistake_in(const SimulateOptions& options, Poses poses) {
+    if (options.laser == "none" && options.sonar == "none") {
+        return "simulate: with --laser none the robot needs --sonar ring16";
     }
     if (options.laser == "none" && options.drive != "wall_follower") {
         return fmt::format("simulate: --drive {} needs a --laser: sonars do not measure where obstacles end",
                            options.drive);
     }
-    if (options.pose == "odometry" && options.drive == "zigzag") {
-        return "simulate: --drive zigzag follows a plan, but --pose odometry drifts from it; use --pose true";
-    }
+    if (auto mistake = mistake_in_poses(options, poses)) return mistake;
     if (options.noise_width && options.noise != "uniform") {
         return fmt::format("simulate: --noise-width does not apply to --noise {}; use --noise uniform", options.noise);
     }

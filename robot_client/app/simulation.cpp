@@ -105,7 +105,9 @@ Result<sim::SimulatorOptions> make_options(const RobotOptions& options, const Si
     simulator.world = std::move(*world);
     simulator.noise = noise_of(simulate);
     simulator.seed = simulate.seed;
-    simulator.pose = simulate.pose == "odometry" ? sim::PoseSent::kOdometry : sim::PoseSent::kTrue;
+    const bool is_odometry = options.poses == Poses::kOdometry || simulate.pose == "odometry";
+    simulator.pose = is_odometry ? sim::PoseSent::kOdometry : sim::PoseSent::kTrue;
+    simulator.poses = options.poses;
     if (auto chosen = choose_sensors(options, simulate, simulator); !chosen) return chosen.error();
     return simulator;
 }

@@ -4,6 +4,7 @@
 #include "common/scan/limits.hpp"
 #include "common/wire/frame_decoder.hpp"
 #include "common/wire/messages.hpp"
+#include "robot_client/sources/source.hpp"
 #include "robot_client/uplink/limits.hpp"
 
 #include <fmt/format.h>
@@ -102,6 +103,24 @@ Result<> check(const Sensor& sensor, const Scan& scan) {
                      fmt::format("the scan is of sensor {}, the sensor given is {}", scan.sensor, sensor.id)};
     }
     return wire::check_scan(scan, sensor);
+}
+
+Result<> check_poses(const Scan& scan, Poses poses) {
+    if (agrees_with(scan, poses)) return {};
+    if (poses == Poses::kMap) {
+        return Error{Errc::kInvalidField,
+                     "the scan has no pose; set it to where the robot was in the map, or start the "
+                     "client with other poses"};
+    }
+    if (scan.pose) {
+        return Error{Errc::kInvalidField, fmt::format("the scan has a pose, but the client was started with poses {}; "
+                                                      "leave the pose out",
+                                                      name_of(poses))};
+    }
+    return Error{Errc::kInvalidField,
+                 poses == Poses::kOdometry
+                     ? "the scan has no odometry, but the client was started with poses odometry; set it"
+                     : "the scan has an odometry, but the client was started with poses none; leave it out"};
 }
 
 Result<> check(const link::Request& request) {

@@ -16,6 +16,9 @@ namespace scanloom::robot {
 /// Checks a scan and the description of the sensor that took it.
 [[nodiscard]] Result<> check(const Sensor& sensor, const Scan& scan);
 
+/// Checks whether the scan has the pose and the odometry that a robot with such poses sends.
+[[nodiscard]] Result<> check_poses(const Scan& scan, Poses poses);
+
 /// Checks the values for which a server would end the link instead of refusing the request in its reply.
 [[nodiscard]] Result<> check(const link::Request& request);
 

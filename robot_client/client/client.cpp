@@ -40,6 +40,7 @@ Result<UplinkOptions> uplink_options(const ClientOptions& options) {
     uplink.protocol.hello.create->cell_size = options.cell_size;
     uplink.protocol.hello.client = "scanloom client library";
     uplink.protocol.hello.body_radius = options.body_radius;
+    uplink.protocol.hello.poses = options.poses;
     uplink.on_trouble = report_once(options.on_message);
     return uplink;
 }
@@ -72,23 +73,29 @@ Result<std::unique_ptr<Client>> Client::start(ClientOptions options) {
     auto uplink = uplink_options(options);
     if (!uplink) return uplink.error();
     const auto when_full = options.drop_newest ? WhenFull::kDropNewest : WhenFull::kDropOldest;
-    auto spool = open_spool_of(options.session, options.robot, {options.spool, options.spool_bytes_max, when_full},
+    auto spool = open_spool_of(options.session, options.robot,
+                               {.directory = options.spool,
+                                .bytes_max = options.spool_bytes_max,
+                                .when_full = when_full,
+                                .poses = options.poses},
                                options.on_message);
     if (!spool) return spool.error();
     LiveFeedOptions feed;
     feed.when_full = when_full;
     feed.on_message = std::move(options.on_message);
-    return std::unique_ptr<Client>(new Client(
-        std::make_unique<Worker>(std::move(*uplink), std::move(*spool), std::move(feed)), options.cell_size));
+    auto worker = std::make_unique<Worker>(std::move(*uplink), std::move(*spool), std::move(feed),
+                                           std::move(options.on_correction));
+    return std::unique_ptr<Client>(new Client(std::move(worker), options.cell_size, options.poses));
 }
 
-Client::Client(std::unique_ptr<Worker> worker, std::optional<double> cell_size)
-    : worker_(std::move(worker)), cell_size_(cell_size) {}
+Client::Client(std::unique_ptr<Worker> worker, std::optional<double> cell_size, Poses poses)
+    : worker_(std::move(worker)), cell_size_(cell_size), poses_(poses) {}
 Client::~Client() = default;
 
 Result<> Client::send(const std::shared_ptr<const Sensor>& sensor, Scan scan) {
     if (!sensor) return Error{Errc::kInvalidField, "a scan needs its sensor"};
     if (auto ok = check(*sensor, scan); !ok) return ok;
+    if (auto ok = check_poses(scan, poses_); !ok) return ok;
     if (cell_size_ && sensor->range_max > kReachCellsMax * *cell_size_) {
         return Error{Errc::kInvalidField,
                      fmt::format("range_max is {} m, more than {} cells of the cell_size {} m, the most that a server "
@@ -159,13 +166,10 @@ Result<Location> Client::locate(const std::shared_ptr<const Sensor>& sensor, std
     if (!reply) return reply.error();
     const auto& found = std::get<wire::LocateReply>(*reply).result;
     if (!found) return found.error();
-    return Location{.T_map_odom = found->T_map_odom,
-                    .inlier_ratio = found->explained,
-                    .position_sigma = found->position_sigma,
-                    .yaw_sigma = found->yaw_sigma,
-                    .revision = found->revision,
-                    .explained = found->explained};
+    return location_of(*found);
 }
+
+std::optional<Location> Client::transform() const { return worker_->transform(); }
 
 ClientStatus Client::status() const { return worker_->status(); }
 

@@ -12,6 +12,7 @@
 #include "common/error/error.hpp"
 #include "common/geometry/pose2.hpp"
 #include "common/scan/limits.hpp"
+#include "common/scan/poses.hpp"
 #include "common/scan/scan.hpp"
 #include "common/scan/sensor.hpp"
 
@@ -27,6 +28,18 @@
 
 namespace scanloom::robot {
 
+/// Pose of a robot's odometry frame in the map. The pose of a scan in the map is compose(T_map_odom, T_odom_robot),
+/// see pose2.hpp.
+struct Location {
+    Pose2 T_map_odom;            ///< metres, radians
+    double inlier_ratio = 0.0;   ///< share of the observed points that match the map, 0 to 1
+    double position_sigma = 0.0; ///< metres; of the sensor's position, in its least certain direction
+    double yaw_sigma = 0.0;      ///< radians
+    std::uint64_t revision = 0;  ///< of the session's maps that were used
+    LocalizationState state = LocalizationState::kGiven; ///< set by the server's corrections, not by locate()
+    double explained = 0.0;                              ///< earlier name of inlier_ratio, until 0.3; the same value
+};
+
 /// Options of a client. The defaults suit a robot that connects to a server without TLS on the same machine.
 struct ClientOptions {
     std::string server = "127.0.0.1:7447"; ///< the server's robot port: HOST:PORT or [ADDRESS]:PORT
@@ -35,6 +48,9 @@ struct ClientOptions {
     std::string token;                     ///< for a server that requires one
     std::optional<double> cell_size;       ///< metres, for a new session; an existing session must have the same
     std::optional<double> body_radius;     ///< metres; a disc of this radius around the robot's origin holds the robot
+    /// What the robot knows of its poses, the same for all its scans. With kOdometry and kNone the server estimates
+    /// where scans were taken.
+    Poses poses = Poses::kMap;
 
     bool tls = false;          ///< encrypt the link; the server must be started with TLS
     std::string tls_ca_file;   ///< PEM, enables tls; empty: the system's certificates
@@ -53,6 +69,10 @@ struct ClientOptions {
     /// Receives messages for people, for example that the server is unreachable or that scans are dropped. Runs on the
     /// client's thread, which waits for it. It must not call the client and must not throw. Empty: no messages.
     std::function<void(const std::string&)> on_message;
+    /// Receives each correction of the robot's poses, with Poses::kOdometry and kNone: after scans of it are in the
+    /// maps, at most 20 times a second; see Client::transform(). Runs as on_message, but may call transform(). Empty:
+    /// none.
+    std::function<void(const Location&)> on_correction;
     std::function<void(const std::string&)> tell; ///< earlier name of on_message, until 0.3; used if that is empty
 };
 
@@ -131,17 +151,6 @@ struct LocateOptions {
     std::optional<Near> near = {}; ///< none: anywhere in the map
 };
 
-/// Pose of a robot's odometry frame in the map. The pose of a scan in the map is compose(T_map_odom, T_odom_robot),
-/// see pose2.hpp.
-struct Location {
-    Pose2 T_map_odom;            ///< metres, radians
-    double inlier_ratio = 0.0;   ///< share of the observed points that match the map, 0 to 1
-    double position_sigma = 0.0; ///< metres; of the sensor's position, in its least certain direction
-    double yaw_sigma = 0.0;      ///< radians
-    std::uint64_t revision = 0;  ///< of the session's maps that were used
-    double explained = 0.0;      ///< earlier name of inlier_ratio, until 0.3; the same value
-};
-
 /// A robot's connection to a Scanloom server, for use in the robot's own program.
 ///
 /// send() returns at once. A thread of the client sends the scans, keeps them until they are stored, reconnects when
@@ -150,7 +159,8 @@ struct Location {
 /// kTimeout: scans are still sent, a request is abandoned.
 ///
 /// Units: metres; radians, counter-clockwise; seconds; ranges in whole millimetres (scan.hpp).
-/// Frames: as in Scan and Sensor. Each scan contains the robot's pose in the map frame.
+/// Frames: as in Scan and Sensor. Each scan contains the robot's pose in the map frame, unless ClientOptions::poses says
+///         otherwise.
 /// Errors: a Result is true or holds error() with a code for programs and a message for people (error.hpp). value()
 ///         throws ErrorException if there is an error.
 /// Threads: any thread, several at a time. Scans are stored in the order of the send() calls.
@@ -177,8 +187,9 @@ public:
 
     /// Queues a scan and returns at once.
     /// @param sensor  the sensor that took the scan; a changed description is sent to the server
-    /// @param scan    its ranges are to_ranges_mm() of metres, one per beam; its pose is T_map_robot in metres and
-    ///                radians; the client sets its seq
+    /// @param scan    its ranges are to_ranges_mm() of metres, one per beam; the client sets its seq. With Poses::kMap its
+    ///                pose is T_map_robot in metres and radians; with kOdometry it has no pose, and its odometry is
+    ///                T_odom_robot; with kNone it has neither
     /// @return success if the scan was queued, or dropped for lack of room: see ClientStatus::dropped
     /// Errors: kInvalidField or kTooLarge if no server accepts the value that the message names; kOverloaded if the
     ///         client cannot keep up because its disk does not respond; the error that ended the link permanently, e.g.
@@ -231,8 +242,8 @@ public:
     /// robots that lost their position. It needs no scans sent before, and does not store `scans`.
     /// @param sensor   the laser that took all of `scans`
     /// @param scans    one or more, ten are plenty, with at least kLocatePointsMin returns in total; of more than
-    ///                 32,768 returns an even selection is used. Scan::pose is the robot's pose in its odometry frame,
-    ///                 or the origin without odometry
+    ///                 32,768 returns an even selection is used. Scan::pose is the robot's pose in its odometry frame;
+    ///                 if it is absent, Scan::odometry is used, and without both the origin
     /// @param timeout  longest time to wait, milliseconds
     /// @param options   part of the map to search
     /// @return the pose of the odometry frame in the map frame, with its uncertainty
@@ -246,6 +257,22 @@ public:
     /// Smallest number of returns that locate() accepts.
     static constexpr std::size_t kLocatePointsMin = kViewPointsMin;
 
+    /// Returns where the robot's odometry frame is in the map by the newest correction of the server. With
+    /// Poses::kOdometry, the robot is always where the correction puts its current odometry:
+    ///
+    ///     const Pose2 T_odom_robot = wheels.pose(); // newer than the newest scan
+    ///     if (const auto location = robot->transform()) {
+    ///         const Pose2 T_map_robot = compose(location->T_map_odom, T_odom_robot);
+    ///         follow(path, T_map_robot);            // a path of plan() or next_goal()
+    ///     }
+    ///
+    /// T_map_odom jumps when the server corrects the poses, for example where a loop closes. With Poses::kNone the
+    /// robot itself is its odometry frame, so that T_map_odom is T_map_robot of its newest scan in the maps.
+    /// @return the newest correction, in metres and radians, also after its link has ended; nullopt before the first one,
+    ///         and always with Poses::kMap
+    /// Threads: any thread; returns at once.
+    [[nodiscard]] std::optional<Location> transform() const;
+
     /// Reads the counters. Blocks, as the destructor does, while the spool's disk does not respond.
     /// @return the counters at this moment
     [[nodiscard]] ClientStatus status() const;
@@ -253,10 +280,11 @@ public:
 private:
     class Worker;
 
-    Client(std::unique_ptr<Worker> worker, std::optional<double> cell_size);
+    Client(std::unique_ptr<Worker> worker, std::optional<double> cell_size, Poses poses);
 
     std::unique_ptr<Worker> worker_;
     std::optional<double> cell_size_;
+    Poses poses_;
 };
 
 } // namespace scanloom::robot

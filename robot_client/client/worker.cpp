@@ -52,13 +52,33 @@ void PushedSource::stop() {
 Client::Worker::Timeout::Timeout(milliseconds given)
     : length(std::clamp(given, milliseconds(0), kTimeoutMax)), until(Clock::now() + length) {}
 
-Client::Worker::Worker(UplinkOptions uplink, std::unique_ptr<Spool> spool, LiveFeedOptions feed)
-    : feed_(source_, std::move(spool), std::move(feed)), uplink_(io_, std::move(uplink), feed_),
+Client::Worker::Worker(UplinkOptions uplink, std::unique_ptr<Spool> spool, LiveFeedOptions feed,
+                       std::function<void(const Location&)> on_correction)
+    : feed_(source_, std::move(spool), std::move(feed)),
+      uplink_(io_, with_corrections(std::move(uplink), std::move(on_correction)), feed_),
       ended_(asio::co_spawn(io_, run(), asio::use_future)), thread_([this] { io_.run(); }) {}
 
 Client::Worker::~Worker() {
     io_.stop();
     thread_.join();
+}
+
+/// Keeps the newest correction for transform(), and passes each one to the client's owner.
+UplinkOptions Client::Worker::with_corrections(UplinkOptions uplink, std::function<void(const Location&)> passed_to) {
+    uplink.protocol.on_correction = [this, passed_to = std::move(passed_to)](const wire::Correction& correction) {
+        const Location location = location_of(correction);
+        {
+            const std::lock_guard lock(mutex_);
+            transform_ = location;
+        }
+        if (passed_to) passed_to(location);
+    };
+    return uplink;
+}
+
+std::optional<Location> Client::Worker::transform() {
+    const std::lock_guard lock(mutex_);
+    return transform_;
 }
 
 asio::awaitable<void> Client::Worker::run() {

@@ -12,6 +12,7 @@
 
 #include <atomic>
 #include <deque>
+#include <functional>
 #include <future>
 #include <memory>
 #include <mutex>
@@ -39,6 +40,17 @@ private:
     WakeSignal added_;
 };
 
+/// Returns a correction of the server as a location.
+[[nodiscard]] inline Location location_of(const wire::Correction& correction) {
+    return {.T_map_odom = correction.T_map_odom,
+            .inlier_ratio = correction.explained,
+            .position_sigma = correction.position_sigma,
+            .yaw_sigma = correction.yaw_sigma,
+            .revision = correction.revision,
+            .state = correction.state,
+            .explained = correction.explained};
+}
+
 /// Runs the uplink on a thread of its own.
 ///
 /// Each waiting call runs a coroutine on that thread. The coroutine ends by itself when the caller's timeout has
@@ -47,7 +59,9 @@ private:
 ///          otherwise.
 class Client::Worker {
 public:
-    Worker(UplinkOptions uplink, std::unique_ptr<Spool> spool, LiveFeedOptions feed);
+    /// @param on_correction  as ClientOptions::on_correction
+    Worker(UplinkOptions uplink, std::unique_ptr<Spool> spool, LiveFeedOptions feed,
+           std::function<void(const Location&)> on_correction);
     ~Worker();
     Worker(const Worker&) = delete;
     Worker& operator=(const Worker&) = delete;
@@ -59,6 +73,7 @@ public:
     /// Errors: kInvalidField or kTooLarge if a value would end the link; kTimeout; the error that ended the client.
     [[nodiscard]] Result<link::Reply> ask(link::Request request, std::chrono::milliseconds timeout);
     [[nodiscard]] ClientStatus status();
+    [[nodiscard]] std::optional<Location> transform();
 
 private:
     using Clock = std::chrono::steady_clock;
@@ -74,6 +89,7 @@ private:
     /// The state that a caller waits for scans to reach.
     enum class ScanState { kStored, kInMaps };
 
+    [[nodiscard]] UplinkOptions with_corrections(UplinkOptions uplink, std::function<void(const Location&)> passed_to);
     [[nodiscard]] boost::asio::awaitable<void> run();
     /// Waits for the scans that were handed over before. Dropped scans count as done.
     [[nodiscard]] boost::asio::awaitable<Result<>> until_all_reach(ScanState state, Timeout timeout);
@@ -95,13 +111,14 @@ private:
     boost::asio::executor_work_guard<boost::asio::io_context::executor_type> work_{io_.get_executor()};
     PushedSource source_;
     LiveFeed feed_;
+    std::mutex mutex_;
     Uplink uplink_;
     std::uint64_t handed_over_ = 0;      ///< scans, given to source_
     std::uint64_t dropped_reported_ = 0; ///< scans that flush() has reported
     std::atomic<std::size_t> posted_ = 0;
-    std::mutex mutex_;
-    std::optional<Error> outcome_; ///< guarded by mutex_
-    bool is_closing_ = false;      ///< guarded by mutex_
+    std::optional<Location> transform_; ///< guarded by mutex_
+    std::optional<Error> outcome_;      ///< guarded by mutex_
+    bool is_closing_ = false;           ///< guarded by mutex_
     std::future<void> ended_;
     std::thread thread_; // last: it uses the others
 };

@@ -14,6 +14,14 @@ reconnects as often as needed and sends unacknowledged scans again.
 Units are metres, radians counter-clockwise and seconds. A pose is (x, y, yaw), a point (x, y). Every function may be
 called from any thread. Failures raise ScanloomError; invalid arguments raise ValueError.
 
+A robot that does not know its pose in the map gives poses="odometry" to the client and odometry= instead of pose= to
+send(), or poses="none" and neither: the server estimates where its scans were taken, and transform() returns where the
+robot is:
+
+    location = robot.transform()  # None before the server's first correction
+    if location:
+        x, y, yaw = location.at(odometry)  # in the map, by the current odometry
+
 As a program it reads scans from standard input, one JSON object per line, with "t" in seconds, "pose" and "ranges", and
 optionally "odometry", "intensities" and "angles"; null in ranges is an invalid reading. See --help.
 
@@ -131,13 +139,14 @@ class Coverage:
 
 @dataclasses.dataclass(frozen=True)
 class Location:
-    """The pose of a robot's odometry frame in the map: at(odometry) returns the pose for send()."""
+    """The pose of a robot's odometry frame in the map: at(odometry) returns the robot's pose in the map."""
 
     T_map_odom: Pose
     inlier_ratio: float  # part of the scan that matches the map, 0 to 1
     position_sigma: float  # metres, of the sensor's position, in the least certain direction
     yaw_sigma: float  # radians
     revision: int  # of the session's maps that were used
+    state: str = ""  # of transform(): "TRACKING", "LOST" or "UNLOCATED"; empty if it is not stated
 
     @property
     def explained(self) -> float:
@@ -179,44 +188,46 @@ class Timing:
 
 # The compressed output of protoc for proto/scanloom/v1/frame.proto; robot_client/python/embed_protocol.py updates it.
 _PROTOCOL = """
-eNq1Wc2TG1cRj3b12VppZ2e/5LUTHCUEZ1NxiB1IAZUCfa2lWF/1pHViDkzNzo53J9bOTEaS7U0uOXKm4JjizCFVcOHEieLKlb+FCwXd/d5IM7OyC5fh
-pOnuX7+Pft39+rXgHwXYm1qmO/G8iw+efPgBfd/2A2/m6cWQf/vJh9UfQWboTe07+gaknlVSN1O3UiL1jKjLypqkLnUN1i/Np5V1pumz+hBKx67zyAsu
-au7ZxJ7qO5B55ATTmRpCEvoNKDiuFdgXtjtTwy0ZpGN5c5TQwCUhieotKLee+RPHcmZq7D3ImvyFg6/jEIqq/hxKo5nt+/apAuqQnrtOuAb+1g8ge2pP
-ZuYU51+/tVVf03AAyan+NQVQt81wDz+G3Fxuikco3jm4HTHV7diG26+JEKz/BPK2WjFvsnjnekwxvh3UXMBpyqncAhshOWVsezSlAtcLqOebluOeVb9d
-g62R7U69oGlPrcDxZ47nks2mzOStlISi9Pcg/dhxT3md5Tv78dkYch/FgkFkT9e8sHlpBcHf+i3IXPChpXm9emwEdiUhAfoHi2PLMDQ+2dLu4XniUeVN
-3w5m88CuZPkIF7R+HQoBwmzjwnErOSlkRs9xI0LzWSUfFZrPqn9cg/QIJyYvntpfsj3Sgj7JAacz88JXrimJiOnWY6Z7B9I+7u8FG2e5fhvy3ql3Yc+C
-S7XzVdgFhjyUFzvFTa/fykkPlRz9bSg67gznd2YOAnIIKDEgyo5YOv/fWfp1gBP7zHGnaDG/UkClvChITs/0qx9BgSxWN2fWuf4DNBISMviKd7biLoPf
-QsoPPwNYehCeyf6o1R8NhHG/028ax/3RsNXoHHVaTe01fRddNiLs1kYtoaWS7NGgXxPaWn39n6nUSZaT1134nQbXYonNnk7R4Vfltm/KmCCkuOG5j5wz
-/SYULHsyMabOV7bMEhSNxBoh59eplF4F8A3Psua+Y8soSbUxafkDxSIMHphvPApsGRip9prI+EdIkuwG5HzDDxz0njQL10XWHxJN0gpkfPbgDMvS6DHo
-v0sJui87fjtDEvMZSe6A7p2gZ1oT25idO9ZjF7ckQ6CdFVuhbByKSOcWlE7w1I1FOHFQtHNig9g1xSXkxxQ6l8aFhymRHaF8Zzd2wsK87JGwnaeYkt+k
-+BaAiTa5mE/MmV0BcqF2QUR4yprnzswIzFNnPq0UeREgCsgTzCLMu1A+DTzfcD0jsHFZbmWDByuKDeL3PcFcgh5C+dy5uDCWd0oJoZn2higRvxOyo9hT
-O8SWGVuS2KYdwf4M9hm7ws6bvOay2CXAYJWtPwSdleMG11hvU2gkqyeM/glUpp5rBqsm3GJFTewxYuWMd2Fbqsen1FlzS2yxMDnnR7AjlZbuzf62zVq6
-0hqGfq6c7y0ohlrktjsM3hYFCVa+GwXhiLsM2lmA5Ei/gA1rYk6nxtSbB5Zd2WNfq8R8rUGAEcvbu6JoLUka4X3Q5AiRAN3nufZEmSXDaJR+P5xQxWqF
-ofsCJDQMWDSmhEkPCAe+xs5SEVssbNPhR8Z+DzYjSjz8AStcE6WFQjjDO7BxStk8MCjRTCvXGXkgipLbIKYKWoVT8XKDV3xdKPVlyLwBeTS08cUcr67X
-GXRD5JDzKTJQXt8AMBZ5rl6CYsRkVDook9QB8obKVvU8ZOUhh1/ms/oubK9w0boG5bjr8YSLNMITLvMAk8ssUN+CTSMe8MyKB/aStYjf+gFUjOeEKa/0
-ahTWr8M143mRVt+DHWNFHNX3YddYFSr1MmwYkWiI0yjfhJIR9fH6NmwZSZeNoNQp0DpWuGBdB81IeBkrR52JzyLmNfUiFIzQOw6/hnyYwPVrsCtqD43e
-oNnqJu7jKryxFHX6D1pi1DLUVcxMvJz3YXuJqYsWitu1nrYWF4xFjbRrXW398FdQjEQ0Xo2VBt70I7zXj0WjlVjCAezFpING43hY6zceyrogJmt3er1k
-XfDbd2E/Whc8CrBaXVEVHDznWXTw/Kqi+q88ZI5oPLxVMudod089EOKFXZskWFBIiP5DyD21JxZWeepVsBNDfyZlVNUrmD4AXdaa6PWLUl49DN5YUapH
-Cn4cZmt65RXwMQBpGSdUyanCde9KAcd1Hg5QmC6Kvrdh3bQeq/JVi2nUrMeIJTFZww4CLHWyK6zRIglZgyFYRqZ9fK5w4ZKsIocoQCQDGOghML8K6Ckg
-/pJ9zzzv9OTS5sIlad97Ukb2VTB8qIHlBYFtsV1hRa3cWIhRLwLGK3vDn6AlA/vLuY3P3CIrx6+vIQKElKN20V+SdBBK3Z9ccoGTPAipjFI6CD8kaN4z
-z5ws5i2tmPceAiLzni1Jmlep07zlFfNKZTXvWUjoHbxsvSd2YOKrKpx7k9VvJAwmQcv5N604S29AOTIUrUNb8dRdDiTXUrKiDP0B7GKI+AHGJWbjiFNv
-8Vg3E2OFyKh7b1tX2bS4iWfhNbXYpb5icV2GLPdYmkQZdEiLQWh/2ysOKRxC7q44WZKYQLNWYN29Y1X+TSbOCUXWs5A+8U4vq79ZgwwnFyyWNU5Jljcx
-0DyUo9QDfzPkP5BsetwG3oknWxIFIQl8Z+RUblOv+pAk/Mx7bLucJhDPBL4+cDE2lfiZVf2J6OtKKCQ9oK2JQyV3lodSFD+sZfGXk3xJ0SOXthmWPXn1
-LgNiLooevm0jsOqfU5BTOZTes2obhnPKBilgNpOczilWVhreQzPjdB6YJ1gDUBtgjdsAZeI3JXtkf4mFXXbiXDizqcq62/EzZJFQEP1NrDAD+xRLm5PL
-GT6+0zxkUfLqxKIOylfT2SkbLy/4u/oVZOVAuPEyX1Ncp3HtLM9yg7n0JMXimbobVKBMGbDGgDwzSPg+vgXo9W1g9SIjgmGyc6GxaGgH7OvUDPkEtlcE
-By1z8SQuCf5eLJ1m3FBL/wLWMf3r34Ni1JSyowKnSzMiwPT9CRVOS1uDYhEgabr1K6arPoYMXyF4y6QtLGB4mnIiezGigVLBGHLvC9wbpg3l9iFJrciA
-2i20RJ4uL5aM6g1I0yVEQeB6riUnywpJsNR7rvRNyKm7hjwcQ2CqghI9XFLVv6QAllcL3lwwps6LQT2glaWE6hGNe6Y/QAy1xgL7icNxK625oGln1E80
-HVd1EVNiycBnUNn3qE+EsTF1zi5M2ZcQpZA7IiY52aX5VCEysoWGDBZW36ImsYMR/IImcfVTNJI5Oycb+ARedGslRfyJ7Z7NzpWKosjPLG86Uyvn7+oA
-csJ+NJ+ak//N6Ve/WYNi5HrWy7CmEkVa4Bd1NfF9EIT92+Rh4AaEBFAXkG5JlR9WAVmOj+KSiRn7qTF3H7veU5lW82KDmceSl8x8mZWZj1BhzU+Gyqqm
-FKj3I/JW5EemI2rVb1NQWBQZVwzwIgejigxPVm05UZGhgCsyOnqsyAJ5bKrWjFdk6kipIlMweox68xnl8OofUlCMVDKvcEQJq66vtuohbD0KPHfmoIFk
-/nXkIeFdGgo4BauXXvTu+XsK0rRW/adQpFDzAnMWXsXJpkZrKRdRMEamNOvac8yqjHoIWdzVmT17gcspBD7x8mfOE9s15r7aSo7pY58C3HGVQ6jrKO+4
-TabZNxaF4Mv6RiQctq6UluQbHA+v5Bt/S8FmotL8v/vH64u/WFQnNyVCBok51Z+RSTIyzUnqShhSjyX8q+aPKciH21gcf+rFx4/nRi9/w8SrRGXOPDFq
-SPM1SuPhPctymUOLiseQm1Ccu/hhnfPNl6Y/wUSURTMsm+Iq9Yct8ep3KSjFSvOX8o67kA/LeOUhuyuLfu7Ch4Z5JU/5Pa43Vq1fWe/yfuI/BBf3EyZ2
-DPuLFyV2khPOtc3gOX8DMY7k7CCRtC4UVf0T5rnIY+Cl7Bl/wK6/zAP2Vax6+F0GCovLllo1LSEGwmgMmsk2zhtwEJH1at2jgei1msaRqPVaWiohZ64x
-HgyMbk3ca2lr1ImKj308HA7EGEegtlJn0NfWqZEUwXT6D2rdDs7QaXWbWjoxw3H/fn/wWd8YtUasncHa9HpErvhI9I+6ncZYy9I/VxHA4HhsDI6MgWi2
-hJZLjN4QrWZnbLQ+b7RaTdx/Hk9dj8jHnV4LB9AK1CSL8EVr2K01UAESA4bLaba6Ldy0VkysZjQeCDRbrdNF4UbCEqP28Xjc6d8zmrhjrZRQPe7Xjsft
-gej8ElXL1A2M7hKt2x3UaA+bibV2+uOW6Ne6mpZci1rr0XG3q20ldt4fGMPauK3piTU2a73avYU/bGPJthOR1nr1zr3jwfFI27my+iYaRPQ6fVziLibn
-a7HJxm3ad682HKJ47/BrKEauXR7q82F3IGpjWnDcY3dAiwrvDWrU7SQviXDHtfutvlF/aOBM6IfoqLTwCKAx6A3pyLT1WFvyP3GytFo=
+eNq1Wc2T21gRxzO2x26PPRrNR5xJNhu8fIShyLLJwhZQFPhDGZvYluvZkyUcUGk0ykTEI2llT5LJXjhy5cCR4kYVB6rgwokTxZV/huLAhYLufk+2pHFS
+pAIn63X/3uv3+nX3627DbyuwP3NsfxoE5x8+/+hD+r4bRsE80Csx/e7zjxrfgsIomLn39E3Ivaznbufu5ETuJY0u62tydKlrsH5pv6iv85g+G4+heux7
+T4LovOmfTd2ZvguFJ140m6sl5EC/CWXPdyL33PXnarklgeY4wQVyaOGqkIPGHagZL8Op53hztfY+FG3+wsXXcQk1avwAquO5G4buqQLqkL/wvXgP/K0f
+QPHUnc7tGcpfv7PdWtNwAUlp/CUH0HLt+Azfho0LeSheoXLv4G5CVXdTB+5+QcRg/TtQctWO+ZCVezdSE9PHwZkLOImcySOwErIiU8cjkQrcKuO80HY8
+/6zx6zXYHrv+LIg67syJvHDuBT7pbMZEPkpVqJH+dcg/8/xT3mft3rW0NIY8RLZgEOnTt89d3lpZ8Ld+BwrnfGl53q+eWoFNSUiA/uHi2goMTQtb6j2+
+T7yqkh260fwicutFvsLFWL8B5QhhrnXu+fUNyWTCwPMTTPtlvZRk2i8bf1iD/BgFkxXP3M9YH3lBn2SAs7l9HirTlIOE6tZTqvsK5EM83xsOznz9LpSC
+0+DcnUeX6uSrsAsMWShvdoaHXr+zIS1UUvQvQcXz5yjfm3sI2EBAlQFJckLTpf9O0+8BnLhnnj9DjYX1Mk4qibKkDOyw8TGUSWMte+481b+KSsKBdL7K
+ve20yeC3kPzDTwGWFoR3cm1sDMemsB72hh3reDgeGe3eg57R0b6g76HJJpj95tgQWi5LHpvDptDWDr8rY9RMr0J5ZI6NsTVojnAVHWpyaHbMgTERj3GJ
+GoCkDc2hgXN/mYPtfuDYU++VTY4xnttzF+NSvW+2m/3eT5qTnjm0xpPmxLCOeo+MIa77PtxYwZ2IZhu3dYRC8GwrAH1zPNHW9NtwcwXzeEjECZ5+vbX+
+z1zupMjB+D78SoPrqUDtzma4z1Wx+uc1DHiS3Q78J94Zyio77nRqzbxXrox6FF2INEbKL3I5vQEQWoHjXISeK70+18UgHJqKRBg0wNB6ErnS0XPdNVEI
+H+CQeDdhI7TCyENvyDNzXRTDEY2JW4dCyB5ZYF4ePQD9cclBd2RH7haIY78kzj3QgxP0NGfqWvOnnvPMxyNJl+4WxXbMm8QsmnMHqidoxdYiPLCTdzfE
+JpGbikrITygUXFrnAYZ4Nuzavb2UxQr7ckDMbolihPymiR8A2KiT84spGkgdyCW6ZZGgKW0+9eZWZJ96F7N6hTcBoow0wSTCfA1qp1EQWn5gRS5uy69v
+8mIVsUn0YSCYStBDqD31zs+t5RtZRWihuymqRO/F5CT21I2xNcZWJbbjJrDfg2uMXaHnLd5zTewRwFyl649A58lphWs8b0toxGtllP59qM8C345WCdzm
+iZrYZ8RKifdhR05Pi9R55rbYZmZW5sewKyctzZvtbYdn6WrWKLZzZXwfQCWeRWa7y+AdUZZgZbtJEK64x6DdBUiu9EPYdKb2bGbNgovIcev7bGv1lK21
+CTBmfndPVJzlkFb4BmhyhYSDXmNZ+6LGnFHSS78cC1S+WmfoNQESGjssKlPCpAXEC19nY6mLbWZ26fITa38dthKTePkDnnBdVBcTYglfgc1Tep0iiwLN
+rH6DkQeiIqltIiqnVTjlLzd5xzeEmr50mVtQQkVbP7vAp/g9Bt0UG0j5ERKQ39oEsBZxrlWFSkJllAoplbQASpaKVq0SFOUlx1/2y9Ye7Kww0ZYGtbTp
+scBFGGGByzjAw2UUaG3DlpV2eCalHXtJWvhv6wDq1mvclHd61QtbN+C69TpPa+3DrrXCj1rXYM9a5SqtGmxaCW9Ij5G/BVUraeOtHdi2siabQKlboH2s
+MMGWDpqVsTKenDQmvouU1bQqULZi6zj8HEpxANevw55oPrYGZsfoZ/KLBtxasnrDR4YYG5ZKLZiIj/g12FliWsJAdrc5wAc8xcBXn2Y3+9r64U+hkvBo
+SiLamLmMMU85Fm0js4UD2E9xzXb7eNQcth/LPCfF6/YGKDidF/zja3AtmRc8iTD7XpEVHLymzDt4fVbR+FcJCg9oPXxVCk9R74EqeNKJapc4mFBIiP5N
+2HjhTh3MWlWVs5tCfyp5VKUomG6CLnNntPpFaaIKnVsrSo9EAYPLbM+uVDWfANAs64QyU5WI719JSDlvxQXKs0US+yVYt51nKh3XUjOazjPEEpu04UYR
+pjrFFdowiEPaYAimxfkQyy9OXLJZ8QgZiGQAAwMEllYBAwXEX9LvWRCcnly6nLhk9XskeaRfBcPCE5wgilyH9Qorcv/2go3zEmB8sjfDKWoycj+7cLFs
+r/Dk9PM1QoCQfJxdCZdDugg1PZxecoKTvQg5Gbl0EWE8ILlngT1dyK2ukHuEgITcs+WQ5KrpJLe2Qq6crOSexQO9h49t8NyNbKwSY9lbPP1mRmEStJS/
+5aRJehtqiaVoH9qK0n25kNxL1UkS9Eewhy4SRuiXGI0TRr3Na93OrBUjk+a941wl0+amWO7Ml6fUV2yuz5DlGavTJIEuabEInW9nxSXFS8jTVabLIQbQ
+ohM59+859X+TijeEGraKkD8JTi8bf16DAgcXTJY1DklOMLVQPRSjVMNiK6Y/kmQq1qPgJJAtlrKQA6wzNlRsU12KeEj4efDM9TlMIJ4HWH3gZlxK8Qur
++i3J6kooJDUEnKlHKXeRl1IjbhTI5G9D0uWIinY6Zpz2lFRdBkRcJj13sEKiqlZVKVd7BDMhAfwuJxZs/CkHGyraUiWvDmx5p6y6MsY9SemdohANX6y5
+dXoR2SeYLVADZI0bIDWidyR57H6GKWBx6p1785mKzzvp22aWUBD9i5iLRu4pJkEnl3M8Qp6XrEhai0jUO3o1m5+ymkuCvxuvoCgXQhXV+EHjjI6zbHnr
+m0yl4hXTbOrrUCozY8AaA0pMIOY3sGqgvoOFeY70HYbJno3GrJEbsVdQG+j7sLPCjWibi+K5Kvh7sXWSuKm2/jNYx4dCfx8qSVXKXhKcLtWIADsMp5Ri
+LXUNikSArOrWr6iu8QwK/Njge5R3MNVhMbVMnGNEG7mCMeQI53g2DDDKQeIhNWEjajTRFllcSSwJjZuQp+eK3MUPfEcKKwo5YG7wWu4XYUO9SuQL6Cwz
+5b7oC3LU+HsOYPkI4RsHE+o5WdT9Wpl0qO7YZGCHJmKoKRi5zz32cKnNxZhORp1U2/NV/zQnlgQsmGroPx7JRTM7O7dlB0NUY+qYiGRkl/YLhSjI5iES
+JPNj7hDOZT+ylklarvSVhAQ3PqCGlYcR4g1N9caPULX2/ClpLiTworstR0Sfuv7Z/KmaokZknU4wm6vz8nfDhA3hPrmY2dP/jc00fr4GlcTzr9dgTYWX
+vMAvCl541Cjud2evEA8gJIC6pvQKq6iyCsh8LLqrNr4IL6wL/5kfvJBhuyQ2mXgsadnIWlgdWREV1xSkqKJqeoGqT5FGRWUmqvI4Ma3x6xyUF0nMFQW8
+ySwp48ObVUfOZHzI4IyPrh4zvkhem8pl0xmfulLK+BSMit3gYk6Rv/G7HFQSmdI7XFFGq+urtXoI20+iwJ97qCAZtT15SfhWxwwO3KqSTL5Yf8tBnvaq
+fxcq5KBBxE6jjLR+5d8SxRdJMPqzVOvaa9SqlHoIRTzVmTt/g8kpBJaQpTPvuetbF6E6ygaPj0MKC56vDEI9YiXP7/CYbWORaL6tbSTcYftK6kq2wf7w
+Trbx1xxsZTLZ/7t9vLf4S0p1inMiJhCbH4gzUklBhjk5uuKG1MOJ/9r6Qw5K8TEW15978/XjvVFnwbLxAVKRs0SEJo758aX18HVmvoyhFUVjyG2oXPj4
+4Tzl9zJPfxqKJIkkLJvu6sGIW+6N3+egmkr938o67kMpLhOUheytLCq4yx8r5p0s5Te431Q1cGW/y/eJ/0BdvE8Y2NHtz98U2IlPON+1o9f8bcY44rOB
+JMK6UKPGHzHOJYqNt9JnukBef5sC+V20evj7ApQXjy21ggwhTGG1zU62TXQLDhK8QbP/wBQDo2M9EM2BoeUyfKZaE9O0+k1xZGhr1OlKr308GpligitQ
+26pnDrV1alQlML3ho2a/hxJ6Rr+j5TMSjocPh+anQ2tsjHl2gf4NS/AVHQfDB/1ee6IV6d+wBMA8nljmA8sUHUNoG5nV28Lo9CaW8eO2YXTw/CW8dT3B
+n/QGBi6glakJl6ALY9RvtnECZBaMt9Mx+gb9uVbJ7GY8MQWqrdnrI3Mzo4lx93gy6Q2PrA6eWKtmph4Pm8eTril6P8GpNeo2Jk+J2u2bTTrDVmavveHE
+EMNmX9Oye1F7fXDc72vbmZMPTWvUnHQ1PbPHTnPQPFrYww6mbLsJbnPQ6h0dm8djbffK7juoEDHoDXGLexicr6eETbp07kFzNEL2/uHnUEk8u7zUj0d9
+U8h/MNMWuwtaknlkNqmbSlaSoE6aD42h1XpsoSS0QzRU2ngC0DYHI7qyzN+h/wESTgga
 """
 
 
@@ -266,6 +277,7 @@ _LOCATE_POINTS_MIN = 20
 _LOCATE_POINTS_MAX = 32_768
 _NEAR_RADIUS_MAX = 1000.0  # metres
 _TOKEN_BYTES_MAX = 8192  # smaller than the limit of a hello
+_POSES = ("map", "odometry", "none")
 _FULL_TURN = 2.0 * math.pi + 1e-3
 _SERVER_TEXT_MAX = 500  # characters in messages
 
@@ -273,6 +285,13 @@ _SERVER_TEXT_MAX = 500  # characters in messages
 def _enum_name(enum: str, number: int, prefix: str) -> str:
     value = _messages[enum].values_by_number.get(number)
     return str(value.name[len(prefix) :] if value else number)
+
+
+def _location(found: Any) -> Location:
+    pose = found.T_map_odom
+    state = _enum_name("LocalizationState", found.state, "LOCALIZATION_STATE_") if found.state else ""
+    return Location((pose.x, pose.y, pose.yaw), found.explained, found.position_sigma, found.yaw_sigma,
+                    found.revision, state)
 
 
 def _shown(text: str) -> str:
@@ -442,13 +461,27 @@ def _describe(sensor: int, kind: str, name: str, mount: Pose, uniform: Tuple[Any
                   description.angles.uniform.increment if angles is None else 0.0, description.SerializeToString())
 
 
+def _check_poses(poses: str, pose: Any, odometry: Any) -> None:
+    """Checks whether a scan has what a robot with such poses sends."""
+    if poses == "map":
+        if pose is None:
+            raise ValueError("pose is None; (x, y, yaw) are needed")
+    elif pose is not None:
+        raise ValueError(f"pose is {pose!r}, but the client has poses={poses!r}; leave pose out")
+    elif poses == "odometry" and odometry is None:
+        raise ValueError("odometry is None, but the client has poses='odometry'; (x, y, yaw) are needed")
+    elif poses == "none" and odometry is not None:
+        raise ValueError(f"odometry is {odometry!r}, but the client has poses='none'; leave odometry out")
+
+
 def _encode_scan(sensor: Sensor, ranges: Any, pose: Any, stamp: float, odometry: Any, intensities: Any,
                  angles: Any, begins_map: Any = False) -> bytes:
     """Returns an encoded Scan without its seq, which is set when it is sent."""
     if not isinstance(begins_map, bool):
         raise ValueError(f"begins_map is {begins_map!r}; True or False is needed")
     scan = _Scan(sensor=sensor.id, stamp=_finite("stamp", stamp), begins_map=begins_map)
-    _set_pose("pose", pose, scan.pose)
+    if pose is not None:
+        _set_pose("pose", pose, scan.pose)
     if odometry is not None:
         _set_pose("odometry", odometry, scan.odometry)
     scan.ranges.extend(_numbers("ranges", ranges, _millimetres))
@@ -519,7 +552,7 @@ def _set_near(near: Optional[Point], radius: Optional[float], message: Any) -> N
 
 
 def _hello(session: str, robot: str, token: str, source: str, cell_size: Optional[float],
-           body_radius: Optional[float]) -> Any:
+           body_radius: Optional[float], poses: str = "map") -> Any:
     frame = _Frame()
     hello = frame.hello
     for field, name in (("session", session), ("robot", robot)):
@@ -541,6 +574,9 @@ def _hello(session: str, robot: str, token: str, source: str, cell_size: Optiona
         hello.body_radius = _finite("body_radius", body_radius)
         if not 0.0 < hello.body_radius <= 5.0:
             raise ValueError(f"body_radius is {body_radius}; more than 0 and at most 5 metres are possible")
+    if poses not in _POSES:
+        raise ValueError(f"poses is {poses!r}; 'map', 'odometry' or 'none' is needed")
+    hello.poses = _messages["Poses"].values_by_name[f"POSES_{poses.upper()}"].number
     return frame
 
 
@@ -599,6 +635,7 @@ class _Conversation:
         self.applied = 0  # scans up to this one are known to be in the maps
         self.requests: Dict[int, _Request] = {}  # by id, which increases
         self.request_ids = 0
+        self.location: Optional[Location] = None  # of the newest correction
         self.nonce = 0
         self.bytes_sent = 0
         self.welcomes = 0
@@ -660,8 +697,10 @@ class _Conversation:
             if len(self.link.pings) == _PINGS_MAX:
                 raise _retry("MALFORMED_FRAME", "the server sends pings faster than they can be answered")
             self.link.pings.append(frame.ping.nonce)
-        elif kind == "pong" or (kind == "correction" and self.link.is_welcome):
-            pass  # poses are sent unchanged
+        elif kind == "pong":
+            pass
+        elif kind == "correction" and self.link.is_welcome:
+            self.location = _location(frame.correction)
         elif kind == "welcome" and self.link.sent_hello and not self.link.is_welcome:
             self._on_welcome(frame.welcome, now)
         elif kind == "ack" and self.link.is_welcome:
@@ -1034,6 +1073,12 @@ class Client:
     tls          for a server with TLS: ssl.create_default_context(), or one with cafile=
     source       identifies a repeatable source of scans, for example a recording. Empty for a live robot
     body_radius  metres, radius of a disc around the robot's origin that contains its body
+    poses        what the robot knows of its poses, the same for all its scans: "map", poses in the map's frame;
+                 "odometry", which drifts; "none". With the last two the server estimates where scans were taken
+    on_correction
+                 receives the Location of each correction, with poses="odometry" and "none": after scans are in the maps,
+                 at most 20 times a second; see transform(). It runs on the client's thread, which waits for it, and
+                 must not raise or call other functions of the client than transform()
     buffer_bytes limit for unacknowledged scans; send() waits at this limit
 
     Unacknowledged scans are in memory only: close() the client, or use it in a with block, before the program
@@ -1042,6 +1087,7 @@ class Client:
 
     def __init__(self, server: str, *, session: str, robot: str, cell_size: Optional[float] = None, token: str = "",
                  tls: Optional[ssl.SSLContext] = None, source: str = "", body_radius: Optional[float] = None,
+                 poses: str = "map", on_correction: Optional[Callable[[Location], None]] = None,
                  buffer_bytes: int = 32 << 20, timing: Timing = Timing()) -> None:
         self._host, self._port = _split_address(server)
         buffer_bytes = _whole("buffer_bytes", buffer_bytes, 1, 1 << 50)
@@ -1051,8 +1097,10 @@ class Client:
             raise ValueError(f"timing is {timing!r}; a Timing is needed")
         self._tls = tls
         self._timing = timing
-        self._conversation = _Conversation(_hello(session, robot, token, source, cell_size, body_radius), buffer_bytes,
-                                           timing, time.monotonic())
+        self._poses = poses
+        self._on_correction = on_correction
+        self._conversation = _Conversation(_hello(session, robot, token, source, cell_size, body_radius, poses),
+                                           buffer_bytes, timing, time.monotonic())
         self._changed = threading.Condition()  # guards the members below and the conversation
         self._sensors: List[Sensor] = []
         self._failure: Optional[ScanloomError] = None  # final
@@ -1105,16 +1153,16 @@ class Client:
 
     # Scans
 
-    def send(self, sensor: Sensor, ranges: Sequence[float], *, pose: Pose, stamp: Optional[float] = None,
+    def send(self, sensor: Sensor, ranges: Sequence[float], *, pose: Optional[Pose] = None, stamp: Optional[float] = None,
              odometry: Optional[Pose] = None, intensities: Optional[Sequence[int]] = None,
              angles: Optional[Sequence[float]] = None, begins_map: bool = False, block: bool = True,
              timeout: Optional[float] = None) -> None:
         """Adds a scan to the buffer and returns; it is sent when there is a link.
 
         ranges       one per beam; inf, or at least range_max: no return; nan, 0, or below range_min: invalid reading
-        pose         of the robot in the map's frame
+        pose         of the robot in the map's frame; only and always with poses="map"
         stamp        seconds since the epoch, or since any fixed start; None: now
-        odometry     of the robot in its odometry frame
+        odometry     of the robot in its odometry frame; needed with poses="odometry", not allowed with poses="none"
         intensities  in the sensor's own scale, one per beam
         angles       of this scan's beams, if they differ from the sensor's
         begins_map   the pose was given by the user, because locate() raised NOTHING_MAPPED; set it for all scans from
@@ -1130,6 +1178,7 @@ class Client:
     def _encoded(self, sensor: Sensor, ranges: Any, pose: Any, stamp: Optional[float], odometry: Any, intensities: Any,
                  angles: Any, begins_map: bool = False) -> Tuple[Sensor, bytes]:
         self._check_sensor(sensor)
+        _check_poses(self._poses, pose, odometry)
         stamp = time.time() if stamp is None else stamp
         return sensor, _encode_scan(sensor, ranges, pose, stamp, odometry, intensities, angles, begins_map)
 
@@ -1251,9 +1300,7 @@ class Client:
         _set_point("from", _compose(odometry, (mount.x, mount.y, mount.yaw))[:2], getattr(request, "from"))
         _set_near(near, radius, request)
         found = self._request(frame, timeout).correction
-        pose = found.T_map_odom
-        return Location((pose.x, pose.y, pose.yaw), found.explained, found.position_sigma, found.yaw_sigma,
-                        found.revision)
+        return _location(found)
 
     def _request(self, frame: Any, timeout: Optional[float]) -> Any:
         seconds = _lock_timeout(timeout)
@@ -1282,6 +1329,17 @@ class Client:
             code = _enum_name("ErrorCode", reply.refusal.code, "ERROR_CODE_")
             raise ScanloomError(code, _shown(reply.refusal.message), code in ("OVERLOADED", "SHUTTING_DOWN"))
         return reply
+
+    def transform(self) -> Optional[Location]:
+        """Returns where the robot's odometry frame is in the map by the server's newest correction, also after its link
+        has ended; None before the first one, and always with poses="map". Does not wait.
+
+        at(odometry) of it is the robot's pose in the map, by its current odometry. It jumps when the server corrects
+        the poses, for example where a loop closes. With poses="none" the robot itself is its odometry frame, so that
+        at() is the pose of its newest scan in the maps.
+        """
+        with self._changed:
+            return self._conversation.location
 
     # Status
 
@@ -1414,8 +1472,12 @@ class Client:
                 timeout = self._send_frames(connection)
                 for body in connection.turn(timeout):
                     with self._changed:
+                        before = self._conversation.location
                         self._conversation.receive(_Frame.FromString(body), time.monotonic())
+                        location = self._conversation.location
                         self._changed.notify_all()
+                    if self._on_correction and location and location is not before:
+                        self._on_correction(location)
         except ScanloomError as failure:
             return self._explained(failure)
         except DecodeError as error:
@@ -1472,9 +1534,10 @@ _USAGE = """reads scans from standard input and streams them to a server, one JS
   {"t": 12.5, "pose": [1.0, 0.5, 0.785], "ranges": [1.25, Infinity, null]}
 
   t            seconds
-  pose         [x, y, yaw] of the robot in the map, metres and radians
+  pose         [x, y, yaw] of the robot in the map, metres and radians; only with --poses map
   ranges       metres, one per beam: Infinity or range-max is no return, null an invalid reading
-  odometry     [x, y, yaw] of the robot in its odometry frame; optional, like the following members
+  odometry     [x, y, yaw] of the robot in its odometry frame; needed with --poses odometry, absent with --poses none,
+               else optional, like the following members
   intensities  whole numbers, one per beam
   angles       radians, one per beam, if they differ from --angle-min and --angle-increment
 
@@ -1495,6 +1558,8 @@ def _parse_options(arguments: Optional[List[str]]) -> argparse.Namespace:
     parser.add_argument("--session", required=True, help="the map's name")
     parser.add_argument("--robot", required=True, help="this robot's name, unique within the session")
     parser.add_argument("--cell-size", type=float, metavar="M", help="metres, for a new session")
+    parser.add_argument("--poses", choices=_POSES, default="map",
+                        help="what the robot knows of its poses [map]; otherwise the server estimates them")
     parser.add_argument("--angle-min", type=float, metavar="RAD", default=-math.pi,
                         help="direction of the first beam [-pi]")
     parser.add_argument("--angle-increment", type=float, metavar="RAD",
@@ -1519,7 +1584,7 @@ def _open(options: argparse.Namespace) -> Client:
     if tls and options.tls_cert:
         tls.load_cert_chain(options.tls_cert, options.tls_key)
     return Client(options.server, session=options.session, robot=options.robot, cell_size=options.cell_size,
-                  token=token, tls=tls, source=options.source)
+                  token=token, tls=tls, source=options.source, poses=options.poses)
 
 
 class _Lines:
@@ -1562,15 +1627,20 @@ class _Lines:
 
     def _read(self, line: bytes) -> Tuple[Sensor, bytes]:
         scan = json.loads(line)
-        if not isinstance(scan, dict) or not {"t", "pose", "ranges"} <= scan.keys():
-            raise ValueError('an object with "t", "pose" and "ranges" is needed')
+        needed = {"map": ("t", "pose", "ranges"), "odometry": ("t", "odometry", "ranges")}.get(
+            self._options.poses, ("t", "ranges"))
+        if not isinstance(scan, dict) or not set(needed) <= scan.keys():
+            quoted = [f'"{name}"' for name in needed]
+            raise ValueError(f"an object with {', '.join(quoted[:-1])} and {quoted[-1]} is needed")
         if not isinstance(scan["ranges"], list):
             raise ValueError("ranges is not a list of numbers")
         ranges = [math.nan if value is None else value for value in scan["ranges"]]
-        _set_pose("pose", scan["pose"], _Scan().pose)  # so that an invalid line describes no laser
-        return self._robot._encoded(self._laser or self._make_laser(len(ranges)), ranges, scan["pose"],
-                                    _finite("t", scan["t"]), scan.get("odometry"), scan.get("intensities"),
-                                    scan.get("angles"))
+        pose, odometry = scan.get("pose"), scan.get("odometry")
+        _check_poses(self._options.poses, pose, odometry)  # so that an invalid line describes no laser
+        if pose is not None:
+            _set_pose("pose", pose, _Scan().pose)
+        return self._robot._encoded(self._laser or self._make_laser(len(ranges)), ranges, pose, _finite("t", scan["t"]),
+                                    odometry, scan.get("intensities"), scan.get("angles"))
 
     def _make_laser(self, count: int) -> Sensor:
         options = self._options

@@ -228,7 +228,7 @@ std::string CarmenLog::Indexer::fingerprint() {
                      options_.range_max ? fmt::format("{}", *options_.range_max) : "as stated");
     }
     if (options_.poses != Poses::kMap) {
-        hash_.update(fmt::format("poses {}\n", options_.poses == Poses::kOdometry ? "odometry" : "none"));
+        hash_.update(fmt::format("poses {}\n", name_of(options_.poses)));
     }
     return "carmen:" + hash_.hex().substr(0, 32);
 }

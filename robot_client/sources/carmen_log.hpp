@@ -54,10 +54,10 @@ struct ScanOrder : StampReport {
 /// RAWLASER1: has no pose and is read only if the log has no other laser lines. The pose is interpolated between the
 /// ODOM lines around it, and the mount is PARAM robot_frontlaser_offset.
 /// This is so if the options' poses are kMap. With kOdometry, scan.odometry is the second triple of a FLASER line, the
-/// robot's pose of a ROBOTLASER line, or the interpolated pose of a RAWLASER1 line, and scan.pose is the same. The
-/// mount of a FLASER line is its first triple relative to its second if that is constant over the log, within
-/// kConstantMountTolerance; otherwise the identity. With kNone the mounts are the same, but scans have no odometry and
-/// their pose is 0; RAWLASER1 lines then need no ODOM lines.
+/// robot's pose of a ROBOTLASER line, or the interpolated pose of a RAWLASER1 line, and scan.pose is absent. The mount
+/// of a FLASER line is its first triple relative to its second if that is constant over the log, within
+/// kConstantMountTolerance; otherwise the identity. With kNone the mounts are the same, but scans have neither pose nor
+/// odometry; RAWLASER1 lines then need no ODOM lines.
 /// Ranges are rounded to millimetres here, once. NaN and negative readings are invalid beams, infinite ones are
 /// no-returns.
 ///

@@ -86,13 +86,10 @@ Result<Observation> CarmenObserver::observe(const CarmenScan& line) {
         return range != kInvalidRange && range >= max;
     };
     std::ranges::replace_if(scan.ranges, is_beyond, no_return);
-    switch (options_.poses) {
-    case Poses::kMap: set_map_pose(scan, line, observation.sensor->mount); break;
-    case Poses::kOdometry:
-        scan.odometry = line.robot;
-        scan.pose = line.robot; // the only pose that servers of this version use
-        break;
-    case Poses::kNone: break;
+    if (options_.poses == Poses::kMap) {
+        set_map_pose(scan, line, observation.sensor->mount);
+    } else {
+        set_pose(scan, options_.poses, line.robot);
     }
     return observation;
 }

@@ -21,6 +21,8 @@ std::string text_of(const Ld06ScanOptions& options, const Ld06Poses& poses) {
         fmt::format("ld06 1\nrange {} {} {}\nconfidence {}\nmedian {}\nmount {} {} {}\n", options.range_min,
                     options.range_max, options.no_return == NoReturn::kFree ? "free" : "drop", options.confidence_min,
                     options.median_window.value_or(1), options.mount.x, options.mount.y, options.mount.yaw);
+    if (options.poses != Poses::kMap) text += fmt::format("poses {}\n", name_of(options.poses));
+    if (options.poses == Poses::kNone) return text;
     if (const auto* fixed = std::get_if<Pose2>(&poses)) {
         return text + fmt::format("pose {} {} {}\n", fixed->x, fixed->y, fixed->yaw);
     }
@@ -74,7 +76,7 @@ std::optional<Scan> Ld06Capture::scan_of(const Ld06Turn& turn) const {
     const auto pose = timeline != nullptr ? timeline->at(turn.stamp) : std::get<Pose2>(poses_);
     if (!pose) return std::nullopt;
     Scan scan = ld06_scan(turn, options_);
-    scan.pose = *pose;
+    set_pose(scan, options_.poses, *pose);
     return scan;
 }
 

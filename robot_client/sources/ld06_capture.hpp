@@ -11,7 +11,8 @@
 
 namespace scanloom::robot {
 
-/// The robot's pose: one pose for the whole recording, or a timeline of poses.
+/// The robot's pose: one pose for the whole recording, or a timeline of poses. What it is, Ld06ScanOptions::poses says;
+/// with kNone it is one pose, which is not sent.
 using Ld06Poses = std::variant<Pose2, PoseTimeline>;
 
 /// A source of the recorded bytes of an LD06: one scan for each turn that has a pose. Stamps and the times of poses are

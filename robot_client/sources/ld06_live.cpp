@@ -188,7 +188,7 @@ std::optional<Observation> Ld06Live::State::take_ready() {
         Scan scan = std::move(waiting_.front().scan);
         waiting_.pop_front();
         if (answer.pose) {
-            scan.pose = *answer.pose;
+            set_pose(scan, options_.scan.poses, *answer.pose);
             ++given_;
             return Observation{sensor_, std::move(scan)};
         }
@@ -214,7 +214,7 @@ void Ld06Live::State::report_other_clock(double stamp) {
 Result<std::optional<Observation>> Ld06Live::State::end_when_stopped() const {
     if (given_ > 0 || losses_.without_pose == 0) return std::optional<Observation>{};
     return Error{Errc::kNotFound, fmt::format("no scan was sent: none of {} scans is within the time range of the "
-                                              "poses; for a device the t of --poses is Unix time in seconds",
+                                              "poses; for a device the t of --pose-file is Unix time in seconds",
                                               losses_.without_pose)};
 }
 

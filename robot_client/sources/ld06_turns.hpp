@@ -133,6 +133,7 @@ struct Ld06ScanOptions {
     std::uint8_t confidence_min = 100;
     std::optional<int> median_window; ///< beams, see median_filtered()
     Pose2 mount;                      ///< T_robot_sensor; the sensor's x axis is its 0 degrees
+    Poses poses = Poses::kMap;        ///< what the robot's poses are
 };
 
 /// Returns the sensor's description for the server.

@@ -8,7 +8,8 @@
 namespace scanloom::robot {
 
 void SeenPoints::add(const Scan& scan, const Sensor& sensor) {
-    const Pose2 T_odom_sensor = compose(scan.pose, sensor.mount);
+    const Pose2 T_odom_robot = scan.pose.value_or(scan.odometry.value_or(Pose2{}));
+    const Pose2 T_odom_sensor = compose(T_odom_robot, sensor.mount);
     const BeamAngles angles = angles_of(scan, sensor);
     const ReadingRules rules{sensor.range_min, sensor.range_max, true};
     for (std::size_t beam = 0; beam < scan.ranges.size(); ++beam) {

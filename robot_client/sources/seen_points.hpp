@@ -12,7 +12,8 @@ namespace scanloom::robot {
 /// The points that a stationary robot's lasers observed, added scan by scan.
 ///
 /// Units: points in whole millimetres, otherwise metres.
-/// Frames: that of Scan::pose, i.e. the odometry frame of a robot that requests its position.
+/// Frames: that of Scan::pose or, without one, of Scan::odometry, i.e. the odometry frame of a robot that requests its
+///         position. A scan without both was taken at the origin.
 class SeenPoints {
 public:
     /// Adds the returns of a scan. Beams without a return and points beyond kCoordinateMax are skipped. Pre: the sensor

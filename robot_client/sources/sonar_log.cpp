@@ -88,6 +88,7 @@ Result<SonarLog> SonarLog::open(const std::filesystem::path& measurements, const
     Sha256 hash;
     hash.update(fmt::format("sonar 1\n{} {} {}\n", options.range_max, options.aperture,
                             options.no_return == NoReturn::kFree ? "free" : "drop"));
+    if (options.poses != Poses::kMap) hash.update(fmt::format("poses {}\n", name_of(options.poses)));
     const auto path = read_poses(poses, options.limits, hash);
     if (!path) return path.error();
 
@@ -100,7 +101,7 @@ Result<SonarLog> SonarLog::open(const std::filesystem::path& measurements, const
             return Error{Errc::kInvalidField,
                          fmt::format("{} has no pose within {:g} s of its time", poses.string(), kPoseGapMax)};
         }
-        scan->pose = *pose;
+        set_pose(*scan, options.poses, *pose);
         scans.push_back(std::move(*scan));
         return {};
     });

@@ -17,6 +17,7 @@ struct SonarOptions {
     double range_max = 5.11;                  ///< metres; these files write 5110 for a no-return
     double aperture = std::numbers::pi / 6.0; ///< radians, full width of a cone
     LineLimits limits;
+    Poses poses = Poses::kMap; ///< kMap or kOdometry: what the poses of the file are
 };
 
 /// A ring of eight sonars recorded in two text files, as a source: one sensor with eight beams, one scan for each line
@@ -25,7 +26,7 @@ struct SonarOptions {
 /// - Measurements: `time_ms r1 .. r8`, whole milliseconds and millimetres. Readings of at least range_max are
 ///   no-returns, readings of 0 or less failed.
 /// - Poses: `time_ms x y heading`, millimetres and tenths of a degree. A scan's pose is interpolated between the poses
-///   around its time.
+///   around its time. It is the scan's odometry if SonarOptions::poses is kOdometry.
 ///
 /// Frames: heading and beam angles are counter-clockwise. Beams 1 to 8 point to -90, -37.5, -22.5, -7.5, 7.5, 22.5,
 ///         37.5 and 90 degrees, so the first one points to the right. The files do not state this. It was determined

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "common/error/error.hpp"
+#include "common/scan/poses.hpp"
 #include "common/scan/scan.hpp"
 #include "common/scan/sensor.hpp"
 
@@ -13,6 +14,20 @@ namespace scanloom::robot {
 
 /// How a beam without a return is used: the cells up to range_max are free, or the beam is dropped.
 enum class NoReturn { kFree, kDrop };
+
+/// Sets the pose of the robot that took a scan, as a robot with such poses sends it: as Scan::pose, as Scan::odometry,
+/// or not at all.
+inline void set_pose(Scan& scan, Poses poses, const Pose2& pose) {
+    if (poses == Poses::kMap) scan.pose = pose;
+    if (poses == Poses::kOdometry) scan.odometry = pose;
+}
+
+/// Returns whether a robot with such poses may send the scan: kMap needs a pose, kOdometry an odometry and no pose,
+/// kNone neither.
+[[nodiscard]] inline bool agrees_with(const Scan& scan, Poses poses) {
+    if (poses == Poses::kMap) return scan.pose.has_value();
+    return !scan.pose && scan.odometry.has_value() == (poses == Poses::kOdometry);
+}
 
 /// A scan and the sensor that took it. The uplink sets its seq.
 struct Observation {

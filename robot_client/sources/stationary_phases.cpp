@@ -84,7 +84,7 @@ void StationaryPhases::answer(const Result<LocateResult>& located) {
     }
     T_map_odom_ = located->T_map_odom;
     report(fmt::format("localized at {}: {:.0f} % of the scan matches the map; accuracy {:.1f} cm and {:.2f} degrees",
-                       text_of(compose(*T_map_odom_, held_.back().scan.pose)), 100.0 * located->inlier_ratio,
+                       text_of(compose(*T_map_odom_, *held_.back().scan.pose)), 100.0 * located->inlier_ratio,
                        kAlmostSure * 100.0 * located->position_sigma,
                        kAlmostSure * located->yaw_sigma * 180.0 / std::numbers::pi));
     release(kTurnsHeldBack);
@@ -92,7 +92,7 @@ void StationaryPhases::answer(const Result<LocateResult>& located) {
 
 void StationaryPhases::place_first() {
     const Pose2 place = *std::exchange(first_place_, std::nullopt);
-    T_map_odom_ = compose(place, inverse(held_.back().scan.pose));
+    T_map_odom_ = compose(place, inverse(*held_.back().scan.pose));
     begins_map_ = true;
     report(fmt::format(
         "the map is empty: the lidar's pose is assumed to be {}; its next places are localized relative to it",
@@ -115,7 +115,7 @@ void StationaryPhases::refuse(Error refusal) {
 void StationaryPhases::release(std::size_t held_back) {
     for (; held_.size() > held_back; held_.pop_front()) {
         Observation turn = std::move(held_.front());
-        turn.scan.pose = compose(*T_map_odom_, turn.scan.pose);
+        turn.scan.pose = compose(*T_map_odom_, *turn.scan.pose);
         turn.scan.begins_map = begins_map_;
         ready_.push_back(std::move(turn));
     }

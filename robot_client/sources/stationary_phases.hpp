@@ -34,7 +34,7 @@ public:
     /// @param first_place  T_map_robot of the first phase, used if no map exists then
     explicit StationaryPhases(const Pose2& first_place) : first_place_(first_place) {}
 
-    /// Adds the next turn. Pre: a laser took it; question() is answered.
+    /// Adds the next turn. Pre: a laser took it; it has a pose; question() is answered.
     void add(Observation turn);
 
     /// Returns the points to send in a locate request now, or nullopt if none is needed.

@@ -271,6 +271,12 @@ Result<std::optional<Observation>> Spool::next() {
                 continue;
             }
             if (segment.first + read_++ < segment.from) continue;
+            if (!agrees_with(batch->scans.front(), options_.poses)) {
+                return Error{Errc::kConflict,
+                             fmt::format("{}: an earlier run took these {} scans with other poses than '{}': send them "
+                                         "with the poses of that run, or move the directory away",
+                                         options_.directory.string(), waiting_, name_of(options_.poses))};
+            }
             ++next_seq_;
             --waiting_;
             Observation next{sensor, std::move(batch->scans.front())};

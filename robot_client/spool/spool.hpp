@@ -27,6 +27,7 @@ struct SpoolOptions {
     WhenFull when_full = WhenFull::kDropOldest; ///< drops whole files, each at most a sixteenth of bytes_max
     /// Whether the server set the poses from the session's map. In another session such poses can only begin a map.
     bool poses_from_server = false;
+    Poses poses = Poses::kMap; ///< what the poses of the robot's scans are
 };
 
 /// The scans that a robot took and the server has not acknowledged, on disk. They remain after the program ends.
@@ -69,7 +70,8 @@ public:
 
     /// Returns the next scan to send, or nullopt if none waits. Waits for the disk once per file. Pre: begin()
     /// succeeded.
-    /// Errors: kStoreFailed.
+    /// Errors: kStoreFailed; kConflict if an earlier run took the scan with other poses than SpoolOptions::poses: the server
+    ///         would refuse it.
     [[nodiscard]] Result<std::optional<Observation>> next();
 
     /// Marks all scans up to `seq` as stored by the server.

@@ -55,7 +55,7 @@ SectorRanges sector_ranges(const Scan& scan, const Sensor& sensor) {
 
 std::vector<Point2> obstacles_of(const Scan& scan, const Sensor& sensor) {
     const BeamAngles angles = angles_of(scan, sensor);
-    const Pose2 T_map_sensor = compose(scan.pose, sensor.mount);
+    const Pose2 T_map_sensor = compose(*scan.pose, sensor.mount);
     std::vector<Point2> obstacles;
     obstacles.reserve(scan.ranges.size());
     for (std::size_t i = 0; i < scan.ranges.size(); ++i) {

@@ -30,6 +30,9 @@ public:
     /// Sets the function that returns the next goal. Call it before the first next().
     void ask_with(robot::NextGoal next_goal) { next_goal_ = std::move(next_goal); }
 
+    /// Lets the robot steer by a correction of the server; see Simulator::correct().
+    void correct(const Pose2& T_map_odom) { simulator_.correct(T_map_odom); }
+
     [[nodiscard]] bool can_wait() const override { return true; }
     /// Stamps continue after those of the stored scans, and limits count those scans. The robot itself starts at its
     /// usual start.

@@ -10,8 +10,8 @@
 namespace scanloom::sim {
 
 /// Returns at most 64 printable bytes that identify the scans of a simulated robot. They are the same if the world (for
-/// a map, its cells), the drive, the sensors, the noise, the seed, the pose that is sent and the use of beams without a
-/// return are the same.
+/// a map, its cells), the drive, the sensors, the noise, the seed, the pose that is sent, what the poses are and the
+/// use of beams without a return are the same.
 [[nodiscard]] std::string fingerprint_of(const SimulatorOptions& options, std::string_view drive,
                                          robot::NoReturn no_return);
 

@@ -108,6 +108,7 @@ export function eventOf(session, since, landmarksSince) {
     tiles: session.layers.map((layer) => ({ layer: Layer[`LAYER_${layer.toUpperCase()}`], tiles, revisions })),
     robots: session.robots.map((robot, index) => robotNews(session, robot, index, since)),
     landmarks: landmarksSince === null ? undefined : landmarkNews(session, landmarksSince),
+    moving_scans: session.movingScans,
   };
 }
 
@@ -134,6 +135,7 @@ function robotNews(session, robot, index, since) {
       points: differences(session.scan, robot.pose.x, robot.pose.y),
     },
     body_radius: robot.body_radius ?? 0,
+    localization: robot.known,
   };
 }
 

@@ -198,6 +198,8 @@ export class FakeServer {
     if (rest[0] === 'trajectory.geojson') return json(response, session.trajectory(since));
     if (rest[0] === 'frontiers.geojson')
       return json(response, { type: 'FeatureCollection', features: session.frontiers });
+    if (rest[0] === 'pose_graph.geojson')
+      return json(response, { type: 'FeatureCollection', features: session.poseGraph });
     if (rest[0] === 'goals.geojson') {
       const { goals: features, explored } = session;
       return json(response, { type: 'FeatureCollection', explored, features });

@@ -28,6 +28,9 @@ export class FakeSession {
     /** Features of goals.geojson, and their revision. */
     this.goals = [];
     this.goalsRevision = 0;
+    /** Features of pose_graph.geojson, and scans that are being moved to corrected poses. */
+    this.poseGraph = [];
+    this.movingScans = 0;
     /** Robots that have explored everything that they can reach. */
     this.explored = [];
     /** Live connections. */

@@ -68,6 +68,38 @@ describe('on the map', () => {
     await showsNoPixels(colour);
   });
 
+  it('show the pose graph when switched on, and how well poses are known', async () => {
+    session.paint(256, 255, 0);
+    session.move('r1', 6, 2, 0);
+    session.robots[0].known = { state: 1, poses: 1, inliers: 0.9, sigma_m: 0.124 };
+    const keyframe = (at) => ({ properties: { kind: 'keyframe' }, geometry: { type: 'Point', coordinates: at } });
+    session.poseGraph = [keyframe([3, 3]), keyframe([9, 9])];
+    const geometry = {
+      type: 'LineString',
+      coordinates: [
+        [3, 3],
+        [9, 9],
+      ],
+    };
+    session.poseGraph.push({ properties: { kind: 'loop', is_used: true }, geometry });
+    session.movingScans = 17;
+    await open();
+    await hasText(page, '[data-role=localization]', /^tracking, ±12 cm$/);
+    await hasText(page, '#moving-scans', /^17 scans are being moved to corrected poses\.$/);
+    await showsColour(page, '--cell-free');
+    assert.ok(!server.requests.some((request) => request.endsWith('pose_graph.geojson')));
+    await page.check('[data-switch=poseGraph]');
+    await showsNear(...pixelOf(3, 3), await colourOf(page, '--ink'));
+    await showsTrail(pixelOf(5.1, 6.9), await colourOf(page, '--loop'), await colourOf(page, '--cell-free'));
+    await keepPicture(page, 'pose-graph');
+    assert.deepEqual(await violations(page), []);
+    session.robots[0].known = { state: 2, poses: 1, inliers: 0, sigma_m: 0.124 };
+    session.movingScans = 0;
+    session.notify();
+    await hasText(page, '[data-role=localization]', /^lost: its scans fit no place$/);
+    await until(page, async () => !(await page.isVisible('#moving-scans')));
+  });
+
   it('show frontiers as areas with their goals, as soon as they change, and only when switched on', async () => {
     session.paint(256, 255, 0);
     session.frontiers = [frontier([3, 3], [5, 5])];

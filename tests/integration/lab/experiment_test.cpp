@@ -159,8 +159,8 @@ TEST_F(BrokenModels, AShiftByOneCellInAnyDirectionIsDetected) {
     for (const auto& [dx, dy] : {std::pair{1.0, 0.0}, {-1.0, 0.0}, {0.0, 1.0}, {0.0, -1.0}}) {
         Recording shifted = recording();
         for (Scan& scan : shifted.scans) {
-            scan.pose.x += dx * cell_size_;
-            scan.pose.y += dy * cell_size_;
+            scan.pose->x += dx * cell_size_;
+            scan.pose->y += dy * cell_size_;
         }
         EXPECT_FALSE(is_good(scores_of(map_of(shifted)), true))
             << dx << ' ' << dy << ": " << testing::PrintToString(scores_of(map_of(shifted)));
@@ -169,7 +169,7 @@ TEST_F(BrokenModels, AShiftByOneCellInAnyDirectionIsDetected) {
 
 TEST_F(BrokenModels, AnIgnoredHeadingIsDetected) {
     Recording turned = recording();
-    for (Scan& scan : turned.scans) scan.pose.yaw = 0.0;
+    for (Scan& scan : turned.scans) scan.pose->yaw = 0.0;
     EXPECT_FALSE(is_good(scores_of(map_of(turned)), true));
 }
 

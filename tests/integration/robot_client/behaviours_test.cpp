@@ -106,13 +106,13 @@ TEST_P(Behaviours, DriveWithoutCollisionsAndMakeProgress) {
         sim::Simulator simulator(
             {world, *sim::find_laser(laser), noisy ? std::optional(sim::Noise{}) : std::nullopt, seed},
             drive.make(world));
-        Pose2 last = simulator.next_scan().pose;
+        Pose2 last = *simulator.next_scan().pose;
         double metres = 0.0;
         double clearance_min = 10.0;
         const bool is_cut = drive.make == zigzag && !is_room(world);
         const double seconds = is_cut ? kLargeSweep : drive.seconds;
         for (double time = 0.0; time < seconds && !simulator.behaviour().is_done(); time += sim::kScanPeriod) {
-            const Pose2 pose = simulator.next_scan().pose;
+            const Pose2 pose = *simulator.next_scan().pose;
             metres += std::hypot(pose.x - last.x, pose.y - last.y);
             last = pose;
             clearance_min = std::min(clearance_min, clearance(simulator.world(), {pose.x, pose.y}));

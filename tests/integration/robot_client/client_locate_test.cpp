@@ -48,6 +48,33 @@ TEST_F(ClientLocate, ReturnsTheServersPose) {
     EXPECT_TRUE(server_in_the_test_.fake().stored().empty()) << "the scans of a request are not stored";
 }
 
+TEST_F(ClientLocate, PassesCorrectionsOnAndKeepsTheNewest) {
+    const wire::Correction first{{1.0, 2.0, 3.0}, 7, 0.9, 0.01, 0.02, LocalizationState::kTracking};
+    const wire::Correction second{{4.0, 5.0, -1.0}, 8, 0.2, 0.03, 0.04, LocalizationState::kLost};
+    server_in_the_test_.go_by({.corrections = {first, second}});
+    std::vector<Pose2> received;
+    auto made = options();
+    made.server = server_in_the_test_.address();
+    made.poses = Poses::kOdometry;
+    made.on_correction = [&](const Location& location) { received.push_back(location.T_map_odom); };
+    const auto client = Client::start(made).value();
+    EXPECT_FALSE(client->transform()) << "the server does not answer yet";
+    server_in_the_test_.run();
+    Scan scan = numbered(1);
+    scan.odometry = std::exchange(scan.pose, std::nullopt);
+    EXPECT_TRUE(client->send(laser(), scan));
+    EXPECT_TRUE(client->close(20s));
+    EXPECT_THAT(received, testing::ElementsAre(first.T_map_odom, second.T_map_odom));
+    const auto newest = client->transform();
+    ASSERT_TRUE(newest) << "it is kept when the link has ended";
+    EXPECT_EQ(newest->T_map_odom, second.T_map_odom);
+    EXPECT_EQ(newest->revision, 8U);
+    EXPECT_EQ(newest->inlier_ratio, 0.2);
+    EXPECT_EQ(newest->position_sigma, 0.03);
+    EXPECT_EQ(newest->yaw_sigma, 0.04);
+    EXPECT_EQ(newest->state, LocalizationState::kLost);
+}
+
 TEST_F(ClientLocate, ReturnsTheServersRefusal) {
     const Error refusal{Errc::kUndetermined, "too little of the scan is in the map"};
     const auto client = client_of({.location = refusal});
@@ -81,7 +108,7 @@ TEST_F(ClientLocate, RefusesInvalidArgumentsByName) {
     sonar.kind = SensorKind::kSonar;
     refused(std::make_shared<const Sensor>(sonar), scans(), "needs laser scans; this sensor is a sonar");
     auto wrong = scans();
-    wrong[3].pose.x = std::numeric_limits<double>::quiet_NaN();
+    wrong[3].pose->x = std::numeric_limits<double>::quiet_NaN();
     refused(laser(), wrong, "scans[3]: ");
     refused(laser(), scans(), "radius is 0 m", {.near = {{{0.0, 0.0}, 0.0}}});
     refused(laser(), scans(), "near.x is 2000000", {.near = {{{2e6, 0.0}, 1.0}}});

@@ -1,3 +1,4 @@
+#include "robot_client/sources/source.hpp"
 #include "tests/integration/robot_client/client_fixture.hpp"
 
 #include <csignal>
@@ -86,7 +87,7 @@ TEST_F(ClientTest, InvalidScansAreRefusedImmediately) {
         const auto sent = client->send(sensor, std::move(scan));
         return sent ? std::string("taken") : sent.error().message;
     };
-    EXPECT_THAT(refusal([](Scan& scan) { scan.pose.x = std::numeric_limits<double>::quiet_NaN(); }, laser()),
+    EXPECT_THAT(refusal([](Scan& scan) { scan.pose->x = std::numeric_limits<double>::quiet_NaN(); }, laser()),
                 HasSubstr("pose.x is nan"));
     EXPECT_THAT(refusal([](Scan& scan) { scan.ranges.clear(); }, laser()), HasSubstr("ranges is empty"));
     EXPECT_THAT(refusal([](Scan& scan) { scan.sensor = 3; }, laser()), HasSubstr("of sensor 3, the sensor given is 0"));
@@ -105,6 +106,27 @@ TEST_F(ClientTest, InvalidScansAreRefusedImmediately) {
     EXPECT_THAT(refusal([](Scan&) {}, std::make_shared<const Sensor>(far_sighted)),
                 HasSubstr("range_max is 900 m, more than 8192 cells"));
     EXPECT_EQ(refusal([](Scan&) {}, laser()), "taken");
+}
+
+TEST_F(ClientTest, HelloAndScansHaveThePosesOfTheClient) {
+    for (const Poses poses : {Poses::kMap, Poses::kOdometry, Poses::kNone}) {
+        ServerInTheTest server;
+        server.run();
+        auto made = options();
+        made.server = server.address();
+        made.poses = poses;
+        const auto client = Client::start(made).value();
+        Scan scan = numbered(1);
+        scan.pose.reset();
+        set_pose(scan, poses, {1.0, 2.0, 0.5});
+        ASSERT_TRUE(client->send(laser(), scan));
+        scan.pose = poses == Poses::kMap ? std::nullopt : std::optional(Pose2{});
+        EXPECT_EQ(client->send(laser(), scan).error().code, Errc::kInvalidField);
+        ASSERT_TRUE(client->close(20s));
+        EXPECT_EQ(server.fake().hellos().back().poses, poses);
+        ASSERT_EQ(server.fake().stored().size(), 1U);
+        EXPECT_TRUE(agrees_with(server.fake().stored()[0], poses));
+    }
 }
 
 TEST_F(ClientTest, InvalidOptionsAreRefusedAtTheStart) {

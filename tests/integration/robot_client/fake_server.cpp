@@ -140,7 +140,12 @@ asio::awaitable<bool> FakeServer::greet(Link& link, const wire::Hello& hello) {
                                                 {},
                                                 link.script.credit_bytes,
                                                 link.script.zstd};
-    co_return co_await link.send(welcome);
+    if (!co_await link.send(welcome)) co_return false;
+    for (const auto& correction : link.script.corrections) {
+        const wire::Message message = correction;
+        if (!co_await link.send(message)) co_return false;
+    }
+    co_return true;
 }
 
 asio::awaitable<bool> FakeServer::meet(Link& link, const wire::PlanRequest& request) {

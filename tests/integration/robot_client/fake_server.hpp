@@ -29,6 +29,7 @@ struct LinkScript {
     bool knows_locating = true;                               ///< false: treats the request as a frame without a body
     Result<wire::Correction> location = wire::Correction{};   ///< the answer to that,
     std::vector<Result<wire::Correction>> locations = {};     ///< and to the first requests, one each
+    std::vector<wire::Correction> corrections = {};           ///< sent after the welcome
     std::string session_id = "f1";
     std::uint64_t credit_bytes = 20'000;
     std::uint64_t ack_every = 1; ///< batches

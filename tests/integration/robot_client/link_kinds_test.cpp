@@ -27,7 +27,7 @@ std::vector<Observation> recorded_scans(std::size_t scans) {
         Sensor{0, SensorKind::kLaser, "laser", {}, UniformAngles{-1.5, 0.01, 300}, 0.0, 0.0, 10.0});
     std::vector<Observation> made(scans, Observation{sensor, {}});
     for (std::size_t i = 0; i < scans; ++i) {
-        made[i].scan.pose.x = static_cast<double>(i + 1);
+        made[i].scan.pose = {static_cast<double>(i + 1), 0.0, 0.0};
         for (RangeMm beam = 0; beam < 300; ++beam) made[i].scan.ranges.push_back(2000 + beam * beam % 97);
     }
     return made;
@@ -76,7 +76,7 @@ protected:
     void expect_all_stored(std::size_t scans = 200) {
         EXPECT_THAT(server_->faults(), IsEmpty());
         ASSERT_EQ(server_->stored().size(), scans);
-        for (std::size_t i = 0; i < scans; ++i) EXPECT_EQ(server_->stored()[i].pose.x, static_cast<double>(i + 1));
+        for (std::size_t i = 0; i < scans; ++i) EXPECT_EQ(server_->stored()[i].pose->x, static_cast<double>(i + 1));
     }
 
     boost::asio::io_context io_{1};

@@ -91,7 +91,7 @@ TEST_F(LiveFeedTest, UnspooledScansDoNotOvertakeSpooledOnes) {
     full.reset();
     EXPECT_TRUE(outcome) << outcome.error().message;
     ASSERT_GE(server_.stored().size(), 20U);
-    for (std::uint64_t i = 0; i < 20; ++i) EXPECT_EQ(server_.stored()[i].pose.x, static_cast<double>(i + 1));
+    for (std::uint64_t i = 0; i < 20; ++i) EXPECT_EQ(server_.stored()[i].pose->x, static_cast<double>(i + 1));
     EXPECT_EQ(status_.dropped, 30 - server_.stored().size());
     EXPECT_GT(status_.dropped, 5U);
     EXPECT_THAT(server_.faults(), IsEmpty());

@@ -76,7 +76,7 @@ private:
     }
     Observation scan(std::uint64_t number) const {
         Observation made{sensor_, {}};
-        made.scan.pose.x = static_cast<double>(number);
+        made.scan.pose = {static_cast<double>(number), 0.0, 0.0};
         made.scan.ranges.assign(number < large_from_ ? 90 : 900, 1000);
         return made;
     }
@@ -147,7 +147,7 @@ protected:
     void expect_stored(std::uint64_t scans) {
         EXPECT_THAT(server_.faults(), testing::IsEmpty());
         ASSERT_EQ(server_.stored().size(), scans);
-        for (std::uint64_t i = 0; i < scans; ++i) EXPECT_EQ(server_.stored()[i].pose.x, static_cast<double>(i + 1));
+        for (std::uint64_t i = 0; i < scans; ++i) EXPECT_EQ(server_.stored()[i].pose->x, static_cast<double>(i + 1));
     }
 
     asio::io_context server_io_{1};

@@ -51,7 +51,7 @@ TEST_F(LiveFeedTest, WithoutASpoolDropsTheOldestScansAndReportsIt) {
     EXPECT_LT(kept, 300U);
     EXPECT_GT(kept, 100U);
     EXPECT_EQ(status_.dropped, 1000 - kept);
-    EXPECT_EQ(server_.stored().back().pose.x, 1000.0);
+    EXPECT_EQ(server_.stored().back().pose->x, 1000.0);
     EXPECT_THAT(server_.faults(), IsEmpty()) << "numbers have no gaps";
     EXPECT_THAT(warnings_, testing::ElementsAre(HasSubstr("--spool keeps them on disk")));
 }
@@ -105,7 +105,7 @@ TEST_F(LiveFeedTest, WithFullMemoryEachScanIsKeptOrCounted) {
     std::size_t bytes = 0;
     for (const Scan& scan : server_.stored()) bytes += wire_bytes_max(scan);
     EXPECT_LE(bytes, 110'000U) << "the memory limit, plus one scan that arrives when memory is free again";
-    EXPECT_EQ(server_.stored().back().pose.x, 1000.0) << "the newest scan is never dropped";
+    EXPECT_EQ(server_.stored().back().pose->x, 1000.0) << "the newest scan is never dropped";
 }
 
 TEST_F(LiveFeedTest, TheNextProgramSendsTheScansOfAKilledOneOnce) {

@@ -61,7 +61,7 @@ TEST(RobotProgram, ALidarWithoutAnyPoseIsReportedAndExitsWith1) {
     before.signal(SIGINT);
     EXPECT_EQ(before.wait(), 0);
 
-    ChildProcess robot(program("scanloom-robot"), arguments("--poses", (place.path() / "poses").string()),
+    ChildProcess robot(program("scanloom-robot"), arguments("--pose-file", (place.path() / "poses").string()),
                        errors.path());
     static_cast<void>(errors.read_until("continuing after scan 2")); // the link is established
     lidar.send(robot::Ld06Spinner(35'000).next_bytes(80));

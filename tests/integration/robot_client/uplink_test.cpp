@@ -28,7 +28,7 @@ std::vector<Observation> recording(std::size_t scans = kScans) {
     std::vector<Observation> made(scans, Observation{sensor, {}});
     for (std::size_t i = 0; i < scans; ++i) {
         made[i].scan.stamp = static_cast<double>(i);
-        made[i].scan.pose.x = static_cast<double>(i + 1); // identifies the scan
+        made[i].scan.pose = {static_cast<double>(i + 1), 0.0, 0.0}; // identifies the scan
         made[i].scan.ranges.assign(90, 1000);
     }
     return made;
@@ -70,7 +70,7 @@ protected:
         ASSERT_EQ(server_->stored().size(), scans);
         for (std::size_t i = from_earlier; i < scans; ++i) {
             EXPECT_EQ(server_->stored()[i].seq, i + 1);
-            EXPECT_EQ(server_->stored()[i].pose.x, static_cast<double>(i + 1));
+            EXPECT_EQ(server_->stored()[i].pose->x, static_cast<double>(i + 1));
         }
     }
 

@@ -38,21 +38,21 @@ TEST(Simulator, WalkersMoveBetweenScansAndAreVisible) {
 
 TEST(Simulator, OdometryWithoutNoiseEqualsTheTrajectory) {
     auto simulator = make("room", 2);
-    const Pose2 start = simulator.next_scan().pose;
+    const Pose2 start = *simulator.next_scan().pose;
     Scan scan;
     for (int i = 0; i < 600; ++i) scan = simulator.next_scan();
     const Pose2 estimated = compose(start, *scan.odometry);
-    EXPECT_NEAR(estimated.x, scan.pose.x, 1e-9);
-    EXPECT_NEAR(estimated.y, scan.pose.y, 1e-9);
+    EXPECT_NEAR(estimated.x, scan.pose->x, 1e-9);
+    EXPECT_NEAR(estimated.y, scan.pose->y, 1e-9);
 }
 
 TEST(Simulator, OdometryNoiseDriftIsBounded) {
     auto simulator = make("room", 2, Noise{});
-    const Pose2 start = simulator.next_scan().pose;
+    const Pose2 start = *simulator.next_scan().pose;
     Scan scan;
     for (int i = 0; i < 600; ++i) scan = simulator.next_scan();
     const Pose2 estimated = compose(start, *scan.odometry);
-    const double drift = std::hypot(estimated.x - scan.pose.x, estimated.y - scan.pose.y);
+    const double drift = std::hypot(estimated.x - scan.pose->x, estimated.y - scan.pose->y);
     EXPECT_GT(drift, 1e-4);
     EXPECT_LT(drift, 2.0);
 }
@@ -73,6 +73,69 @@ TEST(Simulator, SentPoseCanBeTheOdometry) {
     }
 }
 
+/// Stands, and keeps what it senses.
+class Standing final : public Behaviour {
+public:
+    Velocity step(const Senses& senses) override {
+        sensed = senses;
+        return {};
+    }
+
+    Senses sensed;
+};
+
+TEST(Simulator, CorrectionsMoveTheSensedPoseAndObstacles) {
+    SimulatorOptions options{make_room(), *find_laser("reference"), std::nullopt, 2};
+    options.pose = PoseSent::kOdometry;
+    options.poses = Poses::kOdometry;
+    auto standing = std::make_unique<Standing>();
+    const auto& sensed = standing->sensed;
+    Simulator simulator(std::move(options), std::move(standing));
+    for (int i = 0; i < 2; ++i) static_cast<void>(simulator.next_scan());
+    const Senses before = sensed;
+    EXPECT_EQ(before.pose, simulator.pose()) << "at first the correction is the identity";
+    const auto expect_moved_by = [&](const Pose2& T_map_odom) {
+        const Pose2 pose = compose(T_map_odom, before.pose);
+        EXPECT_NEAR(sensed.pose.x, pose.x, 1e-9);
+        EXPECT_NEAR(sensed.pose.y, pose.y, 1e-9);
+        EXPECT_NEAR(normalize_angle(sensed.pose.yaw - pose.yaw), 0.0, 1e-9);
+        ASSERT_EQ(sensed.obstacles.size(), before.obstacles.size());
+        for (std::size_t n = 0; n < before.obstacles.size(); ++n) {
+            EXPECT_NEAR(norm(sensed.obstacles[n] - transform(T_map_odom, before.obstacles[n])), 0.0, 1e-9);
+        }
+    };
+    for (const Pose2& T_map_odom : {Pose2{1.0, -2.0, 0.5}, Pose2{0.5, 0.0, -0.1}}) {
+        simulator.correct(T_map_odom); // the obstacles are of the scan before
+        const Scan scan = simulator.next_scan();
+        expect_moved_by(T_map_odom);
+        EXPECT_EQ(scan.odometry, before.pose) << "what is sent does not change";
+        static_cast<void>(simulator.next_scan());
+        expect_moved_by(T_map_odom);
+    }
+}
+
+TEST(Simulator, ScansWithoutPosesInTheMapAreTakenAtTheSamePlaces) {
+    const auto make_with = [](Poses poses) {
+        SimulatorOptions options{make_room(), *find_laser("reference"), Noise{}, 2};
+        options.pose = poses == Poses::kNone ? PoseSent::kTrue : PoseSent::kOdometry;
+        options.poses = poses;
+        return Simulator(std::move(options), std::make_unique<WallFollower>());
+    };
+    auto map = make_with(Poses::kMap);
+    auto odometry = make_with(Poses::kOdometry);
+    auto none = make_with(Poses::kNone);
+    for (int i = 0; i < 100; ++i) {
+        const Scan with_pose = map.next_scan();
+        const Scan with_odometry = odometry.next_scan();
+        EXPECT_FALSE(with_odometry.pose);
+        EXPECT_EQ(with_odometry.odometry, with_pose.pose) << "it starts at the true start";
+        EXPECT_EQ(with_odometry.ranges, with_pose.ranges);
+        const Scan without = none.next_scan();
+        EXPECT_FALSE(without.pose || without.odometry);
+        EXPECT_EQ(without.ranges, with_pose.ranges);
+    }
+}
+
 TEST(Simulator, OdometryNoiseIsProportionalToItsScale) {
     const auto drift_of = [](double scale) {
         auto simulator = make("room", 2, with_odometry(Noise{.range = 0.0, .beam_angle = 0.0}, scale));
@@ -80,7 +143,7 @@ TEST(Simulator, OdometryNoiseIsProportionalToItsScale) {
         Scan scan;
         for (int i = 0; i < 300; ++i) scan = simulator.next_scan();
         const Pose2 estimated = compose(start, *scan.odometry);
-        return std::hypot(estimated.x - scan.pose.x, estimated.y - scan.pose.y);
+        return std::hypot(estimated.x - scan.pose->x, estimated.y - scan.pose->y);
     };
     EXPECT_LT(drift_of(0.0), 1e-9);
     EXPECT_NEAR(drift_of(0.02) / drift_of(0.01), 2.0, 0.1);
@@ -123,7 +186,7 @@ Drive watch(Simulator simulator, const World& world, double seconds) {
     const int scans = static_cast<int>(seconds / kScanPeriod);
     for (int i = 0; i < scans; ++i) {
         const Scan scan = simulator.next_scan();
-        const Pose2& pose = scan.pose;
+        const Pose2& pose = *scan.pose;
         drive.path_length += std::hypot(pose.x - last.x, pose.y - last.y);
         drive.clearance_min = std::min(drive.clearance_min, clearance(world, {pose.x, pose.y}));
         for (const Walker& walker : simulator.world().walkers) {
@@ -204,7 +267,7 @@ std::vector<int> rooms_entered(Simulator simulator, int scans) {
     std::vector<int> entered;
     bool is_inside = false;
     for (int i = 0; i < scans; ++i) {
-        const Pose2 pose = simulator.next_scan().pose;
+        const Pose2 pose = *simulator.next_scan().pose;
         const bool was_inside = std::exchange(is_inside, std::abs(pose.y) > 4.0);
         const int row = pose.y > 0.0 ? 0 : 5;
         if (is_inside && !was_inside) entered.push_back(row + static_cast<int>((pose.x + 15.0) / 6.0));

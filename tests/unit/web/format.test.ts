@@ -8,6 +8,8 @@ describe('number formats', () => {
     assert.equal(format.count(999), '999');
     assert.equal(format.counted(1, 'scan'), '1 scan');
     assert.equal(format.counted(1234567, 'scan'), '1\u202f234\u202f567 scans');
+    assert.equal(format.movingScans(13631), '13\u202f631 scans are being moved to corrected poses.');
+    assert.equal(format.movingScans(1), '1 scan is being moved to corrected poses.');
   });
 
   it('use a typographic minus sign and no negative zero', () => {

@@ -12,6 +12,7 @@ function session(id: string, revision: number): Session {
     revision,
     exclusions: 0,
     scans: revision,
+    movingScans: 0,
     cellSize: 0.05,
     config: {},
     bounds: null,

@@ -1,4 +1,4 @@
-"""locate(): the position of a robot from its laser scans."""
+"""locate() and transform(): the position of a robot from its laser scans."""
 import math
 import unittest
 
@@ -118,6 +118,44 @@ class Locate(LinkTest):
                                     ("near is 3", {"near": 3, "radius": 1.0})]:
                 with self.subTest(expected), self.assertRaisesRegex(ValueError, expected):
                     robot.locate(**{"sensor": laser, "scans": scans, **arguments})
+
+
+class Corrections(LinkTest):
+    def correction(self, x, state):
+        return {"T_map_odom": {"x": x, "y": 2.0, "yaw": math.pi / 2}, "revision": 9, "explained": 0.9,
+                "position_sigma": 0.01, "yaw_sigma": 0.02, "state": state}
+
+    def test_each_is_passed_on_and_the_newest_is_kept_also_after_a_reconnect(self):
+        def first(link):
+            link.greet()
+            link.send(correction=self.correction(1.0, 1))
+            link.send(correction=self.correction(3.0, 2))
+            link.close()
+
+        def second(link):
+            link.greet()
+            link.serve()
+
+        received = []
+        self.start(first, second)
+        with self.client(poses="odometry", on_correction=received.append) as robot:
+            laser = self.laser(robot)
+            robot.send(laser, [1.0] * 50, odometry=(0.0, 0.0, 0.0), stamp=0.0)
+            robot.flush(timeout=10.0)
+            newest = robot.transform()
+        self.assertEqual([(location.T_map_odom, location.state) for location in received],
+                         [((1.0, 2.0, math.pi / 2), "TRACKING"), ((3.0, 2.0, math.pi / 2), "LOST")])
+        self.assertIs(newest, received[-1])
+        self.assertEqual((newest.inlier_ratio, newest.position_sigma, newest.yaw_sigma, newest.revision),
+                         (0.9, 0.01, 0.02, 9))
+        for actual, wanted in zip(newest.at((1.0, 0.5, math.pi)), (2.5, 3.0, -math.pi / 2)):
+            self.assertAlmostEqual(actual, wanted)
+
+    def test_there_is_none_before_the_first(self):
+        self.start(lambda link: (link.greet(), link.serve()))
+        with self.client(poses="none") as robot:
+            robot.stored_before(timeout=10.0)
+            self.assertIsNone(robot.transform())
 
 
 if __name__ == "__main__":

@@ -82,6 +82,21 @@ class Program(unittest.TestCase):
                 self.assertEqual((summary["acknowledged"], summary["skipped"]), (3, 1))
                 self.assertEqual([scan.stamp for scan in server.stored], [0.0, 0.1, 0.1 * 3])
 
+    def test_lines_without_poses_are_sent_if_the_robot_knows_none(self):
+        line = {"t": 1.0, "ranges": [2.0, 2.5]}
+        odometry = {**line, "odometry": [1, 2, 3]}
+        for poses, good, wrong, needed in [("odometry", odometry, line, '"t", "odometry" and "ranges" is needed'),
+                                           ("none", line, odometry, "leave odometry out")]:
+            with self.subTest(poses):
+                server = self.fake()
+                code, _, errors = self.stream(server.address, [json.dumps(good), json.dumps(wrong)], *ANGLES, "--poses",
+                                              poses)
+                self.assertEqual(code, 1)
+                self.assertIn("line 2 of the input is skipped", errors)
+                self.assertIn(needed, errors)
+                self.assertEqual([scan.HasField("pose") for scan in server.stored], [False])
+                self.assertEqual(server.stored[0].HasField("odometry"), poses == "odometry")
+
     def test_invalid_lines_do_not_count_when_lines_are_streamed_again(self):
         server = self.fake()
         lines = [line_of(0), "hello", line_of(1), line_of(2)]

@@ -49,6 +49,16 @@ class Fields(LinkTest):
         self.assertTrue(scan.HasField("pose"))
         self.assertFalse(scan.HasField("odometry") or scan.HasField("angles") or scan.intensities or scan.begins_map)
 
+    def test_poses_that_are_not_in_the_map_are_absent(self):
+        for poses, odometry in (("odometry", (1.0, 2.0, 3.0)), ("none", None)):
+            with self.subTest(poses):
+                self.start()
+                with self.client(poses=poses) as robot:
+                    robot.send(self.laser(robot), [1.0], stamp=0.0, odometry=odometry)
+                scan = self.server.stored[0]
+                self.assertEqual((scan.HasField("pose"), scan.HasField("odometry")), (False, odometry is not None))
+                self.assertEqual(self.server.hellos[0].poses, {"odometry": 1, "none": 2}[poses])
+
     def test_arrays_are_accepted_like_lists(self):
         self.assertEqual(list(self.sent(array.array("f", [1.5, 2.5])).ranges), [1500, 2500])
 
@@ -105,6 +115,21 @@ class Refused(LinkTest):
                     robot.send(**{**good, **wrong})
             robot.send(**good)
         self.assertEqual(len(self.server.stored), 1)
+
+    def test_scans_without_the_poses_of_the_client_are_refused(self):
+        pose = (0.0, 0.0, 0.0)
+        self.start()
+        for poses, expected, given in [
+                ("map", "pose is None", {"odometry": pose}),
+                ("odometry", "odometry is None", {}),
+                ("odometry", "leave pose out", {"pose": pose, "odometry": pose}),
+                ("none", "leave pose out", {"pose": pose}),
+                ("none", "leave odometry out", {"odometry": pose})]:
+            robot = self.client(poses=poses)
+            with self.subTest(expected), self.assertRaisesRegex(ValueError, expected):
+                robot.send(self.laser(robot), [1.0], **given)
+        with self.assertRaisesRegex(ValueError, "poses is 'gps'; 'map', 'odometry' or 'none' is needed"):
+            self.client(poses="gps")
 
     def test_a_full_turn_of_a_float32_increment_is_sent(self):
         self.start()

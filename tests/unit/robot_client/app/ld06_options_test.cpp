@@ -53,8 +53,8 @@ TEST(Ld06OptionsOf, AreReadFromTheCommandLine) {
 }
 
 TEST(Ld06OptionsOf, AreTheDefaultsWithoutFlags) {
-    const auto options = std::get<Ld06Options>(parsed({"f", "--poses", "-"}).source);
-    EXPECT_EQ(options.poses, "-");
+    const auto options = std::get<Ld06Options>(parsed({"f", "--pose-file", "-"}).source);
+    EXPECT_EQ(options.pose_file, "-");
     EXPECT_FALSE(options.pose || options.range_min || options.confidence_min || options.median_window);
     EXPECT_EQ(options.mount, Pose2{});
     EXPECT_EQ(options.speed, 0.0);
@@ -71,7 +71,7 @@ TEST(Ld06OptionsOf, LocalizationIsAccepted) {
 }
 
 TEST(Ld06OptionsOf, LocalizationWithAGivenPoseIsRefused) {
-    EXPECT_THAT(refused({"f", "--locate", "--poses", "p"}), HasSubstr("leave one of them out"));
+    EXPECT_THAT(refused({"f", "--locate", "--pose-file", "p"}), HasSubstr("leave one of them out"));
     EXPECT_THAT(refused({"f", "--pose", "0,0,0", "--near", "0,0,1"}), HasSubstr("--near needs --locate"));
     EXPECT_THAT(refused({"f", "--locate", "--speed", "1"}), HasSubstr("leave --speed out"));
     EXPECT_THAT(refused({"f"}), HasSubstr("or let the server determine it with --locate"));
@@ -83,6 +83,35 @@ TEST(Ld06OptionsOf, LocalizationWithAGivenPoseIsRefused) {
         EXPECT_THAT(refused({"f", "--locate", "--near", near}), HasSubstr("out of range: 0.1 to 1000")) << near;
     }
     EXPECT_THAT(refused({"f", "--locate", "--near", "0,-2e6,1"}), HasSubstr("-2000000 m is outside the map"));
+}
+
+TEST(Ld06OptionsOf, PosesDecideWhichPosesAreNeeded) {
+    const auto none = parsed({"/dev/ttyUSB0", "--poses", "none"});
+    EXPECT_EQ(none.poses, Poses::kNone);
+    EXPECT_EQ(std::get<Ld06Options>(none.source).pose_file, "");
+    const auto odometry = parsed({"f", "--poses", "odometry", "--pose-file", "p"});
+    EXPECT_EQ(odometry.poses, Poses::kOdometry);
+    EXPECT_EQ(std::get<Ld06Options>(odometry.source).pose_file, "p");
+    EXPECT_FALSE(std::get<Ld06Options>(odometry.source).is_old_name);
+    EXPECT_EQ(parsed({"f", "--poses", "map", "--pose", "0,0,0"}).poses, Poses::kMap);
+    for (const char* poses : {"odometry", "none"}) {
+        EXPECT_THAT(refused({"f", "--locate", "--poses", poses}), HasSubstr("leave one of them out")) << poses;
+        EXPECT_THAT(refused({"f", "--pose", "0,0,0", "--poses", poses}), HasSubstr("leave --pose")) << poses;
+    }
+    EXPECT_THAT(refused({"f", "--poses", "none", "--pose-file", "p"}), HasSubstr("leave --pose and --pose-file out"));
+    EXPECT_THAT(refused({"f", "--poses", "odometry"}), HasSubstr("give it with --pose-file FILE"));
+    EXPECT_THAT(refused({"f", "--poses", "map"}), HasSubstr("state the robot's pose"));
+}
+
+TEST(Ld06OptionsOf, PosesNameTheFileForOneRelease) {
+    for (const char* file : {"-", "p", "Map"}) {
+        const auto options = parsed({"f", "--poses", file});
+        EXPECT_EQ(options.poses, Poses::kMap);
+        EXPECT_EQ(std::get<Ld06Options>(options.source).pose_file, file);
+        EXPECT_TRUE(std::get<Ld06Options>(options.source).is_old_name);
+    }
+    EXPECT_THAT(refused({"f", "--poses", "p", "--pose-file", "p"}), HasSubstr("'p' is not map, odometry or none"));
+    EXPECT_THAT(refused({"f", "--locate", "--poses", "p"}), HasSubstr("leave one of them out"));
 }
 
 TEST(Ld06OptionsOf, YawInDegreesIsRefused) {
@@ -97,7 +126,7 @@ TEST(Ld06OptionsOf, YawInDegreesIsRefused) {
 TEST(Ld06OptionsOf, InvalidCommandLinesAreRefused) {
     EXPECT_THAT(refused({"--pose", "0,0,0"}), HasSubstr("name the INPUT"));
     EXPECT_THAT(refused({"f"}), HasSubstr("state the robot's pose"));
-    EXPECT_THAT(refused({"f", "--pose", "0,0,0", "--poses", "p"}), HasSubstr("state the robot's pose"));
+    EXPECT_THAT(refused({"f", "--pose", "0,0,0", "--pose-file", "p"}), HasSubstr("state the robot's pose"));
     EXPECT_THAT(refused({"f", "--pose", ""}), HasSubstr("given but empty"));
     for (const auto* pose : {"1,2", "1,2,3,4", "1,2,x", "1,2,nan", "1,inf,0", "1 2 3"}) {
         EXPECT_THAT(refused({"f", "--pose", pose}), HasSubstr("is not X,Y,YAW")) << pose;
@@ -139,7 +168,7 @@ private:
 };
 
 TEST_F(PreparedLd06, CaptureFileIsARecording) {
-    const auto prepared = prepare({capture(), "--poses", file("poses", "0 0 0 0\noops\n9 9 0 0\n"), "--speed", "2",
+    const auto prepared = prepare({capture(), "--pose-file", file("poses", "0 0 0 0\noops\n9 9 0 0\n"), "--speed", "2",
                                    "--max-range", "2", "--min-range", "1.5", "--mount", "1,0,0"});
     ASSERT_TRUE(prepared) << prepared.error().message;
     ASSERT_TRUE(prepared->source);
@@ -154,6 +183,23 @@ TEST_F(PreparedLd06, CaptureFileIsARecording) {
     EXPECT_EQ(observation.scan.ranges.back(), kInvalidRange);
 }
 
+TEST_F(PreparedLd06, CaptureFileHasThePosesOfTheOptions) {
+    const auto poses = file("poses", "0 0 0 0\n9 9 0 0\n");
+    const auto map = prepare({capture(), "--poses", poses}); // the earlier name of --pose-file
+    const auto odometry = prepare({capture(), "--poses", "odometry", "--pose-file", poses});
+    const auto none = prepare({capture(), "--poses", "none"});
+    ASSERT_TRUE(map && odometry && none);
+    const Scan with_odometry = odometry->source->next().value()->scan;
+    EXPECT_FALSE(with_odometry.pose);
+    EXPECT_TRUE(with_odometry.odometry);
+    EXPECT_EQ(map->source->next().value()->scan.pose, with_odometry.odometry);
+    const Scan without = none->source->next().value()->scan;
+    EXPECT_FALSE(without.pose || without.odometry);
+    EXPECT_EQ(map->fingerprint, prepare({capture(), "--pose-file", poses})->fingerprint);
+    EXPECT_NE(map->fingerprint, odometry->fingerprint);
+    EXPECT_NE(map->fingerprint, none->fingerprint);
+}
+
 TEST_F(PreparedLd06, DeviceAndAddressAreLive) {
     for (const auto* input : {"/dev/null", "tcp://127.0.0.1:4001"}) {
         const auto prepared = prepare({input, "--pose", "0,0,0"});
@@ -161,6 +207,7 @@ TEST_F(PreparedLd06, DeviceAndAddressAreLive) {
         EXPECT_TRUE(prepared->live);
         EXPECT_FALSE(prepared->source);
         EXPECT_EQ(prepared->fingerprint, "") << "sent scans cannot be sent again";
+        EXPECT_TRUE(prepare({input, "--poses", "none"})->live);
     }
 }
 
@@ -181,7 +228,7 @@ TEST_F(PreparedLd06, LocalizingSourceIsLive) {
 TEST_F(PreparedLd06, OtherSourcesAreAnError) {
     EXPECT_THAT(prepare({"/dev/nonexistent", "--pose", "0,0,0"}).error().message, HasSubstr("no such device or file"));
     EXPECT_THAT(prepare({"/tmp", "--pose", "0,0,0"}).error().message, HasSubstr("not a serial device or a file"));
-    EXPECT_THAT(prepare({capture(), "--poses", "/nonexistent"}).error().message, HasSubstr("no such file"));
+    EXPECT_THAT(prepare({capture(), "--pose-file", "/nonexistent"}).error().message, HasSubstr("no such file"));
     EXPECT_THAT(prepare({capture(), "--pose", "0,0,0", "--spool", "/tmp/none"}).error().message,
                 HasSubstr("a capture file is a recording and needs no --spool"));
     EXPECT_THAT(prepare({capture(), "--locate", "--spool", "/tmp/none"}).error().message,

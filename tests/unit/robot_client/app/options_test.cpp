@@ -152,6 +152,45 @@ TEST_F(Options, SonarTakesTwoFilesAndAnAperture) {
     EXPECT_EQ(sonar.speed, 0.0);
 }
 
+TEST_F(Options, PosesAreAcceptedAtEveryPlace) {
+    const auto poses_of = [&](std::vector<std::string> words) {
+        words.insert(words.begin(), {"--session", "s", "--robot", "r"});
+        return parsed(words).poses;
+    };
+    EXPECT_EQ(poses_of({"replay", "f"}), Poses::kMap);
+    EXPECT_EQ(poses_of({"--poses", "odometry", "replay", "f"}), Poses::kOdometry);
+    EXPECT_EQ(poses_of({"replay", "f", "--poses", "none"}), Poses::kNone);
+    EXPECT_EQ(poses_of({"sonar", "m", "p", "--poses", "odometry"}), Poses::kOdometry);
+    EXPECT_EQ(poses_of({"simulate", "--poses=none"}), Poses::kNone);
+    const auto top = file("poses = \"none\"\n");
+    EXPECT_EQ(poses_of({"replay", "f", "--config", top}), Poses::kNone);
+    set("SCANLOOM_POSES", "odometry");
+    EXPECT_EQ(poses_of({"replay", "f"}), Poses::kOdometry);
+    EXPECT_EQ(poses_of({"replay", "f", "--config", top}), Poses::kOdometry);
+    EXPECT_EQ(poses_of({"replay", "f", "--poses", "map"}), Poses::kMap);
+}
+
+TEST_F(Options, SectionOfTheSourceMayHoldAnOptionOfTheProgram) {
+    const std::vector<std::string> words{"--config", file("session = \"s\"\nrobot = \"r\"\nposes = \"odometry\"\n"
+                                                          "[ld06]\npose-file = \"p\"\nreopen-for = 5\n"
+                                                          "[replay]\nposes = \"none\"\nspeed = 2\n")};
+    const auto with = [&](std::vector<std::string> more) {
+        more.insert(more.begin(), words.begin(), words.end());
+        return more;
+    };
+    const auto replay = parsed(with({"replay", "f"}));
+    EXPECT_EQ(replay.poses, Poses::kNone) << "the section comes before the rest of the file";
+    EXPECT_EQ(std::get<ReplayOptions>(replay.source).speed, 2.0);
+    EXPECT_EQ(parsed(with({"replay", "f", "--poses", "map"})).poses, Poses::kMap);
+    EXPECT_EQ(parsed(with({"ld06", "f"})).poses, Poses::kOdometry) << "the section is of another source";
+    set("SCANLOOM_POSES", "map");
+    EXPECT_EQ(parsed(with({"replay", "f"})).poses, Poses::kMap);
+    const auto old = file("session = \"s\"\nrobot = \"r\"\n[ld06]\nposes = \"p.txt\"\n");
+    unsetenv("SCANLOOM_POSES");
+    EXPECT_EQ(std::get<Ld06Options>(parsed({"ld06", "f", "--config", old}).source).pose_file, "p.txt");
+    EXPECT_EQ(parsed({"simulate", "--config", old}).poses, Poses::kMap);
+}
+
 TEST_F(Options, FlagOverridesEnvironmentOverridesFile) {
     const auto path =
         file("session = \"from_file\"\nrobot = \"r\"\ncell-size = 0.1\n[simulate]\nseed = 5\nworld = \"room\"\n");
@@ -224,6 +263,15 @@ TEST_F(Options, MistakesAreOneLineUsageErrors) {
         {with({"--sonar", "bat"}), "bat"},
         {with({"--odometry-noise", "-1"}), "--odometry-noise"},
         {with({"--pose", "wrong"}), "wrong"},
+        {with({"--poses", "wrong"}), "--poses: 'wrong' is not map, odometry or none"},
+        {with({"--poses", ""}), "given but empty"},
+        {{"replay", "f", "--session", "s", "--robot", "r", "--poses", "p"}, "'p' is not map, odometry or none"},
+        {{"sonar", "m", "p", "--session", "s", "--robot", "r", "--poses", "none"},
+         "cannot locate a robot that has only"},
+        {with({"--poses", "none", "--pose", "odometry"}), "--pose odometry has no effect with --poses none"},
+        {with({"--poses", "none", "--laser", "none", "--sonar", "ring16"}), "give it a --laser"},
+        {with({"--poses", "odometry", "--drive", "zigzag"}), "use --poses map"},
+        {with({"--poses", "none", "--drive", "explore"}), "in which --poses none sends no pose"},
         {{"truth", "--output", "x"}, "name the --world"},
         {{"truth", "--world", "room"}, "--output PREFIX"},
         {{"truth", "--world", "room", "--output", "folder/"}, "--output PREFIX"},

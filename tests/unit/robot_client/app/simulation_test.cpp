@@ -37,6 +37,34 @@ TEST(Simulation, EachDriveHasItsOwnFingerprint) {
     EXPECT_EQ(prepared("waypoints", "room", "1,2").fingerprint, prepared("waypoints", "room", "1.0 2.0;").fingerprint);
 }
 
+TEST(Simulation, PosesSayWhatIsSent) {
+    const auto first_of = [](Poses poses, const char* pose, std::set<std::string>& fingerprints) {
+        RobotOptions options;
+        options.poses = poses;
+        SimulateOptions simulate;
+        simulate.world = "room";
+        simulate.noise = "gaussian";
+        simulate.pose = pose;
+        auto made = prepare_simulation(options, simulate);
+        EXPECT_TRUE(made) << made.error().message;
+        fingerprints.insert(made->fingerprint);
+        for (int i = 0; i < 20; ++i) static_cast<void>(made->source->next());
+        return made->source->next().value()->scan;
+    };
+    std::set<std::string> fingerprints;
+    const Scan exact = first_of(Poses::kMap, "true", fingerprints);
+    const Scan drifting = first_of(Poses::kMap, "odometry", fingerprints);
+    const Scan odometry = first_of(Poses::kOdometry, "true", fingerprints);
+    const Scan none = first_of(Poses::kNone, "true", fingerprints);
+    EXPECT_EQ(fingerprints.size(), 4U);
+    EXPECT_NE(drifting.pose, exact.pose);
+    EXPECT_EQ(odometry.odometry, drifting.pose);
+    EXPECT_FALSE(odometry.pose);
+    EXPECT_FALSE(none.pose || none.odometry);
+    EXPECT_EQ(first_of(Poses::kOdometry, "odometry", fingerprints), odometry);
+    EXPECT_EQ(fingerprints.size(), 4U) << "these are the same scans";
+}
+
 TEST(Simulation, ExplorerIsLiveWithoutFingerprint) {
     const auto exploring = prepared("explore");
     EXPECT_EQ(exploring.source, nullptr);

@@ -184,12 +184,12 @@ TEST_F(CarmenLogFile, PoseTimesMountIsTheLoggedLaserPose) {
     const double laser_x[] = {1.25, 1.250001, 1.35};
     for (std::size_t i = 0; i < 3; ++i) {
         const auto& [sensor, scan] = log->observations[i];
-        const Pose2 laser = compose(scan.pose, sensor->mount);
+        const Pose2 laser = compose(*scan.pose, sensor->mount);
         EXPECT_NEAR(laser.x, laser_x[i], 1e-12);
         EXPECT_NEAR(laser.y, 2.5, 1e-12);
         EXPECT_NEAR(laser.yaw, 0.3, 1e-12);
-        EXPECT_NEAR(scan.pose.x, 1.0, 1e-5);
-        EXPECT_NEAR(scan.pose.yaw, 0.31, 1e-5);
+        EXPECT_NEAR(scan.pose->x, 1.0, 1e-5);
+        EXPECT_NEAR(scan.pose->yaw, 0.31, 1e-5);
     }
     EXPECT_EQ(log->observations[0].sensor, log->observations[1].sensor);
     EXPECT_NE(log->observations[0].sensor, log->observations[2].sensor);
@@ -208,9 +208,9 @@ TEST_F(CarmenLogFile, RawLaserPoseIsInterpolatedFromOdometry) {
                                    "ODOM 4 8 -3.1 0 0 0 10.75 h 1\n"}));
     ASSERT_TRUE(log);
     const auto& [sensor, scan] = log->observations[0];
-    EXPECT_NEAR(scan.pose.x, 3.0, 1e-12);
-    EXPECT_NEAR(scan.pose.y, 6.0, 1e-12);
-    EXPECT_NEAR(std::abs(scan.pose.yaw), 3.14159, 1e-4) << "the yaw is interpolated along the shorter arc";
+    EXPECT_NEAR(scan.pose->x, 3.0, 1e-12);
+    EXPECT_NEAR(scan.pose->y, 6.0, 1e-12);
+    EXPECT_NEAR(std::abs(scan.pose->yaw), 3.14159, 1e-4) << "the yaw is interpolated along the shorter arc";
     EXPECT_EQ(sensor->mount, (Pose2{0.1, 0, 0}));
 }
 
@@ -388,8 +388,8 @@ TEST(RealCarmenLogs, IntelLogHasAPlausibleTrajectory) {
     double length = 0.0;
     double step_max = 0.0;
     for (std::size_t i = 1; i < log->observations.size(); ++i) {
-        const Pose2& from = log->observations[i - 1].scan.pose;
-        const Pose2& to = log->observations[i].scan.pose;
+        const Pose2& from = *log->observations[i - 1].scan.pose;
+        const Pose2& to = *log->observations[i].scan.pose;
         const double step = std::hypot(to.x - from.x, to.y - from.y);
         length += step;
         step_max = std::max(step_max, step);

@@ -67,7 +67,7 @@ TEST_F(Ld06Captures, UseThePoseAtTheMiddleOfTheTurn) {
     ASSERT_TRUE(capture) << capture.error().message;
     EXPECT_EQ(capture->scan_count(), 5U);
     EXPECT_EQ(capture->remarks(), "0 damaged packets, 9 turns, 4 scans skipped without a pose");
-    for (const auto& scan : scans_of(*capture)) EXPECT_DOUBLE_EQ(scan.pose.x, scan.stamp);
+    for (const auto& scan : scans_of(*capture)) EXPECT_DOUBLE_EQ(scan.pose->x, scan.stamp);
 }
 
 TEST_F(Ld06Captures, AreDeterministic) {
@@ -81,6 +81,22 @@ TEST_F(Ld06Captures, AreDeterministic) {
     EXPECT_EQ(first->fingerprint(), second->fingerprint());
     EXPECT_THAT(first->remarks(), HasSubstr("17 damaged packets"));
     EXPECT_EQ(scans_of(*first), scans_of(*second));
+}
+
+TEST_F(Ld06Captures, PosesAreOdometryOrAbsentIfTheRobotSaysSo) {
+    Ld06Spinner sensor;
+    const Bytes bytes = sensor.next_bytes(400);
+    auto odometry = Ld06Capture::open(file(bytes), {.poses = Poses::kOdometry}, straight_line(0.0, 10.0));
+    ASSERT_TRUE(odometry) << odometry.error().message;
+    for (const auto& scan : scans_of(*odometry)) {
+        EXPECT_FALSE(scan.pose);
+        ASSERT_TRUE(scan.odometry);
+        EXPECT_DOUBLE_EQ(scan.odometry->x, scan.stamp);
+    }
+    auto none = Ld06Capture::open(file(bytes), {.poses = Poses::kNone}, Pose2{});
+    ASSERT_TRUE(none) << none.error().message;
+    EXPECT_EQ(none->scan_count(), 9U);
+    for (const auto& scan : scans_of(*none)) EXPECT_FALSE(scan.pose || scan.odometry);
 }
 
 TEST_F(Ld06Captures, FingerprintDependsOnEverythingThatChangesScans) {
@@ -104,6 +120,8 @@ TEST_F(Ld06Captures, FingerprintDependsOnEverythingThatChangesScans) {
     add({.confidence_min = 99}, Pose2{});
     add({.median_window = 3}, Pose2{});
     add({.mount = {0.0, 0.1, 0.0}}, Pose2{});
+    add({.poses = Poses::kOdometry}, straight_line(0.0, 10.0));
+    add({.poses = Poses::kNone}, Pose2{});
     Bytes other = bytes;
     other.pop_back();
     EXPECT_TRUE(seen.insert(Ld06Capture::open(file(other), {}, Pose2{}).value().fingerprint()).second);

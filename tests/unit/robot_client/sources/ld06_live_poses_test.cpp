@@ -59,7 +59,7 @@ TEST_F(Ld06LivePoses, ScanPoseIsInterpolated) {
         write("what is this\n# a comment\n");
         write_pose(now + 100.0, 200.0);
     });
-    EXPECT_NEAR(scan.pose.x, 100.0 + scan.stamp - now, 1e-3);
+    EXPECT_NEAR(scan.pose->x, 100.0 + scan.stamp - now, 1e-3);
     EXPECT_THAT(notes_, ElementsAre(HasSubstr("line 2 of the poses is skipped")));
 }
 
@@ -75,7 +75,7 @@ TEST_F(Ld06LivePoses, ScanWaitsForTheNextPose) {
         sensor_.send(one_turn());
         write_once_it_waits();
     });
-    EXPECT_NEAR(scan.pose.x, 100.0 + scan.stamp - now, 1e-3);
+    EXPECT_NEAR(scan.pose->x, 100.0 + scan.stamp - now, 1e-3);
 }
 
 TEST_F(Ld06LivePoses, ScanUsesTheNewestPoseAfterTheWait) {
@@ -85,7 +85,7 @@ TEST_F(Ld06LivePoses, ScanUsesTheNewestPoseAfterTheWait) {
         write_pose(unix_now() - 100.0, 7.0);
         write("what is this\n");
     });
-    EXPECT_EQ(scan.pose.x, 7.0);
+    EXPECT_EQ(scan.pose->x, 7.0);
 }
 
 TEST_F(Ld06LivePoses, ScanIsDroppedIfTheNewestPoseIsTooOld) {
@@ -137,7 +137,7 @@ TEST_F(Ld06LivePoses, PoseFarAheadOfTheClockIsIgnoredAndReported) {
         write_pose(unix_now() + 100.0, 50.0);
         write_pose(unix_now() + 101.0, 50.0);
     });
-    EXPECT_EQ(scan.pose.x, 7.0);
+    EXPECT_EQ(scan.pose->x, 7.0);
     EXPECT_THAT(notes_, ElementsAre(HasSubstr("the clocks must agree")));
 }
 

@@ -29,6 +29,16 @@ TEST_F(Ld06Lives, SerialDeviceGivesACompleteTurn) {
     EXPECT_THAT(notes_, IsEmpty());
 }
 
+TEST_F(Ld06Lives, DeviceWithoutPosesGivesScansWithoutPoses) {
+    const PseudoTerminal sensor;
+    auto made = options(SerialDevice{sensor.device()}, Pose2{});
+    made.scan.poses = Poses::kNone;
+    Ld06Live source(std::move(made));
+    const Scan scan = scan_of(source, [&] { sensor.send(one_turn()); });
+    EXPECT_EQ(scan.ranges.size(), 450U);
+    EXPECT_FALSE(scan.pose || scan.odometry);
+}
+
 TEST_F(Ld06Lives, SerialDeviceTransfersEveryByteValue) {
     const PseudoTerminal sensor; // a line that is not in raw mode would change or drop some of these bytes
     Ld06Live source(options(SerialDevice{sensor.device()}));

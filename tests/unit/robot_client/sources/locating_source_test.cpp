@@ -106,7 +106,7 @@ protected:
     std::vector<Pose2> poses_of(LiveSource& source) {
         std::vector<Pose2> poses;
         for (outcome_ = next(source); outcome_ && *outcome_; outcome_ = next(source)) {
-            poses.push_back((**outcome_).scan.pose);
+            poses.push_back(*(**outcome_).scan.pose);
         }
         return poses;
     }

@@ -46,6 +46,18 @@ TEST(PointsSeen, AreInTheFrameOfThePoses) {
     EXPECT_LT(norm(seen.from() - Point2{1.5, 2.5}), 1e-12) << "between the sensor's positions";
 }
 
+TEST(PointsSeen, AreInTheFrameOfTheOdometryWithoutAPose) {
+    Scan scan = scan_of({1000, 0, 0, 0});
+    scan.pose.reset();
+    SeenPoints at_the_origin;
+    at_the_origin.add(scan, mounted_laser());
+    EXPECT_THAT(at_the_origin.points(), ElementsAre(PointMm{1000, 0}));
+    scan.odometry = Pose2{1.0, 2.0, 0.0};
+    SeenPoints seen;
+    seen.add(scan, mounted_laser());
+    EXPECT_THAT(seen.points(), ElementsAre(PointMm{2000, 2000}));
+}
+
 TEST(PointsSeen, ExcludePointsBeyondTheCoordinateLimit) {
     SeenPoints seen;
     seen.add(scan_of({1000, 1000, 1000, 1000}, {1e6 - 0.5, 0.0, 0.0}), mounted_laser());

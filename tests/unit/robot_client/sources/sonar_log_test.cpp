@@ -47,9 +47,9 @@ TEST_F(SonarLogs, LineIsAScanOfEightSonars) {
     EXPECT_THAT(observation.scan.ranges,
                 ElementsAre(1500, kNoReturn, 5109, 1, kInvalidRange, kInvalidRange, 2000, kNoReturn));
     EXPECT_EQ(observation.scan.stamp, 1.0);
-    EXPECT_NEAR(observation.scan.pose.x, 2.0, 1e-12);
-    EXPECT_NEAR(observation.scan.pose.y, -1.0, 1e-12);
-    EXPECT_NEAR(observation.scan.pose.yaw, std::numbers::pi / 2.0, 1e-12);
+    EXPECT_NEAR(observation.scan.pose->x, 2.0, 1e-12);
+    EXPECT_NEAR(observation.scan.pose->y, -1.0, 1e-12);
+    EXPECT_NEAR(observation.scan.pose->yaw, std::numbers::pi / 2.0, 1e-12);
     const Sensor& ring = *observation.sensor;
     EXPECT_EQ(ring.kind, SensorKind::kSonar);
     EXPECT_EQ(ring.range_max, 5.11);
@@ -60,13 +60,27 @@ TEST_F(SonarLogs, LineIsAScanOfEightSonars) {
     EXPECT_FALSE(*log->next());
 }
 
+TEST_F(SonarLogs, PosesAreTheOdometryIfTheRobotSaysSo) {
+    const auto log_with = [&](Poses poses) {
+        SonarOptions options;
+        options.poses = poses;
+        return open("1000 1 1 1 1 1 1 1 1\n", "1000 2000 -1000 900\n", options).value();
+    };
+    auto map = log_with(Poses::kMap);
+    auto odometry = log_with(Poses::kOdometry);
+    EXPECT_NE(odometry.fingerprint(), map.fingerprint());
+    const Scan scan = (*odometry.next())->scan;
+    EXPECT_FALSE(scan.pose);
+    EXPECT_EQ(scan.odometry, (*map.next())->scan.pose);
+}
+
 TEST_F(SonarLogs, PosesAreInterpolatedAlsoAcrossTheAngleWrap) {
     auto log = open("1250 1 1 1 1 1 1 1 1\n\n2000 1 1 1 1 1 1 1 1\r\n", "1000 0 0 3590\n2000 1000 400 30\n");
-    const Pose2 between = (*log->next())->scan.pose;
+    const Pose2 between = *(*log->next())->scan.pose;
     EXPECT_NEAR(between.x, 0.25, 1e-12);
     EXPECT_NEAR(between.y, 0.1, 1e-12);
     EXPECT_NEAR(between.yaw, 0.0, 1e-12);
-    EXPECT_NEAR((*log->next())->scan.pose.yaw, 3.0 * kDegree, 1e-12);
+    EXPECT_NEAR((*log->next())->scan.pose->yaw, 3.0 * kDegree, 1e-12);
 }
 
 TEST_F(SonarLogs, OptionsSetRangeApertureAndNoReturns) {
@@ -123,9 +137,10 @@ std::size_t cells_hit(SonarLog log, double heading_sign, double ring_sign) {
         const auto& [sensor, scan] = **observation;
         for (std::size_t beam = 0; beam < scan.ranges.size(); ++beam) {
             if (scan.ranges[beam] == kNoReturn) continue;
-            const double yaw = heading_sign * scan.pose.yaw + ring_sign * beam_angle(sensor->angles, beam);
-            cells.emplace(static_cast<int>(std::floor((scan.pose.x + scan.ranges[beam] * 1e-3 * std::cos(yaw)) * 5.0)),
-                          static_cast<int>(std::floor((scan.pose.y + scan.ranges[beam] * 1e-3 * std::sin(yaw)) * 5.0)));
+            const double yaw = heading_sign * scan.pose->yaw + ring_sign * beam_angle(sensor->angles, beam);
+            cells.emplace(
+                static_cast<int>(std::floor((scan.pose->x + scan.ranges[beam] * 1e-3 * std::cos(yaw)) * 5.0)),
+                static_cast<int>(std::floor((scan.pose->y + scan.ranges[beam] * 1e-3 * std::sin(yaw)) * 5.0)));
         }
     }
 }

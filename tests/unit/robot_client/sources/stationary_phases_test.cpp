@@ -158,9 +158,9 @@ TEST_F(StationaryPhasesTest, FirstHaltUsesTheGivenPoseInAnEmptyMap) {
                                                      "2.00), yaw 0.50; its next places are localized relative to it"));
     const auto scans = given();
     ASSERT_EQ(scans.size(), 7U);
-    EXPECT_NEAR(scans[0].pose.x, kFirstPlace.x, 1e-12);
-    EXPECT_NEAR(scans[0].pose.y, kFirstPlace.y, 1e-12);
-    EXPECT_NEAR(scans[0].pose.yaw, kFirstPlace.yaw, 1e-12);
+    EXPECT_NEAR(scans[0].pose->x, kFirstPlace.x, 1e-12);
+    EXPECT_NEAR(scans[0].pose->y, kFirstPlace.y, 1e-12);
+    EXPECT_NEAR(scans[0].pose->yaw, kFirstPlace.yaw, 1e-12);
     EXPECT_TRUE(std::ranges::all_of(scans, &Scan::begins_map)) << "the first scan may be dropped by a full spool";
     EXPECT_FALSE(phases_.refusal());
 

@@ -212,7 +212,7 @@ std::vector<std::uint64_t> numbers_in(const fs::path& file) {
         const auto record = reader->next();
         if (!record || !*record) break;
         if (const auto* batch = std::get_if<wire::ScanBatch>(&(*record)->message)) {
-            numbers.push_back(static_cast<std::uint64_t>(batch->scans.front().pose.x));
+            numbers.push_back(static_cast<std::uint64_t>(batch->scans.front().pose->x));
         }
     }
     return numbers;

@@ -24,7 +24,7 @@ inline Observation numbered(std::uint64_t number, std::uint32_t sensor_id = 0, s
     sensor.range_max = 10.0;
     Observation made{std::make_shared<const Sensor>(sensor), {}};
     made.scan.sensor = sensor_id;
-    made.scan.pose.x = static_cast<double>(number);
+    made.scan.pose = {static_cast<double>(number), 0.0, 0.0};
     made.scan.ranges.assign(beams, static_cast<RangeMm>(number % 10'000));
     return made;
 }
@@ -51,7 +51,7 @@ protected:
         while (numbers.size() < count) {
             const auto next = spool_->next().value();
             if (!next) break;
-            const auto number = static_cast<std::uint64_t>(next->scan.pose.x);
+            const auto number = static_cast<std::uint64_t>(next->scan.pose->x);
             Observation expected = numbered(number, next->scan.sensor, next->scan.ranges.size());
             expected.scan.seq = next->scan.seq;
             EXPECT_EQ(next->scan, expected.scan);

@@ -217,7 +217,7 @@ TEST_F(SpoolTest, LocatedPosesBeginTheMapOfAnotherSession) {
         std::vector<std::uint64_t> numbers;
         while (const auto next = spool_->next().value()) {
             EXPECT_EQ(next->scan.begins_map, begins);
-            numbers.push_back(static_cast<std::uint64_t>(next->scan.pose.x));
+            numbers.push_back(static_cast<std::uint64_t>(next->scan.pose->x));
         }
         return numbers;
     };
@@ -243,6 +243,25 @@ TEST_F(SpoolTest, LocatedPosesBeginTheMapOfAnotherSession) {
     open_with_located_poses();
     ASSERT_TRUE(spool_->begin("c3", 3));
     EXPECT_EQ(handed_out_as_beginning(false), from_to(16, 22));
+}
+
+TEST_F(SpoolTest, ScansWithOtherPosesAreNotHandedOut) {
+    open();
+    take(1, 2);
+    spool_.reset();
+    spool_ =
+        Spool::open({.directory = directory_.path(), .poses = Poses::kOdometry}, [](const std::string&) {}).value();
+    ASSERT_TRUE(spool_->begin("a1", 0));
+    const auto refused = spool_->next();
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, Errc::kConflict);
+    EXPECT_TRUE(refused.error().message.ends_with(": an earlier run took these 2 scans with other poses than "
+                                                  "'odometry': send them with the poses of that run, or "
+                                                  "move the directory away"))
+        << refused.error().message;
+    open();
+    ASSERT_TRUE(spool_->begin("a1", 0));
+    EXPECT_EQ(handed_out(), from_to(1, 2)) << "the refused scans are kept";
 }
 
 TEST_F(SpoolTest, LostNumberingSendsNoScanTwice) {

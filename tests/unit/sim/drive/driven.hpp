@@ -32,7 +32,7 @@ public:
     bool run(
         double seconds, const std::function<void()>& each_scan = [] {}) {
         for (int n = 0; n < static_cast<int>(seconds / kScanPeriod) && !is_done(); ++n) {
-            const Pose2 pose = simulator_.next_scan().pose;
+            const Pose2 pose = *simulator_.next_scan().pose;
             trajectory_.push_back({pose.x, pose.y});
             clearance_min_ = std::min(clearance_min_, clearance(simulator_.world(), trajectory_.back()));
             each_scan();

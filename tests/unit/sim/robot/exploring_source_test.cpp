@@ -77,9 +77,9 @@ TEST_F(ExploringSourceTest, RequestsGoalsAfterObservingAndEndsWhenExplored) {
     const auto scans = all_of(source);
     EXPECT_EQ(requests_, 2U);
     ASSERT_GT(scans.size(), 70U);
-    EXPECT_LT(std::hypot(scans.back().pose.x + 3.5, scans.back().pose.y + 1.5), 0.05)
+    EXPECT_LT(std::hypot(scans.back().pose->x + 3.5, scans.back().pose->y + 1.5), 0.05)
         << "the scan at the goal is given before the next request";
-    EXPECT_LT(std::abs(scans.back().pose.yaw - 1.5708), 0.05);
+    EXPECT_LT(std::abs(scans.back().pose->yaw - 1.5708), 0.05);
     for (std::size_t n = 0; n < scans.size(); ++n) EXPECT_NEAR(scans[n].stamp, 0.1 * static_cast<double>(n), 1e-9);
     EXPECT_TRUE(
         source.remarks().starts_with("explored: no frontier is reachable with a clearance of 0.22 m, 2 m driven in "))

@@ -44,6 +44,8 @@ TEST(SimulationFingerprint, DependsOnEverythingThatDeterminesScans) {
         },
         [](SimulatorOptions& o) { o.noise = with_odometry(Noise{}, 2.0); },
         [](SimulatorOptions& o) { o.pose = PoseSent::kOdometry; },
+        [](SimulatorOptions& o) { o.poses = Poses::kOdometry; },
+        [](SimulatorOptions& o) { o.poses = Poses::kNone; },
         [](SimulatorOptions& o) {
             o.world.unknown = {{1, 2, 3, 4}};
         },

@@ -18,11 +18,17 @@ function session(): Record<string, unknown> {
     revision: 911,
     exclusions: 100,
     scans: 910,
+    moving_scans: 13,
     config: { cell_size: 0.05, p_occupied: 0.9 },
     layers: ['occupancy'],
     bounds: { min_x: -20.1, min_y: -3.2, max_x: 450, max_y: 30 },
     main_bounds: { min_x: -20.1, min_y: -3.2, max_x: 18, max_y: 30 },
-    robots: [{ name: 'r1', connected: true, scans: 910, last_seq: 910, stamp: 1.5, pose: { x: 1, y: 2, yaw: 0.1 } }],
+    robots: [
+      {
+        ...{ name: 'r1', connected: true, scans: 910, last_seq: 910, stamp: 1.5, pose: { x: 1, y: 2, yaw: 0.1 } },
+        localization: { poses: 'odometry', state: 'lost', inliers: 0.5, sigma_m: 0.25, sigma_rad: 0.1 },
+      },
+    ],
   };
 }
 
@@ -36,11 +42,17 @@ describe('decoding', () => {
       revision: 911,
       exclusions: 100,
       scans: 910,
+      movingScans: 13,
       cellSize: 0.05,
       config: { cell_size: 0.05, p_occupied: 0.9 },
       bounds: { minX: -20.1, minY: -3.2, maxX: 450, maxY: 30 },
       mainBounds: { minX: -20.1, minY: -3.2, maxX: 18, maxY: 30 },
-      robots: [{ name: 'r1', connected: true, scans: 910, pose: { x: 1, y: 2, yaw: 0.1 }, bodyRadius: null }],
+      robots: [
+        {
+          ...{ name: 'r1', connected: true, scans: 910, pose: { x: 1, y: 2, yaw: 0.1 }, bodyRadius: null },
+          localization: { state: 'lost', inliers: 0.5, sigma: 0.25 },
+        },
+      ],
       failure: null,
     });
   });
@@ -80,11 +92,12 @@ describe('decoding', () => {
       ...session(),
       bounds: null,
       main_bounds: null,
-      robots: [{ name: 'r', scans: 0, pose: null }],
+      robots: [{ name: 'r', scans: 0, pose: null, localization: { poses: 'map', state: 'given' } }],
     });
     assert.equal(empty.bounds, null);
     assert.equal(empty.mainBounds, null);
-    assert.deepEqual(empty.robots, [{ name: 'r', connected: false, scans: 0, pose: null, bodyRadius: null }]);
+    const robot = { name: 'r', connected: false, scans: 0, pose: null, bodyRadius: null, localization: null };
+    assert.deepEqual(empty.robots, [robot]);
   });
 
   it('names the invalid field', () => {

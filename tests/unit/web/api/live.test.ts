@@ -72,6 +72,18 @@ describe('a live event', () => {
     assert.deepEqual([robot?.pose, robot?.scan, robot?.bodyRadius, robot?.trail], [null, null, null, []]);
   });
 
+  it('may contain how well poses are known, and that earlier ones were corrected', () => {
+    const known = (state: number): Fields['robots'] => [
+      { name: 'r1', localization: { state, inliers: 0.5, sigma_m: 0.25 } },
+    ];
+    const event = decodeLiveEvent(bytesOf({ robots: known(1), poses_corrected: 117, moving_scans: 13631 }));
+    assert.deepEqual([event.posesCorrected, event.movingScans], [117, 13631]);
+    assert.deepEqual(event.robots[0]?.localization, { state: 'tracking', inliers: 0.5, sigma: 0.25 });
+    assert.equal(decodeLiveEvent(bytesOf({ robots: known(2) })).robots[0]?.localization?.state, 'lost');
+    assert.equal(decodeLiveEvent(bytesOf({ robots: known(3) })).robots[0]?.localization?.state, 'unlocated');
+    assert.equal(decodeLiveEvent(bytesOf({ robots: [{ name: 'r1' }] })).robots[0]?.localization, null);
+  });
+
   it('may contain landmarks or the reason for their refusal', () => {
     const one = { id: 7, x: 1.5, y: -2.25, seen: 3, size_x: 0.5, size_y: 0.25 };
     const event = decodeLiveEvent(bytesOf({ landmarks: { landmarks: [one] } }));

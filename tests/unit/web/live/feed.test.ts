@@ -27,10 +27,10 @@ class FakeSocket extends EventTarget {
   }
 
   /** Sends an event of a robot with this many places; the event contains the newest one. */
-  sendEvent(session: string, places: number): void {
+  sendEvent(session: string, places: number, posesCorrected = 0): void {
     const writer = new PbfWriter();
     const robots = [{ name: 'r1', trail: [1000 * places, 0], trail_from: places - 1 }];
-    writeLiveEvent({ session, revision: places, robots }, writer);
+    writeLiveEvent({ session, revision: places, robots, poses_corrected: posesCorrected }, writer);
     this.dispatchEvent(Object.assign(new Event('message'), { data: new Uint8Array(writer.finish()).buffer }));
   }
 }
@@ -41,6 +41,7 @@ class World {
   /** Revisions after which paths were requested. */
   readonly requests: string[] = [];
   readonly trails: Trails[] = [];
+  readonly corrected: Trails[] = [];
   filled = 0;
   opened = 0;
   private readonly leave = new AbortController();
@@ -52,8 +53,9 @@ class World {
     mock.method(globalThis, 'fetch', (url: URL) => this.answer(url));
     const ignore = (): void => {};
     const started = (_: unknown, trails: Trails): void => void this.trails.push(trails);
+    const corrected = (trails: Trails): void => void this.corrected.push(trails);
     const [opened, trails] = [(): void => void ++this.opened, (): void => void ++this.filled];
-    const events = { started, opened, event: ignore, tiles: ignore, trails, gone: ignore, settled: ignore };
+    const events = { started, opened, event: ignore, tiles: ignore, trails, corrected, gone: ignore, settled: ignore };
     new Feed('map', events, this.leave.signal).run();
   }
 
@@ -133,5 +135,23 @@ describe('a feed', () => {
     assert.deepEqual(world.requests, ['0', '0']);
     assert.deepEqual(world.trails[1]?.get('r1').points, pointsOf(6));
     assert.deepEqual(world.trails[0]?.get('r1').points, []);
+  });
+
+  it('keeps the trails until those with corrected poses are complete', async () => {
+    world = new World();
+    await until(() => world.opened === 1);
+    socket.sendEvent('first', 1);
+    socket.sendEvent('first', 2);
+    assert.deepEqual([world.requests, world.corrected], [[], []]);
+    socket.sendEvent('first', 9, 8);
+    await until(() => world.requests.length === 1);
+    assert.deepEqual([world.requests, world.corrected], [['0'], []]);
+    assert.deepEqual(world.trails[0]?.get('r1').points, pointsOf(2));
+    world.answerPaths(0, 9);
+    await until(() => world.filled === 1);
+    assert.deepEqual(world.corrected[0]?.get('r1').points, pointsOf(9));
+    socket.sendEvent('first', 10, 8);
+    assert.deepEqual(world.corrected[0]?.get('r1').points, pointsOf(10));
+    assert.deepEqual([world.requests, world.corrected.length], [['0'], 1]);
   });
 });

@@ -12,6 +12,7 @@ function session(name: string, created: string, number = 1): Session {
     revision: 0,
     exclusions: 0,
     scans: 0,
+    movingScans: 0,
     cellSize: 0.05,
     config: {},
     bounds: null,

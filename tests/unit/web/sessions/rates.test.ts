@@ -12,6 +12,7 @@ function session(scans: number, id = '1', name = 'a'): Session {
     revision: scans,
     exclusions: 0,
     scans,
+    movingScans: 0,
     cellSize: 0.05,
     config: {},
     bounds: null,
