@@ -15,6 +15,11 @@ export function counted(value: number, noun: string): string {
   return `${count(value)} ${noun}${value === 1 ? '' : 's'}`;
 }
 
+/** "13 631 scans are being moved to corrected poses." */
+export function movingScans(value: number): string {
+  return `${counted(value, 'scan')} ${value === 1 ? 'is' : 'are'} being moved to corrected poses.`;
+}
+
 /** Fixed decimals and a real minus sign, so that columns line up; never "-0.00". */
 export function decimal(value: number, digits: number): string {
   const text = value.toFixed(digits);

@@ -65,7 +65,7 @@ const viewer: Viewer = new Viewer({
   picture,
   camera,
   cursor: new Cursor(map, target),
-  facts: new Facts(byId('facts', HTMLElement)),
+  facts: new Facts(byId('facts', HTMLElement), byId('moving-scans', HTMLElement)),
   robots: robotList,
   notice,
   explored: new ExploredNote(byId('explored', HTMLElement)),

@@ -13,6 +13,8 @@ export interface Settings {
   points: boolean;
   frontiers: boolean;
   landmarks: boolean;
+  /** Keyframes and the matches between them. */
+  poseGraph: boolean;
   /** Goals and paths of the robots. */
   goals: boolean;
   /** A grid of round lengths, with the map's origin and axes. */
@@ -25,7 +27,7 @@ export interface Settings {
 
 const kSwitches = [
   ...(['robots', 'trails', 'points', 'goals', 'frontiers', 'landmarks'] as const),
-  ...(['grid', 'counters', 'keys'] as const),
+  ...(['poseGraph', 'grid', 'counters', 'keys'] as const),
 ] as const;
 
 const kKey = 'scanloom';
@@ -37,6 +39,7 @@ const kDefaults: Settings = {
   points: true,
   frontiers: false,
   landmarks: false,
+  poseGraph: false,
   goals: true,
   grid: false,
   counters: false,

@@ -11,6 +11,8 @@ export interface Theme {
   accent: string;
   frontier: string;
   landmark: string;
+  /** Colour of loops in the pose graph. */
+  loop: string;
   warn: string;
   axisX: string;
   axisY: string;
@@ -40,6 +42,7 @@ export function readTheme(): Theme {
     accent: colour('--accent'),
     frontier: colour('--class-frontier'),
     landmark: colour('--landmark'),
+    loop: colour('--loop'),
     warn: colour('--warn'),
     axisX: colour('--axis-x'),
     axisY: colour('--axis-y'),

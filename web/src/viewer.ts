@@ -3,6 +3,7 @@ import { fetchFrontiers } from './api/frontiers';
 import { fetchGoals, type Goals } from './api/goals';
 import { Refused } from './api/http';
 import type { LandmarkUpdate, LiveEvent, LiveRobot } from './api/live';
+import { fetchPoseGraph, type PoseGraph } from './api/pose_graph';
 import type { Frontier, Robot, Session, TileChange } from './api/types';
 import { kLayers, type LayerName } from './layers/layers';
 import { Feed } from './live/feed';
@@ -62,6 +63,7 @@ interface Open {
   robots: Map<number, Robot>;
   frontiers: RevisionWatch<Frontier[]>;
   goals: RevisionWatch<Goals>;
+  poseGraph: RevisionWatch<PoseGraph>;
   /** The landmarks on the map are from an earlier connection, perhaps from before a restart of the server. */
   landmarksAreOld: boolean;
   readers: CellReaders;
@@ -75,7 +77,10 @@ const kLandmarks = 'landmarks';
 
 /** The status line's code for a full server. */
 const kNoRoom = 507;
-const kNothingOfThePresent = { points: false, frontiers: false, goals: false, landmarks: false };
+const kNothingOfThePresent = { points: false, frontiers: false, goals: false, landmarks: false, poseGraph: false };
+
+/** The pose graph is fetched again after this many scans, and after corrections. */
+const kScansPerGraph = 500;
 
 export class Viewer {
   private leave = new AbortController();
@@ -125,11 +130,15 @@ export class Viewer {
         opened: () => {
           this.open?.frontiers.invalidate();
           this.open?.goals.invalidate();
+          this.open?.poseGraph.invalidate();
           if (this.open) this.open.landmarksAreOld = true;
         },
         event: (event) => this.apply(event),
         tiles: (layer, tiles) => this.showTiles(layer, tiles),
         trails: () => this.showTrails(),
+        corrected: (trails) => {
+          if (this.open) this.open.trails = trails;
+        },
         gone: () => {
           this.clear();
           if (this.parts.endIsExpected(name)) notice.show({ kind: 'loading' });
@@ -196,6 +205,11 @@ export class Viewer {
         (all) => this.showGoals(all),
         signal,
       ),
+      poseGraph: new RevisionWatch(
+        (stop) => fetchPoseGraph(name, stop),
+        (graph) => map.showPoseGraph(graph),
+        signal,
+      ),
       landmarksAreOld: false,
       readers,
       isNew: true,
@@ -214,7 +228,7 @@ export class Viewer {
   private apply(event: LiveEvent): void {
     if (!this.open) return;
     this.parts.status.settle(kServerState, event.draining ? new Draining() : null);
-    const { robots, frontiers, goals, session } = this.open;
+    const { robots, frontiers, goals, poseGraph, session } = this.open;
     for (const robot of event.robots) robots.set(robot.index, robotOf(robot));
     if (this.open.isNew && event.scans > 0) {
       this.open.isNew = false;
@@ -222,8 +236,10 @@ export class Viewer {
     }
     frontiers.setRevision(event.frontiersRevision);
     goals.setRevision(event.goalsRevision);
+    poseGraph.setRevision(event.posesCorrected + Math.floor(event.scans / kScansPerGraph));
     if (event.landmarks) this.applyLandmarks(event.landmarks);
-    this.open.session = { ...session, revision: event.revision, scans: event.scans, robots: this.robots };
+    const { revision, scans, movingScans } = event;
+    this.open.session = { ...session, revision, scans, movingScans, robots: this.robots };
     this.parts.newest(this.open.session);
     if (!session.bounds && event.scans > 0) this.parts.refresh();
     for (const { name, scan } of event.robots) if (scan) this.parts.map.showScan(name, scan.points);
@@ -303,6 +319,7 @@ export class Viewer {
     this.parts.map.choose(settings);
     this.open?.frontiers.enable(settings.frontiers);
     this.open?.goals.enable(!this.moment);
+    this.open?.poseGraph.enable(settings.poseGraph);
     this.parts.explored.setHidden(this.moment !== null);
   }
 
@@ -332,6 +349,6 @@ export class Viewer {
   }
 }
 
-function robotOf({ name, connected, scans, pose, bodyRadius }: LiveRobot): Robot {
-  return { name, connected, scans, pose, bodyRadius };
+function robotOf({ name, connected, scans, pose, bodyRadius, localization }: LiveRobot): Robot {
+  return { name, connected, scans, pose, bodyRadius, localization };
 }

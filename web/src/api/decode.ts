@@ -3,6 +3,7 @@ import type {
   Bounds,
   Changes,
   DamagedSession,
+  Localization,
   MapConfig,
   Point,
   Pose,
@@ -20,6 +21,8 @@ export class MalformedAnswer extends Error {
 }
 
 export type Fields = Record<string, unknown>;
+
+const kLocalizationStates = ['tracking', 'lost', 'unlocated'] as const;
 
 export function decodeSessionPage(json: unknown): SessionPage {
   const page = fields(json, 'sessions');
@@ -58,6 +61,7 @@ export function decodeSession(json: unknown): Session {
     revision: number(session['revision'], 'revision'),
     exclusions: session['exclusions'] == null ? 0 : number(session['exclusions'], 'exclusions'),
     scans: number(session['scans'], 'scans'),
+    movingScans: session['moving_scans'] == null ? 0 : number(session['moving_scans'], 'moving_scans'),
     cellSize: cellSizeOf(config),
     config,
     bounds: session['bounds'] == null ? null : decodeBounds(session['bounds']),
@@ -108,6 +112,19 @@ function decodeRobot(json: unknown): Robot {
     scans: number(robot['scans'], 'robots[].scans'),
     pose: robot['pose'] == null ? null : decodePose(robot['pose']),
     bodyRadius: robot['body_radius'] == null ? null : number(robot['body_radius'], 'robots[].body_radius'),
+    localization: robot['localization'] == null ? null : decodeLocalization(robot['localization']),
+  };
+}
+
+/** @return null for a robot that sends poses in the map frame */
+function decodeLocalization(json: unknown): Localization | null {
+  const known = fields(json, 'localization');
+  const state = kLocalizationStates.find((each) => each === known['state']);
+  if (!state) return null;
+  return {
+    state,
+    inliers: number(known['inliers'], 'localization.inliers'),
+    sigma: number(known['sigma_m'], 'localization.sigma_m'),
   };
 }
 

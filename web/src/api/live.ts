@@ -2,10 +2,12 @@
 import { PbfReader, PbfWriter } from 'pbf';
 import {
   Layer,
+  LocalizationState,
   readLiveEvent,
   SessionState,
   writeLiveRequest,
   type LandmarkChanges,
+  type RobotLocalization,
   type RobotUpdate,
   type ScanPoints,
   type TileChanges,
@@ -13,7 +15,7 @@ import {
 import { kNativeZoom } from '../map/grid';
 import type { LayerName } from '../layers/layers';
 import { decodePose, MalformedAnswer } from './decode';
-import type { Landmark, Point, Pose, TileChange } from './types';
+import type { Landmark, Localization, Point, Pose, TileChange } from './types';
 
 const kTilesAcross = 2 ** kNativeZoom;
 const kMillimetre = 0.001;
@@ -23,6 +25,12 @@ const kLayerOfNumber = new Map<number, LayerName>([
   [Layer['LAYER_HIMM'] ?? 2, 'himm'],
   [Layer['LAYER_SONAR'] ?? 3, 'sonar'],
   [Layer['LAYER_CLASSIFICATION'] ?? 4, 'classification'],
+]);
+
+const kStateOfNumber = new Map<number, Localization['state']>([
+  [LocalizationState['LOCALIZATION_STATE_TRACKING'] ?? 1, 'tracking'],
+  [LocalizationState['LOCALIZATION_STATE_LOST'] ?? 2, 'lost'],
+  [LocalizationState['LOCALIZATION_STATE_UNLOCATED'] ?? 3, 'unlocated'],
 ]);
 
 export interface LiveTiles {
@@ -50,6 +58,8 @@ export interface LiveRobot {
   pose: Pose | null;
   /** Metres; null: not reported. */
   bodyRadius: number | null;
+  /** Null: it sends poses in the map frame. */
+  localization: Localization | null;
   trail: Point[];
   /** Number of points of the trail before these. */
   trailFrom: number;
@@ -84,6 +94,10 @@ export interface LiveEvent {
   frontiersRevision: number;
   /** Increases when the robots' goals or paths have changed. */
   goalsRevision: number;
+  /** Changes when the map has followed corrected poses of earlier scans: trails known before are outdated. */
+  posesCorrected: number;
+  /** Scans that the map does not show at their corrected poses yet. */
+  movingScans: number;
   tiles: LiveTiles[];
   /** Robots that changed. */
   robots: LiveRobot[];
@@ -102,6 +116,8 @@ export function decodeLiveEvent(bytes: ArrayBuffer): LiveEvent {
       draining: event.state === SessionState['SESSION_STATE_DRAINING'],
       frontiersRevision: event.frontiers_revision,
       goalsRevision: event.goals_revision,
+      posesCorrected: event.poses_corrected,
+      movingScans: event.moving_scans,
       tiles: event.tiles.flatMap(decodeTiles),
       robots: event.robots.map(decodeRobot),
       landmarks: event.landmarks ? decodeLandmarks(event.landmarks) : null,
@@ -140,10 +156,16 @@ function decodeRobot(robot: RobotUpdate): LiveRobot {
     scans: robot.scan_count,
     pose: robot.pose ? decodePose(robot.pose) : null,
     bodyRadius: robot.body_radius ? robot.body_radius : null,
+    localization: robot.localization ? decodeLocalization(robot.localization) : null,
     trail: pointsOf(robot.trail, 0, 0),
     trailFrom: robot.trail_from,
     scan: robot.scan ? decodeScan(robot.scan) : null,
   };
+}
+
+function decodeLocalization({ state, inliers, sigma_m }: RobotLocalization): Localization | null {
+  const known = kStateOfNumber.get(state);
+  return known ? { state: known, inliers, sigma: sigma_m } : null;
 }
 
 function decodeLandmarks({ landmarks, refused }: LandmarkChanges): LandmarkUpdate {

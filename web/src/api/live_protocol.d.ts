@@ -20,6 +20,12 @@ declare module 'virtual:live-protocol' {
     points: number[];
   }
 
+  interface RobotLocalization {
+    state: number;
+    inliers: number;
+    sigma_m: number;
+  }
+
   interface RobotUpdate {
     robot: number;
     name: string;
@@ -30,6 +36,7 @@ declare module 'virtual:live-protocol' {
     trail_from: number;
     scan: ScanPoints | undefined;
     body_radius: number;
+    localization: RobotLocalization | undefined;
   }
 
   interface LiveLandmark {
@@ -57,6 +64,8 @@ declare module 'virtual:live-protocol' {
     tiles: TileChanges[];
     robots: RobotUpdate[];
     landmarks: LandmarkChanges | undefined;
+    poses_corrected: number;
+    moving_scans: number;
   }
 
   interface LiveRequest {
@@ -67,6 +76,7 @@ declare module 'virtual:live-protocol' {
 
   export const Layer: Record<string, number>;
   export const SessionState: Record<string, number>;
+  export const LocalizationState: Record<string, number>;
   export function readLiveEvent(pbf: PbfReader): LiveEvent;
   export function writeLiveRequest(request: LiveRequest, pbf: PbfWriter): void;
   /** The server encodes events; tests do, too. Fields that are left out have their defaults. */

@@ -13,6 +13,16 @@ export interface Pose {
   yaw: number;
 }
 
+/** How well the server knows the poses of a robot that sends no poses in the map frame. */
+export interface Localization {
+  /** unlocated: no scan of a laser yet. */
+  state: 'tracking' | 'lost' | 'unlocated';
+  /** Share of the newest scan's points that fit the map, 0 to 1. */
+  inliers: number;
+  /** Standard deviation of the newest position, metres. */
+  sigma: number;
+}
+
 export interface Robot {
   name: string;
   connected: boolean;
@@ -20,6 +30,8 @@ export interface Robot {
   pose: Pose | null;
   /** Metres; null: not reported. */
   bodyRadius: number | null;
+  /** Null: the robot sends poses in the map frame. */
+  localization: Localization | null;
 }
 
 /** The mapping settings by the server's names: cell_size, ray_model, p_occupied, ... */
@@ -37,6 +49,8 @@ export interface Session {
   /** Revision of the newest change of exclusions; 0: none. */
   exclusions: number;
   scans: number;
+  /** Scans that the map does not show at their corrected poses yet. */
+  movingScans: number;
   cellSize: number;
   config: MapConfig;
   /** Null while the map is empty. */

@@ -31,6 +31,8 @@ export interface FeedEvents {
   tiles(layer: LayerName, tiles: TileChange[]): void;
   /** The trails have grown. */
   trails(): void;
+  /** These trails, of the same session, replace the others: the poses of earlier scans were corrected. */
+  corrected(trails: Trails): void;
   /** The session does not exist, or was deleted. */
   gone(): void;
   settled(error: unknown): void;
@@ -41,6 +43,10 @@ export class Feed {
   private socket: LiveSocket | null = null;
   private id: string | null = null;
   private paths: WholePaths | null = null;
+  /** The trails that the page shows: those of `paths`, or the earlier ones until those are complete. */
+  private shown: Trails | null = null;
+  /** LiveEvent.posesCorrected of the newest event; null: none yet. */
+  private posesCorrected: number | null = null;
   /** Aborts when the session is replaced or deleted. */
   private leaving = new AbortController();
   /** Since when the connection lags behind the known revision; null: it does not. */
@@ -124,19 +130,38 @@ export class Feed {
   private start(session: Session): void {
     this.id = session.id;
     this.revision = 0;
+    this.posesCorrected = null;
     this.paths = this.followPaths();
-    this.events.started(session, this.paths.trails);
+    this.shown = this.paths.trails;
+    this.events.started(session, this.shown);
   }
 
-  /** Cancels requests for the previous session. */
+  /** Cancels requests for the previous trails. */
   private followPaths(): WholePaths {
     this.leaving.abort();
     this.leaving = new AbortController();
     const source: PathSource = {
       fetchAfter: (revision, signal) => fetchTrajectory(this.name, revision, signal),
-      filled: () => this.events.trails(),
+      filled: () => {
+        this.replaceTrails();
+        this.events.trails();
+      },
     };
     return new WholePaths(new Trails(), source, AbortSignal.any([this.signal, this.leaving.signal]));
+  }
+
+  private applyTrails(event: LiveEvent): void {
+    if (this.posesCorrected !== null && event.posesCorrected !== this.posesCorrected) this.paths = this.followPaths();
+    this.posesCorrected = event.posesCorrected;
+    this.paths?.apply(event);
+    this.replaceTrails();
+  }
+
+  /** Shows the corrected trails when they are complete. */
+  private replaceTrails(): void {
+    if (!this.paths?.isComplete || this.paths.trails === this.shown) return;
+    this.shown = this.paths.trails;
+    this.events.corrected(this.shown);
   }
 
   private leave(): void {
@@ -148,7 +173,7 @@ export class Feed {
   private receive(event: LiveEvent): void {
     if (event.id !== this.id) throw new Replaced();
     this.replaced = 0;
-    this.paths?.apply(event);
+    this.applyTrails(event);
     for (const { layer, everything, tiles } of event.tiles) {
       if (everything) void this.fetchTiles(layer, this.revision);
       else if (tiles.length > 0) this.events.tiles(layer, tiles);

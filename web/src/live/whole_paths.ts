@@ -40,6 +40,12 @@ export class WholePaths {
     private readonly pause = rest,
   ) {}
 
+  /** Whether the trails have all points before those of the newest event. */
+  get isComplete(): boolean {
+    const missing = this.missing?.robots ?? [];
+    return missing.every(({ name, trailFrom }) => this.trails.get(name).points.length >= trailFrom);
+  }
+
   apply(event: TrailEvent): void {
     if (this.join(event)) {
       // While points are missing, an event that connects does not close the gap; nor does one that a page overtook.

@@ -8,6 +8,7 @@ import type BaseLayer from 'ol/layer/Base';
 import OlMap from 'ol/Map';
 import View from 'ol/View';
 import type { RobotGoal } from '../api/goals';
+import type { PoseGraph } from '../api/pose_graph';
 import type { Frontier, Landmark, Point, Robot } from '../api/types';
 import type { LayerName } from '../layers/layers';
 import { motionMs } from '../motion';
@@ -27,6 +28,7 @@ import type { MapSource } from './map_source';
 import { kOrder } from './order';
 import { PathLayer } from './path_layer';
 import { PointsLayer } from './points_layer';
+import { PoseGraphLayer } from './pose_graph_layer';
 import { kProjection } from './projection';
 import { RobotsLayer } from './robots_layer';
 
@@ -56,6 +58,7 @@ interface Scene {
   landmarks: LandmarksLayer;
   goals: GoalsLayer;
   paths: PathLayer;
+  poseGraph: PoseGraphLayer;
   points: PointsLayer;
   robots: RobotsLayer;
 }
@@ -111,6 +114,7 @@ export class MapView {
       landmarks: new LandmarksLayer(this.theme),
       goals: new GoalsLayer(colours, this.theme),
       paths: new PathLayer(colours, this.theme),
+      poseGraph: new PoseGraphLayer(this.theme),
       points: new PointsLayer(colours, this.theme),
       robots: new RobotsLayer(colours, this.theme),
     };
@@ -127,7 +131,7 @@ export class MapView {
   }
 
   /** Selects the visible overlays. */
-  choose({ robots, trails, points, goals, frontiers, landmarks, grid }: Settings): void {
+  choose({ robots, trails, points, goals, frontiers, landmarks, poseGraph, grid }: Settings): void {
     this.scene?.grid.layer.setVisible(grid);
     this.scene?.robots.layer.setVisible(robots);
     this.scene?.paths.layer.setVisible(trails);
@@ -135,6 +139,7 @@ export class MapView {
     this.scene?.goals.layer.setVisible(goals);
     this.scene?.frontiers.layer.setVisible(frontiers);
     this.scene?.landmarks.layer.setVisible(landmarks);
+    this.scene?.poseGraph.layer.setVisible(poseGraph);
   }
 
   show(main: Shown, second: Shown | null): void {
@@ -186,6 +191,10 @@ export class MapView {
 
   showGoals(goals: RobotGoal[]): void {
     this.scene?.goals.show(goals);
+  }
+
+  showPoseGraph(graph: PoseGraph): void {
+    this.scene?.poseGraph.show(graph);
   }
 
   showFrontiers(frontiers: Frontier[]): void {

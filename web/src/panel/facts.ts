@@ -13,7 +13,11 @@ const kFacts: [label: string, read: (session: Session) => string][] = [
 export class Facts {
   private readonly values: HTMLElement[];
 
-  constructor(list: HTMLElement) {
+  /** @param moving says how many scans are being moved; hidden while there are none */
+  constructor(
+    list: HTMLElement,
+    private readonly moving: HTMLElement,
+  ) {
     this.values = kFacts.map(([label]) => {
       const value = el('dd', { class: 'numeric' });
       list.append(el('div', {}, el('dt', {}, label), value));
@@ -26,5 +30,7 @@ export class Facts {
       const value = this.values[index];
       if (value) setText(value, read(session));
     });
+    this.moving.hidden = session.movingScans === 0;
+    setText(this.moving, format.movingScans(session.movingScans));
   }
 }

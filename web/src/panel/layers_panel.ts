@@ -15,12 +15,13 @@ const kSwitches: [key: Switch, label: string][] = [
   ['goals', 'Goals and paths'],
   ['frontiers', 'Frontiers'],
   ['landmarks', 'Landmarks'],
+  ['poseGraph', 'Pose graph'],
   ['grid', 'Grid, origin and axes'],
   ['counters', 'HIMM counters in cells'],
 ];
 
 /** Overlays that are available for the present only. */
-const kPresentOnly: Switch[] = ['points', 'goals', 'frontiers', 'landmarks'];
+const kPresentOnly: Switch[] = ['points', 'goals', 'frontiers', 'landmarks', 'poseGraph'];
 
 export class LayersPanel {
   private readonly fields = {

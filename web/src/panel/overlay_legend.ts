@@ -22,6 +22,12 @@ const kEntries: Partial<Record<keyof Settings, Entry[]>> = {
     { label: 'observed repeatedly', symbol: 'landmark', path: 'm8 2 6 6-6 6-6-6z' },
     { label: 'observed once', symbol: 'landmark-once', path: 'M8 3.5 13 12.5H3z' },
   ],
+  poseGraph: [
+    { label: 'keyframe', symbol: 'keyframe', path: 'M8 5.5a2.5 2.5 0 1 1-.01 0z' },
+    { label: 'match of neighbours', symbol: 'graph-match', path: 'M1 8h14' },
+    { label: 'loop: a place visited again', symbol: 'graph-loop', path: 'M1 11Q8 2 15 11' },
+    { label: 'not used: it disagrees', symbol: 'graph-unused', path: 'M1 8h14' },
+  ],
 };
 
 /** @return the legend of an overlay; null if it needs none */

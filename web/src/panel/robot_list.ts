@@ -2,6 +2,7 @@
 import type { Robot } from '../api/types';
 import { el, KeyedList, setText, type Row } from '../dom';
 import * as format from '../format';
+import { qualityOf, wordsOf } from './localization';
 import type { RobotColours } from '../robot_colours';
 
 export interface RobotListSource {
@@ -12,6 +13,7 @@ interface RobotRow extends Row {
   swatch: HTMLElement;
   detail: HTMLElement;
   place: HTMLElement;
+  localization: HTMLElement;
   follow: HTMLButtonElement;
 }
 
@@ -66,11 +68,12 @@ export class RobotList {
     const swatch = el('span', { class: 'swatch' });
     const detail = el('span', { class: 'row-detail' });
     const place = el('span', { class: 'row-detail numeric', 'data-role': 'pose' });
+    const localization = el('span', { class: 'row-detail localization', 'data-role': 'localization' });
     const follow = el('button', { type: 'button', class: 'follow', 'aria-label': `Follow ${name}` }, 'Follow');
     follow.addEventListener('click', () => this.follow(this.followed === name ? null : name));
     const title = el('span', { class: 'row-name', dir: 'auto' }, name);
-    const element = el('li', { class: 'robot' }, swatch, title, follow, detail, place);
-    return { element, swatch, detail, place, follow };
+    const element = el('li', { class: 'robot' }, swatch, title, follow, detail, place, localization);
+    return { element, swatch, detail, place, localization, follow };
   }
 
   private update(row: RobotRow, robot: Robot): void {
@@ -81,6 +84,11 @@ export class RobotList {
     const state = this.isOffline ? 'unknown' : robot.connected ? 'online' : 'offline';
     setText(row.detail, [state, format.counted(robot.scans, 'scan'), travelled].join(' \u00b7 '));
     setText(row.place, robot.pose ? format.pose(robot.pose) : 'no position yet');
+    row.localization.hidden = robot.localization === null;
+    if (robot.localization) {
+      row.localization.dataset['quality'] = qualityOf(robot.localization);
+      setText(row.localization, wordsOf(robot.localization));
+    }
     row.follow.disabled = !robot.pose;
     row.follow.setAttribute('aria-pressed', String(robot.name === this.followed));
   }

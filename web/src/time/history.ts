@@ -196,7 +196,7 @@ export class SessionHistory {
     const bodies = new Map(this.viewer.robots.map(({ name, bodyRadius }) => [name, bodyRadius]));
     const robots = there.map(({ robot, pose, trail, age }): Robot => {
       const bodyRadius = bodies.get(robot) ?? null;
-      return { name: robot, pose, bodyRadius, scans: trail.length, connected: age <= kGapMin };
+      return { name: robot, pose, bodyRadius, localization: null, scans: trail.length, connected: age <= kGapMin };
     });
     const trails = new Map(
       there.map(({ robot, trail, length }): [string, Trail] => [robot, { points: trail, length }]),

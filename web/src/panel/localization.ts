@@ -1,0 +1,34 @@
+/** How well the server knows the poses of a robot, in words and as a colour. */
+import type { Localization } from '../api/types';
+
+/** Colours of the style sheet. */
+export type Quality = 'good' | 'fair' | 'bad';
+
+/** Limits of good poses: metres, and the share of points that fit the map. */
+const kGoodSigma = 0.05;
+const kGoodInliers = 0.7;
+
+const kCentimetre = 0.01;
+
+export function qualityOf({ state, sigma, inliers }: Localization): Quality {
+  if (state === 'lost') return 'bad';
+  return state === 'tracking' && sigma <= kGoodSigma && inliers >= kGoodInliers ? 'good' : 'fair';
+}
+
+/** "tracking, \u00b11 cm", "tracking, \u00b112 cm, 55 % of the scan fits the map". */
+export function wordsOf({ state, sigma, inliers }: Localization): string {
+  switch (state) {
+    case 'tracking':
+      return `tracking, \u00b1${around(sigma)}${inliers < kGoodInliers ? `, ${Math.round(100 * inliers)} % of the scan fits the map` : ''}`;
+    case 'lost':
+      return 'lost: its scans fit no place';
+    case 'unlocated':
+      return 'unlocated: no laser scan yet';
+  }
+}
+
+/** Never less than one centimetre. */
+function around(metres: number): string {
+  const centimetres = Math.max(1, Math.round(metres / kCentimetre));
+  return centimetres < 100 ? `${centimetres} cm` : `${metres.toFixed(1)} m`;
+}
