@@ -16,7 +16,7 @@ pages() {
 }
 
 # The headers of the client library: every parameter and every returned value.
-pages "$check" 'INPUT = docs/api/pages.dox robot_client/client/client.hpp common/scan/scan.hpp common/scan/sensor.hpp' \
+pages "$check" 'INPUT = docs/api/pages.dox robot_client/client/client.hpp common/scan/poses.hpp common/scan/scan.hpp common/scan/sensor.hpp' \
     'WARN_NO_PARAMDOC = YES'
 pages "$output"
 
