@@ -9,6 +9,9 @@ from served import DOCS, ask_a_server
 
 # Metrics that the dashboard does not show, with the reason.
 LEFT_OUT = {
+    "scanloom_loops_accepted_total": "loops are counted for each robot in the session's JSON, where they mean more",
+    "scanloom_maps_corrected_total": "as for loops",
+    "scanloom_moving_scans": "0 but for seconds after a correction; the viewer shows it",
     "process_virtual_memory_bytes": "most of the address space is never used, so it is not the memory in use",
     "scanloom_sessions_checked_total": "progress of the check at startup; the damage that it finds is shown",
     "scanloom_store_torn_bytes_dropped_total": "constant after startup; the log reports it",

@@ -21,6 +21,8 @@ export interface PathPage {
   frame: string;
   units: string;
   revision: number;
+  /** The newest revision at which the poses of earlier scans were corrected; 0: none were. */
+  posesCorrected: number;
   parts: PathPart[];
 }
 
@@ -29,7 +31,11 @@ export class PathFile {
   private newest: PathPage | null = null;
   private readonly paths = new Map<string, PathPart[]>();
 
+  /** @throws MalformedAnswer if poses were corrected since the pages before */
   add(page: PathPage): void {
+    if (this.newest !== null && this.newest.posesCorrected !== page.posesCorrected) {
+      throw new MalformedAnswer('poses were corrected meanwhile: save the file again');
+    }
     this.newest = page;
     for (const part of page.parts) {
       const parts = this.paths.get(part.robot) ?? [];
@@ -39,8 +45,9 @@ export class PathFile {
   }
 
   blob(): Blob {
-    const { frame, units, revision } = this.newest ?? { frame: 'map', units: 'm', revision: 0 };
-    const head = { type: 'FeatureCollection', frame_id: frame, units, revision };
+    const none = { frame: 'map', units: 'm', revision: 0, posesCorrected: 0 };
+    const { frame, units, revision, posesCorrected } = this.newest ?? none;
+    const head = { type: 'FeatureCollection', frame_id: frame, units, revision, poses_corrected: posesCorrected };
     const features = [...this.paths].flatMap(([robot, parts], index) => [
       index > 0 ? ',' : '',
       ...featureOf(robot, parts),
@@ -95,6 +102,7 @@ export function decodePathPage(body: string): PathPage {
     frame: text(collection['frame_id'], 'frame_id'),
     units: text(collection['units'], 'units'),
     revision: number(collection['revision'], 'revision'),
+    posesCorrected: number(collection['poses_corrected'], 'poses_corrected'),
     parts: list(collection['features'], 'features').map(decodePart),
   };
 }

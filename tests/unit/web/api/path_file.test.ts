@@ -19,7 +19,7 @@ const kCourse: Course = {
 };
 
 /** Returns a page in the format of the server. */
-function answer(course: Course, since: number, until: number): string {
+function answer(course: Course, since: number, until: number, corrected = 0): string {
   const features = Object.entries(course).map(([robot, positions]) => {
     const page = positions.filter(([revision]) => revision > since && revision <= until);
     const points = page.map(([, x, y]) => `[${x},${y}]`).join(',');
@@ -27,7 +27,8 @@ function answer(course: Course, since: number, until: number): string {
     const properties = `"properties":{"robot":"${robot}","points":${page.length}}`;
     return `{"type":"Feature","id":"${robot}",${properties},"geometry":{"type":"${type}","coordinates":[${points}]}}`;
   });
-  const head = `"type":"FeatureCollection","frame_id":"map","units":"m","revision":${until}`;
+  const revisions = `"revision":${until},"poses_corrected":${corrected}`;
+  const head = `"type":"FeatureCollection","frame_id":"map","units":"m",${revisions}`;
   return `{${head},"features":[${features.join(',')}]}`;
 }
 
@@ -61,6 +62,12 @@ describe('a file of paths', () => {
     const empty = new PathFile();
     empty.add(decodePathPage(answer({}, 0, 0)));
     assert.equal(await empty.blob().text(), answer({}, 0, 0));
+  });
+
+  it('refuses pages between which poses were corrected', () => {
+    const file = new PathFile();
+    file.add(decodePathPage(answer(kCourse, 0, 4)));
+    assert.throws(() => file.add(decodePathPage(answer(kCourse, 4, 9, 7))), /poses were corrected meanwhile/);
   });
 
   it('refuses invalid pages', () => {
