@@ -121,7 +121,7 @@ private:
                std::ranges::none_of(obstacles_, [&](Cell other) {
                    const double dx = std::max(std::abs(cell.i - other.i) - 0.5, 0.0);
                    const double dy = std::max(std::abs(cell.j - other.j) - 0.5, 0.0);
-                   return std::hypot(dx, dy) <= radius_of_centres_;
+                   return std::max(dx, dy) <= radius_of_centres_ && std::hypot(dx, dy) <= radius_of_centres_;
                });
     }
 
