@@ -1,6 +1,5 @@
 #include "robot_client/app/make_source.hpp"
 
-#include "robot_client/app/simulation.hpp"
 #include "robot_client/sources/carmen_log.hpp"
 #include "robot_client/sources/ld06_capture.hpp"
 #include "robot_client/sources/ld06_live.hpp"
@@ -9,6 +8,7 @@
 #include "robot_client/sources/pose_feed.hpp"
 #include "robot_client/sources/pose_path.hpp"
 #include "robot_client/sources/sonar_log.hpp"
+#include "sim/drive/behaviour.hpp"
 
 #include <fmt/format.h>
 
@@ -94,8 +94,20 @@ Result<PreparedSource> make(const RobotOptions& options, const SonarReplayOption
     return prepared;
 }
 
-Result<PreparedSource> make(const RobotOptions& options, const SimulateOptions& simulate, Console&) {
-    return prepare_simulation(options, simulate);
+Result<PreparedSource> make(const RobotOptions& options, sim::SimulatedRobotOptions simulate, Console&) {
+    simulate.range_max = options.range_max;
+    simulate.poses = options.poses;
+    simulate.no_return = options.no_return.value_or(simulate.no_return);
+    auto robot = sim::make_simulated_robot(simulate);
+    if (!robot) return robot.error();
+    PreparedSource prepared;
+    prepared.speed = simulate.speed;
+    prepared.body_radius = sim::kBodyRadius;
+    prepared.fingerprint = std::move(robot->fingerprint);
+    prepared.source = std::move(robot->source);
+    prepared.exploring = robot->exploring.get();
+    prepared.live = std::move(robot->exploring);
+    return prepared;
 }
 
 // Lidars LD06 ---------------------------------------------------------------------------------------------------------

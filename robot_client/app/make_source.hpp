@@ -35,8 +35,8 @@ struct PreparedSource {
 /// lines of a log or of poses, stamps that go back, and later events of a device to the console, which must outlive the
 /// source.
 /// Errors: those of CarmenLog::open(), SonarLog::open(), Ld06Capture::open(), read_pose_lines() and
-///         prepare_simulation(); kNotFound if the device does not exist; kInvalidField if options contradict each other
-///         or a spool is given for a capture file.
+///         make_simulated_robot(); kNotFound if the device does not exist; kInvalidField if options contradict each
+///         other or a spool is given for a capture file.
 [[nodiscard]] Result<PreparedSource> make_source(const RobotOptions& options, Console& console);
 
 } // namespace scanloom::robot

@@ -164,7 +164,7 @@ std::variant<RobotOptions, GroundTruthOptions, Leave> parse_options(int argc, co
     Raw raw;
     ReplayOptions replay_options;
     SonarReplayOptions sonar_options;
-    SimulateOptions simulate_options;
+    sim::SimulatedRobotOptions simulate_options;
     GroundTruthOptions truth_options;
     Ld06Options ld06_options;
 

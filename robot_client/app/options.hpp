@@ -6,6 +6,7 @@
 #include "robot_client/app/ld06_options.hpp"
 #include "robot_client/sources/source.hpp"
 #include "robot_client/spool/spool.hpp"
+#include "sim/robot/simulated_robot.hpp"
 
 #include <chrono>
 #include <cstdint>
@@ -19,24 +20,6 @@ namespace scanloom::robot {
 struct ReplayOptions {
     std::string file;
     double speed = 0.0; ///< 0 = as fast as the server accepts scans, 1 = as recorded
-};
-
-inline constexpr double kNoiseWidth = 0.05; ///< metres
-
-struct SimulateOptions {
-    std::string world = "office"; ///< a name, or the YAML file of a ROS map
-    std::string drive = "wall_follower";
-    std::string waypoints; ///< for read_waypoints(); empty: a tour of the world
-    std::string noise = "none";
-    std::optional<double> noise_width;    ///< metres, of uniform noise; absent: kNoiseWidth
-    std::optional<double> odometry_noise; ///< a factor; absent: 1 with noise, 0 without
-    std::string laser = "reference";      ///< or none
-    std::string sonar = "none";
-    std::string pose = "true"; ///< or odometry; what it sends if its poses are Poses::kMap
-    std::uint64_t seed = 1;
-    std::optional<double> duration; ///< seconds of simulated time
-    std::optional<std::uint64_t> scans;
-    double speed = 1.0; ///< 0 = as fast as the server accepts scans, 1 = real time
 };
 
 /// Writes the ground truth of a world as map files; needs no server.
@@ -74,7 +57,7 @@ struct RobotOptions : LinkOptions {
     std::chrono::milliseconds batch_delay{0};
     std::uint64_t batch_bytes_max = 0;
     bool compress = false;
-    std::variant<ReplayOptions, SonarReplayOptions, SimulateOptions, Ld06Options> source;
+    std::variant<ReplayOptions, SonarReplayOptions, sim::SimulatedRobotOptions, Ld06Options> source;
 };
 
 /// Reads the command line, SCANLOOM_* environment variables and the file of --config. Flags override the environment,

@@ -22,7 +22,7 @@ constexpr const char* kWorldsFooter =
     "  FILE.yaml          by its origin; rays pass through unknown cells as if they were free, and\n"
     "                     hit nothing outside it";
 
-void add_sensors(CLI::App& simulate, SimulateOptions& options) {
+void add_sensors(CLI::App& simulate, sim::SimulatedRobotOptions& options) {
     add_checked(
         simulate, "--laser", options.laser,
         "Laser: 684 beams over 180 degrees and 5 m; 360 over 360 degrees and 12 m; 1081 over 270 degrees and 30 m",
@@ -31,13 +31,13 @@ void add_sensors(CLI::App& simulate, SimulateOptions& options) {
                 CLI::IsMember({"none", "ring16"}));
 }
 
-void add_noise(CLI::App& simulate, SimulateOptions& options) {
+void add_noise(CLI::App& simulate, sim::SimulatedRobotOptions& options) {
     add_checked(simulate, "--noise", options.noise, "Noise of its measurements",
                 CLI::IsMember({"none", "gaussian", "uniform"}));
     simulate
-        .add_option(
-            "--noise-width", options.noise_width,
-            fmt::format("Metres; uniform noise makes each reading too long by 0 up to this. Default: {}", kNoiseWidth))
+        .add_option("--noise-width", options.noise_width,
+                    fmt::format("Metres; uniform noise makes each reading too long by 0 up to this. Default: {}",
+                                sim::kNoiseWidth))
         ->check(check_positive);
     simulate
         .add_option("--odometry-noise", options.odometry_noise,
@@ -52,7 +52,7 @@ void add_noise(CLI::App& simulate, SimulateOptions& options) {
         ->capture_default_str();
 }
 
-void add_drive(CLI::App& simulate, SimulateOptions& options) {
+void add_drive(CLI::App& simulate, sim::SimulatedRobotOptions& options) {
     add_checked(simulate, "--drive", options.drive,
                 "Behaviour: along the walls on its right, endlessly; from waypoint to waypoint; back and forth "
                 "over all free ground; or to the server's exploration goals, until nothing is left to explore",
@@ -66,7 +66,7 @@ void add_drive(CLI::App& simulate, SimulateOptions& options) {
 
 } // namespace
 
-CLI::App* add_simulate(CLI::App& app, SimulateOptions& options) {
+CLI::App* add_simulate(CLI::App& app, sim::SimulatedRobotOptions& options) {
     auto* simulate = app.add_subcommand("simulate", "Simulate a robot that drives through a world");
     simulate->footer(kWorldsFooter);
     add_checked(*simulate, "--world", options.world, world_help("The world"), sim::check_world);
@@ -105,7 +105,7 @@ CLI::App* add_ground_truth(CLI::App& app, GroundTruthOptions& options) {
 namespace {
 
 /// Returns why a robot with such poses cannot drive or be located, or nullopt.
-std::optional<std::string> mistake_in_poses(const SimulateOptions& options, Poses poses) {
+std::optional<std::string> mistake_in_poses(const sim::SimulatedRobotOptions& options, Poses poses) {
     if (options.pose != "true" && options.pose != "odometry") {
         return fmt::format("simulate: --pose: '{}' is neither true nor odometry", options.pose);
     }
@@ -130,7 +130,7 @@ std::optional<std::string> mistake_in_poses(const SimulateOptions& options, Pose
 
 } // namespace
 
-std::optional<std::string> mistake_in(const SimulateOptions& options, Poses poses) {
+std::optional<std::string> mistake_in(const sim::SimulatedRobotOptions& options, Poses poses) {
     if (options.laser == "none" && options.sonar == "none") {
         return "simulate: with --laser none the robot needs --sonar ring16";
     }

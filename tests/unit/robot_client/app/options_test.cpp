@@ -87,8 +87,8 @@ TEST_F(Options, DefaultsAreAsDocumented) {
     EXPECT_FALSE(replay.compress);
     EXPECT_FALSE(replay.cell_size || replay.range_max || replay.no_return);
     const auto simulate = parsed({"simulate", "--session", "s", "--robot", "r"});
-    EXPECT_EQ(std::get<SimulateOptions>(simulate.source).speed, 1.0);
-    EXPECT_FALSE(std::get<SimulateOptions>(simulate.source).duration);
+    EXPECT_EQ(std::get<sim::SimulatedRobotOptions>(simulate.source).speed, 1.0);
+    EXPECT_FALSE(std::get<sim::SimulatedRobotOptions>(simulate.source).duration);
 }
 
 TEST_F(Options, QueueAndTransportAreConfigurable) {
@@ -131,10 +131,11 @@ TEST_F(Options, TruthNeedsNoServerSessionOrRobot) {
 }
 
 TEST_F(Options, SimulatedRobotHasSensorsNoiseAndSentPose) {
-    const auto plain = std::get<SimulateOptions>(parsed({"simulate", "--session", "s", "--robot", "r"}).source);
+    const auto plain =
+        std::get<sim::SimulatedRobotOptions>(parsed({"simulate", "--session", "s", "--robot", "r"}).source);
     EXPECT_EQ(plain.laser + " " + plain.sonar + " " + plain.pose, "reference none true");
     EXPECT_FALSE(plain.odometry_noise);
-    const auto other = std::get<SimulateOptions>(
+    const auto other = std::get<sim::SimulatedRobotOptions>(
         parsed({"simulate", "--session", "s", "--robot", "r", "--laser", "none", "--sonar", "ring16", "--pose",
                 "odometry", "--odometry-noise", "2.5", "--world", "m.yaml"})
             .source);
@@ -197,25 +198,25 @@ TEST_F(Options, FlagOverridesEnvironmentOverridesFile) {
     const std::vector<std::string> words{"simulate", "--config", path};
     EXPECT_EQ(parsed(words).session, "from_file");
     EXPECT_EQ(parsed(words).cell_size, 0.1);
-    EXPECT_EQ(std::get<SimulateOptions>(parsed(words).source).seed, 5U);
-    EXPECT_EQ(std::get<SimulateOptions>(parsed(words).source).world, "room");
+    EXPECT_EQ(std::get<sim::SimulatedRobotOptions>(parsed(words).source).seed, 5U);
+    EXPECT_EQ(std::get<sim::SimulatedRobotOptions>(parsed(words).source).world, "room");
     set("SCANLOOM_SESSION", "from_environment");
     set("SCANLOOM_CELL_SIZE", "0.2");
     set("SCANLOOM_SEED", "6");
     EXPECT_EQ(parsed(words).session, "from_environment");
     EXPECT_EQ(parsed(words).cell_size, 0.2);
-    EXPECT_EQ(std::get<SimulateOptions>(parsed(words).source).seed, 6U);
+    EXPECT_EQ(std::get<sim::SimulatedRobotOptions>(parsed(words).source).seed, 6U);
     const std::vector<std::string> flags{"simulate",    "--config", path,     "--session", "from_flag",
                                          "--cell-size", "0.3",      "--seed", "7"};
     EXPECT_EQ(parsed(flags).session, "from_flag");
     EXPECT_EQ(parsed(flags).cell_size, 0.3);
-    EXPECT_EQ(std::get<SimulateOptions>(parsed(flags).source).seed, 7U);
+    EXPECT_EQ(std::get<sim::SimulatedRobotOptions>(parsed(flags).source).seed, 7U);
 }
 
 TEST_F(Options, EnvironmentNamesTheFileForBothSources) {
     set("SCANLOOM_CONFIG", file("session = \"s\"\nrobot = \"r\"\n").c_str());
     set("SCANLOOM_SPEED", "3");
-    EXPECT_EQ(std::get<SimulateOptions>(parsed({"simulate"}).source).speed, 3.0);
+    EXPECT_EQ(std::get<sim::SimulatedRobotOptions>(parsed({"simulate"}).source).speed, 3.0);
     EXPECT_EQ(std::get<ReplayOptions>(parsed({"replay", "f"}).source).speed, 3.0);
 }
 
@@ -319,7 +320,7 @@ TEST_F(Options, SeedsUseTheirFullRangeAlsoInTheFile) {
         "simulate", "--session", "s", "--robot", "r", "--config", file("[simulate]\nseed = -1\n")};
     EXPECT_THAT(left(words).text, HasSubstr("--seed"));
     const auto largest = parsed({"simulate", "--session", "s", "--robot", "r", "--seed", "18446744073709551615"});
-    EXPECT_EQ(std::get<SimulateOptions>(largest.source).seed, std::numeric_limits<std::uint64_t>::max());
+    EXPECT_EQ(std::get<sim::SimulatedRobotOptions>(largest.source).seed, std::numeric_limits<std::uint64_t>::max());
 }
 
 TEST_F(Options, ExplorerMayHaveASpool) {
@@ -329,7 +330,7 @@ TEST_F(Options, ExplorerMayHaveASpool) {
 TEST_F(Options, UniformNoiseWidthIsConfigurable) {
     const auto options =
         parsed({"simulate", "--session", "s", "--robot", "r", "--noise", "uniform", "--noise-width", "0.1"});
-    EXPECT_EQ(std::get<SimulateOptions>(options.source).noise_width, 0.1);
+    EXPECT_EQ(std::get<sim::SimulatedRobotOptions>(options.source).noise_width, 0.1);
 }
 
 TEST_F(Options, HelpNamesTheFolderOfWorlds) {

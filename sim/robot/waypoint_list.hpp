@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace scanloom::robot {
+namespace scanloom::sim {
 
 /// Reads waypoints from "x,y;x,y;..." in metres, or from a file given by its path with one "x y" or "x,y" per line. In
 /// a file, empty lines and text after # are ignored.
@@ -17,4 +17,4 @@ namespace scanloom::robot {
 /// Returns "x,y;x,y;..."; different waypoints give different texts.
 [[nodiscard]] std::string to_text(const std::vector<Point2>& waypoints);
 
-} // namespace scanloom::robot
+} // namespace scanloom::sim

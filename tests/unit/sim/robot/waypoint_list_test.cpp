@@ -1,4 +1,4 @@
-#include "robot_client/app/waypoint_list.hpp"
+#include "sim/robot/waypoint_list.hpp"
 
 #include "tests/support/temporary_directory.hpp"
 
@@ -7,7 +7,7 @@
 
 #include <fstream>
 
-namespace scanloom::robot {
+namespace scanloom::sim {
 namespace {
 
 using testing::HasSubstr;
@@ -63,4 +63,4 @@ TEST_F(WaypointList, MissingFileIsNotFound) {
 }
 
 } // namespace
-} // namespace scanloom::robot
+} // namespace scanloom::sim

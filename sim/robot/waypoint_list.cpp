@@ -1,4 +1,4 @@
-#include "robot_client/app/waypoint_list.hpp"
+#include "sim/robot/waypoint_list.hpp"
 
 #include "common/scan/limits.hpp"
 #include "common/text/parse_number.hpp"
@@ -12,7 +12,7 @@
 #include <optional>
 #include <string_view>
 
-namespace scanloom::robot {
+namespace scanloom::sim {
 namespace {
 
 constexpr std::size_t kWaypointsMax = 10'000;
@@ -104,4 +104,4 @@ std::string to_text(const std::vector<Point2>& waypoints) {
     return fmt::format("{}", fmt::join(texts, ";"));
 }
 
-} // namespace scanloom::robot
+} // namespace scanloom::sim
