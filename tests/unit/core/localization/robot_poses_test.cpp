@@ -26,8 +26,7 @@ double distance(const Pose2& a, const Pose2& b) {
 
 /// A lap of a corridor and a quarter, with odometry that drifts by metres.
 const Drive& lap() {
-    static const Drive drive =
-        drive_along(ring_building(), slam::kLapAndAQuarter, {.scale = 1.03, .turn = 0.004}, 1);
+    static const Drive drive = drive_along(ring_building(), slam::kLapAndAQuarter, {.scale = 1.03, .turn = 0.004}, 1);
     return drive;
 }
 
