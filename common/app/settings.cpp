@@ -122,7 +122,7 @@ private:
                 app_.get_subcommands([&](const CLI::App* source) { return source->check_name(item.parents.front()); });
             return !sections.empty() && sections.front()->get_option_no_throw("--" + item.name) == nullptr;
         };
-        const auto others = std::ranges::stable_partition(settings, is_of_program).begin();
+        const auto others = std::stable_partition(settings.begin(), settings.end(), is_of_program);
         std::vector<CLI::ConfigItem> sorted;
         for (auto item = settings.begin(); item != settings.end(); ++item) {
             const bool is_lifted = item < others;
