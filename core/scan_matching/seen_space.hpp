@@ -33,6 +33,13 @@ public:
     /// Returns whether a point is in the cell of the place.
     [[nodiscard]] bool has_point(double x, double y) const noexcept { return (at(x, y) & kPoint) != 0; }
 
+    /// Returns the lower left corner of the grid, metres, in the frame of the views' poses.
+    [[nodiscard]] Point2 corner() const noexcept { return {x_, y_}; }
+    /// Returns the number of columns of the grid.
+    [[nodiscard]] std::int64_t width() const noexcept { return width_; }
+    /// Returns the number of rows of the grid.
+    [[nodiscard]] std::int64_t height() const noexcept { return height_; }
+
     /// Returns whether there are no views with points.
     [[nodiscard]] bool is_empty() const noexcept { return cells_.empty(); }
 

@@ -1,0 +1,181 @@
+#include "core/scan_matching/place_search.hpp"
+#include "core/scan_matching/seen_space.hpp"
+#include "tests/support/building.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace scanloom::scan_matching {
+namespace {
+
+using testing_support::Building;
+using testing_support::uniform;
+
+constexpr double kCell = 0.1; // metres
+constexpr int kTurns = 960;
+
+/// A room with some boxes, a map of it from three views, and a scan from elsewhere in it.
+struct SearchedRoom {
+    SearchedRoom(std::mt19937& random, double size, std::size_t count = 14) {
+        building.add_box(-uniform(random, 0.4, 0.6) * size, -0.4 * size, 0.5 * size, uniform(random, 0.3, 0.5) * size);
+        for (int n = 0; n < 3; ++n) {
+            const double x = uniform(random, -0.35, 0.3) * size;
+            const double y = uniform(random, -0.3, 0.25) * size;
+            building.add_box(x, y, x + uniform(random, 0.05, 0.1) * size, y + 0.1 * size);
+        }
+        for (int n = 0; n < 3; ++n) {
+            const Pose2 pose = place(random, size);
+            shown.push_back(points_of(building.scan(laser, pose, 0.01, random), laser));
+            poses.push_back(transform_of(pose));
+        }
+        for (std::size_t n = 0; n < shown.size(); ++n) views.push_back({poses[n], shown[n].points});
+        truth = transform_of(place(random, size));
+        const auto scan = points_of(building.scan(laser, pose_of(truth), 0.01, random), laser).points;
+        for (std::size_t n = 0; n < count; ++n) points.push_back(scan[n * scan.size() / count]);
+    }
+
+    static Pose2 place(std::mt19937& random, double size) {
+        return {uniform(random, -0.3, 0.3) * size, uniform(random, -0.2, 0.2) * size, uniform(random, -3.1, 3.1)};
+    }
+
+    Building building;
+    Sensor laser = Building::laser();
+    std::vector<ScanPoints> shown;
+    std::vector<Transform2> poses;
+    std::vector<View> views;
+    Transform2 truth;
+    std::vector<SurfacePoint> points;
+};
+
+bool is_apart(const Transform2& a, const Transform2& b) {
+    const Transform2 off = inverse(a) * b;
+    return distance_of(off) > PlaceSearch::kApart || std::fabs(yaw_of(off)) > PlaceSearch::kTurnApart;
+}
+
+TEST(PlaceSearch, FindsWhatTryingAllPlacesFinds) {
+    std::mt19937 random(1);
+    for (int round = 0; round < 2; ++round) {
+        SearchedRoom scene(random, 2.5);
+        for (SurfacePoint& point : scene.points) { // so that few places are the best
+            point.x += static_cast<float>(uniform(random, -0.15, 0.15));
+            point.y += static_cast<float>(uniform(random, -0.15, 0.15));
+        }
+        const PlaceSearch search(scene.views);
+        const PlaceQuestion question{.score_min = 6, .rival_share = 0.8, .lookups_max = 1'000'000'000};
+        const auto found = search.find(scene.points, question);
+        ASSERT_TRUE(found);
+        EXPECT_EQ(search.score_of(scene.points, found->T_map_points), found->score);
+        int best = 0;
+        int rival = 0;
+        for (int turn = 0; turn < kTurns; ++turn) {
+            const SinCos rotation = sin_cos((turn + 0.5) * 2.0 * std::numbers::pi / kTurns - std::numbers::pi);
+            for (int row = -20; row <= 20; ++row) {
+                for (int column = -20; column <= 20; ++column) {
+                    const Transform2 pose{found->T_map_points.x + column * kCell, found->T_map_points.y + row * kCell,
+                                          rotation};
+                    const int score = search.score_of(scene.points, pose);
+                    best = std::max(best, score);
+                    if (score > rival && is_apart(found->T_map_points, pose)) rival = score;
+                }
+            }
+        }
+        EXPECT_EQ(found->score, best);
+        EXPECT_LE(rival, std::max(found->rival_score, static_cast<int>(question.rival_share * best)));
+    }
+}
+
+TEST(PlaceSearch, AScoreCountsPointsNearSurfacesMinusThoseInSeenSpace) {
+    std::mt19937 random(2);
+    const SearchedRoom scene(random, 8.0);
+    const PlaceSearch search(scene.views);
+    const PointMap map(scene.views);
+    const SeenSpace space(scene.views);
+    for (int round = 0; round < 2000; ++round) {
+        const Transform2 pose = transform_of(SearchedRoom::place(random, 8.0));
+        int low = 0; // points that certainly match
+        int high = 0;
+        for (const SurfacePoint& point : scene.points) {
+            const SurfacePoint moved = transform(pose, point);
+            const bool is_free = space.is_free(moved.x, moved.y);
+            // Within 10 cm in x and in y, the cells are neighbours; beyond 30 cm they are not.
+            low += map.nearest(moved, 0.1F).point != nullptr && !is_free ? 0 : is_free ? -1 : 0;
+            high += map.nearest(moved, 0.3F).point != nullptr || space.is_near_point(moved.x, moved.y) ? 1
+                    : is_free                                                                          ? -1
+                                                                                                       : 0;
+        }
+        const int score = search.score_of(scene.points, pose);
+        ASSERT_LE(low, score);
+        ASSERT_GE(high, score);
+    }
+}
+
+TEST(PlaceSearch, FindsAScanInABuildingWithoutAnEstimate) {
+    std::mt19937 random(3);
+    int found_count = 0;
+    for (int round = 0; round < 20; ++round) {
+        const SearchedRoom scene(random, 12.0, 60);
+        const auto found = PlaceSearch(scene.views).find(scene.points, {.score_min = 48, .lookups_max = 100'000'000});
+        if (!found || found->rival_score > 0.9 * found->score) continue;
+        ++found_count;
+        EXPECT_FALSE(is_apart(found->T_map_points, scene.truth)) << round;
+    }
+    EXPECT_GT(found_count, 3) << "of those that are not like another place";
+}
+
+/// In rooms that are too large to try all places: those around the truth.
+TEST(PlaceSearch, NoPlaceAroundTheTruthIsBetter) {
+    std::mt19937 random(7);
+    for (int round = 0; round < 40; ++round) {
+        const SearchedRoom scene(random, 12.0, 40);
+        const PlaceSearch search(scene.views);
+        int best = 0;
+        const auto found = search.find(scene.points, {.score_min = 1, .rival_share = 1.0, .lookups_max = 1'000'000'000});
+        ASSERT_TRUE(found);
+        const double turn = 2.0 * std::numbers::pi / kTurns;
+        const auto middle = std::floor((yaw_of(scene.truth) + std::numbers::pi) / turn);
+        for (int k = -8; k <= 8; ++k) {
+            const SinCos rotation = sin_cos((middle + k + 0.5) * turn - std::numbers::pi);
+            for (int j = -4; j <= 4; ++j) {
+                for (int i = -4; i <= 4; ++i) { // on the grid of the result
+                    const auto on_grid = [&](double at, double of) { return of + std::floor((at - of) / kCell) * kCell; };
+                    const Transform2 pose{on_grid(scene.truth.x, found->T_map_points.x) + i * kCell,
+                                          on_grid(scene.truth.y, found->T_map_points.y) + j * kCell, rotation};
+                    best = std::max(best, search.score_of(scene.points, pose));
+                }
+            }
+        }
+        EXPECT_GE(found->score, best) << round;
+    }
+}
+
+TEST(PlaceSearch, EqualRoomsAreRivals) {
+    std::mt19937 random(4);
+    const SearchedRoom scene(random, 6.0);
+    std::vector<View> twice = scene.views;
+    for (View view : scene.views) {
+        view.T_map_robot.x += 20.0;
+        twice.push_back(view);
+    }
+    const auto found = PlaceSearch(twice).find(scene.points, {.score_min = 8, .lookups_max = 100'000'000});
+    ASSERT_TRUE(found);
+    EXPECT_GE(found->rival_score, found->score - 2) << "the second room starts at another part of a cell";
+}
+
+TEST(PlaceSearch, WithoutEnoughLookupsThereIsNoAnswer) {
+    std::mt19937 random(5);
+    const SearchedRoom scene(random, 8.0);
+    EXPECT_FALSE(PlaceSearch(scene.views).find(scene.points, {.score_min = 8, .lookups_max = 1000}));
+}
+
+TEST(PlaceSearch, AnEmptyMapAndNoPointsHaveNoPlace) {
+    std::mt19937 random(6);
+    const SearchedRoom scene(random, 4.0);
+    EXPECT_FALSE(PlaceSearch({}).find(scene.points, {}));
+    EXPECT_FALSE(PlaceSearch(scene.views).find({}, {}));
+}
+
+} // namespace
+} // namespace scanloom::scan_matching
