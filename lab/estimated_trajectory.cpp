@@ -13,7 +13,8 @@ namespace scanloom::lab {
 
 Result<EstimatedTrajectory> estimate_trajectory(robot::Source& source, const std::function<double()>& cpu_seconds,
                                                 const std::function<void(std::size_t scans)>& on_scan) {
-    slam::TrajectoryEstimator estimator;
+    slam::SharedMap map;
+    slam::TrajectoryEstimator estimator(map);
     EstimatedTrajectory trajectory;
     std::vector<double> stamps;
     for (;;) {
@@ -31,6 +32,7 @@ Result<EstimatedTrajectory> estimate_trajectory(robot::Source& source, const std
     if (stamps.empty()) return Error{Errc::kNotFound, "no scan is left; leave out fewer scans"};
     const double begun = cpu_seconds();
     estimator.finish();
+    map.finish();
     trajectory.cpu_seconds += cpu_seconds() - begun;
     for (std::size_t i = 0; i < stamps.size(); ++i) {
         trajectory.final_poses.push_back({estimator.pose_of(i), stamps[i]});

@@ -18,7 +18,8 @@ enum class LocalizationState : std::uint8_t {
     kGiven,     ///< the robot sends poses in the map frame; in a wire::Correction: not stated
     kTracking,  ///< its scans fit the map
     kLost,      ///< its newest scans fit no place, or where it is since then is not known
-    kUnlocated, ///< it has no scan of a laser yet, so that its poses are its odometry
+    kUnlocated, ///< its place in the map is not known: no laser scan yet, or the map is of others and shows too little
+                ///< of what it sees
 };
 
 /// Returns the word for a state in the HTTP API.

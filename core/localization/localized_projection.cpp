@@ -1,5 +1,7 @@
 #include "core/localization/localized_projection.hpp"
 
+#include "core/localization/known_map.hpp"
+
 #include <variant>
 
 namespace scanloom::localization {
@@ -15,6 +17,9 @@ Result<bool> LocalizedProjection::apply(LogEntry& entry, double& work) {
     if (taken != nullptr && estimated_ < revision && taken->robot < projection_.robots().size() &&
         projection_.robots()[taken->robot].poses != Poses::kMap) {
         if (auto follows = projection_.check(entry); !follows) return follows.error();
+        if (poses_.scan_count() == 0 && projection_.chunk_count() > 0) {
+            poses_.begin_with(views_of(projection_.snapshot().classes, projection_.config().cell_size));
+        }
         poses_.estimate(*taken, *projection_.sensor_of(taken->robot, taken->scan.sensor), revision);
         estimated_ = revision;
         work -= kEstimationWork;

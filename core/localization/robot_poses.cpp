@@ -28,6 +28,7 @@ std::optional<Pose2> RobotPoses::add(const Scan& scan, const Sensor& sensor) {
         laser_scans_.push_back(scans_.size());
         scans_.push_back({estimator_.scan_count() - 1, {}, scan.stamp});
         laser_odometry_ = scan.odometry;
+        if (laser_scans_.size() == 1) fragments_ = estimator_.located_fragments();
     } else {
         scans_.push_back(placed(scan));
     }
@@ -40,25 +41,29 @@ std::optional<Pose2> RobotPoses::add(const Scan& scan, const Sensor& sensor) {
     added.first = sensor.kind == SensorKind::kLaser ? estimator_.first_pose_of(added.laser_scan) : place_.T_map_robot;
     const auto in_maps = is_located(scan_count() - 1) ? std::optional(added.first) : std::nullopt;
     in_maps_.append(in_maps);
+    if (added.laser_scan != kNoLaserScan) added.was_in_map = estimator_.is_in_map(added.laser_scan);
     return in_maps;
 }
 
 /// Returns where a scan is that is not from a laser.
 RobotPoses::PlacedScan RobotPoses::placed(const Scan& scan) const {
     const auto T_odom_robot = scan.odometry ? std::optional(transform_of(*scan.odometry)) : std::nullopt;
-    if (laser_scans_.empty()) return {kNoLaserScan, T_odom_robot.value_or(Transform2()), scan.stamp};
+    if (laser_scans_.empty()) {
+        const bool is_alone = estimator_.map().graph().size() == 0; // so that its odometry is the map's frame
+        return {kNoLaserScan, T_odom_robot.value_or(Transform2()), scan.stamp, {}, is_alone};
+    }
     if (!T_odom_robot || !laser_odometry_) return {estimator_.scan_count() - 1, {}, scan.stamp};
     return {estimator_.scan_count() - 1, inverse(transform_of(*laser_odometry_)) * *T_odom_robot, scan.stamp};
 }
 
-bool RobotPoses::correct_if_due() {
-    const auto& graph = estimator_.graph();
+bool RobotPoses::is_correction_due() {
     const double move = largest_move();
-    const bool is_paused = graph.size() < keyframes_at_correction_ + kCorrectionPause;
-    const auto parts = std::exchange(parts_, estimator_.connected_parts());
-    const bool is_connected = parts > 0 && parts_ > parts; // another part, with scans that maps left out
-    if (!is_connected && move <= (is_paused ? kJump : kSettled)) return false;
+    const bool is_paused = estimator_.keyframes().size() < keyframes_at_correction_ + kCorrectionPause;
+    const auto fragments = std::exchange(fragments_, estimator_.located_fragments());
+    return fragments_ > fragments || move > (is_paused ? kJump : kSettled);
+}
 
+void RobotPoses::correct() {
     const auto before = in_maps_.snapshot();
     mapping::EstimatedPoses after;
     for (std::size_t scan = 0; scan < scan_count(); ++scan) {
@@ -70,18 +75,21 @@ bool RobotPoses::correct_if_due() {
         after.append(pose);
     }
     in_maps_ = std::move(after);
-    keyframes_in_maps_.assign(graph.poses().begin(), graph.poses().end());
-    keyframes_at_correction_ = graph.size();
+    keyframes_in_maps_.clear();
+    for (const std::size_t keyframe : estimator_.keyframes()) {
+        keyframes_in_maps_.push_back(estimator_.map().graph().pose(keyframe));
+    }
+    keyframes_at_correction_ = keyframes_in_maps_.size();
     ++corrections_;
-    return true;
 }
 
 /// Returns how far a keyframe or a decided scan is from its pose in the maps, at most. Looks at keyframes only after
 /// the graph was optimized, and at scans only once.
 double RobotPoses::largest_move() {
     double largest = 0.0;
-    const auto& graph = estimator_.graph();
-    if (keyframes_in_maps_.size() < graph.size()) { // the newest laser scan; the graph may have been optimized since
+    const auto& keyframes = estimator_.keyframes();
+    if (keyframes_in_maps_.size() <
+        keyframes.size()) { // the newest laser scan; the graph may have been optimized since
         keyframes_in_maps_.push_back(transform_of(estimator_.first_pose_of(estimator_.scan_count() - 1)));
     }
     for (; decided_ < estimator_.decided_count(); ++decided_) {
@@ -90,10 +98,12 @@ double RobotPoses::largest_move() {
         const auto estimate = transform_of(estimator_.pose_of(decided_));
         largest = std::max(largest, distance_between(transform_of(*shown), estimate));
     }
-    if (optimizations_ == estimator_.loop_figures().optimizations) return largest;
-    optimizations_ = estimator_.loop_figures().optimizations;
-    for (std::size_t n = 0; n < graph.size(); ++n) {
-        largest = std::max(largest, distance_between(keyframes_in_maps_[n], graph.pose(n)));
+    if (optimizations_ == estimator_.map().optimization_count()) return largest;
+    optimizations_ = estimator_.map().optimization_count();
+    const auto& graph = estimator_.map().graph();
+    for (std::size_t n = 0; n < keyframes.size(); ++n) {
+        if (!graph.fragment_of(keyframes[n]).is_located) continue;
+        largest = std::max(largest, distance_between(keyframes_in_maps_[n], graph.pose(keyframes[n])));
     }
     return largest;
 }
@@ -106,22 +116,26 @@ Pose2 RobotPoses::newest(std::size_t scan) const {
 }
 
 bool RobotPoses::is_located(std::size_t scan) const {
-    return scans_[scan].laser_scan == kNoLaserScan || estimator_.is_located(scans_[scan].laser_scan);
+    const PlacedScan& placed = scans_[scan];
+    return placed.laser_scan == kNoLaserScan ? placed.was_in_map : estimator_.is_located(placed.laser_scan);
 }
 
 bool RobotPoses::is_in_map(std::size_t scan) const {
-    return scans_[scan].laser_scan == kNoLaserScan || estimator_.is_connected_scan(scans_[scan].laser_scan);
+    const PlacedScan& placed = scans_[scan];
+    return placed.laser_scan == kNoLaserScan ? placed.was_in_map : estimator_.is_in_map(placed.laser_scan);
+}
+
+LocalizationState RobotPoses::state() const {
+    if (laser_scans_.empty()) return LocalizationState::kUnlocated;
+    if (!estimator_.is_lost()) return LocalizationState::kTracking;
+    return estimator_.located_fragments() == 0 ? LocalizationState::kUnlocated : LocalizationState::kLost;
 }
 
 mapping::Localization RobotPoses::localization() const {
-    if (laser_scans_.empty()) return {.state = LocalizationState::kUnlocated};
+    if (laser_scans_.empty()) return {.state = state()};
     const auto& newest = estimator_.newest();
-    return {estimator_.is_lost() ? LocalizationState::kLost : LocalizationState::kTracking,
-            newest.inlier_ratio,
-            newest.position_sigma,
-            newest.yaw_sigma,
-            estimator_.loop_count(),
-            corrections_};
+    return {state(),          newest.inlier_ratio,     newest.position_sigma,
+            newest.yaw_sigma, estimator_.loop_count(), corrections_};
 }
 
 } // namespace scanloom::localization

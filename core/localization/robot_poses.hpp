@@ -33,15 +33,21 @@ public:
     static constexpr double kSettled = 0.01;            ///< metres, likewise
     static constexpr std::size_t kCorrectionPause = 50; ///< keyframes
 
+    /// @param map    that the robots of the session share; must outlive this object
+    /// @param robot  number of the robot among them
+    RobotPoses(slam::SharedMap& map, std::size_t robot) : estimator_(map, robot) {}
+
     /// Adds the robot's next scan.
     /// @param scan    with odometry if the robot has any
     /// @param sensor  that took it
     /// @return its pose in the maps, T_map_robot; nullopt: it fits no place, so maps leave it out
     std::optional<Pose2> add(const Scan& scan, const Sensor& sensor);
 
-    /// Lets the maps follow the newest estimates if a correction is due. Call it after each add().
-    /// @return whether the poses of earlier scans in the maps have changed
-    bool correct_if_due();
+    /// Returns whether the maps should follow the newest estimates. Call it after each add() to the shared map.
+    [[nodiscard]] bool is_correction_due();
+
+    /// Lets the maps follow the newest estimates.
+    void correct();
 
     /// Returns the poses in the maps of all scans; nullopt: the scan is left out.
     [[nodiscard]] mapping::EstimatedPosesView in_maps() const { return in_maps_.snapshot(); }
@@ -56,6 +62,10 @@ public:
     /// Returns the pose of a scan as first estimated, T_map_robot.
     /// @param scan  number of the scan, from 0. Precondition: scan < scan_count()
     [[nodiscard]] Pose2 first(std::size_t scan) const { return scans_[scan].first; }
+
+    /// Returns whether a scan's place in the map was known when it was added, at least as a prediction.
+    /// @param scan  number of the scan, from 0. Precondition: scan < scan_count()
+    [[nodiscard]] bool was_in_map(std::size_t scan) const { return scans_[scan].was_in_map; }
 
     /// Returns whether the scan's pose is known; see TrajectoryEstimator::is_located().
     /// @param scan  number of the scan, from 0. Precondition: scan < scan_count()
@@ -87,10 +97,12 @@ private:
         slam::Transform2 T_laser_scan;         // of the robot at both; without a laser scan T_map_robot
         double stamp = 0.0;                    // seconds
         Pose2 first;                           // T_map_robot, when it was added
+        bool was_in_map = true;                // likewise
     };
 
     [[nodiscard]] PlacedScan placed(const Scan& scan) const;
     [[nodiscard]] double largest_move();
+    [[nodiscard]] LocalizationState state() const;
 
     slam::TrajectoryEstimator estimator_;
     std::vector<PlacedScan> scans_;
@@ -101,11 +113,11 @@ private:
     std::size_t corrections_ = 0;
 
     // At the last correction, or since.
-    std::vector<slam::Transform2> keyframes_in_maps_; // the poses of the keyframes
+    std::vector<slam::Transform2> keyframes_in_maps_; // the poses of the robot's keyframes
     std::size_t keyframes_at_correction_ = 0;
     std::size_t optimizations_ = 0; // of the pose graph, that were looked at
     std::size_t decided_ = 0;       // laser scans that were looked at when they were decided
-    std::size_t parts_ = 0;         // connected parts that the maps show
+    std::size_t fragments_ = 0;     // located ones that the maps show
 };
 
 } // namespace scanloom::localization

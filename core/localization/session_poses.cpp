@@ -7,10 +7,16 @@ namespace scanloom::localization {
 void SessionPoses::estimate(ScanTaken& taken, const Sensor& sensor, Revision revision) {
     if (robots_.size() <= taken.robot) robots_.resize(taken.robot + 1);
     auto& robot = robots_[taken.robot];
-    if (!robot) robot = std::make_unique<RobotPoses>();
+    if (!robot) robot = std::make_unique<RobotPoses>(*map_, taken.robot);
     taken.scan.pose = robot->add(taken.scan, sensor);
     ++scan_count_;
-    if (robot->correct_if_due()) corrected_ = revision;
+    bool is_due = false;
+    for (const auto& each : robots_) is_due = (each && each->is_correction_due()) || is_due;
+    if (!is_due) return;
+    corrected_ = revision;
+    for (const auto& each : robots_) {
+        if (each) each->correct();
+    }
 }
 
 mapping::ScanPoses SessionPoses::in_maps() const {
@@ -23,21 +29,20 @@ std::vector<StampedPose> SessionPoses::trajectory(RobotIndex robot, Estimate est
     std::vector<StampedPose> trajectory;
     const auto* poses = find(robot);
     for (std::size_t scan = 0; poses != nullptr && scan < poses->scan_count(); ++scan) {
-        if (!poses->is_in_map(scan)) continue;
+        if (!poses->is_in_map(scan) || (estimate == Estimate::kFirst && !poses->was_in_map(scan))) continue;
         trajectory.push_back(
             {poses->stamp(scan), estimate == Estimate::kFirst ? poses->first(scan) : poses->newest(scan)});
     }
     return trajectory;
 }
 
-PoseGraphView SessionPoses::graph(RobotIndex robot) const {
+PoseGraphView SessionPoses::graph() const {
     PoseGraphView view;
-    const auto* poses = find(robot);
-    if (poses == nullptr) return view;
-    const auto& graph = poses->estimator().graph();
+    const auto& graph = map_->graph();
     for (std::size_t n = 0; n < graph.size(); ++n) {
-        view.keyframes.push_back(scan_matching::pose_of(graph.pose(n)));
-        view.is_matched.push_back(graph[n].is_matched);
+        const auto& fragment = graph.fragment_of(n);
+        view.keyframes.push_back(
+            {static_cast<RobotIndex>(fragment.robot), scan_matching::pose_of(graph.pose(n)), fragment.is_located});
     }
     view.edges.assign(graph.edges().begin(), graph.edges().end());
     return view;

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <utility>
 #include <vector>
 
 namespace scanloom::localization {
@@ -23,10 +24,15 @@ struct StampedPose {
     friend bool operator==(const StampedPose&, const StampedPose&) = default;
 };
 
-/// The pose graph of a robot.
+/// The pose graph of a session's robots.
 struct PoseGraphView {
-    std::vector<Pose2> keyframes;  ///< T_map_keyframe
-    std::vector<bool> is_matched;  ///< see Keyframe::is_matched
+    /// A keyframe.
+    struct Node {
+        RobotIndex robot = 0;    ///< whose scan it is
+        Pose2 pose;              ///< T_map_keyframe
+        bool is_located = false; ///< whether its place in the map is known; otherwise the pose is in another frame
+    };
+    std::vector<Node> keyframes;
     std::vector<slam::Edge> edges; ///< between them
 };
 
@@ -35,6 +41,10 @@ struct PoseGraphView {
 /// Threads: one at a time.
 class SessionPoses {
 public:
+    /// Begins with an imported map: all robots are located in it. Call it before the first scan.
+    /// @param views  of the map
+    void begin_with(std::vector<slam::KnownView> views) { map_->begin_with(std::move(views)); }
+
     /// Estimates the pose of the log's next scan, and sets it. Without a pose, it fits no place.
     /// @param taken     the scan
     /// @param sensor    that took it
@@ -62,11 +72,11 @@ public:
     /// @return empty if the robot sends poses
     [[nodiscard]] std::vector<StampedPose> trajectory(RobotIndex robot, Estimate estimate) const;
 
-    /// Returns the pose graph of a robot; empty if it sends poses.
-    /// @param robot  index in the session
-    [[nodiscard]] PoseGraphView graph(RobotIndex robot) const;
+    /// Returns the pose graph.
+    [[nodiscard]] PoseGraphView graph() const;
 
 private:
+    std::unique_ptr<slam::SharedMap> map_ = std::make_unique<slam::SharedMap>();
     std::vector<std::unique_ptr<RobotPoses>> robots_; // by RobotIndex; null: as find()
     Revision corrected_ = 0;
     std::size_t scan_count_ = 0;

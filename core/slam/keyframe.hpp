@@ -15,8 +15,9 @@ using scan_matching::Transform2;
 /// A selected scan. Maps consist of keyframes, and every other scan's pose is stored relative to one.
 struct Keyframe {
     std::shared_ptr<const ScanPoints> scan; ///< its points
-    bool is_matched = true; ///< whether scans connect it with the keyframe before; otherwise a prediction does
-    double travelled = 0.0; ///< metres from the first keyframe to here; a turn of one radian counts as 0.2 m
+    std::size_t fragment = 0;               ///< that it belongs to
+    std::size_t position = 0;               ///< among the keyframes of the fragment
+    double travelled = 0.0; ///< metres from the fragment's first keyframe; a turn of one radian counts as 0.2 m
 };
 
 /// Keyframes with their poses in the frame of one map. Keeps the scans alive that the views refer to.

@@ -1,6 +1,5 @@
 #include "core/slam/keyframe_graph.hpp"
 
-#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -11,45 +10,73 @@ namespace scanloom::slam {
 namespace {
 
 // Standard deviations of the relative pose of two successive keyframes.
-constexpr double kMatchedSigma = 0.015;      // metres
-constexpr double kMatchedTurnSigma = 0.004;  // radians
-constexpr double kPredictedSigma = 0.1;      // metres
-constexpr double kPredictedTurnSigma = 0.05; // radians
+constexpr double kMatchedSigma = 0.015;     // metres
+constexpr double kMatchedTurnSigma = 0.004; // radians
 
 constexpr double kMetresPerRadian = 0.2;  // of a turn, in the distance travelled
 constexpr double kMapDistanceMax = 100.0; // metres travelled between keyframes of one map; bounds its memory
 
-constexpr std::array<std::size_t, 1> kFixed{0};
-
 } // namespace
 
-void KeyframeGraph::add(std::shared_ptr<const ScanPoints> scan, const Transform2& T_newest_keyframe, bool is_matched) {
-    if (keyframes_.empty()) {
-        keyframes_.push_back({std::move(scan)});
-        poses_.push_back(T_newest_keyframe);
+std::size_t KeyframeGraph::begin_fragment(std::size_t robot, std::shared_ptr<const ScanPoints> scan,
+                                          const Transform2& T_map_keyframe, bool is_located) {
+    fragments_.push_back({robot, is_located, {size()}});
+    keyframes_.push_back({.scan = std::move(scan), .fragment = fragments_.size() - 1});
+    poses_.push_back(T_map_keyframe);
+    return fragments_.size() - 1;
+}
+
+void KeyframeGraph::add_fixed(std::shared_ptr<const ScanPoints> scan, const Transform2& T_map_keyframe) {
+    if (fragments_.empty()) {
+        begin_fragment(kNoRobot, std::move(scan), T_map_keyframe, true);
+        fragments_.front().is_fixed = true;
         return;
     }
+    auto& keyframes = fragments_.front().keyframes;
+    // Without a length, because all views are exact: drift begins where a robot leaves them.
+    edges_.push_back({keyframes.back(), size(), inverse(poses_[keyframes.back()]) * T_map_keyframe,
+                      information_of(kMatchedSigma, kMatchedTurnSigma)});
+    keyframes.push_back(size());
+    keyframes_.push_back({.scan = std::move(scan), .position = keyframes.size() - 1});
+    poses_.push_back(T_map_keyframe);
+}
+
+/// Returns the keyframes that do not move: those of a known map, else the first one.
+std::vector<std::size_t> KeyframeGraph::fixed() const {
+    return fragments_.front().is_fixed ? fragments_.front().keyframes : std::vector<std::size_t>{0};
+}
+
+void KeyframeGraph::add(std::size_t fragment, std::shared_ptr<const ScanPoints> scan,
+                        const Transform2& T_newest_keyframe) {
     const Transform2& T = T_newest_keyframe;
-    double travelled = distance_of(T) + kMetresPerRadian * std::fabs(scan_matching::yaw_of(T));
-    if (!is_matched) travelled += kMapDistanceMax; // maps of one frame then do not contain both keyframes
-    const auto information = is_matched ? information_of(kMatchedSigma, kMatchedTurnSigma)
-                                        : information_of(kPredictedSigma, kPredictedTurnSigma);
-    edges_.push_back({size() - 1, size(), T, information});
-    poses_.push_back(poses_.back() * T);
-    keyframes_.push_back({std::move(scan), is_matched, keyframes_.back().travelled + travelled});
+    auto& keyframes = fragments_[fragment].keyframes;
+    const std::size_t newest = keyframes.back();
+    const double travelled =
+        keyframes_[newest].travelled + distance_of(T) + kMetresPerRadian * std::fabs(scan_matching::yaw_of(T));
+    edges_.push_back({newest, size(), T, information_of(kMatchedSigma, kMatchedTurnSigma)});
+    poses_.push_back(poses_[newest] * T);
+    keyframes.push_back(size());
+    keyframes_.push_back({std::move(scan), fragment, keyframes.size() - 1, travelled});
+}
+
+void KeyframeGraph::move(std::size_t fragment, const Transform2& T_to_from, bool is_located) {
+    fragments_[fragment].is_located = is_located;
+    for (const std::size_t keyframe : fragments_[fragment].keyframes) {
+        poses_[keyframe] = T_to_from * poses_[keyframe];
+    }
 }
 
 void KeyframeGraph::add_loop(const Edge& edge) { edges_.push_back(edge); }
 
 void KeyframeGraph::optimize(int iterations) {
-    if (poses_.empty()) return; // kFixed names the first keyframe
-    slam::optimize(poses_, kFixed, edges_, {.max_iterations = iterations});
+    if (poses_.empty()) return;
+    slam::optimize(poses_, fixed(), edges_, {.max_iterations = iterations});
 }
 
 void KeyframeGraph::optimize_after_jump() {
     if (poses_.empty()) return;
     constexpr int kIterations = 2; // of each pass
-    optimize_gradually(poses_, kFixed, edges_, {.max_iterations = kIterations});
+    optimize_gradually(poses_, fixed(), edges_, {.max_iterations = kIterations});
 }
 
 std::vector<double> KeyframeGraph::distances_from(std::size_t keyframe) const {
@@ -83,17 +110,20 @@ std::vector<double> KeyframeGraph::distances_from(std::size_t keyframe) const {
     return distances;
 }
 
-KeyframeViews KeyframeGraph::views_around(std::size_t first, std::size_t last, std::size_t frame) const {
+KeyframeViews KeyframeGraph::views_around(std::size_t frame, std::size_t first, std::size_t last) const {
+    const auto& keyframes = fragment_of(frame).keyframes;
+    const std::size_t middle = keyframes_[frame].position;
     const Transform2 T_frame_map = inverse(poses_[frame]);
     KeyframeViews views;
-    const auto add = [&](std::size_t keyframe) {
+    const auto add = [&](std::size_t position) {
+        const std::size_t keyframe = keyframes[position];
         if (std::fabs(keyframes_[keyframe].travelled - keyframes_[frame].travelled) > kMapDistanceMax) return;
         views.add(keyframes_[keyframe], keyframe == frame ? Transform2() : T_frame_map * poses_[keyframe]);
     };
-    add(frame);
-    for (std::size_t step = 1; frame + step <= last || frame >= first + step; ++step) {
-        if (frame + step <= last) add(frame + step);
-        if (frame >= first + step) add(frame - step);
+    add(middle);
+    for (std::size_t step = 1; middle + step <= last || middle >= first + step; ++step) {
+        if (middle + step <= last) add(middle + step);
+        if (middle >= first + step) add(middle - step);
     }
     return views;
 }

@@ -10,15 +10,46 @@
 
 namespace scanloom::slam {
 
-/// The keyframes of a robot, their poses, and the relative poses measured between them.
+inline constexpr std::size_t kNoRobot = static_cast<std::size_t>(-1); ///< instead of a robot's number
+
+/// Successive keyframes of one robot, each matched to those before. A robot that is lost begins another fragment.
+struct Fragment {
+    std::size_t robot = 0;   ///< kNoRobot: the views of a known map
+    bool is_located = false; ///< whether its place in the map is known; otherwise its poses are in a frame of its own
+    std::vector<std::size_t> keyframes; ///< their indices, oldest first; at least one
+    bool is_fixed = false;              ///< whether they are views of a known map, and never move
+};
+
+/// The keyframes of robots, their poses, and the relative poses measured between them.
 /// Threads: one at a time.
 class KeyframeGraph {
 public:
-    /// Adds a keyframe after the newest one.
-    /// @param scan                 its points
-    /// @param T_newest_keyframe    its pose relative to the newest keyframe; for the first one, its pose in the map
-    /// @param is_matched           whether scans determine that pose; otherwise it is a prediction, and less certain
-    void add(std::shared_ptr<const ScanPoints> scan, const Transform2& T_newest_keyframe, bool is_matched);
+    /// Begins a fragment with its first keyframe.
+    /// @param robot           whose scan it is
+    /// @param scan            its points
+    /// @param T_map_keyframe  its pose; in a frame of its own if the fragment is not located
+    /// @param is_located      whether its place in the map is known
+    /// @return index of the fragment
+    std::size_t begin_fragment(std::size_t robot, std::shared_ptr<const ScanPoints> scan,
+                               const Transform2& T_map_keyframe, bool is_located);
+
+    /// Adds a view of a known map as a keyframe that does not move. All of them are one fragment.
+    /// @param scan            its points
+    /// @param T_map_keyframe  its pose
+    /// Precondition: only such keyframes were added before.
+    void add_fixed(std::shared_ptr<const ScanPoints> scan, const Transform2& T_map_keyframe);
+
+    /// Adds a keyframe to a fragment.
+    /// @param fragment           index of the fragment
+    /// @param scan               its points
+    /// @param T_newest_keyframe  its pose relative to the fragment's newest keyframe, as matched
+    void add(std::size_t fragment, std::shared_ptr<const ScanPoints> scan, const Transform2& T_newest_keyframe);
+
+    /// Moves a fragment as a whole.
+    /// @param fragment    index of the fragment
+    /// @param T_to_from   by which its poses are moved
+    /// @param is_located  whether its place in the map is known then
+    void move(std::size_t fragment, const Transform2& T_to_from, bool is_located);
 
     /// Adds an edge that may be wrong.
     /// @param edge  between keyframes that are not neighbours
@@ -54,13 +85,23 @@ public:
     /// Returns all edges, in the order in which they were added.
     [[nodiscard]] std::span<const Edge> edges() const noexcept { return edges_; }
 
-    /// Returns some keyframes in the frame of one of them.
+    /// Returns the fragments, in the order in which they began.
+    [[nodiscard]] std::span<const Fragment> fragments() const noexcept { return fragments_; }
+    /// Returns the fragment of a keyframe.
+    [[nodiscard]] const Fragment& fragment_of(std::size_t keyframe) const {
+        return fragments_[keyframes_[keyframe].fragment];
+    }
+
+    /// Returns some keyframes of a fragment in the frame of one of them.
     /// Keyframes more than 100 m of the trajectory away from it are left out.
-    /// @param first, last  the keyframes [first, last]; last < size()
     /// @param frame        the keyframe whose frame is used; views are ordered by their number of keyframes from it
-    [[nodiscard]] KeyframeViews views_around(std::size_t first, std::size_t last, std::size_t frame) const;
+    /// @param first, last  positions [first, last] in its fragment
+    [[nodiscard]] KeyframeViews views_around(std::size_t frame, std::size_t first, std::size_t last) const;
 
 private:
+    [[nodiscard]] std::vector<std::size_t> fixed() const;
+
+    std::vector<Fragment> fragments_;
     std::vector<Keyframe> keyframes_;
     std::vector<Transform2> poses_;
     std::vector<Edge> edges_;

@@ -40,19 +40,19 @@ constexpr double kNoticeableJump = 0.05;      // metres; a turn of one radian co
 
 } // namespace
 
-void LoopSearch::search(KeyframeGraph& graph) {
-    const std::size_t newest = graph.size() - 1;
-    if (newest % kEvery != 0) return;
-    submaps_.extend(graph);
+void LoopSearch::search(KeyframeGraph& graph, std::size_t fragment) {
+    const std::size_t keyframe = graph.fragments()[fragment].keyframes.back();
+    if (graph[keyframe].position % kEvery != 0) return;
+    submaps_.extend(graph, fragment);
     double largest_jump = 0.0;
-    for (const Place& place : nearest_places(graph)) {
-        const Answer answer = match(graph, place);
+    for (const Place& place : nearest_places(graph, keyframe)) {
+        const Answer answer = match(graph, keyframe, place);
         if (is_large(place, answer)) {
-            if (try_stretch(graph, place, answer)) return;
+            if (try_stretch(graph, keyframe, place, answer)) return;
             continue;
         }
         if (!answer.agrees || !answer.is_determined) continue;
-        graph.add_loop({submaps_[place.submap].anchor, newest, answer.T_anchor_newest,
+        graph.add_loop({submaps_[place.submap].anchor, keyframe, answer.T_anchor_keyframe,
                         information_of(kLoopSigma, kLoopTurnSigma), true});
         largest_jump = std::max(largest_jump, answer.jump + 2.0 * answer.turn);
         ++figures_.loops;
@@ -65,14 +65,16 @@ void LoopSearch::search(KeyframeGraph& graph) {
     graph.optimize(kIterations);
 }
 
-std::vector<LoopSearch::Place> LoopSearch::nearest_places(const KeyframeGraph& graph) const {
-    const std::size_t newest = graph.size() - 1;
-    const auto lengths = graph.distances_from(newest);
+std::vector<LoopSearch::Place> LoopSearch::nearest_places(const KeyframeGraph& graph, std::size_t keyframe) const {
+    const auto lengths = graph.distances_from(keyframe);
+    const Keyframe& searched = graph[keyframe];
     std::vector<Place> places;
-    for (std::size_t n = 0; n < submaps_.size() && submaps_[n].last + kGap <= newest; ++n) {
-        const std::size_t anchor = submaps_[n].anchor;
-        const double distance = distance_of(inverse(graph.pose(anchor)) * graph.pose(newest));
-        const double drift = std::min(kDriftMax, kDrift * lengths[anchor]);
+    for (std::size_t n = 0; n < submaps_.size(); ++n) {
+        const Submap& submap = submaps_[n];
+        if (!graph.fragments()[submap.fragment].is_located) continue;
+        if (submap.fragment == searched.fragment && submap.last + kGap > searched.position) continue;
+        const double distance = distance_of(inverse(graph.pose(submap.anchor)) * graph.pose(keyframe));
+        const double drift = std::min(kDriftMax, kDrift * lengths[submap.anchor]);
         if (distance < kLoopReach + drift) places.push_back({n, distance, drift});
     }
     std::ranges::stable_sort(places, {}, &Place::distance);
@@ -80,13 +82,12 @@ std::vector<LoopSearch::Place> LoopSearch::nearest_places(const KeyframeGraph& g
     return places;
 }
 
-LoopSearch::Answer LoopSearch::match(const KeyframeGraph& graph, const Place& place) {
+LoopSearch::Answer LoopSearch::match(const KeyframeGraph& graph, std::size_t keyframe, const Place& place) {
     ++figures_.matches;
     note_use(place.submap);
     Submap& submap = submaps_[place.submap];
-    const std::size_t newest = graph.size() - 1;
-    const auto& points = graph[newest].scan->points;
-    const Transform2 expected = inverse(graph.pose(submap.anchor)) * graph.pose(newest);
+    const auto& points = graph[keyframe].scan->points;
+    const Transform2 expected = inverse(graph.pose(submap.anchor)) * graph.pose(keyframe);
     const double window = std::max(place.drift, kWindowMin);
     const auto found = match_to_lines(points, submap.map.points(), expected, {expected, window, kEstimateTurn},
                                       {.steps_max = 15,
@@ -109,15 +110,16 @@ bool LoopSearch::is_large(const Place& place, const Answer& answer) const {
     return answer.agrees && answer.is_determined && (answer.jump > kSmallJump || answer.turn > kSmallTurn);
 }
 
-bool LoopSearch::try_stretch(KeyframeGraph& graph, const Place& place, const Answer& answer) {
-    const std::size_t newest = graph.size() - 1;
-    if (graph[newest].travelled < next_test_at_) return false;
-    next_test_at_ = graph[newest].travelled + kStretchPause;
+bool LoopSearch::try_stretch(KeyframeGraph& graph, std::size_t keyframe, const Place& place, const Answer& answer) {
+    const std::size_t fragment = graph[keyframe].fragment;
+    if (next_test_at_.size() <= fragment) next_test_at_.resize(fragment + 1);
+    if (graph[keyframe].travelled < next_test_at_[fragment]) return false;
+    next_test_at_[fragment] = graph[keyframe].travelled + kStretchPause;
     ++figures_.stretch_tests;
     const std::size_t anchor = submaps_[place.submap].anchor;
     const Transform2 correction =
-        answer.agrees ? graph.pose(anchor) * answer.T_anchor_newest * inverse(graph.pose(newest)) : Transform2();
-    if (!accept_stretch(graph, {anchor, correction, std::max(kStretchWindow, place.drift)})) return false;
+        answer.agrees ? graph.pose(anchor) * answer.T_anchor_keyframe * inverse(graph.pose(keyframe)) : Transform2();
+    if (!accept_stretch(graph, {keyframe, anchor, correction, std::max(kStretchWindow, place.drift)})) return false;
     new_loops_ = 0;
     ++figures_.stretches_accepted;
     ++figures_.optimizations;

@@ -25,42 +25,47 @@ struct LoopFigures {
 /// Threads: one at a time.
 class LoopSearch {
 public:
-    /// Searches for places around the newest keyframe.
-    /// @param graph  receives edges; its poses may move. Not empty
+    /// Searches for places around the newest keyframe of a fragment.
+    /// @param graph     receives edges; its poses may move
+    /// @param fragment  index of a fragment; it is located
     /// Cost: at every second keyframe, time in proportion to the number of keyframes, and up to three scan matches.
-    void search(KeyframeGraph& graph);
+    void search(KeyframeGraph& graph, std::size_t fragment);
+
+    /// Adds the submaps that the newest keyframes of a fragment complete. search() does so for its fragment.
+    void add_submaps(const KeyframeGraph& graph, std::size_t fragment) { submaps_.extend(graph, fragment); }
 
     /// Returns the figures since the start.
     [[nodiscard]] const LoopFigures& figures() const noexcept { return figures_; }
 
 private:
-    /// A submap near the newest keyframe.
+    /// A submap near the keyframe.
     struct Place {
         std::size_t submap = 0;
         double distance = 0.0; // metres, from its anchor
         double drift = 0.0;    // metres, bound of the error of the keyframe's pose relative to it
     };
 
-    /// What a match of the newest keyframe with a submap says.
+    /// What a match of the keyframe with a submap says.
     struct Answer {
-        Transform2 T_anchor_newest;
+        Transform2 T_anchor_keyframe;
         double jump = 0.0; // metres between the estimate and the match
         double turn = 0.0; // radians, likewise
         bool agrees = false;
         bool is_determined = false; // whether the scan determines the position in every direction
     };
 
-    [[nodiscard]] std::vector<Place> nearest_places(const KeyframeGraph& graph) const;
-    [[nodiscard]] Answer match(const KeyframeGraph& graph, const Place& place);
+    [[nodiscard]] std::vector<Place> nearest_places(const KeyframeGraph& graph, std::size_t keyframe) const;
+    [[nodiscard]] Answer match(const KeyframeGraph& graph, std::size_t keyframe, const Place& place);
     [[nodiscard]] bool is_large(const Place& place, const Answer& answer) const;
-    [[nodiscard]] bool try_stretch(KeyframeGraph& graph, const Place& place, const Answer& answer);
+    [[nodiscard]] bool try_stretch(KeyframeGraph& graph, std::size_t keyframe, const Place& place,
+                                   const Answer& answer);
     void note_use(std::size_t submap);
 
     Submaps submaps_;
     std::deque<std::size_t> used_; // submaps whose seen space is in memory, the oldest first
     LoopFigures figures_;
-    std::size_t new_loops_ = 0; // since the last optimisation
-    double next_test_at_ = 0.0; // metres travelled: no stretch test before
+    std::size_t new_loops_ = 0;        // since the last optimisation
+    std::vector<double> next_test_at_; // by fragment, metres travelled: no stretch test before
 };
 
 } // namespace scanloom::slam

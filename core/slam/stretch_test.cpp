@@ -10,6 +10,7 @@
 #include <functional>
 #include <limits>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -63,14 +64,17 @@ struct StretchHypothesis {
     [[nodiscard]] double share() const { return contradicted / std::max(1e-9, matched + contradicted); }
 };
 
-/// The test of one stretch: keyframes [first_, newest_] against those before.
+/// The test of one stretch: the newest keyframes of a fragment against all other located ones.
 class StretchTest {
 public:
     StretchTest(const KeyframeGraph& graph, const StretchQuestion& question)
-        : graph_(graph), question_(question), newest_(graph.size() - 1), first_(newest_) {
-        const double length =
-            std::min(kStretchMax, 0.5 * (graph[newest_].travelled - graph[question.anchor].travelled));
-        while (first_ > 0 && graph[newest_].travelled - graph[first_].travelled < length) --first_;
+        : graph_(graph), question_(question), newest_(question.keyframe),
+          keyframes_(graph.fragment_of(newest_).keyframes), first_(keyframes_.size() - 1) {
+        double length = kStretchMax;
+        if (graph[question.anchor].fragment == graph[newest_].fragment) {
+            length = std::min(length, 0.5 * before_newest(question.anchor));
+        }
+        while (first_ > 0 && before_newest(keyframes_[first_]) < length) --first_;
         collect_old_map();
         collect_evidence();
     }
@@ -97,10 +101,22 @@ public:
         return best;
     }
 
-    /// Returns the first keyframe of the stretch.
-    [[nodiscard]] std::size_t first() const noexcept { return first_; }
+    /// Returns whether a keyframe is in the stretch.
+    [[nodiscard]] bool contains(std::size_t keyframe) const {
+        return graph_[keyframe].fragment == graph_[newest_].fragment && graph_[keyframe].position >= first_;
+    }
+
+    /// Returns whether a keyframe is in the map that the stretch is compared with, if it is near.
+    [[nodiscard]] bool is_old(std::size_t keyframe) const {
+        return graph_.fragment_of(keyframe).is_located && !contains(keyframe);
+    }
 
 private:
+    /// Returns the metres travelled from a keyframe of the fragment to its newest one.
+    [[nodiscard]] double before_newest(std::size_t keyframe) const {
+        return graph_[newest_].travelled - graph_[keyframe].travelled;
+    }
+
     /// Returns by how much a hypothesis moves the newest keyframe, metres.
     [[nodiscard]] double moved_by(const StretchHypothesis& hypothesis) const {
         const Transform2& pose = graph_.pose(newest_);
@@ -108,24 +124,25 @@ private:
     }
 
     void collect_old_map() {
-        double left = graph_.pose(newest_).x;
+        const Transform2& newest = graph_.pose(newest_);
+        double left = newest.x;
         double right = left;
-        double low = graph_.pose(newest_).y;
+        double low = newest.y;
         double high = low;
-        for (std::size_t n = first_; n < newest_; ++n) {
-            if (graph_[newest_].travelled - graph_[n].travelled > 2.0 * kStretchMax) continue; // before a jump
-            left = std::min(left, graph_.pose(n).x);
-            right = std::max(right, graph_.pose(n).x);
-            low = std::min(low, graph_.pose(n).y);
-            high = std::max(high, graph_.pose(n).y);
+        for (std::size_t n = first_; n < keyframes_.size(); ++n) {
+            const Transform2& pose = graph_.pose(keyframes_[n]);
+            left = std::min(left, pose.x);
+            right = std::max(right, pose.x);
+            low = std::min(low, pose.y);
+            high = std::max(high, pose.y);
         }
         const double margin = question_.window + kOldMapReach;
         KeyframeViews views;
-        for (std::size_t n = first_; n-- > 0;) {
+        for (std::size_t n = graph_.size(); n-- > 0;) {
             const Transform2& pose = graph_.pose(n);
             const bool is_near = pose.x >= left - margin && pose.x <= right + margin && pose.y >= low - margin &&
                                  pose.y <= high + margin;
-            if (is_near) views.add(graph_[n], pose);
+            if (is_near && is_old(n)) views.add(graph_[n], pose);
         }
         old_map_ = KeyframeMap(std::move(views));
     }
@@ -134,23 +151,27 @@ private:
     /// it.
     void collect_evidence() {
         std::size_t count = 0;
-        for (std::size_t n = first_; n <= newest_; ++n) count += graph_[n].scan->points.size();
+        for (std::size_t n = first_; n < keyframes_.size(); ++n) count += points_of(n).size();
         scan_matching::SquareSet taken(kEvidenceCell, count);
-        evidence_.resize(newest_ - first_ + 1);
-        for (std::size_t n = newest_ + 1; n-- > first_;) {
-            for (const SurfacePoint& point : graph_[n].scan->points) {
-                const Point2 at = graph_.pose(n) * Point2{point.x, point.y};
+        evidence_.resize(keyframes_.size() - first_);
+        for (std::size_t n = keyframes_.size(); n-- > first_;) {
+            for (const SurfacePoint& point : points_of(n)) {
+                const Point2 at = graph_.pose(keyframes_[n]) * Point2{point.x, point.y};
                 if (taken.insert(at.x, at.y)) evidence_[n - first_].push_back(point);
             }
         }
     }
 
+    /// Returns the points of a keyframe. @param position  in the fragment
+    [[nodiscard]] const std::vector<SurfacePoint>& points_of(std::size_t position) const {
+        return graph_[keyframes_[position]].scan->points;
+    }
+
     /// Returns the supposed correction, shifted to where the newest part of the stretch fits the old map best.
     [[nodiscard]] std::vector<Transform2> shifted_corrections() {
         std::vector<Point2> points;
-        for (std::size_t n = newest_ + 1;
-             n-- > first_ && graph_[newest_].travelled - graph_[n].travelled < kShiftDistance;) {
-            const Transform2 pose = question_.correction * graph_.pose(n);
+        for (std::size_t n = keyframes_.size(); n-- > first_ && before_newest(keyframes_[n]) < kShiftDistance;) {
+            const Transform2 pose = question_.correction * graph_.pose(keyframes_[n]);
             for (const SurfacePoint& point : evidence_[n - first_]) points.push_back(pose * Point2{point.x, point.y});
         }
         struct Shift {
@@ -192,22 +213,25 @@ private:
     /// fits.
     [[nodiscard]] StretchHypothesis follow(StretchHypothesis hypothesis) {
         Transform2 pose = hypothesis.correction * graph_.pose(newest_);
-        for (std::size_t n = newest_ + 1; n-- > first_;) {
-            if (n < newest_) pose = pose * (inverse(graph_.pose(n + 1)) * graph_.pose(n));
-            if ((newest_ - n) % kFitEvery == 0) {
+        const std::size_t last = keyframes_.size() - 1;
+        for (std::size_t n = last + 1; n-- > first_;) {
+            const std::size_t keyframe = keyframes_[n];
+            if (n < last) pose = pose * (inverse(graph_.pose(keyframes_[n + 1])) * graph_.pose(keyframe));
+            if ((last - n) % kFitEvery == 0) {
                 const auto match =
-                    match_to_lines(graph_[n].scan->points, old_map_.points(), pose, {pose, 0.1, 0.05},
+                    match_to_lines(points_of(n), old_map_.points(), pose, {pose, 0.1, 0.05},
                                    {.steps_max = 8, .first_gate = 0.4, .first_scale = 0.2, .last_scale = 0.08});
                 if (match.inlier_ratio >= kFitInliers) {
                     pose = match.T_map_robot;
-                    if (hypothesis.fits.empty()) hypothesis.correction = pose * inverse(graph_.pose(n));
-                    hypothesis.fits.push_back({n, pose});
-                    hypothesis.overlap +=
-                        graph_[n].travelled - graph_[n > first_ + kFitEvery ? n - kFitEvery : first_].travelled;
+                    if (hypothesis.fits.empty()) hypothesis.correction = pose * inverse(graph_.pose(keyframe));
+                    hypothesis.fits.push_back({keyframe, pose});
+                    const std::size_t before = keyframes_[n > first_ + kFitEvery ? n - kFitEvery : first_];
+                    hypothesis.overlap += graph_[keyframe].travelled - graph_[before].travelled;
                 }
             }
-            for (const SurfacePoint& point : evidence_[n - first_])
-                weigh(hypothesis, pose, graph_[n].scan->laser, point);
+            for (const SurfacePoint& point : evidence_[n - first_]) {
+                weigh(hypothesis, pose, graph_[keyframe].scan->laser, point);
+            }
         }
         return hypothesis;
     }
@@ -250,16 +274,18 @@ private:
     const KeyframeGraph& graph_;
     const StretchQuestion& question_;
     std::size_t newest_;
-    std::size_t first_;                               // keyframe of the stretch
-    KeyframeMap old_map_;                             // of the keyframes before, in the map's frame
-    std::vector<std::vector<SurfacePoint>> evidence_; // of the keyframes from first_
+    std::span<const std::size_t> keyframes_;          // of its fragment
+    std::size_t first_;                               // position of the first one of the stretch
+    KeyframeMap old_map_;                             // of the others, in the map's frame
+    std::vector<std::vector<SurfacePoint>> evidence_; // by position from first_
 };
 
-/// Returns the keyframe before `end` whose pose is nearest to a pose; a radian counts as a metre.
-std::size_t nearest_keyframe(const KeyframeGraph& graph, std::size_t end, const Transform2& pose) {
+/// Returns the keyframe of the old map whose pose is nearest to a pose; a radian counts as a metre.
+std::size_t nearest_old_keyframe(const KeyframeGraph& graph, const StretchTest& test, const Transform2& pose) {
     std::size_t nearest = 0;
     double least = std::numeric_limits<double>::infinity();
-    for (std::size_t n = 0; n < end; ++n) {
+    for (std::size_t n = 0; n < graph.size(); ++n) {
+        if (!test.is_old(n)) continue;
         const Transform2 off = inverse(graph.pose(n)) * pose;
         const double distance = distance_of(off) + std::fabs(yaw_of(off));
         if (distance >= least) continue;
@@ -276,7 +302,7 @@ bool accept_stretch(KeyframeGraph& graph, const StretchQuestion& question) {
     const auto accepted = test.run();
     if (!accepted) return false;
     graph.remove_loops([&](const Edge& edge) {
-        if (edge.to < test.first() || edge.from >= test.first()) return false;
+        if (!test.contains(edge.to) || test.contains(edge.from)) return false;
         return std::ranges::any_of(accepted->fits, [&](const Fit& fit) {
             if (fit.keyframe != edge.to) return false;
             const Transform2 T_from_fit = inverse(graph.pose(edge.from)) * fit.T_map_keyframe;
@@ -284,7 +310,7 @@ bool accept_stretch(KeyframeGraph& graph, const StretchQuestion& question) {
         });
     });
     for (const Fit& fit : accepted->fits) {
-        const std::size_t from = nearest_keyframe(graph, test.first(), fit.T_map_keyframe);
+        const std::size_t from = nearest_old_keyframe(graph, test, fit.T_map_keyframe);
         graph.add_loop({from, fit.keyframe, inverse(graph.pose(from)) * fit.T_map_keyframe,
                         information_of(kEdgeSigma, kEdgeTurnSigma), true});
     }

@@ -6,15 +6,16 @@
 
 namespace scanloom::slam {
 
-/// A supposed correction of the newest keyframe, found by a match with an old submap.
+/// A supposed correction of a keyframe, found by a match with an old submap.
 struct StretchQuestion {
-    std::size_t anchor = 0; ///< the old submap's anchor keyframe
-    Transform2 correction;  ///< T_corrected_map of the newest keyframe and the stretch before it; identity: the match
-                            ///< failed, and the question is only whether the trajectory should move at all
-    double window = 0.0;    ///< metres: by how much the trajectory may have to move
+    std::size_t keyframe = 0; ///< the newest one of its fragment
+    std::size_t anchor = 0;   ///< the old submap's anchor keyframe
+    Transform2 correction;    ///< T_corrected_map of the keyframe and the stretch before it; identity: the match
+                              ///< failed, and the question is only whether the trajectory should move at all
+    double window = 0.0;      ///< metres: by how much the trajectory may have to move
 };
 
-/// Decides how the newest stretch of the trajectory, up to 60 m, fits the map of the older keyframes. Several
+/// Decides how the newest stretch of a fragment, up to 60 m, fits the map of the other keyframes. Several
 /// hypotheses are followed backwards along the stretch: the supposed correction, none, and shifts that fit. The best
 /// one is accepted only if it fits well over some metres and every other one is refuted by space that beams passed;
 /// otherwise the answer is no, and a later keyframe may ask again.
@@ -24,7 +25,7 @@ struct StretchQuestion {
 /// @param graph     keyframes and edges
 /// @param question  the correction to test
 /// @return whether one hypothesis was accepted. It may be that of no correction: then the new edges confirm the trajectory
-/// Precondition: question.anchor is before the newest keyframe; 0 <= window <= 8 m.
+/// Precondition: question.anchor is another, located keyframe, in the same fragment before the stretch; 0 <= window <= 8 m.
 /// Cost: some tenths of a second: up to 10 hypotheses, each with a scan match at every second keyframe of the stretch, and
 ///     (2 window / 0.2 m)^2 shifts.
 [[nodiscard]] bool accept_stretch(KeyframeGraph& graph, const StretchQuestion& question);

@@ -36,80 +36,64 @@ void TrajectoryEstimator::add(ScanPoints scan, const std::optional<Pose2>& odome
     if (odometry_ && now) motion = inverse(*odometry_) * *now;
     if (motion && !(distance_of(*motion) <= kMotionMax)) motion.reset(); // also if it is NaN
     odometry_ = now;
-    if (graph_.size() == 0) {
-        const Transform2 start = now.value_or(Transform2());
-        first_.push_back({start, true});
-        parts_.push_back({0, true});
-        add_keyframe(std::move(scan), start, true);
-        placed_.push_back({0, {}});
+    if (keyframes_.empty()) {
+        const Transform2 start = graph().size() == 0 ? now.value_or(Transform2()) : Transform2();
+        begin_fragment(std::move(scan), start);
+        first_.push_back({start, is_fragment_located()});
+        placed_.push_back({newest_keyframe(), {}});
         newest_ = {{}, 1.0, true};
         return;
     }
-    const std::size_t newest = graph_.size() - 1;
     const auto decided = tracker_.add(scan, motion, is_keyframe_due);
     newest_ = decided.empty() ? tracker_.newest() : decided.back();
-    first_.push_back({graph_.pose(newest) * newest_.T_keyframe_robot, newest_.is_matched && is_connected(newest)});
+    const Transform2 first = graph().pose(newest_keyframe()) * newest_.T_keyframe_robot;
+    first_.push_back({first, newest_.is_matched && is_fragment_located()});
     if (decided.empty()) return;
     place(decided);
     const TrackedScan& last = decided.back();
-    const bool is_lost = tracker_.unmatched() >= kLost && !scan.points.empty();
-    if ((!last.is_matched || !is_keyframe_due(last)) && !is_lost) return;
-    add_keyframe(std::move(scan), last.T_keyframe_robot, !is_lost);
-    placed_.back() = {graph_.size() - 1, {}};
+    if (tracker_.unmatched() >= kLost && !scan.points.empty()) {
+        begin_fragment(std::move(scan), first);
+    } else if (last.is_matched && is_keyframe_due(last)) {
+        keyframes_.push_back(graph().size());
+        map_.add_keyframe(fragments_.back(), std::move(scan), last.T_keyframe_robot);
+        begin_tracking();
+    } else {
+        return;
+    }
+    placed_.back() = {newest_keyframe(), {}};
 }
 
-void TrajectoryEstimator::finish() {
-    place(tracker_.decide());
-    constexpr int kIterations = 5;
-    graph_.optimize(kIterations);
-}
+void TrajectoryEstimator::finish() { place(tracker_.decide()); }
 
 void TrajectoryEstimator::place(const std::vector<TrackedScan>& scans) {
     for (const TrackedScan& scan : scans) {
-        placed_.push_back({graph_.size() - 1, scan.T_keyframe_robot, scan.is_matched});
+        placed_.push_back({newest_keyframe(), scan.T_keyframe_robot, scan.is_matched});
         if (!scan.is_matched) ++unmatched_count_;
     }
 }
 
-void TrajectoryEstimator::add_keyframe(ScanPoints scan, const Transform2& T_newest_keyframe, bool is_matched) {
-    graph_.add(std::make_shared<const ScanPoints>(std::move(scan)), T_newest_keyframe, is_matched);
-    const std::size_t newest = graph_.size() - 1;
-    if (!is_matched) parts_.push_back({newest, false});
-    loops_.search(graph_);
-    connect_parts();
+void TrajectoryEstimator::begin_fragment(ScanPoints scan, const Transform2& T_map_robot) {
+    keyframes_.push_back(graph().size());
+    fragments_.push_back(map_.begin_fragment(robot_, std::move(scan), T_map_robot));
+    begin_tracking();
+}
+
+/// Tracks the next scans by the newest keyframes of the fragment.
+void TrajectoryEstimator::begin_tracking() {
+    const std::size_t newest = graph()[newest_keyframe()].position;
     const std::size_t first = newest + 1 - std::min(newest + 1, kLocalKeyframes);
-    tracker_.begin(KeyframeMap(graph_.views_around(first, newest, newest)));
-}
-
-/// Returns the index of the part of the trajectory that contains a keyframe.
-std::size_t TrajectoryEstimator::part_of(std::size_t keyframe) const {
-    return static_cast<std::size_t>(std::ranges::upper_bound(parts_, keyframe, {}, &Part::first) - parts_.begin()) - 1;
-}
-
-/// Finds the parts to which loop edges lead from connected ones.
-void TrajectoryEstimator::connect_parts() {
-    if (connected_parts() == parts_.size()) return;
-    for (bool is_new = true; is_new;) {
-        is_new = false;
-        for (const Edge& edge : graph_.edges()) {
-            if (!edge.is_robust || edge.weight < kUsedWeight) continue;
-            if (is_connected(edge.from) == is_connected(edge.to)) continue;
-            parts_[part_of(edge.from)].is_connected = true;
-            parts_[part_of(edge.to)].is_connected = true;
-            is_new = true;
-        }
-    }
+    tracker_.begin(KeyframeMap(graph().views_around(newest_keyframe(), first, newest)));
 }
 
 bool TrajectoryEstimator::is_located(std::size_t scan) const {
     if (scan >= placed_.size()) return first_[scan].is_matched;
-    return placed_[scan].is_matched && is_connected(placed_[scan].keyframe);
+    return placed_[scan].is_matched && graph().fragment_of(placed_[scan].keyframe).is_located;
 }
 
 Pose2 TrajectoryEstimator::pose_of(std::size_t scan) const {
     if (scan >= placed_.size()) return first_pose_of(scan);
     const PlacedScan& placed = placed_[scan];
-    return scan_matching::pose_of(graph_.pose(placed.keyframe) * placed.T_keyframe_robot);
+    return scan_matching::pose_of(graph().pose(placed.keyframe) * placed.T_keyframe_robot);
 }
 
 } // namespace scanloom::slam

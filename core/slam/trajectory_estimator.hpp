@@ -1,8 +1,7 @@
 #pragma once
 
 #include "core/scan_matching/scan_points.hpp"
-#include "core/slam/keyframe_graph.hpp"
-#include "core/slam/loop_search.hpp"
+#include "core/slam/shared_map.hpp"
 #include "core/slam/tracker.hpp"
 
 #include <algorithm>
@@ -16,18 +15,23 @@ namespace scanloom::slam {
 ///
 /// Each scan is matched to the newest keyframes (Tracker); a scan becomes a keyframe when the robot has moved on. Where
 /// the robot returns to a place, loop edges correct the trajectory (LoopSearch). The other scans follow their keyframe.
-/// In the map's frame, the first scan is at its odometry, or without odometry at the origin.
-/// Scans that fit no map for a while start a new part of the trajectory, at a predicted pose. Its scans count as
-/// located when a loop edge connects it with the parts before.
+/// In the map's frame, the first scan of the first robot is at its odometry, or without odometry at the origin.
+/// Several robots can share a map. The others, and robots that are lost because their scans fit no map for a while, are
+/// located when enough of what they see is found in the map (FragmentSearch). Until then their poses are in frames of
+/// their own.
 ///
 /// Deterministic: equal scans give equal poses on every processor with IEEE 754 arithmetic.
 /// Memory: grows with the trajectory: the pose of each scan, the points of each keyframe (up to 6 KB), and the map of every
 ///     fifth keyframe.
 /// Cost: some hundred microseconds a scan; at every second keyframe also time in proportion to the number of keyframes;
 ///     a large loop closure takes some tenths of a second in one call.
-/// Threads: one at a time.
+/// Threads: one at a time for all estimators of a map.
 class TrajectoryEstimator {
 public:
+    /// @param map    shared by the robots of a session; must outlive this object
+    /// @param robot  number of the robot among them
+    explicit TrajectoryEstimator(SharedMap& map, std::size_t robot = 0) : map_(map), robot_(robot) {}
+
     /// Adds the next scan.
     /// @param scan      its points
     /// @param odometry  T_odom_robot at the scan; nullopt: not known. Pre: finite
@@ -48,22 +52,20 @@ public:
     /// @param scan  number of the scan, from 0. Precondition: scan < scan_count()
     [[nodiscard]] Pose2 first_pose_of(std::size_t scan) const { return scan_matching::pose_of(first_[scan].pose); }
 
-    /// Returns whether a scan's pose is known: the scan fitted the map, and its part of the trajectory is connected
-    /// with the first one. Otherwise the pose is a prediction, which may be far off.
+    /// Returns whether a scan's pose is known: the scan fitted the map, and its fragment is located. Otherwise the pose
+    /// is a prediction, or in a frame of its own.
     /// @param scan  number of the scan, from 0. Precondition: scan < scan_count()
     [[nodiscard]] bool is_located(std::size_t scan) const;
 
-    /// Returns whether the scan's part of the trajectory is connected with the first one, so that its pose is known at
-    /// least as a prediction.
+    /// Returns whether the scan's fragment is located, so that its pose is known at least as a prediction.
     /// @param scan  number of the scan, from 0. Precondition: scan < scan_count()
-    [[nodiscard]] bool is_connected_scan(std::size_t scan) const {
-        return is_connected(scan < placed_.size() ? placed_[scan].keyframe : graph_.size() - 1);
+    [[nodiscard]] bool is_in_map(std::size_t scan) const {
+        return graph().fragment_of(scan < placed_.size() ? placed_[scan].keyframe : newest_keyframe()).is_located;
     }
 
-    /// Returns whether the robot is lost: its part of the trajectory is not connected, or the last scans fitted no map.
-    [[nodiscard]] bool is_lost() const noexcept {
-        return tracker_.unmatched() >= kLost || (!parts_.empty() && !parts_.back().is_connected);
-    }
+    /// Returns whether the place of the robot in the map is not known: its fragment is not located, or the last scans
+    /// fitted no map.
+    [[nodiscard]] bool is_lost() const noexcept { return tracker_.unmatched() >= kLost || !is_fragment_located(); }
 
     /// Returns the newest match; see Tracker::newest().
     [[nodiscard]] const TrackedScan& newest() const noexcept { return newest_; }
@@ -72,23 +74,27 @@ public:
     /// are the newest ones.
     [[nodiscard]] std::size_t decided_count() const noexcept { return placed_.size(); }
 
-    /// Returns the number of parts of the trajectory that are connected with the first one, and the first one.
-    [[nodiscard]] std::size_t connected_parts() const noexcept {
-        return static_cast<std::size_t>(std::ranges::count(parts_, true, &Part::is_connected));
+    /// Returns the number of the robot's fragments that are located.
+    [[nodiscard]] std::size_t located_fragments() const noexcept {
+        return static_cast<std::size_t>(
+            std::ranges::count_if(fragments_, [&](std::size_t n) { return graph().fragments()[n].is_located; }));
     }
+
+    /// Returns the indices of the robot's keyframes, oldest first.
+    [[nodiscard]] const std::vector<std::size_t>& keyframes() const noexcept { return keyframes_; }
 
     /// Returns the number of scans that fitted no map; their poses are predictions.
     [[nodiscard]] std::size_t unmatched_count() const noexcept { return unmatched_count_; }
 
-    /// Returns the number of loop edges.
+    /// Returns the number of loop edges to keyframes of the robot.
     [[nodiscard]] std::size_t loop_count() const noexcept {
-        return static_cast<std::size_t>(std::ranges::count(graph_.edges(), true, &Edge::is_robust));
+        return static_cast<std::size_t>(std::ranges::count_if(graph().edges(), [&](const Edge& edge) {
+            return edge.is_robust && graph().fragment_of(edge.to).robot == robot_;
+        }));
     }
 
-    /// Returns the keyframes and their edges.
-    [[nodiscard]] const KeyframeGraph& graph() const noexcept { return graph_; }
-    /// Returns the figures of the loop search.
-    [[nodiscard]] const LoopFigures& loop_figures() const noexcept { return loops_.figures(); }
+    /// Returns the map, which the robot may share with others.
+    [[nodiscard]] const SharedMap& map() const noexcept { return map_; }
 
 private:
     static constexpr std::size_t kLost = 20; // scans in a row without a match
@@ -106,25 +112,22 @@ private:
         bool is_matched = true;
     };
 
-    /// Successive keyframes that scans connect. The first part is connected; a later one if a loop edge leads to it
-    /// from a connected part.
-    struct Part {
-        std::size_t first = 0; // keyframe
-        bool is_connected = true;
-    };
-
     void place(const std::vector<TrackedScan>& scans);
-    void add_keyframe(ScanPoints scan, const Transform2& T_newest_keyframe, bool is_matched);
-    [[nodiscard]] std::size_t part_of(std::size_t keyframe) const;
-    [[nodiscard]] bool is_connected(std::size_t keyframe) const { return parts_[part_of(keyframe)].is_connected; }
-    void connect_parts();
+    void begin_fragment(ScanPoints scan, const Transform2& T_map_robot);
+    void begin_tracking();
+    [[nodiscard]] const KeyframeGraph& graph() const noexcept { return map_.graph(); }
+    [[nodiscard]] std::size_t newest_keyframe() const noexcept { return keyframes_.back(); }
+    [[nodiscard]] bool is_fragment_located() const noexcept {
+        return fragments_.empty() || graph().fragments()[fragments_.back()].is_located;
+    }
 
-    KeyframeGraph graph_;
-    LoopSearch loops_;
+    SharedMap& map_;
+    std::size_t robot_;
     Tracker tracker_;
+    std::vector<std::size_t> fragments_; // indices of the robot's fragments, oldest first
+    std::vector<std::size_t> keyframes_;
     std::vector<PlacedScan> placed_; // of the decided scans
     std::vector<FirstEstimate> first_;
-    std::vector<Part> parts_; // by `first`; at least one after the first scan
     TrackedScan newest_;
     std::optional<Transform2> odometry_; // of the last scan
     std::size_t unmatched_count_ = 0;

@@ -269,7 +269,7 @@ public:
     /// T_map_odom jumps when the server corrects the poses, for example where a loop closes. With Poses::kNone the
     /// robot itself is its odometry frame, so that T_map_odom is T_map_robot of its newest scan in the maps.
     /// @return the newest correction, in metres and radians, also after its link has ended; nullopt before the first one,
-    ///         and always with Poses::kMap
+    ///         while the robot is not located in the map that others began, and always with Poses::kMap
     /// Threads: any thread; returns at once.
     [[nodiscard]] std::optional<Location> transform() const;
 

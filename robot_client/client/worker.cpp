@@ -70,6 +70,7 @@ UplinkOptions Client::Worker::with_corrections(UplinkOptions uplink, std::functi
         {
             const std::lock_guard lock(mutex_);
             transform_ = location;
+            if (location.state == LocalizationState::kUnlocated) transform_.reset();
         }
         if (passed_to) passed_to(location);
     };

@@ -1332,14 +1332,16 @@ class Client:
 
     def transform(self) -> Optional[Location]:
         """Returns where the robot's odometry frame is in the map by the server's newest correction, also after its link
-        has ended; None before the first one, and always with poses="map". Does not wait.
+        has ended; None before the first one, while the robot is not located in the map that others began, and always
+        with poses="map". Does not wait.
 
         at(odometry) of it is the robot's pose in the map, by its current odometry. It jumps when the server corrects
         the poses, for example where a loop closes. With poses="none" the robot itself is its odometry frame, so that
         at() is the pose of its newest scan in the maps.
         """
         with self._changed:
-            return self._conversation.location
+            location = self._conversation.location
+        return None if location and location.state == "UNLOCATED" else location
 
     # Status
 

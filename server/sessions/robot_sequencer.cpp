@@ -57,7 +57,7 @@ PendingEntry RobotSequencer::submitted(Member& member, std::optional<LogEntry> e
 
 // Joining and leaving
 
-std::optional<PendingEntry> RobotSequencer::join(PendingJoin joining, bool is_mapped) {
+std::optional<PendingEntry> RobotSequencer::join(PendingJoin joining) {
     const auto& who = joining.who;
     auto known =
         std::find_if(members_.begin(), members_.end(), [&](const Member& m) { return logged(m).name == who.robot; });
@@ -67,7 +67,7 @@ std::optional<PendingEntry> RobotSequencer::join(PendingJoin joining, bool is_ma
                                            info_.name, members_.size())});
         return std::nullopt;
     }
-    if (auto ok = check_poses(who, is_mapped); !ok) {
+    if (auto ok = check_poses(who); !ok) {
         joining.done(ok.error());
         return std::nullopt;
     }
@@ -110,32 +110,24 @@ Result<> RobotSequencer::check_again(const LoggedRobot& robot, const JoinRequest
                              robot.last_seq, robot.name, info_.name, in_words(robot.source), in_words(who.source))};
 }
 
-/// Checks that the poses of a robot and of the others are in one frame: a robot whose poses the server estimates has a
-/// map of its own.
-Result<> RobotSequencer::check_poses(const JoinRequest& who, bool is_mapped) const {
+/// Checks that the server can find out where a robot is relative to the others: either all robots send poses in the map
+/// frame, or the server estimates the poses of all of them.
+Result<> RobotSequencer::check_poses(const JoinRequest& who) const {
     const auto refused = [&](std::string_view why) {
         return Error{Errc::kConflict, fmt::format("hello.poses is '{}': {}; use another session for robot '{}'",
                                                   name_of(who.poses), why, who.robot)};
     };
+    const bool is_estimated = who.poses != Poses::kMap;
     for (const auto& robot : pending_.robots()) {
         if (robot.name == who.robot) {
             if (robot.last_seq > 0) return {}; // it was checked when it joined first
             continue;
         }
-        if (robot.poses != Poses::kMap) {
-            return refused(fmt::format("session '{}' has the map of robot '{}', whose poses the server estimates, and "
-                                       "the pose of another robot in it is not known",
-                                       info_.name, robot.name));
-        }
-        if (who.poses != Poses::kMap) {
-            return refused(
-                fmt::format("session '{}' has other robots, and the pose of this one relative to them is not "
-                            "known",
-                            info_.name));
-        }
+        if ((robot.poses != Poses::kMap) == is_estimated) continue;
+        return refused(fmt::format("robot '{}' of session '{}' has poses of kind '{}', which do not go together",
+                                   robot.name, info_.name, name_of(robot.poses)));
     }
-    if (who.poses == Poses::kMap || !is_mapped) return {};
-    return refused(fmt::format("session '{}' has a map, and the robot's pose in it is not known", info_.name));
+    return {};
 }
 
 /// Admits the link that waits to join, if all entries of the robot's earlier links are in the maps.

@@ -49,9 +49,8 @@ public:
 
     /// Connects a robot, and fails its earlier link with kReplaced. Calls `joining.done` when all entries of the
     /// earlier links are in the maps.
-    /// @param is_mapped  whether the maps of the session contain anything yet
     /// @return the entry to append if the robot is new or its properties have changed
-    [[nodiscard]] std::optional<PendingEntry> join(PendingJoin joining, bool is_mapped);
+    [[nodiscard]] std::optional<PendingEntry> join(PendingJoin joining);
 
     /// Disconnects a link. Ignored if it is not the current link of a robot.
     void leave(const std::shared_ptr<RobotListener>& listener);
@@ -105,7 +104,7 @@ private:
     [[nodiscard]] Member* member_of(const std::shared_ptr<RobotListener>& listener);
     [[nodiscard]] PendingEntry submitted(Member& member, std::optional<LogEntry> entry, std::size_t bytes);
     [[nodiscard]] Result<> check_again(const LoggedRobot& robot, const JoinRequest& who) const;
-    [[nodiscard]] Result<> check_poses(const JoinRequest& who, bool is_mapped) const;
+    [[nodiscard]] Result<> check_poses(const JoinRequest& who) const;
     [[nodiscard]] mapping::Reach reach_of(const Member& member, Scan& scan) const;
     [[nodiscard]] static Result<> check_pose(const LoggedRobot& robot, const Scan& scan);
     [[nodiscard]] Result<> check_next(const LoggedRobot& robot, const Scan& scan, bool is_mapped) const;

@@ -87,8 +87,7 @@ void Session::join(JoinRequest who, std::shared_ptr<RobotListener> listener, std
     on_strand([joining = PendingJoin{std::move(who), std::move(listener), std::move(done)}](Session& self) mutable {
         if (self.refusing_) return joining.done(*self.refusing_);
         std::vector<PendingEntry> entries;
-        if (auto entry = self.sequencer_.join(std::move(joining), self.is_mapped()))
-            entries.push_back(std::move(*entry));
+        if (auto entry = self.sequencer_.join(std::move(joining))) entries.push_back(std::move(*entry));
         self.enqueue(std::move(entries));
     });
 }

@@ -87,9 +87,11 @@ void Session::report_places(const Group& group) {
         if (poses == nullptr || listener == nullptr) continue;
         const bool has_odometry = maps_.projection().robots()[robot].poses == Poses::kOdometry;
         const auto known = poses->localization();
-        listener->on_located({has_odometry ? poses->place().T_map_odom : poses->place().T_map_robot,
-                              maps_.projection().revision(), known.inlier_ratio, known.position_sigma, known.yaw_sigma,
-                              known.state});
+        const auto& place = poses->place();
+        Pose2 location = has_odometry ? place.T_map_odom : place.T_map_robot;
+        if (known.state == LocalizationState::kUnlocated) location = {}; // its place is in a frame of its own
+        listener->on_located({location, maps_.projection().revision(), known.inlier_ratio, known.position_sigma,
+                              known.yaw_sigma, known.state});
     }
 }
 

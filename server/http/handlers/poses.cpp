@@ -101,32 +101,29 @@ boost::asio::awaitable<Result<Response>> get_trajectory_tum(Context& context) {
 
 namespace {
 
-using Graphs = std::shared_ptr<const std::vector<localization::PoseGraphView>>;
+using Graph = std::shared_ptr<const localization::PoseGraphView>;
 
-std::string_view kind_of(const localization::PoseGraphView& graph, const slam::Edge& edge) {
-    if (edge.is_robust) return "loop";
-    return graph.is_matched[edge.to] ? "match" : "odometry";
-}
-
-void append_keyframes(const std::string& robot, const localization::PoseGraphView& graph,
+void append_keyframes(const localization::PoseGraphView& graph, const mapping::Snapshot& maps,
                       std::vector<std::string>& features) {
     for (std::size_t n = 0; n < graph.keyframes.size(); ++n) {
-        const auto& pose = graph.keyframes[n];
+        const auto& [robot, pose, is_located] = graph.keyframes[n];
+        if (!is_located || robot >= maps.robots.size()) continue;
         const boost::json::object properties{
-            {"kind", "keyframe"}, {"robot", robot}, {"keyframe", n}, {"yaw", pose.yaw}};
+            {"kind", "keyframe"}, {"robot", maps.robots[robot].name}, {"keyframe", n}, {"yaw", pose.yaw}};
         features.push_back(feature(properties, point_geometry({pose.x, pose.y})));
     }
 }
 
-void append_edges(const std::string& robot, const localization::PoseGraphView& graph,
+void append_edges(const localization::PoseGraphView& graph, const mapping::Snapshot& maps,
                   std::vector<std::string>& features) {
     for (const auto& edge : graph.edges) {
-        const Pose2& from = graph.keyframes[edge.from];
-        const Pose2& to = graph.keyframes[edge.to];
+        const auto& from = graph.keyframes[edge.from].pose;
+        const auto& [robot, to, is_located] = graph.keyframes[edge.to];
+        if (!is_located || robot >= maps.robots.size()) continue;
         const Pose2 measured = compose(from, scan_matching::pose_of(edge.T_from_to));
         const boost::json::object properties{
-            {"kind", kind_of(graph, edge)},
-            {"robot", robot},
+            {"kind", edge.is_robust ? "loop" : "match"},
+            {"robot", maps.robots[robot].name},
             {"from", edge.from},
             {"to", edge.to},
             {"residual", rounded_metres(std::hypot(measured.x - to.x, measured.y - to.y))},
@@ -142,22 +139,16 @@ void append_edges(const std::string& robot, const localization::PoseGraphView& g
 boost::asio::awaitable<Result<Response>> get_pose_graph(Context& context) {
     const auto& session = context.session;
     const auto snapshot = session->snapshot();
-    const auto graphs = co_await read_poses<Graphs>(
-        *session, [robots = snapshot->robots.size()](const localization::SessionPoses& poses) {
-            std::vector<localization::PoseGraphView> all(robots);
-            for (RobotIndex robot = 0; robot < robots; ++robot) all[robot] = poses.graph(robot);
-            return std::make_shared<const std::vector<localization::PoseGraphView>>(std::move(all));
-        });
-    std::size_t parts = 0;
-    for (const auto& graph : *graphs) parts += graph.keyframes.size() + graph.edges.size();
+    const auto graph = co_await read_poses<Graph>(*session, [](const localization::SessionPoses& poses) {
+        return std::make_shared<const localization::PoseGraphView>(poses.graph());
+    });
+    const std::size_t parts = graph->keyframes.size() + graph->edges.size();
     auto permit = context.services.responses.take(parts * kEdgeTextBytes);
     if (!permit) co_return permit.error();
     std::vector<std::string> features;
     features.reserve(parts);
-    for (std::size_t n = 0; n < graphs->size(); ++n) {
-        append_keyframes(snapshot->robots[n].name, (*graphs)[n], features);
-        append_edges(snapshot->robots[n].name, (*graphs)[n], features);
-    }
+    append_keyframes(*graph, *snapshot, features);
+    append_edges(*graph, *snapshot, features);
     auto text = collection_document(snapshot->revision, {}, features);
     co_return ok_text("application/geo+json", std::move(*permit), std::move(text));
 }

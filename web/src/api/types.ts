@@ -15,7 +15,7 @@ export interface Pose {
 
 /** How well the server knows the poses of a robot that sends no poses in the map frame. */
 export interface Localization {
-  /** unlocated: no scan of a laser yet. */
+  /** unlocated: its place in the map is not known yet. */
   state: 'tracking' | 'lost' | 'unlocated';
   /** Share of the newest scan's points that fit the map, 0 to 1. */
   inliers: number;

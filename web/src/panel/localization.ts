@@ -23,7 +23,7 @@ export function wordsOf({ state, sigma, inliers }: Localization): string {
     case 'lost':
       return 'lost: its scans fit no place';
     case 'unlocated':
-      return 'unlocated: no laser scan yet';
+      return 'unlocated: its place in the map is not known yet';
   }
 }
 

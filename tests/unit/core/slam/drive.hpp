@@ -7,9 +7,11 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <random>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace scanloom::slam {
@@ -69,15 +71,37 @@ inline Drive drive_along(const testing_support::Building& building, std::span<co
     return drive;
 }
 
+/// The estimator of a robot that is alone in its map.
+struct LoneEstimator {
+    std::unique_ptr<SharedMap> map = std::make_unique<SharedMap>();
+    TrajectoryEstimator estimator{*map};
+
+    void finish() {
+        estimator.finish();
+        map->finish();
+    }
+    TrajectoryEstimator* operator->() noexcept { return &estimator; }
+    const TrajectoryEstimator* operator->() const noexcept { return &estimator; }
+};
+
 /// Returns a drive's estimator after all its scans.
-inline TrajectoryEstimator estimated(const Drive& drive, bool with_odometry) {
-    TrajectoryEstimator estimator;
+inline LoneEstimator estimated(const Drive& drive, bool with_odometry) {
+    LoneEstimator estimator;
     for (std::size_t n = 0; n < drive.scans.size(); ++n) {
-        estimator.add(scan_matching::points_of(drive.scans[n], drive.laser),
-                      with_odometry ? std::optional(drive.odometry[n]) : std::nullopt);
+        estimator->add(scan_matching::points_of(drive.scans[n], drive.laser),
+                       with_odometry ? std::optional(drive.odometry[n]) : std::nullopt);
     }
     estimator.finish();
     return estimator;
+}
+
+/// Adds a keyframe of the only fragment, which the first one begins. Its pose is relative to the newest keyframe.
+inline void add(KeyframeGraph& graph, std::shared_ptr<const ScanPoints> scan, const Transform2& T_newest_keyframe) {
+    if (graph.size() == 0) {
+        graph.begin_fragment(0, std::move(scan), T_newest_keyframe, true);
+    } else {
+        graph.add(0, std::move(scan), T_newest_keyframe);
+    }
 }
 
 /// Returns the largest distance of estimated poses from the true ones, in metres, when the first poses are equal.

@@ -22,7 +22,7 @@ struct Drifted {
             Transform2 step = n == 0 ? truth : inverse(before) * truth;
             if (n == 3 * count / 5) step.x += error;
             auto scan = scan_matching::points_of(drive.scans[n * kScansOfKeyframe], drive.laser);
-            graph.add(std::make_shared<const ScanPoints>(std::move(scan)), step, true);
+            add(graph, std::make_shared<const ScanPoints>(std::move(scan)), step);
             before = truth;
         }
         correction = before * inverse(graph.pose(count - 1));
@@ -44,7 +44,7 @@ TEST(StretchTest, AcceptsTheCorrectionOfADriftedLap) {
     const Transform2 pose = graph.pose(newest);
     const Transform2 false_loop = inverse(graph.pose(2)) * pose * Transform2{2.0, 0.0};
     graph.add_loop({2, newest, false_loop, information_of(0.02, 0.005), true});
-    ASSERT_TRUE(accept_stretch(graph, {20, drifted.correction, 3.0}));
+    ASSERT_TRUE(accept_stretch(graph, {newest, 20, drifted.correction, 3.0}));
     EXPECT_EQ(graph.pose(newest), pose) << "the test itself moves nothing";
     ASSERT_GT(graph.edges().size(), edges + 3);
     for (const Edge& edge : graph.edges().subspan(edges)) {
@@ -61,7 +61,7 @@ TEST(StretchTest, AcceptsTheCorrectionOfADriftedLap) {
 TEST(StretchTest, RefusesALargeCorrectionWhileThePathMayBeInUnseenSpace) {
     Drifted drifted(ring_building(), kLapAndMore, 2.0);
     const std::size_t edges = drifted.graph.edges().size();
-    EXPECT_FALSE(accept_stretch(drifted.graph, {20, drifted.correction, 3.0}));
+    EXPECT_FALSE(accept_stretch(drifted.graph, {drifted.graph.size() - 1, 20, drifted.correction, 3.0}));
     EXPECT_EQ(drifted.graph.edges().size(), edges);
 }
 
@@ -69,7 +69,8 @@ TEST(StretchTest, RefusesAFalseCorrection) {
     Drifted drifted(ring_building(), kLapAndMore, 0.0);
     const std::size_t edges = drifted.graph.edges().size();
     for (const double shift : {-2.5, 2.5, 4.0}) {
-        const bool accepted = accept_stretch(drifted.graph, {20, Transform2{shift, 0.0}, 1.0});
+        const bool accepted =
+            accept_stretch(drifted.graph, {drifted.graph.size() - 1, 20, Transform2{shift, 0.0}, 1.0});
         if (!accepted) continue;
         for (const Edge& edge : drifted.graph.edges().subspan(edges)) { // it may confirm where the trajectory is
             const Transform2 truth = inverse(drifted.graph.pose(edge.from)) * drifted.graph.pose(edge.to);
@@ -85,7 +86,7 @@ TEST(StretchTest, RefusesWhatAnAmbiguousCorridorCannotDecide) {
     const std::vector<Point2> there_and_back{{0.0, 1.0}, {40.0, 1.0}, {0.0, 1.0}, {30.0, 1.0}};
     Drifted drifted(corridor, there_and_back, 2.0); // by just the distance of two posts
     const std::size_t edges = drifted.graph.edges().size();
-    EXPECT_FALSE(accept_stretch(drifted.graph, {20, drifted.correction, 3.0}));
+    EXPECT_FALSE(accept_stretch(drifted.graph, {drifted.graph.size() - 1, 20, drifted.correction, 3.0}));
     EXPECT_EQ(drifted.graph.edges().size(), edges);
 }
 

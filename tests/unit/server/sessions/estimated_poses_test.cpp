@@ -2,7 +2,10 @@
 #include "tests/unit/core/slam/drive.hpp"
 #include "tests/unit/server/sessions/session_fixture.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <string>
 #include <variant>
 #include <vector>
 
@@ -39,27 +42,36 @@ protected:
     /// Joins the robot and sends the scans that the session does not have.
     std::shared_ptr<LocatedLink> drive_on(std::size_t scans_at_once, std::size_t end = lap().scans.size(),
                                           Poses poses = Poses::kOdometry) {
+        return drive_on("robot", lap(), scans_at_once, end, poses);
+    }
+
+    std::shared_ptr<LocatedLink> drive_on(const std::string& robot, const slam::Drive& drive, std::size_t scans_at_once,
+                                          std::size_t end, Poses poses = Poses::kOdometry) {
         const auto link = std::make_shared<LocatedLink>();
         std::uint64_t stored = 0;
-        session_->join({"robot", {}, {}, poses}, link,
+        session_->join({robot, {}, {}, poses}, link,
                        [&](const Result<Joined>& joined) { stored = joined.value().last_durable_seq; });
         run();
-        session_->submit(link, lap().laser, 0);
+        session_->submit(link, drive.laser, 0);
         for (std::size_t n = stored; n < end;) {
             std::vector<Scan> scans;
             for (; n < end && scans.size() < scans_at_once; ++n) {
-                scans.push_back(lap().scans[n]);
+                scans.push_back(drive.scans[n]);
                 scans.back().seq = n + 1;
                 scans.back().pose.reset();
-                if (poses == Poses::kMap) scans.back().pose = lap().odometry[n];
-                if (poses == Poses::kOdometry) scans.back().odometry = lap().odometry[n];
+                if (poses == Poses::kMap) scans.back().pose = drive.odometry[n];
+                if (poses == Poses::kOdometry) scans.back().odometry = drive.odometry[n];
             }
             session_->submit(link, std::move(scans), 0);
             run();
         }
         EXPECT_THAT(link->failures, testing::IsEmpty());
-        EXPECT_EQ(session_->snapshot()->robots[0].last_seq, end);
+        EXPECT_EQ(find_robot(robot).last_seq, end);
         return link;
+    }
+
+    [[nodiscard]] const mapping::RobotState& find_robot(const std::string& name) {
+        return *std::ranges::find(session_->snapshot()->robots, name, &mapping::RobotState::name);
     }
 
     [[nodiscard]] State state() {
@@ -224,6 +236,39 @@ TEST_F(EstimatedPosesTest, AReplayJobShowsTheSamePoses) {
     }
     ASSERT_TRUE(job.maps());
     EXPECT_EQ(testing_support::digests_of(*job.maps()), digest());
+}
+
+/// A second robot starts elsewhere, with an odometry frame of its own. When the server recognises where it is, all its
+/// scans appear in the map of the first.
+TEST_F(EstimatedPosesTest, RobotsThatStartAnywhereEndInOneMap) {
+    const slam::Drive second = slam::drive_along(
+        slam::ring_building(), std::vector<Point2>{{24.0, 21.0}, {1.0, 21.0}, {1.0, 8.0}}, {.scale = 0.98}, 2);
+    drive_on(20);
+    const auto alone = digest();
+    const auto link = drive_on("second", second, 20, 20);
+    EXPECT_EQ(link->located.back().state, LocalizationState::kUnlocated);
+    EXPECT_EQ(digest(), alone) << "until it is located, its scans are in no map";
+    EXPECT_FALSE(find_robot("second").pose);
+    EXPECT_EQ(find_robot("second").unplaced, 20U);
+
+    const auto later = drive_on("second", second, 20, second.scans.size());
+    EXPECT_EQ(later->located.back().state, LocalizationState::kTracking);
+    EXPECT_EQ(find_robot("second").unplaced, 0U) << "also the first scans are in the map";
+    EXPECT_EQ(digest(), digest_with_poses_in_maps());
+    const Pose2 found = compose(later->located.back().T_map_odom, second.odometry.back());
+    const Pose2 truth = compose(inverse(lap().truth.front()), second.truth.back());
+    EXPECT_LT(std::hypot(found.x - truth.x, found.y - truth.y), 0.3);
+
+    const State expected = state();
+    const auto whole = id_;
+    const Revision end = session_->snapshot()->revision;
+    for (const Revision kill : {end - second.scans.size(), announcements().back() - 1, announcements().back()}) {
+        id_ = whole;
+        crash_after(kill);
+        drive_on(20);
+        drive_on("second", second, 20, second.scans.size());
+        EXPECT_EQ(state(), expected) << "killed after entry " << kill;
+    }
 }
 
 TEST_F(EstimatedPosesTest, TheMemoryOfACorrectionIsGivenBack) {

@@ -8,7 +8,6 @@
 namespace scanloom::sessions {
 namespace {
 
-using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::SizeIs;
 using testing::StartsWith;
@@ -111,35 +110,24 @@ TEST_F(PosesTest, ScansBeforeOneWithTheWrongPoseAreKept) {
     EXPECT_EQ(logged().back(), LogEntry(ScanTaken{0, scan_with(1, std::nullopt, kPlace)})) << "as it was sent";
 }
 
-TEST_F(PosesTest, RobotWithEstimatedPosesHasItsSessionAlone) {
+TEST_F(PosesTest, OnlyRobotsWithEstimatedPosesShareASessionWithOneOfThem) {
     joined(Poses::kOdometry);
-    for (const auto poses : {Poses::kMap, Poses::kOdometry, Poses::kNone}) {
-        EXPECT_THAT(refusal_of(join_with(poses, "other")),
-                    StartsWith("hello.poses is '" + std::string(name_of(poses)) +
-                               "': session 'lab' has the map of robot 'r', whose poses the server estimates"));
-    }
-    EXPECT_THAT(refusal_of(join_with(Poses::kMap, "other")), HasSubstr("use another session for robot 'other'"));
+    EXPECT_EQ(
+        refusal_of(join_with(Poses::kMap, "other")),
+        "hello.poses is 'map': robot 'r' of session 'lab' has poses of kind 'odometry', which do not go together; "
+        "use another session for robot 'other'");
+    EXPECT_EQ(refusal_of(join_with(Poses::kOdometry, "second")), "accepted");
+    EXPECT_EQ(refusal_of(join_with(Poses::kNone, "third")), "accepted");
 }
 
-TEST_F(PosesTest, RobotWithEstimatedPosesCannotJoinOthers) {
+TEST_F(PosesTest, RobotWithEstimatedPosesCannotJoinOneThatSendsThem) {
     joined(Poses::kMap, small_laser(), "other");
     for (const auto poses : {Poses::kOdometry, Poses::kNone}) {
         EXPECT_THAT(refusal_of(join_with(poses)),
-                    StartsWith("hello.poses is '" + std::string(name_of(poses)) + "': session 'lab' has other robots"));
+                    StartsWith("hello.poses is '" + std::string(name_of(poses)) +
+                               "': robot 'other' of session 'lab' has poses of kind 'map'"));
     }
     EXPECT_EQ(refusal_of(join_with(Poses::kMap)), "accepted");
-}
-
-TEST_F(PosesTest, RobotWithEstimatedPosesCannotExtendAnImportedMap) {
-    const MapPatch patch{config_.cell_size, 0.0, 0.0, 1, {MapCell::kOccupied}};
-    ASSERT_TRUE(store::append_and_wait(log_, id_, 1, {wire::encode_entry(patch)}));
-    start_session();
-    ASSERT_FALSE(mapping::bounds_of(*session_->snapshot()).empty());
-    EXPECT_THAT(refusal_of(join_with(Poses::kOdometry)),
-                StartsWith("hello.poses is 'odometry': session 'lab' has a map"));
-    EXPECT_EQ(refusal_of(join_with(Poses::kMap)), "accepted");
-    EXPECT_THAT(refusal_of(join_with(Poses::kNone)), StartsWith("hello.poses is 'none': session 'lab' has a map"))
-        << "also if the robot has joined before";
 }
 
 TEST_F(PosesTest, RobotContinuesWithTheSameKindOfPoses) {

@@ -14,7 +14,7 @@ describe('the localization of a robot', () => {
     assert.equal(wordsOf(tracking(2.34)), 'tracking, \u00b12.3 m');
     assert.equal(wordsOf(tracking(0.02, 0.554)), 'tracking, \u00b12 cm, 55 % of the scan fits the map');
     assert.equal(wordsOf({ ...tracking(0.01), state: 'lost' }), 'lost: its scans fit no place');
-    assert.equal(wordsOf({ ...tracking(0), state: 'unlocated' }), 'unlocated: no laser scan yet');
+    assert.equal(wordsOf({ ...tracking(0), state: 'unlocated' }), 'unlocated: its place in the map is not known yet');
   });
 
   it('is good only if the position is certain and most of the scan fits the map', () => {

@@ -1,0 +1,56 @@
+#pragma once
+
+#include "core/scan_matching/place_search.hpp"
+#include "core/slam/keyframe_graph.hpp"
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+namespace scanloom::slam {
+
+/// Finds the places in the map of fragments that are not located: those of robots that start anywhere, or that were
+/// lost.
+///
+/// The newest keyframes of the fragment are looked up in the map of all located ones. One answer is not enough, because
+/// buildings have rooms that look alike: three must agree, over some metres of the way, and the whole fragment must
+/// then fit the map. A fragment that is located later than possible does no harm; one at a wrong place tears the map.
+/// Threads: one at a time.
+class FragmentSearch {
+public:
+    /// Searches for the place of a fragment. Call it after each of its keyframes.
+    /// @param graph     if the place is found, the fragment is moved there, is located, and has loop edges to the map; the
+    ///     graph is not optimised
+    /// @param fragment  index of a fragment that is not located
+    /// @return whether the place is found
+    /// Cost: up to 50 ms at every second keyframe for the lookups; a test of the fragment when three answers agree.
+    bool search(KeyframeGraph& graph, std::size_t fragment);
+
+    /// Returns the number of answers so far.
+    [[nodiscard]] std::size_t answer_count() const noexcept { return answer_count_; }
+
+private:
+    /// A place that was found.
+    struct Answer {
+        std::size_t keyframe = 0;  // the newest one then
+        Transform2 T_map_fragment; // from the fragment's own frame
+    };
+
+    /// A keyframe of the map, and where it was then.
+    struct Located {
+        std::size_t keyframe = 0;
+        Transform2 T_map_keyframe;
+    };
+
+    [[nodiscard]] bool is_outdated(const KeyframeGraph& graph, const std::vector<Located>& located) const;
+    void update_map(const KeyframeGraph& graph);
+    [[nodiscard]] std::optional<Transform2> find(const KeyframeGraph& graph, std::size_t fragment);
+    [[nodiscard]] bool is_confirmed(const KeyframeGraph& graph, const std::vector<Answer>& answers) const;
+
+    std::optional<scan_matching::PlaceSearch> map_; // of the located keyframes
+    std::vector<Located> in_map_;
+    std::vector<std::vector<Answer>> answers_; // by fragment
+    std::size_t answer_count_ = 0;
+};
+
+} // namespace scanloom::slam

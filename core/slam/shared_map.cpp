@@ -1,0 +1,42 @@
+#include "core/slam/shared_map.hpp"
+
+#include <memory>
+#include <utility>
+
+namespace scanloom::slam {
+
+void SharedMap::begin_with(std::vector<KnownView> views) {
+    for (KnownView& view : views) {
+        graph_.add_fixed(std::make_shared<const ScanPoints>(std::move(view.points)), view.T_map_laser);
+        loops_.add_submaps(graph_, 0);
+    }
+}
+
+std::size_t SharedMap::begin_fragment(std::size_t robot, ScanPoints scan, const Transform2& T_map_keyframe) {
+    const bool is_first = graph_.size() == 0;
+    const std::size_t fragment =
+        graph_.begin_fragment(robot, std::make_shared<const ScanPoints>(std::move(scan)), T_map_keyframe, is_first);
+    search(fragment);
+    return fragment;
+}
+
+void SharedMap::add_keyframe(std::size_t fragment, ScanPoints scan, const Transform2& T_newest_keyframe) {
+    graph_.add(fragment, std::make_shared<const ScanPoints>(std::move(scan)), T_newest_keyframe);
+    search(fragment);
+}
+
+void SharedMap::search(std::size_t fragment) {
+    if (graph_.fragments()[fragment].is_located) return loops_.search(graph_, fragment);
+    loops_.add_submaps(graph_, fragment);
+    if (!fragments_.search(graph_, fragment)) return;
+    ++optimizations_;
+    graph_.optimize_after_jump();
+}
+
+void SharedMap::finish() {
+    constexpr int kIterations = 5;
+    ++optimizations_;
+    graph_.optimize(kIterations);
+}
+
+} // namespace scanloom::slam

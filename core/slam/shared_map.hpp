@@ -1,0 +1,56 @@
+#pragma once
+
+#include "core/slam/fragment_search.hpp"
+#include "core/slam/keyframe_graph.hpp"
+#include "core/slam/loop_search.hpp"
+
+#include <cstddef>
+#include <vector>
+
+namespace scanloom::slam {
+
+/// What a laser would see at a place of a map that is known before any robot drives.
+struct KnownView {
+    Transform2 T_map_laser; ///< the place
+    ScanPoints points;      ///< in the laser's frame
+};
+
+/// The map that the robots of a session share: their keyframes, loops, and the search for places of those who start
+/// anywhere. The frame of the map is that of the first robot's first scan, or that of the known map.
+/// Threads: one at a time.
+class SharedMap {
+public:
+    /// Begins with a known map, in which all robots are to be located. Call it before anything else.
+    /// @param views  all over the map, neighbours after each other
+    void begin_with(std::vector<KnownView> views);
+
+    /// Begins a fragment; it is located if it is the first one.
+    /// @return its index; see KeyframeGraph::begin_fragment() for the parameters
+    std::size_t begin_fragment(std::size_t robot, ScanPoints scan, const Transform2& T_map_keyframe);
+
+    /// Adds a keyframe to a fragment, and searches for loops, or for the place of the fragment.
+    /// See KeyframeGraph::add() for the parameters.
+    void add_keyframe(std::size_t fragment, ScanPoints scan, const Transform2& T_newest_keyframe);
+
+    /// Moves the keyframes once more so that they agree with the edges, as at the end of a log.
+    void finish();
+
+    /// Returns the keyframes and their edges.
+    [[nodiscard]] const KeyframeGraph& graph() const noexcept { return graph_; }
+    /// Returns the figures of the loop search.
+    [[nodiscard]] const LoopFigures& loop_figures() const noexcept { return loops_.figures(); }
+    /// Returns how often the graph was optimised: poses of earlier keyframes change only then.
+    [[nodiscard]] std::size_t optimization_count() const noexcept {
+        return optimizations_ + loop_figures().optimizations;
+    }
+
+private:
+    void search(std::size_t fragment);
+
+    KeyframeGraph graph_;
+    LoopSearch loops_;
+    FragmentSearch fragments_;
+    std::size_t optimizations_ = 0; // by others than the loop search
+};
+
+} // namespace scanloom::slam

@@ -1,0 +1,173 @@
+#include "tests/unit/core/slam/drive.hpp"
+
+#include <gtest/gtest.h>
+
+namespace scanloom::slam {
+namespace {
+
+using scan_matching::points_of;
+using testing_support::Building;
+
+/// Two robots that share a map. The second one starts when the first has ended.
+class TwoRobots {
+public:
+    TwoRobots(const Drive& first, const Drive& second) : first_(first), second_(second) {
+        for (std::size_t n = 0; n < first.scans.size(); ++n)
+            a_.add(points_of(first.scans[n], first.laser), first.odometry[n]);
+        for (std::size_t n = 0; n < second.scans.size(); ++n) {
+            b_.add(points_of(second.scans[n], second.laser), second.odometry[n]);
+            if (!located_at_ && b_.located_fragments() > 0) located_at_ = n;
+        }
+        a_.finish();
+        b_.finish();
+        map_.finish();
+    }
+
+    /// Returns the scan of the second robot at which it was located.
+    [[nodiscard]] std::optional<std::size_t> located_at() const { return located_at_; }
+
+    /// Returns the largest distance of the second robot's poses from the true ones, metres, in the frame of the first
+    /// robot's pose that is nearest.
+    [[nodiscard]] double largest_error() const {
+        double largest = 0.0;
+        for (std::size_t n = 0; n < second_.truth.size(); ++n) {
+            std::size_t nearest = 0;
+            const auto distance = [&](std::size_t k) {
+                return std::hypot(first_.truth[k].x - second_.truth[n].x, first_.truth[k].y - second_.truth[n].y);
+            };
+            for (std::size_t k = 1; k < first_.truth.size(); ++k) {
+                if (distance(k) < distance(nearest)) nearest = k;
+            }
+            const Pose2 truth = compose(inverse(first_.truth[nearest]), second_.truth[n]);
+            const Pose2 found = compose(inverse(a_.pose_of(nearest)), b_.pose_of(n));
+            largest = std::max(largest, std::hypot(truth.x - found.x, truth.y - found.y));
+        }
+        return largest;
+    }
+
+    [[nodiscard]] const TrajectoryEstimator& second() const { return b_; }
+    [[nodiscard]] const SharedMap& map() const { return map_; }
+
+private:
+    const Drive& first_;
+    const Drive& second_;
+    SharedMap map_;
+    TrajectoryEstimator a_{map_, 0};
+    TrajectoryEstimator b_{map_, 1};
+    std::optional<std::size_t> located_at_;
+};
+
+const Drive& lap() {
+    static const Drive drive = drive_along(ring_building(), kLapAndAQuarter, {.scale = 1.02, .turn = 0.003}, 1);
+    return drive;
+}
+
+TEST(FragmentSearch, LocatesARobotThatStartsAnywhere) {
+    const std::vector<Point2> way{{24.0, 21.0}, {1.0, 21.0}, {1.0, 8.0}};
+    const Drive second = drive_along(ring_building(), way, {.scale = 0.98, .turn = -0.003}, 2);
+    const TwoRobots robots(lap(), second);
+    ASSERT_TRUE(robots.located_at());
+    EXPECT_LT(*robots.located_at(), 250U) << "within 25 m";
+    EXPECT_LT(robots.largest_error(), 0.15);
+    for (std::size_t n = 0; n < second.scans.size(); ++n) ASSERT_TRUE(robots.second().is_in_map(n)) << "also before";
+    EXPECT_FALSE(robots.second().is_lost());
+    EXPECT_GT(robots.second().loop_count(), 3U);
+}
+
+TEST(FragmentSearch, LocatesARobotWithoutOdometryAgainstTheDirectionOfTheFirst) {
+    const std::vector<Point2> way{{33.0, 20.0}, {33.0, 1.0}, {12.0, 1.0}};
+    Drive second = drive_along(ring_building(), way, {}, 3);
+    const TwoRobots robots(lap(), second);
+    ASSERT_TRUE(robots.located_at());
+    EXPECT_LT(robots.largest_error(), 0.15);
+}
+
+TEST(FragmentSearch, DoesNotLocateARobotThatStaysAtOnePlace) {
+    Drive second = drive_along(
+        ring_building(), std::vector<Point2>{{10.0, 1.0}, {12.0, 1.0}, {10.0, 1.0}, {12.0, 1.0}, {10.0, 1.0}}, {}, 4);
+    EXPECT_FALSE(TwoRobots(lap(), second).located_at()) << "one view is not enough, whatever it shows";
+}
+
+TEST(FragmentSearch, DoesNotLocateARobotInAnotherBuilding) {
+    Building other;
+    other.add_box(0.0, 0.0, 14.0, 9.0);
+    other.add_box(3.0, 3.0, 5.0, 4.5);
+    other.add_box(8.0, 5.0, 11.0, 6.0);
+    const std::vector<Point2> way{{1.0, 1.0}, {13.0, 1.5}, {13.0, 8.0}, {6.0, 7.5}, {1.5, 8.0}, {1.0, 2.0}};
+    const TwoRobots robots(lap(), drive_along(other, way, {}, 5));
+    EXPECT_FALSE(robots.located_at());
+    EXPECT_TRUE(robots.second().is_lost());
+    EXPECT_TRUE(std::ranges::none_of(robots.map().graph().edges(), [&](const Edge& edge) {
+        return robots.map().graph().fragment_of(edge.from).robot != robots.map().graph().fragment_of(edge.to).robot;
+    }));
+}
+
+/// Five equal rooms on a corridor.
+TEST(FragmentSearch, DoesNotChooseBetweenEqualRooms) {
+    Building building;
+    building.add_box(0.0, 0.0, 30.0, 8.0);
+    for (int n = 0; n < 5; ++n) {
+        const double x = 6.0 * n;
+        building.walls.push_back({{x, 2.4}, {x + 2.5, 2.4}});
+        building.walls.push_back({{x + 3.7, 2.4}, {x + 6.0, 2.4}});
+        building.walls.push_back({{x, 2.4}, {x, 8.0}});
+        building.add_box(x + 0.5, 7.0, x + 2.0, 8.0);
+        building.add_box(x + 5.0, 4.0, x + 6.0, 5.5);
+    }
+    std::vector<Point2> visits;
+    for (int n = 0; n < 5; ++n) {
+        for (const Point2& at : {Point2{3.1, 1.2}, {3.1, 3.5}, {1.5, 5.5}, {4.0, 6.5}, {3.1, 3.5}, {3.1, 1.2}}) {
+            visits.push_back({at.x + 6.0 * n, at.y});
+        }
+    }
+    const Drive first = drive_along(building, visits, {}, 6);
+    const std::vector<Point2> in_the_third{{15.1, 3.5}, {13.5, 5.5}, {16.0, 6.5},
+                                           {13.2, 6.0}, {16.2, 3.4}, {13.5, 5.5}};
+    EXPECT_FALSE(TwoRobots(first, drive_along(building, in_the_third, {}, 7)).located_at());
+}
+
+/// Returns a hall of 18 x 12 m with boxes.
+Building hall() {
+    Building building;
+    building.add_box(0.0, 0.0, 18.0, 12.0);
+    building.add_box(2.0, 2.0, 3.2, 5.0);
+    building.add_box(6.0, 1.8, 8.5, 2.6);
+    building.add_box(12.0, 3.0, 13.0, 4.0);
+    building.add_box(5.0, 6.0, 6.0, 9.5);
+    building.add_box(9.0, 5.5, 12.0, 6.5);
+    building.add_box(14.5, 8.0, 16.0, 8.6);
+    building.add_box(8.5, 9.8, 10.5, 10.4);
+    return building;
+}
+
+/// A robot is carried in the arms, where its laser sees nothing, and its odometry does not notice.
+TEST(FragmentSearch, LocatesARobotThatWasCarriedAgain) {
+    const std::vector<Point2> round{{1.0, 1.0}, {16.5, 1.2}, {17.0, 10.8}, {12.0, 11.2}, {7.5, 8.0},
+                                    {7.5, 4.5}, {4.0, 5.5},  {3.5, 10.5},  {1.0, 10.0},  {1.0, 2.0}};
+    const Drive before = drive_along(hall(), round, {.scale = 1.02, .turn = 0.003}, 8);
+    const std::vector<Point2> elsewhere{{16.0, 4.5}, {14.0, 5.5}, {16.8, 6.8}, {16.8, 10.5}, {11.5, 11.2}, {7.5, 8.0}};
+    const Drive after = drive_along(hall(), elsewhere, {.scale = 1.02}, 9);
+    SharedMap map;
+    TrajectoryEstimator estimator(map);
+    for (std::size_t n = 0; n < before.scans.size(); ++n) {
+        estimator.add(points_of(before.scans[n], before.laser), before.odometry[n]);
+    }
+    for (int n = 0; n < 30; ++n) estimator.add({}, before.odometry.back());
+    EXPECT_TRUE(estimator.is_lost());
+    const std::size_t carried = estimator.scan_count();
+    for (std::size_t n = 0; n < after.scans.size(); ++n) {
+        estimator.add(points_of(after.scans[n], after.laser), compose(before.odometry.back(), after.odometry[n]));
+    }
+    estimator.finish();
+    map.finish();
+    EXPECT_FALSE(estimator.is_lost());
+    const Pose2 T_truth_map = compose(before.truth.front(), inverse(estimator.pose_of(0)));
+    for (std::size_t n = 0; n < after.scans.size(); ++n) {
+        ASSERT_TRUE(estimator.is_located(carried + n)) << n;
+        const Pose2 pose = compose(T_truth_map, estimator.pose_of(carried + n));
+        ASSERT_LT(std::hypot(pose.x - after.truth[n].x, pose.y - after.truth[n].y), 0.2) << n;
+    }
+}
+
+} // namespace
+} // namespace scanloom::slam
