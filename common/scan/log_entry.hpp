@@ -122,8 +122,17 @@ struct MapsCorrected {
     friend bool operator==(const MapsCorrected&, const MapsCorrected&) = default;
 };
 
+/// An operator says where a robot is whose poses the server estimates: its next scan is searched for there.
+struct RobotRelocalized {
+    RobotIndex robot = 0;  ///< a robot whose poses are not Poses::kMap
+    Point2 near{0.0, 0.0}; ///< metres, map frame
+    double radius = 0.0;   ///< metres, positive: the robot is at most this far from `near`
+
+    friend bool operator==(const RobotRelocalized&, const RobotRelocalized&) = default;
+};
+
 /// One entry of a session's append-only log, from which all maps are computed.
-using LogEntry =
-    std::variant<RobotJoined, SensorDescribed, ScanTaken, MapPatch, ScansExcluded, ExclusionLifted, MapsCorrected>;
+using LogEntry = std::variant<RobotJoined, SensorDescribed, ScanTaken, MapPatch, ScansExcluded, ExclusionLifted,
+                              MapsCorrected, RobotRelocalized>;
 
 } // namespace scanloom

@@ -97,6 +97,13 @@ Result<> LogRules::check_body(const MapsCorrected& corrected) const {
 
 void LogRules::apply_body(const MapsCorrected&) {}
 
+Result<> LogRules::check_body(const RobotRelocalized& relocalized) const {
+    if (relocalized.robot < robots_.size() && robots_[relocalized.robot].poses != Poses::kMap) return {};
+    return cannot_follow(fmt::format("robot {} is relocalized, whose poses are not estimated", relocalized.robot));
+}
+
+void LogRules::apply_body(const RobotRelocalized&) {}
+
 void LogRules::apply_body(const ExclusionLifted& lifted) { static_cast<void>(exclusions_.add(revision_ + 1, lifted)); }
 
 } // namespace scanloom

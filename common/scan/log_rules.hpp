@@ -91,6 +91,7 @@ private:
     [[nodiscard]] Result<> check_body(const ScansExcluded& excluded) const;
     [[nodiscard]] Result<> check_body(const ExclusionLifted& lifted) const;
     [[nodiscard]] Result<> check_body(const MapsCorrected& corrected) const;
+    [[nodiscard]] Result<> check_body(const RobotRelocalized& relocalized) const;
     void apply_body(const RobotJoined& joined);
     void apply_body(const SensorDescribed& described);
     void apply_body(const ScanTaken& taken);
@@ -98,6 +99,7 @@ private:
     void apply_body(const ScansExcluded& excluded);
     void apply_body(const ExclusionLifted& lifted);
     void apply_body(const MapsCorrected& corrected);
+    void apply_body(const RobotRelocalized& relocalized);
 
     Revision revision_ = 0;
     std::vector<LoggedRobot> robots_;

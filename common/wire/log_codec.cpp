@@ -61,6 +61,13 @@ struct EntryToProto {
     }
     void operator()(const ExclusionLifted& lifted) const { out.mutable_exclusion_lifted()->set_id(lifted.id); }
     void operator()(const MapsCorrected& corrected) const { out.mutable_maps_corrected()->set_as_of(corrected.as_of); }
+    void operator()(const RobotRelocalized& relocalized) const {
+        auto& proto = *out.mutable_robot_relocalized();
+        proto.set_robot(relocalized.robot);
+        proto.set_x(relocalized.near.x);
+        proto.set_y(relocalized.near.y);
+        proto.set_radius(relocalized.radius);
+    }
 };
 
 Result<LogEntry> read_robot_joined(const v1::RobotJoined& proto) {
@@ -114,6 +121,12 @@ Result<LogEntry> read_scans_excluded(const v1::ScansExcluded& proto) {
     return LogEntry(excluded);
 }
 
+Result<LogEntry> read_robot_relocalized(const v1::RobotRelocalized& proto) {
+    const bool is_place = std::fabs(proto.x()) <= kCoordinateMax && std::fabs(proto.y()) <= kCoordinateMax;
+    if (!is_place || !(proto.radius() > 0.0 && proto.radius() <= kCoordinateMax)) return damaged("a log entry");
+    return LogEntry(RobotRelocalized{proto.robot(), {proto.x(), proto.y()}, proto.radius()});
+}
+
 } // namespace
 
 std::string encode_entry(const LogEntry& entry) {
@@ -139,6 +152,7 @@ Result<LogEntry> decode_entry(std::string_view bytes) {
     case v1::LogEntry::kScansExcluded: return read_scans_excluded(proto->scans_excluded());
     case v1::LogEntry::kExclusionLifted: return LogEntry(ExclusionLifted{proto->exclusion_lifted().id()});
     case v1::LogEntry::kMapsCorrected: return LogEntry(MapsCorrected{proto->maps_corrected().as_of()});
+    case v1::LogEntry::kRobotRelocalized: return read_robot_relocalized(proto->robot_relocalized());
     case v1::LogEntry::BODY_NOT_SET: break;
     }
     return damaged("a log entry");

@@ -25,6 +25,10 @@ Result<bool> LocalizedProjection::apply(LogEntry& entry, double& work) {
         work -= kEstimationWork;
     }
     const auto applied = projection_.apply(entry, work);
+    if (const auto* relocalized = std::get_if<RobotRelocalized>(&entry);
+        applied && *applied && relocalized != nullptr) {
+        poses_.relocalize(*relocalized);
+    }
     const auto* corrected = std::get_if<MapsCorrected>(&entry);
     if (applied && *applied && corrected != nullptr) announced_ = corrected->as_of;
     return applied;

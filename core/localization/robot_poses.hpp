@@ -43,6 +43,9 @@ public:
     /// @return its pose in the maps, T_map_robot; nullopt: it fits no place, so maps leave it out
     std::optional<Pose2> add(const Scan& scan, const Sensor& sensor);
 
+    /// Searches for the robot's next laser scan near a place.
+    void relocalize(const slam::Surroundings& place) { estimator_.relocalize(place); }
+
     /// Returns whether the maps should follow the newest estimates. Call it after each add() to the shared map.
     [[nodiscard]] bool is_correction_due();
 

@@ -5,10 +5,7 @@
 namespace scanloom::localization {
 
 void SessionPoses::estimate(ScanTaken& taken, const Sensor& sensor, Revision revision) {
-    if (robots_.size() <= taken.robot) robots_.resize(taken.robot + 1);
-    auto& robot = robots_[taken.robot];
-    if (!robot) robot = std::make_unique<RobotPoses>(*map_, taken.robot);
-    taken.scan.pose = robot->add(taken.scan, sensor);
+    taken.scan.pose = poses_of(taken.robot).add(taken.scan, sensor);
     ++scan_count_;
     bool is_due = false;
     for (const auto& each : robots_) is_due = (each && each->is_correction_due()) || is_due;
@@ -17,6 +14,16 @@ void SessionPoses::estimate(ScanTaken& taken, const Sensor& sensor, Revision rev
     for (const auto& each : robots_) {
         if (each) each->correct();
     }
+}
+
+void SessionPoses::relocalize(const RobotRelocalized& relocalized) {
+    poses_of(relocalized.robot).relocalize({relocalized.near, relocalized.radius});
+}
+
+RobotPoses& SessionPoses::poses_of(RobotIndex robot) {
+    if (robots_.size() <= robot) robots_.resize(robot + 1);
+    if (!robots_[robot]) robots_[robot] = std::make_unique<RobotPoses>(*map_, robot);
+    return *robots_[robot];
 }
 
 mapping::ScanPoses SessionPoses::in_maps() const {

@@ -51,6 +51,9 @@ public:
     /// @param revision  of the entry
     void estimate(ScanTaken& taken, const Sensor& sensor, Revision revision);
 
+    /// Searches for the robot's next scan near a place.
+    void relocalize(const RobotRelocalized& relocalized);
+
     /// Returns the newest entry at which the poses of earlier scans in the maps were corrected; 0: none were.
     [[nodiscard]] Revision corrected() const noexcept { return corrected_; }
 
@@ -76,6 +79,8 @@ public:
     [[nodiscard]] PoseGraphView graph() const;
 
 private:
+    [[nodiscard]] RobotPoses& poses_of(RobotIndex robot);
+
     std::unique_ptr<slam::SharedMap> map_ = std::make_unique<slam::SharedMap>();
     std::vector<std::unique_ptr<RobotPoses>> robots_; // by RobotIndex; null: as find()
     Revision corrected_ = 0;

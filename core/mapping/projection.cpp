@@ -113,6 +113,9 @@ bool Projection::integrate_entry(const ExclusionLifted&, double&) { return true;
 /// Does nothing: who makes the maps with corrected poses calls replace_with().
 bool Projection::integrate_entry(const MapsCorrected&, double&) { return true; }
 
+/// Does nothing: it changes how poses are estimated.
+bool Projection::integrate_entry(const RobotRelocalized&, double&) { return true; }
+
 void Projection::replace_with(Projection corrected) {
     assert(!is_applying_ && !corrected.is_applying_ && revision() == corrected.revision());
     laser_.replace_with(std::move(corrected.laser_), revision());

@@ -187,6 +187,7 @@ private:
     bool integrate_entry(const ScansExcluded& excluded, double& work);
     bool integrate_entry(const ExclusionLifted& lifted, double& work);
     bool integrate_entry(const MapsCorrected& corrected, double& work);
+    bool integrate_entry(const RobotRelocalized& relocalized, double& work);
     [[nodiscard]] const KnownFan& fan_of(Robot& robot, const Sensor& sensor, const Scan& scan);
 
     void bring_classes_up_to(const LaserView& laser);

@@ -221,6 +221,7 @@ private:
 
     /// Adds a node, with the points as rotate() has turned them, unless its bound is too low.
     void push(Node node) {
+        if (!is_within(node)) return;
         const bool is_pose = node.level == 0; // the one in the middle of the cell
         const Level& level = is_pose ? map_.cells_ : map_.bounds_[static_cast<std::size_t>(node.level - 1)];
         // The rotation moves points of a node by up to half a cell; bounds_ has two more columns on the left.
@@ -239,11 +240,24 @@ private:
         if (bound >= least_) open_.push(node);
     }
 
-    [[nodiscard]] Transform2 pose_of(const Node& node) const {
+    [[nodiscard]] Point2 middle_of(const Node& node) const {
         const double cell = cell_of(node.level);
         return {map_.corner_.x + (static_cast<double>(node.column) + 0.5) * cell,
-                map_.corner_.y + (static_cast<double>(node.row) + 0.5) * cell,
-                sin_cos(angle_of_turn(node.level, node.turn))};
+                map_.corner_.y + (static_cast<double>(node.row) + 0.5) * cell};
+    }
+
+    [[nodiscard]] Transform2 pose_of(const Node& node) const {
+        const auto [x, y] = middle_of(node);
+        return {x, y, sin_cos(angle_of_turn(node.level, node.turn))};
+    }
+
+    /// Returns whether poses of a node may be in the circle of the question; at the finest level, whether its one is.
+    [[nodiscard]] bool is_within(const Node& node) const {
+        const double half = node.level == 0 ? 0.0 : 0.5 * cell_of(node.level);
+        const Point2 middle = middle_of(node);
+        const double x = std::max(0.0, std::fabs(middle.x - question_.center.x) - half);
+        const double y = std::max(0.0, std::fabs(middle.y - question_.center.y) - half);
+        return x * x + y * y <= question_.radius * question_.radius;
     }
 
     /// Returns whether all poses of a node are at the same place as the best one.

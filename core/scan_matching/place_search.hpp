@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -21,7 +22,9 @@ struct FoundPlace {
 
 /// What PlaceSearch::find() looks for, and what it may spend.
 struct PlaceQuestion {
-    int score_min = 1;        ///< places with a lower score are not found; positive
+    int score_min = 1;       ///< places with a lower score are not found; positive
+    Point2 center{0.0, 0.0}; ///< metres, in the map's frame: places are searched for around it
+    double radius = std::numeric_limits<double>::infinity(); ///< metres: up to this distance
     double rival_share = 0.9; ///< the search ends when no rival has more than this share of the best score, 0 to 1
     std::size_t lookups_max = 8'000'000; ///< of points in the map; these take up to 50 ms
 };

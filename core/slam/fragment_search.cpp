@@ -1,6 +1,8 @@
 #include "core/slam/fragment_search.hpp"
 
+#include "core/scan_matching/line_matching.hpp"
 #include "core/scan_matching/square_set.hpp"
+#include "core/slam/keyframe_map.hpp"
 #include "core/slam/stretch_test.hpp"
 
 #include <algorithm>
@@ -13,17 +15,21 @@ namespace {
 using scan_matching::PlaceSearch;
 using scan_matching::SurfacePoint;
 
-constexpr std::size_t kSearchEvery = 2; // keyframes between searches
-constexpr double kQueryLength = 10.0;   // metres travelled by the keyframes that are looked up
-constexpr std::size_t kPointsMax = 120; // of these
-constexpr std::size_t kPointsMin = 40;  // fewer show no place
-constexpr double kPointSquare = 0.3;    // metres: one point in each
-constexpr std::size_t kStride = 23;     // from one of them to the next
-constexpr double kScoreShare = 0.55;    // of the points, at least
-constexpr double kRivalShare = 0.9;     // a place with a higher share of the best score is as good
-constexpr std::size_t kMapRefresh = 20; // keyframes that may lack in the map
-constexpr double kMapMoveMax = 0.2;     // metres: keyframes that moved farther outdate it
-constexpr double kMapReach = 250.0;     // metres around the newest located keyframe
+constexpr std::size_t kSearchEvery = 2;      // keyframes between searches
+constexpr double kQueryLength = 10.0;        // metres travelled by the keyframes that are looked up
+constexpr std::size_t kPointsMax = 120;      // of these
+constexpr std::size_t kPointsMin = 40;       // fewer show no place
+constexpr double kPointSquare = 0.3;         // metres: one point in each
+constexpr std::size_t kStride = 23;          // from one of them to the next
+constexpr double kScoreShare = 0.55;         // of the points, at least
+constexpr double kRivalShare = 0.9;          // a place with a higher share of the best score is as good
+constexpr double kExpectedScoreShare = 0.7;  // likewise where people expect the robot
+constexpr double kConnectedInliers = 0.5;    // of a keyframe's points, at least, that then fit the map
+constexpr double kConnectedSigma = 0.03;     // metres, of its pose
+constexpr double kConnectedTurnSigma = 0.01; // radians
+constexpr std::size_t kMapRefresh = 20;      // keyframes that may lack in the map
+constexpr double kMapMoveMax = 0.2;          // metres: keyframes that moved farther outdate it
+constexpr double kMapReach = 250.0;          // metres around the newest located keyframe
 
 // Answers that agree.
 constexpr std::size_t kAnswers = 3;
@@ -39,13 +45,12 @@ constexpr double kWindow = 1.0; // metres, of the stretch test
 
 bool FragmentSearch::search(KeyframeGraph& graph, std::size_t fragment) {
     const std::size_t keyframe = graph.fragments()[fragment].keyframes.back();
-    if (graph[keyframe].position % kSearchEvery != 0) return false;
-    const auto found = find(graph, fragment);
+    auto& [answers, expectation] = searched(fragment);
+    if (graph[keyframe].position % kSearchEvery != 0 && !expectation) return false;
+    const auto found = find(graph, fragment, expectation);
     if (!found) return false;
-    if (answers_.size() <= fragment) answers_.resize(fragment + 1);
-    auto& answers = answers_[fragment];
+    if (expectation) return connect(graph, fragment, *found);
     answers.push_back({keyframe, *found});
-    ++answer_count_;
     if (!is_confirmed(graph, answers)) return false;
     graph.move(fragment, *found, true);
     const std::size_t anchor = graph.fragments().front().keyframes.front();
@@ -55,6 +60,38 @@ bool FragmentSearch::search(KeyframeGraph& graph, std::size_t fragment) {
     }
     answers.clear();
     return true;
+}
+
+/// Moves a fragment to where its newest keyframe was found, refined by a match with the keyframes around, and connects
+/// it with the nearest one. Returns whether it fits.
+bool FragmentSearch::connect(KeyframeGraph& graph, std::size_t fragment, const Transform2& T_map_fragment) {
+    const std::size_t newest = graph.fragments()[fragment].keyframes.back();
+    const Transform2 pose = T_map_fragment * graph.pose(newest);
+    KeyframeViews views;
+    std::optional<std::size_t> nearest;
+    const auto distance = [&](std::size_t keyframe) { return distance_of(inverse(graph.pose(keyframe)) * pose); };
+    for (std::size_t n = graph.size(); n-- > 0;) {
+        if (!graph.fragment_of(n).is_located || distance(n) > PlaceSearch::kReach) continue;
+        views.add(graph[n], graph.pose(n));
+        if (!nearest || distance(n) < distance(*nearest)) nearest = n;
+    }
+    if (!nearest) return false;
+    const KeyframeMap around(std::move(views));
+    const auto match = match_to_lines(graph[newest].scan->points, around.points(), pose, {pose, 0.2, 0.1}, {});
+    if (match.inlier_ratio < kConnectedInliers) return false;
+    graph.add_loop({*nearest, newest, inverse(graph.pose(*nearest)) * match.T_map_robot,
+                    information_of(kConnectedSigma, kConnectedTurnSigma), true});
+    graph.move(fragment, match.T_map_robot * inverse(graph.pose(newest)), true);
+    return true;
+}
+
+void FragmentSearch::expect(std::size_t fragment, const Surroundings& place, std::size_t keyframe) {
+    searched(fragment).expectation = {place, keyframe};
+}
+
+FragmentSearch::Searched& FragmentSearch::searched(std::size_t fragment) {
+    if (searched_.size() <= fragment) searched_.resize(fragment + 1);
+    return searched_[fragment];
 }
 
 /// Returns whether the map lacks keyframes, or has some elsewhere.
@@ -84,7 +121,8 @@ void FragmentSearch::update_map(const KeyframeGraph& graph) {
 }
 
 /// Looks up the newest keyframes of a fragment. Returns T_map_fragment.
-std::optional<Transform2> FragmentSearch::find(const KeyframeGraph& graph, std::size_t fragment) {
+std::optional<Transform2> FragmentSearch::find(const KeyframeGraph& graph, std::size_t fragment,
+                                               const std::optional<Expectation>& expectation) {
     update_map(graph);
     if (!map_) return std::nullopt;
     const auto& keyframes = graph.fragments()[fragment].keyframes;
@@ -109,8 +147,15 @@ std::optional<Transform2> FragmentSearch::find(const KeyframeGraph& graph, std::
     for (std::size_t first = 0; first < kStride; ++first) {
         for (std::size_t n = first; n < count; n += kStride) chosen.push_back(points[n * points.size() / count]);
     }
-    const auto place = map_->find(
-        chosen, {.score_min = static_cast<int>(kScoreShare * static_cast<double>(count)), .rival_share = kRivalShare});
+    const double share = expectation ? kExpectedScoreShare : kScoreShare;
+    scan_matching::PlaceQuestion question{.score_min = static_cast<int>(share * static_cast<double>(count)),
+                                          .rival_share = kRivalShare};
+    if (expectation) {
+        const double moved = distance_of(inverse(graph.pose(expectation->keyframe)) * graph.pose(newest));
+        question.center = expectation->place.near;
+        question.radius = expectation->place.radius + moved;
+    }
+    const auto place = map_->find(chosen, question);
     if (!place || place->rival_score > kRivalShare * place->score) return std::nullopt;
     return place->T_map_points * T_newest_fragment;
 }

@@ -9,12 +9,19 @@
 
 namespace scanloom::slam {
 
+/// Where people say that a robot is.
+struct Surroundings {
+    Point2 near{0.0, 0.0}; ///< metres, in the map's frame
+    double radius = 0.0;   ///< metres: the robot is at most this far from it
+};
+
 /// Finds the places in the map of fragments that are not located: those of robots that start anywhere, or that were
 /// lost.
 ///
 /// The newest keyframes of the fragment are looked up in the map of all located ones. One answer is not enough, because
 /// buildings have rooms that look alike: three must agree, over some metres of the way, and the whole fragment must
 /// then fit the map. A fragment that is located later than possible does no harm; one at a wrong place tears the map.
+/// Where people say where the robot is, one good answer near that place is enough.
 /// Threads: one at a time.
 class FragmentSearch {
 public:
@@ -26,8 +33,11 @@ public:
     /// Cost: up to 50 ms at every second keyframe for the lookups; a test of the fragment when three answers agree.
     bool search(KeyframeGraph& graph, std::size_t fragment);
 
-    /// Returns the number of answers so far.
-    [[nodiscard]] std::size_t answer_count() const noexcept { return answer_count_; }
+    /// Searches for a fragment near a place only.
+    /// @param fragment  index of the fragment
+    /// @param place     of one of its keyframes
+    /// @param keyframe  index of that keyframe, the newest one or the next one
+    void expect(std::size_t fragment, const Surroundings& place, std::size_t keyframe);
 
 private:
     /// A place that was found.
@@ -42,15 +52,29 @@ private:
         Transform2 T_map_keyframe;
     };
 
+    /// What people say about a fragment.
+    struct Expectation {
+        Surroundings place;
+        std::size_t keyframe = 0;
+    };
+
+    /// A fragment that is searched for.
+    struct Searched {
+        std::vector<Answer> answers;
+        std::optional<Expectation> expectation;
+    };
+
+    [[nodiscard]] static bool connect(KeyframeGraph& graph, std::size_t fragment, const Transform2& T_map_fragment);
+    [[nodiscard]] Searched& searched(std::size_t fragment);
     [[nodiscard]] bool is_outdated(const KeyframeGraph& graph, const std::vector<Located>& located) const;
     void update_map(const KeyframeGraph& graph);
-    [[nodiscard]] std::optional<Transform2> find(const KeyframeGraph& graph, std::size_t fragment);
+    [[nodiscard]] std::optional<Transform2> find(const KeyframeGraph& graph, std::size_t fragment,
+                                                 const std::optional<Expectation>& expectation);
     [[nodiscard]] bool is_confirmed(const KeyframeGraph& graph, const std::vector<Answer>& answers) const;
 
     std::optional<scan_matching::PlaceSearch> map_; // of the located keyframes
     std::vector<Located> in_map_;
-    std::vector<std::vector<Answer>> answers_; // by fragment
-    std::size_t answer_count_ = 0;
+    std::vector<Searched> searched_; // by fragment
 };
 
 } // namespace scanloom::slam

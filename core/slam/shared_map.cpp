@@ -12,10 +12,12 @@ void SharedMap::begin_with(std::vector<KnownView> views) {
     }
 }
 
-std::size_t SharedMap::begin_fragment(std::size_t robot, ScanPoints scan, const Transform2& T_map_keyframe) {
+std::size_t SharedMap::begin_fragment(std::size_t robot, ScanPoints scan, const Transform2& T_map_keyframe,
+                                      const std::optional<Surroundings>& place) {
     const bool is_first = graph_.size() == 0;
     const std::size_t fragment =
         graph_.begin_fragment(robot, std::make_shared<const ScanPoints>(std::move(scan)), T_map_keyframe, is_first);
+    if (place) fragments_.expect(fragment, *place, graph_.size() - 1);
     search(fragment);
     return fragment;
 }

@@ -5,6 +5,7 @@
 #include "core/slam/loop_search.hpp"
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 namespace scanloom::slam {
@@ -25,8 +26,14 @@ public:
     void begin_with(std::vector<KnownView> views);
 
     /// Begins a fragment; it is located if it is the first one.
-    /// @return its index; see KeyframeGraph::begin_fragment() for the parameters
-    std::size_t begin_fragment(std::size_t robot, ScanPoints scan, const Transform2& T_map_keyframe);
+    /// @param place  where people say that its first keyframe is; nullopt: it may be anywhere
+    /// @return its index; see KeyframeGraph::begin_fragment() for the other parameters
+    std::size_t begin_fragment(std::size_t robot, ScanPoints scan, const Transform2& T_map_keyframe,
+                               const std::optional<Surroundings>& place = std::nullopt);
+
+    /// Searches for the next keyframe of a fragment near a place.
+    /// @param fragment  index of a fragment that is not located
+    void expect(std::size_t fragment, const Surroundings& place) { fragments_.expect(fragment, place, graph_.size()); }
 
     /// Adds a keyframe to a fragment, and searches for loops, or for the place of the fragment.
     /// See KeyframeGraph::add() for the parameters.

@@ -38,22 +38,31 @@ void TrajectoryEstimator::add(ScanPoints scan, const std::optional<Pose2>& odome
     odometry_ = now;
     if (keyframes_.empty()) {
         const Transform2 start = graph().size() == 0 ? now.value_or(Transform2()) : Transform2();
-        begin_fragment(std::move(scan), start);
-        first_.push_back({start, is_fragment_located()});
+        begin_fragment(std::move(scan), start, std::exchange(relocalized_, std::nullopt));
+        first_.push_back({graph().pose(newest_keyframe()), is_fragment_located()});
         placed_.push_back({newest_keyframe(), {}});
         newest_ = {{}, 1.0, true};
         return;
     }
-    const auto decided = tracker_.add(scan, motion, is_keyframe_due);
+    std::optional<Surroundings> place_to_search;
+    if (!scan.points.empty()) place_to_search = std::exchange(relocalized_, std::nullopt);
+    const auto is_due = [&](const TrackedScan& tracked) { return place_to_search || is_keyframe_due(tracked); };
+    const auto decided = tracker_.add(scan, motion, is_due);
     newest_ = decided.empty() ? tracker_.newest() : decided.back();
     const Transform2 first = graph().pose(newest_keyframe()) * newest_.T_keyframe_robot;
     first_.push_back({first, newest_.is_matched && is_fragment_located()});
-    if (decided.empty()) return;
+    if (decided.empty()) {
+        relocalized_ = place_to_search; // it waits until the open scans are decided
+        return;
+    }
     place(decided);
     const TrackedScan& last = decided.back();
-    if (tracker_.unmatched() >= kLost && !scan.points.empty()) {
-        begin_fragment(std::move(scan), first);
-    } else if (last.is_matched && is_keyframe_due(last)) {
+    const bool is_elsewhere = place_to_search && (is_fragment_located() || !last.is_matched);
+    if ((tracker_.unmatched() >= kLost && !scan.points.empty()) || is_elsewhere) {
+        begin_fragment(std::move(scan), first, place_to_search);
+        if (is_fragment_located()) first_.back() = {graph().pose(newest_keyframe()), true};
+    } else if (last.is_matched && is_due(last)) {
+        if (place_to_search) map_.expect(fragments_.back(), *place_to_search);
         keyframes_.push_back(graph().size());
         map_.add_keyframe(fragments_.back(), std::move(scan), last.T_keyframe_robot);
         begin_tracking();
@@ -72,9 +81,10 @@ void TrajectoryEstimator::place(const std::vector<TrackedScan>& scans) {
     }
 }
 
-void TrajectoryEstimator::begin_fragment(ScanPoints scan, const Transform2& T_map_robot) {
+void TrajectoryEstimator::begin_fragment(ScanPoints scan, const Transform2& T_map_robot,
+                                         const std::optional<Surroundings>& place) {
     keyframes_.push_back(graph().size());
-    fragments_.push_back(map_.begin_fragment(robot_, std::move(scan), T_map_robot));
+    fragments_.push_back(map_.begin_fragment(robot_, std::move(scan), T_map_robot, place));
     begin_tracking();
 }
 

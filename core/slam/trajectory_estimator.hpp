@@ -37,6 +37,11 @@ public:
     /// @param odometry  T_odom_robot at the scan; nullopt: not known. Pre: finite
     void add(ScanPoints scan, const std::optional<Pose2>& odometry);
 
+    /// Searches for the next scan near a place, which people know. If it is found there, the robot goes on from there;
+    /// otherwise it is lost, and further scans are searched for there, too.
+    /// @param place  in the map's frame
+    void relocalize(const Surroundings& place) { relocalized_ = place; }
+
     /// Decides about the scans that are still open, and optimises once more, as at the end of a log.
     void finish();
 
@@ -113,7 +118,8 @@ private:
     };
 
     void place(const std::vector<TrackedScan>& scans);
-    void begin_fragment(ScanPoints scan, const Transform2& T_map_robot);
+    void begin_fragment(ScanPoints scan, const Transform2& T_map_robot,
+                        const std::optional<Surroundings>& place = std::nullopt);
     void begin_tracking();
     [[nodiscard]] const KeyframeGraph& graph() const noexcept { return map_.graph(); }
     [[nodiscard]] std::size_t newest_keyframe() const noexcept { return keyframes_.back(); }
@@ -129,7 +135,8 @@ private:
     std::vector<PlacedScan> placed_; // of the decided scans
     std::vector<FirstEstimate> first_;
     TrackedScan newest_;
-    std::optional<Transform2> odometry_; // of the last scan
+    std::optional<Transform2> odometry_;      // of the last scan
+    std::optional<Surroundings> relocalized_; // where the next scan is searched for
     std::size_t unmatched_count_ = 0;
 };
 

@@ -82,6 +82,8 @@ Result<std::string> CarmenText::text_of(const ExclusionLifted&) { return std::st
 
 Result<std::string> CarmenText::text_of(const MapsCorrected&) { return std::string(); }
 
+Result<std::string> CarmenText::text_of(const RobotRelocalized&) { return std::string(); }
+
 Result<std::string> CarmenText::text_of(const ScanTaken& taken) {
     const Scan& scan = taken.scan;
     const auto known = sensors_.find({taken.robot, scan.sensor});

@@ -48,6 +48,7 @@ private:
     [[nodiscard]] static Result<std::string> text_of(const ScansExcluded& excluded);
     [[nodiscard]] static Result<std::string> text_of(const ExclusionLifted& lifted);
     [[nodiscard]] static Result<std::string> text_of(const MapsCorrected& corrected);
+    [[nodiscard]] static Result<std::string> text_of(const RobotRelocalized& relocalized);
 
     ScanFilter filter_;
     Revision revision_ = 0; ///< of the newest entry

@@ -83,6 +83,7 @@ std::span<const Route> routes() noexcept {
         {kGet, SESSION "/trajectory.geojson", "trajectory", kRead, kLogReading, kLoaded, kTrajectory, get_trajectory},
         {kGet, SESSION "/trajectory.tum", "trajectoryTum", kRead, kLogReading, kLoaded, kTum, get_trajectory_tum},
         {kGet, SESSION "/pose_graph.geojson", "poseGraph", kRead, kLogReading, kLoaded, {}, get_pose_graph},
+        {kPost, SESSION "/relocalize", "relocalize", kChange, kQueries, kLoaded, {}, relocalize},
         {kGet, SESSION "/landmarks.geojson", "landmarks", kRead, kLogReading, kLoaded, kLandmarks, get_landmarks},
         {kGet, SESSION "/points.csv", "pointsCsv", kRead, kLogReading, kLoaded, kPoints, get_points_csv},
         {kGet, SESSION "/points.ply", "pointsPly", kRead, kLogReading, kLoaded, kPoints, get_points_ply},

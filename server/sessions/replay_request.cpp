@@ -79,6 +79,8 @@ Result<> check(const mapping::Projection&, const ExclusionLifted&) { return {}; 
 
 Result<> check(const mapping::Projection&, const MapsCorrected&) { return {}; }
 
+Result<> check(const mapping::Projection&, const RobotRelocalized&) { return {}; }
+
 } // namespace
 
 Result<> check_replayable(const mapping::Projection& projection, const LogEntry& entry) {

@@ -294,6 +294,19 @@ PendingEntry RobotSequencer::announce(const MapsCorrected& corrected) {
     return {PendingEntry::kNoRobot, corrected, {}, 0};
 }
 
+Result<PendingEntry> RobotSequencer::relocalize(const RobotRelocalized& relocalized) {
+    const auto& robots = pending_.robots();
+    if (relocalized.robot >= robots.size()) return Error{Errc::kNotFound, "the robot has not joined"};
+    const auto& robot = robots[relocalized.robot];
+    if (robot.poses == Poses::kMap) {
+        return Error{
+            Errc::kConflict,
+            fmt::format("robot '{}' sends its poses (--poses map), so the server does not locate it", robot.name)};
+    }
+    pending_.apply(relocalized);
+    return PendingEntry{PendingEntry::kNoRobot, relocalized, {}, 0};
+}
+
 // Acknowledgements
 
 void RobotSequencer::release(const Group& group) {

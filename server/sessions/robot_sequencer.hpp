@@ -71,6 +71,10 @@ public:
     /// Returns the entry to append when maps follow corrected poses.
     [[nodiscard]] PendingEntry announce(const MapsCorrected& corrected);
 
+    /// Returns the entry to append when an operator says where a robot is.
+    /// Errors: kNotFound if the robot has not joined; kConflict if it sends poses.
+    [[nodiscard]] Result<PendingEntry> relocalize(const RobotRelocalized& relocalized);
+
     /// Sets where a robot is whose scans have no poses, to estimate what its next scans reach.
     /// @param robot  index in the session
     /// @param place  by its newest scan in the maps

@@ -80,6 +80,11 @@ public:
     /// @param read  must not block
     void read_poses(std::function<void(const localization::SessionPoses&)> read);
 
+    /// Searches for a robot's next scan near a place: appends the entry to the log.
+    /// @param done  receives, on the session's strand, success when the entry waits to be appended, or kNotFound if the
+    ///              robot has not joined, kConflict if it sends poses, or why the session accepts no entries
+    void relocalize(const RobotRelocalized& relocalized, std::function<void(Result<>)> done);
+
     /// Begins to correct the maps if they show scans at poses that have been corrected.
     void correct_maps();
 

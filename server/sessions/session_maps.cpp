@@ -78,11 +78,10 @@ Result<> SessionMaps::publish() {
         for (std::size_t n = 0; n < newest_scans_.size(); ++n) maps.robots[n].newest_scan = newest_scans_[n];
         for (RobotIndex n = 0; n < maps.robots.size(); ++n) {
             auto& robot = maps.robots[n];
-            if (const auto* poses = maps_.poses().find(n)) {
-                robot.localization = poses->localization();
-            } else if (robot.poses != Poses::kMap) {
-                robot.localization.state = LocalizationState::kUnlocated;
-            }
+            if (robot.poses == Poses::kMap) continue;
+            const auto* poses = maps_.poses().find(n);
+            robot.localization = poses != nullptr ? poses->localization() : mapping::Localization{};
+            if (poses == nullptr) robot.localization.state = LocalizationState::kUnlocated;
         }
         published_.set(std::make_shared<const mapping::Snapshot>(std::move(maps)));
         return {};

@@ -24,6 +24,18 @@ void Session::read_poses(std::function<void(const localization::SessionPoses&)> 
     on_strand([read = std::move(read)](Session& self) { read(self.maps_.localized().poses()); });
 }
 
+void Session::relocalize(const RobotRelocalized& relocalized, std::function<void(Result<>)> done) {
+    on_strand([relocalized, done = std::move(done)](Session& self) {
+        if (self.refusing_) return done(*self.refusing_);
+        auto entry = self.sequencer_.relocalize(relocalized);
+        if (!entry) return done(entry.error());
+        std::vector<PendingEntry> entries;
+        entries.push_back(std::move(*entry));
+        self.enqueue(std::move(entries));
+        done({});
+    });
+}
+
 /// Begins to make the maps at the corrected poses, beside those that are shown.
 void Session::begin_correction() {
     if (correction_ || refusing_ || !maps_.localized().is_outdated()) return;

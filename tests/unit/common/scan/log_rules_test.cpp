@@ -19,7 +19,7 @@ using testing_support::small_laser;
 LogEntry random_entry(std::mt19937& engine) {
     const auto random = [&](unsigned below) { return static_cast<unsigned>(engine() % below); };
     const RobotIndex robot = random(4);
-    switch (random(11)) {
+    switch (random(12)) {
     case 0: {
         const std::string name(1, static_cast<char>('a' + random(3)));
         return RobotJoined{robot, name, random(2) ? "s" : "", {}, random(4) ? Poses::kMap : Poses::kOdometry};
@@ -33,6 +33,7 @@ LogEntry random_entry(std::mt19937& engine) {
     case 3: return ScansExcluded{random(6), robot, SeqRange{1, 2}};
     case 4: return ExclusionLifted{random(6)};
     case 5: return MapsCorrected{random(80)};
+    case 6: return RobotRelocalized{robot, {1.0, 2.0}, 3.0};
     default: {
         Scan scan = random_scan(1, random(5) + 1);
         scan.sensor = random(3);
@@ -96,6 +97,9 @@ struct CanFollow {
                std::ranges::none_of(all_of<ExclusionLifted>(log), is_it);
     }
     bool operator()(const MapsCorrected& corrected) const { return corrected.as_of <= log.size(); }
+    bool operator()(const RobotRelocalized& relocalized) const {
+        return has_joined(relocalized.robot) && joined_last(relocalized.robot).poses != Poses::kMap;
+    }
 };
 
 TEST(LogRules, AcceptExactlyTheEntriesInSequence) {

@@ -33,7 +33,8 @@ std::vector<LogEntry> one_of_each() {
             ScansExcluded{2, 3, StampRange{-1.5, 1e9}},
             ScansExcluded{3, 1, SeqRange{4, 4}},
             ExclusionLifted{2},
-            MapsCorrected{300}};
+            MapsCorrected{300},
+            RobotRelocalized{2, {1.5, -2.5}, 10.0}};
 }
 
 TEST(LogCodec, DecodingReturnsEveryKindOfEntry) {

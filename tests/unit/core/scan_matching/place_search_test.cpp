@@ -132,7 +132,8 @@ TEST(PlaceSearch, NoPlaceAroundTheTruthIsBetter) {
         const SearchedRoom scene(random, 12.0, 40);
         const PlaceSearch search(scene.views);
         int best = 0;
-        const auto found = search.find(scene.points, {.score_min = 1, .rival_share = 1.0, .lookups_max = 1'000'000'000});
+        const auto found =
+            search.find(scene.points, {.score_min = 1, .rival_share = 1.0, .lookups_max = 1'000'000'000});
         ASSERT_TRUE(found);
         const double turn = 2.0 * std::numbers::pi / kTurns;
         const auto middle = std::floor((yaw_of(scene.truth) + std::numbers::pi) / turn);
@@ -140,7 +141,9 @@ TEST(PlaceSearch, NoPlaceAroundTheTruthIsBetter) {
             const SinCos rotation = sin_cos((middle + k + 0.5) * turn - std::numbers::pi);
             for (int j = -4; j <= 4; ++j) {
                 for (int i = -4; i <= 4; ++i) { // on the grid of the result
-                    const auto on_grid = [&](double at, double of) { return of + std::floor((at - of) / kCell) * kCell; };
+                    const auto on_grid = [&](double at, double of) {
+                        return of + std::floor((at - of) / kCell) * kCell;
+                    };
                     const Transform2 pose{on_grid(scene.truth.x, found->T_map_points.x) + i * kCell,
                                           on_grid(scene.truth.y, found->T_map_points.y) + j * kCell, rotation};
                     best = std::max(best, search.score_of(scene.points, pose));

@@ -169,5 +169,54 @@ TEST(FragmentSearch, LocatesARobotThatWasCarriedAgain) {
     }
 }
 
+/// People say where a robot is that stands: one scan is enough then.
+TEST(FragmentSearch, LocatesAStandingRobotWherePeopleSayThatItIs) {
+    const std::vector<Point2> round{{1.0, 1.0}, {16.5, 1.2}, {17.0, 10.8}, {12.0, 11.2}, {7.5, 8.0}};
+    const Drive first = drive_along(hall(), round, {}, 10);
+    const Drive second = drive_along(hall(), std::vector<Point2>{{15.0, 5.0}, {14.0, 4.5}, {13.8, 6.0}}, {}, 11);
+    for (const bool is_right : {true, false}) {
+        SharedMap map;
+        TrajectoryEstimator a(map, 0);
+        TrajectoryEstimator b(map, 1);
+        for (std::size_t n = 0; n < first.scans.size(); ++n)
+            a.add(points_of(first.scans[n], first.laser), first.odometry[n]);
+        b.add(points_of(second.scans[0], second.laser), std::nullopt);
+        EXPECT_TRUE(b.is_lost());
+        const Pose2 truth = compose(inverse(first.truth[0]), second.truth[0]);
+        b.relocalize({{truth.x + (is_right ? 1.5 : 8.0), truth.y - 1.0}, 3.0});
+        b.add(points_of(second.scans[0], second.laser), std::nullopt);
+        ASSERT_EQ(b.is_located(1), is_right) << "elsewhere nothing fits";
+        if (!is_right) continue;
+        const Pose2 found = b.pose_of(1);
+        EXPECT_LT(std::hypot(found.x - truth.x, found.y - truth.y), 0.05);
+        EXPECT_TRUE(b.is_located(0)) << "the fragment is located as a whole";
+        for (std::size_t n = 1; n < second.scans.size(); ++n)
+            b.add(points_of(second.scans[n], second.laser), std::nullopt);
+        b.finish();
+        const Pose2 end = compose(inverse(first.truth[0]), second.truth.back());
+        EXPECT_LT(std::hypot(b.pose_of(b.scan_count() - 1).x - end.x, b.pose_of(b.scan_count() - 1).y - end.y), 0.15);
+    }
+}
+
+/// A robot that is tracked at a wrong place is put right: its scans from there on are a fragment of their own.
+TEST(FragmentSearch, ALocatedRobotGoesOnWherePeopleSayThatItIs) {
+    const std::vector<Point2> round{{1.0, 1.0}, {16.5, 1.2}, {17.0, 10.8}, {12.0, 11.2}, {7.5, 8.0}};
+    const Drive drive = drive_along(hall(), round, {}, 12);
+    SharedMap map;
+    TrajectoryEstimator estimator(map);
+    for (std::size_t n = 0; n < drive.scans.size(); ++n)
+        estimator.add(points_of(drive.scans[n], drive.laser), drive.odometry[n]);
+    const Pose2 before = estimator.pose_of(100);
+    constexpr std::size_t kCarriedTo = 120; // a scan of the way
+    const Pose2 truth = compose(inverse(drive.truth[0]), drive.truth[kCarriedTo]);
+    estimator.relocalize({{truth.x + 0.5, truth.y}, 2.0});
+    estimator.add(points_of(drive.scans[kCarriedTo], drive.laser), drive.odometry.back());
+    const Pose2 found = estimator.pose_of(estimator.scan_count() - 1);
+    EXPECT_LT(std::hypot(found.x - truth.x, found.y - truth.y), 0.15);
+    EXPECT_FALSE(estimator.is_lost());
+    EXPECT_NEAR(estimator.pose_of(100).x, before.x, 1e-6) << "what was before stays";
+    EXPECT_NEAR(estimator.pose_of(100).y, before.y, 1e-6);
+}
+
 } // namespace
 } // namespace scanloom::slam

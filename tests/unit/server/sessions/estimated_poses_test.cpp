@@ -271,6 +271,34 @@ TEST_F(EstimatedPosesTest, RobotsThatStartAnywhereEndInOneMap) {
     }
 }
 
+/// An operator says where a robot is that just stands: its one scan then is in the map, also after a restart.
+TEST_F(EstimatedPosesTest, AnOperatorSaysWhereARobotIs) {
+    const slam::Drive second =
+        slam::drive_along(slam::ring_building(), std::vector<Point2>{{1.0, 18.0}, {1.0, 12.0}}, {}, 3);
+    drive_on(20);
+    drive_on("second", second, 1, 1);
+    const auto relocalized = [&](const std::string& robot, const Point2& near) {
+        const auto& robots = session_->snapshot()->robots;
+        const auto index = std::ranges::find(robots, robot, &mapping::RobotState::name) - robots.begin();
+        std::optional<Result<>> answer;
+        session_->relocalize({static_cast<RobotIndex>(index), near, 5.0}, [&](const Result<>& done) { answer = done; });
+        run();
+        return answer.value();
+    };
+    const Pose2 truth = compose(inverse(lap().truth.front()), second.truth.front());
+    ASSERT_TRUE(relocalized("second", {truth.x + 1.0, truth.y + 1.0}));
+    const auto link = drive_on("second", second, 1, 2);
+    EXPECT_EQ(link->located.back().state, LocalizationState::kTracking);
+    ASSERT_TRUE(find_robot("second").pose);
+    EXPECT_LT(std::hypot(find_robot("second").pose->x - truth.x, find_robot("second").pose->y - truth.y), 0.3);
+    EXPECT_EQ(digest(), digest_with_poses_in_maps());
+    const State expected = state();
+    crash_after(session_->snapshot()->revision);
+    EXPECT_EQ(state(), expected);
+    EXPECT_EQ(relocalized("nobody", {}).error().code, Errc::kNotFound);
+    EXPECT_EQ(logged().size(), session_->snapshot()->revision);
+}
+
 TEST_F(EstimatedPosesTest, TheMemoryOfACorrectionIsGivenBack) {
     const auto budget = std::make_shared<limits::MemoryBudget>(1'000'000);
     limits_.shared = {budget};
