@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <string_view>
 
 namespace scanloom::guidance {
 
@@ -16,8 +17,9 @@ Result<Pose2> pose_of(const mapping::Snapshot& maps, RobotIndex robot) {
     if (robot >= maps.robots.size()) return Error{Errc::kNoPath, "the robot has joined but has sent no scan yet"};
     const auto& state = maps.robots[robot];
     if (state.pose) return *state.pose;
-    return Error{Errc::kNoPath,
-                 fmt::format("the position of robot '{}' is not known: it has sent no scan yet", state.name)};
+    const std::string_view why =
+        state.last_seq == 0 ? "it has sent no scan yet" : "its scans are in no map yet; see its localization";
+    return Error{Errc::kNoPath, fmt::format("the position of robot '{}' is not known: {}", state.name, why)};
 }
 
 } // namespace scanloom::guidance
