@@ -35,6 +35,11 @@ Result<HttpAddress> parse_http(std::string_view text) {
     return Error{Errc::kInvalidField, fmt::format("'{}' is not HOST:PORT, nor https://HOST:PORT", text)};
 }
 
+Result<Poses> parse_poses(std::string_view text) {
+    if (const auto poses = find_poses(text)) return *poses;
+    return Error{Errc::kInvalidField, fmt::format("'{}' is not map, odometry or none", text)};
+}
+
 template <class Number>
 void add_count(CLI::App& app, const char* name, Number& into, const char* help, double low, double high) {
     add_checked(app, name, into, help, check_within(low, high))->check(check_whole_number_from(0));
@@ -70,10 +75,18 @@ void add_scan_options(CLI::App& app, LoadOptions& options) {
                 "degrees and 30 m",
                 CLI::IsMember({"reference", "lidar360", "wide"}));
     add_checked(app, "--noise", options.noise, "Noise of their measurements", CLI::IsMember({"none", "gaussian"}));
+    add_parsed(
+        app, "--poses", options.poses,
+        "What they send with their scans: map = true poses; odometry = odometry that drifts; none = nothing. The "
+        "server estimates the poses of the latter two",
+        parse_poses)
+        ->default_str("map");
     add_checked(app, "--seed", options.seed, "The same seed gives the same scans, faults and names of sessions",
                 check_whole_number_from(0));
-    add_count(app, "--course", options.course, "Scans of their trajectory, simulated before the start, then repeated",
-              1, 1e5);
+    add_count(
+        app, "--course", options.course,
+        "Scans of their trajectory, simulated before the start; they drive it to its end and back, again and again", 1,
+        1e5);
     app.add_option("--cell-size", options.cell_size, "Cell size of the maps, metres. Default: the server's")
         ->check(check_within(robot::kCellSizeMin, robot::kCellSizeMax));
 }

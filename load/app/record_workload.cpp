@@ -23,7 +23,12 @@ Result<sim::Simulator> make_simulator(const LoadOptions& options) {
     simulator.world = std::move(*world);
     simulator.laser = std::move(*laser);
     simulator.seed = options.seed;
-    if (options.noise == "gaussian") simulator.noise = sim::Noise{};
+    simulator.poses = options.poses;
+    if (options.noise == "gaussian") {
+        simulator.noise = sim::Noise{};
+    } else if (options.poses == Poses::kOdometry) {
+        simulator.noise = sim::Noise{.range = 0.0, .beam_angle = 0.0}; // that of the odometry, which always drifts
+    }
     return sim::Simulator(std::move(simulator), std::make_unique<sim::WallFollower>());
 }
 

@@ -46,6 +46,7 @@ Result<RobotLinkOptions> link_options(const LoadOptions& options) {
     auto token = read_token(options.token_file);
     if (!token) return token.error();
     link.hello.token = std::move(*token);
+    link.hello.poses = options.poses;
     link.hello.create = SessionOptions{};
     link.hello.create->cell_size = options.cell_size;
     link.hello.client = fmt::format("scanloom-load {}", kVersion);

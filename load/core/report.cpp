@@ -27,10 +27,11 @@ std::string title(const RunSettings& settings) {
     const auto pace = settings.rate > 0.0 ? fmt::format("at {:g} scans/s", settings.rate) : "as fast as permitted";
     const auto cells = settings.cell_size ? fmt::format(", cells of {:g} m", *settings.cell_size) : "";
     const auto batch = settings.batch > 1 ? fmt::format(", {} scans a frame", settings.batch) : "";
-    return fmt::format("{} {} for {:g} s into {}: world {}, laser {} of {} beams, noise {}{}{}, seed {}\n\n",
+    const auto poses = settings.poses == Poses::kMap ? "" : fmt::format(", poses {}", name_of(settings.poses));
+    return fmt::format("{} {} for {:g} s into {}: world {}, laser {} of {} beams, noise {}{}{}{}, seed {}\n\n",
                        counted(settings.robots, "robot"), pace, settings.duration,
                        counted(settings.sessions, "session"), settings.world, settings.laser, settings.beams,
-                       settings.noise, cells, batch, settings.seed);
+                       settings.noise, poses, cells, batch, settings.seed);
 }
 
 std::string scans(const RunReport& report) {
@@ -176,6 +177,7 @@ json::object settings_json(const RunSettings& settings) {
                         {"world", settings.world},
                         {"laser", settings.laser},
                         {"noise", settings.noise},
+                        {"poses", std::string(name_of(settings.poses))},
                         {"beams", settings.beams},
                         {"seed", settings.seed},
                         {"threads", settings.threads},

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "common/scan/poses.hpp"
 #include "load/core/figures.hpp"
 #include "load/core/verdict.hpp"
 
@@ -19,6 +20,7 @@ struct RunSettings {
     std::string world = "office";
     std::string laser = "reference";
     std::string noise = "none";
+    Poses poses = Poses::kMap;       ///< that the robots send
     std::size_t beams = 0;           ///< per scan, by the laser
     std::optional<double> cell_size; ///< metres; absent: the server's default
     std::uint64_t seed = 1;

@@ -29,8 +29,10 @@ Workload make_workload(const Sensor& sensor, const std::vector<Scan>& scans, dou
 }
 
 wire::NumberedScan scan_at(const Workload& workload, std::size_t first, std::uint64_t seq) noexcept {
-    const auto place = (first + (seq - 1)) % workload.scans.size();
-    return {&workload.scans[place], seq, static_cast<double>(seq - 1) / workload.stamp_rate};
+    const std::uint64_t last = workload.scans.size() - 1;
+    const std::uint64_t way = last == 0 ? 0 : (first + seq - 1) % (2 * last);
+    return {&workload.scans[way <= last ? way : 2 * last - way], seq,
+            static_cast<double>(seq - 1) / workload.stamp_rate};
 }
 
 } // namespace scanloom::load

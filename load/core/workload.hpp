@@ -51,10 +51,11 @@ private:
     double step_ = 0.0; // microseconds from one scan of the sequence to the next
 };
 
-/// What all robots do: which scans they send, again and again, and when. Constant during a run.
+/// What all robots do: which scans they send, and when. Constant during a run.
 struct Workload {
-    std::vector<wire::PreparedScan> scans; ///< one tour through the world, in driving order
-    std::size_t beams = 0;                 ///< per scan
+    std::vector<wire::PreparedScan>
+        scans;             ///< one drive through the world; robots go to its end and back, again and again
+    std::size_t beams = 0; ///< per scan
     std::shared_ptr<const Sensor> sensor;
     std::optional<Schedule> schedule; ///< absent: each scan as soon as the server's credit allows
     double stamp_rate = 10.0;         ///< scans per second by the robots' own clocks
@@ -66,7 +67,9 @@ struct Workload {
 [[nodiscard]] Workload make_workload(const Sensor& sensor, const std::vector<Scan>& scans, double stamp_rate,
                                      std::uint32_t batch);
 
-/// Returns scan `seq` of a robot that starts at scan `first` of the workload. The result is the same at each call.
+/// Returns scan `seq` of a robot that starts at scan `first` of the workload, goes to its end, and then back and forth.
+/// So no robot jumps, which the estimation of poses would take for a robot that is lost. The result is the same at each
+/// call.
 [[nodiscard]] wire::NumberedScan scan_at(const Workload& workload, std::size_t first, std::uint64_t seq) noexcept;
 
 } // namespace scanloom::load

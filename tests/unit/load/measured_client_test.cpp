@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <memory>
 #include <span>
 
@@ -104,7 +105,7 @@ TEST_F(MeasuredClientTest, SendsHelloSensorAndRepeatedScans) {
     ASSERT_EQ(messages.size(), 8U);
     EXPECT_EQ(std::get<Sensor>(messages[0]), testing_support::small_laser());
     for (std::uint64_t seq = 1; seq <= 7; ++seq) {
-        Scan expected = scans_[(seq - 1) % kCourseScans];
+        Scan expected = scans_[std::array{0U, 1U, 2U, 3U, 4U, 3U, 2U}.at(seq - 1)];
         expected.seq = seq;
         expected.stamp = static_cast<double>(seq - 1) / kRate;
         EXPECT_THAT(std::get<wire::ScanBatch>(messages[seq]).scans, ElementsAre(expected));
@@ -119,7 +120,7 @@ TEST_F(MeasuredClientTest, BeginsAtThePlannedScan) {
     const auto scans = sent(0);
     ASSERT_EQ(scans.size(), 3U);
     EXPECT_EQ(scans[0].ranges, scans_[3].ranges);
-    EXPECT_EQ(scans[2].ranges, scans_[0].ranges);
+    EXPECT_EQ(scans[2].ranges, scans_[3].ranges);
 }
 
 TEST_F(MeasuredClientTest, ScansAreBatchedExceptTheLastOnes) {

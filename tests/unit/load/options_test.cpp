@@ -3,10 +3,13 @@
 #include "load/app/record_workload.hpp"
 #include "load/net/fleet.hpp"
 
+#include "scanloom/v1/frame.pb.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <vector>
 
@@ -56,6 +59,7 @@ TEST(LoadOptions, InvalidOptionIsAOneLineUsageError) {
         {{"--http", "here:0"}, "--http: 'here:0' is not HOST:PORT, nor https://HOST:PORT"},
         {{"--world", "mars"}, "--world"},
         {{"--verify", "all"}, "--verify"},
+        {{"--poses", "true"}, "--poses: 'true' is not map, odometry or none"},
         {{"surplus"}, "surplus"},
     };
     for (const auto& [words, hint] : mistakes) {
@@ -85,6 +89,28 @@ TEST(DriveCourse, EqualSeedsGiveEqualScansAndOthersDiffer) {
     EXPECT_EQ(record_workload(options)->scans.back().bytes(), workload->scans.back().bytes());
     options.seed = 2;
     EXPECT_NE(record_workload(options)->scans.back().bytes(), workload->scans.back().bytes());
+}
+
+TEST(DriveCourse, ScansHaveThePosesThatRobotsKnow) {
+    const auto last_scan_of = [](const char* poses) {
+        const auto workload =
+            record_workload(std::get<LoadOptions>(parse({"--duration", "10", "--world", "room", "--poses", poses})));
+        v1::Scan scan;
+        EXPECT_TRUE(scan.ParseFromString(workload.value().scans.back().bytes()));
+        return scan;
+    };
+    const v1::Scan given = last_scan_of("map");
+    EXPECT_TRUE(given.has_pose());
+    const v1::Scan drifting = last_scan_of("odometry");
+    EXPECT_FALSE(drifting.has_pose());
+    ASSERT_TRUE(drifting.has_odometry());
+    const double drift =
+        std::hypot(drifting.odometry().x() - given.pose().x(), drifting.odometry().y() - given.pose().y());
+    EXPECT_GT(drift, 0.001) << "metres";
+    EXPECT_LT(drift, 1.0) << "metres";
+    const v1::Scan bare = last_scan_of("none");
+    EXPECT_FALSE(bare.has_pose() || bare.has_odometry());
+    EXPECT_EQ(bare.ranges_size(), given.ranges_size());
 }
 
 TEST(DriveCourse, RefusesABatchThatExceedsAFrame) {

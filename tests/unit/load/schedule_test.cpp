@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstddef>
+#include <vector>
 
 namespace scanloom::load {
 namespace {
@@ -39,6 +41,20 @@ TEST(Schedule, CountsTheScansWithinTheDuration) {
     EXPECT_EQ(Schedule::scans_within(30.0, 10.0), 300U);
     EXPECT_EQ(Schedule::scans_within(0.31, 10.0), 4U);
     EXPECT_EQ(Schedule::scans_within(0.001, 1.0), 1U);
+}
+
+TEST(Workload, RobotsGoToItsEndAndBack) {
+    const auto course = [](std::size_t scans, std::size_t first) {
+        const auto workload = make_workload({}, std::vector<Scan>(scans), 10.0, 1);
+        std::vector<std::ptrdiff_t> places;
+        for (std::uint64_t seq = 1; seq <= 6; ++seq) {
+            places.push_back(scan_at(workload, first, seq).scan - workload.scans.data());
+        }
+        return places;
+    };
+    EXPECT_EQ(course(3, 0), (std::vector<std::ptrdiff_t>{0, 1, 2, 1, 0, 1}));
+    EXPECT_EQ(course(3, 2), (std::vector<std::ptrdiff_t>{2, 1, 0, 1, 2, 1}));
+    EXPECT_EQ(course(1, 0), (std::vector<std::ptrdiff_t>{0, 0, 0, 0, 0, 0}));
 }
 
 } // namespace
