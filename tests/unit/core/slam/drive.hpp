@@ -33,8 +33,10 @@ struct OdometryErrors {
 /// Moves through points on straight lines with turns on the spot, 10 cm and 0.1 rad between scans, and takes a scan at
 /// each pose.
 inline Drive drive_along(const testing_support::Building& building, std::span<const Point2> points,
-                         const OdometryErrors& errors, std::uint32_t seed) {
+                         const OdometryErrors& errors, std::uint32_t seed,
+                         Sensor laser = testing_support::Building::laser()) {
     Drive drive;
+    drive.laser = std::move(laser);
     const auto to = [&](const Point2& from, const Point2& target) {
         return std::atan2(target.y - from.y, target.x - from.x);
     };

@@ -1,4 +1,4 @@
-#include "tests/unit/core/slam/drive.hpp"
+#include "tests/unit/core/slam/two_robots.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,55 +7,6 @@ namespace {
 
 using scan_matching::points_of;
 using testing_support::Building;
-
-/// Two robots that share a map. The second one starts when the first has ended.
-class TwoRobots {
-public:
-    TwoRobots(const Drive& first, const Drive& second) : first_(first), second_(second) {
-        for (std::size_t n = 0; n < first.scans.size(); ++n)
-            a_.add(points_of(first.scans[n], first.laser), first.odometry[n]);
-        for (std::size_t n = 0; n < second.scans.size(); ++n) {
-            b_.add(points_of(second.scans[n], second.laser), second.odometry[n]);
-            if (!located_at_ && b_.located_fragments() > 0) located_at_ = n;
-        }
-        a_.finish();
-        b_.finish();
-        map_.finish();
-    }
-
-    /// Returns the scan of the second robot at which it was located.
-    [[nodiscard]] std::optional<std::size_t> located_at() const { return located_at_; }
-
-    /// Returns the largest distance of the second robot's poses from the true ones, metres, in the frame of the first
-    /// robot's pose that is nearest.
-    [[nodiscard]] double largest_error() const {
-        double largest = 0.0;
-        for (std::size_t n = 0; n < second_.truth.size(); ++n) {
-            std::size_t nearest = 0;
-            const auto distance = [&](std::size_t k) {
-                return std::hypot(first_.truth[k].x - second_.truth[n].x, first_.truth[k].y - second_.truth[n].y);
-            };
-            for (std::size_t k = 1; k < first_.truth.size(); ++k) {
-                if (distance(k) < distance(nearest)) nearest = k;
-            }
-            const Pose2 truth = compose(inverse(first_.truth[nearest]), second_.truth[n]);
-            const Pose2 found = compose(inverse(a_.pose_of(nearest)), b_.pose_of(n));
-            largest = std::max(largest, std::hypot(truth.x - found.x, truth.y - found.y));
-        }
-        return largest;
-    }
-
-    [[nodiscard]] const TrajectoryEstimator& second() const { return b_; }
-    [[nodiscard]] const SharedMap& map() const { return map_; }
-
-private:
-    const Drive& first_;
-    const Drive& second_;
-    SharedMap map_;
-    TrajectoryEstimator a_{map_, 0};
-    TrajectoryEstimator b_{map_, 1};
-    std::optional<std::size_t> located_at_;
-};
 
 const Drive& lap() {
     static const Drive drive = drive_along(ring_building(), kLapAndAQuarter, {.scale = 1.02, .turn = 0.003}, 1);

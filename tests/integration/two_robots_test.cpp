@@ -1,0 +1,147 @@
+#include "sim/world.hpp"
+#include "tests/unit/core/slam/two_robots.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <numbers>
+#include <ostream>
+#include <random>
+#include <string>
+#include <vector>
+
+/// How often a robot that starts anywhere is located in the map of another one, and how often at a wrong place.
+namespace scanloom::slam {
+namespace {
+
+using testing_support::Building;
+using testing_support::uniform;
+
+constexpr std::uint32_t kTrials = 30; // of each world
+constexpr double kWrong = 0.6;        // metres: with a larger error, a robot is located at a wrong place
+constexpr std::array kRanges{6.0, 10.0, 16.0};
+
+/// A building, and points of a round tour through it.
+struct Place {
+    Building building;
+    std::vector<Point2> tour;
+};
+
+Place place_of_world(const std::string& name) {
+    Place place;
+    const sim::World world = sim::find_world(name).value();
+    for (const auto& side : world.outlines) place.building.walls.push_back({{side.ax, side.ay}, {side.bx, side.by}});
+    place.tour = sim::tour_of(name);
+    return place;
+}
+
+/// Returns a corridor with six equal rooms of 5 x 5 m on one side.
+Place place_of_equal_rooms() {
+    constexpr int kRooms = 6;
+    Place place;
+    place.building.add_box(0.0, 0.0, 5.0 * kRooms, 7.4);
+    for (int room = 0; room < kRooms; ++room) {
+        const double x = 5.0 * room;
+        if (room > 0) place.building.add_box(x - 0.1, 2.4, x + 0.1, 7.4);
+        place.building.add_box(x, 2.3, x + 2.0, 2.5);
+        place.building.add_box(x + 3.0, 2.3, x + 5.0, 2.5);
+        place.building.add_box(x + 0.3, 6.2, x + 1.5, 7.4);
+        place.building.add_box(x + 4.4, 4.0, x + 5.0, 5.5);
+        for (const Point2& at : {Point2{2.5, 1.2}, {2.5, 4.0}, {3.3, 5.5}, {2.5, 4.0}, {2.5, 1.2}}) {
+            place.tour.push_back({x + at.x, at.y});
+        }
+    }
+    place.tour.push_back({5.0 * kRooms - 1.0, 1.2});
+    place.tour.push_back({1.0, 1.2});
+    return place;
+}
+
+double length_of(const std::vector<Point2>& points) {
+    double length = 0.0;
+    for (std::size_t n = 1; n < points.size(); ++n) length += norm(points[n] - points[n - 1]);
+    return length;
+}
+
+/// Returns a part of a tour that begins at any of its points, in any direction, not exactly through its points.
+std::vector<Point2> part_of(const std::vector<Point2>& tour, double length, std::mt19937& random) {
+    const auto near = [&](std::size_t n) {
+        return Point2{tour[n].x + uniform(random, -0.15, 0.15), tour[n].y + uniform(random, -0.15, 0.15)};
+    };
+    std::size_t at = random() % tour.size();
+    const std::size_t step = random() % 2 == 0 ? 1 : tour.size() - 1;
+    std::vector<Point2> points{near(at)};
+    for (double left = length; left > 0.0;) {
+        at = (at + step) % tour.size();
+        const Point2 next = near(at);
+        const double distance = norm(next - points.back());
+        points.push_back(points.back() + std::min(1.0, left / distance) * (next - points.back()));
+        left -= distance;
+    }
+    return points;
+}
+
+/// Returns a laser all around or ahead, with one of three ranges.
+Sensor any_laser(std::mt19937& random) {
+    Sensor laser = Building::laser();
+    laser.range_max = kRanges.at(random() % kRanges.size());
+    if (random() % 3 != 0) laser.angles = UniformAngles{-std::numbers::pi, std::numbers::pi / 180.0, 360};
+    return laser;
+}
+
+Drive any_drive(const Place& place, const Sensor& laser, double length, std::mt19937& random) {
+    const OdometryErrors errors{uniform(random, 0.98, 1.02), uniform(random, -0.01, 0.01)};
+    const auto points = part_of(place.tour, length, random);
+    return drive_along(place.building, points, errors, static_cast<std::uint32_t>(random()), laser);
+}
+
+/// A kind of place, and limits of what happens in its trials.
+struct Kind {
+    const char* name;
+    std::size_t located_min; ///< trials in which the second robot is located
+    std::size_t wrong_max;   ///< of these, at a wrong place
+};
+
+void PrintTo(const Kind& kind, std::ostream* out) { *out << kind.name; }
+
+class TwoRobotsTrials : public testing::TestWithParam<Kind> {};
+
+/// Some trials of the office and of the equal rooms have a second robot in a part that the first one has not seen, and
+/// that looks like a part that it has seen.
+TEST_P(TwoRobotsTrials, AreJoinedOftenAndHardlyEverWrongly) {
+    const auto [kind, located_min, wrong_max] = GetParam();
+    const std::string name = kind;
+    const Place place = name == "equal_rooms" ? place_of_equal_rooms() : place_of_world(name);
+    const double round = length_of(place.tour);
+    std::size_t located = 0;
+    std::string wrong;
+    std::size_t wrong_count = 0;
+    for (std::uint32_t seed = 1; seed <= kTrials; ++seed) {
+        std::mt19937 random(seed);
+        const Sensor laser = any_laser(random);
+        const Drive first = any_drive(place, laser, round * uniform(random, 0.2, 1.0), random);
+        const Drive second = any_drive(place, laser, uniform(random, 8.0, 60.0), random);
+        const TwoRobots robots(first, second);
+        if (!robots.located_at()) continue;
+        ++located;
+        const double error = robots.error_of(*robots.located_at());
+        if (error <= kWrong) continue;
+        ++wrong_count;
+        wrong += fmt::format(" seed {} at scan {} by {:.1f} m;", seed, *robots.located_at(), error);
+    }
+    EXPECT_GE(located, located_min) << "of " << kTrials;
+    EXPECT_LE(wrong_count, wrong_max) << "of " << located << ":" << wrong;
+    RecordProperty("located", static_cast<int>(located));
+    RecordProperty("wrong", static_cast<int>(wrong_count));
+}
+
+INSTANTIATE_TEST_SUITE_P(Places, TwoRobotsTrials,
+                         testing::Values(Kind{"office", 15, 1}, Kind{"hall", 12, 0}, Kind{"room", 23, 0},
+                                         Kind{"equal_rooms", 9, 1}),
+                         [](const auto& kind) { return std::string(kind.param.name); });
+
+} // namespace
+} // namespace scanloom::slam
