@@ -15,6 +15,7 @@ inline constexpr double kCoordinateMax = 1e6;          ///< metres from the orig
 inline constexpr double kBodyRadiusMax = 5.0;          ///< metres, of a robot
 inline constexpr double kMapCellSizeMax = 100.0;       ///< metres, of an imported map
 inline constexpr double kRangeMax = 1000.0;            ///< metres, a sensor's range_max
+inline constexpr double kDurationMax = 10.0;           ///< seconds, of a scan, in either direction of the turn
 inline constexpr double kReachCellsMax = 8192.0;       ///< cells of the session, a sensor's range_max
 
 inline constexpr std::size_t kViewPointsMin = 20;     ///< of a view: fewer points do not determine a pose

@@ -36,10 +36,13 @@ inline constexpr RangeMm kNoReturn = 0xFFFF'FFFFU; ///< nothing within the senso
 ///         point that the robot's pose refers to. odom is fixed where the odometry began. T_a_b is the pose of b in
 ///         frame a.
 struct Scan {
-    std::uint64_t seq = 0;                  ///< per (session, robot), from 1, rising by 1; robot::Client assigns it
-    double stamp = 0.0;                     ///< seconds since the epoch, or since the robot's own start
-    std::uint32_t sensor = 0;               ///< Sensor::id
-    std::optional<Pose2> pose;              ///< T_map_robot; nullopt: the server estimates it (see Poses), or cannot
+    std::uint64_t seq = 0;     ///< per (session, robot), from 1, rising by 1; robot::Client assigns it
+    double stamp = 0.0;        ///< seconds since the epoch, or since the robot's own start
+    double duration = 0.0;     ///< seconds from the first beam to the last if the laser turns meanwhile; the stamp is
+                               ///< that of the middle. Negative: the last beam was taken first; 0: not known, or all
+                               ///< beams were taken at once
+    std::uint32_t sensor = 0;  ///< Sensor::id
+    std::optional<Pose2> pose; ///< T_map_robot; nullopt: the server estimates it (see Poses), or cannot
     std::optional<Pose2> odometry;          ///< T_odom_robot, from which the server predicts poses that it estimates
     std::vector<RangeMm> ranges;            ///< one per beam
     std::vector<std::uint32_t> intensities; ///< empty, or one per beam; the sensor's own scale

@@ -223,6 +223,11 @@ Result<Scan> from_proto(const v1::Scan& proto, std::vector<RangeMm> ranges) {
     if (!std::isfinite(scan.stamp)) {
         return invalid_field(fmt::format("stamp is {}; a finite number of seconds is needed", scan.stamp));
     }
+    scan.duration = proto.duration();
+    if (!(std::abs(scan.duration) <= kDurationMax)) { // also if it is NaN
+        return invalid_field(
+            fmt::format("duration is {}; at most {} seconds either way are allowed", scan.duration, kDurationMax));
+    }
     scan.sensor = proto.sensor();
     if (proto.has_pose()) {
         auto pose = from_proto(proto.pose());
@@ -271,6 +276,7 @@ void to_proto(const Scan& scan, v1::Scan& out) {
 void to_proto_without_ranges(const Scan& scan, v1::Scan& out) {
     out.set_seq(scan.seq);
     out.set_stamp(scan.stamp);
+    out.set_duration(scan.duration);
     out.set_sensor(scan.sensor);
     if (scan.pose) to_proto(*scan.pose, *out.mutable_pose());
     if (scan.odometry) to_proto(*scan.odometry, *out.mutable_odometry());

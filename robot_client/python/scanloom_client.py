@@ -188,46 +188,46 @@ class Timing:
 
 # The compressed output of protoc for proto/scanloom/v1/frame.proto; robot_client/python/embed_protocol.py updates it.
 _PROTOCOL = """
-eNq1Wc2T21gRxzO2x26PPRrNR5xJNhu8fIShyLLJwhZQFPhDGZvYluvZkyUcUGk0ykTEI2llT5LJXjhy5cCR4kYVB6rgwokTxZV/huLAhYLufk+2pHFS
-pAIn63X/3uv3+nX3627DbyuwP3NsfxoE5x8+/+hD+r4bRsE80Csx/e7zjxrfgsIomLn39E3Ivaznbufu5ETuJY0u62tydKlrsH5pv6iv85g+G4+heux7
-T4LovOmfTd2ZvguFJ140m6sl5EC/CWXPdyL33PXnarklgeY4wQVyaOGqkIPGHagZL8Op53hztfY+FG3+wsXXcQk1avwAquO5G4buqQLqkL/wvXgP/K0f
-QPHUnc7tGcpfv7PdWtNwAUlp/CUH0HLt+Azfho0LeSheoXLv4G5CVXdTB+5+QcRg/TtQctWO+ZCVezdSE9PHwZkLOImcySOwErIiU8cjkQrcKuO80HY8
-/6zx6zXYHrv+LIg67syJvHDuBT7pbMZEPkpVqJH+dcg/8/xT3mft3rW0NIY8RLZgEOnTt89d3lpZ8Ld+BwrnfGl53q+eWoFNSUiA/uHi2goMTQtb6j2+
-T7yqkh260fwicutFvsLFWL8B5QhhrnXu+fUNyWTCwPMTTPtlvZRk2i8bf1iD/BgFkxXP3M9YH3lBn2SAs7l9HirTlIOE6tZTqvsK5EM83xsOznz9LpSC
-0+DcnUeX6uSrsAsMWShvdoaHXr+zIS1UUvQvQcXz5yjfm3sI2EBAlQFJckLTpf9O0+8BnLhnnj9DjYX1Mk4qibKkDOyw8TGUSWMte+481b+KSsKBdL7K
-ve20yeC3kPzDTwGWFoR3cm1sDMemsB72hh3reDgeGe3eg57R0b6g76HJJpj95tgQWi5LHpvDptDWDr8rY9RMr0J5ZI6NsTVojnAVHWpyaHbMgTERj3GJ
-GoCkDc2hgXN/mYPtfuDYU++VTY4xnttzF+NSvW+2m/3eT5qTnjm0xpPmxLCOeo+MIa77PtxYwZ2IZhu3dYRC8GwrAH1zPNHW9NtwcwXzeEjECZ5+vbX+
-z1zupMjB+D78SoPrqUDtzma4z1Wx+uc1DHiS3Q78J94Zyio77nRqzbxXrox6FF2INEbKL3I5vQEQWoHjXISeK70+18UgHJqKRBg0wNB6ErnS0XPdNVEI
-H+CQeDdhI7TCyENvyDNzXRTDEY2JW4dCyB5ZYF4ePQD9cclBd2RH7haIY78kzj3QgxP0NGfqWvOnnvPMxyNJl+4WxXbMm8QsmnMHqidoxdYiPLCTdzfE
-JpGbikrITygUXFrnAYZ4Nuzavb2UxQr7ckDMbolihPymiR8A2KiT84spGkgdyCW6ZZGgKW0+9eZWZJ96F7N6hTcBoow0wSTCfA1qp1EQWn5gRS5uy69v
-8mIVsUn0YSCYStBDqD31zs+t5RtZRWihuymqRO/F5CT21I2xNcZWJbbjJrDfg2uMXaHnLd5zTewRwFyl649A58lphWs8b0toxGtllP59qM8C345WCdzm
-iZrYZ8RKifdhR05Pi9R55rbYZmZW5sewKyctzZvtbYdn6WrWKLZzZXwfQCWeRWa7y+AdUZZgZbtJEK64x6DdBUiu9EPYdKb2bGbNgovIcev7bGv1lK21
-CTBmfndPVJzlkFb4BmhyhYSDXmNZ+6LGnFHSS78cC1S+WmfoNQESGjssKlPCpAXEC19nY6mLbWZ26fITa38dthKTePkDnnBdVBcTYglfgc1Tep0iiwLN
-rH6DkQeiIqltIiqnVTjlLzd5xzeEmr50mVtQQkVbP7vAp/g9Bt0UG0j5ERKQ39oEsBZxrlWFSkJllAoplbQASpaKVq0SFOUlx1/2y9Ye7Kww0ZYGtbTp
-scBFGGGByzjAw2UUaG3DlpV2eCalHXtJWvhv6wDq1mvclHd61QtbN+C69TpPa+3DrrXCj1rXYM9a5SqtGmxaCW9Ij5G/BVUraeOtHdi2siabQKlboH2s
-MMGWDpqVsTKenDQmvouU1bQqULZi6zj8HEpxANevw55oPrYGZsfoZ/KLBtxasnrDR4YYG5ZKLZiIj/g12FliWsJAdrc5wAc8xcBXn2Y3+9r64U+hkvBo
-SiLamLmMMU85Fm0js4UD2E9xzXb7eNQcth/LPCfF6/YGKDidF/zja3AtmRc8iTD7XpEVHLymzDt4fVbR+FcJCg9oPXxVCk9R74EqeNKJapc4mFBIiP5N
-2HjhTh3MWlWVs5tCfyp5VKUomG6CLnNntPpFaaIKnVsrSo9EAYPLbM+uVDWfANAs64QyU5WI719JSDlvxQXKs0US+yVYt51nKh3XUjOazjPEEpu04UYR
-pjrFFdowiEPaYAimxfkQyy9OXLJZ8QgZiGQAAwMEllYBAwXEX9LvWRCcnly6nLhk9XskeaRfBcPCE5wgilyH9Qorcv/2go3zEmB8sjfDKWoycj+7cLFs
-r/Dk9PM1QoCQfJxdCZdDugg1PZxecoKTvQg5Gbl0EWE8ILlngT1dyK2ukHuEgITcs+WQ5KrpJLe2Qq6crOSexQO9h49t8NyNbKwSY9lbPP1mRmEStJS/
-5aRJehtqiaVoH9qK0n25kNxL1UkS9Eewhy4SRuiXGI0TRr3Na93OrBUjk+a941wl0+amWO7Ml6fUV2yuz5DlGavTJIEuabEInW9nxSXFS8jTVabLIQbQ
-ohM59+859X+TijeEGraKkD8JTi8bf16DAgcXTJY1DklOMLVQPRSjVMNiK6Y/kmQq1qPgJJAtlrKQA6wzNlRsU12KeEj4efDM9TlMIJ4HWH3gZlxK8Qur
-+i3J6kooJDUEnKlHKXeRl1IjbhTI5G9D0uWIinY6Zpz2lFRdBkRcJj13sEKiqlZVKVd7BDMhAfwuJxZs/CkHGyraUiWvDmx5p6y6MsY9SemdohANX6y5
-dXoR2SeYLVADZI0bIDWidyR57H6GKWBx6p1785mKzzvp22aWUBD9i5iLRu4pJkEnl3M8Qp6XrEhai0jUO3o1m5+ymkuCvxuvoCgXQhXV+EHjjI6zbHnr
-m0yl4hXTbOrrUCozY8AaA0pMIOY3sGqgvoOFeY70HYbJno3GrJEbsVdQG+j7sLPCjWibi+K5Kvh7sXWSuKm2/jNYx4dCfx8qSVXKXhKcLtWIADsMp5Ri
-LXUNikSArOrWr6iu8QwK/Njge5R3MNVhMbVMnGNEG7mCMeQI53g2DDDKQeIhNWEjajTRFllcSSwJjZuQp+eK3MUPfEcKKwo5YG7wWu4XYUO9SuQL6Cwz
-5b7oC3LU+HsOYPkI4RsHE+o5WdT9Wpl0qO7YZGCHJmKoKRi5zz32cKnNxZhORp1U2/NV/zQnlgQsmGroPx7JRTM7O7dlB0NUY+qYiGRkl/YLhSjI5iES
-JPNj7hDOZT+ylklarvSVhAQ3PqCGlYcR4g1N9caPULX2/ClpLiTworstR0Sfuv7Z/KmaokZknU4wm6vz8nfDhA3hPrmY2dP/jc00fr4GlcTzr9dgTYWX
-vMAvCl541Cjud2evEA8gJIC6pvQKq6iyCsh8LLqrNr4IL6wL/5kfvJBhuyQ2mXgsadnIWlgdWREV1xSkqKJqeoGqT5FGRWUmqvI4Ma3x6xyUF0nMFQW8
-ySwp48ObVUfOZHzI4IyPrh4zvkhem8pl0xmfulLK+BSMit3gYk6Rv/G7HFQSmdI7XFFGq+urtXoI20+iwJ97qCAZtT15SfhWxwwO3KqSTL5Yf8tBnvaq
-fxcq5KBBxE6jjLR+5d8SxRdJMPqzVOvaa9SqlHoIRTzVmTt/g8kpBJaQpTPvuetbF6E6ygaPj0MKC56vDEI9YiXP7/CYbWORaL6tbSTcYftK6kq2wf7w
-Trbx1xxsZTLZ/7t9vLf4S0p1inMiJhCbH4gzUklBhjk5uuKG1MOJ/9r6Qw5K8TEW15978/XjvVFnwbLxAVKRs0SEJo758aX18HVmvoyhFUVjyG2oXPj4
-4Tzl9zJPfxqKJIkkLJvu6sGIW+6N3+egmkr938o67kMpLhOUheytLCq4yx8r5p0s5Te431Q1cGW/y/eJ/0BdvE8Y2NHtz98U2IlPON+1o9f8bcY44rOB
-JMK6UKPGHzHOJYqNt9JnukBef5sC+V20evj7ApQXjy21ggwhTGG1zU62TXQLDhK8QbP/wBQDo2M9EM2BoeUyfKZaE9O0+k1xZGhr1OlKr308GpligitQ
-26pnDrV1alQlML3ho2a/hxJ6Rr+j5TMSjocPh+anQ2tsjHl2gf4NS/AVHQfDB/1ee6IV6d+wBMA8nljmA8sUHUNoG5nV28Lo9CaW8eO2YXTw/CW8dT3B
-n/QGBi6glakJl6ALY9RvtnECZBaMt9Mx+gb9uVbJ7GY8MQWqrdnrI3Mzo4lx93gy6Q2PrA6eWKtmph4Pm8eTril6P8GpNeo2Jk+J2u2bTTrDVmavveHE
-EMNmX9Oye1F7fXDc72vbmZMPTWvUnHQ1PbPHTnPQPFrYww6mbLsJbnPQ6h0dm8djbffK7juoEDHoDXGLexicr6eETbp07kFzNEL2/uHnUEk8u7zUj0d9
-U8h/MNMWuwtaknlkNqmbSlaSoE6aD42h1XpsoSS0QzRU2ngC0DYHI7qyzN+h/wESTgga
+eNq1Wc2T21gRxzO2x26PPRrNR5xJNizeBbJDkWWTBQooCvyhjL2xLdezJ0v2gEqjUSYiHkkre5JMuHDkyoEjxZkDVXDhxGmLI/wzFAcuFHT3e7IljZMi
+FThZr/v3Xr/Xr7tfdxu+qMD+zLH9aRCcf/jsow/p+04YBfNAr8T0O88+anwbCqNg5t7VNyH3op57N3c7J3IvaHRZX5OjS12D9Uv7eX2dx/TZeATVY997
+HETnTf9s6s70XSg89qLZXC0hB/pNKHu+E7nnrj9Xyy0JNMcJLpBDC1eFHDRuQ814EU49x5urtfehaPMXLr6OS6hR40dQHc/dMHRPFVCH/IXvxXvgb/0A
+iqfudG7PUP767e3WmoYLSErjixxAy7XjM3wHNi7koXiFyt2DOwlV3UkduPslEYP170HJVTvmQ1bu3khNTB8HZy7gJHImj8BKyIpMHY9EKnCrjPNC2/H8
+s8Zv1mB77PqzIOq4MyfywrkX+KSzGRP5KFWhRvo3IP/U8095n7W719LSGPIA2YJBpE/fPnd5a2XB3/ptKJzzpeV5v3pqBTYlIQH6h4trKzA0LWyp9/g+
+8apKduhG84vIrRf5Chdj/QaUI4S51rnn1zckkwkDz08w7Rf1UpJpv2j8dQ3yYxRMVjxzP2d95AV9kgHO5vZ5qExTDhKqW0+p7muQD/F8rzk48/U7UApO
+g3N3Hl2qk6/CLjBkobzZGR56/faGtFBJ0d+HiufPUb439xCwgYAqA5LkhKZL/52m3wE4cc88f4YaC+tlnFQSZUkZ2CFdxOlFZJMh1UGqMx43PoYyabNl
+z50n+tdRgTiQjlm5u502J/wWkn/4KcDSuvC+ro2N4dgU1oPesGMdD8cjo9273zM62pf0PTTnBLPfHBtCy2XJY3PYFNra4fdl/JrpVSiPzLExtgbNEa6i
+Q00OzY45MCbiES5RA5C0oTk0cO6vcrDdDxx76r3ks43n9tzFmFXvm+1mv/dZc9Izh9Z40pwY1lHvoTHEdb8MN1ZwJ6LZxm0doRA82wpA3xxPtDX9Xbi5
+gnk8JOIET7/eWv9nLndS5EB9D36twfVUEHdnM9znqjj+ixoGQ8luB/5j7wxllR13OrVm3ktXRkSKPEQaI+WXuZzeAAitwHEuQs+VESHXxQAdmopEGDTO
+0HocuTII5LprohDexyHxbsJGaIWRh56SZ+a6KIYjGhO3DoWQvbXAvDx6B/rqkoOuyk7eLRDHfkGcu6AHJ+iFztS15k8856mPR5Lu3i2K7Zg3iVk05zZU
+T9DCrUXo4ADQ3RCbRG4qKiG/S2Hi0joPMPyz0dfu7qUsVtiXA2J2SxQ/5DdNfA/ARp2cX0zRQNgjSt2ySNCUNp94cyuyT72LWb3CmwBRRppgEmE+gNpp
+FISWH1iRi9vy65u8WEVsEn0YCKYS9BBqT7zzc2v5flYRWuhuiirRezE5iT11Y2yNsVWJ7bgJ7A/gGmNX6HmL91wTewQwV+n6I9B5clrhGs/bEhrxWhml
+/xDqs8C3o1UCt3miJvYZsVLiPdiR09MidZ65LbaZmZX5MezKSUvzZnvb4Vm6mjWK7VwZ33tQiWeR2e4yeEeUJVjZbhKEK+4xaHcBkiv9GDadqT2bWbPg
+InLc+j7bWj1la20CjJnf3RMVZzmkFb4Jmlwh4aDXWNa+qDFnlPTSr8YCla/WGXpNgITGDovKlDBpAfHC19lY6mKbmV26/MTa34CtxCRe/oAnXBfVxYRY
+wtdg85RersiiQDOr32DkgahIapuIymkVTvnLTd7xDaGmL13mFpRQ0dbPLvCZfodBN8UGUj5BAvJbmwDWIs61qlBJqIzSJKWSFkDJUtGqVYKivOT4y37R
+2oOdFSba0qCWNj0WuAgjLHAZB3i4jAKtbdiy0g7PpLRjL0kL/20dQN16hZvyTq96YesGXLde5Wmtfdi1VvhR6xrsWatcpVWDTSvhDekx8regaiVtvLUD
+21bWZBModQu0jxUm2NJBszJWxpOTxsR3kbKaVgXKVmwdhz+HUhzA9euwJ5qPrIHZMfqZ/KIBt5as3vChIcaGpVILJuIjfg12lpiWMJDdbQ7wAU8x8NWn
+2c2+tn74U6gkPJqSiDZmLmPMU45F28hs4QD2U1yz3T4eNYftRzLPSfG6vQEKTucF//gAriXzgscRZuYrsoKDV5SAB6/OKhr/KkHhPq2Hr0rhCeo9UMVQ
+OontEgcTCgnRvwUbz92pgxmtqoB2U+hPJY8qGAXTTdBlXo1WvyhbVBF0a0VZkihucJnt2ZWK57sANMs6ocxUJen7VxJSzltxgfJskcS+D+u281Sl6lpq
+RtN5ilhikzbcKMJUp7hCGwZxSBsMwbQ4H2JpxolLNiseIQORDGBggMDSKmCggPhL+j0LgtOTS5cTl6x+jySP9KtgWJSCE0SR6yyy+Gxd0F6wcV4CjE/2
+ZjhFTUbu5xculvQVnpx+vkYIEJKPsyvhckgXoaaH00tOcLIXIScjly4ijAck9yywpwu51RVyjxCQkHu2HJJcNZ3k1lbIlZOV3LN4oPfwsQ2euZGNFWQs
+e4un38woTIKW8recNElvQy2xFO1DW1HWLxeSe6k6SYL+EPbQRcII/RKjccKot3mtdzNrxcikee84V8m0uSmWO/PlKfUVm+szZHnG6jRJoEtaLELn21lx
+SfES8nSV6XKIAbToRM69u07936TiDaGGrSLkT4LTy8af16DAwQWTZY1DkhNMLVQPxSjVzNiK6Q8lmQr5KDgJZPulLOQA64wNFdtUByMeEn4ePHV9DhOI
+5wFWH7gZl1L8wqpeTLK6EgpJzQJn6lHKXeSl1IibCDL525B0OaKCno4Zpz0lVZcBEZdJz22skKiqVVXK1f7BTEgAv8uJBRt/ysGGirZU5asDW94pq66M
+cU9SeqcoRMMXa25RaX+C2QI1R9a4OVIjekeSx+7nmAIWp965N5+p+LyTvm1mCQXRv4K5aOSeYhJ0cjnHI+R5yYqktYhEfaWXs/kpq7kk+LvxEopyIVRR
+jR80zug4y5a3vslUKl4xzaaeD6UyMwasMaDEBGJ+E6sG6jtYmOdI32GY7OdozBq5EXsFtYh+CDsr3Ii2uSieq4K/F1sniZtq6z+DdXwo9C9DJalK2WeC
+06UaEWCH4ZRSrKWuQZEIkFXd+hXVNZ5CgR8bfI/yDqY6LKaWiXOMaCNXMIYc4RzPhgFGOUg8pAZtRE0o2iKLK4kloXET8vRckbv4ge9IYUUhB8wNXsn9
+CmyoV4l8AZ1lptwXfUGOGn/PASwfIXzjYEL9KIs6YyuTDtU5mwzs0EQM9aki95nHHi61uRjTyajLanu+6q3mxJKABVMN/ccjuWhmZ+e27GCIakwdE5GM
+7NJ+rhAF2QlDgmR+zN3DuexV1jJJy5W+kpDgxnvUsPIwQrym4d74BFVrz5+Q5kICLzrfckT0qeufzZ+oKWpE1ukEs7k6L383TNgQ7uOLmT3939hM4xdr
+UEk8/3oN1lR4yQv8ouCFR43iXnj2CvEAQgKoo0qvsIoqq4DMx6K7auOL8Ny68J/6wXMZtktik4nHkpaNrIXVkRVRcU1Biiqqpheo+hRpVFRmoiqPE9Ma
+v8lBeZHEXFHA68ySMj68WXXkTMaHDM746Oox44vktalcNp3xqSuljE/BqNgNLuYU+Ru/y0ElkSm9xRVltLq+WquHsP04Cvy5hwqSUduTl4RvdczgwK0q
+yeSL9bcc5Gmv+vehQg4aqMZzbkXTxFjyRRKM/izVuvYKtSqlHkIRT3Xmzl9jcgqBJWTpzHvm+tZFqI6ywePjkMKC5yuDUI9YyfM7PGbbWCSab2obCXfY
+vpK6km2wP7yVbfwlB1uZTPb/bh/vLP6uUp3inIgJxOYH4oxUUpBhTo6uuCH1cOK/vf6Qg1J8jMX1515//Xhv1FmwbHyAVOQsEaGJY358aT18nZkvY2hF
+0RjyLlQufPxwnvB7mac/FEWSRBKWTXf1YMQt98bvc1BNpf5vZB33oBSXCcpC9lYWFdzljxXzVpbyW9xvqhq4st/l+8R/ri7eJwzs6PbnrwvsxCec79rR
+K/5SYxzx2UASYV2oUeOPGOcSxcYb6TNdIK+/SYH8Nlo9/H0ByovHllpBhhCmsNpmJ9smugUHCd6g2b9vioHRse6L5sDQchk+U62JaVr9pjgytDXqdKXX
+Ph6NTDHBFaht1TOH2jo1qhKY3vBhs99DCT2j39HyGQnHwwdD89OhNTbGPLtA/4Yl+IqOg+H9fq890Yr0b1gCYB5PLPO+ZYqOIbSNzOptYXR6E8v4Sdsw
+Onj+Et66nuBPegMDF9DK1IRL0IUx6jfbOAEyC8bb6Rh9g/5cq2R2M56YAtXW7PWRuZnRxLh7PJn0hkdWB0+sVTNTj4fN40nXFL3PcGqNuo3JU6J2+2aT
+zrCV2WtvODHEsNnXtOxe1F7vH/f72nbm5EPTGjUnXU3P7LHTHDSPFvawgynbboLbHLR6R8fm8VjbvbL7DipEDHpD3OIeBufrKWGTLp170ByNkL1/+HOo
+JJ5dXuono74p5D+YaYvdBS3JPDKb1E0lK0lQJ80HxtBqPbJQEtohGiptPAFom4MRXVnm79D/ABitECI=
 """
 
 
@@ -272,6 +272,7 @@ _REPLACED_WITHIN = 60.0
 _SCANS_OF_A_ROBOT_MAX = 1_000_000_000  # three years at ten per second
 _NO_RETURN = 0xFFFFFFFF  # millimetres: nothing within range
 _COORDINATE_MAX = 1e6  # metres
+_DURATION_MAX = 10.0  # seconds, of a scan
 _REGION_CORNERS_MAX = 4096
 _LOCATE_POINTS_MIN = 20
 _LOCATE_POINTS_MAX = 32_768
@@ -475,11 +476,12 @@ def _check_poses(poses: str, pose: Any, odometry: Any) -> None:
 
 
 def _encode_scan(sensor: Sensor, ranges: Any, pose: Any, stamp: float, odometry: Any, intensities: Any,
-                 angles: Any, begins_map: Any = False) -> bytes:
+                 angles: Any, begins_map: Any = False, duration: Any = 0.0) -> bytes:
     """Returns an encoded Scan without its seq, which is set when it is sent."""
     if not isinstance(begins_map, bool):
         raise ValueError(f"begins_map is {begins_map!r}; True or False is needed")
-    scan = _Scan(sensor=sensor.id, stamp=_finite("stamp", stamp), begins_map=begins_map)
+    scan = _Scan(sensor=sensor.id, stamp=_finite("stamp", stamp), begins_map=begins_map,
+                 duration=_finite("duration", duration, _DURATION_MAX))
     if pose is not None:
         _set_pose("pose", pose, scan.pose)
     if odometry is not None:
@@ -1156,7 +1158,7 @@ class Client:
     def send(self, sensor: Sensor, ranges: Sequence[float], *, pose: Optional[Pose] = None, stamp: Optional[float] = None,
              odometry: Optional[Pose] = None, intensities: Optional[Sequence[int]] = None,
              angles: Optional[Sequence[float]] = None, begins_map: bool = False, block: bool = True,
-             timeout: Optional[float] = None) -> None:
+             timeout: Optional[float] = None, duration: float = 0.0) -> None:
         """Adds a scan to the buffer and returns; it is sent when there is a link.
 
         ranges       one per beam; inf, or at least range_max: no return; nan, 0, or below range_min: invalid reading
@@ -1168,19 +1170,21 @@ class Client:
         begins_map   the pose was given by the user, because locate() raised NOTHING_MAPPED; set it for all scans from
                      there. If the map is no longer empty, the robot's first scan is refused, and the client fails with
                      SESSION_CONFLICT
+        duration     seconds from the first beam to the last of a laser that turns evenly; negative if the last beam was
+                     taken first; stamp, pose and odometry are then of the middle of this time
 
         Waits while the buffer is full. Raises BufferFull if block is False then, or when timeout seconds have passed;
         ScanloomError once the client has failed.
         """
-        self._take(*self._encoded(sensor, ranges, pose, stamp, odometry, intensities, angles, begins_map), block,
-                   timeout)
+        self._take(*self._encoded(sensor, ranges, pose, stamp, odometry, intensities, angles, begins_map, duration),
+                   block, timeout)
 
     def _encoded(self, sensor: Sensor, ranges: Any, pose: Any, stamp: Optional[float], odometry: Any, intensities: Any,
-                 angles: Any, begins_map: bool = False) -> Tuple[Sensor, bytes]:
+                 angles: Any, begins_map: bool = False, duration: Any = 0.0) -> Tuple[Sensor, bytes]:
         self._check_sensor(sensor)
         _check_poses(self._poses, pose, odometry)
         stamp = time.time() if stamp is None else stamp
-        return sensor, _encode_scan(sensor, ranges, pose, stamp, odometry, intensities, angles, begins_map)
+        return sensor, _encode_scan(sensor, ranges, pose, stamp, odometry, intensities, angles, begins_map, duration)
 
     def _check_sensor(self, sensor: Any) -> None:
         if not isinstance(sensor, Sensor):
@@ -1542,6 +1546,8 @@ _USAGE = """reads scans from standard input and streams them to a server, one JS
                else optional, like the following members
   intensities  whole numbers, one per beam
   angles       radians, one per beam, if they differ from --angle-min and --angle-increment
+  duration     seconds from the first beam to the last of a laser that turns evenly; negative if the last beam was taken
+               first; t, pose and odometry are then of the middle of this time
 
 Invalid lines are reported and skipped. At the end it waits until every scan is durable and prints a summary. Exits 0 if
 every line is stored, 1 if not or if lines were skipped ("skipped" of the summary), 2 on invalid arguments."""
@@ -1642,7 +1648,8 @@ class _Lines:
         if pose is not None:
             _set_pose("pose", pose, _Scan().pose)
         return self._robot._encoded(self._laser or self._make_laser(len(ranges)), ranges, pose, _finite("t", scan["t"]),
-                                    odometry, scan.get("intensities"), scan.get("angles"))
+                                    odometry, scan.get("intensities"), scan.get("angles"),
+                                    duration=scan.get("duration", 0.0))
 
     def _make_laser(self, count: int) -> Sensor:
         options = self._options

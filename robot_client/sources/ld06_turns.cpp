@@ -80,7 +80,7 @@ void Ld06Turns::add(const Ld06Packet& packet, double stamp) {
             start -= kLd06StepsPerTurn;
             step -= kLd06StepsPerTurn;
         }
-        add_point({step, packet.points[i]}, stamp);
+        add_point({step, packet.points[i]}, packet, stamp);
     }
     before_ = Before{start, packet.timestamp};
 }
@@ -97,22 +97,34 @@ std::optional<std::int32_t> Ld06Turns::follow(const Ld06Packet& packet) const {
     return before_->start + static_cast<std::int32_t>(expected) + static_cast<std::int32_t>(disagreement);
 }
 
-void Ld06Turns::add_point(Ld06Beam beam, double stamp) {
+void Ld06Turns::add_point(Ld06Beam beam, const Ld06Packet& packet, double stamp) {
     if (beam.step < 0 || (!beams_.empty() && beam.step <= beams_.back().step)) return;
     if (beams_.empty()) first_stamp_ = stamp;
     last_stamp_ = stamp;
-    if (beams_.size() <= kBeamsMax) beams_.push_back(beam); // one point too many shows that the turn is too long
+    if (beams_.size() > kBeamsMax) return; // one point too many shows that the turn is too long
+    beams_.push_back(beam);
+    speeds_ += packet.speed;
+}
+
+/// Returns the seconds from the first point of the turn to the last. The packets' times are whole milliseconds, and
+/// those of packets, not of points.
+double Ld06Turns::duration() const {
+    const double speed = static_cast<double>(speeds_) / static_cast<double>(beams_.size()); // degrees per second
+    const double degrees = static_cast<double>(beams_.back().step - beams_.front().step) / kLd06StepsPerDegree;
+    return speed > 0.0 ? degrees / speed : 0.0;
 }
 
 void Ld06Turns::end_turn() {
     if (beams_.size() > kBeamsMax) {
         ++too_long_;
     } else if (is_given_ && !beams_.empty()) {
-        complete_.push_back({(first_stamp_ + last_stamp_) / 2.0, std::move(beams_)});
+        const double seconds = duration();
+        complete_.push_back({(first_stamp_ + last_stamp_) / 2.0, std::move(beams_), seconds});
         ++count_;
         parts_ += is_part_ ? 1 : 0;
     }
     beams_.clear();
+    speeds_ = 0;
     is_part_ = false;
 }
 
@@ -128,6 +140,7 @@ void Ld06Turns::restart() {
     is_given_ = false;
     is_part_ = false;
     beams_.clear();
+    speeds_ = 0;
 }
 
 std::string ld06_remarks(const Ld06Counts& counts, const Ld06Turns& turns, const Ld06Losses& losses) {
@@ -190,6 +203,8 @@ Scan ld06_scan(const Ld06Turn& turn, const Ld06ScanOptions& options) {
     const ReadingFilter filter(options);
     Scan scan;
     scan.stamp = turn.stamp;
+    // The sensor turns clockwise, so the first beam was taken last.
+    if (std::abs(turn.duration) <= kDurationMax) scan.duration = 0.0 - turn.duration;
     SteppedAngles angles{kRadiansPerStep, {}};
     for (auto beam = turn.beams.rbegin(); beam != turn.beams.rend(); ++beam) {
         angles.steps.push_back(kLd06StepsPerTurn - beam->step);

@@ -58,8 +58,9 @@ struct Ld06Beam {
 
 /// The points from one crossing of 0 degrees to the next.
 struct Ld06Turn {
-    double stamp = 0.0;          ///< seconds, of its middle: one pose is used for all its beams
+    double stamp = 0.0;          ///< seconds, of its middle
     std::vector<Ld06Beam> beams; ///< at least 1, with increasing steps
+    double duration = 0.0;       ///< seconds from the first beam to the last, by the sensor's speed; 0: not known
 
     friend bool operator==(const Ld06Turn&, const Ld06Turn&) = default;
 };
@@ -97,7 +98,8 @@ private:
     };
 
     [[nodiscard]] std::optional<std::int32_t> follow(const Ld06Packet& packet) const;
-    void add_point(Ld06Beam beam, double stamp);
+    void add_point(Ld06Beam beam, const Ld06Packet& packet, double stamp);
+    [[nodiscard]] double duration() const;
     void end_turn();
 
     std::optional<Before> before_; ///< the previous packet
@@ -106,6 +108,7 @@ private:
     std::vector<Ld06Beam> beams_;
     double first_stamp_ = 0.0;
     double last_stamp_ = 0.0;
+    std::uint64_t speeds_ = 0; ///< sum over the points of the turn, degrees per second
     std::deque<Ld06Turn> complete_;
     std::uint64_t count_ = 0;
     std::uint64_t parts_ = 0;

@@ -8,7 +8,7 @@
 namespace scanloom::robot {
 
 std::size_t wire_bytes_max(const Scan& scan) noexcept {
-    constexpr std::size_t kFixedFields = 160; // seq, stamp, sensor, two poses, uniform angles, tags and lengths
+    constexpr std::size_t kFixedFields = 160; // seq, times, sensor, two poses, uniform angles, tags and lengths
     const std::size_t angle_count =
         scan.angles && !std::holds_alternative<UniformAngles>(*scan.angles) ? beam_count(*scan.angles) : 0;
     return kFixedFields + 4 * scan.ranges.size() + 5 * scan.intensities.size() + 8 * angle_count;

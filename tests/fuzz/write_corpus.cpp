@@ -78,6 +78,7 @@ Scan full_scan() {
 Scan stepped_scan() {
     Scan scan = plain_scan();
     scan.seq = 3;
+    scan.duration = -0.0995;
     scan.angles = SteppedAngles{1.5866e-5, {871, 1742, 2620, 11'000, 395'900}};
     return scan;
 }

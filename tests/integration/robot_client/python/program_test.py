@@ -59,10 +59,10 @@ class Program(unittest.TestCase):
 
     def test_without_angles_the_beams_of_the_first_line_are_a_full_turn(self):
         server = self.fake()
-        line = line_of(0, angles=None, intensities=[1, 2, 3, 4], odometry=[1, 2, 3])
+        line = line_of(0, angles=None, intensities=[1, 2, 3, 4], odometry=[1, 2, 3], duration=0.1)
         self.stream(server.address, [line], "--range-min", "0.1")
         self.assertEqual(list(server.stored[0].intensities), [1, 2, 3, 4])
-        self.assertEqual(server.stored[0].odometry.y, 2.0)
+        self.assertEqual((server.stored[0].odometry.y, server.stored[0].duration), (2.0, 0.1))
         uniform = server.sensors[0].angles.uniform
         self.assertEqual((uniform.first, uniform.increment, uniform.count), (-math.pi, math.pi / 2, 4))
 

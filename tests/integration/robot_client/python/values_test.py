@@ -36,18 +36,19 @@ class Fields(LinkTest):
 
     def test_all_given_values_arrive(self):
         scan = self.sent([1.0, math.inf, math.nan], odometry=(4.0, 5.0, 6.0), intensities=[1.0, 255, 0],
-                         angles=[0.1, 0.3, 0.2], begins_map=True)
+                         angles=[0.1, 0.3, 0.2], begins_map=True, duration=-0.1)
         self.assertEqual((scan.pose.x, scan.pose.y, scan.pose.yaw, scan.stamp), (1.0, 2.0, 3.0, 4.5))
         self.assertEqual((scan.odometry.x, scan.odometry.y, scan.odometry.yaw), (4.0, 5.0, 6.0))
         self.assertEqual(list(scan.ranges), [1000, NO_RETURN, 0])
         self.assertEqual(list(scan.intensities), [1, 255, 0])
         self.assertEqual(list(scan.angles.explicit.angles), [0.1, 0.3, 0.2])
         self.assertTrue(scan.begins_map)
+        self.assertEqual(scan.duration, -0.1)
 
     def test_missing_values_are_absent(self):
         scan = self.sent([1.0], pose=(0, 0, 0))
         self.assertTrue(scan.HasField("pose"))
-        self.assertFalse(scan.HasField("odometry") or scan.HasField("angles") or scan.intensities or scan.begins_map)
+        self.assertFalse(scan.HasField("odometry") or scan.HasField("angles") or scan.intensities or scan.begins_map or scan.duration)
 
     def test_poses_that_are_not_in_the_map_are_absent(self):
         for poses, odometry in (("odometry", (1.0, 2.0, 3.0)), ("none", None)):
@@ -96,6 +97,7 @@ class Refused(LinkTest):
                     ("for 3 angles", {"angles": [0.0, 0.1, 0.2]}),
                     ("an angle is nan", {"angles": [0.0, math.nan]}),
                     ("intensities has 1 values", {"intensities": [1]}),
+                    ("duration is -10.5", {"duration": -10.5}),
                     ("begins_map is 'False'", {"begins_map": "False"}),
                     ("intensities are whole numbers", {"intensities": [-1, 0]}),
                     ("pose.yaw is nan", {"pose": (0.0, 0.0, math.nan)}),

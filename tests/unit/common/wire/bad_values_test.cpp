@@ -200,6 +200,8 @@ TEST(BadScan, IsRefusedByFieldNameAndIndex) {
         {[](Scan& s) { s.pose->y = -1e300; }, "pose.y is -1e+300;"},
         {[](Scan& s) { s.odometry->x = kNan; }, "odometry.x is nan;"},
         {[](Scan& s) { s.odometry->yaw = -kInfinity; }, "odometry.yaw is -inf;"},
+        {[](Scan& s) { s.duration = kNan; }, "duration is nan;"},
+        {[](Scan& s) { s.duration = -10.5; }, "duration is -10.5;"},
         {[](Scan& s) { s.ranges.clear(); }, "ranges is empty;"},
         {[](Scan& s) { s.ranges.assign(4097, 1000); }, "ranges has 4097 beams, at most 4096", Errc::kTooLarge},
         {[](Scan& s) { s.ranges.assign(100'000, 1000); }, "ranges has 100000 beams, at most 4096", Errc::kTooLarge},

@@ -25,6 +25,7 @@ inline Scan example_scan(std::uint64_t seq = 1) {
     Scan scan;
     scan.seq = seq;
     scan.stamp = 976052857.28;
+    scan.duration = -0.1;
     scan.sensor = 63;
     scan.pose = {1.5, -2.25, 0.5};
     scan.odometry = Pose2{-7.0, 8.0, -3.0};

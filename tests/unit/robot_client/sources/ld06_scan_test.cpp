@@ -29,6 +29,14 @@ TEST(Ld06Scan, AnglesAreCounterClockwise) {
     EXPECT_NEAR(beam_angle(angles, 2), 360.0 * kDegree, 1e-15) << "ahead";
 }
 
+TEST(Ld06Scan, TheFirstBeamWasTakenLast) {
+    Ld06Turn turn = turn_of({{0, {1000, 201}}, {100, {2000, 202}}});
+    turn.duration = 0.0998;
+    EXPECT_EQ(ld06_scan(turn, {}).duration, -0.0998);
+    turn.duration = 11.0;
+    EXPECT_EQ(ld06_scan(turn, {}).duration, 0.0) << "more than a scan may have";
+}
+
 TEST(Ld06Scan, UnmeasuredPointsAreInvalidAndDistantOnesAreNoReturns) {
     const auto turn = turn_of({{0, {0, 212}},
                                {1, {19, 200}},

@@ -98,6 +98,16 @@ TEST(Ld06Turns, StampIsTheMiddleOfTheTurn) {
     EXPECT_DOUBLE_EQ(cutter.complete[0].stamp, (37 + 74) / 2.0 * kPacketSeconds);
 }
 
+TEST(Ld06Turns, DurationIsThatOfTheBeamsAtTheSpeedOfTheSensor) {
+    Ld06Spinner sensor(0);
+    Cutter cutter;
+    cutter.add(sensor, 45);
+    sensor.skip(3);
+    cutter.add(sensor, 60);
+    ASSERT_EQ(cutter.complete.size(), 1U);
+    EXPECT_NEAR(cutter.complete[0].duration, 449 * 0.8 / 3600.0, 1e-9) << "with a hole, too";
+}
+
 TEST(Ld06Turns, LostPacketsLeaveAGap) {
     Ld06Spinner sensor(0);
     Cutter cutter;
