@@ -1,6 +1,5 @@
 #include "lab/estimated_trajectory.hpp"
 
-#include "core/scan_matching/scan_points.hpp"
 #include "core/slam/trajectory_estimator.hpp"
 
 #include <fmt/format.h>
@@ -24,7 +23,7 @@ Result<EstimatedTrajectory> estimate_trajectory(robot::Source& source, const std
         const auto& [sensor, scan] = **observation;
         if (sensor->kind != SensorKind::kLaser) continue;
         const double begun = cpu_seconds();
-        estimator.add(scan_matching::points_of(scan, *sensor), scan.odometry);
+        estimator.add(scan, *sensor);
         trajectory.cpu_seconds += cpu_seconds() - begun;
         stamps.push_back(scan.stamp);
         on_scan(stamps.size());

@@ -1,7 +1,5 @@
 #include "core/localization/robot_poses.hpp"
 
-#include "core/scan_matching/scan_points.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -24,7 +22,7 @@ double distance_between(const Transform2& a, const Transform2& b) {
 
 std::optional<Pose2> RobotPoses::add(const Scan& scan, const Sensor& sensor) {
     if (sensor.kind == SensorKind::kLaser) {
-        estimator_.add(scan_matching::points_of(scan, sensor), scan.odometry);
+        estimator_.add(scan, sensor);
         laser_scans_.push_back(scans_.size());
         scans_.push_back({estimator_.scan_count() - 1, {}, scan.stamp});
         laser_odometry_ = scan.odometry;

@@ -1,6 +1,7 @@
 #include "core/mapping/projection.hpp"
 
 #include "core/mapping/reach.hpp"
+#include "core/scan_matching/deskew.hpp"
 
 #include <fmt/format.h>
 
@@ -77,13 +78,15 @@ bool Projection::integrate_entry(const ScanTaken& taken, double& work) {
         // Place the beams of the sensor in the map
         const Sensor& sensor = *robots()[taken.robot].find_sensor(scan.sensor)->sensor;
         const Pose2 T_map_sensor = compose(*scan.pose, sensor.mount);
-        const auto& fan = fan_of(robot, sensor, scan).fan;
+        const std::optional<Scan> still = deskewed(robot, sensor, taken);
+        const auto& ranges = still ? still->ranges : scan.ranges;
+        const auto& fan = fan_of(robot, sensor, still ? *still : scan).fan;
         const ReadingRules readings = rules_of(config_, sensor);
         // Update the cells that they cross; a large scan continues in the next call
         const bool complete =
             sensor.kind == SensorKind::kLaser
-                ? laser_.integrate({std::get<LaserFan>(fan), scan.ranges, T_map_sensor, readings}, revision, work)
-                : sonar_.integrate({std::get<SonarFan>(fan), scan.ranges, T_map_sensor, readings}, revision, work);
+                ? laser_.integrate({std::get<LaserFan>(fan), ranges, T_map_sensor, readings}, revision, work)
+                : sonar_.integrate({std::get<SonarFan>(fan), ranges, T_map_sensor, readings}, revision, work);
         is_applying_ = !complete;
         if (!complete) return false;
     }
@@ -95,8 +98,21 @@ bool Projection::integrate_entry(const ScanTaken& taken, double& work) {
     if (use != ScanUse::kIntegrated) return true;
     robot.scan_count += 1;
     robot.newest = {revision, scan.stamp, *scan.pose};
+    if (scan.duration != 0.0) robot.turns[scan.sensor] = *robot.newest;
     robot.trajectory.append(*robot.newest);
     return true;
+}
+
+/// Returns the scan without the skew of the robot's motion since the scan before, if the server estimated where both
+/// were taken. Poses that a robot sends are used as they are, and so are its scans.
+std::optional<Scan> Projection::deskewed(const Robot& robot, const Sensor& sensor, const ScanTaken& taken) const {
+    const Scan& scan = taken.scan;
+    const auto before = robot.turns.find(scan.sensor);
+    if (robots()[taken.robot].poses == Poses::kMap || before == robot.turns.end()) return std::nullopt;
+    const auto& [revision, stamp, pose] = before->second;
+    const scan_matching::Motion motion{compose(inverse(pose), *scan.pose), scan.stamp - stamp};
+    if (!scan_matching::can_deskew(scan, sensor, motion)) return std::nullopt;
+    return scan_matching::deskewed(scan, sensor, motion);
 }
 
 bool Projection::integrate_entry(const MapPatch& patch, double& work) {
@@ -208,7 +224,7 @@ Projection Projection::branch() {
 
 /// Leaves out the fans, which are recomputed when needed.
 Projection::Robot Projection::Robot::branch() const {
-    return {scan_count, excluded, unplaced, newest, trajectory.branch(), poses.branch(), {}};
+    return {scan_count, excluded, unplaced, newest, trajectory.branch(), poses.branch(), turns, {}};
 }
 
 ProjectionState Projection::state() const {

@@ -173,7 +173,8 @@ private:
         std::uint64_t unplaced = 0;
         std::optional<TrajectoryPoint> newest; // of its integrated scans
         Trajectory trajectory;
-        EstimatedPoses poses; // of its scans; empty if it sends poses
+        EstimatedPoses poses;                           // of its scans; empty if it sends poses
+        std::map<std::uint32_t, TrajectoryPoint> turns; // by sensor: its newest integrated scan with times
         std::map<std::uint32_t, KnownFan> fans;
     };
 
@@ -188,6 +189,7 @@ private:
     bool integrate_entry(const ExclusionLifted& lifted, double& work);
     bool integrate_entry(const MapsCorrected& corrected, double& work);
     bool integrate_entry(const RobotRelocalized& relocalized, double& work);
+    [[nodiscard]] std::optional<Scan> deskewed(const Robot& robot, const Sensor& sensor, const ScanTaken& taken) const;
     [[nodiscard]] const KnownFan& fan_of(Robot& robot, const Sensor& sensor, const Scan& scan);
 
     void bring_classes_up_to(const LaserView& laser);

@@ -54,6 +54,9 @@ public:
     /// Returns the best estimate for the newest scan. Precondition: it is not decided.
     [[nodiscard]] const TrackedScan& newest() const noexcept { return hypotheses_.front().scans.back(); }
 
+    /// Returns the motion between the last two scans by the best estimate: T_before_last.
+    [[nodiscard]] const Transform2& velocity() const noexcept { return hypotheses_.front().velocity; }
+
     /// Returns the number of scans since the last one that matched.
     [[nodiscard]] std::size_t unmatched() const noexcept { return hypotheses_.front().unmatched; }
 

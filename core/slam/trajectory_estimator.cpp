@@ -29,6 +29,25 @@ bool is_keyframe_due(const TrackedScan& scan) {
 
 } // namespace
 
+void TrajectoryEstimator::add(const Scan& scan, const Sensor& sensor) {
+    using namespace scan_matching;
+    const Motion motion = motion_at(scan);
+    add(can_deskew(scan, sensor, motion) ? points_of(deskewed(scan, sensor, motion), sensor) : points_of(scan, sensor),
+        scan.odometry);
+    seconds_ = stamp_ ? scan.stamp - *stamp_ : 0.0;
+    stamp_ = scan.stamp;
+}
+
+/// Returns the motion before a scan that is not added yet, as far as it is known.
+scan_matching::Motion TrajectoryEstimator::motion_at(const Scan& scan) const {
+    if (!stamp_) return {};
+    if (odometry_ && scan.odometry) {
+        const Transform2 now = scan_matching::transform_of(*scan.odometry);
+        return {scan_matching::pose_of(inverse(*odometry_) * now), scan.stamp - *stamp_};
+    }
+    return {scan_matching::pose_of(tracker_.velocity()), seconds_};
+}
+
 void TrajectoryEstimator::add(ScanPoints scan, const std::optional<Pose2>& odometry) {
     std::optional<Transform2> motion;
     const std::optional<Transform2> now =

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/scan_matching/deskew.hpp"
 #include "core/scan_matching/scan_points.hpp"
 #include "core/slam/shared_map.hpp"
 #include "core/slam/tracker.hpp"
@@ -31,6 +32,12 @@ public:
     /// @param map    shared by the robots of a session; must outlive this object
     /// @param robot  number of the robot among them
     explicit TrajectoryEstimator(SharedMap& map, std::size_t robot = 0) : map_(map), robot_(robot) {}
+
+    /// Adds the next scan. Where its beams have times (Scan::duration), it is de-skewed by the motion since the scan
+    /// before: that of the odometry, else of the last estimates.
+    /// @param scan    with odometry if the robot has any. Pre: validated
+    /// @param sensor  the laser that took it
+    void add(const Scan& scan, const Sensor& sensor);
 
     /// Adds the next scan.
     /// @param scan      its points
@@ -117,6 +124,7 @@ private:
         bool is_matched = true;
     };
 
+    [[nodiscard]] scan_matching::Motion motion_at(const Scan& scan) const;
     void place(const std::vector<TrackedScan>& scans);
     void begin_fragment(ScanPoints scan, const Transform2& T_map_robot,
                         const std::optional<Surroundings>& place = std::nullopt);
@@ -138,6 +146,10 @@ private:
     std::optional<Transform2> odometry_;      // of the last scan
     std::optional<Surroundings> relocalized_; // where the next scan is searched for
     std::size_t unmatched_count_ = 0;
+
+    // Of the scans that were added with their sensors.
+    std::optional<double> stamp_; // of the last one, seconds
+    double seconds_ = 0.0;        // between the last two
 };
 
 } // namespace scanloom::slam

@@ -15,7 +15,8 @@
 namespace scanloom::exchange {
 
 /// Converts a session's log to a CARMEN log: a comment at the head, then a ROBOTLASER1 line for each scan, in the order
-/// of the log. Replaying it into a session with the same settings gives the same maps, bit for bit.
+/// of the log. Replaying it into a session with the same settings gives the same maps, bit for bit. The format
+/// has no times of beams: maps of de-skewed scans (Scan::duration) come out skewed.
 ///
 /// Both poses of a line are the sensor's pose in the map, which the maps are made from. The robot's pose is not used
 /// because the sensor's pose would have to be recomputed from it through the mount, and rounding would move cells.

@@ -55,7 +55,7 @@ const std::vector<Folder> kFolders = {
      .pure = true},
     {.path = "core/mapping",
      .may_include = {"common/error", "common/geometry", "common/hash", "common/scan", "common/text", "core/classify",
-                     "core/grid"},
+                     "core/grid", "core/scan_matching"},
      .pure = true},
     {.path = "core/localization",
      .may_include = {"common/error", "common/geometry", "common/scan", "core/mapping", "core/scan_matching",

@@ -1,4 +1,5 @@
 #include "core/localization/localized_projection.hpp"
+#include "core/scan_matching/deskew.hpp"
 #include "tests/support/digests.hpp"
 #include "tests/unit/core/slam/drive.hpp"
 
@@ -6,6 +7,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <variant>
 #include <vector>
 
 namespace scanloom::localization {
@@ -61,8 +63,45 @@ TEST(LocalizedProjection, ReplacedMapsAreThoseOfTheCorrectedPoses) {
     EXPECT_EQ(maps.projection().snapshot().robots[0].scan_count, log.size() - 2);
 }
 
+/// Returns the log with scans ten times a second whose beams were taken during half of the time.
+std::vector<LogEntry> with_times(std::vector<LogEntry> log) {
+    for (LogEntry& entry : log) {
+        auto* taken = std::get_if<ScanTaken>(&entry);
+        if (taken == nullptr) continue;
+        taken->scan.stamp = 0.1 * static_cast<double>(taken->scan.seq);
+        taken->scan.duration = 0.05;
+    }
+    return log;
+}
+
+TEST(LocalizedProjection, MapsShowScansDeskewedByTheMotionSinceTheScanBefore) {
+    const std::vector<Point2> way{{10.0, 1.0}, {14.0, 1.0}};
+    const Drive drive = slam::drive_along(slam::ring_building(), way, {}, 3);
+    for (const Poses poses : {Poses::kOdometry, Poses::kMap}) {
+        std::vector<LogEntry> skewed = with_times(log_of(drive));
+        std::get<RobotJoined>(skewed[0]).poses = poses;
+        for (std::size_t n = 0; n < drive.scans.size(); ++n) {
+            std::get<ScanTaken>(skewed[n + 2]).scan.pose = drive.truth[n]; // as ScanPoses::place()
+        }
+        std::vector<LogEntry> still = skewed;
+        for (std::size_t n = 0; n < drive.scans.size(); ++n) {
+            Scan& scan = std::get<ScanTaken>(still[n + 2]).scan;
+            if (n > 0 && poses != Poses::kMap) {
+                const Pose2 motion = compose(inverse(drive.truth[n - 1]), drive.truth[n]);
+                const double seconds = scan.stamp - std::get<ScanTaken>(still[n + 1]).scan.stamp;
+                scan = scan_matching::deskewed(scan, drive.laser, {motion, seconds});
+            }
+            scan.duration = 0.0;
+        }
+        EXPECT_EQ(digests_of(made_again(skewed, {}).snapshot()), digests_of(made_again(still, {}).snapshot()))
+            << name_of(poses);
+        EXPECT_NE(std::get<ScanTaken>(still[9]).scan.ranges == drive.scans[7].ranges, poses != Poses::kMap);
+    }
+}
+
 TEST(LocalizedProjection, EqualLogsGiveEqualPosesInPartsAndWhole) {
-    const auto log = log_of(slam::drive_along(slam::ring_building(), slam::kLapAndAQuarter, {.scale = 1.02}, 2));
+    const auto log =
+        with_times(log_of(slam::drive_along(slam::ring_building(), slam::kLapAndAQuarter, {.scale = 1.02}, 2)));
     LocalizedProjection whole(mapping::Projection{mapping::MapConfig()});
     LocalizedProjection parts(mapping::Projection{mapping::MapConfig()});
     for (const auto& entry : log) {
