@@ -24,19 +24,42 @@ Result<Sensor> find_laser(std::string_view name) {
     if (name == "reference") return make_laser(name, {-90.0 * kDegree, 180.0 * kDegree / 683.0, 684}, 5.0);
     if (name == "lidar360") return make_laser(name, {-180.0 * kDegree, kDegree, 360}, 12.0);
     if (name == "wide") return make_laser(name, {-135.0 * kDegree, 0.25 * kDegree, 1081}, 30.0);
-    return Error{Errc::kNotFound, fmt::format("unknown laser '{}'; choose reference, lidar360 or wide", name)};
+    if (name == "handheld") return make_laser(name, {-180.0 * kDegree, 0.8 * kDegree, 450}, 12.0);
+    return Error{Errc::kNotFound,
+                 fmt::format("unknown laser '{}'; choose reference, lidar360, wide or handheld", name)};
 }
+
+namespace {
+
+RangeMm beam_reading(const World& world, std::span<const Disc> people, const Sensor& laser, std::size_t beam,
+                     const Pose2& T_map_laser, const std::optional<Noise>& noise, Random& random) {
+    const Point2 origin{T_map_laser.x, T_map_laser.y};
+    const double yaw = true_direction(T_map_laser.yaw + beam_angle(laser.angles, beam), noise, random);
+    double range = world.obstacles->cast_ray(origin, yaw, laser.range_max);
+    for (const Disc& person : people) range = std::min(range, cast_ray(person, origin, yaw));
+    return reading(range, laser, noise, random);
+}
+
+} // namespace
 
 std::vector<RangeMm> sweep(const World& world, const Sensor& laser, const Pose2& T_map_laser,
                            const std::optional<Noise>& noise, Random& random) {
-    const Point2 origin{T_map_laser.x, T_map_laser.y};
-    const auto people = people_near(world, origin, laser.range_max);
+    const auto people = people_near(world, {T_map_laser.x, T_map_laser.y}, laser.range_max);
     std::vector<RangeMm> ranges(beam_count(laser.angles));
     for (std::size_t i = 0; i < ranges.size(); ++i) {
-        const double yaw = true_direction(T_map_laser.yaw + beam_angle(laser.angles, i), noise, random);
-        double range = world.obstacles->cast_ray(origin, yaw, laser.range_max);
-        for (const Disc& person : people) range = std::min(range, cast_ray(person, origin, yaw));
-        ranges[i] = reading(range, laser, noise, random);
+        ranges[i] = beam_reading(world, people, laser, i, T_map_laser, noise, random);
+    }
+    return ranges;
+}
+
+std::vector<RangeMm> sweep_beams(const World& world, const Sensor& laser, std::size_t first,
+                                 std::span<const Pose2> T_map_laser, const std::optional<Noise>& noise,
+                                 Random& random) {
+    std::vector<RangeMm> ranges;
+    ranges.reserve(T_map_laser.size());
+    for (const Pose2& pose : T_map_laser) {
+        const auto people = people_near(world, {pose.x, pose.y}, laser.range_max);
+        ranges.push_back(beam_reading(world, people, laser, first + ranges.size(), pose, noise, random));
     }
     return ranges;
 }

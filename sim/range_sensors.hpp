@@ -4,13 +4,17 @@
 #include "sim/noise.hpp"
 #include "sim/world.hpp"
 
+#include <cstddef>
+#include <optional>
+#include <span>
 #include <string_view>
 #include <vector>
 
 namespace scanloom::sim {
 
 /// Returns a laser by name. "reference": 684 beams over -90..+90 degrees, 5 m. "lidar360": 360 beams all round, 12 m.
-/// "wide": 1081 beams over 270 degrees, 30 m. All are mounted on the robot's centre and turn ten times per second.
+/// "wide": 1081 beams over 270 degrees, 30 m. "handheld": 450 beams all round, 12 m, for a lidar that a person carries.
+/// All are mounted on the robot's centre and turn ten times per second.
 /// Errors: kNotFound if there is no laser of that name; the message lists all names.
 [[nodiscard]] Result<Sensor> find_laser(std::string_view name);
 
@@ -18,6 +22,15 @@ namespace scanloom::sim {
 /// millimetres. Beams that hit nothing within range_max are kNoReturn; noise neither adds nor removes returns.
 [[nodiscard]] std::vector<RangeMm> sweep(const World& world, const Sensor& laser, const Pose2& T_map_laser,
                                          const std::optional<Noise>& noise, Random& random);
+
+/// Simulates some beams of a laser that moves while it turns.
+/// @param first        index of the first of these beams
+/// @param T_map_laser  one pose per beam
+/// @return their readings, as sweep()
+/// Pre: the laser has the beams.
+[[nodiscard]] std::vector<RangeMm> sweep_beams(const World& world, const Sensor& laser, std::size_t first,
+                                               std::span<const Pose2> T_map_laser, const std::optional<Noise>& noise,
+                                               Random& random);
 
 /// Returns a ring of sonars by name. "ring16": 16 sonars evenly around the body, counter-clockwise, the first pointing
 /// backwards and the ninth ahead; cones of 30 degrees, 5 m. They form one sensor on the robot's centre, because the

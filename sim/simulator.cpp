@@ -17,10 +17,10 @@ Pose2 moved(const Pose2& pose, const Motion& motion) {
             normalize_angle(pose.yaw + motion.turn)};
 }
 
-Motion drive(const World& world, const Pose2& pose, const Velocity& wanted) {
-    Motion motion{std::clamp(wanted.forward, -kForwardMax, kForwardMax) * kControlPeriod,
-                  std::clamp(wanted.turn, -kTurnMax, kTurnMax) * kControlPeriod};
-    // A step is at most 0.035 m, less than the body's radius, so nothing can pass between two checks.
+Motion drive(const World& world, const Pose2& pose, const Velocity& wanted, const Velocity& fastest) {
+    Motion motion{std::clamp(wanted.forward, -fastest.forward, fastest.forward) * kControlPeriod,
+                  std::clamp(wanted.turn, -fastest.turn, fastest.turn) * kControlPeriod};
+    // A step is less than the body's radius, so nothing can pass between two checks.
     const Pose2 next = moved(pose, motion);
     if (clearance(world, {next.x, next.y}) < kBodyRadius) motion.forward = 0.0;
     return motion;
@@ -64,31 +64,58 @@ Simulator::Simulator(SimulatorOptions options, std::unique_ptr<Behaviour> behavi
         if (sensor) sensors_.push_back(std::make_shared<const Sensor>(*sensor));
     }
     assert(!sensors_.empty());
+    assert(!options_.is_carried || (options_.laser && !options_.sonar));
 }
 
 Scan Simulator::next_scan() {
     const std::uint64_t moment = scans_ / sensors_.size();
     const std::size_t which = scans_ % sensors_.size();
-    if (moment > 0 && which == 0) {
-        for (int i = 0; i < kControlStepsPerScan; ++i) control_step();
-    }
     const Sensor& sensor = *sensors_[which];
     Scan scan;
     scan.stamp = static_cast<double>(moment * kControlStepsPerScan) * kControlPeriod;
     scan.sensor = sensor.id;
-    scan.pose = believed_pose();
-    scan.ranges = measure(options_.world, sensor, pose_, options_.noise, random_);
+    if (options_.is_carried) {
+        turn_in_time(sensor, moment > 0, scan);
+    } else {
+        for (int i = 0; moment > 0 && which == 0 && i < kControlStepsPerScan; ++i) control_step();
+        set_poses(scan);
+        scan.ranges = measure(options_.world, sensor, pose_, options_.noise, random_);
+    }
     if (which == 0) {
         senses_.nearest = sectors_of(scan, sensor);
         senses_.obstacles = obstacles_of(scan, sensor);
     }
-    switch (options_.poses) {
-    case Poses::kMap: scan.odometry = odometry_; break;
-    case Poses::kOdometry: scan.odometry = compose(start_, odometry_); [[fallthrough]];
-    case Poses::kNone: scan.pose.reset(); break;
-    }
+    if (options_.poses != Poses::kMap) scan.pose.reset();
     ++scans_;
     return scan;
+}
+
+/// Sets the pose, by which the robot steers whatever it sends, and the odometry.
+void Simulator::set_poses(Scan& scan) const {
+    scan.pose = believed_pose();
+    if (options_.poses == Poses::kMap) scan.odometry = odometry_;
+    if (options_.poses == Poses::kOdometry) scan.odometry = compose(start_, odometry_);
+}
+
+/// Takes the beams of one turn while the laser moves: half of them in each of two control steps.
+void Simulator::turn_in_time(const Sensor& laser, bool is_moving, Scan& scan) {
+    static_assert(kControlStepsPerScan == 2, "the stamp is between the two steps");
+    const std::size_t count = beam_count(laser.angles);
+    scan.duration = kScanPeriod * static_cast<double>(count - 1) / static_cast<double>(count);
+    for (std::size_t step = 0; step < kControlStepsPerScan; ++step) {
+        if (step == 1) set_poses(scan);
+        const Pose2 begin = pose_;
+        const Motion motion = is_moving ? control_step() : Motion{};
+        std::vector<Pose2> poses;
+        const std::size_t first = step * count / kControlStepsPerScan;
+        for (std::size_t beam = first; beam < (step + 1) * count / kControlStepsPerScan; ++beam) {
+            const double part = (static_cast<double>(beam) + 0.5) * kControlStepsPerScan / static_cast<double>(count) -
+                                static_cast<double>(step);
+            poses.push_back(compose(moved(begin, {part * motion.forward, part * motion.turn}), laser.mount));
+        }
+        const auto ranges = sweep_beams(options_.world, laser, first, poses, options_.noise, random_);
+        scan.ranges.insert(scan.ranges.end(), ranges.begin(), ranges.end());
+    }
 }
 
 void Simulator::correct(const Pose2& T_map_odom) {
@@ -101,14 +128,17 @@ const std::shared_ptr<const Sensor>& Simulator::sensor_of(const Scan& scan) cons
     return *std::ranges::find_if(sensors_, [&](const auto& sensor) { return sensor->id == scan.sensor; });
 }
 
-void Simulator::control_step() {
+Motion Simulator::control_step() {
     senses_.pose = believed_pose();
-    const Velocity wanted = behaviour_->step(senses_);
-    const Motion motion = drive(options_.world, pose_, wanted);
+    Velocity wanted = behaviour_->step(senses_);
+    if (options_.is_carried) wanted.forward *= kWalkMax.forward / kForwardMax;
+    const Motion motion =
+        options_.is_carried ? drive(options_.world, pose_, wanted, kWalkMax) : drive(options_.world, pose_, wanted);
     if (motion.forward == 0.0 && wanted.forward != 0.0) ++collisions_;
     pose_ = moved(pose_, motion);
     odometry_ = moved(odometry_, as_the_wheels_tell(motion));
     walk(options_.world, {pose_.x, pose_.y}, kControlPeriod);
+    return motion;
 }
 
 Pose2 Simulator::believed_pose() const {

@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <numbers>
 #include <vector>
 
 namespace scanloom::sim {
@@ -26,9 +27,14 @@ struct Motion {
 /// Integrates x' = v cos yaw, y' = v sin yaw, yaw' = w exactly for constant v and w.
 [[nodiscard]] Pose2 moved(const Pose2& pose, const Motion& motion);
 
+/// The speed of a person who walks with a lidar in the hand.
+inline constexpr Velocity kWalkMax{1.0, std::numbers::pi / 2.0};
+
 /// Returns the robot's motion in one control period, with the velocity limited to what it can do. A body that would
 /// touch a solid or a walker does not advance; it may still turn, because it is round.
-[[nodiscard]] Motion drive(const World& world, const Pose2& pose, const Velocity& wanted);
+/// @param fastest  the limits. Pre: in one period the body moves less than its radius
+[[nodiscard]] Motion drive(const World& world, const Pose2& pose, const Velocity& wanted,
+                           const Velocity& fastest = {kForwardMax, kTurnMax});
 
 /// The pose by which a robot steers, and which it sends with its scans if its poses are Poses::kMap.
 enum class PoseSent {
@@ -45,6 +51,9 @@ struct SimulatorOptions {
     std::optional<Sensor> sonar; ///< a further sensor with its own id
     PoseSent pose = PoseSent::kTrue;
     Poses poses = Poses::kMap; ///< what it sends with its scans
+    /// A person carries the laser: walks up to kWalkMax, in proportion to the speed that the behaviour wants, and the
+    /// beams are taken one after another while it moves.
+    bool is_carried = false;
 };
 
 /// A robot that drives through a world and scans it. The options determine everything: there is no clock and no other
@@ -56,9 +65,13 @@ struct SimulatorOptions {
 /// With Poses::kNone both are absent. The robot steers by its laser. Without a laser it steers by its sonars and places
 /// each echo on the cone's axis; sonars whose cone includes directions behind the robot do not count in
 /// Senses::nearest.
+///
+/// With SimulatorOptions::is_carried, the beams of a scan are taken during the control step before its stamp and the
+/// one after it, counter-clockwise at an even speed (Scan::duration); its pose is that at the stamp. The first scan is
+/// taken at rest.
 class Simulator {
 public:
-    /// Pre: the options contain a sensor.
+    /// Pre: the options contain a sensor; a carried laser is the only one.
     Simulator(SimulatorOptions options, std::unique_ptr<Behaviour> behaviour);
 
     /// Returns the next scan. Each sensor scans ten times per second, all at the same time; the laser's scan comes
@@ -76,14 +89,16 @@ public:
 
     /// Returns the current world, in which people have moved.
     [[nodiscard]] const World& world() const noexcept { return options_.world; }
-    /// Returns the robot's true pose.
+    /// Returns the robot's true pose after the last control step.
     [[nodiscard]] const Pose2& pose() const noexcept { return pose_; }
     [[nodiscard]] const Behaviour& behaviour() const noexcept { return *behaviour_; }
     /// Returns the number of control steps in which a solid or a person blocked the robot.
     [[nodiscard]] std::uint64_t collisions() const noexcept { return collisions_; }
 
 private:
-    void control_step();
+    Motion control_step();
+    void turn_in_time(const Sensor& laser, bool is_moving, Scan& scan);
+    void set_poses(Scan& scan) const;
     [[nodiscard]] Motion as_the_wheels_tell(const Motion& motion);
     [[nodiscard]] Pose2 believed_pose() const;
 

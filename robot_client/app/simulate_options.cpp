@@ -25,8 +25,9 @@ constexpr const char* kWorldsFooter =
 void add_sensors(CLI::App& simulate, sim::SimulatedRobotOptions& options) {
     add_checked(
         simulate, "--laser", options.laser,
-        "Laser: 684 beams over 180 degrees and 5 m; 360 over 360 degrees and 12 m; 1081 over 270 degrees and 30 m",
-        CLI::IsMember({"reference", "lidar360", "wide", "none"}));
+        "Laser: 684 beams over 180 degrees and 5 m; 360 over 360 degrees and 12 m; 1081 over 270 degrees and 30 m; or "
+        "450 over 360 degrees and 12 m, one after another, of a lidar in the hand of a person who walks at 1 m/s",
+        CLI::IsMember({"reference", "lidar360", "wide", "handheld", "none"}));
     add_checked(simulate, "--sonar", options.sonar, "Sonars, with or without a laser: 16 over 360 degrees, 5 m",
                 CLI::IsMember({"none", "ring16"}));
 }
@@ -137,6 +138,9 @@ std::optional<std::string> mistake_in(const sim::SimulatedRobotOptions& options,
     if (options.laser == "none" && options.drive != "wall_follower") {
         return fmt::format("simulate: --drive {} needs a --laser: sonars do not measure where obstacles end",
                            options.drive);
+    }
+    if (options.laser == "handheld" && options.sonar != "none") {
+        return "simulate: a person carries --laser handheld, without sonars; leave --sonar out";
     }
     if (auto mistake = mistake_in_poses(options, poses)) return mistake;
     if (options.noise_width && options.noise != "uniform") {

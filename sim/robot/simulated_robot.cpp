@@ -73,6 +73,7 @@ Result<> choose_sensors(const SimulatedRobotOptions& options, SimulatorOptions& 
         if (options.range_max) laser->range_max = *options.range_max;
         if (auto ok = check_range(*laser); !ok) return ok.error();
         simulator.laser = std::move(*laser);
+        simulator.is_carried = options.laser == "handheld";
     }
     if (options.sonar != "none") {
         auto sonar = find_sonar(options.sonar);

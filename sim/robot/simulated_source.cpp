@@ -61,6 +61,7 @@ std::string fingerprint_of(const SimulatorOptions& options, std::string_view dri
     if (options.laser) lines.add_sensor("laser", *options.laser);
     if (options.sonar) lines.add_sensor("sonar", *options.sonar);
     if (options.pose == PoseSent::kOdometry) lines.add("pose", "odometry");
+    if (options.is_carried) lines.add("carried", kWalkMax.forward, kWalkMax.turn);
     if (options.poses != Poses::kMap) lines.add("poses", name_of(options.poses));
     if (const auto& noise = options.noise) {
         lines.add("noise", noise->range, noise->beam_angle, noise->odometry_forward, noise->odometry_turn,

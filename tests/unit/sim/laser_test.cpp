@@ -25,6 +25,7 @@ TEST(Lasers, BeamAnglesMatchTheirDescription) {
     expect(ends("reference"), {684, -90, 90, 5});
     expect(ends("lidar360"), {360, -180, 179, 12});
     expect(ends("wide"), {1081, -135, 135, 30});
+    expect(ends("handheld"), {450, -180, 179.2, 12});
     EXPECT_FALSE(find_laser("radar"));
 }
 

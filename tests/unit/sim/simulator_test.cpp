@@ -1,6 +1,8 @@
 #include "sim/simulator.hpp"
 
 #include "sim/drive/wall_follower.hpp"
+#include "sim/ray_casting.hpp"
+#include "tests/support/angles.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -34,6 +36,38 @@ TEST(Simulator, WalkersMoveBetweenScansAndAreVisible) {
     for (int i = 0; i < 50; ++i) is_seen |= walked.next_scan().ranges != still.next_scan().ranges;
     EXPECT_TRUE(is_seen);
     EXPECT_NEAR(walked.world().walkers.at(0).walked - before, 4.9, 1e-9);
+}
+
+/// Walks in a circle.
+class Circling final : public Behaviour {
+public:
+    Velocity step(const Senses&) override { return {kForwardMax, kWalkMax.turn}; }
+};
+
+TEST(Simulator, BeamsOfACarriedLaserAreTakenWhileItMoves) {
+    const World room = make_room();
+    SimulatorOptions options{room, *find_laser("handheld"), std::nullopt, 1, Pose2{0.5, -1.0, 0.0}};
+    options.is_carried = true;
+    Simulator simulator(std::move(options), std::make_unique<Circling>());
+    EXPECT_EQ(simulator.next_scan().pose, (Pose2{0.5, -1.0, 0.0}));
+    for (int n = 1; n < 15; ++n) {
+        const Scan scan = simulator.next_scan();
+        ASSERT_EQ(simulator.collisions(), 0U);
+        ASSERT_NEAR(scan.stamp, 0.1 * n, 1e-9);
+        ASSERT_NEAR(scan.duration, 0.1 * 449 / 450, 1e-9);
+        for (std::size_t i = 0; i < scan.ranges.size(); ++i) {
+            // It walks from 0.05 s on: the first turn, at rest, ends there. 1 m/s and 90 degrees/s: a radius of 2/pi m.
+            const double seconds = scan.stamp + scan.duration * (static_cast<double>(i) / 449.0 - 0.5) - 0.05;
+            const double yaw = kWalkMax.turn * seconds;
+            const double radius = kWalkMax.forward / kWalkMax.turn;
+            const Point2 place{0.5 + radius * std::sin(yaw), -1.0 + radius * (1.0 - std::cos(yaw))};
+            const double range =
+                cast_ray(room.outlines, place, yaw + (-180.0 + 0.8 * static_cast<double>(i)) * kDegree);
+            ASSERT_NEAR(scan.ranges[i] * 1e-3, range, 0.0006) << "scan " << n << ", beam " << i;
+        }
+        const double yaw = kWalkMax.turn * (scan.stamp - 0.05);
+        ASSERT_NEAR(normalize_angle(scan.pose->yaw - yaw), 0.0, 1e-9) << "the pose is that at the stamp";
+    }
 }
 
 TEST(Simulator, OdometryWithoutNoiseEqualsTheTrajectory) {

@@ -257,6 +257,7 @@ TEST_F(Options, MistakesAreOneLineUsageErrors) {
         {{"simulate", "--session", "s"}, "--robot is required"},
         {with({"--world", "moon"}), "moon"},
         {with({"--laser", "none"}), "needs --sonar ring16"},
+        {with({"--laser", "handheld", "--sonar", "ring16"}), "leave --sonar out"},
         {with({"--drive", "home"}), "home"},
         {with({"--drive", "explore", "--laser", "none", "--sonar", "ring16"}), "--drive explore needs a --laser"},
         {with({"--drive", "zigzag", "--pose", "odometry"}), "use --pose true"},

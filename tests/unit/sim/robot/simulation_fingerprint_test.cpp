@@ -27,6 +27,7 @@ TEST(SimulationFingerprint, DependsOnEverythingThatDeterminesScans) {
         [](SimulatorOptions& o) { o.world.floors.pop_back(); },
         [](SimulatorOptions& o) { o.laser = *find_laser("wide"); },
         [](SimulatorOptions& o) { o.laser->range_max = 4.0; },
+        [](SimulatorOptions& o) { o.is_carried = true; },
         [](SimulatorOptions& o) { o.laser->mount.x = 0.1; },
         [](SimulatorOptions& o) { o.noise.reset(); },
         [](SimulatorOptions& o) { o.noise->odometry_drift = 0.03; },
