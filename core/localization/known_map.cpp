@@ -93,7 +93,7 @@ std::optional<double> distance_to_wall(const Cells& cells, const Point2& from, c
     for (double distance = 0.0; distance < reach; distance += kStep) {
         const grid::Cell cell{static_cast<std::int32_t>(std::floor(from.x + distance * direction.cos)),
                               static_cast<std::int32_t>(std::floor(from.y + distance * direction.sin))};
-        if (cells.at(cell) == CellClass::kOccupied) return distance + kStep;
+        if (cells.at(cell) == CellClass::kOccupied) return distance; // a wall is somewhere in the cell
         if (!cells.is_free(cell)) return std::nullopt;
     }
     return std::nullopt;

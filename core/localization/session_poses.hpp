@@ -32,7 +32,7 @@ struct PoseGraphView {
         Pose2 pose;              ///< T_map_keyframe
         bool is_located = false; ///< whether its place in the map is known; otherwise the pose is in another frame
     };
-    std::vector<Node> keyframes;
+    std::vector<Node> keyframes;   ///< of all robots, in the order in which they were added
     std::vector<slam::Edge> edges; ///< between them
 };
 

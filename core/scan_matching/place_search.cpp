@@ -43,7 +43,7 @@ PlaceSearch::PlaceSearch(std::span<const View> views) {
         for (std::int32_t column = 0; column < cells_.width; ++column) {
             const double x = corner_.x + (static_cast<double>(column) + 0.5) * kCell;
             const double y = corner_.y + (static_cast<double>(row) + 0.5) * kCell;
-            cells_.cells.push_back(space.is_free(x, y) ? Bits{0} : kOpen);
+            cells_.cells.push_back(space.is_free(x, y) ? kPassed : kOpen);
         }
     }
     for (const View& view : views) {
@@ -55,28 +55,30 @@ PlaceSearch::PlaceSearch(std::span<const View> views) {
             const std::int32_t row = floor_of((at.y - corner_.y) / kCell);
             for (std::int32_t j = row - 1; j <= row + 1; ++j) { // the space has a margin around all points
                 for (std::int32_t i = column - 1; i <= column + 1; ++i) {
-                    cells_.cells[cells_.index_of(i, j)] |= bits | kOpen;
+                    Bits& cell = cells_.cells[cells_.index_of(i, j)];
+                    cell = static_cast<Bits>((cell | bits | kOpen) & ~kPassed);
                 }
             }
         }
     }
     Level level = cells_;
     for (int n = 1; n < kLevels; ++n) {
-        level = merged(level, 2, 2);
-        // A point of a node is somewhere in an interval of two cells in each direction, which touches three.
-        bounds_.push_back(merged(level, 1, 3));
+        level = merged(level, 2, 2, 2);
+        Squares& squares = bounds_.emplace_back();
+        for (std::int32_t k = 0; k < 4; ++k) {
+            squares[static_cast<std::size_t>(k)] = merged(level, 1, 2 + k % 2, 2 + k / 2);
+        }
     }
 }
 
-/// Merges squares of count * count cells, at every `step`-th cell. The first square ends at the first cells if they
-/// overlap.
-PlaceSearch::Level PlaceSearch::merged(const Level& level, std::int32_t step, std::int32_t count) {
-    const std::int32_t before = count - step; // cells before the first one
-    const auto size_of = [&](std::int32_t size) { return (size + before + step - 1) / step; };
-    const auto along = [&](std::int32_t size, std::int32_t lines, auto cell) {
+/// Merges rectangles of cells, at every `step`-th cell. The first one ends at the first cell if they overlap.
+PlaceSearch::Level PlaceSearch::merged(const Level& level, std::int32_t step, std::int32_t columns, std::int32_t rows) {
+    const auto size_of = [&](std::int32_t size, std::int32_t count) { return (size + count - 1) / step; };
+    const auto along = [&](std::int32_t size, std::int32_t count, std::int32_t lines, auto cell) {
+        const std::int32_t before = count - step; // cells before the first one
         std::vector<Bits> result;
         for (std::int32_t line = 0; line < lines; ++line) {
-            for (std::int32_t n = 0; n < size_of(size); ++n) {
+            for (std::int32_t n = 0; n < size_of(size, count); ++n) {
                 Bits bits = 0;
                 for (std::int32_t k = 0; k < count; ++k) bits |= cell(n * step - before + k, line);
                 result.push_back(bits);
@@ -85,10 +87,10 @@ PlaceSearch::Level PlaceSearch::merged(const Level& level, std::int32_t step, st
         return result;
     };
     // By rows, then by columns; the first pass keeps its result by rows.
-    const Level wide{size_of(level.width), level.height,
-                     along(level.width, level.height, [&](auto i, auto j) { return level.at(i, j); })};
-    const Level turned{size_of(level.height), wide.width,
-                       along(level.height, wide.width, [&](auto j, auto i) { return wide.at(i, j); })};
+    const Level wide{size_of(level.width, columns), level.height,
+                     along(level.width, columns, level.height, [&](auto i, auto j) { return level.at(i, j); })};
+    const Level turned{size_of(level.height, rows), wide.width,
+                       along(level.height, rows, wide.width, [&](auto j, auto i) { return wide.at(i, j); })};
     Level result{turned.height, turned.width, {}};
     result.cells.reserve(turned.cells.size());
     for (std::int32_t row = 0; row < result.height; ++row) {
@@ -116,7 +118,7 @@ public:
         for (const SurfacePoint& point : points) {
             const Point2 at{point.x, point.y};
             if (at.x * at.x + at.y * at.y > kReach * kReach) continue;
-            points_.push_back({at, direction_of(point), point});
+            points_.push_back({at, direction_of(point), std::sqrt(at.x * at.x + at.y * at.y), point});
         }
     }
 
@@ -164,18 +166,20 @@ private:
     struct Point {
         Point2 at;
         double direction; // radians
+        double distance;  // metres, from the origin
         SurfacePoint surface;
     };
 
-    /// A point in the middle of an interval of rotations.
+    /// Where a point may be in an interval of rotations, if the origin is in the first cell.
     struct Rotated {
-        std::int32_t column; // cells / kFraction
+        std::int32_t column; // the last cell that it touches
         std::int32_t row;
         Bits facing;
+        std::uint8_t square; // index in Squares
     };
 
     static constexpr int kFractionBits = 10;
-    static constexpr std::int32_t kFraction = 1 << kFractionBits;
+    static constexpr std::int32_t kFraction = 1 << kFractionBits; // of a cell
 
     static double cell_of(int level) { return kCell * static_cast<double>(std::int32_t{1} << level); }
     static double turn_of(int level) { return 2.0 * std::numbers::pi / static_cast<double>(kTurns >> level); }
@@ -185,7 +189,7 @@ private:
 
     void push_roots() {
         constexpr int kTop = kLevels - 1;
-        const Level& top = map_.bounds_.back();
+        const Level& top = map_.bounds_.back().front();
         for (std::int32_t turn = 0; turn < kTurns >> kTop; ++turn) {
             rotate(kTop, turn);
             for (std::int32_t row = 0; row < top.height; ++row) {
@@ -211,28 +215,35 @@ private:
         const double scale = kFraction / cell_of(level);
         const double tolerance = level == 0 ? 0.0 : 0.5 * turn_of(level);
         rotated_.clear();
-        for (const auto& [at, direction, surface] : points_) {
-            rotated_.push_back(
-                {static_cast<std::int32_t>(floor_of((rotation.cos * at.x - rotation.sin * at.y) * scale)),
-                 static_cast<std::int32_t>(floor_of((rotation.sin * at.x + rotation.cos * at.y) * scale)),
-                 facing(surface, direction + angle, tolerance)});
+        for (const auto& [at, direction, distance, surface] : points_) {
+            const std::int32_t x = floor_of((rotation.cos * at.x - rotation.sin * at.y) * scale);
+            const std::int32_t y = floor_of((rotation.sin * at.x + rotation.cos * at.y) * scale);
+            const Bits bits = facing(surface, direction + angle, tolerance);
+            if (level == 0) { // one pose, with the origin in the middle of the cell
+                rotated_.push_back(
+                    {(x + kFraction / 2) >> kFractionBits, (y + kFraction / 2) >> kFractionBits, bits, 0});
+                continue;
+            }
+            // The origin is anywhere in the cell, and the rotation moves the point by up to `shift`.
+            const std::int32_t shift = floor_of(distance * tolerance * scale) + 2;
+            const std::int32_t column = (x + kFraction + shift) >> kFractionBits;
+            const std::int32_t row = (y + kFraction + shift) >> kFractionBits;
+            const bool is_wide = column - ((x - shift) >> kFractionBits) > 1;
+            const bool is_high = row - ((y - shift) >> kFractionBits) > 1;
+            rotated_.push_back({column, row, bits, static_cast<std::uint8_t>((is_wide ? 1 : 0) + (is_high ? 2 : 0))});
         }
     }
 
     /// Adds a node, with the points as rotate() has turned them, unless its bound is too low.
     void push(Node node) {
-        if (!is_within(node)) return;
-        const bool is_pose = node.level == 0; // the one in the middle of the cell
-        const Level& level = is_pose ? map_.cells_ : map_.bounds_[static_cast<std::size_t>(node.level - 1)];
-        // The rotation moves points of a node by up to half a cell; bounds_ has two more columns on the left.
-        const std::int32_t shift = is_pose ? kFraction / 2 : 3 * kFraction / 2;
-        const std::int32_t column = node.column * kFraction + shift;
-        const std::int32_t row = node.row * kFraction + shift;
+        const bool is_pose = node.level == 0;
+        const Level* grids = is_pose ? &map_.cells_ : map_.bounds_[static_cast<std::size_t>(node.level - 1)].data();
+        if ((grids->at(node.column, node.row) & kPassed) == 0 || !is_within(node)) return;
         int bound = static_cast<int>(rotated_.size()); // if all others match
         std::size_t n = 0;
         while (n < rotated_.size() && bound >= least_) {
             const Rotated& point = rotated_[n++];
-            const Bits bits = level.at((point.column + column) >> kFractionBits, (point.row + row) >> kFractionBits);
+            const Bits bits = grids[point.square].at(point.column + node.column, point.row + node.row);
             if ((bits & point.facing) == 0) bound -= (bits & kOpen) != 0 ? 1 : 2;
         }
         left_ -= std::min(left_, n);

@@ -4,6 +4,7 @@
 #include "core/scan_matching/point_map.hpp"
 #include "core/scan_matching/transform2.hpp"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -32,7 +33,7 @@ struct PlaceQuestion {
 /// A map in which points are found without an estimate of their place, in every rotation: by branch and bound, from
 /// cells of 3.2 m and 12 degrees down to 10 cm and 0.4 degrees. The result is that of trying all of the finest ones.
 /// Deterministic: equal inputs give equal bits on every processor.
-/// Memory: 3 bytes for each square of 10 cm of the rectangle around all points. Threads: any number of readers.
+/// Memory: 5 bytes for each square of 10 cm of the rectangle around all points. Threads: any number of readers.
 /// Source: Hess, Kohler, Rapp, Andor, Real-Time Loop Closure in 2D LIDAR SLAM (2016); here with intervals of rotations,
 ///     and with the normals of surfaces.
 class PlaceSearch {
@@ -44,7 +45,7 @@ public:
     /// @param views  of the map; as for SeenSpace
     explicit PlaceSearch(std::span<const View> views);
 
-    /// Finds the best place of some points.
+    /// Finds the best place of some points, with their origin in seen free space.
     /// @param points    in a frame of their own; a few hundred, in any order that does not follow the surfaces
     /// @param question  what counts
     /// @return the best place; nullopt: none is as good as `score_min`, or the lookups did not suffice to tell
@@ -58,10 +59,10 @@ private:
     static constexpr int kLevels = 6;           // cells of 10 cm times 2^level
     static constexpr std::int32_t kTurns = 960; // of the finest level in a full turn: 15 m * 2 pi / 960 = 0.098 m
 
-    /// What is in a cell: a bit for each direction that a surface faces, and kOpen.
+    /// What is in a cell: a bit for each direction that a surface faces, kOpen, and kPassed.
     using Bits = std::uint16_t;
-    static constexpr Bits kOpen = 0x100; // some of it is not seen free
-    static constexpr Bits kFacing = 0xFF;
+    static constexpr Bits kOpen = 0x100;   // some of it is not seen free
+    static constexpr Bits kPassed = 0x200; // some of it is seen free
 
     /// A grid of square cells.
     struct Level {
@@ -82,11 +83,14 @@ private:
 
     class Search;
 
-    [[nodiscard]] static Level merged(const Level& level, std::int32_t step, std::int32_t count);
+    /// By whether a square has two or three cells: along x, and twice that along y.
+    using Squares = std::array<Level, 4>;
 
-    Point2 corner_;             // of the grids, metres
-    Level cells_;               // 10 cm
-    std::vector<Level> bounds_; // by level, from 1: each cell with its two neighbours on the left and below
+    [[nodiscard]] static Level merged(const Level& level, std::int32_t step, std::int32_t columns, std::int32_t rows);
+
+    Point2 corner_;               // of the grids, metres
+    Level cells_;                 // 10 cm
+    std::vector<Squares> bounds_; // by level, from 1: each cell with one or two neighbours on the left and below
 };
 
 } // namespace scanloom::scan_matching

@@ -21,7 +21,7 @@ constexpr std::size_t kPointsMax = 120;      // of these
 constexpr std::size_t kPointsMin = 40;       // fewer show no place
 constexpr double kPointSquare = 0.3;         // metres: one point in each
 constexpr std::size_t kStride = 23;          // from one of them to the next
-constexpr double kScoreShare = 0.55;         // of the points, at least
+constexpr double kScoreShare = 0.8;          // of the points, at least
 constexpr double kRivalShare = 0.9;          // a place with a higher share of the best score is as good
 constexpr double kExpectedScoreShare = 0.7;  // likewise where people expect the robot
 constexpr double kConnectedInliers = 0.5;    // of a keyframe's points, at least, that then fit the map
@@ -32,14 +32,16 @@ constexpr double kMapMoveMax = 0.2;          // metres: keyframes that moved far
 constexpr double kMapReach = 250.0;          // metres around the newest located keyframe
 
 // Answers that agree.
-constexpr std::size_t kAnswers = 3;
-constexpr double kAnswersApart = 1.5;      // metres travelled between two of them
-constexpr double kBaseline = 6.0;          // metres between the places of two of them, at least
-constexpr double kAgreementDistance = 0.5; // metres
-constexpr double kAgreementTurn = 0.1;     // radians
-constexpr double kDriftPart = 0.03;        // of the way between two answers, in addition
+constexpr std::size_t kAnswers = 4;
+constexpr double kAnswersApart = 1.5;       // metres travelled between two of them
+constexpr double kBaselineInKnownMap = 2.0; // metres, likewise if the map was known before
+constexpr double kBaseline = 10.0;          // metres between the places of two of them, at least
+constexpr double kAgreementDistance = 0.5;  // metres
+constexpr double kAgreementTurn = 0.1;      // radians
+constexpr double kDriftPart = 0.03;         // of the way between two answers, in addition
 
-constexpr double kWindow = 1.0; // metres, of the stretch test
+constexpr double kWindow = 1.0;           // metres, of the stretch test
+constexpr double kContradictedMax = 0.08; // of its evidence
 
 } // namespace
 
@@ -54,7 +56,7 @@ bool FragmentSearch::search(KeyframeGraph& graph, std::size_t fragment) {
     if (!is_confirmed(graph, answers)) return false;
     graph.move(fragment, *found, true);
     const std::size_t anchor = graph.fragments().front().keyframes.front();
-    if (!accept_stretch(graph, {keyframe, anchor, Transform2(), kWindow})) {
+    if (!accept_stretch(graph, {keyframe, anchor, Transform2(), kWindow, kContradictedMax})) {
         graph.move(fragment, inverse(*found), false);
         return false;
     }
@@ -178,7 +180,9 @@ bool FragmentSearch::is_confirmed(const KeyframeGraph& graph, const std::vector<
         last_at = graph[other.keyframe].travelled;
         ++count;
     }
-    return count >= kAnswers && baseline >= kBaseline;
+    // A map that was known before shows all places that may look alike.
+    const double wanted = graph.fragments().front().is_fixed ? kBaselineInKnownMap : kBaseline;
+    return count >= kAnswers && baseline >= wanted;
 }
 
 } // namespace scanloom::slam

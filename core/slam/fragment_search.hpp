@@ -19,7 +19,7 @@ struct Surroundings {
 /// lost.
 ///
 /// The newest keyframes of the fragment are looked up in the map of all located ones. One answer is not enough, because
-/// buildings have rooms that look alike: three must agree, over some metres of the way, and the whole fragment must
+/// buildings have rooms that look alike: four must agree, over ten metres of the way, and the whole fragment must
 /// then fit the map. A fragment that is located later than possible does no harm; one at a wrong place tears the map.
 /// Where people say where the robot is, one good answer near that place is enough.
 /// Threads: one at a time.
@@ -30,7 +30,7 @@ public:
     ///     graph is not optimised
     /// @param fragment  index of a fragment that is not located
     /// @return whether the place is found
-    /// Cost: up to 50 ms at every second keyframe for the lookups; a test of the fragment when three answers agree.
+    /// Cost: up to 50 ms at every second keyframe for the lookups; a test of the fragment when four answers agree.
     bool search(KeyframeGraph& graph, std::size_t fragment);
 
     /// Searches for a fragment near a place only.

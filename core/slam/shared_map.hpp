@@ -26,17 +26,23 @@ public:
     void begin_with(std::vector<KnownView> views);
 
     /// Begins a fragment; it is located if it is the first one.
-    /// @param place  where people say that its first keyframe is; nullopt: it may be anywhere
-    /// @return its index; see KeyframeGraph::begin_fragment() for the other parameters
+    /// @param robot           whose scan it is
+    /// @param scan            its points
+    /// @param T_map_keyframe  its pose; in a frame of its own if the fragment is not the first one
+    /// @param place           where people say that it is; nullopt: it may be anywhere
+    /// @return the fragment's index
     std::size_t begin_fragment(std::size_t robot, ScanPoints scan, const Transform2& T_map_keyframe,
                                const std::optional<Surroundings>& place = std::nullopt);
 
     /// Searches for the next keyframe of a fragment near a place.
     /// @param fragment  index of a fragment that is not located
+    /// @param place     where people say that the keyframe is
     void expect(std::size_t fragment, const Surroundings& place) { fragments_.expect(fragment, place, graph_.size()); }
 
     /// Adds a keyframe to a fragment, and searches for loops, or for the place of the fragment.
-    /// See KeyframeGraph::add() for the parameters.
+    /// @param fragment           index of the fragment
+    /// @param scan               its points
+    /// @param T_newest_keyframe  its pose relative to the fragment's newest keyframe, as matched
     void add_keyframe(std::size_t fragment, ScanPoints scan, const Transform2& T_newest_keyframe);
 
     /// Moves the keyframes once more so that they agree with the edges, as at the end of a log.

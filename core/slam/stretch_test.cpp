@@ -34,10 +34,9 @@ constexpr double kSamePlaceDistance = 0.5; // metres: closer ways at the newest 
 constexpr double kSamePlaceTurn = 0.1;     // radians
 constexpr double kOverlapMin = 4.0;        // metres of the stretch that fit the old map
 // A small correction that fits well needs no proof that unseen places are wrong.
-constexpr double kSmallMove = 0.5;     // metres
-constexpr double kSmallOverlap = 15.0; // metres travelled with fits, at least
-constexpr double kSmallShareMax = 0.1; // of contradictions
-constexpr double kShareMax = 0.33;
+constexpr double kSmallMove = 0.5;        // metres
+constexpr double kSmallOverlap = 15.0;    // metres travelled with fits, at least
+constexpr double kSmallShareMax = 0.1;    // of contradictions
 constexpr double kLeadMin = 4.0;          // metres of evidence
 constexpr double kLeadPart = 0.1;         // of the best one's matched metres
 constexpr double kRefutedShare = 0.1;     // by how much a refuted hypothesis's share of contradictions is larger
@@ -88,7 +87,7 @@ public:
         for (const Transform2& correction : shifted_corrections()) add(hypotheses, follow({.correction = correction}));
         std::ranges::stable_sort(hypotheses, std::greater(), &StretchHypothesis::evidence);
         const StretchHypothesis& best = hypotheses.front();
-        if (best.share() > kShareMax || best.overlap < kOverlapMin) return std::nullopt;
+        if (best.share() > question_.contradicted_max || best.overlap < kOverlapMin) return std::nullopt;
         const bool is_small =
             moved_by(best) <= kSmallMove && best.overlap >= kSmallOverlap && best.share() <= kSmallShareMax;
         for (std::size_t n = 1; n < hypotheses.size(); ++n) {

@@ -8,11 +8,12 @@ namespace scanloom::slam {
 
 /// A supposed correction of a keyframe, found by a match with an old submap.
 struct StretchQuestion {
-    std::size_t keyframe = 0; ///< the newest one of its fragment
-    std::size_t anchor = 0;   ///< the old submap's anchor keyframe
-    Transform2 correction;    ///< T_corrected_map of the keyframe and the stretch before it; identity: the match
-                              ///< failed, and the question is only whether the trajectory should move at all
-    double window = 0.0;      ///< metres: by how much the trajectory may have to move
+    std::size_t keyframe = 0;       ///< the newest one of its fragment
+    std::size_t anchor = 0;         ///< the old submap's anchor keyframe
+    Transform2 correction;          ///< T_corrected_map of the keyframe and the stretch before it; identity: the match
+                                    ///< failed, and the question is only whether the trajectory should move at all
+    double window = 0.0;            ///< metres: by how much the trajectory may have to move
+    double contradicted_max = 0.33; ///< share of the evidence that may contradict an accepted correction
 };
 
 /// Decides how the newest stretch of a fragment, up to 60 m, fits the map of the other keyframes. Several

@@ -64,6 +64,7 @@ TEST(PlaceSearch, FindsWhatTryingAllPlacesFinds) {
             point.y += static_cast<float>(uniform(random, -0.15, 0.15));
         }
         const PlaceSearch search(scene.views);
+        const SeenSpace space(scene.views);
         const PlaceQuestion question{.score_min = 6, .rival_share = 0.8, .lookups_max = 1'000'000'000};
         const auto found = search.find(scene.points, question);
         ASSERT_TRUE(found);
@@ -76,6 +77,7 @@ TEST(PlaceSearch, FindsWhatTryingAllPlacesFinds) {
                 for (int column = -20; column <= 20; ++column) {
                     const Transform2 pose{found->T_map_points.x + column * kCell, found->T_map_points.y + row * kCell,
                                           rotation};
+                    if (!space.is_free(pose.x, pose.y)) continue;
                     const int score = search.score_of(scene.points, pose);
                     best = std::max(best, score);
                     if (score > rival && is_apart(found->T_map_points, pose)) rival = score;
@@ -131,6 +133,7 @@ TEST(PlaceSearch, NoPlaceAroundTheTruthIsBetter) {
     for (int round = 0; round < 40; ++round) {
         const SearchedRoom scene(random, 12.0, 40);
         const PlaceSearch search(scene.views);
+        const SeenSpace space(scene.views);
         int best = 0;
         const auto found =
             search.find(scene.points, {.score_min = 1, .rival_share = 1.0, .lookups_max = 1'000'000'000});
@@ -146,7 +149,7 @@ TEST(PlaceSearch, NoPlaceAroundTheTruthIsBetter) {
                     };
                     const Transform2 pose{on_grid(scene.truth.x, found->T_map_points.x) + i * kCell,
                                           on_grid(scene.truth.y, found->T_map_points.y) + j * kCell, rotation};
-                    best = std::max(best, search.score_of(scene.points, pose));
+                    if (space.is_free(pose.x, pose.y)) best = std::max(best, search.score_of(scene.points, pose));
                 }
             }
         }

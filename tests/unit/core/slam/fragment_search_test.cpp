@@ -96,7 +96,8 @@ TEST(FragmentSearch, LocatesARobotThatWasCarriedAgain) {
     const std::vector<Point2> round{{1.0, 1.0}, {16.5, 1.2}, {17.0, 10.8}, {12.0, 11.2}, {7.5, 8.0},
                                     {7.5, 4.5}, {4.0, 5.5},  {3.5, 10.5},  {1.0, 10.0},  {1.0, 2.0}};
     const Drive before = drive_along(hall(), round, {.scale = 1.02, .turn = 0.003}, 8);
-    const std::vector<Point2> elsewhere{{16.0, 4.5}, {14.0, 5.5}, {16.8, 6.8}, {16.8, 10.5}, {11.5, 11.2}, {7.5, 8.0}};
+    const std::vector<Point2> elsewhere{{16.0, 4.5}, {14.0, 5.5}, {16.8, 6.8}, {16.8, 10.5}, {11.5, 11.2},
+                                        {7.5, 8.0},  {7.5, 4.5},  {4.0, 5.5},  {3.5, 10.5}};
     const Drive after = drive_along(hall(), elsewhere, {.scale = 1.02}, 9);
     SharedMap map;
     TrajectoryEstimator estimator(map);
