@@ -2,6 +2,7 @@
 
 #include "common/error/error.hpp"
 #include "common/geometry/point_mm.hpp"
+#include "common/scan/poses.hpp"
 #include "common/scan/scan.hpp"
 #include "common/scan/sensor.hpp"
 #include "common/scan/session_options.hpp"

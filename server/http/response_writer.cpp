@@ -5,6 +5,7 @@
 #include "server/sockets/worker_pool.hpp"
 
 #include <boost/beast/core/buffers_suffix.hpp>
+#include <boost/beast/core/error.hpp>
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
