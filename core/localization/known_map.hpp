@@ -12,7 +12,7 @@ namespace scanloom::localization {
 /// @param classes    the cells of the map
 /// @param cell_size  metres
 /// @return the views, neighbours after each other; empty if nothing is free
-/// Cost: 0.2 ms for each square metre of free space.
+/// Cost: in proportion to the free area.
 [[nodiscard]] std::vector<slam::KnownView> views_of(const classify::ClassView& classes, double cell_size);
 
 } // namespace scanloom::localization

@@ -27,7 +27,7 @@ struct PlaceQuestion {
     Point2 center{0.0, 0.0}; ///< metres, in the map's frame: places are searched for around it
     double radius = std::numeric_limits<double>::infinity(); ///< metres: up to this distance
     double rival_share = 0.9; ///< the search ends when no rival has more than this share of the best score, 0 to 1
-    std::size_t lookups_max = 8'000'000; ///< of points in the map; these take up to 50 ms
+    std::size_t lookups_max = 8'000'000; ///< of points in the map; these take some tens of milliseconds
 };
 
 /// A map in which points are found without an estimate of their place, in every rotation: by branch and bound, from
@@ -53,6 +53,8 @@ public:
                                                  const PlaceQuestion& question) const;
 
     /// Returns the score of points at one place; see FoundPlace::score.
+    /// @param points        in a frame of their own, metres
+    /// @param T_map_points  the place
     [[nodiscard]] int score_of(std::span<const SurfacePoint> points, const Transform2& T_map_points) const;
 
 private:

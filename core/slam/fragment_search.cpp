@@ -34,8 +34,8 @@ constexpr double kMapReach = 250.0;          // metres around the newest located
 // Answers that agree.
 constexpr std::size_t kAnswers = 4;
 constexpr double kAnswersApart = 1.5;       // metres travelled between two of them
-constexpr double kBaselineInKnownMap = 2.0; // metres, likewise if the map was known before
 constexpr double kBaseline = 10.0;          // metres between the places of two of them, at least
+constexpr double kBaselineInKnownMap = 2.0; // metres, likewise if the map was known before
 constexpr double kAgreementDistance = 0.5;  // metres
 constexpr double kAgreementTurn = 0.1;      // radians
 constexpr double kDriftPart = 0.03;         // of the way between two answers, in addition

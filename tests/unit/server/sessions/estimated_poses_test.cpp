@@ -295,7 +295,7 @@ TEST_F(EstimatedPosesTest, AnOperatorSaysWhereARobotIs) {
     const State expected = state();
     crash_after(session_->snapshot()->revision);
     EXPECT_EQ(state(), expected);
-    EXPECT_EQ(relocalized("nobody", {}).error().code, Errc::kNotFound);
+    EXPECT_EQ(relocalized("absent", {}).error().code, Errc::kNotFound);
     EXPECT_EQ(logged().size(), session_->snapshot()->revision);
 }
 
