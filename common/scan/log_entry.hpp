@@ -61,25 +61,27 @@ struct SensorDescribed {
 
 /// A robot took a scan.
 struct ScanTaken {
-    RobotIndex robot = 0; ///< a robot that has joined
-    Scan scan;            ///< its seq follows that of the robot's previous scan
+    RobotIndex robot = 0;          ///< a robot that has joined
+    Scan scan;                     ///< its seq follows that of the robot's previous scan
+    bool is_localize_only = false; ///< whether the mode was on when it arrived; see ModeChanged
 
     friend bool operator==(const ScanTaken&, const ScanTaken&) = default;
 };
 
 /// When and where a robot took a scan, which decides whether the scan is integrated.
 struct ScanPose {
-    RobotIndex robot = 0;      ///< the robot that took it
-    std::uint64_t seq = 0;     ///< Scan::seq
-    double stamp = 0.0;        ///< seconds
-    std::optional<Pose2> pose; ///< T_map_robot; nullopt: not known, see Scan::pose
+    RobotIndex robot = 0;          ///< the robot that took it
+    std::uint64_t seq = 0;         ///< Scan::seq
+    double stamp = 0.0;            ///< seconds
+    std::optional<Pose2> pose;     ///< T_map_robot; nullopt: not known, see Scan::pose
+    bool is_localize_only = false; ///< ScanTaken::is_localize_only
 
     friend bool operator==(const ScanPose&, const ScanPose&) = default;
 };
 
 /// Returns when and where a scan was taken.
 [[nodiscard]] inline ScanPose scan_pose_of(const ScanTaken& taken) noexcept {
-    return {taken.robot, taken.scan.seq, taken.scan.stamp, taken.scan.pose};
+    return {taken.robot, taken.scan.seq, taken.scan.stamp, taken.scan.pose, taken.is_localize_only};
 }
 
 /// A range of stamps in seconds, both ends included.
@@ -131,8 +133,16 @@ struct RobotRelocalized {
     friend bool operator==(const RobotRelocalized&, const RobotRelocalized&) = default;
 };
 
+/// An operator turns localize-only mode on or off: while it is on, scans show where the robots are, and the map does
+/// not change.
+struct ModeChanged {
+    bool is_localize_only = false; ///< from the next entry on
+
+    friend bool operator==(const ModeChanged&, const ModeChanged&) = default;
+};
+
 /// One entry of a session's append-only log, from which all maps are computed.
 using LogEntry = std::variant<RobotJoined, SensorDescribed, ScanTaken, MapPatch, ScansExcluded, ExclusionLifted,
-                              MapsCorrected, RobotRelocalized>;
+                              MapsCorrected, RobotRelocalized, ModeChanged>;
 
 } // namespace scanloom

@@ -65,6 +65,10 @@ Result<> LogRules::check_body(const ScanTaken& taken) const {
     if (robot.poses == Poses::kMap && !taken.scan.pose) {
         return cannot_follow(fmt::format("scan {} of robot '{}' has no pose", taken.scan.seq, robot.name));
     }
+    if (taken.is_localize_only != is_localize_only_) {
+        return cannot_follow(
+            fmt::format("scan {} of robot '{}' is of the other mode of the session", taken.scan.seq, robot.name));
+    }
     if (robot.is_next(taken.scan.seq)) return {};
     return cannot_follow(
         fmt::format("scan {} of robot '{}' follows scan {}", taken.scan.seq, robot.name, robot.last_seq));
@@ -103,6 +107,10 @@ Result<> LogRules::check_body(const RobotRelocalized& relocalized) const {
 }
 
 void LogRules::apply_body(const RobotRelocalized&) {}
+
+Result<> LogRules::check_body(const ModeChanged&) const { return {}; }
+
+void LogRules::apply_body(const ModeChanged& changed) { is_localize_only_ = changed.is_localize_only; }
 
 void LogRules::apply_body(const ExclusionLifted& lifted) { static_cast<void>(exclusions_.add(revision_ + 1, lifted)); }
 

@@ -54,8 +54,10 @@ public:
     /// @param revision    of the newest entry that the state contains
     /// @param robots      by RobotIndex
     /// @param exclusions  of the log up to `revision`
-    LogRules(Revision revision, std::vector<LoggedRobot> robots, Exclusions exclusions)
-        : revision_(revision), robots_(std::move(robots)), exclusions_(std::move(exclusions)) {}
+    /// @param is_localize_only  see is_localize_only()
+    LogRules(Revision revision, std::vector<LoggedRobot> robots, Exclusions exclusions, bool is_localize_only)
+        : revision_(revision), robots_(std::move(robots)), exclusions_(std::move(exclusions)),
+          is_localize_only_(is_localize_only) {}
 
     /// Checks whether `entry` can be the next one.
     /// Errors: kMalformed if it cannot, which happens only in a damaged log.
@@ -83,6 +85,9 @@ public:
     /// Returns the exclusions of the log, including those that were lifted.
     [[nodiscard]] const Exclusions& exclusions() const noexcept { return exclusions_; }
 
+    /// Returns whether the next scans do not change the map; see ModeChanged.
+    [[nodiscard]] bool is_localize_only() const noexcept { return is_localize_only_; }
+
 private:
     [[nodiscard]] Result<> check_body(const RobotJoined& joined) const;
     [[nodiscard]] Result<> check_body(const SensorDescribed& described) const;
@@ -92,6 +97,7 @@ private:
     [[nodiscard]] Result<> check_body(const ExclusionLifted& lifted) const;
     [[nodiscard]] Result<> check_body(const MapsCorrected& corrected) const;
     [[nodiscard]] Result<> check_body(const RobotRelocalized& relocalized) const;
+    [[nodiscard]] Result<> check_body(const ModeChanged& changed) const;
     void apply_body(const RobotJoined& joined);
     void apply_body(const SensorDescribed& described);
     void apply_body(const ScanTaken& taken);
@@ -100,10 +106,12 @@ private:
     void apply_body(const ExclusionLifted& lifted);
     void apply_body(const MapsCorrected& corrected);
     void apply_body(const RobotRelocalized& relocalized);
+    void apply_body(const ModeChanged& changed);
 
     Revision revision_ = 0;
     std::vector<LoggedRobot> robots_;
     Exclusions exclusions_;
+    bool is_localize_only_ = false;
 };
 
 } // namespace scanloom

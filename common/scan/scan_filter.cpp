@@ -97,12 +97,13 @@ JumpFilter::Robot& JumpFilter::robot_at(RobotIndex robot) {
 ScanUse ScanFilter::use_of(Revision revision, const ScanPose& scan) const noexcept {
     if (exclusions_->cover(revision, scan)) return ScanUse::kExcluded;
     if (!scan.pose) return ScanUse::kUnplaced;
-    return jumps_.integrates(scan.robot, {scan.pose->x, scan.pose->y}) ? ScanUse::kIntegrated : ScanUse::kJump;
+    if (!jumps_.integrates(scan.robot, {scan.pose->x, scan.pose->y})) return ScanUse::kJump;
+    return scan.is_localize_only ? ScanUse::kLocalizeOnly : ScanUse::kIntegrated;
 }
 
 ScanUse ScanFilter::take(Revision revision, const ScanPose& scan) {
     const ScanUse use = use_of(revision, scan);
-    if (use == ScanUse::kIntegrated || use == ScanUse::kJump) jumps_.take(scan.robot, {scan.pose->x, scan.pose->y});
+    if (is_in_trajectory(use) || use == ScanUse::kJump) jumps_.take(scan.robot, {scan.pose->x, scan.pose->y});
     return use;
 }
 

@@ -123,10 +123,16 @@ private:
 /// How a scan of the log is used.
 enum class ScanUse {
     kIntegrated,
-    kJump,     ///< left out because of max_jump
-    kExcluded, ///< left out because of an exclusion; max_jump ignores it
-    kUnplaced, ///< left out because its pose is not known; max_jump ignores it
+    kJump,         ///< left out because of max_jump
+    kExcluded,     ///< left out because of an exclusion; max_jump ignores it
+    kUnplaced,     ///< left out because its pose is not known; max_jump ignores it
+    kLocalizeOnly, ///< in the trajectory only, because of localize-only mode
 };
+
+/// Returns whether the trajectory of the robot contains the scan.
+[[nodiscard]] constexpr bool is_in_trajectory(ScanUse use) noexcept {
+    return use == ScanUse::kIntegrated || use == ScanUse::kLocalizeOnly;
+}
 
 /// Decides which scans of a log are integrated. Every projection of the log uses it, so that maps, trajectories,
 /// landmarks and exports contain the same scans.

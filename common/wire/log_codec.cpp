@@ -37,6 +37,7 @@ struct EntryToProto {
         out.mutable_scan_taken()->set_robot(taken.robot);
         to_proto_without_ranges(taken.scan, *out.mutable_scan_taken()->mutable_scan());
         out.mutable_scan_taken()->set_packed_ranges(pack_ranges(taken.scan.ranges));
+        out.mutable_scan_taken()->set_localize_only(taken.is_localize_only);
     }
     void operator()(const MapPatch& patch) const {
         auto& proto = *out.mutable_map_patch();
@@ -68,6 +69,9 @@ struct EntryToProto {
         proto.set_y(relocalized.near.y);
         proto.set_radius(relocalized.radius);
     }
+    void operator()(const ModeChanged& changed) const {
+        out.mutable_mode_changed()->set_localize_only(changed.is_localize_only);
+    }
 };
 
 Result<LogEntry> read_robot_joined(const v1::RobotJoined& proto) {
@@ -90,7 +94,7 @@ Result<LogEntry> read_scan_taken(const v1::ScanTaken& proto) {
     if (is_packed && !ranges) return damaged("a log entry");
     auto scan = is_packed ? from_proto(proto.scan(), std::move(*ranges)) : from_proto(proto.scan());
     if (!scan) return prefixed("scan_taken.", scan.error());
-    return LogEntry(ScanTaken{proto.robot(), std::move(*scan)});
+    return LogEntry(ScanTaken{proto.robot(), std::move(*scan), proto.localize_only()});
 }
 
 Result<LogEntry> read_map_patch(const v1::MapPatch& proto) {
@@ -153,6 +157,7 @@ Result<LogEntry> decode_entry(std::string_view bytes) {
     case v1::LogEntry::kExclusionLifted: return LogEntry(ExclusionLifted{proto->exclusion_lifted().id()});
     case v1::LogEntry::kMapsCorrected: return LogEntry(MapsCorrected{proto->maps_corrected().as_of()});
     case v1::LogEntry::kRobotRelocalized: return read_robot_relocalized(proto->robot_relocalized());
+    case v1::LogEntry::kModeChanged: return LogEntry(ModeChanged{proto->mode_changed().localize_only()});
     case v1::LogEntry::BODY_NOT_SET: break;
     }
     return damaged("a log entry");
@@ -164,7 +169,8 @@ Result<std::optional<ScanPose>> decode_scan_pose(std::string_view bytes) {
     if (!proto->ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) return damaged("a log entry");
     if (!proto->has_scan_taken()) return std::optional<ScanPose>();
     const auto& scan = proto->scan_taken().scan();
-    ScanPose taken{proto->scan_taken().robot(), scan.seq(), scan.stamp(), std::nullopt};
+    ScanPose taken{proto->scan_taken().robot(), scan.seq(), scan.stamp(), std::nullopt,
+                   proto->scan_taken().localize_only()};
     if (scan.has_pose()) {
         const auto pose = from_proto(scan.pose());
         if (!pose) return prefixed("scan_taken.pose: ", pose.error());

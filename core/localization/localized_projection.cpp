@@ -25,6 +25,9 @@ Result<bool> LocalizedProjection::apply(LogEntry& entry, double& work) {
         work -= kEstimationWork;
     }
     const auto applied = projection_.apply(entry, work);
+    if (const auto* changed = std::get_if<ModeChanged>(&entry); applied && *applied && changed != nullptr) {
+        poses_.change_mode(changed->is_localize_only, revision);
+    }
     if (const auto* relocalized = std::get_if<RobotRelocalized>(&entry);
         applied && *applied && relocalized != nullptr) {
         poses_.relocalize(*relocalized);

@@ -20,7 +20,9 @@ public:
     /// @param projection  of a log without scans that robots sent without poses
     LocalizedProjection(
         mapping::Projection projection) // NOLINT(google-explicit-constructor): most logs are of this kind
-        : projection_(std::move(projection)) {}
+        : projection_(std::move(projection)) {
+        poses_.change_mode(projection_.is_localize_only(), projection_.revision());
+    }
 
     /// Returns the maps.
     [[nodiscard]] const mapping::Projection& projection() const noexcept { return projection_; }

@@ -46,6 +46,9 @@ public:
     /// Searches for the robot's next laser scan near a place.
     void relocalize(const slam::Surroundings& place) { estimator_.relocalize(place); }
 
+    /// Decides about the scans that are still open, before the map is frozen.
+    void finish() { estimator_.finish(); }
+
     /// Returns whether the maps should follow the newest estimates. Call it after each add() to the shared map.
     [[nodiscard]] bool is_correction_due();
 

@@ -7,13 +7,26 @@ namespace scanloom::localization {
 void SessionPoses::estimate(ScanTaken& taken, const Sensor& sensor, Revision revision) {
     taken.scan.pose = poses_of(taken.robot).add(taken.scan, sensor);
     ++scan_count_;
+    if (map_->is_frozen()) return;
     bool is_due = false;
     for (const auto& each : robots_) is_due = (each && each->is_correction_due()) || is_due;
-    if (!is_due) return;
+    if (is_due) correct(revision);
+}
+
+void SessionPoses::correct(Revision revision) {
     corrected_ = revision;
     for (const auto& each : robots_) {
         if (each) each->correct();
     }
+}
+
+void SessionPoses::change_mode(bool is_localize_only, Revision revision) {
+    if (is_localize_only == map_->is_frozen()) return;
+    for (const auto& each : robots_) {
+        if (each) each->finish();
+    }
+    map_->freeze(is_localize_only);
+    if (is_localize_only && scan_count_ > 0) correct(revision);
 }
 
 void SessionPoses::relocalize(const RobotRelocalized& relocalized) {

@@ -54,6 +54,11 @@ public:
     /// Searches for the robot's next scan near a place.
     void relocalize(const RobotRelocalized& relocalized);
 
+    /// Freezes the map that the robots share, so that further scans only show where they are, or lets it change again.
+    /// @param is_localize_only  whether it is frozen from now on
+    /// @param revision          of the entry; the maps then show the newest estimates, because they stay as they are
+    void change_mode(bool is_localize_only, Revision revision);
+
     /// Returns the newest entry at which the poses of earlier scans in the maps were corrected; 0: none were.
     [[nodiscard]] Revision corrected() const noexcept { return corrected_; }
 
@@ -80,6 +85,7 @@ public:
 
 private:
     [[nodiscard]] RobotPoses& poses_of(RobotIndex robot);
+    void correct(Revision revision);
 
     std::unique_ptr<slam::SharedMap> map_ = std::make_unique<slam::SharedMap>();
     std::vector<std::unique_ptr<RobotPoses>> robots_; // by RobotIndex; null: as find()

@@ -95,7 +95,7 @@ bool Projection::integrate_entry(const ScanTaken& taken, double& work) {
     if (robots()[taken.robot].poses != Poses::kMap) robot.poses.append(scan.pose);
     if (use == ScanUse::kExcluded) ++robot.excluded;
     if (use == ScanUse::kUnplaced) ++robot.unplaced;
-    if (use != ScanUse::kIntegrated) return true;
+    if (!is_in_trajectory(use)) return true;
     robot.scan_count += 1;
     robot.newest = {revision, scan.stamp, *scan.pose};
     if (scan.duration != 0.0) robot.turns[scan.sensor] = *robot.newest;
@@ -132,6 +132,9 @@ bool Projection::integrate_entry(const MapsCorrected&, double&) { return true; }
 /// Does nothing: it changes how poses are estimated.
 bool Projection::integrate_entry(const RobotRelocalized&, double&) { return true; }
 
+/// Does nothing: the scans say in which mode they were taken.
+bool Projection::integrate_entry(const ModeChanged&, double&) { return true; }
+
 void Projection::replace_with(Projection corrected) {
     assert(!is_applying_ && !corrected.is_applying_ && revision() == corrected.revision());
     laser_.replace_with(std::move(corrected.laser_), revision());
@@ -167,6 +170,7 @@ Snapshot Projection::snapshot() {
                       .config = config_,
                       .exclusions = filter_.exclusions(),
                       .bounds = bounds(),
+                      .is_localize_only = is_localize_only(),
                       .chunk_count = chunk_count(),
                       .laser = laser_.snapshot(),
                       .sonar = sonar_.snapshot()};
@@ -228,7 +232,7 @@ Projection::Robot Projection::Robot::branch() const {
 }
 
 ProjectionState Projection::state() const {
-    ProjectionState state{revision(), bounds(), chunk_count(), {}, filter_.exclusions()};
+    ProjectionState state{revision(), bounds(), chunk_count(), {}, filter_.exclusions(), is_localize_only()};
     for (RobotIndex index = 0; index < robots_.size(); ++index) {
         const Robot& robot = robots_[index];
         state.robots.push_back(
@@ -239,8 +243,8 @@ ProjectionState Projection::state() const {
 }
 
 void Projection::restore(const ProjectionState& state) {
-    rules_ =
-        LogRules(state.revision, {state.robots.begin(), state.robots.end()}, state.exclusions->as_of(state.revision));
+    rules_ = LogRules(state.revision, {state.robots.begin(), state.robots.end()},
+                      state.exclusions->as_of(state.revision), state.is_localize_only);
     filter_ = ScanFilter(config_.max_jump, state.exclusions);
     laser_.restore(state.bounds.laser);
     sonar_.restore(state.bounds.sonar);

@@ -24,7 +24,7 @@ inline constexpr std::uint32_t kProjectionVersion = 4;
 struct ProjectionState {
     /// A robot of the log, and what the projection counts of it.
     struct Robot : LoggedRobot {
-        std::uint64_t scan_count = 0;          ///< integrated scans
+        std::uint64_t scan_count = 0;          ///< scans in the trajectory
         std::optional<TrajectoryPoint> newest; ///< of the integrated scans
         JumpFilter::Robot jumps;               ///< only with max_jump
         std::uint64_t excluded = 0;            ///< scans that exclusions left out
@@ -35,6 +35,7 @@ struct ProjectionState {
     std::size_t pages = 0;                         ///< Projection::page_count() after restore()
     std::vector<Robot> robots;                     ///< by RobotIndex
     SharedExclusions exclusions = no_exclusions(); ///< of the log up to `revision`
+    bool is_localize_only = false;                 ///< see ModeChanged
 };
 
 /// Approximate memory of one page of a projection: a chunk with its classes and its share of the trees, or a block of a
@@ -79,7 +80,10 @@ public:
     /// @param id     Sensor::id
     [[nodiscard]] std::shared_ptr<const Sensor> sensor_of(RobotIndex robot, std::uint32_t id) const;
 
-    /// Returns whether the newest entry was not integrated.
+    /// Returns whether the next scans do not change the maps; see ModeChanged.
+    [[nodiscard]] bool is_localize_only() const noexcept { return rules_.is_localize_only(); }
+
+    /// Returns whether the newest entry is in no map and in no trajectory.
     /// @param robot  index in the session
     /// Precondition: the newest entry is a scan of that robot.
     [[nodiscard]] bool has_left_out_newest(RobotIndex robot) const noexcept {
@@ -168,7 +172,7 @@ private:
     struct Robot {
         [[nodiscard]] Robot branch() const;
 
-        std::uint64_t scan_count = 0; // integrated
+        std::uint64_t scan_count = 0; // in the trajectory
         std::uint64_t excluded = 0;
         std::uint64_t unplaced = 0;
         std::optional<TrajectoryPoint> newest; // of its integrated scans
@@ -189,6 +193,7 @@ private:
     bool integrate_entry(const ExclusionLifted& lifted, double& work);
     bool integrate_entry(const MapsCorrected& corrected, double& work);
     bool integrate_entry(const RobotRelocalized& relocalized, double& work);
+    bool integrate_entry(const ModeChanged& changed, double& work);
     [[nodiscard]] std::optional<Scan> deskewed(const Robot& robot, const Sensor& sensor, const ScanTaken& taken) const;
     [[nodiscard]] const KnownFan& fan_of(Robot& robot, const Sensor& sensor, const Scan& scan);
 

@@ -46,7 +46,7 @@ struct RobotState {
     std::optional<double> body_radius; ///< metres, as stated when the robot last joined
     Poses poses = Poses::kMap;         ///< what the robot knows of its poses
     std::uint64_t last_seq = 0;        ///< of its newest scan in the log; 0 if it has none
-    std::uint64_t scan_count = 0;      ///< integrated
+    std::uint64_t scan_count = 0;      ///< scans in the trajectory
     std::uint64_t jumps = 0;           ///< scans that max_jump left out
     std::uint64_t excluded = 0;        ///< scans that exclusions left out
     std::uint64_t unplaced = 0;        ///< scans left out because their poses are not known
@@ -79,6 +79,7 @@ struct Snapshot {
     MapConfig config;                              ///< settings of the session
     SharedExclusions exclusions = no_exclusions(); ///< of the session's log
     LayerBounds bounds;                            ///< of all layers
+    bool is_localize_only = false;                 ///< whether the next scans do not change the maps
     std::size_t chunk_count = 0;                   ///< of laser and sonar layers
     LaserView laser;                               ///< occupancy, HIMM and types
     SonarView sonar;                               ///< log-odds from sonars

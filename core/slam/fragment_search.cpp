@@ -15,21 +15,19 @@ namespace {
 using scan_matching::PlaceSearch;
 using scan_matching::SurfacePoint;
 
-constexpr std::size_t kSearchEvery = 2;      // keyframes between searches
-constexpr double kQueryLength = 10.0;        // metres travelled by the keyframes that are looked up
-constexpr std::size_t kPointsMax = 120;      // of these
-constexpr std::size_t kPointsMin = 40;       // fewer show no place
-constexpr double kPointSquare = 0.3;         // metres: one point in each
-constexpr std::size_t kStride = 23;          // from one of them to the next
-constexpr double kScoreShare = 0.8;          // of the points, at least
-constexpr double kRivalShare = 0.9;          // a place with a higher share of the best score is as good
-constexpr double kExpectedScoreShare = 0.7;  // likewise where people expect the robot
-constexpr double kConnectedInliers = 0.5;    // of a keyframe's points, at least, that then fit the map
-constexpr double kConnectedSigma = 0.03;     // metres, of its pose
-constexpr double kConnectedTurnSigma = 0.01; // radians
-constexpr std::size_t kMapRefresh = 20;      // keyframes that may lack in the map
-constexpr double kMapMoveMax = 0.2;          // metres: keyframes that moved farther outdate it
-constexpr double kMapReach = 250.0;          // metres around the newest located keyframe
+constexpr std::size_t kSearchEvery = 2;     // keyframes between searches
+constexpr double kQueryLength = 10.0;       // metres travelled by the keyframes that are looked up
+constexpr std::size_t kPointsMax = 120;     // of these
+constexpr std::size_t kPointsMin = 40;      // fewer show no place
+constexpr double kPointSquare = 0.3;        // metres: one point in each
+constexpr std::size_t kStride = 23;         // from one of them to the next
+constexpr double kScoreShare = 0.8;         // of the points, at least
+constexpr double kRivalShare = 0.9;         // a place with a higher share of the best score is as good
+constexpr double kExpectedScoreShare = 0.7; // likewise where people expect the robot
+constexpr double kConnectedInliers = 0.5;   // of a keyframe's points, at least, that then fit the map
+constexpr std::size_t kMapRefresh = 20;     // keyframes that may lack in the map
+constexpr double kMapMoveMax = 0.2;         // metres: keyframes that moved farther outdate it
+constexpr double kMapReach = 250.0;         // metres around the newest located keyframe
 
 // Answers that agree.
 constexpr std::size_t kAnswers = 4;
@@ -69,20 +67,20 @@ bool FragmentSearch::search(KeyframeGraph& graph, std::size_t fragment) {
 bool FragmentSearch::connect(KeyframeGraph& graph, std::size_t fragment, const Transform2& T_map_fragment) {
     const std::size_t newest = graph.fragments()[fragment].keyframes.back();
     const Transform2 pose = T_map_fragment * graph.pose(newest);
-    KeyframeViews views;
-    std::optional<std::size_t> nearest;
-    const auto distance = [&](std::size_t keyframe) { return distance_of(inverse(graph.pose(keyframe)) * pose); };
-    for (std::size_t n = graph.size(); n-- > 0;) {
-        if (!graph.fragment_of(n).is_located || distance(n) > PlaceSearch::kReach) continue;
-        views.add(graph[n], graph.pose(n));
-        if (!nearest || distance(n) < distance(*nearest)) nearest = n;
-    }
+    const auto is_near = [&](std::size_t keyframe) {
+        return graph.is_in_map(keyframe) && distance_of(inverse(graph.pose(keyframe)) * pose) <= PlaceSearch::kReach;
+    };
+    const auto nearest = graph.nearest(pose, is_near);
     if (!nearest) return false;
+    KeyframeViews views;
+    for (std::size_t n = graph.size(); n-- > 0;) {
+        if (is_near(n)) views.add(graph[n], graph.pose(n));
+    }
     const KeyframeMap around(std::move(views));
     const auto match = match_to_lines(graph[newest].scan->points, around.points(), pose, {pose, 0.2, 0.1}, {});
     if (match.inlier_ratio < kConnectedInliers) return false;
     graph.add_loop({*nearest, newest, inverse(graph.pose(*nearest)) * match.T_map_robot,
-                    information_of(kConnectedSigma, kConnectedTurnSigma), true});
+                    information_of(kFitSigma, kFitTurnSigma), true});
     graph.move(fragment, match.T_map_robot * inverse(graph.pose(newest)), true);
     return true;
 }
@@ -109,7 +107,7 @@ bool FragmentSearch::is_outdated(const KeyframeGraph& graph, const std::vector<L
 void FragmentSearch::update_map(const KeyframeGraph& graph) {
     std::vector<Located> located;
     for (std::size_t n = 0; n < graph.size(); ++n) {
-        if (graph.fragment_of(n).is_located) located.push_back({n, graph.pose(n)});
+        if (graph.is_in_map(n)) located.push_back({n, graph.pose(n)});
     }
     if (located.empty() || (map_ && !is_outdated(graph, located))) return;
     in_map_ = std::move(located);
@@ -181,7 +179,7 @@ bool FragmentSearch::is_confirmed(const KeyframeGraph& graph, const std::vector<
         ++count;
     }
     // A map that was known before shows all places that may look alike.
-    const double wanted = graph.fragments().front().is_fixed ? kBaselineInKnownMap : kBaseline;
+    const double wanted = graph.is_map_known() ? kBaselineInKnownMap : kBaseline;
     return count >= kAnswers && baseline >= wanted;
 }
 

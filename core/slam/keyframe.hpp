@@ -17,6 +17,7 @@ struct Keyframe {
     std::shared_ptr<const ScanPoints> scan; ///< its points
     std::size_t fragment = 0;               ///< that it belongs to
     std::size_t position = 0;               ///< among the keyframes of the fragment
+    bool is_fixed = false;                  ///< whether it belongs to a map that does not change
     double travelled = 0.0; ///< metres from the fragment's first keyframe; a turn of one radian counts as 0.2 m
 };
 

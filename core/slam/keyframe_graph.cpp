@@ -1,5 +1,6 @@
 #include "core/slam/keyframe_graph.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -15,6 +16,9 @@ constexpr double kMatchedTurnSigma = 0.004; // radians
 
 constexpr double kMetresPerRadian = 0.2;  // of a turn, in the distance travelled
 constexpr double kMapDistanceMax = 100.0; // metres travelled between keyframes of one map; bounds its memory
+constexpr double kNearDistance = 30.0;    // metres between keyframes of one map, likewise
+constexpr double kSamePlace = 0.4;        // metres: of keyframes that are closer, a map has one
+constexpr double kSameTurn = 0.3;         // radians, likewise
 
 } // namespace
 
@@ -29,7 +33,7 @@ std::size_t KeyframeGraph::begin_fragment(std::size_t robot, std::shared_ptr<con
 void KeyframeGraph::add_fixed(std::shared_ptr<const ScanPoints> scan, const Transform2& T_map_keyframe) {
     if (fragments_.empty()) {
         begin_fragment(kNoRobot, std::move(scan), T_map_keyframe, true);
-        fragments_.front().is_fixed = true;
+        keyframes_.front().is_fixed = true;
         return;
     }
     auto& keyframes = fragments_.front().keyframes;
@@ -37,13 +41,27 @@ void KeyframeGraph::add_fixed(std::shared_ptr<const ScanPoints> scan, const Tran
     edges_.push_back({keyframes.back(), size(), inverse(poses_[keyframes.back()]) * T_map_keyframe,
                       information_of(kMatchedSigma, kMatchedTurnSigma)});
     keyframes.push_back(size());
-    keyframes_.push_back({.scan = std::move(scan), .position = keyframes.size() - 1});
+    keyframes_.push_back({.scan = std::move(scan), .position = keyframes.size() - 1, .is_fixed = true});
     poses_.push_back(T_map_keyframe);
 }
 
-/// Returns the keyframes that do not move: those of a known map, else the first one.
+/// Returns the keyframes that do not move: those of a map that does not change, else the first one.
 std::vector<std::size_t> KeyframeGraph::fixed() const {
-    return fragments_.front().is_fixed ? fragments_.front().keyframes : std::vector<std::size_t>{0};
+    std::vector<std::size_t> fixed;
+    for (std::size_t n = 0; n < size(); ++n) {
+        if (keyframes_[n].is_fixed) fixed.push_back(n);
+    }
+    return fixed.empty() ? std::vector<std::size_t>{0} : fixed;
+}
+
+void KeyframeGraph::freeze(bool is_frozen) {
+    is_frozen_ = is_frozen;
+    if (fragments_.empty()) return;
+    if (!is_frozen && std::ranges::none_of(fragments_, &Fragment::is_located)) fragments_.front().is_located = true;
+    for (Keyframe& keyframe : keyframes_) {
+        const Fragment& fragment = fragments_[keyframe.fragment];
+        keyframe.is_fixed = is_frozen ? fragment.is_located : fragment.robot == kNoRobot;
+    }
 }
 
 void KeyframeGraph::add(std::size_t fragment, std::shared_ptr<const ScanPoints> scan,
@@ -56,7 +74,7 @@ void KeyframeGraph::add(std::size_t fragment, std::shared_ptr<const ScanPoints> 
     edges_.push_back({newest, size(), T, information_of(kMatchedSigma, kMatchedTurnSigma)});
     poses_.push_back(poses_[newest] * T);
     keyframes.push_back(size());
-    keyframes_.push_back({std::move(scan), fragment, keyframes.size() - 1, travelled});
+    keyframes_.push_back({std::move(scan), fragment, keyframes.size() - 1, false, travelled});
 }
 
 void KeyframeGraph::move(std::size_t fragment, const Transform2& T_to_from, bool is_located) {
@@ -124,6 +142,35 @@ KeyframeViews KeyframeGraph::views_around(std::size_t frame, std::size_t first, 
     for (std::size_t step = 1; middle + step <= last || middle >= first + step; ++step) {
         if (middle + step <= last) add(middle + step);
         if (middle >= first + step) add(middle - step);
+    }
+    return views;
+}
+
+KeyframeViews KeyframeGraph::views_near(std::size_t frame, std::size_t count) const {
+    struct Near {
+        std::size_t keyframe;
+        Transform2 T_frame_keyframe;
+        double distance;
+    };
+    const Transform2 T_frame_map = inverse(poses_[frame]);
+    std::vector<Near> around;
+    for (std::size_t n = 0; n < size(); ++n) {
+        const Transform2 T_frame_keyframe = n == frame ? Transform2() : T_frame_map * poses_[n];
+        const double distance = distance_of(T_frame_keyframe);
+        if (is_in_map(n) && distance <= kNearDistance) around.push_back({n, T_frame_keyframe, distance});
+    }
+    std::ranges::stable_sort(around, {}, &Near::distance);
+    std::vector<Near> chosen;
+    KeyframeViews views;
+    for (const Near& near : around) {
+        if (chosen.size() == count) break;
+        const bool is_known = std::ranges::any_of(chosen, [&](const Near& other) {
+            const Transform2 off = inverse(other.T_frame_keyframe) * near.T_frame_keyframe;
+            return distance_of(off) < kSamePlace && std::fabs(scan_matching::yaw_of(off)) < kSameTurn;
+        });
+        if (is_known) continue;
+        views.add(keyframes_[near.keyframe], near.T_frame_keyframe);
+        chosen.push_back(near);
     }
     return views;
 }

@@ -3,8 +3,11 @@
 #include "core/slam/keyframe.hpp"
 #include "core/slam/pose_graph.hpp"
 
+#include <cmath>
 #include <cstddef>
+#include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -12,12 +15,15 @@ namespace scanloom::slam {
 
 inline constexpr std::size_t kNoRobot = static_cast<std::size_t>(-1); ///< instead of a robot's number
 
+// Standard deviations of the pose of a keyframe that was matched to the map around it.
+inline constexpr double kFitSigma = 0.03;     ///< metres
+inline constexpr double kFitTurnSigma = 0.01; ///< radians
+
 /// Successive keyframes of one robot, each matched to those before. A robot that is lost begins another fragment.
 struct Fragment {
     std::size_t robot = 0;   ///< kNoRobot: the views of a known map
     bool is_located = false; ///< whether its place in the map is known; otherwise its poses are in a frame of its own
     std::vector<std::size_t> keyframes; ///< their indices, oldest first; at least one
-    bool is_fixed = false;              ///< whether they are views of a known map, and never move
 };
 
 /// The keyframes of robots, their poses, and the relative poses measured between them.
@@ -38,6 +44,21 @@ public:
     /// @param T_map_keyframe  its pose
     /// Precondition: only such keyframes were added before.
     void add_fixed(std::shared_ptr<const ScanPoints> scan, const Transform2& T_map_keyframe);
+
+    /// Makes the located keyframes a map that does not change, or lets all but the views of a known map move again. If
+    /// no fragment is located then, the first one becomes the map.
+    void freeze(bool is_frozen);
+
+    /// Returns whether a keyframe is part of the map: its fragment is located, and if the map does not change, it was
+    /// when the map was frozen.
+    [[nodiscard]] bool is_in_map(std::size_t keyframe) const {
+        return fragment_of(keyframe).is_located && (!is_frozen_ || keyframes_[keyframe].is_fixed);
+    }
+
+    /// Returns whether the map does not depend on where robots drive: it was known before, or does not change.
+    [[nodiscard]] bool is_map_known() const {
+        return is_frozen_ || (!fragments_.empty() && fragments_.front().robot == kNoRobot);
+    }
 
     /// Adds a keyframe to a fragment.
     /// @param fragment           index of the fragment
@@ -98,6 +119,29 @@ public:
     /// @param first, last  positions [first, last] in its fragment
     [[nodiscard]] KeyframeViews views_around(std::size_t frame, std::size_t first, std::size_t last) const;
 
+    /// Returns the keyframe whose pose is nearest to a pose, of those for which `is_wanted` returns true; nullopt: it
+    /// does for none. A turn of one radian counts as one metre.
+    template <class IsWanted>
+    [[nodiscard]] std::optional<std::size_t> nearest(const Transform2& T_map_robot, IsWanted is_wanted) const {
+        std::optional<std::size_t> nearest;
+        double least = std::numeric_limits<double>::infinity();
+        for (std::size_t n = 0; n < size(); ++n) {
+            if (!is_wanted(n)) continue;
+            const Transform2 off = inverse(poses_[n]) * T_map_robot;
+            const double distance = distance_of(off) + std::fabs(yaw_of(off));
+            if (distance >= least) continue;
+            least = distance;
+            nearest = n;
+        }
+        return nearest;
+    }
+
+    /// Returns the keyframes of the map that are nearest to one of them, in its frame. Of keyframes with almost equal
+    /// poses it takes one.
+    /// @param frame  the keyframe whose frame is used
+    /// @param count  at most this many keyframes
+    [[nodiscard]] KeyframeViews views_near(std::size_t frame, std::size_t count) const;
+
 private:
     [[nodiscard]] std::vector<std::size_t> fixed() const;
 
@@ -105,6 +149,7 @@ private:
     std::vector<Keyframe> keyframes_;
     std::vector<Transform2> poses_;
     std::vector<Edge> edges_;
+    bool is_frozen_ = false;
 };
 
 } // namespace scanloom::slam

@@ -12,9 +12,24 @@ void SharedMap::begin_with(std::vector<KnownView> views) {
     }
 }
 
+void SharedMap::freeze(bool is_frozen) {
+    if (is_frozen) finish();
+    graph_.freeze(is_frozen);
+    is_frozen_ = is_frozen;
+}
+
+std::size_t SharedMap::continue_from(std::size_t robot, ScanPoints scan, std::size_t from,
+                                     const Transform2& T_from_keyframe) {
+    const std::size_t fragment = graph_.begin_fragment(robot, std::make_shared<const ScanPoints>(std::move(scan)),
+                                                       graph_.pose(from) * T_from_keyframe, true);
+    graph_.add_loop({from, graph_.size() - 1, T_from_keyframe, information_of(kFitSigma, kFitTurnSigma), true});
+    search(fragment);
+    return fragment;
+}
+
 std::size_t SharedMap::begin_fragment(std::size_t robot, ScanPoints scan, const Transform2& T_map_keyframe,
                                       const std::optional<Surroundings>& place) {
-    const bool is_first = graph_.size() == 0;
+    const bool is_first = graph_.size() == 0 && !is_frozen_;
     const std::size_t fragment =
         graph_.begin_fragment(robot, std::make_shared<const ScanPoints>(std::move(scan)), T_map_keyframe, is_first);
     if (place) fragments_.expect(fragment, *place, graph_.size() - 1);

@@ -25,7 +25,20 @@ public:
     /// @param views  all over the map, neighbours after each other
     void begin_with(std::vector<KnownView> views);
 
-    /// Begins a fragment; it is located if it is the first one.
+    /// Freezes the map: what it contains now does not change, and robots are only located in it. Or lets it change
+    /// again.
+    /// @param is_frozen  whether it is frozen from now on
+    void freeze(bool is_frozen);
+
+    /// Begins a fragment that is located: that of a robot which was located in the frozen map and goes on mapping.
+    /// @param robot               whose scan it is
+    /// @param scan                its points
+    /// @param from                keyframe of the map
+    /// @param T_from_keyframe     the fragment's first keyframe relative to it, as matched
+    /// @return the fragment's index
+    std::size_t continue_from(std::size_t robot, ScanPoints scan, std::size_t from, const Transform2& T_from_keyframe);
+
+    /// Begins a fragment; it is located if it is the first one and the map is not frozen.
     /// @param robot           whose scan it is
     /// @param scan            its points
     /// @param T_map_keyframe  its pose; in a frame of its own if the fragment is not the first one
@@ -48,6 +61,9 @@ public:
     /// Moves the keyframes once more so that they agree with the edges, as at the end of a log.
     void finish();
 
+    /// Returns whether the map is frozen.
+    [[nodiscard]] bool is_frozen() const noexcept { return is_frozen_; }
+
     /// Returns the keyframes and their edges.
     [[nodiscard]] const KeyframeGraph& graph() const noexcept { return graph_; }
     /// Returns the figures of the loop search.
@@ -64,6 +80,7 @@ private:
     LoopSearch loops_;
     FragmentSearch fragments_;
     std::size_t optimizations_ = 0; // by others than the loop search
+    bool is_frozen_ = false;
 };
 
 } // namespace scanloom::slam

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <functional>
-#include <limits>
 #include <optional>
 #include <span>
 #include <utility>
@@ -42,8 +41,6 @@ constexpr double kLeadPart = 0.1;         // of the best one's matched metres
 constexpr double kRefutedShare = 0.1;     // by how much a refuted hypothesis's share of contradictions is larger
 constexpr double kRefutedExcess = 4.0;    // metres
 constexpr double kLoopDisagreement = 0.5; // metres between a fit and an older loop edge
-constexpr double kEdgeSigma = 0.03;       // metres
-constexpr double kEdgeTurnSigma = 0.01;   // radians
 
 /// A keyframe's pose in the old map, as matched.
 struct Fit {
@@ -106,9 +103,7 @@ public:
     }
 
     /// Returns whether a keyframe is in the map that the stretch is compared with, if it is near.
-    [[nodiscard]] bool is_old(std::size_t keyframe) const {
-        return graph_.fragment_of(keyframe).is_located && !contains(keyframe);
-    }
+    [[nodiscard]] bool is_old(std::size_t keyframe) const { return graph_.is_in_map(keyframe) && !contains(keyframe); }
 
 private:
     /// Returns the metres travelled from a keyframe of the fragment to its newest one.
@@ -279,21 +274,6 @@ private:
     std::vector<std::vector<SurfacePoint>> evidence_; // by position from first_
 };
 
-/// Returns the keyframe of the old map whose pose is nearest to a pose; a radian counts as a metre.
-std::size_t nearest_old_keyframe(const KeyframeGraph& graph, const StretchTest& test, const Transform2& pose) {
-    std::size_t nearest = 0;
-    double least = std::numeric_limits<double>::infinity();
-    for (std::size_t n = 0; n < graph.size(); ++n) {
-        if (!test.is_old(n)) continue;
-        const Transform2 off = inverse(graph.pose(n)) * pose;
-        const double distance = distance_of(off) + std::fabs(yaw_of(off));
-        if (distance >= least) continue;
-        least = distance;
-        nearest = n;
-    }
-    return nearest;
-}
-
 } // namespace
 
 bool accept_stretch(KeyframeGraph& graph, const StretchQuestion& question) {
@@ -309,9 +289,10 @@ bool accept_stretch(KeyframeGraph& graph, const StretchQuestion& question) {
         });
     });
     for (const Fit& fit : accepted->fits) {
-        const std::size_t from = nearest_old_keyframe(graph, test, fit.T_map_keyframe);
+        const std::size_t from =
+            graph.nearest(fit.T_map_keyframe, [&](std::size_t keyframe) { return test.is_old(keyframe); }).value();
         graph.add_loop({from, fit.keyframe, inverse(graph.pose(from)) * fit.T_map_keyframe,
-                        information_of(kEdgeSigma, kEdgeTurnSigma), true});
+                        information_of(kFitSigma, kFitTurnSigma), true});
     }
     return true;
 }

@@ -20,10 +20,10 @@ constexpr double kGoodInliers = 0.7;             // of scans that count for the 
 
 } // namespace
 
-void Tracker::begin(KeyframeMap map) {
+void Tracker::begin(KeyframeMap map, const Transform2& T_keyframe_robot) {
     map_ = std::move(map);
     hypotheses_.resize(1);
-    hypotheses_.front().last = {};
+    hypotheses_.front().last = T_keyframe_robot;
     hypotheses_.front().unmatched = 0;
 }
 

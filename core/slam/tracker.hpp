@@ -27,10 +27,11 @@ public:
     static constexpr std::size_t kHypothesesMax = 4; ///< followed at once
     static constexpr std::size_t kOpenMax = 12;      ///< scans before the best hypothesis counts
 
-    /// Continues from a new keyframe, with a map in its frame. The robot is where the keyframe was taken.
-    /// @param map  of the newest keyframes
+    /// Continues from another keyframe, with a map in its frame.
+    /// @param map               of the keyframes around
+    /// @param T_keyframe_robot  where the robot is now
     /// Precondition: all scans are decided.
-    void begin(KeyframeMap map);
+    void begin(KeyframeMap map, const Transform2& T_keyframe_robot);
 
     /// Adds the next scan.
     /// @param scan    its points

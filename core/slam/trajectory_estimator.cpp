@@ -58,17 +58,21 @@ void TrajectoryEstimator::add(ScanPoints scan, const std::optional<Pose2>& odome
     if (keyframes_.empty()) {
         const Transform2 start = graph().size() == 0 ? now.value_or(Transform2()) : Transform2();
         begin_fragment(std::move(scan), start, std::exchange(relocalized_, std::nullopt));
-        first_.push_back({graph().pose(newest_keyframe()), is_fragment_located()});
-        placed_.push_back({newest_keyframe(), {}});
+        first_.push_back({graph().pose(keyframes_.back()), is_fragment_located()});
+        placed_.push_back({anchor_, T_anchor_newest()});
         newest_ = {{}, 1.0, true};
         return;
     }
+    follow_freeze();
     std::optional<Surroundings> place_to_search;
     if (!scan.points.empty()) place_to_search = std::exchange(relocalized_, std::nullopt);
-    const auto is_due = [&](const TrackedScan& tracked) { return place_to_search || is_keyframe_due(tracked); };
+    const bool is_leaving = is_in_frozen_map_ && !map_.is_frozen();
+    const auto is_due = [&](const TrackedScan& tracked) {
+        return place_to_search || is_leaving || is_keyframe_due(tracked);
+    };
     const auto decided = tracker_.add(scan, motion, is_due);
     newest_ = decided.empty() ? tracker_.newest() : decided.back();
-    const Transform2 first = graph().pose(newest_keyframe()) * newest_.T_keyframe_robot;
+    const Transform2 first = graph().pose(anchor_) * newest_.T_keyframe_robot;
     first_.push_back({first, newest_.is_matched && is_fragment_located()});
     if (decided.empty()) {
         relocalized_ = place_to_search; // it waits until the open scans are decided
@@ -79,23 +83,22 @@ void TrajectoryEstimator::add(ScanPoints scan, const std::optional<Pose2>& odome
     const bool is_elsewhere = place_to_search && (is_fragment_located() || !last.is_matched);
     if ((tracker_.unmatched() >= kLost && !scan.points.empty()) || is_elsewhere) {
         begin_fragment(std::move(scan), first, place_to_search);
-        if (is_fragment_located()) first_.back() = {graph().pose(newest_keyframe()), true};
+        if (is_fragment_located()) first_.back() = {graph().pose(keyframes_.back()), true};
     } else if (last.is_matched && is_due(last)) {
         if (place_to_search) map_.expect(fragments_.back(), *place_to_search);
-        keyframes_.push_back(graph().size());
-        map_.add_keyframe(fragments_.back(), std::move(scan), last.T_keyframe_robot);
-        begin_tracking();
+        if (is_in_frozen_map_ && !is_leaving) return begin_tracking(first);
+        add_keyframe(std::move(scan), last.T_keyframe_robot);
     } else {
         return;
     }
-    placed_.back() = {newest_keyframe(), {}};
+    placed_.back() = {anchor_, T_anchor_newest()};
 }
 
 void TrajectoryEstimator::finish() { place(tracker_.decide()); }
 
 void TrajectoryEstimator::place(const std::vector<TrackedScan>& scans) {
     for (const TrackedScan& scan : scans) {
-        placed_.push_back({newest_keyframe(), scan.T_keyframe_robot, scan.is_matched});
+        placed_.push_back({anchor_, scan.T_keyframe_robot, scan.is_matched});
         if (!scan.is_matched) ++unmatched_count_;
     }
 }
@@ -104,14 +107,47 @@ void TrajectoryEstimator::begin_fragment(ScanPoints scan, const Transform2& T_ma
                                          const std::optional<Surroundings>& place) {
     keyframes_.push_back(graph().size());
     fragments_.push_back(map_.begin_fragment(robot_, std::move(scan), T_map_robot, place));
-    begin_tracking();
+    begin_tracking(graph().pose(keyframes_.back()));
 }
 
-/// Tracks the next scans by the newest keyframes of the fragment.
-void TrajectoryEstimator::begin_tracking() {
-    const std::size_t newest = graph()[newest_keyframe()].position;
+/// Makes the newest scan a keyframe. @param T_anchor_robot  where it was taken
+void TrajectoryEstimator::add_keyframe(ScanPoints scan, const Transform2& T_anchor_robot) {
+    keyframes_.push_back(graph().size());
+    if (is_in_frozen_map_) {
+        fragments_.push_back(map_.continue_from(robot_, std::move(scan), anchor_, T_anchor_robot));
+    } else {
+        map_.add_keyframe(fragments_.back(), std::move(scan), T_anchor_robot);
+    }
+    begin_tracking(graph().pose(keyframes_.back()));
+}
+
+/// Returns where the robot's newest keyframe is.
+Transform2 TrajectoryEstimator::T_anchor_newest() const {
+    if (anchor_ == keyframes_.back()) return {};
+    return inverse(graph().pose(anchor_)) * graph().pose(keyframes_.back());
+}
+
+/// Tracks the next scans by the newest keyframes of the fragment, or in a frozen map by those around.
+void TrajectoryEstimator::begin_tracking(const Transform2& T_map_robot) {
+    is_in_frozen_map_ = map_.is_frozen() && is_fragment_located();
+    if (is_in_frozen_map_) {
+        anchor_ = graph().nearest(T_map_robot, [&](std::size_t n) { return graph().is_in_map(n); }).value();
+        tracker_.begin(KeyframeMap(graph().views_near(anchor_, kLocalKeyframes)),
+                       inverse(graph().pose(anchor_)) * T_map_robot);
+        return;
+    }
+    anchor_ = keyframes_.back();
+    const std::size_t newest = graph()[anchor_].position;
     const std::size_t first = newest + 1 - std::min(newest + 1, kLocalKeyframes);
-    tracker_.begin(KeyframeMap(graph().views_around(newest_keyframe(), first, newest)));
+    tracker_.begin(KeyframeMap(graph().views_around(anchor_, first, newest)), Transform2());
+}
+
+/// Goes on in the map if it was frozen since the last scan.
+void TrajectoryEstimator::follow_freeze() {
+    if (is_in_frozen_map_ || !map_.is_frozen() || !is_fragment_located()) return;
+    finish();
+    const PlacedScan& last = placed_.back();
+    begin_tracking(graph().pose(last.keyframe) * last.T_keyframe_robot);
 }
 
 bool TrajectoryEstimator::is_located(std::size_t scan) const {

@@ -20,6 +20,7 @@ namespace scanloom::slam {
 /// Several robots can share a map. The others, and robots that are lost because their scans fit no map for a while, are
 /// located when enough of what they see is found in the map (FragmentSearch). Until then their poses are in frames of
 /// their own.
+/// In a frozen map, scans are matched to the map's keyframes around the robot, and no keyframes are added.
 ///
 /// Deterministic: equal scans give equal poses on every processor with IEEE 754 arithmetic.
 /// Memory: grows with the trajectory: the pose of each scan, the points of each keyframe (up to 6 KB), and the map of every
@@ -49,7 +50,7 @@ public:
     /// @param place  in the map's frame
     void relocalize(const Surroundings& place) { relocalized_ = place; }
 
-    /// Decides about the scans that are still open, and optimises once more, as at the end of a log.
+    /// Decides about the scans that are still open, as at the end of a log.
     void finish();
 
     /// Returns the number of scans added.
@@ -72,7 +73,7 @@ public:
     /// Returns whether the scan's fragment is located, so that its pose is known at least as a prediction.
     /// @param scan  number of the scan, from 0. Precondition: scan < scan_count()
     [[nodiscard]] bool is_in_map(std::size_t scan) const {
-        return graph().fragment_of(scan < placed_.size() ? placed_[scan].keyframe : newest_keyframe()).is_located;
+        return graph().fragment_of(scan < placed_.size() ? placed_[scan].keyframe : anchor_).is_located;
     }
 
     /// Returns whether the place of the robot in the map is not known: its fragment is not located, or the last scans
@@ -128,9 +129,11 @@ private:
     void place(const std::vector<TrackedScan>& scans);
     void begin_fragment(ScanPoints scan, const Transform2& T_map_robot,
                         const std::optional<Surroundings>& place = std::nullopt);
-    void begin_tracking();
+    void add_keyframe(ScanPoints scan, const Transform2& T_anchor_robot);
+    void begin_tracking(const Transform2& T_map_robot);
+    [[nodiscard]] Transform2 T_anchor_newest() const;
+    void follow_freeze();
     [[nodiscard]] const KeyframeGraph& graph() const noexcept { return map_.graph(); }
-    [[nodiscard]] std::size_t newest_keyframe() const noexcept { return keyframes_.back(); }
     [[nodiscard]] bool is_fragment_located() const noexcept {
         return fragments_.empty() || graph().fragments()[fragments_.back()].is_located;
     }
@@ -140,6 +143,8 @@ private:
     Tracker tracker_;
     std::vector<std::size_t> fragments_; // indices of the robot's fragments, oldest first
     std::vector<std::size_t> keyframes_;
+    std::size_t anchor_ = 0;         // the keyframe that the next scans are placed relative to
+    bool is_in_frozen_map_ = false;  // whether it is one of the frozen map, else the robot's newest one
     std::vector<PlacedScan> placed_; // of the decided scans
     std::vector<FirstEstimate> first_;
     TrackedScan newest_;

@@ -76,14 +76,6 @@ Result<std::string> CarmenText::text_of(const MapPatch&) {
                                   "request the log without format=clf"};
 }
 
-Result<std::string> CarmenText::text_of(const ScansExcluded&) { return std::string(); }
-
-Result<std::string> CarmenText::text_of(const ExclusionLifted&) { return std::string(); }
-
-Result<std::string> CarmenText::text_of(const MapsCorrected&) { return std::string(); }
-
-Result<std::string> CarmenText::text_of(const RobotRelocalized&) { return std::string(); }
-
 Result<std::string> CarmenText::text_of(const ScanTaken& taken) {
     const Scan& scan = taken.scan;
     const auto known = sensors_.find({taken.robot, scan.sensor});

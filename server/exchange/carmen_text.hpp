@@ -46,10 +46,10 @@ private:
     [[nodiscard]] Result<std::string> text_of(const SensorDescribed& described);
     [[nodiscard]] Result<std::string> text_of(const ScanTaken& taken);
     [[nodiscard]] static Result<std::string> text_of(const MapPatch& patch);
-    [[nodiscard]] static Result<std::string> text_of(const ScansExcluded& excluded);
-    [[nodiscard]] static Result<std::string> text_of(const ExclusionLifted& lifted);
-    [[nodiscard]] static Result<std::string> text_of(const MapsCorrected& corrected);
-    [[nodiscard]] static Result<std::string> text_of(const RobotRelocalized& relocalized);
+    template <class Other>
+    [[nodiscard]] static Result<std::string> text_of(const Other&) { // an entry without lines
+        return std::string();
+    }
 
     ScanFilter filter_;
     Revision revision_ = 0; ///< of the newest entry

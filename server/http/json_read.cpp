@@ -136,4 +136,11 @@ Result<std::optional<double>> read_number(const boost::json::object& object, std
     return std::optional<double>(number);
 }
 
+Result<std::optional<bool>> read_flag(const boost::json::object& object, std::string_view name) {
+    const auto* value = object.if_contains(name);
+    if (value == nullptr) return std::optional<bool>();
+    if (!value->is_bool()) return Error{Errc::kInvalidField, fmt::format("{} is neither true nor false", name)};
+    return std::optional<bool>(value->get_bool());
+}
+
 } // namespace scanloom::http

@@ -43,4 +43,8 @@ namespace scanloom::http {
 /// Errors: kInvalidField, naming the member, if it is not a number or too large for a double.
 [[nodiscard]] Result<std::optional<double>> read_number(const boost::json::object& object, std::string_view name);
 
+/// Returns the member's value, or nullopt if it is absent.
+/// Errors: kInvalidField, naming the member, if it is neither true nor false.
+[[nodiscard]] Result<std::optional<bool>> read_flag(const boost::json::object& object, std::string_view name);
+
 } // namespace scanloom::http

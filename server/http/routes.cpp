@@ -84,6 +84,7 @@ std::span<const Route> routes() noexcept {
         {kGet, SESSION "/trajectory.tum", "trajectoryTum", kRead, kLogReading, kLoaded, kTum, get_trajectory_tum},
         {kGet, SESSION "/pose_graph.geojson", "poseGraph", kRead, kLogReading, kLoaded, {}, get_pose_graph},
         {kPost, SESSION "/relocalize", "relocalize", kChange, kQueries, kLoaded, {}, relocalize},
+        {kPost, SESSION "/mode", "changeMode", kChange, kQueries, kLoaded, {}, change_mode},
         {kGet, SESSION "/landmarks.geojson", "landmarks", kRead, kLogReading, kLoaded, kLandmarks, get_landmarks},
         {kGet, SESSION "/points.csv", "pointsCsv", kRead, kLogReading, kLoaded, kPoints, get_points_csv},
         {kGet, SESSION "/points.ply", "pointsPly", kRead, kLogReading, kLoaded, kPoints, get_points_ply},

@@ -28,6 +28,7 @@ std::string head_part(const mapping::ProjectionState& state) {
     put(value, state.bounds.laser.himm);
     put(value, state.bounds.sonar);
     put(value, std::uint64_t{state.pages});
+    if (state.is_localize_only) put(value, kLocalizeOnly); // otherwise the same bytes as in earlier versions
     return value;
 }
 

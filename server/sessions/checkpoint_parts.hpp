@@ -30,6 +30,8 @@ inline constexpr std::string_view kSonarChunk = "weave/sonar/";
 // track/<index>/<block>.
 inline constexpr std::uint32_t kPartsVersion = 4;
 
+inline constexpr std::uint8_t kLocalizeOnly = 1; ///< last byte of the head in localize-only mode
+
 // Plain values
 
 static_assert(std::endian::native == std::endian::little, "checkpoints are written in the machine's own order");

@@ -84,6 +84,7 @@ Result<> CheckpointReader::add_head(std::string_view value) {
     state_.bounds.laser.himm = part.take<grid::CellBox>();
     state_.bounds.sonar = part.take<grid::CellBox>();
     if (parts_version_ > 2) state_.pages = part.take<std::uint64_t>();
+    if (!part.complete()) state_.is_localize_only = part.take<std::uint8_t>() == kLocalizeOnly;
     if (!part.complete()) return damaged("head");
     return {};
 }

@@ -30,16 +30,16 @@ std::vector<LogEntry> LogReconstruction::add(Revision revision, LogEntry entry) 
     std::vector<LogEntry> entries;
     if (const auto* taken = std::get_if<ScanTaken>(&entry)) {
         if (!fits(*taken)) return {};
-        entries = empty_scans_before(*taken);
+        entries = lost_before(*taken);
     }
-    for (const auto& empty_scan : entries) {
-        if (!rules_.add(empty_scan)) return {}; // cannot happen: their numbers are consecutive
+    for (const auto& lost : entries) {
+        if (!rules_.add(lost)) return {}; // cannot happen: their numbers are consecutive
+        if (std::holds_alternative<ScanTaken>(lost)) ++empty_scans_;
     }
     if (!rules_.add(entry)) return {};
     if (const auto* described = std::get_if<SensorDescribed>(&entry)) {
         sensors_[{described->robot, described->sensor.id}] = described->sensor;
     }
-    empty_scans_ += entries.size();
     entries.push_back(std::move(entry));
     return entries;
 }
@@ -54,6 +54,7 @@ bool LogReconstruction::renumber(LogEntry& entry) {
     if (auto* described = std::get_if<SensorDescribed>(&entry)) robot = &described->robot;
     if (auto* taken = std::get_if<ScanTaken>(&entry)) robot = &taken->robot;
     if (auto* excluded = std::get_if<ScansExcluded>(&entry)) robot = &excluded->robot;
+    if (auto* relocalized = std::get_if<RobotRelocalized>(&entry)) robot = &relocalized->robot;
     if (robot == nullptr) return true;
     const auto known = robots_.find(*robot);
     if (known == robots_.end()) return false;
@@ -69,10 +70,13 @@ bool LogReconstruction::fits(const ScanTaken& taken) const {
     return taken.scan.seq > last_seq && taken.scan.seq - last_seq - 1 <= missing_ - empty_scans_;
 }
 
-std::vector<LogEntry> LogReconstruction::empty_scans_before(const ScanTaken& taken) {
+/// Returns the lost change of the mode, if the scan is of another one, and an empty scan for each lost one.
+std::vector<LogEntry> LogReconstruction::lost_before(const ScanTaken& taken) const {
     std::vector<LogEntry> entries;
+    if (taken.is_localize_only != rules_.is_localize_only()) entries.push_back(ModeChanged{taken.is_localize_only});
     for (auto seq = rules_.robots()[taken.robot].last_seq + 1; seq < taken.scan.seq; ++seq) {
-        entries.emplace_back(std::in_place_type<ScanTaken>, ScanTaken{taken.robot, blank(taken.scan, seq)});
+        entries.emplace_back(std::in_place_type<ScanTaken>,
+                             ScanTaken{taken.robot, blank(taken.scan, seq), taken.is_localize_only});
     }
     return entries;
 }

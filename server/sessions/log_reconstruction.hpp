@@ -14,7 +14,8 @@ namespace scanloom::sessions {
 /// The sequence numbers of a robot's scans must have no gaps, so each lost scan is replaced by an empty scan with its
 /// number, at the pose of the next scan. The maps are then those of the remaining scans, and a robot that reconnects
 /// continues after the last scan. New numbers for the scans would not work: a client would send part of a recording
-/// again, and it would be mapped twice. Robots do get new indices, which are used only in the log.
+/// again, and it would be mapped twice. Robots do get new indices, which are used only in the log. A lost ModeChanged
+/// entry is added again before the first scan of its mode.
 ///
 /// Some entries cannot be applied without a lost one: scans and sensors of a robot whose RobotJoined entry is lost, and
 /// scans of a sensor whose description is lost. The caller stores them elsewhere. If a later description of the same
@@ -34,7 +35,7 @@ public:
 private:
     [[nodiscard]] bool renumber(LogEntry& entry);
     [[nodiscard]] bool fits(const ScanTaken& taken) const;
-    [[nodiscard]] std::vector<LogEntry> empty_scans_before(const ScanTaken& taken);
+    [[nodiscard]] std::vector<LogEntry> lost_before(const ScanTaken& taken) const;
 
     LogRules rules_;
     std::map<RobotIndex, RobotIndex> robots_;                        // old to new

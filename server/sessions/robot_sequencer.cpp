@@ -24,7 +24,7 @@ Error map_already_begun(const std::string& robot, const std::string& session) {
 void RobotSequencer::restore(const mapping::ProjectionState& state) {
     auto robots = pending_.robots();
     robots.resize(state.robots.size());
-    pending_ = LogRules(state.revision, std::move(robots), {});
+    pending_ = LogRules(state.revision, std::move(robots), {}, state.is_localize_only);
     members_.resize(state.robots.size());
     for (RobotIndex robot = 0; robot < members_.size(); ++robot) restore(robot, state.robots[robot]);
 }
@@ -111,8 +111,9 @@ Result<> RobotSequencer::check_again(const LoggedRobot& robot, const JoinRequest
 }
 
 /// Checks that the server can find out where a robot is relative to the others: either all robots send poses in the map
-/// frame, or the server estimates the poses of all of them.
+/// frame, or the server estimates the poses of all of them. In a map that does not change, each is located by itself.
 Result<> RobotSequencer::check_poses(const JoinRequest& who) const {
+    if (pending_.is_localize_only()) return {};
     const auto refused = [&](std::string_view why) {
         return Error{Errc::kConflict, fmt::format("hello.poses is '{}': {}; use another session for robot '{}'",
                                                   name_of(who.poses), why, who.robot)};
@@ -229,7 +230,8 @@ std::vector<PendingEntry> RobotSequencer::take(const std::shared_ptr<RobotListen
             continue;
         }
         if (member->first_visible_seq == 0 && !reach.cells.empty()) member->first_visible_seq = scan.seq;
-        entries.push_back(submitted(*member, ScanTaken{index_of(*member), std::move(scan)}, 0));
+        entries.push_back(
+            submitted(*member, ScanTaken{index_of(*member), std::move(scan), pending_.is_localize_only()}, 0));
         entries.back().reach = reach;
     }
     if (fault) counters_.scans_dropped += scans.size() - (n - 1); // the invalid scan and those after it
@@ -305,6 +307,23 @@ Result<PendingEntry> RobotSequencer::relocalize(const RobotRelocalized& relocali
     }
     pending_.apply(relocalized);
     return PendingEntry{PendingEntry::kNoRobot, relocalized, {}, 0};
+}
+
+Result<std::optional<PendingEntry>> RobotSequencer::change_mode(const ModeChanged& changed) {
+    if (changed.is_localize_only == pending_.is_localize_only()) return std::nullopt;
+    const auto& robots = pending_.robots();
+    const auto sends_poses = [](const LoggedRobot& robot) { return robot.poses == Poses::kMap; };
+    const auto sender = std::ranges::find_if(robots, sends_poses);
+    const auto other = std::ranges::find_if_not(robots, sends_poses);
+    if (!changed.is_localize_only && sender != robots.end() && other != robots.end()) {
+        return Error{Errc::kConflict,
+                     fmt::format("localize_only: the session has robot '{}', which sends its poses (--poses map), and "
+                                 "robot '{}', whose poses the server estimates; they cannot both change one map, so it "
+                                 "stays as it is",
+                                 sender->name, other->name)};
+    }
+    pending_.apply(changed);
+    return PendingEntry{PendingEntry::kNoRobot, changed, {}, 0};
 }
 
 // Acknowledgements

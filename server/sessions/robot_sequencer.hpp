@@ -75,6 +75,10 @@ public:
     /// Errors: kNotFound if the robot has not joined; kConflict if it sends poses.
     [[nodiscard]] Result<PendingEntry> relocalize(const RobotRelocalized& relocalized);
 
+    /// Returns the entry to append when an operator turns localize-only mode on or off; nullopt if it is so already.
+    /// Errors: kConflict if mapping is to go on with robots whose poses do not go together.
+    [[nodiscard]] Result<std::optional<PendingEntry>> change_mode(const ModeChanged& changed);
+
     /// Sets where a robot is whose scans have no poses, to estimate what its next scans reach.
     /// @param robot  index in the session
     /// @param place  by its newest scan in the maps

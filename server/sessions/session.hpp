@@ -85,6 +85,11 @@ public:
     ///              robot has not joined, kConflict if it sends poses, or why the session accepts no entries
     void relocalize(const RobotRelocalized& relocalized, std::function<void(Result<>)> done);
 
+    /// Turns localize-only mode on or off for the scans that arrive from now on: appends the entry to the log.
+    /// @param done  receives, on the session's strand, success when the entry waits to be appended or the mode is that
+    ///              already, or kConflict if the robots cannot map together, or why the session accepts no entries
+    void change_mode(const ModeChanged& changed, std::function<void(Result<>)> done);
+
     /// Begins to correct the maps if they show scans at poses that have been corrected.
     void correct_maps();
 

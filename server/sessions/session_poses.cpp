@@ -36,6 +36,18 @@ void Session::relocalize(const RobotRelocalized& relocalized, std::function<void
     });
 }
 
+void Session::change_mode(const ModeChanged& changed, std::function<void(Result<>)> done) {
+    on_strand([changed, done = std::move(done)](Session& self) {
+        if (self.refusing_) return done(*self.refusing_);
+        auto entry = self.sequencer_.change_mode(changed);
+        if (!entry) return done(entry.error());
+        std::vector<PendingEntry> entries;
+        if (*entry) entries.push_back(std::move(**entry));
+        if (!entries.empty()) self.enqueue(std::move(entries));
+        done({});
+    });
+}
+
 /// Begins to make the maps at the corrected poses, beside those that are shown.
 void Session::begin_correction() {
     if (correction_ || refusing_ || !maps_.localized().is_outdated()) return;

@@ -93,14 +93,26 @@ Result<> SessionRegistry::check_new(std::string_view name, const Creator& creato
                                           made, creator.token)};
 }
 
-std::shared_ptr<Session> SessionRegistry::add(SessionInfo info, mapping::Projection projection) {
+/// Appends an entry to the log of a session that nobody uses yet. If that fails, the session is removed.
+Result<> SessionRegistry::append_first(store::SessionId session, Revision revision, const LogEntry& entry) {
+    auto appended = store::append_and_wait(state_.log, session, revision, {wire::encode_entry(entry)});
+    if (!appended) static_cast<void>(state_.log.remove_session(session)); // if this fails, the next start removes it
+    return appended;
+}
+
+Result<std::shared_ptr<Session>> SessionRegistry::add(SessionInfo info, mapping::Projection projection,
+                                                      const ModeChanged& mode) {
+    if (mode != ModeChanged()) {
+        if (auto appended = append_first(info.id, projection.revision() + 1, mode); !appended) return appended.error();
+        if (auto applied = projection.apply(mode); !applied) return applied.error();
+    }
     auto session = state_.factory.make(std::move(info), std::move(projection), 0);
     state_.cache.add(session, state_.config.clock());
     return session;
 }
 
 Result<std::shared_ptr<Session>> SessionRegistry::create(std::string_view name, const SessionOptions& options,
-                                                         const Creator& creator) {
+                                                         const Creator& creator, const ModeChanged& mode) {
     if (auto ok = check_name(name); !ok) return ok.error();
     const auto config = mapping::resolve(options);
     if (!config) return config.error();
@@ -111,12 +123,12 @@ Result<std::shared_ptr<Session>> SessionRegistry::create(std::string_view name, 
     const auto id = state_.log.create_session(wire::encode_session(record));
     if (!id) return id.error();
     return add({*id, record.name, record.created, *config, creator.token, creator.chunks_max},
-               mapping::Projection(*config));
+               mapping::Projection(*config), mode);
 }
 
 Result<std::shared_ptr<Session>> SessionRegistry::import_map(std::string_view name, const SessionOptions& options,
                                                              const std::vector<MapPatch>& patches,
-                                                             const Creator& creator) {
+                                                             const Creator& creator, const ModeChanged& mode) {
     if (auto ok = check_name(name); !ok) return ok.error();
     const auto config = mapping::resolve(options);
     if (!config) return config.error();
@@ -140,13 +152,11 @@ Result<std::shared_ptr<Session>> SessionRegistry::import_map(std::string_view na
     const auto id = state_.log.create_session(wire::encode_session(record));
     if (!id) return id.error();
     for (std::size_t n = 0; n < patches.size(); ++n) {
-        const auto imported = store::append_and_wait(state_.log, *id, n + 1, {wire::encode_entry(patches[n])});
-        if (imported) continue;
-        static_cast<void>(state_.log.remove_session(*id)); // if this fails, the next start removes it
-        return imported.error();
+        if (auto imported = append_first(*id, n + 1, patches[n]); !imported) return imported.error();
     }
     share.give_back_all(); // the session takes its pages itself
-    return add({*id, record.name, record.created, *config, creator.token, creator.chunks_max}, std::move(*projection));
+    return add({*id, record.name, record.created, *config, creator.token, creator.chunks_max}, std::move(*projection),
+               mode);
 }
 
 Result<> SessionRegistry::remove(std::string_view name) {

@@ -78,8 +78,8 @@ Result<StoredTrajectories> read_old_paths(store::ScanLog& log, store::SessionId 
         if (!taken) return damaged_entry(revision, taken.error());
         if (*taken) maps.scan_poses.place(**taken);
         if (!*taken || (*taken)->robot >= kept.size() || revision >= kept[(*taken)->robot]) return {};
-        const bool is_integrated = filter.take(revision, **taken) == ScanUse::kIntegrated;
-        if (!is_integrated || revision <= since) return {};
+        const ScanUse use = filter.take(revision, **taken);
+        if (!is_in_trajectory(use) || revision <= since) return {};
         paths.robots[(*taken)->robot].push_back({revision, (*taken)->stamp, *(*taken)->pose});
         ++points;
         return {};

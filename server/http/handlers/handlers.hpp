@@ -93,6 +93,7 @@ namespace scanloom::http {
 [[nodiscard]] boost::asio::awaitable<Result<Response>> get_trajectory_tum(Context& context); ///< of sent poses, too
 [[nodiscard]] boost::asio::awaitable<Result<Response>> get_pose_graph(Context& context);     ///< keyframes and edges
 [[nodiscard]] boost::asio::awaitable<Result<Response>> relocalize(Context& context);         ///< by an operator
+[[nodiscard]] boost::asio::awaitable<Result<Response>> change_mode(Context& context);        ///< localize-only mode
 
 // log.cpp
 

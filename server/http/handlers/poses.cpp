@@ -194,4 +194,19 @@ boost::asio::awaitable<Result<Response>> relocalize(Context& context) {
     co_return response;
 }
 
+boost::asio::awaitable<Result<Response>> change_mode(Context& context) {
+    const auto body = parse_json_object(context.request.body, {"localize_only"});
+    if (!body) co_return body.error();
+    const auto localize_only = read_flag(*body, "localize_only");
+    if (!localize_only) co_return localize_only.error();
+    if (!*localize_only) co_return Error{Errc::kInvalidField, "localize_only is missing; give true or false"};
+    const ModeChanged changed{**localize_only};
+    const auto taken = co_await sockets::resume_with<Result<>>(
+        [&](auto done) { context.session->change_mode(changed, std::move(done)); });
+    if (!taken) co_return taken.error();
+    Response response = ok(boost::json::object{{"localize_only", changed.is_localize_only}});
+    response.status = Status::accepted;
+    co_return response;
+}
+
 } // namespace scanloom::http

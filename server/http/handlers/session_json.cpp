@@ -84,6 +84,7 @@ boost::json::object session_json(const sessions::SessionInfo& info, const mappin
                              {"exclusions", snapshot.exclusions->revision()},
                              {"scans", scans},
                              {"moving_scans", snapshot.moving_scans},
+                             {"localize_only", snapshot.is_localize_only},
                              {"config", to_json(info.config)},
                              {"layers", layer_names()},
                              {"bounds", bounds_json(mapping::bounds_of(snapshot), info.config.cell_size)},
@@ -123,7 +124,7 @@ boost::json::object damaged_json(std::string_view name, const Error& reason) {
 }
 
 Result<SessionRequest> parse_session_request(std::string_view body) {
-    std::vector<std::string_view> known = {"name"};
+    std::vector<std::string_view> known = {"name", "localize_only"};
     for (const auto& field : mapping::config_fields()) known.push_back(field.name);
     const auto object = parse_json_object(body, known);
     if (!object) return object.error();
@@ -132,6 +133,9 @@ Result<SessionRequest> parse_session_request(std::string_view body) {
     auto name = read_text(*object, "name");
     if (!name) return name.error();
     wanted.name = std::move(*name);
+    const auto localize_only = read_flag(*object, "localize_only");
+    if (!localize_only) return localize_only.error();
+    wanted.mode.is_localize_only = localize_only->value_or(false);
     if (auto read = read_options(*object, wanted.options); !read) return read.error();
     return wanted;
 }

@@ -35,6 +35,7 @@ namespace scanloom::http {
 struct SessionRequest {
     std::string name;
     SessionOptions options;
+    ModeChanged mode; ///< in which it begins
 };
 
 /// Errors: kMalformed or kInvalidField, naming the field. The session checks the ranges.

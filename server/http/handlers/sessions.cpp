@@ -107,8 +107,8 @@ Result<Response> create_session(Context& context) {
     if (!wanted) return wanted.error();
     if (const auto permitted = check_permission(*context.token, auth::Action::kChange, wanted->name); !permitted)
         return context.services.authorizer.refuse(context.request, permitted.error(), wanted->name);
-    const auto session =
-        context.services.sessions.create(wanted->name, wanted->options, sessions::creator_of(*context.token));
+    const auto session = context.services.sessions.create(wanted->name, wanted->options,
+                                                          sessions::creator_of(*context.token), wanted->mode);
     if (!session) return context.services.authorizer.noted(context, session.error(), wanted->name);
     return created_session(**session);
 }
@@ -139,6 +139,7 @@ struct Form {
     std::optional<std::string_view> yaml;
     std::optional<std::string_view> image;
     SessionOptions options;
+    ModeChanged mode;
 };
 
 Result<Form> read_form(const Request& request) {
@@ -151,11 +152,14 @@ Result<Form> read_form(const Request& request) {
             form.yaml = content;
         } else if (name == "image") {
             form.image = content;
+        } else if (name == "localize_only" && (content == "true" || content == "false")) {
+            form.mode.is_localize_only = content == "true";
+        } else if (name == "localize_only") {
+            return Error{Errc::kInvalidField, "localize_only is neither true nor false"};
         } else if (setting == nullptr) {
-            return Error{Errc::kInvalidField,
-                         fmt::format("the field {} is unknown here; possible are yaml, image and the "
-                                     "settings of a session",
-                                     in_quotes(name))};
+            return Error{Errc::kInvalidField, fmt::format("the field {} is unknown here; possible are yaml, image, "
+                                                          "localize_only and the settings of a session",
+                                                          in_quotes(name))};
         } else if (auto set = mapping::set_option(form.options, *setting, content); !set) {
             return set.error();
         }
@@ -187,8 +191,8 @@ Result<Response> import_map(Context& context) {
         form->options.cell_size = description->resolution;
     }
     const auto& name = context.arguments["session"];
-    const auto session =
-        context.services.sessions.import_map(name, form->options, *patches, sessions::creator_of(*context.token));
+    const auto session = context.services.sessions.import_map(name, form->options, *patches,
+                                                              sessions::creator_of(*context.token), form->mode);
     if (!session) return context.services.authorizer.noted(context, session.error(), name);
     return created_session(**session);
 }

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <optional>
 #include <random>
 
 namespace scanloom {
@@ -75,6 +76,21 @@ TEST(ScanFilter, MaxJumpIgnoresExcludedScans) {
     EXPECT_EQ(use_of(3, 40.5), ScanUse::kExcluded);
     EXPECT_EQ(use_of(4, 40.9), ScanUse::kJump) << "only the excluded scans are near";
     EXPECT_EQ(use_of(5, 0.5), ScanUse::kIntegrated);
+}
+
+TEST(ScanFilter, ScansOfLocalizeOnlyModeAreInTheTrajectoryUnlessTheyJump) {
+    ScanFilter filter(1.0);
+    const auto use_of = [&](std::uint64_t seq, std::optional<Pose2> pose, bool is_localize_only) {
+        return filter.take(seq, ScanPose{0, seq, 0.0, pose, is_localize_only});
+    };
+    EXPECT_EQ(use_of(1, Pose2{}, true), ScanUse::kLocalizeOnly);
+    EXPECT_EQ(use_of(2, Pose2{0.9, 0.0, 0.0}, false), ScanUse::kIntegrated);
+    EXPECT_EQ(use_of(3, Pose2{9.0, 0.0, 0.0}, true), ScanUse::kJump);
+    EXPECT_EQ(use_of(4, std::nullopt, true), ScanUse::kUnplaced);
+    EXPECT_EQ(use_of(5, Pose2{1.8, 0.0, 0.0}, true), ScanUse::kLocalizeOnly);
+    for (const auto use : {ScanUse::kJump, ScanUse::kUnplaced, ScanUse::kExcluded}) {
+        EXPECT_FALSE(is_in_trajectory(use));
+    }
 }
 
 } // namespace

@@ -34,11 +34,12 @@ LogEntry random_entry(std::mt19937& engine) {
     case 4: return ExclusionLifted{random(6)};
     case 5: return MapsCorrected{random(80)};
     case 6: return RobotRelocalized{robot, {1.0, 2.0}, 3.0};
+    case 7: return ModeChanged{random(3) == 0};
     default: {
         Scan scan = random_scan(1, random(5) + 1);
         scan.sensor = random(3);
         if (random(8) == 0) scan.pose.reset();
-        return ScanTaken{robot, scan};
+        return ScanTaken{robot, scan, random(4) == 0};
     }
     }
 }
@@ -82,7 +83,9 @@ struct CanFollow {
         const bool is_described = std::ranges::any_of(all_of<SensorDescribed>(log), [&](const auto& one) {
             return one.robot == taken.robot && one.sensor.id == taken.scan.sensor;
         });
-        const bool is_next = taken.scan.seq == scans_of(taken.robot) + 1;
+        const auto modes = all_of<ModeChanged>(log);
+        const bool is_of_mode = taken.is_localize_only == (!modes.empty() && modes.back().is_localize_only);
+        const bool is_next = taken.scan.seq == scans_of(taken.robot) + 1 && is_of_mode;
         return is_described && is_next && (taken.scan.pose || joined_last(taken.robot).poses != Poses::kMap);
     }
     bool operator()(const MapPatch&) const { return !has_joined(0); }
@@ -100,6 +103,7 @@ struct CanFollow {
     bool operator()(const RobotRelocalized& relocalized) const {
         return has_joined(relocalized.robot) && joined_last(relocalized.robot).poses != Poses::kMap;
     }
+    bool operator()(const ModeChanged&) const { return true; }
 };
 
 TEST(LogRules, AcceptExactlyTheEntriesInSequence) {

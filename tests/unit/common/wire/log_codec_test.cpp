@@ -30,11 +30,14 @@ std::vector<LogEntry> one_of_each() {
             ScanTaken{3, example_scan(17)},
             ScanTaken{3, stepped},
             ScanTaken{3, unplaced},
+            ScanTaken{3, example_scan(20), true},
             ScansExcluded{2, 3, StampRange{-1.5, 1e9}},
             ScansExcluded{3, 1, SeqRange{4, 4}},
             ExclusionLifted{2},
             MapsCorrected{300},
-            RobotRelocalized{2, {1.5, -2.5}, 10.0}};
+            RobotRelocalized{2, {1.5, -2.5}, 10.0},
+            ModeChanged{true},
+            ModeChanged{false}};
 }
 
 TEST(LogCodec, DecodingReturnsEveryKindOfEntry) {

@@ -6,15 +6,22 @@
 #include <cmath>
 #include <cstddef>
 #include <optional>
+#include <vector>
 
 namespace scanloom::slam {
 
 /// Two robots that share a map. The second one starts when the first has ended.
 class TwoRobots {
 public:
-    TwoRobots(const Drive& first, const Drive& second) : first_(first), second_(second) {
+    /// @param is_frozen  whether the map is frozen between them
+    TwoRobots(const Drive& first, const Drive& second, bool is_frozen = false) : first_(first), second_(second) {
         for (std::size_t n = 0; n < first.scans.size(); ++n)
             a_.add(scan_matching::points_of(first.scans[n], first.laser), first.odometry[n]);
+        if (is_frozen) {
+            a_.finish();
+            map_.freeze(true);
+            before_.assign(map_.graph().poses().begin(), map_.graph().poses().end());
+        }
         for (std::size_t n = 0; n < second.scans.size(); ++n) {
             b_.add(scan_matching::points_of(second.scans[n], second.laser), second.odometry[n]);
             if (!located_at_ && b_.located_fragments() > 0) located_at_ = n;
@@ -49,6 +56,9 @@ public:
         return std::hypot(truth.x - found.x, truth.y - found.y);
     }
 
+    /// Returns the poses of the keyframes when the map was frozen.
+    [[nodiscard]] const std::vector<Transform2>& before() const { return before_; }
+
     [[nodiscard]] const TrajectoryEstimator& second() const { return b_; }
     [[nodiscard]] const SharedMap& map() const { return map_; }
 
@@ -59,6 +69,7 @@ private:
     TrajectoryEstimator a_{map_, 0};
     TrajectoryEstimator b_{map_, 1};
     std::optional<std::size_t> located_at_;
+    std::vector<Transform2> before_;
 };
 
 } // namespace scanloom::slam

@@ -47,6 +47,17 @@ TEST_F(ApiImportTest, FormFieldsSetTheSessionSettings) {
               "100,100,0,0,0,0,-1,-1\n100,100,0,0,0,0,-1,-1\n0,0,0,0,0,0,0,0\n0,0,0,0,0,0,0,0\n");
 }
 
+TEST_F(ApiImportTest, RobotsAreOnlyLocatedIfTheFormSaysSo) {
+    ASSERT_EQ(import("depot", {yaml(), image(), {"localize_only", "true"}}).status, Status::created);
+    EXPECT_EQ(get_json("/api/v1/sessions/depot").at("localize_only"), true);
+    const auto map = std::string(get("/api/v1/sessions/depot/map.csv").body.bytes());
+    stream("depot", 2);
+    EXPECT_EQ(get_json("/api/v1/sessions/depot").at("scans"), 2);
+    EXPECT_EQ(std::string(get("/api/v1/sessions/depot/map.csv").body.bytes()), map);
+    ASSERT_EQ(import("open", {yaml(), image(), {"localize_only", "false"}}).status, Status::created);
+    EXPECT_EQ(get_json("/api/v1/sessions/open").at("localize_only"), false);
+}
+
 TEST_F(ApiImportTest, InvalidFormsCreateNoSession) {
     const auto refused = [&](const std::vector<std::pair<std::string, std::string>>& fields, Status status) {
         return detail(import("depot", fields), status);
@@ -57,6 +68,8 @@ TEST_F(ApiImportTest, InvalidFormsCreateNoSession) {
     EXPECT_THAT(refused({{"yaml", "resolution: 2\norigin: [0, 0, 0]\n"}, image()}, Status::bad_request),
                 HasSubstr("2 metres per pixel, which is no valid cell size; add the field cell_size"));
     EXPECT_THAT(refused({yaml(), image(), {"colour", "7"}}, Status::bad_request), HasSubstr("colour"));
+    EXPECT_THAT(refused({yaml(), image(), {"localize_only", "1"}}, Status::bad_request),
+                HasSubstr("localize_only is neither true nor false"));
     EXPECT_THAT(refused({{"yaml", "x"}, image()}, Status::bad_request), HasSubstr("yaml"));
     EXPECT_THAT(refused({yaml(), {"image", "x"}}, Status::bad_request), HasSubstr("image"));
     EXPECT_EQ(get("/api/v1/sessions/depot").status, Status::not_found);

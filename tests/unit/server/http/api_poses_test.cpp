@@ -204,6 +204,33 @@ TEST_F(ApiPosesTest, RobotIsSearchedForWhereAnOperatorSays) {
     EXPECT_EQ(get_json("/api/v1/sessions/a").at("revision"), before + 1) << "it is an entry of the log";
 }
 
+TEST_F(ApiPosesTest, OperatorTurnsLocalizeOnlyModeOn) {
+    drive_lap();
+    const auto session = [&] { return get_json("/api/v1/sessions/a"); };
+    EXPECT_EQ(session().at("localize_only"), false);
+    const auto response = ask("POST", "/api/v1/sessions/a/mode", R"({"localize_only": true})");
+    EXPECT_EQ(response.status, Status::accepted);
+    EXPECT_EQ(boost::json::parse(response.body.bytes()), boost::json::parse(R"({"localize_only": true})"));
+    EXPECT_EQ(get("/api/v1/sessions/a/digest").status, Status::ok);
+    EXPECT_EQ(session().at("localize_only"), true);
+    for (const auto& [body, said] : {std::pair(R"({})", "localize_only is missing"),
+                                     std::pair(R"({"localize_only": 1})", "localize_only is neither true nor false"),
+                                     std::pair(R"({"localize_only": true, "a": 1})", "a")}) {
+        EXPECT_THAT(detail(ask("POST", "/api/v1/sessions/a/mode", body), Status::bad_request), HasSubstr(said));
+    }
+}
+
+TEST_F(ApiPosesTest, SessionBeginsInLocalizeOnlyMode) {
+    const auto made = ask("POST", "/api/v1/sessions", R"({"name": "fixed", "localize_only": true})");
+    EXPECT_EQ(made.status, Status::created);
+    EXPECT_EQ(get_json("/api/v1/sessions/fixed").at("localize_only"), true);
+    EXPECT_EQ(get_json("/api/v1/sessions/fixed").at("revision"), 1) << "it is an entry of the log";
+    stream("fixed", "r1", {scan(1)});
+    EXPECT_EQ(get_json("/api/v1/sessions/fixed").at("bounds"), nullptr);
+    EXPECT_THAT(detail(ask("POST", "/api/v1/sessions", R"({"name": "b", "localize_only": 1})"), Status::bad_request),
+                HasSubstr("localize_only is neither true nor false"));
+}
+
 TEST_F(ApiPosesTest, SessionShowsWhetherPosesAreGiven) {
     stream("a", 1);
     EXPECT_EQ(localization().at("poses"), "map");

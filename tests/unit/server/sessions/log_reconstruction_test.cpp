@@ -105,6 +105,33 @@ TEST(LogReconstruction, UndamagedLogIsUnchanged) {
     EXPECT_EQ(reconstruction.empty_scans(), 0U);
 }
 
+TEST(LogReconstruction, AddsALostChangeOfTheMode) {
+    const auto scan = [](std::uint64_t seq, bool is_localize_only) {
+        return ScanTaken{0, random_scan(0, seq), is_localize_only};
+    };
+    const std::vector<LogEntry> log{RobotJoined{0, "a"}, SensorDescribed{0, small_laser()},
+                                    scan(1, false),      ModeChanged{true},
+                                    scan(2, true),       scan(3, true)};
+    LogReconstruction reconstruction;
+    std::vector<LogEntry> kept;
+    for (const std::size_t n : {0U, 1U, 2U, 5U}) {
+        for (auto& entry : reconstruction.add(n + 1, log[n])) kept.push_back(std::move(entry));
+    }
+    ASSERT_EQ(kept.size(), log.size());
+    EXPECT_EQ(kept[3], log[3]);
+    EXPECT_TRUE(std::get<ScanTaken>(kept[4]).is_localize_only) << "the empty scan";
+    EXPECT_EQ(kept[5], log[5]);
+    EXPECT_EQ(reconstruction.empty_scans(), 1U);
+}
+
+TEST(LogReconstruction, RelocalizedRobotsHaveTheirNewNumbers) {
+    LogReconstruction reconstruction;
+    ASSERT_EQ(reconstruction.add(2, RobotJoined{1, "b", "", std::nullopt, Poses::kOdometry}).size(), 1U);
+    const auto kept = reconstruction.add(3, RobotRelocalized{1, {2.0, 3.0}, 1.0});
+    ASSERT_EQ(kept.size(), 1U);
+    EXPECT_EQ(kept[0], LogEntry(RobotRelocalized{0, {2.0, 3.0}, 1.0}));
+}
+
 TEST(LogReconstruction, DropsScansAcrossAnImpossibleGap) {
     LogReconstruction reconstruction;
     static_cast<void>(reconstruction.add(1, RobotJoined{0, "a"}));

@@ -1,0 +1,121 @@
+#include "tests/unit/server/sessions/estimated_poses_fixture.hpp"
+
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <string>
+
+namespace scanloom::sessions {
+namespace {
+
+using testing::HasSubstr;
+
+/// A session whose map does not change while robots drive in it.
+class LocalizeOnlyTest : public EstimatedPosesTest {
+protected:
+    Result<> change_mode(bool is_localize_only) {
+        std::optional<Result<>> answer;
+        session_->change_mode({is_localize_only}, [&](const Result<>& done) { answer = done; });
+        run();
+        return answer.value();
+    }
+
+    /// Returns how far the robot is from where it truly is, metres. @param scan  its newest one of the lap
+    [[nodiscard]] double error_of(const std::string& robot, std::size_t scan) {
+        const Pose2 truth = compose(inverse(lap().truth.front()), lap().truth[scan]);
+        const Pose2 pose = find_robot(robot).pose.value();
+        return std::hypot(pose.x - truth.x, pose.y - truth.y);
+    }
+};
+
+TEST_F(LocalizeOnlyTest, RobotsAreTrackedAndTheMapStaysAsItIs) {
+    const std::size_t half = lap().scans.size() * 85 / 100; // a lap
+    drive_on(20, half);
+    ASSERT_TRUE(change_mode(true));
+    EXPECT_TRUE(session_->snapshot()->is_localize_only);
+    const std::string map = digest();
+    const auto link = drive_on(20);
+    EXPECT_EQ(digest(), map);
+    EXPECT_EQ(link->located.back().state, LocalizationState::kTracking);
+    EXPECT_LT(error_of("robot", lap().scans.size() - 1), 0.3);
+    EXPECT_EQ(find_robot("robot").scan_count, lap().scans.size()) << "the trajectory has all scans";
+    EXPECT_EQ(state().poses.size(), lap().scans.size());
+    EXPECT_EQ(session_->snapshot()->moving_scans, 0U);
+
+    const State expected = state();
+    const auto whole = id_;
+    const Revision end = session_->snapshot()->revision;
+    for (const Revision kill : {half, end - 100, end}) {
+        id_ = whole;
+        crash_after(kill);
+        if (kill == half) { // before the change
+            drive_on(20, half);
+            ASSERT_TRUE(change_mode(true));
+        }
+        EXPECT_TRUE(session_->snapshot()->is_localize_only) << "killed after entry " << kill;
+        drive_on(20);
+        EXPECT_EQ(state(), expected) << "killed after entry " << kill;
+    }
+}
+
+TEST_F(LocalizeOnlyTest, MappingGoesOnAfterwards) {
+    const std::size_t third = lap().scans.size() / 3;
+    drive_on(20, third);
+    ASSERT_TRUE(change_mode(true));
+    drive_on(20, third + 10);
+    const std::string map = digest();
+    ASSERT_TRUE(change_mode(false));
+    EXPECT_EQ(digest(), map);
+    drive_on(20);
+    EXPECT_NE(digest(), map);
+    EXPECT_EQ(digest(), digest_with_poses_in_maps()) << "without the scans of localize-only mode";
+    EXPECT_LT(error_of("robot", lap().scans.size() - 1), 0.3);
+    const auto revision = session_->snapshot()->revision;
+    ASSERT_TRUE(change_mode(false));
+    EXPECT_EQ(session_->snapshot()->revision, revision) << "it was so already";
+}
+
+/// The map was made by a robot that sends its poses. Others, whose poses the server estimates, are located in it.
+TEST_F(LocalizeOnlyTest, RobotsOfAllKindsOfPosesJoin) {
+    slam::Drive exact = lap();
+    for (std::size_t n = 0; n < exact.truth.size(); ++n) {
+        exact.odometry[n] = compose(inverse(exact.truth.front()), exact.truth[n]);
+    }
+    const std::size_t length = exact.scans.size();
+    drive_on("given", exact, 20, length - 20, Poses::kMap);
+    ASSERT_TRUE(change_mode(true));
+    const std::string map = digest();
+    drive_on("given", exact, 20, length, Poses::kMap);
+    EXPECT_LT(error_of("given", length - 1), 1e-9);
+    const auto link = drive_on("estimated", lap(), 20, length / 2);
+    EXPECT_EQ(link->located.back().state, LocalizationState::kTracking);
+    EXPECT_LT(error_of("estimated", length / 2 - 1), 0.15);
+    EXPECT_EQ(digest(), map);
+    const auto refused = change_mode(false);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, Errc::kConflict);
+    EXPECT_THAT(refused.error().message, HasSubstr("robot 'given', which sends its poses"));
+
+    const State expected = state();
+    start_session();
+    EXPECT_EQ(state(), expected);
+    EXPECT_LT(error_of("estimated", length / 2 - 1), 0.15);
+}
+
+TEST_F(LocalizeOnlyTest, ACheckpointKeepsTheMode) {
+    drive_on(20, 40, Poses::kMap);
+    ASSERT_TRUE(change_mode(true));
+    const std::string map = digest();
+    bool is_closed = false;
+    session_->close({Errc::kShuttingDown, "closed"}, [&] { is_closed = true; });
+    run();
+    ASSERT_TRUE(is_closed);
+    start_session();
+    EXPECT_TRUE(session_->snapshot()->is_localize_only);
+    EXPECT_EQ(digest(), map);
+    drive_on(20, 60, Poses::kMap);
+    EXPECT_EQ(digest(), map);
+}
+
+} // namespace
+} // namespace scanloom::sessions
