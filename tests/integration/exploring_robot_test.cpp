@@ -41,8 +41,10 @@ double known_share(const sim::World& world, const mapping::Snapshot& maps) {
 }
 
 /// Returns the area that the robot could still explore.
-std::vector<grid::Cell> left_unexplored(const sim::World& world, GoalOracle& oracle, const Pose2& robot) {
+std::vector<grid::Cell> left_unexplored(const sim::World& world, GoalOracle& oracle, RobotIndex index) {
     const auto maps = oracle.maps();
+    const Pose2 robot =
+        maps.robots.at(index).pose.value(); // by the map, which differs from the world if it is estimated
     const auto truth = ground_truth_of(world, maps.config.cell_size);
     constexpr std::int32_t kMargin = 40; // cells; noisy readings end behind walls
     const grid::CellBox area{truth.i_begin - kMargin, truth.j_begin - kMargin, truth.i_begin + truth.width + kMargin,
@@ -91,6 +93,7 @@ public:
 
     /// Returns why the robot has given up, if it has.
     [[nodiscard]] const std::optional<Error>& failure() const { return failure_; }
+    [[nodiscard]] RobotIndex index() const { return index_; }
     [[nodiscard]] const sim::ExploringSource& source() const { return source_; }
     [[nodiscard]] double clearance_min() const { return clearance_min_; }
 
@@ -108,7 +111,7 @@ private:
 void expect_explored(const Explorer& robot, GoalOracle& oracle) {
     EXPECT_FALSE(robot.failure()) << robot.failure()->message;
     const auto& simulator = robot.source().simulator();
-    EXPECT_TRUE(left_unexplored(simulator.world(), oracle, simulator.pose()).empty());
+    EXPECT_TRUE(left_unexplored(simulator.world(), oracle, robot.index()).empty());
     EXPECT_EQ(robot.source().simulator().collisions(), 0U);
     EXPECT_GE(robot.clearance_min(), sim::kBodyRadius);
     EXPECT_TRUE(robot.source().remarks().starts_with("explored: no frontier is reachable with a clearance of 0.22 m, "))
