@@ -83,7 +83,6 @@ void TrajectoryEstimator::add(ScanPoints scan, const std::optional<Pose2>& odome
     const bool is_elsewhere = place_to_search && (is_fragment_located() || !last.is_matched);
     if ((tracker_.unmatched() >= kLost && !scan.points.empty()) || is_elsewhere) {
         begin_fragment(std::move(scan), first, place_to_search);
-        if (is_fragment_located()) first_.back() = {graph().pose(keyframes_.back()), true};
     } else if (last.is_matched && is_due(last)) {
         if (place_to_search) map_.expect(fragments_.back(), *place_to_search);
         if (is_in_frozen_map_ && !is_leaving) return begin_tracking(first);
@@ -92,6 +91,8 @@ void TrajectoryEstimator::add(ScanPoints scan, const std::optional<Pose2>& odome
         return;
     }
     placed_.back() = {anchor_, T_anchor_newest()};
+    const bool is_located_now = !first_.back().is_matched && is_fragment_located();
+    if (is_located_now) first_.back() = {graph().pose(keyframes_.back()), true}; // no longer in a frame of its own
 }
 
 void TrajectoryEstimator::finish() { place(tracker_.decide()); }
