@@ -12,12 +12,6 @@ using scan_matching::pose_of;
 using scan_matching::Transform2;
 using scan_matching::transform_of;
 
-/// Returns how far b is from a, metres; a turn of one radian counts as one metre.
-double distance_between(const Transform2& a, const Transform2& b) {
-    const Transform2 move = inverse(a) * b;
-    return distance_of(move) + std::fabs(yaw_of(move));
-}
-
 } // namespace
 
 std::optional<Pose2> RobotPoses::add(const Scan& scan, const Sensor& sensor) {
@@ -39,6 +33,7 @@ std::optional<Pose2> RobotPoses::add(const Scan& scan, const Sensor& sensor) {
     added.first = sensor.kind == SensorKind::kLaser ? estimator_.first_pose_of(added.laser_scan) : place_.T_map_robot;
     const auto in_maps = is_located(scan_count() - 1) ? std::optional(added.first) : std::nullopt;
     in_maps_.append(in_maps);
+    added.was_shown = in_maps.has_value();
     if (added.laser_scan != kNoLaserScan) added.was_in_map = estimator_.is_in_map(added.laser_scan);
     return in_maps;
 }
@@ -66,10 +61,7 @@ void RobotPoses::correct() {
     mapping::EstimatedPoses after;
     for (std::size_t scan = 0; scan < scan_count(); ++scan) {
         std::optional<Pose2> pose = before[scan];
-        if (is_located(scan)) {
-            const Pose2 estimate = newest(scan);
-            if (!pose || distance_between(transform_of(*pose), transform_of(estimate)) > kSettled) pose = estimate;
-        }
+        if (is_located(scan)) follow(pose, newest(scan));
         after.append(pose);
     }
     in_maps_ = std::move(after);
@@ -78,7 +70,7 @@ void RobotPoses::correct() {
         keyframes_in_maps_.push_back(estimator_.map().graph().pose(keyframe));
     }
     keyframes_at_correction_ = keyframes_in_maps_.size();
-    ++corrections_;
+    corrections_.push_back({scan_count(), estimator_.decided_count()});
 }
 
 /// Returns how far a keyframe or a decided scan is from its pose in the maps, at most. Looks at keyframes only after
@@ -133,7 +125,26 @@ mapping::Localization RobotPoses::localization() const {
     if (laser_scans_.empty()) return {.state = state()};
     const auto& newest = estimator_.newest();
     return {state(),          newest.inlier_ratio,     newest.position_sigma,
-            newest.yaw_sigma, estimator_.loop_count(), corrections_};
+            newest.yaw_sigma, estimator_.loop_count(), corrections_.size()};
+}
+
+RobotHistory RobotPoses::history() const {
+    RobotHistory history{.moments = corrections_, .laser_scans = {}, .scans = {}};
+    for (std::size_t n = 0; n < estimator_.scan_count(); ++n) {
+        const auto& [keyframe, T_keyframe_robot, is_matched] = estimator_.placement(n);
+        history.laser_scans.push_back(
+            {estimator_.first_pose_of(n), estimator_.was_located(n), keyframe, T_keyframe_robot, is_matched});
+    }
+    for (std::size_t n = 0; n < scans_.size(); ++n) {
+        const PlacedScan& scan = scans_[n];
+        auto& added = history.scans.emplace_back();
+        added.stamp = scan.stamp;
+        if (scan.was_shown) added.added = scan.first;
+        if (scan.laser_scan == kNoLaserScan) continue;
+        added.laser_scan = scan.laser_scan;
+        if (laser_scans_[scan.laser_scan] != n) added.T_laser_scan = scan.T_laser_scan;
+    }
+    return history;
 }
 
 } // namespace scanloom::localization

@@ -3,6 +3,7 @@
 #include "common/scan/poses.hpp"
 #include "common/scan/scan.hpp"
 #include "common/scan/sensor.hpp"
+#include "core/localization/pose_history.hpp"
 #include "core/mapping/scan_poses.hpp"
 #include "core/mapping/snapshot.hpp"
 #include "core/slam/trajectory_estimator.hpp"
@@ -30,7 +31,6 @@ struct Place {
 class RobotPoses {
 public:
     static constexpr double kJump = 0.1;                ///< metres; a turn of one radian counts as one metre
-    static constexpr double kSettled = 0.01;            ///< metres, likewise
     static constexpr std::size_t kCorrectionPause = 50; ///< keyframes
 
     /// @param map    that the robots of the session share; must outlive this object
@@ -91,6 +91,9 @@ public:
     /// Returns how well the poses are known.
     [[nodiscard]] mapping::Localization localization() const;
 
+    /// Returns its poses at all moments.
+    [[nodiscard]] RobotHistory history() const;
+
     /// Returns the estimator of the laser scans.
     [[nodiscard]] const slam::TrajectoryEstimator& estimator() const noexcept { return estimator_; }
 
@@ -104,6 +107,7 @@ private:
         double stamp = 0.0;                    // seconds
         Pose2 first;                           // T_map_robot, when it was added
         bool was_in_map = true;                // likewise
+        bool was_shown = true;                 // in the maps, likewise
     };
 
     [[nodiscard]] PlacedScan placed(const Scan& scan) const;
@@ -116,7 +120,7 @@ private:
     mapping::EstimatedPoses in_maps_;
     std::optional<Pose2> laser_odometry_; // of the newest laser scan
     Place place_;
-    std::size_t corrections_ = 0;
+    std::vector<RobotHistory::Moment> corrections_; // since its first scan
 
     // At the last correction, or since.
     std::vector<slam::Transform2> keyframes_in_maps_; // the poses of the robot's keyframes

@@ -18,6 +18,16 @@ void SessionPoses::correct(Revision revision) {
     for (const auto& each : robots_) {
         if (each) each->correct();
     }
+    const auto& graph = map_->graph();
+    GraphMoment moment{revision, {graph.poses().begin(), graph.poses().end()}, {}};
+    for (std::size_t n = 0; n < graph.size(); ++n) moment.is_located.push_back(graph.fragment_of(n).is_located);
+    corrections_.push_back(std::make_shared<const GraphMoment>(std::move(moment)));
+}
+
+PoseHistory SessionPoses::history() const {
+    std::vector<RobotHistory> robots;
+    for (const auto& robot : robots_) robots.push_back(robot ? robot->history() : RobotHistory());
+    return {corrections_, std::move(robots)};
 }
 
 void SessionPoses::change_mode(bool is_localize_only, Revision revision) {

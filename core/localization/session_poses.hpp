@@ -65,6 +65,10 @@ public:
     /// Returns the poses at which maps of the entries so far show the scans.
     [[nodiscard]] mapping::ScanPoses in_maps() const;
 
+    /// Returns the poses at which the maps of earlier entries showed the scans.
+    /// Cost: a copy of what is stored of each scan.
+    [[nodiscard]] PoseHistory history() const;
+
     /// Returns the number of scans with estimated poses.
     [[nodiscard]] std::size_t scan_count() const noexcept { return scan_count_; }
 
@@ -90,6 +94,7 @@ private:
     std::unique_ptr<slam::SharedMap> map_ = std::make_unique<slam::SharedMap>();
     std::vector<std::unique_ptr<RobotPoses>> robots_; // by RobotIndex; null: as find()
     Revision corrected_ = 0;
+    std::vector<std::shared_ptr<const GraphMoment>> corrections_;
     std::size_t scan_count_ = 0;
 };
 

@@ -11,6 +11,7 @@
 #include "core/mapping/sonar_layer.hpp"
 #include "core/mapping/trajectory.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -88,6 +89,11 @@ struct Snapshot {
     ScanPoses scan_poses;                          ///< of the scans that were sent without poses
     std::uint64_t moving_scans = 0;                ///< scans whose corrected poses these maps do not show
 };
+
+/// Returns whether the maps depend on poses that robots did not send: any robot's poses are not Poses::kMap.
+[[nodiscard]] inline bool has_estimated_poses(const Snapshot& snapshot) noexcept {
+    return std::ranges::any_of(snapshot.robots, [](const auto& robot) { return robot.poses != Poses::kMap; });
+}
 
 /// Returns the box of cells that a layer shows.
 /// @param snapshot  the maps

@@ -65,6 +65,23 @@ public:
     /// @param scan  number of the scan, from 0. Precondition: scan < scan_count()
     [[nodiscard]] Pose2 first_pose_of(std::size_t scan) const { return scan_matching::pose_of(first_[scan].pose); }
 
+    /// A scan and the keyframe that it follows.
+    struct PlacedScan {
+        std::size_t keyframe = 0;    ///< its index
+        Transform2 T_keyframe_robot; ///< where the robot was
+        bool is_matched = true;      ///< whether the scan fitted the map
+    };
+
+    /// Returns on which keyframe a scan hangs; without a match if that is not decided yet.
+    /// @param scan  number of the scan, from 0. Precondition: scan < scan_count()
+    [[nodiscard]] PlacedScan placement(std::size_t scan) const {
+        return scan < placed_.size() ? placed_[scan] : PlacedScan{.is_matched = false};
+    }
+
+    /// Returns whether a scan's pose was known when the scan was added.
+    /// @param scan  number of the scan, from 0. Precondition: scan < scan_count()
+    [[nodiscard]] bool was_located(std::size_t scan) const { return first_[scan].is_matched; }
+
     /// Returns whether a scan's pose is known: the scan fitted the map, and its fragment is located. Otherwise the pose
     /// is a prediction, or in a frame of its own.
     /// @param scan  number of the scan, from 0. Precondition: scan < scan_count()
@@ -111,13 +128,6 @@ public:
 
 private:
     static constexpr std::size_t kLost = 20; // scans in a row without a match
-
-    /// A scan and the keyframe that it follows.
-    struct PlacedScan {
-        std::size_t keyframe = 0;
-        Transform2 T_keyframe_robot;
-        bool is_matched = true;
-    };
 
     /// A scan's pose as it was estimated when the scan was added.
     struct FirstEstimate {

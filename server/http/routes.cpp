@@ -45,8 +45,8 @@ std::span<const Route> routes() noexcept {
     static constexpr std::string_view kTile[] = {"v", "id", "weave"};
     static constexpr std::string_view kTrajectory[] = {"since", "times"};
     static constexpr std::string_view kTum[] = {"robot", "as"};
-    static constexpr auto kMapFile = with_settings({"layer", "bbox", "weave", "until"});
-    static constexpr auto kDigest = with_settings({"layer", "weave", "until"});
+    static constexpr auto kMapFile = with_settings({"layer", "bbox", "weave", "until", "poses"});
+    static constexpr auto kDigest = with_settings({"layer", "weave", "until", "poses"});
     static constexpr auto kRoutes = std::to_array<Route>({
         // method, path, name, permission, work, sessions, parameters, handler
         {kGet, "/", "viewer", kOpen, kIo, kUnused, kAnyParameters, get_viewer},

@@ -16,6 +16,7 @@ std::string replay_id_of(const SessionInfo& session, const ReplayRequest& reques
     std::string text = tag_of(session);
     if (request.end.revision) text += fmt::format(" until {}", *request.end.revision);
     if (request.end.stamp) text += fmt::format(" until {} s", *request.end.stamp);
+    if (request.poses == ReplayPoses::kThen) text += " poses then";
     // With other exclusions, another scan may be the first one after the stamp.
     if (request.end.stamp && session.exclusions->revision() != 0) {
         text += fmt::format(" excluding {}", session.exclusions->revision());

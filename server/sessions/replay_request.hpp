@@ -19,10 +19,17 @@ struct ReplayEnd {
     friend bool operator==(const ReplayEnd&, const ReplayEnd&) = default;
 };
 
+/// At which poses a replay job shows the scans that robots sent without.
+enum class ReplayPoses {
+    kThen, ///< as the session's maps showed them at the end of the job
+    kNow,  ///< as the session's maps show them now
+};
+
 /// The settings and the end of a replay job.
 struct ReplayRequest {
     mapping::MapConfig config;
     ReplayEnd end;
+    ReplayPoses poses = ReplayPoses::kNow; ///< kNow if the job has no end
 
     friend bool operator==(const ReplayRequest&, const ReplayRequest&) = default;
 };

@@ -61,7 +61,8 @@ namespace scanloom::http {
 
 // weaves.cpp: replay jobs
 
-[[nodiscard]] Result<Response> start_weave(Context& context);  ///< 200 if the maps exist already, otherwise 202
+[[nodiscard]] boost::asio::awaitable<Result<Response>>
+start_weave(Context& context);                                 ///< 200 if the maps exist, else 202
 [[nodiscard]] Result<Response> list_weaves(Context& context);  ///< most recently used first
 [[nodiscard]] Result<Response> get_weave(Context& context);    ///< its progress
 [[nodiscard]] Result<Response> delete_weave(Context& context); ///< cancels it first

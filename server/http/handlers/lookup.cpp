@@ -113,8 +113,8 @@ boost::asio::awaitable<Result<Maps>> replayed(Context& context) {
     const auto maps = session->snapshot();
     const Revision newest = maps->revision;
     auto& weaves = context.services.weaves;
-    const auto weave =
-        weaves.start(session->info(), *request, newest, maps->scan_poses, sessions::ReplayJobs::Listing::kUnlisted);
+    const auto poses = co_await poses_for(*session, *request, *maps);
+    const auto weave = weaves.start(session->info(), *request, newest, poses, sessions::ReplayJobs::Listing::kUnlisted);
     if (!weave) co_return weave.error();
     const Revision target = sessions::target_of(*request, newest);
     co_await wait_for(context, **weave, target);

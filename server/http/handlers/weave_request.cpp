@@ -3,20 +3,25 @@
 #include "common/json/json_text.hpp"
 #include "core/mapping/map_config.hpp"
 #include "server/http/handlers/session_json.hpp"
+#include "server/http/json_read.hpp"
 #include "server/http/text.hpp"
+#include "server/sockets/worker_pool.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <chrono>
+#include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace scanloom::http {
 namespace {
 
 constexpr std::string_view kUntil = "until";
+constexpr std::string_view kPoses = "poses";
 
 /// Converts "2000-12-05T22:27:37.5Z" to seconds since 1970.
 std::optional<double> parse_rfc3339(std::string_view text) {
@@ -65,21 +70,33 @@ Result<sessions::ReplayEnd> parse_until(std::string_view text, Revision newest) 
     return wrong_until(in_quotes(text) + " (a + in an address is a space, and %2B a +)");
 }
 
+/// @param poses  as requested; nullopt: not
+Result<sessions::ReplayPoses> parse_poses(std::optional<std::string_view> poses) {
+    if (!poses || *poses == name_of(sessions::ReplayPoses::kThen)) return sessions::ReplayPoses::kThen;
+    if (*poses == name_of(sessions::ReplayPoses::kNow)) return sessions::ReplayPoses::kNow;
+    return Error{Errc::kInvalidField, fmt::format("poses is {}; then and now are possible", in_quotes(*poses))};
+}
+
 Result<sessions::ReplayRequest> request_of(const sessions::Session& session, const SessionOptions& options,
-                                           std::optional<std::string_view> until) {
+                                           std::optional<std::string_view> until,
+                                           std::optional<std::string_view> wanted_poses) {
     const auto config = mapping::resolve(options);
     if (!config) return config.error();
+    const auto poses = parse_poses(wanted_poses);
+    if (!poses) return poses.error();
     if (!until) return sessions::ReplayRequest{*config, {}};
-    const auto end = parse_until(*until, session.snapshot()->revision);
+    const auto maps = session.snapshot();
+    const auto end = parse_until(*until, maps->revision);
     if (!end) return end.error();
-    return sessions::ReplayRequest{*config, *end};
+    return sessions::ReplayRequest{*config, *end,
+                                   mapping::has_estimated_poses(*maps) ? *poses : sessions::ReplayPoses::kNow};
 }
 
 } // namespace
 
 std::span<const std::string_view> weave_parameters() noexcept {
     static const auto names = [] {
-        std::vector<std::string_view> all = {kUntil};
+        std::vector<std::string_view> all = {kUntil, kPoses};
         for (const auto& field : mapping::config_fields()) all.emplace_back(field.name);
         return all;
     }();
@@ -97,20 +114,42 @@ Result<sessions::ReplayRequest> weave_request(const sessions::Session& session, 
         if (!text) continue;
         if (auto set = mapping::set_option(options, field, *text); !set) return set.error();
     }
-    return request_of(session, options, query.find(kUntil));
+    return request_of(session, options, query.find(kUntil), query.find(kPoses));
 }
 
 Result<sessions::ReplayRequest> weave_request(const sessions::Session& session, const boost::json::object& body) {
     auto options = mapping::options_of(session.info().config);
     if (auto read = read_options(body, options); !read) return read.error();
+    std::optional<std::string> poses;
+    if (body.contains(kPoses)) {
+        auto text = read_text(body, kPoses);
+        if (!text) return text.error();
+        poses = std::move(*text);
+    }
     const auto* until = body.if_contains(kUntil);
-    if (until == nullptr) return request_of(session, options, std::nullopt);
-    if (until->is_string()) return request_of(session, options, std::string_view(until->get_string()));
+    if (until == nullptr) return request_of(session, options, std::nullopt, poses);
+    if (until->is_string()) return request_of(session, options, std::string_view(until->get_string()), poses);
     boost::system::error_code not_whole;
     const auto revision = until->to_number<Revision>(not_whole);
-    if (!not_whole) return request_of(session, options, std::to_string(revision));
+    if (!not_whole) return request_of(session, options, std::to_string(revision), poses);
     const auto in_words = in_quotes(json_text(*until));
     return wrong_until(std::string_view(in_words).substr(1, in_words.size() - 2));
+}
+
+std::string_view name_of(sessions::ReplayPoses poses) noexcept {
+    return poses == sessions::ReplayPoses::kThen ? "then" : "now";
+}
+
+boost::asio::awaitable<mapping::ScanPoses> poses_for(sessions::Session& session, const sessions::ReplayRequest& request,
+                                                     const mapping::Snapshot& maps) {
+    if (request.poses == sessions::ReplayPoses::kNow) co_return maps.scan_poses;
+    using History = std::shared_ptr<const localization::PoseHistory>;
+    const auto history = co_await sockets::resume_with<History>([&](auto done) {
+        session.read_poses([done](const localization::SessionPoses& poses) {
+            done(std::make_shared<const localization::PoseHistory>(poses.history()));
+        });
+    });
+    co_return request.end.stamp ? history->before(*request.end.stamp) : history->at(request.end.revision.value());
 }
 
 } // namespace scanloom::http

@@ -15,7 +15,7 @@ namespace {
 
 using State = sessions::ReplayJob::State;
 
-std::string_view name_of(State state) {
+std::string_view word_for(State state) {
     switch (state) {
     case State::kWaiting: return "waiting";
     case State::kRunning: return "weaving";
@@ -33,11 +33,12 @@ boost::json::object shown(const sessions::ReplayJob& weave) {
     boost::json::object until{{"revision", progress.target}, {"stamp", nullptr}};
     if (stamp) until["stamp"] = *stamp;
     boost::json::object json{{"id", weave.id()},
-                             {"state", name_of(progress.state)},
+                             {"state", word_for(progress.state)},
                              {"revision", nullptr},
                              {"woven", progress.applied},
                              {"until", std::move(until)},
                              {"follows", progress.follows},
+                             {"poses", name_of(weave.request().poses)},
                              {"exclusions", maps ? maps->exclusions->revision() : 0},
                              {"config", to_json(weave.request().config)}};
     if (progress.revision) json["revision"] = *progress.revision;
@@ -51,20 +52,21 @@ Result<std::shared_ptr<sessions::ReplayJob>> weave_in_path(const Context& contex
 
 } // namespace
 
-Result<Response> start_weave(Context& context) {
+boost::asio::awaitable<Result<Response>> start_weave(Context& context) {
     const auto& session = context.session;
     const auto body = parse_json_object(context.request.body, weave_parameters());
-    if (!body) return body.error();
+    if (!body) co_return body.error();
     const auto request = weave_request(*session, *body);
-    if (!request) return request.error();
+    if (!request) co_return request.error();
     const auto maps = session->snapshot();
-    const auto weave = context.services.weaves.start(session->info(), *request, maps->revision, maps->scan_poses);
-    if (!weave) return weave.error();
+    const auto poses = co_await poses_for(*session, *request, *maps);
+    const auto weave = context.services.weaves.start(session->info(), *request, maps->revision, poses);
+    if (!weave) co_return weave.error();
     auto response =
         ok(shown(**weave))
             .set("Location", fmt::format("/api/v1/sessions/{}/weave/{}", session->info().name, (*weave)->id()));
     if ((*weave)->progress().state != State::kDone) response.status = Status::accepted;
-    return response;
+    co_return response;
 }
 
 Result<Response> list_weaves(Context& context) {

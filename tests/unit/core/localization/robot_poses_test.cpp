@@ -71,7 +71,7 @@ TEST(RobotPoses, PosesInMapsFollowTheEstimatesWithinTheJump) {
         for (std::size_t earlier = 0; earlier < n; ++earlier) {
             const double off = distance(*after[earlier], poses->newest(earlier));
             ASSERT_TRUE(is_corrected || before[earlier] == after[earlier]) << "a pose moved without a correction";
-            ASSERT_TRUE(!is_corrected || off <= RobotPoses::kSettled);
+            ASSERT_TRUE(!is_corrected || off <= kSettled);
             largest = std::max(largest, off);
         }
     }
@@ -93,7 +93,7 @@ TEST(RobotPoses, WhatMovedLittleStays) {
         if (!poses.correct_if_due()) continue;
         const auto after = poses->in_maps();
         for (std::size_t earlier = 0; earlier <= n; ++earlier) {
-            const bool is_close = distance(*before[earlier], poses->newest(earlier)) <= RobotPoses::kSettled;
+            const bool is_close = distance(*before[earlier], poses->newest(earlier)) <= kSettled;
             EXPECT_EQ(is_close, before[earlier] == after[earlier]);
             ++(is_close ? kept : moved);
         }
@@ -140,7 +140,7 @@ TEST(RobotPoses, SonarScansFollowTheLaserScans) {
         const Pose2 expected = compose(poses->newest(n), {0.05, 0.01, 0.02});
         ASSERT_LT(distance(poses->newest(n + 1), expected), 1e-9);
         ASSERT_LT(distance(*poses->in_maps()[n + 1], compose(*poses->in_maps()[n], {0.05, 0.01, 0.02})),
-                  3.0 * RobotPoses::kSettled);
+                  3.0 * kSettled);
     }
 }
 

@@ -73,10 +73,11 @@ protected:
         return link;
     }
 
-    /// Sends the scans of the lap, and waits until none of them is moving.
-    void drive_lap() {
+    /// Sends the scans of the lap that the session does not have, and waits until none of them is moving.
+    void drive_lap(std::size_t end = lap().scans.size()) {
+        const auto& robots = registry_.find("a")->snapshot()->robots;
         std::vector<Scan> scans;
-        for (std::size_t n = 0; n < lap().scans.size(); ++n) {
+        for (std::size_t n = robots.empty() ? 0 : robots[0].last_seq; n < end; ++n) {
             Scan scan = lap().scans[n];
             scan.seq = n + 1;
             scan.stamp = stamp_of(n);
@@ -85,7 +86,7 @@ protected:
             scans.push_back(std::move(scan));
         }
         const auto session = registry_.find("a");
-        const auto link = join_as(Poses::kOdometry, scans.size());
+        const auto link = join_as(Poses::kOdometry, end);
         session->submit(link, lap().laser, 0);
         session->submit(link, std::move(scans), 1);
         link->wait();
@@ -202,6 +203,28 @@ TEST_F(ApiPosesTest, RobotIsSearchedForWhereAnOperatorSays) {
     EXPECT_EQ(boost::json::parse(response.body.bytes()),
               boost::json::parse(R"({"robot": "r1", "near": [3.5, -2], "radius": 10})"));
     EXPECT_EQ(get_json("/api/v1/sessions/a").at("revision"), before + 1) << "it is an entry of the log";
+}
+
+TEST_F(ApiPosesTest, MapsOfEarlierMomentsHaveThePosesOfThenOrOfNow) {
+    drive_lap(lap().scans.size() * 4 / 5); // before the loop closes
+    const std::string path = "/api/v1/sessions/a/";
+    const auto then = get_json(path + "digest");
+    const auto revision = then.at("revision").to_number<Revision>();
+    drive_lap();
+    const auto layers_of = [&](const std::string& query) {
+        return get_json(fmt::format("{}digest?until={}", path, query)).at("layers");
+    };
+    EXPECT_EQ(layers_of(fmt::to_string(revision)), then.at("layers"));
+    EXPECT_EQ(layers_of(fmt::format("{}&poses=then", revision)), then.at("layers"));
+    EXPECT_EQ(layers_of(fmt::format("{}s", stamp_of(lap().scans.size() * 4 / 5 - 1))), then.at("layers"));
+    const auto now = layers_of(fmt::format("{}&poses=now", revision));
+    EXPECT_NE(now, then.at("layers"));
+    const auto job = ask("POST", path + "weave", fmt::format(R"({{"until": {}, "poses": "now"}})", revision));
+    EXPECT_EQ(boost::json::parse(job.body.bytes()).at("poses"), "now");
+    const auto newest = ask("POST", path + "weave", R"({"cell_size": 0.1})");
+    EXPECT_EQ(boost::json::parse(newest.body.bytes()).at("poses"), "now") << "it has no end";
+    EXPECT_THAT(detail(get(path + "digest?until=9&poses=old"), Status::bad_request), HasSubstr("then and now"));
+    EXPECT_THAT(detail(ask("POST", path + "weave", R"({"poses": 1})"), Status::bad_request), HasSubstr("poses"));
 }
 
 TEST_F(ApiPosesTest, OperatorTurnsLocalizeOnlyModeOn) {
