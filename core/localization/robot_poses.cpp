@@ -19,6 +19,7 @@ std::optional<Pose2> RobotPoses::add(const Scan& scan, const Sensor& sensor) {
         estimator_.add(scan, sensor);
         laser_scans_.push_back(scans_.size());
         scans_.push_back({estimator_.scan_count() - 1, {}, scan.stamp});
+        check_mount(scan);
         laser_odometry_ = scan.odometry;
         if (laser_scans_.size() == 1) fragments_ = estimator_.located_fragments();
     } else {
@@ -36,6 +37,16 @@ std::optional<Pose2> RobotPoses::add(const Scan& scan, const Sensor& sensor) {
     added.was_shown = in_maps.has_value();
     if (added.laser_scan != kNoLaserScan) added.was_in_map = estimator_.is_in_map(added.laser_scan);
     return in_maps;
+}
+
+/// Compares the motion since the laser scan before with the odometry.
+void RobotPoses::check_mount(const Scan& scan) {
+    const bool was_matched = std::exchange(is_laser_matched_, estimator_.newest().is_matched);
+    if (!was_matched || !is_laser_matched_ || !laser_odometry_ || !scan.odometry) return;
+    const std::size_t newest = estimator_.scan_count() - 1;
+    mount_.add(inverse(transform_of(*laser_odometry_)) * transform_of(*scan.odometry),
+               inverse(transform_of(estimator_.first_pose_of(newest - 1))) *
+                   transform_of(estimator_.first_pose_of(newest)));
 }
 
 /// Returns where a scan is that is not from a laser.
@@ -124,8 +135,9 @@ LocalizationState RobotPoses::state() const {
 mapping::Localization RobotPoses::localization() const {
     if (laser_scans_.empty()) return {.state = state()};
     const auto& newest = estimator_.newest();
-    return {state(),          newest.inlier_ratio,     newest.position_sigma,
-            newest.yaw_sigma, estimator_.loop_count(), corrections_.size()};
+    return {state(),           newest.inlier_ratio,     newest.position_sigma,
+            newest.yaw_sigma,  estimator_.loop_count(), corrections_.size(),
+            mount_.yaw_error()};
 }
 
 RobotHistory RobotPoses::history() const {

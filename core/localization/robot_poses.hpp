@@ -3,6 +3,7 @@
 #include "common/scan/poses.hpp"
 #include "common/scan/scan.hpp"
 #include "common/scan/sensor.hpp"
+#include "core/localization/mount_check.hpp"
 #include "core/localization/pose_history.hpp"
 #include "core/mapping/scan_poses.hpp"
 #include "core/mapping/snapshot.hpp"
@@ -111,6 +112,7 @@ private:
     };
 
     [[nodiscard]] PlacedScan placed(const Scan& scan) const;
+    void check_mount(const Scan& scan);
     [[nodiscard]] double largest_move();
     [[nodiscard]] LocalizationState state() const;
 
@@ -119,6 +121,8 @@ private:
     std::vector<std::size_t> laser_scans_; // their numbers among all scans
     mapping::EstimatedPoses in_maps_;
     std::optional<Pose2> laser_odometry_; // of the newest laser scan
+    MountCheck mount_;
+    bool is_laser_matched_ = false; // whether that scan fitted the map
     Place place_;
     std::vector<RobotHistory::Moment> corrections_; // since its first scan
 

@@ -208,6 +208,7 @@ void Session::apply_batch() {
         sequencer_.release(group); // its scans are durable and in the maps: they are acknowledged
         if (!published) return stop_writing(published.error());
         count_loops();
+        warn_of_mounts();
         if (checkpoints_.is_due(maps_.projection().revision()) && can_be_stored()) begin_checkpoint();
         begin_correction();
         append_next();

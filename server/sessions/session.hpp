@@ -21,6 +21,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -164,6 +165,7 @@ private:
     [[nodiscard]] Result<> apply_entries(double work);
     void count(const ScanTaken& applied);
     void count_loops();
+    void warn_of_mounts();
     [[nodiscard]] Group take_applied_group();
     void report_places(const Group& group);
     void notify_watchers();
@@ -199,6 +201,7 @@ private:
     std::shared_ptr<MapCorrection> correction_; // null: none is being made, nor waits for its entry
     std::size_t correction_pages_ = 0;          // of share_
     std::size_t loops_ = 0;                     // of all robots, that are counted
+    std::set<std::string> warned_of_;           // robots whose lasers' mounts seem to be wrong
     CheckpointSchedule checkpoints_;
     bool final_checkpoint_tried_ = false;
     std::optional<Error> refusing_; // why no more entries are accepted

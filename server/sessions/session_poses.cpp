@@ -4,6 +4,8 @@
 #include <boost/asio/post.hpp>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <set>
 #include <utility>
 
@@ -97,6 +99,19 @@ void Session::count_loops() {
     for (const auto& robot : snapshot()->robots) loops += robot.localization.loops;
     const std::size_t before = std::exchange(loops_, loops);
     counters_->loops_accepted += loops - std::min(loops, before);
+}
+
+/// Warns of each laser once whose mount seems to be wrong.
+void Session::warn_of_mounts() {
+    if (!maps_.projection().has_estimated_poses()) return;
+    for (const auto& robot : snapshot()->robots) {
+        const auto& error = robot.localization.mount_yaw_error;
+        if (!error || !warned_of_.insert(robot.name).second) continue;
+        log::warn({.session = info_.name},
+                  "session '{}': the laser of robot '{}' looks {:.0f} degrees away from where its mount says, by the "
+                  "odometry; correct the yaw of the mount, or the direction of the odometry",
+                  info_.name, robot.name, std::fabs(*error) * 180.0 / std::numbers::pi);
+    }
 }
 
 /// Reports to each robot with estimated poses where it is by its newest scan, if that is in the group.

@@ -41,16 +41,22 @@ boost::json::value pose_json(const std::optional<Pose2>& pose) {
     return boost::json::object{{"x", rounded_metres(pose->x)}, {"y", rounded_metres(pose->y)}, {"yaw", pose->yaw}};
 }
 
-boost::json::object localization_json(const mapping::RobotState& robot) {
-    const auto& known = robot.localization;
-    return {{"poses", name_of(robot.poses)},    {"state", name_of(known.state)}, {"inliers", known.inlier_ratio},
-            {"sigma_m", known.position_sigma},  {"sigma_rad", known.yaw_sigma},  {"loops", known.loops},
-            {"corrections", known.corrections}, {"unplaced", robot.unplaced}};
+boost::json::value number_json(const std::optional<double>& number) {
+    if (!number) return nullptr;
+    return *number;
 }
 
-boost::json::value radius_json(const std::optional<double>& radius) {
-    if (!radius) return nullptr;
-    return *radius;
+boost::json::object localization_json(const mapping::RobotState& robot) {
+    const auto& known = robot.localization;
+    return {{"poses", name_of(robot.poses)},
+            {"state", name_of(known.state)},
+            {"inliers", known.inlier_ratio},
+            {"sigma_m", known.position_sigma},
+            {"sigma_rad", known.yaw_sigma},
+            {"loops", known.loops},
+            {"corrections", known.corrections},
+            {"unplaced", robot.unplaced},
+            {"mount_yaw_error", number_json(known.mount_yaw_error)}};
 }
 
 /// @param session  null if it is not in memory
@@ -70,7 +76,7 @@ boost::json::object session_json(const sessions::SessionInfo& info, const mappin
                                              {"stamp", robot.stamp},
                                              {"pose", pose_json(robot.pose)},
                                              {"localization", localization_json(robot)},
-                                             {"body_radius", radius_json(robot.body_radius)}});
+                                             {"body_radius", number_json(robot.body_radius)}});
     }
     const auto main_bounds = session == nullptr ? grid::CellBox() : session->main_bounds();
     if (const auto own = session == nullptr ? std::nullopt : session->failure()) failure = own->message;

@@ -130,8 +130,9 @@ TEST_F(ApiTest, StreamingRobotIsListed) {
     const auto shown = get_json("/api/v1/sessions/a");
     EXPECT_EQ(shown.at("scans"), 3);
     EXPECT_EQ(shown.at("revision"), 5); // plus the entries of the robot and its sensor
-    const boost::json::object given{{"poses", "map"}, {"state", "given"}, {"inliers", 0},     {"sigma_m", 0},
-                                    {"sigma_rad", 0}, {"loops", 0},       {"corrections", 0}, {"unplaced", 0}};
+    const boost::json::object given{{"poses", "map"},   {"state", "given"}, {"inliers", 0},
+                                    {"sigma_m", 0},     {"sigma_rad", 0},   {"loops", 0},
+                                    {"corrections", 0}, {"unplaced", 0},    {"mount_yaw_error", nullptr}};
     EXPECT_EQ(shown.at("robots"), (boost::json::array{{{"name", "r1"},
                                                        {"connected", true},
                                                        {"scans", 3},

@@ -1,0 +1,30 @@
+#pragma once
+
+#include "core/scan_matching/transform2.hpp"
+
+#include <optional>
+
+namespace scanloom::localization {
+
+/// Finds that a laser looks in another direction than its mount says: the scans then show motions in another direction
+/// than the odometry. Straight motions of the last metres are compared.
+/// Threads: one at a time.
+class MountCheck {
+public:
+    /// Adds the motion between two scans that fit the map.
+    /// @param by_odometry  T_before_after of the robot, by its odometry
+    /// @param by_scans     the same, by the scans
+    void add(const scan_matching::Transform2& by_odometry, const scan_matching::Transform2& by_scans);
+
+    /// Returns by how much the mount's yaw is too large, radians in (-pi, pi]; nullopt: it seems to be right, or the
+    /// robot has not moved enough.
+    [[nodiscard]] std::optional<double> yaw_error() const;
+
+private:
+    double along_ = 0.0;     // square metres: sum of the scalar products of both motions
+    double across_ = 0.0;    // square metres: sum of their cross products
+    double travelled_ = 0.0; // square metres: sum of the squares of the odometry's motions
+    double distance_ = 0.0;  // metres, of the motions in the sums
+};
+
+} // namespace scanloom::localization
