@@ -26,6 +26,8 @@ import { SignIn } from './sign_in';
 import { readTheme } from './theme';
 import { SessionHistory } from './time/history';
 import { addTools } from './tools/all_tools';
+import type { ToolContext } from './tools/context';
+import { locateCard } from './tools/locate';
 import { Toolbox } from './tools/toolbox';
 import { Comparison } from './tools/weave/comparison';
 import { Viewer } from './viewer';
@@ -58,6 +60,10 @@ const robotList = new RobotList(
   byId('robots', HTMLElement),
   { pathLength: (robot) => viewer.pathLength(robot) },
   (robot) => (robot === null ? camera.free() : camera.follow(robot)),
+  (robot, button) => {
+    setPanel(false);
+    toolbox.toggle(locateCard(toolContext, robot), button);
+  },
 );
 const camera = new Camera(map, target, controlsOnMap, (robot) => robotList.setFollowed(robot));
 const viewer: Viewer = new Viewer({
@@ -82,6 +88,11 @@ const viewer: Viewer = new Viewer({
   endIsExpected: (name) => ending.has(name),
 });
 const chooser = new Chooser({ viewer, panel: sessionPanel, notice, newest });
+const toolContext: ToolContext = {
+  ...{ map, target, picture, theme: readTheme },
+  session: () => viewer.session,
+  robots: () => viewer.robots,
+};
 const toolbox = new Toolbox(keys, () => viewer.session?.bounds != null, target);
 /** Applies the current colours to all parts. */
 let coloured = JSON.stringify(readTheme());
@@ -173,12 +184,7 @@ function listen(): void {
 
 connectControls();
 bindKeys();
-addTools(
-  toolbox,
-  { map, target, picture, theme: readTheme, session: () => viewer.session, robots: () => viewer.robots },
-  comparison,
-  () => setPanel(false),
-);
+addTools(toolbox, toolContext, comparison, () => setPanel(false));
 buildPanels();
 listen();
 notice.show({ kind: 'loading' });

@@ -15,6 +15,11 @@ export function qualityOf({ state, sigma, inliers }: Localization): Quality {
   return state === 'tracking' && sigma <= kGoodSigma && inliers >= kGoodInliers ? 'good' : 'fair';
 }
 
+/** Whether the robot waits for its place: an operator who knows it can say where it is. */
+export function needsPlace({ state }: Localization): boolean {
+  return state !== 'tracking';
+}
+
 /** "tracking, \u00b11 cm", "tracking, \u00b112 cm, 55 % of the scan fits the map". */
 export function wordsOf({ state, sigma, inliers }: Localization): string {
   switch (state) {

@@ -2,7 +2,7 @@
 import type { Robot } from '../api/types';
 import { el, KeyedList, setText, type Row } from '../dom';
 import * as format from '../format';
-import { qualityOf, wordsOf } from './localization';
+import { needsPlace, qualityOf, wordsOf } from './localization';
 import type { RobotColours } from '../robot_colours';
 
 export interface RobotListSource {
@@ -14,6 +14,7 @@ interface RobotRow extends Row {
   detail: HTMLElement;
   place: HTMLElement;
   localization: HTMLElement;
+  locate: HTMLButtonElement;
   follow: HTMLButtonElement;
 }
 
@@ -24,10 +25,12 @@ export class RobotList {
   private followed: string | null = null;
   private isOffline = false;
 
+  /** @param locate called to say where a robot is, with the button for it */
   constructor(
     list: HTMLElement,
     private readonly source: RobotListSource,
     private readonly follow: (robot: string | null) => void,
+    private readonly locate: (robot: string, button: HTMLButtonElement) => void,
   ) {
     this.rows = new KeyedList(
       list,
@@ -69,11 +72,14 @@ export class RobotList {
     const detail = el('span', { class: 'row-detail' });
     const place = el('span', { class: 'row-detail numeric', 'data-role': 'pose' });
     const localization = el('span', { class: 'row-detail localization', 'data-role': 'localization' });
+    const locate = el('button', { type: 'button', class: 'locate', 'aria-pressed': 'false' }, 'Locate');
+    locate.setAttribute('aria-label', `Locate ${name}: say where it is`);
+    locate.addEventListener('click', () => this.locate(name, locate));
     const follow = el('button', { type: 'button', class: 'follow', 'aria-label': `Follow ${name}` }, 'Follow');
     follow.addEventListener('click', () => this.follow(this.followed === name ? null : name));
     const title = el('span', { class: 'row-name', dir: 'auto' }, name);
-    const element = el('li', { class: 'robot' }, swatch, title, follow, detail, place, localization);
-    return { element, swatch, detail, place, localization, follow };
+    const element = el('li', { class: 'robot' }, swatch, title, follow, detail, place, localization, locate);
+    return { element, swatch, detail, place, localization, locate, follow };
   }
 
   private update(row: RobotRow, robot: Robot): void {
@@ -84,10 +90,11 @@ export class RobotList {
     const state = this.isOffline ? 'unknown' : robot.connected ? 'online' : 'offline';
     setText(row.detail, [state, format.counted(robot.scans, 'scan'), travelled].join(' \u00b7 '));
     setText(row.place, robot.pose ? format.pose(robot.pose) : 'no position yet');
-    row.localization.hidden = robot.localization === null;
+    row.localization.hidden = row.locate.hidden = robot.localization === null;
     if (robot.localization) {
       row.localization.dataset['quality'] = qualityOf(robot.localization);
       setText(row.localization, wordsOf(robot.localization));
+      row.locate.classList.toggle('primary', needsPlace(robot.localization));
     }
     row.follow.disabled = !robot.pose;
     row.follow.setAttribute('aria-pressed', String(robot.name === this.followed));

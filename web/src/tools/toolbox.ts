@@ -3,19 +3,23 @@ import { byId, el, setText } from '../dom';
 import type { Keys } from '../keys';
 import { makeDraggable } from './card_drag';
 
-export interface Tool {
-  /** Id of the button: #tool-ID. */
+/** A tool without a button of its own among the tools. */
+export interface ToolCard {
   id: string;
   title: string;
+  /** The tool works without a map. */
+  withoutMap?: true;
+  /** Fills the card, and listens to the map until the signal aborts. */
+  open(card: HTMLElement, signal: AbortSignal): void;
+}
+
+/** A tool with a button: #tool-ID. */
+export interface Tool extends ToolCard {
   key: string;
   /** For the list of shortcuts: "measures a distance". */
   does: string;
   /** The path of its icon in a square of 16. */
   icon: string;
-  /** The tool works without a map. */
-  withoutMap?: true;
-  /** Fills the card, and listens to the map until the signal aborts. */
-  open(card: HTMLElement, signal: AbortSignal): void;
 }
 
 export class Toolbox {
@@ -28,8 +32,9 @@ export class Toolbox {
     body: byId('tool-body', HTMLElement),
     close: byId('tool-close', HTMLButtonElement),
   };
-  private readonly buttons = new Map<Tool, HTMLButtonElement>();
-  private open: Tool | null = null;
+  private readonly buttons = new Map<ToolCard, HTMLButtonElement>();
+  /** The button of the open tool; null: none is open. */
+  private opener: HTMLButtonElement | null = null;
   private leave = new AbortController();
 
   constructor(
@@ -61,24 +66,28 @@ export class Toolbox {
 
   /** Closes the tool: its session is closed, or another tool opens. */
   close(): void {
-    if (!this.open) return;
-    const button = this.buttons.get(this.open);
-    button?.setAttribute('aria-pressed', 'false');
-    this.open = null;
+    const { opener } = this;
+    if (!opener) return;
+    opener.setAttribute('aria-pressed', 'false');
+    this.opener = null;
     this.leave.abort();
-    if (this.fields.card.contains(document.activeElement)) button?.focus();
+    if (this.fields.card.contains(document.activeElement)) opener.focus();
     this.fields.body.replaceChildren();
     this.fields.card.hidden = true;
   }
 
-  /** Opens the tool, replacing another one, or closes it. */
-  toggle(tool: Tool): void {
-    const wasOpen = this.open === tool;
+  /**
+   * Opens the tool, replacing another one, or closes it.
+   *
+   * @param opener the button of the tool
+   */
+  toggle(tool: ToolCard, opener = this.buttons.get(tool)): void {
+    const wasOpen = this.opener === opener;
     this.close();
-    if (wasOpen || !(tool.withoutMap || this.hasMap())) return;
-    this.open = tool;
+    if (!opener || wasOpen || !(tool.withoutMap || this.hasMap())) return;
+    this.opener = opener;
     this.leave = new AbortController();
-    this.buttons.get(tool)?.setAttribute('aria-pressed', 'true');
+    opener.setAttribute('aria-pressed', 'true');
     setText(this.fields.title, tool.title);
     this.fields.card.hidden = false;
     this.fields.card.dataset['tool'] = tool.id;

@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
 import type { Localization } from '../../../../web/src/api/types';
-import { qualityOf, wordsOf } from '../../../../web/src/panel/localization';
+import { needsPlace, qualityOf, wordsOf } from '../../../../web/src/panel/localization';
 
 function tracking(sigma: number, inliers = 0.9): Localization {
   return { state: 'tracking', sigma, inliers };
@@ -23,5 +23,11 @@ describe('the localization of a robot', () => {
     assert.equal(qualityOf(tracking(0.01, 0.69)), 'fair');
     assert.equal(qualityOf({ ...tracking(0.01), state: 'unlocated' }), 'fair');
     assert.equal(qualityOf({ ...tracking(0.01), state: 'lost' }), 'bad');
+  });
+
+  it('waits for a place only if the server does not know where the robot is', () => {
+    assert.equal(needsPlace(tracking(3)), false);
+    assert.equal(needsPlace({ ...tracking(0.01), state: 'lost' }), true);
+    assert.equal(needsPlace({ ...tracking(0), state: 'unlocated' }), true);
   });
 });

@@ -1,0 +1,18 @@
+/** Tells the server about the poses that it estimates. For operators. */
+import { sessionPath } from './api';
+import { sendJson } from './http';
+import type { Point } from './types';
+
+/** Where the next scan of a robot is searched for. */
+export interface Whereabouts {
+  robot: string;
+  /** Metres in the map frame. */
+  near: Point;
+  /** Metres. */
+  radius: number;
+}
+
+/** @throws Refused with the server's message when the server does not locate the robot */
+export async function relocalize(session: string, whereabouts: Whereabouts, signal: AbortSignal): Promise<void> {
+  await sendJson('POST', `${sessionPath(session)}/relocalize`, whereabouts, signal);
+}
