@@ -31,6 +31,7 @@ export class FakeSession {
     /** Features of pose_graph.geojson, and scans that are being moved to corrected poses. */
     this.poseGraph = [];
     this.movingScans = 0;
+    this.localizeOnly = false;
     /** Robots that have explored everything that they can reach. */
     this.explored = [];
     /** Live connections. */
@@ -120,6 +121,7 @@ export class FakeSession {
       number: this.number,
       revision: this.revision,
       scans: this.scans,
+      localize_only: this.localizeOnly,
       config: { cell_size: this.cellSize },
       layers: this.layers,
       bounds: this.bounds,

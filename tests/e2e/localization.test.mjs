@@ -104,6 +104,31 @@ describe('robots whose poses the server estimates', () => {
     );
   });
 
+  it('share a map that an operator keeps from changing', async () => {
+    session.move('r1', 1, 1, 0);
+    session.robots[0].known = known(kTracking);
+    await open();
+    await hasText(page, '#facts', /Mapping$/);
+    const bodies = await accept('**/sessions/map/mode');
+    await page.click('#mode :text-is("Localize only")');
+    await hasText(page, '#facts', /Localize only: the map does not change$/);
+    assert.deepEqual(bodies, [{ localize_only: true }]);
+    session.localizeOnly = true;
+
+    await page.unrouteAll();
+    await refuse('**/mode', 'robot "a" sends its poses and robot "b" does not');
+    await page.click('#mode :text-is("Continue mapping")');
+    await hasText(page, '#mode [role=alert]', /^Conflict: robot "a" sends its poses and robot "b" does not\.$/);
+    await hasText(page, '#facts', /Localize only: the map does not change$/);
+    await keepPicture(page, 'localize-only');
+    assert.deepEqual(await violations(page), []);
+
+    session.localizeOnly = false; // by another operator
+    session.revision += 1;
+    await hasText(page, '#facts', /Mapping$/);
+    assert.equal(await textOf(page, '#mode button'), 'Localize only');
+  });
+
   /** Whether the outline of this circle is drawn at its right end. */
   async function hasCircle([x, y], radius) {
     const accent = await colourOf(page, '--accent');

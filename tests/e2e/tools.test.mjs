@@ -98,11 +98,14 @@ describe('tools on the map', () => {
       buffer: roomPgm(),
     });
     assert.equal(await page.inputValue('#tool-body [name=name]'), 'lab-3');
+    await page.check('#tool-body [name=localize_only]');
     await page.click('#tool-body :text-is("Import")');
     await page.waitForSelector('#notice', { state: 'hidden' });
     assert.match(page.url(), /#session=lab-3$/);
     await showsColour(page, '--cell-occupied');
-    await hasText(page, '#facts', /10 cm/);
+    await hasText(page, '#facts', /10 cm.*Localize only: the map does not change$/);
+    await page.click('#mode :text-is("Continue mapping")');
+    await hasText(page, '#facts', /Mapping$/);
   });
 
   it('show the server\u2019s message when a map cannot be imported', async () => {
@@ -120,6 +123,7 @@ describe('tools on the map', () => {
     await page.fill('#tool-body [name=name]', 'another');
     await page.click('#tool-body :text-is("Import")');
     await page.waitForURL(/#session=another$/);
+    await hasText(page, '#facts', /Mapping$/);
     await page.waitForSelector('#tool', { state: 'hidden' });
   });
 

@@ -12,6 +12,7 @@ import { Cursor } from './panel/cursor';
 import { DisplayPanel } from './panel/display_panel';
 import { Facts } from './panel/facts';
 import { LayersPanel } from './panel/layers_panel';
+import { ModeButton } from './panel/mode_button';
 import { ExploredNote } from './panel/explored_note';
 import { Notice } from './panel/notice';
 import { RobotList } from './panel/robot_list';
@@ -72,6 +73,9 @@ const viewer: Viewer = new Viewer({
   camera,
   cursor: new Cursor(map, target),
   facts: new Facts(byId('facts', HTMLElement), byId('moving-scans', HTMLElement)),
+  mode: new ModeButton(byId('mode', HTMLElement), (isLocalizeOnly) => {
+    if (viewer.session) viewer.refresh({ ...viewer.session, isLocalizeOnly });
+  }),
   robots: robotList,
   notice,
   explored: new ExploredNote(byId('explored', HTMLElement)),

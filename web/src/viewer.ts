@@ -16,6 +16,7 @@ import type { MapView, Shown } from './map/map_view';
 import type { Cursor } from './panel/cursor';
 import type { Facts } from './panel/facts';
 import type { ExploredNote } from './panel/explored_note';
+import type { ModeButton } from './panel/mode_button';
 import type { Notice } from './panel/notice';
 import type { RobotList } from './panel/robot_list';
 import { Draining, type Status } from './panel/status';
@@ -31,6 +32,7 @@ export interface ViewerParts {
   camera: Camera;
   cursor: Cursor;
   facts: Facts;
+  mode: ModeButton;
   robots: RobotList;
   notice: Notice;
   explored: ExploredNote;
@@ -273,6 +275,7 @@ export class Viewer {
     if (!this.open) return;
     const { session } = this.open;
     this.parts.facts.show(session);
+    this.parts.mode.show(session);
     this.parts.noRobots.hidden = this.open.robots.size > 0;
     this.parts.camera.see(session.mainBounds ?? session.bounds, this.moment?.robots ?? this.robots);
     this.parts.notice.show(session.bounds ? { kind: 'none' } : { kind: 'empty', name: session.name });

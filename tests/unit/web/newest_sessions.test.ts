@@ -13,6 +13,7 @@ function session(id: string, revision: number): Session {
     exclusions: 0,
     scans: revision,
     movingScans: 0,
+    isLocalizeOnly: false,
     cellSize: 0.05,
     config: {},
     bounds: null,

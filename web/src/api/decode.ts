@@ -62,6 +62,7 @@ export function decodeSession(json: unknown): Session {
     exclusions: session['exclusions'] == null ? 0 : number(session['exclusions'], 'exclusions'),
     scans: number(session['scans'], 'scans'),
     movingScans: session['moving_scans'] == null ? 0 : number(session['moving_scans'], 'moving_scans'),
+    isLocalizeOnly: session['localize_only'] === true,
     cellSize: cellSizeOf(config),
     config,
     bounds: session['bounds'] == null ? null : decodeBounds(session['bounds']),

@@ -16,3 +16,11 @@ export interface Whereabouts {
 export async function relocalize(session: string, whereabouts: Whereabouts, signal: AbortSignal): Promise<void> {
   await sendJson('POST', `${sessionPath(session)}/relocalize`, whereabouts, signal);
 }
+
+/**
+ * @param isLocalizeOnly whether the map shall not change from now on
+ * @throws Refused with the server's message when the session's robots do not permit it
+ */
+export async function changeMode(session: string, isLocalizeOnly: boolean, signal: AbortSignal): Promise<void> {
+  await sendJson('POST', `${sessionPath(session)}/mode`, { localize_only: isLocalizeOnly }, signal);
+}

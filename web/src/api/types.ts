@@ -51,6 +51,8 @@ export interface Session {
   scans: number;
   /** Scans that the map does not show at their corrected poses yet. */
   movingScans: number;
+  /** Robots are located in the map, which does not change. */
+  isLocalizeOnly: boolean;
   cellSize: number;
   config: MapConfig;
   /** Null while the map is empty. */

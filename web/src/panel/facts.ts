@@ -8,6 +8,7 @@ const kFacts: [label: string, read: (session: Session) => string][] = [
   ['Area', ({ bounds }) => (bounds ? format.area(bounds) : 'no scans yet')],
   ['Cell', ({ cellSize }) => format.cellSize(cellSize)],
   ['Begun', ({ created }) => format.moment(created)],
+  ['Mode', ({ isLocalizeOnly }) => (isLocalizeOnly ? 'Localize only: the map does not change' : 'Mapping')],
 ];
 
 export class Facts {

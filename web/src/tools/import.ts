@@ -3,7 +3,7 @@ import { hashOfSession } from '../address';
 import { importMap, type RosMap } from '../api/import';
 import { el, setText } from '../dom';
 import { isTouch } from '../pointing';
-import { button, labelled, numberInput, selectOf } from './fields';
+import { button, checkbox, choice, labelled, numberInput, selectOf } from './fields';
 import { NewestOnly } from './newest_only';
 import { Outcome } from './outcome';
 import { kRayModels } from './ray_models';
@@ -30,6 +30,7 @@ class ImportCard {
   private readonly yaml = el('input', { type: 'file', name: 'yaml', accept: '.yaml,.yml', required: '' });
   private readonly image = el('input', { type: 'file', name: 'image', accept: '.pgm,.png', required: '' });
   private readonly name = el('input', { type: 'text', name: 'name', pattern: kNamePattern, required: '' });
+  private readonly localizeOnly = checkbox('localize_only', false);
   private readonly settings = [
     numberInput('cell_size', null, { min: 0.01, max: 1, empty: 'from the map' }),
     numberInput('p_occupied', null, { min: 0.5, max: 1, empty: 'default' }),
@@ -66,6 +67,7 @@ class ImportCard {
       labelled('map.yaml', this.yaml),
       labelled('PGM or PNG', this.image),
       labelled('New session', this.name),
+      choice('Localize only: the map does not change', this.localizeOnly),
       el(
         'details',
         {},
@@ -134,6 +136,7 @@ class ImportCard {
     const map: RosMap = { yaml, image };
     const given = this.settings.filter(({ value }) => value !== '').map(({ name, value }) => [name, value]);
     const settings = Object.fromEntries(given) as Record<string, string>;
+    if (this.localizeOnly.checked) settings['localize_only'] = 'true';
     const size = ((yaml.size + image.size) / kMegabyte).toFixed(1);
     this.task.run(async (signal) => {
       this.outcome.report(`Sending ${size} MB, then the server reads the map\u2026`);

@@ -19,6 +19,7 @@ function session(): Record<string, unknown> {
     exclusions: 100,
     scans: 910,
     moving_scans: 13,
+    localize_only: true,
     config: { cell_size: 0.05, p_occupied: 0.9 },
     layers: ['occupancy'],
     bounds: { min_x: -20.1, min_y: -3.2, max_x: 450, max_y: 30 },
@@ -43,6 +44,7 @@ describe('decoding', () => {
       exclusions: 100,
       scans: 910,
       movingScans: 13,
+      isLocalizeOnly: true,
       cellSize: 0.05,
       config: { cell_size: 0.05, p_occupied: 0.9 },
       bounds: { minX: -20.1, minY: -3.2, maxX: 450, maxY: 30 },
@@ -98,6 +100,11 @@ describe('decoding', () => {
     assert.equal(empty.mainBounds, null);
     const robot = { name: 'r', connected: false, scans: 0, pose: null, bodyRadius: null, localization: null };
     assert.deepEqual(empty.robots, [robot]);
+  });
+
+  it('takes a session of a server without localize-only mode as one that maps', () => {
+    const { localize_only: _, ...earlier } = session();
+    assert.equal(decodeSession(earlier).isLocalizeOnly, false);
   });
 
   it('names the invalid field', () => {

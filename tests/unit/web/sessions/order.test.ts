@@ -13,6 +13,7 @@ function session(name: string, created: string, number = 1): Session {
     exclusions: 0,
     scans: 0,
     movingScans: 0,
+    isLocalizeOnly: false,
     cellSize: 0.05,
     config: {},
     bounds: null,

@@ -13,6 +13,7 @@ function session(scans: number, id = '1', name = 'a'): Session {
     exclusions: 0,
     scans,
     movingScans: 0,
+    isLocalizeOnly: false,
     cellSize: 0.05,
     config: {},
     bounds: null,
