@@ -142,10 +142,13 @@ export class FakeSession {
   trajectory(since) {
     const features = [];
     for (const [robot, track] of this.tracks) {
-      const coordinates = track.filter(({ revision }) => revision > since).map(({ point }) => point);
-      if (coordinates.length === 0) continue;
+      const news = track.filter(({ revision }) => revision > since);
+      if (news.length === 0) continue;
+      const coordinates = news.map(({ point }) => point);
+      const revisions = news.map(({ revision }) => revision);
       const type = coordinates.length < 2 ? 'MultiPoint' : 'LineString';
-      const properties = { robot, points: coordinates.length };
+      const times = { revisions, stamps: revisions, yaws: revisions.map(() => 0) };
+      const properties = { robot, points: coordinates.length, ...times };
       features.push({ type: 'Feature', id: robot, properties, geometry: { type, coordinates } });
     }
     return { type: 'FeatureCollection', frame_id: 'map', units: 'm', revision: this.revision, features };

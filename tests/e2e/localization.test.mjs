@@ -5,7 +5,7 @@ import { violations } from './accessibility.mjs';
 import { colourAt, colourOf, hasText, isLike, keepPicture, showsColour, textOf, until } from './browser.mjs';
 import { withFakeServer } from './fake_fixture.mjs';
 import { FakeSession } from './fake_session.mjs';
-import { pixelOf } from './one_tile.mjs';
+import { kMiddle, pixelOf } from './one_tile.mjs';
 
 /** Numbers of the live protocol. */
 const kTracking = 1;
@@ -15,8 +15,10 @@ const known = (state) => ({ state, poses: 1, inliers: 0.9, sigma_m: 0.02 });
 
 describe('robots whose poses the server estimates', () => {
   let page;
+  let server;
   let session;
-  const openPage = withFakeServer((server) => {
+  const openPage = withFakeServer((fresh) => {
+    server = fresh;
     session = server.add(new FakeSession('map', 'id-map'));
     session.paint(256, 255, 0);
   });
@@ -128,6 +130,76 @@ describe('robots whose poses the server estimates', () => {
     await hasText(page, '#facts', /Mapping$/);
     assert.equal(await textOf(page, '#mode button'), 'Localize only');
   });
+
+  it('have past maps with poses as believed then, or as known today', async () => {
+    for (const x of [1, 2, 3]) session.move('r1', x, 1, 0);
+    session.robots[0].known = known(kTracking);
+    await open();
+    const started = await weave();
+    await openHistory();
+    await seek(2);
+    const [, second] = session.tracks.get('r1');
+    assert.deepEqual(started, [{ until: second.revision, poses: 'then' }]);
+    await hasText(
+      page,
+      '#time-note',
+      /^Map as it was believed to be then.*; robots and trails at the poses known today;/,
+    );
+    assert.ok(await page.isHidden('[data-robot=r1] .locate'), 'in the past');
+
+    // Tiles of one revision may differ now, so all are fetched again; until then the old ones stay.
+    let release;
+    const held = new Promise((resolve) => (release = resolve));
+    await page.route(/tiles.*weave=/, async (route) => {
+      await held;
+      await route.continue().catch(() => {});
+    });
+    await page.selectOption('#time-poses', 'now');
+    await hasText(page, '#time-note', /^Map, robots and trails of that time.*, at the poses known today;/);
+    await until(page, () => started.length === 2);
+    assert.deepEqual(started[1], { until: second.revision, poses: 'now' });
+    await seek(1);
+    assert.deepEqual(await colourAt(page, ...kMiddle), await colourOf(page, '--cell-free'));
+    await keepPicture(page, 'time-poses');
+    assert.deepEqual(await violations(page), []);
+    release();
+    await until(page, () => server.tileRequests.some((path) => path.includes('weave=3')));
+    assert.equal(started.length, 3);
+    assert.equal(started[2].poses, 'now');
+  });
+
+  it('offer no choice of poses to a session whose robots send theirs', async () => {
+    for (const x of [1, 2, 3]) session.move('r1', x, 1, 0);
+    await open();
+    const started = await weave();
+    await openHistory();
+    await seek(2);
+    assert.ok(await page.isHidden('#time-poses'));
+    assert.deepEqual(started, [{ until: session.tracks.get('r1')[1].revision }]);
+  });
+
+  /** Completes replay jobs at once, with their number as id, and keeps the bodies of their requests. */
+  async function weave() {
+    const bodies = [];
+    const done = (id) => ({ id, state: 'done', woven: 1, until: { revision: 1 } });
+    await page.route('**/weave', (route) => {
+      bodies.push(route.request().postDataJSON());
+      return route.fulfill({ json: done(String(bodies.length)) });
+    });
+    await page.route('**/weave/*', (route) => route.fulfill({ json: done(route.request().url().split('/').at(-1)) }));
+    return bodies;
+  }
+
+  async function openHistory() {
+    await page.click('#history-open');
+    await page.waitForSelector('#time-slider[max="3"]');
+  }
+
+  /** Moves the slider there, and waits until the page shows that moment. */
+  async function seek(scan) {
+    await page.fill('#time-slider', String(scan));
+    await hasText(page, '[data-robot=r1] .row-detail', new RegExp(`\\b${scan} scans? `));
+  }
 
   /** Whether the outline of this circle is drawn at its right end. */
   async function hasCircle([x, y], radius) {

@@ -17,7 +17,10 @@ export interface Weave {
   reason: string;
 }
 
-/** The settings that differ from the session's; `until`: the last log entry to apply. */
+/** Estimated poses of an earlier time: as the server believed then, or as it knows them now. */
+export type PastPoses = 'then' | 'now';
+
+/** The settings that differ from the session's; `until`: the last log entry to apply; `poses`: PastPoses. */
 export type WeaveRequest = Readonly<Record<string, number | string | boolean>>;
 
 /** Creates a weave. A request with equal settings returns the existing weave with the same id. */

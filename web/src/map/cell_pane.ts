@@ -1,10 +1,14 @@
-/** Shows one layer of cells; a new layer replaces the shown one when it has loaded, not before. */
+/**
+ * Shows one layer of cells; a new layer replaces the shown one when it has loaded, not before. Of newer layers meanwhile
+ * only the last is kept.
+ */
 import type OlMap from 'ol/Map';
 import type RenderEvent from 'ol/render/Event';
 import type { LayerName } from '../layers/layers';
 import type { Palette } from '../layers/palette';
 import { clipTo, type Clip } from './clip';
 import type { MapSource } from './map_source';
+import type { Shown } from './map_view';
 import { kProjection } from './projection';
 import { CellLayer } from './tile_layer';
 
@@ -16,6 +20,8 @@ interface Hung {
 export class CellPane {
   private now: Hung | null = null;
   private before: Hung | null = null;
+  /** Follows when `now` has loaded; null: nothing waits. */
+  private next: Shown | null = null;
   private opacity = 1;
   private clip: Clip = { from: 0, to: 1 };
 
@@ -28,13 +34,15 @@ export class CellPane {
   ) {}
 
   show(source: MapSource, layer: LayerName): void {
+    this.next = null;
     if (this.now?.layer.suits(source, layer)) this.now.layer.retarget(source);
+    else if (this.before) this.next = { source, layer };
     else this.replace(source, layer);
   }
 
   clear(): void {
     for (const hung of [this.before, this.now]) if (hung) this.takeDown(hung);
-    this.before = this.now = null;
+    this.before = this.now = this.next = null;
   }
 
   /** Called when the maps have changed. */
@@ -58,7 +66,6 @@ export class CellPane {
   }
 
   private replace(source: MapSource, layer: LayerName): void {
-    if (this.before) this.takeDown(this.before);
     this.before = this.now;
     const leave = new AbortController();
     const hung: Hung = {
@@ -86,6 +93,8 @@ export class CellPane {
     if (hung !== this.now || !this.before) return;
     this.takeDown(this.before);
     this.before = null;
+    const { next } = this;
+    if (next) this.show(next.source, next.layer);
   }
 
   private takeDown({ layer, leave }: Hung): void {

@@ -1,4 +1,5 @@
 /** The session's history below the map: a slider over its scans, and buttons for playback. */
+import type { PastPoses } from '../api/weaves';
 import { el, setText } from '../dom';
 import * as format from '../format';
 import type { Keys } from '../keys';
@@ -15,6 +16,10 @@ const kIcons = {
   forward: 'M4.5 4l5 4-5 4zM11.5 4v8',
   close: 'm4 4 8 8M12 4l-8 8',
 };
+const kPoses: [poses: PastPoses, label: string][] = [
+  ['then', 'poses as believed then'],
+  ['now', 'poses as known today'],
+];
 /** Maximum number of marks. */
 const kMarksMax = 40;
 
@@ -25,6 +30,7 @@ export class TimeBar {
   private readonly slider = el('input', { id: 'time-slider', type: 'range', min: '1', max: '1', step: '1' });
   private readonly marks = el('div', { class: 'time-marks', 'aria-hidden': 'true' });
   private readonly speed = el('select', { id: 'time-speed', 'aria-label': 'Speed' });
+  private readonly poses = el('select', { id: 'time-poses', 'aria-label': 'Poses of past maps' });
   private readonly live = el('button', { id: 'time-live', type: 'button', title: 'Back to the present (l)' }, 'Live');
   private readonly close = iconButton('time-close', 'Close the history', 't', kIcons.close);
   private readonly place = el('span', { id: 'time-place', class: 'numeric' });
@@ -47,8 +53,10 @@ export class TimeBar {
     this.speed.append(...kSpeeds.map((speed) => el('option', { value: String(speed) }, `${speed}\u00d7`)));
     const track = el('div', { class: 'time-track' }, this.slider, this.marks);
     const steps = el('div', { class: 'time-steps' }, this.back, this.play, this.forward);
+    this.poses.append(...kPoses.map(([poses, label]) => el('option', { value: poses }, label)));
     const ends = el('div', { class: 'time-ends' }, this.speed, this.live, this.close);
-    const words = el('p', { class: 'time-words' }, this.mode, this.place, this.note, this.progress, this.message);
+    const place = [this.mode, this.place, this.poses];
+    const words = el('p', { class: 'time-words' }, ...place, this.note, this.progress, this.message);
     bar.append(steps, track, ends, words);
     this.connect();
     this.bindKeys(keys);
@@ -72,6 +80,7 @@ export class TimeBar {
     this.live.addEventListener('click', () => history.goLive());
     this.slider.addEventListener('input', () => history.seek(this.slider.valueAsNumber - 1));
     this.speed.addEventListener('change', () => history.setSpeed(Number(this.speed.value)));
+    this.poses.addEventListener('change', () => history.setPoses(this.poses.value === 'now' ? 'now' : 'then'));
   }
 
   private bindKeys(keys: Keys): void {
@@ -115,16 +124,18 @@ export class TimeBar {
     slider.setAttribute('aria-valuetext', timeline.count > 0 ? words.scanOf(timeline, now) : 'no scans');
   }
 
-  private showButtons({ timeline, index, isPlaying, speed }: HistoryState): void {
+  private showButtons({ timeline, index, isPlaying, speed, poses }: HistoryState): void {
     const isEmpty = timeline.count === 0;
     for (const button of [this.back, this.play, this.forward]) button.disabled = isEmpty;
     setIcon(this.play, isPlaying ? 'Pause' : 'Play', 'Space', isPlaying ? kIcons.pause : kIcons.play);
     this.speed.value = String(speed);
+    this.poses.hidden = poses === null;
+    this.poses.value = poses ?? 'then';
     this.live.setAttribute('aria-pressed', String(index === null && !this.isOffline));
   }
 
   private showWords(state: HistoryState): void {
-    const { timeline, isKnown, share, index, shown, progress, trouble } = state;
+    const { timeline, isKnown, share, index, shown, progress, trouble, poses } = state;
     const { count } = timeline;
     setText(this.mode, shown !== null ? 'Past' : index !== null ? 'Going back' : this.isOffline ? 'Offline' : 'Live');
     const at = index ?? count - 1;
@@ -137,7 +148,9 @@ export class TimeBar {
         ? 'No scans yet.'
         : shown === null && index !== null
           ? ''
-          : this.noteOf(shown !== null, date),
+          : shown !== null
+            ? words.pastOf(date, poses)
+            : this.presentNote(),
     );
     setText(this.message, trouble || (progress ? 'Computing that map\u2026' : isKnown ? '' : words.loading(share)));
     this.message.classList.toggle('trouble', trouble !== '');
@@ -145,10 +158,8 @@ export class TimeBar {
     if (progress) Object.assign(this.progress, { max: Math.max(1, progress.until), value: progress.applied });
   }
 
-  private noteOf(isPast: boolean, date: string): string {
-    if (!isPast) return this.isOffline ? 'The map as it was last received.' : 'The map as it is now.';
-    const then = date === '' ? '' : `, ${date}`;
-    return `Map, robots and trails as they were then${then}; newest scans, goals, frontiers and landmarks are hidden.`;
+  private presentNote(): string {
+    return this.isOffline ? 'The map as it was last received.' : 'The map as it is now.';
   }
 
   private gapBefore(timeline: Timeline, index: number): string {

@@ -2,6 +2,7 @@
 import { fetchHistory } from '../api/history';
 import { isPassing } from '../api/http';
 import type { Robot, Session } from '../api/types';
+import type { PastPoses } from '../api/weaves';
 import type { Trail } from '../live/trails';
 import type { MapSource } from '../map/map_source';
 import type { Picture } from '../picture';
@@ -29,6 +30,8 @@ export interface HistoryState {
   shown: number | null;
   isPlaying: boolean;
   speed: number;
+  /** The poses of past maps; null: no robot of the session has estimated poses. */
+  poses: PastPoses | null;
   /** Log entries applied so far and in total, if the computation takes long. */
   progress: { applied: number; until: number } | null;
   /** The current error as a sentence; empty: none. */
@@ -77,8 +80,16 @@ export class SessionHistory {
     const leave = new AbortController();
     const timeline = new Timeline();
     const player = new Player(timeline, () => performance.now() / 1000);
-    const state: HistoryState = { ...kAtFirst, timeline: new Timeline(), speed: player.speed };
-    const weaver = new ServerWeaver(session, session.cellSize, () => this.picture.layersOfSession(), leave.signal);
+    const isEstimated = this.viewer.robots.some(({ localization }) => localization !== null);
+    const poses = isEstimated ? 'then' : null;
+    const state: HistoryState = { ...kAtFirst, timeline: new Timeline(), speed: player.speed, poses };
+    const weaver = new ServerWeaver(
+      session,
+      session.cellSize,
+      () => state.poses,
+      () => this.picture.layersOfSession(),
+      leave.signal,
+    );
     const travel = new TimeTravel(weaver, this.travelEvents(), leave.signal, kTimer);
     this.visit = { session, state, player, startAt: null, travel, leave };
     this.notify();
@@ -137,6 +148,15 @@ export class SessionHistory {
   setSpeed(speed: number): void {
     this.visit?.player.setSpeed(speed);
     this.change({ speed });
+  }
+
+  /** Shows past maps, also the one that is shown now, with these poses. */
+  setPoses(poses: PastPoses): void {
+    if (!this.visit) return;
+    this.change({ poses });
+    this.visit.travel.invalidate();
+    const { index } = this.visit.state;
+    if (index !== null) this.goTo(index);
   }
 
   /** Shows the live map. */

@@ -41,6 +41,8 @@ export class TimeTravel {
   private wanted: number | null = null;
   private shown: { revision: number; weave: string } | null = null;
   private travelling = false;
+  /** Increases when the weaver's requests change. */
+  private round = 0;
   /** Weaves of moments that were shown, the newest last. */
   private readonly kept = new Set<string>();
 
@@ -57,6 +59,12 @@ export class TimeTravel {
   go(revision: number): void {
     this.wanted = revision;
     if (!this.travelling) void this.travel();
+  }
+
+  /** The weaver's requests have changed: the next go() requests its moment again, even if it is shown. */
+  invalidate(): void {
+    this.round += 1;
+    this.shown = null;
   }
 
   /** Returns to the present: cancels pending requests. */
@@ -95,14 +103,16 @@ export class TimeTravel {
   }
 
   private async reach(revision: number): Promise<void> {
+    const { round } = this;
     const weave = await this.weave(revision);
     if (weave === null || this.isOver()) return;
     const source = await this.weaver.load(weave.id, (error) => void this.lose(error));
     if (this.isOver()) return;
-    this.shown = { revision, weave: weave.id };
     this.kept.delete(weave.id);
     this.kept.add(weave.id);
     this.forget(kKeptMax);
+    if (round !== this.round) return;
+    this.shown = { revision, weave: weave.id };
     this.events.arrived(revision, source);
   }
 
@@ -115,13 +125,15 @@ export class TimeTravel {
     }
   }
 
-  /** @returns null: cancelled, because another moment was requested */
+  /** @returns null: cancelled, because another moment was requested, or the same one with other poses */
   private async weave(revision: number): Promise<Weave | null> {
+    const { round } = this;
     const start = this.timer.now();
     let weave = await this.weaver.start(revision);
     for (let wait = kAskFirstMs; isUnfinished(weave); wait = Math.min(2 * wait, kAskLastMs)) {
       const isLong = this.timer.now() - start > kLongMs;
-      if (this.isOver() || (isLong && (this.wanted ?? revision) < revision)) {
+      const isObsolete = round !== this.round || (this.wanted ?? revision) < revision;
+      if (this.isOver() || (isLong && isObsolete)) {
         void this.weaver.cancel(weave.id).catch(() => {});
         return null;
       }

@@ -1,6 +1,6 @@
 /** Requests weaves of earlier times, and loads the data that are needed to show them. */
 import type { SessionKey } from '../api/api';
-import { deleteWeave, fetchWeave, startWeave, type Weave } from '../api/weaves';
+import { deleteWeave, fetchWeave, startWeave, type PastPoses, type Weave } from '../api/weaves';
 import type { LayerName } from '../layers/layers';
 import { ownFamily, WeaveSource, type MapSource } from '../map/map_source';
 
@@ -20,15 +20,18 @@ export interface Weaver {
 }
 
 export class ServerWeaver implements Weaver {
+  /** @param poses called for each request; null: no robot of the session has estimated poses */
   constructor(
     private readonly session: SessionKey,
     private readonly cellSize: number,
+    private readonly poses: () => PastPoses | null,
     private readonly layers: () => LayerName[],
     private readonly signal: AbortSignal,
   ) {}
 
   start(revision: number): Promise<Weave> {
-    return startWeave(this.session.name, { until: revision }, this.signal);
+    const poses = this.poses();
+    return startWeave(this.session.name, { until: revision, ...(poses && { poses }) }, this.signal);
   }
 
   progress(id: string): Promise<Weave> {
@@ -42,7 +45,9 @@ export class ServerWeaver implements Weaver {
 
   async load(id: string, failed: (error: unknown) => void): Promise<MapSource> {
     const { exclusions } = await this.progress(id);
-    const source = new WeaveSource(this.session, this.cellSize, id, ownFamily(exclusions), this.signal, failed);
+    // Estimated poses differ from moment to moment, so tiles of the same revision may differ, too.
+    const family = this.poses() === null ? ownFamily(exclusions) : `weave ${id}`;
+    const source = new WeaveSource(this.session, this.cellSize, id, family, this.signal, failed);
     await Promise.all([...new Set(this.layers())].map((layer) => source.load(layer)));
     return source;
   }

@@ -1,6 +1,7 @@
 /** Formats moments and durations of a session. */
 import { MalformedAnswer } from '../api/decode';
 import { Refused, Unreachable } from '../api/http';
+import type { PastPoses } from '../api/weaves';
 import { count } from '../format';
 import { WeaveFailed } from './time_travel';
 import type { Timeline } from './timeline';
@@ -37,6 +38,17 @@ export function scanOf(timeline: Timeline, index: number): string {
 export function dateOf(timeline: Timeline, index: number): string {
   if (!timeline.isWallClock) return '';
   return new Date(1000 * timeline.timeOf(index)).toLocaleDateString(undefined, { dateStyle: 'medium' });
+}
+
+/** Returns what is shown of an earlier time. @param date empty: unknown */
+export function pastOf(date: string, poses: PastPoses | null): string {
+  const then = date === '' ? '' : `, ${date}`;
+  const shown = {
+    none: `Map, robots and trails as they were then${then}`,
+    then: `Map as it was believed to be then${then}; robots and trails at the poses known today`,
+    now: `Map, robots and trails of that time${then}, at the poses known today`,
+  };
+  return `${shown[poses ?? 'none']}; newest scans, goals, frontiers and landmarks are hidden.`;
 }
 
 /** @param share loaded part, 0 to 1 */

@@ -126,6 +126,32 @@ describe('travelling in time', () => {
     assert.deepEqual(world.requests, ['start 5', 'load 5']);
   });
 
+  it('requests the shown revision again after its requests have changed', async () => {
+    const world = new World();
+    world.travel.go(5);
+    await world.settle();
+    world.travel.invalidate();
+    world.travel.go(5);
+    await world.settle();
+    assert.deepEqual(world.requests, ['start 5', 'load 5', 'start 5', 'load 5']);
+    assert.deepEqual(world.events, ['arrived 5', 'rested', 'arrived 5', 'rested']);
+  });
+
+  it('does not arrive with a replay job of an earlier kind of request', async () => {
+    const world = new World();
+    world.perRequest = 1;
+    world.travel.go(1_000);
+    await world.waitFor((line) => line.startsWith('weaving'));
+    world.travel.invalidate();
+    world.travel.go(1_000);
+    await world.settle();
+    world.perRequest = Infinity;
+    await world.settle();
+    assert.deepEqual(cancelled(world), ['cancel 1000']);
+    assert.equal(world.requests.filter((line) => line === 'start 1000').length, 2);
+    assert.deepEqual(world.events.slice(-2), ['arrived 1000', 'rested']);
+  });
+
   it('reports the progress of a long replay job and cancels it for an earlier revision', async () => {
     const world = new World();
     world.perRequest = 1;

@@ -43,6 +43,18 @@ describe('time texts', () => {
     ]);
   });
 
+  it('say which poses a past map has', () => {
+    assert.match(words.pastOf('', null), /^Map, robots and trails as they were then; newest scans/);
+    assert.match(
+      words.pastOf('May 3', 'then'),
+      /^Map as it was believed to be then, May 3; robots and trails at the poses/,
+    );
+    assert.match(
+      words.pastOf('May 3', 'now'),
+      /^Map, robots and trails of that time, May 3, at the poses known today;/,
+    );
+  });
+
   it('contain the time of day only for Unix time', () => {
     assert.equal(words.scanOf(timelineFrom(12), 1), 'scan 2 of 2, +01:35');
     assert.equal(words.dateOf(timelineFrom(12), 1), '');
