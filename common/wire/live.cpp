@@ -34,6 +34,7 @@ void write(const LiveLocalization& localization, v1::RobotLocalization& out) {
     out.set_inliers(localization.inliers);
     out.set_sigma_m(localization.sigma_m);
     out.set_sigma_rad(localization.sigma_rad);
+    out.set_mount_yaw_error(localization.mount_yaw_error);
 }
 
 void write(const RobotUpdate& robot, v1::RobotUpdate& out) {

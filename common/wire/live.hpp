@@ -46,8 +46,9 @@ struct LiveLocalization {
     LocalizationState state = LocalizationState::kGiven;
     Poses poses = Poses::kMap;
     float inliers = 0.0F;
-    float sigma_m = 0.0F;   ///< metres
-    float sigma_rad = 0.0F; ///< radians
+    float sigma_m = 0.0F;         ///< metres
+    float sigma_rad = 0.0F;       ///< radians
+    float mount_yaw_error = 0.0F; ///< radians: by how much the yaw of the laser's mount seems too large; 0: it is right
 };
 
 struct RobotUpdate {

@@ -111,6 +111,7 @@ struct Correction {
     double position_sigma = 0.0; ///< metres, in the most uncertain direction
     double yaw_sigma = 0.0;      ///< radians
     LocalizationState state = LocalizationState::kGiven;
+    std::optional<double> mount_yaw_error = {}; ///< radians: by how much the yaw of the laser's mount seems too large
 
     friend bool operator==(const Correction&, const Correction&) = default;
 };

@@ -10,6 +10,8 @@
 #include <cmath>
 #include <cstdlib>
 #include <initializer_list>
+#include <numbers>
+#include <optional>
 #include <string_view>
 #include <utility>
 
@@ -209,13 +211,18 @@ Result<Correction> from_proto(const v1::Correction& proto) {
     if (auto ok = check_sizes({{"position_sigma", proto.position_sigma()}, {"yaw_sigma", proto.yaw_sigma()}}); !ok) {
         return ok.error();
     }
+    if (proto.has_mount_yaw_error() && !(std::fabs(proto.mount_yaw_error()) <= std::numbers::pi)) {
+        return invalid_field(
+            fmt::format("mount_yaw_error is {}; radians from -pi to pi are needed", proto.mount_yaw_error()));
+    }
     const bool is_known = v1::LocalizationState_IsValid(proto.state());
     return Correction{*pose,
                       proto.revision(),
                       proto.explained(),
                       proto.position_sigma(),
                       proto.yaw_sigma(),
-                      is_known ? static_cast<LocalizationState>(proto.state()) : LocalizationState::kGiven};
+                      is_known ? static_cast<LocalizationState>(proto.state()) : LocalizationState::kGiven,
+                      proto.has_mount_yaw_error() ? std::optional(proto.mount_yaw_error()) : std::nullopt};
 }
 
 void to_proto(const Correction& correction, v1::Correction& out) {
@@ -225,6 +232,7 @@ void to_proto(const Correction& correction, v1::Correction& out) {
     out.set_position_sigma(correction.position_sigma);
     out.set_yaw_sigma(correction.yaw_sigma);
     out.set_state(static_cast<v1::LocalizationState>(correction.state));
+    if (correction.mount_yaw_error) out.set_mount_yaw_error(*correction.mount_yaw_error);
 }
 
 // Requests ------------------------------------------------------------------------------------------------------------

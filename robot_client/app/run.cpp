@@ -2,6 +2,7 @@
 
 #include "common/app/settings.hpp"
 #include "common/net/await_tuple.hpp"
+#include "robot_client/app/localization_notes.hpp"
 #include "robot_client/app/make_source.hpp"
 #include "robot_client/app/progress.hpp"
 #include "robot_client/uplink/live_feed.hpp"
@@ -135,11 +136,12 @@ ExitCode run(const RobotOptions& options) {
     if (!tls) return fail(tls.error());
     sent_options.tls = std::move(*tls);
 
-    if (auto* const exploring = prepared->exploring; exploring != nullptr && options.poses == Poses::kOdometry) {
-        sent_options.protocol.on_correction = [exploring](const wire::Correction& correction) {
-            exploring->correct(correction.T_map_odom);
-        };
-    }
+    auto* const steered = options.poses == Poses::kOdometry ? prepared->exploring : nullptr;
+    sent_options.protocol.on_correction = [&console, steered,
+                                           notes = LocalizationNotes()](const wire::Correction& correction) mutable {
+        if (steered != nullptr) steered->correct(correction.T_map_odom);
+        for (const auto& note : notes.add(correction)) console.note(note);
+    };
 
     asio::io_context io(1);
     Uplink uplink(io, std::move(sent_options), **feed);

@@ -38,6 +38,9 @@ struct Location {
     std::uint64_t revision = 0;  ///< of the session's maps that were used
     LocalizationState state = LocalizationState::kGiven; ///< set by the server's corrections, not by locate()
     double explained = 0.0;                              ///< earlier name of inlier_ratio, until 0.3; the same value
+    /// Radians: by how much the yaw of the laser's mount seems to be too large, because scans show motions in another
+    /// direction than the odometry; nullopt: it seems to be right. Set by the server's corrections, not by locate().
+    std::optional<double> mount_yaw_error = {};
 };
 
 /// Options of a client. The defaults suit a robot that connects to a server without TLS on the same machine.

@@ -48,7 +48,8 @@ private:
             .yaw_sigma = correction.yaw_sigma,
             .revision = correction.revision,
             .state = correction.state,
-            .explained = correction.explained};
+            .explained = correction.explained,
+            .mount_yaw_error = correction.mount_yaw_error};
 }
 
 /// Runs the uplink on a thread of its own.

@@ -91,7 +91,8 @@ void RobotConnection::on_durable(std::uint64_t durable_seq, std::size_t bytes) {
 
 void RobotConnection::on_located(const sessions::Located& located) {
     const wire::Correction correction{located.T_map_odom,     located.revision,  located.inlier_ratio,
-                                      located.position_sigma, located.yaw_sigma, located.state};
+                                      located.position_sigma, located.yaw_sigma, located.state,
+                                      located.mount_yaw_error};
     post([correction](RobotConnection& self) { self.protocol_.on_located(correction); });
 }
 

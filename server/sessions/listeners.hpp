@@ -24,6 +24,7 @@ struct Located {
     double position_sigma = 0.0; ///< metres, of the scan's pose, in the most uncertain direction
     double yaw_sigma = 0.0;      ///< radians, of the scan's pose
     LocalizationState state = LocalizationState::kGiven;
+    std::optional<double> mount_yaw_error; ///< radians: by how much the yaw of the laser's mount seems to be too large
 };
 
 /// Receives acknowledgements, corrections and errors for a robot's link. Called on the session's strand: must not

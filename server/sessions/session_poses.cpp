@@ -130,7 +130,7 @@ void Session::report_places(const Group& group) {
         Pose2 location = has_odometry ? place.T_map_odom : place.T_map_robot;
         if (known.state == LocalizationState::kUnlocated) location = {}; // its place is in a frame of its own
         listener->on_located({location, maps_.projection().revision(), known.inlier_ratio, known.position_sigma,
-                              known.yaw_sigma, known.state});
+                              known.yaw_sigma, known.state, known.mount_yaw_error});
     }
 }
 

@@ -102,21 +102,28 @@ wire::LiveLandmark to_wire(const landmarks::MapLandmark& one) noexcept {
 std::optional<wire::LiveLocalization> localization_of(const mapping::RobotState& robot) {
     if (robot.poses == Poses::kMap) return std::nullopt;
     const auto& known = robot.localization;
-    return wire::LiveLocalization{known.state, robot.poses, static_cast<float>(known.inlier_ratio),
-                                  static_cast<float>(known.position_sigma), static_cast<float>(known.yaw_sigma)};
+    return wire::LiveLocalization{known.state,
+                                  robot.poses,
+                                  static_cast<float>(known.inlier_ratio),
+                                  static_cast<float>(known.position_sigma),
+                                  static_cast<float>(known.yaw_sigma),
+                                  static_cast<float>(known.mount_yaw_error.value_or(0.0))};
 }
 
-/// Returns whether a viewer would show both in the same words: to 5 % of the points, 1 cm and half a degree.
+/// Returns whether a viewer would show both in the same words: to 5 % of the points, 1 cm and half a degree, of the
+/// mount 10 degrees.
 bool are_similar(const std::optional<wire::LiveLocalization>& a, const std::optional<wire::LiveLocalization>& b) {
     constexpr float kPerInlierStep = 20.0F;
     constexpr float kPerMetre = 100.0F;
     constexpr float kPerRadian = 115.0F;
+    constexpr float kPerMountError = 5.7F;
     const auto are_near = [](float left, float right, float steps) {
         return std::round(left * steps) == std::round(right * steps);
     };
     if (!a || !b) return a.has_value() == b.has_value();
     return a->state == b->state && a->poses == b->poses && are_near(a->inliers, b->inliers, kPerInlierStep) &&
-           are_near(a->sigma_m, b->sigma_m, kPerMetre) && are_near(a->sigma_rad, b->sigma_rad, kPerRadian);
+           are_near(a->sigma_m, b->sigma_m, kPerMetre) && are_near(a->sigma_rad, b->sigma_rad, kPerRadian) &&
+           are_near(a->mount_yaw_error, b->mount_yaw_error, kPerMountError);
 }
 
 /// Pre: the pose is within kCoordinateMax.

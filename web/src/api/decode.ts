@@ -126,6 +126,7 @@ function decodeLocalization(json: unknown): Localization | null {
     state,
     inliers: number(known['inliers'], 'localization.inliers'),
     sigma: number(known['sigma_m'], 'localization.sigma_m'),
+    mountError: known['mount_yaw_error'] == null ? 0 : number(known['mount_yaw_error'], 'localization.mount_yaw_error'),
   };
 }
 

@@ -163,9 +163,9 @@ function decodeRobot(robot: RobotUpdate): LiveRobot {
   };
 }
 
-function decodeLocalization({ state, inliers, sigma_m }: RobotLocalization): Localization | null {
+function decodeLocalization({ state, inliers, sigma_m, mount_yaw_error }: RobotLocalization): Localization | null {
   const known = kStateOfNumber.get(state);
-  return known ? { state: known, inliers, sigma: sigma_m } : null;
+  return known ? { state: known, inliers, sigma: sigma_m, mountError: mount_yaw_error } : null;
 }
 
 function decodeLandmarks({ landmarks, refused }: LandmarkChanges): LandmarkUpdate {

@@ -24,6 +24,7 @@ declare module 'virtual:live-protocol' {
     state: number;
     inliers: number;
     sigma_m: number;
+    mount_yaw_error: number;
   }
 
   interface RobotUpdate {

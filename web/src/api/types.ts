@@ -21,6 +21,8 @@ export interface Localization {
   inliers: number;
   /** Standard deviation of the newest position, metres. */
   sigma: number;
+  /** By how much the yaw of the laser's mount seems to be too large, radians; 0: it seems to be right. */
+  mountError: number;
 }
 
 export interface Robot {

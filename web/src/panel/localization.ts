@@ -10,8 +10,8 @@ const kGoodInliers = 0.7;
 
 const kCentimetre = 0.01;
 
-export function qualityOf({ state, sigma, inliers }: Localization): Quality {
-  if (state === 'lost') return 'bad';
+export function qualityOf({ state, sigma, inliers, mountError }: Localization): Quality {
+  if (state === 'lost' || mountError !== 0) return 'bad';
   return state === 'tracking' && sigma <= kGoodSigma && inliers >= kGoodInliers ? 'good' : 'fair';
 }
 
@@ -20,8 +20,13 @@ export function needsPlace({ state }: Localization): boolean {
   return state !== 'tracking';
 }
 
-/** "tracking, \u00b11 cm", "tracking, \u00b112 cm, 55 % of the scan fits the map". */
-export function wordsOf({ state, sigma, inliers }: Localization): string {
+/** "tracking, \u00b11 cm", "tracking, \u00b112 cm, 55 % of the scan fits the map", "...; the laser seems to be mounted 180\u00b0 off". */
+export function wordsOf(localization: Localization): string {
+  const degrees = Math.round((Math.abs(localization.mountError) * 180) / Math.PI);
+  return stateInWords(localization) + (degrees === 0 ? '' : `; the laser seems to be mounted ${degrees}\u00b0 off`);
+}
+
+function stateInWords({ state, sigma, inliers }: Localization): string {
   switch (state) {
     case 'tracking':
       return `tracking, \u00b1${around(sigma)}${inliers < kGoodInliers ? `, ${Math.round(100 * inliers)} % of the scan fits the map` : ''}`;

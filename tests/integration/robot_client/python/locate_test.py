@@ -123,7 +123,8 @@ class Locate(LinkTest):
 class Corrections(LinkTest):
     def correction(self, x, state):
         return {"T_map_odom": {"x": x, "y": 2.0, "yaw": math.pi / 2}, "revision": 9, "explained": 0.9,
-                "position_sigma": 0.01, "yaw_sigma": 0.02, "state": state}
+                "position_sigma": 0.01, "yaw_sigma": 0.02, "state": state,
+                **({"mount_yaw_error": 3.0} if state == 2 else {})}
 
     def test_each_is_passed_on_and_the_newest_is_kept_also_after_a_reconnect(self):
         def first(link):
@@ -146,6 +147,7 @@ class Corrections(LinkTest):
         self.assertEqual([(location.T_map_odom, location.state) for location in received],
                          [((1.0, 2.0, math.pi / 2), "TRACKING"), ((3.0, 2.0, math.pi / 2), "LOST")])
         self.assertIs(newest, received[-1])
+        self.assertEqual([location.mount_yaw_error for location in received], [None, 3.0])
         self.assertEqual((newest.inlier_ratio, newest.position_sigma, newest.yaw_sigma, newest.revision),
                          (0.9, 0.01, 0.02, 9))
         for actual, wanted in zip(newest.at((1.0, 0.5, math.pi)), (2.5, 3.0, -math.pi / 2)):

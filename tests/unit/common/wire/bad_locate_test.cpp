@@ -17,6 +17,8 @@ TEST(BadCorrection, IsRefusedByFieldName) {
         {[](Correction& c) { c.explained = kNan; }, "explained is nan;"},
         {[](Correction& c) { c.position_sigma = -0.1; }, "position_sigma is -0.1;"},
         {[](Correction& c) { c.yaw_sigma = kInfinity; }, "yaw_sigma is inf;"},
+        {[](Correction& c) { c.mount_yaw_error = 3.2; }, "mount_yaw_error is 3.2;"},
+        {[](Correction& c) { c.mount_yaw_error = kNan; }, "mount_yaw_error is nan;"},
     };
     for (const auto& invalid : kCases) {
         Correction correction = example_correction();

@@ -106,7 +106,9 @@ inline LocateRequest example_locate_request() {
     return request;
 }
 
-inline Correction example_correction() { return {{1.0, 2.0, -0.5}, 99, 0.875, 0.003, 0.001, LocalizationState::kLost}; }
+inline Correction example_correction() {
+    return {{1.0, 2.0, -0.5}, 99, 0.875, 0.003, 0.001, LocalizationState::kLost, 0.5};
+}
 
 inline CoverageRequest example_coverage_request() {
     return {.id = 19,

@@ -271,6 +271,7 @@ TEST(EventEncoder, SendsLocalizationWhenStateOrQualityChanges) {
     EXPECT_EQ(sent.inliers(), 0.75F);
     EXPECT_EQ(sent.sigma_m(), 0.03125F);
     EXPECT_EQ(sent.sigma_rad(), 0.0625F);
+    EXPECT_EQ(sent.mount_yaw_error(), 0.0F);
 
     known.position_sigma = 0.033;
     known.inlier_ratio = 0.76;
@@ -286,6 +287,12 @@ TEST(EventEncoder, SendsLocalizationWhenStateOrQualityChanges) {
         EXPECT_EQ(event->robots(0).localization().inliers(), static_cast<float>(change.inlier_ratio));
     }
     EXPECT_EQ(event->robots(0).localization().state(), v1::LOCALIZATION_STATE_UNLOCATED);
+    known.mount_yaw_error = -3.0;
+    event = next();
+    ASSERT_TRUE(event);
+    EXPECT_EQ(event->robots(0).localization().mount_yaw_error(), -3.0F);
+    known.mount_yaw_error = -2.98;
+    EXPECT_FALSE(next());
 }
 
 TEST(EventEncoder, SendsEventIfOnlyMovingScansChanged) {

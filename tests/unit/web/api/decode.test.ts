@@ -27,7 +27,14 @@ function session(): Record<string, unknown> {
     robots: [
       {
         ...{ name: 'r1', connected: true, scans: 910, last_seq: 910, stamp: 1.5, pose: { x: 1, y: 2, yaw: 0.1 } },
-        localization: { poses: 'odometry', state: 'lost', inliers: 0.5, sigma_m: 0.25, sigma_rad: 0.1 },
+        localization: {
+          poses: 'odometry',
+          state: 'lost',
+          inliers: 0.5,
+          sigma_m: 0.25,
+          sigma_rad: 0.1,
+          mount_yaw_error: 3,
+        },
       },
     ],
   };
@@ -52,7 +59,7 @@ describe('decoding', () => {
       robots: [
         {
           ...{ name: 'r1', connected: true, scans: 910, pose: { x: 1, y: 2, yaw: 0.1 }, bodyRadius: null },
-          localization: { state: 'lost', inliers: 0.5, sigma: 0.25 },
+          localization: { state: 'lost', inliers: 0.5, sigma: 0.25, mountError: 3 },
         },
       ],
       failure: null,

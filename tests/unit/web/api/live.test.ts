@@ -78,7 +78,7 @@ describe('a live event', () => {
     ];
     const event = decodeLiveEvent(bytesOf({ robots: known(1), poses_corrected: 117, moving_scans: 13631 }));
     assert.deepEqual([event.posesCorrected, event.movingScans], [117, 13631]);
-    assert.deepEqual(event.robots[0]?.localization, { state: 'tracking', inliers: 0.5, sigma: 0.25 });
+    assert.deepEqual(event.robots[0]?.localization, { state: 'tracking', inliers: 0.5, sigma: 0.25, mountError: 0 });
     assert.equal(decodeLiveEvent(bytesOf({ robots: known(2) })).robots[0]?.localization?.state, 'lost');
     assert.equal(decodeLiveEvent(bytesOf({ robots: known(3) })).robots[0]?.localization?.state, 'unlocated');
     assert.equal(decodeLiveEvent(bytesOf({ robots: [{ name: 'r1' }] })).robots[0]?.localization, null);

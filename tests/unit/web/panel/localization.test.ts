@@ -4,7 +4,7 @@ import type { Localization } from '../../../../web/src/api/types';
 import { needsPlace, qualityOf, wordsOf } from '../../../../web/src/panel/localization';
 
 function tracking(sigma: number, inliers = 0.9): Localization {
-  return { state: 'tracking', sigma, inliers };
+  return { state: 'tracking', sigma, inliers, mountError: 0 };
 }
 
 describe('the localization of a robot', () => {
@@ -15,6 +15,12 @@ describe('the localization of a robot', () => {
     assert.equal(wordsOf(tracking(0.02, 0.554)), 'tracking, \u00b12 cm, 55 % of the scan fits the map');
     assert.equal(wordsOf({ ...tracking(0.01), state: 'lost' }), 'lost: its scans fit no place');
     assert.equal(wordsOf({ ...tracking(0), state: 'unlocated' }), 'unlocated: its place in the map is not known yet');
+  });
+
+  it('says that the mount of the laser is wrong', () => {
+    const wrong = { ...tracking(0.001), mountError: -3.1 };
+    assert.equal(wordsOf(wrong), 'tracking, \u00b11 cm; the laser seems to be mounted 178\u00b0 off');
+    assert.equal(qualityOf(wrong), 'bad');
   });
 
   it('is good only if the position is certain and most of the scan fits the map', () => {

@@ -1,0 +1,23 @@
+#pragma once
+
+#include "common/wire/messages.hpp"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace scanloom::robot {
+
+/// Tells an operator what the server's corrections say about the robot, when it changes.
+/// Threads: one at a time.
+class LocalizationNotes {
+public:
+    /// Returns a sentence for each change since the correction before.
+    [[nodiscard]] std::vector<std::string> add(const wire::Correction& correction);
+
+private:
+    LocalizationState state_ = LocalizationState::kTracking;
+    bool has_wrong_mount_ = false;
+};
+
+} // namespace scanloom::robot
