@@ -35,7 +35,11 @@ void Table::add_row(std::string_view cells) {
 }
 
 std::string picture(std::string_view file, std::string_view caption) {
-    return fmt::format("![{0}]({1}/{2})\n\n*{0}*", caption, kPicturesFolder, file);
+    return fmt::format("{}\n\n*{}*", picture_cell(file, caption), caption);
+}
+
+std::string picture_cell(std::string_view file, std::string_view caption) {
+    return fmt::format("![{}]({}/{})", caption, kPicturesFolder, file);
 }
 
 std::string items(const std::vector<std::string>& texts) { return fmt::format("- {}", fmt::join(texts, "\n- ")); }
@@ -93,11 +97,18 @@ std::pair<std::string_view, std::string_view> parts_of_link(std::string_view lin
     return {link.substr(begin, middle - begin), link.substr(middle + 2, link.size() - middle - 3)};
 }
 
+/// Returns a picture with a link to its file: "![caption](file)".
+std::string html_picture(std::string_view picture) {
+    const auto [caption, file] = parts_of_link(picture);
+    return fmt::format("<a href=\"{0}\"><img src=\"{0}\" alt=\"{1}\" loading=\"lazy\"></a>", file, caption);
+}
+
 /// Returns a row of a table: "| a | b |".
 std::string html_row(std::string_view line, std::string_view tag) {
     std::string row = "<tr>";
-    for (const auto cell : split(line.substr(2, line.size() - 4), kBar))
-        row += fmt::format("<{0}>{1}</{0}>", tag, cell);
+    for (const auto cell : split(line.substr(2, line.size() - 4), kBar)) {
+        row += fmt::format("<{0}>{1}</{0}>", tag, cell.starts_with("![") ? html_picture(cell) : std::string(cell));
+    }
     return row + "</tr>\n";
 }
 
@@ -123,12 +134,9 @@ std::string html_of(std::string_view text) {
         for (std::size_t n = 2; n < lines.size(); ++n) table += html_row(lines[n], "td");
         return table + "</tbody>\n</table>\n";
     }
-    case '!': {
-        const auto [caption, file] = parts_of_link(text);
-        return fmt::format("<figure><a href=\"{0}\"><img src=\"{0}\" alt=\"{1}\" loading=\"lazy\"></a>"
-                           "<figcaption>{1}</figcaption></figure>\n",
-                           file, caption);
-    }
+    case '!':
+        return fmt::format("<figure>{}<figcaption>{}</figcaption></figure>\n", html_picture(text),
+                           parts_of_link(text).first);
     case '[': {
         const auto [name, file] = parts_of_link(text);
         return fmt::format("<p><a href=\"{}.html\">{}</a></p>\n", file.substr(0, file.rfind(".md")), name);

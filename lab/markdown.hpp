@@ -38,6 +38,10 @@ inline constexpr const char* kPicturesFolder = "pictures"; ///< in the folder of
 /// @param file  name in the folder for pictures
 [[nodiscard]] std::string picture(std::string_view file, std::string_view caption);
 
+/// Returns a picture for a cell of a table.
+/// @param file  name in the folder for pictures
+[[nodiscard]] std::string picture_cell(std::string_view file, std::string_view caption);
+
 /// Returns a list with an item for each text.
 [[nodiscard]] std::string items(const std::vector<std::string>& texts);
 
@@ -45,8 +49,8 @@ inline constexpr const char* kPicturesFolder = "pictures"; ///< in the folder of
 [[nodiscard]] std::string range_text(std::span<const double> values, int digits = 2);
 
 /// Converts the Markdown of a report to one page without scripts that loads only its pictures. The first heading is the
-/// title. Understands blocks separated by an empty line: headings, paragraphs, lists, code, tables, pictures with their
-/// captions, and links to other reports (.md, here .html).
+/// title. Understands blocks separated by an empty line: headings, paragraphs, lists, code, tables (also of pictures),
+/// pictures with their captions, and links to other reports (.md, here .html).
 [[nodiscard]] std::string to_html(std::string_view markdown);
 
 } // namespace scanloom::lab

@@ -60,5 +60,14 @@ TEST(Markdown, HtmlHasTheSameBlocks) {
     EXPECT_THAT(html, Not(HasSubstr("http")));
 }
 
+TEST(Markdown, TablesMayContainPictures) {
+    Table table("first | second");
+    table.add("{} | {}", picture_cell("a.png", "one < two"), "text");
+    EXPECT_THAT(table.text(), HasSubstr("| ![one < two](pictures/a.png) | text |"));
+    EXPECT_THAT(to_html("# Title\n\n" + table.text()),
+                HasSubstr("<tr><td><a href=\"pictures/a.png\"><img src=\"pictures/a.png\" alt=\"one &lt; two\" "
+                          "loading=\"lazy\"></a></td><td>text</td></tr>"));
+}
+
 } // namespace
 } // namespace scanloom::lab
