@@ -36,6 +36,7 @@ Result<EstimatedTrajectory> estimate_trajectory(robot::Source& source, const std
     for (std::size_t i = 0; i < stamps.size(); ++i) {
         trajectory.final_poses.push_back({estimator.pose_of(i), stamps[i]});
         trajectory.first_poses.push_back({estimator.first_pose_of(i), stamps[i]});
+        trajectory.is_located.push_back(estimator.is_located(i));
     }
     return trajectory;
 }

@@ -15,6 +15,8 @@ namespace scanloom::lab {
 struct EstimatedTrajectory {
     std::vector<robot::StampedPose> final_poses; ///< after the last scan
     std::vector<robot::StampedPose> first_poses; ///< each as estimated when its scan was added
+    std::vector<bool>
+        is_located;           ///< whether the scan's pose is known; otherwise it is a prediction or in another frame
     double cpu_seconds = 0.0; ///< of all threads of the process, for the estimation; without reading the scans
 };
 
