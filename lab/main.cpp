@@ -15,11 +15,8 @@ int main(int argc, char** argv) try {
         fmt::print(leave->code == scanloom::kExitDone ? stdout : stderr, "{}", leave->text);
         return leave->code;
     }
-    if (const auto* landmarks = std::get_if<scanloom::lab::LandmarkOptions>(&options)) {
-        return scanloom::lab::run(*landmarks);
-    }
-    if (const auto* score = std::get_if<scanloom::lab::ScoreOptions>(&options)) return scanloom::lab::run(*score);
-    return scanloom::lab::run(std::get<scanloom::lab::ExperimentOptions>(options));
+    return std::visit([](const auto& chosen) { return scanloom::lab::run(chosen); },
+                      std::get<scanloom::lab::Options>(options));
 } catch (const std::exception& error) {
     scanloom::standard_error().write(fmt::format("scanloom-lab: {}\n", error.what()));
     return scanloom::kExitFailed;

@@ -77,6 +77,33 @@ CLI::App* add_score(CLI::App& app, ScoreOptions& options, std::string& poses) {
     return score;
 }
 
+CLI::App* add_localization(CLI::App& app, LocalizationOptions& options, std::vector<std::string>& files) {
+    auto* localization = app.add_subcommand(
+        "localization", "Estimates the trajectories of recorded logs with and without their odometry and with changes "
+                        "that must not matter: errors, published errors, false loops and maps, as a report");
+    localization->add_option("--out", options.out, kOutHelp);
+    localization
+        ->add_option("FILES", files,
+                     "Pairs of files: a CARMEN log (plain, gzip or bzip2), and its verified relative poses, lines of: "
+                     "t1 t2 x y z roll pitch yaw")
+        ->type_name("LOG RELATIONS ...")
+        ->configurable(false);
+    return localization;
+}
+
+/// Returns what is wrong with the files of localization; empty if nothing is.
+std::string complaint_about(const std::vector<LogFiles>& files, std::size_t words) {
+    if (words == 0 || words % 2 != 0) return "localization: name pairs of files, LOG RELATIONS";
+    for (std::size_t n = 0; n < files.size(); ++n) {
+        for (std::size_t other = 0; other < n; ++other) {
+            if (name_of_log(files[n].log) != name_of_log(files[other].log)) continue;
+            return fmt::format("localization: {} and {} would have the same pictures; rename one of them",
+                               files[other].log, files[n].log);
+        }
+    }
+    return {};
+}
+
 /// Returns what is wrong with the options of score; empty if nothing is.
 std::string complaint_about(const ScoreOptions& options) {
     if (options.log.empty() || options.relations.empty()) return "score: name two files, LOG and RELATIONS";
@@ -88,28 +115,40 @@ std::string complaint_about(const ScoreOptions& options) {
 
 } // namespace
 
-std::variant<ExperimentOptions, LandmarkOptions, ScoreOptions, Leave> parse_options(int argc, const char* const* argv) {
+std::variant<Options, Leave> parse_options(int argc, const char* const* argv) {
     ExperimentOptions experiment_options;
     LandmarkOptions landmark_options;
     ScoreOptions score_options;
+    LocalizationOptions localization_options;
     std::string poses = "odometry";
+    std::vector<std::string> files;
     CLI::App app(kAbout, "scanloom-lab");
     app.footer(kFooter);
     app.set_version_flag("--version", fmt::format("scanloom-lab {}", kVersion));
     add_experiment(app, experiment_options);
     const auto* landmarks = add_landmarks(app, landmark_options);
     const auto* score = add_score(app, score_options, poses);
+    const auto* localization = add_localization(app, localization_options, files);
     app.require_subcommand(1);
     try {
         read_settings_from_environment_and_file(app);
         app.parse(argc, argv);
     } catch (const CLI::ParseError& reason) {
-        return leave_for(app, reason, "name a command: experiment, landmarks or score");
+        return leave_for(app, reason, "name a command: experiment, landmarks, score or localization");
     }
     if (score->parsed()) {
         score_options.poses = poses == "none" ? Poses::kNone : Poses::kOdometry;
         if (auto wrong = complaint_about(score_options); !wrong.empty()) return usage_error(app, wrong);
         return score_options;
+    }
+    if (localization->parsed()) {
+        if (localization_options.out.empty()) return usage_error(app, "localization: name a directory with --out");
+        for (std::size_t n = 0; n + 1 < files.size(); n += 2) {
+            localization_options.files.push_back({files[n], files[n + 1]});
+        }
+        const auto wrong = complaint_about(localization_options.files, files.size());
+        if (!wrong.empty()) return usage_error(app, wrong);
+        return localization_options;
     }
     // --out is not required() by the parser, so that its error message can be ours
     if (landmarks->parsed()) {

@@ -3,11 +3,13 @@
 #include "common/app/program.hpp"
 #include "common/scan/poses.hpp"
 #include "lab/perturbed_source.hpp"
+#include "lab/recorded_log.hpp"
 
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <variant>
+#include <vector>
 
 namespace scanloom::lab {
 
@@ -32,9 +34,16 @@ struct ScoreOptions {
     Perturbation perturbation;
 };
 
+struct LocalizationOptions {
+    std::string out;             ///< directory of the report
+    std::vector<LogFiles> files; ///< at least one log, with different names
+};
+
+/// What a program is asked to do.
+using Options = std::variant<ExperimentOptions, LandmarkOptions, ScoreOptions, LocalizationOptions>;
+
 /// Reads the command line, SCANLOOM_* of the environment and the file of --config: a flag overrides the environment,
 /// which overrides the file.
-[[nodiscard]] std::variant<ExperimentOptions, LandmarkOptions, ScoreOptions, Leave>
-parse_options(int argc, const char* const* argv);
+[[nodiscard]] std::variant<Options, Leave> parse_options(int argc, const char* const* argv);
 
 } // namespace scanloom::lab

@@ -2,9 +2,11 @@
 
 #include "lab/experiment.hpp"
 #include "lab/landmark_experiment.hpp"
+#include "lab/localization_experiment.hpp"
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 /// The reports of the experiments, as Markdown.
 namespace scanloom::lab {
@@ -28,5 +30,19 @@ inline constexpr const char* kTimesFile = "times";
 /// Returns the part that differs each time: the durations.
 /// @param machine  description of the machine, see machine_description()
 [[nodiscard]] std::string times_report_of(const LandmarkResults& results, std::string_view machine);
+
+/// What the report of localization shows.
+struct LocalizationResults {
+    std::vector<LogFiles> files;
+    std::vector<LogResult> logs; ///< of these files
+};
+
+/// Returns the part that is equal, byte by byte, for equal logs and relations. Logs that are named "intel" and "fr079"
+/// are compared with published figures.
+[[nodiscard]] std::string report_of(const LocalizationResults& results);
+
+/// Returns the part that differs each time: the durations.
+/// @param machine  description of the machine, see machine_description()
+[[nodiscard]] std::string times_report_of(const LocalizationResults& results, std::string_view machine);
 
 } // namespace scanloom::lab

@@ -152,6 +152,35 @@ Result<std::string> run_landmarks_of(const LandmarkOptions& options, Console& co
 /// Returns the CPU time of all threads of this process.
 double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
+Result<std::string> run_localization_of(const LocalizationOptions& options, Console& console) {
+    std::vector<RecordedLog> logs;
+    for (const LogFiles& files : options.files) {
+        auto log = read_recorded_log(files);
+        if (!log) return log.error();
+        // before the estimates, which take minutes
+        if (const auto score = score_odometry(*log); !score) return prefixed(files.relations + ": ", score.error());
+        logs.push_back(std::move(*log));
+    }
+    const auto files = ReportFiles::open(options.out);
+    if (!files) return files.error();
+
+    const double begun = steady_seconds();
+    const auto keep = [&](const std::string& file, const tiles::Bytes& png) {
+        return files->pictures.write(file, png);
+    };
+    const auto tell = [&](std::string_view doing) { console.progress(doing); };
+    LocalizationResults results{.files = options.files};
+    for (const RecordedLog& log : logs) {
+        auto result = run_localization(log, {cpu_seconds, keep, tell});
+        if (!result) return result.error();
+        results.logs.push_back(std::move(*result));
+    }
+    auto written = files->write(report_of(results), times_report_of(results, machine_description()));
+    if (!written) return written.error();
+    return fmt::format(R"({{"logs":{},"seconds":{:.3f},"report":{}}})", results.logs.size(), steady_seconds() - begun,
+                       files->report_name());
+}
+
 Result<> write_file(const std::string& path, std::string_view content) {
     std::ofstream out(path, std::ios::binary | std::ios::trunc);
     out.write(content.data(), static_cast<std::streamsize>(content.size()));
@@ -214,5 +243,6 @@ ExitCode run_and_report(const Options& options, Result<std::string> (*work)(cons
 ExitCode run(const ExperimentOptions& options) { return run_and_report(options, run_experiment_of); }
 ExitCode run(const LandmarkOptions& options) { return run_and_report(options, run_landmarks_of); }
 ExitCode run(const ScoreOptions& options) { return run_and_report(options, run_score_of); }
+ExitCode run(const LocalizationOptions& options) { return run_and_report(options, run_localization_of); }
 
 } // namespace scanloom::lab

@@ -33,5 +33,6 @@ private:
 [[nodiscard]] ExitCode run(const ExperimentOptions& options);
 [[nodiscard]] ExitCode run(const LandmarkOptions& options);
 [[nodiscard]] ExitCode run(const ScoreOptions& options);
+[[nodiscard]] ExitCode run(const LocalizationOptions& options);
 
 } // namespace scanloom::lab

@@ -1,5 +1,6 @@
 #include "tests/support/child_process.hpp"
 #include "tests/support/temporary_directory.hpp"
+#include "tests/unit/lab/driven_log.hpp"
 
 #include <boost/json/parse.hpp>
 #include <gmock/gmock.h>
@@ -86,6 +87,55 @@ TEST_F(Lab, WritesTheSameLandmarkReportTwice) {
     EXPECT_TRUE(fs::exists(first / "times.md") && fs::exists(first / "times.html"));
 }
 
+TEST_F(Lab, WritesTheSameLocalizationReportTwice) {
+    auto driven = lab::driven_log();
+    driven.log.scans.resize(100);
+    driven.log.relations.resize(80);
+    const auto log = (place_.path() / "room.clf").string();
+    const auto relations = (place_.path() / "room.relations").string();
+    std::ofstream(log) << carmen_text(driven.log);
+    std::ofstream(relations) << relations_text(driven.log);
+    const auto first = place_.path() / "first";
+    const auto second = place_.path() / "second";
+    const auto outcome = run({"localization", "--out", first.string(), log, relations});
+    EXPECT_EQ(outcome.code, 0) << outcome.errors;
+    EXPECT_EQ(boost::json::parse(outcome.line).at("logs").as_int64(), 1);
+    EXPECT_EQ(run({"localization", "--out", second.string(), log, relations}).code, 0);
+    const auto files = lasting_files(first);
+    EXPECT_EQ(files, lasting_files(second));
+    EXPECT_EQ(files.size(), 2U + 3U) << "the report's two forms, and three maps";
+    EXPECT_THAT(files.at("report.md"), HasSubstr("| room | 100 | 50 | "));
+    EXPECT_TRUE(fs::exists(first / "times.md") && fs::exists(first / "times.html"));
+}
+
+TEST_F(Lab, LogsAndRelationsThatCannotBeUsedExitWith1AndWriteNoReport) {
+    auto driven = lab::driven_log();
+    driven.log.scans.resize(30);
+    const auto log = (place_.path() / "room.clf").string();
+    const auto relations = (place_.path() / "room.relations").string();
+    const auto others = (place_.path() / "others.relations").string();
+    std::ofstream(log) << carmen_text(driven.log);
+    std::ofstream(relations) << relations_text(driven.log);
+    std::ofstream(others) << "9000 9001 1 0 0 0 0 0\n";
+    const auto missing = (place_.path() / "missing").string();
+    const auto out = place_.path() / "out";
+    const std::vector<std::pair<std::vector<std::string>, std::string>> mistakes{
+        {{missing, relations}, "missing"},
+        {{log, missing}, "missing"},
+        {{relations, relations}, "room.relations"},
+        {{log, others}, "others.relations: room: no relation of 1 can be used: 1 are outside the time"},
+    };
+    for (const auto& [files, hint] : mistakes) {
+        const auto outcome = run({"localization", "--out", out.string(), files[0], files[1]});
+        EXPECT_EQ(outcome.code, 1);
+        EXPECT_EQ(outcome.line, "");
+        EXPECT_THAT(outcome.errors, testing::StartsWith("scanloom-lab: "));
+        EXPECT_THAT(outcome.errors, HasSubstr(hint));
+        EXPECT_EQ(std::count(outcome.errors.begin(), outcome.errors.end(), '\n'), 1) << outcome.errors;
+        EXPECT_FALSE(fs::exists(out));
+    }
+}
+
 TEST_F(Lab, AnInvalidRecordingExitsWith1AndWritesNoReport) {
     std::ofstream(place_.path() / "empty") << "";
     for (const char* file : {"empty", "missing"}) {
@@ -113,6 +163,7 @@ TEST_F(Lab, WrongArgumentsExitWith2) {
     EXPECT_EQ(run({}).code, 2);
     EXPECT_EQ(run({"experiment"}).code, 2);
     EXPECT_EQ(run({"landmarks"}).code, 2);
+    EXPECT_EQ(run({"localization", "--out", "d", "a.clf"}).code, 2);
     EXPECT_EQ(run({"--help"}).code, 0);
 }
 
