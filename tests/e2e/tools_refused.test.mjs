@@ -47,6 +47,7 @@ describe('tools that are refused', () => {
   const alerted = (pattern) => hasText(page, '#tool-body [role=alert]', pattern);
 
   const clickBoth = async () => {
+    await page.waitForSelector('#map.picking');
     for (const place of kPlaces) await page.mouse.click(...place);
   };
 
