@@ -66,8 +66,8 @@ Result<> LogRules::check_body(const ScanTaken& taken) const {
         return cannot_follow(fmt::format("scan {} of robot '{}' has no pose", taken.scan.seq, robot.name));
     }
     if (taken.is_localize_only != is_localize_only_) {
-        return cannot_follow(
-            fmt::format("scan {} of robot '{}' is of the other mode of the session", taken.scan.seq, robot.name));
+        return cannot_follow(fmt::format("scan {} of robot '{}' has localize_only={}, but the session's mode is {}",
+                                         taken.scan.seq, robot.name, taken.is_localize_only, is_localize_only_));
     }
     if (robot.is_next(taken.scan.seq)) return {};
     return cannot_follow(

@@ -197,7 +197,7 @@ std::string encode_session(const SessionRecord& record) {
     proto.set_name(record.name);
     proto.set_created(record.created);
     to_proto(record.options, *proto.mutable_config());
-    proto.set_map_patches(record.map_patches);
+    proto.set_map_patches(record.entries_at_creation);
     proto.set_created_by(record.created_by);
     proto.set_chunks_max(record.chunks_max);
     return proto.SerializeAsString();

@@ -15,11 +15,11 @@ namespace scanloom::wire {
 /// The record of a session in the store.
 struct SessionRecord {
     std::string name;
-    double created = 0.0;          ///< seconds since the epoch
-    SessionOptions options;        ///< with all defaults filled in when the session was created
-    std::uint32_t map_patches = 0; ///< number of entries of an import at the start of its log
-    std::string created_by;        ///< name of the token that created it; empty: no token
-    std::uint64_t chunks_max = 0;  ///< chunks that its maps may have; 0: as many as any session
+    double created = 0.0;                  ///< seconds since the epoch
+    SessionOptions options;                ///< with all defaults filled in when the session was created
+    std::uint32_t entries_at_creation = 0; ///< with which its log begins: of an import, and of localize-only mode
+    std::string created_by;                ///< name of the token that created it; empty: no token
+    std::uint64_t chunks_max = 0;          ///< chunks that its maps may have; 0: as many as any session
 
     friend bool operator==(const SessionRecord&, const SessionRecord&) = default;
 };

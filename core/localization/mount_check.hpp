@@ -6,8 +6,8 @@
 
 namespace scanloom::localization {
 
-/// Finds that a laser looks in another direction than its mount says: the scans then show motions in another direction
-/// than the odometry. Straight motions of the last metres are compared.
+/// Detects a wrong yaw of a laser's mount from the directions of motion in odometry and scans. Straight motions of the
+/// last metres are compared.
 /// Threads: one at a time.
 class MountCheck {
 public:

@@ -51,11 +51,15 @@ mapping::ScanPoses PoseHistory::at(Revision revision) const {
     return after(static_cast<std::size_t>(later - graph_.begin()));
 }
 
-mapping::ScanPoses PoseHistory::before(double stamp) const {
+mapping::ScanPoses PoseHistory::before(double stamp, const Exclusions& exclusions) const {
     std::size_t corrections = graph_.size();
-    for (const RobotHistory& robot : robots_) {
-        const auto later = std::ranges::find_if(robot.scans, [&](const auto& scan) { return scan.stamp > stamp; });
-        const auto count = static_cast<std::size_t>(later - robot.scans.begin());
+    for (RobotIndex index = 0; index < robots_.size(); ++index) {
+        const RobotHistory& robot = robots_[index];
+        std::size_t count = 0; // of its scans before a later one
+        const auto ends = [&](const RobotHistory::Scan& scan) {
+            return scan.stamp > stamp && !exclusions.cover(0, {index, count + 1, scan.stamp, std::nullopt});
+        };
+        while (count < robot.scans.size() && !ends(robot.scans[count])) ++count;
         const std::size_t unknown = graph_.size() - robot.moments.size(); // corrections before its first scan
         const auto beyond =
             std::ranges::find_if(robot.moments, [&](const auto& moment) { return moment.scans > count; });

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "common/scan/poses.hpp"
+#include "common/scan/scan_filter.hpp"
 #include "core/mapping/scan_poses.hpp"
 #include "core/slam/trajectory_estimator.hpp"
 
@@ -70,9 +71,10 @@ public:
     /// Returns the poses in the maps of the entries up to this revision.
     [[nodiscard]] mapping::ScanPoses at(Revision revision) const;
 
-    /// Returns the poses in the maps of the entries before the first scan with a later stamp.
-    /// @param stamp  seconds
-    [[nodiscard]] mapping::ScanPoses before(double stamp) const;
+    /// Returns the poses in the maps of the entries before the first scan with a later stamp that is not excluded.
+    /// @param stamp       seconds
+    /// @param exclusions  of the session
+    [[nodiscard]] mapping::ScanPoses before(double stamp, const Exclusions& exclusions) const;
 
 private:
     [[nodiscard]] mapping::ScanPoses after(std::size_t corrections) const;

@@ -21,7 +21,7 @@ std::optional<Pose2> RobotPoses::add(const Scan& scan, const Sensor& sensor) {
         scans_.push_back({estimator_.scan_count() - 1, {}, scan.stamp});
         check_mount(scan);
         laser_odometry_ = scan.odometry;
-        if (laser_scans_.size() == 1) fragments_ = estimator_.located_fragments();
+        if (laser_scans_.size() == 1) fragments_ = estimator_.found_fragments();
     } else {
         scans_.push_back(placed(scan));
     }
@@ -63,7 +63,7 @@ RobotPoses::PlacedScan RobotPoses::placed(const Scan& scan) const {
 bool RobotPoses::is_correction_due() {
     const double move = largest_move();
     const bool is_paused = estimator_.keyframes().size() < keyframes_at_correction_ + kCorrectionPause;
-    const auto fragments = std::exchange(fragments_, estimator_.located_fragments());
+    const auto fragments = std::exchange(fragments_, estimator_.found_fragments());
     return fragments_ > fragments || move > (is_paused ? kJump : kSettled);
 }
 

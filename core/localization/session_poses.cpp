@@ -7,10 +7,9 @@ namespace scanloom::localization {
 void SessionPoses::estimate(ScanTaken& taken, const Sensor& sensor, Revision revision) {
     taken.scan.pose = poses_of(taken.robot).add(taken.scan, sensor);
     ++scan_count_;
-    if (map_->is_frozen()) return;
     bool is_due = false;
-    for (const auto& each : robots_) is_due = (each && each->is_correction_due()) || is_due;
-    if (is_due) correct(revision);
+    for (const auto& each : robots_) is_due = (each && each->is_correction_due()) || is_due; // each follows every scan
+    if (is_due && !map_->is_frozen()) correct(revision);
 }
 
 void SessionPoses::correct(Revision revision) {

@@ -25,7 +25,7 @@ struct ProjectionState {
     /// A robot of the log, and what the projection counts of it.
     struct Robot : LoggedRobot {
         std::uint64_t scan_count = 0;          ///< scans in the trajectory
-        std::optional<TrajectoryPoint> newest; ///< of the integrated scans
+        std::optional<TrajectoryPoint> newest; ///< of the trajectory
         JumpFilter::Robot jumps;               ///< only with max_jump
         std::uint64_t excluded = 0;            ///< scans that exclusions left out
     };

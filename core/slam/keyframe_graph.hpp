@@ -55,10 +55,8 @@ public:
         return fragment_of(keyframe).is_located && (!is_frozen_ || keyframes_[keyframe].is_fixed);
     }
 
-    /// Returns whether the map does not depend on where robots drive: it was known before, or does not change.
-    [[nodiscard]] bool is_map_known() const {
-        return is_frozen_ || (!fragments_.empty() && fragments_.front().robot == kNoRobot);
-    }
+    /// Returns whether the map was known before robots drove in it.
+    [[nodiscard]] bool is_map_known() const { return !fragments_.empty() && fragments_.front().robot == kNoRobot; }
 
     /// Adds a keyframe to a fragment.
     /// @param fragment           index of the fragment

@@ -25,9 +25,9 @@ public:
     /// @param views  all over the map, neighbours after each other
     void begin_with(std::vector<KnownView> views);
 
-    /// Freezes the map: what it contains now does not change, and robots are only located in it. Or lets it change
-    /// again.
-    /// @param is_frozen  whether it is frozen from now on
+    /// Freezes the map, or lets it change again.
+    /// @param is_frozen  true: what the map contains now does not change, and robots are only located in it; false:
+    ///     mapping goes on
     void freeze(bool is_frozen);
 
     /// Begins a fragment that is located: that of a robot which was located in the frozen map and goes on mapping.

@@ -68,7 +68,7 @@ void TrajectoryEstimator::add(ScanPoints scan, const std::optional<Pose2>& odome
     if (!scan.points.empty()) place_to_search = std::exchange(relocalized_, std::nullopt);
     const bool is_leaving = is_in_frozen_map_ && !map_.is_frozen();
     const auto is_due = [&](const TrackedScan& tracked) {
-        return place_to_search || is_leaving || is_keyframe_due(tracked);
+        return place_to_search || is_leaving || is_keyframe_due(since_start(tracked));
     };
     const auto decided = tracker_.add(scan, motion, is_due);
     newest_ = decided.empty() ? tracker_.newest() : decided.back();
@@ -81,7 +81,8 @@ void TrajectoryEstimator::add(ScanPoints scan, const std::optional<Pose2>& odome
     place(decided);
     const TrackedScan& last = decided.back();
     const bool is_elsewhere = place_to_search && (is_fragment_located() || !last.is_matched);
-    if ((tracker_.unmatched() >= kLost && !scan.points.empty()) || is_elsewhere) {
+    const bool is_new = (tracker_.unmatched() >= kLost && !scan.points.empty()) || is_elsewhere;
+    if (is_new) {
         begin_fragment(std::move(scan), first, place_to_search);
     } else if (last.is_matched && is_due(last)) {
         if (place_to_search) map_.expect(fragments_.back(), *place_to_search);
@@ -91,8 +92,8 @@ void TrajectoryEstimator::add(ScanPoints scan, const std::optional<Pose2>& odome
         return;
     }
     placed_.back() = {anchor_, T_anchor_newest()};
-    const bool is_located_now = !first_.back().is_matched && is_fragment_located();
-    if (is_located_now) first_.back() = {graph().pose(keyframes_.back()), true}; // no longer in a frame of its own
+    const bool is_found = is_fragment_located() && (is_new || !first_.back().is_matched);
+    if (is_found) first_.back() = {graph().pose(keyframes_.back()), true};
 }
 
 void TrajectoryEstimator::finish() { place(tracker_.decide()); }
@@ -116,10 +117,17 @@ void TrajectoryEstimator::add_keyframe(ScanPoints scan, const Transform2& T_anch
     keyframes_.push_back(graph().size());
     if (is_in_frozen_map_) {
         fragments_.push_back(map_.continue_from(robot_, std::move(scan), anchor_, T_anchor_robot));
+        ++continued_;
     } else {
         map_.add_keyframe(fragments_.back(), std::move(scan), T_anchor_robot);
     }
     begin_tracking(graph().pose(keyframes_.back()));
+}
+
+/// Returns the scan with its pose relative to where the robot was when the anchor was chosen.
+TrackedScan TrajectoryEstimator::since_start(TrackedScan scan) const {
+    if (is_in_frozen_map_) scan.T_keyframe_robot = inverse(T_anchor_start_) * scan.T_keyframe_robot;
+    return scan; // otherwise it started at the anchor
 }
 
 /// Returns where the robot's newest keyframe is.
@@ -133,8 +141,8 @@ void TrajectoryEstimator::begin_tracking(const Transform2& T_map_robot) {
     is_in_frozen_map_ = map_.is_frozen() && is_fragment_located();
     if (is_in_frozen_map_) {
         anchor_ = graph().nearest(T_map_robot, [&](std::size_t n) { return graph().is_in_map(n); }).value();
-        tracker_.begin(KeyframeMap(graph().views_near(anchor_, kLocalKeyframes)),
-                       inverse(graph().pose(anchor_)) * T_map_robot);
+        T_anchor_start_ = inverse(graph().pose(anchor_)) * T_map_robot;
+        tracker_.begin(KeyframeMap(graph().views_near(anchor_, kLocalKeyframes)), T_anchor_start_);
         return;
     }
     anchor_ = keyframes_.back();

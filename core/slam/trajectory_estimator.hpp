@@ -110,6 +110,9 @@ public:
             std::ranges::count_if(fragments_, [&](std::size_t n) { return graph().fragments()[n].is_located; }));
     }
 
+    /// Returns the number of the robot's fragments whose place was found, or that began the map.
+    [[nodiscard]] std::size_t found_fragments() const noexcept { return located_fragments() - continued_; }
+
     /// Returns the indices of the robot's keyframes, oldest first.
     [[nodiscard]] const std::vector<std::size_t>& keyframes() const noexcept { return keyframes_; }
 
@@ -137,6 +140,7 @@ private:
 
     [[nodiscard]] scan_matching::Motion motion_at(const Scan& scan) const;
     void place(const std::vector<TrackedScan>& scans);
+    [[nodiscard]] TrackedScan since_start(TrackedScan scan) const;
     void begin_fragment(ScanPoints scan, const Transform2& T_map_robot,
                         const std::optional<Surroundings>& place = std::nullopt);
     void add_keyframe(ScanPoints scan, const Transform2& T_anchor_robot);
@@ -152,8 +156,10 @@ private:
     std::size_t robot_;
     Tracker tracker_;
     std::vector<std::size_t> fragments_; // indices of the robot's fragments, oldest first
+    std::size_t continued_ = 0;          // fragments that began at a place in the frozen map
     std::vector<std::size_t> keyframes_;
     std::size_t anchor_ = 0;         // the keyframe that the next scans are placed relative to
+    Transform2 T_anchor_start_;      // where the robot was when it became the anchor
     bool is_in_frozen_map_ = false;  // whether it is one of the frozen map, else the robot's newest one
     std::vector<PlacedScan> placed_; // of the decided scans
     std::vector<FirstEstimate> first_;

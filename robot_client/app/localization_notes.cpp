@@ -1,9 +1,7 @@
 #include "robot_client/app/localization_notes.hpp"
 
-#include <fmt/format.h>
+#include "common/scan/mount_message.hpp"
 
-#include <cmath>
-#include <numbers>
 #include <string_view>
 #include <utility>
 
@@ -14,10 +12,11 @@ std::string_view sentence_of(LocalizationState state) {
     switch (state) {
     case LocalizationState::kTracking: return "the server has found the robot in the map";
     case LocalizationState::kLost:
-        return "the server has lost the robot: its scans fit no place in the map; they are stored, and appear when the "
-               "robot is found again";
+        return "the server has lost the robot: its scans fit no place in the map; they are stored, but not in the map "
+               "until the robot is found again";
     case LocalizationState::kUnlocated:
-        return "the robot's place in the map is not known yet; its scans are stored, and appear when it is found";
+        return "the robot's place in the map is not known yet; its scans are stored, but not in the map until it is "
+               "found";
     case LocalizationState::kGiven: break;
     }
     return {};
@@ -32,9 +31,7 @@ std::vector<std::string> LocalizationNotes::add(const wire::Correction& correcti
     }
     const auto& error = correction.mount_yaw_error;
     if (!std::exchange(has_wrong_mount_, error.has_value()) && error) {
-        notes.push_back(fmt::format("the laser looks {:.0f} degrees away from where its mount says, by the odometry; "
-                                    "correct the yaw of the mount, or the direction of the odometry",
-                                    std::fabs(*error) * 180.0 / std::numbers::pi));
+        notes.push_back(mount_message(*error));
     }
     return notes;
 }

@@ -8,7 +8,7 @@
 
 namespace scanloom::robot {
 
-/// Tells an operator what the server's corrections say about the robot, when it changes.
+/// Returns messages for the operator when the state of the robot, or the error of its laser's mount, changes.
 /// Threads: one at a time.
 class LocalizationNotes {
 public:

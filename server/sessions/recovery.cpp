@@ -125,7 +125,7 @@ namespace {
 /// The contents of a session's record.
 struct Recorded {
     SessionInfo info;
-    std::uint32_t map_patches = 0;
+    std::uint32_t entries_at_creation = 0;
 };
 
 /// Decodes the record of a stored session.
@@ -141,7 +141,7 @@ Result<Recorded> recorded(const store::StoredSession& stored, std::string& name)
     const auto chunks_max = record->chunks_max == 0 ? SessionLimits::kMost : record->chunks_max;
     return Recorded{{stored.id, name, record->created, *config, record->created_by,
                      std::min<std::size_t>(chunks_max, SessionLimits::kMost)},
-                    record->map_patches};
+                    record->entries_at_creation};
 }
 
 /// Returns the error for the second session of a name, which only a fault can have stored. The older one is served.
@@ -174,7 +174,7 @@ std::vector<Recorded> recorded_sessions(const std::vector<store::StoredSession>&
 bool try_add_evicted(RegistryState& state, const Recorded& session) {
     const auto& info = session.info;
     auto summary = read_summary(state.log, info.id, info.config);
-    const bool is_usable = summary && *summary && (*summary)->facts->revision >= session.map_patches;
+    const bool is_usable = summary && *summary && (*summary)->facts->revision >= session.entries_at_creation;
     if (!is_usable) return false; // loading it gives the reason
     SessionInfo evicted = info;
     evicted.exclusions = (*summary)->facts->exclusions;
@@ -200,10 +200,11 @@ void recover_one(RegistryState& state, const Recorded& recorded, std::function<v
     if (try_add_evicted(state, recorded)) return done();
     const auto& info = recorded.info;
     auto session = state.factory.read(info, state.draining, state.finish_early);
-    if (session && *session && (*session)->snapshot()->revision < recorded.map_patches) {
-        log::warn({.session = info.name}, "session '{}' is removed: its import came to {} of {} parts before a crash",
-                  info.name, (*session)->snapshot()->revision,
-                  recorded.map_patches); // its creation was never confirmed
+    if (session && *session && (*session)->snapshot()->revision < recorded.entries_at_creation) {
+        log::warn({.session = info.name},
+                  "session '{}' is removed: its creation came to {} of {} entries before a crash", info.name,
+                  (*session)->snapshot()->revision,
+                  recorded.entries_at_creation); // its creation was never confirmed
         if (auto removed = state.log.remove_session(info.id); !removed) {
             state.damaged.add(info.name, info.id, removed.error());
         }

@@ -107,7 +107,7 @@ private:
 std::optional<std::string> record_to_keep(const std::string& bytes, const std::string& name) {
     auto record = wire::decode_session(bytes);
     if (!record) return std::nullopt;
-    record->map_patches = 0;
+    record->entries_at_creation = 0;
     record->name = name;
     return wire::encode_session(*record);
 }

@@ -247,8 +247,9 @@ mapping::Reach RobotSequencer::reach_of(const Member& member, Scan& scan) const 
     if (is_estimated) {
         scan.pose = scan.odometry ? compose(member.place.T_map_odom, *scan.odometry) : member.place.T_map_robot;
     }
-    const auto reach = mapping::reach_of(info_.config, *logged(member).find_sensor(scan.sensor)->sensor, scan);
+    auto reach = mapping::reach_of(info_.config, *logged(member).find_sensor(scan.sensor)->sensor, scan);
     if (is_estimated) scan.pose.reset();
+    if (pending_.is_localize_only()) reach.cells = {};
     return reach;
 }
 
@@ -312,9 +313,11 @@ Result<PendingEntry> RobotSequencer::relocalize(const RobotRelocalized& relocali
 Result<std::optional<PendingEntry>> RobotSequencer::change_mode(const ModeChanged& changed) {
     if (changed.is_localize_only == pending_.is_localize_only()) return std::nullopt;
     const auto& robots = pending_.robots();
-    const auto sends_poses = [](const LoggedRobot& robot) { return robot.poses == Poses::kMap; };
-    const auto sender = std::ranges::find_if(robots, sends_poses);
-    const auto other = std::ranges::find_if_not(robots, sends_poses);
+    const auto has_scans_of = [](bool is_given) {
+        return [=](const LoggedRobot& robot) { return robot.last_seq > 0 && (robot.poses == Poses::kMap) == is_given; };
+    };
+    const auto sender = std::ranges::find_if(robots, has_scans_of(true));
+    const auto other = std::ranges::find_if(robots, has_scans_of(false));
     if (!changed.is_localize_only && sender != robots.end() && other != robots.end()) {
         return Error{Errc::kConflict,
                      fmt::format("localize_only: the session has robot '{}', which sends its poses (--poses map), and "

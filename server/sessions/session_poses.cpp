@@ -1,11 +1,10 @@
+#include "common/scan/mount_message.hpp"
 #include "server/log/context.hpp"
 #include "server/sessions/session.hpp"
 
 #include <boost/asio/post.hpp>
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 #include <set>
 #include <utility>
 
@@ -107,10 +106,8 @@ void Session::warn_of_mounts() {
     for (const auto& robot : snapshot()->robots) {
         const auto& error = robot.localization.mount_yaw_error;
         if (!error || !warned_of_.insert(robot.name).second) continue;
-        log::warn({.session = info_.name},
-                  "session '{}': the laser of robot '{}' looks {:.0f} degrees away from where its mount says, by the "
-                  "odometry; correct the yaw of the mount, or the direction of the odometry",
-                  info_.name, robot.name, std::fabs(*error) * 180.0 / std::numbers::pi);
+        log::warn({.session = info_.name}, "session '{}', robot '{}': {}", info_.name, robot.name,
+                  mount_message(*error));
     }
 }
 

@@ -101,8 +101,9 @@ Result<> SessionRegistry::append_first(store::SessionId session, Revision revisi
 }
 
 Result<std::shared_ptr<Session>> SessionRegistry::add(SessionInfo info, mapping::Projection projection,
-                                                      const ModeChanged& mode) {
-    if (mode != ModeChanged()) {
+                                                      bool is_localize_only) {
+    if (is_localize_only) {
+        const ModeChanged mode{true};
         if (auto appended = append_first(info.id, projection.revision() + 1, mode); !appended) return appended.error();
         if (auto applied = projection.apply(mode); !applied) return applied.error();
     }
@@ -112,23 +113,24 @@ Result<std::shared_ptr<Session>> SessionRegistry::add(SessionInfo info, mapping:
 }
 
 Result<std::shared_ptr<Session>> SessionRegistry::create(std::string_view name, const SessionOptions& options,
-                                                         const Creator& creator, const ModeChanged& mode) {
+                                                         const Creator& creator, bool is_localize_only) {
     if (auto ok = check_name(name); !ok) return ok.error();
     const auto config = mapping::resolve(options);
     if (!config) return config.error();
 
     const std::lock_guard changing(changing_);
     if (auto is_new = check_new(name, creator); !is_new) return is_new.error();
-    const auto record = record_of(name, state_.config.now(), *config, creator);
+    auto record = record_of(name, state_.config.now(), *config, creator);
+    record.entries_at_creation = is_localize_only ? 1 : 0;
     const auto id = state_.log.create_session(wire::encode_session(record));
     if (!id) return id.error();
     return add({*id, record.name, record.created, *config, creator.token, creator.chunks_max},
-               mapping::Projection(*config), mode);
+               mapping::Projection(*config), is_localize_only);
 }
 
 Result<std::shared_ptr<Session>> SessionRegistry::import_map(std::string_view name, const SessionOptions& options,
                                                              const std::vector<MapPatch>& patches,
-                                                             const Creator& creator, const ModeChanged& mode) {
+                                                             const Creator& creator, bool is_localize_only) {
     if (auto ok = check_name(name); !ok) return ok.error();
     const auto config = mapping::resolve(options);
     if (!config) return config.error();
@@ -148,7 +150,7 @@ Result<std::shared_ptr<Session>> SessionRegistry::import_map(std::string_view na
     const std::lock_guard changing(changing_);
     if (auto is_new = check_new(name, creator); !is_new) return is_new.error();
     auto record = record_of(name, state_.config.now(), *config, creator);
-    record.map_patches = static_cast<std::uint32_t>(patches.size());
+    record.entries_at_creation = static_cast<std::uint32_t>(patches.size()) + (is_localize_only ? 1 : 0);
     const auto id = state_.log.create_session(wire::encode_session(record));
     if (!id) return id.error();
     for (std::size_t n = 0; n < patches.size(); ++n) {
@@ -156,7 +158,7 @@ Result<std::shared_ptr<Session>> SessionRegistry::import_map(std::string_view na
     }
     share.give_back_all(); // the session takes its pages itself
     return add({*id, record.name, record.created, *config, creator.token, creator.chunks_max}, std::move(*projection),
-               mode);
+               is_localize_only);
 }
 
 Result<> SessionRegistry::remove(std::string_view name) {

@@ -73,23 +73,23 @@ public:
     /// Creates an empty session.
     ///
     /// @param creator  the creator and its limits
-    /// @param mode     in which it begins
+    /// @param is_localize_only  whether it begins in this mode
     /// Errors: kInvalidField if the name or an option is invalid; kAlreadyExists; kFull if the creator has reached its
     /// limit of sessions; kStoreFailed; kShuttingDown.
     [[nodiscard]] Result<std::shared_ptr<Session>> create(std::string_view name, const SessionOptions& options,
-                                                          const Creator& creator = {}, const ModeChanged& mode = {});
+                                                          const Creator& creator = {}, bool is_localize_only = false);
 
     /// Creates a session that starts with an imported map, whose patches become the first entries of the log.
     ///
     /// After a crash during the import, the next start removes the incomplete session.
     /// @param patches  parts of the map, with cells of the size in `options`
-    /// @param mode     in which it begins after the import
+    /// @param is_localize_only  whether it is in this mode after the import
     /// Errors: those of create(); kInvalidField or kFull also if the map is invalid or too large with this cell size;
     /// kOverloaded if there is no memory for it now.
     [[nodiscard]] Result<std::shared_ptr<Session>> import_map(std::string_view name, const SessionOptions& options,
                                                               const std::vector<MapPatch>& patches,
                                                               const Creator& creator = {},
-                                                              const ModeChanged& mode = {});
+                                                              bool is_localize_only = false);
 
     /// Excludes scans of a robot from the session's maps by appending an entry to its log.
     ///
@@ -134,7 +134,7 @@ private:
 
     [[nodiscard]] Result<> check_new(std::string_view name, const Creator& creator) const;
     [[nodiscard]] Result<std::shared_ptr<Session>> add(SessionInfo info, mapping::Projection projection,
-                                                       const ModeChanged& mode);
+                                                       bool is_localize_only);
     [[nodiscard]] Result<> append_first(store::SessionId session, Revision revision, const LogEntry& entry);
     [[nodiscard]] Result<Revision> change_exclusions(std::string_view name, const MakeEntry& make);
 

@@ -141,7 +141,7 @@ Result<SessionRequest> parse_session_request(std::string_view body) {
     wanted.name = std::move(*name);
     const auto localize_only = read_flag(*object, "localize_only");
     if (!localize_only) return localize_only.error();
-    wanted.mode.is_localize_only = localize_only->value_or(false);
+    wanted.is_localize_only = localize_only->value_or(false);
     if (auto read = read_options(*object, wanted.options); !read) return read.error();
     return wanted;
 }

@@ -35,7 +35,7 @@ namespace scanloom::http {
 struct SessionRequest {
     std::string name;
     SessionOptions options;
-    ModeChanged mode; ///< in which it begins
+    bool is_localize_only = false; ///< whether it begins in this mode
 };
 
 /// Errors: kMalformed or kInvalidField, naming the field. The session checks the ranges.

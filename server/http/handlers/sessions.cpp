@@ -107,8 +107,8 @@ Result<Response> create_session(Context& context) {
     if (!wanted) return wanted.error();
     if (const auto permitted = check_permission(*context.token, auth::Action::kChange, wanted->name); !permitted)
         return context.services.authorizer.refuse(context.request, permitted.error(), wanted->name);
-    const auto session = context.services.sessions.create(wanted->name, wanted->options,
-                                                          sessions::creator_of(*context.token), wanted->mode);
+    const auto session = context.services.sessions.create(
+        wanted->name, wanted->options, sessions::creator_of(*context.token), wanted->is_localize_only);
     if (!session) return context.services.authorizer.noted(context, session.error(), wanted->name);
     return created_session(**session);
 }
@@ -139,7 +139,7 @@ struct Form {
     std::optional<std::string_view> yaml;
     std::optional<std::string_view> image;
     SessionOptions options;
-    ModeChanged mode;
+    bool is_localize_only = false;
 };
 
 Result<Form> read_form(const Request& request) {
@@ -153,7 +153,7 @@ Result<Form> read_form(const Request& request) {
         } else if (name == "image") {
             form.image = content;
         } else if (name == "localize_only" && (content == "true" || content == "false")) {
-            form.mode.is_localize_only = content == "true";
+            form.is_localize_only = content == "true";
         } else if (name == "localize_only") {
             return Error{Errc::kInvalidField, "localize_only is neither true nor false"};
         } else if (setting == nullptr) {
@@ -191,8 +191,8 @@ Result<Response> import_map(Context& context) {
         form->options.cell_size = description->resolution;
     }
     const auto& name = context.arguments["session"];
-    const auto session = context.services.sessions.import_map(name, form->options, *patches,
-                                                              sessions::creator_of(*context.token), form->mode);
+    const auto session = context.services.sessions.import_map(
+        name, form->options, *patches, sessions::creator_of(*context.token), form->is_localize_only);
     if (!session) return context.services.authorizer.noted(context, session.error(), name);
     return created_session(**session);
 }

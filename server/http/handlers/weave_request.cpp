@@ -149,7 +149,8 @@ boost::asio::awaitable<mapping::ScanPoses> poses_for(sessions::Session& session,
             done(std::make_shared<const localization::PoseHistory>(poses.history()));
         });
     });
-    co_return request.end.stamp ? history->before(*request.end.stamp) : history->at(request.end.revision.value());
+    co_return request.end.stamp ? history->before(*request.end.stamp, *maps.exclusions)
+                                : history->at(request.end.revision.value());
 }
 
 } // namespace scanloom::http

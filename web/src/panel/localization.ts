@@ -20,10 +20,15 @@ export function needsPlace({ state }: Localization): boolean {
   return state !== 'tracking';
 }
 
-/** "tracking, \u00b11 cm", "tracking, \u00b112 cm, 55 % of the scan fits the map", "...; the laser seems to be mounted 180\u00b0 off". */
+/** "tracking, \u00b11 cm", "tracking, \u00b112 cm, 55 % of the scan fits the map", "...; the yaw of its laser\u2019s mount seems 90\u00b0 too large". */
 export function wordsOf(localization: Localization): string {
   const degrees = Math.round((Math.abs(localization.mountError) * 180) / Math.PI);
-  return stateInWords(localization) + (degrees === 0 ? '' : `; the laser seems to be mounted ${degrees}\u00b0 off`);
+  return (
+    stateInWords(localization) +
+    (degrees === 0
+      ? ''
+      : `; the yaw of its laser\u2019s mount seems ${degrees}\u00b0 too ${localization.mountError < 0 ? 'small' : 'large'}`)
+  );
 }
 
 function stateInWords({ state, sigma, inliers }: Localization): string {

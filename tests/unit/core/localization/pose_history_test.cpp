@@ -72,11 +72,16 @@ TEST_F(PoseHistoryTest, PosesAreThoseThatMapsShowedThen) {
         const auto then = history.at(revision);
         EXPECT_EQ(poses_in(then, counts_then_[revision]), expected) << "at entry " << revision;
         EXPECT_LE(then.corrected(), revision);
-        const auto before = history.before(static_cast<double>(revision) + 0.5);
+        const auto before = history.before(static_cast<double>(revision) + 0.5, Exclusions());
         EXPECT_EQ(poses_in(before, counts_then_[revision]), expected) << "before the scan after entry " << revision;
         EXPECT_EQ(before.corrected(), then.corrected());
     }
     EXPECT_EQ(history.at(revision_).corrected(), poses_.corrected());
+    Exclusions all;
+    for (const RobotIndex robot : {0U, 1U}) {
+        ASSERT_TRUE(all.add(revision_ + robot + 1, ScansExcluded{robot + 1, robot, StampRange{10.0, 1e9}}));
+    }
+    EXPECT_EQ(history.before(10.0, all).corrected(), poses_.corrected()) << "excluded scans are not later ones";
     EXPECT_EQ(history.at(0).corrected(), 0U);
     std::size_t moved = 0;
     for (const auto& [revision, then] : shown_) {

@@ -40,8 +40,8 @@ protected:
 };
 
 TEST_F(FrozenMap, RobotsAreLocatedInItAndItStaysAsItIs) {
-    const std::vector<Point2> way{{24.0, 21.0}, {1.0, 21.0}, {1.0, 1.0}, {33.0, 1.0}, {33.0, 20.0}};
-    const Drive second = drive_along(ring_building(), way, {.scale = 0.97, .turn = -0.005}, 2);
+    const std::vector<Point2> lap{{24.0, 21.0}, {1.0, 21.0}, {1.0, 1.0}, {33.0, 1.0}, {33.0, 20.0}};
+    const Drive second = drive_along(ring_building(), lap, {.scale = 0.97, .turn = -0.005}, 2);
     const TwoRobots robots(first_lap(), second, true);
     ASSERT_TRUE(robots.located_at());
     EXPECT_LT(*robots.located_at(), 200U) << "within 20 m";

@@ -26,10 +26,10 @@ TEST(LocalizationNotes, TellThatTheMountIsWrongOnce) {
         return notes.add({.state = LocalizationState::kTracking, .mount_yaw_error = error});
     };
     EXPECT_THAT(add(std::nullopt), IsEmpty());
-    EXPECT_THAT(add(-3.1), ElementsAre(HasSubstr("looks 178 degrees away")));
+    EXPECT_THAT(add(-3.1), ElementsAre(HasSubstr("seems to be 178 degrees too small")));
     EXPECT_THAT(add(-3.0), IsEmpty());
     EXPECT_THAT(add(std::nullopt), IsEmpty());
-    EXPECT_THAT(add(1.57), ElementsAre(HasSubstr("looks 90 degrees away"))) << "another mount that is wrong";
+    EXPECT_THAT(add(1.57), ElementsAre(HasSubstr("seems to be 90 degrees too large"))) << "another mount that is wrong";
 }
 
 } // namespace

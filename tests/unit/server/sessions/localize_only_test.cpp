@@ -102,6 +102,39 @@ TEST_F(LocalizeOnlyTest, RobotsOfAllKindsOfPosesJoin) {
     EXPECT_LT(error_of("estimated", length / 2 - 1), 0.15);
 }
 
+TEST_F(LocalizeOnlyTest, ARobotThatCameBeforeTheMapBeginsItAfterwards) {
+    ASSERT_TRUE(change_mode(true));
+    const std::string empty = digest();
+    const auto link = drive_on(20, 80);
+    EXPECT_EQ(link->located.back().state, LocalizationState::kUnlocated);
+    EXPECT_EQ(digest(), empty);
+    ASSERT_TRUE(change_mode(false));
+    drive_on(20, 200);
+    EXPECT_NE(digest(), empty);
+    EXPECT_EQ(digest(), digest_with_poses_in_maps());
+    const State expected = state();
+    start_session();
+    EXPECT_EQ(state(), expected);
+}
+
+TEST_F(LocalizeOnlyTest, AFullMapStillLocatesRobots) {
+    drive_on(20, 40, Poses::kMap);
+    limits_.chunks_max = session_->snapshot()->chunk_count;
+    start_session();
+    ASSERT_TRUE(change_mode(true));
+    drive_on(20, 200, Poses::kMap);
+    EXPECT_EQ(find_robot("robot").last_seq, 200U);
+}
+
+TEST_F(LocalizeOnlyTest, ARobotWithoutScansDoesNotKeepTheMode) {
+    drive_on(20, 40);
+    ASSERT_TRUE(change_mode(true));
+    session_->join({"mistaken", {}, {}, Poses::kMap}, std::make_shared<LocatedLink>(), [](const auto&) {});
+    run();
+    EXPECT_TRUE(change_mode(false));
+    EXPECT_FALSE(session_->snapshot()->is_localize_only);
+}
+
 TEST_F(LocalizeOnlyTest, ACheckpointKeepsTheMode) {
     drive_on(20, 40, Poses::kMap);
     ASSERT_TRUE(change_mode(true));

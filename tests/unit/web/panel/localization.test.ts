@@ -19,7 +19,7 @@ describe('the localization of a robot', () => {
 
   it('says that the mount of the laser is wrong', () => {
     const wrong = { ...tracking(0.001), mountError: -3.1 };
-    assert.equal(wordsOf(wrong), 'tracking, \u00b11 cm; the laser seems to be mounted 178\u00b0 off');
+    assert.equal(wordsOf(wrong), 'tracking, \u00b11 cm; the yaw of its laser\u2019s mount seems 178\u00b0 too small');
     assert.equal(qualityOf(wrong), 'bad');
   });
 
