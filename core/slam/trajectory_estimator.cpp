@@ -14,6 +14,8 @@ constexpr double kNewSightDistance = 0.2;   // metres, likewise, if the scan sho
 constexpr double kNewSightTurn = 0.1;       // radians, likewise
 constexpr double kNewSightInliers = 0.6;    // of such a scan's points, those that fit the map, at most
 constexpr std::size_t kLocalKeyframes = 35; // newest ones that scans are matched to
+constexpr double kKnownPlace = 1.5;         // metres from a keyframe of the frozen map that shows the place
+constexpr double kKnownPlaceTurn = 0.5;     // radians, likewise
 constexpr double kMotionMax = 10.0;         // metres between two scans; odometry that moves by more has started again
 
 /// Returns whether a pose is farther from the newest keyframe than this.
@@ -86,7 +88,10 @@ void TrajectoryEstimator::add(ScanPoints scan, const std::optional<Pose2>& odome
         begin_fragment(std::move(scan), first, place_to_search);
     } else if (last.is_matched && is_due(last)) {
         if (place_to_search) map_.expect(fragments_.back(), *place_to_search);
-        if (is_in_frozen_map_ && !is_leaving) return begin_tracking(first);
+        if (is_in_frozen_map_ && !is_leaving) {
+            keep_view(std::move(scan), last);
+            return begin_tracking(first);
+        }
         add_keyframe(std::move(scan), last.T_keyframe_robot);
     } else {
         return;
@@ -139,16 +144,38 @@ Transform2 TrajectoryEstimator::T_anchor_newest() const {
 /// Tracks the next scans by the newest keyframes of the fragment, or in a frozen map by those around.
 void TrajectoryEstimator::begin_tracking(const Transform2& T_map_robot) {
     is_in_frozen_map_ = map_.is_frozen() && is_fragment_located();
-    if (is_in_frozen_map_) {
-        anchor_ = graph().nearest(T_map_robot, [&](std::size_t n) { return graph().is_in_map(n); }).value();
-        T_anchor_start_ = inverse(graph().pose(anchor_)) * T_map_robot;
-        tracker_.begin(KeyframeMap(graph().views_near(anchor_, kLocalKeyframes)), T_anchor_start_);
-        return;
-    }
+    if (is_in_frozen_map_) return begin_in_frozen_map(T_map_robot);
+    own_views_.clear();
     anchor_ = keyframes_.back();
     const std::size_t newest = graph()[anchor_].position;
     const std::size_t first = newest + 1 - std::min(newest + 1, kLocalKeyframes);
     tracker_.begin(KeyframeMap(graph().views_around(anchor_, first, newest)), Transform2());
+}
+
+void TrajectoryEstimator::begin_in_frozen_map(const Transform2& T_map_robot) {
+    anchor_ = graph().nearest(T_map_robot, [&](std::size_t n) { return graph().is_in_map(n); }).value();
+    const Transform2 T_anchor_map = inverse(graph().pose(anchor_));
+    T_anchor_start_ = T_anchor_map * T_map_robot;
+    KeyframeViews views = graph().views_near(anchor_, kLocalKeyframes);
+    for (const OwnView& own : own_views_) views.add({.scan = own.scan}, T_anchor_map * own.T_map_robot);
+    tracker_.begin(KeyframeMap(std::move(views)), T_anchor_start_);
+}
+
+/// Keeps a scan that shows much what the frozen map does not have, and those after it until the robot is back at a
+/// place that the map shows.
+void TrajectoryEstimator::keep_view(ScanPoints scan, const TrackedScan& tracked) {
+    const Transform2& T = tracked.T_keyframe_robot;
+    const bool is_all_round = graph().fragment_of(anchor_).robot == kNoRobot;
+    const bool is_known_place =
+        distance_of(T) <= kKnownPlace && (is_all_round || std::fabs(yaw_of(T)) <= kKnownPlaceTurn);
+    const bool is_new_sight = tracked.inlier_ratio <= kNewSightInliers;
+    if (is_known_place && !is_new_sight) {
+        if (!own_views_.empty()) own_views_.pop_front();
+        return;
+    }
+    if (!is_new_sight && own_views_.empty()) return;
+    own_views_.push_back({std::make_shared<const ScanPoints>(std::move(scan)), graph().pose(anchor_) * T});
+    if (own_views_.size() > kLocalKeyframes) own_views_.pop_front();
 }
 
 /// Goes on in the map if it was frozen since the last scan.

@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <deque>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -20,7 +22,8 @@ namespace scanloom::slam {
 /// Several robots can share a map. The others, and robots that are lost because their scans fit no map for a while, are
 /// located when enough of what they see is found in the map (FragmentSearch). Until then their poses are in frames of
 /// their own.
-/// In a frozen map, scans are matched to the map's keyframes around the robot, and no keyframes are added.
+/// In a frozen map, scans are matched to the map's keyframes around the robot, and no keyframes are added. Where the
+/// map shows little, the robot's own last views help.
 ///
 /// Deterministic: equal scans give equal poses on every processor with IEEE 754 arithmetic.
 /// Memory: grows with the trajectory: the pose of each scan, the points of each keyframe (up to 6 KB), and the map of every
@@ -138,6 +141,12 @@ private:
         bool is_matched = true;
     };
 
+    /// What the robot saw where the frozen map shows little.
+    struct OwnView {
+        std::shared_ptr<const ScanPoints> scan;
+        Transform2 T_map_robot;
+    };
+
     [[nodiscard]] scan_matching::Motion motion_at(const Scan& scan) const;
     void place(const std::vector<TrackedScan>& scans);
     [[nodiscard]] TrackedScan since_start(TrackedScan scan) const;
@@ -145,6 +154,8 @@ private:
                         const std::optional<Surroundings>& place = std::nullopt);
     void add_keyframe(ScanPoints scan, const Transform2& T_anchor_robot);
     void begin_tracking(const Transform2& T_map_robot);
+    void begin_in_frozen_map(const Transform2& T_map_robot);
+    void keep_view(ScanPoints scan, const TrackedScan& tracked);
     [[nodiscard]] Transform2 T_anchor_newest() const;
     void follow_freeze();
     [[nodiscard]] const KeyframeGraph& graph() const noexcept { return map_.graph(); }
@@ -161,6 +172,7 @@ private:
     std::size_t anchor_ = 0;         // the keyframe that the next scans are placed relative to
     Transform2 T_anchor_start_;      // where the robot was when it became the anchor
     bool is_in_frozen_map_ = false;  // whether it is one of the frozen map, else the robot's newest one
+    std::deque<OwnView> own_views_;  // in the frozen map, oldest first
     std::vector<PlacedScan> placed_; // of the decided scans
     std::vector<FirstEstimate> first_;
     TrackedScan newest_;

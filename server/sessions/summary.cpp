@@ -11,8 +11,11 @@ namespace {
 const Error kSummaryIsRead{Errc::kShuttingDown, "only sensors and cells follow"};
 
 Summary summary_of(const mapping::ProjectionState& state, const mapping::MapConfig& config) {
-    mapping::Snapshot facts{
-        .revision = state.revision, .config = config, .exclusions = state.exclusions, .bounds = state.bounds};
+    mapping::Snapshot facts{.revision = state.revision,
+                            .config = config,
+                            .exclusions = state.exclusions,
+                            .bounds = state.bounds,
+                            .is_localize_only = state.is_localize_only};
     for (const auto& robot : state.robots) {
         auto& shown = facts.robots.emplace_back();
         shown.name = robot.name;
@@ -34,7 +37,8 @@ Summary summary_of(const mapping::Snapshot& snapshot) {
     mapping::Snapshot facts{.revision = snapshot.revision,
                             .config = snapshot.config,
                             .exclusions = snapshot.exclusions,
-                            .bounds = snapshot.bounds};
+                            .bounds = snapshot.bounds,
+                            .is_localize_only = snapshot.is_localize_only};
     for (const auto& robot : snapshot.robots) {
         auto& shown = facts.robots.emplace_back(robot);
         shown.trajectory = {};

@@ -1,3 +1,4 @@
+#include "server/sessions/summary.hpp"
 #include "tests/unit/server/sessions/estimated_poses_fixture.hpp"
 
 #include <cmath>
@@ -143,6 +144,8 @@ TEST_F(LocalizeOnlyTest, ACheckpointKeepsTheMode) {
     session_->close({Errc::kShuttingDown, "closed"}, [&] { is_closed = true; });
     run();
     ASSERT_TRUE(is_closed);
+    EXPECT_TRUE(summary_of(*session_->snapshot()).facts->is_localize_only);
+    EXPECT_TRUE(read_summary(log_, id_, config_).value().value().facts->is_localize_only);
     start_session();
     EXPECT_TRUE(session_->snapshot()->is_localize_only);
     EXPECT_EQ(digest(), map);
