@@ -54,9 +54,9 @@ struct RobotHistory {
         std::optional<slam::Transform2> T_laser_scan; ///< from that laser scan; nullopt: it is that scan
     };
 
-    std::vector<Moment> moments; ///< by correction, from the robot's first one to the newest
-    std::vector<LaserScan> laser_scans;
-    std::vector<Scan> scans;
+    std::vector<Moment> moments;        ///< by correction, from the robot's first one to the newest
+    std::vector<LaserScan> laser_scans; ///< oldest first
+    std::vector<Scan> scans;            ///< of all sensors, oldest first
 };
 
 /// The poses at which the maps of earlier log entries showed the scans. A copy of what it needs; it does not change.
