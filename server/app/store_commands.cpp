@@ -158,6 +158,11 @@ std::string line_of(const sessions::RepairedSession& session) {
     auto line = fmt::format("{}: {} entries kept", session.name, session.kept);
     if (session.missing > 0) line += fmt::format(", {} lost", session.missing);
     if (session.empty_scans > 0) line += fmt::format(" ({} lost scans replaced by empty ones)", session.empty_scans);
+    if (session.lost_at_creation > 0) {
+        line += fmt::format(", {} of the lost ones from its creation: its imported map is not complete, or its mode is "
+                            "another; robots may be placed in another frame",
+                            session.lost_at_creation);
+    }
     if (session.set_aside > 0) {
         line += fmt::format(", {} that cannot be applied in {}", session.set_aside, session.aside.native());
     }

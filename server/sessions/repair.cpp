@@ -151,8 +151,12 @@ Result<RepairedSession> repair_session(const store::DamagedStore& from, store::S
     LogReconstruction reconstruction;
     LogWriter kept(to, target->value_or(0));
     AsideFile set_aside(repaired.aside);
+    const auto original = record ? wire::decode_session(*record) : Result<wire::SessionRecord>(wire::SessionRecord());
+    const Revision at_creation = original ? original->entries_at_creation : 0;
+    repaired.lost_at_creation = at_creation;
     const auto read = from.read(id, [&](Revision revision, std::string_view bytes) -> Result<> {
         auto entry = wire::decode_entry(bytes);
+        if (entry && revision <= at_creation) --repaired.lost_at_creation;
         if (!entry || !*target) return set_aside.add(bytes);
         const auto entries = reconstruction.add(revision, std::move(*entry));
         if (entries.empty()) return set_aside.add(bytes);

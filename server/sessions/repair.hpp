@@ -23,12 +23,13 @@ repaired_names(const std::map<store::SessionId, std::optional<std::string>>& rec
 
 /// The result of repairing one session.
 struct RepairedSession {
-    std::string name;              ///< see repaired_names()
-    std::uint64_t kept = 0;        ///< entries copied to the new store
-    std::uint64_t empty_scans = 0; ///< lost scans that were replaced by empty ones; see LogReconstruction
-    std::uint64_t missing = 0;     ///< lost entries between other entries; those lost at the end are unknown
-    std::uint64_t set_aside = 0;   ///< entries in the file `aside`
-    std::filesystem::path aside;   ///< empty: no such file
+    std::string name;                   ///< see repaired_names()
+    std::uint64_t kept = 0;             ///< entries copied to the new store
+    std::uint64_t empty_scans = 0;      ///< lost scans that were replaced by empty ones; see LogReconstruction
+    std::uint64_t missing = 0;          ///< lost entries between other entries; those lost at the end are unknown
+    std::uint64_t lost_at_creation = 0; ///< lost entries with which the log began: parts of an imported map, the mode
+    std::uint64_t set_aside = 0;        ///< entries in the file `aside`
+    std::filesystem::path aside;        ///< empty: no such file
 };
 
 /// Copies the remaining entries of a session to another store. Entries that can no longer be applied are written to a

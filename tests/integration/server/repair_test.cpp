@@ -91,6 +91,24 @@ TEST_F(RepairTest, ALogWithoutItsRobotEntryIsSetAside) {
     EXPECT_GT(std::filesystem::file_size(place_.path() / "repaired.lost" / "one.scanlog"), 300U * 100U);
 }
 
+TEST_F(RepairTest, LossesOfTheCreationAreReported) {
+    const auto made = http_request(server_.http_port(), "POST", "/api/v1/sessions",
+                                   R"({"name": "one", "cell_size": 0.1, "localize_only": true})");
+    ASSERT_EQ(made.status, 201U) << made.body;
+    simulate("one", "0.1");
+    kill_server();
+    const auto log = store::only_file_like(store(), ".log");
+    const auto mode = store::bytes_of(log).find("\x4a\x02\x08\x01"); // LogEntry.mode_changed
+    ASSERT_NE(mode, std::string::npos);
+    store::flip_bit(log, mode, 0);
+    const auto answer = repair();
+    ASSERT_EQ(answer.code, 0) << answer.text;
+    EXPECT_THAT(answer.text, HasSubstr("1 lost, 1 of the lost ones from its creation"));
+    EXPECT_EQ(run({"--check=deep", "--store", repaired().native()}).code, 0);
+    const RunningServer server(repaired(), place_.path() / "log");
+    EXPECT_EQ(server.get_json("/api/v1/sessions/one").at("localize_only"), true) << "its scans say so";
+}
+
 TEST_F(RepairTest, AKilledRepairLeavesNoStoreAndCanBeRepeated) {
     for (const auto* name : {"one", "two", "three", "four"}) simulate(name, "0.1");
     kill_server();
