@@ -57,7 +57,7 @@ mapping::ScanPoses PoseHistory::before(double stamp, const Exclusions& exclusion
         const RobotHistory& robot = robots_[index];
         std::size_t count = 0; // of its scans before a later one
         const auto ends = [&](const RobotHistory::Scan& scan) {
-            return scan.stamp > stamp && !exclusions.cover(0, {index, count + 1, scan.stamp, std::nullopt});
+            return scan.stamp > stamp && !exclusions.cover(scan.revision, {index, count + 1, scan.stamp, std::nullopt});
         };
         while (count < robot.scans.size() && !ends(robot.scans[count])) ++count;
         const std::size_t unknown = graph_.size() - robot.moments.size(); // corrections before its first scan

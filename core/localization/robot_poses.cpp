@@ -14,7 +14,7 @@ using scan_matching::transform_of;
 
 } // namespace
 
-std::optional<Pose2> RobotPoses::add(const Scan& scan, const Sensor& sensor) {
+std::optional<Pose2> RobotPoses::add(const Scan& scan, const Sensor& sensor, Revision revision) {
     if (sensor.kind == SensorKind::kLaser) {
         estimator_.add(scan, sensor);
         laser_scans_.push_back(scans_.size());
@@ -35,6 +35,7 @@ std::optional<Pose2> RobotPoses::add(const Scan& scan, const Sensor& sensor) {
     const auto in_maps = is_located(scan_count() - 1) ? std::optional(added.first) : std::nullopt;
     in_maps_.append(in_maps);
     added.was_shown = in_maps.has_value();
+    added.revision = revision;
     if (added.laser_scan != kNoLaserScan) added.was_in_map = estimator_.is_in_map(added.laser_scan);
     return in_maps;
 }
@@ -151,6 +152,7 @@ RobotHistory RobotPoses::history() const {
         const PlacedScan& scan = scans_[n];
         auto& added = history.scans.emplace_back();
         added.stamp = scan.stamp;
+        added.revision = scan.revision;
         if (scan.was_shown) added.added = scan.first;
         if (scan.laser_scan == kNoLaserScan) continue;
         added.laser_scan = scan.laser_scan;

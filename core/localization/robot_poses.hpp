@@ -41,8 +41,9 @@ public:
     /// Adds the robot's next scan.
     /// @param scan    with odometry if the robot has any
     /// @param sensor  that took it
+    /// @param revision  of its log entry
     /// @return its pose in the maps, T_map_robot; nullopt: it fits no place, so maps leave it out
-    std::optional<Pose2> add(const Scan& scan, const Sensor& sensor);
+    std::optional<Pose2> add(const Scan& scan, const Sensor& sensor, Revision revision = 0);
 
     /// Searches for the robot's next laser scan near a place.
     void relocalize(const slam::Surroundings& place) { estimator_.relocalize(place); }
@@ -85,6 +86,10 @@ public:
     /// @param scan  number of the scan, from 0. Precondition: scan < scan_count()
     [[nodiscard]] double stamp(std::size_t scan) const { return scans_[scan].stamp; }
 
+    /// Returns the revision of a scan's log entry.
+    /// @param scan  number of the scan, from 0. Precondition: scan < scan_count()
+    [[nodiscard]] Revision revision(std::size_t scan) const { return scans_[scan].revision; }
+
     /// Returns whether a scan's place in the map is known, at least as a prediction.
     /// @param scan  number of the scan, from 0. Precondition: scan < scan_count()
     [[nodiscard]] bool is_in_map(std::size_t scan) const;
@@ -109,6 +114,7 @@ private:
         Pose2 first;                           // T_map_robot, when it was added
         bool was_in_map = true;                // likewise
         bool was_shown = true;                 // in the maps, likewise
+        Revision revision = 0;                 // of its log entry
     };
 
     [[nodiscard]] PlacedScan placed(const Scan& scan) const;

@@ -5,7 +5,7 @@
 namespace scanloom::localization {
 
 void SessionPoses::estimate(ScanTaken& taken, const Sensor& sensor, Revision revision) {
-    taken.scan.pose = poses_of(taken.robot).add(taken.scan, sensor);
+    taken.scan.pose = poses_of(taken.robot).add(taken.scan, sensor, revision);
     ++scan_count_;
     bool is_due = false;
     for (const auto& each : robots_) is_due = (each && each->is_correction_due()) || is_due; // each follows every scan
@@ -54,11 +54,13 @@ mapping::ScanPoses SessionPoses::in_maps() const {
     return mapping::ScanPoses(std::move(robots));
 }
 
-std::vector<StampedPose> SessionPoses::trajectory(RobotIndex robot, Estimate estimate) const {
+std::vector<StampedPose> SessionPoses::trajectory(RobotIndex robot, Estimate estimate,
+                                                  const Exclusions& exclusions) const {
     std::vector<StampedPose> trajectory;
     const auto* poses = find(robot);
     for (std::size_t scan = 0; poses != nullptr && scan < poses->scan_count(); ++scan) {
         if (!poses->is_in_map(scan) || (estimate == Estimate::kFirst && !poses->was_in_map(scan))) continue;
+        if (exclusions.cover(poses->revision(scan), {robot, scan + 1, poses->stamp(scan), std::nullopt})) continue;
         trajectory.push_back(
             {poses->stamp(scan), estimate == Estimate::kFirst ? poses->first(scan) : poses->newest(scan)});
     }

@@ -81,8 +81,10 @@ public:
     /// Returns the poses of a robot's scans, in their order, without those whose place in the map is not known.
     /// @param robot     index in the session
     /// @param estimate  which poses
+    /// @param exclusions  of the session, whose scans are left out
     /// @return empty if the robot sends poses
-    [[nodiscard]] std::vector<StampedPose> trajectory(RobotIndex robot, Estimate estimate) const;
+    [[nodiscard]] std::vector<StampedPose> trajectory(RobotIndex robot, Estimate estimate,
+                                                      const Exclusions& exclusions = {}) const;
 
     /// Returns the pose graph.
     [[nodiscard]] PoseGraphView graph() const;

@@ -75,12 +75,14 @@ boost::asio::awaitable<Result<Response>> get_trajectory_tum(Context& context) {
         if (!robot) co_return robot.error();
         wanted = *robot;
     }
-    const auto estimated = co_await read_poses<Trajectories>(
-        *session, [robots = snapshot->robots.size(), as = *estimate](const localization::SessionPoses& poses) {
-            std::vector<std::vector<StampedPose>> all(robots);
-            for (RobotIndex robot = 0; robot < robots; ++robot) all[robot] = poses.trajectory(robot, as);
-            return std::make_shared<const std::vector<std::vector<StampedPose>>>(std::move(all));
-        });
+    // A named variable, because g++ 12 destroys such temporaries twice
+    const auto read = [robots = snapshot->robots.size(), as = *estimate,
+                       exclusions = snapshot->exclusions](const localization::SessionPoses& poses) {
+        std::vector<std::vector<StampedPose>> all(robots);
+        for (RobotIndex robot = 0; robot < robots; ++robot) all[robot] = poses.trajectory(robot, as, *exclusions);
+        return std::make_shared<const std::vector<std::vector<StampedPose>>>(std::move(all));
+    };
+    const auto estimated = co_await read_poses<Trajectories>(*session, read);
     std::size_t lines = 0;
     for (std::size_t n = 0; n < snapshot->robots.size(); ++n)
         lines += (*estimated)[n].size() + snapshot->robots[n].trajectory.size();

@@ -42,13 +42,18 @@ export function dateOf(timeline: Timeline, index: number): string {
 
 /** Returns what is shown of an earlier time. @param date empty: unknown */
 export function pastOf(date: string, poses: PastPoses | null): string {
-  const then = date === '' ? '' : `, ${date}`;
-  const shown = {
-    none: `Map, robots and trails as they were then${then}`,
-    then: `Map as it was believed to be then${then}; robots and trails at the poses known today`,
-    now: `Map, robots and trails of that time${then}, at the poses known today`,
-  };
-  return `${shown[poses ?? 'none']}; newest scans, goals, frontiers and landmarks are hidden.`;
+  return `${shownOf(date === '' ? '' : `, ${date}`, poses)}; newest scans, goals, frontiers and landmarks are hidden.`;
+}
+
+function shownOf(date: string, poses: PastPoses | null): string {
+  switch (poses) {
+    case 'then':
+      return `Map as it was believed to be then${date}; robots and trails at the poses known today`;
+    case 'now':
+      return `Map, robots and trails of that time${date}, at the poses known today`;
+    case null:
+      return `Map, robots and trails as they were then${date}`;
+  }
 }
 
 /** @param share loaded part, 0 to 1 */

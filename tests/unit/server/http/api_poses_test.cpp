@@ -131,6 +131,18 @@ TEST_F(ApiPosesTest, OnlineTrajectoryHasPosesAsFirstEstimated) {
     EXPECT_GT(largest, 0.05) << "the end of the lap corrects its poses";
 }
 
+TEST_F(ApiPosesTest, TumTrajectoryLeavesOutExcludedScans) {
+    drive_lap(40);
+    ASSERT_EQ(ask("POST", "/api/v1/sessions/a/exclude", R"({"robot": "r1", "from": "seq:11", "to": "seq:20"})").status,
+              Status::created);
+    for (const char* query : {"", "?as=online"}) {
+        const auto poses = tum(query).at("r1");
+        ASSERT_EQ(poses.size(), 30U) << query;
+        EXPECT_NEAR(poses[9].stamp, stamp_of(9), 1e-6);
+        EXPECT_NEAR(poses[10].stamp, stamp_of(20), 1e-6);
+    }
+}
+
 TEST_F(ApiPosesTest, TumTrajectoryOfRobotThatSendsPosesHasThese) {
     stream("a", "r1", {scan(1), scan(2)});
     stream("a", "r2", {scan(1)});
