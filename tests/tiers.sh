@@ -168,8 +168,9 @@ for_core() {
 # core_tests PRESET PROGRAM...: the options of ctest for their suites, one a line.
 core_tests() {
     local left_out='^$' IFS='|'
-    # One thread reads or writes files, or is killed; the largest session takes a minute. --nightly runs all of them.
-    [[ $1 != tsan ]] || left_out='DamagedStore|Table|LogFile|LogReconstruction|HeavySession|Kill|CutCheckpoint'
+    # One thread reads or writes files, estimates poses, or is killed; the largest session takes a minute. --nightly runs all
+    # of them.
+    [[ $1 != tsan ]] || left_out='DamagedStore|Table|LogFile|LogReconstruction|EstimatedPoses|LocalizeOnly|HeavySession|Kill|CutCheckpoint'
     shift
     printf '%s\n' --label-regex "^($*)\$" --label-exclude '^(all|nightly)$' --exclude-regex "$left_out"
 }
