@@ -93,7 +93,7 @@ Result<> SessionRegistry::check_new(std::string_view name, const Creator& creato
                                           made, creator.token)};
 }
 
-/// Appends an entry to the log of a session that nobody uses yet. If that fails, the session is removed.
+/// Appends an entry to the log of a session that is being created. Removes the session if that fails.
 Result<> SessionRegistry::append_first(store::SessionId session, Revision revision, const LogEntry& entry) {
     auto appended = store::append_and_wait(state_.log, session, revision, {wire::encode_entry(entry)});
     if (!appended) static_cast<void>(state_.log.remove_session(session)); // if this fails, the next start removes it
