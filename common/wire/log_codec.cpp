@@ -200,6 +200,7 @@ std::string encode_session(const SessionRecord& record) {
     proto.set_map_patches(record.entries_at_creation);
     proto.set_created_by(record.created_by);
     proto.set_chunks_max(record.chunks_max);
+    proto.set_replaces(record.replaces);
     return proto.SerializeAsString();
 }
 
@@ -209,8 +210,8 @@ Result<SessionRecord> decode_session(std::string_view bytes) {
     if (!is_valid_name(proto.name())) return damaged("a session"); // rejects paths and line breaks
     auto options = from_proto(proto.config());
     if (!options) return options.error();
-    return SessionRecord{proto.name(),        proto.created(),    *options,
-                         proto.map_patches(), proto.created_by(), proto.chunks_max()};
+    return SessionRecord{proto.name(),       proto.created(),    *options,        proto.map_patches(),
+                         proto.created_by(), proto.chunks_max(), proto.replaces()};
 }
 
 } // namespace scanloom::wire

@@ -20,6 +20,7 @@ struct SessionRecord {
     std::uint32_t entries_at_creation = 0; ///< with which its log begins: of an import, and of localize-only mode
     std::string created_by;                ///< name of the token that created it; empty: no token
     std::uint64_t chunks_max = 0;          ///< chunks that its maps may have; 0: as many as any session
+    std::uint64_t replaces = 0;            ///< the session that this one is a copy of, and replaces; 0: none
 
     friend bool operator==(const SessionRecord&, const SessionRecord&) = default;
 };

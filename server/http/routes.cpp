@@ -65,6 +65,7 @@ std::span<const Route> routes() noexcept {
         {kGet, SESSION, "getSession", kRead, kQueries, kListed, {}, get_session},
         {kDelete, SESSION, "deleteSession", kChange, kStore, kListed, {}, delete_session},
         {kPostForm, SESSION "/import", "importMap", kChange, kImport, kListed, {}, import_map},
+        {kPost, SESSION "/estimate", "estimateSession", kChange, kStore, kListed, {}, estimate_session},
         {kPost, SESSION "/exclude", "excludeScans", kChange, kStore, kListed, {}, exclude_scans},
         {kGet, SESSION "/exclusions", "listExclusions", kRead, kQueries, kListed, {}, list_exclusions},
         {kDelete, SESSION "/exclusions/{exclusion}", "liftExclusion", kChange, kStore, kListed, {}, lift_exclusion},

@@ -5,6 +5,7 @@
 #include "server/sessions/checkpoint_reader.hpp"
 #include "server/sessions/log_readers.hpp"
 #include "server/sessions/map_correction.hpp"
+#include "server/sessions/odometry_copy.hpp"
 #include "server/sessions/registry_state.hpp"
 #include "server/store/store_error.hpp"
 
@@ -141,7 +142,7 @@ Result<Recorded> recorded(const store::StoredSession& stored, std::string& name)
     const auto chunks_max = record->chunks_max == 0 ? SessionLimits::kMost : record->chunks_max;
     return Recorded{{stored.id, name, record->created, *config, record->created_by,
                      std::min<std::size_t>(chunks_max, SessionLimits::kMost)},
-                    record->entries_at_creation};
+                    record->replaces == 0 ? record->entries_at_creation : 0}; // a copy that is left is complete
 }
 
 /// Returns the error for the second session of a name, which only a fault can have stored. The older one is served.
@@ -218,7 +219,9 @@ void recover_one(RegistryState& state, const Recorded& recorded, std::function<v
 } // namespace
 
 Result<> recover_sessions(RegistryState& state) {
-    const auto stored = state.log.sessions();
+    auto all = state.log.sessions();
+    if (!all) return all.error();
+    const auto stored = settle_copies(state.log, std::move(*all));
     if (!stored) return stored.error();
     const auto found = recorded_sessions(*stored, state.damaged);
     const auto done = std::make_shared<std::latch>(static_cast<std::ptrdiff_t>(found.size()));

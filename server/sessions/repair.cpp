@@ -3,6 +3,7 @@
 #include "common/scan/limits.hpp"
 #include "common/wire/log_codec.hpp"
 #include "server/sessions/log_reconstruction.hpp"
+#include "server/sessions/log_writer.hpp"
 
 #include <boost/endian/conversion.hpp>
 #include <fmt/format.h>
@@ -31,37 +32,6 @@ std::optional<std::string> name_in(const std::optional<std::string>& record) {
     if (!decoded) return std::nullopt;
     return decoded->name;
 }
-
-/// Appends entries to a log in pieces, and waits for each piece.
-class LogWriter {
-public:
-    LogWriter(store::ScanLog& log, store::SessionId session) : log_(log), session_(session) {}
-
-    Result<> add(const LogEntry& entry) {
-        entries_.push_back(wire::encode_entry(entry));
-        bytes_ += entries_.back().size();
-        return bytes_ < kPieceBytes ? Result<>{} : write();
-    }
-
-    Result<> write() {
-        if (entries_.empty()) return {};
-        const Revision first = end_ + 1;
-        end_ += entries_.size();
-        bytes_ = 0;
-        return store::append_and_wait(log_, session_, first, std::exchange(entries_, {}));
-    }
-
-    [[nodiscard]] Revision end() const noexcept { return end_ + entries_.size(); }
-
-private:
-    static constexpr std::size_t kPieceBytes = std::size_t{1} << 20;
-
-    store::ScanLog& log_;
-    const store::SessionId session_;
-    std::vector<std::string> entries_;
-    std::size_t bytes_ = 0;
-    Revision end_ = 0;
-};
 
 /// The file of entries that cannot be applied. Created with the first entry.
 class AsideFile {
@@ -108,6 +78,7 @@ std::optional<std::string> record_to_keep(const std::string& bytes, const std::s
     auto record = wire::decode_session(bytes);
     if (!record) return std::nullopt;
     record->entries_at_creation = 0;
+    record->replaces = 0; // it may be lost, or kept under another name
     record->name = name;
     return wire::encode_session(*record);
 }

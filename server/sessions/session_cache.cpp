@@ -180,6 +180,15 @@ std::optional<EvictedSession> SessionCache::end_eviction(const std::string& name
     return wanted;
 }
 
+std::optional<EvictedSession> SessionCache::end_replacement(SessionInfo info, Summary summary) {
+    const std::string name = info.name;
+    {
+        const std::unique_lock lock(mutex_);
+        entries_.find(name)->second.info = std::move(info);
+    }
+    return end_eviction(name, std::move(summary));
+}
+
 // Deletion
 
 std::optional<ListedSession> SessionCache::begin_change(std::string_view name) {

@@ -91,6 +91,10 @@ public:
     /// @return the session if a caller has requested it in the meantime, to be loaded as after request()
     [[nodiscard]] std::optional<EvictedSession> end_eviction(const std::string& name, Summary summary);
 
+    /// Ends the transition of begin_change(): another session, which is not in memory, has replaced this one.
+    /// @return the session if a caller has requested it in the meantime, to be loaded as after request()
+    [[nodiscard]] std::optional<EvictedSession> end_replacement(SessionInfo info, Summary summary);
+
     /// Ends a load that failed: passes `why` to the waiting callers. The session stays evicted.
     void fail_load(const std::string& name, const Error& why);
 

@@ -5,6 +5,7 @@
 #include "common/wire/log_codec.hpp"
 #include "server/log/context.hpp"
 #include "server/sessions/imported_map.hpp"
+#include "server/sessions/odometry_copy.hpp"
 #include "server/sessions/recovery.hpp"
 
 #include <fmt/format.h>
@@ -251,6 +252,68 @@ Result<Revision> SessionRegistry::change_exclusions(std::string_view name, const
         }
         return stay({Errc::kOverloaded, "there is no memory left for this; try again later"});
     }
+}
+
+// Estimation
+
+namespace {
+
+bool sends_map_poses(const mapping::RobotState& robot) { return robot.poses == Poses::kMap; }
+
+/// Returns an error if a robot is connected that would have to state other poses.
+Result<> check_disconnected(const Session& session) {
+    const auto& robots = session.snapshot()->robots;
+    for (RobotIndex robot = 0; robot < robots.size(); ++robot) {
+        if (!sends_map_poses(robots[robot]) || !session.is_connected(robot)) continue;
+        return Error{Errc::kConflict,
+                     fmt::format("robot '{}' is connected and sends poses in the map frame; stop it, and "
+                                 "start it with --poses odometry when the poses are estimated",
+                                 robots[robot].name)};
+    }
+    return {};
+}
+
+/// Returns the summary of the copy until it is loaded.
+Summary summary_of_copy(Summary summary) {
+    auto facts = std::make_shared<mapping::Snapshot>(*summary.facts);
+    for (auto& robot : facts->robots) {
+        if (sends_map_poses(robot)) robot.poses = Poses::kOdometry;
+    }
+    summary.facts = std::move(facts);
+    return summary;
+}
+
+} // namespace
+
+Result<std::optional<SessionInfo>> SessionRegistry::estimate(std::string_view name) {
+    const std::lock_guard changing(changing_);
+    if (state_.draining) return shutting_down();
+    auto left = state_.cache.begin_change(name);
+    if (!left) return state_.why_missing(name);
+    if (left->session) {
+        if (auto ready = check_disconnected(*left->session); !ready) {
+            loader_.load(state_.cache.cancel_change(name));
+            return ready.error();
+        }
+        left->summary = summary_of(*left->session->snapshot());
+        discard_and_wait(*left->session, maps_are_computed_again(left->info.name));
+    }
+    if (std::ranges::none_of(left->summary.facts->robots, sends_map_poses)) {
+        loader_.load(state_.cache.end_eviction(left->info.name, left->summary));
+        return std::optional<SessionInfo>();
+    }
+    const auto copy = copy_as_odometry(state_.log, left->info.id, state_.draining);
+    const auto removed = copy ? state_.log.remove_session(left->info.id) : Result<>(copy.error());
+    if (!removed) { // the next start removes one of both
+        loader_.load(state_.cache.end_eviction(left->info.name, left->summary));
+        return removed.error();
+    }
+    SessionInfo info = left->info;
+    info.id = *copy;
+    loader_.load(state_.cache.end_replacement(std::move(info), summary_of_copy(left->summary)));
+    load(name, [](const Result<std::shared_ptr<Session>>&) {});
+    log::info({.session = name}, "session '{}': the poses of its robots are estimated from now on", name);
+    return std::optional(left->info);
 }
 
 // Shutdown

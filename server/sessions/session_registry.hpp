@@ -28,8 +28,8 @@ namespace scanloom::sessions {
 /// next request. Robots and requests hold the session that they use; viewers do not, and reconnect. The facts that a
 /// list of sessions shows stay in memory.
 /// Threads: any thread. All functions that store, remove or wait block on the disk: create(), import_map(), exclude(),
-/// lift_exclusion(), remove(), recover(), drain() and the load() that returns a session. Do not call these on I/O
-/// threads or on threads of the config's executors.
+/// lift_exclusion(), estimate(), remove(), recover(), drain() and the load() that returns a session. Do not call these
+/// on I/O threads or on threads of the config's executors.
 class SessionRegistry {
 public:
     /// @param log  must outlive this object
@@ -104,6 +104,16 @@ public:
     /// Lifts an exclusion by appending an entry to the log. Evicts the session as exclude() does.
     /// Errors: those of exclude(); kNotFound also if no exclusion with that id is in effect.
     [[nodiscard]] Result<> lift_exclusion(std::string_view name, std::uint64_t id);
+
+    /// Replaces the session by a copy in which the poses that robots sent as poses in the map frame are their odometry,
+    /// so that the server estimates the poses. Evicts the session as exclude() does, and forgets its SessionInfo::id.
+    ///
+    /// If all poses are estimated already, the session is only evicted: poses are estimated when it is loaded.
+    /// @return properties of the session that was replaced; nullopt: none was
+    /// Errors: kNotFound or the error in damaged(), as exclude(); kConflict if a robot that sends poses in the map frame is
+    /// connected; kStoreFailed or kOverloaded if the copy was not stored; kDataLoss or kMalformed if the log is
+    /// damaged; kShuttingDown.
+    [[nodiscard]] Result<std::optional<SessionInfo>> estimate(std::string_view name);
 
     /// Deletes a session, damaged or not, with its log and its maps.
     /// Errors: kNotFound, kStoreFailed.

@@ -131,6 +131,35 @@ describe('robots whose poses the server estimates', () => {
     assert.equal(await textOf(page, '#mode button'), 'Localize only');
   });
 
+  it('may have sent odometry as their poses, which is then estimated', async () => {
+    session.move('r1', 1, 1, 0);
+    await open();
+    const bodies = await accept('**/sessions/map/estimate');
+    const dialog = page.getByRole('dialog', { name: 'Estimate poses?' });
+    await page.click('#estimate :text-is("Estimate poses\u2026")');
+    await keepPicture(page, 'estimate');
+    assert.deepEqual(await violations(page), []);
+    await dialog.getByRole('button', { name: 'Cancel' }).click();
+    await dialog.waitFor({ state: 'detached' });
+    assert.deepEqual(bodies, []);
+
+    await page.click('#estimate button');
+    await dialog.getByRole('button', { name: 'Estimate', exact: true }).click();
+    await dialog.waitFor({ state: 'detached' });
+    assert.deepEqual(bodies, [{ poses: 'odometry' }]);
+    session.robots[0].known = known(kTracking);
+    session.move('r1', 2, 1, 0);
+    await page.locator('#estimate button').waitFor({ state: 'hidden' });
+
+    delete session.robots[0].known;
+    session.move('r1', 3, 1, 0);
+    await page.unrouteAll();
+    await refuse('**/estimate', 'robot "r1" is connected');
+    await page.click('#estimate button');
+    await dialog.getByRole('button', { name: 'Estimate', exact: true }).click();
+    await hasText(page, 'dialog[open] [role=alert]', /robot "r1" is connected\.$/);
+  });
+
   it('have past maps with poses as believed then, or as known today', async () => {
     for (const x of [1, 2, 3]) session.move('r1', x, 1, 0);
     session.robots[0].known = known(kTracking);

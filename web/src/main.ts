@@ -10,6 +10,7 @@ import { createMap, MapView } from './map/map_view';
 import { NewestSessions } from './newest_sessions';
 import { Cursor } from './panel/cursor';
 import { DisplayPanel } from './panel/display_panel';
+import { EstimateButton } from './panel/estimate_button';
 import { Facts } from './panel/facts';
 import { LayersPanel } from './panel/layers_panel';
 import { ModeButton } from './panel/mode_button';
@@ -76,6 +77,7 @@ const viewer: Viewer = new Viewer({
   mode: new ModeButton(byId('mode', HTMLElement), (isLocalizeOnly) => {
     if (viewer.session) viewer.refresh({ ...viewer.session, isLocalizeOnly });
   }),
+  estimate: new EstimateButton(byId('estimate', HTMLElement), () => void chooser.refreshSoon()),
   robots: robotList,
   notice,
   explored: new ExploredNote(byId('explored', HTMLElement)),

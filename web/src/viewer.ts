@@ -14,6 +14,7 @@ import { CellReaders } from './map/cell_readers';
 import { LiveSource, ownFamily, type MapSource } from './map/map_source';
 import type { MapView, Shown } from './map/map_view';
 import type { Cursor } from './panel/cursor';
+import type { EstimateButton } from './panel/estimate_button';
 import type { Facts } from './panel/facts';
 import type { ExploredNote } from './panel/explored_note';
 import type { ModeButton } from './panel/mode_button';
@@ -33,6 +34,7 @@ export interface ViewerParts {
   cursor: Cursor;
   facts: Facts;
   mode: ModeButton;
+  estimate: EstimateButton;
   robots: RobotList;
   notice: Notice;
   explored: ExploredNote;
@@ -276,6 +278,7 @@ export class Viewer {
     const { session } = this.open;
     this.parts.facts.show(session);
     this.parts.mode.show(session);
+    this.parts.estimate.show(session);
     this.parts.noRobots.hidden = this.open.robots.size > 0;
     this.parts.camera.see(session.mainBounds ?? session.bounds, this.moment?.robots ?? this.robots);
     this.parts.notice.show(session.bounds ? { kind: 'none' } : { kind: 'empty', name: session.name });

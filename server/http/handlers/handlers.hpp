@@ -29,11 +29,12 @@ namespace scanloom::http {
 
 // sessions.cpp
 
-[[nodiscard]] Result<Response> list_sessions(Context& context);  ///< damaged ones included; loads none
-[[nodiscard]] Result<Response> create_session(Context& context); ///< waits until it is durable
-[[nodiscard]] Result<Response> get_session(Context& context);    ///< does not load it
-[[nodiscard]] Result<Response> delete_session(Context& context); ///< also a damaged session
-[[nodiscard]] Result<Response> import_map(Context& context);     ///< creates the session
+[[nodiscard]] Result<Response> list_sessions(Context& context);    ///< damaged ones included; loads none
+[[nodiscard]] Result<Response> create_session(Context& context);   ///< waits until it is durable
+[[nodiscard]] Result<Response> get_session(Context& context);      ///< does not load it
+[[nodiscard]] Result<Response> estimate_session(Context& context); ///< its poses, from now on
+[[nodiscard]] Result<Response> delete_session(Context& context);   ///< also a damaged session
+[[nodiscard]] Result<Response> import_map(Context& context);       ///< creates the session
 
 // exclusions.cpp
 

@@ -119,17 +119,45 @@ Result<Response> get_session(Context& context) {
     return ok(listed_json(*listed, StoreState(context.services)));
 }
 
+namespace {
+
+/// Frees what is kept about a session that does not exist any more.
+void forget(Context& context, const sessions::SessionInfo& info) {
+    context.services.weaves.remove_all(info.id);
+    context.services.landmarks.remove(info.id);
+    context.services.locator.remove(info.id);
+    context.services.tiles.forget(sessions::tag_of(info));
+}
+
+} // namespace
+
 Result<Response> delete_session(Context& context) {
     const auto& name = context.arguments["session"];
     const auto info = context.services.sessions.info(name);
     if (auto removed = context.services.sessions.remove(name); !removed) return removed.error();
-    if (info) {
-        context.services.weaves.remove_all(info->id);
-        context.services.landmarks.remove(info->id);
-        context.services.locator.remove(info->id);
-        context.services.tiles.forget(sessions::tag_of(*info));
-    }
+    if (info) forget(context, *info);
     return no_content();
+}
+
+Result<Response> estimate_session(Context& context) {
+    const auto body = parse_json_object(context.request.body, {"poses"});
+    if (!body) return body.error();
+    if (body->contains("poses")) {
+        const auto poses = read_text(*body, "poses");
+        if (!poses) return poses.error();
+        if (*poses != name_of(Poses::kOdometry)) {
+            return Error{Errc::kInvalidField,
+                         fmt::format("poses is {}; give \"odometry\", which the poses that robots sent "
+                                     "are then taken as, or leave it out",
+                                     in_quotes(*poses))};
+        }
+    }
+    const auto replaced = context.services.sessions.estimate(context.arguments["session"]);
+    if (!replaced) return replaced.error();
+    if (*replaced) forget(context, **replaced);
+    auto response = get_session(context);
+    if (response) response->status = Status::accepted;
+    return response;
 }
 
 namespace {

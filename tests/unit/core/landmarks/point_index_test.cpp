@@ -75,7 +75,7 @@ TEST(PointTree, InfiniteRadiusContainsAllPoints) {
 
 TEST(PointTree, DistinguishesPointsOfEveryScale) {
     std::vector<Point2> points;
-    for (int n = 0; n < 300; ++n) points.emplace_back(std::ldexp(1.0, 20 - n), 0.0);
+    for (int n = 0; n < 300; ++n) points.push_back({std::ldexp(1.0, 20 - n), 0.0});
     const PointTree tree(points);
     for (std::size_t n = 0; n < points.size(); ++n) ASSERT_EQ(tree.nearest(points[n])->index, n);
 }

@@ -62,35 +62,36 @@ class ApiPosesTest : public ApiTest {
 protected:
     void SetUp() override { create("a"); }
 
-    /// Joins a robot that does not send poses.
-    std::shared_ptr<Link> join_as(Poses poses, std::uint64_t awaited_seq) {
+    /// Joins a robot with any poses.
+    std::shared_ptr<Link> join_as(Poses poses, std::uint64_t awaited_seq, const std::string& session = "a") {
         const auto link = std::make_shared<Link>(awaited_seq);
         std::promise<void> joined;
-        registry_.find("a")->join({.robot = "r1", .poses = poses}, link,
-                                  [&joined](const Result<sessions::Joined>&) { joined.set_value(); });
+        registry_.find(session)->join({.robot = "r1", .poses = poses}, link,
+                                      [&joined](const Result<sessions::Joined>&) { joined.set_value(); });
         joined.get_future().wait();
         links_.push_back(link);
         return link;
     }
 
     /// Sends the scans of the lap that the session does not have, and waits until none of them is moving.
-    void drive_lap(std::size_t end = lap().scans.size()) {
-        const auto& robots = registry_.find("a")->snapshot()->robots;
+    void drive_lap(std::size_t end = lap().scans.size(), Poses poses = Poses::kOdometry,
+                   const std::string& name = "a") {
+        const auto session = registry_.find(name);
+        const auto& robots = session->snapshot()->robots;
         std::vector<Scan> scans;
         for (std::size_t n = robots.empty() ? 0 : robots[0].last_seq; n < end; ++n) {
             Scan scan = lap().scans[n];
             scan.seq = n + 1;
             scan.stamp = stamp_of(n);
             scan.pose.reset();
-            scan.odometry = lap().odometry[n];
+            (poses == Poses::kMap ? scan.pose : scan.odometry) = lap().odometry[n];
             scans.push_back(std::move(scan));
         }
-        const auto session = registry_.find("a");
-        const auto link = join_as(Poses::kOdometry, end);
+        const auto link = join_as(poses, end, name);
         session->submit(link, lap().laser, 0);
         session->submit(link, std::move(scans), 1);
         link->wait();
-        EXPECT_EQ(get("/api/v1/sessions/a/digest").status, Status::ok);
+        EXPECT_EQ(get(fmt::format("/api/v1/sessions/{}/digest", name)).status, Status::ok);
     }
 
     static double stamp_of(std::size_t scan) { return 100.0 + static_cast<double>(scan) / 10.0; }
@@ -237,6 +238,39 @@ TEST_F(ApiPosesTest, MapsOfEarlierMomentsHaveThePosesOfThenOrOfNow) {
     EXPECT_EQ(boost::json::parse(newest.body.bytes()).at("poses"), "now") << "it has no end";
     EXPECT_THAT(detail(get(path + "digest?until=9&poses=old"), Status::bad_request), HasSubstr("then and now"));
     EXPECT_THAT(detail(ask("POST", path + "weave", R"({"poses": 1})"), Status::bad_request), HasSubstr("poses"));
+}
+
+TEST_F(ApiPosesTest, OperatorHasThePosesOfARecordingEstimated) {
+    drive_lap();
+    create("b");
+    drive_lap(lap().scans.size(), Poses::kMap, "b");
+    const std::string path = "/api/v1/sessions/b/";
+    const auto of = [&](const std::string& session) { return get_json("/api/v1/sessions/" + session + "/digest"); };
+    const auto exclusion = R"({"robot": "r1", "from": "seq:1", "to": "seq:5"})";
+    for (const char* session : {"a", "b"}) {
+        ASSERT_EQ(ask("POST", fmt::format("/api/v1/sessions/{}/exclude", session), exclusion).status, Status::created);
+    }
+    ASSERT_NE(of("b").at("layers"), of("a").at("layers"));
+    registry_.load("b").value();
+    join_as(Poses::kMap, 1, "b");
+    EXPECT_THAT(detail(ask("POST", path + "estimate", "{}"), Status::conflict), HasSubstr("robot 'r1' is connected"));
+    std::promise<void> left;
+    registry_.find("b")->leave(links_.back());
+    registry_.find("b")->read_poses([&](const auto&) { left.set_value(); });
+    left.get_future().wait();
+
+    const auto response = ask("POST", path + "estimate", R"({"poses": "odometry"})");
+    ASSERT_EQ(response.status, Status::accepted) << response.body.bytes();
+    EXPECT_EQ(of("b").at("layers"), of("a").at("layers"));
+    EXPECT_EQ(get(path + "trajectory.tum").body.bytes(), get("/api/v1/sessions/a/trajectory.tum").body.bytes());
+    EXPECT_EQ(get(path + "log").body.bytes().size(), get("/api/v1/sessions/a/log").body.bytes().size());
+    const auto revision = get_json("/api/v1/sessions/b").at("revision");
+    EXPECT_EQ(ask("POST", path + "estimate", "{}").status, Status::accepted) << "again";
+    EXPECT_EQ(of("b").at("layers"), of("a").at("layers"));
+    EXPECT_EQ(get_json("/api/v1/sessions/b").at("revision"), revision);
+    EXPECT_THAT(detail(ask("POST", path + "estimate", R"({"poses": "map"})"), Status::bad_request),
+                HasSubstr(R"(poses is "map"; give "odometry")"));
+    EXPECT_EQ(ask("POST", "/api/v1/sessions/c/estimate", "{}").status, Status::not_found);
 }
 
 TEST_F(ApiPosesTest, OperatorTurnsLocalizeOnlyModeOn) {

@@ -1,0 +1,32 @@
+#pragma once
+
+#include "common/error/error.hpp"
+#include "server/store/scan_log.hpp"
+
+#include <atomic>
+#include <vector>
+
+namespace scanloom::sessions {
+
+/// Copies a session to a new one that will replace it, and in which the poses that robots sent as poses in the map
+/// frame are their odometry, so that the server estimates their poses. Every entry keeps its revision.
+///
+/// The caller removes the first session. If a crash comes first, settle_copies() decides which of the two counts.
+/// @param session  that no other thread writes to
+/// @param stop     checked from time to time
+/// @return the copy, which is complete and durable
+/// Errors: kNotFound if there is no such session; kShuttingDown if `stop` is true; kDataLoss or kMalformed if its record or
+///         an entry is damaged; those of ScanLog. After an error, there is no copy, or settle_copies() removes it.
+/// Threads: any thread that may wait for the disk.
+[[nodiscard]] Result<store::SessionId> copy_as_odometry(store::ScanLog& log, store::SessionId session,
+                                                        const std::atomic<bool>& stop);
+
+/// Removes copies that a crash left incomplete or damaged, and sessions that a complete copy replaces.
+/// @param stored  all sessions
+/// @return those that are left
+/// Errors: kStoreFailed.
+/// Threads: any thread that may wait for the disk, while no other changes the sessions.
+[[nodiscard]] Result<std::vector<store::StoredSession>> settle_copies(store::ScanLog& log,
+                                                                      std::vector<store::StoredSession> stored);
+
+} // namespace scanloom::sessions
