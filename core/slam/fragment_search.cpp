@@ -12,16 +12,17 @@
 namespace scanloom::slam {
 namespace {
 
-using scan_matching::PlaceSearch;
+using scan_matching::PlaceMap;
 using scan_matching::SurfacePoint;
 
-constexpr std::size_t kSearchEvery = 2;     // keyframes between searches
+constexpr std::size_t kPart = 8'000'000;    // lookups of a search at once
+constexpr std::size_t kPartsMax = 12;       // of a search; one that takes more is given up
 constexpr double kQueryLength = 10.0;       // metres travelled by the keyframes that are looked up
 constexpr std::size_t kPointsMax = 120;     // of these
 constexpr std::size_t kPointsMin = 40;      // fewer show no place
 constexpr double kPointSquare = 0.3;        // metres: one point in each
 constexpr std::size_t kStride = 23;         // from one of them to the next
-constexpr double kScoreShare = 0.8;         // of the points, at least
+constexpr double kScoreShare = 0.5;         // of the points, at least
 constexpr double kRivalShare = 0.9;         // a place with a higher share of the best score is as good
 constexpr double kExpectedScoreShare = 0.7; // likewise where people expect the robot
 constexpr double kConnectedInliers = 0.5;   // of a keyframe's points, at least, that then fit the map
@@ -38,27 +39,44 @@ constexpr double kAgreementDistance = 0.5;  // metres
 constexpr double kAgreementTurn = 0.1;      // radians
 constexpr double kDriftPart = 0.03;         // of the way between two answers, in addition
 
-constexpr double kWindow = 1.0;           // metres, of the stretch test
-constexpr double kContradictedMax = 0.08; // of its evidence
+constexpr double kWindow = 1.0; // metres, of the stretch test
+// Share of its evidence that may contradict the map. A map that was known before is often older than what the robot
+// sees.
+constexpr double kContradictedMax = 0.02;
+constexpr double kNoiseFactor = 1.5;
+constexpr double kContradictedInKnownMap = 0.08;
 
 } // namespace
 
 bool FragmentSearch::search(KeyframeGraph& graph, std::size_t fragment) {
-    const std::size_t keyframe = graph.fragments()[fragment].keyframes.back();
-    auto& [answers, expectation] = searched(fragment);
-    if (graph[keyframe].position % kSearchEvery != 0 && !expectation) return false;
-    const auto found = find(graph, fragment, expectation);
+    Searched& state = searched(fragment);
+    if (state.expectation) {
+        auto query = ask(graph, fragment, state.expectation);
+        if (!query || !query->search.run(kPart)) return false;
+        const auto found = query->answer();
+        if (!found || !connect(graph, fragment, *found)) return false;
+        state = Searched();
+        return true;
+    }
+    if (!state.query) state.query = ask(graph, fragment, std::nullopt);
+    if (!state.query) return false;
+    const bool has_ended = state.query->search.run(kPart);
+    if (!has_ended && ++state.query->parts < kPartsMax) return false;
+    const Query query = *std::exchange(state.query, std::nullopt);
+    const auto found = has_ended ? query.answer() : std::nullopt;
     if (!found) return false;
-    if (expectation) return connect(graph, fragment, *found);
-    answers.push_back({keyframe, *found});
-    if (!is_confirmed(graph, answers)) return false;
-    graph.move(fragment, *found, true);
+    state.answers.push_back({query.keyframe, *found});
+    if (!is_confirmed(graph, state.answers)) return false;
+    const std::size_t newest = graph.fragments()[fragment].keyframes.back();
     const std::size_t anchor = graph.fragments().front().keyframes.front();
-    if (!accept_stretch(graph, {keyframe, anchor, Transform2(), kWindow, kContradictedMax})) {
+    graph.move(fragment, *found, true);
+    StretchQuestion question{newest, anchor, Transform2(), kWindow, kContradictedMax, kNoiseFactor};
+    if (graph.is_map_known()) question = {newest, anchor, Transform2(), kWindow, kContradictedInKnownMap};
+    if (!accept_stretch(graph, question)) {
         graph.move(fragment, inverse(*found), false);
         return false;
     }
-    answers.clear();
+    state = Searched();
     return true;
 }
 
@@ -68,7 +86,7 @@ bool FragmentSearch::connect(KeyframeGraph& graph, std::size_t fragment, const T
     const std::size_t newest = graph.fragments()[fragment].keyframes.back();
     const Transform2 pose = T_map_fragment * graph.pose(newest);
     const auto is_near = [&](std::size_t keyframe) {
-        return graph.is_in_map(keyframe) && distance_of(inverse(graph.pose(keyframe)) * pose) <= PlaceSearch::kReach;
+        return graph.is_in_map(keyframe) && distance_of(inverse(graph.pose(keyframe)) * pose) <= PlaceMap::kReach;
     };
     const auto nearest = graph.nearest(pose, is_near);
     if (!nearest) return false;
@@ -117,12 +135,12 @@ void FragmentSearch::update_map(const KeyframeGraph& graph) {
         const bool is_near = std::fabs(pose.x - center.x) <= kMapReach && std::fabs(pose.y - center.y) <= kMapReach;
         if (is_near) views.add(graph[keyframe], pose);
     }
-    map_.emplace(views.views());
+    map_ = std::make_shared<const PlaceMap>(views.views());
 }
 
-/// Looks up the newest keyframes of a fragment. Returns T_map_fragment.
-std::optional<Transform2> FragmentSearch::find(const KeyframeGraph& graph, std::size_t fragment,
-                                               const std::optional<Expectation>& expectation) {
+/// Begins to look up the newest keyframes of a fragment.
+std::optional<FragmentSearch::Query> FragmentSearch::ask(const KeyframeGraph& graph, std::size_t fragment,
+                                                         const std::optional<Expectation>& expectation) {
     update_map(graph);
     if (!map_) return std::nullopt;
     const auto& keyframes = graph.fragments()[fragment].keyframes;
@@ -137,7 +155,7 @@ std::optional<Transform2> FragmentSearch::find(const KeyframeGraph& graph, std::
         const Transform2 T_newest_keyframe = T_newest_fragment * graph.pose(keyframes[n]);
         for (const SurfacePoint& point : keyframe.scan->points) {
             const Point2 at = T_newest_keyframe * Point2{point.x, point.y};
-            if (at.x * at.x + at.y * at.y > PlaceSearch::kReach * PlaceSearch::kReach) continue;
+            if (at.x * at.x + at.y * at.y > PlaceMap::kReach * PlaceMap::kReach) continue;
             if (taken.insert(at.x, at.y)) points.push_back(transform(T_newest_keyframe, point));
         }
     }
@@ -155,9 +173,13 @@ std::optional<Transform2> FragmentSearch::find(const KeyframeGraph& graph, std::
         question.center = expectation->place.near;
         question.radius = expectation->place.radius + moved;
     }
-    const auto place = map_->find(chosen, question);
+    return Query{newest, T_newest_fragment, 0, {map_, chosen, question}};
+}
+
+std::optional<Transform2> FragmentSearch::Query::answer() const {
+    const auto& place = search.place();
     if (!place || place->rival_score > kRivalShare * place->score) return std::nullopt;
-    return place->T_map_points * T_newest_fragment;
+    return place->T_map_points * T_keyframe_fragment;
 }
 
 /// Returns whether enough answers agree with the newest one.

@@ -4,6 +4,7 @@
 #include "core/slam/keyframe_graph.hpp"
 
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -18,7 +19,8 @@ struct Surroundings {
 /// Finds the places in the map of fragments that are not located: those of robots that start anywhere, or that were
 /// lost.
 ///
-/// The newest keyframes of the fragment are looked up in the map of all located ones. One answer is not enough, because
+/// The newest keyframes of the fragment are looked up in the map of all located ones, a part of the search at each new
+/// keyframe. Half of their points may be in space that the map does not show yet. One answer is not enough, because
 /// buildings have rooms that look alike: four must agree, over ten metres of the way, and the whole fragment must
 /// then fit the map. A fragment that is located later than possible does no harm; one at a wrong place tears the map.
 /// Where people say where the robot is, one good answer near that place is enough.
@@ -30,7 +32,7 @@ public:
     ///     graph is not optimised
     /// @param fragment  index of a fragment that is not located
     /// @return whether the place is found
-    /// Cost: up to 50 ms at every second keyframe for the lookups; a test of the fragment when four answers agree.
+    /// Cost: up to 50 ms for a part of a search; a test of the fragment when four answers agree.
     bool search(KeyframeGraph& graph, std::size_t fragment);
 
     /// Searches for a fragment near a place only.
@@ -58,9 +60,21 @@ private:
         std::size_t keyframe = 0;
     };
 
+    /// A search for the newest keyframes of a fragment.
+    struct Query {
+        std::size_t keyframe = 0;       // the newest one when it began
+        Transform2 T_keyframe_fragment; // then
+        std::size_t parts = 0;          // of the search that are done
+        scan_matching::PlaceSearch search;
+
+        /// Returns T_map_fragment if one place is better than all others. Precondition: the search has ended.
+        [[nodiscard]] std::optional<Transform2> answer() const;
+    };
+
     /// A fragment that is searched for.
     struct Searched {
         std::vector<Answer> answers;
+        std::optional<Query> query; // that has not ended
         std::optional<Expectation> expectation;
     };
 
@@ -68,11 +82,11 @@ private:
     [[nodiscard]] Searched& searched(std::size_t fragment);
     [[nodiscard]] bool is_outdated(const KeyframeGraph& graph, const std::vector<Located>& located) const;
     void update_map(const KeyframeGraph& graph);
-    [[nodiscard]] std::optional<Transform2> find(const KeyframeGraph& graph, std::size_t fragment,
-                                                 const std::optional<Expectation>& expectation);
+    [[nodiscard]] std::optional<Query> ask(const KeyframeGraph& graph, std::size_t fragment,
+                                           const std::optional<Expectation>& expectation);
     [[nodiscard]] bool is_confirmed(const KeyframeGraph& graph, const std::vector<Answer>& answers) const;
 
-    std::optional<scan_matching::PlaceSearch> map_; // of the located keyframes
+    std::shared_ptr<const scan_matching::PlaceMap> map_; // of the located keyframes
     std::vector<Located> in_map_;
     std::vector<Searched> searched_; // by fragment
 };

@@ -2,6 +2,7 @@
 
 #include "core/scan_matching/line_matching.hpp"
 #include "core/scan_matching/square_set.hpp"
+#include "core/slam/evidence.hpp"
 #include "core/slam/keyframe_map.hpp"
 
 #include <algorithm>
@@ -22,7 +23,6 @@ using scan_matching::yaw_of;
 
 constexpr double kStretchMax = 60.0;    // metres
 constexpr double kOldMapReach = 12.0;   // metres around the stretch, in addition to the window, of the old map
-constexpr double kEvidenceCell = 0.25;  // metres: one point of evidence in each square
 constexpr double kShiftDistance = 25.0; // metres of the stretch that shifts are compared by
 constexpr double kShiftStep = 0.2;      // metres between shifts
 constexpr std::size_t kShifts = 8;      // best shifts that are followed
@@ -52,12 +52,11 @@ struct Fit {
 struct StretchHypothesis {
     Transform2 correction; // T_corrected_map at the newest keyframe
     std::vector<Fit> fits{};
-    double matched = 0.0;      // metres of surface that agree with the old map
-    double contradicted = 0.0; // metres that contradict it
-    double overlap = 0.0;      // metres travelled with fits
+    Evidence evidence{};  // of the old map
+    double overlap = 0.0; // metres travelled with fits
 
-    [[nodiscard]] double evidence() const { return matched - 2.0 * contradicted; }
-    [[nodiscard]] double share() const { return contradicted / std::max(1e-9, matched + contradicted); }
+    [[nodiscard]] double score() const { return evidence.matched - 2.0 * evidence.contradicted; }
+    [[nodiscard]] double share() const { return evidence.share(); }
 };
 
 /// The test of one stretch: the newest keyframes of a fragment against all other located ones.
@@ -82,17 +81,18 @@ public:
         add(hypotheses, follow({.correction = question_.correction}));
         add(hypotheses, follow({.correction = Transform2()}));
         for (const Transform2& correction : shifted_corrections()) add(hypotheses, follow({.correction = correction}));
-        std::ranges::stable_sort(hypotheses, std::greater(), &StretchHypothesis::evidence);
+        std::ranges::stable_sort(hypotheses, std::greater(), &StretchHypothesis::score);
         const StretchHypothesis& best = hypotheses.front();
-        if (best.share() > question_.contradicted_max || best.overlap < kOverlapMin) return std::nullopt;
+        if (best.share() > contradicted_max() || best.overlap < kOverlapMin) return std::nullopt;
         const bool is_small =
             moved_by(best) <= kSmallMove && best.overlap >= kSmallOverlap && best.share() <= kSmallShareMax;
         for (std::size_t n = 1; n < hypotheses.size(); ++n) {
             const StretchHypothesis& other = hypotheses[n];
-            if (best.evidence() - other.evidence() < std::max(kLeadMin, kLeadPart * best.matched)) return std::nullopt;
+            if (best.score() - other.score() < std::max(kLeadMin, kLeadPart * best.evidence.matched))
+                return std::nullopt;
             if (is_small && other.overlap < kOverlapMin) continue; // it would move far, to where nothing fits
             if (other.share() <= best.share() + kRefutedShare) return std::nullopt;
-            if (other.contradicted - best.contradicted < kRefutedExcess) return std::nullopt;
+            if (other.evidence.contradicted - best.evidence.contradicted < kRefutedExcess) return std::nullopt;
         }
         return best;
     }
@@ -109,6 +109,11 @@ private:
     /// Returns the metres travelled from a keyframe of the fragment to its newest one.
     [[nodiscard]] double before_newest(std::size_t keyframe) const {
         return graph_[newest_].travelled - graph_[keyframe].travelled;
+    }
+
+    [[nodiscard]] double contradicted_max() const {
+        const double factor = question_.noise_factor;
+        return question_.contradicted_max + (factor > 0.0 ? factor * contradictions_between(graph_, old_) : 0.0);
     }
 
     /// Returns by how much a hypothesis moves the newest keyframe, metres.
@@ -131,13 +136,14 @@ private:
             high = std::max(high, pose.y);
         }
         const double margin = question_.window + kOldMapReach;
-        KeyframeViews views;
-        for (std::size_t n = graph_.size(); n-- > 0;) {
+        for (std::size_t n = 0; n < graph_.size(); ++n) {
             const Transform2& pose = graph_.pose(n);
             const bool is_near = pose.x >= left - margin && pose.x <= right + margin && pose.y >= low - margin &&
                                  pose.y <= high + margin;
-            if (is_near && is_old(n)) views.add(graph_[n], pose);
+            if (is_near && is_old(n)) old_.push_back(n);
         }
+        KeyframeViews views; // the newest first
+        for (std::size_t n = old_.size(); n-- > 0;) views.add(graph_[old_[n]], graph_.pose(old_[n]));
         old_map_ = KeyframeMap(std::move(views));
     }
 
@@ -146,7 +152,7 @@ private:
     void collect_evidence() {
         std::size_t count = 0;
         for (std::size_t n = first_; n < keyframes_.size(); ++n) count += points_of(n).size();
-        scan_matching::SquareSet taken(kEvidenceCell, count);
+        scan_matching::SquareSet taken(Evidence::kSquare, count);
         evidence_.resize(keyframes_.size() - first_);
         for (std::size_t n = keyframes_.size(); n-- > first_;) {
             for (const SurfacePoint& point : points_of(n)) {
@@ -224,30 +230,10 @@ private:
                 }
             }
             for (const SurfacePoint& point : evidence_[n - first_]) {
-                weigh(hypothesis, pose, graph_[keyframe].scan->laser, point);
+                hypothesis.evidence.add(old_map_, pose, graph_[keyframe].scan->laser, point);
             }
         }
         return hypothesis;
-    }
-
-    void weigh(StretchHypothesis& hypothesis, const Transform2& pose, const Point2& laser, const SurfacePoint& point) {
-        const SurfacePoint moved = transform(pose, point);
-        if (old_map_.points().nearest(moved, scan_matching::kInlierDistance).point != nullptr) {
-            hypothesis.matched += kEvidenceCell;
-        } else if (old_map_.space().is_free(moved.x, moved.y) || passes_surface(pose * laser, {moved.x, moved.y})) {
-            hypothesis.contradicted += kEvidenceCell;
-        }
-    }
-
-    /// Returns whether a beam passes a surface of the old map, apart from its first 30 and its last 40 cm.
-    [[nodiscard]] bool passes_surface(const Point2& start, const Point2& end) {
-        const double dx = end.x - start.x;
-        const double dy = end.y - start.y;
-        const double length = std::sqrt(dx * dx + dy * dy);
-        for (double at = 0.3; at < length - 0.4; at += scan_matching::SeenSpace::kCell) {
-            if (old_map_.space().has_point(start.x + dx * at / length, start.y + dy * at / length)) return true;
-        }
-        return false;
     }
 
     /// Adds a hypothesis, unless one that ends at the same place is at least as good. Removes those that are worse.
@@ -258,7 +244,7 @@ private:
             return distance_of(off) < kSamePlaceDistance && std::fabs(yaw_of(off)) < kSamePlaceTurn;
         };
         const auto is_better = [&](const StretchHypothesis& other) {
-            return is_same(other) && other.evidence() >= added.evidence();
+            return is_same(other) && other.score() >= added.score();
         };
         if (std::ranges::any_of(kept, is_better)) return;
         std::erase_if(kept, is_same);
@@ -270,7 +256,8 @@ private:
     std::size_t newest_;
     std::span<const std::size_t> keyframes_;          // of its fragment
     std::size_t first_;                               // position of the first one of the stretch
-    KeyframeMap old_map_;                             // of the others, in the map's frame
+    std::vector<std::size_t> old_;                    // the others that are near, in the order of their scans
+    KeyframeMap old_map_;                             // of these, in the map's frame
     std::vector<std::vector<SurfacePoint>> evidence_; // by position from first_
 };
 

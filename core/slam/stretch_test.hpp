@@ -14,6 +14,7 @@ struct StretchQuestion {
                                     ///< failed, and the question is only whether the trajectory should move at all
     double window = 0.0;            ///< metres: by how much the trajectory may have to move
     double contradicted_max = 0.33; ///< share of the evidence that may contradict an accepted correction
+    double noise_factor = 0.0; ///< contradictions_between() the old map's keyframes, times this, may be in addition
 };
 
 /// Decides how the newest stretch of a fragment, up to 60 m, fits the map of the other keyframes. Several

@@ -21,8 +21,8 @@ namespace {
 using testing_support::Building;
 using testing_support::uniform;
 
-constexpr std::uint32_t kTrials = 30; // of each world
-constexpr double kWrong = 0.6;        // metres: with a larger error, a robot is located at a wrong place
+constexpr std::uint32_t kTrials = 250; // of each world
+constexpr double kWrong = 0.6;         // metres: with a larger error, a robot is located at a wrong place
 constexpr std::array kRanges{6.0, 10.0, 16.0};
 
 /// A building, and points of a round tour through it.

@@ -6,7 +6,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numbers>
+#include <optional>
+#include <span>
 
 namespace scanloom::scan_matching {
 namespace {
@@ -50,6 +53,15 @@ struct SearchedRoom {
     std::vector<SurfacePoint> points;
 };
 
+std::shared_ptr<const PlaceMap> map_of(std::span<const View> views) { return std::make_shared<const PlaceMap>(views); }
+
+std::optional<FoundPlace> find(const std::shared_ptr<const PlaceMap>& map, std::span<const SurfacePoint> points,
+                               const PlaceQuestion& question) {
+    PlaceSearch search(map, points, question);
+    EXPECT_TRUE(search.run());
+    return search.place();
+}
+
 bool is_apart(const Transform2& a, const Transform2& b) {
     const Transform2 off = inverse(a) * b;
     return distance_of(off) > PlaceSearch::kApart || std::fabs(yaw_of(off)) > PlaceSearch::kTurnApart;
@@ -63,12 +75,12 @@ TEST(PlaceSearch, FindsWhatTryingAllPlacesFinds) {
             point.x += static_cast<float>(uniform(random, -0.15, 0.15));
             point.y += static_cast<float>(uniform(random, -0.15, 0.15));
         }
-        const PlaceSearch search(scene.views);
+        const auto map = map_of(scene.views);
         const SeenSpace space(scene.views);
-        const PlaceQuestion question{.score_min = 6, .rival_share = 0.8, .lookups_max = 1'000'000'000};
-        const auto found = search.find(scene.points, question);
+        const PlaceQuestion question{.score_min = 6, .rival_share = 0.8};
+        const auto found = find(map, scene.points, question);
         ASSERT_TRUE(found);
-        EXPECT_EQ(search.score_of(scene.points, found->T_map_points), found->score);
+        EXPECT_EQ(map->score_of(scene.points, found->T_map_points), found->score);
         int best = 0;
         int rival = 0;
         for (int turn = 0; turn < kTurns; ++turn) {
@@ -78,7 +90,7 @@ TEST(PlaceSearch, FindsWhatTryingAllPlacesFinds) {
                     const Transform2 pose{found->T_map_points.x + column * kCell, found->T_map_points.y + row * kCell,
                                           rotation};
                     if (!space.is_free(pose.x, pose.y)) continue;
-                    const int score = search.score_of(scene.points, pose);
+                    const int score = map->score_of(scene.points, pose);
                     best = std::max(best, score);
                     if (score > rival && is_apart(found->T_map_points, pose)) rival = score;
                 }
@@ -92,8 +104,8 @@ TEST(PlaceSearch, FindsWhatTryingAllPlacesFinds) {
 TEST(PlaceSearch, AScoreCountsPointsNearSurfacesMinusThoseInSeenSpace) {
     std::mt19937 random(2);
     const SearchedRoom scene(random, 8.0);
-    const PlaceSearch search(scene.views);
-    const PointMap map(scene.views);
+    const auto map = map_of(scene.views);
+    const PointMap points(scene.views);
     const SeenSpace space(scene.views);
     for (int round = 0; round < 2000; ++round) {
         const Transform2 pose = transform_of(SearchedRoom::place(random, 8.0));
@@ -103,12 +115,12 @@ TEST(PlaceSearch, AScoreCountsPointsNearSurfacesMinusThoseInSeenSpace) {
             const SurfacePoint moved = transform(pose, point);
             const bool is_free = space.is_free(moved.x, moved.y);
             // Within 10 cm in x and in y, the cells are neighbours; beyond 30 cm they are not.
-            low += map.nearest(moved, 0.1F).point != nullptr && !is_free ? 0 : is_free ? -1 : 0;
-            high += map.nearest(moved, 0.3F).point != nullptr || space.is_near_point(moved.x, moved.y) ? 1
-                    : is_free                                                                          ? -1
-                                                                                                       : 0;
+            low += points.nearest(moved, 0.1F).point != nullptr && !is_free ? 0 : is_free ? -1 : 0;
+            high += points.nearest(moved, 0.3F).point != nullptr || space.is_near_point(moved.x, moved.y) ? 1
+                    : is_free                                                                             ? -1
+                                                                                                          : 0;
         }
-        const int score = search.score_of(scene.points, pose);
+        const int score = map->score_of(scene.points, pose);
         ASSERT_LE(low, score);
         ASSERT_GE(high, score);
     }
@@ -119,7 +131,7 @@ TEST(PlaceSearch, FindsAScanInABuildingWithoutAnEstimate) {
     int found_count = 0;
     for (int round = 0; round < 20; ++round) {
         const SearchedRoom scene(random, 12.0, 60);
-        const auto found = PlaceSearch(scene.views).find(scene.points, {.score_min = 48, .lookups_max = 100'000'000});
+        const auto found = find(map_of(scene.views), scene.points, {.score_min = 48});
         if (!found || found->rival_score > 0.9 * found->score) continue;
         ++found_count;
         EXPECT_FALSE(is_apart(found->T_map_points, scene.truth)) << round;
@@ -132,11 +144,10 @@ TEST(PlaceSearch, NoPlaceAroundTheTruthIsBetter) {
     std::mt19937 random(7);
     for (int round = 0; round < 40; ++round) {
         const SearchedRoom scene(random, 12.0, 40);
-        const PlaceSearch search(scene.views);
+        const auto map = map_of(scene.views);
         const SeenSpace space(scene.views);
         int best = 0;
-        const auto found =
-            search.find(scene.points, {.score_min = 1, .rival_share = 1.0, .lookups_max = 1'000'000'000});
+        const auto found = find(map, scene.points, {.score_min = 1, .rival_share = 1.0});
         ASSERT_TRUE(found);
         const double turn = 2.0 * std::numbers::pi / kTurns;
         const auto middle = std::floor((yaw_of(scene.truth) + std::numbers::pi) / turn);
@@ -149,7 +160,7 @@ TEST(PlaceSearch, NoPlaceAroundTheTruthIsBetter) {
                     };
                     const Transform2 pose{on_grid(scene.truth.x, found->T_map_points.x) + i * kCell,
                                           on_grid(scene.truth.y, found->T_map_points.y) + j * kCell, rotation};
-                    if (space.is_free(pose.x, pose.y)) best = std::max(best, search.score_of(scene.points, pose));
+                    if (space.is_free(pose.x, pose.y)) best = std::max(best, map->score_of(scene.points, pose));
                 }
             }
         }
@@ -165,22 +176,33 @@ TEST(PlaceSearch, EqualRoomsAreRivals) {
         view.T_map_robot.x += 20.0;
         twice.push_back(view);
     }
-    const auto found = PlaceSearch(twice).find(scene.points, {.score_min = 8, .lookups_max = 100'000'000});
+    const auto found = find(map_of(twice), scene.points, {.score_min = 8});
     ASSERT_TRUE(found);
     EXPECT_GE(found->rival_score, found->score - 2) << "the second room starts at another part of a cell";
 }
 
-TEST(PlaceSearch, WithoutEnoughLookupsThereIsNoAnswer) {
+TEST(PlaceSearch, ASearchInPartsFindsWhatOneAtOnceFinds) {
     std::mt19937 random(5);
-    const SearchedRoom scene(random, 8.0);
-    EXPECT_FALSE(PlaceSearch(scene.views).find(scene.points, {.score_min = 8, .lookups_max = 1000}));
+    const SearchedRoom scene(random, 8.0, 40);
+    const auto map = map_of(scene.views);
+    const PlaceQuestion question{.score_min = 20};
+    const auto at_once = find(map, scene.points, question);
+    ASSERT_TRUE(at_once);
+    PlaceSearch search(map, scene.points, question);
+    int parts = 1;
+    while (!search.run(5000)) ++parts;
+    EXPECT_GT(parts, 3);
+    EXPECT_EQ(search.place()->T_map_points, at_once->T_map_points);
+    EXPECT_EQ(search.place()->score, at_once->score);
+    EXPECT_EQ(search.place()->rival_score, at_once->rival_score);
+    EXPECT_TRUE(search.run(5000)) << "it has ended";
 }
 
 TEST(PlaceSearch, AnEmptyMapAndNoPointsHaveNoPlace) {
     std::mt19937 random(6);
     const SearchedRoom scene(random, 4.0);
-    EXPECT_FALSE(PlaceSearch({}).find(scene.points, {}));
-    EXPECT_FALSE(PlaceSearch(scene.views).find({}, {}));
+    EXPECT_FALSE(find(map_of({}), scene.points, {}));
+    EXPECT_FALSE(find(map_of(scene.views), {}, {}));
 }
 
 } // namespace
