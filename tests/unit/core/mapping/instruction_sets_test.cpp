@@ -231,9 +231,9 @@ TEST_P(InstructionSet, AddsEvidenceAsDefined) {
 
 TEST_P(InstructionSet, CountsHitsAsDefined) {
     MapConfig config;
-    for (const auto& [up, down] : {std::pair{3, 1}, {15, 15}, {1, 4}}) {
-        config.himm_increment = up;
-        config.himm_decrement = down;
+    for (const auto& steps : {std::pair{3, 1}, {15, 15}, {1, 4}}) {
+        config.himm_increment = steps.first;
+        config.himm_decrement = steps.second;
         const RandomChunk random(7);
         LaserChunk after = random.chunk;
         for (const ChunkVerdicts& verdicts : random_verdicts(2)) {
@@ -244,7 +244,7 @@ TEST_P(InstructionSet, CountsHitsAsDefined) {
                 const bool is_occupied = grid::is_set(verdicts.occupied, cell);
                 const int known = before.himm[n];
                 const int from = known == kUnseenHimm ? 0 : known;
-                const int to = std::clamp(is_free ? from - down : from + up, 0, 15);
+                const int to = std::clamp(is_free ? from - steps.second : from + steps.first, 0, 15);
                 expect_value(after.himm[n], is_free || is_occupied ? to : known, n, known);
             });
         }
