@@ -138,7 +138,8 @@ TEST_P(TwoRobotsTrials, AreNeverJoinedAtAWrongPlace) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Places, TwoRobotsTrials,
-                         testing::Values(Kind{"office", 8}, Kind{"hall", 6}, Kind{"room", 6}, Kind{"equal_rooms", 2}),
+                         testing::Values(Kind{"office", 90}, Kind{"hall", 85}, Kind{"room", 90},
+                                         Kind{"equal_rooms", 35}),
                          [](const auto& kind) { return std::string(kind.param.name); });
 
 } // namespace
