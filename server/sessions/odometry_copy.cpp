@@ -8,6 +8,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -51,16 +54,27 @@ Result<> copy_entries(store::ScanLog& log, store::SessionId from, store::Session
 
 /// Returns the session that one is a copy of and replaces; 0: none.
 store::SessionId replaced_by(const store::StoredSession& session) {
-    const auto record =
-        session.record ? wire::decode_session(*session.record) : Result<wire::SessionRecord>(session.record.error());
+    if (!session.record) return 0;
+    const auto record = wire::decode_session(*session.record);
     return record ? record->replaces : 0;
 }
 
-Result<bool> is_complete(store::ScanLog& log, const store::StoredSession& copy) {
-    const auto end = log.end_of(copy.id);
-    if (!end && end.error().code == Errc::kDataLoss) return false;
+/// Returns the revision of the newest entry that can be read; 0: the end of the log is damaged.
+Result<Revision> readable_end(store::ScanLog& log, store::SessionId session) {
+    auto end = log.end_of(session);
+    if (!end && end.error().code == Errc::kDataLoss) return Revision{0};
+    return end;
+}
+
+/// Returns whether a copy has all entries of its session. If the session has more, its removal failed, and robots went
+/// on.
+Result<bool> is_whole(store::ScanLog& log, const store::StoredSession& copy, store::SessionId first) {
+    const Revision copied = wire::decode_session(*copy.record)->entries_at_creation;
+    const auto end = readable_end(log, copy.id);
     if (!end) return end.error();
-    return *end >= wire::decode_session(*copy.record)->entries_at_creation;
+    const auto first_end = readable_end(log, first);
+    if (!first_end) return first_end.error();
+    return *end >= copied && *first_end <= copied;
 }
 
 } // namespace
@@ -71,28 +85,46 @@ Result<store::SessionId> copy_as_odometry(store::ScanLog& log, store::SessionId 
     if (!record) return record.error();
     const auto end = log.end_of(session);
     if (!end) return end.error();
+    if (auto removed = remove_copies(log, session); !removed) return removed.error();
+    if (*end > std::numeric_limits<std::uint32_t>::max()) {
+        return Error{Errc::kFull, fmt::format("the session has {} log entries, too many to copy", *end)};
+    }
     record->replaces = session;
     record->entries_at_creation = static_cast<std::uint32_t>(*end);
     const auto copy = log.create_session(wire::encode_session(*record));
     if (!copy) return copy.error();
     if (auto copied = copy_entries(log, session, *copy, stop); !copied) {
-        static_cast<void>(log.remove_session(*copy)); // if this fails, the next start removes it
+        static_cast<void>(remove_copies(log, session)); // if this fails, the next call or the next start removes it
         return copied.error();
     }
     return *copy;
 }
 
-Result<std::vector<store::StoredSession>> settle_copies(store::ScanLog& log, std::vector<store::StoredSession> stored) {
-    std::vector<store::SessionId> removed;
-    for (const auto& copy : stored) {
-        const auto first = replaced_by(copy);
-        if (first == 0 || std::ranges::find(stored, first, &store::StoredSession::id) == stored.end()) continue;
-        const auto complete = is_complete(log, copy);
-        if (!complete) return complete.error();
-        removed.push_back(*complete ? first : copy.id);
-        if (auto done = log.remove_session(removed.back()); !done) return done.error();
+Result<> remove_copies(store::ScanLog& log, store::SessionId session) {
+    const auto stored = log.sessions();
+    if (!stored) return stored.error();
+    for (const auto& copy : *stored) {
+        if (replaced_by(copy) != session) continue;
+        if (auto removed = log.remove_session(copy.id); !removed) return removed;
     }
-    std::erase_if(stored, [&](const auto& session) { return std::ranges::find(removed, session.id) != removed.end(); });
+    return {};
+}
+
+Result<std::vector<store::StoredSession>> settle_copies(store::ScanLog& log, std::vector<store::StoredSession> stored) {
+    const auto find = [&](store::SessionId id) { return std::ranges::find(stored, id, &store::StoredSession::id); };
+    for (std::size_t n = 0; n < stored.size();) {
+        const auto first = find(replaced_by(stored[n])); // no session has number 0
+        if (first == stored.end()) {
+            ++n;
+            continue;
+        }
+        const auto whole = is_whole(log, stored[n], first->id);
+        if (!whole) return whole.error();
+        const auto lost = *whole ? first : stored.begin() + static_cast<std::ptrdiff_t>(n);
+        if (auto removed = log.remove_session(lost->id); !removed) return removed.error();
+        stored.erase(lost);
+        n = 0;
+    }
     return stored;
 }
 

@@ -169,7 +169,9 @@ Result<> SessionRegistry::remove(std::string_view name) {
     const Error gone{Errc::kGone, fmt::format("session '{}' was deleted", name)};
     if (left->session) discard_and_wait(*left->session, gone);
     const auto summary = left->session ? summary_of(*left->session->snapshot()) : left->summary;
-    if (auto removed = state_.log.remove_session(left->info.id); !removed) { // it still exists, closed
+    auto removed = remove_copies(state_.log, left->info.id); // that failed requests have left
+    if (removed) removed = state_.log.remove_session(left->info.id);
+    if (!removed) { // it still exists, closed
         loader_.load(state_.cache.end_eviction(left->info.name, summary));
         return removed.error();
     }
@@ -273,8 +275,8 @@ Result<> check_disconnected(const Session& session) {
     return {};
 }
 
-/// Returns the summary of the copy until it is loaded.
-Summary summary_of_copy(Summary summary) {
+/// Returns the summary of a session without map poses until it is loaded.
+Summary estimated(Summary summary) {
     auto facts = std::make_shared<mapping::Snapshot>(*summary.facts);
     for (auto& robot : facts->robots) {
         if (sends_map_poses(robot)) robot.poses = Poses::kOdometry;
@@ -285,35 +287,47 @@ Summary summary_of_copy(Summary summary) {
 
 } // namespace
 
-Result<std::optional<SessionInfo>> SessionRegistry::estimate(std::string_view name) {
-    const std::lock_guard changing(changing_);
+Result<SessionInfo> SessionRegistry::estimate(std::string_view name) {
+    std::unique_lock changing(changing_);
     if (state_.draining) return shutting_down();
     auto left = state_.cache.begin_change(name);
+    changing.unlock(); // a long log takes minutes; drain() waits for the end of the transition
     if (!left) return state_.why_missing(name);
-    if (left->session) {
-        if (auto ready = check_disconnected(*left->session); !ready) {
-            loader_.load(state_.cache.cancel_change(name));
-            return ready.error();
+    const auto before = [&]() -> Result<SessionInfo> {
+        try {
+            SessionInfo info = left->info;
+            const auto taken = take_as_odometry(*left);
+            return taken ? Result<SessionInfo>(std::move(info)) : taken.error();
+        } catch (const std::bad_alloc&) {
+            return Error{Errc::kOverloaded, "there is no memory left for this; try again later"};
         }
-        left->summary = summary_of(*left->session->snapshot());
-        discard_and_wait(*left->session, maps_are_computed_again(left->info.name));
-    }
-    if (std::ranges::none_of(left->summary.facts->robots, sends_map_poses)) {
-        loader_.load(state_.cache.end_eviction(left->info.name, left->summary));
-        return std::optional<SessionInfo>();
-    }
-    const auto copy = copy_as_odometry(state_.log, left->info.id, state_.draining);
-    const auto removed = copy ? state_.log.remove_session(left->info.id) : Result<>(copy.error());
-    if (!removed) { // the next start removes one of both
-        loader_.load(state_.cache.end_eviction(left->info.name, left->summary));
-        return removed.error();
-    }
-    SessionInfo info = left->info;
-    info.id = *copy;
-    loader_.load(state_.cache.end_replacement(std::move(info), summary_of_copy(left->summary)));
+    }();
+    const bool is_open = left->session && !left->session->closing();
+    loader_.load(is_open ? state_.cache.cancel_change(name)
+                         : state_.cache.end_replacement(left->info, std::move(left->summary)));
+    if (!before) return before.error();
     load(name, [](const Result<std::shared_ptr<Session>>&) {});
-    log::info({.session = name}, "session '{}': the poses of its robots are estimated from now on", name);
-    return std::optional(left->info);
+    log::info({.session = name}, "session '{}': the poses of its robots are estimated", name);
+    return before;
+}
+
+/// Closes a session and replaces it by its copy with odometry, if it has poses in the map frame.
+/// @param left  its id and its summary become those of the copy
+Result<> SessionRegistry::take_as_odometry(ListedSession& left) {
+    if (left.session) {
+        if (auto ready = check_disconnected(*left.session); !ready) return ready;
+        left.summary = summary_of(*left.session->snapshot());
+        discard_and_wait(*left.session, maps_are_computed_again(left.info.name));
+        left.summary = summary_of(*left.session->snapshot()); // a robot may have joined since
+    }
+    if (std::ranges::none_of(left.summary.facts->robots, sends_map_poses)) return {};
+    Summary summary = estimated(left.summary);
+    const auto copy = copy_as_odometry(state_.log, left.info.id, state_.draining);
+    if (!copy) return copy.error();
+    if (auto removed = state_.log.remove_session(left.info.id); !removed) return removed;
+    left.info.id = *copy;
+    left.summary = std::move(summary);
+    return {};
 }
 
 // Shutdown

@@ -109,11 +109,10 @@ public:
     /// so that the server estimates the poses. Evicts the session as exclude() does, and forgets its SessionInfo::id.
     ///
     /// If all poses are estimated already, the session is only evicted: poses are estimated when it is loaded.
-    /// @return properties of the session that was replaced; nullopt: none was
+    /// @return its properties before the call
     /// Errors: kNotFound or the error in damaged(), as exclude(); kConflict if a robot that sends poses in the map frame is
-    /// connected; kStoreFailed or kOverloaded if the copy was not stored; kDataLoss or kMalformed if the log is
-    /// damaged; kShuttingDown.
-    [[nodiscard]] Result<std::optional<SessionInfo>> estimate(std::string_view name);
+    /// connected; those of copy_as_odometry(); kOverloaded; kShuttingDown.
+    [[nodiscard]] Result<SessionInfo> estimate(std::string_view name);
 
     /// Deletes a session, damaged or not, with its log and its maps.
     /// Errors: kNotFound, kStoreFailed.
@@ -146,11 +145,13 @@ private:
     [[nodiscard]] Result<std::shared_ptr<Session>> add(SessionInfo info, mapping::Projection projection,
                                                        bool is_localize_only);
     [[nodiscard]] Result<> append_first(store::SessionId session, Revision revision, const LogEntry& entry);
+    [[nodiscard]] Result<> take_as_odometry(ListedSession& left);
     [[nodiscard]] Result<Revision> change_exclusions(std::string_view name, const MakeEntry& make);
 
     RegistryState state_;
     SessionLoader loader_;
-    std::mutex changing_; // held during recover() and by the functions that write to the store first
+    std::mutex
+        changing_; // held during recover() and by the functions that write to the store first, but for estimate()
 };
 
 } // namespace scanloom::sessions

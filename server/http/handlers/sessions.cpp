@@ -147,14 +147,12 @@ Result<Response> estimate_session(Context& context) {
         if (!poses) return poses.error();
         if (*poses != name_of(Poses::kOdometry)) {
             return Error{Errc::kInvalidField,
-                         fmt::format("poses is {}; give \"odometry\", which the poses that robots sent "
-                                     "are then taken as, or leave it out",
-                                     in_quotes(*poses))};
+                         fmt::format("poses is {}; it can only be \"odometry\"", in_quotes(*poses))};
         }
     }
-    const auto replaced = context.services.sessions.estimate(context.arguments["session"]);
-    if (!replaced) return replaced.error();
-    if (*replaced) forget(context, **replaced);
+    const auto before = context.services.sessions.estimate(context.arguments["session"]);
+    if (!before) return before.error();
+    forget(context, *before);
     auto response = get_session(context);
     if (response) response->status = Status::accepted;
     return response;

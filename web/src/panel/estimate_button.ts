@@ -30,7 +30,7 @@ export class EstimateButton {
     if (!this.session) return;
     const { name } = this.session;
     const dialog = new FormDialog(
-      { title: 'Estimate poses?', submit: 'Estimate', busy: 'Starting\u2026', destructive: true },
+      { title: 'Estimate poses?', submit: 'Estimate', busy: 'Copying the log\u2026', destructive: true },
       [el('p', {}, el('strong', { dir: 'auto' }, name)), el('p', {}, kWhen), el('p', {}, kConsequence)],
       async (signal) => {
         await estimateSession(name, signal);

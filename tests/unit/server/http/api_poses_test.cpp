@@ -269,7 +269,7 @@ TEST_F(ApiPosesTest, OperatorHasThePosesOfARecordingEstimated) {
     EXPECT_EQ(of("b").at("layers"), of("a").at("layers"));
     EXPECT_EQ(get_json("/api/v1/sessions/b").at("revision"), revision);
     EXPECT_THAT(detail(ask("POST", path + "estimate", R"({"poses": "map"})"), Status::bad_request),
-                HasSubstr(R"(poses is "map"; give "odometry")"));
+                HasSubstr(R"(poses is "map"; it can only be "odometry")"));
     EXPECT_EQ(ask("POST", "/api/v1/sessions/c/estimate", "{}").status, Status::not_found);
 }
 

@@ -90,6 +90,28 @@ TEST_F(OdometryCopyTest, IncompleteCopyIsRemoved) {
     }
 }
 
+TEST_F(OdometryCopyTest, SessionThatWentOnIsNotReplaced) {
+    static_cast<void>(copy_as_odometry(log_, id_, false).value());
+    auto next = std::get<ScanTaken>(entries(id_).back());
+    ++next.scan.seq;
+    const auto end = entries(id_).size();
+    ASSERT_TRUE(store::append_and_wait(log_, id_, end + 1, {wire::encode_entry(next)}));
+    EXPECT_THAT(settled(), testing::ElementsAre(id_));
+    EXPECT_EQ(entries(id_).size(), end + 1);
+}
+
+TEST_F(OdometryCopyTest, NextCopyAndDeletionRemoveWhatFailedRequestsLeft) {
+    store_part_of_copy(3);
+    const auto copy = copy_as_odometry(log_, id_, false).value();
+    EXPECT_EQ(log_.sessions().value().size(), 2U);
+    EXPECT_EQ(entries(copy).size(), entries(id_).size());
+    restart();
+    static_cast<void>(copy_as_odometry(log_, registry_->info("lab")->id, false));
+    ASSERT_TRUE(registry_->remove("lab"));
+    EXPECT_THAT(log_.sessions().value(), testing::IsEmpty());
+    registry_->drain();
+}
+
 TEST_F(OdometryCopyTest, StoppedCopyLeavesNothing) {
     const std::atomic<bool> stop = true;
     const auto copy = copy_as_odometry(log_, id_, stop);
@@ -124,11 +146,12 @@ TEST_F(OdometryCopyTest, RobotsContinueWithOdometry) {
     EXPECT_EQ(registry_->estimate("lab").error().code, Errc::kConflict) << "it would have to state other poses";
     session->leave(link);
     wait_for_posted_tasks();
-    EXPECT_EQ(registry_->estimate("lab").value()->id, id_);
+    EXPECT_EQ(registry_->estimate("lab").value().id, id_);
     const auto estimated = registry_->load("lab").value();
     EXPECT_NE(estimated->info().id, id_);
     EXPECT_EQ(join_and_wait(*estimated, "robot", link).error().code, Errc::kConflict);
-    EXPECT_FALSE(registry_->estimate("lab").value()) << "its poses are estimated already";
+    EXPECT_EQ(registry_->estimate("lab").value().id, estimated->info().id) << "its poses are estimated already";
+    EXPECT_EQ(registry_->load("lab").value()->info().id, estimated->info().id);
     registry_->drain();
     EXPECT_EQ(registry_->estimate("lab").error().code, Errc::kShuttingDown);
 }
