@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include <future>
+#include <memory>
 #include <utility>
 
 namespace scanloom::sessions {
@@ -26,6 +28,18 @@ void keep_progress(store::ScanLog& log, const SessionInfo& info, Recovered& reco
 }
 
 } // namespace
+
+Error maps_are_computed_again(const std::string& name) {
+    return {Errc::kShuttingDown,
+            fmt::format("the maps of session '{}' are computed again from its log; connect again", name)};
+}
+
+void discard_and_wait(Session& session, Error reason) {
+    const auto closed = std::make_shared<std::promise<void>>();
+    auto is_closed = closed->get_future();
+    session.close_early(std::move(reason), [closed] { closed->set_value(); });
+    is_closed.wait();
+}
 
 Error no_such_session(std::string_view name) {
     if (!is_valid_name(name)) return {Errc::kNotFound, "there is no session of that name; see the list of sessions"};

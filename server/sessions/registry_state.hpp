@@ -28,6 +28,14 @@ namespace scanloom::sessions {
 /// @param name  any string, also an invalid session name
 [[nodiscard]] Error no_such_session(std::string_view name);
 
+/// Returns the reason (kShuttingDown) for which robots and viewers of a session must connect again.
+[[nodiscard]] Error maps_are_computed_again(const std::string& name);
+
+/// Closes the session and waits for it. Acknowledged scans are durable; robots send the others again.
+/// @param reason  for robots and viewers
+/// Threads: any thread that may wait, but not one of the session's executor.
+void discard_and_wait(Session& session, Error reason);
+
 /// Executors, clocks and memory limits of a registry.
 struct RegistryConfig {
     boost::asio::any_io_executor compute; ///< sessions apply entries on it
