@@ -12,7 +12,7 @@ namespace scanloom::slam {
 
 /// How well points fit a map.
 struct Evidence {
-    static constexpr double kSquare = 0.25; ///< metres: of the points in a square, one counts
+    static constexpr double kSquare = 0.25; ///< metres: callers add one point of each square of this side
 
     double matched = 0.0;      ///< metres of surface that agree with the map
     double contradicted = 0.0; ///< metres that contradict it: in seen free space, or behind a surface

@@ -32,7 +32,7 @@ public:
     ///     graph is not optimised
     /// @param fragment  index of a fragment that is not located
     /// @return whether the place is found
-    /// Cost: up to 50 ms for a part of a search; a test of the fragment when four answers agree.
+    /// Cost: some tens of milliseconds for a part of a search; a test of the fragment when four answers agree.
     bool search(KeyframeGraph& graph, std::size_t fragment);
 
     /// Searches for a fragment near a place only.

@@ -16,8 +16,9 @@ namespace scanloom::sessions {
 /// @param session  that no other thread writes to
 /// @param stop     checked from time to time
 /// @return the copy, which is complete and durable
-/// Errors: kNotFound if there is no such session; kFull if it has more than 4 billion entries; kShuttingDown if `stop` is true; kDataLoss or kMalformed if its record or
-///         an entry is damaged; those of ScanLog. After an error, there is no copy, or settle_copies() removes it.
+/// Errors: kNotFound if there is no such session; kFull if it has more than 4 billion entries; kShuttingDown if `stop` is
+///         true; kDataLoss or kMalformed if its record or an entry is damaged; those of ScanLog. After an error, there
+///         is no copy, or settle_copies() removes it.
 /// Threads: any thread that may wait for the disk.
 [[nodiscard]] Result<store::SessionId> copy_as_odometry(store::ScanLog& log, store::SessionId session,
                                                         const std::atomic<bool>& stop);

@@ -110,8 +110,8 @@ public:
     ///
     /// If all poses are estimated already, the session is only evicted: poses are estimated when it is loaded.
     /// @return its properties before the call
-    /// Errors: kNotFound or the error in damaged(), as exclude(); kConflict if a robot that sends poses in the map frame is
-    /// connected; those of copy_as_odometry(); kOverloaded; kShuttingDown.
+    /// Errors: kNotFound or the error in damaged(), as exclude(); kConflict if a robot that sends poses in the map frame
+    /// is connected; those of copy_as_odometry(); kOverloaded; kShuttingDown.
     [[nodiscard]] Result<SessionInfo> estimate(std::string_view name);
 
     /// Deletes a session, damaged or not, with its log and its maps.
@@ -150,8 +150,7 @@ private:
 
     RegistryState state_;
     SessionLoader loader_;
-    std::mutex
-        changing_; // held during recover() and by the functions that write to the store first, but for estimate()
+    std::mutex changing_; // held by recover() and by the functions that write to the store; by estimate() at its start
 };
 
 } // namespace scanloom::sessions

@@ -32,7 +32,7 @@ namespace scanloom::http {
 [[nodiscard]] Result<Response> list_sessions(Context& context);    ///< damaged ones included; loads none
 [[nodiscard]] Result<Response> create_session(Context& context);   ///< waits until it is durable
 [[nodiscard]] Result<Response> get_session(Context& context);      ///< does not load it
-[[nodiscard]] Result<Response> estimate_session(Context& context); ///< its poses, from now on
+[[nodiscard]] Result<Response> estimate_session(Context& context); ///< begins to estimate its poses
 [[nodiscard]] Result<Response> delete_session(Context& context);   ///< also a damaged session
 [[nodiscard]] Result<Response> import_map(Context& context);       ///< creates the session
 

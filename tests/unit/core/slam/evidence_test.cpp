@@ -23,13 +23,15 @@ Building hall(double box_at) {
     return building;
 }
 
-/// Returns the points of a scan in one of two halls.
+/// Returns the points of a scan in a hall.
 std::shared_ptr<const ScanPoints> scan_in(const Building& building, const Pose2& pose, std::mt19937& random) {
     return std::make_shared<const ScanPoints>(
         scan_matching::points_of(building.scan(Building::laser(), pose, 0.01, random), Building::laser()));
 }
 
-/// Returns contradictions_between() keyframes along the hall, of which every second one sees the box elsewhere.
+/// Makes keyframes along the hall, and returns contradictions_between() them.
+/// @param first_box   where the first, third, ... keyframe sees the box, metres
+/// @param second_box  where the second, fourth, ... keyframe sees it
 double contradictions(double first_box, double second_box, std::size_t count = 12) {
     std::mt19937 random(1);
     KeyframeGraph graph;
