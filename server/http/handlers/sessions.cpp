@@ -7,6 +7,7 @@
 #include "server/http/handlers/lookup.hpp"
 #include "server/http/handlers/parameters.hpp"
 #include "server/http/handlers/session_json.hpp"
+#include "server/http/json_read.hpp"
 #include "server/http/multipart.hpp"
 #include "server/http/text.hpp"
 #include "server/tiles/ros_map_import.hpp"
