@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <variant>
 
 namespace scanloom {
@@ -27,6 +28,20 @@ Result<> LogRules::add(const LogEntry& entry) {
     auto follows = check(entry);
     if (follows) apply(entry);
     return follows;
+}
+
+void LogRules::reset_robot(RobotIndex robot, LoggedRobot state) {
+    robots_[robot] = std::move(state);
+    const bool has_begun = map_frame_ == MapFrame::kImported || map_frame_ == MapFrame::kOpen ||
+                           find_robot_with_poses(map_frame_ == MapFrame::kSent) != nullptr;
+    if (!has_begun) map_frame_ = MapFrame::kOpen;
+}
+
+const LoggedRobot* LogRules::find_robot_with_poses(bool is_sent) const noexcept {
+    const auto found = std::ranges::find_if(robots_, [&](const LoggedRobot& robot) {
+        return robot.last_seq > 0 && (robot.poses == Poses::kMap) == is_sent;
+    });
+    return found == robots_.end() ? nullptr : &*found;
 }
 
 Result<> LogRules::check_body(const RobotJoined& joined) const {
@@ -74,14 +89,25 @@ Result<> LogRules::check_body(const ScanTaken& taken) const {
         fmt::format("scan {} of robot '{}' follows scan {}", taken.scan.seq, robot.name, robot.last_seq));
 }
 
-void LogRules::apply_body(const ScanTaken& taken) { robots_[taken.robot].last_seq = taken.scan.seq; }
+void LogRules::apply_body(const ScanTaken& taken) {
+    LoggedRobot& robot = robots_[taken.robot];
+    const bool is_sent = robot.poses == Poses::kMap;
+    if (map_frame_ == MapFrame::kOpen && is_sent && find_robot_with_poses(false) == nullptr) {
+        map_frame_ = MapFrame::kSent;
+    }
+    if (map_frame_ == MapFrame::kOpen && !is_sent && !is_localize_only_) map_frame_ = MapFrame::kEstimated;
+    robot.last_seq = taken.scan.seq;
+}
 
 Result<> LogRules::check_body(const MapPatch&) const {
     if (robots_.empty()) return {};
     return cannot_follow("an imported map after robots have joined");
 }
 
-void LogRules::apply_body(const MapPatch&) {}
+void LogRules::apply_body(const MapPatch& patch) {
+    const auto is_known = [](MapCell cell) { return cell != MapCell::kUnknown; };
+    if (std::ranges::any_of(patch.cells, is_known)) map_frame_ = MapFrame::kImported;
+}
 
 Result<> LogRules::check_body(const ScansExcluded& excluded) const {
     if (excluded.robot < robots_.size()) return exclusions_.check(excluded);
@@ -110,7 +136,11 @@ void LogRules::apply_body(const RobotRelocalized&) {}
 
 Result<> LogRules::check_body(const ModeChanged&) const { return {}; }
 
-void LogRules::apply_body(const ModeChanged& changed) { is_localize_only_ = changed.is_localize_only; }
+void LogRules::apply_body(const ModeChanged& changed) {
+    is_localize_only_ = changed.is_localize_only;
+    const bool begins = map_frame_ == MapFrame::kOpen && !is_localize_only_ && find_robot_with_poses(false) != nullptr;
+    if (begins) map_frame_ = MapFrame::kEstimated;
+}
 
 void LogRules::apply_body(const ExclusionLifted& lifted) { static_cast<void>(exclusions_.add(revision_ + 1, lifted)); }
 

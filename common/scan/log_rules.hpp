@@ -45,6 +45,14 @@ struct LoggedRobot {
     }
 };
 
+/// Where the frame of a session's map comes from.
+enum class MapFrame {
+    kOpen,      ///< the session has no map yet
+    kImported,  ///< an imported map
+    kSent,      ///< the poses that robots sent (Poses::kMap)
+    kEstimated, ///< the first scan of a robot whose poses the server estimates
+};
+
 /// Decides which entry may come next in a session's log, and keeps the state that this depends on.
 class LogRules {
 public:
@@ -55,9 +63,11 @@ public:
     /// @param robots      by RobotIndex
     /// @param exclusions  of the log up to `revision`
     /// @param is_localize_only  see is_localize_only()
-    LogRules(Revision revision, std::vector<LoggedRobot> robots, Exclusions exclusions, bool is_localize_only)
+    /// @param map_frame   see map_frame()
+    LogRules(Revision revision, std::vector<LoggedRobot> robots, Exclusions exclusions, bool is_localize_only,
+             MapFrame map_frame)
         : revision_(revision), robots_(std::move(robots)), exclusions_(std::move(exclusions)),
-          is_localize_only_(is_localize_only) {}
+          is_localize_only_(is_localize_only), map_frame_(map_frame) {}
 
     /// Checks whether `entry` can be the next one.
     /// Errors: kMalformed if it cannot, which happens only in a damaged log.
@@ -74,7 +84,7 @@ public:
     /// changed.
     /// @param robot  index in the session
     /// @param state  the robot before those entries
-    void reset_robot(RobotIndex robot, LoggedRobot state) { robots_[robot] = std::move(state); }
+    void reset_robot(RobotIndex robot, LoggedRobot state);
 
     /// Returns the revision of the newest entry.
     [[nodiscard]] Revision revision() const noexcept { return revision_; }
@@ -87,6 +97,14 @@ public:
 
     /// Returns whether the next scans do not change the map; see ModeChanged.
     [[nodiscard]] bool is_localize_only() const noexcept { return is_localize_only_; }
+
+    /// Returns where the frame of the map comes from.
+    [[nodiscard]] MapFrame map_frame() const noexcept { return map_frame_; }
+
+    /// Returns whether a robot has scans, and sends poses or not.
+    /// @param is_sent  whether it sends them (Poses::kMap)
+    /// @return the first such robot; nullptr: there is none
+    [[nodiscard]] const LoggedRobot* find_robot_with_poses(bool is_sent) const noexcept;
 
 private:
     [[nodiscard]] Result<> check_body(const RobotJoined& joined) const;
@@ -112,6 +130,7 @@ private:
     std::vector<LoggedRobot> robots_;
     Exclusions exclusions_;
     bool is_localize_only_ = false;
+    MapFrame map_frame_ = MapFrame::kOpen;
 };
 
 } // namespace scanloom

@@ -2,6 +2,7 @@
 
 #include "core/localization/known_map.hpp"
 
+#include <algorithm>
 #include <variant>
 
 namespace scanloom::localization {
@@ -14,27 +15,35 @@ constexpr double kEstimationWork = 4e5; // of a scan's pose, in the unit of Reac
 Result<bool> LocalizedProjection::apply(LogEntry& entry, double& work) {
     const Revision revision = projection_.revision() + 1;
     auto* taken = std::get_if<ScanTaken>(&entry);
-    if (taken != nullptr && estimated_ < revision && taken->robot < projection_.robots().size() &&
-        projection_.robots()[taken->robot].poses != Poses::kMap) {
+    const bool is_estimated = taken != nullptr && taken->robot < projection_.robots().size() &&
+                              projection_.robots()[taken->robot].poses != Poses::kMap;
+    if (is_estimated && estimated_ < revision) {
         if (auto follows = projection_.check(entry); !follows) return follows.error();
-        if (poses_.scan_count() == 0 && projection_.chunk_count() > 0) {
-            poses_.begin_with(views_of(projection_.snapshot().classes, projection_.config().cell_size));
-        }
+        if (poses_.scan_count() == 0) begin();
         poses_.estimate(*taken, *projection_.sensor_of(taken->robot, taken->scan.sensor), revision);
         estimated_ = revision;
         work -= kEstimationWork;
     }
-    const auto applied = projection_.apply(entry, work);
-    if (const auto* changed = std::get_if<ModeChanged>(&entry); applied && *applied && changed != nullptr) {
+    auto applied = projection_.apply(entry, work);
+    if (!applied || !*applied) return applied;
+    if (taken != nullptr && !is_estimated && !projection_.has_left_out_newest(taken->robot)) {
+        poses_.add_given(*taken, *projection_.sensor_of(taken->robot, taken->scan.sensor));
+    }
+    if (const auto* changed = std::get_if<ModeChanged>(&entry)) {
         poses_.change_mode(changed->is_localize_only, revision);
     }
-    if (const auto* relocalized = std::get_if<RobotRelocalized>(&entry);
-        applied && *applied && relocalized != nullptr) {
-        poses_.relocalize(*relocalized);
-    }
-    const auto* corrected = std::get_if<MapsCorrected>(&entry);
-    if (applied && *applied && corrected != nullptr) announced_ = corrected->as_of;
-    return applied;
+    if (const auto* relocalized = std::get_if<RobotRelocalized>(&entry)) poses_.relocalize(*relocalized);
+    if (const auto* corrected = std::get_if<MapsCorrected>(&entry)) announced_ = corrected->as_of;
+    return true;
+}
+
+/// Begins to estimate poses, in the frame of the maps if they have one.
+void LocalizedProjection::begin() {
+    const MapFrame frame = projection_.map_frame();
+    if (frame != MapFrame::kImported && frame != MapFrame::kSent) return;
+    const auto sends = [](const LoggedRobot& robot) { return robot.poses == Poses::kMap && robot.last_seq > 0; };
+    const bool is_complete = projection_.is_localize_only() || std::ranges::none_of(projection_.robots(), sends);
+    poses_.begin_with(views_of(projection_.snapshot().classes, projection_.config().cell_size), is_complete);
 }
 
 } // namespace scanloom::localization

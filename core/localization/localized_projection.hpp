@@ -56,6 +56,8 @@ public:
     }
 
 private:
+    void begin();
+
     mapping::Projection projection_;
     SessionPoses poses_;
     Revision estimated_ = 0; // newest entry whose pose is estimated; it may be applied in part

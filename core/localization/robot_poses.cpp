@@ -54,7 +54,8 @@ void RobotPoses::check_mount(const Scan& scan) {
 RobotPoses::PlacedScan RobotPoses::placed(const Scan& scan) const {
     const auto T_odom_robot = scan.odometry ? std::optional(transform_of(*scan.odometry)) : std::nullopt;
     if (laser_scans_.empty()) {
-        const bool is_alone = estimator_.map().graph().size() == 0; // so that its odometry is the map's frame
+        const auto& map = estimator_.map();
+        const bool is_alone = map.graph().size() == 0 && !map.is_frame_given(); // its odometry is the map's frame
         return {kNoLaserScan, T_odom_robot.value_or(Transform2()), scan.stamp, {}, is_alone};
     }
     if (!T_odom_robot || !laser_odometry_) return {estimator_.scan_count() - 1, {}, scan.stamp};

@@ -12,6 +12,20 @@ void SessionPoses::estimate(ScanTaken& taken, const Sensor& sensor, Revision rev
     if (is_due && !map_->is_frozen()) correct(revision);
 }
 
+void SessionPoses::add_given(const ScanTaken& taken, const Sensor& sensor) {
+    const bool is_useful = scan_count_ > 0 && map_->is_frame_given() && !map_->is_frozen();
+    if (!is_useful || sensor.kind != SensorKind::kLaser) return;
+    const auto pose = scan_matching::transform_of(*taken.scan.pose);
+    const auto newest = given_.find(taken.robot);
+    const bool is_due = newest == given_.end() ||
+                        slam::is_beyond(inverse(newest->second) * pose, slam::kKeyframeDistance, slam::kKeyframeTurn);
+    if (!is_due) return;
+    auto points = scan_matching::points_of(taken.scan, sensor);
+    if (points.points.empty()) return;
+    given_[taken.robot] = pose;
+    map_->add_given(taken.robot, std::move(points), pose);
+}
+
 void SessionPoses::correct(Revision revision) {
     corrected_ = revision;
     for (const auto& each : robots_) {

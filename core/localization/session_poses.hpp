@@ -4,6 +4,7 @@
 #include "core/mapping/scan_poses.hpp"
 
 #include <cstddef>
+#include <map>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -41,9 +42,19 @@ struct PoseGraphView {
 /// Threads: one at a time.
 class SessionPoses {
 public:
-    /// Begins with an imported map: all robots are located in it. Call it before the first scan.
-    /// @param views  of the map
-    void begin_with(std::vector<slam::KnownView> views) { map_->begin_with(std::move(views)); }
+    /// Begins with a map whose frame is given, that of an imported map or of robots that send their poses: all robots
+    /// are located in it. Call it before the first scan.
+    /// @param views        of the map so far
+    /// @param is_complete  whether it shows all places that may look alike
+    void begin_with(std::vector<slam::KnownView> views, bool is_complete) {
+        map_->begin_with(std::move(views), is_complete);
+    }
+
+    /// Adds a scan of a robot that sends its poses to the map in which the others are located. Before the first scan
+    /// with an estimated pose it does nothing, because begin_with() gets the whole map so far.
+    /// @param taken   the scan, with its pose
+    /// @param sensor  that took it
+    void add_given(const ScanTaken& taken, const Sensor& sensor);
 
     /// Estimates the pose of the log's next scan, and sets it. Without a pose, it fits no place.
     /// @param taken     the scan
@@ -98,6 +109,7 @@ private:
     Revision corrected_ = 0;
     std::vector<std::shared_ptr<const GraphMoment>> corrections_;
     std::size_t scan_count_ = 0;
+    std::map<RobotIndex, scan_matching::Transform2> given_; // newest keyframes of robots that send their poses
 };
 
 } // namespace scanloom::localization

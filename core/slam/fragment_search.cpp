@@ -32,19 +32,18 @@ constexpr double kMapReach = 250.0;         // metres around the newest located 
 
 // Answers that agree.
 constexpr std::size_t kAnswers = 4;
-constexpr double kAnswersApart = 1.5;       // metres travelled between two of them
-constexpr double kBaseline = 10.0;          // metres between the places of two of them, at least
-constexpr double kBaselineInKnownMap = 2.0; // metres, likewise if the map was known before
-constexpr double kAgreementDistance = 0.5;  // metres
-constexpr double kAgreementTurn = 0.1;      // radians
-constexpr double kDriftPart = 0.03;         // of the way between two answers, in addition
+constexpr double kAnswersApart = 1.5;          // metres travelled between two of them
+constexpr double kBaseline = 10.0;             // metres between the places of two of them, at least
+constexpr double kBaselineInCompleteMap = 2.0; // metres, likewise in a complete map
+constexpr double kAgreementDistance = 0.5;     // metres
+constexpr double kAgreementTurn = 0.1;         // radians
+constexpr double kDriftPart = 0.03;            // of the way between two answers, in addition
 
 constexpr double kWindow = 1.0; // metres, of the stretch test
-// Share of its evidence that may contradict the map. A map that was known before is often older than what the robot
-// sees.
+// Share of its evidence that may contradict the map. A complete map is often older than what the robot sees.
 constexpr double kContradictedMax = 0.02;
 constexpr double kNoiseFactor = 1.5;
-constexpr double kContradictedInKnownMap = 0.08;
+constexpr double kContradictedInCompleteMap = 0.08;
 
 } // namespace
 
@@ -68,10 +67,10 @@ bool FragmentSearch::search(KeyframeGraph& graph, std::size_t fragment) {
     state.answers.push_back({query.keyframe, *found});
     if (!is_confirmed(graph, state.answers)) return false;
     const std::size_t newest = graph.fragments()[fragment].keyframes.back();
-    const std::size_t anchor = graph.fragments().front().keyframes.front();
+    const std::size_t anchor = std::ranges::find_if(graph.fragments(), &Fragment::is_located)->keyframes.front();
     graph.move(fragment, *found, true);
     StretchQuestion question{newest, anchor, Transform2(), kWindow, kContradictedMax, kNoiseFactor};
-    if (graph.is_map_known()) question = {newest, anchor, Transform2(), kWindow, kContradictedInKnownMap};
+    if (is_map_complete_) question = {newest, anchor, Transform2(), kWindow, kContradictedInCompleteMap};
     if (!accept_stretch(graph, question)) {
         graph.move(fragment, inverse(*found), false);
         return false;
@@ -200,8 +199,7 @@ bool FragmentSearch::is_confirmed(const KeyframeGraph& graph, const std::vector<
         last_at = graph[other.keyframe].travelled;
         ++count;
     }
-    // A map that was known before shows all places that may look alike.
-    const double wanted = graph.is_map_known() ? kBaselineInKnownMap : kBaseline;
+    const double wanted = is_map_complete_ ? kBaselineInCompleteMap : kBaseline;
     return count >= kAnswers && baseline >= wanted;
 }
 

@@ -35,6 +35,10 @@ public:
     /// Cost: some tens of milliseconds for a part of a search; a test of the fragment when four answers agree.
     bool search(KeyframeGraph& graph, std::size_t fragment);
 
+    /// States that the map shows all places that may look alike. Then answers that agree over two metres are enough,
+    /// and the map may be older than what the robots see.
+    void set_map_complete() noexcept { is_map_complete_ = true; }
+
     /// Searches for a fragment near a place only.
     /// @param fragment  index of the fragment
     /// @param place     of one of its keyframes
@@ -89,6 +93,7 @@ private:
     std::shared_ptr<const scan_matching::PlaceMap> map_; // of the located keyframes
     std::vector<Located> in_map_;
     std::vector<Searched> searched_; // by fragment
+    bool is_map_complete_ = false;
 };
 
 } // namespace scanloom::slam

@@ -2,6 +2,7 @@
 
 #include "core/scan_matching/point_map.hpp"
 
+#include <cmath>
 #include <cstddef>
 #include <memory>
 #include <span>
@@ -20,6 +21,15 @@ struct Keyframe {
     bool is_fixed = false;                  ///< whether it belongs to a map that does not change
     double travelled = 0.0; ///< metres from the fragment's first keyframe; a turn of one radian counts as 0.2 m
 };
+
+/// Returns whether a pose is farther from a keyframe than a distance (metres) or a turn (radians).
+[[nodiscard]] inline bool is_beyond(const Transform2& T_keyframe_robot, double distance, double turn) {
+    const Transform2& T = T_keyframe_robot;
+    return T.x * T.x + T.y * T.y > distance * distance || std::fabs(yaw_of(T)) > turn;
+}
+
+inline constexpr double kKeyframeDistance = 0.8; ///< metres from a keyframe to the robot's next one
+inline constexpr double kKeyframeTurn = 0.4;     ///< radians, likewise
 
 /// Keyframes with their poses in the frame of one map. Keeps the scans alive that the views refer to.
 class KeyframeViews {

@@ -24,25 +24,30 @@ constexpr double kSameTurn = 0.3;         // radians, likewise
 
 std::size_t KeyframeGraph::begin_fragment(std::size_t robot, std::shared_ptr<const ScanPoints> scan,
                                           const Transform2& T_map_keyframe, bool is_located) {
-    fragments_.push_back({robot, is_located, {size()}});
+    fragments_.push_back({robot, false, is_located, {size()}});
     keyframes_.push_back({.scan = std::move(scan), .fragment = fragments_.size() - 1});
     poses_.push_back(T_map_keyframe);
     return fragments_.size() - 1;
 }
 
-void KeyframeGraph::add_fixed(std::shared_ptr<const ScanPoints> scan, const Transform2& T_map_keyframe) {
-    if (fragments_.empty()) {
-        begin_fragment(kNoRobot, std::move(scan), T_map_keyframe, true);
-        keyframes_.front().is_fixed = true;
-        return;
+std::size_t KeyframeGraph::add_given(std::size_t robot, std::shared_ptr<const ScanPoints> scan,
+                                     const Transform2& T_map_keyframe) {
+    const auto is_same = [&](const Fragment& fragment) { return fragment.is_given && fragment.robot == robot; };
+    const auto index = static_cast<std::size_t>(std::ranges::find_if(fragments_, is_same) - fragments_.begin());
+    if (index == fragments_.size()) fragments_.push_back({robot, true, true, {}});
+    Fragment& fragment = fragments_[index];
+    // An edge without a length connects each with the one before, because all are exact: drift begins where a robot
+    // leaves them.
+    const auto before = fragment.keyframes.empty() ? newest_given_ : std::optional(fragment.keyframes.back());
+    newest_given_ = size();
+    if (before) {
+        edges_.push_back({*before, size(), inverse(poses_[*before]) * T_map_keyframe,
+                          information_of(kMatchedSigma, kMatchedTurnSigma)});
     }
-    auto& keyframes = fragments_.front().keyframes;
-    // Without a length, because all views are exact: drift begins where a robot leaves them.
-    edges_.push_back({keyframes.back(), size(), inverse(poses_[keyframes.back()]) * T_map_keyframe,
-                      information_of(kMatchedSigma, kMatchedTurnSigma)});
-    keyframes.push_back(size());
-    keyframes_.push_back({.scan = std::move(scan), .position = keyframes.size() - 1, .is_fixed = true});
+    fragment.keyframes.push_back(size());
+    keyframes_.push_back({std::move(scan), index, fragment.keyframes.size() - 1, true});
     poses_.push_back(T_map_keyframe);
+    return index;
 }
 
 /// Returns the keyframes that do not move: those of a map that does not change, else the first one.
@@ -56,11 +61,9 @@ std::vector<std::size_t> KeyframeGraph::fixed() const {
 
 void KeyframeGraph::freeze(bool is_frozen) {
     is_frozen_ = is_frozen;
-    if (fragments_.empty()) return;
-    if (!is_frozen && std::ranges::none_of(fragments_, &Fragment::is_located)) fragments_.front().is_located = true;
     for (Keyframe& keyframe : keyframes_) {
         const Fragment& fragment = fragments_[keyframe.fragment];
-        keyframe.is_fixed = is_frozen ? fragment.is_located : fragment.robot == kNoRobot;
+        keyframe.is_fixed = is_frozen ? fragment.is_located : fragment.is_given;
     }
 }
 

@@ -22,6 +22,7 @@ inline constexpr double kFitTurnSigma = 0.01; ///< radians
 /// Successive keyframes of one robot, each matched to those before. A robot that is lost begins another fragment.
 struct Fragment {
     std::size_t robot = 0;   ///< kNoRobot: the views of a known map
+    bool is_given = false;   ///< whether the poses of its keyframes are known, and do not move
     bool is_located = false; ///< whether its place in the map is known; otherwise its poses are in a frame of its own
     std::vector<std::size_t> keyframes; ///< their indices, oldest first; at least one
 };
@@ -39,14 +40,15 @@ public:
     std::size_t begin_fragment(std::size_t robot, std::shared_ptr<const ScanPoints> scan,
                                const Transform2& T_map_keyframe, bool is_located);
 
-    /// Adds a view of a known map as a keyframe that does not move. All of them are one fragment.
+    /// Adds a keyframe whose pose is known, and which does not move. Those of one robot are one fragment, which is
+    /// located.
+    /// @param robot           whose scan it is; kNoRobot: it is a view of a known map
     /// @param scan            its points
     /// @param T_map_keyframe  its pose
-    /// Precondition: only such keyframes were added before.
-    void add_fixed(std::shared_ptr<const ScanPoints> scan, const Transform2& T_map_keyframe);
+    /// @return index of the fragment
+    std::size_t add_given(std::size_t robot, std::shared_ptr<const ScanPoints> scan, const Transform2& T_map_keyframe);
 
-    /// Makes the located keyframes a map that does not change, or lets all but the views of a known map move again. If
-    /// no fragment is located then, the first one becomes the map.
+    /// Makes the located keyframes a map that does not change, or lets all but the given ones move again.
     void freeze(bool is_frozen);
 
     /// Returns whether a keyframe is part of the map: its fragment is located, and if the map does not change, it was
@@ -54,9 +56,6 @@ public:
     [[nodiscard]] bool is_in_map(std::size_t keyframe) const {
         return fragment_of(keyframe).is_located && (!is_frozen_ || keyframes_[keyframe].is_fixed);
     }
-
-    /// Returns whether the map was known before robots drove in it.
-    [[nodiscard]] bool is_map_known() const { return !fragments_.empty() && fragments_.front().robot == kNoRobot; }
 
     /// Adds a keyframe to a fragment.
     /// @param fragment           index of the fragment
@@ -147,6 +146,7 @@ private:
     std::vector<Keyframe> keyframes_;
     std::vector<Transform2> poses_;
     std::vector<Edge> edges_;
+    std::optional<std::size_t> newest_given_; // the newest keyframe that add_given() added
     bool is_frozen_ = false;
 };
 

@@ -1,21 +1,29 @@
 #include "core/slam/shared_map.hpp"
 
+#include <algorithm>
 #include <memory>
 #include <utility>
 
 namespace scanloom::slam {
 
-void SharedMap::begin_with(std::vector<KnownView> views) {
-    for (KnownView& view : views) {
-        graph_.add_fixed(std::make_shared<const ScanPoints>(std::move(view.points)), view.T_map_laser);
-        loops_.add_submaps(graph_, 0);
-    }
+void SharedMap::begin_with(std::vector<KnownView> views, bool is_complete) {
+    is_frame_given_ = true;
+    if (is_complete) fragments_.set_map_complete();
+    for (KnownView& view : views) add_given(kNoRobot, std::move(view.points), view.T_map_laser);
+}
+
+void SharedMap::add_given(std::size_t robot, ScanPoints scan, const Transform2& T_map_keyframe) {
+    const std::size_t fragment =
+        graph_.add_given(robot, std::make_shared<const ScanPoints>(std::move(scan)), T_map_keyframe);
+    loops_.add_submaps(graph_, fragment);
 }
 
 void SharedMap::freeze(bool is_frozen) {
     if (is_frozen) finish();
     graph_.freeze(is_frozen);
     is_frozen_ = is_frozen;
+    if (is_frozen || is_frame_given_ || graph_.size() == 0) return;
+    if (std::ranges::none_of(graph_.fragments(), &Fragment::is_located)) graph_.move(0, Transform2(), true);
 }
 
 std::size_t SharedMap::continue_from(std::size_t robot, ScanPoints scan, std::size_t from,
@@ -29,7 +37,7 @@ std::size_t SharedMap::continue_from(std::size_t robot, ScanPoints scan, std::si
 
 std::size_t SharedMap::begin_fragment(std::size_t robot, ScanPoints scan, const Transform2& T_map_keyframe,
                                       const std::optional<Surroundings>& place) {
-    const bool is_first = graph_.size() == 0 && !is_frozen_;
+    const bool is_first = graph_.size() == 0 && !is_frame_given_ && !is_frozen_;
     const std::size_t fragment =
         graph_.begin_fragment(robot, std::make_shared<const ScanPoints>(std::move(scan)), T_map_keyframe, is_first);
     if (place) fragments_.expect(fragment, *place, graph_.size() - 1);

@@ -17,17 +17,27 @@ struct KnownView {
 };
 
 /// The map that the robots of a session share: their keyframes, loops, and the search for places of those who start
-/// anywhere. The frame of the map is that of the first robot's first scan, or that of the known map.
+/// anywhere. The frame of the map is that of the first robot's first scan, or a given one.
 /// Threads: one at a time.
 class SharedMap {
 public:
-    /// Begins with a known map, in which all robots are to be located. Call it before anything else.
-    /// @param views  all over the map, neighbours after each other
-    void begin_with(std::vector<KnownView> views);
+    /// Begins with a given frame, in which all robots are to be located. Call it before anything else.
+    /// @param views  all over the map that is known so far, neighbours after each other
+    /// @param is_complete  see FragmentSearch::set_map_complete()
+    void begin_with(std::vector<KnownView> views, bool is_complete);
+
+    /// Adds a keyframe of a robot that sends its poses. Call it if the frame is given, and the map not frozen.
+    /// @param robot           whose scan it is
+    /// @param scan            its points
+    /// @param T_map_keyframe  its pose, which does not change
+    void add_given(std::size_t robot, ScanPoints scan, const Transform2& T_map_keyframe);
+
+    /// Returns whether the frame of the map is given: that of a known map, or of robots that send their poses.
+    [[nodiscard]] bool is_frame_given() const noexcept { return is_frame_given_; }
 
     /// Freezes the map, or lets it change again.
     /// @param is_frozen  true: what the map contains now does not change, and robots are only located in it; false:
-    ///     mapping goes on
+    ///     mapping goes on. If nothing is located then, and the frame is not given, the first fragment becomes the map
     void freeze(bool is_frozen);
 
     /// Begins a fragment that is located: that of a robot which was located in the frozen map and goes on mapping.
@@ -38,7 +48,7 @@ public:
     /// @return the fragment's index
     std::size_t continue_from(std::size_t robot, ScanPoints scan, std::size_t from, const Transform2& T_from_keyframe);
 
-    /// Begins a fragment; it is located if it is the first one and the map is not frozen.
+    /// Begins a fragment; it is located if it is the first one, the frame is not given, and the map not frozen.
     /// @param robot           whose scan it is
     /// @param scan            its points
     /// @param T_map_keyframe  its pose; in a frame of its own if the fragment is not the first one
@@ -81,6 +91,7 @@ private:
     FragmentSearch fragments_;
     std::size_t optimizations_ = 0; // by others than the loop search
     bool is_frozen_ = false;
+    bool is_frame_given_ = false;
 };
 
 } // namespace scanloom::slam

@@ -8,21 +8,14 @@
 namespace scanloom::slam {
 namespace {
 
-constexpr double kKeyframeDistance = 0.8;   // metres from the newest keyframe to the next one
-constexpr double kKeyframeTurn = 0.4;       // radians, likewise
-constexpr double kNewSightDistance = 0.2;   // metres, likewise, if the scan shows much that the map does not have
-constexpr double kNewSightTurn = 0.1;       // radians, likewise
+// From the newest keyframe to the next one if the scan shows much that the map does not have.
+constexpr double kNewSightDistance = 0.2;   // metres
+constexpr double kNewSightTurn = 0.1;       // radians
 constexpr double kNewSightInliers = 0.6;    // of such a scan's points, those that fit the map, at most
 constexpr std::size_t kLocalKeyframes = 35; // newest ones that scans are matched to
 constexpr double kKnownPlace = 1.5;         // metres from a keyframe of the frozen map that shows the place
 constexpr double kKnownPlaceTurn = 0.5;     // radians, likewise
 constexpr double kMotionMax = 10.0;         // metres between two scans; odometry that moves by more has started again
-
-/// Returns whether a pose is farther from the newest keyframe than this.
-bool is_beyond(const Transform2& T_keyframe_robot, double distance, double turn) {
-    const Transform2& T = T_keyframe_robot;
-    return T.x * T.x + T.y * T.y > distance * distance || std::fabs(yaw_of(T)) > turn;
-}
 
 bool is_keyframe_due(const TrackedScan& scan) {
     if (is_beyond(scan.T_keyframe_robot, kKeyframeDistance, kKeyframeTurn)) return true;

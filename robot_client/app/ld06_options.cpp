@@ -87,9 +87,11 @@ void add_poses(CLI::App& ld06, Ld06Options& options) {
 }
 
 void add_locating(CLI::App& ld06, Ld06Options& options) {
-    ld06.add_flag("--locate", options.locate,
-                  "For a lidar without odometry that is carried from place to place: the server localizes it by its "
-                  "scans. Scans taken while it moves are dropped. Each run sends a capture file again");
+    ld06.add_flag(
+        "--locate", options.locate,
+        "Deprecated, until 0.4: use --poses none. For a lidar that is carried from place to place: the server "
+        "localizes it where it stands. Scans taken while it moves are dropped. Each run sends a capture file "
+        "again");
     add_parsed(ld06, "--near", options.near,
                "X,Y,RADIUS in metres, with --locate: the maximum distance of the first place from X,Y along each axis; "
                "later places are at most 100 m apart. Default: anywhere in the map",

@@ -222,6 +222,10 @@ Result<PreparedSource> make(const RobotOptions& options, const Ld06Options& ld06
                                  "--pose-file {0}",
                                  ld06.pose_file));
     }
+    if (ld06.locate) {
+        console.note("ld06: --locate is accepted until version 0.4; with --poses none the server locates the lidar in "
+                     "the session's map, too, and follows it while it moves");
+    }
     if (ld06.input.starts_with(kTcpScheme)) {
         const auto peer = net::parse_address(ld06.input.substr(kTcpScheme.size())); // the options were checked
         return prepare_device(ld06, *scan, peer.value(), console);

@@ -32,6 +32,13 @@ std::optional<std::vector<std::uint32_t>> numbers_in(std::string_view key) {
     return numbers;
 }
 
+/// Returns where the frame of a checkpoint's map comes from. No robot of it has estimated poses.
+MapFrame map_frame_of(const mapping::ProjectionState& state) {
+    const bool has_scans = std::ranges::any_of(state.robots, [](const auto& robot) { return robot.last_seq > 0; });
+    if (has_scans) return MapFrame::kSent;
+    return mapping::bounds_of(state.bounds).empty() ? MapFrame::kOpen : MapFrame::kImported;
+}
+
 grid::ChunkKey chunk_key_of(const std::vector<std::uint32_t>& numbers) {
     return {static_cast<std::int32_t>(numbers[0]), static_cast<std::int32_t>(numbers[1])};
 }
@@ -180,7 +187,10 @@ bool CheckpointReader::add_sonar_chunk(const Numbers& numbers, std::string_view 
 }
 
 void CheckpointReader::restore_projection() {
-    if (!is_restored_) projection_.restore(state_);
+    if (!is_restored_) {
+        state_.map_frame = map_frame_of(state_);
+        projection_.restore(state_);
+    }
     is_restored_ = true;
 }
 

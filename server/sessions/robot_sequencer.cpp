@@ -24,7 +24,7 @@ Error map_already_begun(const std::string& robot, const std::string& session) {
 void RobotSequencer::restore(const mapping::ProjectionState& state) {
     auto robots = pending_.robots();
     robots.resize(state.robots.size());
-    pending_ = LogRules(state.revision, std::move(robots), {}, state.is_localize_only);
+    pending_ = LogRules(state.revision, std::move(robots), {}, state.is_localize_only, state.map_frame);
     members_.resize(state.robots.size());
     for (RobotIndex robot = 0; robot < members_.size(); ++robot) restore(robot, state.robots[robot]);
 }
@@ -67,17 +67,15 @@ std::optional<PendingEntry> RobotSequencer::join(PendingJoin joining) {
                                            info_.name, members_.size())});
         return std::nullopt;
     }
-    if (auto ok = check_poses(who); !ok) {
-        joining.done(ok.error());
+    const bool is_new = known == members_.end();
+    auto may_join = is_new ? Result<>() : check_again(logged(*known), who);
+    if (may_join) may_join = check_frame(who.robot, who.poses);
+    if (!may_join) {
+        joining.done(prefixed("hello.", may_join.error()));
         return std::nullopt;
     }
-    const bool is_new = known == members_.end();
     Member& member = is_new ? members_.emplace_back() : *known;
     if (!is_new) {
-        if (auto agrees = check_again(logged(member), who); !agrees) {
-            joining.done(agrees.error());
-            return std::nullopt;
-        }
         fail(member, {Errc::kReplaced, fmt::format("robot '{}' of session '{}' connected again; this link is closed",
                                                    who.robot, info_.name)});
     }
@@ -99,36 +97,28 @@ Result<> RobotSequencer::check_again(const LoggedRobot& robot, const JoinRequest
     if (robot.accepts(who.source, who.poses)) return {};
     if (robot.source == who.source) {
         return Error{Errc::kConflict,
-                     fmt::format("hello.poses: the {} scans of robot '{}' in session '{}' have poses of kind '{}', not "
+                     fmt::format("poses: the {} scans of robot '{}' in session '{}' have poses of kind '{}', not "
                                  "'{}'; continue with the same, or use another robot or session name",
                                  robot.last_seq, robot.name, info_.name, name_of(robot.poses), name_of(who.poses))};
     }
     const auto in_words = [](const std::string& name) { return name.empty() ? "a live robot" : "'" + name + "'"; };
     return Error{Errc::kConflict,
-                 fmt::format("hello.source: the {} scans of robot '{}' in session '{}' come from {}, not from {}; "
+                 fmt::format("source: the {} scans of robot '{}' in session '{}' come from {}, not from {}; "
                              "continue with the same, or use another robot or session name",
                              robot.last_seq, robot.name, info_.name, in_words(robot.source), in_words(who.source))};
 }
 
-/// Checks that the server can find out where a robot is relative to the others: either all robots send poses in the map
-/// frame, or the server estimates the poses of all of them. In a map that does not change, each is located by itself.
-Result<> RobotSequencer::check_poses(const JoinRequest& who) const {
-    if (pending_.is_localize_only()) return {};
-    const auto refused = [&](std::string_view why) {
-        return Error{Errc::kConflict, fmt::format("hello.poses is '{}': {}; use another session for robot '{}'",
-                                                  name_of(who.poses), why, who.robot)};
-    };
-    const bool is_estimated = who.poses != Poses::kMap;
-    for (const auto& robot : pending_.robots()) {
-        if (robot.name == who.robot) {
-            if (robot.last_seq > 0) return {}; // it was checked when it joined first
-            continue;
-        }
-        if ((robot.poses != Poses::kMap) == is_estimated) continue;
-        return refused(fmt::format("robot '{}' of session '{}' has poses of kind '{}', which do not go together",
-                                   robot.name, info_.name, name_of(robot.poses)));
-    }
-    return {};
+/// Checks that poses which a robot sends can be in the map's frame. They cannot if the server estimated the first ones:
+/// that frame is known to nobody else. In a map that does not change, wrong poses do no harm.
+Result<> RobotSequencer::check_frame(const std::string& robot, Poses poses) const {
+    const bool fits =
+        poses != Poses::kMap || pending_.map_frame() != MapFrame::kEstimated || pending_.is_localize_only();
+    if (fits) return {};
+    return Error{Errc::kConflict,
+                 fmt::format("poses: robot '{}' sends poses in the map's frame, but the map of session '{}' began with "
+                             "estimated poses of robot '{}', in a frame that others cannot know; use --poses odometry "
+                             "or none, or another session",
+                             robot, info_.name, pending_.find_robot_with_poses(false)->name)};
 }
 
 /// Admits the link that waits to join, if all entries of the robot's earlier links are in the maps.
@@ -285,6 +275,7 @@ Result<> RobotSequencer::check_next(const LoggedRobot& robot, const Scan& scan, 
                      fmt::format("sensor is {}, which was not described; send a SensorDescription first", scan.sensor)};
     }
     if (auto ok = check_pose(robot, scan); !ok) return ok;
+    if (auto ok = check_frame(robot.name, robot.poses); !ok) return ok;
     if (scan.begins_map && robot.last_seq == 0) { // later scans are placed relative to the first
         const auto shows = [](const Member& other) { return other.first_visible_seq > 0; };
         if (is_mapped || std::ranges::any_of(members_, shows)) return map_already_begun(robot.name, info_.name);
@@ -312,16 +303,13 @@ Result<PendingEntry> RobotSequencer::relocalize(const RobotRelocalized& relocali
 
 Result<std::optional<PendingEntry>> RobotSequencer::change_mode(const ModeChanged& changed) {
     if (changed.is_localize_only == pending_.is_localize_only()) return std::nullopt;
-    const auto& robots = pending_.robots();
-    const auto has_scans_of = [](bool is_given) {
-        return [=](const LoggedRobot& robot) { return robot.last_seq > 0 && (robot.poses == Poses::kMap) == is_given; };
-    };
-    const auto sender = std::ranges::find_if(robots, has_scans_of(true));
-    const auto other = std::ranges::find_if(robots, has_scans_of(false));
-    if (!changed.is_localize_only && sender != robots.end() && other != robots.end()) {
+    const auto* sender = pending_.find_robot_with_poses(true);
+    const auto* other = pending_.find_robot_with_poses(false);
+    const bool is_frame_given = pending_.map_frame() == MapFrame::kImported || pending_.map_frame() == MapFrame::kSent;
+    if (!changed.is_localize_only && !is_frame_given && sender != nullptr && other != nullptr) {
         return Error{Errc::kConflict,
                      fmt::format("localize_only: the session has robot '{}', which sends its poses (--poses map), and "
-                                 "robot '{}', whose poses the server estimates; they cannot both change one map, so it "
+                                 "robot '{}', whose estimated poses began the map; they cannot both change it, so it "
                                  "stays as it is",
                                  sender->name, other->name)};
     }

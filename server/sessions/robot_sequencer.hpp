@@ -112,7 +112,7 @@ private:
     [[nodiscard]] Member* member_of(const std::shared_ptr<RobotListener>& listener);
     [[nodiscard]] PendingEntry submitted(Member& member, std::optional<LogEntry> entry, std::size_t bytes);
     [[nodiscard]] Result<> check_again(const LoggedRobot& robot, const JoinRequest& who) const;
-    [[nodiscard]] Result<> check_poses(const JoinRequest& who) const;
+    [[nodiscard]] Result<> check_frame(const std::string& robot, Poses poses) const;
     [[nodiscard]] mapping::Reach reach_of(const Member& member, Scan& scan) const;
     [[nodiscard]] static Result<> check_pose(const LoggedRobot& robot, const Scan& scan);
     [[nodiscard]] Result<> check_next(const LoggedRobot& robot, const Scan& scan, bool is_mapped) const;

@@ -1,10 +1,12 @@
 #include "core/localization/localized_projection.hpp"
 #include "core/scan_matching/deskew.hpp"
 #include "tests/support/digests.hpp"
+#include "tests/unit/core/localization/two_robots_log.hpp"
 #include "tests/unit/core/slam/drive.hpp"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <variant>
@@ -115,6 +117,52 @@ TEST(LocalizedProjection, EqualLogsGiveEqualPosesInPartsAndWhole) {
     }
     EXPECT_EQ(whole.poses().trajectory(0, Estimate::kNewest), parts.poses().trajectory(0, Estimate::kNewest));
     EXPECT_EQ(digests_of(whole.projection().snapshot()), digests_of(parts.projection().snapshot()));
+}
+
+TEST(LocalizedProjection, ARobotIsLocatedInTheMapThatAnotherOneMakesWithItsPoses) {
+    const Drive sender = slam::drive_along(slam::ring_building(), slam::kLapAndAQuarter, {}, 4);
+    const std::vector<Point2> way{{20.0, 21.0}, {1.0, 21.0}, {1.0, 1.0}, {30.0, 1.0}};
+    const Drive follower = slam::drive_along(slam::ring_building(), way, {.scale = 1.02, .turn = 0.003}, 5);
+    const std::size_t half = sender.scans.size() / 2; // the rest of the map is unknown when the other one starts
+    LocalizedProjection maps(mapping::Projection{mapping::MapConfig()});
+    for (const LogEntry& entry : log_of_two(sender, follower, half)) apply(maps, entry);
+    const auto* poses = maps.poses().find(1);
+    ASSERT_NE(poses, nullptr);
+    ASSERT_EQ(poses->localization().state, LocalizationState::kTracking);
+    for (std::size_t n = 0; n < follower.scans.size(); ++n) {
+        ASSERT_TRUE(poses->is_in_map(n)) << "also before it was located";
+        const Pose2 pose = poses->newest(n);
+        ASSERT_LT(std::hypot(pose.x - follower.truth[n].x, pose.y - follower.truth[n].y), 0.15) << n;
+    }
+    const auto graph = maps.poses().graph();
+    const auto of_sender = std::ranges::count(graph.keyframes, RobotIndex{0}, &PoseGraphView::Node::robot);
+    EXPECT_GT(of_sender, 40) << "of half the way";
+    const auto is_true = [&](const PoseGraphView::Node& node) {
+        return node.robot != 0 || std::ranges::any_of(sender.truth, [&](const Pose2& pose) {
+                   return std::hypot(pose.x - node.pose.x, pose.y - node.pose.y) < 0.001;
+               });
+    };
+    EXPECT_TRUE(std::ranges::all_of(graph.keyframes, is_true)) << "sent poses do not move";
+}
+
+/// What a robot with odometry sees before any map exists is kept until a robot that sends its poses shows the place.
+TEST(LocalizedProjection, ARobotWaitsForTheMapOfAnotherOneWhosePosesGiveTheFrame) {
+    const Drive sender = slam::drive_along(slam::ring_building(), slam::kLapAndAQuarter, {}, 6);
+    const std::vector<Point2> way{{3.0, 1.0}, {33.0, 1.0}, {33.0, 15.0}};
+    const Drive follower = slam::drive_along(slam::ring_building(), way, {.scale = 1.02}, 7);
+    std::vector<LogEntry> log = log_of_two(sender, follower, 1);
+    Scan& first = std::get<ScanTaken>(log[4]).scan;
+    first.ranges.assign(first.ranges.size(), kNoReturn);
+    LocalizedProjection maps(mapping::Projection{mapping::MapConfig()});
+    for (std::size_t n = 0; n < log.size(); ++n) {
+        apply(maps, log[n]);
+        if (n == 60) {
+            EXPECT_EQ(maps.poses().find(1)->localization().state, LocalizationState::kUnlocated);
+        }
+    }
+    const auto* poses = maps.poses().find(1);
+    ASSERT_EQ(poses->localization().state, LocalizationState::kTracking);
+    EXPECT_LT(std::hypot(poses->newest(0).x - way[0].x, poses->newest(0).y - way[0].y), 0.15);
 }
 
 TEST(LocalizedProjection, RemembersTheNewestAnnouncement) {

@@ -92,15 +92,25 @@ TEST_F(LocalizeOnlyTest, RobotsOfAllKindsOfPosesJoin) {
     EXPECT_EQ(link->located.back().state, LocalizationState::kTracking);
     EXPECT_LT(error_of("estimated", length / 2 - 1), 0.15);
     EXPECT_EQ(digest(), map);
-    const auto refused = change_mode(false);
-    ASSERT_FALSE(refused);
-    EXPECT_EQ(refused.error().code, Errc::kConflict);
-    EXPECT_THAT(refused.error().message, HasSubstr("robot 'given', which sends its poses"));
+    ASSERT_TRUE(change_mode(false)) << "the frame is that of the poses that are sent";
+    drive_on("estimated", lap(), 20, length);
+    EXPECT_NE(digest(), map);
+    EXPECT_EQ(digest(), digest_with_poses_in_maps());
+    EXPECT_LT(error_of("estimated", length - 1), 0.15);
 
     const State expected = state();
     start_session();
     EXPECT_EQ(state(), expected);
-    EXPECT_LT(error_of("estimated", length / 2 - 1), 0.15);
+}
+
+TEST_F(LocalizeOnlyTest, MappingDoesNotGoOnWithPosesInAnotherFrame) {
+    drive_on(20, 40);
+    ASSERT_TRUE(change_mode(true));
+    drive_on("given", lap(), 20, 40, Poses::kMap);
+    const auto refused = change_mode(false);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, Errc::kConflict);
+    EXPECT_THAT(refused.error().message, HasSubstr("robot 'given', which sends its poses"));
 }
 
 TEST_F(LocalizeOnlyTest, ARobotThatCameBeforeTheMapBeginsItAfterwards) {

@@ -110,24 +110,31 @@ TEST_F(PosesTest, ScansBeforeOneWithTheWrongPoseAreKept) {
     EXPECT_EQ(logged().back(), LogEntry(ScanTaken{0, scan_with(1, std::nullopt, kPlace)})) << "as it was sent";
 }
 
-TEST_F(PosesTest, OnlyRobotsWithEstimatedPosesShareASessionWithOneOfThem) {
-    joined(Poses::kOdometry);
-    EXPECT_EQ(
-        refusal_of(join_with(Poses::kMap, "other")),
-        "hello.poses is 'map': robot 'r' of session 'lab' has poses of kind 'odometry', which do not go together; "
-        "use another session for robot 'other'");
+TEST_F(PosesTest, NoRobotSendsPosesInAFrameThatTheServerEstimated) {
+    const auto link = joined(Poses::kOdometry);
+    const auto early = joined(Poses::kMap, small_laser(), "early");
+    EXPECT_EQ(refusal_of(link, scan_with(1, std::nullopt, kPlace)), "accepted");
+    EXPECT_EQ(refusal_of(join_with(Poses::kMap, "other")),
+              "hello.poses: robot 'other' sends poses in the map's frame, but the map of session 'lab' began with "
+              "estimated poses of robot 'r', in a frame that others cannot know; use --poses odometry or none, or "
+              "another session");
+    session_->submit(early, {scan_with(1, kPlace, std::nullopt)}, 0);
+    run();
+    ASSERT_THAT(early->failures, SizeIs(1)) << "it joined before, but the map has begun since";
+    EXPECT_EQ(early->failures[0].code, Errc::kConflict);
+    EXPECT_THAT(early->failures[0].message, StartsWith("scan_batch.scans[0].poses: robot 'early' sends poses"));
     EXPECT_EQ(refusal_of(join_with(Poses::kOdometry, "second")), "accepted");
     EXPECT_EQ(refusal_of(join_with(Poses::kNone, "third")), "accepted");
 }
 
-TEST_F(PosesTest, RobotWithEstimatedPosesCannotJoinOneThatSendsThem) {
-    joined(Poses::kMap, small_laser(), "other");
-    for (const auto poses : {Poses::kOdometry, Poses::kNone}) {
-        EXPECT_THAT(refusal_of(join_with(poses)),
-                    StartsWith("hello.poses is '" + std::string(name_of(poses)) +
-                               "': robot 'other' of session 'lab' has poses of kind 'map'"));
-    }
-    EXPECT_EQ(refusal_of(join_with(Poses::kMap)), "accepted");
+TEST_F(PosesTest, RobotsWithEstimatedPosesJoinThoseThatSendThem) {
+    EXPECT_EQ(refusal_of(joined(Poses::kMap, small_laser(), "sender"), scan_with(1, kPlace, std::nullopt)), "accepted");
+    EXPECT_EQ(refusal_of(joined(Poses::kOdometry, small_laser(), "follower"), scan_with(1, std::nullopt, kPlace)),
+              "accepted");
+    start_session();
+    EXPECT_EQ(refusal_of(joined(Poses::kMap, small_laser(), "late"), scan_with(1, kPlace, std::nullopt)), "accepted")
+        << "the frame is the senders'";
+    EXPECT_EQ(session_->snapshot()->robots.at(1).localization.state, LocalizationState::kUnlocated);
 }
 
 TEST_F(PosesTest, RobotContinuesWithTheSameKindOfPoses) {
