@@ -24,6 +24,14 @@ public:
         poses_.change_mode(projection_.is_localize_only(), projection_.revision());
     }
 
+    /// @param projection  of a log up to an entry
+    /// @param poses       of the same entries
+    /// @param shown       SessionPoses::corrected() of the poses in the maps
+    /// @param announced   see announced()
+    LocalizedProjection(mapping::Projection projection, SessionPoses poses, Revision shown, Revision announced)
+        : projection_(std::move(projection)), poses_(std::move(poses)), estimated_(projection_.revision()),
+          shown_(shown), announced_(announced) {}
+
     /// Returns the maps.
     [[nodiscard]] const mapping::Projection& projection() const noexcept { return projection_; }
     /// Returns the maps, to take snapshots of them.
@@ -41,8 +49,19 @@ public:
     /// Returns whether the maps show scans at poses that have been corrected.
     [[nodiscard]] bool is_outdated() const noexcept { return shown_ < poses_.corrected(); }
 
+    /// Returns SessionPoses::corrected() of the poses in the maps.
+    [[nodiscard]] Revision shown() const noexcept { return shown_; }
+
     /// Returns MapsCorrected::as_of of the newest such entry; 0 if there is none.
     [[nodiscard]] Revision announced() const noexcept { return announced_; }
+
+    /// Returns how well the poses of a robot are known.
+    /// @param robot  index in the session
+    [[nodiscard]] mapping::Localization localization_of(RobotIndex robot) const {
+        if (projection_.robots()[robot].poses == Poses::kMap) return {};
+        const RobotPoses* poses = poses_.find(robot);
+        return poses == nullptr ? mapping::Localization{.state = LocalizationState::kUnlocated} : poses->localization();
+    }
 
     /// Returns the number of scans that the maps do not show at their corrected poses; 0 if they are not outdated.
     [[nodiscard]] std::size_t moving_scans() const noexcept { return is_outdated() ? poses_.scan_count() : 0; }

@@ -20,6 +20,12 @@ public:
     /// robot has not moved enough.
     [[nodiscard]] std::optional<double> yaw_error() const;
 
+    /// Lists the members that decide later results; see common/archive.
+    template <class Self, class Archive>
+    static void list(Self& self, Archive& archive) {
+        archive(self.along_, self.across_, self.travelled_, self.distance_);
+    }
+
 private:
     double along_ = 0.0;     // square metres: sum of the scalar products of both motions
     double across_ = 0.0;    // square metres: sum of their cross products

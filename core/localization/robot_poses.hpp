@@ -10,6 +10,7 @@
 #include "core/slam/trajectory_estimator.hpp"
 
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -102,6 +103,19 @@ public:
 
     /// Returns the estimator of the laser scans.
     [[nodiscard]] const slam::TrajectoryEstimator& estimator() const noexcept { return estimator_; }
+
+    /// Lists the members that decide later results; see common/archive.
+    template <class Self, class Archive>
+    static void list(Self& self, Archive& archive) {
+        archive(self.estimator_, self.scans_, self.laser_scans_, self.in_maps_, self.laser_odometry_, self.mount_,
+                self.is_laser_matched_, self.place_, self.corrections_, self.keyframes_in_maps_,
+                self.keyframes_at_correction_, self.optimizations_, self.decided_, self.fragments_);
+    }
+
+    /// Returns whether the members fit together, as they always do unless they were read from damaged bytes.
+    /// @param corrections  of the session
+    /// Precondition: the members of the map do.
+    [[nodiscard]] bool is_consistent(const std::vector<std::shared_ptr<const GraphMoment>>& corrections) const;
 
 private:
     static constexpr std::size_t kNoLaserScan = static_cast<std::size_t>(-1);

@@ -100,6 +100,37 @@ public:
     /// Returns the pose graph.
     [[nodiscard]] PoseGraphView graph() const;
 
+    /// Returns the state of the pose graph at each correction of the maps.
+    [[nodiscard]] const std::vector<std::shared_ptr<const GraphMoment>>& corrections() const noexcept {
+        return corrections_;
+    }
+
+    /// Returns the map that the robots share.
+    [[nodiscard]] const slam::SharedMap& map() const noexcept { return *map_; }
+
+    /// Returns the number of robots, including those that send poses but are followed by others.
+    [[nodiscard]] std::size_t robot_count() const noexcept { return robots_.size(); }
+
+    /// Lists the members that decide later results; see common/archive.
+    template <class Self, class Archive>
+    static void list(Self& self, Archive& archive) {
+        archive(*self.map_, self.corrected_, self.corrections_, self.scan_count_, self.given_);
+        auto count = static_cast<RobotIndex>(self.robots_.size());
+        archive(count);
+        for (RobotIndex robot = 0; robot < count; ++robot) {
+            bool is_estimated = self.find(robot) != nullptr;
+            archive(is_estimated);
+            if constexpr (Archive::kReads) {
+                if (archive.failed()) return;
+                self.robots_.push_back(is_estimated ? std::make_unique<RobotPoses>(*self.map_, robot) : nullptr);
+            }
+            if (is_estimated) archive(*self.robots_[robot]);
+        }
+    }
+
+    /// Returns whether the members fit together, as they always do unless they were read from damaged bytes.
+    [[nodiscard]] bool is_consistent() const;
+
 private:
     [[nodiscard]] RobotPoses& poses_of(RobotIndex robot);
     void correct(Revision revision);

@@ -98,7 +98,8 @@ bool Projection::integrate_entry(const ScanTaken& taken, double& work) {
     if (!is_in_trajectory(use)) return true;
     robot.scan_count += 1;
     robot.newest = {revision, scan.stamp, *scan.pose};
-    if (scan.duration != 0.0) robot.turns[scan.sensor] = *robot.newest;
+    const bool is_estimated = robots()[taken.robot].poses != Poses::kMap;
+    if (is_estimated && scan.duration != 0.0) robot.turns[scan.sensor] = *robot.newest;
     robot.trajectory.append(*robot.newest);
     return true;
 }
@@ -233,12 +234,12 @@ Projection::Robot Projection::Robot::branch() const {
 
 ProjectionState Projection::state() const {
     ProjectionState state{revision(),           bounds(),           chunk_count(), {},
-                          filter_.exclusions(), is_localize_only(), map_frame()};
+                          filter_.exclusions(), is_localize_only(), map_frame(),   corrected_};
     for (RobotIndex index = 0; index < robots_.size(); ++index) {
         const Robot& robot = robots_[index];
-        state.robots.push_back(
-            {robots()[index], robot.scan_count, robot.newest, filter_.jumps().state(index), robot.excluded});
-        if (robot.newest) state.pages += 1; // what restore() keeps of its trajectory
+        state.robots.push_back({robots()[index], robot.scan_count, robot.newest, filter_.jumps().state(index),
+                                robot.excluded, robot.unplaced, robot.poses.snapshot(), robot.turns});
+        state.pages += robot.poses.block_count() + (robot.newest ? 1 : 0); // what restore() keeps
     }
     return state;
 }
@@ -247,12 +248,16 @@ void Projection::restore(const ProjectionState& state) {
     rules_ = LogRules(state.revision, {state.robots.begin(), state.robots.end()},
                       state.exclusions->as_of(state.revision), state.is_localize_only, state.map_frame);
     filter_ = ScanFilter(config_.max_jump, state.exclusions);
+    corrected_ = state.corrected;
     laser_.restore(state.bounds.laser);
     sonar_.restore(state.bounds.sonar);
     for (const auto& saved : state.robots) {
         auto& robot = robots_.emplace_back();
         robot.scan_count = saved.scan_count;
         robot.excluded = saved.excluded;
+        robot.unplaced = saved.unplaced;
+        for (std::size_t n = 0; n < saved.scan_poses.size(); ++n) robot.poses.append(saved.scan_poses[n]);
+        robot.turns = saved.turns;
         robot.newest = saved.newest;
         const bool has_point = saved.newest && saved.scan_count > 0; // the newest point; earlier ones are in the log
         robot.trajectory = Trajectory(saved.scan_count - (has_point ? 1 : 0));

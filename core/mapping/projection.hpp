@@ -22,12 +22,18 @@ inline constexpr std::uint32_t kProjectionVersion = 4;
 /// The state of a projection without its chunks and without its trajectories, which the log contains. A checkpoint
 /// stores it with the chunks.
 struct ProjectionState {
+    /// By sensor: its newest integrated scan with times, if the poses of the robot are estimated.
+    using Turns = std::map<std::uint32_t, TrajectoryPoint>;
+
     /// A robot of the log, and what the projection counts of it.
     struct Robot : LoggedRobot {
         std::uint64_t scan_count = 0;          ///< scans in the trajectory
         std::optional<TrajectoryPoint> newest; ///< of the trajectory
         JumpFilter::Robot jumps;               ///< only with max_jump
         std::uint64_t excluded = 0;            ///< scans that exclusions left out
+        std::uint64_t unplaced = 0;            ///< scans whose poses are not known
+        EstimatedPosesView scan_poses;         ///< of its scans in the maps; empty if it sends poses
+        Turns turns;                           ///< see there
     };
 
     Revision revision = 0;                         ///< of the newest entry that it contains
@@ -37,6 +43,7 @@ struct ProjectionState {
     SharedExclusions exclusions = no_exclusions(); ///< of the log up to `revision`
     bool is_localize_only = false;                 ///< see ModeChanged
     MapFrame map_frame = MapFrame::kOpen;          ///< see LogRules::map_frame()
+    Revision corrected = 0;                        ///< see ScanPoses::corrected()
 };
 
 /// Approximate memory of one page of a projection: a chunk with its classes and its share of the trees, or a block of a
@@ -181,8 +188,8 @@ private:
         std::uint64_t unplaced = 0;
         std::optional<TrajectoryPoint> newest; // of its integrated scans
         Trajectory trajectory;
-        EstimatedPoses poses;                           // of its scans; empty if it sends poses
-        std::map<std::uint32_t, TrajectoryPoint> turns; // by sensor: its newest integrated scan with times
+        EstimatedPoses poses; // of its scans; empty if it sends poses
+        ProjectionState::Turns turns;
         std::map<std::uint32_t, KnownFan> fans;
     };
 

@@ -4,6 +4,7 @@
 #include "common/scan/scan.hpp"
 #include "common/scan/sensor.hpp"
 
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -21,6 +22,12 @@ struct SurfacePoint {
 
     friend bool operator==(const SurfacePoint&, const SurfacePoint&) = default;
 };
+
+/// Returns whether no coordinate is infinite or NaN.
+[[nodiscard]] inline bool is_finite(const SurfacePoint& point) noexcept {
+    return std::isfinite(point.x) && std::isfinite(point.y) && std::isfinite(point.normal_x) &&
+           std::isfinite(point.normal_y);
+}
 
 /// What one scan shows: the points that its beams hit, in the robot's frame.
 struct ScanPoints {

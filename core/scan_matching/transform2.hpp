@@ -36,6 +36,12 @@ struct Transform2 {
     friend bool operator==(const Transform2&, const Transform2&) = default;
 };
 
+/// Returns whether the transform is one: its coordinates are finite, and its rotation has unit length up to 1e-3.
+[[nodiscard]] inline bool is_finite(const Transform2& T_a_b) noexcept {
+    const auto [s, c] = T_a_b.rotation;
+    return std::isfinite(T_a_b.x) && std::isfinite(T_a_b.y) && std::fabs(s * s + c * c - 1.0) < 1e-3;
+}
+
 /// Converts a pose. Pre: it is finite.
 [[nodiscard]] Transform2 transform_of(const Pose2& pose) noexcept;
 

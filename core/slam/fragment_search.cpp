@@ -51,7 +51,7 @@ bool FragmentSearch::search(KeyframeGraph& graph, std::size_t fragment) {
     Searched& state = searched(fragment);
     if (state.expectation) {
         auto query = ask(graph, fragment, state.expectation);
-        if (!query || !query->search.run(kPart)) return false;
+        if (!query || !query->search->run(kPart)) return false;
         const auto found = query->answer();
         if (!found || !connect(graph, fragment, *found)) return false;
         state = Searched();
@@ -59,7 +59,8 @@ bool FragmentSearch::search(KeyframeGraph& graph, std::size_t fragment) {
     }
     if (!state.query) state.query = ask(graph, fragment, std::nullopt);
     if (!state.query) return false;
-    const bool has_ended = state.query->search.run(kPart);
+    if (!state.query->search) make_search(graph, *state.query, std::nullopt);
+    const bool has_ended = state.query->search->run(kPart);
     if (!has_ended && ++state.query->parts < kPartsMax) return false;
     const Query query = *std::exchange(state.query, std::nullopt);
     const auto found = has_ended ? query.answer() : std::nullopt;
@@ -93,13 +94,30 @@ bool FragmentSearch::connect(KeyframeGraph& graph, std::size_t fragment, const T
     for (std::size_t n = graph.size(); n-- > 0;) {
         if (is_near(n)) views.add(graph[n], graph.pose(n));
     }
-    const KeyframeMap around(std::move(views));
+    KeyframeMap around(std::move(views));
     const auto match = match_to_lines(graph[newest].scan->points, around.points(), pose, {pose, 0.2, 0.1}, {});
     if (match.inlier_ratio < kConnectedInliers) return false;
     graph.add_loop({*nearest, newest, inverse(graph.pose(*nearest)) * match.T_map_robot,
                     information_of(kFitSigma, kFitTurnSigma), true});
     graph.move(fragment, match.T_map_robot * inverse(graph.pose(newest)), true);
     return true;
+}
+
+bool FragmentSearch::is_consistent(const KeyframeGraph& graph) const {
+    const auto is_keyframe = [&](std::size_t keyframe) { return keyframe < graph.size(); };
+    const auto is_map = [&](const LocatedMap& map) {
+        return std::ranges::all_of(map.keyframes, is_keyframe, &Located::keyframe);
+    };
+    const auto is_possible = [&](const Searched& state) {
+        if (!std::ranges::all_of(state.answers, is_keyframe, &Answer::keyframe)) return false;
+        if (state.expectation && !is_keyframe(state.expectation->keyframe)) return false;
+        if (!state.query) return true;
+        const Query& query = *state.query;
+        return is_keyframe(query.keyframe) && query.parts < kPartsMax && query.points.size() >= kPointsMin &&
+               query.points.size() <= kPointsMax && is_map(*query.map) && !query.map->keyframes.empty() &&
+               std::ranges::any_of(graph.fragments(), &Fragment::is_located);
+    };
+    return searched_.size() <= graph.fragments().size() && is_map(*map_) && std::ranges::all_of(searched_, is_possible);
 }
 
 void FragmentSearch::expect(std::size_t fragment, const Surroundings& place, std::size_t keyframe) {
@@ -113,8 +131,8 @@ FragmentSearch::Searched& FragmentSearch::searched(std::size_t fragment) {
 
 /// Returns whether the map lacks keyframes, or has some elsewhere.
 bool FragmentSearch::is_outdated(const KeyframeGraph& graph, const std::vector<Located>& located) const {
-    if (located.size() >= in_map_.size() + kMapRefresh) return true;
-    return std::ranges::any_of(in_map_, [&](const Located& then) {
+    if (located.size() >= map_->keyframes.size() + kMapRefresh) return true;
+    return std::ranges::any_of(map_->keyframes, [&](const Located& then) {
         const Transform2 off = inverse(then.T_map_keyframe) * graph.pose(then.keyframe);
         return distance_of(off) > kMapMoveMax;
     });
@@ -126,22 +144,42 @@ void FragmentSearch::update_map(const KeyframeGraph& graph) {
     for (std::size_t n = 0; n < graph.size(); ++n) {
         if (graph.is_in_map(n)) located.push_back({n, graph.pose(n)});
     }
-    if (located.empty() || (map_ && !is_outdated(graph, located))) return;
-    in_map_ = std::move(located);
-    const Transform2& center = in_map_.back().T_map_keyframe;
+    if (located.empty() || (!map_->keyframes.empty() && !is_outdated(graph, located))) return;
+    map_ = std::make_shared<LocatedMap>(LocatedMap{std::move(located), nullptr});
+}
+
+/// Returns the grids of a map, which are computed at the first call.
+const std::shared_ptr<const PlaceMap>& FragmentSearch::places_of(const KeyframeGraph& graph, LocatedMap& map) {
+    if (map.places) return map.places;
+    const Transform2& center = map.keyframes.back().T_map_keyframe;
     KeyframeViews views;
-    for (const auto& [keyframe, pose] : in_map_) {
+    for (const auto& [keyframe, pose] : map.keyframes) {
         const bool is_near = std::fabs(pose.x - center.x) <= kMapReach && std::fabs(pose.y - center.y) <= kMapReach;
         if (is_near) views.add(graph[keyframe], pose);
     }
-    map_ = std::make_shared<const PlaceMap>(views.views());
+    return map.places = std::make_shared<const PlaceMap>(views.views());
+}
+
+/// Makes the search of a query, up to its parts that are done.
+void FragmentSearch::make_search(const KeyframeGraph& graph, Query& query,
+                                 const std::optional<Expectation>& expectation) {
+    const double share = expectation ? kExpectedScoreShare : kScoreShare;
+    scan_matching::PlaceQuestion question{
+        .score_min = static_cast<int>(share * static_cast<double>(query.points.size())), .rival_share = kRivalShare};
+    if (expectation) {
+        const double moved = distance_of(inverse(graph.pose(expectation->keyframe)) * graph.pose(query.keyframe));
+        question.center = expectation->place.near;
+        question.radius = expectation->place.radius + moved;
+    }
+    query.search.emplace(places_of(graph, *query.map), query.points, question);
+    for (std::size_t n = 0; n < query.parts; ++n) query.search->run(kPart);
 }
 
 /// Begins to look up the newest keyframes of a fragment.
 std::optional<FragmentSearch::Query> FragmentSearch::ask(const KeyframeGraph& graph, std::size_t fragment,
                                                          const std::optional<Expectation>& expectation) {
     update_map(graph);
-    if (!map_) return std::nullopt;
+    if (map_->keyframes.empty()) return std::nullopt;
     const auto& keyframes = graph.fragments()[fragment].keyframes;
     const std::size_t newest = keyframes.back();
     const Transform2 T_newest_fragment = inverse(graph.pose(newest));
@@ -164,19 +202,13 @@ std::optional<FragmentSearch::Query> FragmentSearch::ask(const KeyframeGraph& gr
     for (std::size_t first = 0; first < kStride; ++first) {
         for (std::size_t n = first; n < count; n += kStride) chosen.push_back(points[n * points.size() / count]);
     }
-    const double share = expectation ? kExpectedScoreShare : kScoreShare;
-    scan_matching::PlaceQuestion question{.score_min = static_cast<int>(share * static_cast<double>(count)),
-                                          .rival_share = kRivalShare};
-    if (expectation) {
-        const double moved = distance_of(inverse(graph.pose(expectation->keyframe)) * graph.pose(newest));
-        question.center = expectation->place.near;
-        question.radius = expectation->place.radius + moved;
-    }
-    return Query{newest, T_newest_fragment, 0, {map_, chosen, question}};
+    Query query{newest, T_newest_fragment, 0, map_, std::move(chosen), std::nullopt};
+    make_search(graph, query, expectation);
+    return query;
 }
 
 std::optional<Transform2> FragmentSearch::Query::answer() const {
-    const auto& place = search.place();
+    const auto& place = search->place();
     if (!place || place->rival_score > kRivalShare * place->score) return std::nullopt;
     return place->T_map_points * T_keyframe_fragment;
 }

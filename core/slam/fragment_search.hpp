@@ -45,6 +45,15 @@ public:
     /// @param keyframe  index of that keyframe, the newest one or the next one
     void expect(std::size_t fragment, const Surroundings& place, std::size_t keyframe);
 
+    /// Lists the members that decide later results; see common/archive.
+    template <class Self, class Archive>
+    static void list(Self& self, Archive& archive) {
+        archive(self.map_, self.searched_, self.is_map_complete_);
+    }
+
+    /// Returns whether the members fit together, as they always do unless they were read from damaged bytes.
+    [[nodiscard]] bool is_consistent(const KeyframeGraph& graph) const;
+
 private:
     /// A place that was found.
     struct Answer {
@@ -58,6 +67,17 @@ private:
         Transform2 T_map_keyframe;
     };
 
+    /// The map of the located keyframes at a moment.
+    struct LocatedMap {
+        std::vector<Located> keyframes;
+        std::shared_ptr<const scan_matching::PlaceMap> places; // null: not computed yet
+
+        template <class Self, class Archive>
+        static void list(Self& self, Archive& archive) {
+            archive(self.keyframes);
+        }
+    };
+
     /// What people say about a fragment.
     struct Expectation {
         Surroundings place;
@@ -69,10 +89,17 @@ private:
         std::size_t keyframe = 0;       // the newest one when it began
         Transform2 T_keyframe_fragment; // then
         std::size_t parts = 0;          // of the search that are done
-        scan_matching::PlaceSearch search;
+        std::shared_ptr<LocatedMap> map;
+        std::vector<scan_matching::SurfacePoint> points;  // of the keyframes, in the frame of the newest one
+        std::optional<scan_matching::PlaceSearch> search; // nullopt: the parts must be searched again
 
         /// Returns T_map_fragment if one place is better than all others. Precondition: the search has ended.
         [[nodiscard]] std::optional<Transform2> answer() const;
+
+        template <class Self, class Archive>
+        static void list(Self& self, Archive& archive) {
+            archive(self.keyframe, self.T_keyframe_fragment, self.parts, self.map, self.points);
+        }
     };
 
     /// A fragment that is searched for.
@@ -84,15 +111,17 @@ private:
 
     [[nodiscard]] static bool connect(KeyframeGraph& graph, std::size_t fragment, const Transform2& T_map_fragment);
     [[nodiscard]] Searched& searched(std::size_t fragment);
+    [[nodiscard]] static const std::shared_ptr<const scan_matching::PlaceMap>& places_of(const KeyframeGraph& graph,
+                                                                                         LocatedMap& map);
+    static void make_search(const KeyframeGraph& graph, Query& query, const std::optional<Expectation>& expectation);
     [[nodiscard]] bool is_outdated(const KeyframeGraph& graph, const std::vector<Located>& located) const;
     void update_map(const KeyframeGraph& graph);
     [[nodiscard]] std::optional<Query> ask(const KeyframeGraph& graph, std::size_t fragment,
                                            const std::optional<Expectation>& expectation);
     [[nodiscard]] bool is_confirmed(const KeyframeGraph& graph, const std::vector<Answer>& answers) const;
 
-    std::shared_ptr<const scan_matching::PlaceMap> map_; // of the located keyframes
-    std::vector<Located> in_map_;
-    std::vector<Searched> searched_; // by fragment
+    std::shared_ptr<LocatedMap> map_ = std::make_shared<LocatedMap>(); // without keyframes: none was needed yet
+    std::vector<Searched> searched_;                                   // by fragment
     bool is_map_complete_ = false;
 };
 

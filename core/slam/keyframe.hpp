@@ -45,6 +45,18 @@ public:
     /// Returns the views. Valid while this object exists and add() is not called.
     [[nodiscard]] std::span<const scan_matching::View> views() const noexcept { return views_; }
 
+    /// Lists the members that decide later results; see common/archive.
+    template <class Self, class Archive>
+    static void list(Self& self, Archive& archive) {
+        archive(self.scans_);
+        if constexpr (Archive::kReads) {
+            self.views_.clear();
+            if (archive.failed()) return; // some scans may be null
+            for (const auto& scan : self.scans_) self.views_.push_back({{}, scan->points, scan->laser});
+        }
+        for (auto& view : self.views_) archive(view.T_map_robot);
+    }
+
 private:
     std::vector<std::shared_ptr<const ScanPoints>> scans_; // what views_ refer to
     std::vector<scan_matching::View> views_;

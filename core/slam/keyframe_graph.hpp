@@ -139,6 +139,15 @@ public:
     /// @param count  at most this many keyframes
     [[nodiscard]] KeyframeViews views_near(std::size_t frame, std::size_t count) const;
 
+    /// Lists the members that decide later results; see common/archive.
+    template <class Self, class Archive>
+    static void list(Self& self, Archive& archive) {
+        archive(self.fragments_, self.keyframes_, self.poses_, self.edges_, self.newest_given_, self.is_frozen_);
+    }
+
+    /// Returns whether the members fit together, as they always do unless they were read from damaged bytes.
+    [[nodiscard]] bool is_consistent() const;
+
 private:
     [[nodiscard]] std::vector<std::size_t> fixed() const;
 

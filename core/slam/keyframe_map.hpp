@@ -9,18 +9,21 @@
 
 namespace scanloom::slam {
 
-/// The map of some keyframes: their points, and the space that they saw. The space is computed when it is first needed,
-/// because most scans need only the points.
+/// The map of some keyframes: their points, and the space that they saw. Both are computed when they are first needed:
+/// most scans need only the points, and of the maps that a checkpoint contains, most are not needed soon.
 /// Threads: one at a time.
 class KeyframeMap {
 public:
     KeyframeMap() = default;
 
     /// Makes the map of these keyframes, in the frame of their poses.
-    explicit KeyframeMap(KeyframeViews views) : views_(std::move(views)), points_(views_.views()) {}
+    explicit KeyframeMap(KeyframeViews views) : views_(std::move(views)) {}
 
-    /// Returns the points of the map.
-    [[nodiscard]] const scan_matching::PointMap& points() const noexcept { return points_; }
+    /// Returns the points of the map. The first call computes them.
+    [[nodiscard]] const scan_matching::PointMap& points() {
+        if (!points_) points_.emplace(views_.views());
+        return *points_;
+    }
 
     /// Returns the space that the keyframes saw. The first call computes it.
     [[nodiscard]] const scan_matching::SeenSpace& space() {
@@ -31,9 +34,18 @@ public:
     /// Frees the memory of space(), which computes it again when it is needed.
     void release_space() noexcept { space_.reset(); }
 
+    /// Returns what the map consists of.
+    [[nodiscard]] const KeyframeViews& views() const noexcept { return views_; }
+
+    /// Lists the members that decide later results; see common/archive.
+    template <class Self, class Archive>
+    static void list(Self& self, Archive& archive) {
+        archive(self.views_);
+    }
+
 private:
     KeyframeViews views_;
-    scan_matching::PointMap points_;
+    std::optional<scan_matching::PointMap> points_;
     std::optional<scan_matching::SeenSpace> space_;
 };
 

@@ -37,6 +37,15 @@ public:
     /// Returns the figures since the start.
     [[nodiscard]] const LoopFigures& figures() const noexcept { return figures_; }
 
+    /// Lists the members that decide later results; see common/archive.
+    template <class Self, class Archive>
+    static void list(Self& self, Archive& archive) {
+        archive(self.submaps_, self.figures_, self.new_loops_, self.next_test_at_);
+    }
+
+    /// Returns whether the members fit together, as they always do unless they were read from damaged bytes.
+    [[nodiscard]] bool is_consistent(const KeyframeGraph& graph) const { return submaps_.is_consistent(graph); }
+
 private:
     /// A submap near the keyframe.
     struct Place {

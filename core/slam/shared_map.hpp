@@ -83,6 +83,15 @@ public:
         return optimizations_ + loop_figures().optimizations;
     }
 
+    /// Lists the members that decide later results; see common/archive.
+    template <class Self, class Archive>
+    static void list(Self& self, Archive& archive) {
+        archive(self.graph_, self.loops_, self.fragments_, self.optimizations_, self.is_frozen_, self.is_frame_given_);
+    }
+
+    /// Returns whether the members fit together, as they always do unless they were read from damaged bytes.
+    [[nodiscard]] bool is_consistent() const;
+
 private:
     void search(std::size_t fragment);
 

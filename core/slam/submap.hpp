@@ -44,6 +44,15 @@ public:
     /// @copydoc operator[]
     [[nodiscard]] const Submap& operator[](std::size_t index) const { return submaps_[index]; }
 
+    /// Lists the members that decide later results; see common/archive.
+    template <class Self, class Archive>
+    static void list(Self& self, Archive& archive) {
+        archive(self.submaps_, self.counts_);
+    }
+
+    /// Returns whether the members fit together, as they always do unless they were read from damaged bytes.
+    [[nodiscard]] bool is_consistent(const KeyframeGraph& graph) const;
+
 private:
     std::vector<Submap> submaps_;
     std::vector<std::size_t> counts_; // of submaps, by fragment

@@ -61,6 +61,18 @@ public:
     /// Returns the number of scans since the last one that matched.
     [[nodiscard]] std::size_t unmatched() const noexcept { return hypotheses_.front().unmatched; }
 
+    /// Returns the number of scans that are not decided.
+    [[nodiscard]] std::size_t open_count() const noexcept { return hypotheses_.front().scans.size(); }
+
+    /// Lists the members that decide later results; see common/archive.
+    template <class Self, class Archive>
+    static void list(Self& self, Archive& archive) {
+        archive(self.map_, self.hypotheses_, self.position_mismatch_, self.yaw_mismatch_);
+    }
+
+    /// Returns whether the members fit together, as they always do unless they were read from damaged bytes.
+    [[nodiscard]] bool is_consistent() const;
+
 private:
     /// Poses of the scans since the last decision.
     struct Hypothesis {

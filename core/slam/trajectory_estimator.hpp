@@ -132,6 +132,18 @@ public:
     /// Returns the map, which the robot may share with others.
     [[nodiscard]] const SharedMap& map() const noexcept { return map_; }
 
+    /// Lists the members that decide later results; see common/archive. The map is not among them.
+    template <class Self, class Archive>
+    static void list(Self& self, Archive& archive) {
+        archive(self.tracker_, self.fragments_, self.continued_, self.keyframes_, self.anchor_, self.T_anchor_start_,
+                self.is_in_frozen_map_, self.own_views_, self.placed_, self.first_, self.newest_, self.odometry_,
+                self.relocalized_, self.unmatched_count_, self.stamp_, self.seconds_);
+    }
+
+    /// Returns whether the members fit together, as they always do unless they were read from damaged bytes.
+    /// Precondition: those of the map do.
+    [[nodiscard]] bool is_consistent() const;
+
 private:
     static constexpr std::size_t kLost = 20; // scans in a row without a match
 
