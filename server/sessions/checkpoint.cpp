@@ -1,6 +1,7 @@
 #include "server/sessions/checkpoint.hpp"
 
 #include "common/wire/log_codec.hpp"
+#include "server/sessions/checkpoint_estimation.hpp"
 #include "server/sessions/checkpoint_parts.hpp"
 
 #include <fmt/format.h>
@@ -123,8 +124,10 @@ void write_chunks(PieceWriter& out, std::string_view prefix, const View& view, R
 
 /// Writes the parts that must agree, as one piece. A stored sensor must not be newer than the head: a recovery would
 /// apply it to earlier scans.
-void write_state(PieceWriter& out, const mapping::ProjectionState& state, Revision since) {
+void write_state(PieceWriter& out, const mapping::ProjectionState& state,
+                 const std::optional<EstimationHead>& estimation, Revision since) {
     out.add("head", head_part(state));
+    if (estimation) out.add(std::string(kEstimationHead), estimation_head_part(*estimation));
     if (state.exclusions->revision() != 0) out.add(std::string(kExclusionsPart), exclusions_part(state));
     for (RobotIndex index = 0; index < state.robots.size(); ++index) {
         out.add(fmt::format("robot/{:08x}", index), robot_part(state.robots[index]));
@@ -137,11 +140,48 @@ void write_state(PieceWriter& out, const mapping::ProjectionState& state, Revisi
     out.write();
 }
 
+/// Returns the head of the estimation in the stored checkpoint; nullopt if that has none.
+Result<std::optional<EstimationHead>> stored_estimation(store::ScanLog& log, store::SessionId session) {
+    const Error kIsRead{Errc::kShuttingDown, "the heads are read"};
+    std::optional<EstimationHead> stored;
+    const auto read = log.read_checkpoint(session, [&](std::string_view key, std::string_view value) -> Result<> {
+        if (key > kEstimationHead) return kIsRead;
+        if (key != kEstimationHead) return {};
+        auto head = read_estimation_head(value);
+        if (!head) return head.error();
+        stored = std::move(*head);
+        return kIsRead;
+    });
+    if (!read && read.error() != kIsRead) return read.error();
+    return stored;
+}
+
+/// Writes the parts of the estimation but its head, which it returns.
+Result<std::optional<EstimationHead>> write_estimation(PieceWriter& out, store::ScanLog& log, store::SessionId session,
+                                                       const mapping::ProjectionState& state,
+                                                       const std::optional<localization::EstimationState>& estimation) {
+    if (!estimation) return std::optional<EstimationHead>();
+    const auto stored = stored_estimation(log, session);
+    if (!stored) return stored.error();
+    auto head = add_estimation(*estimation, state, *stored, [&](std::string key, std::string_view value) {
+        out.add_compressed(std::move(key), value);
+        out.write_if_full();
+    });
+    out.write(); // apart from the last piece
+    return std::optional(std::move(head));
+}
+
 } // namespace
+
+std::optional<localization::EstimationState> estimation_to_store(const localization::LocalizedProjection& maps) {
+    if (!maps.projection().has_estimated_poses()) return std::nullopt;
+    return localization::state_of(maps);
+}
 
 Result<> write_checkpoint(store::ScanLog& log, store::SessionId session, const mapping::Snapshot& snapshot,
                           const mapping::ProjectionState& state, std::optional<Revision> since,
-                          const std::atomic<bool>& stop) {
+                          const std::atomic<bool>& stop,
+                          const std::optional<localization::EstimationState>& estimation) {
     try {
         if (!since) {
             if (auto cleared = log.clear_checkpoint(session); !cleared) return cleared;
@@ -151,7 +191,9 @@ Result<> write_checkpoint(store::ScanLog& log, store::SessionId session, const m
         out.add("format", format_part());
         write_chunks(out, kLaserChunk, snapshot.laser, stored);
         write_chunks(out, kSonarChunk, snapshot.sonar, stored);
-        write_state(out, state, stored);
+        const auto head = write_estimation(out, log, session, state, estimation);
+        if (!head) return head.error();
+        write_state(out, state, *head, stored);
         return out.written();
     } catch (const std::bad_alloc&) {
         return Error{Errc::kOverloaded, "there is no memory left to write it"};

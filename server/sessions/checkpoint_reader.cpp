@@ -32,7 +32,7 @@ std::optional<std::vector<std::uint32_t>> numbers_in(std::string_view key) {
     return numbers;
 }
 
-/// Returns where the frame of a checkpoint's map comes from. No robot of it has estimated poses.
+/// Returns where the frame of a checkpoint's map comes from if no robot of it has estimated poses.
 MapFrame map_frame_of(const mapping::ProjectionState& state) {
     const bool has_scans = std::ranges::any_of(state.robots, [](const auto& robot) { return robot.last_seq > 0; });
     if (has_scans) return MapFrame::kSent;
@@ -55,7 +55,13 @@ Result<> CheckpointReader::add(std::string_view key, std::string_view value) {
     if (key == "format") return add_format(value);
     if (!has_format_) return Error{Errc::kMalformed, "the checkpoint's part 'format' is missing"};
     if (key == "head") return add_head(value);
+    if (key == kEstimationHead) return add_estimation_head(value);
     if (key == kExclusionsPart) return add_exclusions(value);
+    if (key.starts_with(kEstimationPart)) {
+        const bool is_well =
+            !estimation_ || is_restored_ || estimation_->add(key.substr(kEstimationPart.size()), value, decompressor_);
+        return is_well ? Result<>() : damaged(key);
+    }
     for (const auto& kind : kKinds) {
         if (!key.starts_with(kind.prefix)) continue;
         const auto numbers = numbers_in(key.substr(kind.prefix.size()));
@@ -96,6 +102,13 @@ Result<> CheckpointReader::add_head(std::string_view value) {
     return {};
 }
 
+Result<> CheckpointReader::add_estimation_head(std::string_view value) {
+    auto head = read_estimation_head(value);
+    if (!head) return head.error();
+    estimation_.emplace(std::move(*head));
+    return {};
+}
+
 Result<> CheckpointReader::add_exclusions(std::string_view value) {
     auto part = read_exclusions_part(value);
     if (!part) return damaged(kExclusionsPart);
@@ -109,6 +122,11 @@ bool CheckpointReader::add_robot(const Numbers& numbers, std::string_view value)
     PartReader part(value);
     auto& robot = state_.robots.emplace_back();
     if (numbers[0] < excluded_.size()) robot.excluded = excluded_[numbers[0]];
+    if (estimation_ && numbers[0] < estimation_->head().robots.size()) {
+        const auto& estimated = estimation_->head().robots[numbers[0]];
+        robot.poses = estimated.poses;
+        robot.unplaced = estimated.unplaced;
+    }
     robot.last_seq = part.take<std::uint64_t>();
     robot.scan_count = part.take<std::uint64_t>();
     if (parts_version_ > 2 && robot.scan_count > 0) robot.newest = part.take<mapping::TrajectoryPoint>();
@@ -153,9 +171,8 @@ bool CheckpointReader::add_old_points(const Numbers& numbers, std::string_view v
 }
 
 bool CheckpointReader::add_laser_chunk(const Numbers& numbers, std::string_view value) {
-    restore_projection();
     const auto bytes = decompressor_.decompressed(value, kChunkBytesMax);
-    if (!bytes) return false;
+    if (!bytes || !restore_projection()) return false;
     PartReader part(*bytes);
     const auto revision = part.take<Revision>();
     const auto occupancy = part.take<decltype(mapping::LaserChunk::occupancy)>();
@@ -175,9 +192,8 @@ bool CheckpointReader::add_laser_chunk(const Numbers& numbers, std::string_view 
 }
 
 bool CheckpointReader::add_sonar_chunk(const Numbers& numbers, std::string_view value) {
-    restore_projection();
     const auto bytes = decompressor_.decompressed(value, kChunkBytesMax);
-    if (!bytes) return false;
+    if (!bytes || !restore_projection()) return false;
     PartReader part(*bytes);
     const auto revision = part.take<Revision>();
     const auto cells = part.take<decltype(mapping::SonarChunk::cells)>();
@@ -186,23 +202,33 @@ bool CheckpointReader::add_sonar_chunk(const Numbers& numbers, std::string_view 
     return true;
 }
 
-void CheckpointReader::restore_projection() {
-    if (!is_restored_) {
-        state_.map_frame = map_frame_of(state_);
-        projection_.restore(state_);
-    }
+/// Passes the state to the projection at the first call. @return false if the estimation's is damaged
+bool CheckpointReader::restore_projection() {
+    if (is_restored_) return !estimation_ || restored_;
     is_restored_ = true;
+    state_.map_frame = estimation_ ? estimation_->head().map_frame : map_frame_of(state_);
+    if (estimation_) restored_ = std::move(*estimation_).finish(state_);
+    if (estimation_ && !restored_) return false;
+    projection_.restore(state_);
+    return true;
 }
 
 bool CheckpointReader::is_newest_format() const noexcept { return !has_format_ || parts_version_ == kPartsVersion; }
+
+std::vector<mapping::Localization> CheckpointReader::localization() const {
+    std::vector<mapping::Localization> localization;
+    if (!estimation_) return localization;
+    for (const auto& robot : estimation_->head().robots) localization.push_back(robot.localization);
+    return localization;
+}
 
 std::optional<mapping::ProjectionState> CheckpointReader::state() && {
     if (!is_newest_format()) return std::nullopt;
     return std::move(state_);
 }
 
-Result<mapping::Projection> CheckpointReader::finish() && {
-    restore_projection();
+Result<localization::LocalizedProjection> CheckpointReader::finish() && {
+    if (!restore_projection()) return Error{Errc::kMalformed, "the checkpoint's state of the estimation is damaged"};
     for (const auto& exclusion : state_.exclusions->all()) {
         if (exclusion.excluded.robot >= state_.robots.size()) return damaged(kExclusionsPart);
     }
@@ -211,7 +237,9 @@ Result<mapping::Projection> CheckpointReader::finish() && {
         return Error{Errc::kMalformed, fmt::format("the checkpoint has no pose of robot '{}', which took {} scans",
                                                    robot.name, robot.scan_count)};
     }
-    return std::move(projection_);
+    if (!restored_) return localization::LocalizedProjection(std::move(projection_));
+    return localization::LocalizedProjection(std::move(projection_), std::move(restored_->poses), restored_->shown,
+                                             restored_->announced);
 }
 
 } // namespace scanloom::sessions

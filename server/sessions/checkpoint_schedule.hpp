@@ -26,8 +26,13 @@ public:
     /// Returns whether a checkpoint should be written. After a failed one, the next is due as late as after a stored
     /// one.
     /// @param now  revision of the maps
-    [[nodiscard]] bool is_due(Revision now) const noexcept {
-        return !writing_ && (now - tried_ >= every_ || work_ >= kWork || described_ >= kDescribed);
+    /// @param is_growing  whether a checkpoint is in proportion to the log, as the state of the estimation is. Then the
+    ///                    log must have grown by a quarter, so that all checkpoints together are, too
+    [[nodiscard]] bool is_due(Revision now, bool is_growing = false) const noexcept {
+        if (writing_) return false;
+        const Revision grown = now - tried_;
+        const bool has_grown = !is_growing || grown >= tried_ / 4;
+        return described_ >= kDescribed || (has_grown && (grown >= every_ || work_ >= kWork));
     }
 
     /// Returns whether the maps are newer than the stored checkpoint.

@@ -30,7 +30,7 @@ const Error kOutdated{Errc::kConflict,
                       "the rest of the log excludes scans that are in these maps, or brings some back"};
 
 struct FromCheckpoint {
-    mapping::Projection projection;
+    localization::LocalizedProjection maps;
     bool can_be_added_to; // the next checkpoint may write only what has changed
 };
 
@@ -43,9 +43,9 @@ Result<FromCheckpoint> read_checkpoint(store::ScanLog& log, store::SessionId ses
     });
     if (!read) return read.error();
     const bool can_be_added_to = reader.is_newest_format();
-    auto projection = std::move(reader).finish();
-    if (!projection) return projection.error();
-    return FromCheckpoint{std::move(*projection), can_be_added_to};
+    auto maps = std::move(reader).finish();
+    if (!maps) return maps.error();
+    return FromCheckpoint{std::move(*maps), can_be_added_to};
 }
 
 /// Applies the entries after those that the maps contain. @return false if it was stopped before the end of the log
@@ -83,7 +83,8 @@ Result<Recovered> recover_from_log(store::ScanLog& log, store::SessionId session
 Result<Recovered> recover_from_checkpoint(store::ScanLog& log, store::SessionId session,
                                           const mapping::MapConfig& config, const std::atomic<bool>& stop) {
     auto checkpoint = read_checkpoint(log, session, config, stop);
-    Recovered recovered{checkpoint ? std::move(checkpoint->projection) : mapping::Projection(config)};
+    Recovered recovered{checkpoint ? std::move(checkpoint->maps)
+                                   : localization::LocalizedProjection(mapping::Projection(config))};
     if (!checkpoint && checkpoint.error() == stopped()) {
         recovered.complete = false;
         return recovered;

@@ -65,7 +65,8 @@ Result<SessionInfo> SessionRegistry::estimate(std::string_view name) {
     return before;
 }
 
-/// Closes a session and replaces it by its copy with odometry, if it has poses in the map frame.
+/// Closes a session and replaces it by its copy with odometry, if it has poses in the map frame. Otherwise removes its
+/// checkpoint, so that its poses are estimated again.
 /// @param left  its id and its summary become those of the copy
 Result<> SessionRegistry::take_as_odometry(ListedSession& left) {
     if (left.session) {
@@ -74,7 +75,9 @@ Result<> SessionRegistry::take_as_odometry(ListedSession& left) {
         discard_and_wait(*left.session, maps_are_computed_again(left.info.name));
         left.summary = summary_of(*left.session->snapshot()); // a robot may have joined since
     }
-    if (std::ranges::none_of(left.summary.facts->robots, sends_map_poses)) return {};
+    if (std::ranges::none_of(left.summary.facts->robots, sends_map_poses)) {
+        return state_.log.clear_checkpoint(left.info.id);
+    }
     Summary summary = estimated(left.summary);
     const auto copy = copy_as_odometry(state_.log, left.info.id, state_.draining);
     if (!copy) return copy.error();

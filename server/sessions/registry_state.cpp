@@ -18,11 +18,10 @@ namespace {
 void keep_progress(store::ScanLog& log, const SessionInfo& info, Recovered& recovered,
                    const std::atomic<bool>& finish_early) {
     auto& projection = recovered.maps.projection();
-    if (projection.has_estimated_poses()) return; // a checkpoint does not contain the state of the estimation
     if (projection.revision() <= recovered.checkpointed.value_or(0)) return; // no progress
     const auto snapshot = projection.snapshot();
-    const auto written =
-        write_checkpoint(log, info.id, snapshot, projection.state(), recovered.checkpointed, finish_early);
+    const auto written = write_checkpoint(log, info.id, snapshot, projection.state(), recovered.checkpointed,
+                                          finish_early, estimation_to_store(recovered.maps));
     log::info({.session = info.name}, "session '{}': recovery stopped after entry {}{}", info.name, snapshot.revision,
               written ? "; the next start continues there" : "");
 }

@@ -209,7 +209,8 @@ void Session::apply_batch() {
         if (!published) return stop_writing(published.error());
         count_loops();
         warn_of_mounts();
-        if (checkpoints_.is_due(maps_.projection().revision()) && can_be_stored()) begin_checkpoint();
+        const bool has_estimated = maps_.projection().has_estimated_poses();
+        if (checkpoints_.is_due(maps_.projection().revision(), has_estimated)) begin_checkpoint();
         begin_correction();
         append_next();
     }
@@ -262,9 +263,10 @@ Group Session::take_applied_group() {
 
 void Session::begin_checkpoint() {
     auto write = [self = shared_from_this(), snapshot = snapshot(), state = maps_.projection().state(),
+                  estimation = estimation_to_store(maps_.localized()),
                   since = checkpoints_.begin(maps_.projection().revision())] {
-        const auto written =
-            sessions::write_checkpoint(self->log_, self->info_.id, *snapshot, state, since, self->finish_early_);
+        const auto written = sessions::write_checkpoint(self->log_, self->info_.id, *snapshot, state, since,
+                                                        self->finish_early_, estimation);
         if (!written && !self->finish_early_)
             log::warn({.session = self->info_.name}, "session '{}': no checkpoint: {}", self->info_.name,
                       written.error().message);
@@ -357,7 +359,7 @@ void Session::finish_closing() {
     if (!waiting_.empty() || !durable_.empty()) return;
     sequencer_.fail_all(*refusing_);
     const bool is_outdated = checkpoints_.is_outdated(maps_.projection().revision());
-    if (is_outdated && can_be_stored() && !broken_ && !finish_early_ && !final_checkpoint_tried_) {
+    if (is_outdated && !broken_ && !finish_early_ && !final_checkpoint_tried_) {
         final_checkpoint_tried_ = true;
         return begin_checkpoint();
     }

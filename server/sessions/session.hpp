@@ -154,8 +154,6 @@ private:
     void on_strand(std::function<void(Session&)> work);
 
     [[nodiscard]] bool is_mapped() const;
-    /// Returns whether checkpoints can be written: they do not contain the state from which poses are estimated.
-    [[nodiscard]] bool can_be_stored() const { return !maps_.projection().has_estimated_poses(); }
     void enqueue(std::vector<PendingEntry> entries);
     void append_next();
     void append(Group group);

@@ -2,6 +2,7 @@
 
 #include "common/scan/log_rules.hpp"
 #include "common/wire/log_codec.hpp"
+#include "core/localization/estimation_state.hpp"
 #include "core/mapping/snapshot.hpp"
 #include "server/sessions/checkpoint_reader.hpp"
 #include "server/sessions/map_correction.hpp"
@@ -53,15 +54,17 @@ Result<> check_checkpoint(Checking& checking, const mapping::MapConfig& config, 
     });
     if (!read && read.error().code == Errc::kUnsupportedVersion) return {}; // the log is replayed
     if (!read) return read;
-    const auto restored = std::move(reader).finish();
-    if (!restored) return restored.error();
-    const auto newest = std::max(restored->revision(), restored->newest_restored());
+    auto finished = std::move(reader).finish();
+    if (!finished) return finished.error();
+    const auto& restored = finished->projection();
+    const auto newest = std::max(restored.revision(), restored.newest_restored());
     if (newest <= entries) return {};
     return Error{Errc::kMalformed,
                  fmt::format("the log ends with entry {}, but its checkpoint holds entry {} already", entries, newest)};
 }
 
-/// Compares the maps of the whole log with those of the checkpoint and the rest of the log. Both must be intact.
+/// Compares the maps and the estimated poses of the whole log with those of the checkpoint and the rest of the log.
+/// Both must be intact.
 Result<> compare_maps(Checking& checking, const mapping::MapConfig& config, const Exclusions& exclusions) {
     auto recovered = recover(checking.log, checking.id, config, false);
     if (!recovered) return recovered.error();
@@ -78,6 +81,10 @@ Result<> compare_maps(Checking& checking, const mapping::MapConfig& config, cons
     });
     if (applied) applied = correct_as_announced(checking.log, checking.id, whole, false);
     if (!applied) return applied;
+    if (!localization::are_equal(recovered->maps.poses(), whole.poses())) {
+        return Error{Errc::kMalformed, "the poses estimated from the whole log differ from those of the checkpoint and "
+                                       "the rest of the log"};
+    }
     const auto left = recovered->maps.projection().snapshot();
     const auto right = whole.projection().snapshot();
     for (const auto layer : mapping::kLayers) {

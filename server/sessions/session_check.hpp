@@ -15,7 +15,7 @@ namespace scanloom::sessions {
 enum class CheckDepth {
     kLog,        ///< each entry: checksum, decoding and order; of the checkpoint only the checksums
     kCheckpoint, ///< also the checkpoint: its parts are decoded as in a recovery
-    kMaps,       ///< also the maps: the whole log gives the same maps as the checkpoint and the rest of the log
+    kMaps,       ///< also the maps: the whole log gives the same maps and poses as the checkpoint and the rest of it
 };
 
 /// The result of checking one session.

@@ -77,11 +77,7 @@ Result<> SessionMaps::publish() {
         maps.moving_scans = maps_.moving_scans();
         for (std::size_t n = 0; n < newest_scans_.size(); ++n) maps.robots[n].newest_scan = newest_scans_[n];
         for (RobotIndex n = 0; n < maps.robots.size(); ++n) {
-            auto& robot = maps.robots[n];
-            if (robot.poses == Poses::kMap) continue;
-            const auto* poses = maps_.poses().find(n);
-            robot.localization = poses != nullptr ? poses->localization() : mapping::Localization{};
-            if (poses == nullptr) robot.localization.state = LocalizationState::kUnlocated;
+            maps.robots[n].localization = maps_.localization_of(n);
         }
         published_.set(std::make_shared<const mapping::Snapshot>(std::move(maps)));
         return {};

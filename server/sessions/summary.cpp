@@ -4,13 +4,15 @@
 #include "server/sessions/checkpoint_reader.hpp"
 
 #include <utility>
+#include <vector>
 
 namespace scanloom::sessions {
 namespace {
 
 const Error kSummaryIsRead{Errc::kShuttingDown, "only sensors and cells follow"};
 
-Summary summary_of(const mapping::ProjectionState& state, const mapping::MapConfig& config) {
+Summary summary_of(const mapping::ProjectionState& state, const std::vector<mapping::Localization>& localization,
+                   const mapping::MapConfig& config) {
     mapping::Snapshot facts{.revision = state.revision,
                             .config = config,
                             .exclusions = state.exclusions,
@@ -20,10 +22,13 @@ Summary summary_of(const mapping::ProjectionState& state, const mapping::MapConf
         auto& shown = facts.robots.emplace_back();
         shown.name = robot.name;
         shown.body_radius = robot.body_radius;
+        shown.poses = robot.poses;
+        if (facts.robots.size() <= localization.size()) shown.localization = localization[facts.robots.size() - 1];
         shown.last_seq = robot.last_seq;
         shown.scan_count = robot.scan_count;
         shown.jumps = robot.jumps.left_out;
         shown.excluded = robot.excluded;
+        shown.unplaced = robot.unplaced;
         if (!robot.newest) continue;
         shown.stamp = robot.newest->stamp;
         shown.pose = robot.newest->pose;
@@ -61,9 +66,10 @@ Result<std::optional<Summary>> read_summary(store::ScanLog& log, store::SessionI
     });
     if (unusable) return std::optional<Summary>{};
     if (!read && read.error() != kSummaryIsRead) return read.error();
+    const auto localization = reader.localization();
     const auto state = std::move(reader).state();
     if (!state || state->revision != *end) return std::optional<Summary>{};
-    return std::optional(summary_of(*state, config));
+    return std::optional(summary_of(*state, localization, config));
 }
 
 } // namespace scanloom::sessions

@@ -38,12 +38,14 @@ SCANLOOM_FUZZER(checkpoint)(const std::uint8_t* data, std::size_t size) {
             return 0;
         }
     }
-    // A projection that was accepted can be read and written again.
-    auto projection = std::move(reader).finish();
-    if (!projection) return 0;
+    // Maps that were accepted can be read and written again.
+    auto maps = std::move(reader).finish();
+    if (!maps) return 0;
+    auto& projection = maps->projection();
     store::MemoryScanLog log;
     const auto id = log.create_session("s").value();
-    const auto written = sessions::write_checkpoint(log, id, projection->snapshot(), projection->state(), 0, false);
+    const auto written = sessions::write_checkpoint(log, id, projection.snapshot(), projection.state(), 0, false,
+                                                    sessions::estimation_to_store(*maps));
     fuzz::check(written.has_value(), "a checkpoint that was read can be written");
     return 0;
 }

@@ -35,6 +35,20 @@ TEST(CheckpointSchedule, FailedCheckpointIsNotRetriedAtOnce) {
     EXPECT_EQ(schedule.begin(2 * kEvery + 100), 100) << "it contains the changes since the stored one";
 }
 
+TEST(CheckpointSchedule, IsDueAfterAQuarterOfTheLogIfCheckpointsGrowWithIt) {
+    CheckpointSchedule schedule(1, 40'000);
+    EXPECT_FALSE(schedule.is_due(49'999, true));
+    EXPECT_TRUE(schedule.is_due(50'000, true));
+    EXPECT_TRUE(schedule.is_due(49'999, false));
+    PendingEntry entry;
+    entry.entry = ScanTaken{};
+    entry.reach.work = 1e10;
+    schedule.count(entry);
+    EXPECT_FALSE(schedule.is_due(49'999, true)) << "also after much work";
+    EXPECT_FALSE(CheckpointSchedule(1, 100).is_due(kEvery + 99, true));
+    EXPECT_TRUE(CheckpointSchedule(1, 100).is_due(kEvery + 100, true));
+}
+
 TEST(CheckpointSchedule, WorkMakesACheckpointDue) {
     CheckpointSchedule schedule(1, std::nullopt);
     PendingEntry entry;

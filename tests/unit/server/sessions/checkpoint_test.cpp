@@ -54,7 +54,9 @@ Result<mapping::Projection> read(const Parts& parts) {
     for (const auto& [key, value] : parts) {
         if (auto added = reader.add(key, value); !added) return added.error();
     }
-    return std::move(reader).finish();
+    auto maps = std::move(reader).finish();
+    if (!maps) return maps.error();
+    return std::move(maps->projection());
 }
 
 void expect_same(mapping::Projection& a, mapping::Projection& b) {

@@ -112,7 +112,8 @@ TEST_P(EarlierCheckpointTest, ContainsTheRobotsSummary) {
     const auto log = store::open_rocksdb(store()).value();
     auto reader = checkpoint_in(*log, mapping::MapConfig{});
     EXPECT_FALSE(reader.is_newest_format());
-    auto projection = std::move(reader).finish().value();
+    auto maps = std::move(reader).finish().value();
+    auto& projection = maps.projection();
     EXPECT_EQ(projection.revision(), 4U);
     const auto summary = summary_of(projection.snapshot());
     const auto& robot = summary.facts->robots.at(0);
@@ -182,7 +183,7 @@ TEST_F(EarlierFormatsTest, StoreOfVersion3KeepsExclusionsAndJumps) {
     for (const auto& [key, value] : store::checkpoint_of(*log, kSession).value())
         EXPECT_TRUE(reader.add(key, value)) << key;
     EXPECT_TRUE(reader.is_newest_format());
-    EXPECT_EQ(std::move(reader).finish().value().exclusions()->all(), state.exclusions->as_of(9).all());
+    EXPECT_EQ(std::move(reader).finish().value().projection().exclusions()->all(), state.exclusions->as_of(9).all());
 }
 
 /// Newest format: a robot without poses, whose scans follow its odometry because it has no laser.

@@ -150,7 +150,10 @@ TEST_F(OdometryCopyTest, RobotsContinueWithOdometry) {
     const auto estimated = registry_->load("lab").value();
     EXPECT_NE(estimated->info().id, id_);
     EXPECT_EQ(join_and_wait(*estimated, "robot", link).error().code, Errc::kConflict);
+    ASSERT_TRUE(log_.write_checkpoint(estimated->info().id, {{"head", "?"}}));
     EXPECT_EQ(registry_->estimate("lab").value().id, estimated->info().id) << "its poses are estimated already";
+    EXPECT_THAT(store::checkpoint_of(log_, estimated->info().id).value(), testing::IsEmpty())
+        << "they are estimated again";
     EXPECT_EQ(registry_->load("lab").value()->info().id, estimated->info().id);
     registry_->drain();
     EXPECT_EQ(registry_->estimate("lab").error().code, Errc::kShuttingDown);

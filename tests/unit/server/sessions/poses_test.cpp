@@ -157,7 +157,7 @@ TEST_F(PosesTest, RobotContinuesWithTheSameKindOfPoses) {
     EXPECT_THAT(refusal_of(join_with(Poses::kMap)), StartsWith("hello.poses: ")) << "also after a restart";
 }
 
-TEST_F(PosesTest, EstimatedPosesGoIntoNoCheckpoint) {
+TEST_F(PosesTest, CheckpointsContainTheEstimationIfThereIsOne) {
     for (const bool is_estimated : {false, true}) {
         id_ = log_.create_session("an unused record").value();
         start_session();
@@ -165,8 +165,10 @@ TEST_F(PosesTest, EstimatedPosesGoIntoNoCheckpoint) {
         EXPECT_EQ(refusal_of(is_estimated ? Poses::kOdometry : Poses::kMap, scan), "accepted");
         session_->close({Errc::kShuttingDown, "bye"}, [] {});
         run();
-        EXPECT_EQ(store::checkpoint_of(log_, id_).value().empty(), is_estimated)
-            << "it would lack the state from which poses are estimated";
+        const auto parts = store::checkpoint_of(log_, id_).value();
+        EXPECT_TRUE(parts.contains("head"));
+        EXPECT_EQ(parts.contains("head/estimation"), is_estimated);
+        EXPECT_EQ(parts.contains("slam/state/00000000/00000000"), is_estimated);
     }
 }
 
