@@ -57,7 +57,9 @@ bool KeyframeGraph::is_consistent() const {
     };
     const auto is_near = [](const Transform2& pose) { return is_within(pose, kPoseMax); };
     const auto connects = [&](const Edge& edge) {
-        return edge.from < size() && edge.to < size() && edge.from != edge.to && is_finite(edge.information);
+        if (edge.from >= size() || edge.to >= size() || edge.from == edge.to) return false;
+        const double length = keyframes_[edge.to].travelled - keyframes_[edge.from].travelled;
+        return is_finite(edge.information) && (edge.is_robust || length >= 0.0); // for distances_from()
     };
     if (count != size() || poses_.size() != size()) return false;
     if (!std::ranges::all_of(keyframes_, is_possible) || !std::ranges::all_of(poses_, is_near)) return false;
