@@ -42,7 +42,7 @@ struct EstimationState {
 
 /// A state that was read.
 struct RestoredEstimation {
-    SessionPoses poses;
+    SessionPoses poses;     ///< of all scans
     Revision shown = 0;     ///< LocalizedProjection::shown()
     Revision announced = 0; ///< LocalizedProjection::announced()
     Revision corrected = 0; ///< ProjectionState::corrected

@@ -18,6 +18,7 @@
 #include <fmt/format.h>
 
 #include <bit>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -223,6 +224,27 @@ void write_checkpoint(const std::filesystem::path& folder) {
     write_parts(folder / "one_scan", log, id);
 }
 
+/// A robot whose pose the server estimates.
+void write_estimated_checkpoint(const std::filesystem::path& folder) {
+    localization::LocalizedProjection maps(mapping::Projection{mapping::MapConfig{}});
+    Scan scan;
+    scan.seq = 1;
+    scan.sensor = 1;
+    scan.odometry = {0.5, 0.5, 0.0};
+    scan.ranges = {700};
+    for (LogEntry entry : {LogEntry{RobotJoined{0, "r1", {}, {}, Poses::kOdometry}},
+                           LogEntry{SensorDescribed{0, laser()}}, LogEntry{ScanTaken{0, scan}}}) {
+        double work = HUGE_VAL;
+        if (const auto applied = maps.apply(entry, work); !applied) throw std::runtime_error(applied.error().message);
+    }
+    store::MemoryScanLog log;
+    const auto id = log.create_session("s").value();
+    sessions::write_checkpoint(log, id, maps.projection().snapshot(), maps.projection().state(), 0, false,
+                               sessions::estimation_to_store(maps))
+        .value();
+    write_parts(folder / "estimated_pose", log, id);
+}
+
 /// As earlier versions wrote them, with parts that there are no more.
 void write_earlier_checkpoints(const std::filesystem::path& folder) {
     for (const char* version : {"parts_2", "parts_3"}) {
@@ -240,6 +262,7 @@ void write_corpus(const std::filesystem::path& folder) {
     write_log_files(folder / "log_file");
     write_ld06_streams(folder / "ld06");
     write_checkpoint(folder / "checkpoint");
+    write_estimated_checkpoint(folder / "checkpoint");
     write_earlier_checkpoints(folder / "checkpoint");
 }
 
