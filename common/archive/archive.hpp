@@ -179,7 +179,10 @@ private:
             bool has_value = false;
             read(has_value);
             value.reset();
-            if (has_value) read(value.emplace());
+            if (!has_value) return;
+            typename T::value_type item{}; // clang does not find emplace() for structs of classes that are not complete
+            read(item);
+            value.emplace(std::move(item));
         } else if constexpr (Shared<T>) {
             read_shared(value);
         } else if constexpr (Map<T>) {
