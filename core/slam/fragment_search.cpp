@@ -15,7 +15,8 @@ namespace {
 using scan_matching::PlaceMap;
 using scan_matching::SurfacePoint;
 
-constexpr std::size_t kPart = 8'000'000;    // lookups of a search at once
+constexpr std::size_t kPart = 8'000'000;    // lookups of a search between two keyframes
+constexpr std::size_t kStep = 1'000'000;    // of these at each scan
 constexpr std::size_t kPartsMax = 12;       // of a search; one that takes more is given up
 constexpr double kQueryLength = 10.0;       // metres travelled by the keyframes that are looked up
 constexpr std::size_t kPointsMax = 120;     // of these
@@ -27,6 +28,7 @@ constexpr double kRivalShare = 0.9;         // a place with a higher share of th
 constexpr double kExpectedScoreShare = 0.7; // likewise where people expect the robot
 constexpr double kConnectedInliers = 0.5;   // of a keyframe's points, at least, that then fit the map
 constexpr std::size_t kMapRefresh = 20;     // keyframes that may lack in the map
+constexpr std::size_t kMapRefreshPart = 10; // of all, a tenth if that is more
 constexpr double kMapMoveMax = 0.2;         // metres: keyframes that moved farther outdate it
 constexpr double kMapReach = 250.0;         // metres around the newest located keyframe
 
@@ -47,6 +49,16 @@ constexpr double kContradictedInCompleteMap = 0.08;
 
 } // namespace
 
+void FragmentSearch::Query::run(std::size_t lookups) {
+    lookups = std::min(lookups, left);
+    left -= lookups;
+    if (!has_ended && lookups > 0) has_ended = search.run(lookups);
+}
+
+void FragmentSearch::go_on(std::size_t fragment) {
+    if (auto& query = searched(fragment).query) query->run(kStep);
+}
+
 bool FragmentSearch::search(KeyframeGraph& graph, std::size_t fragment) {
     Searched& state = searched(fragment);
     if (state.expectation) {
@@ -57,22 +69,33 @@ bool FragmentSearch::search(KeyframeGraph& graph, std::size_t fragment) {
         state = Searched();
         return true;
     }
-    if (!state.query) state.query = ask(graph, fragment, std::nullopt);
-    if (!state.query) return false;
-    const bool has_ended = state.query->search.run(kPart);
-    if (!has_ended && ++state.query->parts < kPartsMax) return false;
-    const Query query = *std::exchange(state.query, std::nullopt);
-    const auto found = has_ended ? query.answer() : std::nullopt;
-    if (!found) return false;
-    state.answers.push_back({query.keyframe, *found});
+    std::optional<Query> query = std::exchange(state.query, std::nullopt);
+    if (query) {
+        query->run(query->left);
+        if (!query->has_ended && ++query->parts < kPartsMax) {
+            query->left = kPart;
+            state.query = std::move(query);
+            return false;
+        }
+    }
+    state.query = ask(graph, fragment, std::nullopt);
+    const auto found = query && query->has_ended ? query->answer() : std::nullopt;
+    return found && add_answer(graph, fragment, {query->keyframe, *found});
+}
+
+/// Adds the answer of a search. Moves the fragment there if answers agree, and its whole way fits the map.
+bool FragmentSearch::add_answer(KeyframeGraph& graph, std::size_t fragment, const Answer& answer) {
+    Searched& state = searched(fragment);
+    const Transform2& found = answer.T_map_fragment;
+    state.answers.push_back(answer);
     if (!is_confirmed(graph, state.answers)) return false;
     const std::size_t newest = graph.fragments()[fragment].keyframes.back();
     const std::size_t anchor = std::ranges::find_if(graph.fragments(), &Fragment::is_located)->keyframes.front();
-    graph.move(fragment, *found, true);
+    graph.move(fragment, found, true);
     StretchQuestion question{newest, anchor, Transform2(), kWindow, kContradictedMax, kNoiseFactor};
     if (is_map_complete_) question = {newest, anchor, Transform2(), kWindow, kContradictedInCompleteMap};
     if (!accept_stretch(graph, question)) {
-        graph.move(fragment, inverse(*found), false);
+        graph.move(fragment, inverse(found), false);
         return false;
     }
     state = Searched();
@@ -113,7 +136,7 @@ FragmentSearch::Searched& FragmentSearch::searched(std::size_t fragment) {
 
 /// Returns whether the map lacks keyframes, or has some elsewhere.
 bool FragmentSearch::is_outdated(const KeyframeGraph& graph, const std::vector<Located>& located) const {
-    if (located.size() >= in_map_.size() + kMapRefresh) return true;
+    if (located.size() >= in_map_.size() + std::max(kMapRefresh, in_map_.size() / kMapRefreshPart)) return true;
     return std::ranges::any_of(in_map_, [&](const Located& then) {
         const Transform2 off = inverse(then.T_map_keyframe) * graph.pose(then.keyframe);
         return distance_of(off) > kMapMoveMax;
@@ -172,7 +195,7 @@ std::optional<FragmentSearch::Query> FragmentSearch::ask(const KeyframeGraph& gr
         question.center = expectation->place.near;
         question.radius = expectation->place.radius + moved;
     }
-    return Query{newest, T_newest_fragment, 0, {map_, chosen, question}};
+    return Query{newest, T_newest_fragment, 0, kPart, {map_, chosen, question}};
 }
 
 std::optional<Transform2> FragmentSearch::Query::answer() const {

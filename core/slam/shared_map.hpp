@@ -68,6 +68,10 @@ public:
     /// @param T_newest_keyframe  its pose relative to the fragment's newest keyframe, as matched
     void add_keyframe(std::size_t fragment, ScanPoints scan, const Transform2& T_newest_keyframe);
 
+    /// Goes on with the search for the place of a fragment, at a scan that is no keyframe.
+    /// @param fragment  index of a fragment that is not located
+    void continue_search(std::size_t fragment) { fragments_.go_on(fragment); }
+
     /// Moves the keyframes once more so that they agree with the edges, as at the end of a log.
     void finish();
 

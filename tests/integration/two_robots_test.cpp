@@ -23,9 +23,9 @@ namespace {
 using testing_support::Building;
 using testing_support::uniform;
 
-constexpr std::uint32_t kTrials = 250;            // of each world
+constexpr std::uint32_t kTrials = 250;          // of each world
 constexpr std::uint32_t kTrialsOfSentMaps = 60; // likewise; they integrate all scans
-constexpr double kWrong = 0.6;         // metres: with a larger error, a robot is located at a wrong place
+constexpr double kWrong = 0.6;                  // metres: with a larger error, a robot is located at a wrong place
 constexpr std::array kRanges{6.0, 10.0, 16.0};
 
 /// A building, and points of a round tour through it.
