@@ -19,8 +19,8 @@ struct Surroundings {
 /// Finds the places in the map of fragments that are not located: those of robots that start anywhere, or that were
 /// lost.
 ///
-/// The newest keyframes of the fragment are looked up in the map of all located ones, a part of the search at each scan.
-/// Half of their points may be in space that the map does not show yet. One answer is not enough, because
+/// The newest keyframes of the fragment are looked up in the map of all located ones, a part of the search at each
+/// scan. Half of their points may be in space that the map does not show yet. One answer is not enough, because
 /// buildings have rooms that look alike: four must agree, over ten metres of the way, and the whole fragment must
 /// then fit the map. A fragment that is located later than possible does no harm; one at a wrong place tears the map.
 /// Where people say where the robot is, one good answer near that place is enough.

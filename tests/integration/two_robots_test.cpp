@@ -179,8 +179,8 @@ TEST_P(TwoRobotsTrials, AreNeverJoinedAtAWrongPlaceInTheMapOfARobotThatSendsItsP
 }
 
 INSTANTIATE_TEST_SUITE_P(Places, TwoRobotsTrials,
-                         testing::Values(Kind{"office", 90, 999}, Kind{"hall", 85, 999}, Kind{"room", 90, 999},
-                                         Kind{"equal_rooms", 35, 999}),
+                         testing::Values(Kind{"office", 90, 20}, Kind{"hall", 85, 17}, Kind{"room", 90, 20},
+                                         Kind{"equal_rooms", 35, 4}),
                          [](const auto& kind) { return std::string(kind.param.name); });
 
 } // namespace
