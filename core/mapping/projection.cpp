@@ -233,7 +233,7 @@ Projection::Robot Projection::Robot::branch() const {
 
 ProjectionState Projection::state() const {
     ProjectionState state{revision(),           bounds(),           chunk_count(), {},
-                          filter_.exclusions(), is_localize_only(), map_frame()};
+                          filter_.exclusions(), is_localize_only(), frame_origin()};
     for (RobotIndex index = 0; index < robots_.size(); ++index) {
         const Robot& robot = robots_[index];
         state.robots.push_back(
@@ -245,7 +245,7 @@ ProjectionState Projection::state() const {
 
 void Projection::restore(const ProjectionState& state) {
     rules_ = LogRules(state.revision, {state.robots.begin(), state.robots.end()},
-                      state.exclusions->as_of(state.revision), state.is_localize_only, state.map_frame);
+                      state.exclusions->as_of(state.revision), state.is_localize_only, state.frame_origin);
     filter_ = ScanFilter(config_.max_jump, state.exclusions);
     laser_.restore(state.bounds.laser);
     sonar_.restore(state.bounds.sonar);

@@ -25,6 +25,7 @@ constexpr double kPointSquare = 0.3;        // metres: one point in each
 constexpr std::size_t kStride = 23;         // from one of them to the next
 constexpr double kScoreShare = 0.5;         // of the points, at least
 constexpr double kRivalShare = 0.9;         // a place with a higher share of the best score is as good
+constexpr double kExpectedLength = 20.0;    // metres travelled in which people's word counts
 constexpr double kExpectedScoreShare = 0.7; // likewise where people expect the robot
 constexpr double kConnectedInliers = 0.5;   // of a keyframe's points, at least, that then fit the map
 constexpr std::size_t kMapRefresh = 20;     // keyframes that may lack in the map
@@ -55,12 +56,16 @@ void FragmentSearch::Query::run(std::size_t lookups) {
     if (!has_ended && lookups > 0) has_ended = search.run(lookups);
 }
 
-void FragmentSearch::go_on(std::size_t fragment) {
+void FragmentSearch::continue_search(std::size_t fragment) {
     if (auto& query = searched(fragment).query) query->run(kStep);
 }
 
 bool FragmentSearch::search(KeyframeGraph& graph, std::size_t fragment) {
     Searched& state = searched(fragment);
+    const auto newest_travelled = [&] { return graph[graph.fragments()[fragment].keyframes.back()].travelled; };
+    if (state.expectation && newest_travelled() - graph[state.expectation->keyframe].travelled > kExpectedLength) {
+        state.expectation.reset(); // it was wrong
+    }
     if (state.expectation) {
         auto query = ask(graph, fragment, state.expectation);
         if (!query || !query->search.run(kPart)) return false;
@@ -126,7 +131,9 @@ bool FragmentSearch::connect(KeyframeGraph& graph, std::size_t fragment, const T
 }
 
 void FragmentSearch::expect(std::size_t fragment, const Surroundings& place, std::size_t keyframe) {
-    searched(fragment).expectation = {place, keyframe};
+    Searched& state = searched(fragment);
+    state.expectation = {place, keyframe};
+    state.query.reset(); // it searches everywhere
 }
 
 FragmentSearch::Searched& FragmentSearch::searched(std::size_t fragment) {

@@ -28,23 +28,23 @@ struct Surroundings {
 class FragmentSearch {
 public:
     /// Goes on with the search for a fragment that search() has begun, by a small part, so that no scan waits long.
-    /// Call it for each of its scans between keyframes.
+    /// Call it for each of its scans.
     /// @param fragment  index of a fragment that is not located
     /// Cost: at most some milliseconds.
-    void go_on(std::size_t fragment);
+    void continue_search(std::size_t fragment);
 
     /// Searches for the place of a fragment. Call it after each of its keyframes.
     /// @param graph     if the place is found, the fragment is moved there, is located, and has loop edges to the map; the
     ///     graph is not optimised
     /// @param fragment  index of a fragment that is not located
     /// @return whether the place is found
-    /// Cost: what go_on() has left of a part of the search, up to some tens of milliseconds; a test of the fragment when
+    /// Cost: what continue_search() has left of a part of the search, up to some tens of milliseconds; a test of the fragment when
     ///     four answers agree.
     bool search(KeyframeGraph& graph, std::size_t fragment);
 
-    /// States that the map shows all places that may look alike. Then answers that agree over two metres are enough,
+    /// Sets whether the map shows all places that may look alike. Then answers that agree over two metres are enough,
     /// and the map may be older than what the robots see.
-    void set_map_complete() noexcept { is_map_complete_ = true; }
+    void set_map_complete(bool is_complete) noexcept { is_map_complete_ = is_complete; }
 
     /// Searches for a fragment near a place only.
     /// @param fragment  index of the fragment

@@ -29,12 +29,12 @@ struct FoundSession {
     std::uint64_t scans = 0;
     std::uint64_t revision = 0; ///< entries in its log
     std::vector<FoundRobot> robots;
-    bool is_estimated = false; ///< whether the server estimates the poses of a robot
+    std::uint64_t corrections = 0; ///< of estimated poses
 };
 
 /// Returns a sentence that says what contradicts the acknowledgements; nullopt if every scan is stored exactly once.
-/// Every robot adds two entries to its scans: it joined, and its laser was described. Where poses are estimated, the
-/// server adds an entry when the maps were corrected.
+/// Every robot adds two entries to its scans: it joined, and its laser was described. The server adds an entry when
+/// maps were corrected, at most one for each correction of estimated poses.
 [[nodiscard]] std::optional<std::string> contradiction(const ExpectedSession& expected, const FoundSession& found);
 
 enum class Verify { kNone, kCounts, kDigests };

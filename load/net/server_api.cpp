@@ -38,7 +38,7 @@ auto read_json(const Result<HttpAnswer>& answer, const std::string& target, Read
 
 FoundSession read_session(const json::value& value) {
     FoundSession found{
-        value.at("scans").to_number<std::uint64_t>(), value.at("revision").to_number<std::uint64_t>(), {}, false};
+        value.at("scans").to_number<std::uint64_t>(), value.at("revision").to_number<std::uint64_t>(), {}, 0};
     for (const auto& robot : value.at("robots").as_array()) {
         const auto& localization = robot.at("localization");
         const auto placed = robot.at("scans").to_number<std::uint64_t>();
@@ -46,7 +46,7 @@ FoundSession read_session(const json::value& value) {
         found.robots.push_back({std::string(robot.at("name").as_string()), placed + unplaced,
                                 robot.at("last_seq").to_number<std::uint64_t>()});
         found.scans += unplaced;
-        found.is_estimated = found.is_estimated || localization.at("poses").as_string() != "map";
+        found.corrections = std::max(found.corrections, localization.at("corrections").to_number<std::uint64_t>());
     }
     return found;
 }
