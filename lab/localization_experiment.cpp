@@ -108,6 +108,9 @@ Result<LogResult> run_localization(const RecordedLog& log, const LocalizationHoo
         result.maps[n] = std::move(*map);
     }
 
+    hooks.tell(fmt::format("{}: unknown starts", log.name));
+    result.unknown_starts = start_anywhere(log, plain);
+
     const auto variants = variants_of(log.scans.size());
     for (const Variant& variant : variants) {
         hooks.tell(fmt::format("{}: variant {} of {}", log.name, result.variants.size() + 1, variants.size()));

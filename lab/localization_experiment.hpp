@@ -2,6 +2,7 @@
 
 #include "lab/recorded_log.hpp"
 #include "lab/trajectory_variants.hpp"
+#include "lab/unknown_starts.hpp"
 #include "server/tiles/bytes.hpp"
 
 #include <array>
@@ -51,6 +52,7 @@ struct LogResult {
     EstimateResult without;       ///< from the scans alone
     TrajectoryDistance without_from_plain;
     std::vector<VariantResult> variants;
+    std::vector<UnknownStart> unknown_starts;
     std::array<DrawnMap, 3> maps; ///< by the raw odometry, and by the estimates with and without it; begun at one pose
 };
 
@@ -65,7 +67,8 @@ struct LocalizationHooks {
 /// Errors: kInvalidField if no relation counts; the message names the log.
 [[nodiscard]] Result<TrajectoryScore> score_odometry(const RecordedLog& log);
 
-/// Estimates a log with and without its odometry and in all variants_of() it, and draws its maps.
+/// Estimates a log with and without its odometry and in all variants_of() it, lets a second robot start anywhere in it,
+/// and draws its maps.
 /// Errors: as score_odometry(); those of draw_map() and keep_picture; kNotFound if a variant leaves no scan. Messages
 ///         name the log.
 [[nodiscard]] Result<LogResult> run_localization(const RecordedLog& log, const LocalizationHooks& hooks);

@@ -129,6 +129,20 @@ std::string variants_table(const LogResult& log) {
     return table.text();
 }
 
+std::string unknown_starts_table(const std::vector<LogResult>& logs) {
+    Table table(
+        "log | poses of the second robot | it starts after | located after scans | path m | distance m | degrees");
+    for (const LogResult& log : logs) {
+        for (const auto& [poses, part, found] : log.unknown_starts) {
+            const auto figures = found ? fmt::format("{} | {:.0f} | {:.2f} | {:.1f}", found->scans, found->path,
+                                                     found->metres, found->degrees)
+                                       : std::string("not located |  |  | ");
+            table.add("{} | {} | {:.0f} % | {}", log.name, name_of(poses), 100.0 * part, figures);
+        }
+    }
+    return table.text();
+}
+
 std::string maps_table(const LogResult& log) {
     std::vector<std::string> pictures;
     std::vector<std::string> sizes;
@@ -158,7 +172,8 @@ std::string report_of(const LocalizationResults& results) {
                        "logs"_a = logs_table(logs), "credits"_a = credits(logs), "accuracy"_a = accuracy_table(logs),
                        "accuracy_findings"_a = accuracy_findings(logs), "false_loop_m"_a = kFalseLoopMetres,
                        "false_loop_degrees"_a = kFalseLoopDegrees, "turned"_a = kTurned,
-                       "variants"_a = fmt::join(variants, "\n\n"), "maps"_a = fmt::join(maps, "\n\n"));
+                       "variants"_a = fmt::join(variants, "\n\n"), "unknown_starts"_a = unknown_starts_table(logs),
+                       "maps"_a = fmt::join(maps, "\n\n"));
 }
 
 std::string times_report_of(const LocalizationResults& results, std::string_view machine) {

@@ -32,14 +32,21 @@ Result<> LogRules::add(const LogEntry& entry) {
 
 void LogRules::reset_robot(RobotIndex robot, LoggedRobot state) {
     robots_[robot] = std::move(state);
-    const bool has_begun = map_frame_ == MapFrame::kImported || map_frame_ == MapFrame::kOpen ||
-                           find_robot_with_poses(map_frame_ == MapFrame::kSent) != nullptr;
-    if (!has_begun) map_frame_ = MapFrame::kOpen;
+    const bool is_gone = (frame_origin_ == FrameOrigin::kSent && find_sender() == nullptr) ||
+                         (frame_origin_ == FrameOrigin::kEstimated && find_estimated() == nullptr);
+    if (!is_gone) return;
+    frame_origin_ = is_localize_only_ && find_sender() == nullptr ? FrameOrigin::kOpen : origin_of_mapped();
 }
 
-const LoggedRobot* LogRules::find_robot_with_poses(bool is_sent) const noexcept {
+/// Returns where the frame comes from if the robots' scans may change the map and have not begun it yet.
+FrameOrigin LogRules::origin_of_mapped() const noexcept {
+    if (find_sender() != nullptr) return FrameOrigin::kSent;
+    return find_estimated() != nullptr ? FrameOrigin::kEstimated : FrameOrigin::kOpen;
+}
+
+const LoggedRobot* LogRules::find_robot(bool sends_poses) const noexcept {
     const auto found = std::ranges::find_if(robots_, [&](const LoggedRobot& robot) {
-        return robot.last_seq > 0 && (robot.poses == Poses::kMap) == is_sent;
+        return robot.last_seq > 0 && (robot.poses == Poses::kMap) == sends_poses;
     });
     return found == robots_.end() ? nullptr : &*found;
 }
@@ -92,10 +99,10 @@ Result<> LogRules::check_body(const ScanTaken& taken) const {
 void LogRules::apply_body(const ScanTaken& taken) {
     LoggedRobot& robot = robots_[taken.robot];
     const bool is_sent = robot.poses == Poses::kMap;
-    if (map_frame_ == MapFrame::kOpen && is_sent && find_robot_with_poses(false) == nullptr) {
-        map_frame_ = MapFrame::kSent;
+    if (frame_origin_ == FrameOrigin::kOpen && is_sent && find_estimated() == nullptr) {
+        frame_origin_ = FrameOrigin::kSent;
     }
-    if (map_frame_ == MapFrame::kOpen && !is_sent && !is_localize_only_) map_frame_ = MapFrame::kEstimated;
+    if (frame_origin_ == FrameOrigin::kOpen && !is_sent && !is_localize_only_) frame_origin_ = FrameOrigin::kEstimated;
     robot.last_seq = taken.scan.seq;
 }
 
@@ -106,7 +113,7 @@ Result<> LogRules::check_body(const MapPatch&) const {
 
 void LogRules::apply_body(const MapPatch& patch) {
     const auto is_known = [](MapCell cell) { return cell != MapCell::kUnknown; };
-    if (std::ranges::any_of(patch.cells, is_known)) map_frame_ = MapFrame::kImported;
+    if (std::ranges::any_of(patch.cells, is_known)) frame_origin_ = FrameOrigin::kImported;
 }
 
 Result<> LogRules::check_body(const ScansExcluded& excluded) const {
@@ -138,8 +145,7 @@ Result<> LogRules::check_body(const ModeChanged&) const { return {}; }
 
 void LogRules::apply_body(const ModeChanged& changed) {
     is_localize_only_ = changed.is_localize_only;
-    const bool begins = map_frame_ == MapFrame::kOpen && !is_localize_only_ && find_robot_with_poses(false) != nullptr;
-    if (begins) map_frame_ = MapFrame::kEstimated;
+    if (frame_origin_ == FrameOrigin::kOpen && !is_localize_only_) frame_origin_ = origin_of_mapped();
 }
 
 void LogRules::apply_body(const ExclusionLifted& lifted) { static_cast<void>(exclusions_.add(revision_ + 1, lifted)); }

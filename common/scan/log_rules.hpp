@@ -46,7 +46,7 @@ struct LoggedRobot {
 };
 
 /// Where the frame of a session's map comes from.
-enum class MapFrame {
+enum class FrameOrigin {
     kOpen,      ///< the session has no map yet
     kImported,  ///< an imported map
     kSent,      ///< the poses that robots sent (Poses::kMap)
@@ -63,11 +63,11 @@ public:
     /// @param robots      by RobotIndex
     /// @param exclusions  of the log up to `revision`
     /// @param is_localize_only  see is_localize_only()
-    /// @param map_frame   see map_frame()
+    /// @param frame_origin   see frame_origin()
     LogRules(Revision revision, std::vector<LoggedRobot> robots, Exclusions exclusions, bool is_localize_only,
-             MapFrame map_frame)
+             FrameOrigin frame_origin)
         : revision_(revision), robots_(std::move(robots)), exclusions_(std::move(exclusions)),
-          is_localize_only_(is_localize_only), map_frame_(map_frame) {}
+          is_localize_only_(is_localize_only), frame_origin_(frame_origin) {}
 
     /// Checks whether `entry` can be the next one.
     /// Errors: kMalformed if it cannot, which happens only in a damaged log.
@@ -81,7 +81,7 @@ public:
     [[nodiscard]] Result<> add(const LogEntry& entry);
 
     /// Resets one robot to an earlier state, because its newest entries do not get into the log. revision() is not
-    /// changed.
+    /// changed; frame_origin() is found again if the robot's scans decided it.
     /// @param robot  index in the session
     /// @param state  the robot before those entries
     void reset_robot(RobotIndex robot, LoggedRobot state);
@@ -99,14 +99,17 @@ public:
     [[nodiscard]] bool is_localize_only() const noexcept { return is_localize_only_; }
 
     /// Returns where the frame of the map comes from.
-    [[nodiscard]] MapFrame map_frame() const noexcept { return map_frame_; }
+    [[nodiscard]] FrameOrigin frame_origin() const noexcept { return frame_origin_; }
 
-    /// Returns whether a robot has scans, and sends poses or not.
-    /// @param is_sent  whether it sends them (Poses::kMap)
-    /// @return the first such robot; nullptr: there is none
-    [[nodiscard]] const LoggedRobot* find_robot_with_poses(bool is_sent) const noexcept;
+    /// Returns the first robot that has scans and sends its poses (Poses::kMap); nullptr: there is none.
+    [[nodiscard]] const LoggedRobot* find_sender() const noexcept { return find_robot(true); }
+
+    /// Returns the first robot that has scans, and whose poses the server estimates; nullptr: there is none.
+    [[nodiscard]] const LoggedRobot* find_estimated() const noexcept { return find_robot(false); }
 
 private:
+    [[nodiscard]] const LoggedRobot* find_robot(bool sends_poses) const noexcept;
+    [[nodiscard]] FrameOrigin origin_of_mapped() const noexcept;
     [[nodiscard]] Result<> check_body(const RobotJoined& joined) const;
     [[nodiscard]] Result<> check_body(const SensorDescribed& described) const;
     [[nodiscard]] Result<> check_body(const ScanTaken& taken) const;
@@ -130,7 +133,7 @@ private:
     std::vector<LoggedRobot> robots_;
     Exclusions exclusions_;
     bool is_localize_only_ = false;
-    MapFrame map_frame_ = MapFrame::kOpen;
+    FrameOrigin frame_origin_ = FrameOrigin::kOpen;
 };
 
 } // namespace scanloom

@@ -30,6 +30,7 @@ Result<bool> LocalizedProjection::apply(LogEntry& entry, double& work) {
         poses_.add_given(*taken, *projection_.sensor_of(taken->robot, taken->scan.sensor));
     }
     if (const auto* changed = std::get_if<ModeChanged>(&entry)) {
+        if (poses_.scan_count() > 0 && !poses_.is_frame_given()) begin(); // before a sender's first scan that is mapped
         poses_.change_mode(changed->is_localize_only, revision);
     }
     if (const auto* relocalized = std::get_if<RobotRelocalized>(&entry)) poses_.relocalize(*relocalized);
@@ -39,11 +40,11 @@ Result<bool> LocalizedProjection::apply(LogEntry& entry, double& work) {
 
 /// Begins to estimate poses, in the frame of the maps if they have one.
 void LocalizedProjection::begin() {
-    const MapFrame frame = projection_.map_frame();
-    if (frame != MapFrame::kImported && frame != MapFrame::kSent) return;
+    const FrameOrigin frame = projection_.frame_origin();
+    if (frame != FrameOrigin::kImported && frame != FrameOrigin::kSent) return;
     const auto sends = [](const LoggedRobot& robot) { return robot.poses == Poses::kMap && robot.last_seq > 0; };
-    const bool is_complete = projection_.is_localize_only() || std::ranges::none_of(projection_.robots(), sends);
-    poses_.begin_with(views_of(projection_.snapshot().classes, projection_.config().cell_size), is_complete);
+    const bool is_imported = std::ranges::none_of(projection_.robots(), sends);
+    poses_.begin_with(views_of(projection_.snapshot().classes, projection_.config().cell_size), is_imported);
 }
 
 } // namespace scanloom::localization

@@ -12,7 +12,16 @@ using scan_matching::pose_of;
 using scan_matching::Transform2;
 using scan_matching::transform_of;
 
+constexpr double kImprovement = 0.05;  // metres
+constexpr std::size_t kPauseMin = 50;  // keyframes
+constexpr std::size_t kPausePart = 10; // of all keyframes: a tenth, if that is more
+
 } // namespace
+
+bool is_worth_a_correction(double move, std::size_t keyframes, std::size_t since_then) noexcept {
+    const bool is_paused = since_then < std::max(kPauseMin, keyframes / kPausePart);
+    return move > (is_paused ? RobotPoses::kJump : kImprovement);
+}
 
 std::optional<Pose2> RobotPoses::add(const Scan& scan, const Sensor& sensor, Revision revision) {
     if (sensor.kind == SensorKind::kLaser) {
@@ -64,9 +73,9 @@ RobotPoses::PlacedScan RobotPoses::placed(const Scan& scan) const {
 
 bool RobotPoses::is_correction_due() {
     const double move = largest_move();
-    const bool is_paused = estimator_.keyframes().size() < keyframes_at_correction_ + kCorrectionPause;
+    const std::size_t keyframes = estimator_.keyframes().size();
     const auto fragments = std::exchange(fragments_, estimator_.found_fragments());
-    return fragments_ > fragments || move > (is_paused ? kJump : kSettled);
+    return fragments_ > fragments || is_worth_a_correction(move, keyframes, keyframes - keyframes_at_correction_);
 }
 
 void RobotPoses::correct() {

@@ -16,6 +16,13 @@
 
 namespace scanloom::localization {
 
+/// Returns whether maps follow what has moved since the last correction: by RobotPoses::kJump at once, by a cell of 5
+/// cm after a pause, because each correction computes the maps of the whole log again.
+/// @param move        metres: how far a keyframe or a scan moved, at most; a turn of one radian counts as one metre
+/// @param keyframes   of the robot
+/// @param since_then  keyframes of the robot since the last correction
+[[nodiscard]] bool is_worth_a_correction(double move, std::size_t keyframes, std::size_t since_then) noexcept;
+
 /// Where a robot is by its newest scan.
 struct Place {
     Pose2 T_map_robot; ///< as estimated then
@@ -25,15 +32,13 @@ struct Place {
 /// The poses of one robot's scans, estimated from the scans and its odometry.
 ///
 /// A scan has three poses: as first estimated, when it was added; the newest estimate; and the one that maps show. Maps
-/// show the first estimate until a correction is due: when a keyframe has moved by kJump since the maps last followed,
-/// or after kCorrectionPause keyframes. Then they show the newest estimates. What moved by less than kSettled stays. So
-/// the poses in the maps depend on the scans alone. The scans of other sensors than lasers follow the newest laser
-/// scan, by the odometry since.
+/// show the first estimate until a correction is due (is_worth_a_correction()). Then they show the newest estimates.
+/// What moved by less than kSettled stays. So the poses in the maps depend on the scans alone. The scans of other
+/// sensors than lasers follow the newest laser scan, by the odometry since.
 /// Threads: one at a time.
 class RobotPoses {
 public:
-    static constexpr double kJump = 0.1;                ///< metres; a turn of one radian counts as one metre
-    static constexpr std::size_t kCorrectionPause = 50; ///< keyframes
+    static constexpr double kJump = 0.1; ///< metres; a turn of one radian counts as one metre
 
     /// @param map    that the robots of the session share; must outlive this object
     /// @param robot  number of the robot among them

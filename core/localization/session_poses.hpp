@@ -43,12 +43,15 @@ struct PoseGraphView {
 class SessionPoses {
 public:
     /// Begins with a map whose frame is given, that of an imported map or of robots that send their poses: all robots
-    /// are located in it. Call it before the first scan.
+    /// are located in it.
     /// @param views        of the map so far
-    /// @param is_complete  whether it shows all places that may look alike
-    void begin_with(std::vector<slam::KnownView> views, bool is_complete) {
-        map_->begin_with(std::move(views), is_complete);
+    /// @param is_imported  see SharedMap::begin_with()
+    void begin_with(std::vector<slam::KnownView> views, bool is_imported) {
+        map_->begin_with(std::move(views), is_imported);
     }
+
+    /// Returns whether begin_with() was called.
+    [[nodiscard]] bool is_frame_given() const noexcept { return map_->is_frame_given(); }
 
     /// Adds a scan of a robot that sends its poses to the map in which the others are located. Before the first scan
     /// with an estimated pose it does nothing, because begin_with() gets the whole map so far.

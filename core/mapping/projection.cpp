@@ -234,7 +234,7 @@ Projection::Robot Projection::Robot::branch() const {
 
 ProjectionState Projection::state() const {
     ProjectionState state{revision(),           bounds(),           chunk_count(), {},
-                          filter_.exclusions(), is_localize_only(), map_frame(),   corrected_};
+                          filter_.exclusions(), is_localize_only(), frame_origin(), corrected_};
     for (RobotIndex index = 0; index < robots_.size(); ++index) {
         const Robot& robot = robots_[index];
         state.robots.push_back({robots()[index], robot.scan_count, robot.newest, filter_.jumps().state(index),
@@ -246,7 +246,7 @@ ProjectionState Projection::state() const {
 
 void Projection::restore(const ProjectionState& state) {
     rules_ = LogRules(state.revision, {state.robots.begin(), state.robots.end()},
-                      state.exclusions->as_of(state.revision), state.is_localize_only, state.map_frame);
+                      state.exclusions->as_of(state.revision), state.is_localize_only, state.frame_origin);
     filter_ = ScanFilter(config_.max_jump, state.exclusions);
     corrected_ = state.corrected;
     laser_.restore(state.bounds.laser);

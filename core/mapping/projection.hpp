@@ -42,7 +42,7 @@ struct ProjectionState {
     std::vector<Robot> robots;                     ///< by RobotIndex
     SharedExclusions exclusions = no_exclusions(); ///< of the log up to `revision`
     bool is_localize_only = false;                 ///< see ModeChanged
-    MapFrame map_frame = MapFrame::kOpen;          ///< see LogRules::map_frame()
+    FrameOrigin frame_origin = FrameOrigin::kOpen; ///< see LogRules::frame_origin()
     Revision corrected = 0;                        ///< see ScanPoses::corrected()
 };
 
@@ -92,7 +92,7 @@ public:
     [[nodiscard]] bool is_localize_only() const noexcept { return rules_.is_localize_only(); }
 
     /// Returns where the frame of the maps comes from.
-    [[nodiscard]] MapFrame map_frame() const noexcept { return rules_.map_frame(); }
+    [[nodiscard]] FrameOrigin frame_origin() const noexcept { return rules_.frame_origin(); }
 
     /// Returns whether the newest entry is in no map and in no trajectory.
     /// @param robot  index in the session

@@ -32,8 +32,7 @@ PlaceSearch::PlaceSearch(std::shared_ptr<const PlaceMap> map, std::span<const Su
 }
 
 bool PlaceSearch::run(std::size_t lookups) {
-    const std::size_t limit = lookups > kUnlimited - lookups_ ? kUnlimited : lookups_ + lookups;
-    while (!has_ended_ && lookups_ < limit) {
+    while (!has_ended_ && lookups_ < lookups) {
         if (roots_ < turns_of(kTopLevel)) {
             push_roots(roots_++);
         } else if (open_.empty() || open_.top().bound < least_) {

@@ -51,8 +51,8 @@ public:
     PlaceSearch(std::shared_ptr<const PlaceMap> map, std::span<const SurfacePoint> points,
                 const PlaceQuestion& question);
 
-    /// Goes on with the search.
-    /// @param lookups  of points in the map, about; 8 million take some tens of milliseconds
+    /// Goes on with the search. Where it stops depends on the lookups alone, not on the calls before.
+    /// @param lookups  of points in the map since the beginning, about; 8 million take some tens of milliseconds
     /// @return whether it has ended
     bool run(std::size_t lookups = kUnlimited);
 

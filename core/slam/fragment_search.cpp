@@ -15,8 +15,9 @@ namespace {
 using scan_matching::PlaceMap;
 using scan_matching::SurfacePoint;
 
-constexpr std::size_t kPart = 8'000'000;    // lookups of a search at once
-constexpr std::size_t kPartsMax = 12;       // of a search; one that takes more is given up
+constexpr std::size_t kPart = 8'000'000;    // lookups of a search between two keyframes
+constexpr std::size_t kStep = 1'000'000;    // of these at each scan
+constexpr std::size_t kLookupsMax = 12 * kPart; // of a search; one that takes more is given up
 constexpr double kQueryLength = 10.0;       // metres travelled by the keyframes that are looked up
 constexpr std::size_t kPointsMax = 120;     // of these
 constexpr std::size_t kPointsMin = 40;      // fewer show no place
@@ -24,9 +25,11 @@ constexpr double kPointSquare = 0.3;        // metres: one point in each
 constexpr std::size_t kStride = 23;         // from one of them to the next
 constexpr double kScoreShare = 0.5;         // of the points, at least
 constexpr double kRivalShare = 0.9;         // a place with a higher share of the best score is as good
+constexpr double kExpectedLength = 20.0;    // metres travelled in which people's word counts
 constexpr double kExpectedScoreShare = 0.7; // likewise where people expect the robot
 constexpr double kConnectedInliers = 0.5;   // of a keyframe's points, at least, that then fit the map
 constexpr std::size_t kMapRefresh = 20;     // keyframes that may lack in the map
+constexpr std::size_t kMapRefreshPart = 10; // of all, a tenth if that is more
 constexpr double kMapMoveMax = 0.2;         // metres: keyframes that moved farther outdate it
 constexpr double kMapReach = 250.0;         // metres around the newest located keyframe
 
@@ -47,8 +50,23 @@ constexpr double kContradictedInCompleteMap = 0.08;
 
 } // namespace
 
+/// Goes on with a search, by at most this many lookups. @return whether it has ended
+bool FragmentSearch::run(const KeyframeGraph& graph, Query& query, std::size_t lookups) {
+    query.done = std::min(query.done + lookups, query.allowed);
+    if (!query.search) make_search(graph, query, std::nullopt);
+    return query.search->run(query.done);
+}
+
+void FragmentSearch::continue_search(const KeyframeGraph& graph, std::size_t fragment) {
+    if (auto& query = searched(fragment).query) static_cast<void>(run(graph, *query, kStep));
+}
+
 bool FragmentSearch::search(KeyframeGraph& graph, std::size_t fragment) {
     Searched& state = searched(fragment);
+    const auto newest_travelled = [&] { return graph[graph.fragments()[fragment].keyframes.back()].travelled; };
+    if (state.expectation && newest_travelled() - graph[state.expectation->keyframe].travelled > kExpectedLength) {
+        state.expectation.reset(); // it was wrong
+    }
     if (state.expectation) {
         auto query = ask(graph, fragment, state.expectation);
         if (!query || !query->search->run(kPart)) return false;
@@ -57,23 +75,34 @@ bool FragmentSearch::search(KeyframeGraph& graph, std::size_t fragment) {
         state = Searched();
         return true;
     }
-    if (!state.query) state.query = ask(graph, fragment, std::nullopt);
-    if (!state.query) return false;
-    if (!state.query->search) make_search(graph, *state.query, std::nullopt);
-    const bool has_ended = state.query->search->run(kPart);
-    if (!has_ended && ++state.query->parts < kPartsMax) return false;
-    const Query query = *std::exchange(state.query, std::nullopt);
-    const auto found = has_ended ? query.answer() : std::nullopt;
-    if (!found) return false;
-    state.answers.push_back({query.keyframe, *found});
+    std::optional<Query> query = std::exchange(state.query, std::nullopt);
+    std::optional<Transform2> found;
+    if (query) {
+        const bool has_ended = run(graph, *query, kPart);
+        if (!has_ended && query->allowed < kLookupsMax) {
+            query->allowed += kPart;
+            state.query = std::move(query);
+            return false;
+        }
+        if (has_ended) found = query->answer();
+    }
+    state.query = ask(graph, fragment, std::nullopt);
+    return found && add_answer(graph, fragment, {query->keyframe, *found});
+}
+
+/// Adds the answer of a search. Moves the fragment there if answers agree, and its whole way fits the map.
+bool FragmentSearch::add_answer(KeyframeGraph& graph, std::size_t fragment, const Answer& answer) {
+    Searched& state = searched(fragment);
+    const Transform2& found = answer.T_map_fragment;
+    state.answers.push_back(answer);
     if (!is_confirmed(graph, state.answers)) return false;
     const std::size_t newest = graph.fragments()[fragment].keyframes.back();
     const std::size_t anchor = std::ranges::find_if(graph.fragments(), &Fragment::is_located)->keyframes.front();
-    graph.move(fragment, *found, true);
+    graph.move(fragment, found, true);
     StretchQuestion question{newest, anchor, Transform2(), kWindow, kContradictedMax, kNoiseFactor};
     if (is_map_complete_) question = {newest, anchor, Transform2(), kWindow, kContradictedInCompleteMap};
     if (!accept_stretch(graph, question)) {
-        graph.move(fragment, inverse(*found), false);
+        graph.move(fragment, inverse(found), false);
         return false;
     }
     state = Searched();
@@ -113,7 +142,7 @@ bool FragmentSearch::is_consistent(const KeyframeGraph& graph) const {
         if (state.expectation && !is_keyframe(state.expectation->keyframe)) return false;
         if (!state.query) return true;
         const Query& query = *state.query;
-        return is_keyframe(query.keyframe) && query.parts < kPartsMax && query.points.size() >= kPointsMin &&
+        return is_keyframe(query.keyframe) && query.done <= query.allowed && query.allowed <= kLookupsMax && query.points.size() >= kPointsMin &&
                query.points.size() <= kPointsMax && is_map(*query.map) && !query.map->keyframes.empty() &&
                std::ranges::any_of(graph.fragments(), &Fragment::is_located);
     };
@@ -121,7 +150,9 @@ bool FragmentSearch::is_consistent(const KeyframeGraph& graph) const {
 }
 
 void FragmentSearch::expect(std::size_t fragment, const Surroundings& place, std::size_t keyframe) {
-    searched(fragment).expectation = {place, keyframe};
+    Searched& state = searched(fragment);
+    state.expectation = {place, keyframe};
+    state.query.reset(); // it searches everywhere
 }
 
 FragmentSearch::Searched& FragmentSearch::searched(std::size_t fragment) {
@@ -131,7 +162,8 @@ FragmentSearch::Searched& FragmentSearch::searched(std::size_t fragment) {
 
 /// Returns whether the map lacks keyframes, or has some elsewhere.
 bool FragmentSearch::is_outdated(const KeyframeGraph& graph, const std::vector<Located>& located) const {
-    if (located.size() >= map_->keyframes.size() + kMapRefresh) return true;
+    const std::size_t count = map_->keyframes.size();
+    if (located.size() >= count + std::max(kMapRefresh, count / kMapRefreshPart)) return true;
     return std::ranges::any_of(map_->keyframes, [&](const Located& then) {
         const Transform2 off = inverse(then.T_map_keyframe) * graph.pose(then.keyframe);
         return distance_of(off) > kMapMoveMax;
@@ -160,7 +192,7 @@ const std::shared_ptr<const PlaceMap>& FragmentSearch::places_of(const KeyframeG
     return map.places = std::make_shared<const PlaceMap>(views.views());
 }
 
-/// Makes the search of a query, up to its parts that are done.
+/// Makes the search of a query, up to its lookups that are done.
 void FragmentSearch::make_search(const KeyframeGraph& graph, Query& query,
                                  const std::optional<Expectation>& expectation) {
     const double share = expectation ? kExpectedScoreShare : kScoreShare;
@@ -172,7 +204,7 @@ void FragmentSearch::make_search(const KeyframeGraph& graph, Query& query,
         question.radius = expectation->place.radius + moved;
     }
     query.search.emplace(places_of(graph, *query.map), query.points, question);
-    for (std::size_t n = 0; n < query.parts; ++n) query.search->run(kPart);
+    query.search->run(query.done);
 }
 
 /// Begins to look up the newest keyframes of a fragment.
@@ -202,7 +234,7 @@ std::optional<FragmentSearch::Query> FragmentSearch::ask(const KeyframeGraph& gr
     for (std::size_t first = 0; first < kStride; ++first) {
         for (std::size_t n = first; n < count; n += kStride) chosen.push_back(points[n * points.size() / count]);
     }
-    Query query{newest, T_newest_fragment, 0, map_, std::move(chosen), std::nullopt};
+    Query query{newest, T_newest_fragment, 0, kPart, map_, std::move(chosen), std::nullopt};
     make_search(graph, query, expectation);
     return query;
 }

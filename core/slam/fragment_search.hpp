@@ -19,25 +19,32 @@ struct Surroundings {
 /// Finds the places in the map of fragments that are not located: those of robots that start anywhere, or that were
 /// lost.
 ///
-/// The newest keyframes of the fragment are looked up in the map of all located ones, a part of the search at each new
-/// keyframe. Half of their points may be in space that the map does not show yet. One answer is not enough, because
+/// The newest keyframes of the fragment are looked up in the map of all located ones, a part of the search at each
+/// scan. Half of their points may be in space that the map does not show yet. One answer is not enough, because
 /// buildings have rooms that look alike: four must agree, over ten metres of the way, and the whole fragment must
 /// then fit the map. A fragment that is located later than possible does no harm; one at a wrong place tears the map.
 /// Where people say where the robot is, one good answer near that place is enough.
 /// Threads: one at a time.
 class FragmentSearch {
 public:
+    /// Goes on with the search for a fragment that search() has begun, by a small part, so that no scan waits long.
+    /// Call it for each of its scans.
+    /// @param fragment  index of a fragment that is not located
+    /// Cost: at most some milliseconds.
+    void continue_search(const KeyframeGraph& graph, std::size_t fragment);
+
     /// Searches for the place of a fragment. Call it after each of its keyframes.
     /// @param graph     if the place is found, the fragment is moved there, is located, and has loop edges to the map; the
     ///     graph is not optimised
     /// @param fragment  index of a fragment that is not located
     /// @return whether the place is found
-    /// Cost: some tens of milliseconds for a part of a search; a test of the fragment when four answers agree.
+    /// Cost: what continue_search() has left of a part of the search, up to some tens of milliseconds; a test of the fragment when
+    ///     four answers agree.
     bool search(KeyframeGraph& graph, std::size_t fragment);
 
-    /// States that the map shows all places that may look alike. Then answers that agree over two metres are enough,
+    /// Sets whether the map shows all places that may look alike. Then answers that agree over two metres are enough,
     /// and the map may be older than what the robots see.
-    void set_map_complete() noexcept { is_map_complete_ = true; }
+    void set_map_complete(bool is_complete) noexcept { is_map_complete_ = is_complete; }
 
     /// Searches for a fragment near a place only.
     /// @param fragment  index of the fragment
@@ -89,16 +96,18 @@ private:
         std::size_t keyframe = 0;       // the newest one when it began
         Transform2 T_keyframe_fragment; // then
         std::size_t parts = 0;          // of the search that are done
+        std::size_t done = 0;           // lookups
+        std::size_t allowed = 0;        // lookups until the fragment has another keyframe
         std::shared_ptr<LocatedMap> map;
         std::vector<scan_matching::SurfacePoint> points;  // of the keyframes, in the frame of the newest one
-        std::optional<scan_matching::PlaceSearch> search; // nullopt: the parts must be searched again
+        std::optional<scan_matching::PlaceSearch> search; // nullopt: it must be done again
 
         /// Returns T_map_fragment if one place is better than all others. Precondition: the search has ended.
         [[nodiscard]] std::optional<Transform2> answer() const;
 
         template <class Self, class Archive>
         static void list(Self& self, Archive& archive) {
-            archive(self.keyframe, self.T_keyframe_fragment, self.parts, self.map, self.points);
+            archive(self.keyframe, self.T_keyframe_fragment, self.done, self.allowed, self.map, self.points);
         }
     };
 
@@ -109,10 +118,12 @@ private:
         std::optional<Expectation> expectation;
     };
 
+    [[nodiscard]] bool add_answer(KeyframeGraph& graph, std::size_t fragment, const Answer& answer);
     [[nodiscard]] static bool connect(KeyframeGraph& graph, std::size_t fragment, const Transform2& T_map_fragment);
     [[nodiscard]] Searched& searched(std::size_t fragment);
     [[nodiscard]] static const std::shared_ptr<const scan_matching::PlaceMap>& places_of(const KeyframeGraph& graph,
                                                                                          LocatedMap& map);
+    [[nodiscard]] static bool run(const KeyframeGraph& graph, Query& query, std::size_t lookups);
     static void make_search(const KeyframeGraph& graph, Query& query, const std::optional<Expectation>& expectation);
     [[nodiscard]] bool is_outdated(const KeyframeGraph& graph, const std::vector<Located>& located) const;
     void update_map(const KeyframeGraph& graph);

@@ -6,9 +6,10 @@
 
 namespace scanloom::slam {
 
-void SharedMap::begin_with(std::vector<KnownView> views, bool is_complete) {
+void SharedMap::begin_with(std::vector<KnownView> views, bool is_imported) {
     is_frame_given_ = true;
-    if (is_complete) fragments_.set_map_complete();
+    is_imported_ = is_imported;
+    fragments_.set_map_complete(is_imported_ || is_frozen_);
     for (KnownView& view : views) add_given(kNoRobot, std::move(view.points), view.T_map_laser);
 }
 
@@ -16,12 +17,16 @@ void SharedMap::add_given(std::size_t robot, ScanPoints scan, const Transform2& 
     const std::size_t fragment =
         graph_.add_given(robot, std::make_shared<const ScanPoints>(std::move(scan)), T_map_keyframe);
     loops_.add_submaps(graph_, fragment);
+    if (robot == kNoRobot) return;
+    is_imported_ = false; // it grows
+    fragments_.set_map_complete(is_frozen_);
 }
 
 void SharedMap::freeze(bool is_frozen) {
     if (is_frozen) finish();
     graph_.freeze(is_frozen);
     is_frozen_ = is_frozen;
+    if (is_frame_given_) fragments_.set_map_complete(is_imported_ || is_frozen_);
     if (is_frozen || is_frame_given_ || graph_.size() == 0) return;
     if (std::ranges::none_of(graph_.fragments(), &Fragment::is_located)) graph_.move(0, Transform2(), true);
 }

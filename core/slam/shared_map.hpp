@@ -21,13 +21,14 @@ struct KnownView {
 /// Threads: one at a time.
 class SharedMap {
 public:
-    /// Begins with a given frame, in which all robots are to be located. Call it before anything else.
-    /// @param views  all over the map that is known so far, neighbours after each other
-    /// @param is_complete  see FragmentSearch::set_map_complete()
-    void begin_with(std::vector<KnownView> views, bool is_complete);
+    /// Begins with a given frame, in which all robots are to be located. Call it before any fragment is located.
+    /// @param views        all over the map that is known so far, neighbours after each other
+    /// @param is_imported  whether the map was imported, so that it shows all places that may look alike; other maps do
+    ///     while they are frozen
+    void begin_with(std::vector<KnownView> views, bool is_imported);
 
-    /// Adds a keyframe of a robot that sends its poses. Call it if the frame is given, and the map not frozen.
-    /// @param robot           whose scan it is
+    /// Adds a keyframe of a robot that sends its poses, or a view of the known map. Call it if the frame is given.
+    /// @param robot           whose scan it is; kNoRobot: it is a view
     /// @param scan            its points
     /// @param T_map_keyframe  its pose, which does not change
     void add_given(std::size_t robot, ScanPoints scan, const Transform2& T_map_keyframe);
@@ -68,6 +69,10 @@ public:
     /// @param T_newest_keyframe  its pose relative to the fragment's newest keyframe, as matched
     void add_keyframe(std::size_t fragment, ScanPoints scan, const Transform2& T_newest_keyframe);
 
+    /// Goes on with the search for the place of a fragment. Call it for each of its scans.
+    /// @param fragment  index of a fragment that is not located
+    void continue_search(std::size_t fragment) { fragments_.continue_search(graph_, fragment); }
+
     /// Moves the keyframes once more so that they agree with the edges, as at the end of a log.
     void finish();
 
@@ -86,7 +91,8 @@ public:
     /// Lists the members that decide later results; see common/archive.
     template <class Self, class Archive>
     static void list(Self& self, Archive& archive) {
-        archive(self.graph_, self.loops_, self.fragments_, self.optimizations_, self.is_frozen_, self.is_frame_given_);
+        archive(self.graph_, self.loops_, self.fragments_, self.optimizations_, self.is_frozen_, self.is_frame_given_,
+                self.is_imported_);
     }
 
     /// Returns whether the members fit together, as they always do unless they were read from damaged bytes.
@@ -101,6 +107,7 @@ private:
     std::size_t optimizations_ = 0; // by others than the loop search
     bool is_frozen_ = false;
     bool is_frame_given_ = false;
+    bool is_imported_ = false; // and no robot has sent poses since
 };
 
 } // namespace scanloom::slam

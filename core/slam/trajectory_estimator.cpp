@@ -59,6 +59,7 @@ void TrajectoryEstimator::add(ScanPoints scan, const std::optional<Pose2>& odome
         return;
     }
     follow_freeze();
+    if (!is_fragment_located()) map_.continue_search(fragments_.back());
     std::optional<Surroundings> place_to_search;
     if (!scan.points.empty()) place_to_search = std::exchange(relocalized_, std::nullopt);
     const bool is_leaving = is_in_frozen_map_ && !map_.is_frozen();

@@ -21,7 +21,7 @@ struct ExpectedSession {
 /// The server's own count for a robot, read after the run.
 struct FoundRobot {
     std::string name;
-    std::uint64_t scans = 0;
+    std::uint64_t scans = 0; ///< in its log, also those without a place in the map
     std::uint64_t last_seq = 0;
 };
 
@@ -29,10 +29,12 @@ struct FoundSession {
     std::uint64_t scans = 0;
     std::uint64_t revision = 0; ///< entries in its log
     std::vector<FoundRobot> robots;
+    std::uint64_t corrections = 0; ///< of estimated poses
 };
 
 /// Returns a sentence that says what contradicts the acknowledgements; nullopt if every scan is stored exactly once.
-/// Every robot adds two entries to its scans: it joined, and its laser was described.
+/// Every robot adds two entries to its scans: it joined, and its laser was described. The server adds an entry when
+/// maps were corrected, at most one for each correction of estimated poses.
 [[nodiscard]] std::optional<std::string> contradiction(const ExpectedSession& expected, const FoundSession& found);
 
 enum class Verify { kNone, kCounts, kDigests };

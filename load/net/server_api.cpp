@@ -38,10 +38,15 @@ auto read_json(const Result<HttpAnswer>& answer, const std::string& target, Read
 
 FoundSession read_session(const json::value& value) {
     FoundSession found{
-        value.at("scans").to_number<std::uint64_t>(), value.at("revision").to_number<std::uint64_t>(), {}};
+        value.at("scans").to_number<std::uint64_t>(), value.at("revision").to_number<std::uint64_t>(), {}, 0};
     for (const auto& robot : value.at("robots").as_array()) {
-        found.robots.push_back({std::string(robot.at("name").as_string()), robot.at("scans").to_number<std::uint64_t>(),
+        const auto& localization = robot.at("localization");
+        const auto placed = robot.at("scans").to_number<std::uint64_t>();
+        const auto unplaced = localization.at("unplaced").to_number<std::uint64_t>();
+        found.robots.push_back({std::string(robot.at("name").as_string()), placed + unplaced,
                                 robot.at("last_seq").to_number<std::uint64_t>()});
+        found.scans += unplaced;
+        found.corrections = std::max(found.corrections, localization.at("corrections").to_number<std::uint64_t>());
     }
     return found;
 }

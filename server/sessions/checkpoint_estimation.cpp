@@ -49,7 +49,7 @@ std::optional<std::array<std::uint32_t, 2>> piece_of(std::string_view key) {
 }
 
 bool is_possible(const EstimationHead& head) {
-    return head.map_frame <= MapFrame::kEstimated && head.slot <= 1 &&
+    return head.frame_origin <= FrameOrigin::kEstimated && head.slot <= 1 &&
            std::ranges::all_of(head.robots, [](const EstimationHead::Robot& robot) {
                return robot.poses <= Poses::kNone && robot.localization.state <= LocalizationState::kUnlocated;
            });
@@ -79,7 +79,7 @@ Result<EstimationHead> read_estimation_head(std::string_view value) {
 
 EstimationHead add_estimation(const localization::EstimationState& state, const mapping::ProjectionState& maps,
                               const std::optional<EstimationHead>& stored, const AddPart& add) {
-    EstimationHead head{.map_frame = maps.map_frame,
+    EstimationHead head{.frame_origin = maps.frame_origin,
                         .scans = state.scans.size(),
                         .corrections = state.corrections.size(),
                         .slot = stored ? 1 - stored->slot : 0};

@@ -31,7 +31,7 @@ struct EstimationHead {
     };
 
     std::uint32_t version = localization::kEstimationVersion;
-    MapFrame map_frame = MapFrame::kOpen;
+    FrameOrigin frame_origin = FrameOrigin::kOpen;
     std::uint64_t scans = 0;       ///< of keyframes
     std::uint64_t corrections = 0; ///< of the maps
     std::uint32_t slot = 0;        ///< 0 or 1: where the rest of the state is

@@ -33,10 +33,10 @@ std::optional<std::vector<std::uint32_t>> numbers_in(std::string_view key) {
 }
 
 /// Returns where the frame of a checkpoint's map comes from if no robot of it has estimated poses.
-MapFrame map_frame_of(const mapping::ProjectionState& state) {
+FrameOrigin frame_origin_of(const mapping::ProjectionState& state) {
     const bool has_scans = std::ranges::any_of(state.robots, [](const auto& robot) { return robot.last_seq > 0; });
-    if (has_scans) return MapFrame::kSent;
-    return mapping::bounds_of(state.bounds).empty() ? MapFrame::kOpen : MapFrame::kImported;
+    if (has_scans) return FrameOrigin::kSent;
+    return mapping::bounds_of(state.bounds).empty() ? FrameOrigin::kOpen : FrameOrigin::kImported;
 }
 
 grid::ChunkKey chunk_key_of(const std::vector<std::uint32_t>& numbers) {
@@ -206,7 +206,7 @@ bool CheckpointReader::add_sonar_chunk(const Numbers& numbers, std::string_view 
 bool CheckpointReader::restore_projection() {
     if (is_restored_) return !estimation_ || restored_;
     is_restored_ = true;
-    state_.map_frame = estimation_ ? estimation_->head().map_frame : map_frame_of(state_);
+    state_.frame_origin = estimation_ ? estimation_->head().frame_origin : frame_origin_of(state_);
     if (estimation_) restored_ = std::move(*estimation_).finish(state_);
     if (estimation_ && !restored_) return false;
     projection_.restore(state_);

@@ -22,17 +22,16 @@ Error map_already_begun(const std::string& robot, const std::string& session) {
 } // namespace
 
 void RobotSequencer::restore(const mapping::ProjectionState& state) {
-    auto robots = pending_.robots();
-    robots.resize(state.robots.size());
-    pending_ = LogRules(state.revision, std::move(robots), {}, state.is_localize_only, state.map_frame);
     members_.resize(state.robots.size());
     for (RobotIndex robot = 0; robot < members_.size(); ++robot) restore(robot, state.robots[robot]);
+    pending_ = LogRules(state.revision, {state.robots.begin(), state.robots.end()}, {}, state.is_localize_only,
+                        state.frame_origin);
 }
 
+/// Sets a member to its durable state, and counts the scans that are dropped. pending_ is not changed.
 void RobotSequencer::restore(RobotIndex robot, const LoggedRobot& durable) {
-    const std::uint64_t last_seq = pending_.robots()[robot].last_seq;
+    const std::uint64_t last_seq = robot < pending_.robots().size() ? pending_.robots()[robot].last_seq : 0;
     counters_.scans_dropped += last_seq - std::min(last_seq, durable.last_seq);
-    pending_.reset_robot(robot, durable);
     Member& member = members_[robot];
     member.durable_seq = durable.last_seq;
     if (member.first_visible_seq > durable.last_seq) member.first_visible_seq = 0;
@@ -68,10 +67,12 @@ std::optional<PendingEntry> RobotSequencer::join(PendingJoin joining) {
         return std::nullopt;
     }
     const bool is_new = known == members_.end();
-    auto may_join = is_new ? Result<>() : check_again(logged(*known), who);
-    if (may_join) may_join = check_frame(who.robot, who.poses);
-    if (!may_join) {
-        joining.done(prefixed("hello.", may_join.error()));
+    auto agrees = is_new ? Result<>() : check_again(logged(*known), who);
+    if (agrees) {
+        if (auto fits = check_frame(who.robot, who.poses); !fits) agrees = prefixed("hello.poses: ", fits.error());
+    }
+    if (!agrees) {
+        joining.done(agrees.error());
         return std::nullopt;
     }
     Member& member = is_new ? members_.emplace_back() : *known;
@@ -97,28 +98,28 @@ Result<> RobotSequencer::check_again(const LoggedRobot& robot, const JoinRequest
     if (robot.accepts(who.source, who.poses)) return {};
     if (robot.source == who.source) {
         return Error{Errc::kConflict,
-                     fmt::format("poses: the {} scans of robot '{}' in session '{}' have poses of kind '{}', not "
+                     fmt::format("hello.poses: the {} scans of robot '{}' in session '{}' have poses of kind '{}', not "
                                  "'{}'; continue with the same, or use another robot or session name",
                                  robot.last_seq, robot.name, info_.name, name_of(robot.poses), name_of(who.poses))};
     }
     const auto in_words = [](const std::string& name) { return name.empty() ? "a live robot" : "'" + name + "'"; };
     return Error{Errc::kConflict,
-                 fmt::format("source: the {} scans of robot '{}' in session '{}' come from {}, not from {}; "
+                 fmt::format("hello.source: the {} scans of robot '{}' in session '{}' come from {}, not from {}; "
                              "continue with the same, or use another robot or session name",
                              robot.last_seq, robot.name, info_.name, in_words(robot.source), in_words(who.source))};
 }
 
-/// Checks that poses which a robot sends can be in the map's frame. They cannot if the server estimated the first ones:
-/// that frame is known to nobody else. In a map that does not change, wrong poses do no harm.
+/// Checks that poses which a robot sends can be in the map's frame. They cannot if the server estimated the first ones,
+/// because only the server knows that frame. In a map that does not change, wrong poses do no harm.
 Result<> RobotSequencer::check_frame(const std::string& robot, Poses poses) const {
     const bool fits =
-        poses != Poses::kMap || pending_.map_frame() != MapFrame::kEstimated || pending_.is_localize_only();
+        poses != Poses::kMap || pending_.frame_origin() != FrameOrigin::kEstimated || pending_.is_localize_only();
     if (fits) return {};
     return Error{Errc::kConflict,
-                 fmt::format("poses: robot '{}' sends poses in the map's frame, but the map of session '{}' began with "
-                             "estimated poses of robot '{}', in a frame that others cannot know; use --poses odometry "
-                             "or none, or another session",
-                             robot, info_.name, pending_.find_robot_with_poses(false)->name)};
+                 fmt::format("robot '{}' sends poses in the map's frame, but the map of session '{}' began with "
+                             "estimated poses of robot '{}', and only the server knows their frame; use --poses "
+                             "odometry or none, or another session",
+                             robot, info_.name, pending_.find_estimated()->name)};
 }
 
 /// Admits the link that waits to join, if all entries of the robot's earlier links are in the maps.
@@ -154,6 +155,7 @@ void RobotSequencer::fail_all(const Error& error) {
 
 void RobotSequencer::refuse(RobotIndex robot, const Error& error, const mapping::ProjectionState& state) {
     restore(robot, state.robots[robot]);
+    pending_.reset_robot(robot, state.robots[robot]);
     fail(members_[robot], error);
 }
 
@@ -275,7 +277,7 @@ Result<> RobotSequencer::check_next(const LoggedRobot& robot, const Scan& scan, 
                      fmt::format("sensor is {}, which was not described; send a SensorDescription first", scan.sensor)};
     }
     if (auto ok = check_pose(robot, scan); !ok) return ok;
-    if (auto ok = check_frame(robot.name, robot.poses); !ok) return ok;
+    if (auto ok = check_frame(robot.name, robot.poses); !ok) return prefixed("pose: ", ok.error());
     if (scan.begins_map && robot.last_seq == 0) { // later scans are placed relative to the first
         const auto shows = [](const Member& other) { return other.first_visible_seq > 0; };
         if (is_mapped || std::ranges::any_of(members_, shows)) return map_already_begun(robot.name, info_.name);
@@ -303,15 +305,13 @@ Result<PendingEntry> RobotSequencer::relocalize(const RobotRelocalized& relocali
 
 Result<std::optional<PendingEntry>> RobotSequencer::change_mode(const ModeChanged& changed) {
     if (changed.is_localize_only == pending_.is_localize_only()) return std::nullopt;
-    const auto* sender = pending_.find_robot_with_poses(true);
-    const auto* other = pending_.find_robot_with_poses(false);
-    const bool is_frame_given = pending_.map_frame() == MapFrame::kImported || pending_.map_frame() == MapFrame::kSent;
-    if (!changed.is_localize_only && !is_frame_given && sender != nullptr && other != nullptr) {
+    const auto* sender = pending_.find_sender();
+    if (!changed.is_localize_only && pending_.frame_origin() == FrameOrigin::kEstimated && sender != nullptr) {
         return Error{Errc::kConflict,
                      fmt::format("localize_only: the session has robot '{}', which sends its poses (--poses map), and "
                                  "robot '{}', whose estimated poses began the map; they cannot both change it, so it "
                                  "stays as it is",
-                                 sender->name, other->name)};
+                                 sender->name, pending_.find_estimated()->name)};
     }
     pending_.apply(changed);
     return PendingEntry{PendingEntry::kNoRobot, changed, {}, 0};

@@ -1,11 +1,9 @@
-#include "core/slam/trajectory_estimator.hpp"
 #include "lab/localization_experiment.hpp"
 #include "lab/recorded_log.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <cstddef>
 #include <filesystem>
 #include <string>
 
@@ -36,7 +34,7 @@ protected:
     [[nodiscard]] static double error_of(const TrajectoryScore& score) { return score.translation.absolute.mean; }
 };
 
-TEST_P(RealTrajectory, EstimatesAreExactAndPerturbedLogsGiveTheSameTrajectory) {
+TEST_P(RealTrajectory, EstimatesAreExactAlsoOfPerturbedLogsAndUnknownStarts) {
     const auto log = read_recorded_log({path(".clf.bz2").string(), path(".relations").string()});
     ASSERT_TRUE(log) << log.error().message;
     const auto result =
@@ -53,36 +51,13 @@ TEST_P(RealTrajectory, EstimatesAreExactAndPerturbedLogsGiveTheSameTrajectory) {
         EXPECT_LE(distance.metres, kFalseLoopMetres);
         EXPECT_LE(distance.degrees, kFalseLoopDegrees);
     }
-}
-
-/// The rest of a log is a second robot, with an odometry frame of its own.
-TEST_P(RealTrajectory, ARobotThatStartsAnywhereFindsItsPlaceInWhatAnotherOneHasSeen) {
-    const auto log = read_recorded_log({path(".clf.bz2").string(), path(".relations").string()});
-    ASSERT_TRUE(log) << log.error().message;
-    const auto& scans = log->scans;
-    slam::SharedMap whole_map;
-    slam::TrajectoryEstimator whole(whole_map, 0);
-    for (const auto& [sensor, scan] : scans) whole.add(scan, *sensor);
-    whole.finish();
-    for (const double part : {0.3, 0.4, 0.5, 0.6, 0.7, 0.8}) {
-        SCOPED_TRACE(part);
-        slam::SharedMap map;
-        slam::TrajectoryEstimator first(map, 0);
-        slam::TrajectoryEstimator second(map, 1);
-        const auto start = static_cast<std::size_t>(part * static_cast<double>(scans.size()));
-        for (std::size_t n = 0; n < start; ++n) first.add(scans[n].scan, *scans[n].sensor);
-        const Pose2 origin = inverse(scans[start].scan.odometry.value());
-        std::size_t next = start;
-        while (next < scans.size() && second.located_fragments() == 0) {
-            Scan scan = scans[next].scan;
-            scan.odometry = compose(origin, *scan.odometry);
-            second.add(scan, *scans[next++].sensor);
-        }
-        ASSERT_EQ(second.located_fragments(), 1U);
-        EXPECT_LE(next - start, scans.size() / 5);
-        const Pose2 off = compose(inverse(whole.pose_of(next - 1)), second.pose_of(next - 1 - start));
-        EXPECT_LT(std::hypot(off.x, off.y), 0.2);
-        EXPECT_LT(std::fabs(off.yaw), 0.05);
+    EXPECT_EQ(result->unknown_starts.size(), 12U);
+    for (const auto& [poses, part, found] : result->unknown_starts) {
+        SCOPED_TRACE(fmt::format("{}, {}", name_of(poses), part));
+        ASSERT_TRUE(found);
+        EXPECT_LE(found->scans, log->scans.size() / 4);
+        EXPECT_LT(found->metres, 0.2);
+        EXPECT_LT(found->degrees, 3.0);
     }
 }
 

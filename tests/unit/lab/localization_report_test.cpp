@@ -29,6 +29,8 @@ LocalizationResults drawn_results(const std::string& name) {
     log.variants = {{variant(0.97, 0), score_of(0.03, 0.25), 1.5, {0.25, 10.0, 7}},
                     {variant(1.01, 50), std::nullopt, 0.0, {0.5, 15.0, 8}},
                     {{Poses::kNone, {.skip = 150}}, score_of(0.025, 0.25, 30), 1.125, {0.75, 5.0, 0}}};
+    log.unknown_starts = {{Poses::kOdometry, 0.3, UnknownStart::Found{120, 24.6, 0.044, 0.16}},
+                          {Poses::kNone, 0.8, std::nullopt}};
     log.maps = {DrawnMap{"a.png", 0.1, 94.1, 75.2}, {"b.png", 0.05, 39.4, 36.0}, {"c.png", 0.05, 39.0, 36.0}};
     return {{{"/data/" + name + ".clf.bz2", "/data/" + name + ".relations"}}, {log}};
 }
@@ -57,6 +59,11 @@ TEST(LocalizationReport, NamesTheWorstVariantsAndCountsFalseLoops) {
                           "for the same relations (odometry x 0.97), the largest distance 0.75 m (no odometry, without "
                           "the first 150 scans), "
                           "the largest turn 15.0 degrees (odometry x 1.01, without the first 50 scans)."));
+}
+
+TEST(LocalizationReport, ShowsWhenASecondRobotIsLocated) {
+    EXPECT_THAT(report_of(drawn_results("hall")), HasSubstr("| hall | odometry | 30 % | 120 | 25 | 0.04 | 0.2 |\n"
+                                                            "| hall | none | 80 % | not located |  |  |  |"));
 }
 
 TEST(LocalizationReport, ShowsTheMapsSideBySide) {

@@ -10,7 +10,7 @@ using testing::HasSubstr;
 using testing::StartsWith;
 
 const ExpectedSession kExpected{"load-1-3", {{"r0", 300}, {"r1", 200}}};
-const FoundSession kFound{500, 504, {{"r0", 300, 300}, {"r1", 200, 200}}};
+const FoundSession kFound{500, 504, {{"r0", 300, 300}, {"r1", 200, 200}}, 0};
 
 std::string contradiction_in(const FoundSession& found) { return contradiction(kExpected, found).value_or("nothing"); }
 
@@ -36,6 +36,18 @@ TEST(Contradiction, EveryDifferenceOfASessionIsFound) {
     found = kFound;
     found.revision = 505;
     EXPECT_THAT(contradiction_in(found), HasSubstr("at revision 505; its scans and robots need 504 entries"));
+}
+
+TEST(Contradiction, CorrectionsOfMapsAddEntriesWherePosesAreEstimated) {
+    auto found = kFound;
+    found.corrections = 3;
+    EXPECT_EQ(contradiction_in(found), "nothing");
+    found.revision = 507;
+    EXPECT_EQ(contradiction_in(found), "nothing");
+    found.revision = 508;
+    EXPECT_THAT(contradiction_in(found), HasSubstr("at revision 508; its scans and robots need 504 entries"));
+    found.revision = 503;
+    EXPECT_THAT(contradiction_in(found), HasSubstr("at revision 503; its scans and robots need 504 entries"));
 }
 
 Evidence good_evidence() {

@@ -80,6 +80,15 @@ TEST(RobotPoses, PosesInMapsFollowTheEstimatesWithinTheJump) {
     EXPECT_GT(distance(poses->first(0), drive.odometry.back()), 0.0);
 }
 
+TEST(RobotPoses, SmallImprovementsWaitUntilTheLogHasGrown) {
+    EXPECT_TRUE(is_worth_a_correction(0.11, 2000, 0)) << "a jump does not wait";
+    EXPECT_FALSE(is_worth_a_correction(0.09, 2000, 199));
+    EXPECT_TRUE(is_worth_a_correction(0.09, 2000, 200)) << "a tenth more keyframes";
+    EXPECT_FALSE(is_worth_a_correction(0.09, 100, 49));
+    EXPECT_TRUE(is_worth_a_correction(0.09, 100, 50));
+    EXPECT_FALSE(is_worth_a_correction(0.04, 2000, 2000)) << "less than a cell";
+}
+
 TEST(RobotPoses, WhatMovedLittleStays) {
     const Drive& drive = lap();
     LonePoses poses;

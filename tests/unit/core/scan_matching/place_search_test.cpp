@@ -189,13 +189,13 @@ TEST(PlaceSearch, ASearchInPartsFindsWhatOneAtOnceFinds) {
     const auto at_once = find(map, scene.points, question);
     ASSERT_TRUE(at_once);
     PlaceSearch search(map, scene.points, question);
-    int parts = 1;
-    while (!search.run(5000)) ++parts;
-    EXPECT_GT(parts, 3);
+    std::size_t parts = 1;
+    while (!search.run(5000 * parts)) ++parts;
+    EXPECT_GT(parts, 3U);
     EXPECT_EQ(search.place()->T_map_points, at_once->T_map_points);
     EXPECT_EQ(search.place()->score, at_once->score);
     EXPECT_EQ(search.place()->rival_score, at_once->rival_score);
-    EXPECT_TRUE(search.run(5000)) << "it has ended";
+    EXPECT_TRUE(search.run(1)) << "it has ended";
 }
 
 TEST(PlaceSearch, AnEmptyMapAndNoPointsHaveNoPlace) {

@@ -150,6 +150,24 @@ TEST(FragmentSearch, LocatesAStandingRobotWherePeopleSayThatItIs) {
     }
 }
 
+TEST(FragmentSearch, AWrongHintIsForgottenAfterAWhile) {
+    const std::vector<Point2> way{{24.0, 21.0}, {1.0, 21.0}, {1.0, 1.0}, {30.0, 1.0}};
+    const Drive second = drive_along(ring_building(), way, {.scale = 0.98, .turn = -0.003}, 13);
+    SharedMap map;
+    TrajectoryEstimator a(map, 0);
+    TrajectoryEstimator b(map, 1);
+    for (std::size_t n = 0; n < lap().scans.size(); ++n)
+        a.add(points_of(lap().scans[n], lap().laser), lap().odometry[n]);
+    b.relocalize({{60.0, -30.0}, 2.0}); // outside
+    for (std::size_t n = 0; n < second.scans.size(); ++n) {
+        b.add(points_of(second.scans[n], second.laser), second.odometry[n]);
+        if (n == 190) {
+            ASSERT_EQ(b.located_fragments(), 0U) << "within 19 m";
+        }
+    }
+    EXPECT_EQ(b.located_fragments(), 1U);
+}
+
 /// A robot that is tracked at a wrong place is put right: its scans from there on are a fragment of their own.
 TEST(FragmentSearch, ALocatedRobotGoesOnWherePeopleSayThatItIs) {
     const std::vector<Point2> round{{1.0, 1.0}, {16.5, 1.2}, {17.0, 10.8}, {12.0, 11.2}, {7.5, 8.0}};

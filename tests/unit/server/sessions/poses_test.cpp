@@ -116,13 +116,13 @@ TEST_F(PosesTest, NoRobotSendsPosesInAFrameThatTheServerEstimated) {
     EXPECT_EQ(refusal_of(link, scan_with(1, std::nullopt, kPlace)), "accepted");
     EXPECT_EQ(refusal_of(join_with(Poses::kMap, "other")),
               "hello.poses: robot 'other' sends poses in the map's frame, but the map of session 'lab' began with "
-              "estimated poses of robot 'r', in a frame that others cannot know; use --poses odometry or none, or "
+              "estimated poses of robot 'r', and only the server knows their frame; use --poses odometry or none, or "
               "another session");
     session_->submit(early, {scan_with(1, kPlace, std::nullopt)}, 0);
     run();
     ASSERT_THAT(early->failures, SizeIs(1)) << "it joined before, but the map has begun since";
     EXPECT_EQ(early->failures[0].code, Errc::kConflict);
-    EXPECT_THAT(early->failures[0].message, StartsWith("scan_batch.scans[0].poses: robot 'early' sends poses"));
+    EXPECT_THAT(early->failures[0].message, StartsWith("scan_batch.scans[0].pose: robot 'early' sends poses"));
     EXPECT_EQ(refusal_of(join_with(Poses::kOdometry, "second")), "accepted");
     EXPECT_EQ(refusal_of(join_with(Poses::kNone, "third")), "accepted");
 }
@@ -135,6 +135,23 @@ TEST_F(PosesTest, RobotsWithEstimatedPosesJoinThoseThatSendThem) {
     EXPECT_EQ(refusal_of(joined(Poses::kMap, small_laser(), "late"), scan_with(1, kPlace, std::nullopt)), "accepted")
         << "the frame is the senders'";
     EXPECT_EQ(session_->snapshot()->robots.at(1).localization.state, LocalizationState::kUnlocated);
+}
+
+/// A robot that joined first, without scans, does not decide whose frame the map has.
+TEST_F(PosesTest, TheFirstScanDecidesTheFrameAlsoAfterARestart) {
+    joined(Poses::kMap, small_laser(), "early");
+    EXPECT_EQ(refusal_of(joined(Poses::kOdometry), scan_with(1, std::nullopt, kPlace)), "accepted");
+    start_session();
+    EXPECT_THAT(refusal_of(join_with(Poses::kMap, "early")), StartsWith("hello.poses: robot 'early' sends poses"));
+
+    id_ = log_.create_session("an unused record").value();
+    start_session();
+    joined(Poses::kOdometry, small_laser(), "early");
+    EXPECT_EQ(refusal_of(joined(Poses::kMap), scan_with(1, kPlace, std::nullopt)), "accepted");
+    start_session();
+    EXPECT_EQ(refusal_of(joined(Poses::kOdometry, small_laser(), "early"), scan_with(1, std::nullopt, kPlace)),
+              "accepted");
+    EXPECT_EQ(refusal_of(joined(Poses::kMap), scan_with(2, kPlace, std::nullopt)), "accepted");
 }
 
 TEST_F(PosesTest, RobotContinuesWithTheSameKindOfPoses) {
