@@ -95,7 +95,6 @@ private:
     struct Query {
         std::size_t keyframe = 0;       // the newest one when it began
         Transform2 T_keyframe_fragment; // then
-        std::size_t parts = 0;          // of the search that are done
         std::size_t done = 0;           // lookups
         std::size_t allowed = 0;        // lookups until the fragment has another keyframe
         std::shared_ptr<LocatedMap> map;
