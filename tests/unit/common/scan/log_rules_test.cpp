@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <random>
+#include <vector>
 
 namespace scanloom {
 namespace {
@@ -170,6 +171,73 @@ TEST(LogRules, ScanMayLackItsPoseOnlyIfTheRobotDoesNotSendPoses) {
         if (checked) continue;
         EXPECT_EQ(checked.error().message, "log entry 3: scan 1 of robot 'a' has no pose; the log is damaged");
     }
+}
+
+/// Rules of a log in which robot 0 sends its poses, and robot 1 does not.
+class FrameOriginTest : public testing::Test {
+protected:
+    void SetUp() override {
+        for (RobotIndex robot = 0; robot < 2; ++robot) {
+            const Poses poses = robot == kSender ? Poses::kMap : Poses::kOdometry;
+            ASSERT_TRUE(rules_.add(RobotJoined{robot, robot == kSender ? "sender" : "other", {}, {}, poses}));
+            ASSERT_TRUE(rules_.add(SensorDescribed{robot, small_laser()}));
+        }
+        before_ = rules_.robots();
+    }
+
+    FrameOrigin after_scan_of(RobotIndex robot) {
+        Scan scan = random_scan(1, rules_.robots()[robot].last_seq + 1);
+        scan.sensor = small_laser().id;
+        if (robot != kSender) scan.pose.reset();
+        EXPECT_TRUE(rules_.add(ScanTaken{robot, scan, rules_.is_localize_only()}));
+        return rules_.frame_origin();
+    }
+    FrameOrigin after_mode(bool is_localize_only) {
+        EXPECT_TRUE(rules_.add(ModeChanged{is_localize_only}));
+        return rules_.frame_origin();
+    }
+    FrameOrigin after_reset_of(RobotIndex robot) {
+        rules_.reset_robot(robot, before_[robot]);
+        return rules_.frame_origin();
+    }
+
+    static constexpr RobotIndex kSender = 0;
+    static constexpr RobotIndex kOther = 1;
+    LogRules rules_;
+    std::vector<LoggedRobot> before_; // without scans
+};
+
+TEST_F(FrameOriginTest, TheFirstScanDecides) {
+    EXPECT_EQ(rules_.frame_origin(), FrameOrigin::kOpen);
+    EXPECT_EQ(after_scan_of(kSender), FrameOrigin::kSent);
+    EXPECT_EQ(after_scan_of(kOther), FrameOrigin::kSent);
+    EXPECT_EQ(after_reset_of(kSender), FrameOrigin::kEstimated) << "the other one's is the first that is left";
+    EXPECT_EQ(after_scan_of(kSender), FrameOrigin::kEstimated);
+    EXPECT_EQ(after_reset_of(kOther), FrameOrigin::kSent);
+    EXPECT_EQ(after_reset_of(kSender), FrameOrigin::kOpen);
+}
+
+TEST_F(FrameOriginTest, AnImportedMapDecidesIfItShowsAnything) {
+    LogRules rules;
+    ASSERT_TRUE(rules.add(MapPatch{0.05, 0.0, 0.0, 1, {MapCell::kUnknown}}));
+    EXPECT_EQ(rules.frame_origin(), FrameOrigin::kOpen);
+    ASSERT_TRUE(rules.add(MapPatch{0.05, 0.0, 0.0, 1, {MapCell::kFree}}));
+    EXPECT_EQ(rules.frame_origin(), FrameOrigin::kImported);
+    rules_ = rules;
+    SetUp();
+    EXPECT_EQ(after_scan_of(kOther), FrameOrigin::kImported);
+    EXPECT_EQ(after_reset_of(kOther), FrameOrigin::kImported);
+}
+
+TEST_F(FrameOriginTest, InLocalizeOnlyModeNoEstimatedPoseBeginsAMap) {
+    after_mode(true);
+    EXPECT_EQ(after_scan_of(kOther), FrameOrigin::kOpen);
+    EXPECT_EQ(after_mode(false), FrameOrigin::kEstimated);
+    EXPECT_EQ(after_reset_of(kOther), FrameOrigin::kOpen);
+    after_mode(true);
+    after_scan_of(kOther);
+    EXPECT_EQ(after_scan_of(kSender), FrameOrigin::kOpen);
+    EXPECT_EQ(after_mode(false), FrameOrigin::kSent) << "so that both can go on";
 }
 
 } // namespace

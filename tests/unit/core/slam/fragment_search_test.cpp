@@ -121,6 +121,30 @@ TEST(FragmentSearch, LocatesARobotThatWasCarriedAgain) {
     }
 }
 
+/// A map that shows all places that may look alike needs answers over 2 m, others over 10 m.
+TEST(FragmentSearch, LocatesARobotSoonerInAMapThatIsComplete) {
+    const std::vector<Point2> way{{10.0, 1.0}, {14.0, 1.0}, {10.0, 1.0}, {14.0, 1.0}, {10.0, 1.0}, {14.0, 1.0}};
+    const Drive second = drive_along(ring_building(), way, {}, 14);
+    const auto is_located = [&](bool is_imported, bool is_frozen, bool grows) {
+        std::vector<KnownView> views;
+        for (std::size_t n = 0; n < lap().scans.size(); n += 8) {
+            views.push_back({scan_matching::transform_of(lap().truth[n]), points_of(lap().scans[n], lap().laser)});
+        }
+        SharedMap map;
+        if (is_frozen) map.freeze(true);
+        map.begin_with(views, is_imported);
+        if (grows) map.add_given(0, views[0].points, views[0].T_map_laser);
+        TrajectoryEstimator estimator(map, 1);
+        for (std::size_t n = 0; n < second.scans.size(); ++n)
+            estimator.add(points_of(second.scans[n], second.laser), second.odometry[n]);
+        return estimator.located_fragments() > 0;
+    };
+    EXPECT_TRUE(is_located(true, false, false)) << "imported";
+    EXPECT_FALSE(is_located(true, false, true)) << "a robot adds to it";
+    EXPECT_FALSE(is_located(false, false, false)) << "made by robots";
+    EXPECT_TRUE(is_located(false, true, false)) << "and finished";
+}
+
 /// People say where a robot is that stands: one scan is enough then.
 TEST(FragmentSearch, LocatesAStandingRobotWherePeopleSayThatItIs) {
     const std::vector<Point2> round{{1.0, 1.0}, {16.5, 1.2}, {17.0, 10.8}, {12.0, 11.2}, {7.5, 8.0}};

@@ -27,6 +27,15 @@ protected:
         const Pose2 pose = find_robot(robot).pose.value();
         return std::hypot(pose.x - truth.x, pose.y - truth.y);
     }
+
+    /// Returns the lap with the true poses instead of the odometry.
+    [[nodiscard]] static slam::Drive exact_lap() {
+        slam::Drive exact = lap();
+        for (std::size_t n = 0; n < exact.truth.size(); ++n) {
+            exact.odometry[n] = compose(inverse(exact.truth.front()), exact.truth[n]);
+        }
+        return exact;
+    }
 };
 
 TEST_F(LocalizeOnlyTest, RobotsAreTrackedAndTheMapStaysAsItIs) {
@@ -78,10 +87,7 @@ TEST_F(LocalizeOnlyTest, MappingGoesOnAfterwards) {
 
 /// The map was made by a robot that sends its poses. Others, whose poses the server estimates, are located in it.
 TEST_F(LocalizeOnlyTest, RobotsOfAllKindsOfPosesJoin) {
-    slam::Drive exact = lap();
-    for (std::size_t n = 0; n < exact.truth.size(); ++n) {
-        exact.odometry[n] = compose(inverse(exact.truth.front()), exact.truth[n]);
-    }
+    const slam::Drive exact = exact_lap();
     const std::size_t length = exact.scans.size();
     drive_on("given", exact, 20, length - 20, Poses::kMap);
     ASSERT_TRUE(change_mode(true));
@@ -98,6 +104,25 @@ TEST_F(LocalizeOnlyTest, RobotsOfAllKindsOfPosesJoin) {
     EXPECT_EQ(digest(), digest_with_poses_in_maps());
     EXPECT_LT(error_of("estimated", length - 1), 0.15);
 
+    const State expected = state();
+    start_session();
+    EXPECT_EQ(state(), expected);
+}
+
+/// Both came when there was no map. The frame is then that of the robot that sends its poses.
+TEST_F(LocalizeOnlyTest, ARobotThatCameBeforeTheMapIsLocatedInThatOfAnotherOne) {
+    const slam::Drive exact = exact_lap();
+    const std::size_t length = exact.scans.size();
+    ASSERT_TRUE(change_mode(true));
+    drive_on("estimated", lap(), 20, 40);
+    drive_on("given", exact, 20, 40, Poses::kMap);
+    ASSERT_TRUE(change_mode(false));
+    drive_on("estimated", lap(), 20, 60);
+    EXPECT_EQ(find_robot("estimated").localization.state, LocalizationState::kUnlocated) << "nothing is mapped yet";
+    drive_on("given", exact, 20, length, Poses::kMap);
+    drive_on("estimated", lap(), 20, length / 2);
+    EXPECT_EQ(find_robot("estimated").localization.state, LocalizationState::kTracking);
+    EXPECT_LT(error_of("estimated", length / 2 - 1), 0.15);
     const State expected = state();
     start_session();
     EXPECT_EQ(state(), expected);
