@@ -31,7 +31,7 @@ namespace detail {
 template <class T>
 concept Plain = std::is_arithmetic_v<T> || std::is_enum_v<T>;
 
-template <class T>
+/// What stands for an archive in Listed.
 struct AnyArchive {
     static constexpr bool kReads = false;
     template <class... Values>
@@ -40,7 +40,7 @@ struct AnyArchive {
 };
 
 template <class T>
-concept Listed = requires(T& value, AnyArchive<T>& archive) {
+concept Listed = requires(T& value, AnyArchive& archive) {
     T::list(value, archive);
 };
 

@@ -233,7 +233,7 @@ Projection::Robot Projection::Robot::branch() const {
 }
 
 ProjectionState Projection::state() const {
-    ProjectionState state{revision(),           bounds(),           chunk_count(), {},
+    ProjectionState state{revision(),           bounds(),           chunk_count(),  {},
                           filter_.exclusions(), is_localize_only(), frame_origin(), corrected_};
     for (RobotIndex index = 0; index < robots_.size(); ++index) {
         const Robot& robot = robots_[index];

@@ -13,7 +13,6 @@ namespace {
 
 constexpr double kMapReachMax = 1000.0;           // metres: see PointMap
 constexpr double kPoseMax = 2.0 * kCoordinateMax; // metres: estimates may be beyond the limit of odometry
-constexpr std::size_t kOwnViewsMax = 35;          // of a robot in a frozen map
 
 bool is_within(const Transform2& T, double distance) {
     return std::fabs(T.x) <= distance && std::fabs(T.y) <= distance;
@@ -110,7 +109,7 @@ bool TrajectoryEstimator::is_consistent() const {
     const auto is_near = [](const Transform2& pose) { return is_within(pose, kPoseMax); };
     if (!std::ranges::all_of(placed_, is_near, &PlacedScan::T_keyframe_robot)) return false;
     if (!std::ranges::all_of(first_, is_near, &FirstEstimate::pose)) return false;
-    if (own_views_.size() > kOwnViewsMax || (is_empty && !own_views_.empty())) return false;
+    if (own_views_.size() > kLocalKeyframes || (is_empty && !own_views_.empty())) return false;
     return std::ranges::all_of(own_views_, [&](const OwnView& view) {
         return are_small(view.scan->points) &&
                is_within(inverse(graph().pose(anchor_)) * view.T_map_robot, kMapReachMax);

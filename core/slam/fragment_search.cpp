@@ -15,23 +15,23 @@ namespace {
 using scan_matching::PlaceMap;
 using scan_matching::SurfacePoint;
 
-constexpr std::size_t kPart = 8'000'000;    // lookups of a search between two keyframes
-constexpr std::size_t kStep = 1'000'000;    // of these at each scan
+constexpr std::size_t kPart = 8'000'000;        // lookups of a search between two keyframes
+constexpr std::size_t kStep = 1'000'000;        // of these at each scan
 constexpr std::size_t kLookupsMax = 12 * kPart; // of a search; one that takes more is given up
-constexpr double kQueryLength = 10.0;       // metres travelled by the keyframes that are looked up
-constexpr std::size_t kPointsMax = 120;     // of these
-constexpr std::size_t kPointsMin = 40;      // fewer show no place
-constexpr double kPointSquare = 0.3;        // metres: one point in each
-constexpr std::size_t kStride = 23;         // from one of them to the next
-constexpr double kScoreShare = 0.5;         // of the points, at least
-constexpr double kRivalShare = 0.9;         // a place with a higher share of the best score is as good
-constexpr double kExpectedLength = 20.0;    // metres travelled in which people's word counts
-constexpr double kExpectedScoreShare = 0.7; // likewise where people expect the robot
-constexpr double kConnectedInliers = 0.5;   // of a keyframe's points, at least, that then fit the map
-constexpr std::size_t kMapRefresh = 20;     // keyframes that may lack in the map
-constexpr std::size_t kMapRefreshPart = 10; // of all, a tenth if that is more
-constexpr double kMapMoveMax = 0.2;         // metres: keyframes that moved farther outdate it
-constexpr double kMapReach = 250.0;         // metres around the newest located keyframe
+constexpr double kQueryLength = 10.0;           // metres travelled by the keyframes that are looked up
+constexpr std::size_t kPointsMax = 120;         // of these
+constexpr std::size_t kPointsMin = 40;          // fewer show no place
+constexpr double kPointSquare = 0.3;            // metres: one point in each
+constexpr std::size_t kStride = 23;             // from one of them to the next
+constexpr double kScoreShare = 0.5;             // of the points, at least
+constexpr double kRivalShare = 0.9;             // a place with a higher share of the best score is as good
+constexpr double kExpectedLength = 20.0;        // metres travelled in which people's word counts
+constexpr double kExpectedScoreShare = 0.7;     // likewise where people expect the robot
+constexpr double kConnectedInliers = 0.5;       // of a keyframe's points, at least, that then fit the map
+constexpr std::size_t kMapRefresh = 20;         // keyframes that may lack in the map
+constexpr std::size_t kMapRefreshPart = 10;     // of all, a tenth if that is more
+constexpr double kMapMoveMax = 0.2;             // metres: keyframes that moved farther outdate it
+constexpr double kMapReach = 250.0;             // metres around the newest located keyframe
 
 // Answers that agree.
 constexpr std::size_t kAnswers = 4;
@@ -142,9 +142,9 @@ bool FragmentSearch::is_consistent(const KeyframeGraph& graph) const {
         if (state.expectation && !is_keyframe(state.expectation->keyframe)) return false;
         if (!state.query) return true;
         const Query& query = *state.query;
-        return is_keyframe(query.keyframe) && query.done <= query.allowed && query.allowed <= kLookupsMax && query.points.size() >= kPointsMin &&
-               query.points.size() <= kPointsMax && is_map(*query.map) && !query.map->keyframes.empty() &&
-               std::ranges::any_of(graph.fragments(), &Fragment::is_located);
+        return is_keyframe(query.keyframe) && query.done <= query.allowed && query.allowed <= kLookupsMax &&
+               query.points.size() >= kPointsMin && query.points.size() <= kPointsMax && is_map(*query.map) &&
+               !query.map->keyframes.empty() && std::ranges::any_of(graph.fragments(), &Fragment::is_located);
     };
     return searched_.size() <= graph.fragments().size() && is_map(*map_) && std::ranges::all_of(searched_, is_possible);
 }

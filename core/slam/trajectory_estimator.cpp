@@ -9,13 +9,12 @@ namespace scanloom::slam {
 namespace {
 
 // From the newest keyframe to the next one if the scan shows much that the map does not have.
-constexpr double kNewSightDistance = 0.2;   // metres
-constexpr double kNewSightTurn = 0.1;       // radians
-constexpr double kNewSightInliers = 0.6;    // of such a scan's points, those that fit the map, at most
-constexpr std::size_t kLocalKeyframes = 35; // newest ones that scans are matched to
-constexpr double kKnownPlace = 1.5;         // metres from a keyframe of the frozen map that shows the place
-constexpr double kKnownPlaceTurn = 0.5;     // radians, likewise
-constexpr double kMotionMax = 10.0;         // metres between two scans; odometry that moves by more has started again
+constexpr double kNewSightDistance = 0.2; // metres
+constexpr double kNewSightTurn = 0.1;     // radians
+constexpr double kNewSightInliers = 0.6;  // of such a scan's points, those that fit the map, at most
+constexpr double kKnownPlace = 1.5;       // metres from a keyframe of the frozen map that shows the place
+constexpr double kKnownPlaceTurn = 0.5;   // radians, likewise
+constexpr double kMotionMax = 10.0;       // metres between two scans; odometry that moves by more has started again
 
 bool is_keyframe_due(const TrackedScan& scan) {
     if (is_beyond(scan.T_keyframe_robot, kKeyframeDistance, kKeyframeTurn)) return true;

@@ -145,7 +145,8 @@ public:
     [[nodiscard]] bool is_consistent() const;
 
 private:
-    static constexpr std::size_t kLost = 20; // scans in a row without a match
+    static constexpr std::size_t kLost = 20;           // scans in a row without a match
+    static constexpr std::size_t kLocalKeyframes = 35; // newest ones that scans are matched to
 
     /// A scan's pose as it was estimated when the scan was added.
     struct FirstEstimate {

@@ -287,7 +287,7 @@ INSTANTIATE_TEST_SUITE_P(Logs, EstimationStates,
                                          Scenario{"TwoRobots", drive_two_robots, true, true, true},
                                          Scenario{"FrozenMap", drive_in_a_frozen_map, true, true, false},
                                          Scenario{"AnotherBuilding", drive_in_another_building, false, true, false},
-                                         Scenario{"SentPoses", follow_a_sender, true, true, true},
+                                         Scenario{"SentPoses", follow_a_sender, true, true, false},
                                          Scenario{"CompleteMap", look_for_a_place_in_a_complete_map, false, true,
                                                   false}),
                          [](const auto& scenario) { return std::string(scenario.param.name); });
