@@ -274,7 +274,7 @@ class EstimationStates : public testing::TestWithParam<Scenario> {};
 TEST_P(EstimationStates, GoThroughBytesWithoutChangingAnyResult) {
     GrowingLog undisturbed(0);
     GetParam().run(undisturbed);
-    GrowingLog log(7);
+    GrowingLog log(13);
     GetParam().run(log);
     EXPECT_EQ(log.outdated > 0, GetParam().has_corrections);
     EXPECT_EQ(log.unlocated > 0, GetParam().has_unlocated);
