@@ -29,6 +29,7 @@ class FragmentSearch {
 public:
     /// Goes on with the search for a fragment that search() has begun, by a small part, so that no scan waits long.
     /// Call it for each of its scans.
+    /// @param graph     as for search(), unchanged
     /// @param fragment  index of a fragment that is not located
     /// Cost: at most some milliseconds.
     void continue_search(const KeyframeGraph& graph, std::size_t fragment);
