@@ -274,7 +274,7 @@ TEST_F(EstimationCheckpointTest, PosesOfAnotherVersionAreEstimatedAgain) {
     auto recovered = recovered_with(parts);
     ASSERT_TRUE(recovered.checkpoint_rejected);
     EXPECT_EQ(recovered.checkpoint_rejected->code, Errc::kUnsupportedVersion);
-    EXPECT_THAT(recovered.checkpoint_rejected->message, HasSubstr("estimated by version 2"));
+    EXPECT_THAT(recovered.checkpoint_rejected->message, HasSubstr("estimated by version 3"));
     expect_equal(recovered.maps, expected);
 }
 
