@@ -1,3 +1,4 @@
+#include "server/sessions/replay_job.hpp"
 #include "server/sessions/session_check.hpp"
 #include "tests/unit/core/slam/carried_drive.hpp"
 #include "tests/unit/server/sessions/estimated_poses_fixture.hpp"
@@ -6,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <utility>
 
 /// Estimated poses and maps of a session with excluded scans equal those of a session without these scans.
 namespace scanloom::sessions {
@@ -118,6 +120,61 @@ INSTANTIATE_TEST_SUITE_P(Poses, ExcludedEstimatesOfEachKindTest, testing::Values
                          [](const auto& tested) {
                              return std::string(tested.param == Poses::kNone ? "WithoutOdometry" : "WithOdometry");
                          });
+
+TEST_F(ExcludedEstimatesTest, ReplayJobsShowThePosesAfterAnExclusion) {
+    drive_on("robot", carried_drive(), 20, kBack + 100);
+    const auto before = session_->snapshot();
+    const Revision until = kBack + 50;
+    limits::MemoryBudget budget(1'000'000);
+    const auto finish = [&](ReplayJob& job) {
+        while (job.run(log_, budget)) {
+        }
+        ASSERT_TRUE(job.maps());
+    };
+    const SessionInfo info = session_->info();
+    ReplayJob newest(info, {config_, {}}, before->revision, before->scan_poses);
+    ReplayJob earlier(info, {config_, {.revision = until}}, until, before->scan_poses);
+    for (ReplayJob* job : {&newest, &earlier}) finish(*job);
+
+    restart_with(ScansExcluded{1, 0, kElsewhere});
+    const auto after = session_->snapshot();
+    EXPECT_GT(after->scan_poses.version(), before->scan_poses.version());
+    SessionInfo changed = info;
+    changed.exclusions = after->exclusions;
+    ReplayJob expected(changed, {config_, {.revision = until}}, until, after->scan_poses);
+    EXPECT_FALSE(earlier.base_for(expected, until)) << "its scans are elsewhere";
+    finish(expected);
+    EXPECT_NE(testing_support::digests_of(*expected.maps()), testing_support::digests_of(*earlier.maps()));
+    for (const auto& [job, target] : {std::pair(&newest, after->revision), std::pair(&earlier, until)}) {
+        ASSERT_FALSE(job->join(target, after->scan_poses));
+        EXPECT_FALSE(job->maps_with(target)) << "not the maps before the exclusion";
+        ASSERT_TRUE(job->resume(target, budget));
+        finish(*job);
+        EXPECT_TRUE(job->maps_with(target));
+    }
+    EXPECT_EQ(testing_support::digests_of(*newest.maps()), digest());
+    EXPECT_EQ(testing_support::digests_of(*earlier.maps()), testing_support::digests_of(*expected.maps()));
+}
+
+/// Poses change while a job is running.
+TEST_F(ExcludedEstimatesTest, AReplayJobThatRunsTakesThePosesAfterAnExclusion) {
+    drive_on("robot", carried_drive(), 20, kBack + 100);
+    const auto before = session_->snapshot();
+    const Revision until = kBack + 50;
+    limits::MemoryBudget budget(1'000'000);
+    ReplayJob job(session_->info(), {config_, {.revision = until}}, until, before->scan_poses);
+    ASSERT_TRUE(job.run(log_, budget, 1.0)); // a turn
+    restart_with(ScansExcluded{1, 0, kElsewhere});
+    const auto poses = session_->snapshot()->scan_poses;
+    EXPECT_TRUE(job.join(until, poses));
+    while (job.run(log_, budget)) {
+    }
+    ReplayJob expected(session_->info(), {config_, {.revision = until}}, until, poses);
+    while (expected.run(log_, budget)) {
+    }
+    ASSERT_TRUE(job.maps_with(until));
+    EXPECT_EQ(testing_support::digests_of(*job.maps()), testing_support::digests_of(*expected.maps()));
+}
 
 } // namespace
 } // namespace scanloom::sessions
