@@ -23,7 +23,9 @@ bool has_keyframes_of(const slam::TrajectoryEstimator& estimator, const RobotHis
 bool RobotPoses::is_consistent(const std::vector<std::shared_ptr<const GraphMoment>>& corrections) const {
     if (!estimator_.is_consistent() || laser_scans_.size() != estimator_.scan_count()) return false;
     const auto is_scan = [&](std::size_t scan) { return scan < scans_.size(); };
-    const auto is_laser_scan = [&](std::size_t scan) { return scan == kNoLaserScan || scan < laser_scans_.size(); };
+    const auto is_laser_scan = [&](std::size_t scan) {
+        return scan == kNoLaserScan || scan == kExcluded || scan < laser_scans_.size();
+    };
     if (!std::ranges::all_of(laser_scans_, is_scan)) return false;
     if (!std::ranges::all_of(scans_, is_laser_scan, &PlacedScan::laser_scan)) return false;
     if (in_maps_.snapshot().size() != scans_.size() || decided_ > estimator_.decided_count()) return false;
@@ -49,7 +51,7 @@ bool SessionPoses::is_consistent() const {
     for (const auto& robot : robots_) {
         if (!robot) continue;
         if (!robot->is_consistent(corrections_)) return false;
-        scans += robot->scan_count();
+        scans += robot->estimated_count();
     }
     return scans == scan_count_;
 }

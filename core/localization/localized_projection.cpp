@@ -19,10 +19,14 @@ Result<bool> LocalizedProjection::apply(LogEntry& entry, double& work) {
                               projection_.robots()[taken->robot].poses != Poses::kMap;
     if (is_estimated && estimated_ < revision) {
         if (auto follows = projection_.check(entry); !follows) return follows.error();
-        if (poses_.scan_count() == 0) begin();
-        poses_.estimate(*taken, *projection_.sensor_of(taken->robot, taken->scan.sensor), revision);
+        if (projection_.exclusions()->cover(revision, scan_pose_of(*taken))) {
+            poses_.leave_out(*taken, revision);
+        } else {
+            if (poses_.scan_count() == 0) begin();
+            poses_.estimate(*taken, *projection_.sensor_of(taken->robot, taken->scan.sensor), revision);
+            work -= kEstimationWork;
+        }
         estimated_ = revision;
-        work -= kEstimationWork;
     }
     auto applied = projection_.apply(entry, work);
     if (!applied || !*applied) return applied;

@@ -40,7 +40,8 @@ public:
     [[nodiscard]] const SessionPoses& poses() const noexcept { return poses_; }
 
     /// Applies the next entry of the log, or a part of it; see mapping::Projection::apply().
-    /// @param entry  as in the log in the first call; a scan without a pose gets its estimated pose
+    /// @param entry  as in the log in the first call; a scan without a pose gets its estimated pose, unless it is
+    ///               excluded: then the poses of the others are estimated as if it were not in the log
     /// @param work  budget in the unit of Reach::work; reduced by the work that was done
     /// @return whether the entry is completely applied
     /// Errors: those of mapping::Projection::apply(). After an error, the poses may contain the scan already.

@@ -51,7 +51,8 @@ struct RobotHistory {
         double stamp = 0.0;                           ///< seconds
         Revision revision = 0;                        ///< of its log entry
         std::optional<Pose2> added;                   ///< T_map_robot in the maps when it was added; nullopt: in none
-        std::optional<std::size_t> laser_scan;        ///< its number; nullopt: no laser scan was before
+        std::optional<std::size_t> laser_scan;        ///< its number; nullopt: no laser scan was before,
+                                                      ///< or it is excluded
         std::optional<slam::Transform2> T_laser_scan; ///< from that laser scan; nullopt: it is that scan
     };
 

@@ -49,6 +49,16 @@ std::optional<Pose2> RobotPoses::add(const Scan& scan, const Sensor& sensor, Rev
     return in_maps;
 }
 
+void RobotPoses::leave_out(double stamp, Revision revision) {
+    scans_.push_back({kExcluded, {}, stamp, {}, false, false, revision});
+    in_maps_.append(std::nullopt);
+}
+
+std::size_t RobotPoses::estimated_count() const noexcept {
+    const auto excluded = std::ranges::count(scans_, kExcluded, &PlacedScan::laser_scan);
+    return scans_.size() - static_cast<std::size_t>(excluded);
+}
+
 /// Compares the motion since the laser scan before with the odometry.
 void RobotPoses::check_mount(const Scan& scan) {
     const bool was_matched = std::exchange(is_laser_matched_, estimator_.newest().is_matched);
@@ -122,6 +132,7 @@ double RobotPoses::largest_move() {
 
 Pose2 RobotPoses::newest(std::size_t scan) const {
     const PlacedScan& placed = scans_[scan];
+    if (placed.laser_scan == kExcluded) return {};
     if (placed.laser_scan == kNoLaserScan) return pose_of(placed.T_laser_scan);
     const Pose2 laser = estimator_.pose_of(placed.laser_scan);
     return laser_scans_[placed.laser_scan] == scan ? laser : pose_of(transform_of(laser) * placed.T_laser_scan);
@@ -129,11 +140,13 @@ Pose2 RobotPoses::newest(std::size_t scan) const {
 
 bool RobotPoses::is_located(std::size_t scan) const {
     const PlacedScan& placed = scans_[scan];
+    if (placed.laser_scan == kExcluded) return false;
     return placed.laser_scan == kNoLaserScan ? placed.was_in_map : estimator_.is_located(placed.laser_scan);
 }
 
 bool RobotPoses::is_in_map(std::size_t scan) const {
     const PlacedScan& placed = scans_[scan];
+    if (placed.laser_scan == kExcluded) return false;
     return placed.laser_scan == kNoLaserScan ? placed.was_in_map : estimator_.is_in_map(placed.laser_scan);
 }
 
@@ -164,7 +177,7 @@ RobotHistory RobotPoses::history() const {
         added.stamp = scan.stamp;
         added.revision = scan.revision;
         if (scan.was_shown) added.added = scan.first;
-        if (scan.laser_scan == kNoLaserScan) continue;
+        if (scan.laser_scan == kNoLaserScan || scan.laser_scan == kExcluded) continue;
         added.laser_scan = scan.laser_scan;
         if (laser_scans_[scan.laser_scan] != n) added.T_laser_scan = scan.T_laser_scan;
     }

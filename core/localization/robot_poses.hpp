@@ -51,6 +51,11 @@ public:
     /// @return its pose in the maps, T_map_robot; nullopt: it fits no place, so maps leave it out
     std::optional<Pose2> add(const Scan& scan, const Sensor& sensor, Revision revision = 0);
 
+    /// Adds the robot's next scan, which is excluded: it has no pose. Only the numbers of later scans depend on it.
+    /// @param stamp     seconds
+    /// @param revision  of its log entry
+    void leave_out(double stamp, Revision revision);
+
     /// Searches for the robot's next laser scan near a place.
     void relocalize(const slam::Surroundings& place) { estimator_.relocalize(place); }
 
@@ -66,10 +71,15 @@ public:
     /// Returns the poses in the maps of all scans; nullopt: the scan is left out.
     [[nodiscard]] mapping::EstimatedPosesView in_maps() const { return in_maps_.snapshot(); }
 
-    /// Returns the number of scans added.
+    /// Returns the number of scans added, with the excluded ones: the newest Scan::seq.
     [[nodiscard]] std::size_t scan_count() const noexcept { return scans_.size(); }
 
-    /// Returns the newest estimate of a scan's pose, T_map_robot, also if it fits no place.
+    /// Returns the number of scans added that are not excluded.
+    /// Cost: in proportion to scan_count().
+    [[nodiscard]] std::size_t estimated_count() const noexcept;
+
+    /// Returns the newest estimate of a scan's pose, T_map_robot, also if it fits no place; of an excluded scan the
+    /// identity.
     /// @param scan  number of the scan, from 0. Precondition: scan < scan_count()
     [[nodiscard]] Pose2 newest(std::size_t scan) const;
 
@@ -124,10 +134,12 @@ public:
 
 private:
     static constexpr std::size_t kNoLaserScan = static_cast<std::size_t>(-1);
+    static constexpr std::size_t kExcluded = static_cast<std::size_t>(-2);
 
     /// Where a scan is: relative to a laser scan.
     struct PlacedScan {
-        std::size_t laser_scan = kNoLaserScan; // number among the laser scans; kNoLaserScan: none was before
+        std::size_t laser_scan = kNoLaserScan; // number among the laser scans; kNoLaserScan: none was before;
+                                               // kExcluded: nowhere, and the members about its pose are not used
         slam::Transform2 T_laser_scan;         // of the robot at both; without a laser scan T_map_robot
         double stamp = 0.0;                    // seconds
         Pose2 first;                           // T_map_robot, when it was added

@@ -12,6 +12,11 @@ void SessionPoses::estimate(ScanTaken& taken, const Sensor& sensor, Revision rev
     if (is_due && !map_->is_frozen()) correct(revision);
 }
 
+void SessionPoses::leave_out(ScanTaken& taken, Revision revision) {
+    taken.scan.pose.reset();
+    poses_of(taken.robot).leave_out(taken.scan.stamp, revision);
+}
+
 void SessionPoses::add_given(const ScanTaken& taken, const Sensor& sensor) {
     const bool is_useful = scan_count_ > 0 && map_->is_frame_given() && !map_->is_frozen();
     if (!is_useful || sensor.kind != SensorKind::kLaser) return;

@@ -65,6 +65,11 @@ public:
     /// @param revision  of the entry
     void estimate(ScanTaken& taken, const Sensor& sensor, Revision revision);
 
+    /// Adds the log's next scan, which is excluded: it has no pose, and changes those of no other scan.
+    /// @param taken     the scan, whose pose is removed
+    /// @param revision  of the entry
+    void leave_out(ScanTaken& taken, Revision revision);
+
     /// Searches for the robot's next scan near a place.
     void relocalize(const RobotRelocalized& relocalized);
 
@@ -83,7 +88,7 @@ public:
     /// Cost: a copy of what is stored of each scan.
     [[nodiscard]] PoseHistory history() const;
 
-    /// Returns the number of scans with estimated poses.
+    /// Returns the number of scans whose poses were estimated, without the excluded ones.
     [[nodiscard]] std::size_t scan_count() const noexcept { return scan_count_; }
 
     /// Returns the poses of a robot's scans; nullptr if it has no scans, or sends poses.

@@ -197,7 +197,8 @@ Snapshot Projection::snapshot() {
         state.stamp = robot.newest->stamp;
         state.pose = robot.newest->pose;
     }
-    snapshot.scan_poses = ScanPoses(std::move(poses), corrected_);
+    const Revision exclusions = has_estimated_poses() ? filter_.exclusions()->revision() : 0;
+    snapshot.scan_poses = ScanPoses(std::move(poses), corrected_, exclusions);
     return snapshot;
 }
 

@@ -4,6 +4,7 @@
 #include "common/scan/log_entry.hpp"
 #include "core/mapping/growing_list.hpp"
 
+#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -23,15 +24,29 @@ using EstimatedPosesView = ListView<std::optional<Pose2>>;
 /// Threads: any number of readers.
 class ScanPoses {
 public:
+    /// What changes the poses of earlier scans. What was computed with poses of another version must be computed again.
+    /// Later versions are greater.
+    struct Version {
+        Revision exclusions = 0; ///< Exclusions::revision() of those with which the poses were estimated
+        Revision corrected = 0;  ///< newest entry at which the poses of earlier scans have changed; 0: none have
+
+        friend auto operator<=>(const Version&, const Version&) = default;
+    };
+
     ScanPoses() = default;
     /// @param robots  by RobotIndex; empty for a robot that sends poses
-    /// @param corrected  see corrected()
-    explicit ScanPoses(std::vector<EstimatedPosesView> robots, Revision corrected = 0)
-        : robots_(std::move(robots)), corrected_(corrected) {}
+    /// @param corrected   see Version
+    /// @param exclusions  see Version
+    explicit ScanPoses(std::vector<EstimatedPosesView> robots, Revision corrected = 0, Revision exclusions = 0)
+        : robots_(std::move(robots)), version_{exclusions, corrected} {}
 
-    /// Returns the newest entry at which the poses of earlier scans have changed; 0: none have. What was computed with
-    /// poses of another value must be computed again.
-    [[nodiscard]] Revision corrected() const noexcept { return corrected_; }
+    [[nodiscard]] const Version& version() const noexcept { return version_; }
+
+    /// Returns version().corrected.
+    [[nodiscard]] Revision corrected() const noexcept { return version_.corrected; }
+
+    /// Sets version().exclusions.
+    void set_exclusions(Revision exclusions) noexcept { version_.exclusions = exclusions; }
 
     /// Returns the pose of a scan, which was sent without a pose; nullopt: it is not known.
     /// @param robot  index in the session
@@ -54,7 +69,7 @@ public:
 
 private:
     std::vector<EstimatedPosesView> robots_;
-    Revision corrected_ = 0;
+    Version version_;
 };
 
 } // namespace scanloom::mapping

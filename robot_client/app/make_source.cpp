@@ -19,6 +19,8 @@
 #include <filesystem>
 #include <iostream>
 #include <numbers>
+#include <string>
+#include <string_view>
 #include <utility>
 
 namespace scanloom::robot {
@@ -50,9 +52,12 @@ private:
 };
 
 std::string order_text(const StampReport& stamps) {
-    return fmt::format("stamps decrease {} times, by up to {:.3f} s: {}", stamps.steps_back, stamps.back_max,
-                       stamps.file_order ? "they jitter, so the scans are sent in the order of the file"
-                                         : "parts are out of order, so the scans are sent in the order of time");
+    const std::string_view order =
+        stamps.is_clock_set_back
+            ? "the clock was set back or a stamp is wrong, so the scans are sent in the order of the file"
+        : stamps.file_order ? "they jitter, so the scans are sent in the order of the file"
+                            : "parts are out of order, so the scans are sent in the order of time";
+    return fmt::format("stamps decrease {} times, by up to {:.3f} s: {}", stamps.steps_back, stamps.back_max, order);
 }
 
 Result<PreparedSource> make(const RobotOptions& options, const ReplayOptions& replay, Console& console) {

@@ -8,28 +8,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <utility>
 
 namespace scanloom::robot {
-
-ScanOrder order_of(std::span<const double> stamps) {
-    ScanOrder result;
-    result.order.resize(stamps.size());
-    std::iota(result.order.begin(), result.order.end(), 0U);
-
-    std::vector<double> newest(stamps.begin(), stamps.end()); // newest stamp of each scan's part, up to that scan
-    for (std::size_t i = 1; i < stamps.size(); ++i) {
-        if (stamps[i] < stamps[i - 1]) ++result.steps_back;
-        const double back = newest[i - 1] - stamps[i];
-        result.back_max = std::max(result.back_max, back);
-        if (back > kStampJitterMax) result.file_order = false;
-        if (back <= kStampJitterMax) newest[i] = std::max(newest[i - 1], stamps[i]);
-    }
-    std::ranges::stable_sort(result.order, {}, [&](std::uint32_t i) { return newest[i]; });
-    result.is_of_stamps = std::ranges::is_sorted(result.order, {}, [&](std::uint32_t i) { return stamps[i]; });
-    return result;
-}
 
 namespace {
 
@@ -210,7 +191,8 @@ void CarmenLog::Indexer::order_scans(Index& index) {
     index.places.assign(lines_.size(), kUnused);
     for (std::uint32_t place = 0; place < used.size(); ++place) index.places[used[scans.order[place]]] = place;
     index.stamps = static_cast<const StampReport&>(scans);
-    if (!scans.is_of_stamps) hash_.update("with jitter in its place\n"); // "carmen 1" alone: strictly by stamp
+    if (!scans.is_of_stamps) hash_.update("with jitter in its place\n");     // "carmen 1" alone: strictly by stamp
+    if (scans.is_clock_set_back) hash_.update("in the order of the file\n"); // earlier clients sorted these
 }
 
 /// Options count only if they change the scans: stating a default makes no difference.

@@ -51,7 +51,7 @@ std::shared_ptr<const mapping::Snapshot> ReplayJob::maps() const {
 
 /// Pre: mutex_ is held.
 bool ReplayJob::is_ready(Revision revision) const noexcept {
-    return maps_ && (maps_->revision >= revision || state_ == State::kDone);
+    return maps_ && version_ == wanted_poses_.version() && (maps_->revision >= revision || state_ == State::kDone);
 }
 
 std::shared_ptr<const mapping::Snapshot> ReplayJob::maps_with(Revision revision) const {
@@ -76,10 +76,9 @@ void ReplayJob::call_waiting() {
 
 bool ReplayJob::join(Revision target, const mapping::ScanPoses& poses) {
     const std::lock_guard lock(mutex_);
-    const bool is_corrected = poses.corrected() > wanted_poses_.corrected();
-    if (is_corrected || target > target_) wanted_poses_ = poses;
-    corrected_ = wanted_poses_.corrected();
-    if (state_ == State::kDone) return !is_corrected && (is_complete_ || target <= target_);
+    if (poses.version() > wanted_poses_.version() || target > target_) wanted_poses_ = poses;
+    const bool is_newest = version_ == wanted_poses_.version();
+    if (state_ == State::kDone) return is_newest && (is_complete_ || target <= target_);
     if (has_ended(state_) || cancelled_) return false;
     target_ = std::max(target_, target);
     return true;
@@ -97,23 +96,31 @@ bool ReplayJob::resume(Revision target, limits::MemoryBudget& budget) {
 
 // Starting from another job
 
-bool ReplayJob::is_same_map(const ReplayJob& other) const noexcept {
+mapping::ScanPoses::Version ReplayJob::wanted_version() const {
+    const std::lock_guard lock(mutex_);
+    return wanted_poses_.version();
+}
+
+bool ReplayJob::is_same_map(const ReplayJob& other) const {
     return session_.id == other.session_.id && request_.config == other.request_.config &&
-           corrected_ == other.corrected_;
+           wanted_version() == other.wanted_version();
 }
 
 std::optional<Revision> ReplayJob::base_for(const ReplayJob& other, Revision target) const {
     if (!is_same_map(other)) return std::nullopt;
+    const auto wanted = other.wanted_version();
     const std::lock_guard lock(mutex_);
-    return revision_before(other, target);
+    return revision_before(other, wanted, target);
 }
 
+/// @param wanted  of the poses that the other job wants
 /// Pre: mutex_ is held.
-std::optional<Revision> ReplayJob::revision_before(const ReplayJob& other, Revision target) const {
+std::optional<Revision> ReplayJob::revision_before(const ReplayJob& other, const mapping::ScanPoses::Version& wanted,
+                                                   Revision target) const {
     const auto& end = other.request_.end;
     const bool stands_still = state_ == State::kDone || (state_ == State::kWaiting && !cancelled_);
     if (!stands_still || !projection_ || projection_->revision() > target) return std::nullopt;
-    if (poses_.corrected() != other.corrected_) return std::nullopt;
+    if (poses_.version() != wanted) return std::nullopt;
     const Revision known = projection_->exclusions()->revision();
     const bool is_same = known == other.session_.exclusions->as_of(target).revision();
     // A job with an end stamp may end before it reads exclusions that this one does not know: they must be equal.
@@ -131,12 +138,13 @@ bool ReplayJob::leads_to(const ReplayJob& other, Revision target) const {
 
 bool ReplayJob::begin_from(ReplayJob& base) {
     const Revision target = progress().target;
+    const auto wanted = wanted_version();
     std::optional<mapping::Projection> branch;
     std::optional<double> newest_stamp;
     mapping::ScanPoses poses;
     {
         const std::lock_guard lock(base.mutex_);
-        if (!base.revision_before(*this, target)) return false;
+        if (!base.revision_before(*this, wanted, target)) return false;
         branch.emplace(base.projection_->branch());
         newest_stamp = base.newest_stamp_;
         poses = base.poses_;
@@ -189,7 +197,7 @@ std::optional<Revision> ReplayJob::begin() {
     const std::lock_guard lock(mutex_);
     if (state_ != State::kWaiting) return std::nullopt;
     state_ = State::kRunning;
-    if (poses_.corrected() != wanted_poses_.corrected()) { // the scans in the projection have moved
+    if (poses_.version() != wanted_poses_.version()) { // the scans in the projection have moved
         projection_.reset();
         newest_stamp_.reset();
         applied_ = 0;
@@ -298,9 +306,10 @@ bool ReplayJob::publish(Revision target, bool is_complete, limits::MemoryBudget&
     auto maps = std::make_shared<const mapping::Snapshot>(projection_->snapshot());
     const std::lock_guard lock(mutex_);
     maps_.swap(maps);
+    version_ = poses_.version();
     is_complete_ = is_complete;
     if (is_complete) target_ = maps_->revision;
-    if (cancelled_ || target_ <= target) {
+    if (cancelled_ || (target_ <= target && version_ == wanted_poses_.version())) {
         end(State::kDone, budget);
         return false;
     }

@@ -54,8 +54,8 @@ public:
     /// @param target  revision up to which entries are applied
     /// @param poses   of the session's maps
     ReplayJob(SessionInfo session, const ReplayRequest& request, Revision target, mapping::ScanPoses poses = {})
-        : id_(replay_id_of(session, request)), session_(std::move(session)), request_(request),
-          corrected_(poses.corrected()), target_(target), wanted_poses_(std::move(poses)) {}
+        : id_(replay_id_of(session, request)), session_(std::move(session)), request_(request), target_(target),
+          wanted_poses_(std::move(poses)) {}
 
     [[nodiscard]] const std::string& id() const noexcept { return id_; }
     [[nodiscard]] const SessionInfo& session() const noexcept { return session_; }
@@ -126,8 +126,10 @@ public:
 private:
     [[nodiscard]] bool is_ready(Revision revision) const noexcept;
     void call_waiting();
-    [[nodiscard]] bool is_same_map(const ReplayJob& other) const noexcept;
-    [[nodiscard]] std::optional<Revision> revision_before(const ReplayJob& other, Revision target) const;
+    [[nodiscard]] mapping::ScanPoses::Version wanted_version() const;
+    [[nodiscard]] bool is_same_map(const ReplayJob& other) const;
+    [[nodiscard]] std::optional<Revision>
+    revision_before(const ReplayJob& other, const mapping::ScanPoses::Version& wanted, Revision target) const;
     [[nodiscard]] std::optional<Revision> begin();
     [[nodiscard]] Result<bool> apply_up_to(Revision target, store::ScanLog& log, limits::MemoryBudget& budget);
     [[nodiscard]] bool is_beyond_end(Revision revision, const LogEntry& entry) const;
@@ -147,7 +149,6 @@ private:
 
     std::atomic<Revision> applied_ = 0;
     std::atomic<bool> cancelled_ = false;
-    std::atomic<Revision> corrected_; // ScanPoses::corrected() of wanted_poses_
     std::atomic<std::uint64_t> listed_ = 0;
 
     // Used by the thread in run() or resume() only; between those calls, guarded by the mutex.
@@ -164,6 +165,7 @@ private:
     std::optional<Revision> round_; // target of a round that is not finished
     bool is_complete_ = false;      // the job has reached its end; no entry can follow
     std::shared_ptr<const mapping::Snapshot> maps_;
+    mapping::ScanPoses::Version version_; // of the poses in these maps
     std::optional<Error> error_;
 
     struct Waiting {

@@ -149,8 +149,10 @@ boost::asio::awaitable<mapping::ScanPoses> poses_for(sessions::Session& session,
             done(std::make_shared<const localization::PoseHistory>(poses.history()));
         });
     });
-    co_return request.end.stamp ? history->before(*request.end.stamp, *maps.exclusions)
-                                : history->at(request.end.revision.value());
+    auto poses = request.end.stamp ? history->before(*request.end.stamp, *maps.exclusions)
+                                   : history->at(request.end.revision.value());
+    poses.set_exclusions(maps.scan_poses.version().exclusions);
+    co_return poses;
 }
 
 } // namespace scanloom::http

@@ -11,8 +11,6 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <numeric>
-#include <random>
 #include <sstream>
 
 namespace scanloom::robot {
@@ -54,6 +52,15 @@ TEST_F(CarmenLogFile, MisplacedPartsAreSortedByStampThenByFileOrder) {
     EXPECT_DOUBLE_EQ(log->stamps.back_max, 20.0);
 }
 
+TEST_F(CarmenLogFile, ScansAfterTheClockWasSetBackStayWhereTheyAre) {
+    const auto log =
+        read(text_of({flaser(10, "1 0.1"), flaser(20, "1 0.2"), flaser(12, "1 0.3"), flaser(22, "1 0.4")}));
+    ASSERT_TRUE(log);
+    EXPECT_EQ(first_ranges(*log), (std::vector<RangeMm>{100, 200, 300, 400}));
+    EXPECT_TRUE(log->stamps.file_order);
+    EXPECT_TRUE(log->stamps.is_clock_set_back);
+}
+
 TEST_F(CarmenLogFile, JitteringStampsKeepTheFileOrder) {
     const auto log = read(text_of({flaser(3, "1 0.1"), flaser(1, "1 0.2"), flaser(2, "1 0.3"), flaser(1.5, "1 0.4")}));
     ASSERT_TRUE(log);
@@ -70,6 +77,9 @@ TEST_F(CarmenLogFile, FingerprintDependsOnTheScanOrder) {
     EXPECT_EQ(read(flaser(1))->fingerprint, "carmen:d4bfaa8d490f9a80ff3f167a63709ac5");
     EXPECT_NE(read(jittering)->fingerprint, "carmen:b4e2f736ab9cae529515ea4b23307515")
         << "the fingerprint of the order by stamp";
+    const auto set_back = text_of({flaser(10), flaser(20), flaser(12), flaser(15), flaser(14.5)});
+    EXPECT_NE(read(set_back)->fingerprint, "carmen:8c8fcc02c3b3391d76899009e4c1bfb5")
+        << "the fingerprint of clients that sorted parts which overlap";
 }
 
 TEST_F(CarmenLogFile, LineWithoutStampUsesThePreviousStamp) {
@@ -267,12 +277,11 @@ TEST_F(CarmenLogFile, TooLongLineIsRefused) {
     EXPECT_THAT(log.error().message, HasSubstr("after line 1"));
 }
 
-TEST_F(CarmenLogFile, ShuffledScansAreSorted) {
-    std::vector<int> stamps(500);
-    std::iota(stamps.begin(), stamps.end(), 1);
-    std::shuffle(stamps.begin(), stamps.end(), std::mt19937(5));
+TEST_F(CarmenLogFile, PartsInReverseOrderAreSorted) {
     std::string text;
-    for (const int stamp : stamps) text += flaser(3 * stamp, fmt::format("1 {}", stamp * 0.001));
+    for (int part = 99; part >= 0; --part) {
+        for (int n = 5 * part + 1; n <= 5 * part + 5; ++n) text += flaser(3 * n, fmt::format("1 {}", n * 0.001));
+    }
     const auto log = read(text);
     ASSERT_TRUE(log);
     ASSERT_EQ(log->observations.size(), 500U);
