@@ -31,7 +31,7 @@ constexpr double kConnectedInliers = 0.5;       // of a keyframe's points, at le
 constexpr std::size_t kMapRefresh = 20;         // keyframes that may lack in the map
 constexpr std::size_t kMapRefreshPart = 10;     // of all, a tenth if that is more
 constexpr double kMapMoveMax = 0.2;             // metres: keyframes that moved farther outdate it
-constexpr double kMapReach = 250.0;             // metres around the newest located keyframe
+constexpr double kMapReach = 250.0;             // metres along each axis, around the newest located keyframe
 
 // Answers that agree.
 constexpr std::size_t kAnswers = 4;
@@ -119,7 +119,7 @@ bool FragmentSearch::connect(KeyframeGraph& graph, std::size_t fragment, const T
     };
     const auto nearest = graph.nearest(pose, is_near);
     if (!nearest) return false;
-    KeyframeViews views;
+    KeyframeViews views({pose.x, pose.y});
     for (std::size_t n = graph.size(); n-- > 0;) {
         if (is_near(n)) views.add(graph[n], graph.pose(n));
     }
@@ -184,7 +184,7 @@ void FragmentSearch::update_map(const KeyframeGraph& graph) {
 const std::shared_ptr<const PlaceMap>& FragmentSearch::places_of(const KeyframeGraph& graph, LocatedMap& map) {
     if (map.places) return map.places;
     const Transform2& center = map.keyframes.back().T_map_keyframe;
-    KeyframeViews views;
+    KeyframeViews views({center.x, center.y}, 2.0 * kMapReach);
     for (const auto& [keyframe, pose] : map.keyframes) {
         const bool is_near = std::fabs(pose.x - center.x) <= kMapReach && std::fabs(pose.y - center.y) <= kMapReach;
         if (is_near) views.add(graph[keyframe], pose);

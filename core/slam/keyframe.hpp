@@ -31,13 +31,31 @@ struct Keyframe {
 inline constexpr double kKeyframeDistance = 0.8; ///< metres from a keyframe to the robot's next one
 inline constexpr double kKeyframeTurn = 0.4;     ///< radians, likewise
 
-/// Keyframes with their poses in the frame of one map. Keeps the scans alive that the views refer to.
+/// Returns whether the position of a pose is within a distance (metres) of a place. False for NaN.
+[[nodiscard]] inline bool is_near(const Transform2& T_map_robot, const Point2& place, double distance) noexcept {
+    const double x = T_map_robot.x - place.x;
+    const double y = T_map_robot.y - place.y;
+    return x * x + y * y <= distance * distance;
+}
+
+/// Metres from the center of a map to its keyframes, at most: the memory of a map is in proportion to the rectangle
+/// around it, and poses that robots send can be far from each other. What is farther away shows nothing of the center.
+inline constexpr double kMapRadius = 100.0;
+
+/// Keyframes with their poses in the frame of one map, around its center. Keeps the scans alive that the views refer
+/// to.
 class KeyframeViews {
 public:
-    /// Adds a keyframe.
+    /// @param center  metres, in the frame of the map: where scans are to be matched to it
+    /// @param radius  metres: keyframes that are farther from the center are left out
+    explicit KeyframeViews(const Point2& center = {0.0, 0.0}, double radius = kMapRadius)
+        : center_(center), radius_(radius) {}
+
+    /// Adds a keyframe, unless it is too far from the center.
     /// @param keyframe        its scan
     /// @param T_map_keyframe  its pose in the frame of the map
     void add(const Keyframe& keyframe, const Transform2& T_map_keyframe) {
+        if (!is_near(T_map_keyframe, center_, radius_)) return;
         scans_.push_back(keyframe.scan);
         views_.push_back({T_map_keyframe, scans_.back()->points, scans_.back()->laser});
     }
@@ -58,6 +76,8 @@ public:
     }
 
 private:
+    Point2 center_; // only needed until the last add()
+    double radius_;
     std::vector<std::shared_ptr<const ScanPoints>> scans_; // what views_ refer to
     std::vector<scan_matching::View> views_;
 };

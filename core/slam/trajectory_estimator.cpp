@@ -149,7 +149,7 @@ void TrajectoryEstimator::begin_in_frozen_map(const Transform2& T_map_robot) {
     anchor_ = graph().nearest(T_map_robot, [&](std::size_t n) { return graph().is_in_map(n); }).value();
     const Transform2 T_anchor_map = inverse(graph().pose(anchor_));
     T_anchor_start_ = T_anchor_map * T_map_robot;
-    KeyframeViews views = graph().views_near(anchor_, kLocalKeyframes);
+    KeyframeViews views = graph().views_near(anchor_, kLocalKeyframes, T_anchor_start_);
     for (const OwnView& own : own_views_) views.add({.scan = own.scan}, T_anchor_map * own.T_map_robot);
     tracker_.begin(KeyframeMap(std::move(views)), T_anchor_start_);
 }
