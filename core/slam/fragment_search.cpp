@@ -135,7 +135,9 @@ bool FragmentSearch::connect(KeyframeGraph& graph, std::size_t fragment, const T
 bool FragmentSearch::is_consistent(const KeyframeGraph& graph) const {
     const auto is_keyframe = [&](std::size_t keyframe) { return keyframe < graph.size(); };
     const auto is_map = [&](const LocatedMap& map) {
-        return std::ranges::all_of(map.keyframes, is_keyframe, &Located::keyframe);
+        return std::ranges::all_of(map.keyframes, [&](const Located& located) {
+            return is_keyframe(located.keyframe) && is_near(located.T_map_keyframe, {0.0, 0.0}, kPoseMax);
+        });
     };
     const auto is_possible = [&](const Searched& state) {
         if (!std::ranges::all_of(state.answers, is_keyframe, &Answer::keyframe)) return false;

@@ -1,7 +1,9 @@
 #pragma once
 
+#include "common/scan/limits.hpp"
 #include "core/scan_matching/point_map.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <memory>
@@ -38,6 +40,14 @@ inline constexpr double kKeyframeTurn = 0.4;     ///< radians, likewise
     return x * x + y * y <= distance * distance;
 }
 
+/// Metres from the origin of a fragment's frame to its robot: one that seems to be farther away is lost, and begins
+/// another fragment. The poses that robots send, and where fragments begin, are nearer.
+inline constexpr double kEstimateMax = 2.0 * kCoordinateMax;
+
+/// Metres from the map's origin to any pose: a fragment whose newest keyframe is located reaches twice as far as
+/// kEstimateMax from there.
+inline constexpr double kPoseMax = 4.0 * kEstimateMax;
+
 /// Metres from the center of a map to its keyframes, at most: the memory of a map is in proportion to the rectangle
 /// around it, and poses that robots send can be far from each other. What is farther away shows nothing of the center.
 inline constexpr double kMapRadius = 100.0;
@@ -62,6 +72,16 @@ public:
 
     /// Returns the views. Valid while this object exists and add() is not called.
     [[nodiscard]] std::span<const scan_matching::View> views() const noexcept { return views_; }
+
+    /// Returns whether the views are as near to each other as those around a center within kMapRadius, and their points
+    /// in the reach of lasers, as they always are unless they were read from damaged bytes.
+    [[nodiscard]] bool is_consistent() const {
+        return std::ranges::all_of(scans_, [](const auto& scan) { return scan_matching::are_in_reach(*scan); }) &&
+               std::ranges::all_of(views_, [&](const scan_matching::View& view) {
+                   const Transform2& first = views_.front().T_map_robot;
+                   return is_near(view.T_map_robot, {first.x, first.y}, 2.0 * kMapRadius);
+               });
+    }
 
     /// Lists the members that decide later results; see common/archive.
     template <class Self, class Archive>
