@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <utility>
 
 namespace scanloom::slam {
@@ -179,7 +180,21 @@ void FragmentSearch::update_map(const KeyframeGraph& graph) {
         if (graph.is_in_map(n)) located.push_back({n, graph.pose(n)});
     }
     if (located.empty() || (!map_->keyframes.empty() && !is_outdated(graph, located))) return;
-    map_ = std::make_shared<LocatedMap>(LocatedMap{std::move(located), nullptr});
+    const auto before = std::exchange(map_, std::make_shared<LocatedMap>(LocatedMap{std::move(located), nullptr}));
+    for (Searched& state : searched_) { // a robot that stopped may have a query for good
+        if (!state.query || state.query->map == before) continue;
+        state.query->search.reset();
+        state.query->map->places.reset();
+    }
+}
+
+std::size_t FragmentSearch::place_map_count() const {
+    std::set<const PlaceMap*> maps{map_->places.get()};
+    for (const Searched& state : searched_) {
+        if (state.query) maps.insert(state.query->map->places.get());
+    }
+    maps.erase(nullptr);
+    return maps.size();
 }
 
 /// Returns the grids of a map, which are computed at the first call.
