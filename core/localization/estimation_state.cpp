@@ -1,10 +1,8 @@
 #include "core/localization/estimation_state.hpp"
 
 #include "common/archive/archive.hpp"
-#include "common/scan/limits.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace scanloom::localization {
@@ -26,9 +24,9 @@ archive::Writer writer_of(const SessionPoses& poses, EstimationState& state) {
 
 /// Returns whether maps can show scans at these poses.
 bool are_near(const mapping::EstimatedPosesView& poses) {
-    constexpr double kMax = 2.0 * kCoordinateMax; // estimates may be beyond the limit of odometry
     for (std::size_t n = 0; n < poses.size(); ++n) {
-        if (poses[n] && !(std::fabs(poses[n]->x) <= kMax && std::fabs(poses[n]->y) <= kMax)) return false;
+        if (poses[n] && !slam::is_near(scan_matching::transform_of(*poses[n]), {0.0, 0.0}, slam::kPoseMax))
+            return false;
     }
     return true;
 }

@@ -11,7 +11,6 @@
 namespace scanloom::scan_matching {
 namespace {
 
-constexpr double kFarthestHit = 30.0;      // metres
 constexpr std::size_t kNeighborsMax = 5;   // on each side of a point, for its normal
 constexpr double kNeighborReach = 0.30;    // metres from the point, and two beams' distance
 constexpr double kNeighborDistance = 0.03; // metres from one neighbour to the next; nearer ones are passed over
@@ -32,7 +31,7 @@ Hits hits_of(const Scan& scan, const Sensor& sensor) {
     const std::size_t count = scan.ranges.size();
     Hits hits{std::vector<Point2>(count, Point2{0.0, 0.0}), std::vector<char>(count, 0),
               std::vector<double>(count, 0.0)};
-    const double farthest = std::min(sensor.range_max, kFarthestHit);
+    const double farthest = std::min(sensor.range_max, kHitDistanceMax);
     for (std::size_t n = 0; n < count; ++n) {
         const double range = scan.ranges[n] * 1e-3;
         hits.is_hit[n] = scan.ranges[n] != kNoReturn && scan.ranges[n] != kInvalidRange && range >= sensor.range_min &&
@@ -114,7 +113,17 @@ Point2 normal_at(const Hits& hits, std::size_t hit) {
 
 } // namespace
 
+bool are_in_reach(const ScanPoints& scan) noexcept {
+    const auto is_within = [](double x, double y, double distance) { return x * x + y * y <= distance * distance; };
+    return is_within(scan.laser.x, scan.laser.y, kMountDistanceMax) &&
+           std::ranges::all_of(scan.points, [&](const SurfacePoint& point) {
+               return is_within(point.x, point.y, kMountDistanceMax + kHitDistanceMax);
+           });
+}
+
 ScanPoints points_of(const Scan& scan, const Sensor& sensor) {
+    const Pose2& mount = sensor.mount;
+    if (!(mount.x * mount.x + mount.y * mount.y <= kMountDistanceMax * kMountDistanceMax)) return {};
     const Hits hits = hits_of(scan, sensor);
     const Transform2 T_robot_sensor = transform_of(sensor.mount);
     const auto [s, c] = T_robot_sensor.rotation;

@@ -37,8 +37,16 @@ struct ScanPoints {
 
 inline constexpr std::size_t kScanPointsMax = 400; ///< of more hits, every second, third... is taken
 
-/// Returns the points that a scan's beams hit. Readings without a return, and hits beyond 30 m, are left out: beams are
-/// too far apart there to show a surface.
+// Together they bound the distance of points from their robot, and so the memory of maps.
+inline constexpr double kHitDistanceMax = 30.0;   ///< metres from the laser
+inline constexpr double kMountDistanceMax = 20.0; ///< metres from the robot's origin to its laser
+
+/// Returns whether the points and the laser are as near to the robot as those of points_of().
+[[nodiscard]] bool are_in_reach(const ScanPoints& scan) noexcept;
+
+/// Returns the points that a scan's beams hit. Readings without a return, and hits beyond kHitDistanceMax, are left
+/// out: beams are too far apart there to show a surface. A laser beyond kMountDistanceMax has no points: no robot is so
+/// large.
 /// @param scan    its readings
 /// @param sensor  the laser that took it, with its mount
 /// Precondition: the sensor is a laser, and the scan is validated: explicit angles have one entry per range.

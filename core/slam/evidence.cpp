@@ -33,7 +33,9 @@ void Evidence::add(KeyframeMap& map, const Transform2& pose, const Point2& laser
 }
 
 double contradictions_between(const KeyframeGraph& graph, std::span<const std::size_t> keyframes) {
-    KeyframeViews views;
+    if (keyframes.empty()) return 0.0;
+    const Transform2& first = graph.pose(keyframes.front());
+    KeyframeViews views({first.x, first.y}, 2.0 * kMapRadius);
     std::size_t count = 0;
     for (std::size_t n = 0; n < keyframes.size(); ++n) {
         const Keyframe& keyframe = graph[keyframes[n]];

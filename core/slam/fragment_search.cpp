@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <utility>
 
 namespace scanloom::slam {
@@ -31,7 +32,7 @@ constexpr double kConnectedInliers = 0.5;       // of a keyframe's points, at le
 constexpr std::size_t kMapRefresh = 20;         // keyframes that may lack in the map
 constexpr std::size_t kMapRefreshPart = 10;     // of all, a tenth if that is more
 constexpr double kMapMoveMax = 0.2;             // metres: keyframes that moved farther outdate it
-constexpr double kMapReach = 250.0;             // metres around the newest located keyframe
+constexpr double kMapReach = 250.0;             // metres along each axis, around the newest located keyframe
 
 // Answers that agree.
 constexpr std::size_t kAnswers = 4;
@@ -119,7 +120,7 @@ bool FragmentSearch::connect(KeyframeGraph& graph, std::size_t fragment, const T
     };
     const auto nearest = graph.nearest(pose, is_near);
     if (!nearest) return false;
-    KeyframeViews views;
+    KeyframeViews views({pose.x, pose.y});
     for (std::size_t n = graph.size(); n-- > 0;) {
         if (is_near(n)) views.add(graph[n], graph.pose(n));
     }
@@ -135,7 +136,9 @@ bool FragmentSearch::connect(KeyframeGraph& graph, std::size_t fragment, const T
 bool FragmentSearch::is_consistent(const KeyframeGraph& graph) const {
     const auto is_keyframe = [&](std::size_t keyframe) { return keyframe < graph.size(); };
     const auto is_map = [&](const LocatedMap& map) {
-        return std::ranges::all_of(map.keyframes, is_keyframe, &Located::keyframe);
+        return std::ranges::all_of(map.keyframes, [&](const Located& located) {
+            return is_keyframe(located.keyframe) && is_near(located.T_map_keyframe, {0.0, 0.0}, kPoseMax);
+        });
     };
     const auto is_possible = [&](const Searched& state) {
         if (!std::ranges::all_of(state.answers, is_keyframe, &Answer::keyframe)) return false;
@@ -177,14 +180,28 @@ void FragmentSearch::update_map(const KeyframeGraph& graph) {
         if (graph.is_in_map(n)) located.push_back({n, graph.pose(n)});
     }
     if (located.empty() || (!map_->keyframes.empty() && !is_outdated(graph, located))) return;
-    map_ = std::make_shared<LocatedMap>(LocatedMap{std::move(located), nullptr});
+    const auto before = std::exchange(map_, std::make_shared<LocatedMap>(LocatedMap{std::move(located), nullptr}));
+    for (Searched& state : searched_) { // a robot that stopped may have a query for good
+        if (!state.query || state.query->map == before) continue;
+        state.query->search.reset();
+        state.query->map->places.reset();
+    }
+}
+
+std::size_t FragmentSearch::place_map_count() const {
+    std::set<const PlaceMap*> maps{map_->places.get()};
+    for (const Searched& state : searched_) {
+        if (state.query) maps.insert(state.query->map->places.get());
+    }
+    maps.erase(nullptr);
+    return maps.size();
 }
 
 /// Returns the grids of a map, which are computed at the first call.
 const std::shared_ptr<const PlaceMap>& FragmentSearch::places_of(const KeyframeGraph& graph, LocatedMap& map) {
     if (map.places) return map.places;
     const Transform2& center = map.keyframes.back().T_map_keyframe;
-    KeyframeViews views;
+    KeyframeViews views({center.x, center.y}, 2.0 * kMapReach);
     for (const auto& [keyframe, pose] : map.keyframes) {
         const bool is_near = std::fabs(pose.x - center.x) <= kMapReach && std::fabs(pose.y - center.y) <= kMapReach;
         if (is_near) views.add(graph[keyframe], pose);

@@ -53,6 +53,10 @@ public:
     /// @param keyframe  index of that keyframe, the newest one or the next one
     void expect(std::size_t fragment, const Surroundings& place, std::size_t keyframe);
 
+    /// Returns how many maps have their grids in memory, up to tens of megabytes each. When the map is made again, only
+    /// those of the newest map before stay; searches in older ones make theirs again if they go on.
+    [[nodiscard]] std::size_t place_map_count() const;
+
     /// Lists the members that decide later results; see common/archive.
     template <class Self, class Archive>
     static void list(Self& self, Archive& archive) {
@@ -78,7 +82,7 @@ private:
     /// The map of the located keyframes at a moment.
     struct LocatedMap {
         std::vector<Located> keyframes;
-        std::shared_ptr<const scan_matching::PlaceMap> places; // null: not computed yet
+        std::shared_ptr<const scan_matching::PlaceMap> places; // null: not computed, or freed
 
         template <class Self, class Archive>
         static void list(Self& self, Archive& archive) {

@@ -14,11 +14,10 @@ namespace {
 constexpr double kMatchedSigma = 0.015;     // metres
 constexpr double kMatchedTurnSigma = 0.004; // radians
 
-constexpr double kMetresPerRadian = 0.2;  // of a turn, in the distance travelled
-constexpr double kMapDistanceMax = 100.0; // metres travelled between keyframes of one map; bounds its memory
-constexpr double kNearDistance = 30.0;    // metres between keyframes of one map, likewise
-constexpr double kSamePlace = 0.4;        // metres: of keyframes that are closer, a map has one
-constexpr double kSameTurn = 0.3;         // radians, likewise
+constexpr double kMetresPerRadian = 0.2; // of a turn, in the distance travelled
+constexpr double kNearDistance = 30.0;   // metres between keyframes of one map
+constexpr double kSamePlace = 0.4;       // metres: of keyframes that are closer, a map has one
+constexpr double kSameTurn = 0.3;        // radians, likewise
 
 } // namespace
 
@@ -138,7 +137,7 @@ KeyframeViews KeyframeGraph::views_around(std::size_t frame, std::size_t first, 
     KeyframeViews views;
     const auto add = [&](std::size_t position) {
         const std::size_t keyframe = keyframes[position];
-        if (std::fabs(keyframes_[keyframe].travelled - keyframes_[frame].travelled) > kMapDistanceMax) return;
+        if (std::fabs(keyframes_[keyframe].travelled - keyframes_[frame].travelled) > kMapRadius) return;
         views.add(keyframes_[keyframe], keyframe == frame ? Transform2() : T_frame_map * poses_[keyframe]);
     };
     add(middle);
@@ -149,7 +148,7 @@ KeyframeViews KeyframeGraph::views_around(std::size_t frame, std::size_t first, 
     return views;
 }
 
-KeyframeViews KeyframeGraph::views_near(std::size_t frame, std::size_t count) const {
+KeyframeViews KeyframeGraph::views_near(std::size_t frame, std::size_t count, const Transform2& T_frame_robot) const {
     struct Near {
         std::size_t keyframe;
         Transform2 T_frame_keyframe;
@@ -164,7 +163,7 @@ KeyframeViews KeyframeGraph::views_near(std::size_t frame, std::size_t count) co
     }
     std::ranges::stable_sort(around, {}, &Near::distance);
     std::vector<Near> chosen;
-    KeyframeViews views;
+    KeyframeViews views({T_frame_robot.x, T_frame_robot.y});
     for (const Near& near : around) {
         if (chosen.size() == count) break;
         const bool is_known = std::ranges::any_of(chosen, [&](const Near& other) {

@@ -111,7 +111,7 @@ public:
     }
 
     /// Returns some keyframes of a fragment in the frame of one of them.
-    /// Keyframes more than 100 m of the trajectory away from it are left out.
+    /// Keyframes more than kMapRadius away from it, along the trajectory or in a straight line, are left out.
     /// @param frame        the keyframe whose frame is used; views are ordered by their number of keyframes from it
     /// @param first, last  positions [first, last] in its fragment
     [[nodiscard]] KeyframeViews views_around(std::size_t frame, std::size_t first, std::size_t last) const;
@@ -135,9 +135,10 @@ public:
 
     /// Returns the keyframes of the map that are nearest to one of them, in its frame. Of keyframes with almost equal
     /// poses it takes one.
-    /// @param frame  the keyframe whose frame is used
-    /// @param count  at most this many keyframes
-    [[nodiscard]] KeyframeViews views_near(std::size_t frame, std::size_t count) const;
+    /// @param frame          the keyframe whose frame is used
+    /// @param count          at most this many keyframes
+    /// @param T_frame_robot  the center of the map; keyframes more than kMapRadius away from it are left out
+    [[nodiscard]] KeyframeViews views_near(std::size_t frame, std::size_t count, const Transform2& T_frame_robot) const;
 
     /// Lists the members that decide later results; see common/archive.
     template <class Self, class Archive>

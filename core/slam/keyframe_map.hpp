@@ -31,8 +31,11 @@ public:
         return *space_;
     }
 
-    /// Frees the memory of space(), which computes it again when it is needed.
-    void release_space() noexcept { space_.reset(); }
+    /// Frees the memory of points() and space(), which compute them again when they are needed.
+    void release() noexcept {
+        points_.reset();
+        space_.reset();
+    }
 
     /// Returns what the map consists of.
     [[nodiscard]] const KeyframeViews& views() const noexcept { return views_; }

@@ -9,13 +9,13 @@
 namespace scanloom::slam {
 namespace {
 
-constexpr std::size_t kEvery = 2;      // keyframes between searches
-constexpr std::size_t kGap = 36;       // keyframes between the newest one and the end of a submap, at least
-constexpr std::size_t kPlacesMax = 3;  // nearest submaps that are matched
-constexpr double kLoopReach = 5.0;     // metres between the robot and a submap's anchor, in addition to the drift
-constexpr double kDrift = 0.03;        // of the length of the connection along the graph
-constexpr double kDriftMax = 8.0;      // metres
-constexpr std::size_t kSpacesMax = 32; // submaps whose seen space stays in memory
+constexpr std::size_t kEvery = 2;     // keyframes between searches
+constexpr std::size_t kGap = 36;      // keyframes between the newest one and the end of a submap, at least
+constexpr std::size_t kPlacesMax = 3; // nearest submaps that are matched
+constexpr double kLoopReach = 5.0;    // metres between the robot and a submap's anchor, in addition to the drift
+constexpr double kDrift = 0.03;       // of the length of the connection along the graph
+constexpr double kDriftMax = 8.0;     // metres
+constexpr std::size_t kMapsMax = 32;  // submaps whose points and seen space stay in memory
 
 // The match of a keyframe with a submap.
 constexpr double kWindowMin = 0.3;    // metres: standard deviation of the estimate
@@ -127,12 +127,12 @@ bool LoopSearch::try_stretch(KeyframeGraph& graph, std::size_t keyframe, const P
     return true;
 }
 
-/// Frees the seen space of the submaps that were not used for long.
+/// Frees the points and the seen space of the submaps that were not used for long.
 void LoopSearch::note_use(std::size_t submap) {
     std::erase(used_, submap);
     used_.push_back(submap);
-    if (used_.size() <= kSpacesMax) return;
-    submaps_[used_.front()].map.release_space();
+    if (used_.size() <= kMapsMax) return;
+    submaps_[used_.front()].map.release();
     used_.pop_front();
 }
 

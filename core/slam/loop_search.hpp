@@ -71,7 +71,7 @@ private:
     void note_use(std::size_t submap);
 
     Submaps submaps_;
-    std::deque<std::size_t> used_; // submaps whose seen space is in memory, the oldest first
+    std::deque<std::size_t> used_; // submaps whose maps are in memory, the oldest first
     LoopFigures figures_;
     std::size_t new_loops_ = 0;        // since the last optimisation
     std::vector<double> next_test_at_; // by fragment, metres travelled: no stretch test before

@@ -81,6 +81,8 @@ public:
 
     /// Returns the keyframes and their edges.
     [[nodiscard]] const KeyframeGraph& graph() const noexcept { return graph_; }
+    /// Returns the search for places.
+    [[nodiscard]] const FragmentSearch& fragment_search() const noexcept { return fragments_; }
     /// Returns the figures of the loop search.
     [[nodiscard]] const LoopFigures& loop_figures() const noexcept { return loops_.figures(); }
     /// Returns how often the graph was optimised: poses of earlier keyframes change only then.

@@ -142,7 +142,7 @@ private:
                                  pose.y <= high + margin;
             if (is_near && is_old(n)) old_.push_back(n);
         }
-        KeyframeViews views; // the newest first
+        KeyframeViews views({newest.x, newest.y}); // the newest first
         for (std::size_t n = old_.size(); n-- > 0;) views.add(graph_[old_[n]], graph_.pose(old_[n]));
         old_map_ = KeyframeMap(std::move(views));
     }

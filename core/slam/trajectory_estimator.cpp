@@ -76,9 +76,10 @@ void TrajectoryEstimator::add(ScanPoints scan, const std::optional<Pose2>& odome
     place(decided);
     const TrackedScan& last = decided.back();
     const bool is_elsewhere = place_to_search && (is_fragment_located() || !last.is_matched);
-    const bool is_new = (tracker_.unmatched() >= kLost && !scan.points.empty()) || is_elsewhere;
+    const bool is_beyond_all = !is_near(first, {0.0, 0.0}, kEstimateMax);
+    const bool is_new = (tracker_.unmatched() >= kLost && !scan.points.empty()) || is_elsewhere || is_beyond_all;
     if (is_new) {
-        begin_fragment(std::move(scan), first, place_to_search);
+        begin_fragment(std::move(scan), is_beyond_all ? Transform2() : first, place_to_search);
     } else if (last.is_matched && is_due(last)) {
         if (place_to_search) map_.expect(fragments_.back(), *place_to_search);
         if (is_in_frozen_map_ && !is_leaving) {
@@ -149,7 +150,7 @@ void TrajectoryEstimator::begin_in_frozen_map(const Transform2& T_map_robot) {
     anchor_ = graph().nearest(T_map_robot, [&](std::size_t n) { return graph().is_in_map(n); }).value();
     const Transform2 T_anchor_map = inverse(graph().pose(anchor_));
     T_anchor_start_ = T_anchor_map * T_map_robot;
-    KeyframeViews views = graph().views_near(anchor_, kLocalKeyframes);
+    KeyframeViews views = graph().views_near(anchor_, kLocalKeyframes, T_anchor_start_);
     for (const OwnView& own : own_views_) views.add({.scan = own.scan}, T_anchor_map * own.T_map_robot);
     tracker_.begin(KeyframeMap(std::move(views)), T_anchor_start_);
 }

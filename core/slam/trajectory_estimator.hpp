@@ -26,8 +26,8 @@ namespace scanloom::slam {
 /// map shows little, the robot's own last views help.
 ///
 /// Deterministic: equal scans give equal poses on every processor with IEEE 754 arithmetic.
-/// Memory: grows with the trajectory: the pose of each scan, the points of each keyframe (up to 6 KB), and the map of every
-///     fifth keyframe.
+/// Memory: grows with the trajectory: the pose of each scan, and the points of each keyframe (up to 6 KB). Maps that scans
+///     are matched to reach up to kMapRadius, whatever poses robots send.
 /// Cost: some hundred microseconds a scan; at every second keyframe also time in proportion to the number of keyframes;
 ///     a large loop closure takes some tenths of a second in one call.
 /// Threads: one at a time for all estimators of a map.

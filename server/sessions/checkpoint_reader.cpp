@@ -18,6 +18,8 @@ constexpr std::size_t kChunkBytesMax = sizeof(mapping::LaserChunk) + sizeof(mapp
 
 Error damaged(std::string_view key) { return {Errc::kMalformed, fmt::format("checkpoint part '{}' is damaged", key)}; }
 
+Error damaged_estimation() { return {Errc::kMalformed, "the checkpoint's state of the estimation is damaged"}; }
+
 /// Returns the hexadecimal numbers in a key without its prefix, which are separated by slashes; nullopt if invalid.
 std::optional<std::vector<std::uint32_t>> numbers_in(std::string_view key) {
     std::vector<std::uint32_t> numbers;
@@ -64,6 +66,9 @@ Result<> CheckpointReader::add(std::string_view key, std::string_view value) {
     }
     for (const auto& kind : kKinds) {
         if (!key.starts_with(kind.prefix)) continue;
+        // The maps are restored before their first chunk, from all parts before.
+        const bool is_chunk = kind.prefix == kLaserChunk || kind.prefix == kSonarChunk;
+        if (is_chunk && !restore_projection()) return damaged_estimation();
         const auto numbers = numbers_in(key.substr(kind.prefix.size()));
         if (numbers && numbers->size() == kind.numbers && (this->*kind.add)(*numbers, value)) return {};
     }
@@ -172,7 +177,7 @@ bool CheckpointReader::add_old_points(const Numbers& numbers, std::string_view v
 
 bool CheckpointReader::add_laser_chunk(const Numbers& numbers, std::string_view value) {
     const auto bytes = decompressor_.decompressed(value, kChunkBytesMax);
-    if (!bytes || !restore_projection()) return false;
+    if (!bytes) return false;
     PartReader part(*bytes);
     const auto revision = part.take<Revision>();
     const auto occupancy = part.take<decltype(mapping::LaserChunk::occupancy)>();
@@ -193,7 +198,7 @@ bool CheckpointReader::add_laser_chunk(const Numbers& numbers, std::string_view 
 
 bool CheckpointReader::add_sonar_chunk(const Numbers& numbers, std::string_view value) {
     const auto bytes = decompressor_.decompressed(value, kChunkBytesMax);
-    if (!bytes || !restore_projection()) return false;
+    if (!bytes) return false;
     PartReader part(*bytes);
     const auto revision = part.take<Revision>();
     const auto cells = part.take<decltype(mapping::SonarChunk::cells)>();
@@ -228,7 +233,7 @@ std::optional<mapping::ProjectionState> CheckpointReader::state() && {
 }
 
 Result<localization::LocalizedProjection> CheckpointReader::finish() && {
-    if (!restore_projection()) return Error{Errc::kMalformed, "the checkpoint's state of the estimation is damaged"};
+    if (!restore_projection()) return damaged_estimation();
     for (const auto& exclusion : state_.exclusions->all()) {
         if (exclusion.excluded.robot >= state_.robots.size()) return damaged(kExclusionsPart);
     }

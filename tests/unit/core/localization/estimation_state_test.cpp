@@ -261,6 +261,59 @@ void drive_in_another_building(GrowingLog& log) {
     for (std::size_t n = 0; n < 100; ++n) log.drive(1, drive, n, Poses::kOdometry);
 }
 
+/// A straight corridor whose posts are the same in every 30 m, with exact odometry.
+Drive corridor(double length) {
+    constexpr double kPeriod = 30.0;
+    testing_support::Building part; // all that is seen from its first period
+    part.walls = {{{-40.0, -1.0}, {70.0, -1.0}}, {{-40.0, 1.5}, {70.0, 1.5}}};
+    for (const double at : {2.0, 4.7, 9.1, 11.9, 18.3, 21.4, 25.8}) {
+        for (const double shift : {-kPeriod, 0.0, kPeriod}) part.add_box(at + shift, -1.0, at + shift + 0.5, -0.6);
+    }
+    Drive drive;
+    std::mt19937 random(6);
+    for (double at = 0.0; at < length; at += 0.5) {
+        drive.truth.push_back({at, 0.0, 0.0});
+        drive.odometry.push_back({at, 0.0, 0.0});
+        drive.scans.push_back(part.scan(drive.laser, {std::fmod(at, kPeriod), 0.0, 0.0}, 0.01, random));
+    }
+    return drive;
+}
+
+/// A robot that goes on for more than a kilometre beyond a map that does not change, by what it sees itself.
+void drive_far_beyond_a_frozen_map(GrowingLog& log) {
+    static const Drive drive = corridor(1300.0);
+    log.join(0, drive, Poses::kOdometry);
+    for (std::size_t n = 0; n < drive.scans.size(); ++n) {
+        if (n == 100) log.add(ModeChanged{true});
+        log.drive(0, drive, n, Poses::kOdometry);
+    }
+    EXPECT_EQ(log.maps().localization_of(0).state, LocalizationState::kTracking);
+    EXPECT_NEAR(log.maps().poses().find(0)->place().T_map_robot.x, drive.truth.back().x, 5.0);
+}
+
+/// A sender that is wrong by kilometres now and then, a robot that is located in its map, and lasers that are too far
+/// from their robots.
+void drive_with_impossible_distances(GrowingLog& log) {
+    Drive jumping = looped();
+    for (std::size_t n = 50; n < jumping.truth.size(); n += 100) jumping.truth[n].x += 1500.0;
+    log.join(0, jumping, Poses::kMap);
+    for (std::size_t n = 0; n < 20; ++n) log.drive(0, jumping, n, Poses::kMap);
+    log.join(1, looped(), Poses::kOdometry);
+    for (std::size_t n = 20; n < 700; ++n) {
+        log.drive(0, jumping, n, Poses::kMap);
+        if (n >= 300 && n < 600) log.drive(1, looped(), n - 100, Poses::kOdometry);
+    }
+    EXPECT_EQ(log.maps().localization_of(1).state, LocalizationState::kTracking);
+    Drive far = looped();
+    far.laser.mount = {1200.0, 0.0, 0.0};
+    log.join(2, far, Poses::kOdometry);
+    log.join(3, far, Poses::kMap);
+    for (std::size_t n = 0; n < 60; ++n) {
+        log.drive(2, far, n, Poses::kOdometry);
+        log.drive(3, far, n, Poses::kMap);
+    }
+}
+
 struct Scenario {
     const char* name;
     void (*run)(GrowingLog& log);
@@ -282,15 +335,17 @@ TEST_P(EstimationStates, GoThroughBytesWithoutChangingAnyResult) {
     expect_all_equal(log.maps(), undisturbed.maps());
 }
 
-INSTANTIATE_TEST_SUITE_P(Logs, EstimationStates,
-                         testing::Values(Scenario{"Loops", drive_a_lap, true, false, false},
-                                         Scenario{"TwoRobots", drive_two_robots, true, true, true},
-                                         Scenario{"FrozenMap", drive_in_a_frozen_map, true, true, false},
-                                         Scenario{"AnotherBuilding", drive_in_another_building, false, true, false},
-                                         Scenario{"SentPoses", follow_a_sender, true, true, false},
-                                         Scenario{"CompleteMap", look_for_a_place_in_a_complete_map, false, true,
-                                                  false}),
-                         [](const auto& scenario) { return std::string(scenario.param.name); });
+INSTANTIATE_TEST_SUITE_P(
+    Logs, EstimationStates,
+    testing::Values(Scenario{"Loops", drive_a_lap, true, false, false},
+                    Scenario{"TwoRobots", drive_two_robots, true, true, true},
+                    Scenario{"FrozenMap", drive_in_a_frozen_map, true, true, false},
+                    Scenario{"AnotherBuilding", drive_in_another_building, false, true, false},
+                    Scenario{"SentPoses", follow_a_sender, true, true, false},
+                    Scenario{"CompleteMap", look_for_a_place_in_a_complete_map, false, true, false},
+                    Scenario{"FarBeyond", drive_far_beyond_a_frozen_map, true, false, false},
+                    Scenario{"ImpossibleDistances", drive_with_impossible_distances, true, true, true}),
+    [](const auto& scenario) { return std::string(scenario.param.name); });
 
 /// A change of a byte gives another state, or none. Nothing crashes, and neither does what follows.
 TEST(EstimationState, ChangedBytesAreRefusedOrGiveAnotherState) {

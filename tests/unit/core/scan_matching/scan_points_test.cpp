@@ -58,6 +58,28 @@ TEST(ScanPoints, TheMountMovesAndTurnsThePoints) {
     EXPECT_NEAR(shown.points[120].normal_x, -1.0, 1e-2);
 }
 
+/// The memory of maps grows with the distance of points from the robot.
+TEST(ScanPoints, ALaserFarFromItsRobotHasNoPoints) {
+    Building building;
+    building.walls = {{{3.0, -10.0}, {3.0, 10.0}}};
+    const auto points_from = [&](double x) {
+        const Scan scan = [&] {
+            std::mt19937 random(1);
+            return building.scan(Building::laser(), {0.0, 0.0, 0.0}, 0.0, random);
+        }();
+        Sensor mounted = Building::laser();
+        mounted.mount = {x, 0.0, 0.0};
+        return points_of(scan, mounted);
+    };
+    EXPECT_FALSE(points_from(kMountDistanceMax).points.empty());
+    EXPECT_TRUE(are_in_reach(points_from(kMountDistanceMax)));
+    EXPECT_TRUE(points_from(kMountDistanceMax + 0.01).points.empty());
+    EXPECT_TRUE(points_from(-1e6).points.empty());
+    EXPECT_TRUE(are_in_reach(points_from(-1e6)));
+    EXPECT_FALSE(are_in_reach({{{.x = 0.0F, .y = 51.0F}}, {0.0, 0.0}}));
+    EXPECT_FALSE(are_in_reach({{}, {0.0, 21.0}}));
+}
+
 TEST(ScanPoints, ReadingsWithoutAReturnAreLeftOut) {
     const Sensor sensor = Building::laser();
     Scan scan;

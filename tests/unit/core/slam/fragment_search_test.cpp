@@ -2,6 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstddef>
+#include <memory>
+#include <vector>
+
 namespace scanloom::slam {
 namespace {
 
@@ -143,6 +148,36 @@ TEST(FragmentSearch, LocatesARobotSoonerInAMapThatIsComplete) {
     EXPECT_FALSE(is_located(true, false, true)) << "a robot adds to it";
     EXPECT_FALSE(is_located(false, false, false)) << "made by robots";
     EXPECT_TRUE(is_located(false, true, false)) << "and finished";
+}
+
+/// Robots that stop before a search has ended keep what they look for, but not the grids of the whole map.
+TEST(FragmentSearch, RobotsThatStoppedDoNotKeepMapsInMemory) {
+    testing_support::Building other;
+    other.add_box(0.0, 0.0, 14.0, 9.0);
+    other.add_box(3.0, 3.0, 5.0, 4.5);
+    other.add_box(8.0, 5.0, 11.0, 6.0);
+    const Drive elsewhere =
+        drive_along(other, std::vector<Point2>{{1.0, 1.0}, {13.0, 1.5}, {13.0, 8.0}, {6.0, 7.5}}, {}, 5);
+    SharedMap map;
+    TrajectoryEstimator mapper(map, 0);
+    std::vector<std::unique_ptr<TrajectoryEstimator>> robots;
+    std::size_t scans = 0;
+    std::size_t most = 0;
+    for (std::size_t n = 0; n < lap().scans.size(); ++n) {
+        mapper.add(points_of(lap().scans[n], lap().laser), lap().odometry[n]);
+        if (n % 200 == 199) {
+            auto& robot = robots.emplace_back(std::make_unique<TrajectoryEstimator>(map, robots.size() + 1));
+            for (scans = 0; scans < 60; ++scans)
+                robot->add(points_of(elsewhere.scans[scans], elsewhere.laser), elsewhere.odometry[scans]);
+        }
+        most = std::max(most, map.fragment_search().place_map_count());
+    }
+    EXPECT_GE(robots.size(), 4U);
+    EXPECT_EQ(most, 2U) << "the newest one and the one before";
+    for (; scans < 80; ++scans) { // one that goes on makes its search again
+        robots.front()->add(points_of(elsewhere.scans[scans], elsewhere.laser), elsewhere.odometry[scans]);
+    }
+    EXPECT_EQ(robots.front()->located_fragments(), 0U);
 }
 
 /// People say where a robot is that stands: one scan is enough then.

@@ -81,6 +81,22 @@ TEST(KeyframeGraph, ViewsAreOrderedByTheirDistanceInTime) {
     EXPECT_EQ(views.views().front().T_map_robot, Transform2());
 }
 
+/// Poses that robots send can be anywhere, and the memory of a map grows with its extent.
+TEST(KeyframeGraph, MapsAreBoundedWhateverPosesAreGiven) {
+    KeyframeGraph graph;
+    for (int n = 0; n < 12; ++n) {
+        const double wrong = n == 3 ? 1500.0 : n == 7 ? kMapRadius + 1.0 : 0.0;
+        graph.add_given(0, std::make_shared<const ScanPoints>(), {n * 1.0 + wrong, 0.0, {}});
+    }
+    EXPECT_EQ(graph.views_around(5, 0, 11).views().size(), 10U);
+    const auto around_the_wrong_one = graph.views_around(3, 0, 11);
+    ASSERT_EQ(around_the_wrong_one.views().size(), 1U);
+    EXPECT_EQ(around_the_wrong_one.views().front().T_map_robot, Transform2());
+    graph.freeze(true);
+    EXPECT_EQ(graph.views_near(5, 35, {3.0, 0.0, {}}).views().size(), 10U);
+    EXPECT_TRUE(graph.views_near(5, 35, {1500.0, 0.0, {}}).views().empty()) << "the robot is far beyond them";
+}
+
 TEST(KeyframeGraph, ALoopMovesTheKeyframesBetween) {
     KeyframeGraph graph;
     for (int n = 0; n < 21; ++n) { // a square of 5 m, each of its four turns by 0.02 rad too large

@@ -122,6 +122,19 @@ TEST(TrajectoryEstimator, ScansThatShowNothingAreNotMatched) {
     EXPECT_LT(error_of(drive, estimator), 0.1);
 }
 
+/// Odometry can lead anywhere if it starts again now and then. What is estimated must remain what maps can show.
+TEST(TrajectoryEstimator, ARobotBeyondAllCoordinatesBeginsAgain) {
+    SharedMap map;
+    TrajectoryEstimator estimator(map);
+    for (int n = 0; n < 30; ++n) estimator.add({}, Pose2{kEstimateMax - 95.0 + 10.0 * n, 0.0, 0.0});
+    estimator.finish();
+    EXPECT_NEAR(estimator.first_pose_of(9).x, kEstimateMax - 5.0, 1e-6);
+    EXPECT_LT(estimator.first_pose_of(29).x, 250.0);
+    EXPECT_TRUE(estimator.is_lost());
+    EXPECT_EQ(map.graph().fragments().size(), 2U);
+    EXPECT_TRUE(map.is_consistent() && estimator.is_consistent());
+}
+
 TEST(TrajectoryEstimator, RestartsTheMapAfterTwentyUnmatchedScans) {
     const Building building = ring_building();
     Drive drive = drive_along(building, std::vector<Point2>{{5.0, 1.0}, {9.0, 1.0}}, {}, 7);

@@ -265,6 +265,19 @@ TEST_F(EstimationCheckpointTest, DamagedOrMissingPartsAreRefusedAndTheLogIsRead)
     expect_equal(recovered.maps, expected);
 }
 
+TEST_F(EstimationCheckpointTest, ADamagedStateIsNamed) {
+    drive_on(20, 200);
+    entries_ = store::entries_after(log_, id_, 0).value();
+    auto expected = whole();
+    Parts parts = parts_of(expected);
+    ASSERT_EQ(parts.erase("slam/state/00000000/00000000"), 1U);
+    auto recovered = recovered_with(parts);
+    EXPECT_EQ(recovered.checkpoint_rejected.value_or(Error{}).message,
+              "the checkpoint's state of the estimation is damaged")
+        << "not a part of the maps";
+    expect_equal(recovered.maps, expected);
+}
+
 TEST_F(EstimationCheckpointTest, PosesOfAnotherVersionAreEstimatedAgain) {
     drive_on(20, 200);
     entries_ = store::entries_after(log_, id_, 0).value();
