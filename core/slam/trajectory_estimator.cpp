@@ -1,5 +1,7 @@
 #include "core/slam/trajectory_estimator.hpp"
 
+#include "common/scan/limits.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -58,6 +60,9 @@ void TrajectoryEstimator::add(ScanPoints scan, const std::optional<Pose2>& odome
         return;
     }
     follow_freeze();
+    if (scan.points.size() >= kViewPointsMin && is_fragment_blind() && !relocalized_) {
+        return begin_to_see(std::move(scan), motion.value_or(Transform2()));
+    }
     if (!is_fragment_located()) map_.continue_search(fragments_.back());
     std::optional<Surroundings> place_to_search;
     if (!scan.points.empty()) place_to_search = std::exchange(relocalized_, std::nullopt);
@@ -93,6 +98,23 @@ void TrajectoryEstimator::add(ScanPoints scan, const std::optional<Pose2>& odome
     placed_.back() = {anchor_, T_anchor_newest()};
     const bool is_found = is_fragment_located() && (is_new || !first_.back().is_matched);
     if (is_found) first_.back() = {graph().pose(keyframes_.back()), true};
+}
+
+/// Adds the first scan of a fragment that later ones can be matched to, where the odometry says that it was taken.
+void TrajectoryEstimator::begin_to_see(ScanPoints scan, const Transform2& motion) {
+    finish();
+    add_keyframe(std::move(scan), placed_.back().T_keyframe_robot * motion);
+    first_.push_back({graph().pose(keyframes_.back()), is_fragment_located()});
+    placed_.push_back({anchor_, T_anchor_newest()});
+    newest_ = {{}, 1.0, true};
+}
+
+/// Returns whether no keyframe of the fragment shows enough to match a scan to it.
+bool TrajectoryEstimator::is_fragment_blind() const {
+    if (is_in_frozen_map_) return false;
+    return std::ranges::all_of(graph().fragments()[fragments_.back()].keyframes, [&](std::size_t keyframe) {
+        return graph()[keyframe].scan->points.size() < kViewPointsMin;
+    });
 }
 
 void TrajectoryEstimator::finish() { place(tracker_.decide()); }

@@ -172,6 +172,8 @@ private:
     [[nodiscard]] Transform2 T_anchor_newest() const;
     void follow_freeze();
     [[nodiscard]] const KeyframeGraph& graph() const noexcept { return map_.graph(); }
+    void begin_to_see(ScanPoints scan, const Transform2& motion);
+    [[nodiscard]] bool is_fragment_blind() const;
     [[nodiscard]] bool is_fragment_located() const noexcept {
         return fragments_.empty() || graph().fragments()[fragments_.back()].is_located;
     }
