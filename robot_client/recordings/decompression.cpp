@@ -149,22 +149,22 @@ std::optional<std::string> run_streams(std::string_view& packed, std::size_t siz
     }
 }
 
-/// Returns how many bytes are of intact blocks. bzip2 emits a block before it checks the block's checksum, but takes no
-/// input for the next block before the check.
+/// Returns how many of the first `size_max` bytes are of intact blocks. bzip2 emits a block before it checks the
+/// block's checksum, but takes no input for the next block before the check.
 std::size_t intact_bzip2_bytes(std::string_view packed, std::size_t size_max) {
     Bzip2Stream stream;
-    std::array<char, 4096> room{};
+    std::array<char, 16'384> room{};
     std::size_t made = 0;
     std::size_t intact = 0;
-    for (;;) {
+    while (intact < size_max) {
         const StreamStep step = stream.step(packed.substr(0, 1), room.data(), room.size());
         if (step.taken > 0) intact = made;
         made += step.made;
         packed.remove_prefix(step.taken);
-        if (step.state == StreamState::kDamaged) return intact;
-        if (made > size_max) return size_max;
-        if (step.state == StreamState::kEnded || (step.taken == 0 && step.made == 0)) return made;
+        if (step.state == StreamState::kEnded) intact = made;
+        if (step.state != StreamState::kGoesOn || (step.taken == 0 && step.made == 0)) break;
     }
+    return std::min(intact, size_max);
 }
 
 } // namespace

@@ -1,6 +1,7 @@
 #include "robot_client/recordings/mcap.hpp"
 
 #include "robot_client/recordings/decompression.hpp"
+#include "robot_client/recordings/lz4_tail.hpp"
 #include "robot_client/recordings/mcap_record.hpp"
 #include "robot_client/recordings/packed_message.hpp"
 #include "robot_client/recordings/record_walker.hpp"
@@ -67,6 +68,9 @@ public:
 private:
     using Taken = Result<std::optional<RecordedMessage>>;
 
+    /// Where the description of an unknown channel is searched next.
+    enum class Search { kSummary, kFile, kDone };
+
     /// The decompressed records of a chunk.
     struct Chunk {
         Chunk(std::string_view decompressed, std::uint64_t begin)
@@ -106,8 +110,8 @@ private:
     [[nodiscard]] Taken take_message(const McapRecord& record, RecordedBytes& bytes) {
         const auto none = std::optional<RecordedMessage>();
         auto known = channels_.find(record.channel);
-        if (known == channels_.end() && !has_read_summary_) {
-            if (auto ok = read_summary(); !ok) return ok.error();
+        while (known == channels_.end() && search_ != Search::kDone) {
+            if (auto ok = search_channels(); !ok) return ok.error();
             known = channels_.find(record.channel);
         }
         if (known == channels_.end()) {
@@ -172,8 +176,8 @@ private:
         if (is_new || known->second == *topic) return {};
         // One of the two has a damaged number. The description in the summary decides, else the newest one.
         lose(record, fmt::format("channel {}, which is described in two ways", channel->id));
-        if (!has_read_summary_) {
-            if (auto ok = read_summary(); !ok) return ok;
+        if (search_ == Search::kSummary) {
+            if (auto ok = search_channels(); !ok) return ok;
         }
         if (!summarized_.contains(channel->id)) channels_[channel->id] = *topic;
         return {};
@@ -234,26 +238,31 @@ private:
         return {};
     }
 
-    /// Reads the schemas and channels that are repeated in the summary.
-    [[nodiscard]] Result<> read_summary() {
-        has_read_summary_ = true;
+    /// Reads the schemas and channels that are repeated in the summary: first where the footer says, and the next time
+    /// anywhere outside of compressed chunks.
+    [[nodiscard]] Result<> search_channels() {
+        const bool is_first = search_ == Search::kSummary;
+        search_ = is_first ? Search::kFile : Search::kDone;
+        if (!is_first) return read_descriptions(kMcapMagic.size());
         constexpr std::size_t kFooterBytes = McapFormat::kFirstBytes + 20;
         const std::uint64_t end_bytes = kFooterBytes + kMcapMagic.size();
         if (file_->size() < end_bytes) return {};
         auto footer = McapFormat{}.read(*file_, file_->size() - end_bytes);
         if (!footer) return footer.error();
-        if (!*footer || (*footer)->op != McapOp::kFooter || (*footer)->summary_begin == 0) return {};
-        RecordWalker<McapFormat> records(McapFormat{}, *file_, (*footer)->summary_begin);
+        const bool has_summary = *footer && (*footer)->op == McapOp::kFooter &&
+                                 (*footer)->summary_begin >= kMcapMagic.size() &&
+                                 (*footer)->summary_begin < file_->size();
+        return has_summary ? read_descriptions((*footer)->summary_begin) : Result<>();
+    }
+
+    [[nodiscard]] Result<> read_descriptions(std::uint64_t from) {
+        RecordWalker<McapFormat> records(McapFormat{}, *file_, from);
         for (;;) {
             auto step = records.next();
             if (!step) return step.error();
-            if (!step->record || step->gap) return {};
-            const McapOp op = step->record->op;
-            if (op == McapOp::kSchema || op == McapOp::kChannel) {
-                if (auto ok = take_description(*step->record, *file_, true); !ok) return ok;
-            } else if (op == McapOp::kFooter) {
-                return {};
-            }
+            if (!step->record) return {};
+            if (step->record->op != McapOp::kSchema && step->record->op != McapOp::kChannel) continue;
+            if (auto ok = take_description(*step->record, *file_, true); !ok) return ok;
         }
     }
 
@@ -267,7 +276,7 @@ private:
     std::unordered_set<std::uint16_t> summarized_;            // channels that the summary describes, once it is read
     TopicList topics_;
     LossList losses_;
-    bool has_read_summary_ = false;
+    Search search_ = Search::kSummary;
     bool has_ended_ = false;
 };
 

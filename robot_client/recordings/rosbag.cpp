@@ -1,6 +1,7 @@
 #include "robot_client/recordings/rosbag.hpp"
 
 #include "robot_client/recordings/decompression.hpp"
+#include "robot_client/recordings/lz4_tail.hpp"
 #include "robot_client/recordings/record_walker.hpp"
 #include "robot_client/recordings/recording_lists.hpp"
 #include "robot_client/recordings/rosbag_record.hpp"
@@ -62,6 +63,9 @@ public:
 private:
     using Taken = Result<std::optional<RecordedMessage>>;
 
+    /// Where the description of an unknown connection is searched next.
+    enum class Search { kIndex, kFile, kDone };
+
     /// The decompressed records of a chunk.
     struct Chunk {
         Chunk(std::string_view decompressed, std::uint64_t begin)
@@ -103,8 +107,8 @@ private:
     [[nodiscard]] Taken take_message(const BagRecord& record, RecordedBytes& bytes) {
         const auto none = std::optional<RecordedMessage>();
         auto known = connections_.find(record.connection);
-        if (known == connections_.end() && !has_read_index_) {
-            if (auto ok = read_index(); !ok) return ok.error();
+        while (known == connections_.end() && search_ != Search::kDone) {
+            if (auto ok = search_connections(); !ok) return ok.error();
             known = connections_.find(record.connection);
         }
         if (known == connections_.end()) {
@@ -142,8 +146,8 @@ private:
         if (is_new || known->second == *topic) return {};
         // One of the two has a damaged number. The description in the index decides, else the newest one.
         lose(record, fmt::format("connection {}, which is described in two ways", record.connection));
-        if (!has_read_index_) {
-            if (auto ok = read_index(); !ok) return ok;
+        if (search_ == Search::kIndex) {
+            if (auto ok = search_connections(); !ok) return ok;
         }
         if (!indexed_.contains(record.connection)) connections_[record.connection] = *topic;
         return {};
@@ -162,6 +166,10 @@ private:
         const std::size_t size_max = std::min(stated, kRecordedBytesMax);
         std::size_t taken = 0;
         if (const auto reason = decompress(*record.compression, *packed, size_max, decompressed_, &taken)) {
+            const bool is_file_cut = record.end == file_->size() && taken == packed_size;
+            if (is_file_cut && record.compression == Compression::kLz4) {
+                append_truncated_lz4_block(*packed, size_max, decompressed_);
+            }
             lose(record,
                  fmt::format("a part of a chunk: {}; {} bytes could be decompressed", *reason, decompressed_.size()));
         } else if (record.is_end_unclear) {
@@ -171,22 +179,26 @@ private:
         return {};
     }
 
-    /// Reads the connections that are repeated after the last chunk.
-    [[nodiscard]] Result<> read_index() {
-        has_read_index_ = true;
-        if (index_begin_ < kBagMagic.size()) return {};
-        RecordWalker<BagFormat> records(BagFormat{}, *file_, index_begin_);
+    /// Reads the connections that are repeated after the last chunk: first where the bag's header says, and the next
+    /// time anywhere outside of compressed chunks.
+    [[nodiscard]] Result<> search_connections() {
+        const bool is_first = search_ == Search::kIndex;
+        search_ = is_first ? Search::kFile : Search::kDone;
+        if (!is_first) return read_connections(kBagMagic.size());
+        const bool has_index = index_begin_ >= kBagMagic.size() && index_begin_ < file_->size();
+        return has_index ? read_connections(index_begin_) : Result<>();
+    }
+
+    [[nodiscard]] Result<> read_connections(std::uint64_t from) {
+        RecordWalker<BagFormat> records(BagFormat{}, *file_, from);
         for (;;) {
             auto step = records.next();
             if (!step) return step.error();
-            if (!step->record || step->gap) return {};
-            if (step->record->op == BagOp::kConnection) {
-                connections_.erase(step->record->connection);
-                if (auto ok = take_connection(*step->record, *file_); !ok) return ok;
-                indexed_.insert(step->record->connection);
-            } else if (step->record->op != BagOp::kChunkInfo) {
-                return {};
-            }
+            if (!step->record) return {};
+            if (step->record->op != BagOp::kConnection) continue;
+            connections_.erase(step->record->connection);
+            if (auto ok = take_connection(*step->record, *file_); !ok) return ok;
+            indexed_.insert(step->record->connection);
         }
     }
 
@@ -210,7 +222,7 @@ private:
     TopicList topics_;
     LossList losses_;
     std::uint64_t index_begin_ = 0;
-    bool has_read_index_ = false;
+    Search search_ = Search::kIndex;
     bool has_ended_ = false;
 };
 

@@ -63,12 +63,13 @@ inline std::string bz2_compressed(std::string_view bytes) {
     return packed;
 }
 
-/// @param has_checksum  whether a checksum of all bytes is stored, as ROS does
-inline std::string lz4_compressed(std::string_view bytes, bool has_checksum = true) {
+/// With a checksum of all bytes, as ROS does.
+inline std::string lz4_compressed(std::string_view bytes, LZ4F_blockSizeID_t block_size = LZ4F_max64KB,
+                                  LZ4F_blockMode_t mode = LZ4F_blockIndependent) {
     LZ4F_preferences_t preferences{};
-    preferences.frameInfo.blockMode = LZ4F_blockIndependent;
-    preferences.frameInfo.blockSizeID = LZ4F_max64KB;
-    preferences.frameInfo.contentChecksumFlag = has_checksum ? LZ4F_contentChecksumEnabled : LZ4F_noContentChecksum;
+    preferences.frameInfo.blockMode = mode;
+    preferences.frameInfo.blockSizeID = block_size;
+    preferences.frameInfo.contentChecksumFlag = LZ4F_contentChecksumEnabled;
     std::string packed(LZ4F_compressFrameBound(bytes.size(), &preferences), '\0');
     packed.resize(LZ4F_compressFrame(packed.data(), packed.size(), bytes.data(), bytes.size(), &preferences));
     return packed;

@@ -1,7 +1,9 @@
 #include "robot_client/recordings/decompression.hpp"
 
+#include "robot_client/recordings/lz4_tail.hpp"
 #include "tests/support/written_recording.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -105,6 +107,57 @@ INSTANTIATE_TEST_SUITE_P(Each, Decompression,
                                          NamedCompression{"lz4", Compression::kLz4},
                                          NamedCompression{"zstd", Compression::kZstd}),
                          [](const auto& each) { return std::string(each.param.name); });
+
+/// Text with matches near and far, and long runs.
+std::string text_with_matches(std::size_t size) {
+    std::mt19937 random(7);
+    std::string text;
+    while (text.size() < size) {
+        if (random() % 3 == 0) text += fmt::format("scan {} ", random() % 1000);
+        if (random() % 3 == 0) text += std::string(random() % 400, static_cast<char>('a' + random() % 3));
+        if (text.size() > 1000) text += text.substr(random() % (text.size() - 500), random() % 300);
+    }
+    text.resize(size);
+    return text;
+}
+
+/// Decompresses truncated data with the block at which it ends.
+std::string with_tail(std::string_view packed, std::size_t size_max) {
+    std::string bytes;
+    EXPECT_TRUE(decompress(Compression::kLz4, packed, size_max, bytes)) << "it is truncated";
+    append_truncated_lz4_block(packed, size_max, bytes);
+    return bytes;
+}
+
+TEST(Lz4Tail, BlockCutAnywhereYieldsWhatIsBefore) {
+    const std::string text = text_with_matches(20'000);
+    const std::string packed = testing_support::lz4_compressed(text, LZ4F_max4MB);
+    std::size_t last = 0;
+    for (std::size_t size = 0; size < packed.size(); ++size) {
+        const std::string bytes = with_tail(std::string_view(packed).substr(0, size), text.size());
+        ASSERT_TRUE(text.starts_with(bytes)) << size;
+        ASSERT_GE(bytes.size(), last) << size;
+        last = bytes.size();
+    }
+    EXPECT_EQ(last, text.size());
+}
+
+TEST(Lz4Tail, LinkedBlocksReferToThoseBefore) {
+    const std::string text = text_with_matches(300'000);
+    const std::string packed = testing_support::lz4_compressed(text, LZ4F_max64KB, LZ4F_blockLinked);
+    for (std::size_t size = packed.size() / 3; size < packed.size(); size += 997) {
+        const std::string bytes = with_tail(std::string_view(packed).substr(0, size), text.size());
+        ASSERT_TRUE(text.starts_with(bytes)) << size;
+        const double share = static_cast<double>(size) / static_cast<double>(packed.size());
+        EXPECT_NEAR(static_cast<double>(bytes.size()), share * 300'000, 20'000) << size;
+    }
+}
+
+TEST(Lz4Tail, NeverExceedsTheLimit) {
+    const std::string packed = testing_support::lz4_compressed(std::string(1'000'000, 'x'), LZ4F_max4MB);
+    EXPECT_EQ(with_tail(std::string_view(packed).substr(0, packed.size() - 20), 1000), std::string(1000, 'x'));
+    EXPECT_EQ(with_tail(std::string_view(packed).substr(0, 100), 1000), std::string(1000, 'x'));
+}
 
 } // namespace
 } // namespace scanloom::robot

@@ -145,6 +145,17 @@ TEST(Rosbag, BytesBetweenChunksAreOneLossWithTheirPlace) {
     EXPECT_THAT(read.losses[0].reason, HasSubstr("100000 bytes"));
 }
 
+TEST(Rosbag, ConnectionsOfALostChunkAreFoundInAnIndexThatHasMoved) {
+    auto bag = small_bag({.compression = "bz2"});
+    const auto first = bag.messages.front();
+    bag.file.erase(first.begin + 100, first.end - first.begin - 120); // with the connections that it describes
+    std::vector<ReadMessage> wanted;
+    for (const auto& message : bag.messages) {
+        if (message.begin != first.begin) wanted.push_back(as_read(message));
+    }
+    EXPECT_EQ(read_bag(bag.file).messages, wanted);
+}
+
 TEST(Rosbag, MessageOfUnknownConnectionIsALoss) {
     BagWriter writer;
     writer.write(writer.connect("/scan", "sensor_msgs/LaserScan"), 1, "x");
