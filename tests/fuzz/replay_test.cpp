@@ -21,8 +21,10 @@ Fuzzer ld06_fuzzer;
 Fuzzer live_request_fuzzer;
 Fuzzer log_codec_fuzzer;
 Fuzzer log_file_fuzzer;
+Fuzzer mcap_fuzzer;
 Fuzzer messages_fuzzer;
 Fuzzer ros_map_fuzzer;
+Fuzzer rosbag_fuzzer;
 Fuzzer store_key_fuzzer;
 Fuzzer tokens_fuzzer;
 
@@ -47,8 +49,10 @@ const Named kFuzzers[] = {
     {"live_request", live_request_fuzzer},
     {"log_codec", log_codec_fuzzer},
     {"log_file", log_file_fuzzer},
+    {"mcap", mcap_fuzzer},
     {"messages", messages_fuzzer},
     {"ros_map", ros_map_fuzzer},
+    {"rosbag", rosbag_fuzzer},
     {"store_key", store_key_fuzzer},
     {"tokens", tokens_fuzzer},
 };

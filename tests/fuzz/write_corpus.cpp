@@ -8,8 +8,10 @@
 #include "core/mapping/projection.hpp"
 #include "server/sessions/checkpoint.hpp"
 #include "server/store/rocksdb_store.hpp"
+#include "tests/support/bag_writer.hpp"
 #include "tests/support/ld06_bytes.hpp"
 #include "tests/support/log_reading.hpp"
+#include "tests/support/mcap_writer.hpp"
 #include "tests/support/memory_scan_log.hpp"
 #include "tests/support/stored_text.hpp"
 #include "tests/support/temporary_directory.hpp"
@@ -255,6 +257,24 @@ void write_earlier_checkpoints(const std::filesystem::path& folder) {
     }
 }
 
+/// Recordings in each compression, and with what readers must tolerate.
+void write_recordings(const std::filesystem::path& folder) {
+    using namespace testing_support;
+    const auto write = [&](const char* name, const WrittenRecording& recording) {
+        write_file(folder / name, recording.file);
+    };
+    write("rosbag/none", small_bag({.chunk_bytes = 200}, 6));
+    write("rosbag/bz2", small_bag({.compression = "bz2", .chunk_bytes = 200}, 6));
+    write("rosbag/lz4", small_bag({.compression = "lz4", .chunk_bytes = 200}, 6));
+    write("rosbag/not_closed", small_bag({.compression = "lz4", .is_closed = false, .has_sizes = false}, 6));
+    write("rosbag/of_2010", small_bag({.chunk_bytes = 200, .index_entry_bytes = 20}, 6));
+    write("mcap/none", small_mcap({.chunk_bytes = 200}, 6));
+    write("mcap/without_checksums", small_mcap({.chunk_bytes = 200, .has_checksums = false}, 6));
+    write("mcap/lz4", small_mcap({.compression = "lz4", .chunk_bytes = 200}, 6));
+    write("mcap/zstd", small_mcap({.compression = "zstd", .chunk_bytes = 200}, 6));
+    write("mcap/not_closed", small_mcap({.chunk_bytes = 0, .is_closed = false}, 6));
+}
+
 void write_corpus(const std::filesystem::path& folder) {
     write_messages(folder / "messages");
     write_streams(folder / "frame_decoder");
@@ -264,6 +284,7 @@ void write_corpus(const std::filesystem::path& folder) {
     write_checkpoint(folder / "checkpoint");
     write_estimated_checkpoint(folder / "checkpoint");
     write_earlier_checkpoints(folder / "checkpoint");
+    write_recordings(folder);
 }
 
 /// Empty where there is no such file.

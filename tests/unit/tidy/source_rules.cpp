@@ -103,6 +103,7 @@ const std::vector<Folder> kFolders = {
      .pure = true},
     {.path = "robot_client/sources",
      .may_include = {"common/error", "common/geometry", "common/hash", "common/net", "common/scan"}},
+    {.path = "robot_client/recordings", .may_include = {"common/error", "common/files", "robot_client/sources"}},
     {.path = "robot_client/spool",
      .may_include = {"common/error", "common/files", "common/scan", "common/wire", "robot_client/sources"}},
     {.path = "robot_client/uplink", .may_include = {"common", "robot_client/sources", "robot_client/spool"}},
@@ -151,9 +152,12 @@ const std::vector<Package> kPackages = {
       "sim/robot", "robot_client/sources", "robot_client/spool", "robot_client/uplink", "robot_client/client",
       "robot_client/app", "load/net", "load/app"}},
     {"boost/beast", {"common/net", "server/live", "server/http", "server/app", "load/net"}},
-    {"bzlib.h", {"robot_client/sources"}},
-    {"zlib.h", {"robot_client/sources", "robot_client/spool", "server/http", "server/tiles"}},
-    {"zstd.h", {"common/wire", "server/sessions"}},
+    {"bzlib.h", {"robot_client/recordings", "robot_client/sources"}},
+    {"lz4frame.h", {"robot_client/recordings"}},
+    {"sqlite3.h", {"robot_client/recordings"}},
+    {"zlib.h",
+     {"robot_client/recordings", "robot_client/sources", "robot_client/spool", "server/http", "server/tiles"}},
+    {"zstd.h", {"common/wire", "robot_client/recordings", "server/sessions"}},
     {"CLI/", {"common/app", "server/app", "robot_client/app", "lab", "load/app"}},
 };
 
