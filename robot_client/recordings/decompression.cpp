@@ -118,7 +118,7 @@ private:
 };
 
 template <class Stream>
-std::optional<std::string> run_streams(std::string_view packed, std::size_t size_max, std::string& bytes) {
+std::optional<std::string> run_streams(std::string_view& packed, std::size_t size_max, std::string& bytes) {
     constexpr std::size_t kFirstRoom = 65'536;
     std::optional<Stream> stream(std::in_place);
     std::size_t made = 0;
@@ -170,18 +170,27 @@ std::size_t intact_bzip2_bytes(std::string_view packed, std::size_t size_max) {
 } // namespace
 
 std::optional<std::string> decompress(Compression compression, std::string_view packed, std::size_t size_max,
-                                      std::string& bytes) {
+                                      std::string& bytes, std::size_t* taken) {
     bytes.clear();
+    std::string_view rest = packed;
+    std::optional<std::string> reason;
     switch (compression) {
-    case Compression::kBzip2: {
-        auto reason = run_streams<Bzip2Stream>(packed, size_max, bytes);
+    case Compression::kBzip2:
+        reason = run_streams<Bzip2Stream>(rest, size_max, bytes);
         if (reason) bytes.resize(std::min(bytes.size(), intact_bzip2_bytes(packed, size_max)));
-        return reason;
+        break;
+    case Compression::kLz4: reason = run_streams<Lz4Stream>(rest, size_max, bytes); break;
+    case Compression::kZstd: reason = run_streams<ZstdStream>(rest, size_max, bytes); break;
     }
-    case Compression::kLz4: return run_streams<Lz4Stream>(packed, size_max, bytes);
-    case Compression::kZstd: return run_streams<ZstdStream>(packed, size_max, bytes);
-    }
-    return "its compression is unknown";
+    if (taken != nullptr) *taken = packed.size() - rest.size();
+    return reason;
+}
+
+std::optional<Compression> compression_of(std::string_view packed) {
+    if (packed.starts_with(Bzip2Stream::kMagic)) return Compression::kBzip2;
+    if (packed.starts_with(Lz4Stream::kMagic)) return Compression::kLz4;
+    if (packed.starts_with(ZstdStream::kMagic)) return Compression::kZstd;
+    return std::nullopt;
 }
 
 } // namespace scanloom::robot

@@ -23,8 +23,13 @@ inline constexpr std::string_view kZstdMagic = "\x28\xb5\x2f\xfd";
 /// @param size_max  largest number of decompressed bytes
 /// @param bytes     is replaced by the decompressed bytes; if the data is damaged, by those before the damage. Bytes
 ///                  whose checksum is wrong are not among them; the checksum of LZ4 and zstd covers all bytes
+/// @param taken     if not null, receives the number of bytes of `packed` up to the end of the compressed data
 /// @return nullopt if everything was decompressed, else why not: "the bz2 data is damaged"
 [[nodiscard]] std::optional<std::string> decompress(Compression compression, std::string_view packed,
-                                                    std::size_t size_max, std::string& bytes);
+                                                    std::size_t size_max, std::string& bytes,
+                                                    std::size_t* taken = nullptr);
+
+/// Returns the compression of data by its first bytes; nullopt if it has none of these.
+[[nodiscard]] std::optional<Compression> compression_of(std::string_view packed);
 
 } // namespace scanloom::robot

@@ -94,7 +94,8 @@ private:
         case McapOp::kSchema:
         case McapOp::kChannel: ok = take_description(record, bytes); break;
         case McapOp::kChunk: ok = record.is_packed ? take_packed_chunk(record) : check_plain_chunk(record); break;
-        case McapOp::kDataEnd: has_ended_ = true; break;
+        case McapOp::kDataEnd:
+        case McapOp::kFooter: has_ended_ = true; break;
         default: break; // indices, attachments, and records of later versions
         }
         if (!ok) return ok.error();
@@ -165,11 +166,8 @@ private:
     }
 
     [[nodiscard]] Result<> take_packed_chunk(const McapRecord& record) {
-        std::optional<Compression> compression;
-        if (record.compression == "lz4") compression = Compression::kLz4;
-        if (record.compression == "zstd") compression = Compression::kZstd;
-        if (!compression) {
-            lose(record, fmt::format("a chunk with the unknown compression '{}'", shown_word(record.compression)));
+        if (!record.compression) {
+            lose(record, fmt::format("a chunk with the unknown compression '{}'", shown_word(record.compression_name)));
             return {};
         }
         const std::uint64_t packed_size = record.end - record.data;
@@ -180,7 +178,9 @@ private:
         auto packed = file_->read(record.data, packed_size);
         if (!packed) return packed.error();
         const std::size_t size_max = std::min<std::uint64_t>(record.unpacked_size, kRecordedBytesMax);
-        const auto reason = decompress(*compression, *packed, size_max, decompressed_);
+        std::size_t taken = 0;
+        const auto reason = decompress(*record.compression, *packed, size_max, decompressed_, &taken);
+        if (!reason && record.is_end_unclear) records_.move_to(record.data + taken);
         if (reason) {
             lose(record, fmt::format("a part of a chunk: {}; {} bytes could be decompressed", *reason,
                                      decompressed_.size()));

@@ -7,8 +7,6 @@
 namespace scanloom::robot {
 namespace {
 
-constexpr std::uint8_t kFirstPrivateOp = 0x80;
-
 /// Takes values off the beginning of a text. After the first that is missing, all are.
 class McapValues {
 public:
@@ -41,6 +39,8 @@ private:
     bool is_complete_ = true;
 };
 
+constexpr std::uint64_t kChunkBytesMin = 40;
+
 /// @return whether a record of this kind can have so many bytes of content
 bool is_plausible(McapOp op, std::uint64_t size) {
     switch (op) {
@@ -49,7 +49,7 @@ bool is_plausible(McapOp op, std::uint64_t size) {
     case McapOp::kSchema: return size >= 14;
     case McapOp::kChannel: return size >= 16;
     case McapOp::kMessage: return size >= 22;
-    case McapOp::kChunk: return size >= 40;
+    case McapOp::kChunk: return size >= kChunkBytesMin;
     case McapOp::kMessageIndex: return size >= 6 && (size - 6) % 16 == 0;
     case McapOp::kChunkIndex: return size >= 64;
     case McapOp::kAttachment: return size >= 36;
@@ -63,10 +63,17 @@ bool is_plausible(McapOp op, std::uint64_t size) {
     return true; // of a later version of the format, or private
 }
 
+bool is_known(McapOp op) { return op >= McapOp::kHeader && op <= McapOp::kDataEnd; }
+
 /// Whether a record of this kind can be inside a chunk.
 bool belongs_into_chunk(McapOp op) {
-    const bool is_known = op >= McapOp::kHeader && op <= McapOp::kDataEnd;
-    return !is_known || op == McapOp::kSchema || op == McapOp::kChannel || op == McapOp::kMessage;
+    return !is_known(op) || op == McapOp::kSchema || op == McapOp::kChannel || op == McapOp::kMessage;
+}
+
+/// Whether readers skip records of this kind.
+bool is_skipped(McapOp op) {
+    return !belongs_into_chunk(op) ? op != McapOp::kChunk && op != McapOp::kDataEnd && op != McapOp::kFooter
+                                   : !is_known(op);
 }
 
 /// Reads what precedes the records of a chunk. @return false if it is malformed
@@ -81,15 +88,23 @@ Result<bool> read_chunk_header(RecordedBytes& bytes, McapRecord& record) {
     values.u64();
     record.unpacked_size = values.u64();
     record.checksum = values.u32();
-    record.compression = values.text();
+    record.compression_name = values.text();
     const std::uint64_t records_size = values.u64();
-    const std::uint64_t header_size = 8 + 8 + 8 + 4 + 4 + record.compression.size() + 8;
+    const std::uint64_t header_size = 8 + 8 + 8 + 4 + 4 + record.compression_name.size() + 8;
     if (!values.is_complete() || records_size > size - header_size) return false;
     record.data += header_size;
     record.end = record.data + records_size;
-    record.is_packed = !record.compression.empty();
+    // The first bytes say more of the compression than its name, which may be damaged.
+    auto packed = bytes.peek(record.data, 4);
+    if (!packed) return packed.error();
+    record.compression = compression_of(*packed);
+    record.is_packed = record.compression || !record.compression_name.empty();
     if (!record.is_packed) record.next = record.data;
     return true;
+}
+
+bool has_known_compression(const McapRecord& chunk) {
+    return chunk.compression_name.empty() || chunk.compression_name == "lz4" || chunk.compression_name == "zstd";
 }
 
 Result<bool> read_message_header(RecordedBytes& bytes, McapRecord& record) {
@@ -136,8 +151,10 @@ std::optional<McapChannel> read_mcap_channel(std::string_view content) {
 bool McapFormat::may_begin(std::string_view bytes) {
     McapValues values(bytes);
     const auto op = static_cast<McapOp>(values.number(1));
-    return op >= McapOp::kHeader && op <= McapOp::kDataEnd && is_plausible(op, values.u64());
+    return is_known(op) && is_plausible(op, values.u64());
 }
+
+bool McapFormat::can_be_in_chunk(const McapRecord& record) { return belongs_into_chunk(record.op); }
 
 Result<std::optional<McapRecord>> McapFormat::read(RecordedBytes& bytes, std::uint64_t at) const {
     const auto none = std::optional<McapRecord>();
@@ -152,11 +169,19 @@ Result<std::optional<McapRecord>> McapFormat::read(RecordedBytes& bytes, std::ui
     constexpr std::uint64_t kSizeMax = std::uint64_t{1} << 62U; // so that sums do not overflow
     if (op == 0 || size > kSizeMax || !is_plausible(record.op, size)) return none;
     if (is_chunk && !belongs_into_chunk(record.op)) return none;
-    const bool is_foreign = op >= kFirstPrivateOp || record.op > McapOp::kDataEnd;
-    if (is_foreign && size > bytes.size()) return none;
     record.begin = at;
     record.data = at + kFirstBytes;
     record.end = record.next = record.data + size;
+    record.is_vague = !is_known(record.op);
+    if (!is_chunk && is_skipped(record.op) && size >= kChunkBytesMin) {
+        // A chunk whose op is damaged must not be skipped: other records do not have the values of a chunk.
+        McapRecord chunk = record;
+        chunk.op = McapOp::kChunk;
+        chunk.is_vague = false;
+        auto is_chunk_content = read_chunk_header(bytes, chunk);
+        if (!is_chunk_content) return is_chunk_content.error();
+        if (*is_chunk_content && has_known_compression(chunk)) return std::optional(std::move(chunk));
+    }
     Result<bool> is_well_formed = true;
     if (record.op == McapOp::kMessage) is_well_formed = read_message_header(bytes, record);
     if (record.op == McapOp::kChunk) is_well_formed = read_chunk_header(bytes, record);

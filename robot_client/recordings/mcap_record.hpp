@@ -1,5 +1,6 @@
 #pragma once
 
+#include "robot_client/recordings/decompression.hpp"
 #include "robot_client/recordings/record_walker.hpp"
 
 #include <cstdint>
@@ -39,7 +40,8 @@ struct McapRecord : RecordPlace {
     std::uint64_t unpacked_size = 0; ///< of chunks, in bytes
     std::uint32_t checksum = 0;      ///< of chunks: CRC-32 of the decompressed records, 0 if there is none
     std::uint64_t summary_begin = 0; ///< of footers: offset of the summary, 0 if there is none
-    std::string compression;         ///< of chunks
+    std::optional<Compression> compression; ///< of chunks
+    std::string compression_name;           ///< of chunks; empty: they are not compressed
 };
 
 /// Content of a Schema record.
@@ -68,6 +70,7 @@ struct McapFormat {
 
     [[nodiscard]] Result<std::optional<McapRecord>> read(RecordedBytes& bytes, std::uint64_t at) const;
     [[nodiscard]] static bool may_begin(std::string_view bytes);
+    [[nodiscard]] static bool can_be_in_chunk(const McapRecord& record);
 };
 
 } // namespace scanloom::robot

@@ -17,6 +17,8 @@ struct RecordPlace {
     std::uint64_t next = 0; ///< where the next record begins: at `end`, or at `data` if records are its data
     std::optional<std::uint64_t> next_otherwise; ///< where it begins if it is not at `next`
     bool is_packed = false; ///< its data is compressed, and shows by itself where it ends
+    bool is_end_unclear = false; ///< of packed data: `end` may be too large, as its length or what follows is damaged
+    bool is_vague = false;  ///< little of it could be checked: it is believed if a record follows
 };
 
 /// Bytes from `begin` to `end` that belong to no record.
@@ -38,9 +40,10 @@ struct WalkedRecord {
 /// that is found inside shows that it is the length.
 ///
 /// Format has:
-///   using Record = ...;                // derived from RecordPlace
+///   using Record = ...; // derived from RecordPlace
 ///   Result<std::optional<Record>> read(RecordedBytes&, std::uint64_t at) const;  // nullopt: no record can begin there
 ///   static bool may_begin(std::string_view bytes);        // quick check of the kFirstBytes bytes of a record
+///   static bool can_be_in_chunk(const Record&);
 ///   static constexpr std::size_t kFirstBytes, kFollowers; // so many records must follow one that is searched for
 template <class Format>
 class RecordWalker {
@@ -100,7 +103,15 @@ private:
         auto record = format_.read(*bytes_, at);
         if (!record) return record.error();
         ahead_ = std::move(*record);
-        return ahead_.has_value();
+        if (!ahead_ || !ends_inside(*ahead_)) return false;
+        if (!ahead_->is_vague || ahead_->next == bytes_->size()) return true;
+        auto follower = format_.read(*bytes_, ahead_->next);
+        if (!follower) return follower.error();
+        return follower->has_value();
+    }
+
+    [[nodiscard]] bool ends_inside(const Record& record) const {
+        return record.next <= bytes_->size() || record.is_packed;
     }
 
     /// Sets where the record ends and at_ behind it.
@@ -117,10 +128,12 @@ private:
             at_ = record.next;
             return true;
         }
-        auto place = find(record.data);
+        // A compressed chunk may have records of its own in plain sight.
+        auto place = find(record.data, record.is_packed);
         if (!place) return place.error();
         if (record.is_packed) {
             record.end = record.next = *place;
+            record.is_end_unclear = true;
         } else if (*place < record.next || record.next > bytes_->size()) {
             at_ = *place; // its length is wrong, or it is truncated
             return false;
@@ -130,7 +143,7 @@ private:
     }
 
     /// Returns where the first credible record from `from` on begins, or the end.
-    [[nodiscard]] Result<std::uint64_t> find(std::uint64_t from) {
+    [[nodiscard]] Result<std::uint64_t> find(std::uint64_t from, bool is_outside_of_chunks = false) {
         constexpr std::size_t kSearchBytes = 65'536;
         ahead_.reset();
         while (from + Format::kFirstBytes <= bytes_->size()) {
@@ -140,7 +153,7 @@ private:
             const std::size_t places = window->size() - Format::kFirstBytes + 1;
             for (std::size_t i = 0; i < places; ++i) {
                 if (!Format::may_begin(window->substr(i, Format::kFirstBytes))) continue;
-                auto credible = is_credible(from + i);
+                auto credible = is_credible(from + i, is_outside_of_chunks);
                 if (!credible) return credible.error();
                 if (*credible) return from + i;
             }
@@ -149,15 +162,18 @@ private:
         return bytes_->size();
     }
 
-    [[nodiscard]] Result<bool> is_credible(std::uint64_t at) {
-        for (std::size_t followers = 0;; ++followers) {
+    [[nodiscard]] Result<bool> is_credible(std::uint64_t at, bool is_outside_of_chunks = false) {
+        for (std::size_t followers = 0; at < bytes_->size(); ++followers) {
             auto record = format_.read(*bytes_, at);
             if (!record) return record.error();
             if (!*record) return false;
-            if ((*record)->next > bytes_->size()) return (*record)->is_packed || followers > 0; // the file is truncated
-            if (followers == Format::kFollowers || (*record)->next == bytes_->size()) return true;
+            if (followers == 0 && is_outside_of_chunks && Format::can_be_in_chunk(**record)) return false;
+            if (!ends_inside(**record)) return followers > 0; // the file is truncated
+            if (followers == Format::kFollowers) return true;
+            if ((*record)->is_packed && (*record)->next > bytes_->size()) return true;
             at = (*record)->next;
         }
+        return at == bytes_->size();
     }
 
     Format format_;

@@ -22,8 +22,6 @@ std::optional<RecordingFormat> format_of_plain(std::string_view first_bytes) {
 
 std::optional<RecordingFormat> format_of(std::string_view first_bytes) {
     if (!first_bytes.starts_with(kZstdMagic)) return format_of_plain(first_bytes);
-    // rosbag2 compresses files as a whole with --compression-mode file. What can be decompressed of the beginning of a
-    // block is enough, but a block of zstd is decompressed as a whole.
     std::string bytes;
     constexpr std::size_t kShown = 64;
     (void)decompress(Compression::kZstd, first_bytes, kShown, bytes);

@@ -85,8 +85,8 @@ enum class RecordingFormat {
     kRosbag2, ///< SQLite database of rosbag2, .db3
 };
 
-/// Number of a file's first bytes that format_of() needs.
-inline constexpr std::size_t kFormatBytes = 4096;
+/// Number of a file's first bytes that format_of() needs: a block of zstd, which is decompressed as a whole.
+inline constexpr std::size_t kFormatBytes = 132'000;
 
 /// Determines the format of a recording from its content.
 /// @param first_bytes  the first kFormatBytes bytes of the file, or the whole file if it is shorter

@@ -144,13 +144,6 @@ private:
     }
 
     [[nodiscard]] Result<> take_chunk(const BagRecord& record) {
-        std::optional<Compression> compression;
-        if (record.text == "bz2") compression = Compression::kBzip2;
-        if (record.text == "lz4") compression = Compression::kLz4;
-        if (!compression) {
-            lose(record, fmt::format("a chunk with the unknown compression '{}'", shown_word(record.text)));
-            return {};
-        }
         const std::uint64_t packed_size = record.end - record.data;
         if (packed_size > kRecordedBytesMax) {
             lose(record, fmt::format("a chunk of {} bytes; at most {} are supported", packed_size, kRecordedBytesMax));
@@ -161,9 +154,12 @@ private:
         // A recorder writes the size when it ends the chunk; if it crashed before, the size is 0.
         const std::size_t stated = record.unpacked_size == 0 ? kRecordedBytesMax : record.unpacked_size;
         const std::size_t size_max = std::min(stated, kRecordedBytesMax);
-        if (const auto reason = decompress(*compression, *packed, size_max, decompressed_)) {
+        std::size_t taken = 0;
+        if (const auto reason = decompress(*record.compression, *packed, size_max, decompressed_, &taken)) {
             lose(record, fmt::format("a part of a chunk: {}; {} bytes could be decompressed", *reason,
                                      decompressed_.size()));
+        } else if (record.is_end_unclear) {
+            records_.move_to(record.data + taken);
         }
         chunk_.emplace(decompressed_, record.begin);
         return {};

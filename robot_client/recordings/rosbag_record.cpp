@@ -39,7 +39,7 @@ std::optional<BagField> take_bag_field(std::string_view& header) {
 
 /// Header fields, as far as they are known. Those that are absent are empty.
 struct BagHeader {
-    std::string_view op, conn, time, topic, compression, size, ver, count, chunk_pos, index_pos, conn_count, encryptor;
+    std::string_view op, conn, time, topic, size, ver, count, chunk_pos, index_pos, conn_count, encryptor;
 };
 
 std::optional<BagHeader> read_bag_header(std::string_view bytes) {
@@ -49,7 +49,6 @@ std::optional<BagHeader> read_bag_header(std::string_view bytes) {
         {"conn", &header.conn},
         {"time", &header.time},
         {"topic", &header.topic},
-        {"compression", &header.compression},
         {"size", &header.size},
         {"ver", &header.ver},
         {"count", &header.count},
@@ -102,6 +101,10 @@ bool BagFormat::may_begin(std::string_view bytes) {
     return header <= kHeaderBytesMax && field >= 3 && std::uint64_t{field} + kBagLengthBytes <= header;
 }
 
+bool BagFormat::can_be_in_chunk(const BagRecord& record) {
+    return record.op == BagOp::kMessage || record.op == BagOp::kConnection;
+}
+
 Result<std::optional<BagRecord>> BagFormat::read(RecordedBytes& bytes, std::uint64_t at) const {
     const auto none = std::optional<BagRecord>();
     auto first = bytes.peek(at, kFirstBytes);
@@ -116,14 +119,12 @@ Result<std::optional<BagRecord>> BagFormat::read(RecordedBytes& bytes, std::uint
 
     BagRecord record;
     record.op = static_cast<BagOp>(header->op.front());
-    const auto op = static_cast<std::uint8_t>(record.op);
-    const bool is_known = op >= static_cast<std::uint8_t>(BagOp::kMessage) &&
-                          op <= static_cast<std::uint8_t>(BagOp::kConnection);
-    if (is_known && !is_complete(*header, record.op, is_chunk)) return none;
+    if (!is_complete(*header, record.op, is_chunk)) return none; // or of an unknown kind, which 2.0 does not have
     record.begin = at;
     record.data = at + kBagLengthBytes + header_bytes + kBagLengthBytes;
     record.end = record.data + bag_u32(all->substr(kBagLengthBytes + header_bytes));
     record.next = record.end;
+    const std::uint32_t unpacked_size = record.op == BagOp::kChunk ? bag_u32(header->size) : 0;
     switch (record.op) {
     case BagOp::kMessage: {
         record.connection = bag_u32(header->conn);
@@ -135,12 +136,16 @@ Result<std::optional<BagRecord>> BagFormat::read(RecordedBytes& bytes, std::uint
         record.connection = bag_u32(header->conn);
         record.text = header->topic;
         break;
-    case BagOp::kChunk:
-        record.text = header->compression.empty() ? "none" : header->compression;
-        record.unpacked_size = bag_u32(header->size);
-        record.is_packed = record.text != "none";
+    case BagOp::kChunk: {
+        // Its first bytes say more of the compression than the header, which may be damaged.
+        auto packed = bytes.peek(record.data, 4);
+        if (!packed) return packed.error();
+        record.compression = compression_of(*packed);
+        record.unpacked_size = unpacked_size;
+        record.is_packed = record.compression.has_value();
         if (!record.is_packed) record.next = record.data;
         break;
+    }
     case BagOp::kIndex: {
         // Bags of 2010 state a size of 20 bytes an entry, but an entry of an index of version 1 has 12.
         constexpr std::uint64_t kEntryBytes = 12;

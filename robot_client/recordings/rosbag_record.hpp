@@ -1,5 +1,6 @@
 #pragma once
 
+#include "robot_client/recordings/decompression.hpp"
 #include "robot_client/recordings/record_walker.hpp"
 
 #include <cstdint>
@@ -28,7 +29,8 @@ struct BagRecord : RecordPlace {
     std::int64_t time = 0;           ///< of messages, in ns
     std::uint32_t unpacked_size = 0; ///< of chunks, in bytes
     std::uint64_t index_begin = 0;   ///< of bag headers: offset of the records after the last chunk, 0 if it was not closed
-    std::string text; ///< topic of a connection; compression of a chunk; encryptor of a bag header
+    std::optional<Compression> compression; ///< of chunks
+    std::string text; ///< topic of a connection; encryptor of a bag header
 };
 
 /// Fields of a connection's data.
@@ -44,7 +46,7 @@ struct BagConnection {
 struct BagFormat {
     using Record = BagRecord;
     static constexpr std::size_t kFirstBytes = 8;
-    static constexpr std::size_t kFollowers = 0; // a header has enough that can be checked
+    static constexpr std::size_t kFollowers = 1;
     /// Longest header of a record.
     static constexpr std::size_t kHeaderBytesMax = 8000;
 
@@ -52,6 +54,7 @@ struct BagFormat {
 
     [[nodiscard]] Result<std::optional<BagRecord>> read(RecordedBytes& bytes, std::uint64_t at) const;
     [[nodiscard]] static bool may_begin(std::string_view bytes);
+    [[nodiscard]] static bool can_be_in_chunk(const BagRecord& record);
 };
 
 } // namespace scanloom::robot

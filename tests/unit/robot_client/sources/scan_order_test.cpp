@@ -1,4 +1,4 @@
-#include "robot_client/sources/carmen_log.hpp"
+#include "robot_client/sources/scan_order.hpp"
 
 #include <gtest/gtest.h>
 
