@@ -1,4 +1,5 @@
 #include "common/app/standard_streams.hpp"
+#include "robot_client/app/info.hpp"
 #include "robot_client/app/options.hpp"
 #include "robot_client/app/run.hpp"
 #include "robot_client/app/truth.hpp"
@@ -19,6 +20,7 @@ int main(int argc, char** argv) try {
     }
     if (const auto* truth = std::get_if<scanloom::robot::GroundTruthOptions>(&options))
         return scanloom::robot::run(*truth);
+    if (const auto* info = std::get_if<scanloom::robot::InfoOptions>(&options)) return scanloom::robot::run(*info);
     return scanloom::robot::run(std::get<scanloom::robot::RobotOptions>(options));
 } catch (const std::exception& error) {
     scanloom::standard_error().write(fmt::format("scanloom-robot: {}\n", error.what()));

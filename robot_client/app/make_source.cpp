@@ -1,5 +1,7 @@
 #include "robot_client/app/make_source.hpp"
 
+#include "robot_client/app/info.hpp"
+#include "robot_client/ros/recorded_scans.hpp"
 #include "robot_client/sources/carmen_log.hpp"
 #include "robot_client/sources/ld06_capture.hpp"
 #include "robot_client/sources/ld06_live.hpp"
@@ -17,6 +19,7 @@
 
 #include <chrono>
 #include <filesystem>
+#include <fstream>
 #include <iostream>
 #include <numbers>
 #include <string>
@@ -60,34 +63,75 @@ std::string order_text(const StampReport& stamps) {
     return fmt::format("stamps decrease {} times, by up to {:.3f} s: {}", stamps.steps_back, stamps.back_max, order);
 }
 
-Result<PreparedSource> make(const RobotOptions& options, const ReplayOptions& replay, Console& console) {
+/// Says if stamps go back, and in which order scans are sent.
+void note_order(const StampReport& stamps, const std::string& file, PreparedSource& prepared, Console& console) {
+    if (stamps.steps_back > 0) console.note(fmt::format("{}: {}", file, order_text(stamps)));
+    prepared.order = stamps.file_order ? "file" : "time";
+}
+
+/// Returns whether a file is a recording of ROS, readable or not.
+bool is_recording(const std::string& path) {
+    std::string first_bytes(kFormatBytes, '\0');
+    std::ifstream file(path, std::ios::binary);
+    file.read(first_bytes.data(), static_cast<std::streamsize>(first_bytes.size()));
+    first_bytes.resize(static_cast<std::size_t>(file.gcount()));
+    return format_of(first_bytes).has_value();
+}
+
+/// Shows how far a file has been read, from time to time.
+OnRead show_reading(const std::string& file, Console& console) {
+    return [file, &console, next = Clock::now() + console.progress_period()](const ReadProgress& progress) mutable {
+        if (Clock::now() < next) return;
+        next = Clock::now() + console.progress_period();
+        console.progress(reading_text(file, progress));
+    };
+}
+
+Result<PreparedSource> make_log(const RobotOptions& options, const ReplayOptions& replay, Console& console) {
     std::optional<SkippedLines> skipped(std::in_place, replay.file, console);
     const auto report = [&](const SkippedLine& line) { skipped->add(line); };
-    auto next_progress = Clock::now() + console.progress_period();
-    const auto show = [&](const ReadProgress& progress) {
-        if (Clock::now() < next_progress) return;
-        next_progress = Clock::now() + console.progress_period();
-        console.progress(reading_text(replay.file, progress));
-    };
-    auto log = CarmenLog::open(replay.file, {options.no_return, options.range_max, {}, options.poses}, report, show);
+    auto log = CarmenLog::open(replay.file,
+                               {options.no_return, options.range_max, {}, options.poses.value_or(Poses::kMap)}, report,
+                               show_reading(replay.file, console));
     skipped.reset();
     if (!log) return log.error();
-    const StampReport& stamps = log->stamps();
-    if (stamps.steps_back > 0) console.note(fmt::format("{}: {}", replay.file, order_text(stamps)));
     PreparedSource prepared;
     prepared.skipped_lines = log->skipped_lines();
     prepared.speed = replay.speed;
     prepared.fingerprint = log->fingerprint();
-    prepared.order = stamps.file_order ? "file" : "time";
+    note_order(log->stamps(), replay.file, prepared, console);
     prepared.source = std::make_unique<CarmenLog>(std::move(*log));
     return prepared;
+}
+
+Result<PreparedSource> make_recording(const RobotOptions& options, const ReplayOptions& replay, Console& console) {
+    RecordingOptions stated = replay.recording;
+    stated.poses = options.poses;
+    stated.ranges.range_max = options.range_max;
+    stated.ranges.no_return = options.no_return;
+    auto scans = RecordedScans::open(replay.file, stated, show_reading(replay.file, console));
+    if (!scans) return scans.error();
+    const RecordingPlan& plan = scans->plan();
+    for (const auto& note : plan.notes) console.note(fmt::format("{}: {}", replay.file, note));
+    console.note(fmt::format("{}: {}", replay.file, poses_text(plan)));
+    PreparedSource prepared;
+    prepared.poses = plan.poses;
+    prepared.speed = replay.speed;
+    prepared.fingerprint = plan.fingerprint;
+    note_order(plan.stamps, replay.file, prepared, console);
+    prepared.source = std::make_unique<RecordedScans>(std::move(*scans));
+    return prepared;
+}
+
+Result<PreparedSource> make(const RobotOptions& options, const ReplayOptions& replay, Console& console) {
+    return is_recording(replay.file) ? make_recording(options, replay, console) : make_log(options, replay, console);
 }
 
 Result<PreparedSource> make(const RobotOptions& options, const SonarReplayOptions& sonar, Console&) {
     SonarOptions ring;
     ring.no_return = options.no_return.value_or(ring.no_return);
     ring.range_max = options.range_max.value_or(ring.range_max);
-    ring.poses = options.poses;
+    ring.poses = options.poses.value_or(Poses::kMap);
     ring.aperture = sonar.aperture_deg * std::numbers::pi / 180.0;
     auto log = SonarLog::open(sonar.measurements, sonar.poses, ring);
     if (!log) return log.error();
@@ -101,7 +145,7 @@ Result<PreparedSource> make(const RobotOptions& options, const SonarReplayOption
 
 Result<PreparedSource> make(const RobotOptions& options, sim::SimulatedRobotOptions simulate, Console&) {
     simulate.range_max = options.range_max;
-    simulate.poses = options.poses;
+    simulate.poses = options.poses.value_or(Poses::kMap);
     simulate.no_return = options.no_return.value_or(simulate.no_return);
     auto robot = sim::make_simulated_robot(simulate);
     if (!robot) return robot.error();
@@ -127,7 +171,7 @@ Result<Ld06ScanOptions> scan_options(const RobotOptions& options, const Ld06Opti
     if (ld06.confidence_min) scan.confidence_min = static_cast<std::uint8_t>(*ld06.confidence_min);
     scan.median_window = ld06.median_window;
     scan.mount = ld06.mount;
-    scan.poses = options.poses;
+    scan.poses = options.poses.value_or(Poses::kMap);
     if (scan.range_min < scan.range_max) return scan;
     return Error{Errc::kInvalidField,
                  fmt::format("--min-range is {} m, but --max-range is only {} m; no reading would be valid",
@@ -260,7 +304,9 @@ Result<PreparedSource> make(const RobotOptions& options, const Ld06Options& ld06
 } // namespace
 
 Result<PreparedSource> make_source(const RobotOptions& options, Console& console) {
-    return std::visit([&](const auto& source) { return make(options, source, console); }, options.source);
+    auto prepared = std::visit([&](const auto& source) { return make(options, source, console); }, options.source);
+    if (prepared && options.poses) prepared->poses = *options.poses;
+    return prepared;
 }
 
 } // namespace scanloom::robot

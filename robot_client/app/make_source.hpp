@@ -18,6 +18,7 @@ struct PreparedSource {
     std::unique_ptr<Source> source;           ///< a recording or simulation, or
     std::unique_ptr<LiveSource> live;         ///< a live source: exactly one of the two is set
     std::optional<std::size_t> skipped_lines; ///< of text files that were read
+    Poses poses = Poses::kMap;                ///< what the poses of its scans are
     double speed = 0.0;
     std::string fingerprint;                   ///< for Hello.source
     std::string_view order;                    ///< of a log's scans: "file" or "time", a literal; else empty
@@ -34,7 +35,7 @@ struct PreparedSource {
 /// Opens the recording, prepares a live source for the device, or sets up the simulation. Reports the first invalid
 /// lines of a log or of poses, stamps that go back, and later events of a device to the console, which must outlive the
 /// source.
-/// Errors: those of CarmenLog::open(), SonarLog::open(), Ld06Capture::open(), read_pose_lines() and
+/// Errors: those of CarmenLog::open(), RecordedScans::open(), SonarLog::open(), Ld06Capture::open(), read_pose_lines() and
 ///         make_simulated_robot(); kNotFound if the device does not exist; kInvalidField if options contradict each
 ///         other or a spool is given for a capture file.
 [[nodiscard]] Result<PreparedSource> make_source(const RobotOptions& options, Console& console);

@@ -15,13 +15,14 @@ namespace scanloom::robot {
 namespace {
 
 constexpr const char* kAbout =
-    "Streams a robot's scans to a Scanloom server: a recorded log, recorded sonars, a lidar,\n"
+    "Streams a robot's scans to a Scanloom server: a log or a recording, recorded sonars, a lidar,\n"
     "or a simulated robot.\n"
     "The same command continues after the scans that are already stored.\n"
     "Exits 0 if every scan is stored durably (an endless simulation: every scan sent until the\n"
     "interrupt), 1 if not, 2 on invalid arguments; prints a summary as one line of JSON, with the\n"
     "reason (\"error\") if it exits with 1.\n"
-    "The command truth needs no server and writes the ground truth map of a simulated world.";
+    "Two commands need no server: info lists what a recording contains, and truth writes the ground truth map of a\n"
+    "simulated world.";
 constexpr const char* kFooter =
     "Every option may also stand in the file of --config (TOML; those of a source in a section of its name) or in the\n"
     "environment (--cell-size as SCANLOOM_CELL_SIZE). A flag overrides the environment, which overrides the file.";
@@ -29,7 +30,7 @@ constexpr const char* kFooter =
 /// Options as the parser sets them, before they are moved into RobotOptions.
 struct Raw {
     std::string no_return;
-    std::string poses = "map"; // not checked in the parser, see set_poses()
+    std::string poses; // not checked in the parser, see set_poses()
     std::optional<double> give_up_after;
     double spool_mib = 256.0;
     double memory_mib = 8.0;
@@ -109,20 +110,9 @@ void add_scan_options(CLI::App& app, RobotOptions& options, Raw& raw) {
     app.add_option("--poses", raw.poses,
                    "What the robot knows of its poses: map = poses in the map, which are used as they are; odometry = "
                    "odometry, which drifts; none = nothing. With odometry and none the server estimates where scans "
-                   "were taken. The same for all scans of a robot")
-        ->type_name("TEXT:{map,odometry,none}")
-        ->capture_default_str();
-}
-
-CLI::App* add_replay(CLI::App& app, ReplayOptions& options) {
-    auto* replay = app.add_subcommand("replay", "Replay a CARMEN log");
-    // not required() in the parser: an environment for both sources would then require it everywhere
-    replay->add_option("FILE", options.file, "CARMEN log, plain, gzip or bzip2")->configurable(false);
-    add_checked(*replay, "--speed", options.speed,
-                "1 = as recorded, 0 = as fast as the server accepts scans. A pause of more than 10 minutes in the "
-                "log counts as 10",
-                check_not_negative);
-    return replay;
+                   "were taken. The same for all scans of a robot. Default: map; for recordings of ROS the best that they "
+                   "contain")
+        ->type_name("TEXT:{map,odometry,none}");
 }
 
 CLI::App* add_sonar(CLI::App& app, SonarReplayOptions& options) {
@@ -145,6 +135,7 @@ CLI::App* add_sonar(CLI::App& app, SonarReplayOptions& options) {
 /// @param ld06  nullptr for another source. For one release, a word that is not known names the file of its poses.
 /// @return an error, or an empty string
 std::string set_poses(const std::string& word, Ld06Options* ld06, RobotOptions& options) {
+    if (word.empty()) return {};
     if (const auto poses = find_poses(word)) {
         options.poses = *poses;
         return {};
@@ -159,13 +150,14 @@ std::string set_poses(const std::string& word, Ld06Options* ld06, RobotOptions& 
 
 } // namespace
 
-std::variant<RobotOptions, GroundTruthOptions, Leave> parse_options(int argc, const char* const* argv) {
+std::variant<RobotOptions, GroundTruthOptions, InfoOptions, Leave> parse_options(int argc, const char* const* argv) {
     RobotOptions options;
     Raw raw;
     ReplayOptions replay_options;
     SonarReplayOptions sonar_options;
     sim::SimulatedRobotOptions simulate_options;
     GroundTruthOptions truth_options;
+    InfoOptions info_options;
     Ld06Options ld06_options;
 
     CLI::App app(kAbout, "scanloom-robot");
@@ -181,6 +173,7 @@ std::variant<RobotOptions, GroundTruthOptions, Leave> parse_options(int argc, co
     const CLI::App* ld06 = add_ld06(app, ld06_options)->fallthrough();
     const CLI::App* simulate = add_simulate(app, simulate_options)->fallthrough();
     const CLI::App* truth = add_ground_truth(app, truth_options)->fallthrough();
+    const CLI::App* info = add_info(app, info_options)->fallthrough();
     app.require_subcommand(1);
 
     try {
@@ -189,11 +182,15 @@ std::variant<RobotOptions, GroundTruthOptions, Leave> parse_options(int argc, co
     } catch (const CLI::ParseError& reason) {
         return leave_for(
             app, reason,
-            "name a source: replay FILE, sonar MEASUREMENTS POSES, ld06 INPUT, or simulate; or the command truth");
+            "name a source: replay FILE, sonar MEASUREMENTS POSES, ld06 INPUT, or simulate; or a command: info FILE, or truth");
     }
     if (truth->parsed()) {
         if (auto mistake = mistake_in(truth_options)) return usage_error(app, *mistake);
         return truth_options;
+    }
+    if (info->parsed()) {
+        if (info_options.file.empty()) return usage_error(app, "info: name the FILE");
+        return info_options;
     }
     for (const char* needed : {"--session", "--robot"}) {
         if (app.get_option(needed)->empty()) return usage_error(app, fmt::format("{} is required", needed));
@@ -224,11 +221,11 @@ std::variant<RobotOptions, GroundTruthOptions, Leave> parse_options(int argc, co
         }
         options.source = std::move(sonar_options);
     } else if (ld06->parsed()) {
-        if (const auto wrong = complaint_about(ld06_options, options.poses); !wrong.empty())
+        if (const auto wrong = complaint_about(ld06_options, options.poses.value_or(Poses::kMap)); !wrong.empty())
             return usage_error(app, wrong);
         options.source = std::move(ld06_options);
     } else if (simulate->parsed()) {
-        if (auto mistake = mistake_in(simulate_options, options.poses)) return usage_error(app, *mistake);
+        if (auto mistake = mistake_in(simulate_options, options.poses.value_or(Poses::kMap))) return usage_error(app, *mistake);
         options.source = std::move(simulate_options);
     }
     return options;

@@ -4,6 +4,7 @@
 #include "common/app/program.hpp"
 #include "common/scan/poses.hpp"
 #include "robot_client/app/ld06_options.hpp"
+#include "robot_client/app/replay_options.hpp"
 #include "robot_client/sources/source.hpp"
 #include "robot_client/spool/spool.hpp"
 #include "sim/robot/simulated_robot.hpp"
@@ -16,11 +17,6 @@
 #include <variant>
 
 namespace scanloom::robot {
-
-struct ReplayOptions {
-    std::string file;
-    double speed = 0.0; ///< 0 = as fast as the server accepts scans, 1 = as recorded
-};
 
 /// Writes the ground truth of a world as map files; needs no server.
 struct GroundTruthOptions {
@@ -44,7 +40,7 @@ struct RobotOptions : LinkOptions {
     std::optional<double> range_max;   ///< metres
     std::optional<double> body_radius; ///< metres
     std::optional<NoReturn> no_return;
-    Poses poses = Poses::kMap; ///< what the poses of the source are, and therefore how scans are sent
+    std::optional<Poses> poses; ///< what the poses of the source are; nullopt: the source decides, most have kMap
     std::optional<std::chrono::milliseconds> give_up_after; ///< 0: never
 
     // buffers
@@ -62,6 +58,6 @@ struct RobotOptions : LinkOptions {
 
 /// Reads the command line, SCANLOOM_* environment variables and the file of --config. Flags override the environment,
 /// which overrides the file.
-[[nodiscard]] std::variant<RobotOptions, GroundTruthOptions, Leave> parse_options(int argc, const char* const* argv);
+[[nodiscard]] std::variant<RobotOptions, GroundTruthOptions, InfoOptions, Leave> parse_options(int argc, const char* const* argv);
 
 } // namespace scanloom::robot

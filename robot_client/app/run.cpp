@@ -52,7 +52,7 @@ UplinkOptions uplink_options(const RobotOptions& options, std::string token, con
     hello.client = fmt::format("scanloom-robot {}", kVersion);
     hello.source = prepared.fingerprint;
     hello.body_radius = options.body_radius ? options.body_radius : prepared.body_radius;
-    hello.poses = options.poses;
+    hello.poses = prepared.poses;
     return uplink;
 }
 
@@ -79,7 +79,7 @@ Result<std::unique_ptr<Feed>> make_feed(const RobotOptions& options, const Prepa
                                 .bytes_max = options.spool_bytes_max,
                                 .when_full = options.when_full,
                                 .poses_from_server = prepared.locating != nullptr,
-                                .poses = options.poses},
+                                .poses = prepared.poses},
                                report);
     if (!spool) return spool.error();
     if (*spool && (*spool)->waiting() > 0)
@@ -136,7 +136,7 @@ ExitCode run(const RobotOptions& options) {
     if (!tls) return fail(tls.error());
     sent_options.tls = std::move(*tls);
 
-    auto* const steered = options.poses == Poses::kOdometry ? prepared->exploring : nullptr;
+    auto* const steered = prepared->poses == Poses::kOdometry ? prepared->exploring : nullptr;
     sent_options.protocol.on_correction = [&console, steered,
                                            notes = LocalizationNotes()](const wire::Correction& correction) mutable {
         if (steered != nullptr) steered->correct(correction.T_map_odom);

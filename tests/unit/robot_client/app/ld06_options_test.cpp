@@ -16,7 +16,7 @@ namespace {
 
 using testing::HasSubstr;
 
-std::variant<RobotOptions, GroundTruthOptions, Leave> parse(std::vector<std::string> words) {
+std::variant<RobotOptions, GroundTruthOptions, InfoOptions, Leave> parse(std::vector<std::string> words) {
     std::vector<const char*> argv{"scanloom-robot", "--session", "s", "--robot", "r", "ld06"};
     for (const auto& word : words) argv.push_back(word.c_str());
     return parse_options(static_cast<int>(argv.size()), argv.data());

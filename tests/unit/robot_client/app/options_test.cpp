@@ -17,7 +17,7 @@ using testing::HasSubstr;
 
 class Options : public testing::Test {
 protected:
-    std::variant<RobotOptions, GroundTruthOptions, Leave> parse(std::vector<std::string> words) {
+    std::variant<RobotOptions, GroundTruthOptions, InfoOptions, Leave> parse(std::vector<std::string> words) {
         std::vector<const char*> argv{"scanloom-robot"};
         for (const auto& word : words) argv.push_back(word.c_str());
         return parse_options(static_cast<int>(argv.size()), argv.data());

@@ -1,0 +1,111 @@
+#include "robot_client/app/info.hpp"
+
+#include "common/app/standard_streams.hpp"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <ctime>
+#include <utility>
+#include <vector>
+
+namespace scanloom::robot {
+namespace {
+
+constexpr double kNanosecond = 1e-9; // seconds
+
+/// Returns a text without characters that a terminal could interpret.
+std::string printable(std::string text) {
+    std::ranges::replace_if(text, [](unsigned char c) { return c < 0x20 || c == 0x7F; }, '?');
+    return text;
+}
+
+std::string time_text(RosTime time) {
+    constexpr RosTime kYear = RosTime{365} * 24 * 3600 * 1'000'000'000;
+    if (time < kYear) return fmt::format("{:.3f} s", static_cast<double>(time) * kNanosecond); // of a simulation
+    return fmt::format("{:%Y-%m-%d %H:%M:%S} UTC", fmt::gmtime(static_cast<std::time_t>(time / 1'000'000'000)));
+}
+
+std::string row(const SurveyedTopic& topic, std::size_t name_width, std::size_t type_width) {
+    const double seconds = static_cast<double>(topic.last - topic.first) * kNanosecond;
+    const double rate = seconds > 0.0 ? static_cast<double>(topic.messages - 1) / seconds : 0.0;
+    std::vector<std::string> frames;
+    for (const auto& [frame, count] : topic.frames) frames.push_back(printable(frame));
+    return fmt::format("{:{}}  {:{}}  {:>9}  {:>8}  {}{}\n", printable(topic.name), name_width, printable(topic.type),
+                       type_width, topic.messages, rate > 0.0 ? fmt::format("{:.1f}", rate) : "",
+                       fmt::join(frames, ", "),
+                       topic.malformed > 0 ? fmt::format("  ({} malformed)", topic.malformed) : "");
+}
+
+std::string topics_text(const RecordingSurvey& found) {
+    std::size_t name_width = 5;
+    std::size_t type_width = 4;
+    for (const auto& topic : found.topics) {
+        name_width = std::max(name_width, topic.name.size());
+        type_width = std::max(type_width, topic.type.size());
+    }
+    auto topics = found.topics;
+    std::ranges::sort(topics, {}, &SurveyedTopic::name);
+    std::string text = fmt::format("{:{}}  {:{}}  {:>9}  {:>8}  {}\n", "topic", name_width, "type", type_width,
+                                   "messages", "per s", "frame");
+    for (const auto& topic : topics) text += row(topic, name_width, type_width);
+    return text;
+}
+
+std::string times_text(const RecordingSurvey& found) {
+    std::optional<std::pair<RosTime, RosTime>> span;
+    for (const auto& topic : found.topics) {
+        if (topic.messages == 0) continue;
+        if (!span) span.emplace(topic.first, topic.last);
+        span->first = std::min(span->first, topic.first);
+        span->second = std::max(span->second, topic.last);
+    }
+    if (!span) return "no messages";
+    return fmt::format("{:.1f} s, from {} to {}", static_cast<double>(span->second - span->first) * kNanosecond,
+                       time_text(span->first), time_text(span->second));
+}
+
+std::string losses_text(const RecordingSurvey& found) {
+    constexpr std::size_t kShown = 3;
+    std::string text;
+    for (std::size_t n = 0; n < std::min(found.losses.size(), kShown); ++n) {
+        text += fmt::format("lost at byte {}: {}\n", found.losses[n].offset, found.losses[n].reason);
+    }
+    if (found.loss_count > kShown) text += fmt::format("lost: {} more parts\n", found.loss_count - kShown);
+    return text;
+}
+
+} // namespace
+
+std::string poses_text(const RecordingPlan& plan) {
+    if (plan.poses == Poses::kNone) return "poses: none; the server estimates where the scans were taken";
+    const auto source = plan.odom_topic.empty() ? std::string("the transforms") : plan.odom_topic;
+    return fmt::format("poses: {}, of {} in {}, by {}", name_of(plan.poses), printable(plan.base_frame),
+                       printable(plan.fixed_frame), printable(source));
+}
+
+std::string info_text(const std::string& file, const RecordingSurvey& found, const Result<RecordingPlan>& plan) {
+    std::string text = fmt::format("{}: {}\n{}{}", file, times_text(found), topics_text(found), losses_text(found));
+    if (!plan) return text + fmt::format("it cannot be replayed: {}\n", plan.error().message);
+    text += fmt::format("{}\nscans: {} of {} can be sent", poses_text(*plan), plan->scan_count, plan->scans.size());
+    text += plan->skipped.empty() ? "\n" : fmt::format("; skipped: {}\n", skipped_text(plan->skipped));
+    for (const auto& note : plan->notes) text += note + "\n";
+    return text + fmt::format("replay it with: scanloom-robot --server HOST:7447 --session NAME --robot NAME replay "
+                              "'{}'\n",
+                              file);
+}
+
+ExitCode run(const InfoOptions& options) {
+    auto found = survey(options.file);
+    if (!found) {
+        standard_error().write(fmt::format("scanloom-robot: {}\n", found.error().message));
+        return kExitFailed;
+    }
+    const auto plan = robot::plan(*found, {});
+    fmt::print("{}", info_text(options.file, *found, plan));
+    return kExitDone;
+}
+
+} // namespace scanloom::robot

@@ -1,0 +1,139 @@
+#include "robot_client/ros/frame_choice.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace scanloom::robot {
+namespace {
+
+/// Returns the name of a frame without the names of robots before it.
+std::string_view last_name(std::string_view frame) {
+    const auto slash = frame.rfind('/');
+    return slash == std::string_view::npos ? frame : frame.substr(slash + 1);
+}
+
+bool is_map_name(std::string_view frame) {
+    const auto name = last_name(frame);
+    return name == "map" || name == "world" || name == "earth";
+}
+
+bool is_odometry_name(std::string_view frame) { return last_name(frame).find("odom") != std::string_view::npos; }
+
+bool is_fixed_name(std::string_view frame) { return is_map_name(frame) || is_odometry_name(frame); }
+
+/// Returns the topic with most odometry messages that can be read.
+std::optional<std::size_t> richest_odometry(const RecordingSurvey& found) {
+    std::optional<std::size_t> richest;
+    for (const auto& [topic, tree] : found.odometry) {
+        if (!richest || found.topics[topic].messages > found.topics[*richest].messages) richest = topic;
+    }
+    return richest;
+}
+
+/// Returns the topic of --odom-topic.
+Result<std::size_t> stated_odometry(const RecordingSurvey& found, const std::string& name) {
+    std::vector<std::string> names;
+    for (const auto& [topic, tree] : found.odometry) {
+        if (found.topics[topic].name == name) return topic;
+        names.push_back(found.topics[topic].name);
+    }
+    return Error{Errc::kNotFound, fmt::format("--odom-topic {}: the recording has no readable nav_msgs/Odometry of "
+                                              "this topic; it has: {}",
+                                              name, names.empty() ? "none" : fmt::to_string(fmt::join(names, ", ")))};
+}
+
+/// Returns the frame that poses are in.
+/// @param above  frames above the robot's, the nearest first
+std::optional<std::string> fixed_frame(const std::vector<std::string>& above, Poses poses) {
+    const auto find = [&](auto&& is_it) -> std::optional<std::string> {
+        const auto found = std::ranges::find_if(above, is_it);
+        return found == above.end() ? std::nullopt : std::optional(*found);
+    };
+    if (poses == Poses::kMap) return find(is_map_name);
+    const auto odometry = find(is_odometry_name);
+    return odometry || above.empty() ? odometry : above.front();
+}
+
+/// Chooses the poses if people did not.
+Poses available_poses(const std::vector<std::string>& above, const RecordingOptions& options) {
+    if (options.poses) return *options.poses;
+    if (!options.fixed_frame.empty()) return is_map_name(options.fixed_frame) ? Poses::kMap : Poses::kOdometry;
+    if (std::ranges::any_of(above, is_map_name)) return Poses::kMap;
+    return above.empty() ? Poses::kNone : Poses::kOdometry;
+}
+
+/// Chooses the topic whose poses replace transforms: that of the options, or one where transforms contain no poses.
+Result<std::optional<std::size_t>> choose_odometry(const RecordingSurvey& found, const RecordingOptions& options,
+                                                   bool has_poses) {
+    if (!options.odom_topic.empty()) {
+        const auto topic = stated_odometry(found, options.odom_topic);
+        if (!topic) return topic.error();
+        return std::optional(*topic);
+    }
+    return has_poses ? std::nullopt : richest_odometry(found);
+}
+
+/// Returns the frames above the robot's that poses may be in, the nearest first.
+/// @param odometry  the frame of the chosen odometry topic, whatever its name; else empty
+std::vector<std::string> fixed_frames(const FrameTree& tree, const std::string& base, std::string_view odometry) {
+    auto above = tree.ancestors(base);
+    const auto is_fixed = [&](const std::string& frame) { return is_fixed_name(frame) || frame == odometry; };
+    above.erase(above.begin(), std::find_if(above.begin() + 1, above.end(), is_fixed));
+    return above;
+}
+
+} // namespace
+
+Result<FrameChoice> choose_frames(RecordingSurvey& found, const RecordingOptions& options,
+                                  const std::string& laser_frame) {
+    const auto chain = found.tree.ancestors(laser_frame);
+    const auto first_fixed = static_cast<std::size_t>(std::ranges::find_if(chain, is_fixed_name) - chain.begin());
+    const bool has_poses = first_fixed < chain.size() && first_fixed > 0;
+    FrameChoice choice;
+    const auto topic = choose_odometry(found, options, has_poses);
+    if (!topic) return topic.error();
+    choice.odom_topic = *topic;
+    std::string odometry;
+    if (choice.odom_topic) {
+        choice.base = found.odom_child.at(*choice.odom_topic);
+        found.tree.replace(choice.base, found.odometry.at(*choice.odom_topic));
+        odometry = found.tree.ancestors(choice.base).at(1);
+    } else {
+        choice.base = has_poses ? chain[first_fixed - 1] : chain.back();
+    }
+    if (!options.base_frame.empty()) choice.base = options.base_frame;
+    if (!found.tree.has(choice.base) && choice.base != laser_frame) {
+        return Error{Errc::kNotFound, fmt::format("--base-frame {}: no transform has this frame; frames from the "
+                                                  "laser up are: {}",
+                                                  choice.base, fmt::join(chain, ", "))};
+    }
+    const auto frames = fixed_frames(found.tree, choice.base, odometry);
+    choice.poses = available_poses(frames, options);
+    if (choice.poses == Poses::kNone) return choice;
+    if (!options.fixed_frame.empty()) {
+        choice.fixed = options.fixed_frame;
+        const auto above = found.tree.ancestors(choice.base);
+        if (std::ranges::find(above, choice.fixed) != above.end()) return choice;
+        return Error{Errc::kNotFound, fmt::format("--fixed-frame {}: no transforms lead from it to the robot's frame; "
+                                                  "frames from that up are: {}",
+                                                  choice.fixed, fmt::join(above, ", "))};
+    }
+    if (auto fixed = fixed_frame(frames, choice.poses)) {
+        choice.fixed = std::move(*fixed);
+        return choice;
+    }
+    return Error{Errc::kNotFound,
+                 choice.poses == Poses::kMap
+                     ? fmt::format("--poses map: no frame named map is above the robot's frame {}; use --poses {}, or "
+                                   "name the frame with --fixed-frame",
+                                   choice.base, frames.empty() ? "none" : "odometry")
+                     : std::string("--poses odometry: the recording has neither transforms of odometry nor "
+                                   "nav_msgs/Odometry; use --poses none")};
+}
+
+} // namespace scanloom::robot

@@ -1,0 +1,128 @@
+#include "robot_client/ros/frame_tree.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+namespace scanloom::robot {
+
+void FrameTree::add(const RosTransform& transform, bool is_static) {
+    Edge& edge = edges_[id_of(transform.child)];
+    const Transform one{id_of(transform.header.frame), transform.T_parent_child.translation(),
+                        Eigen::Quaterniond(transform.T_parent_child.linear())};
+    if (!is_static) return insert(edge, transform.header.stamp, one);
+    if (!edge.fixed) ++size_;
+    edge.fixed = one;
+}
+
+bool FrameTree::are_equal(const Transform& a, const Transform& b) {
+    return a.parent == b.parent && a.translation == b.translation && a.rotation.coeffs() == b.rotation.coeffs();
+}
+
+void FrameTree::insert(Edge& edge, RosTime stamp, const Transform& one) {
+    auto& moving = edge.moving;
+    if (!moving.emplace(stamp, one).second) return;
+    ++size_;
+    const auto newest = std::prev(moving.end());
+    if (newest->first != stamp || moving.size() < 3) return;
+    const auto middle = std::prev(newest);
+    if (!are_equal(middle->second, one) || !are_equal(std::prev(middle)->second, one)) return;
+    moving.erase(middle); // of equal ones in a row
+    --size_;
+}
+
+/// Returns the transform of a child at a time.
+std::variant<FrameTree::Transform, NoTransform> FrameTree::at(const Edge& edge, RosTime stamp) {
+    if (edge.fixed) return *edge.fixed;
+    const auto& moving = edge.moving;
+    if (moving.empty()) return NoTransform::kNotConnected;
+    const auto after = moving.lower_bound(stamp);
+    if (after == moving.end()) return NoTransform::kAfter;
+    if (after->first == stamp) return after->second;
+    if (after == moving.begin()) return NoTransform::kBefore;
+    const auto before = std::prev(after);
+    const Transform& from = before->second;
+    const Transform& to = after->second;
+    if (are_equal(from, to)) return from;
+    if (from.parent != to.parent || after->first - before->first > kHoleMax) return NoTransform::kHole;
+    const double share =
+        static_cast<double>(stamp - before->first) / static_cast<double>(after->first - before->first);
+    return Transform{from.parent, from.translation + share * (to.translation - from.translation),
+                     from.rotation.slerp(share, to.rotation)};
+}
+
+/// Lists a frame and those above it at a time.
+/// @return why the last one has no frame above it; nullopt: it has no parent at any time
+std::optional<NoTransform> FrameTree::climb(Frame frame, RosTime stamp, std::vector<Step>& steps) const {
+    steps.push_back({frame, Eigen::Isometry3d::Identity()});
+    while (steps.size() <= names_.size()) { // more only in a loop of parents
+        const auto edge = edges_.find(steps.back().frame);
+        if (edge == edges_.end()) return std::nullopt;
+        const auto found = at(edge->second, stamp);
+        if (const auto* reason = std::get_if<NoTransform>(&found)) return *reason;
+        const auto& up = std::get<Transform>(found);
+        const Eigen::Isometry3d T_parent_frame = Eigen::Translation3d(up.translation) * up.rotation;
+        steps.push_back({up.parent, T_parent_frame * steps.back().T_frame_source});
+    }
+    return NoTransform::kNotConnected;
+}
+
+std::variant<Eigen::Isometry3d, NoTransform> FrameTree::find(std::string_view target, std::string_view source,
+                                                             RosTime stamp) const {
+    if (target == source) return Eigen::Isometry3d::Identity();
+    const auto target_id = ids_.find(std::string(target));
+    const auto source_id = ids_.find(std::string(source));
+    if (target_id == ids_.end() || source_id == ids_.end()) return NoTransform::kNotConnected;
+    std::vector<Step> from_source;
+    std::vector<Step> from_target;
+    const auto source_end = climb(source_id->second, stamp, from_source);
+    const auto target_end = climb(target_id->second, stamp, from_target);
+    for (const Step& step : from_source) {
+        const auto common = std::ranges::find(from_target, step.frame, &Step::frame);
+        if (common == from_target.end()) continue;
+        return common->T_frame_source.inverse() * step.T_frame_source;
+    }
+    return source_end ? *source_end : target_end.value_or(NoTransform::kNotConnected);
+}
+
+std::vector<std::string> FrameTree::ancestors(std::string_view frame) const {
+    std::vector<std::string> list{std::string(frame)};
+    for (auto id = ids_.find(list.back()); id != ids_.end(); id = ids_.find(list.back())) {
+        const auto edge = edges_.find(id->second);
+        if (edge == edges_.end()) break;
+        const auto& parent = names_[edge->second.fixed ? edge->second.fixed->parent : std::prev(edge->second.moving.end())->second.parent];
+        if (std::ranges::find(list, parent) != list.end()) break;
+        list.push_back(parent);
+    }
+    return list;
+}
+
+void FrameTree::keep_ancestors(const std::set<std::string>& frames) {
+    std::set<std::string> kept;
+    for (const auto& frame : frames) {
+        for (auto& one : ancestors(frame)) kept.insert(std::move(one));
+    }
+    std::erase_if(edges_, [&](const auto& edge) { return !kept.contains(names_[edge.first]); });
+    count();
+}
+
+void FrameTree::replace(const std::string& child, const FrameTree& other) {
+    Edge edge = other.edges_.at(other.ids_.at(child));
+    if (edge.fixed) edge.fixed->parent = id_of(other.names_[edge.fixed->parent]);
+    for (auto& [stamp, one] : edge.moving) one.parent = id_of(other.names_[one.parent]);
+    edges_[id_of(child)] = std::move(edge);
+    count();
+}
+
+void FrameTree::count() {
+    size_ = 0;
+    for (const auto& [frame, edge] : edges_) size_ += edge.moving.size() + (edge.fixed ? 1 : 0);
+}
+
+FrameTree::Frame FrameTree::id_of(const std::string& name) {
+    const auto [id, is_new] = ids_.emplace(name, static_cast<Frame>(names_.size()));
+    if (is_new) names_.push_back(name);
+    return id->second;
+}
+
+} // namespace scanloom::robot

@@ -1,0 +1,97 @@
+#pragma once
+
+#include "robot_client/ros/messages.hpp"
+
+#include <Eigen/Geometry>
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <variant>
+#include <vector>
+
+namespace scanloom::robot {
+
+/// Why the pose of a frame in another one is not known at a time.
+enum class NoTransform {
+    kNotConnected, ///< at this time no transforms lead from one to the other
+    kBefore,       ///< a transform begins later: nothing is extrapolated
+    kAfter,        ///< a transform ends earlier
+    kHole,         ///< a transform changes during a hole of more than FrameTree::kHoleMax
+};
+
+/// The frames of a recording and the transforms between them over time, as /tf and /tf_static have them. Poses are
+/// interpolated between two stamps and never extrapolated. A frame has one parent at a time.
+/// Threads: one at a time; lookups at the same time.
+class FrameTree {
+public:
+    /// Transforms farther apart in time are not interpolated unless they are equal: the robot may have been anywhere.
+    static constexpr RosTime kHoleMax = 2'000'000'000; // nanoseconds
+
+    /// Adds a transform. Of several with the same child and stamp the first counts. Transforms may come in any order.
+    /// @param is_static  it holds at all times, and replaces all others of its child
+    void add(const RosTransform& transform, bool is_static);
+
+    /// Returns the pose of a frame in another one.
+    /// @param target,source  names of frames
+    /// @return T_target_source
+    [[nodiscard]] std::variant<Eigen::Isometry3d, NoTransform> find(std::string_view target, std::string_view source,
+                                                                    RosTime stamp) const;
+
+    /// Returns a frame and the frames above it by the newest transforms: its parent, the parent of that, and so on. The
+    /// list ends before a frame that it has already.
+    [[nodiscard]] std::vector<std::string> ancestors(std::string_view frame) const;
+
+    /// Removes the frames that are above none of these.
+    void keep_ancestors(const std::set<std::string>& frames);
+
+    /// Replaces the transforms of a child by those in another tree.
+    void replace(const std::string& child, const FrameTree& other);
+
+    /// Returns the number of transforms in memory. Of equal transforms in a row, the first and the last are kept.
+    [[nodiscard]] std::size_t size() const noexcept { return size_; }
+
+    /// Returns whether a frame has a parent, or is one.
+    [[nodiscard]] bool has(std::string_view frame) const { return ids_.contains(std::string(frame)); }
+
+private:
+    using Frame = std::uint32_t; // index in names_
+
+    struct Transform {
+        Frame parent;
+        Eigen::Vector3d translation;
+        Eigen::Quaterniond rotation;
+    };
+
+    /// The transforms of a child to its parents.
+    struct Edge {
+        std::optional<Transform> fixed;
+        std::map<RosTime, Transform> moving; // by stamp
+    };
+
+    /// A frame above another one.
+    struct Step {
+        Frame frame;
+        Eigen::Isometry3d T_frame_source;
+    };
+
+    [[nodiscard]] static bool are_equal(const Transform& a, const Transform& b);
+    [[nodiscard]] Frame id_of(const std::string& name);
+    [[nodiscard]] static std::variant<Transform, NoTransform> at(const Edge& edge, RosTime stamp);
+    [[nodiscard]] std::optional<NoTransform> climb(Frame frame, RosTime stamp, std::vector<Step>& steps) const;
+    void insert(Edge& edge, RosTime stamp, const Transform& one);
+
+    void count();
+
+    std::vector<std::string> names_;
+    std::unordered_map<std::string, Frame> ids_;
+    std::unordered_map<Frame, Edge> edges_; // by child
+    std::size_t size_ = 0;
+};
+
+} // namespace scanloom::robot

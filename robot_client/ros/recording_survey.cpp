@@ -1,0 +1,153 @@
+#include "robot_client/ros/recording_survey.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <set>
+#include <utility>
+
+namespace scanloom::robot {
+namespace {
+
+constexpr std::size_t kPruneFrom = 100'000;         // transforms
+constexpr std::string_view kNamelessRobot = "base"; // the child frame of odometry that names none
+
+/// Returns the index of a text in a list, to which it is added if it is new.
+std::uint32_t index_in(std::vector<std::string>& texts, const std::string& text) {
+    const auto index = static_cast<std::uint32_t>(std::ranges::find(texts, text) - texts.begin());
+    if (index == texts.size()) texts.push_back(text);
+    return index;
+}
+
+/// Collects what a recording contains.
+class Surveyor {
+public:
+    /// Adds a message. Errors: kTooLarge.
+    [[nodiscard]] Result<> add(const Recording& recording, const RecordedMessage& message);
+
+    [[nodiscard]] RecordingSurvey finish(const Recording& recording) &&;
+
+private:
+    void add_laser(SurveyedTopic& topic, const RecordedMessage& message);
+    void add_odometry(SurveyedTopic& topic, const RecordedMessage& message);
+    void add_transforms(SurveyedTopic& topic, const RecordedMessage& message);
+    [[nodiscard]] Result<> limit_transforms();
+
+    RecordingSurvey found_;
+    std::size_t pruned_at_ = kPruneFrom;
+};
+
+Result<> Surveyor::add(const Recording& recording, const RecordedMessage& message) {
+    while (found_.topics.size() < recording.topics().size()) {
+        auto& topic = found_.topics.emplace_back();
+        static_cast<RecordedTopic&>(topic) = recording.topics()[found_.topics.size() - 1];
+    }
+    auto& topic = found_.topics[message.topic];
+    if (topic.messages++ == 0) topic.first = message.time;
+    topic.first = std::min(topic.first, message.time);
+    topic.last = std::max(topic.last, message.time);
+    if (is_laser(topic)) add_laser(topic, message);
+    if (topic.type == kOdometryType) add_odometry(topic, message);
+    if (topic.type == kTransformsType || topic.type == kOldTransformsType) add_transforms(topic, message);
+    if (found_.scans.size() >= std::numeric_limits<std::uint32_t>::max() - 1) {
+        return Error{Errc::kTooLarge, "more than 2^32 - 2 scans; split the recording"};
+    }
+    return limit_transforms();
+}
+
+void Surveyor::add_laser(SurveyedTopic& topic, const RecordedMessage& message) {
+    const auto scan = decode_laser_scan(message.bytes, topic.encoding, topic.type);
+    SurveyedScan one;
+    one.topic = static_cast<std::uint32_t>(message.topic);
+    const auto usable = scan ? check_usable(*scan) : Result<>(scan.error());
+    if (!scan) ++topic.malformed;
+    if (!usable) one.problem = index_in(found_.problems, scan ? usable.error().message : "malformed messages");
+    if (scan) {
+        ++topic.frames[scan->header.frame];
+        one.frame = index_in(found_.frames, scan->header.frame);
+        one.middle = middle_of(*scan, message.time);
+        auto& laser = found_.lasers[message.topic];
+        laser.habits.add(*scan);
+        const std::array<float, 4> fields{scan->angle_min, scan->angle_increment, scan->range_min, scan->range_max};
+        const auto add = [&](const auto& values) {
+            laser.hash.update({reinterpret_cast<const char*>(std::data(values)), std::size(values) * sizeof(float)});
+        };
+        add(fields);
+        add(scan->ranges);
+    }
+    found_.scans.push_back(one);
+}
+
+void Surveyor::add_odometry(SurveyedTopic& topic, const RecordedMessage& message) {
+    auto odometry = decode_odometry(message.bytes, topic.encoding);
+    if (!odometry) {
+        ++topic.malformed;
+        return;
+    }
+    ++topic.frames[odometry->header.frame];
+    if (odometry->child.empty() || odometry->child == odometry->header.frame) odometry->child = kNamelessRobot;
+    if (odometry->header.stamp == 0) odometry->header.stamp = message.time;
+    found_.odom_child.emplace(message.topic, odometry->child);
+    found_.odometry[message.topic].add(*odometry, false);
+}
+
+void Surveyor::add_transforms(SurveyedTopic& topic, const RecordedMessage& message) {
+    const auto transforms = decode_transforms(message.bytes, topic.encoding, found_.unusable_transforms);
+    if (!transforms) {
+        ++topic.malformed;
+        return;
+    }
+    const bool is_static = topic.name.ends_with("tf_static");
+    for (const auto& one : *transforms) found_.tree.add(one, is_static);
+}
+
+/// Removes the transforms of joints and other things that no laser is mounted on.
+Result<> Surveyor::limit_transforms() {
+    std::size_t count = found_.tree.size();
+    for (const auto& [topic, odometry] : found_.odometry) count += odometry.size();
+    if (count < pruned_at_) return {};
+    if (!found_.frames.empty()) {
+        std::set<std::string> needed{found_.frames.begin(), found_.frames.end()};
+        for (const auto& [topic, child] : found_.odom_child) needed.insert(child);
+        count -= found_.tree.size();
+        found_.tree.keep_ancestors(needed);
+        count += found_.tree.size();
+    }
+    pruned_at_ = std::max(2 * count, kPruneFrom);
+    if (count <= kTransformsMax) return {};
+    return Error{Errc::kTooLarge,
+                 fmt::format("more than {} transforms between lasers and fixed frames; split the recording",
+                             kTransformsMax)};
+}
+
+RecordingSurvey Surveyor::finish(const Recording& recording) && {
+    for (auto n = found_.topics.size(); n < recording.topics().size(); ++n) { // topics without messages
+        static_cast<RecordedTopic&>(found_.topics.emplace_back()) = recording.topics()[n];
+    }
+    found_.losses = recording.losses();
+    found_.loss_count = recording.losses_count();
+    return std::move(found_);
+}
+
+} // namespace
+
+bool is_laser(const RecordedTopic& topic) {
+    return topic.encoding != MessageEncoding::kOther && (topic.type == kLaserScanType || topic.type == kMultiEchoType);
+}
+
+Result<RecordingSurvey> survey(const std::filesystem::path& path, const OnRead& on_read) {
+    auto recording = open_recording(path);
+    if (!recording) return recording.error();
+    Surveyor surveyor;
+    for (;;) {
+        const auto message = (*recording)->next();
+        if (!message) return message.error();
+        if (!*message) return std::move(surveyor).finish(**recording);
+        if (auto added = surveyor.add(**recording, **message); !added) return added.error();
+        if (on_read) on_read((*recording)->progress());
+    }
+}
+
+} // namespace scanloom::robot

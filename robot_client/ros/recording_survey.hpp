@@ -1,0 +1,68 @@
+#pragma once
+
+#include "common/error/error.hpp"
+#include "common/hash/sha256.hpp"
+#include "robot_client/recordings/recording.hpp"
+#include "robot_client/ros/frame_tree.hpp"
+#include "robot_client/ros/laser_conversion.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace scanloom::robot {
+
+/// Transforms that a recording may have between its lasers and its fixed frames; they take about 0.5 GB.
+inline constexpr std::size_t kTransformsMax = 4'000'000;
+
+/// A topic of a recording.
+struct SurveyedTopic : RecordedTopic {
+    std::uint64_t messages = 0;
+    std::uint64_t malformed = 0; ///< of these
+    RosTime first = 0;           ///< when the first message was recorded
+    RosTime last = 0;
+    std::map<std::string, std::uint64_t> frames; ///< of messages with scans or odometry: count by frame
+};
+
+/// A message of a laser.
+struct SurveyedScan {
+    std::uint32_t topic = 0;
+    std::uint32_t frame = 0;   ///< index in RecordingSurvey::frames
+    std::uint32_t problem = 0; ///< index in RecordingSurvey::problems
+    RosTime middle = 0;        ///< when its middle was taken
+};
+
+/// What was found of a laser's topic.
+struct SurveyedLaser {
+    RangeHabits habits;
+    Sha256 hash; ///< of its scans
+};
+
+/// What a recording contains.
+struct RecordingSurvey {
+    std::vector<SurveyedTopic> topics;
+    std::vector<SurveyedScan> scans; ///< all messages of all lasers, in the order of the file
+    std::vector<std::string> frames;
+    std::vector<std::string> problems{""};        ///< why scans cannot be used; the first is none
+    std::map<std::size_t, SurveyedLaser> lasers;  ///< by topic
+    FrameTree tree;                               ///< of /tf and /tf_static
+    std::map<std::size_t, FrameTree> odometry;    ///< by topic: the frame of the robot in that of the odometry
+    std::map<std::size_t, std::string> odom_child; ///< by topic
+    std::size_t unusable_transforms = 0;          ///< not finite, without a rotation, or without a child
+    std::uint64_t loss_count = 0;                   ///< parts of the file that could not be read
+    std::vector<RecordingLoss> losses;            ///< the first of them
+};
+
+/// Returns whether messages of this type are scans of a laser.
+[[nodiscard]] bool is_laser(const RecordedTopic& topic);
+
+/// Reads a whole recording once.
+/// @param on_read  called after each message
+/// Errors: those of open_recording() and Recording::next(); kTooLarge if it has more than kTransformsMax transforms
+///         between lasers and fixed frames, or more than 2^32 - 2 scans.
+[[nodiscard]] Result<RecordingSurvey> survey(const std::filesystem::path& path, const OnRead& on_read = {});
+
+} // namespace scanloom::robot
