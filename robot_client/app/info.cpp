@@ -18,7 +18,8 @@ constexpr double kNanosecond = 1e-9; // seconds
 
 /// Returns a text without characters that a terminal could interpret.
 std::string printable(std::string text) {
-    std::ranges::replace_if(text, [](unsigned char c) { return c < 0x20 || c == 0x7F; }, '?');
+    std::ranges::replace_if(
+        text, [](unsigned char c) { return c < 0x20 || c == 0x7F; }, '?');
     return text;
 }
 

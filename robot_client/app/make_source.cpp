@@ -90,9 +90,9 @@ OnRead show_reading(const std::string& file, Console& console) {
 Result<PreparedSource> make_log(const RobotOptions& options, const ReplayOptions& replay, Console& console) {
     std::optional<SkippedLines> skipped(std::in_place, replay.file, console);
     const auto report = [&](const SkippedLine& line) { skipped->add(line); };
-    auto log = CarmenLog::open(replay.file,
-                               {options.no_return, options.range_max, {}, options.poses.value_or(Poses::kMap)}, report,
-                               show_reading(replay.file, console));
+    auto log =
+        CarmenLog::open(replay.file, {options.no_return, options.range_max, {}, options.poses.value_or(Poses::kMap)},
+                        report, show_reading(replay.file, console));
     skipped.reset();
     if (!log) return log.error();
     PreparedSource prepared;

@@ -107,11 +107,12 @@ void add_scan_options(CLI::App& app, RobotOptions& options, Raw& raw) {
                    "Meaning of beams without a return: free up to the range, or ignored (drop). Default: free if the "
                    "source states its sensor's range, else drop (FLASER)")
         ->check(CLI::IsMember({"free", "drop"}));
-    app.add_option("--poses", raw.poses,
-                   "What the robot knows of its poses: map = poses in the map, which are used as they are; odometry = "
-                   "odometry, which drifts; none = nothing. With odometry and none the server estimates where scans "
-                   "were taken. The same for all scans of a robot. Default: map; for recordings of ROS the best that they "
-                   "contain")
+    app.add_option(
+           "--poses", raw.poses,
+           "What the robot knows of its poses: map = poses in the map, which are used as they are; odometry = "
+           "odometry, which drifts; none = nothing. With odometry and none the server estimates where scans "
+           "were taken. The same for all scans of a robot. Default: map; for recordings of ROS the best that they "
+           "contain")
         ->type_name("TEXT:{map,odometry,none}");
 }
 
@@ -180,9 +181,9 @@ std::variant<RobotOptions, GroundTruthOptions, InfoOptions, Leave> parse_options
         read_settings_from_environment_and_file(app);
         app.parse(argc, argv);
     } catch (const CLI::ParseError& reason) {
-        return leave_for(
-            app, reason,
-            "name a source: replay FILE, sonar MEASUREMENTS POSES, ld06 INPUT, or simulate; or a command: info FILE, or truth");
+        return leave_for(app, reason,
+                         "name a source: replay FILE, sonar MEASUREMENTS POSES, ld06 INPUT, or simulate; or a command: "
+                         "info FILE, or truth");
     }
     if (truth->parsed()) {
         if (auto mistake = mistake_in(truth_options)) return usage_error(app, *mistake);
@@ -225,7 +226,8 @@ std::variant<RobotOptions, GroundTruthOptions, InfoOptions, Leave> parse_options
             return usage_error(app, wrong);
         options.source = std::move(ld06_options);
     } else if (simulate->parsed()) {
-        if (auto mistake = mistake_in(simulate_options, options.poses.value_or(Poses::kMap))) return usage_error(app, *mistake);
+        if (auto mistake = mistake_in(simulate_options, options.poses.value_or(Poses::kMap)))
+            return usage_error(app, *mistake);
         options.source = std::move(simulate_options);
     }
     return options;

@@ -11,8 +11,8 @@ namespace scanloom::robot {
 /// The frames that poses and mounts are of.
 struct FrameChoice {
     Poses poses = Poses::kNone;
-    std::string base;  ///< of the robot
-    std::string fixed; ///< empty if poses are kNone
+    std::string base;                      ///< of the robot
+    std::string fixed;                     ///< empty if poses are kNone
     std::optional<std::size_t> odom_topic; ///< whose poses replace the transforms of the robot's frame
 };
 

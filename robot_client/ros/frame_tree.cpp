@@ -45,8 +45,7 @@ std::variant<FrameTree::Transform, NoTransform> FrameTree::at(const Edge& edge, 
     const Transform& to = after->second;
     if (are_equal(from, to)) return from;
     if (from.parent != to.parent || after->first - before->first > kHoleMax) return NoTransform::kHole;
-    const double share =
-        static_cast<double>(stamp - before->first) / static_cast<double>(after->first - before->first);
+    const double share = static_cast<double>(stamp - before->first) / static_cast<double>(after->first - before->first);
     return Transform{from.parent, from.translation + share * (to.translation - from.translation),
                      from.rotation.slerp(share, to.rotation)};
 }
@@ -76,13 +75,13 @@ std::variant<Eigen::Isometry3d, NoTransform> FrameTree::find(std::string_view ta
     std::vector<Step> from_source;
     std::vector<Step> from_target;
     const auto source_end = climb(source_id->second, stamp, from_source);
-    const auto target_end = climb(target_id->second, stamp, from_target);
+    static_cast<void>(climb(target_id->second, stamp, from_target));
     for (const Step& step : from_source) {
         const auto common = std::ranges::find(from_target, step.frame, &Step::frame);
         if (common == from_target.end()) continue;
         return common->T_frame_source.inverse() * step.T_frame_source;
     }
-    return source_end ? *source_end : target_end.value_or(NoTransform::kNotConnected);
+    return source_end.value_or(NoTransform::kNotConnected);
 }
 
 std::vector<std::string> FrameTree::ancestors(std::string_view frame) const {
@@ -90,7 +89,8 @@ std::vector<std::string> FrameTree::ancestors(std::string_view frame) const {
     for (auto id = ids_.find(list.back()); id != ids_.end(); id = ids_.find(list.back())) {
         const auto edge = edges_.find(id->second);
         if (edge == edges_.end()) break;
-        const auto& parent = names_[edge->second.fixed ? edge->second.fixed->parent : std::prev(edge->second.moving.end())->second.parent];
+        const auto& parent = names_[edge->second.fixed ? edge->second.fixed->parent
+                                                       : std::prev(edge->second.moving.end())->second.parent];
         if (std::ranges::find(list, parent) != list.end()) break;
         list.push_back(parent);
     }

@@ -29,7 +29,8 @@ struct RosHeader {
     std::string frame;
 };
 
-/// sensor_msgs/LaserScan without its intensities, which no layer uses. The stamp is that of the first beam. Metres, radians, seconds.
+/// sensor_msgs/LaserScan without its intensities, which no layer uses. The stamp is that of the first beam. Metres,
+/// radians, seconds.
 struct RosLaserScan {
     RosHeader header;
     float angle_min = 0.0F;

@@ -45,10 +45,10 @@ private:
     std::string path_;
     RecordingPlan plan_;
     std::unique_ptr<Recording> recording_;
-    std::size_t scans_ = 0;                               // messages of lasers that were read
-    std::uint32_t place_ = 0;                             // of the next scan
-    std::map<std::uint32_t, Observation> early_;          // read before they are sent, by place
-    std::vector<std::shared_ptr<const Sensor>> sensors_;  // the newest ones, for reuse
+    std::size_t scans_ = 0;                              // messages of lasers that were read
+    std::uint32_t place_ = 0;                            // of the next scan
+    std::map<std::uint32_t, Observation> early_;         // read before they are sent, by place
+    std::vector<std::shared_ptr<const Sensor>> sensors_; // the newest ones, for reuse
 };
 
 } // namespace scanloom::robot

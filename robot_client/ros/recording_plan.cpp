@@ -138,9 +138,9 @@ void Planner::choose_lasers() {
         }
     }
     if (!has_known && plan_.poses != Poses::kNone) {
-        plan_.notes.push_back(fmt::format(
-            "{}: its mount on the robot is not known, and taken as 0,0,0; state it with --mount {}=X,Y,YAW",
-            name_of(*richest), name_of(*richest)));
+        plan_.notes.push_back(
+            fmt::format("{}: its mount on the robot is not known, and taken as 0,0,0; state it with --mount {}=X,Y,YAW",
+                        name_of(*richest), name_of(*richest)));
     }
     for (const auto& laser : lasers_) {
         if (laser.left_out != "mount unknown") continue;
@@ -194,8 +194,8 @@ void Planner::place_scans() {
     for (std::uint32_t n = 0; n < found_.scans.size(); ++n) {
         const auto& scan = found_.scans[n];
         const auto laser = by_topic.find(scan.topic);
-        auto reason = laser == by_topic.end() ? found_.problems[scan.problem]
-                                              : place(*laser->second, scan, plan_.scans[n]);
+        auto reason =
+            laser == by_topic.end() ? found_.problems[scan.problem] : place(*laser->second, scan, plan_.scans[n]);
         if (!reason.empty()) {
             ++plan_.skipped[std::move(reason)];
             continue;
@@ -211,10 +211,9 @@ void Planner::place_scans() {
 
 void Planner::take_fingerprint() {
     Sha256 hash;
-    hash.update(fmt::format("recording 1\n{}\n", scanloom::name_of(plan_.poses))); // 1: until equal recordings give other scans
-    const auto add = [&](const auto& value) {
-        hash.update({reinterpret_cast<const char*>(&value), sizeof value});
-    };
+    hash.update(
+        fmt::format("recording 1\n{}\n", scanloom::name_of(plan_.poses))); // 1: until equal recordings give other scans
+    const auto add = [&](const auto& value) { hash.update({reinterpret_cast<const char*>(&value), sizeof value}); };
     for (const auto& [topic, laser] : plan_.lasers) {
         hash.update(found_.lasers.at(topic).hash.hex());
         add(laser.id);

@@ -49,9 +49,9 @@ struct PlannedScan {
 /// Which scans of a recording are sent, and with which poses.
 struct RecordingPlan {
     Poses poses = Poses::kNone;
-    std::string base_frame;  ///< of the robot
-    std::string fixed_frame; ///< that poses are in; empty if they are kNone
-    std::string odom_topic;  ///< that poses come from; empty: from transforms
+    std::string base_frame;                       ///< of the robot
+    std::string fixed_frame;                      ///< that poses are in; empty if they are kNone
+    std::string odom_topic;                       ///< that poses come from; empty: from transforms
     std::map<std::uint32_t, PlannedLaser> lasers; ///< by topic
     std::vector<LaserMount> mounts;
     std::vector<PlannedScan> scans; ///< by RecordingSurvey::scans

@@ -117,9 +117,9 @@ Result<> Surveyor::limit_transforms() {
     }
     pruned_at_ = std::max(2 * count, kPruneFrom);
     if (count <= kTransformsMax) return {};
-    return Error{Errc::kTooLarge,
-                 fmt::format("more than {} transforms between lasers and fixed frames; split the recording",
-                             kTransformsMax)};
+    return Error{
+        Errc::kTooLarge,
+        fmt::format("more than {} transforms between lasers and fixed frames; split the recording", kTransformsMax)};
 }
 
 RecordingSurvey Surveyor::finish(const Recording& recording) && {

@@ -46,14 +46,14 @@ struct RecordingSurvey {
     std::vector<SurveyedTopic> topics;
     std::vector<SurveyedScan> scans; ///< all messages of all lasers, in the order of the file
     std::vector<std::string> frames;
-    std::vector<std::string> problems{""};        ///< why scans cannot be used; the first is none
-    std::map<std::size_t, SurveyedLaser> lasers;  ///< by topic
-    FrameTree tree;                               ///< of /tf and /tf_static
-    std::map<std::size_t, FrameTree> odometry;    ///< by topic: the frame of the robot in that of the odometry
+    std::vector<std::string> problems{""};         ///< why scans cannot be used; the first is none
+    std::map<std::size_t, SurveyedLaser> lasers;   ///< by topic
+    FrameTree tree;                                ///< of /tf and /tf_static
+    std::map<std::size_t, FrameTree> odometry;     ///< by topic: the frame of the robot in that of the odometry
     std::map<std::size_t, std::string> odom_child; ///< by topic
-    std::size_t unusable_transforms = 0;          ///< not finite, without a rotation, or without a child
-    std::uint64_t loss_count = 0;                   ///< parts of the file that could not be read
-    std::vector<RecordingLoss> losses;            ///< the first of them
+    std::size_t unusable_transforms = 0;           ///< not finite, without a rotation, or without a child
+    std::uint64_t loss_count = 0;                  ///< parts of the file that could not be read
+    std::vector<RecordingLoss> losses;             ///< the first of them
 };
 
 /// Returns whether messages of this type are scans of a laser.

@@ -36,7 +36,7 @@ public:
 
     /// Reads a number.
     template <class T>
-        requires std::integral<T> || std::floating_point<T>
+    requires std::integral<T> || std::floating_point<T>
     [[nodiscard]] T number() {
         align(sizeof(T));
         std::array<char, sizeof(T)> bytes{};

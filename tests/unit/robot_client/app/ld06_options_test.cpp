@@ -106,7 +106,7 @@ TEST(Ld06OptionsOf, PosesDecideWhichPosesAreNeeded) {
 TEST(Ld06OptionsOf, PosesNameTheFileForOneRelease) {
     for (const char* file : {"-", "p", "Map"}) {
         const auto options = parsed({"f", "--poses", file});
-        EXPECT_EQ(options.poses, Poses::kMap);
+        EXPECT_EQ(options.poses, std::nullopt);
         EXPECT_EQ(std::get<Ld06Options>(options.source).pose_file, file);
         EXPECT_TRUE(std::get<Ld06Options>(options.source).is_old_name);
     }

@@ -158,7 +158,7 @@ TEST_F(Options, PosesAreAcceptedAtEveryPlace) {
         words.insert(words.begin(), {"--session", "s", "--robot", "r"});
         return parsed(words).poses;
     };
-    EXPECT_EQ(poses_of({"replay", "f"}), Poses::kMap);
+    EXPECT_EQ(poses_of({"replay", "f"}), std::nullopt) << "the source decides";
     EXPECT_EQ(poses_of({"--poses", "odometry", "replay", "f"}), Poses::kOdometry);
     EXPECT_EQ(poses_of({"replay", "f", "--poses", "none"}), Poses::kNone);
     EXPECT_EQ(poses_of({"sonar", "m", "p", "--poses", "odometry"}), Poses::kOdometry);
@@ -169,6 +169,44 @@ TEST_F(Options, PosesAreAcceptedAtEveryPlace) {
     EXPECT_EQ(poses_of({"replay", "f"}), Poses::kOdometry);
     EXPECT_EQ(poses_of({"replay", "f", "--config", top}), Poses::kOdometry);
     EXPECT_EQ(poses_of({"replay", "f", "--poses", "map"}), Poses::kMap);
+}
+
+TEST_F(Options, RecordingsHaveTopicsFramesAndMounts) {
+    const auto options = parsed({"--session",
+                                 "s",
+                                 "--robot",
+                                 "r",
+                                 "replay",
+                                 "f.bag",
+                                 "--topic",
+                                 "/front",
+                                 "--topic",
+                                 "/rear",
+                                 "--odom-topic",
+                                 "/wheels",
+                                 "--base-frame",
+                                 "base",
+                                 "--fixed-frame",
+                                 "odom",
+                                 "--mount",
+                                 "/front=0.2,-0.1,1.5",
+                                 "--mount=-0.064,0,0",
+                                 "--zero",
+                                 "no-return",
+                                 "--beyond-max",
+                                 "broken"});
+    const auto& recording = std::get<ReplayOptions>(options.source).recording;
+    EXPECT_EQ(recording.topics, (std::vector<std::string>{"/front", "/rear"}));
+    EXPECT_EQ(recording.odom_topic, "/wheels");
+    EXPECT_EQ(recording.base_frame, "base");
+    EXPECT_EQ(recording.fixed_frame, "odom");
+    ASSERT_EQ(recording.mounts.size(), 2U);
+    EXPECT_EQ(recording.mounts[0].topic, "/front");
+    EXPECT_EQ(recording.mounts[0].T_robot_laser, (Pose2{0.2, -0.1, 1.5}));
+    EXPECT_EQ(recording.mounts[1].topic, "");
+    EXPECT_EQ(recording.mounts[1].T_robot_laser.x, -0.064);
+    EXPECT_EQ(recording.ranges.is_zero_no_return, true);
+    EXPECT_EQ(recording.ranges.is_beyond_no_return, false);
 }
 
 TEST_F(Options, SectionOfTheSourceMayHoldAnOptionOfTheProgram) {
@@ -189,7 +227,7 @@ TEST_F(Options, SectionOfTheSourceMayHoldAnOptionOfTheProgram) {
     const auto old = file("session = \"s\"\nrobot = \"r\"\n[ld06]\nposes = \"p.txt\"\n");
     unsetenv("SCANLOOM_POSES");
     EXPECT_EQ(std::get<Ld06Options>(parsed({"ld06", "f", "--config", old}).source).pose_file, "p.txt");
-    EXPECT_EQ(parsed({"simulate", "--config", old}).poses, Poses::kMap);
+    EXPECT_EQ(parsed({"simulate", "--config", old}).poses, std::nullopt);
 }
 
 TEST_F(Options, FlagOverridesEnvironmentOverridesFile) {
@@ -248,7 +286,8 @@ TEST_F(Options, MistakesAreOneLineUsageErrors) {
     const std::vector<std::pair<std::vector<std::string>, std::string>> mistakes{
         {{}, "name a source"},
         {{"--session", "s", "--robot", "r"},
-         "name a source: replay FILE, sonar MEASUREMENTS POSES, ld06 INPUT, or simulate; or the command truth;"},
+         "name a source: replay FILE, sonar MEASUREMENTS POSES, ld06 INPUT, or simulate; or a command: info FILE, or "
+         "truth;"},
         {{"simulate", "--robot", "r"}, "--session is required"},
         {{"simulate", "--session", "a/b", "--robot", "r"}, "'a/b' is not a name"},
         {{"replay", "--session", "s", "--robot", "r"}, "name the FILE"},

@@ -41,7 +41,8 @@ TEST(FrameTree, InterpolatesBetweenTwoStampsAndNeverExtrapolates) {
     EXPECT_EQ(missing(tree, "odom", "laser", kSecond - 1), NoTransform::kBefore);
     EXPECT_EQ(missing(tree, "odom", "laser", 2 * kSecond + 1), NoTransform::kAfter);
     EXPECT_EQ(missing(tree, "map", "laser", kSecond), NoTransform::kNotConnected);
-    EXPECT_NEAR(found(tree, "base", "laser", 99 * kSecond).translation().x(), 0.5, 1e-12) << "a static one, at any time";
+    EXPECT_NEAR(found(tree, "base", "laser", 99 * kSecond).translation().x(), 0.5, 1e-12)
+        << "a static one, at any time";
 }
 
 TEST(FrameTree, AHoleIsNotInterpolatedUnlessNothingMoved) {

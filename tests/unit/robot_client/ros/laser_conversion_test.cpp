@@ -36,8 +36,7 @@ TEST(LaserConversion, ReadingsFollowRep117) {
 TEST(LaserConversion, OneNumberAboveTheRangeIsNoReturnIfNoneIsInfinite) {
     EXPECT_EQ(ranges_of(scan_with({1.0F, 81.91F, 81.91F})), (std::vector<RangeMm>{1000, kNoReturn, kNoReturn}));
     EXPECT_EQ(ranges_of(scan_with({1.0F, 81.91F, 12.0F})), (std::vector<RangeMm>{1000, kInvalidRange, kInvalidRange}));
-    EXPECT_EQ(ranges_of(scan_with({1.0F, 81.91F, INFINITY})),
-              (std::vector<RangeMm>{1000, kInvalidRange, kNoReturn}));
+    EXPECT_EQ(ranges_of(scan_with({1.0F, 81.91F, INFINITY})), (std::vector<RangeMm>{1000, kInvalidRange, kNoReturn}));
 }
 
 TEST(LaserConversion, OptionsDecideBeforeHabits) {
@@ -78,9 +77,9 @@ TEST(LaserConversion, TheStampIsThatOfTheMiddle) {
 }
 
 TEST(LaserConversion, AnglesOfAnUpsideDownLaserAreNegated) {
-    const Eigen::Isometry3d T_robot_laser =
-        Eigen::Translation3d(0.3, 0.1, 0.5) * Eigen::AngleAxisd(0.4, Eigen::Vector3d::UnitZ()) *
-        Eigen::AngleAxisd(std::numbers::pi, Eigen::Vector3d::UnitX());
+    const Eigen::Isometry3d T_robot_laser = Eigen::Translation3d(0.3, 0.1, 0.5) *
+                                            Eigen::AngleAxisd(0.4, Eigen::Vector3d::UnitZ()) *
+                                            Eigen::AngleAxisd(std::numbers::pi, Eigen::Vector3d::UnitX());
     const auto mount = mount_of(T_robot_laser).value();
     EXPECT_TRUE(mount.is_upside_down);
     const auto scan = scan_with({1.0F, 2.0F});
@@ -89,8 +88,7 @@ TEST(LaserConversion, AnglesOfAnUpsideDownLaserAreNegated) {
         const double angle = -1.0 + 0.01 * static_cast<double>(beam);
         const Eigen::Vector3d hit = T_robot_laser * Eigen::Vector3d(2.0 * std::cos(angle), 2.0 * std::sin(angle), 0.0);
         const double direction = beam_angle(sensor.angles, beam);
-        const Point2 shown =
-            transform(sensor.mount, Point2{2.0 * std::cos(direction), 2.0 * std::sin(direction)});
+        const Point2 shown = transform(sensor.mount, Point2{2.0 * std::cos(direction), 2.0 * std::sin(direction)});
         EXPECT_NEAR(shown.x, hit.x(), 1e-6);
         EXPECT_NEAR(shown.y, hit.y(), 1e-6);
     }
@@ -98,8 +96,8 @@ TEST(LaserConversion, AnglesOfAnUpsideDownLaserAreNegated) {
 
 TEST(LaserConversion, TiltedOrDistantLasersAreRefused) {
     const auto tilted = [](double degrees) {
-        return mount_of(Eigen::Isometry3d(
-            Eigen::AngleAxisd(degrees * std::numbers::pi / 180.0, Eigen::Vector3d::UnitY())));
+        return mount_of(
+            Eigen::Isometry3d(Eigen::AngleAxisd(degrees * std::numbers::pi / 180.0, Eigen::Vector3d::UnitY())));
     };
     EXPECT_FALSE(tilted(14.0).value().is_upside_down);
     EXPECT_TRUE(tilted(170.0).value().is_upside_down);

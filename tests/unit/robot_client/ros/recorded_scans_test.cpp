@@ -1,5 +1,5 @@
-#include "robot_client/ros/recorded_scans.hpp"
 #include "robot_client/app/info.hpp"
+#include "robot_client/ros/recorded_scans.hpp"
 #include "tests/support/bag_writer.hpp"
 #include "tests/support/mcap_writer.hpp"
 #include "tests/support/ros_bytes.hpp"
@@ -50,7 +50,7 @@ struct Recorder {
         const auto odom = writer.connect("/odom", "nav_msgs/Odometry");
         const auto tf = writer.connect("/tf", "tf2_msgs/TFMessage");
         const auto tf_static = writer.connect("/tf_static", "tf2_msgs/TFMessage");
-        for (int n = 0; n < kCount; ++n) {
+        for (int n = 0; n < count; ++n) {
             const RosTime time = kBegin + n * kTenth;
             const auto pose = flat(time, "odom", "base", 0.1 * n);
             if (!has_transforms) writer.write(odom, time, testing_support::odometry_bytes(pose, encoding));
@@ -58,11 +58,18 @@ struct Recorder {
             if (has_transforms) transforms.push_back(pose);
             if (has_map) transforms.push_back(flat(time, "map", "odom", 100.0));
             if (!transforms.empty()) writer.write(tf, time, testing_support::transform_bytes(transforms, encoding));
-            if (n == kCount / 2 && has_mount) { // late, as the statics of a split recording may be
+            if (n == count / 2 && has_mount) { // late, as the statics of a split recording may be
                 const auto bytes = testing_support::transform_bytes({flat(0, "base", "laser", 0.25)}, encoding);
                 writer.write(tf_static, time, bytes);
             }
-            const RosLaserScan scan{{time + kTenth / 2, laser_frame}, -1.0F, 1.0F, 0.5F, 0.0F, 0.1F, 0.1F, 10.0F,
+            const RosLaserScan scan{{time + kTenth / 2, laser_frame},
+                                    -1.0F,
+                                    1.0F,
+                                    0.5F,
+                                    0.0F,
+                                    0.1F,
+                                    0.1F,
+                                    10.0F,
                                     std::vector<float>(5, 1.0F + 0.01F * static_cast<float>(n))};
             if (n % 2 == 0) writer.write(scan_topic, time, testing_support::laser_bytes(scan, encoding));
             if (second_frame.empty() || n % 4 != 0) continue;
@@ -74,7 +81,7 @@ struct Recorder {
         return path;
     }
 
-    static constexpr int kCount = 20;
+    int count = 20; // moments
 };
 
 std::vector<Observation> all_of(RecordedScans& scans) {
@@ -171,7 +178,8 @@ TEST_F(RecordedScansTest, LasersWithoutAKnownMountAreLeftOut) {
     EXPECT_EQ(both.size(), 15U);
     EXPECT_EQ(std::ranges::count(both, 1U, [](const Observation& one) { return one.sensor->id; }), 5);
     EXPECT_EQ(remarks_, "");
-    EXPECT_EQ(read({.has_mount = false, .second_frame = "other"}).size(), 10U) << "none is known: the one with most scans";
+    EXPECT_EQ(read({.has_mount = false, .second_frame = "other"}).size(), 10U)
+        << "none is known: the one with most scans";
     EXPECT_EQ(remarks_, "skipped: 5 mount unknown");
 }
 
@@ -227,11 +235,15 @@ TEST_F(RecordedScansTest, FramesOfTheOptionsAreUsed) {
 }
 
 TEST_F(RecordedScansTest, AChangedFileIsRefused) {
-    const auto path = Recorder().bag(directory_);
+    Recorder recorder;
+    recorder.count = 20'000; // more than is read ahead
+    const auto path = recorder.bag(directory_);
     auto scans = RecordedScans::open(path, {}).value();
     testing_support::BagWriter writer;
     std::ofstream(path, std::ios::binary) << writer.finish().file;
-    EXPECT_EQ(scans.next().error().code, Errc::kConflict);
+    auto next = scans.next(); // a part of the file may be in memory already
+    while (next && *next) next = scans.next();
+    EXPECT_EQ(next.error().code, Errc::kConflict);
 }
 
 TEST_F(RecordedScansTest, InfoListsTopicsAndTheCommand) {
