@@ -11,10 +11,19 @@
 namespace scanloom::scan_matching {
 namespace {
 
+<<<<<<< HEAD
 constexpr std::size_t kNeighborsMax = 5;   // on each side of a point, for its normal
 constexpr double kNeighborReach = 0.30;    // metres from the point, and two beams' distance
 constexpr double kNeighborDistance = 0.03; // metres from one neighbour to the next; nearer ones are passed over
 constexpr double kGapMin = 0.24;           // metres between neighbours of one surface, or five beams' distance
+=======
+constexpr double kFarthestHit = 30.0;    // metres
+constexpr std::size_t kNeighborsMax = 5; // on each side of a point, for its normal
+constexpr double kNeighborReach = 0.30;  // metres from the point, and two beams' distance
+constexpr double kNeighborDistance =
+    0.03;                        // metres between neighbours at least: their errors must not decide the normal
+constexpr double kGapMin = 0.24; // metres between neighbours of one surface, or five beams' distance
+>>>>>>> parent of 11de11e3 (tests: require normals of dense and noisy beams)
 constexpr double kLineDeviationMax = 0.02; // metres, standard deviation from the line
 constexpr double kLineFlatness = 0.05;     // largest ratio of the variances across and along the line
 
@@ -86,8 +95,8 @@ Point2 normal_of(std::span<const Point2> points) {
 }
 
 /// Returns the normal at a hit, from its neighbours on the same surface. Where beams are dense, most are passed over:
-/// the noise of the nearest ones would hide the line. Points without a normal are matched to points, and with many of
-/// them walls hold the robot back along a corridor.
+/// points that are nearer to each other than some times the noise show the noise and not the surface, and walls with
+/// such normals seem to hold the robot back along a corridor.
 Point2 normal_at(const Hits& hits, std::size_t hit) {
     const double beam_distance = hits.ranges[hit] * hits.beam_angle;
     const double reach2 = kNeighborReach * kNeighborReach + 4.0 * beam_distance * beam_distance;
