@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <random>
-
 namespace scanloom::scan_matching {
 namespace {
 
@@ -93,29 +91,6 @@ TEST(ScanPoints, ReadingsWithoutAReturnAreLeftOut) {
     ASSERT_EQ(points.size(), 1U);
     EXPECT_NEAR(points[0].x, 2.0, 1e-6);
     EXPECT_FALSE(points[0].has_normal());
-}
-
-/// A URG-04LX along a corridor: beams are 1 cm apart, and readings have a noise of 2 cm. Normals along the corridor
-/// would hold the robot back.
-TEST(ScanPoints, NormalsOfDenseAndNoisyBeamsAreThoseOfTheWalls) {
-    Sensor laser;
-    laser.angles = UniformAngles{-1.5708, 0.0046, 684};
-    laser.range_max = 5.0;
-    std::mt19937 random(1);
-    std::normal_distribution<double> noise(0.0, 0.02);
-    Scan scan;
-    for (std::size_t n = 0; n < 684; ++n) {
-        const double range = 1.2 / std::fabs(std::sin(beam_angle(laser.angles, n))); // walls at y = -1.2 and 1.2
-        scan.ranges.push_back(range < 4.9 ? to_range_mm(range + noise(random)) : kNoReturn);
-    }
-    double along = 0.0; // information about the position along the corridor, which the scan does not have
-    double across = 0.0;
-    for (const SurfacePoint& point : points_of(scan, laser).points) {
-        along += point.normal_x * point.normal_x;
-        across += point.normal_y * point.normal_y;
-    }
-    EXPECT_GT(across, 100.0) << "most points have a normal";
-    EXPECT_LT(along, 0.05 * across);
 }
 
 TEST(ScanPoints, ManyBeamsAreThinnedEvenly) {
