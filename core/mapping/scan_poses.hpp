@@ -40,6 +40,7 @@ public:
     explicit ScanPoses(std::vector<EstimatedPosesView> robots, Revision corrected = 0, Revision exclusions = 0)
         : robots_(std::move(robots)), version_{exclusions, corrected} {}
 
+    /// Returns the version of the poses.
     [[nodiscard]] const Version& version() const noexcept { return version_; }
 
     /// Returns version().corrected.
