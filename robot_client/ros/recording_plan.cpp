@@ -204,7 +204,7 @@ void Planner::place_scans() {
         stamps.push_back(static_cast<double>(scan.middle) / 1e9);
     }
     const ScanOrder order = order_of(stamps);
-    plan_.stamps = order;
+    plan_.stamps = static_cast<const StampReport&>(order);
     plan_.scan_count = static_cast<std::uint32_t>(used.size());
     for (std::uint32_t place = 0; place < used.size(); ++place) plan_.scans[used[order.order[place]]].place = place;
 }
