@@ -71,8 +71,10 @@ CLI::App* add_replay(CLI::App& app, ReplayOptions& options) {
     auto* replay = app.add_subcommand("replay", "Replay a CARMEN log, a ROS 1 bag, an MCAP file or a rosbag2 database");
     // not required() in the parser: an environment for both sources would then require it everywhere
     replay
-        ->add_option("FILE", options.file,
-                     "CARMEN log (plain, gzip or bzip2), ROS 1 bag, MCAP or rosbag2 .db3; told apart by their content")
+        ->add_option(
+            "FILE", options.file,
+            "CARMEN log (plain, gzip or bzip2), ROS 1 bag, MCAP file or rosbag2 database; the content decides which it "
+            "is, not the name")
         ->configurable(false);
     add_checked(*replay, "--speed", options.speed,
                 "1 = as recorded, 0 = as fast as the server accepts scans. A pause of more than 10 minutes in the "

@@ -18,15 +18,20 @@ Error no_such_message(std::string_view type, std::size_t size) {
     return Error{Errc::kMalformed, fmt::format("{} bytes are no {}", size, type)};
 }
 
+/// Reads the name of a frame, without the leading "/" of early ROS 1.
+std::string read_frame(RosReader& reader) {
+    auto frame = reader.text();
+    if (frame.starts_with('/')) frame.remove_prefix(1);
+    return std::string(frame);
+}
+
 RosHeader read_header(RosReader& reader, MessageEncoding encoding) {
     constexpr RosTime kSecond = 1'000'000'000;
     if (encoding == MessageEncoding::kRos1) static_cast<void>(reader.number<std::uint32_t>()); // number of the message
     const RosTime seconds = encoding == MessageEncoding::kRos1 ? RosTime{reader.number<std::uint32_t>()}
                                                                : RosTime{reader.number<std::int32_t>()};
     const RosTime nanoseconds = reader.number<std::uint32_t>();
-    auto frame = reader.text();
-    if (frame.starts_with('/')) frame.remove_prefix(1);
-    return {seconds * kSecond + nanoseconds, std::string(frame)};
+    return {seconds * kSecond + nanoseconds, read_frame(reader)};
 }
 
 std::vector<float> read_floats(RosReader& reader) {
@@ -35,7 +40,7 @@ std::vector<float> read_floats(RosReader& reader) {
     return floats;
 }
 
-/// Reads the lists of echoes of each beam, of which the first counts.
+/// Reads the echoes of all beams. @return the first echo of each beam, in metres; infinity for a beam without one
 std::vector<float> read_first_echoes(RosReader& reader) {
     std::vector<float> first(reader.count(sizeof(std::uint32_t)));
     for (auto& each : first) {
@@ -84,9 +89,7 @@ Result<RosTransform> decode_odometry(std::string_view bytes, MessageEncoding enc
     RosReader reader(bytes, encoding);
     RosTransform odometry;
     odometry.header = read_header(reader, encoding);
-    auto child = reader.text();
-    if (child.starts_with('/')) child.remove_prefix(1);
-    odometry.child = child;
+    odometry.child = read_frame(reader);
     const auto pose = read_transform(reader);
     constexpr std::size_t kTwistSize = 6;
     for (std::size_t n = 0; n < kCovarianceSize + kTwistSize + kCovarianceSize; ++n) {
@@ -107,9 +110,7 @@ Result<std::vector<RosTransform>> decode_transforms(std::string_view bytes, Mess
     for (auto count = reader.count(kBytesMin); count > 0 && !reader.failed(); --count) {
         RosTransform one;
         one.header = read_header(reader, encoding);
-        auto child = reader.text();
-        if (child.starts_with('/')) child.remove_prefix(1);
-        one.child = child;
+        one.child = read_frame(reader);
         const auto T_parent_child = read_transform(reader);
         const bool is_usable = T_parent_child && !one.child.empty() && one.child != one.header.frame;
         if (!is_usable) ++unusable;
