@@ -139,7 +139,7 @@ ExitCode run(const RobotOptions& options) {
     auto* const steered = prepared->poses == Poses::kOdometry ? prepared->exploring : nullptr;
     sent_options.protocol.on_correction = [&console, steered,
                                            notes = LocalizationNotes()](const wire::Correction& correction) mutable {
-        if (steered != nullptr) steered->correct(correction.T_map_odom);
+        if (steered != nullptr) steered->correct(correction.T_map_odom, correction.state);
         for (const auto& note : notes.add(correction)) console.note(note);
     };
 

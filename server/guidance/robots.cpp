@@ -16,9 +16,11 @@ Result<RobotIndex> find_robot(const mapping::Snapshot& maps, std::string_view na
 Result<Pose2> pose_of(const mapping::Snapshot& maps, RobotIndex robot) {
     if (robot >= maps.robots.size()) return Error{Errc::kNoPath, "the robot has joined but has sent no scan yet"};
     const auto& state = maps.robots[robot];
-    if (state.pose) return *state.pose;
-    const std::string_view why =
-        state.last_seq == 0 ? "it has sent no scan yet" : "its scans are in no map yet; see its localization";
+    const bool is_lost = state.localization.state == LocalizationState::kLost;
+    if (state.pose && !is_lost) return *state.pose;
+    const std::string_view why = is_lost               ? "it is lost: its newest scans fit no place in the map"
+                                 : state.last_seq == 0 ? "it has sent no scan yet"
+                                                       : "its scans are in no map yet; see its localization";
     return Error{Errc::kNoPath, fmt::format("the position of robot '{}' is not known: {}", state.name, why)};
 }
 

@@ -13,7 +13,7 @@ namespace scanloom::guidance {
 [[nodiscard]] Result<RobotIndex> find_robot(const mapping::Snapshot& maps, std::string_view name);
 
 /// Returns T_map_robot of the robot's newest scan in the maps.
-/// Errors: kNoPath if the robot has sent no scan or joined after the maps' last entry, so that no path can start there.
+/// Errors: kNoPath if the robot has sent no scan, is lost, or joined after the maps' last entry: no path can start there.
 [[nodiscard]] Result<Pose2> pose_of(const mapping::Snapshot& maps, RobotIndex robot);
 
 } // namespace scanloom::guidance

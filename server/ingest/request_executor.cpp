@@ -105,7 +105,10 @@ template <class Kind>
 wire::Message reply_from(const Kind& request, const Requester& requester, const RequestServices& services) {
     const auto maps = requester.session->snapshot();
     const auto start = guidance::start_of(*maps, requester.robot, request.start);
-    if (!start) return reply(request, maps->revision, start.error());
+    if (!start) {
+        services.goals.paths().take_back(requester.session, requester.robot);
+        return reply(request, maps->revision, start.error());
+    }
     auto found = Search{requester, services, *maps, *start}(request);
     if constexpr (!std::is_same_v<Kind, wire::GoalRequest>) { // GoalAssignments has set the path to the goal
         services.goals.paths().set_path(requester.session, requester.robot, held_path(found, maps->revision),

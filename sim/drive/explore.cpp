@@ -80,6 +80,12 @@ void Explore::go(std::vector<Point2> path, const Point2& target) {
     task_ = Task::kGo;
 }
 
+void Explore::look_around() {
+    if (is_done()) return;
+    turn_ = FullTurn();
+    task_ = Task::kLookAround;
+}
+
 void Explore::wait(double seconds) {
     steps_left_ = static_cast<int>(std::lround(seconds / kControlPeriod));
     task_ = Task::kWait;

@@ -32,6 +32,9 @@ public:
     /// Drives to the end of a path and turns to the target there. Metres in the map frame.
     void go(std::vector<Point2> path, const Point2& target);
 
+    /// Leaves the path, makes a full turn, then asks again.
+    void look_around();
+
     /// Stands for some time, then asks again.
     void wait(double seconds);
 

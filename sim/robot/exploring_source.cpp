@@ -32,6 +32,13 @@ ExploringSource::ExploringSource(SimulatorOptions options, SimulationLimits limi
     limits_.scans = std::min(limits_.scans, scans_within(limits_.duration, simulator_.sensors().size()));
 }
 
+void ExploringSource::correct(const Pose2& T_map_odom, LocalizationState state) {
+    simulator_.correct(T_map_odom);
+    const bool is_lost = state == LocalizationState::kLost;
+    if (is_lost && !is_lost_) explore_->look_around();
+    is_lost_ = is_lost;
+}
+
 asio::awaitable<Result<std::optional<robot::Observation>>> ExploringSource::next() {
     assert(next_goal_);
     if (is_stopped_ || resumed_after_ + scans_ >= limits_.scans) co_return std::optional<robot::Observation>{};

@@ -30,8 +30,9 @@ public:
     /// Sets the function that returns the next goal. Call it before the first next().
     void ask_with(robot::NextGoal next_goal) { next_goal_ = std::move(next_goal); }
 
-    /// Lets the robot steer by a correction of the server; see Simulator::correct().
-    void correct(const Pose2& T_map_odom) { simulator_.correct(T_map_odom); }
+    /// Lets the robot steer by a correction of the server; see Simulator::correct(). When the server has lost the robot,
+    /// it leaves its path, looks around and asks for a goal again.
+    void correct(const Pose2& T_map_odom, LocalizationState state);
 
     [[nodiscard]] bool can_wait() const override { return true; }
     /// Stamps continue after those of the stored scans, and limits count those scans. The robot itself starts at its
@@ -65,6 +66,7 @@ private:
     std::uint64_t scans_ = 0; // of this run
     double stamp_ = -1.0;     // of the newest scan
     int failures_ = 0;        // in a row
+    bool is_lost_ = false;
     bool is_stopped_ = false;
     robot::WakeSignal wake_;
     Clock::time_point due_ = Clock::time_point::min();

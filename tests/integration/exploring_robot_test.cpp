@@ -87,7 +87,7 @@ public:
         const auto& simulator = source_.simulator();
         clearance_min_ = std::min(clearance_min_, clearance(simulator.world(), sim::position_of(simulator.pose())));
         oracle_.take(index_, std::move(scan));
-        if (is_corrected_) source_.correct(oracle_.T_map_odom(index_));
+        if (is_corrected_) source_.correct(oracle_.T_map_odom(index_), LocalizationState::kTracking);
         return true;
     }
 

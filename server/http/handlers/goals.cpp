@@ -97,7 +97,10 @@ Result<Response> assign_goal(Context& context) {
     const auto options = exploration_options(*body, snapshot.robots[*robot].body_radius);
     if (!options) return options.error();
     const auto start = guidance::start_of(snapshot, *robot);
-    if (!start) return start.error();
+    if (!start) {
+        context.services.goals.paths().take_back(found->session, *robot);
+        return start.error();
+    }
 
     const auto next = context.services.goals.next(found->session, snapshot, *robot, start->point,
                                                   guidance::GoalAssignments::Clock::now(), *options);

@@ -29,5 +29,14 @@ TEST(Robots, HaveThePoseOfTheirNewestScan) {
     EXPECT_EQ(pose_of(two_robots(), 2).error().code, Errc::kNoPath) << "the robot joined after the snapshot";
 }
 
+TEST(Robots, HaveNoPoseWhileTheyAreLost) {
+    auto maps = two_robots();
+    maps.robots[1].localization.state = LocalizationState::kLost;
+    const auto lost = pose_of(maps, 1);
+    ASSERT_FALSE(lost);
+    EXPECT_EQ(lost.error().code, Errc::kNoPath);
+    EXPECT_THAT(lost.error().message, testing::HasSubstr("'r' is not known: it is lost"));
+}
+
 } // namespace
 } // namespace scanloom::guidance

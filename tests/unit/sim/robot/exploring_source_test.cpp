@@ -124,6 +124,20 @@ TEST_F(ExploringSourceTest, EndsIfEveryGoalIsBlocked) {
     EXPECT_LT(requests_, 100U);
 }
 
+TEST_F(ExploringSourceTest, ALostRobotLeavesItsPathLooksAroundAndAsksAgain) {
+    auto source = make();
+    source.ask_with(answers({goal({{-3.5, -3.5}, {-3.5, 3.5}}, {-3.5, 3.6}), robot::NextStop{}}));
+    while (source.simulator().pose().y < -2.0) ASSERT_TRUE(*next(source));
+    source.correct({0.0, 0.0, 0.0}, LocalizationState::kLost);
+    const auto lost_at = source.simulator().pose();
+    const auto scans = all_of(source);
+    EXPECT_EQ(requests_, 2U);
+    EXPECT_GT(scans.size(), kFirstTurnScansMax / 2U) << "a full turn";
+    for (const Scan& scan : scans) {
+        EXPECT_LT(std::hypot(scan.pose->x - lost_at.x, scan.pose->y - lost_at.y), 0.2) << "it does not drive on";
+    }
+}
+
 TEST_F(ExploringSourceTest, LimitsIncludeEarlierRuns) {
     auto source = make({.scans = 30});
     source.resume_after(20);
