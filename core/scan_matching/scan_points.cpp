@@ -3,14 +3,17 @@
 #include "core/scan_matching/transform2.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <span>
 
 namespace scanloom::scan_matching {
 namespace {
 
 constexpr std::size_t kNeighborsMax = 5;   // on each side of a point, for its normal
 constexpr double kNeighborReach = 0.30;    // metres from the point, and two beams' distance
+constexpr double kNeighborDistance = 0.03; // metres from one neighbour to the next; nearer ones are passed over
 constexpr double kGapMin = 0.24;           // metres between neighbours of one surface, or five beams' distance
 constexpr double kLineDeviationMax = 0.02; // metres, standard deviation from the line
 constexpr double kLineFlatness = 0.05;     // largest ratio of the variances across and along the line
@@ -52,19 +55,18 @@ double squared_distance(const Point2& a, const Point2& b) {
     return dx * dx + dy * dy;
 }
 
-/// Returns the unit normal, towards the laser, of the line that the points [first, last] fit; the null vector if they
-/// do not fit one.
-Point2 normal_of(const std::vector<Point2>& points, std::size_t first, std::size_t last) {
-    const auto count = static_cast<double>(last - first + 1);
+/// Returns the unit normal, towards the laser, of the line that points fit; the null vector if they do not fit one.
+Point2 normal_of(std::span<const Point2> points) {
+    const auto count = static_cast<double>(points.size());
     Point2 mean{0.0, 0.0};
-    for (std::size_t n = first; n <= last; ++n) mean = {mean.x + points[n].x, mean.y + points[n].y};
+    for (const Point2& point : points) mean = {mean.x + point.x, mean.y + point.y};
     mean = {mean.x / count, mean.y / count};
     double xx = 0.0;
     double xy = 0.0;
     double yy = 0.0;
-    for (std::size_t n = first; n <= last; ++n) {
-        const double dx = points[n].x - mean.x;
-        const double dy = points[n].y - mean.y;
+    for (const Point2& point : points) {
+        const double dx = point.x - mean.x;
+        const double dy = point.y - mean.y;
         xx += dx * dx;
         xy += dx * dy;
         yy += dy * dy;
@@ -83,7 +85,9 @@ Point2 normal_of(const std::vector<Point2>& points, std::size_t first, std::size
     return {normal.x * scale, normal.y * scale};
 }
 
-/// Returns the normal at a hit, from its neighbours on the same surface.
+/// Returns the normal at a hit, from its neighbours on the same surface. Where beams are dense, most are passed over:
+/// the noise of the nearest ones would hide the line. Points without a normal are matched to points, and with many of
+/// them walls hold the robot back along a corridor.
 Point2 normal_at(const Hits& hits, std::size_t hit) {
     const double beam_distance = hits.ranges[hit] * hits.beam_angle;
     const double reach2 = kNeighborReach * kNeighborReach + 4.0 * beam_distance * beam_distance;
@@ -92,11 +96,19 @@ Point2 normal_at(const Hits& hits, std::size_t hit) {
         return hits.is_hit[to] != 0 && squared_distance(hits.points[from], hits.points[to]) < gap * gap &&
                squared_distance(hits.points[hit], hits.points[to]) < reach2;
     };
-    std::size_t first = hit;
-    std::size_t last = hit;
-    while (first > 0 && hit - first < kNeighborsMax && continues(first, first - 1)) --first;
-    while (last + 1 < hits.points.size() && last - hit < kNeighborsMax && continues(last, last + 1)) ++last;
-    return last - first < 2 ? Point2{0.0, 0.0} : normal_of(hits.points, first, last);
+    const auto beams = static_cast<double>(hits.points.size());
+    const auto step = static_cast<std::size_t>(std::clamp(kNeighborDistance / beam_distance, 1.0, beams));
+    std::array<Point2, 2 * kNeighborsMax + 1> surface;
+    std::size_t count = 0;
+    surface[count++] = hits.points[hit];
+    for (std::size_t n = hit; n >= step && count <= kNeighborsMax && continues(n, n - step); n -= step) {
+        surface[count++] = hits.points[n - step];
+    }
+    const std::size_t most = count + kNeighborsMax;
+    for (std::size_t n = hit; n + step < hits.points.size() && count < most && continues(n, n + step); n += step) {
+        surface[count++] = hits.points[n + step];
+    }
+    return count < 3 ? Point2{0.0, 0.0} : normal_of(std::span(surface).first(count));
 }
 
 } // namespace

@@ -60,6 +60,11 @@ constexpr double kShiftedSigma = 0.2;                                           
 constexpr double kStartSigmaWithout = 0.3;                                                  // metres, without
 constexpr double kStartTurnSigmaWithout = 0.5;                                              // radians, without
 
+// A match that is farther than this from every prediction counts only if this part of the points are inliers.
+constexpr double kFarDistance = 0.25; // metres
+constexpr double kFarTurn = 0.25;     // radians
+constexpr double kInliersFar = 0.85;
+
 constexpr double kUnmatchedValue = 0.2;  // of the prediction as a candidate
 constexpr std::size_t kUnmatchedMax = 3; // scans in a row that a velocity without odometry may explain
 
@@ -105,7 +110,7 @@ public:
         if (is_plain) return std::move(found_);
         try_other_priors();
         if (best_inliers() < inliers_wanted()) try_other_starts();
-        if (has_odometry_ || prediction_.unmatched < kUnmatchedMax || best_inliers() < kUsable) {
+        if (counts_prediction() || best_inliers() < kUsable) {
             found_.push_back({expected_, kUnmatchedValue, 0.0, false, loose_.position_sigma, loose_.yaw_sigma});
         }
         return std::move(found_);
@@ -141,8 +146,21 @@ private:
         return kSurpriseWeight * std::min(surprise(expected_), surprise(by_velocity_) + 1.0);
     }
 
-    /// Adds a match, unless one at the same place is at least as good. Removes those that are worse.
+    /// Returns whether the prediction can be better than a weak match.
+    [[nodiscard]] bool counts_prediction() const { return has_odometry_ || prediction_.unmatched < kUnmatchedMax; }
+
+    [[nodiscard]] bool is_far(const Transform2& pose) const {
+        const auto is_far_from = [&](const Transform2& prediction) {
+            const Transform2 off = inverse(prediction) * pose;
+            return distance_of(off) > kFarDistance || turn(off) > kFarTurn;
+        };
+        return is_far_from(expected_) && is_far_from(by_velocity_);
+    }
+
+    /// Adds a match, unless it is too weak for its distance, or one at the same place is at least as good. Removes
+    /// those that are worse.
     void keep(const LineMatch& found) {
+        if (counts_prediction() && found.inlier_ratio < kInliersFar && is_far(found.T_map_robot)) return;
         const double score = agreement_of(scan_.points, map_.points(), map_.space(), found.T_map_robot).score -
                              penalty(found.T_map_robot);
         const auto is_same = [&](const Candidate& other) {
@@ -195,7 +213,7 @@ private:
     }
 
     [[nodiscard]] double best_inliers() const {
-        return std::ranges::max_element(found_, {}, &Candidate::inlier_ratio)->inlier_ratio;
+        return found_.empty() ? 0.0 : std::ranges::max_element(found_, {}, &Candidate::inlier_ratio)->inlier_ratio;
     }
 
     const ScanPoints& scan_;

@@ -30,8 +30,8 @@ public:
     /// Sets the function that returns the next goal. Call it before the first next().
     void ask_with(robot::NextGoal next_goal) { next_goal_ = std::move(next_goal); }
 
-    /// Lets the robot steer by a correction of the server; see Simulator::correct(). When the server has lost the robot,
-    /// it leaves its path, looks around and asks for a goal again.
+    /// Lets the robot steer by a correction of the server; see Simulator::correct(). When the server has lost the
+    /// robot, it leaves its path, looks around and asks for a goal again.
     void correct(const Pose2& T_map_odom, LocalizationState state);
 
     [[nodiscard]] bool can_wait() const override { return true; }

@@ -194,7 +194,7 @@ TEST_F(ExploringRobots, TwoRobotsExploreTheOfficeTogether) {
 }
 
 TEST_F(ExploringRobots, CorrectionsOfTheServerMakeUpForDriftingOdometry) {
-    sim::SimulatorOptions options{sim::make_office(), coarse_laser(), sim::with_odometry({}, 2.0), 1};
+    sim::SimulatorOptions options{sim::make_office(), reference_laser(), sim::with_odometry({}, 2.0), 1};
     options.pose = sim::PoseSent::kOdometry;
     options.poses = Poses::kOdometry;
     GoalOracle oracle(session_);
@@ -203,6 +203,9 @@ TEST_F(ExploringRobots, CorrectionsOfTheServerMakeUpForDriftingOdometry) {
     while (robot.step()) ++scans;
     expect_explored(robot, oracle);
     EXPECT_GE(known_share(options.world, oracle.maps()), 0.95);
+    const Pose2 found = oracle.maps().robots[0].pose.value();
+    const Pose2& truth = robot.source().simulator().pose();
+    EXPECT_LT(std::hypot(found.x - truth.x, found.y - truth.y), 1.0) << "beams are dense, and noisy";
 
     GoalOracle other(session_);
     Explorer uncorrected(other, 0, options, false);

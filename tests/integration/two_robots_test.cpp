@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -69,8 +70,21 @@ double length_of(const std::vector<Point2>& points) {
     return length;
 }
 
+/// Returns whether no wall is on the way of a robot.
+bool is_passable(const Building& building, const Point2& from, const Point2& to) {
+    constexpr std::array kSides{-0.1, 0.0, 0.1}; // metres from the way
+    const double length = norm(to - from);
+    const Point2 ahead = (1.0 / length) * (to - from);
+    return std::ranges::all_of(kSides, [&](double side) {
+        const Point2 start = from + side * Point2{-ahead.y, ahead.x};
+        return building.range(start, {ahead.y, ahead.x}) > length + 0.1;
+    });
+}
+
 /// Returns a part of a tour that begins at any of its points, in any direction, not exactly through its points.
-std::vector<Point2> part_of(const std::vector<Point2>& tour, double length, std::mt19937& random) {
+std::vector<Point2> part_of(const Place& place, double length, std::mt19937& random) {
+    constexpr int kTriesMax = 100;
+    const auto& tour = place.tour;
     const auto near = [&](std::size_t n) {
         return Point2{tour[n].x + uniform(random, -0.15, 0.15), tour[n].y + uniform(random, -0.15, 0.15)};
     };
@@ -79,7 +93,9 @@ std::vector<Point2> part_of(const std::vector<Point2>& tour, double length, std:
     std::vector<Point2> points{near(at)};
     for (double left = length; left > 0.0;) {
         at = (at + step) % tour.size();
-        const Point2 next = near(at);
+        Point2 next = near(at);
+        for (int tries = 0; tries < kTriesMax && !is_passable(place.building, points.back(), next); ++tries)
+            next = near(at);
         const double distance = norm(next - points.back());
         points.push_back(points.back() + std::min(1.0, left / distance) * (next - points.back()));
         left -= distance;
@@ -97,7 +113,7 @@ Sensor any_laser(std::mt19937& random) {
 
 Drive any_drive(const Place& place, const Sensor& laser, double length, std::mt19937& random) {
     const OdometryErrors errors{uniform(random, 0.98, 1.02), uniform(random, -0.01, 0.01)};
-    const auto points = part_of(place.tour, length, random);
+    const auto points = part_of(place, length, random);
     return drive_along(place.building, points, errors, static_cast<std::uint32_t>(random()), laser);
 }
 

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
+
 namespace scanloom::scan_matching {
 namespace {
 
@@ -91,6 +93,32 @@ TEST(ScanPoints, ReadingsWithoutAReturnAreLeftOut) {
     ASSERT_EQ(points.size(), 1U);
     EXPECT_NEAR(points[0].x, 2.0, 1e-6);
     EXPECT_FALSE(points[0].has_normal());
+}
+
+/// A URG-04LX along a corridor: beams are 1 cm apart, and readings have a noise of 2 cm. Normals along the corridor
+/// would hold the robot back.
+TEST(ScanPoints, NormalsOfDenseAndNoisyBeamsAreThoseOfTheWalls) {
+    Sensor laser;
+    laser.angles = UniformAngles{-1.5708, 0.0046, 684};
+    laser.range_max = 5.0;
+    std::mt19937 random(1);
+    std::normal_distribution<double> noise(0.0, 0.02);
+    std::normal_distribution<double> direction(0.0, 0.005);
+    Scan scan;
+    for (std::size_t n = 0; n < 684; ++n) {
+        const double angle = beam_angle(laser.angles, n) + direction(random);
+        const double range = 1.2 / std::fabs(std::sin(angle)); // walls at y = -1.2 and 1.2
+        scan.ranges.push_back(range < 4.9 ? to_range_mm(range + noise(random)) : kNoReturn);
+    }
+    const auto points = points_of(scan, laser).points;
+    double along = 0.0; // information about the position along the corridor, which the scan does not have
+    double across = 0.0;
+    for (const SurfacePoint& point : points) {
+        along += point.normal_x * point.normal_x;
+        across += point.normal_y * point.normal_y;
+    }
+    EXPECT_GT(across, 0.7 * static_cast<double>(points.size())) << "most points have a normal";
+    EXPECT_LT(along, 0.01 * across);
 }
 
 TEST(ScanPoints, ManyBeamsAreThinnedEvenly) {

@@ -131,6 +131,20 @@ TEST(TrajectoryEstimator, ScansThatShowNothingAreNotMatched) {
     EXPECT_LT(error_of(drive, estimator), 0.1);
 }
 
+/// Two scans that fit better somewhere else, but not well, and the next one is where the robot was: it tilted.
+TEST(TrajectoryEstimator, ATiltIsNoMotion) {
+    const Building building = ring_building();
+    for (const bool has_odometry : {true, false}) {
+        Drive drive = drive_along(building, std::vector<Point2>{{5.0, 1.0}, {13.0, 1.0}}, {}, 11);
+        std::mt19937 random(11);
+        for (std::size_t n = 40; n < 42; ++n) {
+            drive.scans[n] = building.scan(drive.laser, compose(drive.truth[n], {0.4, 0.0, 0.0}), 0.01, random);
+            for (std::size_t beam = 0; beam < 181; beam += 5) drive.scans[n].ranges[beam] /= 2;
+        }
+        EXPECT_LT(error_of(drive, estimated(drive, has_odometry)), 0.2) << has_odometry;
+    }
+}
+
 /// Odometry can lead anywhere if it starts again now and then. What is estimated must remain what maps can show.
 TEST(TrajectoryEstimator, ARobotBeyondAllCoordinatesBeginsAgain) {
     SharedMap map;
@@ -182,7 +196,7 @@ TEST(TrajectoryEstimator, PosesHaveTheSameBitsEverywhere) {
             hash = (hash ^ std::bit_cast<std::uint64_t>(value)) * 0x100'0000'01B3U;
         }
     }
-    EXPECT_EQ(hash, 13980794215870137831U);
+    EXPECT_EQ(hash, 369202381929163181U);
 }
 
 } // namespace

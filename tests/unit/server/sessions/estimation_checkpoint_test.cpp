@@ -287,7 +287,7 @@ TEST_F(EstimationCheckpointTest, PosesOfAnotherVersionAreEstimatedAgain) {
     auto recovered = recovered_with(parts);
     ASSERT_TRUE(recovered.checkpoint_rejected);
     EXPECT_EQ(recovered.checkpoint_rejected->code, Errc::kUnsupportedVersion);
-    EXPECT_THAT(recovered.checkpoint_rejected->message, HasSubstr("estimated by version 3"));
+    EXPECT_THAT(recovered.checkpoint_rejected->message, HasSubstr("estimated by version 4"));
     expect_equal(recovered.maps, expected);
 }
 
