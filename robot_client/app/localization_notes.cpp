@@ -26,7 +26,8 @@ std::string_view sentence_of(LocalizationState state) {
 
 std::vector<std::string> LocalizationNotes::add(const wire::Correction& correction) {
     std::vector<std::string> notes;
-    if (std::exchange(state_, correction.state) != correction.state) {
+    const auto before = std::exchange(state_, correction.state).value_or(LocalizationState::kTracking);
+    if (before != correction.state) {
         if (const auto sentence = sentence_of(correction.state); !sentence.empty()) notes.emplace_back(sentence);
     }
     const auto& error = correction.mount_yaw_error;

@@ -15,8 +15,11 @@ public:
     /// Returns a sentence for each change since the correction before.
     [[nodiscard]] std::vector<std::string> add(const wire::Correction& correction);
 
+    /// Returns the newest state; nullopt: there was no correction.
+    [[nodiscard]] const std::optional<LocalizationState>& state() const noexcept { return state_; }
+
 private:
-    LocalizationState state_ = LocalizationState::kTracking;
+    std::optional<LocalizationState> state_;
     bool has_wrong_mount_ = false;
 };
 

@@ -55,7 +55,8 @@ std::string summary_json(const Summary& summary) {
         summary.scan_count.value_or(taken), status.acknowledged, status.resumed_after, status.sent, status.bytes,
         summary.elapsed.count(), skipped, status.reconnects, status.waiting, status.dropped, summary.session,
         summary.robot, summary.source,
-        field("order", std::string(summary.order)) + field("remarks", summary.remarks) + field("error", summary.error));
+        field("order", std::string(summary.order)) + field("localization", std::string(summary.localization)) +
+            field("remarks", summary.remarks) + field("error", summary.error));
 }
 
 } // namespace scanloom::robot

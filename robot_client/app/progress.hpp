@@ -54,6 +54,7 @@ struct Summary {
     std::optional<std::size_t> skipped_lines; ///< of logs and poses, if the source has any
     std::chrono::duration<double> elapsed{};
     std::optional<std::uint64_t> scan_count; ///< of the source, if it ends
+    std::string_view localization;           ///< name of the newest state by the server; empty: it told none
     std::string remarks;                     ///< of the source
     std::string error;                       ///< why the run failed; empty if it did not
 };
@@ -61,8 +62,8 @@ struct Summary {
 /// Returns one line of JSON, without its line break. Scans are counted as in the progress, from the first of the
 /// recording or simulation: `scans` in total (of an endless source or a sensor: taken so far), `acknowledged` stored,
 /// `stored_before` stored in earlier runs, `sent` in this run, `waiting` behind those in the spool, and `dropped` lost
-/// for lack of room. `skipped_lines` and `order` are present if the source has them. A failed run has an `error`, one
-/// sentence.
+/// for lack of room. `skipped_lines` and `order` are present if the source has them, and `localization` if the server
+/// estimates the robot's poses. A failed run has an `error`, one sentence.
 /// Pre: no text except the error needs escaping: valid names, a fingerprint.
 [[nodiscard]] std::string summary_json(const Summary& summary);
 

@@ -137,8 +137,8 @@ ExitCode run(const RobotOptions& options) {
     sent_options.tls = std::move(*tls);
 
     auto* const steered = prepared->poses == Poses::kOdometry ? prepared->exploring : nullptr;
-    sent_options.protocol.on_correction = [&console, steered,
-                                           notes = LocalizationNotes()](const wire::Correction& correction) mutable {
+    LocalizationNotes notes;
+    sent_options.protocol.on_correction = [&console, &notes, steered](const wire::Correction& correction) {
         if (steered != nullptr) steered->correct(correction.T_map_odom, correction.state);
         for (const auto& note : notes.add(correction)) console.note(note);
     };
@@ -165,7 +165,8 @@ ExitCode run(const RobotOptions& options) {
     fmt::print("{}\n",
                summary_json({options.session, options.robot, prepared->fingerprint, prepared->order, uplink.status(),
                              prepared->skipped_lines, std::chrono::steady_clock::now() - begun, (*feed)->scan_count(),
-                             prepared->remarks(), *outcome ? "" : outcome->error().message}));
+                             notes.state() ? name_of(*notes.state()) : std::string_view(), prepared->remarks(),
+                             *outcome ? "" : outcome->error().message}));
     if (*outcome) return kExitDone;
     const bool is_refused = outcome->error().code == Errc::kConflict;
     if (is_refused && prepared->locating != nullptr && !options.spool.empty()) {

@@ -208,7 +208,7 @@ void Session::apply_batch() {
         sequencer_.release(group); // its scans are durable and in the maps: they are acknowledged
         if (!published) return stop_writing(published.error());
         count_loops();
-        warn_of_mounts();
+        log_localization();
         const bool has_estimated = maps_.projection().has_estimated_poses();
         if (checkpoints_.is_due(maps_.projection().revision(), has_estimated)) begin_checkpoint();
         begin_correction();

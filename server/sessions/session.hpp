@@ -163,7 +163,7 @@ private:
     [[nodiscard]] Result<> apply_entries(double work);
     void count(const ScanTaken& applied);
     void count_loops();
-    void warn_of_mounts();
+    void log_localization();
     [[nodiscard]] Group take_applied_group();
     void report_places(const Group& group);
     void notify_watchers();
@@ -200,6 +200,7 @@ private:
     std::size_t correction_pages_ = 0;          // of share_
     std::size_t loops_ = 0;                     // of all robots, that are counted
     std::set<std::string> warned_of_;           // robots whose lasers' mounts seem to be wrong
+    std::set<std::string> lost_;                // robots that are lost
     CheckpointSchedule checkpoints_;
     bool final_checkpoint_tried_ = false;
     std::optional<Error> refusing_; // why no more entries are accepted

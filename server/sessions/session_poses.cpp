@@ -100,10 +100,18 @@ void Session::count_loops() {
     counters_->loops_accepted += loops - std::min(loops, before);
 }
 
-/// Warns of each laser once whose mount seems to be wrong.
-void Session::warn_of_mounts() {
+/// Logs which robots were lost or found again, and once of each laser that its mount seems to be wrong.
+void Session::log_localization() {
     if (!maps_.projection().has_estimated_poses()) return;
     for (const auto& robot : snapshot()->robots) {
+        const bool is_lost = robot.localization.state == LocalizationState::kLost;
+        if (is_lost && lost_.insert(robot.name).second) {
+            log::warn({.session = info_.name},
+                      "session '{}', robot '{}' is lost: its newest scans fit no place in the map and are not in it",
+                      info_.name, robot.name);
+        } else if (!is_lost && lost_.erase(robot.name) > 0) {
+            log::info({.session = info_.name}, "session '{}', robot '{}' is found again", info_.name, robot.name);
+        }
         const auto& error = robot.localization.mount_yaw_error;
         if (!error || !warned_of_.insert(robot.name).second) continue;
         log::warn({.session = info_.name}, "session '{}', robot '{}': {}", info_.name, robot.name,

@@ -86,12 +86,20 @@ Families store_families(const store::ScanLog& log) {
 
 double bytes_of(std::int64_t pages) { return static_cast<double>(pages) * static_cast<double>(mapping::kPageBytes); }
 
+std::size_t count_lost(const mapping::Snapshot& maps) {
+    return static_cast<std::size_t>(std::ranges::count_if(maps.robots, [](const mapping::RobotState& robot) {
+        return robot.localization.state == LocalizationState::kLost;
+    }));
+}
+
 Families session_families(const sessions::SessionRegistry& sessions, const sessions::BackgroundCheck& check) {
     const auto& counters = sessions.counters();
     const auto served = sessions.list();
     std::size_t backlog = 0;
     std::size_t moving = 0;
+    std::size_t lost = 0;
     for (const auto& session : served) {
+        lost += count_lost(*session->snapshot());
         backlog += session->backlog_size();
         moving += session->moving_scans();
     }
@@ -125,6 +133,8 @@ Families session_families(const sessions::SessionRegistry& sessions, const sessi
         counter_now("scanloom_maps_corrected_total",
                     "Times that the map of a session followed corrected poses of earlier scans.",
                     counters.maps_corrected.load()),
+        gauge_now("scanloom_robots_lost",
+                  "Robots of loaded sessions whose newest scans fit no place; those that have left count, too.", lost),
         gauge_now("scanloom_moving_scans", "Scans that the maps do not show at their corrected poses yet.", moving),
     };
 }

@@ -11,6 +11,7 @@ from served import DOCS, ask_a_server
 LEFT_OUT = {
     "scanloom_loops_accepted_total": "loops are counted for each robot in the session's JSON, where they mean more",
     "scanloom_maps_corrected_total": "as for loops",
+    "scanloom_robots_lost": "the viewer and the session's JSON say which robots",
     "scanloom_moving_scans": "0 but for seconds after a correction; the viewer shows it",
     "process_virtual_memory_bytes": "most of the address space is never used, so it is not the memory in use",
     "scanloom_sessions_checked_total": "progress of the check at startup; the damage that it finds is shown",

@@ -23,6 +23,7 @@ const Summary kSummary{"lab",
                        3,
                        1500ms,
                        std::nullopt,
+                       "",
                        ""};
 
 TEST(SummaryJson, HasScansStoredBeforeAndSentNow) {
@@ -36,13 +37,14 @@ TEST(SummaryJson, RefusedRobotHasReasonAndScanCount) {
     Summary refused = kSummary;
     refused.status = {};
     refused.scan_count = 910;
+    refused.localization = "lost";
     refused.remarks = "7 m driven";
     refused.error = "hello.session is \"lab\",\nwhich is full";
     EXPECT_EQ(
         summary_json(refused),
         R"({"scans":910,"acknowledged":0,"stored_before":0,"sent":0,"bytes":0,"seconds":1.500,"skipped_lines":3,)"
         R"("reconnects":0,"waiting":0,"dropped":0,"session":"lab","robot":"r1","source":"carmen:9f3a","order":"time",)"
-        R"("remarks":"7 m driven","error":"hello.session is \"lab\",\nwhich is full"})");
+        R"("localization":"lost","remarks":"7 m driven","error":"hello.session is \"lab\",\nwhich is full"})");
 }
 
 TEST(SummaryJson, CountsScansWithoutAServer) {

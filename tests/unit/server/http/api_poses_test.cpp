@@ -9,6 +9,7 @@
 #include <future>
 #include <map>
 #include <memory>
+#include <random>
 #include <sstream>
 #include <string>
 #include <tuple>
@@ -73,6 +74,21 @@ protected:
         return link;
     }
 
+    /// Sends scans that fit nothing, after those of the lap.
+    void carry_away() {
+        constexpr std::size_t kScans = 25;
+        const auto before = registry_.find("a")->snapshot()->robots.at(0).last_seq;
+        std::mt19937 random(1);
+        std::vector<Scan> scans;
+        for (std::size_t n = before; n < before + kScans; ++n) {
+            Scan scan{.seq = n + 1, .stamp = stamp_of(n), .ranges = lap().scans[0].ranges};
+            for (auto& range : scan.ranges) range = 500 + static_cast<std::uint32_t>(random() % 10'000);
+            scan.odometry = lap().odometry[before];
+            scans.push_back(std::move(scan));
+        }
+        send(std::move(scans), Poses::kOdometry, "a");
+    }
+
     /// Sends the scans of the lap that the session does not have, and waits until none of them is moving.
     void drive_lap(std::size_t end = lap().scans.size(), Poses poses = Poses::kOdometry,
                    const std::string& name = "a") {
@@ -87,7 +103,13 @@ protected:
             (poses == Poses::kMap ? scan.pose : scan.odometry) = lap().odometry[n];
             scans.push_back(std::move(scan));
         }
-        const auto link = join_as(poses, end, name);
+        send(std::move(scans), poses, name);
+    }
+
+    /// Sends scans of the robot, and waits until none of them is moving.
+    void send(std::vector<Scan> scans, Poses poses, const std::string& name) {
+        const auto session = registry_.find(name);
+        const auto link = join_as(poses, scans.back().seq, name);
         session->submit(link, lap().laser, 0);
         session->submit(link, std::move(scans), 1);
         link->wait();
@@ -312,6 +334,22 @@ TEST_F(ApiPosesTest, SessionShowsRobotWithoutScansAsUnlocated) {
     EXPECT_EQ(localization().at("state"), "unlocated");
 }
 
+TEST_F(ApiPosesTest, ALostRobotHoldsNoGoal) {
+    const std::string path = "/api/v1/sessions/a/goal";
+    const std::string request = R"({"robot": "r1", "body_radius": 0.1})";
+    drive_lap(60);
+    ASSERT_EQ(ask("POST", path, request).status, Status::ok);
+    EXPECT_EQ(get_json(path + "?robot=r1").at("goal").is_null(), false);
+    carry_away();
+    EXPECT_EQ(localization().at("state"), "lost");
+    EXPECT_THAT(detail(ask("POST", path, request), Status::conflict), HasSubstr("'r1' is not known: it is lost"));
+    EXPECT_TRUE(get_json(path + "?robot=r1").at("goal").is_null());
+    EXPECT_THAT(
+        detail(ask("POST", "/api/v1/sessions/a/plan", R"({"from": {"robot": "r1"}, "to": [1, 0]})"), Status::conflict),
+        HasSubstr("it is lost"));
+    EXPECT_THAT(std::string(get("/metrics").body.bytes()), HasSubstr("\nscanloom_robots_lost 1\n"));
+}
+
 TEST_F(ApiPosesTest, MapsAndTrajectoriesFollowCorrectedPoses) {
     drive_lap();
     const auto session = get_json("/api/v1/sessions/a");
@@ -333,6 +371,7 @@ TEST_F(ApiPosesTest, MapsAndTrajectoriesFollowCorrectedPoses) {
     EXPECT_THAT(metrics, testing::ContainsRegex("\nscanloom_loops_accepted_total [1-9]"));
     EXPECT_THAT(metrics, testing::ContainsRegex("\nscanloom_maps_corrected_total [1-9]"));
     EXPECT_THAT(metrics, HasSubstr("\nscanloom_moving_scans 0\n"));
+    EXPECT_THAT(metrics, HasSubstr("\nscanloom_robots_lost 0\n"));
     EXPECT_THAT(metrics, HasSubstr("\nscanloom_scans_unplaced_total 0\n"));
 }
 
