@@ -72,12 +72,12 @@ bool FragmentSearch::search(KeyframeGraph& graph, std::size_t fragment) {
         auto query = ask(graph, fragment, state.expectation);
         if (!query || !query->search->run(kPart)) return false;
         const auto found = query->answer();
-        if (!found || !connect(graph, fragment, *found)) return false;
+        if (!found || !connect(graph, fragment, found->T_map_keyframe)) return false;
         state = Searched();
         return true;
     }
     std::optional<Query> query = std::exchange(state.query, std::nullopt);
-    std::optional<Transform2> found;
+    std::optional<Answer> found;
     if (query) {
         const bool has_ended = run(graph, *query, kPart);
         if (!has_ended && query->allowed < kLookupsMax) {
@@ -88,15 +88,15 @@ bool FragmentSearch::search(KeyframeGraph& graph, std::size_t fragment) {
         if (has_ended) found = query->answer();
     }
     state.query = ask(graph, fragment, std::nullopt);
-    return found && add_answer(graph, fragment, {query->keyframe, *found});
+    return found && add_answer(graph, fragment, *found);
 }
 
 /// Adds the answer of a search. Moves the fragment there if answers agree, and its whole way fits the map.
 bool FragmentSearch::add_answer(KeyframeGraph& graph, std::size_t fragment, const Answer& answer) {
     Searched& state = searched(fragment);
-    const Transform2& found = answer.T_map_fragment;
     state.answers.push_back(answer);
     if (!is_confirmed(graph, state.answers)) return false;
+    const Transform2 found = answer.placement(graph);
     const std::size_t newest = graph.fragments()[fragment].keyframes.back();
     const std::size_t anchor = std::ranges::find_if(graph.fragments(), &Fragment::is_located)->keyframes.front();
     graph.move(fragment, found, true);
@@ -112,9 +112,9 @@ bool FragmentSearch::add_answer(KeyframeGraph& graph, std::size_t fragment, cons
 
 /// Moves a fragment to where its newest keyframe was found, refined by a match with the keyframes around, and connects
 /// it with the nearest one. Returns whether it fits.
-bool FragmentSearch::connect(KeyframeGraph& graph, std::size_t fragment, const Transform2& T_map_fragment) {
+bool FragmentSearch::connect(KeyframeGraph& graph, std::size_t fragment, const Transform2& T_map_newest) {
     const std::size_t newest = graph.fragments()[fragment].keyframes.back();
-    const Transform2 pose = T_map_fragment * graph.pose(newest);
+    const Transform2& pose = T_map_newest;
     const auto is_near = [&](std::size_t keyframe) {
         return graph.is_in_map(keyframe) && distance_of(inverse(graph.pose(keyframe)) * pose) <= PlaceMap::kReach;
     };
@@ -251,15 +251,15 @@ std::optional<FragmentSearch::Query> FragmentSearch::ask(const KeyframeGraph& gr
     for (std::size_t first = 0; first < kStride; ++first) {
         for (std::size_t n = first; n < count; n += kStride) chosen.push_back(points[n * points.size() / count]);
     }
-    Query query{newest, T_newest_fragment, 0, kPart, map_, std::move(chosen), std::nullopt};
+    Query query{newest, 0, kPart, map_, std::move(chosen), std::nullopt};
     make_search(graph, query, expectation);
     return query;
 }
 
-std::optional<Transform2> FragmentSearch::Query::answer() const {
+std::optional<FragmentSearch::Answer> FragmentSearch::Query::answer() const {
     const auto& place = search->place();
     if (!place || place->rival_score > kRivalShare * place->score) return std::nullopt;
-    return place->T_map_points * T_keyframe_fragment;
+    return Answer{keyframe, place->T_map_points};
 }
 
 /// Returns whether enough answers agree with the newest one.
@@ -272,7 +272,7 @@ bool FragmentSearch::is_confirmed(const KeyframeGraph& graph, const std::vector<
     for (std::size_t n = answers.size() - 1; n-- > 0;) {
         const Answer& other = answers[n];
         const double travelled = graph[newest.keyframe].travelled - graph[other.keyframe].travelled;
-        const Transform2 off = inverse(newest.T_map_fragment * pose) * other.T_map_fragment * pose;
+        const Transform2 off = inverse(newest.T_map_keyframe) * other.placement(graph) * pose;
         const double allowed = kAgreementDistance + kDriftPart * travelled;
         if (distance_of(off) > allowed || std::fabs(yaw_of(off)) > kAgreementTurn) continue;
         baseline = std::max(baseline, distance_of(inverse(pose) * graph.pose(other.keyframe)));

@@ -69,8 +69,13 @@ public:
 private:
     /// A place that was found.
     struct Answer {
-        std::size_t keyframe = 0;  // the newest one then
-        Transform2 T_map_fragment; // from the fragment's own frame
+        std::size_t keyframe = 0; // the newest one then
+        Transform2 T_map_keyframe;
+
+        /// Returns T_map_fragment, from the frame that the fragment has now.
+        [[nodiscard]] Transform2 placement(const KeyframeGraph& graph) const {
+            return T_map_keyframe * inverse(graph.pose(keyframe));
+        }
     };
 
     /// A keyframe of the map, and where it was then.
@@ -98,20 +103,19 @@ private:
 
     /// A search for the newest keyframes of a fragment.
     struct Query {
-        std::size_t keyframe = 0;       // the newest one when it began
-        Transform2 T_keyframe_fragment; // then
-        std::size_t done = 0;           // lookups
-        std::size_t allowed = 0;        // lookups until the fragment has another keyframe
+        std::size_t keyframe = 0; // the newest one when it began
+        std::size_t done = 0;     // lookups
+        std::size_t allowed = 0;  // lookups until the fragment has another keyframe
         std::shared_ptr<LocatedMap> map;
         std::vector<scan_matching::SurfacePoint> points;  // of the keyframes, in the frame of the newest one
         std::optional<scan_matching::PlaceSearch> search; // nullopt: it must be done again
 
-        /// Returns T_map_fragment if one place is better than all others. Precondition: the search has ended.
-        [[nodiscard]] std::optional<Transform2> answer() const;
+        /// Returns where the keyframe is if one place is better than all others. Precondition: the search has ended.
+        [[nodiscard]] std::optional<Answer> answer() const;
 
         template <class Self, class Archive>
         static void list(Self& self, Archive& archive) {
-            archive(self.keyframe, self.T_keyframe_fragment, self.done, self.allowed, self.map, self.points);
+            archive(self.keyframe, self.done, self.allowed, self.map, self.points);
         }
     };
 
@@ -123,7 +127,7 @@ private:
     };
 
     [[nodiscard]] bool add_answer(KeyframeGraph& graph, std::size_t fragment, const Answer& answer);
-    [[nodiscard]] static bool connect(KeyframeGraph& graph, std::size_t fragment, const Transform2& T_map_fragment);
+    [[nodiscard]] static bool connect(KeyframeGraph& graph, std::size_t fragment, const Transform2& T_map_newest);
     [[nodiscard]] Searched& searched(std::size_t fragment);
     [[nodiscard]] static const std::shared_ptr<const scan_matching::PlaceMap>& places_of(const KeyframeGraph& graph,
                                                                                          LocatedMap& map);

@@ -57,6 +57,12 @@ public:
         return fragment_of(keyframe).is_located && (!is_frozen_ || keyframes_[keyframe].is_fixed);
     }
 
+    /// Returns whether the poses of two keyframes are in one frame: both are located, or of one fragment.
+    [[nodiscard]] bool share_frame(std::size_t a, std::size_t b) const {
+        if (keyframes_[a].fragment == keyframes_[b].fragment) return true;
+        return fragment_of(a).is_located && fragment_of(b).is_located;
+    }
+
     /// Adds a keyframe to a fragment.
     /// @param fragment           index of the fragment
     /// @param scan               its points

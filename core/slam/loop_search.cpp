@@ -71,7 +71,7 @@ std::vector<LoopSearch::Place> LoopSearch::nearest_places(const KeyframeGraph& g
     std::vector<Place> places;
     for (std::size_t n = 0; n < submaps_.size(); ++n) {
         const Submap& submap = submaps_[n];
-        if (!graph.fragments()[submap.fragment].is_located) continue;
+        if (!graph.share_frame(submap.anchor, keyframe)) continue;
         if (submap.fragment == searched.fragment && submap.last + kGap > searched.position) continue;
         const double distance = distance_of(inverse(graph.pose(submap.anchor)) * graph.pose(keyframe));
         const double drift = std::min(kDriftMax, kDrift * lengths[submap.anchor]);

@@ -27,7 +27,7 @@ class LoopSearch {
 public:
     /// Searches for places around the newest keyframe of a fragment.
     /// @param graph     receives edges; its poses may move
-    /// @param fragment  index of a fragment; it is located
+    /// @param fragment  index of a fragment. While it is not located, only its own places are known
     /// Cost: at every second keyframe, time in proportion to the number of keyframes, and up to three scan matches.
     void search(KeyframeGraph& graph, std::size_t fragment);
 

@@ -56,8 +56,8 @@ void SharedMap::add_keyframe(std::size_t fragment, ScanPoints scan, const Transf
 }
 
 void SharedMap::search(std::size_t fragment) {
-    if (graph_.fragments()[fragment].is_located) return loops_.search(graph_, fragment);
-    loops_.add_submaps(graph_, fragment);
+    loops_.search(graph_, fragment);
+    if (graph_.fragments()[fragment].is_located) return;
     if (!fragments_.search(graph_, fragment)) return;
     ++optimizations_;
     graph_.optimize_after_jump();

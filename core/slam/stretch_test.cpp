@@ -59,7 +59,8 @@ struct StretchHypothesis {
     [[nodiscard]] double share() const { return evidence.share(); }
 };
 
-/// The test of one stretch: the newest keyframes of a fragment against all other located ones.
+/// The test of one stretch: the newest keyframes of a fragment against all others of the map, or, while it is not
+/// located, of the fragment.
 class StretchTest {
 public:
     StretchTest(const KeyframeGraph& graph, const StretchQuestion& question)
@@ -103,7 +104,11 @@ public:
     }
 
     /// Returns whether a keyframe is in the map that the stretch is compared with, if it is near.
-    [[nodiscard]] bool is_old(std::size_t keyframe) const { return graph_.is_in_map(keyframe) && !contains(keyframe); }
+    [[nodiscard]] bool is_old(std::size_t keyframe) const {
+        const bool is_known =
+            graph_.fragment_of(newest_).is_located ? graph_.is_in_map(keyframe) : graph_.share_frame(keyframe, newest_);
+        return is_known && !contains(keyframe);
+    }
 
 private:
     /// Returns the metres travelled from a keyframe of the fragment to its newest one.
