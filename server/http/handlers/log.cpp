@@ -104,6 +104,10 @@ Result<Response> get_log(Context& context) {
     const auto& info = session->info();
 
     const auto maps = session->snapshot();
+    if (is_carmen && !maps->bounds.sonar.empty()) { // perhaps far behind what has been sent by then
+        return Error{Errc::kConflict, "the session has scans of sonars, which a CARMEN log cannot represent; request "
+                                      "the log without format=clf"};
+    }
     const LogFormat written_as = is_carmen ? carmen_format(info, maps->scan_poses) : protobuf_format();
     auto stream = std::make_shared<LogStream>(session, context.services.log, written_as, maps->revision);
     if (auto begun = stream->begin(); !begun) return begun.error();

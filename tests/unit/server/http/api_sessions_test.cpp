@@ -261,5 +261,23 @@ TEST_F(ApiTest, FailedSessionHasAReasonAndServesItsMap) {
               (boost::json::array{{{"name", "a"}, {"state", "failed"}, {"reason", "the disk is full"}}}));
 }
 
+TEST_F(ApiTest, CarmenLogOfASessionWithSonarsIsRefusedBeforeItBegins) {
+    create("a");
+    stream("a", 4);
+    EXPECT_EQ(get("/api/v1/sessions/a/log?format=clf").status, Status::ok);
+    Sensor ring = laser();
+    ring.id = 3;
+    ring.kind = SensorKind::kSonar;
+    ring.aperture = 0.5;
+    Scan echo = scan(5);
+    echo.sensor = ring.id;
+    const auto session = registry_.find("a");
+    const auto link = join("a", "r1", echo.seq);
+    session->submit(link, ring, 0);
+    session->submit(link, {echo}, 1);
+    link->wait();
+    EXPECT_THAT(detail(get("/api/v1/sessions/a/log?format=clf"), Status::conflict), HasSubstr("scans of sonars"));
+}
+
 } // namespace
 } // namespace scanloom::http
