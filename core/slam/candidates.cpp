@@ -109,7 +109,7 @@ public:
         keep(first);
         if (is_plain) return std::move(found_);
         try_other_priors();
-        if (best_inliers() < inliers_wanted()) try_other_starts();
+        if (best_inliers() < kInliersFar) try_other_starts();
         if (counts_prediction() || best_inliers() < kUsable) {
             found_.push_back({expected_, kUnmatchedValue, 0.0, false, loose_.position_sigma, loose_.yaw_sigma});
         }
