@@ -46,7 +46,6 @@ constexpr double kDriftPart = 0.03;            // of the way between two answers
 constexpr double kWindow = 1.0; // metres, of the stretch test
 // Share of its evidence that may contradict the map. A complete map is often older than what the robot sees.
 constexpr double kContradictedMax = 0.02;
-constexpr double kContradictedPerAnswer = 0.005; // in addition, for each that agrees beyond kAnswers
 constexpr double kNoiseFactor = 1.5;
 constexpr double kContradictedInCompleteMap = 0.08;
 
@@ -96,16 +95,12 @@ bool FragmentSearch::search(KeyframeGraph& graph, std::size_t fragment) {
 bool FragmentSearch::add_answer(KeyframeGraph& graph, std::size_t fragment, const Answer& answer) {
     Searched& state = searched(fragment);
     state.answers.push_back(answer);
-    const std::size_t agreeing = count_agreeing(graph, state.answers);
-    if (agreeing < kAnswers) return false;
+    if (!is_confirmed(graph, state.answers)) return false;
     const Transform2 found = answer.placement(graph);
     const std::size_t newest = graph.fragments()[fragment].keyframes.back();
     const std::size_t anchor = std::ranges::find_if(graph.fragments(), &Fragment::is_located)->keyframes.front();
     graph.move(fragment, found, true);
-    const double contradicted_max =
-        std::min(kContradictedMax + kContradictedPerAnswer * static_cast<double>(agreeing - kAnswers),
-                 kContradictedInCompleteMap);
-    StretchQuestion question{newest, anchor, Transform2(), kWindow, contradicted_max, kNoiseFactor};
+    StretchQuestion question{newest, anchor, Transform2(), kWindow, kContradictedMax, kNoiseFactor};
     if (is_map_complete_) question = {newest, anchor, Transform2(), kWindow, kContradictedInCompleteMap};
     if (!accept_stretch(graph, question)) {
         graph.move(fragment, inverse(found), false);
@@ -267,8 +262,8 @@ std::optional<FragmentSearch::Answer> FragmentSearch::Query::answer() const {
     return Answer{keyframe, place->T_map_points};
 }
 
-/// Returns how many answers agree with the newest one, itself included; 0 if all are at nearly the same place.
-std::size_t FragmentSearch::count_agreeing(const KeyframeGraph& graph, const std::vector<Answer>& answers) const {
+/// Returns whether enough answers agree with the newest one.
+bool FragmentSearch::is_confirmed(const KeyframeGraph& graph, const std::vector<Answer>& answers) const {
     const Answer& newest = answers.back();
     const Transform2& pose = graph.pose(newest.keyframe); // in the fragment's frame
     std::size_t count = 1;
@@ -286,7 +281,7 @@ std::size_t FragmentSearch::count_agreeing(const KeyframeGraph& graph, const std
         ++count;
     }
     const double wanted = is_map_complete_ ? kBaselineInCompleteMap : kBaseline;
-    return baseline >= wanted ? count : 0;
+    return count >= kAnswers && baseline >= wanted;
 }
 
 } // namespace scanloom::slam

@@ -137,7 +137,7 @@ private:
     void update_map(const KeyframeGraph& graph);
     [[nodiscard]] std::optional<Query> ask(const KeyframeGraph& graph, std::size_t fragment,
                                            const std::optional<Expectation>& expectation);
-    [[nodiscard]] std::size_t count_agreeing(const KeyframeGraph& graph, const std::vector<Answer>& answers) const;
+    [[nodiscard]] bool is_confirmed(const KeyframeGraph& graph, const std::vector<Answer>& answers) const;
 
     std::shared_ptr<LocatedMap> map_ = std::make_shared<LocatedMap>(); // without keyframes: none was needed yet
     std::vector<Searched> searched_;                                   // by fragment
