@@ -220,7 +220,8 @@ public:
     /// @param timeout  longest time to wait, milliseconds
     /// @param options   start, body radius and costs
     /// @return the path, from the start to `goal`, in metres in the map frame
-    /// Errors: kNoPath if no path leads there: the message says what blocks it; those of all requests, see Client.
+    /// Errors: kNoPath if no path leads there, or without a start if the server has lost the robot: the message says
+    ///     which; those of all requests, see Client.
     /// Source: Dijkstra, A note on two problems in connexion with graphs (1959), over the cells; then straightened.
     [[nodiscard]] Result<Path> plan(const Point2& goal, std::chrono::milliseconds timeout,
                                     const PlanOptions& options = {});
@@ -228,8 +229,8 @@ public:
     /// Asks for the next exploration goal. The server keeps it for this robot, so that other robots get other goals.
     /// @param timeout  longest time to wait, milliseconds
     /// @return the goal and the path to it, in metres in the map frame; or why there is none
-    /// Errors: kNoPath if the robot stands where no path can start, e.g. inside an obstacle; those of all requests, see
-    ///     Client.
+    /// Errors: kNoPath if the robot stands where no path can start, e.g. inside an obstacle, or if the server has lost
+    ///     it: then stop, because the robot's goal ends; those of all requests, see Client.
     /// Source: Yamauchi, A frontier-based approach for autonomous exploration (1997).
     [[nodiscard]] Result<ExplorationGoal> next_goal(std::chrono::milliseconds timeout);
 

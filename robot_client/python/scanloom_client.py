@@ -1230,7 +1230,8 @@ class Client:
              body_radius: Optional[float] = None, danger_cost: Optional[float] = None,
              timeout: Optional[float] = None) -> Path:
         """Returns the cheapest path to a point, from the pose of the newest scan or from start. Raises ScanloomError
-        with NO_PATH if there is no path, and TIMEOUT without an answer within timeout seconds."""
+        with NO_PATH if there is no path or the server has lost the robot, and TIMEOUT without an answer within timeout
+        seconds."""
         frame = _Frame()
         request = frame.plan_request
         _set_point("goal", goal, request.goal)
