@@ -104,7 +104,7 @@ Result<Response> get_log(Context& context) {
     const auto& info = session->info();
 
     const auto maps = session->snapshot();
-    if (is_carmen && !maps->bounds.sonar.empty()) { // perhaps far behind what has been sent by then
+    if (is_carmen && !maps->bounds.sonar.empty()) { // or it would break off at the first of them
         return Error{Errc::kConflict, "the session has scans of sonars, which a CARMEN log cannot represent; request "
                                       "the log without format=clf"};
     }
