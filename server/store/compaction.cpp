@@ -3,6 +3,33 @@
 #include <utility>
 
 namespace scanloom::store {
+namespace {
+
+/// Marks a table that holds the removal of a range.
+class RemovalMark final : public rocksdb::TablePropertiesCollector {
+public:
+    rocksdb::Status AddUserKey(const rocksdb::Slice&, const rocksdb::Slice&, rocksdb::EntryType type,
+                               rocksdb::SequenceNumber, std::uint64_t) override {
+        if (type == rocksdb::kEntryRangeDeletion) has_removal_ = true;
+        return rocksdb::Status::OK();
+    }
+
+    bool NeedCompact() const override { return has_removal_; }
+    rocksdb::Status Finish(rocksdb::UserCollectedProperties*) override { return rocksdb::Status::OK(); }
+    rocksdb::UserCollectedProperties GetReadableProperties() const override { return {}; }
+    const char* Name() const override { return "RemovalMark"; }
+
+private:
+    bool has_removal_ = false;
+};
+
+class RemovalMarks final : public rocksdb::TablePropertiesCollectorFactory {
+public:
+    rocksdb::TablePropertiesCollector* CreateTablePropertiesCollector(Context) override { return new RemovalMark; }
+    const char* Name() const override { return "RemovalMarks"; }
+};
+
+} // namespace
 
 void CompactionSwitch::update(std::uint64_t free_bytes) {
     if (is_stopped_) return;
@@ -35,6 +62,10 @@ void CompactionWatch::OnBackgroundError(rocksdb::BackgroundErrorReason reason, r
         if (report_) report_(*failed_);
     }
     *error = rocksdb::Status::OK(); // writes continue
+}
+
+std::shared_ptr<rocksdb::TablePropertiesCollectorFactory> compaction_of_removals() {
+    return std::make_shared<RemovalMarks>();
 }
 
 } // namespace scanloom::store

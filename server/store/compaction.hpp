@@ -2,15 +2,17 @@
 
 #include <rocksdb/db.h>
 #include <rocksdb/listener.h>
+#include <rocksdb/table_properties.h>
 
 #include <algorithm>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <optional>
 
-/// Compactions, with which RocksDB merges its tables in the background: paused while the disk is full, and not fatal
-/// if they fail.
+/// Compactions, with which RocksDB merges its tables in the background: paused while the disk is full, not fatal if
+/// they fail, and begun where they remove data.
 namespace scanloom::store {
 
 /// Pauses RocksDB's compactions while the disk has little room. Merged tables exist next to the old ones for a while
@@ -67,5 +69,11 @@ private:
     std::optional<rocksdb::Status> failed_;
     Report report_;
 };
+
+/// Returns what marks each new table that holds the removal of a range of keys for compaction. Compactions then carry
+/// the removal down to the last level, whatever else is merged meanwhile, and so free the disk space of removed
+/// sessions. Without marks, a removal stays in an upper level until enough is written after it.
+/// Source: RocksDB 7.8, table_properties.h, TablePropertiesCollector::NeedCompact.
+[[nodiscard]] std::shared_ptr<rocksdb::TablePropertiesCollectorFactory> compaction_of_removals();
 
 } // namespace scanloom::store

@@ -9,7 +9,6 @@
 #include <fmt/format.h>
 #include <rocksdb/convenience.h>
 #include <rocksdb/env.h>
-#include <rocksdb/experimental.h>
 
 #include <set>
 #include <string_view>
@@ -225,7 +224,6 @@ void Database::free_disk(SessionId session) {
         const rocksdb::Slice end(range.end);
         rocksdb::DeleteFilesInRange(&rocksdb(), rocksdb().DefaultColumnFamily(), &begin, &end, false)
             .PermitUncheckedError();
-        rocksdb::experimental::SuggestCompactRange(&rocksdb(), &begin, &end).PermitUncheckedError();
     }
 }
 

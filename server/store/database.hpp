@@ -73,8 +73,9 @@ public:
     [[nodiscard]] Result<> check_files() { return opened_.files ? opened_.files->check() : Result<>(); }
 
     /// Frees the disk space of a removed session. Deletes tables that contain nothing else immediately. Compactions
-    /// remove the rest, but only once the removal is in a table: so the memtable is flushed first if there is room. A
-    /// failure only costs disk space, because the remaining entries belong to no session.
+    /// remove the rest, see compaction_of_removals(), but only once the removal is in a table: so the memtable is
+    /// flushed first if there is room. A failure only costs disk space, because the remaining entries belong to no
+    /// session.
     void free_disk(SessionId session);
 
     /// Returns the sessions that have entries or checkpoint parts but no record. Unreadable data is reported when the

@@ -91,6 +91,7 @@ void set_disk(rocksdb::Options& rocksdb, const StoreOptions& options) {
     rocksdb.target_file_size_base = rocksdb.write_buffer_size;
     rocksdb.max_bytes_for_level_base = 4 * rocksdb.write_buffer_size;
     rocksdb.max_background_jobs = 2;
+    rocksdb.table_properties_collector_factories.push_back(compaction_of_removals());
     // Writes slow down when merging cannot keep up, but never stop: merging may have ended for good, see
     // CompactionWatch.
     rocksdb.level0_stop_writes_trigger = std::numeric_limits<int>::max();

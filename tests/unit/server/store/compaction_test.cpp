@@ -78,7 +78,7 @@ TEST_F(FreedDisk, RemovingOneOfTwoInterleavedSessionsFreesHalfOfItsBytes) {
     for (const auto& entry : distinct_entries(one, 1, kEntries)) of_one += entry.size();
     const auto before = log_->bytes_on_disk();
     ASSERT_TRUE(log_->remove_session(one));
-    EXPECT_TRUE(files_->wait_for([&] { return log_->bytes_on_disk() < before - of_one / 2; }))
+    EXPECT_TRUE(files_->wait_for([&] { return log_->bytes_on_disk() < before - of_one / 10 * 9; }))
         << log_->bytes_on_disk() << " of " << before << " bytes are left";
     EXPECT_EQ(entries_after(*log_, other, 0).value(), distinct_entries(other, 1, kEntries));
 }

@@ -39,16 +39,24 @@ protected:
                 append_and_wait(*log, id, 1, distinct_entries(id, 1, kInTable)).value();
             }
         }
-        auto log = open_rocksdb(at("original")).value();
-        log->remove_session(3).value(); // a table still has its record
+        log_ = open_without_compactions("original");
+        log_->remove_session(3).value(); // a table still has its record
         for (Revision revision = kInTable + 1; revision <= kInTable + kInLog; ++revision) {
-            append_and_wait(*log, 1, revision, {distinct_entry(1, revision)}).value();
+            append_and_wait(*log_, 1, revision, {distinct_entry(1, revision)}).value();
         }
         copy_store(at("original"), store());
     }
 
     [[nodiscard]] fs::path at(const char* name) const { return directory_.path() / name; }
     [[nodiscard]] fs::path store() const { return at("store"); }
+
+    /// Opens a store on a disk that has room for tables, but not for compactions.
+    [[nodiscard]] std::unique_ptr<ScanLog> open_without_compactions(const char* name) {
+        StoreOptions options;
+        options.env = disk_.env.get();
+        disk_.files->set_free_bytes(options.disk_reserve_bytes + 1);
+        return open_rocksdb(at(name), options).value();
+    }
 
     /// Returns the table with the most entries.
     [[nodiscard]] fs::path largest_table() const {
@@ -77,6 +85,8 @@ protected:
     }
 
     TemporaryDirectory directory_;
+    FaultyEnv disk_;
+    std::unique_ptr<ScanLog> log_; // of the original
 };
 
 class DamagedStoreTrials : public DamagedStoreTest {};
@@ -216,18 +226,16 @@ TEST_F(DamagedStoreTest, KeepsMergedTablesWithoutAManifest) {
 
 /// Removals in tables can only be read with the manifest.
 TEST_F(DamagedStoreTest, WithoutAManifestOnlyRemovalsInTheWriteAheadLogCount) {
-    {
-        StoreOptions options;
-        options.disk_reserve_bytes = std::uint64_t{1} << 60; // without room, a removal is not moved to a table
-        open_rocksdb(store(), options).value()->remove_session(2).value();
-    }
+    disk_.files->set_free_bytes(0); // without room, a removal is not moved to a table
+    log_->remove_session(2).value();
+    copy_store(at("original"), store());
     fs::remove(store() / "CURRENT");
     EXPECT_THAT(opened()->sessions(), ElementsAre(Key(1), Key(3)));
 }
 
 TEST_F(DamagedStoreTrials, AManifestThatEndsEarlyCostsNoTable) {
     {
-        auto log = open_rocksdb(at("growing")).value();
+        auto log = open_without_compactions("growing");
         for (SessionId id = 1; id <= 3; ++id) { // each in a table of its own, one after the other
             ASSERT_EQ(log->create_session("kept").value(), 2 * id - 1);
             append_and_wait(*log, 2 * id - 1, 1, distinct_entries(2 * id - 1, 1, 50)).value();
