@@ -39,6 +39,17 @@ public:
     /// Returns the estimated poses of the scans.
     [[nodiscard]] const SessionPoses& poses() const noexcept { return poses_; }
 
+    /// Returns the memory use in pages: that of the maps, and of the poses one for each keyframe, with its share of what
+    /// scans are matched to, and kScanBytes for each scan.
+    [[nodiscard]] std::size_t page_count() const noexcept { return projection_.page_count() + pages_of_poses(); }
+
+    /// Returns the state of the maps for a checkpoint, with the pages of the poses; see mapping::Projection::state().
+    [[nodiscard]] mapping::ProjectionState state() const {
+        mapping::ProjectionState state = projection_.state();
+        state.pages += pages_of_poses();
+        return state;
+    }
+
     /// Applies the next entry of the log, or a part of it; see mapping::Projection::apply().
     /// @param entry  as in the log in the first call; a scan without a pose gets its estimated pose, unless it is
     ///               excluded: then the poses of the others are estimated as if it were not in the log
@@ -76,7 +87,12 @@ public:
     }
 
 private:
+    static constexpr std::size_t kScanBytes = 250;
+
     void begin();
+    [[nodiscard]] std::size_t pages_of_poses() const noexcept {
+        return poses_.map().graph().size() + poses_.scan_count() * kScanBytes / mapping::kPageBytes;
+    }
 
     mapping::Projection projection_;
     SessionPoses poses_;

@@ -20,7 +20,7 @@ void keep_progress(store::ScanLog& log, const SessionInfo& info, Recovered& reco
     auto& projection = recovered.maps.projection();
     if (projection.revision() <= recovered.checkpointed.value_or(0)) return; // no progress
     const auto snapshot = projection.snapshot();
-    const auto written = write_checkpoint(log, info.id, snapshot, projection.state(), recovered.checkpointed,
+    const auto written = write_checkpoint(log, info.id, snapshot, recovered.maps.state(), recovered.checkpointed,
                                           finish_early, estimation_to_store(recovered.maps));
     log::info({.session = info.name}, "session '{}': recovery stopped after entry {}{}", info.name, snapshot.revision,
               written ? "; the next start continues there" : "");

@@ -44,7 +44,7 @@ Session::Session(SessionInfo info, localization::LocalizedProjection maps, std::
     : info_(std::move(info)), log_(log), counters_(std::move(counters)), limits_(limits),
       blocking_executor_(blocking_executor.value_or(compute)), strand_(std::move(compute)),
       sequencer_(info_, *counters_), maps_(std::move(maps)), appended_(maps_.projection().revision()),
-      share_(limits.shared), pages_(maps_.projection().page_count()), checkpoints_(info_.id, checkpointed) {
+      share_(limits.shared), pages_(maps_.localized().page_count()), checkpoints_(info_.id, checkpointed) {
     share_.take_anyway(static_cast<std::int64_t>(pages_)); // its log is stored, so its maps must be served
     sequencer_.restore(maps_.projection().state());
     for (RobotIndex robot = 0; robot < maps_.projection().robots().size(); ++robot) {
@@ -256,13 +256,13 @@ Group Session::take_applied_group() {
     durable_.pop_front();
     applied_ = 0;
     chunks_under_way_ -= group.chunks;
-    const auto grown = maps_.projection().page_count() - std::exchange(pages_, maps_.projection().page_count());
-    share_.give_back(group.chunks - static_cast<std::int64_t>(grown)); // `grown` may include trajectory blocks, too
+    const auto grown = maps_.localized().page_count() - std::exchange(pages_, maps_.localized().page_count());
+    share_.give_back(group.chunks - static_cast<std::int64_t>(grown)); // which may include more than chunks
     return group;
 }
 
 void Session::begin_checkpoint() {
-    auto write = [self = shared_from_this(), snapshot = snapshot(), state = maps_.projection().state(),
+    auto write = [self = shared_from_this(), snapshot = snapshot(), state = maps_.localized().state(),
                   estimation = estimation_to_store(maps_.localized()),
                   since = checkpoints_.begin(maps_.projection().revision())] {
         const auto written = sessions::write_checkpoint(self->log_, self->info_.id, *snapshot, state, since,

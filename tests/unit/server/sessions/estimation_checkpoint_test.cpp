@@ -150,7 +150,7 @@ TEST_F(EstimationCheckpointTest, TheSummaryShowsHowWellPosesAreKnown) {
     EXPECT_EQ(shown.localization.inlier_ratio, before->robots.at(0).localization.inlier_ratio);
     EXPECT_EQ(shown.pose, before->robots.at(0).pose);
     auto maps = recover(log_, id_, config_, false).value().maps;
-    EXPECT_EQ(summary->pages, maps.projection().page_count());
+    EXPECT_EQ(summary->pages, maps.page_count());
 }
 
 /// A store that fails after a given number of checkpoint pieces, as after a power cut.
