@@ -39,8 +39,8 @@ public:
     /// Returns the estimated poses of the scans.
     [[nodiscard]] const SessionPoses& poses() const noexcept { return poses_; }
 
-    /// Returns the memory use in pages: that of the maps, and of the poses one for each keyframe, with its share of what
-    /// scans are matched to, and kScanBytes for each scan.
+    /// Returns the memory use in pages: that of the maps, and of the poses one for each keyframe, with its share of
+    /// what scans are matched to, and kScanBytes for each scan.
     [[nodiscard]] std::size_t page_count() const noexcept { return projection_.page_count() + pages_of_poses(); }
 
     /// Returns the state of the maps for a checkpoint, with the pages of the poses; see mapping::Projection::state().

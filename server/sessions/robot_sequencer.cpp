@@ -1,10 +1,12 @@
 #include "server/sessions/robot_sequencer.hpp"
 
 #include "common/wire/messages.hpp"
+#include "core/scan_matching/scan_points.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace scanloom::sessions {
 namespace {
@@ -17,6 +19,16 @@ Error map_already_begun(const std::string& robot, const std::string& session) {
                         "session has a map by now, and the pose of one relative to the other is not known: give the "
                         "robot's pose again, or send these scans to another session",
                         robot, session)};
+}
+
+/// Checks that the scans of a sensor can be used to estimate poses.
+Result<> check_mount(const Sensor& sensor) {
+    const double distance = std::hypot(sensor.mount.x, sensor.mount.y);
+    if (sensor.kind == SensorKind::kSonar || distance <= scan_matching::kMountDistanceMax) return {};
+    return Error{Errc::kInvalidField,
+                 fmt::format("mount is {:.1f} m from the robot's origin; poses are estimated with lasers within {} m "
+                             "of it: give the mount in metres, in the robot frame",
+                             distance, scan_matching::kMountDistanceMax)};
 }
 
 } // namespace
@@ -183,7 +195,9 @@ std::vector<PendingEntry> RobotSequencer::describe(const std::shared_ptr<RobotLi
     std::vector<PendingEntry> entries;
     Member* member = member_of(from);
     if (member == nullptr) return entries;
-    if (auto ok = mapping::check_reach(info_.config, sensor); !ok) {
+    auto ok = mapping::check_reach(info_.config, sensor);
+    if (ok && logged(*member).poses != Poses::kMap) ok = check_mount(sensor);
+    if (!ok) {
         fail(*member, prefixed("sensor_description.", ok.error()));
         return entries;
     }

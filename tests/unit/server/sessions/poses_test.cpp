@@ -100,6 +100,19 @@ TEST_F(PosesTest, SonarsAloneNeedOdometry) {
     EXPECT_EQ(refusal_of(with_laser, scan), "accepted");
 }
 
+TEST_F(PosesTest, PosesAreNotEstimatedWithALaserFarFromItsRobot) {
+    Sensor far = small_laser();
+    far.mount = {12.0, -16.1, 0.0};
+    EXPECT_THAT(joined(Poses::kMap, far, "sends poses")->failures, IsEmpty());
+    const auto link = joined(Poses::kOdometry, far, "does not");
+    ASSERT_THAT(link->failures, SizeIs(1));
+    EXPECT_EQ(link->failures[0].message, "sensor_description.mount is 20.1 m from the robot's origin; poses are "
+                                         "estimated with lasers within 20 m of it: give the mount in metres, in the "
+                                         "robot frame");
+    far.mount.y = -15.9;
+    EXPECT_THAT(joined(Poses::kNone, far, "neither")->failures, IsEmpty());
+}
+
 TEST_F(PosesTest, ScansBeforeOneWithTheWrongPoseAreKept) {
     const auto link = joined(Poses::kOdometry);
     session_->submit(link, {scan_with(1, std::nullopt, kPlace), scan_with(2, kPlace, kPlace)}, 10);
