@@ -27,7 +27,8 @@ constexpr double kShiftDistance = 25.0; // metres of the stretch that shifts are
 constexpr double kShiftStep = 0.2;      // metres between shifts
 constexpr std::size_t kShifts = 8;      // best shifts that are followed
 constexpr int kShiftsApart = 3;         // steps between them, at least
-constexpr std::size_t kFitEvery = 2;    // keyframes of the stretch
+constexpr double kFitDistance = 1.5;    // metres travelled between keyframes that are matched
+constexpr std::size_t kFitPoints = 100; // of a scan with more, every second, third... is matched
 constexpr double kFitInliers = 0.5;
 constexpr double kSamePlaceDistance = 0.5; // metres: closer ways at the newest keyframe are one
 constexpr double kSamePlaceTurn = 0.1;     // radians
@@ -46,6 +47,12 @@ constexpr double kLoopDisagreement = 0.5; // metres between a fit and an older l
 struct Fit {
     std::size_t keyframe = 0;
     Transform2 T_map_keyframe;
+};
+
+/// A keyframe that is matched to the old map, with some of its points.
+struct FittedScan {
+    std::size_t keyframe = 0;
+    std::vector<SurfacePoint> points{};
 };
 
 /// A correction of the stretch, and how well the stretch then fits the old map.
@@ -71,6 +78,7 @@ public:
             length = std::min(length, 0.5 * before_newest(question.anchor));
         }
         while (first_ > 0 && before_newest(keyframes_[first_]) < length) --first_;
+        choose_fits();
         collect_old_map();
         collect_evidence();
     }
@@ -125,6 +133,19 @@ private:
     [[nodiscard]] double moved_by(const StretchHypothesis& hypothesis) const {
         const Transform2& pose = graph_.pose(newest_);
         return distance_of(inverse(pose) * (hypothesis.correction * pose));
+    }
+
+    /// Chooses the keyframes that are matched to the old map, the newest first.
+    void choose_fits() {
+        for (std::size_t n = keyframes_.size(); n-- > first_;) {
+            if (!fitted_.empty() &&
+                before_newest(keyframes_[n]) - before_newest(fitted_.back().keyframe) < kFitDistance)
+                continue;
+            auto& fitted = fitted_.emplace_back(FittedScan{.keyframe = keyframes_[n]});
+            const auto& points = points_of(n);
+            const std::size_t step = (points.size() + kFitPoints - 1) / kFitPoints;
+            for (std::size_t k = 0; k < points.size(); k += step) fitted.points.push_back(points[k]);
+        }
     }
 
     void collect_old_map() {
@@ -214,23 +235,24 @@ private:
         return corrections;
     }
 
-    /// Follows a hypothesis backwards along the stretch: by the trajectory, corrected by every second keyframe that
-    /// fits.
+    /// Follows a hypothesis backwards along the stretch: by the trajectory, corrected by the chosen keyframes that fit.
     [[nodiscard]] StretchHypothesis follow(StretchHypothesis hypothesis) {
         Transform2 pose = hypothesis.correction * graph_.pose(newest_);
-        const std::size_t last = keyframes_.size() - 1;
-        for (std::size_t n = last + 1; n-- > first_;) {
+        auto fitted = fitted_.begin();
+        for (std::size_t n = keyframes_.size(); n-- > first_;) {
             const std::size_t keyframe = keyframes_[n];
-            if (n < last) pose = pose * (inverse(graph_.pose(keyframes_[n + 1])) * graph_.pose(keyframe));
-            if ((last - n) % kFitEvery == 0) {
+            if (n + 1 < keyframes_.size())
+                pose = pose * (inverse(graph_.pose(keyframes_[n + 1])) * graph_.pose(keyframe));
+            if (fitted != fitted_.end() && fitted->keyframe == keyframe) {
                 const auto match =
-                    match_to_lines(points_of(n), old_map_.points(), pose, {pose, 0.1, 0.05},
+                    match_to_lines(fitted->points, old_map_.points(), pose, {pose, 0.1, 0.05},
                                    {.steps_max = 8, .first_gate = 0.4, .first_scale = 0.2, .last_scale = 0.08});
+                ++fitted;
                 if (match.inlier_ratio >= kFitInliers) {
                     pose = match.T_map_robot;
                     if (hypothesis.fits.empty()) hypothesis.correction = pose * inverse(graph_.pose(keyframe));
                     hypothesis.fits.push_back({keyframe, pose});
-                    const std::size_t before = keyframes_[n > first_ + kFitEvery ? n - kFitEvery : first_];
+                    const std::size_t before = fitted != fitted_.end() ? fitted->keyframe : keyframes_[first_];
                     hypothesis.overlap += graph_[keyframe].travelled - graph_[before].travelled;
                 }
             }
@@ -261,6 +283,7 @@ private:
     std::size_t newest_;
     std::span<const std::size_t> keyframes_;          // of its fragment
     std::size_t first_;                               // position of the first one of the stretch
+    std::vector<FittedScan> fitted_;                  // the newest first
     std::vector<std::size_t> old_;                    // the others that are near, in the order of their scans
     KeyframeMap old_map_;                             // of these, in the map's frame
     std::vector<std::vector<SurfacePoint>> evidence_; // by position from first_
