@@ -1,23 +1,22 @@
 #include "tests/integration/ingest_fixture.hpp"
+#include "tests/support/captured_log.hpp"
 #include "tests/support/http_client.hpp"
 #include "tests/support/temporary_directory.hpp"
 #include "tests/support/test_certificate.hpp"
 #include "tests/support/tls_http_client.hpp"
 
 #include <boost/asio/post.hpp>
-#include <spdlog/sinks/ostream_sink.h>
-#include <spdlog/spdlog.h>
 
 #include <atomic>
 #include <future>
 #include <latch>
-#include <sstream>
 
 /// Links that the server ends: deadlines, limits, a failing disk, deletion, shutdown.
 namespace scanloom::ingest {
 namespace {
 
 using namespace std::chrono_literals;
+using testing_support::CapturedLog;
 
 TEST_F(IngestTest, AMissingHelloIsReportedToTheRobot) {
     IngestConfig config;
@@ -160,25 +159,6 @@ TEST_F(IngestTest, AnHttpRequestIsReferredToTheHttpPort) {
     EXPECT_THAT(answer.body, testing::HasSubstr("browsers to the HTTP port"));
     EXPECT_TRUE(browser.ends_in_order());
 }
-
-/// The server's log lines during the lifetime of this object.
-class CapturedLog {
-public:
-    CapturedLog() {
-        spdlog::set_default_logger(
-            std::make_shared<spdlog::logger>("test", std::make_shared<spdlog::sinks::ostream_sink_mt>(text_)));
-    }
-    CapturedLog(const CapturedLog&) = delete;
-    CapturedLog& operator=(const CapturedLog&) = delete;
-    ~CapturedLog() { spdlog::set_default_logger(earlier_); }
-
-    /// Pre: all logging has ended.
-    [[nodiscard]] std::string text() const { return text_.str(); }
-
-private:
-    std::shared_ptr<spdlog::logger> earlier_ = spdlog::default_logger();
-    std::ostringstream text_;
-};
 
 TEST_F(IngestTest, TheLogDistinguishesRobotsFromConnectionsWithoutAHello) {
     CapturedLog log;

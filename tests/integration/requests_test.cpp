@@ -143,6 +143,43 @@ TEST_F(RequestsTest, TheLastPlanIsKeptUntilTheRobotLeaves) {
     EXPECT_THAT(page().robots, testing::IsEmpty());
 }
 
+TEST_F(RequestsTest, TheGoalOfARobotThatIsLostIsTakenBack) {
+    auto& ingest = start();
+    auto greeting = hello("r");
+    greeting.poses = Poses::kNone;
+    const auto robot = welcomed(port(), greeting);
+    robot->send(half_round_laser());
+    const auto send_scan = [&](std::uint64_t seq, auto change) {
+        Scan scan = scan_with_a_gap(seq);
+        scan.pose.reset();
+        change(scan);
+        robot->send(wire::ScanBatch{{scan}});
+        robot->wait_for_ack(seq);
+    };
+    send_scan(1, [](Scan&) {});
+    robot->send(wire::GoalRequest{.id = 1});
+    EXPECT_TRUE(robot->receive_kind<wire::GoalReply>().result);
+    const auto goals = [&] {
+        return ingest.goals().paths().page(ingest.sessions().find("lab"), guidance::RobotPaths::Clock::now());
+    };
+    EXPECT_EQ(goals().robots.size(), 1U);
+    for (std::uint64_t seq = 2; seq < 32; ++seq) {
+        send_scan(seq, [seq](Scan& scan) { // the laser is covered
+            for (std::size_t k = 0; k < scan.ranges.size(); ++k) {
+                scan.ranges[k] = static_cast<RangeMm>(300 + 97 * (k * k + seq) % 400);
+            }
+        });
+    }
+    while (ingest.snapshot("lab")->robots.at(0).localization.state != LocalizationState::kLost) {
+        std::this_thread::yield();
+    }
+    robot->send(wire::GoalRequest{.id = 2});
+    const auto refused = robot->receive_kind<wire::GoalReply>();
+    EXPECT_EQ(refused.result.error().code, Errc::kNoPath);
+    EXPECT_THAT(refused.result.error().message, testing::HasSubstr("it is lost"));
+    EXPECT_THAT(goals().robots, testing::IsEmpty());
+}
+
 TEST_F(RequestsTest, UnsatisfiableRequestsAreRefusedAndTheLinkContinues) {
     start();
     const auto robot = looking_around("r");

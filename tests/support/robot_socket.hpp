@@ -47,7 +47,7 @@ public:
         }
     }
 
-    /// Waits for the next message of this kind and skips acknowledgements.
+    /// Waits for the next message of this kind; skips acknowledgements and corrections.
     template <class Kind>
     Kind receive_kind() {
         for (;;) {
@@ -57,7 +57,7 @@ public:
             if (const auto* error = std::get_if<wire::LinkError>(&*message)) {
                 throw std::runtime_error("the server answered: " + error->error.message);
             }
-            if (!std::holds_alternative<wire::Ack>(*message)) {
+            if (!std::holds_alternative<wire::Ack>(*message) && !std::holds_alternative<wire::Correction>(*message)) {
                 throw std::runtime_error("the server sent a " + std::string(wire::name_of(*message)));
             }
         }

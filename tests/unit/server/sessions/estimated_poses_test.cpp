@@ -1,4 +1,5 @@
 #include "server/sessions/replay_job.hpp"
+#include "tests/support/captured_log.hpp"
 #include "tests/unit/server/sessions/estimated_poses_fixture.hpp"
 
 #include <algorithm>
@@ -187,6 +188,29 @@ TEST_F(EstimatedPosesTest, AnOperatorSaysWhereARobotIs) {
     EXPECT_EQ(state(), expected);
     EXPECT_EQ(relocalized("absent", {}).error().code, Errc::kNotFound);
     EXPECT_EQ(logged().size(), session_->snapshot()->revision);
+}
+
+TEST_F(EstimatedPosesTest, TheLogSaysWhenARobotIsLostAndFoundAgain) {
+    const auto occurrences = [](const std::string& text, const std::string& words) {
+        std::size_t count = 0;
+        for (std::size_t at = 0; (at = text.find(words, at)) != std::string::npos; ++at) ++count;
+        return count;
+    };
+    slam::Drive drive = lap();
+    for (std::size_t n = 200; n < 230; ++n) { // the laser is covered
+        for (std::size_t k = 0; k < drive.scans[n].ranges.size(); ++k) {
+            drive.scans[n].ranges[k] = static_cast<RangeMm>(300 + 97 * (k * k + n) % 400);
+        }
+    }
+    const testing_support::CapturedLog log;
+    drive_on("robot", drive, 20, 230);
+    EXPECT_EQ(find_robot("robot").localization.state, LocalizationState::kLost);
+    EXPECT_EQ(occurrences(log.text(), "'robot' is lost"), 1U);
+    EXPECT_EQ(occurrences(log.text(), "found again"), 0U);
+    drive_on("robot", drive, 20, drive.scans.size());
+    EXPECT_EQ(find_robot("robot").localization.state, LocalizationState::kTracking);
+    EXPECT_EQ(occurrences(log.text(), "'robot' is lost"), 1U);
+    EXPECT_EQ(occurrences(log.text(), "'robot' is found again"), 1U);
 }
 
 TEST_F(EstimatedPosesTest, TheMemoryOfKeyframesIsTakenAndThatOfACorrectionGivenBack) {
