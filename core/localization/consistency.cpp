@@ -27,7 +27,7 @@ bool RobotPoses::is_consistent(const std::vector<std::shared_ptr<const GraphMome
         return scan == kNoLaserScan || scan == kExcluded || scan < laser_scans_.size();
     };
     if (!std::ranges::all_of(laser_scans_, is_scan)) return false;
-    if (!std::ranges::all_of(scans_, is_laser_scan, &PlacedScan::laser_scan)) return false;
+    if (!std::ranges::all_of(scans_, is_laser_scan, &ScanAnchor::laser_scan)) return false;
     if (in_maps_.snapshot().size() != scans_.size() || decided_ > estimator_.decided_count()) return false;
     if (keyframes_in_maps_.size() != estimator_.keyframes().size()) return false;
     if (corrections_.size() > corrections.size()) return false;

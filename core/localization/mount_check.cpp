@@ -1,5 +1,9 @@
 #include "core/localization/mount_check.hpp"
 
+#include "core/scan_matching/scan_points.hpp"
+
+#include <fmt/format.h>
+
 #include <cmath>
 
 namespace scanloom::localization {
@@ -14,6 +18,15 @@ constexpr double kAgreementMin = 0.5; // of the lengths, by the scans in one dir
 constexpr double kErrorMin = 0.26;    // radians: 15 degrees; skidding wheels deviate by less
 
 } // namespace
+
+Result<> check_mount(const Sensor& sensor) {
+    const double distance = std::hypot(sensor.mount.x, sensor.mount.y);
+    if (sensor.kind == SensorKind::kSonar || distance <= scan_matching::kMountDistanceMax) return {};
+    return Error{Errc::kInvalidField,
+                 fmt::format("mount is {:.1f} m from the robot's origin; poses are estimated with lasers within {} m "
+                             "of it: give the mount in metres, in the robot frame",
+                             distance, scan_matching::kMountDistanceMax)};
+}
 
 void MountCheck::add(const scan_matching::Transform2& by_odometry, const scan_matching::Transform2& by_scans) {
     const double length = distance_of(by_odometry);

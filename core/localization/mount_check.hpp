@@ -1,10 +1,17 @@
 #pragma once
 
+#include "common/error/error.hpp"
+#include "common/scan/sensor.hpp"
 #include "core/scan_matching/transform2.hpp"
 
 #include <optional>
 
 namespace scanloom::localization {
+
+/// Checks that the scans of a sensor can be used to estimate poses.
+/// @param sensor  a laser, or a sonar, which is not used for it
+/// Errors: kInvalidField: a laser is more than scan_matching::kMountDistanceMax from its robot's origin.
+[[nodiscard]] Result<> check_mount(const Sensor& sensor);
 
 /// Detects a wrong yaw of a laser's mount from the directions of motion in odometry and scans. Straight motions of the
 /// last metres are compared.

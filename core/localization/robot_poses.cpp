@@ -34,13 +34,14 @@ std::optional<Pose2> RobotPoses::add(const Scan& scan, const Sensor& sensor, Rev
     } else {
         scans_.push_back(placed(scan));
     }
-    PlacedScan& added = scans_.back();
-    place_.T_map_robot = newest(scan_count() - 1);
+    ScanAnchor& added = scans_.back();
+    location_.T_map_robot = newest(scan_count() - 1);
     if (scan.odometry) {
-        place_.T_map_odom = pose_of(transform_of(place_.T_map_robot) * inverse(transform_of(*scan.odometry)));
+        location_.T_map_odom = pose_of(transform_of(location_.T_map_robot) * inverse(transform_of(*scan.odometry)));
     }
     // A scan that closes a loop corrects itself, too: maps show the estimate before, like those of the scans around it.
-    added.first = sensor.kind == SensorKind::kLaser ? estimator_.first_pose_of(added.laser_scan) : place_.T_map_robot;
+    added.first =
+        sensor.kind == SensorKind::kLaser ? estimator_.first_pose_of(added.laser_scan) : location_.T_map_robot;
     const auto in_maps = is_located(scan_count() - 1) ? std::optional(added.first) : std::nullopt;
     in_maps_.append(in_maps);
     added.was_shown = in_maps.has_value();
@@ -55,7 +56,7 @@ void RobotPoses::leave_out(double stamp, Revision revision) {
 }
 
 std::size_t RobotPoses::estimated_count() const noexcept {
-    const auto excluded = std::ranges::count(scans_, kExcluded, &PlacedScan::laser_scan);
+    const auto excluded = std::ranges::count(scans_, kExcluded, &ScanAnchor::laser_scan);
     return scans_.size() - static_cast<std::size_t>(excluded);
 }
 
@@ -70,7 +71,7 @@ void RobotPoses::check_mount(const Scan& scan) {
 }
 
 /// Returns where a scan is that is not from a laser.
-RobotPoses::PlacedScan RobotPoses::placed(const Scan& scan) const {
+RobotPoses::ScanAnchor RobotPoses::placed(const Scan& scan) const {
     const auto T_odom_robot = scan.odometry ? std::optional(transform_of(*scan.odometry)) : std::nullopt;
     if (laser_scans_.empty()) {
         const auto& map = estimator_.map();
@@ -81,7 +82,7 @@ RobotPoses::PlacedScan RobotPoses::placed(const Scan& scan) const {
     return {estimator_.scan_count() - 1, inverse(transform_of(*laser_odometry_)) * *T_odom_robot, scan.stamp};
 }
 
-bool RobotPoses::is_correction_due() {
+bool RobotPoses::note_moves() {
     const double move = largest_move();
     const std::size_t keyframes = estimator_.keyframes().size();
     const auto fragments = std::exchange(fragments_, estimator_.found_fragments());
@@ -131,7 +132,7 @@ double RobotPoses::largest_move() {
 }
 
 Pose2 RobotPoses::newest(std::size_t scan) const {
-    const PlacedScan& placed = scans_[scan];
+    const ScanAnchor& placed = scans_[scan];
     if (placed.laser_scan == kExcluded) return {};
     if (placed.laser_scan == kNoLaserScan) return pose_of(placed.T_laser_scan);
     const Pose2 laser = estimator_.pose_of(placed.laser_scan);
@@ -139,13 +140,13 @@ Pose2 RobotPoses::newest(std::size_t scan) const {
 }
 
 bool RobotPoses::is_located(std::size_t scan) const {
-    const PlacedScan& placed = scans_[scan];
+    const ScanAnchor& placed = scans_[scan];
     if (placed.laser_scan == kExcluded) return false;
     return placed.laser_scan == kNoLaserScan ? placed.was_in_map : estimator_.is_located(placed.laser_scan);
 }
 
 bool RobotPoses::is_in_map(std::size_t scan) const {
-    const PlacedScan& placed = scans_[scan];
+    const ScanAnchor& placed = scans_[scan];
     if (placed.laser_scan == kExcluded) return false;
     return placed.laser_scan == kNoLaserScan ? placed.was_in_map : estimator_.is_in_map(placed.laser_scan);
 }
@@ -172,7 +173,7 @@ RobotHistory RobotPoses::history() const {
             {estimator_.first_pose_of(n), estimator_.was_located(n), keyframe, T_keyframe_robot, is_matched});
     }
     for (std::size_t n = 0; n < scans_.size(); ++n) {
-        const PlacedScan& scan = scans_[n];
+        const ScanAnchor& scan = scans_[n];
         auto& added = history.scans.emplace_back();
         added.stamp = scan.stamp;
         added.revision = scan.revision;

@@ -24,7 +24,7 @@ namespace scanloom::localization {
 [[nodiscard]] bool is_worth_a_correction(double move, std::size_t keyframes, std::size_t since_then) noexcept;
 
 /// Where a robot is by its newest scan.
-struct Place {
+struct RobotLocation {
     Pose2 T_map_robot; ///< as estimated then
     Pose2 T_map_odom;  ///< of the odometry frame, by the newest scan with odometry; the identity: there is none
 };
@@ -62,8 +62,9 @@ public:
     /// Decides about the scans that are still open, before the map is frozen.
     void finish() { estimator_.finish(); }
 
-    /// Returns whether the maps should follow the newest estimates. Call it after each add() to the shared map.
-    [[nodiscard]] bool is_correction_due();
+    /// Looks at what has moved since the last call. Call it after each add() to the shared map.
+    /// @return whether the maps should follow the newest estimates; true once for each reason
+    [[nodiscard]] bool note_moves();
 
     /// Lets the maps follow the newest estimates.
     void correct();
@@ -96,7 +97,7 @@ public:
     [[nodiscard]] bool is_located(std::size_t scan) const;
 
     /// Returns where the robot is by its newest scan.
-    [[nodiscard]] const Place& place() const noexcept { return place_; }
+    [[nodiscard]] const RobotLocation& location() const noexcept { return location_; }
 
     /// Returns the stamp of a scan, seconds.
     /// @param scan  number of the scan, from 0. Precondition: scan < scan_count()
@@ -123,7 +124,7 @@ public:
     template <class Self, class Archive>
     static void list(Self& self, Archive& archive) {
         archive(self.estimator_, self.scans_, self.laser_scans_, self.in_maps_, self.laser_odometry_, self.mount_,
-                self.is_laser_matched_, self.place_, self.corrections_, self.keyframes_in_maps_,
+                self.is_laser_matched_, self.location_, self.corrections_, self.keyframes_in_maps_,
                 self.keyframes_at_correction_, self.optimizations_, self.decided_, self.fragments_);
     }
 
@@ -137,7 +138,7 @@ private:
     static constexpr std::size_t kExcluded = static_cast<std::size_t>(-2);
 
     /// Where a scan is: relative to a laser scan.
-    struct PlacedScan {
+    struct ScanAnchor {
         std::size_t laser_scan = kNoLaserScan; // number among the laser scans; kNoLaserScan: none was before;
                                                // kExcluded: nowhere, and the members about its pose are not used
         slam::Transform2 T_laser_scan;         // of the robot at both; without a laser scan T_map_robot
@@ -148,19 +149,19 @@ private:
         Revision revision = 0;                 // of its log entry
     };
 
-    [[nodiscard]] PlacedScan placed(const Scan& scan) const;
+    [[nodiscard]] ScanAnchor placed(const Scan& scan) const;
     void check_mount(const Scan& scan);
     [[nodiscard]] double largest_move();
     [[nodiscard]] LocalizationState state() const;
 
     slam::TrajectoryEstimator estimator_;
-    std::vector<PlacedScan> scans_;
+    std::vector<ScanAnchor> scans_;
     std::vector<std::size_t> laser_scans_; // their numbers among all scans
     mapping::EstimatedPoses in_maps_;
     std::optional<Pose2> laser_odometry_; // of the newest laser scan
     MountCheck mount_;
     bool is_laser_matched_ = false; // whether that scan fitted the map
-    Place place_;
+    RobotLocation location_;
     std::vector<RobotHistory::Moment> corrections_; // since its first scan
 
     // At the last correction, or since.

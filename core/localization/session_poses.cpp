@@ -8,7 +8,7 @@ void SessionPoses::estimate(ScanTaken& taken, const Sensor& sensor, Revision rev
     taken.scan.pose = poses_of(taken.robot).add(taken.scan, sensor, revision);
     ++scan_count_;
     bool is_due = false;
-    for (const auto& each : robots_) is_due = (each && each->is_correction_due()) || is_due; // each follows every scan
+    for (const auto& each : robots_) is_due = (each && each->note_moves()) || is_due; // each follows every scan
     if (is_due && !map_->is_frozen()) correct(revision);
 }
 

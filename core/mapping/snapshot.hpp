@@ -37,7 +37,7 @@ struct Localization {
     double inlier_ratio = 0.0;                           ///< of the newest scan's points, those that fit the map
     double position_sigma = 0.0;           ///< metres, of the newest pose, in the most uncertain direction
     double yaw_sigma = 0.0;                ///< radians, of the newest pose
-    std::size_t loops = 0;                 ///< edges between places that the robot visited again
+    std::size_t loops = 0;                 ///< edges to parts of the map that were made earlier
     std::size_t corrections = 0;           ///< of the poses of earlier scans in the maps
     std::optional<double> mount_yaw_error; ///< radians: by how much the yaw of the laser's mount seems to be too large
 };

@@ -17,8 +17,8 @@ struct Motion {
 /// Returns whether the beams of a scan have times (Scan::duration) and a motion says where the robot was then.
 /// @param scan    its angles rise or fall from the first beam to the last; otherwise times are not known
 /// @param sensor  that took it
-/// @param motion  false if it took no time or more than 1 s, or was faster than 10 m/s or 10 rad/s: then it is no
-///                motion but another place
+/// @param motion  false if it took no time or more than 1 s, or was faster than 10 m/s or 10 rad/s: such a
+///                jump is not used
 /// Precondition: the scan is validated: explicit angles have one entry per range.
 [[nodiscard]] bool can_deskew(const Scan& scan, const Sensor& sensor, const Motion& motion);
 
@@ -28,6 +28,7 @@ struct Motion {
 ///
 /// The robot is assumed to move along an arc at an even speed, and the laser to turn at an even speed. A hit's range is
 /// rounded to millimetres again.
+/// Source: own.
 /// @param scan    as taken
 /// @param sensor  the laser that took it, with its mount
 /// @param motion  of the robot around the time of the scan

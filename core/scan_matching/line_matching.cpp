@@ -55,31 +55,20 @@ struct NormalEquations {
 
     /// Returns the solution, or nullopt if the matrix is singular.
     [[nodiscard]] std::optional<Step> solved() const {
-        const double minor_xx = yy * yawyaw - yyaw * yyaw;
-        const double minor_xy = xyaw * yyaw - xy * yawyaw;
-        const double minor_xyaw = xy * yyaw - xyaw * yy;
-        const double determinant = xx * minor_xx + xy * minor_xy + xyaw * minor_xyaw;
-        if (!(std::fabs(determinant) > kSingular)) return std::nullopt;
-        const double minor_yy = xx * yawyaw - xyaw * xyaw;
-        const double minor_yyaw = xy * xyaw - xx * yyaw;
-        const double minor_yawyaw = xx * yy - xy * xy;
-        return Step{(minor_xx * right.x + minor_xy * right.y + minor_xyaw * right.yaw) / determinant,
-                    (minor_xy * right.x + minor_yy * right.y + minor_yyaw * right.yaw) / determinant,
-                    (minor_xyaw * right.x + minor_yyaw * right.y + minor_yawyaw * right.yaw) / determinant};
+        const Cofactors of = cofactors();
+        if (!(std::fabs(of.determinant) > kSingular)) return std::nullopt;
+        return Step{(of.xx * right.x + of.xy * right.y + of.xyaw * right.yaw) / of.determinant,
+                    (of.xy * right.x + of.yy * right.y + of.yyaw * right.yaw) / of.determinant,
+                    (of.xyaw * right.x + of.yyaw * right.y + of.yawyaw * right.yaw) / of.determinant};
     }
 
     /// Sets the standard deviations of the solution, from the inverse of the matrix. Precondition: it is not singular.
     void set_sigmas(LineMatch& match) const {
-        const double minor_xx = yy * yawyaw - yyaw * yyaw;
-        const double minor_xy = xyaw * yyaw - xy * yawyaw;
-        const double minor_yy = xx * yawyaw - xyaw * xyaw;
-        const double minor_yawyaw = xx * yy - xy * xy;
-        const double determinant = xx * minor_xx + xy * minor_xy + xyaw * (xy * yyaw - xyaw * yy);
-        const double half_trace = 0.5 * (minor_xx + minor_yy);
-        const double root =
-            std::sqrt(std::max(0.0, half_trace * half_trace - (minor_xx * minor_yy - minor_xy * minor_xy)));
-        match.position_sigma = std::sqrt((half_trace + root) / determinant);
-        match.yaw_sigma = std::sqrt(minor_yawyaw / determinant);
+        const Cofactors of = cofactors();
+        const double half_trace = 0.5 * (of.xx + of.yy);
+        const double root = std::sqrt(std::max(0.0, half_trace * half_trace - (of.xx * of.yy - of.xy * of.xy)));
+        match.position_sigma = std::sqrt((half_trace + root) / of.determinant);
+        match.yaw_sigma = std::sqrt(of.yawyaw / of.determinant);
     }
 
     /// Returns the smallest by the largest eigenvalue of the position's part.
@@ -87,6 +76,25 @@ struct NormalEquations {
         const double half_trace = 0.5 * (xx + yy);
         const double root = std::sqrt(std::max(0.0, half_trace * half_trace - (xx * yy - xy * xy)));
         return half_trace > 0.0 ? (half_trace - root) / (half_trace + root) : 0.0;
+    }
+
+private:
+    /// The cofactors of the matrix, which are symmetric, too; divided by the determinant they are its inverse.
+    struct Cofactors {
+        double xx, xy, xyaw, yy, yyaw, yawyaw;
+        double determinant;
+    };
+
+    [[nodiscard]] Cofactors cofactors() const {
+        Cofactors of{yy * yawyaw - yyaw * yyaw,
+                     xyaw * yyaw - xy * yawyaw,
+                     xy * yyaw - xyaw * yy,
+                     xx * yawyaw - xyaw * xyaw,
+                     xy * xyaw - xx * yyaw,
+                     xx * yy - xy * xy,
+                     0.0};
+        of.determinant = xx * of.xx + xy * of.xy + xyaw * of.xyaw;
+        return of;
     }
 };
 

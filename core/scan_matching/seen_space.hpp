@@ -10,6 +10,7 @@ namespace scanloom::scan_matching {
 
 /// Where beams of some views passed, and where they ended, in cells of 10 cm. A point that another scan has in space
 /// that beams passed contradicts these views. Immutable.
+/// Source: own; the beams are drawn as in an occupancy grid, Moravec, Elfes (1985).
 /// Precondition: poses and points are finite, and within 1 km of each other. Memory: 100 bytes for each square metre of
 ///     the rectangle around all points.
 /// Threads: any number of readers.

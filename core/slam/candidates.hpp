@@ -39,6 +39,7 @@ enum class Care {
 /// Returns where a scan may have been taken. One candidate if the match near the prediction is good and odometry and
 /// velocity agree. Otherwise those of several starts and priors, because odometry can be wrong (wheels slip, or count
 /// backwards when they reverse), and, as the last one, the prediction itself: the scan may show people only.
+/// Source: own; each start is refined by match_to_lines().
 /// @param scan        its points
 /// @param map         in the newest keyframe's frame
 /// @param prediction  where the scan is expected

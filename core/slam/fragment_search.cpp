@@ -41,7 +41,7 @@ constexpr double kBaseline = 10.0;             // metres between the places of t
 constexpr double kBaselineInCompleteMap = 2.0; // metres, likewise in a complete map
 constexpr double kAgreementDistance = 0.5;     // metres
 constexpr double kAgreementTurn = 0.1;         // radians
-constexpr double kDriftPart = 0.03;            // of the way between two answers, in addition
+constexpr double kDriftPart = 0.03;            // of the distance travelled between two answers, in addition
 
 constexpr double kWindow = 1.0; // metres, of the stretch test
 // Share of its evidence that may contradict the map. A complete map is often older than what the robot sees.
@@ -91,7 +91,7 @@ bool FragmentSearch::search(KeyframeGraph& graph, std::size_t fragment) {
     return found && add_answer(graph, fragment, *found);
 }
 
-/// Adds the answer of a search. Moves the fragment there if answers agree, and its whole way fits the map.
+/// Adds the answer of a search. Moves the fragment there if answers agree, and its newest part fits the map.
 bool FragmentSearch::add_answer(KeyframeGraph& graph, std::size_t fragment, const Answer& answer) {
     Searched& state = searched(fragment);
     state.answers.push_back(answer);

@@ -21,9 +21,10 @@ struct Surroundings {
 ///
 /// The newest keyframes of the fragment are looked up in the map of all located ones, a part of the search at each
 /// scan. Half of their points may be in space that the map does not show yet. One answer is not enough, because
-/// buildings have rooms that look alike: four must agree, over ten metres of the way, and the whole fragment must
+/// buildings have rooms that look alike: four must agree, over ten metres of the trajectory, and its newest 60 m must
 /// then fit the map. A fragment that is located later than possible does no harm; one at a wrong place tears the map.
-/// Where people say where the robot is, one good answer near that place is enough.
+/// If an operator has said where the robot is, one good answer near that place is enough.
+/// Source: own; the search in the map is PlaceSearch.
 /// Threads: one at a time.
 class FragmentSearch {
 public:

@@ -28,6 +28,7 @@ struct Fragment {
 };
 
 /// The keyframes of robots, their poses, and the relative poses measured between them.
+/// Source: Lu, Milios, Globally Consistent Range Scan Alignment for Environment Mapping (1997).
 /// Threads: one at a time.
 class KeyframeGraph {
 public:
@@ -49,6 +50,7 @@ public:
     std::size_t add_given(std::size_t robot, std::shared_ptr<const ScanPoints> scan, const Transform2& T_map_keyframe);
 
     /// Makes the located keyframes a map that does not change, or lets all but the given ones move again.
+    /// @param is_frozen  whether the map does not change from now on
     void freeze(bool is_frozen);
 
     /// Returns whether a keyframe is part of the map: its fragment is located, and if the map does not change, it was

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kEvery = 2;     // keyframes between searches
 constexpr std::size_t kGap = 36;      // keyframes between the newest one and the end of a submap, at least
-constexpr std::size_t kPlacesMax = 3; // nearest submaps that are matched
+constexpr std::size_t kNearbyMax = 3; // nearest submaps that are matched
 constexpr double kLoopReach = 5.0;    // metres between the robot and a submap's anchor, in addition to the drift
 constexpr double kDrift = 0.03;       // of the length of the connection along the graph
 constexpr double kDriftMax = 8.0;     // metres
@@ -45,16 +45,16 @@ void LoopSearch::search(KeyframeGraph& graph, std::size_t fragment) {
     if (graph[keyframe].position % kEvery != 0) return;
     submaps_.extend(graph, fragment);
     double largest_jump = 0.0;
-    for (const Place& place : nearest_places(graph, keyframe)) {
-        const Answer answer = match(graph, keyframe, place);
-        if (is_large(place, answer)) {
-            if (try_stretch(graph, keyframe, place, answer)) return;
+    for (const NearbySubmap& near : nearest_submaps(graph, keyframe)) {
+        const SubmapMatch found = match(graph, keyframe, near);
+        if (is_large(near, found)) {
+            if (try_stretch(graph, keyframe, near, found)) return;
             continue;
         }
-        if (!answer.agrees || !answer.is_determined) continue;
-        graph.add_loop({submaps_[place.submap].anchor, keyframe, answer.T_anchor_keyframe,
+        if (!found.agrees || !found.is_determined) continue;
+        graph.add_loop({submaps_[near.submap].anchor, keyframe, found.T_anchor_keyframe,
                         information_of(kLoopSigma, kLoopTurnSigma), true});
-        largest_jump = std::max(largest_jump, answer.jump + 2.0 * answer.turn);
+        largest_jump = std::max(largest_jump, found.jump + 2.0 * found.turn);
         ++figures_.loops;
         ++new_loops_;
     }
@@ -65,30 +65,31 @@ void LoopSearch::search(KeyframeGraph& graph, std::size_t fragment) {
     graph.optimize(kIterations);
 }
 
-std::vector<LoopSearch::Place> LoopSearch::nearest_places(const KeyframeGraph& graph, std::size_t keyframe) const {
+std::vector<LoopSearch::NearbySubmap> LoopSearch::nearest_submaps(const KeyframeGraph& graph,
+                                                                  std::size_t keyframe) const {
     const auto lengths = graph.distances_from(keyframe);
     const Keyframe& searched = graph[keyframe];
-    std::vector<Place> places;
+    std::vector<NearbySubmap> submaps;
     for (std::size_t n = 0; n < submaps_.size(); ++n) {
         const Submap& submap = submaps_[n];
         if (!graph.share_frame(submap.anchor, keyframe)) continue;
         if (submap.fragment == searched.fragment && submap.last + kGap > searched.position) continue;
         const double distance = distance_of(inverse(graph.pose(submap.anchor)) * graph.pose(keyframe));
         const double drift = std::min(kDriftMax, kDrift * lengths[submap.anchor]);
-        if (distance < kLoopReach + drift) places.push_back({n, distance, drift});
+        if (distance < kLoopReach + drift) submaps.push_back({n, distance, drift});
     }
-    std::ranges::stable_sort(places, {}, &Place::distance);
-    if (places.size() > kPlacesMax) places.resize(kPlacesMax);
-    return places;
+    std::ranges::stable_sort(submaps, {}, &NearbySubmap::distance);
+    if (submaps.size() > kNearbyMax) submaps.resize(kNearbyMax);
+    return submaps;
 }
 
-LoopSearch::Answer LoopSearch::match(const KeyframeGraph& graph, std::size_t keyframe, const Place& place) {
+LoopSearch::SubmapMatch LoopSearch::match(const KeyframeGraph& graph, std::size_t keyframe, const NearbySubmap& near) {
     ++figures_.matches;
-    note_use(place.submap);
-    Submap& submap = submaps_[place.submap];
+    note_use(near.submap);
+    Submap& submap = submaps_[near.submap];
     const auto& points = graph[keyframe].scan->points;
     const Transform2 expected = inverse(graph.pose(submap.anchor)) * graph.pose(keyframe);
-    const double window = std::max(place.drift, kWindowMin);
+    const double window = std::max(near.drift, kWindowMin);
     const auto found = match_to_lines(points, submap.map.points(), expected, {expected, window, kEstimateTurn},
                                       {.steps_max = 15,
                                        .first_gate = std::min(kLoopGateMax, window),
@@ -105,21 +106,22 @@ LoopSearch::Answer LoopSearch::match(const KeyframeGraph& graph, std::size_t key
             found.conditioning >= kConditioningMin && jump <= window + kBeyondWindow};
 }
 
-bool LoopSearch::is_large(const Place& place, const Answer& answer) const {
-    if (place.drift >= kDriftOfOneMatch) return true;
-    return answer.agrees && answer.is_determined && (answer.jump > kSmallJump || answer.turn > kSmallTurn);
+bool LoopSearch::is_large(const NearbySubmap& near, const SubmapMatch& match) const {
+    if (near.drift >= kDriftOfOneMatch) return true;
+    return match.agrees && match.is_determined && (match.jump > kSmallJump || match.turn > kSmallTurn);
 }
 
-bool LoopSearch::try_stretch(KeyframeGraph& graph, std::size_t keyframe, const Place& place, const Answer& answer) {
+bool LoopSearch::try_stretch(KeyframeGraph& graph, std::size_t keyframe, const NearbySubmap& near,
+                             const SubmapMatch& match) {
     const std::size_t fragment = graph[keyframe].fragment;
     if (next_test_at_.size() <= fragment) next_test_at_.resize(fragment + 1);
     if (graph[keyframe].travelled < next_test_at_[fragment]) return false;
     next_test_at_[fragment] = graph[keyframe].travelled + kStretchPause;
     ++figures_.stretch_tests;
-    const std::size_t anchor = submaps_[place.submap].anchor;
+    const std::size_t anchor = submaps_[near.submap].anchor;
     const Transform2 correction =
-        answer.agrees ? graph.pose(anchor) * answer.T_anchor_keyframe * inverse(graph.pose(keyframe)) : Transform2();
-    if (!accept_stretch(graph, {keyframe, anchor, correction, std::max(kStretchWindow, place.drift)})) return false;
+        match.agrees ? graph.pose(anchor) * match.T_anchor_keyframe * inverse(graph.pose(keyframe)) : Transform2();
+    if (!accept_stretch(graph, {keyframe, anchor, correction, std::max(kStretchWindow, near.drift)})) return false;
     new_loops_ = 0;
     ++figures_.stretches_accepted;
     ++figures_.optimizations;

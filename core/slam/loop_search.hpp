@@ -10,7 +10,7 @@
 
 namespace scanloom::slam {
 
-/// Figures of a loop search, for reports.
+/// What a loop search has done. `optimizations` decides later results; see SharedMap::optimization_count().
 struct LoopFigures {
     std::size_t matches = 0;            ///< of keyframes with submaps
     std::size_t loops = 0;              ///< edges added for single matches
@@ -22,6 +22,7 @@ struct LoopFigures {
 /// Finds places where the robot was before, adds edges to them, and optimises the graph. Small corrections are accepted
 /// from one match of a keyframe with a submap; large ones need a whole stretch of the trajectory that agrees
 /// (accept_stretch()).
+/// Source: as for Submap; the rules of acceptance are own.
 /// Threads: one at a time.
 class LoopSearch {
 public:
@@ -48,14 +49,14 @@ public:
 
 private:
     /// A submap near the keyframe.
-    struct Place {
+    struct NearbySubmap {
         std::size_t submap = 0;
         double distance = 0.0; // metres, from its anchor
         double drift = 0.0;    // metres, bound of the error of the keyframe's pose relative to it
     };
 
     /// What a match of the keyframe with a submap says.
-    struct Answer {
+    struct SubmapMatch {
         Transform2 T_anchor_keyframe;
         double jump = 0.0; // metres between the estimate and the match
         double turn = 0.0; // radians, likewise
@@ -63,11 +64,11 @@ private:
         bool is_determined = false; // whether the scan determines the position in every direction
     };
 
-    [[nodiscard]] std::vector<Place> nearest_places(const KeyframeGraph& graph, std::size_t keyframe) const;
-    [[nodiscard]] Answer match(const KeyframeGraph& graph, std::size_t keyframe, const Place& place);
-    [[nodiscard]] bool is_large(const Place& place, const Answer& answer) const;
-    [[nodiscard]] bool try_stretch(KeyframeGraph& graph, std::size_t keyframe, const Place& place,
-                                   const Answer& answer);
+    [[nodiscard]] std::vector<NearbySubmap> nearest_submaps(const KeyframeGraph& graph, std::size_t keyframe) const;
+    [[nodiscard]] SubmapMatch match(const KeyframeGraph& graph, std::size_t keyframe, const NearbySubmap& near);
+    [[nodiscard]] bool is_large(const NearbySubmap& near, const SubmapMatch& match) const;
+    [[nodiscard]] bool try_stretch(KeyframeGraph& graph, std::size_t keyframe, const NearbySubmap& near,
+                                   const SubmapMatch& match);
     void note_use(std::size_t submap);
 
     Submaps submaps_;

@@ -24,10 +24,12 @@ struct StretchQuestion {
 ///
 /// After acceptance the graph has edges from the stretch to the old map, and no older loop edges into the stretch that
 /// contradict them by over 0.5 m. Its poses do not move.
+/// Source: own.
 /// @param graph     keyframes and edges
 /// @param question  the correction to test
 /// @return whether one hypothesis was accepted. It may be that of no correction: then the new edges confirm the trajectory
-/// Precondition: question.anchor is another, located keyframe, in the same fragment before the stretch; 0 <= window <= 8 m.
+/// Precondition: question.anchor shares a frame with the keyframe (KeyframeGraph::share_frame()), and is before it if both
+///     are in one fragment; 0 <= window <= 8 m.
 /// Cost: some hundredths of a second: up to 10 hypotheses, each with a scan match of 100 points every 1.5 m, and
 ///     (2 window / 0.2 m)^2 shifts.
 [[nodiscard]] bool accept_stretch(KeyframeGraph& graph, const StretchQuestion& question);

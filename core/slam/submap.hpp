@@ -10,6 +10,7 @@ namespace scanloom::slam {
 
 /// A map of kSubmapLength successive keyframes of a fragment, in the frame of the middle one, its anchor. It does not
 /// change when keyframes move, because the error of their relative poses within a submap is negligible.
+/// Source: Hess, Kohler, Rapp, Andor, Real-Time Loop Closure in 2D LIDAR SLAM (2016), there of grids.
 struct Submap {
     std::size_t fragment = 0; ///< of its keyframes
     std::size_t last = 0;     ///< position of its last keyframe in the fragment

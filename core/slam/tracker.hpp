@@ -21,6 +21,7 @@ struct TrackedScan {
 /// Follows a robot by matching each scan to the map of the newest keyframes. If several poses fit a scan, it follows up
 /// to kHypothesesMax hypotheses through the next scans: until one is clearly better, a keyframe is due, or kOpenMax
 /// scans were added.
+/// Source: own, after multiple hypothesis tracking, Reid, An Algorithm for Tracking Multiple Targets (1979).
 /// Threads: one at a time.
 class Tracker {
 public:

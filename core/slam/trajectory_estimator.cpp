@@ -78,7 +78,7 @@ void TrajectoryEstimator::add(ScanPoints scan, const std::optional<Pose2>& odome
         relocalized_ = place_to_search; // it waits until the open scans are decided
         return;
     }
-    place(decided);
+    append_decided(decided);
     const TrackedScan& last = decided.back();
     const bool is_elsewhere = place_to_search && (is_fragment_located() || !last.is_matched);
     const bool is_beyond_all = !is_near(first, {0.0, 0.0}, kEstimateMax);
@@ -117,9 +117,9 @@ bool TrajectoryEstimator::is_fragment_blind() const {
     });
 }
 
-void TrajectoryEstimator::finish() { place(tracker_.decide()); }
+void TrajectoryEstimator::finish() { append_decided(tracker_.decide()); }
 
-void TrajectoryEstimator::place(const std::vector<TrackedScan>& scans) {
+void TrajectoryEstimator::append_decided(const std::vector<TrackedScan>& scans) {
     for (const TrackedScan& scan : scans) {
         placed_.push_back({anchor_, scan.T_keyframe_robot, scan.is_matched});
         if (!scan.is_matched) ++unmatched_count_;

@@ -161,7 +161,7 @@ private:
     };
 
     [[nodiscard]] scan_matching::Motion motion_at(const Scan& scan) const;
-    void place(const std::vector<TrackedScan>& scans);
+    void append_decided(const std::vector<TrackedScan>& scans);
     [[nodiscard]] TrackedScan since_start(TrackedScan scan) const;
     void begin_fragment(ScanPoints scan, const Transform2& T_map_robot,
                         const std::optional<Surroundings>& place = std::nullopt);

@@ -16,9 +16,11 @@ namespace scanloom::sessions {
 /// Threads: one at a time, which may wait for the disk.
 class MapCorrection {
 public:
-    /// @param shown  the session's maps, whose settings and exclusions it takes
-    /// @param poses  at which the maps show scans
-    /// @param as_of  the newest entry at which these poses were corrected
+    /// @param log      of the session, which is read
+    /// @param session  its id
+    /// @param shown    the session's maps, whose settings and exclusions it takes
+    /// @param poses    at which the maps show scans
+    /// @param as_of    the newest entry at which these poses were corrected
     MapCorrection(store::ScanLog& log, store::SessionId session, const mapping::Projection& shown,
                   mapping::ScanPoses poses, Revision as_of)
         : log_(log), session_(session), projection_(shown.config(), shown.exclusions()), poses_(std::move(poses)),

@@ -1,12 +1,11 @@
 #include "server/sessions/robot_sequencer.hpp"
 
 #include "common/wire/messages.hpp"
-#include "core/scan_matching/scan_points.hpp"
+#include "core/localization/mount_check.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 namespace scanloom::sessions {
 namespace {
@@ -19,16 +18,6 @@ Error map_already_begun(const std::string& robot, const std::string& session) {
                         "session has a map by now, and the pose of one relative to the other is not known: give the "
                         "robot's pose again, or send these scans to another session",
                         robot, session)};
-}
-
-/// Checks that the scans of a sensor can be used to estimate poses.
-Result<> check_mount(const Sensor& sensor) {
-    const double distance = std::hypot(sensor.mount.x, sensor.mount.y);
-    if (sensor.kind == SensorKind::kSonar || distance <= scan_matching::kMountDistanceMax) return {};
-    return Error{Errc::kInvalidField,
-                 fmt::format("mount is {:.1f} m from the robot's origin; poses are estimated with lasers within {} m "
-                             "of it: give the mount in metres, in the robot frame",
-                             distance, scan_matching::kMountDistanceMax)};
 }
 
 } // namespace
@@ -196,7 +185,7 @@ std::vector<PendingEntry> RobotSequencer::describe(const std::shared_ptr<RobotLi
     Member* member = member_of(from);
     if (member == nullptr) return entries;
     auto ok = mapping::check_reach(info_.config, sensor);
-    if (ok && logged(*member).poses != Poses::kMap) ok = check_mount(sensor);
+    if (ok && logged(*member).poses != Poses::kMap) ok = localization::check_mount(sensor);
     if (!ok) {
         fail(*member, prefixed("sensor_description.", ok.error()));
         return entries;
@@ -251,7 +240,7 @@ std::vector<PendingEntry> RobotSequencer::take(const std::shared_ptr<RobotListen
 mapping::Reach RobotSequencer::reach_of(const Member& member, Scan& scan) const {
     const bool is_estimated = !scan.pose;
     if (is_estimated) {
-        scan.pose = scan.odometry ? compose(member.place.T_map_odom, *scan.odometry) : member.place.T_map_robot;
+        scan.pose = scan.odometry ? compose(member.location.T_map_odom, *scan.odometry) : member.location.T_map_robot;
     }
     auto reach = mapping::reach_of(info_.config, *logged(member).find_sensor(scan.sensor)->sensor, scan);
     if (is_estimated) scan.pose.reset();

@@ -80,9 +80,11 @@ public:
     [[nodiscard]] Result<std::optional<PendingEntry>> change_mode(const ModeChanged& changed);
 
     /// Sets where a robot is whose scans have no poses, to estimate what its next scans reach.
-    /// @param robot  index in the session
-    /// @param place  by its newest scan in the maps
-    void set_place(RobotIndex robot, const localization::Place& place) { members_[robot].place = place; }
+    /// @param robot     index in the session
+    /// @param location  by its newest scan in the maps
+    void set_location(RobotIndex robot, const localization::RobotLocation& location) {
+        members_[robot].location = location;
+    }
 
     /// Returns the link of a robot; null if it is not connected.
     /// @param robot  index in the session
@@ -103,8 +105,8 @@ private:
         std::optional<PendingJoin> joining;
         std::size_t pending_entries = 0; // entries submitted and not released
         std::uint64_t durable_seq = 0;
-        std::uint64_t first_visible_seq = 0; // of the first scan accepted here that can change a cell; 0: none
-        localization::Place place;           // see set_place()
+        std::uint64_t first_visible_seq = 0;  // of the first scan accepted here that can change a cell; 0: none
+        localization::RobotLocation location; // see set_location()
     };
 
     [[nodiscard]] RobotIndex index_of(const Member& member) const;

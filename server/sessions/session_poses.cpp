@@ -8,7 +8,7 @@
 #include <set>
 #include <utility>
 
-/// What a session does about the poses that the server estimates: reports them to robots, and lets the maps follow.
+/// Reports estimated poses to robots, and lets the maps of a session follow them.
 namespace scanloom::sessions {
 namespace {
 
@@ -131,10 +131,10 @@ void Session::report_places(const Group& group) {
         if (poses == nullptr || listener == nullptr) continue;
         const bool has_odometry = maps_.projection().robots()[robot].poses == Poses::kOdometry;
         const auto known = poses->localization();
-        const auto& place = poses->place();
-        Pose2 location = has_odometry ? place.T_map_odom : place.T_map_robot;
-        if (known.state == LocalizationState::kUnlocated) location = {}; // its place is in a frame of its own
-        listener->on_located({location, maps_.projection().revision(), known.inlier_ratio, known.position_sigma,
+        const auto& location = poses->location();
+        Pose2 reported = has_odometry ? location.T_map_odom : location.T_map_robot;
+        if (known.state == LocalizationState::kUnlocated) reported = {}; // its place is in a frame of its own
+        listener->on_located({reported, maps_.projection().revision(), known.inlier_ratio, known.position_sigma,
                               known.yaw_sigma, known.state, known.mount_yaw_error});
     }
 }

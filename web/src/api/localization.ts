@@ -1,4 +1,4 @@
-/** Tells the server about the poses that it estimates. For operators. */
+/** Requests that change how the server localizes robots. For operators. */
 import { sessionPath } from './api';
 import { send, sendJson } from './http';
 import type { Point } from './types';

@@ -25,7 +25,7 @@ const kEntries: Partial<Record<keyof Settings, Entry[]>> = {
   poseGraph: [
     { label: 'keyframe', symbol: 'keyframe', path: 'M8 5.5a2.5 2.5 0 1 1-.01 0z' },
     { label: 'match of neighbours', symbol: 'graph-match', path: 'M1 8h14' },
-    { label: 'loop: a place visited again', symbol: 'graph-loop', path: 'M1 11Q8 2 15 11' },
+    { label: 'loop: a match with an earlier part', symbol: 'graph-loop', path: 'M1 11Q8 2 15 11' },
     { label: 'not used: it disagrees', symbol: 'graph-unused', path: 'M1 8h14' },
   ],
 };

@@ -42,8 +42,8 @@ void expect_all_equal(LocalizedProjection& a, LocalizedProjection& b) {
         const auto* others = b.poses().find(robot);
         ASSERT_EQ(poses == nullptr, others == nullptr);
         if (poses == nullptr) continue;
-        EXPECT_EQ(poses->place().T_map_robot, others->place().T_map_robot);
-        EXPECT_EQ(poses->place().T_map_odom, others->place().T_map_odom);
+        EXPECT_EQ(poses->location().T_map_robot, others->location().T_map_robot);
+        EXPECT_EQ(poses->location().T_map_odom, others->location().T_map_odom);
         EXPECT_EQ(poses->estimator().unmatched_count(), others->estimator().unmatched_count());
         for (const Revision then : {end / 2, end * 3 / 4, end}) {
             const auto before = a.poses().history().at(then);
@@ -288,7 +288,7 @@ void drive_far_beyond_a_frozen_map(GrowingLog& log) {
         log.drive(0, drive, n, Poses::kOdometry);
     }
     EXPECT_EQ(log.maps().localization_of(0).state, LocalizationState::kTracking);
-    EXPECT_NEAR(log.maps().poses().find(0)->place().T_map_robot.x, drive.truth.back().x, 5.0);
+    EXPECT_NEAR(log.maps().poses().find(0)->location().T_map_robot.x, drive.truth.back().x, 5.0);
 }
 
 /// A sender that is wrong by kilometres now and then, a robot that is located in its map, and lasers that are too far

@@ -127,8 +127,8 @@ std::string bytes_of_all(const Values&... values) {
 void expect_no_trace_in(LocalizedProjection& maps, LocalizedProjection& never) {
     const auto everything = [](const LocalizedProjection& of) {
         const auto& robot = *of.poses().find(0);
-        return bytes_of_all(of.poses().map(), robot.estimator(), robot.place().T_map_robot, robot.place().T_map_odom,
-                            of.localization_of(0));
+        return bytes_of_all(of.poses().map(), robot.estimator(), robot.location().T_map_robot,
+                            robot.location().T_map_odom, of.localization_of(0));
     };
     EXPECT_TRUE(everything(maps) == everything(never)); // not EXPECT_EQ, which prints megabytes
     EXPECT_EQ(maps.poses().scan_count(), never.poses().scan_count());

@@ -28,7 +28,7 @@ struct LonePoses {
 
     RobotPoses* operator->() noexcept { return &poses; }
     bool correct_if_due() {
-        const bool is_due = poses.is_correction_due();
+        const bool is_due = poses.note_moves();
         if (is_due) poses.correct();
         return is_due;
     }
@@ -118,7 +118,7 @@ TEST(RobotPoses, TheMapBeginsAtTheOdometryOfTheFirstScan) {
     LonePoses poses;
     add(poses, drive);
     EXPECT_NEAR(distance(poses->newest(0), start), 0.0, 1e-12);
-    EXPECT_LT(distance(poses->place().T_map_odom, {}), 0.15) << "0.001 rad turn a place 100 m away by 0.1 m";
+    EXPECT_LT(distance(poses->location().T_map_odom, {}), 0.15) << "0.001 rad turn a place 100 m away by 0.1 m";
     EXPECT_EQ(poses->localization().state, State::kTracking);
     EXPECT_GT(poses->localization().inlier_ratio, 0.9);
     EXPECT_GT(poses->localization().position_sigma, 0.0);
