@@ -34,6 +34,7 @@ export function wordsOf(localization: Localization): string {
 function stateInWords({ state, sigma, inliers }: Localization): string {
   switch (state) {
     case 'tracking':
+      if (inliers === 0 && sigma === 0) return 'tracking, from its first scan on';
       return `tracking, \u00b1${around(sigma)}${inliers < kGoodInliers ? `, ${Math.round(100 * inliers)} % of the scan fits the map` : ''}`;
     case 'lost':
       return 'lost: its scans fit no place';

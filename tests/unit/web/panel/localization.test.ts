@@ -13,6 +13,8 @@ describe('the localization of a robot', () => {
     assert.equal(wordsOf(tracking(0.124)), 'tracking, \u00b112 cm');
     assert.equal(wordsOf(tracking(2.34)), 'tracking, \u00b12.3 m');
     assert.equal(wordsOf(tracking(0.02, 0.554)), 'tracking, \u00b12 cm, 55 % of the scan fits the map');
+    assert.equal(wordsOf(tracking(0.3, 0)), 'tracking, \u00b130 cm, 0 % of the scan fits the map');
+    assert.equal(wordsOf(tracking(0, 0)), 'tracking, from its first scan on');
     assert.equal(wordsOf({ ...tracking(0.01), state: 'lost' }), 'lost: its scans fit no place');
     assert.equal(wordsOf({ ...tracking(0), state: 'unlocated' }), 'unlocated: its place in the map is not known yet');
   });
