@@ -35,7 +35,7 @@ public:
 
     /// Returns T_map_odom by the robot's newest scan. Pre: its poses are odometry, and it has a scan.
     [[nodiscard]] const Pose2& T_map_odom(RobotIndex robot) const {
-        return maps_.poses().find(robot)->place().T_map_odom;
+        return maps_.poses().find(robot)->location().T_map_odom;
     }
 
     [[nodiscard]] Result<robot::NextStop> next(RobotIndex robot) {
