@@ -42,7 +42,7 @@ protected:
 TEST_F(FrozenMap, RobotsAreLocatedInItAndItStaysAsItIs) {
     const std::vector<Point2> lap{{24.0, 21.0}, {1.0, 21.0}, {1.0, 1.0}, {33.0, 1.0}, {33.0, 20.0}};
     const Drive second = drive_along(ring_building(), lap, {.scale = 0.97, .turn = -0.005}, 2);
-    const TwoRobots robots(first_lap(), second, true);
+    const TwoRobots robots(first_lap(), second, {.is_frozen = true});
     ASSERT_TRUE(robots.located_at());
     EXPECT_LT(*robots.located_at(), 200U) << "within 20 m";
     EXPECT_LT(robots.largest_error(), 0.15);
@@ -54,12 +54,12 @@ TEST_F(FrozenMap, RobotsAreLocatedInItAndItStaysAsItIs) {
 }
 
 TEST_F(FrozenMap, TheRobotThatMadeItGoesOnWithoutKeyframes) {
-    const std::size_t half = first_lap().scans.size() * 85 / 100; // a lap: the rest is known
-    add(first_lap(), 0, half);
+    const std::size_t lap = first_lap().scans.size() * 85 / 100; // the rest is known
+    add(first_lap(), 0, lap);
     estimator_.finish();
     map_.freeze(true);
     const std::size_t keyframes = map_.graph().size();
-    add(first_lap(), half, first_lap().scans.size());
+    add(first_lap(), lap, first_lap().scans.size());
     finish();
     EXPECT_EQ(map_.graph().size(), keyframes);
     EXPECT_FALSE(estimator_.is_lost());

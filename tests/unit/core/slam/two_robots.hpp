@@ -10,20 +10,26 @@
 
 namespace scanloom::slam {
 
+/// How the second of TwoRobots differs from the first.
+struct SecondRobot {
+    bool is_frozen = false;   ///< whether the map is frozen before it starts
+    bool has_odometry = true; ///< whether its estimator gets the odometry of its drive
+};
+
 /// Two robots that share a map. The second one starts when the first has ended.
 class TwoRobots {
 public:
-    /// @param is_frozen  whether the map is frozen between them
-    TwoRobots(const Drive& first, const Drive& second, bool is_frozen = false) : first_(first), second_(second) {
+    TwoRobots(const Drive& first, const Drive& second, const SecondRobot& how = {}) : first_(first), second_(second) {
         for (std::size_t n = 0; n < first.scans.size(); ++n)
             a_.add(scan_matching::points_of(first.scans[n], first.laser), first.odometry[n]);
-        if (is_frozen) {
+        if (how.is_frozen) {
             a_.finish();
             map_.freeze(true);
             before_.assign(map_.graph().poses().begin(), map_.graph().poses().end());
         }
         for (std::size_t n = 0; n < second.scans.size(); ++n) {
-            b_.add(scan_matching::points_of(second.scans[n], second.laser), second.odometry[n]);
+            b_.add(scan_matching::points_of(second.scans[n], second.laser),
+                   how.has_odometry ? std::optional(second.odometry[n]) : std::nullopt);
             if (!located_at_ && b_.located_fragments() > 0) located_at_ = n;
         }
         a_.finish();
