@@ -101,29 +101,66 @@ TEST(PlaceSearch, FindsWhatTryingAllPlacesFinds) {
     }
 }
 
+/// Whether a point matches a map, by comparing it with all points of the map.
+enum class Matches { kNo, kPerhaps, kYes };
+
+/// Cells are 10 cm wide, and a cell matches for the points in it and in its neighbours. A surface matches for normals
+/// up to 0.5 rad from its own, and in the whole of the eighth turns that these lie in.
+Matches matches(const SurfacePoint& point, std::span<const SurfacePoint> map) {
+    constexpr double kRounding = 1e-4; // metres and radians
+    Matches result = Matches::kNo;
+    for (const SurfacePoint& other : map) {
+        const double apart = std::max(std::fabs(point.x - other.x), std::fabs(point.y - other.y));
+        if (apart > 2.0 * kCell + kRounding) continue;
+        double turn = 0.0;
+        if (point.has_normal() && other.has_normal()) {
+            turn = std::fabs(normalize_angle(direction_of(point) - direction_of(other)));
+        }
+        if (apart < kCell - kRounding && turn < 0.5 - kRounding) return Matches::kYes;
+        if (turn < 0.5 + std::numbers::pi / 4.0 + kRounding) result = Matches::kPerhaps;
+    }
+    return result;
+}
+
 TEST(PlaceSearch, AScoreCountsPointsNearSurfacesMinusThoseInSeenSpace) {
     std::mt19937 random(2);
-    const SearchedRoom scene(random, 8.0);
+    SearchedRoom scene(random, 8.0, 30);
+    const Transform2 T_map_room = transform_of({0.0, 0.0, 0.4}); // so that walls face the middle of an eighth turn
+    for (View& view : scene.views) view.T_map_robot = T_map_room * view.T_map_robot;
     const auto map = map_of(scene.views);
-    const PointMap points(scene.views);
     const SeenSpace space(scene.views);
-    for (int round = 0; round < 2000; ++round) {
-        const Transform2 pose = transform_of(SearchedRoom::place(random, 8.0));
-        int low = 0; // points that certainly match
+    std::vector<SurfacePoint> shown;
+    for (const View& view : scene.views) {
+        for (const SurfacePoint& point : view.points) shown.push_back(transform(view.T_map_robot, point));
+    }
+    int matched = 0;
+    int contradicted = 0;
+    int undecided = 0;
+    constexpr int kRounds = 300;
+    for (int round = 0; round < kRounds; ++round) {
+        const Transform2 off =
+            transform_of({uniform(random, -0.3, 0.3), uniform(random, -0.3, 0.3), uniform(random, -0.6, 0.6)});
+        const Transform2 anywhere = transform_of(SearchedRoom::place(random, 8.0));
+        const Transform2 pose = T_map_room * (round % 2 == 0 ? scene.truth * off : anywhere);
+        int low = 0;
         int high = 0;
         for (const SurfacePoint& point : scene.points) {
             const SurfacePoint moved = transform(pose, point);
-            const bool is_free = space.is_free(moved.x, moved.y);
-            // Within 10 cm in x and in y, the cells are neighbours; beyond 30 cm they are not.
-            low += points.nearest(moved, 0.1F).point != nullptr && !is_free ? 0 : is_free ? -1 : 0;
-            high += points.nearest(moved, 0.3F).point != nullptr || space.is_near_point(moved.x, moved.y) ? 1
-                    : is_free                                                                             ? -1
-                                                                                                          : 0;
+            const int without = space.is_free(moved.x, moved.y) ? -1 : 0;
+            const Matches found = matches(moved, shown);
+            low += found == Matches::kYes ? 1 : without;
+            high += found == Matches::kNo ? without : 1;
+            matched += found == Matches::kYes ? 1 : 0;
+            contradicted -= without;
+            undecided += found == Matches::kPerhaps ? 1 : 0;
         }
         const int score = map->score_of(scene.points, pose);
         ASSERT_LE(low, score);
         ASSERT_GE(high, score);
     }
+    EXPECT_GT(matched, 300);
+    EXPECT_GT(contradicted, 1000);
+    EXPECT_LT(undecided, 1200) << "so that the bounds are close to each other";
 }
 
 TEST(PlaceSearch, FindsAScanInABuildingWithoutAnEstimate) {
