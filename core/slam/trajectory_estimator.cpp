@@ -17,10 +17,23 @@ constexpr double kNewSightInliers = 0.6;  // of such a scan's points, those that
 constexpr double kKnownPlace = 1.5;       // metres from a keyframe of the frozen map that shows the place
 constexpr double kKnownPlaceTurn = 0.5;   // radians, likewise
 constexpr double kMotionMax = 10.0;       // metres between two scans; odometry that moves by more has started again
+constexpr double kSpeedMax = 1.5;         // metres per second: more than kMotionMax is possible after a hole
+constexpr double kRestart = 0.5;          // metres from the origin of odometry that has started again
+constexpr double kHole = 1.0;             // seconds between two scans, without odometry
+constexpr double kLongHole = 4.0;         // seconds; odometry may be wrong over that time, too
+constexpr double kHoleInliers = 0.5;      // of the first scan after a hole
+constexpr double kLongHoleInliers = 0.8;  // likewise after a long one without odometry
 
 bool is_keyframe_due(const TrackedScan& scan) {
     if (is_beyond(scan.T_keyframe_robot, kKeyframeDistance, kKeyframeTurn)) return true;
     return scan.inlier_ratio <= kNewSightInliers && is_beyond(scan.T_keyframe_robot, kNewSightDistance, kNewSightTurn);
+}
+
+/// Returns the share of a scan's points that must fit the map at the predicted place: after a hole in the scans, the
+/// robot may be anywhere else. 0: there is no hole.
+double inliers_wanted(double seconds, bool has_odometry) {
+    if (seconds <= (has_odometry ? kLongHole : kHole)) return 0.0;
+    return !has_odometry && seconds > kLongHole ? kLongHoleInliers : kHoleInliers;
 }
 
 } // namespace
@@ -29,7 +42,7 @@ void TrajectoryEstimator::add(const Scan& scan, const Sensor& sensor) {
     using namespace scan_matching;
     const Motion motion = motion_at(scan);
     add(can_deskew(scan, sensor, motion) ? points_of(deskewed(scan, sensor, motion), sensor) : points_of(scan, sensor),
-        scan.odometry);
+        scan.odometry, stamp_ ? scan.stamp - *stamp_ : 0.0);
     seconds_ = stamp_ ? scan.stamp - *stamp_ : 0.0;
     stamp_ = scan.stamp;
 }
@@ -44,12 +57,21 @@ scan_matching::Motion TrajectoryEstimator::motion_at(const Scan& scan) const {
     return {scan_matching::pose_of(tracker_.velocity()), seconds_};
 }
 
-void TrajectoryEstimator::add(ScanPoints scan, const std::optional<Pose2>& odometry) {
-    std::optional<Transform2> motion;
+/// Returns T_last_robot by the odometry of the last two scans; nullopt if it is not known.
+std::optional<Transform2> TrajectoryEstimator::odometry_motion(const std::optional<Transform2>& now,
+                                                               double seconds) const {
+    if (!odometry_ || !now) return std::nullopt;
+    const Transform2 motion = inverse(*odometry_) * *now;
+    const double distance = distance_of(motion);
+    const bool is_possible =
+        distance <= kMotionMax || (distance <= kSpeedMax * seconds && distance_of(*now) > kRestart);
+    return is_possible ? std::optional(motion) : std::nullopt; // also if it is NaN
+}
+
+void TrajectoryEstimator::add(ScanPoints scan, const std::optional<Pose2>& odometry, double seconds) {
     const std::optional<Transform2> now =
         odometry ? std::optional(scan_matching::transform_of(*odometry)) : std::nullopt;
-    if (odometry_ && now) motion = inverse(*odometry_) * *now;
-    if (motion && !(distance_of(*motion) <= kMotionMax)) motion.reset(); // also if it is NaN
+    const std::optional<Transform2> motion = odometry_motion(now, seconds);
     odometry_ = now;
     if (keyframes_.empty()) {
         const Transform2 start = graph().size() == 0 ? now.value_or(Transform2()) : Transform2();
@@ -70,10 +92,13 @@ void TrajectoryEstimator::add(ScanPoints scan, const std::optional<Pose2>& odome
     const auto is_due = [&](const TrackedScan& tracked) {
         return place_to_search || is_leaving || is_keyframe_due(since_start(tracked));
     };
-    const auto decided = tracker_.add(scan, motion, is_due);
+    auto decided = tracker_.add(scan, motion, is_due);
     newest_ = decided.empty() ? tracker_.newest() : decided.back();
+    const bool is_lost_in_hole =
+        !scan.points.empty() && newest_.inlier_ratio < inliers_wanted(seconds, motion.has_value());
+    if (is_lost_in_hole && decided.empty()) decided = tracker_.decide();
     const Transform2 first = graph().pose(anchor_) * newest_.T_keyframe_robot;
-    first_.push_back({first, newest_.is_matched && is_fragment_located()});
+    first_.push_back({first, newest_.is_matched && !is_lost_in_hole && is_fragment_located()});
     if (decided.empty()) {
         relocalized_ = place_to_search; // it waits until the open scans are decided
         return;
@@ -82,7 +107,8 @@ void TrajectoryEstimator::add(ScanPoints scan, const std::optional<Pose2>& odome
     const TrackedScan& last = decided.back();
     const bool is_elsewhere = place_to_search && (is_fragment_located() || !last.is_matched);
     const bool is_beyond_all = !is_near(first, {0.0, 0.0}, kEstimateMax);
-    const bool is_new = (tracker_.unmatched() >= kLost && !scan.points.empty()) || is_elsewhere || is_beyond_all;
+    const bool is_new =
+        (tracker_.unmatched() >= kLost && !scan.points.empty()) || is_elsewhere || is_beyond_all || is_lost_in_hole;
     if (is_new) {
         begin_fragment(std::move(scan), is_beyond_all ? Transform2() : first, place_to_search);
     } else if (last.is_matched && is_due(last)) {

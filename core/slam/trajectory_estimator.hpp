@@ -43,10 +43,12 @@ public:
     /// @param sensor  the laser that took it
     void add(const Scan& scan, const Sensor& sensor);
 
-    /// Adds the next scan.
+    /// Adds the next scan. If it does not fit the map at the predicted place after a hole in the scans, of more than 1
+    /// s without odometry and 4 s with it, the robot is lost at once: it may be anywhere.
     /// @param scan      its points
     /// @param odometry  T_odom_robot at the scan; nullopt: not known. Pre: finite
-    void add(ScanPoints scan, const std::optional<Pose2>& odometry);
+    /// @param seconds   since the scan before; 0: not known
+    void add(ScanPoints scan, const std::optional<Pose2>& odometry, double seconds = 0.0);
 
     /// Searches for the next scan near a place, which people know. If it is found there, the robot goes on from there;
     /// otherwise it is lost, and further scans are searched for there, too.
@@ -161,6 +163,7 @@ private:
     };
 
     [[nodiscard]] scan_matching::Motion motion_at(const Scan& scan) const;
+    [[nodiscard]] std::optional<Transform2> odometry_motion(const std::optional<Transform2>& now, double seconds) const;
     void append_decided(const std::vector<TrackedScan>& scans);
     [[nodiscard]] TrackedScan since_start(TrackedScan scan) const;
     void begin_fragment(ScanPoints scan, const Transform2& T_map_robot,

@@ -171,6 +171,44 @@ TEST(TrajectoryEstimator, BeginsAFragmentAfterTwentyUnmatchedScans) {
     EXPECT_EQ(estimator->unmatched_count(), 20U) << "all later scans match it";
 }
 
+/// A robot without odometry is carried to another floor while there are no scans.
+TEST(TrajectoryEstimator, AHoleWithoutOdometryBeginsAFragmentUnlessTheScanFits) {
+    const Building building = ring_building();
+    const Sensor laser = Building::laser();
+    for (const double seconds : {0.5, 2.0, 20.0}) {
+        for (const bool has_moved : {false, true}) {
+            SCOPED_TRACE(testing::Message() << seconds << " s, " << has_moved);
+            std::mt19937 random(9);
+            LoneEstimator estimator;
+            const auto add = [&](const Building& around, const Pose2& pose, double since) {
+                estimator->add(scan_matching::points_of(around.scan(laser, pose, 0.01, random), laser), std::nullopt,
+                               since);
+            };
+            for (int n = 0; n < 40; ++n) add(building, {5.0 + 0.1 * n, 1.0, 0.0}, 0.2);
+            add(has_moved ? other_building() : building, {9.0, 1.0, 0.0}, seconds);
+            const bool must_begin = has_moved && seconds > 1.0;
+            EXPECT_EQ(estimator.map->graph().fragments().size(), must_begin ? 2U : 1U);
+            EXPECT_EQ(estimator->is_lost(), must_begin);
+            EXPECT_EQ(estimator->was_located(40), !has_moved);
+        }
+    }
+}
+
+TEST(TrajectoryEstimator, OdometryIsUsedOverAHoleUnlessItStartedAgain) {
+    const auto moved_by = [](const Pose2& before, const Pose2& after, double seconds) {
+        SharedMap map;
+        TrajectoryEstimator estimator(map);
+        estimator.add({}, before);
+        estimator.add({}, after, seconds);
+        estimator.finish();
+        return estimator.pose_of(1).x - estimator.pose_of(0).x;
+    };
+    EXPECT_NEAR(moved_by({5.0, 0.0, 0.0}, {14.0, 0.0, 0.0}, 0.2), 9.0, 1e-9);
+    EXPECT_NEAR(moved_by({5.0, 0.0, 0.0}, {25.0, 0.0, 0.0}, 0.2), 0.0, 1e-9) << "100 m/s";
+    EXPECT_NEAR(moved_by({5.0, 0.0, 0.0}, {25.0, 0.0, 0.0}, 15.0), 20.0, 1e-9);
+    EXPECT_NEAR(moved_by({25.0, 0.0, 0.0}, {0.1, 0.0, 0.0}, 60.0), 0.0, 1e-9) << "the robot was switched on again";
+}
+
 /// The constant is the same for every compiler, processor and instruction set.
 TEST(TrajectoryEstimator, PosesHaveTheSameBitsEverywhere) {
     // Without the C library's sine: positions are given, and yaws only turn by fixed steps.
