@@ -7,6 +7,7 @@
 #include "robot_client/sources/ld06_live.hpp"
 #include "robot_client/sources/live_source.hpp"
 #include "robot_client/sources/locating_source.hpp"
+#include "robot_client/sources/pose_check.hpp"
 #include "robot_client/sources/pose_feed.hpp"
 #include "robot_client/sources/pose_path.hpp"
 #include "robot_client/sources/sonar_log.hpp"
@@ -124,7 +125,10 @@ Result<PreparedSource> make_recording(const RobotOptions& options, const ReplayO
 }
 
 Result<PreparedSource> make(const RobotOptions& options, const ReplayOptions& replay, Console& console) {
-    return is_recording(replay.file) ? make_recording(options, replay, console) : make_log(options, replay, console);
+    auto prepared =
+        is_recording(replay.file) ? make_recording(options, replay, console) : make_log(options, replay, console);
+    if (prepared) prepared->source = std::make_unique<CheckedPoses>(std::move(prepared->source));
+    return prepared;
 }
 
 Result<PreparedSource> make(const RobotOptions& options, const SonarReplayOptions& sonar, Console&) {
