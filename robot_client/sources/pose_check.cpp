@@ -6,15 +6,15 @@
 namespace scanloom::robot {
 namespace {
 
-constexpr double kCell = 0.2;             // metres
-constexpr double kScanDistance = 0.5;     // metres travelled between scans that are looked at
-constexpr std::size_t kBeams = 60;        // of a scan
-constexpr double kRange = 10.0;           // metres: longer beams are not looked at
-constexpr double kSurface = 0.5;          // metres before a hit that are not free space
-constexpr float kEarlier = 10.0F;         // metres travelled since an earlier scan, at least
-constexpr std::size_t kCellsMax = 2 << 20;
-constexpr std::size_t kHitsMin = 300;     // before it decides
-constexpr double kShareMax = 0.07;        // of contradictions in a correct map: people, doors, errors of poses
+constexpr double kCell = 0.2;         // metres
+constexpr double kScanDistance = 0.5; // metres travelled between scans that are looked at
+constexpr std::size_t kBeams = 60;    // of a scan
+constexpr double kRange = 10.0;       // metres: longer beams are not looked at
+constexpr double kSurface = 0.5;      // metres before a hit that are not free space
+constexpr float kEarlier = 10.0F;     // metres travelled since an earlier scan, at least
+constexpr std::size_t kCellsMax = std::size_t{1} << 20;
+constexpr std::size_t kHitsMin = 300; // before it decides
+constexpr double kShareMax = 0.07;    // of contradictions in a correct map: people, doors, errors of poses
 
 std::int32_t cell_of(double metres) { return static_cast<std::int32_t>(std::floor(metres / kCell)); }
 

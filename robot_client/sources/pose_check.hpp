@@ -16,7 +16,7 @@ namespace scanloom::robot {
 /// Finds out whether scans contradict their poses: whether walls are where earlier scans saw free space, and not where
 /// earlier scans saw walls, as in the map of a robot whose poses are drifting odometry. Looks at some beams of scans
 /// 0.5 m apart, in cells of 0.2 m, and compares them with scans at least 10 m of travel before.
-/// Memory: 24 bytes for each cell, at most 50 MB; farther places are not looked at.
+/// Memory: about 48 bytes for each cell, at most 50 MB; then new places are not looked at.
 /// Threads: one at a time.
 class PoseCheck {
 public:

@@ -61,7 +61,8 @@ TEST(PoseCheck, DecidesOnlyWhereScansSeePlacesAgain) {
 }
 
 TEST(PoseCheck, IgnoresScansWithoutAPoseAndOfSonars) {
-    slam::Drive drive = slam::drive_along(slam::ring_building(), slam::kLapAndAQuarter, {.scale = 1.03, .turn = 0.004}, 1);
+    slam::Drive drive =
+        slam::drive_along(slam::ring_building(), slam::kLapAndAQuarter, {.scale = 1.03, .turn = 0.004}, 1);
     PoseCheck check;
     for (std::size_t n = 0; n < drive.scans.size(); ++n) {
         Scan scan = drive.scans[n];
