@@ -51,17 +51,21 @@ void LoopSearch::search(KeyframeGraph& graph, std::size_t fragment) {
             if (try_stretch(graph, keyframe, near, found)) return;
             continue;
         }
-        if (!found.agrees || !found.is_determined) continue;
+        if (!found.agrees || !found.is_determined) {
+            ++(found.agrees ? figures_.undetermined : figures_.disagreeing);
+            continue;
+        }
         graph.add_loop({submaps_[near.submap].anchor, keyframe, found.T_anchor_keyframe,
                         information_of(kLoopSigma, kLoopTurnSigma), true});
         largest_jump = std::max(largest_jump, found.jump + 2.0 * found.turn);
         ++figures_.loops;
         ++new_loops_;
+        note_jump(found.jump);
     }
     if (largest_jump <= kNoticeableJump && new_loops_ < kLoopsUnoptimized) return;
     constexpr int kIterations = 2;
     new_loops_ = 0;
-    ++figures_.optimizations;
+    ++optimizations_;
     graph.optimize(kIterations);
 }
 
@@ -124,9 +128,17 @@ bool LoopSearch::try_stretch(KeyframeGraph& graph, std::size_t keyframe, const N
     if (!accept_stretch(graph, {keyframe, anchor, correction, std::max(kStretchWindow, near.drift)})) return false;
     new_loops_ = 0;
     ++figures_.stretches_accepted;
-    ++figures_.optimizations;
+    ++optimizations_;
+    const Transform2 before = graph.pose(keyframe);
     graph.optimize_after_jump();
+    note_jump(distance_of(inverse(before) * graph.pose(keyframe)));
     return true;
+}
+
+void LoopSearch::note_jump(double metres) {
+    figures_.jump_sum += metres;
+    const auto bound = std::ranges::lower_bound(LoopFigures::kJumpBounds, metres);
+    ++figures_.jumps[static_cast<std::size_t>(bound - LoopFigures::kJumpBounds.begin())];
 }
 
 /// Frees the points and the seen space of the submaps that were not used for long.

@@ -87,7 +87,7 @@ public:
     [[nodiscard]] const LoopFigures& loop_figures() const noexcept { return loops_.figures(); }
     /// Returns how often the graph was optimised: poses of earlier keyframes change only then.
     [[nodiscard]] std::size_t optimization_count() const noexcept {
-        return optimizations_ + loop_figures().optimizations;
+        return optimizations_ + loops_.optimization_count();
     }
 
     /// Lists the members that decide later results; see common/archive.

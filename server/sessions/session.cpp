@@ -53,6 +53,7 @@ Session::Session(SessionInfo info, localization::LocalizedProjection maps, std::
         sequencer_.set_location(robot, poses->location());
         loops_ += poses->estimator().loop_count();
     }
+    loop_figures_ = maps_.localized().poses().map().loop_figures();
     moving_scans_ = maps_.localized().moving_scans();
 }
 

@@ -199,6 +199,7 @@ private:
     std::shared_ptr<MapCorrection> correction_; // null: none is being made, nor waits for its entry
     std::size_t correction_pages_ = 0;          // of share_
     std::size_t loops_ = 0;                     // of all robots, that are counted
+    slam::LoopFigures loop_figures_;            // likewise
     std::set<std::string> warned_of_;           // robots whose lasers' mounts seem to be wrong
     std::set<std::string> lost_;                // robots that are lost
     CheckpointSchedule checkpoints_;

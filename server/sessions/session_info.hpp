@@ -5,6 +5,7 @@
 #include "common/scan/scan_filter.hpp"
 #include "core/mapping/map_config.hpp"
 #include "server/auth/token.hpp"
+#include "server/sessions/loop_counters.hpp"
 #include "server/store/scan_log.hpp"
 
 #include <atomic>
@@ -64,8 +65,9 @@ struct SessionCounters {
     std::atomic<std::uint64_t> scans_unplaced = 0;   ///< in the log, but not in the map: they fit no place
     std::atomic<std::uint64_t> scans_duplicates = 0; ///< sent again after a reconnect and dropped
     std::atomic<std::uint64_t> scans_dropped = 0;    ///< refused, or received after their link ended; not acknowledged
-    std::atomic<std::uint64_t> loops_accepted = 0;   ///< edges between places that a robot visited again
+    std::atomic<std::uint64_t> loops_accepted = 0;   ///< edges to parts of the map that were made earlier
     std::atomic<std::uint64_t> maps_corrected = 0;   ///< times that maps followed corrected poses of earlier scans
+    LoopCounters loop_search;                        ///< of all sessions with estimated poses
 };
 
 /// Returns the error (kShuttingDown) for requests that arrive while the server shuts down.

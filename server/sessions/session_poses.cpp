@@ -91,13 +91,15 @@ void Session::drop_correction() {
     share_.give_back(static_cast<std::int64_t>(std::exchange(correction_pages_, 0)));
 }
 
-/// Counts the loops that were found since the last call, in the published maps.
+/// Counts what was done about loops since the last call.
 void Session::count_loops() {
     if (!maps_.projection().has_estimated_poses()) return;
     std::size_t loops = 0;
     for (const auto& robot : snapshot()->robots) loops += robot.localization.loops;
     const std::size_t before = std::exchange(loops_, loops);
     counters_->loops_accepted += loops - std::min(loops, before);
+    const auto& figures = maps_.localized().poses().map().loop_figures();
+    counters_->loop_search.add(std::exchange(loop_figures_, figures), figures);
 }
 
 /// Logs which robots were lost or found again, and once of each laser that its mount seems to be wrong.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -8,6 +9,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 /// Functions for tests that damage a store's files.
@@ -54,10 +56,26 @@ inline std::filesystem::path only_file_like(const std::filesystem::path& directo
     return found.front();
 }
 
-/// Copies the files of an open but idle store, which is the state that kill -9 would leave.
+/// Returns the size of each file of a directory, by name.
+inline std::map<std::string, std::uintmax_t> sizes_in(const std::filesystem::path& directory) {
+    std::map<std::string, std::uintmax_t> sizes;
+    for (const auto& file : std::filesystem::directory_iterator(directory)) {
+        std::error_code removed;
+        sizes.emplace(file.path().filename().native(), std::filesystem::file_size(file.path(), removed));
+    }
+    return sizes;
+}
+
+/// Copies the files of an open store to which nobody writes: the state that kill -9 would leave. The store may merge
+/// tables meanwhile, so the copy is repeated until no file has changed.
 inline void copy_store(const std::filesystem::path& from, const std::filesystem::path& to) {
-    std::filesystem::remove_all(to);
-    std::filesystem::copy(from, to);
+    for (;;) {
+        std::filesystem::remove_all(to);
+        const auto before = sizes_in(from);
+        std::error_code merged;
+        std::filesystem::copy(from, to, merged);
+        if (!merged && sizes_in(from) == before && sizes_in(to) == before) return;
+    }
 }
 
 } // namespace scanloom::store

@@ -12,8 +12,12 @@
 #include <boost/json/object.hpp>
 
 #include <algorithm>
+#include <atomic>
+#include <cstdint>
 #include <iterator>
+#include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace scanloom::http {
@@ -92,6 +96,40 @@ std::size_t count_lost(const mapping::Snapshot& maps) {
     }));
 }
 
+/// Returns what is known about loops, and how large the corrections were.
+Families loop_families(const sessions::LoopCounters& loops) {
+    prometheus::MetricFamily refused{
+        "scanloom_loops_refused_total",
+        "Matches and stretch tests that gave no loop: what is seen disagrees with the map, "
+        "does not determine the position, or several places fit.",
+        prometheus::MetricType::Counter,
+        {}};
+    const std::pair<const char*, const std::atomic<std::uint64_t>&> reasons[] = {
+        {"disagrees", loops.disagreeing}, {"undetermined", loops.undetermined}, {"stretch", loops.stretches_refused}};
+    for (const auto& [reason, count] : reasons) {
+        prometheus::ClientMetric metric;
+        metric.label = {{"reason", reason}};
+        metric.counter.value = static_cast<double>(count.load());
+        refused.metric.push_back(std::move(metric));
+    }
+    prometheus::ClientMetric jumps;
+    auto& histogram = jumps.histogram;
+    for (std::size_t n = 0; n < loops.jumps.size(); ++n) {
+        histogram.sample_count += loops.jumps[n].load();
+        const bool has_bound = n < loops.kJumpBounds.size();
+        histogram.bucket.push_back(
+            {histogram.sample_count, has_bound ? loops.kJumpBounds[n] : std::numeric_limits<double>::infinity()});
+    }
+    histogram.sample_sum = loops.jump_sum.load();
+    return {counter_now("scanloom_loop_matches_total", "Matches of keyframes with earlier parts of the map.",
+                        loops.matches.load()),
+            std::move(refused),
+            {"scanloom_loop_jump_metres",
+             "Corrections of a keyframe's position by accepted loops, in metres.",
+             prometheus::MetricType::Histogram,
+             {std::move(jumps)}}};
+}
+
 Families session_families(const sessions::SessionRegistry& sessions, const sessions::BackgroundCheck& check) {
     const auto& counters = sessions.counters();
     const auto served = sessions.list();
@@ -128,7 +166,7 @@ Families session_families(const sessions::SessionRegistry& sessions, const sessi
         counter_now("scanloom_scans_dropped_total",
                     "Scans that were refused, or that arrived after their link was replaced; never acknowledged.",
                     counters.scans_dropped.load()),
-        counter_now("scanloom_loops_accepted_total", "Matches to places that a robot visited again.",
+        counter_now("scanloom_loops_accepted_total", "Edges to parts of the map that were made earlier.",
                     counters.loops_accepted.load()),
         counter_now("scanloom_maps_corrected_total",
                     "Times that the map of a session followed corrected poses of earlier scans.",
@@ -158,6 +196,7 @@ Result<Response> get_metrics(Context& context) {
     const Services& services = context.services;
     Families families = services.metrics.collect();
     append(families, session_families(services.sessions, services.check));
+    append(families, loop_families(services.sessions.counters().loop_search));
     append(families, {gauge_now("scanloom_weave_memory_bytes", "Upper bound of the memory of the maps of replay jobs.",
                                 bytes_of(services.weaves.chunks()))});
     append(families, store_families(services.log));

@@ -10,6 +10,9 @@ from served import DOCS, ask_a_server
 # Metrics that the dashboard does not show, with the reason.
 LEFT_OUT = {
     "scanloom_loops_accepted_total": "loops are counted for each robot in the session's JSON, where they mean more",
+    "scanloom_loop_matches_total": "as for loops",
+    "scanloom_loops_refused_total": "as for loops",
+    "scanloom_loop_jump_metres": "as for loops",
     "scanloom_maps_corrected_total": "as for loops",
     "scanloom_robots_lost": "the viewer and the session's JSON say which robots",
     "scanloom_moving_scans": "0 but for seconds after a correction; the viewer shows it",

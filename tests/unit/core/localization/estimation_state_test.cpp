@@ -156,7 +156,7 @@ TEST(EstimationState, HasTheLayoutOfItsVersion) {
     log.join(0, drive, Poses::kOdometry);
     for (std::size_t n = 0; n < 3; ++n) log.drive(0, drive, n, Poses::kOdometry);
     EXPECT_EQ(kEstimationVersion, 4U);
-    EXPECT_EQ(state_of(log.maps()).bytes.size(), 1595U);
+    EXPECT_EQ(state_of(log.maps()).bytes.size(), 1563U);
 }
 
 } // namespace

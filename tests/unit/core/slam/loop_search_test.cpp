@@ -95,7 +95,7 @@ TEST(LoopSearch, CorrectsALittleDriftByMatchesOfSingleKeyframes) {
     EXPECT_GT(loops.search.figures().loops, 5U);
     EXPECT_EQ(loops.search.figures().loops, loops.edges().size());
     EXPECT_EQ(loops.search.figures().stretch_tests, 0U);
-    EXPECT_GT(loops.search.figures().optimizations, 0U);
+    EXPECT_GT(loops.search.optimization_count(), 0U);
     for (const auto& [edge, error] : loops.edges()) EXPECT_LT(error, 0.05) << edge.from << " to " << edge.to;
 }
 

@@ -24,7 +24,7 @@ TEST(TrajectoryEstimator, LoopClosuresCorrectOdometryDrift) {
     const auto estimator = estimated(drive, true);
     EXPECT_LT(error_of(drive, estimator), 0.15);
     EXPECT_GT(estimator.map->loop_figures().loops, 10U);
-    EXPECT_GT(estimator.map->loop_figures().optimizations, estimator.map->loop_figures().stretches_accepted);
+    EXPECT_GT(estimator.map->optimization_count(), estimator.map->loop_figures().stretches_accepted);
     EXPECT_EQ(estimator->unmatched_count(), 0U);
     EXPECT_EQ(estimator->scan_count(), drive.scans.size());
 }

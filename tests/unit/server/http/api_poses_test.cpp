@@ -369,6 +369,9 @@ TEST_F(ApiPosesTest, MapsAndTrajectoriesFollowCorrectedPoses) {
     EXPECT_EQ(path.at("poses_corrected").to_number<Revision>(), maps->scan_poses.corrected());
     const auto metrics = std::string(get("/metrics").body.bytes());
     EXPECT_THAT(metrics, testing::ContainsRegex("\nscanloom_loops_accepted_total [1-9]"));
+    EXPECT_THAT(metrics, testing::ContainsRegex("\nscanloom_loop_matches_total [1-9]"));
+    EXPECT_THAT(metrics, testing::ContainsRegex("\nscanloom_loops_refused_total.reason=\"stretch\". [1-9]"));
+    EXPECT_THAT(metrics, testing::ContainsRegex("\nscanloom_loop_jump_metres_count [1-9]"));
     EXPECT_THAT(metrics, testing::ContainsRegex("\nscanloom_maps_corrected_total [1-9]"));
     EXPECT_THAT(metrics, HasSubstr("\nscanloom_moving_scans 0\n"));
     EXPECT_THAT(metrics, HasSubstr("\nscanloom_robots_lost 0\n"));

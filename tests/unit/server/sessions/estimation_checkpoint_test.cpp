@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <fmt/format.h>
 #include <map>
 #include <optional>
 #include <set>
@@ -287,7 +288,8 @@ TEST_F(EstimationCheckpointTest, PosesOfAnotherVersionAreEstimatedAgain) {
     auto recovered = recovered_with(parts);
     ASSERT_TRUE(recovered.checkpoint_rejected);
     EXPECT_EQ(recovered.checkpoint_rejected->code, Errc::kUnsupportedVersion);
-    EXPECT_THAT(recovered.checkpoint_rejected->message, HasSubstr("estimated by version 4"));
+    EXPECT_THAT(recovered.checkpoint_rejected->message,
+                HasSubstr(fmt::format("estimated by version {}", localization::kEstimationVersion + 1)));
     expect_equal(recovered.maps, expected);
 }
 
