@@ -46,7 +46,7 @@ std::optional<Pose2> RobotPoses::add(const Scan& scan, const Sensor& sensor, Rev
     in_maps_.append(in_maps);
     added.was_shown = in_maps.has_value();
     added.revision = revision;
-    if (added.laser_scan != kNoLaserScan) added.was_in_map = estimator_.is_in_map(added.laser_scan);
+    if (added.laser_scan != kNoLaserScan) added.was_in_map = estimator_.is_fragment_located(added.laser_scan);
     return in_maps;
 }
 
@@ -145,15 +145,15 @@ bool RobotPoses::is_located(std::size_t scan) const {
     return placed.laser_scan == kNoLaserScan ? placed.was_in_map : estimator_.is_located(placed.laser_scan);
 }
 
-bool RobotPoses::is_in_map(std::size_t scan) const {
+bool RobotPoses::is_fragment_located(std::size_t scan) const {
     const ScanAnchor& placed = scans_[scan];
     if (placed.laser_scan == kExcluded) return false;
-    return placed.laser_scan == kNoLaserScan ? placed.was_in_map : estimator_.is_in_map(placed.laser_scan);
+    return placed.laser_scan == kNoLaserScan ? placed.was_in_map : estimator_.is_fragment_located(placed.laser_scan);
 }
 
 LocalizationState RobotPoses::state() const {
     if (laser_scans_.empty()) return LocalizationState::kUnlocated;
-    if (!estimator_.is_lost()) return LocalizationState::kTracking;
+    if (!estimator_.needs_place()) return LocalizationState::kTracking;
     return estimator_.located_fragments() == 0 ? LocalizationState::kUnlocated : LocalizationState::kLost;
 }
 

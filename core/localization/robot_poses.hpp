@@ -109,7 +109,7 @@ public:
 
     /// Returns whether a scan's place in the map is known, at least as a prediction.
     /// @param scan  number of the scan, from 0. Precondition: scan < scan_count()
-    [[nodiscard]] bool is_in_map(std::size_t scan) const;
+    [[nodiscard]] bool is_fragment_located(std::size_t scan) const;
 
     /// Returns how well the poses are known.
     [[nodiscard]] mapping::Localization localization() const;

@@ -78,7 +78,7 @@ std::vector<StampedPose> SessionPoses::trajectory(RobotIndex robot, Estimate est
     std::vector<StampedPose> trajectory;
     const auto* poses = find(robot);
     for (std::size_t scan = 0; poses != nullptr && scan < poses->scan_count(); ++scan) {
-        if (!poses->is_in_map(scan) || (estimate == Estimate::kFirst && !poses->was_in_map(scan))) continue;
+        if (!poses->is_fragment_located(scan) || (estimate == Estimate::kFirst && !poses->was_in_map(scan))) continue;
         if (exclusions.cover(poses->revision(scan), {robot, scan + 1, poses->stamp(scan), std::nullopt})) continue;
         trajectory.push_back(
             {poses->stamp(scan), estimate == Estimate::kFirst ? poses->first(scan) : poses->newest(scan)});

@@ -107,8 +107,8 @@ void TrajectoryEstimator::add(ScanPoints scan, const std::optional<Pose2>& odome
     const TrackedScan& last = decided.back();
     const bool is_elsewhere = place_to_search && (is_fragment_located() || !last.is_matched);
     const bool is_beyond_all = !is_near(first, {0.0, 0.0}, kEstimateMax);
-    const bool is_new =
-        (tracker_.unmatched() >= kLost && !scan.points.empty()) || is_elsewhere || is_beyond_all || is_lost_in_hole;
+    const bool is_new = (tracker_.unmatched() >= kLostAfter && !scan.points.empty()) || is_elsewhere || is_beyond_all ||
+                        is_lost_in_hole;
     if (is_new) {
         begin_fragment(std::move(scan), is_beyond_all ? Transform2() : first, place_to_search);
     } else if (last.is_matched && is_due(last)) {

@@ -94,13 +94,15 @@ public:
 
     /// Returns whether the scan's fragment is located, so that its pose is known at least as a prediction.
     /// @param scan  number of the scan, from 0. Precondition: scan < scan_count()
-    [[nodiscard]] bool is_in_map(std::size_t scan) const {
+    [[nodiscard]] bool is_fragment_located(std::size_t scan) const {
         return graph().fragment_of(scan < placed_.size() ? placed_[scan].keyframe : anchor_).is_located;
     }
 
     /// Returns whether the place of the robot in the map is not known: its fragment is not located, or the last scans
     /// fitted no map.
-    [[nodiscard]] bool is_lost() const noexcept { return tracker_.unmatched() >= kLost || !is_fragment_located(); }
+    [[nodiscard]] bool needs_place() const noexcept {
+        return tracker_.unmatched() >= kLostAfter || !is_fragment_located();
+    }
 
     /// Returns the newest match; see Tracker::newest().
     [[nodiscard]] const TrackedScan& newest() const noexcept { return newest_; }
@@ -147,7 +149,7 @@ public:
     [[nodiscard]] bool is_consistent() const;
 
 private:
-    static constexpr std::size_t kLost = 20;           // scans in a row without a match
+    static constexpr std::size_t kLostAfter = 20;      // scans in a row without a match
     static constexpr std::size_t kLocalKeyframes = 35; // newest ones that scans are matched to
 
     /// A scan's pose as it was estimated when the scan was added.

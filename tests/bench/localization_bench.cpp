@@ -140,7 +140,7 @@ json::object graph_json(const localization::SessionPoses& poses) {
     figures["loops"] = robot->estimator().loop_count();
     figures["matches"] = loops.matches;
     figures["stretch_tests"] = loops.stretch_tests;
-    figures["optimizations"] = loops.optimizations;
+    figures["optimizations"] = robot->estimator().map().optimization_count();
     return figures;
 }
 

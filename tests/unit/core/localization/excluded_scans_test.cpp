@@ -171,7 +171,7 @@ TEST_P(ExcludedScansTest, LeaveNoTraceInPosesAndMaps) {
     EXPECT_EQ(maps.projection().snapshot().robots[0].excluded, range.to - range.from + 1);
     const auto& poses = *maps.poses().find(0);
     for (std::uint64_t seq = range.from; seq <= range.to; ++seq) {
-        ASSERT_FALSE(poses.in_maps()[seq - 1] || poses.is_in_map(seq - 1) || poses.was_in_map(seq - 1));
+        ASSERT_FALSE(poses.in_maps()[seq - 1] || poses.is_fragment_located(seq - 1) || poses.was_in_map(seq - 1));
     }
     const auto with = maps_of(drive.with(std::nullopt));
     EXPECT_NE(with.poses().map().graph().size(), never.poses().map().graph().size()) << "the test shows nothing";

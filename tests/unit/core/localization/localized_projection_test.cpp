@@ -130,7 +130,7 @@ TEST(LocalizedProjection, ARobotIsLocatedInTheMapThatAnotherOneMakesWithItsPoses
     ASSERT_NE(poses, nullptr);
     ASSERT_EQ(poses->localization().state, LocalizationState::kTracking);
     for (std::size_t n = 0; n < follower.scans.size(); ++n) {
-        ASSERT_TRUE(poses->is_in_map(n)) << "also before it was located";
+        ASSERT_TRUE(poses->is_fragment_located(n)) << "also before it was located";
         const Pose2 pose = poses->newest(n);
         ASSERT_LT(std::hypot(pose.x - follower.truth[n].x, pose.y - follower.truth[n].y), 0.15) << n;
     }

@@ -187,7 +187,7 @@ TEST(RobotPoses, ScansOfAnUnknownPlaceAreNotInMaps) {
     for (std::size_t n = carried; n < poses->scan_count(); ++n) shown += poses->in_maps()[n] ? 1 : 0;
     EXPECT_LE(shown, 2U) << "the first turn may look like the corridor";
     for (std::size_t n = 0; n < carried; ++n) ASSERT_TRUE(poses->in_maps()[n]);
-    EXPECT_FALSE(poses->is_in_map(poses->scan_count() - 1));
+    EXPECT_FALSE(poses->is_fragment_located(poses->scan_count() - 1));
 }
 
 /// A robot sees nothing for two seconds, and goes on: what it maps then is shown when it comes back to a known place.

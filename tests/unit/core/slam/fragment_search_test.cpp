@@ -26,8 +26,9 @@ TEST(FragmentSearch, LocatesARobotThatStartsAnywhere) {
     ASSERT_TRUE(robots.located_at());
     EXPECT_LT(*robots.located_at(), 250U) << "within 25 m";
     EXPECT_LT(robots.largest_error(), 0.15);
-    for (std::size_t n = 0; n < second.scans.size(); ++n) ASSERT_TRUE(robots.second().is_in_map(n)) << "also before";
-    EXPECT_FALSE(robots.second().is_lost());
+    for (std::size_t n = 0; n < second.scans.size(); ++n)
+        ASSERT_TRUE(robots.second().is_fragment_located(n)) << "also before";
+    EXPECT_FALSE(robots.second().needs_place());
     EXPECT_GT(robots.second().loop_count(), 3U);
 }
 
@@ -56,7 +57,7 @@ TEST(FragmentSearch, ARobotThatIsNotLocatedClosesItsOwnLoops) {
 TEST(FragmentSearch, DoesNotLocateARobotInAnotherBuilding) {
     const TwoRobots robots(lap(), drive_in_other_building());
     EXPECT_FALSE(robots.located_at());
-    EXPECT_TRUE(robots.second().is_lost());
+    EXPECT_TRUE(robots.second().needs_place());
     EXPECT_TRUE(std::ranges::none_of(robots.map().graph().edges(), [&](const Edge& edge) {
         return robots.map().graph().fragment_of(edge.from).robot != robots.map().graph().fragment_of(edge.to).robot;
     }));
@@ -134,14 +135,14 @@ TEST(FragmentSearch, LocatesARobotThatWasCarriedAgain) {
         estimator.add(points_of(before.scans[n], before.laser), before.odometry[n]);
     }
     for (int n = 0; n < 30; ++n) estimator.add({}, before.odometry.back());
-    EXPECT_TRUE(estimator.is_lost());
+    EXPECT_TRUE(estimator.needs_place());
     const std::size_t carried = estimator.scan_count();
     for (std::size_t n = 0; n < after.scans.size(); ++n) {
         estimator.add(points_of(after.scans[n], after.laser), compose(before.odometry.back(), after.odometry[n]));
     }
     estimator.finish();
     map.finish();
-    EXPECT_FALSE(estimator.is_lost());
+    EXPECT_FALSE(estimator.needs_place());
     const Pose2 T_truth_map = compose(before.truth.front(), inverse(estimator.pose_of(0)));
     for (std::size_t n = 0; n < after.scans.size(); ++n) {
         ASSERT_TRUE(estimator.is_located(carried + n)) << n;
@@ -211,7 +212,7 @@ TEST(FragmentSearch, LocatesAStandingRobotWherePeopleSayThatItIs) {
         for (std::size_t n = 0; n < first.scans.size(); ++n)
             a.add(points_of(first.scans[n], first.laser), first.odometry[n]);
         b.add(points_of(second.scans[0], second.laser), std::nullopt);
-        EXPECT_TRUE(b.is_lost());
+        EXPECT_TRUE(b.needs_place());
         const Pose2 truth = compose(inverse(first.truth[0]), second.truth[0]);
         b.relocalize({{truth.x + (is_right ? 1.5 : 8.0), truth.y - 1.0}, 3.0});
         b.add(points_of(second.scans[0], second.laser), std::nullopt);
@@ -261,7 +262,7 @@ TEST(FragmentSearch, ALocatedRobotGoesOnWherePeopleSayThatItIs) {
     estimator.add(points_of(drive.scans[kCarriedTo], drive.laser), drive.odometry.back());
     const Pose2 found = estimator.pose_of(estimator.scan_count() - 1);
     EXPECT_LT(std::hypot(found.x - truth.x, found.y - truth.y), 0.15);
-    EXPECT_FALSE(estimator.is_lost());
+    EXPECT_FALSE(estimator.needs_place());
     EXPECT_NEAR(estimator.pose_of(100).x, before.x, 1e-6) << "what was before stays";
     EXPECT_NEAR(estimator.pose_of(100).y, before.y, 1e-6);
 }

@@ -62,7 +62,7 @@ TEST_F(FrozenMap, TheRobotThatMadeItGoesOnWithoutKeyframes) {
     add(first_lap(), lap, first_lap().scans.size());
     finish();
     EXPECT_EQ(map_.graph().size(), keyframes);
-    EXPECT_FALSE(estimator_.is_lost());
+    EXPECT_FALSE(estimator_.needs_place());
     EXPECT_EQ(estimator_.unmatched_count(), 0U);
     EXPECT_LT(largest_error_of(first_lap()), 0.3);
 }
@@ -74,7 +74,7 @@ TEST_F(FrozenMap, MappingGoesOnWhereTheRobotIs) {
     map_.freeze(true);
     const std::size_t keyframes = map_.graph().size();
     add(first_lap(), length / 3, length / 2); // beyond the map, by what the robot saw itself
-    EXPECT_FALSE(estimator_.is_lost());
+    EXPECT_FALSE(estimator_.needs_place());
     EXPECT_EQ(map_.graph().size(), keyframes);
     map_.freeze(false);
     add(first_lap(), length / 2, length);
@@ -88,11 +88,11 @@ TEST_F(FrozenMap, MappingGoesOnWhereTheRobotIs) {
 TEST_F(FrozenMap, WithoutPlacesLocatesNoRobotUntilMappingBegins) {
     map_.freeze(true);
     add(first_lap(), 0, 60);
-    EXPECT_TRUE(estimator_.is_lost());
+    EXPECT_TRUE(estimator_.needs_place());
     EXPECT_FALSE(estimator_.is_located(0));
     map_.freeze(false);
     add(first_lap(), 60, 120);
-    EXPECT_FALSE(estimator_.is_lost());
+    EXPECT_FALSE(estimator_.needs_place());
     EXPECT_TRUE(estimator_.is_located(0));
 }
 

@@ -153,7 +153,7 @@ TEST(TrajectoryEstimator, ARobotBeyondAllCoordinatesBeginsAgain) {
     estimator.finish();
     EXPECT_NEAR(estimator.first_pose_of(9).x, kEstimateMax - 5.0, 1e-6);
     EXPECT_LT(estimator.first_pose_of(29).x, 250.0);
-    EXPECT_TRUE(estimator.is_lost());
+    EXPECT_TRUE(estimator.needs_place());
     EXPECT_EQ(map.graph().fragments().size(), 2U);
     EXPECT_TRUE(map.is_consistent() && estimator.is_consistent());
 }
@@ -188,7 +188,7 @@ TEST(TrajectoryEstimator, AHoleWithoutOdometryBeginsAFragmentUnlessTheScanFits) 
             add(has_moved ? other_building() : building, {9.0, 1.0, 0.0}, seconds);
             const bool must_begin = has_moved && seconds > 1.0;
             EXPECT_EQ(estimator.map->graph().fragments().size(), must_begin ? 2U : 1U);
-            EXPECT_EQ(estimator->is_lost(), must_begin);
+            EXPECT_EQ(estimator->needs_place(), must_begin);
             EXPECT_EQ(estimator->was_located(40), !has_moved);
         }
     }
