@@ -29,7 +29,7 @@ namespace scanloom::slam {
 /// Memory: grows with the trajectory: the pose of each scan, and the points of each keyframe (up to 6 KB). Maps that scans
 ///     are matched to reach up to kMapRadius, whatever poses robots send.
 /// Cost: some hundred microseconds a scan; at every second keyframe also time in proportion to the number of keyframes;
-///     a large loop closure takes some tenths of a second in one call.
+///     a large loop closure takes some hundredths of a second in one call.
 /// Threads: one at a time for all estimators of a map.
 class TrajectoryEstimator {
 public:
