@@ -66,8 +66,8 @@ inline std::map<std::string, std::uintmax_t> sizes_in(const std::filesystem::pat
     return sizes;
 }
 
-/// Copies the files of an open store to which nobody writes: the state that kill -9 would leave. The store may merge
-/// tables meanwhile, so the copy is repeated until no file has changed.
+/// Copies the files of an open store, as kill -9 would leave them. Precondition: no caller writes to the store. The
+/// store itself may merge tables in the background, so the copy is repeated until no file changes during it.
 inline void copy_store(const std::filesystem::path& from, const std::filesystem::path& to) {
     for (;;) {
         std::filesystem::remove_all(to);

@@ -46,7 +46,8 @@ inline std::optional<LocalizedProjection> through_bytes(LocalizedProjection& map
 /// A log that grows, and its maps.
 class GrowingLog {
 public:
-    /// @param every  scans between two ways through bytes, of which one also follows each other entry; 0: none
+    /// @param every  the maps are written to bytes and read again after this number of entries, if the newest one is a
+    ///               scan, and after each entry of another kind; 0: never
     explicit GrowingLog(std::size_t every) : every_(every) {}
 
     void add(LogEntry entry) {
@@ -86,7 +87,7 @@ public:
 
     [[nodiscard]] LocalizedProjection& maps() { return *maps_; }
 
-    // Number of ways through bytes at special moments.
+    // How often the maps were written and read in special situations.
     std::size_t open = 0;      // scans of which are not decided
     std::size_t unlocated = 0; // robots that are not located
     std::size_t outdated = 0;  // maps that are to be corrected
