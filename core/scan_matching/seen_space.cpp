@@ -7,9 +7,10 @@
 namespace scanloom::scan_matching {
 namespace {
 
-constexpr double kSurface = 0.15; // metres before a point that are not free
-constexpr double kStep = 0.08;    // metres along a beam
-constexpr double kMargin = 0.3;   // metres around all points
+constexpr double kSurface = 0.15;  // metres before a point that are not free
+constexpr double kStep = 0.08;     // metres along a beam
+constexpr double kBeforeEnd = 0.3; // metres: see meets_point()
+constexpr double kMargin = 0.3;    // metres around all points
 
 } // namespace
 
@@ -55,6 +56,16 @@ SeenSpace::SeenSpace(std::span<const View> views) {
             }
         }
     }
+}
+
+bool SeenSpace::meets_point(const Point2& laser, const Point2& end) const noexcept {
+    const double dx = laser.x - end.x;
+    const double dy = laser.y - end.y;
+    const double length = std::sqrt(dx * dx + dy * dy);
+    for (double at = kBeforeEnd; at < length; at += kStep) {
+        if (has_point(end.x + at / length * dx, end.y + at / length * dy)) return true;
+    }
+    return false;
 }
 
 void SeenSpace::draw_beams(const View& view) {

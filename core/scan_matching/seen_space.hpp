@@ -34,6 +34,11 @@ public:
     /// Returns whether a point is in the cell of the place.
     [[nodiscard]] bool has_point(double x, double y) const noexcept { return (at(x, y) & kPoint) != 0; }
 
+    /// Returns whether a beam passes the cell of a point more than 30 cm before its end.
+    /// @param laser  metres, where the beam starts
+    /// @param end    metres, where it ends
+    [[nodiscard]] bool meets_point(const Point2& laser, const Point2& end) const noexcept;
+
     /// Returns the lower left corner of the grid, metres, in the frame of the views' poses.
     [[nodiscard]] Point2 corner() const noexcept { return {x_, y_}; }
     /// Returns the number of columns of the grid.

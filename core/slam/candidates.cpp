@@ -38,7 +38,7 @@ constexpr double kOdometryTurnSigma = 0.005; // radians
 constexpr double kOdometryTurnPart = 0.1;
 
 // The least standard deviation of a prediction by the velocity.
-constexpr double kVelocitySigma = 0.1;      // metres
+constexpr double kVelocitySigma = 0.07;     // metres
 constexpr double kVelocityTurnSigma = 0.15; // radians
 
 constexpr double kSameCandidateDistance = 0.04; // metres: closer candidates are one
@@ -65,7 +65,7 @@ constexpr double kFarDistance = 0.25; // metres
 constexpr double kFarTurn = 0.25;     // radians
 constexpr double kInliersFar = 0.85;
 
-constexpr double kUnmatchedValue = 0.2;  // of the prediction as a candidate
+constexpr double kUnmatchedValue = 0.25; // of the prediction as a candidate
 constexpr std::size_t kUnmatchedMax = 3; // scans in a row that a velocity without odometry may explain
 
 double turn(const Transform2& T) noexcept { return std::fabs(yaw_of(T)); }
@@ -161,8 +161,8 @@ private:
     /// those that are worse.
     void keep(const LineMatch& found) {
         if (counts_prediction() && found.inlier_ratio < kInliersFar && is_far(found.T_map_robot)) return;
-        const double score = agreement_of(scan_.points, map_.points(), map_.space(), found.T_map_robot).score -
-                             penalty(found.T_map_robot);
+        const double score =
+            agreement_of(scan_, map_.points(), map_.space(), found.T_map_robot).score - penalty(found.T_map_robot);
         const auto is_same = [&](const Candidate& other) {
             const Transform2 off = inverse(other.T_keyframe_robot) * found.T_map_robot;
             return distance_of(off) < kSameCandidateDistance && turn(off) < kSameCandidateTurn;

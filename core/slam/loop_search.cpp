@@ -91,17 +91,17 @@ LoopSearch::SubmapMatch LoopSearch::match(const KeyframeGraph& graph, std::size_
     ++figures_.matches;
     note_use(near.submap);
     Submap& submap = submaps_[near.submap];
-    const auto& points = graph[keyframe].scan->points;
+    const ScanPoints& scan = *graph[keyframe].scan;
     const Transform2 expected = inverse(graph.pose(submap.anchor)) * graph.pose(keyframe);
     const double window = std::max(near.drift, kWindowMin);
-    const auto found = match_to_lines(points, submap.map.points(), expected, {expected, window, kEstimateTurn},
+    const auto found = match_to_lines(scan.points, submap.map.points(), expected, {expected, window, kEstimateTurn},
                                       {.steps_max = 15,
                                        .first_gate = std::min(kLoopGateMax, window),
                                        .last_gate = 0.15,
                                        .first_scale = 0.3,
                                        .last_scale = 0.05,
                                        .point_sigma = 0.03});
-    const auto agreement = agreement_of(points, submap.map.points(), submap.map.space(), found.T_map_robot);
+    const auto agreement = agreement_of(scan, submap.map.points(), submap.map.space(), found.T_map_robot);
     const Transform2 off = inverse(expected) * found.T_map_robot;
     const double jump = distance_of(off);
     const bool agrees =

@@ -80,7 +80,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Scenario{"SentPoses", follow_a_sender, true, true, false},
                     Scenario{"CompleteMap", look_for_a_place_in_a_complete_map, false, true, false},
                     Scenario{"FarBeyond", drive_far_beyond_a_frozen_map, true, false, false},
-                    Scenario{"ImpossibleDistances", drive_with_impossible_distances, true, true, true}),
+                    Scenario{"ImpossibleDistances", drive_with_impossible_distances, true, true, false}),
     [](const auto& scenario) { return std::string(scenario.param.name); });
 
 /// A change of a byte gives another state, or none. Nothing crashes, and neither does what follows.
@@ -155,7 +155,7 @@ TEST(EstimationState, HasTheLayoutOfItsVersion) {
     drive.odometry.resize(3);
     log.join(0, drive, Poses::kOdometry);
     for (std::size_t n = 0; n < 3; ++n) log.drive(0, drive, n, Poses::kOdometry);
-    EXPECT_EQ(kEstimationVersion, 4U);
+    EXPECT_EQ(kEstimationVersion, 5U);
     EXPECT_EQ(state_of(log.maps()).bytes.size(), 1563U);
 }
 

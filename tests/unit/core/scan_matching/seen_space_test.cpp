@@ -73,7 +73,7 @@ TEST(SeenSpace, SurfacesAreNotFree) {
 TEST(Agreement, IsHighestAtTheTruePose) {
     const Room room;
     const auto at = [&](const Pose2& pose) {
-        return agreement_of(room.shown.points, room.map, room.space, transform_of(pose));
+        return agreement_of(room.shown, room.map, room.space, transform_of(pose));
     };
     const Agreement truth = at(room.pose);
     EXPECT_EQ(truth.inlier_ratio, 1.0);
@@ -88,6 +88,20 @@ TEST(Agreement, IsHighestAtTheTruePose) {
     EXPECT_GT(at({room.pose.x - 0.6, room.pose.y, room.pose.yaw}).outlier_ratio, 0.1)
         << "walls in front of the old ones";
     EXPECT_EQ(agreement_of({}, room.map, room.space, Transform2()).score, 0.0);
+}
+
+TEST(Agreement, PointsWhereTheMapShowsNothingCountNeitherWay) {
+    const Room room;
+    ScanPoints scan = room.shown;
+    const auto agreement = [&] { return agreement_of(scan, room.map, room.space, transform_of(room.pose)); };
+    const double score = agreement().score;
+    const std::size_t shown = scan.points.size();
+    for (std::size_t n = 0; n < shown; ++n) scan.points.push_back({.x = -50.0F, .y = 0.1F * static_cast<float>(n)});
+    EXPECT_NEAR(agreement().score, score, 1e-12);
+    EXPECT_EQ(agreement().inlier_ratio, 0.5);
+    EXPECT_EQ(agreement().outlier_ratio, 0.0);
+    for (std::size_t n = 0; n < 2 * shown; ++n) scan.points.push_back({.x = -60.0F, .y = 0.1F * static_cast<float>(n)});
+    EXPECT_NEAR(agreement().score, 0.5 * score, 1e-12) << "a pose where most is new is not a good one";
 }
 
 } // namespace

@@ -62,8 +62,8 @@ struct RandomRoom {
 
     /// Returns the pose of the best agreement of those in a grid around the truth, refined.
     Transform2 best_pose() {
-        std::vector<SurfacePoint> some;
-        for (std::size_t n = 0; n < scan.points.size(); n += 7) some.push_back(scan.points[n]);
+        ScanPoints some;
+        for (std::size_t n = 0; n < scan.points.size(); n += 7) some.points.push_back(scan.points[n]);
         Transform2 best;
         double most = -HUGE_VAL;
         for (double x = -0.6; x <= 0.6; x += 0.1) {

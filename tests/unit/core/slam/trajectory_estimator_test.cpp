@@ -103,6 +103,20 @@ TEST(TrajectoryEstimator, OdometryThatReversesWronglyIsNotFollowed) {
     EXPECT_LT(error_of(drive, estimated(drive, true)), 0.5) << "of 14 m";
 }
 
+/// A robot that drives backwards along a corridor sees more and more walls that its newest keyframes do not show. All
+/// that they show it sees, too, as if it stood.
+TEST(TrajectoryEstimator, FollowsARobotThatDrivesBackwards) {
+    Sensor laser = Building::laser();
+    laser.range_max = 5.0;
+    const std::vector<Point2> forwards{{30.0, 1.0}, {33.0, 1.0}, {33.0, 10.0}, {33.0, 1.0}, {3.0, 1.0}};
+    Drive drive = drive_along(ring_building(), forwards, {}, 3, laser);
+    std::ranges::reverse(drive.truth);
+    std::ranges::reverse(drive.odometry);
+    std::ranges::reverse(drive.scans);
+    EXPECT_LT(error_of(drive, estimated(drive, true)), 0.3);
+    EXPECT_LT(error_of(drive, estimated(drive, false)), 0.3);
+}
+
 TEST(TrajectoryEstimator, AStandingRobotAddsNoKeyframes) {
     const Building building = ring_building();
     Drive drive = drive_along(building, std::vector<Point2>{{5.0, 1.0}, {9.0, 1.0}}, {}, 5);
