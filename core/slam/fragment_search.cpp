@@ -66,7 +66,8 @@ bool FragmentSearch::search(KeyframeGraph& graph, std::size_t fragment) {
     Searched& state = searched(fragment);
     const auto newest_travelled = [&] { return graph[graph.fragments()[fragment].keyframes.back()].travelled; };
     if (state.expectation && newest_travelled() - graph[state.expectation->keyframe].travelled > kExpectedLength) {
-        state.expectation.reset(); // it was wrong
+        const bool is_tracked = std::exchange(state.expectation, std::nullopt)->is_tracked; // it was wrong
+        if (is_tracked && locate(graph, fragment, Transform2())) return true;
     }
     if (state.expectation) {
         auto query = ask(graph, fragment, state.expectation);
@@ -91,23 +92,25 @@ bool FragmentSearch::search(KeyframeGraph& graph, std::size_t fragment) {
     return found && add_answer(graph, fragment, *found);
 }
 
-/// Adds the answer of a search. Moves the fragment there if answers agree, and its newest part fits the map.
+/// Adds the answer of a search. Locates the fragment there if answers agree.
 bool FragmentSearch::add_answer(KeyframeGraph& graph, std::size_t fragment, const Answer& answer) {
     Searched& state = searched(fragment);
     state.answers.push_back(answer);
-    if (!is_confirmed(graph, state.answers)) return false;
-    const Transform2 found = answer.placement(graph);
-    const std::size_t newest = graph.fragments()[fragment].keyframes.back();
-    const std::size_t anchor = std::ranges::find_if(graph.fragments(), &Fragment::is_located)->keyframes.front();
-    graph.move(fragment, found, true);
-    StretchQuestion question{newest, anchor, Transform2(), kWindow, kContradictedMax, kNoiseFactor};
-    if (is_map_complete_) question = {newest, anchor, Transform2(), kWindow, kContradictedInCompleteMap};
-    if (!accept_stretch(graph, question)) {
-        graph.move(fragment, inverse(found), false);
-        return false;
-    }
+    if (!is_confirmed(graph, state.answers) || !locate(graph, fragment, answer.placement(graph))) return false;
     state = Searched();
     return true;
+}
+
+/// Moves a fragment to a place, and connects it with the map, if its newest part fits there.
+bool FragmentSearch::locate(KeyframeGraph& graph, std::size_t fragment, const Transform2& T_map_fragment) const {
+    const std::size_t newest = graph.fragments()[fragment].keyframes.back();
+    const std::size_t anchor = std::ranges::find_if(graph.fragments(), &Fragment::is_located)->keyframes.front();
+    graph.move(fragment, T_map_fragment, true);
+    StretchQuestion question{newest, anchor, Transform2(), kWindow, kContradictedMax, kNoiseFactor};
+    if (is_map_complete_) question = {newest, anchor, Transform2(), kWindow, kContradictedInCompleteMap};
+    const bool fits = accept_stretch(graph, question);
+    if (!fits) graph.move(fragment, inverse(T_map_fragment), false);
+    return fits;
 }
 
 /// Moves a fragment to where its newest keyframe was found, refined by a match with the keyframes around, and connects
@@ -152,9 +155,9 @@ bool FragmentSearch::is_consistent(const KeyframeGraph& graph) const {
     return searched_.size() <= graph.fragments().size() && is_map(*map_) && std::ranges::all_of(searched_, is_possible);
 }
 
-void FragmentSearch::expect(std::size_t fragment, const Surroundings& place, std::size_t keyframe) {
+void FragmentSearch::expect(std::size_t fragment, const Surroundings& place, std::size_t keyframe, bool is_tracked) {
     Searched& state = searched(fragment);
-    state.expectation = {place, keyframe};
+    state.expectation = {place, keyframe, is_tracked};
     state.query.reset(); // it searches everywhere
 }
 

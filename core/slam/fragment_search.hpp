@@ -48,11 +48,13 @@ public:
     /// and the map may be older than what the robots see.
     void set_map_complete(bool is_complete) noexcept { is_map_complete_ = is_complete; }
 
-    /// Searches for a fragment near a place only.
-    /// @param fragment  index of the fragment
-    /// @param place     of one of its keyframes
-    /// @param keyframe  index of that keyframe, the newest one or the next one
-    void expect(std::size_t fragment, const Surroundings& place, std::size_t keyframe);
+    /// Searches for a fragment near a place only, until it has travelled 20 m without success.
+    /// @param fragment    index of the fragment
+    /// @param place       of one of its keyframes
+    /// @param keyframe    index of that keyframe, the newest one or the next one
+    /// @param is_tracked  whether the fragment begins where a located robot was tracked: if people are wrong, it is
+    ///     located there, unless it does not fit
+    void expect(std::size_t fragment, const Surroundings& place, std::size_t keyframe, bool is_tracked);
 
     /// Returns how many maps have their grids in memory, up to tens of megabytes each. When the map is made again, only
     /// those of the newest map before stay; searches in older ones make theirs again if they go on.
@@ -100,6 +102,7 @@ private:
     struct Expectation {
         Surroundings place;
         std::size_t keyframe = 0;
+        bool is_tracked = false;
     };
 
     /// A search for the newest keyframes of a fragment.
@@ -128,6 +131,7 @@ private:
     };
 
     [[nodiscard]] bool add_answer(KeyframeGraph& graph, std::size_t fragment, const Answer& answer);
+    [[nodiscard]] bool locate(KeyframeGraph& graph, std::size_t fragment, const Transform2& T_map_fragment) const;
     [[nodiscard]] static bool connect(KeyframeGraph& graph, std::size_t fragment, const Transform2& T_map_newest);
     [[nodiscard]] Searched& searched(std::size_t fragment);
     [[nodiscard]] static const std::shared_ptr<const scan_matching::PlaceMap>& places_of(const KeyframeGraph& graph,

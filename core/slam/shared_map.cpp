@@ -41,11 +41,11 @@ std::size_t SharedMap::continue_from(std::size_t robot, ScanPoints scan, std::si
 }
 
 std::size_t SharedMap::begin_fragment(std::size_t robot, ScanPoints scan, const Transform2& T_map_keyframe,
-                                      const std::optional<Surroundings>& place) {
+                                      const std::optional<Surroundings>& place, bool is_tracked) {
     const bool is_first = graph_.size() == 0 && !is_frame_given_ && !is_frozen_;
     const std::size_t fragment =
         graph_.begin_fragment(robot, std::make_shared<const ScanPoints>(std::move(scan)), T_map_keyframe, is_first);
-    if (place) fragments_.expect(fragment, *place, graph_.size() - 1);
+    if (place) fragments_.expect(fragment, *place, graph_.size() - 1, is_tracked);
     search(fragment);
     return fragment;
 }

@@ -54,14 +54,17 @@ public:
     /// @param scan            its points
     /// @param T_map_keyframe  its pose; in a frame of its own if the fragment is not the first one
     /// @param place           where people say that it is; nullopt: it may be anywhere
+    /// @param is_tracked      whether the pose is in the map's frame, and counts if people are wrong
     /// @return the fragment's index
     std::size_t begin_fragment(std::size_t robot, ScanPoints scan, const Transform2& T_map_keyframe,
-                               const std::optional<Surroundings>& place = std::nullopt);
+                               const std::optional<Surroundings>& place = std::nullopt, bool is_tracked = false);
 
     /// Searches for the next keyframe of a fragment near a place.
     /// @param fragment  index of a fragment that is not located
     /// @param place     where people say that the keyframe is
-    void expect(std::size_t fragment, const Surroundings& place) { fragments_.expect(fragment, place, graph_.size()); }
+    void expect(std::size_t fragment, const Surroundings& place) {
+        fragments_.expect(fragment, place, graph_.size(), false);
+    }
 
     /// Adds a keyframe to a fragment, and searches for loops, or for the place of the fragment.
     /// @param fragment           index of the fragment

@@ -110,7 +110,8 @@ void TrajectoryEstimator::add(ScanPoints scan, const std::optional<Pose2>& odome
     const bool is_new = (tracker_.unmatched() >= kLostAfter && !scan.points.empty()) || is_elsewhere || is_beyond_all ||
                         is_lost_in_hole;
     if (is_new) {
-        begin_fragment(std::move(scan), is_beyond_all ? Transform2() : first, place_to_search);
+        const bool is_tracked = is_elsewhere && is_fragment_located() && last.is_matched && !is_beyond_all;
+        begin_fragment(std::move(scan), is_beyond_all ? Transform2() : first, place_to_search, is_tracked);
     } else if (last.is_matched && is_due(last)) {
         if (place_to_search) map_.expect(fragments_.back(), *place_to_search);
         if (is_in_frozen_map_ && !is_leaving) {
@@ -153,9 +154,9 @@ void TrajectoryEstimator::append_decided(const std::vector<TrackedScan>& scans) 
 }
 
 void TrajectoryEstimator::begin_fragment(ScanPoints scan, const Transform2& T_map_robot,
-                                         const std::optional<Surroundings>& place) {
+                                         const std::optional<Surroundings>& place, bool is_tracked) {
     keyframes_.push_back(graph().size());
-    fragments_.push_back(map_.begin_fragment(robot_, std::move(scan), T_map_robot, place));
+    fragments_.push_back(map_.begin_fragment(robot_, std::move(scan), T_map_robot, place, is_tracked));
     begin_tracking(graph().pose(keyframes_.back()));
 }
 

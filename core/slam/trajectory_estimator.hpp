@@ -169,7 +169,7 @@ private:
     void append_decided(const std::vector<TrackedScan>& scans);
     [[nodiscard]] TrackedScan since_start(TrackedScan scan) const;
     void begin_fragment(ScanPoints scan, const Transform2& T_map_robot,
-                        const std::optional<Surroundings>& place = std::nullopt);
+                        const std::optional<Surroundings>& place = std::nullopt, bool is_tracked = false);
     void add_keyframe(ScanPoints scan, const Transform2& T_anchor_robot);
     void begin_tracking(const Transform2& T_map_robot);
     void begin_in_frozen_map(const Transform2& T_map_robot);

@@ -247,6 +247,26 @@ TEST(FragmentSearch, AWrongHintIsForgottenAfterAWhile) {
     EXPECT_EQ(b.located_fragments(), 1U);
 }
 
+TEST(FragmentSearch, ATrackedRobotGoesOnThereAfterAWrongHint) {
+    const std::vector<Point2> way{{10.0, 1.0}, {33.0, 1.0}, {33.0, 21.0}, {1.0, 21.0},
+                                  {1.0, 1.0},  {33.0, 1.0}, {33.0, 15.0}};
+    const Drive drive = drive_along(ring_building(), way, {.scale = 1.01, .turn = 0.002}, 14);
+    LoneEstimator lone;
+    const std::size_t told = drive.scans.size() - 300; // 10 cm between them, and some turns
+    for (std::size_t n = 0; n < drive.scans.size(); ++n) {
+        if (n == told) lone->relocalize({{60.0, -30.0}, 2.0}); // outside
+        lone->add(points_of(drive.scans[n], drive.laser), drive.odometry[n]);
+        if (n == told + 190) {
+            EXPECT_TRUE(lone->needs_place()) << "people may be right for 20 m";
+        } else if (n == told + 240) {
+            EXPECT_FALSE(lone->needs_place());
+        }
+    }
+    lone.finish();
+    EXPECT_EQ(lone.map->graph().fragments().size(), 2U);
+    EXPECT_LT(largest_error(drive, [&](std::size_t n) { return lone->pose_of(n); }), 0.2);
+}
+
 /// A robot that is tracked at a wrong place is put right: its scans from there on are a fragment of their own.
 TEST(FragmentSearch, ALocatedRobotGoesOnWherePeopleSayThatItIs) {
     const std::vector<Point2> round{{1.0, 1.0}, {16.5, 1.2}, {17.0, 10.8}, {12.0, 11.2}, {7.5, 8.0}};
