@@ -140,4 +140,11 @@ std::string map_yaml(const MapFrame& frame) {
     return ros_yaml("map.pgm", frame.cell_size, origin.x, origin.y);
 }
 
+std::string world_file(const MapFrame& frame) {
+    const auto origin = frame.origin(); // the lower left corner
+    const double left = origin.x + 0.5 * frame.cell_size;
+    const double top = origin.y + (static_cast<double>(frame.height()) - 0.5) * frame.cell_size;
+    return fmt::format("{0:.9g}\n0\n0\n-{0:.9g}\n{1:.9g}\n{2:.9g}\n", frame.cell_size, left, top);
+}
+
 } // namespace scanloom::tiles

@@ -32,4 +32,9 @@ namespace scanloom::tiles {
 /// Returns the description that belongs to the image. It expects the image as `map.pgm` in the same directory.
 [[nodiscard]] std::string map_yaml(const MapFrame& frame);
 
+/// Returns the world file of a map's image, top row first: the size of a pixel, and the centre of the upper left one,
+/// metres in the map frame. Programs for maps, such as QGIS, place map.png by map.pgw in the same directory.
+/// Source: Esri, World files for raster datasets.
+[[nodiscard]] std::string world_file(const MapFrame& frame);
+
 } // namespace scanloom::tiles

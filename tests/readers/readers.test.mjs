@@ -34,6 +34,7 @@ before(async () => {
   folder = mkdtempSync(join(tmpdir(), 'scanloom-readers-'));
   server = await Server.start();
   assert.equal(await ended(startRobot(server, 'office', 'r1', kSimulation)), 0);
+  assert.equal(await ended(startRobot(server, 'drift', 'r1', [...kSimulation, '--poses', 'odometry'])), 0);
 });
 
 after(async () => {
@@ -92,9 +93,21 @@ print('occupied', (table > 65).sum(), 'free', ((table >= 0) & (table < 35)).sum(
 });
 
 test('GDAL reads images and points', async (t) => {
+  const world = readFileSync(await file(`${kSession}/map.pgw`, 'map.pgw'), 'latin1')
+    .split('\n')
+    .map(Number);
   const image = printed(t, 'gdal-bin', 'gdalinfo', '-mm', await file(`${kSession}/map.png`, 'map.png'));
   if (image === undefined) return;
   assert.match(image, /Driver: PNG/);
+  const [size, , , , left, top] = world;
+  const numbers = (label) =>
+    image
+      .match(new RegExp(`${label} = \\(([-0-9.]+),([-0-9.]+)\\)`))
+      .slice(1)
+      .map(Number);
+  const near = (found, expected) => found.every((value, n) => Math.abs(value - expected[n]) < 1e-6);
+  assert.ok(near(numbers('Pixel Size'), [size, -size]), image);
+  assert.ok(near(numbers('Origin'), [left - size / 2, top + size / 2]), image);
   const points = await file(`${kSession}/points.csv`, 'points.csv');
   const options = ['-oo', 'X_POSSIBLE_NAMES=x', '-oo', 'Y_POSSIBLE_NAMES=y', '-oo', 'AUTODETECT_TYPE=YES'];
   const table = printed(t, 'gdal-bin', 'ogrinfo', '-so', '-al', ...options, points);
@@ -106,10 +119,29 @@ test('GDAL reads images and points', async (t) => {
 
 test('PCL reads all points', async (t) => {
   const points = await file(`${kSession}/points.ply`, 'points.ply');
-  const read = printed(t, 'pcl-tools', 'pcl_ply2pcd', points, join(folder, 'points.pcd'));
+  const read = printed(t, 'pcl-tools', 'pcl_ply2pcd', points, join(folder, 'made.pcd'));
   if (read === undefined) return;
   const count = readFileSync(points, 'latin1').match(/element vertex ([1-9]\d\d+)/)[1];
   assert.match(read, new RegExp(`${count} points`));
+  const cloud = await file(`${kSession}/points.pcd`, 'points.pcd');
+  assert.match(printed(t, 'pcl-tools', 'pcl_pcd2ply', cloud, join(folder, 'made.ply')), new RegExp(`${count} points`));
+});
+
+test('MRPT optimises the pose graph, and moves no keyframe far', async (t) => {
+  const graph = await file('api/v1/sessions/drift/pose_graph.g2o', 'drift.graph');
+  const optimised = join(folder, 'optimised.graph');
+  const options = ['--2d', '--levmarq', '--no-span', '-q', '-i', graph, '-o', optimised];
+  if (printed(t, 'mrpt-apps', 'graph-slam', ...options) === undefined) return;
+  const vertices = (path) =>
+    new Map([...readFileSync(path, 'latin1').matchAll(/^VERTEX_SE2 (\d+) (\S+) (\S+)/gm)].map((at) => [at[1], at]));
+  const before = vertices(graph);
+  const after = vertices(optimised);
+  assert.ok(before.size > 20, `${before.size} keyframes`);
+  assert.deepEqual([...after.keys()], [...before.keys()]);
+  for (const [id, [, , x, y]] of before) {
+    const [, , toX, toY] = after.get(id);
+    assert.ok(Math.hypot(toX - x, toY - y) < 0.05, `${id}: ${x}, ${y} to ${toX}, ${toY}`);
+  }
 });
 
 test('MRPT reads a scan and an odometry of each line', async (t) => {
@@ -119,6 +151,29 @@ test('MRPT reads a scan and an odometry of each line', async (t) => {
   const scans = readFileSync(log, 'latin1').match(/^ROBOTLASER1 /gm).length;
   const objects = Math.max(...[...read.matchAll(/\((\d+) objects\)/g)].map((match) => Number(match[1])));
   assert.ok(scans > 100 && objects > 1.9 * scans && objects <= 2 * scans, `${objects} objects of ${scans} scans`);
+});
+
+test('numpy reads a KITTI trajectory as matrices', async (t) => {
+  const read = printed(
+    ...[t, 'python3-numpy', kDebiansPython, '-c'],
+    `
+import sys
+try:
+    import numpy
+except ImportError:
+    sys.exit(print('no numpy'))
+poses = numpy.loadtxt(sys.argv[1]).reshape(-1, 3, 4)
+stamps = numpy.loadtxt(sys.argv[2])
+assert len(poses) == len(stamps) > 100
+assert numpy.allclose(numpy.linalg.det(poses[:, :, :3]), 1)
+assert numpy.allclose(poses[:, :2, 3], stamps[:, 1:3], atol=1e-5)
+print('equal')
+`,
+    await file(`${kSession}/trajectory.kitti`, 'office.kitti'),
+    await file(`${kSession}/trajectory.tum`, 'office.tum'),
+  );
+  if (read?.includes('no numpy')) return t.skip("numpy was not found; it is in Debian's package python3-numpy");
+  if (read !== undefined) assert.match(read, /equal/);
 });
 
 test('Prometheus reads metrics', async (t) => {

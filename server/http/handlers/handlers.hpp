@@ -56,6 +56,7 @@ namespace scanloom::http {
 [[nodiscard]] boost::asio::awaitable<Result<Response>> get_map_csv(Context& context);  ///< a table
 [[nodiscard]] boost::asio::awaitable<Result<Response>> get_map_npy(Context& context);  ///< a NumPy array
 [[nodiscard]] boost::asio::awaitable<Result<Response>> get_map_yaml(Context& context); ///< describes map.pgm
+[[nodiscard]] boost::asio::awaitable<Result<Response>> get_map_pgw(Context& context);  ///< describes map.png
 [[nodiscard]] boost::asio::awaitable<Result<Response>> get_digest(Context& context);   ///< of each layer
 [[nodiscard]] Result<Response> get_difference(Context& context);                       ///< see tiles/difference.hpp
 [[nodiscard]] Result<Response> get_difference_png(Context& context);                   ///< the same as an image
@@ -85,6 +86,7 @@ start_weave(Context& context);                                 ///< 200 if the m
 [[nodiscard]] Result<Response> get_landmarks(Context& context);  ///< see sessions::LandmarkLayers
 [[nodiscard]] Result<Response> get_points_csv(Context& context); ///< see landmarks::fuse_captures()
 [[nodiscard]] Result<Response> get_points_ply(Context& context); ///< see landmarks::fuse_captures()
+[[nodiscard]] Result<Response> get_points_pcd(Context& context);
 
 // trajectory.cpp
 
@@ -93,7 +95,9 @@ start_weave(Context& context);                                 ///< 200 if the m
 // poses.cpp: poses that the server estimates
 
 [[nodiscard]] boost::asio::awaitable<Result<Response>> get_trajectory_tum(Context& context); ///< of sent poses, too
+[[nodiscard]] boost::asio::awaitable<Result<Response>> get_trajectory_kitti(Context& context);
 [[nodiscard]] boost::asio::awaitable<Result<Response>> get_pose_graph(Context& context);     ///< keyframes and edges
+[[nodiscard]] boost::asio::awaitable<Result<Response>> get_pose_graph_g2o(Context& context); ///< of those that count
 [[nodiscard]] boost::asio::awaitable<Result<Response>> relocalize(Context& context);         ///< by an operator
 [[nodiscard]] boost::asio::awaitable<Result<Response>> change_mode(Context& context);        ///< localize-only mode
 

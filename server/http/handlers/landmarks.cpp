@@ -109,7 +109,7 @@ constexpr std::size_t kFusedPointsMax = 1'000'000; // of all captures; need 100 
 constexpr double kThreshold = 0.05;                // metres
 constexpr double kThresholdMax = 1.0;
 
-enum class PointFile { kCsv, kPly };
+enum class PointFile { kCsv, kPly, kPcd };
 
 /// Selects captures and sets how they are fused.
 struct CloudQuery {
@@ -206,6 +206,7 @@ Result<Response> get_points(const Context& context, PointFile file) {
     const auto cloud = landmarks::fuse_captures(chosen.captures(), query->threshold, limit);
     if (!cloud) return cloud.error();
     if (file == PointFile::kPly) return ok_text("model/ply", std::move(*permit), exchange::points_ply(*cloud));
+    if (file == PointFile::kPcd) return ok_text("text/plain", std::move(*permit), exchange::points_pcd(*cloud));
     std::vector<std::string> names;
     for (const auto& robot : snapshot->robots) names.push_back(robot.name);
     return ok_text("text/csv", std::move(*permit), exchange::points_csv(*cloud, names));
@@ -216,5 +217,7 @@ Result<Response> get_points(const Context& context, PointFile file) {
 Result<Response> get_points_csv(Context& context) { return get_points(context, PointFile::kCsv); }
 
 Result<Response> get_points_ply(Context& context) { return get_points(context, PointFile::kPly); }
+
+Result<Response> get_points_pcd(Context& context) { return get_points(context, PointFile::kPcd); }
 
 } // namespace scanloom::http

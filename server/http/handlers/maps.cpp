@@ -101,12 +101,26 @@ asio::awaitable<Result<Response>> get_map_npy(Context& context) {
     });
 }
 
-asio::awaitable<Result<Response>> get_map_yaml(Context& context) {
+namespace {
+
+/// Describes the image that is requested with the same parameters.
+asio::awaitable<Result<Response>> get_description(Context& context, std::string_view content_type,
+                                                  std::string (*describe)(const tiles::MapFrame&)) {
     const auto wanted = co_await wanted_map(context, one_byte);
     if (!wanted) co_return wanted.error();
     const auto& etag = wanted->etag;
     if (if_none_match_has(context.request.if_none_match, etag)) co_return not_modified(etag, kRevalidate);
-    co_return map_answer("application/yaml", Body(tiles::map_yaml(wanted->frame)), etag);
+    co_return map_answer(content_type, Body(describe(wanted->frame)), etag);
+}
+
+} // namespace
+
+asio::awaitable<Result<Response>> get_map_yaml(Context& context) {
+    return get_description(context, "application/yaml", tiles::map_yaml);
+}
+
+asio::awaitable<Result<Response>> get_map_pgw(Context& context) {
+    return get_description(context, "text/plain; charset=utf-8", tiles::world_file);
 }
 
 asio::awaitable<Result<Response>> get_digest(Context& context) {

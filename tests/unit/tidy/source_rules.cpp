@@ -72,7 +72,7 @@ const std::vector<Folder> kFolders = {
      .may_include = {"common/error", "common/geometry", "common/ros_map", "common/scan", "common/text", "core/classify",
                      "core/grid", "core/mapping"}},
     {.path = "server/exchange",
-     .may_include = {"common/error", "common/geometry", "common/scan", "core/landmarks"},
+     .may_include = {"common/error", "common/geometry", "common/scan", "core/landmarks", "core/localization"},
      .pure = true},
     {.path = "server/metrics", .may_include = {"common/error"}},
     {.path = "server/sockets", .may_include = {"common"}},

@@ -3,7 +3,7 @@ import { sessionPath } from './api';
 import { get, readBody, Unreachable } from './http';
 import type { LayerName } from '../layers/layers';
 
-export type MapFormat = 'png' | 'pgm' | 'yaml' | 'csv' | 'npy';
+export type MapFormat = 'png' | 'pgw' | 'pgm' | 'yaml' | 'csv' | 'npy';
 
 export interface MapQuery {
   layer: LayerName;
@@ -39,8 +39,13 @@ export function landmarksPath(session: string): string {
   return `${sessionPath(session)}/landmarks.geojson`;
 }
 
+/** The poses of all robots. */
+export function posesPath(session: string, file: 'trajectory.tum' | 'pose_graph.g2o'): string {
+  return `${sessionPath(session)}/${file}`;
+}
+
 /** The points of all scans, fused to one cloud. */
-export function pointsPath(session: string, format: 'csv' | 'ply'): string {
+export function pointsPath(session: string, format: 'csv' | 'ply' | 'pcd'): string {
   return `${sessionPath(session)}/points.${format}`;
 }
 

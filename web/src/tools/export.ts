@@ -7,6 +7,7 @@ import {
   frontiersPath,
   landmarksPath,
   pointsPath,
+  posesPath,
   logPath,
   mapFilePath,
   trajectoryPath,
@@ -191,6 +192,7 @@ function offersOf(session: string, query: MapQuery): Offer[] {
   });
   return [
     map('png', 'PNG', 'grey levels or colours', `${base}.png`),
+    map('pgw', 'World file', 'places the PNG in QGIS', `${base}.pgw`),
     // The YAML file names the image: these two keep their names.
     map('pgm', 'PGM', 'image for ROS, as map.pgm', 'map.pgm'),
     map('yaml', 'YAML', 'goes with the PGM, as map.yaml', 'map.yaml'),
@@ -199,6 +201,14 @@ function offersOf(session: string, query: MapQuery): Offer[] {
     {
       ...{ label: 'Trajectories (GeoJSON)', note: 'all positions of the robots, metres' },
       ...{ file: `${session}-trajectory.geojson`, path: trajectoryPath(session), pathsOf: session },
+    },
+    {
+      ...{ label: 'Trajectories (TUM)', note: 'the pose of every scan, for evo and others' },
+      ...{ file: `${session}-trajectory.tum`, path: posesPath(session, 'trajectory.tum') },
+    },
+    {
+      ...{ label: 'Pose graph (g2o)', note: 'keyframes and edges of estimated poses' },
+      ...{ file: `${session}-pose_graph.g2o`, path: posesPath(session, 'pose_graph.g2o') },
     },
     {
       ...{ label: 'Frontiers (GeoJSON)', note: 'borders of the explored ground' },
@@ -215,6 +225,10 @@ function offersOf(session: string, query: MapQuery): Offer[] {
     {
       ...{ label: 'Points (PLY)', note: 'the same point cloud for 3D programs' },
       ...{ file: `${session}-points.ply`, path: pointsPath(session, 'ply') },
+    },
+    {
+      ...{ label: 'Points (PCD)', note: 'for the Point Cloud Library' },
+      ...{ file: `${session}-points.pcd`, path: pointsPath(session, 'pcd') },
     },
     {
       ...{ label: 'CARMEN log', note: 'all scans, to replay', file: `${session}.clf` },

@@ -28,5 +28,13 @@ TEST(PointText, PlyHasOneVertexPerPoint) {
                                    "-5.0000 0.0001 0 1\n");
 }
 
+TEST(PointText, PcdHasOneLinePerPoint) {
+    EXPECT_EQ(points_pcd(kPoints), "# .PCD v0.7 - metres, map frame\nVERSION 0.7\nFIELDS x y z seen\nSIZE 4 4 4 4\n"
+                                   "TYPE F F F U\nCOUNT 1 1 1 1\nWIDTH 2\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS 2\n"
+                                   "DATA ascii\n"
+                                   "1.0100 -2.0000 0 3\n"
+                                   "-5.0000 0.0001 0 1\n");
+}
+
 } // namespace
 } // namespace scanloom::exchange

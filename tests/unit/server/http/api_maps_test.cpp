@@ -20,6 +20,8 @@ TEST_F(ApiTest, MapFilesHaveTheirFormats) {
     const auto yaml = get("/api/v1/sessions/a/map.yaml?layer=occupancy&bbox=-1,-2,1,1");
     EXPECT_EQ(yaml.get("Content-Type"), "application/yaml");
     EXPECT_THAT(std::string(yaml.body.bytes()), AllOf(HasSubstr("image: map.pgm"), HasSubstr("-2")));
+    const auto world = get("/api/v1/sessions/a/map.pgw?bbox=-1,-2,1,1");
+    EXPECT_EQ(world.body.bytes(), "0.05\n0\n0\n-0.05\n-0.975\n0.975\n");
     EXPECT_EQ(get("/api/v1/sessions/a/map.png", std::string(image.get("ETag"))).status, Status::not_modified);
 }
 

@@ -121,6 +121,14 @@ TEST_F(ApiPointsTrials, ConsecutivePartsContainEachCaptureOnce) {
     EXPECT_EQ(ended + seen("?since=" + std::to_string(newest)), seen(""));
 }
 
+TEST_F(ApiPointsTest, PcdHasThePointsOfThePly) {
+    const auto points_of = [&](const std::string& file, std::string_view end_of_header) {
+        const std::string text(get("/api/v1/sessions/a/points." + file).body.bytes());
+        return text.substr(text.find(end_of_header) + end_of_header.size());
+    };
+    EXPECT_EQ(points_of("pcd", "DATA ascii\n"), points_of("ply", "end_header\n"));
+}
+
 TEST_F(ApiPointsTest, PlyHasThePointsOfTheCsv) {
     const auto response = get("/api/v1/sessions/a/points.ply");
     EXPECT_EQ(response.get("Content-Type"), "model/ply");

@@ -191,6 +191,40 @@ TEST_F(ApiPosesTest, TrajectoryOfUnknownRobotOrEstimateIsRefused) {
     EXPECT_THAT(detail(get(tum + "?as=first"), Status::bad_request), HasSubstr("online is possible"));
 }
 
+TEST_F(ApiPosesTest, KittiTrajectoryHasThePosesOfTheTumTrajectory) {
+    stream("a", "r1", {scan(1), scan(2)});
+    const std::string path = "/api/v1/sessions/a/trajectory.kitti";
+    const std::string text(get(path).body.bytes());
+    std::istringstream values(text);
+    const auto robots = tum();
+    for (const auto& [stamp, pose] : robots.at("r1")) {
+        double m[12] = {};
+        for (double& value : m) values >> value;
+        EXPECT_NEAR(m[3], pose.x, 1e-6);
+        EXPECT_NEAR(m[7], pose.y, 1e-6);
+        EXPECT_NEAR(std::atan2(m[4], m[0]), pose.yaw, 1e-6);
+    }
+    EXPECT_FALSE(values >> std::ws && values.peek() != EOF);
+    stream("a", "r2", {scan(1)});
+    EXPECT_THAT(detail(get(path), Status::bad_request), HasSubstr("request one at a time"));
+    EXPECT_EQ(get(path + "?robot=r1").body.bytes(), text);
+}
+
+TEST_F(ApiPosesTest, G2oHasTheKeyframesAndUsedEdgesOfThePoseGraph) {
+    drive_lap();
+    const auto graph = get_json("/api/v1/sessions/a/pose_graph.geojson");
+    std::map<std::string, int> expected;
+    for (const auto& feature : graph.at("features").as_array()) {
+        const auto& of = feature.at("properties").as_object();
+        if (!of.contains("is_used")) ++expected["VERTEX_SE2"];
+        if (of.contains("is_used") && of.at("is_used").as_bool()) ++expected["EDGE_SE2"];
+    }
+    std::map<std::string, int> found;
+    std::istringstream lines(std::string(get("/api/v1/sessions/a/pose_graph.g2o").body.bytes()));
+    for (std::string line; std::getline(lines, line);) ++found[line.substr(0, line.find(' '))];
+    EXPECT_EQ(found, expected);
+}
+
 TEST_F(ApiPosesTest, PoseGraphHasKeyframesAndTheirEdges) {
     drive_lap();
     const auto graph = get_json("/api/v1/sessions/a/pose_graph.geojson");

@@ -277,5 +277,9 @@ TEST(RosMap, YamlHasTheDocumentedText) {
                                                    "free_thresh: 0.196\n");
 }
 
+TEST(WorldFile, PlacesTheCentreOfTheUpperLeftPixel) {
+    EXPECT_EQ(world_file({{-101, 0, 10, 8}, 0.05}), "0.05\n0\n0\n-0.05\n-5.025\n0.375\n");
+}
+
 } // namespace
 } // namespace scanloom::tiles
