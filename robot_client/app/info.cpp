@@ -68,16 +68,6 @@ std::string times_text(const RecordingSurvey& found) {
                        time_text(span->first), time_text(span->second));
 }
 
-std::string losses_text(const RecordingSurvey& found) {
-    constexpr std::size_t kShown = 3;
-    std::string text;
-    for (std::size_t n = 0; n < std::min(found.losses.size(), kShown); ++n) {
-        text += fmt::format("lost at byte {}: {}\n", found.losses[n].offset, found.losses[n].reason);
-    }
-    if (found.loss_count > kShown) text += fmt::format("lost: {} more parts\n", found.loss_count - kShown);
-    return text;
-}
-
 } // namespace
 
 std::string poses_text(const RecordingPlan& plan) {
@@ -88,7 +78,8 @@ std::string poses_text(const RecordingPlan& plan) {
 }
 
 std::string info_text(const std::string& file, const RecordingSurvey& found, const Result<RecordingPlan>& plan) {
-    std::string text = fmt::format("{}: {}\n{}{}", file, times_text(found), topics_text(found), losses_text(found));
+    std::string text = fmt::format("{}: {}\n{}", file, times_text(found), topics_text(found));
+    for (const auto& loss : texts_of(found.losses)) text += loss + "\n";
     if (!plan) return text + fmt::format("it cannot be replayed: {}\n", plan.error().message);
     text += fmt::format("{}\nscans: {} of {} can be sent", poses_text(*plan), plan->scan_count, plan->scans.size());
     text += plan->skipped.empty() ? "\n" : fmt::format("; skipped: {}\n", skipped_text(plan->skipped));

@@ -113,9 +113,11 @@ Result<PreparedSource> make_recording(const RobotOptions& options, const ReplayO
     auto scans = RecordedScans::open(replay.file, stated, show_reading(replay.file, console));
     if (!scans) return scans.error();
     const RecordingPlan& plan = scans->plan();
+    for (const auto& loss : texts_of(scans->losses())) console.note(fmt::format("{}: {}", replay.file, loss));
     for (const auto& note : plan.notes) console.note(fmt::format("{}: {}", replay.file, note));
     console.note(fmt::format("{}: {}", replay.file, poses_text(plan)));
     PreparedSource prepared;
+    prepared.left_out = LeftOut{plan.skipped, scans->losses().count};
     prepared.poses = plan.poses;
     prepared.speed = replay.speed;
     prepared.fingerprint = plan.fingerprint;

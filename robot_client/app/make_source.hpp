@@ -18,6 +18,7 @@ struct PreparedSource {
     std::unique_ptr<Source> source;           ///< a recording or simulation, or
     std::unique_ptr<LiveSource> live;         ///< a live source: exactly one of the two is set
     std::optional<std::size_t> skipped_lines; ///< of text files that were read
+    std::optional<LeftOut> left_out;          ///< of a recording of ROS
     Poses poses = Poses::kMap;                ///< what the poses of its scans are
     double speed = 0.0;
     std::string fingerprint;                   ///< for Hello.source

@@ -1,6 +1,7 @@
 #include "robot_client/app/progress.hpp"
 
 #include <boost/json/serialize.hpp>
+#include <boost/json/value_from.hpp>
 #include <fmt/format.h>
 
 namespace scanloom::robot {
@@ -46,8 +47,12 @@ std::string summary_json(const Summary& summary) {
     const auto field = [](std::string_view name, const std::string& text) {
         return text.empty() ? "" : fmt::format(R"(,"{}":{})", name, boost::json::serialize(text));
     };
-    const std::string skipped =
+    std::string skipped =
         summary.skipped_lines ? fmt::format(R"("skipped_lines":{},)", *summary.skipped_lines) : std::string();
+    if (const auto& left_out = summary.left_out) {
+        skipped += fmt::format(R"("skipped":{},"lost_parts":{},)",
+                               boost::json::serialize(boost::json::value_from(left_out->skipped)), left_out->lost_parts);
+    }
     const std::uint64_t taken = status.last + status.waiting + status.dropped;
     return fmt::format(
         R"({{"scans":{},"acknowledged":{},"stored_before":{},"sent":{},"bytes":{},"seconds":{:.3f},{}"reconnects":{},)"

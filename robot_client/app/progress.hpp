@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cstdint>
 #include <deque>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -45,6 +46,12 @@ private:
 /// Returns why no scan is sent for some time.
 [[nodiscard]] std::string pause_text(std::chrono::duration<double> pause);
 
+/// What a recording has that is not sent.
+struct LeftOut {
+    std::map<std::string, std::uint64_t> skipped; ///< scans, by the reason
+    std::uint64_t lost_parts = 0;                 ///< of the file: damaged or missing bytes
+};
+
 struct Summary {
     std::string session;
     std::string robot;
@@ -52,6 +59,7 @@ struct Summary {
     std::string_view order; ///< of a log's scans: "file" or "time"; else empty
     UplinkStatus status;
     std::optional<std::size_t> skipped_lines; ///< of logs and poses, if the source has any
+    std::optional<LeftOut> left_out;          ///< of a recording of ROS
     std::chrono::duration<double> elapsed{};
     std::optional<std::uint64_t> scan_count; ///< of the source, if it ends
     std::string_view localization;           ///< name of the newest state by the server; empty: it told none
@@ -62,7 +70,8 @@ struct Summary {
 /// Returns one line of JSON, without its line break. Scans are counted as in the progress, from the first of the
 /// recording or simulation: `scans` in total (of an endless source or a sensor: taken so far), `acknowledged` stored,
 /// `stored_before` stored in earlier runs, `sent` in this run, `waiting` behind those in the spool, and `dropped` lost
-/// for lack of room. `skipped_lines` and `order` are present if the source has them, and `localization` if the server
+/// for lack of room. `skipped_lines` and `order` are present if the source has them, `skipped` (scans by the reason) and
+/// `lost_parts` if it is a recording of ROS, and `localization` if the server
 /// estimates the robot's poses. A failed run has an `error`, one sentence.
 /// Pre: no text except the error needs escaping: valid names, a fingerprint.
 [[nodiscard]] std::string summary_json(const Summary& summary);

@@ -164,7 +164,7 @@ ExitCode run(const RobotOptions& options) {
     if (const auto remarks = prepared->remarks(); !remarks.empty()) console.note(remarks);
     fmt::print("{}\n",
                summary_json({options.session, options.robot, prepared->fingerprint, prepared->order, uplink.status(),
-                             prepared->skipped_lines, std::chrono::steady_clock::now() - begun, (*feed)->scan_count(),
+                             prepared->skipped_lines, prepared->left_out, std::chrono::steady_clock::now() - begun, (*feed)->scan_count(),
                              notes.state() ? name_of(*notes.state()) : std::string_view(), prepared->remarks(),
                              *outcome ? "" : outcome->error().message}));
     if (*outcome) return kExitDone;

@@ -9,8 +9,9 @@
 
 namespace scanloom::robot {
 
-RecordedScans::RecordedScans(std::string path, RecordingPlan plan, std::unique_ptr<Recording> recording)
-    : path_(std::move(path)), plan_(std::move(plan)), recording_(std::move(recording)) {}
+RecordedScans::RecordedScans(std::string path, RecordingPlan plan, RecordingLosses losses,
+                             std::unique_ptr<Recording> recording)
+    : path_(std::move(path)), plan_(std::move(plan)), losses_(std::move(losses)), recording_(std::move(recording)) {}
 
 Result<RecordedScans> RecordedScans::open(const std::filesystem::path& path, const RecordingOptions& options,
                                           const OnRead& on_read) {
@@ -20,7 +21,7 @@ Result<RecordedScans> RecordedScans::open(const std::filesystem::path& path, con
     if (!plan) return Error{plan.error().code, fmt::format("{}: {}", path.string(), plan.error().message)};
     auto recording = open_recording(path);
     if (!recording) return recording.error();
-    return RecordedScans(path.string(), std::move(*plan), std::move(*recording));
+    return RecordedScans(path.string(), std::move(*plan), std::move(found->losses), std::move(*recording));
 }
 
 Error RecordedScans::changed() const {

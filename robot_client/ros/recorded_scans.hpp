@@ -33,9 +33,11 @@ public:
 
     /// Returns which scans are sent.
     [[nodiscard]] const RecordingPlan& plan() const noexcept { return plan_; }
+    /// Returns what open() could not read.
+    [[nodiscard]] const RecordingLosses& losses() const noexcept { return losses_; }
 
 private:
-    RecordedScans(std::string path, RecordingPlan plan, std::unique_ptr<Recording> recording);
+    RecordedScans(std::string path, RecordingPlan plan, RecordingLosses losses, std::unique_ptr<Recording> recording);
 
     [[nodiscard]] Error changed() const;
     [[nodiscard]] Result<Observation> observe(const RecordedTopic& topic, const RecordedMessage& message,
@@ -44,6 +46,7 @@ private:
 
     std::string path_;
     RecordingPlan plan_;
+    RecordingLosses losses_;
     std::unique_ptr<Recording> recording_;
     std::size_t scans_ = 0;                              // messages of lasers that were read
     std::uint32_t place_ = 0;                            // of the next scan

@@ -126,12 +126,21 @@ RecordingSurvey Surveyor::finish(const Recording& recording) && {
     for (auto n = found_.topics.size(); n < recording.topics().size(); ++n) { // topics without messages
         static_cast<RecordedTopic&>(found_.topics.emplace_back()) = recording.topics()[n];
     }
-    found_.losses = recording.losses();
-    found_.loss_count = recording.losses_count();
+    found_.losses = {recording.losses_count(), recording.losses()};
     return std::move(found_);
 }
 
 } // namespace
+
+std::vector<std::string> texts_of(const RecordingLosses& losses) {
+    constexpr std::size_t kShown = 3;
+    std::vector<std::string> texts;
+    for (std::size_t n = 0; n < std::min(losses.first.size(), kShown); ++n) {
+        texts.push_back(fmt::format("lost at byte {}: {}", losses.first[n].offset, losses.first[n].reason));
+    }
+    if (losses.count > kShown) texts.push_back(fmt::format("lost: {} more parts", losses.count - kShown));
+    return texts;
+}
 
 bool is_laser(const RecordedTopic& topic) {
     return topic.encoding != MessageEncoding::kOther && (topic.type == kLaserScanType || topic.type == kMultiEchoType);

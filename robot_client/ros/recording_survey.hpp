@@ -41,6 +41,15 @@ struct SurveyedLaser {
     Sha256 hash; ///< of its scans
 };
 
+/// Parts of a file that could not be read.
+struct RecordingLosses {
+    std::uint64_t count = 0;
+    std::vector<RecordingLoss> first; ///< at most kRecordingLossesListed of them
+};
+
+/// Returns the first losses, as sentences for people, and how many more there are.
+[[nodiscard]] std::vector<std::string> texts_of(const RecordingLosses& losses);
+
 /// What a recording contains.
 struct RecordingSurvey {
     std::vector<SurveyedTopic> topics;
@@ -52,8 +61,7 @@ struct RecordingSurvey {
     std::map<std::size_t, FrameTree> odometry;     ///< by topic: the frame of the robot in that of the odometry
     std::map<std::size_t, std::string> odom_child; ///< by topic
     std::size_t unusable_transforms = 0;           ///< not finite, without a rotation, or without a child
-    std::uint64_t loss_count = 0;                  ///< parts of the file that could not be read
-    std::vector<RecordingLoss> losses;             ///< the first of them
+    RecordingLosses losses;
 };
 
 /// Returns whether messages of this type are scans of a laser.

@@ -21,6 +21,7 @@ const Summary kSummary{"lab",
                         .waiting = 7,
                         .dropped = 1},
                        3,
+                       std::nullopt,
                        1500ms,
                        std::nullopt,
                        "",
@@ -45,6 +46,17 @@ TEST(SummaryJson, RefusedRobotHasReasonAndScanCount) {
         R"({"scans":910,"acknowledged":0,"stored_before":0,"sent":0,"bytes":0,"seconds":1.500,"skipped_lines":3,)"
         R"("reconnects":0,"waiting":0,"dropped":0,"session":"lab","robot":"r1","source":"carmen:9f3a","order":"time",)"
         R"("localization":"lost","remarks":"7 m driven","error":"hello.session is \"lab\",\nwhich is full"})");
+}
+
+TEST(SummaryJson, SaysWhatARecordingLeavesOut) {
+    Summary recording = kSummary;
+    recording.skipped_lines.reset();
+    recording.left_out = LeftOut{{{"\"a\" is unknown", 2}, {"mount unknown", 5}}, 1};
+    EXPECT_THAT(summary_json(recording),
+                testing::HasSubstr(R"("seconds":1.500,"skipped":{"\"a\" is unknown":2,"mount unknown":5},)"
+                                   R"("lost_parts":1,"reconnects":2)"));
+    recording.left_out = LeftOut();
+    EXPECT_THAT(summary_json(recording), testing::HasSubstr(R"("skipped":{},"lost_parts":0,)"));
 }
 
 TEST(SummaryJson, CountsScansWithoutAServer) {

@@ -259,5 +259,20 @@ TEST_F(RecordedScansTest, InfoListsTopicsAndTheCommand) {
                                 "'a.bag'\n"));
 }
 
+TEST_F(RecordedScansTest, ADamagedFileGivesItsOtherScansAndSaysWhatIsLost) {
+    const auto path = Recorder().bag(directory_);
+    const auto whole = RecordedScans::open(path, {});
+    EXPECT_EQ(whole->losses().count, 0U);
+    EXPECT_THAT(texts_of(whole->losses()), testing::IsEmpty());
+    std::filesystem::resize_file(path, std::filesystem::file_size(path) * 2 / 3);
+    auto cut = RecordedScans::open(path, {}).value();
+    const auto sent = all_of(cut).size();
+    EXPECT_GT(sent, 0U);
+    EXPECT_LT(sent, *whole->scan_count());
+    EXPECT_GT(cut.losses().count, 0U);
+    EXPECT_THAT(texts_of(cut.losses()), testing::Contains(testing::StartsWith("lost at byte ")));
+    EXPECT_THAT(texts_of({5, std::vector<RecordingLoss>(5)}), testing::ElementsAre(testing::_, testing::_, testing::_, "lost: 2 more parts"));
+}
+
 } // namespace
 } // namespace scanloom::robot
