@@ -50,8 +50,9 @@ std::string summary_json(const Summary& summary) {
     std::string skipped =
         summary.skipped_lines ? fmt::format(R"("skipped_lines":{},)", *summary.skipped_lines) : std::string();
     if (const auto& left_out = summary.left_out) {
-        skipped += fmt::format(R"("skipped":{},"lost_parts":{},)",
-                               boost::json::serialize(boost::json::value_from(left_out->skipped)), left_out->lost_parts);
+        skipped +=
+            fmt::format(R"("skipped":{},"lost_parts":{},)",
+                        boost::json::serialize(boost::json::value_from(left_out->skipped)), left_out->lost_parts);
     }
     const std::uint64_t taken = status.last + status.waiting + status.dropped;
     return fmt::format(

@@ -70,10 +70,9 @@ struct Summary {
 /// Returns one line of JSON, without its line break. Scans are counted as in the progress, from the first of the
 /// recording or simulation: `scans` in total (of an endless source or a sensor: taken so far), `acknowledged` stored,
 /// `stored_before` stored in earlier runs, `sent` in this run, `waiting` behind those in the spool, and `dropped` lost
-/// for lack of room. `skipped_lines` and `order` are present if the source has them, `skipped` (scans by the reason) and
-/// `lost_parts` if it is a recording of ROS, and `localization` if the server
-/// estimates the robot's poses. A failed run has an `error`, one sentence.
-/// Pre: no text except the error needs escaping: valid names, a fingerprint.
+/// for lack of room. `skipped_lines` and `order` are present if the source has them, `skipped` (scans by the reason)
+/// and `lost_parts` if it is a recording of ROS, and `localization` if the server estimates the robot's poses. A failed
+/// run has an `error`, one sentence. Pre: no text except the error needs escaping: valid names, a fingerprint.
 [[nodiscard]] std::string summary_json(const Summary& summary);
 
 } // namespace scanloom::robot

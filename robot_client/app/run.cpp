@@ -164,9 +164,9 @@ ExitCode run(const RobotOptions& options) {
     if (const auto remarks = prepared->remarks(); !remarks.empty()) console.note(remarks);
     fmt::print("{}\n",
                summary_json({options.session, options.robot, prepared->fingerprint, prepared->order, uplink.status(),
-                             prepared->skipped_lines, prepared->left_out, std::chrono::steady_clock::now() - begun, (*feed)->scan_count(),
-                             notes.state() ? name_of(*notes.state()) : std::string_view(), prepared->remarks(),
-                             *outcome ? "" : outcome->error().message}));
+                             prepared->skipped_lines, prepared->left_out, std::chrono::steady_clock::now() - begun,
+                             (*feed)->scan_count(), notes.state() ? name_of(*notes.state()) : std::string_view(),
+                             prepared->remarks(), *outcome ? "" : outcome->error().message}));
     if (*outcome) return kExitDone;
     const bool is_refused = outcome->error().code == Errc::kConflict;
     if (is_refused && prepared->locating != nullptr && !options.spool.empty()) {

@@ -13,6 +13,7 @@
 #include "tests/support/log_reading.hpp"
 #include "tests/support/mcap_writer.hpp"
 #include "tests/support/memory_scan_log.hpp"
+#include "tests/support/ros_bytes.hpp"
 #include "tests/support/stored_text.hpp"
 #include "tests/support/temporary_directory.hpp"
 
@@ -275,6 +276,37 @@ void write_recordings(const std::filesystem::path& folder) {
     write("mcap/not_closed", small_mcap({.chunk_bytes = 0, .is_closed = false}, 6));
 }
 
+/// Messages of ROS after the byte that selects encoding and type.
+void write_ros_messages(const std::filesystem::path& folder) {
+    using namespace testing_support;
+    const robot::RosLaserScan scan{{1'500'000'000, "laser"},           -1.0F, 1.0F, 0.5F, 0.01F, 0.1F, 0.1F, 10.0F,
+                                   {1.0F, 0.0F, INFINITY, 12.0F, 3.0F}};
+    const std::vector<robot::RosTransform> transforms{flat(0, "odom", "base", 1.0), flat(9, "base", "laser", 0.2)};
+    for (const auto encoding : {robot::MessageEncoding::kRos1, robot::MessageEncoding::kCdr}) {
+        const bool is_cdr = encoding == robot::MessageEncoding::kCdr;
+        const auto write = [&](const std::string& name, char type, const std::string& bytes) {
+            const char selection = static_cast<char>(2 * type + (is_cdr ? 1 : 0));
+            write_file(folder / (name + (is_cdr ? "_cdr" : "_ros1")), selection + bytes);
+        };
+        write("laser", 0, laser_bytes(scan, encoding));
+        write("multi_echo", 1, laser_bytes(scan, encoding));
+        write("odometry", 2, odometry_bytes(transforms[0], encoding));
+        write("transforms", 3, transform_bytes(transforms, encoding));
+    }
+}
+
+/// Whether there are loops, then transforms of four bytes: parent and child, stamp, translation, rotation.
+void write_frame_trees(const std::filesystem::path& folder) {
+    const auto transform = [](std::size_t parent, std::size_t child, char stamp) {
+        return std::string{static_cast<char>(parent + 6 * child), stamp, '\x0a', '\x14'};
+    };
+    write_file(folder / "chain",
+               std::string(1, 0) + transform(0, 1, 0) + transform(0, 1, 20) + transform(1, 2, 4) + transform(1, 2, 16));
+    write_file(folder / "another_parent",
+               std::string(1, 0) + transform(0, 1, 0) + transform(2, 1, 12) + transform(0, 1, 24));
+    write_file(folder / "loop", "\1" + transform(0, 1, 12) + transform(1, 2, 12) + transform(2, 0, 12));
+}
+
 void write_corpus(const std::filesystem::path& folder) {
     write_messages(folder / "messages");
     write_streams(folder / "frame_decoder");
@@ -285,6 +317,8 @@ void write_corpus(const std::filesystem::path& folder) {
     write_estimated_checkpoint(folder / "checkpoint");
     write_earlier_checkpoints(folder / "checkpoint");
     write_recordings(folder);
+    write_ros_messages(folder / "ros_message");
+    write_frame_trees(folder / "frame_tree");
 }
 
 /// Empty where there is no such file.

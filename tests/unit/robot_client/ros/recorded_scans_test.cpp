@@ -271,7 +271,8 @@ TEST_F(RecordedScansTest, ADamagedFileGivesItsOtherScansAndSaysWhatIsLost) {
     EXPECT_LT(sent, *whole->scan_count());
     EXPECT_GT(cut.losses().count, 0U);
     EXPECT_THAT(texts_of(cut.losses()), testing::Contains(testing::StartsWith("lost at byte ")));
-    EXPECT_THAT(texts_of({5, std::vector<RecordingLoss>(5)}), testing::ElementsAre(testing::_, testing::_, testing::_, "lost: 2 more parts"));
+    EXPECT_THAT(texts_of({5, std::vector<RecordingLoss>(5)}),
+                testing::ElementsAre(testing::_, testing::_, testing::_, "lost: 2 more parts"));
 }
 
 } // namespace
