@@ -12,6 +12,7 @@ namespace scanloom::robot {
 namespace {
 
 constexpr double kNanoseconds = 1e9;
+constexpr double kOneBeamIncrement = 0.01;                   // radians, of a laser with one beam: any but 0
 constexpr double kTiltMax = 15.0 * std::numbers::pi / 180.0; // radians
 
 double range_max_of(const RosLaserScan& scan, const RangeMeaning& meaning) {
@@ -87,10 +88,10 @@ Result<> check_usable(const RosLaserScan& scan) {
 
 Sensor sensor_of(const RosLaserScan& scan, const RangeMeaning& meaning, const LaserMount& mount) {
     const double direction = mount.is_upside_down ? -1.0 : 1.0;
+    const double increment = scan.ranges.size() == 1 ? kOneBeamIncrement : static_cast<double>(scan.angle_increment);
     Sensor sensor;
     sensor.mount = mount.T_robot_laser;
-    sensor.angles = UniformAngles{direction * static_cast<double>(scan.angle_min),
-                                  direction * static_cast<double>(scan.angle_increment),
+    sensor.angles = UniformAngles{direction * static_cast<double>(scan.angle_min), direction * increment,
                                   static_cast<std::uint32_t>(scan.ranges.size())};
     sensor.range_max = range_max_of(scan, meaning);
     const double stated = scan.range_min;

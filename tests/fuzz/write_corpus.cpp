@@ -289,6 +289,7 @@ void write_ros_messages(const std::filesystem::path& folder) {
             write_file(folder / (name + (is_cdr ? "_cdr" : "_ros1")), selection + bytes);
         };
         write("laser", 0, laser_bytes(scan, encoding));
+        write("one_beam", 0, laser_bytes({{0, ""}, 0.0F, 0.0F, 0.0F, 0.0F, 0.1F, 0.1F, 10.0F, {1.0F}}, encoding));
         write("multi_echo", 1, laser_bytes(scan, encoding));
         write("odometry", 2, odometry_bytes(transforms[0], encoding));
         write("transforms", 3, transform_bytes(transforms, encoding));

@@ -63,6 +63,20 @@ TEST(LaserConversion, SensorsHaveTheRangesOfTheirMessagesIfThesePossible) {
     }
 }
 
+/// Drivers of sensors with one beam state an increment of 0, which the server refuses.
+TEST(LaserConversion, OneBeamNeedsNoIncrement) {
+    auto scan = scan_with({1.0F});
+    for (const float stated : {0.0F, -3e38F}) {
+        scan.angle_increment = stated;
+        ASSERT_TRUE(check_usable(scan));
+        const auto angles = std::get<UniformAngles>(sensor_of(scan, {}, {}).angles);
+        EXPECT_EQ(angles.count, 1U);
+        EXPECT_EQ(angles.first, -1.0);
+        EXPECT_GT(angles.increment, 0.0);
+        EXPECT_LT(angles.increment, 1.0);
+    }
+}
+
 TEST(LaserConversion, TheStampIsThatOfTheMiddle) {
     auto scan = scan_with(std::vector<float>(101, 1.0F));
     EXPECT_NEAR(scan_of(scan, 0, {}).stamp, 5.05, 1e-6);
