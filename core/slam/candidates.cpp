@@ -66,7 +66,6 @@ constexpr double kFarTurn = 0.25;     // radians
 constexpr double kInliersFar = 0.85;
 
 constexpr double kUnmatchedValue = 0.25; // of the prediction as a candidate
-constexpr std::size_t kUnmatchedMax = 3; // scans in a row that a velocity without odometry may explain
 
 double turn(const Transform2& T) noexcept { return std::fabs(yaw_of(T)); }
 
@@ -110,9 +109,7 @@ public:
         if (is_plain) return std::move(found_);
         try_other_priors();
         if (best_inliers() < kInliersFar) try_other_starts();
-        if (counts_prediction() || best_inliers() < kUsable) {
-            found_.push_back({expected_, kUnmatchedValue, 0.0, false, loose_.position_sigma, loose_.yaw_sigma});
-        }
+        found_.push_back({expected_, kUnmatchedValue, 0.0, false, loose_.position_sigma, loose_.yaw_sigma});
         return std::move(found_);
     }
 
@@ -146,9 +143,6 @@ private:
         return kSurpriseWeight * std::min(surprise(expected_), surprise(by_velocity_) + 1.0);
     }
 
-    /// Returns whether the prediction can be better than a weak match.
-    [[nodiscard]] bool counts_prediction() const { return has_odometry_ || prediction_.unmatched < kUnmatchedMax; }
-
     [[nodiscard]] bool is_far(const Transform2& pose) const {
         const auto is_far_from = [&](const Transform2& prediction) {
             const Transform2 off = inverse(prediction) * pose;
@@ -160,7 +154,7 @@ private:
     /// Adds a match, unless it is too weak for its distance, or one at the same place is at least as good. Removes
     /// those that are worse.
     void keep(const LineMatch& found) {
-        if (counts_prediction() && found.inlier_ratio < kInliersFar && is_far(found.T_map_robot)) return;
+        if (found.inlier_ratio < kInliersFar && is_far(found.T_map_robot)) return;
         const double score =
             agreement_of(scan_, map_.points(), map_.space(), found.T_map_robot).score - penalty(found.T_map_robot);
         const auto is_same = [&](const Candidate& other) {

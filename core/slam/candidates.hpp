@@ -14,7 +14,6 @@ struct Prediction {
     std::optional<Transform2> odometry; ///< T_last_robot by the odometry; nullopt: there is none
     double position_mismatch = 0.0;     ///< metres, mean distance of recent predictions from the matched poses
     double yaw_mismatch = 0.0;          ///< radians, likewise
-    std::size_t unmatched = 0;          ///< number of scans since the last one that matched
 
     /// Returns T_last_robot by the odometry, else by the velocity.
     [[nodiscard]] const Transform2& motion() const noexcept { return odometry ? *odometry : velocity; }

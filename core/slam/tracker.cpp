@@ -31,8 +31,7 @@ void Tracker::follow(const ScanPoints& scan, const std::optional<Transform2>& mo
     const bool is_open = hypotheses_.size() > 1;
     std::vector<Hypothesis> next;
     for (const Hypothesis& hypothesis : hypotheses_) {
-        const Prediction prediction{hypothesis.last,    hypothesis.velocity, motion,
-                                    position_mismatch_, yaw_mismatch_,       hypothesis.unmatched};
+        const Prediction prediction{hypothesis.last, hypothesis.velocity, motion, position_mismatch_, yaw_mismatch_};
         const auto candidates = candidates_of(scan, map_, prediction, is_open ? Care::kValued : Care::kOneIfPlain);
         const double best = std::ranges::max_element(candidates, {}, &Candidate::value)->value;
         for (const Candidate& candidate : candidates) {

@@ -176,13 +176,25 @@ TEST(TrajectoryEstimator, BeginsAFragmentAfterTwentyUnmatchedScans) {
     Drive drive = drive_along(ring_building(), std::vector<Point2>{{5.0, 1.0}, {9.0, 1.0}}, {}, 7);
     const std::size_t carried = drive.scans.size();
     carry_to_other_floor(drive, 80, 7);
-    const auto estimator = estimated(drive, true);
-    const auto fragments = estimator.map->graph().fragments();
-    ASSERT_EQ(fragments.size(), 2U);
-    std::size_t begin = 0;
-    while (estimator->placement(begin).keyframe != fragments[1].keyframes.front()) ++begin;
-    EXPECT_EQ(begin, carried + 19) << "the twentieth scan on the other floor";
-    EXPECT_EQ(estimator->unmatched_count(), 20U) << "all later scans match it";
+    for (const bool has_odometry : {true, false}) {
+        SCOPED_TRACE(has_odometry);
+        const auto estimator = estimated(drive, has_odometry);
+        const auto fragments = estimator.map->graph().fragments();
+        ASSERT_EQ(fragments.size(), 2U);
+        std::size_t begin = 0;
+        while (estimator->placement(begin).keyframe != fragments[1].keyframes.front()) ++begin;
+        EXPECT_EQ(begin, carried + 19) << "the twentieth scan on the other floor";
+        EXPECT_EQ(estimator->unmatched_count(), 20U) << "all later scans match it";
+    }
+}
+
+/// What a hand before a laser shows fits nothing. Afterwards the robot is far from where it was.
+TEST(TrajectoryEstimator, ACoveredLaserIsLost) {
+    Drive drive = drive_along(ring_building(), std::vector<Point2>{{5.0, 1.0}, {25.0, 1.0}}, {}, 7);
+    for (std::size_t n = 60; n < 120; ++n) std::ranges::fill(drive.scans[n].ranges, 50); // millimetres
+    const auto estimator = estimated(drive, false);
+    EXPECT_FALSE(estimator->is_located(drive.scans.size() - 1));
+    EXPECT_TRUE(estimator->is_located(59));
 }
 
 /// A robot without odometry is carried to another floor while there are no scans.
