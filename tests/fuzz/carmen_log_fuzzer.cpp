@@ -1,7 +1,5 @@
 #include "common/scan/limits.hpp"
-#include "common/wire/frame_decoder.hpp"
-#include "common/wire/messages.hpp"
-#include "tests/fuzz/check.hpp"
+#include "tests/fuzz/server_check.hpp"
 #include "tests/support/whole_log.hpp"
 
 #include <sys/mman.h>
@@ -28,13 +26,6 @@ private:
     int descriptor_;
 };
 
-/// Whether the server accepts the message.
-bool is_welcome(const wire::Message& message) {
-    std::string frame;
-    wire::encode(message, frame);
-    return wire::decode(std::string_view(frame).substr(wire::kLengthPrefixBytes)).has_value();
-}
-
 } // namespace
 
 /// Input: a CARMEN log, plain or compressed.
@@ -54,8 +45,8 @@ SCANLOOM_FUZZER(carmen_log)(const std::uint8_t* data, std::size_t size) {
     std::uint64_t seq = 0;
     for (auto observation : log->observations) {
         observation.scan.seq = ++seq;
-        fuzz::check(is_welcome(*observation.sensor), "the server accepts every sensor that is sent");
-        fuzz::check(is_welcome(wire::ScanBatch{{observation.scan}}), "the server accepts every scan that is sent");
+        fuzz::check_accepted(*observation.sensor);
+        fuzz::check_accepted(wire::ScanBatch{{observation.scan}});
         fuzz::check(wire::check_scan(observation.scan, *observation.sensor).has_value(), "a scan fits its sensor");
     }
     return 0;

@@ -1,8 +1,6 @@
-#include "common/wire/frame_decoder.hpp"
-#include "common/wire/messages.hpp"
 #include "robot_client/sources/ld06_packet.hpp"
 #include "robot_client/sources/ld06_turns.hpp"
-#include "tests/fuzz/check.hpp"
+#include "tests/fuzz/server_check.hpp"
 
 #include <algorithm>
 
@@ -44,13 +42,6 @@ Outcome decode_stream(Bytes stream, Bytes sizes) {
     return outcome;
 }
 
-bool is_welcome(const wire::Message& message) {
-    std::string frame;
-    wire::encode(message, frame);
-    const auto decoded = wire::decode(std::string_view(frame).substr(wire::kLengthPrefixBytes));
-    return decoded.has_value() && *decoded == message;
-}
-
 void check_turn(const Ld06Turn& turn, const Ld06ScanOptions& options) {
     fuzz::check(!turn.beams.empty() && turn.beams.front().step >= 0 && turn.beams.back().step < kLd06StepsPerTurn,
                 "a turn has angles from 0 to 360 degrees");
@@ -60,7 +51,7 @@ void check_turn(const Ld06Turn& turn, const Ld06ScanOptions& options) {
     Scan scan = ld06_scan(turn, options);
     scan.seq = 1;
     fuzz::check(scan.ranges.size() == turn.beams.size(), "each point has a beam");
-    fuzz::check(is_welcome(wire::ScanBatch{{scan}}), "the server accepts every scan that is sent");
+    fuzz::check_accepted(wire::ScanBatch{{scan}});
 }
 
 } // namespace
