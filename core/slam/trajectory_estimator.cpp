@@ -19,7 +19,8 @@ constexpr double kKnownPlaceTurn = 0.5;   // radians, likewise
 constexpr double kMotionMax = 10.0;       // metres between two scans; odometry that moves by more has started again
 constexpr double kSpeedMax = 1.5;         // metres per second: more than kMotionMax is possible after a hole
 constexpr double kRestart = 0.5;          // metres from the origin of odometry that has started again
-constexpr double kHole = 1.0;             // seconds between two scans, without odometry
+constexpr double kStill = 0.002;          // metres between two scans, or radians; more is motion
+constexpr double kHole = 1.0;             // seconds without a scan that shows anything new, without odometry
 constexpr double kLongHole = 4.0;         // seconds; odometry may be wrong over that time, too
 constexpr double kHoleInliers = 0.5;      // of the first scan after a hole
 constexpr double kLongHoleInliers = 0.8;  // likewise after a long one without odometry
@@ -41,10 +42,14 @@ double inliers_wanted(double seconds, bool has_odometry) {
 void TrajectoryEstimator::add(const Scan& scan, const Sensor& sensor) {
     using namespace scan_matching;
     const Motion motion = motion_at(scan);
-    add(can_deskew(scan, sensor, motion) ? points_of(deskewed(scan, sensor, motion), sensor) : points_of(scan, sensor),
-        scan.odometry, stamp_ ? scan.stamp - *stamp_ : 0.0);
-    seconds_ = stamp_ ? scan.stamp - *stamp_ : 0.0;
+    const double seconds = stamp_ ? scan.stamp - *stamp_ : 0.0;
+    const bool is_repeated = scan.ranges == last_ranges_;
+    place(can_deskew(scan, sensor, motion) ? points_of(deskewed(scan, sensor, motion), sensor)
+                                           : points_of(scan, sensor),
+          scan.odometry, seconds, is_repeated);
+    seconds_ = seconds;
     stamp_ = scan.stamp;
+    last_ranges_ = scan.ranges;
 }
 
 /// Returns the motion before a scan that is not added yet, as far as it is known.
@@ -68,11 +73,15 @@ std::optional<Transform2> TrajectoryEstimator::odometry_motion(const std::option
     return is_possible ? std::optional(motion) : std::nullopt; // also if it is NaN
 }
 
-void TrajectoryEstimator::add(ScanPoints scan, const std::optional<Pose2>& odometry, double seconds) {
+void TrajectoryEstimator::place(ScanPoints scan, const std::optional<Pose2>& odometry, double seconds,
+                                bool is_repeated) {
     const std::optional<Transform2> now =
         odometry ? std::optional(scan_matching::transform_of(*odometry)) : std::nullopt;
     const std::optional<Transform2> motion = odometry_motion(now, seconds);
     odometry_ = now;
+    const bool shows_new = !is_repeated && scan.points.size() >= kViewPointsMin;
+    const double hole = std::exchange(hole_, shows_new ? 0.0 : hole_ + seconds) + seconds;
+    if (is_repeated && motion && is_beyond(*motion, kStill, kStill)) scan.points.clear(); // sent again, not taken again
     if (keyframes_.empty()) {
         const Transform2 start = graph().size() == 0 ? now.value_or(Transform2()) : Transform2();
         begin_fragment(std::move(scan), start, std::exchange(relocalized_, std::nullopt));
@@ -94,8 +103,7 @@ void TrajectoryEstimator::add(ScanPoints scan, const std::optional<Pose2>& odome
     };
     auto decided = tracker_.add(scan, motion, is_due);
     newest_ = decided.empty() ? tracker_.newest() : decided.back();
-    const bool is_lost_in_hole =
-        !scan.points.empty() && newest_.inlier_ratio < inliers_wanted(seconds, motion.has_value());
+    const bool is_lost_in_hole = shows_new && newest_.inlier_ratio < inliers_wanted(hole, motion.has_value());
     if (is_lost_in_hole && decided.empty()) decided = tracker_.decide();
     const Transform2 first = graph().pose(anchor_) * newest_.T_keyframe_robot;
     first_.push_back({first, newest_.is_matched && !is_lost_in_hole && is_fragment_located()});

@@ -10,6 +10,7 @@
 #include <deque>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace scanloom::slam {
@@ -39,16 +40,20 @@ public:
 
     /// Adds the next scan. Where its beams have times (Scan::duration), it is de-skewed by the motion since the scan
     /// before: that of the odometry, else of the last estimates.
+    /// Some scans show nothing new: those with too few points, and those with exactly the readings of the scan before,
+    /// as some drivers send them. If there was nothing new for more than 1 s without odometry, or 4 s with it, and the
+    /// next scan does not fit the map at the predicted place, the robot is lost at once: it may be anywhere.
     /// @param scan    with odometry if the robot has any. Pre: validated
     /// @param sensor  the laser that took it
     void add(const Scan& scan, const Sensor& sensor);
 
-    /// Adds the next scan. If it does not fit the map at the predicted place after a hole in the scans, of more than 1
-    /// s without odometry and 4 s with it, the robot is lost at once: it may be anywhere.
+    /// Adds the next scan, which is not de-skewed.
     /// @param scan      its points
     /// @param odometry  T_odom_robot at the scan; nullopt: not known. Pre: finite
     /// @param seconds   since the scan before; 0: not known
-    void add(ScanPoints scan, const std::optional<Pose2>& odometry, double seconds = 0.0);
+    void add(ScanPoints scan, const std::optional<Pose2>& odometry, double seconds = 0.0) {
+        place(std::move(scan), odometry, seconds, false);
+    }
 
     /// Searches for the next scan near a place, which people know. If it is found there, the robot goes on from there;
     /// otherwise it is lost, and further scans are searched for there, too.
@@ -141,7 +146,7 @@ public:
     static void list(Self& self, Archive& archive) {
         archive(self.tracker_, self.fragments_, self.continued_, self.keyframes_, self.anchor_, self.T_anchor_start_,
                 self.is_in_frozen_map_, self.own_views_, self.placed_, self.first_, self.newest_, self.odometry_,
-                self.relocalized_, self.unmatched_count_, self.stamp_, self.seconds_);
+                self.relocalized_, self.unmatched_count_, self.hole_, self.stamp_, self.seconds_, self.last_ranges_);
     }
 
     /// Returns whether the members fit together, as they always do unless they were read from damaged bytes.
@@ -164,6 +169,7 @@ private:
         Transform2 T_map_robot;
     };
 
+    void place(ScanPoints scan, const std::optional<Pose2>& odometry, double seconds, bool is_repeated);
     [[nodiscard]] scan_matching::Motion motion_at(const Scan& scan) const;
     [[nodiscard]] std::optional<Transform2> odometry_motion(const std::optional<Transform2>& now, double seconds) const;
     void append_decided(const std::vector<TrackedScan>& scans);
@@ -199,10 +205,12 @@ private:
     std::optional<Transform2> odometry_;      // of the last scan
     std::optional<Surroundings> relocalized_; // where the next scan is searched for
     std::size_t unmatched_count_ = 0;
+    double hole_ = 0.0; // seconds since the last scan that showed anything new
 
     // Of the scans that were added with their sensors.
     std::optional<double> stamp_; // of the last one, seconds
     double seconds_ = 0.0;        // between the last two
+    std::vector<RangeMm> last_ranges_;
 };
 
 } // namespace scanloom::slam

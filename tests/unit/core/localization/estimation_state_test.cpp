@@ -155,8 +155,8 @@ TEST(EstimationState, HasTheLayoutOfItsVersion) {
     drive.odometry.resize(3);
     log.join(0, drive, Poses::kOdometry);
     for (std::size_t n = 0; n < 3; ++n) log.drive(0, drive, n, Poses::kOdometry);
-    EXPECT_EQ(kEstimationVersion, 5U);
-    EXPECT_EQ(state_of(log.maps()).bytes.size(), 1563U);
+    EXPECT_EQ(kEstimationVersion, 6U);
+    EXPECT_EQ(state_of(log.maps()).bytes.size(), 2303U);
 }
 
 } // namespace

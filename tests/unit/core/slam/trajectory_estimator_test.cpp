@@ -223,6 +223,54 @@ TEST(TrajectoryEstimator, AHoleWithoutOdometryBeginsAFragmentUnlessTheScanFits) 
     }
 }
 
+/// A robot without odometry is carried to another floor while its driver sends the last scan again and again, or scans
+/// of nothing.
+TEST(TrajectoryEstimator, ScansThatShowNothingNewAreAHole) {
+    const Building building = ring_building();
+    const Sensor laser = Building::laser();
+    for (const bool is_repeated : {false, true}) {
+        for (const bool has_moved : {false, true}) {
+            SCOPED_TRACE(testing::Message() << is_repeated << has_moved);
+            std::mt19937 random(9);
+            LoneEstimator estimator;
+            double stamp = 0.0;
+            const auto add = [&](Scan scan) {
+                scan.stamp = stamp += 0.2;
+                estimator->add(scan, laser);
+            };
+            Scan scan;
+            for (int n = 0; n < 40; ++n) add(scan = building.scan(laser, {5.0 + 0.1 * n, 1.0, 0.0}, 0.01, random));
+            if (!is_repeated) scan.ranges.assign(scan.ranges.size(), kNoReturn);
+            for (int n = 0; n < 15; ++n) add(scan);
+            add((has_moved ? other_building() : building).scan(laser, {9.0, 1.0, 0.0}, 0.01, random));
+            EXPECT_EQ(estimator.map->graph().fragments().size(), has_moved ? 2U : 1U);
+            EXPECT_EQ(estimator->was_located(55), !has_moved);
+        }
+    }
+}
+
+/// The driver sends each scan four times, and the odometry says that the robot moves meanwhile.
+TEST(TrajectoryEstimator, RepeatedScansFollowTheOdometry) {
+    Drive drive = drive_along(ring_building(), std::vector<Point2>{{5.0, 1.0}, {13.0, 1.0}}, {}, 12);
+    for (std::size_t n = 0; n < drive.scans.size(); ++n) drive.scans[n].ranges = drive.scans[n - n % 4].ranges;
+    SharedMap map;
+    TrajectoryEstimator estimator(map);
+    for (std::size_t n = 0; n < drive.scans.size(); ++n) {
+        Scan scan = drive.scans[n];
+        scan.odometry = drive.odometry[n];
+        estimator.add(scan, drive.laser);
+    }
+    estimator.finish();
+    double worst = 0.0;
+    for (std::size_t n = 0; n < drive.scans.size(); ++n) {
+        const Pose2 off =
+            compose(inverse(drive.truth[n]),
+                    compose(drive.truth[0], compose(inverse(estimator.pose_of(0)), estimator.pose_of(n))));
+        worst = std::max(worst, std::hypot(off.x, off.y));
+    }
+    EXPECT_LT(worst, 0.1);
+}
+
 TEST(TrajectoryEstimator, OdometryIsUsedOverAHoleUnlessItStartedAgain) {
     const auto moved_by = [](const Pose2& before, const Pose2& after, double seconds) {
         SharedMap map;
