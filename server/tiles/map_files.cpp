@@ -135,6 +135,21 @@ Bytes map_pgm(const MapImage& image, const mapping::MapConfig& config) {
     return pgm;
 }
 
+std::vector<std::int8_t> occupancy_grid(const MapImage& image, const mapping::MapConfig& config) {
+    const auto greys = greys_of(image.layer, config);
+    const auto cell_of = [&](Code code) -> std::int8_t {
+        return greys[code] == kRosGreyFree ? 0 : greys[code] == kRosGreyOccupied ? 100 : -1;
+    };
+    const std::size_t width = image.frame.pixels_wide();
+    std::vector<std::int8_t> cells;
+    cells.reserve(image.codes.size());
+    for (auto row_end = image.codes.end(); row_end != image.codes.begin();
+         row_end -= static_cast<std::ptrdiff_t>(width)) {
+        std::transform(row_end - static_cast<std::ptrdiff_t>(width), row_end, std::back_inserter(cells), cell_of);
+    }
+    return cells;
+}
+
 std::string map_yaml(const MapFrame& frame) {
     const auto origin = frame.origin();
     return ros_yaml("map.pgm", frame.cell_size, origin.x, origin.y);

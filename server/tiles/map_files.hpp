@@ -2,7 +2,9 @@
 
 #include "server/tiles/map_image.hpp"
 
+#include <cstdint>
 #include <string>
+#include <vector>
 
 namespace scanloom::tiles {
 
@@ -28,6 +30,11 @@ namespace scanloom::tiles {
 /// @param config  thresholds of free and occupied: class_p_free and class_p_occupied (for occupancy and sonar, in whole
 ///                percent), class_himm_free and class_himm_occupied
 [[nodiscard]] Bytes map_pgm(const MapImage& image, const mapping::MapConfig& config);
+
+/// Returns the cells of nav_msgs/OccupancyGrid, bottom row first: 0 free, 100 occupied, -1 neither, as map_pgm()
+/// decides. Localization of ROS (amcl) takes no other values.
+/// @param config  as for map_pgm()
+[[nodiscard]] std::vector<std::int8_t> occupancy_grid(const MapImage& image, const mapping::MapConfig& config);
 
 /// Returns the description that belongs to the image. It expects the image as `map.pgm` in the same directory.
 [[nodiscard]] std::string map_yaml(const MapFrame& frame);

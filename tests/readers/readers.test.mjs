@@ -5,6 +5,10 @@ import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
+import rosmsg from '@foxglove/rosmsg';
+import rosmsg2 from '@foxglove/rosmsg2-serialization';
+import { McapIndexedReader } from '@mcap/core';
+import { loadDecompressHandlers } from '@mcap/support';
 import { check } from '@placemarkio/check-geojson';
 import { ended, endWithThisProgram, Server, startRobot } from '../e2e/programs.mjs';
 
@@ -151,6 +155,44 @@ test('MRPT reads a scan and an odometry of each line', async (t) => {
   const scans = readFileSync(log, 'latin1').match(/^ROBOTLASER1 /gm).length;
   const objects = Math.max(...[...read.matchAll(/\((\d+) objects\)/g)].map((match) => Number(match[1])));
   assert.ok(scans > 100 && objects > 1.9 * scans && objects <= 2 * scans, `${objects} objects of ${scans} scans`);
+});
+
+test('the readers of Foxglove find scans, poses and the map in an MCAP file', async () => {
+  const bytes = readFileSync(await file('api/v1/sessions/drift/log?format=mcap', 'drift.mcap'));
+  const readable = {
+    size: async () => BigInt(bytes.length),
+    read: async (offset, length) => bytes.subarray(Number(offset), Number(offset + length)),
+  };
+  const decompressHandlers = await loadDecompressHandlers();
+  const recording = await McapIndexedReader.Initialize({ readable, decompressHandlers });
+  const messages = new Map();
+  for await (const message of recording.readMessages({ validateCrcs: true })) {
+    const channel = recording.channelsById.get(message.channelId);
+    const definition = new TextDecoder().decode(recording.schemasById.get(channel.schemaId).data);
+    const reader = new rosmsg2.MessageReader(rosmsg.parse(definition, { ros2: true }));
+    if (!messages.has(channel.topic)) messages.set(channel.topic, []);
+    messages.get(channel.topic).push(reader.readMessage(message.data));
+  }
+  const trajectory = (await text('api/v1/sessions/drift/trajectory.tum')).match(/^[^#\n]+/gm);
+  assert.deepEqual([...messages.keys()].sort(), ['/map', '/r1/pose', '/r1/scan', '/tf']);
+  for (const topic of ['/r1/pose', '/r1/scan', '/tf']) assert.equal(messages.get(topic).length, trajectory.length);
+  for (const [n, line] of trajectory.entries()) {
+    const [, x, y] = line.split(' ').map(Number);
+    for (const place of [
+      messages.get('/r1/pose')[n].pose.position,
+      messages.get('/tf')[n].transforms[0].transform.translation,
+    ]) {
+      assert.ok(Math.hypot(place.x - x, place.y - y) < 0.02, `${n}: ${place.x}, ${place.y} instead of ${x}, ${y}`);
+    }
+  }
+  const [grid] = messages.get('/map');
+  const pgm = readFileSync(await file('api/v1/sessions/drift/map.pgm', 'drift.pgm'));
+  const pixels = pgm.subarray(pgm.length - grid.info.width * grid.info.height);
+  const cells = [...grid.data].map((cell) => ({ '-1': 205, 0: 254, 100: 0 })[cell]);
+  const rows = Array.from({ length: grid.info.height }, (_, row) =>
+    cells.slice(row * grid.info.width, (row + 1) * grid.info.width),
+  );
+  assert.deepEqual(rows.reverse().flat(), [...pixels], 'rows of the image begin at the top');
 });
 
 test('numpy reads a KITTI trajectory as matrices', async (t) => {

@@ -2,9 +2,11 @@
 
 #include "common/wire/log_codec.hpp"
 #include "server/exchange/carmen_text.hpp"
+#include "server/foxglove/log_recording.hpp"
 #include "server/http/handlers/lookup.hpp"
 #include "server/http/response.hpp"
 #include "server/http/text.hpp"
+#include "server/tiles/map_image.hpp"
 
 #include <boost/endian/conversion.hpp>
 #include <fmt/format.h>
@@ -28,6 +30,7 @@ struct LogFormat {
     std::string_view ending; ///< of the file's name
     std::string head;        ///< before the first entry
     std::function<Result<>(std::string& text, std::string_view entry)> append;
+    std::function<std::string()> tail = [] { return std::string(); }; ///< returns what follows the last entry
 };
 
 LogFormat protobuf_format() {
@@ -56,6 +59,33 @@ LogFormat carmen_format(const sessions::SessionInfo& session, const mapping::Sca
             }};
 }
 
+/// @param permit  for the map at the end
+LogFormat mcap_format(const sessions::SessionInfo& session, std::shared_ptr<const mapping::Snapshot> maps,
+                      limits::Semaphore::Permit permit) {
+    struct Writing {
+        foxglove::LogRecording recording;
+        std::shared_ptr<const mapping::Snapshot> maps;
+        limits::Semaphore::Permit permit;
+    };
+    const auto writing = std::make_shared<Writing>(
+        Writing{foxglove::LogRecording(sessions::scan_filter_of(session)), std::move(maps), std::move(permit)});
+    return {"application/octet-stream",
+            "mcap",
+            {},
+            [writing](std::string& bytes, std::string_view entry) -> Result<> {
+                auto decoded = wire::decode_entry(entry);
+                if (!decoded) return Error{Errc::kDataLoss, decoded.error().message};
+                writing->maps->scan_poses.place(*decoded);
+                if (auto added = writing->recording.add(*decoded); !added) return added.error();
+                bytes += writing->recording.take();
+                return {};
+            },
+            [writing] {
+                writing->recording.finish(*writing->maps);
+                return writing->recording.take();
+            }};
+}
+
 /// Reads a log piece by piece. Between two pieces it keeps only the position at which to continue.
 class LogStream final : public BodyStream {
 public:
@@ -74,13 +104,17 @@ public:
 
 private:
     [[nodiscard]] Result<> read() {
-        if (read_ == newest_) return {};
-        return log_.read(session_->info().id, read_, [&](Revision revision, std::string_view bytes) -> store::Visited {
-            if (revision > newest_ || piece_.size() >= kPieceBytes) return store::Visit::kStop;
-            if (auto appended = format_.append(piece_, bytes); !appended) return appended;
-            read_ = revision;
-            return {};
-        });
+        if (is_complete_) return {};
+        auto read =
+            log_.read(session_->info().id, read_, [&](Revision revision, std::string_view bytes) -> store::Visited {
+                if (revision > newest_ || piece_.size() >= kPieceBytes) return store::Visit::kStop;
+                if (auto appended = format_.append(piece_, bytes); !appended) return appended;
+                read_ = revision;
+                return {};
+            });
+        is_complete_ = read && read_ == newest_;
+        if (is_complete_) piece_ += format_.tail();
+        return read;
     }
 
     std::shared_ptr<sessions::Session> session_;
@@ -88,17 +122,26 @@ private:
     LogFormat format_;
     const Revision newest_;
     Revision read_ = 0;
+    bool is_complete_ = false;
     std::string piece_; // read and not yet returned
 };
+
+/// Returns a permit for an image of the whole map, if one can be made.
+Result<limits::Semaphore::Permit> permit_for_map(const Context& context, const mapping::Snapshot& maps) {
+    constexpr std::size_t kCopies = 3; // codes, cells, message
+    const auto frame = tiles::map_frame(maps, mapping::Layer::kOccupancy, std::nullopt);
+    return context.services.responses.take(frame ? kCopies * frame->pixels() : 0);
+}
 
 } // namespace
 
 Result<Response> get_log(Context& context) {
     const auto format = context.query.find("format").value_or("protobuf");
     const bool is_carmen = format == "clf";
-    if (!is_carmen && format != "protobuf") {
+    const bool is_mcap = format == "mcap";
+    if (!is_carmen && !is_mcap && format != "protobuf") {
         return Error{Errc::kInvalidField,
-                     fmt::format("format is {}; possible are clf and protobuf", in_quotes(format))};
+                     fmt::format("format is {}; possible are clf, mcap and protobuf", in_quotes(format))};
     }
     const auto& session = context.session;
     const auto& info = session->info();
@@ -108,7 +151,11 @@ Result<Response> get_log(Context& context) {
         return Error{Errc::kConflict, "the session has scans of sonars, which a CARMEN log cannot represent; request "
                                       "the log without format=clf"};
     }
-    const LogFormat written_as = is_carmen ? carmen_format(info, maps->scan_poses) : protobuf_format();
+    auto permit = is_mcap ? permit_for_map(context, *maps) : limits::Semaphore::Permit();
+    if (!permit) return permit.error();
+    const LogFormat written_as = is_mcap     ? mcap_format(info, maps, std::move(*permit))
+                                 : is_carmen ? carmen_format(info, maps->scan_poses)
+                                             : protobuf_format();
     auto stream = std::make_shared<LogStream>(session, context.services.log, written_as, maps->revision);
     if (auto begun = stream->begin(); !begun) return begun.error();
 

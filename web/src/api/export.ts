@@ -49,7 +49,7 @@ export function pointsPath(session: string, format: 'csv' | 'ply' | 'pcd'): stri
   return `${sessionPath(session)}/points.${format}`;
 }
 
-export function logPath(session: string, format: 'clf' | 'protobuf'): string {
+export function logPath(session: string, format: 'clf' | 'mcap' | 'protobuf'): string {
   return `${sessionPath(session)}/log?format=${format}`;
 }
 

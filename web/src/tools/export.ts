@@ -235,6 +235,10 @@ function offersOf(session: string, query: MapQuery): Offer[] {
       ...{ path: logPath(session, 'clf'), endless: true },
     },
     {
+      ...{ label: 'MCAP recording', note: 'for Foxglove, Lichtblick and ROS 2', file: `${session}.mcap` },
+      ...{ path: logPath(session, 'mcap'), endless: true },
+    },
+    {
       ...{ label: 'Protobuf log', note: 'all scans as received', file: `${session}.scanlog` },
       ...{ path: logPath(session, 'protobuf'), endless: true },
     },

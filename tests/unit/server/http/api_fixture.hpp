@@ -111,6 +111,16 @@ protected:
         return ask("GET", std::move(target), "", std::move(if_none_match));
     }
 
+    /// Returns a whole log.
+    std::string log(const std::string& session, const std::string& query = "") {
+        const auto response = get("/api/v1/sessions/" + session + "/log" + query);
+        std::string text;
+        for (auto piece = response.stream->next().value(); !piece.empty(); piece = response.stream->next().value()) {
+            text += piece;
+        }
+        return text;
+    }
+
     boost::json::value get_json(std::string target) {
         const auto response = get(std::move(target));
         EXPECT_EQ(response.status, Status::ok) << response.body.bytes();

@@ -277,6 +277,13 @@ TEST_F(ApiTest, CarmenLogOfASessionWithSonarsIsRefusedBeforeItBegins) {
     session->submit(link, {echo}, 1);
     link->wait();
     EXPECT_THAT(detail(get("/api/v1/sessions/a/log?format=clf"), Status::conflict), HasSubstr("scans of sonars"));
+    const std::string mcap = log("a", "?format=mcap");
+    const std::string_view magic("\x89MCAP0\r\n", 8);
+    EXPECT_TRUE(mcap.starts_with(magic) && mcap.ends_with(magic));
+    EXPECT_THAT(mcap, HasSubstr("/map")) << "the summary names the topics";
+    EXPECT_THAT(mcap, HasSubstr("/r1/scan_3"));
+    EXPECT_THAT(detail(get("/api/v1/sessions/a/log?format=bag"), Status::bad_request),
+                HasSubstr("clf, mcap and protobuf"));
 }
 
 } // namespace

@@ -238,6 +238,7 @@ TEST(RosMap, LoadsAsTheSameCellsInRos1AndNav2) {
             ++counts[expected == 100 ? 2 : expected + 1];
         }
         EXPECT_THAT(counts, testing::Each(testing::Gt(50U))) << "unknown, free and occupied were all tried";
+        EXPECT_TRUE(std::ranges::equal(occupancy_grid(image, snapshot.config), grid.data));
     }
 }
 

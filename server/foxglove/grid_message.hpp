@@ -1,0 +1,20 @@
+#pragma once
+
+#include "core/mapping/layer.hpp"
+#include "core/mapping/snapshot.hpp"
+#include "server/tiles/map_image.hpp"
+
+#include <string>
+
+namespace scanloom::foxglove {
+
+/// Returns a part of a map as Message::kGrid, in CDR: cells are 0 free, 100 occupied, -1 unknown, as in map.pgm.
+/// @param snapshot  the maps
+/// @param layer     any layer
+/// @param frame     the cells; see tiles::map_frame()
+/// @param stamp     seconds, for readers
+/// Cost: proportional to the number of cells.
+[[nodiscard]] std::string grid_message(const mapping::Snapshot& snapshot, mapping::Layer layer,
+                                       const tiles::MapFrame& frame, double stamp);
+
+} // namespace scanloom::foxglove

@@ -1,0 +1,51 @@
+#pragma once
+
+#include "common/geometry/pose2.hpp"
+#include "common/scan/scan.hpp"
+#include "common/scan/sensor.hpp"
+#include "server/foxglove/schemas.hpp"
+
+#include <span>
+#include <string>
+#include <string_view>
+
+/// A robot's scans and poses as messages of ROS 2, serialised. Frames: "map"; "ROBOT/base_link" is the robot frame;
+/// "ROBOT/sensor_ID" is the frame of one of its sensors. Metres and radians.
+namespace scanloom::foxglove {
+
+inline constexpr std::string_view kMapFrame = "map";
+
+/// Returns the name of the robot frame.
+[[nodiscard]] std::string robot_frame(std::string_view robot);
+
+/// Returns the name of the frame of a robot's scans whose place in the map is not known: no transform leads to it.
+[[nodiscard]] std::string unplaced_frame(std::string_view robot);
+
+/// Returns the name of a sensor's frame.
+[[nodiscard]] std::string sensor_frame(std::string_view robot, const Sensor& sensor);
+
+/// A robot and when it was where.
+struct RobotAt {
+    std::string_view robot; ///< its name
+    double stamp = 0.0;     ///< seconds
+    Pose2 T_map_robot;
+};
+
+/// Returns the transforms from the map to the robot, and from the robot to each of its sensors: Message::kTransforms.
+[[nodiscard]] std::string transforms_message(const RobotAt& at, std::span<const Sensor* const> sensors);
+
+/// Returns the robot's pose in the map: Message::kPose.
+[[nodiscard]] std::string pose_message(const RobotAt& at);
+
+/// Returns what a scan is shown as: kScan if its beams are evenly spaced, otherwise kPoints.
+/// @param sensor  that took the scan
+[[nodiscard]] Message message_of(const Scan& scan, const Sensor& sensor) noexcept;
+
+/// Returns a scan as message_of() says. A beam without a return has an infinite range, and an invalid reading is NaN
+/// (REP 117); points are the ends of the beams that hit an obstacle.
+/// @param frame   in which the sensor is at the origin
+/// @param scan    that the sensor took
+/// @param sensor  as described when it took the scan
+[[nodiscard]] std::string scan_message(std::string_view frame, const Scan& scan, const Sensor& sensor);
+
+} // namespace scanloom::foxglove

@@ -1,0 +1,88 @@
+#include "server/foxglove/schemas.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdlib>
+#include <vector>
+
+namespace scanloom::foxglove {
+namespace {
+
+/// A type of ROS 2 and its fields, one `type name` a line.
+struct Definition {
+    std::string_view type;
+    std::string_view fields;
+};
+
+/// Source: the interfaces of ROS 2 Humble; docs.ros.org.
+constexpr auto kDefinitions = std::to_array<Definition>({
+    {"builtin_interfaces/Time", "int32 sec\nuint32 nanosec\n"},
+    {"geometry_msgs/Point", "float64 x\nfloat64 y\nfloat64 z\n"},
+    {"geometry_msgs/Pose", "geometry_msgs/Point position\ngeometry_msgs/Quaternion orientation\n"},
+    {"geometry_msgs/PoseStamped", "std_msgs/Header header\ngeometry_msgs/Pose pose\n"},
+    {"geometry_msgs/Quaternion", "float64 x\nfloat64 y\nfloat64 z\nfloat64 w\n"},
+    {"geometry_msgs/Transform", "geometry_msgs/Vector3 translation\ngeometry_msgs/Quaternion rotation\n"},
+    {"geometry_msgs/TransformStamped",
+     "std_msgs/Header header\nstring child_frame_id\ngeometry_msgs/Transform transform\n"},
+    {"geometry_msgs/Vector3", "float64 x\nfloat64 y\nfloat64 z\n"},
+    {"nav_msgs/MapMetaData", "builtin_interfaces/Time map_load_time\nfloat32 resolution\nuint32 width\nuint32 height\n"
+                             "geometry_msgs/Pose origin\n"},
+    {"nav_msgs/OccupancyGrid", "std_msgs/Header header\nnav_msgs/MapMetaData info\nint8[] data\n"},
+    {"sensor_msgs/LaserScan", "std_msgs/Header header\nfloat32 angle_min\nfloat32 angle_max\nfloat32 angle_increment\n"
+                              "float32 time_increment\nfloat32 scan_time\nfloat32 range_min\nfloat32 range_max\n"
+                              "float32[] ranges\nfloat32[] intensities\n"},
+    {"sensor_msgs/PointCloud2", "std_msgs/Header header\nuint32 height\nuint32 width\nsensor_msgs/PointField[] fields\n"
+                                "bool is_bigendian\nuint32 point_step\nuint32 row_step\nuint8[] data\nbool is_dense\n"},
+    {"sensor_msgs/PointField", "string name\nuint32 offset\nuint8 datatype\nuint32 count\n"},
+    {"std_msgs/Header", "builtin_interfaces/Time stamp\nstring frame_id\n"},
+    {"tf2_msgs/TFMessage", "geometry_msgs/TransformStamped[] transforms\n"},
+});
+
+const Definition& definition_of(std::string_view type) {
+    return *std::ranges::find(kDefinitions, type, &Definition::type); // each type that is used has a row
+}
+
+/// Adds the types of a definition's fields, and theirs, each once.
+void add_used(const Definition& user, std::vector<const Definition*>& used) {
+    for (const Definition& other : kDefinitions) {
+        const bool is_used = user.fields.find(fmt::format("{} ", other.type)) != std::string_view::npos ||
+                             user.fields.find(fmt::format("{}[]", other.type)) != std::string_view::npos;
+        if (!is_used || std::ranges::find(used, &other) != used.end()) continue;
+        used.push_back(&other);
+        add_used(other, used);
+    }
+}
+
+/// @param type  PACKAGE/NAME
+Schema schema_of(std::string_view type) {
+    const Definition& definition = definition_of(type);
+    std::vector<const Definition*> used;
+    add_used(definition, used);
+    std::string text(definition.fields);
+    for (const Definition* other : used) text += fmt::format("{:=<80}\nMSG: {}\n{}", "", other->type, other->fields);
+    const std::size_t slash = type.find('/');
+    return {fmt::format("{}/msg{}", type.substr(0, slash), type.substr(slash)), "ros2msg", "cdr", std::move(text)};
+}
+
+} // namespace
+
+const Schema& schema_of(Message message) {
+    static const Schema transforms = schema_of("tf2_msgs/TFMessage");
+    static const Schema pose = schema_of("geometry_msgs/PoseStamped");
+    static const Schema scan = schema_of("sensor_msgs/LaserScan");
+    static const Schema points = schema_of("sensor_msgs/PointCloud2");
+    static const Schema grid = schema_of("nav_msgs/OccupancyGrid");
+    switch (message) {
+    case Message::kTransforms: return transforms;
+    case Message::kPose: return pose;
+    case Message::kScan: return scan;
+    case Message::kPoints: return points;
+    case Message::kGrid: return grid;
+    }
+    std::abort(); // each message has a case
+}
+
+} // namespace scanloom::foxglove

@@ -1,0 +1,27 @@
+#pragma once
+
+#include "server/foxglove/schemas.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+/// Names of topics, in MCAP files and over WebSocket.
+namespace scanloom::foxglove {
+
+inline const std::string kTransformsTopic = "/tf"; ///< Message::kTransforms of all robots
+inline const std::string kMapTopic = "/map";       ///< Message::kGrid
+
+/// Returns the topic of a robot's poses.
+[[nodiscard]] inline std::string pose_topic(std::string_view robot) { return fmt::format("/{}/pose", robot); }
+
+/// Returns the topic of the scans of a robot's sensor: /ROBOT/scan of sensor 0, /ROBOT/scan_1 of sensor 1.
+/// @param message  kScan or kPoints
+[[nodiscard]] inline std::string scan_topic(std::string_view robot, std::uint32_t sensor, Message message) {
+    const std::string_view name = message == Message::kScan ? "scan" : "points";
+    return sensor == 0 ? fmt::format("/{}/{}", robot, name) : fmt::format("/{}/{}_{}", robot, name, sensor);
+}
+
+} // namespace scanloom::foxglove
