@@ -66,6 +66,15 @@ std::string check_host_name(const std::string& name) {
     return valid ? "" : fmt::format("'{}' is not a host name; write it without scheme and port", name);
 }
 
+std::string check_origin(const std::string& text) {
+    const auto scheme_end = text.find("://");
+    const bool is_origin = scheme_end != std::string::npos && scheme_end > 0 &&
+                           text.find_first_of("/?# ", scheme_end + 3) == std::string::npos;
+    if (is_origin || text == "none") return "";
+    return fmt::format("'{}' is not an origin; write scheme, name and port of the page as in https://maps.example:8443",
+                       text);
+}
+
 std::string check_address(const std::string& text) {
     boost::system::error_code failed;
     boost::asio::ip::make_address(text, failed);
@@ -149,6 +158,14 @@ void add_http_options(CLI::App& app, ServerOptions& options) {
         ->check(&check_host_name)
         ->delimiter(',')
         ->allow_extra_args(false);
+    app.add_option(
+           "--viewer-origin", options.viewer_origins,
+           "Origin of pages of others that may watch sessions over WebSocket, as Foxglove does; separate several "
+           "by commas, or repeat the option. 'none': no page")
+        ->check(&check_origin)
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->capture_default_str();
     app.add_option_function<std::vector<std::string>>(
            "--http-proxy",
            [&](const auto& texts) {

@@ -150,6 +150,7 @@ Result<> Server::listen(http::WebFiles web) {
     http::ServerConfig config;
     config.endpoint = options_.http;
     config.host_names = options_.http_hosts;
+    config.viewer_origins = options_.viewer_origins;
     config.proxies = options_.http_proxies;
     config.tls = http_tls_;
     config.connections_max = limits_.http;

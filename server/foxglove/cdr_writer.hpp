@@ -1,10 +1,9 @@
 #pragma once
 
-#include <bit>
-#include <concepts>
+#include "server/foxglove/little_endian.hpp"
+
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <span>
 #include <string>
 #include <string_view>
@@ -12,8 +11,6 @@
 #include <utility>
 
 namespace scanloom::foxglove {
-
-static_assert(std::endian::native == std::endian::little, "values are written as they lie in memory");
 
 /// Writes the fields of a message in the Common Data Representation, little-endian, as ROS 2 sends and records
 /// messages.
@@ -25,9 +22,7 @@ public:
     requires std::is_arithmetic_v<Number>
     void add(Number number) {
         while ((bytes_.size() - kHeadBytes) % sizeof number != 0) bytes_ += '\0';
-        char raw[sizeof number];
-        std::memcpy(raw, &number, sizeof number);
-        bytes_.append(raw, sizeof number);
+        append_raw(bytes_, number);
     }
 
     /// Adds a string with its final NUL.

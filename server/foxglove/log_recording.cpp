@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <span>
 #include <variant>
 
 namespace scanloom::foxglove {
@@ -37,8 +38,8 @@ Result<> LogRecording::add_scan(const ScanTaken& taken) {
     newest_ = std::max(newest_, scan.stamp);
     if (is_placed) {
         const RobotAt at{robot.name, scan.stamp, *scan.pose};
-        const Sensor* const sensors[] = {&sensor};
-        write(kTransformsTopic, Message::kTransforms, scan.stamp, transforms_message(at, sensors));
+        const PlacedRobot placed{at, {&sensor}};
+        write(kTransformsTopic, Message::kTransforms, scan.stamp, transforms_message(std::span(&placed, 1)));
         write(pose_topic(robot.name), Message::kPose, scan.stamp, pose_message(at));
     }
     const Message kind = message_of(scan, sensor);

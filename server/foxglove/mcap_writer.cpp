@@ -1,16 +1,14 @@
 #include "server/foxglove/mcap_writer.hpp"
 
+#include "server/foxglove/little_endian.hpp"
+
 #include <zlib.h>
 #include <zstd.h>
 
 #include <algorithm>
-#include <bit>
-#include <cstring>
 
 namespace scanloom::foxglove {
 namespace {
-
-static_assert(std::endian::native == std::endian::little, "values are written as they lie in memory");
 
 constexpr std::string_view kMagic("\x89MCAP0\r\n", 8);
 constexpr std::string_view kCompression = "zstd";
@@ -31,15 +29,8 @@ enum class Op : std::uint8_t {
     kDataEnd = 0x0F,
 };
 
-template <class Value>
-void append(std::string& bytes, Value value) {
-    char raw[sizeof value];
-    std::memcpy(raw, &value, sizeof value);
-    bytes.append(raw, sizeof value);
-}
-
 void append_text(std::string& bytes, std::string_view text) {
-    append(bytes, static_cast<std::uint32_t>(text.size()));
+    append_raw(bytes, static_cast<std::uint32_t>(text.size()));
     bytes.append(text);
 }
 
@@ -47,14 +38,14 @@ void append_text(std::string& bytes, std::string_view text) {
 template <class Pairs>
 void append_pairs(std::string& bytes, const Pairs& pairs) {
     std::string content;
-    for (const auto& [first, second] : pairs) append(content, first), append(content, second);
+    for (const auto& [first, second] : pairs) append_raw(content, first), append_raw(content, second);
     append_text(bytes, content);
 }
 
 std::string record(Op op, std::string_view content) {
     std::string bytes;
-    append(bytes, op);
-    append(bytes, static_cast<std::uint64_t>(content.size()));
+    append_raw(bytes, op);
+    append_raw(bytes, static_cast<std::uint64_t>(content.size()));
     return bytes.append(content);
 }
 
@@ -100,10 +91,10 @@ void McapWriter::write(ChannelId channel, std::uint64_t log_time, std::string_vi
     Channel& to = channels_[channel - 1U];
     chunk_messages_[channel].emplace_back(log_time, chunk_.size());
     std::string content;
-    append(content, channel);
-    append(content, ++to.messages);
-    append(content, log_time);
-    append(content, log_time); // publish_time
+    append_raw(content, channel);
+    append_raw(content, ++to.messages);
+    append_raw(content, log_time);
+    append_raw(content, log_time); // publish_time
     chunk_ += record(Op::kMessage, content.append(message));
     chunk_times_.add(log_time);
     times_.add(log_time);
@@ -115,12 +106,12 @@ void McapWriter::end_chunk() {
     if (chunk_.empty()) return;
     const std::string packed = compressed(chunk_);
     std::string content;
-    append(content, chunk_times_.first);
-    append(content, chunk_times_.last);
-    append(content, static_cast<std::uint64_t>(chunk_.size()));
-    append(content, checksum(chunk_));
+    append_raw(content, chunk_times_.first);
+    append_raw(content, chunk_times_.last);
+    append_raw(content, static_cast<std::uint64_t>(chunk_.size()));
+    append_raw(content, checksum(chunk_));
     append_text(content, kCompression);
-    append(content, static_cast<std::uint64_t>(packed.size()));
+    append_raw(content, static_cast<std::uint64_t>(packed.size()));
     content += packed;
     WrittenChunk written{chunk_times_, position(), 0, {}, 0, packed.size(), chunk_.size()};
     out_ += record(Op::kChunk, content);
@@ -129,7 +120,7 @@ void McapWriter::end_chunk() {
     for (const auto& [channel, messages] : chunk_messages_) {
         written.indexes[channel] = position();
         std::string index;
-        append(index, channel);
+        append_raw(index, channel);
         append_pairs(index, messages);
         out_ += record(Op::kMessageIndex, index);
     }
@@ -149,9 +140,9 @@ void McapWriter::finish() {
     const auto add_group = [&](Op op, const std::string& records) {
         if (records.empty()) return;
         std::string offset;
-        append(offset, op);
-        append(offset, summary_begin + summary.size());
-        append(offset, static_cast<std::uint64_t>(records.size()));
+        append_raw(offset, op);
+        append_raw(offset, summary_begin + summary.size());
+        append_raw(offset, static_cast<std::uint64_t>(records.size()));
         offsets += record(Op::kSummaryOffset, offset);
         summary += records;
     };
@@ -162,15 +153,15 @@ void McapWriter::finish() {
     std::string chunk_indexes;
     for (const WrittenChunk& chunk : chunks_) {
         std::string index;
-        append(index, chunk.times.first);
-        append(index, chunk.times.last);
-        append(index, chunk.begin);
-        append(index, chunk.length);
+        append_raw(index, chunk.times.first);
+        append_raw(index, chunk.times.last);
+        append_raw(index, chunk.begin);
+        append_raw(index, chunk.length);
         append_pairs(index, chunk.indexes);
-        append(index, chunk.index_length);
+        append_raw(index, chunk.index_length);
         append_text(index, kCompression);
-        append(index, chunk.compressed);
-        append(index, chunk.uncompressed);
+        append_raw(index, chunk.compressed);
+        append_raw(index, chunk.uncompressed);
         chunk_indexes += record(Op::kChunkIndex, index);
     }
     add_group(Op::kSchema, schemas);
@@ -179,14 +170,14 @@ void McapWriter::finish() {
     add_group(Op::kChunkIndex, chunk_indexes);
 
     std::string footer; // the checksum covers it up to itself
-    append(footer, summary_begin);
-    append(footer, summary_begin + summary.size());
+    append_raw(footer, summary_begin);
+    append_raw(footer, summary_begin + summary.size());
     const std::size_t with_checksum = footer.size() + sizeof(std::uint32_t);
     std::string end = summary + offsets;
-    append(end, Op::kFooter);
-    append(end, static_cast<std::uint64_t>(with_checksum));
+    append_raw(end, Op::kFooter);
+    append_raw(end, static_cast<std::uint64_t>(with_checksum));
     end += footer;
-    append(end, checksum(end));
+    append_raw(end, checksum(end));
     out_ += end;
     out_ += kMagic;
 }
@@ -198,7 +189,7 @@ std::string McapWriter::take() {
 
 std::string McapWriter::schema_record(std::size_t schema) const {
     std::string content;
-    append(content, static_cast<std::uint16_t>(schema + 1));
+    append_raw(content, static_cast<std::uint16_t>(schema + 1));
     append_text(content, schemas_[schema]->name);
     append_text(content, schemas_[schema]->encoding);
     append_text(content, schemas_[schema]->data);
@@ -208,8 +199,8 @@ std::string McapWriter::schema_record(std::size_t schema) const {
 std::string McapWriter::channel_record(ChannelId channel) const {
     const Channel& written = channels_[channel - 1U];
     std::string content;
-    append(content, channel);
-    append(content, written.schema_id);
+    append_raw(content, channel);
+    append_raw(content, written.schema_id);
     append_text(content, written.topic);
     append_text(content, written.schema->message_encoding);
     append_text(content, ""); // no metadata
@@ -218,14 +209,14 @@ std::string McapWriter::channel_record(ChannelId channel) const {
 
 std::string McapWriter::statistics_record() const {
     std::string content;
-    append(content, message_count_);
-    append(content, static_cast<std::uint16_t>(schemas_.size()));
-    append(content, static_cast<std::uint32_t>(channels_.size()));
-    append(content, std::uint32_t{0}); // attachments
-    append(content, std::uint32_t{0}); // metadata
-    append(content, static_cast<std::uint32_t>(chunks_.size()));
-    append(content, times_.first);
-    append(content, times_.last);
+    append_raw(content, message_count_);
+    append_raw(content, static_cast<std::uint16_t>(schemas_.size()));
+    append_raw(content, static_cast<std::uint32_t>(channels_.size()));
+    append_raw(content, std::uint32_t{0}); // attachments
+    append_raw(content, std::uint32_t{0}); // metadata
+    append_raw(content, static_cast<std::uint32_t>(chunks_.size()));
+    append_raw(content, times_.first);
+    append_raw(content, times_.last);
     std::vector<std::pair<ChannelId, std::uint64_t>> counts;
     for (std::size_t n = 0; n < channels_.size(); ++n) {
         counts.emplace_back(static_cast<ChannelId>(n + 1), channels_[n].messages);

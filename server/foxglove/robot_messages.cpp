@@ -95,13 +95,17 @@ std::string sensor_frame(std::string_view robot, const Sensor& sensor) {
     return fmt::format("{}/sensor_{}", robot, sensor.id);
 }
 
-std::string transforms_message(const RobotAt& at, std::span<const Sensor* const> sensors) {
+std::string transforms_message(std::span<const PlacedRobot> robots) {
     CdrWriter message;
-    const std::string robot = robot_frame(at.robot);
-    message.add_count(1 + sensors.size());
-    add_transform(at.stamp, kMapFrame, robot, at.T_map_robot, message);
-    for (const Sensor* sensor : sensors) {
-        add_transform(at.stamp, robot, sensor_frame(at.robot, *sensor), sensor->mount, message);
+    std::size_t count = robots.size();
+    for (const auto& [at, sensors] : robots) count += sensors.size();
+    message.add_count(count);
+    for (const auto& [at, sensors] : robots) {
+        const std::string robot = robot_frame(at.robot);
+        add_transform(at.stamp, kMapFrame, robot, at.T_map_robot, message);
+        for (const Sensor* sensor : sensors) {
+            add_transform(at.stamp, robot, sensor_frame(at.robot, *sensor), sensor->mount, message);
+        }
     }
     return message.take();
 }
@@ -110,6 +114,17 @@ std::string pose_message(const RobotAt& at) {
     CdrWriter message;
     add_header(at.stamp, kMapFrame, message);
     add_pose(at.T_map_robot, message);
+    return message.take();
+}
+
+std::string path_message(std::span<const Pose2> poses, double stamp) {
+    CdrWriter message;
+    add_header(stamp, kMapFrame, message);
+    message.add_count(poses.size());
+    for (const Pose2& pose : poses) {
+        add_header(stamp, kMapFrame, message);
+        add_pose(pose, message);
+    }
     return message.take();
 }
 

@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 /// A robot's scans and poses as messages of ROS 2, serialised. Frames: "map"; "ROBOT/base_link" is the robot frame;
 /// "ROBOT/sensor_ID" is the frame of one of its sensors. Metres and radians.
@@ -31,11 +32,22 @@ struct RobotAt {
     Pose2 T_map_robot;
 };
 
-/// Returns the transforms from the map to the robot, and from the robot to each of its sensors: Message::kTransforms.
-[[nodiscard]] std::string transforms_message(const RobotAt& at, std::span<const Sensor* const> sensors);
+/// A robot, where it was, and its sensors.
+struct PlacedRobot {
+    RobotAt at;
+    std::vector<const Sensor*> sensors; ///< not null
+};
+
+/// Returns the transforms from the map to each robot, and from the robot to each of its sensors: Message::kTransforms.
+[[nodiscard]] std::string transforms_message(std::span<const PlacedRobot> robots);
 
 /// Returns the robot's pose in the map: Message::kPose.
 [[nodiscard]] std::string pose_message(const RobotAt& at);
+
+/// Returns a way in the map: Message::kPath.
+/// @param poses  T_map_robot along the way
+/// @param stamp  seconds
+[[nodiscard]] std::string path_message(std::span<const Pose2> poses, double stamp);
 
 /// Returns what a scan is shown as: kScan if its beams are evenly spaced, otherwise kPoints.
 /// @param sensor  that took the scan

@@ -5,11 +5,6 @@
 #include <limits>
 
 namespace scanloom::foxglove {
-namespace {
-
-constexpr std::uint64_t kNanoseconds = 1'000'000'000; // of a second
-
-} // namespace
 
 std::uint64_t log_time_of(double stamp) noexcept {
     constexpr double kLatest = std::numeric_limits<std::int32_t>::max(); // seconds: ROS 2 has 32 bits

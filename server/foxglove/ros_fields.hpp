@@ -9,6 +9,8 @@
 /// Fields that many messages of ROS 2 have.
 namespace scanloom::foxglove {
 
+inline constexpr std::uint64_t kNanoseconds = 1'000'000'000; ///< of a second
+
 /// Returns a stamp in nanoseconds since the epoch or the robot's own start, as the log time of a message.
 /// @param stamp  seconds; a negative one counts as 0
 [[nodiscard]] std::uint64_t log_time_of(double stamp) noexcept;

@@ -1,6 +1,10 @@
 #include "server/foxglove/schemas.hpp"
 
+#include "foxglove/scene.pb.h"
+
 #include <fmt/format.h>
+#include <google/protobuf/descriptor.h>
+#include <google/protobuf/descriptor.pb.h>
 
 #include <algorithm>
 #include <array>
@@ -20,6 +24,10 @@ struct Definition {
 /// Source: the interfaces of ROS 2 Humble; docs.ros.org.
 constexpr auto kDefinitions = std::to_array<Definition>({
     {"builtin_interfaces/Time", "int32 sec\nuint32 nanosec\n"},
+    {"diagnostic_msgs/DiagnosticArray", "std_msgs/Header header\ndiagnostic_msgs/DiagnosticStatus[] status\n"},
+    {"diagnostic_msgs/DiagnosticStatus",
+     "byte level\nstring name\nstring message\nstring hardware_id\ndiagnostic_msgs/KeyValue[] values\n"},
+    {"diagnostic_msgs/KeyValue", "string key\nstring value\n"},
     {"geometry_msgs/Point", "float64 x\nfloat64 y\nfloat64 z\n"},
     {"geometry_msgs/Pose", "geometry_msgs/Point position\ngeometry_msgs/Quaternion orientation\n"},
     {"geometry_msgs/PoseStamped", "std_msgs/Header header\ngeometry_msgs/Pose pose\n"},
@@ -31,6 +39,7 @@ constexpr auto kDefinitions = std::to_array<Definition>({
     {"nav_msgs/MapMetaData", "builtin_interfaces/Time map_load_time\nfloat32 resolution\nuint32 width\nuint32 height\n"
                              "geometry_msgs/Pose origin\n"},
     {"nav_msgs/OccupancyGrid", "std_msgs/Header header\nnav_msgs/MapMetaData info\nint8[] data\n"},
+    {"nav_msgs/Path", "std_msgs/Header header\ngeometry_msgs/PoseStamped[] poses\n"},
     {"sensor_msgs/LaserScan", "std_msgs/Header header\nfloat32 angle_min\nfloat32 angle_max\nfloat32 angle_increment\n"
                               "float32 time_increment\nfloat32 scan_time\nfloat32 range_min\nfloat32 range_max\n"
                               "float32[] ranges\nfloat32[] intensities\n"},
@@ -67,6 +76,15 @@ Schema schema_of(std::string_view type) {
     return {fmt::format("{}/msg{}", type.substr(0, slash), type.substr(slash)), "ros2msg", "cdr", std::move(text)};
 }
 
+Schema scene_schema() {
+    const auto& type = *::foxglove::SceneUpdate::descriptor();
+    const auto& file = *type.file();
+    google::protobuf::FileDescriptorSet files;
+    for (int n = 0; n < file.dependency_count(); ++n) file.dependency(n)->CopyTo(files.add_file());
+    file.CopyTo(files.add_file());
+    return {type.full_name(), "protobuf", "protobuf", files.SerializeAsString()};
+}
+
 } // namespace
 
 const Schema& schema_of(Message message) {
@@ -75,12 +93,18 @@ const Schema& schema_of(Message message) {
     static const Schema scan = schema_of("sensor_msgs/LaserScan");
     static const Schema points = schema_of("sensor_msgs/PointCloud2");
     static const Schema grid = schema_of("nav_msgs/OccupancyGrid");
+    static const Schema path = schema_of("nav_msgs/Path");
+    static const Schema status = schema_of("diagnostic_msgs/DiagnosticArray");
+    static const Schema scene = scene_schema();
     switch (message) {
     case Message::kTransforms: return transforms;
     case Message::kPose: return pose;
     case Message::kScan: return scan;
     case Message::kPoints: return points;
     case Message::kGrid: return grid;
+    case Message::kPath: return path;
+    case Message::kStatus: return status;
+    case Message::kScene: return scene;
     }
     std::abort(); // each message has a case
 }

@@ -58,6 +58,16 @@ Result<> check_parameters(const Route& route, const Query& query) {
                              known.error().message)};
 }
 
+/// Returns the request with the token of its query, for programs that cannot send an Authorization field; nullopt: it
+/// has none.
+std::optional<Request> request_with_token(const Request& head, const Route& route, const Query& query) {
+    const auto token = reads(route, "token") ? query.find("token") : std::nullopt;
+    if (!token || !head.authorization.empty()) return std::nullopt;
+    Request with_token = head;
+    with_token.authorization = fmt::format("Bearer {}", *token);
+    return with_token;
+}
+
 /// Returns the session, which is loaded from the store if it is not in memory.
 asio::awaitable<Result<SessionRef>> load_session(sessions::SessionRegistry& sessions, const std::string& name) {
     if (auto session = sessions.find(name)) co_return session;
@@ -101,7 +111,8 @@ std::variant<Api::Admitted, Response> Api::admit(const Request& head, Routed rou
     const auto& [route, arguments] = routed.match;
     const auto path = instance_of(head.target);
     const auto session = is_about_one_session(route.access) ? std::string_view(arguments["session"]) : "";
-    auto token = services_.authorizer.admit(head, route.access, session);
+    const auto with_token = request_with_token(head, route, routed.query);
+    auto token = services_.authorizer.admit(with_token ? *with_token : head, route.access, session);
     if (auto* refusal = std::get_if<Response>(&token)) return std::move(*refusal);
     if (auto accepted = check_content_type(route.method, head); !accepted) {
         return problem(Status::unsupported_media_type, accepted.error().message, path);

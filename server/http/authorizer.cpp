@@ -24,7 +24,8 @@ using auth::TokenRef;
 /// pages cannot see the response to a request that only reads. All other requests must come from a page of this server.
 bool is_of_foreign_page(const Request& request) {
     const bool only_reads = !request.upgrade && (request.method == "GET" || request.method == "HEAD");
-    return !only_reads && !is_own_page(request.origin, request.host, request.is_secure);
+    const bool may_watch = request.upgrade && request.is_of_viewer_page;
+    return !only_reads && !may_watch && !is_own_page(request.origin, request.host, request.is_secure);
 }
 
 Denied foreign_page(const Request& request, std::string token) {

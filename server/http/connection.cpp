@@ -151,6 +151,7 @@ asio::awaitable<bool> Connection::serve_request() {
     Request request = head_of(parser.get());
     request.peer = peer_;
     request.is_secure = stream_.is_encrypted();
+    request.is_of_viewer_page = std::ranges::count(service_->config.viewer_origins, request.origin) > 0;
     auto routed = service_->api.route(request);
     const auto bytes_max = body_bytes_max(std::get_if<Api::Routed>(&routed), service_->config);
     if (const auto refusal = refusal_of(parser, request, bytes_max, *service_)) {

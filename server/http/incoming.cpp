@@ -18,12 +18,23 @@ namespace {
 
 namespace beast = boost::beast;
 
+/// Joins the values of all fields called `name` with commas.
+std::string joined(const Incoming& message, beast::http::field name) {
+    std::string values;
+    const auto [begin, end] = message.equal_range(name);
+    for (auto field = begin; field != end; ++field) {
+        if (!values.empty()) values += ", ";
+        values += view(field->value());
+    }
+    return values;
+}
+
 std::optional<WebSocketUpgrade> upgrade_of(const Incoming& message) {
     using beast::http::field;
     if (!beast::websocket::is_upgrade(message)) return std::nullopt;
     return WebSocketUpgrade{std::string(view(message[field::sec_websocket_version])),
                             std::string(view(message[field::sec_websocket_key])),
-                            std::string(view(message[field::origin]))};
+                            std::string(view(message[field::origin])), joined(message, field::sec_websocket_protocol)};
 }
 
 /// Splits a target in absolute form, "http://host/path?query": its authority replaces the Host field. Leaves all other
@@ -37,17 +48,6 @@ void split_absolute_form(Request& request) {
     request.host = url->encoded_host_and_port();
     const std::string resource(url->encoded_resource());
     request.target = resource.starts_with('/') ? resource : '/' + resource;
-}
-
-/// Joins the values of all fields called `name` with commas.
-std::string joined(const Incoming& message, beast::http::field name) {
-    std::string values;
-    const auto [begin, end] = message.equal_range(name);
-    for (auto field = begin; field != end; ++field) {
-        if (!values.empty()) values += ", ";
-        values += view(field->value());
-    }
-    return values;
 }
 
 /// Returns whether the unread bytes begin like a robot's frame: with a length below 2^24, most significant byte first.

@@ -10,6 +10,7 @@ struct WebSocketUpgrade {
     std::string version;
     std::string key;
     std::string origin;
+    std::string protocols; ///< all Sec-WebSocket-Protocol fields, joined with commas
 };
 
 /// A request as received. Only its HTTP syntax has been checked. Any part of it may contain secrets.
@@ -27,6 +28,7 @@ struct Request {
     std::optional<WebSocketUpgrade> upgrade; ///< set if the request asks for a WebSocket
     std::string peer;                        ///< the client's address, without a port
     bool is_secure = false;                  ///< received over TLS
+    bool is_of_viewer_page = false;          ///< its origin is one of ServerConfig::viewer_origins
 };
 
 } // namespace scanloom::http

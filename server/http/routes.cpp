@@ -43,6 +43,7 @@ std::span<const Route> routes() noexcept {
     static constexpr std::string_view kPoints[] = {"since", "until", "robot", "threshold"};
     static constexpr std::string_view kRobot[] = {"robot"};
     static constexpr std::string_view kTile[] = {"v", "id", "weave"};
+    static constexpr std::string_view kToken[] = {"token"};
     static constexpr std::string_view kTrajectory[] = {"since", "times"};
     static constexpr std::string_view kTum[] = {"robot", "as"};
     static constexpr auto kMapFile = with_settings({"layer", "bbox", "weave", "until", "poses"});
@@ -105,6 +106,7 @@ std::span<const Route> routes() noexcept {
         {kDelete, SESSION "/weave/{weave}", "deleteWeave", kChange, kQueries, kLoaded, {}, delete_weave},
         {kGet, SESSION "/log", "getLog", kRead, kLogExport, kLoaded, kLog, get_log},
         {kGet, SESSION "/live", "live", kRead, kQueries, kLoaded, {}, get_live},
+        {kGet, SESSION "/foxglove", "foxglove", kRead, kQueries, kLoaded, kToken, get_foxglove},
     });
     return kRoutes;
 }

@@ -52,6 +52,9 @@ struct ServerConfig {
     /// Host names of the server in addition to localhost and IP addresses. On a loopback address all other names are
     /// refused; on another address they are refused if this list is not empty.
     std::vector<std::string> host_names;
+
+    /// Origins of pages of others that may watch sessions over WebSocket, "https://app.foxglove.dev".
+    std::vector<std::string> viewer_origins;
 };
 
 class Api;

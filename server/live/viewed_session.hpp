@@ -11,6 +11,12 @@
 
 namespace scanloom::live {
 
+/// What is sent over a viewer's WebSocket.
+enum class Protocol {
+    kEvents,   ///< live.proto
+    kFoxglove, ///< the protocol of Foxglove
+};
+
 /// What a viewer needs to show a session over its connection. Does not keep the session in memory. `paths` and the
 /// LandmarkHub must outlive all viewers.
 struct ViewedSession {
@@ -22,6 +28,8 @@ struct ViewedSession {
     std::shared_ptr<WatchedLandmarks> landmarks;
     std::function<bool()> is_stored = [] { return false; }; ///< returns whether the session exists, in memory or not
     std::shared_ptr<auth::Credential> credential = nullptr; ///< permission to watch; null: it cannot be revoked
+    Protocol protocol = Protocol::kEvents;
+    std::string subprotocol = {};             ///< as the viewer and the server agree in the handshake; empty: none
     std::function<void()> on_revoked = [] {}; ///< called when `credential` was revoked, before the viewer ends
 };
 

@@ -1,7 +1,6 @@
 #include "server/live/viewer.hpp"
 
 #include "common/net/await_tuple.hpp"
-#include "common/wire/live.hpp"
 #include "server/sockets/worker_pool.hpp"
 
 #include <boost/asio/co_spawn.hpp>
@@ -11,7 +10,6 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include <algorithm>
 #include <string_view>
 #include <utility>
 
@@ -25,24 +23,6 @@ namespace websocket = boost::beast::websocket;
 /// Private close codes (RFC 6455, section 7.4.2), named after the HTTP status codes 401 and 404.
 constexpr websocket::close_code kTokenGone{4401};
 constexpr websocket::close_code kSessionDeleted{4404};
-
-websocket::close_reason close_with(websocket::close_code code, std::string_view reason) {
-    constexpr std::size_t kReasonBytesMax = 123; // limit of a control frame
-    const auto cut = reason.substr(0, kReasonBytesMax);
-    return {code, beast::string_view(cut.data(), cut.size())};
-}
-
-/// Returns the current state of a session, which must not be deleted.
-SessionSnapshot snapshot_of(const sessions::Session& session, std::uint64_t goals_revision) {
-    SessionSnapshot snapshot{session.snapshot(), session.connected(), wire::LiveState::kOk, {}, goals_revision};
-    const auto closing = session.closing();
-    const auto failure = session.failure();
-    if (closing || failure) {
-        snapshot.state = closing ? wire::LiveState::kDraining : wire::LiveState::kFailed;
-        snapshot.reason = closing ? closing->message : failure->message;
-    }
-    return snapshot;
-}
 
 /// Increments a gauge while it exists.
 class Counted {
@@ -60,17 +40,19 @@ private:
 
 Viewer::Viewer(net::LinkStream stream, ViewedSession viewed, limits::Semaphore::Permit permit, Services services)
     : stream_(std::move(stream)), viewed_(std::move(viewed)), permit_(std::move(permit)),
-      services_(std::move(services)), encoder_(viewed_.tag), turn_(stream_.get_executor()),
-      deadline_(stream_.get_executor()) {
+      services_(std::move(services)), dialogue_(make_dialogue(viewed_, {services_.config, services_.finding})),
+      turn_(stream_.get_executor()), deadline_(stream_.get_executor()) {
     const auto& config = services_.config;
     boost::system::error_code ignored;
     stream_.next_layer().socket().set_option(asio::socket_base::send_buffer_size(config.send_buffer_bytes), ignored);
     stream_.set_option(websocket::stream_base::timeout{config.handshake, config.idle, true});
-    stream_.set_option(websocket::stream_base::decorator( // instead of Beast's version
-        [](websocket::response_type& response) { response.set(beast::http::field::server, "Scanloom"); }));
+    const auto decorate = [protocol = viewed_.subprotocol](websocket::response_type& response) {
+        response.set(beast::http::field::server, "Scanloom"); // instead of Beast's version
+        if (!protocol.empty()) response.set(beast::http::field::sec_websocket_protocol, protocol);
+    };
+    stream_.set_option(websocket::stream_base::decorator(decorate));
     stream_.read_message_max(config.request_bytes_max);
     stream_.auto_fragment(false);
-    stream_.binary(true);
 }
 
 // On any thread
@@ -118,7 +100,7 @@ asio::awaitable<void> Viewer::run(const Upgrade& upgrade) {
         self->wake();
     });
     try {
-        co_await send_events();
+        co_await send_turns();
     } catch (const std::exception& failure) {
         spdlog::error("a viewer's connection failed and was closed: {}", failure.what());
         end(close_with(websocket::close_code::internal_error, "internal error; see the server's log"));
@@ -135,49 +117,45 @@ asio::awaitable<bool> Viewer::accept(const Upgrade& upgrade) {
     co_return !error;
 }
 
-/// Ends when the client disconnects, sends an invalid message, or the connection is closed.
+/// Ends when the client disconnects or the connection is closed.
 asio::awaitable<void> Viewer::read_requests() {
     const auto self = shared_from_this();
     for (;;) {
         buffer_.clear();
         const auto [error, size] = co_await stream_.async_read(buffer_, kAwaitTuple);
         if (error) co_return;
-        if (auto fault = fault_of_message()) {
-            end(*fault);
-            co_return;
-        }
-        changed_ = true;
-        wake();
+        keep_message();
     }
 }
 
-/// Handles the message in buffer_. @return the reason to close the connection, if the message is invalid
-std::optional<Viewer::Close> Viewer::fault_of_message() {
-    if (!stream_.got_binary()) {
-        return close_with(websocket::close_code::unknown_data,
-                          "a text message was received; send a binary LiveRequest (live.proto)");
+/// Keeps the message in buffer_ for the next turn.
+void Viewer::keep_message() {
+    if (received_.size() >= services_.config.waiting_max) {
+        return end(close_with(websocket::close_code::policy_error, "too many messages at once; send fewer"));
     }
     const auto bytes = buffer_.data();
-    const auto request = wire::decode_live_request({static_cast<const char*>(bytes.data()), bytes.size()});
-    if (!request) return close_with(websocket::close_code::bad_payload, request.error().message);
-    subscription_ = subscription_of(*request);
-    return std::nullopt;
+    received_.push_back({std::string(static_cast<const char*>(bytes.data()), bytes.size()), stream_.got_text()});
+    changed_ = true;
+    wake();
 }
 
-asio::awaitable<void> Viewer::send_events() {
+asio::awaitable<void> Viewer::send_turns() {
     for (;;) {
         co_await wait_for_turn();
         if (ending_ || !reading_) co_return;
         changed_ = false;
-        if (subscription_) encoder_.set_subscription(*std::exchange(subscription_, std::nullopt));
-        auto work = [self = shared_from_this()] { return self->next_step(); };
+        auto work = [self = shared_from_this(), received = std::exchange(received_, {})] {
+            return self->next_step(received);
+        };
         const NextStep step = co_await sockets::compute_on(services_.showing, std::move(work));
-        look_again_ = step.look_again;
+        look_again_ = step.turn.look_again;
         if (step.end) end(*step.end);
-        if (!step.event) continue;
+        if (step.turn.messages.empty()) continue;
         due_ = Clock::now() + services_.config.interval;
-        const bool sent = co_await send(*step.event);
-        if (!sent) co_return;
+        for (const ViewerMessage& message : step.turn.messages) {
+            const bool sent = co_await send(message);
+            if (!sent) co_return;
+        }
     }
 }
 
@@ -191,47 +169,34 @@ asio::awaitable<void> Viewer::wait_for_turn() {
     }
 }
 
-/// Creates the next event. Runs on `showing`.
-Viewer::NextStep Viewer::next_step() {
+/// Handles what the viewer sent, and creates the next messages. Runs on `showing`.
+Viewer::NextStep Viewer::next_step(const std::vector<ViewerMessage>& received) {
     notified_ = false; // before reading the state, so that later changes notify again
     if (viewed_.credential && !viewed_.credential->token()) {
         viewed_.on_revoked();
-        return {{}, close_with(kTokenGone, "your token is no longer valid for this session; sign in with another"), {}};
+        return {{}, close_with(kTokenGone, "your token is no longer valid for this session; sign in with another")};
     }
     const auto session = viewed_.session.lock();
     const auto closing = session ? session->closing() : std::nullopt;
     const bool is_deleted = closing ? closing->code == Errc::kGone : !session && !viewed_.is_stored();
-    if (is_deleted) {
-        return {{}, close_with(kSessionDeleted, fmt::format("session '{}' was deleted", viewed_.name)), {}};
-    }
-    if (!session)
+    if (is_deleted) return {{}, close_with(kSessionDeleted, fmt::format("session '{}' was deleted", viewed_.name))};
+    if (!session) {
         return {{},
-                close_with(websocket::close_code::going_away, "the session was evicted from memory; connect again"),
-                {}};
-    const auto paths = viewed_.paths.state(session, Clock::now());
-    SessionSnapshot snapshot = snapshot_of(*session, paths.revision);
-    const auto until = std::min(paths.until, add_landmarks(session, snapshot));
-    const auto event = encoder_.next(snapshot);
+                close_with(websocket::close_code::going_away, "the session was evicted from memory; connect again")};
+    }
+    for (const ViewerMessage& message : received) {
+        if (auto fault = dialogue_->receive(message)) return {{}, std::move(fault)};
+    }
     std::optional<Close> end;
     if (closing) end = close_with(websocket::close_code::going_away, closing->message);
-    if (!event) return {{}, end, until};
-    return {wire::encode(*event), end, encoder_.has_more() ? Clock::now() : until};
-}
-
-/// @return when to look for landmarks again
-Viewer::Clock::time_point Viewer::add_landmarks(const std::shared_ptr<const sessions::Session>& session,
-                                                SessionSnapshot& snapshot) {
-    if (!encoder_.subscribes_to_landmarks()) return Clock::time_point::max();
-    const LandmarkSearch search{services_.finding, services_.config.landmarks_pause, services_.config.landmarks_turn};
-    auto look = viewed_.landmarks->look(session, snapshot.maps->revision, search);
-    snapshot.landmarks = std::move(look.found);
-    return look.until;
+    return {dialogue_->next(session, Clock::now()), end};
 }
 
 /// @return false if the connection is no longer usable
-asio::awaitable<bool> Viewer::send(const std::string& event) {
+asio::awaitable<bool> Viewer::send(const ViewerMessage& message) {
     if (!ending_) cut_off_after(services_.config.write);
-    const auto [error, size] = co_await stream_.async_write(asio::buffer(event), kAwaitTuple);
+    stream_.text(message.is_text);
+    const auto [error, size] = co_await stream_.async_write(asio::buffer(message.bytes), kAwaitTuple);
     if (!ending_) deadline_.cancel();
     if (error) co_return false;
     services_.counters.events.Increment();

@@ -3,7 +3,7 @@
 #include "common/error/error.hpp"
 #include "common/limits/semaphore.hpp"
 #include "common/net/link_stream.hpp"
-#include "server/live/core/event_encoder.hpp"
+#include "server/live/dialogue.hpp"
 #include "server/live/live_config.hpp"
 #include "server/live/viewed_session.hpp"
 #include "server/metrics/metrics.hpp"
@@ -22,19 +22,20 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace scanloom::live {
 
 /// One live viewer: a WebSocket that shows a session, from the handshake to the close.
 ///
-/// The session only notifies the viewer of changes. The next event is created from the state of the session when the
-/// previous event is written and the interval is over. So a slow viewer gets the newest state instead of a backlog, and
-/// needs the memory of one event.
+/// The session only notifies the viewer of changes. The Dialogue's next messages are created from the state of the
+/// session when the previous ones are written and the interval is over. So a slow viewer gets the newest state instead
+/// of a backlog, and needs the memory of one turn.
 ///
 /// The connection is closed with a reason and one of these codes: 1001 the server shuts down or the session is
-/// evicted, 1003 text message, 1007 invalid LiveRequest, 1009 message longer than request_bytes_max, 1011 internal
-/// error, 4401 the token is no longer valid, 4404 the session was deleted. It is closed without a code if the client
-/// disconnects or violates the WebSocket protocol, or if a timeout expires.
+/// evicted, 1008 more than waiting_max messages of the viewer wait, 1009 message longer than request_bytes_max, 1011
+/// internal error, 4401 the token is no longer valid, 4404 the session was deleted, and those of the dialogue. It is
+/// closed without a code if the client disconnects or violates the WebSocket protocol, or if a timeout expires.
 /// Threads: the socket's executor, a strand. next_step() runs on `showing` while the coroutine on the strand waits for
 /// it. on_changed(), stop() and abort() may be called from any thread.
 class Viewer final : public sessions::Watcher, public std::enable_shared_from_this<Viewer> {
@@ -44,7 +45,7 @@ public:
     /// Shared by all viewers.
     struct Services {
         LiveConfig config;
-        boost::asio::any_io_executor showing; ///< creates events
+        boost::asio::any_io_executor showing; ///< creates messages
         boost::asio::any_io_executor finding; ///< searches for landmarks, which waits for the disk
         metrics::LiveCounters& counters;
     };
@@ -52,7 +53,7 @@ public:
     /// @param permit  to view the session; kept until the viewer is destroyed
     Viewer(net::LinkStream stream, ViewedSession viewed, limits::Semaphore::Permit permit, Services services);
 
-    /// Answers the upgrade request and sends events until the connection is closed. Call once.
+    /// Answers the upgrade request and sends messages until the connection is closed. Call once.
     [[nodiscard]] boost::asio::awaitable<void> run(const Upgrade& upgrade);
 
     /// Closes the connection with code 1001 within config.farewell.
@@ -69,21 +70,18 @@ private:
 
     /// The next step of the viewer.
     struct NextStep {
-        std::optional<std::string> event; // encoded; nullopt: nothing new
+        Dialogue::Turn turn;
         std::optional<Close> end;
-        Clock::time_point look_again = Clock::time_point::max(); // time of the next step, even without a notification
     };
 
     [[nodiscard]] boost::asio::awaitable<bool> accept(const Upgrade& upgrade);
     [[nodiscard]] boost::asio::awaitable<void> read_requests();
-    [[nodiscard]] boost::asio::awaitable<void> send_events();
+    [[nodiscard]] boost::asio::awaitable<void> send_turns();
     [[nodiscard]] boost::asio::awaitable<void> wait_for_turn();
-    [[nodiscard]] boost::asio::awaitable<bool> send(const std::string& event);
+    [[nodiscard]] boost::asio::awaitable<bool> send(const ViewerMessage& message);
     [[nodiscard]] boost::asio::awaitable<void> close();
-    [[nodiscard]] NextStep next_step();
-    [[nodiscard]] Clock::time_point add_landmarks(const std::shared_ptr<const sessions::Session>& session,
-                                                  SessionSnapshot& snapshot);
-    [[nodiscard]] std::optional<Close> fault_of_message();
+    [[nodiscard]] NextStep next_step(const std::vector<ViewerMessage>& received);
+    void keep_message();
     void end(Close why);
     void wake();
     void cut_off_after(std::chrono::milliseconds time);
@@ -93,13 +91,13 @@ private:
     ViewedSession viewed_;
     limits::Semaphore::Permit permit_;
     Services services_;
-    EventEncoder encoder_; // not used by the strand while next_step() runs
+    std::unique_ptr<Dialogue> dialogue_; // not used by the strand while next_step() runs
     boost::asio::steady_timer turn_;
     boost::asio::steady_timer deadline_;
-    Clock::time_point due_; // the next event is not sent before
+    Clock::time_point due_; // the next turn does not begin before
     Clock::time_point look_again_ = Clock::time_point::max();
-    std::optional<Subscription> subscription_; // not yet passed to the encoder
-    bool changed_ = true;                      // the state may have changed since the last event
+    std::vector<ViewerMessage> received_; // not yet passed to the dialogue
+    bool changed_ = true;                 // the state may have changed since the last turn
     bool reading_ = false;
     std::optional<Close> ending_;
     std::atomic<bool> notified_ = false; // on_changed() was called since next_step() last read the state

@@ -13,6 +13,7 @@ Fuzzer carmen_line_fuzzer;
 Fuzzer carmen_log_fuzzer;
 Fuzzer checkpoint_fuzzer;
 Fuzzer config_fuzzer;
+Fuzzer foxglove_request_fuzzer;
 Fuzzer frame_decoder_fuzzer;
 Fuzzer frame_tree_fuzzer;
 Fuzzer http_form_fuzzer;
@@ -39,16 +40,27 @@ struct Named {
 };
 
 const Named kFuzzers[] = {
-    {"carmen_line", carmen_line_fuzzer},     {"carmen_log", carmen_log_fuzzer},
-    {"checkpoint", checkpoint_fuzzer},       {"config", config_fuzzer},
-    {"frame_decoder", frame_decoder_fuzzer}, {"frame_tree", frame_tree_fuzzer},
-    {"http_form", http_form_fuzzer},         {"http_json", http_json_fuzzer},
-    {"http_target", http_target_fuzzer},     {"ld06", ld06_fuzzer},
-    {"live_request", live_request_fuzzer},   {"log_codec", log_codec_fuzzer},
-    {"log_file", log_file_fuzzer},           {"mcap", mcap_fuzzer},
-    {"messages", messages_fuzzer},           {"ros_map", ros_map_fuzzer},
-    {"ros_message", ros_message_fuzzer},     {"rosbag", rosbag_fuzzer},
-    {"store_key", store_key_fuzzer},         {"tokens", tokens_fuzzer},
+    {"carmen_line", carmen_line_fuzzer},
+    {"carmen_log", carmen_log_fuzzer},
+    {"checkpoint", checkpoint_fuzzer},
+    {"config", config_fuzzer},
+    {"foxglove_request", foxglove_request_fuzzer},
+    {"frame_decoder", frame_decoder_fuzzer},
+    {"frame_tree", frame_tree_fuzzer},
+    {"http_form", http_form_fuzzer},
+    {"http_json", http_json_fuzzer},
+    {"http_target", http_target_fuzzer},
+    {"ld06", ld06_fuzzer},
+    {"live_request", live_request_fuzzer},
+    {"log_codec", log_codec_fuzzer},
+    {"log_file", log_file_fuzzer},
+    {"mcap", mcap_fuzzer},
+    {"messages", messages_fuzzer},
+    {"ros_map", ros_map_fuzzer},
+    {"ros_message", ros_message_fuzzer},
+    {"rosbag", rosbag_fuzzer},
+    {"store_key", store_key_fuzzer},
+    {"tokens", tokens_fuzzer},
 };
 
 class FuzzCorpus : public testing::TestWithParam<Named> {};

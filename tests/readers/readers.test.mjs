@@ -7,11 +7,14 @@ import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import rosmsg from '@foxglove/rosmsg';
 import rosmsg2 from '@foxglove/rosmsg2-serialization';
+import foxglove from '@foxglove/ws-protocol';
 import { McapIndexedReader } from '@mcap/core';
 import { loadDecompressHandlers } from '@mcap/support';
 import { check } from '@placemarkio/check-geojson';
+import WebSocket from 'ws';
 import { ended, endWithThisProgram, Server, startRobot } from '../e2e/programs.mjs';
 
+const { FoxgloveClient } = foxglove;
 const kSession = 'api/v1/sessions/office';
 const kSimulation = [
   'simulate',
@@ -26,6 +29,49 @@ const kSimulation = [
   '--duration',
   '60',
 ];
+
+/**
+ * Watches a session with Foxglove's own client until each topic has a message.
+ *
+ * @returns the newest message of each topic, decoded if it is of ROS
+ */
+async function watched(session, topics) {
+  const address = `${server.address.replace('http', 'ws')}api/v1/sessions/${session}/foxglove`;
+  const client = new FoxgloveClient({ ws: new WebSocket(address, [FoxgloveClient.SUPPORTED_SUBPROTOCOL]) });
+  const subscribed = new Map();
+  const newest = new Map();
+  client.on('advertise', (channels) => {
+    for (const channel of channels) subscribed.set(client.subscribe(channel.id), channel);
+  });
+  const problems = [];
+  client.on('status', (status) => problems.push(status.message));
+  await new Promise((resolve, reject) => {
+    client.on('error', reject);
+    client.on('close', (event) => reject(new Error(`closed: ${event.code} ${event.reason}`)));
+    client.on('message', ({ subscriptionId, data }) => {
+      const channel = subscribed.get(subscriptionId);
+      newest.set(channel.topic, channel.encoding === 'cdr' ? decoded(channel.schema, data) : data);
+      if (topics.every((topic) => newest.has(topic))) resolve();
+    });
+  });
+  client.close();
+  assert.deepEqual(problems, []);
+  return newest;
+}
+
+/** Decodes a message of ROS 2. */
+function decoded(definition, data) {
+  return new rosmsg2.MessageReader(rosmsg.parse(definition, { ros2: true })).readMessage(data);
+}
+
+/** Asserts that an OccupancyGrid has the cells of map.pgm. */
+async function assertIsMap(grid, session) {
+  const pgm = readFileSync(await file(`api/v1/sessions/${session}/map.pgm`, `${session}.pgm`));
+  const { width, height } = grid.info;
+  const cells = [...grid.data].map((cell) => ({ '-1': 205, 0: 254, 100: 0 })[cell]);
+  const rows = Array.from({ length: height }, (_, row) => cells.slice(row * width, (row + 1) * width));
+  assert.deepEqual(rows.reverse().flat(), [...pgm.subarray(pgm.length - width * height)], 'an image begins at the top');
+}
 
 /** The Python that has Debian's packages. */
 const kDebiansPython = '/usr/bin/python3';
@@ -169,9 +215,8 @@ test('the readers of Foxglove find scans, poses and the map in an MCAP file', as
   for await (const message of recording.readMessages({ validateCrcs: true })) {
     const channel = recording.channelsById.get(message.channelId);
     const definition = new TextDecoder().decode(recording.schemasById.get(channel.schemaId).data);
-    const reader = new rosmsg2.MessageReader(rosmsg.parse(definition, { ros2: true }));
     if (!messages.has(channel.topic)) messages.set(channel.topic, []);
-    messages.get(channel.topic).push(reader.readMessage(message.data));
+    messages.get(channel.topic).push(decoded(definition, message.data));
   }
   const trajectory = (await text('api/v1/sessions/drift/trajectory.tum')).match(/^[^#\n]+/gm);
   assert.deepEqual([...messages.keys()].sort(), ['/map', '/r1/pose', '/r1/scan', '/tf']);
@@ -185,14 +230,21 @@ test('the readers of Foxglove find scans, poses and the map in an MCAP file', as
       assert.ok(Math.hypot(place.x - x, place.y - y) < 0.02, `${n}: ${place.x}, ${place.y} instead of ${x}, ${y}`);
     }
   }
-  const [grid] = messages.get('/map');
-  const pgm = readFileSync(await file('api/v1/sessions/drift/map.pgm', 'drift.pgm'));
-  const pixels = pgm.subarray(pgm.length - grid.info.width * grid.info.height);
-  const cells = [...grid.data].map((cell) => ({ '-1': 205, 0: 254, 100: 0 })[cell]);
-  const rows = Array.from({ length: grid.info.height }, (_, row) =>
-    cells.slice(row * grid.info.width, (row + 1) * grid.info.width),
-  );
-  assert.deepEqual(rows.reverse().flat(), [...pixels], 'rows of the image begin at the top');
+  await assertIsMap(messages.get('/map')[0], 'drift');
+});
+
+test('the client of Foxglove shows the live map, robots and their ways', async () => {
+  const topics = ['/map', '/tf', '/diagnostics', '/goals', '/landmarks', '/pose_graph'];
+  const newest = await watched('drift', [...topics, '/r1/pose', '/r1/trail', '/r1/path']);
+  await assertIsMap(newest.get('/map'), 'drift');
+  const [robot] = newest.get('/tf').transforms;
+  assert.deepEqual([robot.header.frame_id, robot.child_frame_id], ['map', 'r1/base_link']);
+  const trail = newest.get('/r1/trail').poses;
+  assert.equal(trail.length, 600);
+  assert.deepEqual(trail.at(-1).pose, newest.get('/r1/pose').pose);
+  const [status] = newest.get('/diagnostics').status;
+  assert.deepEqual([status.name, status.level], ['r1', 1]);
+  assert.equal(status.message, 'tracking, not connected');
 });
 
 test('numpy reads a KITTI trajectory as matrices', async (t) => {

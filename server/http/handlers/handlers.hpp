@@ -108,5 +108,7 @@ start_weave(Context& context);                                 ///< 200 if the m
 // live.cpp
 
 [[nodiscard]] Result<Response> get_live(Context& context); ///< opens a WebSocket, not to pages of other hosts
+[[nodiscard]] Result<Response>
+get_foxglove(Context& context); ///< likewise, and to pages of ServerConfig::viewer_origins
 
 } // namespace scanloom::http

@@ -136,6 +136,19 @@ TEST_F(ServerOptionsTest, AcceptsSeveralHostNames) {
     }
 }
 
+TEST_F(ServerOptionsTest, NamesPagesThatMayWatch) {
+    const auto origins = [&](std::vector<std::string> arguments) {
+        return std::get<ServerOptions>(read(std::move(arguments))).viewer_origins;
+    };
+    EXPECT_THAT(origins({}), ElementsAre("https://app.foxglove.dev"));
+    EXPECT_THAT(origins({"--viewer-origin", "https://a.lab,http://b:8080"}),
+                ElementsAre("https://a.lab", "http://b:8080"));
+    EXPECT_THAT(origins({"--viewer-origin", "none"}), ElementsAre("none")) << "which no page has";
+    for (const auto* wrong : {"a.lab", "https://a.lab/", "://a", "https://a.lab?x"}) {
+        EXPECT_THAT(refusal({"--viewer-origin", wrong}), HasSubstr("is not an origin"));
+    }
+}
+
 TEST_F(ServerOptionsTest, SelectsCheckRepairAndRestore) {
     const auto options = [](std::vector<std::string> arguments) {
         return std::get<ServerOptions>(read(std::move(arguments)));

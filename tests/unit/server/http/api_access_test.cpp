@@ -61,6 +61,22 @@ bool is_let_in(const Response& response) {
     return response.status != Status::unauthorized && response.status != Status::forbidden;
 }
 
+/// Foxglove and Lichtblick cannot send an Authorization field.
+TEST_F(ApiAccessTest, OnlyFoxgloveTakesATokenInTheAddress) {
+    const auto watch = [&](const std::string& target) {
+        Request asked = request("GET", "/api/v1/sessions/depot-1/" + target, "");
+        asked.upgrade = WebSocketUpgrade{.version = "13", .key = "dGhlIHNhbXBsZSBub25jZQ==", .origin = ""};
+        asked.upgrade->protocols = "foxglove.sdk.v1";
+        return answer(api_, asked).status;
+    };
+    EXPECT_EQ(watch("foxglove"), Status::unauthorized);
+    EXPECT_EQ(watch("foxglove?token=secret%20of%20viewer"), Status::switching_protocols);
+    EXPECT_EQ(watch("foxglove?token=secret"), Status::unauthorized);
+    EXPECT_EQ(watch("foxglove?token=secret%20of%20robot"), Status::forbidden);
+    EXPECT_EQ(watch("live?token=secret%20of%20viewer"), Status::unauthorized);
+    EXPECT_EQ(watch("map.png?token=secret%20of%20viewer"), Status::unauthorized);
+}
+
 /// A copy of the table in docs/security.md.
 TEST_F(ApiAccessTest, EachRoleIsPermittedItsOwnRequestsOnly) {
     const std::set<std::string_view> open = {"/",       "/assets/{file}", "/livez",

@@ -51,6 +51,43 @@ TEST_F(ApiLiveTest, ForeignPagesAreForbidden) {
     EXPECT_EQ(own.status, Status::switching_protocols);
 }
 
+TEST_F(ApiLiveTest, FoxgloveIsUpgradedToAKnownProtocol) {
+    create("lab");
+    WebSocketUpgrade wanted = wanted_;
+    for (const auto& [offered, chosen] :
+         {std::pair("foxglove.websocket.v1", "foxglove.websocket.v1"), std::pair("foxglove.sdk.v1", "foxglove.sdk.v1"),
+          std::pair("x, foxglove.websocket.v1 ,foxglove.sdk.v1", "foxglove.sdk.v1")}) {
+        wanted.protocols = offered;
+        const auto response = upgrade(wanted, "/api/v1/sessions/lab/foxglove");
+        EXPECT_EQ(response.status, Status::switching_protocols);
+        ASSERT_NE(response.viewed, nullptr);
+        EXPECT_EQ(response.viewed->subprotocol, chosen);
+        EXPECT_EQ(response.viewed->protocol, live::Protocol::kFoxglove);
+    }
+    for (const auto* offered : {"", "foxglove.sdk.v2", "FOXGLOVE.SDK.V1", "foxglove.sdk.v1 foxglove.websocket.v1"}) {
+        wanted.protocols = offered;
+        EXPECT_THAT(detail(upgrade(wanted, "/api/v1/sessions/lab/foxglove"), Status::bad_request),
+                    HasSubstr("none of foxglove.sdk.v1, foxglove.websocket.v1"))
+            << offered;
+    }
+}
+
+TEST_F(ApiLiveTest, FoxglovesPageMayWatchByItsOwnProtocolOnly) {
+    create("lab");
+    Request request;
+    request.host = "localhost:8080";
+    request.upgrade = wanted_;
+    request.upgrade->protocols = "foxglove.sdk.v1";
+    request.origin = request.upgrade->origin = "https://app.foxglove.dev";
+    for (const bool is_of_viewer_page : {false, true}) {
+        request.is_of_viewer_page = is_of_viewer_page;
+        request.target = "/api/v1/sessions/lab/foxglove";
+        EXPECT_EQ(answer(api_, request).status, is_of_viewer_page ? Status::switching_protocols : Status::forbidden);
+        request.target = "/api/v1/sessions/lab/live";
+        EXPECT_EQ(answer(api_, request).status, Status::forbidden);
+    }
+}
+
 TEST_F(ApiLiveTest, InvalidRequestsAreRefused) {
     create("lab");
     EXPECT_THAT(detail(upgrade(wanted_, "/api/v1/sessions/hall/live"), Status::not_found), HasSubstr("hall"));

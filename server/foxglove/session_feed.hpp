@@ -1,0 +1,102 @@
+#pragma once
+
+#include "server/foxglove/protocol.hpp"
+#include "server/foxglove/session_view.hpp"
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace scanloom::foxglove {
+
+/// A message to a viewer.
+struct Outgoing {
+    std::string bytes;
+    bool is_text = false; ///< otherwise binary
+};
+
+/// The conversation with one viewer of a session, by the protocol of Foxglove, without a socket.
+///
+/// Topics: those of topics.hpp. A channel sends the newest state when it is subscribed and when it has changed, the map
+/// and other large ones at most once a second; states in between are left out. Memory: what was subscribed, and the
+/// number of each robot's channels.
+/// Threads: one at a time.
+class SessionFeed {
+public:
+    using Clock = std::chrono::steady_clock;
+
+    /// Larger maps are not sent as one grid: 200 m x 200 m in cells of 5 cm.
+    static constexpr std::int64_t kGridCellsMax = 16'000'000;
+
+    /// @param session     its name
+    /// @param session_id  see server_info_text()
+    SessionFeed(std::string session, std::string session_id)
+        : session_(std::move(session)), session_id_(std::move(session_id)) {}
+
+    /// Handles a message of the viewer. What it does wrong is answered with a remark in next().
+    void receive(std::string_view message, bool is_text);
+
+    /// Returns what the viewer gets now. First of all, it is greeted.
+    /// @param state  of the session, not older than in the call before
+    [[nodiscard]] std::vector<Outgoing> next(const SessionView& state, Clock::time_point now);
+
+    /// Returns when to call next() again although nothing changes.
+    [[nodiscard]] Clock::time_point look_again() const noexcept { return look_again_; }
+
+    /// Returns whether the viewer sees landmarks, which are searched for only then.
+    [[nodiscard]] bool wants_landmarks() const { return wants(Content::kLandmarks); }
+    /// Returns whether the viewer sees the pose graph.
+    [[nodiscard]] bool wants_pose_graph() const { return wants(Content::kPoseGraph); }
+
+private:
+    /// What a channel shows.
+    enum class Content { kMap, kTransforms, kStatus, kLandmarks, kGoals, kPoseGraph, kPose, kScan, kTrail, kPath };
+
+    struct Channel {
+        std::string topic;
+        Message message;
+        Content content;
+        RobotIndex robot = 0;     ///< of kPose and those after it
+        std::uint32_t sensor = 0; ///< of kScan
+    };
+
+    /// Changes when what a channel shows does.
+    using Version = std::pair<std::uint64_t, std::uint64_t>;
+
+    struct Subscription {
+        std::size_t channel = 0; ///< index
+        std::optional<Version> sent;
+        Clock::time_point due;
+    };
+
+    void handle(const Subscribe& subscribe);
+    void handle(const Unsubscribe& unsubscribe);
+    void warn(std::string_view text) { answers_.push_back({warning_text(text), true}); }
+    [[nodiscard]] bool wants(Content content) const;
+    void add_channels(const SessionView& state);
+    void add_channel(Channel channel);
+    [[nodiscard]] static Version version_of(const Channel& channel, const SessionView& state);
+    [[nodiscard]] static Clock::duration pause_of(Content content);
+    [[nodiscard]] std::optional<std::string> message_of(const Channel& channel, const SessionView& state);
+    [[nodiscard]] std::optional<std::string> map_of(const mapping::Snapshot& maps);
+
+    std::string session_;
+    std::string session_id_;
+    bool is_greeted_ = false;
+    bool is_map_too_large_ = false; ///< and the viewer knows
+    std::vector<Outgoing> answers_;
+    std::vector<Channel> channels_; ///< the id of a channel is its index plus one
+    std::size_t advertised_ = 0;    ///< number of channels that the viewer knows
+    std::map<std::string, std::size_t, std::less<>> by_topic_;
+    std::map<std::uint32_t, Subscription> subscriptions_; ///< by the viewer's id
+    Clock::time_point look_again_ = Clock::time_point::max();
+};
+
+} // namespace scanloom::foxglove
