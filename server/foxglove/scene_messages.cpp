@@ -1,5 +1,6 @@
 #include "server/foxglove/scene_messages.hpp"
 
+#include "core/classify/frontiers.hpp"
 #include "server/foxglove/robot_messages.hpp"
 #include "server/foxglove/ros_fields.hpp"
 
@@ -77,6 +78,23 @@ std::string landmarks_message(const landmarks::LandmarkView& landmarks, double s
     ::foxglove::SceneEntity& entity = add_entity("landmarks", stamp, update);
     for (std::size_t n = 0; n < landmarks.size(); ++n) {
         add_sphere(landmarks[n].landmark.position, kDiameter, kOrange, entity);
+    }
+    return update.SerializeAsString();
+}
+
+std::string frontiers_message(const mapping::Snapshot& maps, double stamp) {
+    const double cell_size = maps.config.cell_size;
+    ::foxglove::SceneUpdate update;
+    ::foxglove::SceneEntity& entity = add_entity("frontiers", stamp, update);
+    ::foxglove::LinePrimitive& lines = add_lines(kGreen, entity);
+    std::size_t shown = 0;
+    for (const classify::Frontier& frontier : classify::find_frontiers(maps.classes, kFrontierCells)) {
+        for (const grid::Cell& cell : frontier.cells) {
+            if (shown++ == kFrontierCellsShown) return update.SerializeAsString();
+            const double y = (cell.j + 0.5) * cell_size;
+            add_end({cell.i * cell_size, y, 0.0}, lines);
+            add_end({(cell.i + 1) * cell_size, y, 0.0}, lines);
+        }
     }
     return update.SerializeAsString();
 }

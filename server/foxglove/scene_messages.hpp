@@ -14,6 +14,15 @@ namespace scanloom::foxglove {
 /// @param stamp  seconds
 [[nodiscard]] std::string landmarks_message(const landmarks::LandmarkView& landmarks, double stamp);
 
+/// Returns the frontiers of at least kFrontierCells cells as lines through their cells, the largest frontiers first, at
+/// most kFrontierCellsShown cells.
+/// @param stamp  seconds
+/// Cost: that of classify::find_frontiers().
+[[nodiscard]] std::string frontiers_message(const mapping::Snapshot& maps, double stamp);
+
+inline constexpr std::size_t kFrontierCells = 8;
+inline constexpr std::size_t kFrontierCellsShown = 20'000;
+
 /// Returns the goals of robots as spheres with the robots' names.
 /// @param stamp  seconds
 [[nodiscard]] std::string goals_message(const SessionView& session, double stamp);

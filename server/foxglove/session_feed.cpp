@@ -110,6 +110,7 @@ void SessionFeed::add_channels(const SessionView& state) {
         add_channel({kTransformsTopic, Message::kTransforms, Content::kTransforms});
         add_channel({kStatusTopic, Message::kStatus, Content::kStatus});
         add_channel({kLandmarksTopic, Message::kScene, Content::kLandmarks});
+        add_channel({kFrontiersTopic, Message::kScene, Content::kFrontiers});
         add_channel({kGoalsTopic, Message::kScene, Content::kGoals});
         add_channel({kPoseGraphTopic, Message::kScene, Content::kPoseGraph});
     }
@@ -168,6 +169,7 @@ SessionFeed::Clock::duration SessionFeed::pause_of(Content content) {
     case Content::kMap:
     case Content::kStatus:
     case Content::kLandmarks:
+    case Content::kFrontiers:
     case Content::kGoals:
     case Content::kPoseGraph:
     case Content::kTrail:
@@ -180,6 +182,7 @@ SessionFeed::Version SessionFeed::version_of(const Channel& channel, const Sessi
     const Snapshot& maps = *state.maps;
     switch (channel.content) {
     case Content::kMap:
+    case Content::kFrontiers:
     case Content::kTransforms: return {maps.revision, 0};
     case Content::kStatus: return {maps.revision, std::ranges::count(state.connected, true)};
     case Content::kLandmarks: return {state.landmarks_revision, state.landmarks ? 1 : 0};
@@ -206,6 +209,7 @@ std::optional<std::string> SessionFeed::message_of(const Channel& channel, const
     case Content::kLandmarks:
         if (!state.landmarks) return std::nullopt;
         return landmarks_message(*state.landmarks, newest_stamp(maps));
+    case Content::kFrontiers: return frontiers_message(maps, newest_stamp(maps));
     case Content::kGoals: return goals_message(state, newest_stamp(maps));
     case Content::kPoseGraph:
         if (!state.graph) return std::nullopt;

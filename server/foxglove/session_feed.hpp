@@ -57,7 +57,19 @@ public:
 
 private:
     /// What a channel shows.
-    enum class Content { kMap, kTransforms, kStatus, kLandmarks, kGoals, kPoseGraph, kPose, kScan, kTrail, kPath };
+    enum class Content {
+        kMap,
+        kTransforms,
+        kStatus,
+        kLandmarks,
+        kFrontiers,
+        kGoals,
+        kPoseGraph,
+        kPose,
+        kScan,
+        kTrail,
+        kPath
+    };
 
     struct Channel {
         std::string topic;

@@ -14,7 +14,8 @@ namespace scanloom::foxglove {
 inline const std::string kTransformsTopic = "/tf"; ///< Message::kTransforms of all robots
 inline const std::string kMapTopic = "/map";       ///< Message::kGrid of the occupancy
 inline const std::string kStatusTopic = "/diagnostics";
-inline const std::string kLandmarksTopic = "/landmarks"; ///< Message::kScene, as the next two
+inline const std::string kLandmarksTopic = "/landmarks"; ///< Message::kScene, as the next three
+inline const std::string kFrontiersTopic = "/frontiers";
 inline const std::string kGoalsTopic = "/goals";
 inline const std::string kPoseGraphTopic = "/pose_graph";
 

@@ -234,7 +234,7 @@ test('the readers of Foxglove find scans, poses and the map in an MCAP file', as
 });
 
 test('the client of Foxglove shows the live map, robots and their ways', async () => {
-  const topics = ['/map', '/tf', '/diagnostics', '/goals', '/landmarks', '/pose_graph'];
+  const topics = ['/map', '/tf', '/diagnostics', '/frontiers', '/goals', '/landmarks', '/pose_graph'];
   const newest = await watched('drift', [...topics, '/r1/pose', '/r1/trail', '/r1/path']);
   await assertIsMap(newest.get('/map'), 'drift');
   const [robot] = newest.get('/tf').transforms;

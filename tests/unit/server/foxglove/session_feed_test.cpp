@@ -102,7 +102,7 @@ protected:
 };
 
 TEST_F(SessionFeedTest, GreetsAndAnnouncesTopics) {
-    EXPECT_THAT(topics_, ElementsAre("/map", "/tf", "/diagnostics", "/landmarks", "/goals", "/pose_graph",
+    EXPECT_THAT(topics_, ElementsAre("/map", "/tf", "/diagnostics", "/landmarks", "/frontiers", "/goals", "/pose_graph",
                                      "/crawler/pose", "/crawler/trail", "/crawler/path", "/crawler/scan"));
     EXPECT_THAT(next(), IsEmpty()) << "nothing is subscribed";
 }
@@ -147,14 +147,14 @@ TEST_F(SessionFeedTest, AnnouncesTopicsOfNewRobotsAndSensors) {
     maps_.robots.push_back(second);
     auto messages = next();
     ASSERT_EQ(messages.size(), 1U);
-    EXPECT_THAT(messages[0].bytes, HasSubstr(R"("id":11,"topic":"/flyer/pose")"));
+    EXPECT_THAT(messages[0].bytes, HasSubstr(R"("id":12,"topic":"/flyer/pose")"));
     EXPECT_THAT(messages[0].bytes, testing::Not(HasSubstr("/map")));
     auto scan = *maps_.robots.front().newest_scan;
     scan.scan.angles = ExplicitAngles{0.0, 0.1, 0.5};
     maps_.robots.front().newest_scan = std::make_shared<const mapping::IntegratedScan>(scan);
     messages = next();
     ASSERT_EQ(messages.size(), 1U);
-    EXPECT_THAT(messages[0].bytes, HasSubstr(R"("id":14,"topic":"/crawler/points")"));
+    EXPECT_THAT(messages[0].bytes, HasSubstr(R"("id":15,"topic":"/crawler/points")"));
 }
 
 TEST_F(SessionFeedTest, RemarksWhatViewersDoWrong) {
