@@ -99,22 +99,23 @@ public:
         const LineMatch first = match(expected_, loose_, kWideGate);
         const bool is_plain = !is_doubtful(first);
         if (is_plain && care == Care::kOneIfPlain) {
-            return {{.T_keyframe_robot = first.T_map_robot,
-                     .inlier_ratio = first.inlier_ratio,
-                     .is_match = true,
-                     .position_sigma = first.position_sigma,
-                     .yaw_sigma = first.yaw_sigma}};
+            return {{tracked(first)}};
         }
         keep(first);
         if (is_plain) return std::move(found_);
         try_other_priors();
         if (best_inliers() < kInliersFar) try_other_starts();
-        found_.push_back({expected_, kUnmatchedValue, 0.0, false, loose_.position_sigma, loose_.yaw_sigma});
+        found_.push_back({{expected_, 0.0, false, loose_.position_sigma, loose_.yaw_sigma}, kUnmatchedValue});
         return std::move(found_);
     }
 
 private:
     [[nodiscard]] double inliers_wanted() const { return has_odometry_ ? kInliersWithOdometry : kInliersWithout; }
+
+    [[nodiscard]] static TrackedScan tracked(const LineMatch& found) {
+        return {found.T_map_robot,    found.inlier_ratio, found.inlier_ratio >= kUsable,
+                found.position_sigma, found.yaw_sigma,    found.conditioning};
+    }
 
     [[nodiscard]] LineMatch match(const Transform2& start, const PosePrior& prior, double gate) const {
         return match_to_lines(scan_.points, map_.points(), start, prior, {.first_gate = gate});
@@ -158,14 +159,13 @@ private:
         const double score =
             agreement_of(scan_, map_.points(), map_.space(), found.T_map_robot).score - penalty(found.T_map_robot);
         const auto is_same = [&](const Candidate& other) {
-            const Transform2 off = inverse(other.T_keyframe_robot) * found.T_map_robot;
+            const Transform2 off = inverse(other.scan.T_keyframe_robot) * found.T_map_robot;
             return distance_of(off) < kSameCandidateDistance && turn(off) < kSameCandidateTurn;
         };
         const auto is_better = [&](const Candidate& other) { return is_same(other) && other.value >= score; };
         if (std::ranges::any_of(found_, is_better)) return;
         std::erase_if(found_, is_same);
-        found_.push_back({found.T_map_robot, score, found.inlier_ratio, found.inlier_ratio >= kUsable,
-                          found.position_sigma, found.yaw_sigma});
+        found_.push_back({tracked(found), score});
     }
 
     void try_from(const Transform2& start, const PosePrior& prior, double gate) { keep(match(start, prior, gate)); }
@@ -207,7 +207,9 @@ private:
     }
 
     [[nodiscard]] double best_inliers() const {
-        return found_.empty() ? 0.0 : std::ranges::max_element(found_, {}, &Candidate::inlier_ratio)->inlier_ratio;
+        double best = 0.0;
+        for (const Candidate& found : found_) best = std::max(best, found.scan.inlier_ratio);
+        return best;
     }
 
     const ScanPoints& scan_;

@@ -19,14 +19,20 @@ struct Prediction {
     [[nodiscard]] const Transform2& motion() const noexcept { return odometry ? *odometry : velocity; }
 };
 
-/// A place where a scan may have been taken.
-struct Candidate {
-    Transform2 T_keyframe_robot; ///< relative to the newest keyframe
-    double value = 0.0;          ///< agreement with the map minus a penalty for the distance from the prediction
-    double inlier_ratio = 0.0;   ///< of the scan's points at this pose; 0 if the scan was not matched
-    bool is_match = false;       ///< whether the pose comes from the scan; otherwise it is the prediction
+/// A scan's pose, relative to the keyframe that was the newest when the scan was taken.
+struct TrackedScan {
+    Transform2 T_keyframe_robot; ///< as matched, or as predicted
+    double inlier_ratio = 0.0;   ///< of the scan's points; 0 if it was not matched
+    bool is_matched = false;     ///< whether the scan fitted the map; otherwise the pose is a prediction
     double position_sigma = 0.0; ///< metres, standard deviation in the most uncertain direction
     double yaw_sigma = 0.0;      ///< radians, standard deviation
+    double conditioning = 0.0;   ///< see LineMatch; 0 if it was not matched
+};
+
+/// A place where a scan may have been taken.
+struct Candidate {
+    TrackedScan scan;
+    double value = 0.0; ///< agreement with the map minus a penalty for the distance from the prediction
 };
 
 /// How carefully candidates_of() looks.

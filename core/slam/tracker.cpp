@@ -37,13 +37,12 @@ void Tracker::follow(const ScanPoints& scan, const std::optional<Transform2>& mo
         for (const Candidate& candidate : candidates) {
             if (candidate.value < best - kScanMargin) continue;
             Hypothesis& followed = next.emplace_back(hypothesis);
-            followed.velocity = inverse(hypothesis.last) * candidate.T_keyframe_robot;
-            followed.last = candidate.T_keyframe_robot;
+            followed.velocity = inverse(hypothesis.last) * candidate.scan.T_keyframe_robot;
+            followed.last = candidate.scan.T_keyframe_robot;
             followed.value += candidate.value;
-            followed.unmatched = candidate.is_match ? 0 : hypothesis.unmatched + 1;
-            followed.scans.push_back({candidate.T_keyframe_robot, candidate.inlier_ratio, candidate.is_match,
-                                      candidate.position_sigma, candidate.yaw_sigma});
-            if (!candidate.is_match && !motion) { // it may have stopped
+            followed.unmatched = candidate.scan.is_matched ? 0 : hypothesis.unmatched + 1;
+            followed.scans.push_back(candidate.scan);
+            if (!candidate.scan.is_matched && !motion) { // it may have stopped
                 const auto& velocity = followed.velocity;
                 followed.velocity = {0.5 * velocity.x, 0.5 * velocity.y,
                                      scan_matching::sin_cos(0.5 * yaw_of(velocity))};

@@ -9,15 +9,6 @@
 
 namespace scanloom::slam {
 
-/// A scan's pose, relative to the keyframe that was the newest when the scan was taken.
-struct TrackedScan {
-    Transform2 T_keyframe_robot; ///< as matched, or as predicted
-    double inlier_ratio = 0.0;   ///< of the scan's points; 0 if it was not matched
-    bool is_matched = false;     ///< whether the scan fitted the map; otherwise the pose is a prediction
-    double position_sigma = 0.0; ///< metres, standard deviation in the most uncertain direction
-    double yaw_sigma = 0.0;      ///< radians, standard deviation
-};
-
 /// Follows a robot by matching each scan to the map of the newest keyframes. If several poses fit a scan, it follows up
 /// to kHypothesesMax hypotheses through the next scans: until one is clearly better, a keyframe is due, or kOpenMax
 /// scans were added.

@@ -19,6 +19,7 @@ constexpr double kKnownPlaceTurn = 0.5;   // radians, likewise
 constexpr double kMotionMax = 10.0;       // metres between two scans; odometry that moves by more has started again
 constexpr double kSpeedMax = 1.5;         // metres per second: more than kMotionMax is possible after a hole
 constexpr double kRestart = 0.5;          // metres from the origin of odometry that has started again
+constexpr double kConditioned = 0.01;     // conditioning of a match that determines the position in all directions
 constexpr double kStill = 0.002;          // metres between two scans, or radians; more is motion
 constexpr double kHole = 1.0;             // seconds without a scan that shows anything new, without odometry
 constexpr double kLongHole = 4.0;         // seconds; odometry may be wrong over that time, too
@@ -103,6 +104,7 @@ void TrajectoryEstimator::place(ScanPoints scan, const std::optional<Pose2>& odo
     };
     auto decided = tracker_.add(scan, motion, is_due);
     newest_ = decided.empty() ? tracker_.newest() : decided.back();
+    add_drift();
     const bool is_lost_in_hole = shows_new && newest_.inlier_ratio < inliers_wanted(hole, motion.has_value());
     if (is_lost_in_hole && decided.empty()) decided = tracker_.decide();
     const Transform2 first = graph().pose(anchor_) * newest_.T_keyframe_robot;
@@ -135,6 +137,17 @@ void TrajectoryEstimator::place(ScanPoints scan, const std::optional<Pose2>& odo
     if (is_found) first_.back() = {graph().pose(keyframes_.back()), true};
 }
 
+/// Adds to the uncertainty of the newest scan what earlier ones left open: a scan that does not determine the position
+/// in all directions, as between two bare walls, is only as certain as its prediction, and later scans begin from
+/// there.
+void TrajectoryEstimator::add_drift() {
+    const bool is_certain = newest_.is_matched && newest_.conditioning >= kConditioned;
+    if (is_certain && is_in_frozen_map_) drift_variance_ = 0.0; // the map has not drifted
+    const double variance = newest_.position_sigma * newest_.position_sigma;
+    if (!is_certain) drift_variance_ += variance;
+    newest_.position_sigma = std::sqrt(is_certain ? drift_variance_ + variance : drift_variance_);
+}
+
 /// Adds the first scan of a fragment that later ones can be matched to, where the odometry says that it was taken.
 void TrajectoryEstimator::begin_to_see(ScanPoints scan, const Transform2& motion) {
     finish();
@@ -165,6 +178,7 @@ void TrajectoryEstimator::begin_fragment(ScanPoints scan, const Transform2& T_ma
                                          const std::optional<Surroundings>& place, bool is_tracked) {
     keyframes_.push_back(graph().size());
     fragments_.push_back(map_.begin_fragment(robot_, std::move(scan), T_map_robot, place, is_tracked));
+    drift_variance_ = 0.0;
     begin_tracking(graph().pose(keyframes_.back()));
 }
 
@@ -176,6 +190,8 @@ void TrajectoryEstimator::add_keyframe(ScanPoints scan, const Transform2& T_anch
         ++continued_;
     } else {
         map_.add_keyframe(fragments_.back(), std::move(scan), T_anchor_robot);
+        const std::size_t loops = loop_count();
+        if (std::exchange(loops_, loops) != loops) drift_variance_ = 0.0;
     }
     begin_tracking(graph().pose(keyframes_.back()));
 }

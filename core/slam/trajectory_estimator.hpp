@@ -109,7 +109,8 @@ public:
         return tracker_.unmatched() >= kLostAfter || !is_fragment_located();
     }
 
-    /// Returns the newest match; see Tracker::newest().
+    /// Returns the newest match; see Tracker::newest(). Its position_sigma includes the drift since the last loop
+    /// closure over ground that did not determine the position in all directions.
     [[nodiscard]] const TrackedScan& newest() const noexcept { return newest_; }
 
     /// Returns the number of scans whose poses are decided: they are only corrected with their keyframes. The others
@@ -146,7 +147,8 @@ public:
     static void list(Self& self, Archive& archive) {
         archive(self.tracker_, self.fragments_, self.continued_, self.keyframes_, self.anchor_, self.T_anchor_start_,
                 self.is_in_frozen_map_, self.own_views_, self.placed_, self.first_, self.newest_, self.odometry_,
-                self.relocalized_, self.unmatched_count_, self.hole_, self.stamp_, self.seconds_, self.last_ranges_);
+                self.relocalized_, self.unmatched_count_, self.drift_variance_, self.loops_, self.hole_, self.stamp_,
+                self.seconds_, self.last_ranges_);
     }
 
     /// Returns whether the members fit together, as they always do unless they were read from damaged bytes.
@@ -172,6 +174,7 @@ private:
     void place(ScanPoints scan, const std::optional<Pose2>& odometry, double seconds, bool is_repeated);
     [[nodiscard]] scan_matching::Motion motion_at(const Scan& scan) const;
     [[nodiscard]] std::optional<Transform2> odometry_motion(const std::optional<Transform2>& now, double seconds) const;
+    void add_drift();
     void append_decided(const std::vector<TrackedScan>& scans);
     [[nodiscard]] TrackedScan since_start(TrackedScan scan) const;
     void begin_fragment(ScanPoints scan, const Transform2& T_map_robot,
@@ -205,7 +208,9 @@ private:
     std::optional<Transform2> odometry_;      // of the last scan
     std::optional<Surroundings> relocalized_; // where the next scan is searched for
     std::size_t unmatched_count_ = 0;
-    double hole_ = 0.0; // seconds since the last scan that showed anything new
+    double drift_variance_ = 0.0; // square metres, since the last loop closure
+    std::size_t loops_ = 0;       // loop_count() at the newest keyframe
+    double hole_ = 0.0;           // seconds since the last scan that showed anything new
 
     // Of the scans that were added with their sensors.
     std::optional<double> stamp_; // of the last one, seconds

@@ -40,7 +40,7 @@ bool are_close(const Transform2& a, const Transform2& b, double distance, double
 
 bool have_match_at(const std::vector<Candidate>& candidates, const Transform2& pose) {
     return std::ranges::any_of(candidates, [&](const Candidate& candidate) {
-        return candidate.is_match && are_close(candidate.T_keyframe_robot, pose, 0.05, 0.03);
+        return candidate.scan.is_matched && are_close(candidate.scan.T_keyframe_robot, pose, 0.05, 0.03);
     });
 }
 
@@ -105,8 +105,9 @@ TEST(Candidates, ContainTheBestPoseOfAnExhaustiveSearch) {
             (has_odometry ? found_with_odometry : found_without) += have_match_at(candidates, best) ? 1 : 0;
             for (const Candidate& a : candidates) {
                 for (const Candidate& b : candidates) {
-                    if (&a == &b || !a.is_match || !b.is_match) continue;
-                    ASSERT_FALSE(are_close(a.T_keyframe_robot, b.T_keyframe_robot, 0.04, 0.02)) << "the same twice";
+                    if (&a == &b || !a.scan.is_matched || !b.scan.is_matched) continue;
+                    ASSERT_FALSE(are_close(a.scan.T_keyframe_robot, b.scan.T_keyframe_robot, 0.04, 0.02))
+                        << "the same twice";
                 }
             }
         }
@@ -125,7 +126,7 @@ TEST(Candidates, AreOneWhereNothingIsDoubtful) {
         ASSERT_EQ(plain.size(), 1U);
         EXPECT_TRUE(have_match_at(plain, room.truth));
         EXPECT_EQ(plain[0].value, 0.0);
-        EXPECT_GT(plain[0].position_sigma, 0.0);
+        EXPECT_GT(plain[0].scan.position_sigma, 0.0);
         const auto valued = candidates_of(room.scan, room.map, prediction, Care::kValued);
         ASSERT_EQ(valued.size(), 1U);
         EXPECT_GT(valued[0].value, 0.7) << "to be compared with those of other predictions";
@@ -149,7 +150,7 @@ TEST(Candidates, AreWhereOdometryAndVelocityDisagree) {
     EXPECT_TRUE(have_match_at(doubtful, {0.4, 0.0, {}}));
     EXPECT_TRUE(have_match_at(doubtful, {0.1, 0.0, {}}));
     const auto& best = *std::ranges::max_element(doubtful, {}, &Candidate::value);
-    EXPECT_NEAR(best.T_keyframe_robot.x, 0.4, 0.05) << "odometry is wrong less often than velocity";
+    EXPECT_NEAR(best.scan.T_keyframe_robot.x, 0.4, 0.05) << "odometry is wrong less often than velocity";
     EXPECT_EQ(candidates_for(0.15, 0.1).size(), 1U);
 }
 
@@ -166,12 +167,12 @@ TEST(Candidates, EndWithThePredictionWhereNothingFits) {
         if (has_odometry) prediction.odometry = room.truth;
         for (const ScanPoints& scan : {people, ScanPoints()}) {
             const auto candidates = candidates_of(scan, room.map, prediction, Care::kOneIfPlain);
-            EXPECT_FALSE(candidates.back().is_match);
-            EXPECT_EQ(candidates.back().inlier_ratio, 0.0);
-            EXPECT_TRUE(are_close(candidates.back().T_keyframe_robot, room.truth, 1e-9, 1e-9));
+            EXPECT_FALSE(candidates.back().scan.is_matched);
+            EXPECT_EQ(candidates.back().scan.inlier_ratio, 0.0);
+            EXPECT_TRUE(are_close(candidates.back().scan.T_keyframe_robot, room.truth, 1e-9, 1e-9));
             EXPECT_GT(candidates.back().value, 0.0) << "better than a pose that contradicts the map";
             EXPECT_EQ(std::ranges::max_element(candidates, {}, &Candidate::value), candidates.end() - 1);
-            EXPECT_TRUE(std::ranges::none_of(candidates, &Candidate::is_match));
+            EXPECT_TRUE(std::ranges::none_of(candidates, [](const auto& each) { return each.scan.is_matched; }));
         }
     }
 }

@@ -5,6 +5,7 @@
 
 #include <bit>
 #include <cstdint>
+#include <map>
 
 namespace scanloom::slam {
 namespace {
@@ -198,6 +199,29 @@ TEST(TrajectoryEstimator, ARobotThatIsCarriedThroughItsHallIsLost) {
         EXPECT_TRUE(estimator->is_located(59));
         EXPECT_FALSE(estimator->is_located(drive.scans.size() - 1)) << scans / 10 << " m";
     }
+}
+
+/// Between two bare walls a laser does not see how far its robot moves. The uncertainty stays until a loop is closed.
+TEST(TrajectoryEstimator, BareWallsMakeThePositionUncertain) {
+    Building building; // a corridor of 40 m with boxes at its ends
+    building.add_box(0.0, 0.0, 40.0, 2.0);
+    for (const double x : {1.0, 3.0, 36.0, 38.0}) building.add_box(x, 0.0, x + 0.4, 0.5);
+    Sensor laser = Building::laser();
+    laser.range_max = 5.0;
+    const Drive drive = drive_along(building, std::vector<Point2>{{4.5, 1.0}, {35.0, 1.0}}, {}, 3, laser);
+    std::map<bool, std::vector<double>> sigmas; // by whether there is odometry
+    for (const bool has_odometry : {false, true}) {
+        LoneEstimator estimator;
+        for (std::size_t n = 0; n < drive.scans.size(); ++n) {
+            estimator->add(scan_matching::points_of(drive.scans[n], laser),
+                           has_odometry ? std::optional(drive.odometry[n]) : std::nullopt);
+            sigmas[has_odometry].push_back(estimator->newest().position_sigma);
+        }
+    }
+    EXPECT_LT(sigmas[false][20], 0.2) << "near the boxes";
+    EXPECT_GT(sigmas[false].back(), 0.5);
+    EXPECT_LT(sigmas[true].back(), 0.5 * sigmas[false].back());
+    EXPECT_GT(sigmas[true].back(), 0.05);
 }
 
 /// A robot without odometry is carried to another floor while there are no scans.
