@@ -1,0 +1,1 @@
+../../python/scanloom_client.py
