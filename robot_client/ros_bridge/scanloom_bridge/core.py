@@ -86,8 +86,13 @@ class Options:
         given = {name: _parameter(name, value, fields[name].default)
                  for name, value in parameters.items() if name in fields}
         options = Options(**given)
+        options = dataclasses.replace(options, robot=options.robot or _host_name(),
+                                      http=(options.http or _http_address(options)).rstrip("/"))
         if not options.session:
             raise ValueError("parameter session is missing; give the map's name on the server")
+        for name, (pattern, needed) in _PATTERNS.items():
+            if not re.fullmatch(pattern, getattr(options, name)):
+                raise ValueError(f"parameter {name} is {getattr(options, name)!r}; {needed}")
         for name, choices in _CHOICES.items():
             if getattr(options, name) not in choices:
                 raise ValueError(f"parameter {name} is {getattr(options, name)!r}; {', '.join(choices)} are possible")
@@ -97,8 +102,7 @@ class Options:
         if options.publish_tf and options.poses == "map":
             raise ValueError("parameter publish_tf needs poses odometry or none: with poses map the transforms of the "
                              "robot already lead to the map's frame")
-        return dataclasses.replace(options, robot=options.robot or _host_name(),
-                                   http=(options.http or _http_address(options)).rstrip("/"))
+        return options
 
     @staticmethod
     def unknown(parameters: Mapping[str, Any]) -> List[str]:
@@ -123,10 +127,13 @@ class Options:
             return file.read().strip()
 
 
+_NAME = ("[A-Za-z0-9_-]{1,64}", "1 to 64 letters, digits, '_' and '-' are possible")
+_PATTERNS = {"session": _NAME, "robot": _NAME, "server": (r"\S+:\d{1,5}", "HOST:PORT is needed"),
+             "http": (r"https?://[^\s/?#]+", "http://HOST:PORT or https://HOST:PORT is needed")}
 _CHOICES = {"poses": ("auto", "map", "odometry", "none"), "zero": ("broken", "no-return"),
             "beyond_max": ("auto", "broken", "no-return")}
 _BOUNDS = {"tf_wait": (0.0, 10.0), "start_wait": (0.0, 60.0), "tf_rate": (1.0, 100.0), "tf_tolerance": (0.0, 10.0),
-           "map_period": (0.1, 3600.0), "range_max": (0.0, 1000.0), "buffer_mb": (1, 4096), "close_wait": (0.0, 600.0)}
+           "map_period": (0.1, 3600.0), "cell_size": (0.0, 1.0), "range_max": (0.0, 1000.0), "buffer_mb": (1, 4096), "close_wait": (0.0, 600.0)}
 
 
 def _parameter(name: str, value: Any, default: Any) -> Any:
@@ -626,7 +633,7 @@ def fill_pose(position: Any, orientation: Any, pose: Pose) -> None:
 
 
 class MapRequests:
-    """Requests the map of a session by HTTP."""
+    """Requests the map of a session by HTTP. Raises ValueError if the port of the address is none."""
 
     TIMEOUT = 10.0
     BYTES_MAX = 65 << 20  # a server sends at most 64 million cells
@@ -634,10 +641,8 @@ class MapRequests:
 
     def __init__(self, options: Options, token: str, tls: Optional[ssl.SSLContext]) -> None:
         address = urllib.parse.urlsplit(options.http)
-        if address.scheme not in ("http", "https") or not address.hostname or address.path or address.query:
-            raise ValueError(f"parameter http is {options.http!r}; http://HOST:PORT or https://HOST:PORT is needed")
         self._where = options.http
-        self._host, self._port = address.hostname, address.port
+        self._host, self._port = address.hostname or "", address.port
         self._is_tls, self._tls = address.scheme == "https", tls
         self._path = f"/api/v1/sessions/{options.session}/map."
         self._headers = {"Accept-Encoding": "gzip", **({"Authorization": f"Bearer {token}"} if token else {})}
@@ -670,11 +675,18 @@ class MapRequests:
             raise ValueError(f"{self._where} answered the request for the map with {status}; is it the server's HTTP "
                              "address? Set the parameter http otherwise")
         if answer_headers.get("Content-Encoding") == "gzip":
-            unzip = zlib.decompressobj(31)
-            body = unzip.decompress(body, self.BYTES_MAX)
-            if not unzip.eof:
-                raise ValueError(f"{self._where} sent a map that is damaged or has more than 64 million cells")
+            body = self._unzipped(body)
         return re.sub("^W/", "", answer_headers.get("ETag", "")), body
+
+    def _unzipped(self, body: bytes) -> bytes:
+        unzip = zlib.decompressobj(16 + zlib.MAX_WBITS)  # with the header of gzip
+        try:
+            whole = unzip.decompress(body, self.BYTES_MAX)
+        except zlib.error:
+            whole = b""
+        if not unzip.eof:
+            raise ValueError(f"{self._where} sent a map that is damaged or has more than 64 million cells")
+        return whole
 
     def _answer(self, path: str, headers: Mapping[str, str]) -> Tuple[int, Mapping[str, str], bytes]:
         if self._is_tls:
@@ -686,7 +698,7 @@ class MapRequests:
             connection.request("GET", path, headers=dict(headers))
             answer = connection.getresponse()
             return answer.status, answer.headers, answer.read(self.BYTES_MAX)
-        except (OSError, http.client.HTTPException, zlib.error) as error:
+        except (OSError, http.client.HTTPException) as error:
             raise ValueError(f"no map from {self._where}: {getattr(error, 'strerror', None) or error or 'no answer'}; "
                              "is this the server's HTTP address? Set the parameter http otherwise") from None
         finally:
@@ -1024,8 +1036,8 @@ class Bridge:
         self.reports.log_due()
         status = self._client.status() if self._client else None
         if status and status.is_linked and not self._is_linked:
-            self._output.log("info", f"connected to {self._options.server}; {status.acknowledged} scans of robot "
-                                     f"{self._options.robot} are stored")
+            self._output.log("info", f"connected to {self._options.server}; it had {status.stored_before} scans of "
+                                     f"robot {self._options.robot} before")
         self._is_linked = bool(status and status.is_linked)
         location = self._location
         if location and location.state != self._state:

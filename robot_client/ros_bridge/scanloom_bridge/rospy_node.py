@@ -1,6 +1,7 @@
 """scanloom_bridge as a node of ROS 1."""
+import signal
 import sys
-import threading
+import time
 
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
@@ -66,13 +67,7 @@ def _subscribe(bridge, options):
             [core.odometry_of(message, message.header.stamp.to_nsec())], False), queue_size=100)
 
 
-def main():
-    """Returns the exit code: 0, 1 after a failure or if scans are lost, 2 for invalid parameters."""
-    try:
-        rospy.init_node("scanloom_bridge")
-    except rospy.exceptions.ROSException as error:
-        print(f"scanloom_bridge: {error}", file=sys.stderr)
-        return 1
+def _run(is_ended):
     parameters = rospy.get_param("~", {})
     try:
         options = core.Options.of(parameters)
@@ -83,8 +78,24 @@ def main():
     for name in core.Options.unknown(parameters):
         rospy.logwarn("there is no parameter %s; README.md lists them", name)
     _subscribe(bridge, options)
-    pause = threading.Event()  # waits in real time, also while the clock of a simulation stands still
-    while not rospy.is_shutdown() and not bridge.failure:
+    while not is_ended() and not bridge.failure:
         bridge.tick()
-        pause.wait(1.0 / options.tf_rate)
+        time.sleep(1.0 / options.tf_rate)  # in real time, also while the clock of a simulation stands still
     return bridge.close()
+
+
+def main():
+    """Returns the exit code: 0, 1 after a failure or if scans are lost, 2 for invalid parameters."""
+    try:
+        # rospy's own handlers of signals can block for ever: they may interrupt a call that holds the lock they need.
+        rospy.init_node("scanloom_bridge", disable_signals=True)
+    except (rospy.exceptions.ROSException, KeyboardInterrupt) as error:
+        print(f"scanloom_bridge: no node without a master: {error or 'interrupted'}", file=sys.stderr)
+        return 1
+    signals = []
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda number, _: signals.append(number))
+    try:
+        return _run(lambda: signals or rospy.is_shutdown())
+    finally:
+        rospy.signal_shutdown("the node has ended")
