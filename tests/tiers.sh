@@ -40,7 +40,8 @@ build_tier() {
     case $1 in
         first) make_preset test tests ;;
         *)
-            need fault package tidy readers
+            need fault package tidy readers ros
+            unpack ros-unpacked build/ros
             make_preset test "tests_$1" "${programs[@]}"
             ;;
     esac
@@ -112,6 +113,7 @@ readonly parts_of_all=(
     '^tools[.];lab load tests/integration/lab tests/integration/load'
     '^faults[.];load robot_client server/ingest server/sessions server/store tests/fault tests/integration/robot_client'
     '^e2e_([^l]|layers);server/http server/live tests/e2e web'
+    '^ros_bridge_;robot_client/python robot_client/ros_bridge server/http/handlers/maps.cpp tests/integration/robot_client'
     '^python_client_;proto robot_client/python server/ingest tests/integration/robot_client/python'
     '^observability_;docs/observability server/http/handlers/system.cpp server/metrics tests/integration/observability'
     '^openapi_;server/http/openapi.cpp server/http/openapi.py server/http/openapi.yaml server/http/routes.cpp tests/openapi'

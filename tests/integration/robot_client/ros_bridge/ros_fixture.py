@@ -102,6 +102,12 @@ def write_bag(path, scans=40):
                 write("/rear/scan", scan(seconds - 0.01, "rear", -0.2, True), seconds)
 
 
+def messages_of(path):
+    with rosbag.Bag(str(path)) as bag:
+        for topic, message, time in bag.read_messages():
+            yield time.to_sec(), topic, message
+
+
 class Player:
     """Publishes messages, those of a bag for example, and the clock, as fast as it can."""
 
@@ -132,10 +138,9 @@ class Player:
 
     def play(self, path, until=math.inf, since=-math.inf):
         """until and since are in seconds after the begin."""
-        with rosbag.Bag(str(path)) as bag:
-            for topic, message, time in bag.read_messages():
-                if since <= time.to_sec() - START < until:
-                    self.at(time.to_sec(), topic, message)
+        for time, topic, message in messages_of(path):
+            if since <= time - START < until:
+                self.at(time, topic, message)
 
     def at(self, time, topic, message):
         self._clock.publish(Clock(rospy.Time.from_sec(time)))

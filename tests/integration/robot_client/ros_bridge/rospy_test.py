@@ -7,6 +7,8 @@ import subprocess
 import sys
 import threading
 import unittest
+import urllib.error
+from time import monotonic
 
 import ros_fixture
 import rospy
@@ -55,9 +57,18 @@ class Drive(RosTest):
         write_bag(self.bag)
 
     def test_a_played_bag_gives_the_map_of_its_replay(self):
-        self.start_bridge(scan_topics="scan,rear/scan")
+        self.start_bridge(scan_topics="scan,rear/scan", poses="odometry")
         ros_fixture.player.wait_for_subscribers(rear__scan=1)
-        self.play(self.bag)
+        self.play()
+        given = 0
+        for time, topic, message in ros_fixture.messages_of(self.bag):  # in order, although they come by several links
+            ros_fixture.player.at(time, topic, message)
+            if topic != "/tf":
+                given += topic.endswith("scan")
+                continue
+            until = monotonic() + WAIT
+            while self.stored() < given:
+                self.assertLess(monotonic(), until, self.output())
         self.wait_for_line("sends scans with poses odometry (odom -> base_link)")
         self.assertEqual(self.finish(signal.SIGINT), 0)
         self.assertIn(f"ends: all {self.SCANS} scans are stored", self.output())
@@ -67,6 +78,12 @@ class Drive(RosTest):
         self.assertEqual(code, 0, errors)
         bridged, replayed = (self.server.get_json(session + "/digest") for session in ("s", "replayed"))
         self.assertEqual(bridged["layers"], replayed["layers"])
+
+    def stored(self):
+        try:
+            return self.server.get_json("s")["scans"]
+        except urllib.error.HTTPError:  # there is no session yet
+            return 0
 
     def test_tf2_accepts_the_transform_of_odometry(self):
         heard = Heard(self, "/tf", TFMessage, is_of_odometry)
