@@ -1,5 +1,6 @@
 """What scanloom_bridge sends, publishes and reports, and when."""
 import math
+import tempfile
 import unittest
 
 from fixture import BridgeTest, core, scan, transform
@@ -33,6 +34,7 @@ class Waiting(BridgeTest):
 
     def test_a_scan_waits_for_its_transform(self):
         self.start_with_odometry()
+        self.pass_time(5.0)
         self.bridge.on_scan(scan(100.15))
         self.pass_time(0.9)
         self.assertEqual(len(self.client.sent), 1)
@@ -85,6 +87,23 @@ class Waiting(BridgeTest):
         self.pass_time(1.1)
         self.assert_skipped("a scan of /rear is skipped: no transforms lead from base to rear")
         self.assertEqual(len(self.client.sent), 2)
+
+
+class Connecting(BridgeTest):
+    def test_the_client_has_what_the_parameters_say_and_never_gives_up(self):
+        self.start_with_odometry(server="maps.lab:7447", buffer_mb=3, cell_size=0.1)
+        self.assertEqual(self.client.server, "maps.lab:7447")
+        options = self.client.options
+        self.assertEqual((options["session"], options["robot"], options["poses"], options["cell_size"]),
+                         ("s", "r", "odometry", 0.1))
+        self.assertEqual((options["buffer_bytes"], options["timing"].give_up_after), (3 << 20, math.inf))
+
+    def test_the_token_is_that_of_the_file(self):
+        with tempfile.NamedTemporaryFile("w") as file:
+            file.write("secret\n")
+            file.flush()
+            self.start_with_odometry(token_file=file.name)
+        self.assertEqual(self.client.options["token"], "secret")
 
 
 class Poses(BridgeTest):

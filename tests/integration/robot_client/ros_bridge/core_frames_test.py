@@ -27,7 +27,7 @@ class Trees(unittest.TestCase):
 
     def test_poses_are_interpolated_on_the_shorter_arc(self):
         tree = tree_of(transform("odom", "base", 1.0, (0.0, 0.0, 0.0), yaw_of(3.0)),
-                       transform("odom", "base", 2.0, (4.0, 2.0, 0.0), tuple(-part for part in yaw_of(-3.0))))
+                       transform("odom", "base", 2.0, (4.0, 2.0, 0.0), yaw_of(-3.0)))
         turn = 2.0 * math.pi - 6.0
         self.assert_pose(tree.find("odom", "base", round(1.25 * SECOND)), (1.0, 0.5, 3.0 + turn / 4.0))
         self.assert_pose(tree.find("odom", "base", 1 * SECOND), (0.0, 0.0, 3.0))
@@ -189,11 +189,12 @@ class Sensors(BridgeTest):
 
     def test_a_changed_mount_is_another_sensor_until_it_is_as_before(self):
         self.send(scan(1.0))
-        for at, x in ((1.1, 0.5), (1.2, 0.2)):
-            self.give(transform("base", "laser", translation=(x, -0.1, 0.3)), is_static=True)
+        upright = (0.0, 0.0, 0.0, 1.0)
+        for at, x, rotation in ((1.1, 0.5, upright), (1.2, 0.2, upright), (1.3, 0.2, ROLLED)):
+            self.give(transform("base", "laser", translation=(x, -0.1, 0.3), rotation=rotation), is_static=True)
             self.bridge.on_scan(scan(at))
             self.bridge.tick()
-        self.assertEqual([one["sensor"] for one in self.client.sent], [0, 1, 0])
+        self.assertEqual([one["sensor"] for one in self.client.sent], [0, 1, 0, 2])
 
     def test_a_range_beyond_50_metres_is_not_believed(self):
         self.send(scan(1.0, range_max=1000.0), scan(1.1, range_max=math.nan, range_min=math.nan))
