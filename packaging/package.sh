@@ -42,10 +42,15 @@ install -D --mode 644 -t "$docs" packaging/debian/copyright
 # The documents, and the files that their links name, at the paths of the source tree.
 for file in README.md ARCHITECTURE.md CHANGELOG.md CONTRIBUTING.md GLOSSARY.md SECURITY.md LICENSE packages.txt docs/*.md docs/internals/*.md docs/decisions/*.md docs/observability/* docs/performance/* docs/pictures/*.png \
     docs/landmarks/*.md docs/landmarks/pictures/*.png docs/localization/*.md docs/localization/pictures/*.png \
-    docker/* proto/scanloom/v1/*.proto robot_client/examples/send_scan/send_scan.cpp robot_client/python/scanloom_client.py; do
+    docker/* proto/scanloom/v1/*.proto robot_client/examples/send_scan/send_scan.cpp robot_client/python/scanloom_client.py \
+    robot_client/ros_bridge/README.md; do
     install -D --mode 644 "$file" "$docs/$file"
 done
 packaging/api_pages.sh "$version" "$docs/api"
+# The node of ROS, as a folder for a workspace, with the client instead of a link to it.
+mkdir "$root/usr/share/scanloom/ros"
+cp --recursive --dereference robot_client/ros_bridge "$root/usr/share/scanloom/ros/scanloom_bridge"
+find "$root/usr/share/scanloom/ros" -name __pycache__ -prune -exec rm -r {} +
 node packaging/sbom.mjs "$version" "$architecture" web/package-lock.json "$root"/usr/bin/* >"$output/$name.spdx.json"
 install -D --mode 644 "$output/$name.spdx.json" "$docs/scanloom.spdx.json"
 

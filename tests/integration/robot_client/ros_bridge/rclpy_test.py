@@ -1,6 +1,10 @@
 """The node of ROS 2 with a small fake of rclpy and the real server."""
 import array
 import math
+import os
+import pathlib
+import shutil
+import sys
 import tempfile
 import unittest
 import xml.etree.ElementTree
@@ -10,7 +14,7 @@ import fake_rclpy
 fake_rclpy.install()
 from fake_rclpy import DurabilityPolicy, LaserScan, ReliabilityPolicy, TFMessage, TransformStamped, world  # noqa: E402
 from fixture import PACKAGE, SECOND, core  # noqa: E402
-from programs import RunningServer  # noqa: E402
+from programs import RunningServer, run  # noqa: E402
 from scanloom_bridge import rclpy_node  # noqa: E402
 
 
@@ -143,6 +147,23 @@ class Node(unittest.TestCase):
         code = self.run_node(self.drive, lambda: True, close_wait=0.0, server="127.0.0.1:1")
         self.assertEqual(code, 1)
         self.assertIn("20 scans are not acknowledged", self.texts("error")[0])
+
+
+class Package(unittest.TestCase):
+    def test_setuptools_installs_what_ros_2_looks_for(self):
+        with tempfile.TemporaryDirectory() as directory:
+            source, target = pathlib.Path(directory, "source"), pathlib.Path(directory, "target")
+            shutil.copytree(PACKAGE, source)  # copies files instead of links
+            code, out, errors = run(sys.executable, "setup.py", "install", "--root", target, "--prefix", "/w", cwd=source,
+                                    env={**os.environ, "ROS_VERSION": "2"})
+            self.assertEqual(code, 0, out + errors)
+            installed = {path.name: path for path in target.rglob("*") if path.is_file()}
+            for end in ("lib/scanloom_bridge/scanloom_bridge", "share/scanloom_bridge/package.xml",
+                        "share/ament_index/resource_index/packages/scanloom_bridge",
+                        "share/scanloom_bridge/launch/scanloom_bridge.launch.py", "scanloom_bridge/scanloom_client.py"):
+                found = [path for path in target.rglob(end.rpartition("/")[2]) if str(path).endswith(end)]
+                self.assertEqual(len(found), 1, end)
+            self.assertIn("scanloom_bridge.rclpy_node:main", installed["entry_points.txt"].read_text())
 
 
 class LaunchFiles(unittest.TestCase):

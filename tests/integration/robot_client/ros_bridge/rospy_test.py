@@ -10,6 +10,7 @@ import unittest
 import urllib.error
 from time import monotonic
 
+import catkin_pkg.package
 import ros_fixture
 import rospy
 import tf2_ros
@@ -192,6 +193,14 @@ class Trouble(RosTest):
 
 
 class Catkin(RosTest):
+    def test_the_manifest_is_valid_for_both(self):
+        for version, kind, client in (("1", "catkin", "rospy"), ("2", "ament_python", "rclpy")):
+            manifest = catkin_pkg.package.parse_package(str(PACKAGE / "package.xml"))
+            manifest.evaluate_conditions({"ROS_VERSION": version})
+            manifest.validate()
+            self.assertEqual(manifest.get_build_type(), kind)
+            self.assertIn(client, [one.name for one in manifest.exec_depends if one.evaluated_condition])
+
     def test_the_package_is_built_and_launched(self):
         folder = pathlib.Path(self.directory)
         environment = {**os.environ, "ROS_VERSION": "1", "PYTHONPATH": os.pathsep.join(sys.path)}
