@@ -412,7 +412,7 @@ def available_frames(tree: FrameTree, laser_frame: str, options: Options) -> Uni
     up = f"frames from the laser up are: {', '.join(chain)}"
     above = tree.ancestors(base)
     if not set(above) & set(chain):
-        return f"no transforms lead from {base} to {laser_frame}; {up}"
+        return f"no transforms lead from {base} to {laser_frame}: publish the mount of the laser; {up}"
     del above[0]
     while above and not is_fixed(above[0]):
         del above[0]
@@ -735,12 +735,12 @@ class Reports:
             self._unlogged[reason] = self._unlogged.get(reason, 0) + 1
         self.log_due()
 
-    def log_due(self) -> None:
-        """Logs the reasons whose time has come."""
+    def log_due(self, period: float = PERIOD) -> None:
+        """Logs the reasons that were not logged for the period, in seconds."""
         now = self._clock()
         with self._lock:
             due = [(reason, count) for reason, count in self._unlogged.items()
-                   if now >= self._logged.get(reason, -math.inf) + self.PERIOD]
+                   if now >= self._logged.get(reason, -math.inf) + period]
             for reason, _ in due:
                 self._logged[reason] = now
                 del self._unlogged[reason]
@@ -1092,6 +1092,7 @@ class Bridge:
             for one in self._waiting:
                 self._skip(one.scan, "the node ended while it waited for transforms")
             self._waiting.clear()
+        self.reports.log_due(period=0.0)
         if self._client and not self.failure:
             try:
                 self._client.close(timeout=self._options.close_wait)

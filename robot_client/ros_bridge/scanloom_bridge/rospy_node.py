@@ -3,6 +3,7 @@ import signal
 import sys
 import time
 
+import rosgraph
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from geometry_msgs.msg import TransformStamped
@@ -68,8 +69,8 @@ def _subscribe(bridge, options):
 
 
 def _run(is_ended):
-    parameters = rospy.get_param("~", {})
     try:
+        parameters = rospy.get_param("~", {})
         options = core.Options.of(parameters)
         bridge = core.Bridge(options, RospyOutput(options))
     except (ValueError, OSError) as error:
@@ -89,9 +90,12 @@ def main():
     try:
         # rospy's own handlers of signals can block for ever: they may interrupt a call that holds the lock they need.
         rospy.init_node("scanloom_bridge", disable_signals=True)
-    except (rospy.exceptions.ROSException, KeyboardInterrupt) as error:
-        print(f"scanloom_bridge: no node without a master: {error or 'interrupted'}", file=sys.stderr)
+    except (rospy.exceptions.ROSException, OSError) as error:
+        print(f"scanloom_bridge: cannot use the ROS master {rosgraph.get_master_uri()}: {error}; is roscore running there?",
+              file=sys.stderr)
         return 1
+    except KeyboardInterrupt:
+        return 1  # rospy has said that it waits for the master
     signals = []
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda number, _: signals.append(number))

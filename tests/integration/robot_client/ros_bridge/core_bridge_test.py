@@ -329,6 +329,13 @@ class Ending(BridgeTest):
         self.assertEqual(self.logged("error"),
                          ["ends with scans that are lost: 1 scans are not acknowledged: no connection"])
 
+    def test_its_last_lines_are_the_counts_since_the_last_report(self):
+        self.start_with_odometry()
+        for _ in range(5):
+            self.bridge.on_scan(scan(100.05))
+        self.bridge.close()
+        self.assertTrue(self.logged("warn")[-1].endswith("(4 times)"))
+
     def test_without_scans_it_ends_well(self):
         self.start()
         self.assertEqual(self.bridge.close(), 0)

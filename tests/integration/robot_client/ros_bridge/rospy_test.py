@@ -192,6 +192,17 @@ class Trouble(RosTest):
                 self.end_bridge()
 
 
+    def test_without_a_master_it_says_so(self):
+        uri = os.environ["ROS_MASTER_URI"]
+        os.environ["ROS_MASTER_URI"] = "http://127.0.0.1:1"
+        try:
+            self.start_bridge()
+        finally:
+            os.environ["ROS_MASTER_URI"] = uri
+        self.assertEqual(self.finish(), 1)
+        self.assertIn("cannot use the ROS master http://127.0.0.1:1", self.output())
+
+
 class Catkin(RosTest):
     def test_the_manifest_is_valid_for_both(self):
         for version, kind, client in (("1", "catkin", "rospy"), ("2", "ament_python", "rclpy")):
