@@ -68,6 +68,7 @@ class Options:
     map_period: float = 2.0
     http: str = ""
     token_file: str = ""
+    map_token_file: str = ""
     tls: bool = False
     tls_ca: str = ""
     tls_cert: str = ""
@@ -119,12 +120,6 @@ class Options:
             context.load_cert_chain(self.tls_cert, self.tls_key or None)
         return context
 
-    def token(self) -> str:
-        """Raises OSError if the file cannot be read, ValueError if it is not text."""
-        if not self.token_file:
-            return ""
-        with open(self.token_file, encoding="utf-8") as file:
-            return file.read().strip()
 
 
 _NAME = ("[A-Za-z0-9_-]{1,64}", "1 to 64 letters, digits, '_' and '-' are possible")
@@ -151,6 +146,15 @@ def _parameter(name: str, value: Any, default: Any) -> Any:
         needed = {bool: "true or false is", int: "a whole number is", float: "a finite number is", str: "text is"}
         raise ValueError(f"parameter {name} is {value!r}; {needed[type(default)]} needed")
     return value
+
+
+def _token(file_name: str) -> str:
+    """Returns the token of a file; empty without a file. Raises OSError if it cannot be read, ValueError if it is not
+    text."""
+    if not file_name:
+        return ""
+    with open(file_name, encoding="utf-8") as file:
+        return file.read().strip()
 
 
 def _host_name() -> str:
@@ -669,8 +673,7 @@ class MapRequests:
         if status in (304, 404):
             return known, b""
         if status in (401, 403):
-            raise ValueError(f"{self._where} refused the map ({status}); publish_map needs a token that may view the "
-                             "session, in token_file")
+            raise ValueError(f"{self._where} refused the map ({status}); give the token of a viewer in map_token_file")
         if status != 200:
             raise ValueError(f"{self._where} answered the request for the map with {status}; is it the server's HTTP "
                              "address? Set the parameter http otherwise")
@@ -806,7 +809,7 @@ class Bridge:
         self._output = output
         self._connect = connect
         self._clock = clock
-        self._token = options.token()
+        self._token = _token(options.token_file)
         self._tls = options.tls_context()
         self._lock = threading.RLock()
         self._tree = FrameTree()
@@ -832,7 +835,7 @@ class Bridge:
         self._stopping = threading.Event()
         self._map_thread: Optional[threading.Thread] = None
         if options.publish_map:
-            requests = MapRequests(options, self._token, self._tls)
+            requests = MapRequests(options, _token(options.map_token_file) or self._token, self._tls)
             self._map_thread = threading.Thread(target=self._publish_maps, args=(requests,), daemon=True)
         logging.getLogger("scanloom").addHandler(self._client_log)
         if self._map_thread:

@@ -20,14 +20,14 @@ faulthandler.dump_traceback_later(200, exit=True)  # prints the stack of a test 
 
 
 class RunningServer:
-    """A scanloom-server, ready when constructed. Ports 0 select free ones."""
+    """A scanloom-server, ready when constructed. Ports 0 select free ones. options are further arguments."""
 
-    def __init__(self, directory, robot_port=0, http_port=0):
+    def __init__(self, directory, robot_port=0, http_port=0, options=()):
         directory = pathlib.Path(directory)
         with open(directory / "server.log", "ab") as log:
             self.process = subprocess.Popen(
                 [PROGRAMS / "scanloom-server", "--store", directory / "store", "--listen", f"127.0.0.1:{robot_port}",
-                 "--http", f"127.0.0.1:{http_port}"], stdout=subprocess.PIPE, stderr=log)
+                 "--http", f"127.0.0.1:{http_port}", *options], stdout=subprocess.PIPE, stderr=log)
         ready = json.loads(self.process.stdout.readline() or "{}")
         if "robot_port" not in ready:
             self.stop()

@@ -152,11 +152,14 @@ class RosTest(unittest.TestCase):
         directory = tempfile.TemporaryDirectory()
         self.addCleanup(directory.cleanup)
         self.directory = directory.name
-        self.server = RunningServer(self.directory)
+        self.server = RunningServer(self.directory, options=self.server_options())
         self.addCleanup(lambda: self.server.stop())
         player.begin()
         if rospy.has_param("/scanloom_bridge"):  # the master keeps parameters of earlier nodes
             rospy.delete_param("/scanloom_bridge")
+
+    def server_options(self):
+        return ()
 
     def start_bridge(self, **parameters):
         """Starts the node; finish() ends it."""
@@ -207,6 +210,13 @@ class RosTest(unittest.TestCase):
         self.assertNotIn("Traceback", self.output())
         self.assertGreaterEqual(code, 0, self.output())
         return code
+
+    def send_scans_until_it_ends(self):
+        """A scan after the server's answer meets its error."""
+        for n in range(1, 1000):
+            player.at(START + 1.0 + 0.1 * n, "/scan", scan(1.0 + 0.1 * n, "front", 0.2, False))
+            if self.ends_within(0.05):
+                return
 
     def ends_within(self, seconds):
         try:

@@ -1,4 +1,5 @@
 """The node of ROS 1 with Debian's rosmaster, rospy, rostopic and tf2, and the real server."""
+import hashlib
 import math
 import os
 import pathlib
@@ -175,10 +176,7 @@ class Trouble(RosTest):
         scanloom_client.Client(self.server.address, session="s", robot="other", cell_size=0.1).close()
         self.start_bridge(poses="none", base_frame="front", cell_size=0.05)
         self.play(self.scan(1.0))
-        for n in range(2, 1000):  # a scan after the server's answer meets the error
-            ros_fixture.player.at(*self.scan(1.0 + 0.1 * n))
-            if self.ends_within(0.05):
-                break
+        self.send_scans_until_it_ends()
         self.assertEqual(self.finish(), 1)
         self.assertIn("cell_size", self.output())
 
@@ -201,6 +199,46 @@ class Trouble(RosTest):
             os.environ["ROS_MASTER_URI"] = uri
         self.assertEqual(self.finish(), 1)
         self.assertIn("cannot use the ROS master http://127.0.0.1:1", self.output())
+
+
+class Tokens(RosTest):
+    """With a server that has the tokens of a robot and of a viewer."""
+
+    def server_options(self):
+        lines = ""
+        for role in ("robot", "viewer"):
+            self.file(role).write_text(role + "'s secret\n")
+            digest = hashlib.sha256((role + "'s secret").encode()).hexdigest()
+            lines += f'[[token]]\nname = "{role}"\nsha256 = "{digest}"\nrole = "{role}"\nsessions = ["*"]\n'
+        self.file("wrong").write_text("wrong\n")
+        self.file("tokens.toml").write_text(lines)
+        self.file("tokens.toml").chmod(0o600)
+        return "--tokens", str(self.file("tokens.toml"))
+
+    def file(self, name):
+        return pathlib.Path(self.directory) / name
+
+    def start(self, **parameters):
+        self.start_bridge(poses="none", base_frame="front", **parameters)
+        self.play((START + 1.0, "/scan", ros_fixture.scan(1.0, "front", 0.2, False)))
+
+    def test_a_wrong_token_ends_the_node(self):
+        self.start(token_file=self.file("wrong"))
+        self.send_scans_until_it_ends()
+        self.assertEqual(self.finish(), 1)
+        self.assertIn("token", self.output())
+
+    def test_maps_need_the_token_of_a_viewer(self):
+        self.start(token_file=self.file("robot"), publish_map=True, map_period=0.1)
+        self.wait_for_line("the map is not published: ")
+        self.wait_for_line("give the token of a viewer in map_token_file")
+        self.assertEqual(self.finish(signal.SIGINT), 0)
+
+    def test_maps_are_published_with_the_token_of_a_viewer(self):
+        maps = Heard(self, "/map", OccupancyGrid)
+        self.start(token_file=self.file("robot"), map_token_file=self.file("viewer"), publish_map=True, map_period=0.1)
+        self.assertTrue(maps.wait_for(bool), self.output())
+        self.assertEqual(self.finish(signal.SIGINT), 0)
 
 
 class Catkin(RosTest):
