@@ -128,7 +128,8 @@ _PATTERNS = {"session": _NAME, "robot": _NAME, "server": (r"\S+:\d{1,5}", "HOST:
 _CHOICES = {"poses": ("auto", "map", "odometry", "none"), "zero": ("broken", "no-return"),
             "beyond_max": ("auto", "broken", "no-return")}
 _BOUNDS = {"tf_wait": (0.0, 10.0), "start_wait": (0.0, 60.0), "tf_rate": (1.0, 100.0), "tf_tolerance": (0.0, 10.0),
-           "map_period": (0.1, 3600.0), "cell_size": (0.0, 1.0), "range_max": (0.0, 1000.0), "buffer_mb": (1, 4096), "close_wait": (0.0, 600.0)}
+           "map_period": (0.1, 3600.0), "cell_size": (0.0, 1.0), "range_max": (0.0, 1000.0), "buffer_mb": (1, 4096),
+           "close_wait": (0.0, 600.0)}
 
 
 def _parameter(name: str, value: Any, default: Any) -> Any:
@@ -1049,8 +1050,9 @@ class Bridge:
             if text:
                 self._output.log(level, text)
         if location and location.mount_yaw_error is not None:
-            self.reports.add(f"the yaw of the laser's mount is too large by {math.degrees(location.mount_yaw_error):.0f} "
-                             "degrees: correct the transform from the robot to the laser")
+            degrees = math.degrees(location.mount_yaw_error)
+            self.reports.add(f"the yaw of the laser's mount is too large by {degrees:.0f} degrees: correct the "
+                             "transform from the robot to the laser")
         if self._clock() >= self._diagnosed + 1.0:
             self._diagnosed = self._clock()
             self._report_late_odometry()

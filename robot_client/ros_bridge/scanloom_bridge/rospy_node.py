@@ -91,8 +91,8 @@ def main():
         # rospy's own handlers of signals can block for ever: they may interrupt a call that holds the lock they need.
         rospy.init_node("scanloom_bridge", disable_signals=True)
     except (rospy.exceptions.ROSException, OSError) as error:
-        print(f"scanloom_bridge: cannot use the ROS master {rosgraph.get_master_uri()}: {error}; is roscore running there?",
-              file=sys.stderr)
+        print(f"scanloom_bridge: cannot use the ROS master {rosgraph.get_master_uri()}: {error}; is roscore running "
+              "there?", file=sys.stderr)
         return 1
     except KeyboardInterrupt:
         return 1  # rospy has said that it waits for the master

@@ -364,8 +364,9 @@ class Parameters(unittest.TestCase):
 
     def test_invalid_ones_are_named(self):
         for reason, wrong in [("session is missing", {"session": ""}), ("session is 'my lab'", {"session": "my lab"}),
-                              ("server is 'lab'; HOST:PORT", {"server": "lab"}), ("http is 'lab:8080'", {"http": "lab:8080"}),
-                              ("http is 'http://lab/map'", {"http": "http://lab/map"}), ("poses is 'gps'", {"poses": "gps"}),
+                              ("server is 'lab'; HOST:PORT", {"server": "lab"}), ("poses is 'gps'", {"poses": "gps"}),
+                              ("http is 'lab:8080'", {"http": "lab:8080"}),
+                              ("http is 'http://lab/map'", {"http": "http://lab/map"}),
                               ("tf_rate is 0; 1 to 100", {"tf_rate": 0}), ("tf_wait is nan", {"tf_wait": math.nan}),
                               ("publish_tf is 'yes'; true or false", {"publish_tf": "yes"}),
                               ("buffer_mb is 1.5; a whole number", {"buffer_mb": 1.5}),

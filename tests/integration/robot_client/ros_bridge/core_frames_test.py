@@ -74,8 +74,8 @@ class Trees(unittest.TestCase):
 
         self.assertEqual(core.transform_of(message(), 5), core.Transform(
             "odom", "base", 5, core.Rigid((1.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))))
-        for wrong in (message(x=math.nan), message(w=0.0), message(w=math.inf), message(child=""), message(child="odom")):
-            self.assertIsNone(core.transform_of(wrong, 5))
+        for wrong in ({"x": math.nan}, {"w": 0.0}, {"w": math.inf}, {"child": ""}, {"child": "odom"}):
+            self.assertIsNone(core.transform_of(message(**wrong), 5))
 
 
 class Choice(unittest.TestCase):
@@ -198,7 +198,8 @@ class Sensors(BridgeTest):
 
     def test_a_range_beyond_50_metres_is_not_believed(self):
         self.send(scan(1.0, range_max=1000.0), scan(1.1, range_max=math.nan, range_min=math.nan))
-        self.assertEqual([(one["range_min"], one["range_max"]) for one in self.client.sensors], [(0.1, 50.0), (0.0, 50.0)])
+        self.assertEqual([(one["range_min"], one["range_max"]) for one in self.client.sensors],
+                         [(0.1, 50.0), (0.0, 50.0)])
 
 
 if __name__ == "__main__":

@@ -79,7 +79,8 @@ class Maps(unittest.TestCase):
         self.assertEqual(seen, ["Bearer secret"])
 
     def test_errors_say_what_to_do(self):
-        for status, reason in [(401, "token of a viewer in map_token_file"), (403, "token of a viewer in map_token_file"),
+        for status, reason in [(401, "token of a viewer in map_token_file"),
+                               (403, "token of a viewer in map_token_file"),
                                (500, "with 500; is it the server's HTTP address"), (302, "with 302")]:
             with self.subTest(status):
                 self.start(lambda request, status=status: (status, {"Location": "http://127.0.0.1:1/"}, b""))

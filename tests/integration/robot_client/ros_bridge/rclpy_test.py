@@ -154,8 +154,8 @@ class Package(unittest.TestCase):
         with tempfile.TemporaryDirectory() as directory:
             source, target = pathlib.Path(directory, "source"), pathlib.Path(directory, "target")
             shutil.copytree(PACKAGE, source)  # copies files instead of links
-            code, out, errors = run(sys.executable, "setup.py", "install", "--root", target, "--prefix", "/w", cwd=source,
-                                    env={**os.environ, "ROS_VERSION": "2"})
+            code, out, errors = run(sys.executable, "setup.py", "install", "--root", target, "--prefix", "/w",
+                                    cwd=source, env={**os.environ, "ROS_VERSION": "2"})
             self.assertEqual(code, 0, out + errors)
             installed = {path.name: path for path in target.rglob("*") if path.is_file()}
             for end in ("lib/scanloom_bridge/scanloom_bridge", "share/scanloom_bridge/package.xml",

@@ -1,6 +1,7 @@
 """A master of ROS 1 on a free port, bags of a simulated drive, and their player."""
 import math
 import os
+import shutil
 import signal as signals
 import subprocess
 import sys
@@ -21,7 +22,15 @@ from sensor_msgs.msg import LaserScan  # noqa: E402
 from tf2_msgs.msg import TFMessage  # noqa: E402
 
 # Ends with its standard input, that is, with the test.
-MASTER = "import rosmaster.master as m, sys; a = m.Master(0); a.start(); print(a.uri, flush=True); sys.stdin.read(); a.stop()"
+MASTER = """
+import rosmaster.master
+import sys
+master = rosmaster.master.Master(0)
+master.start()
+print(master.uri, flush=True)
+sys.stdin.read()
+master.stop()
+"""
 START = 1_500_000_000.0  # of the bag, in seconds
 WAIT = 60.0  # seconds, for what comes within a moment unless the computer is very busy
 ROLLED = (1.0, 0.0, 0.0, 0.0)  # upside down
@@ -40,6 +49,7 @@ def setUpModule():
 def tearDownModule():
     rospy.signal_shutdown("the tests have ended")
     _master.communicate()
+    shutil.rmtree(os.environ["ROS_LOG_DIR"])
 
 
 def transform(at, parent, child, x=0.0, y=0.0, yaw=0.0, rotation=None):
@@ -121,7 +131,8 @@ class Player:
             peers = self._peers[topic] = threading.Semaphore(0)
             listener = rospy.SubscribeListener()
             listener.peer_subscribe = lambda *_, peers=peers: peers.release()
-            self._publishers[topic] = rospy.Publisher(topic, kind, listener, latch=topic == "/tf_static", queue_size=500)
+            self._publishers[topic] = rospy.Publisher(topic, kind, listener, latch=topic == "/tf_static",
+                                                      queue_size=500)
 
     def begin(self):
         """Sets the clock to the begin of the bag, and ignores the subscribers that are there."""
@@ -166,8 +177,9 @@ class RosTest(unittest.TestCase):
         given = {"server": self.server.address, "http": f"http://127.0.0.1:{self.server.http_port}", "session": "s",
                  "robot": "r", "tf_wait": 10.0, **parameters}
         paths = [str(PACKAGE), *sys.path]
+        arguments = [f"_{name}:={value}" for name, value in given.items()]
         self.bridge = subprocess.Popen(
-            [sys.executable, PACKAGE / "scripts/scanloom_bridge", *(f"_{name}:={value}" for name, value in given.items())],
+            [sys.executable, PACKAGE / "scripts/scanloom_bridge", *arguments],
             stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
             env={**os.environ, "PYTHONPATH": os.pathsep.join(paths), "PYTHONUNBUFFERED": "1",
                  "PYTHONFAULTHANDLER": "1"})
