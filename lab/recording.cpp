@@ -161,7 +161,7 @@ std::vector<Point2> points_in_map(std::span<const Scan> scans, const Sensor& sen
 }
 
 Result<RecordedCapture> read_ld06_recording(const std::filesystem::path& path) {
-    const robot::Ld06ScanOptions options;
+    const robot::LidarScanOptions options;
     auto source = robot::Ld06Capture::open(path, options, Pose2{});
     if (!source) return source.error();
     RecordedCapture recorded{{*robot::ld06_sensor(options), {}}, path.filename().string(), source->remarks()};

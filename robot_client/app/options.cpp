@@ -135,7 +135,7 @@ CLI::App* add_sonar(CLI::App& app, SonarReplayOptions& options) {
 /// @param word  the value of --poses
 /// @param ld06  nullptr for another source. For one release, a word that is not known names the file of its poses.
 /// @return an error, or an empty string
-std::string set_poses(const std::string& word, Ld06Options* ld06, RobotOptions& options) {
+std::string set_poses(const std::string& word, LidarOptions* ld06, RobotOptions& options) {
     if (word.empty()) return {};
     if (const auto poses = find_poses(word)) {
         options.poses = *poses;
@@ -159,7 +159,8 @@ std::variant<RobotOptions, GroundTruthOptions, InfoOptions, Leave> parse_options
     sim::SimulatedRobotOptions simulate_options;
     GroundTruthOptions truth_options;
     InfoOptions info_options;
-    Ld06Options ld06_options;
+    LidarOptions ld06_options;
+    LidarOptions lidar_options;
 
     CLI::App app(kAbout, "scanloom-robot");
     app.footer(kFooter);
@@ -172,6 +173,7 @@ std::variant<RobotOptions, GroundTruthOptions, InfoOptions, Leave> parse_options
     const CLI::App* replay = add_replay(app, replay_options)->fallthrough();
     const CLI::App* sonar = add_sonar(app, sonar_options)->fallthrough();
     const CLI::App* ld06 = add_ld06(app, ld06_options)->fallthrough();
+    const CLI::App* lidar = add_lidar(app, lidar_options)->fallthrough();
     const CLI::App* simulate = add_simulate(app, simulate_options)->fallthrough();
     const CLI::App* truth = add_ground_truth(app, truth_options)->fallthrough();
     const CLI::App* info = add_info(app, info_options)->fallthrough();
@@ -182,8 +184,8 @@ std::variant<RobotOptions, GroundTruthOptions, InfoOptions, Leave> parse_options
         app.parse(argc, argv);
     } catch (const CLI::ParseError& reason) {
         return leave_for(app, reason,
-                         "name a source: replay FILE, sonar MEASUREMENTS POSES, ld06 INPUT, or simulate; or a command: "
-                         "info FILE, or truth");
+                         "name a source: replay FILE, sonar MEASUREMENTS POSES, lidar MODEL DEVICE, ld06 INPUT, or "
+                         "simulate; or a command: info FILE, or truth");
     }
     if (truth->parsed()) {
         if (auto mistake = mistake_in(truth_options)) return usage_error(app, *mistake);
@@ -205,7 +207,8 @@ std::variant<RobotOptions, GroundTruthOptions, InfoOptions, Leave> parse_options
     if (const auto wrong = set_poses(raw.poses, ld06->parsed() ? &ld06_options : nullptr, options); !wrong.empty()) {
         return usage_error(app, wrong);
     }
-    const bool is_recording = !ld06->parsed() && !(simulate->parsed() && simulate_options.drive == "explore");
+    const bool is_recording =
+        !ld06->parsed() && !lidar->parsed() && !(simulate->parsed() && simulate_options.drive == "explore");
     if (!options.spool.empty() && is_recording) {
         return usage_error(app, "--spool is for what cannot be had again; this source can: the same command continues "
                                 "after the stored scans; leave --spool out");
@@ -221,10 +224,11 @@ std::variant<RobotOptions, GroundTruthOptions, InfoOptions, Leave> parse_options
                                "--poses map or --poses odometry");
         }
         options.source = std::move(sonar_options);
-    } else if (ld06->parsed()) {
-        if (const auto wrong = complaint_about(ld06_options, options.poses.value_or(Poses::kMap)); !wrong.empty())
+    } else if (ld06->parsed() || lidar->parsed()) {
+        LidarOptions& chosen = ld06->parsed() ? ld06_options : lidar_options;
+        if (const auto wrong = complaint_about(chosen, options.poses.value_or(Poses::kMap)); !wrong.empty())
             return usage_error(app, wrong);
-        options.source = std::move(ld06_options);
+        options.source = std::move(chosen);
     } else if (simulate->parsed()) {
         if (auto mistake = mistake_in(simulate_options, options.poses.value_or(Poses::kMap)))
             return usage_error(app, *mistake);

@@ -3,7 +3,7 @@
 #include "common/app/link_options.hpp"
 #include "common/app/program.hpp"
 #include "common/scan/poses.hpp"
-#include "robot_client/app/ld06_options.hpp"
+#include "robot_client/app/lidar_options.hpp"
 #include "robot_client/app/replay_options.hpp"
 #include "robot_client/sources/source.hpp"
 #include "robot_client/spool/spool.hpp"
@@ -53,7 +53,7 @@ struct RobotOptions : LinkOptions {
     std::chrono::milliseconds batch_delay{0};
     std::uint64_t batch_bytes_max = 0;
     bool compress = false;
-    std::variant<ReplayOptions, SonarReplayOptions, sim::SimulatedRobotOptions, Ld06Options> source;
+    std::variant<ReplayOptions, SonarReplayOptions, sim::SimulatedRobotOptions, LidarOptions> source;
 };
 
 /// Reads the command line, SCANLOOM_* environment variables and the file of --config. Flags override the environment,

@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t kChunkBytes = 16'384;
 
 /// Returns the options that determine the scans. Doubles are written so that different ones differ.
-std::string text_of(const Ld06ScanOptions& options, const Ld06Poses& poses) {
+std::string text_of(const LidarScanOptions& options, const LidarPoses& poses) {
     // Increase the number when the same bytes give different scans.
     std::string text =
         fmt::format("ld06 1\nrange {} {} {}\nconfidence {}\nmedian {}\nmount {} {} {}\n", options.range_min,
@@ -35,11 +35,11 @@ std::string text_of(const Ld06ScanOptions& options, const Ld06Poses& poses) {
 
 } // namespace
 
-Ld06Capture::Ld06Capture(const std::filesystem::path& path, const Ld06ScanOptions& options, Ld06Poses poses)
+Ld06Capture::Ld06Capture(const std::filesystem::path& path, const LidarScanOptions& options, LidarPoses poses)
     : path_(path.string()), options_(options), poses_(std::move(poses)), sensor_(ld06_sensor(options)) {}
 
-Result<Ld06Capture> Ld06Capture::open(const std::filesystem::path& path, const Ld06ScanOptions& options,
-                                      Ld06Poses poses) {
+Result<Ld06Capture> Ld06Capture::open(const std::filesystem::path& path, const LidarScanOptions& options,
+                                      LidarPoses poses) {
     Ld06Capture capture(path, options, std::move(poses));
     if (auto read = capture.survey(); !read) return read.error();
     if (auto again = capture.reopen(); !again) return again.error();
@@ -54,7 +54,7 @@ Result<> Ld06Capture::reopen() {
 
 /// @param on_bytes  called with the bytes read from the file
 template <class OnBytes>
-std::optional<Ld06Turn> Ld06Capture::next_turn(OnBytes&& on_bytes) {
+std::optional<LidarTurn> Ld06Capture::next_turn(OnBytes&& on_bytes) {
     auto& [file, decoder, clock, turns] = reading_;
     for (;;) {
         if (auto turn = turns.next()) return turn;
@@ -71,7 +71,7 @@ std::optional<Ld06Turn> Ld06Capture::next_turn(OnBytes&& on_bytes) {
     }
 }
 
-std::optional<Scan> Ld06Capture::scan_of(const Ld06Turn& turn) const {
+std::optional<Scan> Ld06Capture::scan_of(const LidarTurn& turn) const {
     const auto* timeline = std::get_if<PoseTimeline>(&poses_);
     const auto pose = timeline != nullptr ? timeline->at(turn.stamp) : std::get<Pose2>(poses_);
     if (!pose) return std::nullopt;
@@ -85,13 +85,13 @@ Result<> Ld06Capture::survey() {
     if (auto opened = reopen(); !opened) return opened;
     Sha256 hash;
     hash.update(text_of(options_, poses_));
-    Ld06Losses losses;
+    LidarLosses losses;
     while (const auto turn = next_turn([&](std::string_view bytes) { hash.update(bytes); })) {
         ++(scan_of(*turn) ? scan_count_ : losses.without_pose);
     }
     fingerprint_ = "ld06:" + hash.hex().substr(0, 32);
     const auto& counts = reading_.decoder.counts();
-    remarks_ = ld06_remarks(counts, reading_.turns, losses);
+    remarks_ = lidar_remarks(ld06_counts(counts, reading_.turns), losses);
     if (scan_count_ > 0) return {};
     if (losses.without_pose > 0) {
         return Error{

@@ -2,18 +2,13 @@
 
 #include "robot_client/sources/ld06_packet.hpp"
 #include "robot_client/sources/ld06_turns.hpp"
-#include "robot_client/sources/pose_path.hpp"
+#include "robot_client/sources/lidar_scan.hpp"
 
 #include <filesystem>
 #include <fstream>
 #include <string>
-#include <variant>
 
 namespace scanloom::robot {
-
-/// The robot's pose: one pose for the whole recording, or a timeline of poses. What it is, Ld06ScanOptions::poses says;
-/// with kNone it is one pose, which is not sent.
-using Ld06Poses = std::variant<Pose2, PoseTimeline>;
 
 /// A source of the recorded bytes of an LD06: one scan for each turn that has a pose. Stamps and the times of poses are
 /// seconds since the first packet.
@@ -23,8 +18,8 @@ class Ld06Capture final : public Source {
 public:
     /// Errors: kNotFound if the file does not exist, cannot be read or contains no scan: no full turn, or none with a
     ///         pose.
-    [[nodiscard]] static Result<Ld06Capture> open(const std::filesystem::path& path, const Ld06ScanOptions& options,
-                                                  Ld06Poses poses);
+    [[nodiscard]] static Result<Ld06Capture> open(const std::filesystem::path& path, const LidarScanOptions& options,
+                                                  LidarPoses poses);
 
     /// Errors: kConflict if the file has changed since open().
     [[nodiscard]] Result<std::optional<Observation>> next() override;
@@ -43,17 +38,17 @@ private:
         Ld06Turns turns;
     };
 
-    Ld06Capture(const std::filesystem::path& path, const Ld06ScanOptions& options, Ld06Poses poses);
+    Ld06Capture(const std::filesystem::path& path, const LidarScanOptions& options, LidarPoses poses);
 
     [[nodiscard]] Result<> reopen();
     template <class OnBytes>
-    [[nodiscard]] std::optional<Ld06Turn> next_turn(OnBytes&& on_bytes);
-    [[nodiscard]] std::optional<Scan> scan_of(const Ld06Turn& turn) const;
+    [[nodiscard]] std::optional<LidarTurn> next_turn(OnBytes&& on_bytes);
+    [[nodiscard]] std::optional<Scan> scan_of(const LidarTurn& turn) const;
     [[nodiscard]] Result<> survey();
 
     std::string path_;
-    Ld06ScanOptions options_;
-    Ld06Poses poses_;
+    LidarScanOptions options_;
+    LidarPoses poses_;
     std::shared_ptr<const Sensor> sensor_;
     Reading reading_;
     std::uint64_t scan_count_ = 0;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "robot_client/sources/lidar_turn.hpp"
+
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -20,17 +22,10 @@ inline constexpr std::uint16_t kLd06ClockWrap = 30'000; ///< milliseconds
 inline constexpr std::int32_t kLd06StepsPerDegree = 1100;
 inline constexpr std::int32_t kLd06StepsPerTurn = 360 * kLd06StepsPerDegree;
 
-struct Ld06Point {
-    std::uint16_t distance = 0;  ///< millimetres; 0 = no measurement
-    std::uint8_t confidence = 0; ///< the sensor's own scale
-
-    friend bool operator==(const Ld06Point&, const Ld06Point&) = default;
-};
-
 struct Ld06Packet {
     std::uint16_t speed = 0;       ///< degrees per second
     std::uint16_t start_angle = 0; ///< of the first point; 0.01 degree, clockwise seen from above, 0 = ahead
-    std::array<Ld06Point, kLd06PacketPoints> points;
+    std::array<LidarPoint, kLd06PacketPoints> points;
     std::uint16_t end_angle = 0; ///< of the last point
     std::uint16_t timestamp = 0; ///< milliseconds, wraps at kLd06ClockWrap
 

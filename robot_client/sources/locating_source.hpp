@@ -20,7 +20,7 @@ namespace scanloom::robot {
 /// dropped.
 ///
 /// While a reply is awaited the laser is not read: a laser that cannot wait keeps the newest turns itself and drops
-/// older ones (Ld06Live). If the server is busy, the request is repeated. The turns of a request are kept here and are
+/// older ones (LidarLive). If the server is busy, the request is repeated. The turns of a request are kept here and are
 /// given however late the reply is. Once the position is known, the source needs the server no more until the laser is
 /// moved.
 ///

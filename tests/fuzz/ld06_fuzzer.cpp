@@ -10,7 +10,7 @@ namespace {
 struct Outcome {
     std::vector<Ld06Packet> packets;
     Ld06Counts counts;
-    std::vector<Ld06Turn> turns;
+    std::vector<LidarTurn> turns;
 
     friend bool operator==(const Outcome&, const Outcome&) = default;
 };
@@ -42,7 +42,7 @@ Outcome decode_stream(Bytes stream, Bytes sizes) {
     return outcome;
 }
 
-void check_turn(const Ld06Turn& turn, const Ld06ScanOptions& options) {
+void check_turn(const LidarTurn& turn, const LidarScanOptions& options) {
     fuzz::check(!turn.beams.empty() && turn.beams.front().step >= 0 && turn.beams.back().step < kLd06StepsPerTurn,
                 "a turn has angles from 0 to 360 degrees");
     for (std::size_t i = 1; i < turn.beams.size(); ++i) {
@@ -72,7 +72,7 @@ SCANLOOM_FUZZER(ld06)(const std::uint8_t* data, std::size_t size) {
     const auto& counts = whole.counts;
     const std::size_t used = kLd06PacketBytes * (counts.packets + counts.implausible) + counts.skipped_bytes;
     fuzz::check(used <= stream.size() && stream.size() - used < kLd06PacketBytes, "every byte is used once");
-    Ld06ScanOptions options{.confidence_min = 0};
+    LidarScanOptions options{.confidence_min = 0};
     if (data[0] >= 128) options.median_window = 3 + 2 * (data[0] % 25);
     for (const auto& turn : whole.turns) check_turn(turn, options);
     return 0;

@@ -226,7 +226,7 @@ TEST_F(Options, SectionOfTheSourceMayHoldAnOptionOfTheProgram) {
     EXPECT_EQ(parsed(with({"replay", "f"})).poses, Poses::kMap);
     const auto old = file("session = \"s\"\nrobot = \"r\"\n[ld06]\nposes = \"p.txt\"\n");
     unsetenv("SCANLOOM_POSES");
-    EXPECT_EQ(std::get<Ld06Options>(parsed({"ld06", "f", "--config", old}).source).pose_file, "p.txt");
+    EXPECT_EQ(std::get<LidarOptions>(parsed({"ld06", "f", "--config", old}).source).pose_file, "p.txt");
     EXPECT_EQ(parsed({"simulate", "--config", old}).poses, std::nullopt);
 }
 
@@ -286,8 +286,8 @@ TEST_F(Options, MistakesAreOneLineUsageErrors) {
     const std::vector<std::pair<std::vector<std::string>, std::string>> mistakes{
         {{}, "name a source"},
         {{"--session", "s", "--robot", "r"},
-         "name a source: replay FILE, sonar MEASUREMENTS POSES, ld06 INPUT, or simulate; or a command: info FILE, or "
-         "truth;"},
+         "name a source: replay FILE, sonar MEASUREMENTS POSES, lidar MODEL DEVICE, ld06 INPUT, or simulate; or a "
+         "command: info FILE, or truth;"},
         {{"simulate", "--robot", "r"}, "--session is required"},
         {{"simulate", "--session", "a/b", "--robot", "r"}, "'a/b' is not a name"},
         {{"replay", "--session", "s", "--robot", "r"}, "name the FILE"},

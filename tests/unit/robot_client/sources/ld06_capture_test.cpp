@@ -103,7 +103,7 @@ TEST_F(Ld06Captures, FingerprintDependsOnEverythingThatChangesScans) {
     Ld06Spinner sensor;
     const Bytes bytes = sensor.next_bytes(200);
     std::set<std::string> seen;
-    const auto add = [&](const Ld06ScanOptions& options, Ld06Poses poses) {
+    const auto add = [&](const LidarScanOptions& options, LidarPoses poses) {
         const auto capture = Ld06Capture::open(file(bytes), options, std::move(poses));
         ASSERT_TRUE(capture) << capture.error().message;
         EXPECT_LE(capture->fingerprint().size(), 64U);

@@ -1,4 +1,5 @@
 #include "robot_client/sources/ld06_turns.hpp"
+#include "robot_client/sources/lidar_clock.hpp"
 
 #include <gtest/gtest.h>
 
@@ -46,10 +47,10 @@ struct Clocked {
     }
 };
 
-TEST(Ld06LiveClock, StampsAreIndependentOfArrivalJitter) {
+TEST(LidarClock, StampsAreIndependentOfArrivalJitter) {
     std::mt19937 random(1);
     const Clocked sensor{1.7e9, 1e-4};
-    Ld06LiveClock clock;
+    LidarClock clock(kLd06ClockWrap);
     double worst = 0.0;
     double arrival = 0.0;
     for (int i = 0; i < 60'000; ++i) {
@@ -63,9 +64,9 @@ TEST(Ld06LiveClock, StampsAreIndependentOfArrivalJitter) {
         << "the error beyond the minimum delay of 1 ms consists of whole milliseconds and 10 s of drift";
 }
 
-TEST(Ld06LiveClock, ArrivalTimeDeterminesTheWrap) {
+TEST(LidarClock, ArrivalTimeDeterminesTheWrap) {
     const Clocked sensor;
-    Ld06LiveClock clock;
+    LidarClock clock(kLd06ClockWrap);
     double taken = sensor.began + 3.0;
     for (const double lost : {0.0, 14.0, 16.0, 30.0, 59.9, 3600.5}) {
         taken += lost;
@@ -73,9 +74,9 @@ TEST(Ld06LiveClock, ArrivalTimeDeterminesTheWrap) {
     }
 }
 
-TEST(Ld06LiveClock, DelayedBytesGetTheirMeasurementTime) {
+TEST(LidarClock, DelayedBytesGetTheirMeasurementTime) {
     const Clocked sensor;
-    Ld06LiveClock clock;
+    LidarClock clock(kLd06ClockWrap);
     const double begin = sensor.began + 5.0;
     EXPECT_NEAR(clock.stamp(sensor.at(begin), begin), begin, 0.002);
     for (double taken = begin; taken < begin + 0.8; taken += 0.01) {
@@ -83,9 +84,9 @@ TEST(Ld06LiveClock, DelayedBytesGetTheirMeasurementTime) {
     }
 }
 
-TEST(Ld06LiveClock, FollowsStepsOfEitherClock) {
+TEST(LidarClock, FollowsStepsOfEitherClock) {
     Clocked sensor;
-    Ld06LiveClock clock;
+    LidarClock clock(kLd06ClockWrap);
     double now = sensor.began + 5.0;
     EXPECT_NEAR(clock.stamp(sensor.at(now), now), now, 0.002);
     sensor.began += 7.0; // the sensor was restarted
@@ -99,9 +100,9 @@ TEST(Ld06LiveClock, FollowsStepsOfEitherClock) {
     EXPECT_NEAR(clock.stamp(sensor.at(now), now), now, 0.002);
 }
 
-TEST(Ld06LiveClock, FollowsASmallStepBackAfterTenSeconds) {
+TEST(LidarClock, FollowsASmallStepBackAfterTenSeconds) {
     Clocked sensor;
-    Ld06LiveClock clock;
+    LidarClock clock(kLd06ClockWrap);
     double now = sensor.began + 5.0;
     const auto run = [&](double seconds) {
         double stamp = 0.0;

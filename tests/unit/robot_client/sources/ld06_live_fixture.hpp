@@ -1,6 +1,8 @@
 #pragma once
 
-#include "robot_client/sources/ld06_live.hpp"
+#include "robot_client/sources/ld06_driver.hpp"
+#include "robot_client/sources/lidar_clock.hpp"
+#include "robot_client/sources/lidar_live.hpp"
 #include "tests/support/ld06_bytes.hpp"
 
 #include <boost/asio/co_spawn.hpp>
@@ -25,10 +27,6 @@ namespace scanloom::robot {
 namespace asio = boost::asio;
 using testing_support::Bytes;
 using testing_support::Ld06Spinner;
-
-inline double unix_now() {
-    return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
-}
 
 /// The sensor's end of a pseudo-terminal.
 class PseudoTerminal {
@@ -73,9 +71,11 @@ using Next = Result<std::optional<Observation>>;
 
 class Ld06Lives : public testing::Test {
 protected:
-    Ld06LiveOptions options(Ld06Endpoint endpoint, Ld06Poses poses = Pose2{1.0, 2.0, 0.5}) {
-        Ld06LiveOptions live;
+    LidarLiveOptions options(LidarEndpoint endpoint, LidarPoses poses = Pose2{1.0, 2.0, 0.5}) {
+        LidarLiveOptions live;
         live.device.endpoint = std::move(endpoint);
+        live.device.serial.baud = 230'400;
+        live.driver = std::make_unique<Ld06Driver>("an LD06", ld06_sensor({}), LidarScanOptions{});
         live.device.note = [this](const std::string& text) {
             notes_.push_back(text);
             if (on_note_) on_note_();

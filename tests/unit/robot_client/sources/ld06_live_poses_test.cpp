@@ -25,7 +25,7 @@ protected:
         live.pose_wait = wait;
         live.pose_age_max = age_max;
         live.pose_ahead_max = ahead_max_;
-        source_ = std::make_unique<Ld06Live>(std::move(live));
+        source_ = std::make_unique<LidarLive>(std::move(live));
     }
     void stop_when_passed_over(int scans) {
         const auto passed_over = fmt::format("{} scan{} skipped without a pose", scans, scans == 1 ? "" : "s");
@@ -47,7 +47,7 @@ protected:
     std::chrono::milliseconds ahead_max_ = kUnlimited;
     PseudoTerminal sensor_;
     int pipe_[2]{-1, -1};
-    std::unique_ptr<Ld06Live> source_;
+    std::unique_ptr<LidarLive> source_;
 };
 
 TEST_F(Ld06LivePoses, ScanPoseIsInterpolated) {

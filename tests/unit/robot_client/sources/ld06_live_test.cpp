@@ -19,7 +19,7 @@ using testing::IsEmpty;
 
 TEST_F(Ld06Lives, SerialDeviceGivesACompleteTurn) {
     const PseudoTerminal sensor;
-    Ld06Live source(options(SerialDevice{sensor.device()}));
+    LidarLive source(options(SerialDevice{sensor.device()}));
     const Scan scan = scan_of(source, [&] { sensor.send(one_turn()); });
     EXPECT_EQ(scan.ranges.size(), 450U);
     EXPECT_EQ(scan.ranges.back(), 1000U);
@@ -32,8 +32,8 @@ TEST_F(Ld06Lives, SerialDeviceGivesACompleteTurn) {
 TEST_F(Ld06Lives, DeviceWithoutPosesGivesScansWithoutPoses) {
     const PseudoTerminal sensor;
     auto made = options(SerialDevice{sensor.device()}, Pose2{});
-    made.scan.poses = Poses::kNone;
-    Ld06Live source(std::move(made));
+    made.kind = Poses::kNone;
+    LidarLive source(std::move(made));
     const Scan scan = scan_of(source, [&] { sensor.send(one_turn()); });
     EXPECT_EQ(scan.ranges.size(), 450U);
     EXPECT_FALSE(scan.pose || scan.odometry);
@@ -41,7 +41,7 @@ TEST_F(Ld06Lives, DeviceWithoutPosesGivesScansWithoutPoses) {
 
 TEST_F(Ld06Lives, SerialDeviceTransfersEveryByteValue) {
     const PseudoTerminal sensor; // a line that is not in raw mode would change or drop some of these bytes
-    Ld06Live source(options(SerialDevice{sensor.device()}));
+    LidarLive source(options(SerialDevice{sensor.device()}));
     Bytes every(256);
     for (std::size_t i = 0; i < every.size(); ++i) every[i] = static_cast<std::uint8_t>(i);
     (void)scan_of(source, [&] {
@@ -57,12 +57,12 @@ TEST_F(Ld06Lives, SerialDeviceTransfersEveryByteValue) {
 }
 
 TEST_F(Ld06Lives, MissingDeviceFailsImmediately) {
-    Ld06Live source(options(SerialDevice{"/dev/nonexistent"}));
+    LidarLive source(options(SerialDevice{"/dev/nonexistent"}));
     const auto next = next_of(source);
     ASSERT_FALSE(next);
     EXPECT_THAT(next.error().message, HasSubstr("/dev/nonexistent: cannot be opened (No such file or directory)"));
     EXPECT_THAT(notes_, IsEmpty());
-    Ld06Live other(options(SerialDevice{"/dev/null"}));
+    LidarLive other(options(SerialDevice{"/dev/null"}));
     EXPECT_THAT(next_of(other).error().message, HasSubstr("/dev/null: cannot be"));
 }
 
@@ -70,7 +70,7 @@ TEST_F(Ld06Lives, HangUpFailsWithoutReopening) {
     PseudoTerminal sensor;
     auto once = options(SerialDevice{sensor.device()});
     once.device.reopen_for = std::chrono::milliseconds(0);
-    Ld06Live source(std::move(once));
+    LidarLive source(std::move(once));
     (void)scan_of(source, [&] { sensor.send(one_turn()); });
     const auto next = next_of(source, [&] { sensor.hang_up(); });
     ASSERT_FALSE(next);
@@ -85,7 +85,7 @@ TEST_F(Ld06Lives, MissingDeviceFailsAfterTheReopenPeriod) {
     std::filesystem::create_symlink(sensor.device(), path); // the system reuses names of terminals
     auto live = options(SerialDevice{path});
     live.device.reopen_for = std::chrono::milliseconds(150);
-    Ld06Live source(std::move(live));
+    LidarLive source(std::move(live));
     (void)scan_of(source, [&] { sensor.send(one_turn()); });
     const auto next = next_of(source, [&] {
         std::filesystem::remove(path);
@@ -103,7 +103,7 @@ TEST_F(Ld06Lives, ReconnectedDeviceContinues) {
     const auto path = std::filesystem::temp_directory_path() / fmt::format("scanloom-ld06-{}", ::getpid());
     std::filesystem::remove(path);
     std::filesystem::create_symlink(first.device(), path); // as udev would name it
-    Ld06Live source(options(SerialDevice{path}));
+    LidarLive source(options(SerialDevice{path}));
     (void)scan_of(source, [&] { first.send(one_turn()); });
     on_note_ = [&, notes = 0]() mutable {
         if (++notes > 1) return;
@@ -122,7 +122,7 @@ TEST_F(Ld06Lives, BytesWithoutPacketsAreReported) {
     auto live = options(SerialDevice{sensor.device()});
     live.device.silent_max = std::chrono::milliseconds(1500); // a busy machine may not send for a while
     live.device.reopen_for = std::chrono::milliseconds(0);
-    Ld06Live source(std::move(live));
+    LidarLive source(std::move(live));
     asio::steady_timer timer(io_);
     const std::function<void()> babble = [&] {
         sensor.send(Bytes(40, 0x54));
@@ -140,12 +140,12 @@ TEST_F(Ld06Lives, BytesWithoutPacketsAreReported) {
 
 TEST_F(Ld06Lives, StopEndsTheSourceInAnyState) {
     const PseudoTerminal sensor;
-    Ld06Live source(options(SerialDevice{sensor.device()}));
+    LidarLive source(options(SerialDevice{sensor.device()}));
     EXPECT_FALSE(next_of(source, [&] { source.stop(); }).value());
     EXPECT_FALSE(next_of(source).value()) << "the source stays ended";
     io_.restart();
     io_.run(); // must not leave pending work
-    Ld06Live unasked(options(SerialDevice{sensor.device()}));
+    LidarLive unasked(options(SerialDevice{sensor.device()}));
     unasked.stop();
     EXPECT_FALSE(next_of(unasked).value());
 }
@@ -153,8 +153,8 @@ TEST_F(Ld06Lives, StopEndsTheSourceInAnyState) {
 TEST_F(Ld06Lives, CanBeDestroyedBeforeOrAfterItsExecutor) {
     const PseudoTerminal sensor;
     auto io = std::make_unique<asio::io_context>(1);
-    auto outlives = std::make_unique<Ld06Live>(options(SerialDevice{sensor.device()}));
-    auto goes_first = std::make_unique<Ld06Live>(options(SerialDevice{sensor.device()}));
+    auto outlives = std::make_unique<LidarLive>(options(SerialDevice{sensor.device()}));
+    auto goes_first = std::make_unique<LidarLive>(options(SerialDevice{sensor.device()}));
     asio::co_spawn(*io, outlives->next(), asio::detached);
     asio::co_spawn(*io, goes_first->next(), asio::detached);
     io->poll();
@@ -168,7 +168,7 @@ TEST_F(Ld06Lives, CanBeDestroyedBeforeOrAfterItsExecutor) {
 
 class Ld06OverTcp : public Ld06Lives {
 protected:
-    [[nodiscard]] Ld06Endpoint endpoint() const {
+    [[nodiscard]] LidarEndpoint endpoint() const {
         return net::Address{"127.0.0.1", std::to_string(acceptor_.local_endpoint().port())};
     }
 
@@ -191,13 +191,13 @@ protected:
 
 TEST_F(Ld06OverTcp, GivesACompleteTurn) {
     serve({one_turn()});
-    Ld06Live source(options(endpoint()));
+    LidarLive source(options(endpoint()));
     EXPECT_EQ(scan_of(source).ranges.size(), 450U);
 }
 
 TEST_F(Ld06OverTcp, ReopensABrokenConnection) {
     serve({one_turn(), {}, one_turn()});
-    Ld06Live source(options(endpoint()));
+    LidarLive source(options(endpoint()));
     (void)scan_of(source);
     EXPECT_EQ(scan_of(source).ranges.size(), 450U);
     EXPECT_THAT(notes_, ElementsAre(HasSubstr("disconnected"), HasSubstr("packets are received again")));
@@ -208,7 +208,7 @@ TEST_F(Ld06OverTcp, ReopensABrokenConnection) {
 TEST_F(Ld06OverTcp, RefusedConnectionFailsImmediately) {
     const auto unused = endpoint();
     acceptor_.close();
-    Ld06Live source(options(unused));
+    LidarLive source(options(unused));
     const auto next = next_of(source);
     ASSERT_FALSE(next);
     EXPECT_THAT(next.error().message, HasSubstr("cannot be reached (Connection refused)"));
@@ -218,7 +218,7 @@ TEST_F(Ld06OverTcp, SilentPeerFails) {
     auto live = options(endpoint());                         // accepted by the operating system, but never answered
     live.device.silent_max = std::chrono::milliseconds(500); // also limits the connect, which a busy machine may delay
     live.device.reopen_for = std::chrono::milliseconds(0);
-    Ld06Live source(std::move(live));
+    LidarLive source(std::move(live));
     EXPECT_THAT(next_of(source).error().message, HasSubstr("no byte for 0.5 s; check that the sensor has power"));
 }
 

@@ -12,7 +12,7 @@ namespace {
 
 using testing::ElementsAre;
 
-Ld06Turn turn_of(std::vector<Ld06Beam> beams) { return {12.5, std::move(beams)}; }
+LidarTurn turn_of(std::vector<LidarBeam> beams) { return {12.5, std::move(beams)}; }
 
 TEST(Ld06Scan, AnglesAreCounterClockwise) {
     const auto scan = ld06_scan(turn_of({{0, {1000, 201}},
@@ -30,7 +30,7 @@ TEST(Ld06Scan, AnglesAreCounterClockwise) {
 }
 
 TEST(Ld06Scan, TheFirstBeamWasTakenLast) {
-    Ld06Turn turn = turn_of({{0, {1000, 201}}, {100, {2000, 202}}});
+    LidarTurn turn = turn_of({{0, {1000, 201}}, {100, {2000, 202}}});
     turn.duration = 0.0998;
     EXPECT_EQ(ld06_scan(turn, {}).duration, -0.0998);
     turn.duration = 11.0;
@@ -55,7 +55,7 @@ TEST(Ld06Scan, UnmeasuredPointsAreInvalidAndDistantOnesAreNoReturns) {
 }
 
 TEST(Ld06Scan, IsFilteredOnlyOnRequest) {
-    std::vector<Ld06Beam> beams;
+    std::vector<LidarBeam> beams;
     for (std::int32_t i = 0; i < 450; ++i) beams.push_back({i * 880, {1000, 200}});
     beams[0].point.distance = 9000;
     beams[200].point.distance = 9000;
@@ -67,7 +67,7 @@ TEST(Ld06Scan, IsFilteredOnlyOnRequest) {
 }
 
 TEST(Ld06Scan, ScanAndSensorPassServerValidation) {
-    const Ld06ScanOptions options{.range_min = 0.1, .range_max = 8.0, .mount = {0.1, -0.2, 3.0}};
+    const LidarScanOptions options{.range_min = 0.1, .range_max = 8.0, .mount = {0.1, -0.2, 3.0}};
     const Sensor sensor = *ld06_sensor(options);
     EXPECT_EQ(sensor.mount, options.mount);
     EXPECT_EQ(sensor.range_min, 0.1);

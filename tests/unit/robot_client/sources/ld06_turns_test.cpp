@@ -16,7 +16,7 @@ constexpr double kPacketSeconds = 0.002667;
 /// Feeds packets and collects turns; packet n has the stamp n * kPacketSeconds.
 struct Cutter {
     Ld06Turns turns;
-    std::vector<Ld06Turn> complete;
+    std::vector<LidarTurn> complete;
     int packets = 0;
 
     void add(const Ld06Packet& packet) {
@@ -28,7 +28,7 @@ struct Cutter {
     }
 };
 
-void expect_rising(const Ld06Turn& turn) {
+void expect_rising(const LidarTurn& turn) {
     ASSERT_FALSE(turn.beams.empty());
     EXPECT_GE(turn.beams.front().step, 0);
     EXPECT_LT(turn.beams.back().step, kLd06StepsPerTurn);

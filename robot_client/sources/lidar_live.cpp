@@ -1,7 +1,6 @@
-#include "robot_client/sources/ld06_live.hpp"
+#include "robot_client/sources/lidar_live.hpp"
 
-#include "robot_client/sources/ld06_packet.hpp"
-#include "robot_client/sources/ld06_turns.hpp"
+#include "robot_client/sources/lidar_clock.hpp"
 #include "robot_client/sources/messages.hpp"
 #include "robot_client/sources/pose_feed.hpp"
 #include "robot_client/sources/wake_signal.hpp"
@@ -31,33 +30,27 @@ using Clock = std::chrono::steady_clock;
 constexpr std::size_t kPosesKept = 4096; // 40 s of 100 a second
 constexpr double kOtherClock = 60.0;     // seconds; no late pose is this far from a scan
 
-double unix_now() { return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count(); }
-
 } // namespace
 
 /// State shared by the reading coroutines and next(). Timers and lines are in the frames of the coroutines, so they
 /// never outlive their executor.
-class Ld06Live::State final : public Ld06Listener, public std::enable_shared_from_this<Ld06Live::State> {
+class LidarLive::State final : public std::enable_shared_from_this<LidarLive::State> {
 public:
-    explicit State(Ld06LiveOptions options)
-        : options_(std::move(options)), sensor_(ld06_sensor(options_.scan)),
-          are_poses_coming_(options_.pose_descriptor >= 0) {}
+    explicit State(LidarLiveOptions options)
+        : options_(std::move(options)), are_poses_coming_(options_.pose_descriptor >= 0) {}
     State(const State&) = delete;
     State& operator=(const State&) = delete;
-    ~State() override {
+    ~State() {
         if (options_.pose_descriptor >= 0) ::close(options_.pose_descriptor); // never read
     }
 
     [[nodiscard]] asio::awaitable<Result<std::optional<Observation>>> next();
     void stop();
-    [[nodiscard]] std::string remarks() const { return ld06_remarks(decoder_.counts(), turns_, losses_); }
-
-    void on_open() override;
-    bool on_bytes(std::span<const std::uint8_t> bytes) override;
+    [[nodiscard]] std::string remarks() const { return lidar_remarks(options_.driver->counts(), losses_); }
 
 private:
     struct Waiting {
-        Scan scan;
+        Observation taken;
         Clock::time_point until; ///< it waits for a pose until then
     };
 
@@ -70,20 +63,17 @@ private:
     void start(const asio::any_io_executor& executor);
     [[nodiscard]] static asio::awaitable<void> read_sensor(std::shared_ptr<State> self);
     [[nodiscard]] static asio::awaitable<void> read_poses(std::shared_ptr<State> self);
+    void take_scans();
     void add(const StampedPose& pose);
     [[nodiscard]] Answer pose_for(const Waiting& waiting) const;
     [[nodiscard]] std::optional<Observation> take_ready();
     void report_other_clock(double stamp);
     [[nodiscard]] Result<std::optional<Observation>> end_when_stopped() const;
 
-    Ld06LiveOptions options_;
-    std::shared_ptr<const Sensor> sensor_;
-    Ld06Decoder decoder_;
-    Ld06LiveClock clock_;
-    Ld06Turns turns_;
+    LidarLiveOptions options_;
     std::deque<Waiting> waiting_;
     bool are_poses_coming_;
-    Ld06Losses losses_;
+    LidarLosses losses_;
     std::uint64_t given_ = 0; ///< scans
     bool other_clock_reported_ = false;
     bool poses_ahead_reported_ = false;
@@ -96,7 +86,7 @@ private:
 
 // Reading -------------------------------------------------------------------------------------------------------------
 
-void Ld06Live::State::start(const asio::any_io_executor& executor) {
+void LidarLive::State::start(const asio::any_io_executor& executor) {
     is_started_ = true;
     const auto at_end = [](const std::exception_ptr& failed) {
         if (failed) std::rethrow_exception(failed);
@@ -105,14 +95,15 @@ void Ld06Live::State::start(const asio::any_io_executor& executor) {
     if (are_poses_coming_) asio::co_spawn(executor, read_poses(shared_from_this()), at_end);
 }
 
-asio::awaitable<void> Ld06Live::State::read_sensor(std::shared_ptr<State> self) {
-    auto reading = read_ld06_device(self->options_.device, *self);
+asio::awaitable<void> LidarLive::State::read_sensor(std::shared_ptr<State> self) {
+    const auto on_input = [state = self.get()] { state->take_scans(); };
+    auto reading = read_lidar(self->options_.device, *self->options_.driver, on_input);
     const auto first = co_await (std::move(reading) || self->stop_.wait());
     if (const auto* error = std::get_if<0>(&first)) self->ended_ = *error;
     self->wake_.notify();
 }
 
-asio::awaitable<void> Ld06Live::State::read_poses(std::shared_ptr<State> self) {
+asio::awaitable<void> LidarLive::State::read_poses(std::shared_ptr<State> self) {
     const auto& note = self->options_.device.note;
     const auto on_pose = [state = self.get()](const StampedPose& pose) { state->add(pose); };
     auto reading = feed_poses(std::exchange(self->options_.pose_descriptor, -1), on_pose, note);
@@ -124,32 +115,18 @@ asio::awaitable<void> Ld06Live::State::read_poses(std::shared_ptr<State> self) {
     self->wake_.notify();
 }
 
-void Ld06Live::State::on_open() {
-    decoder_.restart();
-    clock_.restart();
-    turns_.restart();
-}
-
-bool Ld06Live::State::on_bytes(std::span<const std::uint8_t> bytes) {
-    const double arrival = unix_now();
-    decoder_.feed(bytes);
-    bool is_packet = false;
-    while (const auto packet = decoder_.next()) {
-        is_packet = true;
-        turns_.add(*packet, clock_.stamp(packet->timestamp, arrival));
-    }
-    while (const auto turn = turns_.next()) {
-        waiting_.push_back({ld06_scan(*turn, options_.scan), Clock::now() + options_.pose_wait});
+void LidarLive::State::take_scans() {
+    while (auto taken = options_.driver->next()) {
+        waiting_.push_back({std::move(*taken), Clock::now() + options_.pose_wait});
         if (waiting_.size() > kScansWaitingMax) {
             waiting_.pop_front();
             ++losses_.too_many_waiting;
         }
         wake_.notify();
     }
-    return is_packet;
 }
 
-void Ld06Live::State::add(const StampedPose& pose) {
+void LidarLive::State::add(const StampedPose& pose) {
     auto* timeline = std::get_if<PoseTimeline>(&options_.poses);
     if (timeline == nullptr) return;
     const double now = unix_now();
@@ -169,7 +146,7 @@ void Ld06Live::State::add(const StampedPose& pose) {
 
 // Giving --------------------------------------------------------------------------------------------------------------
 
-asio::awaitable<Result<std::optional<Observation>>> Ld06Live::State::next() {
+asio::awaitable<Result<std::optional<Observation>>> LidarLive::State::next() {
     const auto self = shared_from_this();
     if (!is_started_ && !is_stopped_) start(co_await asio::this_coro::executor);
     while (!is_stopped_) {
@@ -181,25 +158,25 @@ asio::awaitable<Result<std::optional<Observation>>> Ld06Live::State::next() {
 }
 
 /// Returns the next scan with a known pose; skips scans that will have none.
-std::optional<Observation> Ld06Live::State::take_ready() {
+std::optional<Observation> LidarLive::State::take_ready() {
     while (!waiting_.empty()) {
         const Answer answer = pose_for(waiting_.front());
         if (!answer.is_final) return std::nullopt;
-        Scan scan = std::move(waiting_.front().scan);
+        Observation taken = std::move(waiting_.front().taken);
         waiting_.pop_front();
         if (answer.pose) {
-            set_pose(scan, options_.scan.poses, *answer.pose);
+            set_pose(taken.scan, options_.kind, *answer.pose);
             ++given_;
-            return Observation{sensor_, std::move(scan)};
+            return taken;
         }
         ++losses_.without_pose;
-        report_other_clock(scan.stamp);
+        report_other_clock(taken.scan.stamp);
     }
     return std::nullopt;
 }
 
 /// Reports poses whose clock has another origin. Without the message they would be skipped silently forever.
-void Ld06Live::State::report_other_clock(double stamp) {
+void LidarLive::State::report_other_clock(double stamp) {
     const auto& timeline = std::get<PoseTimeline>(options_.poses);
     if (timeline.empty() || other_clock_reported_) return;
     const double newest = timeline.newest().stamp;
@@ -211,17 +188,17 @@ void Ld06Live::State::report_other_clock(double stamp) {
 }
 
 /// Returns an error if there were scans and none had a pose, although stop() was requested.
-Result<std::optional<Observation>> Ld06Live::State::end_when_stopped() const {
+Result<std::optional<Observation>> LidarLive::State::end_when_stopped() const {
     if (given_ > 0 || losses_.without_pose == 0) return std::optional<Observation>{};
     return Error{Errc::kNotFound, fmt::format("no scan was sent: none of {} scans is within the time range of the "
                                               "poses; for a device the t of --pose-file is Unix time in seconds",
                                               losses_.without_pose)};
 }
 
-Ld06Live::State::Answer Ld06Live::State::pose_for(const Waiting& waiting) const {
+LidarLive::State::Answer LidarLive::State::pose_for(const Waiting& waiting) const {
     if (const auto* fixed = std::get_if<Pose2>(&options_.poses)) return {*fixed};
     const auto& timeline = std::get<PoseTimeline>(options_.poses);
-    const double stamp = waiting.scan.stamp;
+    const double stamp = waiting.taken.scan.stamp;
     if (const auto pose = timeline.at(stamp)) return {*pose};
     const bool is_after_all = timeline.empty() || stamp > timeline.newest().stamp;
     if (!is_after_all) return {};
@@ -232,7 +209,7 @@ Ld06Live::State::Answer Ld06Live::State::pose_for(const Waiting& waiting) const 
     return {};
 }
 
-void Ld06Live::State::stop() {
+void LidarLive::State::stop() {
     is_stopped_ = true;
     stop_.notify();
     wake_.notify();
@@ -240,14 +217,14 @@ void Ld06Live::State::stop() {
 
 // ---------------------------------------------------------------------------------------------------------------------
 
-Ld06Live::Ld06Live(Ld06LiveOptions options) : state_(std::make_shared<State>(std::move(options))) {}
+LidarLive::LidarLive(LidarLiveOptions options) : state_(std::make_shared<State>(std::move(options))) {}
 
-Ld06Live::~Ld06Live() { state_->stop(); }
+LidarLive::~LidarLive() { state_->stop(); }
 
-asio::awaitable<Result<std::optional<Observation>>> Ld06Live::next() { return state_->next(); }
+asio::awaitable<Result<std::optional<Observation>>> LidarLive::next() { return state_->next(); }
 
-void Ld06Live::stop() { state_->stop(); }
+void LidarLive::stop() { state_->stop(); }
 
-std::string Ld06Live::remarks() const { return state_->remarks(); }
+std::string LidarLive::remarks() const { return state_->remarks(); }
 
 } // namespace scanloom::robot

@@ -1,8 +1,9 @@
-#include "robot_client/app/ld06_options.hpp"
+#include "robot_client/app/lidar_options.hpp"
 
 #include "common/app/standard_streams.hpp"
 #include "robot_client/app/make_source.hpp"
 #include "robot_client/app/options.hpp"
+#include "robot_client/sources/lidar_models.hpp"
 #include "tests/support/ld06_bytes.hpp"
 #include "tests/support/temporary_directory.hpp"
 
@@ -16,21 +17,22 @@ namespace {
 
 using testing::HasSubstr;
 
-std::variant<RobotOptions, GroundTruthOptions, InfoOptions, Leave> parse(std::vector<std::string> words) {
-    std::vector<const char*> argv{"scanloom-robot", "--session", "s", "--robot", "r", "ld06"};
+std::variant<RobotOptions, GroundTruthOptions, InfoOptions, Leave> parse(const std::vector<std::string>& words,
+                                                                         const char* command) {
+    std::vector<const char*> argv{"scanloom-robot", "--session", "s", "--robot", "r", command};
     for (const auto& word : words) argv.push_back(word.c_str());
     return parse_options(static_cast<int>(argv.size()), argv.data());
 }
 
-RobotOptions parsed(const std::vector<std::string>& words) {
-    auto result = parse(words);
+RobotOptions parsed(const std::vector<std::string>& words, const char* command = "ld06") {
+    auto result = parse(words, command);
     if (auto* options = std::get_if<RobotOptions>(&result)) return *options;
     ADD_FAILURE() << std::get<Leave>(result).text;
     return {};
 }
 
-std::string refused(const std::vector<std::string>& words) {
-    const auto result = parse(words);
+std::string refused(const std::vector<std::string>& words, const char* command = "ld06") {
+    const auto result = parse(words, command);
     const auto* leave = std::get_if<Leave>(&result);
     if (leave == nullptr) return "nothing was refused";
     EXPECT_EQ(leave->code, kExitUsage);
@@ -39,9 +41,9 @@ std::string refused(const std::vector<std::string>& words) {
 
 TEST(Ld06OptionsOf, AreReadFromTheCommandLine) {
     const auto options =
-        std::get<Ld06Options>(parsed({"/dev/ttyUSB0", "--pose", "-1,2.5,6", "--mount=0.1,0,-1.5", "--min-range", "0.2",
-                                      "--min-confidence", "0", "--median", "5", "--speed", "1", "--reopen-for", "0"})
-                                  .source);
+        std::get<LidarOptions>(parsed({"/dev/ttyUSB0", "--pose", "-1,2.5,6", "--mount=0.1,0,-1.5", "--min-range", "0.2",
+                                       "--min-confidence", "0", "--median", "5", "--speed", "1", "--reopen-for", "0"})
+                                   .source);
     EXPECT_EQ(options.input, "/dev/ttyUSB0");
     EXPECT_EQ(options.pose, (Pose2{-1.0, 2.5, normalize_angle(6.0)}));
     EXPECT_EQ(options.mount, (Pose2{0.1, 0.0, -1.5}));
@@ -53,7 +55,7 @@ TEST(Ld06OptionsOf, AreReadFromTheCommandLine) {
 }
 
 TEST(Ld06OptionsOf, AreTheDefaultsWithoutFlags) {
-    const auto options = std::get<Ld06Options>(parsed({"f", "--pose-file", "-"}).source);
+    const auto options = std::get<LidarOptions>(parsed({"f", "--pose-file", "-"}).source);
     EXPECT_EQ(options.pose_file, "-");
     EXPECT_FALSE(options.pose || options.range_min || options.confidence_min || options.median_window);
     EXPECT_EQ(options.mount, Pose2{});
@@ -62,10 +64,10 @@ TEST(Ld06OptionsOf, AreTheDefaultsWithoutFlags) {
 }
 
 TEST(Ld06OptionsOf, LocalizationIsAccepted) {
-    const auto bare = std::get<Ld06Options>(parsed({"/dev/ttyUSB0", "--locate"}).source);
+    const auto bare = std::get<LidarOptions>(parsed({"/dev/ttyUSB0", "--locate"}).source);
     EXPECT_TRUE(bare.locate);
     EXPECT_FALSE(bare.pose || bare.near);
-    const auto located = std::get<Ld06Options>(parsed({"f", "--locate", "--near=-1,2.5,4", "--pose", "1,2,3"}).source);
+    const auto located = std::get<LidarOptions>(parsed({"f", "--locate", "--near=-1,2.5,4", "--pose", "1,2,3"}).source);
     EXPECT_EQ(located.near, (wire::Near{{-1.0, 2.5}, 4.0}));
     EXPECT_EQ(located.pose, (Pose2{1.0, 2.0, 3.0}));
 }
@@ -88,11 +90,11 @@ TEST(Ld06OptionsOf, LocalizationWithAGivenPoseIsRefused) {
 TEST(Ld06OptionsOf, PosesDecideWhichPosesAreNeeded) {
     const auto none = parsed({"/dev/ttyUSB0", "--poses", "none"});
     EXPECT_EQ(none.poses, Poses::kNone);
-    EXPECT_EQ(std::get<Ld06Options>(none.source).pose_file, "");
+    EXPECT_EQ(std::get<LidarOptions>(none.source).pose_file, "");
     const auto odometry = parsed({"f", "--poses", "odometry", "--pose-file", "p"});
     EXPECT_EQ(odometry.poses, Poses::kOdometry);
-    EXPECT_EQ(std::get<Ld06Options>(odometry.source).pose_file, "p");
-    EXPECT_FALSE(std::get<Ld06Options>(odometry.source).is_old_name);
+    EXPECT_EQ(std::get<LidarOptions>(odometry.source).pose_file, "p");
+    EXPECT_FALSE(std::get<LidarOptions>(odometry.source).is_old_name);
     EXPECT_EQ(parsed({"f", "--poses", "map", "--pose", "0,0,0"}).poses, Poses::kMap);
     for (const char* poses : {"odometry", "none"}) {
         EXPECT_THAT(refused({"f", "--locate", "--poses", poses}), HasSubstr("leave one of them out")) << poses;
@@ -107,8 +109,8 @@ TEST(Ld06OptionsOf, PosesNameTheFileForOneRelease) {
     for (const char* file : {"-", "p", "Map"}) {
         const auto options = parsed({"f", "--poses", file});
         EXPECT_EQ(options.poses, std::nullopt);
-        EXPECT_EQ(std::get<Ld06Options>(options.source).pose_file, file);
-        EXPECT_TRUE(std::get<Ld06Options>(options.source).is_old_name);
+        EXPECT_EQ(std::get<LidarOptions>(options.source).pose_file, file);
+        EXPECT_TRUE(std::get<LidarOptions>(options.source).is_old_name);
     }
     EXPECT_THAT(refused({"f", "--poses", "p", "--pose-file", "p"}), HasSubstr("'p' is not map, odometry or none"));
     EXPECT_THAT(refused({"f", "--locate", "--poses", "p"}), HasSubstr("leave one of them out"));
@@ -119,7 +121,7 @@ TEST(Ld06OptionsOf, YawInDegreesIsRefused) {
         EXPECT_THAT(refused({"f", "--pose", pose}), HasSubstr("yaw is in radians")) << pose;
         EXPECT_THAT(refused({"f", "--pose", "0,0,0", "--mount", pose}), HasSubstr("90 degrees are 1.570796")) << pose;
     }
-    const auto options = std::get<Ld06Options>(parsed({"f", "--pose", "0,0,-6.2831853"}).source);
+    const auto options = std::get<LidarOptions>(parsed({"f", "--pose", "0,0,-6.2831853"}).source);
     EXPECT_NEAR(options.pose->yaw, 0.0, 1e-6);
 }
 
@@ -144,10 +146,38 @@ TEST(Ld06OptionsOf, InvalidCommandLinesAreRefused) {
     EXPECT_THAT(refused({"f", "--pose", "0,0,0", "--reopen-for", "-1"}), HasSubstr("--reopen-for"));
 }
 
+TEST(LidarOptionsOf, AreReadFromTheCommandLine) {
+    const auto options =
+        parsed({"stl27l", "/dev/ttyUSB0", "--poses", "odometry", "--pose-file", "p", "--mount", "1,2,3", "--max-range",
+                "9", "--min-range", "0.2", "--median", "5", "--baud", "460800"},
+               "lidar");
+    const auto& lidar = std::get<LidarOptions>(options.source);
+    EXPECT_EQ(lidar.model, "stl27l");
+    EXPECT_EQ(lidar.input, "/dev/ttyUSB0");
+    EXPECT_EQ(lidar.pose_file, "p");
+    EXPECT_EQ(lidar.mount, (Pose2{1.0, 2.0, 3.0}));
+    EXPECT_EQ(lidar.range_min, 0.2);
+    EXPECT_EQ(lidar.baud, 460'800U);
+    EXPECT_EQ(options.range_max, 9.0);
+    EXPECT_EQ(options.poses, Poses::kOdometry);
+}
+
+TEST(LidarOptionsOf, InvalidCommandLinesAreRefused) {
+    EXPECT_THAT(refused({}, "lidar"), HasSubstr("lidar: name the MODEL and the DEVICE"));
+    EXPECT_THAT(refused({"ld06"}, "lidar"), HasSubstr("lidar: name the MODEL and the DEVICE"));
+    EXPECT_THAT(refused({"velodyne", "/dev/x"}, "lidar"),
+                HasSubstr("'velodyne' is not one of the models: ld06, ld19,"));
+    EXPECT_THAT(refused({"ld06", "tcp://x", "--pose", "0,0,0"}, "lidar"), HasSubstr("lidar: 'tcp://x' is not tcp://"));
+    EXPECT_THAT(refused({"ld06", "/dev/x"}, "lidar"), HasSubstr("or let the server estimate it with --poses none"));
+    EXPECT_THAT(refused({"ld06", "/dev/x", "--poses", "p.txt"}, "lidar"), HasSubstr("not map, odometry or none"));
+    EXPECT_THAT(refused({"ld06", "/dev/x", "--locate"}, "lidar"), HasSubstr("--locate"));
+    EXPECT_THAT(refused({"ld06", "/dev/x", "--pose", "0,0,0", "--baud", "110"}, "lidar"), HasSubstr("--baud"));
+}
+
 class PreparedLd06 : public testing::Test {
 protected:
-    Result<PreparedSource> prepare(const std::vector<std::string>& words) {
-        const auto options = parsed(words);
+    Result<PreparedSource> prepare(const std::vector<std::string>& words, const char* command = "ld06") {
+        const auto options = parsed(words, command);
         return make_source(options, console_);
     }
 
@@ -223,6 +253,17 @@ TEST_F(PreparedLd06, LocalizingSourceIsLive) {
         EXPECT_EQ(prepared->live->can_wait(), input == capture());
         EXPECT_THAT(prepared->remarks(), HasSubstr("carried 0 times, 0 turns while carried or not localized"));
     }
+}
+
+TEST_F(PreparedLd06, EveryModelIsLive) {
+    for (const auto& model : lidar_models()) {
+        const auto prepared = prepare({std::string(model.name), "/dev/null", "--poses", "none"}, "lidar");
+        ASSERT_TRUE(prepared) << prepared.error().message;
+        EXPECT_TRUE(prepared->live) << model.name;
+        EXPECT_EQ(prepared->poses, Poses::kNone);
+    }
+    EXPECT_THAT(prepare({"ld19", capture(), "--poses", "none"}, "lidar").error().message,
+                HasSubstr("a file, not a device; files with the bytes of an LD06 are read by scanloom-robot ld06"));
 }
 
 TEST_F(PreparedLd06, OtherSourcesAreAnError) {

@@ -6,7 +6,6 @@
 
 #include <optional>
 #include <string>
-
 #include <string_view>
 
 namespace CLI {
@@ -18,8 +17,10 @@ namespace scanloom::robot {
 /// Prefix of an input over the network.
 inline constexpr std::string_view kTcpScheme = "tcp://";
 
-/// An LD06 lidar or a recording of one; see Ld06ScanOptions for the readings.
-struct Ld06Options {
+/// A lidar, or a recording of an LD06; see LidarScanOptions for the readings.
+struct LidarOptions {
+    bool is_ld06_command = false;    ///< the subcommand is `ld06`, which also reads capture files
+    std::string model;               ///< see lidar_models()
     std::string input;               ///< a capture file, a serial device, or tcp://HOST:PORT
     std::optional<Pose2> pose;       ///< of a stationary robot
     std::string pose_file;           ///< a file of poses; "-": stdin
@@ -30,16 +31,23 @@ struct Ld06Options {
     std::optional<double> range_min; ///< metres
     std::optional<int> confidence_min;
     std::optional<int> median_window; ///< beams
+    std::optional<unsigned> baud;     ///< of a serial device; none: that of the model
     double speed = 0.0;               ///< of a capture file: 0 = as fast as the server accepts scans, 1 = as recorded
     double reopen_for = 60.0;         ///< seconds
+
+    /// Returns the name of the subcommand.
+    [[nodiscard]] std::string_view command() const noexcept { return is_ld06_command ? "ld06" : "lidar"; }
 };
 
-/// Adds the subcommand, which sets `options`.
-CLI::App* add_ld06(CLI::App& app, Ld06Options& options);
+/// Adds the subcommand `ld06`, which sets `options`.
+CLI::App* add_ld06(CLI::App& app, LidarOptions& options);
+
+/// Adds the subcommand `lidar`, which sets `options`.
+CLI::App* add_lidar(CLI::App& app, LidarOptions& options);
 
 /// Returns an error that the parser cannot detect, or an empty string.
 /// @param options  options of the subcommand
 /// @param poses    what the robot's poses are
-[[nodiscard]] std::string complaint_about(const Ld06Options& options, Poses poses);
+[[nodiscard]] std::string complaint_about(const LidarOptions& options, Poses poses);
 
 } // namespace scanloom::robot

@@ -1,0 +1,21 @@
+#include "robot_client/sources/lidar_driver.hpp"
+
+#include "robot_client/sources/messages.hpp"
+
+#include <fmt/format.h>
+
+namespace scanloom::robot {
+
+std::string lidar_remarks(const LidarCounts& counts, const LidarLosses& losses) {
+    std::string text = fmt::format("{}, {}", counted(counts.damaged, "damaged packet"), counted(counts.turns, "turn"));
+    if (counts.gaps > 0) text += fmt::format(", {} of them cut by {}", counts.parts, counted(counts.gaps, "gap"));
+    const auto add = [&](std::uint64_t count, std::string_view noun, std::string_view what) {
+        if (count > 0) text += fmt::format(", {} {}", counted(count, noun), what);
+    };
+    add(counts.too_long, "turn", "too slow");
+    add(losses.without_pose, "scan", "skipped without a pose");
+    add(losses.too_many_waiting, "scan", "dropped by the buffer");
+    return text;
+}
+
+} // namespace scanloom::robot
