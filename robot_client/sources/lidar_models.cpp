@@ -1,21 +1,33 @@
 #include "robot_client/sources/lidar_models.hpp"
 
+#include "robot_client/sources/hokuyo_driver.hpp"
 #include "robot_client/sources/ld06_driver.hpp"
+#include "robot_client/sources/rplidar_driver.hpp"
+#include "robot_client/sources/ydlidar_driver.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <string>
+#include <utility>
 
 namespace scanloom::robot {
 namespace {
 
-// A confidence of 100: see LidarScanOptions.
+// A confidence of 100: see LidarScanOptions. DTR: its level "off" lets the motor of an RPLIDAR A1 turn, "on" that of a
+// YDLIDAR. The A2's and newer motors do not depend on it.
+using enum LidarFamily;
 constexpr std::array kModels{
-    LidarModel{"ld06", "an LD06", "LD06", LidarFamily::kLd06, {230'400, {}}, 0.02, 12.0, 100, 450},
-    LidarModel{"ld19", "an LD19", "LD19", LidarFamily::kLd06, {230'400, {}}, 0.02, 12.0, 100, 450},
-    LidarModel{"stl27l", "an STL-27L", "STL-27L", LidarFamily::kLd06, {921'600, {}}, 0.03, 25.0, 100, 2160},
+    LidarModel{"ld06", "an LD06", "LD06", kLd06, {230'400, {}}, 0.02, 12.0, 100, 450},
+    LidarModel{"ld19", "an LD19", "LD19", kLd06, {230'400, {}}, 0.02, 12.0, 100, 450},
+    LidarModel{"stl27l", "an STL-27L", "STL-27L", kLd06, {921'600, {}}, 0.03, 25.0, 100, 2160},
+    LidarModel{"rplidar-a1", "an RPLIDAR A1", "RPLIDAR A1", kRplidar, {115'200, false}, 0.15, 12.0, 0, 720},
+    LidarModel{"rplidar-a2", "an RPLIDAR A2", "RPLIDAR A2", kRplidar, {115'200, false}, 0.15, 12.0, 0, 400},
+    LidarModel{"rplidar-c1", "an RPLIDAR C1", "RPLIDAR C1", kRplidar, {460'800, {}}, 0.05, 12.0, 0, 500},
+    LidarModel{"ydlidar-x2", "a YDLIDAR X2", "YDLIDAR X2", kYdlidarX2, {115'200, true}, 0.1, 8.0, 0, 430},
+    LidarModel{"ydlidar-x4", "a YDLIDAR X4", "YDLIDAR X4", kYdlidarX4, {128'000, true}, 0.12, 10.0, 0, 720},
+    LidarModel{"hokuyo", "a Hokuyo", "Hokuyo", kHokuyo, {115'200, {}}, 0.0, 0.0, 0, 0},
 };
 
 } // namespace
@@ -36,15 +48,24 @@ Result<LidarScanOptions> scan_options(const LidarModel& model, const LidarSettin
     scan.median_window = settings.median_window;
     scan.mount = settings.mount;
     scan.poses = settings.poses;
-    if (scan.range_min < scan.range_max) return scan;
+    if (scan.range_min < scan.range_max || scan.range_max <= 0.0) return scan; // the sensor is asked
     return Error{Errc::kInvalidField,
                  fmt::format("--min-range is {} m, but --max-range is only {} m; no reading would be valid",
                              scan.range_min, scan.range_max)};
 }
 
 std::unique_ptr<LidarDriver> make_lidar_driver(const LidarModel& model, const LidarScanOptions& options) {
-    return std::make_unique<Ld06Driver>(std::string(model.title), lidar_sensor(model.label, model.beams, options),
-                                        options);
+    const std::string title(model.title);
+    if (model.family == kHokuyo) return std::make_unique<HokuyoDriver>(options);
+    auto sensor = lidar_sensor(model.label, model.beams, options);
+    switch (model.family) {
+    case kLd06: break;
+    case kRplidar: return std::make_unique<RplidarDriver>(title, std::move(sensor), options);
+    case kYdlidarX2: return std::make_unique<YdlidarDriver>(title, false, std::move(sensor), options);
+    case kYdlidarX4: return std::make_unique<YdlidarDriver>(title, true, std::move(sensor), options);
+    case kHokuyo: break;
+    }
+    return std::make_unique<Ld06Driver>(title, std::move(sensor), options);
 }
 
 } // namespace scanloom::robot

@@ -13,9 +13,9 @@
 namespace scanloom::robot {
 
 /// The protocol that a lidar speaks, and so its driver.
-enum class LidarFamily { kLd06 };
+enum class LidarFamily { kLd06, kRplidar, kYdlidarX2, kYdlidarX4, kHokuyo };
 
-/// A lidar that users can buy. Ranges and rates are those of its data sheet.
+/// A lidar that users can buy. Ranges and rates are those of its data sheet; a range of 0 is asked from the sensor.
 struct LidarModel {
     std::string_view name;  ///< on the command line
     std::string_view title; ///< with its article, for messages: "an LD06"

@@ -95,7 +95,11 @@ asio::awaitable<Error> Reading::read_once() {
     foreign_reported_ = false;
     const StoppedAtEnd stopped(*line, driver_.stop_request());
     Result<> going_on = co_await take(*line, driver_.on_open());
-    while (going_on) going_on = co_await wait_for_input(*line);
+    while (going_on) {
+        going_on = co_await wait_for_input(*line);
+        // A device that always has bytes does not let the cancellation interrupt a read.
+        if (co_await is_cancelled()) co_return Error{Errc::kShuttingDown, "cancelled"};
+    }
     co_return named(going_on.error());
 }
 
@@ -124,9 +128,9 @@ asio::awaitable<Result<>> Reading::wait_for_input(LidarLine& line) {
         auto step = driver_.on_bytes(std::span<const std::uint8_t>(buffer_).first(**count), unix_now());
         note_packets(step.has_packet);
         on_input_();
-        co_return co_await take(line, std::move(step));
+        if (auto taken = co_await take(line, std::move(step)); !taken) co_return taken;
     }
-    if (due_at_ && Clock::now() >= *due_at_) {
+    if (due_at_ && Clock::now() >= *due_at_) { // also while foreign bytes arrive all the time
         due_at_.reset();
         co_return co_await take(line, driver_.on_timeout());
     }

@@ -4,19 +4,17 @@
 #include "robot_client/sources/lidar_clock.hpp"
 #include "robot_client/sources/lidar_live.hpp"
 #include "tests/support/ld06_bytes.hpp"
+#include "tests/support/pseudo_terminal.hpp"
 
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/io_context.hpp>
 #include <gtest/gtest.h>
 
-#include <fcntl.h>
-#include <stdlib.h>
-#include <termios.h>
 #include <unistd.h>
 
 #include <functional>
+#include <memory>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -29,42 +27,11 @@ using testing_support::Bytes;
 using testing_support::Ld06Spinner;
 
 /// The sensor's end of a pseudo-terminal.
-class PseudoTerminal {
+class PseudoTerminal : public testing_support::PseudoTerminal {
 public:
-    PseudoTerminal() : descriptor_(::posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC)) {
-        if (descriptor_ < 0 || ::grantpt(descriptor_) != 0 || ::unlockpt(descriptor_) != 0) {
-            throw std::runtime_error("no pseudo-terminal");
-        }
-        device_ = ::ptsname(descriptor_);
-    }
-    PseudoTerminal(const PseudoTerminal&) = delete;
-    PseudoTerminal& operator=(const PseudoTerminal&) = delete;
-    ~PseudoTerminal() {
-        hang_up();
-        if (other_end_ >= 0) ::close(other_end_);
-    }
-
-    /// Opens the other end in raw mode, so that bytes sent before the test opens the device stay unchanged.
-    void keep_open() {
-        other_end_ = ::open(device_.c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC);
-        termios raw{};
-        ASSERT_EQ(::tcgetattr(other_end_, &raw), 0);
-        ::cfmakeraw(&raw);
-        ASSERT_EQ(::tcsetattr(other_end_, TCSANOW, &raw), 0);
-    }
-
-    [[nodiscard]] const std::string& device() const { return device_; }
     void send(const Bytes& bytes) const {
         ASSERT_EQ(::write(descriptor_, bytes.data(), bytes.size()), static_cast<ssize_t>(bytes.size()));
     }
-    void hang_up() {
-        if (descriptor_ >= 0) ::close(std::exchange(descriptor_, -1));
-    }
-
-private:
-    int descriptor_;
-    int other_end_ = -1;
-    std::string device_;
 };
 
 using Next = Result<std::optional<Observation>>;
@@ -93,7 +60,8 @@ protected:
             result = std::move(next);
         });
         io_.restart();
-        io_.poll();
+        while (!result && io_.poll_one() > 0) { // a sensor that never waits keeps it busy
+        }
         meanwhile();
         while (!result && io_.run_one() > 0) {
         }
