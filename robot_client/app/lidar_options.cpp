@@ -73,6 +73,10 @@ void add_device_options(CLI::App& lidar, LidarOptions& options) {
                 "Seconds during which a lost device is reopened; 0 = not at all", check_within(0.0, 1e6));
 }
 
+bool is_wrong_address(const std::string& input) {
+    return input.starts_with(kTcpScheme) && !net::parse_address(input.substr(kTcpScheme.size()));
+}
+
 std::string known_models() {
     std::vector<std::string_view> names;
     std::ranges::transform(lidar_models(), std::back_inserter(names), &LidarModel::name);
@@ -156,6 +160,25 @@ CLI::App* add_lidar(CLI::App& app, LidarOptions& options) {
     return lidar;
 }
 
+CLI::App* add_lidars(CLI::App& app, LidarsOptions& options) {
+    auto* lidars = app.add_subcommand("lidars", "List which lidars are plugged in, and the commands that read them");
+    lidars
+        ->add_option("DEVICE", options.devices,
+                     "Serial devices, or tcp://HOST:PORT. Default: all serial devices of USB adapters. Each is asked "
+                     "what it is, which stops a measurement: name none that is in use")
+        ->configurable(false);
+    add_checked(*lidars, "--wait", options.wait, "Seconds that each kind of lidar has to answer",
+                check_within(0.01, 60.0));
+    return lidars;
+}
+
+std::string complaint_about(const LidarsOptions& options) {
+    for (const auto& device : options.devices) {
+        if (is_wrong_address(device)) return fmt::format("lidars: '{}' is not tcp://HOST:PORT", device);
+    }
+    return {};
+}
+
 std::string complaint_about(const LidarOptions& options, Poses poses) {
     if (!options.is_ld06_command) {
         if (options.model.empty() || options.input.empty()) {
@@ -166,7 +189,7 @@ std::string complaint_about(const LidarOptions& options, Poses poses) {
         }
     }
     if (options.input.empty()) return "ld06: name the INPUT: a serial device, tcp://HOST:PORT, or a capture file";
-    if (options.input.starts_with(kTcpScheme) && !net::parse_address(options.input.substr(kTcpScheme.size()))) {
+    if (is_wrong_address(options.input)) {
         return fmt::format("{}: '{}' is not tcp://HOST:PORT", options.command(), options.input);
     }
     return complaint_about_places(options, poses);

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace CLI {
 class App;
@@ -39,11 +40,23 @@ struct LidarOptions {
     [[nodiscard]] std::string_view command() const noexcept { return is_ld06_command ? "ld06" : "lidar"; }
 };
 
+/// Lists which lidars are plugged in; needs no server.
+struct LidarsOptions {
+    std::vector<std::string> devices; ///< serial devices or tcp://HOST:PORT; empty: all serial devices of USB adapters
+    double wait = 0.4;                ///< seconds that each kind of lidar has to answer
+};
+
 /// Adds the subcommand `ld06`, which sets `options`.
 CLI::App* add_ld06(CLI::App& app, LidarOptions& options);
 
 /// Adds the subcommand `lidar`, which sets `options`.
 CLI::App* add_lidar(CLI::App& app, LidarOptions& options);
+
+/// Adds the subcommand `lidars`, which sets `options`.
+CLI::App* add_lidars(CLI::App& app, LidarsOptions& options);
+
+/// Returns an error that the parser cannot detect, or an empty string.
+[[nodiscard]] std::string complaint_about(const LidarsOptions& options);
 
 /// Returns an error that the parser cannot detect, or an empty string.
 /// @param options  options of the subcommand

@@ -1,5 +1,6 @@
 #include "common/app/standard_streams.hpp"
 #include "robot_client/app/info.hpp"
+#include "robot_client/app/lidars.hpp"
 #include "robot_client/app/options.hpp"
 #include "robot_client/app/run.hpp"
 #include "robot_client/app/truth.hpp"
@@ -21,6 +22,8 @@ int main(int argc, char** argv) try {
     if (const auto* truth = std::get_if<scanloom::robot::GroundTruthOptions>(&options))
         return scanloom::robot::run(*truth);
     if (const auto* info = std::get_if<scanloom::robot::InfoOptions>(&options)) return scanloom::robot::run(*info);
+    if (const auto* lidars = std::get_if<scanloom::robot::LidarsOptions>(&options))
+        return scanloom::robot::run(*lidars);
     return scanloom::robot::run(std::get<scanloom::robot::RobotOptions>(options));
 } catch (const std::exception& error) {
     scanloom::standard_error().write(fmt::format("scanloom-robot: {}\n", error.what()));

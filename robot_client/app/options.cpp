@@ -21,8 +21,9 @@ constexpr const char* kAbout =
     "Exits 0 if every scan is stored durably (an endless simulation: every scan sent until the\n"
     "interrupt), 1 if not, 2 on invalid arguments; prints a summary as one line of JSON, with the\n"
     "reason (\"error\") if it exits with 1.\n"
-    "Two commands need no server: info lists what a recording contains, and truth writes the ground truth map of a\n"
-    "simulated world.";
+    "Three commands need no server: info lists what a recording contains, lidars which lidars are plugged in, and "
+    "truth\n"
+    "writes the ground truth map of a simulated world.";
 constexpr const char* kFooter =
     "Every option may also stand in the file of --config (TOML; those of a source in a section of its name) or in the\n"
     "environment (--cell-size as SCANLOOM_CELL_SIZE). A flag overrides the environment, which overrides the file.";
@@ -151,7 +152,8 @@ std::string set_poses(const std::string& word, LidarOptions* ld06, RobotOptions&
 
 } // namespace
 
-std::variant<RobotOptions, GroundTruthOptions, InfoOptions, Leave> parse_options(int argc, const char* const* argv) {
+std::variant<RobotOptions, GroundTruthOptions, InfoOptions, LidarsOptions, Leave>
+parse_options(int argc, const char* const* argv) {
     RobotOptions options;
     Raw raw;
     ReplayOptions replay_options;
@@ -159,6 +161,7 @@ std::variant<RobotOptions, GroundTruthOptions, InfoOptions, Leave> parse_options
     sim::SimulatedRobotOptions simulate_options;
     GroundTruthOptions truth_options;
     InfoOptions info_options;
+    LidarsOptions lidars_options;
     LidarOptions ld06_options;
     LidarOptions lidar_options;
 
@@ -177,6 +180,7 @@ std::variant<RobotOptions, GroundTruthOptions, InfoOptions, Leave> parse_options
     const CLI::App* simulate = add_simulate(app, simulate_options)->fallthrough();
     const CLI::App* truth = add_ground_truth(app, truth_options)->fallthrough();
     const CLI::App* info = add_info(app, info_options)->fallthrough();
+    const CLI::App* lidars = add_lidars(app, lidars_options)->fallthrough();
     app.require_subcommand(1);
 
     try {
@@ -185,7 +189,7 @@ std::variant<RobotOptions, GroundTruthOptions, InfoOptions, Leave> parse_options
     } catch (const CLI::ParseError& reason) {
         return leave_for(app, reason,
                          "name a source: replay FILE, sonar MEASUREMENTS POSES, lidar MODEL DEVICE, ld06 INPUT, or "
-                         "simulate; or a command: info FILE, or truth");
+                         "simulate; or a command: info FILE, lidars, or truth");
     }
     if (truth->parsed()) {
         if (auto mistake = mistake_in(truth_options)) return usage_error(app, *mistake);
@@ -194,6 +198,10 @@ std::variant<RobotOptions, GroundTruthOptions, InfoOptions, Leave> parse_options
     if (info->parsed()) {
         if (info_options.file.empty()) return usage_error(app, "info: name the FILE");
         return info_options;
+    }
+    if (lidars->parsed()) {
+        if (const auto wrong = complaint_about(lidars_options); !wrong.empty()) return usage_error(app, wrong);
+        return lidars_options;
     }
     for (const char* needed : {"--session", "--robot"}) {
         if (app.get_option(needed)->empty()) return usage_error(app, fmt::format("{} is required", needed));

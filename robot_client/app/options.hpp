@@ -58,7 +58,7 @@ struct RobotOptions : LinkOptions {
 
 /// Reads the command line, SCANLOOM_* environment variables and the file of --config. Flags override the environment,
 /// which overrides the file.
-[[nodiscard]] std::variant<RobotOptions, GroundTruthOptions, InfoOptions, Leave> parse_options(int argc,
-                                                                                               const char* const* argv);
+[[nodiscard]] std::variant<RobotOptions, GroundTruthOptions, InfoOptions, LidarsOptions, Leave>
+parse_options(int argc, const char* const* argv);
 
 } // namespace scanloom::robot

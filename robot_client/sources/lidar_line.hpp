@@ -2,6 +2,7 @@
 
 #include "common/error/error.hpp"
 #include "common/net/connect.hpp"
+#include "robot_client/sources/serial_settings.hpp"
 
 #include <boost/asio/awaitable.hpp>
 #include <boost/asio/ip/tcp.hpp>
@@ -27,12 +28,6 @@ using LidarEndpoint = std::variant<SerialDevice, net::Address>;
 
 /// Returns the endpoint as users write it.
 [[nodiscard]] std::string name_of(const LidarEndpoint& endpoint);
-
-/// How a serial device is set; without meaning over TCP.
-struct SerialSettings {
-    unsigned baud = 0;       ///< any rate that the device can be set to
-    std::optional<bool> dtr; ///< level of the line DTR, which controls the motor of some lidars; nullopt: left as it is
-};
 
 /// An open line to a lidar.
 /// Threads: that of the awaiting executor.

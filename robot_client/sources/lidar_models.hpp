@@ -1,8 +1,8 @@
 #pragma once
 
 #include "robot_client/sources/lidar_driver.hpp"
-#include "robot_client/sources/lidar_line.hpp"
 #include "robot_client/sources/lidar_scan.hpp"
+#include "robot_client/sources/serial_settings.hpp"
 
 #include <cstdint>
 #include <memory>

@@ -46,7 +46,8 @@ int take_request(Bytes& received) {
     if (received.size() < 2) return -1;
     const int command = received[1];
     std::size_t size = 2;
-    const bool has_payload = command == 0x82 || command == 0xF0; // the requests of RPLIDARs with 0x80 and a payload
+    constexpr std::array kWithPayload{0x82, 0x84, 0xA8, 0xF0, 0xFF}; // of RPLIDARs
+    const bool has_payload = std::ranges::find(kWithPayload, command) != kWithPayload.end();
     if (has_payload) {
         if (received.size() < 3 || received.size() < 4U + received[2]) return -1;
         size = 4U + received[2];
@@ -238,7 +239,7 @@ Bytes Ld06Emulator::next_turn() {
 
 std::unique_ptr<LidarEmulator> make_lidar_emulator(std::string_view model) {
     if (model == "ld06" || model == "ld19" || model == "stl27l") return std::make_unique<Ld06Emulator>();
-    if (model == "rplidar-a1") return std::make_unique<RplidarEmulator>(A5Emulation{.firmware_minor = 29});
+    if (model == "rplidar-a1") return std::make_unique<RplidarEmulator>(A5Emulation{.firmware_minor = 20});
     if (model == "rplidar-a2")
         return std::make_unique<RplidarEmulator>(A5Emulation{.model = 0x2C, .firmware_minor = 32});
     if (model == "rplidar-c1")

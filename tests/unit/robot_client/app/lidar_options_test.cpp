@@ -17,8 +17,8 @@ namespace {
 
 using testing::HasSubstr;
 
-std::variant<RobotOptions, GroundTruthOptions, InfoOptions, Leave> parse(const std::vector<std::string>& words,
-                                                                         const char* command) {
+std::variant<RobotOptions, GroundTruthOptions, InfoOptions, LidarsOptions, Leave>
+parse(const std::vector<std::string>& words, const char* command) {
     std::vector<const char*> argv{"scanloom-robot", "--session", "s", "--robot", "r", command};
     for (const auto& word : words) argv.push_back(word.c_str());
     return parse_options(static_cast<int>(argv.size()), argv.data());

@@ -17,7 +17,8 @@ using testing::HasSubstr;
 
 class Options : public testing::Test {
 protected:
-    std::variant<RobotOptions, GroundTruthOptions, InfoOptions, Leave> parse(std::vector<std::string> words) {
+    std::variant<RobotOptions, GroundTruthOptions, InfoOptions, LidarsOptions, Leave>
+    parse(std::vector<std::string> words) {
         std::vector<const char*> argv{"scanloom-robot"};
         for (const auto& word : words) argv.push_back(word.c_str());
         return parse_options(static_cast<int>(argv.size()), argv.data());
@@ -287,7 +288,7 @@ TEST_F(Options, MistakesAreOneLineUsageErrors) {
         {{}, "name a source"},
         {{"--session", "s", "--robot", "r"},
          "name a source: replay FILE, sonar MEASUREMENTS POSES, lidar MODEL DEVICE, ld06 INPUT, or simulate; or a "
-         "command: info FILE, or truth;"},
+         "command: info FILE, lidars, or truth;"},
         {{"simulate", "--robot", "r"}, "--session is required"},
         {{"simulate", "--session", "a/b", "--robot", "r"}, "'a/b' is not a name"},
         {{"replay", "--session", "s", "--robot", "r"}, "name the FILE"},
