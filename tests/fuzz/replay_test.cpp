@@ -16,6 +16,7 @@ Fuzzer config_fuzzer;
 Fuzzer foxglove_request_fuzzer;
 Fuzzer frame_decoder_fuzzer;
 Fuzzer frame_tree_fuzzer;
+Fuzzer hokuyo_fuzzer;
 Fuzzer http_form_fuzzer;
 Fuzzer http_json_fuzzer;
 Fuzzer http_target_fuzzer;
@@ -28,8 +29,10 @@ Fuzzer messages_fuzzer;
 Fuzzer ros_map_fuzzer;
 Fuzzer ros_message_fuzzer;
 Fuzzer rosbag_fuzzer;
+Fuzzer rplidar_fuzzer;
 Fuzzer store_key_fuzzer;
 Fuzzer tokens_fuzzer;
+Fuzzer ydlidar_fuzzer;
 
 namespace scanloom::fuzz {
 namespace {
@@ -47,6 +50,7 @@ const Named kFuzzers[] = {
     {"foxglove_request", foxglove_request_fuzzer},
     {"frame_decoder", frame_decoder_fuzzer},
     {"frame_tree", frame_tree_fuzzer},
+    {"hokuyo", hokuyo_fuzzer},
     {"http_form", http_form_fuzzer},
     {"http_json", http_json_fuzzer},
     {"http_target", http_target_fuzzer},
@@ -59,8 +63,10 @@ const Named kFuzzers[] = {
     {"ros_map", ros_map_fuzzer},
     {"ros_message", ros_message_fuzzer},
     {"rosbag", rosbag_fuzzer},
+    {"rplidar", rplidar_fuzzer},
     {"store_key", store_key_fuzzer},
     {"tokens", tokens_fuzzer},
+    {"ydlidar", ydlidar_fuzzer},
 };
 
 class FuzzCorpus : public testing::TestWithParam<Named> {};

@@ -8,8 +8,10 @@
 #include "core/mapping/projection.hpp"
 #include "server/sessions/checkpoint.hpp"
 #include "server/store/rocksdb_store.hpp"
+#include "tests/fuzz/lidar_seeds.hpp"
 #include "tests/support/bag_writer.hpp"
 #include "tests/support/ld06_bytes.hpp"
+#include "tests/support/lidar_emulators.hpp"
 #include "tests/support/log_reading.hpp"
 #include "tests/support/mcap_writer.hpp"
 #include "tests/support/memory_scan_log.hpp"
@@ -194,6 +196,29 @@ void write_ld06_streams(const std::filesystem::path& folder) {
     write("jumps", {"\0", 1}, jumps);
 }
 
+/// What other lidars answer and send.
+void write_lidar_streams(const std::filesystem::path& folder) {
+    using namespace testing_support;
+    constexpr char kSecondModel = 16; // see check_lidar()
+    const auto write = [&](const char* fuzzer, std::string_view prefix, LidarEmulator& emulator,
+                           const std::vector<std::string>& requests, char model) {
+        for (const auto& [name, input] : fuzz::lidar_seeds(emulator, requests, model)) {
+            write_file(folder / fuzzer / std::string(prefix).append(name), input);
+        }
+    };
+    HokuyoEmulator hokuyo;
+    write("hokuyo", "", hokuyo, {"QT\nSCIP2.0\nVV\nPP\nMD0000108001000\n"}, 0);
+    const std::string start("\xA5\x50\xA5\x52\xA5\x82\x05\0\0\0\0\0\x22\xA5\x20", 15);
+    RplidarEmulator capsules({.firmware_minor = 29});
+    write("rplidar", "capsules_", capsules, {start.substr(0, 13)}, 0);
+    RplidarEmulator nodes;
+    write("rplidar", "nodes_", nodes, {start}, kSecondModel);
+    YdlidarEmulator x4(false);
+    write("ydlidar", "x4_", x4, {"\xA5\x90\xA5\x92\xA5\x60"}, 0);
+    YdlidarEmulator x2(true);
+    write("ydlidar", "x2_", x2, {}, kSecondModel);
+}
+
 void append_text(std::string& out, std::string_view text) {
     unsigned char length[2];
     boost::endian::store_little_u16(length, static_cast<std::uint16_t>(text.size()));
@@ -314,6 +339,7 @@ void write_corpus(const std::filesystem::path& folder) {
     write_log_entries(folder / "log_codec");
     write_log_files(folder / "log_file");
     write_ld06_streams(folder / "ld06");
+    write_lidar_streams(folder);
     write_checkpoint(folder / "checkpoint");
     write_estimated_checkpoint(folder / "checkpoint");
     write_earlier_checkpoints(folder / "checkpoint");
