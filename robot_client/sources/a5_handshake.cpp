@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 namespace scanloom::robot {
@@ -13,9 +14,6 @@ constexpr auto kStopTime = 20ms; // a sensor needs some time until it takes the 
 constexpr auto kReplyTime = 500ms;
 constexpr auto kSpinUpTime = 2s; // the motor turns before the first packet
 constexpr int kTriesMax = 3;
-
-/// Bytes that may come before an answer: of an earlier measurement.
-constexpr std::size_t kForeignBytesMax = 65'536;
 
 } // namespace
 
@@ -73,7 +71,9 @@ LidarStep A5Handshake::on_bytes(std::span<const std::uint8_t> bytes) {
         const A5Descriptor wanted = awaited();
         const auto data = find_a5_descriptor(bytes_, wanted);
         if (!data) {
-            if (bytes_.size() > kForeignBytesMax) bytes_.clear();
+            // Bytes of an earlier measurement; the last ones may begin a descriptor.
+            const auto kept = static_cast<std::ptrdiff_t>(std::min(bytes_.size(), kA5DescriptorBytes - 1));
+            bytes_.erase(bytes_.begin(), bytes_.end() - kept);
             break;
         }
         const std::size_t size = wanted.is_repeated ? 0 : wanted.size;

@@ -34,9 +34,10 @@ std::vector<std::uint8_t> a5_request(std::uint8_t command, std::initializer_list
 
 std::optional<std::size_t> find_a5_descriptor(std::span<const std::uint8_t> bytes,
                                               const A5Descriptor& wanted) noexcept {
-    const auto found = std::ranges::search(bytes, bytes_of(wanted));
-    if (found.empty()) return std::nullopt;
-    return static_cast<std::size_t>(found.end() - bytes.begin());
+    const auto descriptor = bytes_of(wanted);
+    const auto found = std::search(bytes.begin(), bytes.end(), descriptor.begin(), descriptor.end());
+    if (found == bytes.end()) return std::nullopt;
+    return static_cast<std::size_t>(found - bytes.begin()) + descriptor.size();
 }
 
 A5Identity read_a5_identity(std::span<const std::uint8_t> data) {

@@ -32,8 +32,8 @@ void MarkedTurns::end_turn() {
         return;
     }
     std::ranges::stable_sort(beams, {}, &LidarBeam::step);
-    const auto repeated = std::ranges::unique(beams, {}, &LidarBeam::step);
-    beams.erase(repeated.begin(), repeated.end());
+    const auto is_same_step = [](const LidarBeam& a, const LidarBeam& b) { return a.step == b.step; };
+    beams.erase(std::unique(beams.begin(), beams.end(), is_same_step), beams.end());
     const double turn = clock_.period().value_or(0.0);
     const double part = static_cast<double>(beams.back().step - beams.front().step) / steps_per_turn_;
     complete_.push_back({clock_.begun() - turn / 2.0, std::move(beams), turn * part});
