@@ -85,6 +85,14 @@ TEST_F(HokuyoDrivers, TheUsersRangesReplaceThoseOfTheSensor) {
     EXPECT_THAT(other.failure()->message, HasSubstr("from 31 to 30 m; no reading would be valid"));
 }
 
+TEST_F(HokuyoDrivers, ErrorCodesAreInvalidWhateverTheUsersRangeIs) {
+    HokuyoDriver close({.range_min = 0.001, .range_max = 0.0});
+    LidarDialogue dialogue(close, emulator_);
+    dialogue.open();
+    dialogue.turn(1.0);
+    EXPECT_EQ(close.next()->scan.ranges[100], kInvalidRange) << "7 is an error code, not 7 mm";
+}
+
 TEST_F(HokuyoDrivers, AMedianSmoothesTheScan) {
     auto options = asked();
     options.median_window = 5;
