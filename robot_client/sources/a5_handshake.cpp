@@ -93,7 +93,8 @@ LidarStep A5Handshake::take(std::span<const std::uint8_t> data) {
         const A5Identity identity = read_a5_identity(data);
         starts_ = dialect_.starts(identity);
         LidarStep step = enter(State::kAskingHealth);
-        if (auto note = text_of(identity); std::exchange(noted_, note) != note) step.notes.push_back(std::move(note));
+        auto note = fmt::format("connected to {}: {}", dialect_.title, text_of(identity));
+        if (std::exchange(noted_, note) != note) step.notes.push_back(std::move(note));
         return step;
     }
     if (state_ == State::kStarting) return enter(State::kDone);

@@ -15,13 +15,13 @@
 namespace scanloom::robot {
 namespace {
 
-// A confidence of 100: see LidarScanOptions. DTR: its level "off" lets the motor of an RPLIDAR A1 turn, "on" that of a
-// YDLIDAR. The A2's and newer motors do not depend on it.
+// A confidence of 100: see LidarScanOptions; it was not measured for the STL-27L. DTR: its level "off" lets the motor of
+// an RPLIDAR A1 turn, "on" that of a YDLIDAR. The A2's and newer motors do not depend on it.
 using enum LidarFamily;
 constexpr std::array kModels{
     LidarModel{"ld06", "an LD06", "LD06", kLd06, {230'400, {}}, 0.02, 12.0, 100, 450},
     LidarModel{"ld19", "an LD19", "LD19", kLd06, {230'400, {}}, 0.02, 12.0, 100, 450},
-    LidarModel{"stl27l", "an STL-27L", "STL-27L", kLd06, {921'600, {}}, 0.03, 25.0, 100, 2160},
+    LidarModel{"stl27l", "an STL-27L", "STL-27L", kLd06, {921'600, {}}, 0.03, 25.0, 0, 2160},
     LidarModel{"rplidar-a1", "an RPLIDAR A1", "RPLIDAR A1", kRplidar, {115'200, false}, 0.15, 12.0, 0, 720},
     LidarModel{"rplidar-a2", "an RPLIDAR A2", "RPLIDAR A2", kRplidar, {115'200, false}, 0.15, 12.0, 0, 400},
     LidarModel{"rplidar-c1", "an RPLIDAR C1", "RPLIDAR C1", kRplidar, {460'800, {}}, 0.05, 12.0, 0, 500},

@@ -75,7 +75,7 @@ TEST(LidarsProgram, ListsLidarsAndSilentDevices) {
     const EmulatedDevice hokuyo(place.path(), "hokuyo", "tcp");
     const EmulatedDevice rplidar(place.path(), "rplidar-a2", "serial");
     ChildProcess lidars(program("scanloom-robot"),
-                        {"lidars", "--wait", "0.5", hokuyo.address(), rplidar.address(), "/dev/nonexistent"},
+                        {"lidars", "--wait", "1", hokuyo.address(), rplidar.address(), "/dev/nonexistent"},
                         place.path() / "errors");
     std::string text;
     while (const auto line = lidars.read_line()) text += *line + "\n";

@@ -49,7 +49,7 @@ protected:
                        testing_support::emulate(asio::posix::stream_descriptor(io_, terminal.duplicate()),
                                                 std::move(emulator), std::chrono::milliseconds(20)),
                        asio::detached);
-        search(name, SerialDevice{terminal.device()}, std::chrono::milliseconds(400));
+        search(name, SerialDevice{terminal.device()}, std::chrono::milliseconds(800));
     }
 
     void run() {

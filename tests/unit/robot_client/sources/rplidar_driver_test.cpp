@@ -46,7 +46,8 @@ TEST(RplidarDriver, OldFirmwareSendsSinglePoints) {
     pair.dialogue.open();
     EXPECT_FALSE(pair.dialogue.failure());
     EXPECT_THAT(pair.emulator.commands(), ElementsAre("25", "50", "52", "20"));
-    EXPECT_THAT(pair.dialogue.notes(), ElementsAre("model 24, firmware 1.15, serial A0A1A2A3A4A5A6A7A8A9AAABACADAEAF"));
+    EXPECT_THAT(pair.dialogue.notes(), ElementsAre("connected to an RPLIDAR A1: model 24, firmware 1.15, serial "
+                                                   "A0A1A2A3A4A5A6A7A8A9AAABACADAEAF"));
     for (const double arrival : {10.0, 10.125, 10.25}) pair.dialogue.turn(arrival);
     const auto taken = pair.driver->next().value();
     EXPECT_EQ(taken.sensor->name, "RPLIDAR A1");
