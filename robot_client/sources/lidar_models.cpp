@@ -15,8 +15,8 @@
 namespace scanloom::robot {
 namespace {
 
-// A confidence of 100: see LidarScanOptions; it was not measured for the STL-27L. DTR: its level "off" lets the motor of
-// an RPLIDAR A1 turn, "on" that of a YDLIDAR. The A2's and newer motors do not depend on it.
+// A confidence of 100: see LidarScanOptions; it was not measured for the STL-27L. DTR: its level "off" lets the motor
+// of an RPLIDAR A1 turn, "on" that of a YDLIDAR. The A2's and newer motors do not depend on it.
 using enum LidarFamily;
 constexpr std::array kModels{
     LidarModel{"ld06", "an LD06", "LD06", kLd06, {230'400, {}}, 0.02, 12.0, 100, 450},

@@ -8,6 +8,10 @@
 #include <boost/asio/use_awaitable.hpp>
 #include <gmock/gmock.h>
 
+#include <sys/ioctl.h>
+
+#include <array>
+
 namespace scanloom::robot {
 namespace {
 
@@ -91,6 +95,19 @@ TEST_F(LidarLives, ASensorIsStoppedWhenItsSourceEnds) {
     }
     EXPECT_FALSE(emulator->is_measuring());
     EXPECT_THAT(emulator->commands(), testing::IsSupersetOf({"25", "50", "52", "20", "F0"}));
+}
+
+TEST_F(LidarLives, ASerialLineHasTheRateOfTheModel) {
+    PseudoTerminal terminal;
+    terminal.keep_open();
+    plug_in(terminal, std::make_shared<testing_support::YdlidarEmulator>(false));
+    LidarLive source(options_for("ydlidar-x4", SerialDevice{terminal.device()}));
+    (void)scan_of(source);
+    std::array<unsigned, 11> settings{}; // struct termios2 of Linux, which ends with the two speeds
+    const int line = terminal.duplicate();
+    ASSERT_EQ(::ioctl(line, _IOR('T', 0x2A, settings), settings.data()), 0);
+    ::close(line);
+    EXPECT_EQ(settings[10], 128'000U) << "not one of the standard rates";
 }
 
 TEST_F(LidarLives, ABrokenSensorFailsWithItsError) {
