@@ -20,9 +20,9 @@ namespace {
 Error unreachable(std::string message) { return {Errc::kUnreachable, std::move(message)}; }
 
 Result<Endpoints> endpoints_of(const Address& address, const boost::system::error_code& failed,
-                               const tcp::resolver::results_type& found) {
+                               const tcp::resolver::results_type& found, PeerName peer) {
     if (failed) {
-        return unreachable(fmt::format("cannot find {}: {}; check --server", address.text(), failed.message()));
+        return unreachable(fmt::format("cannot find {}: {}; check {}", address.text(), failed.message(), peer.option));
     }
     Endpoints endpoints;
     for (const auto& entry : found) endpoints.push_back(entry.endpoint());
@@ -56,7 +56,7 @@ Result<Endpoints> resolve(const Address& address) {
     asio::io_context io;
     boost::system::error_code failed;
     const auto found = tcp::resolver(io).resolve(address.host, address.port, failed);
-    return endpoints_of(address, failed, found);
+    return endpoints_of(address, failed, found, {});
 }
 
 LinkStream client_stream(asio::any_io_executor executor, const TlsContext& tls) {
@@ -65,16 +65,16 @@ LinkStream client_stream(asio::any_io_executor executor, const TlsContext& tls) 
 }
 
 asio::awaitable<Result<>> connect(LinkStream& stream, Address address, Endpoints endpoints,
-                                  std::chrono::milliseconds timeout) {
+                                  std::chrono::milliseconds timeout, PeerName peer) {
     const auto connected = co_await within(timeout, asio::async_connect(stream.socket(), endpoints, kAwaitTuple));
     const auto refused = connected ? std::get<0>(*connected) : asio::error::operation_aborted;
     if (refused == asio::error::operation_aborted) {
-        co_return unreachable(fmt::format("no connection to {} within {:g} s; check --server and the network",
-                                          address.text(), in_seconds(timeout)));
+        co_return unreachable(fmt::format("no connection to {} within {:g} s; check {} and the network", address.text(),
+                                          in_seconds(timeout), peer.option));
     }
     if (refused) {
-        co_return unreachable(fmt::format("cannot connect to {}: {}; is scanloom-server running there?", address.text(),
-                                          refused.message()));
+        co_return unreachable(fmt::format("cannot connect to {}: {}; is {} running there?", address.text(),
+                                          refused.message(), peer.program));
     }
     boost::system::error_code ignored; // without no_delay small messages only wait longer
     stream.socket().set_option(tcp::no_delay(true), ignored);
@@ -91,12 +91,13 @@ asio::awaitable<Result<>> connect(LinkStream& stream, Address address, Endpoints
         fmt::format("no encrypted link to {}: {}", address.text(), handshake_text(failed, stream.verify_result())));
 }
 
-asio::awaitable<Result<>> connect(LinkStream& stream, Address address, std::chrono::milliseconds timeout) {
+asio::awaitable<Result<>> connect(LinkStream& stream, Address address, std::chrono::milliseconds timeout,
+                                  PeerName peer) {
     tcp::resolver resolver(stream.get_executor());
     const auto [failed, found] = co_await resolver.async_resolve(address.host, address.port, kAwaitTuple);
-    auto endpoints = endpoints_of(address, failed, found);
+    auto endpoints = endpoints_of(address, failed, found, peer);
     if (!endpoints) co_return endpoints.error();
-    co_return co_await connect(stream, std::move(address), std::move(*endpoints), timeout);
+    co_return co_await connect(stream, std::move(address), std::move(*endpoints), timeout, peer);
 }
 
 std::string failure_text(const LinkStream& stream, const boost::system::error_code& failed) {

@@ -44,19 +44,26 @@ using Endpoints = std::vector<boost::asio::ip::tcp::endpoint>;
 /// @param tls  null: not encrypted
 [[nodiscard]] LinkStream client_stream(boost::asio::any_io_executor executor, const TlsContext& tls);
 
+/// Names of the other side in messages for people: literals.
+struct PeerName {
+    std::string_view option = "--server";         ///< that has its address
+    std::string_view program = "scanloom-server"; ///< that runs there
+};
+
 /// Connects `stream`, which client_stream() returned, and performs the TLS handshake if it is encrypted. The
 /// certificate must be valid for the host of `address`. Cancelled by stream.close().
 /// @param stream     must outlive the call
 /// @param address    the server's, for messages and for its certificate
 /// @param endpoints  its addresses; the first one that accepts is used
 /// @param timeout    maximum time for connecting, and again for the handshake
+/// @param peer       its name in messages
 /// Errors: kUnreachable: the message is a sentence for people that names the address and the step that failed.
 [[nodiscard]] boost::asio::awaitable<Result<>> connect(LinkStream& stream, Address address, Endpoints endpoints,
-                                                       std::chrono::milliseconds timeout);
+                                                       std::chrono::milliseconds timeout, PeerName peer = {});
 
 /// Resolves the address without blocking, and connects as above.
 [[nodiscard]] boost::asio::awaitable<Result<>> connect(LinkStream& stream, Address address,
-                                                       std::chrono::milliseconds timeout);
+                                                       std::chrono::milliseconds timeout, PeerName peer = {});
 
 /// Explains to people why a connection failed after connect().
 [[nodiscard]] std::string failure_text(const LinkStream& stream, const boost::system::error_code& failed);

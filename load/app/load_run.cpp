@@ -69,7 +69,7 @@ FleetPlan fleet_plan(const LoadOptions& options) {
 } // namespace
 
 LoadRun::LoadRun(asio::io_context& io, const LoadOptions& options, const Workload& workload,
-                 const RobotLinkOptions& link, const HttpPlace& http, Console& console)
+                 const RobotLinkOptions& link, const net::HttpPlace& http, Console& console)
     : io_(io), options_(options), workload_(workload), link_(link), console_(console),
       sessions_(session_names(options)), robots_(spread_over(sessions_, options.robots, workload.scans.size())),
       http_(io.get_executor(), http), fleet_(fleet_plan(options), robots_, clock_, workload_, link_),

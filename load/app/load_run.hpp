@@ -1,11 +1,11 @@
 #pragma once
 
 #include "common/app/standard_streams.hpp"
+#include "common/net/http_connection.hpp"
 #include "load/app/options.hpp"
 #include "load/core/live_view.hpp"
 #include "load/net/audience.hpp"
 #include "load/net/fleet.hpp"
-#include "load/net/http_connection.hpp"
 #include "load/net/verification.hpp"
 
 #include <boost/asio/awaitable.hpp>
@@ -25,7 +25,7 @@ class LoadRun {
 public:
     /// The references must outlive this object.
     LoadRun(boost::asio::io_context& io, const LoadOptions& options, const Workload& workload,
-            const RobotLinkOptions& link, const HttpPlace& http, Console& console);
+            const RobotLinkOptions& link, const net::HttpPlace& http, Console& console);
 
     /// Runs everything. Call once.
     /// Errors: kAlreadyExists: there are sessions with the run's names; those of HTTP. Nothing was started then.
@@ -57,7 +57,7 @@ private:
     RunClock clock_;
     std::vector<std::string> sessions_;
     std::vector<RobotPlan> robots_;
-    HttpConnection http_;
+    net::HttpConnection http_;
     Fleet fleet_;
     Audience audience_;
     std::unique_ptr<ReferenceSession> reference_;

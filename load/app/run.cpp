@@ -28,10 +28,11 @@ namespace {
 
 constexpr std::uint64_t kDescriptorsBesides = 64; ///< for threads, files and the program's own requests
 
-Result<HttpPlace> http_place(const LoadOptions& options, const std::string& token) {
+Result<net::HttpPlace> http_place(const LoadOptions& options, const std::string& token) {
     auto tls = tls_of(options, options.http.tls);
     if (!tls) return tls.error();
-    return HttpPlace{static_cast<const net::Address&>(options.http), std::move(*tls), token};
+    return net::HttpPlace{static_cast<const net::Address&>(options.http), std::move(*tls), token,
+                          "give the server's HTTP port to --http, or --verify none without viewers and tile readers"};
 }
 
 Result<RobotLinkOptions> link_options(const LoadOptions& options) {

@@ -1,9 +1,9 @@
 #include "load/net/audience.hpp"
 
 #include "common/net/await_tuple.hpp"
+#include "common/net/http_connection.hpp"
 #include "common/net/link_stream.hpp"
 #include "load/core/tile_tour.hpp"
-#include "load/net/http_connection.hpp"
 #include "load/net/server_api.hpp"
 
 #include <boost/asio/co_spawn.hpp>
@@ -47,7 +47,7 @@ asio::awaitable<Entry> enter(Stream& stream, const AudienceShared& shared, std::
     const auto connected = co_await net::connect(stream.next_layer(), server, kEnterMax);
     if (!connected) co_return Entry{connected.error().message};
     const auto target = fmt::format("/api/v1/sessions/{}/live", session);
-    if (const auto authorization = authorization_of(shared.http.token); !authorization.empty()) {
+    if (const auto authorization = net::authorization_of(shared.http.token); !authorization.empty()) {
         stream.set_option(beast::websocket::stream_base::decorator(
             [authorization](auto& request) { request.set(beast::http::field::authorization, authorization); }));
     }
@@ -150,10 +150,10 @@ private:
         ++figures.tile_requests;
         figures.tile_bytes += http_.bytes_in() - before;
         if (!answer) co_return note(answer.error());
-        if (answer->status != kOk && answer->status != kNotModified) co_return note(refusal(*answer, target));
+        if (answer->status != net::kOk && answer->status != kNotModified) co_return note(refusal(*answer, target));
         figures.tile_latency.record(shared_.clock.now() - meant);
         if (answer->status == kNotModified) ++figures.tiles_unchanged;
-        if (answer->status == kOk) etag = answer->etag;
+        if (answer->status == net::kOk) etag = answer->etag;
     }
 
     void note(const Error& error) {
@@ -163,7 +163,7 @@ private:
 
     AudienceShared& shared_;
     std::string session_;
-    HttpConnection http_;
+    net::HttpConnection http_;
     asio::steady_timer timer_;
     TileTour tour_;
     std::unordered_map<std::string, std::string> etags_; // by target

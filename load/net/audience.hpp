@@ -1,7 +1,7 @@
 #pragma once
 
+#include "common/net/http_connection.hpp"
 #include "load/core/figures.hpp"
-#include "load/net/http_connection.hpp"
 #include "load/net/run_clock.hpp"
 
 #include <boost/asio/awaitable.hpp>
@@ -19,7 +19,7 @@ namespace scanloom::load {
 /// State shared by the viewers and tile readers of one thread.
 struct AudienceShared {
     const RunClock& clock;
-    HttpPlace http;
+    net::HttpPlace http;
     AudienceFigures& figures;
     bool stopped = false; ///< every reader and viewer ends once it is set
 };
@@ -38,7 +38,7 @@ struct AudiencePlan {
     std::uint32_t viewers = 0;
     std::uint32_t tile_readers = 0;
     double tile_rate = 0.0; ///< requests per second of each reader
-    HttpPlace http;
+    net::HttpPlace http;
     std::vector<std::string> sessions; ///< the first viewer watches the first, and so on, cyclically
 };
 

@@ -1,5 +1,7 @@
 #include "load/net/server_api.hpp"
 
+#include "load/core/figure_text.hpp"
+
 #include <boost/json/parse.hpp>
 #include <boost/json/serialize.hpp>
 #include <fmt/format.h>
@@ -22,10 +24,10 @@ std::string path_of(const std::string& session) { return "/api/v1/sessions/" + s
 
 /// Returns what `read` makes of a JSON answer; throws a boost::json exception if the answer has another form.
 template <class Read>
-auto read_json(const Result<HttpAnswer>& answer, const std::string& target, Read read)
+auto read_json(const Result<net::HttpAnswer>& answer, const std::string& target, Read read)
     -> Result<decltype(read(json::value()))> {
     if (!answer) return answer.error();
-    if (answer->status != kOk) return refusal(*answer, target);
+    if (answer->status != net::kOk) return refusal(*answer, target);
     try {
         return read(json::parse(answer->body));
     } catch (const boost::system::system_error& unreadable) {
@@ -67,7 +69,7 @@ std::vector<TilePlace> read_tile_list(const json::value& value) {
 
 } // namespace
 
-asio::awaitable<Result<std::vector<std::string>>> sessions_of(HttpConnection& http, std::string prefix) {
+asio::awaitable<Result<std::vector<std::string>>> sessions_of(net::HttpConnection& http, std::string prefix) {
     std::vector<std::string> names;
     std::string after = prefix; // sessions are listed by name
     for (;;) {
@@ -90,41 +92,47 @@ asio::awaitable<Result<std::vector<std::string>>> sessions_of(HttpConnection& ht
     }
 }
 
-asio::awaitable<Result<FoundSession>> find_session(HttpConnection& http, std::string session) {
+asio::awaitable<Result<FoundSession>> find_session(net::HttpConnection& http, std::string session) {
     const auto target = path_of(session);
     const auto answer = co_await http.get(target);
     co_return read_json(answer, target, read_session);
 }
 
-asio::awaitable<Result<std::string>> digest_of(HttpConnection& http, std::string session) {
+asio::awaitable<Result<std::string>> digest_of(net::HttpConnection& http, std::string session) {
     const auto target = path_of(session) + "/digest";
     const auto answer = co_await http.get(target);
     co_return read_json(answer, target, [](const json::value& value) { return json::serialize(value.at("layers")); });
 }
 
-asio::awaitable<Result<>> delete_session(HttpConnection& http, std::string session) {
+asio::awaitable<Result<>> delete_session(net::HttpConnection& http, std::string session) {
     const auto target = path_of(session);
     const auto answer = co_await http.ask(boost::beast::http::verb::delete_, target);
     if (!answer) co_return answer.error();
-    if (answer->status != kOk && answer->status != kNoContent && answer->status != kNotFound)
+    if (answer->status != net::kOk && answer->status != kNoContent && answer->status != kNotFound)
         co_return refusal(*answer, target);
     co_return Result<>();
 }
 
-asio::awaitable<Result<ServerUse>> server_use(HttpConnection& http) {
+asio::awaitable<Result<ServerUse>> server_use(net::HttpConnection& http) {
     const std::string target = "/metrics";
     const auto answer = co_await http.get(target);
     if (!answer) co_return answer.error();
-    if (answer->status != kOk) co_return refusal(*answer, target);
+    if (answer->status != net::kOk) co_return refusal(*answer, target);
     const ProcessUse so_far{metric(answer->body, "process_cpu_seconds_total"),
                             metric(answer->body, "process_resident_memory_bytes")};
     co_return ServerUse{so_far, metric(answer->body, "process_start_time_seconds")};
 }
 
-asio::awaitable<Result<std::vector<TilePlace>>> tiles_of(HttpConnection& http, std::string session, std::string layer) {
+asio::awaitable<Result<std::vector<TilePlace>>> tiles_of(net::HttpConnection& http, std::string session,
+                                                         std::string layer) {
     const auto target = fmt::format("{}/changes?layer={}&since=0", path_of(session), layer);
     const auto answer = co_await http.get(target);
     co_return read_json(answer, target, read_tile_list);
+}
+
+Error refusal(const net::HttpAnswer& answer, const std::string& target) {
+    return {Errc::kInternal,
+            harmless(fmt::format("{} was answered with {}: {}", target, answer.status, answer.body.substr(0, 300)))};
 }
 
 double metric(std::string_view text, std::string_view name) {

@@ -68,7 +68,7 @@ std::uint64_t scans_of(const ExpectedSession& session) { return session.robots.f
 
 } // namespace
 
-asio::awaitable<void> verify_counts(HttpConnection& http, const std::vector<ExpectedSession>& sessions,
+asio::awaitable<void> verify_counts(net::HttpConnection& http, const std::vector<ExpectedSession>& sessions,
                                     ReportProgress report, Evidence& evidence) {
     for (std::size_t i = 0; i < sessions.size(); ++i) {
         report_progress(report, "counting the scans of", i, sessions.size());
@@ -83,7 +83,7 @@ asio::awaitable<void> verify_counts(HttpConnection& http, const std::vector<Expe
     }
 }
 
-asio::awaitable<void> verify_digests(HttpConnection& http, std::vector<ExpectedSession> sessions,
+asio::awaitable<void> verify_digests(net::HttpConnection& http, std::vector<ExpectedSession> sessions,
                                      std::string reference_name, ReferenceSession& reference, ReportProgress report,
                                      Evidence& evidence) {
     std::erase_if(sessions,

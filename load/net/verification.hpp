@@ -1,7 +1,7 @@
 #pragma once
 
+#include "common/net/http_connection.hpp"
 #include "load/core/verdict.hpp"
-#include "load/net/http_connection.hpp"
 #include "load/net/robot.hpp"
 
 #include <boost/asio/awaitable.hpp>
@@ -43,13 +43,14 @@ using ReportProgress = std::function<void(const std::string&)>;
 
 /// Reads every session from the server, and adds the number of its scans and what contradicts the acknowledgements to
 /// `evidence`.
-[[nodiscard]] boost::asio::awaitable<void> verify_counts(HttpConnection& http,
+[[nodiscard]] boost::asio::awaitable<void> verify_counts(net::HttpConnection& http,
                                                          const std::vector<ExpectedSession>& sessions,
                                                          ReportProgress report, Evidence& evidence);
 
 /// Compares the maps of every session with those of `reference`, into which the same scans are streamed here: as many
 /// as the session with the fewest has, then up to each next number that occurs. Pre: one robot per session.
-[[nodiscard]] boost::asio::awaitable<void> verify_digests(HttpConnection& http, std::vector<ExpectedSession> sessions,
+[[nodiscard]] boost::asio::awaitable<void> verify_digests(net::HttpConnection& http,
+                                                          std::vector<ExpectedSession> sessions,
                                                           std::string reference_name, ReferenceSession& reference,
                                                           ReportProgress report, Evidence& evidence);
 

@@ -1,7 +1,6 @@
-#include "load/net/http_connection.hpp"
+#include "common/net/http_connection.hpp"
 
 #include "common/net/await_tuple.hpp"
-#include "load/core/figure_text.hpp"
 
 #include <boost/beast/http/read.hpp>
 #include <boost/beast/http/write.hpp>
@@ -9,7 +8,7 @@
 
 #include <utility>
 
-namespace scanloom::load {
+namespace scanloom::net {
 
 namespace asio = boost::asio;
 namespace http = boost::beast::http;
@@ -26,9 +25,9 @@ HttpConnection::HttpConnection(asio::any_io_executor executor, HttpPlace place)
     : executor_(std::move(executor)), place_(std::move(place)), authorization_(authorization_of(place_.token)) {}
 
 asio::awaitable<Result<>> HttpConnection::connect() {
-    stream_.emplace(net::client_stream(executor_, place_.tls));
+    stream_.emplace(client_stream(executor_, place_.tls));
     buffer_.clear();
-    const auto connected = co_await net::connect(*stream_, place_.server, timeout_);
+    const auto connected = co_await net::connect(*stream_, place_.server, timeout_, {"--http", "scanloom-server"});
     is_open_ = connected.has_value();
     co_return connected;
 }
@@ -55,7 +54,7 @@ asio::awaitable<Result<HttpAnswer>> HttpConnection::ask(http::verb method, std::
         }
         Parser parser;
         parser.body_limit(kBodyMax);
-        const auto failed = co_await net::within(timeout_, exchange(request, parser));
+        const auto failed = co_await within(timeout_, exchange(request, parser));
         if (failed && !*failed) {
             if (!parser.get().keep_alive()) close();
             co_return HttpAnswer{parser.get().result_int(), std::string(parser.get()[http::field::etag]),
@@ -66,16 +65,14 @@ asio::awaitable<Result<HttpAnswer>> HttpConnection::ask(http::verb method, std::
             co_return Error{Errc::kTimeout, fmt::format("{} did not answer {} within {} s", place_.server.text(),
                                                         target, timeout_.count())};
         }
-        if (!was_open) co_return unreachable(net::failure_text(*stream_, *failed));
+        if (!was_open) co_return unreachable(failure_text(*stream_, *failed));
         // Otherwise the server has closed the idle connection.
     }
 }
 
 Error HttpConnection::unreachable(const std::string& why) const {
-    return {Errc::kUnreachable,
-            fmt::format("{} does not answer {} ({}); give the server's HTTP port to --http, or --verify none without "
-                        "viewers and tile readers",
-                        place_.server.text(), place_.tls ? "HTTPS" : "HTTP", why)};
+    return {Errc::kUnreachable, fmt::format("{} does not answer {} ({}); {}", place_.server.text(),
+                                            place_.tls ? "HTTPS" : "HTTP", why, place_.advice)};
 }
 
 void HttpConnection::close() {
@@ -83,9 +80,4 @@ void HttpConnection::close() {
     if (stream_) stream_->close();
 }
 
-Error refusal(const HttpAnswer& answer, const std::string& target) {
-    return {Errc::kInternal,
-            harmless(fmt::format("{} was answered with {}: {}", target, answer.status, answer.body.substr(0, 300)))};
-}
-
-} // namespace scanloom::load
+} // namespace scanloom::net

@@ -17,13 +17,14 @@
 #include <optional>
 #include <string>
 
-namespace scanloom::load {
+namespace scanloom::net {
 
 /// Address and credentials for the server's HTTP port.
 struct HttpPlace {
-    net::Address server;
-    net::TlsContext tls; ///< null: without TLS
-    std::string token;   ///< empty: none
+    Address server;
+    TlsContext tls;     ///< null: without TLS
+    std::string token;  ///< empty: none
+    std::string advice; ///< for people: what to do if the server does not answer
 };
 
 inline constexpr unsigned kOk = 200; ///< HTTP status
@@ -66,8 +67,8 @@ private:
 
     boost::asio::any_io_executor executor_;
     HttpPlace place_;
-    std::string authorization_;             // value of the header field; empty: none
-    std::optional<net::LinkStream> stream_; // the current or last one
+    std::string authorization_;        // value of the header field; empty: none
+    std::optional<LinkStream> stream_; // the current or last one
     boost::beast::flat_buffer buffer_;
     std::chrono::seconds timeout_{30};
     std::uint64_t bytes_in_ = 0;
@@ -77,7 +78,4 @@ private:
 /// Returns the value of an Authorization field; empty if there is no token.
 [[nodiscard]] std::string authorization_of(const std::string& token);
 
-/// Returns an answer with an unexpected status as an error.
-[[nodiscard]] Error refusal(const HttpAnswer& answer, const std::string& target);
-
-} // namespace scanloom::load
+} // namespace scanloom::net
