@@ -1,6 +1,7 @@
 #include "robot_client/app/info.hpp"
 
 #include "common/app/standard_streams.hpp"
+#include "robot_client/ros/frame_choice.hpp"
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
@@ -70,18 +71,13 @@ std::string times_text(const RecordingSurvey& found) {
 
 } // namespace
 
-std::string poses_text(const RecordingPlan& plan) {
-    if (plan.poses == Poses::kNone) return "poses: none; the server estimates where the scans were taken";
-    const auto source = plan.odom_topic.empty() ? std::string("the transforms") : plan.odom_topic;
-    return fmt::format("poses: {}, of {} in {}, by {}", name_of(plan.poses), printable(plan.base_frame),
-                       printable(plan.fixed_frame), printable(source));
-}
-
 std::string info_text(const std::string& file, const RecordingSurvey& found, const Result<RecordingPlan>& plan) {
     std::string text = fmt::format("{}: {}\n{}", file, times_text(found), topics_text(found));
     for (const auto& loss : texts_of(found.losses)) text += loss + "\n";
     if (!plan) return text + fmt::format("it cannot be replayed: {}\n", plan.error().message);
-    text += fmt::format("{}\nscans: {} of {} can be sent", poses_text(*plan), plan->scan_count, plan->scans.size());
+    text += fmt::format("{}\nscans: {} of {} can be sent",
+                        poses_text(plan->poses, plan->base_frame, plan->fixed_frame, plan->odom_topic),
+                        plan->scan_count, plan->scans.size());
     text += plan->skipped.empty() ? "\n" : fmt::format("; skipped: {}\n", skipped_text(plan->skipped));
     for (const auto& note : plan->notes) text += note + "\n";
     return text + fmt::format("replay it with: scanloom-robot --server HOST:7447 --session NAME --robot NAME replay "

@@ -14,9 +14,6 @@ namespace scanloom::robot {
 [[nodiscard]] std::string info_text(const std::string& file, const RecordingSurvey& found,
                                     const Result<RecordingPlan>& plan);
 
-/// Returns where the poses of a recording come from, as a sentence for people.
-[[nodiscard]] std::string poses_text(const RecordingPlan& plan);
-
 /// Prints info_text() of a file.
 ExitCode run(const InfoOptions& options);
 

@@ -3,6 +3,7 @@
 #include "robot_client/app/info.hpp"
 #include "robot_client/app/make_lidar.hpp"
 #include "robot_client/app/skipped_lines.hpp"
+#include "robot_client/ros/frame_choice.hpp"
 #include "robot_client/ros/recorded_scans.hpp"
 #include "robot_client/sources/carmen_log.hpp"
 #include "robot_client/sources/pose_check.hpp"
@@ -83,7 +84,8 @@ Result<PreparedSource> make_recording(const RobotOptions& options, const ReplayO
     const RecordingPlan& plan = scans->plan();
     for (const auto& loss : texts_of(scans->losses())) console.note(fmt::format("{}: {}", replay.file, loss));
     for (const auto& note : plan.notes) console.note(fmt::format("{}: {}", replay.file, note));
-    console.note(fmt::format("{}: {}", replay.file, poses_text(plan)));
+    console.note(fmt::format("{}: {}", replay.file,
+                             poses_text(plan.poses, plan.base_frame, plan.fixed_frame, plan.odom_topic)));
     PreparedSource prepared;
     prepared.left_out = LeftOut{plan.skipped, scans->losses().count};
     prepared.poses = plan.poses;

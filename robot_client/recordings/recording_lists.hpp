@@ -63,13 +63,12 @@ private:
     return std::string(type.substr(0, at + 1)).append(type.substr(at + kMiddle.size()));
 }
 
-/// Returns a word of a file for messages: shortened, and without characters that a terminal could interpret.
-[[nodiscard]] inline std::string shown_word(std::string_view word) {
-    constexpr std::size_t kShownMax = 40;
-    std::string text(word.substr(0, kShownMax));
+/// Returns a word of a file or a peer for messages: shortened, and without characters that a terminal could interpret.
+[[nodiscard]] inline std::string shown_word(std::string_view word, std::size_t shown_max = 40) {
+    std::string text(word.substr(0, shown_max));
     std::ranges::replace_if(
         text, [](char c) { return c < ' ' || c > '~'; }, '?');
-    return word.size() > kShownMax ? text + "..." : text;
+    return word.size() > shown_max ? text + "..." : text;
 }
 
 /// Returns a time in ns; times beyond the year 2262 become its last one.

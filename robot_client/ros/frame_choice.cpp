@@ -1,10 +1,11 @@
 #include "robot_client/ros/frame_choice.hpp"
 
+#include "robot_client/recordings/recording_lists.hpp"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -42,9 +43,10 @@ Result<std::size_t> stated_odometry(const RecordingSurvey& found, const std::str
         if (found.topics[topic].name == name) return topic;
         names.push_back(found.topics[topic].name);
     }
-    return Error{Errc::kNotFound, fmt::format("--odom-topic {}: the recording has no readable nav_msgs/Odometry of "
-                                              "this topic; it has: {}",
-                                              name, names.empty() ? "none" : fmt::to_string(fmt::join(names, ", ")))};
+    return Error{Errc::kNotFound,
+                 fmt::format("--odom-topic {}: the {} has no readable nav_msgs/Odometry of this topic; it "
+                             "has: {}",
+                             name, found.origin, names.empty() ? "none" : fmt::to_string(fmt::join(names, ", ")))};
 }
 
 /// Returns the frame that poses are in.
@@ -132,8 +134,15 @@ Result<FrameChoice> choose_frames(RecordingSurvey& found, const RecordingOptions
                      ? fmt::format("--poses map: no frame named map is above the robot's frame {}; use --poses {}, or "
                                    "name the frame with --fixed-frame",
                                    choice.base, frames.empty() ? "none" : "odometry")
-                     : std::string("--poses odometry: the recording has neither transforms of odometry nor "
-                                   "nav_msgs/Odometry; use --poses none")};
+                     : fmt::format("--poses odometry: the {} has neither transforms of odometry nor "
+                                   "nav_msgs/Odometry; use --poses none",
+                                   found.origin)};
+}
+
+std::string poses_text(Poses poses, std::string_view base, std::string_view fixed, std::string_view odom_topic) {
+    if (poses == Poses::kNone) return "poses: none; the server estimates where the scans were taken";
+    return fmt::format("poses: {}, of {} in {}, by {}", name_of(poses), shown_word(base), shown_word(fixed),
+                       odom_topic.empty() ? "the transforms" : shown_word(odom_topic));
 }
 
 } // namespace scanloom::robot

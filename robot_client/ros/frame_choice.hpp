@@ -1,10 +1,12 @@
 #pragma once
 
-#include "robot_client/ros/recording_plan.hpp"
+#include "robot_client/ros/recording_options.hpp"
+#include "robot_client/ros/recording_survey.hpp"
 
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <string_view>
 
 namespace scanloom::robot {
 
@@ -22,5 +24,12 @@ struct FrameChoice {
 /// Errors: kNotFound if a frame or topic of the options is not there, or the poses that they ask for are not.
 [[nodiscard]] Result<FrameChoice> choose_frames(RecordingSurvey& found, const RecordingOptions& options,
                                                 const std::string& laser_frame);
+
+/// Returns where poses come from, as a sentence for people.
+/// @param base        frame of the robot
+/// @param fixed       frame that poses are in
+/// @param odom_topic  that poses come from; empty: from transforms
+[[nodiscard]] std::string poses_text(Poses poses, std::string_view base, std::string_view fixed,
+                                     std::string_view odom_topic);
 
 } // namespace scanloom::robot

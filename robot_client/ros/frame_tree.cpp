@@ -7,6 +7,7 @@
 namespace scanloom::robot {
 
 void FrameTree::add(const RosTransform& transform, bool is_static) {
+    if (kept_ && names_.size() >= kFramesMax && !(has(transform.child) && has(transform.header.frame))) return;
     Edge& edge = edges_[id_of(transform.child)];
     const Transform one{id_of(transform.header.frame), transform.T_parent_child.translation(),
                         Eigen::Quaterniond(transform.T_parent_child.linear())};
@@ -21,14 +22,28 @@ bool FrameTree::are_equal(const Transform& a, const Transform& b) {
 
 void FrameTree::insert(Edge& edge, RosTime stamp, const Transform& one) {
     auto& moving = edge.moving;
+    if (kept_ && !moving.empty() && std::prev(moving.end())->first - stamp > kSetBack) {
+        size_ -= moving.size();
+        moving.clear();
+    }
     if (!moving.emplace(stamp, one).second) return;
     ++size_;
+    forget(edge);
     const auto newest = std::prev(moving.end());
     if (newest->first != stamp || moving.size() < 3) return;
     const auto middle = std::prev(newest);
     if (!are_equal(middle->second, one) || !are_equal(std::prev(middle)->second, one)) return;
     moving.erase(middle); // of equal ones in a row
     --size_;
+}
+
+/// Forgets transforms that are older than what is kept, but the last of them.
+void FrameTree::forget(Edge& edge) {
+    auto& moving = edge.moving;
+    while (kept_ && moving.size() > 2 && std::prev(moving.end())->first - std::next(moving.begin())->first > *kept_) {
+        moving.erase(moving.begin());
+        --size_;
+    }
 }
 
 /// Returns the transform of a child at a time.

@@ -33,6 +33,15 @@ public:
     /// Transforms farther apart in time are not interpolated unless they are equal: the robot may have been anywhere.
     static constexpr RosTime kHoleMax = 2'000'000'000; // nanoseconds
 
+    /// Frames of a tree that forgets; transforms of further frames are not added.
+    static constexpr std::size_t kFramesMax = 10'000;
+
+    /// Makes the tree forget, so that its size stays bounded while transforms of a live robot come: of each child it
+    /// keeps those of a time before the newest one, and the last one before that. A transform whose stamp lies more
+    /// than kSetBack before the newest one of its child replaces all: the robot's clock was set back.
+    /// @param kept  nanoseconds
+    void forget_before_newest(RosTime kept) { kept_ = kept; }
+
     /// Adds a transform. Of several with the same child and stamp the first counts. Transforms may come in any order.
     /// @param is_static  it holds at all times, and replaces all others of its child
     void add(const RosTransform& transform, bool is_static);
@@ -60,6 +69,8 @@ public:
     [[nodiscard]] bool has(std::string_view frame) const { return ids_.contains(std::string(frame)); }
 
 private:
+    static constexpr RosTime kSetBack = 1'000'000'000; // nanoseconds; stamps of live transforms jitter less
+
     using Frame = std::uint32_t; // index in names_
 
     struct Transform {
@@ -85,6 +96,7 @@ private:
     [[nodiscard]] static std::variant<Transform, NoTransform> at(const Edge& edge, RosTime stamp);
     [[nodiscard]] std::optional<NoTransform> climb(Frame frame, RosTime stamp, std::vector<Step>& steps) const;
     void insert(Edge& edge, RosTime stamp, const Transform& one);
+    void forget(Edge& edge);
 
     void count();
 
@@ -92,6 +104,7 @@ private:
     std::unordered_map<std::string, Frame> ids_;
     std::unordered_map<Frame, Edge> edges_; // by child
     std::size_t size_ = 0;
+    std::optional<RosTime> kept_; // forget_before_newest()
 };
 
 } // namespace scanloom::robot

@@ -1,10 +1,7 @@
 #include "robot_client/ros/recorded_scans.hpp"
 
-#include "common/scan/limits.hpp"
-
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <utility>
 
 namespace scanloom::robot {
@@ -55,28 +52,8 @@ Result<Observation> RecordedScans::observe(const RecordedTopic& topic, const Rec
                                            const PlannedScan& planned, const PlannedLaser& laser) {
     const auto decoded = decode_laser_scan(message.bytes, topic.encoding, topic.type);
     if (!decoded || !check_usable(*decoded)) return changed();
-    const LaserMount& mount = plan_.mounts[planned.mount];
-    Sensor sensor = sensor_of(*decoded, laser.meaning, mount);
-    sensor.id = laser.id;
-    sensor.name = topic.name.substr(0, kNameBytesMax);
-    Observation observation{sensor_like(std::move(sensor)), scan_of(*decoded, message.time, laser.meaning)};
-    observation.scan.sensor = laser.id;
-    set_pose(observation.scan, plan_.poses, planned.pose);
-    return observation;
-}
-
-/// Returns a sensor that is sent already, or the given one. Scans may differ in their number of beams.
-std::shared_ptr<const Sensor> RecordedScans::sensor_like(Sensor wanted) {
-    constexpr std::size_t kRemembered = 16;
-    const auto same = [&](const std::shared_ptr<const Sensor>& known) {
-        Sensor other = wanted;
-        std::get<UniformAngles>(other.angles).count = std::get<UniformAngles>(known->angles).count;
-        return other == *known;
-    };
-    const auto known = std::ranges::find_if(sensors_, same);
-    if (known != sensors_.end()) return *known;
-    if (sensors_.size() == kRemembered) sensors_.erase(sensors_.begin());
-    return sensors_.emplace_back(std::make_shared<const Sensor>(std::move(wanted)));
+    const ScanPlace place{planned.pose, plan_.mounts[planned.mount]};
+    return observer_.observe(*decoded, message.time, laser.id, topic.name, laser.meaning, place, plan_.poses);
 }
 
 std::string RecordedScans::remarks() const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "robot_client/ros/recording_plan.hpp"
+#include "robot_client/ros/scan_observer.hpp"
 #include "robot_client/sources/source.hpp"
 
 #include <cstddef>
@@ -42,16 +43,15 @@ private:
     [[nodiscard]] Error changed() const;
     [[nodiscard]] Result<Observation> observe(const RecordedTopic& topic, const RecordedMessage& message,
                                               const PlannedScan& planned, const PlannedLaser& laser);
-    [[nodiscard]] std::shared_ptr<const Sensor> sensor_like(Sensor wanted);
 
     std::string path_;
     RecordingPlan plan_;
     RecordingLosses losses_;
     std::unique_ptr<Recording> recording_;
-    std::size_t scans_ = 0;                              // messages of lasers that were read
-    std::uint32_t place_ = 0;                            // of the next scan
-    std::map<std::uint32_t, Observation> early_;         // read before they are sent, by place
-    std::vector<std::shared_ptr<const Sensor>> sensors_; // the newest ones, for reuse
+    std::size_t scans_ = 0;                      // messages of lasers that were read
+    std::uint32_t place_ = 0;                    // of the next scan
+    std::map<std::uint32_t, Observation> early_; // read before they are sent, by place
+    ScanObserver observer_;
 };
 
 } // namespace scanloom::robot

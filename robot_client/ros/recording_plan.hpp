@@ -2,34 +2,17 @@
 
 #include "common/error/error.hpp"
 #include "common/scan/poses.hpp"
+#include "robot_client/ros/recording_options.hpp"
 #include "robot_client/ros/recording_survey.hpp"
 #include "robot_client/sources/scan_order.hpp"
 
 #include <cstdint>
 #include <limits>
 #include <map>
-#include <optional>
 #include <string>
 #include <vector>
 
 namespace scanloom::robot {
-
-/// A mount that a person states.
-struct StatedMount {
-    std::string topic; ///< empty: of the only laser
-    Pose2 T_robot_laser;
-};
-
-/// How a recording is read. What is not stated follows from the recording.
-struct RecordingOptions {
-    std::optional<Poses> poses;
-    std::vector<std::string> topics; ///< of lasers; empty: all
-    std::string odom_topic;          ///< nav_msgs/Odometry, used instead of the transforms of its robot
-    std::string base_frame;          ///< of the robot
-    std::string fixed_frame;         ///< that poses are in
-    std::vector<StatedMount> mounts; ///< they replace those of /tf
-    RangeOptions ranges;
-};
 
 /// A laser whose scans are sent.
 struct PlannedLaser {
@@ -65,11 +48,9 @@ struct RecordingPlan {
 /// Returns the counts of scans that are not sent with their reasons, for people.
 [[nodiscard]] std::string skipped_text(const std::map<std::string, std::uint64_t>& skipped);
 
-/// Decides which lasers, frames and poses are used.
-/// Poses are kMap if /tf has a frame of that name above the robot's, else kOdometry if there is odometry, else kNone.
-/// The robot's frame is the one below the odometry's or the map's.
+/// Decides which lasers, frames and poses are used (see choose_lasers()), and where each scan was taken.
 /// @param found  its transforms are used up
-/// Errors: kNotFound if no scan can be sent, or what the options name is not there; kInvalidField if they contradict.
+/// Errors: those of choose_lasers(); kNotFound if no scan can be sent.
 [[nodiscard]] Result<RecordingPlan> plan(RecordingSurvey& found, const RecordingOptions& options);
 
 } // namespace scanloom::robot

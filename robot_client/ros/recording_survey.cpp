@@ -21,36 +21,24 @@ std::uint32_t index_in(std::vector<std::string>& texts, const std::string& text)
     return index;
 }
 
-/// Collects what a recording contains.
-class Surveyor {
-public:
-    /// Adds a message. Errors: kTooLarge.
-    [[nodiscard]] Result<> add(const Recording& recording, const RecordedMessage& message);
+} // namespace
 
-    [[nodiscard]] RecordingSurvey finish(const Recording& recording) &&;
-
-private:
-    void add_laser(SurveyedTopic& topic, const RecordedMessage& message);
-    void add_odometry(SurveyedTopic& topic, const RecordedMessage& message);
-    void add_transforms(SurveyedTopic& topic, const RecordedMessage& message);
-    [[nodiscard]] Result<> limit_transforms();
-
-    RecordingSurvey found_;
-    std::size_t pruned_at_ = kPruneFrom;
-};
-
-Result<> Surveyor::add(const Recording& recording, const RecordedMessage& message) {
-    while (found_.topics.size() < recording.topics().size()) {
+void Surveyor::add_topics(const std::vector<RecordedTopic>& topics) {
+    while (found_.topics.size() < topics.size()) {
         auto& topic = found_.topics.emplace_back();
-        static_cast<RecordedTopic&>(topic) = recording.topics()[found_.topics.size() - 1];
+        static_cast<RecordedTopic&>(topic) = topics[found_.topics.size() - 1];
     }
+}
+
+Result<> Surveyor::add(const std::vector<RecordedTopic>& topics, const RecordedMessage& message) {
+    add_topics(topics);
     auto& topic = found_.topics[message.topic];
     if (topic.messages++ == 0) topic.first = message.time;
     topic.first = std::min(topic.first, message.time);
     topic.last = std::max(topic.last, message.time);
     if (is_laser(topic)) add_laser(topic, message);
     if (topic.type == kOdometryType) add_odometry(topic, message);
-    if (topic.type == kTransformsType || topic.type == kOldTransformsType) add_transforms(topic, message);
+    if (has_transforms(topic)) add_transforms(topic, message);
     if (found_.scans.size() >= std::numeric_limits<std::uint32_t>::max() - 1) {
         return Error{Errc::kTooLarge, "more than 2^32 - 2 scans; split the recording"};
     }
@@ -81,16 +69,16 @@ void Surveyor::add_laser(SurveyedTopic& topic, const RecordedMessage& message) {
 }
 
 void Surveyor::add_odometry(SurveyedTopic& topic, const RecordedMessage& message) {
-    auto odometry = decode_odometry(message.bytes, topic.encoding);
+    const auto odometry = odometry_of(message, topic.encoding);
     if (!odometry) {
         ++topic.malformed;
         return;
     }
     ++topic.frames[odometry->header.frame];
-    if (odometry->child.empty() || odometry->child == odometry->header.frame) odometry->child = kNamelessRobot;
-    if (odometry->header.stamp == 0) odometry->header.stamp = message.time;
     found_.odom_child.emplace(message.topic, odometry->child);
-    found_.odometry[message.topic].add(*odometry, false);
+    auto& tree = found_.odometry[message.topic];
+    if (kept_) tree.forget_before_newest(*kept_);
+    tree.add(*odometry, false);
 }
 
 void Surveyor::add_transforms(SurveyedTopic& topic, const RecordedMessage& message) {
@@ -99,15 +87,14 @@ void Surveyor::add_transforms(SurveyedTopic& topic, const RecordedMessage& messa
         ++topic.malformed;
         return;
     }
-    const bool is_static = topic.name.ends_with("tf_static");
-    for (const auto& one : *transforms) found_.tree.add(one, is_static);
+    for (const auto& one : *transforms) found_.tree.add(one, has_static_transforms(topic));
 }
 
 /// Removes the transforms of joints and other things that no laser is mounted on.
 Result<> Surveyor::limit_transforms() {
     std::size_t count = found_.tree.size();
     for (const auto& [topic, odometry] : found_.odometry) count += odometry.size();
-    if (count < pruned_at_) return {};
+    if (count < std::max(pruned_at_, kPruneFrom)) return {};
     if (!found_.frames.empty()) {
         std::set<std::string> needed{found_.frames.begin(), found_.frames.end()};
         for (const auto& [topic, child] : found_.odom_child) needed.insert(child);
@@ -115,22 +102,17 @@ Result<> Surveyor::limit_transforms() {
         found_.tree.keep_ancestors(needed);
         count += found_.tree.size();
     }
-    pruned_at_ = std::max(2 * count, kPruneFrom);
+    pruned_at_ = 2 * count;
     if (count <= kTransformsMax) return {};
     return Error{
         Errc::kTooLarge,
         fmt::format("more than {} transforms between lasers and fixed frames; split the recording", kTransformsMax)};
 }
 
-RecordingSurvey Surveyor::finish(const Recording& recording) && {
-    for (auto n = found_.topics.size(); n < recording.topics().size(); ++n) { // topics without messages
-        static_cast<RecordedTopic&>(found_.topics.emplace_back()) = recording.topics()[n];
-    }
-    found_.losses = {recording.losses_count(), recording.losses()};
+RecordingSurvey Surveyor::finish(const std::vector<RecordedTopic>& topics) && {
+    add_topics(topics);
     return std::move(found_);
 }
-
-} // namespace
 
 std::vector<std::string> texts_of(const RecordingLosses& losses) {
     constexpr std::size_t kShown = 3;
@@ -140,6 +122,22 @@ std::vector<std::string> texts_of(const RecordingLosses& losses) {
     }
     if (losses.count > kShown) texts.push_back(fmt::format("lost: {} more parts", losses.count - kShown));
     return texts;
+}
+
+bool has_transforms(const RecordedTopic& topic) {
+    return topic.type == kTransformsType || topic.type == kOldTransformsType;
+}
+
+bool has_static_transforms(const RecordedTopic& topic) {
+    return has_transforms(topic) && topic.name.ends_with("tf_static");
+}
+
+Result<RosTransform> odometry_of(const RecordedMessage& message, MessageEncoding encoding) {
+    auto odometry = decode_odometry(message.bytes, encoding);
+    if (!odometry) return odometry;
+    if (odometry->child.empty() || odometry->child == odometry->header.frame) odometry->child = kNamelessRobot;
+    if (odometry->header.stamp == 0) odometry->header.stamp = message.time;
+    return odometry;
 }
 
 bool is_laser(const RecordedTopic& topic) {
@@ -153,8 +151,13 @@ Result<RecordingSurvey> survey(const std::filesystem::path& path, const OnRead& 
     for (;;) {
         const auto message = (*recording)->next();
         if (!message) return message.error();
-        if (!*message) return std::move(surveyor).finish(**recording);
-        if (auto added = surveyor.add(**recording, **message); !added) return added.error();
+        const auto& topics = (*recording)->topics();
+        if (!*message) {
+            auto found = std::move(surveyor).finish(topics);
+            found.losses = {(*recording)->losses_count(), (*recording)->losses()};
+            return found;
+        }
+        if (auto added = surveyor.add(topics, **message); !added) return added.error();
         if (on_read) on_read((*recording)->progress());
     }
 }

@@ -10,7 +10,9 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace scanloom::robot {
@@ -50,8 +52,9 @@ struct RecordingLosses {
 /// Returns the first losses, as sentences for people, and how many more there are.
 [[nodiscard]] std::vector<std::string> texts_of(const RecordingLosses& losses);
 
-/// What a recording contains.
+/// What a recording contains, or what a live robot has sent so far.
 struct RecordingSurvey {
+    std::string_view origin = "recording"; ///< what it is of, for messages: a literal
     std::vector<SurveyedTopic> topics;
     std::vector<SurveyedScan> scans; ///< all messages of all lasers, in the order of the file
     std::vector<std::string> frames;
@@ -67,10 +70,50 @@ struct RecordingSurvey {
 /// Returns whether messages of this type are scans of a laser.
 [[nodiscard]] bool is_laser(const RecordedTopic& topic);
 
+/// Returns whether messages of this type are transforms.
+[[nodiscard]] bool has_transforms(const RecordedTopic& topic);
+
+/// Returns whether messages of this topic are transforms that hold at all times.
+[[nodiscard]] bool has_static_transforms(const RecordedTopic& topic);
+
+/// Decodes the pose of a nav_msgs/Odometry. A robot's frame without a name gets one; a pose without a stamp is of the
+/// time when it was recorded.
+/// Errors: those of decode_odometry().
+[[nodiscard]] Result<RosTransform> odometry_of(const RecordedMessage& message, MessageEncoding encoding);
+
+/// Collects what messages contain.
+/// Threads: one at a time.
+class Surveyor {
+public:
+    Surveyor() = default;
+    /// @param kept  see FrameTree::forget_before_newest(): for messages of a live robot
+    explicit Surveyor(RosTime kept) : kept_(kept) { found_.tree.forget_before_newest(kept); }
+
+    /// Adds a message.
+    /// @param topics  all topics so far, of which none but the last ones are new
+    /// Errors: kTooLarge if there are more than kTransformsMax transforms between lasers and fixed frames, or more than
+    ///         2^32 - 2 scans.
+    [[nodiscard]] Result<> add(const std::vector<RecordedTopic>& topics, const RecordedMessage& message);
+
+    /// Returns what was found.
+    /// @param topics  all topics, also those without messages
+    [[nodiscard]] RecordingSurvey finish(const std::vector<RecordedTopic>& topics) &&;
+
+private:
+    void add_laser(SurveyedTopic& topic, const RecordedMessage& message);
+    void add_odometry(SurveyedTopic& topic, const RecordedMessage& message);
+    void add_transforms(SurveyedTopic& topic, const RecordedMessage& message);
+    void add_topics(const std::vector<RecordedTopic>& topics);
+    [[nodiscard]] Result<> limit_transforms();
+
+    RecordingSurvey found_;
+    std::optional<RosTime> kept_;
+    std::size_t pruned_at_ = 0; // number of transforms at which those that are not needed are removed next
+};
+
 /// Reads a whole recording once.
 /// @param on_read  called after each message
-/// Errors: those of open_recording() and Recording::next(); kTooLarge if it has more than kTransformsMax transforms
-///         between lasers and fixed frames, or more than 2^32 - 2 scans.
+/// Errors: those of open_recording(), Recording::next() and Surveyor::add().
 [[nodiscard]] Result<RecordingSurvey> survey(const std::filesystem::path& path, const OnRead& on_read = {});
 
 } // namespace scanloom::robot

@@ -161,5 +161,45 @@ TEST(FrameTree, AgreesWithMatricesInRandomTrees) {
     }
 }
 
+TEST(FrameTree, ForgetsTransformsBeforeTheNewestOnesButTheLast) {
+    FrameTree tree;
+    tree.forget_before_newest(10 * kSecond);
+    for (int n = 0; n <= 100; ++n) tree.add(flat(n * kSecond, "odom", "base", n), false);
+    tree.add(flat(0, "base", "laser", 0.5), true);
+    EXPECT_EQ(tree.size(), 13U);
+    EXPECT_NEAR(found(tree, "odom", "laser", 89 * kSecond + kSecond / 2).translation().x(), 90.0, 1e-12);
+    EXPECT_EQ(missing(tree, "odom", "laser", 88 * kSecond), NoTransform::kBefore);
+}
+
+TEST(FrameTree, OfARobotThatStandsTheBeginningIsKept) {
+    FrameTree tree;
+    tree.forget_before_newest(10 * kSecond);
+    for (int n = 0; n <= 100; ++n) tree.add(flat(n * kSecond, "odom", "base", 1.0), false);
+    tree.add(flat(101 * kSecond, "odom", "base", 2.0), false);
+    EXPECT_EQ(found(tree, "odom", "base", 95 * kSecond).translation().x(), 1.0);
+}
+
+TEST(FrameTree, ForgetsAllWhenTheClockIsSetBack) {
+    FrameTree tree;
+    tree.forget_before_newest(10 * kSecond);
+    for (const RosTime stamp : {100, 101, 102}) tree.add(flat(stamp * kSecond, "odom", "base", 7.0), false);
+    tree.add(flat(102 * kSecond - kSecond / 2, "odom", "base", 7.0), false);
+    EXPECT_EQ(found(tree, "odom", "base", 100 * kSecond).translation().x(), 7.0) << "a stamp that jitters";
+    tree.add(flat(99 * kSecond, "odom", "base", 1.0), false);
+    tree.add(flat(100 * kSecond, "odom", "base", 2.0), false);
+    EXPECT_NEAR(found(tree, "odom", "base", 99 * kSecond + kSecond / 2).translation().x(), 1.5, 1e-12);
+    EXPECT_EQ(missing(tree, "odom", "base", 101 * kSecond), NoTransform::kAfter);
+    EXPECT_EQ(tree.size(), 2U);
+}
+
+TEST(FrameTree, TheNumberOfFramesOfOneThatForgetsIsBounded) {
+    FrameTree tree;
+    tree.forget_before_newest(10 * kSecond);
+    for (std::size_t n = 0; n < FrameTree::kFramesMax + 100; ++n) {
+        tree.add(flat(0, "odom", "frame" + std::to_string(n), 1.0), false);
+    }
+    EXPECT_EQ(tree.size(), FrameTree::kFramesMax - 1);
+}
+
 } // namespace
 } // namespace scanloom::robot

@@ -1,0 +1,49 @@
+#include "robot_client/ros/scan_place.hpp"
+
+#include "common/scan/limits.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+namespace scanloom::robot {
+namespace {
+
+std::string_view text_of(NoTransform reason) {
+    switch (reason) {
+    case NoTransform::kNotConnected: return "no transforms to its frame";
+    case NoTransform::kBefore: return "before the first pose";
+    case NoTransform::kAfter: return "after the last pose";
+    case NoTransform::kHole: return "in a hole of the poses";
+    }
+    return {};
+}
+
+NoPlace no_place(NoTransform reason) {
+    return {std::string(text_of(reason)), reason == NoTransform::kAfter || reason == NoTransform::kNotConnected};
+}
+
+} // namespace
+
+std::variant<ScanPlace, NoPlace> place_of_scan(const FrameTree& tree, const FrameChoice& frames,
+                                               const FoundLaser& laser, const std::string& frame, RosTime middle) {
+    ScanPlace place;
+    if (frames.poses != Poses::kNone) {
+        const auto found = tree.find(frames.fixed, frames.base, middle);
+        if (const auto* reason = std::get_if<NoTransform>(&found)) return no_place(*reason);
+        place.pose = planar(std::get<Eigen::Isometry3d>(found));
+        if (std::max(std::fabs(place.pose.x), std::fabs(place.pose.y)) > kCoordinateMax) return NoPlace{"too far away"};
+    }
+    if (laser.mount) {
+        place.mount.T_robot_laser = *laser.mount;
+    } else if (laser.is_connected) {
+        const auto found = tree.find(frames.base, frame, middle);
+        if (const auto* reason = std::get_if<NoTransform>(&found)) return no_place(*reason);
+        const auto mount = mount_of(std::get<Eigen::Isometry3d>(found));
+        if (!mount) return NoPlace{mount.error().message};
+        place.mount = *mount;
+    }
+    return place;
+}
+
+} // namespace scanloom::robot
