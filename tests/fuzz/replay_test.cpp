@@ -13,6 +13,7 @@ Fuzzer carmen_line_fuzzer;
 Fuzzer carmen_log_fuzzer;
 Fuzzer checkpoint_fuzzer;
 Fuzzer config_fuzzer;
+Fuzzer foxglove_fuzzer;
 Fuzzer foxglove_request_fuzzer;
 Fuzzer frame_decoder_fuzzer;
 Fuzzer frame_tree_fuzzer;
@@ -47,6 +48,7 @@ const Named kFuzzers[] = {
     {"carmen_log", carmen_log_fuzzer},
     {"checkpoint", checkpoint_fuzzer},
     {"config", config_fuzzer},
+    {"foxglove", foxglove_fuzzer},
     {"foxglove_request", foxglove_request_fuzzer},
     {"frame_decoder", frame_decoder_fuzzer},
     {"frame_tree", frame_tree_fuzzer},

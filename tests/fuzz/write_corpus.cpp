@@ -333,6 +333,47 @@ void write_frame_trees(const std::filesystem::path& folder) {
     write_file(folder / "loop", "\1" + transform(0, 1, 12) + transform(1, 2, 12) + transform(2, 0, 12));
 }
 
+/// A frame of a bridge after its kind and its length.
+std::string bridge_frame(char kind, const std::string& frame) {
+    std::string bytes(1, kind);
+    testing_support::append_little(bytes, static_cast<std::uint16_t>(frame.size()));
+    return bytes + frame;
+}
+
+/// Frames of a bridge: a robot with a laser, transforms and odometry in each encoding.
+void write_bridges(const std::filesystem::path& folder) {
+    using namespace testing_support;
+    const robot::RosLaserScan scan{{1'500'000'000, "laser"},           -1.0F, 1.0F, 0.5F, 0.01F, 0.1F, 0.1F, 10.0F,
+                                   {1.0F, 0.0F, INFINITY, 12.0F, 3.0F}};
+    for (const auto encoding : {robot::MessageEncoding::kRos1, robot::MessageEncoding::kCdr}) {
+        const std::string name = encoding == robot::MessageEncoding::kCdr ? "cdr" : "ros1";
+        const auto message = [](char subscription, const std::string& payload) {
+            return bridge_frame(1, std::string("\1") + subscription + std::string(11, '\0') + payload);
+        };
+        const auto channel = [&](int id, const std::string& topic, const std::string& type) {
+            return fmt::format(R"({{"id":{},"topic":"{}","encoding":"{}","schemaName":"{}"}})", id, topic, name, type);
+        };
+        const std::string advertise =
+            fmt::format(R"({{"op":"advertise","channels":[{},{},{},{}]}})",
+                        channel(1, "/scan", "sensor_msgs/LaserScan"), channel(2, "/tf", "tf2_msgs/TFMessage"),
+                        channel(3, "/tf_static", "tf2_msgs/msg/TFMessage"), channel(4, "/odom", "nav_msgs/Odometry"));
+        const auto transforms = [&](const std::vector<robot::RosTransform>& all) {
+            return transform_bytes(all, encoding);
+        };
+        write_file(folder / name, bridge_frame(0, R"({"op":"serverInfo","name":"b","capabilities":["clientPublish"],)"
+                                                  R"("supportedEncodings":[")" +
+                                                      name + R"("]})") +
+                                      bridge_frame(2, advertise) +
+                                      message(3, transforms({flat(0, "base", "laser", 0.2)})) +
+                                      message(2, transforms({flat(1'000'000'000, "odom", "base", 1.0)})) +
+                                      message(4, odometry_bytes(flat(1'000'000'000, "odom", "base", 1.0), encoding)) +
+                                      message(1, laser_bytes(scan, encoding)) +
+                                      bridge_frame(6, R"({"op":"status","level":1,"message":"m"})") +
+                                      message(2, transforms({flat(2'000'000'000, "odom", "base", 2.0)})) +
+                                      bridge_frame(2, R"({"op":"unadvertise","channelIds":[1]})"));
+    }
+}
+
 void write_corpus(const std::filesystem::path& folder) {
     write_messages(folder / "messages");
     write_streams(folder / "frame_decoder");
@@ -346,6 +387,7 @@ void write_corpus(const std::filesystem::path& folder) {
     write_recordings(folder);
     write_ros_messages(folder / "ros_message");
     write_frame_trees(folder / "frame_tree");
+    write_bridges(folder / "foxglove");
 }
 
 /// Empty where there is no such file.
