@@ -1,6 +1,7 @@
 #include "robot_client/app/make_source.hpp"
 
 #include "robot_client/app/info.hpp"
+#include "robot_client/app/make_foxglove.hpp"
 #include "robot_client/app/make_lidar.hpp"
 #include "robot_client/app/skipped_lines.hpp"
 #include "robot_client/ros/frame_choice.hpp"
@@ -84,8 +85,8 @@ Result<PreparedSource> make_recording(const RobotOptions& options, const ReplayO
     const RecordingPlan& plan = scans->plan();
     for (const auto& loss : texts_of(scans->losses())) console.note(fmt::format("{}: {}", replay.file, loss));
     for (const auto& note : plan.notes) console.note(fmt::format("{}: {}", replay.file, note));
-    console.note(fmt::format("{}: {}", replay.file,
-                             poses_text(plan.poses, plan.base_frame, plan.fixed_frame, plan.odom_topic)));
+    console.note(
+        fmt::format("{}: {}", replay.file, poses_text(plan.poses, plan.base_frame, plan.fixed_frame, plan.odom_topic)));
     PreparedSource prepared;
     prepared.left_out = LeftOut{plan.skipped, scans->losses().count};
     prepared.poses = plan.poses;
@@ -137,6 +138,15 @@ Result<PreparedSource> make(const RobotOptions& options, sim::SimulatedRobotOpti
 
 Result<PreparedSource> make(const RobotOptions& options, const LidarOptions& lidar, Console& console) {
     return make_lidar(options, lidar, console);
+}
+
+Result<PreparedSource> make(const RobotOptions& options, const FoxgloveOptions& foxglove, Console& console) {
+    auto source = make_foxglove(options, foxglove, console);
+    if (!source) return source.error();
+    PreparedSource prepared;
+    prepared.foxglove = source->get();
+    prepared.live = std::move(*source);
+    return prepared;
 }
 
 } // namespace

@@ -16,7 +16,7 @@ namespace {
 
 constexpr const char* kAbout =
     "Streams a robot's scans to a Scanloom server: a log or a recording, recorded sonars, a lidar,\n"
-    "or a simulated robot.\n"
+    "a robot with foxglove_bridge, or a simulated robot.\n"
     "The same command continues after the scans that are already stored.\n"
     "Exits 0 if every scan is stored durably (an endless simulation: every scan sent until the\n"
     "interrupt), 1 if not, 2 on invalid arguments; prints a summary as one line of JSON, with the\n"
@@ -112,8 +112,8 @@ void add_scan_options(CLI::App& app, RobotOptions& options, Raw& raw) {
            "--poses", raw.poses,
            "What the robot knows of its poses: map = poses in the map, which are used as they are; odometry = "
            "odometry, which drifts; none = nothing. With odometry and none the server estimates where scans "
-           "were taken. The same for all scans of a robot. Default: map; for recordings of ROS the best that they "
-           "contain")
+           "were taken. The same for all scans of a robot. Default: map; for recordings of ROS and with foxglove the "
+           "best that there is")
         ->type_name("TEXT:{map,odometry,none}");
 }
 
@@ -164,6 +164,7 @@ parse_options(int argc, const char* const* argv) {
     LidarsOptions lidars_options;
     LidarOptions ld06_options;
     LidarOptions lidar_options;
+    FoxgloveOptions foxglove_options;
 
     CLI::App app(kAbout, "scanloom-robot");
     app.footer(kFooter);
@@ -177,6 +178,7 @@ parse_options(int argc, const char* const* argv) {
     const CLI::App* sonar = add_sonar(app, sonar_options)->fallthrough();
     const CLI::App* ld06 = add_ld06(app, ld06_options)->fallthrough();
     const CLI::App* lidar = add_lidar(app, lidar_options)->fallthrough();
+    const CLI::App* foxglove = add_foxglove(app, foxglove_options)->fallthrough();
     const CLI::App* simulate = add_simulate(app, simulate_options)->fallthrough();
     const CLI::App* truth = add_ground_truth(app, truth_options)->fallthrough();
     const CLI::App* info = add_info(app, info_options)->fallthrough();
@@ -188,8 +190,8 @@ parse_options(int argc, const char* const* argv) {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& reason) {
         return leave_for(app, reason,
-                         "name a source: replay FILE, sonar MEASUREMENTS POSES, lidar MODEL DEVICE, ld06 INPUT, or "
-                         "simulate; or a command: info FILE, lidars, or truth");
+                         "name a source: replay FILE, sonar MEASUREMENTS POSES, lidar MODEL DEVICE, ld06 INPUT, "
+                         "foxglove URL, or simulate; or a command: info FILE, lidars, or truth");
     }
     if (truth->parsed()) {
         if (auto mistake = mistake_in(truth_options)) return usage_error(app, *mistake);
@@ -216,7 +218,8 @@ parse_options(int argc, const char* const* argv) {
         return usage_error(app, wrong);
     }
     const bool is_recording =
-        !ld06->parsed() && !lidar->parsed() && !(simulate->parsed() && simulate_options.drive == "explore");
+        !ld06->parsed() && !lidar->parsed() && !foxglove->parsed() &&
+        !(simulate->parsed() && simulate_options.drive == "explore");
     if (!options.spool.empty() && is_recording) {
         return usage_error(app, "--spool is for what cannot be had again; this source can: the same command continues "
                                 "after the stored scans; leave --spool out");
@@ -237,6 +240,9 @@ parse_options(int argc, const char* const* argv) {
         if (const auto wrong = complaint_about(chosen, options.poses.value_or(Poses::kMap)); !wrong.empty())
             return usage_error(app, wrong);
         options.source = std::move(chosen);
+    } else if (foxglove->parsed()) {
+        if (const auto wrong = complaint_about(foxglove_options); !wrong.empty()) return usage_error(app, wrong);
+        options.source = std::move(foxglove_options);
     } else if (simulate->parsed()) {
         if (auto mistake = mistake_in(simulate_options, options.poses.value_or(Poses::kMap)))
             return usage_error(app, *mistake);

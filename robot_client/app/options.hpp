@@ -3,6 +3,7 @@
 #include "common/app/link_options.hpp"
 #include "common/app/program.hpp"
 #include "common/scan/poses.hpp"
+#include "robot_client/app/foxglove_options.hpp"
 #include "robot_client/app/lidar_options.hpp"
 #include "robot_client/app/replay_options.hpp"
 #include "robot_client/sources/source.hpp"
@@ -53,7 +54,7 @@ struct RobotOptions : LinkOptions {
     std::chrono::milliseconds batch_delay{0};
     std::uint64_t batch_bytes_max = 0;
     bool compress = false;
-    std::variant<ReplayOptions, SonarReplayOptions, sim::SimulatedRobotOptions, LidarOptions> source;
+    std::variant<ReplayOptions, SonarReplayOptions, sim::SimulatedRobotOptions, LidarOptions, FoxgloveOptions> source;
 };
 
 /// Reads the command line, SCANLOOM_* environment variables and the file of --config. Flags override the environment,

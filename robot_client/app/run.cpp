@@ -3,6 +3,7 @@
 #include "common/app/settings.hpp"
 #include "common/net/await_tuple.hpp"
 #include "robot_client/app/localization_notes.hpp"
+#include "robot_client/app/make_foxglove.hpp"
 #include "robot_client/app/make_source.hpp"
 #include "robot_client/app/progress.hpp"
 #include "robot_client/uplink/live_feed.hpp"
@@ -128,6 +129,12 @@ ExitCode run(const RobotOptions& options) {
     auto prepared = make_source(options, console);
     if (!prepared) return fail(prepared.error());
 
+    asio::io_context io(1);
+    if (prepared->foxglove != nullptr) {
+        const auto poses = survey_robot(io, *prepared->foxglove);
+        if (!poses) return fail(poses.error());
+        prepared->poses = *poses;
+    }
     const auto feed = make_feed(options, *prepared, console);
     if (!feed) return fail(feed.error());
 
@@ -138,12 +145,14 @@ ExitCode run(const RobotOptions& options) {
 
     auto* const steered = prepared->poses == Poses::kOdometry ? prepared->exploring : nullptr;
     LocalizationNotes notes;
-    sent_options.protocol.on_correction = [&console, &notes, steered](const wire::Correction& correction) {
+    sent_options.protocol.on_correction = [&console, &notes, steered,
+                                           robot = prepared->foxglove](const wire::Correction& correction) {
         if (steered != nullptr) steered->correct(correction.T_map_odom, correction.state);
+        const bool is_located = correction.state != LocalizationState::kUnlocated;
+        if (robot != nullptr) robot->correct(is_located ? std::optional(correction.T_map_odom) : std::nullopt);
         for (const auto& note : notes.add(correction)) console.note(note);
     };
 
-    asio::io_context io(1);
     Uplink uplink(io, std::move(sent_options), **feed);
     if (prepared->exploring != nullptr) prepared->exploring->ask_with(guided_by(uplink, sim::Explore::kPathClearance));
     if (prepared->locating != nullptr)
@@ -162,11 +171,11 @@ ExitCode run(const RobotOptions& options) {
     if (!outcome) outcome = uplink.outcome_when_interrupted();
     console.finish();
     if (const auto remarks = prepared->remarks(); !remarks.empty()) console.note(remarks);
-    fmt::print("{}\n",
-               summary_json({options.session, options.robot, prepared->fingerprint, prepared->order, uplink.status(),
-                             prepared->skipped_lines, prepared->left_out, std::chrono::steady_clock::now() - begun,
-                             (*feed)->scan_count(), notes.state() ? name_of(*notes.state()) : std::string_view(),
-                             prepared->remarks(), *outcome ? "" : outcome->error().message}));
+    fmt::print("{}\n", summary_json({options.session, options.robot, prepared->fingerprint, prepared->order,
+                                     uplink.status(), prepared->skipped_lines, prepared->left_out_now(),
+                                     std::chrono::steady_clock::now() - begun, (*feed)->scan_count(),
+                                     notes.state() ? name_of(*notes.state()) : std::string_view(), prepared->remarks(),
+                                     *outcome ? "" : outcome->error().message}));
     if (*outcome) return kExitDone;
     const bool is_refused = outcome->error().code == Errc::kConflict;
     if (is_refused && prepared->locating != nullptr && !options.spool.empty()) {

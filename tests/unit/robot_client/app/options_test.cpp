@@ -287,8 +287,8 @@ TEST_F(Options, MistakesAreOneLineUsageErrors) {
     const std::vector<std::pair<std::vector<std::string>, std::string>> mistakes{
         {{}, "name a source"},
         {{"--session", "s", "--robot", "r"},
-         "name a source: replay FILE, sonar MEASUREMENTS POSES, lidar MODEL DEVICE, ld06 INPUT, or simulate; or a "
-         "command: info FILE, lidars, or truth;"},
+         "name a source: replay FILE, sonar MEASUREMENTS POSES, lidar MODEL DEVICE, ld06 INPUT, foxglove URL, or "
+         "simulate; or a command: info FILE, lidars, or truth;"},
         {{"simulate", "--robot", "r"}, "--session is required"},
         {{"simulate", "--session", "a/b", "--robot", "r"}, "'a/b' is not a name"},
         {{"replay", "--session", "s", "--robot", "r"}, "name the FILE"},
