@@ -135,7 +135,9 @@ bool has_static_transforms(const RecordedTopic& topic) {
 Result<RosTransform> odometry_of(const RecordedMessage& message, MessageEncoding encoding) {
     auto odometry = decode_odometry(message.bytes, encoding);
     if (!odometry) return odometry;
-    if (odometry->child.empty() || odometry->child == odometry->header.frame) odometry->child = kNamelessRobot;
+    const auto& frame = odometry->header.frame;
+    auto& child = odometry->child;
+    if (child.empty() || child == frame) child = frame == kNamelessRobot ? "robot" : kNamelessRobot;
     if (odometry->header.stamp == 0) odometry->header.stamp = message.time;
     return odometry;
 }

@@ -192,6 +192,19 @@ TEST_F(LiveScansTest, WithoutTransformsPosesComeFromOdometry) {
     EXPECT_THAT(taken(), ElementsAre(testing::DoubleNear(0.05, 1e-9), testing::DoubleNear(0.15, 1e-9)));
 }
 
+TEST_F(LiveScansTest, OdometryThatNamesNoFrameOfTheRobotIsUsed) {
+    for (const std::string frame : {"odom", "base", ""}) {
+        begin();
+        for (const int tenth : {0, 1}) {
+            const auto pose = flat(stamp(tenth), frame, frame, tenth);
+            static_cast<void>(scans_->add(kOdom, stamp(tenth), testing_support::odometry_bytes(pose), now_));
+        }
+        add_scan(0);
+        choose();
+        EXPECT_THAT(taken(), ElementsAre(testing::DoubleNear(0.5, 1e-9))) << frame;
+    }
+}
+
 TEST_F(LiveScansTest, ChosenOdometryReplacesTheTransformsOfItsRobot) {
     begin({.odom_topic = "/odom"});
     add_mount();
