@@ -118,6 +118,7 @@ readonly parts_of_all=(
     '^observability_;docs/observability server/http/handlers/system.cpp server/metrics tests/integration/observability'
     '^openapi_;server/http/openapi.cpp server/http/openapi.py server/http/openapi.yaml server/http/routes.cpp tests/openapi'
     '^lidar_judges$;robot_client/sources tests/readers tests/support'
+    '^bridges$;robot_client/foxglove robot_client/ros tests/bridges'
     '^readers$;server/exchange server/http server/tiles tests/readers'
     '^package$;cmake docker packaging robot_client/client robot_client/package robot_client/ros_bridge scanloom tests/package'
     '^api_pages$;common core docs/api packaging/api_pages.sh robot_client/client tests/package'
