@@ -197,10 +197,10 @@ asio::awaitable<Error> BridgeReading::write_frames(Stream& stream) {
 
 /// Ends if the bridge does not say what it is.
 asio::awaitable<Error> BridgeReading::watch(Stream& stream) {
-    asio::steady_timer timer(stream.get_executor(), options_.answer_max);
+    asio::steady_timer timer(stream.get_executor(), options_.info_max);
     co_await timer.async_wait(kAwaitTuple);
     if (!listener_.is_connected()) {
-        co_return other_protocol(fmt::format("sends no serverInfo within {:g} s", seconds(options_.answer_max)));
+        co_return other_protocol(fmt::format("sends no serverInfo within {:g} s", seconds(options_.info_max)));
     }
     timer.expires_at(Clock::time_point::max());
     co_await timer.async_wait(kAwaitTuple);

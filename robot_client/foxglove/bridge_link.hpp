@@ -21,7 +21,8 @@ struct BridgeLinkOptions {
     Url bridge;
     net::TlsContext tls;                          ///< for wss
     std::chrono::milliseconds reopen_for{60'000}; ///< how long to try to connect until it succeeds; 0: once
-    std::chrono::milliseconds answer_max{10'000}; ///< for connecting, for the handshake and for the first frame
+    std::chrono::milliseconds answer_max{10'000}; ///< for connecting, and for the handshake
+    std::chrono::milliseconds info_max{10'000};   ///< then until the bridge says what it is
     std::chrono::milliseconds silent_max{10'000}; ///< a bridge that does not answer a ping for this long is dead
     BackoffWaits backoff{std::chrono::milliseconds(200), std::chrono::milliseconds(5'000)}; ///< between attempts
     std::uint32_t backoff_seed = 1;

@@ -111,7 +111,7 @@ void FoxgloveSource::State::on_lost() {
 }
 
 void FoxgloveSource::State::take(foxglove::Event event) {
-    std::visit([this](auto&& one) { take(std::forward<decltype(one)>(one)); }, std::move(event));
+    std::visit([this](auto&& one) { this->take(std::forward<decltype(one)>(one)); }, std::move(event));
     pass_on_notes();
     to_send_.notify();
 }

@@ -24,7 +24,8 @@ function startReading(session, bridge, options = []) {
     output += text;
   });
   const code = ended(child);
-  return { child, code, summary: async () => (await code, JSON.parse(output)) };
+  const summary = code.then(() => JSON.parse(output));
+  return { child, code, summary };
 }
 
 /** Waits until a condition holds. */
@@ -114,7 +115,7 @@ for (const encoding of kEncodings) {
     checkTransforms(transforms(), encoding);
     assert.deepEqual(bridge.errors, []);
     reading.child.kill('SIGTERM');
-    const summary = await reading.summary();
+    const summary = await reading.summary;
     assert.equal(await reading.code, 0);
     assert.equal(summary.scans, kScans);
     assert.deepEqual(summary.skipped, {});
@@ -150,7 +151,7 @@ test('a bridge that restarts, and topics that get other ids, lose nothing that w
   await until('all scans are stored', async () => (await storedScans(session)) === kScans);
   await until('transforms are published again', () => bridge.published.some(({ topic }) => topic === '/tf'));
   reading.child.kill('SIGTERM');
-  const summary = await reading.summary();
+  const summary = await reading.summary;
   assert.equal(summary.scans, kScans);
   assert.deepEqual(summary.skipped, {});
   assert.equal(summary.remarks, 'connected to the bridge 2 times');

@@ -8,6 +8,7 @@
 #include <boost/asio/detached.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/ssl/context.hpp>
+#include <boost/asio/steady_timer.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/http/empty_body.hpp>
 #include <boost/beast/http/read.hpp>
@@ -28,6 +29,8 @@ namespace websocket = boost::beast::websocket;
 using asio::ip::tcp;
 
 namespace {
+
+constexpr auto kNever = asio::steady_timer::time_point::max();
 
 /// A client. It lives as long as its coroutine.
 struct BridgeClient {
@@ -137,6 +140,10 @@ private:
         for (const auto& [id, channel] : self->channels_)
             self->send(client, advertisement(channel), false); // in pieces
         self->changed();
+        if (self->options_.is_deaf) {
+            asio::steady_timer never(stream.get_executor(), kNever);
+            co_await never.async_wait(kAwaitTuple);
+        }
         co_await read(self, client);
         client->is_open = false;
         std::erase(self->clients_, client);

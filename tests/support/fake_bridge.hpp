@@ -34,6 +34,7 @@ public:
         int refusal = 0;                             ///< HTTP status of its answer to a handshake; 0: it accepts
         std::string greeting = R"({"op":"serverInfo","name":"fake","capabilities":["clientPublish"],)"
                                R"("supportedEncodings":["ros1"]})";
+        bool is_deaf = false;                     ///< it reads nothing, so that it answers no ping
         std::uint16_t port = 0;                   ///< 0: any free one
         boost::asio::ssl::context* tls = nullptr; ///< for wss
     };

@@ -62,7 +62,7 @@ TEST_F(FoxgloveSourceTest, ABridgeThatSpeaksNeitherSubprotocolIsAnErrorAtOnce) {
     for (const auto& [bridge, what] : cases) {
         start_bridge(bridge);
         auto stated = options();
-        if (bridge.refusal == 0 && bridge.subprotocol == "foxglove.sdk.v1") stated.link.answer_max = 50ms;
+        stated.link.info_max = 50ms;
         make_source(std::move(stated));
         const auto poses = prepare();
         ASSERT_FALSE(poses) << what;
@@ -136,6 +136,16 @@ TEST_F(FoxgloveSourceTest, ALostConnectionIsReplacedAndNoScanThatWasSentIsLost) 
     EXPECT_EQ(source_->remarks(), "connected to the bridge 5 times, 4 warnings of the bridge");
 }
 
+TEST_F(FoxgloveSourceTest, AConnectionThatDoesNotAnswerPingsIsReplaced) {
+    start_bridge({.is_deaf = true});
+    auto stated = options();
+    stated.link.silent_max = 20ms;
+    make_source(std::move(stated));
+    asio::co_spawn(io_, source_->prepare(), [](std::exception_ptr, Result<Poses>) {});
+    run_until([&] { return bridge_->connections() >= 2; });
+    EXPECT_TRUE(has_note("has not answered for 0.02 s; check the network"));
+}
+
 TEST_F(FoxgloveSourceTest, ARestartedBridgeWithOtherIdsIsReadOn) {
     auto robot = begin();
     bridge_.reset();
@@ -194,7 +204,15 @@ TEST_F(FoxgloveSourceTest, AScanWithoutItsTransformIsSkippedAndCounted) {
     auto stated = options();
     stated.scans.transform_wait = 5ms;
     make_source(std::move(stated));
-    ASSERT_TRUE(prepare(robot));
+    const auto poses = prepare([&] {
+        if (!bridge_->is_subscribed(robot.scan) || !bridge_->is_subscribed(robot.tf_static)) return;
+        bridge_->on_change = [] {};
+        send_static(robot);
+        send_pose(robot, 0);
+        send_pose(robot, 1);
+        send_scan(robot, 0);
+    });
+    ASSERT_TRUE(poses);
     EXPECT_NEAR(next_x(), 0.5, 1e-9);
     send_scan(robot, 1);
     begin_next();
