@@ -46,10 +46,12 @@ private:
 /// Returns why no scan is sent for some time.
 [[nodiscard]] std::string pause_text(std::chrono::duration<double> pause);
 
-/// What a recording has that is not sent.
+/// What a recording or a live robot has that is not sent.
 struct LeftOut {
     std::map<std::string, std::uint64_t> skipped; ///< scans, by the reason
-    std::uint64_t lost_parts = 0;                 ///< of the file: damaged or missing bytes
+    /// Of a file: damaged or missing bytes. Of a live robot: gaps in the stamps of its lasers, and frames that were
+    /// refused.
+    std::uint64_t lost_parts = 0;
 };
 
 struct Summary {
@@ -59,7 +61,7 @@ struct Summary {
     std::string_view order; ///< of a log's scans: "file" or "time"; else empty
     UplinkStatus status;
     std::optional<std::size_t> skipped_lines; ///< of logs and poses, if the source has any
-    std::optional<LeftOut> left_out;          ///< of a recording of ROS
+    std::optional<LeftOut> left_out;          ///< of messages of ROS
     std::chrono::duration<double> elapsed{};
     std::optional<std::uint64_t> scan_count; ///< of the source, if it ends
     std::string_view localization;           ///< name of the newest state by the server; empty: it told none
@@ -71,7 +73,7 @@ struct Summary {
 /// recording or simulation: `scans` in total (of an endless source or a sensor: taken so far), `acknowledged` stored,
 /// `stored_before` stored in earlier runs, `sent` in this run, `waiting` behind those in the spool, and `dropped` lost
 /// for lack of room. `skipped_lines` and `order` are present if the source has them, `skipped` (scans by the reason)
-/// and `lost_parts` if it is a recording of ROS, and `localization` if the server estimates the robot's poses. A failed
+/// and `lost_parts` if it has messages of ROS, and `localization` if the server estimates the robot's poses. A failed
 /// run has an `error`, one sentence. Pre: no text except the error needs escaping: valid names, a fingerprint.
 [[nodiscard]] std::string summary_json(const Summary& summary);
 

@@ -32,7 +32,7 @@ function startReading(session, bridge, options = []) {
 async function until(what, holds) {
   const patience = Date.now() + 60_000; // so that a failure does not stop the run of the tests
   while (!(await holds())) {
-    if (Date.now() > patience) assert.fail(`in vain: ${what}`);
+    if (Date.now() > patience) assert.fail(`still not: ${what}`);
     await new Promise((resolve) => setTimeout(resolve, 20));
   }
 }
