@@ -25,7 +25,7 @@ struct PublishedMessage {
 };
 
 /// A bridge of the Foxglove WebSocket protocol on a free port of 127.0.0.1, in the test's io_context, written apart
-/// from the client. It sends what the test tells it, and remembers what clients do.
+/// from the client. It sends what the test states, and remembers what clients do.
 /// Threads: that of the io_context.
 class FakeBridge {
 public:
