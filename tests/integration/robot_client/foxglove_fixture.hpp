@@ -76,12 +76,12 @@ protected:
 
     /// Runs the thread until the condition holds.
     void run_until(const std::function<bool()>& holds) {
-        constexpr auto kPatience = 60s; // so that a failure does not stop the run of the tests
-        bool is_over = false;
+        constexpr auto kPatience = 60s;                     // so that a failure does not stop the run of the tests
+        const auto is_over = std::make_shared<bool>(false); // the handler runs later if the timer is cancelled
         asio::steady_timer patience(io_, kPatience);
-        patience.async_wait([&](boost::system::error_code failed) { is_over = !failed; });
+        patience.async_wait([is_over](boost::system::error_code failed) { *is_over = !failed; });
         io_.restart();
-        while (!holds() && !is_over && io_.run_one() > 0) {
+        while (!holds() && !*is_over && io_.run_one() > 0) {
         }
         ASSERT_TRUE(holds());
     }
