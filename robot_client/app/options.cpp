@@ -217,9 +217,8 @@ parse_options(int argc, const char* const* argv) {
     if (const auto wrong = set_poses(raw.poses, ld06->parsed() ? &ld06_options : nullptr, options); !wrong.empty()) {
         return usage_error(app, wrong);
     }
-    const bool is_recording =
-        !ld06->parsed() && !lidar->parsed() && !foxglove->parsed() &&
-        !(simulate->parsed() && simulate_options.drive == "explore");
+    const bool is_recording = !ld06->parsed() && !lidar->parsed() && !foxglove->parsed() &&
+                              !(simulate->parsed() && simulate_options.drive == "explore");
     if (!options.spool.empty() && is_recording) {
         return usage_error(app, "--spool is for what cannot be had again; this source can: the same command continues "
                                 "after the stored scans; leave --spool out");
