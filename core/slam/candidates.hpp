@@ -31,7 +31,7 @@ struct TrackedScan {
 
 /// A place where a scan may have been taken.
 struct Candidate {
-    TrackedScan scan;
+    TrackedScan scan;   ///< if it was taken there
     double value = 0.0; ///< agreement with the map minus a penalty for the distance from the prediction
 };
 

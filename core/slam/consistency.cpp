@@ -74,7 +74,8 @@ bool Tracker::is_consistent() const {
 
 bool TrajectoryEstimator::is_consistent() const {
     if (!tracker_.is_consistent() || first_.size() != placed_.size() + tracker_.open_count()) return false;
-    if (!std::isfinite(hole_) || !std::isfinite(drift_variance_) || drift_variance_ < 0.0) return false;
+    if (!std::isfinite(hole_) || !std::isfinite(equal_for_) || !std::isfinite(drift_variance_) || drift_variance_ < 0.0)
+        return false;
     const bool is_empty = first_.empty();
     if (placed_.empty() != is_empty || keyframes_.empty() != is_empty || fragments_.empty() != is_empty) return false;
     const auto is_own = [&](std::size_t fragment) {

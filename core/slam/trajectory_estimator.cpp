@@ -20,6 +20,7 @@ constexpr double kMotionMax = 10.0;       // metres between two scans; odometry 
 constexpr double kSpeedMax = 1.5;         // metres per second: more than kMotionMax is possible after a hole
 constexpr double kRestart = 0.5;          // metres from the origin of odometry that has started again
 constexpr double kConditioned = 0.01;     // conditioning of a match that determines the position in all directions
+constexpr std::size_t kRepeatsMax = 10;   // of a scan, by its driver; more may be those of equal walls without noise
 constexpr double kStill = 0.002;          // metres between two scans, or radians; more is motion
 constexpr double kHole = 1.0;             // seconds without a scan that shows anything new, without odometry
 constexpr double kLongHole = 4.0;         // seconds; odometry may be wrong over that time, too
@@ -44,10 +45,10 @@ void TrajectoryEstimator::add(const Scan& scan, const Sensor& sensor) {
     using namespace scan_matching;
     const Motion motion = motion_at(scan);
     const double seconds = stamp_ ? scan.stamp - *stamp_ : 0.0;
-    const bool is_repeated = scan.ranges == last_ranges_;
+    repeats_ = scan.ranges == last_ranges_ ? repeats_ + 1 : 0;
     place(can_deskew(scan, sensor, motion) ? points_of(deskewed(scan, sensor, motion), sensor)
                                            : points_of(scan, sensor),
-          scan.odometry, seconds, is_repeated);
+          scan.odometry, seconds);
     seconds_ = seconds;
     stamp_ = scan.stamp;
     last_ranges_ = scan.ranges;
@@ -74,15 +75,19 @@ std::optional<Transform2> TrajectoryEstimator::odometry_motion(const std::option
     return is_possible ? std::optional(motion) : std::nullopt; // also if it is NaN
 }
 
-void TrajectoryEstimator::place(ScanPoints scan, const std::optional<Pose2>& odometry, double seconds,
-                                bool is_repeated) {
+void TrajectoryEstimator::place(ScanPoints scan, const std::optional<Pose2>& odometry, double seconds) {
     const std::optional<Transform2> now =
         odometry ? std::optional(scan_matching::transform_of(*odometry)) : std::nullopt;
     const std::optional<Transform2> motion = odometry_motion(now, seconds);
     odometry_ = now;
-    const bool shows_new = !is_repeated && scan.points.size() >= kViewPointsMin;
-    const double hole = std::exchange(hole_, shows_new ? 0.0 : hole_ + seconds) + seconds;
-    if (is_repeated && motion && is_beyond(*motion, kStill, kStill)) scan.points.clear(); // sent again, not taken again
+    const bool shows_new = repeats_ == 0 && scan.points.size() >= kViewPointsMin;
+    const bool is_still = repeats_ > 0 && motion && !is_beyond(*motion, kStill, kStill); // equal scans are right
+    const bool may_be_still = repeats_ > 0 && !motion && scan.points.size() >= kViewPointsMin;
+    if (may_be_still) equal_for_ += seconds;
+    const double hole = std::exchange(hole_, shows_new ? 0.0 : hole_) + (is_still || may_be_still ? 0.0 : seconds);
+    if (!shows_new) hole_ = hole;
+    const bool is_sent_again = repeats_ > 0 && repeats_ <= kRepeatsMax && motion && is_beyond(*motion, kStill, kStill);
+    if (is_sent_again) scan.points.clear(); // it was not taken again
     if (keyframes_.empty()) {
         const Transform2 start = graph().size() == 0 ? now.value_or(Transform2()) : Transform2();
         begin_fragment(std::move(scan), start, std::exchange(relocalized_, std::nullopt));
@@ -105,7 +110,12 @@ void TrajectoryEstimator::place(ScanPoints scan, const std::optional<Pose2>& odo
     auto decided = tracker_.add(scan, motion, is_due);
     newest_ = decided.empty() ? tracker_.newest() : decided.back();
     add_drift();
-    const bool is_lost_in_hole = shows_new && newest_.inlier_ratio < inliers_wanted(hole, motion.has_value());
+    // After equal scans without odometry, the first scan that is matched decides: the robot may have stood.
+    const bool is_decided = shows_new && newest_.is_matched;
+    const double equal_for = is_decided ? std::exchange(equal_for_, 0.0) : 0.0;
+    const bool is_lost_in_hole =
+        shows_new && newest_.inlier_ratio < std::max(inliers_wanted(hole, motion.has_value()),
+                                                     inliers_wanted(equal_for, motion.has_value()));
     if (is_lost_in_hole && decided.empty()) decided = tracker_.decide();
     const Transform2 first = graph().pose(anchor_) * newest_.T_keyframe_robot;
     first_.push_back({first, newest_.is_matched && !is_lost_in_hole && is_fragment_located()});

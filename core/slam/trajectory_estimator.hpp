@@ -41,8 +41,9 @@ public:
     /// Adds the next scan. Where its beams have times (Scan::duration), it is de-skewed by the motion since the scan
     /// before: that of the odometry, else of the last estimates.
     /// Some scans show nothing new: those with too few points, and those with exactly the readings of the scan before,
-    /// as some drivers send them. If there was nothing new for more than 1 s without odometry, or 4 s with it, and the
-    /// next scan does not fit the map at the predicted place, the robot is lost at once: it may be anywhere.
+    /// as some drivers send them, unless the odometry shows no motion. If there was nothing new for more than 1 s
+    /// without odometry, or 4 s with it, and the next scan does not fit the map at the predicted place, the robot is
+    /// lost at once: it may be anywhere.
     /// @param scan    with odometry if the robot has any. Pre: validated
     /// @param sensor  the laser that took it
     void add(const Scan& scan, const Sensor& sensor);
@@ -52,7 +53,7 @@ public:
     /// @param odometry  T_odom_robot at the scan; nullopt: not known. Pre: finite
     /// @param seconds   since the scan before; 0: not known
     void add(ScanPoints scan, const std::optional<Pose2>& odometry, double seconds = 0.0) {
-        place(std::move(scan), odometry, seconds, false);
+        place(std::move(scan), odometry, seconds);
     }
 
     /// Searches for the next scan near a place, which people know. If it is found there, the robot goes on from there;
@@ -147,8 +148,8 @@ public:
     static void list(Self& self, Archive& archive) {
         archive(self.tracker_, self.fragments_, self.continued_, self.keyframes_, self.anchor_, self.T_anchor_start_,
                 self.is_in_frozen_map_, self.own_views_, self.placed_, self.first_, self.newest_, self.odometry_,
-                self.relocalized_, self.unmatched_count_, self.drift_variance_, self.loops_, self.hole_, self.stamp_,
-                self.seconds_, self.last_ranges_);
+                self.relocalized_, self.unmatched_count_, self.drift_variance_, self.loops_, self.hole_,
+                self.equal_for_, self.repeats_, self.stamp_, self.seconds_, self.last_ranges_);
     }
 
     /// Returns whether the members fit together, as they always do unless they were read from damaged bytes.
@@ -171,7 +172,7 @@ private:
         Transform2 T_map_robot;
     };
 
-    void place(ScanPoints scan, const std::optional<Pose2>& odometry, double seconds, bool is_repeated);
+    void place(ScanPoints scan, const std::optional<Pose2>& odometry, double seconds);
     [[nodiscard]] scan_matching::Motion motion_at(const Scan& scan) const;
     [[nodiscard]] std::optional<Transform2> odometry_motion(const std::optional<Transform2>& now, double seconds) const;
     void add_drift();
@@ -210,6 +211,8 @@ private:
     std::size_t unmatched_count_ = 0;
     double drift_variance_ = 0.0; // square metres, since the last loop closure
     std::size_t loops_ = 0;       // loop_count() at the newest keyframe
+    std::size_t repeats_ = 0;     // scans in a row that equal the one before them
+    double equal_for_ = 0.0;      // seconds of equal scans without odometry
     double hole_ = 0.0;           // seconds since the last scan that showed anything new
 
     // Of the scans that were added with their sensors.

@@ -266,11 +266,60 @@ TEST(TrajectoryEstimator, ScansThatShowNothingNewAreAHole) {
             for (int n = 0; n < 40; ++n) add(scan = building.scan(laser, {5.0 + 0.1 * n, 1.0, 0.0}, 0.01, random));
             if (!is_repeated) scan.ranges.assign(scan.ranges.size(), kNoReturn);
             for (int n = 0; n < 15; ++n) add(scan);
-            add((has_moved ? other_building() : building).scan(laser, {9.0, 1.0, 0.0}, 0.01, random));
-            EXPECT_EQ(estimator.map->graph().fragments().size(), has_moved ? 2U : 1U);
+            const Building around = has_moved ? other_building() : building;
+            add(around.scan(laser, {9.0, 1.0, 0.0}, 0.01, random));
             EXPECT_EQ(estimator->was_located(55), !has_moved);
+            for (int n = 0; n < 40; ++n) add(around.scan(laser, {9.0, 1.0, 0.0}, 0.01, random));
+            EXPECT_EQ(estimator.map->graph().fragments().size(), has_moved ? 2U : 1U);
         }
     }
+}
+
+/// A simulated robot without noise stands for a minute and takes equal scans. Then somebody stands in front of a third
+/// of the beams.
+TEST(TrajectoryEstimator, EqualScansOfAStandingRobotAreNoHole) {
+    const Building building = ring_building();
+    const Sensor laser = Building::laser();
+    for (const bool has_odometry : {false, true}) {
+        SCOPED_TRACE(has_odometry);
+        std::mt19937 random(9);
+        LoneEstimator estimator;
+        double stamp = 0.0;
+        const auto add = [&](Scan scan, const Pose2& pose) {
+            scan.stamp = stamp += 0.2;
+            if (has_odometry) scan.odometry = pose;
+            estimator->add(scan, laser);
+        };
+        Pose2 pose{5.0, 1.0, 0.0};
+        Scan scan;
+        for (int n = 0; n < 40; ++n, pose.x += 0.1) add(scan = building.scan(laser, pose, 0.01, random), pose);
+        pose.x -= 0.1;
+        for (int n = 0; n < 300; ++n) add(scan, pose);
+        for (std::size_t beam = 60; beam < 120; ++beam) scan.ranges[beam] = 400;
+        for (int n = 0; n < 3; ++n) add(scan, pose);
+        for (int n = 0; n < 20; ++n, pose.x += 0.1) add(building.scan(laser, pose, 0.01, random), pose);
+        EXPECT_FALSE(estimator->needs_place());
+        EXPECT_EQ(estimator.map->graph().fragments().size(), 1U);
+    }
+}
+
+/// Between equal walls, a laser without noise sees the same wherever it is.
+TEST(TrajectoryEstimator, EqualScansOfAMovingRobotFollowItsOdometry) {
+    Building corridor;
+    corridor.add_box(-100.0, 0.0, 200.0, 2.0);
+    Sensor laser = Building::laser();
+    laser.range_max = 5.0;
+    std::mt19937 random(9);
+    LoneEstimator estimator;
+    for (int n = 0; n < 100; ++n) {
+        const Pose2 pose{0.1 * n, 1.0, 0.0};
+        Scan scan = corridor.scan(laser, pose, 0.0, random);
+        scan.stamp = 0.2 * n;
+        scan.odometry = pose;
+        estimator->add(scan, laser);
+    }
+    EXPECT_TRUE(estimator->was_located(99));
+    EXPECT_NEAR(estimator->first_pose_of(99).x - estimator->first_pose_of(0).x, 9.9, 0.5);
 }
 
 /// The driver sends each scan four times, and the odometry says that the robot moves meanwhile.
