@@ -130,7 +130,7 @@ LidarStep HokuyoDriver::take_parameters(const ScipReply& reply) {
     LidarStep step = enter(State::kStarting);
     const std::string note = fmt::format("Hokuyo {}, {}, {} beams, {:g} scans per second", parameters_.model, version_,
                                          parameters_.beams(), parameters_.rpm / 60.0);
-    if (std::exchange(noted_, note) != note) step.notes.push_back(note);
+    if (noted_.insert(note).second) step.notes.push_back(note);
     return step;
 }
 
@@ -138,7 +138,8 @@ void HokuyoDriver::take_measurement(const ScipReply& reply, LidarStep& step) {
     if (reply.status == "00" && reply.lines.empty()) return; // the command was repeated
     if (!reply.is_damaged && reply.status != "99") {
         const auto note = fmt::format("the Hokuyo states an abnormal status: {}", reply.status);
-        if (std::exchange(noted_, note) != note) step.notes.push_back(note);
+        constexpr std::size_t kNotesMax = 20; // of a lidar that states a status after another
+        if (noted_.size() < kNotesMax && noted_.insert(note).second) step.notes.push_back(note);
         return;
     }
     const auto measured = read_hokuyo_scan(reply, parameters_.beams());

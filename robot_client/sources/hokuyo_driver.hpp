@@ -8,6 +8,7 @@
 #include <deque>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 
 namespace scanloom::robot {
@@ -46,9 +47,9 @@ private:
     State state_ = State::kStopping;
     int attempts_ = 0; ///< of the current command
     ScipReader reader_;
-    double arrival_ = 0.0; ///< Unix seconds, of the first bytes of the incomplete reply
-    std::string version_;  ///< for people
-    std::string noted_;    ///< the newest note about the sensor
+    double arrival_ = 0.0;        ///< Unix seconds, of the first bytes of the incomplete reply
+    std::string version_;         ///< for people
+    std::set<std::string> noted_; ///< what was noted already
     HokuyoParameters parameters_;
     std::shared_ptr<const Sensor> sensor_;
     LidarClock clock_{kHokuyoClockWrap};

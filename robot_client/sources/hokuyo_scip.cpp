@@ -61,6 +61,8 @@ std::optional<ScipReply> ScipReader::next() {
     std::string_view status = take_line(text);
     reply.is_damaged = status.size() == 3 && !has_scip_sum(status);
     reply.status = status.substr(0, 2); // of SCIP 1: one character and no check character
+    std::ranges::replace_if(
+        reply.status, [](char c) { return c < ' ' || c > '~'; }, '?');
     while (!text.empty()) reply.lines.emplace_back(take_line(text));
     bytes_.erase(0, end + 2);
     return reply;
@@ -72,7 +74,10 @@ std::string scip_value(const ScipReply& reply, std::string_view name) {
         if (end == std::string_view::npos || end + 2 != line.size()) continue;
         const auto text = line.substr(0, end);
         if (!text.starts_with(name) || text.substr(name.size(), 1) != ":" || scip_sum(text) != line.back()) continue;
-        return std::string(text.substr(name.size() + 1));
+        std::string value(text.substr(name.size() + 1));
+        std::ranges::replace_if(
+            value, [](char c) { return c < ' ' || c > '~'; }, '?'); // for terminals
+        return value;
     }
     return {};
 }

@@ -8,7 +8,9 @@ namespace scanloom::robot {
 
 std::string lidar_remarks(const LidarCounts& counts, const LidarLosses& losses) {
     std::string text = fmt::format("{}, {}", counted(counts.damaged, "damaged packet"), counted(counts.turns, "turn"));
-    if (counts.gaps > 0) text += fmt::format(", {} of them cut by {}", counts.parts, counted(counts.gaps, "gap"));
+    const std::string gaps = counted(counts.gaps, "gap");
+    if (counts.parts > 0) text += fmt::format(", {} of them cut by {}", counts.parts, gaps);
+    if (counts.gaps > 0 && counts.parts == 0) text += fmt::format(", others dropped because of {}", gaps);
     const auto add = [&](std::uint64_t count, std::string_view noun, std::string_view what) {
         if (count > 0) text += fmt::format(", {} {}", counted(count, noun), what);
     };
