@@ -37,7 +37,8 @@ void add_ros_options(CLI::App& app, RecordingOptions& options, const std::string
     const auto grouped = [&](CLI::Option* option) { option->group(group); };
     grouped(app.add_option("--topic", options.topics,
                            "Topic of a laser; may be repeated. Default: all lasers whose mounts are known, or else "
-                           "the topic with most scans"));
+                           "the topic with most scans")
+                ->allow_extra_args(false));
     grouped(app.add_option("--odom-topic", options.odom_topic,
                            "Topic of nav_msgs/Odometry, used instead of the transforms of the robot's frame. "
                            "Default: transforms, or the only odometry if they contain no poses"));
@@ -52,7 +53,8 @@ void add_ros_options(CLI::App& app, RecordingOptions& options, const std::string
                    },
                    "X,Y,YAW of the laser on the robot in metres and radians, or TOPIC=X,Y,YAW of one of several; "
                    "replaces the mount of the transforms")
-                ->check(check_mount));
+                ->check(check_mount)
+                ->allow_extra_args(false));
     for (auto [name, meaning, help] :
          {std::tuple("--zero", &options.ranges.is_zero_no_return,
                      "Meaning of readings of 0: broken, or no-return. Default: broken"),
