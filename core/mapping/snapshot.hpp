@@ -59,7 +59,8 @@ struct RobotState {
     /// For display only, not part of the maps. Set only in a session that accepts scans, to a scan received since the
     /// session was loaded.
     std::shared_ptr<const IntegratedScan> newest_scan;
-    Localization localization; ///< likewise, while the session is loaded
+    std::vector<std::shared_ptr<const IntegratedScan>> newest_scans; ///< likewise, the newest one of each sensor
+    Localization localization;                                       ///< likewise, while the session is loaded
 };
 
 /// Boxes around the cells of each layer that any scan changed.

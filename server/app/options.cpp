@@ -160,7 +160,7 @@ void add_http_options(CLI::App& app, ServerOptions& options) {
         ->allow_extra_args(false);
     app.add_option(
            "--viewer-origin", options.viewer_origins,
-           "Origin of pages of others that may watch sessions over WebSocket, as Foxglove does; separate several "
+           "Origin of a web page that may open .../foxglove, such as https://app.foxglove.dev; separate several "
            "by commas, or repeat the option. 'none': no page")
         ->check(&check_origin)
         ->delimiter(',')

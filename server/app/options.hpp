@@ -41,7 +41,7 @@ struct ServerOptions {
     sockets::TlsFiles robot_tls;
     sockets::TlsFiles http_tls;
     std::vector<std::string> http_hosts; ///< accepted host names of the HTTP port, in addition to localhost
-    std::vector<std::string> viewer_origins{"https://app.foxglove.dev"}; ///< pages of others that may watch sessions
+    std::vector<std::string> viewer_origins{"https://app.foxglove.dev"}; ///< pages that may open .../foxglove
     std::vector<boost::asio::ip::address> http_proxies; ///< addresses without the per-address connection limit
     std::size_t threads = 1;                            ///< that integrate scans; the same number answers requests
     std::size_t tile_cache_bytes = std::size_t{64} << 20;

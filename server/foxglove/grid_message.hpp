@@ -1,6 +1,5 @@
 #pragma once
 
-#include "core/mapping/layer.hpp"
 #include "core/mapping/snapshot.hpp"
 #include "server/tiles/map_image.hpp"
 
@@ -8,13 +7,11 @@
 
 namespace scanloom::foxglove {
 
-/// Returns a part of a map as Message::kGrid, in CDR: cells are 0 free, 100 occupied, -1 unknown, as in map.pgm.
-/// @param snapshot  the maps
-/// @param layer     any layer
-/// @param frame     the cells; see tiles::map_frame()
-/// @param stamp     seconds, for readers
+/// Returns a part of the occupancy as Message::kGrid: cells are 0 free, 100 occupied, -1 unknown, as in map.pgm.
+/// @param maps   the maps
+/// @param frame  the cells; see tiles::map_frame()
+/// @param stamp  seconds, for readers
 /// Cost: proportional to the number of cells.
-[[nodiscard]] std::string grid_message(const mapping::Snapshot& snapshot, mapping::Layer layer,
-                                       const tiles::MapFrame& frame, double stamp);
+[[nodiscard]] std::string grid_message(const mapping::Snapshot& maps, const tiles::MapFrame& frame, double stamp);
 
 } // namespace scanloom::foxglove

@@ -61,7 +61,7 @@ std::string compressed(std::string_view bytes) {
 
 } // namespace
 
-void McapWriter::TimeRange::add(std::uint64_t time) noexcept {
+void McapWriter::TimeRange::add(std::int64_t time) noexcept {
     first = is_empty ? time : std::min(first, time);
     last = is_empty ? time : std::max(last, time);
     is_empty = false;
@@ -74,20 +74,20 @@ McapWriter::McapWriter() : out_(kMagic) {
     out_ += record(Op::kHeader, header);
 }
 
-McapWriter::ChannelId McapWriter::add_channel(std::string topic, const Schema& schema) {
+McapWriter::ChannelId McapWriter::add_channel(std::string topic, const Schema& schema, std::string_view qos) {
     const auto known = std::ranges::find(schemas_, &schema);
     const auto schema_index = static_cast<std::size_t>(known - schemas_.begin());
     if (known == schemas_.end()) {
         schemas_.push_back(&schema);
         chunk_ += schema_record(schema_index);
     }
-    channels_.push_back({std::move(topic), &schema, static_cast<std::uint16_t>(schema_index + 1)});
+    channels_.push_back({std::move(topic), &schema, static_cast<std::uint16_t>(schema_index + 1), std::string(qos)});
     const auto id = static_cast<ChannelId>(channels_.size());
     chunk_ += channel_record(id);
     return id;
 }
 
-void McapWriter::write(ChannelId channel, std::uint64_t log_time, std::string_view message) {
+void McapWriter::write(ChannelId channel, std::int64_t log_time, std::string_view message) {
     Channel& to = channels_[channel - 1U];
     chunk_messages_[channel].emplace_back(log_time, chunk_.size());
     std::string content;
@@ -203,7 +203,12 @@ std::string McapWriter::channel_record(ChannelId channel) const {
     append_raw(content, written.schema_id);
     append_text(content, written.topic);
     append_text(content, written.schema->message_encoding);
-    append_text(content, ""); // no metadata
+    std::string metadata;
+    if (!written.qos.empty()) {
+        append_text(metadata, "offered_qos_profiles");
+        append_text(metadata, written.qos);
+    }
+    append_text(content, metadata);
     return record(Op::kChannel, content);
 }
 

@@ -20,19 +20,21 @@ class McapWriter {
 public:
     using ChannelId = std::uint16_t;
 
+    static constexpr std::size_t kChannelsMax = 65'535;
     static constexpr std::size_t kChunkBytes = std::size_t{1} << 20; ///< uncompressed; a chunk ends after it
 
     McapWriter();
 
-    /// Adds a channel. At most 65,535.
+    /// Adds a channel. Precondition: there are fewer than kChannelsMax.
     /// @param topic   unique
     /// @param schema  outlives this object
-    [[nodiscard]] ChannelId add_channel(std::string topic, const Schema& schema);
+    /// @param qos     quality of service that rosbag2 offers when it plays the topic, in YAML; empty: its default
+    [[nodiscard]] ChannelId add_channel(std::string topic, const Schema& schema, std::string_view qos = {});
 
     /// Adds a message.
     /// @param channel   of add_channel()
-    /// @param log_time  nanoseconds, by which readers sort
-    void write(ChannelId channel, std::uint64_t log_time, std::string_view message);
+    /// @param log_time  nanoseconds, not negative, by which readers sort
+    void write(ChannelId channel, std::int64_t log_time, std::string_view message);
 
     /// Ends the file. Call once, after the last message.
     void finish();
@@ -40,27 +42,25 @@ public:
     /// Returns the bytes of the file that follow those returned before.
     [[nodiscard]] std::string take();
 
-    /// Returns the number of bytes that take() would return.
-    [[nodiscard]] std::size_t ready_bytes() const noexcept { return out_.size(); }
-
 private:
     struct Channel {
         std::string topic;
         const Schema* schema;
         std::uint16_t schema_id;
+        std::string qos;
         std::uint32_t messages = 0;
     };
 
     struct TimeRange {
-        std::uint64_t first = 0;
-        std::uint64_t last = 0;
+        std::int64_t first = 0;
+        std::int64_t last = 0;
         bool is_empty = true;
 
-        void add(std::uint64_t time) noexcept;
+        void add(std::int64_t time) noexcept;
     };
 
     /// Times and offsets in the chunk of the messages of each channel.
-    using ChunkMessages = std::map<ChannelId, std::vector<std::pair<std::uint64_t, std::uint64_t>>>;
+    using ChunkMessages = std::map<ChannelId, std::vector<std::pair<std::int64_t, std::uint64_t>>>;
 
     struct WrittenChunk {
         TimeRange times;

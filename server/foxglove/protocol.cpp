@@ -95,8 +95,8 @@ Result<std::variant<Subscribe, Unsubscribe>> decode_request(std::string_view tex
         if (!unsubscribe) return unsubscribe.error();
         return Request(std::move(*unsubscribe));
     }
-    return Error{Errc::kUnsupportedVersion,
-                 fmt::format("'{}' is not possible here; this server only shows data", name.substr(0, kShownBytes))};
+    return Error{Errc::kUnsupportedVersion, fmt::format("{} is not possible here; this server only shows data",
+                                                        name.size() <= kShownBytes ? name : "an op with a long name")};
 }
 
 std::string server_info_text(std::string_view name, std::string_view session_id) {
@@ -127,12 +127,12 @@ std::string warning_text(std::string_view message) {
     return json_text(json::object{{"op", "status"}, {"level", kWarning}, {"message", message}});
 }
 
-std::string data_message(std::uint32_t subscription, std::uint64_t log_time, std::string_view message) {
+std::string data_head(std::uint32_t subscription, std::int64_t log_time) {
     constexpr char kMessageData = 0x01;
     std::string bytes(1, kMessageData);
     append_raw(bytes, subscription);
     append_raw(bytes, log_time);
-    return bytes.append(message);
+    return bytes;
 }
 
 } // namespace scanloom::foxglove

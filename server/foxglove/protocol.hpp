@@ -55,8 +55,8 @@ struct Advertised {
 /// Returns a remark for the people in front of the viewer.
 [[nodiscard]] std::string warning_text(std::string_view message);
 
-/// Returns the binary message with the data of a subscription.
+/// Returns the beginning of the binary message with the data of a subscription; the message of the topic follows.
 /// @param log_time  nanoseconds
-[[nodiscard]] std::string data_message(std::uint32_t subscription, std::uint64_t log_time, std::string_view message);
+[[nodiscard]] std::string data_head(std::uint32_t subscription, std::int64_t log_time);
 
 } // namespace scanloom::foxglove

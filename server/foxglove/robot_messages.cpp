@@ -1,10 +1,12 @@
 #include "server/foxglove/robot_messages.hpp"
 
-#include "server/foxglove/ros_fields.hpp"
+#include "common/ros/ros_writer.hpp"
+#include "common/scan/limits.hpp"
+#include "server/foxglove/log_time.hpp"
 
 #include <fmt/format.h>
 
-#include <array>
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstring>
@@ -16,10 +18,10 @@ namespace scanloom::foxglove {
 namespace {
 
 void add_transform(double stamp, std::string_view parent, std::string_view child, const Pose2& pose,
-                   CdrWriter& message) {
-    add_header(stamp, parent, message);
+                   RosWriter& message) {
+    message.add_header(nanoseconds_of(stamp), parent);
     message.add_text(child);
-    add_pose(pose, message);
+    message.add_pose(pose);
 }
 
 /// Returns a reading in metres: infinite for no return, NaN if it is invalid.
@@ -30,59 +32,42 @@ float metres_of(RangeMm range, const Sensor& sensor) {
     return metres < sensor.range_min ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(metres);
 }
 
-/// The stamp of a sensor_msgs/LaserScan is that of its first beam.
-std::string evenly_spaced(std::string_view frame, const Scan& scan, const Sensor& sensor) {
-    const auto angles = std::get<UniformAngles>(angles_of(scan, sensor));
-    const std::size_t count = scan.ranges.size();
-    const double gaps = count > 1 ? static_cast<double>(count - 1) : 1.0;
-    CdrWriter message;
-    add_header(scan.stamp - scan.duration / 2.0, frame, message);
-    for (const double value : {angles.first, angles.first + gaps * angles.increment, angles.increment,
-                               scan.duration / gaps, scan.duration, sensor.range_min, sensor.range_max}) {
-        message.add(static_cast<float>(value));
-    }
-    message.add_count(count);
-    for (const RangeMm range : scan.ranges) message.add(metres_of(range, sensor));
-    message.add_count(scan.intensities.size());
-    for (const std::uint32_t intensity : scan.intensities) message.add(static_cast<float>(intensity));
-    return message.take();
-}
+/// Evenly spaced beams.
+struct Beams {
+    UniformAngles angles;
+    std::vector<float> ranges;      ///< metres
+    std::vector<float> intensities; ///< empty, or one per beam
+};
 
-using Point = std::array<float, 3>; // x, y, z
-
-std::vector<Point> hits_of(const Scan& scan, const Sensor& sensor) {
+Beams beams_of(const Scan& scan, const Sensor& sensor) {
+    Beams beams;
     const BeamAngles angles = angles_of(scan, sensor);
-    std::vector<Point> points;
-    for (std::size_t n = 0; n < scan.ranges.size(); ++n) {
-        const float range = metres_of(scan.ranges[n], sensor);
-        const double angle = beam_angle(angles, n);
-        const auto along = [range](double part) { return static_cast<float>(range * part); };
-        if (std::isfinite(range)) points.push_back({along(std::cos(angle)), along(std::sin(angle)), 0.0F});
+    const std::size_t count = scan.ranges.size();
+    if (const auto* uniform = std::get_if<UniformAngles>(&angles)) {
+        beams.angles = *uniform;
+        for (const RangeMm range : scan.ranges) beams.ranges.push_back(metres_of(range, sensor));
+        beams.intensities.assign(scan.intensities.begin(), scan.intensities.end());
+        return beams;
     }
-    return points;
-}
-
-std::string points_of(std::string_view frame, const Scan& scan, const Sensor& sensor) {
-    constexpr std::uint8_t kFloat32 = 7; // sensor_msgs/PointField
-    const std::vector<Point> points = hits_of(scan, sensor);
-    CdrWriter message;
-    add_header(scan.stamp, frame, message);
-    message.add_count(1); // height
-    message.add_count(points.size());
-    message.add_count(std::tuple_size_v<Point>); // fields
-    std::uint32_t offset = 0;
-    for (const std::string_view name : {"x", "y", "z"}) {
-        message.add_text(name);
-        message.add(std::exchange(offset, offset + static_cast<std::uint32_t>(sizeof(float))));
-        message.add(kFloat32);
-        message.add_count(1);
+    double first = count == 0 ? 0.0 : beam_angle(angles, 0);
+    double last = first;
+    for (std::size_t n = 1; n < count; ++n) {
+        first = std::min(first, beam_angle(angles, n));
+        last = std::max(last, beam_angle(angles, n));
     }
-    message.add(false); // is_bigendian
-    message.add_count(sizeof(Point));
-    message.add_count(sizeof(Point) * points.size()); // bytes of a row
-    message.add_bytes(std::as_bytes(std::span(points)));
-    message.add(true); // is_dense: no point is invalid
-    return message.take();
+    const std::size_t made = std::min(2 * count, std::size_t{kBeamsMax});
+    beams.angles = {first, made > 1 ? (last - first) / static_cast<double>(made - 1) : 0.0,
+                    static_cast<std::uint32_t>(made)};
+    beams.ranges.assign(made, std::numeric_limits<float>::quiet_NaN());
+    if (!scan.intensities.empty()) beams.intensities.assign(made, 0.0F);
+    for (std::size_t n = 0; n < count; ++n) {
+        const double place =
+            beams.angles.increment > 0.0 ? (beam_angle(angles, n) - first) / beams.angles.increment : 0.0;
+        const auto nearest = static_cast<std::size_t>(std::lround(place));
+        beams.ranges[nearest] = metres_of(scan.ranges[n], sensor);
+        if (!scan.intensities.empty()) beams.intensities[nearest] = static_cast<float>(scan.intensities[n]);
+    }
+    return beams;
 }
 
 } // namespace
@@ -96,7 +81,7 @@ std::string sensor_frame(std::string_view robot, const Sensor& sensor) {
 }
 
 std::string transforms_message(std::span<const PlacedRobot> robots) {
-    CdrWriter message;
+    RosWriter message(RosEncoding::kCdr);
     std::size_t count = robots.size();
     for (const auto& [at, sensors] : robots) count += sensors.size();
     message.add_count(count);
@@ -111,31 +96,37 @@ std::string transforms_message(std::span<const PlacedRobot> robots) {
 }
 
 std::string pose_message(const RobotAt& at) {
-    CdrWriter message;
-    add_header(at.stamp, kMapFrame, message);
-    add_pose(at.T_map_robot, message);
+    RosWriter message(RosEncoding::kCdr);
+    message.add_header(nanoseconds_of(at.stamp), kMapFrame);
+    message.add_pose(at.T_map_robot);
     return message.take();
 }
 
 std::string path_message(std::span<const Pose2> poses, double stamp) {
-    CdrWriter message;
-    add_header(stamp, kMapFrame, message);
+    RosWriter message(RosEncoding::kCdr);
+    message.add_header(nanoseconds_of(stamp), kMapFrame);
     message.add_count(poses.size());
     for (const Pose2& pose : poses) {
-        add_header(stamp, kMapFrame, message);
-        add_pose(pose, message);
+        message.add_header(nanoseconds_of(stamp), kMapFrame);
+        message.add_pose(pose);
     }
     return message.take();
 }
 
-Message message_of(const Scan& scan, const Sensor& sensor) noexcept {
-    const BeamAngles& angles = scan.angles ? *scan.angles : sensor.angles;
-    return std::holds_alternative<UniformAngles>(angles) ? Message::kScan : Message::kPoints;
-}
-
 std::string scan_message(std::string_view frame, const Scan& scan, const Sensor& sensor) {
-    return message_of(scan, sensor) == Message::kScan ? evenly_spaced(frame, scan, sensor)
-                                                      : points_of(frame, scan, sensor);
+    const auto [angles, ranges, intensities] = beams_of(scan, sensor);
+    const double gaps = ranges.size() > 1 ? static_cast<double>(ranges.size() - 1) : 1.0;
+    RosWriter message(RosEncoding::kCdr);
+    message.add_header(nanoseconds_of(first_beam_stamp(scan)), frame);
+    for (const double value : {angles.first, angles.first + gaps * angles.increment, angles.increment,
+                               scan.duration / gaps, std::fabs(scan.duration), sensor.range_min, sensor.range_max}) {
+        message.add(static_cast<float>(value));
+    }
+    for (const auto& list : {ranges, intensities}) {
+        message.add_count(list.size());
+        for (const float value : list) message.add(value);
+    }
+    return message.take();
 }
 
 } // namespace scanloom::foxglove

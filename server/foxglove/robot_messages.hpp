@@ -49,12 +49,13 @@ struct PlacedRobot {
 /// @param stamp  seconds
 [[nodiscard]] std::string path_message(std::span<const Pose2> poses, double stamp);
 
-/// Returns what a scan is shown as: kScan if its beams are evenly spaced, otherwise kPoints.
-/// @param sensor  that took the scan
-[[nodiscard]] Message message_of(const Scan& scan, const Sensor& sensor) noexcept;
+/// Returns the stamp of a scan's first beam, which sensor_msgs/LaserScan has; a Scan has that of the middle.
+/// @return seconds
+[[nodiscard]] inline double first_beam_stamp(const Scan& scan) noexcept { return scan.stamp - scan.duration / 2.0; }
 
-/// Returns a scan as message_of() says. A beam without a return has an infinite range, and an invalid reading is NaN
-/// (REP 117); points are the ends of the beams that hit an obstacle.
+/// Returns a scan: Message::kScan. A beam without a return has an infinite range, and an invalid reading is NaN (REP
+/// 117). The message has evenly spaced beams. If those of the scan are not, it has twice as many, up to 4096: each
+/// reading is at the nearest one, and the others are NaN.
 /// @param frame   in which the sensor is at the origin
 /// @param scan    that the sensor took
 /// @param sensor  as described when it took the scan

@@ -1,8 +1,8 @@
 #include "server/foxglove/scene_messages.hpp"
 
 #include "core/classify/frontiers.hpp"
+#include "server/foxglove/log_time.hpp"
 #include "server/foxglove/robot_messages.hpp"
-#include "server/foxglove/ros_fields.hpp"
 
 #include "foxglove/scene.pb.h"
 
@@ -36,9 +36,10 @@ void set(const Point2& place, ::foxglove::Pose& pose) {
 
 ::foxglove::SceneEntity& add_entity(const char* id, double stamp, ::foxglove::SceneUpdate& update) {
     ::foxglove::SceneEntity& entity = *update.add_entities();
-    const std::uint64_t time = log_time_of(stamp);
-    entity.mutable_timestamp()->set_seconds(static_cast<std::int64_t>(time / kNanoseconds));
-    entity.mutable_timestamp()->set_nanos(static_cast<std::int32_t>(time % kNanoseconds));
+    constexpr std::int64_t kSecond = 1'000'000'000; // nanoseconds
+    const std::int64_t time = nanoseconds_of(stamp);
+    entity.mutable_timestamp()->set_seconds(time / kSecond);
+    entity.mutable_timestamp()->set_nanos(static_cast<std::int32_t>(time % kSecond));
     entity.set_frame_id(std::string(kMapFrame));
     entity.set_id(id);
     return entity;

@@ -43,9 +43,6 @@ constexpr auto kDefinitions = std::to_array<Definition>({
     {"sensor_msgs/LaserScan", "std_msgs/Header header\nfloat32 angle_min\nfloat32 angle_max\nfloat32 angle_increment\n"
                               "float32 time_increment\nfloat32 scan_time\nfloat32 range_min\nfloat32 range_max\n"
                               "float32[] ranges\nfloat32[] intensities\n"},
-    {"sensor_msgs/PointCloud2", "std_msgs/Header header\nuint32 height\nuint32 width\nsensor_msgs/PointField[] fields\n"
-                                "bool is_bigendian\nuint32 point_step\nuint32 row_step\nuint8[] data\nbool is_dense\n"},
-    {"sensor_msgs/PointField", "string name\nuint32 offset\nuint8 datatype\nuint32 count\n"},
     {"std_msgs/Header", "builtin_interfaces/Time stamp\nstring frame_id\n"},
     {"tf2_msgs/TFMessage", "geometry_msgs/TransformStamped[] transforms\n"},
 });
@@ -91,7 +88,6 @@ const Schema& schema_of(Message message) {
     static const Schema transforms = schema_of("tf2_msgs/TFMessage");
     static const Schema pose = schema_of("geometry_msgs/PoseStamped");
     static const Schema scan = schema_of("sensor_msgs/LaserScan");
-    static const Schema points = schema_of("sensor_msgs/PointCloud2");
     static const Schema grid = schema_of("nav_msgs/OccupancyGrid");
     static const Schema path = schema_of("nav_msgs/Path");
     static const Schema status = schema_of("diagnostic_msgs/DiagnosticArray");
@@ -100,7 +96,6 @@ const Schema& schema_of(Message message) {
     case Message::kTransforms: return transforms;
     case Message::kPose: return pose;
     case Message::kScan: return scan;
-    case Message::kPoints: return points;
     case Message::kGrid: return grid;
     case Message::kPath: return path;
     case Message::kStatus: return status;

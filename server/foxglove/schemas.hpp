@@ -10,7 +10,6 @@ enum class Message {
     kTransforms, ///< tf2_msgs/msg/TFMessage
     kPose,       ///< geometry_msgs/msg/PoseStamped
     kScan,       ///< sensor_msgs/msg/LaserScan
-    kPoints,     ///< sensor_msgs/msg/PointCloud2
     kGrid,       ///< nav_msgs/msg/OccupancyGrid
     kPath,       ///< nav_msgs/msg/Path
     kStatus,     ///< diagnostic_msgs/msg/DiagnosticArray

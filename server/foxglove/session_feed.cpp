@@ -1,8 +1,7 @@
 #include "server/foxglove/session_feed.hpp"
 
-#include "server/foxglove/grid_message.hpp"
+#include "server/foxglove/log_time.hpp"
 #include "server/foxglove/robot_messages.hpp"
-#include "server/foxglove/ros_fields.hpp"
 #include "server/foxglove/scene_messages.hpp"
 #include "server/foxglove/status_message.hpp"
 #include "server/foxglove/topics.hpp"
@@ -10,6 +9,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
+#include <iterator>
 
 namespace scanloom::foxglove {
 namespace {
@@ -17,32 +18,22 @@ namespace {
 using mapping::RobotState;
 using mapping::Snapshot;
 
-constexpr auto kLayer = mapping::Layer::kOccupancy;
 constexpr std::size_t kTrailPoints = 2'048; // of a robot, at most
-
-/// Returns the newest stamp of any robot, in seconds.
-double newest_stamp(const Snapshot& maps) {
-    double newest = 0.0;
-    for (const RobotState& robot : maps.robots) newest = std::max(newest, robot.stamp);
-    return newest;
-}
 
 std::string transforms_of(const Snapshot& maps) {
     std::vector<PlacedRobot> robots;
     for (const RobotState& robot : maps.robots) {
         if (!robot.pose) continue;
         robots.push_back({{robot.name, robot.stamp, *robot.pose}, {}});
-        if (robot.newest_scan) robots.back().sensors.push_back(robot.newest_scan->sensor.get());
+        for (const auto& scan : robot.newest_scans) robots.back().sensors.push_back(scan->sensor.get());
     }
     return transforms_message(robots);
 }
 
-/// Returns the scan of a channel; null if the robot's newest one is of another kind or sensor.
-const mapping::IntegratedScan* scan_for(const RobotState& robot, Message message, std::uint32_t sensor) {
-    const auto* scan = robot.newest_scan.get();
-    const bool is_shown =
-        scan != nullptr && scan->sensor->id == sensor && message_of(scan->scan, *scan->sensor) == message;
-    return is_shown ? scan : nullptr;
+/// Returns the newest scan of a sensor; null: there is none.
+const mapping::IntegratedScan* scan_of(const RobotState& robot, std::uint32_t sensor) {
+    const auto found = std::ranges::find(robot.newest_scans, sensor, [](const auto& scan) { return scan->sensor->id; });
+    return found == robot.newest_scans.end() ? nullptr : found->get();
 }
 
 std::string trail_of(const RobotState& robot) {
@@ -51,6 +42,7 @@ std::string trail_of(const RobotState& robot) {
     const std::size_t stride = (trail.size() - begin + kTrailPoints - 1) / kTrailPoints;
     std::vector<Pose2> poses;
     for (std::size_t n = begin; n < trail.size(); n += stride) poses.push_back(trail[n].pose);
+    if (robot.pose) poses.push_back(*robot.pose);
     return path_message(poses, robot.stamp);
 }
 
@@ -70,6 +62,10 @@ void SessionFeed::receive(std::string_view message, bool is_text) {
     const auto request = decode_request(message);
     if (!request) return warn(request.error().message);
     std::visit([this](const auto& each) { handle(each); }, *request);
+}
+
+void SessionFeed::warn(std::string_view text) {
+    if (answers_.size() < kWarningsMax) answers_.push_back({.bytes = warning_text(text), .is_text = true});
 }
 
 void SessionFeed::handle(const Subscribe& subscribe) {
@@ -119,25 +115,27 @@ void SessionFeed::add_channels(const SessionView& state) {
         add_channel({pose_topic(robot.name), Message::kPose, Content::kPose, n});
         add_channel({trail_topic(robot.name), Message::kPath, Content::kTrail, n});
         add_channel({path_topic(robot.name), Message::kPath, Content::kPath, n});
-        if (!robot.newest_scan) continue;
-        const auto& [revision, sensor, scan] = *robot.newest_scan;
-        const Message kind = foxglove::message_of(scan, *sensor);
-        add_channel({scan_topic(robot.name, sensor->id, kind), kind, Content::kScan, n, sensor->id});
+        for (const auto& scan : robot.newest_scans) {
+            const std::uint32_t sensor = scan->sensor->id;
+            add_channel({scan_topic(robot.name, sensor), Message::kScan, Content::kScan, n, sensor});
+        }
     }
 }
 
 std::vector<Outgoing> SessionFeed::next(const SessionView& state, Clock::time_point now) {
     std::vector<Outgoing> messages;
-    if (!std::exchange(is_greeted_, true)) messages.push_back({server_info_text(session_, session_id_), true});
+    const auto add_text = [&](std::string text) { messages.push_back({.bytes = std::move(text), .is_text = true}); };
+    if (!std::exchange(is_greeted_, true)) add_text(server_info_text(session_, session_id_));
     add_channels(state);
     if (advertised_ < channels_.size()) {
         std::vector<Advertised> added;
         for (std::size_t n = advertised_; n < channels_.size(); ++n) {
             added.push_back({static_cast<std::uint32_t>(n + 1), channels_[n].topic, channels_[n].message});
         }
-        messages.push_back({advertise_text(added), true});
+        add_text(advertise_text(added));
         advertised_ = channels_.size();
     }
+    if (state.is_map_too_large && wants(Content::kMap)) warn_of_large_map();
     std::ranges::move(std::exchange(answers_, {}), std::back_inserter(messages));
     look_again_ = Clock::time_point::max();
     for (auto& [id, subscription] : subscriptions_) {
@@ -151,12 +149,10 @@ std::vector<Outgoing> SessionFeed::next(const SessionView& state, Clock::time_po
         auto message = message_of(channel, state);
         subscription.sent = version;
         if (!message) continue;
-        const double stamp =
-            channel.content >= Content::kPose ? state.maps->robots[channel.robot].stamp : newest_stamp(*state.maps);
-        messages.push_back({data_message(id, log_time_of(stamp), *message), false});
+        const double stamp = channel.robot ? state.maps->robots[*channel.robot].stamp : newest_stamp(*state.maps);
+        messages.push_back({.bytes = data_head(id, nanoseconds_of(stamp)), .rest = std::move(message)});
         subscription.due = now + pause_of(channel.content);
     }
-    std::ranges::move(std::exchange(answers_, {}), std::back_inserter(messages));
     return messages;
 }
 
@@ -183,65 +179,55 @@ SessionFeed::Version SessionFeed::version_of(const Channel& channel, const Sessi
     switch (channel.content) {
     case Content::kMap:
     case Content::kFrontiers:
+    case Content::kPoseGraph: return {state.parts_revision, 0};
     case Content::kTransforms: return {maps.revision, 0};
-    case Content::kStatus: return {maps.revision, std::ranges::count(state.connected, true)};
+    case Content::kStatus: return {maps.revision, std::hash<std::vector<bool>>()(state.connected)};
     case Content::kLandmarks: return {state.landmarks_revision, state.landmarks ? 1 : 0};
     case Content::kGoals:
     case Content::kPath: return {state.guided_version, 0};
-    case Content::kPoseGraph: return {state.graph_version, 0};
     case Content::kPose:
-    case Content::kTrail: return {maps.robots[channel.robot].scan_count, maps.scan_poses.corrected()};
+    case Content::kTrail: return {maps.robots[*channel.robot].scan_count, maps.scan_poses.corrected()};
     case Content::kScan: {
-        const auto* scan = scan_for(maps.robots[channel.robot], channel.message, channel.sensor);
+        const auto* scan = scan_of(maps.robots[*channel.robot], channel.sensor);
         return {scan == nullptr ? 0 : scan->revision, 0};
     }
     }
     return {};
 }
 
-/// Returns the newest message of a channel; nullopt if there is nothing to show.
-std::optional<std::string> SessionFeed::message_of(const Channel& channel, const SessionView& state) {
+/// Returns the newest message of a channel; null if there is nothing to show.
+std::shared_ptr<const std::string> SessionFeed::message_of(const Channel& channel, const SessionView& state) {
     const Snapshot& maps = *state.maps;
+    const auto made = [](std::string message) { return std::make_shared<const std::string>(std::move(message)); };
     switch (channel.content) {
-    case Content::kMap: return map_of(maps);
-    case Content::kTransforms: return transforms_of(maps);
-    case Content::kStatus: return status_message(maps, state.connected, newest_stamp(maps));
+    case Content::kMap: return state.map;
+    case Content::kFrontiers: return state.frontiers;
+    case Content::kTransforms: return made(transforms_of(maps));
+    case Content::kStatus: return made(status_message(maps, state.connected, newest_stamp(maps)));
     case Content::kLandmarks:
-        if (!state.landmarks) return std::nullopt;
-        return landmarks_message(*state.landmarks, newest_stamp(maps));
-    case Content::kFrontiers: return frontiers_message(maps, newest_stamp(maps));
-    case Content::kGoals: return goals_message(state, newest_stamp(maps));
-    case Content::kPoseGraph:
-        if (!state.graph) return std::nullopt;
-        return pose_graph_message(*state.graph, newest_stamp(maps));
+        return state.landmarks ? made(landmarks_message(*state.landmarks, newest_stamp(maps))) : nullptr;
+    case Content::kGoals: return made(goals_message(state, newest_stamp(maps)));
+    case Content::kPoseGraph: return state.graph ? made(pose_graph_message(*state.graph, newest_stamp(maps))) : nullptr;
     case Content::kPose: {
-        const RobotState& robot = maps.robots[channel.robot];
-        if (!robot.pose) return std::nullopt;
-        return pose_message({robot.name, robot.stamp, *robot.pose});
+        const RobotState& robot = maps.robots[*channel.robot];
+        return robot.pose ? made(pose_message({robot.name, robot.stamp, *robot.pose})) : nullptr;
     }
     case Content::kScan: {
-        const RobotState& robot = maps.robots[channel.robot];
-        const auto* scan = scan_for(robot, channel.message, channel.sensor);
-        if (scan == nullptr) return std::nullopt;
-        return scan_message(sensor_frame(robot.name, *scan->sensor), scan->scan, *scan->sensor);
+        const RobotState& robot = maps.robots[*channel.robot];
+        const auto* scan = scan_of(robot, channel.sensor);
+        if (scan == nullptr) return nullptr;
+        return made(scan_message(sensor_frame(robot.name, *scan->sensor), scan->scan, *scan->sensor));
     }
-    case Content::kTrail: return trail_of(maps.robots[channel.robot]);
-    case Content::kPath: return path_of(state, channel.robot);
+    case Content::kTrail: return made(trail_of(maps.robots[*channel.robot]));
+    case Content::kPath: return made(path_of(state, *channel.robot));
     }
-    return std::nullopt;
+    return nullptr;
 }
 
-/// Returns the whole map; nullopt if it is empty or too large, which the viewer is told once.
-std::optional<std::string> SessionFeed::map_of(const Snapshot& maps) {
-    const auto frame = tiles::map_frame(maps, kLayer, std::nullopt);
-    const bool is_too_large =
-        frame ? frame->cells.width() * frame->cells.height() > kGridCellsMax : frame.error().code == Errc::kTooLarge;
-    if (is_too_large && !std::exchange(is_map_too_large_, true)) {
-        warn(fmt::format("the map has more than {} million cells and is not sent as a grid; its tiles show it",
-                         kGridCellsMax / 1'000'000));
-    }
-    if (!frame || is_too_large) return std::nullopt;
-    return grid_message(maps, kLayer, *frame, newest_stamp(maps));
+/// Warns once.
+void SessionFeed::warn_of_large_map() {
+    if (std::exchange(is_warned_, true)) return;
+    warn("the map is too large to be sent as one grid; its tiles and the viewer of the server show it");
 }
 
 } // namespace scanloom::foxglove

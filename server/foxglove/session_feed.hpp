@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -18,29 +19,29 @@ namespace scanloom::foxglove {
 
 /// A message to a viewer.
 struct Outgoing {
-    std::string bytes;
-    bool is_text = false; ///< otherwise binary
+    std::string bytes;                                 ///< the message, or its beginning
+    std::shared_ptr<const std::string> rest = nullptr; ///< follows `bytes`; other viewers may share it
+    bool is_text = false;                              ///< otherwise binary
 };
 
 /// The conversation with one viewer of a session, by the protocol of Foxglove, without a socket.
 ///
-/// Topics: those of topics.hpp. A channel sends the newest state when it is subscribed and when it has changed, the map
-/// and other large ones at most once a second; states in between are left out. Memory: what was subscribed, and the
-/// number of each robot's channels.
+/// Topics: those of topics.hpp. A channel sends the newest state when it is subscribed and when it has changed: /tf,
+/// poses and scans in each turn, all others at most once a second; states in between are left out. Memory: what was
+/// subscribed, and the number of each robot's channels.
 /// Threads: one at a time.
 class SessionFeed {
 public:
     using Clock = std::chrono::steady_clock;
 
-    /// Larger maps are not sent as one grid: 200 m x 200 m in cells of 5 cm.
-    static constexpr std::int64_t kGridCellsMax = 16'000'000;
+    static constexpr std::size_t kWarningsMax = 16; ///< in one turn
 
     /// @param session     its name
     /// @param session_id  see server_info_text()
     SessionFeed(std::string session, std::string session_id)
         : session_(std::move(session)), session_id_(std::move(session_id)) {}
 
-    /// Handles a message of the viewer. What it does wrong is answered with a remark in next().
+    /// Handles a message of the viewer. What it does wrong is answered with warnings in next(), kWarningsMax at most.
     void receive(std::string_view message, bool is_text);
 
     /// Returns what the viewer gets now. First of all, it is greeted.
@@ -52,8 +53,10 @@ public:
 
     /// Returns whether the viewer sees landmarks, which are searched for only then.
     [[nodiscard]] bool wants_landmarks() const { return wants(Content::kLandmarks); }
-    /// Returns whether the viewer sees the pose graph.
-    [[nodiscard]] bool wants_pose_graph() const { return wants(Content::kPoseGraph); }
+    /// Returns whether the viewer sees any of the parts with SessionView::parts_revision.
+    [[nodiscard]] bool wants_parts() const {
+        return wants(Content::kMap) || wants(Content::kFrontiers) || wants(Content::kPoseGraph);
+    }
 
 private:
     /// What a channel shows.
@@ -75,8 +78,8 @@ private:
         std::string topic;
         Message message;
         Content content;
-        RobotIndex robot = 0;     ///< of kPose and those after it
-        std::uint32_t sensor = 0; ///< of kScan
+        std::optional<RobotIndex> robot = std::nullopt; ///< whose channel it is; nullopt: that of the session
+        std::uint32_t sensor = 0;                       ///< of kScan
     };
 
     /// Changes when what a channel shows does.
@@ -90,19 +93,20 @@ private:
 
     void handle(const Subscribe& subscribe);
     void handle(const Unsubscribe& unsubscribe);
-    void warn(std::string_view text) { answers_.push_back({warning_text(text), true}); }
+    void warn(std::string_view text);
     [[nodiscard]] bool wants(Content content) const;
     void add_channels(const SessionView& state);
     void add_channel(Channel channel);
     [[nodiscard]] static Version version_of(const Channel& channel, const SessionView& state);
     [[nodiscard]] static Clock::duration pause_of(Content content);
-    [[nodiscard]] std::optional<std::string> message_of(const Channel& channel, const SessionView& state);
-    [[nodiscard]] std::optional<std::string> map_of(const mapping::Snapshot& maps);
+    [[nodiscard]] static std::shared_ptr<const std::string> message_of(const Channel& channel,
+                                                                       const SessionView& state);
+    void warn_of_large_map();
 
     std::string session_;
     std::string session_id_;
     bool is_greeted_ = false;
-    bool is_map_too_large_ = false; ///< and the viewer knows
+    bool is_warned_ = false; // of a map that is too large
     std::vector<Outgoing> answers_;
     std::vector<Channel> channels_; ///< the id of a channel is its index plus one
     std::size_t advertised_ = 0;    ///< number of channels that the viewer knows

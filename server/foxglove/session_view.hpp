@@ -6,9 +6,11 @@
 #include "core/localization/session_poses.hpp"
 #include "core/mapping/snapshot.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace scanloom::foxglove {
@@ -28,8 +30,18 @@ struct SessionView {
     std::uint64_t guided_version = 0;                                   ///< increases when `guided` changes
     std::optional<landmarks::LandmarkView> landmarks;                   ///< nullopt: not known yet
     Revision landmarks_revision = 0;                                    ///< searched log entries
-    std::shared_ptr<const localization::PoseGraphView> graph = nullptr; ///< null: not known yet
-    std::uint64_t graph_version = 0;                                    ///< increases when `graph` changes
+    std::shared_ptr<const std::string> map = nullptr;                   ///< as a grid_message(); null: there is none
+    bool is_map_too_large = false;                                      ///< to be sent as one grid
+    std::shared_ptr<const std::string> frontiers = nullptr;             ///< as a frontiers_message(); null: not known
+    std::shared_ptr<const localization::PoseGraphView> graph = nullptr; ///< null: not known
+    Revision parts_revision = 0; ///< of the maps that `map`, `frontiers` and `graph` are computed from
 };
+
+/// Returns the newest stamp of any robot, in seconds.
+[[nodiscard]] inline double newest_stamp(const mapping::Snapshot& maps) {
+    double newest = 0.0;
+    for (const mapping::RobotState& robot : maps.robots) newest = std::max(newest, robot.stamp);
+    return newest;
+}
 
 } // namespace scanloom::foxglove

@@ -1,7 +1,8 @@
 #include "server/foxglove/status_message.hpp"
 
+#include "common/ros/ros_writer.hpp"
+#include "server/foxglove/log_time.hpp"
 #include "server/foxglove/robot_messages.hpp"
-#include "server/foxglove/ros_fields.hpp"
 
 #include <fmt/format.h>
 
@@ -20,7 +21,7 @@ Level level_of(LocalizationState state, bool is_connected) {
     return state == LocalizationState::kUnlocated || !is_connected ? Level::kWarning : Level::kOk;
 }
 
-void add_robot(const mapping::RobotState& robot, bool is_connected, CdrWriter& message) {
+void add_robot(const mapping::RobotState& robot, bool is_connected, RosWriter& message) {
     const auto& how = robot.localization;
     message.add(static_cast<std::uint8_t>(level_of(how.state, is_connected)));
     message.add_text(robot.name);
@@ -45,8 +46,8 @@ void add_robot(const mapping::RobotState& robot, bool is_connected, CdrWriter& m
 } // namespace
 
 std::string status_message(const mapping::Snapshot& maps, const std::vector<bool>& connected, double stamp) {
-    CdrWriter message;
-    add_header(stamp, kMapFrame, message);
+    RosWriter message(RosEncoding::kCdr);
+    message.add_header(nanoseconds_of(stamp), kMapFrame);
     message.add_count(maps.robots.size());
     for (std::size_t n = 0; n < maps.robots.size(); ++n) {
         add_robot(maps.robots[n], n < connected.size() && connected[n], message);

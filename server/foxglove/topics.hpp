@@ -29,10 +29,8 @@ inline const std::string kPoseGraphTopic = "/pose_graph";
 [[nodiscard]] inline std::string path_topic(std::string_view robot) { return fmt::format("/{}/path", robot); }
 
 /// Returns the topic of the scans of a robot's sensor: /ROBOT/scan of sensor 0, /ROBOT/scan_1 of sensor 1.
-/// @param message  kScan or kPoints
-[[nodiscard]] inline std::string scan_topic(std::string_view robot, std::uint32_t sensor, Message message) {
-    const std::string_view name = message == Message::kScan ? "scan" : "points";
-    return sensor == 0 ? fmt::format("/{}/{}", robot, name) : fmt::format("/{}/{}_{}", robot, name, sensor);
+[[nodiscard]] inline std::string scan_topic(std::string_view robot, std::uint32_t sensor) {
+    return sensor == 0 ? fmt::format("/{}/scan", robot) : fmt::format("/{}/scan_{}", robot, sensor);
 }
 
 } // namespace scanloom::foxglove

@@ -11,6 +11,7 @@
 #include "server/http/web_files.hpp"
 #include "server/http/work_classes.hpp"
 #include "server/live/landmark_hub.hpp"
+#include "server/live/shared_parts.hpp"
 #include "server/metrics/metrics.hpp"
 #include "server/sessions/background_check.hpp"
 #include "server/sessions/capture_layers.hpp"
@@ -59,6 +60,7 @@ struct Services {
     tiles::TileMaker tiles{tile_bytes_max};
     sessions::LandmarkLayers landmarks{log};
     live::LandmarkHub watched_landmarks{landmarks};
+    live::PartsHub watched_parts;
     ResponseLimit responses;
 };
 

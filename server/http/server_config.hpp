@@ -53,7 +53,7 @@ struct ServerConfig {
     /// refused; on another address they are refused if this list is not empty.
     std::vector<std::string> host_names;
 
-    /// Origins of pages of others that may watch sessions over WebSocket, "https://app.foxglove.dev".
+    /// Origins of pages of other sites that may open .../foxglove, such as "https://app.foxglove.dev".
     std::vector<std::string> viewer_origins;
 };
 

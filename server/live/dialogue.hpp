@@ -18,15 +18,16 @@ namespace scanloom::live {
 
 /// A message over the WebSocket of a viewer.
 struct ViewerMessage {
-    std::string bytes;
-    bool is_text = false; ///< otherwise binary
+    std::string bytes;                                 ///< the message, or its beginning
+    std::shared_ptr<const std::string> rest = nullptr; ///< follows `bytes`; other viewers may share it
+    bool is_text = false;                              ///< otherwise binary
 };
 
 /// Returns why a connection is closed, in words that fit a control frame.
 [[nodiscard]] boost::beast::websocket::close_reason close_with(boost::beast::websocket::close_code code,
                                                                std::string_view reason);
 
-/// What a viewer of a session and the server say, apart from the connection.
+/// Decodes the messages of a viewer, and creates those of the server, without a socket.
 ///
 /// Messages show the newest state; states in between are left out, so there is no backlog.
 /// Threads: one at a time.
@@ -53,10 +54,10 @@ public:
     [[nodiscard]] virtual Turn next(const SessionPtr& session, Clock::time_point now) = 0;
 };
 
-/// What dialogues need beside the session.
+/// What dialogues need in addition to the session.
 struct DialogueServices {
     const LiveConfig& config;
-    boost::asio::any_io_executor finding; ///< searches for landmarks, which waits for the disk
+    boost::asio::any_io_executor finding; ///< searches for landmarks and makes whole maps, which takes long
 };
 
 /// Returns the dialogue of viewed.protocol.

@@ -42,7 +42,7 @@ Dialogue::Turn EventDialogue::next(const SessionPtr& session, Clock::time_point 
     const auto event = encoder_.next(snapshot);
     if (!event) return {{}, until};
     Turn turn{{}, encoder_.has_more() ? now : until};
-    turn.messages.push_back({wire::encode(*event), false});
+    turn.messages.push_back({.bytes = wire::encode(*event)});
     return turn;
 }
 

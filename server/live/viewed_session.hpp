@@ -3,6 +3,7 @@
 #include "server/auth/authenticator.hpp"
 #include "server/guidance/robot_paths.hpp"
 #include "server/live/landmark_hub.hpp"
+#include "server/live/shared_parts.hpp"
 #include "server/sessions/session.hpp"
 
 #include <functional>
@@ -26,6 +27,7 @@ struct ViewedSession {
     std::string tag;  ///< LiveEvent::session
     guidance::RobotPaths& paths;
     std::shared_ptr<WatchedLandmarks> landmarks;
+    std::shared_ptr<WatchedParts> parts;                    ///< null with Protocol::kEvents
     std::function<bool()> is_stored = [] { return false; }; ///< returns whether the session exists, in memory or not
     std::shared_ptr<auth::Credential> credential = nullptr; ///< permission to watch; null: it cannot be revoked
     Protocol protocol = Protocol::kEvents;

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <array>
 #include <string_view>
 #include <utility>
 
@@ -130,11 +131,14 @@ asio::awaitable<void> Viewer::read_requests() {
 
 /// Keeps the message in buffer_ for the next turn.
 void Viewer::keep_message() {
-    if (received_.size() >= services_.config.waiting_max) {
+    constexpr std::size_t kOverhead = 64; // bytes of an empty message
+    const auto bytes = buffer_.data();
+    received_bytes_ += bytes.size() + kOverhead;
+    if (received_bytes_ > kReceivedBytesMax) {
         return end(close_with(websocket::close_code::policy_error, "too many messages at once; send fewer"));
     }
-    const auto bytes = buffer_.data();
-    received_.push_back({std::string(static_cast<const char*>(bytes.data()), bytes.size()), stream_.got_text()});
+    received_.push_back(
+        {.bytes = std::string(static_cast<const char*>(bytes.data()), bytes.size()), .is_text = stream_.got_text()});
     changed_ = true;
     wake();
 }
@@ -144,6 +148,7 @@ asio::awaitable<void> Viewer::send_turns() {
         co_await wait_for_turn();
         if (ending_ || !reading_) co_return;
         changed_ = false;
+        received_bytes_ = 0;
         auto work = [self = shared_from_this(), received = std::exchange(received_, {})] {
             return self->next_step(received);
         };
@@ -152,10 +157,12 @@ asio::awaitable<void> Viewer::send_turns() {
         if (step.end) end(*step.end);
         if (step.turn.messages.empty()) continue;
         due_ = Clock::now() + services_.config.interval;
+        if (!ending_) cut_off_after(services_.config.write);
         for (const ViewerMessage& message : step.turn.messages) {
             const bool sent = co_await send(message);
             if (!sent) co_return;
         }
+        if (!ending_) deadline_.cancel();
     }
 }
 
@@ -194,10 +201,10 @@ Viewer::NextStep Viewer::next_step(const std::vector<ViewerMessage>& received) {
 
 /// @return false if the connection is no longer usable
 asio::awaitable<bool> Viewer::send(const ViewerMessage& message) {
-    if (!ending_) cut_off_after(services_.config.write);
     stream_.text(message.is_text);
-    const auto [error, size] = co_await stream_.async_write(asio::buffer(message.bytes), kAwaitTuple);
-    if (!ending_) deadline_.cancel();
+    const std::array parts{asio::buffer(message.bytes),
+                           message.rest ? asio::buffer(*message.rest) : asio::const_buffer()};
+    const auto [error, size] = co_await stream_.async_write(parts, kAwaitTuple);
     if (error) co_return false;
     services_.counters.events.Increment();
     services_.counters.bytes.Increment(static_cast<double>(size));

@@ -30,17 +30,20 @@ namespace scanloom::live {
 ///
 /// The session only notifies the viewer of changes. The Dialogue's next messages are created from the state of the
 /// session when the previous ones are written and the interval is over. So a slow viewer gets the newest state instead
-/// of a backlog, and needs the memory of one turn.
+/// of a backlog. It needs the memory of one turn, and of kReceivedBytesMax for what it sent.
 ///
 /// The connection is closed with a reason and one of these codes: 1001 the server shuts down or the session is
-/// evicted, 1008 more than waiting_max messages of the viewer wait, 1009 message longer than request_bytes_max, 1011
-/// internal error, 4401 the token is no longer valid, 4404 the session was deleted, and those of the dialogue. It is
-/// closed without a code if the client disconnects or violates the WebSocket protocol, or if a timeout expires.
+/// evicted, 1008 more messages of the viewer wait than kReceivedBytesMax, 1009 message longer than request_bytes_max,
+/// 1011 internal error, 4401 the token is no longer valid, 4404 the session was deleted, and those of the dialogue. It
+/// is closed without a code if the client disconnects or violates the WebSocket protocol, or if a timeout expires.
 /// Threads: the socket's executor, a strand. next_step() runs on `showing` while the coroutine on the strand waits for
 /// it. on_changed(), stop() and abort() may be called from any thread.
 class Viewer final : public sessions::Watcher, public std::enable_shared_from_this<Viewer> {
 public:
     using Upgrade = boost::beast::http::request<boost::beast::http::string_body>;
+
+    /// Of a viewer's messages that wait for the next turn, with some bytes for each.
+    static constexpr std::size_t kReceivedBytesMax = std::size_t{1} << 20;
 
     /// Shared by all viewers.
     struct Services {
@@ -97,7 +100,8 @@ private:
     Clock::time_point due_; // the next turn does not begin before
     Clock::time_point look_again_ = Clock::time_point::max();
     std::vector<ViewerMessage> received_; // not yet passed to the dialogue
-    bool changed_ = true;                 // the state may have changed since the last turn
+    std::size_t received_bytes_ = 0;
+    bool changed_ = true; // the state may have changed since the last turn
     bool reading_ = false;
     std::optional<Close> ending_;
     std::atomic<bool> notified_ = false; // on_changed() was called since next_step() last read the state

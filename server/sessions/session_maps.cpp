@@ -38,8 +38,11 @@ Result<bool> SessionMaps::apply(LogEntry& entry, double& work) {
         auto* taken = std::get_if<ScanTaken>(&entry);
         if (taken == nullptr || projection().has_left_out_newest(taken->robot)) return true;
         if (newest_scans_.size() <= taken->robot) newest_scans_.resize(taken->robot + 1);
-        newest_scans_[taken->robot] = std::make_shared<const mapping::IntegratedScan>(mapping::IntegratedScan{
-            projection().revision(), projection().sensor_of(taken->robot, taken->scan.sensor), std::move(taken->scan)});
+        auto& newest = newest_scans_[taken->robot];
+        std::erase_if(newest, [&](const auto& scan) { return scan->scan.sensor == taken->scan.sensor; });
+        newest.push_back(std::make_shared<const mapping::IntegratedScan>(
+            mapping::IntegratedScan{projection().revision(), projection().sensor_of(taken->robot, taken->scan.sensor),
+                                    std::move(taken->scan)}));
         return true;
     } catch (const std::bad_alloc&) {
         return no_memory();
@@ -62,12 +65,13 @@ Result<> SessionMaps::correct() {
 void SessionMaps::move_newest_scans() {
     const auto poses = maps_.poses().in_maps();
     for (RobotIndex robot = 0; robot < newest_scans_.size(); ++robot) {
-        auto& newest = newest_scans_[robot];
-        const auto pose = newest ? poses.find(robot, newest->scan.seq) : std::nullopt;
-        if (!pose || newest->scan.pose == pose) continue;
-        auto moved = *newest;
-        moved.scan.pose = pose;
-        newest = std::make_shared<const mapping::IntegratedScan>(std::move(moved));
+        for (auto& newest : newest_scans_[robot]) {
+            const auto pose = poses.find(robot, newest->scan.seq);
+            if (!pose || newest->scan.pose == pose) continue;
+            auto moved = *newest;
+            moved.scan.pose = pose;
+            newest = std::make_shared<const mapping::IntegratedScan>(std::move(moved));
+        }
     }
 }
 
@@ -75,7 +79,11 @@ Result<> SessionMaps::publish() {
     try {
         auto maps = maps_.projection().snapshot();
         maps.moving_scans = maps_.moving_scans();
-        for (std::size_t n = 0; n < newest_scans_.size(); ++n) maps.robots[n].newest_scan = newest_scans_[n];
+        for (std::size_t n = 0; n < newest_scans_.size(); ++n) {
+            if (newest_scans_[n].empty()) continue;
+            maps.robots[n].newest_scan = newest_scans_[n].back();
+            maps.robots[n].newest_scans = newest_scans_[n];
+        }
         for (RobotIndex n = 0; n < maps.robots.size(); ++n) {
             maps.robots[n].localization = maps_.localization_of(n);
         }

@@ -54,8 +54,9 @@ private:
     void move_newest_scans();
 
     localization::LocalizedProjection maps_;
-    std::shared_ptr<MapCorrection> correction_;                                // null: none waits for its entry
-    std::vector<std::shared_ptr<const mapping::IntegratedScan>> newest_scans_; // by RobotIndex; null: none yet
+    std::shared_ptr<MapCorrection> correction_; // null: none waits for its entry
+    /// By RobotIndex: the newest scan of each sensor, the newest one last.
+    std::vector<std::vector<std::shared_ptr<const mapping::IntegratedScan>>> newest_scans_;
     PublishedMaps published_;
 };
 

@@ -48,6 +48,7 @@ Summary summary_of(const mapping::Snapshot& snapshot) {
         auto& shown = facts.robots.emplace_back(robot);
         shown.trajectory = {};
         shown.newest_scan = nullptr;
+        shown.newest_scans.clear();
     }
     return {std::make_shared<const mapping::Snapshot>(std::move(facts)), snapshot.chunk_count};
 }

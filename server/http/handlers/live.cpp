@@ -45,14 +45,16 @@ Result<Response> view(Context& context, live::Protocol protocol, std::string_vie
     const auto& info = session->info();
     auto credential = context.services.authorizer.authenticator().grant_viewing(context.token, info.name);
     if (!credential) return context.services.authorizer.refuse(context.request, credential.error(), info.name);
-    live::ViewedSession viewed{.session = session,
-                               .session_id = info.id,
-                               .name = info.name,
-                               .tag = session_tag(info),
-                               .paths = context.services.goals.paths(),
-                               .landmarks = context.services.watched_landmarks.of(info.id),
-                               .protocol = protocol,
-                               .subprotocol = std::string(subprotocol)};
+    live::ViewedSession viewed{
+        .session = session,
+        .session_id = info.id,
+        .name = info.name,
+        .tag = session_tag(info),
+        .paths = context.services.goals.paths(),
+        .landmarks = context.services.watched_landmarks.of(info.id),
+        .parts = protocol == live::Protocol::kFoxglove ? context.services.watched_parts.of(info.id) : nullptr,
+        .protocol = protocol,
+        .subprotocol = std::string(subprotocol)};
     viewed.is_stored = [&sessions = context.services.sessions, id = info.id, name = info.name] {
         const auto stored = sessions.info(name);
         return stored && stored->id == id;
@@ -70,16 +72,15 @@ Result<Response> view(Context& context, live::Protocol protocol, std::string_vie
 
 /// Returns the refusal of a page that may not watch. Browsers let any page open a WebSocket and read it.
 /// @param is_allowed  although it is not a page of this server
-std::optional<Response> refusal_of_page(const Context& context, bool is_allowed) {
+/// @param remedy      what to do instead
+std::optional<Response> refusal_of_page(const Context& context, bool is_allowed, std::string_view remedy) {
     const auto& request = context.request;
     const std::string& origin = request.upgrade->origin;
     if (origin.empty() || is_allowed || is_own_page(origin, request.host, request.is_secure)) return std::nullopt;
     context.services.authorizer.note({auth::Port::kHttp, auth::Reason::kForeignPage, request.peer, context.token->name,
                                       context.session->info().name});
     return problem(Status::forbidden,
-                   fmt::format("pages of {} may not watch this server; open the viewer that it serves, or add the "
-                               "origin to --viewer-origin for Foxglove and Lichtblick",
-                               in_quotes(origin)),
+                   fmt::format("pages of {} may not watch this server; {}", in_quotes(origin), remedy),
                    instance_of(request.target));
 }
 
@@ -103,13 +104,15 @@ std::string_view subprotocol_of(std::string_view offered) {
 
 Result<Response> get_live(Context& context) {
     if (!is_websocket(context)) return upgrade_required(context);
-    if (auto refusal = refusal_of_page(context, false)) return std::move(*refusal);
+    if (auto refusal = refusal_of_page(context, false, "open the viewer that it serves")) return std::move(*refusal);
     return view(context, live::Protocol::kEvents, {});
 }
 
 Result<Response> get_foxglove(Context& context) {
     if (!is_websocket(context)) return upgrade_required(context);
-    if (auto refusal = refusal_of_page(context, context.request.is_of_viewer_page)) return std::move(*refusal);
+    if (auto refusal = refusal_of_page(context, context.request.is_of_viewer_page,
+                                       "start the server with --viewer-origin and this origin"))
+        return std::move(*refusal);
     const auto subprotocol = subprotocol_of(context.request.upgrade->protocols);
     if (subprotocol.empty()) {
         return Error{Errc::kInvalidField,

@@ -91,36 +91,54 @@ TEST(LogRecording, AScanHasATransformAndAPose) {
     EXPECT_TRUE(std::isnan(read.ranges[3])) << "nearer than range_min";
 }
 
-/// sensor_msgs/LaserScan has the stamp of the first beam, a Scan that of the middle.
+/// sensor_msgs/LaserScan has the stamp of the first beam, a Scan that of the middle. Transforms begin and end with the
+/// beams.
 TEST(LogRecording, BeamsHaveTheirTimes) {
     auto recording = begun();
     Scan taken = scan();
-    taken.duration = 0.75;
+    taken.duration = -0.75;
     EXPECT_TRUE(recording.add(ScanTaken{0, taken}));
-    const auto read = robot::decode_laser_scan(messages_of(recording)[2].bytes, MessageEncoding::kCdr).value();
-    EXPECT_EQ(read.header.stamp, kNanoseconds - 375'000'000);
-    EXPECT_EQ(read.time_increment, 0.25F);
+    const auto messages = messages_of(recording);
+    ASSERT_EQ(messages.size(), 5U);
+    const auto read = robot::decode_laser_scan(messages[3].bytes, MessageEncoding::kCdr).value();
+    EXPECT_EQ(read.header.stamp, kNanoseconds + 375'000'000);
+    EXPECT_EQ(read.time_increment, -0.25F);
     EXPECT_EQ(read.scan_time, 0.75F);
+    for (const auto& [n, after] : {std::pair(0U, -375'000'000), std::pair(1U, 0), std::pair(4U, 375'000'000)}) {
+        EXPECT_EQ(messages[n].topic, "/tf");
+        EXPECT_EQ(messages[n].time, kNanoseconds + after);
+    }
 }
 
-TEST(LogRecording, UnevenBeamsArePoints) {
+/// Each reading is at the nearest of twice as many evenly spaced beams.
+TEST(LogRecording, UnevenBeamsAreMadeEven) {
     auto recording = begun();
     Scan taken = scan();
-    taken.angles = ExplicitAngles{0.0, 0.1, 0.2, 0.5};
+    taken.angles = ExplicitAngles{0.7, 0.0, 0.11, 0.3};
+    taken.ranges = {2000, 3000, kNoReturn, kInvalidRange};
+    taken.intensities = {5, 6, 7, 8};
+    EXPECT_TRUE(recording.add(ScanTaken{0, taken}));
+    const auto read = robot::decode_laser_scan(messages_of(recording)[2].bytes, MessageEncoding::kCdr).value();
+    EXPECT_EQ(read.angle_min, 0.0F);
+    EXPECT_FLOAT_EQ(read.angle_max, 0.7F);
+    EXPECT_FLOAT_EQ(read.angle_increment, 0.1F);
+    ASSERT_EQ(read.ranges.size(), 8U);
+    EXPECT_EQ(read.ranges[0], 3.0F);
+    EXPECT_EQ(read.ranges[1], std::numeric_limits<float>::infinity());
+    for (const std::size_t n : {2U, 3U, 4U, 5U, 6U}) EXPECT_TRUE(std::isnan(read.ranges[n])) << n;
+    EXPECT_EQ(read.ranges[7], 2.0F);
+}
+
+TEST(LogRecording, OtherSensorsHaveTheirOwnTopics) {
+    auto recording = begun();
+    Scan taken = scan();
     taken.sensor = 7;
     EXPECT_THAT(recording.add(ScanTaken{0, taken}).error().message, HasSubstr("sensor 7, which was not described"));
     Sensor other = laser();
     other.id = 7;
     EXPECT_TRUE(recording.add(SensorDescribed{0, other}));
-    taken.ranges = {2000, kInvalidRange, kNoReturn, 3000};
     EXPECT_TRUE(recording.add(ScanTaken{0, taken}));
-    const auto messages = messages_of(recording);
-    ASSERT_EQ(messages.size(), 3U);
-    EXPECT_EQ(messages[2].topic, "/crawler/points_7");
-    const float x[] = {2.0F, static_cast<float>(3.0F * std::cos(0.5))};
-    for (const float value : x) {
-        EXPECT_THAT(messages[2].bytes, HasSubstr(std::string(reinterpret_cast<const char*>(&value), sizeof value)));
-    }
+    EXPECT_EQ(messages_of(recording).at(2).topic, "/crawler/scan_7");
 }
 
 TEST(LogRecording, ScansThatMapsLeaveOutHaveNoPlace) {

@@ -16,8 +16,7 @@ std::string hex(std::string_view bytes) {
 
 /// The bytes are those of Foxglove's own tests.
 TEST(FoxgloveProtocol, DataHaveTheBytesOfTheSpecification) {
-    EXPECT_EQ(hex(data_message(30, 1234, R"({"key": "value"})")),
-              "011e000000d2040000000000007b226b6579223a202276616c7565227d");
+    EXPECT_EQ(hex(data_head(30, 1234)), "011e000000d204000000000000") << R"({"key": "value"} follows)";
 }
 
 TEST(FoxgloveProtocol, ReadsSubscriptions) {
@@ -48,7 +47,9 @@ TEST(FoxgloveProtocol, RefusesWhatIsNoRequest) {
     }
     const auto other = decode_request(R"({"op":"setParameters"})");
     EXPECT_EQ(other.error().code, Errc::kUnsupportedVersion);
-    EXPECT_THAT(other.error().message, HasSubstr("'setParameters' is not possible"));
+    EXPECT_THAT(other.error().message, HasSubstr("setParameters is not possible"));
+    const auto cut = decode_request("{\"op\":\"" + std::string(39, 'a') + "\u00e9\"}");
+    EXPECT_THAT(cut.error().message, HasSubstr("an op with a long name")) << "not cut within a character";
 }
 
 /// Decodes what viewers decode: the schemas of ROS are text, those of Protocol Buffers are base64.

@@ -44,16 +44,19 @@ protected:
         scan.stamp = stamp;
         scan.pose = robot.pose;
         scan.ranges = {1000, 2000, 3000};
-        robot.newest_scan = std::make_shared<const mapping::IntegratedScan>(
-            mapping::IntegratedScan{maps_.revision, std::move(sensor), std::move(scan)});
+        robot.newest_scans = {std::make_shared<const mapping::IntegratedScan>(
+            mapping::IntegratedScan{maps_.revision, std::move(sensor), std::move(scan)})};
     }
 
     std::vector<Outgoing> next(SessionFeed::Clock::duration after = 0ms) {
         SessionView view;
         view.maps = std::make_shared<const mapping::Snapshot>(maps_);
-        view.connected = {true};
+        view.connected = {is_connected_};
         view.guided = guided_;
         view.guided_version = guided_version_;
+        view.map = std::make_shared<const std::string>("grid");
+        view.is_map_too_large = is_map_too_large_;
+        view.parts_revision = maps_.revision;
         return feed_.next(view, start_ + after);
     }
 
@@ -96,6 +99,8 @@ protected:
     mapping::Snapshot maps_;
     std::vector<Guided> guided_;
     std::uint64_t guided_version_ = 0;
+    bool is_map_too_large_ = false;
+    bool is_connected_ = true;
     SessionFeed feed_{"lab", "1-1"};
     const SessionFeed::Clock::time_point start_{1h};
     std::vector<std::string> topics_; // by their ids, which begin at 1
@@ -113,12 +118,10 @@ TEST_F(SessionFeedTest, SendsWhatHasChanged) {
     const auto first = next();
     EXPECT_THAT(ids_of(first), ElementsAre(7U, 8U));
     std::size_t left_out = 0;
-    const auto transforms =
-        robot::decode_transforms(std::string_view(first[0].bytes).substr(13), robot::MessageEncoding::kCdr, left_out);
+    const auto transforms = robot::decode_transforms(*first[0].rest, robot::MessageEncoding::kCdr, left_out);
     EXPECT_EQ(transforms.value().front().child, "crawler/base_link");
     EXPECT_EQ(transforms.value().front().T_parent_child.translation().x(), 1.0);
-    const auto scan =
-        robot::decode_laser_scan(std::string_view(first[1].bytes).substr(13), robot::MessageEncoding::kCdr);
+    const auto scan = robot::decode_laser_scan(*first[1].rest, robot::MessageEncoding::kCdr);
     EXPECT_THAT(scan.value().ranges, ElementsAre(1.0F, 2.0F, 3.0F));
     EXPECT_EQ(scan.value().header.frame, "crawler/sensor_0");
 
@@ -149,12 +152,17 @@ TEST_F(SessionFeedTest, AnnouncesTopicsOfNewRobotsAndSensors) {
     ASSERT_EQ(messages.size(), 1U);
     EXPECT_THAT(messages[0].bytes, HasSubstr(R"("id":12,"topic":"/flyer/pose")"));
     EXPECT_THAT(messages[0].bytes, testing::Not(HasSubstr("/map")));
-    auto scan = *maps_.robots.front().newest_scan;
-    scan.scan.angles = ExplicitAngles{0.0, 0.1, 0.5};
-    maps_.robots.front().newest_scan = std::make_shared<const mapping::IntegratedScan>(scan);
+    auto rear = *maps_.robots.front().newest_scans.front();
+    auto sensor = *rear.sensor;
+    sensor.id = 3;
+    rear.sensor = std::make_shared<const Sensor>(sensor);
+    maps_.robots.front().newest_scans.push_back(std::make_shared<const mapping::IntegratedScan>(rear));
     messages = next();
     ASSERT_EQ(messages.size(), 1U);
-    EXPECT_THAT(messages[0].bytes, HasSubstr(R"("id":15,"topic":"/crawler/points")"));
+    EXPECT_THAT(messages[0].bytes, HasSubstr(R"("id":15,"topic":"/crawler/scan_3")"));
+    subscribe("/crawler/scan", 1);
+    request(R"({"op":"subscribe","subscriptions":[{"id":2,"channelId":15}]})");
+    EXPECT_THAT(ids_of(next()), ElementsAre(1U, 2U)) << "the scans of both sensors";
 }
 
 TEST_F(SessionFeedTest, RemarksWhatViewersDoWrong) {
@@ -186,20 +194,46 @@ TEST_F(SessionFeedTest, GoalsAndPathsFollowTheirRobots) {
     ++guided_version_;
     const auto messages = next(2s);
     ASSERT_THAT(ids_of(messages), ElementsAre(1U, 2U));
-    EXPECT_THAT(messages[0].bytes, HasSubstr("crawler"));
+    EXPECT_THAT(*messages[0].rest, HasSubstr("crawler"));
     // Each pose is a header of 16 bytes and seven doubles at a multiple of 8; before them are 4 + 16 + 4 bytes.
     double second[2] = {};
-    ASSERT_EQ(messages[1].bytes.size(), 13U + 4 + 168);
-    std::memcpy(second, messages[1].bytes.data() + 13 + 4 + 112, sizeof second);
+    ASSERT_EQ(messages[1].rest->size(), 4U + 168);
+    std::memcpy(second, messages[1].rest->data() + 4 + 112, sizeof second);
     EXPECT_THAT(second, ElementsAre(4.0, 5.0));
 }
 
-TEST_F(SessionFeedTest, AnEmptyMapIsNotSent) {
-    maps_ = testing_support::HandMadeMap().snapshot();
-    maps_.robots.emplace_back().name = "crawler";
+TEST_F(SessionFeedTest, SharesTheMapWithOtherViewers) {
     subscribe("/map", 1);
-    subscribe("/crawler/pose", 2);
-    EXPECT_THAT(next(), IsEmpty());
+    const auto messages = next();
+    ASSERT_EQ(messages.size(), 1U);
+    EXPECT_EQ(messages[0].bytes.size(), 13U);
+    EXPECT_EQ(*messages[0].rest, "grid");
+}
+
+TEST_F(SessionFeedTest, WarnsOnceOfAMapThatIsTooLarge) {
+    is_map_too_large_ = true;
+    EXPECT_THAT(next(), IsEmpty()) << "the map is not subscribed";
+    subscribe("/map", 1);
+    EXPECT_THAT(next(1s).at(0).bytes, HasSubstr("the map is too large"));
+    drive(2.0);
+    for (const auto& message : next(3s)) EXPECT_FALSE(message.is_text);
+}
+
+TEST_F(SessionFeedTest, StatusFollowsConnections) {
+    subscribe("/diagnostics", 1);
+    EXPECT_THAT(*next().at(0).rest, testing::Not(HasSubstr("not connected")));
+    is_connected_ = false;
+    EXPECT_THAT(*next(2s).at(0).rest, HasSubstr("given, not connected"));
+}
+
+TEST_F(SessionFeedTest, ATrailIsThinnedAndEndsAtTheRobot) {
+    mapping::Trajectory trajectory;
+    for (Revision n = 1; n <= 2'049; ++n) trajectory.append({n, 0.0, {static_cast<double>(n), 0.0, 0.0}});
+    maps_.robots.front().trajectory = trajectory.snapshot();
+    subscribe("/crawler/trail", 1);
+    std::uint32_t poses = 0;
+    std::memcpy(&poses, next().at(0).rest->data() + 4 + 16, sizeof poses);
+    EXPECT_EQ(poses, 1'026U) << "every second one, and the newest";
 }
 
 } // namespace
