@@ -42,7 +42,8 @@ std::string trail_of(const RobotState& robot) {
     const std::size_t stride = (trail.size() - begin + kTrailPoints - 1) / kTrailPoints;
     std::vector<Pose2> poses;
     for (std::size_t n = begin; n < trail.size(); n += stride) poses.push_back(trail[n].pose);
-    if (robot.pose) poses.push_back(*robot.pose);
+    const bool ends_at_robot = trail.size() == begin || (trail.size() - 1 - begin) % stride == 0;
+    if (!ends_at_robot) poses.push_back(trail[trail.size() - 1].pose);
     return path_message(poses, robot.stamp);
 }
 

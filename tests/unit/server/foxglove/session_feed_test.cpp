@@ -228,7 +228,7 @@ TEST_F(SessionFeedTest, StatusFollowsConnections) {
 
 TEST_F(SessionFeedTest, ATrailIsThinnedAndEndsAtTheRobot) {
     mapping::Trajectory trajectory;
-    for (Revision n = 1; n <= 2'049; ++n) trajectory.append({n, 0.0, {static_cast<double>(n), 0.0, 0.0}});
+    for (Revision n = 1; n <= 2'050; ++n) trajectory.append({n, 0.0, {static_cast<double>(n), 0.0, 0.0}});
     maps_.robots.front().trajectory = trajectory.snapshot();
     subscribe("/crawler/trail", 1);
     std::uint32_t poses = 0;
