@@ -65,20 +65,25 @@ std::variant<FrameTree::Transform, NoTransform> FrameTree::at(const Edge& edge, 
                      from.rotation.slerp(share, to.rotation)};
 }
 
-/// Lists a frame and those above it at a time.
+/// Lists a frame and those above it at a time, without frames that are above themselves: between these there are two
+/// ways.
 /// @return why the last one has no frame above it; nullopt: it has no parent at any time
 std::optional<NoTransform> FrameTree::climb(Frame frame, RosTime stamp, std::vector<Step>& steps) const {
     steps.push_back({frame, Eigen::Isometry3d::Identity()});
-    while (steps.size() <= names_.size()) { // more only in a loop of parents
+    for (;;) {
         const auto edge = edges_.find(steps.back().frame);
         if (edge == edges_.end()) return std::nullopt;
         const auto found = at(edge->second, stamp);
         if (const auto* reason = std::get_if<NoTransform>(&found)) return *reason;
         const auto& up = std::get<Transform>(found);
+        const auto loop = std::ranges::find(steps, up.parent, &Step::frame);
+        if (loop != steps.end()) {
+            steps.erase(loop, steps.end());
+            return NoTransform::kLoop;
+        }
         const Eigen::Isometry3d T_parent_frame = Eigen::Translation3d(up.translation) * up.rotation;
         steps.push_back({up.parent, T_parent_frame * steps.back().T_frame_source});
     }
-    return NoTransform::kNotConnected;
 }
 
 std::variant<Eigen::Isometry3d, NoTransform> FrameTree::find(std::string_view target, std::string_view source,
@@ -90,12 +95,13 @@ std::variant<Eigen::Isometry3d, NoTransform> FrameTree::find(std::string_view ta
     std::vector<Step> from_source;
     std::vector<Step> from_target;
     const auto source_end = climb(source_id->second, stamp, from_source);
-    static_cast<void>(climb(target_id->second, stamp, from_target));
+    const auto target_end = climb(target_id->second, stamp, from_target);
     for (const Step& step : from_source) {
         const auto common = std::ranges::find(from_target, step.frame, &Step::frame);
         if (common == from_target.end()) continue;
         return common->T_frame_source.inverse() * step.T_frame_source;
     }
+    if (target_end == NoTransform::kLoop) return NoTransform::kLoop;
     return source_end.value_or(NoTransform::kNotConnected);
 }
 

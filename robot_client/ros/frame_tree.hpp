@@ -23,6 +23,7 @@ enum class NoTransform {
     kBefore,       ///< a transform begins later: nothing is extrapolated
     kAfter,        ///< a transform ends earlier
     kHole,         ///< a transform changes during a hole of more than FrameTree::kHoleMax
+    kLoop,         ///< they lead only through frames that are above themselves
 };
 
 /// The frames of a recording and the transforms between them over time, as /tf and /tf_static have them. Poses are

@@ -15,6 +15,7 @@ std::string_view text_of(NoTransform reason) {
     case NoTransform::kBefore: return "before the first pose";
     case NoTransform::kAfter: return "after the last pose";
     case NoTransform::kHole: return "in a hole of the poses";
+    case NoTransform::kLoop: return "a loop of frames in the transforms";
     }
     return {};
 }

@@ -74,7 +74,7 @@ TEST(FrameTree, LoopsOfParentsEnd) {
     EXPECT_EQ(missing(tree, "map", "a", 0), NoTransform::kNotConnected);
     EXPECT_EQ(tree.ancestors("c"), (std::vector<std::string>{"c", "b", "a"}));
     tree.add(flat(0, "x", "y", 1.0), true);
-    EXPECT_EQ(missing(tree, "x", "a", 0), NoTransform::kNotConnected);
+    EXPECT_EQ(missing(tree, "x", "a", 0), NoTransform::kLoop);
 }
 
 TEST(FrameTree, OfEqualTransformsInARowTwoAreKept) {
@@ -158,6 +158,19 @@ TEST(FrameTree, AgreesWithMatricesInRandomTrees) {
                 EXPECT_LT((found(tree, name(target), name(source), stamp).matrix() - expected).norm(), 1e-9);
             }
         }
+    }
+}
+
+TEST(FrameTree, FramesThatAreAboveThemselvesHaveNoPoses) {
+    FrameTree tree; // two programs publish map -> odom and odom -> map
+    tree.add(flat(0, "map", "odom", 1.0), true);
+    tree.add(flat(0, "odom", "map", 2.0), true);
+    tree.add(flat(0, "odom", "base", 4.0), true);
+    tree.add(flat(0, "base", "laser", 0.5), true);
+    EXPECT_EQ(found(tree, "base", "laser", 0).translation().x(), 0.5) << "below the loop";
+    for (const auto& [target, source] :
+         {std::pair("odom", "map"), std::pair("map", "odom"), std::pair("odom", "laser"), std::pair("laser", "map")}) {
+        EXPECT_EQ(missing(tree, target, source, 0), NoTransform::kLoop) << target << " " << source;
     }
 }
 
