@@ -147,9 +147,8 @@ void TrajectoryEstimator::place(ScanPoints scan, const std::optional<Pose2>& odo
     if (is_found) first_.back() = {graph().pose(keyframes_.back()), true};
 }
 
-/// Adds to the uncertainty of the newest scan what earlier ones left open: a scan that does not determine the position
-/// in all directions, as between two bare walls, is only as certain as its prediction, and later scans begin from
-/// there.
+/// Adds the drift variance to the position_sigma of the newest scan. The variance grows by that of each scan that does
+/// not determine the position in all directions, as between two bare walls: later scans begin from there.
 void TrajectoryEstimator::add_drift() {
     const bool is_certain = newest_.is_matched && newest_.conditioning >= kConditioned;
     if (is_certain && is_in_frozen_map_) drift_variance_ = 0.0; // the map has not drifted

@@ -209,7 +209,7 @@ private:
     std::optional<Transform2> odometry_;      // of the last scan
     std::optional<Surroundings> relocalized_; // where the next scan is searched for
     std::size_t unmatched_count_ = 0;
-    double drift_variance_ = 0.0; // square metres, since the last loop closure
+    double drift_variance_ = 0.0; // square metres, until a loop is closed or a fragment begins
     std::size_t loops_ = 0;       // loop_count() at the newest keyframe
     std::size_t repeats_ = 0;     // scans in a row that equal the one before them
     double equal_for_ = 0.0;      // seconds of equal scans without odometry

@@ -90,7 +90,7 @@ public:
     explicit Surveyor(RosTime kept) : kept_(kept) { found_.tree.forget_before_newest(kept); }
 
     /// Adds a message.
-    /// @param topics  all topics so far, of which none but the last ones are new
+    /// @param topics  all topics so far: those of the call before, then new ones
     /// Errors: kTooLarge if there are more than kTransformsMax transforms between lasers and fixed frames, or more than
     ///         2^32 - 2 scans.
     [[nodiscard]] Result<> add(const std::vector<RecordedTopic>& topics, const RecordedMessage& message);

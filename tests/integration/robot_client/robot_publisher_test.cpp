@@ -72,6 +72,17 @@ private:
 
 class RobotPublisherTest : public FoxgloveFixture {
 protected:
+    /// Connects to a bridge that lets clients publish, and publishes the transform from there on.
+    void start_publishing(const std::string& map_frame = "map") {
+        start_bridge();
+        robot_ = advertise_robot();
+        auto stated = options();
+        stated.publish.transform = true;
+        stated.publish.map_frame = map_frame;
+        make_source(std::move(stated));
+        ASSERT_TRUE(prepare(robot_));
+    }
+
     [[nodiscard]] std::vector<RosTransform> transforms() const {
         std::vector<RosTransform> all;
         std::size_t left_out = 0;
@@ -92,13 +103,7 @@ FakeBridge::Options at(std::uint16_t port, std::string greeting = FakeBridge::Op
 }
 
 TEST_F(RobotPublisherTest, TheTransformIsPublishedWithRisingStampsOfTheRobotsClock) {
-    start_bridge();
-    robot_ = advertise_robot();
-    auto stated = options();
-    stated.publish.transform = true;
-    stated.publish.map_frame = "world_map";
-    make_source(std::move(stated));
-    ASSERT_TRUE(prepare(robot_));
+    start_publishing("world_map");
     source_->correct(Pose2{1.0, 2.0, 0.5});
     run_until([&] { return transforms().size() >= 20; });
     source_->correct(Pose2{3.0, 2.0, 0.5});
@@ -117,12 +122,7 @@ TEST_F(RobotPublisherTest, TheTransformIsPublishedWithRisingStampsOfTheRobotsClo
 }
 
 TEST_F(RobotPublisherTest, NothingIsPublishedBeforeTheFirstCorrection) {
-    start_bridge();
-    robot_ = advertise_robot();
-    auto stated = options();
-    stated.publish.transform = true;
-    make_source(std::move(stated));
-    ASSERT_TRUE(prepare(robot_));
+    start_publishing();
     for (int n = 1; n < 4; ++n) { // some turns of the thread
         send_scan(robot_, n - 1);
         send_pose(robot_, n);
@@ -134,12 +134,7 @@ TEST_F(RobotPublisherTest, NothingIsPublishedBeforeTheFirstCorrection) {
 }
 
 TEST_F(RobotPublisherTest, AfterAReconnectItIsAnnouncedAgainInTheEncodingOfTheBridge) {
-    start_bridge();
-    robot_ = advertise_robot();
-    auto stated = options();
-    stated.publish.transform = true;
-    make_source(std::move(stated));
-    ASSERT_TRUE(prepare(robot_));
+    start_publishing();
     source_->correct(Pose2{1.0, 2.0, 0.5});
     run_until([&] { return !transforms().empty(); });
     bridge_.reset();
@@ -163,12 +158,7 @@ TEST_F(RobotPublisherTest, ABridgeThatLetsNoClientPublishIsAnError) {
 }
 
 TEST_F(RobotPublisherTest, ABridgeThatDoesNotAnyMoreIsNoted) {
-    start_bridge();
-    robot_ = advertise_robot();
-    auto stated = options();
-    stated.publish.transform = true;
-    make_source(std::move(stated));
-    ASSERT_TRUE(prepare(robot_));
+    start_publishing();
     bridge_.reset();
     start_bridge(at(port_, R"({"op":"serverInfo","name":"","capabilities":[]})"));
     run_until([&] { return has_note("nothing is published: the bridge does not let clients publish"); });
