@@ -141,6 +141,20 @@ TEST(LogRecording, OtherSensorsHaveTheirOwnTopics) {
     EXPECT_EQ(messages_of(recording).at(2).topic, "/crawler/scan_7");
 }
 
+TEST(LogRecording, MoreTopicsThanAFileCanHaveAreRefused) {
+    LogRecording recording{ScanFilter()};
+    RobotIndex robot = 0;
+    Result<> added;
+    for (; added && robot < 40'000; ++robot) {
+        EXPECT_TRUE(recording.add(RobotJoined{robot, fmt::format("r{}", robot)}));
+        EXPECT_TRUE(recording.add(SensorDescribed{robot, laser()}));
+        added = recording.add(ScanTaken{robot, scan()});
+    }
+    ASSERT_FALSE(added);
+    EXPECT_EQ(added.error().code, Errc::kConflict);
+    EXPECT_NEAR(robot, McapWriter::kChannelsMax / 2, 3) << "each robot has a pose and a scan";
+}
+
 TEST(LogRecording, ScansThatMapsLeaveOutHaveNoPlace) {
     auto recording = begun(ScanFilter(2.0));
     EXPECT_TRUE(recording.add(ScanTaken{0, scan()}));

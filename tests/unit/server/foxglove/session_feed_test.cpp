@@ -186,6 +186,14 @@ TEST_F(SessionFeedTest, RemarksWhatViewersDoWrong) {
     EXPECT_THAT(next(), IsEmpty());
 }
 
+TEST_F(SessionFeedTest, WarningsOfOneTurnAreBounded) {
+    std::string ids = "1";
+    for (int n = 2; n < 10'000; ++n) ids += fmt::format(",{}", n);
+    for (int n = 0; n < 3; ++n) request(fmt::format(R"({{"op":"unsubscribe","subscriptionIds":[{}]}})", ids));
+    EXPECT_EQ(next().size(), SessionFeed::kWarningsMax);
+    EXPECT_THAT(next(), IsEmpty());
+}
+
 TEST_F(SessionFeedTest, GoalsAndPathsFollowTheirRobots) {
     subscribe("/goals", 1);
     subscribe("/crawler/path", 2);
