@@ -15,7 +15,7 @@ namespace scanloom::localization {
 
 /// Version of the algorithms that estimate poses, and of EstimationState. Increased when the same log would give other
 /// poses or other bytes; a state of another version is discarded, and the poses are estimated again.
-inline constexpr std::uint32_t kEstimationVersion = 6;
+inline constexpr std::uint32_t kEstimationVersion = 7;
 
 using SharedScan = std::shared_ptr<const slam::ScanPoints>;  ///< the points of a keyframe, which never change
 using SharedCorrection = std::shared_ptr<const GraphMoment>; ///< it never changes, either

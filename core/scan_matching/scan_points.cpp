@@ -11,12 +11,15 @@
 namespace scanloom::scan_matching {
 namespace {
 
-constexpr std::size_t kNeighborsMax = 5;   // on each side of a point, for its normal
-constexpr double kNeighborReach = 0.30;    // metres from the point, and two beams' distance
-constexpr double kNeighborDistance = 0.03; // metres from one neighbour to the next; nearer ones are passed over
-constexpr double kGapMin = 0.24;           // metres between neighbours of one surface, or five beams' distance
-constexpr double kLineDeviationMax = 0.02; // metres, standard deviation from the line
-constexpr double kLineFlatness = 0.05;     // largest ratio of the variances across and along the line
+constexpr std::size_t kNeighborsMax = 5;    // on each side of a point, for its normal
+constexpr double kNeighborReach = 0.30;     // metres from the point, and two beams' distance
+constexpr double kNeighborDistance = 0.03;  // metres from one neighbour to the next; nearer ones are passed over
+constexpr double kGapMin = 0.24;            // metres between neighbours of one surface, or five beams' distance
+constexpr double kLineDeviationMax = 0.02;  // metres, standard deviation from the line
+constexpr double kLineFlatness = 0.05;      // largest ratio of the variances across and along the line
+constexpr std::size_t kGrazingBeams = 5;    // neighbours that show a wall which they graze
+constexpr double kGrazingSine = 0.3;        // largest sine of the angle between such a wall and its beam
+constexpr double kGrazingDeviation = 0.006; // metres: errors of the range move such points along the wall
 
 /// The hits of a scan in the sensor frame, in metres, and the mean angle between beams.
 struct Hits {
@@ -56,7 +59,8 @@ double squared_distance(const Point2& a, const Point2& b) {
 }
 
 /// Returns the unit normal, towards the laser, of the line that points fit; the null vector if they do not fit one.
-Point2 normal_of(std::span<const Point2> points) {
+/// @param deviation_max  metres, largest standard deviation of the points from the line
+Point2 normal_of(std::span<const Point2> points, double deviation_max) {
     const auto count = static_cast<double>(points.size());
     Point2 mean{0.0, 0.0};
     for (const Point2& point : points) mean = {mean.x + point.x, mean.y + point.y};
@@ -75,7 +79,7 @@ Point2 normal_of(std::span<const Point2> points) {
     const double root = std::sqrt(std::max(0.0, half_trace * half_trace - (xx * yy - xy * xy)));
     const double across = half_trace - root;
     const double along = half_trace + root;
-    if (across >= kLineFlatness * along || across >= count * kLineDeviationMax * kLineDeviationMax) return {0.0, 0.0};
+    if (across >= kLineFlatness * along || across >= count * deviation_max * deviation_max) return {0.0, 0.0};
     // The eigenvector of the smaller eigenvalue, from the row that is farther from zero.
     Point2 normal = std::fabs(xx - across) < std::fabs(yy - across) ? Point2{across - yy, xy} : Point2{xy, across - xx};
     const double length = std::sqrt(normal.x * normal.x + normal.y * normal.y);
@@ -83,6 +87,22 @@ Point2 normal_of(std::span<const Point2> points) {
     const bool is_away = normal.x * mean.x + normal.y * mean.y > 0.0;
     const double scale = (is_away ? -1.0 : 1.0) / length;
     return {normal.x * scale, normal.y * scale};
+}
+
+/// Returns the normal of a wall that a beam grazes, the null vector if none shows. Beams that graze a wall hit it at
+/// places that are too far apart to be one surface by distance: 1.7 m, for beams 1 degree apart that hit 10 m away.
+/// Matched to points, they would hold the robot back: along such a wall, each scan shows the same points.
+Point2 grazed_normal_at(const Hits& hits, std::size_t hit) {
+    for (const std::size_t before : {2, 3, 1, 4, 0}) { // beams of the group before the hit, best in its middle
+        if (hit < before || hit - before + kGrazingBeams > hits.points.size()) continue;
+        const std::size_t first = hit - before;
+        if (std::ranges::count(std::span(hits.is_hit).subspan(first, kGrazingBeams), 0) != 0) continue;
+        const Point2 normal = normal_of(std::span(hits.points).subspan(first, kGrazingBeams), kGrazingDeviation);
+        const Point2& point = hits.points[hit];
+        const double sine = std::fabs(normal.x * point.x + normal.y * point.y) / hits.ranges[hit];
+        return sine < kGrazingSine ? normal : Point2{0.0, 0.0};
+    }
+    return {0.0, 0.0};
 }
 
 /// Returns the normal at a hit, from its neighbours on the same surface. Where beams are dense, most are passed over:
@@ -108,7 +128,7 @@ Point2 normal_at(const Hits& hits, std::size_t hit) {
     for (std::size_t n = hit; n + step < hits.points.size() && count < most && continues(n, n + step); n += step) {
         surface[count++] = hits.points[n + step];
     }
-    return count < 3 ? Point2{0.0, 0.0} : normal_of(std::span(surface).first(count));
+    return count < 3 ? grazed_normal_at(hits, hit) : normal_of(std::span(surface).first(count), kLineDeviationMax);
 }
 
 } // namespace

@@ -23,7 +23,7 @@ constexpr double kNarrowGate = 0.4; // metres, likewise
 
 // A match is doubtful if fewer points are inliers, or if it is farther than this from the prediction.
 constexpr double kInliersWithOdometry = 0.75;
-constexpr double kInliersWithout = 0.85;
+constexpr double kInliersWithout = 0.9;
 constexpr double kDoubtfulDistance = 0.2; // metres
 constexpr double kDoubtfulTurn = 0.2;     // radians
 
@@ -63,7 +63,7 @@ constexpr double kStartTurnSigmaWithout = 0.5;                                  
 // A match that is farther than this from every prediction counts only if this part of the points are inliers.
 constexpr double kFarDistance = 0.25; // metres
 constexpr double kFarTurn = 0.25;     // radians
-constexpr double kInliersFar = 0.85;
+constexpr double kInliersFar = 0.9;
 
 constexpr double kUnmatchedValue = 0.25; // of the prediction as a candidate
 

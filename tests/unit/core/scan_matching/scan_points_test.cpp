@@ -121,6 +121,18 @@ TEST(ScanPoints, NormalsOfDenseAndNoisyBeamsAreThoseOfTheWalls) {
     EXPECT_LT(along, 0.01 * across);
 }
 
+/// Beams that graze a wall hit it at places that are metres apart. Matched to points, they would hold the robot back.
+TEST(ScanPoints, NormalsOfGrazedWallsAreThoseOfTheWalls) {
+    Building corridor;
+    corridor.walls = {{{-100.0, -1.0}, {100.0, -1.0}}, {{-100.0, 1.0}, {100.0, 1.0}}};
+    const auto points = points_in(corridor, Building::laser(), {0.0, 0.0, 0.0}, 0.01).points;
+    ASSERT_GT(points.size(), 170U);
+    EXPECT_GT(std::fabs(points[87].x - points[86].x), 2.0) << "metres apart";
+    for (const SurfacePoint& point : points) {
+        EXPECT_NEAR(point.normal_y, point.y > 0.0 ? -1.0 : 1.0, 0.02) << point.x << ", " << point.y;
+    }
+}
+
 TEST(ScanPoints, ManyBeamsAreThinnedEvenly) {
     Sensor sensor = Building::laser();
     sensor.angles = UniformAngles{-1.5, 3.0 / 1999, 2000};
