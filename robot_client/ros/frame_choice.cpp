@@ -1,6 +1,7 @@
 #include "robot_client/ros/frame_choice.hpp"
 
 #include "robot_client/recordings/recording_lists.hpp"
+#include "robot_client/ros/frame_names.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -12,20 +13,21 @@
 namespace scanloom::robot {
 namespace {
 
-/// Returns the name of a frame without the names of robots before it.
-std::string_view last_name(std::string_view frame) {
-    const auto slash = frame.rfind('/');
-    return slash == std::string_view::npos ? frame : frame.substr(slash + 1);
+/// Returns the robot's frame by the names of the frames above it: the one below odometry or a map.
+/// @param laser_frame  of a laser that may be connected to it or not
+/// @return nullopt: there is none, or there are several
+std::optional<std::string> moving_frame(const FrameTree& tree, const std::string& laser_frame) {
+    const auto chain = tree.ancestors(laser_frame);
+    const auto fixed = std::ranges::find_if(chain, is_fixed_name);
+    if (fixed != chain.end() && fixed != chain.begin()) return *std::prev(fixed);
+    for (auto* const is_parent : {is_odometry_name, is_map_name}) {
+        auto below = tree.children_of(is_parent);
+        std::erase_if(below, is_fixed_name);
+        if (below.size() == 1) return *below.begin();
+        if (!below.empty()) return std::nullopt;
+    }
+    return std::nullopt;
 }
-
-bool is_map_name(std::string_view frame) {
-    const auto name = last_name(frame);
-    return name == "map" || name == "world" || name == "earth";
-}
-
-bool is_odometry_name(std::string_view frame) { return last_name(frame).find("odom") != std::string_view::npos; }
-
-bool is_fixed_name(std::string_view frame) { return is_map_name(frame) || is_odometry_name(frame); }
 
 /// Returns the topic with most odometry messages that can be read.
 std::optional<std::size_t> richest_odometry(const RecordingSurvey& found) {
@@ -94,10 +96,9 @@ std::vector<std::string> fixed_frames(const FrameTree& tree, const std::string& 
 Result<FrameChoice> choose_frames(RecordingSurvey& found, const RecordingOptions& options,
                                   const std::string& laser_frame) {
     const auto chain = found.tree.ancestors(laser_frame);
-    const auto first_fixed = static_cast<std::size_t>(std::ranges::find_if(chain, is_fixed_name) - chain.begin());
-    const bool has_poses = first_fixed < chain.size() && first_fixed > 0;
+    const auto moving = moving_frame(found.tree, laser_frame);
     FrameChoice choice;
-    const auto topic = choose_odometry(found, options, has_poses);
+    const auto topic = choose_odometry(found, options, moving.has_value());
     if (!topic) return topic.error();
     choice.odom_topic = *topic;
     std::string odometry;
@@ -106,7 +107,7 @@ Result<FrameChoice> choose_frames(RecordingSurvey& found, const RecordingOptions
         found.tree.replace(choice.base, found.odometry.at(*choice.odom_topic));
         odometry = found.tree.ancestors(choice.base).at(1);
     } else {
-        choice.base = has_poses ? chain[first_fixed - 1] : chain.back();
+        choice.base = moving.value_or(chain.back());
     }
     if (!options.base_frame.empty()) choice.base = options.base_frame;
     if (!found.tree.has(choice.base) && choice.base != laser_frame) {
@@ -134,9 +135,10 @@ Result<FrameChoice> choose_frames(RecordingSurvey& found, const RecordingOptions
                      ? fmt::format("--poses map: no frame named map is above the robot's frame {}; use --poses {}, or "
                                    "name the frame with --fixed-frame",
                                    choice.base, frames.empty() ? "none" : "odometry")
-                     : fmt::format("--poses odometry: the {} has neither transforms of odometry nor "
-                                   "nav_msgs/Odometry; use --poses none",
-                                   found.origin)};
+                     : fmt::format("--poses odometry: the {} has no nav_msgs/Odometry, and no transforms lead from a "
+                                   "frame of odometry to the robot's frame {}; name the robot's frame with "
+                                   "--base-frame, or use --poses none",
+                                   found.origin, choice.base)};
 }
 
 std::string poses_text(Poses poses, std::string_view base, std::string_view fixed, std::string_view odom_topic) {

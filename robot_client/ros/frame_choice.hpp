@@ -20,7 +20,8 @@ struct FrameChoice {
 
 /// Chooses frames from what a recording has, and from what people say. Poses of a chosen odometry topic replace the
 /// transforms of its robot's frame.
-/// @param laser_frame  of the laser with most scans
+/// @param laser_frame  of the laser whose transforms tell the robot's frame. If they do not, it is the only one whose
+///                     parent is a frame of odometry, or else of a map
 /// Errors: kNotFound if a frame or topic of the options is not there, or the poses that they ask for are not.
 [[nodiscard]] Result<FrameChoice> choose_frames(RecordingSurvey& found, const RecordingOptions& options,
                                                 const std::string& laser_frame);

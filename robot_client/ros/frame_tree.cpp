@@ -110,12 +110,19 @@ std::vector<std::string> FrameTree::ancestors(std::string_view frame) const {
     for (auto id = ids_.find(list.back()); id != ids_.end(); id = ids_.find(list.back())) {
         const auto edge = edges_.find(id->second);
         if (edge == edges_.end()) break;
-        const auto& parent = names_[edge->second.fixed ? edge->second.fixed->parent
-                                                       : std::prev(edge->second.moving.end())->second.parent];
+        const auto& parent = names_[newest_parent(edge->second)];
         if (std::ranges::find(list, parent) != list.end()) break;
         list.push_back(parent);
     }
     return list;
+}
+
+std::set<std::string> FrameTree::children_of(bool (*is_parent)(std::string_view)) const {
+    std::set<std::string> children;
+    for (const auto& [child, edge] : edges_) {
+        if (is_parent(names_[newest_parent(edge)])) children.insert(names_[child]);
+    }
+    return children;
 }
 
 void FrameTree::keep_ancestors(const std::set<std::string>& frames) {

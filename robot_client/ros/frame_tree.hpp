@@ -57,6 +57,9 @@ public:
     /// list ends before a frame that it has already.
     [[nodiscard]] std::vector<std::string> ancestors(std::string_view frame) const;
 
+    /// Returns the frames whose newest parent fulfils a condition.
+    [[nodiscard]] std::set<std::string> children_of(bool (*is_parent)(std::string_view)) const;
+
     /// Removes the frames that are above none of these.
     void keep_ancestors(const std::set<std::string>& frames);
 
@@ -92,6 +95,9 @@ private:
         Eigen::Isometry3d T_frame_source;
     };
 
+    [[nodiscard]] static Frame newest_parent(const Edge& edge) {
+        return edge.fixed ? edge.fixed->parent : edge.moving.rbegin()->second.parent;
+    }
     [[nodiscard]] static bool are_equal(const Transform& a, const Transform& b);
     [[nodiscard]] Frame id_of(const std::string& name);
     [[nodiscard]] static std::variant<Transform, NoTransform> at(const Edge& edge, RosTime stamp);

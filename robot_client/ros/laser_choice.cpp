@@ -29,6 +29,7 @@ private:
     [[nodiscard]] Result<> list_lasers();
     [[nodiscard]] Result<> check_topic(std::string_view option, const std::string& topic) const;
     [[nodiscard]] Result<> assign_mounts();
+    [[nodiscard]] const std::string& leading_frame() const;
     void leave_out_lasers();
 
     [[nodiscard]] const std::string& name_of(const FoundLaser& laser) const { return found_.topics[laser.topic].name; }
@@ -50,11 +51,9 @@ Result<> LaserChooser::check_topic(std::string_view option, const std::string& t
 Result<> LaserChooser::list_lasers() {
     for (const auto& [topic, laser] : found_.lasers) choice_.lasers.push_back({topic, {}});
     if (choice_.lasers.empty()) {
-        return Error{
-            Errc::kNotFound,
-            fmt::format("the {} has no scans that can be read: no sensor_msgs/LaserScan or MultiEchoLaserScan; "
-                        "scanloom-robot info FILE lists what a recording has",
-                        found_.origin)};
+        return Error{Errc::kNotFound,
+                     fmt::format("the {} has no scans that can be read: no sensor_msgs/LaserScan or MultiEchoLaserScan",
+                                 found_.origin)};
     }
     std::ranges::stable_sort(choice_.lasers, std::greater<>(),
                              [&](const FoundLaser& laser) { return found_.topics[laser.topic].messages; });
@@ -92,6 +91,19 @@ Result<> LaserChooser::assign_mounts() {
     return {};
 }
 
+/// Returns the frame of the laser whose transforms tell the robot's frame: of the one with most scans among those that
+/// transforms lead to, or else of the one with most scans.
+const std::string& LaserChooser::leading_frame() const {
+    const auto frame = [&](const FoundLaser& laser) -> const std::string& {
+        return frame_of(found_.topics[laser.topic]);
+    };
+    const auto is_used = [](const FoundLaser& laser) { return laser.left_out.empty(); };
+    const auto leading = std::ranges::find_if(choice_.lasers, [&](const FoundLaser& laser) {
+        return is_used(laser) && found_.tree.ancestors(frame(laser)).size() > 1;
+    });
+    return frame(leading != choice_.lasers.end() ? *leading : *std::ranges::find_if(choice_.lasers, is_used));
+}
+
 /// Chooses the lasers whose mounts are known, or else the one with most scans.
 void LaserChooser::leave_out_lasers() {
     for (auto& laser : choice_.lasers) {
@@ -107,7 +119,7 @@ void LaserChooser::leave_out_lasers() {
     for (auto& laser : choice_.lasers) {
         if (!is_used(laser)) continue;
         const bool is_chosen = has_known ? has_mount(laser) : &laser == &*richest;
-        if (!is_chosen || id == kSensorsMax) laser.left_out = "mount unknown";
+        if (!is_chosen || id == kSensorsMax) laser.left_out = kMountUnknown;
         if (!is_used(laser)) continue;
         laser.id = id++;
         if (laser.mount && laser.is_connected) {
@@ -120,7 +132,7 @@ void LaserChooser::leave_out_lasers() {
                         name_of(*richest), name_of(*richest)));
     }
     for (const auto& laser : choice_.lasers) {
-        if (laser.left_out != "mount unknown") continue;
+        if (laser.left_out != kMountUnknown) continue;
         choice_.notes.push_back(
             fmt::format("{}: its {} scans are left out, because no transform leads from the robot's "
                         "frame {} to it; state its mount with --mount {}=X,Y,YAW",
@@ -131,8 +143,7 @@ void LaserChooser::leave_out_lasers() {
 Result<LaserChoice> LaserChooser::make() {
     if (auto listed = list_lasers(); !listed) return listed.error();
     if (auto assigned = assign_mounts(); !assigned) return assigned.error();
-    const auto& richest = *std::ranges::find(choice_.lasers, std::string_view(), &FoundLaser::left_out);
-    auto frames = choose_frames(found_, options_, frame_of(found_.topics[richest.topic]));
+    auto frames = choose_frames(found_, options_, leading_frame());
     if (!frames) return frames.error();
     choice_.frames = std::move(*frames);
     leave_out_lasers();

@@ -11,6 +11,8 @@
 
 namespace scanloom::robot {
 
+inline constexpr std::string_view kMountUnknown = "mount unknown"; ///< see FoundLaser::left_out
+
 /// A laser that was found.
 struct FoundLaser {
     std::size_t topic = 0;

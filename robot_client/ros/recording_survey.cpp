@@ -1,5 +1,7 @@
 #include "robot_client/ros/recording_survey.hpp"
 
+#include "robot_client/ros/frame_names.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -98,6 +100,7 @@ Result<> Surveyor::limit_transforms() {
     if (!found_.frames.empty()) {
         std::set<std::string> needed{found_.frames.begin(), found_.frames.end()};
         for (const auto& [topic, child] : found_.odom_child) needed.insert(child);
+        needed.merge(found_.tree.children_of(is_fixed_name)); // of a laser that no transform leads to
         count -= found_.tree.size();
         found_.tree.keep_ancestors(needed);
         count += found_.tree.size();

@@ -170,6 +170,21 @@ TEST_F(RecordedScansTest, AnUnknownMountOfTheOnlyLaserIsZeroAndNoted) {
     EXPECT_THAT(plan_.notes, ElementsAre(HasSubstr("state it with --mount /scan=X,Y,YAW")));
 }
 
+/// Many robots have no transform to their laser.
+TEST_F(RecordedScansTest, ALaserThatNoTransformLeadsToHasThePosesOfTheRobot) {
+    const auto all = read({.laser_frame = "elsewhere"}, {.mounts = {{"", {0.5, 0.0, 0.0}}}});
+    EXPECT_EQ(plan_.poses, Poses::kOdometry);
+    EXPECT_EQ(plan_.notes.size(), 0U) << "--mount replaces none";
+    EXPECT_EQ(all.at(0).sensor->mount, (Pose2{0.5, 0.0, 0.0}));
+    EXPECT_NEAR(all.at(1).scan.odometry.value().x, 0.25, 1e-6);
+}
+
+TEST_F(RecordedScansTest, ALaserWithAKnownMountIsUsedAlsoIfItHasFewerScans) {
+    EXPECT_EQ(read({.laser_frame = "elsewhere", .second_frame = "laser"}).size(), 5U);
+    EXPECT_EQ(plan_.poses, Poses::kOdometry);
+    EXPECT_EQ(remarks_, "skipped: 10 mount unknown");
+}
+
 TEST_F(RecordedScansTest, LasersWithoutAKnownMountAreLeftOut) {
     EXPECT_EQ(read({.second_frame = "other"}).size(), 10U);
     EXPECT_EQ(remarks_, "skipped: 5 mount unknown");
@@ -225,7 +240,7 @@ TEST_F(RecordedScansTest, WhatTheOptionsNameMustBeThere) {
                 HasSubstr("the recording has 2 lasers; say whose mount it is: --mount /scan=X,Y,YAW"));
     const Recorder without{.laser_frame = "elsewhere", .has_mount = false};
     EXPECT_THAT(refused(without, {.poses = Poses::kOdometry, .base_frame = "elsewhere"}),
-                HasSubstr("neither transforms of odometry nor nav_msgs/Odometry; use --poses none"));
+                HasSubstr("no transforms lead from a frame of odometry to the robot's frame elsewhere; name"));
 }
 
 TEST_F(RecordedScansTest, FramesOfTheOptionsAreUsed) {
