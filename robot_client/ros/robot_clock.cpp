@@ -8,6 +8,8 @@ namespace {
 
 constexpr RosTime kClockSecond = 1'000'000'000;
 constexpr RosTime kPeriod = 5 * kClockSecond;
+constexpr RosTime kLateMax = kClockSecond / 4;    // of messages when clocks agree
+constexpr RosTime kAfterStamp = kClockSecond / 5; // of a clock that may be slow or paused
 
 } // namespace
 
@@ -17,11 +19,14 @@ void RobotClock::add(RosTime stamp, RosTime local) {
         period_begin_ = local;
     }
     ahead_[0] = std::max(ahead_[0].value_or(stamp - local), stamp - local);
+    const bool is_set_back = newest_ - stamp > kClockSecond;
+    newest_ = is_set_back ? stamp : std::max(newest_, stamp);
 }
 
 RosTime RobotClock::now(RosTime local) const {
     const auto ahead = std::max(ahead_[0], ahead_[1]); // nullopt is less than all
-    return !ahead || std::abs(*ahead) < kClockSecond ? local : local + *ahead;
+    if (!ahead || (*ahead <= 0 && *ahead > -kLateMax)) return local;
+    return std::min(local + *ahead, newest_ + kAfterStamp);
 }
 
 RosTime RisingStamps::next(RosTime now) {

@@ -8,10 +8,12 @@
 namespace scanloom::robot {
 
 /// The robot's clock, as the stamps of its messages show it: the clock of this machine, or that of a simulation, which
-/// may be years off.
+/// may be years off, slow, or paused.
 ///
-/// Messages arrive a little after their stamps, so the robot's clock is ahead of this machine's by at least the
-/// largest difference of the last seconds. If that is less than a second, the clocks agree.
+/// Messages arrive after their stamps, so the robot's clock is ahead of this machine's by at least the largest
+/// difference of the last seconds. If the newest message seems to be a quarter of a second old at most, the clocks
+/// agree and messages were that late. A clock that does not agree may be a slow or paused one: its time is never more
+/// than 0.2 s after the newest stamp.
 /// Threads: one at a time.
 class RobotClock {
 public:
@@ -26,6 +28,7 @@ public:
 private:
     std::array<std::optional<RosTime>, 2> ahead_; // largest difference in this period and in the one before
     RosTime period_begin_ = 0;
+    RosTime newest_ = 0; // stamp
 };
 
 /// Stamps for a topic: none comes twice, and they never decrease unless the clock was set back.

@@ -63,6 +63,28 @@ TEST(RobotClock, FollowsASimulationYearsOff) {
         << "by the message with the least delay";
 }
 
+/// A message cannot come before its stamp, and seldom a quarter of a second after it.
+TEST(RobotClock, FollowsClocksThatAreALittleOff) {
+    constexpr RosTime kNow = 1'600'000'000 * kOneSecond;
+    for (const RosTime off : {RosTime{1'000'000}, 8 * kTenthSecond, -3 * kTenthSecond, -8 * kTenthSecond}) {
+        RobotClock clock;
+        clock.add(kNow + off, kNow);
+        EXPECT_EQ(clock.now(kNow + kTenthSecond), kNow + kTenthSecond + off);
+    }
+}
+
+TEST(RobotClock, StaysNearTheStampsOfASimulationThatIsSlowOrPaused) {
+    RobotClock clock;
+    constexpr RosTime kNow = 1'600'000'000 * kOneSecond;
+    for (RosTime n = 0; n <= 30; ++n) { // at half the speed
+        clock.add(n * kTenthSecond / 2, kNow + n * kTenthSecond);
+        EXPECT_LE(clock.now(kNow + n * kTenthSecond), n * kTenthSecond / 2 + 2 * kTenthSecond);
+    }
+    EXPECT_EQ(clock.now(kNow + 60 * kOneSecond), 15 * kTenthSecond + 2 * kTenthSecond) << "paused";
+    clock.add(16 * kTenthSecond, kNow + 61 * kOneSecond);
+    EXPECT_LE(clock.now(kNow + 61 * kOneSecond), 18 * kTenthSecond) << "resumed";
+}
+
 TEST(RobotClock, FollowsAClockThatWasSetBackWithinSomeSeconds) {
     RobotClock clock;
     constexpr RosTime kNow = 1'600'000'000 * kOneSecond;
