@@ -16,6 +16,13 @@ namespace scanloom {
 class Sha256 {
 public:
     Sha256();
+    Sha256(const Sha256& other);
+    Sha256(Sha256&& other) noexcept = default;
+    Sha256& operator=(Sha256 other) noexcept {
+        context_.swap(other.context_);
+        return *this;
+    }
+    ~Sha256() = default;
 
     void update(std::span<const std::byte> bytes);
     void update(std::string_view text) { update(std::as_bytes(std::span(text))); }

@@ -11,11 +11,16 @@ CLI::App* add_foxglove(CLI::App& app, FoxgloveOptions& options) {
     auto* foxglove = app.add_subcommand(
         "foxglove", "Map with a robot that runs foxglove_bridge, of ROS 1 or ROS 2, live; run this on the robot");
     // not required() in the parser, as for FILE of replay
-    add_parsed(*foxglove, "URL", options.bridge,
-               "ws://HOST:PORT or wss://HOST:PORT of the bridge; the port is 8765 if there is none. For wss, --tls-ca, "
-               "--tls-cert and --tls-key apply to it, too",
-               [](const std::string& text) { return parse_url(text, kWebSocketUrl); })
+    add_parsed(
+        *foxglove, "URL", options.bridge,
+        "ws://HOST:PORT or wss://HOST:PORT of the bridge; the port is 8765 if there is none. For wss, --tls-cert "
+        "and --tls-key apply to it, too, and --tls-ca unless there is --bridge-ca",
+        [](const std::string& text) { return parse_url(text, kWebSocketUrl); })
         ->configurable(false);
+    foxglove
+        ->add_option("--bridge-ca", options.bridge_ca_file,
+                     "File with the certificate of the authority that signed that of a wss bridge")
+        ->check(CLI::ExistingFile);
     add_checked(*foxglove, "--reopen-for", options.reopen_for,
                 "Seconds during which to connect to the bridge again; 0 = not at all", check_within(0.0, 1e6));
     add_ros_options(*foxglove, options.robot, "Messages of the robot");
@@ -46,6 +51,8 @@ CLI::App* add_foxglove(CLI::App& app, FoxgloveOptions& options) {
 
 std::string complaint_about(const FoxgloveOptions& options) {
     if (!options.bridge) return "foxglove: name the URL of the bridge, such as ws://127.0.0.1:8765";
+    if (!options.bridge_ca_file.empty() && !options.bridge->is_encrypted)
+        return "foxglove: --bridge-ca is only for a wss bridge; leave it out, or use wss://";
     if (options.publish_map && !options.http) {
         return "foxglove: --publish-map needs the server's HTTP API; give it with --http, such as "
                "--http http://127.0.0.1:8080";

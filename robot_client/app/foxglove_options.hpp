@@ -21,6 +21,7 @@ struct FoxgloveOptions {
     bool publish_tf = false;  ///< map -> odometry frame
     bool publish_map = false;
     std::string map_frame = "map";
+    std::string bridge_ca_file;  ///< for wss; empty: that of the link to the server
     std::optional<Url> http;     ///< the server's, for the map
     std::string http_token_file; ///< empty: the token of the robot
 };

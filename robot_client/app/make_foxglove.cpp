@@ -3,9 +3,11 @@
 #include "common/app/settings.hpp"
 
 #include <boost/asio/co_spawn.hpp>
+#include <boost/asio/signal_set.hpp>
 #include <fmt/format.h>
 
 #include <chrono>
+#include <csignal>
 #include <cstdint>
 #include <exception>
 #include <optional>
@@ -35,14 +37,16 @@ Result<std::unique_ptr<FoxgloveSource>> make_foxglove(const RobotOptions& option
     source.link.reopen_for = std::chrono::milliseconds(static_cast<std::int64_t>(foxglove.reopen_for * 1e3));
     source.link.backoff_seed = std::random_device{}();
     source.link.note = [&console](const std::string& text) { console.note(text); };
-    auto tls = tls_of(options, foxglove.bridge->is_encrypted);
+    LinkOptions certificates = options;
+    if (!foxglove.bridge_ca_file.empty()) certificates.tls_ca_file = foxglove.bridge_ca_file;
+    auto tls = tls_of(certificates, foxglove.bridge->is_encrypted);
     if (!tls) return tls.error();
     source.link.tls = std::move(*tls);
     source.scans.robot = foxglove.robot;
     source.scans.robot.poses = options.poses;
     source.scans.robot.ranges.range_max = options.range_max;
     source.scans.robot.ranges.no_return = options.no_return;
-    source.publish.map_frame = foxglove.map_frame;
+    source.publish.map_frame = foxglove.map_frame.substr(foxglove.map_frame.starts_with('/') ? 1 : 0); // as in tf2
     source.publish.transform = foxglove.publish_tf;
     if (foxglove.publish_map) {
         auto place = map_place(options, foxglove);
@@ -54,6 +58,10 @@ Result<std::unique_ptr<FoxgloveSource>> make_foxglove(const RobotOptions& option
 
 Result<Poses> survey_robot(boost::asio::io_context& io, FoxgloveSource& source) {
     std::optional<Result<Poses>> poses;
+    boost::asio::signal_set signals(io, SIGINT, SIGTERM);
+    signals.async_wait([&](boost::system::error_code failed, int) {
+        if (!failed) source.stop();
+    });
     boost::asio::co_spawn(io, source.prepare(), [&](const std::exception_ptr& failed, Result<Poses> result) {
         if (failed) std::rethrow_exception(failed);
         poses = std::move(result);

@@ -17,7 +17,7 @@ namespace scanloom::robot {
 
 /// Runs `io` until the source has connected and knows what the robot's poses are. Afterwards the source goes on when
 /// `io` runs again.
-/// Errors: those of FoxgloveSource::prepare().
+/// Errors: those of FoxgloveSource::prepare(); kShuttingDown if a signal interrupts it.
 [[nodiscard]] Result<Poses> survey_robot(boost::asio::io_context& io, FoxgloveSource& source);
 
 } // namespace scanloom::robot

@@ -67,26 +67,43 @@ RecordingFeedOptions recording_options(const PreparedSource& prepared, Console& 
     return feed;
 }
 
+/// Opens the spool of a live source. Returns null if there is none.
 /// Errors: those of Spool::open().
-Result<std::unique_ptr<Feed>> make_feed(const RobotOptions& options, const PreparedSource& prepared, Console& console) {
-    if (prepared.source) {
-        return std::unique_ptr<Feed>(
-            std::make_unique<RecordingFeed>(*prepared.source, recording_options(prepared, console)));
-    }
-    const auto report = [&console](const std::string& text) { console.note(text); };
-    const auto on_resume = [&console](std::uint64_t stored) { console.note(resume_text(stored, std::nullopt)); };
+Result<std::unique_ptr<Spool>> open_spool(const RobotOptions& options, const PreparedSource& prepared,
+                                          Console& console) {
+    if (!prepared.live) return std::unique_ptr<Spool>{};
+    const bool has_survey = prepared.foxglove != nullptr;
     auto spool = open_spool_of(options.session, options.robot,
                                {.directory = options.spool,
                                 .bytes_max = options.spool_bytes_max,
                                 .when_full = options.when_full,
                                 .poses_from_server = prepared.locating != nullptr,
-                                .poses = prepared.poses},
-                               report);
-    if (!spool) return spool.error();
-    if (*spool && (*spool)->waiting() > 0)
+                                .poses = has_survey ? options.poses : prepared.poses},
+                               [&console](const std::string& text) { console.note(text); });
+    if (spool && *spool && (*spool)->waiting() > 0)
         console.note(fmt::format("{} scans wait in {}", (*spool)->waiting(), (*spool)->directory().string()));
-    return std::unique_ptr<Feed>(std::make_unique<LiveFeed>(*prepared.live, std::move(*spool),
-                                                            LiveFeedOptions{options.when_full, on_resume, report}));
+    return spool;
+}
+
+/// Returns what the poses of a robot with foxglove_bridge are. While scans of an earlier run wait in the spool, they
+/// are sent first, and those to come must have the same poses; otherwise the robot is surveyed.
+/// Errors: those of survey_robot() and Spool::state_poses().
+Result<Poses> poses_of(FoxgloveSource& robot, Spool* spool, asio::io_context& io) {
+    if (spool != nullptr && spool->poses()) robot.expect_poses(*spool->poses());
+    if (spool != nullptr && spool->poses() && spool->waiting() > 0) return *spool->poses();
+    auto poses = survey_robot(io, robot);
+    if (!poses || spool == nullptr) return poses;
+    if (auto stated = spool->state_poses(*poses); !stated) return stated.error();
+    return poses;
+}
+
+std::unique_ptr<Feed> make_feed(const RobotOptions& options, const PreparedSource& prepared,
+                                std::unique_ptr<Spool> spool, Console& console) {
+    if (prepared.source) return std::make_unique<RecordingFeed>(*prepared.source, recording_options(prepared, console));
+    const auto report = [&console](const std::string& text) { console.note(text); };
+    const auto on_resume = [&console](std::uint64_t stored) { console.note(resume_text(stored, std::nullopt)); };
+    return std::make_unique<LiveFeed>(*prepared.live, std::move(spool),
+                                      LiveFeedOptions{options.when_full, on_resume, report});
 }
 
 /// The first signal stops the source, the second one stops everything.
@@ -129,14 +146,25 @@ ExitCode run(const RobotOptions& options) {
     auto prepared = make_source(options, console);
     if (!prepared) return fail(prepared.error());
 
+    auto spool = open_spool(options, *prepared, console);
+    if (!spool) return fail(spool.error());
+
     asio::io_context io(1);
     if (prepared->foxglove != nullptr) {
-        const auto poses = survey_robot(io, *prepared->foxglove);
+        const auto poses = poses_of(*prepared->foxglove, spool->get(), io);
+        if (!poses && poses.error().code == Errc::kShuttingDown) {
+            console.note("interrupted before the robot was surveyed: nothing was sent");
+            fmt::print("{}\n", summary_json({.session = options.session,
+                                             .robot = options.robot,
+                                             .source = prepared->fingerprint,
+                                             .left_out = prepared->left_out_now(),
+                                             .remarks = prepared->remarks()}));
+            return kExitDone;
+        }
         if (!poses) return fail(poses.error());
         prepared->poses = *poses;
     }
-    const auto feed = make_feed(options, *prepared, console);
-    if (!feed) return fail(feed.error());
+    const auto feed = make_feed(options, *prepared, std::move(*spool), console);
 
     UplinkOptions sent_options = uplink_options(options, *token, *prepared, console);
     auto tls = tls_of(options, options.tls);
@@ -153,14 +181,14 @@ ExitCode run(const RobotOptions& options) {
         for (const auto& note : notes.add(correction)) console.note(note);
     };
 
-    Uplink uplink(io, std::move(sent_options), **feed);
+    Uplink uplink(io, std::move(sent_options), *feed);
     if (prepared->exploring != nullptr) prepared->exploring->ask_with(guided_by(uplink, sim::Explore::kPathClearance));
     if (prepared->locating != nullptr)
         prepared->locating->ask_with(located_by(uplink, prepared->near, prepared->first_place));
     std::optional<Result<>> outcome; // none if a second signal ended the run
     const auto begun = std::chrono::steady_clock::now();
     asio::co_spawn(io, obey_signals(io, uplink, console), asio::detached);
-    asio::co_spawn(io, show_progress(io, uplink, **feed, *prepared, console), asio::detached);
+    asio::co_spawn(io, show_progress(io, uplink, *feed, *prepared, console), asio::detached);
     asio::co_spawn(io, uplink.run(), [&](const std::exception_ptr& failed, Result<> result) {
         if (failed) std::rethrow_exception(failed);
         outcome = std::move(result);
@@ -173,7 +201,7 @@ ExitCode run(const RobotOptions& options) {
     if (const auto remarks = prepared->remarks(); !remarks.empty()) console.note(remarks);
     fmt::print("{}\n", summary_json({options.session, options.robot, prepared->fingerprint, prepared->order,
                                      uplink.status(), prepared->skipped_lines, prepared->left_out_now(),
-                                     std::chrono::steady_clock::now() - begun, (*feed)->scan_count(),
+                                     std::chrono::steady_clock::now() - begun, feed->scan_count(),
                                      notes.state() ? name_of(*notes.state()) : std::string_view(), prepared->remarks(),
                                      *outcome ? "" : outcome->error().message}));
     if (*outcome) return kExitDone;

@@ -2,6 +2,7 @@
 
 #include "common/net/await_tuple.hpp"
 #include "common/net/connect.hpp"
+#include "robot_client/recordings/recording_lists.hpp"
 #include "robot_client/sources/messages.hpp"
 
 #include <boost/asio/buffer.hpp>
@@ -54,7 +55,9 @@ private:
     WakeSignal& to_send_;
     Backoff backoff_;
     bool was_connected_ = false;
+    std::optional<Clock::time_point> connected_since_; // the connection that is open or was the last one
     std::optional<Clock::time_point> gone_since_;
+    bool is_return_noted_ = false; // since it is gone
 };
 
 asio::awaitable<bool> is_cancelled() {
@@ -79,8 +82,14 @@ asio::awaitable<Error> BridgeReading::run() {
 
 bool BridgeReading::give_up(const Error& error) {
     if (error.code == Errc::kUnsupportedVersion && !was_connected_) return true;
+    const auto connected_since = std::exchange(connected_since_, std::nullopt);
+    if (connected_since && Clock::now() - *connected_since >= options_.steady_after) {
+        gone_since_.reset();
+        backoff_.reset();
+    }
     if (!gone_since_) {
         gone_since_ = Clock::now();
+        is_return_noted_ = false;
         if (options_.reopen_for.count() > 0) {
             options_.note(further(error.message, fmt::format("retrying for {:g} s", seconds(options_.reopen_for))));
         }
@@ -112,6 +121,11 @@ asio::awaitable<Result<>> BridgeReading::shake_hands(Stream& stream) const {
     websocket::response_type answer;
     const std::string host = options_.bridge.address.text();
     const auto [failed] = co_await stream.async_handshake(answer, host, options_.bridge.target, kAwaitTuple);
+    if (failed == websocket::error::upgrade_declined && answer.result_int() >= 500) {
+        co_return Error{Errc::kUnreachable, fmt::format("{} answers the WebSocket handshake with {}; is the bridge "
+                                                        "behind this proxy running?",
+                                                        options_.bridge.text, answer.result_int())};
+    }
     if (failed == websocket::error::upgrade_declined) {
         co_return other_protocol(fmt::format("answers the WebSocket handshake with {}", answer.result_int()));
     }
@@ -148,8 +162,14 @@ Error BridgeReading::ended(Stream& stream, const error_code& failed) const {
         return {Errc::kUnreachable, fmt::format("{} sent a frame of more than {} MiB, and was disconnected",
                                                 options_.bridge.text, kBridgeFrameMax >> 20U)};
     }
-    const bool is_closed = failed == websocket::error::closed || failed == asio::error::eof ||
-                           failed == beast::http::error::end_of_stream || failed == asio::error::connection_reset;
+    if (failed == websocket::error::closed) {
+        const auto& reason = stream.reason();
+        const std::string text = shown_word(std::string_view(reason.reason.data(), reason.reason.size()));
+        return {Errc::kUnreachable, fmt::format("{} has closed the connection with code {}{}{}", options_.bridge.text,
+                                                static_cast<unsigned>(reason.code), text.empty() ? "" : ": ", text)};
+    }
+    const bool is_closed = failed == asio::error::eof || failed == beast::http::error::end_of_stream ||
+                           failed == asio::error::connection_reset;
     const std::string why = is_closed ? "has closed the connection" : "cannot be read";
     const auto text =
         is_closed ? std::string("is the bridge running?") : net::failure_text(stream.next_layer(), failed);
@@ -174,10 +194,10 @@ asio::awaitable<Error> BridgeReading::read_frames(Stream& stream) {
 }
 
 void BridgeReading::on_connected() {
-    if (gone_since_)
+    if (gone_since_ && !std::exchange(is_return_noted_, true)) {
         options_.note(fmt::format("{}: connected{}", options_.bridge.text, was_connected_ ? " again" : ""));
-    gone_since_.reset();
-    backoff_.reset();
+    }
+    connected_since_ = Clock::now();
     was_connected_ = true;
     to_send_.notify();
 }

@@ -19,11 +19,12 @@ namespace scanloom::robot {
 
 struct BridgeLinkOptions {
     Url bridge;
-    net::TlsContext tls;                          ///< for wss
-    std::chrono::milliseconds reopen_for{60'000}; ///< how long to try to connect until it succeeds; 0: once
-    std::chrono::milliseconds answer_max{10'000}; ///< for connecting, and for the handshake
-    std::chrono::milliseconds info_max{10'000};   ///< then until the bridge says what it is
-    std::chrono::milliseconds silent_max{10'000}; ///< a bridge that does not answer a ping for this long is dead
+    net::TlsContext tls;                           ///< for wss
+    std::chrono::milliseconds reopen_for{60'000};  ///< how long to try to connect until it succeeds; 0: once
+    std::chrono::milliseconds answer_max{10'000};  ///< for connecting, and for the handshake
+    std::chrono::milliseconds info_max{10'000};    ///< then until the bridge says what it is
+    std::chrono::milliseconds steady_after{5'000}; ///< a connection that lasts this long has succeeded
+    std::chrono::milliseconds silent_max{10'000};  ///< a bridge that does not answer a ping for this long is dead
     BackoffWaits backoff{std::chrono::milliseconds(200), std::chrono::milliseconds(5'000)}; ///< between attempts
     std::uint32_t backoff_seed = 1;
     std::function<void(const std::string&)> note = [](const std::string&) {}; ///< for people
@@ -48,8 +49,8 @@ public:
 /// Longest frame of a bridge; a longer one ends the connection.
 inline constexpr std::size_t kBridgeFrameMax = std::size_t{64} << 20;
 
-/// Reads a bridge until it fails permanently. It connects again, after waits that double, until the bridge says what it
-/// is or reopen_for is over. Notes report when the connection fails, and when it is back. A bridge that is reached and
+/// Reads a bridge until it fails permanently. It connects again, after waits that double, until a connection lasts or
+/// reopen_for is over. Notes report when the connection fails, and when it is back. A bridge that is reached and
 /// speaks another protocol fails at once, unless an earlier connection succeeded.
 ///
 /// @param options   see BridgeLinkOptions

@@ -41,6 +41,7 @@ public:
     [[nodiscard]] asio::awaitable<Result<std::optional<Observation>>> next();
     void stop();
     [[nodiscard]] std::string remarks() const;
+    void expect_poses(Poses poses) { scans_.expect_poses(poses); }
     void correct(const std::optional<Pose2>& T_map_odom) { publisher_.correct(T_map_odom); }
     [[nodiscard]] const LiveScans& scans() const { return scans_; }
     [[nodiscard]] std::uint64_t refused() const;
@@ -65,8 +66,9 @@ private:
     void take(const foxglove::ServerTime& time);
     static void take(std::monostate) {}
     void note_waiting();
+    [[nodiscard]] std::optional<SteadyClock::time_point> silent_at() const;
     void pass_on_notes();
-    [[nodiscard]] Result<Poses> choose();
+    [[nodiscard]] Result<std::optional<Poses>> choose(SteadyClock::time_point now);
 
     void note(const std::string& text) const { options_.link.note(text); }
 
@@ -77,7 +79,10 @@ private:
     std::uint64_t statuses_ = 0; // warnings and errors of the bridge
     std::set<std::string> noted_statuses_;
     std::set<std::string> late_lasers_;
+    std::optional<SteadyClock::time_point> newest_scan_; // or the newest connection; nullopt: not connected
+    bool is_silence_noted_ = false;
     std::optional<Error> ended_; // why the bridge gives no more messages
+    bool is_prepared_ = false;   // prepare() was called
     bool is_stopped_ = false;
     WakeSignal wake_;    // of next() and prepare()
     WakeSignal stop_;    // of the other coroutines
@@ -108,6 +113,7 @@ asio::awaitable<void> FoxgloveSource::State::publish(std::shared_ptr<State> self
 void FoxgloveSource::State::on_lost() {
     session_.begin();
     scans_.interrupt();
+    newest_scan_.reset();
 }
 
 void FoxgloveSource::State::take(foxglove::Event event) {
@@ -118,7 +124,8 @@ void FoxgloveSource::State::take(foxglove::Event event) {
 
 void FoxgloveSource::State::take(foxglove::Connected) {
     ++connections_;
-    scans_.resume(SteadyClock::now());
+    newest_scan_ = SteadyClock::now();
+    scans_.resume(*newest_scan_);
     publisher_.on_connected();
     wake_.notify();
 }
@@ -133,8 +140,13 @@ void FoxgloveSource::State::take(foxglove::TopicsChanged) {
 }
 
 void FoxgloveSource::State::take(const foxglove::Delivered& message) {
-    const auto stamp = scans_.add(message.topic, message.log_time, message.payload, SteadyClock::now());
-    if (stamp) publisher_.add_stamp(*stamp);
+    const auto now = SteadyClock::now();
+    const auto stamp = scans_.add(message.topic, message.log_time, message.payload, now);
+    if (stamp) {
+        publisher_.add_stamp(*stamp);
+        newest_scan_ = now;
+        if (std::exchange(is_silence_noted_, false)) note("scans come again");
+    }
     wake_.notify();
 }
 
@@ -157,16 +169,19 @@ void FoxgloveSource::State::pass_on_notes() {
 
 asio::awaitable<Result<Poses>> FoxgloveSource::State::prepare() {
     const auto self = shared_from_this();
+    is_prepared_ = true;
     spawn(co_await asio::this_coro::executor, read(self));
     std::optional<SteadyClock::time_point> note_at;
     while (!is_stopped_) {
         if (ended_) co_return *ended_;
         const auto now = SteadyClock::now();
-        const auto end = scans_.survey_end();
+        const auto end = session_.is_connected() ? scans_.survey_end() : std::nullopt;
         if (end && now >= *end) {
-            auto poses = choose();
-            if (poses) spawn(co_await asio::this_coro::executor, publish(self));
-            co_return poses;
+            const auto poses = choose(now);
+            if (!poses) co_return poses.error();
+            if (!*poses) continue;
+            spawn(co_await asio::this_coro::executor, publish(self));
+            co_return **poses;
         }
         if (!note_at && session_.is_connected()) note_at = now + options_.waiting_noted_after;
         if (note_at && now >= *note_at && !end) {
@@ -190,8 +205,11 @@ void FoxgloveSource::State::note_waiting() {
                      offered.empty() ? "none" : fmt::to_string(fmt::join(offered, ", "))));
 }
 
-Result<Poses> FoxgloveSource::State::choose() {
-    if (auto chosen = scans_.choose(); !chosen) return prefixed(options_.link.bridge.text + ": ", chosen.error());
+/// Returns nullopt if the survey goes on. Precondition: the bridge is connected.
+Result<std::optional<Poses>> FoxgloveSource::State::choose(SteadyClock::time_point now) {
+    const auto chosen = scans_.choose(now);
+    if (!chosen) return prefixed(options_.link.bridge.text + ": ", chosen.error());
+    if (!*chosen) return std::optional<Poses>{};
     pass_on_notes();
     const FrameChoice& frames = scans_.choice().frames;
     note(fmt::format("{}: {}", options_.link.bridge.text,
@@ -199,13 +217,17 @@ Result<Poses> FoxgloveSource::State::choose() {
     if (auto checked = publisher_.check(frames, scans_.ancestors(frames.fixed)); !checked) return checked.error();
     session_.update_subscriptions();
     to_send_.notify();
-    return frames.poses;
+    return std::optional(frames.poses);
 }
 
 // Giving --------------------------------------------------------------------------------------------------------------
 
 asio::awaitable<Result<std::optional<Observation>>> FoxgloveSource::State::next() {
     const auto self = shared_from_this();
+    if (!is_prepared_) {
+        const auto poses = co_await prepare();
+        if (!poses && !is_stopped_) co_return poses.error();
+    }
     for (;;) {
         const bool has_ended = is_stopped_ || ended_; // then no transform comes that a scan could wait for
         if (auto ready = scans_.take(has_ended ? SteadyClock::time_point::max() : SteadyClock::now())) {
@@ -213,8 +235,20 @@ asio::awaitable<Result<std::optional<Observation>>> FoxgloveSource::State::next(
         }
         if (is_stopped_) co_return std::optional<Observation>{};
         if (ended_) co_return *ended_;
-        co_await wake_.wait(scans_.next_deadline().value_or(SteadyClock::time_point::max()));
+        if (silent_at() && SteadyClock::now() >= *silent_at()) {
+            note(fmt::format("no scan has come for {:g} s; is the laser running?",
+                             seconds(options_.silent_noted_after)));
+            is_silence_noted_ = true;
+        }
+        constexpr auto kNever = SteadyClock::time_point::max();
+        co_await wake_.wait(std::min(scans_.next_deadline().value_or(kNever), silent_at().value_or(kNever)));
     }
+}
+
+/// Returns when to report that no scans come; nullopt: that is done, or the bridge is away.
+std::optional<SteadyClock::time_point> FoxgloveSource::State::silent_at() const {
+    if (is_silence_noted_ || !newest_scan_) return std::nullopt;
+    return *newest_scan_ + options_.silent_noted_after;
 }
 
 void FoxgloveSource::State::stop() {
@@ -251,6 +285,8 @@ FoxgloveSource::~FoxgloveSource() { state_->stop(); }
 asio::awaitable<Result<Poses>> FoxgloveSource::prepare() { return state_->prepare(); }
 
 asio::awaitable<Result<std::optional<Observation>>> FoxgloveSource::next() { return state_->next(); }
+
+void FoxgloveSource::expect_poses(Poses poses) { state_->expect_poses(poses); }
 
 void FoxgloveSource::stop() { state_->stop(); }
 

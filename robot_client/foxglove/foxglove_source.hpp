@@ -19,7 +19,8 @@ struct FoxgloveSourceOptions {
     BridgeLinkOptions link;
     LiveScanOptions scans;
     RobotPublisherOptions publish;
-    std::chrono::milliseconds waiting_noted_after{5'000}; ///< of no scans
+    std::chrono::milliseconds waiting_noted_after{5'000}; ///< before the first scan
+    std::chrono::milliseconds silent_noted_after{10'000}; ///< since the newest scan
 };
 
 /// A robot that runs foxglove_bridge, live: the scans of its laser topics, as LiveScans takes them from messages of ROS
@@ -36,12 +37,16 @@ public:
     FoxgloveSource& operator=(const FoxgloveSource&) = delete;
     ~FoxgloveSource() override;
 
-    /// Connects and surveys the robot until it is known what its poses are. Call it once, before next().
+    /// States what the poses of the robot must be, before prepare() and next().
+    void expect_poses(Poses poses);
+
+    /// Connects and surveys the robot until it is known what its poses are. Call it once, before next(), which
+    /// otherwise does so.
     /// @return what the poses of the scans are
     /// Errors: those of read_bridge() and LiveScans::choose(); those of RobotPublisher::check().
     [[nodiscard]] boost::asio::awaitable<Result<Poses>> prepare();
 
-    /// Errors: those of read_bridge(), once all scans are taken.
+    /// Errors: those of read_bridge(), once all scans are taken; those of prepare().
     [[nodiscard]] boost::asio::awaitable<Result<std::optional<Observation>>> next() override;
     void stop() override;
     [[nodiscard]] std::string remarks() const override;

@@ -43,6 +43,10 @@ Result<> RobotPublisher::check(const FrameChoice& frames, const std::vector<std:
                                     "fight; stop that program, such as amcl or slam_toolbox, or leave --publish-tf out",
                                     ancestors[1], ancestors[0]));
     }
+    if (options_.transform && options_.map_frame == frames.fixed) {
+        return conflict(fmt::format("--map-frame {}: this is the robot's frame of odometry; give the map another name",
+                                    options_.map_frame));
+    }
     const auto problem = is_asked() ? session_.publish_problem() : std::string();
     if (problem.empty()) return {};
     return conflict(fmt::format("{}: {}", options_.transform ? "--publish-tf" : "--publish-map", problem));

@@ -52,8 +52,8 @@ public:
     /// Checks whether everything can be published.
     /// @param frames     that were chosen
     /// @param ancestors  of the fixed frame, itself first
-    /// Errors: kConflict if the robot has no odometry, another program publishes the transform, or the bridge does not
-    ///         let clients publish.
+    /// Errors: kConflict if the robot has no odometry, another program publishes the transform, its frames are one, or the
+    ///         bridge does not let clients publish. Precondition: the bridge is connected.
     [[nodiscard]] Result<> check(const FrameChoice& frames, const std::vector<std::string>& ancestors) const;
 
     /// Reports a bridge that does not let clients publish any more.

@@ -13,6 +13,7 @@ namespace {
 constexpr RosTime kTransformsKept = 60'000'000'000; // ns; a simulation may be faster than the clock
 constexpr std::size_t kTreePrunedFrom = 100'000;    // transforms
 constexpr std::size_t kLaserFramesMax = 1'000;
+constexpr auto kSurveyRepeated = std::chrono::milliseconds(500);
 
 } // namespace
 
@@ -62,7 +63,10 @@ std::optional<RosTime> LiveScans::add_scan(std::size_t topic, const RecordedMess
     }
     Laser& laser = lasers_[topic];
     if (laser_frames_.size() < kLaserFramesMax) laser_frames_.insert(scan->header.frame);
-    if (!choice_ && !survey_end_ && missing_topics().empty()) survey_end_ = now + options_.survey;
+    if (!choice_ && !survey_end_ && missing_topics().empty()) {
+        survey_end_ = now + options_.survey;
+        survey_end_max_ = now + std::max(options_.survey, options_.survey_max);
+    }
     if (choice_) laser.habits.add(*scan);
     const RosTime stamp = scan->header.stamp != 0 ? scan->header.stamp : message.time;
     if (const auto missing = laser.gaps.add(stamp); missing > 0) note_gap(described.name, missing);
@@ -126,10 +130,23 @@ std::vector<std::string> LiveScans::missing_topics() const {
     return {named.begin(), named.end()};
 }
 
-Result<> LiveScans::choose() {
-    auto found = std::move(survey_).finish(topics_.all());
+/// Returns whether poses, the mount of a laser, or something that the options name has not come so far.
+bool LiveScans::lacks_something(const Result<LaserChoice>& choice) const {
+    if (!choice) return choice.error().code == Errc::kNotFound;
+    if (choice->frames.poses == Poses::kNone && options_.robot.poses != Poses::kNone) return true;
+    return std::ranges::any_of(choice->lasers, [](const FoundLaser& laser) {
+        return laser.left_out == kMountUnknown || (laser.left_out.empty() && !laser.is_connected && !laser.mount);
+    });
+}
+
+Result<bool> LiveScans::choose(Time now) {
+    auto found = Surveyor(survey_).finish(topics_.all());
     found.origin = "bridge";
     auto choice = choose_lasers(found, options_.robot);
+    if (now < survey_end_max_ && lacks_something(choice)) {
+        survey_end_ = std::min(now + kSurveyRepeated, survey_end_max_);
+        return false;
+    }
     if (!choice) return choice.error();
     for (const auto& laser : choice->lasers) {
         lasers_[laser.topic].habits = std::move(found.lasers.at(laser.topic).habits);
@@ -137,7 +154,7 @@ Result<> LiveScans::choose() {
     for (const auto& note : choice->notes) notes_.push_back(note);
     choice_ = std::move(*choice);
     tree_ = std::move(found.tree);
-    return {};
+    return true;
 }
 
 std::string LiveScans::odom_topic() const {

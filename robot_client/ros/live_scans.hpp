@@ -23,6 +23,7 @@ namespace scanloom::robot {
 struct LiveScanOptions {
     RecordingOptions robot;
     std::chrono::milliseconds survey{2'000};         ///< how long messages are watched before lasers are chosen
+    std::chrono::milliseconds survey_max{5'000};     ///< likewise while poses, mounts or what `robot` names are missing
     std::chrono::milliseconds transform_wait{1'000}; ///< how long a scan waits for the transforms after it
 };
 
@@ -60,15 +61,19 @@ public:
     /// Notes that messages come again. Gaps in their stamps are no fault of the sender.
     void resume(Time now);
 
+    /// States what the poses must be. Call it before choose().
+    void expect_poses(Poses poses) { options_.robot.poses = poses; }
+
     /// Returns when the survey ends; nullopt while a scan of a laser that the options name, or any scan, is missing.
     [[nodiscard]] std::optional<Time> survey_end() const { return survey_end_; }
     /// Returns the topics that the options name and that have sent no scan so far.
     [[nodiscard]] std::vector<std::string> missing_topics() const;
 
-    /// Chooses lasers, frames and poses, once.
+    /// Chooses lasers, frames and poses when the survey has ended, once.
+    /// @return whether it is done; false: something is missing that may still come, and survey_end() is later now
     /// Errors: those of choose_lasers().
-    [[nodiscard]] Result<> choose();
-    /// Returns the choice. Precondition: choose() has succeeded.
+    [[nodiscard]] Result<bool> choose(Time now);
+    /// Returns the choice. Precondition: choose() has returned true.
     [[nodiscard]] const LaserChoice& choice() const { return *choice_; }
     /// Returns the name of the odometry topic that poses come from; empty: from transforms. Precondition: as choice().
     [[nodiscard]] std::string odom_topic() const;
@@ -110,6 +115,7 @@ private:
     [[nodiscard]] std::optional<RosTime> add_scan(std::size_t topic, const RecordedMessage& message, Time now);
     void add_transforms(const RecordedTopic& topic, const RecordedMessage& message);
     [[nodiscard]] bool may_be_used(const RecordedTopic& topic) const;
+    [[nodiscard]] bool lacks_something(const Result<LaserChoice>& choice) const;
     void prune_tree();
     void note_gap(const std::string& topic, std::uint64_t missing);
     [[nodiscard]] const FoundLaser* found_laser(std::size_t topic) const;
@@ -118,6 +124,7 @@ private:
     TopicList topics_;
     Surveyor survey_;
     std::optional<Time> survey_end_;
+    Time survey_end_max_{};
     std::optional<LaserChoice> choice_;
     FrameTree tree_;
     std::set<std::string> laser_frames_;

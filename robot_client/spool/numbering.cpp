@@ -11,12 +11,15 @@
 namespace scanloom::robot {
 namespace {
 
-constexpr std::string_view kFormat = "scanloom-spool 2";
-constexpr std::string_view kNone = "-"; // stands for an empty text
+constexpr std::string_view kFormat = "scanloom-spool 3";
+constexpr std::string_view kFormatWithoutPoses = "scanloom-spool 2"; // as earlier releases wrote it
+constexpr std::string_view kNone = "-";                              // stands for an empty text
 
-std::string content_of(const Numbering& numbering) {
+std::string content_of(const Numbering& numbering, std::string_view format) {
     const std::string_view session = numbering.session_id.empty() ? kNone : std::string_view(numbering.session_id);
-    return fmt::format("{}\n{:<64} {:>20}\n", kFormat, session, numbering.acknowledged);
+    const auto content = fmt::format("{}\n{:<64} {:>20}", format, session, numbering.acknowledged);
+    if (format == kFormatWithoutPoses) return content + "\n";
+    return fmt::format("{} {:<8}\n", content, numbering.poses ? name_of(*numbering.poses) : kNone);
 }
 
 } // namespace
@@ -26,13 +29,18 @@ Result<std::optional<Numbering>> read_numbering(const std::filesystem::path& fil
     if (!std::filesystem::exists(file, ignored)) return std::optional<Numbering>{};
     std::ifstream in(file);
     if (!in) return file_error("cannot read", file);
-    std::string name;
-    std::string version;
+    std::string format;
+    std::string poses(kNone);
     Numbering numbering;
     unsigned long sum = 0;
-    in >> name >> version >> numbering.session_id >> numbering.acknowledged >> sum;
+    std::getline(in, format);
+    in >> numbering.session_id >> numbering.acknowledged;
+    if (format == kFormat) in >> poses;
+    in >> sum;
     if (numbering.session_id == kNone) numbering.session_id.clear();
-    if (!in || fmt::format("{} {}", name, version) != kFormat || sum != checksum(content_of(numbering))) {
+    numbering.poses = find_poses(poses);
+    const bool is_known = format == kFormat || format == kFormatWithoutPoses;
+    if (!in || !is_known || sum != checksum(content_of(numbering, format))) {
         return Error{Errc::kMalformed, fmt::format("{} is damaged", file.string())};
     }
     return std::optional(numbering);
@@ -40,7 +48,7 @@ Result<std::optional<Numbering>> read_numbering(const std::filesystem::path& fil
 
 Result<> write_numbering(const std::filesystem::path& file, const Numbering& numbering, Sync sync) {
     // Constant size and one block of the disk, so it is never half written.
-    const std::string content = content_of(numbering);
+    const std::string content = content_of(numbering, kFormat);
     const std::string text = fmt::format("{}{:>10}\n", content, checksum(content));
     const FileDescriptor handle(::open(file.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0644));
     if (!handle) return file_error("cannot open", file);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "common/error/error.hpp"
+#include "common/scan/poses.hpp"
 
 #include <cstdint>
 #include <filesystem>
@@ -13,6 +14,7 @@ namespace scanloom::robot {
 struct Numbering {
     std::string session_id;         ///< of Welcome; empty: no server was reached yet
     std::uint64_t acknowledged = 0; ///< seq in that session: the server has all scans up to it
+    std::optional<Poses> poses;     ///< what the poses of the scans are; nullopt: not known yet
 
     friend bool operator==(const Numbering&, const Numbering&) = default;
 };

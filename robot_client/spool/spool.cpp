@@ -30,7 +30,30 @@ Result<std::unique_ptr<Spool>> Spool::open(SpoolOptions options, std::function<v
     std::unique_ptr<Spool> spool(new Spool(std::move(options), std::move(report)));
     if (auto ok = spool->lock(); !ok) return ok.error();
     if (auto ok = spool->load(); !ok) return ok.error();
+    if (const auto poses = spool->options_.poses) {
+        if (auto ok = spool->state_poses(*poses); !ok) return ok.error();
+    }
     return spool;
+}
+
+Result<> Spool::state_poses(Poses poses) {
+    const bool are_others = numbering_.poses != poses;
+    if (are_others && numbering_.poses && waiting_ > 0)
+        return other_poses(fmt::format("'{}'", name_of(*numbering_.poses)), poses);
+    options_.poses = poses;
+    if (!are_others || waiting_ > 0) return {};
+    numbering_.poses = poses;
+    // If this write fails, scans with other poses are still found when they are handed out.
+    (void)write_numbering(options_.directory / kNumberingFile, numbering_, Sync::kYes);
+    return {};
+}
+
+/// @param those  what is known of the poses of the scans that wait
+Error Spool::other_poses(std::string_view those, Poses poses) const {
+    return {Errc::kConflict,
+            fmt::format("{}: an earlier run took the {} scans there with {} poses, not '{}': send them with the "
+                        "--poses of that run, or move the directory away",
+                        options_.directory.string(), waiting_, those, name_of(poses))};
 }
 
 Result<> Spool::lock() {
@@ -193,9 +216,10 @@ Result<> Spool::begin(std::string_view session_id, std::uint64_t durable_seq) {
     if (auto ok = is_same ? check(durable_seq) : leave_session(); !ok) return ok;
     is_foreign_ = !is_same && waiting_ > 0 && options_.poses_from_server;
     // If the server refuses these scans, the next run must mark them in any session.
-    const Numbering kept = is_foreign_ ? Numbering{kNoSession, 0} : Numbering{std::string(session_id), durable_seq};
+    const Numbering kept =
+        is_foreign_ ? Numbering{kNoSession, 0, poses()} : Numbering{std::string(session_id), durable_seq, poses()};
     if (auto ok = write_numbering(options_.directory / kNumberingFile, kept, Sync::kYes); !ok) return ok;
-    numbering_ = {std::string(session_id), durable_seq};
+    numbering_ = {std::string(session_id), durable_seq, poses()};
     for (SpoolFile& segment : segments_) {
         waiting_ -= segment.left();
         segment.stored(durable_seq);
@@ -271,11 +295,8 @@ Result<std::optional<Observation>> Spool::next() {
                 continue;
             }
             if (segment.first + read_++ < segment.from) continue;
-            if (!agrees_with(batch->scans.front(), options_.poses)) {
-                return Error{Errc::kConflict,
-                             fmt::format("{}: an earlier run took these {} scans with other poses than '{}': send them "
-                                         "with the poses of that run, or move the directory away",
-                                         options_.directory.string(), waiting_, name_of(options_.poses))};
+            if (options_.poses && !agrees_with(batch->scans.front(), *options_.poses)) {
+                return other_poses("other", *options_.poses);
             }
             ++next_seq_;
             --waiting_;

@@ -27,7 +27,7 @@ struct SpoolOptions {
     WhenFull when_full = WhenFull::kDropOldest; ///< drops whole files, each at most a sixteenth of bytes_max
     /// Whether the server set the poses from the session's map. In another session such poses can only begin a map.
     bool poses_from_server = false;
-    Poses poses = Poses::kMap; ///< what the poses of the robot's scans are
+    std::optional<Poses> poses; ///< see state_poses(); nullopt: not known yet
 };
 
 /// The scans that a robot took and the server has not acknowledged, on disk. They remain after the program ends.
@@ -45,9 +45,17 @@ public:
 
     /// Opens the spool with the scans of earlier runs.
     /// @param report  receives messages for people about damaged files and lost scans
-    /// Errors: kStoreFailed; kConflict if another program uses the directory.
+    /// Errors: kStoreFailed; kConflict if another program uses the directory; those of state_poses().
     [[nodiscard]] static Result<std::unique_ptr<Spool>> open(SpoolOptions options,
                                                              std::function<void(const std::string&)> report);
+
+    /// States what the poses of the robot's scans are. They are kept with the scans. Call it before append() and
+    /// begin() unless SpoolOptions::poses state it.
+    /// Errors: kConflict if scans with other poses wait: the server takes only one kind from a robot.
+    [[nodiscard]] Result<> state_poses(Poses poses);
+
+    /// Returns what the poses of the scans of this run, or of the last one, are; nullopt if neither stated it.
+    [[nodiscard]] std::optional<Poses> poses() const noexcept { return numbering_.poses; }
 
     /// Starts handing out: the server has the robot's scans up to `durable_seq`, and next() skips these. Pre: called
     /// once.
@@ -70,8 +78,8 @@ public:
 
     /// Returns the next scan to send, or nullopt if none waits. Waits for the disk once per file. Pre: begin()
     /// succeeded.
-    /// Errors: kStoreFailed; kConflict if an earlier run took the scan with other poses than SpoolOptions::poses: the server
-    ///         would refuse it.
+    /// Errors: kStoreFailed; kConflict if an earlier run took the scan with other poses than stated: the server would refuse
+    ///         it.
     [[nodiscard]] Result<std::optional<Observation>> next();
 
     /// Marks all scans up to `seq` as stored by the server.
@@ -88,6 +96,7 @@ public:
 private:
     Spool(SpoolOptions options, std::function<void(const std::string&)> report);
     [[nodiscard]] Result<> load();
+    [[nodiscard]] Error other_poses(std::string_view those, Poses poses) const;
     [[nodiscard]] Result<> lock();
     [[nodiscard]] std::filesystem::path file_of(const SpoolFile& segment) const;
     [[nodiscard]] std::uint64_t segment_bytes_max() const noexcept;

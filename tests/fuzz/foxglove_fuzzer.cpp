@@ -54,8 +54,9 @@ private:
 
     void choose() {
         if (is_surveyed_ || !scans_.survey_end()) return;
-        is_surveyed_ = true;
-        if (scans_.choose()) session_.update_subscriptions();
+        const auto chosen = scans_.choose(now_);
+        is_surveyed_ = !chosen || *chosen;
+        if (chosen && *chosen) session_.update_subscriptions();
     }
 
     void take_scans() {

@@ -2,6 +2,7 @@
 
 #include "robot_client/recordings/recording_lists.hpp"
 #include "robot_client/ros/outgoing_messages.hpp"
+#include "robot_client/ros/recording_survey.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -135,14 +136,17 @@ void BridgeSession::update_subscriptions() {
         subscriptions_.erase(*offered.subscription);
         offered.subscription.reset();
     }
-    for (auto& [id, offered] : offered_) {
-        if (offered.subscription || !needed_(offered.topic)) continue;
-        if (!subscribed.emplace(offered.topic.name, offered.topic.type).second) continue;
-        if (subscriptions_.size() == kSubscriptionsMax) return refuse("a topic beyond 256 that are subscribed to");
-        offered.subscription = next_subscription_++;
-        offered.is_requested = false;
-        subscriptions_.emplace(*offered.subscription, id);
-        has_unrequested_ = true;
+    for (const bool are_transforms : {true, false}) { // a robot with very many topics is useless without transforms
+        for (auto& [id, offered] : offered_) {
+            if (offered.subscription || has_transforms(offered.topic) != are_transforms) continue;
+            if (!needed_(offered.topic)) continue;
+            if (!subscribed.emplace(offered.topic.name, offered.topic.type).second) continue;
+            if (subscriptions_.size() == kSubscriptionsMax) return refuse("a topic beyond 256 that are subscribed to");
+            offered.subscription = next_subscription_++;
+            offered.is_requested = false;
+            subscriptions_.emplace(*offered.subscription, id);
+            has_unrequested_ = true;
+        }
     }
 }
 

@@ -65,7 +65,9 @@ protected:
         options.link.bridge = parse_url(fmt::format("ws://127.0.0.1:{}", port_), kWebSocketUrl).value();
         options.link.backoff = {1ms, 1ms};
         options.link.note = [this](const std::string& text) { notes_.push_back(text); };
+        options.link.steady_after = 0ms;
         options.scans.survey = 0ms;
+        options.scans.survey_max = 0ms;
         options.publish.transform_period = 1ms;
         options.publish.map_period = 1ms;
         return options;

@@ -99,6 +99,60 @@ TEST_F(FoxgloveSourceTest, ABridgeThatIsNotThereIsTriedForSomeTime) {
     EXPECT_TRUE(has_note("Retrying for 0.02 s"));
 }
 
+TEST_F(FoxgloveSourceTest, AProxyWhoseBridgeIsNotThereIsTriedForSomeTime) {
+    start_bridge({.refusal = 503});
+    auto stated = options();
+    stated.link.reopen_for = 20ms;
+    make_source(std::move(stated));
+    const auto poses = prepare();
+    ASSERT_FALSE(poses);
+    EXPECT_EQ(poses.error().code, Errc::kUnreachable);
+    EXPECT_THAT(poses.error().message, HasSubstr("with 503; is the bridge behind this proxy running? (retried"));
+}
+
+/// As one that wants a token.
+TEST_F(FoxgloveSourceTest, ABridgeThatClosesEachConnectionSoonIsTriedForSomeTime) {
+    start_bridge();
+    auto stated = options();
+    stated.link.reopen_for = 20ms;
+    stated.link.steady_after = 1h;
+    make_source(std::move(stated));
+    const auto poses = prepare([&] { bridge_->drop_clients(); });
+    ASSERT_FALSE(poses);
+    EXPECT_EQ(poses.error().code, Errc::kUnreachable);
+    EXPECT_GT(bridge_->connections(), 1U);
+    EXPECT_LE(notes_.size(), 2U) << "not two for each connection";
+}
+
+TEST_F(FoxgloveSourceTest, WithoutPrepareTheFirstNextSurveysTheRobot) {
+    start_bridge();
+    const auto robot = advertise_robot();
+    make_source();
+    source_->expect_poses(Poses::kNone);
+    begin_next();
+    wait_for_subscriptions(robot);
+    send_scan(robot, 0);
+    run_until([this] { return next_.has_value(); });
+    ASSERT_TRUE(*next_ && **next_);
+    EXPECT_FALSE((**next_)->scan.odometry) << "as expected";
+}
+
+TEST_F(FoxgloveSourceTest, ALaserThatStopsIsNoted) {
+    start_bridge();
+    const auto robot = advertise_robot();
+    auto stated = options();
+    stated.silent_noted_after = 10ms;
+    make_source(std::move(stated));
+    ASSERT_TRUE(prepare(robot));
+    EXPECT_NEAR(next_x(), 0.5, 1e-9);
+    begin_next();
+    run_until([&] { return has_note("no scan has come for 0.01 s; is the laser running?"); });
+    send_scan(robot, 1);
+    send_pose(robot, 2);
+    run_until([this] { return next_.has_value(); });
+    EXPECT_TRUE(has_note("scans come again"));
+}
+
 TEST_F(FoxgloveSourceTest, ABridgeMayStartAfterTheSource) {
     start_bridge();
     bridge_.reset();

@@ -28,7 +28,7 @@ const RecordedTopic kOdom{"/odom", "nav_msgs/Odometry", MessageEncoding::kRos1};
 
 class LiveScansTest : public testing::Test {
 protected:
-    void begin(const RecordingOptions& options = {}) { scans_.emplace(LiveScanOptions{options, 2s, 1s}); }
+    void begin(const RecordingOptions& options = {}) { scans_.emplace(LiveScanOptions{options, 2s, 5s, 1s}); }
 
     /// Adds the pose x = 0.1 m times the count at a tenth of a second.
     void add_pose(int tenth, const std::string& parent = "odom") {
@@ -56,8 +56,9 @@ protected:
     }
 
     void choose() {
-        const auto chosen = scans_->choose();
+        const auto chosen = scans_->choose(LiveScans::Time::max());
         ASSERT_TRUE(chosen) << chosen.error().message;
+        ASSERT_TRUE(*chosen);
     }
 
     /// Surveys a robot with a pose, a mount and one scan, which is taken.
@@ -103,6 +104,39 @@ TEST_F(LiveScansTest, TheSurveyWaitsForTheTopicsThatOptionsName) {
     EXPECT_EQ(scans_->survey_end(), std::nullopt);
     EXPECT_THAT(scans_->missing_topics(), ElementsAre("/front", "/rear"));
     EXPECT_FALSE(scans_->needs({"/other", "sensor_msgs/LaserScan", MessageEncoding::kCdr}));
+}
+
+TEST_F(LiveScansTest, TheSurveyGoesOnWhileOdometryAMountOrAFrameIsMissing) {
+    const auto is_chosen = [&] {
+        const auto chosen = scans_->choose(now_);
+        EXPECT_TRUE(chosen) << chosen.error().message;
+        return chosen && *chosen;
+    };
+    for (const std::string frame : {"", "base"}) {
+        begin({.base_frame = frame});
+        const auto end_max = now_ + 5s;
+        add_scan(0);
+        now_ += 2s;
+        EXPECT_FALSE(is_chosen()) << "no odometry";
+        EXPECT_EQ(scans_->survey_end(), now_ + 500ms);
+        add_pose(0);
+        EXPECT_FALSE(is_chosen()) << "no mount";
+        now_ = end_max - 100ms;
+        EXPECT_FALSE(is_chosen());
+        EXPECT_EQ(scans_->survey_end(), end_max);
+        add_mount();
+        EXPECT_TRUE(is_chosen());
+        EXPECT_EQ(scans_->choice().frames.poses, Poses::kOdometry);
+    }
+    begin();
+    add_scan(0);
+    now_ += 5s;
+    EXPECT_TRUE(is_chosen());
+    EXPECT_EQ(scans_->choice().frames.poses, Poses::kNone);
+    begin();
+    scans_->expect_poses(Poses::kNone);
+    add_scan(0);
+    EXPECT_TRUE(is_chosen()) << "nothing more is needed";
 }
 
 TEST_F(LiveScansTest, ScansOfTheSurveyAreTakenWithPosesAndMountsOfTheTransforms) {
@@ -268,10 +302,12 @@ TEST_F(LiveScansTest, ErrorsOfTheChoiceNameTheBridge) {
     begin({.base_frame = "nothing"});
     add_pose(0);
     add_scan(0);
-    EXPECT_THAT(scans_->choose().error().message, HasSubstr("--base-frame nothing: no transform has this frame"));
+    EXPECT_THAT(scans_->choose(LiveScans::Time::max()).error().message,
+                HasSubstr("--base-frame nothing: no transform has this frame"));
     begin({.odom_topic = "/wheels"});
     add_scan(0);
-    EXPECT_THAT(scans_->choose().error().message, HasSubstr("the bridge has no readable nav_msgs/Odometry"));
+    EXPECT_THAT(scans_->choose(LiveScans::Time::max()).error().message,
+                HasSubstr("the bridge has no readable nav_msgs/Odometry"));
 }
 
 TEST_F(LiveScansTest, MalformedAndUnusableScansAreCounted) {

@@ -131,7 +131,7 @@ TEST_F(SpoolTest, DamagedNumberingIsReportedAndLosesNoScans) {
     spool_.reset();
     std::fstream numbering(directory_.path() / "numbering", std::ios::in | std::ios::out);
     std::string text{std::istreambuf_iterator<char>(numbering), {}};
-    numbering.seekp(static_cast<std::streamoff>(text.find("10\n")));
+    numbering.seekp(static_cast<std::streamoff>(text.find("10 ")));
     numbering << "99";
     numbering.close();
     open();

@@ -1,5 +1,7 @@
+#include "robot_client/spool/segment.hpp"
 #include "tests/unit/robot_client/spool/spool_fixture.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <fstream>
@@ -245,23 +247,63 @@ TEST_F(SpoolTest, LocatedPosesBeginTheMapOfAnotherSession) {
     EXPECT_EQ(handed_out_as_beginning(false), from_to(16, 22));
 }
 
-TEST_F(SpoolTest, ScansWithOtherPosesAreNotHandedOut) {
+TEST_F(SpoolTest, KeepsWhatThePosesAre) {
+    open();
+    EXPECT_EQ(spool_->poses(), std::nullopt);
+    ASSERT_TRUE(spool_->state_poses(Poses::kMap));
+    take(1, 2);
+    open();
+    EXPECT_EQ(spool_->poses(), Poses::kMap);
+    const auto refused = spool_->state_poses(Poses::kOdometry);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, Errc::kConflict);
+    EXPECT_TRUE(refused.error().message.ends_with(": an earlier run took the 2 scans there with 'map' poses, not "
+                                                  "'odometry': send them with the --poses of that run, or move the "
+                                                  "directory away"))
+        << refused.error().message;
+    spool_.reset();
+    EXPECT_FALSE(Spool::open({.directory = directory_.path(), .poses = Poses::kOdometry}, [](const auto&) {}));
+    open();
+    ASSERT_TRUE(spool_->begin("a1", 0));
+    EXPECT_EQ(handed_out(), from_to(1, 2)) << "the scans are kept";
+    spool_->acknowledge(2);
+    spool_->remove_acknowledged();
+    open();
+    EXPECT_EQ(spool_->poses(), Poses::kMap);
+    EXPECT_TRUE(spool_->state_poses(Poses::kOdometry)) << "none waits";
+    open();
+    EXPECT_EQ(spool_->poses(), Poses::kOdometry);
+}
+
+/// As after a damage, and of spools of earlier releases.
+TEST_F(SpoolTest, ScansWithOtherPosesThanStatedAreNotHandedOut) {
     open();
     take(1, 2);
-    spool_.reset();
-    spool_ =
-        Spool::open({.directory = directory_.path(), .poses = Poses::kOdometry}, [](const std::string&) {}).value();
+    open();
+    ASSERT_TRUE(spool_->state_poses(Poses::kOdometry));
     ASSERT_TRUE(spool_->begin("a1", 0));
     const auto refused = spool_->next();
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().code, Errc::kConflict);
-    EXPECT_TRUE(refused.error().message.ends_with(": an earlier run took these 2 scans with other poses than "
-                                                  "'odometry': send them with the poses of that run, or "
-                                                  "move the directory away"))
-        << refused.error().message;
+    EXPECT_THAT(refused.error().message, HasSubstr("with other poses, not 'odometry'"));
     open();
+    ASSERT_TRUE(spool_->state_poses(Poses::kMap));
     ASSERT_TRUE(spool_->begin("a1", 0));
     EXPECT_EQ(handed_out(), from_to(1, 2)) << "the refused scans are kept";
+}
+
+TEST_F(SpoolTest, ReadsTheNumberingOfEarlierReleases) {
+    open();
+    take(1, 3);
+    ASSERT_TRUE(spool_->begin("a1", 0));
+    handed_out();
+    spool_.reset();
+    std::string content = fmt::format("scanloom-spool 2\n{:<64} {:>20}\n", "a1", 1);
+    content += fmt::format("{:>10}\n", checksum(content));
+    std::ofstream(directory_.path() / "numbering") << content;
+    open();
+    EXPECT_THAT(messages_, IsEmpty());
+    EXPECT_EQ(spool_->waiting(), 2U);
 }
 
 TEST_F(SpoolTest, LostNumberingSendsNoScanTwice) {
