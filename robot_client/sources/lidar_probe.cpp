@@ -15,21 +15,27 @@ constexpr int kPacketsMin = 3;
 
 using Found = std::optional<LidarIdentity>;
 
-Found identify_ld06(std::span<const std::uint8_t> bytes, LidarIdentity identity) {
+/// The rate of the line distinguishes an STL-27L from an LD06 only where the line has a rate, and over TCP or on a
+/// pseudo terminal it has none. The samples per second always do.
+Found identify_ld06(std::span<const std::uint8_t> bytes) {
+    // Data sheets: 4500 samples per second (LD06, LD19) and 21,600 (STL-27L). Packets of LD06 and LD19 that were
+    // published have 2270 to 5020.
+    constexpr double kStl27lSamplesMin = 10'000.0;
     Ld06Decoder decoder;
     decoder.feed(bytes);
+    double speed = 0.0;   // degrees per second, sum over the packets
+    double spanned = 0.0; // degrees, likewise
     for (int packets = 0; packets < kPacketsMin; ++packets) {
-        if (!decoder.next()) return std::nullopt;
+        const auto packet = decoder.next();
+        if (!packet) return std::nullopt;
+        speed += packet->speed;
+        spanned += static_cast<double>(steps_spanned(*packet)) / kLd06StepsPerDegree;
     }
-    return identity;
-}
-
-Found identify_ld06(std::span<const std::uint8_t> bytes) {
-    return identify_ld06(bytes, {"ld06", "LD06 or LD19 (it states no serial number)", 0});
-}
-
-Found identify_stl27l(std::span<const std::uint8_t> bytes) {
-    return identify_ld06(bytes, {"stl27l", "STL-27L (it states no serial number)", 0});
+    constexpr int kGaps = kLd06PacketPoints - 1;
+    if (speed * kGaps > kStl27lSamplesMin * spanned) {
+        return LidarIdentity{"stl27l", "STL-27L (it states no serial number)", 0};
+    }
+    return LidarIdentity{"ld06", "LD06 or LD19 (it states no serial number)", 0};
 }
 
 Found identify_x2(std::span<const std::uint8_t> bytes) {
@@ -101,7 +107,7 @@ const std::vector<LidarProbe>& lidar_probes() {
     const Requests hokuyo{{'\n', 'Q', 'T', '\n'}, {'V', 'V', '\n'}};
     static const std::vector<LidarProbe> probes{
         {230'400, listen, identify_ld06},
-        {921'600, listen, identify_stl27l},
+        {921'600, listen, identify_ld06},
         {115'200, listen, identify_x2},
         {115'200, rplidar, identify_rplidar},
         {460'800, rplidar, identify_rplidar},

@@ -210,19 +210,20 @@ Bytes YdlidarEmulator::next_turn() {
 }
 
 Bytes Ld06Emulator::next_turn() {
-    constexpr int kGap = 80;            // 0.01 degree
-    constexpr int kMicroseconds = 2667; // per packet
+    const int packet_angle = is_stl27l_ ? 200 : 960; // 0.01 degree, from one packet to the next
+    const int packet_microseconds = is_stl27l_ ? 556 : 2667;
+    const int packets_per_turn = is_stl27l_ ? 180 : 38;
     Bytes bytes;
-    for (int packets = 0; packets < 38; ++packets) {
+    for (int packets = 0; packets < packets_per_turn; ++packets) {
         Bytes packet;
         append(packet, {0x54, 0x2C});
         append_word(packet, 3600);
         append_word(packet, static_cast<unsigned>(angle_));
         for (int i = 0; i < 12; ++i) {
-            append_word(packet, 1000U + 10U * static_cast<unsigned>((angle_ + i * kGap) % 36'000 / 100));
+            append_word(packet, 1000U + 10U * static_cast<unsigned>((angle_ + i * packet_angle / 12) % 36'000 / 100));
             append(packet, {200});
         }
-        append_word(packet, static_cast<unsigned>((angle_ + 11 * kGap) % 36'000));
+        append_word(packet, static_cast<unsigned>((angle_ + 11 * packet_angle / 12) % 36'000));
         append_word(packet, static_cast<unsigned>(microseconds_ / 1000 % 30'000));
         unsigned crc = 0;
         for (const std::uint8_t byte : packet) {
@@ -231,14 +232,15 @@ Bytes Ld06Emulator::next_turn() {
         }
         append(packet, {crc});
         bytes.insert(bytes.end(), packet.begin(), packet.end());
-        angle_ = (angle_ + 12 * kGap) % 36'000;
-        microseconds_ += kMicroseconds;
+        angle_ = (angle_ + packet_angle) % 36'000;
+        microseconds_ += packet_microseconds;
     }
     return bytes;
 }
 
 std::unique_ptr<LidarEmulator> make_lidar_emulator(std::string_view model) {
-    if (model == "ld06" || model == "ld19" || model == "stl27l") return std::make_unique<Ld06Emulator>();
+    if (model == "ld06" || model == "ld19") return std::make_unique<Ld06Emulator>();
+    if (model == "stl27l") return std::make_unique<Ld06Emulator>(true);
     if (model == "rplidar-a1") return std::make_unique<RplidarEmulator>(A5Emulation{.firmware_minor = 20});
     if (model == "rplidar-a2")
         return std::make_unique<RplidarEmulator>(A5Emulation{.model = 0x2C, .firmware_minor = 32});

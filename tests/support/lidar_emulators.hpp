@@ -94,14 +94,17 @@ private:
     Bytes received_;
 };
 
-/// An LD06 or STL-27L, which always measures.
+/// An LD06, or an STL-27L with its 180 packets per turn instead of 37.5; both always measure.
 class Ld06Emulator final : public LidarEmulator {
 public:
+    explicit Ld06Emulator(bool is_stl27l = false) : is_stl27l_(is_stl27l) {}
+
     Bytes receive(std::span<const std::uint8_t>) override { return {}; }
     Bytes next_turn() override;
     [[nodiscard]] bool is_measuring() const override { return true; }
 
 private:
+    bool is_stl27l_;
     int angle_ = 0; ///< 0.01 degree
     std::int64_t microseconds_ = 0;
 };

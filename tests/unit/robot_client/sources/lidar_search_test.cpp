@@ -2,6 +2,7 @@
 
 #include "robot_client/sources/lidar_models.hpp"
 #include "tests/support/emulated_lidar.hpp"
+#include "tests/support/ld06_bytes.hpp"
 #include "tests/support/pseudo_terminal.hpp"
 #include "tests/support/temporary_directory.hpp"
 
@@ -15,6 +16,7 @@
 #include <fstream>
 #include <list>
 #include <map>
+#include <tuple>
 
 namespace scanloom::robot {
 namespace {
@@ -71,15 +73,13 @@ protected:
 };
 
 TEST_F(LidarSearch, IdentifiesEachModel) {
-    // A terminal has no rate, so that lidars with equal packets are not distinguished.
-    const std::map<std::string, std::string> alike{{"ld19", "ld06"}, {"stl27l", "ld06"}};
     for (const auto& model : lidar_models()) {
         search(std::string(model.name), testing_support::make_lidar_emulator(model.name));
     }
     run();
     for (const auto& model : lidar_models()) {
         const std::string name(model.name);
-        EXPECT_EQ(lidar(name).model, alike.contains(name) ? alike.at(name) : name);
+        EXPECT_EQ(lidar(name).model, name == "ld19" ? "ld06" : name) << "an LD19 sends what an LD06 sends";
         EXPECT_EQ(lidar(name).baud, 0U);
     }
     EXPECT_EQ(lidar("rplidar-a1").text, "RPLIDAR A1, model 24, firmware 1.20, serial A0A1A2A3A4A5A6A7A8A9AAABACADAEAF");
@@ -107,14 +107,32 @@ TEST_F(LidarSearch, ASilentDeviceIsNoLidar) {
     EXPECT_THAT(found_.at("missing").error().message, HasSubstr("/dev/nonexistent: cannot be opened"));
 }
 
-TEST(LidarProbes, TellLidarsApartByTheRate) {
-    testing_support::Ld06Emulator emulator;
-    const auto bytes = emulator.next_turn();
-    std::map<unsigned, std::string> found;
-    for (const auto& probe : lidar_probes()) {
-        if (const auto lidar = probe.identify(bytes)) found[probe.baud] = lidar->model;
+TEST(LidarProbes, DistinguishTheStl27lFromTheLd06AtAnyRateOfTheLine) {
+    using testing_support::Ld06Emulator;
+    for (const bool is_stl27l : {false, true}) {
+        const auto bytes = Ld06Emulator(is_stl27l).next_turn();
+        std::map<unsigned, std::string> found;
+        for (const auto& probe : lidar_probes()) {
+            if (const auto lidar = probe.identify(bytes)) found[probe.baud] = lidar->model;
+        }
+        const std::string model = is_stl27l ? "stl27l" : "ld06";
+        EXPECT_THAT(found, ElementsAre(std::pair(230'400U, model), std::pair(921'600U, model)));
     }
-    EXPECT_THAT(found, ElementsAre(std::pair(230'400U, "ld06"), std::pair(921'600U, "stl27l")));
+}
+
+/// Published packets with the fewest and the most samples per second; see Ld06Packet.ReadsTheKnownVectors.
+TEST(LidarProbes, TakePublishedPacketsOfAnLd06ForThoseOfAnLd06) {
+    for (const auto& [speed, start, end] : {std::tuple{2152, 32'427, 33'470}, std::tuple{3566, 33'864, 34'645}}) {
+        Ld06Packet packet;
+        packet.speed = static_cast<std::uint16_t>(speed);
+        packet.start_angle = static_cast<std::uint16_t>(start);
+        packet.end_angle = static_cast<std::uint16_t>(end);
+        testing_support::Bytes bytes;
+        for (int packets = 0; packets < 3; ++packets) append(bytes, testing_support::bytes_of(packet));
+        const auto lidar = lidar_probes().front().identify(bytes);
+        ASSERT_TRUE(lidar);
+        EXPECT_EQ(lidar->model, "ld06") << speed;
+    }
 }
 
 TEST(SerialDevices, AreNamedByTheirMakerIfPossible) {
