@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Scanloom's client for robots in Python. Copy this file to the robot; it needs Python 3.9 or newer and
+"""Scanloom's client for robots in Python. Copy this file to the robot; it needs Python 3.8 or newer and
 protobuf (Debian: python3-protobuf; elsewhere: pip install protobuf), nothing else.
 
     import math, scanloom_client

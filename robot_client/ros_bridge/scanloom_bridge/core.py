@@ -121,7 +121,6 @@ class Options:
         return context
 
 
-
 _NAME = ("[A-Za-z0-9_-]{1,64}", "1 to 64 letters, digits, '_' and '-' are possible")
 _PATTERNS = {"session": _NAME, "robot": _NAME, "server": (r"\S+:\d{1,5}", "HOST:PORT is needed"),
              "http": (r"https?://[^\s/?#]+", "http://HOST:PORT or https://HOST:PORT is needed")}
@@ -133,12 +132,16 @@ _BOUNDS = {"tf_wait": (0.0, 10.0), "start_wait": (0.0, 60.0), "tf_rate": (1.0, 1
 
 
 def _parameter(name: str, value: Any, default: Any) -> Any:
-    """Returns a value of the default's type."""
+    """Returns a value of the default's type. The launch files pass text, which is empty for what is not stated."""
+    if value == "":
+        return default
     if isinstance(default, tuple):
         topics = value.replace(",", " ").split() if isinstance(value, str) else value
         if isinstance(topics, (list, tuple)) and topics and all(isinstance(topic, str) and topic for topic in topics):
             return tuple(topics)
         raise ValueError(f"parameter {name} is {value!r}; names of topics are needed")
+    if isinstance(value, str) and not isinstance(default, str):
+        value = _read_text(value, type(default))
     if isinstance(default, str) and isinstance(value, int) and not isinstance(value, bool):
         return str(value)  # ROS reads robot:=1 as a number
     if isinstance(default, float) and isinstance(value, int) and not isinstance(value, bool):
@@ -147,6 +150,16 @@ def _parameter(name: str, value: Any, default: Any) -> Any:
         needed = {bool: "true or false is", int: "a whole number is", float: "a finite number is", str: "text is"}
         raise ValueError(f"parameter {name} is {value!r}; {needed[type(default)]} needed")
     return value
+
+
+def _read_text(text: str, needed: type) -> Any:
+    """Returns the truth value or number that the text is, or the text."""
+    if needed is bool:
+        return {"true": True, "false": False}.get(text.lower(), text)
+    try:
+        return needed(text)
+    except ValueError:
+        return text
 
 
 def _token(file_name: str) -> str:

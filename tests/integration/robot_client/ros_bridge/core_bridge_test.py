@@ -356,6 +356,13 @@ class Parameters(unittest.TestCase):
         self.assertEqual((options.session, options.tf_wait, options.scan_topics), ("7", 2.0, ("/front", "rear")))
         self.assertEqual(core.Options.of({"session": "s", "scan_topics": ["a", "b"]}).scan_topics, ("a", "b"))
 
+    def test_text_of_launch_files_is_read_and_empty_text_is_the_default(self):
+        options = core.Options.of({"session": "s", "publish_tf": "True", "tls": "false", "tf_rate": "20",
+                                   "buffer_mb": "8", "map_period": "", "scan_topics": "", "poses": "", "publish_map": ""})
+        self.assertEqual((options.publish_tf, options.tls, options.tf_rate, options.buffer_mb), (True, False, 20.0, 8))
+        self.assertEqual((options.map_period, options.scan_topics, options.poses, options.publish_map),
+                         (2.0, ("scan",), "auto", False))
+
     def test_defaults_depend_on_the_host(self):
         options = core.Options.of({"session": "s", "server": "maps.lab:7447"})
         self.assertRegex(options.robot, "^[A-Za-z0-9_-]{1,64}$")
@@ -371,7 +378,9 @@ class Parameters(unittest.TestCase):
                               ("publish_tf is 'yes'; true or false", {"publish_tf": "yes"}),
                               ("buffer_mb is 1.5; a whole number", {"buffer_mb": 1.5}),
                               ("robot is True; text", {"robot": True}),
-                              ("scan_topics is ''; names of topics", {"scan_topics": ""}),
+                              ("scan_topics is ','; names of topics", {"scan_topics": ","}),
+                              ("buffer_mb is '1.5'; a whole number", {"buffer_mb": "1.5"}),
+                              ("tf_wait is nan; a finite number", {"tf_wait": "nan"}),
                               ("scan_topics is 5", {"scan_topics": 5}), ("zero is 'far'", {"zero": "far"}),
                               ("publish_tf needs poses odometry or none", {"publish_tf": True, "poses": "map"})]:
             with self.subTest(reason), self.assertRaisesRegex(ValueError, reason):

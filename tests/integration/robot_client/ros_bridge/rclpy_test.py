@@ -1,12 +1,17 @@
 """The node of ROS 2 with a small fake of rclpy and the real server."""
 import array
+import ast
+import dataclasses
 import math
 import os
 import pathlib
+import runpy
 import shutil
 import sys
 import tempfile
+import types
 import unittest
+import unittest.mock
 import xml.etree.ElementTree
 
 import fake_rclpy
@@ -166,15 +171,51 @@ class Package(unittest.TestCase):
             self.assertIn("scanloom_bridge.rclpy_node:main", installed["entry_points.txt"].read_text())
 
 
-class LaunchFiles(unittest.TestCase):
-    def test_their_arguments_are_parameters(self):
-        names = {field for field in core.Options.__dataclass_fields__} | {"use_sim_time"}
-        python = (PACKAGE / "launch/scanloom_bridge.launch.py").read_text()
-        arguments = {line.split('"')[1] for line in python.splitlines() if line.startswith('    "')}
+class PythonVersion(unittest.TestCase):
+    def test_the_package_and_the_client_need_no_syntax_beyond_3_8(self):
+        sources = [*PACKAGE.rglob("*.py"), PACKAGE / "scripts/scanloom_bridge"]
+        self.assertIn("scanloom_client.py", [source.name for source in sources])
+        for source in sources:
+            ast.parse(source.read_text(), str(source), feature_version=(3, 8))
+
+
+class EachParameter(unittest.TestCase):
+    """Parameters of the node are arguments of both launch files, without defaults of their own, and in README.md."""
+
+    NAMES = [field.name for field in dataclasses.fields(core.Options)]
+    DEFAULTS = {name: None if name == "session" else "" for name in NAMES}  # of arguments; session must be stated
+
+    def test_is_an_argument_in_ros_1(self):
         tree = xml.etree.ElementTree.parse(PACKAGE / "launch/scanloom_bridge.launch")
-        for found in (arguments, {param.get("name") for param in tree.iter("param")}):
-            self.assertGreater(len(found), 5)
-            self.assertLessEqual(found, names)
+        self.assertEqual({arg.get("name"): arg.get("default") for arg in tree.iter("arg")}, self.DEFAULTS)
+        self.assertEqual({param.get("name"): (param.get("value"), param.get("type")) for param in tree.iter("param")},
+                         {name: (f"$(arg {name})", "str") for name in self.NAMES})
+
+    def test_is_an_argument_in_ros_2(self):
+        fakes = {"launch": {"LaunchDescription": list},
+                 "launch.actions": {"DeclareLaunchArgument": lambda name, default_value: (name, default_value)},
+                 "launch.substitutions": {"LaunchConfiguration": lambda name: f"$(arg {name})"},
+                 "launch_ros.actions": {"Node": lambda **fields: fields},
+                 "launch_ros.parameter_descriptions": {"ParameterValue": lambda value, value_type: (value, value_type)}}
+        with unittest.mock.patch.dict(sys.modules, {name: types.SimpleNamespace(**of) for name, of in fakes.items()}):
+            file = runpy.run_path(str(PACKAGE / "launch/scanloom_bridge.launch.py"))
+        *arguments, node = file["generate_launch_description"]()
+        self.assertEqual(dict(arguments), {**self.DEFAULTS, "use_sim_time": "false"})
+        self.assertEqual(node["parameters"], [{**{name: (f"$(arg {name})", str) for name in self.NAMES},
+                                               "use_sim_time": ("$(arg use_sim_time)", bool)}])
+
+    def test_is_in_the_readme_with_its_default(self):
+        table = (PACKAGE / "README.md").read_text().split("\n## Parameters\n")[1].split("\n## ")[0]
+        defaults = {}
+        for row in table.splitlines():
+            if row.startswith("| `"):
+                names, stated = (cell.replace("`", "").strip().split(", ") for cell in row.split("|")[1:3])
+                defaults.update(zip(names, stated + [""] * len(names)))
+        self.assertEqual(sorted(defaults), sorted(self.NAMES))
+        for field in dataclasses.fields(core.Options):
+            if field.default:
+                value = field.default[0] if isinstance(field.default, tuple) else field.default
+                self.assertEqual(defaults[field.name], str(value), field.name)
 
 
 if __name__ == "__main__":

@@ -259,8 +259,8 @@ class Catkin(RosTest):
             self.assertEqual(code, 0, out + errors)
         for space in ("devel", "install"):
             code, out, errors = run("bash", "-c", f"source {folder}/{space}/setup.bash && roslaunch scanloom_bridge "
-                                    "scanloom_bridge.launch session:='my lab'", env=environment, timeout=WAIT)
-            self.assertIn("parameter session is 'my lab'", out + errors, space)
+                                    "scanloom_bridge.launch session:=lab tf_rate:=500", env=environment, timeout=WAIT)
+            self.assertIn("parameter tf_rate is 500; 1 to 100 are possible", out + errors, space)
 
 
 if __name__ == "__main__":
