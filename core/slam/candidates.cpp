@@ -23,9 +23,14 @@ constexpr double kNarrowGate = 0.4; // metres, likewise
 
 // A match is doubtful if fewer points are inliers, or if it is farther than this from the prediction.
 constexpr double kInliersWithOdometry = 0.75;
-constexpr double kInliersWithout = 0.9;
-constexpr double kDoubtfulDistance = 0.2; // metres
-constexpr double kDoubtfulTurn = 0.2;     // radians
+constexpr double kInliersWithout = 0.85;
+constexpr double kInliersWithoutAfterLargeMotion = 0.9; // the velocity predicts less
+constexpr double kDoubtfulDistance = 0.2;               // metres
+constexpr double kDoubtfulTurn = 0.2;                   // radians
+
+// A large motion between two scans.
+constexpr double kLargeMotion = 0.12;     // metres
+constexpr double kLargeMotionTurn = 0.12; // radians
 
 // Odometry and velocity disagree if they differ by more than this.
 constexpr double kDisagreement = 0.08;    // metres
@@ -104,13 +109,17 @@ public:
         keep(first);
         if (is_plain) return std::move(found_);
         try_other_priors();
-        if (best_inliers() < kInliersFar) try_other_starts();
+        if (best_inliers() < (has_odometry_ ? kInliersFar : inliers_wanted())) try_other_starts();
         found_.push_back({{expected_, 0.0, false, loose_.position_sigma, loose_.yaw_sigma}, kUnmatchedValue});
         return std::move(found_);
     }
 
 private:
-    [[nodiscard]] double inliers_wanted() const { return has_odometry_ ? kInliersWithOdometry : kInliersWithout; }
+    [[nodiscard]] double inliers_wanted() const {
+        if (has_odometry_) return kInliersWithOdometry;
+        const bool is_large = moved_ > kLargeMotion || turned_ > kLargeMotionTurn;
+        return is_large ? kInliersWithoutAfterLargeMotion : kInliersWithout;
+    }
 
     [[nodiscard]] static TrackedScan tracked(const LineMatch& found) {
         return {found.T_map_robot,    found.inlier_ratio, found.inlier_ratio >= kUsable,
