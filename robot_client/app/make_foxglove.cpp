@@ -37,7 +37,7 @@ Result<std::unique_ptr<FoxgloveSource>> make_foxglove(const RobotOptions& option
     source.link.reopen_for = std::chrono::milliseconds(static_cast<std::int64_t>(foxglove.reopen_for * 1e3));
     source.link.backoff_seed = std::random_device{}();
     source.link.note = [&console](const std::string& text) { console.note(text); };
-    LinkOptions certificates = options;
+    auto certificates = static_cast<const LinkOptions&>(options);
     if (!foxglove.bridge_ca_file.empty()) certificates.tls_ca_file = foxglove.bridge_ca_file;
     auto tls = tls_of(certificates, foxglove.bridge->is_encrypted);
     if (!tls) return tls.error();
