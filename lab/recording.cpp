@@ -5,7 +5,7 @@
 #include "common/wire/messages.hpp"
 #include "core/landmarks/point_index.hpp"
 #include "core/landmarks/points.hpp"
-#include "robot_client/sources/ld06_capture.hpp"
+#include "robot_client/lidars/ld06_capture.hpp"
 #include "sim/drive/wall_follower.hpp"
 #include "sim/range_sensors.hpp"
 

@@ -4,7 +4,7 @@
 #include "common/net/connect.hpp"
 #include "common/scan/limits.hpp"
 #include "robot_client/app/pose_text.hpp"
-#include "robot_client/sources/lidar_models.hpp"
+#include "robot_client/lidars/lidar_models.hpp"
 #include "robot_client/sources/stationary_detector.hpp"
 #include "robot_client/uplink/limits.hpp"
 

@@ -1,7 +1,7 @@
 #include "robot_client/app/lidars.hpp"
 
 #include "common/net/connect.hpp"
-#include "robot_client/sources/lidar_search.hpp"
+#include "robot_client/lidars/lidar_search.hpp"
 
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/io_context.hpp>

@@ -3,7 +3,7 @@
 #include "common/app/program.hpp"
 #include "common/error/error.hpp"
 #include "robot_client/app/lidar_options.hpp"
-#include "robot_client/sources/lidar_probe.hpp"
+#include "robot_client/lidars/lidar_probe.hpp"
 
 #include <optional>
 #include <string>

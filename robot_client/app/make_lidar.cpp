@@ -1,9 +1,9 @@
 #include "robot_client/app/make_lidar.hpp"
 
 #include "robot_client/app/skipped_lines.hpp"
-#include "robot_client/sources/ld06_capture.hpp"
-#include "robot_client/sources/lidar_live.hpp"
-#include "robot_client/sources/lidar_models.hpp"
+#include "robot_client/lidars/ld06_capture.hpp"
+#include "robot_client/lidars/lidar_live.hpp"
+#include "robot_client/lidars/lidar_models.hpp"
 #include "robot_client/sources/live_source.hpp"
 #include "robot_client/sources/locating_source.hpp"
 #include "robot_client/sources/pose_feed.hpp"

@@ -1,5 +1,5 @@
-#include "robot_client/sources/ld06_packet.hpp"
-#include "robot_client/sources/ld06_turns.hpp"
+#include "robot_client/lidars/ld06_packet.hpp"
+#include "robot_client/lidars/ld06_turns.hpp"
 #include "tests/fuzz/server_check.hpp"
 
 #include <algorithm>

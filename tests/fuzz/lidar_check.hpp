@@ -1,7 +1,7 @@
 #pragma once
 
 #include "common/wire/messages.hpp"
-#include "robot_client/sources/lidar_models.hpp"
+#include "robot_client/lidars/lidar_models.hpp"
 #include "tests/fuzz/server_check.hpp"
 
 #include <algorithm>

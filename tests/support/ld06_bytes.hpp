@@ -1,6 +1,6 @@
 #pragma once
 
-#include "robot_client/sources/ld06_packet.hpp"
+#include "robot_client/lidars/ld06_packet.hpp"
 
 #include <boost/endian/conversion.hpp>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "robot_client/sources/lidar_driver.hpp"
+#include "robot_client/lidars/lidar_driver.hpp"
 #include "tests/support/lidar_emulators.hpp"
 
 #include <optional>

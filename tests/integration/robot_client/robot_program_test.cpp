@@ -1,6 +1,6 @@
 #include "tests/support/running_server.hpp"
 #include "tests/support/temporary_directory.hpp"
-#include "tests/unit/robot_client/sources/ld06_live_fixture.hpp"
+#include "tests/unit/robot_client/lidars/ld06_live_fixture.hpp"
 
 #include <boost/json/parse.hpp>
 #include <gmock/gmock.h>

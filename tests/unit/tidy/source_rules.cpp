@@ -109,6 +109,9 @@ const std::vector<Folder> kFolders = {
      .pure = true},
     {.path = "robot_client/sources",
      .may_include = {"common/error", "common/geometry", "common/hash", "common/net", "common/scan"}},
+    {.path = "robot_client/lidars",
+     .may_include = {"common/error", "common/geometry", "common/hash", "common/net", "common/scan",
+                     "robot_client/sources"}},
     {.path = "robot_client/recordings", .may_include = {"common/error", "common/files", "robot_client/sources"}},
     {.path = "robot_client/ros",
      .may_include = {"common/error", "common/geometry", "common/hash", "common/ros", "common/scan",
@@ -130,7 +133,7 @@ const std::vector<Folder> kFolders = {
     // Experiments combine the simulator and the maps. No other folder does, and no folder includes them.
     {.path = "lab",
      .may_include = {"common", "core/grid", "core/landmarks", "core/mapping", "core/scan_matching", "core/slam",
-                     "server/tiles", "sim/drive", "sim", "robot_client/sources"}},
+                     "server/tiles", "sim/drive", "sim", "robot_client/lidars", "robot_client/sources"}},
 
     // The load generator runs outside the server: it does not include the server, and no folder includes it.
     {.path = "load/core",
@@ -165,8 +168,8 @@ const std::vector<Package> kPackages = {
       "robot_client/app"}},
     {"boost/asio",
      {"common/net", "server/sessions", "server/sockets", "server/ingest", "server/live", "server/http", "server/app",
-      "sim/robot", "robot_client/foxglove", "robot_client/sources", "robot_client/spool", "robot_client/uplink",
-      "robot_client/client", "robot_client/app", "load/net", "load/app"}},
+      "sim/robot", "robot_client/foxglove", "robot_client/lidars", "robot_client/sources", "robot_client/spool",
+      "robot_client/uplink", "robot_client/client", "robot_client/app", "load/net", "load/app"}},
     {"boost/beast", {"common/net", "server/live", "server/http", "server/app", "robot_client/foxglove", "load/net"}},
     {"bzlib.h", {"robot_client/recordings", "robot_client/sources"}},
     {"lz4frame.h", {"robot_client/recordings"}},

@@ -3,7 +3,7 @@
 #include "common/app/standard_streams.hpp"
 #include "robot_client/app/make_source.hpp"
 #include "robot_client/app/options.hpp"
-#include "robot_client/sources/lidar_models.hpp"
+#include "robot_client/lidars/lidar_models.hpp"
 #include "tests/support/ld06_bytes.hpp"
 #include "tests/support/temporary_directory.hpp"
 

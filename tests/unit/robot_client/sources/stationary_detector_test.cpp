@@ -1,6 +1,6 @@
 #include "robot_client/sources/stationary_detector.hpp"
 
-#include "robot_client/sources/ld06_capture.hpp"
+#include "robot_client/lidars/ld06_capture.hpp"
 #include "tests/support/angles.hpp"
 #include "tests/unit/robot_client/sources/carried_lidar.hpp"
 
