@@ -1,5 +1,8 @@
 // scanloom-robot foxglove with Foxglove's own server of the protocol, and a real scanloom-server.
 import assert from 'node:assert/strict';
+import { mkdtemp, readdir, rm } from 'node:fs/promises';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { endWithThisProgram, ended, Server, startRobot } from '../e2e/programs.mjs';
 import { Bridge, Robot } from './bridge.mjs';
@@ -15,10 +18,14 @@ before(async () => {
 
 after(() => server?.stop());
 
-/** Starts the program under test. @returns it, with its output and its exit code as promises */
-function startReading(session, bridge, options = []) {
+/** Starts the program under test. @returns what outcomeOf() does */
+function startReading(session, bridge) {
   const source = ['foxglove', bridge.url, '--publish-tf', '--publish-map', '--http', server.address.slice(0, -1)];
-  const child = startRobot(server, session, 'r1', [...source, ...options]);
+  return outcomeOf(startRobot(server, session, 'r1', source));
+}
+
+/** @returns the program, with its summary and its exit code as promises */
+function outcomeOf(child) {
   let output = '';
   child.stdout.on('data', (text) => {
     output += text;
@@ -93,6 +100,8 @@ function checkTransforms(published, encoding) {
   }
 }
 
+const isOfScans = (file) => file.endsWith('.spool');
+
 const storedScans = async (session) => {
   const answer = await fetch(`${server.address}api/v1/sessions/${session}`);
   return answer.ok ? (await answer.json()).scans : 0;
@@ -156,4 +165,30 @@ test('a bridge that restarts, and topics that get other ids, lose nothing that w
   assert.deepEqual(summary.skipped, {});
   assert.equal(summary.remarks, 'connected to the bridge 2 times');
   await bridge.stop();
+});
+
+test('scans in the spool are sent while the bridge is away', async () => {
+  const session = 'spooled';
+  const spool = await mkdtemp(join(tmpdir(), 'scanloom-bridge-'));
+  const bridge = await Bridge.start('ros1');
+  const robot = new Robot('ros1');
+  const source = ['--spool', spool, 'foxglove', bridge.url];
+  const nowhere = { robotPort: 1 };
+  const first = startRobot(nowhere, session, 'r1', source);
+  await bridge.subscribedToAll();
+  robot.sendStatic(bridge);
+  robot.sendPose(bridge, 0);
+  await robot.drive(bridge, 0, kScans);
+  await until('scans are spooled', async () => (await readdir(`${spool}/${session}.r1`)).some(isOfScans));
+  first.kill('SIGKILL');
+  await ended(first);
+  await bridge.stop();
+
+  const second = outcomeOf(startRobot(server, session, 'r1', [...source, '--reopen-for', '0']));
+  const { error, waiting, acknowledged } = await second.summary;
+  assert.match(error, /is foxglove_bridge running there/);
+  assert.equal(waiting, 0);
+  assert.ok(acknowledged > 0);
+  assert.equal(await storedScans(session), acknowledged);
+  await rm(spool, { recursive: true });
 });
