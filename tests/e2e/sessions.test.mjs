@@ -341,6 +341,7 @@ describe('the list of sessions', () => {
     await page.waitForFunction(
       ([selector, [red, green, blue]]) => {
         const canvas = document.querySelector(selector);
+        if (!canvas) return false; // the list is drawn a little later
         const { data } = canvas.getContext('2d').getImageData(canvas.width / 2, canvas.height / 2, 1, 1);
         return data[3] > 200 && [red, green, blue].every((part, band) => Math.abs(data[band] - part) < 6);
       },
