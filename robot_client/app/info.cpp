@@ -3,6 +3,7 @@
 #include "common/app/standard_streams.hpp"
 #include "robot_client/ros/frame_choice.hpp"
 
+#include <boost/algorithm/string/replace.hpp>
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -82,7 +83,7 @@ std::string info_text(const std::string& file, const RecordingSurvey& found, con
     for (const auto& note : plan->notes) text += note + "\n";
     return text + fmt::format("replay it with: scanloom-robot --server HOST:7447 --session NAME --robot NAME replay "
                               "'{}'\n",
-                              file);
+                              boost::algorithm::replace_all_copy(file, "'", R"('\'')"));
 }
 
 ExitCode run(const InfoOptions& options) {

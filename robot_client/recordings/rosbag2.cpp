@@ -16,6 +16,8 @@
 namespace scanloom::robot {
 namespace {
 
+constexpr std::uint64_t kDamagesMax = 10'000; // places of a file that are skipped
+
 struct CloseDatabase {
     void operator()(sqlite3* database) const { sqlite3_close_v2(database); }
 };
@@ -160,7 +162,12 @@ private:
 
     /// Returns the message of the present row; nullopt if it cannot be used.
     [[nodiscard]] std::optional<RecordedMessage> take_row() {
-        id_ = sqlite3_column_int64(messages_.get(), 0);
+        const auto id = sqlite3_column_int64(messages_.get(), 0);
+        if (id <= id_) { // of a damaged page; to go on behind it would read the same messages again
+            lose(fmt::format("message {}, which stands behind message {}", id, id_));
+            return std::nullopt;
+        }
+        id_ = id;
         const auto topic_id = sqlite3_column_int64(messages_.get(), 1);
         const auto known = topic_ids_.find(topic_id);
         if (known == topic_ids_.end()) {
@@ -203,6 +210,11 @@ private:
     void skip_damage() {
         const std::string reason = sqlite3_errmsg(database_.get());
         const std::int64_t before = id_;
+        if (++damages_ > kDamagesMax) {
+            lose(fmt::format("the messages behind number {}: more than {} damaged places", before, kDamagesMax));
+            has_ended_ = true;
+            return;
+        }
         std::int64_t damaged = before;
         std::int64_t step = 1;
         while (damaged < last_id_ && !can_continue_behind(damaged + std::min(step, last_id_ - damaged))) {
@@ -229,7 +241,8 @@ private:
     Statement messages_;
     std::string topics_query_;
     std::uint64_t size_;
-    std::int64_t id_ = 0; // of the message that was read last; the first one has 1
+    std::uint64_t damages_ = 0; // that were skipped
+    std::int64_t id_ = 0;       // of the message that was read last; the first one has 1
     std::int64_t last_id_ = std::numeric_limits<std::int64_t>::max();
     std::string unpacked_;
     std::unordered_map<std::int64_t, std::size_t> topic_ids_; // to topics
