@@ -29,17 +29,20 @@ std::string kitti_text(std::span<const localization::StampedPose> poses) {
     return text;
 }
 
-std::string g2o_text(const localization::PoseGraphView& graph) {
+std::string g2o_text(const localization::PoseGraphView& graph, std::size_t robots) {
+    const auto is_written = [&](std::size_t keyframe) {
+        return graph.keyframes[keyframe].is_located && graph.keyframes[keyframe].robot < robots;
+    };
     std::string text;
     text.reserve((graph.keyframes.size() + graph.edges.size()) * kEdgeTextBytes);
     for (std::size_t n = 0; n < graph.keyframes.size(); ++n) {
-        const auto& [robot, pose, is_located] = graph.keyframes[n];
-        if (!is_located) continue;
+        if (!is_written(n)) continue;
+        const Pose2& pose = graph.keyframes[n].pose;
         fmt::format_to(std::back_inserter(text), "VERTEX_SE2 {} {:.6f} {:.6f} {:.9f}\n", n, pose.x, pose.y, pose.yaw);
     }
     for (const auto& edge : graph.edges) {
         if (edge.weight < slam::kUsedWeight) continue;
-        if (!graph.keyframes[edge.from].is_located || !graph.keyframes[edge.to].is_located) continue;
+        if (!is_written(edge.from) || !is_written(edge.to)) continue;
         const Pose2 measured = scan_matching::pose_of(edge.T_from_to);
         const auto& [xx, xy, xyaw, yy, yyaw, yawyaw] = edge.information;
         fmt::format_to(std::back_inserter(text),

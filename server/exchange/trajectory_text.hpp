@@ -27,8 +27,10 @@ inline constexpr std::size_t kEdgeTextBytes = 220;
 
 /// Returns the located keyframes as VERTEX_SE2 lines, and the edges between them that count as EDGE_SE2 lines: nodes by
 /// PoseGraphView::keyframes, the measured relative pose, and the upper triangle of its information (x, y, yaw).
-/// Edges that are switched off are left out, because the format has no weights.
+/// Edges that are switched off are left out, because the format has no weights, and so are the parts of a map that no
+/// scan of these robots shows: an imported one, or that of robots that send their poses.
+/// @param robots  number of robots of the session
 /// Source: Kuemmerle et al., g2o: A General Framework for Graph Optimization (2011).
-[[nodiscard]] std::string g2o_text(const localization::PoseGraphView& graph);
+[[nodiscard]] std::string g2o_text(const localization::PoseGraphView& graph, std::size_t robots);
 
 } // namespace scanloom::exchange

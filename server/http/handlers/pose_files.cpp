@@ -195,10 +195,12 @@ boost::asio::awaitable<Result<Response>> get_pose_graph(Context& context) {
 }
 
 boost::asio::awaitable<Result<Response>> get_pose_graph_g2o(Context& context) {
+    const std::size_t robots = context.session->snapshot()->robots.size();
     const auto graph = co_await read_graph(context);
-    auto permit = context.services.responses.take(graph->edges.size() * exchange::kEdgeTextBytes);
+    const std::size_t parts = graph->keyframes.size() + graph->edges.size();
+    auto permit = context.services.responses.take(parts * exchange::kEdgeTextBytes);
     if (!permit) co_return permit.error();
-    co_return ok_text(kPlainText, std::move(*permit), exchange::g2o_text(*graph));
+    co_return ok_text(kPlainText, std::move(*permit), exchange::g2o_text(*graph, robots));
 }
 
 } // namespace scanloom::http

@@ -31,7 +31,8 @@ TEST(TrajectoryText, G2oHasLocatedKeyframesAndEdgesThatCount) {
     graph.keyframes = {{0, {0.0, 0.0, 0.0}, true},
                        {0, {1.0, 0.5, kRight}, true},
                        {1, {7.0, 7.0, 0.0}, false},
-                       {0, {2.0, 0.0, -kRight}, true}};
+                       {0, {2.0, 0.0, -kRight}, true},
+                       {7, {4.0, 0.0, 0.0}, true}}; // of the map that was there before the robots
     const slam::Information information{1.0, 2.0, 3.0, 4.0, 5.0, 6.5};
     const auto edge = [&](std::size_t from, std::size_t to, const Pose2& measured, double weight) {
         graph.edges.push_back({from, to, scan_matching::transform_of(measured), information, true, weight});
@@ -39,10 +40,11 @@ TEST(TrajectoryText, G2oHasLocatedKeyframesAndEdgesThatCount) {
     edge(0, 1, {1.0, 0.25, kRight}, 1.0);
     edge(1, 2, {1.0, 0.0, 0.0}, 1.0);  // to a keyframe in another frame
     edge(0, 3, {9.0, 9.0, 0.0}, 0.01); // switched off
-    EXPECT_EQ(g2o_text(graph), "VERTEX_SE2 0 0.000000 0.000000 0.000000000\n"
-                               "VERTEX_SE2 1 1.000000 0.500000 1.570796327\n"
-                               "VERTEX_SE2 3 2.000000 0.000000 -1.570796327\n"
-                               "EDGE_SE2 0 1 1.000000 0.250000 1.570796327 1 2 3 4 5 6.5\n");
+    edge(4, 3, {9.0, 9.0, 0.0}, 1.0);
+    EXPECT_EQ(g2o_text(graph, 2), "VERTEX_SE2 0 0.000000 0.000000 0.000000000\n"
+                                  "VERTEX_SE2 1 1.000000 0.500000 1.570796327\n"
+                                  "VERTEX_SE2 3 2.000000 0.000000 -1.570796327\n"
+                                  "EDGE_SE2 0 1 1.000000 0.250000 1.570796327 1 2 3 4 5 6.5\n");
 }
 
 } // namespace
