@@ -13,16 +13,20 @@
 namespace scanloom::robot {
 namespace {
 
-/// Returns the robot's frame by the names of the frames above it: the one below odometry or a map.
+/// Returns the robot's frame by the names of the frames above it: the one below odometry or a map. Where there is
+/// nav_msgs/Odometry, a frame that does not move, such as a charging station, is none.
 /// @param laser_frame  of a laser that may be connected to it or not
 /// @return nullopt: there is none, or there are several
-std::optional<std::string> moving_frame(const FrameTree& tree, const std::string& laser_frame) {
-    const auto chain = tree.ancestors(laser_frame);
+std::optional<std::string> moving_frame(const RecordingSurvey& found, const std::string& laser_frame) {
+    const auto chain = found.tree.ancestors(laser_frame);
     const auto fixed = std::ranges::find_if(chain, is_fixed_name);
-    if (fixed != chain.end() && fixed != chain.begin()) return *std::prev(fixed);
+    if (fixed != chain.end() && fixed != chain.begin()) {
+        const std::string& below = *std::prev(fixed);
+        if (!found.tree.is_static(below) || found.odometry.empty()) return below;
+    }
     for (auto* const is_parent : {is_odometry_name, is_map_name}) {
-        auto below = tree.children_of(is_parent);
-        std::erase_if(below, is_fixed_name);
+        auto below = found.tree.children_of(is_parent);
+        std::erase_if(below, [&](const auto& frame) { return is_fixed_name(frame) || found.tree.is_static(frame); });
         if (below.size() == 1) return *below.begin();
         if (!below.empty()) return std::nullopt;
     }
@@ -63,11 +67,19 @@ std::optional<std::string> fixed_frame(const std::vector<std::string>& above, Po
     return odometry || above.empty() ? odometry : above.front();
 }
 
+/// Returns whether the robot is localized in a map: there is one above it, and not only by a transform from odometry to
+/// the map that never changes.
+bool has_map(const FrameTree& tree, const std::vector<std::string>& above) {
+    const auto map = std::ranges::find_if(above, is_map_name);
+    if (map == above.end()) return false;
+    return map == above.begin() || !is_odometry_name(*std::prev(map)) || !tree.is_static(*std::prev(map));
+}
+
 /// Chooses the poses if people did not.
-Poses available_poses(const std::vector<std::string>& above, const RecordingOptions& options) {
+Poses available_poses(const FrameTree& tree, const std::vector<std::string>& above, const RecordingOptions& options) {
     if (options.poses) return *options.poses;
     if (!options.fixed_frame.empty()) return is_map_name(options.fixed_frame) ? Poses::kMap : Poses::kOdometry;
-    if (std::ranges::any_of(above, is_map_name)) return Poses::kMap;
+    if (has_map(tree, above)) return Poses::kMap;
     return above.empty() ? Poses::kNone : Poses::kOdometry;
 }
 
@@ -96,7 +108,7 @@ std::vector<std::string> fixed_frames(const FrameTree& tree, const std::string& 
 Result<FrameChoice> choose_frames(RecordingSurvey& found, const RecordingOptions& options,
                                   const std::string& laser_frame) {
     const auto chain = found.tree.ancestors(laser_frame);
-    const auto moving = moving_frame(found.tree, laser_frame);
+    const auto moving = moving_frame(found, laser_frame);
     FrameChoice choice;
     const auto topic = choose_odometry(found, options, moving.has_value());
     if (!topic) return topic.error();
@@ -116,7 +128,7 @@ Result<FrameChoice> choose_frames(RecordingSurvey& found, const RecordingOptions
                                                   choice.base, fmt::join(chain, ", "))};
     }
     const auto frames = fixed_frames(found.tree, choice.base, odometry);
-    choice.poses = available_poses(frames, options);
+    choice.poses = available_poses(found.tree, frames, options);
     if (choice.poses == Poses::kNone) return choice;
     if (!options.fixed_frame.empty()) {
         choice.fixed = options.fixed_frame;

@@ -125,6 +125,12 @@ std::set<std::string> FrameTree::children_of(bool (*is_parent)(std::string_view)
     return children;
 }
 
+bool FrameTree::is_static(std::string_view child) const {
+    const auto id = ids_.find(std::string(child));
+    const auto edge = id == ids_.end() ? edges_.end() : edges_.find(id->second);
+    return edge != edges_.end() && edge->second.fixed;
+}
+
 void FrameTree::keep_ancestors(const std::set<std::string>& frames) {
     std::set<std::string> kept;
     for (const auto& frame : frames) {

@@ -60,6 +60,9 @@ public:
     /// Returns the frames whose newest parent fulfils a condition.
     [[nodiscard]] std::set<std::string> children_of(bool (*is_parent)(std::string_view)) const;
 
+    /// Returns whether the transform of a frame to its parent holds at all times.
+    [[nodiscard]] bool is_static(std::string_view child) const;
+
     /// Removes the frames that are above none of these.
     void keep_ancestors(const std::set<std::string>& frames);
 

@@ -28,7 +28,8 @@ struct Recorder {
     bool has_transforms = true; // else /odom
     bool has_map = false;
     bool has_mount = true;
-    std::string second_frame; // of a second laser with half the scans
+    std::vector<RosTransform> statics; // more of them, at the beginning
+    std::string second_frame;          // of a second laser with half the scans
 
     /// Writes a bag. @return its path
     [[nodiscard]] std::filesystem::path bag(const TemporaryDirectory& directory) const {
@@ -50,6 +51,7 @@ struct Recorder {
         const auto odom = writer.connect("/odom", "nav_msgs/Odometry");
         const auto tf = writer.connect("/tf", "tf2_msgs/TFMessage");
         const auto tf_static = writer.connect("/tf_static", "tf2_msgs/TFMessage");
+        writer.write(tf_static, kBegin, testing_support::transform_bytes(statics, encoding));
         for (int n = 0; n < count; ++n) {
             const RosTime time = kBegin + n * kTenth;
             const auto pose = flat(time, "odom", "base", 0.1 * n);
@@ -177,6 +179,22 @@ TEST_F(RecordedScansTest, ALaserThatNoTransformLeadsToHasThePosesOfTheRobot) {
     EXPECT_EQ(plan_.notes.size(), 0U) << "--mount replaces none";
     EXPECT_EQ(all.at(0).sensor->mount, (Pose2{0.5, 0.0, 0.0}));
     EXPECT_NEAR(all.at(1).scan.odometry.value().x, 0.25, 1e-6);
+}
+
+/// A map frame above a charging station, or above odometry that nothing corrects, localizes no robot.
+TEST_F(RecordedScansTest, AMapThatDoesNotMoveLocalizesNoRobot) {
+    const auto is_by_odometry = [&](const Recorder& recorder) {
+        const auto all = read(recorder);
+        EXPECT_EQ(plan_.poses, Poses::kOdometry);
+        EXPECT_EQ(plan_.fixed_frame, "odom");
+        EXPECT_NEAR(all.at(1).scan.odometry.value_or(Pose2{}).x, 0.25, 1e-6);
+    };
+    is_by_odometry({.statics = {flat(0, "map", "odom", 7.0)}});
+    is_by_odometry({.has_transforms = false, .statics = {flat(0, "map", "dock", 7.0)}});
+    is_by_odometry({.has_transforms = false, .statics = {flat(0, "map", "base", 7.0)}});
+    EXPECT_EQ(read({.has_transforms = false, .statics = {flat(0, "map", "odom", 7.0)}}, {.poses = Poses::kMap}).size(),
+              10U)
+        << "as stated";
 }
 
 TEST_F(RecordedScansTest, ALaserWithAKnownMountIsUsedAlsoIfItHasFewerScans) {
