@@ -35,15 +35,16 @@ std::variant<ScanPlace, NoPlace> place_of_scan(const FrameTree& tree, const Fram
         place.pose = planar(std::get<Eigen::Isometry3d>(found));
         if (std::max(std::fabs(place.pose.x), std::fabs(place.pose.y)) > kCoordinateMax) return NoPlace{"too far away"};
     }
-    if (laser.mount) {
-        place.mount.T_robot_laser = *laser.mount;
-    } else if (laser.is_connected) {
+    if (laser.is_connected) {
         const auto found = tree.find(frames.base, frame, middle);
-        if (const auto* reason = std::get_if<NoTransform>(&found)) return no_place(*reason);
-        const auto mount = mount_of(std::get<Eigen::Isometry3d>(found));
-        if (!mount) return NoPlace{mount.error().message};
-        place.mount = *mount;
+        const auto* reason = std::get_if<NoTransform>(&found);
+        if (reason != nullptr && !laser.mount) return no_place(*reason);
+        const Result<LaserMount> mount =
+            reason != nullptr ? LaserMount{} : mount_of(std::get<Eigen::Isometry3d>(found));
+        if (!mount && !laser.mount) return NoPlace{mount.error().message};
+        if (mount) place.mount = *mount;
     }
+    if (laser.mount) place.mount.T_robot_laser = *laser.mount; // whether it is upside down, only transforms say
     return place;
 }
 

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <numbers>
 
 namespace scanloom::robot {
 namespace {
@@ -179,6 +180,17 @@ TEST_F(RecordedScansTest, ALaserThatNoTransformLeadsToHasThePosesOfTheRobot) {
     EXPECT_EQ(plan_.notes.size(), 0U) << "--mount replaces none";
     EXPECT_EQ(all.at(0).sensor->mount, (Pose2{0.5, 0.0, 0.0}));
     EXPECT_NEAR(all.at(1).scan.odometry.value().x, 0.25, 1e-6);
+}
+
+TEST_F(RecordedScansTest, AStatedMountDoesNotTurnALaserThatIsUpsideDown) {
+    RosTransform hanging = flat(0, "base", "laser", 0.25);
+    hanging.T_parent_child.rotate(Eigen::AngleAxisd(std::numbers::pi, Eigen::Vector3d::UnitX()));
+    const Recorder recorder{.has_mount = false, .statics = {hanging}};
+    const auto by_transforms = read(recorder);
+    const auto stated = read(recorder, {.mounts = {{"", {0.5, 0.0, 0.0}}}});
+    EXPECT_EQ(stated.at(0).sensor->mount, (Pose2{0.5, 0.0, 0.0}));
+    EXPECT_EQ(stated.at(0).sensor->angles, by_transforms.at(0).sensor->angles);
+    EXPECT_NE(stated.at(0).sensor->angles, read({}).at(0).sensor->angles);
 }
 
 /// A map frame above a charging station, or above odometry that nothing corrects, localizes no robot.
