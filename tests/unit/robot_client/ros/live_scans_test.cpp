@@ -290,6 +290,18 @@ TEST_F(LiveScansTest, LasersWithoutAMountAreLeftOutAndNotNeeded) {
     EXPECT_THAT(scans_->skipped(), ElementsAre(Pair("mount unknown", 1)));
 }
 
+TEST_F(LiveScansTest, ALaserWithAMountIsUsedInsteadOfOneWithMoreScans) {
+    begin();
+    add_mount();
+    for (const int n : {0, 1}) add_scan(n, kScan, "elsewhere");
+    add_scan(1, kRear);
+    choose();
+    EXPECT_EQ(scans_->choice().frames.base, "base");
+    const auto taken = scans_->take(now_);
+    ASSERT_TRUE(taken);
+    EXPECT_EQ(taken->sensor->name, "/rear");
+}
+
 TEST_F(LiveScansTest, ALaserThatAppearsAfterTheChoiceIsLate) {
     survey();
     EXPECT_TRUE(scans_->is_late_laser(kRear));
