@@ -115,6 +115,13 @@ private:
             known = channels_.find(record.channel);
         }
         if (known == channels_.end()) {
+            // The schema of a channel is nowhere: its messages are listed without a type.
+            if (const auto channel = untyped_.find(record.channel); channel != untyped_.end()) {
+                if (auto ok = add_channel(channel->second, {}, record); !ok) return ok.error();
+                known = channels_.find(record.channel);
+            }
+        }
+        if (known == channels_.end()) {
             lose(record, fmt::format("a message of channel {}, which is not described", record.channel));
             return none;
         }
@@ -153,6 +160,7 @@ private:
                 auto type = type_without_msg(schema->name);
                 is_summary ? void(schemas_.insert_or_assign(schema->id, std::move(type)))
                            : void(schemas_.try_emplace(schema->id, std::move(type)));
+                return describe_channels_of(schema->id, record);
             }
             return {};
         }
@@ -166,20 +174,46 @@ private:
             summarized_.insert(channel->id);
         }
         const auto schema = schemas_.find(channel->schema);
-        auto topic = topics_.add({channel->topic, schema == schemas_.end() ? std::string() : schema->second,
-                                  mcap_encoding(channel->message_encoding)});
+        if (schema == schemas_.end() && channel->schema != 0) {
+            if (!channels_.contains(channel->id)) untyped_.insert_or_assign(channel->id, *channel);
+            return {};
+        }
+        untyped_.erase(channel->id);
+        return add_channel(*channel, schema == schemas_.end() ? std::string() : schema->second, record);
+    }
+
+    /// Adds the channels that were described before their schema.
+    [[nodiscard]] Result<> describe_channels_of(std::uint16_t schema, const McapRecord& record) {
+        std::vector<McapChannel> described;
+        std::erase_if(untyped_, [&](const auto& channel) {
+            if (channel.second.schema != schema) return false;
+            described.push_back(channel.second);
+            return true;
+        });
+        for (const auto& channel : described) {
+            channels_.erase(channel.id); // messages before have no type
+            if (auto ok = add_channel(channel, schemas_.at(schema), record); !ok) return ok;
+        }
+        return {};
+    }
+
+    /// Adds a channel.
+    /// @param type    of its messages; empty: unknown
+    /// @param record  that describes it, or its schema
+    [[nodiscard]] Result<> add_channel(const McapChannel& channel, std::string type, const McapRecord& record) {
+        auto topic = topics_.add({channel.topic, std::move(type), mcap_encoding(channel.message_encoding)});
         if (!topic) {
             lose(record, "a topic, because there are too many or its name is too long");
             return {};
         }
-        const auto [known, is_new] = channels_.try_emplace(channel->id, *topic);
+        const auto [known, is_new] = channels_.try_emplace(channel.id, *topic);
         if (is_new || known->second == *topic) return {};
         // One of the two has a damaged number. The description in the summary decides, else the newest one.
-        lose(record, fmt::format("channel {}, which is described in two ways", channel->id));
+        lose(record, fmt::format("channel {}, which is described in two ways", channel.id));
         if (search_ == Search::kSummary) {
             if (auto ok = search_channels(); !ok) return ok;
         }
-        if (!summarized_.contains(channel->id)) channels_[channel->id] = *topic;
+        if (!summarized_.contains(channel.id)) channels_[channel.id] = *topic;
         return {};
     }
 
@@ -273,6 +307,7 @@ private:
     std::optional<Chunk> chunk_;                              // while its records are read
     std::unordered_map<std::uint16_t, std::string> schemas_;  // to types
     std::unordered_map<std::uint16_t, std::size_t> channels_; // to topics
+    std::unordered_map<std::uint16_t, McapChannel> untyped_;  // whose schemas are not described so far
     std::unordered_set<std::uint16_t> summarized_;            // channels that the summary describes, once it is read
     TopicList topics_;
     LossList losses_;

@@ -76,10 +76,26 @@ TEST(Mcap, ChunkWithWrongChecksumIsALossAsAWhole) {
 TEST(Mcap, MessagesOfALostDescriptionAreReadByTheSummary) {
     auto mcap = small_mcap({.has_checksums = false});
     ASSERT_THAT(mcap.descriptions, SizeIs(2));
+    const auto topics = read_mcap(mcap.file).topics;
     std::fill_n(mcap.file.begin() + static_cast<std::ptrdiff_t>(mcap.descriptions[0].begin), 9, '\0');
     const auto read = read_mcap(mcap.file);
     EXPECT_EQ(read.messages, all_of(mcap));
+    EXPECT_EQ(read.topics, topics) << "also the types, which only the schemas say";
     EXPECT_EQ(read.losses_count, 1U);
+}
+
+TEST(Mcap, ASchemaMayFollowItsChannel) {
+    auto mcap = small_mcap({.chunk_bytes = 0, .has_summary = false});
+    const auto topics = read_mcap(mcap.file).topics;
+    for (const auto& part : mcap.descriptions) {
+        const auto begin = mcap.file.begin() + static_cast<std::ptrdiff_t>(part.begin);
+        const auto schema_bytes = 9 + static_cast<std::ptrdiff_t>(static_cast<unsigned char>(begin[1]));
+        std::rotate(begin, begin + schema_bytes, mcap.file.begin() + static_cast<std::ptrdiff_t>(part.end));
+    }
+    const auto read = read_mcap(mcap.file);
+    EXPECT_EQ(read.messages, all_of(mcap));
+    EXPECT_EQ(read.topics, topics);
+    EXPECT_EQ(read.losses_count, 0U);
 }
 
 TEST(Mcap, WithoutSummaryOrEndYieldsAll) {
