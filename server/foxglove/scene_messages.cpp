@@ -119,7 +119,8 @@ std::string goals_message(const SessionView& session, double stamp) {
     return update.SerializeAsString();
 }
 
-std::string pose_graph_message(const localization::PoseGraphView& graph, double stamp) {
+std::string pose_graph_message(const localization::PoseGraphView& graph, std::size_t robots, double stamp) {
+    const auto is_shown = [&](const auto& keyframe) { return keyframe.is_located && keyframe.robot < robots; };
     ::foxglove::SceneUpdate update;
     ::foxglove::SceneEntity& entity = add_entity("pose_graph", stamp, update);
     ::foxglove::LinePrimitive& way = add_lines(kGrey, entity);
@@ -128,7 +129,7 @@ std::string pose_graph_message(const localization::PoseGraphView& graph, double 
     for (const slam::Edge& edge : graph.edges) {
         const auto& from = graph.keyframes[edge.from];
         const auto& to = graph.keyframes[edge.to];
-        if (!from.is_located || !to.is_located) continue;
+        if (!is_shown(from) || !is_shown(to)) continue;
         ::foxglove::LinePrimitive& lines = !edge.is_robust ? way : edge.weight < slam::kUsedWeight ? unused : loops;
         add_end(from.pose, lines);
         add_end(to.pose, lines);

@@ -28,8 +28,10 @@ inline constexpr std::size_t kFrontierCellsShown = 20'000;
 [[nodiscard]] std::string goals_message(const SessionView& session, double stamp);
 
 /// Returns the edges between located keyframes as lines: those along the way, those that close loops, and those that
-/// are switched off, each in its colour.
-/// @param stamp  seconds
-[[nodiscard]] std::string pose_graph_message(const localization::PoseGraphView& graph, double stamp);
+/// are switched off, each in its colour. Edges of a known map, which no robot measured, are left out.
+/// @param robots  number of robots in the session
+/// @param stamp   seconds
+[[nodiscard]] std::string pose_graph_message(const localization::PoseGraphView& graph, std::size_t robots,
+                                             double stamp);
 
 } // namespace scanloom::foxglove

@@ -208,7 +208,8 @@ std::shared_ptr<const std::string> SessionFeed::message_of(const Channel& channe
     case Content::kLandmarks:
         return state.landmarks ? made(landmarks_message(*state.landmarks, newest_stamp(maps))) : nullptr;
     case Content::kGoals: return made(goals_message(state, newest_stamp(maps)));
-    case Content::kPoseGraph: return state.graph ? made(pose_graph_message(*state.graph, newest_stamp(maps))) : nullptr;
+    case Content::kPoseGraph:
+        return state.graph ? made(pose_graph_message(*state.graph, maps.robots.size(), newest_stamp(maps))) : nullptr;
     case Content::kPose: {
         const RobotState& robot = maps.robots[*channel.robot];
         return robot.pose ? made(pose_message({robot.name, robot.stamp, *robot.pose})) : nullptr;

@@ -48,11 +48,13 @@ TEST(SceneMessages, GoalsHaveTheNamesOfTheirRobots) {
 TEST(SceneMessages, EdgesAreLinesByTheirKind) {
     localization::PoseGraphView graph;
     for (const double x : {0.0, 1.0, 2.0, 3.0}) graph.keyframes.push_back({0, {x, 0.0, 0.0}, x < 3.0});
-    graph.edges = {{.from = 0, .to = 1},
+    graph.keyframes.push_back({1, {4.0, 0.0, 0.0}, true});
+    graph.edges = {{.from = 4, .to = 0}, // of a known map, which is no robot
+                   {.from = 0, .to = 1},
                    {.from = 0, .to = 2, .is_robust = true, .weight = 0.9},
                    {.from = 1, .to = 2, .is_robust = true, .weight = 0.1},
                    {.from = 2, .to = 3}};
-    const auto entity = entity_of(pose_graph_message(graph, 7.5));
+    const auto entity = entity_of(pose_graph_message(graph, 1, 7.5));
     ASSERT_EQ(entity.lines_size(), 3);
     EXPECT_EQ(ends_of(entity.lines(0)), (Ends{{0.0, 0.0}, {1.0, 0.0}})) << "the way, without what is not located";
     EXPECT_EQ(ends_of(entity.lines(1)), (Ends{{0.0, 0.0}, {2.0, 0.0}})) << "loops";
