@@ -1,9 +1,9 @@
 #include "robot_client/app/info.hpp"
 
 #include "common/app/standard_streams.hpp"
+#include "robot_client/app/ros_options.hpp"
 #include "robot_client/ros/frame_choice.hpp"
 
-#include <boost/algorithm/string/replace.hpp>
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -72,8 +72,8 @@ std::string times_text(const RecordingSurvey& found) {
 
 } // namespace
 
-std::string info_text(const std::string& file, const RecordingSurvey& found, const Result<RecordingPlan>& plan) {
-    std::string text = fmt::format("{}: {}\n{}", file, times_text(found), topics_text(found));
+std::string info_text(const InfoOptions& options, const RecordingSurvey& found, const Result<RecordingPlan>& plan) {
+    std::string text = fmt::format("{}: {}\n{}", options.file, times_text(found), topics_text(found));
     for (const auto& loss : texts_of(found.losses)) text += loss + "\n";
     if (!plan) return text + fmt::format("it cannot be replayed: {}\n", plan.error().message);
     text += fmt::format("{}\nscans: {} of {} can be sent",
@@ -81,9 +81,9 @@ std::string info_text(const std::string& file, const RecordingSurvey& found, con
                         plan->scan_count, plan->scans.size());
     text += plan->skipped.empty() ? "\n" : fmt::format("; skipped: {}\n", skipped_text(plan->skipped));
     for (const auto& note : plan->notes) text += note + "\n";
-    return text + fmt::format("replay it with: scanloom-robot --server HOST:7447 --session NAME --robot NAME replay "
-                              "'{}'\n",
-                              boost::algorithm::replace_all_copy(file, "'", R"('\'')"));
+    return text + fmt::format("replay it with: scanloom-robot --server HOST:7447 --session NAME --robot NAME{} replay "
+                              "{}{}\n",
+                              options.scan_arguments, quoted(options.file), options.ros_arguments);
 }
 
 ExitCode run(const InfoOptions& options) {
@@ -92,8 +92,8 @@ ExitCode run(const InfoOptions& options) {
         standard_error().write(fmt::format("scanloom-robot: {}\n", found.error().message));
         return kExitFailed;
     }
-    const auto plan = robot::plan(*found, {});
-    fmt::print("{}", info_text(options.file, *found, plan));
+    const auto plan = robot::plan(*found, options.recording);
+    fmt::print("{}", info_text(options, *found, plan));
     return kExitDone;
 }
 

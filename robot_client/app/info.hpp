@@ -9,9 +9,9 @@
 namespace scanloom::robot {
 
 /// Returns what a recording contains, as lines for people: topics, frames, losses, and the command that replays it.
-/// @param file  its path
-/// @param plan  how it is replayed; its error says why it cannot be
-[[nodiscard]] std::string info_text(const std::string& file, const RecordingSurvey& found,
+/// @param options  its path, and the options that the command repeats
+/// @param plan     how it is replayed; its error says why it cannot be
+[[nodiscard]] std::string info_text(const InfoOptions& options, const RecordingSurvey& found,
                                     const Result<RecordingPlan>& plan);
 
 /// Prints info_text() of a file.

@@ -43,9 +43,6 @@ Result<std::unique_ptr<FoxgloveSource>> make_foxglove(const RobotOptions& option
     if (!tls) return tls.error();
     source.link.tls = std::move(*tls);
     source.scans.robot = foxglove.robot;
-    source.scans.robot.poses = options.poses;
-    source.scans.robot.ranges.range_max = options.range_max;
-    source.scans.robot.ranges.no_return = options.no_return;
     source.publish.map_frame = foxglove.map_frame.substr(foxglove.map_frame.starts_with('/') ? 1 : 0); // as in tf2
     source.publish.transform = foxglove.publish_tf;
     if (foxglove.publish_map) {

@@ -7,6 +7,7 @@
 #include "robot_client/ros/frame_choice.hpp"
 #include "robot_client/ros/recorded_scans.hpp"
 #include "robot_client/sources/carmen_log.hpp"
+#include "robot_client/sources/line_reader.hpp"
 #include "robot_client/sources/pose_check.hpp"
 #include "robot_client/sources/sonar_log.hpp"
 #include "sim/drive/behaviour.hpp"
@@ -14,10 +15,13 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <filesystem>
 #include <fstream>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 namespace scanloom::robot {
@@ -42,11 +46,19 @@ void note_order(const StampReport& stamps, const std::string& file, PreparedSour
 
 /// Returns whether a file is a recording of ROS, readable or not.
 bool is_recording(const std::string& path) {
+    if (std::error_code unknown; std::filesystem::is_directory(path, unknown)) return true;
     std::string first_bytes(kFormatBytes, '\0');
     std::ifstream file(path, std::ios::binary);
     file.read(first_bytes.data(), static_cast<std::streamsize>(first_bytes.size()));
     first_bytes.resize(static_cast<std::size_t>(file.gcount()));
     return format_of(first_bytes).has_value();
+}
+
+/// Returns whether a file is a recording of ROS that is compressed as a whole, as no recorder does.
+bool is_compressed_recording(const std::string& path) {
+    auto reader = LineReader::open(path);
+    const auto line = reader ? reader->next() : Result<std::optional<std::string_view>>(std::nullopt);
+    return line && *line && format_of(std::string(**line) + '\n').has_value();
 }
 
 /// Shows how far a file has been read, from time to time.
@@ -59,6 +71,17 @@ OnRead show_reading(const std::string& file, Console& console) {
 }
 
 Result<PreparedSource> make_log(const RobotOptions& options, const ReplayOptions& replay, Console& console) {
+    if (is_compressed_recording(replay.file)) {
+        return Error{Errc::kUnsupportedVersion,
+                     fmt::format("{}: a recording of ROS that is compressed as a whole; decompress it with `gunzip` or "
+                                 "`bunzip2`, and name the decompressed file",
+                                 replay.file)};
+    }
+    if (!replay.ros_arguments.empty()) {
+        return Error{Errc::kInvalidField,
+                     fmt::format("{}: not a recording of ROS, so that{} says nothing about it; leave it out",
+                                 replay.file, replay.ros_arguments)};
+    }
     std::optional<SkippedLines> skipped(std::in_place, replay.file, console);
     const auto report = [&](const SkippedLine& line) { skipped->add(line); };
     auto log =
@@ -75,12 +98,8 @@ Result<PreparedSource> make_log(const RobotOptions& options, const ReplayOptions
     return prepared;
 }
 
-Result<PreparedSource> make_recording(const RobotOptions& options, const ReplayOptions& replay, Console& console) {
-    RecordingOptions stated = replay.recording;
-    stated.poses = options.poses;
-    stated.ranges.range_max = options.range_max;
-    stated.ranges.no_return = options.no_return;
-    auto scans = RecordedScans::open(replay.file, stated, show_reading(replay.file, console));
+Result<PreparedSource> make_recording(const ReplayOptions& replay, Console& console) {
+    auto scans = RecordedScans::open(replay.file, replay.recording, show_reading(replay.file, console));
     if (!scans) return scans.error();
     const RecordingPlan& plan = scans->plan();
     for (const auto& loss : texts_of(scans->losses())) console.note(fmt::format("{}: {}", replay.file, loss));
@@ -98,8 +117,7 @@ Result<PreparedSource> make_recording(const RobotOptions& options, const ReplayO
 }
 
 Result<PreparedSource> make(const RobotOptions& options, const ReplayOptions& replay, Console& console) {
-    auto prepared =
-        is_recording(replay.file) ? make_recording(options, replay, console) : make_log(options, replay, console);
+    auto prepared = is_recording(replay.file) ? make_recording(replay, console) : make_log(options, replay, console);
     if (prepared) prepared->source = std::make_unique<CheckedPoses>(std::move(prepared->source));
     return prepared;
 }

@@ -3,6 +3,7 @@
 #include "common/app/command_line.hpp"
 #include "common/app/settings.hpp"
 #include "common/scan/limits.hpp"
+#include "robot_client/app/ros_options.hpp"
 #include "robot_client/app/simulate_options.hpp"
 #include "robot_client/uplink/limits.hpp"
 
@@ -27,6 +28,8 @@ constexpr const char* kAbout =
 constexpr const char* kFooter =
     "Every option may also stand in the file of --config (TOML; those of a source in a section of its name) or in the\n"
     "environment (--cell-size as SCANLOOM_CELL_SIZE). A flag overrides the environment, which overrides the file.";
+
+constexpr const char* kScansGroup = "Scans and poses"; // heading in the help text
 
 /// Options as the parser sets them, before they are moved into RobotOptions.
 struct Raw {
@@ -103,18 +106,28 @@ void add_scan_options(CLI::App& app, RobotOptions& options, Raw& raw) {
     app.add_option("--max-range", options.range_max,
                    "Metres; readings of at least this length, or of the length that a line of a log states, have no "
                    "return. Default: the value of the source, for logs at most 50, and 5.11 for sonar")
-        ->check(check_within(0.001, kRangeMax));
+        ->check(check_within(0.001, kRangeMax))
+        ->group(kScansGroup);
     app.add_option("--no-return", raw.no_return,
                    "Meaning of beams without a return: free up to the range, or ignored (drop). Default: free if the "
                    "source states its sensor's range, else drop (FLASER)")
-        ->check(CLI::IsMember({"free", "drop"}));
+        ->check(CLI::IsMember({"free", "drop"}))
+        ->group(kScansGroup);
     app.add_option(
            "--poses", raw.poses,
            "What the robot knows of its poses: map = poses in the map, which are used as they are; odometry = "
            "odometry, which drifts; none = nothing. With odometry and none the server estimates where scans "
            "were taken. The same for all scans of a robot. Default: map; for recordings of ROS and with foxglove the "
            "best that there is")
-        ->type_name("TEXT:{map,odometry,none}");
+        ->type_name("TEXT:{map,odometry,none}")
+        ->group(kScansGroup);
+}
+
+/// Sets what the options of all sources state of a recording of ROS.
+void take_scan_options(const RobotOptions& options, RecordingOptions& recording) {
+    recording.poses = options.poses;
+    recording.ranges.range_max = options.range_max;
+    recording.ranges.no_return = options.no_return;
 }
 
 CLI::App* add_sonar(CLI::App& app, SonarReplayOptions& options) {
@@ -197,8 +210,14 @@ parse_options(int argc, const char* const* argv) {
         if (auto mistake = mistake_in(truth_options)) return usage_error(app, *mistake);
         return truth_options;
     }
+    sort_in(raw, options);
+    if (const auto wrong = set_poses(raw.poses, ld06->parsed() ? &ld06_options : nullptr, options); !wrong.empty()) {
+        return usage_error(app, wrong);
+    }
     if (info->parsed()) {
         if (info_options.file.empty()) return usage_error(app, "info: name the FILE");
+        take_scan_options(options, info_options.recording);
+        info_options.scan_arguments = stated_arguments(app, kScansGroup);
         return info_options;
     }
     if (lidars->parsed()) {
@@ -213,10 +232,6 @@ parse_options(int argc, const char* const* argv) {
                                             "servers; use larger cells, or a shorter range",
                                             *options.range_max, kReachCellsMax, *options.cell_size));
     }
-    sort_in(raw, options);
-    if (const auto wrong = set_poses(raw.poses, ld06->parsed() ? &ld06_options : nullptr, options); !wrong.empty()) {
-        return usage_error(app, wrong);
-    }
     const bool is_recording = !ld06->parsed() && !lidar->parsed() && !foxglove->parsed() &&
                               !(simulate->parsed() && simulate_options.drive == "explore");
     if (!options.spool.empty() && is_recording) {
@@ -225,6 +240,7 @@ parse_options(int argc, const char* const* argv) {
     }
     if (replay->parsed()) {
         if (replay_options.file.empty()) return usage_error(app, "replay: name the FILE to replay");
+        take_scan_options(options, replay_options.recording);
         options.source = std::move(replay_options);
     } else if (sonar->parsed()) {
         if (sonar_options.poses.empty()) return usage_error(app, "sonar: name two files, MEASUREMENTS and POSES");
@@ -241,6 +257,7 @@ parse_options(int argc, const char* const* argv) {
         options.source = std::move(chosen);
     } else if (foxglove->parsed()) {
         if (const auto wrong = complaint_about(foxglove_options); !wrong.empty()) return usage_error(app, wrong);
+        take_scan_options(options, foxglove_options.robot);
         options.source = std::move(foxglove_options);
     } else if (simulate->parsed()) {
         if (auto mistake = mistake_in(simulate_options, options.poses.value_or(Poses::kMap)))

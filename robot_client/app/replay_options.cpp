@@ -6,28 +6,39 @@
 #include <CLI/CLI.hpp>
 
 namespace scanloom::robot {
+namespace {
+
+constexpr const char* kRecordingsGroup = "Recordings of ROS"; // heading in the help text
+
+} // namespace
 
 CLI::App* add_replay(CLI::App& app, ReplayOptions& options) {
-    auto* replay = app.add_subcommand("replay", "Replay a CARMEN log, a ROS 1 bag, an MCAP file or a rosbag2 database");
+    auto* replay =
+        app.add_subcommand("replay", "Replay a CARMEN log, a ROS 1 bag, an MCAP file or a recording of rosbag2");
     // not required() in the parser: an environment for both sources would then require it everywhere
     replay
         ->add_option(
             "FILE", options.file,
-            "CARMEN log (plain, gzip or bzip2), ROS 1 bag, MCAP file or rosbag2 database; the content decides which it "
-            "is, not the name")
+            "CARMEN log (plain, gzip or bzip2), ROS 1 bag, MCAP file, or a database or the directory of rosbag2; the "
+            "content decides which it is, not the name")
         ->configurable(false);
     add_checked(*replay, "--speed", options.speed,
                 "1 = as recorded, 0 = as fast as the server accepts scans. A pause of more than 10 minutes in the "
                 "log counts as 10",
                 check_not_negative);
-    add_ros_options(*replay, options.recording, "Recordings of ROS");
+    add_ros_options(*replay, options.recording, kRecordingsGroup);
+    replay->parse_complete_callback(
+        [replay, &options] { options.ros_arguments = stated_arguments(*replay, kRecordingsGroup); });
     return replay;
 }
 
 CLI::App* add_info(CLI::App& app, InfoOptions& options) {
     auto* info = app.add_subcommand(
         "info", "List the topics, frames and times of a recording of ROS, and the command that replays it");
-    info->add_option("FILE", options.file, "ROS 1 bag, MCAP or rosbag2 .db3")->configurable(false);
+    info->add_option("FILE", options.file, "ROS 1 bag, MCAP file, rosbag2 database or directory")->configurable(false);
+    add_ros_options(*info, options.recording, kRecordingsGroup);
+    info->parse_complete_callback(
+        [info, &options] { options.ros_arguments = stated_arguments(*info, kRecordingsGroup); });
     return info;
 }
 

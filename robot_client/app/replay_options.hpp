@@ -14,18 +14,22 @@ namespace scanloom::robot {
 struct ReplayOptions {
     std::string file;
     double speed = 0.0;         ///< 0 = as fast as the server accepts scans, 1 = as recorded
-    RecordingOptions recording; ///< of a recording of ROS; poses and ranges are not set here
+    RecordingOptions recording; ///< of a recording of ROS
+    std::string ros_arguments;  ///< the options that are only for recordings of ROS, as on the command line
 };
 
 /// Lists what a recording contains; needs no server.
 struct InfoOptions {
     std::string file;
+    RecordingOptions recording;
+    std::string scan_arguments; ///< options of all sources, as on the command line
+    std::string ros_arguments;  ///< those of recordings of ROS
 };
 
 /// Adds the subcommand, which sets `options`.
 CLI::App* add_replay(CLI::App& app, ReplayOptions& options);
 
-/// Adds the subcommand, which sets `options`.
+/// Adds the subcommand, which sets `options` but for `scan_arguments`.
 CLI::App* add_info(CLI::App& app, InfoOptions& options);
 
 } // namespace scanloom::robot

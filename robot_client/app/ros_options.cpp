@@ -3,6 +3,8 @@
 #include "robot_client/app/pose_text.hpp"
 
 #include <CLI/CLI.hpp>
+#include <boost/algorithm/string/replace.hpp>
+#include <fmt/format.h>
 
 #include <optional>
 #include <tuple>
@@ -32,6 +34,21 @@ void add_meaning(CLI::App& app, const std::string& name, std::optional<bool>& is
 }
 
 } // namespace
+
+std::string quoted(const std::string& text) {
+    return fmt::format("'{}'", boost::algorithm::replace_all_copy(text, "'", R"('\'')"));
+}
+
+std::string stated_arguments(const CLI::App& app, const std::string& group) {
+    std::string arguments;
+    for (const auto* option : app.get_options()) {
+        if (option->get_group() != group) continue;
+        for (const auto& value : option->results()) {
+            arguments += fmt::format(" {} {}", option->get_name(), quoted(value));
+        }
+    }
+    return arguments;
+}
 
 void add_ros_options(CLI::App& app, RecordingOptions& options, const std::string& group) {
     const auto grouped = [&](CLI::Option* option) { option->group(group); };

@@ -14,4 +14,10 @@ namespace scanloom::robot {
 /// @param group  heading in the help text
 void add_ros_options(CLI::App& app, RecordingOptions& options, const std::string& group);
 
+/// Returns the options of a group that were stated, as a command line has them: " --topic '/scan'".
+[[nodiscard]] std::string stated_arguments(const CLI::App& app, const std::string& group);
+
+/// Returns a text in the quotes of a shell.
+[[nodiscard]] std::string quoted(const std::string& text);
+
 } // namespace scanloom::robot

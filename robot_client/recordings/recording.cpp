@@ -5,8 +5,12 @@
 #include "robot_client/recordings/recorded_bytes.hpp"
 #include "robot_client/recordings/rosbag.hpp"
 #include "robot_client/recordings/rosbag2.hpp"
+#include "robot_client/recordings/split_recording.hpp"
 
 #include <fmt/format.h>
+
+#include <system_error>
+#include <utility>
 
 namespace scanloom::robot {
 namespace {
@@ -29,6 +33,11 @@ std::optional<RecordingFormat> format_of(std::string_view first_bytes) {
 }
 
 Result<std::unique_ptr<Recording>> open_recording(const std::filesystem::path& path) {
+    if (std::error_code unknown; std::filesystem::is_directory(path, unknown)) {
+        auto parts = parts_in(path);
+        if (!parts) return parts.error();
+        return open_parts(std::move(*parts));
+    }
     auto file = BytesOfFile::open(path);
     if (!file) return file.error();
     auto first = (*file)->read(0, kFormatBytes);

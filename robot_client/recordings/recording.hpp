@@ -96,11 +96,11 @@ inline constexpr std::size_t kFormatBytes = 132'000;
 [[nodiscard]] std::optional<RecordingFormat> format_of(std::string_view first_bytes);
 
 /// Opens a recording. The content determines its format, not its name.
-/// @param path  a file
+/// @param path  a file, or the directory of a recording (see parts_in())
 /// @return the recording, before its first message
 /// Errors: kNotFound if there is no such file or it cannot be opened; kUnsupportedVersion if it has another version of a
 ///         known format, is encrypted, or is compressed as a whole; the message says what converts it. kMalformed if
-///         it is no recording, or reading fails.
+///         it is no recording, or reading fails; those of parts_in().
 [[nodiscard]] Result<std::unique_ptr<Recording>> open_recording(const std::filesystem::path& path);
 
 } // namespace scanloom::robot

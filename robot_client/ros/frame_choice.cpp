@@ -7,6 +7,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <iterator>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -33,13 +35,26 @@ std::optional<std::string> moving_frame(const RecordingSurvey& found, const std:
     return std::nullopt;
 }
 
-/// Returns the topic with most odometry messages that can be read.
-std::optional<std::size_t> richest_odometry(const RecordingSurvey& found) {
-    std::optional<std::size_t> richest;
+/// Returns how many characters the namespaces of two topics have in common.
+std::size_t common_namespace(const std::string& a, const std::string& b) {
+    const auto differ = std::ranges::mismatch(a, b).in1;
+    return static_cast<std::size_t>(std::find(std::make_reverse_iterator(differ), a.rend(), '/').base() - a.begin());
+}
+
+/// Returns the topic of odometry that is most likely that of the laser's robot: of a frame above the laser, or else in
+/// its namespace, or else with most messages.
+std::optional<std::size_t> likely_odometry(const RecordingSurvey& found, const LeadingLaser& laser) {
+    const auto chain = found.tree.ancestors(laser.frame);
+    std::optional<std::size_t> best;
+    const auto rank = [&](std::size_t topic) {
+        const auto& [name, messages] = std::tie(found.topics[topic].name, found.topics[topic].messages);
+        const bool is_above = std::ranges::find(chain, found.odom_child.at(topic)) != chain.end();
+        return std::tuple(is_above, common_namespace(name, laser.topic), messages);
+    };
     for (const auto& [topic, tree] : found.odometry) {
-        if (!richest || found.topics[topic].messages > found.topics[*richest].messages) richest = topic;
+        if (!best || rank(topic) > rank(*best)) best = topic;
     }
-    return richest;
+    return best;
 }
 
 /// Returns the topic of --odom-topic.
@@ -85,13 +100,13 @@ Poses available_poses(const FrameTree& tree, const std::vector<std::string>& abo
 
 /// Chooses the topic whose poses replace transforms: that of the options, or one where transforms contain no poses.
 Result<std::optional<std::size_t>> choose_odometry(const RecordingSurvey& found, const RecordingOptions& options,
-                                                   bool has_poses) {
+                                                   const LeadingLaser& laser, bool has_poses) {
     if (!options.odom_topic.empty()) {
         const auto topic = stated_odometry(found, options.odom_topic);
         if (!topic) return topic.error();
         return std::optional(*topic);
     }
-    return has_poses ? std::nullopt : richest_odometry(found);
+    return has_poses ? std::nullopt : likely_odometry(found, laser);
 }
 
 /// Returns the frames above the robot's that poses may be in, the nearest first.
@@ -103,40 +118,61 @@ std::vector<std::string> fixed_frames(const FrameTree& tree, const std::string& 
     return above;
 }
 
+/// Replaces the transforms of the robot's frame by the poses of the chosen topic.
+/// @param choice  its odom_child and base are set
+/// @return the frame that the poses are in
+std::string replace_by_odometry(RecordingSurvey& found, const RecordingOptions& options, FrameChoice& choice) {
+    const FrameTree& poses = found.odometry.at(*choice.odom_topic);
+    const std::string& child = found.odom_child.at(*choice.odom_topic);
+    const auto in = poses.ancestors(child).at(1);
+    // Many robots name a frame in their odometry that no transform has.
+    const std::string& stated = options.base_frame;
+    const bool is_of_stated = !found.tree.has(child) && found.tree.has(stated) && stated != in;
+    choice.odom_child = choice.base = is_of_stated ? stated : child;
+    found.tree.replace(choice.odom_child, poses, child);
+    return in;
+}
+
 } // namespace
 
-Result<FrameChoice> choose_frames(RecordingSurvey& found, const RecordingOptions& options,
-                                  const std::string& laser_frame) {
-    const auto chain = found.tree.ancestors(laser_frame);
-    const auto moving = moving_frame(found, laser_frame);
+Result<FrameChoice> choose_frames(RecordingSurvey& found, const RecordingOptions& options, const LeadingLaser& laser) {
+    const auto chain = found.tree.ancestors(laser.frame);
+    const auto moving = moving_frame(found, laser.frame);
     FrameChoice choice;
-    const auto topic = choose_odometry(found, options, moving.has_value());
+    const auto topic = choose_odometry(found, options, laser, moving.has_value());
     if (!topic) return topic.error();
     choice.odom_topic = *topic;
     std::string odometry;
     if (choice.odom_topic) {
-        choice.base = found.odom_child.at(*choice.odom_topic);
-        found.tree.replace(choice.base, found.odometry.at(*choice.odom_topic));
-        odometry = found.tree.ancestors(choice.base).at(1);
+        odometry = replace_by_odometry(found, options, choice);
     } else {
         choice.base = moving.value_or(chain.back());
     }
     if (!options.base_frame.empty()) choice.base = options.base_frame;
-    if (!found.tree.has(choice.base) && choice.base != laser_frame) {
+    if (!found.tree.has(choice.base) && choice.base != laser.frame) {
         return Error{Errc::kNotFound, fmt::format("--base-frame {}: no transform has this frame; frames from the "
                                                   "laser up are: {}",
                                                   choice.base, fmt::join(chain, ", "))};
+    }
+    const auto above_base = found.tree.ancestors(choice.base);
+    const bool needs_odometry = choice.odom_topic && options.poses != Poses::kNone;
+    if (needs_odometry && std::ranges::find(above_base, choice.odom_child) == above_base.end()) {
+        return Error{Errc::kInvalidField,
+                     fmt::format("--base-frame {}: the poses of {} are those of the frame {}, from which no transforms "
+                                 "lead to {}; leave --base-frame out, or use --poses none",
+                                 choice.base, found.topics[*choice.odom_topic].name, choice.odom_child, choice.base)};
     }
     const auto frames = fixed_frames(found.tree, choice.base, odometry);
     choice.poses = available_poses(found.tree, frames, options);
     if (choice.poses == Poses::kNone) return choice;
     if (!options.fixed_frame.empty()) {
         choice.fixed = options.fixed_frame;
-        const auto above = found.tree.ancestors(choice.base);
-        if (std::ranges::find(above, choice.fixed) != above.end()) return choice;
+        const auto above_fixed = found.tree.ancestors(choice.fixed); // some robots have their odometry below themselves
+        if (std::ranges::find(above_base, choice.fixed) != above_base.end()) return choice;
+        if (std::ranges::find(above_fixed, choice.base) != above_fixed.end()) return choice;
         return Error{Errc::kNotFound, fmt::format("--fixed-frame {}: no transforms lead from it to the robot's frame; "
                                                   "frames from that up are: {}",
-                                                  choice.fixed, fmt::join(above, ", "))};
+                                                  choice.fixed, fmt::join(above_base, ", "))};
     }
     if (auto fixed = fixed_frame(frames, choice.poses)) {
         choice.fixed = std::move(*fixed);

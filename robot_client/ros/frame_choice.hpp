@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 
@@ -15,16 +16,25 @@ struct FrameChoice {
     Poses poses = Poses::kNone;
     std::string base;                      ///< of the robot
     std::string fixed;                     ///< empty if poses are kNone
-    std::optional<std::size_t> odom_topic; ///< whose poses replace the transforms of the robot's frame
+    std::optional<std::size_t> odom_topic; ///< whose poses replace transforms
+    std::string odom_child;                ///< the frame whose transforms they replace; empty if there is no such topic
+    std::set<std::string> unused_tf;       ///< namespaces whose transforms are those of other robots
+};
+
+/// The laser whose transforms tell the robot's frame.
+struct LeadingLaser {
+    std::string topic;
+    std::string frame;
 };
 
 /// Chooses frames from what a recording has, and from what people say. Poses of a chosen odometry topic replace the
 /// transforms of its robot's frame.
-/// @param laser_frame  of the laser whose transforms tell the robot's frame. If they do not, it is the only one whose
-///                     parent is a frame of odometry, or else of a map
-/// Errors: kNotFound if a frame or topic of the options is not there, or the poses that they ask for are not.
+/// @param laser  if its transforms do not tell the robot's frame, it is the only one whose parent is a frame of odometry,
+///               or else of a map
+/// Errors: kNotFound if a frame or topic of the options is not there, or the poses that they ask for are not;
+///         kInvalidField if the odometry is not that of the stated frame of the robot.
 [[nodiscard]] Result<FrameChoice> choose_frames(RecordingSurvey& found, const RecordingOptions& options,
-                                                const std::string& laser_frame);
+                                                const LeadingLaser& laser);
 
 /// Returns where poses come from, as a sentence for people.
 /// @param base        frame of the robot

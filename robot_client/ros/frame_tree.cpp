@@ -6,12 +6,12 @@
 
 namespace scanloom::robot {
 
-void FrameTree::add(const RosTransform& transform, bool is_static) {
+void FrameTree::add(const RosTransform& transform, bool is_static, std::uint32_t epoch) {
     if (kept_ && names_.size() >= kFramesMax && !(has(transform.child) && has(transform.header.frame))) return;
     Edge& edge = edges_[id_of(transform.child)];
     const Transform one{id_of(transform.header.frame), transform.T_parent_child.translation(),
                         Eigen::Quaterniond(transform.T_parent_child.linear())};
-    if (!is_static) return insert(edge, transform.header.stamp, one);
+    if (!is_static) return insert(edge, {transform.header.stamp, epoch}, one);
     if (!edge.fixed) ++size_;
     edge.fixed = one;
 }
@@ -20,18 +20,19 @@ bool FrameTree::are_equal(const Transform& a, const Transform& b) {
     return a.parent == b.parent && a.translation == b.translation && a.rotation.coeffs() == b.rotation.coeffs();
 }
 
-void FrameTree::insert(Edge& edge, RosTime stamp, const Transform& one) {
+void FrameTree::insert(Edge& edge, EpochTime time, const Transform& one) {
     auto& moving = edge.moving;
-    if (kept_ && !moving.empty() && std::prev(moving.end())->first - stamp > kSetBack) {
+    if (kept_ && !moving.empty() && std::prev(moving.end())->first.stamp - time.stamp > kSetBack) {
         size_ -= moving.size();
         moving.clear();
     }
-    if (!moving.emplace(stamp, one).second) return;
+    if (!moving.emplace(time, one).second) return;
     ++size_;
     forget(edge);
     const auto newest = std::prev(moving.end());
-    if (newest->first != stamp || moving.size() < 3) return;
+    if (newest->first != time || moving.size() < 3) return;
     const auto middle = std::prev(newest);
+    if (std::prev(middle)->first.epoch != time.epoch) return;
     if (!are_equal(middle->second, one) || !are_equal(std::prev(middle)->second, one)) return;
     moving.erase(middle); // of equal ones in a row
     --size_;
@@ -40,27 +41,29 @@ void FrameTree::insert(Edge& edge, RosTime stamp, const Transform& one) {
 /// Forgets transforms that are older than what is kept, but the last of them.
 void FrameTree::forget(Edge& edge) {
     auto& moving = edge.moving;
-    while (kept_ && moving.size() > 2 && std::prev(moving.end())->first - std::next(moving.begin())->first > *kept_) {
+    while (kept_ && moving.size() > 2 &&
+           std::prev(moving.end())->first.stamp - std::next(moving.begin())->first.stamp > *kept_) {
         moving.erase(moving.begin());
         --size_;
     }
 }
 
 /// Returns the transform of a child at a time.
-std::variant<FrameTree::Transform, NoTransform> FrameTree::at(const Edge& edge, RosTime stamp) {
+std::variant<FrameTree::Transform, NoTransform> FrameTree::at(const Edge& edge, EpochTime time) {
     if (edge.fixed) return *edge.fixed;
     const auto& moving = edge.moving;
     if (moving.empty()) return NoTransform::kNotConnected;
-    const auto after = moving.lower_bound(stamp);
-    if (after == moving.end()) return NoTransform::kAfter;
-    if (after->first == stamp) return after->second;
-    if (after == moving.begin()) return NoTransform::kBefore;
+    const auto after = moving.lower_bound(time);
+    if (after == moving.end() || after->first.epoch != time.epoch) return NoTransform::kAfter;
+    if (after->first == time) return after->second;
+    if (after == moving.begin() || std::prev(after)->first.epoch != time.epoch) return NoTransform::kBefore;
     const auto before = std::prev(after);
+    const RosTime span = after->first.stamp - before->first.stamp;
     const Transform& from = before->second;
     const Transform& to = after->second;
     if (are_equal(from, to)) return from;
-    if (from.parent != to.parent || after->first - before->first > kHoleMax) return NoTransform::kHole;
-    const double share = static_cast<double>(stamp - before->first) / static_cast<double>(after->first - before->first);
+    if (from.parent != to.parent || span > kHoleMax) return NoTransform::kHole;
+    const double share = static_cast<double>(time.stamp - before->first.stamp) / static_cast<double>(span);
     return Transform{from.parent, from.translation + share * (to.translation - from.translation),
                      from.rotation.slerp(share, to.rotation)};
 }
@@ -68,12 +71,12 @@ std::variant<FrameTree::Transform, NoTransform> FrameTree::at(const Edge& edge, 
 /// Lists a frame and those above it at a time, without frames that are above themselves: between these there are two
 /// ways.
 /// @return why the last one has no frame above it; nullopt: it has no parent at any time
-std::optional<NoTransform> FrameTree::climb(Frame frame, RosTime stamp, std::vector<Step>& steps) const {
+std::optional<NoTransform> FrameTree::climb(Frame frame, EpochTime time, std::vector<Step>& steps) const {
     steps.push_back({frame, Eigen::Isometry3d::Identity()});
     for (;;) {
         const auto edge = edges_.find(steps.back().frame);
         if (edge == edges_.end()) return std::nullopt;
-        const auto found = at(edge->second, stamp);
+        const auto found = at(edge->second, time);
         if (const auto* reason = std::get_if<NoTransform>(&found)) return *reason;
         const auto& up = std::get<Transform>(found);
         const auto loop = std::ranges::find(steps, up.parent, &Step::frame);
@@ -87,15 +90,15 @@ std::optional<NoTransform> FrameTree::climb(Frame frame, RosTime stamp, std::vec
 }
 
 std::variant<Eigen::Isometry3d, NoTransform> FrameTree::find(std::string_view target, std::string_view source,
-                                                             RosTime stamp) const {
+                                                             EpochTime time) const {
     if (target == source) return Eigen::Isometry3d::Identity();
     const auto target_id = ids_.find(std::string(target));
     const auto source_id = ids_.find(std::string(source));
     if (target_id == ids_.end() || source_id == ids_.end()) return NoTransform::kNotConnected;
     std::vector<Step> from_source;
     std::vector<Step> from_target;
-    const auto source_end = climb(source_id->second, stamp, from_source);
-    const auto target_end = climb(target_id->second, stamp, from_target);
+    const auto source_end = climb(source_id->second, time, from_source);
+    const auto target_end = climb(target_id->second, time, from_target);
     for (const Step& step : from_source) {
         const auto common = std::ranges::find(from_target, step.frame, &Step::frame);
         if (common == from_target.end()) continue;
@@ -126,9 +129,31 @@ std::set<std::string> FrameTree::children_of(bool (*is_parent)(std::string_view)
 }
 
 bool FrameTree::is_static(std::string_view child) const {
+    const Edge* edge = edge_of(child);
+    return edge != nullptr && edge->fixed;
+}
+
+bool FrameTree::moves(std::string_view child) const {
+    const Edge* edge = edge_of(child);
+    if (edge == nullptr || edge->fixed) return false;
+    const auto differ = [](const auto& a, const auto& b) { return !are_equal(a.second, b.second); };
+    return std::ranges::adjacent_find(edge->moving, differ) != edge->moving.end();
+}
+
+const FrameTree::Edge* FrameTree::edge_of(std::string_view child) const {
     const auto id = ids_.find(std::string(child));
     const auto edge = id == ids_.end() ? edges_.end() : edges_.find(id->second);
-    return edge != edges_.end() && edge->second.fixed;
+    return edge == edges_.end() ? nullptr : &edge->second;
+}
+
+void FrameTree::join_epochs() {
+    for (auto& [child, edge] : edges_) {
+        if (edge.moving.empty() || edge.moving.rbegin()->first.epoch == 0) continue;
+        std::map<EpochTime, Transform> joined;
+        for (const auto& [time, one] : edge.moving) joined.emplace(time.stamp, one);
+        edge.moving = std::move(joined);
+    }
+    count();
 }
 
 void FrameTree::keep_ancestors(const std::set<std::string>& frames) {
@@ -140,12 +165,19 @@ void FrameTree::keep_ancestors(const std::set<std::string>& frames) {
     count();
 }
 
-void FrameTree::replace(const std::string& child, const FrameTree& other) {
-    Edge edge = other.edges_.at(other.ids_.at(child));
+void FrameTree::replace(const std::string& child, const FrameTree& other, const std::string& other_child) {
+    Edge edge = other.edges_.at(other.ids_.at(other_child));
     if (edge.fixed) edge.fixed->parent = id_of(other.names_[edge.fixed->parent]);
     for (auto& [stamp, one] : edge.moving) one.parent = id_of(other.names_[one.parent]);
     edges_[id_of(child)] = std::move(edge);
     count();
+}
+
+void FrameTree::merge(const FrameTree& other) {
+    for (const auto& [child, edge] : other.edges_) {
+        const std::string& name = other.names_[child];
+        if (!edges_.contains(id_of(name))) replace(name, other, name);
+    }
 }
 
 void FrameTree::count() {

@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 
+#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -26,8 +27,19 @@ enum class NoTransform {
     kLoop,         ///< they lead only through frames that are above themselves
 };
 
+/// A time by the clock of a robot, which may have been set back.
+struct EpochTime {
+    // NOLINTNEXTLINE(google-explicit-constructor): most clocks are not set back
+    constexpr EpochTime(RosTime at, std::uint32_t in_epoch = 0) : epoch(in_epoch), stamp(at) {}
+
+    std::uint32_t epoch; ///< how often the clock was set back before, see StampEpochs
+    RosTime stamp;
+
+    friend constexpr auto operator<=>(const EpochTime&, const EpochTime&) = default;
+};
+
 /// The frames of a recording and the transforms between them over time, as /tf and /tf_static have them. Poses are
-/// interpolated between two stamps and never extrapolated. A frame has one parent at a time.
+/// interpolated between two stamps of an epoch and never extrapolated. A frame has one parent at a time.
 /// Threads: one at a time; lookups at the same time.
 class FrameTree {
 public:
@@ -45,13 +57,17 @@ public:
 
     /// Adds a transform. Of several with the same child and stamp the first counts. Transforms may come in any order.
     /// @param is_static  it holds at all times, and replaces all others of its child
-    void add(const RosTransform& transform, bool is_static);
+    /// @param epoch      of its stamp
+    void add(const RosTransform& transform, bool is_static, std::uint32_t epoch = 0);
+
+    /// Makes all stamps those of one epoch, as if the clock was never set back.
+    void join_epochs();
 
     /// Returns the pose of a frame in another one.
     /// @param target,source  names of frames
     /// @return T_target_source
     [[nodiscard]] std::variant<Eigen::Isometry3d, NoTransform> find(std::string_view target, std::string_view source,
-                                                                    RosTime stamp) const;
+                                                                    EpochTime time) const;
 
     /// Returns a frame and the frames above it by the newest transforms: its parent, the parent of that, and so on. The
     /// list ends before a frame that it has already.
@@ -60,14 +76,23 @@ public:
     /// Returns the frames whose newest parent fulfils a condition.
     [[nodiscard]] std::set<std::string> children_of(bool (*is_parent)(std::string_view)) const;
 
+    /// Returns the names of all frames.
+    [[nodiscard]] const std::vector<std::string>& frames() const noexcept { return names_; }
+
+    /// Returns whether a frame moves in its parent, or changes it.
+    [[nodiscard]] bool moves(std::string_view child) const;
+
     /// Returns whether the transform of a frame to its parent holds at all times.
     [[nodiscard]] bool is_static(std::string_view child) const;
 
     /// Removes the frames that are above none of these.
     void keep_ancestors(const std::set<std::string>& frames);
 
-    /// Replaces the transforms of a child by those in another tree.
-    void replace(const std::string& child, const FrameTree& other);
+    /// Replaces the transforms of a child by those of a child in another tree.
+    void replace(const std::string& child, const FrameTree& other, const std::string& other_child);
+
+    /// Adds the transforms of another tree, but of children that this one has.
+    void merge(const FrameTree& other);
 
     /// Returns the number of transforms in memory. Of equal transforms in a row, the first and the last are kept.
     [[nodiscard]] std::size_t size() const noexcept { return size_; }
@@ -89,7 +114,7 @@ private:
     /// The transforms of a child to its parents.
     struct Edge {
         std::optional<Transform> fixed;
-        std::map<RosTime, Transform> moving; // by stamp
+        std::map<EpochTime, Transform> moving;
     };
 
     /// A frame above another one.
@@ -103,9 +128,10 @@ private:
     }
     [[nodiscard]] static bool are_equal(const Transform& a, const Transform& b);
     [[nodiscard]] Frame id_of(const std::string& name);
-    [[nodiscard]] static std::variant<Transform, NoTransform> at(const Edge& edge, RosTime stamp);
-    [[nodiscard]] std::optional<NoTransform> climb(Frame frame, RosTime stamp, std::vector<Step>& steps) const;
-    void insert(Edge& edge, RosTime stamp, const Transform& one);
+    [[nodiscard]] const Edge* edge_of(std::string_view child) const;
+    [[nodiscard]] static std::variant<Transform, NoTransform> at(const Edge& edge, EpochTime time);
+    [[nodiscard]] std::optional<NoTransform> climb(Frame frame, EpochTime time, std::vector<Step>& steps) const;
+    void insert(Edge& edge, EpochTime time, const Transform& one);
     void forget(Edge& edge);
 
     void count();

@@ -1,6 +1,7 @@
 #include "robot_client/ros/laser_choice.hpp"
 
 #include "common/scan/limits.hpp"
+#include "robot_client/ros/frame_names.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -29,7 +30,10 @@ private:
     [[nodiscard]] Result<> list_lasers();
     [[nodiscard]] Result<> check_topic(std::string_view option, const std::string& topic) const;
     [[nodiscard]] Result<> assign_mounts();
-    [[nodiscard]] const std::string& leading_frame() const;
+    [[nodiscard]] std::set<std::string> join_trees();
+    [[nodiscard]] LeadingLaser leading_laser() const;
+    [[nodiscard]] std::string text_of_unknown_mount(const FoundLaser& laser) const;
+    void note_unnamed_poses(const std::string& laser_frame);
     void leave_out_lasers();
 
     [[nodiscard]] const std::string& name_of(const FoundLaser& laser) const { return found_.topics[laser.topic].name; }
@@ -91,17 +95,74 @@ Result<> LaserChooser::assign_mounts() {
     return {};
 }
 
-/// Returns the frame of the laser whose transforms tell the robot's frame: of the one with most scans among those that
-/// transforms lead to, or else of the one with most scans.
-const std::string& LaserChooser::leading_frame() const {
-    const auto frame = [&](const FoundLaser& laser) -> const std::string& {
-        return frame_of(found_.topics[laser.topic]);
-    };
+/// Joins the transforms of the namespaces around the topic of the laser with most scans; if there are none, of all.
+/// @return the namespaces that are left out
+std::set<std::string> LaserChooser::join_trees() {
+    const auto& topic = name_of(*std::ranges::find(choice_.lasers, std::string_view(), &FoundLaser::left_out));
+    std::set<std::string> unused;
+    for (const auto& [name, tree] : found_.trees) {
+        if (!topic.starts_with(name + "/") && !name.empty()) unused.insert(name);
+    }
+    if (unused.size() == found_.trees.size()) unused.clear();
+    for (auto& [name, tree] : found_.trees) {
+        if (unused.contains(name)) continue;
+        if (found_.tree.size() == 0) {
+            found_.tree = std::move(tree);
+        } else {
+            found_.tree.merge(tree);
+        }
+    }
+    found_.trees.clear();
+    return unused;
+}
+
+/// Returns the laser whose transforms tell the robot's frame: the one with most scans among those that transforms lead
+/// to, or else the one with most scans.
+LeadingLaser LaserChooser::leading_laser() const {
     const auto is_used = [](const FoundLaser& laser) { return laser.left_out.empty(); };
     const auto leading = std::ranges::find_if(choice_.lasers, [&](const FoundLaser& laser) {
-        return is_used(laser) && found_.tree.ancestors(frame(laser)).size() > 1;
+        return is_used(laser) && found_.tree.ancestors(frame_of(found_.topics[laser.topic])).size() > 1;
     });
-    return frame(leading != choice_.lasers.end() ? *leading : *std::ranges::find_if(choice_.lasers, is_used));
+    const auto& laser = leading != choice_.lasers.end() ? *leading : *std::ranges::find_if(choice_.lasers, is_used);
+    return {name_of(laser), frame_of(found_.topics[laser.topic])};
+}
+
+/// Returns what people can do about a laser whose mount is not known.
+std::string LaserChooser::text_of_unknown_mount(const FoundLaser& laser) const {
+    const auto& topic = found_.topics[laser.topic];
+    const auto chain = found_.tree.ancestors(frame_of(topic));
+    const auto fixed = std::ranges::find_if(chain, is_fixed_name);
+    if (fixed != chain.end() && fixed != chain.begin()) {
+        return fmt::format(
+            "{}: its {} scans are left out, because transforms lead to it from the frame {}, and not from "
+            "the robot's frame {}; if it is the laser of another robot, replay them as that robot with "
+            "--topic {}",
+            topic.name, topic.messages, *std::prev(fixed), choice_.frames.base, topic.name);
+    }
+    return fmt::format("{}: its {} scans are left out, because no transform leads from the robot's "
+                       "frame {} to it; state its mount with --mount {}=X,Y,YAW",
+                       topic.name, topic.messages, choice_.frames.base, topic.name);
+}
+
+/// Says which options use transforms that look like poses, if none are used because of their names.
+void LaserChooser::note_unnamed_poses(const std::string& laser_frame) {
+    if (choice_.frames.poses != Poses::kNone || options_.poses) return;
+    const auto chain = found_.tree.ancestors(laser_frame);
+    for (const auto& frame : found_.tree.frames()) {
+        const auto above = found_.tree.ancestors(frame);
+        const bool is_below_robot = std::ranges::find(above, chain.back()) != above.end();
+        if (!is_fixed_name(frame) || !is_below_robot || !found_.tree.moves(frame)) continue;
+        choice_.notes.push_back(fmt::format("the transforms have {} below the robot's frame; to use it as the frame of "
+                                            "odometry, state --fixed-frame {}",
+                                            frame, frame));
+        return;
+    }
+    const auto moving =
+        std::find_if(chain.rbegin(), chain.rend(), [&](const std::string& frame) { return found_.tree.moves(frame); });
+    if (moving == chain.rend()) return;
+    choice_.notes.push_back(fmt::format("{} moves in {}, which does not have the name of a map or of odometry; to use "
+                                        "its poses, state --base-frame {} --fixed-frame {}",
+                                        *moving, *std::prev(moving), *moving, *std::prev(moving)));
 }
 
 /// Chooses the lasers whose mounts are known, or else the one with most scans.
@@ -132,20 +193,20 @@ void LaserChooser::leave_out_lasers() {
                         name_of(*richest), name_of(*richest)));
     }
     for (const auto& laser : choice_.lasers) {
-        if (laser.left_out != kMountUnknown) continue;
-        choice_.notes.push_back(
-            fmt::format("{}: its {} scans are left out, because no transform leads from the robot's "
-                        "frame {} to it; state its mount with --mount {}=X,Y,YAW",
-                        name_of(laser), found_.topics[laser.topic].messages, choice_.frames.base, name_of(laser)));
+        if (laser.left_out == kMountUnknown) choice_.notes.push_back(text_of_unknown_mount(laser));
     }
 }
 
 Result<LaserChoice> LaserChooser::make() {
     if (auto listed = list_lasers(); !listed) return listed.error();
     if (auto assigned = assign_mounts(); !assigned) return assigned.error();
-    auto frames = choose_frames(found_, options_, leading_frame());
+    auto unused_tf = join_trees();
+    const auto leading = leading_laser();
+    auto frames = choose_frames(found_, options_, leading);
     if (!frames) return frames.error();
     choice_.frames = std::move(*frames);
+    choice_.frames.unused_tf = std::move(unused_tf);
+    note_unnamed_poses(leading.frame);
     leave_out_lasers();
     return std::move(choice_);
 }

@@ -32,7 +32,8 @@ struct LaserChoice {
 /// Chooses frames, and the lasers whose mounts are known or else the one with most scans.
 /// Poses are kMap if /tf has a frame of that name above the robot's, else kOdometry if there is odometry, else kNone.
 /// The robot's frame is the one below the odometry's or the map's.
-/// @param found  poses of a chosen odometry topic replace transforms in it
+/// Where several namespaces have transforms, as "/robot1/tf" and "/robot2/tf", those around the laser's topic are used.
+/// @param found  its trees are used up: poses of a chosen odometry topic replace transforms in them
 /// Errors: kNotFound if there is no laser, or what the options name is not there; kInvalidField if they contradict.
 [[nodiscard]] Result<LaserChoice> choose_lasers(RecordingSurvey& found, const RecordingOptions& options);
 

@@ -92,16 +92,18 @@ void LiveScans::note_gap(const std::string& topic, std::uint64_t missing) {
 void LiveScans::add_transforms(const RecordedTopic& topic, const RecordedMessage& message) {
     const bool is_odometry = choice_->frames.odom_topic == message.topic;
     if (is_odometry) {
-        if (const auto odometry = odometry_of(message, topic.encoding)) tree_.add(*odometry, false);
+        auto odometry = odometry_of(message, topic.encoding);
+        if (!odometry) return;
+        odometry->child = choice_->frames.odom_child;
+        tree_.add(*odometry, false);
         return;
     }
-    if (!has_transforms(topic)) return;
+    if (!has_transforms(topic) || choice_->frames.unused_tf.contains(namespace_of(topic.name))) return;
     std::size_t unusable = 0;
     const auto transforms = decode_transforms(message.bytes, topic.encoding, unusable);
     if (!transforms) return;
     for (const auto& one : *transforms) {
-        const bool is_replaced = choice_->frames.odom_topic && one.child == choice_->frames.base;
-        if (!is_replaced) tree_.add(one, has_static_transforms(topic));
+        if (one.child != choice_->frames.odom_child) tree_.add(one, has_static_transforms(topic));
     }
     prune_tree();
 }
@@ -154,6 +156,7 @@ Result<bool> LiveScans::choose(Time now) {
     for (const auto& note : choice->notes) notes_.push_back(note);
     choice_ = std::move(*choice);
     tree_ = std::move(found.tree);
+    tree_.forget_before_newest(kTransformsKept);
     return true;
 }
 

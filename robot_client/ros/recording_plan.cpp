@@ -24,13 +24,16 @@ public:
 private:
     [[nodiscard]] std::string place(const FoundLaser& laser, const SurveyedScan& scan, PlannedScan& planned);
     [[nodiscard]] std::uint32_t index_of(const LaserMount& mount);
+    [[nodiscard]] bool is_clock_set_back() const;
     void place_scans();
+    void note_missing_places();
     void take_fingerprint();
 
     RecordingSurvey& found_;
     const RecordingOptions& options_;
     LaserChoice choice_;
     RecordingPlan plan_;
+    std::uint64_t without_place_ = 0; // scans that transforms or odometry do not locate
 };
 
 /// Returns the index of a mount among those of the plan.
@@ -48,15 +51,35 @@ std::uint32_t Planner::index_of(const LaserMount& mount) {
 std::string Planner::place(const FoundLaser& laser, const SurveyedScan& scan, PlannedScan& planned) {
     if (!laser.left_out.empty()) return std::string(laser.left_out);
     if (scan.problem != 0) return found_.problems[scan.problem];
-    const auto found = place_of_scan(found_.tree, choice_.frames, laser, found_.frames[scan.frame], scan.middle);
-    if (const auto* none = std::get_if<NoPlace>(&found)) return none->reason;
+    const auto found = place_of_scan(found_.tree, choice_.frames, laser, found_.frames[scan.frame],
+                                     EpochTime(scan.middle, scan.epoch));
+    if (const auto* none = std::get_if<NoPlace>(&found)) {
+        ++without_place_;
+        return none->reason;
+    }
     const auto& place = std::get<ScanPlace>(found);
     planned.pose = place.pose;
     planned.mount = index_of(place.mount);
     return {};
 }
 
+/// Returns whether scans that are not left out have stamps of two epochs that overlap. Otherwise its parts are out of
+/// order at most, and transforms of one may be those of another.
+bool Planner::is_clock_set_back() const {
+    std::vector<double> stamps;
+    for (const auto& scan : found_.scans) {
+        const auto laser = std::ranges::find(choice_.lasers, scan.topic, &FoundLaser::topic);
+        if (scan.problem != 0 || !laser->left_out.empty()) continue;
+        stamps.push_back(static_cast<double>(scan.middle) / 1e9);
+    }
+    return order_of(stamps).is_clock_set_back;
+}
+
 void Planner::place_scans() {
+    if (!is_clock_set_back()) {
+        found_.tree.join_epochs();
+        for (auto& scan : found_.scans) scan.epoch = 0;
+    }
     std::map<std::uint32_t, const FoundLaser*> by_topic;
     for (const auto& laser : choice_.lasers) by_topic[static_cast<std::uint32_t>(laser.topic)] = &laser;
     std::vector<double> stamps;
@@ -78,6 +101,20 @@ void Planner::place_scans() {
     plan_.stamps = static_cast<const StampReport&>(order);
     plan_.scan_count = static_cast<std::uint32_t>(used.size());
     for (std::uint32_t place = 0; place < used.size(); ++place) plan_.scans[used[order.order[place]]].place = place;
+}
+
+/// Says which options may help if most scans have no place.
+void Planner::note_missing_places() {
+    if (without_place_ <= plan_.scan_count) return;
+    std::vector<std::string> other;
+    if (plan_.poses == Poses::kMap) other.emplace_back("--poses odometry");
+    for (const auto& [topic, tree] : found_.odometry) {
+        if (choice_.frames.odom_topic != topic) other.push_back("--odom-topic " + found_.topics[topic].name);
+    }
+    if (plan_.poses != Poses::kNone) other.emplace_back("--poses none");
+    plan_.notes.push_back(fmt::format("{} of {} scans are skipped, because it is not known where they were taken{}",
+                                      without_place_, without_place_ + plan_.scan_count,
+                                      other.empty() ? "" : fmt::format("; try {}", fmt::join(other, " or "))));
 }
 
 void Planner::take_fingerprint() {
@@ -124,8 +161,10 @@ Result<RecordingPlan> Planner::make() {
             laser.id, found_.lasers.at(laser.topic).habits.meaning(options_.ranges)};
     }
     place_scans();
+    note_missing_places();
     if (plan_.scan_count == 0) {
-        return Error{Errc::kNotFound, fmt::format("no scan can be used: {}", skipped_text(plan_.skipped))};
+        return Error{Errc::kNotFound, fmt::format("no scan can be used: {}{}", skipped_text(plan_.skipped),
+                                                  without_place_ == 0 ? "" : fmt::format(". {}", plan_.notes.back()))};
     }
     take_fingerprint();
     return std::move(plan_);

@@ -58,6 +58,7 @@ void Surveyor::add_laser(SurveyedTopic& topic, const RecordedMessage& message) {
         ++topic.frames[scan->header.frame];
         one.frame = index_in(found_.frames, scan->header.frame);
         one.middle = middle_of(*scan, message.time);
+        one.epoch = epoch_of(message, {}, one.middle);
         auto& laser = found_.lasers[message.topic];
         laser.habits.add(*scan);
         const std::array<float, 4> fields{scan->angle_min, scan->angle_increment, scan->range_min, scan->range_max};
@@ -80,7 +81,7 @@ void Surveyor::add_odometry(SurveyedTopic& topic, const RecordedMessage& message
     found_.odom_child.emplace(message.topic, odometry->child);
     auto& tree = found_.odometry[message.topic];
     if (kept_) tree.forget_before_newest(*kept_);
-    tree.add(*odometry, false);
+    tree.add(*odometry, false, epoch_of(message, {}, odometry->header.stamp));
 }
 
 void Surveyor::add_transforms(SurveyedTopic& topic, const RecordedMessage& message) {
@@ -89,21 +90,34 @@ void Surveyor::add_transforms(SurveyedTopic& topic, const RecordedMessage& messa
         ++topic.malformed;
         return;
     }
-    for (const auto& one : *transforms) found_.tree.add(one, has_static_transforms(topic));
+    const bool is_static = has_static_transforms(topic);
+    FrameTree& tree = found_.trees[namespace_of(topic.name)];
+    if (kept_) tree.forget_before_newest(*kept_);
+    for (const auto& one : *transforms) {
+        tree.add(one, is_static, is_static ? 0 : epoch_of(message, one.child, one.header.stamp));
+    }
 }
 
 /// Removes the transforms of joints and other things that no laser is mounted on.
 Result<> Surveyor::limit_transforms() {
-    std::size_t count = found_.tree.size();
-    for (const auto& [topic, odometry] : found_.odometry) count += odometry.size();
+    std::size_t odometry_count = 0;
+    for (const auto& [topic, odometry] : found_.odometry) odometry_count += odometry.size();
+    const auto count_all = [&] {
+        std::size_t count = odometry_count;
+        for (const auto& [name, tree] : found_.trees) count += tree.size();
+        return count;
+    };
+    std::size_t count = count_all();
     if (count < std::max(pruned_at_, kPruneFrom)) return {};
     if (!found_.frames.empty()) {
         std::set<std::string> needed{found_.frames.begin(), found_.frames.end()};
         for (const auto& [topic, child] : found_.odom_child) needed.insert(child);
-        needed.merge(found_.tree.children_of(is_fixed_name)); // of a laser that no transform leads to
-        count -= found_.tree.size();
-        found_.tree.keep_ancestors(needed);
-        count += found_.tree.size();
+        for (auto& [name, tree] : found_.trees) {
+            auto needed_here = needed;
+            needed_here.merge(tree.children_of(is_fixed_name)); // of a laser that no transform leads to
+            tree.keep_ancestors(needed_here);
+        }
+        count = count_all();
     }
     pruned_at_ = 2 * count;
     if (count <= kTransformsMax) return {};
@@ -129,6 +143,11 @@ std::vector<std::string> texts_of(const RecordingLosses& losses) {
 
 bool has_transforms(const RecordedTopic& topic) {
     return topic.type == kTransformsType || topic.type == kOldTransformsType;
+}
+
+std::string namespace_of(std::string_view topic) {
+    const auto slash = topic.rfind('/');
+    return std::string(topic.substr(0, slash == std::string_view::npos ? 0 : slash));
 }
 
 bool has_static_transforms(const RecordedTopic& topic) {

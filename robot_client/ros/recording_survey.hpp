@@ -5,6 +5,7 @@
 #include "robot_client/recordings/recording.hpp"
 #include "robot_client/ros/frame_tree.hpp"
 #include "robot_client/ros/laser_conversion.hpp"
+#include "robot_client/ros/stamp_epochs.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -34,6 +35,7 @@ struct SurveyedScan {
     std::uint32_t topic = 0;
     std::uint32_t frame = 0;   ///< index in RecordingSurvey::frames
     std::uint32_t problem = 0; ///< index in RecordingSurvey::problems
+    std::uint32_t epoch = 0;   ///< of `middle`
     RosTime middle = 0;        ///< when its middle was taken
 };
 
@@ -60,7 +62,8 @@ struct RecordingSurvey {
     std::vector<std::string> frames;
     std::vector<std::string> problems{""};         ///< why scans cannot be used; the first is none
     std::map<std::size_t, SurveyedLaser> lasers;   ///< by topic
-    FrameTree tree;                                ///< of /tf and /tf_static
+    std::map<std::string, FrameTree> trees;        ///< of /tf and /tf_static, by namespace
+    FrameTree tree;                                ///< the one that choose_lasers() has made of these
     std::map<std::size_t, FrameTree> odometry;     ///< by topic: the frame of the robot in that of the odometry
     std::map<std::size_t, std::string> odom_child; ///< by topic
     std::size_t unusable_transforms = 0;           ///< not finite, without a rotation, or without a child
@@ -76,6 +79,9 @@ struct RecordingSurvey {
 /// Returns whether messages of this topic are transforms that hold at all times.
 [[nodiscard]] bool has_static_transforms(const RecordedTopic& topic);
 
+/// Returns the namespace of a topic: "/robot" of "/robot/tf".
+[[nodiscard]] std::string namespace_of(std::string_view topic);
+
 /// Decodes the pose of a nav_msgs/Odometry. A robot's frame without a name gets one; a pose without a stamp is of the
 /// time when it was recorded.
 /// Errors: those of decode_odometry().
@@ -87,7 +93,7 @@ class Surveyor {
 public:
     Surveyor() = default;
     /// @param kept  see FrameTree::forget_before_newest(): for messages of a live robot
-    explicit Surveyor(RosTime kept) : kept_(kept) { found_.tree.forget_before_newest(kept); }
+    explicit Surveyor(RosTime kept) : kept_(kept) {}
 
     /// Adds a message.
     /// @param topics  all topics so far: those of the call before, then new ones
@@ -105,9 +111,14 @@ private:
     void add_transforms(SurveyedTopic& topic, const RecordedMessage& message);
     void add_topics(const std::vector<RecordedTopic>& topics);
     [[nodiscard]] Result<> limit_transforms();
+    /// Returns the epoch of a stamp. A live robot has one: what was before its clock was set back is forgotten.
+    [[nodiscard]] std::uint32_t epoch_of(const RecordedMessage& message, const std::string& child, RosTime stamp) {
+        return kept_ ? 0 : epochs_.of(message.topic, child, stamp);
+    }
 
     RecordingSurvey found_;
     std::optional<RosTime> kept_;
+    StampEpochs epochs_;
     std::size_t pruned_at_ = 0; // number of transforms at which those that are not needed are removed next
 };
 

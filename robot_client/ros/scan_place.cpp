@@ -27,7 +27,7 @@ NoPlace no_place(NoTransform reason) {
 } // namespace
 
 std::variant<ScanPlace, NoPlace> place_of_scan(const FrameTree& tree, const FrameChoice& frames,
-                                               const FoundLaser& laser, const std::string& frame, RosTime middle) {
+                                               const FoundLaser& laser, const std::string& frame, EpochTime middle) {
     ScanPlace place;
     if (frames.poses != Poses::kNone) {
         const auto found = tree.find(frames.fixed, frames.base, middle);

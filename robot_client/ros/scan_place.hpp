@@ -27,6 +27,6 @@ struct NoPlace {
 /// @param middle  when its middle was taken
 [[nodiscard]] std::variant<ScanPlace, NoPlace> place_of_scan(const FrameTree& tree, const FrameChoice& frames,
                                                              const FoundLaser& laser, const std::string& frame,
-                                                             RosTime middle);
+                                                             EpochTime middle);
 
 } // namespace scanloom::robot

@@ -237,6 +237,9 @@ Result<CarmenLog> CarmenLog::open(const std::filesystem::path& path, const Carme
     if (auto ok = indexer.read(lines); !ok) return ok.error();
     Index index = indexer.build();
     if (index.scan_count == 0) {
+        if (lines.reader.line_number() == 0) {
+            return Error{Errc::kNotFound, fmt::format("{}: the file is empty", path.string())};
+        }
         return Error{Errc::kNotFound,
                      fmt::format("{}: no usable scan in its {} lines ({} skipped); a CARMEN log with FLASER, "
                                  "ROBOTLASER1, ROBOTLASER2 or RAWLASER1 lines is needed",

@@ -400,5 +400,15 @@ TEST_F(Options, HelpAndVersionAreNotErrors) {
     EXPECT_EQ(left({"--version"}).text, fmt::format("scanloom-robot {}\n", kVersion));
 }
 
+TEST_F(Options, InfoTakesAndRepeatsThoseOfARecording) {
+    const auto result = parse({"info", "a.bag", "--topic", "/r1/scan", "--mount", "1,2,0.5", "--poses", "odometry"});
+    const auto& info = std::get<InfoOptions>(result);
+    EXPECT_EQ(info.recording.topics, std::vector<std::string>{"/r1/scan"});
+    EXPECT_EQ(info.recording.poses, Poses::kOdometry);
+    EXPECT_EQ(info.recording.mounts.size(), 1U);
+    EXPECT_EQ(info.scan_arguments, " --poses 'odometry'");
+    EXPECT_EQ(info.ros_arguments, " --topic '/r1/scan' --mount '1,2,0.5'");
+}
+
 } // namespace
 } // namespace scanloom::robot

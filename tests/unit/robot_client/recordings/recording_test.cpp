@@ -64,13 +64,65 @@ TEST_F(OpenRecording, RefusesWhatIsNoRecording) {
     EXPECT_EQ(error_of("PARAM robot_frontlaser_offset 0.0\n").code, Errc::kMalformed);
     EXPECT_EQ(error_of("").code, Errc::kMalformed);
     EXPECT_EQ(open_recording(directory_.path() / "absent").error().code, Errc::kNotFound);
-    EXPECT_EQ(open_recording(directory_.path()).error().code, Errc::kNotFound);
 }
 
 TEST_F(OpenRecording, RefusesFileCompressedAsAWholeAndSaysHowToDecompressIt) {
     const auto error = error_of(testing_support::zstd_compressed(testing_support::small_mcap().file));
     EXPECT_EQ(error.code, Errc::kUnsupportedVersion);
     EXPECT_THAT(error.message, HasSubstr("`zstd -d`"));
+}
+
+class PartsOfARecording : public testing::Test {
+protected:
+    void write(const std::string& name, const std::string& bytes) {
+        std::ofstream(directory_.path() / name, std::ios::binary) << bytes;
+    }
+
+    /// Writes a part with one message. @param text  the message
+    void write_part(const std::string& name, const std::string& topic, const std::string& text) {
+        testing_support::McapWriter writer;
+        writer.write(writer.connect(topic, "sensor_msgs/msg/LaserScan"), 1, text);
+        write(name, writer.finish().file);
+    }
+
+    TemporaryDirectory directory_;
+};
+
+TEST_F(PartsOfARecording, AreReadInTheOrderOfTheirNumbers) {
+    write("metadata.yaml", "rosbag2_bagfile_information:\n");
+    write_part("drive_10.mcap", "/b", "third");
+    write_part("drive_8.mcap", "/a", "first");
+    write_part("drive_9.mcap", "/b", "second");
+    write("drive_11.mcap", "");
+    auto recording = open_recording(directory_.path());
+    ASSERT_TRUE(recording) << recording.error().message;
+    const auto read = read_whole(**recording);
+    EXPECT_THAT(read.messages, testing::ElementsAre(ReadMessage{"/a", 1, "first"}, ReadMessage{"/b", 1, "second"},
+                                                    ReadMessage{"/b", 1, "third"}));
+    EXPECT_EQ(read.topics.size(), 2U);
+    ASSERT_EQ(read.losses.size(), 1U);
+    EXPECT_THAT(read.losses[0].reason, HasSubstr("drive_11.mcap: not a recording"));
+    EXPECT_EQ(read.progress.bytes, read.progress.bytes_total);
+}
+
+TEST_F(PartsOfARecording, LossesNameThePart) {
+    auto damaged = testing_support::small_mcap({.is_closed = false}).file;
+    write("drive_0.mcap", damaged);
+    write_part("drive_1.mcap", "/scan", "x");
+    const auto read = read_whole(**open_recording(directory_.path()));
+    EXPECT_EQ(read.messages.back(), (ReadMessage{"/scan", 1, "x"}));
+    ASSERT_EQ(read.losses_count, 1U);
+    EXPECT_THAT(read.losses[0].reason, HasSubstr("in drive_0.mcap: the recording was not closed"));
+}
+
+TEST_F(PartsOfARecording, MustBeOneRecording) {
+    EXPECT_EQ(open_recording(directory_.path()).error().code, Errc::kNotFound);
+    write_part("monday.mcap", "/a", "x");
+    EXPECT_TRUE(open_recording(directory_.path())) << "the only one";
+    write_part("tuesday_1.mcap", "/a", "x");
+    const auto error = open_recording(directory_.path()).error();
+    EXPECT_EQ(error.code, Errc::kInvalidField);
+    EXPECT_THAT(error.message, HasSubstr("name one of them: monday.mcap, tuesday_1.mcap"));
 }
 
 /// What a real recording holds.

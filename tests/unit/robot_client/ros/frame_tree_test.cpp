@@ -107,7 +107,7 @@ TEST(FrameTree, TransformsOfAChildAreReplacedByThoseOfAnotherTree) {
     FrameTree other;
     other.add(flat(0, "unused", "also_unused", 5.0), true);
     other.add(flat(0, "odom", "base", 2.0), false);
-    tree.replace("base", other);
+    tree.replace("base", other, "base");
     EXPECT_NEAR(found(tree, "map", "base", 0).translation().x(), 12.0, 1e-12);
     EXPECT_EQ(tree.size(), 2U);
 }

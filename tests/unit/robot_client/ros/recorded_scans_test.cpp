@@ -295,13 +295,15 @@ TEST_F(RecordedScansTest, InfoListsTopicsAndTheCommand) {
     const auto path = Recorder{.second_frame = "other"}.bag(directory_);
     auto found = survey(path).value();
     const auto plan = robot::plan(found, {});
-    const std::string text = info_text("a.bag", found, plan);
-    EXPECT_THAT(text, HasSubstr("a.bag: 1.9 s, from 2020-09-13 12:26:40 UTC to 2020-09-13 12:26:41 UTC\n"));
+    const std::string text = info_text(
+        {.file = "a'.bag", .scan_arguments = " --poses 'odometry'", .ros_arguments = " --topic '/scan'"}, found, plan);
+    EXPECT_THAT(text, HasSubstr("a'.bag: 1.9 s, from 2020-09-13 12:26:40 UTC to 2020-09-13 12:26:41 UTC\n"));
     EXPECT_THAT(text, HasSubstr("/scan       sensor_msgs/LaserScan         10       5.0  laser\n"));
     EXPECT_THAT(text, HasSubstr("poses: odometry, of base in odom, by the transforms\n"
                                 "scans: 10 of 15 can be sent; skipped: 5 mount unknown\n"));
-    EXPECT_THAT(text, HasSubstr("replay it with: scanloom-robot --server HOST:7447 --session NAME --robot NAME replay "
-                                "'a.bag'\n"));
+    EXPECT_THAT(text, HasSubstr("replay it with: scanloom-robot --server HOST:7447 --session NAME --robot NAME --poses "
+                                R"('odometry' replay 'a'\''.bag' --topic '/scan')"
+                                "\n"));
 }
 
 TEST_F(RecordedScansTest, ADamagedFileGivesItsOtherScansAndSaysWhatIsLost) {
