@@ -27,7 +27,7 @@ using namespace asio::experimental::awaitable_operators;
 namespace {
 
 using Clock = std::chrono::steady_clock;
-using Stream = websocket::stream<net::LinkStream>;
+using Stream = websocket::stream<net::LinkStream, false>; // false: no compression
 using boost::system::error_code;
 
 constexpr auto kProtocolField = beast::http::field::sec_websocket_protocol;
