@@ -111,8 +111,8 @@ private:
     }
 
     std::vector<std::filesystem::path> parts_;
-    std::unique_ptr<Recording> part_; // nullptr at the end
-    std::size_t place_ = 0;           // of it in parts_
+    std::unique_ptr<Recording> part_;                // nullptr at the end
+    std::size_t place_ = 0;                          // of it in parts_
     std::vector<std::optional<std::size_t>> joined_; // by topic of the part
     TopicList topics_;
     LossList losses_;            // of the parts before
@@ -141,10 +141,11 @@ Result<std::vector<std::filesystem::path>> parts_in(const std::filesystem::path&
     if (are_numbered(parts)) return paths;
     std::vector<std::string> names;
     for (const auto& path : paths) names.push_back(shown_word(path.filename().string()));
-    return Error{Errc::kInvalidField,
-                 fmt::format("{}: a directory with several recordings, whose names do not end in consecutive numbers as "
-                             "those of the parts of one do; name one of them: {}",
-                             directory.string(), fmt::join(names, ", "))};
+    return Error{
+        Errc::kInvalidField,
+        fmt::format("{}: a directory with several recordings, whose names do not end in consecutive numbers as "
+                    "those of the parts of one do; name one of them: {}",
+                    directory.string(), fmt::join(names, ", "))};
 }
 
 Result<std::unique_ptr<Recording>> open_parts(std::vector<std::filesystem::path> parts) {

@@ -8,8 +8,8 @@
 
 namespace scanloom::robot {
 
-/// Lists the files of a recording in a directory, as rosbag2 writes it: the only recording in it, or the parts into which
-/// the recorder has split it, in their order: files whose names end in consecutive numbers.
+/// Lists the files of a recording in a directory, as rosbag2 writes it: the only recording in it, or the parts into
+/// which the recorder has split it, in their order: files whose names end in consecutive numbers.
 /// @param directory  its files are recognized by their names: .bag, .db3 and .mcap
 /// Errors: kNotFound if it has no recording or cannot be read; kInvalidField if it has several that are not parts of one.
 [[nodiscard]] Result<std::vector<std::filesystem::path>> parts_in(const std::filesystem::path& directory);

@@ -1,12 +1,12 @@
 #include "tests/fault/row_short_form.hpp"
 
-/// The rows that every `./scanloom test` runs: kills, spoiled connections and restarts.
+/// The rows of which every `./scanloom test` runs a third: kills, spoiled connections and restarts.
 namespace scanloom::fault {
 namespace {
 
-TEST(MainFaultRow, KillNine) { expect_passed(short_form_of("kill")); }
-TEST(MainFaultRow, SpoiledLinks) { expect_passed(short_form_of("link")); }
-TEST(MainFaultRow, RestartsUnderManyRobots) { expect_passed(short_form_of("restart")); }
+TEST(MainFaultRow, KillNine) { expect_passed(short_form_of("kill", 3)); }
+TEST(MainFaultRow, SpoiledLinks) { expect_passed(short_form_of("link", 3)); }
+TEST(MainFaultRow, RestartsUnderManyRobots) { expect_passed(short_form_of("restart", 3)); }
 
 } // namespace
 } // namespace scanloom::fault

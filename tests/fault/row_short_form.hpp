@@ -5,17 +5,20 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <stdexcept>
+#include <string_view>
 
 /// The short form of a row: what `./scanloom fault ROW` runs.
 namespace scanloom::fault {
 
 /// Runs the row `name` as often as its short form asks for, with seed 1.
+/// @param parts  it runs one of so many parts of that
 /// @throws std::invalid_argument if there is no such row
-[[nodiscard]] inline Outcome short_form_of(std::string_view name) {
+[[nodiscard]] inline Outcome short_form_of(std::string_view name, std::uint64_t parts = 1) {
     const Row* row = find_row(name);
     if (row == nullptr) throw std::invalid_argument(fmt::format("there is no row {}", name));
-    return row->run({.seed = 1, .count = row->count_short});
+    return row->run({.seed = 1, .count = row->count_short / parts});
 }
 
 /// Fails the test if scans were lost, stored twice or changed, or if nothing was tested.

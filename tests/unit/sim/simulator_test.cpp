@@ -274,10 +274,11 @@ INSTANTIATE_TEST_SUITE_P(All, WallFollowerTrials,
                                          Setting{"office", "reference", false}, Setting{"office", "lidar360", true},
                                          Setting{"hall", "reference", false}, Setting{"hall", "lidar360", true}));
 
-TEST(WallFollowerDrives, DrivesThreeMinutesBySonarWithoutCollision) {
+/// Drives three minutes in each world with each seed.
+void expect_no_collision_by_sonar(std::uint64_t seeds) {
     for (const char* name : {"room", "office", "hall"}) {
         const World world = *find_world(name);
-        for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+        for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
             SimulatorOptions options{world, std::nullopt, std::nullopt, seed};
             options.sonar = *find_sonar("ring16");
             const Drive drive = watch(Simulator(std::move(options), std::make_unique<WallFollower>()), world, 180.0);
@@ -287,13 +288,20 @@ TEST(WallFollowerDrives, DrivesThreeMinutesBySonarWithoutCollision) {
     }
 }
 
-TEST(WallFollowerDrives, DrivesFiveMinutesWithoutTouchingAWalker) {
-    for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+/// Drives five minutes with each seed.
+void expect_no_walker_touched(std::uint64_t seeds) {
+    for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
         const Drive drive = watch(make("room_walker", seed), make_room(), 300.0);
         EXPECT_GT(drive.walker_distance_min, kBodyRadius) << seed;
         EXPECT_GT(drive.path_length, 60.0) << seed;
     }
 }
+
+TEST(WallFollowerDrives, DrivesThreeMinutesBySonarWithoutCollision) { expect_no_collision_by_sonar(4); }
+TEST(WallFollowerDrives, DrivesFiveMinutesWithoutTouchingAWalker) { expect_no_walker_touched(2); }
+
+TEST(WallFollowerSeedTrials, DrivesThreeMinutesBySonarWithoutCollision) { expect_no_collision_by_sonar(20); }
+TEST(WallFollowerSeedTrials, DrivesFiveMinutesWithoutTouchingAWalker) { expect_no_walker_touched(10); }
 
 /// Returns the office rooms in the order in which the robot entered them: 0 to 4 in the north, 5 to 9 in the south,
 /// each row from the west.

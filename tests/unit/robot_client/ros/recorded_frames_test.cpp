@@ -142,8 +142,9 @@ TEST_F(RecordedFramesTest, OdometryOfAnotherFrameThanTheStatedOneIsRefused) {
     transform("/tf_static", 0, "base", "dock", 0.25);
     for (RosTime time = 0; time <= 20; ++time) odometry("/odom", time, static_cast<double>(time), "dock");
     scan("/scan", 10);
-    EXPECT_THAT(refused({.base_frame = "base"}), HasSubstr("--base-frame base: the poses of /odom are those of the frame "
-                                                           "dock, from which no transforms lead to base"));
+    EXPECT_THAT(refused({.base_frame = "base"}),
+                HasSubstr("--base-frame base: the poses of /odom are those of the frame "
+                          "dock, from which no transforms lead to base"));
     EXPECT_EQ(read({.poses = Poses::kNone, .base_frame = "base"}).size(), 1U);
 }
 
