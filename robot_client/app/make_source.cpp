@@ -78,9 +78,7 @@ Result<PreparedSource> make_log(const RobotOptions& options, const ReplayOptions
                                  replay.file)};
     }
     if (!replay.ros_arguments.empty()) {
-        return Error{Errc::kInvalidField,
-                     fmt::format("{}: not a recording of ROS, so that{} says nothing about it; leave it out",
-                                 replay.file, replay.ros_arguments)};
+        console.note(fmt::format("{}: not a recording of ROS; without effect:{}", replay.file, replay.ros_arguments));
     }
     std::optional<SkippedLines> skipped(std::in_place, replay.file, console);
     const auto report = [&](const SkippedLine& line) { skipped->add(line); };

@@ -218,6 +218,7 @@ parse_options(int argc, const char* const* argv) {
         if (info_options.file.empty()) return usage_error(app, "info: name the FILE");
         take_scan_options(options, info_options.recording);
         info_options.scan_arguments = stated_arguments(app, kScansGroup);
+        info_options.ros_arguments = stated_arguments(*info, kRecordingsGroup);
         return info_options;
     }
     if (lidars->parsed()) {
@@ -241,6 +242,7 @@ parse_options(int argc, const char* const* argv) {
     if (replay->parsed()) {
         if (replay_options.file.empty()) return usage_error(app, "replay: name the FILE to replay");
         take_scan_options(options, replay_options.recording);
+        replay_options.ros_arguments = stated_arguments(*replay, kRecordingsGroup);
         options.source = std::move(replay_options);
     } else if (sonar->parsed()) {
         if (sonar_options.poses.empty()) return usage_error(app, "sonar: name two files, MEASUREMENTS and POSES");

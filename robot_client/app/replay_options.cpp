@@ -6,11 +6,6 @@
 #include <CLI/CLI.hpp>
 
 namespace scanloom::robot {
-namespace {
-
-constexpr const char* kRecordingsGroup = "Recordings of ROS"; // heading in the help text
-
-} // namespace
 
 CLI::App* add_replay(CLI::App& app, ReplayOptions& options) {
     auto* replay =
@@ -27,8 +22,6 @@ CLI::App* add_replay(CLI::App& app, ReplayOptions& options) {
                 "log counts as 10",
                 check_not_negative);
     add_ros_options(*replay, options.recording, kRecordingsGroup);
-    replay->parse_complete_callback(
-        [replay, &options] { options.ros_arguments = stated_arguments(*replay, kRecordingsGroup); });
     return replay;
 }
 
@@ -37,8 +30,6 @@ CLI::App* add_info(CLI::App& app, InfoOptions& options) {
         "info", "List the topics, frames and times of a recording of ROS, and the command that replays it");
     info->add_option("FILE", options.file, "ROS 1 bag, MCAP file, rosbag2 database or directory")->configurable(false);
     add_ros_options(*info, options.recording, kRecordingsGroup);
-    info->parse_complete_callback(
-        [info, &options] { options.ros_arguments = stated_arguments(*info, kRecordingsGroup); });
     return info;
 }
 

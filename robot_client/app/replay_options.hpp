@@ -10,6 +10,9 @@ class App;
 
 namespace scanloom::robot {
 
+/// Heading of the options for recordings of ROS in the help text.
+inline constexpr const char* kRecordingsGroup = "Recordings of ROS";
+
 /// A log of CARMEN or a recording of ROS.
 struct ReplayOptions {
     std::string file;
@@ -26,10 +29,10 @@ struct InfoOptions {
     std::string ros_arguments;  ///< those of recordings of ROS
 };
 
-/// Adds the subcommand, which sets `options`.
+/// Adds the subcommand, which sets `options` but for `ros_arguments`.
 CLI::App* add_replay(CLI::App& app, ReplayOptions& options);
 
-/// Adds the subcommand, which sets `options` but for `scan_arguments`.
+/// Adds the subcommand, which sets `options` but for the arguments.
 CLI::App* add_info(CLI::App& app, InfoOptions& options);
 
 } // namespace scanloom::robot

@@ -52,10 +52,11 @@ Result<std::unique_ptr<Recording>> open_recording(const std::filesystem::path& p
     if (format == RecordingFormat::kRosbag) return open_rosbag(std::move(*file), path.string());
     if (format == RecordingFormat::kMcap) return open_mcap(std::move(*file), path.string());
     if (format == RecordingFormat::kRosbag2) return open_rosbag2(path);
-    return Error{Errc::kMalformed,
-                 fmt::format("{}: not a recording that can be read; name a ROS 1 bag (.bag), an MCAP file (.mcap) or a "
-                             "rosbag2 database (.db3)",
-                             path.string())};
+    return Error{
+        Errc::kMalformed,
+        fmt::format("{}: not a recording of ROS that can be read; name a ROS 1 bag (.bag), an MCAP file (.mcap) "
+                    "or a rosbag2 database (.db3), and decompress a file that gzip or bzip2 has compressed",
+                    path.string())};
 }
 
 } // namespace scanloom::robot

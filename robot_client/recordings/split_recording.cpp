@@ -17,6 +17,7 @@ namespace {
 
 /// A file with a recording.
 struct Part {
+    std::string name;                    ///< without its digits: a part may have the time when it began in its name
     std::optional<std::uint64_t> number; ///< at the end of its name
     std::filesystem::path path;
 };
@@ -38,13 +39,18 @@ std::optional<Part> part_of(const std::filesystem::path& path) {
     if (extension == ".active" || extension == ".zstd") name = name.stem(); // not closed, or compressed
     constexpr std::string_view kExtensions[] = {".bag", ".db3", ".mcap"};
     if (std::ranges::find(kExtensions, name.extension().string()) == std::end(kExtensions)) return std::nullopt;
-    return Part{number_of(name.stem().string()), path};
+    const auto stem = name.stem().string();
+    std::string letters = stem;
+    std::erase_if(letters, [](char c) { return c >= '0' && c <= '9'; });
+    return Part{std::move(letters), number_of(stem), path};
 }
 
-/// Returns whether the numbers of sorted parts are consecutive.
-bool are_numbered(const std::vector<Part>& parts) {
-    const auto breaks = [](const Part& a, const Part& b) { return !a.number || b.number != *a.number + 1; };
-    return std::ranges::adjacent_find(parts, breaks) == parts.end();
+/// Returns whether sorted files are the parts of one recording, by their names.
+bool are_of_one(const std::vector<Part>& parts) {
+    const auto differ = [](const Part& a, const Part& b) {
+        return a.name != b.name || !a.number || b.number != *a.number + 1;
+    };
+    return std::ranges::adjacent_find(parts, differ) == parts.end();
 }
 
 class SplitRecording final : public Recording {
@@ -138,14 +144,17 @@ Result<std::vector<std::filesystem::path>> parts_in(const std::filesystem::path&
     std::ranges::sort(parts, {}, [](const Part& part) { return std::pair(part.number, part.path); });
     std::vector<std::filesystem::path> paths;
     for (auto& part : parts) paths.push_back(part.path);
-    if (are_numbered(parts)) return paths;
+    if (are_of_one(parts)) return paths;
+    constexpr std::size_t kShown = 5;
     std::vector<std::string> names;
-    for (const auto& path : paths) names.push_back(shown_word(path.filename().string()));
+    for (const auto& path : paths) {
+        if (names.size() < kShown) names.push_back(shown_word(path.filename().string()));
+    }
     return Error{
         Errc::kInvalidField,
-        fmt::format("{}: a directory with several recordings, whose names do not end in consecutive numbers as "
-                    "those of the parts of one do; name one of them: {}",
-                    directory.string(), fmt::join(names, ", "))};
+        fmt::format("{}: a directory with {} recordings whose names do not show that they are the parts of one, "
+                    "numbered without a gap; name one of them, or move the others away: {}{}",
+                    directory.string(), paths.size(), fmt::join(names, ", "), paths.size() > kShown ? ", ..." : "")};
 }
 
 Result<std::unique_ptr<Recording>> open_parts(std::vector<std::filesystem::path> parts) {

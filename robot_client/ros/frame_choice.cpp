@@ -7,7 +7,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <iterator>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -33,12 +32,6 @@ std::optional<std::string> moving_frame(const RecordingSurvey& found, const std:
         if (!below.empty()) return std::nullopt;
     }
     return std::nullopt;
-}
-
-/// Returns how many characters the namespaces of two topics have in common.
-std::size_t common_namespace(const std::string& a, const std::string& b) {
-    const auto differ = std::ranges::mismatch(a, b).in1;
-    return static_cast<std::size_t>(std::find(std::make_reverse_iterator(differ), a.rend(), '/').base() - a.begin());
 }
 
 /// Returns the topic of odometry that is most likely that of the laser's robot: of a frame above the laser, or else in
@@ -118,6 +111,13 @@ std::vector<std::string> fixed_frames(const FrameTree& tree, const std::string& 
     return above;
 }
 
+/// Returns whether a frame is below the robot's and moves against it, as the odometry of some robots does.
+bool moves_below(const FrameTree& tree, const std::string& base, const std::string& frame) {
+    const auto chain = tree.ancestors(frame);
+    const auto end = std::ranges::find(chain, base);
+    return end != chain.end() && std::any_of(chain.begin(), end, [&](const auto& one) { return tree.moves(one); });
+}
+
 /// Replaces the transforms of the robot's frame by the poses of the chosen topic.
 /// @param choice  its odom_child and base are set
 /// @return the frame that the poses are in
@@ -167,9 +167,8 @@ Result<FrameChoice> choose_frames(RecordingSurvey& found, const RecordingOptions
     if (choice.poses == Poses::kNone) return choice;
     if (!options.fixed_frame.empty()) {
         choice.fixed = options.fixed_frame;
-        const auto above_fixed = found.tree.ancestors(choice.fixed); // some robots have their odometry below themselves
-        if (std::ranges::find(above_base, choice.fixed) != above_base.end()) return choice;
-        if (std::ranges::find(above_fixed, choice.base) != above_fixed.end()) return choice;
+        const bool is_above = std::find(above_base.begin() + 1, above_base.end(), choice.fixed) != above_base.end();
+        if (is_above || moves_below(found.tree, choice.base, choice.fixed)) return choice;
         return Error{Errc::kNotFound, fmt::format("--fixed-frame {}: no transforms lead from it to the robot's frame; "
                                                   "frames from that up are: {}",
                                                   choice.fixed, fmt::join(above_base, ", "))};

@@ -21,7 +21,7 @@ struct FrameChoice {
     std::set<std::string> unused_tf;       ///< namespaces whose transforms are those of other robots
 };
 
-/// The laser whose transforms tell the robot's frame.
+/// The laser whose transforms determine the robot's frame.
 struct LeadingLaser {
     std::string topic;
     std::string frame;
@@ -29,7 +29,7 @@ struct LeadingLaser {
 
 /// Chooses frames from what a recording has, and from what people say. Poses of a chosen odometry topic replace the
 /// transforms of its robot's frame.
-/// @param laser  if its transforms do not tell the robot's frame, it is the only one whose parent is a frame of odometry,
+/// @param laser  if its transforms do not determine the robot's frame, it is the only one whose parent is a frame of odometry,
 ///               or else of a map
 /// Errors: kNotFound if a frame or topic of the options is not there, or the poses that they ask for are not;
 ///         kInvalidField if the odometry is not that of the stated frame of the robot.

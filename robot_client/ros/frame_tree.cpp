@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <limits>
 #include <utility>
 
 namespace scanloom::robot {
@@ -51,8 +52,49 @@ void FrameTree::forget(Edge& edge) {
 /// Returns the transform of a child at a time.
 std::variant<FrameTree::Transform, NoTransform> FrameTree::at(const Edge& edge, EpochTime time) {
     if (edge.fixed) return *edge.fixed;
+    if (edge.moving.empty()) return NoTransform::kNotConnected;
+    auto found = at_in_epoch(edge, time);
+    if (std::holds_alternative<Transform>(found) || has_near(edge, time)) return found;
+    std::optional<NoTransform> reason; // of the nearest epoch
+    for (const auto epoch : epochs_near(edge, time.epoch)) {
+        auto other = at_in_epoch(edge, {time.stamp, epoch});
+        if (std::holds_alternative<Transform>(other)) return other;
+        if (!reason) reason = std::get<NoTransform>(other);
+    }
+    return reason.value_or(std::get<NoTransform>(found));
+}
+
+/// Returns whether a child has transforms of an epoch around a time.
+bool FrameTree::has_near(const Edge& edge, EpochTime time) {
+    using Limits = std::numeric_limits<RosTime>;
+    const RosTime stamp = std::clamp(time.stamp, Limits::min() + kEpochMargin, Limits::max() - kEpochMargin);
+    const auto near = edge.moving.lower_bound({stamp - kEpochMargin, time.epoch});
+    return near != edge.moving.end() && near->first <= EpochTime(stamp + kEpochMargin, time.epoch);
+}
+
+/// Returns the epochs of a child's transforms but one, those nearest to it first, and not all of very many.
+std::vector<std::uint32_t> FrameTree::epochs_near(const Edge& edge, std::uint32_t epoch) {
+    constexpr std::size_t kEpochsMax = 64;
+    constexpr RosTime kFirst = std::numeric_limits<RosTime>::min();
+    std::vector<std::uint32_t> epochs;
+    for (auto one = edge.moving.lower_bound({kFirst, epoch});
+         one != edge.moving.begin() && epochs.size() < kEpochsMax / 2;
+         one = edge.moving.lower_bound({kFirst, epochs.back()})) {
+        epochs.push_back(std::prev(one)->first.epoch);
+    }
+    for (auto one = edge.moving.lower_bound({kFirst, epoch + 1});
+         one != edge.moving.end() && epochs.size() < kEpochsMax;
+         one = edge.moving.lower_bound({kFirst, epochs.back() + 1})) {
+        epochs.push_back(one->first.epoch);
+    }
+    const auto distance = [&](std::uint32_t other) { return other > epoch ? other - epoch : epoch - other; };
+    std::ranges::stable_sort(epochs, {}, distance);
+    return epochs;
+}
+
+/// Returns the transform of a child at a time by the transforms of its epoch.
+std::variant<FrameTree::Transform, NoTransform> FrameTree::at_in_epoch(const Edge& edge, EpochTime time) {
     const auto& moving = edge.moving;
-    if (moving.empty()) return NoTransform::kNotConnected;
     const auto after = moving.lower_bound(time);
     if (after == moving.end() || after->first.epoch != time.epoch) return NoTransform::kAfter;
     if (after->first == time) return after->second;

@@ -39,7 +39,9 @@ struct EpochTime {
 };
 
 /// The frames of a recording and the transforms between them over time, as /tf and /tf_static have them. Poses are
-/// interpolated between two stamps of an epoch and never extrapolated. A frame has one parent at a time.
+/// interpolated between two stamps of an epoch and never extrapolated. A frame has one parent at a time. Where a child
+/// has no transforms of an epoch around a time, those of the nearest epoch that has are used: messages of different
+/// rates may not notice that a clock was set.
 /// Threads: one at a time; lookups at the same time.
 class FrameTree {
 public:
@@ -101,7 +103,9 @@ public:
     [[nodiscard]] bool has(std::string_view frame) const { return ids_.contains(std::string(frame)); }
 
 private:
-    static constexpr RosTime kSetBack = 1'000'000'000; // nanoseconds; stamps of live transforms jitter less
+    /// Where an epoch has no transforms so far from a time, those of others are looked for.
+    static constexpr RosTime kEpochMargin = 2'000'000'000; // nanoseconds
+    static constexpr RosTime kSetBack = 1'000'000'000;     // nanoseconds; stamps of live transforms jitter less
 
     using Frame = std::uint32_t; // index in names_
 
@@ -130,6 +134,9 @@ private:
     [[nodiscard]] Frame id_of(const std::string& name);
     [[nodiscard]] const Edge* edge_of(std::string_view child) const;
     [[nodiscard]] static std::variant<Transform, NoTransform> at(const Edge& edge, EpochTime time);
+    [[nodiscard]] static std::variant<Transform, NoTransform> at_in_epoch(const Edge& edge, EpochTime time);
+    [[nodiscard]] static bool has_near(const Edge& edge, EpochTime time);
+    [[nodiscard]] static std::vector<std::uint32_t> epochs_near(const Edge& edge, std::uint32_t epoch);
     [[nodiscard]] std::optional<NoTransform> climb(Frame frame, EpochTime time, std::vector<Step>& steps) const;
     void insert(Edge& edge, EpochTime time, const Transform& one);
     void forget(Edge& edge);

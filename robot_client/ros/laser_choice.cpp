@@ -14,6 +14,8 @@
 namespace scanloom::robot {
 namespace {
 
+constexpr std::string_view kOtherRobot = "of another robot"; // see FoundLaser::left_out
+
 /// Returns the name of the frame that most scans of a topic have.
 const std::string& frame_of(const SurveyedTopic& topic) {
     return std::ranges::max_element(topic.frames, {}, [](const auto& frame) { return frame.second; })->first;
@@ -30,8 +32,11 @@ private:
     [[nodiscard]] Result<> list_lasers();
     [[nodiscard]] Result<> check_topic(std::string_view option, const std::string& topic) const;
     [[nodiscard]] Result<> assign_mounts();
-    [[nodiscard]] std::set<std::string> join_trees();
+    [[nodiscard]] Result<std::set<std::string>> join_trees();
+    void leave_out_other_robots(const std::set<std::string>& unused_tf);
+    [[nodiscard]] std::set<std::string> namespaces_apart_from(const std::string& topic) const;
     [[nodiscard]] LeadingLaser leading_laser() const;
+    [[nodiscard]] bool has_other_odometry(const std::string& topic) const;
     [[nodiscard]] std::string text_of_unknown_mount(const FoundLaser& laser) const;
     void note_unnamed_poses(const std::string& laser_frame);
     void leave_out_lasers();
@@ -95,29 +100,61 @@ Result<> LaserChooser::assign_mounts() {
     return {};
 }
 
+/// Returns the namespaces of transforms that a topic is not in.
+std::set<std::string> LaserChooser::namespaces_apart_from(const std::string& topic) const {
+    std::set<std::string> apart;
+    for (const auto& [name, tree] : found_.trees) {
+        if (!topic.starts_with(name + "/") && !name.empty()) apart.insert(name);
+    }
+    return apart;
+}
+
 /// Joins the transforms of the namespaces around the topic of the laser with most scans; if there are none, of all.
 /// @return the namespaces that are left out
-std::set<std::string> LaserChooser::join_trees() {
+Result<std::set<std::string>> LaserChooser::join_trees() {
     const auto& topic = name_of(*std::ranges::find(choice_.lasers, std::string_view(), &FoundLaser::left_out));
-    std::set<std::string> unused;
-    for (const auto& [name, tree] : found_.trees) {
-        if (!topic.starts_with(name + "/") && !name.empty()) unused.insert(name);
+    auto unused = namespaces_apart_from(topic);
+    for (const auto& chosen : options_.topics) {
+        if (namespaces_apart_from(chosen) == unused) continue;
+        return Error{Errc::kInvalidField,
+                     fmt::format("--topic {} --topic {}: their transforms are in different namespaces, so they are of "
+                                 "different robots; replay each robot by itself",
+                                 topic, chosen)};
     }
-    if (unused.size() == found_.trees.size()) unused.clear();
-    for (auto& [name, tree] : found_.trees) {
-        if (unused.contains(name)) continue;
+    if (!unused.empty() && unused.size() == found_.trees.size()) {
+        choice_.notes.push_back(fmt::format("{}: the transforms are in other namespaces, {}; if they are of other "
+                                            "robots, use --poses none",
+                                            topic, fmt::join(unused, ", ")));
+        unused.clear();
+    }
+    // The longest name first: what is nearest to the laser counts.
+    for (auto tree = found_.trees.rbegin(); tree != found_.trees.rend(); ++tree) {
+        if (unused.contains(tree->first)) continue;
         if (found_.tree.size() == 0) {
-            found_.tree = std::move(tree);
+            found_.tree = std::move(tree->second);
         } else {
-            found_.tree.merge(tree);
+            found_.tree.merge(tree->second);
         }
     }
     found_.trees.clear();
     return unused;
 }
 
-/// Returns the laser whose transforms tell the robot's frame: the one with most scans among those that transforms lead
-/// to, or else the one with most scans.
+/// Leaves out lasers in namespaces whose transforms are not used.
+void LaserChooser::leave_out_other_robots(const std::set<std::string>& unused_tf) {
+    for (auto& laser : choice_.lasers) {
+        const auto& topic = name_of(laser);
+        const auto is_around = [&](const std::string& name) { return topic.starts_with(name + "/"); };
+        if (!options_.topics.empty() || laser.mount || std::ranges::none_of(unused_tf, is_around)) continue;
+        laser.left_out = kOtherRobot;
+        choice_.notes.push_back(fmt::format("{}: its {} scans are of another robot; replay them as that robot with "
+                                            "--topic {}",
+                                            topic, found_.topics[laser.topic].messages, topic));
+    }
+}
+
+/// Returns the laser whose transforms determine the robot's frame: the one with most scans among those that transforms
+/// lead to, or else the one with most scans.
 LeadingLaser LaserChooser::leading_laser() const {
     const auto is_used = [](const FoundLaser& laser) { return laser.left_out.empty(); };
     const auto leading = std::ranges::find_if(choice_.lasers, [&](const FoundLaser& laser) {
@@ -125,6 +162,15 @@ LeadingLaser LaserChooser::leading_laser() const {
     });
     const auto& laser = leading != choice_.lasers.end() ? *leading : *std::ranges::find_if(choice_.lasers, is_used);
     return {name_of(laser), frame_of(found_.topics[laser.topic])};
+}
+
+/// Returns whether a topic has odometry nearer to its namespace than the odometry that is used.
+bool LaserChooser::has_other_odometry(const std::string& topic) const {
+    if (!choice_.frames.odom_topic) return false;
+    const auto common = [&](std::size_t odometry) { return common_namespace(found_.topics[odometry].name, topic); };
+    return std::ranges::any_of(found_.odometry, [&](const auto& odometry) {
+        return common(odometry.first) > common(*choice_.frames.odom_topic);
+    });
 }
 
 /// Returns what people can do about a laser whose mount is not known.
@@ -138,6 +184,11 @@ std::string LaserChooser::text_of_unknown_mount(const FoundLaser& laser) const {
             "the robot's frame {}; if it is the laser of another robot, replay them as that robot with "
             "--topic {}",
             topic.name, topic.messages, *std::prev(fixed), choice_.frames.base, topic.name);
+    }
+    if (has_other_odometry(topic.name)) {
+        return fmt::format("{}: its {} scans are left out, because other odometry is in its namespace; replay them as "
+                           "another robot with --topic {}",
+                           topic.name, topic.messages, topic.name);
     }
     return fmt::format("{}: its {} scans are left out, because no transform leads from the robot's "
                        "frame {} to it; state its mount with --mount {}=X,Y,YAW",
@@ -201,11 +252,13 @@ Result<LaserChoice> LaserChooser::make() {
     if (auto listed = list_lasers(); !listed) return listed.error();
     if (auto assigned = assign_mounts(); !assigned) return assigned.error();
     auto unused_tf = join_trees();
+    if (!unused_tf) return unused_tf.error();
+    leave_out_other_robots(*unused_tf);
     const auto leading = leading_laser();
     auto frames = choose_frames(found_, options_, leading);
     if (!frames) return frames.error();
     choice_.frames = std::move(*frames);
-    choice_.frames.unused_tf = std::move(unused_tf);
+    choice_.frames.unused_tf = std::move(*unused_tf);
     note_unnamed_poses(leading.frame);
     leave_out_lasers();
     return std::move(choice_);

@@ -26,7 +26,7 @@ private:
     [[nodiscard]] std::uint32_t index_of(const LaserMount& mount);
     [[nodiscard]] bool is_clock_set_back() const;
     void place_scans();
-    void note_missing_places();
+    [[nodiscard]] std::string cure_of_missing_places() const;
     void take_fingerprint();
 
     RecordingSurvey& found_;
@@ -34,6 +34,7 @@ private:
     LaserChoice choice_;
     RecordingPlan plan_;
     std::uint64_t without_place_ = 0; // scans that transforms or odometry do not locate
+    std::uint64_t without_mount_ = 0; // of these, scans whose mount is not known at their time
 };
 
 /// Returns the index of a mount among those of the plan.
@@ -55,6 +56,7 @@ std::string Planner::place(const FoundLaser& laser, const SurveyedScan& scan, Pl
                                      EpochTime(scan.middle, scan.epoch));
     if (const auto* none = std::get_if<NoPlace>(&found)) {
         ++without_place_;
+        without_mount_ += none->is_mount ? 1 : 0;
         return none->reason;
     }
     const auto& place = std::get<ScanPlace>(found);
@@ -63,8 +65,8 @@ std::string Planner::place(const FoundLaser& laser, const SurveyedScan& scan, Pl
     return {};
 }
 
-/// Returns whether scans that are not left out have stamps of two epochs that overlap. Otherwise its parts are out of
-/// order at most, and transforms of one may be those of another.
+/// Returns whether the stamps of scans that are not left out overlap. Otherwise at most the parts of the recording are
+/// out of order, and transforms of one part may be missing in another.
 bool Planner::is_clock_set_back() const {
     std::vector<double> stamps;
     for (const auto& scan : found_.scans) {
@@ -103,18 +105,17 @@ void Planner::place_scans() {
     for (std::uint32_t place = 0; place < used.size(); ++place) plan_.scans[used[order.order[place]]].place = place;
 }
 
-/// Says which options may help if most scans have no place.
-void Planner::note_missing_places() {
-    if (without_place_ <= plan_.scan_count) return;
+/// Returns which options may help if most scans have no place: the end of a sentence, empty if there is nothing to say.
+std::string Planner::cure_of_missing_places() const {
+    if (without_place_ <= plan_.scan_count) return {};
+    if (2 * without_mount_ > without_place_) return "; state the mount with --mount X,Y,YAW";
     std::vector<std::string> other;
     if (plan_.poses == Poses::kMap) other.emplace_back("--poses odometry");
     for (const auto& [topic, tree] : found_.odometry) {
         if (choice_.frames.odom_topic != topic) other.push_back("--odom-topic " + found_.topics[topic].name);
     }
     if (plan_.poses != Poses::kNone) other.emplace_back("--poses none");
-    plan_.notes.push_back(fmt::format("{} of {} scans are skipped, because it is not known where they were taken{}",
-                                      without_place_, without_place_ + plan_.scan_count,
-                                      other.empty() ? "" : fmt::format("; try {}", fmt::join(other, " or "))));
+    return other.empty() ? "" : fmt::format("; try {}", fmt::join(other, " or "));
 }
 
 void Planner::take_fingerprint() {
@@ -161,10 +162,13 @@ Result<RecordingPlan> Planner::make() {
             laser.id, found_.lasers.at(laser.topic).habits.meaning(options_.ranges)};
     }
     place_scans();
-    note_missing_places();
+    const auto cure = cure_of_missing_places();
     if (plan_.scan_count == 0) {
-        return Error{Errc::kNotFound, fmt::format("no scan can be used: {}{}", skipped_text(plan_.skipped),
-                                                  without_place_ == 0 ? "" : fmt::format(". {}", plan_.notes.back()))};
+        return Error{Errc::kNotFound, fmt::format("no scan can be used: {}{}", skipped_text(plan_.skipped), cure)};
+    }
+    if (!cure.empty()) {
+        plan_.notes.push_back(fmt::format("{} of {} scans are skipped, because it is not known where they were taken{}",
+                                          without_place_, without_place_ + plan_.scan_count, cure));
     }
     take_fingerprint();
     return std::move(plan_);

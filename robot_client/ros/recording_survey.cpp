@@ -150,6 +150,11 @@ std::string namespace_of(std::string_view topic) {
     return std::string(topic.substr(0, slash == std::string_view::npos ? 0 : slash));
 }
 
+std::size_t common_namespace(std::string_view a, std::string_view b) {
+    const auto differ = std::ranges::mismatch(a, b).in1 - a.begin();
+    return a.substr(0, static_cast<std::size_t>(differ)).rfind('/') + 1; // 0 if there is none
+}
+
 bool has_static_transforms(const RecordedTopic& topic) {
     return has_transforms(topic) && topic.name.ends_with("tf_static");
 }

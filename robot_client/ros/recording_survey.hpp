@@ -62,8 +62,8 @@ struct RecordingSurvey {
     std::vector<std::string> frames;
     std::vector<std::string> problems{""};         ///< why scans cannot be used; the first is none
     std::map<std::size_t, SurveyedLaser> lasers;   ///< by topic
-    std::map<std::string, FrameTree> trees;        ///< of /tf and /tf_static, by namespace
-    FrameTree tree;                                ///< the one that choose_lasers() has made of these
+    std::map<std::string, FrameTree> trees;        ///< of /tf and /tf_static, by namespace; until choose_lasers()
+    FrameTree tree;                                ///< what choose_lasers() has joined of these
     std::map<std::size_t, FrameTree> odometry;     ///< by topic: the frame of the robot in that of the odometry
     std::map<std::size_t, std::string> odom_child; ///< by topic
     std::size_t unusable_transforms = 0;           ///< not finite, without a rotation, or without a child
@@ -81,6 +81,9 @@ struct RecordingSurvey {
 
 /// Returns the namespace of a topic: "/robot" of "/robot/tf".
 [[nodiscard]] std::string namespace_of(std::string_view topic);
+
+/// Returns how many characters the namespaces of two topics have in common.
+[[nodiscard]] std::size_t common_namespace(std::string_view a, std::string_view b);
 
 /// Decodes the pose of a nav_msgs/Odometry. A robot's frame without a name gets one; a pose without a stamp is of the
 /// time when it was recorded.

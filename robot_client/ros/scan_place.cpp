@@ -38,7 +38,11 @@ std::variant<ScanPlace, NoPlace> place_of_scan(const FrameTree& tree, const Fram
     if (laser.is_connected) {
         const auto found = tree.find(frames.base, frame, middle);
         const auto* reason = std::get_if<NoTransform>(&found);
-        if (reason != nullptr && !laser.mount) return no_place(*reason);
+        if (reason != nullptr && !laser.mount) {
+            auto none = no_place(*reason);
+            none.is_mount = true;
+            return none;
+        }
         const Result<LaserMount> mount =
             reason != nullptr ? LaserMount{} : mount_of(std::get<Eigen::Isometry3d>(found));
         if (!mount && !laser.mount) return NoPlace{mount.error().message};

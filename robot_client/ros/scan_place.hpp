@@ -17,6 +17,7 @@ struct ScanPlace {
 struct NoPlace {
     std::string reason;    ///< in few words, which are the same for all such scans
     bool may_come = false; ///< transforms that come later may say it
+    bool is_mount = false; ///< the pose is known, but not the mount
 };
 
 /// Finds where a scan was taken.

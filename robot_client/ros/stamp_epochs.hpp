@@ -1,6 +1,7 @@
 #pragma once
 
 #include "robot_client/ros/messages.hpp"
+#include "robot_client/sources/scan_order.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -20,8 +21,10 @@ namespace scanloom::robot {
 /// Threads: one at a time.
 class StampEpochs {
 public:
-    static constexpr double kJitterMax = 2e9; ///< nanoseconds, as kStampJitterMax
-    static constexpr double kGapMax = 10e9;   ///< nanoseconds; a longer step forward may be a wrong stamp
+    static constexpr double kJitterMax = kStampJitterMax * 1e9; ///< nanoseconds
+    /// Nanoseconds; the longest pause after which stamps continue those before it. Few robots pause for longer, and
+    /// few clocks are set by less.
+    static constexpr double kGapMax = 10e9;
 
     /// Returns the epoch of the next message of a stream, from 0.
     /// @param topic,child  the stream: a topic, and in it a frame whose transforms it has
@@ -32,8 +35,11 @@ private:
     struct Track {
         std::uint32_t epoch = 0;
         RosTime newest = 0;
+        std::uint64_t messages = 0;
     };
     using Stream = std::vector<Track>; // the one of the last stamp last
+
+    void go_on(Stream& stream, RosTime stamp);
 
     std::map<std::pair<std::size_t, std::string>, Stream> streams_;
     std::uint32_t newest_ = 0; // epoch

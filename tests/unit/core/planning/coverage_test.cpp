@@ -120,7 +120,7 @@ void expect_every_free_cell_covered_or_listed(int rounds) {
         expect_covers(view, {0, 0, world.width(), world.height()}, 0.05, centre(start, 0.05), options.passability,
                       free_cells(view, world), coverage);
         ++planned;
-        if (HasFatalFailure()) FAIL() << "in round " << round;
+        if (testing::Test::HasFatalFailure()) FAIL() << "in round " << round;
     }
     EXPECT_GT(planned, rounds / 2);
 }

@@ -23,23 +23,20 @@ namespace {
 using testing::HasSubstr;
 
 /// Returns why a file cannot be replayed.
-/// @param options  of recordings of ROS, as on the command line
-std::string refusal_of(std::string_view bytes, const std::string& options = {}) {
+std::string refusal_of(std::string_view bytes) {
     const TemporaryDirectory directory;
     const auto path = directory.path() / "file";
     std::ofstream(path, std::ios::binary) << bytes;
     StandardError error(STDERR_FILENO);
     Console console(error);
     RobotOptions robot;
-    robot.source = ReplayOptions{.file = path.string(), .ros_arguments = options};
+    robot.source = ReplayOptions{path.string()};
     const auto prepared = make_source(robot, console);
     return prepared ? "" : prepared.error().message;
 }
 
 TEST(FileToReplay, IsRefusedWithItsReason) {
     EXPECT_THAT(refusal_of(""), HasSubstr("the file is empty"));
-    EXPECT_THAT(refusal_of("FLASER 1 1.0 0 0 0 0 0 0 1 host 1\n", " --topic '/scan'"),
-                HasSubstr("not a recording of ROS, so that --topic '/scan' says nothing about it"));
     const std::string_view bag_by_gzip("\x1f\x8b\x08\x00\x00\x00\x00\x00\x02\xff\x53\x0e\xf2\x0f\x76\x72\x74"
                                        "\x57\x08\x33\xd2\x33\xe0\x02\x00\x3d\x6c\x71\xb5\x0d\x00\x00\x00",
                                        33);

@@ -101,7 +101,7 @@ TEST_F(PartsOfARecording, AreReadInTheOrderOfTheirNumbers) {
                                                     ReadMessage{"/b", 1, "third"}));
     EXPECT_EQ(read.topics.size(), 2U);
     ASSERT_EQ(read.losses.size(), 1U);
-    EXPECT_THAT(read.losses[0].reason, HasSubstr("drive_11.mcap: not a recording"));
+    EXPECT_THAT(read.losses[0].reason, HasSubstr("drive_11.mcap: not a recording of ROS"));
     EXPECT_EQ(read.progress.bytes, read.progress.bytes_total);
 }
 
@@ -122,7 +122,9 @@ TEST_F(PartsOfARecording, MustBeOneRecording) {
     write_part("tuesday_1.mcap", "/a", "x");
     const auto error = open_recording(directory_.path()).error();
     EXPECT_EQ(error.code, Errc::kInvalidField);
-    EXPECT_THAT(error.message, HasSubstr("name one of them: monday.mcap, tuesday_1.mcap"));
+    std::filesystem::rename(directory_.path() / "monday.mcap", directory_.path() / "monday_0.mcap");
+    EXPECT_FALSE(open_recording(directory_.path())) << "other names before the numbers";
+    EXPECT_THAT(error.message, HasSubstr("or move the others away: monday.mcap, tuesday_1.mcap"));
 }
 
 /// What a real recording holds.

@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
@@ -37,6 +38,13 @@ protected:
                    double x) {
         const auto pose = flat(nanoseconds(time), parent, child, x);
         write(topic, "tf2_msgs/TFMessage", testing_support::transform_bytes({pose}, MessageEncoding::kRos1));
+    }
+
+    /// Begins another bag.
+    void start() {
+        writer_ = testing_support::BagWriter();
+        connections_.clear();
+        written_ = 0;
     }
 
     /// Reads what was written.
@@ -113,15 +121,52 @@ TEST_F(RecordedFramesTest, PartsOutOfOrderShareTheirTransforms) {
     EXPECT_NEAR(all[5].scan.odometry.value().x, 50.0, 1e-6) << "between a transform of each part";
 }
 
-TEST_F(RecordedFramesTest, AWrongStampCostsOneScan) {
-    for (RosTime time = 0; time <= 100; ++time) {
+/// Stamps that are wrong, late or of another rate cost no other scan, in whatever order the streams notice a step.
+TEST_F(RecordedFramesTest, DisturbedStampsCostNoOtherScans) {
+    for (const RosTime wrong : {-300, -50, 30, 50, 80, 2'000}) {
+        for (const RosTime transforms_begin : {0, 100}) {
+            SCOPED_TRACE(testing::Message() << wrong << " " << transforms_begin);
+            start();
+            for (RosTime time = 0; time <= 300; ++time) {
+                if (time >= transforms_begin) transform("/tf", time, "odom", "base", static_cast<double>(time));
+                if (time % 50 == 0) transform("/tf", time, "base", "laser", 0.25);
+                if (time % 5 == 2) scan("/scan", time == 52 ? time + wrong : time);
+            }
+            std::size_t others = 0;
+            for (const auto& one : read()) {
+                const double x = (one.scan.stamp - 1.6e9) * 10.0;
+                EXPECT_NEAR(one.scan.odometry.value().x, x, 1e-3);
+                if (std::fabs(x - static_cast<double>(52 + wrong)) > 0.5) ++others;
+            }
+            EXPECT_GE(others, transforms_begin == 0 ? 58U : 39U); // another one may have the time of the wrong stamp
+        }
+    }
+}
+
+TEST_F(RecordedFramesTest, ScansThatArriveLateHaveTheirPoses) {
+    for (RosTime time = 0; time <= 300; ++time) {
         transform("/tf", time, "odom", "laser", static_cast<double>(time));
-        if (time % 10 == 0) scan("/scan", time == 50 ? 5 : time);
+        if (time % 5 == 0 && (time < 100 || time >= 140)) scan("/scan", time);
+        for (RosTime late = 100; time == 145 && late < 140; late += 5) scan("/scan", late);
+    }
+    EXPECT_EQ(read().size(), 61U);
+}
+
+/// A clock is set back by 4 s; one transform is sent every 5 s, so that its stamps do not fall.
+TEST_F(RecordedFramesTest, RareTransformsHoldAfterAClockWasSetBack) {
+    for (const auto& [begin, end] : {std::pair(0, 190), std::pair(150, 300)}) {
+        for (RosTime time = begin; time <= end; ++time) {
+            if (time % 50 == 0) transform("/tf", time, "base", "laser", 0.25);
+            transform("/tf", time, "odom", "base", static_cast<double>(begin + time));
+            if (time % 10 == 5) scan("/scan", time);
+        }
     }
     const auto all = read();
-    ASSERT_EQ(all.size(), 10U);
-    EXPECT_NEAR(all[5].scan.odometry.value().x, 60.0, 1e-6);
-    EXPECT_THAT(plan_.skipped, ElementsAre(testing::Pair("after the last pose", 1U)));
+    ASSERT_EQ(all.size(), 19U + 15U);
+    for (std::size_t n = 0; n < all.size(); ++n) {
+        const double time = (all[n].scan.stamp - 1.6e9) * 10.0;
+        EXPECT_NEAR(all[n].scan.odometry.value().x, n < 19 ? time : time + 150.0, 1e-3);
+    }
 }
 
 /// Many robots name a frame in their odometry that no transform has.
@@ -177,6 +222,46 @@ TEST_F(RecordedFramesTest, EachRobotHasTheTransformsOfItsNamespace) {
     }
 }
 
+TEST_F(RecordedFramesTest, TheNearestNamespaceCounts) {
+    for (RosTime time = 0; time <= 20; ++time) {
+        transform("/tf", time, "odom", "base", 1.0);
+        transform("/r2/tf", time, "odom", "base", 2.0);
+    }
+    transform("/tf_static", 0, "base", "laser", 0.25);
+    scan("/r2/scan", 10);
+    scan("/r2/scan", 11);
+    scan("/r1/scan", 10);
+    EXPECT_NEAR(read({.topics = {"/r2/scan"}}).at(0).scan.odometry.value().x, 2.0, 1e-6);
+    EXPECT_NEAR(read({.topics = {"/r1/scan"}}).at(0).scan.odometry.value().x, 1.0, 1e-6);
+    EXPECT_THAT(refused({.topics = {"/r2/scan", "/r1/scan"}}), HasSubstr("replay each robot by itself"));
+}
+
+TEST_F(RecordedFramesTest, LasersOfOtherNamespacesAreLeftOutAndNoted) {
+    for (RosTime time = 0; time <= 20; ++time) {
+        transform("/r1/tf", time, "odom", "laser", 1.0);
+        transform("/r2/tf", time, "odom", "laser", 2.0);
+        if (time % 5 == 0) scan("/r1/scan", time);
+    }
+    scan("/r2/scan", 10);
+    EXPECT_EQ(read().size(), 5U);
+    EXPECT_THAT(plan_.notes, ElementsAre("/r2/scan: its 1 scans are of another robot; replay them as that robot with "
+                                         "--topic /r2/scan"));
+    start();
+    for (RosTime time = 0; time <= 20; ++time) transform("/r2/tf", time, "odom", "laser", 2.0);
+    scan("/r1/scan", 10);
+    EXPECT_EQ(read().size(), 1U);
+    EXPECT_THAT(plan_.notes, ElementsAre(HasSubstr("the transforms are in other namespaces, /r2")));
+    start();
+    for (RosTime time = 0; time <= 20; ++time) {
+        odometry("/r1/odom", time, 1.0);
+        odometry("/r2/odom", time, 2.0);
+        if (time % 5 == 0) scan("/r1/scan", time, "l1");
+    }
+    scan("/r2/scan", 10, "l2");
+    EXPECT_EQ(read().size(), 5U);
+    EXPECT_THAT(plan_.notes, Contains(HasSubstr("replay them as another robot with --topic /r2/scan")));
+}
+
 TEST_F(RecordedFramesTest, ALaserOfAnotherRobotIsNoted) {
     for (RosTime time = 0; time <= 20; ++time) {
         transform("/tf", time, "r1/odom", "r1/base", 1.0);
@@ -209,6 +294,15 @@ TEST_F(RecordedFramesTest, OdometryBelowTheRobotIsNoted) {
     EXPECT_FALSE(read().at(0).scan.odometry);
     EXPECT_THAT(plan_.notes, ElementsAre(HasSubstr("state --fixed-frame odom")));
     EXPECT_NEAR(read({.fixed_frame = "odom"}).at(0).scan.odometry.value().x, 10.0, 1e-6);
+    EXPECT_THAT(refused({.fixed_frame = "laser"}), HasSubstr("no transforms lead from it")) << "it does not move";
+    EXPECT_THAT(refused({.fixed_frame = "base"}), HasSubstr("no transforms lead from it"));
+}
+
+TEST_F(RecordedFramesTest, AMountIsAskedForIfItIsNotKnownAtTheTimesOfScans) {
+    transform("/tf", 0, "base", "laser", 0.25);
+    for (RosTime time = 0; time <= 20; ++time) transform("/tf", time, "odom", "base", static_cast<double>(time));
+    scan("/scan", 10);
+    EXPECT_THAT(refused(), HasSubstr("1 after the last pose; state the mount with --mount X,Y,YAW"));
 }
 
 TEST_F(RecordedFramesTest, WhatElseCanBeUsedIsSaidIfMostScansHaveNoPlace) {

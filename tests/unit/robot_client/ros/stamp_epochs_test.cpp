@@ -48,12 +48,21 @@ TEST_F(StampEpochsTest, AStreamReturnsAfterAWrongStamp) {
     expect_all(100, 110, 0);
     EXPECT_EQ(scan(50), 1U);
     expect_all(111, 120, 0);
-    EXPECT_EQ(scan(100'000), 0U) << "too late";
-    expect_all(121, 130, 0);
+    for (const RosTime late : {100'000, 125, 128}) {
+        EXPECT_EQ(scan(late), 0U);
+        expect_all(121, 122, 0);
+    }
+    expect_all(123, 130, 0);
     EXPECT_EQ(scan(60), 1U) << "again";
     expect_all(131, 140, 0);
     EXPECT_EQ(base(100), 1U) << "the clock is set back";
     expect_all(101, 110, 1);
+}
+
+TEST_F(StampEpochsTest, APauseWhereTheClockWasSetBackEndsNoEpoch) {
+    expect_all(100, 140, 0);
+    expect_all(110, 137, 1);
+    expect_all(141, 150, 1);
 }
 
 TEST_F(StampEpochsTest, AnyStampsAreTaken) {
