@@ -64,7 +64,8 @@ struct McapChannel {
 struct McapFormat {
     using Record = McapRecord;
     static constexpr std::size_t kFirstBytes = 9;
-    static constexpr std::size_t kFollowers = 2; // a record has little that can be checked
+    static constexpr std::string_view kNumbered = "channel"; // what messages have the number of, for people
+    static constexpr std::size_t kFollowers = 2;             // a record has little that can be checked
 
     bool is_chunk = false; ///< whether a chunk is read, which has no records but schemas, channels and messages
 

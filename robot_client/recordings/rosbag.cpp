@@ -1,15 +1,11 @@
 #include "robot_client/recordings/rosbag.hpp"
 
+#include "robot_client/recordings/chunked_recording.hpp"
 #include "robot_client/recordings/decompression.hpp"
 #include "robot_client/recordings/lz4_tail.hpp"
-#include "robot_client/recordings/record_walker.hpp"
-#include "robot_client/recordings/recording_lists.hpp"
 #include "robot_client/recordings/rosbag_record.hpp"
 
 #include <fmt/format.h>
-
-#include <unordered_map>
-#include <unordered_set>
 
 namespace scanloom::robot {
 namespace {
@@ -33,97 +29,37 @@ std::string bag_type(const BagConnection& connection) {
     return {};
 }
 
-class RosbagRecording final : public Recording {
+class RosbagRecording final : public ChunkedRecording<BagFormat> {
 public:
     explicit RosbagRecording(std::unique_ptr<RecordedBytes> file)
-        : file_(std::move(file)), records_(BagFormat{}, *file_, kBagMagic.size()) {}
-
-    [[nodiscard]] Result<std::optional<RecordedMessage>> next() override {
-        for (;;) {
-            RecordedBytes& bytes = chunk_ ? static_cast<RecordedBytes&>(chunk_->bytes) : *file_;
-            auto step = chunk_ ? chunk_->records.next() : records_.next();
-            if (!step) return step.error();
-            if (step->gap) lose_gap(*step->gap, bytes);
-            if (!step->record) {
-                if (!chunk_) return end();
-                chunk_.reset();
-                continue;
-            }
-            auto message = take(*step->record, bytes);
-            if (!message) return message.error();
-            if (*message) return message;
-        }
-    }
-
-    [[nodiscard]] const std::vector<RecordedTopic>& topics() const override { return topics_.all(); }
-    [[nodiscard]] const std::vector<RecordingLoss>& losses() const override { return losses_.listed(); }
-    [[nodiscard]] std::uint64_t losses_count() const override { return losses_.count(); }
-    [[nodiscard]] ReadProgress progress() const override { return {records_.position(), file_->size()}; }
+        : ChunkedRecording(std::move(file), kBagMagic.size()) {}
 
 private:
-    using Taken = Result<std::optional<RecordedMessage>>;
-
-    /// Where the description of an unknown connection is searched next.
-    enum class Search { kIndex, kFile, kDone };
-
-    /// The decompressed records of a chunk.
-    struct Chunk {
-        Chunk(std::string_view decompressed, std::uint64_t begin)
-            : bytes(decompressed), records(BagFormat{.is_chunk = true}, bytes, 0), offset(begin) {}
-
-        BytesInMemory bytes;
-        RecordWalker<BagFormat> records;
-        std::uint64_t offset; ///< of the chunk in the file
-    };
-
-    void lose_gap(const RecordGap& gap, const RecordedBytes& bytes) {
-        const auto what = fmt::format("{} bytes are damaged or incomplete", gap.end - gap.begin);
-        if (!chunk_) return losses_.add(gap.begin, what);
-        losses_.add(chunk_->offset, fmt::format("{} of the {} decompressed bytes of a chunk", what, bytes.size()));
-    }
-
-    /// Adds a loss in a record: at its place in the file, or at the place of its chunk.
-    void lose(const BagRecord& record, std::string reason) {
-        losses_.add(chunk_ ? chunk_->offset : record.begin, std::move(reason));
-    }
-
-    [[nodiscard]] Taken take(const BagRecord& record, RecordedBytes& bytes) {
+    [[nodiscard]] Taken take(const BagRecord& record, RecordedBytes& bytes) override {
+        Result<> ok;
         switch (record.op) {
-        case BagOp::kMessage: return take_message(record, bytes);
-        case BagOp::kConnection:
-            if (auto ok = take_connection(record, bytes); !ok) return ok.error();
-            break;
+        case BagOp::kMessage: return take_message(record.connection, record.time, record, bytes);
+        case BagOp::kConnection: ok = take_connection(record, bytes); break;
         case BagOp::kChunk:
-            if (!record.is_packed) break; // its records follow
-            if (auto ok = take_chunk(record); !ok) return ok.error();
+            if (record.is_packed) ok = take_chunk(record); // else its records follow
             break;
         case BagOp::kBagHeader: index_begin_ = record.index_begin; break;
         case BagOp::kIndex:
         case BagOp::kChunkInfo: break;
         }
+        if (!ok) return ok.error();
         return std::optional<RecordedMessage>();
     }
 
-    [[nodiscard]] Taken take_message(const BagRecord& record, RecordedBytes& bytes) {
-        const auto none = std::optional<RecordedMessage>();
-        auto known = connections_.find(record.connection);
-        while (known == connections_.end() && search_ != Search::kDone) {
-            if (auto ok = search_connections(); !ok) return ok.error();
-            known = connections_.find(record.connection);
-        }
-        if (known == connections_.end()) {
-            lose(record, fmt::format("a message of connection {}, which is not described", record.connection));
-            return none;
-        }
-        const std::uint64_t size = record.end - record.data;
-        if (size > kRecordedBytesMax) {
-            lose(record, fmt::format("a message of {} bytes; at most {} are supported", size, kRecordedBytesMax));
-            return none;
-        }
-        auto data = bytes.read(record.data, size);
-        if (!data) return data.error();
-        if (data->size() < size) return none; // the file has become shorter: the records say so
-        return std::optional(RecordedMessage{known->second, record.time, *data});
+    [[nodiscard]] Result<> take_again(const BagRecord& record) override {
+        if (record.op != BagOp::kConnection) return {};
+        forget(record.connection, true);
+        return take_connection(record, *file_);
+    }
+
+    [[nodiscard]] Result<std::optional<std::uint64_t>> find_descriptions() override {
+        const bool has_index = index_begin_ >= begin_ && index_begin_ < file_->size();
+        return has_index ? std::optional(index_begin_) : std::nullopt;
     }
 
     [[nodiscard]] Result<> take_connection(const BagRecord& record, RecordedBytes& bytes) {
@@ -136,94 +72,38 @@ private:
         if (!data) return data.error();
         auto connection = read_bag_connection(*data);
         // The topic of the record's header is the one of the recording; the other one is that of the publisher.
-        auto topic = topics_.add({record.text.empty() ? std::move(connection.topic) : record.text, bag_type(connection),
-                                  MessageEncoding::kRos1});
-        if (!topic) {
-            lose(record, "a topic, because there are too many or its name is too long");
-            return {};
-        }
-        const auto [known, is_new] = connections_.try_emplace(record.connection, *topic);
-        if (is_new || known->second == *topic) return {};
-        // One of the two has a damaged number. The description in the index decides, else the newest one.
-        lose(record, fmt::format("connection {}, which is described in two ways", record.connection));
-        if (search_ == Search::kIndex) {
-            if (auto ok = search_connections(); !ok) return ok;
-        }
-        if (!indexed_.contains(record.connection)) connections_[record.connection] = *topic;
-        return {};
+        auto name = record.text.empty() ? std::move(connection.topic) : record.text;
+        return describe(record.connection, {std::move(name), bag_type(connection), MessageEncoding::kRos1}, record);
     }
 
     [[nodiscard]] Result<> take_chunk(const BagRecord& record) {
-        const std::uint64_t packed_size = record.end - record.data;
-        if (packed_size > kRecordedBytesMax) {
-            lose(record, fmt::format("a chunk of {} bytes; at most {} are supported", packed_size, kRecordedBytesMax));
-            return {};
-        }
-        auto packed = file_->read(record.data, packed_size);
+        const auto packed = read_packed(record);
         if (!packed) return packed.error();
+        if (!*packed) return {};
         // A recorder writes the size when it ends the chunk; if it crashed before, the size is 0.
         const std::size_t stated = record.unpacked_size == 0 ? kRecordedBytesMax : record.unpacked_size;
         const std::size_t size_max = std::min(stated, kRecordedBytesMax);
         std::size_t taken = 0;
-        if (const auto reason = decompress(*record.compression, *packed, size_max, decompressed_, &taken)) {
-            const bool is_file_cut = record.end == file_->size() && taken == packed_size;
+        if (const auto reason = decompress(*record.compression, **packed, size_max, decompressed_, &taken)) {
+            const bool is_file_cut = record.end == file_->size() && taken == (*packed)->size();
             if (is_file_cut && record.compression == Compression::kLz4) {
-                append_truncated_lz4_block(*packed, size_max, decompressed_);
+                append_truncated_lz4_block(**packed, size_max, decompressed_);
             }
-            lose(record,
-                 fmt::format("a part of a chunk: {}; {} bytes could be decompressed", *reason, decompressed_.size()));
+            lose_rest_of_chunk(record, *reason);
         } else if (record.is_end_unclear) {
             records_.move_to(record.data + taken);
         }
-        chunk_.emplace(decompressed_, record.begin);
+        begin_chunk(record);
         return {};
     }
 
-    /// Reads the connections that are repeated after the last chunk: first where the bag's header says, and the next
-    /// time anywhere outside of compressed chunks.
-    [[nodiscard]] Result<> search_connections() {
-        const bool is_first = search_ == Search::kIndex;
-        search_ = is_first ? Search::kFile : Search::kDone;
-        if (!is_first) return read_connections(kBagMagic.size());
-        const bool has_index = index_begin_ >= kBagMagic.size() && index_begin_ < file_->size();
-        return has_index ? read_connections(index_begin_) : Result<>();
+    void lose_end() override {
+        if (index_begin_ == 0) lose_at_end("the recording was not closed: its end may be missing");
+        if (index_begin_ <= file_->size()) return;
+        lose_at_end(fmt::format("the file is truncated: it had more than {} bytes", index_begin_));
     }
 
-    [[nodiscard]] Result<> read_connections(std::uint64_t from) {
-        RecordWalker<BagFormat> records(BagFormat{}, *file_, from);
-        for (;;) {
-            auto step = records.next();
-            if (!step) return step.error();
-            if (!step->record) return {};
-            if (step->record->op != BagOp::kConnection) continue;
-            connections_.erase(step->record->connection);
-            if (auto ok = take_connection(*step->record, *file_); !ok) return ok;
-            indexed_.insert(step->record->connection);
-        }
-    }
-
-    [[nodiscard]] Taken end() {
-        if (!std::exchange(has_ended_, true)) {
-            if (index_begin_ == 0) losses_.add(file_->size(), "the recording was not closed: its end may be missing");
-            if (index_begin_ > file_->size()) {
-                losses_.add(file_->size(),
-                            fmt::format("the file is truncated: it had more than {} bytes", index_begin_));
-            }
-        }
-        return std::optional<RecordedMessage>();
-    }
-
-    std::unique_ptr<RecordedBytes> file_;
-    RecordWalker<BagFormat> records_;
-    std::string decompressed_;
-    std::optional<Chunk> chunk_;                                 // while its records are read
-    std::unordered_map<std::uint32_t, std::size_t> connections_; // to topics
-    std::unordered_set<std::uint32_t> indexed_; // connections that the index describes, once it is read
-    TopicList topics_;
-    LossList losses_;
     std::uint64_t index_begin_ = 0;
-    Search search_ = Search::kIndex;
-    bool has_ended_ = false;
 };
 
 } // namespace

@@ -47,6 +47,7 @@ struct BagConnection {
 struct BagFormat {
     using Record = BagRecord;
     static constexpr std::size_t kFirstBytes = 8;
+    static constexpr std::string_view kNumbered = "connection"; // what messages have the number of, for people
     static constexpr std::size_t kFollowers = 1;
     /// Longest header of a record.
     static constexpr std::size_t kHeaderBytesMax = 8000;
