@@ -16,8 +16,9 @@
 
 namespace scanloom::robot {
 
-/// What ROS 1 bags and MCAP files have in common: records, of which some are in compressed chunks, and messages with the
-/// number of a connection or channel, which another record describes. Descriptions are repeated at the end of the file.
+/// What ROS 1 bags and MCAP files have in common: records, of which some are in compressed chunks, and messages with
+/// the number of a connection or channel, which another record describes. Descriptions are repeated at the end of the
+/// file.
 ///
 /// Format is as for RecordWalker, and has: bool is_chunk; static constexpr std::string_view kNumbered, "channel" or
 /// "connection" for people.
@@ -65,7 +66,8 @@ protected:
 
     /// Takes a record. @return its message, if it is one that can be read
     [[nodiscard]] virtual Taken take(const Record& record, RecordedBytes& bytes) = 0;
-    /// Takes a record of the file again if it describes a number. A description at the end of the file is the right one.
+    /// Takes a record of the file again if it describes a number. A description at the end of the file is the right
+    /// one.
     [[nodiscard]] virtual Result<> take_again(const Record& record) = 0;
     /// Returns where the descriptions at the end of the file begin; nullopt: there are none.
     [[nodiscard]] virtual Result<std::optional<std::uint64_t>> find_descriptions() = 0;
@@ -190,7 +192,7 @@ private:
         }
     }
 
-    std::optional<Chunk> chunk_; // while its records are read
+    std::optional<Chunk> chunk_;                       // while its records are read
     std::unordered_map<Number, std::size_t> numbered_; // to topics
     std::unordered_set<Number> described_again_;       // at the end of the file, once that is read
     LossList losses_;
