@@ -1,6 +1,7 @@
 #include "server/http/handlers/handlers.hpp"
 
 #include "server/http/geojson.hpp"
+#include "server/http/handlers/parameters.hpp"
 #include "server/http/handlers/planning_request.hpp"
 #include "server/http/json_read.hpp"
 #include "server/sockets/worker_pool.hpp"
