@@ -16,9 +16,9 @@
 
 namespace scanloom::robot {
 
-/// What ROS 1 bags and MCAP files have in common: records, of which some are in compressed chunks, and messages with
-/// the number of a connection or channel, which another record describes. Descriptions are repeated at the end of the
-/// file.
+/// A recording that consists of records: a ROS 1 bag or an MCAP file. Some records are in compressed chunks. A message
+/// has the number of its connection or channel; another record describes that number. The end of the file repeats these
+/// descriptions.
 ///
 /// Format is as for RecordWalker, and has: bool is_chunk; static constexpr std::string_view kNumbered, "channel" or
 /// "connection" for people.

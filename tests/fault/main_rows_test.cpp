@@ -1,6 +1,6 @@
 #include "tests/fault/row_short_form.hpp"
 
-/// The rows of which every `./scanloom test` runs a third: kills, spoiled connections and restarts.
+/// Kills, spoiled connections and restarts. Every `./scanloom test` runs a third of the short form of each row.
 namespace scanloom::fault {
 namespace {
 
