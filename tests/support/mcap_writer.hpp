@@ -15,6 +15,7 @@ struct McapOptions {
     bool has_checksums = true;
     bool is_closed = true; ///< false: as a recorder that crashed leaves it, without an end and a summary
     bool has_summary = true;
+    bool has_late_schemas = false; ///< each after its channel
 };
 
 class McapWriter {
@@ -41,7 +42,9 @@ public:
         append_counted(channel, topic);
         append_counted(channel, encoding);
         append_counted(channel, "");
-        channels_.push_back({topic, record(0x03, schema) + record(0x04, channel), false});
+        const std::string descriptions[] = {record(0x03, schema), record(0x04, channel)};
+        const bool is_late = options_.has_late_schemas;
+        channels_.push_back({topic, descriptions[is_late ? 1 : 0] + descriptions[is_late ? 0 : 1], false});
         return number;
     }
 
