@@ -15,9 +15,9 @@ constexpr double kSameSurfaceCosine = 0.8; // cosine between the normals of one 
 constexpr double kDepth = 0.2;             // metres by which a place must be nearer or further to be in front or behind
 
 bool is_matched(const Surface& surface, const Surfel& there, const Point2& place, const Pose2& rotation) {
-    const auto [index, distance] = surface.nearest(place);
-    if (distance > kSameSurface) return false;
-    const Surfel& here = surface.surfels()[index];
+    const auto near = surface.nearest_within(place, kSameSurface);
+    if (!near) return false;
+    const Surfel& here = surface.surfels()[near->index];
     if (!here.is_straight()) return true;
     if (std::abs(dot(here.normal, place - here.position)) > kSameLine) return false;
     return !there.is_straight() || std::abs(dot(here.normal, transform(rotation, there.normal))) >= kSameSurfaceCosine;

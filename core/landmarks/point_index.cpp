@@ -120,6 +120,9 @@ private:
 /// Collects only the nearest point, without a heap.
 class First {
 public:
+    /// @param radius  of the search: points farther away may be left out
+    explicit First(double radius = std::numeric_limits<double>::infinity()) : found_{beyond(radius * radius), kNone} {}
+
     [[nodiscard]] bool full() const { return true; }
     [[nodiscard]] double worstDist() const { return beyond(found_.squared); }
     bool addPoint(double squared, std::uint32_t index) {
@@ -127,10 +130,12 @@ public:
         return true;
     }
 
+    [[nodiscard]] bool has_found() const { return found_.index != kNone; }
     [[nodiscard]] const Found& found() const { return found_; }
 
 private:
-    Found found_{std::numeric_limits<double>::infinity(), std::numeric_limits<std::uint32_t>::max()};
+    static constexpr auto kNone = std::numeric_limits<std::uint32_t>::max();
+    Found found_;
 };
 
 /// Collects all points within a radius.
@@ -196,6 +201,15 @@ std::optional<Neighbor> PointTree::nearest(const Point2& place) const {
     First first;
     tree_->search(first, place);
     return neighbor(first.found());
+}
+
+std::optional<Neighbor> PointTree::nearest_within(const Point2& place, double radius) const {
+    if (size() == 0) return std::nullopt;
+    First first(radius);
+    tree_->search(first, place);
+    if (!first.has_found()) return std::nullopt;
+    const Neighbor found = neighbor(first.found());
+    return found.distance <= radius ? std::optional(found) : std::nullopt;
 }
 
 std::vector<Neighbor> PointTree::nearest(const Point2& place, std::size_t count) const {

@@ -108,6 +108,11 @@ public:
     /// @param place  metres
     [[nodiscard]] std::optional<Neighbor> nearest(const Point2& place) const;
 
+    /// Returns the nearest point, or nullopt if it is farther than `radius` away; faster than nearest().
+    /// @param place   metres
+    /// @param radius  metres, 0 or more
+    [[nodiscard]] std::optional<Neighbor> nearest_within(const Point2& place, double radius) const;
+
     /// Returns the `count` nearest points, or all if there are fewer. A point at the place itself is included.
     /// @param place  metres
     /// @param count  largest number of results

@@ -37,9 +37,8 @@ struct ClosePair {
 std::vector<PointPair> closest_pairs(const Surface& first, std::span<const Surfel> second, const Pose2& pose) {
     std::vector<ClosePair> close;
     for (const Surfel& there : second) {
-        const auto [index, distance] = first.nearest(transform(pose, there.position));
-        if (distance > kIcpDistance) continue;
-        close.push_back({{first.surfels()[index].position, there.position}, distance});
+        const auto near = first.nearest_within(transform(pose, there.position), kIcpDistance);
+        if (near) close.push_back({{first.surfels()[near->index].position, there.position}, near->distance});
     }
     std::ranges::stable_sort(close, {}, &ClosePair::distance);
     close.resize(static_cast<std::size_t>(kIcpFraction * static_cast<double>(close.size())));
@@ -97,15 +96,15 @@ NormalEquations normal_equations(const Surface& first, const Surface& second, co
     const Pose2 back = inverse(pose);
     for (const Surfel& element : second.surfels()) {
         const Surfel there = transformed(pose, element);
-        const auto [index, distance] = first.nearest(there.position);
-        if (distance > kFitDistance) continue;
-        const Surfel& here = first.surfels()[index];
+        const auto near = first.nearest_within(there.position, kFitDistance);
+        if (!near) continue;
+        const Surfel& here = first.surfels()[near->index];
         add(equations, here, there, here.normal, origin);
     }
     for (const Surfel& here : first.surfels()) {
-        const auto [index, distance] = second.nearest(transform(back, here.position));
-        if (distance > kFitDistance) continue;
-        const Surfel there = transformed(pose, second.surfels()[index]);
+        const auto near = second.nearest_within(transform(back, here.position), kFitDistance);
+        if (!near) continue;
+        const Surfel there = transformed(pose, second.surfels()[near->index]);
         add(equations, here, there, there.normal, origin);
     }
     return equations;

@@ -19,10 +19,12 @@ public:
 
     /// Returns the surface elements.
     [[nodiscard]] const std::vector<Surfel>& surfels() const noexcept { return surfels_; }
-    /// Returns the surface element nearest to a place.
-    /// @param place  metres, in the frame of the elements
-    /// Precondition: there is at least one.
-    [[nodiscard]] Neighbor nearest(const Point2& place) const { return *tree_.nearest(place); }
+    /// Returns the surface element nearest to a place, or nullopt if it is farther than `radius` away.
+    /// @param place   metres, in the frame of the elements
+    /// @param radius  metres
+    [[nodiscard]] std::optional<Neighbor> nearest_within(const Point2& place, double radius) const {
+        return tree_.nearest_within(place, radius);
+    }
 
 private:
     std::vector<Surfel> surfels_;

@@ -46,6 +46,7 @@ TEST(PointTree, MatchesBruteForceOverAllPoints) {
         const auto end = std::ranges::find_if(
             all, [&](const Neighbor& one) { return squared_norm(points[one.index] - place) > radius * radius; });
         ASSERT_THAT(tree.within(place, radius), testing::ElementsAreArray(all.begin(), end)) << "radius " << radius;
+        ASSERT_EQ(tree.nearest_within(place, radius), end == all.begin() ? std::nullopt : std::optional(all.front()));
     }
 }
 
@@ -64,6 +65,7 @@ TEST(PointTree, IsEmptyWithoutPoints) {
     const PointTree tree({});
     EXPECT_EQ(tree.size(), 0U);
     EXPECT_EQ(tree.nearest({1.0, 2.0}), std::nullopt);
+    EXPECT_EQ(tree.nearest_within({1.0, 2.0}, 1.0), std::nullopt);
     EXPECT_THAT(tree.nearest({1.0, 2.0}, 3), testing::IsEmpty());
     EXPECT_THAT(tree.within({1.0, 2.0}, std::numeric_limits<double>::infinity()), testing::IsEmpty());
 }
