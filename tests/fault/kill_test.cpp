@@ -92,9 +92,9 @@ void kill_again_and_again(const Stream& stream, unsigned seed, int kills) {
     EXPECT_EQ(again.get("/api/v1/sessions/s/digest").body, undisturbed) << "after a clean restart";
 }
 
-TEST(KillNine, LosesAndDuplicatesNoAcknowledgedScan) { kill_again_and_again(simulated(), 1, 6); }
+TEST(KillNineTrials, LosesAndDuplicatesNoAcknowledgedScan) { kill_again_and_again(simulated(), 1, 6); }
 
-TEST(KillNine, LosesNoScanOfARealLog) {
+TEST(KillNineTrials, LosesNoScanOfARealLog) {
     if (!std::filesystem::exists(kIntel)) GTEST_SKIP() << "the Intel log is not at " << kIntel;
     kill_again_and_again(real_log(), 2, 5);
 }

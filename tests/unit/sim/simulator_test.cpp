@@ -317,8 +317,8 @@ std::vector<int> rooms_entered(Simulator simulator, int scans) {
     return entered;
 }
 
-TEST(WallFollowerDrives, EntersAndLeavesOfficeRoomsThroughTheirDoors) {
-    for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
+void expect_rooms_entered_once(std::initializer_list<std::uint64_t> seeds) {
+    for (const std::uint64_t seed : seeds) {
         for (const bool noisy : {false, true}) {
             const auto rooms = rooms_entered(make("office", seed, noisy ? std::optional(Noise{}) : std::nullopt), 3000);
             EXPECT_GE(rooms.size(), 2U) << seed;
@@ -326,6 +326,10 @@ TEST(WallFollowerDrives, EntersAndLeavesOfficeRoomsThroughTheirDoors) {
         }
     }
 }
+
+TEST(WallFollowerDrives, EntersAndLeavesOfficeRoomsThroughTheirDoors) { expect_rooms_entered_once({1}); }
+
+TEST(WallFollowerSeedTrials, EntersAndLeavesOfficeRoomsThroughTheirDoors) { expect_rooms_entered_once({2, 3, 4}); }
 
 TEST(WallFollowerDrives, VisitsEveryOfficeRoomInOrder) {
     const auto rooms = rooms_entered(make("office", 3, Noise{}), 13'000); // the robot starts at a table and leaves it

@@ -71,17 +71,22 @@ TEST_P(EstimationStates, GoThroughBytesWithoutChangingAnyResult) {
     expect_all_equal(log.maps(), undisturbed.maps());
 }
 
+std::string name_of_scenario(const testing::TestParamInfo<Scenario>& tested) { return tested.param.name; }
+
 INSTANTIATE_TEST_SUITE_P(
     Logs, EstimationStates,
-    testing::Values(Scenario{"Loops", drive_a_lap, true, false, false},
-                    Scenario{"TwoRobots", drive_two_robots, true, true, true},
+    testing::Values(Scenario{"TwoRobots", drive_two_robots, true, true, true},
                     Scenario{"FrozenMap", drive_in_a_frozen_map, true, true, false},
-                    Scenario{"AnotherBuilding", drive_in_another_building, false, true, false},
                     Scenario{"SentPoses", follow_a_sender, true, true, true},
                     Scenario{"CompleteMap", look_for_a_place_in_a_complete_map, false, true, false},
-                    Scenario{"FarBeyond", drive_far_beyond_a_frozen_map, true, false, false},
                     Scenario{"ImpossibleDistances", drive_with_impossible_distances, true, true, false}),
-    [](const auto& scenario) { return std::string(scenario.param.name); });
+    name_of_scenario);
+
+INSTANTIATE_TEST_SUITE_P(LogTrials, EstimationStates,
+                         testing::Values(Scenario{"Loops", drive_a_lap, true, false, false},
+                                         Scenario{"AnotherBuilding", drive_in_another_building, false, true, false},
+                                         Scenario{"FarBeyond", drive_far_beyond_a_frozen_map, true, false, false}),
+                         name_of_scenario);
 
 /// A change of a byte gives another state, or none. Nothing crashes, and neither does what follows.
 TEST(EstimationState, ChangedBytesAreRefusedOrGiveAnotherState) {

@@ -331,9 +331,14 @@ TEST_F(SpoolTest, DirectoryCannotBeSharedByTwoPrograms) {
     EXPECT_THAT(second.error().message, HasSubstr("another program uses the spool"));
 }
 
-/// Random use compared with a list in memory: appends, sends, acknowledgements that may be lost, and kills.
-TEST_F(SpoolTest, RandomEventsLoseOrDuplicateNoScan) {
-    for (std::uint32_t seed = 1; seed <= 30; ++seed) {
+class RandomSpoolUse : public SpoolTest {
+protected:
+    void expect_no_scan_lost_or_duplicated(std::uint32_t seeds);
+};
+
+/// Compares with a list in memory: appends, sends, acknowledgements that may be lost, and kills.
+void RandomSpoolUse::expect_no_scan_lost_or_duplicated(std::uint32_t seeds) {
+    for (std::uint32_t seed = 1; seed <= seeds; ++seed) {
         spool_.reset();
         fs::remove_all(directory_.path());
         std::mt19937 random(seed);
@@ -376,6 +381,12 @@ TEST_F(SpoolTest, RandomEventsLoseOrDuplicateNoScan) {
         ASSERT_EQ(server, from_to(1, taken)) << "seed " << seed;
     }
 }
+
+TEST_F(RandomSpoolUse, LosesOrDuplicatesNoScan) { expect_no_scan_lost_or_duplicated(8); }
+
+class RandomSpoolUseTrials : public RandomSpoolUse {};
+
+TEST_F(RandomSpoolUseTrials, LosesOrDuplicatesNoScan) { expect_no_scan_lost_or_duplicated(30); }
 
 } // namespace
 } // namespace scanloom::robot
