@@ -35,7 +35,7 @@ if(SCANLOOM_SANITIZE)
   endif()
 endif()
 
-# Optimization by kind of code, in release builds: kernels -O3, what waits for sockets and disks -O1, tests -Og.
+# Optimization by kind of code, in release builds: kernels -O3, what is as fast as its sockets, devices and files -O1, tests -Og.
 # Each kind has one precompiled header, which all targets of the kind share.
 # scanloom_kind(TARGET KIND), KIND one of compute, io, test
 function(scanloom_kind target kind)
@@ -63,7 +63,7 @@ function(scanloom_headers kind)
 endfunction()
 
 # scanloom_library(NAME [IO] SOURCES a.cpp ... LINKS target ...)
-# One folder, one library; LINKS are the folders and packages it may include. IO: it waits for sockets or disks.
+# One folder, one library; LINKS are the folders and packages it may include. IO: it is as fast as the sockets, devices or files that it reads and writes.
 function(scanloom_library name)
   cmake_parse_arguments(ARG "IO" "" "SOURCES;LINKS" ${ARGN})
   if(NOT ARG_SOURCES)
