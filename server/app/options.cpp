@@ -7,6 +7,7 @@
 #include "server/app/places.hpp"
 #include "server/app/resource_limits.hpp"
 #include "server/app/token_command.hpp"
+#include "server/store/open_store.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -47,9 +48,13 @@ std::filesystem::path default_web() {
 
 // Checks for CLI::Option::check(): the error, or an empty text.
 
-std::string check_directory(const std::string& text) {
-    if (text.find("://") == std::string::npos) return "";
-    return fmt::format("{}: this version keeps its log in a directory; give a path", text);
+std::string check_store(const std::string& text) {
+    const bool is_address = store::is_in_database(text);
+    if (!is_address && text.find("://") == std::string::npos) return "";
+    if (!is_address)
+        return "this is neither a directory nor a database; write PATH, or postgresql://USER@HOST/DATABASE";
+    const auto place = store::check_address(text);
+    return place ? "" : place.error().message;
 }
 
 std::string check_viewer(const std::string& directory) {
@@ -213,9 +218,13 @@ void add_memory_options(CLI::App& app, ServerOptions& options) {
 void add_options(CLI::App& app, ServerOptions& options) {
     add_parsed(app, "--listen", options.listen, "Address and port for robots; port 0 picks a free one", parse_endpoint)
         ->default_str(fmt::format("{}", fmt::streamed(options.listen)));
-    app.add_option("--store", options.store, "Directory of the log; created if it does not exist")
+    app.add_option("--store", options.store,
+                   "Directory of the log; created if it does not exist. Or a database of PostgreSQL 15 or newer, "
+                   "postgresql://USER@HOST[,HOST...]/DATABASE")
         ->required()
-        ->check(&check_directory);
+        ->check(&check_store);
+    app.add_flag("--allow-unreplicated", options.allow_unreplicated,
+                 "Accept a database without a synchronous standby: the loss of its machine loses acknowledged scans");
     add_task_options(app, options);
     add_http_options(app, options);
     add_tls_options(app, options.robot_tls, "--robot", "robots");

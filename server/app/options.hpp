@@ -31,7 +31,8 @@ struct ServerOptions {
     Task task = Task::kServe;
     boost::asio::ip::tcp::endpoint listen{boost::asio::ip::address_v4::loopback(), 7447}; ///< for robots
     boost::asio::ip::tcp::endpoint http{boost::asio::ip::address_v4::loopback(), 8080};   ///< for browsers, API clients
-    std::filesystem::path store;
+    std::filesystem::path store;         ///< or the address of a database, postgresql://...
+    bool allow_unreplicated = false;     ///< accept a database without a synchronous standby
     std::filesystem::path repaired;      ///< the store that --repair creates
     std::filesystem::path backups;       ///< directory of the backups; empty: backups are disabled
     std::size_t backups_kept = 7;        ///< number of backups kept, the newest ones

@@ -1,5 +1,7 @@
 #include "server/app/places.hpp"
 
+#include "server/store/open_store.hpp"
+
 #include <fmt/format.h>
 
 #include <filesystem>
@@ -48,9 +50,27 @@ Result<> check_apart(const Place& one, const Place& other) {
                              outer.directory.native())};
 }
 
+/// Refuses what only directories have.
+Result<> check_database(const ServerOptions& options) {
+    const auto refused = [](std::string_view flag, std::string_view advice) {
+        return Error{Errc::kInvalidField, fmt::format("{} is for a store in a directory; {}", flag, advice)};
+    };
+    constexpr std::string_view kBackups = "make backups of the database (docs/operations.md)";
+    switch (options.task) {
+    case Task::kCheck:
+    case Task::kCheckMaps: return refused("--check", "check the database with pg_amcheck");
+    case Task::kRepair: return refused("--repair", "restore the database from a backup");
+    case Task::kRestore: return refused("--restore", "restore the database from its own backup");
+    case Task::kServe: break;
+    }
+    if (!options.backups.empty()) return refused("--backups", kBackups);
+    return {};
+}
+
 } // namespace
 
 Result<> check_places(const ServerOptions& options) {
+    if (store::is_in_database(options.store)) return check_database(options);
     const Place store{"--store", options.store};
     switch (options.task) {
     case Task::kCheck:

@@ -89,6 +89,7 @@ Result<std::unique_ptr<Server>> Server::open(const ServerOptions& options, const
     store.on_damage = [](const Error& damage) { spdlog::error("{}", damage.message); };
     store.on_log_line = [](std::string_view line) { spdlog::debug("RocksDB: {}", line); };
     store.disk_reserve_bytes = options.disk_reserve_bytes;
+    store.allow_unreplicated = options.allow_unreplicated;
     const auto check = std::make_shared<sessions::BackgroundCheck*>(nullptr); // created after the log
     store.on_unreadable = [check](store::SessionId session, const Error& why) {
         if (*check != nullptr) (*check)->note(session, why);
@@ -216,7 +217,7 @@ void Server::announce() const {
     notify_service_manager("READY=1");
     spdlog::info("robots: {}:{}, browsers: {}://{}:{}/, store: {}", options_.listen.address().to_string(),
                  ingest_->port(), http_tls_ ? "https" : "http", options_.http.address().to_string(), http_->port(),
-                 options_.store.string());
+                 store::shown(options_.store));
 }
 
 void Server::wait_for_signal() {
@@ -235,7 +236,7 @@ void Server::run_maintenance() {
     if (sessions_.is_draining()) return;
     asio::post(pools_.loading, [this] { // not on pools_.changes: its tasks may wait for work started here
         log_store_failure();
-        if (log_->reopen()) spdlog::info("the store {} has been opened again", options_.store.string());
+        if (log_->reopen()) spdlog::info("the store {} has been opened again", store::shown(options_.store));
         sessions_.tidy();
         audit_.log_due();
     });

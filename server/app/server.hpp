@@ -15,7 +15,7 @@
 #include "server/sessions/replay_jobs.hpp"
 #include "server/sessions/session_registry.hpp"
 #include "server/store/backups.hpp"
-#include "server/store/rocksdb_store.hpp"
+#include "server/store/open_store.hpp"
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/signal_set.hpp>
@@ -38,7 +38,7 @@ public:
     /// Errors: those of the parts that cannot be opened; the message is one sentence that says what to do.
     [[nodiscard]] static Result<std::unique_ptr<Server>> open(const ServerOptions& options,
                                                               const ConnectionLimits& limits = {},
-                                                              const store::OpenStore& open_log = store::open_rocksdb);
+                                                              const store::OpenStore& open_log = store::open_store);
 
     ~Server();
 

@@ -49,10 +49,6 @@ private:
     std::uint64_t bytes_ = kChangeBytes;
 };
 
-Error no_such_session(SessionId session) {
-    return {Errc::kNotFound, fmt::format("the store has no session {}; it may have been removed", session)};
-}
-
 Error unreadable(const std::string& store, SessionId session, const rocksdb::Status& status) {
     const auto code = code_of(status);
     return {code, fmt::format("the store {} cannot read session {}: {}; {}", store, session, status.ToString(),

@@ -39,6 +39,10 @@ struct StoreOptions {
     /// are dropped.
     std::function<void(std::string_view)> on_log_line;
 
+    /// For a store in a database: accept one that has no synchronous standby, so that the loss of its machine loses
+    /// acknowledged scans.
+    bool allow_unreplicated = false;
+
     /// The file layer; tests replace it to inject failures. Null: the system's.
     rocksdb::Env* env = nullptr;
 };
@@ -52,7 +56,7 @@ struct StoreOptions {
 [[nodiscard]] Result<std::unique_ptr<ScanLog>> open_rocksdb(const std::filesystem::path& directory,
                                                             const StoreOptions& options = {});
 
-/// Opens a store; open_rocksdb() or a replacement for it.
+/// Opens a store; open_store() or a replacement for it.
 using OpenStore = std::function<Result<std::unique_ptr<ScanLog>>(const std::filesystem::path&, const StoreOptions&)>;
 
 /// A store that no server has open, for reading.

@@ -4,6 +4,10 @@
 
 namespace scanloom::store {
 
+Error no_such_session(SessionId session) {
+    return {Errc::kNotFound, fmt::format("the store has no session {}; it may have been removed", session)};
+}
+
 Errc code_of(const rocksdb::Status& status) {
     return status.IsCorruption() || status.IsPathNotFound() ? Errc::kDataLoss : Errc::kStoreFailed;
 }

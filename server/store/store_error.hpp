@@ -1,6 +1,7 @@
 #pragma once
 
 #include "common/error/error.hpp"
+#include "server/store/scan_log.hpp"
 
 #include <fmt/format.h>
 
@@ -29,6 +30,9 @@ template <class... Args>
 [[nodiscard]] Error failure(fmt::format_string<Args...> text, Args&&... args) {
     return {Errc::kStoreFailed, fmt::format(text, std::forward<Args>(args)...)};
 }
+
+/// Returns the error for a session that is not in the store.
+[[nodiscard]] Error no_such_session(SessionId session);
 
 /// Returns the error code of a failed read: kDataLoss if bytes are wrong or their file is missing; kStoreFailed if the
 /// disk could not be read, which may be temporary.

@@ -162,6 +162,7 @@ const std::vector<Package> kPackages = {
     {"yaml-cpp/", {"common/ros_map"}},
     {"opencv2/", {"server/tiles", "lab"}},
     {"rocksdb/", {"server/store"}},
+    {"libpq-fe.h", {"server/store"}},
     {"prometheus/", {"server/auth", "server/metrics"}},
     {"spdlog/",
      {"server/log", "server/sessions", "server/sockets", "server/ingest", "server/live", "server/http", "server/app",

@@ -5,6 +5,7 @@
 #include "tests/support/log_reading.hpp"
 #include "tests/support/memory_scan_log.hpp"
 #include "tests/support/temporary_directory.hpp"
+#include "tests/unit/server/store/postgres_database.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -37,6 +38,13 @@ struct Rocksdb {
     void fail_next_write() { disk.files->fail_next_log_sync(); }
 };
 
+struct Postgres {
+    PostgresDatabase database;
+    std::unique_ptr<ScanLog> log = open_postgres(database.address, {.allow_unreplicated = true}).value();
+    ScanLog& get() { return *log; }
+    void fail_next_write() { database.fail_next_insertion(); }
+};
+
 template <class Backend>
 class ScanLogContract : public testing::Test {
 protected:
@@ -44,7 +52,7 @@ protected:
     ScanLog& log_ = backend_.get();
 };
 
-using Backends = testing::Types<Memory, Rocksdb>;
+using Backends = testing::Types<Memory, Rocksdb, Postgres>;
 TYPED_TEST_SUITE(ScanLogContract, Backends);
 
 TYPED_TEST(ScanLogContract, AFreshLogHasNoSessions) { EXPECT_THAT(this->log_.sessions().value(), IsEmpty()); }

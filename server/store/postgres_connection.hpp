@@ -1,0 +1,119 @@
+#pragma once
+
+#include "common/error/error.hpp"
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+struct pg_result;
+
+/// Connections to PostgreSQL, with deadlines of our own for everything that waits.
+namespace scanloom::store::postgres {
+
+/// Where a database is: postgresql://USER@HOST[:PORT][,HOST[:PORT]...]/DATABASE, as libpq reads it.
+struct Place {
+    struct Host {
+        std::string name; ///< a name, an address, or the folder of a socket
+        std::string port;
+    };
+    std::vector<Host> hosts;
+    std::vector<std::pair<std::string, std::string>> settings; ///< all other parameters of libpq
+    std::string text;                                          ///< for messages: without a password
+};
+
+/// Returns whether a value of --store names a database.
+[[nodiscard]] bool is_place(std::string_view text);
+
+/// Reads the address of a database.
+/// Errors: kInvalidField: it is not an address, or has no database.
+[[nodiscard]] Result<Place> parse_place(const std::string& url);
+
+/// Returns a number as the database has it, signed.
+[[nodiscard]] constexpr std::int64_t signed_of(std::uint64_t number) { return static_cast<std::int64_t>(number); }
+
+/// The parameters of a statement, $1 and so on, in PostgreSQL's binary format.
+class Parameters {
+public:
+    void add(std::int64_t number);
+    void add(std::string_view bytes);
+    void add(std::span<const std::int64_t> numbers);
+    void add(std::span<const std::string_view> byte_strings);
+
+    [[nodiscard]] std::size_t size() const noexcept { return values_.size(); }
+    [[nodiscard]] const std::vector<std::string>& values() const noexcept { return values_; }
+    [[nodiscard]] const std::vector<unsigned>& types() const noexcept { return types_; }
+
+private:
+    std::vector<std::string> values_;
+    std::vector<unsigned> types_; // object ids of pg_type
+};
+
+/// What a statement returned.
+class Rows {
+public:
+    explicit Rows(pg_result* result = nullptr) : result_(result) {}
+
+    [[nodiscard]] int size() const;
+    /// @return a bigint
+    [[nodiscard]] std::int64_t number(int row, int column) const;
+    /// @return the bytes of a bytea or a text; valid as long as the rows
+    [[nodiscard]] std::string_view bytes(int row, int column) const;
+
+private:
+    struct Clear {
+        void operator()(pg_result* result) const;
+    };
+    std::unique_ptr<pg_result, Clear> result_;
+};
+
+/// A connection to the primary of a database, which commits only what its synchronous standbys have on their disks.
+/// After an error of run() other than kOverloaded it cannot be used any more, and what happened is not known.
+/// Threads: one at a time.
+class Connection {
+public:
+    /// Time until a host has to have answered. libpq's connect_timeout does not bound connections with several hosts.
+    static constexpr std::chrono::milliseconds kConnectTimeout{1500};
+    /// Time until a statement has to be done, for those that write: longer than a standby or a failover needs.
+    static constexpr std::chrono::milliseconds kWriteTimeout{4000};
+    static constexpr std::chrono::milliseconds kReadTimeout{60'000};
+
+    /// Connects to the host that accepts writes; tries them in random order.
+    /// Errors: kStoreFailed: none can be used; the message has the reason of each. kUnsupportedVersion: older than
+    ///         PostgreSQL 15.
+    [[nodiscard]] static Result<Connection> open(const Place& place);
+
+    Connection(Connection&& other) noexcept;
+    Connection& operator=(Connection&& other) noexcept;
+    ~Connection();
+
+    /// Runs one statement; without BEGIN, it is durable when this returns.
+    /// @param sql  one statement
+    /// Errors: kOverloaded: the disk of the database is full, and nothing was stored; kConflict: a lock was not free
+    ///         within lock_timeout; kStoreFailed: the statement failed, took too long, or was committed without the
+    ///         consent of a standby.
+    [[nodiscard]] Result<Rows> run(const char* sql, const Parameters& parameters = {},
+                                   std::chrono::milliseconds timeout = kWriteTimeout);
+
+    /// Returns whether the connection still exists, as far as this machine knows.
+    [[nodiscard]] bool is_alive();
+
+    /// Whether what is committed is on more than one machine, as far as the settings of the database tell.
+    /// @return an error that names the setting if it is not
+    [[nodiscard]] Result<> check_replication();
+
+private:
+    struct State;
+    explicit Connection(std::unique_ptr<State> state);
+    [[nodiscard]] Result<> prepare();
+
+    std::unique_ptr<State> state_;
+};
+
+} // namespace scanloom::store::postgres

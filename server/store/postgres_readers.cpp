@@ -1,0 +1,126 @@
+#include "server/store/postgres_readers.hpp"
+
+#include "server/store/postgres_segments.hpp"
+
+#include <fmt/format.h>
+
+#include <optional>
+#include <string>
+#include <utility>
+
+namespace scanloom::store::postgres {
+
+Result<Connection> Readers::take() {
+    {
+        const std::lock_guard lock(mutex_);
+        while (!idle_.empty()) {
+            Connection connection = std::move(idle_.back());
+            idle_.pop_back();
+            if (connection.is_alive()) return connection;
+        }
+    }
+    return Connection::open(place_);
+}
+
+void Readers::give_back(Connection connection) {
+    const std::lock_guard lock(mutex_);
+    if (idle_.size() < kIdleMax) idle_.push_back(std::move(connection));
+}
+
+void Readers::close() {
+    const std::lock_guard lock(mutex_);
+    idle_.clear();
+}
+
+Error Readers::damage(SessionId session, std::string_view what) const {
+    return {Errc::kDataLoss,
+            fmt::format("the store {} is damaged: {} of session {}; restore the database from a backup, "
+                        "or remove the session",
+                        place_.text, what, session)};
+}
+
+Result<std::vector<StoredSession>> Readers::sessions() {
+    auto connection = take();
+    if (!connection) return connection.error();
+    const auto rows = connection->run("SELECT id, record FROM scanloom.session WHERE NOT removed ORDER BY id", {},
+                                      Connection::kReadTimeout);
+    if (!rows) return rows.error();
+    std::vector<StoredSession> sessions;
+    for (int row = 0; row < rows->size(); ++row) {
+        sessions.push_back({static_cast<SessionId>(rows->number(row, 0)), std::string(rows->bytes(row, 1))});
+    }
+    give_back(std::move(*connection));
+    return sessions;
+}
+
+Result<> Readers::entries(SessionId session, Revision after, Revision end, const ScanLog::VisitEntry& visit) {
+    auto connection = take();
+    if (!connection) return connection.error();
+    const auto missing = [&](Revision revision) {
+        return damage(session, fmt::format("the entry of revision {} is missing", revision));
+    };
+    for (Revision next = after + 1; next <= end;) {
+        Parameters parameters;
+        parameters.add(signed_of(session));
+        parameters.add(signed_of(next));
+        parameters.add(signed_of(end));
+        const auto rows = connection->run(
+            "SELECT first, last, body FROM scanloom.segment WHERE session = $1 AND first <= $3 AND first >="
+            " coalesce((SELECT max(first) FROM scanloom.segment WHERE session = $1 AND first <= $2), $2)"
+            " ORDER BY first LIMIT 200",
+            parameters, Connection::kReadTimeout);
+        if (!rows) return rows.error();
+        if (rows->size() == 0) return missing(next);
+        for (int row = 0; row < rows->size() && next <= end; ++row) {
+            const auto first = static_cast<Revision>(rows->number(row, 0));
+            const auto last = static_cast<Revision>(rows->number(row, 1));
+            if (first > next || last < next) return missing(next);
+            const auto visited = visit_entries(session, first, last, rows->bytes(row, 2), next - 1, visit);
+            if (!visited) return visited.error();
+            if (*visited == Visit::kStop) return {};
+            next = last + 1;
+        }
+    }
+    give_back(std::move(*connection));
+    return {};
+}
+
+Result<> Readers::checkpoint(SessionId session, const ScanLog::VisitPart& visit) {
+    auto connection = take();
+    if (!connection) return connection.error();
+    if (auto begun = connection->run("BEGIN ISOLATION LEVEL REPEATABLE READ READ ONLY"); !begun) return begun.error();
+    constexpr int kPage = 100;
+    std::optional<std::string> last;
+    for (bool is_end = false; !is_end;) {
+        Parameters parameters;
+        parameters.add(signed_of(session));
+        if (last) parameters.add(std::string_view(*last));
+        const auto rows = connection->run(last ? "SELECT key, value FROM scanloom.part WHERE session = $1 AND key > $2"
+                                                 " ORDER BY key LIMIT 100"
+                                               : "SELECT key, value FROM scanloom.part WHERE session = $1"
+                                                 " ORDER BY key LIMIT 100",
+                                          parameters, Connection::kReadTimeout);
+        if (!rows) return rows.error();
+        for (int row = 0; row < rows->size(); ++row) {
+            last = std::string(rows->bytes(row, 0));
+            const auto value = unsealed_part(session, *last, rows->bytes(row, 1));
+            if (!value) return value.error();
+            if (auto visited = visit(*last, *value); !visited) return visited;
+        }
+        is_end = rows->size() < kPage;
+    }
+    if (auto ended = connection->run("COMMIT"); !ended) return ended.error();
+    give_back(std::move(*connection));
+    return {};
+}
+
+Result<std::uint64_t> Readers::size() {
+    auto connection = take();
+    if (!connection) return connection.error();
+    const auto rows = connection->run("SELECT pg_database_size(current_database())", {}, Connection::kReadTimeout);
+    if (!rows) return rows.error();
+    give_back(std::move(*connection));
+    return static_cast<std::uint64_t>(rows->number(0, 0));
+}
+
+} // namespace scanloom::store::postgres

@@ -1,0 +1,50 @@
+#pragma once
+
+#include "common/error/error.hpp"
+#include "server/store/postgres_connection.hpp"
+#include "server/store/scan_log.hpp"
+
+#include <cstdint>
+#include <mutex>
+#include <vector>
+
+namespace scanloom::store::postgres {
+
+/// Reads sessions, entries and checkpoints, over connections that are kept for the next reader.
+/// Threads: any; each reader has a connection of its own.
+class Readers {
+public:
+    explicit Readers(Place place) : place_(std::move(place)) {}
+
+    /// Returns all sessions that are not removed, by ascending id.
+    [[nodiscard]] Result<std::vector<StoredSession>> sessions();
+
+    /// Visits the entries after revision `after`, up to `end`.
+    /// Errors: those of the visitor; kDataLoss: an entry is damaged or missing; kStoreFailed.
+    [[nodiscard]] Result<> entries(SessionId session, Revision after, Revision end, const ScanLog::VisitEntry& visit);
+
+    /// Visits all parts of a checkpoint, of one moment, by ascending key.
+    /// Errors: those of the visitor; kDataLoss: a part is damaged; kStoreFailed.
+    [[nodiscard]] Result<> checkpoint(SessionId session, const ScanLog::VisitPart& visit);
+
+    /// Returns the size of the database, bytes.
+    [[nodiscard]] Result<std::uint64_t> size();
+
+    /// Closes the connections that are not in use.
+    void close();
+
+    /// Returns the error for a damaged log, which names the store.
+    [[nodiscard]] Error damage(SessionId session, std::string_view what) const;
+
+private:
+    static constexpr std::size_t kIdleMax = 4;
+
+    [[nodiscard]] Result<Connection> take();
+    void give_back(Connection connection);
+
+    const Place place_;
+    std::mutex mutex_; // guards the member below
+    std::vector<Connection> idle_;
+};
+
+} // namespace scanloom::store::postgres

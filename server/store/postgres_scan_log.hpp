@@ -1,0 +1,33 @@
+#pragma once
+
+#include "common/error/error.hpp"
+#include "server/store/scan_log.hpp"
+
+#include <functional>
+#include <memory>
+#include <string>
+
+/// The store in a database of PostgreSQL 15 or newer.
+namespace scanloom::store {
+
+struct PostgresOptions {
+    /// Accept a database that has no synchronous standby: the loss of its machine loses acknowledged scans.
+    bool allow_unreplicated = false;
+
+    /// Called on the reader's thread for every log that ScanLog::read() could not read to its end, with kDataLoss or
+    /// kStoreFailed.
+    std::function<void(SessionId, const Error&)> on_unreadable;
+};
+
+/// Opens the store in a database; creates its tables if they do not exist.
+///
+/// Several connections append: a session always uses the same one, and changes of different sessions may take effect
+/// in another order than they were submitted. A session's checkpoint is never ahead of its log.
+/// @param url  postgresql://USER@HOST[:PORT][,HOST[:PORT]...]/DATABASE; the one that accepts writes is used
+/// Errors: kInvalidField: `url` is not an address; kConflict: another server uses the store; kStoreFailed: the database
+///         cannot be used, or is not replicated; kUnsupportedVersion: it is too old, or a newer program wrote the
+///         store.
+[[nodiscard]] Result<std::unique_ptr<ScanLog>> open_postgres(const std::string& url,
+                                                             const PostgresOptions& options = {});
+
+} // namespace scanloom::store

@@ -1,0 +1,259 @@
+#include "server/store/postgres_scan_log.hpp"
+
+#include "server/store/open_store.hpp"
+#include "tests/support/log_reading.hpp"
+#include "tests/unit/server/store/postgres_database.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <future>
+#include <memory>
+#include <string>
+
+/// What a store in a database adds to the contract of ScanLog.
+namespace scanloom::store {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+using testing::SizeIs;
+
+class PostgresScanLogTest : public testing::Test {
+protected:
+    [[nodiscard]] Result<std::unique_ptr<ScanLog>> open() const {
+        return open_postgres(database_.address, {.allow_unreplicated = true});
+    }
+
+    PostgresDatabase database_;
+};
+
+TEST_F(PostgresScanLogTest, AllIsThereAfterARestart) {
+    SessionId session = 0;
+    {
+        const auto log = open().value();
+        session = log->create_session("record").value();
+        ASSERT_TRUE(append_and_wait(*log, session, 1, distinct_entries(session, 1, 500)));
+        ASSERT_TRUE(log->write_checkpoint(session, {{"part", "value"}}));
+    }
+    const auto log = open().value();
+    const auto sessions = log->sessions().value();
+    ASSERT_THAT(sessions, SizeIs(1));
+    EXPECT_EQ(sessions[0].record.value(), "record");
+    EXPECT_EQ(log->end_of(session).value(), 500U);
+    EXPECT_EQ(entries_after(*log, session, 0).value(), distinct_entries(session, 1, 500));
+    EXPECT_EQ(checkpoint_of(*log, session).value().at("part"), "value");
+    EXPECT_TRUE(append_and_wait(*log, session, 501, {"next"}));
+}
+
+TEST_F(PostgresScanLogTest, TheDestructorStoresWhatIsQueued) {
+    SessionId session = 0;
+    std::atomic<int> done = 0;
+    {
+        const auto log = open().value();
+        session = log->create_session("").value();
+        for (Revision revision = 1; revision <= 100; ++revision) {
+            log->append(session, revision, distinct_entries(session, revision, 1),
+                        [&](Result<> result) { done += result ? 1 : 0; });
+        }
+    }
+    EXPECT_EQ(done, 100);
+    EXPECT_EQ(open().value()->end_of(session).value(), 100U);
+}
+
+TEST_F(PostgresScanLogTest, ASecondServerIsRefused) {
+    const auto first = open().value();
+    const auto second = open();
+    ASSERT_FALSE(second);
+    EXPECT_EQ(second.error().code, Errc::kConflict);
+    EXPECT_THAT(second.error().message, HasSubstr("another server uses the store"));
+}
+
+/// As after a pause in which the other server was started, or with a lock that the database has lost.
+TEST_F(PostgresScanLogTest, AServerWhoseSessionsWereTakenOverChangesNothingAndStaysFailed) {
+    const auto paused = open().value();
+    const auto session = paused->create_session("").value();
+    ASSERT_TRUE(append_and_wait(*paused, session, 1, {"before"}));
+    ASSERT_TRUE(paused->write_checkpoint(session, {{"part", "before"}}));
+    database_.end_connections();
+    const auto other = open().value();
+    ASSERT_TRUE(append_and_wait(*other, session, 2, {"of the other"}));
+
+    const auto appended = append_and_wait(*paused, session, 2, {"late"});
+    EXPECT_EQ(appended.error().code, Errc::kStoreFailed);
+    EXPECT_THAT(appended.error().message, HasSubstr("another server has taken over session"));
+    EXPECT_FALSE(paused->write_checkpoint(session, {{"part", "late"}}));
+    EXPECT_FALSE(paused->clear_checkpoint(session));
+    EXPECT_FALSE(paused->remove_session(session));
+    EXPECT_FALSE(paused->reopen());
+    EXPECT_THAT(paused->stats().last_error.value(), HasSubstr("another server uses the store"));
+    EXPECT_THAT(entries_after(*other, session, 0).value(), ElementsAre("before", "of the other"));
+    EXPECT_EQ(checkpoint_of(*other, session).value().at("part"), "before");
+}
+
+TEST_F(PostgresScanLogTest, EachKindOfLateChangeIsRefused) {
+    const auto take_over = [&](SessionId session) {
+        static_cast<void>(database_.run("UPDATE scanloom.session SET epoch = epoch + 1, owner = 0 WHERE id = " +
+                                        std::to_string(session)));
+    };
+    using Change = Result<> (*)(ScanLog&, SessionId);
+    for (const Change change : {Change{[](ScanLog&log, SessionId id) { return append_and_wait(log, id, 1, {"x"}); }},
+                                Change{[](ScanLog&log, SessionId id) {
+                                    return log.write_checkpoint(id, {{"part", "x"}});
+                                }},
+                                Change{[](ScanLog&log, SessionId id) { return log.clear_checkpoint(id); }},
+                                Change{[](ScanLog&log, SessionId id) { return log.remove_session(id); }}}) {
+        const auto log = open().value();
+        const auto session = log->create_session("").value();
+        ASSERT_TRUE(log->write_checkpoint(session, {{"kept", "value"}}));
+        take_over(session);
+        EXPECT_THAT(change(*log, session).error().message, HasSubstr("taken over"));
+        EXPECT_FALSE(log->reopen());
+        EXPECT_THAT(log->stats().last_error.value(), HasSubstr("taken over"));
+        EXPECT_EQ(database_.number("SELECT count(*) FROM scanloom.part WHERE key = 'kept' AND session = " +
+                                   std::to_string(session)),
+                  1);
+        EXPECT_EQ(database_.number("SELECT count(*) FROM scanloom.session WHERE NOT removed AND end_rev = 0 AND id = " +
+                                   std::to_string(session)),
+                  1);
+    }
+}
+
+TEST_F(PostgresScanLogTest, ConnectionsThatEndedBetweenChangesAreOpenedAgain) {
+    const auto log = open().value();
+    const auto session = log->create_session("").value();
+    ASSERT_TRUE(append_and_wait(*log, session, 1, {"a"}));
+    EXPECT_EQ(entries_after(*log, session, 0).value().size(), 1U);
+    database_.end_connections();
+    EXPECT_TRUE(append_and_wait(*log, session, 2, {"b"}));
+    EXPECT_TRUE(log->write_checkpoint(session, {{"part", "value"}}));
+    EXPECT_THAT(entries_after(*log, session, 0).value(), ElementsAre("a", "b"));
+}
+
+TEST_F(PostgresScanLogTest, ADatabaseThatWentBackIsNoticed) {
+    const auto log = open().value();
+    const auto session = log->create_session("").value();
+    ASSERT_TRUE(append_and_wait(*log, session, 1, {"a", "b"}));
+    static_cast<void>(database_.run("UPDATE scanloom.session SET end_rev = 1"));
+    static_cast<void>(database_.run("DELETE FROM scanloom.segment WHERE last > 1"));
+    EXPECT_FALSE(append_and_wait(*log, session, 3, {"c"}));
+    EXPECT_FALSE(log->reopen());
+    EXPECT_THAT(log->stats().last_error.value(),
+                HasSubstr("has lost entries: session 1 ends with 1, and 2 was acknowledged"));
+}
+
+TEST_F(PostgresScanLogTest, DamageIsReportedWithSessionAndRevision) {
+    const auto log = open().value();
+    std::vector<SessionId> sessions;
+    for (int n = 0; n < 3; ++n) {
+        sessions.push_back(log->create_session("").value());
+        ASSERT_TRUE(append_and_wait(*log, sessions.back(), 1, distinct_entries(sessions.back(), 1, 100)));
+        ASSERT_TRUE(log->write_checkpoint(sessions.back(), {{"part", "value"}}));
+    }
+    static_cast<void>(database_.run("UPDATE scanloom.segment SET body = set_byte(body, 9, get_byte(body, 9) # 1)"
+                                    " WHERE session = 1 AND first > 1"));
+    static_cast<void>(database_.run("DELETE FROM scanloom.segment WHERE session = 2 AND first > 1"));
+    static_cast<void>(database_.run("UPDATE scanloom.part SET value = 'another value' WHERE session = 1"));
+    EXPECT_EQ(entries_after(*log, sessions[0], 0).error().code, Errc::kDataLoss);
+    EXPECT_THAT(entries_after(*log, sessions[0], 0).error().message, HasSubstr("of session 1"));
+    EXPECT_THAT(entries_after(*log, sessions[1], 0).error().message, HasSubstr("is missing of session 2"));
+    EXPECT_EQ(checkpoint_of(*log, sessions[0]).error().code, Errc::kDataLoss);
+    EXPECT_EQ(entries_after(*log, sessions[2], 0).value(), distinct_entries(sessions[2], 1, 100));
+}
+
+TEST_F(PostgresScanLogTest, RowsOfARemovedSessionAreDeletedByTheNextServerAtTheLatest) {
+    {
+        const auto log = open().value();
+        for (int n = 0; n < 2; ++n) {
+            const auto session = log->create_session("").value();
+            ASSERT_TRUE(append_and_wait(*log, session, 1, {"a"}));
+            ASSERT_TRUE(log->write_checkpoint(session, {{"part", "value"}}));
+        }
+        static_cast<void>(database_.run("UPDATE scanloom.session SET removed = true WHERE id = 1"));
+    }
+    const auto log = open().value();
+    while (database_.number("SELECT count(*) FROM scanloom.session") > 1) {
+    }
+    EXPECT_EQ(database_.number("SELECT count(*) FROM scanloom.segment"), 1);
+    EXPECT_EQ(database_.number("SELECT count(*) FROM scanloom.part"), 1);
+    EXPECT_THAT(log->sessions().value(), SizeIs(1));
+}
+
+/// PostgreSQL reports a commit as done if the wait for its standby was cancelled.
+TEST_F(PostgresScanLogTest, ACommitWithoutTheConsentOfTheStandbyIsNoAcknowledgement) {
+    const auto log = open().value();
+    const auto session = log->create_session("").value();
+    ASSERT_TRUE(append_and_wait(*log, session, 1, {"a"}));
+    const auto name_standby = [&](const std::string& name) {
+        static_cast<void>(database_.run("ALTER SYSTEM SET synchronous_standby_names = '" + name + "'"));
+        static_cast<void>(database_.run("SELECT pg_reload_conf()"));
+        while (database_.run("SELECT current_setting('synchronous_standby_names')").bytes(0, 0) != name) {
+        }
+    };
+    name_standby("absent");
+    std::promise<Result<>> outcome;
+    log->append(session, 2, {"b"}, [&](Result<> result) { outcome.set_value(std::move(result)); });
+    while (database_.number(
+               "SELECT count(pg_cancel_backend(pid)) FROM pg_stat_activity WHERE wait_event = 'SyncRep'") == 0) {
+    }
+    const auto appended = outcome.get_future().get();
+    name_standby("");
+    ASSERT_FALSE(appended);
+    EXPECT_EQ(appended.error().code, Errc::kStoreFailed);
+    EXPECT_THAT(appended.error().message, HasSubstr("canceling wait for synchronous replication"));
+    ASSERT_TRUE(log->reopen());
+    EXPECT_EQ(log->end_of(session).value(), 2U) << "it was stored, which the next commit makes durable";
+    EXPECT_TRUE(append_and_wait(*log, session, 3, {"c"}));
+}
+
+TEST_F(PostgresScanLogTest, AnUnreplicatedDatabaseIsRefusedUnlessAllowed) {
+    const auto log = open_postgres(database_.address);
+    ASSERT_FALSE(log);
+    EXPECT_EQ(log.error().code, Errc::kStoreFailed);
+    EXPECT_THAT(log.error().message, HasSubstr("no synchronous standby"));
+    EXPECT_THAT(log.error().message, HasSubstr("--allow-unreplicated"));
+    EXPECT_EQ(database_.number("SELECT count(*) FROM pg_namespace WHERE nspname = 'scanloom'"), 0)
+        << "nothing is created";
+}
+
+TEST_F(PostgresScanLogTest, AStoreOfANewerProgramIsRefused) {
+    { ASSERT_TRUE(open()); }
+    static_cast<void>(database_.run("UPDATE scanloom.meta SET value = '99' WHERE key = 'format'"));
+    const auto log = open();
+    EXPECT_EQ(log.error().code, Errc::kUnsupportedVersion);
+    EXPECT_THAT(log.error().message, HasSubstr("format 99"));
+}
+
+TEST_F(PostgresScanLogTest, AReadOnlyDatabaseIsRefused) {
+    const PostgresDatabase another(PostgresDatabase::server().new_database());
+    const std::string name(another.run("SELECT current_database()::text").bytes(0, 0));
+    static_cast<void>(another.run("ALTER DATABASE " + name + " SET default_transaction_read_only = on"));
+    EXPECT_THAT(open_postgres(another.address).error().message, HasSubstr("is read-only"));
+}
+
+TEST_F(PostgresScanLogTest, ReasonsOfAllHostsAreNamed) {
+    const auto log = open_postgres("postgresql://someone:secret@127.0.0.1:1,127.0.0.1:2/none");
+    EXPECT_EQ(log.error().code, Errc::kStoreFailed);
+    EXPECT_THAT(log.error().message, HasSubstr("postgresql://someone@127.0.0.1,127.0.0.1/none"));
+    EXPECT_THAT(log.error().message, HasSubstr("port 1 failed"));
+    EXPECT_THAT(log.error().message, HasSubstr("port 2 failed"));
+    EXPECT_THAT(log.error().message, Not(HasSubstr("secret")));
+}
+
+TEST(StoreAddress, IsCheckedAndShownWithoutItsPassword) {
+    EXPECT_TRUE(is_in_database("postgresql://a@b/c"));
+    EXPECT_TRUE(is_in_database("postgres://a@b/c"));
+    EXPECT_FALSE(is_in_database("/var/lib/scanloom"));
+    EXPECT_TRUE(check_address("postgresql://a:secret@b:1,c:2/d?sslmode=verify-full"));
+    EXPECT_THAT(check_address("postgresql://a@b").error().message, HasSubstr("names no database"));
+    EXPECT_THAT(check_address("postgresql://a@b/c?colour=red").error().message, HasSubstr("colour"));
+    EXPECT_THAT(check_address("postgresql://a@b:1,c:2,d/e?port=1,2").error().message, HasSubstr("3 hosts and 2 ports"));
+    EXPECT_EQ(shown("postgresql://a:secret@b:1,c:2/d"), "postgresql://a@b,c/d");
+    EXPECT_EQ(shown("/var/lib/scanloom"), "/var/lib/scanloom");
+}
+
+} // namespace
+} // namespace scanloom::store
