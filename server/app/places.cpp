@@ -55,15 +55,14 @@ Result<> check_database(const ServerOptions& options) {
     const auto refused = [](std::string_view flag, std::string_view advice) {
         return Error{Errc::kInvalidField, fmt::format("{} is for a store in a directory; {}", flag, advice)};
     };
-    constexpr std::string_view kBackups = "make backups of the database (docs/operations.md)";
     switch (options.task) {
-    case Task::kCheck:
-    case Task::kCheckMaps: return refused("--check", "check the database with pg_amcheck");
     case Task::kRepair: return refused("--repair", "restore the database from a backup");
     case Task::kRestore: return refused("--restore", "restore the database from its own backup");
+    case Task::kCheck:
+    case Task::kCheckMaps:
     case Task::kServe: break;
     }
-    if (!options.backups.empty()) return refused("--backups", kBackups);
+    if (!options.backups.empty()) return refused("--backups", "make backups of the database");
     return {};
 }
 

@@ -7,7 +7,7 @@
 #include "server/store/backups.hpp"
 #include "server/store/damaged_store.hpp"
 #include "server/store/files.hpp"
-#include "server/store/rocksdb_store.hpp"
+#include "server/store/open_store.hpp"
 #include "server/store/unfinished_store.hpp"
 
 #include <boost/json/array.hpp>
@@ -126,7 +126,7 @@ void check_tables(const std::filesystem::path& store, Findings& findings) {
 
 ExitCode check_store(const ServerOptions& options) {
     const auto begin = Clock::now();
-    auto store = store::open_read_only(options.store);
+    auto store = store::open_store_read_only(options.store);
     Findings findings;
     if (!store) {
         const auto code = store.error().code;
@@ -141,7 +141,7 @@ ExitCode check_store(const ServerOptions& options) {
     }
     const bool is_deep = options.task == Task::kCheckMaps;
     check_sessions(*store, is_deep ? sessions::CheckDepth::kMaps : sessions::CheckDepth::kCheckpoint, findings);
-    check_tables(options.store, findings);
+    if (!store::is_in_database(options.store)) check_tables(options.store, findings);
     return findings.conclude(seconds_since(begin));
 }
 

@@ -24,4 +24,8 @@ Result<std::unique_ptr<ScanLog>> open_store(const std::filesystem::path& store, 
                          {.allow_unreplicated = options.allow_unreplicated, .on_unreadable = options.on_unreadable});
 }
 
+Result<ReadOnlyStore> open_store_read_only(const std::filesystem::path& store) {
+    return is_in_database(store) ? open_postgres_read_only(store.native()) : open_read_only(store);
+}
+
 } // namespace scanloom::store

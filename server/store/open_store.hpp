@@ -24,4 +24,8 @@ namespace scanloom::store {
 [[nodiscard]] Result<std::unique_ptr<ScanLog>> open_store(const std::filesystem::path& store,
                                                           const StoreOptions& options = {});
 
+/// Opens a store for reading, and changes nothing of it.
+/// Errors: those of open_read_only() for a directory, of open_postgres_read_only() for a database.
+[[nodiscard]] Result<ReadOnlyStore> open_store_read_only(const std::filesystem::path& store);
+
 } // namespace scanloom::store

@@ -2,20 +2,27 @@
 
 #include <fmt/format.h>
 
+#include <chrono>
+
 namespace scanloom::store::postgres {
 namespace {
+
+/// @param rows  with id, epoch and last entry
+OwnedSessions sessions_in(const Rows& rows) {
+    OwnedSessions sessions;
+    for (int row = 0; row < rows.size(); ++row) {
+        sessions[static_cast<SessionId>(rows.number(row, 0))] = {rows.number(row, 1),
+                                                                 static_cast<Revision>(rows.number(row, 2))};
+    }
+    return sessions;
+}
 
 Result<OwnedSessions> take(Connection& connection, const char* statement, std::int64_t owner) {
     Parameters parameters;
     parameters.add(owner);
     const auto rows = connection.run(statement, parameters, Connection::kReadTimeout);
     if (!rows) return rows.error();
-    OwnedSessions taken;
-    for (int row = 0; row < rows->size(); ++row) {
-        taken[static_cast<SessionId>(rows->number(row, 0))] = {rows->number(row, 1),
-                                                               static_cast<Revision>(rows->number(row, 2))};
-    }
-    return taken;
+    return sessions_in(*rows);
 }
 
 /// Returns whether a session is in the database and not removed.
@@ -61,6 +68,25 @@ Result<OwnedSessions> take_all(Connection& connection, std::int64_t owner) {
         connection,
         "UPDATE scanloom.session SET owner = $1, epoch = epoch + 1 WHERE NOT removed RETURNING id, epoch, end_rev",
         owner);
+}
+
+Result<OwnedSessions> all_sessions(Connection& connection) {
+    const auto rows = connection.run("SELECT id, epoch, end_rev FROM scanloom.session WHERE NOT removed", {},
+                                     Connection::kReadTimeout);
+    if (!rows) return rows.error();
+    return sessions_in(*rows);
+}
+
+Result<std::vector<SessionId>> sessions_without_record(Connection& connection) {
+    constexpr std::chrono::hours kTimeout{24};
+    const auto rows = connection.run("SELECT session FROM (SELECT session FROM scanloom.segment UNION"
+                                     " SELECT session FROM scanloom.part) AS u WHERE NOT EXISTS"
+                                     " (SELECT FROM scanloom.session WHERE id = u.session) ORDER BY session",
+                                     {}, kTimeout);
+    if (!rows) return rows.error();
+    std::vector<SessionId> sessions;
+    for (int row = 0; row < rows->size(); ++row) sessions.push_back(static_cast<SessionId>(rows->number(row, 0)));
+    return sessions;
 }
 
 Result<OwnedSessions> take_again(Connection& connection, const Place& place, std::int64_t owner,

@@ -5,6 +5,7 @@
 #include "server/store/postgres_owned_sessions.hpp"
 
 #include <cstdint>
+#include <vector>
 
 /// Which server may write a session: the one that was the last to raise its epoch.
 namespace scanloom::store::postgres {
@@ -19,6 +20,12 @@ namespace scanloom::store::postgres {
 
 /// Takes over all sessions, whoever had them.
 [[nodiscard]] Result<OwnedSessions> take_all(Connection& connection, std::int64_t owner);
+
+/// Returns all sessions, whoever has them.
+[[nodiscard]] Result<OwnedSessions> all_sessions(Connection& connection);
+
+/// Returns the sessions that have entries or parts of a checkpoint, but no record. Takes as long as reading the store.
+[[nodiscard]] Result<std::vector<SessionId>> sessions_without_record(Connection& connection);
 
 /// Takes over all sessions that still are this server's, so that nothing of it is under way any more.
 /// @param known  what the server had, and what of it was acknowledged

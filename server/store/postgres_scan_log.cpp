@@ -40,6 +40,9 @@ public:
     /// Takes the store over. Called once.
     [[nodiscard]] Result<> start();
 
+    /// Reads what is there, instead. @return sessions without a record
+    [[nodiscard]] Result<std::vector<SessionId>> start_reading();
+
     [[nodiscard]] Result<SessionId> create_session(std::string_view record) override;
     [[nodiscard]] Result<std::vector<StoredSession>> sessions() override;
     [[nodiscard]] Result<Revision> end_of(SessionId session) override;
@@ -108,6 +111,21 @@ Result<> PostgresScanLog::start() {
     lock_ = std::move(*connection);
     sweeper_.emplace(place_);
     return {};
+}
+
+Result<std::vector<SessionId>> PostgresScanLog::start_reading() {
+    auto connection = Connection::open(place_);
+    if (!connection) return connection.error();
+    if (auto found = check_tables(*connection); !found) return found.error();
+    if (auto locked = lock_store(*connection, place_); !locked) return locked.error();
+    auto all = all_sessions(*connection);
+    if (!all) return all.error();
+    auto lacking = sessions_without_record(*connection);
+    if (!lacking) return lacking;
+    shared_.restart(std::move(*all));
+    shared_.fail({Errc::kStoreFailed, "the store is open for reading only"});
+    lock_ = std::move(*connection);
+    return lacking;
 }
 
 /// Makes a change. After an error, it is not known whether it took effect.
@@ -286,7 +304,7 @@ Result<> PostgresScanLog::take_sessions_again() {
 }
 
 bool PostgresScanLog::reopen() {
-    if (!shared_.failure()) return false;
+    if (!shared_.failure() || owner_ == 0) return false; // 0: it is open for reading
     const std::unique_lock use(in_use_);
     std::vector<std::unique_lock<std::mutex>> pauses;
     for (auto& queue : queues_) pauses.push_back(queue->pause());
@@ -342,6 +360,15 @@ Result<std::unique_ptr<ScanLog>> open_postgres(const std::string& url, const Pos
     auto log = std::make_unique<postgres::PostgresScanLog>(std::move(*place), options);
     if (auto started = log->start(); !started) return started.error();
     return log;
+}
+
+Result<ReadOnlyStore> open_postgres_read_only(const std::string& url) {
+    auto place = postgres::parse_place(url);
+    if (!place) return place.error();
+    auto log = std::make_unique<postgres::PostgresScanLog>(std::move(*place), PostgresOptions());
+    auto without_record = log->start_reading();
+    if (!without_record) return without_record.error();
+    return ReadOnlyStore{std::move(log), 0, std::move(*without_record)};
 }
 
 } // namespace scanloom::store

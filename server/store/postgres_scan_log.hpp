@@ -30,4 +30,8 @@ struct PostgresOptions {
 [[nodiscard]] Result<std::unique_ptr<ScanLog>> open_postgres(const std::string& url,
                                                              const PostgresOptions& options = {});
 
+/// Opens the store in a database for reading, and changes nothing of it.
+/// Errors: kNotFound: there is none; otherwise as open_postgres().
+[[nodiscard]] Result<ReadOnlyStore> open_postgres_read_only(const std::string& url);
+
 } // namespace scanloom::store

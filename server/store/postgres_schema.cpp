@@ -22,7 +22,7 @@ constexpr std::array kFormat1 = {
     " PRIMARY KEY (session, key))",
     "ALTER TABLE scanloom.part ALTER value SET STORAGE EXTERNAL",
     "CREATE SEQUENCE scanloom.owner",
-    "INSERT INTO scanloom.meta VALUES ('format', '1'), ('identity', gen_random_uuid()::text)",
+    "INSERT INTO scanloom.meta VALUES ('format', '1')",
 };
 
 Result<> check_format(Connection& connection) {
@@ -42,9 +42,7 @@ Result<> create(Connection& connection) {
     // One server creates the tables at a time; the lock ends with the transaction.
     if (auto locked = connection.run("SELECT pg_advisory_xact_lock(hashtext('scanloom'), 0)"); !locked)
         return locked.error();
-    const auto rows = connection.run("SELECT (to_regclass('scanloom.meta') IS NOT NULL)::int::bigint");
-    if (!rows) return rows.error();
-    if (rows->number(0, 0) != 0) return check_format(connection);
+    if (auto found = check_tables(connection); found || found.error().code != Errc::kNotFound) return found;
     for (const char* statement : kFormat1) {
         if (auto done = connection.run(statement); !done) return done.error();
     }
@@ -53,19 +51,19 @@ Result<> create(Connection& connection) {
 
 } // namespace
 
+Result<> check_tables(Connection& connection) {
+    const auto rows = connection.run("SELECT (to_regclass('scanloom.meta') IS NOT NULL)::int::bigint");
+    if (!rows) return rows.error();
+    if (rows->number(0, 0) != 0) return check_format(connection);
+    return Error{Errc::kNotFound, "the database holds no store"};
+}
+
 Result<> create_tables(Connection& connection) {
     if (auto begun = connection.run("BEGIN"); !begun) return begun.error();
     auto created = create(connection);
     const auto ended = connection.run(created ? "COMMIT" : "ROLLBACK");
     if (created && !ended) return ended.error();
     return created;
-}
-
-Result<std::string> identity_of(Connection& connection) {
-    const auto rows = connection.run("SELECT value FROM scanloom.meta WHERE key = 'identity'");
-    if (!rows) return rows.error();
-    if (rows->size() == 1) return std::string(rows->bytes(0, 0));
-    return Error{Errc::kDataLoss, "the store in the database has no identity"};
 }
 
 } // namespace scanloom::store::postgres

@@ -3,11 +3,9 @@
 #include "common/error/error.hpp"
 #include "server/store/postgres_connection.hpp"
 
-#include <string>
-
 /// The tables of the store in a database, format 1, in the schema `scanloom`:
 ///
-///   meta     key text, value text: format; identity, of the store
+///   meta     key, value: the format
 ///   session  id, record, owner and epoch (who may write it), end_rev (its last entry), removed
 ///   segment  session, first, last, body: entries of its log, see postgres_segments.hpp
 ///   part     session, key, value: parts of its checkpoint
@@ -22,7 +20,8 @@ inline constexpr int kFormat = 1;
 /// Errors: kUnsupportedVersion: a newer program wrote them; kStoreFailed.
 [[nodiscard]] Result<> create_tables(Connection& connection);
 
-/// Returns the identity of the store. Precondition: the tables exist.
-[[nodiscard]] Result<std::string> identity_of(Connection& connection);
+/// Checks that the tables exist, in a format that this program reads.
+/// Errors: kNotFound: there are none; kUnsupportedVersion: a newer program wrote them; kStoreFailed.
+[[nodiscard]] Result<> check_tables(Connection& connection);
 
 } // namespace scanloom::store::postgres

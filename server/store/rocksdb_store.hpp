@@ -59,13 +59,6 @@ struct StoreOptions {
 /// Opens a store; open_store() or a replacement for it.
 using OpenStore = std::function<Result<std::unique_ptr<ScanLog>>(const std::filesystem::path&, const StoreOptions&)>;
 
-/// A store that no server has open, for reading.
-struct ReadOnlyStore {
-    std::unique_ptr<ScanLog> log;          ///< every change fails
-    std::uint64_t unfinished_bytes = 0;    ///< of a write that a crash cut short; not damage: the next start drops it
-    std::vector<SessionId> without_record; ///< sessions with entries or checkpoint parts but without a record
-};
-
 /// Opens a store for reading and changes no byte of it: neither a lock file nor a log line is left behind. Reads
 /// manifest and write-ahead log as a start does.
 ///

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <stop_token>
 #include <string>
@@ -146,6 +147,13 @@ public:
 
     /// Returns the total size of the store's files, in bytes.
     [[nodiscard]] virtual std::uint64_t bytes_on_disk() const = 0;
+};
+
+/// A store that no server has open, for reading.
+struct ReadOnlyStore {
+    std::unique_ptr<ScanLog> log;          ///< every change fails
+    std::uint64_t unfinished_bytes = 0;    ///< of a write that a crash cut short; not damage: the next start drops it
+    std::vector<SessionId> without_record; ///< sessions with entries or checkpoint parts but without a record
 };
 
 /// Appends entries and waits until they are durable or have failed.

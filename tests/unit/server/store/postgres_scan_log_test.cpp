@@ -164,6 +164,35 @@ TEST_F(PostgresScanLogTest, DamageIsReportedWithSessionAndRevision) {
     EXPECT_EQ(entries_after(*log, sessions[2], 0).value(), distinct_entries(sessions[2], 1, 100));
 }
 
+TEST_F(PostgresScanLogTest, AStoreOpenedForReadingIsNotChanged) {
+    EXPECT_EQ(open_store_read_only(database_.address).error().code, Errc::kNotFound);
+    SessionId session = 0;
+    {
+        const auto log = open().value();
+        session = log->create_session("record").value();
+        ASSERT_TRUE(append_and_wait(*log, session, 1, distinct_entries(session, 1, 50)));
+        ASSERT_TRUE(log->write_checkpoint(session, {{"part", "value"}}));
+        EXPECT_EQ(open_store_read_only(database_.address).error().code, Errc::kConflict) << "a server has it open";
+    }
+    static_cast<void>(database_.run("INSERT INTO scanloom.part VALUES (77, '', '')"));
+    const auto state = [&] {
+        return std::string(database_.run("SELECT string_agg(s::text, ' ') FROM scanloom.session s").bytes(0, 0));
+    };
+    const auto before = state();
+    {
+        const auto store = open_store_read_only(database_.address).value();
+        EXPECT_THAT(store.without_record, ElementsAre(77));
+        EXPECT_THAT(store.log->sessions().value(), SizeIs(1));
+        EXPECT_EQ(entries_after(*store.log, session, 0).value(), distinct_entries(session, 1, 50));
+        EXPECT_EQ(checkpoint_of(*store.log, session).value().at("part"), "value");
+        EXPECT_FALSE(append_and_wait(*store.log, session, 51, {"x"}));
+        EXPECT_FALSE(store.log->create_session(""));
+        EXPECT_FALSE(store.log->remove_session(session));
+        EXPECT_FALSE(store.log->reopen());
+    }
+    EXPECT_EQ(state(), before);
+}
+
 TEST_F(PostgresScanLogTest, RowsOfARemovedSessionAreDeletedByTheNextServerAtTheLatest) {
     {
         const auto log = open().value();
