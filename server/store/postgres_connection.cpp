@@ -44,7 +44,7 @@ std::string array_of(unsigned type, std::size_t count) {
     return bytes;
 }
 
-/// Returns libpq's text in one line, with single spaces.
+/// Returns libpq's text in one line, with single spaces and without a full stop at the end.
 std::string one_line(std::string_view text) {
     std::string line;
     for (const char c : text) {
@@ -52,7 +52,7 @@ std::string one_line(std::string_view text) {
         if (!is_space) line += c;
         if (is_space && !line.empty() && line.back() != ' ') line += ' ';
     }
-    if (line.ends_with(' ')) line.pop_back();
+    while (line.ends_with(' ') || line.ends_with('.')) line.pop_back();
     return line;
 }
 
@@ -216,7 +216,7 @@ Result<Connection> Connection::open(const Place& place) {
         keywords.push_back(nullptr);
         values.push_back(nullptr);
         auto state = std::make_unique<State>();
-        state->host = name.empty() ? "this machine" : name;
+        state->host = fmt::format("{}{}{}", name.empty() ? "this machine" : name, port.empty() ? "" : ":", port);
         state->connection.reset(PQconnectStartParams(keywords.data(), values.data(), 0));
         PGconn* const connection = state->connection.get();
         if (connection == nullptr) return failure("there is no memory for a connection to {}", place.text);

@@ -14,7 +14,9 @@ constexpr std::size_t kLengthBytes = 4;
 
 Error damaged(SessionId session, Revision first, Revision last) {
     return {Errc::kDataLoss,
-            fmt::format("entries {} to {} of session {} are damaged in the database", first, last, session)};
+            fmt::format(
+                "entries {} to {} of session {} are damaged; restore the database from a backup, or remove the session",
+                first, last, session)};
 }
 
 void append_length(std::string& to, std::size_t length) {
