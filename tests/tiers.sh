@@ -174,7 +174,7 @@ core_tests() {
     local left_out='^$' IFS='|'
     # One thread reads or writes files, estimates poses, or is killed; the largest session takes a minute. --nightly runs all
     # of them.
-    [[ $1 != tsan ]] || left_out='DamagedStore|Table|LogFile|LogReconstruction|EstimatedPoses|EstimationCheckpoint|LocalizeOnly|HeavySession|Kill|CutCheckpoint'
+    [[ $1 != tsan ]] || left_out='DamagedStore|Table|LogFile|LogReconstruction|EstimatedPoses|EstimationCheckpoint|LocalizeOnly|ExcludedEstimates|HeavySession|Kill|CutCheckpoint'
     shift
     printf '%s\n' --label-regex "^($*)\$" --label-exclude '^(all|nightly)$' --exclude-regex "$left_out"
 }
