@@ -82,7 +82,10 @@ public:
     static constexpr std::chrono::milliseconds kConnectTimeout{1500};
     /// Time until a statement has to be done, for those that write: longer than a standby or a failover needs.
     static constexpr std::chrono::milliseconds kWriteTimeout{4000};
-    static constexpr std::chrono::milliseconds kReadTimeout{60'000};
+    /// For a page of rows. Reopening the log waits for readers.
+    static constexpr std::chrono::milliseconds kReadTimeout{10'000};
+    /// For statements about many rows.
+    static constexpr std::chrono::milliseconds kLongTimeout{60'000};
 
     /// Connects to the host that accepts writes; tries them in random order.
     /// Errors: kStoreFailed: none can be used; the message has the reason of each. kUnsupportedVersion: older than

@@ -17,10 +17,11 @@ OwnedSessions sessions_in(const Rows& rows) {
     return sessions;
 }
 
-Result<OwnedSessions> take(Connection& connection, const char* statement, std::int64_t owner) {
+Result<OwnedSessions> take(Connection& connection, const char* statement, std::int64_t owner,
+                           std::chrono::milliseconds timeout) {
     Parameters parameters;
     parameters.add(owner);
-    const auto rows = connection.run(statement, parameters, Connection::kReadTimeout);
+    const auto rows = connection.run(statement, parameters, timeout);
     if (!rows) return rows.error();
     return sessions_in(*rows);
 }
@@ -67,12 +68,12 @@ Result<OwnedSessions> take_all(Connection& connection, std::int64_t owner) {
     return take(
         connection,
         "UPDATE scanloom.session SET owner = $1, epoch = epoch + 1 WHERE NOT removed RETURNING id, epoch, end_rev",
-        owner);
+        owner, Connection::kLongTimeout);
 }
 
 Result<OwnedSessions> all_sessions(Connection& connection) {
     const auto rows = connection.run("SELECT id, epoch, end_rev FROM scanloom.session WHERE NOT removed", {},
-                                     Connection::kReadTimeout);
+                                     Connection::kLongTimeout);
     if (!rows) return rows.error();
     return sessions_in(*rows);
 }
@@ -94,7 +95,7 @@ Result<OwnedSessions> take_again(Connection& connection, const Place& place, std
     auto taken = take(connection,
                       "UPDATE scanloom.session SET epoch = epoch + 1 WHERE owner = $1 AND NOT removed"
                       " RETURNING id, epoch, end_rev",
-                      owner);
+                      owner, Connection::kWriteTimeout); // readers wait meanwhile
     if (!taken) return taken;
     for (const auto& [session, owned] : known) {
         const auto now = taken->find(session);

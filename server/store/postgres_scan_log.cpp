@@ -254,7 +254,7 @@ Result<> PostgresScanLog::clear_checkpoint(SessionId session) {
         Parameters parameters;
         parameters.add(signed_of(session));
         const auto cleared =
-            connection.run("DELETE FROM scanloom.part WHERE session = $1", parameters, Connection::kReadTimeout);
+            connection.run("DELETE FROM scanloom.part WHERE session = $1", parameters, Connection::kLongTimeout);
         return cleared ? Result<>() : Result<>(cleared.error());
     });
 }

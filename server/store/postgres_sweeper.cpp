@@ -49,7 +49,7 @@ void Sweeper::sweep(const std::stop_token& stop) {
     for (const char* slice : kSlices) {
         for (std::int64_t deleted = 1; deleted > 0;) {
             if (stop.stop_requested()) return;
-            const auto rows = connection->run(slice, {}, Connection::kReadTimeout);
+            const auto rows = connection->run(slice, {}, Connection::kLongTimeout);
             if (!rows) return;
             deleted = rows->size() > 0 ? rows->number(0, 0) : 0;
         }

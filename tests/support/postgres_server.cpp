@@ -74,7 +74,7 @@ std::string PostgresServer::new_database() {
     const auto name = fmt::format("db{}", ++databases_);
     auto connection =
         store::postgres::Connection::open(store::postgres::parse_place(address("postgres")).value()).value();
-    connection.run(fmt::format("CREATE DATABASE {}", name).c_str(), {}, store::postgres::Connection::kReadTimeout)
+    connection.run(fmt::format("CREATE DATABASE {}", name).c_str(), {}, store::postgres::Connection::kLongTimeout)
         .value();
     return address(name);
 }
