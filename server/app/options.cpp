@@ -144,12 +144,25 @@ void add_task_options(CLI::App& app, ServerOptions& options) {
                                   "damaged store, which is not changed")
                        ->excludes("--check")
                        ->each([&](const std::string&) { options.task = Task::kRepair; });
+    auto* to = app.add_option("--to", options.copied, "The new store of --copy: a directory or a database")
+                   ->check(&check_store);
+    auto* copy =
+        app.add_option("--copy", options.store,
+                       "Copy a store that no server has open to a new one, and exit; both can be directories or "
+                       "databases")
+            ->check(&check_store)
+            ->needs(to)
+            ->excludes("--check")
+            ->excludes(repair)
+            ->each([&](const std::string&) { options.task = Task::kCopy; });
+    to->needs(copy);
     add_parsed(app, "--restore", options.backup,
                "Write the store of a backup, given by its number or 'newest', and exit; --store must be empty",
                parse_backup)
         ->needs(backups)
         ->excludes("--check")
         ->excludes(repair)
+        ->excludes(copy)
         ->each([&](const std::string&) { options.task = Task::kRestore; });
 }
 
@@ -221,7 +234,6 @@ void add_options(CLI::App& app, ServerOptions& options) {
     app.add_option("--store", options.store,
                    "Directory of the log; created if it does not exist. Or a database of PostgreSQL 15 or newer, "
                    "postgresql://USER@HOST[,HOST...]/DATABASE")
-        ->required()
         ->check(&check_store);
     app.add_flag("--allow-unreplicated", options.allow_unreplicated,
                  "Accept a database without a synchronous standby: the loss of its machine loses acknowledged scans");
@@ -270,6 +282,9 @@ std::variant<ServerOptions, Leave> read_options(int argc, const char* const* arg
     } catch (const CLI::ParseError& reason) {
         return leave_for(app, reason);
     }
+    const bool has_store = app.count("--store") > 0;
+    if (!has_store && options.task != Task::kCopy) return usage_error(app, "--store is required");
+    if (has_store && options.task == Task::kCopy) return usage_error(app, "--copy names the store; leave --store out");
     if (options.web.empty()) options.web = default_web();
     if (auto apart = check_places(options); !apart) return usage_error(app, apart.error().message);
     if (auto guarded = check_guarded(options); !guarded) return usage_error(app, guarded.error().message);

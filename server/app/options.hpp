@@ -24,6 +24,7 @@ enum class Task {
     kCheckMaps, ///< as kCheck, and computes the maps of every log again and compares them
     kRepair,    ///< writes the intact parts of a store to a new store
     kRestore,   ///< writes the store of a backup to an empty directory
+    kCopy,      ///< copies a store to a new one, of the same or of another kind
 };
 
 /// The settings of scanloom-server, from flags, SCANLOOM_* variables and a TOML file, in order of precedence.
@@ -34,6 +35,7 @@ struct ServerOptions {
     std::filesystem::path store;         ///< or the address of a database, postgresql://...
     bool allow_unreplicated = false;     ///< accept a database without a synchronous standby
     std::filesystem::path repaired;      ///< the store that --repair creates
+    std::filesystem::path copied;        ///< the store that --copy creates
     std::filesystem::path backups;       ///< directory of the backups; empty: backups are disabled
     std::size_t backups_kept = 7;        ///< number of backups kept, the newest ones
     std::optional<std::uint32_t> backup; ///< id of the backup to restore; nullopt: the newest

@@ -50,6 +50,14 @@ Result<> check_apart(const Place& one, const Place& other) {
                              outer.directory.native())};
 }
 
+/// Refuses to copy a store to itself.
+Result<> check_copy(const ServerOptions& options) {
+    const bool are_directories = !store::is_in_database(options.store) && !store::is_in_database(options.copied);
+    if (are_directories) return check_apart({"--to", options.copied}, {"--copy", options.store});
+    if (options.store != options.copied) return {};
+    return Error{Errc::kInvalidField, "--to is the database of --copy; name another one"};
+}
+
 /// Refuses what only directories have.
 Result<> check_database(const ServerOptions& options) {
     const auto refused = [](std::string_view flag, std::string_view advice) {
@@ -60,6 +68,7 @@ Result<> check_database(const ServerOptions& options) {
     case Task::kRestore: return refused("--restore", "restore the database from its own backup");
     case Task::kCheck:
     case Task::kCheckMaps:
+    case Task::kCopy:
     case Task::kServe: break;
     }
     if (!options.backups.empty()) return refused("--backups", "make backups of the database");
@@ -69,12 +78,14 @@ Result<> check_database(const ServerOptions& options) {
 } // namespace
 
 Result<> check_places(const ServerOptions& options) {
+    if (options.task == Task::kCopy) return check_copy(options);
     if (store::is_in_database(options.store)) return check_database(options);
     const Place store{"--store", options.store};
     switch (options.task) {
     case Task::kCheck:
     case Task::kCheckMaps: return {};
     case Task::kRepair: return check_apart({"--repair", options.repaired}, store);
+    case Task::kCopy:
     case Task::kServe:
     case Task::kRestore: break;
     }

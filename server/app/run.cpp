@@ -43,6 +43,7 @@ int run(const ServerOptions& options) {
     case Task::kCheckMaps: return check_store(options);
     case Task::kRepair: return repair_store(options);
     case Task::kRestore: return restore_store(options);
+    case Task::kCopy: return copy_store(options);
     case Task::kServe: break;
     }
     if (auto fits = check_address_space(options, memory); !fits) return report_failure(fits.error());

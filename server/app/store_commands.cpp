@@ -5,6 +5,7 @@
 #include "server/sessions/repair.hpp"
 #include "server/sessions/session_check.hpp"
 #include "server/store/backups.hpp"
+#include "server/store/copy.hpp"
 #include "server/store/damaged_store.hpp"
 #include "server/store/files.hpp"
 #include "server/store/open_store.hpp"
@@ -205,7 +206,7 @@ Result<Sum> save(const store::DamagedStore& from, const store::UnfinishedStore& 
 Result<Sum> repair(const ServerOptions& options) {
     const auto lost = sibling_path(options.repaired, ".lost");
     auto unfinished = store::UnfinishedStore::begin(options.repaired, lost);
-    if (!unfinished) return unfinished.error();
+    if (!unfinished) return prefixed("--repair ", unfinished.error());
     const auto damaged = store::DamagedStore::open(options.store);
     if (!damaged) return damaged.error();
     for (const auto& note : (*damaged)->notes()) standard_error().write(fmt::format("scanloom-server: {}\n", note));
@@ -229,6 +230,50 @@ ExitCode repair_store(const ServerOptions& options) {
            {"lost", sum->missing},
            {"stood_in", sum->empty_scans},
            {"set_aside", sum->set_aside},
+           {"seconds", seconds_since(begin)}});
+    return kExitDone;
+}
+
+namespace {
+
+/// Totals over all sessions.
+struct Copied {
+    std::uint64_t sessions = 0;
+    std::uint64_t entries = 0;
+};
+
+Result<Copied> copy(const ServerOptions& options) {
+    const auto from = store::open_store_read_only(options.store);
+    if (!from) return prefixed("--copy: ", from.error());
+    if (!from->without_record.empty()) {
+        return Error{Errc::kDataLoss, fmt::format("--copy: the record of session {} is missing; save what is left with "
+                                                  "--repair",
+                                                  from->without_record.front())};
+    }
+    auto to = store::NewStore::begin(options.copied, {.allow_unreplicated = options.allow_unreplicated});
+    if (!to) return prefixed("--to: ", to.error());
+    Copied sum;
+    const auto copied = store::copy_log(*from->log, to->log(), [&](const store::CopiedSession& session) {
+        ++sum.sessions;
+        sum.entries += session.entries;
+        std::cout << fmt::format("session {}: {} entries, {} parts of its checkpoint\n", session.from, session.entries,
+                                 session.parts)
+                  << std::flush;
+    });
+    if (!copied) return copied.error();
+    if (auto finished = to->finish(); !finished) return finished.error();
+    return sum;
+}
+
+} // namespace
+
+ExitCode copy_store(const ServerOptions& options) {
+    const auto begin = Clock::now();
+    const auto sum = copy(options);
+    if (!sum) return failed(sum.error());
+    print({{"event", "copied"},
+           {"sessions", sum->sessions},
+           {"entries", sum->entries},
            {"seconds", seconds_since(begin)}});
     return kExitDone;
 }

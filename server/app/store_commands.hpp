@@ -16,6 +16,10 @@ namespace scanloom::app {
 /// @return kExitFailed if NEW could not be created; lost entries are not a failure
 [[nodiscard]] ExitCode repair_store(const ServerOptions& options);
 
+/// Runs `scanloom-server --copy FROM --to TO`: copies all sessions, without changing FROM. Prints one line per session.
+/// @return kExitFailed if TO could not be created or written, or something of FROM is damaged
+[[nodiscard]] ExitCode copy_store(const ServerOptions& options);
+
 /// Runs `scanloom-server --restore ID`: writes the store of a backup to an empty directory.
 /// @return kExitFailed if the store could not be restored
 [[nodiscard]] ExitCode restore_store(const ServerOptions& options);

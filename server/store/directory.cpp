@@ -89,8 +89,9 @@ Result<Listing> listing_of(const fs::path& directory) {
 /// Errors: kStoreFailed: the store lost files or is unfinished; kNotFound: there are other files, and no store.
 Result<> check_listing(const fs::path& directory, const Listing& listing) {
     if (listing.is_unfinished) {
-        return failure("the store {} is unfinished: --repair has not finished writing it; wait for it, or run it again",
-                       directory.native());
+        return failure(
+            "the store {} is unfinished: --repair or --copy has not finished writing it; wait for it, or run it again",
+            directory.native());
     }
     if (!listing.has_current && (listing.has_tables || listing.has_write_ahead_logs)) {
         return failure("the store {} is damaged: its file CURRENT is missing; {}", directory.native(), kRecover);

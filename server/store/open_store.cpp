@@ -24,6 +24,27 @@ Result<std::unique_ptr<ScanLog>> open_store(const std::filesystem::path& store, 
                          {.allow_unreplicated = options.allow_unreplicated, .on_unreadable = options.on_unreadable});
 }
 
+Result<NewStore> NewStore::begin(const std::filesystem::path& store, const StoreOptions& options) {
+    NewStore begun(store);
+    if (!is_in_database(store)) {
+        auto directory = UnfinishedStore::begin(store, {});
+        if (!directory) return directory.error();
+        begun.directory_ = std::move(*directory);
+    }
+    auto log =
+        begun.directory_
+            ? begun.directory_->open_log()
+            : open_postgres(store.native(), {.allow_unreplicated = options.allow_unreplicated, .is_unfinished = true});
+    if (!log) return log.error();
+    begun.log_ = std::move(*log);
+    return begun;
+}
+
+Result<> NewStore::finish() {
+    log_.reset();
+    return directory_ ? directory_->finish() : finish_postgres(store_.native());
+}
+
 Result<ReadOnlyStore> open_store_read_only(const std::filesystem::path& store) {
     return is_in_database(store) ? open_postgres_read_only(store.native()) : open_read_only(store);
 }

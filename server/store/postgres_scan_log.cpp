@@ -100,8 +100,9 @@ Result<Connection> PostgresScanLog::open_replicated() const {
 Result<> PostgresScanLog::start() {
     auto connection = open_replicated();
     if (!connection) return connection.error();
-    if (auto created = create_tables(*connection); !created) return created;
     if (auto locked = lock_store(*connection, place_); !locked) return locked;
+    const auto created = options_.is_unfinished ? begin_unfinished_store(*connection) : create_tables(*connection);
+    if (!created) return created;
     const auto owner = new_owner(*connection);
     if (!owner) return owner.error();
     owner_ = *owner;
@@ -360,6 +361,13 @@ Result<std::unique_ptr<ScanLog>> open_postgres(const std::string& url, const Pos
     auto log = std::make_unique<postgres::PostgresScanLog>(std::move(*place), options);
     if (auto started = log->start(); !started) return started.error();
     return log;
+}
+
+Result<> finish_postgres(const std::string& url) {
+    const auto place = postgres::parse_place(url);
+    if (!place) return place.error();
+    auto connection = postgres::Connection::open(*place);
+    return connection ? postgres::finish_store(*connection) : Result<>(connection.error());
 }
 
 Result<ReadOnlyStore> open_postgres_read_only(const std::string& url) {

@@ -14,6 +14,9 @@ struct PostgresOptions {
     /// Accept a database that has no synchronous standby: the loss of its machine loses acknowledged scans.
     bool allow_unreplicated = false;
 
+    /// Begin an empty store, which cannot be opened otherwise until finish_postgres().
+    bool is_unfinished = false;
+
     /// Called on the reader's thread for every log that ScanLog::read() could not read to its end, with kDataLoss or
     /// kStoreFailed.
     std::function<void(SessionId, const Error&)> on_unreadable;
@@ -24,11 +27,16 @@ struct PostgresOptions {
 /// Several connections append: a session always uses the same one, and changes of different sessions may take effect
 /// in another order than they were submitted. A session's checkpoint is never ahead of its log.
 /// @param url  postgresql://USER@HOST[:PORT][,HOST[:PORT]...]/DATABASE; the one that accepts writes is used
-/// Errors: kInvalidField: `url` is not an address; kConflict: another server uses the store; kStoreFailed: the database
+/// Errors: kInvalidField: `url` is not an address; kConflict: another server uses the store, or there is one
+///         and an unfinished one is to be begun; kStoreFailed: the database
 ///         cannot be used, or is not replicated; kUnsupportedVersion: it is too old, or a newer program wrote the
 ///         store.
 [[nodiscard]] Result<std::unique_ptr<ScanLog>> open_postgres(const std::string& url,
                                                              const PostgresOptions& options = {});
+
+/// Ends the writing of a store that was opened as an unfinished one. Precondition: it is closed.
+/// Errors: kStoreFailed: it stays unfinished.
+[[nodiscard]] Result<> finish_postgres(const std::string& url);
 
 /// Opens the store in a database for reading, and changes nothing of it.
 /// Errors: kNotFound: there is none; otherwise as open_postgres().

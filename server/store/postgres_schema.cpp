@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <optional>
+#include <span>
 
 namespace scanloom::store::postgres {
 namespace {
@@ -25,6 +27,12 @@ constexpr std::array kFormat1 = {
     "INSERT INTO scanloom.meta VALUES ('format', '1')",
 };
 
+Result<bool> is_unfinished(Connection& connection) {
+    const auto rows = connection.run("SELECT count(*) FROM scanloom.meta WHERE key = 'unfinished'");
+    if (!rows) return rows.error();
+    return rows->number(0, 0) > 0;
+}
+
 Result<> check_format(Connection& connection) {
     const auto rows = connection.run("SELECT value FROM scanloom.meta WHERE key = 'format'");
     if (!rows) return rows.error();
@@ -38,32 +46,75 @@ Result<> check_format(Connection& connection) {
                     *format, kFormat)};
 }
 
-Result<> create(Connection& connection) {
-    // One server creates the tables at a time; the lock ends with the transaction.
-    if (auto locked = connection.run("SELECT pg_advisory_xact_lock(hashtext('scanloom'), 0)"); !locked)
-        return locked.error();
-    if (auto found = check_tables(connection); found || found.error().code != Errc::kNotFound) return found;
-    for (const char* statement : kFormat1) {
+Result<bool> has_tables(Connection& connection) {
+    const auto rows = connection.run("SELECT (to_regclass('scanloom.meta') IS NOT NULL)::int::bigint");
+    if (!rows) return rows.error();
+    return rows->number(0, 0) != 0;
+}
+
+Result<> run_all(Connection& connection, std::span<const char* const> statements) {
+    for (const char* statement : statements) {
         if (auto done = connection.run(statement); !done) return done.error();
     }
     return {};
 }
 
+/// Does something in a transaction, in one program at a time.
+Result<> in_transaction(Connection& connection, Result<> (*change)(Connection&)) {
+    if (auto begun = connection.run("BEGIN"); !begun) return begun.error();
+    // The lock ends with the transaction.
+    const auto locked = connection.run("SELECT pg_advisory_xact_lock(hashtext('scanloom'), 0)");
+    const auto changed = locked ? change(connection) : Result<>(locked.error());
+    const auto ended = connection.run(changed ? "COMMIT" : "ROLLBACK");
+    if (changed && !ended) return ended.error();
+    return changed;
+}
+
+Result<> create_unless_present(Connection& connection) {
+    if (auto found = check_tables(connection); found || found.error().code != Errc::kNotFound) return found;
+    return run_all(connection, kFormat1);
+}
+
+Result<> replace_unfinished(Connection& connection) {
+    const auto is_present = has_tables(connection);
+    if (!is_present) return is_present.error();
+    if (*is_present) {
+        const auto unfinished = is_unfinished(connection);
+        if (!unfinished) return unfinished.error();
+        if (!*unfinished) {
+            return Error{Errc::kConflict,
+                         "there is a store in the database; name a database without one, or remove it with "
+                         "DROP SCHEMA scanloom CASCADE"};
+        }
+        if (auto removed = connection.run("DROP SCHEMA scanloom CASCADE"); !removed) return removed.error();
+    }
+    if (auto created = run_all(connection, kFormat1); !created) return created;
+    const auto marked = connection.run("INSERT INTO scanloom.meta VALUES ('unfinished', 'a copy')");
+    return marked ? Result<>() : Result<>(marked.error());
+}
+
 } // namespace
 
 Result<> check_tables(Connection& connection) {
-    const auto rows = connection.run("SELECT (to_regclass('scanloom.meta') IS NOT NULL)::int::bigint");
-    if (!rows) return rows.error();
-    if (rows->number(0, 0) != 0) return check_format(connection);
-    return Error{Errc::kNotFound, "the database holds no store"};
+    const auto is_present = has_tables(connection);
+    if (!is_present) return is_present.error();
+    if (!*is_present) return Error{Errc::kNotFound, "the database holds no store"};
+    if (auto readable = check_format(connection); !readable) return readable;
+    const auto unfinished = is_unfinished(connection);
+    if (!unfinished) return unfinished.error();
+    if (!*unfinished) return {};
+    return Error{Errc::kStoreFailed,
+                 "the store in the database is unfinished: --copy has not finished writing it; wait for "
+                 "it, or run it again"};
 }
 
-Result<> create_tables(Connection& connection) {
-    if (auto begun = connection.run("BEGIN"); !begun) return begun.error();
-    auto created = create(connection);
-    const auto ended = connection.run(created ? "COMMIT" : "ROLLBACK");
-    if (created && !ended) return ended.error();
-    return created;
+Result<> create_tables(Connection& connection) { return in_transaction(connection, create_unless_present); }
+
+Result<> begin_unfinished_store(Connection& connection) { return in_transaction(connection, replace_unfinished); }
+
+Result<> finish_store(Connection& connection) {
+    const auto finished = connection.run("DELETE FROM scanloom.meta WHERE key = 'unfinished'");
+    return finished ? Result<>() : Result<>(finished.error());
 }
 
 } // namespace scanloom::store::postgres

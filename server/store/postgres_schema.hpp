@@ -17,11 +17,20 @@ namespace scanloom::store::postgres {
 inline constexpr int kFormat = 1;
 
 /// Creates the tables if they do not exist.
-/// Errors: kUnsupportedVersion: a newer program wrote them; kStoreFailed.
+/// Errors: those of check_tables() but kNotFound.
 [[nodiscard]] Result<> create_tables(Connection& connection);
 
+/// Creates the tables of a store that is unfinished until finish_store(); removes those that an earlier, unfinished
+/// copy left.
+/// Errors: kConflict: there is a store; kUnsupportedVersion, kStoreFailed.
+[[nodiscard]] Result<> begin_unfinished_store(Connection& connection);
+
+/// Makes a store of begin_unfinished_store() one that can be opened.
+[[nodiscard]] Result<> finish_store(Connection& connection);
+
 /// Checks that the tables exist, in a format that this program reads.
-/// Errors: kNotFound: there are none; kUnsupportedVersion: a newer program wrote them; kStoreFailed.
+/// Errors: kNotFound: there are none; kUnsupportedVersion: a newer program wrote them; kStoreFailed: a copy has not
+///         finished writing them, or the database cannot be used.
 [[nodiscard]] Result<> check_tables(Connection& connection);
 
 } // namespace scanloom::store::postgres

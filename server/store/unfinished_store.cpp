@@ -16,16 +16,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kSentence = "A store is being repaired into this directory. It is incomplete until this "
+constexpr std::string_view kSentence = "A store is being written into this directory. It is incomplete until this "
                                        "file is removed.";
+constexpr std::string_view kSentenceEnd = "It is incomplete until this file is removed."; // in all releases
 constexpr std::string_view kLogEnding = ".scanlog";
 
 Error not_empty(const fs::path& directory, std::string_view file) {
-    return {Errc::kConflict, fmt::format("--repair {}: it is not empty ({}); name a directory that does not exist yet",
+    return {Errc::kConflict, fmt::format("{}: it is not empty ({}); name a directory that does not exist yet",
                                          directory.native(), file)};
 }
 
-/// Whether a repair may have created the file; false for the mark.
+/// Whether a repair or a copy may have created the file; false for the mark.
 bool is_ours(const fs::path& file) {
     const auto name = file.filename().native();
     std::error_code none;
@@ -37,7 +38,7 @@ bool is_lost_log(const fs::path& file) {
     return file.extension() == kLogEnding && fs::is_regular_file(fs::symlink_status(file, none));
 }
 
-/// Returns what a killed repair left in a directory. Other files are an error.
+/// Returns what a killed repair or copy left in a directory. Other files are an error.
 Result<std::vector<fs::path>> leftovers_in(const fs::path& directory, bool (*may_be_left)(const fs::path&)) {
     std::vector<fs::path> found;
     std::error_code problem;
@@ -50,8 +51,7 @@ Result<std::vector<fs::path>> leftovers_in(const fs::path& directory, bool (*may
         found.push_back(file->path());
     }
     if (problem) {
-        return Error{Errc::kConflict, fmt::format("--repair {}: it cannot be used: {}; name a directory that does not "
-                                                  "exist yet",
+        return Error{Errc::kConflict, fmt::format("{}: it cannot be used: {}; name a directory that does not exist yet",
                                                   directory.native(), problem.message())};
     }
     return found;
@@ -69,7 +69,7 @@ Result<> check_empty(const fs::path& directory, const fs::path& lost) {
 bool says_unfinished(const fs::path& mark) {
     std::ifstream in(mark);
     std::string line;
-    return std::getline(in, line) && line == kSentence;
+    return std::getline(in, line) && line.ends_with(kSentenceEnd);
 }
 
 Result<> remove_leftovers(const fs::path& directory, const fs::path& lost) {
@@ -82,8 +82,9 @@ Result<> remove_leftovers(const fs::path& directory, const fs::path& lost) {
         std::error_code problem;
         fs::remove_all(file, problem);
         if (problem) {
-            return Error{Errc::kStoreFailed, fmt::format("cannot remove {}, which an interrupted repair left: {}",
-                                                         file.native(), problem.message())};
+            return Error{Errc::kStoreFailed,
+                         fmt::format("cannot remove {}, which an interrupted repair or copy left: {}", file.native(),
+                                     problem.message())};
         }
     }
     return {};
@@ -111,13 +112,12 @@ Result<UnfinishedStore> UnfinishedStore::begin(const fs::path& directory, const 
     auto lock = FileLock::exclusive(mark);
     if (!lock && lock.error().code == Errc::kConflict) {
         return Error{Errc::kConflict,
-                     fmt::format("--repair {}: another --repair is writing it; wait until it ends, or name "
-                                 "another directory",
+                     fmt::format("{}: another program is writing a store into it; wait until it ends, or name another "
+                                 "directory",
                                  directory.native())};
     }
     if (!lock) return lock.error();
-    // The lock excludes other repairs from here on. Only the sentence in the mark shows that a repair created the
-    // files.
+    // The lock excludes others from here on. Only the sentence in the mark shows who created the files.
     if (says_unfinished(mark)) {
         if (auto removed = remove_leftovers(directory, lost); !removed) return removed.error();
     } else if (auto empty = check_empty(directory, lost); !empty) {

@@ -10,15 +10,17 @@
 
 namespace scanloom::store {
 
-/// The directory of a store that is being repaired. A mark file makes every attempt to open or check the store fail
-/// until it is complete. The next repair into the same directory removes what a killed repair left there.
+/// The directory of a store that is being repaired or copied into. A mark file makes every attempt to open or check the
+/// store fail until it is complete. The next repair or copy into the same directory removes what a killed one left
+/// there.
 /// Threads: one.
 class UnfinishedStore {
 public:
     /// Creates the directory, empty except for the mark.
-    /// @param lost  directory for the logs that cannot become maps; other programs put no files there meanwhile
-    /// Errors: kConflict: there are files that no killed repair left, in it or in `lost`, or another process repairs
-    ///         into it; kStoreFailed: the disk cannot be written.
+    /// @param lost  directory for the logs that cannot become maps; other programs put no files there meanwhile; empty:
+    ///              there will be none
+    /// Errors: kConflict: there are files that nothing killed left, in it or in `lost`, or another process writes it;
+    ///         kStoreFailed: the disk cannot be written.
     [[nodiscard]] static Result<UnfinishedStore> begin(const std::filesystem::path& directory,
                                                        const std::filesystem::path& lost);
 

@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstdlib>
 #include <fstream>
 
@@ -172,6 +173,43 @@ TEST_F(ServerOptionsTest, SelectsCheckRepairAndRestore) {
     for (const auto* wrong : {"0", "-1", "12x", "latest", "99999999999"}) {
         EXPECT_THAT(refusal({"--restore", wrong, "--backups", "b"}), HasSubstr("--restore")) << wrong;
     }
+}
+
+std::string refusal_of(std::vector<const char*> argv) {
+    argv.insert(argv.begin(), "scanloom-server");
+    return std::get<Leave>(read_options(static_cast<int>(argv.size()), argv.data())).text;
+}
+
+TEST_F(ServerOptionsTest, CopiesNameBothStores) {
+    const std::array argv = {"scanloom-server", "--copy", "a", "--to", "postgresql://u@h/d"};
+    const auto options = std::get<ServerOptions>(read_options(static_cast<int>(argv.size()), argv.data()));
+    EXPECT_EQ(options.task, Task::kCopy);
+    EXPECT_EQ(options.store, "a");
+    EXPECT_EQ(options.copied, "postgresql://u@h/d");
+    EXPECT_THAT(refusal_of({"--copy", "a"}), HasSubstr("--to"));
+    EXPECT_THAT(refusal_of({"--store", "a", "--to", "b"}), HasSubstr("--copy"));
+    EXPECT_THAT(refusal_of({"--copy", "a", "--to", "a"}), HasSubstr("is the same directory as"));
+    EXPECT_THAT(refusal_of({"--copy", "a", "--to", "a/b"}), HasSubstr("inside"));
+    EXPECT_THAT(refusal_of({"--copy", "postgresql://u@h/d", "--to", "postgresql://u@h/d"}),
+                HasSubstr("name another one"));
+    EXPECT_THAT(refusal_of({"--copy", "a", "--to", "b", "--store", "c"}), HasSubstr("leave --store out"));
+    EXPECT_THAT(refusal_of({"--copy", "a", "--to", "b", "--check"}), HasSubstr("--check"));
+    EXPECT_THAT(refusal_of({"--http", "127.0.0.1:0"}), HasSubstr("--store is required"));
+}
+
+TEST_F(ServerOptionsTest, StoresAreDirectoriesOrDatabases) {
+    for (const auto* database : {"postgresql://u@h/d", "postgres://u:p@h:1,i:2/d?sslmode=require"}) {
+        const std::array argv = {"scanloom-server", "--store", database, "--allow-unreplicated"};
+        const auto options = std::get<ServerOptions>(read_options(static_cast<int>(argv.size()), argv.data()));
+        EXPECT_EQ(options.store, database);
+        EXPECT_TRUE(options.allow_unreplicated);
+    }
+    EXPECT_THAT(refusal_of({"--store", "postgresql://u@h"}), HasSubstr("names no database"));
+    EXPECT_THAT(refusal_of({"--store", "mysql://u@h/d"}), HasSubstr("neither a directory nor a database"));
+    EXPECT_THAT(refusal_of({"--store", "postgresql://u@h/d", "--backups", "b"}),
+                HasSubstr("--backups is for a store in"));
+    EXPECT_THAT(refusal_of({"--store", "postgresql://u@h/d", "--repair", "b"}),
+                HasSubstr("--repair is for a store in"));
 }
 
 std::vector<std::string> warnings(std::vector<std::string> arguments) {

@@ -62,7 +62,7 @@ TEST_F(UnfinishedStoreTest, TheNextRepairRemovesTheFilesOfAKilledOne) {
 TEST_F(UnfinishedStoreTest, ASecondRepairAtTheSameTimeIsRefused) {
     const auto unfinished = begin().value();
     write_most_of(unfinished);
-    EXPECT_THAT(begin().error().message, HasSubstr("another --repair is writing it"));
+    EXPECT_THAT(begin().error().message, HasSubstr("another program is writing a store into it"));
     EXPECT_EQ(bytes_of(at("new.lost") / "one.scanlog"), "set aside");
 }
 
