@@ -18,18 +18,18 @@ namespace scanloom::store::postgres {
 /// Returns a number that no other server has had.
 [[nodiscard]] Result<std::int64_t> new_owner(Connection& connection);
 
-/// Takes over all sessions, whoever had them.
+/// Makes `owner` the owner of all sessions, and raises their epochs.
 [[nodiscard]] Result<OwnedSessions> take_all(Connection& connection, std::int64_t owner);
 
-/// Returns all sessions, whoever has them.
+/// Returns the sessions of all owners.
 [[nodiscard]] Result<OwnedSessions> all_sessions(Connection& connection);
 
 /// Returns the sessions that have entries or parts of a checkpoint, but no record. Takes as long as reading the store.
 [[nodiscard]] Result<std::vector<SessionId>> sessions_without_record(Connection& connection);
 
-/// Takes over all sessions that still are this server's, so that nothing of it is under way any more.
-/// @param known  what the server had, and what of it was acknowledged
-/// @return what is stored
+/// Raises the epochs of the sessions that `owner` still owns, so that its earlier statements have no effect any more.
+/// @param known  its sessions, with the last acknowledged entry of each
+/// @return its sessions, with the last stored entry of each
 /// Errors: kDataLoss: the database has lost acknowledged entries; kStoreFailed: another server has taken a session over,
 ///         or the database cannot be used.
 [[nodiscard]] Result<OwnedSessions> take_again(Connection& connection, const Place& place, std::int64_t owner,

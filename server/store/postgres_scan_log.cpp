@@ -140,9 +140,9 @@ Result<> PostgresScanLog::change(Writer& writer, const Change& change) {
         writer.connection = std::move(*opened);
     }
     auto changed = change(*writer.connection);
-    if (changed || changed.error().code == Errc::kNotFound) return changed;
+    if (changed) return changed;
     writer.connection.reset(); // ends its transaction
-    if (changed.error().code == Errc::kOverloaded) return changed;
+    if (changed.error().code == Errc::kNotFound || changed.error().code == Errc::kOverloaded) return changed;
     return shared_.fail(changed.error());
 }
 
@@ -228,7 +228,7 @@ Result<> PostgresScanLog::read_entries(SessionId session, Revision after, const 
     return readers_.entries(session, after, owned->end, visit);
 }
 
-/// Changes a checkpoint in one transaction, which ends with a look at whose the session is.
+/// Changes a checkpoint in one transaction. Its last statement checks that this server still owns the session.
 Result<> PostgresScanLog::change_checkpoint(SessionId session, const Change& change_parts) {
     const std::shared_lock use(in_use_);
     if (auto waited = wait_for_appends(session); !waited) return waited; // so that it is never ahead of the log

@@ -40,7 +40,7 @@ std::vector<Content> contents_of(ScanLog& log) {
     return all;
 }
 
-/// A log with three sessions, of which one was removed and one is empty.
+/// Creates four sessions: two with entries and checkpoints, one that is removed again, and one without entries.
 void fill(ScanLog& log) {
     for (const char* record : {"a", "removed", "b", "empty"}) {
         const auto session = log.create_session(record).value();
