@@ -211,6 +211,7 @@ asio::awaitable<beast::error_code> Connection::read_header(Parser& parser) {
 /// @return false if the connection cannot be used any more
 asio::awaitable<bool> Connection::read_body(Parser& parser) {
     if (parser.is_done()) co_return true;
+    wait_.begin(PeerWait::Clock::now()); // before the peer is told to send
     if (beast::iequals(parser.get()[beast::http::field::expect], "100-continue")) {
         const bool asked = co_await writer_.write_all("HTTP/1.1 100 Continue\r\n\r\n");
         if (!asked) co_return false;
@@ -218,7 +219,7 @@ asio::awaitable<bool> Connection::read_body(Parser& parser) {
     const auto& config = service_->config;
     const auto begin = std::chrono::steady_clock::now();
     const auto fields = field_count(parser.get());
-    wait_.begin(PeerWait::Clock::now());
+    wait_.begin(PeerWait::Clock::now()); // write_all() ends the wait if it had to wait itself
     while (!parser.is_done()) {
         const auto received = static_cast<double>(parser.get().body().size());
         const std::chrono::duration<double> more(received / static_cast<double>(config.read_rate_min));
