@@ -127,7 +127,8 @@ void PlaceSearch::push(Node node) {
     while (n < points.size() && bound >= least_) {
         const Rotated& point = points[n++];
         const PlaceMap::Bits bits = grids[point.square].at(point.column + node.column, point.row + node.row);
-        if ((bits & point.facing) == 0) bound -= (bits & PlaceMap::kOpen) != 0 ? 1 : 2;
+        const int penalty = (bits & PlaceMap::kOpen) != 0 ? 1 : 2;
+        bound -= (bits & point.facing) == 0 ? penalty : 0; // without a branch, which no processor predicts
     }
     lookups_ += n;
     node.bound = bound;
