@@ -33,7 +33,8 @@ constexpr const char* kFooter =
 constexpr double kDiskReserveMibMin = 32.0;
 constexpr double kDiskReserveMibMax = 1024.0 * 1024.0; // 1 TiB
 
-constexpr double kTileCacheMibMax = 1024.0 * 1024.0; // 1 TiB
+constexpr double kStoreMibMax = 1024.0 * 1024.0 * 1024.0; // 1 PiB
+constexpr double kTileCacheMibMax = 1024.0 * 1024.0;      // 1 TiB
 constexpr double kMapMemoryMibMin = 64.0;
 constexpr double kMapMemoryMibMax = 1024.0 * 1024.0 * 1024.0; // 1 PiB
 constexpr double kIdleAfterMax = 365.0 * 24 * 3600;           // seconds: one year
@@ -237,6 +238,13 @@ void add_options(CLI::App& app, ServerOptions& options) {
         ->check(&check_store);
     app.add_flag("--allow-unreplicated", options.allow_unreplicated,
                  "Accept a database without a synchronous standby: the loss of its machine loses acknowledged scans");
+    const auto limit_store = [&](double mib) {
+        options.store_bytes_max = static_cast<std::uint64_t>(mib * 1024 * 1024);
+    };
+    app.add_option_function<double>("--store-size-max", limit_store,
+                                    "MiB of entries and checkpoints in a database; with more, the server stores "
+                                    "nothing until sessions are removed")
+        ->check(check_within(1.0, kStoreMibMax));
     add_task_options(app, options);
     add_http_options(app, options);
     add_tls_options(app, options.robot_tls, "--robot", "robots");

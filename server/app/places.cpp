@@ -80,6 +80,10 @@ Result<> check_database(const ServerOptions& options) {
 Result<> check_places(const ServerOptions& options) {
     if (options.task == Task::kCopy) return check_copy(options);
     if (store::is_in_database(options.store)) return check_database(options);
+    if (options.store_bytes_max) {
+        return Error{Errc::kInvalidField,
+                     "--store-size-max is for a store in a database; a directory has --disk-reserve"};
+    }
     const Place store{"--store", options.store};
     switch (options.task) {
     case Task::kCheck:

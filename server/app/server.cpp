@@ -90,6 +90,7 @@ Result<std::unique_ptr<Server>> Server::open(const ServerOptions& options, const
     store.on_log_line = [](std::string_view line) { spdlog::debug("RocksDB: {}", line); };
     store.disk_reserve_bytes = options.disk_reserve_bytes;
     store.allow_unreplicated = options.allow_unreplicated;
+    store.bytes_max = options.store_bytes_max;
     const auto check = std::make_shared<sessions::BackgroundCheck*>(nullptr); // created after the log
     store.on_unreadable = [check](store::SessionId session, const Error& why) {
         if (*check != nullptr) (*check)->note(session, why);

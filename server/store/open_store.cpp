@@ -20,8 +20,9 @@ std::string shown(const std::filesystem::path& store) {
 
 Result<std::unique_ptr<ScanLog>> open_store(const std::filesystem::path& store, const StoreOptions& options) {
     if (!is_in_database(store)) return open_rocksdb(store, options);
-    return open_postgres(store.native(),
-                         {.allow_unreplicated = options.allow_unreplicated, .on_unreadable = options.on_unreadable});
+    return open_postgres(store.native(), {.allow_unreplicated = options.allow_unreplicated,
+                                          .bytes_max = options.bytes_max,
+                                          .on_unreadable = options.on_unreadable});
 }
 
 Result<NewStore> NewStore::begin(const std::filesystem::path& store, const StoreOptions& options) {

@@ -16,12 +16,13 @@ namespace {
 // inserted for these sessions alone.
 constexpr const char* kAppend =
     "WITH advanced AS ("
-    " UPDATE scanloom.session s SET end_rev = a.last"
-    " FROM unnest($1::bigint[], $2::bigint[], $3::bigint[], $4::bigint[]) AS a(id, epoch, before, last)"
+    " UPDATE scanloom.session s SET end_rev = a.last, entry_bytes = s.entry_bytes + a.bytes"
+    " FROM unnest($1::bigint[], $2::bigint[], $3::bigint[], $4::bigint[], $5::bigint[])"
+    " AS a(id, epoch, before, last, bytes)"
     " WHERE s.id = a.id AND s.epoch = a.epoch AND s.end_rev = a.before AND NOT s.removed RETURNING s.id),"
     " stored AS ("
     " INSERT INTO scanloom.segment (session, first, last, body) SELECT g.session, g.first, g.last, g.body"
-    " FROM unnest($5::bigint[], $6::bigint[], $7::bigint[], $8::bytea[]) AS g(session, first, last, body)"
+    " FROM unnest($6::bigint[], $7::bigint[], $8::bigint[], $9::bytea[]) AS g(session, first, last, body)"
     " JOIN advanced ON advanced.id = g.session)"
     " SELECT id FROM advanced";
 
@@ -34,6 +35,7 @@ struct AppendQueue::Group {
         std::vector<std::string> entries;
     };
     std::map<SessionId, Run> runs;
+    std::uint64_t bytes = 0; // of entries
 
     /// Adds entries that continue the log.
     Result<> add(const SharedState& shared, Append& append) {
@@ -48,6 +50,7 @@ struct AppendQueue::Group {
                                                       append.session, append.first, end)};
         }
         if (run == runs.end()) run = runs.try_emplace(append.session, Run{*owned, {}}).first;
+        bytes += append.bytes;
         auto& entries = run->second.entries;
         entries.insert(entries.end(), std::move_iterator(append.entries.begin()),
                        std::move_iterator(append.entries.end()));
@@ -55,7 +58,7 @@ struct AppendQueue::Group {
     }
 
     [[nodiscard]] Parameters parameters() const {
-        std::vector<std::int64_t> ids, epochs, befores, lasts;
+        std::vector<std::int64_t> ids, epochs, befores, lasts, sizes;
         std::vector<std::int64_t> sessions, firsts, ends;
         std::vector<std::vector<Segment>> segments;
         std::vector<std::string_view> bodies;
@@ -64,8 +67,10 @@ struct AppendQueue::Group {
             epochs.push_back(run.owned.epoch);
             befores.push_back(signed_of(run.owned.end));
             lasts.push_back(signed_of(run.owned.end + run.entries.size()));
+            sizes.push_back(0);
             segments.push_back(segments_of(id, run.owned.end + 1, run.entries));
             for (const Segment& segment : segments.back()) {
+                sizes.back() += signed_of(segment.body.size());
                 sessions.push_back(signed_of(id));
                 firsts.push_back(signed_of(segment.first));
                 ends.push_back(signed_of(segment.last));
@@ -73,15 +78,15 @@ struct AppendQueue::Group {
             }
         }
         Parameters parameters;
-        for (const auto* numbers : {&ids, &epochs, &befores, &lasts, &sessions, &firsts, &ends})
+        for (const auto* numbers : {&ids, &epochs, &befores, &lasts, &sizes, &sessions, &firsts, &ends})
             parameters.add(*numbers);
         parameters.add(bodies);
         return parameters;
     }
 };
 
-AppendQueue::AppendQueue(Place place, SharedState& shared)
-    : place_(std::move(place)), shared_(shared), thread_([this] { run(); }) {}
+AppendQueue::AppendQueue(Place place, SharedState& shared, SizeLimit& size_limit)
+    : place_(std::move(place)), shared_(shared), size_limit_(size_limit), thread_([this] { run(); }) {}
 
 AppendQueue::~AppendQueue() {
     {
@@ -171,12 +176,14 @@ Result<> AppendQueue::write(Group& group) {
         if (!opened) return shared_.fail(opened.error());
         connection_ = std::move(*opened);
     }
-    const auto rows = connection_->run(kAppend, group.parameters());
+    const auto room = size_limit_.check(*connection_);
+    const auto rows = room ? connection_->run(kAppend, group.parameters()) : Result<Rows>(room.error());
     if (!rows && rows.error().code == Errc::kOverloaded) return rows.error();
     if (!rows) {
         connection_.reset();
         return shared_.fail(rows.error());
     }
+    size_limit_.add(group.bytes);
     for (int row = 0; row < rows->size(); ++row) {
         const auto stored = group.runs.extract(static_cast<SessionId>(rows->number(row, 0)));
         const auto& [owned, entries] = stored.mapped();

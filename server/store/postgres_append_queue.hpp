@@ -2,6 +2,7 @@
 
 #include "server/store/postgres_connection.hpp"
 #include "server/store/postgres_owned_sessions.hpp"
+#include "server/store/postgres_size_limit.hpp"
 #include "server/store/scan_log.hpp"
 
 #include <condition_variable>
@@ -23,8 +24,8 @@ public:
     /// Bytes of entries in a statement, about.
     static constexpr std::uint64_t kStatementBytes = std::uint64_t{4} << 20;
 
-    /// @param shared  must outlive the queue
-    AppendQueue(Place place, SharedState& shared);
+    /// @param shared, size_limit  must outlive the queue
+    AppendQueue(Place place, SharedState& shared, SizeLimit& size_limit);
 
     /// Appends what is queued, then stops.
     ~AppendQueue();
@@ -59,6 +60,7 @@ private:
 
     const Place place_;
     SharedState& shared_;
+    SizeLimit& size_limit_;
     std::mutex running_; // held while a statement runs; guards connection_
     std::optional<Connection> connection_;
     mutable std::mutex mutex_; // guards the members below

@@ -33,8 +33,8 @@ constexpr std::chrono::seconds kSizeAge{10}; // of the size of the database that
 class PostgresScanLog final : public ScanLog {
 public:
     PostgresScanLog(Place place, const PostgresOptions& options)
-        : place_(std::move(place)), options_(options), readers_(place_) {
-        for (auto& queue : queues_) queue = std::make_unique<AppendQueue>(place_, shared_);
+        : place_(std::move(place)), options_(options), size_limit_(options.bytes_max), readers_(place_) {
+        for (auto& queue : queues_) queue = std::make_unique<AppendQueue>(place_, shared_, size_limit_);
     }
 
     /// Takes the store over. Called once.
@@ -78,6 +78,7 @@ private:
     const PostgresOptions options_;
     std::int64_t owner_ = 0; // this server's number in the database
     SharedState shared_;
+    SizeLimit size_limit_;
     mutable std::shared_mutex in_use_; // held alone by reopen()
     std::optional<Connection> lock_;   // holds the lock of the store
     Writer sessions_;                  // creates and removes sessions
@@ -150,6 +151,7 @@ Result<SessionId> PostgresScanLog::create_session(std::string_view record) {
     const std::shared_lock use(in_use_);
     SessionId session = 0;
     const auto created = change(sessions_, [&](Connection& connection) -> Result<> {
+        if (auto room = size_limit_.check(connection); !room) return room;
         Parameters parameters;
         parameters.add(record);
         parameters.add(owner_);
@@ -240,8 +242,9 @@ Result<> PostgresScanLog::change_checkpoint(SessionId session, const Change& cha
         Parameters parameters;
         parameters.add(signed_of(session));
         parameters.add(owned->epoch);
-        const auto rows = connection.run("SELECT id FROM scanloom.session WHERE id = $1 AND epoch = $2 AND NOT removed"
-                                         " FOR NO KEY UPDATE",
+        const auto rows = connection.run("UPDATE scanloom.session SET checkpoint_bytes = (SELECT"
+                                         " coalesce(sum(octet_length(value)), 0) FROM scanloom.part WHERE session = $1)"
+                                         " WHERE id = $1 AND epoch = $2 AND NOT removed RETURNING id",
                                          parameters);
         if (!rows) return rows.error();
         if (rows->size() == 0) return shared_.find(session) ? taken_over(session) : no_such_session(session);
@@ -264,14 +267,17 @@ Result<> PostgresScanLog::write_checkpoint(SessionId session, std::vector<Checkp
     std::map<std::string_view, std::string> sealed_parts; // a statement accepts each key once
     for (const CheckpointPart& part : parts) sealed_parts[part.key] = sealed_part(session, part.key, part.value);
     return change_checkpoint(session, [&](Connection& connection) -> Result<> {
+        if (auto room = size_limit_.check(connection); !room) return room;
         for (auto part = sealed_parts.begin(); part != sealed_parts.end();) {
             std::vector<std::string_view> keys;
             std::vector<std::string_view> values;
-            for (std::size_t bytes = 0; part != sealed_parts.end() && bytes < AppendQueue::kStatementBytes; ++part) {
+            std::size_t bytes = 0;
+            for (; part != sealed_parts.end() && bytes < AppendQueue::kStatementBytes; ++part) {
                 keys.push_back(part->first);
                 values.push_back(part->second);
                 bytes += part->second.size();
             }
+            size_limit_.add(bytes);
             Parameters parameters;
             parameters.add(signed_of(session));
             parameters.add(keys);

@@ -3,8 +3,10 @@
 #include "common/error/error.hpp"
 #include "server/store/scan_log.hpp"
 
+#include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 /// The store in a database of PostgreSQL 15 or newer.
@@ -13,6 +15,10 @@ namespace scanloom::store {
 struct PostgresOptions {
     /// Accept a database that has no synchronous standby: the loss of its machine loses acknowledged scans.
     bool allow_unreplicated = false;
+
+    /// Refuse to store more, with kOverloaded, when all entries and checkpoints together have this size. nullopt: no
+    /// limit.
+    std::optional<std::uint64_t> bytes_max;
 
     /// Begin an empty store, which cannot be opened otherwise until finish_postgres().
     bool is_unfinished = false;

@@ -16,6 +16,7 @@ constexpr std::array kFormat1 = {
     "CREATE TABLE scanloom.meta (key text PRIMARY KEY, value text NOT NULL)",
     "CREATE TABLE scanloom.session (id bigint GENERATED ALWAYS AS IDENTITY PRIMARY KEY, record bytea NOT NULL,"
     " owner bigint NOT NULL, epoch bigint NOT NULL DEFAULT 1, end_rev bigint NOT NULL DEFAULT 0,"
+    " entry_bytes bigint NOT NULL DEFAULT 0, checkpoint_bytes bigint NOT NULL DEFAULT 0,"
     " removed bool NOT NULL DEFAULT false) WITH (fillfactor = 50)",
     "CREATE TABLE scanloom.segment (session bigint NOT NULL, first bigint NOT NULL, last bigint NOT NULL,"
     " body bytea NOT NULL, PRIMARY KEY (session, first)) WITH (toast_tuple_target = 8160)",

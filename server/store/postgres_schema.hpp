@@ -6,7 +6,8 @@
 /// The tables of the store in a database, format 1, in the schema `scanloom`:
 ///
 ///   meta     key, value: the format
-///   session  id, record, owner and epoch (who may write it), end_rev (its last entry), removed
+///   session  id, record, owner and epoch (who may write it), end_rev (its last entry), entry_bytes and
+///            checkpoint_bytes (what its rows in the next two tables contain), removed
 ///   segment  session, first, last, body: entries of its log, see postgres_segments.hpp
 ///   part     session, key, value: parts of its checkpoint
 ///

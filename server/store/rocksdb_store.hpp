@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -42,6 +43,9 @@ struct StoreOptions {
     /// For a store in a database: accept one that has no synchronous standby, so that the loss of its machine loses
     /// acknowledged scans.
     bool allow_unreplicated = false;
+
+    /// For a store in a database: see PostgresOptions::bytes_max.
+    std::optional<std::uint64_t> bytes_max;
 
     /// The file layer; tests replace it to inject failures. Null: the system's.
     rocksdb::Env* env = nullptr;

@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <stdexcept>
 #include <vector>
 
@@ -36,35 +37,63 @@ std::vector<std::string> arguments_of(const std::string& program, std::vector<st
     return all;
 }
 
+/// Runs a program of PostgreSQL to its end.
+void run(const fs::path& directory, const std::string& program, std::vector<std::string> arguments) {
+    ChildProcess process("/bin/sh", arguments_of(program, std::move(arguments)), directory / "log");
+    std::string said;
+    while (const auto line = process.read_line()) said += *line + '\n';
+    if (process.wait() != 0) throw std::runtime_error(program + ": " + said);
+}
+
+/// Lets the user `postgres` write to a directory, if this process is root.
+void give_away(const fs::path& directory) {
+    if (::geteuid() != 0) return;
+    const auto* owner = ::getpwnam("postgres");
+    if (owner == nullptr || ::chown(directory.c_str(), owner->pw_uid, owner->pw_gid) != 0) {
+        throw std::runtime_error("there is no user postgres; run ./scanloom install test");
+    }
+}
+
 } // namespace
 
 PostgresServer::PostgresServer() {
+    give_away(directory_.path());
+    run(directory_.path(), "initdb",
+        {"-D", directory_.path() / "data", "-U", "scanloom", "-A", "trust", "-E", "UTF8", "--locale", "C", "--no-sync",
+         "--no-instructions"});
+    start();
+}
+
+PostgresServer::PostgresServer(const PostgresServer& primary) {
+    give_away(directory_.path());
+    run(directory_.path(), "pg_basebackup",
+        {"-D", directory_.path() / "data", "-h", primary.socket(), "-U", "scanloom", "-R", "-c", "fast", "--no-sync"});
+    start();
+}
+
+void PostgresServer::start() {
     const auto& place = directory_.path();
-    if (::geteuid() == 0) {
-        const auto* owner = ::getpwnam("postgres");
-        if (owner == nullptr || ::chown(place.c_str(), owner->pw_uid, owner->pw_gid) != 0) {
-            throw std::runtime_error("there is no user postgres; run ./scanloom install test");
-        }
-    }
-    const auto data = (place / "data").native();
-    ChildProcess made("/bin/sh",
-                      arguments_of("initdb", {"-D", data, "-U", "scanloom", "-A", "trust", "-E", "UTF8", "--locale",
-                                              "C", "--no-sync", "--no-instructions"}),
-                      place / "log");
-    std::string said;
-    while (const auto line = made.read_line()) said += *line + '\n';
-    if (made.wait() != 0) throw std::runtime_error("initdb: " + said);
     process_.emplace(
         "/bin/sh",
-        arguments_of("postgres", {"-D", data, "-k", place.native(), "-h", "", "-c", "fsync=off", "-c",
-                                  "shared_buffers=16MB", "-c", "log_min_messages=log", "-c", "log_checkpoints=off"}),
+        arguments_of("postgres", {"-D", place / "data", "-k", place, "-h", "", "-c", "fsync=off", "-c",
+                                  "shared_buffers=16MB", "-c", "log_min_messages=log", "-c", "log_checkpoints=off",
+                                  "-c", "cluster_name=standby"}), // which a standby calls itself
         place / "log");
-    said.clear();
+    std::string said;
     while (const auto line = process_->read_line()) {
         said += *line + '\n';
-        if (line->find("ready to accept connections") != std::string::npos) return;
+        if (line->find("ready to accept") != std::string::npos) return;
     }
     throw std::runtime_error("postgres: " + said);
+}
+
+void PostgresServer::promote() {
+    run(directory_.path(), "pg_ctl", {"promote", "-w", "-D", directory_.path() / "data"});
+}
+
+void PostgresServer::kill() {
+    process_->signal(SIGKILL);
+    process_->wait();
 }
 
 std::string PostgresServer::new_database() {

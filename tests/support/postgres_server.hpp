@@ -3,6 +3,7 @@
 #include "tests/support/child_process.hpp"
 #include "tests/support/temporary_directory.hpp"
 
+#include <optional>
 #include <string>
 
 namespace scanloom::test {
@@ -14,10 +15,24 @@ class PostgresServer {
 public:
     PostgresServer();
 
+    /// Starts a standby of `primary`, whose name in synchronous_standby_names is `standby`.
+    explicit PostgresServer(const PostgresServer& primary);
+
     /// Creates an empty database. @return its address for --store
     [[nodiscard]] std::string new_database();
 
+    /// Returns the folder of the socket.
+    [[nodiscard]] const std::string& socket() const { return directory_.path().native(); }
+
+    /// Makes a primary of a standby.
+    void promote();
+
+    /// Kills it, so that it does not shut down in order.
+    void kill();
+
 private:
+    void start();
+
     TemporaryDirectory directory_;
     int databases_ = 0;
     std::optional<ChildProcess> process_;

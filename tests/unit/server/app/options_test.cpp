@@ -199,10 +199,12 @@ TEST_F(ServerOptionsTest, CopiesNameBothStores) {
 
 TEST_F(ServerOptionsTest, StoresAreDirectoriesOrDatabases) {
     for (const auto* database : {"postgresql://u@h/d", "postgres://u:p@h:1,i:2/d?sslmode=require"}) {
-        const std::array argv = {"scanloom-server", "--store", database, "--allow-unreplicated"};
+        const std::array argv = {"scanloom-server",      "--store",          database,
+                                 "--allow-unreplicated", "--store-size-max", "1000"};
         const auto options = std::get<ServerOptions>(read_options(static_cast<int>(argv.size()), argv.data()));
         EXPECT_EQ(options.store, database);
         EXPECT_TRUE(options.allow_unreplicated);
+        EXPECT_EQ(options.store_bytes_max, std::uint64_t{1000} << 20);
     }
     EXPECT_THAT(refusal_of({"--store", "postgresql://u@h"}), HasSubstr("names no database"));
     EXPECT_THAT(refusal_of({"--store", "mysql://u@h/d"}), HasSubstr("neither a directory nor a database"));
@@ -210,6 +212,8 @@ TEST_F(ServerOptionsTest, StoresAreDirectoriesOrDatabases) {
                 HasSubstr("--backups is for a store in"));
     EXPECT_THAT(refusal_of({"--store", "postgresql://u@h/d", "--repair", "b"}),
                 HasSubstr("--repair is for a store in"));
+    EXPECT_THAT(refusal_of({"--store", "directory", "--store-size-max", "1000"}),
+                HasSubstr("--store-size-max is for a store in a database"));
 }
 
 std::vector<std::string> warnings(std::vector<std::string> arguments) {

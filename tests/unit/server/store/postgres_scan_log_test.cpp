@@ -238,6 +238,36 @@ TEST_F(PostgresScanLogTest, ACommitWithoutTheConsentOfTheStandbyIsNoAcknowledgem
     EXPECT_TRUE(append_and_wait(*log, session, 3, {"c"}));
 }
 
+TEST_F(PostgresScanLogTest, NothingIsAddedAboveTheSizeLimitUntilSessionsAreRemoved) {
+    const PostgresOptions options{.allow_unreplicated = true, .bytes_max = 100'000};
+    const std::string large(60'000, 'a');
+    SessionId removed = 0;
+    SessionId kept = 0;
+    {
+        const auto log = open_postgres(database_.address, options).value();
+        removed = log->create_session("").value();
+        kept = log->create_session("").value();
+        EXPECT_TRUE(append_and_wait(*log, removed, 1, {large}));
+        EXPECT_TRUE(log->write_checkpoint(kept, {{"part", large}}));
+        EXPECT_EQ(append_and_wait(*log, kept, 1, {"a"}).error().code, Errc::kOverloaded) << "counts what it stores";
+    }
+    const auto log = open_postgres(database_.address, options).value(); // asks the database
+    const auto refused = append_and_wait(*log, kept, 1, {"a"});
+    EXPECT_EQ(refused.error().code, Errc::kOverloaded);
+    EXPECT_THAT(refused.error().message, HasSubstr("--store-size-max"));
+    EXPECT_EQ(log->stats().no_room, refused.error().message);
+    EXPECT_EQ(log->write_checkpoint(kept, {{"part", "x"}}).error().code, Errc::kOverloaded);
+    EXPECT_EQ(log->create_session("").error().code, Errc::kOverloaded);
+    EXPECT_THAT(entries_after(*log, removed, 0).value(), ElementsAre(large));
+    EXPECT_EQ(checkpoint_of(*log, kept).value().at("part"), large);
+
+    ASSERT_TRUE(log->remove_session(removed));
+    while (!append_and_wait(*log, kept, 1, {"a"})) { // until its rows are deleted
+    }
+    EXPECT_FALSE(log->stats().no_room);
+    EXPECT_TRUE(log->clear_checkpoint(kept));
+}
+
 TEST_F(PostgresScanLogTest, AnUnreplicatedDatabaseIsRefusedUnlessAllowed) {
     const auto log = open_postgres(database_.address);
     ASSERT_FALSE(log);

@@ -1,0 +1,76 @@
+#include "server/store/postgres_scan_log.hpp"
+#include "tests/support/log_reading.hpp"
+#include "tests/support/postgres_server.hpp"
+#include "tests/unit/server/store/postgres_database.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <string>
+#include <vector>
+
+namespace scanloom::store {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr Revision kEntriesMax = 100'000; // far more than are stored before the primary is killed
+constexpr std::size_t kSessions = 8;
+
+/// The end of a session's log, as a client knows it.
+struct Acknowledged {
+    SessionId session = 0;
+    std::atomic<Revision> end = 0;
+};
+
+/// A primary that is killed while entries are appended, and its standby, which is promoted.
+TEST(PostgresFailoverTrials, ThePromotedStandbyHasEachAcknowledgedEntryOnce) {
+    test::PostgresServer primary;
+    auto address = primary.new_database();
+    const PostgresDatabase before(address);
+    test::PostgresServer standby(primary);
+    static_cast<void>(before.run("ALTER SYSTEM SET synchronous_standby_names = 'standby'"));
+    static_cast<void>(before.run("SELECT pg_reload_conf()"));
+    while (before.number("SELECT count(*) FROM pg_stat_replication WHERE sync_state = 'sync'") == 0) {
+    }
+    address += "," + standby.socket();
+    const auto log = open_postgres(address, {.allow_unreplicated = true}).value();
+    std::vector<Acknowledged> sessions(kSessions);
+    for (Acknowledged& each : sessions) each.session = log->create_session("record").value();
+
+    std::atomic<std::size_t> failed = 0;
+    std::atomic<std::uint64_t> stored = 0;
+    const std::function<void(Acknowledged&, Revision)> append_next = [&](Acknowledged& each, Revision first) {
+        log->append(each.session, first, distinct_entries(each.session, first, 3), [&, first](const Result<>& done) {
+            if (!done || first > kEntriesMax) {
+                ++failed;
+                return;
+            }
+            each.end = first + 2;
+            ++stored;
+            append_next(each, first + 3);
+        });
+    };
+    for (Acknowledged& each : sessions) append_next(each, 1);
+    while (stored < 100) {
+    }
+    primary.kill();
+    while (failed < kSessions) {
+    }
+    EXPECT_FALSE(log->reopen());
+    EXPECT_THAT(log->stats().last_error.value(), HasSubstr("is a standby"));
+    standby.promote();
+    while (!log->reopen()) {
+    }
+
+    for (const Acknowledged& each : sessions) {
+        const auto end = log->end_of(each.session).value();
+        EXPECT_GE(end, each.end);
+        EXPECT_EQ(entries_after(*log, each.session, 0).value(), distinct_entries(each.session, 1, end));
+        EXPECT_TRUE(append_and_wait(*log, each.session, end + 1, {"after the failover"}));
+    }
+}
+
+} // namespace
+} // namespace scanloom::store
