@@ -95,14 +95,18 @@ function(scanloom_program name)
   scanloom_kind(${name} io)
 endfunction()
 
-# scanloom_test_program(NAME [LABELS label ...] [TIMEOUT seconds]): an executable of GoogleTest suites, one CTest test a suite.
+# scanloom_test_program(NAME [LABELS label ...] [TIMEOUT seconds] [TOGETHER count]): an executable of GoogleTest suites.
+# TOGETHER: suites in one CTest test, otherwise 1.
 function(scanloom_test_program name)
-  cmake_parse_arguments(ARG "" "TIMEOUT" "LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "" "TIMEOUT;TOGETHER" "LABELS" ${ARGN})
   add_executable(${name} ${CMAKE_SOURCE_DIR}/cmake/headers/empty.cpp)
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests UNITY_BUILD OFF)
   target_link_libraries(${name} PRIVATE GTest::gmock GTest::gtest_main)
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 300)
+  endif()
+  if(NOT ARG_TOGETHER)
+    set(ARG_TOGETHER 1)
   endif()
   if(SCANLOOM_SANITIZE)
     set(ARG_TIMEOUT 1800) # brute force takes twenty times as long

@@ -1,3 +1,5 @@
+#include "tests/fuzz/write_corpus.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cstddef>
@@ -71,6 +73,11 @@ const Named kFuzzers[] = {
     {"ydlidar", ydlidar_fuzzer},
 };
 
+std::string bytes_of(const std::filesystem::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+
 class FuzzCorpus : public testing::TestWithParam<Named> {};
 
 /// Runs a fuzzer on every file of its corpus once. A fuzzer aborts on an input that violates a property.
@@ -78,8 +85,7 @@ TEST_P(FuzzCorpus, EveryFilePasses) {
     std::size_t files = 0;
     for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(CORPUS) / GetParam().name)) {
         SCOPED_TRACE(entry.path());
-        std::ifstream file(entry.path(), std::ios::binary);
-        const std::string bytes(std::istreambuf_iterator<char>(file), {});
+        const auto bytes = bytes_of(entry.path());
         EXPECT_EQ(GetParam().fuzzer(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()), 0);
         ++files;
     }
@@ -92,6 +98,18 @@ TEST(FuzzCorpora, EachHasItsFuzzer) {
     std::set<std::string> fuzzers;
     for (const auto& named : kFuzzers) fuzzers.insert(named.name);
     EXPECT_EQ(folders, fuzzers);
+}
+
+/// A parser rejects a seed of an earlier format at once, so it would test nothing.
+TEST(FuzzCorpora, AreOfTodaysFormats) {
+    const std::filesystem::path folder = WRITTEN_CORPUS;
+    std::filesystem::remove_all(folder);
+    write_corpus(folder);
+    for (const auto& seed : std::filesystem::recursive_directory_iterator(folder)) {
+        if (!seed.is_regular_file()) continue;
+        const auto kept = std::filesystem::path(CORPUS) / std::filesystem::relative(seed, folder);
+        EXPECT_TRUE(bytes_of(kept) == bytes_of(seed)) << kept << "; update it: cp -r " << folder << "/. " << CORPUS;
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(Each, FuzzCorpus, testing::ValuesIn(kFuzzers),

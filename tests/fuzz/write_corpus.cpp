@@ -1,5 +1,5 @@
-// Writes the fuzzers' seeds in our own formats: a small valid input for each kind of message and record. With
-// --compare, lists the outdated seeds: a parser rejects a seed of an earlier format at once, so it tests nothing.
+#include "tests/fuzz/write_corpus.hpp"
+
 #include "common/hash/crc32c.hpp"
 #include "common/wire/compression.hpp"
 #include "common/wire/frame_decoder.hpp"
@@ -30,9 +30,8 @@
 #include <iterator>
 #include <stdexcept>
 
+namespace scanloom::fuzz {
 namespace {
-
-using namespace scanloom;
 
 void write_file(const std::filesystem::path& path, std::string_view bytes) {
     std::filesystem::create_directories(path.parent_path());
@@ -374,6 +373,8 @@ void write_bridges(const std::filesystem::path& folder) {
     }
 }
 
+} // namespace
+
 void write_corpus(const std::filesystem::path& folder) {
     write_messages(folder / "messages");
     write_streams(folder / "frame_decoder");
@@ -390,39 +391,4 @@ void write_corpus(const std::filesystem::path& folder) {
     write_bridges(folder / "foxglove");
 }
 
-/// Empty where there is no such file.
-std::string bytes_of(const std::filesystem::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-}
-
-/// @return whether each seed is there as it would be written. Others may be there, too.
-bool is_as_written(const std::filesystem::path& corpus) {
-    const TemporaryDirectory written;
-    write_corpus(written.path());
-    bool is_as_written = true;
-    for (const auto& seed : std::filesystem::recursive_directory_iterator(written.path())) {
-        const auto kept = corpus / std::filesystem::relative(seed, written.path());
-        if (!seed.is_regular_file() || bytes_of(kept) == bytes_of(seed)) continue;
-        std::fprintf(stderr, "%s is not as it would be written today\n", kept.c_str());
-        is_as_written = false;
-    }
-    return is_as_written;
-}
-
-} // namespace
-
-int main(int argc, char** argv) {
-    const bool compares = argc == 3 && std::string_view(argv[1]) == "--compare";
-    if (argc != 2 && !compares) {
-        std::fprintf(stderr, "usage: %s [--compare] CORPUS_FOLDER\n", argv[0]);
-        return 2;
-    }
-    if (compares && is_as_written(argv[2])) return 0;
-    if (compares) {
-        std::fprintf(stderr, "update them with: %s %s\n", argv[0], argv[2]);
-        return 1;
-    }
-    write_corpus(argv[1]);
-    return 0;
-}
+} // namespace scanloom::fuzz

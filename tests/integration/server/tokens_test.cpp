@@ -37,18 +37,28 @@ struct MadeToken {
 class TokensTest : public testing::Test {
 protected:
     TokensTest() {
-        robot_ = make("robot", "robot", "depot-*");
-        viewer_ = make("viewer", "viewer", "depot-*");
-        operator_ = make("chief", "operator", "*");
         write(robot_.lines + viewer_.lines + operator_.lines);
         server_ = std::make_unique<RunningServer>(
             place_.path() / "store", log_, 0, 0,
             std::vector<std::string>{"--tokens", file_.string(), "--log-level", "debug"});
     }
 
-    MadeToken make(const std::string& name, const std::string& role, const std::string& sessions) {
+    struct Tokens {
+        MadeToken robot = make("robot", "robot", "depot-*");
+        MadeToken viewer = make("viewer", "viewer", "depot-*");
+        MadeToken chief = make("chief", "operator", "*");
+    };
+
+    /// Makes them once for all tests.
+    static const Tokens& tokens() {
+        static const Tokens made;
+        return made;
+    }
+
+    static MadeToken make(const std::string& name, const std::string& role, const std::string& sessions) {
+        const TemporaryDirectory place;
         ChildProcess maker(program("scanloom-server"), {"token", "--name", name, "--role", role, "--session", sessions},
-                           place_.path() / "maker");
+                           place.path() / "maker");
         MadeToken made;
         made.secret = maker.read_line().value();
         while (const auto line = maker.read_line()) made.lines += *line + "\n";
@@ -103,9 +113,9 @@ protected:
     TemporaryDirectory place_;
     std::filesystem::path file_ = place_.path() / "tokens.toml";
     std::filesystem::path log_ = place_.path() / "log";
-    MadeToken robot_;
-    MadeToken viewer_;
-    MadeToken operator_;
+    const MadeToken& robot_ = tokens().robot;
+    const MadeToken& viewer_ = tokens().viewer;
+    const MadeToken& operator_ = tokens().chief;
     std::unique_ptr<RunningServer> server_;
 };
 
@@ -192,11 +202,12 @@ TEST_F(TokensTest, SecretsNeverAppearInTheLog) {
     }
     server_->process().signal(SIGTERM);
     EXPECT_EQ(server_->process().wait(), 0);
+    const auto said = log();
     for (const auto& token : {robot_, viewer_, operator_}) {
         for (std::size_t at = 9; at + 12 <= token.secret.size(); ++at) // any part that reveals the secret
-            EXPECT_THAT(log(), Not(HasSubstr(token.secret.substr(at, 12))));
+            EXPECT_THAT(said, Not(HasSubstr(token.secret.substr(at, 12))));
     }
-    EXPECT_THAT(log(), HasSubstr("event=refused port=http who=127.0.0.1 token=viewer reason=wrong_session session=? "));
+    EXPECT_THAT(said, HasSubstr("event=refused port=http who=127.0.0.1 token=viewer reason=wrong_session session=? "));
 }
 
 TEST_F(TokensTest, AFileWritableByOthersPreventsTheStart) {

@@ -31,13 +31,10 @@ public:
             const double of_centres = std::hypot(offset + 0.5, offset - 0.5);
             if (offset * std::sqrt(2.0) <= radius_ && of_centres > radius_) radius_of_centres_ = of_centres + 1e-9;
         }
+        find_touched();
         for (std::int32_t j = box.j_begin; j < box.j_end; ++j) {
             for (std::int32_t i = box.i_begin; i < box.i_end; ++i) {
                 if (is_obstacle({i, j})) obstacles_.push_back({i, j});
-            }
-        }
-        for (std::int32_t j = box.j_begin; j < box.j_end; ++j) {
-            for (std::int32_t i = box.i_begin; i < box.i_end; ++i) {
                 if (may_be_entered({i, j})) enterable_.insert({j, i});
             }
         }
@@ -98,6 +95,8 @@ private:
     }
 
     [[nodiscard]] bool is_obstacle(Cell cell) const {
+        if (cell.i < box_.i_begin || cell.i >= box_.i_end || cell.j < box_.j_begin || cell.j >= box_.j_end)
+            return false;
         const auto value = class_at(view_, cell);
         const bool unknown = value == CellClass::kUnexplored || value == CellClass::kFrontier;
         return value == CellClass::kOccupied || (unknown && options_.on_known && !options_.allow_unknown);
@@ -118,11 +117,21 @@ private:
         const bool unknown = value == CellClass::kUnexplored || value == CellClass::kFrontier;
         if (unknown && !options_.allow_unknown) return false;
         return is_inside(centre, centre, radius_ - radius_of_centres_) &&
-               std::ranges::none_of(obstacles_, [&](Cell other) {
-                   const double dx = std::max(std::abs(cell.i - other.i) - 0.5, 0.0);
-                   const double dy = std::max(std::abs(cell.j - other.j) - 0.5, 0.0);
-                   return std::max(dx, dy) <= radius_of_centres_ && std::hypot(dx, dy) <= radius_of_centres_;
+               std::ranges::none_of(touched_, [&](Cell offset) {
+                   return is_obstacle({cell.i + offset.i, cell.j + offset.j});
                });
+    }
+
+    /// Finds the cells that a body in the centre of cell (0, 0) touches.
+    void find_touched() {
+        const auto reach = static_cast<std::int32_t>(radius_of_centres_) + 1;
+        for (std::int32_t j = -reach; j <= reach; ++j) {
+            for (std::int32_t i = -reach; i <= reach; ++i) {
+                const double dx = std::max(std::abs(i) - 0.5, 0.0);
+                const double dy = std::max(std::abs(j) - 0.5, 0.0);
+                if (std::hypot(dx, dy) <= radius_of_centres_) touched_.push_back({i, j});
+            }
+        }
     }
 
     /// Returns the distance from a line to a cell's square. Along the line, the distance to the square falls and then
@@ -170,6 +179,7 @@ private:
     PassabilityOptions options_;
     double radius_; // cells
     double radius_of_centres_;
+    std::vector<Cell> touched_; // by a body, relative to the cell of its centre
     std::vector<Cell> obstacles_;
     std::set<std::pair<int, int>> enterable_;
 };
