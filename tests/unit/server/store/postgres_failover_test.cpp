@@ -15,7 +15,7 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr Revision kEntriesMax = 100'000; // far more than are stored before the primary is killed
+constexpr Revision kEntriesMax = 6000; // of a session; far more than are stored before the primary is killed
 constexpr std::size_t kSessions = 8;
 
 /// The end of a session's log, as a client knows it.
