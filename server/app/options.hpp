@@ -66,11 +66,4 @@ struct ServerOptions {
 /// Errors: kInvalidField if the text has another form.
 [[nodiscard]] Result<boost::asio::ip::tcp::endpoint> parse_endpoint(const std::string& text);
 
-/// Checks that every port that other machines can reach is protected, unless --insecure is given.
-/// Errors: kInvalidField if an endpoint is not on loopback and has neither tokens nor TLS.
-[[nodiscard]] Result<> check_guarded(const ServerOptions& options);
-
-/// Returns warnings for the operator, one sentence each, about access that the settings leave open to others.
-[[nodiscard]] std::vector<std::string> guard_warnings(const ServerOptions& options);
-
 } // namespace scanloom::app

@@ -2,6 +2,7 @@
 
 #include "common/app/machine.hpp"
 #include "common/app/standard_streams.hpp"
+#include "server/app/guards.hpp"
 #include "server/app/resource_limits.hpp"
 #include "server/app/server.hpp"
 #include "server/app/standard_error_sink.hpp"

@@ -9,6 +9,11 @@
 #include <utility>
 
 namespace scanloom::store::postgres {
+namespace {
+
+constexpr std::chrono::seconds kSizeAge{10}; // of the size that size() returns
+
+} // namespace
 
 Result<Connection> Readers::take() {
     {
@@ -114,7 +119,20 @@ Result<> Readers::checkpoint(SessionId session, const ScanLog::VisitPart& visit)
     return {};
 }
 
-Result<std::uint64_t> Readers::size() {
+std::uint64_t Readers::size() {
+    const auto now = std::chrono::steady_clock::now();
+    {
+        const std::lock_guard lock(mutex_);
+        if (size_at_ && now - *size_at_ < kSizeAge) return size_;
+        size_at_ = now;
+    }
+    const auto size = ask_size();
+    const std::lock_guard lock(mutex_);
+    if (size) size_ = *size;
+    return size_;
+}
+
+Result<std::uint64_t> Readers::ask_size() {
     auto connection = take();
     if (!connection) return connection.error();
     const auto rows = connection->run("SELECT pg_database_size(current_database())", {}, Connection::kReadTimeout);

@@ -4,8 +4,10 @@
 #include "server/store/postgres_connection.hpp"
 #include "server/store/scan_log.hpp"
 
+#include <chrono>
 #include <cstdint>
 #include <mutex>
+#include <optional>
 #include <vector>
 
 namespace scanloom::store::postgres {
@@ -27,8 +29,8 @@ public:
     /// Errors: those of the visitor; kDataLoss: a part is damaged; kStoreFailed.
     [[nodiscard]] Result<> checkpoint(SessionId session, const ScanLog::VisitPart& visit);
 
-    /// Returns the size of the database, bytes.
-    [[nodiscard]] Result<std::uint64_t> size();
+    /// Returns the size of the database's files a few seconds ago at most, bytes; 0 if it was never known.
+    [[nodiscard]] std::uint64_t size();
 
     /// Closes the connections that are not in use.
     void close();
@@ -41,10 +43,13 @@ private:
 
     [[nodiscard]] Result<Connection> take();
     void give_back(Connection connection);
+    [[nodiscard]] Result<std::uint64_t> ask_size();
 
     const Place place_;
-    std::mutex mutex_; // guards the member below
+    std::mutex mutex_; // guards the members below
     std::vector<Connection> idle_;
+    std::uint64_t size_ = 0;
+    std::optional<std::chrono::steady_clock::time_point> size_at_; // nullopt: not asked yet
 };
 
 } // namespace scanloom::store::postgres

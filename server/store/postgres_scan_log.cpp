@@ -8,6 +8,7 @@
 #include "server/store/postgres_schema.hpp"
 #include "server/store/postgres_segments.hpp"
 #include "server/store/postgres_sweeper.hpp"
+#include "server/store/postgres_writer.hpp"
 #include "server/store/store_error.hpp"
 
 #include <fmt/format.h>
@@ -28,7 +29,6 @@ namespace postgres {
 namespace {
 
 constexpr std::size_t kQueues = 4;
-constexpr std::chrono::seconds kSizeAge{10}; // of the size of the database that bytes_on_disk() returns
 
 class PostgresScanLog final : public ScanLog {
 public:
@@ -59,17 +59,9 @@ public:
     [[nodiscard]] std::uint64_t bytes_on_disk() const override;
 
 private:
-    /// A connection for changes that wait for their result, which is opened again when it was lost.
-    struct Writer {
-        std::mutex mutex;
-        std::optional<Connection> connection;
-    };
-    using Change = std::function<Result<>(Connection&)>;
-
     [[nodiscard]] Result<Connection> open_replicated() const;
     [[nodiscard]] Result<> take_sessions_again();
-    [[nodiscard]] Result<> change(Writer& writer, const Change& change);
-    [[nodiscard]] Result<> change_checkpoint(SessionId session, const Change& change);
+    [[nodiscard]] Result<> change_checkpoint(SessionId session, const Writer::Change& change);
     [[nodiscard]] Result<> wait_for_appends(SessionId session);
     [[nodiscard]] Result<> read_entries(SessionId session, Revision after, const VisitEntry& visit);
     [[nodiscard]] AppendQueue& queue_of(SessionId session) { return *queues_[session % kQueues]; }
@@ -81,12 +73,9 @@ private:
     SizeLimit size_limit_;
     mutable std::shared_mutex in_use_; // held alone by reopen()
     std::optional<Connection> lock_;   // holds the lock of the store
-    Writer sessions_;                  // creates and removes sessions
-    Writer checkpoints_;
+    Writer sessions_{place_, shared_}; // creates and removes sessions
+    Writer checkpoints_{place_, shared_};
     mutable Readers readers_;
-    mutable std::mutex size_mutex_; // guards the members below
-    mutable std::uint64_t size_ = 0;
-    mutable std::optional<std::chrono::steady_clock::time_point> size_at_;
     std::array<std::unique_ptr<AppendQueue>, kQueues> queues_;
     std::optional<Sweeper> sweeper_; // last: uses the others
 };
@@ -130,27 +119,10 @@ Result<std::vector<SessionId>> PostgresScanLog::start_reading() {
     return lacking;
 }
 
-/// Makes a change. After an error, it is not known whether it took effect.
-Result<> PostgresScanLog::change(Writer& writer, const Change& change) {
-    const std::lock_guard lock(writer.mutex);
-    if (const auto failure = shared_.failure()) return *failure;
-    if (writer.connection && !writer.connection->is_alive()) writer.connection.reset(); // nothing was under way
-    if (!writer.connection) {
-        auto opened = Connection::open(place_);
-        if (!opened) return shared_.fail(opened.error());
-        writer.connection = std::move(*opened);
-    }
-    auto changed = change(*writer.connection);
-    if (changed) return changed;
-    writer.connection.reset(); // ends its transaction
-    if (changed.error().code == Errc::kNotFound || changed.error().code == Errc::kOverloaded) return changed;
-    return shared_.fail(changed.error());
-}
-
 Result<SessionId> PostgresScanLog::create_session(std::string_view record) {
     const std::shared_lock use(in_use_);
     SessionId session = 0;
-    const auto created = change(sessions_, [&](Connection& connection) -> Result<> {
+    const auto created = sessions_.make([&](Connection& connection) -> Result<> {
         if (auto room = size_limit_.check(connection); !room) return room;
         Parameters parameters;
         parameters.add(record);
@@ -190,7 +162,7 @@ Result<> PostgresScanLog::wait_for_appends(SessionId session) {
 Result<> PostgresScanLog::remove_session(SessionId session) {
     const std::shared_lock use(in_use_);
     if (auto waited = wait_for_appends(session); !waited) return waited;
-    auto removed = change(sessions_, [&](Connection& connection) -> Result<> {
+    auto removed = sessions_.make([&](Connection& connection) -> Result<> {
         const auto owned = shared_.find(session);
         if (!owned) return no_such_session(session);
         Parameters parameters;
@@ -231,10 +203,10 @@ Result<> PostgresScanLog::read_entries(SessionId session, Revision after, const 
 }
 
 /// Changes a checkpoint in one transaction. Its last statement checks that this server still owns the session.
-Result<> PostgresScanLog::change_checkpoint(SessionId session, const Change& change_parts) {
+Result<> PostgresScanLog::change_checkpoint(SessionId session, const Writer::Change& change_parts) {
     const std::shared_lock use(in_use_);
     if (auto waited = wait_for_appends(session); !waited) return waited; // so that it is never ahead of the log
-    return change(checkpoints_, [&](Connection& connection) -> Result<> {
+    return checkpoints_.make([&](Connection& connection) -> Result<> {
         const auto owned = shared_.find(session);
         if (!owned) return no_such_session(session);
         if (auto begun = connection.run("BEGIN"); !begun) return begun.error();
@@ -315,7 +287,7 @@ bool PostgresScanLog::reopen() {
     const std::unique_lock use(in_use_);
     std::vector<std::unique_lock<std::mutex>> pauses;
     for (auto& queue : queues_) pauses.push_back(queue->pause());
-    for (Writer* writer : {&sessions_, &checkpoints_}) writer->connection.reset();
+    for (Writer* writer : {&sessions_, &checkpoints_}) writer->close();
     lock_.reset();
     readers_.close();
     auto reopened = take_sessions_again();
@@ -345,18 +317,7 @@ Result<> PostgresScanLog::backup_to(const std::filesystem::path&, const std::sto
     return Error{Errc::kInvalidField, "the store is in a database: make backups of the database"};
 }
 
-std::uint64_t PostgresScanLog::bytes_on_disk() const {
-    const auto now = std::chrono::steady_clock::now();
-    {
-        const std::lock_guard lock(size_mutex_);
-        if (size_at_ && now - *size_at_ < kSizeAge) return size_;
-        size_at_ = now;
-    }
-    const auto size = readers_.size();
-    const std::lock_guard lock(size_mutex_);
-    if (size) size_ = *size;
-    return size_;
-}
+std::uint64_t PostgresScanLog::bytes_on_disk() const { return readers_.size(); }
 
 } // namespace
 } // namespace postgres

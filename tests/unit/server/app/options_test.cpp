@@ -1,5 +1,6 @@
 #include "server/app/options.hpp"
 
+#include "server/app/guards.hpp"
 #include "server/auth/token_text.hpp"
 #include "tests/support/temporary_directory.hpp"
 

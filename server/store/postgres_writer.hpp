@@ -1,0 +1,38 @@
+#pragma once
+
+#include "common/error/error.hpp"
+#include "server/store/postgres_connection.hpp"
+#include "server/store/postgres_owned_sessions.hpp"
+
+#include <functional>
+#include <mutex>
+#include <optional>
+
+namespace scanloom::store::postgres {
+
+/// Makes changes one after the other, each of which waits for its result, over a connection that is opened again when it
+/// was lost.
+/// Threads: any.
+class Writer {
+public:
+    using Change = std::function<Result<>(Connection&)>;
+
+    /// @param shared  must outlive the writer
+    Writer(const Place& place, SharedState& shared) : place_(place), shared_(shared) {}
+
+    /// Makes a change.
+    /// Errors: those of the change; why the log has failed. After an error other than kNotFound and kOverloaded, which
+    ///         mean that nothing was changed, the log has failed: it is not known whether the change took effect.
+    [[nodiscard]] Result<> make(const Change& change);
+
+    /// Closes the connection.
+    void close();
+
+private:
+    const Place& place_;
+    SharedState& shared_;
+    std::mutex mutex_; // held during a change
+    std::optional<Connection> connection_;
+};
+
+} // namespace scanloom::store::postgres
