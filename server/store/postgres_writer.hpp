@@ -10,8 +10,8 @@
 
 namespace scanloom::store::postgres {
 
-/// Makes changes one after the other, each of which waits for its result, over a connection that is opened again when it
-/// was lost.
+/// Makes changes one after the other, each of which waits for its result, over a connection that is opened again when
+/// it was lost.
 /// Threads: any.
 class Writer {
 public:

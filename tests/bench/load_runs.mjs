@@ -4,8 +4,8 @@ import { Server, endWithThisProgram, start } from '../e2e/programs.mjs';
 endWithThisProgram();
 
 /** A server that logs only errors, so that figures stay readable. */
-export function startServer() {
-  return Server.start(['--log-level', 'warn']);
+export function startServer(options = [], database = undefined) {
+  return Server.start(['--log-level', 'warn', ...options], database);
 }
 
 /**

@@ -27,11 +27,12 @@ export function endWithThisProgram() {
 
 /** Starts a server on free ports with its own empty store. */
 export class Server {
-  static async start(options = []) {
+  /** @param database address of a database for the store; otherwise, it is in a temporary directory */
+  static async start(options = [], database = undefined) {
     const store = await mkdtemp(join(tmpdir(), 'scanloom-e2e-'));
     stores.add(store);
     const child = start('scanloom-server', [
-      ...['--listen', '127.0.0.1:0', '--http', '127.0.0.1:0', '--store', store, ...kWeb, ...options],
+      ...['--listen', '127.0.0.1:0', '--http', '127.0.0.1:0', '--store', database ?? store, ...kWeb, ...options],
     ]);
     const ready = await readyLine(child);
     return new Server(child, store, ready.robot_port, ready.http_port);
