@@ -2,7 +2,7 @@
 
 #include "common/net/await_tuple.hpp"
 #include "common/net/http_connection.hpp"
-#include "common/net/link_stream.hpp"
+#include "common/net/web_socket.hpp"
 #include "load/core/tile_tour.hpp"
 #include "load/net/server_api.hpp"
 
@@ -12,7 +12,6 @@
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/this_coro.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
-#include <boost/beast/websocket/stream.hpp>
 #include <fmt/format.h>
 
 #include <future>
@@ -33,7 +32,7 @@ constexpr std::chrono::seconds kEnterMax{10};
 constexpr std::chrono::seconds kPause{1};
 constexpr std::size_t kEventMax = std::size_t{1} << 20; ///< bytes; the server's have at most 512 KiB
 
-using Stream = beast::websocket::stream<net::LinkStream>;
+using Stream = net::WebSocket;
 
 /// Result of a request to watch.
 struct Entry {
@@ -53,9 +52,9 @@ asio::awaitable<Entry> enter(Stream& stream, const AudienceShared& shared, std::
     }
     beast::websocket::response_type answer;
     const std::string host = server.text();
-    const auto answered = co_await net::within(kEnterMax, stream.async_handshake(answer, host, target, kAwaitTuple));
+    const auto answered = co_await net::within(kEnterMax, net::shake_hands(stream, answer, host, target));
     if (!answered) co_return Entry{fmt::format("no answer within {} s", kEnterMax.count())};
-    const auto [failed] = *answered;
+    const auto failed = *answered;
     if (!failed) co_return Entry{};
     if (failed != beast::websocket::error::upgrade_declined) {
         co_return Entry{net::failure_text(stream.next_layer(), failed)};
@@ -67,10 +66,9 @@ asio::awaitable<boost::system::error_code> take_events(Stream& stream, AudienceF
     beast::flat_buffer event;
     stream.read_message_max(kEventMax);
     for (;;) {
-        const auto [failed, bytes] = co_await stream.async_read(event, kAwaitTuple);
-        if (failed) co_return failed;
+        if (const auto failed = co_await net::read(stream, event)) co_return failed;
         ++figures.events;
-        figures.event_bytes += bytes;
+        figures.event_bytes += event.size();
         event.clear();
     }
 }

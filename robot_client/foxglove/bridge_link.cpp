@@ -2,6 +2,7 @@
 
 #include "common/net/await_tuple.hpp"
 #include "common/net/connect.hpp"
+#include "common/net/web_socket.hpp"
 #include "robot_client/recordings/recording_lists.hpp"
 #include "robot_client/sources/messages.hpp"
 
@@ -10,9 +11,9 @@
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/this_coro.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
-#include <boost/beast/websocket/stream.hpp>
 #include <fmt/format.h>
 
+#include <array>
 #include <optional>
 #include <utility>
 #include <variant>
@@ -27,7 +28,7 @@ using namespace asio::experimental::awaitable_operators;
 namespace {
 
 using Clock = std::chrono::steady_clock;
-using Stream = websocket::stream<net::LinkStream, false>; // false: no compression
+using Stream = net::WebSocket;
 using boost::system::error_code;
 
 constexpr auto kProtocolField = beast::http::field::sec_websocket_protocol;
@@ -120,7 +121,7 @@ asio::awaitable<Result<>> BridgeReading::shake_hands(Stream& stream) const {
     stream.read_message_max(kBridgeFrameMax);
     websocket::response_type answer;
     const std::string host = options_.bridge.address.text();
-    const auto [failed] = co_await stream.async_handshake(answer, host, options_.bridge.target, kAwaitTuple);
+    const auto failed = co_await net::shake_hands(stream, answer, host, options_.bridge.target);
     if (failed == websocket::error::upgrade_declined && answer.result_int() >= 500) {
         co_return Error{Errc::kUnreachable, fmt::format("{} answers the WebSocket handshake with {}; is the bridge "
                                                         "behind this proxy running?",
@@ -180,9 +181,8 @@ asio::awaitable<Error> BridgeReading::read_frames(Stream& stream) {
     beast::flat_buffer buffer;
     for (;;) {
         buffer.clear();
-        const auto [failed, size] = co_await stream.async_read(buffer, kAwaitTuple);
-        if (failed) co_return ended(stream, failed);
-        const std::string_view frame(static_cast<const char*>(buffer.data().data()), size);
+        if (const auto failed = co_await net::read(stream, buffer)) co_return ended(stream, failed);
+        const std::string_view frame(static_cast<const char*>(buffer.data().data()), buffer.size());
         const bool was_connected = listener_.is_connected();
         if (stream.got_binary()) {
             listener_.on_binary(frame);
@@ -210,8 +210,8 @@ asio::awaitable<Error> BridgeReading::write_frames(Stream& stream) {
             continue;
         }
         stream.binary(frame->is_binary);
-        const auto [failed, size] = co_await stream.async_write(asio::buffer(frame->bytes), kAwaitTuple);
-        if (failed) co_return ended(stream, failed);
+        const std::array parts{asio::const_buffer(asio::buffer(frame->bytes))};
+        if (const auto failed = co_await net::write(stream, parts)) co_return ended(stream, failed);
     }
 }
 

@@ -114,7 +114,7 @@ asio::awaitable<void> Viewer::run(const Upgrade& upgrade) {
 }
 
 asio::awaitable<bool> Viewer::accept(const Upgrade& upgrade) {
-    const auto [error] = co_await stream_.async_accept(upgrade, kAwaitTuple);
+    const auto error = co_await net::accept(stream_, upgrade);
     co_return !error;
 }
 
@@ -123,7 +123,7 @@ asio::awaitable<void> Viewer::read_requests() {
     const auto self = shared_from_this();
     for (;;) {
         buffer_.clear();
-        const auto [error, size] = co_await stream_.async_read(buffer_, kAwaitTuple);
+        const auto error = co_await net::read(stream_, buffer_);
         if (error) co_return;
         keep_message();
     }
@@ -204,15 +204,15 @@ asio::awaitable<bool> Viewer::send(const ViewerMessage& message) {
     stream_.text(message.is_text);
     const std::array parts{asio::buffer(message.bytes),
                            message.rest ? asio::buffer(*message.rest) : asio::const_buffer()};
-    const auto [error, size] = co_await stream_.async_write(parts, kAwaitTuple);
+    const auto error = co_await net::write(stream_, parts);
     if (error) co_return false;
     services_.counters.events.Increment();
-    services_.counters.bytes.Increment(static_cast<double>(size));
+    services_.counters.bytes.Increment(static_cast<double>(asio::buffer_size(parts)));
     co_return true;
 }
 
 asio::awaitable<void> Viewer::close() {
-    if (ending_ && stream_.is_open()) co_await stream_.async_close(*ending_, kAwaitTuple);
+    if (ending_ && stream_.is_open()) static_cast<void>(co_await net::close(stream_, *ending_));
     deadline_.cancel();
     stream_.next_layer().close(); // also ends a pending read
 }

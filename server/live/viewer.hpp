@@ -2,7 +2,7 @@
 
 #include "common/error/error.hpp"
 #include "common/limits/semaphore.hpp"
-#include "common/net/link_stream.hpp"
+#include "common/net/web_socket.hpp"
 #include "server/live/dialogue.hpp"
 #include "server/live/live_config.hpp"
 #include "server/live/viewed_session.hpp"
@@ -15,7 +15,6 @@
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/http/message.hpp>
 #include <boost/beast/http/string_body.hpp>
-#include <boost/beast/websocket/stream.hpp>
 
 #include <atomic>
 #include <chrono>
@@ -89,8 +88,8 @@ private:
     void wake();
     void cut_off_after(std::chrono::milliseconds time);
 
-    boost::beast::websocket::stream<net::LinkStream, false> stream_; // false: no compression
-    boost::beast::flat_buffer buffer_;                               // at most request_bytes_max
+    net::WebSocket stream_;
+    boost::beast::flat_buffer buffer_; // at most request_bytes_max
     ViewedSession viewed_;
     limits::Semaphore::Permit permit_;
     Services services_;

@@ -1,7 +1,7 @@
 #include "tests/support/fake_bridge.hpp"
 
 #include "common/net/await_tuple.hpp"
-#include "common/net/link_stream.hpp"
+#include "common/net/web_socket.hpp"
 
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/co_spawn.hpp>
@@ -14,10 +14,10 @@
 #include <boost/beast/http/read.hpp>
 #include <boost/beast/http/string_body.hpp>
 #include <boost/beast/http/write.hpp>
-#include <boost/beast/websocket/stream.hpp>
 #include <boost/json/parse.hpp>
 #include <fmt/format.h>
 
+#include <array>
 #include <deque>
 #include <utility>
 
@@ -37,7 +37,7 @@ struct BridgeClient {
     BridgeClient(tcp::socket socket, asio::ssl::context* tls)
         : stream(tls != nullptr ? net::LinkStream(std::move(socket), *tls) : net::LinkStream(std::move(socket))) {}
 
-    websocket::stream<net::LinkStream> stream;
+    net::WebSocket stream;
     bool is_open = false;
     std::map<std::uint64_t, std::uint32_t> subscriptions; // by channel
     std::map<std::uint64_t, PublishedMessage> channels;   // that it publishes on
@@ -132,7 +132,7 @@ private:
         stream.set_option(websocket::stream_base::decorator([name = self->options_.subprotocol](auto& answer) {
             if (!name.empty()) answer.set(beast::http::field::sec_websocket_protocol, name);
         }));
-        if (std::get<0>(co_await stream.async_accept(request, kAwaitTuple))) co_return;
+        if (co_await net::accept(stream, request)) co_return;
         client->is_open = true;
         ++self->connections_;
         self->clients_.push_back(client);
@@ -153,9 +153,8 @@ private:
         beast::flat_buffer buffer;
         for (;;) {
             buffer.clear();
-            const auto [failed, size] = co_await client->stream.async_read(buffer, kAwaitTuple);
-            if (failed) co_return;
-            const std::string frame(static_cast<const char*>(buffer.data().data()), size);
+            if (co_await net::read(client->stream, buffer)) co_return;
+            const std::string frame(static_cast<const char*>(buffer.data().data()), buffer.size());
             client->stream.got_binary() ? self->take_message(*client, frame) : take_text(*client, frame);
             self->changed();
         }
@@ -166,7 +165,8 @@ private:
             const auto [frame, is_binary] = std::move(client->unsent.front());
             client->unsent.pop_front();
             client->stream.binary(is_binary);
-            if (std::get<0>(co_await client->stream.async_write(asio::buffer(frame), kAwaitTuple))) break;
+            const std::array parts{asio::const_buffer(asio::buffer(frame))};
+            if (co_await net::write(client->stream, parts)) break;
         }
         client->is_writing = false;
     }
