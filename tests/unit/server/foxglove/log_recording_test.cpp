@@ -4,6 +4,7 @@
 #include "tests/support/random_map.hpp"
 #include "tests/unit/robot_client/recordings/read_recording.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <cmath>

@@ -1,6 +1,7 @@
 #include "server/foxglove/protocol.hpp"
 
 #include <boost/json/parse.hpp>
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 namespace scanloom::foxglove {

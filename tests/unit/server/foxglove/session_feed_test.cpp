@@ -4,6 +4,7 @@
 #include "tests/support/random_map.hpp"
 
 #include <boost/json/parse.hpp>
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <cstring>
