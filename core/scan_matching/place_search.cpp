@@ -128,7 +128,7 @@ void PlaceSearch::push(Node node) {
         const Rotated& point = points[n++];
         const PlaceMap::Bits bits = grids[point.square].at(point.column + node.column, point.row + node.row);
         const int penalty = (bits & PlaceMap::kOpen) != 0 ? 1 : 2;
-        bound -= (bits & point.facing) == 0 ? penalty : 0; // without a branch, which no processor predicts
+        bound -= (bits & point.facing) == 0 ? penalty : 0; // no branch: it would be predicted poorly
     }
     lookups_ += n;
     node.bound = bound;

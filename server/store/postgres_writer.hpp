@@ -10,8 +10,8 @@
 
 namespace scanloom::store::postgres {
 
-/// Makes changes one after the other, each of which waits for its result, over a connection that is opened again when
-/// it was lost.
+/// Changes the database, one change at a time, and waits for the result of each. Opens a new connection if the last one
+/// was lost.
 /// Threads: any.
 class Writer {
 public:
