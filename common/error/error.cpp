@@ -16,6 +16,7 @@ std::string_view name_of(Errc code) noexcept {
     case Errc::kCreditExceeded: return "credit_exceeded";
     case Errc::kTimeout: return "timeout";
     case Errc::kReplaced: return "replaced";
+    case Errc::kNotOwner: return "not_owner";
     case Errc::kGone: return "gone";
     case Errc::kStoreFailed: return "store_failed";
     case Errc::kDataLoss: return "data_loss";

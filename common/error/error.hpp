@@ -25,6 +25,7 @@ enum class Errc {
     kTimeout,            ///< a deadline passed
     kReplaced,           ///< the same robot connected again
     kGone,               ///< the session was deleted while in use
+    kNotOwner,           ///< another server that shares the store has the session; connect there, or retry
     kStoreFailed,        ///< the store could not read or write; a retry may succeed
     kDataLoss,           ///< stored data is damaged or missing; a retry does not help
     kShuttingDown,       ///< the server is draining

@@ -39,7 +39,7 @@ std::string in_http(std::string_view sentence) {
 
 bool is_retryable(Errc code) noexcept {
     return code == Errc::kTimeout || code == Errc::kStoreFailed || code == Errc::kShuttingDown ||
-           code == Errc::kOutOfOrder || code == Errc::kOverloaded || code == Errc::kDamaged;
+           code == Errc::kOutOfOrder || code == Errc::kOverloaded || code == Errc::kDamaged || code == Errc::kNotOwner;
 }
 
 ServerProtocol::ServerProtocol(const ServerProtocolConfig& config, Time now)

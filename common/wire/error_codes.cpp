@@ -21,6 +21,7 @@ constexpr ErrorCodePair kErrorCodes[] = {
     {Errc::kTimeout, v1::ERROR_CODE_TIMEOUT},
     {Errc::kReplaced, v1::ERROR_CODE_REPLACED},
     {Errc::kGone, v1::ERROR_CODE_SESSION_DELETED},
+    {Errc::kNotOwner, v1::ERROR_CODE_NOT_OWNER},
     {Errc::kStoreFailed, v1::ERROR_CODE_STORE_FAILED},
     {Errc::kShuttingDown, v1::ERROR_CODE_SHUTTING_DOWN},
     {Errc::kUnauthorized, v1::ERROR_CODE_UNAUTHORIZED},

@@ -72,6 +72,14 @@ std::string check_host_name(const std::string& name) {
     return valid ? "" : fmt::format("'{}' is not a host name; write it without scheme and port", name);
 }
 
+std::string check_node(const std::string& name) {
+    constexpr std::size_t kLength = 100;
+    const bool valid = !name.empty() && name.size() <= kLength &&
+                       std::ranges::all_of(name, [](unsigned char c) { return c > ' ' && c <= '~'; });
+    return valid ? ""
+                 : fmt::format("'{}' is not a name of a server; write 1 to {} visible ASCII characters", name, kLength);
+}
+
 std::string check_origin(const std::string& text) {
     const auto scheme_end = text.find("://");
     const bool is_origin = scheme_end != std::string::npos && scheme_end > 0 &&
@@ -245,6 +253,11 @@ void add_options(CLI::App& app, ServerOptions& options) {
                                     "MiB of entries and checkpoints in a database; with more, the server stores "
                                     "nothing until sessions are removed")
         ->check(check_within(1.0, kStoreMibMax));
+    app.add_option("--node", options.node,
+                   "Name of this server among those that share a database, which a later start must repeat to have its "
+                   "sessions at once")
+        ->check(&check_node)
+        ->default_str("HOST:PORT of --listen");
     add_task_options(app, options);
     add_http_options(app, options);
     add_tls_options(app, options.robot_tls, "--robot", "robots");

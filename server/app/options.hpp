@@ -35,13 +35,15 @@ struct ServerOptions {
     std::filesystem::path store;                  ///< or the address of a database, postgresql://...
     bool allow_unreplicated = false;              ///< accept a database without a synchronous standby
     std::optional<std::uint64_t> store_bytes_max; ///< of a store in a database; nullopt: no limit
-    std::filesystem::path repaired;               ///< the store that --repair creates
-    std::filesystem::path copied;                 ///< the store that --copy creates
-    std::filesystem::path backups;                ///< directory of the backups; empty: backups are disabled
-    std::size_t backups_kept = 7;                 ///< number of backups kept, the newest ones
-    std::optional<std::uint32_t> backup;          ///< id of the backup to restore; nullopt: the newest
-    std::filesystem::path web;                    ///< the viewer's files
-    std::filesystem::path tokens;                 ///< file of the tokens; empty: every client may do everything
+    std::string
+        node; ///< its name among the servers of one database; empty: that of the machine and the port for robots
+    std::filesystem::path repaired;      ///< the store that --repair creates
+    std::filesystem::path copied;        ///< the store that --copy creates
+    std::filesystem::path backups;       ///< directory of the backups; empty: backups are disabled
+    std::size_t backups_kept = 7;        ///< number of backups kept, the newest ones
+    std::optional<std::uint32_t> backup; ///< id of the backup to restore; nullopt: the newest
+    std::filesystem::path web;           ///< the viewer's files
+    std::filesystem::path tokens;        ///< file of the tokens; empty: every client may do everything
     sockets::TlsFiles robot_tls;
     sockets::TlsFiles http_tls;
     std::vector<std::string> http_hosts; ///< accepted host names of the HTTP port, in addition to localhost

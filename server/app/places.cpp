@@ -84,6 +84,7 @@ Result<> check_places(const ServerOptions& options) {
         return Error{Errc::kInvalidField,
                      "--store-size-max is for a store in a database; a directory has --disk-reserve"};
     }
+    if (!options.node.empty()) return Error{Errc::kInvalidField, "--node is for a store in a database"};
     const Place store{"--store", options.store};
     switch (options.task) {
     case Task::kCheck:

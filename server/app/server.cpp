@@ -1,9 +1,11 @@
 #include "server/app/server.hpp"
 
 #include "common/app/program.hpp"
+#include "server/app/node.hpp"
 #include "server/app/service_manager.hpp"
 #include "server/auth/token_file.hpp"
 #include "server/sockets/worker_pool.hpp"
+#include "server/store/shared_sessions.hpp"
 
 #include <boost/asio/post.hpp>
 #include <boost/asio/strand.hpp>
@@ -91,6 +93,7 @@ Result<std::unique_ptr<Server>> Server::open(const ServerOptions& options, const
     store.disk_reserve_bytes = options.disk_reserve_bytes;
     store.allow_unreplicated = options.allow_unreplicated;
     store.bytes_max = options.store_bytes_max;
+    store.node = node_name(options);
     const auto check = std::make_shared<sessions::BackgroundCheck*>(nullptr); // created after the log
     store.on_unreadable = [check](store::SessionId session, const Error& why) {
         if (*check != nullptr) (*check)->note(session, why);
@@ -196,6 +199,11 @@ Result<> Server::run() {
     if (auto recovered = sessions_.recover(); !recovered) {
         io_.stop();
         return recovered.error();
+    }
+    if (auto* const shared = log_->shared(); shared != nullptr) {
+        const auto announced = shared->announce(node_info(options_, ingest_->port(), http_->port()));
+        if (!announced)
+            spdlog::warn("the other servers do not know the address of this one: {}", announced.error().message);
     }
     if (!sessions_.is_draining()) {
         services_->recovered = true;

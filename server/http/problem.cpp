@@ -30,6 +30,7 @@ Appearance appearance_of(Errc code) noexcept {
     case Errc::kTimeout: return {Status::gateway_timeout, "Took too long"};
     case Errc::kReplaced: return {Status::conflict, "Replaced"};
     case Errc::kGone: return {Status::gone, "Deleted meanwhile"};
+    case Errc::kNotOwner: return {Status::service_unavailable, "On another server"};
     case Errc::kStoreFailed: return {Status::service_unavailable, "The store failed"};
     case Errc::kDataLoss: return {Status::internal_server_error, "The store is damaged"};
     case Errc::kShuttingDown: return {Status::service_unavailable, "Not available now"};

@@ -4,6 +4,7 @@
 #include "server/log/context.hpp"
 #include "server/sessions/log_writer.hpp"
 #include "server/sessions/recovery.hpp"
+#include "server/store/shared_sessions.hpp"
 
 #include <fmt/format.h>
 
@@ -12,6 +13,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -105,6 +107,7 @@ Result<> remove_copies(store::ScanLog& log, store::SessionId session) {
     if (!stored) return stored.error();
     for (const auto& copy : *stored) {
         if (replaced_by(copy) != session) continue;
+        if (auto owned = store::own(log, copy.id); !owned) return owned;
         if (auto removed = log.remove_session(copy.id); !removed) return removed;
     }
     return {};
@@ -125,6 +128,13 @@ Result<std::vector<store::StoredSession>> settle_copies(store::ScanLog& log, std
         stored.erase(lost);
         n = 0;
     }
+    return stored;
+}
+
+std::vector<store::StoredSession> without_copies(std::vector<store::StoredSession> stored) {
+    std::set<store::SessionId> ids;
+    for (const auto& session : stored) ids.insert(session.id);
+    std::erase_if(stored, [&](const store::StoredSession& session) { return ids.contains(replaced_by(session)); });
     return stored;
 }
 

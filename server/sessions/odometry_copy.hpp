@@ -24,7 +24,7 @@ namespace scanloom::sessions {
                                                         const std::atomic<bool>& stop);
 
 /// Removes all copies of a session that is still stored.
-/// Errors: kStoreFailed.
+/// Errors: kNotOwner; kStoreFailed.
 /// Threads: any thread that may wait for the disk, while no other copies the session.
 [[nodiscard]] Result<> remove_copies(store::ScanLog& log, store::SessionId session);
 
@@ -36,5 +36,10 @@ namespace scanloom::sessions {
 /// Threads: any thread that may wait for the disk, while no other changes the sessions.
 [[nodiscard]] Result<std::vector<store::StoredSession>> settle_copies(store::ScanLog& log,
                                                                       std::vector<store::StoredSession> stored);
+
+/// Returns the sessions without copies of sessions that still exist. In a log that several servers share, another one
+/// may be writing such a copy; removing the session makes the copy count.
+/// @param stored  all sessions
+[[nodiscard]] std::vector<store::StoredSession> without_copies(std::vector<store::StoredSession> stored);
 
 } // namespace scanloom::sessions

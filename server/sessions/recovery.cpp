@@ -1,24 +1,15 @@
 #include "server/sessions/recovery.hpp"
 
 #include "common/wire/log_codec.hpp"
-#include "server/log/context.hpp"
 #include "server/sessions/checkpoint_reader.hpp"
 #include "server/sessions/log_readers.hpp"
 #include "server/sessions/map_correction.hpp"
-#include "server/sessions/odometry_copy.hpp"
-#include "server/sessions/registry_state.hpp"
 #include "server/store/store_error.hpp"
 
-#include <boost/asio/post.hpp>
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
-#include <functional>
-#include <latch>
-#include <set>
 #include <utility>
-#include <vector>
 
 namespace scanloom::sessions {
 namespace {
@@ -118,120 +109,6 @@ Result<Recovered> recover(store::ScanLog& log, store::SessionId session, const m
     } catch (const std::bad_alloc&) {
         return Error{Errc::kOverloaded, "there is no memory left for its map; free some and start the server again"};
     }
-}
-
-// All sessions
-
-namespace {
-
-/// The contents of a session's record.
-struct Recorded {
-    SessionInfo info;
-    std::uint32_t entries_at_creation = 0;
-};
-
-/// Decodes the record of a stored session.
-/// @param name  set to the session's name if the record can be decoded, even if an error is returned
-Result<Recorded> recorded(const store::StoredSession& stored, std::string& name) {
-    if (!stored.record) return stored.record.error();
-    const auto record = wire::decode_session(*stored.record);
-    if (!record) return record.error();
-    name = record->name;
-    if (stored.damage) return *stored.damage;
-    const auto config = mapping::resolve(record->options);
-    if (!config) return config.error();
-    const auto chunks_max = record->chunks_max == 0 ? SessionLimits::kMost : record->chunks_max;
-    return Recorded{{stored.id, name, record->created, *config, record->created_by,
-                     std::min<std::size_t>(chunks_max, SessionLimits::kMost)},
-                    record->replaces == 0 ? record->entries_at_creation : 0}; // a copy that is left is complete
-}
-
-/// Returns the error for the second session of a name, which only a fault can have stored. The older one is served.
-Error second_of_a_name(const std::string& name) {
-    return {Errc::kConflict,
-            fmt::format("the store holds a second session '{}'; delete this one, or delete the other and restart the "
-                        "server to be served this one",
-                        name)};
-}
-
-/// Decodes the records of all stored sessions. Adds those that cannot be served to the damaged sessions.
-std::vector<Recorded> recorded_sessions(const std::vector<store::StoredSession>& stored, DamagedSessions& damaged) {
-    std::vector<Recorded> found;
-    std::set<std::string> names;
-    for (const auto& session : stored) {
-        std::string name = fmt::format("#{}", session.id); // used if its record cannot be decoded
-        auto record = recorded(session, name);
-        if (!record) {
-            damaged.add(name, session.id, record.error());
-        } else if (!names.insert(name).second) {
-            damaged.add(fmt::format("{}#{}", name, session.id), session.id, second_of_a_name(name));
-        } else {
-            found.push_back(std::move(*record));
-        }
-    }
-    return found;
-}
-
-/// Adds the session without its maps if its checkpoint has the facts that a list shows. @return whether it was added
-bool try_add_evicted(RegistryState& state, const Recorded& session) {
-    const auto& info = session.info;
-    auto summary = read_summary(state.log, info.id, info.config);
-    const bool is_usable = summary && *summary && (*summary)->facts->revision >= session.entries_at_creation;
-    if (!is_usable) return false; // loading it gives the reason
-    SessionInfo evicted = info;
-    evicted.exclusions = (*summary)->facts->exclusions;
-    state.cache.add(std::move(evicted), std::move(**summary));
-    return true;
-}
-
-void add_recovered(RegistryState& state, std::shared_ptr<Session> session, std::function<void()> done) {
-    if (state.pages->free() >= 0) {
-        state.cache.add(std::move(session), state.config.clock());
-        return done();
-    }
-    auto& recovered = *session; // the memory for maps is exceeded: evict it immediately
-    recovered.close({Errc::kShuttingDown, "the session is evicted from memory"},
-                    [&state, session, done = std::move(done)] {
-                        state.cache.add(session->info(), summary_of(*session->snapshot()));
-                        done();
-                    });
-}
-
-void recover_one(RegistryState& state, const Recorded& recorded, std::function<void()> done) {
-    if (state.draining) return done(); // the next start replays the rest
-    if (try_add_evicted(state, recorded)) return done();
-    const auto& info = recorded.info;
-    auto session = state.factory.read(info, state.draining, state.finish_early);
-    if (session && *session && (*session)->snapshot()->revision < recorded.entries_at_creation) {
-        log::warn({.session = info.name},
-                  "session '{}' is removed: its creation came to {} of {} entries before a crash", info.name,
-                  (*session)->snapshot()->revision,
-                  recorded.entries_at_creation); // its creation was never confirmed
-        if (auto removed = state.log.remove_session(info.id); !removed) {
-            state.damaged.add(info.name, info.id, removed.error());
-        }
-        return done();
-    }
-    if (session && *session) return add_recovered(state, std::move(*session), std::move(done));
-    if (!session) state.damaged.add(info.name, info.id, session.error());
-    done();
-}
-
-} // namespace
-
-Result<> recover_sessions(RegistryState& state) {
-    auto all = state.log.sessions();
-    if (!all) return all.error();
-    const auto stored = settle_copies(state.log, std::move(*all));
-    if (!stored) return stored.error();
-    const auto found = recorded_sessions(*stored, state.damaged);
-    const auto done = std::make_shared<std::latch>(static_cast<std::ptrdiff_t>(found.size()));
-    for (const auto& session : found) {
-        boost::asio::post(state.config.compute,
-                          [&state, &session, done] { recover_one(state, session, [done] { done->count_down(); }); });
-    }
-    done->wait();
-    return {};
 }
 
 } // namespace scanloom::sessions

@@ -13,8 +13,6 @@
 
 namespace scanloom::sessions {
 
-struct RegistryState;
-
 /// Returns the error (kDataLoss) for a log entry that has a correct checksum but cannot be decoded.
 [[nodiscard]] inline Error damaged_entry(Revision revision, const Error& why) {
     return {Errc::kDataLoss, fmt::format("log entry {}: {}", revision, why.message)};
@@ -40,15 +38,5 @@ struct Recovered {
 /// Threads: any thread that may wait for the disk.
 [[nodiscard]] Result<Recovered> recover(store::ScanLog& log, store::SessionId session, const mapping::MapConfig& config,
                                         const std::atomic<bool>& stop);
-
-/// Finds the stored sessions when the server starts, and adds each to the cache or to the damaged sessions.
-///
-/// A session with a checkpoint at the end of its log stays out of memory. For the others, the newest checkpoint is
-/// loaded and the rest of the log is replayed. A session whose import was interrupted is removed. If the
-/// memory for maps is exceeded, a recovered session is evicted at once. If RegistryState::draining becomes true, the
-/// recovery stops; the entries applied so far are kept in checkpoints.
-/// Errors: kStoreFailed if the sessions cannot be listed.
-/// Threads: one call, which blocks; not on a thread of the config's executors.
-[[nodiscard]] Result<> recover_sessions(RegistryState& state);
 
 } // namespace scanloom::sessions

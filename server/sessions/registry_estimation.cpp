@@ -44,6 +44,8 @@ Summary estimated(Summary summary) {
 Result<SessionInfo> SessionRegistry::estimate(std::string_view name) {
     std::unique_lock changing(changing_);
     if (state_.draining) return shutting_down();
+    const auto used = load_shared(name);
+    if (!used) return used.error();
     auto left = state_.cache.begin_change(name);
     changing.unlock(); // a long log takes minutes; drain() waits for the end of the transition
     if (!left) return state_.why_missing(name);

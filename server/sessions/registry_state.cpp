@@ -67,11 +67,17 @@ std::map<std::string, Error> DamagedSessions::all() const {
     return reasons;
 }
 
+bool DamagedSessions::contains(store::SessionId id) const {
+    const std::shared_lock lock(mutex_);
+    return std::ranges::any_of(damaged_, [id](const auto& one) { return one.second.id == id; });
+}
+
 Result<> DamagedSessions::remove(std::string_view name, store::ScanLog& log) {
     const std::unique_lock lock(mutex_);
     const auto damaged = damaged_.find(name);
     if (damaged == damaged_.end()) return no_such_session(name);
-    if (auto removed = log.remove_session(damaged->second.id); !removed) return removed.error();
+    if (auto owned = store::own(log, damaged->second.id); !owned) return owned;
+    if (auto removed = log.remove_session(damaged->second.id); !removed) return removed;
     damaged_.erase(damaged);
     return {};
 }
@@ -99,6 +105,14 @@ Result<std::shared_ptr<Session>> SessionFactory::read(const SessionInfo& info, c
     if (!recovered->complete) {
         keep_progress(log, info, *recovered, finish_early);
         return std::shared_ptr<Session>();
+    }
+    if (recovered->maps.projection().revision() < info.entries_at_creation) {
+        const auto revision = recovered->maps.projection().revision();
+        log::warn({.session = info.name},
+                  "session '{}' is removed: its creation came to {} of {} entries before a crash", info.name, revision,
+                  info.entries_at_creation); // its creation was never confirmed
+        if (auto removed = log.remove_session(info.id); !removed) return removed.error();
+        return Error{Errc::kGone, fmt::format("the creation of session '{}' was interrupted", info.name)};
     }
     SessionInfo read = info;
     read.exclusions = recovered->maps.projection().exclusions();

@@ -71,7 +71,7 @@ struct SessionFactory {
     /// If `stop` becomes true before the end of the log, stores a checkpoint of the entries applied so far, unless
     /// `finish_early` is true.
     /// @return the session; null if it was stopped
-    /// Errors: those of recover().
+    /// Errors: those of recover(); kGone: its creation was interrupted, and it was removed.
     /// Threads: any thread that may wait for the disk.
     [[nodiscard]] Result<std::shared_ptr<Session>> read(const SessionInfo& info, const std::atomic<bool>& stop,
                                                         const std::atomic<bool>& finish_early) const;
@@ -85,6 +85,8 @@ public:
     /// @param name  the session's name, or '#' and its number if its record cannot be decoded
     void add(std::string name, store::SessionId id, Error why);
 
+    [[nodiscard]] bool contains(store::SessionId id) const;
+
     /// Returns why the session cannot be recovered: kDataLoss, kMalformed or kConflict for stored data that must be
     /// deleted or repaired, kOverloaded if memory ran out; nullopt if it is not damaged.
     [[nodiscard]] std::optional<Error> find(std::string_view name) const;
@@ -93,7 +95,7 @@ public:
     [[nodiscard]] std::map<std::string, Error> all() const;
 
     /// Deletes a session from the store.
-    /// Errors: kNotFound if it is not damaged; kStoreFailed.
+    /// Errors: kNotFound if it is not damaged; kNotOwner; kStoreFailed.
     [[nodiscard]] Result<> remove(std::string_view name, store::ScanLog& log);
 
 private:

@@ -66,9 +66,20 @@ void SessionCache::add(std::shared_ptr<Session> session, Clock::time_point now) 
 
 void SessionCache::add(SessionInfo info, Summary summary) {
     const std::unique_lock lock(mutex_);
+    if (entries_.contains(info.name) || reserved_.contains(info.name)) return;
     Entry& entry = entries_[info.name];
     entry.info = std::move(info);
     entry.summary = std::move(summary);
+}
+
+SessionCache::Reservation::Reservation(SessionCache& cache, std::string name) : cache_(cache), name_(std::move(name)) {
+    const std::unique_lock lock(cache_.mutex_);
+    cache_.reserved_.insert(name_);
+}
+
+SessionCache::Reservation::~Reservation() {
+    const std::unique_lock lock(cache_.mutex_);
+    cache_.reserved_.erase(name_);
 }
 
 // Loading
@@ -206,12 +217,21 @@ std::optional<ListedSession> SessionCache::begin_change(std::string_view name) {
 }
 
 void SessionCache::remove(std::string_view name, const Error& why) {
+    remove_if(name, why, [](const Entry&) { return true; });
+}
+
+void SessionCache::remove_evicted(std::string_view name, store::SessionId id, const Error& why) {
+    remove_if(name, why, [id](const Entry& entry) { return entry.state == State::kEvicted && entry.info.id == id; });
+}
+
+void SessionCache::remove_if(std::string_view name, const Error& why,
+                             const std::function<bool(const Entry&)>& is_meant) {
     std::vector<Loaded> waiting;
     std::shared_ptr<Session> last;
     {
         const std::unique_lock lock(mutex_);
         const auto found = entries_.find(name);
-        if (found == entries_.end()) return;
+        if (found == entries_.end() || !is_meant(found->second)) return;
         waiting.swap(found->second.waiting);
         last.swap(found->second.session);
         entries_.erase(found);

@@ -12,6 +12,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <shared_mutex>
 #include <string>
 #include <string_view>
@@ -44,6 +45,9 @@ public:
     using Clock = std::chrono::steady_clock;
     using Loaded = std::function<void(Result<std::shared_ptr<Session>>)>;
 
+    /// Reserves the name of a session that is being created: it may be found in a shared log before it is in memory.
+    class Reservation;
+
     /// Returns the session if it is in memory and sets its time of last use to `now`; otherwise null.
     [[nodiscard]] std::shared_ptr<Session> find(std::string_view name, Clock::time_point now) const;
 
@@ -64,7 +68,7 @@ public:
     /// Adds a session that is in memory, last used at `now`. No session of that name may exist.
     void add(std::shared_ptr<Session> session, Clock::time_point now);
 
-    /// Adds a session that is not in memory. No session of that name may exist.
+    /// Adds a session that is not in memory, unless there is one of that name or the name is reserved.
     void add(SessionInfo info, Summary summary);
 
     /// Passes the session to `on_loaded`: immediately if it is in memory, otherwise when it has been loaded.
@@ -106,6 +110,9 @@ public:
     /// Removes the session from the list and passes `why` to the waiting callers.
     void remove(std::string_view name, const Error& why);
 
+    /// Does the same only if the session has this number and is evicted.
+    void remove_evicted(std::string_view name, store::SessionId id, const Error& why);
+
     /// Ends the transition of begin_change() without a change.
     /// @return a session to load, as request()
     [[nodiscard]] std::optional<EvictedSession> cancel_change(std::string_view name);
@@ -129,10 +136,25 @@ private:
     [[nodiscard]] static EvictedSession load(Entry& entry);
     [[nodiscard]] static std::optional<EvictedSession> load_if_wanted(Entry& entry);
     void touch(const Entry& entry, Clock::time_point now) const;
+    void remove_if(std::string_view name, const Error& why, const std::function<bool(const Entry&)>& is_meant);
 
-    mutable std::shared_mutex mutex_; // guards the entries; held briefly
+    mutable std::shared_mutex mutex_; // guards the entries and names; held briefly
     mutable std::condition_variable_any arrival_;
     Entries entries_;
+    std::set<std::string> reserved_;
+};
+
+class SessionCache::Reservation {
+public:
+    /// @param cache  must outlive the reservation
+    Reservation(SessionCache& cache, std::string name);
+    ~Reservation();
+    Reservation(const Reservation&) = delete;
+    Reservation& operator=(const Reservation&) = delete;
+
+private:
+    SessionCache& cache_;
+    const std::string name_;
 };
 
 } // namespace scanloom::sessions

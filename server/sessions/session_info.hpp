@@ -44,6 +44,7 @@ struct SessionInfo {
     mapping::MapConfig config;
     std::string created_by;                        ///< name of the token that created it; empty: no token
     std::size_t chunks_max = SessionLimits::kMost; ///< lower if that token has a limit
+    std::uint32_t entries_at_creation = 0;         ///< a log with fewer entries is of an interrupted creation
     SharedExclusions exclusions = no_exclusions(); ///< in the log when it was last read from the store
 };
 

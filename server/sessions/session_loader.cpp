@@ -1,5 +1,8 @@
 #include "server/sessions/session_loader.hpp"
 
+#include "server/sessions/registry_recovery.hpp"
+#include "server/store/shared_sessions.hpp"
+
 #include <malloc.h>
 
 #include <boost/asio/post.hpp>
@@ -37,9 +40,20 @@ void SessionLoader::load(std::string_view name, SessionCache::Loaded on_loaded) 
     auto on_session = [this, name = std::string(name),
                        on_loaded = std::move(on_loaded)](Result<std::shared_ptr<Session>> session) {
         if (!session || *session) return on_loaded(std::move(session));
+        if (state_.log.shared() != nullptr && !state_.draining) return find_in_log(name, on_loaded);
         on_loaded(state_.why_missing(name));
     };
     load(state_.cache.request(name, state_.config.clock(), std::move(on_session)));
+}
+
+/// Loads a session that another server may have created.
+void SessionLoader::find_in_log(const std::string& name, SessionCache::Loaded on_loaded) {
+    boost::asio::post(state_.reading, [this, name, on_loaded = std::move(on_loaded)] {
+        const auto found = discover(state_, name);
+        if (found && state_.cache.contains(name)) return load(name, on_loaded);
+        const bool may_pass = !found && found.error().code != Errc::kNotFound;
+        on_loaded(may_pass ? found.error() : state_.why_missing(name));
+    });
 }
 
 void SessionLoader::load(const std::optional<EvictedSession>& wanted) {
@@ -62,11 +76,16 @@ void SessionLoader::read(const Wanted& wanted) {
     auto& cache = state_.cache;
     if (state_.draining) return cache.fail_load(info.name, shutting_down());
     if (!reserve_pages(wanted)) return;
-    auto session = state_.factory.read(info, state_.draining, state_.finish_early);
+    const auto owned = store::own(state_.log, info.id);
+    auto session = owned ? state_.factory.read(info, state_.draining, state_.finish_early)
+                         : Result<std::shared_ptr<Session>>(owned.error());
     state_.pages->give_back(static_cast<std::int64_t>(pages)); // the session has taken its own pages
     if (session && *session) return cache.end_load(std::move(*session), state_.config.clock());
     if (session) return cache.fail_load(info.name, shutting_down());
     const Error& why = session.error();
+    if (why.code == Errc::kNotOwner) return cache.fail_load(info.name, why);
+    if (why.code == Errc::kNotFound || why.code == Errc::kGone)
+        return cache.remove(info.name, no_such_session(info.name));
     if (state_.log.stats().last_error) { // the session may be intact
         return cache.fail_load(info.name, {Errc::kStoreFailed, why.message});
     }
@@ -101,6 +120,7 @@ void SessionLoader::tidy() {
           leaves_memory());
     free_pages(spare_pages()); // before scans must be refused
     retry();
+    static_cast<void>(discover_all(state_)); // otherwise the next time
 }
 
 /// Returns the number of pages to keep free for growing maps, as long as there are sessions to evict.
@@ -120,8 +140,19 @@ void SessionLoader::close(std::vector<std::shared_ptr<Session>> sessions, const 
 void SessionLoader::on_evicted(const Session& session) {
     auto summary = summary_of(*session.snapshot());
     trim_heap_later(summary.pages);
-    load(state_.cache.end_eviction(session.info().name, std::move(summary)));
-    retry();
+    disown(session, [this, name = session.info().name, summary = std::move(summary)] {
+        load(state_.cache.end_eviction(name, summary));
+        retry();
+    });
+}
+
+void SessionLoader::disown(const Session& session, std::function<void()> done) {
+    auto* const shared = state_.log.shared();
+    if (shared == nullptr) return done();
+    boost::asio::post(state_.blocking_executor, [shared, id = session.info().id, done = std::move(done)] {
+        static_cast<void>(shared->disown(id)); // if this fails, it stays the owner, until the log is opened again
+        done();
+    });
 }
 
 /// Reloads all failed sessions. Called each time, because a session may notice its failure only after the store was

@@ -5,9 +5,11 @@
 #include "server/sessions/session_cache.hpp"
 
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -23,6 +25,9 @@ public:
     /// Passes the session to `on_loaded`, after loading it from the store if necessary.
     /// @param on_loaded  called once, possibly before this function returns; see SessionRegistry::load()
     void load(std::string_view name, SessionCache::Loaded on_loaded);
+
+    /// Gives a closed session up if several servers share the log, so that another one can serve it, and calls `done`.
+    void disown(const Session& session, std::function<void()> done);
 
     /// Loads a session for the callers that wait for it in the cache.
     /// @param wanted  returned by the cache; nullopt: does nothing
@@ -57,6 +62,7 @@ private:
     void reload_failed();
     void close(std::vector<std::shared_ptr<Session>> sessions, const Error& why);
     void on_evicted(const Session& session);
+    void find_in_log(const std::string& name, SessionCache::Loaded on_loaded);
 
     RegistryState& state_;
     std::mutex mutex_;                     // guards the members below

@@ -6,7 +6,8 @@
 #include "server/log/context.hpp"
 #include "server/sessions/imported_map.hpp"
 #include "server/sessions/odometry_copy.hpp"
-#include "server/sessions/recovery.hpp"
+#include "server/sessions/registry_recovery.hpp"
+#include "server/store/shared_sessions.hpp"
 
 #include <fmt/format.h>
 
@@ -60,6 +61,14 @@ Result<std::shared_ptr<Session>> SessionRegistry::load(std::string_view name) {
     return on_loaded.get();
 }
 
+/// Loads a session of a shared log: what the cache says of one that is not in memory may have changed on another
+/// server.
+/// @return the session, which is not evicted while it is held; null: one server alone uses the log
+Result<std::shared_ptr<Session>> SessionRegistry::load_shared(std::string_view name) {
+    if (state_.log.shared() == nullptr) return std::shared_ptr<Session>();
+    return load(name);
+}
+
 Result<> SessionRegistry::check_new(std::string_view name, const Creator& creator) const {
     if (state_.draining)
         return Error{Errc::kShuttingDown,
@@ -110,6 +119,7 @@ Result<std::shared_ptr<Session>> SessionRegistry::create(std::string_view name, 
     if (auto is_new = check_new(name, creator); !is_new) return is_new.error();
     auto record = record_of(name, state_.config.now(), *config, creator);
     record.entries_at_creation = is_localize_only ? 1 : 0;
+    const SessionCache::Reservation reserved(state_.cache, record.name);
     const auto id = state_.log.create_session(wire::encode_session(record));
     if (!id) return id.error();
     return add({*id, record.name, record.created, *config, creator.token, creator.chunks_max},
@@ -139,6 +149,7 @@ Result<std::shared_ptr<Session>> SessionRegistry::import_map(std::string_view na
     if (auto is_new = check_new(name, creator); !is_new) return is_new.error();
     auto record = record_of(name, state_.config.now(), *config, creator);
     record.entries_at_creation = static_cast<std::uint32_t>(patches.size()) + (is_localize_only ? 1 : 0);
+    const SessionCache::Reservation reserved(state_.cache, record.name);
     const auto id = state_.log.create_session(wire::encode_session(record));
     if (!id) return id.error();
     for (std::size_t n = 0; n < patches.size(); ++n) {
@@ -151,8 +162,13 @@ Result<std::shared_ptr<Session>> SessionRegistry::import_map(std::string_view na
 
 Result<> SessionRegistry::remove(std::string_view name) {
     const std::lock_guard changing(changing_);
+    if (!state_.cache.contains(name)) static_cast<void>(discover(state_, name));
     auto left = state_.cache.begin_change(name);
     if (!left) return state_.damaged.remove(name, state_.log);
+    if (auto owned = store::own(state_.log, left->info.id); !owned) {
+        loader_.load(state_.cache.cancel_change(name));
+        return owned;
+    }
     const Error gone{Errc::kGone, fmt::format("session '{}' was deleted", name)};
     if (left->session) discard_and_wait(*left->session, gone);
     const auto summary = left->session ? summary_of(*left->session->snapshot()) : left->summary;
@@ -204,6 +220,8 @@ Result<> SessionRegistry::lift_exclusion(std::string_view name, std::uint64_t id
 Result<Revision> SessionRegistry::change_exclusions(std::string_view name, const MakeEntry& make) {
     const std::lock_guard changing(changing_);
     if (state_.draining) return shutting_down();
+    const auto used = load_shared(name);
+    if (!used) return used.error();
     auto left = state_.cache.begin_change(name);
     if (!left) return state_.why_missing(name);
     const auto stay = [&](Error why) {
@@ -255,7 +273,7 @@ void SessionRegistry::drain() {
     const auto closed = std::make_shared<std::latch>(static_cast<std::ptrdiff_t>(sessions.size()));
     for (const auto& session : sessions) {
         session->close({Errc::kShuttingDown, "the server is shutting down; connect again when it is back"},
-                       [closed] { closed->count_down(); });
+                       [this, session, closed] { loader_.disown(*session, [closed] { closed->count_down(); }); });
     }
     closed->wait();
 }

@@ -47,8 +47,8 @@ public:
     /// Passes the session to `on_loaded`, after loading it from the store if necessary.
     ///
     /// @param on_loaded  called once, possibly before this function returns, with the session or one of
-    ///               kNotFound, kOverloaded (no memory for it now), kStoreFailed, kShuttingDown, or the error in
-    ///               damaged() if the session is damaged
+    ///               kNotFound, kNotOwner (another server that shares the log has it), kOverloaded (no memory for it
+    ///               now), kStoreFailed, kShuttingDown, or the error in damaged() if the session is damaged
     void load(std::string_view name, SessionCache::Loaded on_loaded) { loader_.load(name, std::move(on_loaded)); }
 
     /// Returns the session, after loading it from the store if necessary. Blocks until then.
@@ -96,7 +96,7 @@ public:
     /// Evicts the session: robots and viewers are asked to connect again, and the maps are computed again from the log
     /// when the session is next loaded.
     /// @param robot  a robot that has joined the session
-    /// Errors: kNotFound if there is no such session, or the error in damaged() if it is damaged; kFull if
+    /// Errors: kNotFound if there is no such session, or the error in damaged() if it is damaged; kNotOwner; kFull if
     /// Exclusions::kMost are in effect; kOverloaded or kStoreFailed if the entry was not stored; kShuttingDown.
     [[nodiscard]] Result<Exclusion> exclude(std::string_view name, RobotIndex robot,
                                             const std::variant<StampRange, SeqRange>& scans);
@@ -115,13 +115,15 @@ public:
     [[nodiscard]] Result<SessionInfo> estimate(std::string_view name);
 
     /// Deletes a session, damaged or not, with its log and its maps.
-    /// Errors: kNotFound, kStoreFailed.
+    /// Errors: kNotFound, kNotOwner, kStoreFailed.
     [[nodiscard]] Result<> remove(std::string_view name);
 
-    /// Evicts unused sessions and retries work that was postponed. Call periodically; does not block.
+    /// Evicts unused sessions and retries work that was postponed. Call periodically, on a thread that may wait for the
+    /// store.
     ///
     /// Retries the loading of sessions for which there was no memory. If the store accepts writes, reloads the sessions
-    /// that have failed, as a restart would; their robots and viewers are asked to connect again.
+    /// that have failed, as a restart would; their robots and viewers are asked to connect again. Finds the sessions
+    /// that other servers of a shared log have created or removed.
     void tidy() { loader_.tidy(); }
 
     /// Shuts down: refuses new sessions, stops recover() and closes all sessions. Returns when everything that was
@@ -141,6 +143,7 @@ public:
 private:
     using MakeEntry = std::function<Result<LogEntry>(const SessionInfo&)>;
 
+    [[nodiscard]] Result<std::shared_ptr<Session>> load_shared(std::string_view name);
     [[nodiscard]] Result<> check_new(std::string_view name, const Creator& creator) const;
     [[nodiscard]] Result<std::shared_ptr<Session>> add(SessionInfo info, mapping::Projection projection,
                                                        bool is_localize_only);

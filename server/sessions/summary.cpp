@@ -57,6 +57,13 @@ Result<std::optional<Summary>> read_summary(store::ScanLog& log, store::SessionI
                                             const mapping::MapConfig& config) {
     const auto end = log.end_of(session);
     if (!end) return end.error();
+    auto summary = read_checkpointed_summary(log, session, config);
+    if (summary && *summary && (*summary)->facts->revision != *end) return std::optional<Summary>{};
+    return summary;
+}
+
+Result<std::optional<Summary>> read_checkpointed_summary(store::ScanLog& log, store::SessionId session,
+                                                         const mapping::MapConfig& config) {
     CheckpointReader reader(config);
     std::optional<Error> unusable;
     auto read = log.read_checkpoint(session, [&](std::string_view key, std::string_view value) -> Result<> {
@@ -69,7 +76,7 @@ Result<std::optional<Summary>> read_summary(store::ScanLog& log, store::SessionI
     if (!read && read.error() != kSummaryIsRead) return read.error();
     const auto localization = reader.localization();
     const auto state = std::move(reader).state();
-    if (!state || state->revision != *end) return std::optional<Summary>{};
+    if (!state) return std::optional<Summary>{};
     return std::optional(summary_of(*state, localization, config));
 }
 

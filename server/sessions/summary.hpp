@@ -26,4 +26,11 @@ struct Summary {
 [[nodiscard]] Result<std::optional<Summary>> read_summary(store::ScanLog& log, store::SessionId session,
                                                           const mapping::MapConfig& config);
 
+/// Reads the summary of a stored session as of its checkpoint, after which the log may go on.
+/// @return nullopt if there is no checkpoint of this program's version
+/// Errors: kStoreFailed if the store cannot be read.
+/// Threads: any thread that may wait for the disk.
+[[nodiscard]] Result<std::optional<Summary>> read_checkpointed_summary(store::ScanLog& log, store::SessionId session,
+                                                                       const mapping::MapConfig& config);
+
 } // namespace scanloom::sessions

@@ -21,6 +21,7 @@ std::string shown(const std::filesystem::path& store) {
 Result<std::unique_ptr<ScanLog>> open_store(const std::filesystem::path& store, const StoreOptions& options) {
     if (!is_in_database(store)) return open_rocksdb(store, options);
     return open_postgres(store.native(), {.allow_unreplicated = options.allow_unreplicated,
+                                          .node = options.node,
                                           .bytes_max = options.bytes_max,
                                           .on_unreadable = options.on_unreadable});
 }
@@ -32,10 +33,10 @@ Result<NewStore> NewStore::begin(const std::filesystem::path& store, const Store
         if (!directory) return directory.error();
         begun.directory_ = std::move(*directory);
     }
-    auto log =
-        begun.directory_
-            ? begun.directory_->open_log()
-            : open_postgres(store.native(), {.allow_unreplicated = options.allow_unreplicated, .is_unfinished = true});
+    auto log = begun.directory_ ? begun.directory_->open_log()
+                                : open_postgres(store.native(), {.allow_unreplicated = options.allow_unreplicated,
+                                                                 .node = "a copy",
+                                                                 .is_unfinished = true});
     if (!log) return log.error();
     begun.log_ = std::move(*log);
     return begun;

@@ -1,5 +1,6 @@
 #include "server/store/postgres_append_queue.hpp"
 
+#include "server/store/postgres_ownership.hpp"
 #include "server/store/postgres_segments.hpp"
 #include "server/store/store_error.hpp"
 
@@ -35,13 +36,17 @@ struct AppendQueue::Group {
         std::vector<std::string> entries;
     };
     std::map<SessionId, Run> runs;
-    std::uint64_t bytes = 0; // of entries
+    std::map<SessionId, Error> refused; // by the database, or because this server does not own the session
+    std::uint64_t bytes = 0;            // of entries
 
     /// Adds entries that continue the log.
     Result<> add(const SharedState& shared, Append& append) {
         auto run = runs.find(append.session);
         const auto owned = run == runs.end() ? shared.find(append.session) : std::optional(run->second.owned);
-        if (!owned) return no_such_session(append.session);
+        if (!owned) {
+            refused.try_emplace(append.session, no_such_session(append.session)); // write() finds out more
+            return {};
+        }
         if (append.entries.empty()) return {};
         const Revision end = owned->end + (run == runs.end() ? 0 : run->second.entries.size());
         if (append.first != end + 1) {
@@ -149,7 +154,12 @@ void AppendQueue::store(std::vector<Append> appends) {
             results.push_back(failure ? Result<>(*failure) : group.add(shared_, append));
         }
         has_entries = !group.runs.empty();
-        if (has_entries) written = write(group);
+        if (has_entries || !group.refused.empty()) written = write(group);
+        for (std::size_t n = 0; n < appends.size(); ++n) {
+            const auto refused = group.refused.find(appends[n].session);
+            if (results[n] && !written) results[n] = written.error();
+            if (results[n] && refused != group.refused.end()) results[n] = refused->second;
+        }
     }
     {
         const std::lock_guard lock(mutex_);
@@ -157,7 +167,6 @@ void AppendQueue::store(std::vector<Append> appends) {
         stats_.no_room.reset();
         if (!written && written.error().code == Errc::kOverloaded) stats_.no_room = written.error().message;
         for (std::size_t n = 0; n < appends.size(); ++n) {
-            if (results[n] && !written) results[n] = written.error();
             stats_.queued_bytes -= appends[n].bytes;
             if (results[n]) stats_.entries += counts[n];
             if (results[n] && counts[n] > 0) ++stats_.appends;
@@ -168,7 +177,7 @@ void AppendQueue::store(std::vector<Append> appends) {
     }
 }
 
-/// Stores the entries of a group: all, or it is not known which. Empties the group.
+/// Stores the entries of the sessions that this server owns: all, or it is not known which. Empties the group.
 Result<> AppendQueue::write(Group& group) {
     if (connection_ && !connection_->is_alive()) connection_.reset(); // nothing was under way
     if (!connection_) {
@@ -176,6 +185,8 @@ Result<> AppendQueue::write(Group& group) {
         if (!opened) return shared_.fail(opened.error());
         connection_ = std::move(*opened);
     }
+    for (auto& [session, why] : group.refused) why = why_not_owned(*connection_, session);
+    if (group.runs.empty()) return {};
     const auto room = size_limit_.check(*connection_);
     const auto rows = room ? connection_->run(kAppend, group.parameters()) : Result<Rows>(room.error());
     if (!rows && rows.error().code == Errc::kOverloaded) return rows.error();
@@ -189,7 +200,12 @@ Result<> AppendQueue::write(Group& group) {
         const auto& [owned, entries] = stored.mapped();
         shared_.put(stored.key(), {owned.epoch, owned.end + entries.size()});
     }
-    if (!group.runs.empty()) return shared_.fail(taken_over(group.runs.begin()->first));
+    for (const auto& [session, run] : group.runs) {
+        auto why = why_lost(*connection_, session, run.owned);
+        if (why.code != Errc::kNotFound && why.code != Errc::kNotOwner) return shared_.fail(why);
+        shared_.remove(session);
+        group.refused.insert_or_assign(session, std::move(why));
+    }
     return {};
 }
 

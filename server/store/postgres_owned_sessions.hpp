@@ -78,7 +78,4 @@ private:
     std::optional<Error> failure_;
 };
 
-/// Returns the error for a session that another server writes.
-[[nodiscard]] Error taken_over(SessionId session);
-
 } // namespace scanloom::store::postgres

@@ -1,11 +1,24 @@
 #include "server/store/postgres_ownership.hpp"
 
+#include "server/store/postgres_node.hpp"
+#include "server/store/store_error.hpp"
+
 #include <fmt/format.h>
 
 #include <chrono>
+#include <optional>
+#include <string>
 
 namespace scanloom::store::postgres {
 namespace {
+
+/// A row of the table of sessions, with its owner.
+struct State {
+    std::int64_t epoch = 0;
+    std::int64_t owner = 0; // 0: none, or one that is gone
+    bool is_old = false;    // the owner has not renewed its row for some time
+    std::string place;      // of the owner: its name, and its address if it has announced it
+};
 
 /// @param rows  with id, epoch and last entry
 OwnedSessions sessions_in(const Rows& rows) {
@@ -17,58 +30,82 @@ OwnedSessions sessions_in(const Rows& rows) {
     return sessions;
 }
 
-Result<OwnedSessions> take(Connection& connection, const char* statement, std::int64_t owner,
-                           std::chrono::milliseconds timeout) {
-    Parameters parameters;
-    parameters.add(owner);
-    const auto rows = connection.run(statement, parameters, timeout);
-    if (!rows) return rows.error();
-    return sessions_in(*rows);
-}
-
-/// Returns whether a session is in the database and not removed.
-Result<bool> exists(Connection& connection, SessionId session) {
+/// Returns the state of a session; nullopt: it does not exist, or is removed.
+Result<std::optional<State>> state_of(Connection& connection, SessionId session) {
     Parameters parameters;
     parameters.add(signed_of(session));
-    const auto rows = connection.run("SELECT id FROM scanloom.session WHERE id = $1 AND NOT removed", parameters);
+    parameters.add(std::int64_t{Node::kDeadAfter.count()});
+    const auto rows =
+        connection.run("SELECT s.epoch, coalesce(n.id, 0), (n.seen < now() - make_interval(secs => $2))::int::bigint,"
+                       " coalesce(n.name || CASE WHEN n.http = '' THEN '' ELSE ' at ' || n.http END, '')"
+                       " FROM scanloom.session s LEFT JOIN scanloom.node n ON n.id = s.owner"
+                       " WHERE s.id = $1 AND NOT s.removed",
+                       parameters);
     if (!rows) return rows.error();
-    return rows->size() > 0;
+    if (rows->size() == 0) return std::optional<State>();
+    return std::optional(
+        State{rows->number(0, 0), rows->number(0, 1), rows->number(0, 2) != 0, std::string(rows->bytes(0, 3))});
+}
+
+Error not_owner(SessionId session, const State& state) {
+    if (state.owner == 0) {
+        return {Errc::kNotOwner,
+                fmt::format("this server does not own session {}, and no other server does; try again", session)};
+    }
+    if (state.is_old) {
+        return {Errc::kNotOwner,
+                fmt::format("session {} belongs to node {}, which does not answer; another server takes it over in a "
+                            "few seconds; try again",
+                            session, state.place)};
+    }
+    return {Errc::kNotOwner, fmt::format("session {} belongs to node {}; connect there", session, state.place)};
 }
 
 } // namespace
 
-Error taken_over(SessionId session) {
-    return {Errc::kStoreFailed, fmt::format("another server has taken over session {} in the database; stop one of the "
-                                            "two, or give it a database of its own",
-                                            session)};
-}
-
-Result<> lock_store(Connection& connection, const Place& place) {
+Result<> lock_store(Connection& connection, const Place& place, Sharing sharing) {
     // A server that has just been killed has the lock until the database notices it.
     if (auto patient = connection.run("SET lock_timeout = 500"); !patient) return patient.error();
-    const auto locked = connection.run("SELECT pg_advisory_lock(hashtext('scanloom'), 1)");
+    const auto locked =
+        connection.run(sharing == Sharing::kAlone ? "SELECT pg_advisory_lock(hashtext('scanloom'), 1)"
+                                                  : "SELECT pg_advisory_lock_shared(hashtext('scanloom'), 1)");
     if (!locked && locked.error().code == Errc::kConflict) {
-        return Error{Errc::kConflict,
-                     fmt::format("another server uses the store {}; stop it, or give this one a database "
-                                 "of its own",
-                                 place.text)};
+        return Error{Errc::kConflict, fmt::format("another program uses the store {}{}; stop it, or name another "
+                                                  "database",
+                                                  place.text, sharing == Sharing::kAlone ? "" : " alone")};
     }
     if (!locked) return locked.error();
     const auto reset = connection.run("SET lock_timeout = 0");
     return reset ? Result<>() : Result<>(reset.error());
 }
 
-Result<std::int64_t> new_owner(Connection& connection) {
-    const auto rows = connection.run("SELECT nextval('scanloom.owner')");
-    if (!rows) return rows.error();
-    return rows->number(0, 0);
+Result<OwnedSession> take(Connection& connection, SessionId session, const Taker& taker) {
+    for (;;) { // until no other node is faster
+        const auto state = state_of(connection, session);
+        if (!state) return state.error();
+        if (!*state) return no_such_session(session);
+        const auto owner = (*state)->owner;
+        const bool is_free = owner == 0 || owner == taker.node || ((*state)->is_old && taker.is_steady);
+        if (!is_free) return not_owner(session, **state);
+        Parameters parameters;
+        parameters.add(signed_of(session));
+        parameters.add((*state)->epoch);
+        parameters.add(taker.node);
+        const auto rows = connection.run("UPDATE scanloom.session SET owner = $3, epoch = epoch + 1"
+                                         " WHERE id = $1 AND epoch = $2 AND NOT removed RETURNING epoch, end_rev",
+                                         parameters);
+        if (!rows) return rows.error();
+        if (rows->size() > 0) return OwnedSession{rows->number(0, 0), static_cast<Revision>(rows->number(0, 1))};
+    }
 }
 
-Result<OwnedSessions> take_all(Connection& connection, std::int64_t owner) {
-    return take(
-        connection,
-        "UPDATE scanloom.session SET owner = $1, epoch = epoch + 1 WHERE NOT removed RETURNING id, epoch, end_rev",
-        owner, Connection::kLongTimeout);
+Result<> give_up(Connection& connection, SessionId session, const OwnedSession& owned) {
+    Parameters parameters;
+    parameters.add(signed_of(session));
+    parameters.add(owned.epoch);
+    const auto rows = connection.run(
+        "UPDATE scanloom.session SET owner = 0, epoch = epoch + 1 WHERE id = $1 AND epoch = $2", parameters);
+    return rows ? Result<>() : Result<>(rows.error());
 }
 
 Result<OwnedSessions> all_sessions(Connection& connection) {
@@ -90,28 +127,46 @@ Result<std::vector<SessionId>> sessions_without_record(Connection& connection) {
     return sessions;
 }
 
-Result<OwnedSessions> take_again(Connection& connection, const Place& place, std::int64_t owner,
+Result<OwnedSessions> take_again(Connection& connection, const Place& place, std::int64_t node,
                                  const OwnedSessions& known) {
-    auto taken = take(connection,
-                      "UPDATE scanloom.session SET epoch = epoch + 1 WHERE owner = $1 AND NOT removed"
-                      " RETURNING id, epoch, end_rev",
-                      owner, Connection::kWriteTimeout); // readers wait meanwhile
-    if (!taken) return taken;
+    Parameters parameters;
+    parameters.add(node);
+    const auto rows = connection.run("UPDATE scanloom.session SET epoch = epoch + 1 WHERE owner = $1 AND NOT removed"
+                                     " RETURNING id, epoch, end_rev",
+                                     parameters); // readers wait meanwhile
+    if (!rows) return rows.error();
+    auto taken = sessions_in(*rows);
+    const auto went_back = [&](SessionId session, std::string_view how) {
+        return Error{Errc::kDataLoss,
+                     fmt::format("the database {} has lost entries: session {} {}; it went back to an earlier state, "
+                                 "as after a failover without a synchronous standby",
+                                 place.text, session, how)};
+    };
     for (const auto& [session, owned] : known) {
-        const auto now = taken->find(session);
-        if (now == taken->end()) {
-            const auto is_there = exists(connection, session);
-            if (!is_there) return is_there.error();
-            if (*is_there) return taken_over(session);
-        } else if (now->second.end < owned.end) {
-            return Error{
-                Errc::kDataLoss,
-                fmt::format("the database {} has lost entries: session {} ends with {}, and {} was acknowledged; "
-                            "it went back to an earlier state, as after a failover without a synchronous standby",
-                            place.text, session, now->second.end, owned.end)};
+        const auto now = taken.find(session);
+        if (now != taken.end() && now->second.end < owned.end) {
+            return went_back(session, fmt::format("ends with {}, and {} was acknowledged", now->second.end, owned.end));
         }
+        if (now != taken.end()) continue;
+        const auto state = state_of(connection, session);
+        if (!state) return state.error();
+        if (*state && (*state)->epoch <= owned.epoch) return went_back(session, "has an owner that it had before");
     }
     return taken;
+}
+
+Error why_lost(Connection& connection, SessionId session, const OwnedSession& owned) {
+    const auto state = state_of(connection, session);
+    if (!state) return state.error();
+    if (!*state) return no_such_session(session);
+    if ((*state)->epoch != owned.epoch) return not_owner(session, **state);
+    return failure("session {} of the database does not end with {}, as it should", session, owned.end);
+}
+
+Error why_not_owned(Connection& connection, SessionId session) {
+    const auto state = state_of(connection, session);
+    if (!state) return state.error();
+    return *state ? not_owner(session, **state) : no_such_session(session);
 }
 
 } // namespace scanloom::store::postgres

@@ -10,16 +10,27 @@
 /// Which server may write a session: the one that was the last to raise its epoch.
 namespace scanloom::store::postgres {
 
-/// Locks the store for one server, as long as the connection exists. The lock only keeps two servers apart that are
-/// started by mistake; what a server writes is safe by its epochs.
-/// Errors: kConflict: another server has it; kStoreFailed.
-[[nodiscard]] Result<> lock_store(Connection& connection, const Place& place);
+/// Who else may have the store open.
+enum class Sharing : std::uint8_t { kWithNodes, kAlone };
 
-/// Returns a number that no other server has had.
-[[nodiscard]] Result<std::int64_t> new_owner(Connection& connection);
+/// Locks the store, as long as the connection exists, so that a program that needs it alone does not run beside a
+/// server. What servers write is safe without it, by the epochs.
+/// Errors: kConflict: another program has it, or has it alone; kStoreFailed.
+[[nodiscard]] Result<> lock_store(Connection& connection, const Place& place, Sharing sharing);
 
-/// Makes `owner` the owner of all sessions, and raises their epochs.
-[[nodiscard]] Result<OwnedSessions> take_all(Connection& connection, std::int64_t owner);
+struct Taker {
+    std::int64_t node = 0;
+    bool is_steady = false; ///< Node::is_steady()
+};
+
+/// Makes a node the owner of a session that has no owner that lives, and raises its epoch: earlier owners change
+/// nothing any more, and what they have committed is durable.
+/// @param taker  the number of the node, and whether it may take the sessions of nodes whose rows are old
+/// Errors: kNotFound; kNotOwner: another node owns it; kStoreFailed.
+[[nodiscard]] Result<OwnedSession> take(Connection& connection, SessionId session, const Taker& taker);
+
+/// Makes it a session without an owner, if `owned` is still true.
+[[nodiscard]] Result<> give_up(Connection& connection, SessionId session, const OwnedSession& owned);
 
 /// Returns the sessions of all owners.
 [[nodiscard]] Result<OwnedSessions> all_sessions(Connection& connection);
@@ -27,12 +38,19 @@ namespace scanloom::store::postgres {
 /// Returns the sessions that have entries or parts of a checkpoint, but no record. Takes as long as reading the store.
 [[nodiscard]] Result<std::vector<SessionId>> sessions_without_record(Connection& connection);
 
-/// Raises the epochs of the sessions that `owner` still owns, so that its earlier statements have no effect any more.
+/// Raises the epochs of the sessions that a node still owns, so that its earlier statements have no effect any more.
 /// @param known  its sessions, with the last acknowledged entry of each
-/// @return its sessions, with the last stored entry of each
-/// Errors: kDataLoss: the database has lost acknowledged entries; kStoreFailed: another server has taken a session over,
-///         or the database cannot be used.
-[[nodiscard]] Result<OwnedSessions> take_again(Connection& connection, const Place& place, std::int64_t owner,
+/// @return its sessions, with the last stored entry of each; those that others have taken are left out
+/// Errors: kDataLoss: the database has lost acknowledged entries; kStoreFailed.
+[[nodiscard]] Result<OwnedSessions> take_again(Connection& connection, const Place& place, std::int64_t node,
                                                const OwnedSessions& known);
+
+/// Returns why a statement had no effect on a session that this server believed to own.
+/// @return kNotFound: it was removed; kNotOwner: another node has taken it; kStoreFailed: its log does not end where
+///         this server expected, or the database cannot be used
+[[nodiscard]] Error why_lost(Connection& connection, SessionId session, const OwnedSession& owned);
+
+/// Returns why a session that this server does not own cannot be changed: kNotFound, kNotOwner or kStoreFailed.
+[[nodiscard]] Error why_not_owned(Connection& connection, SessionId session);
 
 } // namespace scanloom::store::postgres

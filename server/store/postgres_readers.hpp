@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <mutex>
 #include <optional>
+#include <set>
+#include <string_view>
 #include <vector>
 
 namespace scanloom::store::postgres {
@@ -20,6 +22,16 @@ public:
 
     /// Returns all sessions that are not removed, by ascending id.
     [[nodiscard]] Result<std::vector<StoredSession>> sessions();
+
+    /// Returns the session with this name; nullopt: there is none.
+    [[nodiscard]] Result<std::optional<StoredSession>> find(std::string_view name);
+
+    /// Returns the ids of all sessions with a name.
+    [[nodiscard]] Result<std::set<SessionId>> ids();
+
+    /// Returns the last revision of a session, which its owner may be extending.
+    /// Errors: kNotFound; kStoreFailed.
+    [[nodiscard]] Result<Revision> end_of(SessionId session);
 
     /// Visits the entries after revision `after`, up to `end`.
     /// Errors: those of the visitor; kDataLoss: an entry is damaged or missing; kStoreFailed.

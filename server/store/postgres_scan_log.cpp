@@ -1,14 +1,16 @@
 #include "server/store/postgres_scan_log.hpp"
 
 #include "server/store/postgres_append_queue.hpp"
+#include "server/store/postgres_checkpoints.hpp"
 #include "server/store/postgres_connection.hpp"
+#include "server/store/postgres_node.hpp"
 #include "server/store/postgres_owned_sessions.hpp"
 #include "server/store/postgres_ownership.hpp"
 #include "server/store/postgres_readers.hpp"
 #include "server/store/postgres_schema.hpp"
-#include "server/store/postgres_segments.hpp"
+#include "server/store/postgres_session_table.hpp"
 #include "server/store/postgres_sweeper.hpp"
-#include "server/store/postgres_writer.hpp"
+#include "server/store/shared_sessions.hpp"
 #include "server/store/store_error.hpp"
 
 #include <fmt/format.h>
@@ -16,10 +18,11 @@
 #include <array>
 #include <chrono>
 #include <future>
-#include <map>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <shared_mutex>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -30,14 +33,14 @@ namespace {
 
 constexpr std::size_t kQueues = 4;
 
-class PostgresScanLog final : public ScanLog {
+class PostgresScanLog final : public ScanLog, public SharedSessions {
 public:
     PostgresScanLog(Place place, const PostgresOptions& options)
         : place_(std::move(place)), options_(options), size_limit_(options.bytes_max), readers_(place_) {
         for (auto& queue : queues_) queue = std::make_unique<AppendQueue>(place_, shared_, size_limit_);
     }
 
-    /// Takes the store over. Called once.
+    /// Begins to use the store, as one of its nodes. Called once.
     [[nodiscard]] Result<> start();
 
     /// Reads what is there, instead. @return sessions without a record
@@ -58,24 +61,30 @@ public:
     [[nodiscard]] Result<> backup_to(const std::filesystem::path& directory, const std::stop_token& stop) override;
     [[nodiscard]] std::uint64_t bytes_on_disk() const override;
 
+    [[nodiscard]] SharedSessions* shared() override { return this; }
+    [[nodiscard]] Result<> own(SessionId session) override;
+    [[nodiscard]] Result<> disown(SessionId session) override;
+    [[nodiscard]] Result<std::optional<StoredSession>> find(std::string_view name) override;
+    [[nodiscard]] Result<std::set<SessionId>> ids() override;
+    [[nodiscard]] Result<> announce(const NodeInfo& info) override;
+
 private:
     [[nodiscard]] Result<Connection> open_replicated() const;
     [[nodiscard]] Result<> take_sessions_again();
-    [[nodiscard]] Result<> change_checkpoint(SessionId session, const Writer::Change& change);
     [[nodiscard]] Result<> wait_for_appends(SessionId session);
     [[nodiscard]] Result<> read_entries(SessionId session, Revision after, const VisitEntry& visit);
     [[nodiscard]] AppendQueue& queue_of(SessionId session) { return *queues_[session % kQueues]; }
 
     const Place place_;
     const PostgresOptions options_;
-    std::int64_t owner_ = 0; // this server's number in the database
     SharedState shared_;
     SizeLimit size_limit_;
     mutable std::shared_mutex in_use_; // held alone by reopen()
     std::optional<Connection> lock_;   // holds the lock of the store
-    Writer sessions_{place_, shared_}; // creates and removes sessions
-    Writer checkpoints_{place_, shared_};
+    Checkpoints checkpoints_{place_, shared_, size_limit_};
     mutable Readers readers_;
+    Node node_{place_, shared_}; // leaves after the queues have ended
+    SessionTable sessions_{place_, shared_, size_limit_, node_};
     std::array<std::unique_ptr<AppendQueue>, kQueues> queues_;
     std::optional<Sweeper> sweeper_; // last: uses the others
 };
@@ -90,15 +99,11 @@ Result<Connection> PostgresScanLog::open_replicated() const {
 Result<> PostgresScanLog::start() {
     auto connection = open_replicated();
     if (!connection) return connection.error();
-    if (auto locked = lock_store(*connection, place_); !locked) return locked;
+    const auto sharing = options_.is_unfinished ? Sharing::kAlone : Sharing::kWithNodes;
+    if (auto locked = lock_store(*connection, place_, sharing); !locked) return locked;
     const auto created = options_.is_unfinished ? begin_unfinished_store(*connection) : create_tables(*connection);
     if (!created) return created;
-    const auto owner = new_owner(*connection);
-    if (!owner) return owner.error();
-    owner_ = *owner;
-    auto taken = take_all(*connection, owner_);
-    if (!taken) return taken.error();
-    shared_.restart(std::move(*taken));
+    if (auto entered = node_.enter(*connection, options_.node); !entered) return entered;
     lock_ = std::move(*connection);
     sweeper_.emplace(place_);
     return {};
@@ -108,7 +113,7 @@ Result<std::vector<SessionId>> PostgresScanLog::start_reading() {
     auto connection = Connection::open(place_);
     if (!connection) return connection.error();
     if (auto found = check_tables(*connection); !found) return found.error();
-    if (auto locked = lock_store(*connection, place_); !locked) return locked.error();
+    if (auto locked = lock_store(*connection, place_, Sharing::kAlone); !locked) return locked.error();
     auto all = all_sessions(*connection);
     if (!all) return all.error();
     auto lacking = sessions_without_record(*connection);
@@ -121,35 +126,18 @@ Result<std::vector<SessionId>> PostgresScanLog::start_reading() {
 
 Result<SessionId> PostgresScanLog::create_session(std::string_view record) {
     const std::shared_lock use(in_use_);
-    SessionId session = 0;
-    const auto created = sessions_.make([&](Connection& connection) -> Result<> {
-        if (auto room = size_limit_.check(connection); !room) return room;
-        Parameters parameters;
-        parameters.add(record);
-        parameters.add(owner_);
-        const auto rows = connection.run(
-            "INSERT INTO scanloom.session (record, owner) VALUES ($1, $2) RETURNING id, epoch", parameters);
-        if (!rows) return rows.error();
-        session = static_cast<SessionId>(rows->number(0, 0));
-        shared_.put(session, {rows->number(0, 1), 0});
-        return {};
-    });
-    if (!created) return created.error();
-    return session;
+    return sessions_.create(record);
 }
 
 Result<std::vector<StoredSession>> PostgresScanLog::sessions() {
     const std::shared_lock use(in_use_);
-    auto sessions = readers_.sessions();
-    if (sessions) std::erase_if(*sessions, [this](const StoredSession& stored) { return !shared_.find(stored.id); });
-    return sessions;
+    return readers_.sessions();
 }
 
 Result<Revision> PostgresScanLog::end_of(SessionId session) {
     const std::shared_lock use(in_use_);
     const auto owned = shared_.find(session);
-    if (!owned) return no_such_session(session);
-    return owned->end;
+    return owned ? Result<Revision>(owned->end) : readers_.end_of(session);
 }
 
 Result<> PostgresScanLog::wait_for_appends(SessionId session) {
@@ -162,20 +150,7 @@ Result<> PostgresScanLog::wait_for_appends(SessionId session) {
 Result<> PostgresScanLog::remove_session(SessionId session) {
     const std::shared_lock use(in_use_);
     if (auto waited = wait_for_appends(session); !waited) return waited;
-    auto removed = sessions_.make([&](Connection& connection) -> Result<> {
-        const auto owned = shared_.find(session);
-        if (!owned) return no_such_session(session);
-        Parameters parameters;
-        parameters.add(signed_of(session));
-        parameters.add(owned->epoch);
-        const auto rows = connection.run("UPDATE scanloom.session SET removed = true, record = ''"
-                                         " WHERE id = $1 AND epoch = $2 AND NOT removed RETURNING id",
-                                         parameters);
-        if (!rows) return rows.error();
-        if (rows->size() == 0) return taken_over(session);
-        shared_.remove(session);
-        return {};
-    });
+    auto removed = sessions_.remove(session);
     if (removed) sweeper_->wake();
     return removed;
 }
@@ -196,98 +171,79 @@ Result<> PostgresScanLog::read(SessionId session, Revision after, const VisitEnt
 Result<> PostgresScanLog::read_entries(SessionId session, Revision after, const VisitEntry& visit) {
     const std::shared_lock use(in_use_);
     const auto owned = shared_.find(session);
-    if (!owned) return no_such_session(session);
-    if (after > owned->end) return readers_.damage(session, fmt::format("the log ends before revision {}", after));
-    if (after == owned->end) return {};
-    return readers_.entries(session, after, owned->end, visit);
-}
-
-/// Changes a checkpoint in one transaction. Its last statement checks that this server still owns the session.
-Result<> PostgresScanLog::change_checkpoint(SessionId session, const Writer::Change& change_parts) {
-    const std::shared_lock use(in_use_);
-    if (auto waited = wait_for_appends(session); !waited) return waited; // so that it is never ahead of the log
-    return checkpoints_.make([&](Connection& connection) -> Result<> {
-        const auto owned = shared_.find(session);
-        if (!owned) return no_such_session(session);
-        if (auto begun = connection.run("BEGIN"); !begun) return begun.error();
-        if (auto changed = change_parts(connection); !changed) return changed;
-        Parameters parameters;
-        parameters.add(signed_of(session));
-        parameters.add(owned->epoch);
-        const auto rows = connection.run("UPDATE scanloom.session SET checkpoint_bytes = (SELECT"
-                                         " coalesce(sum(octet_length(value)), 0) FROM scanloom.part WHERE session = $1)"
-                                         " WHERE id = $1 AND epoch = $2 AND NOT removed RETURNING id",
-                                         parameters);
-        if (!rows) return rows.error();
-        if (rows->size() == 0) return shared_.find(session) ? taken_over(session) : no_such_session(session);
-        const auto committed = connection.run("COMMIT");
-        return committed ? Result<>() : Result<>(committed.error());
-    });
+    const auto end = owned ? Result<Revision>(owned->end) : readers_.end_of(session);
+    if (!end) return end.error();
+    if (after > *end) return readers_.damage(session, fmt::format("the log ends before revision {}", after));
+    return after == *end ? Result<>() : readers_.entries(session, after, *end, visit);
 }
 
 Result<> PostgresScanLog::clear_checkpoint(SessionId session) {
-    return change_checkpoint(session, [&](Connection& connection) -> Result<> {
-        Parameters parameters;
-        parameters.add(signed_of(session));
-        const auto cleared =
-            connection.run("DELETE FROM scanloom.part WHERE session = $1", parameters, Connection::kLongTimeout);
-        return cleared ? Result<>() : Result<>(cleared.error());
-    });
+    const std::shared_lock use(in_use_);
+    if (auto waited = wait_for_appends(session); !waited) return waited;
+    return checkpoints_.clear(session);
 }
 
 Result<> PostgresScanLog::write_checkpoint(SessionId session, std::vector<CheckpointPart> parts) {
-    std::map<std::string_view, std::string> sealed_parts; // a statement accepts each key once
-    for (const CheckpointPart& part : parts) sealed_parts[part.key] = sealed_part(session, part.key, part.value);
-    return change_checkpoint(session, [&](Connection& connection) -> Result<> {
-        if (auto room = size_limit_.check(connection); !room) return room;
-        for (auto part = sealed_parts.begin(); part != sealed_parts.end();) {
-            std::vector<std::string_view> keys;
-            std::vector<std::string_view> values;
-            std::size_t bytes = 0;
-            for (; part != sealed_parts.end() && bytes < AppendQueue::kStatementBytes; ++part) {
-                keys.push_back(part->first);
-                values.push_back(part->second);
-                bytes += part->second.size();
-            }
-            size_limit_.add(bytes);
-            Parameters parameters;
-            parameters.add(signed_of(session));
-            parameters.add(keys);
-            parameters.add(values);
-            const auto written =
-                connection.run("INSERT INTO scanloom.part (session, key, value) SELECT $1, p.key, p.value"
-                               " FROM unnest($2::bytea[], $3::bytea[]) AS p(key, value)"
-                               " ON CONFLICT (session, key) DO UPDATE SET value = excluded.value",
-                               parameters);
-            if (!written) return written.error();
-        }
-        return {};
-    });
+    const std::shared_lock use(in_use_);
+    if (auto waited = wait_for_appends(session); !waited) return waited; // so that it is never ahead of the log
+    return checkpoints_.write(session, parts);
 }
 
 Result<> PostgresScanLog::read_checkpoint(SessionId session, const VisitPart& visit) {
     const std::shared_lock use(in_use_);
-    if (!shared_.find(session)) return no_such_session(session);
+    if (!shared_.find(session)) {
+        if (const auto end = readers_.end_of(session); !end) return end.error();
+    }
     return readers_.checkpoint(session, visit);
 }
+
+// Shared sessions
+
+Result<> PostgresScanLog::own(SessionId session) {
+    const std::shared_lock use(in_use_);
+    return sessions_.own(session);
+}
+
+Result<> PostgresScanLog::disown(SessionId session) {
+    const std::shared_lock use(in_use_);
+    if (!shared_.find(session)) return {};
+    if (auto waited = wait_for_appends(session); !waited) return waited;
+    return sessions_.disown(session);
+}
+
+Result<std::optional<StoredSession>> PostgresScanLog::find(std::string_view name) {
+    const std::shared_lock use(in_use_);
+    return readers_.find(name);
+}
+
+Result<std::set<SessionId>> PostgresScanLog::ids() {
+    const std::shared_lock use(in_use_);
+    return readers_.ids();
+}
+
+Result<> PostgresScanLog::announce(const NodeInfo& info) { return node_.announce(info); }
+
+// After a failure
 
 Result<> PostgresScanLog::take_sessions_again() {
     auto connection = open_replicated();
     if (!connection) return connection.error();
-    if (auto locked = lock_store(*connection, place_); !locked) return locked;
-    auto taken = take_again(*connection, place_, owner_, shared_.sessions());
+    if (auto locked = lock_store(*connection, place_, Sharing::kWithNodes); !locked) return locked;
+    auto taken = take_again(*connection, place_, node_.id(), shared_.sessions());
     if (!taken) return taken.error();
+    if (auto renewed = node_.renew(*connection); !renewed) return renewed;
     lock_ = std::move(*connection);
     shared_.restart(std::move(*taken));
     return {};
 }
 
 bool PostgresScanLog::reopen() {
-    if (!shared_.failure() || owner_ == 0) return false; // 0: it is open for reading
+    if (!shared_.failure() || node_.id() == 0) return false; // 0: it is open for reading
     const std::unique_lock use(in_use_);
     std::vector<std::unique_lock<std::mutex>> pauses;
     for (auto& queue : queues_) pauses.push_back(queue->pause());
-    for (Writer* writer : {&sessions_, &checkpoints_}) writer->close();
+    sessions_.close();
+    checkpoints_.close();
     lock_.reset();
     readers_.close();
     auto reopened = take_sessions_again();

@@ -16,6 +16,10 @@ struct PostgresOptions {
     /// Accept a database that has no synchronous standby: the loss of its machine loses acknowledged scans.
     bool allow_unreplicated = false;
 
+    /// This server's name among those that share the store. One that is started later with the same name has its
+    /// sessions at once.
+    std::string node = "scanloom-server";
+
     /// Refuse to store more, with kOverloaded, when all entries and checkpoints together have this size. nullopt: no
     /// limit.
     std::optional<std::uint64_t> bytes_max;
@@ -28,15 +32,15 @@ struct PostgresOptions {
     std::function<void(SessionId, const Error&)> on_unreadable;
 };
 
-/// Opens the store in a database; creates its tables if they do not exist.
+/// Opens the store in a database, which other servers may share; creates its tables if they do not exist.
 ///
+/// Only sessions that this server owns can be changed; see SharedSessions. Errors of changes: also kNotOwner.
 /// Several connections append: a session always uses the same one, and changes of different sessions may take effect
 /// in another order than they were submitted. A session's checkpoint is never ahead of its log.
 /// @param url  postgresql://USER@HOST[:PORT][,HOST[:PORT]...]/DATABASE; the one that accepts writes is used
-/// Errors: kInvalidField: `url` is not an address; kConflict: another server uses the store, or there is one
-///         and an unfinished one is to be begun; kStoreFailed: the database
-///         cannot be used, or is not replicated; kUnsupportedVersion: it is too old, or a newer program wrote the
-///         store.
+/// Errors: kInvalidField: `url` is not an address; kConflict: a program uses the store alone, or there is one
+///         and an unfinished one is to be begun; kStoreFailed: the database cannot be used, or is not replicated;
+///         kUnsupportedVersion: it is too old, or a newer program wrote the store.
 [[nodiscard]] Result<std::unique_ptr<ScanLog>> open_postgres(const std::string& url,
                                                              const PostgresOptions& options = {});
 
@@ -44,7 +48,7 @@ struct PostgresOptions {
 /// Errors: kStoreFailed: it stays unfinished.
 [[nodiscard]] Result<> finish_postgres(const std::string& url);
 
-/// Opens the store in a database for reading, and changes nothing of it.
+/// Opens the store in a database for reading, while no server uses it, and changes nothing of it.
 /// Errors: kNotFound: there is none; otherwise as open_postgres().
 [[nodiscard]] Result<ReadOnlyStore> open_postgres_read_only(const std::string& url);
 

@@ -1,12 +1,18 @@
 #include "server/store/postgres_schema.hpp"
 
 #include "common/text/parse_number.hpp"
+#include "server/store/postgres_session_name.hpp"
 
 #include <fmt/format.h>
 
 #include <array>
+#include <cstdint>
 #include <optional>
+#include <set>
 #include <span>
+#include <string>
+#include <string_view>
+#include <vector>
 
 namespace scanloom::store::postgres {
 namespace {
@@ -24,8 +30,20 @@ constexpr std::array kFormat1 = {
     "CREATE TABLE scanloom.part (session bigint NOT NULL, key bytea NOT NULL, value bytea NOT NULL,"
     " PRIMARY KEY (session, key))",
     "ALTER TABLE scanloom.part ALTER value SET STORAGE EXTERNAL",
-    "CREATE SEQUENCE scanloom.owner",
-    "INSERT INTO scanloom.meta VALUES ('format', '1')",
+};
+
+// What format 2 adds: the servers that use the store, and names by which they find each other's sessions. Owners of
+// format 1 are numbers that a node could have.
+constexpr std::array kFormat2 = {
+    "CREATE TABLE scanloom.node (id bigint GENERATED ALWAYS AS IDENTITY PRIMARY KEY, name text NOT NULL UNIQUE,"
+    " robots text NOT NULL DEFAULT '', http text NOT NULL DEFAULT '', build text NOT NULL DEFAULT '',"
+    " seen timestamptz NOT NULL)",
+    "ALTER TABLE scanloom.session ADD COLUMN name text, ADD COLUMN replaces bigint",
+    "CREATE UNIQUE INDEX session_name ON scanloom.session (name) WHERE NOT removed",
+    "CREATE INDEX session_replaces ON scanloom.session (replaces) WHERE replaces IS NOT NULL",
+    "DROP SEQUENCE IF EXISTS scanloom.owner",
+    "UPDATE scanloom.session SET owner = 0",
+    "INSERT INTO scanloom.meta VALUES ('format', '2') ON CONFLICT (key) DO UPDATE SET value = excluded.value",
 };
 
 Result<bool> is_unfinished(Connection& connection) {
@@ -34,12 +52,13 @@ Result<bool> is_unfinished(Connection& connection) {
     return rows->number(0, 0) > 0;
 }
 
-Result<> check_format(Connection& connection) {
+/// Returns the format of the store.
+Result<int> format_of(Connection& connection) {
     const auto rows = connection.run("SELECT value FROM scanloom.meta WHERE key = 'format'");
     if (!rows) return rows.error();
     const auto format = rows->size() == 1 ? parse_number<int>(rows->bytes(0, 0)) : std::nullopt;
     if (!format) return Error{Errc::kDataLoss, "the database has a schema scanloom that is not a store"};
-    if (*format <= kFormat) return {};
+    if (*format <= kFormat) return *format;
     return Error{
         Errc::kUnsupportedVersion,
         fmt::format("the store in the database has format {}, and this program knows {}; use the newer program "
@@ -71,9 +90,43 @@ Result<> in_transaction(Connection& connection, Result<> (*change)(Connection&))
     return changed;
 }
 
-Result<> create_unless_present(Connection& connection) {
-    if (auto found = check_tables(connection); found || found.error().code != Errc::kNotFound) return found;
-    return run_all(connection, kFormat1);
+/// Writes the names of the sessions of format 1, which only their records have. Of two sessions with one name, which
+/// only a fault can have stored, the first gets it.
+Result<> fill_in_names(Connection& connection) {
+    const auto rows = connection.run("SELECT id, record FROM scanloom.session WHERE NOT removed ORDER BY id", {},
+                                     Connection::kLongTimeout);
+    if (!rows) return rows.error();
+    std::set<std::string> taken;
+    for (int row = 0; row < rows->size(); ++row) {
+        const auto [name, replaces] = name_in(rows->bytes(row, 1));
+        const bool is_new = !name.empty() && taken.insert(name).second;
+        if (!is_new && replaces == 0) continue;
+        Parameters parameters;
+        parameters.add(rows->number(row, 0));
+        parameters.add(std::string_view(name));
+        parameters.add(signed_of(replaces));
+        const auto named = connection.run("UPDATE scanloom.session SET name = nullif(convert_from($2, 'UTF8'), ''),"
+                                          " replaces = nullif($3, 0) WHERE id = $1",
+                                          parameters);
+        if (!named) return named.error();
+    }
+    return {};
+}
+
+Result<> create_all(Connection& connection) {
+    if (auto created = run_all(connection, kFormat1); !created) return created;
+    return run_all(connection, kFormat2);
+}
+
+Result<> create_or_migrate(Connection& connection) {
+    const auto found = check_tables(connection);
+    if (!found && found.error().code == Errc::kNotFound) return create_all(connection);
+    if (!found) return found;
+    const auto format = format_of(connection);
+    if (!format) return format.error();
+    if (*format == kFormat) return {};
+    if (auto added = run_all(connection, kFormat2); !added) return added;
+    return fill_in_names(connection);
 }
 
 Result<> replace_unfinished(Connection& connection) {
@@ -89,7 +142,7 @@ Result<> replace_unfinished(Connection& connection) {
         }
         if (auto removed = connection.run("DROP SCHEMA scanloom CASCADE"); !removed) return removed.error();
     }
-    if (auto created = run_all(connection, kFormat1); !created) return created;
+    if (auto created = create_all(connection); !created) return created;
     const auto marked = connection.run("INSERT INTO scanloom.meta VALUES ('unfinished', 'a copy')");
     return marked ? Result<>() : Result<>(marked.error());
 }
@@ -100,7 +153,7 @@ Result<> check_tables(Connection& connection) {
     const auto is_present = has_tables(connection);
     if (!is_present) return is_present.error();
     if (!*is_present) return Error{Errc::kNotFound, "the database holds no store"};
-    if (auto readable = check_format(connection); !readable) return readable;
+    if (const auto format = format_of(connection); !format) return format.error();
     const auto unfinished = is_unfinished(connection);
     if (!unfinished) return unfinished.error();
     if (!*unfinished) return {};
@@ -109,7 +162,7 @@ Result<> check_tables(Connection& connection) {
                  "it, or run it again"};
 }
 
-Result<> create_tables(Connection& connection) { return in_transaction(connection, create_unless_present); }
+Result<> create_tables(Connection& connection) { return in_transaction(connection, create_or_migrate); }
 
 Result<> begin_unfinished_store(Connection& connection) { return in_transaction(connection, replace_unfinished); }
 

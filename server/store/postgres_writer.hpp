@@ -21,8 +21,9 @@ public:
     Writer(const Place& place, SharedState& shared) : place_(place), shared_(shared) {}
 
     /// Makes a change.
-    /// Errors: those of the change; why the log has failed. After an error other than kNotFound and kOverloaded, which
-    ///         mean that nothing was changed, the log has failed: it is not known whether the change took effect.
+    /// Errors: those of the change; why the log has failed. kNotFound, kNotOwner, kAlreadyExists and kOverloaded mean
+    ///         that nothing was changed. After another error, the log has failed: it is not known whether the change
+    ///         took effect.
     [[nodiscard]] Result<> make(const Change& change);
 
     /// Closes the connection.

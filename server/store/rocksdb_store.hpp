@@ -47,6 +47,9 @@ struct StoreOptions {
     /// For a store in a database: see PostgresOptions::bytes_max.
     std::optional<std::uint64_t> bytes_max;
 
+    /// For a store in a database: see PostgresOptions::node.
+    std::string node;
+
     /// The file layer; tests replace it to inject failures. Null: the system's.
     rocksdb::Env* env = nullptr;
 };

@@ -48,6 +48,8 @@ struct StoreStats {
 /// Whether a visitor receives the next item.
 enum class Visit : std::uint8_t { kContinue, kStop };
 
+class SharedSessions;
+
 /// What a visitor returns: a Visit, or an error, with which the visit fails. A Result<> without an error continues.
 class Visited : public Result<Visit> {
 public:
@@ -62,9 +64,11 @@ public:
 /// Order: All changes (sessions, entries, checkpoints) take effect in the order of submission, and a crash or power
 ///        loss leaves a prefix of them. A checkpoint that survives is therefore never ahead of the log, if it was
 ///        submitted after the entries that it covers; they need not be acknowledged yet.
-/// Errors: kNotFound: there is no such session, or it was removed. kConflict: an append does not continue its session's
-///         log. kDataLoss: the data read is damaged. kStoreFailed: reading or writing failed. After one failed write or
-///         sync it is unknown what is stored, so every change fails until reopen() succeeds; reading continues.
+/// Errors: kNotFound: there is no such session, or it was removed. kNotOwner: another server may change it, if several
+///         share the log (shared()). kAlreadyExists: so may its name, for a new session. kConflict: an append does not
+///         continue its session's log. kDataLoss: the data read is damaged. kStoreFailed: reading or writing failed.
+///         After one failed write or sync it is unknown what is stored, so every change fails until reopen() succeeds;
+///         reading continues.
 /// Threads: any, concurrently. All functions except append() and stats() may wait for the disk: do not call them on
 ///          threads that serve sockets. Within a `done`, only append() may be called.
 class ScanLog {
@@ -147,6 +151,10 @@ public:
 
     /// Returns the total size of the store's files, in bytes.
     [[nodiscard]] virtual std::uint64_t bytes_on_disk() const = 0;
+
+    /// Returns what the servers that share the log need to know of each other's sessions; null: one server uses the
+    /// log alone, and owns all sessions.
+    [[nodiscard]] virtual SharedSessions* shared() { return nullptr; }
 };
 
 /// A store that no server has open, for reading.

@@ -1,6 +1,7 @@
 #include "server/store/postgres_scan_log.hpp"
 
 #include "server/store/open_store.hpp"
+#include "server/store/shared_sessions.hpp"
 #include "tests/support/log_reading.hpp"
 #include "tests/unit/server/store/postgres_database.hpp"
 
@@ -24,8 +25,8 @@ using testing::SizeIs;
 
 class PostgresScanLogTest : public testing::Test {
 protected:
-    [[nodiscard]] Result<std::unique_ptr<ScanLog>> open() const {
-        return open_postgres(database_.address, {.allow_unreplicated = true});
+    [[nodiscard]] Result<std::unique_ptr<ScanLog>> open(const std::string& node = "a") const {
+        return open_postgres(database_.address, {.allow_unreplicated = true, .node = node});
     }
 
     PostgresDatabase database_;
@@ -46,6 +47,8 @@ TEST_F(PostgresScanLogTest, AllIsThereAfterARestart) {
     EXPECT_EQ(log->end_of(session).value(), 500U);
     EXPECT_EQ(entries_after(*log, session, 0).value(), distinct_entries(session, 1, 500));
     EXPECT_EQ(checkpoint_of(*log, session).value().at("part"), "value");
+    EXPECT_EQ(append_and_wait(*log, session, 501, {"next"}).error().code, Errc::kNotOwner);
+    ASSERT_TRUE(own(*log, session));
     EXPECT_TRUE(append_and_wait(*log, session, 501, {"next"}));
 }
 
@@ -62,64 +65,6 @@ TEST_F(PostgresScanLogTest, TheDestructorStoresWhatIsQueued) {
     }
     EXPECT_EQ(done, 100);
     EXPECT_EQ(open().value()->end_of(session).value(), 100U);
-}
-
-TEST_F(PostgresScanLogTest, ASecondServerIsRefused) {
-    const auto first = open().value();
-    const auto second = open();
-    ASSERT_FALSE(second);
-    EXPECT_EQ(second.error().code, Errc::kConflict);
-    EXPECT_THAT(second.error().message, HasSubstr("another server uses the store"));
-}
-
-/// As after a pause in which the other server was started, or with a lock that the database has lost.
-TEST_F(PostgresScanLogTest, AServerWhoseSessionsWereTakenOverChangesNothingAndStaysFailed) {
-    const auto paused = open().value();
-    const auto session = paused->create_session("").value();
-    ASSERT_TRUE(append_and_wait(*paused, session, 1, {"before"}));
-    ASSERT_TRUE(paused->write_checkpoint(session, {{"part", "before"}}));
-    database_.end_connections();
-    const auto other = open().value();
-    ASSERT_TRUE(append_and_wait(*other, session, 2, {"of the other"}));
-
-    const auto appended = append_and_wait(*paused, session, 2, {"late"});
-    EXPECT_EQ(appended.error().code, Errc::kStoreFailed);
-    EXPECT_THAT(appended.error().message, HasSubstr("another server has taken over session"));
-    EXPECT_FALSE(paused->write_checkpoint(session, {{"part", "late"}}));
-    EXPECT_FALSE(paused->clear_checkpoint(session));
-    EXPECT_FALSE(paused->remove_session(session));
-    EXPECT_FALSE(paused->reopen());
-    EXPECT_THAT(paused->stats().last_error.value(), HasSubstr("another server uses the store"));
-    EXPECT_THAT(entries_after(*other, session, 0).value(), ElementsAre("before", "of the other"));
-    EXPECT_EQ(checkpoint_of(*other, session).value().at("part"), "before");
-}
-
-TEST_F(PostgresScanLogTest, EachKindOfLateChangeIsRefused) {
-    const auto take_over = [&](SessionId session) {
-        static_cast<void>(database_.run("UPDATE scanloom.session SET epoch = epoch + 1, owner = 0 WHERE id = " +
-                                        std::to_string(session)));
-    };
-    using Change = Result<> (*)(ScanLog&, SessionId);
-    for (const Change change : {Change{[](ScanLog&log, SessionId id) { return append_and_wait(log, id, 1, {"x"}); }},
-                                Change{[](ScanLog&log, SessionId id) {
-                                    return log.write_checkpoint(id, {{"part", "x"}});
-                                }},
-                                Change{[](ScanLog&log, SessionId id) { return log.clear_checkpoint(id); }},
-                                Change{[](ScanLog&log, SessionId id) { return log.remove_session(id); }}}) {
-        const auto log = open().value();
-        const auto session = log->create_session("").value();
-        ASSERT_TRUE(log->write_checkpoint(session, {{"kept", "value"}}));
-        take_over(session);
-        EXPECT_THAT(change(*log, session).error().message, HasSubstr("taken over"));
-        EXPECT_FALSE(log->reopen());
-        EXPECT_THAT(log->stats().last_error.value(), HasSubstr("taken over"));
-        EXPECT_EQ(database_.number("SELECT count(*) FROM scanloom.part WHERE key = 'kept' AND session = " +
-                                   std::to_string(session)),
-                  1);
-        EXPECT_EQ(database_.number("SELECT count(*) FROM scanloom.session WHERE NOT removed AND end_rev = 0 AND id = " +
-                                   std::to_string(session)),
-                  1);
-    }
 }
 
 TEST_F(PostgresScanLogTest, ConnectionsThatEndedBetweenChangesAreOpenedAgain) {
@@ -252,6 +197,7 @@ TEST_F(PostgresScanLogTest, NothingIsAddedAboveTheSizeLimitUntilSessionsAreRemov
         EXPECT_EQ(append_and_wait(*log, kept, 1, {"a"}).error().code, Errc::kOverloaded) << "counts what it stores";
     }
     const auto log = open_postgres(database_.address, options).value(); // asks the database
+    for (const auto session : {removed, kept}) ASSERT_TRUE(own(*log, session));
     const auto refused = append_and_wait(*log, kept, 1, {"a"});
     EXPECT_EQ(refused.error().code, Errc::kOverloaded);
     EXPECT_THAT(refused.error().message, HasSubstr("--store-size-max"));

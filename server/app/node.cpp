@@ -1,0 +1,38 @@
+#include "server/app/node.hpp"
+
+#include "common/app/program.hpp"
+
+#include <unistd.h>
+
+#include <boost/asio/ip/host_name.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <fmt/format.h>
+#include <fmt/ostream.h>
+
+namespace scanloom::app {
+namespace asio = boost::asio;
+namespace {
+
+std::string address_of(const asio::ip::tcp::endpoint& endpoint, unsigned port) {
+    if (endpoint.address().is_unspecified()) return fmt::format("{}:{}", asio::ip::host_name(), port);
+    const asio::ip::tcp::endpoint listening(endpoint.address(), static_cast<asio::ip::port_type>(port));
+    return fmt::format("{}", fmt::streamed(listening));
+}
+
+} // namespace
+
+std::string node_name(const ServerOptions& options) {
+    if (!options.node.empty()) return options.node;
+    const auto port = options.listen.port();
+    if (port == 0) return fmt::format("{}:process-{}", asio::ip::host_name(), ::getpid()); // its port is not known yet
+    return fmt::format("{}:{}", asio::ip::host_name(), port);
+}
+
+store::NodeInfo node_info(const ServerOptions& options, unsigned robot_port, unsigned http_port) {
+    const auto* const scheme = options.http_tls.is_given() ? "https" : "http";
+    return {.robots = address_of(options.listen, robot_port),
+            .http = fmt::format("{}://{}", scheme, address_of(options.http, http_port)),
+            .build = std::string(kVersion)};
+}
+
+} // namespace scanloom::app

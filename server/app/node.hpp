@@ -1,0 +1,19 @@
+#pragma once
+
+#include "server/app/options.hpp"
+#include "server/store/shared_sessions.hpp"
+
+#include <string>
+
+/// What a server tells the others that share its database.
+namespace scanloom::app {
+
+/// Returns the server's name: that of --node, else that of the machine and the port for robots.
+[[nodiscard]] std::string node_name(const ServerOptions& options);
+
+/// Returns where the server is reached, and its version. A server that listens on all addresses is reached by the
+/// machine's name.
+/// @param robot_port, http_port  on which it listens
+[[nodiscard]] store::NodeInfo node_info(const ServerOptions& options, unsigned robot_port, unsigned http_port);
+
+} // namespace scanloom::app

@@ -1,0 +1,100 @@
+#include "server/store/postgres_node.hpp"
+
+#include <fmt/format.h>
+
+#include <optional>
+#include <string_view>
+#include <utility>
+
+namespace scanloom::store::postgres {
+namespace {
+
+constexpr std::chrono::seconds kRenewEvery{1};
+
+} // namespace
+
+Node::~Node() {
+    if (!thread_.joinable()) return;
+    thread_.request_stop();
+    thread_.join();
+    auto connection = Connection::open(place_);
+    if (!connection) return; // the others find out after kDeadAfter
+    Parameters parameters;
+    parameters.add(id_);
+    static_cast<void>(connection->run("DELETE FROM scanloom.node WHERE id = $1", parameters));
+}
+
+Result<> Node::enter(Connection& connection, std::string name) {
+    Parameters parameters;
+    parameters.add(std::string_view(name));
+    const auto left = connection.run("DELETE FROM scanloom.node WHERE name = convert_from($1, 'UTF8')", parameters);
+    if (!left) return left.error();
+    const auto entered = connection.run("INSERT INTO scanloom.node (name, seen)"
+                                        " VALUES (convert_from($1, 'UTF8'), now()) RETURNING id",
+                                        parameters);
+    if (!entered) return entered.error();
+    name_ = std::move(name);
+    id_ = entered->number(0, 0);
+    thread_ = std::jthread([this](const std::stop_token& stop) { keep(stop); });
+    return {};
+}
+
+Result<> Node::renew(Connection& connection) const {
+    Parameters parameters;
+    parameters.add(id_);
+    const auto rows = connection.run("UPDATE scanloom.node SET seen = now() WHERE id = $1 RETURNING id", parameters);
+    if (!rows) return rows.error();
+    if (rows->size() > 0) return {};
+    return Error{Errc::kConflict,
+                 fmt::format("another server was started as node '{}' of the store {}; give each server a --node of "
+                             "its own, and start this one again",
+                             name_, place_.text)};
+}
+
+Result<> Node::announce(const NodeInfo& info) const {
+    auto connection = Connection::open(place_);
+    if (!connection) return connection.error();
+    Parameters parameters;
+    parameters.add(id_);
+    parameters.add(std::string_view(info.robots));
+    parameters.add(std::string_view(info.http));
+    parameters.add(std::string_view(info.build));
+    const auto rows =
+        connection->run("UPDATE scanloom.node SET robots = convert_from($2, 'UTF8'),"
+                        " http = convert_from($3, 'UTF8'), build = convert_from($4, 'UTF8') WHERE id = $1",
+                        parameters);
+    return rows ? Result<>() : Result<>(rows.error());
+}
+
+/// Renews the row until the end. A database that cannot be used is tried again: appends find out by themselves.
+void Node::keep(const std::stop_token& stop) {
+    std::optional<Connection> connection;
+    auto renewed_at = Clock::now();
+    steady_since_ = renewed_at;
+    for (;;) {
+        {
+            std::unique_lock lock(mutex_);
+            waiting_.wait_for(lock, stop, kRenewEvery, [] { return false; });
+        }
+        if (stop.stop_requested()) return;
+        const auto renewed = renew_over(connection);
+        if (!renewed && renewed.error().code == Errc::kConflict) static_cast<void>(shared_.fail(renewed.error()));
+        const auto now = Clock::now();
+        if (now - renewed_at > kDeadAfter / 2) steady_since_ = now;
+        if (renewed) renewed_at = now;
+    }
+}
+
+/// Renews the row over a connection, which is opened if it does not exist and closed if it fails.
+Result<> Node::renew_over(std::optional<Connection>& connection) const {
+    if (!connection) {
+        auto opened = Connection::open(place_);
+        if (!opened) return opened.error();
+        connection = std::move(*opened);
+    }
+    auto renewed = renew(*connection);
+    if (!renewed) connection.reset();
+    return renewed;
+}
+
+} // namespace scanloom::store::postgres

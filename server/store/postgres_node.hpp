@@ -1,0 +1,70 @@
+#pragma once
+
+#include "common/error/error.hpp"
+#include "server/store/postgres_connection.hpp"
+#include "server/store/postgres_owned_sessions.hpp"
+#include "server/store/shared_sessions.hpp"
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <mutex>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <thread>
+
+namespace scanloom::store::postgres {
+
+/// This server's row in the table of nodes, which it renews each second. The row only says that the server lives: what
+/// it writes is safe by the epochs of its sessions.
+/// Threads: any.
+class Node {
+public:
+    /// A node whose row is older than this, by the database's clock, counts as dead.
+    static constexpr std::chrono::seconds kDeadAfter{5};
+
+    /// @param place, shared  must outlive the node
+    Node(const Place& place, SharedState& shared) : place_(place), shared_(shared) {}
+
+    /// Removes the row, so that others may take the sessions at once.
+    ~Node();
+
+    Node(const Node&) = delete;
+    Node& operator=(const Node&) = delete;
+
+    /// Enters the server, in place of an earlier one of this name, whose sessions have no owner then. Call once.
+    [[nodiscard]] Result<> enter(Connection& connection, std::string name);
+
+    /// Returns the number that no other server has had; 0 before enter().
+    [[nodiscard]] std::int64_t id() const noexcept { return id_; }
+
+    /// Returns whether the row was renewed without a gap for as long as others need to be dead. After the database
+    /// could not be used for a while, all rows are old, and the other nodes need time to renew theirs.
+    [[nodiscard]] bool is_steady() const noexcept { return Clock::now() - steady_since_.load() >= kDeadAfter; }
+
+    /// Renews the row.
+    /// Errors: kConflict: another server was started with the same name; kStoreFailed.
+    [[nodiscard]] Result<> renew(Connection& connection) const;
+
+    /// Writes the addresses and the version into the row.
+    [[nodiscard]] Result<> announce(const NodeInfo& info) const;
+
+private:
+    using Clock = std::chrono::steady_clock;
+
+    void keep(const std::stop_token& stop);
+    [[nodiscard]] Result<> renew_over(std::optional<Connection>& connection) const;
+
+    const Place& place_;
+    SharedState& shared_;
+    std::string name_;
+    std::int64_t id_ = 0;
+    std::atomic<Clock::time_point> steady_since_ = Clock::time_point::max();
+    std::mutex mutex_; // of waiting_
+    std::condition_variable_any waiting_;
+    std::jthread thread_; // last: uses the others
+};
+
+} // namespace scanloom::store::postgres

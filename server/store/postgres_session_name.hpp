@@ -1,0 +1,18 @@
+#pragma once
+
+#include "server/store/scan_log.hpp"
+
+#include <string>
+#include <string_view>
+
+namespace scanloom::store::postgres {
+
+/// What the table `session` repeats of a session's record, so that servers find each other's sessions.
+struct SessionName {
+    std::string name;       ///< empty: the record cannot be decoded, or it is that of a copy
+    SessionId replaces = 0; ///< the session whose name it gets when that one is removed; 0: none
+};
+
+[[nodiscard]] SessionName name_in(std::string_view record);
+
+} // namespace scanloom::store::postgres

@@ -1,0 +1,59 @@
+#pragma once
+
+#include "common/error/error.hpp"
+#include "server/store/scan_log.hpp"
+
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace scanloom::store {
+
+/// What a server tells the others about itself.
+struct NodeInfo {
+    std::string robots; ///< where robots connect, HOST:PORT
+    std::string http;   ///< SCHEME://HOST:PORT
+    std::string build;  ///< version of the program
+};
+
+/// The sessions of a log that several servers (nodes) share. Each is changed by one node at a time, its owner.
+///
+/// A node owns the sessions that it creates, and those that it takes with own(). While it lives, it has them until it
+/// gives them up. A node that has not written to the log for some seconds counts as dead, and others may take its
+/// sessions; what it writes later has no effect and fails with kNotOwner.
+/// Threads: any, concurrently. All functions may wait for the database.
+class SharedSessions {
+public:
+    SharedSessions() = default;
+    SharedSessions(const SharedSessions&) = delete;
+    SharedSessions& operator=(const SharedSessions&) = delete;
+    virtual ~SharedSessions() = default;
+
+    /// Makes this node the owner of a session, if it is not. All that earlier owners wrote is durable then.
+    /// Errors: kNotFound: no such session; kNotOwner: a node that lives owns it, which the message names; kStoreFailed.
+    [[nodiscard]] virtual Result<> own(SessionId session) = 0;
+
+    /// Gives a session up, after everything that was submitted for it. Does nothing if this node does not own it.
+    /// Errors: kStoreFailed: it stays the owner.
+    [[nodiscard]] virtual Result<> disown(SessionId session) = 0;
+
+    /// Returns the session with this name; nullopt: there is none.
+    [[nodiscard]] virtual Result<std::optional<StoredSession>> find(std::string_view name) = 0;
+
+    /// Returns the ids of all sessions that have a name.
+    [[nodiscard]] virtual Result<std::set<SessionId>> ids() = 0;
+
+    /// Tells the other nodes about this one. Call once.
+    [[nodiscard]] virtual Result<> announce(const NodeInfo& info) = 0;
+};
+
+/// Makes this server the owner of a session, if several share the log.
+/// Errors: those of SharedSessions::own().
+[[nodiscard]] inline Result<> own(ScanLog& log, SessionId session) {
+    auto* const shared = log.shared();
+    return shared == nullptr ? Result<>() : shared->own(session);
+}
+
+} // namespace scanloom::store
