@@ -70,6 +70,24 @@ TEST_F(SessionCacheTest, OneCallerLoadsAnEvictedSessionForAll) {
     expect_loaded("a", true);
 }
 
+TEST_F(SessionCacheTest, AnEvictedSessionIsAddedOnlyIfItsNameIsNeitherReservedNorThere) {
+    {
+        const SessionCache::Reservation reserved(cache_, "a");
+        add_evicted("a");
+        EXPECT_FALSE(cache_.contains("a"));
+        add("a", 1);
+    }
+    add_evicted("a");
+    expect_loaded("a", true);
+    cache_.remove_evicted("a", 1, {Errc::kNotFound, "gone"});
+    expect_loaded("a", true);
+    add_evicted("b");
+    cache_.remove_evicted("b", last_id_ + 1, {Errc::kNotFound, "gone"});
+    EXPECT_TRUE(cache_.contains("b")) << "another session had this name";
+    cache_.remove_evicted("b", last_id_, {Errc::kNotFound, "gone"});
+    EXPECT_FALSE(cache_.contains("b"));
+}
+
 TEST_F(SessionCacheTest, EvictsLeastRecentlyUsedSessionsAndNoMoreThanNeeded) {
     add("older", 10);
     add("newer", 20);

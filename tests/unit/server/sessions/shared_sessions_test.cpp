@@ -162,7 +162,10 @@ TEST_F(SharedSessionsTest, OneOfTwoServersCreatesASession) {
             for (std::size_t t = 0; t < threads.size(); ++t) {
                 threads[t] = std::jthread([&, t] {
                     auto& registry = *(t % 2 == 0 ? a_ : b_).registry;
-                    if (t >= 2) return static_cast<void>(registry.load(name));
+                    if (t >= 2) { // until the session is where it is looked for, or on the other server
+                        while (created == 0) static_cast<void>(registry.load(name));
+                        return;
+                    }
                     const auto session = registry.create(name, {});
                     created += session ? 1 : 0;
                     EXPECT_EQ(session ? registry.find(name) : nullptr, session ? *session : nullptr);
