@@ -4,6 +4,7 @@
 #include "common/net/connect.hpp"
 
 #include <string>
+#include <vector>
 
 namespace CLI {
 class App;
@@ -13,8 +14,8 @@ namespace scanloom {
 
 /// How a program connects to a server's robot port.
 struct LinkOptions {
-    net::Address server{"127.0.0.1", "7447"};
-    std::string token_file; ///< empty: no token
+    std::vector<net::Address> servers{{"127.0.0.1", "7447"}}; ///< one, or several that share a store
+    std::string token_file;                                   ///< empty: no token
     bool tls = false;
     std::string tls_ca_file;   ///< enables tls; empty: the system's certificates
     std::string tls_cert_file; ///< the client's certificate, enables tls; empty: none

@@ -317,7 +317,7 @@ void ServerProtocol::queue_last_message() {
     if (!is_welcome_ && decoder_.holds_http()) {
         queue_.add_bytes(in_http(ended_by_->message)); // an HTTP client cannot read frames
     } else {
-        queue_.add(turned_away_.value_or(wire::LinkError{*ended_by_, is_retryable(ended_by_->code)}));
+        queue_.add(turned_away_.value_or(wire::LinkError{*ended_by_, is_retryable(ended_by_->code), owner_}));
     }
 }
 

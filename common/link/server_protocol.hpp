@@ -159,6 +159,10 @@ public:
     /// @param why  code and message that the robot receives
     void fail(const Error& why);
 
+    /// States where the robot's session is, for a link that fails with kNotOwner.
+    /// @param address  robot port of another server, HOST:PORT
+    void set_owner(std::string address) { owner_ = std::move(address); }
+
     // What to do
     /// Returns the next action, or nullopt if there is none until the next event.
     [[nodiscard]] std::optional<Action> next_action(Time now);
@@ -213,6 +217,7 @@ private:
     std::size_t asked_ = 0;     // requests that are not answered yet
 
     std::optional<Error> ended_by_;
+    std::string owner_;                          // of the session, if another server has it
     std::optional<wire::LinkError> turned_away_; // the reason, until it is queued
     bool is_welcome_ = false;                    // a welcome was sent
     bool is_over_limit_ = false;                 // RecordLimit is due

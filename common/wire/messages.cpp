@@ -145,13 +145,14 @@ static void to_proto(const Ack& ack, v1::Ack& out) {
 }
 
 static Result<LinkError> from_proto(const v1::Error& proto) {
-    return LinkError{Error{to_errc(proto.code()), proto.message()}, proto.retryable()};
+    return LinkError{Error{to_errc(proto.code()), proto.message()}, proto.retryable(), proto.address()};
 }
 
 static void to_proto(const LinkError& failure, v1::Error& out) {
     out.set_code(to_code(failure.error.code));
     out.set_message(failure.error.message);
     out.set_retryable(failure.retryable);
+    out.set_address(failure.address);
 }
 
 static Result<Ping> from_proto(const v1::Ping& proto) { return Ping{proto.nonce()}; }

@@ -80,6 +80,7 @@ struct Ack {
 struct LinkError {
     Error error;
     bool retryable = false;
+    std::string address = {}; ///< with kNotOwner: where the session is, HOST:PORT; empty: not known
 
     friend bool operator==(const LinkError&, const LinkError&) = default;
 };

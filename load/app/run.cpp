@@ -37,10 +37,12 @@ Result<net::HttpPlace> http_place(const LoadOptions& options, const std::string&
 
 Result<RobotLinkOptions> link_options(const LoadOptions& options) {
     RobotLinkOptions link;
-    auto endpoints = net::resolve(options.server);
-    if (!endpoints) return endpoints.error();
-    link.server = options.server;
-    link.endpoints = std::move(*endpoints);
+    link.servers = options.servers;
+    for (const auto& server : options.servers) {
+        auto endpoints = net::resolve(server);
+        if (!endpoints) return endpoints.error();
+        link.endpoints.push_back(std::move(*endpoints));
+    }
     auto tls = tls_of(options, options.tls);
     if (!tls) return tls.error();
     link.tls = std::move(*tls);

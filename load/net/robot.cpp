@@ -39,8 +39,9 @@ struct Robot::Link {
 };
 
 Robot::Robot(RobotPlan plan, Shared shared)
-    : shared_(shared), client_(std::move(plan), shared.workload, shared.link.hello, shared.link.server.text()),
-      backoff_(client_.plan().index + 1), timer_(shared.io) {}
+    : shared_(shared),
+      client_(std::move(plan), shared.workload, shared.link.hello, net::ServerList(shared.link.servers).text()),
+      servers_(shared.link.servers, client_.plan().index), backoff_(client_.plan().index + 1), timer_(shared.io) {}
 
 void Robot::start() { asio::co_spawn(shared_.io, run(), asio::detached); }
 
@@ -52,6 +53,7 @@ asio::awaitable<void> Robot::run() {
         client_.close(shared_.figures);
         if (stopped_ || client_.is_done()) break;
         if (was_struck) continue; // a radio link is back immediately
+        if (failure.retryable && servers_.choose_another(failure.address)) continue;
         note(failure);
         if (failed_) break;
         timer_.expires_after(backoff_.next());
@@ -79,8 +81,11 @@ void Robot::note(const wire::LinkError& failure) {
 asio::awaitable<wire::LinkError> Robot::use_one_link() {
     link_ = std::make_shared<Link>(net::client_stream(shared_.io.get_executor(), shared_.link.tls));
     const auto link = link_;
-    const auto connected =
-        co_await net::connect(link->stream, shared_.link.server, shared_.link.endpoints, kConnectMax);
+    const auto index = servers_.index();
+    auto connecting = index
+                          ? net::connect(link->stream, servers_.current(), shared_.link.endpoints[*index], kConnectMax)
+                          : net::connect(link->stream, servers_.current(), kConnectMax);
+    const auto connected = co_await std::move(connecting);
     if (!connected) co_return wire::LinkError{connected.error(), true};
     link->is_up = true;
     client_.open(shared_.clock.now());
@@ -118,6 +123,7 @@ std::optional<wire::LinkError> Robot::take(Link& link, std::size_t bytes) {
     const std::uint64_t before = client_.acknowledged();
     auto failure = client_.on_bytes(bytes, shared_.clock.now(), shared_.figures);
     if (client_.acknowledged() > before) backoff_.reset();
+    if (client_.is_welcome()) servers_.settle();
     return failure;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "common/net/connect.hpp"
+#include "common/net/server_list.hpp"
 #include "load/core/fault_schedule.hpp"
 #include "load/core/measured_client.hpp"
 #include "load/net/run_clock.hpp"
@@ -18,10 +19,10 @@ namespace scanloom::load {
 
 /// Address and credentials of all robots. Constant during a run.
 struct RobotLinkOptions {
-    net::Address server;
-    net::Endpoints endpoints; ///< of `server`
-    net::TlsContext tls;      ///< null: links are not encrypted
-    wire::Hello hello;        ///< without session and robot name
+    std::vector<net::Address> servers;
+    std::vector<net::Endpoints> endpoints; ///< of each of `servers`
+    net::TlsContext tls;                   ///< null: links are not encrypted
+    wire::Hello hello;                     ///< without session and robot name
 };
 
 /// Errors of robots, in sentences.
@@ -87,6 +88,7 @@ private:
 
     Shared shared_;
     MeasuredClient client_;
+    net::ServerList servers_; // each robot begins with another one
     robot::Backoff backoff_;
     std::shared_ptr<Link> link_;
     std::shared_ptr<Link> abandoned_; // half-open

@@ -34,7 +34,7 @@ std::string resume_text(std::uint64_t stored, std::optional<std::uint64_t> scan_
 UplinkOptions uplink_options(const RobotOptions& options, std::string token, const PreparedSource& prepared,
                              Console& console) {
     UplinkOptions uplink;
-    uplink.server = options.server;
+    uplink.servers = options.servers;
     const auto default_timeout = prepared.live ? std::chrono::milliseconds(0) : uplink.give_up_after;
     uplink.give_up_after = options.give_up_after.value_or(default_timeout);
     uplink.give_up_after_end = options.give_up_after.value_or(uplink.give_up_after_end);

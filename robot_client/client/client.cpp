@@ -19,10 +19,10 @@ namespace {
 
 Result<UplinkOptions> uplink_options(const ClientOptions& options) {
     if (auto ok = check(options); !ok) return ok.error();
-    const auto server = net::parse_address(options.server);
-    if (!server) return server.error();
+    auto servers = net::parse_addresses(options.server);
+    if (!servers) return servers.error();
     UplinkOptions uplink;
-    uplink.server = *server;
+    uplink.servers = std::move(*servers);
     if (options.tls || !options.tls_ca_file.empty() || !options.tls_cert_file.empty()) {
         auto tls = net::client_tls(options.tls_ca_file, {options.tls_cert_file, options.tls_key_file});
         if (!tls) return tls.error();

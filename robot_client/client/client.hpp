@@ -45,12 +45,14 @@ struct Location {
 
 /// Options of a client. The defaults suit a robot that connects to a server without TLS on the same machine.
 struct ClientOptions {
-    std::string server = "127.0.0.1:7447"; ///< the server's robot port: HOST:PORT or [ADDRESS]:PORT
-    std::string session;                   ///< [A-Za-z0-9_-]{1,64}; created if it does not exist
-    std::string robot;                     ///< same characters; name in the session, used by one program at a time
-    std::string token;                     ///< for a server that requires one
-    std::optional<double> cell_size;       ///< metres, for a new session; an existing session must have the same
-    std::optional<double> body_radius;     ///< metres; a disc of this radius around the robot's origin holds the robot
+    /// The server's robot port: HOST:PORT or [ADDRESS]:PORT; of several servers that share a store, with commas
+    /// between.
+    std::string server = "127.0.0.1:7447";
+    std::string session;               ///< [A-Za-z0-9_-]{1,64}; created if it does not exist
+    std::string robot;                 ///< same characters; name in the session, used by one program at a time
+    std::string token;                 ///< for a server that requires one
+    std::optional<double> cell_size;   ///< metres, for a new session; an existing session must have the same
+    std::optional<double> body_radius; ///< metres; a disc of this radius around the robot's origin holds the robot
     /// What the robot knows of its poses, the same for all its scans. With kOdometry and kNone the server estimates
     /// where scans were taken.
     Poses poses = Poses::kMap;

@@ -76,11 +76,12 @@ class ScanloomError(Exception):
     retryable  whether a retry may succeed
     """
 
-    def __init__(self, code: str, message: str, retryable: bool = False) -> None:
+    def __init__(self, code: str, message: str, retryable: bool = False, address: str = "") -> None:
         super().__init__(message)
         self.code = code
         self.message = message
         self.retryable = retryable
+        self.address = address  # of the server that has the session, HOST:PORT; "": not known
 
 
 class BufferFull(ScanloomError):
@@ -189,46 +190,47 @@ class Timing:
 
 # The compressed output of protoc for proto/scanloom/v1/frame.proto; robot_client/python/embed_protocol.py updates it.
 _PROTOCOL = """
-eNq1Wc2TG1cRj3b12VppZ2c/LK+dEJQQzFI4xAlQQKVAH+OVEkmjetI6MQemZmfH68HamclIa3vDhSNXDhxTnDmkCoqCE6cUR/h/uFDQ3e+NNDMru0gF
-TprX/Xv93uvX3a+7BV9U4WDu2P4sCC7efvrO2/R9N4yCRaBXY/rdp+80vweFcTB37+lbkHveyL2eu5MTuec0umpsyNGVrsHmlf2ssclj+mw+hNqJ7z0K
-oouWfz5z5/oeFB550XyhRMiBfhsqnu9E7oXrL5S4FYHmOMElckhwTchB8w7UjefhzHO8hZJ9AEWbv1D4JopQo+ZPoDZZuGHonimgDvlL34v3wN/6IRTP
-3NnCnuP6m3d22hsaCpCU5hc5gLZrx2f4PpQu5aFYQvXe4d2Equ6mDtx7RcRg/YdQdtWO+ZDVe7dSE9PHwZlLOC05l0dgJWSXTB2PllTgdgXnhbbj+efN
-zzZgZ+L68yDqunMn8sKFF/ikszkT+Sg1oUb6tyH/xPPPeJ/1ezfSqzHkQ2QLBpE+ffvC5a1VBH/rd6BwwZeW5/3qKQlsSkIC9LeX11ZgaHqxld7j+8Sr
-KtuhGy0uI7dR5CtcjvVbUIkQ5loXnt8oSSYThp6fYNrPG+Uk037e/PsG5Ce4MFnx3P2E9ZEX9EkGOF/YF6EyTTlIqG4zpbq3IB/i+V5ycObrd6EcnAUX
-7iK6Uidfh11iyEJ5s3M89OadkrRQSdHfhKrnL3B9b+EhoISAGgOS5ISmy/+dpl8FOHXPPX+OGgsbFZxUFhVJGdohXcTZZWSTITVAqjMeN9+DCmmzbS+c
-x/o3UYE4kI5ZvbeTNif8FpJ/9BHAyrrwvm5MjNHEFNaH/VHXOhlNxkanf79vdLVX9H005wRz0JoYQstlyRNz1BLaxtGPZPya6zWojM2JMbGGrTFK0aEu
-h2bXHBpT8RBF1AEkbWSODJz7mxzsDALHnnmf8tkmC3vhYsxqDMxOa9D/WWvaN0fWZNqaGtZx/4ExQrlfg1truFPR6uC2jnERPNsawMCcTLUN/XW4vYZ5
-MiLiFE+/2d78Zy53WuRA/S78VoObqSDuzue4z3Vx/Fd1DIaS3Qn8R945rlVx3NnMmnufujIiUuQh0gQpv87l9CZAaAWOcxl6rowIuR4G6NBUJMKgcYbW
-o8iVQSDX2xCF8D4OiXcbSqEVRh56Sp6Zm6IYjmlM3AYUQvbWAvPy6B3oqysOuio7ea9AHPs5ce6BHpyiFzoz11o89pwnPh5JunuvKHZi3jRm0Zw7UDtF
-C7eWoYMDQK8ktojcUlRC/oDCxJV1EWD4Z6Ov39tPWaywr4bE7JUpfshvmvgGgI06ubicoYGwR5R7FZGgKW0+9hZWZJ95l/NGlTcBooI0wSTCfAvqZ1EQ
-Wn5gRS5uy29ssbCq2CL6KBBMJegR1B97FxfW6v2sIbTQ2xI1ovdjchJ75sbYOmNrEtt1E9gfww3GrtHzNu+5LvYJYK7T9Tug8+S0wjWety004rUzSn8f
-GvPAt6N1C+7wRE0cMGLtiu/CrpyeXlLnmTtih5nZNd+DPTlpZd5sb7s8S1ezxrGdK+N7A6rxLDLbPQbviooEK9tNglDiPoP2liAp6aew5czs+dyaB5eR
-4zYO2NYaKVvrEGDC/N6+qDqrIUn4DmhSQsJBb/BaB6LOnHHSS78RL6h8tcHQGwIkNHZYVKaESQuIBd9kY2mIHWb26PITsr8N24lJLP6QJ9wUteWEeIW3
-YOuMXq7IokAzb9xi5KGoSmqHiMppFU75y23e8S2hpq9c5jUoo6KtX1ziM/0qg26LElI+QALy21sA1jLOtWtQTaiM0iSlkjZA2VLRql2Gorzk+Mt+3t6H
-3TUm2tagnjY9XnAZRnjBVRzg4SoKtHdg20o7PJPSjr0iLf23fQgN6wVuyju97oXtW3DTepGntQ9gz1rjR+0bsG+tc5V2HbashDekx8jfhpqVtPH2LuxY
-WZNNoNQt0D7WmGBbB83KWBlPThoT30XKatpVqFixdRz9EspxANdvwr5oPbSGZtcYZPKLJry2YvVHDwwxMSyVWjARH/EbsLvCtIWB7F5riA94ioGvPs1u
-DbTNo59DNeHRlER0MHOZYJ5yIjpGZguHcJDimp3Oybg16jyUeU6K1+sPceF0XvDnI7iRzAseRZiZr8kKDl9QAh6+OKto/qsMhfskD1+VwmPUe6CKoXQS
-2yMOJhQSon8XSs/cmYMZraqA9lLojySPKhgF003QZV6NVr8sW1QR9NqasiRR3KCYnfm1iucHADTLOqXMVCXpB9cSUs5bUUBlvkxi34RN23miUnUtNaPl
-PEEssUkbbhRhqlNcow2DOKQNhmBanA+xNOPEJZsVj5GBSAYwMEBgeR0wUED8Jf2eB8HZ6ZXLiUtWv8eSR/pVMCxKwQmiyHWWWXy2Lugs2TgvAcYneyuc
-oSYj95NLF0v6Kk9OP19jBAjJx9nVcDWki1DTw9kVJzjZi5CTkUsXEcYDWvc8sGfLdWtr1j1GQGLd89WQ1lXTad36mnXlZLXueTzQ+/jYBk/dyMYKMl57
-m6ffzihMglbrbztpkt6BekIU7UNbU9avBMm91JwkQX8A++giYYR+idE4YdQ7LOv1jKwYmTTvXec6mTY3w3JnsTqlvmZzA4aszlibJQl0SUshdL7dNZcU
-i5Cnq85WQwygRSdy3r3nNP5NKi4JNWwXIX8anF01/7oBBQ4umCxrHJKcYGaheihGqWbGdkx/IMlUyEfBaSDbLxUhB1hnlFRsUx2MeEj4RfDE9TlMIJ4H
-WH3gZlxK8QvrejHJ6kooJDULnJlHKXeRRakRNxFk8leSdDmigp6OGac9ZVWXARFXSc8drJCoqlVVyvX+wVxIAL/LCYHNv+SgpKItVfnqwJZ3xqqrYNyT
-lP4ZLqLhi7WwqLQ/xWyBmiMb3BypE70ryRP3E0wBizPvwlvMVXzeTd82s4SC6F/HXDRyzzAJOr1a4BHyLLIqaW0iUV/p0/nijNVcFvzd/BSKUhCqqM4P
-Gmd0nGXLW99iKhWvmGZTz4dSmTkDNhhQZgIxv4NVA/UdLMxzpO8wTPZzNGaN3Yi9glpE78PuGjeibS6L55rg7+XWacUttfVfwCY+FPrXoJpUpewzwdlK
-jQiww3BGKdZK16BIBMiqbvOa6ppPoMCPDb5HeQdTHV6mnolzjOggVzCGHOECz4YBRjlIPKQGbURNKNoiL1cWK0LzNuTpuSJ38QPfkYsVhRwwN3gh9+tQ
-Uq8S+QI6y1y5L/qCHDX/tAGweoTwjYMp9aMs6oytTTpU52w6tEMTMdSnitynHnu41OZyTCejLqvt+aq3mhMrAhZMdfQfj9ZFMzu/sGUHQ9Ri6oSIZGRX
-9jOFKMhOGBIk8z3uHi5kr7KeSVqu9ZWEBFM5xe1RiwTLjKKkgkCNGQ/tZ3x/VNxQWpxBN9+gjpeHIeYlHfvmB3g39uIxqT4k8LJ1LkdEn7n++eKxmqJG
-ZN5OMF8ohfF304SScB9dzu3Z/8bomr/agGoif9DrsKHiU17gF0U/1FUUN9OzNoAHEBJALVl6xlVYWgdkPlbtNRuflGfWpf/ED57JuF8WW0w8kbRsaC6s
-D82IiosSUlRRdc1AFbhIo4vLhGUeJ6Y1P8tBZZkFXVPAy+yaUka8WXXkTMqIDE4Z6eoxZYzktalkOJ0yqiullFHBqFoOLhf0dDR/n4NqItX6CleU0erm
-eq0ewc6jKPAXHipIhn1PXhI+9jGDI78qRZNP3j9ykKe96j+CKnl4oDrXuTVdF2PFF0kwBgSp1o0XqFUp9QiKeKpzd/ESk1MIrEHL595T17cuQ3WUEo9P
-Qoornq8MQr2CZc/v8phtY5mpflnbSLjDzrXcl2yD/eEr2cbfcrCdSYX/7/bx6vL/LtVqzomYQGx+Yc5JJQUZ5uTomhtSEyj+3+wPOSjHx1hef+7l14/3
-Rq0Jy8YXTEXOMhFaOObXm+Th8858GUOrisaQ16F66eOH85gf3Dz9IymSJFph1bVXL07cs29+noNaqnb4UtbxLpTjOkNZyP7aqoT/JogV85Us5Xe431Q5
-cW2/q/eJ/51dvk8Y2NHtL14W2IlPON+1oxf8J8c44rOBJMK6UKPmHzHOJaqVL6XPdIW9+WUq7K+i1aPPC1BZPrbUSzKEMIXVMbvZPtNrcJjgDVuD+6YY
-Gl3rvmgNDS2X4TPVmpqmNWiJY0PboFZZWvbJeGyKKUqgvlffHGmb1OlKYPqjB61BH1foG4Ouls+scDL6cGR+NLImxoRnF+jvtARf0XEwuj/od6Zakf5O
-SwDMk6ll3rdM0TWEVspI7wij259axscdw+ji+ct463qCP+0PDRSgVaiLl6ALYzxodXACZATG2+kaA4P+natmdjOZmgLV1uoPkLmV0cSkdzKd9kfHVhdP
-rNUyU09GrZNpzxT9n+HUOrUrk6dE7Q7MFp1hO7PX/mhqiFFroGnZvai93j8ZDLSdzMlHpjVuTXuantljtzVsHS/tYRdTtr0EtzVs949PzJOJtndt911U
-iBj2R7jFfQzON1OLTXt07mFrPEb2wdEvoZp4dlnUx+OBKeRfoGmL3QMtyTw2W9SOJStJUKetD42R1X5o4Upoh2iotPEEoGMOx3Rlmf9T/wONxySp
+eNq1Wc2PI1mRx1X+DJddWVlf7uqeYfCwbG8henZ6BhAgBP7ILpuxndazq4fmsKmsdHZ10q7MnLSru2u4cEHiyoEj4sxhpV2txInTCGkvyz/CX8AFQUS8
+l3Zmlru1o4GTMyJ+7yteRLyIMHxWhaOFY/vzILh678X779H3gzAKloFejfkPXrzf/CYUxsHCfajvQO5VI/dO7n5O5F4RddPYktSNrsH2jf2ysc00fTaf
+QO3c954G0VXLv5y7C/0ACk+9aLFUU0hCvwcVz3ci98r1l2q6NYPGOME1SmjimpBE8z7UjVfh3HO8pZr7CIo2f+Hk2ziFopo/gNpk6YahO1NAHfLXvhfv
+gb/1EyjO3PnSXuD62/f32lsaTiA5zc9yAG3Xjs/wLShdy0PxDNWHJw8SqnqQOnDvSyIG69+Bsqt2zIesPrybGpg+Do5cwWnJhTwCKyG7ZOp4tKQCtys4
+LrQdz79s/mYL9iauvwiirrtwIi9ceoFPOlswk49SE4rSvw75554/433WHx6nV2PIRygWDCJ9+vaVy1urCP7W70Phii8tz/vVUzOwKQkJ0N9bXVuBoenF
+1nqP7xOvqmyHbrS8jtxGka9wRet3oRIhzLWuPL9RkkJmDD0/IbRfNcpJof2q+X9bkJ/gwmTFC/cT1kde0CcZ4GJpX4XKNCWRUN12SnVfg3yI53vDwVmu
+P4ByMAuu3GV0o06+CbvCkIXyZhd46O37JWmhkqN/Faqev8T1vaWHgBICagxIshOaLv//NP0WwIV76fkL1FjYqOCgsqhIztAO6SJm15FNhtQAqc6Ybn4I
+FdJm2146z/R/RQUiIR2z+nAvbU74LaT89GOAtXXhfR1PjNHEFNZH/VHXOh9Nxkan/6hvdLUv6YdozgnhoDUxhJbLsifmqCW0rdPvyvi10GtQGZsTY2IN
+W2OcRYe6JM2uOTSm4glOUQeQvJE5MnDsr3KwNwgce+59ymebLO2lizGrMTA7rUH/J61p3xxZk2lralhn/cfGCOf9MtzdIJ2KVge3dYaL4Nk2AAbmZKpt
+6e/AvQ3C8xExp3j67fb2X3K5iyIH6g/g1xrcSQVxd7HAfW6K4z+vYzCU4k7gP/Uuca2K487n1sL71JURkSIPsSbI+WUupzcBQitwnOvQc2VEyPUwQIem
+YhEGjTO0nkauDAK53pYohI+QJNk9KIVWGHnoKXkWbotiOCaapA0ohOytBZbl0TvQV9cSdFV28l6BJPYrkjwEPbhAL3TmrrV85jnPfTySdPdeUezFsmks
+ojH3oXaBFm6tQgcHgF5J7BC7pbiE/DaFiRvrKsDwz0Zff3iYslhh3wxJ2CtT/JDfNPBdABt1cnU9RwNhjyj3KiLBU9p85i2tyJ5514tGlTcBooI8wSzC
+/BvUZ1EQWn5gRS5uy2/s8GRVsUP8USCYS9BTqD/zrq6s9ftZQ2ihtyNqxO/H7CR25sbYOmNrEtt1E9jvwTFjN+h5l/dcF4cEMDfp+n3QeXBa4RqP2xUa
+ydoZpX8fGovAt6NNC+7xQE0cMWLjih/AvhyeXlLnkXtij4XZNT+EAzlobd5sb/s8SlejxrGdK+N7F6rxKDLbAwbvi4oEK9tNgnDGQwYdrEByph/CjjO3
+FwtrEVxHjts4YltrpGytQ4AJy3uHouqsSZrhG6DJGRIOesxrHYk6S8ZJL/2XeEHlqw2GHguQ0NhhUZkSJi0gnvgOG0tD7LGwR5efmPvrsJsYxNOf8IA7
+orYaEK/wNdiZ0csVWRRoFo27jDwRVcntEFM5rcIpf7nHO74r1PC1y7wNZVS09dNrfKbfYtA9UULOj5CB8vYOgLWKc+0aVBMqozRJqaQNULZUtGqXoSgv
+Of6yX7UPYX+DibY1qKdNjxdchRFecB0HmFxHgfYe7Fpph2dW2rHXrJX/tk+gYb3GTXmnt72wfRfuWK/ztPYRHFgb/Kh9DIfWJldp12HHSnhDmkb5LtSs
+pI2392HPyppsAqVugfaxwQTbOmhWxsp4cNKY+C5SVtOuQsWKreP0Z1COA7h+Bw5F64k1NLvGIJNfNOHttag/emyIiWGp1IKZ+Igfw/4a0xYGinutIT7g
+KQG++jS6NdC2T/8DqgmPpiSig5nLBPOUc9ExMls4gaOU1Ox0zsetUeeJzHNSsl5/iAun84I/n8JxMi94GmFmviErOHlNCXjy+qyi+dcyFB7RfPiqFJ6h
+3gNVDKWT2B5JMKGQEP3fofTSnTuY0aoK6CCF/ljKqIJRMN0EXebVaPWrskUVQW9vKEsSxQ1Os7e4VfF8G4BGWReUmaok/ehWQsp5K05QWayS2K/Ctu08
+V6m6lhrRcp4jlsSkDTeKMNUpbtCGQRLSBkMwLc6HWJpx4pLNiscoQCQDGBggsLwJGCgg/pJ+L4NgdnHjcuKS1e+ZlJF+FQyLUnCCKHKdVRafrQs6KzGO
+S4Dxyd4J56jJyP3k2sWSvsqD08/XGAFCynF0NVyTdBFqeDi/4QQnexFyMErpIsKYoHUvA3u+Wre2Yd0zBCTWvVyTtK4aTuvWN6wrB6t1L2NC7+NjG7xw
+IxsryHjtXR5+L6MwCVqvv+ukWXoH6ompaB/ahrJ+PZHcS81JMvTHcIguEkbolxiNE0a9x3O9k5krRibNe9+5zabNzbHcWa5PqW/Y3IAh6zPW5kkGXdJq
+Ejrf/oZLiqeQp6vO1yQG0KITOR88dBp/IxWXhCLbRchfBLOb5h+2oMDBBZNljUOSE8wtVA/FKNXM2I35jyWbCvkouAhk+6UiJIF1RknFNtXBiEnCL4Pn
+rs9hAvFMYPWBm3EpxS9s6sUkqyuhkNQscOYepdxFnkpR3ESQyV9J8iVFBT0dM057yqouA2Kuk577WCFRVauqlNv9g4WQAH6XExM2f5+Dkoq2VOWrA1ve
+jFVXwbgnOf0ZLqLhi7W0qLS/wGyBmiNb3BypE78r2RP3E0wBi3PvylsuVHzeT982i4SC6F/BXDRyZ5gEXdws8Qh5nrIqeW1iUV/p08VyxmouC/5ufgpF
+ORGqqM4PGmd0nGXLW99hLhWvmGZTz4dSmQUDthhQZgYJv4FVA/UdLMxzpO8wTPZzNBaN3Yi9glpE34f9DW5E21wVzzXB36ut04o7aus/hW18KPQvQzWp
+StlngtlajQiww3BOKdZa16BYBMiqbvuW6pq/yEGBXxt8kPIO5jq8Tj0T6BjRQalgDHnCFR4OI4zykJikDm1EXSjaI69XFmsGjbNnM9KL8pSYbN6DPL1k
+5El+4DtyG0UhCZYGr5V+BUrqwSI3QT9aKM9GN5FU83+2ANbvEz5/MKVWlUVNs435iGqqTYd2aCKGWliR+8Jj55eKXtF0ZmrA2p6v2q45sWZgLVVH1/Jo
+XbTAyytbNjdELeZOiEn2d2O/VIiCbJIhQwo/5MbiUrYx65l85lbLSUgwVVrcObVoYplslFR8qLHgif2Sb5bqHsqYM+jmu9QM8zD6vKGZ3/wR3o29fEaq
+Dwm86qpLivhz179cPlNDFEWW7wSLpVIYfzdNKAn36fXCnv9jzLH58y2oJlILvQ5bKnTlBX5RYERdRXGfPWsDeAAhAdStpRdeRaxNQJZjQV+z8bV5aV37
+z/3gpXwSymKHmeeSl43ahc1RG1FxvUKKKqqGGqjaF3l0cZmIzXRiWPM3OaisEqRbCniTXVM2iTerjpzJJlHA2SRdPWaTkbw2lSens0l1pZRNKhgV0sH1
+kl6V5u9yUE1kYV/gijJa3d6s1VPYexoF/tJDBckXwZOXhHlALOBHQVWpydfwTznI017170KVPDxQTe3choaMsZaLJBgDglTr1mvUqpR6CkU81aW7fIPJ
+KQSWp+VL74XrW9ehOkqJ6fOQ4ornK4NQD2TZ87tMs22sktjPaxsJd9i7lRaTbbA/fCHb+GMOdjNZ8j/dPt5a/RWmutA5ETNIzC/MJamkIMOcpG65IfWH
+4r/U/isH5fgYq+vPvfn68d6oa2HZ+IKpyFkmRgtpfthpPnz5WS5jaFXxGPIOVK99/HCe8VOcpz8rRZJFK6wb+urFidv5zf/MQS1VVnwu6/gAynEJoizk
+cGPBwv8gxIr5QpbyW9xvqtK4td/1+8R/3K7eJwzs6PZXbwrsJCec79rRa/6uYxzJ2UASYV0oqvnfGOcShczn0me6+N7+PMX3F9Hq6f8WoLJ6bKnNZAhh
+CqtjdrMtqLfhJCEbtgaPTDE0utYj0RoaWi4jZ641NU1r0BJnhrZFXbT03OfjsSmmOAO1xPrmSNumJlgC0x89bg36uELfGHS1fGaF89FHI/PjkTUxJjy6
+QP+0JeSKj8To0aDfmWpF+qctATDPp5b5yDJF1xBaKTN7Rxjd/tQyftwxjC6ev4y3rifk0/7QwAm0CjX4EnxhjAetDg6AzITxdrrGwKA/7qqZ3UympkC1
+tfoDFO5kNDHpnU+n/dGZ1cUTa7XM0PNR63zaM0X/Jzi0Tp3M5ClRuwOzRWfYzey1P5oaYtQaaFp2L2qvj84HA20vc/KRaY1b056mZ/bYbQ1bZyt72MeU
+7SAhbQ3b/bNz83yiHdzafRcVIob9EW7xEIPzndRi0x6de9gaj1F8lJkVxRZqBO/v+PRnUE08yLzIj8cDU8j/TdO2fABaUnhmtqiHS/aT4E5bHxkjq/3E
+wj2ghaIJ0+IJQMccjukyM3/C/h0XJzKO
 """
 
 
@@ -719,7 +721,8 @@ class _Conversation:
         if code == "MALFORMED_FRAME" and self._is_locating():
             message += ("; a server of an earlier version cannot localize robots: update it, or state the robot's "
                         "pose")
-        raise ScanloomError(code, message, self._may_pass(now) if code == "REPLACED" else error.retryable)
+        raise ScanloomError(code, message, self._may_pass(now) if code == "REPLACED" else error.retryable,
+                            error.address)
 
     def _is_locating(self) -> bool:
         """Returns whether a locate request on this link is unanswered."""
@@ -1039,6 +1042,43 @@ def _split_address(address: str) -> Tuple[str, int]:
     return match[1] or match[2], int(match[3])
 
 
+class _Servers:
+    """The servers of a client, and which one is next."""
+
+    _REDIRECTS_MAX = 4  # in a row; then servers disagree
+
+    def __init__(self, addresses: str) -> None:
+        if not isinstance(addresses, str):
+            raise ValueError(f"the server's address is {addresses!r}; HOST:PORT is needed")
+        self._list = [_split_address(address) for address in addresses.split(",")]
+        self._next = 0
+        self._redirects = 0
+        self.current = self._list[0]
+
+    def __str__(self) -> str:
+        return f"{self.current[0]}:{self.current[1]}"
+
+    def choose_another(self, address: str) -> bool:
+        """Chooses another server, after the current one failed or has named the one that has the session. Returns
+        whether to connect at once."""
+        if address and self._redirects < self._REDIRECTS_MAX:
+            try:
+                self.current = _split_address(address)
+                self._redirects += 1
+                return True
+            except ValueError:
+                pass  # as if it had named none
+        if self.current == self._list[self._next]:
+            self._next = (self._next + 1) % len(self._list)
+        self._redirects = 0
+        self.current = self._list[self._next]
+        return False
+
+    def settle(self) -> None:
+        """The current server has welcomed the client."""
+        self._redirects = 0
+
+
 def _connect(host: str, port: int, tls: Optional[ssl.SSLContext], timeout: float) -> socket.socket:
     where = f"{host}:{port}"
     try:
@@ -1069,7 +1109,7 @@ def _connect(host: str, port: int, tls: Optional[ssl.SSLContext], timeout: float
 class Client:
     """Sends one robot's scans to a server, on its own thread.
 
-    server       "HOST:PORT" of the server's robot port
+    server       "HOST:PORT" of the server's robot port; of several servers that share a store, with commas between
     session      the map's name; the session is created if it does not exist
     robot        unique within the session
     cell_size    metres, for a new session; must match an existing session. None: the server's default
@@ -1093,7 +1133,7 @@ class Client:
                  tls: Optional[ssl.SSLContext] = None, source: str = "", body_radius: Optional[float] = None,
                  poses: str = "map", on_correction: Optional[Callable[[Location], None]] = None,
                  buffer_bytes: int = 32 << 20, timing: Timing = Timing()) -> None:
-        self._host, self._port = _split_address(server)
+        self._servers = _Servers(server)
         buffer_bytes = _whole("buffer_bytes", buffer_bytes, 1, 1 << 50)
         if tls is not None and not isinstance(tls, ssl.SSLContext):
             raise ValueError(f"tls is {tls!r}; an ssl.SSLContext is needed, see ssl.create_default_context()")
@@ -1447,6 +1487,8 @@ class Client:
                 if not failure.retryable:
                     return failure
                 self._trouble = failure.message
+                if self._servers.choose_another(failure.address):
+                    continue  # at once
                 _log.warning("%s; retrying", failure.message)
                 if self._conversation.acknowledged > acknowledged:
                     backoff.reset()
@@ -1470,7 +1512,7 @@ class Client:
     def _use_one_link(self) -> ScanloomError:
         """Returns the reason for the end of the link."""
         try:
-            sock = _connect(self._host, self._port, self._tls, self._timing.connect)
+            sock = _connect(*self._servers.current, self._tls, self._timing.connect)
         except ScanloomError as failure:
             return failure
         connection = _Connection(sock, self._bell)
@@ -1483,6 +1525,8 @@ class Client:
                     with self._changed:
                         before = self._conversation.location
                         self._conversation.receive(_Frame.FromString(body), time.monotonic())
+                        if self._conversation.link and self._conversation.link.is_welcome:
+                            self._servers.settle()
                         location = self._conversation.location
                         self._changed.notify_all()
                     if self._on_correction and location and location is not before:
@@ -1515,13 +1559,13 @@ class Client:
         link = self._conversation.link
         if failure.code != "UNREACHABLE" or self._tls or (link and link.is_welcome):
             return failure
-        return _retry("UNREACHABLE", f"{self._host}:{self._port} closed the link without an answer; if it uses TLS, "
+        return _retry("UNREACHABLE", f"{self._servers} closed the link without an answer; if it uses TLS, "
                       "give tls=")
 
     def _unreadable(self, error: DecodeError) -> ScanloomError:
         if self._conversation.link and self._conversation.link.is_welcome:
             return _retry("MALFORMED_FRAME", f"invalid data from the server: {error}")
-        return ScanloomError("MALFORMED_FRAME", f"{self._host}:{self._port} does not use Scanloom's robot protocol; "
+        return ScanloomError("MALFORMED_FRAME", f"{self._servers} does not use Scanloom's robot protocol; "
                              "give the server's robot port, and tls= if it uses TLS")
 
 

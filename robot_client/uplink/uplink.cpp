@@ -28,7 +28,7 @@ wire::LinkError lost(std::string message) { return {{Errc::kUnreachable, std::mo
 
 link::ClientProtocolOptions protocol_options(const UplinkOptions& options) {
     auto made = options.protocol;
-    made.server = options.server.text();
+    made.server = net::ServerList(options.servers).text();
     return made;
 }
 
@@ -36,8 +36,8 @@ link::ClientProtocolOptions protocol_options(const UplinkOptions& options) {
 
 Uplink::Uplink(asio::io_context& io, UplinkOptions options, Feed& feed)
     : io_(io), options_(std::move(options)), feed_(feed), buffer_(options_.buffer_bytes_max),
-      protocol_(protocol_options(options_), buffer_, Clock::now()), backoff_(options_.backoff_seed, options_.backoff),
-      feed_wake_(io), write_wake_(io), progress_wake_(io) {}
+      protocol_(protocol_options(options_), buffer_, Clock::now()), servers_(options_.servers),
+      backoff_(options_.backoff_seed, options_.backoff), feed_wake_(io), write_wake_(io), progress_wake_(io) {}
 
 asio::awaitable<Result<>> Uplink::run() {
     co_await (keep_linked() || take_from_feed() || watch_progress());
@@ -150,7 +150,7 @@ std::string Uplink::what_is_wrong() const {
                (last_trouble_ ? fmt::format(" (before this link: {})", last_trouble_->message) : std::string());
     }
     if (last_trouble_) return last_trouble_->message;
-    return fmt::format("no answer from {} yet", options_.server.text());
+    return fmt::format("no answer from {} yet", servers_.current().text());
 }
 
 // Links ---------------------------------------------------------------------------------------------------------------
@@ -169,6 +169,7 @@ asio::awaitable<void> Uplink::keep_linked() {
             co_return;
         }
         last_trouble_ = failure.error;
+        if (servers_.choose_another(failure.address)) continue; // at once
         options_.on_trouble(failure.error);
         co_await wait(pause, Clock::now() + backoff_.next());
     }
@@ -176,7 +177,7 @@ asio::awaitable<void> Uplink::keep_linked() {
 
 asio::awaitable<wire::LinkError> Uplink::use_one_link() {
     net::LinkStream stream = net::client_stream(io_.get_executor(), options_.tls);
-    const auto connected = co_await net::connect(stream, options_.server, options_.connect_timeout);
+    const auto connected = co_await net::connect(stream, servers_.current(), options_.connect_timeout);
     if (!connected) co_return wire::LinkError{connected.error(), true};
     protocol_.open(Clock::now());
     const auto ended = co_await (read_frames(stream) || write_frames(stream) || watch_link());
@@ -195,18 +196,20 @@ asio::awaitable<wire::LinkError> Uplink::read_frames(net::LinkStream& stream) {
 
 wire::LinkError Uplink::closed(const net::LinkStream& stream, const boost::system::error_code& failed) const {
     if (net::is_refused_certificate(failed)) {
-        return lost(fmt::format("no encrypted link to {}: {}", options_.server.text(), failure_text(stream, failed)));
+        return lost(
+            fmt::format("no encrypted link to {}: {}", servers_.current().text(), failure_text(stream, failed)));
     }
     if (protocol_.is_welcome() || options_.tls || failed != asio::error::eof) {
         return lost(fmt::format("the connection was lost: {}", failed.message()));
     }
     return lost(fmt::format("{} closed the connection without an answer; if the server requires TLS, add --tls",
-                            options_.server.text()));
+                            servers_.current().text()));
 }
 
 std::optional<wire::LinkError> Uplink::take(std::size_t bytes) {
     const std::uint64_t acknowledged_before = buffer_.acknowledged();
     auto failure = protocol_.on_bytes(bytes, Clock::now());
+    if (protocol_.is_welcome()) servers_.settle();
     if (buffer_.acknowledged() > acknowledged_before) {
         backoff_.reset();
         last_trouble_.reset();

@@ -2,6 +2,7 @@
 
 #include "common/link/client_protocol.hpp"
 #include "common/net/connect.hpp"
+#include "common/net/server_list.hpp"
 #include "robot_client/sources/wake_signal.hpp"
 #include "robot_client/uplink/backoff.hpp"
 #include "robot_client/uplink/feed.hpp"
@@ -15,11 +16,12 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace scanloom::robot {
 
 struct UplinkOptions {
-    net::Address server;
+    std::vector<net::Address> servers;                    ///< at least one; the next one if one cannot be used
     net::TlsContext tls;                                  ///< none: the link is not encrypted
     link::ClientProtocolOptions protocol;                 ///< `server` is set by the Uplink
     std::size_t buffer_bytes_max = std::size_t{32} << 20; ///< of unacknowledged scans; when full, the source waits
@@ -120,6 +122,7 @@ private:
     Feed& feed_;
     SendBuffer buffer_;
     link::ClientProtocol protocol_;
+    net::ServerList servers_;
     Backoff backoff_;
     boost::asio::steady_timer feed_wake_;
     boost::asio::steady_timer write_wake_;

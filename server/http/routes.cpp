@@ -59,6 +59,7 @@ std::span<const Route> routes() noexcept {
         {kGet, "/api/v1/login", "getLogin", kOpen, kIo, kUnused, {}, get_login},
         {kPost, "/api/v1/login", "login", kOpen, kIo, kUnused, {}, post_login},
         {kDelete, "/api/v1/login", "logout", kOpen, kIo, kUnused, {}, delete_login},
+        {kGet, "/api/v1/nodes", "listNodes", kServer, kQueries, kListed, {}, list_nodes},
         {kGet, "/api/v1/backups", "listBackups", kBackup, kQueries, kUnused, {}, list_backups},
         {kPost, "/api/v1/backups", "makeBackup", kBackup, kStore, kUnused, {}, make_backup},
         {kGet, "/api/v1/sessions", "listSessions", kList, kQueries, kListed, kPage, list_sessions},

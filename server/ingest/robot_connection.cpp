@@ -230,6 +230,8 @@ asio::awaitable<Result<Protocol::Joined>> RobotConnection::enter(const wire::Hel
     const auto creator = sessions::creator_of(*permission_.token());
     auto session = co_await session_for(hello, services_.sessions, creator, services_.blocking_executor);
     if (!session && session.error().code == Errc::kFull) permission_.record_limit();
+    const auto owner = session ? nullptr : services_.sessions.owner(hello.session);
+    if (owner) protocol_.set_owner(owner->robots);
     if (!session) co_return session.error();
     const auto joined = co_await join_session(**session, hello, shared_from_this());
     if (!joined) co_return joined.error();

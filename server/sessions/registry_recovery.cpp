@@ -99,17 +99,16 @@ void recover_one(RegistryState& state, const SessionInfo& info, std::function<vo
 }
 
 /// Adds a session of a shared log without its maps, with the facts of its last checkpoint. Its owner may be writing it.
-void add_shared(RegistryState& state, SessionInfo info) {
+void add_shared(RegistryState& state, SessionInfo info, const store::SharedSession& shared) {
     auto checkpointed = read_checkpointed_summary(state.log, info.id, info.config);
-    const auto end = state.log.end_of(info.id);
     Summary summary;
     if (checkpointed && *checkpointed) summary = std::move(**checkpointed);
     mapping::Snapshot facts{.config = info.config};
     if (summary.facts) facts = *summary.facts;
-    if (end) facts.revision = *end;
+    facts.revision = shared.end;
     info.exclusions = facts.exclusions;
     summary.facts = std::make_shared<const mapping::Snapshot>(std::move(facts));
-    state.cache.add(std::move(info), std::move(summary));
+    state.cache.add(std::move(info), std::move(summary), shared);
 }
 
 /// Calls `recover` for each session, on the threads that compute, and waits for the ends.
@@ -123,18 +122,25 @@ void for_each_session(RegistryState& state, const std::vector<SessionInfo>& sess
     done->wait();
 }
 
+Result<> add_all_shared(RegistryState& state, const std::vector<SessionInfo>& found) {
+    auto list = state.log.shared()->list();
+    if (!list) return list.error();
+    for_each_session(state, found, [&](const SessionInfo& info, const std::function<void()>& done) {
+        const auto shared = list->sessions.find(info.id);
+        if (shared != list->sessions.end()) add_shared(state, info, shared->second);
+        done();
+    });
+    state.nodes.replace(std::move(list->nodes));
+    return {};
+}
+
 } // namespace
 
 Result<> recover_sessions(RegistryState& state) {
     auto all = state.log.sessions();
     if (!all) return all.error();
     if (state.log.shared() != nullptr) {
-        const auto found = recorded_sessions(without_copies(std::move(*all)), state.damaged);
-        for_each_session(state, found, [&](const SessionInfo& info, const std::function<void()>& done) {
-            add_shared(state, info);
-            done();
-        });
-        return {};
+        return add_all_shared(state, recorded_sessions(without_copies(std::move(*all)), state.damaged));
     }
     const auto stored = settle_copies(state.log, std::move(*all));
     if (!stored) return stored.error();
@@ -148,30 +154,31 @@ Result<> recover_sessions(RegistryState& state) {
 Result<> discover(RegistryState& state, std::string_view name) {
     auto* const shared = state.log.shared();
     if (shared == nullptr) return no_such_session(name);
-    const auto stored = shared->find(name);
-    if (!stored) return stored.error();
-    if (!*stored) return no_such_session(name);
-    for (auto& info : recorded_sessions({**stored}, state.damaged)) add_shared(state, std::move(info));
+    const auto found = shared->find(name);
+    if (!found) return found.error();
+    if (!*found) return no_such_session(name);
+    for (auto& info : recorded_sessions({(*found)->stored}, state.damaged)) {
+        add_shared(state, std::move(info), (*found)->shared);
+    }
     return {};
 }
 
 Result<> discover_all(RegistryState& state) {
     auto* const shared = state.log.shared();
     if (shared == nullptr) return {};
-    const auto listed = state.cache.all(); // before the ids, so that they contain all that is listed and not removed
-    auto unknown = shared->ids();
-    if (!unknown) return unknown.error();
-    for (const auto& [info, session, summary] : listed) {
-        const bool exists = unknown->erase(info.id) > 0;
-        if (!exists && !session) state.cache.remove_evicted(info.name, info.id, no_such_session(info.name));
-    }
-    std::erase_if(*unknown, [&](store::SessionId id) { return state.damaged.contains(id); });
-    if (unknown->empty()) return {};
+    const auto asked = state.config.clock();
+    auto list = shared->list();
+    if (!list) return list.error();
+    auto unknown = state.cache.follow(list->sessions, asked);
+    state.nodes.replace(std::move(list->nodes));
+    std::erase_if(unknown, [&](store::SessionId id) { return state.damaged.contains(id); });
+    if (unknown.empty()) return {};
     auto stored = state.log.sessions();
     if (!stored) return stored.error();
-    std::erase_if(*stored, [&](const store::StoredSession& one) { return !unknown->contains(one.id); });
+    std::erase_if(*stored, [&](const store::StoredSession& one) { return !unknown.contains(one.id); });
     for (auto& info : recorded_sessions(*stored, state.damaged)) {
-        if (!state.cache.contains(info.name)) add_shared(state, std::move(info));
+        const auto id = info.id;
+        add_shared(state, std::move(info), list->sessions[id]);
     }
     return {};
 }

@@ -4,6 +4,7 @@
 #include "common/limits/memory_budget.hpp"
 #include "server/sessions/session_cache.hpp"
 #include "server/store/scan_log.hpp"
+#include "server/store/shared_sessions.hpp"
 
 #include <boost/asio/any_io_executor.hpp>
 
@@ -20,6 +21,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 /// The state that the parts of a registry share: SessionRegistry, SessionLoader and recover_sessions().
 namespace scanloom::sessions {
@@ -108,6 +110,25 @@ private:
     std::map<std::string, Damaged, std::less<>> damaged_;
 };
 
+/// The servers that share the log, as read last.
+/// Threads: any thread.
+class NodeList {
+public:
+    void replace(std::vector<store::Node> nodes) {
+        const std::lock_guard lock(mutex_);
+        nodes_ = std::move(nodes);
+    }
+
+    [[nodiscard]] std::vector<store::Node> all() const {
+        const std::lock_guard lock(mutex_);
+        return nodes_;
+    }
+
+private:
+    mutable std::mutex mutex_;
+    std::vector<store::Node> nodes_;
+};
+
 struct RegistryState {
     RegistryState(store::ScanLog& scan_log, RegistryConfig registry_config)
         : log(scan_log), config(std::move(registry_config)),
@@ -133,6 +154,7 @@ struct RegistryState {
     std::atomic<bool> finish_early = false; ///< the shutdown must end soon
     SessionCache cache;
     DamagedSessions damaged;
+    NodeList nodes; ///< empty: this server uses the log alone
 };
 
 } // namespace scanloom::sessions

@@ -1,6 +1,7 @@
 #include "server/sessions/session_cache.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <mutex>
 #include <utility>
 
@@ -34,7 +35,7 @@ std::optional<ListedSession> SessionCache::listed(std::string_view name) const {
     const auto found = entries_.find(name);
     if (found == entries_.end()) return std::nullopt;
     const Entry& entry = found->second;
-    return ListedSession{entry.info, entry.session, entry.summary};
+    return ListedSession{entry.info, entry.session, entry.summary, entry.shared};
 }
 
 std::vector<std::shared_ptr<Session>> SessionCache::loaded() const {
@@ -51,7 +52,7 @@ std::vector<ListedSession> SessionCache::all() const {
     const std::shared_lock lock(mutex_);
     std::vector<ListedSession> all;
     all.reserve(entries_.size());
-    for (const auto& [name, entry] : entries_) all.push_back({entry.info, entry.session, entry.summary});
+    for (const auto& [name, entry] : entries_) all.push_back({entry.info, entry.session, entry.summary, entry.shared});
     return all;
 }
 
@@ -64,12 +65,13 @@ void SessionCache::add(std::shared_ptr<Session> session, Clock::time_point now) 
     touch(entry, now);
 }
 
-void SessionCache::add(SessionInfo info, Summary summary) {
+void SessionCache::add(SessionInfo info, Summary summary, store::SharedSession shared) {
     const std::unique_lock lock(mutex_);
     if (entries_.contains(info.name) || reserved_.contains(info.name)) return;
     Entry& entry = entries_[info.name];
     entry.info = std::move(info);
     entry.summary = std::move(summary);
+    entry.shared = std::move(shared);
 }
 
 SessionCache::Reservation::Reservation(SessionCache& cache, std::string name) : cache_(cache), name_(std::move(name)) {
@@ -122,6 +124,7 @@ void SessionCache::end_load(std::shared_ptr<Session> session, Clock::time_point 
         entry.session = session;
         entry.state = State::kLoaded;
         entry.summary = {};
+        entry.shared = {};
         touch(entry, now);
         waiting.swap(entry.waiting);
     }
@@ -217,21 +220,12 @@ std::optional<ListedSession> SessionCache::begin_change(std::string_view name) {
 }
 
 void SessionCache::remove(std::string_view name, const Error& why) {
-    remove_if(name, why, [](const Entry&) { return true; });
-}
-
-void SessionCache::remove_evicted(std::string_view name, store::SessionId id, const Error& why) {
-    remove_if(name, why, [id](const Entry& entry) { return entry.state == State::kEvicted && entry.info.id == id; });
-}
-
-void SessionCache::remove_if(std::string_view name, const Error& why,
-                             const std::function<bool(const Entry&)>& is_meant) {
     std::vector<Loaded> waiting;
     std::shared_ptr<Session> last;
     {
         const std::unique_lock lock(mutex_);
         const auto found = entries_.find(name);
-        if (found == entries_.end() || !is_meant(found->second)) return;
+        if (found == entries_.end()) return;
         waiting.swap(found->second.waiting);
         last.swap(found->second.session);
         entries_.erase(found);
@@ -239,6 +233,39 @@ void SessionCache::remove_if(std::string_view name, const Error& why,
     arrival_.notify_all();
     for (const auto& on_loaded : waiting) on_loaded(why);
 }
+
+// Sessions of other servers
+
+std::set<store::SessionId> SessionCache::follow(const std::map<store::SessionId, store::SharedSession>& all,
+                                                Clock::time_point asked) {
+    std::set<store::SessionId> unknown;
+    for (const auto& [id, shared] : all) unknown.insert(id);
+    const std::unique_lock lock(mutex_);
+    for (auto at = entries_.begin(); at != entries_.end();) {
+        Entry& entry = at->second;
+        unknown.erase(entry.info.id);
+        const auto found = all.find(entry.info.id);
+        const bool is_evicted = entry.state == State::kEvicted;
+        if (is_evicted && found != all.end()) entry.shared = found->second;
+        const bool is_gone = is_evicted && found == all.end() && entry.used <= asked.time_since_epoch().count();
+        at = is_gone ? entries_.erase(at) : std::next(at);
+    }
+    return unknown;
+}
+
+void SessionCache::set_owner(std::string_view name, std::shared_ptr<const store::NodeInfo> owner) {
+    const std::unique_lock lock(mutex_);
+    const auto found = entries_.find(name);
+    if (found != entries_.end()) found->second.shared.owner = std::move(owner);
+}
+
+std::shared_ptr<const store::NodeInfo> SessionCache::owner(std::string_view name) const {
+    const std::shared_lock lock(mutex_);
+    const auto found = entries_.find(name);
+    return found == entries_.end() || found->second.session ? nullptr : found->second.shared.owner;
+}
+
+// Changes
 
 std::optional<EvictedSession> SessionCache::cancel_change(std::string_view name) {
     std::vector<Loaded> waiting;

@@ -3,6 +3,7 @@
 #include "common/error/error.hpp"
 #include "server/sessions/session.hpp"
 #include "server/sessions/summary.hpp"
+#include "server/store/shared_sessions.hpp"
 
 #include <atomic>
 #include <chrono>
@@ -25,6 +26,7 @@ struct ListedSession {
     SessionInfo info;
     std::shared_ptr<Session> session; ///< null: not in memory
     Summary summary;                  ///< only if it is not in memory
+    store::SharedSession shared = {}; ///< only if it is not in memory and several servers share the log
 };
 
 /// A session that must be loaded from the store.
@@ -69,7 +71,7 @@ public:
     void add(std::shared_ptr<Session> session, Clock::time_point now);
 
     /// Adds a session that is not in memory, unless there is one of that name or the name is reserved.
-    void add(SessionInfo info, Summary summary);
+    void add(SessionInfo info, Summary summary, store::SharedSession shared = {});
 
     /// Passes the session to `on_loaded`: immediately if it is in memory, otherwise when it has been loaded.
     ///
@@ -110,8 +112,19 @@ public:
     /// Removes the session from the list and passes `why` to the waiting callers.
     void remove(std::string_view name, const Error& why);
 
-    /// Does the same only if the session has this number and is evicted.
-    void remove_evicted(std::string_view name, store::SessionId id, const Error& why);
+    /// Makes the list that of a log that several servers share: sets which server has each session, and removes
+    /// sessions that are not in the log any more. Does not change those that are in memory or in transition.
+    /// @param all    the sessions in the log
+    /// @param asked  when the log was asked; sessions used since then stay
+    /// @return those of `all` that the cache lacks
+    [[nodiscard]] std::set<store::SessionId> follow(const std::map<store::SessionId, store::SharedSession>& all,
+                                                    Clock::time_point asked);
+
+    /// Sets which server has a session that is not in memory.
+    void set_owner(std::string_view name, std::shared_ptr<const store::NodeInfo> owner);
+
+    /// Returns the server that has the session, as far as is known; null: this one, or none.
+    [[nodiscard]] std::shared_ptr<const store::NodeInfo> owner(std::string_view name) const;
 
     /// Ends the transition of begin_change() without a change.
     /// @return a session to load, as request()
@@ -128,6 +141,7 @@ private:
         State state = State::kEvicted;
         std::shared_ptr<Session> session; // also while it is being evicted or deleted
         Summary summary;                  // of a session that is not in memory
+        store::SharedSession shared;      // of a session that is not in memory
         mutable std::atomic<Clock::rep> used = 0;
         std::vector<Loaded> waiting;
     };
@@ -136,7 +150,6 @@ private:
     [[nodiscard]] static EvictedSession load(Entry& entry);
     [[nodiscard]] static std::optional<EvictedSession> load_if_wanted(Entry& entry);
     void touch(const Entry& entry, Clock::time_point now) const;
-    void remove_if(std::string_view name, const Error& why, const std::function<bool(const Entry&)>& is_meant);
 
     mutable std::shared_mutex mutex_; // guards the entries and names; held briefly
     mutable std::condition_variable_any arrival_;

@@ -83,7 +83,11 @@ void SessionLoader::read(const Wanted& wanted) {
     if (session && *session) return cache.end_load(std::move(*session), state_.config.clock());
     if (session) return cache.fail_load(info.name, shutting_down());
     const Error& why = session.error();
-    if (why.code == Errc::kNotOwner) return cache.fail_load(info.name, why);
+    if (why.code == Errc::kNotOwner) {
+        auto found = state_.log.shared()->find(info.name);
+        if (found && *found) cache.set_owner(info.name, std::move((*found)->shared.owner));
+        return cache.fail_load(info.name, why);
+    }
     if (why.code == Errc::kNotFound || why.code == Errc::kGone)
         return cache.remove(info.name, no_such_session(info.name));
     if (state_.log.stats().last_error) { // the session may be intact

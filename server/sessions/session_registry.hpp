@@ -70,6 +70,14 @@ public:
     /// Returns the sessions that could not be recovered, with the reason for each, by name.
     [[nodiscard]] std::map<std::string, Error> damaged() const { return state_.damaged.all(); }
 
+    /// Returns the server that has the session, as it was known a second ago; null: this one, or none.
+    [[nodiscard]] std::shared_ptr<const store::NodeInfo> owner(std::string_view name) const {
+        return state_.cache.owner(name);
+    }
+
+    /// Returns the servers that share the log, by name; empty: this one uses it alone.
+    [[nodiscard]] std::vector<store::Node> nodes() const { return state_.nodes.all(); }
+
     /// Creates an empty session.
     ///
     /// @param creator  the creator and its limits

@@ -13,7 +13,7 @@ constexpr std::chrono::seconds kRenewEvery{1};
 
 } // namespace
 
-Node::~Node() {
+OwnNode::~OwnNode() {
     if (!thread_.joinable()) return;
     thread_.request_stop();
     thread_.join();
@@ -24,7 +24,7 @@ Node::~Node() {
     static_cast<void>(connection->run("DELETE FROM scanloom.node WHERE id = $1", parameters));
 }
 
-Result<> Node::enter(Connection& connection, std::string name) {
+Result<> OwnNode::enter(Connection& connection, std::string name) {
     Parameters parameters;
     parameters.add(std::string_view(name));
     const auto left = connection.run("DELETE FROM scanloom.node WHERE name = convert_from($1, 'UTF8')", parameters);
@@ -39,7 +39,7 @@ Result<> Node::enter(Connection& connection, std::string name) {
     return {};
 }
 
-Result<> Node::renew(Connection& connection) const {
+Result<> OwnNode::renew(Connection& connection) const {
     Parameters parameters;
     parameters.add(id_);
     const auto rows = connection.run("UPDATE scanloom.node SET seen = now() WHERE id = $1 RETURNING id", parameters);
@@ -51,7 +51,7 @@ Result<> Node::renew(Connection& connection) const {
                              name_, place_.text)};
 }
 
-Result<> Node::announce(const NodeInfo& info) const {
+Result<> OwnNode::announce(const NodeInfo& info) const {
     auto connection = Connection::open(place_);
     if (!connection) return connection.error();
     Parameters parameters;
@@ -67,7 +67,7 @@ Result<> Node::announce(const NodeInfo& info) const {
 }
 
 /// Renews the row until the end. A database that cannot be used is tried again: appends find out by themselves.
-void Node::keep(const std::stop_token& stop) {
+void OwnNode::keep(const std::stop_token& stop) {
     std::optional<Connection> connection;
     auto renewed_at = Clock::now();
     steady_since_ = renewed_at;
@@ -86,7 +86,7 @@ void Node::keep(const std::stop_token& stop) {
 }
 
 /// Renews the row over a connection, which is opened if it does not exist and closed if it fails.
-Result<> Node::renew_over(std::optional<Connection>& connection) const {
+Result<> OwnNode::renew_over(std::optional<Connection>& connection) const {
     if (!connection) {
         auto opened = Connection::open(place_);
         if (!opened) return opened.error();

@@ -17,22 +17,22 @@
 
 namespace scanloom::store::postgres {
 
+/// A node whose row is older than this, by the database's clock, counts as dead.
+inline constexpr std::chrono::seconds kDeadAfter{5};
+
 /// This server's row in the table of nodes, which it renews each second. The row only says that the server lives: what
 /// it writes is safe by the epochs of its sessions.
 /// Threads: any.
-class Node {
+class OwnNode {
 public:
-    /// A node whose row is older than this, by the database's clock, counts as dead.
-    static constexpr std::chrono::seconds kDeadAfter{5};
-
     /// @param place, shared  must outlive the node
-    Node(const Place& place, SharedState& shared) : place_(place), shared_(shared) {}
+    OwnNode(const Place& place, SharedState& shared) : place_(place), shared_(shared) {}
 
     /// Removes the row, so that others may take the sessions at once.
-    ~Node();
+    ~OwnNode();
 
-    Node(const Node&) = delete;
-    Node& operator=(const Node&) = delete;
+    OwnNode(const OwnNode&) = delete;
+    OwnNode& operator=(const OwnNode&) = delete;
 
     /// Enters the server, in place of an earlier one of this name, whose sessions have no owner then. Call once.
     [[nodiscard]] Result<> enter(Connection& connection, std::string name);

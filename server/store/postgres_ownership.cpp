@@ -34,7 +34,7 @@ OwnedSessions sessions_in(const Rows& rows) {
 Result<std::optional<State>> state_of(Connection& connection, SessionId session) {
     Parameters parameters;
     parameters.add(signed_of(session));
-    parameters.add(std::int64_t{Node::kDeadAfter.count()});
+    parameters.add(std::int64_t{kDeadAfter.count()});
     const auto rows =
         connection.run("SELECT s.epoch, coalesce(n.id, 0), (n.seen < now() - make_interval(secs => $2))::int::bigint,"
                        " coalesce(n.name || CASE WHEN n.http = '' THEN '' ELSE ' at ' || n.http END, '')"

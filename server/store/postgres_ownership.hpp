@@ -20,7 +20,7 @@ enum class Sharing : std::uint8_t { kWithNodes, kAlone };
 
 struct Taker {
     std::int64_t node = 0;
-    bool is_steady = false; ///< Node::is_steady()
+    bool is_steady = false; ///< OwnNode::is_steady()
 };
 
 /// Makes a node the owner of a session that has no owner that lives, and raises its epoch: earlier owners change

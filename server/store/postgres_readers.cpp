@@ -59,32 +59,6 @@ Result<std::vector<StoredSession>> Readers::sessions() {
     return sessions;
 }
 
-Result<std::optional<StoredSession>> Readers::find(std::string_view name) {
-    auto connection = take();
-    if (!connection) return connection.error();
-    Parameters parameters;
-    parameters.add(name);
-    const auto rows = connection->run("SELECT id, record FROM scanloom.session WHERE name = convert_from($1, 'UTF8')"
-                                      " AND NOT removed",
-                                      parameters, Connection::kReadTimeout);
-    if (!rows) return rows.error();
-    give_back(std::move(*connection));
-    if (rows->size() == 0) return std::optional<StoredSession>();
-    return std::optional(StoredSession{static_cast<SessionId>(rows->number(0, 0)), std::string(rows->bytes(0, 1))});
-}
-
-Result<std::set<SessionId>> Readers::ids() {
-    auto connection = take();
-    if (!connection) return connection.error();
-    const auto rows = connection->run("SELECT id FROM scanloom.session WHERE NOT removed AND name IS NOT NULL", {},
-                                      Connection::kReadTimeout);
-    if (!rows) return rows.error();
-    give_back(std::move(*connection));
-    std::set<SessionId> ids;
-    for (int row = 0; row < rows->size(); ++row) ids.insert(static_cast<SessionId>(rows->number(row, 0)));
-    return ids;
-}
-
 Result<Revision> Readers::end_of(SessionId session) {
     auto connection = take();
     if (!connection) return connection.error();

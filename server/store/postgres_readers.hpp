@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <mutex>
 #include <optional>
-#include <set>
 #include <string_view>
 #include <vector>
 
@@ -20,14 +19,12 @@ class Readers {
 public:
     explicit Readers(Place place) : place_(std::move(place)) {}
 
+    /// Returns a connection for reading, which the caller gives back unless it failed.
+    [[nodiscard]] Result<Connection> take();
+    void give_back(Connection connection);
+
     /// Returns all sessions that are not removed, by ascending id.
     [[nodiscard]] Result<std::vector<StoredSession>> sessions();
-
-    /// Returns the session with this name; nullopt: there is none.
-    [[nodiscard]] Result<std::optional<StoredSession>> find(std::string_view name);
-
-    /// Returns the ids of all sessions with a name.
-    [[nodiscard]] Result<std::set<SessionId>> ids();
 
     /// Returns the last revision of a session, which its owner may be extending.
     /// Errors: kNotFound; kStoreFailed.
@@ -53,8 +50,6 @@ public:
 private:
     static constexpr std::size_t kIdleMax = 4;
 
-    [[nodiscard]] Result<Connection> take();
-    void give_back(Connection connection);
     [[nodiscard]] Result<std::uint64_t> ask_size();
 
     const Place place_;

@@ -3,6 +3,7 @@
 #include "server/store/postgres_append_queue.hpp"
 #include "server/store/postgres_checkpoints.hpp"
 #include "server/store/postgres_connection.hpp"
+#include "server/store/postgres_list.hpp"
 #include "server/store/postgres_node.hpp"
 #include "server/store/postgres_owned_sessions.hpp"
 #include "server/store/postgres_ownership.hpp"
@@ -20,7 +21,6 @@
 #include <future>
 #include <mutex>
 #include <optional>
-#include <set>
 #include <shared_mutex>
 #include <string>
 #include <string_view>
@@ -64,8 +64,8 @@ public:
     [[nodiscard]] SharedSessions* shared() override { return this; }
     [[nodiscard]] Result<> own(SessionId session) override;
     [[nodiscard]] Result<> disown(SessionId session) override;
-    [[nodiscard]] Result<std::optional<StoredSession>> find(std::string_view name) override;
-    [[nodiscard]] Result<std::set<SessionId>> ids() override;
+    [[nodiscard]] Result<std::optional<FoundSession>> find(std::string_view name) override;
+    [[nodiscard]] Result<SharedList> list() override;
     [[nodiscard]] Result<> announce(const NodeInfo& info) override;
 
 private:
@@ -83,7 +83,7 @@ private:
     std::optional<Connection> lock_;   // holds the lock of the store
     Checkpoints checkpoints_{place_, shared_, size_limit_};
     mutable Readers readers_;
-    Node node_{place_, shared_}; // leaves after the queues have ended
+    OwnNode node_{place_, shared_}; // leaves after the queues have ended
     SessionTable sessions_{place_, shared_, size_limit_, node_};
     std::array<std::unique_ptr<AppendQueue>, kQueues> queues_;
     std::optional<Sweeper> sweeper_; // last: uses the others
@@ -211,14 +211,22 @@ Result<> PostgresScanLog::disown(SessionId session) {
     return sessions_.disown(session);
 }
 
-Result<std::optional<StoredSession>> PostgresScanLog::find(std::string_view name) {
+Result<std::optional<FoundSession>> PostgresScanLog::find(std::string_view name) {
     const std::shared_lock use(in_use_);
-    return readers_.find(name);
+    auto connection = readers_.take();
+    if (!connection) return connection.error();
+    auto found = find_session(*connection, name, node_.id());
+    if (found) readers_.give_back(std::move(*connection));
+    return found;
 }
 
-Result<std::set<SessionId>> PostgresScanLog::ids() {
+Result<SharedList> PostgresScanLog::list() {
     const std::shared_lock use(in_use_);
-    return readers_.ids();
+    auto connection = readers_.take();
+    if (!connection) return connection.error();
+    auto list = list_sessions(*connection, node_.id());
+    if (list) readers_.give_back(std::move(*connection));
+    return list;
 }
 
 Result<> PostgresScanLog::announce(const NodeInfo& info) { return node_.announce(info); }

@@ -16,7 +16,7 @@ namespace scanloom::store::postgres {
 class SessionTable {
 public:
     /// @param place, shared, size_limit, node  must outlive the table
-    SessionTable(const Place& place, SharedState& shared, SizeLimit& size_limit, const Node& node)
+    SessionTable(const Place& place, SharedState& shared, SizeLimit& size_limit, const OwnNode& node)
         : shared_(shared), size_limit_(size_limit), node_(node), writer_(place, shared) {}
 
     /// Creates a session, which this node owns.
@@ -41,7 +41,7 @@ public:
 private:
     SharedState& shared_;
     SizeLimit& size_limit_;
-    const Node& node_;
+    const OwnNode& node_;
     Writer writer_;
 };
 

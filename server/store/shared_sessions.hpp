@@ -3,8 +3,11 @@
 #include "common/error/error.hpp"
 #include "server/store/scan_log.hpp"
 
+#include <chrono>
+#include <cstddef>
+#include <map>
+#include <memory>
 #include <optional>
-#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,9 +16,36 @@ namespace scanloom::store {
 
 /// What a server tells the others about itself.
 struct NodeInfo {
+    std::string name;   ///< unique among the servers that share the log
     std::string robots; ///< where robots connect, HOST:PORT
     std::string http;   ///< SCHEME://HOST:PORT
     std::string build;  ///< version of the program
+};
+
+/// A server as the others see it.
+struct Node {
+    std::shared_ptr<const NodeInfo> info;
+    std::chrono::milliseconds silent{}; ///< time since it last wrote that it lives
+    bool is_alive = false;
+    bool is_self = false;
+    std::size_t sessions = 0; ///< that it owns
+};
+
+/// A session with the server that has it.
+struct SharedSession {
+    Revision end = 0;                           ///< of its log
+    std::shared_ptr<const NodeInfo> owner = {}; ///< null: this server, or none that lives
+};
+
+/// The servers, by name, and the sessions that have a name.
+struct SharedList {
+    std::vector<Node> nodes;
+    std::map<SessionId, SharedSession> sessions;
+};
+
+struct FoundSession {
+    StoredSession stored;
+    SharedSession shared;
 };
 
 /// The sessions of a log that several servers (nodes) share. Each is changed by one node at a time, its owner.
@@ -40,12 +70,12 @@ public:
     [[nodiscard]] virtual Result<> disown(SessionId session) = 0;
 
     /// Returns the session with this name; nullopt: there is none.
-    [[nodiscard]] virtual Result<std::optional<StoredSession>> find(std::string_view name) = 0;
+    [[nodiscard]] virtual Result<std::optional<FoundSession>> find(std::string_view name) = 0;
 
-    /// Returns the ids of all sessions that have a name.
-    [[nodiscard]] virtual Result<std::set<SessionId>> ids() = 0;
+    /// Returns all servers and sessions.
+    [[nodiscard]] virtual Result<SharedList> list() = 0;
 
-    /// Tells the other nodes about this one. Call once.
+    /// Tells the other nodes about this one, whose name they know. Call once.
     [[nodiscard]] virtual Result<> announce(const NodeInfo& info) = 0;
 };
 

@@ -64,7 +64,7 @@ private:
 
 robot::UplinkOptions options_of(const RobotPlan& plan, std::uint16_t port, const LinkTimeouts& timeouts) {
     robot::UplinkOptions options;
-    options.server = {"127.0.0.1", std::to_string(port)};
+    options.servers = {{"127.0.0.1", std::to_string(port)}};
     options.connect_timeout = timeouts.welcome;
     options.give_up_after = options.give_up_after_end = timeouts.give_up_after;
     options.backoff_seed = plan.seed;

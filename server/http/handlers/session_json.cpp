@@ -116,7 +116,12 @@ boost::json::object to_json(const sessions::Session& session) {
 boost::json::object to_json(const sessions::ListedSession& listed, std::optional<std::string> store_failure) {
     const auto* session = listed.session.get();
     const auto maps = session == nullptr ? listed.summary.facts : session->snapshot();
-    return session_json(listed.info, *maps, session, std::move(store_failure));
+    auto json = session_json(listed.info, *maps, session, std::move(store_failure));
+    if (const auto& owner = listed.shared.owner) {
+        json["node"] = owner->name;
+        json["revision"] = listed.shared.end;
+    }
+    return json;
 }
 
 boost::json::object failed_json(std::string_view name, const Error& reason) {

@@ -236,6 +236,21 @@ boost::json::object backup_json(const store::Backup& backup) {
 
 } // namespace
 
+Result<Response> list_nodes(Context& context) {
+    boost::json::array listed;
+    for (const auto& [info, silent, is_alive, is_self, sessions] : context.services.sessions.nodes()) {
+        listed.push_back(boost::json::object{{"name", info->name},
+                                             {"alive", is_alive},
+                                             {"self", is_self},
+                                             {"silent", std::chrono::duration<double>(silent).count()},
+                                             {"sessions", sessions},
+                                             {"robots", info->robots},
+                                             {"http", info->http},
+                                             {"version", info->build}});
+    }
+    return ok(boost::json::object{{"nodes", std::move(listed)}});
+}
+
 Result<Response> list_backups(Context& context) {
     auto* const backups = context.services.backups;
     if (backups == nullptr) return none_kept();

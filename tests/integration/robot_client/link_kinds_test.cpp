@@ -45,8 +45,7 @@ protected:
 
     UplinkOptions options() {
         UplinkOptions made;
-        made.server.host = "127.0.0.1";
-        made.server.port = std::to_string(server_->port());
+        made.servers = {{"127.0.0.1", std::to_string(server_->port())}};
         made.protocol.hello.robot = "r1";
         made.protocol.hello.session = "s1";
         made.give_up_after = 20s;

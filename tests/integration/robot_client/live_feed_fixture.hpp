@@ -97,8 +97,7 @@ protected:
 
     UplinkOptions uplink_options() {
         UplinkOptions made;
-        made.server.host = "127.0.0.1";
-        made.server.port = std::to_string(server_.port());
+        made.servers = {{"127.0.0.1", std::to_string(server_.port())}};
         made.protocol.hello.robot = "r1";
         made.protocol.hello.session = "s1";
         made.buffer_bytes_max = 100'000;

@@ -41,8 +41,7 @@ protected:
 
     UplinkOptions options() {
         UplinkOptions made;
-        made.server.host = "127.0.0.1";
-        made.server.port = std::to_string(server_->port());
+        made.servers = {{"127.0.0.1", std::to_string(server_->port())}};
         made.protocol.hello.robot = "r1";
         made.protocol.hello.session = "s1";
         made.give_up_after = 20s;
@@ -92,6 +91,26 @@ TEST_F(UplinkTest, StreamsEverythingAndSendsGoodbye) {
     EXPECT_EQ(uplink_->status().acknowledged, kScans);
     EXPECT_EQ(uplink_->status().reconnects, 0U);
     EXPECT_GT(server_->largest_batch(), 1U) << "without a pace, several scans share a frame";
+}
+
+TEST_F(UplinkTest, TheServerThatHasTheSessionIsConnectedAtOnce) {
+    FakeServer owner(io_, {{}});
+    serve({{.refuse_hello =
+                wire::LinkError{{Errc::kNotOwner, "not here"}, true, "127.0.0.1:" + std::to_string(owner.port())}}});
+    auto made = options();
+    made.backoff.first = 1h; // there would be no time to wait
+    EXPECT_TRUE(run(made));
+    EXPECT_EQ(owner.stored().size(), kScans);
+    EXPECT_THAT(server_->stored(), IsEmpty());
+    EXPECT_THAT(troubles_, IsEmpty());
+}
+
+TEST_F(UplinkTest, TheNextServerIsTriedWhenOneCannotBeReached) {
+    serve({{}});
+    auto made = options();
+    made.servers.insert(made.servers.begin(), {{"127.0.0.1", "1"}, {"127.0.0.1", "2"}});
+    EXPECT_TRUE(run(made));
+    expect_all_stored_once();
 }
 
 TEST_F(UplinkTest, RequestsAreAnsweredBetweenScans) {

@@ -16,9 +16,9 @@ class LinkTest(unittest.TestCase):
         self.addCleanup(self.server.stop)
         return self.server
 
-    def client(self, timing=None, **options):
+    def client(self, timing=None, server=None, **options):
         """A robot that close() does not wait for when the test fails."""
-        client = scanloom_client.Client(self.server.address, session="s", robot="r",
+        client = scanloom_client.Client(server or self.server.address, session="s", robot="r",
                                         timing=scanloom_client.Timing(**{**QUICK, **(timing or {})}), **options)
         self.addCleanup(self._abort, client)
         return client

@@ -3,7 +3,7 @@ import socket
 import threading
 import unittest
 
-from fake_server import well
+from fake_server import FakeServer, well
 from fixture import LinkTest
 from programs import scanloom_client
 
@@ -53,6 +53,26 @@ class Resuming(LinkTest):
 
         self.start(overloaded, well)
         with self.client() as robot:
+            self.send(robot, self.laser(robot), 3)
+        self.assert_stored(3)
+
+    def test_the_server_that_has_the_session_is_connected_at_once(self):
+        owner = self.start(well)
+
+        def elsewhere(link):
+            link.receive()
+            link.send(error={"code": 23, "message": "not here", "retryable": True, "address": owner.address})
+
+        other = FakeServer(elsewhere)
+        self.addCleanup(other.stop)
+        with self.client(server=other.address, timing={"backoff_first": 3600.0}) as robot:
+            self.send(robot, self.laser(robot), 3)
+        self.assert_stored(3)
+        self.assertEqual(other.stored, [])
+
+    def test_the_next_server_is_tried_when_one_cannot_be_reached(self):
+        self.start(well)
+        with self.client(server=f"127.0.0.1:1,127.0.0.1:2,{self.server.address}") as robot:
             self.send(robot, self.laser(robot), 3)
         self.assert_stored(3)
 

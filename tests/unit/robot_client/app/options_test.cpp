@@ -70,8 +70,7 @@ TEST_F(Options, AreAcceptedBeforeAndAfterTheSubcommand) {
                                    "r"},
           std::vector<std::string>{"--session", "s", "replay", "--speed=2", "--robot=r", "f.clf", "--server=h:1"}}) {
         const auto options = parsed(words);
-        EXPECT_EQ(options.server.host, "h");
-        EXPECT_EQ(options.server.port, "1");
+        EXPECT_EQ(options.servers.at(0).text(), "h:1");
         EXPECT_EQ(options.session, "s");
         EXPECT_EQ(std::get<ReplayOptions>(options.source).file, "f.clf");
         EXPECT_EQ(std::get<ReplayOptions>(options.source).speed, 2.0);
@@ -80,7 +79,7 @@ TEST_F(Options, AreAcceptedBeforeAndAfterTheSubcommand) {
 
 TEST_F(Options, DefaultsAreAsDocumented) {
     const auto replay = parsed({"replay", "f", "--session", "s", "--robot", "r"});
-    EXPECT_EQ(replay.server.host + ":" + replay.server.port, "127.0.0.1:7447");
+    EXPECT_EQ(replay.servers.at(0).text(), "127.0.0.1:7447");
     EXPECT_EQ(std::get<ReplayOptions>(replay.source).speed, 0.0);
     EXPECT_FALSE(replay.give_up_after) << "it depends on the source";
     EXPECT_TRUE(replay.spool.empty());
@@ -265,13 +264,15 @@ TEST_F(Options, MissingFileOfTheEnvironmentIsAnError) {
 }
 
 TEST_F(Options, ServerIsHostAndPort) {
-    const auto host = [&](const std::string& server) {
-        return parsed({"replay", "f", "--session", "s", "--robot", "r", "--server", server}).server.host;
+    const auto servers = [&](const std::string& server) {
+        return parsed({"replay", "f", "--session", "s", "--robot", "r", "--server", server}).servers;
     };
-    EXPECT_EQ(host("maps.example:7447"), "maps.example");
-    EXPECT_EQ(host("[::1]:7447"), "::1");
-    for (const char* bad :
-         {"host", "host:", ":1", "host:0", "host:65536", "host:x", "::1:7447", "host:-1", "host:99999999999"}) {
+    EXPECT_EQ(servers("maps.example:7447").at(0).host, "maps.example");
+    EXPECT_EQ(servers("[::1]:7447").at(0).host, "::1");
+    EXPECT_EQ(servers("a:1,[::1]:2,c:3").at(1).text(), "[::1]:2");
+    EXPECT_EQ(servers("a:1,[::1]:2,c:3").size(), 3U);
+    for (const char* bad : {"host", "host:", ":1", "host:0", "host:65536", "host:x", "::1:7447", "host:-1",
+                            "host:99999999999", "host:1,", "host:1,,b:2"}) {
         const auto leave = left({"replay", "f", "--session", "s", "--robot", "r", "--server", bad});
         EXPECT_EQ(leave.code, kExitUsage) << bad;
         EXPECT_THAT(leave.text, HasSubstr("HOST:PORT"));

@@ -128,7 +128,7 @@ TEST(LidarProbes, TakePublishedPacketsOfAnLd06ForThoseOfAnLd06) {
         packet.start_angle = static_cast<std::uint16_t>(start);
         packet.end_angle = static_cast<std::uint16_t>(end);
         testing_support::Bytes bytes;
-        for (int packets = 0; packets < 3; ++packets) append(bytes, testing_support::bytes_of(packet));
+        for (int packets = 0; packets < 3; ++packets) testing_support::append(bytes, testing_support::bytes_of(packet));
         const auto lidar = lidar_probes().front().identify(bytes);
         ASSERT_TRUE(lidar);
         EXPECT_EQ(lidar->model, "ld06") << speed;

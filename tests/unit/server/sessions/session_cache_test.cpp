@@ -79,13 +79,20 @@ TEST_F(SessionCacheTest, AnEvictedSessionIsAddedOnlyIfItsNameIsNeitherReservedNo
     }
     add_evicted("a");
     expect_loaded("a", true);
-    cache_.remove_evicted("a", 1, {Errc::kNotFound, "gone"});
-    expect_loaded("a", true);
-    add_evicted("b");
-    cache_.remove_evicted("b", last_id_ + 1, {Errc::kNotFound, "gone"});
-    EXPECT_TRUE(cache_.contains("b")) << "another session had this name";
-    cache_.remove_evicted("b", last_id_, {Errc::kNotFound, "gone"});
-    EXPECT_FALSE(cache_.contains("b"));
+}
+
+TEST_F(SessionCacheTest, FollowsTheListOfALogThatServersShare) {
+    add("loaded", 1);
+    add_evicted("kept");
+    const auto kept = last_id_;
+    add_evicted("gone");
+    const auto node = std::make_shared<const store::NodeInfo>(store::NodeInfo{.name = "other"});
+    EXPECT_THAT(cache_.follow({{kept, {5, node}}, {77, {1, nullptr}}}, at(10)), ElementsAre(77));
+    EXPECT_TRUE(cache_.contains("loaded")) << "whoever uses it finds out";
+    EXPECT_EQ(cache_.owner("kept"), node);
+    EXPECT_EQ(cache_.listed("kept")->shared.end, 5U);
+    EXPECT_FALSE(cache_.contains("gone"));
+    EXPECT_EQ(cache_.owner("loaded"), nullptr);
 }
 
 TEST_F(SessionCacheTest, EvictsLeastRecentlyUsedSessionsAndNoMoreThanNeeded) {

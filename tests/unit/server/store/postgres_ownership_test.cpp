@@ -20,6 +20,7 @@ namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::Key;
 using testing::SizeIs;
 
 std::string record_of(const std::string& name, SessionId replaces = 0) {
@@ -66,6 +67,29 @@ TEST_F(PostgresOwnershipTest, ASessionIsChangedByItsOwnerAlone) {
     EXPECT_TRUE(append_and_wait(*b, session, 2, {"of b"}));
     EXPECT_EQ(own(*a, session).error().code, Errc::kNotOwner);
     EXPECT_EQ(own(*b, 77).error().code, Errc::kNotFound);
+}
+
+TEST_F(PostgresOwnershipTest, ServersKnowEachOtherAndWhoHasWhichSession) {
+    const auto a = open("a");
+    const auto b = open("b");
+    ASSERT_TRUE(a->shared()->announce({.robots = "robots:1", .http = "http://web:2", .build = "1.0"}));
+    const auto of_a = a->create_session(record_of("of_a")).value();
+    const auto of_b = b->create_session(record_of("of_b")).value();
+    ASSERT_TRUE(append_and_wait(*a, of_a, 1, {"x", "y"}));
+    const auto list = b->shared()->list().value();
+    ASSERT_THAT(list.nodes, SizeIs(2));
+    EXPECT_EQ(list.nodes[0].info->name, "a");
+    EXPECT_EQ(list.nodes[0].info->http, "http://web:2");
+    EXPECT_TRUE(list.nodes[0].is_alive && !list.nodes[0].is_self);
+    EXPECT_TRUE(list.nodes[1].is_alive && list.nodes[1].is_self);
+    EXPECT_EQ(list.nodes[0].sessions, 1U);
+    EXPECT_EQ(list.sessions.at(of_a).end, 2U);
+    EXPECT_EQ(list.sessions.at(of_a).owner->robots, "robots:1");
+    EXPECT_EQ(list.sessions.at(of_b).owner, nullptr) << "this server has it";
+    EXPECT_EQ(b->shared()->find("of_a").value().value().shared.owner->build, "1.0");
+    static_cast<void>(database_.run("UPDATE scanloom.node SET seen = now() - interval '6 s' WHERE name = 'a'"));
+    const auto later = b->shared()->list().value();
+    EXPECT_EQ(later.sessions.at(of_a).owner == nullptr, !later.nodes[0].is_alive);
 }
 
 /// As of a server that was paused while its sessions were taken.
@@ -146,8 +170,8 @@ TEST_F(PostgresOwnershipTest, NamesAreUniqueOnAllServers) {
     const auto second = b->create_session(record_of("s"));
     EXPECT_EQ(second.error().code, Errc::kAlreadyExists);
     EXPECT_THAT(second.error().message, HasSubstr("session 's' exists already"));
-    EXPECT_EQ(b->shared()->find("s").value().value().id, session);
-    EXPECT_THAT(b->shared()->ids().value(), ElementsAre(session));
+    EXPECT_EQ(b->shared()->find("s").value().value().stored.id, session);
+    EXPECT_THAT(b->shared()->list().value().sessions, ElementsAre(Key(session)));
     ASSERT_TRUE(a->remove_session(session));
     EXPECT_FALSE(b->shared()->find("s").value());
     EXPECT_TRUE(b->create_session(record_of("s")));
@@ -157,11 +181,11 @@ TEST_F(PostgresOwnershipTest, ACopyHasTheNameWhenTheSessionThatItReplacesIsRemov
     const auto a = open("a");
     const auto session = a->create_session(record_of("s")).value();
     const auto copy = a->create_session(record_of("s", session)).value();
-    EXPECT_EQ(a->shared()->find("s").value().value().id, session);
-    EXPECT_THAT(a->shared()->ids().value(), ElementsAre(session));
+    EXPECT_EQ(a->shared()->find("s").value().value().stored.id, session);
+    EXPECT_THAT(a->shared()->list().value().sessions, ElementsAre(Key(session)));
     EXPECT_THAT(a->sessions().value(), SizeIs(2));
     ASSERT_TRUE(a->remove_session(session));
-    EXPECT_EQ(a->shared()->find("s").value().value().id, copy);
+    EXPECT_EQ(a->shared()->find("s").value().value().stored.id, copy);
     EXPECT_EQ(a->create_session(record_of("s")).error().code, Errc::kAlreadyExists);
 }
 
@@ -182,11 +206,11 @@ TEST_F(PostgresOwnershipTest, AStoreOfFormat1GetsNamesAndLosesItsOwners) {
     }
     EXPECT_THAT(open_postgres_read_only(database_.address).value().log->sessions().value(), SizeIs(2));
     const auto log = open("a");
-    EXPECT_EQ(log->shared()->find("s").value().value().id, session);
+    EXPECT_EQ(log->shared()->find("s").value().value().stored.id, session);
     ASSERT_TRUE(own(*log, session));
     EXPECT_TRUE(append_and_wait(*log, session, 2, {"b"}));
     ASSERT_TRUE(log->remove_session(session));
-    EXPECT_EQ(log->shared()->find("s").value().value().id, copy);
+    EXPECT_EQ(log->shared()->find("s").value().value().stored.id, copy);
 }
 
 /// Two servers take sessions at the same time, and the one that lost one writes nothing.

@@ -1,0 +1,55 @@
+#pragma once
+
+#include "common/net/connect.hpp"
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace scanloom::net {
+
+/// The servers that a client may use, of which several can share the same sessions. Tells which one is next.
+class ServerList {
+public:
+    /// @param servers  at least one
+    /// @param first    number of the one to begin with, modulo their count
+    explicit ServerList(std::vector<Address> servers, std::size_t first = 0)
+        : servers_(std::move(servers)), next_(first % servers_.size()) {}
+
+    /// Returns the server to connect to.
+    [[nodiscard]] const Address& current() const noexcept { return sent_to_ ? *sent_to_ : servers_[next_]; }
+
+    /// Returns the number of the current server in the list; nullopt: another server has named it.
+    [[nodiscard]] std::optional<std::size_t> index() const noexcept {
+        return sent_to_ ? std::nullopt : std::optional(next_);
+    }
+
+    /// Chooses another server after the current one could not be used.
+    /// @param address  that it has named instead, HOST:PORT; empty: none
+    /// @return whether to connect at once: it named a server. False if that was so kRedirectsMax times in a row, as
+    ///         when servers disagree.
+    [[nodiscard]] bool choose_another(std::string_view address);
+
+    /// The current server is in use.
+    void settle() noexcept { redirects_ = 0; }
+
+    /// Returns the addresses of the list, for messages.
+    [[nodiscard]] std::string text() const;
+
+    static constexpr int kRedirectsMax = 4;
+
+private:
+    std::vector<Address> servers_;
+    std::size_t next_;
+    std::optional<Address> sent_to_;
+    int redirects_ = 0; // in a row
+};
+
+/// Parses one or more addresses, HOST:PORT[,HOST:PORT...].
+/// Errors: those of parse_address().
+[[nodiscard]] Result<std::vector<Address>> parse_addresses(std::string_view text);
+
+} // namespace scanloom::net
