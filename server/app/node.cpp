@@ -1,6 +1,7 @@
 #include "server/app/node.hpp"
 
 #include "common/app/program.hpp"
+#include "common/net/tls.hpp"
 
 #include <unistd.h>
 
@@ -8,6 +9,8 @@
 #include <boost/asio/ip/tcp.hpp>
 #include <fmt/format.h>
 #include <fmt/ostream.h>
+
+#include <utility>
 
 namespace scanloom::app {
 namespace asio = boost::asio;
@@ -33,6 +36,14 @@ store::NodeInfo node_info(const ServerOptions& options, unsigned robot_port, uns
     return {.robots = address_of(options.listen, robot_port),
             .http = fmt::format("{}://{}", scheme, address_of(options.http, http_port)),
             .build = std::string(kVersion)};
+}
+
+Result<http::NodeLinks> node_links(store::ScanLog& log) {
+    auto* const shared = log.shared();
+    if (shared == nullptr) return http::NodeLinks();
+    auto tls = net::client_tls("");
+    if (!tls) return tls.error();
+    return http::NodeLinks{shared->secret(), std::move(*tls)};
 }
 
 } // namespace scanloom::app

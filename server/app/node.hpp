@@ -1,6 +1,8 @@
 #pragma once
 
+#include "common/error/error.hpp"
 #include "server/app/options.hpp"
+#include "server/http/context.hpp"
 #include "server/store/shared_sessions.hpp"
 
 #include <string>
@@ -15,5 +17,10 @@ namespace scanloom::app {
 /// machine's name.
 /// @param robot_port, http_port  on which it listens
 [[nodiscard]] store::NodeInfo node_info(const ServerOptions& options, unsigned robot_port, unsigned http_port);
+
+/// Returns what the server needs to pass requests on to the others. Their certificates must be valid for the system, or
+/// for the file that SSL_CERT_FILE names.
+/// Errors: those of net::client_tls().
+[[nodiscard]] Result<http::NodeLinks> node_links(store::ScanLog& log);
 
 } // namespace scanloom::app

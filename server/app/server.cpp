@@ -159,6 +159,9 @@ Result<> Server::listen(http::WebFiles web) {
     config.proxies = options_.http_proxies;
     config.tls = http_tls_;
     config.connections_max = limits_.http;
+    auto nodes = node_links(*log_);
+    if (!nodes) return nodes.error();
+    logins_.share(nodes->secret);
     http_work_.emplace(http::Executors{.metrics = pools_.metrics,
                                        .queries = pools_.queries,
                                        .whole_maps = pools_.whole_maps,
@@ -179,6 +182,7 @@ Result<> Server::listen(http::WebFiles web) {
                                        .work_classes = *http_work_,
                                        .web = std::move(web),
                                        .robots = {address.is_unspecified() ? "" : address.to_string(), ingest_->port()},
+                                       .nodes = std::move(*nodes),
                                        .backups = backups_.get(),
                                        .tile_bytes_max = options_.tile_cache_bytes});
     api_.emplace(*services_);

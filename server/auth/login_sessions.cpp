@@ -1,6 +1,9 @@
 #include "server/auth/login_sessions.hpp"
 
+#include "server/auth/login_cookie.hpp"
 #include "server/auth/token.hpp"
+
+#include <chrono>
 
 namespace scanloom::auth {
 
@@ -43,8 +46,13 @@ void LoginTable::make_room(const std::string& token_hash, double now) {
     }
 }
 
+double unix_seconds() {
+    return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
 std::string LoginSessions::open(const Token& token) {
     auto cookie = random_secret();
+    if (!secret_.empty()) cookie = signed_cookie(cookie, token.hash, date_(), secret_);
     const std::lock_guard lock(mutex_);
     table_.open(cookie, token.hash, now_());
     return cookie;
@@ -54,7 +62,12 @@ TokenRef LoginSessions::find(std::string_view cookie, const Authenticator& authe
     std::optional<std::string> hash;
     {
         const std::lock_guard lock(mutex_);
-        hash = table_.use(cookie, now_());
+        const double now = now_();
+        hash = table_.use(cookie, now);
+        if (!hash && !secret_.empty()) {
+            adopt(cookie, now);
+            hash = table_.use(cookie, now);
+        }
     }
     return hash ? authenticator.find_hash(*hash) : nullptr;
 }
@@ -62,6 +75,17 @@ TokenRef LoginSessions::find(std::string_view cookie, const Authenticator& authe
 void LoginSessions::close(std::string_view cookie) {
     const std::lock_guard lock(mutex_);
     table_.close(cookie);
+    if (secret_.empty() || !token_hash_in(cookie, date_(), LoginTable::kIdleSeconds, secret_)) return;
+    const double now = now_();
+    std::erase_if(closed_, [&](const auto& one) { return now - one.second > LoginTable::kIdleSeconds; });
+    if (closed_.size() < LoginTable::kLoginsMax) closed_[hash_of(cookie)] = now;
+}
+
+/// Opens a login that another server has made.
+void LoginSessions::adopt(std::string_view cookie, double now) {
+    if (closed_.contains(hash_of(cookie))) return;
+    const auto token_hash = token_hash_in(cookie, date_(), LoginTable::kIdleSeconds, secret_);
+    if (token_hash) table_.open(cookie, *token_hash, now);
 }
 
 } // namespace scanloom::auth

@@ -50,12 +50,25 @@ private:
     std::map<std::string, Login, std::less<>> logins_; // by the cookie's hash
 };
 
+/// Returns the time in seconds since 1970, UTC.
+[[nodiscard]] double unix_seconds();
+
 /// The browsers that are signed in, until this program ends.
+///
+/// If servers share a secret, a browser that has signed in at one of them is signed in at all, for kIdleSeconds after
+/// it signed in, and longer at those that it uses. Signing out removes the browser's cookie, but only the server that
+/// was asked refuses a copy of it.
 /// Threads: any thread.
 class LoginSessions {
 public:
-    /// @param now  a monotonic clock, in seconds
-    explicit LoginSessions(std::function<double()> now = steady_seconds) : now_(std::move(now)) {}
+    /// @param now   a monotonic clock, in seconds
+    /// @param date  the time in seconds since 1970, UTC, which the servers have in common
+    explicit LoginSessions(std::function<double()> now = steady_seconds, std::function<double()> date = unix_seconds)
+        : now_(std::move(now)), date_(std::move(date)) {}
+
+    /// Sets the secret of the servers that share a database. Call before any other function; without a call, this
+    /// server alone accepts its cookies.
+    void share(std::string secret) { secret_ = std::move(secret); }
 
     /// Signs a browser in with the token.
     /// @return the value for the browser's cookie
@@ -70,9 +83,14 @@ public:
     void close(std::string_view cookie);
 
 private:
+    void adopt(std::string_view cookie, double now);
+
     std::function<double()> now_;
-    std::mutex mutex_; // guards the table
+    std::function<double()> date_;
+    std::string secret_; // empty: logins are not shared
+    std::mutex mutex_;   // guards the members below
     LoginTable table_;
+    std::map<std::string, double, std::less<>> closed_; // shared logins that ended here: hash of the cookie, time
 };
 
 } // namespace scanloom::auth

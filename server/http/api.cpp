@@ -126,6 +126,21 @@ std::variant<Api::Admitted, Response> Api::admit(const Request& head, Routed rou
     return Admitted{std::move(routed), std::get<auth::TokenRef>(std::move(token)), std::move(permit)};
 }
 
+asio::awaitable<Result<std::shared_ptr<const store::NodeInfo>>> Api::owner_of(const Admitted& admitted,
+                                                                              const Request& request) const {
+    const std::shared_ptr<const store::NodeInfo> this_server;
+    const auto& match = admitted.routed.match;
+    const bool is_shared = !services_.nodes.secret.empty() && services_.recovered;
+    if (!is_shared || request.is_forwarded || !is_about_one_session(match.route.access)) co_return this_server;
+    auto& sessions = services_.sessions;
+    const std::string name(match.arguments["session"]);
+    if (auto known = sessions.owner(name)) co_return known;
+    const auto loaded = co_await load_session(sessions, name);
+    if (loaded || loaded.error().code != Errc::kNotOwner) co_return this_server;
+    if (auto known = sessions.owner(name)) co_return known;
+    co_return loaded.error();
+}
+
 asio::awaitable<Response> Api::answer(Admitted admitted, const Request& request) const {
     const auto& [match, query] = admitted.routed;
     Context context{services_, request, match.arguments, query, admitted.token};
@@ -134,6 +149,8 @@ asio::awaitable<Response> Api::answer(Admitted admitted, const Request& request)
         Result<Response> made = co_await call(match.route, context, admitted.permit);
         if (!made) {
             response = problem(made.error(), instance_of(request.target));
+            const bool is_misdirected = request.is_forwarded && made.error().code == Errc::kNotOwner;
+            if (is_misdirected) response->status = Status::misdirected_request; // the other server tries again
         } else {
             response = for_client(match.route.access, std::move(*made));
             const bool can_encode = context.work != WorkClass::kIo || response->gzip; // compressing takes milliseconds

@@ -7,9 +7,11 @@
 #include "server/http/routes.hpp"
 #include "server/http/target.hpp"
 #include "server/http/work_classes.hpp"
+#include "server/store/shared_sessions.hpp"
 
 #include <boost/asio/awaitable.hpp>
 
+#include <memory>
 #include <span>
 #include <variant>
 
@@ -47,6 +49,14 @@ public:
 
     /// Checks the permission and the Content-Type. For a large body, also takes a permit of its work.
     [[nodiscard]] std::variant<Admitted, Response> admit(const Request& head, Routed routed) const;
+
+    /// Finds out which server has the session of a request. If none has it, this one takes it.
+    /// @param request  not passed on by another server, which would go round in circles
+    /// @return the server to pass the request on to; null: this one answers
+    /// Errors: kNotOwner: the server that has it seems to be dead, and this one cannot take it yet; try again soon.
+    /// Threads: starts and ends on the executor of the coroutine.
+    [[nodiscard]] boost::asio::awaitable<Result<std::shared_ptr<const store::NodeInfo>>>
+    owner_of(const Admitted& admitted, const Request& request) const;
 
     /// Computes the response. The session that the route needs is loaded first; no thread waits for that.
     /// Threads: starts and ends on the executor of the coroutine.

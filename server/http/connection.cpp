@@ -1,12 +1,14 @@
 #include "server/http/connection.hpp"
 
 #include "common/net/await_tuple.hpp"
+#include "server/http/forwarded.hpp"
 #include "server/http/incoming.hpp"
 #include "server/http/problem.hpp"
 #include "server/http/response.hpp"
 #include "server/live/viewed_session.hpp"
 
 #include <boost/asio/dispatch.hpp>
+#include <boost/asio/steady_timer.hpp>
 #include <boost/beast/http/read.hpp>
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -25,6 +27,10 @@ namespace asio = boost::asio;
 namespace beast = boost::beast;
 
 constexpr std::size_t kReadBytes = 4096;
+
+/// How long a request waits for a session whose server does not answer: 5 s until it counts as dead, and some more.
+constexpr std::chrono::seconds kTakeOverMax{10};
+constexpr std::chrono::milliseconds kTakeOverPause{250};
 
 std::ptrdiff_t field_count(const Incoming& message) { return std::distance(message.begin(), message.end()); }
 
@@ -46,7 +52,7 @@ bool skip_empty_line(beast::flat_buffer& received) {
 Connection::Connection(net::LinkStream stream, std::shared_ptr<const Service> service)
     : stream_(std::move(stream)), deadline_(stream_.get_executor()),
       buffer_(service->config.header_bytes_max + kReadBytes), service_(std::move(service)),
-      writer_(stream_, deadline_, wait_, *service_) {
+      writer_(stream_, deadline_, wait_, *service_), forwarder_(stream_, writer_, *service_) {
     beast::error_code ignored;
     peer_ = stream_.socket().remote_endpoint(ignored).address().to_string();
     wait_.begin(PeerWait::Clock::now());
@@ -86,6 +92,7 @@ void Connection::stop() {
     asio::dispatch(stream_.get_executor(), [self = shared_from_this()] {
         self->stopping_ = true;
         if (self->viewer_) self->viewer_->stop();
+        self->forwarder_.stop();
         beast::error_code ignored;
         if (self->idle_) self->stream_.socket().cancel(ignored);
     });
@@ -94,6 +101,7 @@ void Connection::stop() {
 void Connection::abort() {
     asio::dispatch(stream_.get_executor(), [self = shared_from_this()] {
         self->close();
+        self->forwarder_.abort();
         if (self->viewer_) self->viewer_->abort();
     });
 }
@@ -148,10 +156,7 @@ asio::awaitable<bool> Connection::serve_request() {
         co_await refuse(error);
         co_return false;
     }
-    Request request = head_of(parser.get());
-    request.peer = peer_;
-    request.is_secure = stream_.is_encrypted();
-    request.is_of_viewer_page = std::ranges::count(service_->config.viewer_origins, request.origin) > 0;
+    Request request = request_of(parser.get());
     auto routed = service_->api.route(request);
     const auto bytes_max = body_bytes_max(std::get_if<Api::Routed>(&routed), service_->config);
     if (const auto refusal = refusal_of(parser, request, bytes_max, *service_)) {
@@ -174,6 +179,11 @@ asio::awaitable<bool> Connection::serve_request() {
                   .takes_chunks = parser.get().version() >= 11};
     Incoming message = parser.release();
     read_rest(message, request);
+    if (stopping_) manner.keep_alive = false;
+    if (const auto* known = std::get_if<Api::Admitted>(&admitted)) {
+        const auto passed_on = co_await pass_on(*known, request, message, manner);
+        if (passed_on) co_return *passed_on;
+    }
     const auto begin = std::chrono::steady_clock::now();
     std::optional<Response> response;
     if (auto* refusal = std::get_if<Response>(&admitted)) {
@@ -188,6 +198,53 @@ asio::awaitable<bool> Connection::serve_request() {
     }
     if (stopping_) manner.keep_alive = false;
     co_return co_await writer_.write(*response, manner);
+}
+
+/// Returns the request without its body, from the client that sent it, perhaps to another server.
+Request Connection::request_of(const Incoming& head) const {
+    Request request = head_of(head);
+    request.peer = peer_;
+    request.is_secure = stream_.is_encrypted();
+    request.is_of_viewer_page = std::ranges::count(service_->config.viewer_origins, request.origin) > 0;
+    const beast::string_view field(kForwardedField.data(), kForwardedField.size());
+    if (auto client = parse_forwarded(view(head[field]), service_->api.services().nodes.secret)) {
+        request.is_forwarded = true;
+        request.peer = std::move(client->peer);
+        request.is_secure = client->is_secure;
+    }
+    return request;
+}
+
+/// Passes a request on if another server has the session. If that server has ended, waits until the session is free,
+/// and takes it.
+/// @return whether the connection can take another request; nullopt: this server answers the request itself
+asio::awaitable<std::optional<bool>> Connection::pass_on(const Api::Admitted& admitted, const Request& request,
+                                                         const Incoming& message, Manner manner) {
+    const auto until = std::chrono::steady_clock::now() + kTakeOverMax;
+    asio::steady_timer pause(stream_.get_executor());
+    for (;;) {
+        const auto owner = co_await service_->api.owner_of(admitted, request);
+        if (owner && !*owner) co_return std::nullopt;
+        auto outcome = Forwarder::Outcome::kNotThere;
+        if (owner) outcome = co_await forwarder_.forward(**owner, request, message, manner);
+        if (outcome == Forwarder::Outcome::kAnswered) co_return true;
+        if (outcome == Forwarder::Outcome::kClosed) co_return false;
+        std::optional<Error> failure;
+        if (outcome == Forwarder::Outcome::kInterrupted) {
+            failure = {Errc::kUnreachable, fmt::format("server {}, which has the session, did not answer; it is not "
+                                                       "known whether it has carried the request out",
+                                                       (*owner)->name)};
+        } else if (stopping_ || std::chrono::steady_clock::now() > until) {
+            failure = owner ? Error{Errc::kNotOwner, fmt::format("server {} has the session and does not answer; try "
+                                                                 "again, and another server takes the session over",
+                                                                 (*owner)->name)}
+                            : owner.error();
+        }
+        if (failure) co_return co_await writer_.write(problem(*failure, instance_of(request.target)), manner);
+        service_->api.services().sessions.forget_owner(admitted.routed.match.arguments["session"]);
+        pause.expires_after(kTakeOverPause);
+        co_await pause.async_wait(kAwaitTuple);
+    }
 }
 
 /// Returns the request if its header permits it, or the refusal.

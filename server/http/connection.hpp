@@ -2,6 +2,7 @@
 
 #include "common/net/link_stream.hpp"
 #include "server/http/deadline.hpp"
+#include "server/http/forwarder.hpp"
 #include "server/http/incoming.hpp"
 #include "server/http/request.hpp"
 #include "server/http/response.hpp"
@@ -59,6 +60,9 @@ private:
     [[nodiscard]] boost::asio::awaitable<bool> read_body(Parser& parser);
     [[nodiscard]] std::variant<Api::Admitted, Response> admit(const Request& head,
                                                               std::variant<Api::Routed, Response> routed) const;
+    [[nodiscard]] Request request_of(const Incoming& head) const;
+    [[nodiscard]] boost::asio::awaitable<std::optional<bool>>
+    pass_on(const Api::Admitted& admitted, const Request& request, const Incoming& message, Manner manner);
     [[nodiscard]] boost::asio::awaitable<void> show(const live::ViewedSession& viewed, const Incoming& upgrade);
     [[nodiscard]] boost::asio::awaitable<void> refuse(boost::beast::error_code reason);
     void close();
@@ -70,6 +74,7 @@ private:
     std::string peer_; // the address
     std::shared_ptr<const Service> service_;
     ResponseWriter writer_;
+    Forwarder forwarder_;
     std::shared_ptr<live::Viewer> viewer_; // owns the socket once it is set
     bool idle_ = false;                    // between requests, or before the first one
     bool stopping_ = false;

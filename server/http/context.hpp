@@ -1,6 +1,7 @@
 #pragma once
 
 #include "common/error/error.hpp"
+#include "common/net/tls.hpp"
 #include "server/auth/token.hpp"
 #include "server/guidance/goal_assignments.hpp"
 #include "server/guidance/locator.hpp"
@@ -38,6 +39,12 @@ struct RobotPort {
     std::uint16_t port = 0;
 };
 
+/// What servers that share a database need to pass requests on to each other.
+struct NodeLinks {
+    std::string secret;    ///< that all of them have; empty: this server shares its store with no other
+    net::TlsContext tls{}; ///< for servers with TLS
+};
+
 /// What handlers use, and what is kept from one request to the next.
 /// Threads: any thread may use each part.
 struct Services {
@@ -52,6 +59,7 @@ struct Services {
     const WorkClasses& work_classes;
     WebFiles web = {};                                        ///< of the viewer
     RobotPort robots = {};                                    ///< for /readyz
+    NodeLinks nodes = {};                                     ///< to servers that share the database
     store::Backups* backups = nullptr;                        ///< null: this server keeps no backups
     std::size_t tile_bytes_max = tiles::TileMaker::kBytesMax; ///< of cached tiles
     std::chrono::milliseconds replay_timeout{20'000};         ///< longest time that a request waits for a replay job

@@ -137,7 +137,8 @@ std::optional<Response> refusal_of(const Parser& parser, const Request& head, st
         return problem(Status::payload_too_large,
                        fmt::format("the body is too large; at most {} bytes are taken here", bytes_max), path);
     }
-    if (service.check_host && !head.host.empty() && !is_known_host(head.host, service.config.host_names)) {
+    if (service.check_host && !head.is_forwarded && !head.host.empty() &&
+        !is_known_host(head.host, service.config.host_names)) {
         service.api.services().authorizer.note({auth::Port::kHttp, auth::Reason::kForeignHost, head.peer, "", ""});
         return problem(Status::misdirected_request,
                        fmt::format("{} is not a name of this server; use its address", in_quotes(head.host)), path);

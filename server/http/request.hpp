@@ -28,6 +28,7 @@ struct Request {
     std::optional<WebSocketUpgrade> upgrade; ///< set if the request asks for a WebSocket
     std::string peer;                        ///< the client's address, without a port
     bool is_secure = false;                  ///< received over TLS
+    bool is_forwarded = false;               ///< another server that shares the database has passed it on
     bool is_of_viewer_page = false;          ///< its origin is one of ServerConfig::viewer_origins
 };
 

@@ -75,6 +75,9 @@ public:
         return state_.cache.owner(name);
     }
 
+    /// Looks the session's server up again at the next use of the session, because the known one does not answer.
+    void forget_owner(std::string_view name) { state_.cache.set_owner(name, nullptr); }
+
     /// Returns the servers that share the log, by name; empty: this one uses it alone.
     [[nodiscard]] std::vector<store::Node> nodes() const { return state_.nodes.all(); }
 

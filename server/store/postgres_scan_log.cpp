@@ -66,6 +66,7 @@ public:
     [[nodiscard]] Result<> disown(SessionId session) override;
     [[nodiscard]] Result<std::optional<FoundSession>> find(std::string_view name) override;
     [[nodiscard]] Result<SharedList> list() override;
+    [[nodiscard]] const std::string& secret() const override { return secret_; }
     [[nodiscard]] Result<> announce(const NodeInfo& info) override;
 
 private:
@@ -77,6 +78,7 @@ private:
 
     const Place place_;
     const PostgresOptions options_;
+    std::string secret_; // of the servers that share the store
     SharedState shared_;
     SizeLimit size_limit_;
     mutable std::shared_mutex in_use_; // held alone by reopen()
@@ -103,6 +105,9 @@ Result<> PostgresScanLog::start() {
     if (auto locked = lock_store(*connection, place_, sharing); !locked) return locked;
     const auto created = options_.is_unfinished ? begin_unfinished_store(*connection) : create_tables(*connection);
     if (!created) return created;
+    auto secret = read_secret(*connection);
+    if (!secret) return secret.error();
+    secret_ = std::move(*secret);
     if (auto entered = node_.enter(*connection, options_.node); !entered) return entered;
     lock_ = std::move(*connection);
     sweeper_.emplace(place_);

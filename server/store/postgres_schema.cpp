@@ -43,6 +43,8 @@ constexpr std::array kFormat2 = {
     "CREATE INDEX session_replaces ON scanloom.session (replaces) WHERE replaces IS NOT NULL",
     "DROP SEQUENCE IF EXISTS scanloom.owner",
     "UPDATE scanloom.session SET owner = 0",
+    "INSERT INTO scanloom.meta VALUES ('secret', encode(sha256((gen_random_uuid()::text || gen_random_uuid()::text)"
+    "::bytea), 'hex'))",
     "INSERT INTO scanloom.meta VALUES ('format', '2') ON CONFLICT (key) DO UPDATE SET value = excluded.value",
 };
 
@@ -165,6 +167,13 @@ Result<> check_tables(Connection& connection) {
 Result<> create_tables(Connection& connection) { return in_transaction(connection, create_or_migrate); }
 
 Result<> begin_unfinished_store(Connection& connection) { return in_transaction(connection, replace_unfinished); }
+
+Result<std::string> read_secret(Connection& connection) {
+    const auto rows = connection.run("SELECT value FROM scanloom.meta WHERE key = 'secret'");
+    if (!rows) return rows.error();
+    if (rows->size() == 1) return std::string(rows->bytes(0, 0));
+    return Error{Errc::kDataLoss, "the store in the database has lost the secret of its servers"};
+}
 
 Result<> finish_store(Connection& connection) {
     const auto finished = connection.run("DELETE FROM scanloom.meta WHERE key = 'unfinished'");

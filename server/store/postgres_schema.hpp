@@ -3,9 +3,11 @@
 #include "common/error/error.hpp"
 #include "server/store/postgres_connection.hpp"
 
+#include <string>
+
 /// The tables of the store in a database, format 2, in the schema `scanloom`:
 ///
-///   meta     key, value: the format
+///   meta     key, value: the format, and a secret that only the servers know
 ///   node     id, name, robots and http (its addresses), build, seen (when it last said that it runs): the servers that
 ///            use the store
 ///   session  id, record, name and replaces (what the record says), owner (a node; 0: none) and epoch (who may write
@@ -34,6 +36,9 @@ inline constexpr int kFormat = 2;
 
 /// Makes a store of begin_unfinished_store() one that can be opened.
 [[nodiscard]] Result<> finish_store(Connection& connection);
+
+/// Returns the secret of the servers that share the store.
+[[nodiscard]] Result<std::string> read_secret(Connection& connection);
 
 /// Checks that the tables exist, in a format that this program reads.
 /// Errors: kNotFound: there are none; kUnsupportedVersion: a newer program wrote them; kStoreFailed: a copy has not

@@ -75,6 +75,9 @@ public:
     /// Returns all servers and sessions.
     [[nodiscard]] virtual Result<SharedList> list() = 0;
 
+    /// Returns a secret that all servers of this log have, and nobody else.
+    [[nodiscard]] virtual const std::string& secret() const = 0;
+
     /// Tells the other nodes about this one, whose name they know. Call once.
     [[nodiscard]] virtual Result<> announce(const NodeInfo& info) = 0;
 };

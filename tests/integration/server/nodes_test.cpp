@@ -1,3 +1,5 @@
+#include "tests/support/http_client.hpp"
+#include "tests/support/live_client.hpp"
 #include "tests/support/postgres_server.hpp"
 #include "tests/support/running_server.hpp"
 #include "tests/support/temporary_directory.hpp"
@@ -8,14 +10,13 @@
 
 #include <csignal>
 #include <memory>
+#include <string_view>
 
 /// Several servers that share a database, as users run them.
 namespace scanloom::test {
 namespace {
 
-using testing::HasSubstr;
-
-class NodesTest : public testing::Test {
+class NodesTrials : public testing::Test {
 protected:
     [[nodiscard]] std::unique_ptr<RunningServer> start(const std::string& node) const {
         return std::make_unique<RunningServer>(
@@ -47,14 +48,14 @@ protected:
     const std::string database_ = postgres_.new_database();
 };
 
+class NodesTest : public NodesTrials {};
+
 TEST_F(NodesTest, ASessionGoesOnAnotherServerWhenItsOwnHasEnded) {
     auto a = start("a");
     const auto b = start("b");
     simulate(a->robot_address(), "300");
     const auto before = digest(*a);
-    const auto refused = b->get("/api/v1/sessions/one/digest");
-    EXPECT_EQ(refused.status, 503U);
-    EXPECT_THAT(refused.body, HasSubstr("belongs to node a at http://127.0.0.1:" + std::to_string(a->http_port())));
+    EXPECT_EQ(digest(*b), before) << "passed on to a";
     auto node = [&] { return b->get_json("/api/v1/nodes").at("nodes").at(0); };
     EXPECT_EQ(node().at("name"), "a");
     while (node().at("sessions") != 1) { // it knows it a second later
@@ -66,6 +67,50 @@ TEST_F(NodesTest, ASessionGoesOnAnotherServerWhenItsOwnHasEnded) {
     end(*b, SIGKILL);
     const auto again = start("b"); // at once, because it has the name of the dead one
     EXPECT_EQ(digest(*again), before);
+}
+
+TEST_F(NodesTest, RequestsAreAnsweredAsByTheServerThatHasTheSession) {
+    const auto a = start("a");
+    const auto b = start("b");
+    simulate(a->robot_address(), "300");
+    const std::string session = "/api/v1/sessions/one";
+    for (const char* target : {"", "/map.png", "/map.pgm", "/tiles/map.json", "/log", "/trajectory.tum",
+                               "/changes?since=5", "/map.png?layer=nonsense", "/goal?robot=nobody", "/exclusions"}) {
+        const auto from_a = a->get(session + target);
+        const auto from_b = b->get(session + target);
+        EXPECT_EQ(from_b.status, from_a.status) << target;
+        EXPECT_EQ(from_b.etag, from_a.etag) << target;
+        EXPECT_EQ(from_b.body, from_a.body) << target;
+    }
+    const std::string goal = R"({"from": {"x": 0, "y": 0}, "to": {"x": 1, "y": 1}})";
+    EXPECT_EQ(http_request(b->http_port(), "POST", session + "/plan", goal).body,
+              http_request(a->http_port(), "POST", session + "/plan", goal).body);
+    EXPECT_EQ(
+        http_request(b->http_port(), "POST", session + "/exclude", R"({"robot": "r", "from": 0, "to": 0.5})").status,
+        201U);
+    EXPECT_NE(a->get_json(session).at("exclusions"), 0) << "a has excluded the scans";
+
+    testing_support::HttpClient kept(b->http_port());
+    for (const char* method : {"GET", "HEAD", "GET"}) {
+        kept.send(std::string(method) + " " + session + "/map.png HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n");
+        EXPECT_EQ(kept.read(std::string_view(method) == "GET").status, 200) << "on one connection";
+    }
+    testing_support::LiveClient at_a(a->http_port(), "one");
+    testing_support::LiveClient at_b(b->http_port(), "one");
+    EXPECT_EQ(at_b.read(), at_a.read());
+    EXPECT_EQ(http_request(b->http_port(), "DELETE", session).status, 204U);
+    EXPECT_EQ(a->get(session).status, 404U);
+}
+
+/// A server that was killed counts as alive for 5 s.
+TEST_F(NodesTrials, ARequestWaitsUntilTheSessionOfADeadServerIsFree) {
+    auto a = start("a");
+    const auto b = start("b");
+    simulate(a->robot_address(), "300");
+    const auto before = digest(*a);
+    EXPECT_EQ(digest(*b), before);
+    end(*a, SIGKILL);
+    EXPECT_EQ(digest(*b), before);
 }
 
 TEST_F(NodesTest, RobotsFindTheServerThatHasTheirSession) {
