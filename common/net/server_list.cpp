@@ -9,6 +9,7 @@ bool ServerList::choose_another(std::string_view address) {
     auto named = parse_address(address);
     if (named && redirects_ < kRedirectsMax) {
         ++redirects_;
+        wait_max_ = kShort;
         sent_to_ = std::move(*named);
         return true;
     }

@@ -2,6 +2,7 @@
 
 #include "common/net/connect.hpp"
 
+#include <chrono>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -34,18 +35,29 @@ public:
     [[nodiscard]] bool choose_another(std::string_view address);
 
     /// The current server is in use.
-    void settle() noexcept { redirects_ = 0; }
+    void settle() noexcept {
+        redirects_ = 0;
+        wait_max_ = kLong;
+    }
+
+    /// Returns the longest time to wait before connecting again. It is short after a server has named another one: if
+    /// that one is dead, the session is free in a few seconds.
+    [[nodiscard]] std::chrono::milliseconds wait_max() const noexcept { return wait_max_; }
 
     /// Returns the addresses of the list, for messages.
     [[nodiscard]] std::string text() const;
 
     static constexpr int kRedirectsMax = 4;
+    static constexpr std::chrono::milliseconds kShort{1000};
 
 private:
+    static constexpr std::chrono::milliseconds kLong = std::chrono::hours(24);
+
     std::vector<Address> servers_;
     std::size_t next_;
     std::optional<Address> sent_to_;
     int redirects_ = 0; // in a row
+    std::chrono::milliseconds wait_max_ = kLong;
 };
 
 /// Parses one or more addresses, HOST:PORT[,HOST:PORT...].

@@ -8,6 +8,8 @@
 #include <boost/asio/write.hpp>
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <chrono>
 #include <utility>
 
 namespace scanloom::load {
@@ -56,7 +58,7 @@ asio::awaitable<void> Robot::run() {
         if (failure.retryable && servers_.choose_another(failure.address)) continue;
         note(failure);
         if (failed_) break;
-        timer_.expires_after(backoff_.next());
+        timer_.expires_after(std::min<std::chrono::steady_clock::duration>(backoff_.next(), servers_.wait_max()));
         co_await timer_.async_wait(kAwaitTuple);
     }
     if (client_.is_done()) ++shared_.figures.finished;

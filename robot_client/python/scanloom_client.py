@@ -1053,7 +1053,8 @@ class _Servers:
         self._list = [_split_address(address) for address in addresses.split(",")]
         self._next = 0
         self._redirects = 0
-        self.current = self._list[0]
+        self.wait_max = math.inf  # seconds before connecting again: short after a server has named another one, because
+        self.current = self._list[0]  # the session of a dead one is free in a few seconds
 
     def __str__(self) -> str:
         return f"{self.current[0]}:{self.current[1]}"
@@ -1065,6 +1066,7 @@ class _Servers:
             try:
                 self.current = _split_address(address)
                 self._redirects += 1
+                self.wait_max = 1.0
                 return True
             except ValueError:
                 pass  # as if it had named none
@@ -1077,6 +1079,7 @@ class _Servers:
     def settle(self) -> None:
         """The current server has welcomed the client."""
         self._redirects = 0
+        self.wait_max = math.inf
 
 
 def _connect(host: str, port: int, tls: Optional[ssl.SSLContext], timeout: float) -> socket.socket:
@@ -1492,7 +1495,7 @@ class Client:
                 _log.warning("%s; retrying", failure.message)
                 if self._conversation.acknowledged > acknowledged:
                     backoff.reset()
-                until = time.monotonic() + backoff.next()
+                until = time.monotonic() + min(backoff.next(), self._servers.wait_max)
                 self._changed.wait_for(lambda: self._conversation.is_done() or self._is_aborted,
                                        min(until, self._conversation.progress_deadline()) - time.monotonic())
                 if self._conversation.is_done():

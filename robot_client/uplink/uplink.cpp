@@ -11,6 +11,7 @@
 #include <boost/asio/write.hpp>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 namespace scanloom::robot {
@@ -171,7 +172,7 @@ asio::awaitable<void> Uplink::keep_linked() {
         last_trouble_ = failure.error;
         if (servers_.choose_another(failure.address)) continue; // at once
         options_.on_trouble(failure.error);
-        co_await wait(pause, Clock::now() + backoff_.next());
+        co_await wait(pause, Clock::now() + std::min<Clock::duration>(backoff_.next(), servers_.wait_max()));
     }
 }
 

@@ -28,6 +28,7 @@ TEST_F(ServerListTest, AServerThatIsNamedIsTriedAtOnce) {
     EXPECT_EQ(current(), "x:9");
     EXPECT_EQ(servers_.index(), std::nullopt);
     EXPECT_FALSE(servers_.choose_another("")) << "it cannot be used";
+    EXPECT_EQ(servers_.wait_max(), ServerList::kShort);
     EXPECT_EQ(current(), "a:1") << "which knows by now that it cannot";
     EXPECT_EQ(servers_.index(), 0U);
     EXPECT_FALSE(servers_.choose_another("not an address"));
@@ -41,6 +42,7 @@ TEST_F(ServerListTest, ServersThatSendEachOtherTheClientAreNotFollowedForever) {
     EXPECT_EQ(current(), "a:1");
     ASSERT_TRUE(servers_.choose_another("x:9"));
     servers_.settle();
+    EXPECT_GT(servers_.wait_max(), std::chrono::hours(1));
     for (int n = 0; n < ServerList::kRedirectsMax; ++n) EXPECT_TRUE(servers_.choose_another("y:8"));
 }
 
