@@ -45,6 +45,7 @@ public:
     [[nodiscard]] bool reopen() override { return log_->reopen(); }
     [[nodiscard]] store::StoreStats stats() const override { return log_->stats(); }
     [[nodiscard]] std::uint64_t bytes_on_disk() const override { return log_->bytes_on_disk(); }
+    [[nodiscard]] store::SharedSessions* shared() override { return log_->shared(); }
 
 protected:
     [[nodiscard]] ScanLog& under() { return *log_; }

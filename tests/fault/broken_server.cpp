@@ -12,6 +12,7 @@
 #include "server/app/options.hpp"
 #include "server/app/server.hpp"
 #include "server/app/standard_error_sink.hpp"
+#include "server/store/open_store.hpp"
 #include "tests/fault/broken_files.hpp"
 #include "tests/fault/broken_logs.hpp"
 #include "tests/fault/broken_sockets.hpp"
@@ -36,7 +37,7 @@ int main(int argc, char** argv) {
     const auto open_log = [&](const std::filesystem::path& directory,
                               store::StoreOptions store) -> Result<std::unique_ptr<store::ScanLog>> {
         store.env = files.get();
-        auto log = store::open_rocksdb(directory, store);
+        auto log = store::open_store(directory, store);
         if (!log) return log;
         return fault::broken_log(kind, std::move(*log));
     };

@@ -5,6 +5,7 @@
 #include "tests/fault/disk_row.hpp"
 #include "tests/fault/kill_row.hpp"
 #include "tests/fault/link_row.hpp"
+#include "tests/fault/nodes_row.hpp"
 #include "tests/fault/power_row.hpp"
 #include "tests/fault/restart_row.hpp"
 #include "tests/fault/soak_row.hpp"
@@ -39,6 +40,10 @@ TEST(KillRow, DetectsEarlyAcknowledgements) {
     EXPECT_GT(outcome.lost, 0U);
     ASSERT_TRUE(outcome.repeat);
     EXPECT_EQ(*outcome.repeat, "./scanloom fault kill --seed 1 --count 10");
+}
+
+TEST(NodesRow, DetectsEarlyAcknowledgements) {
+    EXPECT_GT(run_nodes_row({.seed = 1, .count = 4, .server = broken_server("hasty")}).lost, 0U);
 }
 
 TEST(KillRow, DetectsDuplicates) {

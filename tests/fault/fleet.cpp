@@ -62,9 +62,12 @@ private:
     robot::Intake* intake_ = nullptr;
 };
 
-robot::UplinkOptions options_of(const RobotPlan& plan, std::uint16_t port, const LinkTimeouts& timeouts) {
+robot::UplinkOptions options_of(const RobotPlan& plan, const std::vector<std::uint16_t>& ports,
+                                const LinkTimeouts& timeouts) {
     robot::UplinkOptions options;
-    options.servers = {{"127.0.0.1", std::to_string(port)}};
+    for (std::size_t n = 0; n < ports.size(); ++n) {
+        options.servers.push_back({"127.0.0.1", std::to_string(ports[(n + plan.seed) % ports.size()])});
+    }
     options.connect_timeout = timeouts.welcome;
     options.give_up_after = options.give_up_after_end = timeouts.give_up_after;
     options.backoff_seed = plan.seed;
@@ -86,9 +89,9 @@ SessionOptions fleet_options() { return {.cell_size = kCellSize}; }
 
 class Fleet::Robots {
 public:
-    Robots(std::vector<RobotPlan> plans, std::uint16_t port, const LinkTimeouts& timeouts) {
+    Robots(std::vector<RobotPlan> plans, const std::vector<std::uint16_t>& ports, const LinkTimeouts& timeouts) {
         for (auto& plan : plans) members_.push_back(std::make_unique<Member>(std::move(plan)));
-        for (auto& member : members_) start(*member, port, timeouts);
+        for (auto& member : members_) start(*member, ports, timeouts);
         thread_ = std::thread([this] { io_.run(); });
     }
     ~Robots() {
@@ -141,10 +144,10 @@ private:
         std::unique_ptr<robot::Uplink> uplink;
     };
 
-    void start(Member& member, std::uint16_t port, const LinkTimeouts& timeouts) {
+    void start(Member& member, const std::vector<std::uint16_t>& ports, const LinkTimeouts& timeouts) {
         member.feed = std::make_unique<ReleasedFeed>(
             member.standing.plan, [this, &member](std::uint64_t seq) { on_acknowledged(member, seq); });
-        auto options = options_of(member.standing.plan, port, timeouts);
+        auto options = options_of(member.standing.plan, ports, timeouts);
         options.drain_max = std::chrono::milliseconds(0);
         member.uplink = std::make_unique<robot::Uplink>(io_, std::move(options), *member.feed);
         asio::co_spawn(io_, member.uplink->run(), [this, &member](std::exception_ptr failed, Result<> outcome) {
@@ -196,8 +199,8 @@ std::vector<RobotPlan> half_sharing(unsigned robots, std::uint64_t seed, std::ui
     return made;
 }
 
-Fleet::Fleet(std::vector<RobotPlan> plans, std::uint16_t port, const LinkTimeouts& timeouts)
-    : robots_(std::make_unique<Robots>(std::move(plans), port, timeouts)) {}
+Fleet::Fleet(std::vector<RobotPlan> plans, const std::vector<std::uint16_t>& ports, const LinkTimeouts& timeouts)
+    : robots_(std::make_unique<Robots>(std::move(plans), ports, timeouts)) {}
 Fleet::~Fleet() = default;
 
 void Fleet::release(std::uint64_t seq) { robots_->release(seq); }

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace scanloom::fault {
@@ -49,7 +50,11 @@ struct LinkTimeouts {
 class Fleet {
 public:
     /// Connects the robots to `port` of this machine; a server need not listen there yet.
-    Fleet(std::vector<RobotPlan> plans, std::uint16_t port, const LinkTimeouts& timeouts = {});
+    Fleet(std::vector<RobotPlan> plans, std::uint16_t port, const LinkTimeouts& timeouts = {})
+        : Fleet(std::move(plans), std::vector{port}, timeouts) {}
+
+    /// Connects the robots to several servers that share a store; the first one of each robot is another.
+    Fleet(std::vector<RobotPlan> plans, const std::vector<std::uint16_t>& ports, const LinkTimeouts& timeouts = {});
     ~Fleet();
 
     /// Permits each robot to send its scans up to this number; none initially.

@@ -7,6 +7,7 @@ namespace {
 TEST(OtherFaultRow, KillNine) { expect_passed(short_form_of("kill")); }
 TEST(OtherFaultRow, SpoiledLinks) { expect_passed(short_form_of("link")); }
 TEST(OtherFaultRow, RestartsUnderManyRobots) { expect_passed(short_form_of("restart")); }
+TEST(OtherFaultRow, ServersOfOneDatabase) { expect_passed(short_form_of("nodes")); }
 TEST(OtherFaultRow, Simulation) { expect_passed(short_form_of("simulation")); }
 TEST(OtherFaultRow, DamagedStores) { expect_passed(short_form_of("corrupt")); }
 TEST(OtherFaultRow, JumpingClocks) { expect_passed(short_form_of("clock")); }

@@ -4,6 +4,7 @@
 #include "tests/fault/disk_row.hpp"
 #include "tests/fault/kill_row.hpp"
 #include "tests/fault/link_row.hpp"
+#include "tests/fault/nodes_row.hpp"
 #include "tests/fault/power_row.hpp"
 #include "tests/fault/restart_row.hpp"
 #include "tests/fault/row.hpp"
@@ -28,6 +29,8 @@ constexpr Row kRows[] = {
      run_corrupt_row},
     {"restart", "restarts", 3, 100, "the server is stopped or killed, and started again, while 100 robots stream",
      run_restart_row},
+    {"nodes", "faults", 5, 180, "three servers share a database; they or the database are killed, stopped or paused",
+     run_nodes_row},
     {"clock", "jumps", 10, 1'000, "the wall clocks of server and robot jump by a year, either way", run_clock_row},
     {"power", "cuts", 10, 200, "the disk loses power: data that was not synced is lost", run_power_row},
     {"disk", "fillings", 5, 500, "a disk fills up while robots stream, then has space again", run_disk_row},

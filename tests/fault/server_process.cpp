@@ -16,16 +16,18 @@ ReservedPort::ReservedPort() {
     socket_.bind({boost::asio::ip::address_v4::loopback(), 0});
 }
 
-ServerProcess::ServerProcess(Command command, std::filesystem::path place, std::vector<std::string> options)
-    : command_(std::move(command)), place_(std::move(place)), options_(std::move(options)) {
+ServerProcess::ServerProcess(Command command, std::filesystem::path place, std::vector<std::string> options,
+                             std::string store)
+    : command_(std::move(command)), place_(std::move(place)), options_(std::move(options)),
+      store_(store.empty() ? (place_ / "store").string() : std::move(store)) {
     if (command_.program.empty()) command_.program = test::program("scanloom-server");
 }
 
 void ServerProcess::start() {
     std::vector<std::string> words = command_.words;
     for (const auto& word :
-         {std::string("--store"), (place_ / "store").string(), std::string("--listen"),
-          fmt::format("127.0.0.1:{}", robot_port()), std::string("--http"), fmt::format("127.0.0.1:{}", http_port())}) {
+         {std::string("--store"), store_, std::string("--listen"), fmt::format("127.0.0.1:{}", robot_port()),
+          std::string("--http"), fmt::format("127.0.0.1:{}", http_port())}) {
         words.push_back(word);
     }
     words.insert(words.end(), options_.begin(), options_.end());

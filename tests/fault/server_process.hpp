@@ -31,8 +31,10 @@ private:
 /// A server that is started, disturbed and restarted, always with the same ports and the same store.
 class ServerProcess {
 public:
-    /// @param place  a directory: the store is `place`/store, the server's standard error goes to `place`/log
-    ServerProcess(Command command, std::filesystem::path place, std::vector<std::string> options = {});
+    /// @param place  a directory: the server's standard error goes to `place`/log
+    /// @param store  the value of --store; empty: `place`/store
+    ServerProcess(Command command, std::filesystem::path place, std::vector<std::string> options = {},
+                  std::string store = {});
 
     [[nodiscard]] std::uint16_t robot_port() const { return robot_port_.number(); }
     [[nodiscard]] std::uint16_t http_port() const { return http_port_.number(); }
@@ -66,6 +68,7 @@ private:
     Command command_;
     std::filesystem::path place_;
     std::vector<std::string> options_;
+    std::string store_;
     ReservedPort robot_port_;
     ReservedPort http_port_;
     std::optional<test::ChildProcess> process_;

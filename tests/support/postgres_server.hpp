@@ -30,8 +30,11 @@ public:
     /// Kills it, so that it does not shut down in order.
     void kill();
 
-private:
+    /// Starts it again after kill().
     void start();
+
+private:
+    [[nodiscard]] std::string try_to_start();
 
     TemporaryDirectory directory_;
     int databases_ = 0;
