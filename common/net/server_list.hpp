@@ -12,7 +12,7 @@
 
 namespace scanloom::net {
 
-/// The servers that a client may use, of which several can share the same sessions. Tells which one is next.
+/// The servers that a client may use, which share their sessions if there are several, and the choice of the next one.
 class ServerList {
 public:
     /// @param servers  at least one

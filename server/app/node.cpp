@@ -2,6 +2,7 @@
 
 #include "common/app/program.hpp"
 #include "common/net/tls.hpp"
+#include "server/auth/token.hpp"
 
 #include <unistd.h>
 
@@ -43,7 +44,7 @@ Result<http::NodeLinks> node_links(store::ScanLog& log) {
     if (shared == nullptr) return http::NodeLinks();
     auto tls = net::client_tls("");
     if (!tls) return tls.error();
-    return http::NodeLinks{shared->secret(), std::move(*tls)};
+    return http::NodeLinks{auth::hash_of("requests " + shared->secret()), std::move(*tls)};
 }
 
 } // namespace scanloom::app

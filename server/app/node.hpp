@@ -7,7 +7,7 @@
 
 #include <string>
 
-/// What a server tells the others that share its database.
+/// How a server appears to the others that share its database.
 namespace scanloom::app {
 
 /// Returns the server's name: that of --node, else that of the machine and the port for robots.

@@ -161,7 +161,7 @@ Result<> Server::listen(http::WebFiles web) {
     config.connections_max = limits_.http;
     auto nodes = node_links(*log_);
     if (!nodes) return nodes.error();
-    logins_.share(nodes->secret);
+    if (log_->shared() != nullptr) logins_.share(auth::hash_of("logins " + log_->shared()->secret()));
     http_work_.emplace(http::Executors{.metrics = pools_.metrics,
                                        .queries = pools_.queries,
                                        .whole_maps = pools_.whole_maps,
@@ -252,7 +252,13 @@ void Server::run_maintenance() {
         if (log_->reopen()) spdlog::info("the store {} has been opened again", store::shown(options_.store));
         sessions_.tidy();
         audit_.log_due();
+        asio::post(tidying_.get_executor(), [this] { maintain_later(); });
     });
+}
+
+/// Begins the next maintenance when the last one has ended, so that none queue up while the store does not answer.
+void Server::maintain_later() {
+    if (sessions_.is_draining()) return;
     tidying_.expires_after(kTidyEvery);
     tidying_.async_wait([this](const boost::system::error_code& error) {
         if (!error) run_maintenance();

@@ -54,6 +54,7 @@ private:
     void announce() const;
     void wait_for_signal();
     void run_maintenance();
+    void maintain_later();
     void log_store_failure();
     void wait_for_hangup();
     void read_tokens_again();

@@ -3,6 +3,7 @@
 #include "server/auth/login_cookie.hpp"
 #include "server/auth/token.hpp"
 
+#include <algorithm>
 #include <chrono>
 
 namespace scanloom::auth {
@@ -78,7 +79,10 @@ void LoginSessions::close(std::string_view cookie) {
     if (secret_.empty() || !token_hash_in(cookie, date_(), LoginTable::kIdleSeconds, secret_)) return;
     const double now = now_();
     std::erase_if(closed_, [&](const auto& one) { return now - one.second > LoginTable::kIdleSeconds; });
-    if (closed_.size() < LoginTable::kLoginsMax) closed_[hash_of(cookie)] = now;
+    if (closed_.size() >= LoginTable::kLoginsMax) {
+        closed_.erase(std::ranges::min_element(closed_, {}, [](const auto& one) { return one.second; }));
+    }
+    closed_[hash_of(cookie)] = now;
 }
 
 /// Opens a login that another server has made.

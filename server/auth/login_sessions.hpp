@@ -57,7 +57,7 @@ private:
 ///
 /// If servers share a secret, a browser that has signed in at one of them is signed in at all, for kIdleSeconds after
 /// it signed in, and longer at those that it uses. Signing out removes the browser's cookie, but only the server that
-/// was asked refuses a copy of it.
+/// was asked refuses a copy of it, until it ends. So the bounds of the table do not end such a login.
 /// Threads: any thread.
 class LoginSessions {
 public:

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-/// What servers that share a database tell each other about requests that they pass on.
+/// The field with which a server passes a request on to another one that shares its database.
 namespace scanloom::http {
 
 /// The field of such a request. It begins with the secret that only the servers know, so that others cannot send it.

@@ -5,6 +5,9 @@
 #include "server/http/api.hpp"
 #include "server/http/forwarded.hpp"
 
+#include <netinet/tcp.h>
+#include <sys/socket.h>
+
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/experimental/awaitable_operators.hpp>
 #include <boost/asio/write.hpp>
@@ -17,6 +20,7 @@
 #include <array>
 #include <chrono>
 #include <string_view>
+#include <utility>
 
 namespace scanloom::http {
 namespace {
@@ -26,7 +30,8 @@ namespace beast = boost::beast;
 using beast::http::field;
 
 constexpr std::chrono::milliseconds kConnectMax{1'500};
-constexpr std::chrono::milliseconds kAnswerMax{60'000}; // to the first byte, and between two pieces of a body
+constexpr std::chrono::minutes kAnswerMax{30}; // some answers take minutes; a server that is gone is noticed before
+constexpr std::chrono::milliseconds kPieceMax{60'000};
 constexpr std::size_t kForwardedPieceBytes = std::size_t{64} << 10;
 
 bool is_repeatable(const Request& request) { return request.method == "GET" || request.method == "HEAD"; }
@@ -67,13 +72,26 @@ std::string response_head(const Parser& parser, bool is_kept) {
     return head + "\r\n";
 }
 
-asio::awaitable<void> pass_bytes(net::LinkStream& from, net::LinkStream& to) {
+/// Lets the system notice within half a minute that the other machine is gone.
+void keep_alive(net::LinkStream::Socket& socket) {
+    const std::array<std::pair<int, int>, 2> kTimes = {{{TCP_KEEPIDLE, 10}, {TCP_KEEPINTVL, 5}}}; // seconds
+    const int on = 1;
+    ::setsockopt(socket.native_handle(), SOL_SOCKET, SO_KEEPALIVE, &on, sizeof on);
+    for (const auto& [option, seconds] : kTimes) {
+        ::setsockopt(socket.native_handle(), IPPROTO_TCP, option, &seconds, sizeof seconds);
+    }
+}
+
+/// Passes bytes on until one side ends.
+/// @param pause_max  longest time without the receiver's taking any
+asio::awaitable<void> pass_bytes(net::LinkStream& from, net::LinkStream& to, std::chrono::milliseconds pause_max) {
     std::array<char, 16'384> bytes;
     for (;;) {
         const auto [ended, count] = co_await from.async_read_some(asio::buffer(bytes), kAwaitTuple);
         if (ended) co_return;
-        const auto [failed, written] = co_await asio::async_write(to, asio::buffer(bytes.data(), count), kAwaitTuple);
-        if (failed) co_return;
+        const auto written =
+            co_await net::within(pause_max, asio::async_write(to, asio::buffer(bytes.data(), count), kAwaitTuple));
+        if (!written || std::get<0>(*written)) co_return;
     }
 }
 
@@ -93,22 +111,24 @@ asio::awaitable<Forwarder::Outcome> Forwarder::forward(const store::NodeInfo& ow
         parser.skip(request.method == "HEAD");
         const bool answered = co_await ask(head, request.body, parser);
         if (answered) co_return co_await answer(parser, manner);
-        abort();
+        server_.reset();
         if (!is_reused) co_return can_repeat ? Outcome::kNotThere : Outcome::kInterrupted;
     }
 }
 
 void Forwarder::stop() {
+    stopped_ = true;
     if (passes_socket_) abort();
 }
 
+/// Only the coroutine that uses the connection destroys it.
 void Forwarder::abort() {
+    stopped_ = true;
     if (server_) server_->close();
-    server_.reset();
 }
 
 asio::awaitable<bool> Forwarder::connect(const std::string& place) {
-    abort();
+    server_.reset();
     buffer_.clear();
     const auto url = boost::urls::parse_absolute_uri(place);
     if (!url) co_return false; // the server has not announced its address yet
@@ -118,14 +138,18 @@ asio::awaitable<bool> Forwarder::connect(const std::string& place) {
                                        is_encrypted ? service_.api.services().nodes.tls : net::TlsContext()));
     place_ = place;
     const auto connected = co_await net::connect(*server_, address, kConnectMax);
-    if (!connected) abort();
-    co_return connected.has_value();
+    if (!connected || stopped_) {
+        server_.reset();
+        co_return false;
+    }
+    keep_alive(server_->socket());
+    co_return true;
 }
 
 /// Sends a request and reads the head of the response.
 asio::awaitable<bool> Forwarder::ask(const std::string& head, const std::string& body, Parser& parser) {
     const std::array<asio::const_buffer, 2> whole = {asio::buffer(head), asio::buffer(body)};
-    const auto sent = co_await net::within(kAnswerMax, asio::async_write(*server_, whole, kAwaitTuple));
+    const auto sent = co_await net::within(kPieceMax, asio::async_write(*server_, whole, kAwaitTuple));
     if (!sent || std::get<0>(*sent)) co_return false;
     const auto read =
         co_await net::within(kAnswerMax, beast::http::async_read_header(*server_, buffer_, parser, kAwaitTuple));
@@ -135,7 +159,7 @@ asio::awaitable<bool> Forwarder::ask(const std::string& head, const std::string&
 /// Passes a response on to the client.
 asio::awaitable<Forwarder::Outcome> Forwarder::answer(Parser& parser, const Manner& manner) {
     if (parser.get().result() == Status::misdirected_request) {
-        abort();
+        server_.reset();
         co_return Outcome::kNotThere;
     }
     service_.counters.answered(parser.get().result_int()).Increment();
@@ -146,13 +170,14 @@ asio::awaitable<Forwarder::Outcome> Forwarder::answer(Parser& parser, const Mann
     if (written && is_socket) co_await pass_socket();
     if (is_socket) co_return Outcome::kClosed;
     if (written) written = co_await pass_body(parser);
-    if (!written || !is_server_kept) abort();
+    if (!written || !is_server_kept) server_.reset();
     if (written && !is_kept) writer_.keep_until_read();
     co_return written&& is_kept ? Outcome::kAnswered : Outcome::kClosed;
 }
 
 /// @return false if the body could not be passed on to its end
 asio::awaitable<bool> Forwarder::pass_body(Parser& parser) {
+    if (parser.is_done()) co_return true; // no body, as after HEAD
     const bool is_chunked = parser.chunked();
     std::string piece(kForwardedPieceBytes, '\0');
     while (!parser.is_done()) {
@@ -160,7 +185,7 @@ asio::awaitable<bool> Forwarder::pass_body(Parser& parser) {
         body.data = piece.data();
         body.size = piece.size();
         const auto read =
-            co_await net::within(kAnswerMax, beast::http::async_read_some(*server_, buffer_, parser, kAwaitTuple));
+            co_await net::within(kPieceMax, beast::http::async_read_some(*server_, buffer_, parser, kAwaitTuple));
         if (!read) co_return false;
         const auto failed = std::get<0>(*read);
         if (failed && failed != beast::http::error::need_buffer) co_return false;
@@ -180,10 +205,13 @@ asio::awaitable<void> Forwarder::pass_socket() {
     const auto bytes = buffer_.cdata();
     const std::string_view early(static_cast<const char*>(bytes.data()), bytes.size());
     const bool written = co_await writer_.write_all(early);
-    passes_socket_ = written;
-    if (written) co_await (pass_bytes(client_, *server_) || pass_bytes(*server_, client_));
+    passes_socket_ = written && !stopped_;
+    if (passes_socket_) {
+        const auto pause_max = service_.config.write;
+        co_await (pass_bytes(client_, *server_, pause_max) || pass_bytes(*server_, client_, pause_max));
+    }
     passes_socket_ = false;
-    abort();
+    server_.reset();
 }
 
 } // namespace scanloom::http

@@ -41,7 +41,7 @@ public:
     [[nodiscard]] boost::asio::awaitable<Outcome> forward(const store::NodeInfo& owner, const Request& request,
                                                           const Incoming& message, Manner manner);
 
-    /// Ends a WebSocket that is passed on.
+    /// Ends a WebSocket that is passed on; passes none on from now.
     void stop();
 
     /// Closes the connection to the other server at once.
@@ -63,6 +63,7 @@ private:
     std::string place_; // of server_
     boost::beast::flat_buffer buffer_;
     bool passes_socket_ = false;
+    bool stopped_ = false;
 };
 
 } // namespace scanloom::http

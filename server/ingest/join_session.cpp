@@ -49,9 +49,14 @@ asio::awaitable<Found> session_for(const wire::Hello& hello, sessions::SessionRe
                                    const sessions::Creator& maker, asio::any_io_executor blocking_executor) {
     auto session = co_await loaded(hello.session, sessions);
     if (!session && session.error().code == Errc::kNotFound && hello.create) {
-        auto created = co_await create(hello, sessions, maker, std::move(blocking_executor));
+        auto created = co_await create(hello, sessions, maker, blocking_executor);
         if (created || created.error().code != Errc::kAlreadyExists) co_return created;
         session = co_await loaded(hello.session, sessions); // another robot created it first
+    }
+    if (session && sessions.is_shared()) { // the robot must not be told less than it was acknowledged elsewhere
+        const auto confirmed =
+            co_await sockets::compute_on(std::move(blocking_executor), [&] { return sessions.confirm(**session); });
+        if (!confirmed) co_return confirmed.error();
     }
     if (!session) co_return absence_of(hello.session, sessions, session.error());
     if (hello.create) {

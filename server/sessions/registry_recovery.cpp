@@ -163,24 +163,26 @@ Result<> discover(RegistryState& state, std::string_view name) {
     return {};
 }
 
-Result<> discover_all(RegistryState& state) {
+Result<std::vector<std::shared_ptr<Session>>> discover_all(RegistryState& state) {
+    std::vector<std::shared_ptr<Session>> lost;
     auto* const shared = state.log.shared();
-    if (shared == nullptr) return {};
+    if (shared == nullptr) return lost;
     const auto asked = state.config.clock();
     auto list = shared->list();
     if (!list) return list.error();
-    auto unknown = state.cache.follow(list->sessions, asked);
+    auto followed = state.cache.follow(list->sessions, asked);
+    lost = std::move(followed.lost);
     state.nodes.replace(std::move(list->nodes));
-    std::erase_if(unknown, [&](store::SessionId id) { return state.damaged.contains(id); });
-    if (unknown.empty()) return {};
+    std::erase_if(followed.unknown, [&](store::SessionId id) { return state.damaged.contains(id); });
+    if (followed.unknown.empty()) return lost;
     auto stored = state.log.sessions();
-    if (!stored) return stored.error();
-    std::erase_if(*stored, [&](const store::StoredSession& one) { return !unknown.contains(one.id); });
+    if (!stored) return lost; // found the next time
+    std::erase_if(*stored, [&](const store::StoredSession& one) { return !followed.unknown.contains(one.id); });
     for (auto& info : recorded_sessions(*stored, state.damaged)) {
         const auto id = info.id;
         add_shared(state, std::move(info), list->sessions[id]);
     }
-    return {};
+    return lost;
 }
 
 } // namespace scanloom::sessions

@@ -2,12 +2,15 @@
 
 #include "common/error/error.hpp"
 
+#include <memory>
 #include <string_view>
+#include <vector>
 
 /// How the list of sessions is filled: at the start, and later with the sessions of other servers that share the log.
 namespace scanloom::sessions {
 
 struct RegistryState;
+class Session;
 
 /// Finds the stored sessions when the server starts, and adds each to the cache or to the damaged sessions.
 ///
@@ -27,8 +30,9 @@ struct RegistryState;
 
 /// Adds all sessions to the cache that other servers have created, and drops the unloaded ones that they have removed.
 /// Does nothing if the log is not shared.
+/// @return the sessions in memory that another server has taken or removed: to be closed, and evicted from the cache
 /// Errors: kStoreFailed.
 /// Threads: any thread that may wait for the store.
-[[nodiscard]] Result<> discover_all(RegistryState& state);
+[[nodiscard]] Result<std::vector<std::shared_ptr<Session>>> discover_all(RegistryState& state);
 
 } // namespace scanloom::sessions

@@ -73,12 +73,16 @@ bool DamagedSessions::contains(store::SessionId id) const {
 }
 
 Result<> DamagedSessions::remove(std::string_view name, store::ScanLog& log) {
-    const std::unique_lock lock(mutex_);
+    std::unique_lock lock(mutex_);
     const auto damaged = damaged_.find(name);
     if (damaged == damaged_.end()) return no_such_session(name);
-    if (auto owned = store::own(log, damaged->second.id); !owned) return owned;
-    if (auto removed = log.remove_session(damaged->second.id); !removed) return removed;
-    damaged_.erase(damaged);
+    const auto id = damaged->second.id;
+    lock.unlock(); // others look for names while the store is changed
+    auto removed = store::own(log, id);
+    if (removed) removed = log.remove_session(id);
+    if (!removed && removed.error().code != Errc::kNotFound) return removed; // not found: another server has removed it
+    lock.lock();
+    damaged_.erase(std::string(name));
     return {};
 }
 

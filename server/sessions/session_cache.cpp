@@ -62,6 +62,7 @@ void SessionCache::add(std::shared_ptr<Session> session, Clock::time_point now) 
     entry.info = session->info();
     entry.session = std::move(session);
     entry.state = State::kLoaded;
+    entry.loaded = now;
     touch(entry, now);
 }
 
@@ -123,6 +124,7 @@ void SessionCache::end_load(std::shared_ptr<Session> session, Clock::time_point 
         entry.info = session->info(); // its exclusions may have changed
         entry.session = session;
         entry.state = State::kLoaded;
+        entry.loaded = now;
         entry.summary = {};
         entry.shared = {};
         touch(entry, now);
@@ -236,21 +238,25 @@ void SessionCache::remove(std::string_view name, const Error& why) {
 
 // Sessions of other servers
 
-std::set<store::SessionId> SessionCache::follow(const std::map<store::SessionId, store::SharedSession>& all,
-                                                Clock::time_point asked) {
-    std::set<store::SessionId> unknown;
-    for (const auto& [id, shared] : all) unknown.insert(id);
+SessionCache::Followed SessionCache::follow(const std::map<store::SessionId, store::SharedSession>& all,
+                                            Clock::time_point asked) {
+    Followed followed;
+    for (const auto& [id, shared] : all) followed.unknown.insert(id);
     const std::unique_lock lock(mutex_);
     for (auto at = entries_.begin(); at != entries_.end();) {
         Entry& entry = at->second;
-        unknown.erase(entry.info.id);
+        followed.unknown.erase(entry.info.id);
         const auto found = all.find(entry.info.id);
         const bool is_evicted = entry.state == State::kEvicted;
         if (is_evicted && found != all.end()) entry.shared = found->second;
+        if (entry.state == State::kLoaded && entry.loaded < asked && (found == all.end() || !found->second.is_own)) {
+            entry.state = State::kInTransition;
+            followed.lost.push_back(entry.session);
+        }
         const bool is_gone = is_evicted && found == all.end() && entry.used <= asked.time_since_epoch().count();
         at = is_gone ? entries_.erase(at) : std::next(at);
     }
-    return unknown;
+    return followed;
 }
 
 void SessionCache::set_owner(std::string_view name, std::shared_ptr<const store::NodeInfo> owner) {

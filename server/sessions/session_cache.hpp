@@ -112,13 +112,17 @@ public:
     /// Removes the session from the list and passes `why` to the waiting callers.
     void remove(std::string_view name, const Error& why);
 
-    /// Makes the list that of a log that several servers share: sets which server has each session, and removes
-    /// sessions that are not in the log any more. Does not change those that are in memory or in transition.
+    struct Followed {
+        std::set<store::SessionId> unknown;         ///< sessions in the log that the cache lacks
+        std::vector<std::shared_ptr<Session>> lost; ///< to be closed and reported as after evict()
+    };
+
+    /// Makes the list that of a log that several servers share: sets which server has each session, removes sessions
+    /// that are not in the log any more, and starts to evict those that another server has taken. Does not change those
+    /// that are in transition.
     /// @param all    the sessions in the log
-    /// @param asked  when the log was asked; sessions used since then stay
-    /// @return those of `all` that the cache lacks
-    [[nodiscard]] std::set<store::SessionId> follow(const std::map<store::SessionId, store::SharedSession>& all,
-                                                    Clock::time_point asked);
+    /// @param asked  when the log was asked; sessions loaded or used since then stay
+    [[nodiscard]] Followed follow(const std::map<store::SessionId, store::SharedSession>& all, Clock::time_point asked);
 
     /// Sets which server has a session that is not in memory.
     void set_owner(std::string_view name, std::shared_ptr<const store::NodeInfo> owner);
@@ -143,6 +147,7 @@ private:
         Summary summary;                  // of a session that is not in memory
         store::SharedSession shared;      // of a session that is not in memory
         mutable std::atomic<Clock::rep> used = 0;
+        Clock::time_point loaded; // of a session in memory
         std::vector<Loaded> waiting;
     };
     using Entries = std::map<std::string, Entry, std::less<>>;

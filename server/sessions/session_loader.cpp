@@ -124,7 +124,8 @@ void SessionLoader::tidy() {
           leaves_memory());
     free_pages(spare_pages()); // before scans must be refused
     retry();
-    static_cast<void>(discover_all(state_)); // otherwise the next time
+    auto lost = discover_all(state_); // otherwise the next time
+    if (lost) close(std::move(*lost), {Errc::kNotOwner, "another server has taken the session; connect again"});
 }
 
 /// Returns the number of pages to keep free for growing maps, as long as there are sessions to evict.

@@ -16,7 +16,7 @@
 namespace scanloom::sessions {
 
 /// Loads sessions from the store when they are requested, and evicts unused ones so that there is memory for them.
-/// Threads: any thread. No function blocks.
+/// Threads: any thread. No function blocks, except for tidy(), which may wait for the store.
 class SessionLoader {
 public:
     /// @param state  must outlive this object; its sessions report to this object when they are short of memory

@@ -75,6 +75,16 @@ public:
         return state_.cache.owner(name);
     }
 
+    /// Checks that no other server has taken a session in memory, while this one was paused. Blocks.
+    /// Errors: kNotOwner, kNotFound, kStoreFailed.
+    [[nodiscard]] Result<> confirm(const Session& session) {
+        auto* const shared = state_.log.shared();
+        return shared == nullptr ? Result<>() : shared->confirm(session.info().id);
+    }
+
+    /// Returns whether several servers share the log.
+    [[nodiscard]] bool is_shared() const { return state_.log.shared() != nullptr; }
+
     /// Looks the session's server up again at the next use of the session, because the known one does not answer.
     void forget_owner(std::string_view name) { state_.cache.set_owner(name, nullptr); }
 

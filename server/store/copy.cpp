@@ -1,6 +1,9 @@
 #include "server/store/copy.hpp"
 
+#include "common/wire/log_codec.hpp"
+
 #include <cstddef>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -60,6 +63,27 @@ Result<std::uint64_t> copy_checkpoint(ScanLog& from, SessionId source, ScanLog& 
     return count;
 }
 
+/// Returns the records of the sessions to be copied, by their ids. Numbers of sessions are others in the new store, so
+/// a copy that has replaced a session names it no longer. One that has not replaced it yet is left out: it can be made
+/// again.
+Result<std::map<SessionId, std::string>> records_to_copy(const std::vector<StoredSession>& sessions) {
+    std::map<SessionId, std::string> records;
+    for (const StoredSession& stored : sessions) {
+        if (!stored.record) return stored.record.error();
+        if (stored.damage) return *stored.damage;
+        records[stored.id] = *stored.record;
+    }
+    std::map<SessionId, std::string> kept;
+    for (const auto& [id, bytes] : records) {
+        auto record = wire::decode_session(bytes);
+        if (record && records.contains(record->replaces)) continue;
+        const bool has_replaced = record && record->replaces != 0;
+        if (has_replaced) record->replaces = record->entries_at_creation = 0;
+        kept[id] = has_replaced ? wire::encode_session(*record) : bytes;
+    }
+    return kept;
+}
+
 } // namespace
 
 Result<> copy_log(ScanLog& from, ScanLog& to, const std::function<void(const CopiedSession&)>& on_session) {
@@ -68,19 +92,18 @@ Result<> copy_log(ScanLog& from, ScanLog& to, const std::function<void(const Cop
     if (!present->empty()) return Error{Errc::kConflict, "the store to copy to has sessions; name an empty one"};
     const auto sessions = from.sessions();
     if (!sessions) return sessions.error();
-    for (const StoredSession& stored : *sessions) {
-        if (!stored.record) return stored.record.error();
-        if (stored.damage) return *stored.damage;
-        const auto created = to.create_session(*stored.record);
+    const auto records = records_to_copy(*sessions);
+    if (!records) return records.error();
+    for (const auto& [id, record] : *records) {
+        const auto created = to.create_session(record);
         if (!created) return created.error();
         Appender appender(to, *created);
-        auto read =
-            from.read(stored.id, 0, [&](Revision, std::string_view entry) -> Visited { return appender.add(entry); });
+        auto read = from.read(id, 0, [&](Revision, std::string_view entry) -> Visited { return appender.add(entry); });
         if (!read) return read;
         if (auto flushed = appender.flush(); !flushed) return flushed;
-        const auto parts = copy_checkpoint(from, stored.id, to, *created);
+        const auto parts = copy_checkpoint(from, id, to, *created);
         if (!parts) return parts.error();
-        on_session({stored.id, *created, appender.end(), *parts});
+        on_session({id, *created, appender.end(), *parts});
     }
     return {};
 }

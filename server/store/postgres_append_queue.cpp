@@ -201,9 +201,8 @@ Result<> AppendQueue::write(Group& group) {
         shared_.put(stored.key(), {owned.epoch, owned.end + entries.size()});
     }
     for (const auto& [session, run] : group.runs) {
-        auto why = why_lost(*connection_, session, run.owned);
+        auto why = forget_lost(*connection_, shared_, session, run.owned);
         if (why.code != Errc::kNotFound && why.code != Errc::kNotOwner) return shared_.fail(why);
-        shared_.remove(session);
         group.refused.insert_or_assign(session, std::move(why));
     }
     return {};

@@ -26,7 +26,7 @@ Result<> Checkpoints::change(SessionId session, const Writer::Change& change_par
                                          " WHERE id = $1 AND epoch = $2 AND NOT removed RETURNING id",
                                          parameters);
         if (!rows) return rows.error();
-        if (rows->size() == 0) return why_lost(connection, session, *owned);
+        if (rows->size() == 0) return forget_lost(connection, shared_, session, *owned);
         const auto committed = connection.run("COMMIT");
         return committed ? Result<>() : Result<>(committed.error());
     });

@@ -38,18 +38,20 @@ std::shared_ptr<const NodeInfo> owner_of(std::int64_t id, const std::map<std::in
 
 } // namespace
 
-Result<SharedList> list_sessions(Connection& connection, std::int64_t self) {
+Result<SharedList> list_sessions(Connection& connection, std::int64_t self, const OwnedSessions& owned) {
     auto nodes = nodes_by_id(connection, self);
     if (!nodes) return nodes.error();
-    const auto rows = connection.run("SELECT id, owner, end_rev FROM scanloom.session"
+    const auto rows = connection.run("SELECT id, owner, end_rev, epoch FROM scanloom.session"
                                      " WHERE NOT removed AND name IS NOT NULL",
                                      {}, Connection::kReadTimeout);
     if (!rows) return rows.error();
     SharedList list;
     for (int row = 0; row < rows->size(); ++row) {
         const auto owner = rows->number(row, 1);
-        list.sessions[static_cast<SessionId>(rows->number(row, 0))] = {static_cast<Revision>(rows->number(row, 2)),
-                                                                       owner_of(owner, *nodes)};
+        const auto id = static_cast<SessionId>(rows->number(row, 0));
+        const auto known = owned.find(id);
+        list.sessions[id] = {static_cast<Revision>(rows->number(row, 2)), owner_of(owner, *nodes),
+                             known != owned.end() && known->second.epoch == rows->number(row, 3)};
         if (const auto node = nodes->find(owner); node != nodes->end()) ++node->second.sessions;
     }
     std::map<std::string, Node> by_name;

@@ -27,7 +27,9 @@ OwnNode::~OwnNode() {
 Result<> OwnNode::enter(Connection& connection, std::string name) {
     Parameters parameters;
     parameters.add(std::string_view(name));
-    const auto left = connection.run("DELETE FROM scanloom.node WHERE name = convert_from($1, 'UTF8')", parameters);
+    const auto left = connection.run("DELETE FROM scanloom.node WHERE name = convert_from($1, 'UTF8')"
+                                     " OR seen < now() - interval '1 day'",
+                                     parameters);
     if (!left) return left.error();
     const auto entered = connection.run("INSERT INTO scanloom.node (name, seen)"
                                         " VALUES (convert_from($1, 'UTF8'), now()) RETURNING id",
@@ -42,7 +44,16 @@ Result<> OwnNode::enter(Connection& connection, std::string name) {
 Result<> OwnNode::renew(Connection& connection) const {
     Parameters parameters;
     parameters.add(id_);
-    const auto rows = connection.run("UPDATE scanloom.node SET seen = now() WHERE id = $1 RETURNING id", parameters);
+    {
+        const std::lock_guard lock(mutex_);
+        for (const std::string* text : {&info_.robots, &info_.http, &info_.build}) {
+            parameters.add(std::string_view(*text));
+        }
+    }
+    const auto rows = connection.run("UPDATE scanloom.node SET seen = now(), robots = convert_from($2, 'UTF8'),"
+                                     " http = convert_from($3, 'UTF8'), build = convert_from($4, 'UTF8')"
+                                     " WHERE id = $1 RETURNING id",
+                                     parameters);
     if (!rows) return rows.error();
     if (rows->size() > 0) return {};
     return Error{Errc::kConflict,
@@ -51,19 +62,13 @@ Result<> OwnNode::renew(Connection& connection) const {
                              name_, place_.text)};
 }
 
-Result<> OwnNode::announce(const NodeInfo& info) const {
+Result<> OwnNode::announce(const NodeInfo& info) {
+    {
+        const std::lock_guard lock(mutex_);
+        info_ = info;
+    }
     auto connection = Connection::open(place_);
-    if (!connection) return connection.error();
-    Parameters parameters;
-    parameters.add(id_);
-    parameters.add(std::string_view(info.robots));
-    parameters.add(std::string_view(info.http));
-    parameters.add(std::string_view(info.build));
-    const auto rows =
-        connection->run("UPDATE scanloom.node SET robots = convert_from($2, 'UTF8'),"
-                        " http = convert_from($3, 'UTF8'), build = convert_from($4, 'UTF8') WHERE id = $1",
-                        parameters);
-    return rows ? Result<>() : Result<>(rows.error());
+    return connection ? renew(*connection) : Result<>(connection.error());
 }
 
 /// Renews the row until the end. A database that cannot be used is tried again: appends find out by themselves.

@@ -48,8 +48,8 @@ public:
     /// Errors: kConflict: another server was started with the same name; kStoreFailed.
     [[nodiscard]] Result<> renew(Connection& connection) const;
 
-    /// Writes the addresses and the version into the row.
-    [[nodiscard]] Result<> announce(const NodeInfo& info) const;
+    /// Writes the addresses and the version into the row, now and at each renewal.
+    [[nodiscard]] Result<> announce(const NodeInfo& info);
 
 private:
     using Clock = std::chrono::steady_clock;
@@ -62,7 +62,8 @@ private:
     std::string name_;
     std::int64_t id_ = 0;
     std::atomic<Clock::time_point> steady_since_ = Clock::time_point::max();
-    std::mutex mutex_; // of waiting_
+    mutable std::mutex mutex_; // of waiting_; guards info_
+    NodeInfo info_;
     std::condition_variable_any waiting_;
     std::jthread thread_; // last: uses the others
 };

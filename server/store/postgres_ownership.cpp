@@ -15,9 +15,10 @@ namespace {
 /// A row of the table of sessions, with its owner.
 struct State {
     std::int64_t epoch = 0;
-    std::int64_t owner = 0; // 0: none, or one that is gone
-    bool is_old = false;    // the owner has not renewed its row for some time
-    std::string place;      // of the owner: its name, and its address if it has announced it
+    std::int64_t owner = 0;             // 0: none, or one that is gone
+    bool is_old = false;                // the owner has not renewed its row for some time
+    std::string place;                  // of the owner: its name, and its address if it has announced it
+    std::int64_t owner_of_original = 0; // of the session that this copy is to replace; 0: it is no such copy
 };
 
 /// @param rows  with id, epoch and last entry
@@ -37,14 +38,16 @@ Result<std::optional<State>> state_of(Connection& connection, SessionId session)
     parameters.add(std::int64_t{kDeadAfter.count()});
     const auto rows =
         connection.run("SELECT s.epoch, coalesce(n.id, 0), (n.seen < now() - make_interval(secs => $2))::int::bigint,"
-                       " coalesce(n.name || CASE WHEN n.http = '' THEN '' ELSE ' at ' || n.http END, '')"
+                       " coalesce(n.name || CASE WHEN n.http = '' THEN '' ELSE ' at ' || n.http END, ''),"
+                       " coalesce(original.owner, 0)"
                        " FROM scanloom.session s LEFT JOIN scanloom.node n ON n.id = s.owner"
+                       " LEFT JOIN scanloom.session original ON original.id = s.replaces AND NOT original.removed"
                        " WHERE s.id = $1 AND NOT s.removed",
                        parameters);
     if (!rows) return rows.error();
     if (rows->size() == 0) return std::optional<State>();
-    return std::optional(
-        State{rows->number(0, 0), rows->number(0, 1), rows->number(0, 2) != 0, std::string(rows->bytes(0, 3))});
+    return std::optional(State{rows->number(0, 0), rows->number(0, 1), rows->number(0, 2) != 0,
+                               std::string(rows->bytes(0, 3)), rows->number(0, 4)});
 }
 
 Error not_owner(SessionId session, const State& state) {
@@ -85,7 +88,8 @@ Result<OwnedSession> take(Connection& connection, SessionId session, const Taker
         if (!state) return state.error();
         if (!*state) return no_such_session(session);
         const auto owner = (*state)->owner;
-        const bool is_free = owner == 0 || owner == taker.node || ((*state)->is_old && taker.is_steady);
+        const bool is_free = owner == 0 || owner == taker.node || ((*state)->is_old && taker.is_steady) ||
+                             (*state)->owner_of_original == taker.node;
         if (!is_free) return not_owner(session, **state);
         Parameters parameters;
         parameters.add(signed_of(session));
@@ -155,9 +159,17 @@ Result<OwnedSessions> take_again(Connection& connection, const Place& place, std
     return taken;
 }
 
-Error why_lost(Connection& connection, SessionId session, const OwnedSession& owned) {
+Result<> confirm_owned(Connection& connection, SessionId session, const OwnedSession& owned) {
     const auto state = state_of(connection, session);
     if (!state) return state.error();
+    if (!*state) return no_such_session(session);
+    return (*state)->epoch == owned.epoch ? Result<>() : Result<>(not_owner(session, **state));
+}
+
+Error forget_lost(Connection& connection, SharedState& shared, SessionId session, const OwnedSession& owned) {
+    const auto state = state_of(connection, session);
+    if (!state) return state.error();
+    if (!*state || (*state)->epoch != owned.epoch) shared.remove(session);
     if (!*state) return no_such_session(session);
     if ((*state)->epoch != owned.epoch) return not_owner(session, **state);
     return failure("session {} of the database does not end with {}, as it should", session, owned.end);

@@ -24,7 +24,8 @@ struct Taker {
 };
 
 /// Makes a node the owner of a session that has no owner that lives, and raises its epoch: earlier owners change
-/// nothing any more, and what they have committed is durable.
+/// nothing any more, and what they have committed is durable. A copy that has not replaced its session yet belongs to
+/// whoever has that one.
 /// @param taker  the number of the node, and whether it may take the sessions of nodes whose rows are old
 /// Errors: kNotFound; kNotOwner: another node owns it; kStoreFailed.
 [[nodiscard]] Result<OwnedSession> take(Connection& connection, SessionId session, const Taker& taker);
@@ -45,10 +46,16 @@ struct Taker {
 [[nodiscard]] Result<OwnedSessions> take_again(Connection& connection, const Place& place, std::int64_t node,
                                                const OwnedSessions& known);
 
-/// Returns why a statement had no effect on a session that this server believed to own.
+/// Checks that a session still has the epoch of this server.
+/// Errors: kNotFound, kNotOwner, kStoreFailed.
+[[nodiscard]] Result<> confirm_owned(Connection& connection, SessionId session, const OwnedSession& owned);
+
+/// Finds out why a statement had no effect on a session that this server believed to own, and forgets the session if it
+/// does not own it.
 /// @return kNotFound: it was removed; kNotOwner: another node has taken it; kStoreFailed: its log does not end where
 ///         this server expected, or the database cannot be used
-[[nodiscard]] Error why_lost(Connection& connection, SessionId session, const OwnedSession& owned);
+[[nodiscard]] Error forget_lost(Connection& connection, SharedState& shared, SessionId session,
+                                const OwnedSession& owned);
 
 /// Returns why a session that this server does not own cannot be changed: kNotFound, kNotOwner or kStoreFailed.
 [[nodiscard]] Error why_not_owned(Connection& connection, SessionId session);

@@ -64,6 +64,7 @@ public:
     [[nodiscard]] SharedSessions* shared() override { return this; }
     [[nodiscard]] Result<> own(SessionId session) override;
     [[nodiscard]] Result<> disown(SessionId session) override;
+    [[nodiscard]] Result<> confirm(SessionId session) override;
     [[nodiscard]] Result<std::optional<FoundSession>> find(std::string_view name) override;
     [[nodiscard]] Result<SharedList> list() override;
     [[nodiscard]] const std::string& secret() const override { return secret_; }
@@ -216,6 +217,17 @@ Result<> PostgresScanLog::disown(SessionId session) {
     return sessions_.disown(session);
 }
 
+Result<> PostgresScanLog::confirm(SessionId session) {
+    const std::shared_lock use(in_use_);
+    const auto owned = shared_.find(session);
+    auto connection = readers_.take();
+    if (!connection) return connection.error();
+    auto confirmed =
+        owned ? confirm_owned(*connection, session, *owned) : Result<>(why_not_owned(*connection, session));
+    readers_.give_back(std::move(*connection));
+    return confirmed;
+}
+
 Result<std::optional<FoundSession>> PostgresScanLog::find(std::string_view name) {
     const std::shared_lock use(in_use_);
     auto connection = readers_.take();
@@ -229,7 +241,7 @@ Result<SharedList> PostgresScanLog::list() {
     const std::shared_lock use(in_use_);
     auto connection = readers_.take();
     if (!connection) return connection.error();
-    auto list = list_sessions(*connection, node_.id());
+    auto list = list_sessions(*connection, node_.id(), shared_.sessions());
     if (list) readers_.give_back(std::move(*connection));
     return list;
 }

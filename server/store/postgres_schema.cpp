@@ -93,20 +93,22 @@ Result<> in_transaction(Connection& connection, Result<> (*change)(Connection&))
 }
 
 /// Writes the names of the sessions of format 1, which only their records have. Of two sessions with one name, which
-/// only a fault can have stored, the first gets it.
+/// only a fault can have stored, the first gets it. A copy gets it only if what it replaces is gone.
 Result<> fill_in_names(Connection& connection) {
     const auto rows = connection.run("SELECT id, record FROM scanloom.session WHERE NOT removed ORDER BY id", {},
                                      Connection::kLongTimeout);
     if (!rows) return rows.error();
+    std::set<std::int64_t> ids;
+    for (int row = 0; row < rows->size(); ++row) ids.insert(rows->number(row, 0));
     std::set<std::string> taken;
     for (int row = 0; row < rows->size(); ++row) {
         const auto [name, replaces] = name_in(rows->bytes(row, 1));
-        const bool is_new = !name.empty() && taken.insert(name).second;
-        if (!is_new && replaces == 0) continue;
+        const bool is_copy = ids.contains(signed_of(replaces));
+        const bool is_new = !is_copy && !name.empty() && taken.insert(name).second;
         Parameters parameters;
         parameters.add(rows->number(row, 0));
-        parameters.add(std::string_view(name));
-        parameters.add(signed_of(replaces));
+        parameters.add(std::string_view(is_new ? name : std::string()));
+        parameters.add(is_copy ? signed_of(replaces) : 0);
         const auto named = connection.run("UPDATE scanloom.session SET name = nullif(convert_from($2, 'UTF8'), ''),"
                                           " replaces = nullif($3, 0) WHERE id = $1",
                                           parameters);

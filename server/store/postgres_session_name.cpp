@@ -6,9 +6,7 @@ namespace scanloom::store::postgres {
 
 SessionName name_in(std::string_view record) {
     const auto decoded = wire::decode_session(record);
-    if (!decoded) return {};
-    if (decoded->replaces != 0) return {{}, decoded->replaces};
-    return {decoded->name, 0};
+    return decoded ? SessionName{decoded->name, decoded->replaces} : SessionName();
 }
 
 } // namespace scanloom::store::postgres

@@ -9,8 +9,9 @@ namespace scanloom::store::postgres {
 
 /// What the table `session` repeats of a session's record, so that servers find each other's sessions.
 struct SessionName {
-    std::string name;       ///< empty: the record cannot be decoded, or it is that of a copy
-    SessionId replaces = 0; ///< the session whose name it gets when that one is removed; 0: none
+    std::string name; ///< empty: the record cannot be decoded
+    SessionId replaces =
+        0; ///< the session that this one is a copy of, and whose name it has once that is removed; 0: none
 };
 
 [[nodiscard]] SessionName name_in(std::string_view record);

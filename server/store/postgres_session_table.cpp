@@ -17,10 +17,13 @@ Result<SessionId> SessionTable::create(std::string_view record) {
         parameters.add(node_.id());
         parameters.add(std::string_view(name));
         parameters.add(signed_of(replaces));
-        const auto rows = connection.run("INSERT INTO scanloom.session (record, owner, name, replaces) VALUES ($1, $2,"
-                                         " nullif(convert_from($3, 'UTF8'), ''), nullif($4, 0))"
-                                         " ON CONFLICT (name) WHERE NOT removed DO NOTHING RETURNING id, epoch",
-                                         parameters);
+        const auto rows =
+            connection.run("WITH original AS (SELECT id FROM scanloom.session WHERE id = $4 AND NOT removed)"
+                           " INSERT INTO scanloom.session (record, owner, name, replaces) VALUES ($1, $2,"
+                           " CASE WHEN EXISTS (SELECT FROM original) THEN NULL"
+                           " ELSE nullif(convert_from($3, 'UTF8'), '') END, (SELECT id FROM original))"
+                           " ON CONFLICT (name) WHERE NOT removed DO NOTHING RETURNING id, epoch",
+                           parameters);
         if (!rows) return rows.error();
         if (rows->size() == 0) {
             return Error{Errc::kAlreadyExists, fmt::format("session '{}' exists already; choose another name or "
@@ -36,9 +39,12 @@ Result<SessionId> SessionTable::create(std::string_view record) {
 }
 
 Result<> SessionTable::own(SessionId session) {
-    if (shared_.find(session)) return {};
     return writer_.make([&](Connection& connection) -> Result<> {
-        if (shared_.find(session)) return {};
+        if (const auto known = shared_.find(session)) {
+            auto confirmed = confirm_owned(connection, session, *known);
+            if (confirmed || confirmed.error().code != Errc::kNotOwner) return confirmed;
+            shared_.remove(session); // another server took it while this one was paused
+        }
         const auto owned = take(connection, session, {node_.id(), node_.is_steady()});
         if (!owned) return owned.error();
         shared_.put(session, *owned);
@@ -70,7 +76,7 @@ Result<> SessionTable::remove(SessionId session) {
                                          " SELECT id FROM gone",
                                          parameters);
         if (!rows) return rows.error();
-        if (rows->size() == 0) return why_lost(connection, session, *owned);
+        if (rows->size() == 0) return forget_lost(connection, shared_, session, *owned);
         shared_.remove(session);
         return {};
     });

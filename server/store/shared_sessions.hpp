@@ -14,7 +14,7 @@
 
 namespace scanloom::store {
 
-/// What a server tells the others about itself.
+/// How the servers that share a log reach each other.
 struct NodeInfo {
     std::string name;   ///< unique among the servers that share the log
     std::string robots; ///< where robots connect, HOST:PORT
@@ -35,6 +35,7 @@ struct Node {
 struct SharedSession {
     Revision end = 0;                           ///< of its log
     std::shared_ptr<const NodeInfo> owner = {}; ///< null: this server, or none that lives
+    bool is_own = false;                        ///< this server has it
 };
 
 /// The servers, by name, and the sessions that have a name.
@@ -69,16 +70,21 @@ public:
     /// Errors: kStoreFailed: it stays the owner.
     [[nodiscard]] virtual Result<> disown(SessionId session) = 0;
 
+    /// Checks that no other node has taken a session, as during a pause of this one: what this node knows of it was
+    /// true at some time during the call.
+    /// Errors: those of own().
+    [[nodiscard]] virtual Result<> confirm(SessionId session) = 0;
+
     /// Returns the session with this name; nullopt: there is none.
     [[nodiscard]] virtual Result<std::optional<FoundSession>> find(std::string_view name) = 0;
 
     /// Returns all servers and sessions.
     [[nodiscard]] virtual Result<SharedList> list() = 0;
 
-    /// Returns a secret that all servers of this log have, and nobody else.
+    /// Returns a secret that the servers of this log have in common.
     [[nodiscard]] virtual const std::string& secret() const = 0;
 
-    /// Tells the other nodes about this one, whose name they know. Call once.
+    /// Enters this node's addresses and version for the others. Call once; if it fails, it is repeated.
     [[nodiscard]] virtual Result<> announce(const NodeInfo& info) = 0;
 };
 

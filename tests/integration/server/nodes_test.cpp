@@ -95,6 +95,10 @@ TEST_F(NodesTest, RequestsAreAnsweredAsByTheServerThatHasTheSession) {
         kept.send(std::string(method) + " " + session + "/map.png HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n");
         EXPECT_EQ(kept.read(std::string_view(method) == "GET").status, 200) << "on one connection";
     }
+    kept.send("HEAD " + session + "/log HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n"); // without the body's chunks
+    EXPECT_EQ(kept.read(false).status, 200);
+    kept.send("GET " + session + "/map.yaml HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n");
+    EXPECT_EQ(kept.read().status, 200);
     testing_support::LiveClient at_a(a->http_port(), "one");
     testing_support::LiveClient at_b(b->http_port(), "one");
     EXPECT_EQ(at_b.read(), at_a.read());

@@ -82,17 +82,27 @@ TEST_F(SessionCacheTest, AnEvictedSessionIsAddedOnlyIfItsNameIsNeitherReservedNo
 }
 
 TEST_F(SessionCacheTest, FollowsTheListOfALogThatServersShare) {
-    add("loaded", 1);
+    add("own", 1);
+    const auto own = last_id_;
+    add("lost", 1);
+    const auto lost = last_id_;
+    add("new", 10);
     add_evicted("kept");
     const auto kept = last_id_;
     add_evicted("gone");
     const auto node = std::make_shared<const store::NodeInfo>(store::NodeInfo{.name = "other"});
-    EXPECT_THAT(cache_.follow({{kept, {5, node}}, {77, {1, nullptr}}}, at(10)), ElementsAre(77));
-    EXPECT_TRUE(cache_.contains("loaded")) << "whoever uses it finds out";
+    const auto followed =
+        cache_.follow({{own, {1, nullptr, true}}, {lost, {9, node}}, {kept, {5, node}}, {77, {1, nullptr}}}, at(10));
+    EXPECT_THAT(followed.unknown, ElementsAre(77));
+    ASSERT_EQ(followed.lost.size(), 1U);
+    EXPECT_EQ(followed.lost[0]->info().name, "lost");
+    expect_loaded("own", true);
+    expect_loaded("lost", false);
+    expect_loaded("new", true);
     EXPECT_EQ(cache_.owner("kept"), node);
     EXPECT_EQ(cache_.listed("kept")->shared.end, 5U);
     EXPECT_FALSE(cache_.contains("gone"));
-    EXPECT_EQ(cache_.owner("loaded"), nullptr);
+    EXPECT_EQ(cache_.owner("own"), nullptr);
 }
 
 TEST_F(SessionCacheTest, EvictsLeastRecentlyUsedSessionsAndNoMoreThanNeeded) {

@@ -111,6 +111,20 @@ TEST_F(SharedSessionsTest, AServerThatLostASessionChangesNothingAndSendsItsRobot
     EXPECT_TRUE(a_.registry->create("t", {})) << "the other sessions of the server go on";
 }
 
+/// Nobody uses it there, so that it would not find out by itself.
+TEST_F(SharedSessionsTest, AServerThatLostASessionDoesNotShowItAnyLonger) {
+    create(a_, "s");
+    const auto lost = a_.registry->find("s");
+    EXPECT_TRUE(a_.registry->confirm(*lost));
+    static_cast<void>(database_.run("UPDATE scanloom.session SET owner = 0"));
+    ASSERT_TRUE(b_.registry->load("s"));
+    EXPECT_EQ(a_.registry->confirm(*lost).error().code, Errc::kNotOwner);
+    clock_ = clock_.load() + 1s;
+    while (a_.registry->find("s")) a_.registry->tidy();
+    EXPECT_EQ(a_.registry->load("s").error().code, Errc::kNotOwner);
+    EXPECT_EQ(a_.registry->owner("s")->name, "b");
+}
+
 TEST_F(SharedSessionsTest, NothingIsLoadedAtTheStart) {
     create(a_, "s");
     auto c = start("c");

@@ -1,5 +1,6 @@
 #include "server/store/copy.hpp"
 
+#include "common/wire/log_codec.hpp"
 #include "server/store/open_store.hpp"
 #include "server/store/postgres_scan_log.hpp"
 #include "tests/support/log_reading.hpp"
@@ -79,6 +80,27 @@ TEST(CopyLog, AStoreCopiedThroughEachKindIsTheSame) {
     }
     const auto last = open_store(database.address, options).value();
     EXPECT_EQ(contents_of(*last), expected);
+}
+
+/// Numbers of sessions are others in the new store.
+TEST(CopyLog, SessionsThatHaveReplacedOthersNameNoneAndPendingOnesAreLeftOut) {
+    const auto record = [](const std::string& name, SessionId replaces) {
+        wire::SessionRecord made{.name = name};
+        made.replaces = replaces;
+        made.entries_at_creation = replaces == 0 ? 0 : 5;
+        return wire::encode_session(made);
+    };
+    MemoryScanLog from;
+    for (const auto& one : {record("gone", 0), record("x", 0), record("lab", 1), record("x", 2)}) {
+        ASSERT_TRUE(from.create_session(one));
+    }
+    ASSERT_TRUE(from.remove_session(1));
+    MemoryScanLog to;
+    ASSERT_TRUE(copy_log(from, to, [](const CopiedSession&) {}));
+    const auto copied = to.sessions().value();
+    ASSERT_THAT(copied, SizeIs(2));
+    EXPECT_EQ(copied[0].record.value(), record("x", 0));
+    EXPECT_EQ(copied[1].record.value(), record("lab", 0));
 }
 
 TEST(CopyLog, OnlyEmptyStoresAreCopiedInto) {

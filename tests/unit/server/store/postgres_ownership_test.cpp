@@ -189,6 +189,39 @@ TEST_F(PostgresOwnershipTest, ACopyHasTheNameWhenTheSessionThatItReplacesIsRemov
     EXPECT_EQ(a->create_session(record_of("s")).error().code, Errc::kAlreadyExists);
 }
 
+TEST_F(PostgresOwnershipTest, ACopyThatHasReplacedItsSessionIsASessionLikeOthers) {
+    const auto a = open("a");
+    const auto copy = a->create_session(record_of("s", 99)).value(); // of another store
+    EXPECT_EQ(a->shared()->find("s").value().value().stored.id, copy);
+}
+
+TEST_F(PostgresOwnershipTest, ACopyBelongsToTheServerThatHasTheSessionThatItIsToReplace) {
+    const auto a = open("a");
+    const auto b = open("b");
+    const auto session = a->create_session(record_of("s")).value();
+    const auto copy = a->create_session(record_of("s", session)).value();
+    EXPECT_EQ(own(*b, copy).error().code, Errc::kNotOwner);
+    ASSERT_TRUE(a->shared()->disown(session));
+    ASSERT_TRUE(own(*b, session));
+    ASSERT_TRUE(own(*b, copy));
+    EXPECT_TRUE(b->remove_session(copy));
+}
+
+TEST_F(PostgresOwnershipTest, ASessionThatWasLostIsTakenAgainWithWhatOthersWrote) {
+    const auto a = open("a");
+    const auto session = a->create_session("").value();
+    static_cast<void>(database_.run("UPDATE scanloom.session SET owner = 0"));
+    {
+        const auto b = open("b");
+        ASSERT_TRUE(own(*b, session));
+        ASSERT_TRUE(append_and_wait(*b, session, 1, {"of b"}));
+    }
+    EXPECT_EQ(a->shared()->confirm(session).error().code, Errc::kNotOwner);
+    ASSERT_TRUE(own(*a, session));
+    EXPECT_THAT(entries_after(*a, session, 0).value(), ElementsAre("of b"));
+    EXPECT_TRUE(append_and_wait(*a, session, 2, {"of a"}));
+}
+
 TEST_F(PostgresOwnershipTest, AStoreOfFormat1GetsNamesAndLosesItsOwners) {
     SessionId session = 0;
     SessionId copy = 0;
@@ -196,16 +229,19 @@ TEST_F(PostgresOwnershipTest, AStoreOfFormat1GetsNamesAndLosesItsOwners) {
         const auto log = open("a");
         session = log->create_session(record_of("s")).value();
         copy = log->create_session(record_of("s", session)).value();
+        ASSERT_TRUE(log->create_session(record_of("t", 99)));
         ASSERT_TRUE(append_and_wait(*log, session, 1, {"a"}));
     }
     for (const char* statement :
          {"DROP TABLE scanloom.node", "ALTER TABLE scanloom.session DROP COLUMN name, DROP COLUMN replaces",
           "CREATE SEQUENCE scanloom.owner", "UPDATE scanloom.session SET owner = 1",
+          "DELETE FROM scanloom.meta WHERE key = 'secret'",
           "UPDATE scanloom.meta SET value = '1' WHERE key = 'format'"}) {
         static_cast<void>(database_.run(statement));
     }
-    EXPECT_THAT(open_postgres_read_only(database_.address).value().log->sessions().value(), SizeIs(2));
+    EXPECT_THAT(open_postgres_read_only(database_.address).value().log->sessions().value(), SizeIs(3));
     const auto log = open("a");
+    EXPECT_TRUE(log->shared()->find("t").value());
     EXPECT_EQ(log->shared()->find("s").value().value().stored.id, session);
     ASSERT_TRUE(own(*log, session));
     EXPECT_TRUE(append_and_wait(*log, session, 2, {"b"}));

@@ -4,6 +4,7 @@
 #include "core/mapping/projection.hpp"
 #include "server/tiles/map_files.hpp"
 #include "server/tiles/map_image.hpp"
+#include "server/tiles/png_reader.hpp"
 #include "tests/support/random_map.hpp"
 
 #include <gmock/gmock.h>
@@ -66,6 +67,31 @@ TEST(RosMapImport, ReadsRowsFromTheBottomInPatchesOfWholeRows) {
     EXPECT_EQ(patches.back().cells[(patches.back().height() - 1) * 1000], MapCell::kOccupied);
     const auto map = imported(patches, 0.1);
     EXPECT_EQ(mapping::bounds_of(map, Layer::kOccupancy), (grid::CellBox{-500, 200, 500, 1700}));
+}
+
+/// OpenCV's decoder is the oracle. Colours may differ by one level, which libpng rounds in another way.
+TEST(RosMapImport, ReadsEachKindOfPngAsGrey) {
+    std::mt19937 random(7);
+    for (const int type : {CV_8UC1, CV_16UC1, CV_8UC3, CV_16UC3, CV_8UC4}) {
+        cv::Mat image(37, 53, type);
+        for (int n = 0; n < static_cast<int>(image.total() * image.elemSize()); ++n) {
+            image.data[n] = static_cast<std::uint8_t>(random());
+        }
+        Bytes png;
+        ASSERT_TRUE(cv::imencode(".png", image, png));
+        const auto read = read_png(png).value();
+        const cv::Mat expected = cv::imdecode(png, cv::IMREAD_GRAYSCALE);
+        ASSERT_EQ(read.pixels.size(), expected.total());
+        const bool is_coloured = image.channels() > 1;
+        for (std::size_t n = 0; n < read.pixels.size(); ++n) {
+            ASSERT_NEAR(read.pixels[n], expected.data[n], is_coloured ? 1 : 0) << "type " << type << ", pixel " << n;
+        }
+        for (std::size_t size = 0; size < png.size() * 9 / 10; size += 1 + png.size() / 50) {
+            EXPECT_FALSE(read_png(std::span(png).first(size))) << "cut short";
+        }
+        png[png.size() / 2] ^= 1;
+        EXPECT_EQ(read_png(png).error().code, Errc::kMalformed) << "a checksum does not match";
+    }
 }
 
 TEST(RosMapImport, KeepsWallsAtOtherCellSizes) {
