@@ -42,7 +42,8 @@ const std::vector<Folder> kFolders = {
 
     {.path = "server/log", .may_include = {}},
     {.path = "server/auth",
-     .may_include = {"common/error", "common/files", "common/hash", "common/net", "common/scan", "common/text", "server/log"}},
+     .may_include = {"common/error", "common/files", "common/hash", "common/net", "common/scan", "common/text",
+                     "server/log"}},
     {.path = "core/grid", .may_include = {"common/scan"}, .pure = true},
     {.path = "core/classify",
      .may_include = {"common/error", "common/geometry", "common/scan", "core/grid"},
