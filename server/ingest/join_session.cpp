@@ -53,7 +53,7 @@ asio::awaitable<Found> session_for(const wire::Hello& hello, sessions::SessionRe
         if (created || created.error().code != Errc::kAlreadyExists) co_return created;
         session = co_await loaded(hello.session, sessions); // another robot created it first
     }
-    if (session && sessions.is_shared()) { // the robot must not be told less than it was acknowledged elsewhere
+    if (session && sessions.is_shared()) { // another server may have acknowledged more to the robot
         const auto confirmed =
             co_await sockets::compute_on(std::move(blocking_executor), [&] { return sessions.confirm(**session); });
         if (!confirmed) co_return confirmed.error();

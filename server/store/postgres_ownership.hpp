@@ -13,7 +13,7 @@ namespace scanloom::store::postgres {
 /// Who else may have the store open.
 enum class Sharing : std::uint8_t { kWithNodes, kAlone };
 
-/// Locks the store, as long as the connection exists, so that a program that needs it alone does not run beside a
+/// Locks the store, as long as the connection exists, so that a program that needs it alone does not run with a
 /// server. What servers write is safe without it, by the epochs.
 /// Errors: kConflict: another program has it, or has it alone; kStoreFailed.
 [[nodiscard]] Result<> lock_store(Connection& connection, const Place& place, Sharing sharing);
@@ -25,7 +25,7 @@ struct Taker {
 
 /// Makes a node the owner of a session that has no owner that lives, and raises its epoch: earlier owners change
 /// nothing any more, and what they have committed is durable. A copy that has not replaced its session yet belongs to
-/// whoever has that one.
+/// the owner of that one.
 /// @param taker  the number of the node, and whether it may take the sessions of nodes whose rows are old
 /// Errors: kNotFound; kNotOwner: another node owns it; kStoreFailed.
 [[nodiscard]] Result<OwnedSession> take(Connection& connection, SessionId session, const Taker& taker);

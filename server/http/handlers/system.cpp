@@ -143,8 +143,14 @@ Families session_families(const sessions::SessionRegistry& sessions, const sessi
     }
     const auto failed =
         std::ranges::count_if(served, [](const auto& session) { return session->failure().has_value(); });
+    const auto nodes = sessions.nodes();
+    const auto alive = std::ranges::count_if(nodes, &store::Node::is_alive);
     return {
-        gauge_now("scanloom_sessions", "Sessions that are served.", sessions.all().size()),
+        gauge_now("scanloom_nodes_alive", "Servers that share the database and are alive; 0 with a directory.", alive),
+        gauge_now("scanloom_nodes_dead", "Servers that have died within a day and not returned.",
+                  std::ssize(nodes) - alive),
+        gauge_now("scanloom_sessions", "Sessions that are served, by all servers that share the database.",
+                  sessions.all().size()),
         gauge_now("scanloom_sessions_loaded", "Sessions whose maps are in memory.", served.size()),
         gauge_now("scanloom_map_memory_bytes", "Approximate memory of these maps.", bytes_of(sessions.pages().used())),
         gauge_now("scanloom_map_memory_limit_bytes", "Limit of this memory.", bytes_of(sessions.pages().total())),

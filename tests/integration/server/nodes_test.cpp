@@ -4,13 +4,23 @@
 #include "tests/support/running_server.hpp"
 #include "tests/support/temporary_directory.hpp"
 
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
 #include <boost/json/serialize.hpp>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <csignal>
+#include <cstdint>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <memory>
+#include <string>
 #include <string_view>
+#include <utility>
 
 /// Several servers that share a database, as users run them.
 namespace scanloom::test {
@@ -37,6 +47,14 @@ protected:
     static void end(RunningServer& server, int signal) {
         server.process().signal(signal);
         static_cast<void>(server.process().wait());
+    }
+
+    static bool answers(std::uint16_t port) {
+        try {
+            return http_request(port, "GET", "/livez").status == 200;
+        } catch (const std::exception&) { // it does not listen yet
+            return false;
+        }
     }
 
     static std::string digest(const RunningServer& server) {
@@ -75,7 +93,7 @@ TEST_F(NodesTest, RequestsAreAnsweredAsByTheServerThatHasTheSession) {
     simulate(a->robot_address(), "300");
     const std::string session = "/api/v1/sessions/one";
     for (const char* target : {"", "/map.png", "/map.pgm", "/tiles/map.json", "/log", "/trajectory.tum",
-                               "/changes?since=5", "/map.png?layer=nonsense", "/goal?robot=nobody", "/exclusions"}) {
+                               "/changes?since=5", "/map.png?layer=nonsense", "/goal?robot=absent", "/exclusions"}) {
         const auto from_a = a->get(session + target);
         const auto from_b = b->get(session + target);
         EXPECT_EQ(from_b.status, from_a.status) << target;
@@ -104,6 +122,41 @@ TEST_F(NodesTest, RequestsAreAnsweredAsByTheServerThatHasTheSession) {
     EXPECT_EQ(at_b.read(), at_a.read());
     EXPECT_EQ(http_request(b->http_port(), "DELETE", session).status, 204U);
     EXPECT_EQ(a->get(session).status, 404U);
+}
+
+/// The configuration in the documents, with other addresses.
+TEST_F(NodesTrials, ALoadBalancerShowsAllServersAsOne) {
+    auto a = start("a");
+    const auto b = start("b");
+    const auto c = start("c");
+    simulate(a->robot_address(), "300");
+    std::ifstream file(std::filesystem::path(SCANLOOM_SOURCE_DIR) / "docs/cluster/haproxy.cfg");
+    std::string text{std::istreambuf_iterator<char>(file), {}};
+    const auto replace = [&](const std::string& from, const std::string& to) {
+        ASSERT_NE(text.find(from), std::string::npos) << from;
+        text.replace(text.find(from), from.size(), to);
+    };
+    boost::asio::io_context io;
+    boost::asio::ip::tcp::socket reserved(io, boost::asio::ip::tcp::v4()); // keeps the port for the balancer
+    reserved.set_option(boost::asio::socket_base::reuse_address(true));
+    reserved.bind({boost::asio::ip::address_v4::loopback(), 0});
+    const auto port = reserved.local_endpoint().port();
+    replace("bind :8080", "bind 127.0.0.1:" + std::to_string(port));
+    for (const auto& [name, server] : {std::pair("node1", a.get()), {"node2", b.get()}, {"node3", c.get()}}) {
+        replace(std::string(name) + ":8080", "127.0.0.1:" + std::to_string(server->http_port()));
+    }
+    std::ofstream(place_.path() / "haproxy.cfg") << text;
+    ChildProcess balancer("/usr/sbin/haproxy", {"-db", "-f", place_.path() / "haproxy.cfg"}, place_.path() / "haproxy");
+    while (!answers(port)) {
+        ASSERT_FALSE(balancer.has_output_within(std::chrono::milliseconds(5))) << "it has ended";
+    }
+    const auto digest_through_it = [&] { return http_request(port, "GET", "/api/v1/sessions/one/digest").body; };
+    const auto expected = a->get("/api/v1/sessions/one/digest").body;
+    for (int n = 0; n < 6; ++n) EXPECT_EQ(digest_through_it(), expected);
+    testing_support::LiveClient viewer(port, "one");
+    EXPECT_TRUE(viewer.read());
+    end(*a, SIGTERM);
+    for (int n = 0; n < 6; ++n) EXPECT_EQ(digest_through_it(), expected) << "one server has ended";
 }
 
 /// A server that was killed counts as alive for 5 s.

@@ -35,7 +35,7 @@ TEST(LoadOptions, ParsesAllOptions) {
     const auto options = std::get<LoadOptions>(
         parse({"--server", "a:1", "--http", "b:2", "--rate", "0", "--batch", "5", "--faults", "cut=3,stall=4",
                "--verify", "counts", "--viewers", "2", "--tls-ca", "/dev/null", "--keep"}));
-    EXPECT_EQ(options.server.host, "a");
+    EXPECT_EQ(options.servers.at(0).text(), "a:1");
     EXPECT_EQ(options.http.port, "2");
     EXPECT_EQ(options.rate, 0.0);
     EXPECT_EQ(options.batch, 5U);

@@ -58,7 +58,7 @@ protected:
 
     static std::string digest(const Session& session) { return testing_support::digests_of(*session.snapshot()); }
 
-    /// Waits until a node has given up a session that nobody uses.
+    /// Waits until a node has given up an unused session.
     void evict(Node& node, const std::string& name) {
         clock_ = clock_.load() + 1h;
         while (node.registry->listed(name)->session) {
@@ -111,7 +111,7 @@ TEST_F(SharedSessionsTest, AServerThatLostASessionChangesNothingAndSendsItsRobot
     EXPECT_TRUE(a_.registry->create("t", {})) << "the other sessions of the server go on";
 }
 
-/// Nobody uses it there, so that it would not find out by itself.
+/// No robot uses it there, so that no append would fail.
 TEST_F(SharedSessionsTest, AServerThatLostASessionDoesNotShowItAnyLonger) {
     create(a_, "s");
     const auto lost = a_.registry->find("s");
