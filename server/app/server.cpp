@@ -213,7 +213,7 @@ Result<> Server::run() {
         services_->recovered = true;
         ingest_->start();
         asio::post(tidying_.get_executor(), [this] { run_maintenance(); });
-        check_.start();
+        if (!sessions_.is_shared()) check_.start(); // each of the servers would read the whole database
         announce();
     }
     sockets::run_to_completion(io_); // until drain() has finished
