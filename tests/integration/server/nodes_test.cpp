@@ -61,9 +61,14 @@ protected:
         return boost::json::serialize(server.get_json("/api/v1/sessions/one/digest").at("layers"));
     }
 
+    /// All tests of a suite share it, because it takes a second to start.
+    static PostgresServer& postgres() {
+        static PostgresServer started;
+        return started;
+    }
+
     TemporaryDirectory place_;
-    PostgresServer postgres_;
-    const std::string database_ = postgres_.new_database();
+    const std::string database_ = postgres().new_database();
 };
 
 class NodesTest : public NodesTrials {};
