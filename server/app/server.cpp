@@ -183,6 +183,7 @@ Result<> Server::listen(http::WebFiles web) {
                                        .web = std::move(web),
                                        .robots = {address.is_unspecified() ? "" : address.to_string(), ingest_->port()},
                                        .nodes = std::move(*nodes),
+                                       .drain = [this] { drain(); },
                                        .backups = backups_.get(),
                                        .tile_bytes_max = options_.tile_cache_bytes});
     api_.emplace(*services_);
@@ -311,7 +312,9 @@ void Server::read_certificates_again() {
 
 /// Stops accepting robots, gives every session limited time to make its submitted scans durable and acknowledge them,
 /// then stops serving. When no work is left, the io_context ends and run() returns.
+/// Does nothing if it was called before. Thread: any.
 void Server::drain() {
+    if (is_draining_.exchange(true)) return;
     spdlog::info("draining: acknowledging durable scans");
     notify_service_manager("STOPPING=1");
     ingest_->stop();

@@ -42,8 +42,8 @@ public:
 
     ~Server();
 
-    /// Recovers the sessions, reports that the server is ready, serves until SIGTERM or SIGINT, and drains. On SIGHUP
-    /// it reads the tokens and the certificates again.
+    /// Recovers the sessions, reports that the server is ready, serves until SIGTERM, SIGINT or a request to drain, and
+    /// drains. On SIGHUP it reads the tokens and the certificates again.
     /// Errors: kStoreFailed if the sessions cannot be listed, or the store has failed since.
     [[nodiscard]] Result<> run();
 
@@ -91,6 +91,7 @@ private:
     boost::asio::steady_timer stop_timeout_;
     boost::asio::steady_timer integration_timeout_;
     boost::asio::steady_timer tidying_;
+    std::atomic<bool> is_draining_ = false;
     std::atomic<bool> store_has_failed_ = false; // and the failure was logged
 };
 

@@ -41,7 +41,7 @@ std::optional<Action> action_of(Access access) {
     switch (access) {
     case Access::kCreate:
     case Access::kChange:
-    case Access::kBackup: return Action::kChange;
+    case Access::kOperate: return Action::kChange;
     case Access::kGuide: return Action::kGuide;
     case Access::kList:
     case Access::kRead: return Action::kRead;
@@ -56,7 +56,7 @@ auth::Admitted<void> check_access(const Token& token, Access access, std::string
         const auto concerned = is_about_one_session(access) ? std::optional(session) : std::nullopt;
         if (auto permitted = check_permission(token, *action, concerned); !permitted) return permitted;
     }
-    if ((access != Access::kServer && access != Access::kBackup) || is_for_all(token)) return {};
+    if ((access != Access::kServer && access != Access::kOperate) || is_for_all(token)) return {};
     return Denied{
         Reason::kWrongSession, token.name,
         Error{Errc::kUnauthorized, fmt::format("this needs a token for all sessions, and the token '{}' is not one; "

@@ -28,6 +28,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -60,6 +61,7 @@ struct Services {
     WebFiles web = {};                                        ///< of the viewer
     RobotPort robots = {};                                    ///< for /readyz
     NodeLinks nodes = {};                                     ///< to servers that share the database
+    std::function<void()> drain = [] {};                      ///< makes the server stop, as SIGTERM does
     store::Backups* backups = nullptr;                        ///< null: this server keeps no backups
     std::size_t tile_bytes_max = tiles::TileMaker::kBytesMax; ///< of cached tiles
     std::chrono::milliseconds replay_timeout{20'000};         ///< longest time that a request waits for a replay job

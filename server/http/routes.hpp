@@ -32,14 +32,14 @@ enum class Method {
 /// The permission that an operation requires of a token. A replay job does not change its session: it needs the same
 /// permission with POST as with GET.
 enum class Access {
-    kOpen,   ///< none; some responses contain more if the request has a token
-    kServer, ///< the token is for all sessions
-    kBackup, ///< to back up the store: the token is for all sessions and may change them
-    kList,   ///< to read sessions; only those that the token is for are returned
-    kRead,   ///< to read the session in the path
-    kGuide,  ///< to assign goals to robots of the session in the path
-    kCreate, ///< to change sessions; the handler checks which
-    kChange, ///< to change the session in the path
+    kOpen,    ///< none; some responses contain more if the request has a token
+    kServer,  ///< the token is for all sessions
+    kOperate, ///< to back up the store or stop the server: the token is for all sessions and may change them
+    kList,    ///< to read sessions; only those that the token is for are returned
+    kRead,    ///< to read the session in the path
+    kGuide,   ///< to assign goals to robots of the session in the path
+    kCreate,  ///< to change sessions; the handler checks which
+    kChange,  ///< to change the session in the path
 };
 
 /// Whether the token must be for the session in the path.

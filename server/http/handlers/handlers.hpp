@@ -19,6 +19,7 @@ namespace scanloom::http {
 [[nodiscard]] Result<Response> get_viewer(Context& context);       ///< only the page reads its query
 [[nodiscard]] Result<Response> get_viewer_asset(Context& context); ///< a file that the page names
 [[nodiscard]] Result<Response> list_nodes(Context& context);       ///< as a second ago; empty for one server
+[[nodiscard]] Result<Response> drain_node(Context& context);       ///< responds before the server stops
 [[nodiscard]] Result<Response> list_backups(Context& context);     ///< oldest first
 [[nodiscard]] Result<Response> make_backup(Context& context);      ///< responds when the backup is complete
 

@@ -3,6 +3,7 @@
 #include "common/json/json_text.hpp"
 #include "server/http/content_coding.hpp"
 #include "server/http/handlers/session_json.hpp"
+#include "server/http/json_read.hpp"
 #include "server/http/openapi.hpp"
 #include "server/http/problem.hpp"
 #include "server/metrics/metrics.hpp"
@@ -255,6 +256,15 @@ Result<Response> list_nodes(Context& context) {
                                              {"version", info->build}});
     }
     return ok(boost::json::object{{"nodes", std::move(listed)}});
+}
+
+Result<Response> drain_node(Context& context) {
+    const auto body = parse_json_object(context.request.body, {});
+    if (!body) return body.error();
+    context.services.drain();
+    auto response = ok(boost::json::object{{"draining", true}});
+    response.status = Status::accepted;
+    return response;
 }
 
 Result<Response> list_backups(Context& context) {

@@ -84,7 +84,8 @@ TEST_F(NodesTest, ASessionGoesOnAnotherServerWhenItsOwnHasEnded) {
     while (node().at("sessions") != 1) { // it knows it a second later
     }
     EXPECT_EQ(b->get_json("/api/v1/sessions").at("sessions").at(0).at("node"), "a");
-    end(*a, SIGTERM);
+    EXPECT_EQ(http_request(a->http_port(), "POST", "/api/v1/node/drain", "{}").status, 202U);
+    EXPECT_EQ(a->process().wait(), 0);
     EXPECT_EQ(digest(*b), before);
 
     end(*b, SIGKILL);

@@ -95,7 +95,7 @@ TEST_F(ApiAccessTest, EachRoleIsPermittedItsOwnRequestsOnly) {
                 return is_let_in(ask_as(who, method, target, method == "POST" ? "[]" : ""));
             };
             const bool is_metrics = route.path == "/metrics" || route.path == "/api/v1/nodes";
-            const bool is_store = route.path == "/api/v1/backups";
+            const bool is_store = route.path == "/api/v1/backups" || route.path == "/api/v1/node/drain";
             EXPECT_FALSE(allowed("")) << method << " " << target;
             EXPECT_FALSE(allowed("unknown")) << method << " " << target;
             const bool guides = method == "POST" && route.path.ends_with("/goal");

@@ -84,6 +84,7 @@ TEST(Routes, HaveTheClassOfTheirWork) {
         {"GET", session + "/tiles/occupancy/9/256/255.bin", WorkClass::kIo},
         {"GET", session + "/tiles/occupancy/x/0/0.png", WorkClass::kIo},
         {"GET", "/api/v1/sessions", WorkClass::kQueries},
+        {"POST", "/api/v1/node/drain", WorkClass::kQueries},
         {"GET", "/api/v1/backups", WorkClass::kQueries},
         {"POST", session + "/weave", WorkClass::kQueries}, // which only starts a job
         {"GET", session + "/frontiers.geojson?robot=r", WorkClass::kPlanning},

@@ -1,7 +1,6 @@
 #include "server/store/postgres_scan_log.hpp"
 #include "tests/support/log_reading.hpp"
 #include "tests/support/postgres_server.hpp"
-#include "tests/unit/server/store/postgres_database.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -28,12 +27,7 @@ struct Acknowledged {
 TEST(PostgresFailoverTrials, ThePromotedStandbyHasEachAcknowledgedEntryOnce) {
     test::PostgresServer primary;
     auto address = primary.new_database();
-    const PostgresDatabase before(address);
     test::PostgresServer standby(primary);
-    static_cast<void>(before.run("ALTER SYSTEM SET synchronous_standby_names = 'standby'"));
-    static_cast<void>(before.run("SELECT pg_reload_conf()"));
-    while (before.number("SELECT count(*) FROM pg_stat_replication WHERE sync_state = 'sync'") == 0) {
-    }
     address += "," + standby.socket();
     const auto log = open_postgres(address, {.allow_unreplicated = true}).value();
     std::vector<Acknowledged> sessions(kSessions);
