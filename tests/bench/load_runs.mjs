@@ -10,9 +10,11 @@ export function startServer(options = [], database = undefined) {
 
 /**
  * The tool's output of each second is not shown, unless the tool fails.
+ * @param servers  one, or several that share a store
  * @returns the report of one run; throws if scans were lost or could not be verified
  */
-export async function load(server, options) {
+export async function load(servers, options) {
+  const all = [servers].flat();
   const flags = Object.entries(options).flatMap(([name, value]) =>
     value === true ? [`--${name}`] : [`--${name}`, String(value)],
   );
@@ -20,9 +22,9 @@ export async function load(server, options) {
     'scanloom-load',
     [
       '--server',
-      `127.0.0.1:${server.robotPort}`,
+      all.map((each) => `127.0.0.1:${each.robotPort}`).join(','),
       '--http',
-      `127.0.0.1:${server.httpPort}`,
+      `127.0.0.1:${all[0].httpPort}`,
       '--json',
       '-',
       '--replace',

@@ -1,15 +1,18 @@
 /**
- * The cost of a scan with the log in a directory, in PostgreSQL, and in PostgreSQL with a synchronous standby, in turn.
+ * The cost of a scan with the log in a directory, in PostgreSQL, and in PostgreSQL with a synchronous standby for one
+ * server and for three, in turn.
  *
  *   SCANLOOM_BIN_DIR=build/bin node tests/bench/store_bench.mjs build/bench/store.json [--quick]
  *
- * Everything runs on one machine: robots, server, PostgreSQL and its standby. Median of the rounds.
+ * Everything runs on one machine: robots, servers, PostgreSQL and its standby. Median of the rounds. Processor times
+ * are those of the whole run, with connecting and verification.
  */
 import { writeFileSync } from 'node:fs';
 import { load, startServer } from './load_runs.mjs';
 import { PostgresServer } from './postgres_server.mjs';
 import { announce, fullOrQuick, operands } from './report/arguments.mjs';
 import { describe, machineWithStore } from './report/machine.mjs';
+import { processorSeconds } from './report/process_use.mjs';
 import { table, threeDigits } from './report/table.mjs';
 
 const kSeconds = fullOrQuick(10, 2);
@@ -21,7 +24,7 @@ const kLoads = [
 ];
 
 const [file] = operands;
-announce('store', '6 minutes', '1 minute');
+announce('store', '8 minutes', '1 minute');
 const on = machineWithStore();
 const alone = await PostgresServer.start();
 const primary = await PostgresServer.start();
@@ -29,7 +32,8 @@ const standby = await PostgresServer.start(primary);
 const stores = [
   { name: 'directory (RocksDB)' },
   { name: 'PostgreSQL, no standby', primary: alone, options: ['--allow-unreplicated'] },
-  { name: 'PostgreSQL, synchronous standby', primary, standby, options: [] },
+  { name: 'PostgreSQL, synchronous standby', primary, standby },
+  { name: 'PostgreSQL, synchronous standby, three servers', primary, standby, servers: 3 },
 ];
 const runs = [];
 try {
@@ -46,28 +50,33 @@ writeFileSync(file, `${JSON.stringify({ machine: on, rows, runs }, null, 2)}\n`)
 printTable();
 
 async function measure(store, name, options) {
-  const server = await startServer(store.options, store.primary?.newDatabase());
+  const database = store.primary?.newDatabase();
+  const servers = [];
   try {
-    const databases = [store.primary, store.standby];
-    const before = databases.map((each) => each?.processorSeconds());
-    const run = await load(server, { duration: kSeconds, ...kScan, ...options });
-    const scans = run.scans.acknowledged;
-    const [ofPrimary, ofStandby] = databases.map((each, n) =>
-      each ? ((each.processorSeconds() - before[n]) * 1e6) / scans : undefined,
+    while (servers.length < (store.servers ?? 1)) servers.push(await startServer(store.options, database));
+    const used = () => [
+      servers.reduce((sum, server) => sum + processorSeconds(server.child.pid), 0),
+      store.primary?.processorSeconds(),
+      store.standby?.processorSeconds(),
+    ];
+    const before = used();
+    const run = await load(servers, { duration: kSeconds, ...kScan, ...options });
+    const [ofServers, ofPrimary, ofStandby] = used().map((seconds, n) =>
+      seconds === undefined ? undefined : ((seconds - before[n]) * 1e6) / run.scans.acknowledged,
     );
     const ack = run.ack_from_sending;
     return {
       load: name,
       store: store.name,
       scans_per_second: run.scans.acknowledged_per_second,
-      server_us: run.server.cpu_us_per_scan,
+      server_us: ofServers,
       primary_us: ofPrimary,
       standby_us: ofStandby,
       ack_p50_ms: ack.p50_ms,
       ack_p99_ms: ack.p99_ms,
     };
   } finally {
-    await server.stop();
+    for (const server of servers) await server.stop();
   }
 }
 
@@ -84,7 +93,7 @@ function printTable() {
   console.log(describe(on), '\n');
   console.log(
     table(
-      ['', 'scans/s', 'server, us a scan', 'primary', 'standby', 'ack p50, ms', 'p99, ms'],
+      ['', 'scans/s', 'servers, us a scan', 'primary', 'standby', 'ack p50, ms', 'p99, ms'],
       rows.map((row) => [
         `${row.load}: ${row.store}`,
         row.scans_per_second.toFixed(0),

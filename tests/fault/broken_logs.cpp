@@ -1,6 +1,7 @@
 #include "tests/fault/broken_logs.hpp"
 
 #include "common/wire/log_codec.hpp"
+#include "tests/fault/passing_log.hpp"
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/steady_timer.hpp>
@@ -19,40 +20,6 @@ namespace {
 using store::CheckpointPart;
 using store::ScanLog;
 using store::SessionId;
-
-/// Forwards all calls.
-class PassingLog : public ScanLog {
-public:
-    explicit PassingLog(std::unique_ptr<ScanLog> log) : log_(std::move(log)) {}
-
-    Result<SessionId> create_session(std::string_view record) override { return log_->create_session(record); }
-    Result<std::vector<store::StoredSession>> sessions() override { return log_->sessions(); }
-    Result<Revision> end_of(SessionId session) override { return log_->end_of(session); }
-    Result<> remove_session(SessionId session) override { return log_->remove_session(session); }
-    void append(SessionId session, Revision first, std::vector<std::string> entries, Done done) override {
-        log_->append(session, first, std::move(entries), std::move(done));
-    }
-    Result<> read(SessionId session, Revision after, const VisitEntry& visit) override {
-        return log_->read(session, after, visit);
-    }
-    Result<> clear_checkpoint(SessionId session) override { return log_->clear_checkpoint(session); }
-    Result<> write_checkpoint(SessionId session, std::vector<CheckpointPart> parts) override {
-        return log_->write_checkpoint(session, std::move(parts));
-    }
-    Result<> read_checkpoint(SessionId session, const VisitPart& visit) override {
-        return log_->read_checkpoint(session, visit);
-    }
-    [[nodiscard]] bool reopen() override { return log_->reopen(); }
-    [[nodiscard]] store::StoreStats stats() const override { return log_->stats(); }
-    [[nodiscard]] std::uint64_t bytes_on_disk() const override { return log_->bytes_on_disk(); }
-    [[nodiscard]] store::SharedSessions* shared() override { return log_->shared(); }
-
-protected:
-    [[nodiscard]] ScanLog& under() { return *log_; }
-
-private:
-    std::unique_ptr<ScanLog> log_;
-};
 
 class HastyLog final : public PassingLog {
 public:

@@ -1,18 +1,12 @@
 // A scanloom-server with a log, a disk or sockets that break their guarantees. Used to test the rows of faults.
-// Usage: broken_server hasty
-// forgetful
-// blind
-// misled
-// leaky
-// tiring
-// unsynced
-// trusting
-// hoarding
-// clinging, and the options of scanloom-server
+// Usage: broken_server KIND OPTIONS...
+// KIND is one of broken_logs.hpp, broken_files.hpp or broken_sockets.hpp, or "usurping" or "retrying", and OPTIONS are
+// those of scanloom-server.
 #include "server/app/options.hpp"
 #include "server/app/server.hpp"
 #include "server/app/standard_error_sink.hpp"
 #include "server/store/open_store.hpp"
+#include "tests/fault/broken_database_logs.hpp"
 #include "tests/fault/broken_files.hpp"
 #include "tests/fault/broken_logs.hpp"
 #include "tests/fault/broken_sockets.hpp"
@@ -39,6 +33,8 @@ int main(int argc, char** argv) {
         store.env = files.get();
         auto log = store::open_store(directory, store);
         if (!log) return log;
+        if (kind == "usurping") return fault::usurping_log(std::move(*log), directory);
+        if (kind == "retrying") return fault::retrying_log(std::move(*log));
         return fault::broken_log(kind, std::move(*log));
     };
     auto server = app::Server::open(std::get<app::ServerOptions>(options), {}, open_log);

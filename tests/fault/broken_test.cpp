@@ -46,6 +46,14 @@ TEST(NodesRow, DetectsEarlyAcknowledgements) {
     EXPECT_GT(run_nodes_row({.seed = 1, .count = 4, .server = broken_server("hasty")}).lost, 0U);
 }
 
+TEST(NodesRow, DetectsRetriesOfUnansweredAppends) {
+    EXPECT_GT(run_nodes_row({.seed = 2, .count = 7, .server = broken_server("retrying")}).twice, 0U);
+}
+
+TEST(NodesRow, DetectsWritesToLostSessions) {
+    expect_found(run_nodes_row({.seed = 1, .count = 10, .server = broken_server("usurping")}));
+}
+
 TEST(KillRow, DetectsDuplicates) {
     const Outcome outcome = run_kill_row({.seed = 1, .count = 10, .server = broken_server("forgetful")});
     EXPECT_FALSE(outcome.passed());

@@ -4,8 +4,10 @@
 #include "tests/support/random_scans.hpp"
 
 #include <boost/asio/co_spawn.hpp>
+#include <boost/asio/detached.hpp>
 #include <boost/asio/executor_work_guard.hpp>
 #include <boost/asio/post.hpp>
+#include <boost/asio/steady_timer.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <fmt/format.h>
 
@@ -38,11 +40,17 @@ public:
         if (intake_ != nullptr) intake_->wake();
     }
 
+    /// No more scans will be released.
+    void end() {
+        last_ = released_;
+        if (intake_ != nullptr) intake_->wake();
+    }
+
     asio::awaitable<Result<>> run(robot::Intake& intake) override {
         intake_ = &intake;
         while (!intake.resumed_after()) co_await intake.wait_for_change();
         std::uint64_t handed_over = *intake.resumed_after();
-        while (handed_over < plan_.scans && !intake.is_stopped()) {
+        while (handed_over < last_ && !intake.is_stopped()) {
             if (handed_over == released_ || !intake.has_room()) {
                 co_await intake.wait_for_change();
                 continue;
@@ -59,6 +67,7 @@ private:
     std::function<void(std::uint64_t)> on_acknowledged_;
     std::shared_ptr<const Sensor> laser_ = std::make_shared<const Sensor>(testing_support::small_laser());
     std::uint64_t released_ = 0;
+    std::uint64_t last_ = plan_.scans;
     robot::Intake* intake_ = nullptr;
 };
 
@@ -90,7 +99,7 @@ SessionOptions fleet_options() { return {.cell_size = kCellSize}; }
 class Fleet::Robots {
 public:
     Robots(std::vector<RobotPlan> plans, const std::vector<std::uint16_t>& ports, const LinkTimeouts& timeouts) {
-        for (auto& plan : plans) members_.push_back(std::make_unique<Member>(std::move(plan)));
+        for (auto& plan : plans) members_.push_back(std::make_unique<Member>(std::move(plan), members_.size()));
         for (auto& member : members_) start(*member, ports, timeouts);
         thread_ = std::thread([this] { io_.run(); });
     }
@@ -108,6 +117,39 @@ public:
         asio::post(io_, [this, seq] {
             for (auto& member : members_) member->feed->release(seq);
         });
+    }
+
+    void stream(unsigned rate) {
+        const std::lock_guard lock(mutex_);
+        to_acknowledge_ = std::numeric_limits<std::uint64_t>::max();
+        interval_ = std::chrono::duration_cast<Clock::duration>(std::chrono::seconds(1)) / (rate * members_.size());
+        begin_ = Clock::now();
+        asio::co_spawn(io_, release_in_turn(), asio::detached);
+    }
+
+    void end() {
+        asio::post(io_, [this] {
+            is_ending_ = true;
+            for (auto& member : members_) member->feed->end();
+        });
+    }
+
+    std::vector<std::chrono::milliseconds> wait_for_all() {
+        std::unique_lock lock(mutex_);
+        const auto turns = (Clock::now() - begin_.value()) / interval_;
+        const auto released = static_cast<std::uint64_t>(turns) / members_.size();
+        changed_.wait(lock, [&] {
+            return given_up_ || std::ranges::all_of(members_, [&](const auto& member) {
+                       return member->standing.acknowledged >= released;
+                   });
+        });
+        std::vector<std::chrono::milliseconds> longest;
+        for (const auto& member : members_) {
+            const auto delay = std::exchange(member->longest_delay, {});
+            longest.push_back(std::chrono::duration_cast<std::chrono::milliseconds>(delay));
+        }
+        if (given_up_) longest.clear();
+        return longest;
     }
 
     bool wait_for_acknowledged(std::uint64_t scans) {
@@ -136,10 +178,14 @@ public:
     }
 
 private:
+    using Clock = std::chrono::steady_clock;
+
     struct Member {
-        explicit Member(RobotPlan plan) { standing.plan = std::move(plan); }
+        Member(RobotPlan plan, std::size_t its_number) : number(its_number) { standing.plan = std::move(plan); }
 
         RobotStanding standing; // guarded by mutex_, except the plan, which never changes
+        std::size_t number;
+        Clock::duration longest_delay{}; // guarded by mutex_; of an acknowledgement, while scans are released in turn
         std::unique_ptr<ReleasedFeed> feed;
         std::unique_ptr<robot::Uplink> uplink;
     };
@@ -157,6 +203,10 @@ private:
 
     void on_acknowledged(Member& member, std::uint64_t seq) {
         const std::lock_guard lock(mutex_);
+        if (begin_ && seq > member.standing.acknowledged) {
+            const auto delay = Clock::now() - due(member.number, member.standing.acknowledged + 1);
+            member.longest_delay = std::max(member.longest_delay, delay);
+        }
         acknowledged_ += seq - member.standing.acknowledged;
         member.standing.acknowledged = seq;
         changed_.notify_all();
@@ -170,6 +220,23 @@ private:
         member.standing.reconnects = member.uplink->status().reconnects;
         ++ended_;
         changed_.notify_all();
+    }
+
+    /// Returns when a scan is released while they are released in turn.
+    [[nodiscard]] Clock::time_point due(std::size_t member, std::uint64_t seq) const {
+        return *begin_ + interval_ * static_cast<Clock::rep>((seq - 1) * members_.size() + member);
+    }
+
+    asio::awaitable<void> release_in_turn() {
+        asio::steady_timer timer(io_);
+        for (std::uint64_t seq = 1;; ++seq) {
+            for (auto& member : members_) {
+                timer.expires_at(due(member->number, seq));
+                co_await timer.async_wait(asio::use_awaitable);
+                if (is_ending_) co_return;
+                member->feed->release(seq);
+            }
+        }
     }
 
     void stop_all() {
@@ -187,6 +254,10 @@ private:
     std::uint64_t to_acknowledge_ = 0; // of all released scans
     std::size_t ended_ = 0;
     bool given_up_ = false;
+    bool is_ending_ = false; // on the thread
+    // Set before the first scan is released in turn.
+    std::optional<Clock::time_point> begin_;
+    Clock::duration interval_{}; // between two scans of all robots
     std::thread thread_;
 };
 
@@ -205,6 +276,9 @@ Fleet::~Fleet() = default;
 
 void Fleet::release(std::uint64_t seq) { robots_->release(seq); }
 void Fleet::release_all() { robots_->release(std::numeric_limits<std::uint64_t>::max()); }
+void Fleet::stream(unsigned rate) { robots_->stream(rate); }
+void Fleet::end() { robots_->end(); }
+std::vector<std::chrono::milliseconds> Fleet::wait_for_all() { return robots_->wait_for_all(); }
 bool Fleet::wait_for_acknowledged(std::uint64_t scans) { return robots_->wait_for_acknowledged(scans); }
 std::uint64_t Fleet::acknowledged() const { return robots_->acknowledged(); }
 bool Fleet::has_given_up() const { return robots_->has_given_up(); }

@@ -61,6 +61,18 @@ public:
     void release(std::uint64_t seq);
     void release_all();
 
+    /// Releases scans one after the other from now on, `rate` a second of each robot, in turn. Call once, instead of
+    /// release(). Robots end after end() only.
+    void stream(unsigned rate);
+
+    /// The robots end when the released scans are acknowledged.
+    void end();
+
+    /// Waits until every robot has an acknowledgement of all scans that are released now. Pre: stream() was called.
+    /// @return per robot, the longest time from a scan's release to its acknowledgement since the last call; empty: a
+    ///         robot has given up
+    [[nodiscard]] std::vector<std::chrono::milliseconds> wait_for_all();
+
     /// Waits until this number of scans is acknowledged in total.
     /// @return false if that cannot happen, as a robot has given up or all released scans are acknowledged
     bool wait_for_acknowledged(std::uint64_t scans);
@@ -68,8 +80,8 @@ public:
     [[nodiscard]] std::uint64_t acknowledged() const;
     [[nodiscard]] bool has_given_up() const;
 
-    /// Waits until every robot has ended. Pre: release_all() was called, or a robot has given up, in which case the
-    /// others are stopped.
+    /// Waits until every robot has ended. Pre: release_all() or end() was called, or a robot has given up, in which
+    /// case the others are stopped.
     [[nodiscard]] std::vector<RobotStanding> finish();
 
 private:

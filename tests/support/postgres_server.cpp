@@ -4,11 +4,14 @@
 
 #include <fmt/format.h>
 
+#include <poll.h>
 #include <pwd.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <csignal>
+#include <fstream>
 #include <stdexcept>
 #include <vector>
 
@@ -45,6 +48,23 @@ void run(const fs::path& directory, const std::string& program, std::vector<std:
     if (process.wait() != 0) throw std::runtime_error(program + ": " + said);
 }
 
+std::string address_of(const std::string& socket, const std::string& database) {
+    return fmt::format("postgresql://scanloom@/{}?host={}", database, socket);
+}
+
+store::postgres::Connection connect_to(const std::string& socket, const std::string& database) {
+    return store::postgres::Connection::open(store::postgres::parse_place(address_of(socket, database)).value())
+        .value();
+}
+
+/// Returns the processes that a process has started, and that still run.
+std::vector<pid_t> children_of(pid_t parent) {
+    std::vector<pid_t> children;
+    std::ifstream list(fmt::format("/proc/{0}/task/{0}/children", parent));
+    for (pid_t child = 0; list >> child;) children.push_back(child);
+    return children;
+}
+
 /// Lets the user `postgres` write to a directory, if this process is root.
 void give_away(const fs::path& directory) {
     if (::geteuid() != 0) return;
@@ -54,21 +74,58 @@ void give_away(const fs::path& directory) {
     }
 }
 
-} // namespace
-
-PostgresServer::PostgresServer() {
-    give_away(directory_.path());
-    run(directory_.path(), "initdb",
-        {"-D", directory_.path() / "data", "-U", "scanloom", "-A", "trust", "-E", "UTF8", "--locale", "C", "--no-sync",
-         "--no-instructions"});
-    start();
+/// Kills a process that this one has not started itself. @param process  need not run any more
+void kill_and_wait(pid_t process) {
+    const int handle = static_cast<int>(::syscall(SYS_pidfd_open, process, 0));
+    if (handle < 0) return;
+    ::kill(process, SIGKILL);
+    pollfd ended{handle, POLLIN, 0};
+    ::poll(&ended, 1, -1);
+    ::close(handle);
 }
 
-PostgresServer::PostgresServer(const PostgresServer& primary) {
+/// Creates a directory that only PostgreSQL's user may read.
+void make_directory(const fs::path& directory) {
+    fs::create_directory(directory);
+    fs::permissions(directory, fs::perms::owner_all);
+    give_away(directory);
+}
+
+} // namespace
+
+PostgresServer::PostgresServer() : data_(directory_.path() / "data") { create(); }
+
+PostgresServer::PostgresServer(const fs::path& data) : data_(data), is_synced_(true) { create(); }
+
+PostgresServer::PostgresServer(const PostgresServer& primary, const fs::path& data)
+    : data_(data.empty() ? directory_.path() / "data" : data), is_synced_(!data.empty()) {
     give_away(directory_.path());
-    run(directory_.path(), "pg_basebackup",
-        {"-D", directory_.path() / "data", "-h", primary.socket(), "-U", "scanloom", "-R", "-c", "fast", "--no-sync"});
+    stand_by(primary);
+}
+
+void PostgresServer::create() {
+    give_away(directory_.path());
+    make_directory(data_);
+    run(directory_.path(), "initdb",
+        {"-D", data_, "-U", "scanloom", "-A", "trust", "-E", "UTF8", "--locale", "C", "--no-sync",
+         "--no-instructions"});
     start();
+    // Nobody reads the log after the start, and a full pipe would stop the server.
+    connect_to(socket(), "postgres").run("ALTER ROLE scanloom SET log_min_messages = panic").value();
+}
+
+void PostgresServer::stand_by(const PostgresServer& primary) {
+    fs::remove_all(data_);
+    make_directory(data_);
+    std::vector<std::string> how{"-D", data_, "-h", primary.socket(), "-U", "scanloom", "-R", "-c", "fast"};
+    if (!is_synced_) how.emplace_back("--no-sync");
+    run(directory_.path(), "pg_basebackup", how);
+    start();
+    auto connection = connect_to(primary.socket(), "postgres");
+    connection.run("ALTER SYSTEM SET synchronous_standby_names = 'standby'").value();
+    connection.run("SELECT pg_reload_conf()").value();
+    while (connection.run("SELECT FROM pg_stat_replication WHERE sync_state = 'sync'").value().size() == 0) {
+    }
 }
 
 void PostgresServer::start() {
@@ -83,9 +140,10 @@ std::string PostgresServer::try_to_start() {
     const auto& place = directory_.path();
     process_.emplace(
         "/bin/sh",
-        arguments_of("postgres", {"-D", place / "data", "-k", place, "-h", "", "-c", "fsync=off", "-c",
-                                  "shared_buffers=16MB", "-c", "log_min_messages=log", "-c", "log_checkpoints=off",
-                                  "-c", "cluster_name=standby"}), // which a standby calls itself
+        arguments_of("postgres",
+                     {"-D", data_, "-k", place, "-h", "", "-c", is_synced_ ? "fsync=on" : "fsync=off", "-c",
+                      "shared_buffers=16MB", "-c", "wal_retrieve_retry_interval=100ms", "-c", "log_min_messages=log",
+                      "-c", "log_checkpoints=off", "-c", "cluster_name=standby"}), // which a standby calls itself
         place / "log");
     std::string said;
     while (const auto line = process_->read_line()) {
@@ -95,25 +153,31 @@ std::string PostgresServer::try_to_start() {
     return said;
 }
 
-void PostgresServer::promote() {
-    run(directory_.path(), "pg_ctl", {"promote", "-w", "-D", directory_.path() / "data"});
+void PostgresServer::promote() { run(directory_.path(), "pg_ctl", {"promote", "-w", "-D", data_}); }
+
+void PostgresServer::pause() {
+    process_->signal(SIGSTOP); // it starts no others then
+    for (const pid_t child : children_of(process_->id())) ::kill(child, SIGSTOP);
+}
+
+void PostgresServer::resume() {
+    for (const pid_t child : children_of(process_->id())) ::kill(child, SIGCONT);
+    process_->signal(SIGCONT);
 }
 
 void PostgresServer::kill() {
+    const auto children = children_of(process_->id());
     process_->signal(SIGKILL);
     process_->wait();
+    for (const pid_t child : children) kill_and_wait(child);
 }
 
 std::string PostgresServer::new_database() {
-    const auto address = [&](const std::string& name) {
-        return fmt::format("postgresql://scanloom@/{}?host={}", name, directory_.path().native());
-    };
     const auto name = fmt::format("db{}", ++databases_);
-    auto connection =
-        store::postgres::Connection::open(store::postgres::parse_place(address("postgres")).value()).value();
+    auto connection = connect_to(socket(), "postgres");
     connection.run(fmt::format("CREATE DATABASE {}", name).c_str(), {}, store::postgres::Connection::kLongTimeout)
         .value();
-    return address(name);
+    return address_of(socket(), name);
 }
 
 } // namespace scanloom::test

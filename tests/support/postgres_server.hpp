@@ -3,6 +3,7 @@
 #include "tests/support/child_process.hpp"
 #include "tests/support/temporary_directory.hpp"
 
+#include <filesystem>
 #include <optional>
 #include <string>
 
@@ -13,10 +14,16 @@ namespace scanloom::test {
 /// Errors: throws std::runtime_error if PostgreSQL is not installed or does not start.
 class PostgresServer {
 public:
+    /// Starts a primary. What it has written survives kill(), but no power failure.
     PostgresServer();
 
-    /// Starts a standby of `primary`, whose name in synchronous_standby_names is `standby`.
-    explicit PostgresServer(const PostgresServer& primary);
+    /// Starts a primary whose data survives a power failure.
+    /// @param data  directory to create for it
+    explicit PostgresServer(const std::filesystem::path& data);
+
+    /// Starts a synchronous standby of `primary`.
+    /// @param data  directory to create for its data; empty: a temporary one, as for a primary
+    explicit PostgresServer(const PostgresServer& primary, const std::filesystem::path& data = {});
 
     /// Creates an empty database. @return its address for --store
     [[nodiscard]] std::string new_database();
@@ -24,19 +31,31 @@ public:
     /// Returns the folder of the socket.
     [[nodiscard]] const std::string& socket() const { return directory_.path().native(); }
 
+    /// Drops its data and becomes a synchronous standby of `primary`. Pre: it does not run.
+    void stand_by(const PostgresServer& primary);
+
     /// Makes a primary of a standby.
     void promote();
 
-    /// Kills it, so that it does not shut down in order.
+    /// Stops its processes at once, as a paused machine does.
+    void pause();
+
+    /// Lets them go on after pause().
+    void resume();
+
+    /// Kills its processes, so that it does not shut down in order.
     void kill();
 
     /// Starts it again after kill().
     void start();
 
 private:
+    void create();
     [[nodiscard]] std::string try_to_start();
 
     TemporaryDirectory directory_;
+    std::filesystem::path data_;
+    bool is_synced_ = false; // its data survives a power failure
     int databases_ = 0;
     std::optional<ChildProcess> process_;
 };
