@@ -77,13 +77,6 @@ public:
     }
 
 private:
-    struct Append {
-        SessionId session;
-        Revision first;
-        std::vector<std::string> entries;
-        Done done;
-    };
-
     [[nodiscard]] Revision ahead_of(const Append& append) { return append.first + ahead_[append.session]; }
 
     void begin(Append append) {

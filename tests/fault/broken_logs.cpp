@@ -28,7 +28,7 @@ public:
     void append(SessionId session, Revision first, std::vector<std::string> entries, Done done) override {
         {
             const std::lock_guard lock(mutex_);
-            kept_back_.push_back({session, first, std::move(entries)});
+            kept_back_.push_back({session, first, std::move(entries), nullptr});
             if (kept_back_.size() == kKeptBackMax) write();
         }
         done({});
@@ -49,11 +49,6 @@ public:
     }
 
 private:
-    struct Append {
-        SessionId session;
-        Revision first;
-        std::vector<std::string> entries;
-    };
     static constexpr std::size_t kKeptBackMax = 64;
 
     void write() {

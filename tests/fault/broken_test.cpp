@@ -47,7 +47,7 @@ TEST(NodesRow, DetectsEarlyAcknowledgements) {
 }
 
 TEST(NodesRow, DetectsRetriesOfUnansweredAppends) {
-    EXPECT_GT(run_nodes_row({.seed = 2, .count = 7, .server = broken_server("retrying")}).twice, 0U);
+    EXPECT_GT(run_nodes_row({.seed = 1, .count = 3, .server = broken_server("retrying")}).twice, 0U);
 }
 
 TEST(NodesRow, DetectsWritesToLostSessions) {

@@ -1,6 +1,7 @@
 #include "tests/fault/cluster.hpp"
 
 #include "server/store/postgres_connection.hpp"
+#include "tests/fault/readiness.hpp"
 
 #include <fmt/format.h>
 
@@ -43,14 +44,10 @@ std::span<const Cluster::Fault> Cluster::faults() {
 Cluster::Cluster(const Command& server, std::uint64_t seed) : random_(seed) {
     fs::permissions(place_.path(), fs::perms::others_exec, fs::perm_options::add); // PostgreSQL has a user of its own
     auto disk = LoopDisk::make(place_.path() / "image", place_.path() / "disk", kDatabaseDiskBytes);
-    if (disk) {
-        disk_ = std::move(*disk);
-        databases_[0] = std::make_unique<PostgresServer>(place_.path() / "disk" / "0");
-        databases_[1] = std::make_unique<PostgresServer>(primary(), place_.path() / "disk" / "1");
-    } else {
-        databases_[0] = std::make_unique<PostgresServer>();
-        databases_[1] = std::make_unique<PostgresServer>(primary());
-    }
+    if (disk) disk_ = std::move(*disk);
+    fs::create_directories(place_.path() / "disk");
+    databases_[0] = std::make_unique<PostgresServer>(place_.path() / "disk" / "0");
+    databases_[1] = std::make_unique<PostgresServer>(primary(), place_.path() / "disk" / "1");
     static_cast<void>(primary().new_database());
     for (unsigned n = 0; n < kNodes; ++n) {
         const auto place = place_.path() / fmt::format("node{}", n);
@@ -100,10 +97,20 @@ void Cluster::kill_node() {
 
 void Cluster::stop_node() {
     Node& node = busiest_node();
-    if (const int code = node.server.stop(); code != 0) {
-        failures_.push_back(fmt::format("a server exited with {} after a stop request", code));
-    }
+    stop(node);
     node.server.start_and_wait();
+}
+
+/// Stops a server that has recovered from the fault before: one whose store has failed does not exit with 0.
+void Cluster::stop(Node& node) {
+    static_cast<void>(wait_for_readiness(node.server, 200));
+    const int code = node.server.stop();
+    if (code != 0) failures_.push_back(fmt::format("a server exited with {} after a stop request", code));
+}
+
+void Cluster::restart_servers() {
+    for (const auto& node : nodes_) stop(*node);
+    for (const auto& node : nodes_) node->server.start_and_wait();
 }
 
 void Cluster::pause_node() {
@@ -126,12 +133,17 @@ void Cluster::cut_off_to_database() { cut_off(DatabaseLink::Direction::kToDataba
 
 void Cluster::cut_off_from_database() { cut_off(DatabaseLink::Direction::kFromDatabase); }
 
-/// Cuts one node off, for a moment or until others have its sessions.
+/// Cuts one node off for a moment, after which it keeps its sessions, and then until others have them.
 void Cluster::cut_off(DatabaseLink::Direction direction) {
     Node& node = busiest_node();
-    for (const auto& link : node.links) link->cut(direction);
-    node.server.let_be(random_() % 2 == 0 ? kDead : std::chrono::milliseconds(500));
-    for (const auto& link : node.links) link->restore();
+    const auto cut_for = [&](std::chrono::milliseconds time) {
+        for (const auto& link : node.links) link->cut(direction);
+        node.server.let_be(time);
+        for (const auto& link : node.links) link->restore();
+    };
+    cut_for(std::chrono::milliseconds(500));
+    node.server.let_be(std::chrono::seconds(2)); // it opens the database again
+    cut_for(kDead);
 }
 
 void Cluster::kill_database() {

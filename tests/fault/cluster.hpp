@@ -45,6 +45,10 @@ public:
     /// Causes a fault. @return false: it needs a disk that can lose power
     [[nodiscard]] bool cause(const Fault& fault);
 
+    /// Stops all servers and starts them again, so that what they show is what the database has: one that was cut off
+    /// or paused may show maps of sessions that others have for about a second.
+    void restart_servers();
+
     /// Returns what was wrong with the servers, one sentence each.
     [[nodiscard]] const std::vector<std::string>& failures() const noexcept { return failures_; }
 
@@ -58,6 +62,7 @@ private:
 
     void kill_node();
     void stop_node();
+    void stop(Node& node);
     void pause_node();
     void let_node_die();
     void cut_off_to_database();

@@ -38,6 +38,14 @@ public:
     [[nodiscard]] store::SharedSessions* shared() override { return log_->shared(); }
 
 protected:
+    /// The arguments of append().
+    struct Append {
+        store::SessionId session;
+        Revision first;
+        std::vector<std::string> entries;
+        Done done;
+    };
+
     [[nodiscard]] store::ScanLog& under() { return *log_; }
 
 private:

@@ -110,7 +110,7 @@ void PostgresServer::create() {
         {"-D", data_, "-U", "scanloom", "-A", "trust", "-E", "UTF8", "--locale", "C", "--no-sync",
          "--no-instructions"});
     start();
-    // Nobody reads the log after the start, and a full pipe would stop the server.
+    // Only start() reads the log. The server would wait when the pipe is full.
     connect_to(socket(), "postgres").run("ALTER ROLE scanloom SET log_min_messages = panic").value();
 }
 

@@ -85,6 +85,7 @@ TEST_F(NodesTest, ASessionGoesOnAnotherServerWhenItsOwnHasEnded) {
     }
     EXPECT_EQ(b->get_json("/api/v1/sessions").at("sessions").at(0).at("node"), "a");
     EXPECT_EQ(http_request(a->http_port(), "POST", "/api/v1/node/drain", "{}").status, 202U);
+    ASSERT_TRUE(a->process().has_output_within(std::chrono::seconds(30))) << "a has not ended";
     EXPECT_EQ(a->process().wait(), 0);
     EXPECT_EQ(digest(*b), before);
 
