@@ -10,9 +10,10 @@ namespace scanloom {
 void add_link_options(CLI::App& app, LinkOptions& options, const std::string& token_help) {
     const auto enable_tls = [&options](const std::string&) { options.tls = true; };
     add_parsed(app, "--server", options.servers,
-               "Robot port of the server, HOST:PORT; of several servers that share a store, HOST:PORT,HOST:PORT,...",
+               "Robot port of the server, HOST:PORT; of several servers that share a store, "
+               "HOST:PORT,HOST:PORT,... in any order",
                net::parse_addresses)
-        ->default_str(net::ServerList(options.servers).text());
+        ->default_str(net::text_of(options.servers));
     app.add_option("--token-file", options.token_file, token_help)->check(CLI::ExistingFile);
     app.add_flag("--tls", options.tls, "Encrypt the link, and verify that the server is the one that --server names");
     app.add_option("--tls-ca", options.tls_ca_file,

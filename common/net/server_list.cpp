@@ -1,9 +1,33 @@
 #include "common/net/server_list.hpp"
 
+#include "common/hash/sha256.hpp"
+
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <map>
 #include <utility>
 
 namespace scanloom::net {
+namespace {
+
+/// Equal to the order of the client for Python.
+std::vector<std::size_t> order_for(std::string_view session, const std::vector<Address>& servers) {
+    std::multimap<std::string, std::size_t> by_hash;
+    for (const Address& server : servers) {
+        Sha256 hash;
+        hash.update(fmt::format("{}\n{}", session, server.text()));
+        by_hash.emplace(hash.hex(), by_hash.size());
+    }
+    std::vector<std::size_t> order;
+    for (const auto& [hash, number] : by_hash) order.push_back(number);
+    return order;
+}
+
+} // namespace
+
+ServerList::ServerList(std::vector<Address> servers, std::string_view session)
+    : servers_(std::move(servers)), order_(order_for(session, servers_)) {}
 
 bool ServerList::choose_another(std::string_view address) {
     auto named = parse_address(address);
@@ -15,14 +39,14 @@ bool ServerList::choose_another(std::string_view address) {
     }
     redirects_ = 0;
     if (!sent_to_)
-        next_ = (next_ + 1) % servers_.size(); // otherwise the one that sent the client elsewhere is tried again
+        next_ = (next_ + 1) % order_.size(); // otherwise the one that sent the client elsewhere is tried again
     sent_to_.reset();
     return false;
 }
 
-std::string ServerList::text() const {
+std::string text_of(const std::vector<Address>& addresses) {
     std::string text;
-    for (const Address& server : servers_) text += (text.empty() ? "" : ",") + server.text();
+    for (const Address& address : addresses) text += (text.empty() ? "" : ",") + address.text();
     return text;
 }
 

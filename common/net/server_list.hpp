@@ -13,19 +13,21 @@
 namespace scanloom::net {
 
 /// The servers that a client may use, which share their sessions if there are several, and the choice of the next one.
+///
+/// The order in which servers are tried depends on the session alone. So all robots of a session begin with the same
+/// server, the sessions are spread over the servers, and those of a server that fails are spread over the others.
+/// Source: Thaler, Ravishankar, Using name-based mappings to increase hit rates, 1998 (rendezvous hashing), with SHA-256.
 class ServerList {
 public:
     /// @param servers  at least one
-    /// @param first    number of the one to begin with, modulo their count
-    explicit ServerList(std::vector<Address> servers, std::size_t first = 0)
-        : servers_(std::move(servers)), next_(first % servers_.size()) {}
+    ServerList(std::vector<Address> servers, std::string_view session);
 
     /// Returns the server to connect to.
-    [[nodiscard]] const Address& current() const noexcept { return sent_to_ ? *sent_to_ : servers_[next_]; }
+    [[nodiscard]] const Address& current() const noexcept { return sent_to_ ? *sent_to_ : servers_[order_[next_]]; }
 
-    /// Returns the number of the current server in the list; nullopt: another server has named it.
+    /// Returns the number of the current server in the list as given; nullopt: another server has named it.
     [[nodiscard]] std::optional<std::size_t> index() const noexcept {
-        return sent_to_ ? std::nullopt : std::optional(next_);
+        return sent_to_ ? std::nullopt : std::optional(order_[next_]);
     }
 
     /// Chooses another server after the current one could not be used.
@@ -44,9 +46,6 @@ public:
     /// that one is dead, the session is free in a few seconds.
     [[nodiscard]] std::chrono::milliseconds wait_max() const noexcept { return wait_max_; }
 
-    /// Returns the addresses of the list, for messages.
-    [[nodiscard]] std::string text() const;
-
     static constexpr int kRedirectsMax = 4;
     static constexpr std::chrono::milliseconds kShort{1000};
 
@@ -54,7 +53,8 @@ private:
     static constexpr std::chrono::milliseconds kLong = std::chrono::hours(24);
 
     std::vector<Address> servers_;
-    std::size_t next_;
+    std::vector<std::size_t> order_; // numbers of servers_
+    std::size_t next_ = 0;           // in order_
     std::optional<Address> sent_to_;
     int redirects_ = 0; // in a row
     std::chrono::milliseconds wait_max_ = kLong;
@@ -63,5 +63,8 @@ private:
 /// Parses one or more addresses, HOST:PORT[,HOST:PORT...].
 /// Errors: those of parse_address().
 [[nodiscard]] Result<std::vector<Address>> parse_addresses(std::string_view text);
+
+/// Returns the addresses in the given order, with commas between them.
+[[nodiscard]] std::string text_of(const std::vector<Address>& addresses);
 
 } // namespace scanloom::net

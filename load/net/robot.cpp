@@ -41,9 +41,8 @@ struct Robot::Link {
 };
 
 Robot::Robot(RobotPlan plan, Shared shared)
-    : shared_(shared),
-      client_(std::move(plan), shared.workload, shared.link.hello, net::ServerList(shared.link.servers).text()),
-      servers_(shared.link.servers, client_.plan().index), backoff_(client_.plan().index + 1), timer_(shared.io) {}
+    : shared_(shared), client_(std::move(plan), shared.workload, shared.link.hello, net::text_of(shared.link.servers)),
+      servers_(shared.link.servers, client_.plan().session), backoff_(client_.plan().index + 1), timer_(shared.io) {}
 
 void Robot::start() { asio::co_spawn(shared_.io, run(), asio::detached); }
 

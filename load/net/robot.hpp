@@ -88,7 +88,7 @@ private:
 
     Shared shared_;
     MeasuredClient client_;
-    net::ServerList servers_; // each robot begins with another one
+    net::ServerList servers_;
     robot::Backoff backoff_;
     std::shared_ptr<Link> link_;
     std::shared_ptr<Link> abandoned_; // half-open

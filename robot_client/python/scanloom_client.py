@@ -33,6 +33,7 @@ import argparse
 import base64
 import collections
 import dataclasses
+import hashlib
 import json
 import logging
 import math
@@ -1043,14 +1044,17 @@ def _split_address(address: str) -> Tuple[str, int]:
 
 
 class _Servers:
-    """The servers of a client, and which one is next."""
+    """The servers of a client, and which one is next. Their order depends on the session alone, so that all robots of a
+    session begin with the same server and the sessions are spread over the servers (rendezvous hashing)."""
 
     _REDIRECTS_MAX = 4  # in a row; then servers disagree
 
-    def __init__(self, addresses: str) -> None:
+    def __init__(self, addresses: str, session: str) -> None:
         if not isinstance(addresses, str):
             raise ValueError(f"the server's address is {addresses!r}; HOST:PORT is needed")
-        self._list = [_split_address(address) for address in addresses.split(",")]
+        servers = {address: _split_address(address) for address in addresses.split(",")}
+        self._list = [servers[address] for address in sorted(servers, key=lambda address: hashlib.sha256(
+            f"{session}\n{address}".encode(errors="replace")).digest())]
         self._next = 0
         self._redirects = 0
         self.wait_max = math.inf  # seconds before connecting again: short after a server has named another one, because
@@ -1136,7 +1140,7 @@ class Client:
                  tls: Optional[ssl.SSLContext] = None, source: str = "", body_radius: Optional[float] = None,
                  poses: str = "map", on_correction: Optional[Callable[[Location], None]] = None,
                  buffer_bytes: int = 32 << 20, timing: Timing = Timing()) -> None:
-        self._servers = _Servers(server)
+        self._servers = _Servers(server, session)
         buffer_bytes = _whole("buffer_bytes", buffer_bytes, 1, 1 << 50)
         if tls is not None and not isinstance(tls, ssl.SSLContext):
             raise ValueError(f"tls is {tls!r}; an ssl.SSLContext is needed, see ssl.create_default_context()")

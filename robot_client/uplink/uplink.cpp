@@ -29,7 +29,7 @@ wire::LinkError lost(std::string message) { return {{Errc::kUnreachable, std::mo
 
 link::ClientProtocolOptions protocol_options(const UplinkOptions& options) {
     auto made = options.protocol;
-    made.server = net::ServerList(options.servers).text();
+    made.server = net::text_of(options.servers);
     return made;
 }
 
@@ -37,8 +37,9 @@ link::ClientProtocolOptions protocol_options(const UplinkOptions& options) {
 
 Uplink::Uplink(asio::io_context& io, UplinkOptions options, Feed& feed)
     : io_(io), options_(std::move(options)), feed_(feed), buffer_(options_.buffer_bytes_max),
-      protocol_(protocol_options(options_), buffer_, Clock::now()), servers_(options_.servers),
-      backoff_(options_.backoff_seed, options_.backoff), feed_wake_(io), write_wake_(io), progress_wake_(io) {}
+      protocol_(protocol_options(options_), buffer_, Clock::now()),
+      servers_(options_.servers, options_.protocol.hello.session), backoff_(options_.backoff_seed, options_.backoff),
+      feed_wake_(io), write_wake_(io), progress_wake_(io) {}
 
 asio::awaitable<Result<>> Uplink::run() {
     co_await (keep_linked() || take_from_feed() || watch_progress());

@@ -72,9 +72,17 @@ class Resuming(LinkTest):
 
     def test_the_next_server_is_tried_when_one_cannot_be_reached(self):
         self.start(well)
-        with self.client(server=f"127.0.0.1:1,127.0.0.1:2,{self.server.address}") as robot:
+        dead = ",".join(f"127.0.0.1:{port}" for port in range(1, 10))
+        with self.client(server=f"{self.server.address},{dead}") as robot:
             self.send(robot, self.laser(robot), 3)
         self.assert_stored(3)
+
+    def test_the_order_of_the_servers_depends_on_the_session(self):
+        servers = scanloom_client._Servers("a:1,b:2,c:3", "a")
+        for expected in ("a:1", "c:3", "b:2", "a:1"):  # as in server_list_test.cpp
+            self.assertEqual(str(servers), expected)
+            self.assertFalse(servers.choose_another(""))
+        self.assertEqual(str(scanloom_client._Servers("c:3,b:2,a:1", "s1")), "b:2")
 
     def test_an_acknowledgement_of_an_unsent_scan_ends_the_link_only(self):
         def boasts(link):

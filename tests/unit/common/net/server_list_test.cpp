@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
 #include <string>
+#include <vector>
 
 namespace scanloom::net {
 namespace {
@@ -11,16 +13,41 @@ class ServerListTest : public testing::Test {
 protected:
     [[nodiscard]] std::string current() const { return servers_.current().text(); }
 
-    ServerList servers_{{{"a", "1"}, {"b", "2"}, {"c", "3"}}};
+    static inline const std::vector<Address> kServers{{"a", "1"}, {"b", "2"}, {"c", "3"}};
+
+    ServerList servers_{kServers, "a"}; // a:1, c:3, b:2
 };
 
+TEST_F(ServerListTest, SessionsAreSpreadOverTheServersAndOverTheNextOnes) {
+    std::map<std::string, int> sessions; // by the first two servers
+    for (int session = 0; session < 6000; ++session) {
+        ServerList servers(kServers, std::to_string(session));
+        auto two = servers.current().text();
+        static_cast<void>(servers.choose_another(""));
+        two += servers.current().text();
+        ++sessions[two];
+    }
+    EXPECT_EQ(sessions.size(), 6U);
+    for (const auto& [two, count] : sessions) EXPECT_NEAR(count, 1000, 120) << two; // 4 standard deviations
+}
+
+TEST_F(ServerListTest, TheOrderOfTheListDoesNotMatter) {
+    ServerList reversed({kServers.rbegin(), kServers.rend()}, "a");
+    for (int tried = 0; tried < 3; ++tried) {
+        EXPECT_EQ(reversed.current().text(), current());
+        EXPECT_EQ(kServers[*servers_.index()].text(), current());
+        EXPECT_EQ(kServers[2 - *reversed.index()].text(), current());
+        static_cast<void>(reversed.choose_another(""));
+        static_cast<void>(servers_.choose_another(""));
+    }
+}
+
 TEST_F(ServerListTest, TheNextOneIsTriedAfterAFailure) {
-    EXPECT_EQ(servers_.text(), "a:1,b:2,c:3");
-    for (const char* next : {"b:2", "c:3", "a:1"}) {
+    EXPECT_EQ(text_of(kServers), "a:1,b:2,c:3");
+    for (const char* next : {"c:3", "b:2", "a:1"}) { // as in link_test.py
         EXPECT_FALSE(servers_.choose_another(""));
         EXPECT_EQ(current(), next);
     }
-    EXPECT_EQ(ServerList({{"a", "1"}, {"b", "2"}}, 5).current().text(), "b:2");
 }
 
 TEST_F(ServerListTest, AServerThatIsNamedIsTriedAtOnce) {
@@ -32,7 +59,7 @@ TEST_F(ServerListTest, AServerThatIsNamedIsTriedAtOnce) {
     EXPECT_EQ(current(), "a:1") << "which knows by now that it cannot";
     EXPECT_EQ(servers_.index(), 0U);
     EXPECT_FALSE(servers_.choose_another("not an address"));
-    EXPECT_EQ(current(), "b:2");
+    EXPECT_EQ(current(), "c:3");
 }
 
 TEST_F(ServerListTest, ServersThatSendEachOtherTheClientAreNotFollowedForever) {
