@@ -97,7 +97,12 @@ void RobotConnection::on_located(const sessions::Located& located) {
 }
 
 void RobotConnection::on_failed(const Error& error) {
-    post([error](RobotConnection& self) { self.protocol_.fail(error); });
+    post([error](RobotConnection& self) {
+        const bool is_elsewhere = error.code == Errc::kNotOwner && self.session_;
+        const auto server = is_elsewhere ? self.services_.sessions.successor(self.session_->info().name) : nullptr;
+        if (server) self.protocol_.set_owner(server->robots);
+        self.protocol_.fail(error);
+    });
 }
 
 /// Does the TLS handshake, if the port uses TLS.

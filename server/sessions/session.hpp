@@ -139,15 +139,16 @@ public:
     /// Disconnects a link. The entries that it submitted are kept.
     void leave(std::shared_ptr<RobotListener> listener);
 
-    /// Stops accepting entries. When all submitted entries are durable and applied, fails every link with `reason`,
-    /// writes a checkpoint and calls `done`.
+    /// Stops accepting entries. When all submitted entries are durable and applied, writes a checkpoint, gives the
+    /// session up if several servers share the log, fails every link with `reason` and calls `done`.
     void close(Error reason, std::function<void()> done);
 
     /// Makes close() end soon: drops entries that are not durable, acknowledges the durable ones, which the next
     /// recovery applies, and writes no further piece of a checkpoint.
     void finish_early();
 
-    /// Closes the session as close() after finish_early(). Used when its maps are no longer needed.
+    /// Closes the session as close() after finish_early(), but does not give it up. Used when its maps are no longer
+    /// needed.
     void close_early(Error reason, std::function<void()> done);
 
 private:
@@ -209,6 +210,7 @@ private:
     bool broken_ = false;           // the log or the memory failed: no more appending, applying or checkpoints
     std::function<void()> closed_;  // called when closing is done
 
+    std::atomic<bool> stays_owned_ = false;  // when it is closed
     bool has_news_ = true;                   // a change to notify, not counting connections
     std::uint64_t connections_reported_ = 0; // RobotSequencer::connection_changes() at the last notification
 

@@ -1,5 +1,8 @@
 #include "server/log/context.hpp"
 #include "server/sessions/session.hpp"
+#include "server/store/shared_sessions.hpp"
+
+#include <boost/asio/post.hpp>
 
 #include <utility>
 
@@ -70,6 +73,7 @@ void Session::finish_early() {
 }
 
 void Session::close_early(Error reason, std::function<void()> done) {
+    stays_owned_ = true;
     finish_early_ = true;
     close(std::move(reason), std::move(done));
 }
@@ -83,16 +87,22 @@ void Session::finish_closing() {
         drop_pending();
     }
     if (!waiting_.empty() || !durable_.empty()) return;
-    sequencer_.fail_all(*refusing_);
     const bool is_outdated = checkpoints_.is_outdated(maps_.projection().revision());
     if (is_outdated && !broken_ && !finish_early_ && !final_checkpoint_tried_) {
         final_checkpoint_tried_ = true;
         return begin_checkpoint();
     }
     share_.give_back_all(); // readers may still hold the maps for a while
-    const auto closed = std::move(closed_);
-    closed_ = nullptr;
-    closed();
+    auto closed = [done = std::exchange(closed_, nullptr)](Session& self) {
+        self.sequencer_.fail_all(*self.refusing_);
+        done();
+    };
+    auto* const shared = log_.shared();
+    if (shared == nullptr || stays_owned_) return closed(*this);
+    boost::asio::post(blocking_executor_, [self = shared_from_this(), shared, closed = std::move(closed)] {
+        static_cast<void>(shared->disown(self->info_.id)); // if this fails, it is owned until the log is opened again
+        self->on_strand(closed); // links fail last: the server to which robots connect now may take the session
+    });
 }
 
 } // namespace scanloom::sessions

@@ -145,19 +145,8 @@ void SessionLoader::close(std::vector<std::shared_ptr<Session>> sessions, const 
 void SessionLoader::on_evicted(const Session& session) {
     auto summary = summary_of(*session.snapshot());
     trim_heap_later(summary.pages);
-    disown(session, [this, name = session.info().name, summary = std::move(summary)] {
-        load(state_.cache.end_eviction(name, summary));
-        retry();
-    });
-}
-
-void SessionLoader::disown(const Session& session, std::function<void()> done) {
-    auto* const shared = state_.log.shared();
-    if (shared == nullptr) return done();
-    boost::asio::post(state_.blocking_executor, [shared, id = session.info().id, done = std::move(done)] {
-        static_cast<void>(shared->disown(id)); // if this fails, it stays the owner, until the log is opened again
-        done();
-    });
+    load(state_.cache.end_eviction(session.info().name, summary));
+    retry();
 }
 
 /// Reloads all failed sessions. Called each time, because a session may notice its failure only after the store was

@@ -26,9 +26,6 @@ public:
     /// @param on_loaded  called once, possibly before this function returns; see SessionRegistry::load()
     void load(std::string_view name, SessionCache::Loaded on_loaded);
 
-    /// Gives a closed session up if several servers share the log, so that another one can serve it, and calls `done`.
-    void disown(const Session& session, std::function<void()> done);
-
     /// Loads a session for the callers that wait for it in the cache.
     /// @param wanted  returned by the cache; nullopt: does nothing
     void load(const std::optional<EvictedSession>& wanted);

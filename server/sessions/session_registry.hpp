@@ -6,6 +6,7 @@
 #include "server/sessions/session_cache.hpp"
 #include "server/sessions/session_info.hpp"
 #include "server/sessions/session_loader.hpp"
+#include "server/sessions/successors.hpp"
 #include "server/store/scan_log.hpp"
 
 #include <cstdint>
@@ -73,6 +74,11 @@ public:
     /// Returns the server that has the session, as it was known a second ago; null: this one, or none.
     [[nodiscard]] std::shared_ptr<const store::NodeInfo> owner(std::string_view name) const {
         return state_.cache.owner(name);
+    }
+
+    /// Returns the server that goes on with the session when this one shuts down; null: not known, or none.
+    [[nodiscard]] std::shared_ptr<const store::NodeInfo> successor(std::string_view name) const {
+        return successors_.of(name);
     }
 
     /// Checks that no other server has taken a session in memory, while this one was paused. Blocks.
@@ -147,8 +153,8 @@ public:
     /// that other servers of a shared log have created or removed.
     void tidy() { loader_.tidy(); }
 
-    /// Shuts down: refuses new sessions, stops recover() and closes all sessions. Returns when everything that was
-    /// submitted is durable.
+    /// Shuts down: refuses new sessions, stops recover() and closes all sessions. Robots are sent to the successors.
+    /// Returns when everything that was submitted is durable.
     void drain();
 
     /// Makes drain() end soon. See Session::finish_early().
@@ -174,6 +180,7 @@ private:
 
     RegistryState state_;
     SessionLoader loader_;
+    Successors successors_;
     std::mutex changing_; // held by recover() and by the functions that write to the store; by estimate() at its start
 };
 

@@ -32,7 +32,7 @@ const std::vector<Folder> kFolders = {
     {.path = "common/ros", .may_include = {"common/geometry"}, .pure = true},
     {.path = "common/ros_map", .may_include = {"common/error", "common/scan"}, .pure = true},
     {.path = "common/app", .may_include = {"common/error", "common/files", "common/net", "common/scan", "common/text"}},
-    {.path = "common/net", .may_include = {"common/error", "common/text"}},
+    {.path = "common/net", .may_include = {"common/error", "common/hash", "common/text"}},
     {.path = "common/wire", .may_include = {"common/error", "common/geometry", "common/hash", "common/scan"}},
 
     {.path = "common/link",

@@ -18,14 +18,14 @@ using testing::SizeIs;
 
 using namespace std::chrono_literals;
 
+/// One of the servers.
+struct Node {
+    std::unique_ptr<store::ScanLog> log;
+    std::unique_ptr<SessionRegistry> registry;
+};
+
 class SharedSessionsTest : public SessionRegistryTest {
 protected:
-    /// One of the servers.
-    struct Node {
-        std::unique_ptr<store::ScanLog> log;
-        std::unique_ptr<SessionRegistry> registry;
-    };
-
     ~SharedSessionsTest() override {
         for (Node* node : {&a_, &b_}) {
             if (node->registry) node->registry->drain();
@@ -88,10 +88,33 @@ TEST_F(SharedSessionsTest, ASessionIsOnOneServerAndMovesToAnotherWhenItIsEvicted
     link->wait_for_seq(21);
 }
 
-TEST_F(SharedSessionsTest, AServerThatDrainsLeavesItsSessionsToOthers) {
+/// A link whose robot asks another server for the session as soon as it fails.
+struct MovingLink : AwaitedLink {
+    MovingLink(const Session& session, Node& other) : id(session.info().id), log(*other.log) {}
+
+    void on_failed(const Error& error) override {
+        taken = store::own(log, id);
+        AwaitedLink::on_failed(error);
+    }
+
+    store::SessionId id;
+    store::ScanLog& log;
+    Result<> taken;
+};
+
+TEST_F(SharedSessionsTest, AServerThatDrainsSendsRobotsToTheServerWithTheFewestSessions) {
     const auto before = create(a_, "s");
+    create(b_, "t");
+    auto c = start("c");
+    a_.registry->tidy(); // now it knows the others
+    const auto session = a_.registry->find("s");
+    const auto link = std::make_shared<MovingLink>(*session, c);
+    ASSERT_TRUE(join_and_wait(*session, "other", link));
     stop(a_);
-    EXPECT_EQ(digest(*b_.registry->load("s").value()), before);
+    EXPECT_EQ(link->wait_for_failure().code, Errc::kNotOwner);
+    EXPECT_TRUE(link->taken) << "it was given up before robots left";
+    EXPECT_EQ(digest(*c.registry->load("s").value()), before);
+    stop(c);
 }
 
 /// As after a pause of the first server, in which it counts as dead.
