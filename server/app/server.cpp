@@ -63,12 +63,13 @@ sessions::ReplayLimits replay_limits(std::size_t bytes) {
 
 Server::Server(const ServerOptions& options, const ConnectionLimits& limits, std::unique_ptr<store::ScanLog> log)
     : options_(options), limits_(limits), log_(std::move(log)), metrics_(kVersion), audit_(metrics_.registry()),
-      pools_(options.threads), sessions_(*log_, {.compute = pools_.sessions,
-                                                 .now = seconds_since_epoch,
-                                                 .blocking_executor = pools_.checkpoints,
-                                                 .reading = pools_.loading,
-                                                 .pages_max = options.map_memory_bytes / mapping::kPageBytes,
-                                                 .idle_after = options.idle_after}),
+      pools_(options.threads, log_->shared() != nullptr),
+      sessions_(*log_, {.compute = pools_.sessions,
+                        .now = seconds_since_epoch,
+                        .blocking_executor = pools_.checkpoints,
+                        .reading = pools_.loading,
+                        .pages_max = options.map_memory_bytes / mapping::kPageBytes,
+                        .idle_after = options.idle_after}),
       check_(*log_, sessions_), replay_jobs_(*log_, pools_.replay, replay_limits(options.replay_memory_bytes)),
       locator_(*log_), requests_(pools_.planning, pools_.locating, {goals_, locator_, sessions_}), hangup_(io_, SIGHUP),
       stop_timeout_(io_), integration_timeout_(io_), tidying_(asio::make_strand(io_)) {}

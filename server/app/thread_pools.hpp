@@ -22,10 +22,12 @@ namespace scanloom::app {
 /// Threads: any thread. join() from the thread that owns the pools.
 class ThreadPools {
 public:
-    /// @param threads  that integrate scans; the same number, but at least two, answers requests and searches maps
-    explicit ThreadPools(std::size_t threads)
+    /// @param threads    that integrate scans; the same number, but at least two, answers requests and searches maps
+    /// @param is_remote  whether the store is a database: then loads and checkpoints wait for answers, not for a disk
+    ThreadPools(std::size_t threads, bool is_remote)
         : sessions_(threads), short_(std::max<std::size_t>(2, threads)), long_(std::max<std::size_t>(2, threads)),
-          disk_(std::clamp<std::size_t>(threads / 2, 1, 2)) {}
+          store_(is_remote ? 4 : std::clamp<std::size_t>(threads / 2, 1, 2)),
+          checkpoints(is_remote ? loading : strand(loading)) {}
 
     /// Runs all tasks that were posted, also by tasks, then ends the threads.
     void join() {
@@ -33,7 +35,7 @@ public:
         long_.join();
         short_.join();
         changes_.join(); // its tasks wait for the disk and for sessions
-        disk_.join();
+        store_.join();
         sessions_.join();
     }
 
@@ -48,7 +50,7 @@ private:
     sockets::WorkerPool long_;
     sockets::WorkerPool background_{1, 10}; // robots and viewers are more urgent
     sockets::WorkerPool changes_{2};
-    sockets::WorkerPool disk_;
+    sockets::WorkerPool store_;
 
 public:
     using Executor = boost::asio::any_io_executor;
@@ -65,8 +67,8 @@ public:
     const Executor replay = background_.get_executor();        ///< replay jobs, in turns
     const Executor changes = changes_.get_executor(); ///< creates and deletes sessions, makes backups: waits for the
                                                       ///< disk, for sessions and for `loading`
-    const Executor loading = disk_.get_executor();    ///< loads sessions from the store
-    const Executor checkpoints = strand(loading);     ///< writes checkpoints
+    const Executor loading = store_.get_executor();   ///< loads sessions from the store
+    const Executor checkpoints;                       ///< writes checkpoints, to a disk one at a time
 };
 
 } // namespace scanloom::app

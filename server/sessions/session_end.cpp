@@ -82,9 +82,9 @@ void Session::close_early(Error reason, std::function<void()> done) {
 void Session::finish_closing() {
     if (!closed_ || appending_ || checkpoints_.is_writing()) return;
     if (finish_early_) {
-        for (const Group& group : durable_) sequencer_.release(group); // the next recovery applies them
-        sequencer_.fail_all(*refusing_);
-        drop_pending();
+        for (const Group& group : std::exchange(durable_, {}))
+            sequencer_.release(group); // the next recovery applies them
+        waiting_.clear();
     }
     if (!waiting_.empty() || !durable_.empty()) return;
     const bool is_outdated = checkpoints_.is_outdated(maps_.projection().revision());
@@ -92,9 +92,10 @@ void Session::finish_closing() {
         final_checkpoint_tried_ = true;
         return begin_checkpoint();
     }
-    share_.give_back_all(); // readers may still hold the maps for a while
     auto closed = [done = std::exchange(closed_, nullptr)](Session& self) {
         self.sequencer_.fail_all(*self.refusing_);
+        self.drop_pending();
+        self.share_.give_back_all(); // readers may still hold the maps for a while
         done();
     };
     auto* const shared = log_.shared();

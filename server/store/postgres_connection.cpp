@@ -325,6 +325,11 @@ bool Connection::is_alive() {
     return PQstatus(connection) == CONNECTION_OK;
 }
 
+bool Connection::is_idle() const {
+    const PGconn* const connection = state_->connection.get();
+    return PQstatus(connection) == CONNECTION_OK && PQtransactionStatus(connection) == PQTRANS_IDLE;
+}
+
 Result<> Connection::check_replication() {
     const auto rows = run("SELECT current_setting('synchronous_standby_names'), current_setting('fsync'),"
                           " current_setting('full_page_writes')");

@@ -107,6 +107,9 @@ public:
     /// Returns whether the connection still exists, as far as this machine knows.
     [[nodiscard]] bool is_alive();
 
+    /// Returns whether it works and is in no transaction, as far as is known.
+    [[nodiscard]] bool is_idle() const;
+
     /// Whether what is committed is on more than one machine, as far as the settings of the database tell.
     /// @return an error that names the setting if it is not
     [[nodiscard]] Result<> check_replication();

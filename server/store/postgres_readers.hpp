@@ -9,6 +9,8 @@
 #include <mutex>
 #include <optional>
 #include <string_view>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace scanloom::store::postgres {
@@ -19,9 +21,17 @@ class Readers {
 public:
     explicit Readers(Place place) : place_(std::move(place)) {}
 
-    /// Returns a connection for reading, which the caller gives back unless it failed.
-    [[nodiscard]] Result<Connection> take();
-    void give_back(Connection connection);
+    /// Does `work` with a connection for reading.
+    /// @param work  function of a Connection& that returns a Result
+    /// Errors: those of `work`; kStoreFailed: no connection.
+    template <class Work>
+    [[nodiscard]] std::invoke_result_t<Work, Connection&> with_connection(const Work& work) {
+        auto connection = take();
+        if (!connection) return connection.error();
+        auto done = work(*connection);
+        if (connection->is_idle()) give_back(std::move(*connection));
+        return done;
+    }
 
     /// Returns all sessions that are not removed, by ascending id.
     [[nodiscard]] Result<std::vector<StoredSession>> sessions();
@@ -50,7 +60,9 @@ public:
 private:
     static constexpr std::size_t kIdleMax = 4;
 
-    [[nodiscard]] Result<std::uint64_t> ask_size();
+    [[nodiscard]] Result<Connection> take();
+    void give_back(Connection connection);
+    [[nodiscard]] static Result<std::uint64_t> ask_size(Connection& connection);
 
     const Place place_;
     std::mutex mutex_; // guards the members below

@@ -220,30 +220,20 @@ Result<> PostgresScanLog::disown(SessionId session) {
 Result<> PostgresScanLog::confirm(SessionId session) {
     const std::shared_lock use(in_use_);
     const auto owned = shared_.find(session);
-    auto connection = readers_.take();
-    if (!connection) return connection.error();
-    auto confirmed =
-        owned ? confirm_owned(*connection, session, *owned) : Result<>(why_not_owned(*connection, session));
-    readers_.give_back(std::move(*connection));
-    return confirmed;
+    return readers_.with_connection([&](Connection& connection) {
+        return owned ? confirm_owned(connection, session, *owned) : Result<>(why_not_owned(connection, session));
+    });
 }
 
 Result<std::optional<FoundSession>> PostgresScanLog::find(std::string_view name) {
     const std::shared_lock use(in_use_);
-    auto connection = readers_.take();
-    if (!connection) return connection.error();
-    auto found = find_session(*connection, name, node_.id());
-    if (found) readers_.give_back(std::move(*connection));
-    return found;
+    return readers_.with_connection([&](Connection& connection) { return find_session(connection, name, node_.id()); });
 }
 
 Result<SharedList> PostgresScanLog::list() {
     const std::shared_lock use(in_use_);
-    auto connection = readers_.take();
-    if (!connection) return connection.error();
-    auto list = list_sessions(*connection, node_.id(), shared_.sessions());
-    if (list) readers_.give_back(std::move(*connection));
-    return list;
+    return readers_.with_connection(
+        [&](Connection& connection) { return list_sessions(connection, node_.id(), shared_.sessions()); });
 }
 
 Result<> PostgresScanLog::announce(const NodeInfo& info) { return node_.announce(info); }
