@@ -78,6 +78,27 @@ TEST_F(PostgresScanLogTest, ConnectionsThatEndedBetweenChangesAreOpenedAgain) {
     EXPECT_THAT(entries_after(*log, session, 0).value(), ElementsAre("a", "b"));
 }
 
+/// A new connection costs the database milliseconds, and a server that starts reads the begin of all checkpoints.
+TEST_F(PostgresScanLogTest, AReaderThatStopsEarlyLeavesItsConnectionToTheNext) {
+    const auto log = open().value();
+    const auto session = log->create_session("").value();
+    ASSERT_TRUE(append_and_wait(*log, session, 1, {"a", "b"}));
+    ASSERT_TRUE(log->write_checkpoint(session, {{"a", "1"}, {"b", "2"}}));
+    const Error stop{Errc::kGone, "enough"};
+    const auto read_begins = [&] {
+        EXPECT_EQ(log->read_checkpoint(session, [&](auto, auto) { return stop; }).error(), stop);
+        EXPECT_TRUE(log->read(session, 0, [](auto, auto) { return Visit::kStop; }));
+    };
+    auto watching = postgres::Connection::open(postgres::parse_place(database_.address).value()).value();
+    const auto count = [&](const char* sql) { return watching.run(sql).value().number(0, 0); };
+    read_begins();
+    static_cast<void>(watching.run("CREATE TEMPORARY TABLE earlier AS SELECT pid FROM pg_stat_activity").value());
+    read_begins();
+    EXPECT_EQ(count("SELECT count(*) FROM pg_stat_activity WHERE datname = current_database()"
+                    " AND pid NOT IN (SELECT pid FROM earlier)"),
+              0);
+}
+
 TEST_F(PostgresScanLogTest, ADatabaseThatWentBackIsNoticed) {
     const auto log = open().value();
     const auto session = log->create_session("").value();
