@@ -2,6 +2,7 @@
 
 #include "common/app/program.hpp"
 #include "common/scan/poses.hpp"
+#include "lab/cluster_plan.hpp"
 #include "lab/perturbed_source.hpp"
 #include "lab/recorded_log.hpp"
 
@@ -40,7 +41,7 @@ struct LocalizationOptions {
 };
 
 /// What a program is asked to do.
-using Options = std::variant<ExperimentOptions, LandmarkOptions, ScoreOptions, LocalizationOptions>;
+using Options = std::variant<ExperimentOptions, LandmarkOptions, ScoreOptions, LocalizationOptions, cluster::Plan>;
 
 /// Reads the command line, SCANLOOM_* of the environment and the file of --config: a flag overrides the environment,
 /// which overrides the file.

@@ -2,6 +2,7 @@
 
 #include "common/app/machine.hpp"
 #include "common/app/standard_streams.hpp"
+#include "lab/cluster_report.hpp"
 #include "lab/estimated_trajectory.hpp"
 #include "lab/markdown.hpp"
 #include "lab/report.hpp"
@@ -225,6 +226,12 @@ Result<std::string> run_score_of(const ScoreOptions& options, Console& console) 
     return score_json(options, result);
 }
 
+Result<std::string> run_cluster_of(const cluster::Plan& plan, Console& console) {
+    const auto report = cluster::report_of(plan);
+    console.note(cluster::tables_of(plan, report));
+    return cluster::json_of(plan, report);
+}
+
 template <class Options>
 ExitCode run_and_report(const Options& options, Result<std::string> (*work)(const Options&, Console&)) {
     Console console(standard_error());
@@ -244,5 +251,6 @@ ExitCode run(const ExperimentOptions& options) { return run_and_report(options, 
 ExitCode run(const LandmarkOptions& options) { return run_and_report(options, run_landmarks_of); }
 ExitCode run(const ScoreOptions& options) { return run_and_report(options, run_score_of); }
 ExitCode run(const LocalizationOptions& options) { return run_and_report(options, run_localization_of); }
+ExitCode run(const cluster::Plan& plan) { return run_and_report(plan, run_cluster_of); }
 
 } // namespace scanloom::lab

@@ -34,5 +34,6 @@ private:
 [[nodiscard]] ExitCode run(const LandmarkOptions& options);
 [[nodiscard]] ExitCode run(const ScoreOptions& options);
 [[nodiscard]] ExitCode run(const LocalizationOptions& options);
+[[nodiscard]] ExitCode run(const cluster::Plan& plan);
 
 } // namespace scanloom::lab

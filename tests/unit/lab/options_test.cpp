@@ -75,15 +75,30 @@ TEST(LabOptionsTest, LocalizationHasADirectoryAndPairsOfFiles) {
     EXPECT_EQ(options_of<LocalizationOptions>({"localization", "a.clf", "a.relations", "--out", "d"}).files.size(), 1U);
 }
 
+TEST(LabOptionsTest, ClusterHasDefaultsAndCompletesThePlan) {
+    const auto plan = options_of<cluster::Plan>({"cluster"});
+    EXPECT_EQ(plan.robots, 100'000U);
+    EXPECT_EQ(plan.upgrade_at_hours, 12.0);
+    const auto other = options_of<cluster::Plan>(
+        {"cluster", "--robots", "500", "--close-ms", "2.5", "--duration", "3", "--node-us", "19", "--seed", "7"});
+    EXPECT_EQ(other.robots, 500U);
+    EXPECT_EQ(other.close_ms, 2.5);
+    EXPECT_EQ(other.upgrade_at_hours, 1.5) << "half of the duration";
+    EXPECT_EQ(other.node_us, 19.0);
+    EXPECT_EQ(other.seed, 7U);
+    EXPECT_EQ(options_of<cluster::Plan>({"cluster", "--upgrade-at", "2"}).upgrade_at_hours, 2.0);
+    EXPECT_EQ(options_of<cluster::Plan>({"cluster", "--upgrade-at", "0"}).upgrade_at_hours, 0.0) << "no upgrade";
+}
+
 TEST(LabOptionsTest, InvalidOptionIsAOneLineUsageError) {
     const std::vector<std::pair<std::vector<const char*>, const char*>> mistakes{
-        {{}, "name a command: experiment, landmarks, score or localization"},
+        {{}, "name a command: experiment, landmarks, score, localization or cluster"},
         {{"experiment"}, "experiment: name a directory with --out"},
         {{"experiment", "--out", "d", "--scans", "9"}, "--scans"},
         {{"experiment", "--out", "d", "--scans", "10.5"}, "--scans"},
         {{"experiment", "--out", "d", "--seed", "-1"}, "--seed"},
         {{"experiment", "--out", "d", "--bogus"}, "--bogus"},
-        {{"landmark"}, "name a command: experiment, landmarks, score or localization"},
+        {{"landmark"}, "name a command: experiment, landmarks, score, localization or cluster"},
         {{"landmarks"}, "landmarks: name a directory with --out"},
         {{"landmarks", "--out", "d", "--seed", "-1"}, "--seed"},
         {{"landmarks", "--out", "d", "--capture", ""}, "--capture"},
@@ -104,6 +119,15 @@ TEST(LabOptionsTest, InvalidOptionIsAOneLineUsageError) {
         {{"localization", "--out", "d", "x/a.clf", "b", "y/a.log.gz", "b"},
          "x/a.clf and y/a.log.gz would have the same pictures"},
         {{"localization", "--out", "d", "a", "b", "--seed", "1"}, "--seed"},
+        {{"cluster", "--robots", "0"}, "--robots"},
+        {{"cluster", "--robots", "1.5"}, "--robots"},
+        {{"cluster", "--rate", "0"}, "--rate"},
+        {{"cluster", "--session-size", "1025"}, "--session-size"},
+        {{"cluster", "--nodes", "5000"}, "--nodes"},
+        {{"cluster", "--silent", "1.1"}, "--silent"},
+        {{"cluster", "--close-ms", "-1"}, "--close-ms"},
+        {{"cluster", "--robots", "5"}, "cluster: --session-size 10 is more than --robots 5"},
+        {{"cluster", "--upgrade-at", "30"}, "cluster: --upgrade-at 30 is not within the 24 hours of --duration"},
         {{"score", "a", "b", "--poses", "none", "--odometry-scale", "1.1"}, "--odometry-scale has no effect"},
     };
     for (const auto& [words, hint] : mistakes) {

@@ -134,7 +134,8 @@ const std::vector<Folder> kFolders = {
     // Experiments combine the simulator and the maps. No other folder does, and no folder includes them.
     {.path = "lab",
      .may_include = {"common", "core/grid", "core/landmarks", "core/mapping", "core/scan_matching", "core/slam",
-                     "server/tiles", "sim/drive", "sim", "robot_client/lidars", "robot_client/sources"}},
+                     "server/tiles", "sim/drive", "sim", "robot_client/lidars", "robot_client/sources",
+                     "robot_client/uplink"}},
 
     // The load generator runs outside the server: it does not include the server, and no folder includes it.
     {.path = "load/core",

@@ -43,7 +43,7 @@ TEST(SourceRules, LabMayIncludeServerAndRobotButMustNotBeIncluded) {
     EXPECT_THAT(including("lab/recording.cpp", "\"sim/world.hpp\""), IsEmpty());
     EXPECT_THAT(including("lab/estimated_trajectory.cpp", "\"core/slam/trajectory_estimator.hpp\""), IsEmpty());
     EXPECT_THAT(including("lab/integrate_recording.cpp", "\"server/sessions/session.hpp\""), testing::SizeIs(1));
-    EXPECT_THAT(including("lab/integrate_recording.cpp", "\"robot_client/uplink/uplink.hpp\""), testing::SizeIs(1));
+    EXPECT_THAT(including("lab/integrate_recording.cpp", "\"robot_client/spool/spool.hpp\""), testing::SizeIs(1));
     EXPECT_THAT(including("server/tiles/map_image.cpp", "\"lab/integrate_recording.hpp\""), testing::SizeIs(1));
     EXPECT_THAT(including("robot_client/app/main.cpp", "\"lab/integrate_recording.hpp\""), testing::SizeIs(1));
 }
