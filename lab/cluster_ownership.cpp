@@ -8,7 +8,8 @@
 namespace scanloom::lab::cluster {
 namespace {
 
-constexpr double kCoresForTwoLoaders = 4.0; // as server/app/thread_pools
+constexpr std::size_t kLoadedAtOnce = 4;     // sessions, as server/app/thread_pools
+constexpr std::size_t kHandedOverAtOnce = 4; // as server/sessions/session_registry
 
 /// Returns from when on others may take the sessions of a node that has failed. It has renewed its row some time
 /// before.
@@ -20,11 +21,9 @@ Time dead_from(const Draws& draws, std::size_t node, std::uint32_t life, Time fa
 } // namespace
 
 Ownership::Ownership(const Plan& plan, const Draws& draws, std::size_t sessions)
-    : draws_(draws), load_(static_cast<std::int64_t>(plan.load_ms)), close_ms_(plan.close_ms),
-      closers_(std::max<std::size_t>(1, static_cast<std::size_t>(plan.node_cores))), nodes_(plan.nodes),
+    : draws_(draws), load_(static_cast<std::int64_t>(plan.load_ms)), close_ms_(plan.close_ms), nodes_(plan.nodes),
       sessions_(sessions) {
-    const std::size_t loaders = plan.node_cores < kCoresForTwoLoaders ? 1 : 2;
-    for (Node& node : nodes_) node.loader_free.assign(loaders, Time(0));
+    for (Node& node : nodes_) node.loader_free.assign(kLoadedAtOnce, Time(0));
 }
 
 Ownership::Reply Ownership::ask(std::size_t session, std::size_t node, Time now) {
@@ -72,7 +71,7 @@ std::vector<Handover> Ownership::stop(std::size_t node, Time now, Time up) {
         const auto server = server_of(session);
         if (server && counts[*server] != kNotUsed) ++counts[*server];
         if (server != node) continue;
-        const auto earlier = static_cast<double>(handovers.size() / closers_);
+        const auto earlier = static_cast<double>(handovers.size() / kHandedOverAtOnce);
         const Time begin = std::min(now + Time(static_cast<std::int64_t>(earlier * close_ms_)), up - Time(1));
         const Time end = std::clamp(begin + Time(static_cast<std::int64_t>(close_ms_)), begin + Time(1), up);
         handovers.push_back({.session = session, .from = node, .begin = begin, .end = end});

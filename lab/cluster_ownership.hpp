@@ -95,7 +95,6 @@ private:
     Draws draws_;
     Time load_;
     double close_ms_;
-    std::size_t closers_; ///< threads of a node that close sessions
     std::vector<Node> nodes_;
     std::vector<Session> sessions_;
 };

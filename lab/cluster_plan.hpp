@@ -25,8 +25,8 @@ struct Plan {
     std::size_t nodes = 12;
     double node_cores = 8.0;
     double node_us = 18.9;  ///< microseconds of processor time of a node for one scan
-    double load_ms = 50.0;  ///< milliseconds for loading a session that another node had
-    double close_ms = 10.0; ///< milliseconds for the checkpoint of a session that a stopped node gives up
+    double load_ms = 15.0;  ///< milliseconds for loading a session that another node had
+    double close_ms = 20.0; ///< milliseconds for closing a session that a stopped node gives up
 
     std::size_t databases = 10;
     double database_cores = 4.0;    ///< of a primary

@@ -181,7 +181,7 @@ private:
         nodes_[node].runs = false;
         nodes_[node].how = End::kStopped;
         std::map<std::size_t, std::size_t> sent;
-        std::vector<Time> threads(plan_.node_cores < 1.0 ? 1 : static_cast<std::size_t>(plan_.node_cores), now_);
+        std::vector<Time> threads(4, now_);
         for (Session& session : sessions_) {
             if (!serves(node, session)) continue;
             auto& thread = *std::ranges::min_element(threads);
@@ -261,7 +261,7 @@ private:
 
     /// Each loader takes the next session when it has none: a load begins when fewer than all loaders are in use.
     Time load(Node& node) const {
-        const std::size_t loaders = plan_.node_cores < 4.0 ? 1 : 2;
+        const std::size_t loaders = 4;
         Time begin = now_;
         const auto in_use = [&] {
             return static_cast<std::size_t>(std::ranges::count_if(node.loads, [&](Time end) { return end > begin; }));

@@ -94,7 +94,6 @@ TEST(ClusterSimulation, WaitsInTheQueueOfALoaderAreThoseOfEachMillisecond) {
     plan.nodes = 3;
     plan.session_size = 2.0;
     plan.load_ms = 3'000.0; // some robots wait longer than for a welcome
-    plan.node_cores = 2.0;
     const std::vector<Outage> outages{{0, End::kStopped, Time(20'000), Time(21'000)},
                                       {1, End::kStopped, Time(35'000), Time(36'000)}};
     Oracle oracle(plan, outages);
@@ -136,6 +135,7 @@ TEST(ClusterSimulation, AnUpgradeKeepsTheBalance) {
     Plan plan = quiet_plan_of_single_robots();
     plan.upgrade_at_hours = 0.01;
     plan.restart_s = 5.0;
+    plan.close_ms = 5.0; // all sessions are closed within that time
     const Outcome outcome = simulate(plan);
     EXPECT_EQ(outcome.ends[static_cast<std::size_t>(End::kStopped)], plan.nodes);
     EXPECT_LT(static_cast<double>(outcome.node_robots_max), 1.25 * kSinglesPerNode);
@@ -144,7 +144,6 @@ TEST(ClusterSimulation, AnUpgradeKeepsTheBalance) {
 TEST(ClusterSimulation, ASessionWaitsForItsOwnCheckpointOnly) {
     Plan plan = quiet_plan_of_single_robots();
     plan.close_ms = 80.0;
-    plan.node_cores = 8.0;
     const auto& stopped = with_fault(plan, End::kStopped).waits_of(Cause::kStopped);
     EXPECT_EQ(stopped.longest, Time(80) + 2 * kAnswer) << "then it is sent on at once and welcomed";
     Plan alone = plan;
