@@ -144,7 +144,7 @@ private:
 
     void lose_node(std::uint32_t robot, End how) {
         robots_[robot].lose(how == End::kSilent ? Cause::kSilent : Cause::kKilled, now_);
-        if (how == End::kSilent) return schedule(robot, Step::kFail, kSilenceMax);
+        if (how == End::kSilent) return schedule(robot, Step::kFail, kUnconfirmedMax);
         fail(robot);
     }
 
@@ -194,7 +194,7 @@ private:
     void ask(std::uint32_t robot) {
         const std::size_t node = robots_[robot].server();
         if (!ownership_.runs(node)) {
-            if (ownership_.end_of(node) == End::kSilent) return schedule(robot, Step::kFail, kConnectTimeout);
+            if (ownership_.end_of(node) == End::kSilent) return schedule(robot, Step::kFail, kConnectMax);
             return fail(robot);
         }
         const std::uint32_t group = group_of_robot_[robot];

@@ -12,9 +12,9 @@ namespace scanloom::lab::cluster {
 /// Periods of the programs, which decide how long robots wait.
 inline constexpr Time kDeadAfter{5'000};       ///< a node that has not renewed its row for so long counts as dead
 inline constexpr Time kRenewEvery{1'000};      ///< how often it renews the row
-inline constexpr Time kConnectTimeout{10'000}; ///< of a robot
+inline constexpr Time kConnectMax{3'000};      ///< of a robot that knows several nodes
 inline constexpr Time kWelcomeTimeout{10'000}; ///< of a robot, from its hello
-inline constexpr Time kSilenceMax{15'000};     ///< then a robot considers its connection dead
+inline constexpr Time kUnconfirmedMax{5'000};  ///< likewise: then its connection to a silent machine has failed
 inline constexpr Time kAnswer{1};              ///< from a connection's begin to the server's answer; assumed
 inline constexpr Time kStartSpread{1'000};     ///< the robots of a session start within this time; assumed
 inline constexpr Time kMeasureFrom{10'000};    ///< figures of loads begin when all robots have started

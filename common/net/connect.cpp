@@ -8,6 +8,8 @@
 #include <boost/asio/ssl/error.hpp>
 #include <fmt/format.h>
 
+#include <netinet/tcp.h>
+
 #include <cstdint>
 
 namespace scanloom::net {
@@ -89,6 +91,14 @@ asio::awaitable<Result<>> connect(LinkStream& stream, Address address, Endpoints
     if (!failed) co_return Result<>();
     co_return unreachable(
         fmt::format("no encrypted link to {}: {}", address.text(), handshake_text(failed, stream.verify_result())));
+}
+
+void set_unconfirmed_max([[maybe_unused]] LinkStream& stream, [[maybe_unused]] std::chrono::milliseconds time) {
+#ifdef TCP_USER_TIMEOUT
+    using UserTimeout = asio::detail::socket_option::integer<IPPROTO_TCP, TCP_USER_TIMEOUT>;
+    boost::system::error_code ignored; // without it, a dead peer is noticed later
+    stream.socket().set_option(UserTimeout(static_cast<int>(time.count())), ignored);
+#endif
 }
 
 asio::awaitable<Result<>> connect(LinkStream& stream, Address address, std::chrono::milliseconds timeout,

@@ -65,6 +65,12 @@ struct PeerName {
 [[nodiscard]] boost::asio::awaitable<Result<>> connect(LinkStream& stream, Address address,
                                                        std::chrono::milliseconds timeout, PeerName peer = {});
 
+/// Ends the connection when the peer's system has confirmed nothing of what was sent for so long, as after a loss of
+/// power. Slow networks do not end it. Without effect on systems without such a limit (TCP_USER_TIMEOUT of Linux).
+/// @param stream  after connect()
+/// Source: RFC 5482.
+void set_unconfirmed_max(LinkStream& stream, std::chrono::milliseconds time);
+
 /// Explains to people why a connection failed after connect().
 [[nodiscard]] std::string failure_text(const LinkStream& stream, const boost::system::error_code& failed);
 

@@ -2,6 +2,7 @@
 
 #include "common/net/connect.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cstddef>
 #include <optional>
@@ -46,6 +47,19 @@ public:
     /// that one is dead, the session is free in a few seconds.
     [[nodiscard]] std::chrono::milliseconds wait_max() const noexcept { return wait_max_; }
 
+    /// Returns the longest time to wait for a connection: short if another server may be tried instead.
+    [[nodiscard]] std::chrono::milliseconds connect_max(std::chrono::milliseconds alone) const noexcept {
+        return servers_.size() > 1 ? std::min(alone, kConnectMax) : alone;
+    }
+
+    /// Returns for how long the current server's system may confirm nothing of what was sent, see
+    /// set_unconfirmed_max(); nullopt: any time. After that others may have its sessions.
+    [[nodiscard]] std::optional<std::chrono::milliseconds> unconfirmed_max() const noexcept {
+        return servers_.size() > 1 ? std::optional(kUnconfirmedMax) : std::nullopt;
+    }
+
+    static constexpr std::chrono::milliseconds kConnectMax{3000};
+    static constexpr std::chrono::milliseconds kUnconfirmedMax{5000};
     static constexpr int kRedirectsMax = 4;
     static constexpr std::chrono::milliseconds kShort{1000};
 

@@ -83,11 +83,12 @@ asio::awaitable<wire::LinkError> Robot::use_one_link() {
     link_ = std::make_shared<Link>(net::client_stream(shared_.io.get_executor(), shared_.link.tls));
     const auto link = link_;
     const auto index = servers_.index();
-    auto connecting = index
-                          ? net::connect(link->stream, servers_.current(), shared_.link.endpoints[*index], kConnectMax)
-                          : net::connect(link->stream, servers_.current(), kConnectMax);
+    const auto timeout = servers_.connect_max(kConnectMax);
+    auto connecting = index ? net::connect(link->stream, servers_.current(), shared_.link.endpoints[*index], timeout)
+                            : net::connect(link->stream, servers_.current(), timeout);
     const auto connected = co_await std::move(connecting);
     if (!connected) co_return wire::LinkError{connected.error(), true};
+    if (const auto time = servers_.unconfirmed_max()) net::set_unconfirmed_max(link->stream, *time);
     link->is_up = true;
     client_.open(shared_.clock.now());
     flush();

@@ -1048,6 +1048,8 @@ class _Servers:
     session begin with the same server and the sessions are spread over the servers (rendezvous hashing)."""
 
     _REDIRECTS_MAX = 4  # in a row; then servers disagree
+    _CONNECT_MAX = 3.0  # seconds, if there are several
+    _UNCONFIRMED_MAX_MS = 5000
 
     def __init__(self, addresses: str, session: str) -> None:
         if not isinstance(addresses, str):
@@ -1079,6 +1081,16 @@ class _Servers:
         self._redirects = 0
         self.current = self._list[self._next]
         return False
+
+    def connect(self, tls: Optional[ssl.SSLContext], timeout: float) -> socket.socket:
+        """Connects to the current server. If there are others, waits for a short time only, also for the server's system
+        to confirm what is sent: after a loss of power, others have its sessions soon."""
+        if len(self._list) == 1:
+            return _connect(*self.current, tls, timeout)
+        sock = _connect(*self.current, tls, min(timeout, self._CONNECT_MAX))
+        if hasattr(socket, "TCP_USER_TIMEOUT"):
+            sock.setsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT, self._UNCONFIRMED_MAX_MS)
+        return sock
 
     def settle(self) -> None:
         """The current server has welcomed the client."""
@@ -1519,7 +1531,7 @@ class Client:
     def _use_one_link(self) -> ScanloomError:
         """Returns the reason for the end of the link."""
         try:
-            sock = _connect(*self._servers.current, self._tls, self._timing.connect)
+            sock = self._servers.connect(self._tls, self._timing.connect)
         except ScanloomError as failure:
             return failure
         connection = _Connection(sock, self._bell)

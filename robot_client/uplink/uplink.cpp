@@ -179,8 +179,10 @@ asio::awaitable<void> Uplink::keep_linked() {
 
 asio::awaitable<wire::LinkError> Uplink::use_one_link() {
     net::LinkStream stream = net::client_stream(io_.get_executor(), options_.tls);
-    const auto connected = co_await net::connect(stream, servers_.current(), options_.connect_timeout);
+    const auto timeout = servers_.connect_max(options_.connect_timeout);
+    const auto connected = co_await net::connect(stream, servers_.current(), timeout);
     if (!connected) co_return wire::LinkError{connected.error(), true};
+    if (const auto time = servers_.unconfirmed_max()) net::set_unconfirmed_max(stream, *time);
     protocol_.open(Clock::now());
     const auto ended = co_await (read_frames(stream) || write_frames(stream) || watch_link());
     co_return std::visit([](const wire::LinkError& failure) { return failure; }, ended);

@@ -164,7 +164,7 @@ private:
             robot.since = now_;
             robot.cause = outage.end == End::kKilled ? Cause::kKilled : Cause::kSilent;
             if (outage.end == End::kSilent)
-                plan_step(robot, Next::kFail, Time(15'000));
+                plan_step(robot, Next::kFail, Time(5'000));
             else
                 fail(robot);
         }
@@ -235,7 +235,7 @@ private:
         if (robot.next == Next::kFail) return fail(robot);
         if (robot.next == Next::kWelcome) return welcome(robot, asked);
         Node& node = nodes_[asked];
-        if (!node.runs && node.how == End::kSilent) return plan_step(robot, Next::kFail, Time(10'000));
+        if (!node.runs && node.how == End::kSilent) return plan_step(robot, Next::kFail, Time(3'000));
         if (!node.runs) return fail(robot);
         Session& session = sessions_[robot.group];
         if (session.owner && !serves(*session.owner, session)) {

@@ -39,7 +39,7 @@ TEST(ClusterServers, ChooseAsTheRobotsDo) {
             EXPECT_EQ(servers.choose_another(named, order), list.choose_another(named));
         }
         ASSERT_EQ(servers.current(), list.current());
-        ASSERT_EQ(std::min(servers.wait_max(), kConnectTimeout), std::min<Time>(list.wait_max(), kConnectTimeout));
+        ASSERT_EQ(std::min(servers.wait_max(), kConnectMax), std::min<Time>(list.wait_max(), kConnectMax));
     }
 }
 
@@ -61,9 +61,9 @@ TEST(ClusterServers, FirstNodesAndThoseAfterThemAreEquallyFrequent) {
 
 TEST(ClusterSimulation, PeriodsAreThoseOfTheRobots) {
     const robot::UplinkOptions options;
-    EXPECT_EQ(kConnectTimeout, options.connect_timeout);
+    EXPECT_EQ(kConnectMax, net::ServerList::kConnectMax);
     EXPECT_EQ(kWelcomeTimeout, options.protocol.welcome_timeout);
-    EXPECT_EQ(kSilenceMax, options.protocol.silence_max);
+    EXPECT_EQ(kUnconfirmedMax, net::ServerList::kUnconfirmedMax);
 }
 
 TEST(ClusterSessions, SizesHaveTheirMeanAndAddUpToAllRobots) {

@@ -161,8 +161,8 @@ TEST(ClusterSimulation, RobotsWaitAsLongAsLeaseAndBackoffPermit) {
     EXPECT_GE(killed.longest, kDeadAfter - kRenewEvery);
     EXPECT_LE(killed.longest, kDeadAfter + Servers::kShort + kLoads);
     const auto& silent = with_fault(plan, End::kSilent).waits_of(Cause::kSilent);
-    EXPECT_GE(silent.longest, kSilenceMax);
-    EXPECT_LE(silent.longest, kSilenceMax + Servers::kShort + kLoads) << "the lease ends before robots notice";
+    EXPECT_GE(silent.longest, kUnconfirmedMax);
+    EXPECT_LE(silent.longest, kUnconfirmedMax + Servers::kShort + kLoads) << "the lease ends before robots notice";
 }
 
 TEST(ClusterSimulation, ANodeThatIsBackAtOnceFreesItsSessions) {

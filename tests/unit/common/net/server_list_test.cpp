@@ -62,6 +62,15 @@ TEST_F(ServerListTest, AServerThatIsNamedIsTriedAtOnce) {
     EXPECT_EQ(current(), "c:3");
 }
 
+TEST_F(ServerListTest, AServerIsGivenUpSoonIfThereAreOthers) {
+    const std::chrono::seconds usual(10);
+    EXPECT_EQ(servers_.connect_max(usual), ServerList::kConnectMax);
+    EXPECT_EQ(servers_.unconfirmed_max(), ServerList::kUnconfirmedMax);
+    const ServerList alone({{"a", "1"}}, "a");
+    EXPECT_EQ(alone.connect_max(usual), usual);
+    EXPECT_EQ(alone.unconfirmed_max(), std::nullopt);
+}
+
 TEST_F(ServerListTest, ServersThatSendEachOtherTheClientAreNotFollowedForever) {
     int followed = 0;
     while (servers_.choose_another(followed % 2 == 0 ? "x:9" : "y:8")) ++followed;
