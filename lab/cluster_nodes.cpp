@@ -16,7 +16,7 @@ std::vector<Outage> failures_of(const Plan& plan, const Draws& draws, std::size_
     Time up{0};
     for (std::uint64_t count = 0;; ++count) {
         const double hours = draws.exponential(plan.failure_hours, Use::kFailure, node, count);
-        if (in_seconds(up) / 3600.0 + hours >= plan.duration_hours) return failures; // before it may be out of range
+        if (in_seconds(up) / 3600.0 + hours >= plan.duration_hours) return failures; // of_hours() has no such range
         const Time down = up + std::max(Time(1), of_hours(hours));
         if (down >= end) return failures;
         const bool is_silent = draws.unit(Use::kSilence, node, count) < plan.silent_share;

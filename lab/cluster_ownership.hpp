@@ -48,7 +48,7 @@ public:
     /// A node fails. Pre: runs(node), and `how` is not kStopped.
     void fail(std::size_t node, End how, Time now);
 
-    /// A node is stopped: it takes no more sessions, and closes its own ones, one after another on each core.
+    /// A node is stopped: it takes no more sessions, and closes its own ones, four at a time.
     /// Pre: runs(node), up > now.
     /// @param up  when it starts again; sessions that are not closed by then are given up then
     /// @return its sessions; the caller calls give_up() for each that is not ended before

@@ -95,9 +95,9 @@ asio::awaitable<Result<>> connect(LinkStream& stream, Address address, Endpoints
 
 void set_unconfirmed_max([[maybe_unused]] LinkStream& stream, [[maybe_unused]] std::chrono::milliseconds time) {
 #ifdef TCP_USER_TIMEOUT
-    using UserTimeout = asio::detail::socket_option::integer<IPPROTO_TCP, TCP_USER_TIMEOUT>;
-    boost::system::error_code ignored; // without it, a dead peer is noticed later
-    stream.socket().set_option(UserTimeout(static_cast<int>(time.count())), ignored);
+    const auto milliseconds = static_cast<unsigned>(time.count());
+    static_cast<void>(::setsockopt(stream.socket().native_handle(), IPPROTO_TCP, TCP_USER_TIMEOUT, &milliseconds,
+                                   sizeof milliseconds)); // if it fails, a dead peer is noticed later
 #endif
 }
 

@@ -65,8 +65,9 @@ struct PeerName {
 [[nodiscard]] boost::asio::awaitable<Result<>> connect(LinkStream& stream, Address address,
                                                        std::chrono::milliseconds timeout, PeerName peer = {});
 
-/// Ends the connection when the peer's system has confirmed nothing of what was sent for so long, as after a loss of
-/// power. Slow networks do not end it. Without effect on systems without such a limit (TCP_USER_TIMEOUT of Linux).
+/// Ends the connection when the peer's system has accepted nothing of what was sent for so long: after a loss of power
+/// or of the network, and when the peer does not read. Slow networks do not end it. Without effect on systems without
+/// such a limit (TCP_USER_TIMEOUT of Linux).
 /// @param stream  after connect()
 /// Source: RFC 5482.
 void set_unconfirmed_max(LinkStream& stream, std::chrono::milliseconds time);

@@ -11,7 +11,8 @@
 namespace scanloom::net {
 namespace {
 
-/// Equal to the order of the client for Python.
+/// Returns the numbers of the servers in the order in which a session tries them: by the SHA-256 of the session's name,
+/// a line feed and the server's address. The client for Python has the same order.
 std::vector<std::size_t> order_for(std::string_view session, const std::vector<Address>& servers) {
     std::multimap<std::string, std::size_t> by_hash;
     for (const Address& server : servers) {

@@ -46,7 +46,7 @@ struct Location {
 /// Options of a client. The defaults suit a robot that connects to a server without TLS on the same machine.
 struct ClientOptions {
     /// The server's robot port: HOST:PORT or [ADDRESS]:PORT; of several servers that share a store, with commas
-    /// between.
+    /// between, in any order, and spelled alike by all robots.
     std::string server = "127.0.0.1:7447";
     std::string session;               ///< [A-Za-z0-9_-]{1,64}; created if it does not exist
     std::string robot;                 ///< same characters; name in the session, used by one program at a time

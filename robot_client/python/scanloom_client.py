@@ -1128,7 +1128,8 @@ def _connect(host: str, port: int, tls: Optional[ssl.SSLContext], timeout: float
 class Client:
     """Sends one robot's scans to a server, on its own thread.
 
-    server       "HOST:PORT" of the server's robot port; of several servers that share a store, with commas between
+    server       "HOST:PORT" of the server's robot port; of several servers that share a store, with commas between,
+                 in any order, and spelled alike by all robots
     session      the map's name; the session is created if it does not exist
     robot        unique within the session
     cell_size    metres, for a new session; must match an existing session. None: the server's default
@@ -1628,7 +1629,7 @@ def _parse_options(arguments: Optional[List[str]]) -> argparse.Namespace:
     parser = _OneLineParser(prog="scanloom_client.py", description=_USAGE,
                             formatter_class=argparse.RawDescriptionHelpFormatter, allow_abbrev=False)
     parser.add_argument("--version", action="version", version=f"scanloom_client.py {__version__}")
-    parser.add_argument("--server", required=True, metavar="HOST:PORT", help="the server's robot port")
+    parser.add_argument("--server", required=True, metavar="HOST:PORT", help="the server's robot port; of several servers that share a store, with commas between")
     parser.add_argument("--session", required=True, help="the map's name")
     parser.add_argument("--robot", required=True, help="this robot's name, unique within the session")
     parser.add_argument("--cell-size", type=float, metavar="M", help="metres, for a new session")

@@ -206,11 +206,7 @@ Result<> Server::run() {
         io_.stop();
         return recovered.error();
     }
-    if (auto* const shared = log_->shared(); shared != nullptr) {
-        const auto announced = shared->announce(node_info(options_, ingest_->port(), http_->port()));
-        if (!announced)
-            spdlog::warn("the other servers do not know the address of this one: {}", announced.error().message);
-    }
+    enter_addresses(node_info(options_, ingest_->port(), http_->port()).robots);
     if (!sessions_.is_draining()) {
         services_->recovered = true;
         ingest_->start();
@@ -224,6 +220,17 @@ Result<> Server::run() {
     spdlog::info("stopped");
     if (const auto failure = log_->stats().last_error) return Error{Errc::kStoreFailed, *failure};
     return {};
+}
+
+/// Enters the addresses of this server for those with which it shares the log.
+/// @param robots  empty: it accepts no robots
+void Server::enter_addresses(const std::string& robots) {
+    auto* const shared = log_->shared();
+    if (shared == nullptr) return;
+    auto info = node_info(options_, ingest_->port(), http_->port());
+    info.robots = robots;
+    const auto entered = shared->announce(info);
+    if (!entered) spdlog::warn("the other servers do not know the address of this one: {}", entered.error().message);
 }
 
 void Server::announce() const {
@@ -332,6 +339,7 @@ void Server::drain() {
         if (!error) sessions_.finish_early();
     });
     asio::post(pools_.changes, [this, busy = asio::make_work_guard(io_)] {
+        enter_addresses({}); // other servers that stop send their robots elsewhere
         sessions_.drain();
         asio::post(io_, [this] { integration_timeout_.cancel(); });
         http_->stop([this] {

@@ -51,6 +51,7 @@ private:
     Server(const ServerOptions& options, const ConnectionLimits& limits, std::unique_ptr<store::ScanLog> log);
 
     [[nodiscard]] Result<> listen(http::WebFiles web);
+    void enter_addresses(const std::string& robots);
     void announce() const;
     void wait_for_signal();
     void run_maintenance();

@@ -98,9 +98,7 @@ void RobotConnection::on_located(const sessions::Located& located) {
 
 void RobotConnection::on_failed(const Error& error) {
     post([error](RobotConnection& self) {
-        const bool is_elsewhere = error.code == Errc::kNotOwner && self.session_;
-        const auto server = is_elsewhere ? self.services_.sessions.successor(self.session_->info().name) : nullptr;
-        if (server) self.protocol_.set_owner(server->robots);
+        if (self.session_) self.name_server_of(self.session_->info().name, error);
         self.protocol_.fail(error);
     });
 }
@@ -235,16 +233,28 @@ asio::awaitable<Result<Protocol::Joined>> RobotConnection::enter(const wire::Hel
     const auto creator = sessions::creator_of(*permission_.token());
     auto session = co_await session_for(hello, services_.sessions, creator, services_.blocking_executor);
     if (!session && session.error().code == Errc::kFull) permission_.record_limit();
-    const auto owner = session ? nullptr : services_.sessions.owner(hello.session);
-    if (owner) protocol_.set_owner(owner->robots);
-    if (!session) co_return session.error();
+    if (!session) {
+        name_server_of(hello.session, session.error());
+        co_return session.error();
+    }
     const auto joined = co_await join_session(**session, hello, shared_from_this());
-    if (!joined) co_return joined.error();
+    if (!joined) {
+        name_server_of(hello.session, joined.error());
+        co_return joined.error();
+    }
     session_ = std::move(*session);
     robot_index_ = joined->robot;
     log::info({hello.session, robot_, peer_}, "robot '{}' at {} joined session '{}' after scan {} ({})", robot_, peer_,
               hello.session, joined->last_durable_seq, hello.client);
     co_return Protocol::Joined{sessions::tag_of(session_->info()), joined->last_durable_seq, joined->sensors};
+}
+
+/// Names the server to which the robot connects next, if another one has its session.
+void RobotConnection::name_server_of(const std::string& session, const Error& why) {
+    if (why.code != Errc::kNotOwner) return;
+    auto server = services_.sessions.successor(session);
+    if (!server) server = services_.sessions.owner(session);
+    if (server) protocol_.set_owner(server->robots);
 }
 
 // Logs ----------------------------------------------------------------------------------------------------------------

@@ -82,6 +82,7 @@ private:
 
     static boost::asio::awaitable<void> join(std::shared_ptr<RobotConnection> self, wire::Hello hello);
     boost::asio::awaitable<Result<link::ServerProtocol::Joined>> enter(const wire::Hello& hello);
+    void name_server_of(const std::string& session, const Error& why);
     void log_end() const;
 
     net::LinkStream stream_;

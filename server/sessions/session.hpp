@@ -73,8 +73,8 @@ public:
     /// store. If memory ran out, the maps may show a partially integrated scan.
     [[nodiscard]] std::optional<Error> failure() const;
 
-    /// Returns why the session is closing, or nullopt if it is not: kGone if it is deleted, otherwise kShuttingDown. A
-    /// closing session accepts no further entries.
+    /// Returns why the session is closing, or nullopt if it is not: kGone if it is deleted, kNotOwner if another server
+    /// goes on with it or has taken it, otherwise kShuttingDown. A closing session accepts no further entries.
     [[nodiscard]] std::optional<Error> closing() const;
 
     /// Calls `read` with the estimated poses of the scans that robots sent without, on the session's strand.
@@ -117,7 +117,7 @@ public:
     /// @param done  receives the result, or one of
     ///              kReplaced (a newer connection of this robot arrived first), kConflict (the robot's scans come from
     ///              another source), kFull (the session has 1024 robots), kGone (deleted), kStoreFailed, kOverloaded,
-    ///              kShuttingDown
+    ///              kNotOwner, kShuttingDown
     void join(JoinRequest who, std::shared_ptr<RobotListener> listener, std::function<void(Result<Joined>)> done);
 
     /// Describes a sensor, for the scans that are submitted after it.
@@ -210,7 +210,7 @@ private:
     bool broken_ = false;           // the log or the memory failed: no more appending, applying or checkpoints
     std::function<void()> closed_;  // called when closing is done
 
-    std::atomic<bool> stays_owned_ = false;  // when it is closed
+    std::atomic<bool> stays_owned_ = false;  // close() does not give it up
     bool has_news_ = true;                   // a change to notify, not counting connections
     std::uint64_t connections_reported_ = 0; // RobotSequencer::connection_changes() at the last notification
 

@@ -62,7 +62,10 @@ void Session::close(Error reason, std::function<void()> done) {
         }
         self.has_news_ = true;
         if (!self.refusing_) self.refusing_ = std::move(reason);
-        self.closed_ = std::move(done);
+        self.closed_ = [earlier = std::move(self.closed_), done = std::move(done)] {
+            if (earlier) earlier(); // it is closed twice
+            done();
+        };
         self.finish_closing();
     });
 }

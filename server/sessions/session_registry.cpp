@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <future>
+#include <latch>
 #include <new>
 #include <semaphore>
 #include <utility>
@@ -23,7 +24,7 @@ namespace {
 /// Sessions that are closed at the same time when a server drains that shares the log: about as many as other servers
 /// load at the same time. The others go on until it is their turn, so that each is without acknowledgements for a short
 /// time only.
-constexpr std::size_t kHandedOverAtOnce = 4;
+constexpr std::ptrdiff_t kHandedOverAtOnce = 4;
 
 Result<> check_name(std::string_view name) {
     if (is_valid_name(name)) return {};
@@ -279,15 +280,20 @@ void SessionRegistry::drain() {
     for (const auto& session : sessions) names.push_back(session->info().name);
     successors_.choose(names, nodes());
     const Error comes_back{Errc::kShuttingDown, "the server is shutting down; connect again when it is back"};
-    const Error another_goes_on{Errc::kNotOwner, "the server is shutting down; another one goes on with the session"};
-    const auto at_once = static_cast<std::ptrdiff_t>(is_shared() ? kHandedOverAtOnce : sessions.size());
-    const auto turns = std::make_shared<std::counting_semaphore<>>(at_once);
+    const Error another_goes_on{Errc::kNotOwner,
+                                "the server is shutting down; connect to the one that goes on with the session"};
+    const auto count = static_cast<std::ptrdiff_t>(sessions.size());
+    const auto turns = std::make_shared<std::counting_semaphore<>>(is_shared() ? kHandedOverAtOnce : count);
+    const auto closed = std::make_shared<std::latch>(count);
     for (const auto& session : sessions) {
-        turns->acquire();
+        if (!state_.finish_early) turns->acquire();
         const bool has_successor = successors_.of(session->info().name) != nullptr;
-        session->close(has_successor ? another_goes_on : comes_back, [turns] { turns->release(); });
+        session->close(has_successor ? another_goes_on : comes_back, [turns, closed] {
+            turns->release();
+            closed->count_down();
+        });
     }
-    for (std::ptrdiff_t n = 0; n < at_once; ++n) turns->acquire();
+    closed->wait();
 }
 
 void SessionRegistry::finish_early() {

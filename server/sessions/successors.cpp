@@ -5,7 +5,8 @@
 namespace scanloom::sessions {
 
 void Successors::choose(const std::vector<std::string>& sessions, std::vector<store::Node> nodes) {
-    std::erase_if(nodes, [](const store::Node& node) { return !node.is_alive || node.is_self; });
+    std::erase_if(nodes,
+                  [](const store::Node& node) { return !node.is_alive || node.is_self || node.info->robots.empty(); });
     if (nodes.empty()) return;
     const std::lock_guard lock(mutex_);
     for (const auto& session : sessions) {

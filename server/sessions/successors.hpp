@@ -18,7 +18,7 @@ class Successors {
 public:
     /// Chooses a server for each session: the one with the fewest, counting those that were chosen before.
     /// @param sessions  names
-    /// @param nodes     all servers; of these, others than this one that live
+    /// @param nodes     all servers; of these, others than this one that live and accept robots
     void choose(const std::vector<std::string>& sessions, std::vector<store::Node> nodes);
 
     /// Returns the server that goes on with a session; null: none is chosen.

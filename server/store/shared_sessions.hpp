@@ -17,7 +17,7 @@ namespace scanloom::store {
 /// How the servers that share a log reach each other.
 struct NodeInfo {
     std::string name;   ///< unique among the servers that share the log
-    std::string robots; ///< where robots connect, HOST:PORT
+    std::string robots; ///< where robots connect, HOST:PORT; empty: nowhere, as it is starting or stopping
     std::string http;   ///< SCHEME://HOST:PORT
     std::string build;  ///< version of the program
 };
@@ -84,7 +84,7 @@ public:
     /// Returns a secret that the servers of this log have in common.
     [[nodiscard]] virtual const std::string& secret() const = 0;
 
-    /// Enters this node's addresses and version for the others. Call once; if it fails, it is repeated.
+    /// Enters this node's addresses and version for the others. If it fails, it is repeated.
     [[nodiscard]] virtual Result<> announce(const NodeInfo& info) = 0;
 };
 

@@ -156,7 +156,7 @@ TEST(ClusterSimulation, ASessionWaitsForItsOwnCheckpointOnly) {
 TEST(ClusterSimulation, RobotsWaitAsLongAsLeaseAndBackoffPermit) {
     Plan plan = quiet_plan();
     plan.load_ms = 10.0;
-    constexpr Time kLoads{3'000}; // at most 300 sessions, one after another
+    constexpr Time kLoads{100}; // some 20 sessions, four at a time on each of five nodes
     const auto& killed = with_fault(plan, End::kKilled).waits_of(Cause::kKilled);
     EXPECT_GE(killed.longest, kDeadAfter - kRenewEvery);
     EXPECT_LE(killed.longest, kDeadAfter + Servers::kShort + kLoads);

@@ -36,6 +36,7 @@ protected:
     Node start(const std::string& name) {
         Node node;
         node.log = store::open_postgres(database_.address, {.allow_unreplicated = true, .node = name}).value();
+        EXPECT_TRUE(node.log->shared()->announce({.name = name, .robots = name + ":7447"}));
         node.registry = make(*node.log);
         EXPECT_TRUE(node.registry->recover());
         return node;
@@ -90,17 +91,33 @@ TEST_F(SharedSessionsTest, ASessionIsOnOneServerAndMovesToAnotherWhenItIsEvicted
 
 /// A link whose robot asks another server for the session as soon as it fails.
 struct MovingLink : AwaitedLink {
-    MovingLink(const Session& session, Node& other) : id(session.info().id), log(*other.log) {}
+    MovingLink(const Session& joined, Node& here, Node& other)
+        : session(joined.info()), registry(*here.registry), log(*other.log) {}
 
     void on_failed(const Error& error) override {
-        taken = store::own(log, id);
+        if (const auto server = registry.successor(session.name)) successor = server->name;
+        taken = store::own(log, session.id);
         AwaitedLink::on_failed(error);
     }
 
-    store::SessionId id;
+    SessionInfo session;
+    SessionRegistry& registry;
     store::ScanLog& log;
+    std::string successor;
     Result<> taken;
 };
+
+TEST_F(SharedSessionsTest, AServerThatDrainsLeavesAllItsSessionsToOthersAlsoInAHurry) {
+    for (const bool in_a_hurry : {false, true}) {
+        auto c = start("c");
+        std::vector<std::string> names;
+        for (int n = 0; n < 10; ++n) names.push_back((in_a_hurry ? "hurry" : "calm") + std::to_string(n));
+        for (const auto& name : names) create(c, name);
+        if (in_a_hurry) c.registry->finish_early();
+        stop(c);
+        for (const auto& name : names) EXPECT_EQ(b_.registry->load(name).value()->snapshot()->revision, 22U);
+    }
+}
 
 TEST_F(SharedSessionsTest, AServerThatDrainsSendsRobotsToTheServerWithTheFewestSessions) {
     const auto before = create(a_, "s");
@@ -108,10 +125,11 @@ TEST_F(SharedSessionsTest, AServerThatDrainsSendsRobotsToTheServerWithTheFewestS
     auto c = start("c");
     a_.registry->tidy(); // now it knows the others
     const auto session = a_.registry->find("s");
-    const auto link = std::make_shared<MovingLink>(*session, c);
+    const auto link = std::make_shared<MovingLink>(*session, a_, c);
     ASSERT_TRUE(join_and_wait(*session, "other", link));
     stop(a_);
     EXPECT_EQ(link->wait_for_failure().code, Errc::kNotOwner);
+    EXPECT_EQ(link->successor, "c");
     EXPECT_TRUE(link->taken) << "it was given up before robots left";
     EXPECT_EQ(digest(*c.registry->load("s").value()), before);
     stop(c);
