@@ -265,7 +265,8 @@ Result<> Connection::prepare() {
             " set_config('default_transaction_isolation', 'read committed', false),"
             " (pg_is_in_recovery() OR current_setting('default_transaction_read_only')::bool)::int::bigint");
     if (!rows) return rows.error();
-    if (rows->number(0, 7) != 0) return failure("{} is read-only: it is a standby", state_->host);
+    if (rows->number(0, 7) != 0)
+        return failure("{} is read-only: it is a standby, or default_transaction_read_only is on", state_->host);
     return {};
 }
 

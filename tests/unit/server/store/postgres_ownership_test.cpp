@@ -4,12 +4,12 @@
 #include "server/store/shared_sessions.hpp"
 #include "tests/support/log_reading.hpp"
 #include "tests/unit/server/store/postgres_database.hpp"
+#include "tests/unit/server/store/races.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <array>
-#include <atomic>
 #include <memory>
 #include <string>
 #include <thread>
@@ -249,26 +249,8 @@ TEST_F(PostgresOwnershipTest, AStoreOfFormat1GetsNamesAndLosesItsOwners) {
     EXPECT_EQ(log->shared()->find("s").value().value().stored.id, copy);
 }
 
-/// Two servers take sessions at the same time, and the one that lost one writes nothing.
 TEST_F(PostgresOwnershipTest, TwoServersThatRaceForASessionWriteOneLog) {
-    const std::array logs = {open("a"), open("b")};
-    constexpr int kRaces = 100;
-    std::atomic<int> won = 0;
-    for (int race = 0; race < kRaces; ++race) {
-        const auto session = logs[0]->create_session("").value();
-        ASSERT_TRUE(logs[0]->shared()->disown(session));
-        std::array<std::jthread, 2> threads;
-        for (std::size_t n = 0; n < 2; ++n) {
-            threads[n] = std::jthread([&, n] {
-                if (!own(*logs[n], session)) return;
-                ++won;
-                EXPECT_TRUE(append_and_wait(*logs[n], session, 1, {std::to_string(n)}));
-            });
-        }
-        for (auto& thread : threads) thread.join();
-        EXPECT_THAT(entries_after(*logs[0], session, 0).value(), SizeIs(1));
-    }
-    EXPECT_EQ(won, kRaces);
+    race_for_sessions(*open("a"), *open("b"), 25); // 1,000 in nightly_test
 }
 
 } // namespace
