@@ -42,8 +42,7 @@ public:
 
     /// The connection has failed. @return after what time to ask the next server
     [[nodiscard]] Time fail(const Order& order) {
-        static_cast<void>(servers_.choose_another(std::nullopt, order));
-        return pause();
+        return servers_.choose_another(std::nullopt, order) ? kAtOnce : pause();
     }
 
     /// The server acknowledges nothing more since `now`.

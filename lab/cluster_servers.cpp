@@ -1,6 +1,7 @@
 #include "lab/cluster_servers.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace scanloom::lab::cluster {
 
@@ -28,9 +29,10 @@ bool Servers::choose_another(std::optional<std::size_t> named, const Order& orde
         return true;
     }
     redirects_ = 0;
-    if (sent_to_ == kNone) next_ = order.after(next_);
-    sent_to_ = kNone;
-    return false;
+    if (std::exchange(sent_to_, kNone) != kNone) return false;
+    next_ = order.after(next_);
+    tried_ = (tried_ + 1) % order.nodes();
+    return tried_ != 0;
 }
 
 } // namespace scanloom::lab::cluster

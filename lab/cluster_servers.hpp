@@ -20,6 +20,8 @@ public:
     Order(const Draws& draws, std::uint64_t session, std::size_t nodes)
         : draws_(draws), session_(session), nodes_(static_cast<std::uint32_t>(nodes)) {}
 
+    [[nodiscard]] std::uint32_t nodes() const noexcept { return nodes_; }
+
     /// Returns the node that the robots try first.
     [[nodiscard]] std::uint32_t first() const;
 
@@ -54,20 +56,23 @@ public:
     /// The current node is in use.
     void settle() noexcept {
         redirects_ = 0;
+        tried_ = 0;
         is_short_ = false;
     }
 
     /// Returns the longest time to wait before connecting again.
-    [[nodiscard]] Time wait_max() const noexcept { return is_short_ ? kShort : Time::max(); }
+    [[nodiscard]] Time wait_max() const noexcept { return is_short_ ? kShort : kSeveralMax; }
 
-    static constexpr int kRedirectsMax = 4; ///< as ServerList
-    static constexpr Time kShort{1000};     ///< as ServerList
+    static constexpr int kRedirectsMax = 4;  ///< as ServerList
+    static constexpr Time kShort{1000};      ///< as ServerList
+    static constexpr Time kSeveralMax{3000}; ///< as ServerList; also of a robot that knows one node only
 
 private:
     static constexpr std::uint32_t kNone = 0xFFFF'FFFF;
 
     std::uint32_t next_;
     std::uint32_t sent_to_ = kNone;
+    std::uint32_t tried_ = 0;
     std::uint8_t redirects_ = 0;
     bool is_short_ = false;
 };

@@ -39,10 +39,10 @@ bool ServerList::choose_another(std::string_view address) {
         return true;
     }
     redirects_ = 0;
-    if (!sent_to_)
-        next_ = (next_ + 1) % order_.size(); // otherwise the one that sent the client elsewhere is tried again
-    sent_to_.reset();
-    return false;
+    if (std::exchange(sent_to_, std::nullopt)) return false; // the one that sent the client there is tried again
+    next_ = (next_ + 1) % order_.size();
+    tried_ = (tried_ + 1) % order_.size();
+    return tried_ != 0;
 }
 
 std::string text_of(const std::vector<Address>& addresses) {

@@ -33,19 +33,22 @@ public:
 
     /// Chooses another server after the current one could not be used.
     /// @param address  that it has named instead, HOST:PORT; empty: none
-    /// @return whether to connect at once: it named a server. False if that was so kRedirectsMax times in a row, as
-    ///         when servers disagree.
+    /// @return whether to connect at once: it named a server, or not all of the list were tried since the last wait.
+    ///         False if servers were named kRedirectsMax times in a row, as when they disagree.
     [[nodiscard]] bool choose_another(std::string_view address);
 
     /// The current server is in use.
     void settle() noexcept {
         redirects_ = 0;
+        tried_ = 0;
         wait_max_ = kLong;
     }
 
     /// Returns the longest time to wait before connecting again. It is short after a server has named another one: if
-    /// that one is dead, the session is free in a few seconds.
-    [[nodiscard]] std::chrono::milliseconds wait_max() const noexcept { return wait_max_; }
+    /// that one is dead, the session is free in a few seconds. It is at most kSeveralMax if there are several servers.
+    [[nodiscard]] std::chrono::milliseconds wait_max() const noexcept {
+        return servers_.size() > 1 ? std::min(wait_max_, kSeveralMax) : wait_max_;
+    }
 
     /// Returns the longest time to wait for a connection: short if another server may be tried instead.
     [[nodiscard]] std::chrono::milliseconds connect_max(std::chrono::milliseconds alone) const noexcept {
@@ -62,6 +65,7 @@ public:
     static constexpr std::chrono::milliseconds kUnconfirmedMax{5000};
     static constexpr int kRedirectsMax = 4;
     static constexpr std::chrono::milliseconds kShort{1000};
+    static constexpr std::chrono::milliseconds kSeveralMax{3000};
 
 private:
     static constexpr std::chrono::milliseconds kLong = std::chrono::hours(24);
@@ -70,7 +74,8 @@ private:
     std::vector<std::size_t> order_; // numbers of servers_
     std::size_t next_ = 0;           // in order_
     std::optional<Address> sent_to_;
-    int redirects_ = 0; // in a row
+    std::size_t tried_ = 0; // of the list, since the last wait
+    int redirects_ = 0;     // in a row
     std::chrono::milliseconds wait_max_ = kLong;
 };
 

@@ -1058,8 +1058,10 @@ class _Servers:
         self._list = [servers[address] for address in sorted(servers, key=lambda address: hashlib.sha256(
             f"{session}\n{address}".encode(errors="replace")).digest())]
         self._next = 0
+        self._tried = 0  # of the list, since the last wait
         self._redirects = 0
-        self.wait_max = math.inf  # seconds before connecting again: short after a server has named another one, because
+        self._wait_max = 3.0 if len(self._list) > 1 else math.inf
+        self.wait_max = self._wait_max  # seconds before connecting again: short after a server has named another, because
         self.current = self._list[0]  # the session of a dead one is free in a few seconds
 
     def __str__(self) -> str:
@@ -1076,11 +1078,13 @@ class _Servers:
                 return True
             except ValueError:
                 pass  # as if it had named none
-        if self.current == self._list[self._next]:
-            self._next = (self._next + 1) % len(self._list)
         self._redirects = 0
+        was_named = self.current != self._list[self._next]
+        if not was_named:
+            self._next = (self._next + 1) % len(self._list)
+            self._tried = (self._tried + 1) % len(self._list)
         self.current = self._list[self._next]
-        return False
+        return not was_named and self._tried != 0
 
     def connect(self, tls: Optional[ssl.SSLContext], timeout: float) -> socket.socket:
         """Connects to the current server. If there are others, waits for a short time only, also for the server's system
@@ -1095,7 +1099,8 @@ class _Servers:
     def settle(self) -> None:
         """The current server has welcomed the client."""
         self._redirects = 0
-        self.wait_max = math.inf
+        self._tried = 0
+        self.wait_max = self._wait_max
 
 
 def _connect(host: str, port: int, tls: Optional[ssl.SSLContext], timeout: float) -> socket.socket:
