@@ -55,7 +55,7 @@ public:
         return servers_.size() > 1 ? std::min(alone, kConnectMax) : alone;
     }
 
-    /// Returns for how long the current server's system may confirm nothing of what was sent, see
+    /// Returns for how long the current server's system may accept nothing of what was sent, see
     /// set_unconfirmed_max(); nullopt: any time. After that others may have its sessions.
     [[nodiscard]] std::optional<std::chrono::milliseconds> unconfirmed_max() const noexcept {
         return servers_.size() > 1 ? std::optional(kUnconfirmedMax) : std::nullopt;

@@ -36,12 +36,22 @@ protected:
 
     /// @param scans  of the whole simulation; those that the servers have already are not sent again
     void simulate(const std::string& servers, const std::string& scans) const {
-        ChildProcess robot(program("scanloom-robot"),
-                           {"--server", servers, "--session", "one", "--robot", "r", "--give-up-after", "20",
-                            "simulate", "--world", "office", "--seed", "5", "--speed", "0", "--scans", scans},
-                           place_.path() / "robot");
-        static_cast<void>(robot.read_line());
-        ASSERT_EQ(robot.wait(), 0);
+        expect_done(start_robot(servers, scans, "0"));
+    }
+
+    /// @param speed  relative to real time; 0: as fast as the server accepts scans
+    [[nodiscard]] std::unique_ptr<ChildProcess> start_robot(const std::string& servers, const std::string& scans,
+                                                            const std::string& speed) const {
+        return std::unique_ptr<ChildProcess>(
+            new ChildProcess(program("scanloom-robot"),
+                             {"--server", servers, "--session", "one", "--robot", "r", "--give-up-after", "20",
+                              "simulate", "--world", "office", "--seed", "5", "--speed", speed, "--scans", scans},
+                             place_.path() / "robot"));
+    }
+
+    static void expect_done(std::unique_ptr<ChildProcess> robot) {
+        static_cast<void>(robot->read_line());
+        ASSERT_EQ(robot->wait(), 0);
     }
 
     static void end(RunningServer& server, int signal) {
@@ -188,6 +198,21 @@ TEST_F(NodesTest, RobotsFindTheServerThatHasTheirSession) {
     end(*c, SIGTERM);
     simulate(a->robot_address() + "," + c->robot_address() + "," + b->robot_address(), "300");
     EXPECT_EQ(digest(*b), whole) << "all scans are there once";
+}
+
+/// The robot knows the first server only.
+TEST_F(NodesTest, AServerThatStopsNamesTheOneThatGoesOn) {
+    const auto a = start("a");
+    const auto b = start("b");
+    const auto known = [&] { return a->get_json("/api/v1/nodes").at("nodes").as_array(); };
+    while (known().size() < 2 || known().at(1).at("robots").as_string() != b->robot_address()) { // a second later
+    }
+    auto robot = start_robot(a->robot_address(), "200", "20"); // of 10 scans a second
+    while (a->get("/api/v1/sessions/one").status != 200) {
+    }
+    end(*a, SIGTERM);
+    expect_done(std::move(robot));
+    EXPECT_EQ(b->get_json("/api/v1/sessions/one").at("scans"), 200);
 }
 
 } // namespace
