@@ -56,7 +56,7 @@ Result<> OwnNode::renew(Connection& connection) const {
                                      parameters);
     if (!rows) return rows.error();
     if (rows->size() > 0) return {};
-    return Error{Errc::kConflict,
+    return Error{Errc::kNotOwner,
                  fmt::format("another server was started as node '{}' of the store {}; give each server a --node of "
                              "its own, and start this one again",
                              name_, place_.text)};
@@ -83,7 +83,7 @@ void OwnNode::keep(const std::stop_token& stop) {
         }
         if (stop.stop_requested()) return;
         const auto renewed = renew_over(connection);
-        if (!renewed && renewed.error().code == Errc::kConflict) static_cast<void>(shared_.fail(renewed.error()));
+        if (!renewed && renewed.error().code == Errc::kNotOwner) static_cast<void>(shared_.fail(renewed.error()));
         const auto now = Clock::now();
         if (now - renewed_at > kDeadAfter / 2) steady_since_ = now;
         if (renewed) renewed_at = now;

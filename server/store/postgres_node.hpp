@@ -45,7 +45,7 @@ public:
     [[nodiscard]] bool is_steady() const noexcept { return Clock::now() - steady_since_.load() >= kDeadAfter; }
 
     /// Renews the row.
-    /// Errors: kConflict: another server was started with the same name; kStoreFailed.
+    /// Errors: kNotOwner: another server was started with the same name; kStoreFailed.
     [[nodiscard]] Result<> renew(Connection& connection) const;
 
     /// Writes the addresses and the version into the row, now and at each renewal.

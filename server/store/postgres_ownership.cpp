@@ -160,10 +160,15 @@ Result<OwnedSessions> take_again(Connection& connection, const Place& place, std
 }
 
 Result<> confirm_owned(Connection& connection, SessionId session, const OwnedSession& owned) {
-    const auto state = state_of(connection, session);
-    if (!state) return state.error();
-    if (!*state) return no_such_session(session);
-    return (*state)->epoch == owned.epoch ? Result<>() : Result<>(not_owner(session, **state));
+    // A commit is confirmed by the standby, so that a primary which another one has replaced cannot make it.
+    Parameters parameters;
+    parameters.add(signed_of(session));
+    parameters.add(owned.epoch);
+    const auto rows = connection.run("UPDATE scanloom.session SET epoch = epoch"
+                                     " WHERE id = $1 AND epoch = $2 AND NOT removed RETURNING id",
+                                     parameters);
+    if (!rows) return rows.error();
+    return rows->size() > 0 ? Result<>() : Result<>(why_not_owned(connection, session));
 }
 
 Error forget_lost(Connection& connection, SharedState& shared, SessionId session, const OwnedSession& owned) {

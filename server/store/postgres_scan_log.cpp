@@ -219,6 +219,7 @@ Result<> PostgresScanLog::disown(SessionId session) {
 
 Result<> PostgresScanLog::confirm(SessionId session) {
     const std::shared_lock use(in_use_);
+    if (const auto failure = shared_.failure()) return *failure;
     const auto owned = shared_.find(session);
     return readers_.with_connection([&](Connection& connection) {
         return owned ? confirm_owned(connection, session, *owned) : Result<>(why_not_owned(connection, session));

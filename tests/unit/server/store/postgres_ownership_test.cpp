@@ -144,6 +144,8 @@ TEST_F(PostgresOwnershipTest, ALaterServerOfTheSameNameHasTheSessionsAtOnce) {
     EXPECT_EQ(append_and_wait(*earlier, session, 2, {"late"}).error().code, Errc::kNotOwner);
     while (!earlier->stats().last_error) std::this_thread::yield(); // until it looks at its row
     EXPECT_THAT(*earlier->stats().last_error, HasSubstr("another server was started as node 'a'"));
+    EXPECT_EQ(earlier->shared()->own(session).error().code, Errc::kNotOwner) << "robots try another server";
+    EXPECT_EQ(earlier->create_session("").error().code, Errc::kNotOwner);
     EXPECT_FALSE(earlier->reopen());
     EXPECT_THAT(*earlier->stats().last_error, HasSubstr("give each server a --node of its own"));
     EXPECT_THAT(entries_after(*later, session, 0).value(), ElementsAre("before", "after"));
@@ -210,6 +212,10 @@ TEST_F(PostgresOwnershipTest, ACopyBelongsToTheServerThatHasTheSessionThatItIsTo
 TEST_F(PostgresOwnershipTest, ASessionThatWasLostIsTakenAgainWithWhatOthersWrote) {
     const auto a = open("a");
     const auto session = a->create_session("").value();
+    const auto transaction = [&] { return database_.number("SELECT xmin::text::bigint FROM scanloom.session"); };
+    const auto before = transaction();
+    EXPECT_TRUE(a->shared()->confirm(session));
+    EXPECT_NE(transaction(), before) << "by a commit";
     static_cast<void>(database_.run("UPDATE scanloom.session SET owner = 0"));
     {
         const auto b = open("b");
