@@ -10,6 +10,7 @@
 
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/experimental/awaitable_operators.hpp>
+#include <boost/asio/steady_timer.hpp>
 #include <boost/asio/write.hpp>
 #include <boost/beast/http/read.hpp>
 #include <boost/url/parse.hpp>
@@ -30,7 +31,9 @@ namespace beast = boost::beast;
 using beast::http::field;
 
 constexpr std::chrono::milliseconds kConnectMax{1'500};
-constexpr std::chrono::minutes kAnswerMax{30}; // some answers take minutes; a server that is gone is noticed before
+constexpr std::chrono::minutes kAnswerMax{30}; // some answers take minutes
+constexpr std::chrono::seconds kLookEvery{1};  // whether the server is dead
+constexpr int kDeadLooksMax = 2;               // after a failover of the database, servers seem dead for a moment
 constexpr std::chrono::milliseconds kPieceMax{60'000};
 constexpr std::size_t kForwardedPieceBytes = std::size_t{64} << 10;
 
@@ -99,6 +102,24 @@ asio::awaitable<void> pass_bytes(net::LinkStream& from, net::LinkStream& to, std
 
 asio::awaitable<Forwarder::Outcome> Forwarder::forward(const store::NodeInfo& owner, const Request& request,
                                                        const Incoming& message, Manner manner) {
+    using namespace asio::experimental::awaitable_operators;
+    const auto first = co_await (exchange(owner, request, message, manner) || close_if_dead(owner));
+    co_return std::get<0>(first);
+}
+
+/// Closes the connection to a server that counts as dead, as when it is paused. Never ends by itself.
+asio::awaitable<void> Forwarder::close_if_dead(const store::NodeInfo& owner) {
+    asio::steady_timer look(client_.get_executor());
+    for (int dead_looks = 0;;) {
+        look.expires_after(kLookEvery);
+        co_await look.async_wait(kAwaitTuple);
+        dead_looks = service_.api.services().sessions.is_dead(owner) ? dead_looks + 1 : 0;
+        if (dead_looks >= kDeadLooksMax && server_) server_->close();
+    }
+}
+
+asio::awaitable<Forwarder::Outcome> Forwarder::exchange(const store::NodeInfo& owner, const Request& request,
+                                                        const Incoming& message, Manner manner) {
     const auto head = request_head(request, message, manner, service_.api.services().nodes.secret);
     const bool can_repeat = is_repeatable(request) && !request.upgrade;
     for (bool is_reused = can_repeat && server_ && place_ == owner.http;; is_reused = false) {

@@ -19,6 +19,7 @@
 namespace scanloom::http {
 
 /// Passes requests of one connection on to the server that has their session, and its responses back, piece by piece.
+/// Waits for that server as long as it does not count as dead.
 /// Keeps the connection to that server for the next request. A WebSocket is passed on until one side ends it.
 /// Threads: the executor of the client's connection, except for the constructor.
 class Forwarder {
@@ -50,6 +51,9 @@ public:
 private:
     using Parser = boost::beast::http::response_parser<boost::beast::http::buffer_body>;
 
+    [[nodiscard]] boost::asio::awaitable<Outcome> exchange(const store::NodeInfo& owner, const Request& request,
+                                                           const Incoming& message, Manner manner);
+    [[nodiscard]] boost::asio::awaitable<void> close_if_dead(const store::NodeInfo& owner);
     [[nodiscard]] boost::asio::awaitable<bool> connect(const std::string& place);
     [[nodiscard]] boost::asio::awaitable<bool> ask(const std::string& head, const std::string& body, Parser& parser);
     [[nodiscard]] boost::asio::awaitable<Outcome> answer(Parser& parser, const Manner& manner);

@@ -8,6 +8,7 @@
 
 #include <boost/asio/any_io_executor.hpp>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cstdint>
@@ -122,6 +123,14 @@ public:
     [[nodiscard]] std::vector<store::Node> all() const {
         const std::lock_guard lock(mutex_);
         return nodes_;
+    }
+
+    /// Returns whether a server has not been heard for as long as makes it dead.
+    [[nodiscard]] bool is_dead(const store::NodeInfo& server) const {
+        const std::lock_guard lock(mutex_);
+        return std::ranges::any_of(nodes_, [&](const store::Node& node) {
+            return !node.is_alive && node.info->name == server.name && node.info->http == server.http;
+        });
     }
 
 private:

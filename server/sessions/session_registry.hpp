@@ -97,6 +97,9 @@ public:
     /// Returns the servers that share the log, by name; empty: this one uses it alone.
     [[nodiscard]] std::vector<store::Node> nodes() const { return state_.nodes.all(); }
 
+    /// Returns whether a server counts as dead, as it was known a second ago.
+    [[nodiscard]] bool is_dead(const store::NodeInfo& server) const { return state_.nodes.is_dead(server); }
+
     /// Creates an empty session.
     ///
     /// @param creator  the creator and its limits

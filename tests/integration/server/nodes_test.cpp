@@ -187,6 +187,19 @@ TEST_F(NodesTrials, ARequestWaitsUntilTheSessionOfADeadServerIsFree) {
     EXPECT_EQ(digest(*b), before);
 }
 
+TEST_F(NodesTrials, ARequestAndAViewerDoNotWaitForAPausedServer) {
+    const auto a = start("a");
+    const auto b = start("b");
+    simulate(a->robot_address(), "300");
+    const auto before = digest(*b);
+    testing_support::LiveClient viewer(b->http_port(), "one");
+    EXPECT_TRUE(viewer.read());
+    a->process().signal(SIGSTOP);
+    EXPECT_EQ(digest(*b), before);
+    static_cast<void>(viewer.read_to_the_end());
+    a->process().signal(SIGCONT);
+}
+
 TEST_F(NodesTest, RobotsFindTheServerThatHasTheirSession) {
     const auto a = start("a");
     auto b = start("b");
