@@ -50,7 +50,7 @@ ClientProtocol::ClientProtocol(ClientProtocolOptions options, ScanQueue& scans, 
     if (options_.compress) compressor_.emplace();
 }
 
-void ClientProtocol::open(Time now) { link_.emplace(now); }
+void ClientProtocol::open(std::string server, Time now) { link_.emplace(std::move(server), now); }
 
 void ClientProtocol::close() {
     link_.reset();
@@ -75,10 +75,10 @@ std::optional<wire::LinkError> ClientProtocol::on_bytes(std::size_t count, Time 
 /// there.
 wire::LinkError ClientProtocol::unreadable(const Error& error) const {
     if (link_->welcomed) return {prefixed("the data from the server cannot be read: ", error), true};
-    return give_up({Errc::kMalformed,
-                    fmt::format("the program at {} does not speak Scanloom's robot link; give the server's robot "
-                                "port to --server",
-                                options_.server)});
+    return {{Errc::kMalformed, fmt::format("the program at {} does not speak Scanloom's robot link; give the server's "
+                                           "robot port to --server",
+                                           link_->server)},
+            options_.has_other_servers};
 }
 
 std::optional<wire::LinkError> ClientProtocol::take(const wire::Message& message, Time now) {

@@ -25,7 +25,7 @@ namespace scanloom::link {
 /// Settings of a ClientProtocol.
 struct ClientProtocolOptions {
     wire::Hello hello;                          ///< the first message of each link: session, robot, token, options
-    std::string server;                         ///< address of the server, for messages
+    bool has_other_servers = false;             ///< another one is tried if a program is no server
     std::shared_ptr<const Sensor> first_sensor; ///< described right after the welcome; null: before its first scan
     std::size_t batch_bytes_max = std::size_t{64} << 10; ///< of one ScanBatch of several scans
     std::size_t batch_scans_max = kScansPerBatchMax;     ///< of one ScanBatch
@@ -63,7 +63,8 @@ public:
 
     // The link
     /// Starts a link. The hello is the first frame. Pre: no link is open.
-    void open(Time now);
+    /// @param server  address of the server, for messages
+    void open(std::string server, Time now);
     /// Ends the link, if one is open. Scans that the server does not have are sent again on the next link.
     void close();
     /// Returns space for at least `bytes` bytes, valid until on_bytes(). Pre, also of on_bytes(): the link is open.
@@ -135,8 +136,9 @@ public:
 private:
     /// The state of one link.
     struct Link {
-        explicit Link(Time now) : opened(now), heard(now) {}
+        Link(std::string to, Time now) : server(std::move(to)), opened(now), heard(now) {}
 
+        std::string server;
         Time opened;
         Time heard; ///< when the newest frame arrived
         wire::FrameDecoder decoder{wire::kFrameBytesMax};

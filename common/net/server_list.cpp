@@ -2,6 +2,7 @@
 
 #include "common/hash/sha256.hpp"
 
+#include <boost/algorithm/string/trim.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -55,7 +56,7 @@ Result<std::vector<Address>> parse_addresses(std::string_view text) {
     std::vector<Address> addresses;
     for (std::size_t begin = 0; begin <= text.size();) {
         const auto end = std::min(text.find(',', begin), text.size());
-        auto address = parse_address(text.substr(begin, end - begin));
+        auto address = parse_address(boost::trim_copy(std::string(text.substr(begin, end - begin))));
         if (!address) return address.error();
         addresses.push_back(std::move(*address));
         begin = end + 1;

@@ -79,7 +79,7 @@ private:
     std::chrono::milliseconds wait_max_ = kLong;
 };
 
-/// Parses one or more addresses, HOST:PORT[,HOST:PORT...].
+/// Parses one or more addresses, HOST:PORT[,HOST:PORT...]. There may be spaces around them.
 /// Errors: those of parse_address().
 [[nodiscard]] Result<std::vector<Address>> parse_addresses(std::string_view text);
 

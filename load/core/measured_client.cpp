@@ -11,13 +11,11 @@ namespace {
 
 constexpr std::chrono::seconds kWelcomeMax{60}; // since the hello: the server creates sessions one by one
 
-link::ClientProtocolOptions options_for(const RobotPlan& plan, const Workload& workload, wire::Hello hello,
-                                        std::string server) {
+link::ClientProtocolOptions options_for(const RobotPlan& plan, const Workload& workload, wire::Hello hello) {
     link::ClientProtocolOptions options;
     options.hello = std::move(hello);
     options.hello.session = plan.session;
     options.hello.robot = plan.name;
-    options.server = std::move(server);
     options.first_sensor = workload.sensor; // so that each robot adds two entries to its session, also without scans
     options.batch_bytes_max = wire::kFrameBytesMax;
     options.batch_scans_max = workload.batch;
@@ -41,9 +39,9 @@ void WorkloadQueue::append_batch(std::uint64_t first, std::size_t count, std::st
     wire::encode_batch(batch, out);
 }
 
-MeasuredClient::MeasuredClient(RobotPlan plan, const Workload& workload, wire::Hello hello, std::string server)
+MeasuredClient::MeasuredClient(RobotPlan plan, const Workload& workload, wire::Hello hello)
     : plan_(std::move(plan)), workload_(&workload), scans_(workload, plan_.first_scan),
-      protocol_(options_for(plan_, workload, std::move(hello), std::move(server)), scans_, at(0)) {}
+      protocol_(options_for(plan_, workload, std::move(hello)), scans_, at(0)) {}
 
 void MeasuredClient::close(FleetFigures& figures) noexcept {
     if (is_welcome()) --figures.linked;

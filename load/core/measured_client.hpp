@@ -63,12 +63,12 @@ public:
     static constexpr std::uint64_t kEndless = std::numeric_limits<std::uint64_t>::max();
 
     /// `workload` must outlive this object. `hello` has no session and robot name yet.
-    /// @param server  address of the server, for messages
-    MeasuredClient(RobotPlan plan, const Workload& workload, wire::Hello hello, std::string server);
+    MeasuredClient(RobotPlan plan, const Workload& workload, wire::Hello hello);
     MeasuredClient(const MeasuredClient&) = delete;
     MeasuredClient& operator=(const MeasuredClient&) = delete;
 
-    void open(Micros now) { protocol_.open(at(now)); }
+    /// @param server  address of the server, for messages
+    void open(std::string server, Micros now) { protocol_.open(std::move(server), at(now)); }
     void close(FleetFigures& figures) noexcept;
 
     [[nodiscard]] std::span<std::byte> prepare(std::size_t bytes) { return protocol_.prepare(bytes); }

@@ -41,7 +41,7 @@ struct Robot::Link {
 };
 
 Robot::Robot(RobotPlan plan, Shared shared)
-    : shared_(shared), client_(std::move(plan), shared.workload, shared.link.hello, net::text_of(shared.link.servers)),
+    : shared_(shared), client_(std::move(plan), shared.workload, shared.link.hello),
       servers_(shared.link.servers, client_.plan().session), backoff_(client_.plan().index + 1), timer_(shared.io) {}
 
 void Robot::start() { asio::co_spawn(shared_.io, run(), asio::detached); }
@@ -90,7 +90,7 @@ asio::awaitable<wire::LinkError> Robot::use_one_link() {
     if (!connected) co_return wire::LinkError{connected.error(), true};
     if (const auto time = servers_.unconfirmed_max()) net::set_unconfirmed_max(link->stream, *time);
     link->is_up = true;
-    client_.open(shared_.clock.now());
+    client_.open(servers_.current().text(), shared_.clock.now());
     flush();
     co_return co_await read_frames(link);
 }

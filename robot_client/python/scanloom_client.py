@@ -1054,7 +1054,7 @@ class _Servers:
     def __init__(self, addresses: str, session: str) -> None:
         if not isinstance(addresses, str):
             raise ValueError(f"the server's address is {addresses!r}; HOST:PORT is needed")
-        servers = {address: _split_address(address) for address in addresses.split(",")}
+        servers = {address: _split_address(address) for address in map(str.strip, addresses.split(","))}
         self._list = [servers[address] for address in sorted(servers, key=lambda address: hashlib.sha256(
             f"{session}\n{address}".encode(errors="replace")).digest())]
         self._next = 0

@@ -29,7 +29,7 @@ wire::LinkError lost(std::string message) { return {{Errc::kUnreachable, std::mo
 
 link::ClientProtocolOptions protocol_options(const UplinkOptions& options) {
     auto made = options.protocol;
-    made.server = net::text_of(options.servers);
+    made.has_other_servers = options.servers.size() > 1;
     return made;
 }
 
@@ -183,7 +183,7 @@ asio::awaitable<wire::LinkError> Uplink::use_one_link() {
     const auto connected = co_await net::connect(stream, servers_.current(), timeout);
     if (!connected) co_return wire::LinkError{connected.error(), true};
     if (const auto time = servers_.unconfirmed_max()) net::set_unconfirmed_max(stream, *time);
-    protocol_.open(Clock::now());
+    protocol_.open(servers_.current().text(), Clock::now());
     const auto ended = co_await (read_frames(stream) || write_frames(stream) || watch_link());
     co_return std::visit([](const wire::LinkError& failure) { return failure; }, ended);
 }

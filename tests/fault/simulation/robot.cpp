@@ -66,7 +66,7 @@ void Robot::connect() {
                                        [this] {
                                            lose({{Errc::kUnreachable, "the connection was lost"}, true});
                                        }});
-    protocol_->open(world_.now());
+    protocol_->open("server", world_.now());
     say();
 }
 

@@ -33,8 +33,7 @@ protected:
         scans_ = testing_support::random_scans(3, 1, kCourseScans);
         workload_ = make_workload(testing_support::small_laser(), scans_, kRate, batch);
         workload_.schedule = Schedule(1, kRate);
-        client_ =
-            std::make_unique<MeasuredClient>(RobotPlan{0, "load-1-0", "r0", first_scan}, workload_, hello_, "host:1");
+        client_ = std::make_unique<MeasuredClient>(RobotPlan{0, "load-1-0", "r0", first_scan}, workload_, hello_);
     }
 
     /// Returns the messages that the robot sends at `now`.
@@ -69,7 +68,7 @@ protected:
     }
 
     void link(std::uint64_t durable = 0, Micros now = 0, std::uint64_t credit = 1 << 20) {
-        client_->open(now);
+        client_->open("host:1", now);
         static_cast<void>(messages_at(now));
         EXPECT_FALSE(receive(wire::Welcome{"5e55", durable, {}, credit, false}, now));
     }
@@ -92,7 +91,7 @@ protected:
 };
 
 TEST_F(MeasuredClientTest, SendsHelloSensorAndRepeatedScans) {
-    client_->open(0);
+    client_->open("host:1", 0);
     client_->due(7, 0);
     auto messages = messages_at(0);
     ASSERT_EQ(messages.size(), 1U);
@@ -204,7 +203,7 @@ TEST_F(MeasuredClientTest, ForgottenAcknowledgedScansAreLost) {
     static_cast<void>(sent(0));
     acknowledge(5, 1);
     client_->close(*figures_);
-    client_->open(2);
+    client_->open("host:1", 2);
     static_cast<void>(messages_at(2));
     const auto failure = receive(wire::Welcome{"5e55", 3, {}, 1 << 20, false}, 2);
     ASSERT_TRUE(failure);
@@ -219,14 +218,14 @@ TEST_F(MeasuredClientTest, RecreatedSessionHasLostAllScans) {
     static_cast<void>(sent(0));
     acknowledge(5, 1);
     client_->close(*figures_);
-    client_->open(2);
+    client_->open("host:1", 2);
     static_cast<void>(messages_at(2));
     EXPECT_TRUE(receive(wire::Welcome{"07he4", 5, {}, 1 << 20, false}, 2));
     EXPECT_EQ(figures_->scans_lost, 5U);
 }
 
 TEST_F(MeasuredClientTest, UnsentScansMustNotBeStoredOrAcknowledged) {
-    client_->open(0);
+    client_->open("host:1", 0);
     static_cast<void>(messages_at(0));
     const auto held = receive(wire::Welcome{"5e55", 1, {}, 1 << 20, false}, 0);
     ASSERT_TRUE(held);

@@ -1,4 +1,5 @@
 #include "common/net/connect.hpp"
+#include "common/net/server_list.hpp"
 
 #include <gtest/gtest.h>
 
@@ -16,6 +17,13 @@ TEST(Address, AcceptsNamesAndAddresses) {
 
 TEST(Address, TextCanBeParsedAgain) {
     for (const auto* text : {"pi.local:4001", "[::1]:1"}) EXPECT_EQ(parse_address(text)->text(), text);
+}
+
+TEST(Address, ListsMayHaveSpacesButNoGaps) {
+    EXPECT_EQ(text_of(parse_addresses("a:1,b:2, c:3 ").value()), "a:1,b:2,c:3");
+    for (const auto* wrong : {"", " ", "a:1,", ",a:1", "a:1,,b:2", "a:1 b:2"}) {
+        EXPECT_FALSE(parse_addresses(wrong)) << wrong;
+    }
 }
 
 } // namespace

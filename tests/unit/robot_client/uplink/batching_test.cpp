@@ -26,7 +26,7 @@ protected:
     }
 
     void connect(std::uint64_t durable = 0) {
-        client_->protocol.open(now_);
+        client_->protocol.open("host:1", now_);
         sent_batches();
         ASSERT_FALSE(client_->receive(wire::Welcome{"a1", durable, {}, 1 << 20, server_understands_}, now_));
     }

@@ -32,7 +32,6 @@ link::ClientProtocolOptions options() {
     link::ClientProtocolOptions made;
     made.hello.robot = "r1";
     made.hello.session = "s1";
-    made.server = "host:1";
     return made;
 }
 
@@ -40,7 +39,7 @@ link::ClientProtocolOptions options() {
 class ClientProtocolTest : public testing::Test {
 protected:
     void welcome(std::uint64_t last_durable = 0, std::uint64_t credit = kPlenty, wire::Limits limits = {}) {
-        client_.protocol.open(now_);
+        client_.protocol.open("host:1", now_);
         ASSERT_TRUE(std::holds_alternative<wire::Hello>(sent_messages().at(0)));
         ASSERT_FALSE(client_.receive(wire::Welcome{"a1", last_durable, limits, credit}, now_));
     }
@@ -88,7 +87,7 @@ std::vector<std::uint64_t> from_to(std::uint64_t first, std::uint64_t last) {
 
 TEST_F(ClientProtocolTest, SendsOnlyHelloBeforeTheWelcome) {
     EXPECT_TRUE(sent_messages().empty()) << "there is no link yet";
-    client_.protocol.open(now_);
+    client_.protocol.open("host:1", now_);
     const auto messages = sent_messages();
     ASSERT_EQ(messages.size(), 1U);
     EXPECT_EQ(std::get<wire::Hello>(messages[0]).robot, "r1");
@@ -188,7 +187,7 @@ TEST_F(ClientProtocolTest, CreditCountsUncompressedBytes) {
     link::ClientProtocolOptions compressing = options();
     compressing.compress = true;
     ClientLink client{compressing, kStart};
-    client.protocol.open(now_);
+    client.protocol.open("host:1", now_);
     ASSERT_TRUE(client.next_frame(now_));
     wire::Welcome welcome{"a1", 0, {}, 2000};
     welcome.zstd = true;
@@ -262,7 +261,7 @@ TEST_F(ClientProtocolTest, LostAcknowledgedScansAreAFinalError) {
     sent_messages();
     ASSERT_FALSE(ack(8));
     client_.protocol.close();
-    client_.protocol.open(now_);
+    client_.protocol.open("host:1", now_);
     sent_messages();
     const auto failure = client_.receive(wire::Welcome{"a1", 5, {}, kPlenty}, now_);
     ASSERT_TRUE(failure);
@@ -277,7 +276,7 @@ TEST_F(ClientProtocolTest, RecreatedSessionIsAFinalError) {
     sent_messages();
     ASSERT_FALSE(ack(8));
     client_.protocol.close();
-    client_.protocol.open(now_);
+    client_.protocol.open("host:1", now_);
     sent_messages();
     const auto failure = client_.receive(wire::Welcome{"b2", 0, {}, kPlenty}, now_);
     ASSERT_TRUE(failure);
@@ -296,7 +295,7 @@ TEST_F(ClientProtocolTest, ServerErrorsEndTheLink) {
 }
 
 TEST_F(ClientProtocolTest, UnexpectedFramesEndTheLink) {
-    client_.protocol.open(now_);
+    client_.protocol.open("host:1", now_);
     EXPECT_THAT(client_.receive(wire::Ack{}, now_)->error.message, HasSubstr("unexpected ack"));
     EXPECT_TRUE(client_.receive(wire::Welcome{}, now_)) << "before the hello";
     welcome();
@@ -342,7 +341,7 @@ TEST_F(ClientProtocolTest, SilentLinkFailsAndAnyFrameKeepsItAlive) {
 }
 
 TEST_F(ClientProtocolTest, UnansweredHelloFailsTheLink) {
-    client_.protocol.open(now_);
+    client_.protocol.open("host:1", now_);
     sent_messages();
     EXPECT_EQ(client_.protocol.deadline(now_), kStart + 10s);
     EXPECT_FALSE(client_.protocol.check(now_ + 9999ms));
@@ -393,7 +392,7 @@ TEST(ClientProtocol, AnySplitOfTheServersBytesGivesTheSameResult) {
     for (std::size_t piece = 1; piece <= bytes.size(); ++piece) {
         ClientLink client(options(), kStart);
         client.piece_bytes = piece;
-        client.protocol.open(kStart);
+        client.protocol.open("host:1", kStart);
         EXPECT_EQ(client.sent(kStart).size(), 1U);
         EXPECT_THAT(client.receive_bytes(bytes, kStart)->error.message, HasSubstr("acknowledged scan 6, only 5"))
             << piece;
@@ -402,8 +401,8 @@ TEST(ClientProtocol, AnySplitOfTheServersBytesGivesTheSameResult) {
     }
 }
 
-TEST_F(ClientProtocolTest, InvalidBytesAreAFinalErrorOnlyBeforeTheWelcome) {
-    client_.protocol.open(now_);
+TEST_F(ClientProtocolTest, InvalidBytesAreAFinalErrorOnlyOfASingleServerBeforeTheWelcome) {
+    client_.protocol.open("host:1", now_);
     const auto other = client_.receive_bytes("HTTP/1.1 400 Bad Request\r\n", now_);
     ASSERT_TRUE(other);
     EXPECT_FALSE(other->retryable);
@@ -414,13 +413,19 @@ TEST_F(ClientProtocolTest, InvalidBytesAreAFinalErrorOnlyBeforeTheWelcome) {
     ASSERT_TRUE(damaged);
     EXPECT_TRUE(damaged->retryable);
     EXPECT_THAT(damaged->error.message, testing::StartsWith("the data from the server cannot be read: "));
+
+    auto one_of_several = options();
+    one_of_several.has_other_servers = true;
+    ClientLink client(one_of_several, kStart);
+    client.protocol.open("host:1", now_);
+    EXPECT_TRUE(client.receive_bytes("HTTP/1.1 400 Bad Request\r\n", now_)->retryable) << "on another server";
 }
 
 TEST_F(ClientProtocolTest, ServersScansWithoutAnEarlierRunAreAConflict) {
     auto fresh = options();
     fresh.continues_earlier_run = false;
     ClientLink client(fresh, kStart);
-    client.protocol.open(now_);
+    client.protocol.open("host:1", now_);
     EXPECT_EQ(client.sent(now_).size(), 1U);
     const auto failure = client.receive(wire::Welcome{"a1", 3, {}, kPlenty}, now_);
     ASSERT_TRUE(failure);
@@ -444,7 +449,7 @@ TEST(ClientProtocol, ScansArriveOnceInOrderOverBrokenLinks) {
         std::uint64_t taken = 0;
         for (int link = 0; !robot.protocol.is_done(); ++link) {
             ASSERT_LT(link, 1000);
-            robot.protocol.open(now);
+            robot.protocol.open("host:1", now);
             ASSERT_TRUE(robot.next_frame(now));
             ASSERT_FALSE(robot.receive(wire::Welcome{"a1", stored, {}, 8000}, now));
             for (std::uint64_t steps = random() % 30; steps > 0; --steps) {

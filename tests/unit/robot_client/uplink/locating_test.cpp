@@ -28,7 +28,7 @@ protected:
     }
 
     void connect() {
-        client_->protocol.open(now_);
+        client_->protocol.open("host:1", now_);
         EXPECT_EQ(sent_messages().size(), 1U);
         EXPECT_FALSE(client_->receive(wire::Welcome{"a1", 0, {}, 1 << 20}, now_));
     }
