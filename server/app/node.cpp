@@ -10,6 +10,7 @@
 #include <boost/asio/ip/tcp.hpp>
 #include <fmt/format.h>
 #include <fmt/ostream.h>
+#include <spdlog/spdlog.h>
 
 #include <utility>
 
@@ -37,6 +38,22 @@ store::NodeInfo node_info(const ServerOptions& options, unsigned robot_port, uns
     return {.robots = address_of(options.listen, robot_port),
             .http = fmt::format("{}://{}", scheme, address_of(options.http, http_port)),
             .build = std::string(kVersion)};
+}
+
+void enter(store::ScanLog& log, const store::NodeInfo& info) {
+    auto* const shared = log.shared();
+    if (shared == nullptr) return;
+    const auto entered = shared->announce(info);
+    if (!entered) spdlog::warn("the other servers do not know the address of this one: {}", entered.error().message);
+}
+
+std::string others_in(const std::vector<store::Node>& nodes) {
+    std::string others;
+    for (const auto& node : nodes) {
+        if (node.is_self || !node.is_alive) continue;
+        others += fmt::format("{}{} at {}", others.empty() ? "" : ", ", node.info->name, node.info->http);
+    }
+    return others;
 }
 
 Result<http::NodeLinks> node_links(store::ScanLog& log) {

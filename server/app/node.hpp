@@ -6,6 +6,7 @@
 #include "server/store/shared_sessions.hpp"
 
 #include <string>
+#include <vector>
 
 /// How a server appears to the others that share its database.
 namespace scanloom::app {
@@ -17,6 +18,12 @@ namespace scanloom::app {
 /// machine's name.
 /// @param robot_port, http_port  on which it listens
 [[nodiscard]] store::NodeInfo node_info(const ServerOptions& options, unsigned robot_port, unsigned http_port);
+
+/// Enters a server's addresses for those with which it shares the log, if there are any.
+void enter(store::ScanLog& log, const store::NodeInfo& info);
+
+/// Returns the names and addresses of the other servers that live, for the log; empty: there are none.
+[[nodiscard]] std::string others_in(const std::vector<store::Node>& nodes);
 
 /// Returns what the server needs to pass requests on to the others. Their certificates must be valid for the system, or
 /// for the file that SSL_CERT_FILE names.

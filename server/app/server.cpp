@@ -225,12 +225,9 @@ Result<> Server::run() {
 /// Enters the addresses of this server for those with which it shares the log.
 /// @param robots  empty: it accepts no robots
 void Server::enter_addresses(const std::string& robots) {
-    auto* const shared = log_->shared();
-    if (shared == nullptr) return;
     auto info = node_info(options_, ingest_->port(), http_->port());
     info.robots = robots;
-    const auto entered = shared->announce(info);
-    if (!entered) spdlog::warn("the other servers do not know the address of this one: {}", entered.error().message);
+    enter(*log_, info);
 }
 
 void Server::announce() const {
@@ -240,6 +237,8 @@ void Server::announce() const {
     spdlog::info("robots: {}:{}, browsers: {}://{}:{}/, store: {}", options_.listen.address().to_string(),
                  ingest_->port(), http_tls_ ? "https" : "http", options_.http.address().to_string(), http_->port(),
                  store::shown(options_.store));
+    if (const auto others = others_in(sessions_.nodes()); !others.empty()) spdlog::info("other servers: {}", others);
+    if (const auto warning = log_->stats().warning) spdlog::warn("{}", *warning);
 }
 
 void Server::wait_for_signal() {

@@ -90,8 +90,8 @@ struct AppendQueue::Group {
     }
 };
 
-AppendQueue::AppendQueue(Place place, SharedState& shared, SizeLimit& size_limit)
-    : place_(std::move(place)), shared_(shared), size_limit_(size_limit), thread_([this] { run(); }) {}
+AppendQueue::AppendQueue(const WriteAccess& access, SharedState& shared, SizeLimit& size_limit)
+    : access_(access), shared_(shared), size_limit_(size_limit), thread_([this] { run(); }) {}
 
 AppendQueue::~AppendQueue() {
     {
@@ -181,7 +181,7 @@ void AppendQueue::store(std::vector<Append> appends) {
 Result<> AppendQueue::write(Group& group) {
     if (connection_ && !connection_->is_alive()) connection_.reset(); // nothing was under way
     if (!connection_) {
-        auto opened = Connection::open(place_);
+        auto opened = access_.open();
         if (!opened) return shared_.fail(opened.error());
         connection_ = std::move(*opened);
     }

@@ -3,6 +3,7 @@
 #include "server/store/postgres_connection.hpp"
 #include "server/store/postgres_owned_sessions.hpp"
 #include "server/store/postgres_size_limit.hpp"
+#include "server/store/postgres_write_access.hpp"
 #include "server/store/scan_log.hpp"
 
 #include <condition_variable>
@@ -24,8 +25,8 @@ public:
     /// Bytes of entries in a statement, about.
     static constexpr std::uint64_t kStatementBytes = std::uint64_t{4} << 20;
 
-    /// @param shared, size_limit  must outlive the queue
-    AppendQueue(Place place, SharedState& shared, SizeLimit& size_limit);
+    /// @param access, shared, size_limit  must outlive the queue
+    AppendQueue(const WriteAccess& access, SharedState& shared, SizeLimit& size_limit);
 
     /// Appends what is queued, then stops.
     ~AppendQueue();
@@ -58,7 +59,7 @@ private:
     void store(std::vector<Append> appends);
     [[nodiscard]] Result<> write(Group& group);
 
-    const Place place_;
+    const WriteAccess& access_;
     SharedState& shared_;
     SizeLimit& size_limit_;
     std::mutex running_; // held while a statement runs; guards connection_

@@ -14,9 +14,9 @@ namespace scanloom::store::postgres {
 /// Threads: any.
 class Checkpoints {
 public:
-    /// @param place, shared, size_limit  must outlive the checkpoints
-    Checkpoints(const Place& place, SharedState& shared, SizeLimit& size_limit)
-        : shared_(shared), size_limit_(size_limit), writer_(place, shared) {}
+    /// @param access, shared, size_limit  must outlive the checkpoints
+    Checkpoints(const WriteAccess& access, SharedState& shared, SizeLimit& size_limit)
+        : shared_(shared), size_limit_(size_limit), writer_(access, shared) {}
 
     /// Removes all parts.
     [[nodiscard]] Result<> clear(SessionId session);

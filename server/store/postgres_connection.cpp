@@ -331,19 +331,17 @@ bool Connection::is_idle() const {
     return PQstatus(connection) == CONNECTION_OK && PQtransactionStatus(connection) == PQTRANS_IDLE;
 }
 
-Result<> Connection::check_replication() {
+Result<std::optional<std::string>> Connection::replication_fault() {
     const auto rows = run("SELECT current_setting('synchronous_standby_names'), current_setting('fsync'),"
                           " current_setting('full_page_writes')");
     if (!rows) return rows.error();
-    const auto refused = [&](std::string_view what) {
-        return failure("the database on {} {}: an acknowledged scan could be lost; change this, or start with "
-                       "--allow-unreplicated",
-                       state_->host, what);
+    const auto fault = [&](std::string_view what) {
+        return fmt::format("the database on {} {}: an acknowledged scan could be lost", state_->host, what);
     };
-    if (rows->bytes(0, 0).empty()) return refused("has no synchronous standby (synchronous_standby_names is empty)");
-    if (rows->bytes(0, 1) != "on") return refused("has fsync = off");
-    if (rows->bytes(0, 2) != "on") return refused("has full_page_writes = off");
-    return {};
+    if (rows->bytes(0, 0).empty()) return fault("has no synchronous standby (synchronous_standby_names is empty)");
+    if (rows->bytes(0, 1) != "on") return fault("has fsync = off");
+    if (rows->bytes(0, 2) != "on") return fault("has full_page_writes = off");
+    return std::optional<std::string>();
 }
 
 } // namespace scanloom::store::postgres

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -110,9 +111,9 @@ public:
     /// Returns whether it works and is in no transaction, as far as is known.
     [[nodiscard]] bool is_idle() const;
 
-    /// Whether what is committed is on more than one machine, as far as the settings of the database tell.
-    /// @return an error that names the setting if it is not
-    [[nodiscard]] Result<> check_replication();
+    /// Finds out whether what is committed is durable on more than one machine, as far as the database's settings tell.
+    /// @return a sentence that names the setting because of which it is not
+    [[nodiscard]] Result<std::optional<std::string>> replication_fault();
 
 private:
     struct State;

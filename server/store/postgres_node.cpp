@@ -17,7 +17,7 @@ OwnNode::~OwnNode() {
     if (!thread_.joinable()) return;
     thread_.request_stop();
     thread_.join();
-    auto connection = Connection::open(place_);
+    auto connection = Connection::open(access_.place);
     if (!connection) return; // the others find out after kDeadAfter
     Parameters parameters;
     parameters.add(id_);
@@ -59,7 +59,7 @@ Result<> OwnNode::renew(Connection& connection) const {
     return Error{Errc::kNotOwner,
                  fmt::format("another server was started as node '{}' of the store {}; give each server a --node of "
                              "its own, and start this one again",
-                             name_, place_.text)};
+                             name_, access_.place.text)};
 }
 
 Result<> OwnNode::announce(const NodeInfo& info) {
@@ -67,7 +67,7 @@ Result<> OwnNode::announce(const NodeInfo& info) {
         const std::lock_guard lock(mutex_);
         info_ = info;
     }
-    auto connection = Connection::open(place_);
+    auto connection = Connection::open(access_.place);
     return connection ? renew(*connection) : Result<>(connection.error());
 }
 
@@ -93,7 +93,7 @@ void OwnNode::keep(const std::stop_token& stop) {
 /// Renews the row over a connection, which is opened if it does not exist and closed if it fails.
 Result<> OwnNode::renew_over(std::optional<Connection>& connection) const {
     if (!connection) {
-        auto opened = Connection::open(place_);
+        auto opened = access_.open();
         if (!opened) return opened.error();
         connection = std::move(*opened);
     }

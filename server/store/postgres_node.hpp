@@ -3,6 +3,7 @@
 #include "common/error/error.hpp"
 #include "server/store/postgres_connection.hpp"
 #include "server/store/postgres_owned_sessions.hpp"
+#include "server/store/postgres_write_access.hpp"
 #include "server/store/shared_sessions.hpp"
 
 #include <atomic>
@@ -25,8 +26,8 @@ inline constexpr std::chrono::seconds kDeadAfter{5};
 /// Threads: any.
 class OwnNode {
 public:
-    /// @param place, shared  must outlive the node
-    OwnNode(const Place& place, SharedState& shared) : place_(place), shared_(shared) {}
+    /// @param access, shared  must outlive the node
+    OwnNode(const WriteAccess& access, SharedState& shared) : access_(access), shared_(shared) {}
 
     /// Removes the row, so that others may take the sessions at once.
     ~OwnNode();
@@ -57,7 +58,7 @@ private:
     void keep(const std::stop_token& stop);
     [[nodiscard]] Result<> renew_over(std::optional<Connection>& connection) const;
 
-    const Place& place_;
+    const WriteAccess& access_;
     SharedState& shared_;
     std::string name_;
     std::int64_t id_ = 0;

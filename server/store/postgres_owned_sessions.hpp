@@ -8,6 +8,7 @@
 #include <map>
 #include <mutex>
 #include <optional>
+#include <string>
 #include <utility>
 
 namespace scanloom::store::postgres {
@@ -72,10 +73,22 @@ public:
         return failure_;
     }
 
+    /// Notes what should be changed although the log works; nullopt: nothing.
+    void warn(std::optional<std::string> what) {
+        const std::lock_guard lock(mutex_);
+        warning_ = std::move(what);
+    }
+
+    [[nodiscard]] std::optional<std::string> warning() const {
+        const std::lock_guard lock(mutex_);
+        return warning_;
+    }
+
 private:
     mutable std::mutex mutex_;
     OwnedSessions sessions_;
     std::optional<Error> failure_;
+    std::optional<std::string> warning_;
 };
 
 } // namespace scanloom::store::postgres

@@ -66,22 +66,6 @@ Error not_owner(SessionId session, const State& state) {
 
 } // namespace
 
-Result<> lock_store(Connection& connection, const Place& place, Sharing sharing) {
-    // A server that has just been killed has the lock until the database notices it.
-    if (auto patient = connection.run("SET lock_timeout = 500"); !patient) return patient.error();
-    const auto locked =
-        connection.run(sharing == Sharing::kAlone ? "SELECT pg_advisory_lock(hashtext('scanloom'), 1)"
-                                                  : "SELECT pg_advisory_lock_shared(hashtext('scanloom'), 1)");
-    if (!locked && locked.error().code == Errc::kConflict) {
-        return Error{Errc::kConflict, fmt::format("another program uses the store {}{}; stop it, or name another "
-                                                  "database",
-                                                  place.text, sharing == Sharing::kAlone ? "" : " alone")};
-    }
-    if (!locked) return locked.error();
-    const auto reset = connection.run("SET lock_timeout = 0");
-    return reset ? Result<>() : Result<>(reset.error());
-}
-
 Result<OwnedSession> take(Connection& connection, SessionId session, const Taker& taker) {
     for (;;) { // until no other node is faster
         const auto state = state_of(connection, session);

@@ -10,14 +10,6 @@
 /// Which server may write a session: the one that was the last to raise its epoch.
 namespace scanloom::store::postgres {
 
-/// Who else may have the store open.
-enum class Sharing : std::uint8_t { kWithNodes, kAlone };
-
-/// Locks the store, as long as the connection exists, so that a program that needs it alone does not run with a
-/// server. What servers write is safe without it, by the epochs.
-/// Errors: kConflict: another program has it, or has it alone; kStoreFailed.
-[[nodiscard]] Result<> lock_store(Connection& connection, const Place& place, Sharing sharing);
-
 struct Taker {
     std::int64_t node = 0;
     bool is_steady = false; ///< OwnNode::is_steady()

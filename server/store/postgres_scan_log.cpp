@@ -11,6 +11,7 @@
 #include "server/store/postgres_schema.hpp"
 #include "server/store/postgres_session_table.hpp"
 #include "server/store/postgres_sweeper.hpp"
+#include "server/store/postgres_write_access.hpp"
 #include "server/store/shared_sessions.hpp"
 #include "server/store/store_error.hpp"
 
@@ -36,8 +37,10 @@ constexpr std::size_t kQueues = 4;
 class PostgresScanLog final : public ScanLog, public SharedSessions {
 public:
     PostgresScanLog(Place place, const PostgresOptions& options)
-        : place_(std::move(place)), options_(options), size_limit_(options.bytes_max), readers_(place_) {
-        for (auto& queue : queues_) queue = std::make_unique<AppendQueue>(place_, shared_, size_limit_);
+        : options_(options), access_{std::move(place), options.is_unfinished ? Sharing::kAlone : Sharing::kWithNodes,
+                                     options.allow_unreplicated},
+          size_limit_(options.bytes_max), readers_(access_.place) {
+        for (auto& queue : queues_) queue = std::make_unique<AppendQueue>(access_, shared_, size_limit_);
     }
 
     /// Begins to use the store, as one of its nodes. Called once.
@@ -71,39 +74,43 @@ public:
     [[nodiscard]] Result<> announce(const NodeInfo& info) override;
 
 private:
-    [[nodiscard]] Result<Connection> open_replicated() const;
+    [[nodiscard]] Result<Connection> open_locked();
     [[nodiscard]] Result<> take_sessions_again();
     [[nodiscard]] Result<> wait_for_appends(SessionId session);
     [[nodiscard]] Result<> read_entries(SessionId session, Revision after, const VisitEntry& visit);
     [[nodiscard]] AppendQueue& queue_of(SessionId session) { return *queues_[session % kQueues]; }
 
-    const Place place_;
     const PostgresOptions options_;
+    const WriteAccess access_;
     std::string secret_; // of the servers that share the store
     SharedState shared_;
     SizeLimit size_limit_;
     mutable std::shared_mutex in_use_; // held alone by reopen()
     std::optional<Connection> lock_;   // holds the lock of the store
-    Checkpoints checkpoints_{place_, shared_, size_limit_};
+    Checkpoints checkpoints_{access_, shared_, size_limit_};
     mutable Readers readers_;
-    OwnNode node_{place_, shared_}; // leaves after the queues have ended
-    SessionTable sessions_{place_, shared_, size_limit_, node_};
+    OwnNode node_{access_, shared_}; // leaves after the queues have ended
+    SessionTable sessions_{access_, shared_, size_limit_, node_};
     std::array<std::unique_ptr<AppendQueue>, kQueues> queues_;
     std::optional<Sweeper> sweeper_; // last: uses the others
 };
 
-Result<Connection> PostgresScanLog::open_replicated() const {
-    auto connection = Connection::open(place_);
-    if (!connection || options_.allow_unreplicated) return connection;
-    if (auto replicated = connection->check_replication(); !replicated) return replicated.error();
+/// Opens the connection that holds the lock of the store as long as the store is open.
+Result<Connection> PostgresScanLog::open_locked() {
+    auto connection = access_.open();
+    if (!connection) return connection;
+    if (options_.is_unfinished) {
+        if (auto locked = lock_store(*connection, access_.place, Sharing::kAlone); !locked) return locked.error();
+    }
+    auto fault = connection->replication_fault();
+    if (!fault) return fault.error();
+    shared_.warn(std::move(*fault));
     return connection;
 }
 
 Result<> PostgresScanLog::start() {
-    auto connection = open_replicated();
+    auto connection = open_locked();
     if (!connection) return connection.error();
-    const auto sharing = options_.is_unfinished ? Sharing::kAlone : Sharing::kWithNodes;
-    if (auto locked = lock_store(*connection, place_, sharing); !locked) return locked;
     const auto created = options_.is_unfinished ? begin_unfinished_store(*connection) : create_tables(*connection);
     if (!created) return created;
     auto secret = read_secret(*connection);
@@ -111,15 +118,15 @@ Result<> PostgresScanLog::start() {
     secret_ = std::move(*secret);
     if (auto entered = node_.enter(*connection, options_.node); !entered) return entered;
     lock_ = std::move(*connection);
-    sweeper_.emplace(place_);
+    sweeper_.emplace(access_.place);
     return {};
 }
 
 Result<std::vector<SessionId>> PostgresScanLog::start_reading() {
-    auto connection = Connection::open(place_);
+    auto connection = Connection::open(access_.place);
     if (!connection) return connection.error();
     if (auto found = check_tables(*connection); !found) return found.error();
-    if (auto locked = lock_store(*connection, place_, Sharing::kAlone); !locked) return locked.error();
+    if (auto locked = lock_store(*connection, access_.place, Sharing::kAlone); !locked) return locked.error();
     auto all = all_sessions(*connection);
     if (!all) return all.error();
     auto lacking = sessions_without_record(*connection);
@@ -242,10 +249,9 @@ Result<> PostgresScanLog::announce(const NodeInfo& info) { return node_.announce
 // After a failure
 
 Result<> PostgresScanLog::take_sessions_again() {
-    auto connection = open_replicated();
+    auto connection = open_locked();
     if (!connection) return connection.error();
-    if (auto locked = lock_store(*connection, place_, Sharing::kWithNodes); !locked) return locked;
-    auto taken = take_again(*connection, place_, node_.id(), shared_.sessions());
+    auto taken = take_again(*connection, access_.place, node_.id(), shared_.sessions());
     if (!taken) return taken.error();
     if (auto renewed = node_.renew(*connection); !renewed) return renewed;
     lock_ = std::move(*connection);
@@ -278,6 +284,7 @@ StoreStats PostgresScanLog::stats() const {
         if (one.no_room) stats.no_room = one.no_room;
     }
     if (const auto failure = shared_.failure()) stats.last_error = failure->message;
+    stats.warning = shared_.warning();
     return stats;
 }
 

@@ -15,9 +15,9 @@ namespace scanloom::store::postgres {
 /// Threads: any.
 class SessionTable {
 public:
-    /// @param place, shared, size_limit, node  must outlive the table
-    SessionTable(const Place& place, SharedState& shared, SizeLimit& size_limit, const OwnNode& node)
-        : shared_(shared), size_limit_(size_limit), node_(node), writer_(place, shared) {}
+    /// @param access, shared, size_limit, node  must outlive the table
+    SessionTable(const WriteAccess& access, SharedState& shared, SizeLimit& size_limit, const OwnNode& node)
+        : shared_(shared), size_limit_(size_limit), node_(node), writer_(access, shared) {}
 
     /// Creates a session, which this node owns.
     /// Errors: also kAlreadyExists: there is a session with the name in the record; kOverloaded: the size limit is

@@ -17,7 +17,7 @@ Result<> Writer::make(const Change& change) {
     if (const auto failure = shared_.failure()) return *failure;
     if (connection_ && !connection_->is_alive()) connection_.reset(); // nothing was under way
     if (!connection_) {
-        auto opened = Connection::open(place_);
+        auto opened = access_.open();
         if (!opened) return shared_.fail(opened.error());
         // A server that is paused within a transaction must not keep others from changing the same rows.
         if (auto set = opened->run("SET idle_in_transaction_session_timeout = 4000"); !set) {

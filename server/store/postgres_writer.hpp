@@ -3,6 +3,7 @@
 #include "common/error/error.hpp"
 #include "server/store/postgres_connection.hpp"
 #include "server/store/postgres_owned_sessions.hpp"
+#include "server/store/postgres_write_access.hpp"
 
 #include <functional>
 #include <mutex>
@@ -17,8 +18,8 @@ class Writer {
 public:
     using Change = std::function<Result<>(Connection&)>;
 
-    /// @param shared  must outlive the writer
-    Writer(const Place& place, SharedState& shared) : place_(place), shared_(shared) {}
+    /// @param access, shared  must outlive the writer
+    Writer(const WriteAccess& access, SharedState& shared) : access_(access), shared_(shared) {}
 
     /// Makes a change.
     /// Errors: those of the change; why the log has failed. kNotFound, kNotOwner, kAlreadyExists and kOverloaded mean
@@ -30,7 +31,7 @@ public:
     void close();
 
 private:
-    const Place& place_;
+    const WriteAccess& access_;
     SharedState& shared_;
     std::mutex mutex_; // held during a change
     std::optional<Connection> connection_;

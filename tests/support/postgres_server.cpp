@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <csignal>
 #include <fstream>
+#include <iterator>
 #include <stdexcept>
 #include <vector>
 
@@ -109,6 +110,10 @@ void PostgresServer::create() {
     run(directory_.path(), "initdb",
         {"-D", data_, "-U", "scanloom", "-A", "trust", "-E", "UTF8", "--locale", "C", "--no-sync",
          "--no-instructions"});
+    const auto rules = data_ / "pg_hba.conf"; // the first that fits decides
+    std::ifstream file(rules);
+    const std::string others{std::istreambuf_iterator<char>(file), {}};
+    std::ofstream(rules) << "local all locked scram-sha-256\n" << others;
     start();
     // Only start() reads the log. The server would wait when the pipe is full.
     connect_to(socket(), "postgres").run("ALTER ROLE scanloom SET log_min_messages = panic").value();

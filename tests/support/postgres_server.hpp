@@ -25,7 +25,7 @@ public:
     /// @param data  directory to create for its data; empty: a temporary one, as for a primary
     explicit PostgresServer(const PostgresServer& primary, const std::filesystem::path& data = {});
 
-    /// Creates an empty database. @return its address for --store
+    /// Creates an empty database. A user `locked`, if one is created, needs a password. @return its address for --store
     [[nodiscard]] std::string new_database();
 
     /// Returns the folder of the socket.

@@ -40,10 +40,13 @@ boost::json::object readiness(const Services& services, const auth::TokenRef& se
     }
     boost::json::value host;
     if (!services.robots.host.empty()) host = boost::json::string(services.robots.host);
+    boost::json::array warnings;
+    if (const auto warning = services.log.stats().warning) warnings.emplace_back(*warning);
     return {{"status", "ready"},
             {"robots", boost::json::object{{"host", std::move(host)}, {"port", services.robots.port}}},
             {"damaged", std::move(damaged)},
-            {"failed", std::move(failed)}};
+            {"failed", std::move(failed)},
+            {"warnings", std::move(warnings)}};
 }
 
 } // namespace

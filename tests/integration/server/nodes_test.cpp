@@ -89,6 +89,7 @@ TEST_F(NodesTest, ASessionGoesOnAnotherServerWhenItsOwnHasEnded) {
     simulate(a->robot_address(), "300");
     const auto before = digest(*a);
     EXPECT_EQ(digest(*b), before) << "passed on to a";
+    EXPECT_EQ(a->get_json("/readyz").at("warnings").as_array().size(), 1U) << "the database has no standby";
     auto node = [&] { return b->get_json("/api/v1/nodes").at("nodes").at(0); };
     EXPECT_EQ(node().at("name"), "a");
     while (node().at("sessions") != 1) { // it knows it a second later

@@ -35,11 +35,15 @@ struct PostgresDatabase {
     [[nodiscard]] std::int64_t number(const std::string& sql) const { return run(sql).number(0, 0); }
 
     /// The next insertion of entries fails, those after it succeed: a sequence goes on when a transaction fails.
-    void fail_next_insertion() const {
+    /// @param code  of PostgreSQL (SQLSTATE)
+    void fail_next_insertion(const std::string& code = "P0001") const {
         static_cast<void>(run("CREATE SEQUENCE scanloom.insertions"));
         static_cast<void>(
             run("CREATE FUNCTION scanloom.fail_once() RETURNS trigger LANGUAGE plpgsql AS $$ BEGIN"
-                " IF nextval('scanloom.insertions') = 1 THEN RAISE EXCEPTION 'a test lets this fail'; END IF;"
+                " IF nextval('scanloom.insertions') = 1 THEN RAISE EXCEPTION 'a test lets this fail'"
+                " USING ERRCODE = '" +
+                code +
+                "'; END IF;"
                 " RETURN NEW; END $$"));
         static_cast<void>(run("CREATE TRIGGER fail_once BEFORE INSERT ON scanloom.segment FOR EACH ROW"
                               " EXECUTE FUNCTION scanloom.fail_once()"));

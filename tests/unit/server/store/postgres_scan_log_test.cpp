@@ -74,6 +74,7 @@ TEST_F(PostgresScanLogTest, ConnectionsThatEndedBetweenChangesAreOpenedAgain) {
     EXPECT_EQ(entries_after(*log, session, 0).value().size(), 1U);
     database_.end_connections();
     EXPECT_TRUE(append_and_wait(*log, session, 2, {"b"}));
+    EXPECT_EQ(open_store_read_only(database_.address).error().code, Errc::kConflict) << "a server has it open";
     EXPECT_TRUE(log->write_checkpoint(session, {{"part", "value"}}));
     EXPECT_THAT(entries_after(*log, session, 0).value(), ElementsAre("a", "b"));
 }
@@ -174,6 +175,7 @@ TEST_F(PostgresScanLogTest, RowsOfARemovedSessionAreDeletedByTheNextServerAtTheL
         }
         static_cast<void>(database_.run("UPDATE scanloom.session SET removed = true WHERE id = 1"));
     }
+    static_cast<void>(database_.run("INSERT INTO scanloom.segment SELECT 1, n, n, '' FROM generate_series(2, 10001) n"));
     const auto log = open().value();
     while (database_.number("SELECT count(*) FROM scanloom.session") > 1) {
     }
@@ -248,6 +250,53 @@ TEST_F(PostgresScanLogTest, AnUnreplicatedDatabaseIsRefusedUnlessAllowed) {
     EXPECT_THAT(log.error().message, HasSubstr("--allow-unreplicated"));
     EXPECT_EQ(database_.number("SELECT count(*) FROM pg_namespace WHERE nspname = 'scanloom'"), 0)
         << "nothing is created";
+    EXPECT_THAT(open().value()->stats().warning.value(), HasSubstr("no synchronous standby"));
+}
+
+/// A connection that was opened again writes only where the first one would.
+TEST_F(PostgresScanLogTest, NothingIsWrittenWhileAnotherProgramHasTheStoreAlone) {
+    const auto log = open().value();
+    const auto session = log->create_session("").value();
+    auto other = postgres::Connection::open(postgres::parse_place(database_.address).value()).value();
+    database_.end_connections();
+    other = postgres::Connection::open(postgres::parse_place(database_.address).value()).value();
+    other.run("SELECT pg_advisory_lock(hashtext('scanloom'), 1)").value();
+    const auto refused = append_and_wait(*log, session, 1, {"a"});
+    EXPECT_EQ(refused.error().code, Errc::kStoreFailed);
+    EXPECT_THAT(refused.error().message, HasSubstr("another program uses the store"));
+    EXPECT_THAT(open("b").error().message, HasSubstr("stop it, or name another database"));
+    EXPECT_FALSE(log->reopen());
+    other.run("SELECT pg_advisory_unlock(hashtext('scanloom'), 1)").value();
+    ASSERT_TRUE(log->reopen());
+    EXPECT_TRUE(append_and_wait(*log, session, 1, {"a"}));
+}
+
+TEST_F(PostgresScanLogTest, SeveralServersMayCreateTheStoreAtOnce) {
+    std::vector<std::future<bool>> opened;
+    for (const char* node : {"a", "b", "c"}) {
+        opened.push_back(std::async(std::launch::async, [this, node] { return open(node).has_value(); }));
+    }
+    for (auto& one : opened) EXPECT_TRUE(one.get());
+}
+
+TEST_F(PostgresScanLogTest, ADatabaseWithoutRoomRefusesAndGoesOnLater) {
+    const auto log = open().value();
+    const auto session = log->create_session("").value();
+    database_.fail_next_insertion("53100"); // disk_full
+    const auto refused = append_and_wait(*log, session, 1, {"a"});
+    EXPECT_EQ(refused.error().code, Errc::kOverloaded);
+    EXPECT_EQ(log->stats().no_room, refused.error().message);
+    EXPECT_TRUE(append_and_wait(*log, session, 1, {"a"}));
+    EXPECT_FALSE(log->stats().no_room);
+}
+
+TEST_F(PostgresScanLogTest, AWrongPasswordIsReported) {
+    static_cast<void>(database_.run("CREATE ROLE locked LOGIN PASSWORD 'right'"));
+    std::string url = database_.address;
+    url.replace(url.find("scanloom@"), 8, "locked:wrong");
+    const auto refused = open_postgres(url);
+    EXPECT_EQ(refused.error().code, Errc::kStoreFailed);
+    EXPECT_THAT(refused.error().message, HasSubstr("password authentication failed for user \"locked\""));
 }
 
 TEST_F(PostgresScanLogTest, AStoreOfANewerProgramIsRefused) {
