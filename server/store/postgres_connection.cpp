@@ -63,6 +63,13 @@ Errc code_of_state(std::string_view state) {
     return Errc::kStoreFailed;
 }
 
+/// Returns what to do about an SQLSTATE, if the user can do something.
+std::string_view advice_for(std::string_view state) {
+    if (state == "53100") return "; make room on its disk";
+    if (state == "42501") return "; give the user that --store names all rights on the schema scanloom"; // privileges
+    return "";
+}
+
 /// Waits until a socket is ready. @return false after the deadline
 bool wait_for(int socket, short events, Clock::time_point deadline) {
     for (;;) {
@@ -184,7 +191,7 @@ struct Connection::State {
     std::string warning; // of the statement that runs
 
     [[nodiscard]] Error lost(std::string_view what) {
-        return failure("the database on {}: {}; what it was writing may or may not be stored", host, what);
+        return failure("the database on {}: {}; a server connects again, and finds out what is stored", host, what);
     }
 
     static void take_notice(void* state, const PGresult* notice) {
@@ -245,7 +252,9 @@ Result<Connection> Connection::open(const Place& place) {
         }
         return opened;
     }
-    return failure("the database {} cannot be used: {}", place.text, fmt::join(reasons, "; "));
+    return failure("the database {} cannot be used: {}; check that it runs, and the address, user and password that "
+                   "--store and PGPASSFILE name",
+                   place.text, fmt::join(reasons, "; "));
 }
 
 /// Refuses standbys and versions that are too old, and turns off what would cancel a statement: a commit that is
@@ -266,7 +275,9 @@ Result<> Connection::prepare() {
             " (pg_is_in_recovery() OR current_setting('default_transaction_read_only')::bool)::int::bigint");
     if (!rows) return rows.error();
     if (rows->number(0, 7) != 0)
-        return failure("{} is read-only: it is a standby, or default_transaction_read_only is on", state_->host);
+        return failure(
+            "{} is read-only: it is a standby, or default_transaction_read_only is on; name the primary in --store",
+            state_->host);
     return {};
 }
 
@@ -310,7 +321,8 @@ Result<Rows> Connection::run(const char* sql, const Parameters& parameters, std:
         }
         const char* state = PQresultErrorField(result, PG_DIAG_SQLSTATE);
         failed = Error{code_of_state(state == nullptr ? "" : state),
-                       fmt::format("the database on {}: {}", state_->host, one_line(PQresultErrorMessage(result)))};
+                       fmt::format("the database on {}: {}{}", state_->host, one_line(PQresultErrorMessage(result)),
+                                   advice_for(state == nullptr ? "" : state))};
     }
     if (failed) return *failed;
     if (!state_->warning.empty()) return state_->lost(state_->warning);

@@ -57,8 +57,9 @@ Result<> OwnNode::renew(Connection& connection) const {
     if (!rows) return rows.error();
     if (rows->size() > 0) return {};
     return Error{Errc::kNotOwner,
-                 fmt::format("another server was started as node '{}' of the store {}; give each server a --node of "
-                             "its own, and start this one again",
+                 fmt::format("this server is not node '{}' of the store {} any more: another server was started with "
+                             "this name, or the database was restored; give each server a --node of its own, and start "
+                             "this one again",
                              name_, access_.place.text)};
 }
 
@@ -71,7 +72,8 @@ Result<> OwnNode::announce(const NodeInfo& info) {
     return connection ? renew(*connection) : Result<>(connection.error());
 }
 
-/// Renews the row until the end. A database that cannot be used is tried again: appends find out by themselves.
+/// Renews the row until the end. A database that cannot be used is tried again. Appends find out by themselves; without
+/// them, the log fails when others consider the server dead.
 void OwnNode::keep(const std::stop_token& stop) {
     std::optional<Connection> connection;
     auto renewed_at = Clock::now();
@@ -83,8 +85,11 @@ void OwnNode::keep(const std::stop_token& stop) {
         }
         if (stop.stop_requested()) return;
         const auto renewed = renew_over(connection);
-        if (!renewed && renewed.error().code == Errc::kNotOwner) static_cast<void>(shared_.fail(renewed.error()));
         const auto now = Clock::now();
+        const bool counts_as_dead = now - renewed_at >= kDeadAfter;
+        if (!renewed && (counts_as_dead || renewed.error().code == Errc::kNotOwner)) {
+            static_cast<void>(shared_.fail(renewed.error()));
+        }
         if (now - renewed_at > kDeadAfter / 2) steady_since_ = now;
         if (renewed) renewed_at = now;
     }

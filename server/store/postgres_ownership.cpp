@@ -16,6 +16,7 @@ namespace {
 struct State {
     std::int64_t epoch = 0;
     std::int64_t owner = 0;             // 0: none, or one that is gone
+    std::string name;                   // or the number of a session without one
     bool is_old = false;                // the owner has not renewed its row for some time
     std::string place;                  // of the owner: its name, and its address if it has announced it
     std::int64_t owner_of_original = 0; // of the session that this copy is to replace; 0: it is no such copy
@@ -39,29 +40,29 @@ Result<std::optional<State>> state_of(Connection& connection, SessionId session)
     const auto rows =
         connection.run("SELECT s.epoch, coalesce(n.id, 0), (n.seen < now() - make_interval(secs => $2))::int::bigint,"
                        " coalesce(n.name || CASE WHEN n.http = '' THEN '' ELSE ' at ' || n.http END, ''),"
-                       " coalesce(original.owner, 0)"
+                       " coalesce(original.owner, 0), coalesce(s.name, s.id::text)"
                        " FROM scanloom.session s LEFT JOIN scanloom.node n ON n.id = s.owner"
                        " LEFT JOIN scanloom.session original ON original.id = s.replaces AND NOT original.removed"
                        " WHERE s.id = $1 AND NOT s.removed",
                        parameters);
     if (!rows) return rows.error();
     if (rows->size() == 0) return std::optional<State>();
-    return std::optional(State{rows->number(0, 0), rows->number(0, 1), rows->number(0, 2) != 0,
-                               std::string(rows->bytes(0, 3)), rows->number(0, 4)});
+    return std::optional(State{rows->number(0, 0), rows->number(0, 1), std::string(rows->bytes(0, 5)),
+                               rows->number(0, 2) != 0, std::string(rows->bytes(0, 3)), rows->number(0, 4)});
 }
 
-Error not_owner(SessionId session, const State& state) {
+Error not_owner(const State& state) {
     if (state.owner == 0) {
         return {Errc::kNotOwner,
-                fmt::format("this server does not own session {}, and no other server does; try again", session)};
+                fmt::format("this server does not own session '{}', and no other server does; try again", state.name)};
     }
     if (state.is_old) {
         return {Errc::kNotOwner,
-                fmt::format("session {} belongs to node {}, which does not answer; another server takes it over in a "
+                fmt::format("session '{}' belongs to node {}, which does not answer; another server takes it over in a "
                             "few seconds; try again",
-                            session, state.place)};
+                            state.name, state.place)};
     }
-    return {Errc::kNotOwner, fmt::format("session {} belongs to node {}; connect there", session, state.place)};
+    return {Errc::kNotOwner, fmt::format("session '{}' belongs to node {}; connect there", state.name, state.place)};
 }
 
 } // namespace
@@ -74,7 +75,7 @@ Result<OwnedSession> take(Connection& connection, SessionId session, const Taker
         const auto owner = (*state)->owner;
         const bool is_free = owner == 0 || owner == taker.node || ((*state)->is_old && taker.is_steady) ||
                              (*state)->owner_of_original == taker.node;
-        if (!is_free) return not_owner(session, **state);
+        if (!is_free) return not_owner(**state);
         Parameters parameters;
         parameters.add(signed_of(session));
         parameters.add((*state)->epoch);
@@ -127,7 +128,8 @@ Result<OwnedSessions> take_again(Connection& connection, const Place& place, std
     const auto went_back = [&](SessionId session, std::string_view how) {
         return Error{Errc::kDataLoss,
                      fmt::format("the database {} has lost entries: session {} {}; it went back to an earlier state, "
-                                 "as after a failover without a synchronous standby",
+                                 "as after a failover without a synchronous standby; bring the later state back, or "
+                                 "restart all servers to go on with this one",
                                  place.text, session, how)};
     };
     for (const auto& [session, owned] : known) {
@@ -160,14 +162,17 @@ Error forget_lost(Connection& connection, SharedState& shared, SessionId session
     if (!state) return state.error();
     if (!*state || (*state)->epoch != owned.epoch) shared.remove(session);
     if (!*state) return no_such_session(session);
-    if ((*state)->epoch != owned.epoch) return not_owner(session, **state);
-    return failure("session {} of the database does not end with {}, as it should", session, owned.end);
+    if ((*state)->epoch != owned.epoch) return not_owner(**state);
+    return failure(
+        "the log of session '{}' in the database does not end with {}; this server finds out what is stored, "
+        "and goes on",
+        (*state)->name, owned.end);
 }
 
 Error why_not_owned(Connection& connection, SessionId session) {
     const auto state = state_of(connection, session);
     if (!state) return state.error();
-    return *state ? not_owner(session, **state) : no_such_session(session);
+    return *state ? not_owner(**state) : no_such_session(session);
 }
 
 } // namespace scanloom::store::postgres

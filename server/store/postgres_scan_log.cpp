@@ -75,6 +75,7 @@ public:
 
 private:
     [[nodiscard]] Result<Connection> open_locked();
+    [[nodiscard]] Error in_store(const Error& error) const { return prefixed(access_.place.text + ": ", error); }
     [[nodiscard]] Result<> take_sessions_again();
     [[nodiscard]] Result<> wait_for_appends(SessionId session);
     [[nodiscard]] Result<> read_entries(SessionId session, Revision after, const VisitEntry& visit);
@@ -112,9 +113,9 @@ Result<> PostgresScanLog::start() {
     auto connection = open_locked();
     if (!connection) return connection.error();
     const auto created = options_.is_unfinished ? begin_unfinished_store(*connection) : create_tables(*connection);
-    if (!created) return created;
+    if (!created) return in_store(created.error());
     auto secret = read_secret(*connection);
-    if (!secret) return secret.error();
+    if (!secret) return in_store(secret.error());
     secret_ = std::move(*secret);
     if (auto entered = node_.enter(*connection, options_.node); !entered) return entered;
     lock_ = std::move(*connection);
@@ -125,7 +126,7 @@ Result<> PostgresScanLog::start() {
 Result<std::vector<SessionId>> PostgresScanLog::start_reading() {
     auto connection = Connection::open(access_.place);
     if (!connection) return connection.error();
-    if (auto found = check_tables(*connection); !found) return found.error();
+    if (auto found = check_tables(*connection); !found) return in_store(found.error());
     if (auto locked = lock_store(*connection, access_.place, Sharing::kAlone); !locked) return locked.error();
     auto all = all_sessions(*connection);
     if (!all) return all.error();
@@ -289,11 +290,11 @@ StoreStats PostgresScanLog::stats() const {
 }
 
 Result<std::string> PostgresScanLog::identity() {
-    return Error{Errc::kInvalidField, "the store is in a database: make backups of the database"};
+    return Error{Errc::kInvalidField, "the store is in a database: make backups with the tools of PostgreSQL"};
 }
 
 Result<> PostgresScanLog::backup_to(const std::filesystem::path&, const std::stop_token&) {
-    return Error{Errc::kInvalidField, "the store is in a database: make backups of the database"};
+    return Error{Errc::kInvalidField, "the store is in a database: make backups with the tools of PostgreSQL"};
 }
 
 std::uint64_t PostgresScanLog::bytes_on_disk() const { return readers_.size(); }

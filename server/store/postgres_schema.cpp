@@ -59,7 +59,8 @@ Result<int> format_of(Connection& connection) {
     const auto rows = connection.run("SELECT value FROM scanloom.meta WHERE key = 'format'");
     if (!rows) return rows.error();
     const auto format = rows->size() == 1 ? parse_number<int>(rows->bytes(0, 0)) : std::nullopt;
-    if (!format) return Error{Errc::kDataLoss, "the database has a schema scanloom that is not a store"};
+    if (!format)
+        return Error{Errc::kDataLoss, "the database has a schema scanloom that is not a store; name another database"};
     if (*format <= kFormat) return *format;
     return Error{
         Errc::kUnsupportedVersion,
@@ -156,7 +157,7 @@ Result<> replace_unfinished(Connection& connection) {
 Result<> check_tables(Connection& connection) {
     const auto is_present = has_tables(connection);
     if (!is_present) return is_present.error();
-    if (!*is_present) return Error{Errc::kNotFound, "the database holds no store"};
+    if (!*is_present) return Error{Errc::kNotFound, "the database holds no store; name the one that servers use"};
     if (const auto format = format_of(connection); !format) return format.error();
     const auto unfinished = is_unfinished(connection);
     if (!unfinished) return unfinished.error();
@@ -174,7 +175,9 @@ Result<std::string> read_secret(Connection& connection) {
     const auto rows = connection.run("SELECT value FROM scanloom.meta WHERE key = 'secret'");
     if (!rows) return rows.error();
     if (rows->size() == 1) return std::string(rows->bytes(0, 0));
-    return Error{Errc::kDataLoss, "the store in the database has lost the secret of its servers"};
+    return Error{Errc::kDataLoss,
+                 "the store in the database has lost the secret of its servers; restore the database from a "
+                 "backup"};
 }
 
 Result<> finish_store(Connection& connection) {

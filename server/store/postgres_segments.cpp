@@ -71,8 +71,11 @@ std::string sealed_part(SessionId session, std::string_view key, std::string_vie
 
 Result<std::string_view> unsealed_part(SessionId session, std::string_view key, std::string_view sealed) {
     if (const auto value = unsealed(part_key(session, key), sealed)) return *value;
-    return Error{Errc::kDataLoss,
-                 fmt::format("a part of the checkpoint of session {} is damaged in the database", session)};
+    return Error{
+        Errc::kDataLoss,
+        fmt::format("a part of the checkpoint of session {} is damaged in the database; restore the database from a "
+                    "backup, or remove the session",
+                    session)};
 }
 
 } // namespace scanloom::store::postgres

@@ -25,9 +25,10 @@ Result<> SizeLimit::check(Connection& connection) {
         asked_ = now;
     }
     if (bytes_ < *bytes_max_) return {};
-    return Error{Errc::kOverloaded, fmt::format("the store has {} MiB, and --store-size-max is {}; remove sessions, or "
-                                                "raise the limit if the disk of the database has room",
-                                                bytes_ >> 20, *bytes_max_ >> 20)};
+    return Error{Errc::kOverloaded,
+                 fmt::format("the store has {} MiB, and --store-size-max is {} MiB; remove sessions, or "
+                             "raise the limit if the disk of the database has room",
+                             bytes_ >> 20, *bytes_max_ >> 20)};
 }
 
 void SizeLimit::add(std::uint64_t bytes) {

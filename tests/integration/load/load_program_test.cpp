@@ -1,5 +1,6 @@
 #include "tests/integration/load/closing_server.hpp"
 #include "tests/integration/load/falsifying_proxy.hpp"
+#include "tests/support/postgres_server.hpp"
 #include "tests/support/running_server.hpp"
 #include "tests/support/temporary_directory.hpp"
 #include "tests/support/test_certificate.hpp"
@@ -97,6 +98,29 @@ TEST_F(LoadProgram, StoresEveryScanOnceOverFailingLinks) {
     EXPECT_GT(outcome.report.at("links").at("faults").at("half-open").to_number<int>(), 5);
     EXPECT_GT(outcome.report.at("links").at("faults").at("stall").to_number<int>(), 1);
     EXPECT_EQ(sessions(), 0U); // the tool deletes them
+}
+
+TEST_F(LoadProgram, RobotsGoOnAtTheServerThatHasTheirSession) {
+    PostgresServer postgres;
+    const auto database = postgres.new_database();
+    const auto start = [&](const char* node) {
+        return std::make_unique<RunningServer>(database, place_.path() / node, 0, 0,
+                                               Words{"--allow-unreplicated", "--node", node});
+    };
+    server_ = start("a"); // the only one that the robots know
+    const auto b = start("b");
+    const auto known = [&] { return server_->get_json("/api/v1/nodes").at("nodes").as_array(); };
+    while (known().size() < 2 || known().at(1).at("robots").as_string() != b->robot_address()) { // a second later
+    }
+    ChildProcess load(program("scanloom-load"), arguments(kSmallLoad + Words{"--verify", "counts"}, b->http_port()),
+                      errors());
+    while (sessions() < 20) {
+    }
+    server_->process().signal(SIGTERM);
+    const auto outcome = finish(load);
+    EXPECT_EQ(outcome.code, 0) << outcome.verdict();
+    EXPECT_EQ(outcome.count("scans", "acknowledged"), kSmallLoadScans);
+    EXPECT_GE(outcome.count("links", "reconnects"), 20U);
 }
 
 TEST_F(LoadProgram, UsesOneCertificateForBothPorts) {

@@ -3,16 +3,20 @@
 #include "tests/support/postgres_server.hpp"
 #include "tests/support/running_server.hpp"
 #include "tests/support/temporary_directory.hpp"
+#include "tests/support/test_certificate.hpp"
+#include "tests/support/tls_http_client.hpp"
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/json/serialize.hpp>
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <chrono>
 #include <csignal>
 #include <cstdint>
+#include <cstdlib>
 #include <exception>
 #include <filesystem>
 #include <fstream>
@@ -21,6 +25,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 /// Several servers that share a database, as users run them.
 namespace scanloom::test {
@@ -28,10 +33,11 @@ namespace {
 
 class NodesTrials : public testing::Test {
 protected:
-    [[nodiscard]] std::unique_ptr<RunningServer> start(const std::string& node) const {
-        return std::make_unique<RunningServer>(
-            database_, place_.path() / node, 0, 0,
-            std::vector<std::string>{"--allow-unreplicated", "--node", node, "--log-level", "warn"});
+    [[nodiscard]] std::unique_ptr<RunningServer> start(const std::string& node,
+                                                       const std::vector<std::string>& more = {}) const {
+        std::vector<std::string> options{"--allow-unreplicated", "--node", node, "--log-level", "warn"};
+        options.insert(options.end(), more.begin(), more.end());
+        return std::make_unique<RunningServer>(database_, place_.path() / node, 0, 0, options);
     }
 
     /// @param scans  of the whole simulation; those that the servers have already are not sent again
@@ -140,6 +146,42 @@ TEST_F(NodesTest, RequestsAreAnsweredAsByTheServerThatHasTheSession) {
     EXPECT_EQ(at_b.read(), at_a.read());
     EXPECT_EQ(http_request(b->http_port(), "DELETE", session).status, 204U);
     EXPECT_EQ(a->get(session).status, 404U);
+}
+
+TEST_F(NodesTest, ASignInHoldsAtAllServersAlsoWithTls) {
+    const auto files = testing_support::write_certificate(place_.path(), "127.0.0.1");
+    const auto tokens = place_.path() / "tokens.toml";
+    ChildProcess maker(program("scanloom-server"), {"token", "--name", "o", "--role", "operator"},
+                       place_.path() / "maker");
+    const auto secret = maker.read_line().value();
+    std::string lines;
+    while (const auto line = maker.read_line()) lines += *line + "\n";
+    std::ofstream(tokens) << lines;
+    const std::vector<std::string> options{"--tokens",        tokens,           "--http-tls-cert",
+                                           files.certificate, "--http-tls-key", files.key};
+    ::setenv("SSL_CERT_FILE", files.certificate.c_str(), 1); // with which servers verify each other
+    const auto a = start("a", options);
+    const auto b = start("b", options);
+    ::unsetenv("SSL_CERT_FILE");
+    const auto ask = [&](const auto& server, const std::string& line, const std::string& field,
+                         const std::string& body = {}) {
+        testing_support::TlsHttpClient client(server->http_port(), {.trusted = files.certificate});
+        client.send(fmt::format("{} HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n{}\r\n"
+                                "Content-Length: {}\r\n\r\n{}",
+                                line, field, body.size(), body));
+        return client.read();
+    };
+    const auto bearer = "Authorization: Bearer " + secret;
+    ASSERT_EQ(ask(a, "POST /api/v1/sessions", bearer, R"({"name": "one"})").status, 201);
+    const auto login = ask(a, "POST /api/v1/login", "DNT: 1", fmt::format(R"({{"token": "{}"}})", secret));
+    ASSERT_EQ(login.status, 200) << login.body;
+    const auto set = login.fields.at("set-cookie");
+    const auto cookie = "Cookie: " + set.substr(0, set.find(';'));
+    const auto from_a = ask(a, "GET /api/v1/sessions/one", cookie);
+    EXPECT_EQ(from_a.status, 200);
+    const auto from_b = ask(b, "GET /api/v1/sessions/one", cookie);
+    EXPECT_EQ(from_b.body, from_a.body) << "passed on to a";
+    EXPECT_EQ(ask(b, "GET /api/v1/sessions/one", "DNT: 1").status, 401);
 }
 
 /// The configuration in the documents, with other addresses.

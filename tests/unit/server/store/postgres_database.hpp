@@ -38,13 +38,12 @@ struct PostgresDatabase {
     /// @param code  of PostgreSQL (SQLSTATE)
     void fail_next_insertion(const std::string& code = "P0001") const {
         static_cast<void>(run("CREATE SEQUENCE scanloom.insertions"));
-        static_cast<void>(
-            run("CREATE FUNCTION scanloom.fail_once() RETURNS trigger LANGUAGE plpgsql AS $$ BEGIN"
-                " IF nextval('scanloom.insertions') = 1 THEN RAISE EXCEPTION 'a test lets this fail'"
-                " USING ERRCODE = '" +
-                code +
-                "'; END IF;"
-                " RETURN NEW; END $$"));
+        static_cast<void>(run("CREATE FUNCTION scanloom.fail_once() RETURNS trigger LANGUAGE plpgsql AS $$ BEGIN"
+                              " IF nextval('scanloom.insertions') = 1 THEN RAISE EXCEPTION 'a test lets this fail'"
+                              " USING ERRCODE = '" +
+                              code +
+                              "'; END IF;"
+                              " RETURN NEW; END $$"));
         static_cast<void>(run("CREATE TRIGGER fail_once BEFORE INSERT ON scanloom.segment FOR EACH ROW"
                               " EXECUTE FUNCTION scanloom.fail_once()"));
     }

@@ -66,5 +66,14 @@ TEST(PostgresFailoverTrials, ThePromotedStandbyHasEachAcknowledgedEntryOnce) {
     }
 }
 
+TEST(PostgresFailoverTrials, AStoreThatIsNotUsedNoticesThatItsDatabaseIsGone) {
+    test::PostgresServer database;
+    const auto log = open_postgres(database.new_database(), {.allow_unreplicated = true}).value();
+    database.kill();
+    while (!log->stats().last_error) {
+    }
+    EXPECT_THAT(log->stats().last_error.value(), HasSubstr("cannot be used"));
+}
+
 } // namespace
 } // namespace scanloom::store

@@ -143,7 +143,7 @@ TEST_F(PostgresOwnershipTest, ALaterServerOfTheSameNameHasTheSessionsAtOnce) {
     EXPECT_TRUE(append_and_wait(*later, session, 2, {"after"}));
     EXPECT_EQ(append_and_wait(*earlier, session, 2, {"late"}).error().code, Errc::kNotOwner);
     while (!earlier->stats().last_error) std::this_thread::yield(); // until it looks at its row
-    EXPECT_THAT(*earlier->stats().last_error, HasSubstr("another server was started as node 'a'"));
+    EXPECT_THAT(*earlier->stats().last_error, HasSubstr("this server is not node 'a'"));
     EXPECT_EQ(earlier->shared()->own(session).error().code, Errc::kNotOwner) << "robots try another server";
     EXPECT_EQ(earlier->create_session("").error().code, Errc::kNotOwner);
     EXPECT_FALSE(earlier->reopen());

@@ -175,7 +175,8 @@ TEST_F(PostgresScanLogTest, RowsOfARemovedSessionAreDeletedByTheNextServerAtTheL
         }
         static_cast<void>(database_.run("UPDATE scanloom.session SET removed = true WHERE id = 1"));
     }
-    static_cast<void>(database_.run("INSERT INTO scanloom.segment SELECT 1, n, n, '' FROM generate_series(2, 10001) n"));
+    static_cast<void>(
+        database_.run("INSERT INTO scanloom.segment SELECT 1, n, n, '' FROM generate_series(2, 10001) n"));
     const auto log = open().value();
     while (database_.number("SELECT count(*) FROM scanloom.session") > 1) {
     }
