@@ -188,7 +188,7 @@ Result<> AppendQueue::write(Group& group) {
     for (auto& [session, why] : group.refused) why = why_not_owned(*connection_, session);
     if (group.runs.empty()) return {};
     const auto room = size_limit_.check(*connection_);
-    const auto rows = room ? connection_->run(kAppend, group.parameters()) : Result<Rows>(room.error());
+    const auto rows = room ? connection_->run_prepared(kAppend, group.parameters()) : Result<Rows>(room.error());
     if (!rows && rows.error().code == Errc::kOverloaded) return rows.error();
     if (!rows) {
         connection_.reset();

@@ -14,6 +14,7 @@
 #include <cstring>
 #include <optional>
 #include <random>
+#include <set>
 
 namespace scanloom::store::postgres {
 namespace {
@@ -44,18 +45,6 @@ std::string array_of(unsigned type, std::size_t count) {
     return bytes;
 }
 
-/// Returns libpq's text in one line, with single spaces and without a full stop at the end.
-std::string one_line(std::string_view text) {
-    std::string line;
-    for (const char c : text) {
-        const bool is_space = c == '\n' || c == '\t' || c == ' ';
-        if (!is_space) line += c;
-        if (is_space && !line.empty() && line.back() != ' ') line += ' ';
-    }
-    while (line.ends_with(' ') || line.ends_with('.')) line.pop_back();
-    return line;
-}
-
 /// Returns the error code for an SQLSTATE.
 Errc code_of_state(std::string_view state) {
     if (state == "53100") return Errc::kOverloaded; // disk_full
@@ -68,6 +57,23 @@ std::string_view advice_for(std::string_view state) {
     if (state == "53100") return "; make room on its disk";
     if (state == "42501") return "; give the user that --store names all rights on the schema scanloom"; // privileges
     return "";
+}
+
+/// Parameters as libpq takes them. They use the bytes of `parameters`.
+struct Values {
+    int count;
+    std::vector<const char*> values;
+    std::vector<int> lengths;
+    std::vector<int> formats;
+};
+
+Values values_of(const Parameters& parameters) {
+    Values made{static_cast<int>(parameters.size()), {}, {}, std::vector<int>(parameters.size(), 1)};
+    for (const std::string& value : parameters.values()) {
+        made.values.push_back(value.data());
+        made.lengths.push_back(static_cast<int>(value.size()));
+    }
+    return made;
 }
 
 /// Waits until a socket is ready. @return false after the deadline
@@ -83,61 +89,6 @@ bool wait_for(int socket, short events, Clock::time_point deadline) {
 }
 
 } // namespace
-
-bool is_place(std::string_view text) { return text.starts_with("postgresql://") || text.starts_with("postgres://"); }
-
-Result<Place> parse_place(const std::string& url) {
-    char* what = nullptr;
-    const std::unique_ptr<PQconninfoOption, decltype(&PQconninfoFree)> options(PQconninfoParse(url.c_str(), &what),
-                                                                               &PQconninfoFree);
-    if (!options) {
-        Error error{Errc::kInvalidField, fmt::format("the address of the database: {}", one_line(what))};
-        PQfreemem(what);
-        return error;
-    }
-    Place place;
-    std::string hosts;
-    std::string ports;
-    std::string database;
-    std::string user;
-    for (const auto* option = options.get(); option->keyword != nullptr; ++option) {
-        if (option->val == nullptr || *option->val == '\0') continue;
-        const std::string_view keyword = option->keyword;
-        if (keyword == "host") {
-            hosts = option->val;
-        } else if (keyword == "port") {
-            ports = option->val;
-        } else {
-            if (keyword == "dbname") database = option->val;
-            if (keyword == "user") user = fmt::format("{}@", option->val);
-            place.settings.emplace_back(keyword, option->val);
-        }
-    }
-    if (database.empty()) {
-        return Error{Errc::kInvalidField, "the address of the database names no database; write "
-                                          "postgresql://USER@HOST/DATABASE"};
-    }
-    const auto words = [](std::string_view list) {
-        std::vector<std::string> found;
-        for (std::size_t begin = 0; begin <= list.size();) {
-            const auto end = std::min(list.find(',', begin), list.size());
-            found.emplace_back(list.substr(begin, end - begin));
-            begin = end + 1;
-        }
-        return found;
-    };
-    const auto names = words(hosts);
-    const auto numbers = words(ports);
-    if (numbers.size() > 1 && numbers.size() != names.size()) {
-        return Error{Errc::kInvalidField, fmt::format("the address of the database has {} hosts and {} ports",
-                                                      names.size(), numbers.size())};
-    }
-    for (std::size_t n = 0; n < names.size(); ++n) {
-        place.hosts.push_back({names[n], numbers.size() == 1 ? numbers.front() : numbers[n]});
-    }
-    place.text = fmt::format("postgresql://{}{}/{}", user, hosts, database);
-    return place;
-}
 
 void Parameters::add(std::int64_t number) {
     append_big_endian(values_.emplace_back(), number);
@@ -188,7 +139,8 @@ struct Connection::State {
 
     std::unique_ptr<PGconn, Finish> connection;
     std::string host;
-    std::string warning; // of the statement that runs
+    std::string warning;            // of the statement that runs
+    std::set<const char*> prepared; // statements of run_prepared(), by their addresses
 
     [[nodiscard]] Error lost(std::string_view what) {
         return failure("the database on {}: {}; a server connects again, and finds out what is stored", host, what);
@@ -245,7 +197,7 @@ Result<Connection> Connection::open(const Place& place) {
             continue;
         }
         Connection opened(std::move(state));
-        if (auto ready = opened.prepare(); !ready) {
+        if (auto ready = opened.make_ready(); !ready) {
             if (ready.error().code == Errc::kUnsupportedVersion) return ready.error();
             reasons.push_back(ready.error().message);
             continue;
@@ -259,7 +211,7 @@ Result<Connection> Connection::open(const Place& place) {
 
 /// Refuses standbys and versions that are too old, and turns off what would cancel a statement: a commit that is
 /// cancelled while it waits for a standby is reported as done.
-Result<> Connection::prepare() {
+Result<> Connection::make_ready() {
     PGconn* const connection = state_->connection.get();
     if (PQsetnonblocking(connection, 1) != 0) return failure("{}", one_line(PQerrorMessage(connection)));
     PQsetNoticeReceiver(connection, &State::take_notice, state_.get());
@@ -283,18 +235,36 @@ Result<> Connection::prepare() {
 
 Result<Rows> Connection::run(const char* sql, const Parameters& parameters, std::chrono::milliseconds timeout) {
     PGconn* const connection = state_->connection.get();
-    std::vector<const char*> values;
-    std::vector<int> lengths;
-    const std::vector<int> formats(parameters.size(), 1);
-    for (const std::string& value : parameters.values()) {
-        values.push_back(value.data());
-        lengths.push_back(static_cast<int>(value.size()));
-    }
+    const auto [count, values, lengths, formats] = values_of(parameters);
     state_->warning.clear();
-    if (PQsendQueryParams(connection, sql, static_cast<int>(values.size()), parameters.types().data(), values.data(),
-                          lengths.data(), formats.data(), 1) == 0) {
+    if (PQsendQueryParams(connection, sql, count, parameters.types().data(), values.data(), lengths.data(),
+                          formats.data(), 1) == 0) {
         return state_->lost(one_line(PQerrorMessage(connection)));
     }
+    return result_within(timeout);
+}
+
+Result<Rows> Connection::run_prepared(const char* sql, const Parameters& parameters) {
+    PGconn* const connection = state_->connection.get();
+    const auto name = fmt::format("s{}", fmt::ptr(sql));
+    const auto [count, values, lengths, formats] = values_of(parameters);
+    state_->warning.clear();
+    if (!state_->prepared.contains(sql)) {
+        if (PQsendPrepare(connection, name.c_str(), sql, count, parameters.types().data()) == 0) {
+            return state_->lost(one_line(PQerrorMessage(connection)));
+        }
+        if (auto prepared = result_within(kWriteTimeout); !prepared) return prepared;
+        state_->prepared.insert(sql);
+    }
+    if (PQsendQueryPrepared(connection, name.c_str(), count, values.data(), lengths.data(), formats.data(), 1) == 0) {
+        return state_->lost(one_line(PQerrorMessage(connection)));
+    }
+    return result_within(kWriteTimeout);
+}
+
+/// Waits for the result of the statement that was sent.
+Result<Rows> Connection::result_within(std::chrono::milliseconds timeout) {
+    PGconn* const connection = state_->connection.get();
     const auto deadline = Clock::now() + timeout;
     const auto late = [&] { return state_->lost(fmt::format("no answer within {} ms", timeout.count())); };
     for (int left = 1; left != 0;) { // libpq reads while it writes, or both sides could wait for the other

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "common/error/error.hpp"
+#include "server/store/postgres_place.hpp"
 
 #include <chrono>
 #include <cstddef>
@@ -10,31 +11,12 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 struct pg_result;
 
 /// Connections to PostgreSQL, with deadlines of our own for everything that waits.
 namespace scanloom::store::postgres {
-
-/// Where a database is: postgresql://USER@HOST[:PORT][,HOST[:PORT]...]/DATABASE, as libpq reads it.
-struct Place {
-    struct Host {
-        std::string name; ///< a name, an address, or the folder of a socket
-        std::string port;
-    };
-    std::vector<Host> hosts;
-    std::vector<std::pair<std::string, std::string>> settings; ///< all other parameters of libpq
-    std::string text;                                          ///< for messages: without a password
-};
-
-/// Returns whether a value of --store names a database.
-[[nodiscard]] bool is_place(std::string_view text);
-
-/// Reads the address of a database.
-/// Errors: kInvalidField: it is not an address, or has no database.
-[[nodiscard]] Result<Place> parse_place(const std::string& url);
 
 /// Returns a number as the database has it, signed.
 [[nodiscard]] constexpr std::int64_t signed_of(std::uint64_t number) { return static_cast<std::int64_t>(number); }
@@ -105,6 +87,12 @@ public:
     [[nodiscard]] Result<Rows> run(const char* sql, const Parameters& parameters = {},
                                    std::chrono::milliseconds timeout = kWriteTimeout);
 
+    /// Runs a statement that is run often: the database parses it once for each connection.
+    /// @param sql         one statement, which exists as long as the connection
+    /// @param parameters  of the same types each time
+    /// Errors: those of run().
+    [[nodiscard]] Result<Rows> run_prepared(const char* sql, const Parameters& parameters);
+
     /// Returns whether the connection still exists, as far as this machine knows.
     [[nodiscard]] bool is_alive();
 
@@ -118,7 +106,8 @@ public:
 private:
     struct State;
     explicit Connection(std::unique_ptr<State> state);
-    [[nodiscard]] Result<> prepare();
+    [[nodiscard]] Result<> make_ready();
+    [[nodiscard]] Result<Rows> result_within(std::chrono::milliseconds timeout);
 
     std::unique_ptr<State> state_;
 };

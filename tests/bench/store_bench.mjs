@@ -21,6 +21,7 @@ const kScan = { world: 'room', 'cell-size': 0.05, batch: 10, verify: 'counts', k
 const kLoads = [
   ['2,000 scans/s', { robots: 20, rate: 100 }],
   ['as fast as they may', { robots: 128, rate: 0 }],
+  ['1,000 robots at 10 Hz', { robots: 1000, sessions: 100, rate: 10, batch: 1 }],
 ];
 
 const [file] = operands;

@@ -3,9 +3,9 @@ import { readFileSync } from 'node:fs';
 
 const kTicksPerSecond = 100; // of /proc, on every current Linux
 
-/** CPU seconds of a process and of its running children. */
+/** CPU seconds of a process and of its children, also those that have ended. */
 export function processorSeconds(pid) {
-  return [pid, ...startedBy(pid)].reduce((sum, each) => sum + ticks(each), 0) / kTicksPerSecond;
+  return [...startedBy(pid), pid].reduce((sum, each) => sum + ticks(each), 0) / kTicksPerSecond;
 }
 
 /** Memory of a process in bytes: `VmRSS` now, `VmHWM` maximum. */
@@ -14,8 +14,14 @@ export function memoryBytes(pid, field = 'VmRSS') {
 }
 
 function ticks(pid) {
-  const fields = readFileSync(`/proc/${pid}/stat`, 'utf8').split(') ')[1].split(' ');
-  return Number(fields[11]) + Number(fields[12]);
+  let stat;
+  try {
+    stat = readFileSync(`/proc/${pid}/stat`, 'utf8');
+  } catch {
+    return 0; // it has just ended, and counts for its parent
+  }
+  const ofItselfAndItsEndedChildren = stat.split(') ')[1].split(' ').slice(11, 15);
+  return ofItselfAndItsEndedChildren.reduce((sum, each) => sum + Number(each), 0);
 }
 
 function startedBy(pid) {
