@@ -11,7 +11,6 @@ enum class Use : std::uint64_t {
     kSessionName,
     kSessionSize,
     kSessionLife,
-    kDatabase,
     kRobotStart,
     kRank,
     kBackoff,

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-/// A simulation of several servers (nodes) that share databases: who owns which session after failures, upgrades and
+/// A simulation of several servers (nodes) that share a database: who owns which session after failures, upgrades and
 /// the end of sessions, and how the load is spread. Single scans are not simulated. Everything is pure: equal plans
 /// give equal results.
 namespace scanloom::lab::cluster {
@@ -15,20 +15,19 @@ using Time = std::chrono::milliseconds; ///< since the begin of the simulation, 
 
 /// What is simulated.
 struct Plan {
-    std::size_t robots = 100'000; ///< at least 1
-    double rate_hz = 10.0;        ///< scans of a robot per second
+    std::size_t robots = 10'000; ///< at least 1
+    double rate_hz = 10.0;       ///< scans of a robot per second
 
     double session_size = 10.0;      ///< mean number of robots of a session, 1 to kSessionSizeMax
     double session_spread = 1.0;     ///< standard deviation of the logarithm of a session's size; 0: all are equal
     double session_life_hours = 8.0; ///< mean; then its robots start and create another session. 0: for ever
 
-    std::size_t nodes = 12;
+    std::size_t nodes = 3;
     double node_cores = 8.0;
     double node_us = 18.9;  ///< microseconds of processor time of a node for one scan
     double load_ms = 15.0;  ///< milliseconds for loading a session that another node had
     double close_ms = 20.0; ///< milliseconds for closing a session that a stopped node gives up
 
-    std::size_t databases = 10;
     double database_cores = 4.0;    ///< of a primary
     double database_mbytes = 100.0; ///< most megabytes (10^6) of log per second that a primary may write
     double primary_us = 7.4;        ///< microseconds of processor time of the primary for one scan

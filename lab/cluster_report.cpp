@@ -34,10 +34,6 @@ double per_second_to_cores(double scans_per_s, double us) { return scans_per_s *
 double node_cores_of(const Plan& plan, double robots) {
     return per_second_to_cores(robots * plan.rate_hz, plan.node_us);
 }
-double primary_cores_of(const Plan& plan, double robots) {
-    return per_second_to_cores(robots * plan.rate_hz, plan.primary_us);
-}
-double log_mbytes_of(const Plan& plan, double robots) { return robots * plan.rate_hz * plan.log_bytes / 1e6; }
 
 double share_of(double part, double all, std::size_t machines) { return part * static_cast<double>(machines) / all; }
 
@@ -52,10 +48,9 @@ std::string overload_text(const Plan& plan, const Loads::Overload& overload) {
 }
 
 std::string sizes_table(const Plan& plan, const Report& report) {
-    const auto& [size, outcome, nodes, databases] = report;
+    const auto& [size, outcome, nodes] = report;
     const double robots = static_cast<double>(plan.robots);
     const double most = static_cast<double>(outcome.node_robots_max);
-    const double database_most = static_cast<double>(outcome.database_robots_max);
     Table table("figure | by arithmetic | simulated");
     table.add("scans per second | {:.0f} | ", size.scans_per_s);
     table.add("sessions at a time; robots of the largest | | {}; {}", outcome.sessions, outcome.largest_session);
@@ -66,16 +61,13 @@ std::string sizes_table(const Plan& plan, const Report& report) {
     table.add("robots of the fullest node, relative to the mean: mean over the time; ever | 1 | {:.2f}; {:.2f}",
               share_of(outcome.node_robots_mean, robots, plan.nodes), share_of(most, robots, plan.nodes));
     table.add("nodes that needed more than their cores | | {}", overload_text(plan, outcome.overload));
-    table.add("cores that all primaries use; all standbys | {:.2f}; {:.2f} | ", size.primary_cores, size.standby_cores);
-    table.add("cores of {:g} that a primary uses: mean; the fullest ever | {:.2f} | {:.2f}", plan.database_cores,
-              size.primary_cores / static_cast<double>(plan.databases), primary_cores_of(plan, database_most));
-    table.add("MB of log per second of a database: mean; the fullest ever | {:.1f} | {:.1f}",
-              size.log_mbytes_per_s / static_cast<double>(plan.databases), log_mbytes_of(plan, database_most));
-    table.add("TB of log per day, all databases | {:.3f} | ", size.log_tbytes_per_day);
+    table.add("cores of {:g} that the primary uses; the standby | {:.2f}; {:.2f} | ", plan.database_cores,
+              size.primary_cores, size.standby_cores);
+    table.add("MB of log per second; TB per day | {:.1f}; {:.3f} | ", size.log_mbytes_per_s, size.log_tbytes_per_day);
     table.add("nodes needed for at most {:.0f} % with one down | {} | {}", 100.0 * kFullShare, size.nodes,
               count_text(nodes, 4 * size.nodes));
-    table.add("databases needed for at most {:.0f} % | {} | {}", 100.0 * kFullShare, size.databases,
-              count_text(databases, 4 * size.databases));
+    table.add("clusters needed, each with one database, for at most {:.0f} % of it | {} | ", 100.0 * kFullShare,
+              size.clusters);
     return table.text();
 }
 
@@ -113,28 +105,25 @@ std::string json_of(const std::optional<std::size_t>& count) { return count ? fm
 
 std::string json_of(const Size& size) {
     return fmt::format(R"({{"scans_per_s":{:.1f},"node_cores":{:.4f},"primary_cores":{:.4f},"standby_cores":{:.4f},)"
-                       R"("log_mb_per_s":{:.3f},"log_tb_per_day":{:.4f},"nodes":{},"databases":{}}})",
+                       R"("log_mb_per_s":{:.3f},"log_tb_per_day":{:.4f},"nodes":{},"clusters":{}}})",
                        size.scans_per_s, size.node_cores, size.primary_cores, size.standby_cores, size.log_mbytes_per_s,
-                       size.log_tbytes_per_day, size.nodes, size.databases);
+                       size.log_tbytes_per_day, size.nodes, size.clusters);
 }
 
 } // namespace
 
-Report report_of(const Plan& plan) {
-    return {size_of(plan), simulate(plan), nodes_needed(plan), databases_needed(plan)};
-}
+Report report_of(const Plan& plan) { return {size_of(plan), simulate(plan), nodes_needed(plan)}; }
 
 std::string tables_of(const Plan& plan, const Report& report) {
     const Outcome& outcome = report.outcome;
     const auto ends = [&](End end) { return outcome.ends[static_cast<std::size_t>(end)]; };
-    return fmt::format("{} robots at {:g} Hz on {} nodes, {} databases, {:g} h\n\n{}\n\n"
+    return fmt::format("{} robots at {:g} Hz on {} nodes with a database, {:g} h\n\n{}\n\n"
                        "{} nodes were killed, {} fell silent, {} were stopped. {} sessions were taken over from nodes "
                        "that had failed, {} "
                        "after nodes had given them up, and {} were created. {} robots waited at the end.\n\n{}\n\n{}",
-                       plan.robots, plan.rate_hz, plan.nodes, plan.databases, plan.duration_hours,
-                       sizes_table(plan, report), ends(End::kKilled), ends(End::kSilent), ends(End::kStopped),
-                       outcome.taken_over, outcome.moved, outcome.created, outcome.waiting, waits_table(outcome),
-                       balances_table(outcome));
+                       plan.robots, plan.rate_hz, plan.nodes, plan.duration_hours, sizes_table(plan, report),
+                       ends(End::kKilled), ends(End::kSilent), ends(End::kStopped), outcome.taken_over, outcome.moved,
+                       outcome.created, outcome.waiting, waits_table(outcome), balances_table(outcome));
 }
 
 std::string json_of(const Plan& plan, const Report& report) {
@@ -146,14 +135,12 @@ std::string json_of(const Plan& plan, const Report& report) {
     std::string balances;
     for (const Balance& balance : outcome.balances) balances += (balances.empty() ? "" : ",") + json_of(balance);
     return fmt::format(
-        R"({{"robots":{},"rate_hz":{:g},"seed":{},"size":{},"nodes_needed":{},"databases_needed":{},"sessions":{},)"
+        R"({{"robots":{},"rate_hz":{:g},"seed":{},"size":{},"nodes_needed":{},"sessions":{},)"
         R"("largest_session":{},"created":{},"taken_over":{},"moved":{},"waiting":{},"fullest_node_cores":{:.4f},)"
-        R"("fullest_primary_cores":{:.4f},"overloaded_nodes":{},"overload_s":{:.3f},"waits":{{{}}},"balance":[{}]}})",
-        plan.robots, plan.rate_hz, plan.seed, json_of(report.size), json_of(report.nodes_needed),
-        json_of(report.databases_needed), outcome.sessions, outcome.largest_session, outcome.created,
-        outcome.taken_over, outcome.moved, outcome.waiting,
-        node_cores_of(plan, static_cast<double>(outcome.node_robots_max)),
-        primary_cores_of(plan, static_cast<double>(outcome.database_robots_max)), outcome.overload.machines,
+        R"("overloaded_nodes":{},"overload_s":{:.3f},"waits":{{{}}},"balance":[{}]}})",
+        plan.robots, plan.rate_hz, plan.seed, json_of(report.size), json_of(report.nodes_needed), outcome.sessions,
+        outcome.largest_session, outcome.created, outcome.taken_over, outcome.moved, outcome.waiting,
+        node_cores_of(plan, static_cast<double>(outcome.node_robots_max)), outcome.overload.machines,
         in_seconds(outcome.overload.total), waits, balances);
 }
 

@@ -14,8 +14,7 @@ namespace scanloom::lab::cluster {
 struct Report {
     Size size;
     Outcome outcome;
-    std::optional<std::size_t> nodes_needed;     ///< see nodes_needed()
-    std::optional<std::size_t> databases_needed; ///< see databases_needed()
+    std::optional<std::size_t> nodes_needed; ///< see nodes_needed()
 };
 
 /// Runs the simulation of a plan.

@@ -49,7 +49,6 @@ struct Outcome {
     std::int64_t node_robots_max = 0;        ///< robots of the fullest node ever
     double node_robots_mean = 0.0;           ///< robots of the fullest node at each time, mean over the time
     Loads::Overload overload;                ///< of nodes
-    std::int64_t database_robots_max = 0;    ///< robots of the fullest database ever
     std::vector<Balance> balances;           ///< by time
 
     [[nodiscard]] const Waits& waits_of(Cause cause) const { return waits[static_cast<std::size_t>(cause)]; }

@@ -34,10 +34,6 @@ std::uint64_t name_of(const Draws& draws, std::size_t group, std::uint32_t sessi
     return draws.bits(Use::kSessionName, group, session);
 }
 
-std::size_t database_of(const Plan& plan, const Draws& draws, std::size_t group, std::uint32_t session) {
-    return draws.bits(Use::kDatabase, group, session) % plan.databases;
-}
-
 Time life_of(const Plan& plan, const Draws& draws, std::size_t group, std::uint32_t session) {
     const double hours = draws.exponential(plan.session_life_hours, Use::kSessionLife, group, session);
     return std::max(kLifeMin, of_hours(hours));

@@ -27,11 +27,6 @@ struct Group {
 /// @param session  how many sessions the group had before
 [[nodiscard]] std::uint64_t name_of(const Draws& draws, std::size_t group, std::uint32_t session);
 
-/// Returns the database of a session, by hashing.
-/// @param group    number of its group
-/// @param session  how many sessions the group had before
-[[nodiscard]] std::size_t database_of(const Plan& plan, const Draws& draws, std::size_t group, std::uint32_t session);
-
 /// Returns how long a session lives.
 /// Pre: plan.session_life_hours > 0.
 [[nodiscard]] Time life_of(const Plan& plan, const Draws& draws, std::size_t group, std::uint32_t session);

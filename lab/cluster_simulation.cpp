@@ -5,7 +5,6 @@
 #include "lab/cluster_sessions.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <queue>
 #include <string>
 #include <tuple>
@@ -51,7 +50,6 @@ public:
     Simulation(const Plan& plan, const std::vector<Outage>& outages)
         : plan_(plan), outages_(outages), draws_(plan.seed), groups_(groups_of(plan, draws_)),
           ownership_(plan, draws_, groups_.size()), nodes_(plan.nodes, robots_of_cores(plan), kMeasureFrom),
-          databases_(plan.databases, std::numeric_limits<double>::infinity(), kMeasureFrom),
           sessions_of_group_(groups_.size(), 0), group_of_robot_(plan.robots),
           robots_(plan.robots, Robot(0, 0, Time(0))), tickets_(plan.robots, 0), samples_(samples_of(plan)) {
         for (std::uint32_t group = 0; group < groups_.size(); ++group) {
@@ -116,15 +114,11 @@ private:
 
     void end_session(std::uint32_t group) {
         if (const auto node = ownership_.server_of(group)) nodes_.add(*node, -robots_in(group), now_);
-        if (ownership_.exists(group)) databases_.add(database(group), -robots_in(group), now_);
         ownership_.end_session(group);
         ++sessions_of_group_[group];
         start_session(group);
     }
 
-    [[nodiscard]] std::size_t database(std::uint32_t group) const {
-        return database_of(plan_, draws_, group, sessions_of_group_[group]);
-    }
     [[nodiscard]] std::int64_t robots_in(std::uint32_t group) const { return groups_[group].size(); }
 
     // Nodes
@@ -212,7 +206,6 @@ private:
         if (change == Ownership::Change::kTakenOver) ++outcome_.taken_over;
         if (change == Ownership::Change::kMoved) ++outcome_.moved;
         if (change != Ownership::Change::kCreated) return;
-        databases_.add(database(group), robots_in(group), now_);
         ++outcome_.created;
     }
 
@@ -241,7 +234,6 @@ private:
 
     Outcome outcome_at(Time end) {
         nodes_.finish(end);
-        databases_.finish(end);
         outcome_.sessions = groups_.size();
         for (const Group& group : groups_) {
             outcome_.largest_session = std::max<std::size_t>(outcome_.largest_session, group.size());
@@ -252,7 +244,6 @@ private:
         outcome_.node_robots_max = nodes_.fullest_ever();
         outcome_.node_robots_mean = nodes_.fullest_mean();
         outcome_.overload = nodes_.overload();
-        outcome_.database_robots_max = databases_.fullest_ever();
         outcome_.balances = std::move(samples_);
         return std::move(outcome_);
     }
@@ -263,7 +254,6 @@ private:
     std::vector<Group> groups_;
     Ownership ownership_;
     Loads nodes_;
-    Loads databases_;
     std::vector<std::uint32_t> sessions_of_group_; // that have ended
     std::vector<std::uint32_t> group_of_robot_;
     std::vector<Robot> robots_;

@@ -1,6 +1,5 @@
 #include "lab/cluster_size.hpp"
 
-#include "lab/cluster_sessions.hpp"
 #include "lab/cluster_simulation.hpp"
 
 #include <algorithm>
@@ -29,18 +28,6 @@ bool have_room(Plan plan, std::size_t nodes) {
     return scans_per_s * plan.node_us <= kFullShare * plan.node_cores * 1e6;
 }
 
-/// Returns whether the fullest of so many databases has room.
-bool databases_have_room(Plan plan, const std::vector<Group>& groups, std::size_t databases) {
-    plan.databases = databases;
-    std::vector<double> robots(databases, 0.0);
-    for (std::size_t group = 0; group < groups.size(); ++group) {
-        robots[database_of(plan, Draws(plan.seed), group, 0)] += groups[group].size();
-    }
-    const double scans_per_s = std::ranges::max(robots) * plan.rate_hz;
-    return scans_per_s * plan.primary_us <= kFullShare * plan.database_cores * 1e6 &&
-           scans_per_s * plan.log_bytes <= kFullShare * plan.database_mbytes * 1e6;
-}
-
 } // namespace
 
 Size size_of(const Plan& plan) {
@@ -52,8 +39,8 @@ Size size_of(const Plan& plan) {
     size.log_mbytes_per_s = size.scans_per_s * plan.log_bytes / 1e6;
     size.log_tbytes_per_day = size.log_mbytes_per_s * kSecondsPerDay / 1e6;
     size.nodes = count_for(size.node_cores, plan.node_cores) + 1;
-    size.databases = std::max(count_for(size.primary_cores, plan.database_cores),
-                              count_for(size.log_mbytes_per_s, plan.database_mbytes));
+    size.clusters = std::max(count_for(size.primary_cores, plan.database_cores),
+                             count_for(size.log_mbytes_per_s, plan.database_mbytes));
     return size;
 }
 
@@ -69,15 +56,6 @@ std::optional<std::size_t> nodes_needed(const Plan& plan) {
             low = middle + 1;
     }
     return high;
-}
-
-std::optional<std::size_t> databases_needed(const Plan& plan) {
-    const auto groups = groups_of(plan, Draws(plan.seed));
-    const std::size_t low = size_of(plan).databases;
-    for (std::size_t databases = low; databases <= kTriedMax * low; ++databases) {
-        if (databases_have_room(plan, groups, databases)) return databases;
-    }
-    return std::nullopt;
 }
 
 } // namespace scanloom::lab::cluster

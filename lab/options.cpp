@@ -119,7 +119,6 @@ void add_machines_of_cluster(CLI::App& app, cluster::Plan& plan) {
     add_checked(app, "--close-ms", plan.close_ms,
                 "Time for the checkpoint of a session that a stopped node gives up, in ms, up to 10000",
                 check_within(0, 10'000));
-    add_count(app, "--databases", plan.databases, 4096, "Databases, 1 to 4096; a session is in one of them");
     add_checked(app, "--database-cores", plan.database_cores, "Cores of a primary", check_above_up_to(0, 1024));
     add_checked(app, "--database-mb", plan.database_mbytes,
                 "MB (10^6 bytes) of log that a primary may write per second", check_above_up_to(0, 1e6));
@@ -151,7 +150,7 @@ void add_events_of_cluster(CLI::App& app, cluster::Plan& plan, std::optional<dou
 
 CLI::App* add_cluster(CLI::App& app, cluster::Plan& plan, std::optional<double>& upgrade_at) {
     auto* command = app.add_subcommand(
-        "cluster", "Simulates several nodes on shared databases: placement of sessions, failures, an upgrade, and how "
+        "cluster", "Simulates several nodes on a shared database: placement of sessions, failures, an upgrade, and how "
                    "many machines are needed");
     add_load_of_cluster(*command, plan);
     add_machines_of_cluster(*command, plan);

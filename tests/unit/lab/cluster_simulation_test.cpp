@@ -16,7 +16,6 @@ Plan quiet_plan() {
     Plan plan;
     plan.robots = 1200;
     plan.nodes = 6;
-    plan.databases = 3;
     plan.session_life_hours = 0.0;
     plan.failure_hours = 0.0;
     plan.upgrade_at_hours = 0.0;
