@@ -24,14 +24,14 @@ struct Plan {
 
     std::size_t nodes = 3;
     double node_cores = 8.0;
-    double node_us = 18.9;  ///< microseconds of processor time of a node for one scan
+    double node_us = 19.9;  ///< microseconds of processor time of a node for one scan
     double load_ms = 15.0;  ///< milliseconds for loading a session that another node had
     double close_ms = 20.0; ///< milliseconds for closing a session that a stopped node gives up
 
     double database_cores = 4.0;    ///< of a primary
     double database_mbytes = 100.0; ///< most megabytes (10^6) of log per second that a primary may write
     double primary_us = 7.4;        ///< microseconds of processor time of the primary for one scan
-    double standby_us = 3.2;        ///< the same of its standby
+    double standby_us = 3.6;        ///< the same of its standby
     double log_bytes = 600.0;       ///< bytes of one scan in the log
 
     double failure_hours = 720.0; ///< mean time between failures of one node; 0: no failure
