@@ -50,7 +50,9 @@ ClientProtocol::ClientProtocol(ClientProtocolOptions options, ScanQueue& scans, 
     if (options_.compress) compressor_.emplace();
 }
 
-void ClientProtocol::open(std::string server, Time now) { link_.emplace(std::move(server), now); }
+void ClientProtocol::open(std::string server, Time now, bool has_others) {
+    link_.emplace(std::move(server), has_others, now);
+}
 
 void ClientProtocol::close() {
     link_.reset();
@@ -78,7 +80,7 @@ wire::LinkError ClientProtocol::unreadable(const Error& error) const {
     return {{Errc::kMalformed, fmt::format("the program at {} does not speak Scanloom's robot link; give the server's "
                                            "robot port to --server",
                                            link_->server)},
-            options_.has_other_servers};
+            link_->has_others};
 }
 
 std::optional<wire::LinkError> ClientProtocol::take(const wire::Message& message, Time now) {

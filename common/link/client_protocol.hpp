@@ -25,7 +25,6 @@ namespace scanloom::link {
 /// Settings of a ClientProtocol.
 struct ClientProtocolOptions {
     wire::Hello hello;                          ///< the first message of each link: session, robot, token, options
-    bool has_other_servers = false;             ///< another one is tried if a program is no server
     std::shared_ptr<const Sensor> first_sensor; ///< described right after the welcome; null: before its first scan
     std::size_t batch_bytes_max = std::size_t{64} << 10; ///< of one ScanBatch of several scans
     std::size_t batch_scans_max = kScansPerBatchMax;     ///< of one ScanBatch
@@ -63,8 +62,9 @@ public:
 
     // The link
     /// Starts a link. The hello is the first frame. Pre: no link is open.
-    /// @param server  address of the server, for messages
-    void open(std::string server, Time now);
+    /// @param server      address of the server, for messages
+    /// @param has_others  another server may be tried if the program there is not one
+    void open(std::string server, Time now, bool has_others = false);
     /// Ends the link, if one is open. Scans that the server does not have are sent again on the next link.
     void close();
     /// Returns space for at least `bytes` bytes, valid until on_bytes(). Pre, also of on_bytes(): the link is open.
@@ -136,9 +136,11 @@ public:
 private:
     /// The state of one link.
     struct Link {
-        Link(std::string to, Time now) : server(std::move(to)), opened(now), heard(now) {}
+        Link(std::string to, bool is_one_of_several, Time now)
+            : server(std::move(to)), has_others(is_one_of_several), opened(now), heard(now) {}
 
         std::string server;
+        bool has_others;
         Time opened;
         Time heard; ///< when the newest frame arrived
         wire::FrameDecoder decoder{wire::kFrameBytesMax};

@@ -31,6 +31,9 @@ public:
         return sent_to_ ? std::nullopt : std::optional(order_[next_]);
     }
 
+    /// Returns whether another server than the current one may be tried.
+    [[nodiscard]] bool has_others() const noexcept { return servers_.size() > 1 || sent_to_; }
+
     /// Chooses another server after the current one could not be used.
     /// @param address  that it has named instead, HOST:PORT; empty: none
     /// @return whether to connect at once: it named a server, or not all of the list were tried since the last wait.

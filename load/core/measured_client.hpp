@@ -67,8 +67,10 @@ public:
     MeasuredClient(const MeasuredClient&) = delete;
     MeasuredClient& operator=(const MeasuredClient&) = delete;
 
-    /// @param server  address of the server, for messages
-    void open(std::string server, Micros now) { protocol_.open(std::move(server), at(now)); }
+    /// See ClientProtocol::open().
+    void open(std::string server, Micros now, bool has_others = false) {
+        protocol_.open(std::move(server), at(now), has_others);
+    }
     void close(FleetFigures& figures) noexcept;
 
     [[nodiscard]] std::span<std::byte> prepare(std::size_t bytes) { return protocol_.prepare(bytes); }

@@ -90,7 +90,7 @@ asio::awaitable<wire::LinkError> Robot::use_one_link() {
     if (!connected) co_return wire::LinkError{connected.error(), true};
     if (const auto time = servers_.unconfirmed_max()) net::set_unconfirmed_max(link->stream, *time);
     link->is_up = true;
-    client_.open(servers_.current().text(), shared_.clock.now());
+    client_.open(servers_.current().text(), shared_.clock.now(), servers_.has_others());
     flush();
     co_return co_await read_frames(link);
 }

@@ -1067,6 +1067,10 @@ class _Servers:
     def __str__(self) -> str:
         return f"{self.current[0]}:{self.current[1]}"
 
+    def has_others(self) -> bool:
+        """Returns whether another server than the current one may be tried."""
+        return len(self._list) > 1 or self.current != self._list[0]
+
     def choose_another(self, address: str) -> bool:
         """Chooses another server, after the current one failed or has named the one that has the session. Returns
         whether to connect at once."""
@@ -1591,7 +1595,7 @@ class Client:
         if self._conversation.link and self._conversation.link.is_welcome:
             return _retry("MALFORMED_FRAME", f"invalid data from the server: {error}")
         return ScanloomError("MALFORMED_FRAME", f"{self._servers} does not use Scanloom's robot protocol; "
-                             "give the server's robot port, and tls= if it uses TLS")
+                             "give the server's robot port, and tls= if it uses TLS", self._servers.has_others())
 
 
 def _set_options(request: Any, start: Optional[Point], body_radius: Optional[float]) -> None:

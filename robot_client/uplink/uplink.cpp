@@ -27,19 +27,12 @@ constexpr std::chrono::milliseconds kGoodbyeMax{1000};
 
 wire::LinkError lost(std::string message) { return {{Errc::kUnreachable, std::move(message)}, true}; }
 
-link::ClientProtocolOptions protocol_options(const UplinkOptions& options) {
-    auto made = options.protocol;
-    made.has_other_servers = options.servers.size() > 1;
-    return made;
-}
-
 } // namespace
 
 Uplink::Uplink(asio::io_context& io, UplinkOptions options, Feed& feed)
     : io_(io), options_(std::move(options)), feed_(feed), buffer_(options_.buffer_bytes_max),
-      protocol_(protocol_options(options_), buffer_, Clock::now()),
-      servers_(options_.servers, options_.protocol.hello.session), backoff_(options_.backoff_seed, options_.backoff),
-      feed_wake_(io), write_wake_(io), progress_wake_(io) {}
+      protocol_(options_.protocol, buffer_, Clock::now()), servers_(options_.servers, options_.protocol.hello.session),
+      backoff_(options_.backoff_seed, options_.backoff), feed_wake_(io), write_wake_(io), progress_wake_(io) {}
 
 asio::awaitable<Result<>> Uplink::run() {
     co_await (keep_linked() || take_from_feed() || watch_progress());
@@ -183,7 +176,7 @@ asio::awaitable<wire::LinkError> Uplink::use_one_link() {
     const auto connected = co_await net::connect(stream, servers_.current(), timeout);
     if (!connected) co_return wire::LinkError{connected.error(), true};
     if (const auto time = servers_.unconfirmed_max()) net::set_unconfirmed_max(stream, *time);
-    protocol_.open(servers_.current().text(), Clock::now());
+    protocol_.open(servers_.current().text(), Clock::now(), servers_.has_others());
     const auto ended = co_await (read_frames(stream) || write_frames(stream) || watch_link());
     co_return std::visit([](const wire::LinkError& failure) { return failure; }, ended);
 }

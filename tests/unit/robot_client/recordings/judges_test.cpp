@@ -32,7 +32,7 @@ const Judge kRosbagJudge{"/usr/bin/python3 " SCANLOOM_SOURCE_DIR "/tests/unit/ro
 const Judge kMcapJudge{"node " SCANLOOM_SOURCE_DIR "/tests/readers/mcap_judge.mjs",
                        "npm's package @mcap/core, in tests/readers"};
 
-class RecordingJudges : public testing::Test {
+class RecordingJudgesTrials : public testing::Test {
 protected:
     /// Runs a judge. @return the lines that it prints; nullopt, and a skipped test, if it is absent
     std::optional<std::vector<std::string>> run(const Judge& judge, const std::string& arguments) {
@@ -101,7 +101,7 @@ private:
     TemporaryDirectory directory_;
 };
 
-TEST_F(RecordingJudges, RosbagWritesBags) {
+TEST_F(RecordingJudgesTrials, RosbagWritesBags) {
     for (const char* compression : {"none", "bz2", "lz4"}) {
         const auto path = written("");
         if (!run(kRosbagJudge, fmt::format("write {} {}", path.string(), compression))) return;
@@ -109,14 +109,14 @@ TEST_F(RecordingJudges, RosbagWritesBags) {
     }
 }
 
-TEST_F(RecordingJudges, RosbagReadsBagsOfTheTests) {
+TEST_F(RecordingJudgesTrials, RosbagReadsBagsOfTheTests) {
     for (const char* compression : {"none", "bz2", "lz4"}) {
         const auto path = written(testing_support::small_bag({.compression = compression}, 50).file);
         expect_agreement(kRosbagJudge, path, 50);
     }
 }
 
-TEST_F(RecordingJudges, RosbagReadsRealBags) {
+TEST_F(RecordingJudgesTrials, RosbagReadsRealBags) {
     const auto path = real_recording("fuse_turtlebot3.bag");
     if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is absent: it is not part of the product";
     expect_agreement(kRosbagJudge, path, 10'527);
@@ -124,7 +124,7 @@ TEST_F(RecordingJudges, RosbagReadsRealBags) {
     expect_agreement(kRosbagJudge, real_recording("leg_tracker_positive_7.bag"), 510);
 }
 
-TEST_F(RecordingJudges, McapWritesFiles) {
+TEST_F(RecordingJudgesTrials, McapWritesFiles) {
     for (const char* compression : {"none", "zstd"}) {
         const auto path = written("");
         if (!run(kMcapJudge, fmt::format("write {} {}", path.string(), compression))) return;
@@ -132,14 +132,14 @@ TEST_F(RecordingJudges, McapWritesFiles) {
     }
 }
 
-TEST_F(RecordingJudges, McapReadsFilesOfTheTests) {
+TEST_F(RecordingJudgesTrials, McapReadsFilesOfTheTests) {
     for (const char* compression : {"", "lz4", "zstd"}) {
         const auto path = written(testing_support::small_mcap({.compression = compression}, 50).file);
         expect_agreement(kMcapJudge, path, 50);
     }
 }
 
-TEST_F(RecordingJudges, McapReadsRealFiles) {
+TEST_F(RecordingJudgesTrials, McapReadsRealFiles) {
     const auto path = real_recording("turtlebot3_ros2_zstd.mcap");
     if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is absent: it is not part of the product";
     expect_agreement(kMcapJudge, path, 5940);

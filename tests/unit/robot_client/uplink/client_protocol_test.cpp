@@ -414,10 +414,9 @@ TEST_F(ClientProtocolTest, InvalidBytesAreAFinalErrorOnlyOfASingleServerBeforeTh
     EXPECT_TRUE(damaged->retryable);
     EXPECT_THAT(damaged->error.message, testing::StartsWith("the data from the server cannot be read: "));
 
-    auto one_of_several = options();
-    one_of_several.has_other_servers = true;
-    ClientLink client(one_of_several, kStart);
-    client.protocol.open("host:1", now_);
+    client_.protocol.close();
+    ClientLink client(options(), kStart);
+    client.protocol.open("host:1", now_, true);
     EXPECT_TRUE(client.receive_bytes("HTTP/1.1 400 Bad Request\r\n", now_)->retryable) << "on another server";
 }
 
