@@ -20,6 +20,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <exception>
 #include <string_view>
 #include <utility>
 
@@ -32,8 +33,7 @@ using beast::http::field;
 
 constexpr std::chrono::milliseconds kConnectMax{1'500};
 constexpr std::chrono::minutes kAnswerMax{30}; // some answers take minutes
-constexpr std::chrono::seconds kLookEvery{1};  // whether the server is dead
-constexpr int kDeadLooksMax = 2;               // after a failover of the database, servers seem dead for a moment
+constexpr std::chrono::seconds kLookEvery{2};  // whether the server is dead; the list of servers is a second old
 constexpr std::chrono::milliseconds kPieceMax{60'000};
 constexpr std::size_t kForwardedPieceBytes = std::size_t{64} << 10;
 
@@ -103,18 +103,27 @@ asio::awaitable<void> pass_bytes(net::LinkStream& from, net::LinkStream& to, std
 asio::awaitable<Forwarder::Outcome> Forwarder::forward(const store::NodeInfo& owner, const Request& request,
                                                        const Incoming& message, Manner manner) {
     using namespace asio::experimental::awaitable_operators;
-    const auto first = co_await (exchange(owner, request, message, manner) || close_if_dead(owner));
+    std::exception_ptr failure; // `||` would wait for the other one after an exception
+    const auto exchanged = [&]() -> asio::awaitable<Outcome> {
+        try {
+            co_return co_await exchange(owner, request, message, manner);
+        } catch (...) {
+            failure = std::current_exception();
+        }
+        co_return Outcome::kClosed;
+    };
+    const auto first = co_await (exchanged() || close_if_dead(owner));
+    if (failure) std::rethrow_exception(failure);
     co_return std::get<0>(first);
 }
 
 /// Closes the connection to a server that counts as dead, as when it is paused. Never ends by itself.
 asio::awaitable<void> Forwarder::close_if_dead(const store::NodeInfo& owner) {
     asio::steady_timer look(client_.get_executor());
-    for (int dead_looks = 0;;) {
+    for (;;) {
         look.expires_after(kLookEvery);
         co_await look.async_wait(kAwaitTuple);
-        dead_looks = service_.api.services().sessions.is_dead(owner) ? dead_looks + 1 : 0;
-        if (dead_looks >= kDeadLooksMax && server_) server_->close();
+        if (service_.api.services().sessions.is_dead(owner) && server_) server_->close();
     }
 }
 

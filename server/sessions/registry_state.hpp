@@ -125,11 +125,11 @@ public:
         return nodes_;
     }
 
-    /// Returns whether a server has not been heard for as long as makes it dead.
+    /// Returns whether a server is dead, or another one has its name.
     [[nodiscard]] bool is_dead(const store::NodeInfo& server) const {
         const std::lock_guard lock(mutex_);
-        return std::ranges::any_of(nodes_, [&](const store::Node& node) {
-            return !node.is_alive && node.info->name == server.name && node.info->http == server.http;
+        return std::ranges::none_of(nodes_, [&](const store::Node& node) {
+            return !node.is_dead && node.info->name == server.name && node.info->http == server.http;
         });
     }
 

@@ -97,7 +97,7 @@ public:
     /// Returns the servers that share the log, by name; empty: this one uses it alone.
     [[nodiscard]] std::vector<store::Node> nodes() const { return state_.nodes.all(); }
 
-    /// Returns whether a server counts as dead, as it was known a second ago.
+    /// Returns whether a server is dead, or another one has its name, as it was known a second ago.
     [[nodiscard]] bool is_dead(const store::NodeInfo& server) const { return state_.nodes.is_dead(server); }
 
     /// Creates an empty session.

@@ -143,7 +143,7 @@ struct Connection::State {
     std::set<const char*> prepared; // statements of run_prepared(), by their addresses
 
     [[nodiscard]] Error lost(std::string_view what) {
-        return failure("the database on {}: {}; a server connects again, and finds out what is stored", host, what);
+        return failure("the database on {}: {}; the connection was given up", host, what);
     }
 
     static void take_notice(void* state, const PGresult* notice) {

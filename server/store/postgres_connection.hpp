@@ -100,7 +100,7 @@ public:
     [[nodiscard]] bool is_idle() const;
 
     /// Finds out whether what is committed is durable on more than one machine, as far as the database's settings tell.
-    /// @return a sentence that names the setting because of which it is not
+    /// @return a sentence that names the setting that prevents it; nullopt: none
     [[nodiscard]] Result<std::optional<std::string>> replication_fault();
 
 private:

@@ -12,7 +12,7 @@ namespace scanloom::store::postgres {
 namespace {
 
 /// Returns the nodes by their numbers.
-Result<std::map<std::int64_t, Node>> nodes_by_id(Connection& connection, std::int64_t self) {
+Result<std::map<std::int64_t, Node>> nodes_by_id(Connection& connection, std::int64_t self, bool is_steady) {
     const auto rows = connection.run("SELECT id, (extract(epoch FROM now() - seen) * 1000)::bigint, name, robots, http,"
                                      " build FROM scanloom.node",
                                      {}, Connection::kReadTimeout);
@@ -25,6 +25,7 @@ Result<std::map<std::int64_t, Node>> nodes_by_id(Connection& connection, std::in
         nodes[id] = {.info = std::make_shared<const NodeInfo>(NodeInfo{text(2), text(3), text(4), text(5)}),
                      .silent = silent,
                      .is_alive = silent < kDeadAfter,
+                     .is_dead = is_steady && silent >= kDeadAfter,
                      .is_self = id == self};
     }
     return nodes;
@@ -38,8 +39,8 @@ std::shared_ptr<const NodeInfo> owner_of(std::int64_t id, const std::map<std::in
 
 } // namespace
 
-Result<SharedList> list_sessions(Connection& connection, std::int64_t self, const OwnedSessions& owned) {
-    auto nodes = nodes_by_id(connection, self);
+Result<SharedList> list_sessions(Connection& connection, const OwnNode& self, const OwnedSessions& owned) {
+    auto nodes = nodes_by_id(connection, self.id(), self.is_steady());
     if (!nodes) return nodes.error();
     const auto rows = connection.run("SELECT id, owner, end_rev, epoch FROM scanloom.session"
                                      " WHERE NOT removed AND name IS NOT NULL",
@@ -68,7 +69,7 @@ Result<std::optional<FoundSession>> find_session(Connection& connection, std::st
                                      parameters, Connection::kReadTimeout);
     if (!rows) return rows.error();
     if (rows->size() == 0) return std::optional<FoundSession>();
-    const auto nodes = nodes_by_id(connection, self);
+    const auto nodes = nodes_by_id(connection, self, false);
     if (!nodes) return nodes.error();
     return std::optional(
         FoundSession{{static_cast<SessionId>(rows->number(0, 0)), std::string(rows->bytes(0, 3))},

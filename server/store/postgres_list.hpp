@@ -2,6 +2,7 @@
 
 #include "common/error/error.hpp"
 #include "server/store/postgres_connection.hpp"
+#include "server/store/postgres_node.hpp"
 #include "server/store/postgres_owned_sessions.hpp"
 #include "server/store/shared_sessions.hpp"
 
@@ -13,9 +14,9 @@
 namespace scanloom::store::postgres {
 
 /// Returns all nodes, and the sessions that have a name.
-/// @param self   the number of this server's node
+/// @param self   this server's node
 /// @param owned  the sessions that this server believes to own
-[[nodiscard]] Result<SharedList> list_sessions(Connection& connection, std::int64_t self, const OwnedSessions& owned);
+[[nodiscard]] Result<SharedList> list_sessions(Connection& connection, const OwnNode& self, const OwnedSessions& owned);
 
 /// Returns the session with this name; nullopt: there is none.
 /// @param self  the number of this server's node

@@ -41,7 +41,7 @@ Result<> OwnNode::enter(Connection& connection, std::string name) {
     return {};
 }
 
-Result<> OwnNode::renew(Connection& connection) const {
+Result<> OwnNode::renew(Connection& connection) {
     Parameters parameters;
     parameters.add(id_);
     {
@@ -55,7 +55,11 @@ Result<> OwnNode::renew(Connection& connection) const {
                                      " WHERE id = $1 RETURNING id",
                                      parameters);
     if (!rows) return rows.error();
-    if (rows->size() > 0) return {};
+    if (rows->size() > 0) {
+        const auto now = Clock::now();
+        if (now - renewed_at_.exchange(now) > kDeadAfter / 2) steady_since_ = now;
+        return {};
+    }
     return Error{Errc::kNotOwner,
                  fmt::format("this server is not node '{}' of the store {} any more: another server was started with "
                              "this name, or the database was restored; give each server a --node of its own, and start "
@@ -76,8 +80,8 @@ Result<> OwnNode::announce(const NodeInfo& info) {
 /// them, the log fails when others consider the server dead.
 void OwnNode::keep(const std::stop_token& stop) {
     std::optional<Connection> connection;
-    auto renewed_at = Clock::now();
-    steady_since_ = renewed_at;
+    renewed_at_ = Clock::now();
+    steady_since_ = renewed_at_.load();
     for (;;) {
         {
             std::unique_lock lock(mutex_);
@@ -85,18 +89,15 @@ void OwnNode::keep(const std::stop_token& stop) {
         }
         if (stop.stop_requested()) return;
         const auto renewed = renew_over(connection);
-        const auto now = Clock::now();
-        const bool counts_as_dead = now - renewed_at >= kDeadAfter;
+        const bool counts_as_dead = Clock::now() - renewed_at_.load() >= kDeadAfter;
         if (!renewed && (counts_as_dead || renewed.error().code == Errc::kNotOwner)) {
             static_cast<void>(shared_.fail(renewed.error()));
         }
-        if (now - renewed_at > kDeadAfter / 2) steady_since_ = now;
-        if (renewed) renewed_at = now;
     }
 }
 
 /// Renews the row over a connection, which is opened if it does not exist and closed if it fails.
-Result<> OwnNode::renew_over(std::optional<Connection>& connection) const {
+Result<> OwnNode::renew_over(std::optional<Connection>& connection) {
     if (!connection) {
         auto opened = access_.open();
         if (!opened) return opened.error();

@@ -43,11 +43,14 @@ public:
 
     /// Returns whether the row was renewed without a gap for as long as others need to be dead. After the database
     /// could not be used for a while, all rows are old, and the other nodes need time to renew theirs.
-    [[nodiscard]] bool is_steady() const noexcept { return Clock::now() - steady_since_.load() >= kDeadAfter; }
+    [[nodiscard]] bool is_steady() const noexcept {
+        const auto now = Clock::now();
+        return now - steady_since_.load() >= kDeadAfter && now - renewed_at_.load() <= kDeadAfter / 2;
+    }
 
     /// Renews the row.
     /// Errors: kNotOwner: another server was started with the same name; kStoreFailed.
-    [[nodiscard]] Result<> renew(Connection& connection) const;
+    [[nodiscard]] Result<> renew(Connection& connection);
 
     /// Writes the addresses and the version into the row, now and at each renewal.
     [[nodiscard]] Result<> announce(const NodeInfo& info);
@@ -56,12 +59,13 @@ private:
     using Clock = std::chrono::steady_clock;
 
     void keep(const std::stop_token& stop);
-    [[nodiscard]] Result<> renew_over(std::optional<Connection>& connection) const;
+    [[nodiscard]] Result<> renew_over(std::optional<Connection>& connection);
 
     const WriteAccess& access_;
     SharedState& shared_;
     std::string name_;
     std::int64_t id_ = 0;
+    std::atomic<Clock::time_point> renewed_at_ = Clock::now();
     std::atomic<Clock::time_point> steady_since_ = Clock::time_point::max();
     mutable std::mutex mutex_; // of waiting_; guards info_
     NodeInfo info_;

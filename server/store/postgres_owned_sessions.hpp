@@ -73,7 +73,7 @@ public:
         return failure_;
     }
 
-    /// Notes what should be changed although the log works; nullopt: nothing.
+    /// Notes a configuration fault that does not stop the log; nullopt: there is none.
     void warn(std::optional<std::string> what) {
         const std::lock_guard lock(mutex_);
         warning_ = std::move(what);

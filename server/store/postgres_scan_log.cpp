@@ -12,6 +12,7 @@
 #include "server/store/postgres_session_table.hpp"
 #include "server/store/postgres_sweeper.hpp"
 #include "server/store/postgres_write_access.hpp"
+#include "server/store/postgres_writer.hpp"
 #include "server/store/shared_sessions.hpp"
 #include "server/store/store_error.hpp"
 
@@ -88,6 +89,8 @@ private:
     SizeLimit size_limit_;
     mutable std::shared_mutex in_use_; // held alone by reopen()
     std::optional<Connection> lock_;   // holds the lock of the store
+    std::array<Writer, kQueues> confirming_{Writer(access_, shared_), Writer(access_, shared_),
+                                            Writer(access_, shared_), Writer(access_, shared_)};
     Checkpoints checkpoints_{access_, shared_, size_limit_};
     mutable Readers readers_;
     OwnNode node_{access_, shared_}; // leaves after the queues have ended
@@ -227,9 +230,8 @@ Result<> PostgresScanLog::disown(SessionId session) {
 
 Result<> PostgresScanLog::confirm(SessionId session) {
     const std::shared_lock use(in_use_);
-    if (const auto failure = shared_.failure()) return *failure;
     const auto owned = shared_.find(session);
-    return readers_.with_connection([&](Connection& connection) {
+    return confirming_[session % kQueues].make([&](Connection& connection) {
         return owned ? confirm_owned(connection, session, *owned) : Result<>(why_not_owned(connection, session));
     });
 }
@@ -242,7 +244,7 @@ Result<std::optional<FoundSession>> PostgresScanLog::find(std::string_view name)
 Result<SharedList> PostgresScanLog::list() {
     const std::shared_lock use(in_use_);
     return readers_.with_connection(
-        [&](Connection& connection) { return list_sessions(connection, node_.id(), shared_.sessions()); });
+        [&](Connection& connection) { return list_sessions(connection, node_, shared_.sessions()); });
 }
 
 Result<> PostgresScanLog::announce(const NodeInfo& info) { return node_.announce(info); }
@@ -267,6 +269,7 @@ bool PostgresScanLog::reopen() {
     for (auto& queue : queues_) pauses.push_back(queue->pause());
     sessions_.close();
     checkpoints_.close();
+    for (auto& writer : confirming_) writer.close();
     lock_.reset();
     readers_.close();
     auto reopened = take_sessions_again();

@@ -38,8 +38,8 @@ struct PostgresOptions {
 /// Several connections append: a session always uses the same one, and changes of different sessions may take effect
 /// in another order than they were submitted. A session's checkpoint is never ahead of its log.
 /// @param url  postgresql://USER@HOST[:PORT][,HOST[:PORT]...]/DATABASE; the one that accepts writes is used
-/// Errors: kInvalidField: `url` is not an address; kConflict: a program uses the store alone, or there is one
-///         and an unfinished one is to be begun; kStoreFailed: the database cannot be used, or is not replicated;
+/// Errors: kInvalidField: `url` is not an address; kConflict: an unfinished store is to be begun, and there is one;
+///         kStoreFailed: the database cannot be used, or is not replicated, or a program uses the store alone;
 ///         kUnsupportedVersion: it is too old, or a newer program wrote the store.
 [[nodiscard]] Result<std::unique_ptr<ScanLog>> open_postgres(const std::string& url,
                                                              const PostgresOptions& options = {});

@@ -15,7 +15,7 @@ enum class Sharing : std::uint8_t { kWithNodes, kAlone };
 /// Errors: kConflict: another program has it, or has it alone; kStoreFailed.
 [[nodiscard]] Result<> lock_store(Connection& connection, const Place& place, Sharing sharing);
 
-/// How this program opens connections that write.
+/// How this program opens connections that write to sessions.
 struct WriteAccess {
     Place place;
     Sharing sharing = Sharing::kWithNodes;

@@ -43,7 +43,7 @@ struct StoreStats {
     std::optional<std::string> last_error; ///< why the store accepts no more changes
     std::optional<std::string> no_room;    ///< why nothing is stored until the disk has room again
     std::optional<std::string> damage;     ///< found in the files at run time; writing continues
-    std::optional<std::string> warning;    ///< what should be changed although the store works
+    std::optional<std::string> warning;    ///< configuration fault that does not stop the store
 };
 
 /// Whether a visitor receives the next item.

@@ -27,6 +27,8 @@ struct Node {
     std::shared_ptr<const NodeInfo> info;
     std::chrono::milliseconds silent{}; ///< time since it last wrote that it lives
     bool is_alive = false;
+    bool is_dead =
+        false; ///< others may take its sessions; neither is true for a moment after a failover of the database
     bool is_self = false;
     std::size_t sessions = 0; ///< that it owns
 };

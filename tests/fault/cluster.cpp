@@ -18,6 +18,7 @@ namespace postgres = store::postgres;
 using test::PostgresServer;
 
 constexpr std::chrono::seconds kDead{7};                              // a node counts as dead after 5 s
+constexpr std::chrono::seconds kPaused{16};                           // three times that
 constexpr std::uint64_t kDatabaseDiskBytes = std::uint64_t{12} << 30; // of a sparse file
 
 /// Returns the path of the socket in a directory, as PostgreSQL and its clients form it.
@@ -116,7 +117,7 @@ void Cluster::restart_servers() {
 void Cluster::pause_node() {
     Node& node = busiest_node();
     node.server.signal(SIGSTOP);
-    node.server.let_be(kDead);
+    node.server.let_be(kPaused);
     node.server.signal(SIGCONT);
 }
 

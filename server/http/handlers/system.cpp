@@ -248,7 +248,7 @@ boost::json::object backup_json(const store::Backup& backup) {
 
 Result<Response> list_nodes(Context& context) {
     boost::json::array listed;
-    for (const auto& [info, silent, is_alive, is_self, sessions] : context.services.sessions.nodes()) {
+    for (const auto& [info, silent, is_alive, is_dead, is_self, sessions] : context.services.sessions.nodes()) {
         listed.push_back(boost::json::object{{"name", info->name},
                                              {"alive", is_alive},
                                              {"self", is_self},

@@ -9,6 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <csignal>
 #include <fstream>
 #include <iterator>
@@ -114,7 +115,11 @@ TEST_F(LoadProgram, RobotsGoOnAtTheServerThatHasTheirSession) {
     }
     ChildProcess load(program("scanloom-load"), arguments(kSmallLoad + Words{"--verify", "counts"}, b->http_port()),
                       errors());
-    while (sessions() < 20) {
+    const auto have_scans = [&] {
+        const auto all = server_->get_json("/api/v1/sessions").at("sessions").as_array();
+        return std::ranges::count_if(all, [](const auto& one) { return one.at("scans") != 0; }) == 20;
+    };
+    while (!have_scans()) {
     }
     server_->process().signal(SIGTERM);
     const auto outcome = finish(load);

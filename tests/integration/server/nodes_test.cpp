@@ -144,6 +144,16 @@ TEST_F(NodesTest, RequestsAreAnsweredAsByTheServerThatHasTheSession) {
     testing_support::LiveClient at_a(a->http_port(), "one");
     testing_support::LiveClient at_b(b->http_port(), "one");
     EXPECT_EQ(at_b.read(), at_a.read());
+    for (const auto* server : {a.get(), b.get()}) {
+        testing_support::HttpClient foxglove(server->http_port());
+        foxglove.send("GET " + session +
+                      "/foxglove HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: Upgrade\r\nUpgrade: websocket\r\n"
+                      "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n"
+                      "Sec-WebSocket-Protocol: foxglove.sdk.v1\r\n\r\n");
+        const auto answer = foxglove.read();
+        EXPECT_EQ(answer.status, 101);
+        EXPECT_EQ(answer.fields.at("sec-websocket-protocol"), "foxglove.sdk.v1");
+    }
     EXPECT_EQ(http_request(b->http_port(), "DELETE", session).status, 204U);
     EXPECT_EQ(a->get(session).status, 404U);
 }

@@ -7,6 +7,7 @@
 
 #include <atomic>
 #include <string>
+#include <thread>
 #include <vector>
 
 namespace scanloom::store {
@@ -70,8 +71,7 @@ TEST(PostgresFailoverTrials, AStoreThatIsNotUsedNoticesThatItsDatabaseIsGone) {
     test::PostgresServer database;
     const auto log = open_postgres(database.new_database(), {.allow_unreplicated = true}).value();
     database.kill();
-    while (!log->stats().last_error) {
-    }
+    while (!log->stats().last_error) std::this_thread::yield();
     EXPECT_THAT(log->stats().last_error.value(), HasSubstr("cannot be used"));
 }
 

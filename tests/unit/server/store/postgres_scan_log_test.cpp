@@ -5,13 +5,22 @@
 #include "tests/support/log_reading.hpp"
 #include "tests/unit/server/store/postgres_database.hpp"
 
+#include <boost/asio/buffer.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/read.hpp>
+#include <boost/asio/write.hpp>
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <atomic>
 #include <future>
 #include <memory>
+#include <optional>
 #include <string>
+#include <thread>
 
 /// What a store in a database adds to the contract of ScanLog.
 namespace scanloom::store {
@@ -258,16 +267,18 @@ TEST_F(PostgresScanLogTest, AnUnreplicatedDatabaseIsRefusedUnlessAllowed) {
 TEST_F(PostgresScanLogTest, NothingIsWrittenWhileAnotherProgramHasTheStoreAlone) {
     const auto log = open().value();
     const auto session = log->create_session("").value();
-    auto other = postgres::Connection::open(postgres::parse_place(database_.address).value()).value();
-    database_.end_connections();
-    other = postgres::Connection::open(postgres::parse_place(database_.address).value()).value();
-    other.run("SELECT pg_advisory_lock(hashtext('scanloom'), 1)").value();
+    const auto place = postgres::parse_place(database_.address).value();
+    std::optional<postgres::Connection> other;
+    do { // until it is faster than the log's own thread
+        database_.end_connections();
+        other = postgres::Connection::open(place).value();
+    } while (other->run("SELECT pg_try_advisory_lock(hashtext('scanloom'), 1)::int::bigint").value().number(0, 0) == 0);
     const auto refused = append_and_wait(*log, session, 1, {"a"});
     EXPECT_EQ(refused.error().code, Errc::kStoreFailed);
     EXPECT_THAT(refused.error().message, HasSubstr("another program uses the store"));
     EXPECT_THAT(open("b").error().message, HasSubstr("stop it, or name another database"));
     EXPECT_FALSE(log->reopen());
-    other.run("SELECT pg_advisory_unlock(hashtext('scanloom'), 1)").value();
+    other->run("SELECT pg_advisory_unlock(hashtext('scanloom'), 1)").value();
     ASSERT_TRUE(log->reopen());
     EXPECT_TRUE(append_and_wait(*log, session, 1, {"a"}));
 }
@@ -322,6 +333,30 @@ TEST_F(PostgresScanLogTest, ReasonsOfAllHostsAreNamed) {
     EXPECT_THAT(log.error().message, HasSubstr("port 1 failed"));
     EXPECT_THAT(log.error().message, HasSubstr("port 2 failed"));
     EXPECT_THAT(log.error().message, Not(HasSubstr("secret")));
+}
+
+TEST(PostgresVersion, BelowFifteenIsRefused) {
+    namespace asio = boost::asio;
+    asio::io_context io;
+    asio::ip::tcp::acceptor acceptor(io, {asio::ip::address_v4::loopback(), 0});
+    const auto port = acceptor.local_endpoint().port();
+    const std::jthread server([&] {
+        auto socket = acceptor.accept();
+        std::array<char, 1024> received;
+        static_cast<void>(socket.read_some(asio::buffer(received)));
+        using namespace std::string_literals;
+        const auto welcome = "R\0\0\0\x08\0\0\0\0"s // no password is needed
+                             "S\0\0\0\x18server_version\0"s
+                             "14.2\0"s
+                             "Z\0\0\0\x05I"s; // ready for queries
+        asio::write(socket, asio::buffer(welcome));
+        boost::system::error_code ended;
+        asio::read(socket, asio::buffer(received), ended);
+    });
+    const auto refused =
+        open_postgres(fmt::format("postgresql://a@127.0.0.1:{}/b?sslmode=disable&gssencmode=disable", port));
+    EXPECT_EQ(refused.error().code, Errc::kUnsupportedVersion);
+    EXPECT_THAT(refused.error().message, HasSubstr("has PostgreSQL 14; version 15 or a newer one is needed"));
 }
 
 TEST(StoreAddress, IsCheckedAndShownWithoutItsPassword) {
