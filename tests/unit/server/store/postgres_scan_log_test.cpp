@@ -303,6 +303,7 @@ TEST_F(PostgresScanLogTest, ADatabaseWithoutRoomRefusesAndGoesOnLater) {
 }
 
 TEST_F(PostgresScanLogTest, AWrongPasswordIsReported) {
+    static_cast<void>(database_.run("DROP ROLE IF EXISTS locked"));
     static_cast<void>(database_.run("CREATE ROLE locked LOGIN PASSWORD 'right'"));
     std::string url = database_.address;
     url.replace(url.find("scanloom@"), 8, "locked:wrong");
