@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <csignal>
+#include <cstdint>
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
@@ -109,6 +110,15 @@ void make_directory(const fs::path& directory) {
 
 } // namespace
 
+/// Returns where directories are made: in memory, if there is room, because PostgreSQL creates a thousand files.
+fs::path PostgresServer::place() {
+    constexpr std::uintmax_t kRoom = std::uintmax_t{4} << 30;
+    const fs::path memory = "/dev/shm";
+    std::error_code none;
+    const auto space = fs::space(memory, none);
+    return !none && space.available > kRoom ? memory : fs::temp_directory_path();
+}
+
 PostgresServer::PostgresServer() : data_(directory_.path() / "data") { create(); }
 
 PostgresServer::PostgresServer(const fs::path& data) : data_(data), is_synced_(true) { create(); }
@@ -164,13 +174,18 @@ void PostgresServer::start() {
 /// @return what it said if it has ended instead
 std::string PostgresServer::try_to_start() {
     const auto& place = directory_.path();
-    process_.emplace(
-        "/bin/sh",
-        arguments_of("postgres",
-                     {"-D", data_, "-k", place, "-h", "", "-c", is_synced_ ? "fsync=on" : "fsync=off", "-c",
-                      "shared_buffers=16MB", "-c", "wal_retrieve_retry_interval=100ms", "-c", "log_min_messages=log",
-                      "-c", "log_checkpoints=off", "-c", "cluster_name=standby"}), // which a standby calls itself
-        place / "log");
+    process_.emplace("/bin/sh",
+                     arguments_of("postgres", {"-D", data_,
+                                               "-k", place,
+                                               "-h", "",
+                                               "-c", is_synced_ ? "fsync=on" : "fsync=off",
+                                               "-c", "shared_buffers=16MB",
+                                               "-c", "dynamic_shared_memory_type=mmap",
+                                               "-c", "wal_retrieve_retry_interval=100ms",
+                                               "-c", "log_min_messages=log",
+                                               "-c", "log_checkpoints=off",
+                                               "-c", "cluster_name=standby"}), // which a standby calls itself
+                     place / "log");
     std::string said;
     while (const auto line = process_->read_line()) {
         said += *line + '\n';

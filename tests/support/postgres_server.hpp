@@ -50,10 +50,11 @@ public:
     void start();
 
 private:
+    static std::filesystem::path place();
     void create();
     [[nodiscard]] std::string try_to_start();
 
-    TemporaryDirectory directory_;
+    TemporaryDirectory directory_{place()};
     std::filesystem::path data_;
     bool is_synced_ = false; // its data survives a power failure
     int databases_ = 0;

@@ -10,8 +10,8 @@ namespace scanloom {
 /// Creates an empty directory. The destructor removes it with its contents.
 class TemporaryDirectory {
 public:
-    TemporaryDirectory() {
-        std::string name = (std::filesystem::temp_directory_path() / "scanloom-test-XXXXXX").native();
+    explicit TemporaryDirectory(const std::filesystem::path& parent = std::filesystem::temp_directory_path()) {
+        std::string name = (parent / "scanloom-test-XXXXXX").native();
         if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("cannot make a temporary directory " + name);
         path_ = name;
     }
