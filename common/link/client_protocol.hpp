@@ -63,6 +63,7 @@ public:
     // The link
     /// Starts a link. The hello is the first frame. Pre: no link is open.
     /// @param server      address of the server, for messages
+    /// @param now         the current time
     /// @param has_others  another server may be tried if the program there is not one
     void open(std::string server, Time now, bool has_others = false);
     /// Ends the link, if one is open. Scans that the server does not have are sent again on the next link.

@@ -77,7 +77,7 @@ TEST(LabOptionsTest, LocalizationHasADirectoryAndPairsOfFiles) {
 
 TEST(LabOptionsTest, ClusterHasDefaultsAndCompletesThePlan) {
     const auto plan = options_of<cluster::Plan>({"cluster"});
-    EXPECT_EQ(plan.robots, 100'000U);
+    EXPECT_EQ(plan.robots, 10'000U);
     EXPECT_EQ(plan.upgrade_at_hours, 12.0);
     const auto other = options_of<cluster::Plan>(
         {"cluster", "--robots", "500", "--close-ms", "2.5", "--duration", "3", "--node-us", "19", "--seed", "7"});
