@@ -1,6 +1,7 @@
 # The commands test, flakes and mutants of ./scanloom, which sources this file.
 
 readonly no_tests=2 failing_tests=3 # exit codes: no test has the name; tests ran and failed
+readonly tests_at_once=$(($(nproc) + 1)) # many wait for a browser or a process
 
 # run_test [[--all | --nightly] [FILTER] | --changed COMMIT | --sanitizers [--core]]
 run_test() {
@@ -59,7 +60,7 @@ labels_beyond() {
 # run_ctest PRESET OPTION...: runs tests, then lists the skipped ones with the reason.
 run_ctest() {
     local status=0 skipped
-    ctest --preset "$1" --parallel "$(($(nproc) + 1))" --no-tests=error "${@:2}" || status=$? # many wait for a browser or a process
+    ctest --preset "$1" --parallel "$tests_at_once" --no-tests=error "${@:2}" || status=$?
     skipped=$(grep --no-filename --after-context 1 ': Skipped$' "$(folder_of "$1")"/Testing/Temporary/LastTest.log 2>/dev/null |
         grep --invert-match -e ': Skipped$' -e '^--$' | sort | uniq --count || true)
     [[ -z $skipped ]] || printf 'Tests that were skipped, by reason:\n%s\n' "$skipped"
@@ -111,10 +112,10 @@ run_filtered() {
 # FOLDER include its tests in tests/unit/FOLDER.
 readonly parts_of_all=(
     '^tools[.];lab load tests/integration/lab tests/integration/load'
-    '^faults[.];load robot_client server/ingest server/sessions server/store tests/fault tests/integration/robot_client'
-    '^e2e_([^l]|layers);server/http server/live tests/e2e web'
+    '^faults[.];common/link common/net common/wire load robot_client server/app server/ingest server/sessions server/sockets server/store tests/fault tests/integration/robot_client'
+    '^e2e_([^l]|l[^i]);server/http server/live tests/e2e web'
     '^ros_bridge_;robot_client/python robot_client/ros_bridge server/http/handlers/maps.cpp tests/integration/robot_client'
-    '^python_client_;proto robot_client/python server/ingest tests/integration/robot_client/python'
+    '^python_client_;common/link common/wire proto robot_client/python server/ingest tests/integration/robot_client/python'
     '^observability_;docs/observability server/http/handlers/system.cpp server/metrics tests/integration/observability'
     '^openapi_;server/http/openapi.cpp server/http/openapi.py server/http/openapi.yaml server/http/routes.cpp tests/openapi'
     '^lidar_judges$;robot_client/sources tests/readers tests/support'
@@ -267,7 +268,7 @@ list_core_failures() {
 # list_failures PRESET CTEST_OPTION...: runs tests; prints and keeps the names of those that fail.
 list_failures() {
     local log=$logs/flakes-$1.log status=0
-    ctest --preset "$1" --parallel "$(nproc)" --no-tests=error "${@:2}" --quiet --output-log "$log" || status=$?
+    ctest --preset "$1" --parallel "$tests_at_once" --no-tests=error "${@:2}" --quiet --output-log "$log" || status=$?
     ((status == 0 || status == 8)) || fail "ctest ended with code $status; $log is its output"
     ((status == 0)) && return
     cat "$log" >>"$logs/flakes-$1-failed.log"
@@ -298,7 +299,7 @@ run_mutants() {
     mutant_fails "$copy" sources "${only:+$(hint_of "${patches[0]}")}" "${tier[@]}" &&
         fail "tests fail without a mutant; $logs/mutant-sources.log is their output"
     for patch in "${patches[@]}"; do
-        patch --directory "$copy" --strip 1 --quiet --forward <"$patch" || fail "$patch does not apply any more; make it again"
+        patch --directory "$copy" --strip 1 --quiet --forward <"$patch" || fail "$patch does not apply to these sources; write it again"
         find_mutant "$copy" "$patch" "${tier[@]}" || missed+=("$(basename "$patch" .patch)")
         patch --directory "$copy" --strip 1 --quiet --reverse <"$patch"
     done
@@ -306,11 +307,12 @@ run_mutants() {
     ((${#missed[@]} == 0)) || fail "not found: ${missed[*]}"
 }
 
-# copy_sources FOLDER: makes its sources those of this checkout. Only files that differ are written, with a new time, so that
-# what an interrupted run left broken is compiled again.
+# copy_sources FOLDER: makes its sources those of this checkout, without the mutants, which do not apply to themselves. Only
+# files that differ are written, with a new time, so that what an interrupted run left broken is compiled again.
 copy_sources() {
     local file sources=$PWD
-    git ls-files --cached --others --exclude-standard | while read -r file; do
+    rm -rf "$1/tests/mutants"
+    git ls-files --cached --others --exclude-standard -- . ':!tests/mutants' | while read -r file; do
         [[ -f $file ]] || continue
         cmp --silent "$file" "$1/$file" && continue
         mkdir -p "$(dirname "$1/$file")"

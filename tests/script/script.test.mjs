@@ -98,7 +98,10 @@ test('an unknown command is refused, with and without --help', () => {
 test('a build that fails for an external reason reports it', () => {
   const disk = scanloomWith({ ...debian, cmake: 'echo "write: No space left on device"; exit 1' }, 'demo');
   assert.equal(disk.status, 1);
-  assert.match(disk.stderr, /^scanloom: configure \(release\) failed: the disk of .* is full, \d+ MB are left/m);
+  assert.match(
+    disk.stderr,
+    /^scanloom: configure \(release\) failed: a disk is full \(that of .* has \d+ MB left\); free space/m,
+  );
   const network = scanloomWith({ ...debian, cmake: 'echo "npm error code EAI_AGAIN"; exit 1' }, 'demo');
   assert.match(network.stderr, /failed: packages were not downloaded; the network must reach/);
   const sources = scanloomWith({ ...debian, cmake: 'echo "a.cpp:3: error"; exit 1' }, 'demo');
@@ -167,16 +170,63 @@ test('it runs from any folder, by sh, with a CDPATH, and files are relative to t
 });
 
 test('a second build waits until the first has ended', async () => {
-  const slow = { ...debian, cmake: `echo "$$" >>${place}/order; sleep 0.3; echo "$$" >>${place}/order` };
-  const first = spawn(join(place, 'scanloom'), ['build'], { stdio: 'ignore', env: withPrograms(slow) });
-  while (!existsSync(join(place, 'order'))) await setTimeout(20);
-  const ended = once(first, 'exit');
-  const second = spawnSync(join(place, 'scanloom'), ['build'], { encoding: 'utf8', env: withPrograms(slow) });
-  assert.equal(second.status, 0, second.stderr);
-  assert.match(second.stdout, /another .\/scanloom is building here; waiting for it/);
-  assert.deepEqual(await ended, [0, null]);
-  const ids = readFileSync(join(place, 'order'), 'utf8').trim().split('\n');
+  const [order, go] = [join(place, 'order'), join(place, 'go')];
+  const program = `echo "$$" >>${order}; while [ ! -e ${go} ]; do sleep 0.01; done; echo "$$" >>${order}`;
+  const env = withPrograms({ ...debian, cmake: program });
+  const first = spawn(join(place, 'scanloom'), ['build'], { stdio: 'ignore', env });
+  const firstEnded = once(first, 'exit');
+  while (!existsSync(order)) await setTimeout(20);
+  const second = spawn(join(place, 'scanloom'), ['build'], { env });
+  const secondEnded = once(second, 'exit');
+  let output = '';
+  for await (const text of second.stdout) {
+    output += text;
+    if (output.includes('another ./scanloom is building here; waiting for it')) writeFileSync(go, '');
+  }
+  assert.deepEqual(
+    [await firstEnded, await secondEnded],
+    [
+      [0, null],
+      [0, null],
+    ],
+  );
+  assert.ok(existsSync(go), output);
+  const ids = readFileSync(order, 'utf8').trim().split('\n');
   for (let i = 0; i < ids.length; i += 2) assert.equal(ids[i], ids[i + 1]);
+});
+
+test('test WORD runs the tests with this name, and reports that there are none or that some fail', () => {
+  mkdirSync(join(place, 'build/tests'), { recursive: true });
+  const program = [
+    '#!/bin/sh',
+    'case $* in',
+    '*--gtest_list_tests*Known*) echo Suite. && echo "  Known" ;;',
+    '*--gtest_list_tests*) ;;',
+    `*) [ ! -e ${join(place, 'broken')} ] ;;`,
+    'esac',
+  ];
+  for (const name of ['core', 'maps', 'memory', 'server', 'http', 'robot', 'system', 'tools', 'faults'])
+    writeFileSync(join(place, `build/tests/${name}_test`), program.join('\n'), { mode: 0o755 });
+  const run = (...words) => scanloomWith({ ...debian, cmake: '', ctest: 'echo "Total Tests: 0"' }, 'test', ...words);
+  const none = run('NONSENSE');
+  assert.equal(none.status, 2, none.stderr);
+  assert.equal(none.stderr, "scanloom: no test's name contains 'NONSENSE' (--all and --nightly have more tests)\n");
+  assert.equal(run('Known').status, 0);
+  writeFileSync(join(place, 'broken'), '');
+  const failed = run('Known');
+  assert.equal(failed.status, 3);
+  assert.equal(failed.stderr, 'scanloom: tests failed; the lines above name them\n');
+});
+
+test('a folder that cannot be written is reported', () => {
+  const copy = join(place, 'unwritable');
+  mkdirSync(copy);
+  for (const name of ['scanloom', 'packages.txt']) copyFileSync(join(source, name), join(copy, name));
+  writeFileSync(join(copy, 'build'), '');
+  const env = withPrograms({ ...debian, cmake: '' });
+  const result = spawnSync(join(copy, 'scanloom'), ['build'], { encoding: 'utf8', env });
+  assert.equal(result.status, 1);
+  assert.match(result.stderr, /^scanloom: the folder .*\/build\/log cannot be created; make .* writable/m);
 });
 
 test('a demo whose ports are taken gets others, and keeps its logs if it fails', () => {
@@ -261,12 +311,29 @@ test('fault lists the rows of an existing program', () => {
   );
 });
 
-test('every mutant applies to the sources and is in the table of docs/internals/testing.md', () => {
-  const table = readFileSync(join(source, 'docs/internals/testing.md'), 'utf8');
+// The sources with a mutant, where "mutants" runs this, have no tests/mutants.
+const sound = existsSync(join(source, 'tests/mutants'));
+
+test('every mutant applies to the sources and is in the table of docs/internals/testing.md', { skip: !sound }, () => {
+  const table = readFileSync(join(source, 'docs/internals/testing.md'), 'utf8').split('\n');
   for (const file of readdirSync(join(source, 'tests/mutants'))) {
     const options = ['--strip', '1', '--dry-run', '--forward', '--input', join('tests/mutants', file)];
     const run = spawnSync('patch', options, { cwd: source, encoding: 'utf8' });
-    assert.equal(run.status, 0, `${file}: make it again\n${run.stdout}${run.stderr}${run.error ?? ''}`);
-    assert.ok(table.includes(`| \`${file.replace('.patch', '')}\` |`), `${file} is not in the table`);
+    assert.equal(run.status, 0, `${file}: write it again\n${run.stdout}${run.stderr}${run.error ?? ''}`);
+    const row = table.find((line) => line.startsWith(`| \`${file.replace('.patch', '')}\` |`));
+    assert.ok(row, `${file} is not in the table`);
+    const [, word] = readFileSync(join(source, 'tests/mutants', file), 'utf8').match(/^Test: (.*)$/m);
+    assert.ok(row.endsWith(`| \`${word}\` |`), `the table does not name ${word} for ${file}`);
+  }
+});
+
+test('the tests that docs/internals/testing.md names for the removed ones exist', () => {
+  const text = readFileSync(join(source, 'docs/internals/testing.md'), 'utf8');
+  const rows = text.slice(text.indexOf('## Tests that were removed')).matchAll(/^\|.*\|(.*)\|$/gm);
+  const names = [...rows].flatMap(([, found]) => [...found.matchAll(/`(\w+)\.(\w+)`/g)]);
+  assert.ok(names.length > 10);
+  for (const [name, , word] of names) {
+    const run = spawnSync('grep', ['--recursive', '--quiet', '--include=*.cpp', word, 'tests'], { cwd: source });
+    assert.equal(run.status, 0, `${name} does not exist`);
   }
 });
