@@ -311,6 +311,26 @@ test('fault lists the rows of an existing program', () => {
   );
 });
 
+test('the hook reports words that are not plain English, in comments and documents', () => {
+  const copy = join(place, 'hooks');
+  mkdirSync(join(copy, 'tests/hooks'), { recursive: true });
+  for (const name of ['words.sh', 'words.txt'])
+    copyFileSync(join(source, 'tests/hooks', name), join(copy, 'tests/hooks', name));
+  const git = (...words) => assert.equal(spawnSync('git', words, { cwd: copy }).status, 0, words.join(' '));
+  const check = (name, text) => {
+    writeFileSync(join(copy, name), text);
+    git('add', name);
+    return spawnSync('tests/hooks/words.sh', ['--cached'], { cwd: copy, encoding: 'utf8' });
+  };
+  git('init', '--quiet');
+  assert.equal(check('a.cpp', '// Scans are integrated.\nint woven;\n').status, 0);
+  const refused = check('a.cpp', '// Scans are woven.\n');
+  assert.equal(refused.status, 1);
+  assert.match(refused.stderr, /^a.cpp: "woven": write integrated, or applied: .*Scans are woven/);
+  assert.equal(check('a.cpp', '').status, 0);
+  assert.equal(check('a.md', 'A session that is asleep\n').status, 1);
+});
+
 // The sources with a mutant, where "mutants" runs this, have no tests/mutants.
 const sound = existsSync(join(source, 'tests/mutants'));
 
