@@ -108,11 +108,12 @@ run_filtered() {
     [[ -z $failed ]] || tests_failed
 }
 
-# The parts of --all without the suites named Trials: a pattern of their tests' names; their files. The files of a
-# FOLDER include its tests in tests/unit/FOLDER.
+# The parts of --all, without suites named Trials but those of system_test: a pattern of their tests' names; their files.
+# The files of a FOLDER include its tests in tests/unit/FOLDER.
 readonly parts_of_all=(
     '^tools[.];lab load tests/integration/lab tests/integration/load'
     '^faults[.];common/link common/net common/wire load robot_client server/app server/ingest server/sessions server/sockets server/store tests/fault tests/integration/robot_client'
+    '^system[.].*Trials(/|$);common/link common/net robot_client server/app server/http server/sessions server/store tests/fault tests/integration'
     '^e2e_([^l]|l[^i]);server/http server/live tests/e2e web'
     '^ros_bridge_;robot_client/python robot_client/ros_bridge server/http/handlers/maps.cpp tests/integration/robot_client'
     '^python_client_;common/link common/wire proto robot_client/python server/ingest tests/integration/robot_client/python'
