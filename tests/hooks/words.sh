@@ -8,8 +8,8 @@ found=$(git -c diff.noprefix=false -c diff.mnemonicPrefix=false diff --no-color 
     awk '
         FNR == NR { if ($0 !~ /^#/ && NF > 0) { split($0, part, /  +/); instead[part[1]] = part[2] } next }
         /^\+\+\+ b\// { file = substr($0, 7); next }
-        # Comments and strings of sources, every line of documents.
-        /^\+/ && (file ~ /\.md$/ || /\/\/|"|^\+ *#|^\+ *\*/) {
+        # Comments and strings of sources, every line of documents and of YAML.
+        /^\+/ && (file ~ /\.(md|yaml)$/ || /\/\/|"|^\+ *#|^\+ *\*/) {
             line = tolower(substr($0, 2))
             gsub(/ground truth/, "", line)
             for (word in instead)

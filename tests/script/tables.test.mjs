@@ -1,0 +1,53 @@
+// Tables of tests and documents that must agree with the sources.
+import assert from 'node:assert/strict';
+import { spawnSync } from 'node:child_process';
+import { existsSync, readdirSync, readFileSync } from 'node:fs';
+import { join, resolve } from 'node:path';
+import { test } from 'node:test';
+
+const source = resolve(import.meta.dirname ?? new URL('.', import.meta.url).pathname, '../..');
+
+test('the files of each part of --all exist', () => {
+  const text = readFileSync(join(source, 'tests/tiers.sh'), 'utf8');
+  const table = text.match(/parts_of_all=\(\n([^]*?)\n\)/)[1];
+  const files = [...table.matchAll(/^ *'.*;(.*)'$/gm)].flatMap((row) => row[1].split(' '));
+  assert.ok(files.length > 15);
+  files.push(...text.match(/files_of_all_parts=\((.*)\)/)[1].split(' '));
+  for (const file of files) assert.ok(existsSync(join(source, file)), file);
+});
+
+test('each setting that a document changes is reset by the next configuration', () => {
+  const [base] = JSON.parse(readFileSync(join(source, 'CMakePresets.json'), 'utf8')).configurePresets;
+  const texts = ['CONTRIBUTING.md', 'docs/internals/build.md', 'docs/internals/testing.md', 'web/CMakeLists.txt'];
+  const text = texts.map((name) => readFileSync(join(source, name), 'utf8')).join();
+  const changed = [...text.matchAll(/-D([A-Z_]+)=/g)].map((match) => match[1]);
+  assert.ok(changed.length > 3);
+  for (const name of changed) assert.ok(name in base.cacheVariables, name);
+});
+
+// The sources with a mutant, where "mutants" runs this, have no tests/mutants.
+const sound = existsSync(join(source, 'tests/mutants'));
+
+test('every mutant applies to the sources and is in the table of docs/internals/testing.md', { skip: !sound }, () => {
+  const table = readFileSync(join(source, 'docs/internals/testing.md'), 'utf8').split('\n');
+  for (const file of readdirSync(join(source, 'tests/mutants'))) {
+    const options = ['--strip', '1', '--dry-run', '--forward', '--input', join('tests/mutants', file)];
+    const run = spawnSync('patch', options, { cwd: source, encoding: 'utf8' });
+    assert.equal(run.status, 0, `${file}: write it again\n${run.stdout}${run.stderr}${run.error ?? ''}`);
+    const row = table.find((line) => line.startsWith(`| \`${file.replace('.patch', '')}\` |`));
+    assert.ok(row, `${file} is not in the table`);
+    const [, word] = readFileSync(join(source, 'tests/mutants', file), 'utf8').match(/^Test: (.*)$/m);
+    assert.ok(row.endsWith(`| \`${word}\` |`), `the table does not name ${word} for ${file}`);
+  }
+});
+
+test('the tests that docs/internals/testing.md names for the removed ones exist', () => {
+  const text = readFileSync(join(source, 'docs/internals/testing.md'), 'utf8');
+  const rows = text.slice(text.indexOf('## Tests that were removed')).matchAll(/^\|.*\|(.*)\|$/gm);
+  const names = [...rows].flatMap(([, found]) => [...found.matchAll(/`(\w+)\.(\w+)`/g)]);
+  assert.ok(names.length > 10);
+  for (const [name, , word] of names) {
+    const run = spawnSync('grep', ['--recursive', '--quiet', '--include=*.cpp', word, 'tests'], { cwd: source });
+    assert.equal(run.status, 0, `${name} does not exist`);
+  }
+});
