@@ -29,6 +29,8 @@ before(() => {
   for (const name of [
     'scanloom',
     'packages.txt',
+    'tests/bench/bench.sh',
+    'tests/lint.sh',
     'tests/test_quality.sh',
     'tests/tiers.sh',
     'tests/fault/rows.cpp',
