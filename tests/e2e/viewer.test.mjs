@@ -68,17 +68,20 @@ describe('the viewer', () => {
     const session = painted('map');
     await open();
     await tilesShown();
-    for (let n = 0; n < 20; ++n) {
-      session.move('r1', n, 1, 0);
-      const [listed, fact] = await page.evaluate(() => [
-        document.querySelector('#sessions .row-detail')?.textContent,
-        document.querySelector('#facts dd')?.textContent,
-      ]);
-      assert.equal(listed?.split(' scan')[0], fact);
-      await page.waitForTimeout(100);
+    await page.evaluate(() => {
+      window.pairs = new Set();
+      const compare = () => {
+        const listed = document.querySelector('#sessions .row-detail')?.textContent.split(' scan')[0];
+        window.pairs.add(`${listed} = ${document.querySelector('#facts dd')?.textContent}`);
+        requestAnimationFrame(compare);
+      };
+      compare();
+    });
+    for (const scans of [1, 2, 3]) {
+      session.move('r1', scans, 1, 0);
+      await page.waitForFunction((pair) => window.pairs.has(pair), `${scans} = ${scans}`);
     }
-    await hasText(page, '#facts', /20/);
-    await hasText(page, '#sessions', /20 scans/);
+    assert.deepEqual(await page.evaluate(() => [...window.pairs]), ['0 = 0', '1 = 1', '2 = 2', '3 = 3']);
   });
 
   it('keeps the chosen session in the address, over a reload', async () => {

@@ -266,14 +266,19 @@ struct ForbiddenWord {
     std::string_view instead;
 };
 
+constexpr std::string_view kWaitForTheEvent = "wait for the expected event; a test that sleeps is slow or flaky";
+
 // The words are split so that this file obeys the rules itself.
 const std::vector<ForbiddenWord> kForbiddenWords = {
     {"sleep_"
      "for",
-     "tests/", "wait for the expected event; a test that sleeps is slow or flaky"},
+     "tests/", kWaitForTheEvent},
     {"sleep_"
      "until",
-     "tests/", "wait for the expected event; a test that sleeps is slow or flaky"},
+     "tests/", kWaitForTheEvent},
+    {"waitFor"
+     "Timeout",
+     "tests/", kWaitForTheEvent},
     {"DISABLED"
      "_",
      "tests/", "fix the test or remove it"},

@@ -101,6 +101,9 @@ TEST(SourceRules, SleepingTestsAndPostponedWorkAreRefused) {
     EXPECT_THAT(complaints_about("tests/unit/a_test.cpp", "std::this_thread::sleep_"
                                                           "for(1s);\n"),
                 testing::SizeIs(1));
+    EXPECT_THAT(complaints_about("tests/e2e/a.test.mjs", "await page.waitFor"
+                                                         "Timeout(100);\n"),
+                testing::SizeIs(1));
     EXPECT_THAT(complaints_about("tests/unit/a_test.cpp", "TEST(A, DISABLED"
                                                           "_B)\n"),
                 testing::SizeIs(1));
