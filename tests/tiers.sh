@@ -22,6 +22,7 @@ run_test() {
         filter=$1
         (($# == 1)) && [[ $filter =~ ^[A-Za-z0-9_./]+$ ]] ||
             misused "test takes one word that is part of a test's name, not '$*'"
+        occurs "$filter" || no_test "$filter" "$tier"
     fi
     if [[ -n $filter ]]; then
         build_tier "$tier"
@@ -33,6 +34,25 @@ run_test() {
         run_ctest test --label-exclude "$(labels_beyond "$tier")"
         [[ $tier == first ]] || run_images
     fi
+}
+
+# occurs WORD: whether the sources or the names of their files contain each of its parts. If not, no test has this name, which is
+# known before anything is built.
+occurs() {
+    local part parts
+    IFS='._/0123456789' read -ra parts <<<"$1"
+    for part in "${parts[@]}"; do
+        grep --quiet --no-messages --recursive --fixed-strings --exclude-dir={node_modules,data,script} \
+            --include='*.'{cmake,cpp,def,hpp,mjs,py,sh,ts} --include=CMakeLists.txt -e "$part" \
+            -- cmake common core lab load proto robot_client server sim tests web ||
+            [[ -n $(find tests -name "*$part*" -print -quit) ]] || return 1
+    done
+}
+
+# no_test WORD first|all|nightly
+no_test() {
+    echo "scanloom: no test's name contains '$1'$([[ $2 != first ]] || echo ' (--all and --nightly have more tests)')" >&2
+    exit "$no_tests"
 }
 
 # build_tier first|all|nightly
@@ -101,10 +121,7 @@ run_filtered() {
         found=yes
         ctest --preset test "${others[@]}" || failed=yes
     fi
-    if [[ -z $found ]]; then
-        echo "scanloom: no test's name contains '$word'$([[ $2 != first ]] || echo ' (--all and --nightly have more tests)')" >&2
-        exit "$no_tests"
-    fi
+    [[ -n $found ]] || no_test "$word" "$2"
     [[ -z $failed ]] || tests_failed
 }
 

@@ -206,10 +206,14 @@ test('test WORD runs the tests with this name, and reports that there are none o
   ];
   for (const name of ['core', 'maps', 'memory', 'server', 'http', 'robot', 'system', 'tools', 'faults'])
     writeFileSync(join(place, `build/tests/${name}_test`), program.join('\n'), { mode: 0o755 });
+  writeFileSync(join(place, 'tests/suite_test.cpp'), 'TEST(Suite, Known) { helper(); }\n');
   const run = (...words) => scanloomWith({ ...debian, cmake: '', ctest: 'echo "Total Tests: 0"' }, 'test', ...words);
-  const none = run('NONSENSE');
-  assert.equal(none.status, 2, none.stderr);
-  assert.equal(none.stderr, "scanloom: no test's name contains 'NONSENSE' (--all and --nightly have more tests)\n");
+  for (const word of ['NONSENSE', 'Known_NONSENSE', 'helper']) {
+    const none = run(word);
+    assert.equal(none.status, 2, none.stderr);
+    assert.equal(none.stderr, `scanloom: no test's name contains '${word}' (--all and --nightly have more tests)\n`);
+    assert.equal(none.stdout.includes('build (test)'), word === 'helper', none.stdout); // no source has the other words
+  }
   assert.equal(run('Known').status, 0);
   writeFileSync(join(place, 'broken'), '');
   const failed = run('Known');

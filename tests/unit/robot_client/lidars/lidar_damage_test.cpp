@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
 
 namespace scanloom::robot {
@@ -81,7 +82,7 @@ TEST_P(LidarDamage, RandomBytesGiveNoScan) {
 INSTANTIATE_TEST_SUITE_P(Each, LidarDamage, testing::ValuesIn(lidar_models().begin(), lidar_models().end()),
                          [](const auto& each) {
                              std::string name(each.param.name);
-                             std::erase(name, '-');
+                             std::ranges::replace(name, '-', '_');
                              return name;
                          });
 

@@ -10,6 +10,7 @@
 
 #include <sys/ioctl.h>
 
+#include <algorithm>
 #include <array>
 
 namespace scanloom::robot {
@@ -61,7 +62,7 @@ TEST_P(EachLidar, GivesScansOverASerialLine) {
 INSTANTIATE_TEST_SUITE_P(Models, EachLidar, testing::ValuesIn(lidar_models().begin(), lidar_models().end()),
                          [](const auto& each) {
                              std::string name(each.param.name);
-                             std::erase(name, '-');
+                             std::ranges::replace(name, '-', '_');
                              return name;
                          });
 
