@@ -106,6 +106,15 @@ test('a build that fails for an external reason reports it', () => {
   );
   const network = scanloomWith({ ...debian, cmake: 'echo "npm error code EAI_AGAIN"; exit 1' }, 'demo');
   assert.match(network.stderr, /failed: packages were not downloaded; the network must reach/);
+  const mirror = {
+    'dpkg-query': '',
+    sudo: '[ "$1" = --validate ] || exec "$@"',
+    'apt-get': 'echo "E: Failed to fetch http://deb.example.org/x.deb  Temporary failure resolving"; exit 100',
+  };
+  assert.match(
+    scanloomWith(mirror, 'demo').stderr,
+    /install \d+ Debian packages failed: packages were not downloaded; the network must reach/,
+  );
   const sources = scanloomWith({ ...debian, cmake: 'echo "a.cpp:3: error"; exit 1' }, 'demo');
   assert.equal(sources.stderr, 'scanloom: configure (release) failed\n');
 });
@@ -278,6 +287,18 @@ test('a message reports a system that is not Debian', () => {
   assert.equal(
     result.stderr,
     'scanloom: this is not Debian; packages.txt lists the Debian 12 packages that Scanloom needs\n',
+  );
+});
+
+test('who may not install packages is told the command for root', () => {
+  chmodSync(place, 0o755);
+  const env = withPrograms({ 'dpkg-query': '', sudo: 'exit 1' });
+  const uid = process.getuid() || 65534;
+  const result = spawnSync(join(place, 'scanloom'), ['install', 'fmt'], { encoding: 'utf8', env, uid });
+  assert.equal(result.status, 1);
+  assert.match(
+    result.stderr,
+    /^scanloom: Debian packages are missing, and installation needs root or sudo; run as root: apt-get install clang-format-14\b/,
   );
 });
 
