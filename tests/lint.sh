@@ -27,8 +27,10 @@ run_tidy() {
 choose_files() {
     local file
     if (($# == 1)); then
-        git rev-parse --git-dir >/dev/null 2>&1 || fail "$1 needs a git checkout, but $PWD is not one; name the files to check"
-        mapfile -t files < <(git -c core.quotePath=false ls-files)
+        need fmt # git
+        git rev-parse --git-dir >/dev/null || fail "$1 cannot list the files of $PWD; name the files to check"
+        mapfile -t files < <(git -c core.quotePath=false ls-files --cached --others --exclude-standard --deduplicate |
+            while read -r file; do [[ ! -f $file ]] || echo "$file"; done)
     fi
     for file in "${@:2}"; do
         [[ $file != -* ]] || misused "$1 takes no '$file'"

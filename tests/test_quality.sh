@@ -71,6 +71,7 @@ run_mutants() {
     done
     patches=(tests/mutants/${only:-*}.patch)
     [[ -f ${patches[0]} ]] || misused "there is no mutant '$only', only $(cd tests/mutants && echo *.patch)"
+    git rev-parse --git-dir >/dev/null || fail "mutants cannot list the sources of $PWD"
     mkdir -p "$logs" "$copy"
     copy_sources "$copy"
     echo "the tests without a mutant"
@@ -86,7 +87,7 @@ run_mutants() {
 }
 
 # copy_sources FOLDER: makes its sources those of this checkout, without the mutants, which do not apply to themselves. Only
-# files that differ are written, with a new time, so that what an interrupted run left broken is compiled again.
+# files that differ are written, with a new time, so that sources that an interrupted run left with a mutant are compiled again.
 copy_sources() {
     local file sources=$PWD
     rm -rf "$1/tests/mutants"

@@ -4,12 +4,12 @@
 set -euo pipefail
 cd "$(git rev-parse --show-toplevel)"
 
-found=$(git -c diff.noprefix=false -c diff.mnemonicPrefix=false diff --no-color --unified=0 "${1:---cached}" -- '*.cpp' '*.hpp' '*.ts' '*.mjs' '*.py' '*.yaml' '*.md' '*.proto' scanloom '*.sh' ':!tests/hooks' |
+found=$(git -c diff.noprefix=false -c diff.mnemonicPrefix=false diff --no-ext-diff --no-color --unified=0 "${1:---cached}" -- '*.cpp' '*.hpp' '*.ts' '*.mjs' '*.py' '*.yaml' '*.md' '*.proto' scanloom '*.sh' ':!tests/hooks' |
     awk '
         FNR == NR { if ($0 !~ /^#/ && NF > 0) { split($0, part, /  +/); instead[part[1]] = part[2] } next }
         /^\+\+\+ b\// { file = substr($0, 7); next }
         # Comments and strings of sources, every line of documents and of YAML.
-        /^\+/ && (file ~ /\.(md|yaml)$/ || /\/\/|"|^\+ *#|^\+ *\*/) {
+        /^\+/ && (file ~ /\.(md|yaml)$/ || /\/\/|["\047]|^\+ *#|^\+ *\*/) {
             line = tolower(substr($0, 2))
             gsub(/ground truth/, "", line)
             for (word in instead)

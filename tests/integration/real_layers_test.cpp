@@ -69,7 +69,8 @@ protected:
 
 std::string name_of(const LayerCase& layers) {
     const auto [file, cell_size, model] = layers;
-    return std::string(file).substr(0, std::string(file).find('-')) + (cell_size == 0.05 ? "At5cmBy" : "At10cmBy") +
+    return std::string(file).substr(0, std::string(file).find('-')) +
+           (cell_size == 0.05 ? "_at_5cm_by_" : "_at_10cm_by_") +
            (model == RayModel::kInverseSensorModel ? "Sectors"
             : model == RayModel::kBresenham        ? "Bresenham"
                                                    : "Traversal");

@@ -290,7 +290,7 @@ test('a message reports a system that is not Debian', () => {
   );
 });
 
-test('who may not install packages is told the command for root', () => {
+test('without root or sudo, the message has the command for root', () => {
   chmodSync(place, 0o755);
   const env = withPrograms({ 'dpkg-query': '', sudo: 'exit 1' });
   const uid = process.getuid() || 65534;
@@ -339,4 +339,6 @@ test('the hook reports words that are not plain English, in comments and documen
     assert.equal(check(name, '').status, 0, name);
   }
   assert.equal(check('a.py', '# A session that is asleep\n').status, 1);
+  assert.equal(check('a.py', '').status, 0);
+  assert.equal(check('a.mjs', "test('a session that is asleep');\n").status, 1);
 });

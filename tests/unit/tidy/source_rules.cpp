@@ -186,13 +186,15 @@ const std::vector<Package> kPackages = {
 
 // Standard headers for files, sockets, clocks, threads and logs.
 const Names kOutsideWorld = {
-    "barrier",    "chrono",       "condition_variable",
-    "cstdio",     "ctime",        "filesystem",
-    "fstream",    "future",       "iostream",
-    "latch",      "mutex",        "print",
-    "semaphore",  "shared_mutex", "stdio.h",
-    "stop_token", "syncstream",   "thread",
-    "time.h",     "unistd.h",
+    "barrier",   "chrono",       "condition_variable",
+    "csignal",   "cstdio",       "ctime",
+    "dirent.h",  "fcntl.h",      "filesystem",
+    "fstream",   "future",       "iostream",
+    "latch",     "mutex",        "netdb.h",
+    "poll.h",    "print",        "pthread.h",
+    "semaphore", "shared_mutex", "signal.h",
+    "stdio.h",   "stop_token",   "syncstream",
+    "thread",    "time.h",       "unistd.h",
 };
 
 /// Returns whether `path` is inside `folder`: "server" and "core/mapping" contain "core/mapping/cell.hpp";
@@ -224,9 +226,10 @@ std::optional<std::string> forbidden_arrow(const Folder& folder, std::string_vie
                                fmt::join(package.folders, ", "));
         }
     }
-    const bool outside = std::ranges::find(kOutsideWorld, header) != kOutsideWorld.end() || header.starts_with("sys/");
+    const bool outside = std::ranges::find(kOutsideWorld, header) != kOutsideWorld.end() ||
+                         any_holds({"arpa", "netinet", "sys"}, header);
     if (folder.pure && outside && std::ranges::find(folder.may_use, header) == folder.may_use.end()) {
-        return fmt::format("{} is pure and may not include {}: files, clocks, threads and logs stay outside",
+        return fmt::format("{} is pure and may not include {}: files, sockets, clocks, threads and logs stay outside",
                            folder.path, header);
     }
     return std::nullopt;

@@ -165,9 +165,9 @@ protected:
     mapping::MapConfig config_;
 };
 
-class ExclusionTrialsTest : public ExclusionsTest, public testing::WithParamInterface<unsigned> {};
+class RandomExclusionsTest : public ExclusionsTest, public testing::WithParamInterface<unsigned> {};
 
-TEST_P(ExclusionTrialsTest, ExcludedScansLeaveNoTraceInMapsTrajectoriesAndCaptures) {
+TEST_P(RandomExclusionsTest, ExcludedScansLeaveNoTraceInMapsTrajectoriesAndCaptures) {
     std::mt19937 random(GetParam());
     create(random() % 2 == 0 ? 0.0 : 1.5);
     const auto number = [&](std::uint64_t below) { return random() % below; };
@@ -197,7 +197,7 @@ TEST_P(ExclusionTrialsTest, ExcludedScansLeaveNoTraceInMapsTrajectoriesAndCaptur
               std::nullopt);
 }
 
-INSTANTIATE_TEST_SUITE_P(Seeds, ExclusionTrialsTest, testing::Range(1U, 13U));
+INSTANTIATE_TEST_SUITE_P(Seeds, RandomExclusionsTest, testing::Range(1U, 13U));
 
 TEST_F(ExclusionsTest, KeepTheRobotsSequenceNumbers) {
     create();
