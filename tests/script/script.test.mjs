@@ -106,14 +106,18 @@ test('a build that fails for an external reason reports it', () => {
   );
   const network = scanloomWith({ ...debian, cmake: 'echo "npm error code EAI_AGAIN"; exit 1' }, 'demo');
   assert.match(network.stderr, /failed: packages were not downloaded; the network must reach/);
-  const mirror = {
-    'dpkg-query': '',
-    sudo: '[ "$1" = --validate ] || exec "$@"',
-    'apt-get': 'echo "E: Failed to fetch http://deb.example.org/x.deb  Temporary failure resolving"; exit 100',
-  };
+  const installing = (answer) =>
+    scanloomWith(
+      { 'dpkg-query': '', sudo: '[ "$1" = --validate ] || exec "$@"', 'apt-get': `echo "E: ${answer}"; exit 100` },
+      'demo',
+    ).stderr;
   assert.match(
-    scanloomWith(mirror, 'demo').stderr,
+    installing('Failed to fetch http://deb.example.org/x.deb  Temporary failure resolving'),
     /install \d+ Debian packages failed: packages were not downloaded; the network must reach/,
+  );
+  assert.match(
+    installing('Could not get lock /var/lib/dpkg/lock-frontend. It is held by process 7'),
+    /install \d+ Debian packages failed: another program installs packages; repeat the command when it has ended/,
   );
   const sources = scanloomWith({ ...debian, cmake: 'echo "a.cpp:3: error"; exit 1' }, 'demo');
   assert.equal(sources.stderr, 'scanloom: configure (release) failed\n');
