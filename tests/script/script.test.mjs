@@ -282,6 +282,20 @@ test('tidy lists the files that clang-tidy does not check', () => {
   assert.match(result.stdout, /^not checked: tests\/x.cpp \(clang-tidy reads only common, /m);
 });
 
+test('fmt reads new files and no deleted ones', () => {
+  for (const name of ['kept.cpp', 'deleted.cpp']) writeFileSync(join(place, name), '');
+  for (const words of [
+    ['init', '--quiet'],
+    ['add', 'kept.cpp', 'deleted.cpp'],
+  ])
+    spawnSync('git', words, { cwd: place });
+  rmSync(join(place, 'deleted.cpp'));
+  writeFileSync(join(place, 'new.cpp'), '');
+  const result = scanloomWith({ ...debian, npm: '', 'clang-format-14': 'echo "$@"' }, 'fmt');
+  assert.equal(result.status, 0, result.stderr);
+  assert.deepEqual(result.stdout.match(/\b(kept|deleted|new)\.cpp/g).sort(), ['kept.cpp', 'new.cpp']);
+});
+
 test('a message reports a system that is not Debian', () => {
   const bin = join(place, 'no_debian');
   mkdirSync(bin);
@@ -319,30 +333,4 @@ test('fault lists the rows of an existing program', () => {
     0,
     'a row is that of the sources, which are built first',
   );
-});
-
-test('the hook reports words that are not plain English, in comments and documents', () => {
-  const copy = join(place, 'hooks');
-  mkdirSync(join(copy, 'tests/hooks'), { recursive: true });
-  for (const name of ['words.sh', 'words.txt'])
-    copyFileSync(join(source, 'tests/hooks', name), join(copy, 'tests/hooks', name));
-  const git = (...words) => assert.equal(spawnSync('git', words, { cwd: copy }).status, 0, words.join(' '));
-  const check = (name, text) => {
-    writeFileSync(join(copy, name), text);
-    git('add', name);
-    return spawnSync('tests/hooks/words.sh', ['--cached'], { cwd: copy, encoding: 'utf8' });
-  };
-  git('init', '--quiet');
-  assert.equal(check('a.cpp', '// Scans are integrated.\nint woven;\n').status, 0);
-  const refused = check('a.cpp', '// Scans are woven.\n');
-  assert.equal(refused.status, 1);
-  assert.match(refused.stderr, /^a.cpp: "woven": write integrated, or applied: .*Scans are woven/);
-  assert.equal(check('a.cpp', '').status, 0);
-  for (const name of ['a.md', 'a.yaml']) {
-    assert.equal(check(name, 'a session that is asleep\n').status, 1, name);
-    assert.equal(check(name, '').status, 0, name);
-  }
-  assert.equal(check('a.py', '# A session that is asleep\n').status, 1);
-  assert.equal(check('a.py', '').status, 0);
-  assert.equal(check('a.mjs', "test('a session that is asleep');\n").status, 1);
 });

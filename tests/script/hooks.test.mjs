@@ -1,0 +1,36 @@
+// The hooks of tests/hooks, in a repository of their own.
+import assert from 'node:assert/strict';
+import { spawnSync } from 'node:child_process';
+import { copyFileSync, mkdirSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join, resolve } from 'node:path';
+import { test } from 'node:test';
+
+const source = resolve(import.meta.dirname ?? new URL('.', import.meta.url).pathname, '../..');
+
+test('the hook reports words that are not plain English, in comments and documents', (t) => {
+  const copy = mkdtempSync(join(tmpdir(), 'scanloom-hook-test.'));
+  t.after(() => rmSync(copy, { recursive: true, force: true }));
+  mkdirSync(join(copy, 'tests/hooks'), { recursive: true });
+  for (const name of ['words.sh', 'words.txt'])
+    copyFileSync(join(source, 'tests/hooks', name), join(copy, 'tests/hooks', name));
+  const git = (...words) => assert.equal(spawnSync('git', words, { cwd: copy }).status, 0, words.join(' '));
+  const check = (name, text) => {
+    writeFileSync(join(copy, name), text);
+    git('add', name);
+    return spawnSync('tests/hooks/words.sh', ['--cached'], { cwd: copy, encoding: 'utf8' });
+  };
+  git('init', '--quiet');
+  assert.equal(check('a.cpp', '// Scans are integrated.\nint woven;\n').status, 0);
+  const refused = check('a.cpp', '// Scans are woven.\n');
+  assert.equal(refused.status, 1);
+  assert.match(refused.stderr, /^a.cpp: "woven": write integrated, or applied: .*Scans are woven/);
+  assert.equal(check('a.cpp', '').status, 0);
+  for (const name of ['a.md', 'a.yaml']) {
+    assert.equal(check(name, 'a session that is asleep\n').status, 1, name);
+    assert.equal(check(name, '').status, 0, name);
+  }
+  assert.equal(check('a.py', '# A session that is asleep\n').status, 1);
+  assert.equal(check('a.py', '').status, 0);
+  assert.equal(check('a.mjs', "test('a session that is asleep');\n").status, 1);
+});
