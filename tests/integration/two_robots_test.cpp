@@ -1,4 +1,5 @@
 #include "sim/world.hpp"
+#include "tests/support/uniform.hpp"
 #include "tests/unit/core/localization/two_robots_log.hpp"
 #include "tests/unit/core/slam/two_robots.hpp"
 

@@ -47,9 +47,4 @@ public:
     [[nodiscard]] Scan scan(const Sensor& sensor, const Pose2& T_map_robot, double noise_m, std::mt19937& random) const;
 };
 
-/// Returns a number evenly distributed in [low, high), equal on every machine.
-inline double uniform(std::mt19937& random, double low, double high) {
-    return low + (high - low) * (static_cast<double>(random()) * 0x1p-32);
-}
-
 } // namespace scanloom::testing_support

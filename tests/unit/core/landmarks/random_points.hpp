@@ -1,6 +1,7 @@
 #pragma once
 
 #include "common/geometry/pose2.hpp"
+#include "tests/support/uniform.hpp"
 
 #include <cstddef>
 #include <random>
@@ -8,11 +9,6 @@
 
 /// Random clouds that depend only on the seed, on every machine.
 namespace scanloom::testing_support {
-
-/// Returns a number of the uniform distribution over [low, high), in steps of 2^-32 of its width.
-inline double uniform(std::mt19937& random, double low, double high) {
-    return low + (high - low) * (static_cast<double>(random()) * 0x1p-32);
-}
 
 /// Returns a cloud of one of several kinds: random points, a lattice (with many equal points and distances), a line, or
 /// groups.

@@ -1,5 +1,6 @@
 #include "core/scan_matching/line_matching.hpp"
 #include "tests/support/building.hpp"
+#include "tests/support/uniform.hpp"
 
 #include <gtest/gtest.h>
 

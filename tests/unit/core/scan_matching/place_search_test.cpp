@@ -1,6 +1,7 @@
 #include "core/scan_matching/place_search.hpp"
 #include "core/scan_matching/seen_space.hpp"
 #include "tests/support/building.hpp"
+#include "tests/support/uniform.hpp"
 
 #include <gtest/gtest.h>
 

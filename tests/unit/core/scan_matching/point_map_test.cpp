@@ -1,5 +1,6 @@
 #include "core/scan_matching/point_map.hpp"
 #include "tests/support/building.hpp"
+#include "tests/support/uniform.hpp"
 
 #include <gtest/gtest.h>
 

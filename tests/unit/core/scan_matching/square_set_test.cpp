@@ -1,5 +1,6 @@
 #include "core/scan_matching/square_set.hpp"
 #include "tests/support/building.hpp"
+#include "tests/support/uniform.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,7 @@
 #include "core/scan_matching/agreement.hpp"
 #include "core/scan_matching/line_matching.hpp"
 #include "core/slam/candidates.hpp"
+#include "tests/support/uniform.hpp"
 #include "tests/unit/core/slam/other_buildings.hpp"
 
 #include <gtest/gtest.h>

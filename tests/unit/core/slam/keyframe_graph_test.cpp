@@ -1,5 +1,6 @@
 #include "core/slam/keyframe_graph.hpp"
 #include "tests/support/building.hpp"
+#include "tests/support/uniform.hpp"
 #include "tests/unit/core/slam/drive.hpp"
 
 #include <gmock/gmock.h>

@@ -1,5 +1,6 @@
 #include "core/slam/pose_graph.hpp"
 #include "tests/support/building.hpp"
+#include "tests/support/uniform.hpp"
 #include "tests/unit/core/slam/pose_graph_oracle.hpp"
 
 #include <Eigen/Dense>

@@ -1,4 +1,5 @@
 #include "core/slam/submap.hpp"
+#include "tests/support/uniform.hpp"
 #include "tests/unit/core/slam/drive.hpp"
 
 #include <gtest/gtest.h>
