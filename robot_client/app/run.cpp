@@ -2,10 +2,14 @@
 
 #include "common/app/settings.hpp"
 #include "common/net/await_tuple.hpp"
+#include "robot_client/app/info.hpp"
+#include "robot_client/app/lidars.hpp"
 #include "robot_client/app/localization_notes.hpp"
 #include "robot_client/app/make_foxglove.hpp"
 #include "robot_client/app/make_source.hpp"
+#include "robot_client/app/options.hpp"
 #include "robot_client/app/progress.hpp"
+#include "robot_client/app/truth.hpp"
 #include "robot_client/uplink/live_feed.hpp"
 #include "robot_client/uplink/recording_feed.hpp"
 #include "robot_client/uplink/server_requests.hpp"
@@ -212,6 +216,18 @@ ExitCode run(const RobotOptions& options) {
                                  options.spool.string(), options.session, options.robot));
     }
     return fail(outcome->error());
+}
+
+ExitCode run(int argc, const char* const* argv) {
+    const auto options = parse_options(argc, argv);
+    if (const auto* leave = std::get_if<Leave>(&options)) {
+        fmt::print(leave->code == kExitDone ? stdout : stderr, "{}", leave->text);
+        return leave->code;
+    }
+    if (const auto* truth = std::get_if<GroundTruthOptions>(&options)) return run(*truth);
+    if (const auto* info = std::get_if<InfoOptions>(&options)) return run(*info);
+    if (const auto* lidars = std::get_if<LidarsOptions>(&options)) return run(*lidars);
+    return run(std::get<RobotOptions>(options));
 }
 
 } // namespace scanloom::robot

@@ -3,6 +3,7 @@
 #include "common/app/machine.hpp"
 #include "common/app/standard_streams.hpp"
 #include "server/app/guards.hpp"
+#include "server/app/options.hpp"
 #include "server/app/resource_limits.hpp"
 #include "server/app/server.hpp"
 #include "server/app/standard_error_sink.hpp"
@@ -12,7 +13,10 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <csignal>
+#include <iostream>
 #include <memory>
+#include <variant>
 
 namespace scanloom::app {
 namespace {
@@ -31,8 +35,6 @@ void set_up_log(const ServerOptions& options) {
     }
     spdlog::set_level(spdlog::level::from_str(options.log_level));
 }
-
-} // namespace
 
 int run(const ServerOptions& options) {
     set_up_log(options);
@@ -53,6 +55,20 @@ int run(const ServerOptions& options) {
     auto server = Server::open(options, limits_within(descriptors));
     auto ended = server ? (*server)->run() : Result<>(server.error());
     return ended ? kExitDone : report_failure(ended.error());
+}
+
+} // namespace
+
+int run(int argc, const char* const* argv) {
+    const auto hangup = std::signal(SIGHUP, SIG_IGN); // until the server handles it
+    const auto options = read_options(argc, argv);
+    if (const auto* leave = std::get_if<Leave>(&options)) {
+        (leave->code == kExitDone ? std::cout : std::cerr) << leave->text;
+        return leave->code;
+    }
+    const auto& settings = std::get<ServerOptions>(options);
+    if (settings.task != Task::kServe) std::signal(SIGHUP, hangup);
+    return run(settings);
 }
 
 } // namespace scanloom::app

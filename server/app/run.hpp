@@ -1,12 +1,10 @@
 #pragma once
 
-#include "server/app/options.hpp"
-
 namespace scanloom::app {
 
-/// Does the task of the options, and logs to standard error: serves until a signal ends it, or checks, repairs or
-/// restores a store.
+/// Does the task that the arguments of the program name, and logs to standard error: serves until a signal ends it, or
+/// checks, repairs, restores or copies a store.
 /// @return exit code of the program
-int run(const ServerOptions& options);
+[[nodiscard]] int run(int argc, const char* const* argv);
 
 } // namespace scanloom::app
