@@ -73,6 +73,8 @@ const Named kFuzzers[] = {
     {"ydlidar", ydlidar_fuzzer},
 };
 
+const std::filesystem::path kCorpus = SCANLOOM_SOURCE_DIR "/tests/fuzz/corpus";
+
 std::string bytes_of(const std::filesystem::path& path) {
     std::ifstream file(path, std::ios::binary);
     return {std::istreambuf_iterator<char>(file), {}};
@@ -83,7 +85,7 @@ class FuzzCorpus : public testing::TestWithParam<Named> {};
 /// Runs a fuzzer on every file of its corpus once. A fuzzer aborts on an input that violates a property.
 TEST_P(FuzzCorpus, EveryFilePasses) {
     std::size_t files = 0;
-    for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(CORPUS) / GetParam().name)) {
+    for (const auto& entry : std::filesystem::directory_iterator(kCorpus / GetParam().name)) {
         SCOPED_TRACE(entry.path());
         const auto bytes = bytes_of(entry.path());
         EXPECT_EQ(GetParam().fuzzer(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()), 0);
@@ -94,7 +96,7 @@ TEST_P(FuzzCorpus, EveryFilePasses) {
 
 TEST(FuzzCorpora, EachHasItsFuzzer) {
     std::set<std::string> folders;
-    for (const auto& entry : std::filesystem::directory_iterator(CORPUS)) folders.insert(entry.path().filename());
+    for (const auto& entry : std::filesystem::directory_iterator(kCorpus)) folders.insert(entry.path().filename());
     std::set<std::string> fuzzers;
     for (const auto& named : kFuzzers) fuzzers.insert(named.name);
     EXPECT_EQ(folders, fuzzers);
@@ -102,13 +104,13 @@ TEST(FuzzCorpora, EachHasItsFuzzer) {
 
 /// A parser rejects a seed of an earlier format at once, so it would test nothing.
 TEST(FuzzCorpora, AreOfTodaysFormats) {
-    const std::filesystem::path folder = WRITTEN_CORPUS;
+    const std::filesystem::path folder = SCANLOOM_BUILD_DIR "/fuzz_corpus";
     std::filesystem::remove_all(folder);
     write_corpus(folder);
     for (const auto& seed : std::filesystem::recursive_directory_iterator(folder)) {
         if (!seed.is_regular_file()) continue;
-        const auto kept = std::filesystem::path(CORPUS) / std::filesystem::relative(seed, folder);
-        EXPECT_TRUE(bytes_of(kept) == bytes_of(seed)) << kept << "; update it: cp -r " << folder << "/. " << CORPUS;
+        const auto kept = kCorpus / std::filesystem::relative(seed, folder);
+        EXPECT_TRUE(bytes_of(kept) == bytes_of(seed)) << kept << "; update it: cp -r " << folder << "/. " << kCorpus;
     }
 }
 

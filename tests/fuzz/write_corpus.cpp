@@ -276,7 +276,7 @@ void write_estimated_checkpoint(const std::filesystem::path& folder) {
 void write_earlier_checkpoints(const std::filesystem::path& folder) {
     for (const char* version : {"parts_2", "parts_3"}) {
         const TemporaryDirectory place;
-        const auto text = fmt::format("{}/store_2_{}.txt", SCANLOOM_TEST_DATA, version);
+        const auto text = fmt::format(SCANLOOM_SOURCE_DIR "/tests/data/store_2_{}.txt", version);
         store::write_store(text, place.path() / "store");
         write_parts(folder / version, *store::open_rocksdb(place.path() / "store").value(), 1);
     }

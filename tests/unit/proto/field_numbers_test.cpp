@@ -22,8 +22,10 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
+constexpr const char* kListed = SCANLOOM_SOURCE_DIR "/tests/unit/proto/field_numbers.txt";
+
 std::string field_numbers_file() {
-    std::ifstream file(FIELD_NUMBERS_FILE);
+    std::ifstream file(kListed);
     return {std::istreambuf_iterator<char>(file), {}};
 }
 
@@ -32,7 +34,7 @@ TEST(FieldNumbers, AreNeitherReusedNorChanged) {
         v1::Frame::descriptor()->file(), v1::LogEntry::descriptor()->file(), v1::Scan::descriptor()->file(),
         v1::SessionConfig::descriptor()->file(), v1::LiveEvent::descriptor()->file()};
     for (const auto& complaint : complaints_about(files, field_numbers_file())) {
-        ADD_FAILURE() << complaint << "\n(the list is " FIELD_NUMBERS_FILE ")";
+        ADD_FAILURE() << complaint << "\n(the list is " << kListed << ")";
     }
 }
 

@@ -43,7 +43,7 @@ std::string settings_table() {
 }
 
 TEST(SettingsTable, InTheDocumentationIsThatOfTheDescriptors) {
-    std::ifstream file(SOURCE_TREE "/docs/settings.md");
+    std::ifstream file(SCANLOOM_SOURCE_DIR "/docs/settings.md");
     const std::string page(std::istreambuf_iterator<char>(file), {});
     EXPECT_THAT(page, HasSubstr(settings_table())) << "replace the table in docs/settings.md by the expected one";
 }

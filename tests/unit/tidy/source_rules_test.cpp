@@ -136,7 +136,7 @@ bool is_foreign(const fs::path& folder) {
 /// Calls visit(path, text) for each source file of the project.
 template <class Visit>
 void for_each_source(Visit visit) {
-    const fs::path root = SOURCE_TREE;
+    const fs::path root = SCANLOOM_SOURCE_DIR;
     for (auto entry = fs::recursive_directory_iterator(root); entry != fs::end(entry); ++entry) {
         if (entry->is_directory() && is_foreign(entry->path())) entry.disable_recursion_pending();
         if (!entry->is_regular_file() || !is_source(entry->path())) continue;
@@ -150,7 +150,7 @@ TEST(SourceRules, SourceTreeFollowsTheRules) {
         for (const auto& complaint : complaints_about(path, text)) ADD_FAILURE() << complaint;
         ++files;
     });
-    EXPECT_GT(files, 50U) << "too few source files in " << SOURCE_TREE;
+    EXPECT_GT(files, 50U) << "too few source files in " << SCANLOOM_SOURCE_DIR;
 }
 
 /// Returns how often a word occurs in a lower-case text. A word in quotes, such as the JSON member "woven", or before a

@@ -51,15 +51,16 @@ std::string table_of_operations() {
 }
 
 TEST(OperationsTable, InTheDocumentationIsThatOfTheRoutes) {
-    std::ifstream file(SOURCE_TREE "/docs/http.md");
+    std::ifstream file(SCANLOOM_SOURCE_DIR "/docs/http.md");
     const std::string page(std::istreambuf_iterator<char>(file), {});
     const auto begin = page.find(kBegin) + kBegin.size();
     const auto end = page.find(kEnd);
     ASSERT_TRUE(begin != std::string::npos && end != std::string::npos) << "docs/http.md has no place for the table";
     const auto right = page.substr(0, begin) + table_of_operations() + page.substr(end);
     if (right == page) return;
-    std::ofstream(BUILD_TREE "/http.md") << right;
-    FAIL() << "docs/http.md is out of date; run: cp " BUILD_TREE "/http.md " SOURCE_TREE "/docs/http.md";
+    std::ofstream(SCANLOOM_BUILD_DIR "/http.md") << right;
+    FAIL() << "docs/http.md is out of date; run: cp " SCANLOOM_BUILD_DIR "/http.md " SCANLOOM_SOURCE_DIR
+              "/docs/http.md";
 }
 
 } // namespace

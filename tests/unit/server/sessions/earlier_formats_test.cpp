@@ -32,7 +32,7 @@ class EarlierFormatsTest : public testing::Test {
 protected:
     /// Writes a store with two scans before its checkpoint and one after it; the digests are of all three.
     void write(const std::string& text) {
-        digests_ = store::write_store(std::filesystem::path(SCANLOOM_TEST_DATA) / text, store());
+        digests_ = store::write_store(std::filesystem::path(SCANLOOM_SOURCE_DIR "/tests/data") / text, store());
         ASSERT_FALSE(digests_.empty());
     }
 
