@@ -8,6 +8,7 @@ found=$(git -c diff.noprefix=false -c diff.mnemonicPrefix=false diff --no-ext-di
     awk '
         FNR == NR { if ($0 !~ /^#/ && NF > 0) { split($0, part, /  +/); instead[part[1]] = part[2] } next }
         /^\+\+\+ b\// { file = substr($0, 7); next }
+        /^\+#include/ { next } # the name of a file
         # Comments and strings of sources, every line of documents and of YAML.
         /^\+/ && (file ~ /\.(md|yaml)$/ || /\/\/|["\047]|^\+ *#|^\+ *\*/) {
             line = tolower(substr($0, 2))

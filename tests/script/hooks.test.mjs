@@ -21,7 +21,7 @@ test('the hook reports words that are not plain English, in comments and documen
     return spawnSync('tests/hooks/words.sh', ['--cached'], { cwd: copy, encoding: 'utf8' });
   };
   git('init', '--quiet');
-  assert.equal(check('a.cpp', '// Scans are integrated.\nint woven;\n').status, 0);
+  assert.equal(check('a.cpp', '#include "woven.hpp"\n// Scans are integrated.\nint woven;\n').status, 0);
   const refused = check('a.cpp', '// Scans are woven.\n');
   assert.equal(refused.status, 1);
   assert.match(refused.stderr, /^a.cpp: "woven": write integrated, or applied: .*Scans are woven/);
