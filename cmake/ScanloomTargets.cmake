@@ -121,7 +121,7 @@ function(scanloom_test_program name)
 endfunction()
 
 # scanloom_test(PROGRAM SOURCES x_test.cpp ... LINKS target ...)
-# The tests of one folder, as a part of a test program. Its sources are compiled together with those of the folders before and after it.
+# Adds the tests of a folder to a test program. Units are filled in the order of these calls, across folders.
 function(scanloom_test program)
   cmake_parse_arguments(ARG "" "" "SOURCES;LINKS" ${ARGN})
   target_sources(${program} PRIVATE ${ARG_SOURCES})

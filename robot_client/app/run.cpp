@@ -22,6 +22,7 @@
 
 #include <csignal>
 #include <random>
+#include <variant>
 
 namespace scanloom::robot {
 

@@ -10,7 +10,8 @@ struct RobotOptions;
 /// summary to stdout.
 [[nodiscard]] ExitCode run(const RobotOptions& options);
 
-/// Runs the command that the arguments of the program name, or writes why it cannot to stderr.
+/// Runs the command given on the command line. Prints help and the version to stdout.
+/// @return kExitDone, kExitFailed, or kExitUsage if an argument, the environment or the configuration file is invalid
 [[nodiscard]] ExitCode run(int argc, const char* const* argv);
 
 } // namespace scanloom::robot

@@ -1,5 +1,7 @@
 #include "tests/support/building.hpp"
 
+#include "tests/support/uniform.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -30,7 +32,7 @@ Scan Building::scan(const Sensor& sensor, const Pose2& T_map_robot, double noise
     for (std::size_t n = 0; n < beam_count(sensor.angles); ++n) {
         const SinCos direction = T_map_sensor.rotation * sin_cos(beam_angle(sensor.angles, n));
         const double range = this->range({T_map_sensor.x, T_map_sensor.y}, direction);
-        const double error = noise_m * (2.0 * (static_cast<double>(random()) * 0x1p-32) - 1.0);
+        const double error = noise_m * uniform(random, -1.0, 1.0);
         scan.ranges.push_back(range < sensor.range_max ? to_range_mm(range + error) : kNoReturn);
     }
     return scan;

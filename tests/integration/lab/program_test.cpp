@@ -23,7 +23,7 @@ std::string contents(const fs::path& path) {
     return {std::istreambuf_iterator<char>(file), {}};
 }
 
-struct Outcome {
+struct LabOutcome {
     int code = 0;
     std::string line;   ///< first of standard output
     std::string errors; ///< standard error
@@ -31,7 +31,7 @@ struct Outcome {
 
 class Lab : public testing::Test {
 protected:
-    Outcome run(const std::vector<std::string>& arguments) {
+    LabOutcome run(const std::vector<std::string>& arguments) {
         const auto errors = place_.path() / "errors";
         fs::remove(errors);
         ChildProcess lab(fs::path(SCANLOOM_PROGRAMS) / "scanloom-lab", arguments, errors);

@@ -27,7 +27,7 @@ using Words = std::vector<std::string>;
 const Words kSmallLoad{"--robots", "20", "--rate", "40", "--duration", "3", "--cell-size", "0.2", "--world", "room"};
 constexpr std::uint64_t kSmallLoadScans = 20 * 40 * 3;
 
-struct Outcome {
+struct LoadOutcome {
     int code = 0;
     boost::json::value report; ///< null if there is none
     std::string errors;
@@ -47,7 +47,7 @@ protected:
         return all;
     }
 
-    [[nodiscard]] Outcome finish(ChildProcess& load) const {
+    [[nodiscard]] LoadOutcome finish(ChildProcess& load) const {
         const auto line = load.read_line();
         const int code = load.wait();
         std::ifstream file(errors());
@@ -55,7 +55,7 @@ protected:
             code, line ? boost::json::parse(*line) : boost::json::value(), {std::istreambuf_iterator<char>(file), {}}};
     }
 
-    [[nodiscard]] Outcome run(const Words& further, std::uint16_t http_port = 0) const {
+    [[nodiscard]] LoadOutcome run(const Words& further, std::uint16_t http_port = 0) const {
         std::filesystem::remove(errors());
         ChildProcess load(program("scanloom-load"),
                           arguments(further, http_port == 0 ? server_->http_port() : http_port), errors());

@@ -23,7 +23,7 @@ using testing::AnyOf;
 using testing::HasSubstr;
 using testing::Not;
 
-constexpr std::uint64_t kSeedsPerCase = 5; // so that cases can run in parallel
+constexpr std::uint64_t kSeedsPerDriveCase = 5; // so that cases can run in parallel
 
 std::unique_ptr<sim::Behaviour> wall_follower(const sim::World&) { return std::make_unique<sim::WallFollower>(); }
 
@@ -50,24 +50,24 @@ const std::vector<Drive> kDrives{
 };
 constexpr double kLargeSweep = 400.0; // seconds
 
-struct Case {
+struct DriveCase {
     Drive drive;
     sim::NamedWorld world;
     const char* laser;
     bool noisy;
     std::uint64_t first_seed;
 
-    friend void PrintTo(const Case& one, std::ostream* out) {
+    friend void PrintTo(const DriveCase& one, std::ostream* out) {
         *out << fmt::format("{}_{}_{}{}_from_{}", one.drive.name, one.world.name, one.laser, one.noisy ? "_noisy" : "",
                             one.first_seed);
     }
 };
 
-std::vector<Case> cases() {
-    std::vector<Case> cases;
+std::vector<DriveCase> drive_cases() {
+    std::vector<DriveCase> cases;
     for (const Drive& drive : kDrives) {
         for (const sim::NamedWorld& world : sim::kWorlds) {
-            for (std::uint64_t seed = 1; seed <= 20; seed += kSeedsPerCase) {
+            for (std::uint64_t seed = 1; seed <= 20; seed += kSeedsPerDriveCase) {
                 cases.push_back({drive, world, "reference", false, seed});
             }
             cases.push_back({drive, world, "reference", true, 1});
@@ -77,7 +77,7 @@ std::vector<Case> cases() {
     return cases;
 }
 
-class Behaviours : public testing::TestWithParam<Case> {};
+class Behaviours : public testing::TestWithParam<DriveCase> {};
 
 bool is_room(const sim::World& world) { return world.name.starts_with("room"); }
 
@@ -101,7 +101,7 @@ void expect_of(const sim::Behaviour& behaviour, const sim::World& world) {
 TEST_P(Behaviours, DriveWithoutCollisionsAndMakeProgress) {
     const auto [drive, named, laser, noisy, first_seed] = GetParam();
     const sim::World world = named.make();
-    for (std::uint64_t seed = first_seed; seed < first_seed + kSeedsPerCase; ++seed) {
+    for (std::uint64_t seed = first_seed; seed < first_seed + kSeedsPerDriveCase; ++seed) {
         SCOPED_TRACE(testing::Message() << "seed " << seed);
         sim::Simulator simulator(
             {world, *sim::find_laser(laser), noisy ? std::optional(sim::Noise{}) : std::nullopt, seed},
@@ -124,7 +124,7 @@ TEST_P(Behaviours, DriveWithoutCollisionsAndMakeProgress) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Behaviours, testing::ValuesIn(cases()),
+INSTANTIATE_TEST_SUITE_P(All, Behaviours, testing::ValuesIn(drive_cases()),
                          [](const auto& one) { return testing::PrintToString(one.param); });
 
 TEST(Behaviours, ASweepOfTheOfficeEndsAndCoversMostOfIt) {

@@ -38,7 +38,9 @@ protected:
         return lines;
     }
 
-    void install() { run(CMAKE, {"--install", BUILD_DIR, "--component", "client", "--prefix", prefix_.string()}); }
+    void install() {
+        run(CMAKE, {"--install", SCANLOOM_BUILD_DIR, "--component", "client", "--prefix", prefix_.string()});
+    }
 
     /// Configures and builds a project outside this tree, like a robot's own.
     void build(const fs::path& project, const std::string& compiler) {
@@ -110,7 +112,7 @@ TEST_F(ClientPackage, ContainsNoPathOfTheBuildTree) {
         if (!entry.is_regular_file() || entry.path().extension() == ".a") continue;
         ++files;
         const std::string text = contents(entry.path());
-        for (const auto& foreign : {kTree.string(), std::string(BUILD_DIR), std::string("-Wshadow"),
+        for (const auto& foreign : {kTree.string(), std::string(SCANLOOM_BUILD_DIR), std::string("-Wshadow"),
                                     std::string("scanloom_options"), std::string("#include \"")}) {
             EXPECT_THAT(text, Not(testing::HasSubstr(foreign))) << entry.path();
         }

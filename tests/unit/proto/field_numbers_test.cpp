@@ -22,10 +22,10 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-constexpr const char* kListed = SCANLOOM_SOURCE_DIR "/tests/unit/proto/field_numbers.txt";
+constexpr const char* kFieldNumbersFile = SCANLOOM_SOURCE_DIR "/tests/unit/proto/field_numbers.txt";
 
-std::string field_numbers_file() {
-    std::ifstream file(kListed);
+std::string field_numbers_text() {
+    std::ifstream file(kFieldNumbersFile);
     return {std::istreambuf_iterator<char>(file), {}};
 }
 
@@ -33,8 +33,8 @@ TEST(FieldNumbers, AreNeitherReusedNorChanged) {
     const std::vector<const pb::FileDescriptor*> files = {
         v1::Frame::descriptor()->file(), v1::LogEntry::descriptor()->file(), v1::Scan::descriptor()->file(),
         v1::SessionConfig::descriptor()->file(), v1::LiveEvent::descriptor()->file()};
-    for (const auto& complaint : complaints_about(files, field_numbers_file())) {
-        ADD_FAILURE() << complaint << "\n(the list is " << kListed << ")";
+    for (const auto& complaint : complaints_about(files, field_numbers_text())) {
+        ADD_FAILURE() << complaint << "\n(the list is " << kFieldNumbersFile << ")";
     }
 }
 
