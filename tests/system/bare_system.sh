@@ -25,12 +25,11 @@ inside() {
         /bin/bash -c 'cd /root/scanloom && exec "$@"' bash "$@"
 }
 
-# timed COMMAND...: prints how long it took.
+# timed COMMAND...: prints how long it took, with processor time.
 timed() {
-    local since=$SECONDS
+    local TIMEFORMAT="== $*: %0R s, %0U + %0S s of processor time"
     echo "== $*"
-    inside "$@"
-    echo "== $*: $((SECONDS - since)) s"
+    time inside "$@"
 }
 
 echo "== a minimal Debian 12 in $system"
