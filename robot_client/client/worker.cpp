@@ -153,8 +153,8 @@ asio::awaitable<Result<>> Client::Worker::until_all_reach(ScanState state, Timeo
         const std::uint64_t left = count_pending(state);
         const std::uint64_t newer = handed_over_ - handed_over;
         if (left == 0 || left + (uplink_.status().dropped - dropped) <= newer) co_return Result<>{};
-        const auto what =
-            fmt::format("{} scans were not {}", left, state == ScanState::kStored ? "stored" : "in the maps");
+        const auto what = fmt::format("{} {} not {}", left, left == 1 ? "scan was" : "scans were",
+                                      state == ScanState::kStored ? "stored" : "in the maps");
         if (const auto why = reason_to_stop_waiting(what, timeout)) co_return *why;
         co_await uplink_.change_signal().wait(std::min(timeout.until, Clock::now() + kPollPeriod));
     }

@@ -57,6 +57,6 @@ inside robot cmake -S robot_client/examples/send_scan -B /tmp/send_scan -DCMAKE_
 timed robot cmake --build /tmp/send_scan
 # No server listens on port 1: it starts, waits for the given time, and reports the failure.
 ! inside robot /tmp/send_scan/send_scan 127.0.0.1:1 2>"$work/news" || { echo "send_scan succeeded without a server" >&2; exit 1; }
-grep --quiet 'send_scan: 1 scans were not stored within 10 s' "$work/news" || { cat "$work/news" >&2; exit 1; }
+grep --quiet 'send_scan: 1 scan was not stored within 10 s' "$work/news" || { cat "$work/news" >&2; exit 1; }
 
 echo "== the packages suffice"
