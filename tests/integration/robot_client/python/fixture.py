@@ -1,5 +1,6 @@
 """A client with a fake server."""
 import logging
+import threading
 import unittest
 
 from fake_server import FakeServer
@@ -22,6 +23,23 @@ class LinkTest(unittest.TestCase):
                                         timing=scanloom_client.Timing(**{**QUICK, **(timing or {})}), **options)
         self.addCleanup(self._abort, client)
         return client
+
+    def assert_retries(self, reason, **options):
+        """Starts a client that cannot connect, and waits until it logs this reason for trying again."""
+        logged, messages = threading.Event(), []
+
+        class Reader(logging.Handler):
+            def emit(self, record):
+                messages.append(record.getMessage())
+                if reason in messages[-1]:
+                    logged.set()
+
+        reader = Reader()
+        logging.getLogger("scanloom").addHandler(reader)
+        self.addCleanup(logging.getLogger("scanloom").removeHandler, reader)
+        client = self.client(**options)
+        self.assertTrue(logged.wait(60.0), messages)
+        self._abort(client)  # another one may use the server
 
     @staticmethod
     def _abort(client):

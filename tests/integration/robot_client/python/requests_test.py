@@ -102,25 +102,26 @@ class Requests(LinkTest):
         self.assertEqual(self.server.links, 1)
 
     def test_a_late_reply_is_ignored(self):
-        asked_twice = threading.Event()
+        asked, asked_again = threading.Event(), threading.Event()
 
         def is_late(link):
             link.greet()
             late = collect(link, 1)[0].plan_request
-            asked_twice.wait()
+            asked.set()
+            asked_again.wait()
             reply_plan(link, late)
-            reply_plan(link, collect(link, 1)[0].plan_request)
-            link.serve()
+            while requests := collect(link, 1):
+                reply_plan(link, requests[0].plan_request)
 
         self.start(is_late)
         with self.client() as robot:
-            self.assertEqual(robot.stored_before(), 0)
             paths = []
-            # The second request is sent after the first was cancelled, and answered after the first's late reply.
-            self.assert_fails("TIMEOUT", robot.plan, (2.0, 1.0), timeout=0.05)
+            # The last request is sent after the others were cancelled, and answered after the first one's late reply.
+            while not asked.is_set():  # a busy machine may cancel a request before it is sent
+                self.assert_fails("TIMEOUT", robot.plan, (2.0, 1.0), timeout=0.05)
             asking = threading.Thread(target=lambda: paths.append(robot.plan((3.0, 1.0))))
             asking.start()
-            asked_twice.set()
+            asked_again.set()
             asking.join()
         self.assertEqual(paths[0].points[-1], (3.0, 1.0))
         self.assertEqual(self.server.links, 1)
