@@ -18,6 +18,9 @@ namespace {
 using namespace std::chrono_literals;
 using testing_support::CapturedLog;
 
+/// In which a busy machine finishes a TLS handshake.
+constexpr auto kHandshakeTime = 500ms;
+
 TEST_F(IngestTest, AMissingHelloIsReportedToTheRobot) {
     IngestConfig config;
     config.link.hello_deadline = 10ms;
@@ -35,7 +38,8 @@ TEST_F(IngestTest, AnUnfinishedTlsHandshakeIsClosedAndBlocksNoOtherLink) {
     const auto files = testing_support::write_certificate(directory.path(), "127.0.0.1");
     IngestConfig config;
     config.tls = sockets::PortTls::open({files.certificate, files.key, {}}).value();
-    config.link.hello_deadline = config.link.farewell_deadline = 50ms;
+    config.link.hello_deadline = kHandshakeTime;
+    config.link.farewell_deadline = 50ms;
     start(config);
     RobotSocket silent(port());
     RobotSocket slow(port());
@@ -52,7 +56,7 @@ TEST_F(IngestTest, AMissingHelloIsReportedOverTls) {
     const auto files = testing_support::write_certificate(directory.path(), "127.0.0.1");
     IngestConfig config;
     config.tls = sockets::PortTls::open({files.certificate, files.key, {}}).value();
-    config.link.hello_deadline = 50ms;
+    config.link.hello_deadline = kHandshakeTime;
     start(config);
     testing_support::TlsHttpClient robot(port(), {.trusted = files.certificate});
     ASSERT_TRUE(robot.is_trusted());
