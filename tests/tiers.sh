@@ -125,10 +125,10 @@ run_filtered() {
     [[ -z $failed ]] || tests_failed
 }
 
-# Rows of 'PATTERN;FILES': the tests of --all whose names match PATTERN run if one of FILES or CMakeLists.txt changed. A FOLDER includes
-# its tests in tests/unit/FOLDER. Of the suites named Trials only those of system_test have a row.
+# Rows of 'PATTERN;FILES': the tests of --all whose names match PATTERN run if one of FILES or CMakeLists.txt changed. Of the suites
+# named Trials only those of system_test have a row.
 readonly parts_of_all=(
-    '^tools[.];lab load tests/integration/lab tests/integration/load tests/support'
+    '^tools[.];lab load tests/integration/lab tests/integration/load tests/support tests/unit/lab tests/unit/load'
     '^faults[.];common/link common/net common/wire load robot_client server/app server/ingest server/sessions server/sockets server/store tests/fault tests/integration/robot_client tests/support'
     '^system[.].*Trials(/|$);common/link common/net robot_client server/app server/http server/sessions server/store tests/fault tests/integration tests/support'
     '^e2e_([^l]|l[^i]);server/http server/live tests/e2e web'
@@ -151,7 +151,7 @@ run_changed() {
     local part tests files left_out=('^(core|maps|server|http|robot)[.].*Trials(/|$)')
     for part in "${parts_of_all[@]}"; do
         IFS=';' read -r tests files <<<"$part"
-        mapfile -t files < <(tr ' ' '\n' <<<"$files" | sed 'p; s,^,tests/unit/,')
+        read -ra files <<<"$files"
         ! git diff --quiet "$1" -- CMakeLists.txt "${files[@]}" || left_out+=("$tests")
     done
     build_tier all
