@@ -1,10 +1,15 @@
-#include "tests/unit/server/http/api_fixture.hpp"
+#include "tests/unit/server/http/api_planning_fixture.hpp"
+
+#include "core/classify/frontiers.hpp"
+#include "core/planning/goals.hpp"
 
 #include <boost/json/array.hpp>
 #include <boost/json/parse.hpp>
-#include <boost/json/serialize.hpp>
 #include <fmt/format.h>
 
+#include <array>
+#include <cmath>
+#include <set>
 #include <string>
 
 namespace scanloom::http {
@@ -12,22 +17,8 @@ namespace {
 
 using testing::IsEmpty;
 
-/// A wall around the robot at 3 m, with a sector without readings: frontiers are in that sector and behind the wall.
-Scan scan_with_a_gap(double x) {
-    Scan taken = scan(1);
-    taken.pose->x = x;
-    taken.ranges.assign(181, 3'000);
-    std::fill(taken.ranges.begin() + 100, taken.ranges.begin() + 130, kInvalidRange);
-    return taken;
-}
-
-class ApiGoalsTest : public ApiTest {
+class ApiGoalsTest : public ApiPlanningTest {
 protected:
-    ApiGoalsTest() {
-        create("a");
-        stream("a", "r1", {scan_with_a_gap(0.5)});
-    }
-
     [[nodiscard]] std::string text() { return std::string(get(kTarget).body.bytes()); }
     boost::json::value goals() { return get_json(kTarget); }
     boost::json::value ask_for_goal(const std::string& robot, int size_min = 3) {
@@ -47,8 +38,21 @@ protected:
         EXPECT_FALSE(session->is_connected(robot));
     }
 
+    /// Returns the index of the frontier that contains the target of a response.
+    static std::size_t frontier_of(const boost::json::value& answer, const std::vector<classify::Frontier>& frontiers) {
+        const auto cell_of = [](const boost::json::value& metres) {
+            return static_cast<std::int32_t>(std::floor(number(metres) / 0.05));
+        };
+        const grid::Cell target{cell_of(answer.at("target").at("x")), cell_of(answer.at("target").at("y"))};
+        const auto found = std::ranges::find_if(
+            frontiers, [&](const auto& one) { return std::ranges::find(one.cells, target) != one.cells.end(); });
+        return static_cast<std::size_t>(found - frontiers.begin());
+    }
+
     static constexpr const char* kTarget = "/api/v1/sessions/a/goals.geojson";
 };
+
+// Reading them
 
 TEST_F(ApiGoalsTest, WithoutGoalsTheCollectionIsEmpty) {
     const auto answer = get(kTarget);
@@ -153,6 +157,75 @@ TEST_F(ApiGoalsTest, EndedGoalsAreNotShown) {
 
 TEST_F(ApiGoalsTest, UnknownParametersAreRefused) {
     EXPECT_THAT(detail(get(std::string(kTarget) + "?weave=x"), Status::bad_request), HasSubstr("weave"));
+}
+
+// Assigning goals
+
+TEST_F(ApiGoalsTest, GoalIsTheFrontierWithTheCheapestPath) {
+    const auto answer = post_json("goal", R"({"robot":"r1"})");
+    const auto expected = planning::next_goal(maps()->classes, cell_size(), {kX, kY}).value();
+    ASSERT_EQ(answer.at("outcome"), "goal");
+    const auto points = points_of(answer.at("path"));
+    EXPECT_EQ(points.front(), (Point2{kX, kY}));
+    EXPECT_EQ(points.back(), (Point2{number(answer.at("goal").at("x")), number(answer.at("goal").at("y"))}));
+    EXPECT_LT(norm(points.back() - expected.path.points.back()), 2e-6);
+    EXPECT_NEAR(number(answer.at("target").at("x")), (expected.goal->target.i + 0.5) * 0.05, 1e-6);
+    EXPECT_NEAR(number(answer.at("target").at("y")), (expected.goal->target.j + 0.5) * 0.05, 1e-6);
+    EXPECT_NEAR(number(answer.at("length")), expected.path.length_m, 1e-6);
+    EXPECT_EQ(post_json("goal", R"({"robot":"r1"})"), answer) << "a new request releases the previous goal";
+}
+
+TEST_F(ApiGoalsTest, TwoRobotsGetDifferentFrontiersUntilNoneIsLeft) {
+    std::set<std::size_t> given;
+    std::string outcome = "goal";
+    for (int n = 0; outcome == "goal"; ++n) {
+        const auto robot = "robot-" + std::to_string(n);
+        stream("a", robot, {scan_with_a_gap()});
+        const auto answer = post_json("goal", fmt::format(R"({{"robot":"{}","size_min":10}})", robot));
+        outcome = answer.at("outcome").as_string();
+        if (outcome != "goal") break;
+        const auto frontiers = classify::find_frontiers(maps()->classes, 10);
+        const auto frontier = frontier_of(answer, frontiers);
+        ASSERT_LT(frontier, frontiers.size());
+        ASSERT_TRUE(given.insert(frontier).second) << robot << " got the frontier of another";
+    }
+    EXPECT_EQ(outcome, "taken_by_others");
+    EXPECT_GE(given.size(), 2U);
+}
+
+TEST_F(ApiGoalsTest, UnobservableFrontierCellsAreGivenUp) {
+    const auto answer = post_json("goal", R"({"robot":"r1"})");
+    EXPECT_EQ(answer.at("given_up"), 0);
+    Scan blind = scan_with_a_gap();
+    blind.pose->x = number(answer.at("goal").at("x"));
+    blind.pose->y = number(answer.at("goal").at("y"));
+    blind.pose->yaw = std::atan2(number(answer.at("target").at("y")) - blind.pose->y,
+                                 number(answer.at("target").at("x")) - blind.pose->x);
+    std::ranges::fill(blind.ranges, kInvalidRange);
+    blind.seq = 2;
+    stream("a", "r1", {blind});
+    const auto next = post_json("goal", R"({"robot":"r1"})");
+    EXPECT_GT(next.at("given_up").to_number<int>(), 0);
+    EXPECT_NE(next.at("target"), answer.at("target"));
+}
+
+TEST_F(ApiGoalsTest, RobotWithoutPoseHasNoGoal) {
+    join("a", "mute", 1);
+    EXPECT_THAT(detail(post("goal", R"({"robot":"mute"})"), Status::conflict), HasSubstr("has sent no scan yet"));
+}
+
+TEST_F(ApiGoalsTest, InvalidGoalRequestsAreRefused) {
+    for (const auto& [body, beginning] : {
+             std::pair{"{}", "robot is missing"},
+             std::pair{R"({"robot":1})", "robot is "},
+             std::pair{R"({"robot":"r1","size_min":0})", "size_min is no whole number of cells"},
+             std::pair{R"({"robot":"r1","size_min":1.5})", "size_min is no whole number of cells"},
+             std::pair{R"({"robot":"r1","body_radius":7})", "body_radius is 7 m"},
+             std::pair{R"({"robot":"r1","until":3})", "the field \"until\" is unknown"},
+         }) {
+        expect_bad("goal", body, beginning);
+    }
+    EXPECT_THAT(detail(post("goal", R"({"robot":"none"})"), Status::not_found), HasSubstr(R"(robot is "none")"));
 }
 
 } // namespace
