@@ -55,7 +55,7 @@ no_test() {
     exit "$no_tests"
 }
 
-# build_tier first|all|nightly
+# build_tier first|ci|all|nightly
 build_tier() {
     need build test
     case $1 in
@@ -68,10 +68,11 @@ build_tier() {
     esac
 }
 
-# labels_beyond first|all|nightly: the labels of the tests in higher tiers.
+# labels_beyond first|ci|all|nightly: the labels of the tests in higher tiers.
 labels_beyond() {
     case $1 in
         first) echo '^(all|nightly)$' ;;
+        ci) echo '^(server_test|http_test|nightly)$' ;;
         all) echo '^nightly$' ;;
         nightly) echo '^$' ;;
     esac
@@ -144,18 +145,19 @@ readonly parts_of_all=(
     '^bench_chart$;tests/bench/report'
 )
 
-# run_changed COMMIT: tier 1, and the parts of --all whose files differ from those of that commit. All of --all is
-# compiled; the suites named Trials are left out, because tier 1 has their short forms.
+# run_changed COMMIT: tier 1 without server_test and http_test, which .ci/run runs with sanitizers, and the parts of --all whose
+# files differ from those of that commit. All of --all is compiled; the suites named Trials are left out, because tier 1 has
+# their short forms.
 run_changed() {
     (($# == 1)) && git rev-parse --quiet --verify "$1^{commit}" >/dev/null || misused "test --changed takes a commit, not '$*'"
-    local part tests files left_out=('^(core|maps|server|http|robot)[.].*Trials(/|$)')
+    local part tests files left_out=('^(core|maps|robot)[.].*Trials(/|$)')
     for part in "${parts_of_all[@]}"; do
         IFS=';' read -r tests files <<<"$part"
         read -ra files <<<"$files"
         ! git diff --quiet "$1" -- CMakeLists.txt "${files[@]}" || left_out+=("$tests")
     done
-    build_tier all
-    run_ctest test --label-exclude "$(labels_beyond all)" --exclude-regex "$(IFS='|' && echo "${left_out[*]}")"
+    build_tier ci
+    run_ctest test --label-exclude "$(labels_beyond ci)" --exclude-regex "$(IFS='|' && echo "${left_out[*]}")"
 }
 
 # run_images: builds the images of docker/ and starts them, where that is possible without an engine.
@@ -189,12 +191,13 @@ for_core() {
 
 # core_tests PRESET PROGRAM...: the options of ctest for their suites, one a line.
 core_tests() {
-    # A writer is killed, after which KilledStore runs the same code. With ThreadSanitizer also: one thread reads or writes files or
-    # estimates poses; the largest session takes a minute. --nightly runs all of them.
-    local left_out='[.]Kill$' IFS='|'
-    [[ $1 != tsan ]] || left_out='CopyLog|DamagedStore|TableStore|LogFile|LogReconstruction|EstimatedPoses|EstimationCheckpoint|LocalizeOnly|ExcludedEstimates|HeavySession|Kill|CutCheckpoint'
+    # --nightly also runs with ThreadSanitizer: suites in which one thread reads or writes files or estimates poses, and the largest
+    # session, which takes a minute.
+    [[ $1 != tsan ]] || printf '%s\n' --exclude-regex \
+        'CopyLog|DamagedStore|TableStore|LogFile|LogReconstruction|EstimatedPoses|EstimationCheckpoint|LocalizeOnly|ExcludedEstimates|HeavySession|KilledStore|CutCheckpoint'
     shift
-    printf '%s\n' --label-regex "^($*)\$" --label-exclude '^(all|nightly)$' --exclude-regex "$left_out"
+    local IFS='|'
+    printf '%s\n' --label-regex "^($*)\$" --label-exclude '^(all|nightly)$'
 }
 
 sanitize_core() {
