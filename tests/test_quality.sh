@@ -26,7 +26,7 @@ run_flakes() {
     trap "kill ${busy[*]} 2>/dev/null || true" EXIT
     for ((turn = 1; turn <= count; ++turn)); do
         echo "== $turn of $count"
-        list_failures test --label-exclude "$(labels_beyond "$tier")"
+        list_failures test --label-exclude "$(labels_left_out "$tier")"
         [[ $tier == first ]] || for_core list_core_failures
     done
     if [[ -s $failures ]]; then

@@ -31,7 +31,7 @@ run_test() {
         run_nightly
     else
         build_tier "$tier"
-        run_ctest test --label-exclude "$(labels_beyond "$tier")"
+        run_ctest test --label-exclude "$(labels_left_out "$tier")"
         [[ $tier == first ]] || run_images
     fi
 }
@@ -68,8 +68,8 @@ build_tier() {
     esac
 }
 
-# labels_beyond first|ci|all|nightly: the labels of the tests in higher tiers.
-labels_beyond() {
+# labels_left_out first|ci|all|nightly: the labels of the tests that are not run.
+labels_left_out() {
     case $1 in
         first) echo '^(all|nightly)$' ;;
         ci) echo '^(server_test|http_test|nightly)$' ;;
@@ -116,7 +116,7 @@ run_filtered() {
         ((status != 124)) || echo "${program}_test was stopped: it had not ended after 1800 s"
         ((status == 0)) || failed=yes
     done
-    others=(--label-exclude "$(labels_beyond "$2")|^suite\$" --tests-regex "$word")
+    others=(--label-exclude "$(labels_left_out "$2")|^suite\$" --tests-regex "$word")
     cases=$(ctest --preset test --show-only "${others[@]}")
     if [[ $cases == *' Test '*'#'* ]]; then
         found=yes
@@ -146,8 +146,8 @@ readonly parts_of_all=(
 )
 
 # run_changed COMMIT: tier 1 without server_test and http_test, which .ci/run runs with sanitizers, and the parts of --all whose
-# files differ from those of that commit. All of --all is compiled; the suites named Trials are left out, because tier 1 has
-# their short forms.
+# files differ from those of that commit. All other programs of --all are compiled. Suites named Trials are left out, because tier 1
+# and the sanitizers run their short forms.
 run_changed() {
     (($# == 1)) && git rev-parse --quiet --verify "$1^{commit}" >/dev/null || misused "test --changed takes a commit, not '$*'"
     local part tests files left_out=('^(core|maps|robot)[.].*Trials(/|$)')
@@ -157,7 +157,8 @@ run_changed() {
         ! git diff --quiet "$1" -- CMakeLists.txt "${files[@]}" || left_out+=("$tests")
     done
     build_tier ci
-    run_ctest test --label-exclude "$(labels_beyond ci)" --exclude-regex "$(IFS='|' && echo "${left_out[*]}")"
+    run_ctest test --label-exclude "$(labels_left_out ci)" --exclude-regex "$(IFS='|' && echo "${left_out[*]}")"
+    echo "server_test and http_test were not run; ./scanloom test --sanitizers --core runs them"
 }
 
 # run_images: builds the images of docker/ and starts them, where that is possible without an engine.
@@ -191,8 +192,8 @@ for_core() {
 
 # core_tests PRESET PROGRAM...: the options of ctest for their suites, one a line.
 core_tests() {
-    # --nightly also runs with ThreadSanitizer: suites in which one thread reads or writes files or estimates poses, and the largest
-    # session, which takes a minute.
+    # With ThreadSanitizer this leaves out suites in which one thread reads or writes files or estimates poses, and the largest session,
+    # which takes a minute. --nightly runs them.
     [[ $1 != tsan ]] || printf '%s\n' --exclude-regex \
         'CopyLog|DamagedStore|TableStore|LogFile|LogReconstruction|EstimatedPoses|EstimationCheckpoint|LocalizeOnly|ExcludedEstimates|HeavySession|KilledStore|CutCheckpoint'
     shift

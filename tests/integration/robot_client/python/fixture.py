@@ -24,8 +24,8 @@ class LinkTest(unittest.TestCase):
         self.addCleanup(self._abort, client)
         return client
 
-    def assert_retries(self, reason, **options):
-        """Starts a client that cannot connect, and waits until it logs this reason for trying again."""
+    def assert_logs_retry(self, reason, **options):
+        """Starts a client that cannot connect, waits until it logs this reason for a retry, and ends it."""
         logged, messages = threading.Event(), []
 
         class Reader(logging.Handler):
@@ -39,7 +39,8 @@ class LinkTest(unittest.TestCase):
         self.addCleanup(logging.getLogger("scanloom").removeHandler, reader)
         client = self.client(**options)
         self.assertTrue(logged.wait(60.0), messages)
-        self._abort(client)  # another one may use the server
+        self._abort(client)
+        self.assert_fails("CLOSED", client.close)  # waits for its thread: the next client uses the same server
 
     @staticmethod
     def _abort(client):

@@ -144,7 +144,7 @@ class GivingUp(LinkTest):
         self.start(is_silent)
         robot = self.client(timing={"give_up_after": 0.02, "silence_max": math.inf})
 
-        def send_and_flush():  # the client gives up in one of both
+        def send_and_flush():  # either call may raise it
             self.send(robot, self.laser(robot), 1)
             robot.flush()
 

@@ -31,7 +31,7 @@ class Tls(LinkTest):
 
     def test_a_server_with_tls_is_reported(self):
         self.start(lambda link: link.receive())  # and closes, as a server with a certificate does
-        self.assert_retries("if it uses TLS, give tls=")
+        self.assert_logs_retry("if it uses TLS, give tls=")
 
     def test_the_hint_depends_on_the_certificates_error(self):
         certificate, server_side = self.make_certificate("another", "DNS:another.example")
@@ -56,7 +56,7 @@ class Tls(LinkTest):
         server_side.load_verify_locations(certificate)
         self.start(tls=server_side)
         context = ssl.create_default_context(cafile=pathlib.Path(self.directory.name) / "mutual.pem")
-        self.assert_retries("load_cert_chain", tls=context)
+        self.assert_logs_retry("load_cert_chain", tls=context)
         context.load_cert_chain(certificate, pathlib.Path(self.directory.name) / "robot.key")
         with self.client(tls=context) as robot:
             robot.send(self.laser(robot), [1.0] * 4, pose=(0.0, 0.0, 0.0), stamp=0.0)
@@ -69,7 +69,7 @@ class Tls(LinkTest):
 
     def test_a_server_without_tls_is_reported(self):
         self.start()
-        self.assert_retries(f"no TLS with {self.server.address}", tls=ssl.create_default_context(),
+        self.assert_logs_retry(f"no TLS with {self.server.address}", tls=ssl.create_default_context(),
                             timing={"connect": 0.05})
 
 
