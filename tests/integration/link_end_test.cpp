@@ -18,7 +18,7 @@ namespace {
 using namespace std::chrono_literals;
 using testing_support::CapturedLog;
 
-/// In which a busy machine finishes a TLS handshake.
+/// Long enough for a TLS handshake on a busy machine.
 constexpr auto kHandshakeTime = 500ms;
 
 TEST_F(IngestTest, AMissingHelloIsReportedToTheRobot) {

@@ -3,11 +3,15 @@
 #include "server/auth/token.hpp"
 #include "tests/unit/server/http/api_fixture.hpp"
 
+#include <memory>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 namespace scanloom::http {
+
+inline constexpr std::string_view kHost = "maps.lab:8080";
 
 /// An API that requires tokens, with the sessions depot-1 and lab.
 class ApiAccessTest : public ApiTest {
@@ -23,7 +27,7 @@ protected:
         Request asked;
         asked.method = std::move(method);
         asked.target = std::move(target);
-        asked.host = "maps.lab:8080";
+        asked.host = kHost;
         asked.content_type = "application/json";
         asked.body = std::move(body);
         asked.peer = "192.0.2.1";

@@ -54,9 +54,7 @@ TEST_F(ApiFrontiersTest, FrontiersHaveTheGoalsOfTheNamedRobot) {
 }
 
 TEST_F(ApiFrontiersTest, EachFrontierHasTheNearestRobot) {
-    Scan elsewhere = scan_with_a_gap();
-    elsewhere.pose->x = 2.0;
-    stream("a", "r2", {elsewhere});
+    stream("a", "r2", {scan_with_a_gap(2.0)});
     const auto all = frontiers();
     const std::array alone = {frontiers("robot=r1"), frontiers("robot=r2")};
     std::set<std::string> robots;
@@ -75,23 +73,6 @@ TEST_F(ApiFrontiersTest, EachFrontierHasTheNearestRobot) {
     EXPECT_EQ(robots, (std::set<std::string>{"r1", "r2"}));
 }
 
-TEST_F(ApiFrontiersTest, DistantScanDoesNotChangeThePlan) {
-    const std::string to_the_wall = R"({"from":[1.0,1.0],"to":[2.5,0.2]})";
-    const std::string unknown = R"({"from":[1.0,1.0],"to":[2.5,0.2],"allow_unknown":true})";
-    const auto plan = post_json("plan", to_the_wall).at("geometry");
-    const auto plan_over_unknown = post_json("plan", unknown).at("geometry");
-    const auto coverage = post_json("coverage", R"({"start":{"robot":"r1"}})").at("features");
-    Scan stray = scan_with_a_gap();
-    stray.pose = {4500.0, 4500.0, 0.0};
-    stream("a", "r2", {stray});
-    EXPECT_EQ(post_json("plan", to_the_wall).at("geometry"), plan);
-    EXPECT_EQ(post_json("plan", unknown).at("geometry"), plan_over_unknown);
-    EXPECT_EQ(post_json("coverage", R"({"start":{"robot":"r1"}})").at("features"), coverage);
-    EXPECT_EQ(post_json("goal", R"({"robot":"r1"})").at("outcome"), "goal");
-    EXPECT_EQ(post_json("goal", R"({"robot":"r2"})").at("outcome"), "goal");
-    EXPECT_EQ(frontiers().at("robots").as_array().size(), 2U);
-}
-
 TEST_F(ApiFrontiersTest, FrontiersAreListedForAnyBodyRadius) {
     const auto wide = frontiers("body_radius=5").at("features").as_array().size();
     EXPECT_EQ(wide, classify::find_frontiers(maps()->classes).size());
@@ -108,8 +89,6 @@ TEST_F(ApiFrontiersTest, SizeMinLeavesOutSmallFrontiers) {
 
 TEST_F(ApiFrontiersTest, SettingsAreRefused) {
     EXPECT_THAT(detail(get("/api/v1/sessions/a/frontiers.geojson?cell_size=0.1"), Status::bad_request),
-                HasSubstr("POST them to .../weave"));
-    EXPECT_THAT(detail(post("goal?until=3", R"({"robot":"r1"})"), Status::bad_request),
                 HasSubstr("POST them to .../weave"));
 }
 
@@ -136,17 +115,12 @@ TEST_F(ApiFrontiersTest, InvalidParametersAreNamed) {
              std::pair{"frontiers.geojson?body_radius=nan", "body_radius is \"nan\""},
              std::pair{"frontiers.geojson?body_radius=-1", "body_radius is -1 m"},
              std::pair{"frontiers.geojson?colour=red", "the parameter \"colour\" is unknown"},
-             std::pair{"goal?robot=r1&colour=red", "the parameter \"colour\" is unknown"},
-             std::pair{"goal", "robot is missing"},
          }) {
         EXPECT_THAT(detail(get(session + target), Status::bad_request), StartsWith(beginning));
     }
-    for (const char* target : {"frontiers.geojson?robot=r9", "goal?robot=r9"}) {
-        EXPECT_THAT(detail(get(session + target), Status::not_found),
-                    StartsWith("robot is \"r9\": these maps have no robot"));
-    }
+    EXPECT_THAT(detail(get(session + "frontiers.geojson?robot=r9"), Status::not_found),
+                StartsWith("robot is \"r9\": these maps have no robot"));
     EXPECT_EQ(get("/api/v1/sessions/none/frontiers.geojson").status, Status::not_found);
-    EXPECT_EQ(post("goal?weave=0123456789abcdef", R"({"robot":"r1"})").status, Status::not_found);
 }
 
 } // namespace

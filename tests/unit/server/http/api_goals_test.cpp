@@ -225,7 +225,16 @@ TEST_F(ApiGoalsTest, InvalidGoalRequestsAreRefused) {
          }) {
         expect_bad("goal", body, beginning);
     }
+    EXPECT_THAT(detail(post("goal?until=3", R"({"robot":"r1"})"), Status::bad_request),
+                HasSubstr("POST them to .../weave"));
     EXPECT_THAT(detail(post("goal", R"({"robot":"none"})"), Status::not_found), HasSubstr(R"(robot is "none")"));
+    EXPECT_EQ(post("goal?weave=0123456789abcdef", R"({"robot":"r1"})").status, Status::not_found);
+    const std::string goal = "/api/v1/sessions/a/goal";
+    EXPECT_THAT(detail(get(goal), Status::bad_request), StartsWith("robot is missing"));
+    EXPECT_THAT(detail(get(goal + "?robot=r1&colour=red"), Status::bad_request),
+                StartsWith("the parameter \"colour\" is unknown"));
+    EXPECT_THAT(detail(get(goal + "?robot=r9"), Status::not_found),
+                StartsWith("robot is \"r9\": these maps have no robot"));
 }
 
 } // namespace

@@ -3,7 +3,6 @@
 namespace scanloom::http {
 namespace {
 
-constexpr std::string_view kHost = "maps.lab:8080";
 constexpr std::string_view kOwnPage = "http://maps.lab:8080";
 
 class ApiLoginTest : public ApiAccessTest {

@@ -106,6 +106,23 @@ TEST_F(ApiPlanningTest, InvalidPlanFieldsAreNamed) {
                 StartsWith("the parameter \"speed\" is unknown"));
 }
 
+TEST_F(ApiPlanningTest, DistantScanDoesNotChangeThePlan) {
+    const std::string to_the_wall = R"({"from":[1.0,1.0],"to":[2.5,0.2]})";
+    const std::string unknown = R"({"from":[1.0,1.0],"to":[2.5,0.2],"allow_unknown":true})";
+    const auto plan = post_json("plan", to_the_wall).at("geometry");
+    const auto plan_over_unknown = post_json("plan", unknown).at("geometry");
+    const auto coverage = post_json("coverage", R"({"start":{"robot":"r1"}})").at("features");
+    Scan stray = scan_with_a_gap();
+    stray.pose = {4500.0, 4500.0, 0.0};
+    stream("a", "r2", {stray});
+    EXPECT_EQ(post_json("plan", to_the_wall).at("geometry"), plan);
+    EXPECT_EQ(post_json("plan", unknown).at("geometry"), plan_over_unknown);
+    EXPECT_EQ(post_json("coverage", R"({"start":{"robot":"r1"}})").at("features"), coverage);
+    EXPECT_EQ(post_json("goal", R"({"robot":"r1"})").at("outcome"), "goal");
+    EXPECT_EQ(post_json("goal", R"({"robot":"r2"})").at("outcome"), "goal");
+    EXPECT_EQ(frontiers().at("robots").as_array().size(), 2U);
+}
+
 TEST_F(ApiPlanningTest, PlansOnAReplayJobLikeOnTheSession) {
     const auto started = ask("POST", "/api/v1/sessions/a/weave", R"({"cell_size":0.1})");
     const std::string id(boost::json::parse(started.body.bytes()).at("id").as_string());

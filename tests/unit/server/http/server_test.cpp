@@ -55,7 +55,7 @@ TEST(HttpServer, AnnouncedLengthDoesNotExtendTheDeadline) {
 }
 
 TEST(HttpServer, IdleConnectionsAreClosed) {
-    RunningHttp server(ServerConfig{.idle = 250ms}); // in which a busy machine sends a request
+    RunningHttp server(ServerConfig{.idle = 250ms}); // long enough for a request on a busy machine
     HttpClient fresh(server.port());
     EXPECT_TRUE(fresh.is_closed());
     HttpClient used(server.port());

@@ -346,7 +346,7 @@ TEST(LiveViewer, ReportsDrainingAndClosesAtShutdown) {
 }
 
 TEST(LiveViewer, ClosesSilentConnections) {
-    LiveServer server({.interval = 0ms, .idle = 250ms}); // in which a busy machine sends the upgrade
+    LiveServer server({.interval = 0ms, .idle = 250ms}); // long enough for the upgrade on a busy machine
     HttpClient client(server.port());
     client.send(upgrade("lab"));
     ASSERT_EQ(client.read().status, 101);
