@@ -17,9 +17,6 @@ std::size_t resident_bytes() {
 }
 
 TEST(ImportedMapMemory, IsReleasedByRemoval) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-    GTEST_SKIP() << "sanitizers use their own allocator";
-#endif
     store::MemoryScanLog log;
     boost::asio::thread_pool pool(1);
     SessionRegistry registry(log, {pool.get_executor(), [] { return 1.0; }});
