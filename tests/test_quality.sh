@@ -2,7 +2,7 @@
 
 # run_flakes [--all] [--count N]
 run_flakes() {
-    local count=10 tier=first turn busy=() failures=build/log/flakes.failures
+    local count=10 tier=first preset turn busy=() failures=$logs/flakes.failures
     while (($# > 0)); do
         case $1 in
             --all) tier=all ;;
@@ -13,7 +13,7 @@ run_flakes() {
     done
     ((count > 0)) || misused "--count is 0; at least 1 is needed"
     build_tier "$tier"
-    [[ $tier == first ]] || for_core make_preset
+    [[ $tier == first ]] || for preset in "${core_presets[@]}"; do build_core "$preset"; done
     mkdir -p "$logs"
     : >"$failures"
     rm -f "$logs"/flakes-*-failed.log
@@ -27,7 +27,7 @@ run_flakes() {
     for ((turn = 1; turn <= count; ++turn)); do
         echo "== $turn of $count"
         list_failures test --label-exclude "$(labels_left_out "$tier")"
-        [[ $tier == first ]] || for_core list_core_failures
+        [[ $tier == first ]] || for preset in "${core_presets[@]}"; do list_core_failures "$preset"; done
     done
     if [[ -s $failures ]]; then
         echo "failed, of $count times:"
@@ -37,9 +37,10 @@ run_flakes() {
     echo "no test failed in $count runs while two busy loops used the processors"
 }
 
+# list_core_failures PRESET
 list_core_failures() {
     local options
-    mapfile -t options < <(core_tests "$@")
+    mapfile -t options < <(core_tests "$1")
     list_failures "$1" "${options[@]}"
 }
 
@@ -53,9 +54,9 @@ list_failures() {
     failed_tests "$log" | sed "s/^/$1: /" | tee -a "$failures"
 }
 
-# failed_tests LOG: the names of the tests that ctest lists as failed.
+# failed_tests LOG: the names of the tests that ctest lists as failed. It lists those that were skipped in the same form.
 failed_tests() {
-    sed -n 's/^[\t ]*[0-9]* - \(.*\) (.*)$/\1/p' "$1"
+    sed -n -e '/ (Skipped)$/d' -e 's/^[\t ]*[0-9]* - \(.*\) (.*)$/\1/p' "$1"
 }
 
 # run_mutants [NAME] [--all]: each patch of tests/mutants breaks one place. The tests must fail with it, and pass without.
@@ -91,7 +92,7 @@ run_mutants() {
 copy_sources() {
     local file sources=$PWD
     rm -rf "$1/tests/mutants"
-    git ls-files --cached --others --exclude-standard -- . ':!tests/mutants' | while read -r file; do
+    git -c core.quotePath=false ls-files --cached --others --exclude-standard -- . ':!tests/mutants' | while read -r file; do
         [[ -f $file ]] || continue
         cmp --silent "$file" "$1/$file" && continue
         mkdir -p "$(dirname "$1/$file")"
@@ -109,7 +110,7 @@ hint_of() { sed -n 's/^Test: //p' "$1"; }
 find_mutant() {
     local name since=$SECONDS hint
     name=$(basename "$2" .patch) hint=$(hint_of "$2")
-    if mutant_fails "$1" "$name" "$hint"; then
+    if mutant_fails "$1" "$name" "$hint" "${@:3}"; then
         echo "found   $name ($hint, $((SECONDS - since)) s)"
     elif mutant_fails "$1" "$name" '' "${@:3}"; then
         echo "found   $name ($(failed_tests "$logs/mutant-$name.log" | head -n 1), $((SECONDS - since)) s)"

@@ -20,7 +20,7 @@ run_test() {
     esac
     if (($# > 0)); then
         filter=$1
-        (($# == 1)) && [[ $filter =~ ^[A-Za-z0-9_./]+$ ]] ||
+        (($# == 1)) && [[ $filter =~ ^[A-Za-z0-9_./+]+$ ]] ||
             misused "test takes one word that is part of a test's name, not '$*'"
         occurs "$filter" || no_test "$filter" "$tier"
     fi
@@ -40,7 +40,7 @@ run_test() {
 # known before anything is built. Names of parameters therefore join their parts by '_', '/' or digits.
 occurs() {
     local part parts
-    IFS='._/0123456789' read -ra parts <<<"$1"
+    IFS='._/+0123456789' read -ra parts <<<"$1"
     for part in "${parts[@]}"; do
         grep --quiet --no-messages --recursive --fixed-strings --exclude-dir={node_modules,data,script} \
             --include='*.'{cmake,cpp,def,hpp,mjs,py,sh,ts} --include=CMakeLists.txt -e "$part" \
@@ -94,14 +94,21 @@ tests_failed() {
     exit "$failing_tests"
 }
 
-# run_filtered WORD first|all|nightly: the cases of test programs, and the other tests, whose names contain WORD.
+# run_filtered WORD first|all|nightly: the cases of test programs, and the other tests, whose names contain WORD. PROGRAM.SUITE+SUITE
+# is the name of a CTest test: these suites of that program.
 run_filtered() {
     local word=$1 program cases status others filter failed='' found='' of_tier=(core maps memory server http robot system)
-    filter="*$word*"
     if [[ $2 != first ]]; then
         of_tier+=(tools faults)
         [[ $2 == all ]] || of_tier+=(nightly)
-    elif [[ $word != *Trials* ]]; then
+    fi
+    program=${word%%.*}
+    if [[ $word == *.* && " ${of_tier[*]} " == *" $program "* ]]; then
+        of_tier=("$program")
+        word=${word#*.}
+    fi
+    filter="*${word//+/*:*}*"
+    if [[ $2 == first && $word != *Trials* ]]; then
         filter+='-*Trials/*:*Trials.*' # many random cases
     fi
     for program in "${of_tier[@]}"; do
@@ -116,31 +123,32 @@ run_filtered() {
         ((status != 124)) || echo "${program}_test was stopped: it had not ended after 1800 s"
         ((status == 0)) || failed=yes
     done
-    others=(--label-exclude "$(labels_left_out "$2")|^suite\$" --tests-regex "$word")
+    others=(--label-exclude "$(labels_left_out "$2")|^suite\$" --tests-regex "${1//+/[+]}")
     cases=$(ctest --preset test --show-only "${others[@]}")
     if [[ $cases == *' Test '*'#'* ]]; then
         found=yes
         ctest --preset test "${others[@]}" || failed=yes
     fi
-    [[ -n $found ]] || no_test "$word" "$2"
+    [[ -n $found ]] || no_test "$1" "$2"
     [[ -z $failed ]] || tests_failed
 }
 
-# Rows of 'PATTERN;FILES': the tests of --all whose names match PATTERN run if one of FILES or CMakeLists.txt changed. Of the suites
-# named Trials only those of system_test have a row.
+# Rows of 'PATTERN;FILES': the tests of --all whose names match PATTERN run if one of FILES, or of the files that all parts depend
+# on, changed. Of the suites named Trials only those of system_test have a row.
+readonly files_of_all_parts=(CMakeLists.txt CMakePresets.json cmake tests/CMakeLists.txt)
 readonly parts_of_all=(
-    '^tools[.];lab load tests/integration/lab tests/integration/load tests/support tests/unit/lab tests/unit/load'
+    '^tools[.];lab load sim tests/integration/lab tests/integration/load tests/support tests/unit/lab tests/unit/load'
     '^faults[.];common/link common/net common/wire load robot_client server/app server/ingest server/sessions server/sockets server/store tests/fault tests/integration/robot_client tests/support'
     '^system[.].*Trials(/|$);common/link common/net robot_client server/app server/http server/sessions server/store tests/fault tests/integration tests/support'
-    '^e2e_([^l]|l[^i]);server/http server/live tests/e2e web'
+    '^e2e_([^l]|l[^i]);common/wire/live.cpp proto/scanloom/v1/live.proto server/auth server/http server/live server/tiles tests/e2e web'
     '^ros_bridge_;robot_client/python robot_client/ros_bridge server/http/handlers/maps.cpp tests/integration/robot_client'
     '^python_client_;common/link common/wire proto robot_client/python server/ingest tests/integration/robot_client/python'
     '^observability_;docs/observability server/http/handlers/system.cpp server/metrics tests/integration/observability'
     '^openapi_;server/http/openapi.cpp server/http/openapi.py server/http/openapi.yaml server/http/routes.cpp tests/openapi'
-    '^lidar_judges$;robot_client/sources tests/readers tests/support'
+    '^lidar_judges$;robot_client/lidars robot_client/sources tests/readers tests/support'
     '^bridges$;robot_client/foxglove robot_client/ros tests/bridges'
     '^readers$;server/exchange server/http server/tiles tests/readers'
-    '^package$;cmake docker packaging robot_client/client robot_client/package robot_client/ros_bridge scanloom tests/package'
+    '^package$;docker packages.txt packaging robot_client/client robot_client/package robot_client/ros_bridge scanloom tests/package'
     '^api_pages$;common core docs/api packaging/api_pages.sh robot_client/client tests/package'
     '^bench_chart$;tests/bench/report'
 )
@@ -154,7 +162,7 @@ run_changed() {
     for part in "${parts_of_all[@]}"; do
         IFS=';' read -r tests files <<<"$part"
         read -ra files <<<"$files"
-        ! git diff --quiet "$1" -- CMakeLists.txt "${files[@]}" || left_out+=("$tests")
+        ! git diff --quiet "$1" -- "${files_of_all_parts[@]}" "${files[@]}" || left_out+=("$tests")
     done
     build_tier ci
     run_ctest test --label-exclude "$(labels_left_out ci)" --exclude-regex "$(IFS='|' && echo "${left_out[*]}")"
@@ -163,61 +171,71 @@ run_changed() {
 
 # run_images: builds the images of docker/ and starts them, where that is possible without an engine.
 run_images() {
-    [[ -e .git ]] || return 0
-    if ((EUID == 0)) && command -v buildah >/dev/null && command -v debootstrap >/dev/null; then
+    if [[ -e .git ]] && ((EUID == 0)) && command -v buildah >/dev/null && command -v debootstrap >/dev/null; then
         tests/system/docker_images.sh
     else
-        echo "The images of docker/ were not built: that needs root, buildah and debootstrap (./scanloom install system)."
+        echo "The images of docker/ were not built: that needs a clone, root, buildah and debootstrap (./scanloom install system)."
     fi
 }
 
-# run_sanitizers [--core]: the suites of test --all that run in process, under both sanitizers. --core: only the server's core
+# run_sanitizers [--core]: the suites of tier 1 and those named Trials, under both sanitizers. --core: only the server's core
 # (maps, sessions, store, robot connections, HTTP); under ThreadSanitizer only server_test, without suites that use one thread.
 run_sanitizers() {
-    (($# == 0)) || [[ $* == --core ]] || misused "test --sanitizers takes no '$*'"
-    need build test
-    if (($# == 0)); then
-        sanitize asan-ubsan tests --label-regex '^suite$' --exclude-regex '^(tools|faults|nightly)[.]'
-        sanitize tsan tests --label-regex '^suite$' --label-exclude '^one_thread$' --exclude-regex '^(tools|faults|nightly)[.]'
-    else
-        for_core sanitize_core
+    local part=sanitize_all presets=(asan-ubsan tsan) preset status=0
+    if (($# > 0)); then
+        [[ $* == --core ]] || misused "test --sanitizers takes no '$*'"
+        part=sanitize_core presets=("${core_presets[@]}")
     fi
+    need build test
+    for preset in "${presets[@]}"; do
+        ("$part" "$preset") || status=$? # the other sanitizer may find more
+        ((status == 0 || status == failing_tests)) || exit "$status"
+    done
+    return "$status"
 }
 
-# for_core COMMAND: COMMAND PRESET PROGRAM... for the server's core.
-for_core() {
-    "$1" asan-core http_test maps_test server_test
-    "$1" tsan server_test
+# sanitize_all PRESET
+sanitize_all() {
+    local options=(--label-regex '^suite$' --exclude-regex '^(tools|faults|nightly)[.]')
+    [[ $1 != tsan ]] || options+=(--label-exclude '^one_thread$')
+    make_preset "$1" tests
+    run_ctest "$1" "${options[@]}"
 }
 
-# core_tests PRESET PROGRAM...: the options of ctest for their suites, one a line.
+readonly core_presets=(asan-core tsan)
+
+# core_programs PRESET
+core_programs() { [[ $1 == tsan ]] || printf '%s\n' http_test maps_test && echo server_test; }
+
+# build_core PRESET
+build_core() {
+    local programs_of_core
+    mapfile -t programs_of_core < <(core_programs "$1")
+    make_preset "$1" "${programs_of_core[@]}"
+}
+
+# sanitize_core PRESET
+sanitize_core() {
+    local options
+    mapfile -t options < <(core_tests "$1")
+    build_core "$1"
+    run_ctest "$1" "${options[@]}"
+}
+
+# core_tests PRESET: the options of ctest for the suites of these programs, one a line.
 core_tests() {
     # With ThreadSanitizer this leaves out suites in which one thread reads or writes files or estimates poses, and the largest session,
     # which takes a minute. --nightly runs them.
     [[ $1 != tsan ]] || printf '%s\n' --exclude-regex \
         'CopyLog|DamagedStore|TableStore|LogFile|LogReconstruction|EstimatedPoses|EstimationCheckpoint|LocalizeOnly|ExcludedEstimates|HeavySession|KilledStore|CutCheckpoint'
-    shift
-    local IFS='|'
-    printf '%s\n' --label-regex "^($*)\$" --label-exclude '^(all|nightly)$'
-}
-
-sanitize_core() {
-    local options
-    mapfile -t options < <(core_tests "$@")
-    make_preset "$@"
-    run_ctest "$1" "${options[@]}"
-}
-
-# sanitize PRESET TARGET CTEST_OPTION...
-sanitize() {
-    make_preset "$1" "$2"
-    run_ctest "$1" "${@:3}"
+    printf '%s\n' --label-regex "^($(core_programs "$1" | paste --serial --delimiters '|'))\$" --label-exclude '^(all|nightly)$'
 }
 
 # run_nightly: all tests, sanitizers, fuzzers, mutants, other builds and systems. It goes on after a part that fails, and names
 # all of these at its end.
 run_nightly() {
     local failed=()
+    ((EUID == 0)) || fail "test --nightly makes bare systems and images, which needs root; run it as root"
     need fmt fuzz bench system large_readers
     build_tier nightly
     nightly_part run_ctest test --label-exclude '^nightly$'
