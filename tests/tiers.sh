@@ -72,7 +72,7 @@ build_tier() {
 labels_left_out() {
     case $1 in
         first) echo '^(all|nightly)$' ;;
-        ci) echo '^(server_test|http_test|nightly)$' ;;
+        ci) echo '^(http_test|recovery_test|server_test|nightly)$' ;;
         all) echo '^nightly$' ;;
         nightly) echo '^$' ;;
     esac
@@ -97,7 +97,7 @@ tests_failed() {
 # run_filtered WORD first|all|nightly: the cases of test programs, and the other tests, whose names contain WORD. PROGRAM.SUITE+SUITE
 # is the name of a CTest test: these suites of that program.
 run_filtered() {
-    local word=$1 program cases status others filter failed='' found='' of_tier=(core maps memory server http robot system)
+    local word=$1 program cases status others filter failed='' found='' of_tier=(core maps memory server recovery http robot system)
     if [[ $2 != first ]]; then
         of_tier+=(tools faults)
         [[ $2 == all ]] || of_tier+=(nightly)
@@ -153,8 +153,8 @@ readonly parts_of_all=(
     '^bench_chart$;tests/bench/report'
 )
 
-# run_changed COMMIT: tier 1 without server_test and http_test, which .ci/run runs with sanitizers, and the parts of --all whose
-# files differ from those of that commit. All other programs of --all are compiled. Suites named Trials are left out, because tier 1
+# run_changed COMMIT: tier 1 without http_test, recovery_test and server_test, which .ci/run runs with sanitizers, and the parts of
+# --all whose files differ from those of that commit. All other programs of --all are compiled. Suites named Trials are left out, because tier 1
 # and the sanitizers run their short forms.
 run_changed() {
     (($# == 1)) && git rev-parse --quiet --verify "$1^{commit}" >/dev/null || misused "test --changed takes a commit, not '$*'"
@@ -166,7 +166,7 @@ run_changed() {
     done
     build_tier ci
     run_ctest test --label-exclude "$(labels_left_out ci)" --exclude-regex "$(IFS='|' && echo "${left_out[*]}")"
-    echo "server_test and http_test were not run; ./scanloom test --sanitizers --core runs them"
+    echo "http_test, recovery_test and server_test were not run; ./scanloom test --sanitizers --core runs them"
 }
 
 # run_images: builds the images of docker/ and starts them, where that is possible without an engine.
@@ -179,7 +179,7 @@ run_images() {
 }
 
 # run_sanitizers [--core]: the suites of tier 1 and those named Trials, under both sanitizers. --core: only the server's core
-# (maps, sessions, store, robot connections, HTTP); under ThreadSanitizer only server_test, without suites that use one thread.
+# (maps, sessions, store, robot connections, HTTP); under ThreadSanitizer only server_test.
 run_sanitizers() {
     local part=sanitize_all presets=(asan-ubsan tsan) preset status=0
     if (($# > 0)); then
@@ -205,7 +205,7 @@ sanitize_all() {
 readonly core_presets=(asan-core tsan)
 
 # core_programs PRESET
-core_programs() { [[ $1 == tsan ]] || printf '%s\n' http_test maps_test && echo server_test; }
+core_programs() { [[ $1 == tsan ]] || printf '%s\n' http_test maps_test recovery_test && echo server_test; }
 
 # build_core PRESET
 build_core() {
@@ -224,10 +224,8 @@ sanitize_core() {
 
 # core_tests PRESET: the options of ctest for the suites of these programs, one a line.
 core_tests() {
-    # With ThreadSanitizer this leaves out suites in which one thread reads or writes files or estimates poses, and the largest session,
-    # which takes a minute. --nightly runs them.
-    [[ $1 != tsan ]] || printf '%s\n' --exclude-regex \
-        'CopyLog|DamagedStore|TableStore|LogFile|LogReconstruction|EstimatedPoses|EstimationCheckpoint|LocalizeOnly|ExcludedEstimates|HeavySession|KilledStore|CutCheckpoint'
+    # Suites in which one thread uses a store; --nightly also runs them with ThreadSanitizer.
+    [[ $1 != tsan ]] || printf '%s\n' --exclude-regex 'CopyLog|DamagedStore|TableStore|KilledStore'
     printf '%s\n' --label-regex "^($(core_programs "$1" | paste --serial --delimiters '|'))\$" --label-exclude '^(all|nightly)$'
 }
 

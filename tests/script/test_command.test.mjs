@@ -15,7 +15,7 @@ test('test WORD runs the tests with this name, and reports that there are none o
     `*) [ ! -e ${join(place, 'broken')} ] ;;`,
     'esac',
   ];
-  for (const name of ['core', 'maps', 'memory', 'server', 'http', 'robot', 'system', 'tools', 'faults'])
+  for (const name of ['core', 'maps', 'memory', 'server', 'recovery', 'http', 'robot', 'system', 'tools', 'faults'])
     writeFileSync(join(place, `build/tests/${name}_test`), program.join('\n'), { mode: 0o755 });
   writeFileSync(
     join(place, 'tests/suite_test.cpp'),

@@ -11,6 +11,7 @@ command -v debootstrap >/dev/null || { echo "minimal_debian.sh: apt-get install 
 mirror=$(apt-get indextargets --format '$(REPO_URI)' | grep --max-count=1 '/debian/\?$')
 mkdir -p "$folder"
 debootstrap --variant=minbase bookworm "$folder" "$mirror" >"$folder.log" 2>&1 || { tail "$folder.log" >&2; exit 1; }
+chmod 755 "$folder" # mktemp makes folders that only root may enter; tests start PostgreSQL as another user
 
 # carry SOURCE...: copies the existing ones to the same paths.
 carry() {
