@@ -5,7 +5,9 @@ mark_as_advanced(LZ4_INCLUDE_DIR LZ4_LIBRARY)
 
 if(LZ4_INCLUDE_DIR)
   file(STRINGS ${LZ4_INCLUDE_DIR}/lz4.h version_lines REGEX "define LZ4_VERSION_(MAJOR|MINOR|RELEASE) ")
-  string(REGEX REPLACE "[^0-9]*[0-9]*LZ4[^0-9]+([0-9]+)[^;]*;[^;]*MINOR +([0-9]+)[^;]*;[^;]*RELEASE +([0-9]+).*" "\\1.\\2.\\3" LZ4_VERSION "${version_lines}")
+  string(REGEX MATCHALL " [0-9]+" numbers "${version_lines}")
+  string(REPLACE "; " "." numbers "${numbers}")
+  string(STRIP "${numbers}" LZ4_VERSION)
 endif()
 
 include(FindPackageHandleStandardArgs)

@@ -5,8 +5,11 @@ find_path(OpenCV_INCLUDE_DIR opencv2/core/version.hpp PATH_SUFFIXES opencv4)
 mark_as_advanced(OpenCV_INCLUDE_DIR)
 
 if(OpenCV_INCLUDE_DIR)
-  file(STRINGS ${OpenCV_INCLUDE_DIR}/opencv2/core/version.hpp version_lines REGEX "define CV_VERSION_(MAJOR|MINOR|REVISION)")
-  string(REGEX REPLACE "[^0-9]+([0-9]+)[^0-9]+([0-9]+)[^0-9]+([0-9]+).*" "\\1.\\2.\\3" OpenCV_VERSION "${version_lines}")
+  file(STRINGS ${OpenCV_INCLUDE_DIR}/opencv2/core/version.hpp version_lines
+       REGEX "define CV_VERSION_(MAJOR|MINOR|REVISION)")
+  string(REGEX MATCHALL " [0-9]+" numbers "${version_lines}")
+  string(REPLACE "; " "." numbers "${numbers}")
+  string(STRIP "${numbers}" OpenCV_VERSION)
 endif()
 
 foreach(module IN LISTS OpenCV_FIND_COMPONENTS)

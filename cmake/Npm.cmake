@@ -1,4 +1,4 @@
-# The parts written for the browser. Node and npm are looked for once; where they are missing, web/ says what to do.
+# Finds node and npm, for the viewer and for tests. Where they are missing, web/CMakeLists.txt reports what to do.
 
 set(SCANLOOM_NODE_MAJOR 18)
 # Where the viewer's files are built to, and where the server looks for them.
@@ -7,7 +7,8 @@ set(SCANLOOM_WEB_DIR ${CMAKE_BINARY_DIR}/web)
 find_program(SCANLOOM_NODE NAMES node nodejs DOC "Node.js, which builds the viewer")
 find_program(SCANLOOM_NPM NAMES npm DOC "npm, which fetches what the viewer is built from")
 
-# scanloom_find_npm(RESULT REASON): whether they are here and new enough; otherwise why not.
+# scanloom_find_npm(RESULT REASON): sets RESULT to whether node and npm are installed and new
+# enough, and REASON to the cause if not.
 function(scanloom_find_npm result reason)
   set(${result} FALSE PARENT_SCOPE)
   if(NOT SCANLOOM_NODE OR NOT SCANLOOM_NPM)

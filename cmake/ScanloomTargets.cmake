@@ -7,7 +7,8 @@ target_include_directories(scanloom_options INTERFACE ${CMAKE_SOURCE_DIR})
 target_compile_options(scanloom_options INTERFACE -Wall -Wextra -Wconversion -Wshadow -Wno-missing-field-initializers
                                                   -ffp-contract=off)
 # Other compilers may have new warnings, which must not stop a build.
-if(SCANLOOM_WERROR AND CMAKE_SYSTEM_PROCESSOR STREQUAL x86_64 AND "${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION}" MATCHES "^GNU 12[.]")
+if(SCANLOOM_WERROR AND CMAKE_SYSTEM_PROCESSOR STREQUAL x86_64
+   AND "${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION}" MATCHES "^GNU 12[.]")
   target_compile_options(scanloom_options INTERFACE -Werror)
 endif()
 if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
@@ -26,7 +27,8 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
   # built the same way, because a precompiled header serves only targets with equal -f options.
   add_compile_options(-fno-semantic-interposition -fno-gnu-unique)
 endif()
-add_compile_options(-fPIC) # programs too, where CMAKE_POSITION_INDEPENDENT_CODE means -fPIE: see precompiled headers above
+# For programs too, where CMAKE_POSITION_INDEPENDENT_CODE means -fPIE: they share precompiled headers.
+add_compile_options(-fPIC)
 if(SCANLOOM_SANITIZE)
   add_compile_options(-fsanitize=${SCANLOOM_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
   add_link_options(-fsanitize=${SCANLOOM_SANITIZE})
@@ -35,7 +37,8 @@ if(SCANLOOM_SANITIZE)
   endif()
 endif()
 
-# Optimization by kind of code, in release builds: kernels -O3, what is as fast as its sockets, devices and files -O1, tests -Og.
+# Optimization by kind of code, in release builds: compute -O3; io, code whose speed is limited by sockets, devices or
+# files, -O1; tests -Og.
 # Each kind has one precompiled header, which all targets of the kind share.
 # scanloom_kind(TARGET KIND), KIND one of compute, io, test
 function(scanloom_kind target kind)
@@ -63,7 +66,7 @@ function(scanloom_headers kind)
 endfunction()
 
 # scanloom_library(NAME [IO] SOURCES a.cpp ... LINKS target ...)
-# One folder, one library; LINKS are the folders and packages it may include. IO: it is as fast as the sockets, devices or files that it reads and writes.
+# One folder, one library; LINKS are the folders and packages it may include. IO: of the kind io.
 function(scanloom_library name)
   cmake_parse_arguments(ARG "IO" "" "SOURCES;LINKS" ${ARGN})
   if(NOT ARG_SOURCES)
@@ -103,7 +106,8 @@ function(scanloom_test_program name)
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
   target_link_libraries(${name} PRIVATE scanloom_options GTest::gtest_main)
   scanloom_kind(${name} test)
-  target_compile_definitions(${name} PRIVATE SCANLOOM_SOURCE_DIR="${CMAKE_SOURCE_DIR}" SCANLOOM_BUILD_DIR="${CMAKE_BINARY_DIR}")
+  target_compile_definitions(${name} PRIVATE SCANLOOM_SOURCE_DIR="${CMAKE_SOURCE_DIR}"
+                                             SCANLOOM_BUILD_DIR="${CMAKE_BINARY_DIR}")
   # g++ 12 sees overlaps that are not there in "text" + std::string (GCC bug 105651).
   target_compile_options(${name} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
   if(NOT ARG_TIMEOUT)

@@ -41,11 +41,11 @@ Result<Subscribe> decode_subscribe(const json::object& object) {
     if (list == nullptr) return malformed("subscribe has no list of subscriptions");
     Subscribe subscribe;
     for (const json::value& each : *list) {
-        const json::object* wish = each.if_object();
-        const auto id = wish != nullptr ? id_of(*wish, "id") : std::nullopt;
-        const auto channel = wish != nullptr ? id_of(*wish, "channelId") : std::nullopt;
+        const json::object* subscription = each.if_object();
+        const auto id = subscription != nullptr ? id_of(*subscription, "id") : std::nullopt;
+        const auto channel = subscription != nullptr ? id_of(*subscription, "channelId") : std::nullopt;
         if (!id || !channel) return malformed("a subscription has no id or no channelId below 2^32");
-        subscribe.wishes.push_back({*id, *channel});
+        subscribe.subscriptions.push_back({*id, *channel});
     }
     return subscribe;
 }

@@ -20,11 +20,11 @@ inline constexpr std::string_view kSubprotocols[] = {"foxglove.sdk.v1", "foxglov
 
 /// A viewer wants the messages of channels, each with an id of its own.
 struct Subscribe {
-    struct Wish {
+    struct Subscription {
         std::uint32_t id = 0;
         std::uint32_t channel = 0;
     };
-    std::vector<Wish> wishes;
+    std::vector<Subscription> subscriptions;
 };
 
 /// A viewer no longer wants the messages of these subscriptions.

@@ -70,7 +70,7 @@ void SessionFeed::warn(std::string_view text) {
 }
 
 void SessionFeed::handle(const Subscribe& subscribe) {
-    for (const auto& [id, channel] : subscribe.wishes) {
+    for (const auto& [id, channel] : subscribe.subscriptions) {
         const std::size_t index = std::size_t{channel} - 1;
         const auto is_same = [&](const auto& each) { return each.second.channel == index; };
         if (channel == 0 || index >= advertised_) {

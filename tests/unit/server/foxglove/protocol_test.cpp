@@ -23,11 +23,11 @@ TEST(FoxgloveProtocol, DataHaveTheBytesOfTheSpecification) {
 TEST(FoxgloveProtocol, ReadsSubscriptions) {
     const auto subscribe = decode_request(
         R"({"op":"subscribe","subscriptions":[{"id":0,"channelId":3},{"id":4294967295,"channelId":5}]})");
-    const auto& wishes = std::get<Subscribe>(*subscribe).wishes;
-    ASSERT_EQ(wishes.size(), 2U);
-    EXPECT_EQ(wishes[0].id, 0U);
-    EXPECT_EQ(wishes[0].channel, 3U);
-    EXPECT_EQ(wishes[1].id, 4294967295U);
+    const auto& subscriptions = std::get<Subscribe>(*subscribe).subscriptions;
+    ASSERT_EQ(subscriptions.size(), 2U);
+    EXPECT_EQ(subscriptions[0].id, 0U);
+    EXPECT_EQ(subscriptions[0].channel, 3U);
+    EXPECT_EQ(subscriptions[1].id, 4294967295U);
     const auto unsubscribe = decode_request(R"({"op":"unsubscribe","subscriptionIds":[0,7]})");
     EXPECT_THAT(std::get<Unsubscribe>(*unsubscribe).ids, testing::ElementsAre(0U, 7U));
 }
