@@ -94,8 +94,8 @@ tests_failed() {
     exit "$failing_tests"
 }
 
-# run_filtered WORD first|all|nightly: the cases of test programs, and the other tests, whose names contain WORD. PROGRAM.SUITE+SUITE
-# is the name of a CTest test: these suites of that program.
+# run_filtered WORD first|all|nightly: the cases of test programs, and the other tests, whose names contain WORD. PROGRAM.SUITE+SUITE,
+# the name of a CTest test, stands for the cases of that program whose names contain one of these words.
 run_filtered() {
     local word=$1 program cases status others filter failed='' found='' of_tier=(core maps memory server recovery http robot system)
     if [[ $2 != first ]]; then
@@ -143,11 +143,11 @@ readonly parts_of_all=(
     '^e2e_([^l]|l[^i]);common/wire/live.cpp proto/scanloom/v1/live.proto server/auth server/http server/live server/tiles tests/e2e web'
     '^ros_bridge_;robot_client/python robot_client/ros_bridge server/http/handlers/maps.cpp tests/integration/robot_client'
     '^python_client_;common/link common/wire proto robot_client/python server/ingest tests/integration/robot_client/python'
-    '^observability_;docs/observability server/http/handlers/system.cpp server/metrics tests/integration/observability'
-    '^openapi_;server/http/openapi.cpp server/http/openapi.py server/http/openapi.yaml server/http/routes.cpp tests/openapi'
-    '^lidar_judges$;robot_client/lidars robot_client/sources tests/readers tests/support'
-    '^bridges$;robot_client/foxglove robot_client/ros tests/bridges'
-    '^readers$;server/exchange server/http server/tiles tests/readers'
+    '^observability_;tests/integration/robot_client/python docs/observability server/http/handlers/system.cpp server/metrics tests/integration/observability'
+    '^openapi_;tests/e2e/environment.mjs tests/e2e/programs.mjs server/http/openapi.cpp server/http/openapi.py server/http/openapi.yaml server/http/routes.cpp tests/openapi'
+    '^lidar_judges$;tests/e2e/environment.mjs tests/e2e/programs.mjs robot_client/lidars robot_client/sources tests/readers tests/support'
+    '^bridges$;tests/e2e/environment.mjs tests/e2e/programs.mjs robot_client/foxglove robot_client/ros tests/bridges'
+    '^readers$;tests/e2e/environment.mjs tests/e2e/programs.mjs server/exchange server/http server/tiles tests/readers'
     '^package$;docker packages.txt packaging robot_client/client robot_client/package robot_client/ros_bridge scanloom tests/package'
     '^api_pages$;common core docs/api packaging/api_pages.sh robot_client/client tests/package'
     '^bench_chart$;tests/bench/report'
@@ -204,7 +204,7 @@ sanitize_all() {
 
 readonly core_presets=(asan-core tsan)
 
-# core_programs PRESET
+# core_programs PRESET: the test programs of the server's core that this preset builds, one a line.
 core_programs() { [[ $1 == tsan ]] || printf '%s\n' http_test maps_test recovery_test && echo server_test; }
 
 # build_core PRESET

@@ -4,7 +4,7 @@
 set -euo pipefail
 cd "$(git rev-parse --show-toplevel)"
 
-found=$(git -c diff.noprefix=false -c diff.mnemonicPrefix=false diff --no-ext-diff --no-color --unified=0 "${1:---cached}" -- '*.cpp' '*.hpp' '*.ts' '*.mjs' '*.py' '*.yaml' '*.md' '*.proto' scanloom '*.sh' ':!tests/hooks' |
+found=$(git -c core.quotePath=false -c diff.noprefix=false -c diff.mnemonicPrefix=false diff --no-ext-diff --no-color --unified=0 "${1:---cached}" -- '*.cpp' '*.hpp' '*.ts' '*.mjs' '*.py' '*.yaml' '*.md' '*.proto' scanloom '*.sh' ':!tests/hooks' |
     awk '
         FNR == NR { if ($0 !~ /^#/ && NF > 0) { split($0, part, /  +/); instead[part[1]] = part[2] } next }
         /^\+\+\+ b\// { file = substr($0, 7); next }

@@ -11,6 +11,7 @@ test('the files of each part of --all exist', () => {
   const text = readFileSync(join(source, 'tests/tiers.sh'), 'utf8');
   const table = text.match(/parts_of_all=\(\n([^]*?)\n\)/)[1];
   const files = [...table.matchAll(/^ *'.*;(.*)'$/gm)].flatMap((row) => row[1].split(' '));
+  files.push(...text.match(/files_of_all_parts=\((.*)\)/)[1].split(' '));
   assert.ok(files.length > 15);
   for (const file of files) assert.ok(existsSync(join(source, file)), file);
 });
@@ -35,8 +36,8 @@ test('every mutant applies to the sources and is in the table of docs/internals/
     assert.equal(run.status, 0, `${file}: write it again\n${run.stdout}${run.stderr}${run.error ?? ''}`);
     const row = table.find((line) => line.startsWith(`| \`${file.replace('.patch', '')}\` |`));
     assert.ok(row, `${file} is not in the table`);
-    const [, word] = readFileSync(join(source, 'tests/mutants', file), 'utf8').match(/^Test: (.*)$/m);
-    assert.ok(row.endsWith(`| \`${word}\` |`), `the table does not name ${word} for ${file}`);
+    const [, fault, word] = readFileSync(join(source, 'tests/mutants', file), 'utf8').match(/^(.*)\nTest: (.*)$/m);
+    assert.ok(row.endsWith(`| ${fault} | \`${word}\` |`), `the table does not have the fault and the test of ${file}`);
   }
 });
 
