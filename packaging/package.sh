@@ -39,13 +39,7 @@ install -D --mode 644 packaging/scanloom-server.service "$root/lib/systemd/syste
 install -D --mode 644 packaging/scanloom-server.toml "$root/etc/scanloom/scanloom-server.toml"
 install -D --mode 644 packaging/sysusers.conf "$root/usr/lib/sysusers.d/scanloom.conf"
 install -D --mode 644 -t "$docs" packaging/debian/copyright
-# The documents, and the files that their links name, at the paths of the source tree.
-for file in README.md ARCHITECTURE.md CHANGELOG.md CONTRIBUTING.md GLOSSARY.md SECURITY.md LICENSE packages.txt docs/*.md docs/internals/*.md docs/decisions/*.md docs/cluster/* docs/foxglove/* docs/observability/* docs/performance/* docs/pictures/*.png \
-    docs/landmarks/*.md docs/landmarks/pictures/*.png docs/localization/*.md docs/localization/pictures/*.png \
-    docker/Dockerfile docker/*.md docker/*.yaml docker/cluster/* proto/scanloom/v1/*.proto robot_client/examples/send_scan/send_scan.cpp robot_client/python/scanloom_client.py \
-    robot_client/ros_bridge/README.md; do
-    install -D --mode 644 "$file" "$docs/$file"
-done
+packaging/documents.sh "$docs"
 packaging/api_pages.sh "$version" "$docs/api"
 # The node of ROS, as a folder for a workspace, with the client instead of a link to it.
 mkdir "$root/usr/share/scanloom/ros"

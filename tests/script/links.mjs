@@ -5,10 +5,10 @@ import { dirname, join, relative, resolve } from 'node:path';
 const withoutCode = (text) => text.replace(/^```[^]*?^```/gm, '').replace(/`[^`\n]*`/g, 'x');
 
 /** Returns the targets of links and pictures, as written. */
-export const linksOf = (text) => [...withoutCode(text).matchAll(/\]\(([^)\s]+)\)/g)].map((match) => match[1]);
+const linksOf = (text) => [...withoutCode(text).matchAll(/\]\(([^)\s]+)\)/g)].map((match) => match[1]);
 
 /** Returns the anchors of a document: its headings, in GitHub's spelling. */
-export function anchorsOf(text) {
+function anchorsOf(text) {
   const seen = new Map();
   return new Set(
     [...text.replace(/^```[^]*?^```/gm, '').matchAll(/^#+ (.*)$/gm)].map(([, heading]) => {
