@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 namespace scanloom {
@@ -11,6 +13,7 @@ namespace {
 struct Recording {
     const char* file;
     std::size_t scans;
+    std::size_t beams; ///< of each scan
 };
 
 void PrintTo(const Recording& recording, std::ostream* out) { *out << recording.file; }
@@ -36,8 +39,13 @@ protected:
 TEST_P(RealLogs, ContainEveryScanInAlmostIncreasingTime) {
     const auto log = read(robot::NoReturn::kDrop);
     ASSERT_EQ(log.observations.size(), GetParam().scans);
+    EXPECT_TRUE(log.stamps.file_order);
     for (std::size_t n = 1; n < log.observations.size(); ++n) {
         EXPECT_GT(log.observations[n].scan.stamp, log.observations[n - 1].scan.stamp - 0.9);
+    }
+    for (const auto& [sensor, scan] : log.observations) {
+        EXPECT_EQ(scan.ranges.size(), GetParam().beams);
+        EXPECT_EQ(sensor, log.observations[0].sensor);
     }
 }
 
@@ -60,10 +68,32 @@ TEST_P(RealLogs, GiveTheMapsOfANaiveImplementation) {
     EXPECT_GT(firm, 100'000U);
 }
 
+/// The stamps of this log go back 631 times. Sorted by stamp, the trajectory would be 661 m long, with steps of up to
+/// 0.87 m.
+TEST(IntelLog, HasAPlausibleTrajectory) {
+    const auto path = std::filesystem::path(SCANLOOM_SOURCE_DIR) / "../shared/data/logs/intel.clf.bz2";
+    if (!std::filesystem::exists(path)) GTEST_SKIP() << "the recorded log is not at " << path;
+    const auto log = robot::read_whole_log(path, {}, [](const robot::SkippedLine&) {});
+    ASSERT_TRUE(log) << log.error().message;
+    EXPECT_EQ(log->stamps.steps_back, 631U);
+    double length = 0.0;
+    double step_max = 0.0;
+    for (std::size_t i = 1; i < log->observations.size(); ++i) {
+        const Pose2& from = *log->observations[i - 1].scan.pose;
+        const Pose2& to = *log->observations[i].scan.pose;
+        const double step = std::hypot(to.x - from.x, to.y - from.y);
+        length += step;
+        step_max = std::max(step_max, step);
+    }
+    EXPECT_NEAR(length, 508.0, 5.0);
+    EXPECT_LT(step_max, 0.3);
+}
+
 INSTANTIATE_TEST_SUITE_P(All, RealLogs,
-                         testing::Values(Recording{"intel.clf.bz2", 13'631}, Recording{"intel-corrected.log.gz", 910},
-                                         Recording{"fr079.clf.bz2", 4'934},
-                                         Recording{"fr079-corrected.log.gz", 4'791}));
+                         testing::Values(Recording{"intel.clf.bz2", 13'631, 180},
+                                         Recording{"intel-corrected.log.gz", 910, 180},
+                                         Recording{"fr079.clf.bz2", 4'934, 360},
+                                         Recording{"fr079-corrected.log.gz", 4'791, 360}));
 
 } // namespace
 } // namespace scanloom

@@ -1,62 +1,17 @@
-#include "tests/integration/ingest_fixture.hpp"
+#include "tests/integration/requests_fixture.hpp"
 
 #include "core/classify/frontiers.hpp"
 #include "core/planning/grid_path.hpp"
 #include "server/guidance/robots.hpp"
 
-#include <boost/asio/post.hpp>
-
 #include <algorithm>
-#include <future>
-#include <numbers>
+#include <cmath>
 #include <set>
 #include <thread>
 
-/// Robots that request paths.
+/// Robots that request paths, goals and coverage.
 namespace scanloom::ingest {
 namespace {
-
-Sensor half_round_laser() {
-    Sensor sensor;
-    sensor.id = 1;
-    sensor.name = "laser";
-    sensor.angles = UniformAngles{-std::numbers::pi / 2, std::numbers::pi / 180, 181};
-    sensor.range_max = 20.0;
-    return sensor;
-}
-
-/// A wall at a distance of three metres, and a sector without readings: frontiers are there and behind the robot.
-Scan scan_with_a_gap(std::uint64_t seq = 1) {
-    Scan scan;
-    scan.seq = seq;
-    scan.stamp = static_cast<double>(seq);
-    scan.sensor = 1;
-    scan.pose = {0.5, 1.25, 0.0};
-    scan.ranges.assign(181, 3'000);
-    std::fill(scan.ranges.begin() + 100, scan.ranges.begin() + 130, kInvalidRange);
-    return scan;
-}
-
-class RequestsTest : public IngestTest {
-protected:
-    /// A robot whose first scan has been applied.
-    std::unique_ptr<RobotSocket> looking_around(const std::string& name, const std::string& session = "lab") {
-        auto robot = welcomed(port(), hello(name, session));
-        robot->send(half_round_laser());
-        robot->send(wire::ScanBatch{{scan_with_a_gap()}});
-        robot->wait_for_ack(1);
-        return robot;
-    }
-
-    /// Blocks all searches until the returned promise is fulfilled.
-    std::promise<void> hold_searches() {
-        std::promise<void> go_on;
-        boost::asio::post(running_->planning(), [wait = go_on.get_future().share()] { wait.wait(); });
-        return go_on;
-    }
-};
-
-wire::PlanRequest plan_to(const Point2& goal, std::uint64_t id = 1) { return {.id = id, .goal = goal}; }
 
 TEST_F(RequestsTest, APlanIsThePathOfThePlanner) {
     auto& ingest = start();
@@ -289,129 +244,6 @@ TEST_F(RequestsTest, RequestsUseTheMapsOfTheRobotsSession) {
     elsewhere->send(wire::PlanRequest{.id = 1, .start = Point2{1.0, 1.0}, .goal = {2.5, 0.2}});
     EXPECT_THAT(elsewhere->receive_kind<wire::PlanReply>().result.error().message,
                 testing::HasSubstr("outside the map"));
-}
-
-TEST_F(RequestsTest, ScansAreAcknowledgedDuringASearch) {
-    start();
-    const auto robot = looking_around("r");
-    auto go_on = hold_searches();
-    robot->send(plan_to({2.5, 0.2}));
-    robot->send(wire::ScanBatch{{scan_with_a_gap(2)}});
-    robot->wait_for_ack(2);
-    robot->send(wire::Ping{9});
-    EXPECT_EQ(robot->receive_kind<wire::Pong>().nonce, 9U);
-    go_on.set_value();
-    EXPECT_TRUE(robot->receive_kind<wire::PlanReply>().result);
-}
-
-TEST_F(RequestsTest, ARequestBeyondTheLimitIsRefusedAndTheOthersAreAnswered) {
-    start();
-    const auto robot = looking_around("r");
-    auto go_on = hold_searches();
-    for (std::uint64_t id = 1; id <= 5; ++id) robot->send(plan_to({2.5, 0.2}, id));
-    const auto refused = robot->receive_kind<wire::PlanReply>();
-    EXPECT_EQ(refused.id, 5U);
-    EXPECT_EQ(refused.result.error().code, Errc::kOverloaded);
-    EXPECT_THAT(refused.result.error().message, testing::StartsWith("4 requests are under way"));
-    go_on.set_value();
-    for (std::uint64_t id = 1; id <= 4; ++id) {
-        const auto reply = robot->receive_kind<wire::PlanReply>();
-        EXPECT_EQ(reply.id, id);
-        EXPECT_TRUE(reply.result);
-    }
-    robot->send(plan_to({2.5, 0.2}, 6));
-    EXPECT_TRUE(robot->receive_kind<wire::PlanReply>().result);
-}
-
-TEST_F(RequestsTest, ARequestBeyondTheLimitOfAllLinksIsRefused) {
-    running_ = std::make_unique<RunningIngest>(log_, IngestConfig{}, 2);
-    const auto first = looking_around("a");
-    const auto second = looking_around("b");
-    auto go_on = hold_searches();
-    first->send(plan_to({2.5, 0.2}, 1));
-    first->send(plan_to({2.5, 0.2}, 2));
-    first->send(wire::Ping{1});
-    first->receive_kind<wire::Pong>();
-    second->send(wire::GoalRequest{.id = 3});
-    const auto refused = second->receive_kind<wire::GoalReply>();
-    EXPECT_EQ(refused.id, 3U);
-    EXPECT_EQ(refused.result.error().code, Errc::kOverloaded);
-    go_on.set_value();
-    EXPECT_TRUE(first->receive_kind<wire::PlanReply>().result);
-    EXPECT_TRUE(first->receive_kind<wire::PlanReply>().result);
-}
-
-TEST_F(RequestsTest, AGoodbyeWaitsForReplies) {
-    start();
-    const auto robot = looking_around("r");
-    auto go_on = hold_searches();
-    robot->send_bytes(frame_of(plan_to({2.5, 0.2}, 8)) + frame_of(wire::Goodbye{"done"}));
-    go_on.set_value();
-    EXPECT_TRUE(robot->receive_kind<wire::PlanReply>().result);
-    EXPECT_FALSE(robot->receive().has_value());
-}
-
-TEST_F(RequestsTest, ARobotThatLeavesBeforeItsReplyDisturbsNoOtherRobot) {
-    start();
-    const auto other = looking_around("other");
-    auto go_on = hold_searches();
-    {
-        const auto robot = looking_around("r");
-        robot->send(plan_to({2.5, 0.2}));
-        robot->send(wire::Ping{1});
-        robot->receive_kind<wire::Pong>();
-        robot->reset();
-    }
-    other->send(plan_to({2.5, 0.2}));
-    go_on.set_value();
-    EXPECT_TRUE(other->receive_kind<wire::PlanReply>().result);
-}
-
-TEST_F(RequestsTest, UnreadRefusalsEndTheLink) {
-    start();
-    const auto robot = looking_around("r");
-    auto go_on = hold_searches();
-    std::string many;
-    while (many.size() < std::size_t{16} << 20) wire::encode(plan_to({2.5, 0.2}), many);
-    std::thread sending([&] {
-        try {
-            robot->send_bytes(many);
-        } catch (const boost::system::system_error&) { // disconnected meanwhile
-        }
-    });
-    sending.join();
-    go_on.set_value();
-    bool ended = false;
-    try {
-        while (const auto message = robot->receive()) {
-            if (const auto* error = std::get_if<wire::LinkError>(&*message)) {
-                EXPECT_EQ(error->error.code, Errc::kCreditExceeded) << error->error.message;
-                ended = true;
-            }
-        }
-    } catch (const boost::system::system_error&) {
-        ended = true;
-    }
-    EXPECT_TRUE(ended);
-}
-
-TEST_F(RequestsTest, NoSearchStartsDuringShutdown) {
-    auto& ingest = start();
-    const auto robot = looking_around("r");
-    const auto session = ingest.sessions().find("lab");
-    auto go_on = hold_searches();
-    std::promise<std::string> sent;
-    guidance::GoalAssignments goals;
-    RequestExecutor requests(ingest.planning(), ingest.planning(), {goals, ingest.locator(), ingest.sessions()});
-    ASSERT_FALSE(
-        requests.submit({session, 0}, plan_to({2.5, 0.2}),
-                        [&](std::string frame, const std::shared_ptr<const void>&) { sent.set_value(frame); }));
-    std::thread draining([&] { ingest.sessions().drain(); });
-    draining.join();
-    go_on.set_value();
-    const auto frame = sent.get_future().get();
-    const auto reply = wire::decode(std::string_view(frame).substr(wire::kLengthPrefixBytes)).value();
-    EXPECT_EQ(std::get<wire::PlanReply>(reply).result.error().code, Errc::kShuttingDown);
 }
 
 } // namespace

@@ -8,10 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <sstream>
 
 namespace scanloom::robot {
 namespace {
@@ -68,18 +65,6 @@ TEST_F(CarmenLogFile, JitteringStampsKeepTheFileOrder) {
     EXPECT_TRUE(log->stamps.file_order);
     EXPECT_EQ(log->stamps.steps_back, 2U);
     EXPECT_DOUBLE_EQ(log->stamps.back_max, 2.0);
-}
-
-TEST_F(CarmenLogFile, FingerprintDependsOnTheScanOrder) {
-    const auto rising = text_of({flaser(1), flaser(2), flaser(3)});
-    const auto jittering = text_of({flaser(2), flaser(1), flaser(3)});
-    EXPECT_NE(read(rising)->fingerprint, read(jittering)->fingerprint);
-    EXPECT_EQ(read(flaser(1))->fingerprint, "carmen:d4bfaa8d490f9a80ff3f167a63709ac5");
-    EXPECT_NE(read(jittering)->fingerprint, "carmen:b4e2f736ab9cae529515ea4b23307515")
-        << "the fingerprint of the order by stamp";
-    const auto set_back = text_of({flaser(10), flaser(20), flaser(12), flaser(15), flaser(14.5)});
-    EXPECT_NE(read(set_back)->fingerprint, "carmen:8c8fcc02c3b3391d76899009e4c1bfb5")
-        << "the fingerprint of clients that sorted parts which overlap";
 }
 
 TEST_F(CarmenLogFile, LineWithoutStampUsesThePreviousStamp) {
@@ -326,93 +311,11 @@ TEST_F(CarmenLogFile, FileChangedWhileReadingIsAnError) {
     }
 }
 
-TEST_F(CarmenLogFile, FingerprintIsThatOfTheScans) {
-    const auto text = text_of({"# made on Monday\n", flaser(1), robot_laser("0 0 0", "0 0 0")});
-    const std::string fingerprint = read(text)->fingerprint;
-    EXPECT_THAT(fingerprint, testing::MatchesRegex("carmen:[0-9a-f]+"));
-    EXPECT_LE(fingerprint.size(), 64U);
-    EXPECT_EQ(read(gzip(text))->fingerprint, fingerprint);
-    EXPECT_EQ(read(bzip2(text))->fingerprint, fingerprint);
-    EXPECT_EQ(read(text_of({flaser(1), "# made on Tuesday\n", robot_laser("0 0 0", "0 0 0")}))->fingerprint,
-              fingerprint);
-    EXPECT_EQ(read(text_of({flaser(1), "FLASER 3 1 2\n", robot_laser("0 0 0", "0 0 0")}))->fingerprint, fingerprint)
-        << "an unusable line does not change the fingerprint";
-    EXPECT_NE(read(text_of({flaser(1), flaser(2), robot_laser("0 0 0", "0 0 0")}))->fingerprint, fingerprint);
-    EXPECT_NE(read(text_of({flaser(1), robot_laser("0 0 0", "0 0 0.1")}))->fingerprint, fingerprint);
-    EXPECT_NE(read(text_of({robot_laser("0 0 0", "0 0 0"), flaser(1)}))->fingerprint, fingerprint);
-}
-
-TEST_F(CarmenLogFile, FingerprintDependsOnOptionsThatChangeScans) {
-    const std::string text = flaser(1);
-    const auto with = [&](std::optional<NoReturn> no_return, std::optional<double> range_max) {
-        return read(text, {no_return, range_max, {}})->fingerprint;
-    };
-    EXPECT_EQ(with(NoReturn::kDrop, kCarmenRangeMax), with({}, {})) << "the explicit defaults";
-    EXPECT_NE(with(NoReturn::kFree, {}), with({}, {}));
-    EXPECT_NE(with({}, 20.0), with({}, {}));
-    const auto stated = read(robot_laser("0 0 0", "0 0 0", 30.0));
-    EXPECT_EQ(read(robot_laser("0 0 0", "0 0 0", 30.0), {NoReturn::kFree, {}, {}})->fingerprint, stated->fingerprint);
-    EXPECT_NE(read(robot_laser("0 0 0", "0 0 0", 30.0), {NoReturn::kDrop, {}, {}})->fingerprint, stated->fingerprint);
-}
-
 TEST_F(CarmenLogFile, MissingFilesAndFoldersAreErrors) {
     const auto ignore = [](const SkippedLine&) {};
     EXPECT_EQ(read_whole_log("/nonexistent/x.clf", {}, ignore).error().code, Errc::kNotFound);
     EXPECT_THAT(read_whole_log(testing::TempDir(), {}, ignore).error().message, HasSubstr("not a regular file"));
 }
-
-struct RealLog {
-    const char* file;
-    std::size_t scans;
-    std::size_t beams;
-};
-
-void PrintTo(const RealLog& log, std::ostream* out) { *out << log.file; }
-
-class RealCarmenLog : public testing::TestWithParam<RealLog> {};
-
-TEST_P(RealCarmenLog, IsReadCompletely) {
-    const auto path = std::filesystem::path(SCANLOOM_SOURCE_DIR) / "../shared/data/logs" / GetParam().file;
-    if (!std::filesystem::exists(path)) GTEST_SKIP() << "the recorded log is not at " << path;
-    const auto log = read_whole_log(path, {}, [](const SkippedLine&) {});
-    ASSERT_TRUE(log) << log.error().message;
-    EXPECT_EQ(log->observations.size(), GetParam().scans);
-    EXPECT_EQ(log->skipped_lines, 0U);
-    EXPECT_TRUE(log->stamps.file_order);
-    EXPECT_LT(log->stamps.back_max, 0.9);
-    for (const auto& [sensor, scan] : log->observations) {
-        EXPECT_EQ(scan.ranges.size(), GetParam().beams);
-        EXPECT_EQ(sensor, log->observations[0].sensor);
-    }
-}
-
-/// The stamps of this log go back 631 times. Sorted by stamp, the trajectory would be 661 m long, with steps of up to
-/// 0.87 m.
-TEST(RealCarmenLogs, IntelLogHasAPlausibleTrajectory) {
-    const auto path = std::filesystem::path(SCANLOOM_SOURCE_DIR) / "../shared/data/logs/intel.clf.bz2";
-    if (!std::filesystem::exists(path)) GTEST_SKIP() << "the recorded log is not at " << path;
-    const auto log = read_whole_log(path, {}, [](const SkippedLine&) {});
-    ASSERT_TRUE(log) << log.error().message;
-    EXPECT_EQ(log->stamps.steps_back, 631U);
-    double length = 0.0;
-    double step_max = 0.0;
-    for (std::size_t i = 1; i < log->observations.size(); ++i) {
-        const Pose2& from = *log->observations[i - 1].scan.pose;
-        const Pose2& to = *log->observations[i].scan.pose;
-        const double step = std::hypot(to.x - from.x, to.y - from.y);
-        length += step;
-        step_max = std::max(step_max, step);
-    }
-    EXPECT_NEAR(length, 508.0, 5.0);
-    EXPECT_LT(step_max, 0.3);
-}
-
-INSTANTIATE_TEST_SUITE_P(Logs, RealCarmenLog,
-                         testing::Values(RealLog{"intel.clf.bz2", 13631, 180},
-                                         RealLog{"intel-corrected.log.gz", 910, 180},
-                                         RealLog{"fr079.clf.bz2", 4934, 360},
-                                         RealLog{"fr079-corrected.log.gz", 4791, 360}),
-                         [](const auto& log) { return fmt::format("Log{}", log.index); });
 
 } // namespace
 } // namespace scanloom::robot

@@ -260,5 +260,25 @@ TEST_F(SessionTest, ForeignLogEntryStopsTheSession) {
     EXPECT_EQ(session_->snapshot()->revision, 2U);
 }
 
+TEST_F(SessionTest, DiscardedSessionStopsWriting) {
+    const auto link = join("r");
+    session_->submit(link, random_scans(1, 1, 300), 10);
+    run();
+    log_.hold_completions();
+    session_->submit(link, random_scans(1, 301, 10), 10);
+    session_->submit(link, random_scans(1, 311, 600), 10);
+    run();
+    const auto appends = log_.held_completions();
+    bool closed = false;
+    session_->close_early({Errc::kGone, "deleted"}, [&] { closed = true; });
+    log_.release_completions();
+    run();
+    EXPECT_TRUE(closed);
+    EXPECT_EQ(appends, 1U);
+    EXPECT_THAT(logged(), SizeIs(312)) << "waiting entries are not appended";
+    EXPECT_THAT(store::checkpoint_of(log_, id_).value(), IsEmpty());
+    EXPECT_THAT(link->failures, testing::ElementsAre(Error{Errc::kGone, "deleted"}));
+}
+
 } // namespace
 } // namespace scanloom::sessions

@@ -1,6 +1,6 @@
 #include "tests/unit/server/sessions/session_fixture.hpp"
 
-/// Expensive scans, full maps and sudden ends.
+/// Expensive scans, and full maps.
 namespace scanloom::sessions {
 namespace {
 
@@ -132,26 +132,6 @@ TEST_F(HeavySessionTest, HurryWithinAGroupLeavesTheRestToTheNextStart) {
     EXPECT_EQ(digest(), digest_of_log());
 }
 
-TEST_F(SessionTest, DiscardedSessionStopsWriting) {
-    const auto link = join("r");
-    session_->submit(link, random_scans(1, 1, 300), 10);
-    run();
-    log_.hold_completions();
-    session_->submit(link, random_scans(1, 301, 10), 10);
-    session_->submit(link, random_scans(1, 311, 600), 10);
-    run();
-    const auto appends = log_.held_completions();
-    bool closed = false;
-    session_->close_early({Errc::kGone, "deleted"}, [&] { closed = true; });
-    log_.release_completions();
-    run();
-    EXPECT_TRUE(closed);
-    EXPECT_EQ(appends, 1U);
-    EXPECT_THAT(logged(), SizeIs(312)) << "waiting entries are not appended";
-    EXPECT_THAT(store::checkpoint_of(log_, id_).value(), IsEmpty());
-    EXPECT_THAT(link->failures, testing::ElementsAre(Error{Errc::kGone, "deleted"}));
-}
-
 /// A session whose map is limited to a few chunks.
 class SmallMapTest : public SessionTest {
 protected:
@@ -219,37 +199,6 @@ TEST_F(SmallMapTest, RefusedRobotDoesNotAffectOthers) {
     EXPECT_EQ(other->durable_seq(), 2U);
     EXPECT_THAT(other->failures, IsEmpty());
     EXPECT_EQ(digest(), digest_of_log());
-}
-
-TEST_F(SessionTest, OtherSourceUnderTheSameNameIsRefused) {
-    const auto first = begin_join("r", "carmen:1");
-    session_->submit(first.link, small_laser(), 0);
-    session_->submit(first.link, random_scans(1, 1, 3), 10);
-    run();
-    const auto other = begin_join("r", "carmen:2");
-    EXPECT_EQ(other.answer->value().error().code, Errc::kConflict);
-    EXPECT_THAT(other.answer->value().error().message,
-                HasSubstr("the 3 scans of robot 'r' in session 'lab' come from 'carmen:1', not from 'carmen:2'"));
-    EXPECT_THAT(begin_join("r").answer->value().error().message, HasSubstr("not from a live robot"));
-    EXPECT_THAT(first.link->failures, IsEmpty()) << "the streaming robot is not affected";
-    session_->close({Errc::kShuttingDown, "bye"}, [] {});
-    run();
-    start_session();
-    EXPECT_EQ(begin_join("r", "carmen:2").answer->value().error().code, Errc::kConflict);
-    EXPECT_EQ(begin_join("r", "carmen:1").answer->value().value().last_durable_seq, 3U);
-}
-
-TEST_F(SessionTest, RobotWithoutScansMayChangeItsSource) {
-    begin_join("r", "carmen:1");
-    const auto second = begin_join("r", "carmen:2");
-    ASSERT_TRUE(second.answer->value());
-    session_->submit(second.link, small_laser(), 0);
-    session_->submit(second.link, random_scans(1, 1, 3), 10);
-    run();
-    start_session();
-    EXPECT_EQ(begin_join("r", "carmen:1").answer->value().error().code, Errc::kConflict);
-    EXPECT_EQ(begin_join("r", "carmen:2").answer->value().value().last_durable_seq, 3U);
-    EXPECT_THAT(session_->snapshot()->robots, SizeIs(1));
 }
 
 } // namespace

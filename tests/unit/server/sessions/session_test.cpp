@@ -210,5 +210,36 @@ TEST_F(SessionTest, SnapshotsContainTheNewestScanOfEachRobot) {
         << "the newest scan is not part of the log's projection";
 }
 
+TEST_F(SessionTest, OtherSourceUnderTheSameNameIsRefused) {
+    const auto first = begin_join("r", "carmen:1");
+    session_->submit(first.link, small_laser(), 0);
+    session_->submit(first.link, random_scans(1, 1, 3), 10);
+    run();
+    const auto other = begin_join("r", "carmen:2");
+    EXPECT_EQ(other.answer->value().error().code, Errc::kConflict);
+    EXPECT_THAT(other.answer->value().error().message,
+                HasSubstr("the 3 scans of robot 'r' in session 'lab' come from 'carmen:1', not from 'carmen:2'"));
+    EXPECT_THAT(begin_join("r").answer->value().error().message, HasSubstr("not from a live robot"));
+    EXPECT_THAT(first.link->failures, IsEmpty()) << "the streaming robot is not affected";
+    session_->close({Errc::kShuttingDown, "bye"}, [] {});
+    run();
+    start_session();
+    EXPECT_EQ(begin_join("r", "carmen:2").answer->value().error().code, Errc::kConflict);
+    EXPECT_EQ(begin_join("r", "carmen:1").answer->value().value().last_durable_seq, 3U);
+}
+
+TEST_F(SessionTest, RobotWithoutScansMayChangeItsSource) {
+    begin_join("r", "carmen:1");
+    const auto second = begin_join("r", "carmen:2");
+    ASSERT_TRUE(second.answer->value());
+    session_->submit(second.link, small_laser(), 0);
+    session_->submit(second.link, random_scans(1, 1, 3), 10);
+    run();
+    start_session();
+    EXPECT_EQ(begin_join("r", "carmen:1").answer->value().error().code, Errc::kConflict);
+    EXPECT_EQ(begin_join("r", "carmen:2").answer->value().value().last_durable_seq, 3U);
+    EXPECT_THAT(session_->snapshot()->robots, SizeIs(1));
+}
+
 } // namespace
 } // namespace scanloom::sessions
