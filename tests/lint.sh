@@ -10,7 +10,7 @@ run_fmt() {
     web_tool format "${web_mode[@]}"
 }
 
-readonly tidied='common|core|server|sim|robot_client|lab|load' # folders that clang-tidy reads
+readonly tidied=(common core server sim robot_client lab load) # folders that clang-tidy reads
 
 # run_tidy [FILE...]
 run_tidy() {
@@ -18,10 +18,13 @@ run_tidy() {
     choose_files tidy "$@"
     web_tool lint
     while read -r file; do
-        if [[ $file =~ ^($tidied)/ ]]; then sources+=("$file"); else echo "not checked: $file (clang-tidy reads only ${tidied//|/, })"; fi
+        if is_tidied "$file"; then sources+=("$file"); else echo "not checked: $file (clang-tidy reads only the folders ${tidied[*]})"; fi
     done < <((($# == 0)) || ends_with 'cpp|hpp')
     (($# > 0 && ${#sources[@]} == 0)) || tidy_cpp "${sources[@]}"
 }
+
+# is_tidied FILE: whether clang-tidy reads it.
+is_tidied() { [[ " ${tidied[*]} " == *" ${1%%/*} "* ]]; }
 
 # choose_files COMMAND [FILE...]: sets `files` to their paths from here, or to all files of the repository.
 choose_files() {
@@ -64,7 +67,7 @@ tidy_cpp() {
 compiled_folder() {
     local sources
     mapfile -t sources < <(compgen -G "${1%/*}/*.cpp" ||
-        git grep --files-with-matches --fixed-strings "#include \"$1\"" -- {common,core,server,sim,robot_client,lab,load}/'*.cpp' || echo ./all)
+        git grep --files-with-matches --fixed-strings "#include \"$1\"" -- "${tidied[@]/%//*.cpp}" || echo ./all)
     echo "${sources[0]%/*}"
 }
 
@@ -74,7 +77,7 @@ sources_of_tidy() {
     mapfile -t folders < <(for unit in "$@"; do compiled_folder "$unit"; done | sort -u)
     sed -n 's/^  "file": "\(.*\)".*/\1/p' build/tidy/compile_commands.json | sort -u | while read -r unit; do
         unit=${unit#"$PWD/"}
-        [[ $unit =~ ^(build/tidy/)?($tidied)/ ]] || continue
+        is_tidied "${unit#build/tidy/}" || continue
         if (($# == 0)); then
             echo "$unit"
             continue

@@ -36,8 +36,8 @@ run_test() {
     fi
 }
 
-# occurs WORD: whether the sources or the names of their files contain each of its parts. If not, no test has this name, which is
-# known before anything is built. Names of parameters therefore join their parts by '_', '/' or digits.
+# occurs WORD: whether the sources, or the names of their files, contain each part of WORD. If they do not, no test has this name, and
+# nothing needs to be built to know that. So that this holds, the names of parameters join their parts by '_', '/' or digits.
 occurs() {
     local part parts
     IFS='._/+0123456789' read -ra parts <<<"$1"
@@ -63,7 +63,7 @@ build_tier() {
         *)
             need fault package tidy readers ros
             unpack ros-unpacked build/ros
-            make_preset test "tests_$1" "${programs[@]}"
+            make_preset test "tests_$1"
             ;;
     esac
 }
@@ -134,11 +134,12 @@ run_filtered() {
 }
 
 # Rows of 'PATTERN;FILES': the tests of --all whose names match PATTERN run if one of FILES, or of the files that all parts depend
-# on, changed. Of the suites named Trials only those of system_test have a row.
+# on, changed. '^e2e_([^l]|l[^i])' matches all browser tests but e2e_live, which is in tier 1.
 readonly files_of_all_parts=(CMakeLists.txt CMakePresets.json cmake tests/CMakeLists.txt)
 readonly parts_of_all=(
-    '^tools[.];lab load sim tests/integration/lab tests/integration/load tests/support tests/unit/lab tests/unit/load'
+    '^tools[.];common/link common/net core/landmarks core/scan_matching core/slam lab load robot_client/uplink sim tests/integration/lab tests/integration/load tests/support tests/unit/lab tests/unit/load'
     '^faults[.];common/link common/net common/wire load robot_client server/app server/ingest server/sessions server/sockets server/store tests/fault tests/integration/robot_client tests/support'
+    '^robot[.].*Trials(/|$);robot_client/recordings robot_client/spool sim tests/unit/robot_client/recordings tests/unit/robot_client/spool tests/unit/sim'
     '^system[.].*Trials(/|$);common/link common/net robot_client server/app server/http server/sessions server/store tests/fault tests/integration tests/support'
     '^e2e_([^l]|l[^i]);common/wire/live.cpp proto/scanloom/v1/live.proto server/auth server/http server/live server/tiles tests/e2e web'
     '^ros_bridge_;robot_client/python robot_client/ros_bridge server/http/handlers/maps.cpp tests/integration/robot_client'
@@ -148,17 +149,17 @@ readonly parts_of_all=(
     '^lidar_judges$;tests/e2e/environment.mjs tests/e2e/programs.mjs robot_client/lidars robot_client/sources tests/readers tests/support'
     '^bridges$;tests/e2e/environment.mjs tests/e2e/programs.mjs robot_client/foxglove robot_client/ros tests/bridges'
     '^readers$;tests/e2e/environment.mjs tests/e2e/programs.mjs server/exchange server/http server/tiles tests/readers'
-    '^package$;docker packages.txt packaging robot_client/client robot_client/package robot_client/ros_bridge scanloom tests/package'
+    '^package$;docker packages.txt packaging robot_client/client robot_client/package robot_client/ros_bridge scanloom server/app tests/package web/package.json web/package-lock.json'
     '^api_pages$;common core docs/api packaging/api_pages.sh robot_client/client tests/package'
     '^bench_chart$;tests/bench/report'
 )
 
 # run_changed COMMIT: tier 1 without http_test, recovery_test and server_test, which .ci/run runs with sanitizers, and the parts of
-# --all whose files differ from those of that commit. All other programs of --all are compiled. Suites named Trials are left out, because tier 1
-# and the sanitizers run their short forms.
+# --all whose files differ from those of that commit. All other programs of --all are compiled. The Trials of core_test, maps_test and the
+# programs that run with sanitizers are left out: all but PostgresFailoverTrials have a short form, which runs.
 run_changed() {
     (($# == 1)) && git rev-parse --quiet --verify "$1^{commit}" >/dev/null || misused "test --changed takes a commit, not '$*'"
-    local part tests files left_out=('^(core|maps|robot)[.].*Trials(/|$)')
+    local part tests files left_out=('^(core|maps)[.].*Trials(/|$)')
     for part in "${parts_of_all[@]}"; do
         IFS=';' read -r tests files <<<"$part"
         read -ra files <<<"$files"
@@ -178,8 +179,9 @@ run_images() {
     fi
 }
 
-# run_sanitizers [--core]: the suites of tier 1 and those named Trials, under both sanitizers. --core: only the server's core
-# (maps, sessions, store, robot connections, HTTP); under ThreadSanitizer only server_test.
+# run_sanitizers [--core]: the suites of tier 1 and those named Trials under AddressSanitizer and UBSan, then those of programs with
+# threads under ThreadSanitizer. --core: only the server's core (maps, sessions, store, robot connections, HTTP); under
+# ThreadSanitizer only server_test.
 run_sanitizers() {
     local part=sanitize_all presets=(asan-ubsan tsan) preset status=0
     if (($# > 0)); then
@@ -196,9 +198,9 @@ run_sanitizers() {
 
 # sanitize_all PRESET
 sanitize_all() {
-    local options=(--label-regex '^suite$' --exclude-regex '^(tools|faults|nightly)[.]')
-    [[ $1 != tsan ]] || options+=(--label-exclude '^one_thread$')
-    make_preset "$1" tests
+    local options=(--label-regex '^suite$' --exclude-regex '^(tools|faults|nightly)[.]') targets=(tests)
+    [[ $1 != tsan ]] || { options+=(--label-exclude '^one_thread$') && targets=({http,robot,server,system}_test); }
+    make_preset "$1" "${targets[@]}"
     run_ctest "$1" "${options[@]}"
 }
 
@@ -237,7 +239,7 @@ run_nightly() {
     need fmt fuzz bench system large_readers
     build_tier nightly
     nightly_part run_ctest test --label-exclude '^nightly$'
-    nightly_part ctest --preset test --label-regex '^nightly$' # they compare speeds: one at a time
+    nightly_part run_ctest test --parallel 1 --label-regex '^nightly$' # they compare speeds: one at a time
     nightly_part ./scanloom fmt --check
     nightly_part ./scanloom tidy
     nightly_part ./scanloom test --sanitizers

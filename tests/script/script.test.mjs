@@ -96,6 +96,7 @@ test('unknown arguments are refused before anything is built', () => {
     [['build', '--robot', 'x'], /build --robot takes no 'x'/],
     [['bench', 'projection', 'x'], /bench projection takes no 'x'/],
     [['fuzz', 'nonsense'], /there is no fuzzer 'nonsense', only /],
+    [['fuzz', '--seconds', '0'], /fuzz needs at least one second/],
     [['demo', '--http-port', '99999'], /--http-port is 99999; ports go up to 65535/],
     [['demo', '--for', 'ever'], /--for is 'ever'; a whole number/],
     [['demo', '--log', 'no_such.log'], /the file 'no_such.log' cannot be read/],
@@ -171,7 +172,7 @@ test('a folder that cannot be written is reported', () => {
   const env = withPrograms({ ...debian, cmake: '' });
   const result = spawnSync(join(copy, 'scanloom'), ['build'], { encoding: 'utf8', env });
   assert.equal(result.status, 1);
-  assert.match(result.stderr, /^scanloom: the folder .*\/build\/log cannot be created; make .* writable/m);
+  assert.match(result.stderr, /^scanloom: the folder .*\/build\/log cannot be created or written; make .* writable/m);
 });
 
 test('a demo whose ports are taken gets others, and keeps its logs if it fails', () => {
@@ -208,7 +209,7 @@ test('tidy lists the files that clang-tidy does not check', () => {
   writeFileSync(join(place, 'tests/x.cpp'), '');
   const result = scanloomWith({ ...debian, npm: '' }, 'tidy', join(place, 'tests/x.cpp'));
   assert.equal(result.status, 0, result.stderr);
-  assert.match(result.stdout, /^not checked: tests\/x.cpp \(clang-tidy reads only common, /m);
+  assert.match(result.stdout, /^not checked: tests\/x.cpp \(clang-tidy reads only the folders common core /m);
 });
 
 test('fmt reads new files and no deleted ones', () => {
