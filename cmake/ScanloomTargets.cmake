@@ -98,11 +98,11 @@ function(scanloom_program name)
   scanloom_kind(${name} io)
 endfunction()
 
-# scanloom_test_program(NAME [ONE_THREAD] [LABELS label ...] [TIMEOUT seconds] [TOGETHER count])
-# An executable of GoogleTest suites. TOGETHER: suites in one CTest test, otherwise 1. ONE_THREAD: a test that starts a
-# thread ends the program; its suites have the label one_thread.
+# scanloom_test_program(NAME [ONE_THREAD] [LABELS label ...] [TIMEOUT seconds] [TOGETHER count] [COST cost])
+# An executable of GoogleTest suites. TOGETHER: suites in one CTest test, otherwise 1. COST: tests of higher cost start
+# first. ONE_THREAD: a test that starts a thread ends the program; its suites have the label one_thread.
 function(scanloom_test_program name)
-  cmake_parse_arguments(ARG "ONE_THREAD" "TIMEOUT;TOGETHER" "LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "ONE_THREAD" "COST;TIMEOUT;TOGETHER" "LABELS" ${ARGN})
   add_executable(${name})
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
   target_link_libraries(${name} PRIVATE scanloom_options GTest::gtest_main)
@@ -114,6 +114,9 @@ function(scanloom_test_program name)
   if(ARG_ONE_THREAD)
     list(APPEND ARG_LABELS one_thread)
     target_sources(${name} PRIVATE ${CMAKE_SOURCE_DIR}/tests/support/no_threads.cpp)
+  endif()
+  if(NOT ARG_COST)
+    set(ARG_COST 0)
   endif()
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 300)

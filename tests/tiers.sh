@@ -139,7 +139,7 @@ readonly files_of_all_parts=(CMakeLists.txt CMakePresets.json cmake tests/CMakeL
 readonly parts_of_all=(
     '^tools[.];common/link common/net core/landmarks core/scan_matching core/slam lab load robot_client/uplink sim tests/integration/lab tests/integration/load tests/support tests/unit/lab tests/unit/load'
     '^faults[.];common/link common/net common/wire load robot_client server/app server/ingest server/sessions server/sockets server/store tests/fault tests/integration/robot_client tests/support'
-    '^robot[.].*Trials(/|$);robot_client/recordings robot_client/spool sim tests/unit/robot_client/recordings tests/unit/robot_client/spool tests/unit/sim'
+    '^robot[.].*Trials(/|$);robot_client/recordings robot_client/spool sim tests/unit/robot_client/recordings tests/unit/robot_client/spool tests/unit/sim tests/readers tests/support'
     '^system[.].*Trials(/|$);common/link common/net robot_client server/app server/http server/sessions server/store tests/fault tests/integration tests/support'
     '^e2e_([^l]|l[^i]);common/wire/live.cpp proto/scanloom/v1/live.proto server/auth server/http server/live server/tiles tests/e2e web'
     '^ros_bridge_;robot_client/python robot_client/ros_bridge server/http/handlers/maps.cpp tests/integration/robot_client'
@@ -156,7 +156,7 @@ readonly parts_of_all=(
 
 # run_changed COMMIT: tier 1 without http_test, recovery_test and server_test, which .ci/run runs with sanitizers, and the parts of
 # --all whose files differ from those of that commit. All other programs of --all are compiled. The Trials of core_test, maps_test and the
-# programs that run with sanitizers are left out: all but PostgresFailoverTrials have a short form, which runs.
+# programs that run with sanitizers are left out; most of them have a short form, which runs.
 run_changed() {
     (($# == 1)) && git rev-parse --quiet --verify "$1^{commit}" >/dev/null || misused "test --changed takes a commit, not '$*'"
     local part tests files left_out=('^(core|maps)[.].*Trials(/|$)')

@@ -11,7 +11,7 @@ const source = resolve(import.meta.dirname ?? new URL('.', import.meta.url).path
 const place = mkdtempSync(join(tmpdir(), 'scanloom-links-test.'));
 after(() => rmSync(place, { recursive: true, force: true }));
 
-test('every link of the documents has a target in the package', () => {
+test('every link of the packaged documents has a target among the packaged files', () => {
   const documents = join(place, 'package');
   mkdirSync(documents);
   execFileSync(join(source, 'packaging/documents.sh'), [documents]);

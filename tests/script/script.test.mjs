@@ -96,7 +96,7 @@ test('unknown arguments are refused before anything is built', () => {
     [['build', '--robot', 'x'], /build --robot takes no 'x'/],
     [['bench', 'projection', 'x'], /bench projection takes no 'x'/],
     [['fuzz', 'nonsense'], /there is no fuzzer 'nonsense', only /],
-    [['fuzz', '--seconds', '0'], /fuzz needs at least one second/],
+    [['fuzz', '--seconds', '0'], /--seconds is 0; at least 1 is needed/],
     [['demo', '--http-port', '99999'], /--http-port is 99999; ports go up to 65535/],
     [['demo', '--for', 'ever'], /--for is 'ever'; a whole number/],
     [['demo', '--log', 'no_such.log'], /the file 'no_such.log' cannot be read/],
