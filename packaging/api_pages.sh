@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Writes the pages of the C++ API (docs/api). Fails with doxygen's warnings if a header lacks a description.
-# usage: api_pages.sh VERSION OUTPUT_DIRECTORY
 set -euo pipefail
 unset CDPATH
+(($# == 2)) || { echo "usage: api_pages.sh VERSION OUTPUT_DIRECTORY" >&2; exit 2; }
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 version=$1
 mkdir -p "$2"

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # Copies the documents of the package, and the files that their links name, to a folder, with the paths that they have in the
 # source tree.
-# usage: documents.sh OUTPUT_DIRECTORY
 set -euo pipefail
 unset CDPATH
+(($# == 1)) || { echo "usage: documents.sh OUTPUT_DIRECTORY" >&2; exit 2; }
 output=$(realpath "$1")
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 for file in README.md ARCHITECTURE.md CHANGELOG.md CONTRIBUTING.md GLOSSARY.md SECURITY.md LICENSE packages.txt docs/*.md docs/internals/*.md docs/decisions/*.md docs/cluster/* docs/foxglove/* docs/observability/* docs/performance/* docs/pictures/*.png \

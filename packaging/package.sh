@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # Creates the packages for Debian 12 from built programs and the pages of the C++ API: a Debian package, an archive with
 # the same files, and a list of their components (SPDX). The same build and commit give the same bytes.
-# usage: package.sh BUILD_DIRECTORY OUTPUT_DIRECTORY
 set -euo pipefail
 unset CDPATH
+(($# == 2)) || { echo "usage: package.sh BUILD_DIRECTORY OUTPUT_DIRECTORY" >&2; exit 2; }
 source=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 build=$(realpath "$1")
 mkdir -p "$2"

@@ -158,7 +158,7 @@ readonly parts_of_all=(
 # --all whose files differ from those of that commit. All other programs of --all are compiled. The Trials of core_test, maps_test and the
 # programs that run with sanitizers are left out; most of them have a short form, which runs.
 run_changed() {
-    (($# == 1)) && git rev-parse --quiet --verify "$1^{commit}" >/dev/null || misused "test --changed takes a commit, not '$*'"
+    (($# == 1)) && git rev-parse --quiet --verify "$1^{commit}" >/dev/null || misused "test --changed takes a commit of this clone, not '$*'"
     local part tests files left_out=('^(core|maps)[.].*Trials(/|$)')
     for part in "${parts_of_all[@]}"; do
         IFS=';' read -r tests files <<<"$part"

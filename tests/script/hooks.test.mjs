@@ -8,6 +8,13 @@ import { test } from 'node:test';
 
 const source = resolve(import.meta.dirname ?? new URL('.', import.meta.url).pathname, '../..');
 
+test('the hook refuses a commit outside a repository', () => {
+  const env = { ...process.env, GIT_DIR: '/nonexistent' };
+  const run = spawnSync(join(source, 'tests/hooks/pre-commit'), [], { env, encoding: 'utf8' });
+  assert.notEqual(run.status, 0);
+  assert.match(run.stderr, /not a git repository/);
+});
+
 test('the hook reports words that are not plain English, in comments and documents', (t) => {
   const copy = mkdtempSync(join(tmpdir(), 'scanloom-hook-test.'));
   t.after(() => rmSync(copy, { recursive: true, force: true }));
